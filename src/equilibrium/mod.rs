@@ -1,0 +1,36 @@
+//! Steady sliding: the static state under load and friction, and the system linearised about it.
+
+use crate::system::{ContactForces, ContactTangent};
+
+/// Steady sliding of a system.
+#[derive(Debug, Clone)]
+pub struct SteadySliding {
+    /// u₀ \[m, rad\] on the degrees of freedom.
+    pub displacement: Vec<f64>,
+    /// Approach of each pair \[m\].
+    pub approach: Vec<f64>,
+    /// State of each contact point, in the order of [`crate::system::System::points`].
+    pub points: Vec<PointState>,
+    /// Newton iterations in all.
+    pub iterations: usize,
+    /// ‖K u₀ + r_c − f‖ / (‖f‖ + ‖r_c‖) of the full system.
+    pub residual: f64,
+}
+
+/// One contact point at steady sliding.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointState {
+    /// δ₀ \[m\], negative when open.
+    pub penetration: f64,
+    /// Forces there \[N\].
+    pub forces: ContactForces,
+    /// Their derivatives there: the linearised contact.
+    pub tangent: ContactTangent,
+}
+
+impl PointState {
+    /// Whether the point carries load.
+    pub fn closed(&self) -> bool {
+        self.forces.normal > 0.0
+    }
+}

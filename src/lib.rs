@@ -1,0 +1,39 @@
+#![warn(missing_docs)]
+//! **stridor** tells when a disc will squeal, at which frequency, how loud, and what to change.
+//!
+//! The story on one page, in the order of the imports (a room only uses rooms above it):
+//!
+//! | room | what it holds |
+//! |---|---|
+//! | [`error`], [`progress`] | one error type that carries data; how long work reports where it stands |
+//! | [`linalg`] | sparse symmetric factorisation, eigenvalues; knows no mechanics |
+//! | [`system`] | the seam: M, C, K and the sliding interface, what every analysis takes |
+//! | [`mesh`] | Gmsh files, generated discs and plates, regions, quality |
+//! | [`structure`] | elements, constraints, assembly |
+//! | [`contact`] | pairing of two bodies, normal and friction laws |
+//! | [`equilibrium`] | steady sliding and its linearisation |
+//! | [`modal`] | real modes, their names, their certificate |
+//! | [`stability`] | complex eigenvalues at steady sliding |
+//! | [`results`] | HDF5, VTK, JSON, CSV |
+//! | [`report`] | pictures and the HTML page |
+//! | [`case`] | TOML → validated case → system |
+//! | [`validation`] | what the program is checked against |
+//! | [`cli`] | the command line |
+//!
+//! M ü + C u̇ + K u + Σ [g N − t₁ F₁ − t₂ F₂] = f. SI units (m, kg, s, N, rad) everywhere inside.
+
+pub mod case;
+pub mod cli;
+pub mod contact;
+pub mod equilibrium;
+pub mod error;
+pub mod linalg;
+pub mod mesh;
+pub mod modal;
+pub mod progress;
+pub mod report;
+pub mod results;
+pub mod stability;
+pub mod structure;
+pub mod system;
+pub mod validation;

@@ -1,0 +1,65 @@
+//! Real modes of the structure, without friction: K φ = ω² M φ.
+
+use faer::Mat;
+
+/// Real modes, ascending in frequency, with the proof that none is missing.
+#[derive(Debug, Clone)]
+pub struct RealModes {
+    /// ω² \[rad²/s²\], ascending; rigid-body modes are those counted by `rigid_bodies`, with ω² set as computed.
+    pub eigenvalues: Vec<f64>,
+    /// Mass-normalised shapes φᵀMφ = 1, one a column, n_dofs × n_modes.
+    pub shapes: Mat<f64>,
+    /// ‖Kφ − ω²Mφ‖ / ((‖K‖ + |ω²| ‖M‖) ‖φ‖), one a mode.
+    pub backward_errors: Vec<f64>,
+    /// How many of the first modes are rigid-body motions.
+    pub rigid_bodies: usize,
+    /// The Sturm count.
+    pub certificate: SturmCertificate,
+}
+
+/// The number of modes below a frequency, *counted* by the inertia of K − ω²M (Sylvester's law), at two nearby
+/// shifts, and compared with the number found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SturmCertificate {
+    /// The frequency up to which the count holds \[Hz\].
+    pub below_hz: f64,
+    /// The two shifts at which the inertia was taken \[Hz\], either side of `below_hz` with no mode between.
+    pub shifts_hz: [f64; 2],
+    /// Negative pivots at each shift.
+    pub counted: [usize; 2],
+    /// Modes found below `below_hz`.
+    pub found: usize,
+}
+
+impl SturmCertificate {
+    /// Whether no mode is missing.
+    pub fn holds(&self) -> bool {
+        self.counted == [self.found; 2]
+    }
+}
+
+impl RealModes {
+    /// Natural frequency of mode `k` \[Hz\]; 0 for a rigid-body mode whose ω² came out negative by round-off.
+    pub fn frequency_hz(&self, k: usize) -> f64 {
+        self.eigenvalues[k].max(0.0).sqrt() / std::f64::consts::TAU
+    }
+
+    /// The number of modes.
+    pub fn len(&self) -> usize {
+        self.eigenvalues.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.eigenvalues.is_empty()
+    }
+}
+
+/// The name of a disc's bending mode.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DiscModeName {
+    /// n: lines through the centre on which the disc is at rest.
+    pub nodal_diameters: usize,
+    /// s: circles on which the disc is at rest, a clamped hub not counted.
+    pub nodal_circles: usize,
+}

@@ -1,0 +1,70 @@
+//! Complex eigenvalues at steady sliding: (λ² M + λ (C + C_c) + K + K_σ + K_c) φ = 0, λ = σ + iω, unstable when σ > 0.
+
+use crate::linalg::c64;
+
+/// The complex modes of a system at steady sliding, ascending in frequency; one of each conjugate pair (ω ≥ 0).
+#[derive(Debug, Clone)]
+pub struct ComplexModes {
+    /// The modes.
+    pub modes: Vec<ComplexMode>,
+    /// Size of the projected problem.
+    pub subspace_dimension: usize,
+    /// Rounds of full-order refinement.
+    pub refinements: usize,
+}
+
+/// One complex mode with the measures of its own error.
+#[derive(Debug, Clone)]
+pub struct ComplexMode {
+    /// λ = σ + iω \[1/s\].
+    pub eigenvalue: c64,
+    /// φ on the degrees of freedom, scaled to φᴴMφ = 1.
+    pub right: Vec<c64>,
+    /// ψ, ψᴴ Q(λ) = 0, scaled to ‖ψ‖_M = 1.
+    pub left: Vec<c64>,
+    /// η = ‖Q(λ)φ‖ / ((|λ|²‖M‖ + |λ|‖C‖ + ‖K‖)‖φ‖).
+    pub backward_error: f64,
+    /// Estimated |Δλ| / |λ| from the residuals of both vectors.
+    pub eigenvalue_error: f64,
+    /// Condition number of λ: large near coalescence.
+    pub condition: f64,
+    /// Where the growth comes from.
+    pub growth: GrowthBudget,
+    /// Share of each real mode in φ (index into the real modes, share in [0, 1]), largest first.
+    pub participation: Vec<(usize, f64)>,
+}
+
+/// The terms of σ in 2σω + ω φᴴ(C + C_c)φ + Im φᴴ(K + K_c)φ = 0 \[1/s\]; they add up to the growth rate.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct GrowthBudget {
+    /// C and the loss factors (negative: dissipates).
+    pub structural_damping: f64,
+    /// Falling friction μ′(v).
+    pub falling_friction: f64,
+    /// Friction turning with the transverse slip.
+    pub transverse_friction: f64,
+    /// The unsymmetric part of the contact stiffness.
+    pub mode_coupling: f64,
+}
+
+impl ComplexMode {
+    /// σ \[1/s\].
+    pub fn growth_rate(&self) -> f64 {
+        self.eigenvalue.re
+    }
+
+    /// ω/2π \[Hz\].
+    pub fn frequency_hz(&self) -> f64 {
+        self.eigenvalue.im / std::f64::consts::TAU
+    }
+
+    /// −σ/|λ|; negative when unstable.
+    pub fn damping_ratio(&self) -> f64 {
+        -self.eigenvalue.re / self.eigenvalue.norm()
+    }
+
+    /// Whether the mode grows.
+    pub fn unstable(&self) -> bool {
+        self.eigenvalue.re > 0.0
+    }
+}

@@ -1,0 +1,151 @@
+//! What a structure is made of, before any matrix: plain data that the case fills in.
+
+use crate::mesh::Element;
+
+/// A structure: nodes and all that hangs on them. Degrees of freedom are (ux, uy, uz, rx, ry, rz) at every node.
+#[derive(Debug, Clone, Default)]
+pub struct Model {
+    /// Node coordinates \[m\], tilted and moved into place.
+    pub nodes: Vec<[f64; 3]>,
+    /// Plates.
+    pub shells: Vec<ShellPart>,
+    /// Bars.
+    pub bars: Vec<BarPart>,
+    /// Concentrated masses.
+    pub masses: Vec<PointMass>,
+    /// Springs, each with its dashpot.
+    pub springs: Vec<Spring>,
+    /// Rigid links, eliminated exactly.
+    pub links: Vec<RigidLink>,
+    /// Held degrees of freedom.
+    pub supports: Vec<Support>,
+}
+
+/// Isotropic linear elastic material.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Material {
+    /// E \[Pa\].
+    pub youngs_modulus: f64,
+    /// ν.
+    pub poissons_ratio: f64,
+    /// ρ \[kg/m³\].
+    pub density: f64,
+    /// η of K(1 + iη); zero for none.
+    pub loss_factor: f64,
+    /// C = α M + β K of the parts made of it.
+    pub rayleigh: RayleighDamping,
+}
+
+/// C = α M + β K.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RayleighDamping {
+    /// α \[1/s\].
+    pub alpha: f64,
+    /// β \[s\].
+    pub beta: f64,
+}
+
+/// A plate of constant thickness.
+#[derive(Debug, Clone)]
+pub struct ShellPart {
+    /// Its region's name.
+    pub name: String,
+    /// Triangles and quadrilaterals on [`Model::nodes`], all turned the same way.
+    pub faces: Vec<Element>,
+    /// What it is made of.
+    pub material: Material,
+    /// h \[m\].
+    pub thickness: f64,
+    /// Holds the membrane: displacements in the plate's plane and the rotation about its normal.
+    pub bending_only: bool,
+    /// Counts the rotary inertia ρh³/12 of the cross-section.
+    pub rotary_inertia: bool,
+}
+
+/// A bar of constant section.
+#[derive(Debug, Clone)]
+pub struct BarPart {
+    /// Its region's name.
+    pub name: String,
+    /// Two-node elements on [`Model::nodes`].
+    pub elements: Vec<[usize; 2]>,
+    /// What it is made of.
+    pub material: Material,
+    /// Its section.
+    pub section: Section,
+    /// A vector in the plane of the section's first axis; any that is not along the bar.
+    pub orientation: [f64; 3],
+}
+
+/// Section of a bar.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Section {
+    /// A \[m²\].
+    pub area: f64,
+    /// Second moment about the section's first axis \[m⁴\].
+    pub inertia_1: f64,
+    /// Second moment about the section's second axis \[m⁴\].
+    pub inertia_2: f64,
+    /// Torsion constant \[m⁴\].
+    pub torsion: f64,
+}
+
+impl Section {
+    /// A round bar of diameter `d` \[m\].
+    pub fn round(d: f64) -> Self {
+        let inertia = std::f64::consts::PI * d.powi(4) / 64.0;
+        Section {
+            area: std::f64::consts::PI * d * d / 4.0,
+            inertia_1: inertia,
+            inertia_2: inertia,
+            torsion: 2.0 * inertia,
+        }
+    }
+}
+
+/// A mass at a node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointMass {
+    /// The node.
+    pub node: usize,
+    /// m \[kg\], the same along x, y and z.
+    pub mass: f64,
+    /// Moments of inertia about x, y, z \[kg m²\].
+    pub inertia: [f64; 3],
+}
+
+/// A spring with a dashpot between two nodes, or a node and the ground: it acts on the difference of their
+/// displacement along `direction` (of their rotation about it, when `rotational`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spring {
+    /// One end.
+    pub node: usize,
+    /// The other end; `None` for the ground.
+    pub other: Option<usize>,
+    /// Its direction, of any length.
+    pub direction: [f64; 3],
+    /// Whether it acts on rotations.
+    pub rotational: bool,
+    /// k \[N/m or N m/rad\].
+    pub stiffness: f64,
+    /// c \[N s/m or N m s/rad\].
+    pub damping: f64,
+}
+
+/// Nodes that move with a master node as one rigid body.
+#[derive(Debug, Clone)]
+pub struct RigidLink {
+    /// The node that leads.
+    pub master: usize,
+    /// The nodes that follow.
+    pub slaves: Vec<usize>,
+}
+
+/// Held degrees of freedom.
+#[derive(Debug, Clone)]
+pub struct Support {
+    /// The nodes.
+    pub nodes: Vec<usize>,
+    /// Which of (ux, uy, uz, rx, ry, rz) are held.
+    pub held: [bool; 6],
+}

@@ -1,0 +1,44 @@
+//! Where two bodies touch: points, their directions in the degrees of freedom, and how the pair is closed.
+
+use super::ContactLaw;
+use crate::linalg::SparseVector;
+use std::sync::Arc;
+
+/// Two bodies in sliding contact: the *body* (the disc) and the *counter-body* (the slider).
+#[derive(Debug, Clone)]
+pub struct ContactPair {
+    /// The name the case gives it.
+    pub name: String,
+    /// Every point that may touch.
+    pub points: Vec<ContactPoint>,
+    /// Forces from motion.
+    pub law: Arc<dyn ContactLaw>,
+    /// What presses the bodies together.
+    pub closing: Closing,
+    /// V \[m/s\]: velocity of the counter-body relative to the body along t₁, without vibration.
+    pub sliding_velocity: f64,
+}
+
+/// One point that may touch.
+#[derive(Debug, Clone)]
+pub struct ContactPoint {
+    /// Where it is \[m\]; for results and pictures.
+    pub position: [f64; 3],
+    /// Initial gap \[m\]: δ = approach − gap + gᵀu.
+    pub gap: f64,
+    /// Contact length \[m\] or area \[m²\] it stands for, or its share of one.
+    pub weight: f64,
+    /// g: closes the contact (grows the penetration) when u moves along it.
+    pub normal: SparseVector,
+    /// t₁ (along the sliding direction) and t₂ (across): displacement of the body relative to the counter-body.
+    pub tangents: [SparseVector; 2],
+}
+
+/// What presses the two bodies of a pair together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Closing {
+    /// The bodies are moved towards each other until ΣN equals this load \[N\]; the approach is an unknown.
+    Load(f64),
+    /// A given approach \[m\]; external forces do the rest.
+    Approach(f64),
+}
