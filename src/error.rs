@@ -93,7 +93,8 @@ impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: found {}; expected {}.", self.place, self.found, self.expected)?;
         if !self.help.is_empty() {
-            write!(f, " {}.", self.help)?;
+            let stop = if self.help.ends_with(['.', '?']) { "" } else { "." };
+            write!(f, " {}{stop}", self.help)?;
         }
         Ok(())
     }

@@ -1,1 +1,390 @@
-//! (room in preparation)
+//! From a TOML file to a validated [`Case`], in two stages: what the file says, then what it means.
+//!
+//! Quantities are numbers in SI or strings with a unit (`"1 mm"`). Unknown keys are refused, and every fault is
+//! reported at once with its line. A [`Case`] is complete: every default is filled in, and its TOML form
+//! ([`Case::to_toml`]) reads back as the same case.
+
+mod parameter;
+mod read;
+pub(crate) mod reader;
+pub(crate) mod units;
+
+pub use read::read_case;
+
+use crate::structure::{Material, Section};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// Everything a run needs to know. Maps are keyed by the names that the user chose, or by mesh regions.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Case {
+    /// One line for reports.
+    pub title: String,
+    /// What the source of the case does not state, one sentence each; shown in every report.
+    pub assumptions: Vec<String>,
+    /// Whether the preload's geometric stiffness counts.
+    pub prestress: bool,
+    /// The folder that relative paths start from.
+    #[serde(skip)]
+    pub folder: PathBuf,
+    /// The mesh, if any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<MeshSource>,
+    /// Nodes given by their coordinates \[m\]; each is a region of one point under its name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub point: BTreeMap<String, [f64; 3]>,
+    /// Materials by name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub material: BTreeMap<String, Material>,
+    /// Plates by region.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub shell: BTreeMap<String, Shell>,
+    /// Bars by region.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub bar: BTreeMap<String, Bar>,
+    /// Concentrated masses by name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub mass: BTreeMap<String, Mass>,
+    /// Springs with dashpots by name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub spring: BTreeMap<String, SpringSet>,
+    /// Rigid bodies by name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub rigid: BTreeMap<String, Rigid>,
+    /// Supports by name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub support: BTreeMap<String, Held>,
+    /// External forces by name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub force: BTreeMap<String, Force>,
+    /// Contact pairs by name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub contact: BTreeMap<String, Contact>,
+    /// Damping of the whole structure.
+    pub damping: StructureDamping,
+    /// Real-mode analyses by name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub modes: BTreeMap<String, ModesAnalysis>,
+    /// Complex eigenvalue analysis, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cea: Option<CeaAnalysis>,
+}
+
+/// Where the mesh comes from.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum MeshSource {
+    /// A Gmsh file.
+    File {
+        /// Path, relative to the case file.
+        file: String,
+        /// `m`, `cm`, `mm` or `in`.
+        unit: String,
+    },
+    /// The built-in generator.
+    Generated(GeneratedMesh),
+}
+
+/// A mesh made by the built-in generator, so that its sizes are scalars of the case like any other.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GeneratedMesh {
+    /// Disc, bar and slider.
+    Rig(RigMesh),
+    /// A structured annulus: regions `disc`, `rim`, `hub`.
+    Annulus {
+        /// a \[m\].
+        outer_radius: f64,
+        /// b \[m\].
+        hub_radius: f64,
+        /// Elements along the radius.
+        radial: usize,
+        /// Elements around.
+        around: usize,
+    },
+}
+
+/// Sizes of a generated rig \[m\].
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RigMesh {
+    /// Outer radius of the disc.
+    pub outer_radius: f64,
+    /// Radius of the hub.
+    pub hub_radius: f64,
+    /// From the hub's centre to the clamp, along −x; along +x when negative.
+    pub bar_length: f64,
+    /// Slider along x and y.
+    pub slider: [f64; 2],
+    /// Where the contact is on the slider, from its middle; the mesh is fine there.
+    pub contact: [f64; 2],
+    /// Element size at the contact.
+    pub contact_size: f64,
+    /// Distance from the contact within which elements stay fine.
+    pub contact_radius: f64,
+    /// Element size of the disc elsewhere.
+    pub disc_size: f64,
+    /// Element size of the slider elsewhere.
+    pub slider_size: f64,
+}
+
+/// A plate.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Shell {
+    /// Material by name.
+    pub material: String,
+    /// h \[m\].
+    pub thickness: f64,
+    /// Holds the membrane.
+    pub bending_only: bool,
+    /// Counts rotary inertia.
+    pub rotary_inertia: bool,
+}
+
+/// A bar.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Bar {
+    /// Material by name.
+    pub material: String,
+    /// A vector in the plane of the section's first axis.
+    pub orientation: [f64; 3],
+    /// Its section, from a diameter or in full.
+    pub section: Section,
+}
+
+/// A concentrated mass at every point of a region.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Mass {
+    /// The region.
+    pub on: String,
+    /// m \[kg\] at each node.
+    pub mass: f64,
+    /// Moments of inertia about x, y, z \[kg m²\].
+    pub inertia: [f64; 3],
+}
+
+/// Springs from the nodes of a region to the ground, or from one point to another.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SpringSet {
+    /// The region whose nodes are sprung; the stiffness is shared equally among them.
+    pub on: String,
+    /// A region of one point at the other end; the ground when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub to: Option<String>,
+    /// Direction.
+    pub direction: [f64; 3],
+    /// Acts on rotations.
+    pub rotational: bool,
+    /// Total k \[N/m or N m\].
+    pub stiffness: f64,
+    /// Total c \[N s/m or N m s\].
+    pub damping: f64,
+}
+
+/// Regions that move as one rigid body with a point.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Rigid {
+    /// A region of one point.
+    pub master: String,
+    /// The regions that follow.
+    pub follow: Vec<String>,
+}
+
+/// Held degrees of freedom of regions.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Held {
+    /// The regions.
+    pub on: Vec<String>,
+    /// Names of held degrees of freedom among ux, uy, uz, rx, ry, rz.
+    pub held: Vec<String>,
+}
+
+/// A force shared equally by the nodes of a region.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Force {
+    /// The region.
+    pub on: String,
+    /// Total force \[N\].
+    pub force: [f64; 3],
+}
+
+/// What presses a contact pair together.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Pressing {
+    /// ΣN \[N\].
+    Load(f64),
+    /// Approach \[m\].
+    Approach(f64),
+}
+
+/// A contact pair.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Contact {
+    /// Region of the body: rim lines, a face, or a point.
+    pub body: String,
+    /// Region of the counter-body, or `ground`.
+    pub counter: String,
+    /// Direction in which the body moves into the ground; only for a contact with the ground.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub into: Option<[f64; 3]>,
+    /// Points with a larger initial gap are left out \[m\].
+    pub reach: f64,
+    /// What presses the pair together.
+    #[serde(flatten)]
+    pub pressing: Pressing,
+    /// V \[m/s\] of the counter-body relative to the body along the sliding direction.
+    pub sliding_velocity: f64,
+    /// How far the counter-body travels in all along the sliding direction \[m\]; it must stay under the body.
+    pub stroke: f64,
+    /// Direction in which the counter-body slides.
+    pub sliding_direction: [f64; 3],
+    /// Tilts and moves everything connected to the body; as meshed when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub placement: Option<Placement>,
+    /// Normal law.
+    pub normal: Normal,
+    /// Friction law.
+    pub friction: Friction,
+}
+
+/// Where the body stands on the counter-body.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Placement {
+    /// θ \[rad\]: body and all that hangs on it rotated about the lateral axis y through the body's centre; the
+    /// lowest point moves towards −x when θ > 0.
+    pub lead_angle: f64,
+    /// x, y of the lowest point, from the middle of the counter-body's region \[m\].
+    pub position: [f64; 2],
+}
+
+/// What a contact stiffness belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StiffnessPer {
+    /// The one point nearest to the counter-body \[N/m\].
+    Point,
+    /// Length of a line contact \[N/m²\].
+    Length,
+    /// Area of a face contact \[N/m³\].
+    Area,
+}
+
+/// N = k_n δ + k_nl δ³ + c_n δ̇.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Normal {
+    /// What the coefficients belong to.
+    pub per: StiffnessPer,
+    /// k_n.
+    pub stiffness: f64,
+    /// k_nl.
+    pub cubic: f64,
+    /// c_n.
+    pub damping: f64,
+    /// Never pulls.
+    pub unilateral: bool,
+}
+
+/// μ(v, p).
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Friction {
+    /// The friction coefficient.
+    #[serde(flatten)]
+    pub law: FrictionCurve,
+    /// v_ε \[m/s\] of the regularised slip direction.
+    pub regularisation: f64,
+}
+
+/// The curve of the friction coefficient.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "law", rename_all = "snake_case")]
+pub enum FrictionCurve {
+    /// μ = μ₀.
+    Coulomb {
+        /// μ₀.
+        mu0: f64,
+    },
+    /// μ = μ₀ + μ₁ exp(−α|v|).
+    Exponential {
+        /// μ₀.
+        mu0: f64,
+        /// μ₁.
+        mu1: f64,
+        /// α \[s/m\].
+        alpha: f64,
+    },
+    /// μ over slip velocity and pressure.
+    Table {
+        /// Slip velocities \[m/s\], ascending.
+        velocity: Vec<f64>,
+        /// Pressures (N per length, area or point), ascending; one entry when μ does not depend on it.
+        pressure: Vec<f64>,
+        /// One row a pressure, one column a velocity.
+        mu: Vec<Vec<f64>>,
+    },
+}
+
+/// Damping of the whole structure beyond its materials'.
+#[derive(Debug, Clone, PartialEq, Serialize, Default)]
+pub struct StructureDamping {
+    /// ζ of every real mode below `modal_below`.
+    pub modal_ratio: f64,
+    /// ζ of single modes instead: (frequency near the mode \[Hz\], ζ).
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub modal_ratios: Vec<[f64; 2]>,
+}
+
+/// The contact during a real-mode analysis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactState {
+    /// No contact.
+    Open,
+    /// The contact's normal stiffness at steady sliding, without friction.
+    Closed,
+}
+
+/// Real modes of parts or of the whole.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModesAnalysis {
+    /// Regions of shells and bars; all of them when empty.
+    pub parts: Vec<String>,
+    /// Regions held in all degrees of freedom in this analysis only.
+    pub clamp: Vec<String>,
+    /// Supports, springs and rigid bodies of the case are left out.
+    pub free: bool,
+    /// All modes below this frequency \[Hz\] …
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub below: Option<f64>,
+    /// … or this many.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub count: Option<usize>,
+    /// Contact open or closed.
+    pub contact: ContactState,
+    /// Measured natural frequencies \[Hz\] to set beside the computed ones.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub measured: Vec<f64>,
+    /// Where they come from.
+    pub measured_source: String,
+}
+
+/// Complex eigenvalues at steady sliding.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CeaAnalysis {
+    /// Frequency band \[Hz\].
+    pub band: [f64; 2],
+    /// Real modes up to this frequency span the first subspace \[Hz\].
+    pub basis_below: f64,
+    /// Measured squeal frequencies \[Hz\].
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub measured_squeal: Vec<f64>,
+    /// Where they come from.
+    pub measured_source: String,
+}
+
+impl Case {
+    /// The case as TOML in SI units with every default written out.
+    pub fn to_toml(&self) -> String {
+        toml::to_string(self).expect("a case is made of tables, lists, strings and finite numbers")
+    }
+}

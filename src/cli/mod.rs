@@ -1,8 +1,99 @@
-//! The command line.
+//! The command line: parses, calls the library, prints what it returns. One file a subcommand.
+//!
+//! Results go to stdout, progress and errors to stderr. Exit codes: 0 done, 1 the analysis or the machine failed,
+//! 2 the input is wrong.
 
+mod analyse;
+mod check;
+mod mesh;
+mod new;
+mod progress;
+mod validate;
+
+use crate::error::{Error, Fault, Result};
+use clap::{Args, Parser, Subcommand};
 use std::process::ExitCode;
+
+#[derive(Parser)]
+#[command(name = "stridor", version, about, propagate_version = true)]
+struct Command {
+    #[command(subcommand)]
+    action: Action,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// Options of every subcommand.
+#[derive(Args)]
+struct Common {
+    /// No progress and no tables, only errors
+    #[arg(long, short, global = true)]
+    quiet: bool,
+    /// Print the summary as JSON instead of tables
+    #[arg(long, global = true)]
+    json: bool,
+    /// Number of threads; all cores by default. The numbers do not depend on it
+    #[arg(long, global = true, value_name = "N")]
+    threads: Option<usize>,
+}
+
+#[derive(Subcommand)]
+enum Action {
+    /// Run every analysis of a case and write a results folder
+    Run(analyse::Options),
+    /// Real modes only
+    Modes(analyse::Options),
+    /// Steady sliding and complex eigenvalues only
+    Cea(analyse::Options),
+    /// Check a case and its mesh without running it, and list its parameters
+    Check(check::Options),
+    /// Write a case and a mesh to start from
+    New(new::Options),
+    /// Generate or inspect a mesh
+    #[command(subcommand)]
+    Mesh(mesh::Action),
+    /// Run the validation cases and print computed beside reference values
+    Validate(validate::Options),
+}
 
 /// Runs the program on the process's arguments.
 pub fn main() -> ExitCode {
-    ExitCode::SUCCESS
+    let command = match Command::try_parse() {
+        Ok(command) => command,
+        Err(error) => {
+            let _ = error.print();
+            return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
+        }
+    };
+    match act(&command) {
+        Ok(code) => code,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
+fn act(command: &Command) -> Result<ExitCode> {
+    set_threads(command.common.threads)?;
+    let common = &command.common;
+    match &command.action {
+        Action::Run(options) => analyse::run(options, common, crate::job::Selection::ALL),
+        Action::Modes(options) => analyse::run(options, common, crate::job::Selection::MODES),
+        Action::Cea(options) => analyse::run(options, common, crate::job::Selection::CEA),
+        Action::Check(options) => check::run(options, common),
+        Action::New(options) => new::run(options, common),
+        Action::Mesh(action) => mesh::run(action, common),
+        Action::Validate(options) => validate::run(options, common),
+    }
+}
+
+fn set_threads(threads: Option<usize>) -> Result<()> {
+    let Some(threads) = threads else { return Ok(()) };
+    if threads == 0 {
+        return Err(Error::input(Fault::new("--threads", "0", "at least 1")));
+    }
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().map_err(|error| {
+        Error::analysis("starting threads", error.to_string(), "Try fewer --threads")
+    })
 }

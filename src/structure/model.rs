@@ -1,6 +1,7 @@
 //! What a structure is made of, before any matrix: plain data that the case fills in.
 
 use crate::mesh::Element;
+use serde::Serialize;
 
 /// A structure: nodes and all that hangs on them. Degrees of freedom are (ux, uy, uz, rx, ry, rz) at every node.
 #[derive(Debug, Clone, Default)]
@@ -22,7 +23,7 @@ pub struct Model {
 }
 
 /// Isotropic linear elastic material.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Material {
     /// E \[Pa\].
     pub youngs_modulus: f64,
@@ -37,7 +38,7 @@ pub struct Material {
 }
 
 /// C = α M + β K.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct RayleighDamping {
     /// α \[1/s\].
     pub alpha: f64,
@@ -78,7 +79,7 @@ pub struct BarPart {
 }
 
 /// Section of a bar.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Section {
     /// A \[m²\].
     pub area: f64,

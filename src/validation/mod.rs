@@ -1,1 +1,99 @@
-//! (room in preparation)
+//! What the program is checked against. Each folder below `validation/` holds a case, and a `reference.toml` with
+//! quantities, reference values, tolerances, and the reason for each.
+
+mod check;
+pub mod kirchhoff;
+mod reference;
+
+pub use check::Row;
+
+use crate::error::{Error, Fault, Result};
+use crate::progress::Observer;
+use std::path::{Path, PathBuf};
+
+/// Runs every validation case below `root` whose folder name contains `filter`.
+///
+/// # Errors
+/// A folder without cases, a reference file with faults, or a case that cannot be analysed.
+pub fn run(root: &Path, filter: Option<&str>, observer: &dyn Observer) -> Result<Vec<Row>> {
+    let folders = folders(root, filter)?;
+    let mut rows = Vec::new();
+    for folder in &folders {
+        let reference = reference::read(folder)?;
+        rows.extend(check::run(&reference, observer)?);
+    }
+    Ok(rows)
+}
+
+fn folders(root: &Path, filter: Option<&str>) -> Result<Vec<PathBuf>> {
+    let entries = std::fs::read_dir(root).map_err(|error| {
+        Error::input(
+            Fault::new(root.display().to_string(), error.to_string(), "the folder of validation cases")
+                .with_help("Run from the repository, or name it with --from"),
+        )
+    })?;
+    let mut folders: Vec<PathBuf> = entries
+        .flatten()
+        .map(|entry| entry.path())
+        .filter(|path| path.join("reference.toml").is_file())
+        .filter(|path| filter.is_none_or(|f| path.file_name().is_some_and(|n| n.to_string_lossy().contains(f))))
+        .collect();
+    folders.sort();
+    if folders.is_empty() {
+        let expected = match filter {
+            Some(filter) => format!("a case whose name contains \"{filter}\""),
+            None => "folders with a reference.toml".to_string(),
+        };
+        return Err(Error::input(Fault::new(root.display().to_string(), "no validation case", expected)));
+    }
+    Ok(folders)
+}
+
+/// The rows as a table for people.
+pub fn table(rows: &[Row]) -> String {
+    let mut text = String::new();
+    let mut case = "";
+    for row in rows {
+        if row.case != case {
+            case = &row.case;
+            text += &format!("\n{}\n  source: {}\n", row.title, row.source);
+            text += &format!(
+                "  {:<52} {:>14} {:>14} {:>10} {:>10}\n",
+                "quantity", "computed", "reference", "difference", "tolerance"
+            );
+        }
+        text += &format!(
+            "  {:<52} {:>14.8} {:>14.8} {:>10.1e} {:>10.1e}  {}\n",
+            row.quantity,
+            row.computed,
+            row.reference,
+            row.difference(),
+            row.tolerance,
+            if row.passed() { "pass" } else { "FAIL" }
+        );
+    }
+    let passed = rows.iter().filter(|row| row.passed()).count();
+    text + &format!("\n{passed} of {} quantities within tolerance\n", rows.len())
+}
+
+/// The rows as JSON, in the form of the summary's `validation` list.
+pub fn to_json(rows: &[Row]) -> String {
+    let list: Vec<serde_json::Value> = rows
+        .iter()
+        .map(|row| {
+            serde_json::json!({
+                "case": row.case,
+                "quantity": row.quantity,
+                "computed": row.computed,
+                "reference": row.reference,
+                "difference": row.difference(),
+                "tolerance": row.tolerance,
+                "relative": row.relative,
+                "source": row.source,
+                "reason": row.reason,
+                "passed": row.passed(),
+            })
+        })
+        .collect();
+    serde_json::json!({ "validation": list }).to_string()
+}

@@ -1,0 +1,561 @@
+//! What each section of a case file may say. All faults of the file are found in one pass.
+
+use super::reader::{Section, read_document};
+use super::units::*;
+use super::*;
+use crate::error::{Error, Fault, Result};
+use crate::structure;
+use std::path::Path;
+
+/// Reads and validates the case file at `path`.
+///
+/// # Errors
+/// Every fault of the file, each with its line and key.
+pub fn read_case(path: &Path) -> Result<Case> {
+    let text = std::fs::read_to_string(path).map_err(|error| {
+        let found = match error.kind() {
+            std::io::ErrorKind::NotFound => "no file there".to_string(),
+            std::io::ErrorKind::InvalidData => "bytes that are not UTF-8 text".to_string(),
+            _ => error.to_string(),
+        };
+        Error::input(
+            Fault::new(path.display().to_string(), found, "a case file in TOML")
+                .with_help("`stridor new NAME` writes one to start from"),
+        )
+    })?;
+    let folder = path.parent().unwrap_or(Path::new(".")).to_path_buf();
+    Case::parse(&path.display().to_string(), &text, folder)
+}
+
+impl Case {
+    /// Reads a case from TOML text; `file` names it in faults and `folder` is where relative paths start.
+    pub fn parse(file: &str, text: &str, folder: PathBuf) -> Result<Case> {
+        read_document(file, text, |root| read_root(root, folder))
+    }
+}
+
+fn read_root(root: &Section, folder: PathBuf) -> Case {
+    let case = Case {
+        title: root.string("title").or("untitled".into()),
+        assumptions: root.strings("assumptions").or(Vec::new()),
+        prestress: root.boolean("prestress").or(false),
+        folder,
+        mesh: root.section("mesh", read_mesh),
+        point: root
+            .section("point", |s| {
+                let position = |name: &String| (name.clone(), s.quantities(name, LENGTH).or([0.0; 3]));
+                s.names().iter().map(position).collect()
+            })
+            .unwrap_or_default(),
+        material: collect(root, "material", read_material),
+        shell: collect(root, "shell", |s| Shell {
+            material: s.string("material").required("the name of a material"),
+            thickness: s.quantity("thickness", LENGTH).positive().required(LENGTH.name),
+            bending_only: s.boolean("bending_only").or(false),
+            rotary_inertia: s.boolean("rotary_inertia").or(true),
+        }),
+        bar: collect(root, "bar", read_bar),
+        mass: collect(root, "mass", |s| Mass {
+            on: s.string("on").required("a region of points"),
+            mass: s.quantity("mass", MASS).non_negative().required(MASS.name),
+            inertia: s.quantities("inertia", INERTIA).or([0.0; 3]),
+        }),
+        spring: collect(root, "spring", read_spring),
+        rigid: collect(root, "rigid", |s| Rigid {
+            master: s.string("master").required("a region of one point"),
+            follow: s.strings("follow").required("regions that move with the master"),
+        }),
+        support: collect(root, "support", read_support),
+        force: collect(root, "force", |s| Force {
+            on: s.string("on").required("a region"),
+            force: s.quantities("force", FORCE).required("three forces such as [0, \"1 N\", 0]"),
+        }),
+        contact: collect(root, "contact", read_contact),
+        damping: root.section("damping", read_damping).unwrap_or_default(),
+        modes: collect(root, "modes", read_modes),
+        cea: root.section("cea", read_cea),
+    };
+    check_names(root, &case);
+    case
+}
+
+fn collect<T>(root: &Section, key: &str, read: impl Fn(&Section) -> T) -> BTreeMap<String, T> {
+    root.named(key, |name, s| (name.to_string(), read(s))).into_iter().collect()
+}
+
+fn read_mesh(s: &Section) -> MeshSource {
+    let length = |s: &Section, key: &str, default: f64| s.quantity(key, LENGTH).positive().or(default);
+    let rig = s.section("rig", |r| RigMesh {
+        outer_radius: length(r, "outer_radius", 0.075),
+        hub_radius: length(r, "hub_radius", 0.020),
+        bar_length: r.quantity("bar_length", LENGTH).check("a length other than zero", |v| *v != 0.0).or(0.1),
+        slider: r.quantities("slider", LENGTH).or([0.2, 0.12]),
+        contact: r.quantities("contact", LENGTH).or([0.0; 2]),
+        contact_size: length(r, "contact_size", 0.4e-3),
+        contact_radius: length(r, "contact_radius", 2e-3),
+        disc_size: length(r, "disc_size", 3e-3),
+        slider_size: length(r, "slider_size", 8e-3),
+    });
+    let annulus = s.section("annulus", |a| GeneratedMesh::Annulus {
+        outer_radius: a.quantity("outer_radius", LENGTH).positive().required(LENGTH.name),
+        hub_radius: a.quantity("hub_radius", LENGTH).positive().required(LENGTH.name),
+        radial: a.count("radial").or(10),
+        around: a.count("around").or(60),
+    });
+    let generated = rig.map(GeneratedMesh::Rig).or(annulus);
+    if s.names().iter().filter(|key| ["file", "rig", "annulus"].contains(&key.as_str())).count() > 1 {
+        s.fault("", "more than one of `file`, `rig`, `annulus`", "one of them", "");
+    }
+    match generated {
+        Some(generated) => MeshSource::Generated(generated),
+        None => MeshSource::File {
+            file: s.string("file").required("the path of a Gmsh file, or a table [mesh.rig] to generate one"),
+            unit: s.choice("unit", &["m", "cm", "mm", "in"]).required("one of m, cm, mm, in").to_string(),
+        },
+    }
+}
+
+fn read_material(s: &Section) -> Material {
+    Material {
+        youngs_modulus: s.quantity("youngs_modulus", PRESSURE).positive().required(PRESSURE.name),
+        poissons_ratio: s
+            .quantity("poissons_ratio", NUMBER)
+            .check("a value above -1 and below 0.5", |v| *v > -1.0 && *v < 0.5)
+            .required("a number such as 0.3"),
+        density: s.quantity("density", DENSITY).positive().required(DENSITY.name),
+        loss_factor: s.quantity("loss_factor", NUMBER).non_negative().or(0.0),
+        rayleigh: s
+            .section("rayleigh", |r| structure::RayleighDamping {
+                alpha: r.quantity("alpha", FREQUENCY).non_negative().or(0.0),
+                beta: r.quantity("beta", TIME).non_negative().or(0.0),
+            })
+            .unwrap_or_default(),
+    }
+}
+
+fn read_bar(s: &Section) -> Bar {
+    let full = s.section("section", |f| structure::Section {
+        area: f.quantity("area", AREA).positive().required(AREA.name),
+        inertia_1: f.quantity("inertia_1", AREA_MOMENT).positive().required(AREA_MOMENT.name),
+        inertia_2: f.quantity("inertia_2", AREA_MOMENT).positive().required(AREA_MOMENT.name),
+        torsion: f.quantity("torsion", AREA_MOMENT).positive().required(AREA_MOMENT.name),
+    });
+    let diameter = s.quantity("diameter", LENGTH).positive();
+    let section = match full {
+        Some(full) => {
+            if s.has("diameter") {
+                s.fault("diameter", "both `diameter` and `section`", "one of them", "");
+            }
+            full
+        }
+        None => structure::Section::round(diameter.required("a diameter, or a [section] in full")),
+    };
+    Bar {
+        material: s.string("material").required("the name of a material"),
+        section,
+        orientation: s
+            .quantities("orientation", NUMBER)
+            .check("a vector that is not zero", |v| v.iter().any(|x| *x != 0.0))
+            .or([0.0, 0.0, 1.0]),
+    }
+}
+
+fn read_spring(s: &Section) -> SpringSet {
+    let rotational = s.boolean("rotational").or(false);
+    let (stiffness, damping) =
+        if rotational { (ROTATIONAL_STIFFNESS, ROTATIONAL_DASHPOT) } else { (STIFFNESS, DASHPOT) };
+    SpringSet {
+        on: s.string("on").required("a region"),
+        to: s.string("to").optional(),
+        direction: s
+            .quantities("direction", NUMBER)
+            .check("a vector that is not zero", |v| v.iter().any(|x| *x != 0.0))
+            .required("a direction such as [1, 0, 0]"),
+        rotational,
+        stiffness: s.quantity("stiffness", stiffness).non_negative().required(stiffness.name),
+        damping: s.quantity("damping", damping).non_negative().or(0.0),
+    }
+}
+
+/// The names of the six degrees of freedom of a node, in order.
+pub(crate) const DOF_NAMES: [&str; 6] = ["ux", "uy", "uz", "rx", "ry", "rz"];
+
+fn read_support(s: &Section) -> Held {
+    let all = || DOF_NAMES.map(String::from).to_vec();
+    let held = s
+        .strings("held")
+        .check("\"all\", or some of ux, uy, uz, rx, ry, rz", |list| {
+            list.iter().all(|name| name == "all" || DOF_NAMES.contains(&name.as_str()))
+        })
+        .or(all());
+    Held {
+        on: s.strings("on").required("a region, or a list of them"),
+        held: if held.iter().any(|name| name == "all") { all() } else { held },
+    }
+}
+
+fn read_contact(s: &Section) -> Contact {
+    let counter = s.string("counter").required("a region, or \"ground\"");
+    let ground = counter == "ground";
+    let load = s.quantity("load", FORCE).positive().optional();
+    let approach = s.quantity("approach", LENGTH).optional();
+    if load.is_some() && approach.is_some() {
+        s.fault("approach", "both `load` and `approach`", "one of them", "");
+    }
+    let pressing = match (load, approach) {
+        (Some(load), _) => Pressing::Load(load),
+        (None, Some(approach)) => Pressing::Approach(approach),
+        (None, None) => {
+            if !s.has("load") && !s.has("approach") {
+                s.fault("load", "nothing", "`load = \"20 N\"` (the normal load), or an `approach`", "");
+            }
+            Pressing::Approach(0.0)
+        }
+    };
+    let into = s
+        .quantities("into", NUMBER)
+        .check("a vector that is not zero", |v| v.iter().any(|x| *x != 0.0))
+        .optional();
+    if ground && into.is_none() && !s.has("into") {
+        s.fault(
+            "into",
+            "nothing",
+            "the direction in which the body moves into the ground, such as [0, 0, -1]",
+            "",
+        );
+    }
+    if !ground && s.has("into") {
+        s.fault("into", "a direction", "no such key for a contact between two parts", "Remove it");
+    }
+    let normal = s.section("normal", |n| {
+        let per = n
+            .choice("per", &["point", "length", "area"])
+            .required("what the stiffness belongs to: point, length or area");
+        let (per, power) = match per {
+            "length" => (StiffnessPer::Length, 1),
+            "area" => (StiffnessPer::Area, 2),
+            _ => (StiffnessPer::Point, 0),
+        };
+        let unit = STIFFNESS.per_metre(
+            power,
+            [
+                "a stiffness such as \"10 MN/m\"",
+                "a stiffness per length such as \"10 GN/m^2\"",
+                "a stiffness per area such as \"10 GN/m^3\"",
+            ][power as usize],
+        );
+        let cubic = STIFFNESS.per_metre(power + 2, "a cubic stiffness: the unit of `stiffness` per m^2");
+        let damping = DASHPOT.per_metre(power, "a damping constant: the unit of `stiffness` times s");
+        Normal {
+            per,
+            stiffness: n.quantity("stiffness", unit).non_negative().required(unit.name),
+            cubic: n.quantity("cubic", cubic).non_negative().or(0.0),
+            damping: n.quantity("damping", damping).non_negative().or(0.0),
+            unilateral: n.boolean("unilateral").or(true),
+        }
+    });
+    if normal.as_ref().is_none_or(|n| n.stiffness == 0.0 && n.cubic == 0.0) {
+        s.fault("normal", "no contact stiffness", "a table with `per` and a `stiffness` above zero", "");
+    }
+    let friction = s.section("friction", read_friction);
+    if friction.is_none() && !s.has("friction") {
+        s.fault("friction", "nothing", "a table such as { law = \"coulomb\", mu0 = 0.4 }", "");
+    }
+    Contact {
+        body: s.string("body").required("a region of rim lines, of faces, or of a point"),
+        counter,
+        placement: s.section("placement", |p| Placement {
+            lead_angle: p
+                .quantity("lead_angle", ANGLE)
+                .check("an angle between -45 and 45 degrees", |v| v.abs() <= std::f64::consts::FRAC_PI_4)
+                .or(0.0),
+            position: p.quantities("position", LENGTH).or([0.0; 2]),
+        }),
+        into,
+        reach: s.quantity("reach", LENGTH).positive().or(1e-3),
+        pressing,
+        sliding_velocity: s
+            .quantity("sliding_velocity", VELOCITY)
+            .check("a velocity that is not zero (steady sliding has no state at rest)", |v| *v != 0.0)
+            .required(VELOCITY.name),
+        stroke: s.quantity("stroke", LENGTH).non_negative().or(0.0),
+        sliding_direction: s
+            .quantities("sliding_direction", NUMBER)
+            .check("a vector that is not zero", |v| v.iter().any(|x| *x != 0.0))
+            .or([1.0, 0.0, 0.0]),
+        normal: normal.unwrap_or(Normal {
+            per: StiffnessPer::Point,
+            stiffness: 0.0,
+            cubic: 0.0,
+            damping: 0.0,
+            unilateral: true,
+        }),
+        friction: friction
+            .unwrap_or(Friction { law: FrictionCurve::Coulomb { mu0: 0.0 }, regularisation: 0.0 }),
+    }
+}
+
+fn read_friction(s: &Section) -> Friction {
+    let coefficient = |key: &str| s.quantity(key, NUMBER).non_negative();
+    let law =
+        match s.choice("law", &["coulomb", "exponential", "table"]).required("coulomb, exponential or table")
+        {
+            "exponential" => FrictionCurve::Exponential {
+                mu0: coefficient("mu0").required("a friction coefficient"),
+                mu1: s.quantity("mu1", NUMBER).required("a friction coefficient"),
+                alpha: s.quantity("alpha", INVERSE_VELOCITY).non_negative().required(INVERSE_VELOCITY.name),
+            },
+            "table" => {
+                let ascending = |v: &Vec<f64>| !v.is_empty() && v.windows(2).all(|w| w[0] < w[1]);
+                let velocity = s
+                    .quantity_list("velocity", VELOCITY)
+                    .check("velocities in ascending order", ascending)
+                    .required("a list of velocities");
+                let pressure = s
+                    .quantity_list("pressure", NUMBER)
+                    .check("pressures in ascending order", ascending)
+                    .or(vec![0.0]);
+                let mu = s
+                    .rows("mu", NUMBER)
+                    .check("one row a pressure, with one value of zero or more a velocity", |rows| {
+                        rows.len() == pressure.len()
+                            && rows.iter().all(|r| r.len() == velocity.len() && r.iter().all(|m| *m >= 0.0))
+                    })
+                    .required("rows of friction coefficients");
+                FrictionCurve::Table { velocity, pressure, mu }
+            }
+            _ => FrictionCurve::Coulomb { mu0: coefficient("mu0").required("a friction coefficient") },
+        };
+    Friction { law, regularisation: s.quantity("regularisation", VELOCITY).non_negative().or(0.0) }
+}
+
+fn read_damping(s: &Section) -> StructureDamping {
+    let pairs = s.rows("modal_ratios", NUMBER).check("rows of [frequency in Hz, ratio below 1]", |rows| {
+        rows.iter().all(|r| r.len() == 2 && r[0] >= 0.0 && (0.0..1.0).contains(&r[1]))
+    });
+    StructureDamping {
+        modal_ratio: s
+            .quantity("modal_ratio", NUMBER)
+            .check("a ratio from 0 to below 1", |v| (0.0..1.0).contains(v))
+            .or(0.0),
+        modal_ratios: pairs.or(Vec::new()).iter().map(|r| [r[0], r[1]]).collect(),
+    }
+}
+
+fn read_modes(s: &Section) -> ModesAnalysis {
+    let below = s.quantity("below", FREQUENCY).positive().optional();
+    let count = s.count("count").optional();
+    match (below, count) {
+        (None, None) if !s.has("below") && !s.has("count") => {
+            s.fault("below", "nothing", "`below = \"3 kHz\"`, or a `count` of modes", "");
+        }
+        (Some(_), Some(_)) => s.fault("count", "both `below` and `count`", "one of them", ""),
+        _ => {}
+    }
+    ModesAnalysis {
+        parts: s.strings("parts").or(Vec::new()),
+        clamp: s.strings("clamp").or(Vec::new()),
+        free: s.boolean("free").or(false),
+        below,
+        count,
+        contact: match s.choice("contact", &["open", "closed"]).or("open") {
+            "closed" => ContactState::Closed,
+            _ => ContactState::Open,
+        },
+        measured: s.quantity_list("measured", FREQUENCY).or(Vec::new()),
+        measured_source: s.string("measured_source").or(String::new()),
+    }
+}
+
+fn read_cea(s: &Section) -> CeaAnalysis {
+    let band = s
+        .quantities("band", FREQUENCY)
+        .check("a lower and a higher frequency", |[a, b]| *a >= 0.0 && b > a)
+        .required("a band such as [0, \"6 kHz\"]");
+    CeaAnalysis {
+        band,
+        basis_below: s
+            .quantity("basis_below", FREQUENCY)
+            .check("a frequency of at least the band's upper end", |f| *f >= band[1])
+            .or(1.5 * band[1]),
+        measured_squeal: s.quantity_list("measured_squeal", FREQUENCY).or(Vec::new()),
+        measured_source: s.string("measured_source").or(String::new()),
+    }
+}
+
+/// Names that must stand elsewhere in the file: materials, parts, contacts.
+fn check_names(root: &Section, case: &Case) {
+    let materials: Vec<&str> = case.material.keys().map(String::as_str).collect();
+    let used = case
+        .shell
+        .iter()
+        .map(|(name, s)| (format!("shell.{name}.material"), &s.material))
+        .chain(case.bar.iter().map(|(name, b)| (format!("bar.{name}.material"), &b.material)));
+    for (key, material) in used {
+        if !material.is_empty() && !materials.contains(&material.as_str()) {
+            unknown_name(root, &key, material, "material", &materials);
+        }
+    }
+    let parts: Vec<&str> = case.shell.keys().chain(case.bar.keys()).map(String::as_str).collect();
+    for (name, analysis) in &case.modes {
+        for part in analysis.parts.iter().filter(|p| !parts.contains(&p.as_str())) {
+            unknown_name(root, &format!("modes.{name}.parts"), part, "shell or bar", &parts);
+        }
+        if analysis.contact == ContactState::Closed && case.contact.is_empty() {
+            root.fault(&format!("modes.{name}.contact"), "closed", "open, as the case has no [contact]", "");
+        }
+        if analysis.contact == ContactState::Closed && !analysis.parts.is_empty() {
+            root.fault(
+                &format!("modes.{name}.contact"),
+                "closed",
+                "open, when only some parts are analysed",
+                "",
+            );
+        }
+    }
+    if case.cea.is_some() && case.contact.is_empty() {
+        root.fault("cea", "no [contact] in the case", "a contact, without which nothing slides", "");
+    }
+    if case.mesh.is_none() && case.point.is_empty() {
+        root.fault("mesh", "nothing", "a [mesh] with a file, or [point] coordinates", "");
+    }
+}
+
+fn unknown_name(root: &Section, key: &str, name: &str, kind: &str, known: &[&str]) {
+    let help = crate::error::nearest(name, known.iter().copied())
+        .map_or(String::new(), |near| format!("Did you mean \"{near}\"?"));
+    let list = if known.is_empty() { "none is defined".to_string() } else { known.join(", ") };
+    root.fault(key, format!("\"{name}\""), format!("the name of a {kind} ({list})"), &help);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RIG: &str = r#"
+title = "A small rig"
+assumptions = ["The hub's radius is not stated."]
+prestress = true
+
+[mesh]
+file = "rig.msh"
+unit = "mm"
+
+[material.steel]
+youngs_modulus = "210 GPa"
+poissons_ratio = 0.3
+density = 7850
+rayleigh = { alpha = 1.0, beta = "1 us" }
+
+[shell.disc]
+material = "steel"
+thickness = "1 mm"
+rotary_inertia = false
+
+[shell.slider]
+material = "steel"
+thickness = "10 mm"
+
+[bar.bar]
+material = "steel"
+diameter = "20 mm"
+
+[rigid.hub]
+master = "bar_root"
+follow = "hub"
+
+[support.clamp]
+on = "bar_clamp"
+
+[spring.drive]
+on = "slider"
+direction = [1, 0, 0]
+stiffness = "1 MN/m"
+damping = "10 N*s/m"
+
+[contact.rim]
+body = "rim"
+counter = "slider"
+load = "20 N"
+sliding_velocity = "0.1 m/s"
+placement = { lead_angle = "4 deg", position = ["10 mm", 0] }
+normal = { per = "length", stiffness = "10 GN/m^2", cubic = 1e18 }
+friction = { law = "exponential", mu0 = 0.3, mu1 = 0.1, alpha = "5 s/m" }
+
+[damping]
+modal_ratio = 0.001
+
+[modes.disc]
+parts = ["disc"]
+clamp = ["hub"]
+below = "3 kHz"
+measured = [330, 936, 1697, 2600]
+measured_source = "hammer"
+
+[cea]
+band = [0, "6 kHz"]
+measured_squeal = [936, 1661, 2600]
+"#;
+
+    fn parse(text: &str) -> Result<Case> {
+        Case::parse("rig.toml", text, PathBuf::from("."))
+    }
+
+    #[test]
+    fn the_resolved_case_reads_back_as_the_same_case() {
+        let case = parse(RIG).unwrap();
+        assert_eq!(case.shell["disc"].thickness, 1e-3);
+        assert_eq!(case.contact["rim"].pressing, Pressing::Load(20.0));
+        assert_eq!(case.contact["rim"].normal.stiffness, 1e10);
+        assert_eq!(case.cea.as_ref().unwrap().basis_below, 9000.0);
+        assert_eq!(parse(&case.to_toml()).unwrap(), case);
+    }
+
+    #[test]
+    fn a_parameter_is_set_by_its_path() {
+        let case = parse(RIG).unwrap();
+        let other = case.with_parameter("contact.rim.friction.mu0", 0.5).unwrap();
+        assert_eq!(
+            other.contact["rim"].friction.law,
+            FrictionCurve::Exponential { mu0: 0.5, mu1: 0.1, alpha: 5.0 }
+        );
+        let error = case.with_parameter("contact.rim.friction.mu", 0.5).unwrap_err().to_string();
+        assert!(error.contains("contact.rim.friction.mu0"), "{error}");
+        let error = case.with_parameter("material.steel.poissons_ratio", 0.5).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+    }
+
+    #[test]
+    fn every_fault_is_found_at_once_with_its_line() {
+        let text = RIG
+            .replace("thickness = \"1 mm\"", "thicknes = \"1 mm\"")
+            .replace("\"10 mm\"\n\n[bar", "\"-10 mm\"\n\n[bar")
+            .replace("poissons_ratio = 0.3", "poissons_ratio = 0.5")
+            .replace("diameter = \"20 mm\"", "diameter = \"20 kg\"")
+            .replace("sliding_velocity = \"0.1 m/s\"", "sliding_velocity = 0")
+            .replace("below = \"3 kHz\"", "below = true")
+            .replace("material = \"steel\"\ndiameter", "material = \"stel\"\ndiameter");
+        let error = parse(&text).unwrap_err().to_string();
+        for expected in [
+            "8 faults",
+            "rig.toml:18 `shell.disc.thicknes`",
+            "Did you mean `thickness`?",
+            "-0.01; expected a value above zero",
+            "below 0.5",
+            "another dimension",
+            "steady sliding has no state at rest",
+            "found true; expected a frequency",
+            "bar.bar.material",
+            "Did you mean \"steel\"?",
+        ] {
+            assert!(error.contains(expected), "{expected} not in\n{error}");
+        }
+    }
+
+    #[test]
+    fn text_that_is_not_toml_is_refused_with_its_line() {
+        let error = parse("title = \"a\"\n[mesh\n").unwrap_err().to_string();
+        assert!(error.contains("rig.toml:2"), "{error}");
+        assert!(parse("").is_err());
+    }
+}

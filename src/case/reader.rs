@@ -1,0 +1,332 @@
+//! Reads TOML section by section, remembering every fault with its line: unknown keys, wrong types, wrong units.
+
+use super::units::{Dimension, parse_quantity};
+use crate::error::{Error, Fault, Faults, Result, nearest};
+use std::cell::RefCell;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// A parsed TOML text and the faults found in it so far.
+pub struct Reader<'a> {
+    file: &'a str,
+    text: &'a str,
+    faults: RefCell<Faults>,
+}
+
+/// One table of the text. Each key is asked for by name; [`Section::finish`] then refuses those nobody asked for.
+pub struct Section<'a> {
+    reader: &'a Reader<'a>,
+    table: &'a DeTable<'a>,
+    path: String,
+    start: usize,
+    known: RefCell<Vec<String>>,
+}
+
+/// A value that may be absent, with where it stands.
+pub struct Found<'a, T> {
+    section: &'a Section<'a>,
+    key: String,
+    value: Option<T>,
+    faulty: bool,
+}
+
+/// Parses `text` and hands its root to `read`, then gives the value or every fault.
+pub fn read_document<T>(file: &str, text: &str, read: impl FnOnce(&Section) -> T) -> Result<T> {
+    let reader = Reader { file, text, faults: RefCell::default() };
+    let root = DeTable::parse(text).map_err(|error| {
+        let line = error.span().map_or(1, |span| reader.line(span.start));
+        let found = format!("`{}`", text.lines().nth(line - 1).unwrap_or("").trim());
+        Error::input(
+            Fault::new(format!("{file}:{line}"), found, "TOML")
+                .with_help(error.message().replace('\n', ", ")),
+        )
+    })?;
+    let section = Section {
+        reader: &reader,
+        table: root.get_ref(),
+        path: String::new(),
+        start: 0,
+        known: RefCell::default(),
+    };
+    let value = read(&section);
+    section.finish();
+    drop(section);
+    reader.faults.into_inner().into_result(value)
+}
+
+impl Reader<'_> {
+    fn line(&self, offset: usize) -> usize {
+        1 + self.text.as_bytes()[..offset.min(self.text.len())].iter().filter(|b| **b == b'\n').count()
+    }
+}
+
+impl<'a> Section<'a> {
+    /// The keys of this table, for tables whose keys are names.
+    pub fn names(&self) -> Vec<String> {
+        self.table.keys().map(|key| key.get_ref().to_string()).collect()
+    }
+
+    /// Notes a fault of `key` in this table; `key` may be a dotted path below it.
+    pub fn fault(&self, key: &str, found: impl Into<String>, expected: impl Into<String>, help: &str) {
+        let (mut offset, mut table) = (self.start, Some(self.table));
+        for part in key.split('.') {
+            let Some((name, value)) = table.and_then(|t| t.get_key_value(part)) else { break };
+            offset = name.span().start;
+            table = value.get_ref().as_table();
+        }
+        self.note(offset, &self.path_of(key), found, expected, help);
+    }
+
+    fn note(
+        &self,
+        offset: usize,
+        path: &str,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+        help: &str,
+    ) {
+        let place = format!("{}:{} `{path}`", self.reader.file, self.reader.line(offset));
+        self.reader.faults.borrow_mut().push(Fault::new(place, found, expected).with_help(help));
+    }
+
+    fn path_of(&self, key: &str) -> String {
+        match (self.path.as_str(), key) {
+            ("", _) => key.to_string(),
+            (path, "") => path.to_string(),
+            (path, _) => format!("{path}.{key}"),
+        }
+    }
+
+    fn get(&self, key: &str) -> Option<&'a Spanned<DeValue<'a>>> {
+        self.known.borrow_mut().push(key.to_string());
+        self.table.get(key)
+    }
+
+    fn find<T>(
+        &'a self,
+        key: &str,
+        expected: &str,
+        convert: impl FnOnce(&DeValue) -> std::result::Result<T, String>,
+    ) -> Found<'a, T> {
+        let (value, faulty) = match self.get(key) {
+            None => (None, false),
+            Some(value) => match convert(value.get_ref()) {
+                Ok(value) => (Some(value), false),
+                Err(found) => {
+                    self.fault(key, found, expected, "");
+                    (None, true)
+                }
+            },
+        };
+        Found { section: self, key: key.to_string(), value, faulty }
+    }
+
+    /// Whether the table has `key`.
+    pub fn has(&self, key: &str) -> bool {
+        self.table.contains_key(key)
+    }
+
+    /// A quantity: a number in SI units, or a string with its unit.
+    pub fn quantity(&'a self, key: &str, dimension: Dimension) -> Found<'a, f64> {
+        self.find(key, dimension.name, |value| quantity_of(value, dimension))
+    }
+
+    /// A list of `N` quantities.
+    pub fn quantities<const N: usize>(&'a self, key: &str, dimension: Dimension) -> Found<'a, [f64; N]> {
+        self.find(key, &format!("a list of {N} values, each {}", dimension.name), |value| {
+            let list = list_of(value, |item| quantity_of(item, dimension))?;
+            let count = list.len();
+            list.try_into().map_err(|_| format!("a list of {count}"))
+        })
+    }
+
+    /// A list of quantities of any length.
+    pub fn quantity_list(&'a self, key: &str, dimension: Dimension) -> Found<'a, Vec<f64>> {
+        self.find(key, &format!("a list, each {}", dimension.name), |value| {
+            list_of(value, |item| quantity_of(item, dimension))
+        })
+    }
+
+    /// A list of rows of numbers.
+    pub fn rows(&'a self, key: &str, dimension: Dimension) -> Found<'a, Vec<Vec<f64>>> {
+        self.find(key, "a list of rows of numbers", |value| {
+            list_of(value, |row| list_of(row, |item| quantity_of(item, dimension)))
+        })
+    }
+
+    /// A string.
+    pub fn string(&'a self, key: &str) -> Found<'a, String> {
+        self.find(key, "a string", string_of)
+    }
+
+    /// A list of strings; a single string is a list of one.
+    pub fn strings(&'a self, key: &str) -> Found<'a, Vec<String>> {
+        self.find(key, "a list of strings", |value| match value {
+            DeValue::String(one) => Ok(vec![one.to_string()]),
+            _ => list_of(value, string_of),
+        })
+    }
+
+    /// `true` or `false`.
+    pub fn boolean(&'a self, key: &str) -> Found<'a, bool> {
+        self.find(key, "true or false", |value| value.as_bool().ok_or_else(|| describe(value)))
+    }
+
+    /// A whole number of at least one.
+    pub fn count(&'a self, key: &str) -> Found<'a, usize> {
+        self.find(key, "a whole number of at least 1", |value| {
+            value
+                .as_integer()
+                .and_then(|i| usize::from_str_radix(i.as_str(), i.radix()).ok())
+                .filter(|n| *n >= 1)
+                .ok_or_else(|| describe(value))
+        })
+    }
+
+    /// One of `choices`.
+    pub fn choice(&'a self, key: &str, choices: &[&'static str]) -> Found<'a, &'static str> {
+        self.find(key, &format!("one of {}", choices.join(", ")), |value| {
+            let text = string_of(value)?;
+            choices.iter().find(|c| **c == text).copied().ok_or(format!("\"{text}\""))
+        })
+    }
+
+    /// A sub-table, read by `read` and then refused if it has unknown keys.
+    pub fn section<T>(&self, key: &str, read: impl FnOnce(&Section) -> T) -> Option<T> {
+        let value = self.get(key)?;
+        let Some(table) = value.get_ref().as_table() else {
+            self.fault(key, describe(value.get_ref()), format!("a table [{}]", self.path_of(key)), "");
+            return None;
+        };
+        let start = self.table.get_key_value(key).map_or(self.start, |(k, _)| k.span().start);
+        let section =
+            Section { reader: self.reader, table, path: self.path_of(key), start, known: RefCell::default() };
+        let result = read(&section);
+        section.finish();
+        Some(result)
+    }
+
+    /// A table of named tables `[key.NAME]`, in the order of their names.
+    pub fn named<T>(&self, key: &str, mut read: impl FnMut(&str, &Section) -> T) -> Vec<T> {
+        self.section(key, |all| {
+            all.names().iter().filter_map(|name| all.section(name, |one| read(name, one))).collect()
+        })
+        .unwrap_or_default()
+    }
+
+    /// Refuses keys that nobody asked for, offering the nearest known one.
+    fn finish(&self) {
+        let known = self.known.borrow();
+        for key in self.table.keys() {
+            let name = key.get_ref().as_ref();
+            if !known.iter().any(|k| k == name) {
+                let mut words: Vec<&str> = known.iter().map(String::as_str).collect();
+                words.sort_unstable();
+                words.dedup();
+                let help = nearest(name, words.iter().copied())
+                    .map_or(String::new(), |near| format!("Did you mean `{near}`?"));
+                let expected = if words.is_empty() {
+                    "no key here".into()
+                } else {
+                    format!("one of {}", words.join(", "))
+                };
+                self.note(
+                    key.span().start,
+                    &self.path_of(name),
+                    "an unknown key",
+                    expected,
+                    help.trim_end_matches('.'),
+                );
+            }
+        }
+    }
+}
+
+impl<'a, T> Found<'a, T> {
+    /// The value, if it is there and sound.
+    pub fn optional(self) -> Option<T> {
+        self.value
+    }
+
+    /// The value, or `default` when it is absent.
+    pub fn or(self, default: T) -> T {
+        self.value.unwrap_or(default)
+    }
+
+    /// Notes a fault when the value is there and `holds` does not.
+    pub fn check(mut self, expected: &str, holds: impl FnOnce(&T) -> bool) -> Self
+    where
+        T: std::fmt::Debug,
+    {
+        if let Some(value) = &self.value
+            && !holds(value)
+        {
+            self.section.fault(&self.key, format!("{value:?}"), expected, "");
+            self.value = None;
+            self.faulty = true;
+        }
+        self
+    }
+}
+
+impl<T: Default> Found<'_, T> {
+    /// The value; a fault is noted when it is absent.
+    pub fn required(self, expected: &str) -> T {
+        if self.value.is_none() && !self.faulty {
+            self.section.fault(&self.key, "nothing", expected, "");
+        }
+        self.value.unwrap_or_default()
+    }
+}
+
+impl Found<'_, f64> {
+    /// Refuses zero and below.
+    pub fn positive(self) -> Self {
+        self.check("a value above zero", |v| *v > 0.0)
+    }
+
+    /// Refuses values below zero.
+    pub fn non_negative(self) -> Self {
+        self.check("a value of zero or more", |v| *v >= 0.0)
+    }
+}
+
+fn quantity_of(value: &DeValue, dimension: Dimension) -> std::result::Result<f64, String> {
+    let number = match value {
+        DeValue::Integer(i) => {
+            i64::from_str_radix(&i.as_str().replace('_', ""), i.radix()).ok().map(|v| v as f64)
+        }
+        DeValue::Float(f) => f.as_str().replace('_', "").parse().ok(),
+        DeValue::String(text) => Some(parse_quantity(text, dimension)?),
+        _ => None,
+    };
+    match number {
+        Some(v) if v.is_finite() => Ok(v),
+        Some(v) => Err(format!("{v}, which is not finite")),
+        None => Err(describe(value)),
+    }
+}
+
+fn string_of(value: &DeValue) -> std::result::Result<String, String> {
+    value.as_str().map(str::to_string).ok_or_else(|| describe(value))
+}
+
+fn list_of<T>(
+    value: &DeValue,
+    item: impl Fn(&DeValue) -> std::result::Result<T, String>,
+) -> std::result::Result<Vec<T>, String> {
+    let array = value.as_array().ok_or_else(|| describe(value))?;
+    array.iter().map(|v| item(v.get_ref())).collect()
+}
+
+fn describe(value: &DeValue) -> String {
+    match value {
+        DeValue::String(s) => format!("the string \"{s}\""),
+        DeValue::Integer(i) => format!("the whole number {}", i.as_str()),
+        DeValue::Float(f) => format!("the number {}", f.as_str()),
+        DeValue::Boolean(b) => format!("{b}"),
+        DeValue::Datetime(d) => format!("the date {d}"),
+        DeValue::Array(a) => format!("a list of {}", a.len()),
+        DeValue::Table(_) => "a table".into(),
+    }
+}

@@ -1,0 +1,175 @@
+//! Quantities with units: `"1 mm"`, `"10 MN/m"`, `"210 GPa"` → SI values, with their dimension checked.
+
+/// A dimension as powers of (kg, m, s); angles have none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Dimension {
+    powers: [i32; 3],
+    /// What the dimension is called, with an example.
+    pub name: &'static str,
+}
+
+const fn dimension(powers: [i32; 3], name: &'static str) -> Dimension {
+    Dimension { powers, name }
+}
+
+/// A pure number.
+pub const NUMBER: Dimension = dimension([0, 0, 0], "a number");
+/// Radians.
+pub const ANGLE: Dimension = dimension([0, 0, 0], "an angle such as \"4 deg\"");
+/// Metres.
+pub const LENGTH: Dimension = dimension([0, 1, 0], "a length such as \"1 mm\"");
+/// Square metres.
+pub const AREA: Dimension = dimension([0, 2, 0], "an area such as \"20 mm^2\"");
+/// Second moments of area.
+pub const AREA_MOMENT: Dimension = dimension([0, 4, 0], "a second moment of area such as \"200 mm^4\"");
+/// Hertz.
+pub const FREQUENCY: Dimension = dimension([0, 0, -1], "a frequency such as \"6 kHz\"");
+/// Seconds.
+pub const TIME: Dimension = dimension([0, 0, 1], "a time such as \"1 us\"");
+/// Kilograms.
+pub const MASS: Dimension = dimension([1, 0, 0], "a mass such as \"5 g\"");
+/// Moments of inertia.
+pub const INERTIA: Dimension = dimension([1, 2, 0], "a moment of inertia such as \"2 kg*mm^2\"");
+/// Metres per second.
+pub const VELOCITY: Dimension = dimension([0, 1, -1], "a velocity such as \"0.1 m/s\"");
+/// Inverse velocity.
+pub const INVERSE_VELOCITY: Dimension = dimension([0, -1, 1], "an inverse velocity such as \"5 s/m\"");
+/// Kilograms per cubic metre.
+pub const DENSITY: Dimension = dimension([1, -3, 0], "a density such as \"7850 kg/m^3\"");
+/// Pascals.
+pub const PRESSURE: Dimension = dimension([1, -1, -2], "a modulus such as \"210 GPa\"");
+/// Newtons.
+pub const FORCE: Dimension = dimension([1, 1, -2], "a force such as \"20 N\"");
+/// Newtons per metre.
+pub const STIFFNESS: Dimension = dimension([1, 0, -2], "a stiffness such as \"10 MN/m\"");
+/// Newton metres per radian.
+pub const ROTATIONAL_STIFFNESS: Dimension =
+    dimension([1, 2, -2], "a rotational stiffness such as \"10 N*m\"");
+/// Newton seconds per metre.
+pub const DASHPOT: Dimension = dimension([1, 0, -1], "a damping constant such as \"5 N*s/m\"");
+/// Newton metre seconds per radian.
+pub const ROTATIONAL_DASHPOT: Dimension =
+    dimension([1, 2, -1], "a rotational damping constant such as \"0.1 N*m*s\"");
+
+impl Dimension {
+    /// The same quantity per metre to the power `n` of contact length or area, or times metres when `n` < 0.
+    pub const fn per_metre(self, n: i32, name: &'static str) -> Dimension {
+        Dimension { powers: [self.powers[0], self.powers[1] - n, self.powers[2]], name }
+    }
+}
+
+/// Reads `"1.5 mm"` as SI in the dimension asked for; the error says what was found instead.
+pub fn parse_quantity(text: &str, expected: Dimension) -> Result<f64, String> {
+    let text = text.trim();
+    let split = text
+        .char_indices()
+        .find(|(i, c)| {
+            c.is_alphabetic()
+                && !(matches!(c, 'e' | 'E')
+                    && text[i + 1..].starts_with(|d: char| d.is_ascii_digit() || "+-".contains(d)))
+                || *c == 'µ'
+        })
+        .map_or(text.len(), |(i, _)| i);
+    let number: f64 = text[..split]
+        .trim()
+        .parse()
+        .map_err(|_| format!("\"{text}\", which does not begin with a number"))?;
+    let (factor, powers) = parse_unit(text[split..].trim())
+        .ok_or_else(|| format!("\"{text}\", whose unit \"{}\" is not known", text[split..].trim()))?;
+    if powers != expected.powers {
+        return Err(format!("\"{text}\", a unit of another dimension"));
+    }
+    Ok(number * factor)
+}
+
+/// The SI factor and the powers of (kg, m, s) of a unit such as `MN/m^2`; what follows each `/` divides.
+fn parse_unit(unit: &str) -> Option<(f64, [i32; 3])> {
+    let mut factor = 1.0;
+    let mut powers = [0; 3];
+    for (k, side) in unit.split('/').enumerate() {
+        for token in side.split(['*', '·', ' ']).map(str::trim).filter(|t| !t.is_empty()) {
+            let sign = if k == 0 { 1 } else { -1 };
+            let (symbol, power) = split_power(token)?;
+            let (f, p) = symbol_in_si(symbol)?;
+            factor *= f.powi(sign * power);
+            for (sum, exponent) in powers.iter_mut().zip(p) {
+                *sum += sign * power * exponent;
+            }
+        }
+    }
+    Some((factor, powers))
+}
+
+/// `mm^3`, `mm3` or `mm³` → (`mm`, 3).
+fn split_power(token: &str) -> Option<(&str, i32)> {
+    for (superscript, power) in [('²', 2), ('³', 3), ('⁴', 4)] {
+        if let Some(symbol) = token.strip_suffix(superscript) {
+            return Some((symbol, power));
+        }
+    }
+    let symbol = token.trim_end_matches(|c: char| c.is_ascii_digit());
+    let digits = &token[symbol.len()..];
+    let power = if digits.is_empty() { 1 } else { digits.parse().ok().filter(|p| *p <= 12)? };
+    Some((symbol.strip_suffix('^').unwrap_or(symbol), power))
+}
+
+/// The SI factor and the powers of (kg, m, s) of one symbol with its prefix.
+fn symbol_in_si(symbol: &str) -> Option<(f64, [i32; 3])> {
+    const UNITS: [(&str, f64, [i32; 3]); 12] = [
+        ("kg", 1.0, [1, 0, 0]),
+        ("deg", std::f64::consts::PI / 180.0, [0; 3]),
+        ("°", std::f64::consts::PI / 180.0, [0; 3]),
+        ("rad", 1.0, [0; 3]),
+        ("rpm", std::f64::consts::TAU / 60.0, [0, 0, -1]),
+        ("Hz", 1.0, [0, 0, -1]),
+        ("Pa", 1.0, [1, -1, -2]),
+        ("N", 1.0, [1, 1, -2]),
+        ("m", 1.0, [0, 1, 0]),
+        ("s", 1.0, [0, 0, 1]),
+        ("g", 1e-3, [1, 0, 0]),
+        ("%", 1e-2, [0; 3]),
+    ];
+    const PREFIXES: [(&str, f64); 8] =
+        [("G", 1e9), ("M", 1e6), ("k", 1e3), ("c", 1e-2), ("m", 1e-3), ("u", 1e-6), ("µ", 1e-6), ("n", 1e-9)];
+    let plain = |s: &str| UNITS.iter().find(|(name, ..)| *name == s).map(|(_, f, p)| (*f, *p));
+    plain(symbol).or_else(|| {
+        PREFIXES.iter().find_map(|(prefix, scale)| {
+            let (factor, powers) = plain(symbol.strip_prefix(prefix)?)?;
+            Some((scale * factor, powers))
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_become_si() {
+        let close = |text: &str, dimension, expected: f64| {
+            let got = parse_quantity(text, dimension).unwrap();
+            assert!((got - expected).abs() <= 1e-14 * expected.abs(), "{text}: {got} {expected}");
+        };
+        close("1 mm", LENGTH, 1e-3);
+        close("210 GPa", PRESSURE, 210e9);
+        close("1e1 MN/m", STIFFNESS, 1e7);
+        close("2.5e-3 kN", FORCE, 2.5);
+        close("180 deg", ANGLE, std::f64::consts::PI);
+        close("7.85 g/cm^3", DENSITY, 7850.0);
+        close("3 kHz", FREQUENCY, 3000.0);
+        close("5 N*s/m", DASHPOT, 5.0);
+        close("12 mm⁴", AREA_MOMENT, 12e-12);
+        close("0.5", NUMBER, 0.5);
+        close("5 s/m", INVERSE_VELOCITY, 5.0);
+        close("1 GN/m^2", STIFFNESS.per_metre(1, "a stiffness per length"), 1e9);
+    }
+
+    #[test]
+    fn other_dimensions_and_unknown_units_are_refused() {
+        assert!(parse_quantity("1 kg", LENGTH).unwrap_err().contains("dimension"));
+        assert!(parse_quantity("1 furlong", LENGTH).unwrap_err().contains("furlong"));
+        assert!(parse_quantity("mm", LENGTH).unwrap_err().contains("number"));
+        assert!(parse_quantity("", LENGTH).is_err());
+        assert!(parse_quantity("1 m^99999999999", LENGTH).is_err());
+    }
+}

@@ -1,0 +1,219 @@
+//! `stridor mesh`: generators and a look inside a mesh file.
+
+use super::Common;
+use crate::case::units::{LENGTH, parse_quantity};
+use crate::error::{Error, Fault, Result};
+use crate::mesh::generate::{self, BarSide, BarSpec, DiscSpec, Grading, PlateSpec, RigSpec};
+use crate::mesh::{self, Info, Mesh};
+use clap::{Args, Subcommand};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+#[derive(Subcommand)]
+pub enum Action {
+    /// A disc or an annulus: regions disc, rim, hub
+    Disc(DiscOptions),
+    /// A rectangular plate: regions slider, slider_edge_x_min, …
+    Plate(PlateOptions),
+    /// Disc, bar and slider in one mesh
+    Rig(RigOptions),
+    /// What a mesh file holds, and what is wrong with it
+    Info(InfoOptions),
+}
+
+/// Element sizes and where the mesh goes.
+#[derive(Args)]
+pub struct Output {
+    /// The file to write (Gmsh 4.1, in millimetres)
+    #[arg(long, short, value_name = "FILE")]
+    out: PathBuf,
+    /// Overwrite the file if it is there
+    #[arg(long)]
+    force: bool,
+}
+
+#[derive(Args)]
+pub struct DiscOptions {
+    #[command(flatten)]
+    output: Output,
+    /// Outer radius
+    #[arg(long, default_value = "75 mm", value_parser = length)]
+    outer_radius: f64,
+    /// Radius of the hub; 0 for a full disc
+    #[arg(long, default_value = "20 mm", value_parser = length)]
+    hub_radius: f64,
+    /// Element size away from the contact
+    #[arg(long, default_value = "3 mm", value_parser = length)]
+    size: f64,
+    /// Element size at the contact, the lowest rim point
+    #[arg(long, default_value = "0.4 mm", value_parser = length)]
+    contact_size: f64,
+    /// Distance from the contact within which elements stay fine
+    #[arg(long, default_value = "2 mm", value_parser = length)]
+    contact_radius: f64,
+}
+
+#[derive(Args)]
+pub struct PlateOptions {
+    #[command(flatten)]
+    output: Output,
+    /// Length along x
+    #[arg(long, default_value = "200 mm", value_parser = length)]
+    length: f64,
+    /// Width along y
+    #[arg(long, default_value = "120 mm", value_parser = length)]
+    width: f64,
+    /// Position of the contact along x, from the middle
+    #[arg(long, default_value = "0", value_parser = length, allow_hyphen_values = true)]
+    contact_x: f64,
+    /// Position of the contact along y, from the middle
+    #[arg(long, default_value = "0", value_parser = length, allow_hyphen_values = true)]
+    contact_y: f64,
+    /// Element size away from the contact
+    #[arg(long, default_value = "8 mm", value_parser = length)]
+    size: f64,
+    /// Element size at the contact
+    #[arg(long, default_value = "0.4 mm", value_parser = length)]
+    contact_size: f64,
+    /// Distance from the contact within which elements stay fine
+    #[arg(long, default_value = "2 mm", value_parser = length)]
+    contact_radius: f64,
+}
+
+#[derive(Args)]
+pub struct RigOptions {
+    #[command(flatten)]
+    output: Output,
+    /// Outer radius of the disc
+    #[arg(long, default_value = "75 mm", value_parser = length)]
+    outer_radius: f64,
+    /// Radius of the hub
+    #[arg(long, default_value = "20 mm", value_parser = length)]
+    hub_radius: f64,
+    /// Length of the bar from the hub to the clamp; negative for a bar along +x
+    #[arg(long, default_value = "100 mm", value_parser = length, allow_hyphen_values = true)]
+    bar_length: f64,
+    /// Elements of the bar
+    #[arg(long, default_value_t = 10)]
+    bar_elements: usize,
+    /// Length of the slider along x
+    #[arg(long, default_value = "200 mm", value_parser = length)]
+    slider_length: f64,
+    /// Width of the slider along y
+    #[arg(long, default_value = "120 mm", value_parser = length)]
+    slider_width: f64,
+    /// Thickness of the slider
+    #[arg(long, default_value = "10 mm", value_parser = length)]
+    slider_thickness: f64,
+    /// Element size of the disc away from the contact
+    #[arg(long, default_value = "3 mm", value_parser = length)]
+    disc_size: f64,
+    /// Element size of the slider away from the contact
+    #[arg(long, default_value = "8 mm", value_parser = length)]
+    slider_size: f64,
+    /// Element size at the contact
+    #[arg(long, default_value = "0.4 mm", value_parser = length)]
+    contact_size: f64,
+    /// Distance from the contact within which elements stay fine
+    #[arg(long, default_value = "2 mm", value_parser = length)]
+    contact_radius: f64,
+    /// Position of the contact on the slider along x, from its middle
+    #[arg(long, default_value = "0", value_parser = length, allow_hyphen_values = true)]
+    contact_x: f64,
+    /// Position of the contact on the slider along y, from its middle
+    #[arg(long, default_value = "0", value_parser = length, allow_hyphen_values = true)]
+    contact_y: f64,
+}
+
+#[derive(Args)]
+pub struct InfoOptions {
+    /// The mesh file
+    file: PathBuf,
+    /// Its unit of length
+    #[arg(long, default_value = "mm", value_parser = ["m", "cm", "mm", "in"])]
+    unit: String,
+}
+
+fn length(text: &str) -> std::result::Result<f64, String> {
+    parse_quantity(text, LENGTH)
+        .map_err(|found| format!("found {found}; expected {}", LENGTH.name))
+        .and_then(|value| if text.trim().parse::<f64>().is_ok_and(|v| v != 0.0) {
+            Err(format!("{text} has no unit; expected {}", LENGTH.name))
+        } else {
+            Ok(value)
+        })
+}
+
+pub fn run(action: &Action, common: &Common) -> Result<ExitCode> {
+    match action {
+        Action::Info(options) => return info(options, common),
+        Action::Disc(o) => {
+            let grading = Grading::graded(o.contact_size, o.contact_radius, o.size);
+            let spec = DiscSpec { outer_radius: o.outer_radius, hub_radius: o.hub_radius, grading };
+            write(&generate::disc(&spec)?, &o.output, common)?;
+        }
+        Action::Plate(o) => {
+            let grading = Grading::graded(o.contact_size, o.contact_radius, o.size);
+            let contact = [o.contact_x, o.contact_y];
+            let spec = PlateSpec { length: o.length, width: o.width, contact, grading };
+            write(&generate::plate(&spec)?, &o.output, common)?;
+        }
+        Action::Rig(o) => write(&generate::rig(&rig_spec(o))?, &o.output, common)?,
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn rig_spec(o: &RigOptions) -> RigSpec {
+    RigSpec {
+        disc: DiscSpec {
+            outer_radius: o.outer_radius,
+            hub_radius: o.hub_radius,
+            grading: Grading::graded(o.contact_size, o.contact_radius, o.disc_size),
+        },
+        bar: BarSpec {
+            length: o.bar_length.abs(),
+            elements: o.bar_elements,
+            side: if o.bar_length < 0.0 { BarSide::Plus } else { BarSide::Minus },
+        },
+        slider: PlateSpec {
+            length: o.slider_length,
+            width: o.slider_width,
+            contact: [o.contact_x, o.contact_y],
+            grading: Grading::graded(o.contact_size, o.contact_radius, o.slider_size),
+        },
+        slider_thickness: o.slider_thickness,
+    }
+}
+
+fn write(mesh: &Mesh, output: &Output, common: &Common) -> Result<()> {
+    refuse_existing(&output.out, output.force)?;
+    mesh::write(&output.out, mesh, 1e-3)?;
+    if !common.quiet {
+        println!("{}\nwritten to {} in millimetres", Info::of(mesh), output.out.display());
+    }
+    Ok(())
+}
+
+/// Refuses to overwrite what is there.
+pub(super) fn refuse_existing(path: &Path, force: bool) -> Result<()> {
+    if path.exists() && !force {
+        return Err(Error::input(
+            Fault::new(path.display().to_string(), "something there already", "a new name")
+                .with_help("--force overwrites it"),
+        ));
+    }
+    Ok(())
+}
+
+fn info(options: &InfoOptions, common: &Common) -> Result<ExitCode> {
+    let mesh = mesh::read(&options.file, mesh::unit_in_metres(&options.unit))?;
+    let diagnosis = mesh::diagnose(&mesh);
+    if !common.quiet {
+        println!("{}", Info::of(&mesh));
+        for warning in &diagnosis.warnings {
+            println!("warning: {warning}");
+        }
+    }
+    diagnosis.faults.into_result(())?;
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,34 @@
+//! `stridor new`: a folder with the reference case and a small mesh to start from.
+
+use super::Common;
+use super::mesh::refuse_existing;
+use crate::error::{Error, Result};
+use crate::mesh::generate::{self, RigSpec};
+use clap::Args;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// The reference case of the validation suite is what users start from: one text, checked by every run of the suite.
+const TEMPLATE: &str = include_str!("../../validation/rig/case.toml");
+const TEMPLATE_MESH: &str = "../../meshes/rig-medium.msh";
+
+#[derive(Args)]
+pub struct Options {
+    /// The folder to make; its case file is NAME/case.toml
+    name: PathBuf,
+}
+
+pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
+    let folder = &options.name;
+    refuse_existing(folder, false)?;
+    std::fs::create_dir_all(folder)
+        .map_err(|error| Error::io(folder, error, "Choose a folder that can be written"))?;
+    crate::mesh::write(&folder.join("rig.msh"), &generate::rig(&RigSpec::medium())?, 1e-3)?;
+    let case = folder.join("case.toml");
+    std::fs::write(&case, TEMPLATE.replace(TEMPLATE_MESH, "rig.msh"))
+        .map_err(|error| Error::io(&case, error, "Choose a folder that can be written"))?;
+    if !common.quiet {
+        println!("{} and its mesh are ready. Next: stridor run {}", case.display(), case.display());
+    }
+    Ok(ExitCode::SUCCESS)
+}

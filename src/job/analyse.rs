@@ -1,0 +1,217 @@
+//! The analyses of a case in their order, each result handed on as soon as it is there.
+
+use super::modes::{add_modal_damping, compare, labels, named, part_modes};
+use super::prepared::Prepared;
+use crate::case::{Case, ContactState};
+use crate::equilibrium::{self, SteadySliding};
+use crate::error::Result;
+use crate::modal::{self, Wanted};
+use crate::progress::Observer;
+use crate::results::{self, ComplexResult, NamedModes, ResultsFile, RunResults, SteadyResult};
+use crate::stability;
+use crate::system::System;
+use std::path::Path;
+use std::time::Instant;
+
+/// Which analyses to run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Selection {
+    /// Real modes.
+    pub modes: bool,
+    /// Steady sliding and complex eigenvalues.
+    pub cea: bool,
+}
+
+impl Selection {
+    /// Everything the case lists.
+    pub const ALL: Selection = Selection { modes: true, cea: true };
+    /// Real modes only.
+    pub const MODES: Selection = Selection { modes: true, cea: false };
+    /// Steady sliding and complex eigenvalues only.
+    pub const CEA: Selection = Selection { modes: false, cea: true };
+}
+
+/// A result that is ready to be written.
+pub enum Stage<'a> {
+    /// Real modes.
+    Modes(&'a NamedModes),
+    /// Steady sliding.
+    Steady(&'a SteadyResult),
+    /// Complex eigenvalues.
+    Complex(&'a ComplexResult),
+}
+
+/// Runs the analyses of a case and writes the results folder `out`; nothing is written when the input is wrong.
+///
+/// # Errors
+/// Faults of the input, an analysis without an answer, or a folder that cannot be written.
+pub fn run_case(case: &Case, selection: Selection, out: &Path, observer: &dyn Observer) -> Result<RunResults> {
+    let started = Instant::now();
+    let prepared = Prepared::new(case)?;
+    let preparation = started.elapsed().as_secs_f64();
+    let mut file = ResultsFile::create(out)?;
+    let mut record = |stage: Stage, sofar: &RunResults| match stage {
+        Stage::Modes(modes) => file.write_modes(modes),
+        Stage::Steady(steady) => file.write_steady(steady),
+        Stage::Complex(complex) => file.write_complex(complex, &sofar.modes),
+    };
+    let mut results = analyse(&prepared, selection, &mut record, observer)?;
+    results.timings.insert(0, ("read mesh and assemble".into(), preparation));
+    let writing = Instant::now();
+    results::write_all(out, &results)?;
+    crate::report::write(out, &results)?;
+    results.timings.push(("write results".into(), writing.elapsed().as_secs_f64()));
+    file.finish(&results)?;
+    Ok(results)
+}
+
+/// Runs the analyses of a prepared case; `record` is called with each result as soon as it is there.
+///
+/// # Errors
+/// An analysis without an answer, or what `record` returns.
+pub fn analyse(
+    prepared: &Prepared,
+    selection: Selection,
+    record: &mut dyn FnMut(Stage, &RunResults) -> Result<()>,
+    observer: &dyn Observer,
+) -> Result<RunResults> {
+    let case = prepared.case;
+    let mut results = RunResults {
+        title: case.title.clone(),
+        resolved_case: case.to_toml(),
+        assumptions: case.assumptions.clone(),
+        warnings: prepared.warnings.clone(),
+        geometry: prepared.geometry(),
+        size: prepared.size(),
+        ..RunResults::default()
+    };
+    let mut clock = Clock::default();
+    let contact_modes = case.modes.iter().filter(|(_, m)| m.contact == ContactState::Closed);
+    let sliding = (selection.cea && case.cea.is_some()) || (selection.modes && contact_modes.clone().count() > 0);
+
+    if selection.modes {
+        for (name, analysis) in case.modes.iter().filter(|(_, m)| m.contact == ContactState::Open) {
+            let modes = clock.time(&format!("real modes, {name}"), || part_modes(prepared, name, observer))?;
+            if !analysis.measured.is_empty() {
+                let set = results.modes.len();
+                results.measured.push(compare(set, &analysis.measured, &analysis.measured_source, &modes));
+            }
+            record(Stage::Modes(&modes), &results)?;
+            results.modes.push(modes);
+        }
+    }
+    if sliding {
+        let mut system = prepared.system.clone();
+        let state = clock.time("steady sliding", || equilibrium::solve_steady(&system, observer))?;
+        if let Some(prestress) = &system.prestress {
+            system.structure.add_stiffness(&prestress.geometric_stiffness(&state.displacement)?);
+        }
+        let steady = steady_result(prepared, state);
+        record(Stage::Steady(&steady), &results)?;
+        results.steady = Some(steady);
+        let state = &results.steady.as_ref().expect("set above").state;
+        if selection.modes {
+            for (name, analysis) in contact_modes {
+                let wanted = match (analysis.below, analysis.count) {
+                    (Some(below), _) => Wanted::BelowHz(below),
+                    (None, count) => Wanted::Count(count.unwrap_or(1)),
+                };
+                let closed = equilibrium::closed_structure(&system, state);
+                let (modes, _) = clock
+                    .time(&format!("real modes, {name}"), || modal::compute(&closed, wanted, observer))?;
+                let modes = named(prepared, name, modes, &prepared.assembled);
+                record(Stage::Modes(&modes), &results)?;
+                results.modes.push(modes);
+            }
+        }
+        if selection.cea {
+            let complex = complex_result(prepared, &mut system, state, &mut clock, observer)?;
+            if let Some(complex) = complex {
+                record(Stage::Complex(&complex), &results)?;
+                results.complex = Some(complex);
+            }
+        }
+    }
+    results.warnings.extend(thickness_warnings(prepared));
+    results.timings = clock.phases;
+    Ok(results)
+}
+
+fn steady_result(prepared: &Prepared, state: SteadySliding) -> SteadyResult {
+    let system = &prepared.system;
+    let mut point = state.points.iter();
+    let pairs = system
+        .pairs
+        .iter()
+        .map(|pair| {
+            let load = point.by_ref().take(pair.points.len()).map(|p| p.forces.normal).sum();
+            (pair.name.clone(), load, pair.sliding_velocity)
+        })
+        .collect();
+    SteadyResult {
+        displacement: prepared.assembled.dofs.expand(&state.displacement),
+        points: system.points().map(|(pair, point)| (pair.name.clone(), point.position)).collect(),
+        pairs,
+        state,
+    }
+}
+
+fn complex_result(
+    prepared: &Prepared,
+    system: &mut System,
+    state: &SteadySliding,
+    clock: &mut Clock,
+    observer: &dyn Observer,
+) -> Result<Option<ComplexResult>> {
+    let Some(cea) = &prepared.case.cea else { return Ok(None) };
+    let (basis, factor) = clock.time("real modes of the whole", || {
+        modal::compute(&system.structure, Wanted::BelowHz(cea.basis_below), observer)
+    })?;
+    add_modal_damping(&mut system.structure, &basis, prepared)?;
+    let modes = clock.time("complex eigenvalues", || {
+        stability::complex_modes(system, state, &basis, &factor, cea.band, observer)
+    })?;
+    let real = named(prepared, "whole", basis, &prepared.assembled);
+    let labels = labels(prepared, &real, &prepared.assembled);
+    let participation = modes
+        .modes
+        .iter()
+        .map(|mode| {
+            let words = mode.participation.iter().take(3).filter(|(_, share)| *share >= 0.05);
+            words
+                .map(|(k, share)| format!("{:.0} % {}", 100.0 * share, labels[*k]))
+                .collect::<Vec<_>>()
+                .join(", ")
+        })
+        .collect();
+    Ok(Some(ComplexResult {
+        shapes: modes.modes.iter().map(|m| prepared.assembled.dofs.expand_complex(&m.right)).collect(),
+        participation,
+        measured_squeal_hz: cea.measured_squeal.iter().map(|f| (*f, cea.measured_source.clone())).collect(),
+        band_hz: cea.band,
+        modes,
+    }))
+}
+
+/// Where Kirchhoff's theory is off by more than a percent at the highest frequency asked for.
+fn thickness_warnings(prepared: &Prepared) -> Vec<String> {
+    let case = prepared.case;
+    let asked = case.modes.values().filter_map(|m| m.below).chain(case.cea.iter().map(|c| c.band[1]));
+    let highest = asked.fold(0.0, f64::max);
+    crate::structure::thick_plate_warnings(&prepared.model, highest)
+}
+
+/// Wall times of the phases.
+#[derive(Default)]
+struct Clock {
+    phases: Vec<(String, f64)>,
+}
+
+impl Clock {
+    fn time<T>(&mut self, phase: &str, work: impl FnOnce() -> T) -> T {
+        let started = Instant::now();
+        let value = work();
+        self.phases.push((phase.to_string(), started.elapsed().as_secs_f64()));
+        value
+    }
+}

@@ -1,0 +1,188 @@
+//! The contact pairs of a case: points from the meshes, laws from the case.
+
+use super::regions::Regions;
+use crate::case::{Case, Contact, FrictionCurve, Pressing, StiffnessPer};
+use crate::contact::{
+    Constant, ContactPatch, ContactSide, Exponential, NormalLaw, SlidingLaw, Surfaces, Table, pair_surfaces,
+};
+use crate::error::{Error, Fault, Faults, Result};
+use crate::mesh::Element;
+use crate::structure::{DofMap, Model, ShellPart};
+use crate::system::{Closing, ContactPair, ContactPoint};
+use nalgebra::Vector3;
+use std::sync::Arc;
+
+/// Every contact pair of the case.
+///
+/// # Errors
+/// All faults of all pairs: regions that are missing, bodies out of reach, tables that make no sense.
+pub fn contact_pairs(
+    case: &Case,
+    regions: &Regions,
+    model: &Model,
+    dofs: &DofMap,
+) -> Result<Vec<ContactPair>> {
+    let mut faults = Faults::new();
+    let mut pairs = Vec::new();
+    for (name, contact) in &case.contact {
+        let points = if contact.counter == "ground" {
+            faults.take(ground_points(name, contact, regions, dofs))
+        } else {
+            faults.take(surface_points(name, contact, regions, model, dofs))
+        };
+        let law = faults.take(law(name, contact));
+        if let (Some(points), Some(law)) = (points, law) {
+            pairs.push(ContactPair {
+                name: name.clone(),
+                points,
+                law: Arc::new(law),
+                closing: match contact.pressing {
+                    Pressing::Load(load) => Closing::Load(load),
+                    Pressing::Approach(approach) => Closing::Approach(approach),
+                },
+                sliding_velocity: contact.sliding_velocity,
+            });
+        }
+    }
+    faults.into_result(pairs)
+}
+
+fn law(name: &str, contact: &Contact) -> Result<SlidingLaw> {
+    let normal = NormalLaw {
+        stiffness: contact.normal.stiffness,
+        cubic_stiffness: contact.normal.cubic,
+        damping: contact.normal.damping,
+        bilateral: !contact.normal.unilateral,
+    };
+    let regularisation = contact.friction.regularisation;
+    Ok(match &contact.friction.law {
+        FrictionCurve::Coulomb { mu0 } => SlidingLaw::new(normal, Constant(*mu0), regularisation),
+        FrictionCurve::Exponential { mu0, mu1, alpha } => {
+            SlidingLaw::new(normal, Exponential { mu0: *mu0, mu1: *mu1, alpha: *alpha }, regularisation)
+        }
+        FrictionCurve::Table { velocity, pressure, mu } => {
+            let place = format!("`contact.{name}.friction`");
+            let table = Table::new(&place, velocity.clone(), pressure.clone(), mu.clone())?;
+            SlidingLaw::new(normal, table, regularisation)
+        }
+    })
+}
+
+/// Points of a region against rigid ground: g along `into`, t₁ along the sliding direction, t₂ across both.
+fn ground_points(
+    name: &str,
+    contact: &Contact,
+    regions: &Regions,
+    dofs: &DofMap,
+) -> Result<Vec<ContactPoint>> {
+    let nodes = regions.nodes(&contact.body, &format!("`contact.{name}.body`"))?;
+    let into = Vector3::from(contact.into.unwrap_or_default());
+    let place = |key: &str| format!("`contact.{name}.{key}`");
+    let fault = |key: &str, found: &str, expected: &str| Error::input(Fault::new(place(key), found, expected));
+    let g = into.try_normalize(0.0).ok_or_else(|| fault("into", "no direction", "a direction"))?;
+    let sliding = Vector3::from(contact.sliding_direction);
+    let t1 = (sliding - sliding.dot(&g) * g).try_normalize(1e-6 * sliding.norm()).ok_or_else(|| {
+        fault("sliding_direction", "the direction into the ground", "a direction along the ground")
+    })?;
+    let t2 = g.cross(&t1);
+    let direction = |node: usize, d: &Vector3<f64>| {
+        dofs.reduce(&[(node, 0, d.x), (node, 1, d.y), (node, 2, d.z)])
+    };
+    Ok(nodes
+        .iter()
+        .map(|node| ContactPoint {
+            position: regions.mesh.nodes[*node],
+            gap: 0.0,
+            weight: 1.0 / nodes.len() as f64,
+            normal: direction(*node, &g),
+            tangents: [direction(*node, &t1), direction(*node, &t2)],
+        })
+        .collect())
+}
+
+/// Points of a rim or a face against another plate.
+fn surface_points(
+    name: &str,
+    contact: &Contact,
+    regions: &Regions,
+    model: &Model,
+    dofs: &DofMap,
+) -> Result<Vec<ContactPoint>> {
+    let place = |key: &str| format!("`contact.{name}.{key}`");
+    let region = regions.region(&contact.body, &place("body"))?;
+    let touching = regions.elements(&contact.body, region.dimension, &place("body"))?;
+    let nodes = regions.mesh.region_nodes(region);
+    let body = part_with(model, &nodes).ok_or_else(|| {
+        Error::input(Fault::new(
+            place("body"),
+            format!("region \"{}\", some of whose nodes are on no shell", contact.body),
+            "lines or faces on one of the case's shells",
+        ))
+    })?;
+    let counter = model.shells.iter().find(|s| s.name == contact.counter).ok_or_else(|| {
+        let known: Vec<&str> = model.shells.iter().map(|s| s.name.as_str()).collect();
+        Error::input(Fault::new(
+            place("counter"),
+            format!("\"{}\"", contact.counter),
+            format!("one of the case's shells ({}), or \"ground\"", known.join(", ")),
+        ))
+    })?;
+    let lines: Vec<[usize; 2]> = touching
+        .iter()
+        .filter_map(|element| match element {
+            Element::Line(ends) => Some(*ends),
+            _ => None,
+        })
+        .collect();
+    let (side, natural) = match region.dimension {
+        1 => (ContactSide::Edge(&lines), StiffnessPer::Length),
+        2 => (ContactSide::Face(&touching), StiffnessPer::Area),
+        _ => {
+            return Err(Error::input(Fault::new(
+                place("body"),
+                format!("region \"{}\" of points", contact.body),
+                "lines or faces; points can only touch the ground",
+            )));
+        }
+    };
+    let patch = match contact.normal.per {
+        StiffnessPer::Point => ContactPatch::Nearest(contact.reach),
+        per if per == natural => ContactPatch::Reach(contact.reach),
+        per => {
+            return Err(Error::input(Fault::new(
+                place("normal.per"),
+                format!("\"{}\"", if per == StiffnessPer::Length { "length" } else { "area" }),
+                format!(
+                    "\"{}\" or \"point\" for this region",
+                    if natural == StiffnessPer::Length { "length" } else { "area" }
+                ),
+            )));
+        }
+    };
+    let surfaces = Surfaces {
+        name,
+        nodes: &model.nodes,
+        body,
+        side,
+        counter,
+        sliding_direction: contact.sliding_direction,
+        patch,
+        stroke: contact.stroke,
+    };
+    let mut points = pair_surfaces(&surfaces, &|terms| dofs.reduce(terms))?;
+    if contact.placement.is_some() {
+        // The approach of a placed body counts from the first touch.
+        let first = points.iter().map(|p| p.gap).fold(f64::INFINITY, f64::min);
+        points.iter_mut().for_each(|p| p.gap -= first);
+    }
+    Ok(points)
+}
+
+/// The shell that has all of `nodes`.
+fn part_with<'a>(model: &'a Model, nodes: &[usize]) -> Option<&'a ShellPart> {
+    model.shells.iter().find(|shell| {
+        let mut own: Vec<usize> = shell.faces.iter().flat_map(Element::nodes).copied().collect();
+        own.sort_unstable();
+        nodes.iter().all(|n| own.binary_search(n).is_ok())
+    })
+}

@@ -1,0 +1,155 @@
+//! Recognises a plate that is a disc, and gives its nodes polar coordinates so that its modes can be named.
+
+use crate::results::NodalField;
+use crate::structure::ShellPart;
+use nalgebra::{Matrix4, Vector3, Vector4};
+use std::collections::BTreeMap;
+
+/// A flat round plate, with or without a hole.
+#[derive(Debug, Clone)]
+pub struct Disc {
+    /// Unit normal.
+    pub normal: Vector3<f64>,
+    /// Nodes of the disc, ascending.
+    pub nodes: Vec<usize>,
+    /// (r \[m\], θ \[rad\]) of each node about the centre.
+    pub polar: Vec<[f64; 2]>,
+}
+
+impl Disc {
+    /// The disc that `part` is, if it is one: flat, with an outer edge of one radius (to 2 %) and at most one hole.
+    pub fn recognise(part: &ShellPart, positions: &[[f64; 3]]) -> Option<Disc> {
+        let at = |node: usize| Vector3::from(positions[node]);
+        let first = part.faces.first()?.nodes();
+        let normal = (at(first[1]) - at(first[0])).cross(&(at(first[2]) - at(first[0]))).try_normalize(0.0)?;
+        let edge: Vec<Vector3<f64>> = boundary_nodes(part).into_iter().map(at).collect();
+        let centre = centre_of_rim(&edge)?;
+        let mut nodes: Vec<usize> = part.faces.iter().flat_map(|f| f.nodes()).copied().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let outer = edge.iter().map(|x| (x - centre).norm()).fold(0.0, f64::max);
+        let (rim, hub): (Vec<f64>, Vec<f64>) =
+            edge.iter().map(|x| (x - centre).norm() / outer).partition(|r| *r > 0.98);
+        let hub_radius = hub.iter().copied().fold(0.0, f64::max);
+        let round = rim.len() >= 12 && hub_radius < 0.9 && hub.iter().all(|r| *r > 0.9 * hub_radius);
+        let flat = nodes.iter().all(|n| (at(*n) - centre).dot(&normal).abs() < 1e-6 * outer);
+        if !round || !flat {
+            return None;
+        }
+        let helper = if normal.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
+        let e1 = normal.cross(&helper).try_normalize(0.0)?;
+        let e2 = normal.cross(&e1);
+        let polar = nodes
+            .iter()
+            .map(|n| {
+                let d = at(*n) - centre;
+                [d.norm(), d.dot(&e2).atan2(d.dot(&e1))]
+            })
+            .collect();
+        Some(Disc { normal, nodes, polar })
+    }
+
+    /// Transverse displacement of each node of the disc in `shape`.
+    pub fn transverse(&self, shape: &NodalField<f64>) -> Vec<f64> {
+        self.nodes.iter().map(|n| Vector3::from_row_slice(&shape[*n][..3]).dot(&self.normal)).collect()
+    }
+}
+
+/// Nodes on edges that belong to one face only.
+fn boundary_nodes(part: &ShellPart) -> Vec<usize> {
+    let mut faces_at: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+    for face in &part.faces {
+        let n = face.nodes();
+        for i in 0..n.len() {
+            let (a, b) = (n[i], n[(i + 1) % n.len()]);
+            *faces_at.entry((a.min(b), a.max(b))).or_default() += 1;
+        }
+    }
+    let mut nodes: Vec<usize> =
+        faces_at.iter().filter(|(_, count)| **count == 1).flat_map(|((a, b), _)| [*a, *b]).collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
+}
+
+/// The centre of the circle that fits the outer edge nodes best, however unevenly they are spread: least squares of
+/// |x|² = 2 c·x + (r² − |c|²), held in the plane by a ridge of 1e-12.
+fn centre_of_rim(edge: &[Vector3<f64>]) -> Option<Vector3<f64>> {
+    let low = edge.iter().copied().reduce(|a, b| a.inf(&b))?;
+    let high = edge.iter().copied().reduce(|a, b| a.sup(&b))?;
+    let middle = 0.5 * (low + high);
+    let far = edge.iter().map(|x| (x - middle).norm()).fold(0.0, f64::max);
+    let rim: Vec<Vector3<f64>> = edge.iter().map(|x| (x - middle) / far).filter(|d| d.norm() > 0.9).collect();
+    let mut normal_matrix = Matrix4::<f64>::identity() * (1e-12 * rim.len() as f64);
+    let mut right_side = Vector4::<f64>::zeros();
+    for d in &rim {
+        let row = Vector4::new(2.0 * d.x, 2.0 * d.y, 2.0 * d.z, 1.0);
+        normal_matrix += row * row.transpose();
+        right_side += row * d.norm_squared();
+    }
+    let fit = normal_matrix.lu().solve(&right_side)?;
+    Some(middle + far * Vector3::new(fit.x, fit.y, fit.z))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Element;
+    use crate::structure::{Material, RayleighDamping};
+
+    fn part(faces: Vec<Element>) -> ShellPart {
+        let material = Material {
+            youngs_modulus: 1.0,
+            poissons_ratio: 0.3,
+            density: 1.0,
+            loss_factor: 0.0,
+            rayleigh: RayleighDamping::default(),
+        };
+        ShellPart {
+            name: "p".into(),
+            faces,
+            material,
+            thickness: 1.0,
+            bending_only: false,
+            rotary_inertia: false,
+        }
+    }
+
+    /// A ring of quadrilaterals in a tilted plane, its nodes crowded on one side.
+    #[test]
+    fn a_tilted_annulus_with_uneven_nodes_is_a_disc() {
+        let (n, centre) = (48, Vector3::new(1.0, 2.0, 3.0));
+        let (e1, e2) = (Vector3::new(0.6, 0.0, 0.8), Vector3::new(0.0, 1.0, 0.0));
+        let mut nodes = Vec::new();
+        for radius in [0.3, 0.7, 1.0] {
+            for i in 0..n {
+                let t = std::f64::consts::TAU * i as f64 / n as f64;
+                let angle = t + 0.8 * t.sin();
+                nodes.push((centre + radius * (angle.cos() * e1 + angle.sin() * e2)).into());
+            }
+        }
+        let quad = |ring: usize, i: usize| {
+            let j = (i + 1) % n;
+            Element::Quadrilateral([ring * n + i, ring * n + n + i, ring * n + n + j, ring * n + j])
+        };
+        let faces = (0..2).flat_map(|ring| (0..n).map(move |i| quad(ring, i))).collect();
+        let disc = Disc::recognise(&part(faces), &nodes).expect("it is a disc");
+        for (k, node) in disc.nodes.iter().enumerate() {
+            let expected = [0.3, 0.7, 1.0][node / n];
+            assert!((disc.polar[k][0] - expected).abs() < 1e-9, "{} {expected}", disc.polar[k][0]);
+        }
+        assert!((disc.normal.dot(&e1)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_rectangle_is_no_disc() {
+        let (n, m) = (9, 6);
+        let nodes: Vec<[f64; 3]> =
+            (0..n * m).map(|k| [(k % n) as f64, (k / n) as f64, 0.0]).collect();
+        let faces = (0..m - 1)
+            .flat_map(|j| (0..n - 1).map(move |i| [j * n + i, j * n + i + 1, j * n + i + n + 1, j * n + i + n]))
+            .map(Element::Quadrilateral)
+            .collect();
+        assert!(Disc::recognise(&part(faces), &nodes).is_none());
+    }
+}

@@ -1,0 +1,134 @@
+//! Case and mesh → the plain description of the structure, for the whole or for some of its parts.
+
+use super::regions::Regions;
+use crate::case::{Case, DOF_NAMES, ModesAnalysis};
+use crate::error::{Faults, Result};
+use crate::mesh::Element;
+use crate::structure::{BarPart, Model, PointMass, RigidLink, ShellPart, Spring, Support};
+
+/// The structure of the whole case.
+///
+/// # Errors
+/// Every region that is missing or of the wrong kind.
+pub fn whole_model(case: &Case, regions: &Regions) -> Result<Model> {
+    let mut faults = Faults::new();
+    let mut model = Model { nodes: regions.mesh.nodes.clone(), ..Model::default() };
+    for (name, shell) in &case.shell {
+        let faces = faults.take(regions.elements(name, 2, &format!("`shell.{name}`")));
+        model.shells.push(ShellPart {
+            name: name.clone(),
+            faces: faces.unwrap_or_default(),
+            material: case.material[&shell.material],
+            thickness: shell.thickness,
+            bending_only: shell.bending_only,
+            rotary_inertia: shell.rotary_inertia,
+        });
+    }
+    for (name, bar) in &case.bar {
+        let lines = faults.take(regions.elements(name, 1, &format!("`bar.{name}`")));
+        let ends = |element: &Element| match element {
+            Element::Line(nodes) => Some(*nodes),
+            _ => None,
+        };
+        model.bars.push(BarPart {
+            name: name.clone(),
+            elements: lines.unwrap_or_default().iter().filter_map(ends).collect(),
+            material: case.material[&bar.material],
+            section: bar.section,
+            orientation: bar.orientation,
+        });
+    }
+    for (name, mass) in &case.mass {
+        for node in faults.take(regions.nodes(&mass.on, &format!("`mass.{name}.on`"))).unwrap_or_default() {
+            model.masses.push(PointMass { node, mass: mass.mass, inertia: mass.inertia });
+        }
+    }
+    for (name, spring) in &case.spring {
+        let nodes = faults.take(regions.nodes(&spring.on, &format!("`spring.{name}.on`"))).unwrap_or_default();
+        let other = spring
+            .to
+            .as_ref()
+            .and_then(|to| faults.take(regions.node(to, &format!("`spring.{name}.to`"))));
+        for node in &nodes {
+            model.springs.push(Spring {
+                node: *node,
+                other,
+                direction: spring.direction,
+                rotational: spring.rotational,
+                stiffness: spring.stiffness / nodes.len() as f64,
+                damping: spring.damping / nodes.len() as f64,
+            });
+        }
+    }
+    for (name, rigid) in &case.rigid {
+        let master = faults.take(regions.node(&rigid.master, &format!("`rigid.{name}.master`")));
+        let mut slaves = nodes_of(regions, &rigid.follow, &format!("`rigid.{name}.follow`"), &mut faults);
+        slaves.retain(|slave| Some(*slave) != master);
+        if let Some(master) = master {
+            model.links.push(RigidLink { master, slaves });
+        }
+    }
+    for (name, support) in &case.support {
+        let nodes = nodes_of(regions, &support.on, &format!("`support.{name}.on`"), &mut faults);
+        let held = DOF_NAMES.map(|dof| support.held.iter().any(|name| name == dof));
+        model.supports.push(Support { nodes, held });
+    }
+    faults.into_result(model)
+}
+
+/// The structure of the parts that one analysis of real modes names, held as it says.
+///
+/// # Errors
+/// A region to clamp that is missing.
+pub fn part_model(
+    case: &Case,
+    regions: &Regions,
+    whole: &Model,
+    name: &str,
+    analysis: &ModesAnalysis,
+) -> Result<Model> {
+    let mut faults = Faults::new();
+    let wanted = |part: &str| analysis.parts.is_empty() || analysis.parts.iter().any(|p| p == part);
+    let mut model = Model {
+        nodes: whole.nodes.clone(),
+        shells: whole.shells.iter().filter(|s| wanted(&s.name)).cloned().collect(),
+        bars: whole.bars.iter().filter(|b| wanted(&b.name)).cloned().collect(),
+        masses: whole.masses.clone(),
+        ..Model::default()
+    };
+    if !analysis.free {
+        model.springs = whole.springs.clone();
+        model.links = whole.links.clone();
+        model.supports = whole.supports.clone();
+    }
+    let clamp = nodes_of(regions, &analysis.clamp, &format!("`modes.{name}.clamp`"), &mut faults);
+    let mut used = vec![!case.point.is_empty() && analysis.parts.is_empty(); model.nodes.len()];
+    for part in &model.shells {
+        part.faces.iter().flat_map(Element::nodes).for_each(|n| used[*n] = true);
+    }
+    for part in &model.bars {
+        part.elements.iter().flatten().for_each(|n| used[*n] = true);
+    }
+    // What hangs on nodes of other parts stays out; so does a rigid body whose clamped followers already hold it.
+    model.masses.retain(|mass| used[mass.node]);
+    model.springs.retain(|spring| used[spring.node] && spring.other.is_none_or(|n| used[n]));
+    model.links.retain(|link| used[link.master] && !link.slaves.iter().any(|s| clamp.contains(s)));
+    for link in &mut model.links {
+        link.slaves.retain(|slave| used[*slave]);
+    }
+    for support in &mut model.supports {
+        support.nodes.retain(|node| used[*node] && !clamp.contains(node));
+    }
+    model.supports.push(Support { nodes: clamp, held: [true; 6] });
+    model.supports.retain(|support| !support.nodes.is_empty());
+    faults.into_result(model)
+}
+
+/// The nodes of several regions, ascending, each once.
+fn nodes_of(regions: &Regions, names: &[String], place: &str, faults: &mut Faults) -> Vec<usize> {
+    let mut nodes: Vec<usize> =
+        names.iter().filter_map(|name| faults.take(regions.nodes(name, place))).flatten().collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
+}

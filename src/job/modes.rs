@@ -1,0 +1,189 @@
+//! Real modes of one part or of the whole, with names and effective masses.
+
+use super::disc::Disc;
+use super::prepared::Prepared;
+use crate::error::{Error, Fault, Faults, Result};
+use crate::modal::{self, RealModes, Wanted};
+use crate::results::{MeasuredComparison, NamedModes, NodalField};
+use crate::structure::{Assembled, assemble};
+use crate::system::Structure;
+use faer::MatRef;
+
+/// A column of `shapes` as a slice.
+pub fn column(shapes: MatRef<'_, f64>, k: usize) -> Vec<f64> {
+    shapes.col(k).iter().copied().collect()
+}
+
+/// Runs one real-mode analysis of the case on a part alone.
+///
+/// # Errors
+/// Regions that are missing, a part without mass, or an eigensolver that cannot prove its result.
+pub fn part_modes(
+    prepared: &Prepared,
+    name: &str,
+    observer: &dyn crate::progress::Observer,
+) -> Result<NamedModes> {
+    let analysis = &prepared.case.modes[name];
+    let model = super::model::part_model(prepared.case, &prepared.regions, &prepared.model, name, analysis)?;
+    let assembled = assemble(&model)?;
+    let wanted = match (analysis.below, analysis.count) {
+        (Some(below), _) => Wanted::BelowHz(below),
+        (None, count) => Wanted::Count(count.unwrap_or(1).min(assembled.dofs.n_dofs())),
+    };
+    if assembled.dofs.n_dofs() == 0 {
+        return Err(Error::input(Fault::new(
+            format!("`modes.{name}`"),
+            "no free degree of freedom",
+            "parts that can move",
+        )));
+    }
+    let (modes, _) = modal::compute(&assembled.structure, wanted, observer)?;
+    Ok(named(prepared, name, modes, &assembled))
+}
+
+/// Dresses real modes with nodal shapes, disc names and effective masses.
+pub fn named(prepared: &Prepared, name: &str, modes: RealModes, assembled: &Assembled) -> NamedModes {
+    let shapes: Vec<NodalField<f64>> = (0..modes.len())
+        .map(|k| assembled.dofs.expand(&column(modes.shapes.as_ref(), k)))
+        .collect();
+    let discs = prepared.discs();
+    let kinetic = kinetic_shares(prepared, &modes, assembled);
+    let names = shapes
+        .iter()
+        .zip(&kinetic)
+        .map(|(shape, shares)| {
+            let (part, _) = dominant(shares)?;
+            let (_, disc) = discs.iter().find(|(name, _)| *name == part)?;
+            bending_name(disc, shape)
+        })
+        .collect();
+    let directions = assembled.dofs.rigid_body_vectors([0.0; 3]);
+    let translations = [0, 1, 2].map(|axis| directions[axis].clone());
+    let effective_mass = modal::effective_mass(&assembled.structure, modes.shapes.as_ref(), &translations);
+    NamedModes {
+        name: name.to_string(),
+        shapes,
+        names,
+        effective_mass,
+        total_mass: assembled.total_mass,
+        modes,
+    }
+}
+
+fn bending_name(disc: &Disc, shape: &NodalField<f64>) -> Option<modal::DiscModeName> {
+    modal::name_disc_mode(&disc.polar, &disc.transverse(shape))
+}
+
+/// The share of each part in the kinetic energy of each mode.
+fn kinetic_shares<'a>(
+    prepared: &'a Prepared,
+    modes: &RealModes,
+    assembled: &Assembled,
+) -> Vec<Vec<(&'a str, f64)>> {
+    let mut owner = vec![Vec::new(); assembled.dofs.n_dofs()];
+    let parts: Vec<(&str, Vec<usize>)> = prepared
+        .model
+        .shells
+        .iter()
+        .map(|s| (s.name.as_str(), s.faces.iter().flat_map(|f| f.nodes()).copied().collect()))
+        .chain(prepared.model.bars.iter().map(|b| (b.name.as_str(), b.elements.concat())))
+        .collect();
+    for (p, (_, nodes)) in parts.iter().enumerate() {
+        let mut nodes = nodes.clone();
+        nodes.sort_unstable();
+        nodes.dedup();
+        for node in nodes {
+            for dof in 0..6 {
+                for (free, _) in assembled.dofs.terms(node, dof) {
+                    if owner[*free].last() != Some(&p) {
+                        owner[*free].push(p);
+                    }
+                }
+            }
+        }
+    }
+    let momentum = &assembled.structure.mass * &modes.shapes;
+    (0..modes.len())
+        .map(|k| {
+            let mut energy = vec![0.0; parts.len()];
+            for (i, owners) in owner.iter().enumerate() {
+                let share = modes.shapes[(i, k)] * momentum[(i, k)] / owners.len().max(1) as f64;
+                owners.iter().for_each(|p| energy[*p] += share);
+            }
+            parts.iter().map(|(name, _)| *name).zip(energy).collect()
+        })
+        .collect()
+}
+
+fn dominant<'a>(shares: &[(&'a str, f64)]) -> Option<(&'a str, f64)> {
+    shares.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// A few words on each real mode: the part that moves most and, for a disc, (nodal diameters, circles).
+pub fn labels(prepared: &Prepared, named: &NamedModes, assembled: &Assembled) -> Vec<String> {
+    kinetic_shares(prepared, &named.modes, assembled)
+        .iter()
+        .zip(&named.names)
+        .enumerate()
+        .map(|(k, (shares, name))| {
+            let part = dominant(shares).map_or("mode", |(part, _)| part);
+            match name {
+                Some(n) => format!("{part} ({}, {})", n.nodal_diameters, n.nodal_circles),
+                None => format!("{part} {:.0} Hz", named.modes.frequency_hz(k)),
+            }
+        })
+        .collect()
+}
+
+/// Sets measured frequencies beside computed ones: each measured one takes the nearest mode still free, closest pairs
+/// first; a double mode counts once.
+pub fn compare(set: usize, measured: &[f64], source: &str, named: &NamedModes) -> MeasuredComparison {
+    let frequency = |k: usize| named.modes.frequency_hz(k);
+    let mut candidates: Vec<(f64, usize, usize)> = Vec::new();
+    for (row, f) in measured.iter().enumerate() {
+        for k in (0..named.modes.len()).filter(|k| *k >= named.modes.rigid_bodies) {
+            candidates.push(((frequency(k) / f).ln().abs(), row, k));
+        }
+    }
+    candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let twins = |a: usize, b: usize| a.abs_diff(b) == 1 && named.names[a].is_some() && named.names[a] == named.names[b];
+    let mut rows: Vec<(f64, Option<usize>)> = measured.iter().map(|f| (*f, None)).collect();
+    for (distance, row, k) in candidates {
+        let taken = rows.iter().any(|(_, mode)| mode.is_some_and(|m| m == k || twins(m, k)));
+        if rows[row].1.is_none() && !taken && distance < 0.2 {
+            rows[row].1 = Some(k);
+        }
+    }
+    MeasuredComparison { modes: set, source: source.to_string(), rows, frequency_scale: 1.0 }
+}
+
+/// C = M Φ diag(2ζω) Φᵀ M for the modal damping of the case, given the real modes of the whole.
+///
+/// # Errors
+/// A ratio that names a frequency without a mode near it.
+pub fn add_modal_damping(structure: &mut Structure, modes: &RealModes, prepared: &Prepared) -> Result<()> {
+    let damping = &prepared.case.damping;
+    if damping.modal_ratio == 0.0 && damping.modal_ratios.is_empty() {
+        return Ok(());
+    }
+    let mut ratios = vec![damping.modal_ratio; modes.len()];
+    let mut faults = Faults::new();
+    for [frequency, ratio] in &damping.modal_ratios {
+        let near = |k: &usize| (modes.frequency_hz(*k) - frequency).abs();
+        match (0..modes.len()).min_by(|a, b| near(a).total_cmp(&near(b))) {
+            Some(k) if near(&k) <= 0.1 * frequency => ratios[k] = *ratio,
+            _ => faults.push(Fault::new(
+                "`damping.modal_ratios`",
+                format!("{frequency} Hz, with no mode of the rig within 10 %"),
+                "frequencies near modes of the rig",
+            )),
+        }
+    }
+    structure.damping.modal = Some(crate::system::ModalDamping {
+        basis: &structure.mass * &modes.shapes,
+        coefficients: (0..modes.len())
+            .map(|k| 2.0 * ratios[k] * modes.eigenvalues[k].max(0.0).sqrt())
+            .collect(),
+    });
+    faults.into_result(())
+}

@@ -1,0 +1,157 @@
+//! A case made ready: mesh read and placed, structure assembled, contact pairs built.
+
+use super::contacts::contact_pairs;
+use super::disc::Disc;
+use super::model::whole_model;
+use super::place::place;
+use super::regions::Regions;
+use crate::case::{Case, GeneratedMesh, MeshSource, RigMesh};
+use crate::error::{Faults, Result};
+use crate::mesh::generate::{self, BarSide, BarSpec, DiscSpec, Faces, Grading, PlateSpec, RigSpec};
+use crate::mesh::{self, Mesh};
+use crate::results::{Geometry, ModelSize};
+use crate::structure::{Assembled, GeometricStiffness, Model, assemble};
+use crate::system::System;
+use std::sync::Arc;
+
+/// Everything that analyses need, built once from a case.
+#[derive(Debug)]
+pub struct Prepared<'a> {
+    /// The case.
+    pub case: &'a Case,
+    /// The mesh, placed, with the case's points.
+    pub regions: Regions,
+    /// The description of the whole structure.
+    pub model: Model,
+    /// Its matrices and degrees of freedom.
+    pub assembled: Arc<Assembled>,
+    /// What the analyses take.
+    pub system: System,
+    /// Things the user should know.
+    pub warnings: Vec<String>,
+}
+
+impl<'a> Prepared<'a> {
+    /// Reads the mesh and builds the system.
+    ///
+    /// # Errors
+    /// Every fault of the mesh and of the names that tie the case to it.
+    pub fn new(case: &'a Case) -> Result<Self> {
+        let (mesh, warnings) = match &case.mesh {
+            Some(source) => read_mesh(case, source)?,
+            None => (Mesh::default(), Vec::new()),
+        };
+        let mut regions = Regions::new(mesh, case);
+        let mut faults = Faults::new();
+        for (name, contact) in &case.contact {
+            if let Some(placement) = &contact.placement {
+                faults.take(place(&mut regions, case, name, contact, placement));
+            }
+        }
+        let model = faults.take(whole_model(case, &regions));
+        let model = faults.into_result(model)?.unwrap_or_default();
+        let assembled = Arc::new(assemble(&model)?);
+        let pairs = contact_pairs(case, &regions, &model, &assembled.dofs)?;
+        let system = System {
+            structure: assembled.structure.clone(),
+            pairs,
+            load: external_load(case, &regions, &assembled)?,
+            prestress: case
+                .prestress
+                .then(|| Arc::new(GeometricStiffness::new(&model, &assembled.dofs)) as Arc<_>),
+        };
+        Ok(Prepared { case, regions, model, assembled, system, warnings })
+    }
+
+    /// Nodes, elements, degrees of freedom.
+    pub fn size(&self) -> ModelSize {
+        let stiffness = &self.system.structure.stiffness;
+        ModelSize {
+            nodes: self.model.nodes.len(),
+            elements: self.model.shells.iter().map(|s| s.faces.len()).sum::<usize>()
+                + self.model.bars.iter().map(|b| b.elements.len()).sum::<usize>(),
+            dofs: self.system.n_dofs(),
+            nonzeros: stiffness.compute_nnz(),
+            contact_points: self.system.points().count(),
+        }
+    }
+
+    /// Nodes and elements for pictures and ParaView.
+    pub fn geometry(&self) -> Geometry {
+        let mut geometry = Geometry { nodes: self.model.nodes.clone(), ..Geometry::default() };
+        let mut add = |name: &str, elements: Vec<Vec<usize>>| {
+            geometry.parts.push(name.to_string());
+            geometry.part_of.extend(vec![geometry.parts.len() - 1; elements.len()]);
+            geometry.elements.extend(elements);
+        };
+        for shell in &self.model.shells {
+            add(&shell.name, shell.faces.iter().map(|f| f.nodes().to_vec()).collect());
+        }
+        for bar in &self.model.bars {
+            add(&bar.name, bar.elements.iter().map(|e| e.to_vec()).collect());
+        }
+        for name in self.case.mass.keys().filter(|_| self.case.mesh.is_none()) {
+            let node = self.regions.nodes(&self.case.mass[name].on, "").unwrap_or_default();
+            add(name, node.into_iter().map(|n| vec![n]).collect());
+        }
+        geometry
+    }
+
+    /// The shell parts that are discs, with their names.
+    pub fn discs(&self) -> Vec<(&str, Disc)> {
+        let disc = |part| Disc::recognise(part, &self.model.nodes);
+        self.model.shells.iter().filter_map(|part| Some((part.name.as_str(), disc(part)?))).collect()
+    }
+}
+
+/// The mesh of the case, checked.
+fn read_mesh(case: &Case, source: &MeshSource) -> Result<(Mesh, Vec<String>)> {
+    let mesh = match source {
+        MeshSource::File { file, unit } => mesh::read(&case.folder.join(file), mesh::unit_in_metres(unit))?,
+        MeshSource::Generated(GeneratedMesh::Rig(rig)) => generate::rig(&rig_spec(case, rig))?,
+        MeshSource::Generated(GeneratedMesh::Annulus { outer_radius, hub_radius, radial, around }) => {
+            generate::structured_annulus(*hub_radius, *outer_radius, *radial, *around, Faces::Triangles)?
+        }
+    };
+    let diagnosis = mesh::diagnose(&mesh);
+    diagnosis.faults.into_result(())?;
+    Ok((mesh, diagnosis.warnings))
+}
+
+fn rig_spec(case: &Case, rig: &RigMesh) -> RigSpec {
+    let grading = |coarse: f64| Grading::graded(rig.contact_size, rig.contact_radius, coarse);
+    RigSpec {
+        disc: DiscSpec {
+            outer_radius: rig.outer_radius,
+            hub_radius: rig.hub_radius,
+            grading: grading(rig.disc_size),
+        },
+        bar: BarSpec {
+            length: rig.bar_length.abs(),
+            elements: 10,
+            side: if rig.bar_length < 0.0 { BarSide::Plus } else { BarSide::Minus },
+        },
+        slider: PlateSpec {
+            length: rig.slider[0],
+            width: rig.slider[1],
+            contact: rig.contact,
+            grading: grading(rig.slider_size),
+        },
+        slider_thickness: case.shell.get("slider").map_or(0.01, |shell| shell.thickness),
+    }
+}
+
+/// The external force on the degrees of freedom \[N\].
+fn external_load(case: &Case, regions: &Regions, assembled: &Assembled) -> Result<Vec<f64>> {
+    let mut load = vec![0.0; assembled.dofs.n_dofs()];
+    let mut faults = Faults::new();
+    for (name, force) in &case.force {
+        let nodes = faults.take(regions.nodes(&force.on, &format!("`force.{name}.on`"))).unwrap_or_default();
+        for node in &nodes {
+            let share = force.force.map(|f| f / nodes.len() as f64);
+            let entries: Vec<_> = share.iter().enumerate().map(|(axis, f)| (*node, axis, *f)).collect();
+            assembled.dofs.reduce(&entries).add_to(1.0, &mut load);
+        }
+    }
+    faults.into_result(load)
+}

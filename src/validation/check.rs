@@ -1,0 +1,190 @@
+//! Computes the quantities of a validation case and sets them beside their references.
+
+use super::kirchhoff;
+use super::reference::{Check, Kind, Reference};
+use crate::case::Case;
+use crate::error::{Error, Fault, Result};
+use crate::job::{Prepared, Selection, analyse};
+use crate::progress::Observer;
+use crate::results::RunResults;
+use std::collections::BTreeMap;
+
+/// One quantity, computed beside its reference.
+#[derive(Debug, Clone)]
+pub struct Row {
+    /// The validation case's folder.
+    pub case: String,
+    /// Its title.
+    pub title: String,
+    /// Where the reference comes from.
+    pub source: String,
+    /// What was computed.
+    pub quantity: String,
+    /// The computed value.
+    pub computed: f64,
+    /// The reference value.
+    pub reference: f64,
+    /// The largest difference that passes.
+    pub tolerance: f64,
+    /// The difference is relative to the reference.
+    pub relative: bool,
+    /// Why this tolerance.
+    pub reason: String,
+}
+
+impl Row {
+    /// |computed − reference|, over |reference| when relative.
+    pub fn difference(&self) -> f64 {
+        let difference = (self.computed - self.reference).abs();
+        if self.relative { difference / self.reference.abs() } else { difference }
+    }
+
+    /// Whether the difference is within the tolerance; a value that is not a number never is.
+    pub fn passed(&self) -> bool {
+        self.difference() <= self.tolerance
+    }
+}
+
+/// Computes every quantity of `reference`.
+///
+/// # Errors
+/// A case that cannot be analysed, or a quantity that the case does not have.
+pub fn run(reference: &Reference, observer: &dyn Observer) -> Result<Vec<Row>> {
+    let mut runs = Runs { case: &reference.case, done: BTreeMap::new(), observer };
+    let row = |check: &Check, computed: f64| Row {
+        case: reference.name.clone(),
+        title: reference.title.clone(),
+        source: reference.source.clone(),
+        quantity: check.quantity.clone(),
+        computed,
+        reference: check.reference,
+        tolerance: check.tolerance,
+        relative: check.relative,
+        reason: check.reason.clone(),
+    };
+    reference.checks.iter().map(|check| Ok(row(check, compute(&mut runs, check)?))).collect()
+}
+
+/// The analyses of one case with scalars set to values, each done once.
+struct Runs<'a> {
+    case: &'a Case,
+    done: BTreeMap<String, RunResults>,
+    observer: &'a dyn Observer,
+}
+
+impl Runs<'_> {
+    fn with(&mut self, set: &[(String, f64)]) -> Result<&RunResults> {
+        let key = set.iter().map(|(path, value)| format!("{path}={value:e} ")).collect::<String>();
+        if !self.done.contains_key(&key) {
+            let case = set
+                .iter()
+                .try_fold(self.case.clone(), |case, (path, value)| case.with_parameter(path, *value))?;
+            let prepared = Prepared::new(&case)?;
+            let results = analyse(&prepared, Selection::ALL, &mut |_, _| Ok(()), self.observer)?;
+            self.done.insert(key.clone(), results);
+        }
+        Ok(&self.done[&key])
+    }
+}
+
+/// λ of every complex mode of the run.
+fn eigenvalues(results: &RunResults) -> Vec<crate::linalg::c64> {
+    let complex = results.complex.iter();
+    complex.flat_map(|c| c.modes.modes.iter().map(|m| m.eigenvalue)).collect()
+}
+
+fn largest_growth(results: &RunResults) -> f64 {
+    eigenvalues(results).iter().map(|l| l.re / l.norm()).fold(f64::NEG_INFINITY, f64::max)
+}
+
+fn compute(runs: &mut Runs, check: &Check) -> Result<f64> {
+    match &check.kind {
+        Kind::Value(pointer) => {
+            let summary = crate::results::summary(runs.with(&check.set)?);
+            summary.pointer(pointer).and_then(serde_json::Value::as_f64).ok_or_else(|| {
+                Error::input(Fault::new(
+                    format!("`{}`", check.quantity),
+                    format!("no number at {pointer}"),
+                    "a JSON pointer into summary.json",
+                ))
+            })
+        }
+        Kind::Onset { parameter, between } => onset(runs, check, parameter, *between),
+        Kind::LargestGrowth { parameter, values } => {
+            let mut largest = f64::NEG_INFINITY;
+            for value in values {
+                let results = runs.with(&set_also(&check.set, parameter, *value))?;
+                largest = largest.max(largest_growth(results));
+            }
+            Ok(largest)
+        }
+        Kind::Change(to) => {
+            let before = eigenvalues(runs.with(&check.set)?);
+            let changed: Vec<_> = check.set.iter().chain(to).cloned().collect();
+            let after = eigenvalues(runs.with(&changed)?);
+            if before.len() != after.len() || before.is_empty() {
+                return Ok(f64::INFINITY);
+            }
+            let change = before.iter().zip(&after).map(|(a, b)| (a - b).norm() / a.norm());
+            Ok(change.fold(0.0, f64::max))
+        }
+        Kind::UnstableNear => {
+            let unstable = eigenvalues(runs.with(&check.set)?).into_iter().filter(|l| l.re > 0.0);
+            let frequencies = unstable.map(|l| l.im / std::f64::consts::TAU);
+            Ok(frequencies
+                .min_by(|a, b| (a - check.reference).abs().total_cmp(&(b - check.reference).abs()))
+                .unwrap_or(f64::NAN))
+        }
+        Kind::Annulus { modes, part, radii } => {
+            let case = runs.case;
+            let shell = case.shell.get(part).ok_or_else(|| missing(check, part))?;
+            let below = case.modes.get(modes).and_then(|m| m.below).ok_or_else(|| missing(check, modes))?;
+            let results = runs.with(&check.set)?;
+            let computed =
+                results.modes.iter().find(|m| &m.name == modes).ok_or_else(|| missing(check, modes))?;
+            let plate = kirchhoff::Plate::new(&case.material[&shell.material], shell.thickness);
+            let exact = kirchhoff::clamped_annulus(&plate, radii[0], radii[1], below);
+            Ok(largest_error(computed, &exact))
+        }
+    }
+}
+
+/// The largest relative difference between two sorted lists; infinite when their lengths differ.
+fn largest_error(computed: &crate::results::NamedModes, exact: &[f64]) -> f64 {
+    if computed.modes.len() != exact.len() {
+        return f64::INFINITY;
+    }
+    let error = |(k, f): (usize, &f64)| (computed.modes.frequency_hz(k) / f - 1.0).abs();
+    exact.iter().enumerate().map(error).fold(0.0, f64::max)
+}
+
+fn missing(check: &Check, name: &str) -> Error {
+    Error::input(Fault::new(format!("`{}`", check.quantity), format!("\"{name}\""), "a name of the case"))
+}
+
+fn set_also(set: &[(String, f64)], parameter: &str, value: f64) -> Vec<(String, f64)> {
+    let mut set = set.to_vec();
+    set.push((parameter.to_string(), value));
+    set
+}
+
+/// Bisects until the bracket is at round-off. A mode counts as unstable when σ > 1e-6 |λ|: past a flutter onset σ grows
+/// like the square root of the distance, so that this threshold is reached within 1e-12 of it.
+fn onset(runs: &mut Runs, check: &Check, parameter: &str, between: [f64; 2]) -> Result<f64> {
+    let mut unstable = |value: f64| -> Result<bool> {
+        Ok(largest_growth(runs.with(&set_also(&check.set, parameter, value))?) > 1e-6)
+    };
+    let [mut a, mut b] = between;
+    let at_a = unstable(a)?;
+    if unstable(b)? == at_a {
+        return Ok(f64::NAN);
+    }
+    while (b - a).abs() > 1e-13 * a.abs().max(b.abs()) {
+        let middle = 0.5 * (a + b);
+        if middle == a || middle == b {
+            break;
+        }
+        if unstable(middle)? == at_a { a = middle } else { b = middle }
+    }
+    Ok(0.5 * (a + b))
+}

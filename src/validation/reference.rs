@@ -1,0 +1,141 @@
+//! `reference.toml`: what a validation case must show.
+
+use crate::case::reader::{Section, read_document};
+use crate::case::units::{FREQUENCY, LENGTH, NUMBER};
+use crate::case::{Case, read_case};
+use crate::error::{Error, Fault, Result};
+use std::path::Path;
+
+/// A validation case with its reference values.
+#[derive(Debug)]
+pub struct Reference {
+    /// The folder's name.
+    pub name: String,
+    /// One line.
+    pub title: String,
+    /// Where the reference values come from.
+    pub source: String,
+    /// The case to run.
+    pub case: Case,
+    /// What to check.
+    pub checks: Vec<Check>,
+}
+
+/// One quantity.
+#[derive(Debug)]
+pub struct Check {
+    /// What it is, in words.
+    pub quantity: String,
+    /// How it is computed.
+    pub kind: Kind,
+    /// Scalars of the case to set first.
+    pub set: Vec<(String, f64)>,
+    /// The reference value.
+    pub reference: f64,
+    /// The largest difference that passes.
+    pub tolerance: f64,
+    /// The difference is divided by the reference.
+    pub relative: bool,
+    /// Why this tolerance.
+    pub reason: String,
+}
+
+/// The ways to compute a quantity.
+#[derive(Debug)]
+pub enum Kind {
+    /// A number of `summary.json`, by its JSON pointer.
+    Value(String),
+    /// The value of a scalar at which the first mode becomes unstable, by bisection between two bounds.
+    Onset {
+        /// Path of the scalar.
+        parameter: String,
+        /// A stable and an unstable value, in either order.
+        between: [f64; 2],
+    },
+    /// The largest |σ|/|λ| over all modes, for every one of some values of a scalar.
+    LargestGrowth {
+        /// Path of the scalar.
+        parameter: String,
+        /// Its values.
+        values: Vec<f64>,
+    },
+    /// The largest relative change of any eigenvalue when scalars are changed.
+    Change(Vec<(String, f64)>),
+    /// The frequency of the unstable mode nearest to the reference.
+    UnstableNear,
+    /// The largest relative error of the modes of a clamped annulus against Kirchhoff theory.
+    Annulus {
+        /// The real-mode analysis, which must be of this annulus alone.
+        modes: String,
+        /// The shell part.
+        part: String,
+        /// b, a \[m\].
+        radii: [f64; 2],
+    },
+}
+
+/// Reads `folder/reference.toml` and its case.
+///
+/// # Errors
+/// Every fault of either file.
+pub fn read(folder: &Path) -> Result<Reference> {
+    let path = folder.join("reference.toml");
+    let text = std::fs::read_to_string(&path)
+        .map_err(|error| Error::input(Fault::new(path.display().to_string(), error.to_string(), "a text file")))?;
+    let (title, source, file, checks) = read_document(&path.display().to_string(), &text, |root| {
+        let reason = root.string("reason").or(String::new());
+        (
+            root.string("title").required("one line"),
+            root.string("source").required("where the reference values come from"),
+            root.string("case").or("case.toml".into()),
+            root.named("check", |name, s| read_check(name, s, &reason)),
+        )
+    })?;
+    let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(Reference { name, title, source, case: read_case(&folder.join(file))?, checks })
+}
+
+fn read_check(name: &str, s: &Section, reason: &str) -> Check {
+    let kinds = ["value", "onset", "largest_growth", "change", "unstable_near", "annulus"];
+    let parameter = || s.string("parameter").required("the path of a scalar of the case");
+    let kind = match s.choice("kind", &kinds).required("how it is computed") {
+        "onset" => Kind::Onset {
+            parameter: parameter(),
+            between: s.quantities("between", NUMBER).required("a stable and an unstable value"),
+        },
+        "largest_growth" => Kind::LargestGrowth {
+            parameter: parameter(),
+            values: s.quantity_list("values", NUMBER).required("a list of values"),
+        },
+        "change" => Kind::Change(read_set(s, "to")),
+        "unstable_near" => Kind::UnstableNear,
+        "annulus" => Kind::Annulus {
+            modes: s.string("modes").required("the name of an analysis"),
+            part: s.string("part").required("the name of a shell"),
+            radii: s.quantities("radii", LENGTH).required("inner and outer radius"),
+        },
+        _ => Kind::Value(s.string("pointer").or(String::new())),
+    };
+    let relative = s.quantity("tolerance", NUMBER).positive().optional();
+    let absolute = s.quantity("absolute_tolerance", NUMBER).positive().optional();
+    if relative.is_some() == absolute.is_some() {
+        s.fault("tolerance", "both tolerances or neither", "`tolerance` (relative) or `absolute_tolerance`", "");
+    }
+    Check {
+        quantity: s.string("quantity").or(name.to_string()),
+        kind,
+        set: read_set(s, "set"),
+        reference: s.quantity("reference", FREQUENCY).or(0.0),
+        tolerance: relative.or(absolute).unwrap_or(0.0),
+        relative: relative.is_some(),
+        reason: s.string("reason").or(reason.to_string()),
+    }
+}
+
+fn read_set(s: &Section, key: &str) -> Vec<(String, f64)> {
+    s.section(key, |set| {
+        let value = |path: &String| (path.clone(), set.quantity(path, NUMBER).or(0.0));
+        set.names().iter().map(value).collect()
+    })
+    .unwrap_or_default()
+}
