@@ -1,7 +1,19 @@
 //! From a description of parts, bars, points and supports to M, C, K: elements, constraints, assembly.
+//!
+//! A [`Model`] is plain data. [`assemble`] checks it, finds its free degrees of freedom u = T q ([`DofMap`]), adds up
+//! the [`elements`] and gives M = Tᵀ (Σ M_e) T, and K and C likewise, with the map from free degrees of freedom back
+//! to nodes. [`Assembled::prestress`] gives the geometric stiffness of a static state.
 
+mod assembly;
+mod check;
+mod dofs;
+pub mod elements;
 mod model;
+mod pieces;
+mod scatter;
 
+pub use assembly::{Assembled, GeometricStiffness, assemble};
+pub use dofs::{DofMap, FreeDof};
 pub use model::{
     BarPart, Material, Model, PointMass, RayleighDamping, RigidLink, Section, ShellPart, Spring, Support,
 };

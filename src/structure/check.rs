@@ -1,0 +1,161 @@
+//! Whether a model can be assembled: every fault at once, before any matrix.
+
+use super::elements::{Beam, FlatShell, split_face, spring_direction};
+use super::model::{Material, Model};
+use crate::error::{Fault, Faults, Result};
+
+/// The faults of `model`, all of them; of like faults in one part the first, with their number.
+pub(super) fn check_model(model: &Model) -> Result<()> {
+    let mut faults = Faults::new();
+    let bad_nodes: Vec<usize> =
+        (0..model.nodes.len()).filter(|n| model.nodes[*n].iter().any(|x| !x.is_finite())).collect();
+    if let Some(first) = bad_nodes.first() {
+        faults.push(Fault::new(
+            "nodes",
+            format!("{} with coordinates that are not finite, the first node {}", bad_nodes.len(), first + 1),
+            "finite coordinates",
+        ));
+    }
+    let known = |node: &usize| *node < model.nodes.len();
+    let sound = |node: &usize| known(node) && model.nodes[*node].iter().all(|x| x.is_finite());
+
+    for part in &model.shells {
+        let place = format!("plate `{}`", part.name);
+        check_material(&place, &part.material, &mut faults);
+        positive(&place, "thickness", part.thickness, "m", &mut faults);
+        let not_faces = part.faces.iter().filter(|f| f.dimension() != 2).count();
+        if not_faces > 0 {
+            let found = format!("{not_faces} elements that are points or lines");
+            faults.push(Fault::new(&place, found, "triangles and quadrilaterals"));
+        }
+        let missing = part.faces.iter().flat_map(|f| f.nodes()).filter(|n| !known(n));
+        missing_nodes(&place, missing, model.nodes.len(), &mut faults);
+        let flat: Vec<usize> = (0..part.faces.len())
+            .filter(|f| {
+                split_face(&part.faces[*f]).iter().any(|t| {
+                    t.nodes.iter().all(sound) && FlatShell::new(&t.nodes.map(|n| model.nodes[n])).is_none()
+                })
+            })
+            .collect();
+        if let Some(first) = flat.first() {
+            let nodes: Vec<usize> = part.faces[*first].nodes().iter().map(|n| n + 1).collect();
+            faults.push(
+                Fault::new(
+                    &place,
+                    format!("{} elements without area, the first with nodes {nodes:?}", flat.len()),
+                    "elements with an area",
+                )
+                .with_help("Merge coincident nodes or mesh the region again"),
+            );
+        }
+    }
+    for part in &model.bars {
+        let place = format!("bar `{}`", part.name);
+        check_material(&place, &part.material, &mut faults);
+        positive(&place, "area", part.section.area, "m²", &mut faults);
+        positive(&place, "first second moment", part.section.inertia_1, "m⁴", &mut faults);
+        positive(&place, "second second moment", part.section.inertia_2, "m⁴", &mut faults);
+        positive(&place, "torsion constant", part.section.torsion, "m⁴", &mut faults);
+        let missing = part.elements.iter().flatten().filter(|n| !known(n));
+        missing_nodes(&place, missing, model.nodes.len(), &mut faults);
+        let bad = part.elements.iter().find(|e| {
+            e.iter().all(sound) && Beam::new(&e.map(|n| model.nodes[n]), part.orientation).is_none()
+        });
+        if let Some([a, b]) = bad {
+            faults.push(Fault::new(
+                &place,
+                format!("no length or an orientation along it between nodes {} and {}", a + 1, b + 1),
+                "elements with a length, and an orientation that is not along them",
+            ));
+        }
+    }
+    for (k, point) in model.masses.iter().enumerate() {
+        let place = format!("point mass {}", k + 1);
+        missing_nodes(
+            &place,
+            std::iter::once(&point.node).filter(|n| !known(n)),
+            model.nodes.len(),
+            &mut faults,
+        );
+        not_negative(&place, "mass", point.mass, "kg", &mut faults);
+        for inertia in point.inertia {
+            not_negative(&place, "moment of inertia", inertia, "kg m²", &mut faults);
+        }
+    }
+    for (k, spring) in model.springs.iter().enumerate() {
+        let place = format!("spring {}", k + 1);
+        let ends = std::iter::once(&spring.node).chain(&spring.other);
+        missing_nodes(&place, ends.filter(|n| !known(n)), model.nodes.len(), &mut faults);
+        not_negative(&place, "stiffness", spring.stiffness, "N/m or N m/rad", &mut faults);
+        not_negative(&place, "damping", spring.damping, "N s/m or N m s/rad", &mut faults);
+        if spring_direction(spring).is_none() {
+            let found = format!("direction {:?}", spring.direction);
+            faults.push(Fault::new(&place, found, "a direction with a length"));
+        }
+        if spring.other == Some(spring.node) {
+            let found = format!("both ends at node {}", spring.node + 1);
+            faults.push(Fault::new(&place, found, "two nodes, or a node and the ground"));
+        }
+    }
+    for (k, link) in model.links.iter().enumerate() {
+        let ends = std::iter::once(&link.master).chain(&link.slaves);
+        let place = format!("rigid link {}", k + 1);
+        missing_nodes(&place, ends.filter(|n| !known(n)), model.nodes.len(), &mut faults);
+    }
+    for (k, support) in model.supports.iter().enumerate() {
+        let place = format!("support {}", k + 1);
+        missing_nodes(&place, support.nodes.iter().filter(|n| !known(n)), model.nodes.len(), &mut faults);
+    }
+    faults.into_result(())
+}
+
+fn check_material(place: &str, material: &Material, faults: &mut Faults) {
+    positive(place, "Young's modulus", material.youngs_modulus, "Pa", faults);
+    let nu = material.poissons_ratio;
+    if !(nu > -1.0 && nu < 0.5) {
+        faults.push(
+            Fault::new(place, format!("Poisson's ratio {nu}"), "a value above -1 and below 0.5")
+                .with_help("Steel and aluminium have about 0.3"),
+        );
+    }
+    not_negative(place, "density", material.density, "kg/m³", faults);
+    not_negative(place, "loss factor", material.loss_factor, "1", faults);
+    not_negative(place, "Rayleigh alpha", material.rayleigh.alpha, "1/s", faults);
+    not_negative(place, "Rayleigh beta", material.rayleigh.beta, "s", faults);
+}
+
+fn positive(place: &str, what: &str, value: f64, unit: &str, faults: &mut Faults) {
+    if !(value > 0.0 && value.is_finite()) {
+        faults.push(Fault::new(place, format!("{what} {value}"), format!("a positive value [{unit}]")));
+    }
+}
+
+fn not_negative(place: &str, what: &str, value: f64, unit: &str, faults: &mut Faults) {
+    if !(value >= 0.0 && value.is_finite()) {
+        faults.push(Fault::new(
+            place,
+            format!("{what} {value}"),
+            format!("zero or a positive value [{unit}]"),
+        ));
+    }
+}
+
+fn missing_nodes<'a>(
+    place: &str,
+    missing: impl Iterator<Item = &'a usize>,
+    n_nodes: usize,
+    faults: &mut Faults,
+) {
+    let missing: Vec<usize> = missing.copied().collect();
+    if let Some(first) = missing.first() {
+        faults.push(Fault::new(
+            place,
+            format!(
+                "{} references to nodes that do not exist, the first to node {}",
+                missing.len(),
+                first + 1
+            ),
+            format!("nodes 1 to {n_nodes}"),
+        ));
+    }
+}

@@ -1,0 +1,27 @@
+//! Geometric stiffness: what membrane and axial forces add to the stiffness against deflection (tension stiffens).
+
+use super::bciz::slope_products;
+use super::symmetrized;
+use super::triangle::twice_area;
+use nalgebra::SMatrix;
+
+/// K_σ = ∫ ∇wᵀ N ∇w dA on (w, θ₁, θ₂) at the corners, 9 × 9, for membrane forces `n` = (N_x, N_y, N_xy) \[N/m\],
+/// positive in tension; w the cubic of [`super::bciz`].
+pub fn plate(corners: &[[f64; 2]; 3], n: [f64; 3]) -> SMatrix<f64, 9, 9> {
+    let [xx, yy, xy] = slope_products(corners);
+    symmetrized((xx * n[0] + yy * n[1] + xy * n[2]) * (twice_area(corners) / 2.0))
+}
+
+/// K_σ = N ∫ w′² dx of one bending plane of a bar of length l on (w, w′) at its ends, 4 × 4, N positive in tension;
+/// w the cubic with these end values.
+pub fn bar(length: f64, axial_force: f64) -> SMatrix<f64, 4, 4> {
+    let l = length;
+    #[rustfmt::skip]
+    let k = SMatrix::<f64, 4, 4>::from_row_slice(&[
+        36.0,     3.0 * l,      -36.0,    3.0 * l,
+        3.0 * l,  4.0 * l * l,  -3.0 * l, -l * l,
+        -36.0,    -3.0 * l,     36.0,     -3.0 * l,
+        3.0 * l,  -l * l,       -3.0 * l, 4.0 * l * l,
+    ]);
+    k * (axial_force / (30.0 * l))
+}

@@ -1,0 +1,56 @@
+//! Elements: pure functions from coordinates and material to small symmetric matrices.
+//!
+//! | element | field | file |
+//! |---|---|---|
+//! | [`FlatTriangle`] | a triangle in its own plane: local frame, areas, gradients | `triangle` |
+//! | [`dkt`] | bending stiffness, discrete Kirchhoff triangle | `dkt` |
+//! | [`opt`] | membrane stiffness with drilling rotations, optimal triangle | `opt` |
+//! | [`bciz`] | the cubic deflection that mass, geometric stiffness and interpolation use | `bciz` |
+//! | [`mass`] | consistent masses of bending and membrane | `mass` |
+//! | [`geometric`] | string effect of membrane and axial forces | `geometric` |
+//! | [`FlatShell`] | DKT + OPT in space, 18 degrees of freedom | `shell` |
+//! | [`split_face`], [`face_displacement_at`] | quadrilaterals as the mean of their two splittings into triangles | `face` |
+//! | [`Beam`] | Euler–Bernoulli bar in space, 12 degrees of freedom | `beam` |
+//! | [`spring_direction`] | springs, dashpots and point masses | `point` |
+//!
+//! A triangle's local axes are e₁ along its first side, e₃ its normal, e₂ = e₃ × e₁. Rotations are components of
+//! the rotation vector, so a deflection w along e₃ turns the normal by θ₁ = ∂w/∂y and θ₂ = −∂w/∂x.
+
+pub mod bciz;
+mod beam;
+pub mod dkt;
+mod face;
+pub mod geometric;
+pub mod mass;
+pub mod opt;
+mod point;
+mod shell;
+mod triangle;
+
+pub use beam::Beam;
+pub use face::{WeightedTriangle, face_displacement_at, split_face};
+pub use point::{mass_diagonal, spring_direction};
+pub use shell::FlatShell;
+pub use triangle::FlatTriangle;
+
+use nalgebra::SMatrix;
+
+/// (A + Aᵀ)/2: symmetric to the last bit.
+pub(crate) fn symmetrized<const N: usize>(a: SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
+    (a + a.transpose()) * 0.5
+}
+
+/// Tᵀ A T with T = diag(R, R, …): a matrix in local axes (rows of `frame`) turned into global axes.
+pub(crate) fn to_global<const N: usize>(
+    local: &SMatrix<f64, N, N>,
+    frame: &nalgebra::Matrix3<f64>,
+) -> SMatrix<f64, N, N> {
+    let mut global = SMatrix::<f64, N, N>::zeros();
+    for i in (0..N).step_by(3) {
+        for j in (0..N).step_by(3) {
+            let block = frame.transpose() * local.fixed_view::<3, 3>(i, j) * frame;
+            global.fixed_view_mut::<3, 3>(i, j).copy_from(&block);
+        }
+    }
+    symmetrized(global)
+}

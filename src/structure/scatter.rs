@@ -1,0 +1,274 @@
+//! The sparsity pattern of a set of small matrices, and adding them up on it in parallel.
+//!
+//! Every entry of the result is the sum of its contributions in the order of a fixed walk over the pieces, whatever
+//! the number of threads: small matrices are computed in parallel, a batch at a time, and each thread then adds
+//! those of the whole batch to the columns that it owns.
+
+use super::dofs::DofMap;
+use crate::linalg::SparseMatrix;
+use faer::sparse::SymbolicSparseColMat;
+use nalgebra::SMatrix;
+use nalgebra_sparse::CscMatrix;
+use rayon::prelude::*;
+
+/// Pieces whose matrices are held at once.
+const BATCH: usize = 8192;
+/// Columns whose pattern is made by one task.
+const COLUMNS: usize = 1024;
+
+/// Which free degrees of freedom each piece couples, and the pattern of their sum.
+#[derive(Debug)]
+pub(super) struct Pattern {
+    n: usize,
+    /// Piece p couples `piece_dofs[piece_starts[p]..piece_starts[p + 1]]`, ascending.
+    piece_starts: Vec<usize>,
+    piece_dofs: Vec<usize>,
+    column_starts: Vec<usize>,
+    rows: Vec<usize>,
+}
+
+impl Pattern {
+    /// The pattern of pieces on the given nodes; every diagonal entry is part of it.
+    pub fn new(dofs: &DofMap, piece_nodes: &[Vec<usize>]) -> Self {
+        let n = dofs.n_dofs();
+        let lists: Vec<Vec<usize>> = piece_nodes.par_iter().map(|nodes| coupled_dofs(dofs, nodes)).collect();
+        let (piece_starts, piece_dofs) = flattened(&lists);
+        drop(lists);
+
+        // The pieces of every degree of freedom, ascending.
+        let mut starts = vec![0; n + 1];
+        piece_dofs.iter().for_each(|k| starts[k + 1] += 1);
+        (0..n).for_each(|k| starts[k + 1] += starts[k]);
+        let mut next = starts.clone();
+        let mut users = vec![0; piece_dofs.len()];
+        for piece in 0..piece_nodes.len() {
+            for k in &piece_dofs[piece_starts[piece]..piece_starts[piece + 1]] {
+                users[next[*k]] = piece;
+                next[*k] += 1;
+            }
+        }
+        let users_of = |k: usize| &users[starts[k]..starts[k + 1]];
+        let columns: Vec<(Vec<usize>, Vec<usize>)> = (0..n.div_ceil(COLUMNS))
+            .into_par_iter()
+            .map(|task| {
+                let (mut counts, mut rows) = (Vec::new(), Vec::new());
+                let mut column: Vec<usize> = Vec::new();
+                let first = task * COLUMNS;
+                for k in first..n.min(first + COLUMNS) {
+                    // Degrees of freedom of one node mostly have the same pieces, hence the same column.
+                    if k == first || users_of(k) != users_of(k - 1) || users_of(k).is_empty() {
+                        column.clear();
+                        column.push(k);
+                        for piece in users_of(k) {
+                            column.extend(&piece_dofs[piece_starts[*piece]..piece_starts[*piece + 1]]);
+                        }
+                        column.sort_unstable();
+                        column.dedup();
+                    }
+                    counts.push(column.len());
+                    rows.extend_from_slice(&column);
+                }
+                (counts, rows)
+            })
+            .collect();
+        let mut column_starts = Vec::with_capacity(n + 1);
+        column_starts.push(0);
+        let mut rows = Vec::with_capacity(columns.iter().map(|(_, r)| r.len()).sum());
+        for (counts, part) in columns {
+            for count in counts {
+                column_starts.push(column_starts[column_starts.len() - 1] + count);
+            }
+            rows.extend(part);
+        }
+        Pattern { n, piece_starts, piece_dofs, column_starts, rows }
+    }
+
+    fn n_pieces(&self) -> usize {
+        self.piece_starts.len() - 1
+    }
+
+    fn dofs_of(&self, piece: usize) -> &[usize] {
+        &self.piece_dofs[self.piece_starts[piece]..self.piece_starts[piece + 1]]
+    }
+
+    /// Adds up K matrices at once: `matrices(p)` gives those of piece p on its coupled degrees of freedom
+    /// (column by column); an empty one counts as zero. A sum to which nothing was added is `None`.
+    pub fn sum<const K: usize>(
+        &self,
+        matrices: impl Fn(usize, &[usize]) -> [Vec<f64>; K] + Sync,
+    ) -> [Option<SparseMatrix>; K] {
+        let mut values: [Vec<f64>; K] = std::array::from_fn(|_| Vec::new());
+        // Strided batches spread each batch over all columns, so that every owner has work.
+        let batches = self.n_pieces().div_ceil(BATCH).max(1);
+        for batch in 0..batches {
+            let computed: Vec<(usize, [Vec<f64>; K])> = (batch..self.n_pieces())
+                .into_par_iter()
+                .step_by(batches)
+                .map(|piece| (piece, matrices(piece, self.dofs_of(piece))))
+                .collect();
+            for (kind, sum) in values.iter_mut().enumerate() {
+                if sum.is_empty() && computed.iter().any(|(_, m)| !m[kind].is_empty()) {
+                    sum.resize(self.rows.len(), 0.0);
+                }
+            }
+            self.owners(&mut values).into_par_iter().for_each(|(first, last, mut slices)| {
+                for (piece, small) in &computed {
+                    self.add_columns(*piece, small, first, last, &mut slices);
+                }
+            });
+        }
+        values.map(|v| (!v.is_empty()).then(|| self.with_values(v)))
+    }
+
+    /// Ranges of columns with about equally many entries, and the values that belong to each.
+    fn owners<'a, const K: usize>(
+        &self,
+        values: &'a mut [Vec<f64>; K],
+    ) -> Vec<(usize, usize, [&'a mut [f64]; K])> {
+        let count = rayon::current_num_threads().max(1) * 4;
+        let mut rest: [&'a mut [f64]; K] = values.each_mut().map(|v| v.as_mut_slice());
+        let mut owners = Vec::with_capacity(count);
+        let mut first = 0;
+        for owner in 1..=count {
+            let goal = self.rows.len() * owner / count;
+            let last = if owner == count {
+                self.n
+            } else {
+                self.column_starts.partition_point(|s| *s < goal).clamp(first, self.n)
+            };
+            let length = self.column_starts[last] - self.column_starts[first];
+            let mine = rest.each_mut().map(|slice| {
+                let whole = std::mem::take(slice);
+                let at = length.min(whole.len());
+                let (head, tail) = whole.split_at_mut(at);
+                *slice = tail;
+                head
+            });
+            owners.push((first, last, mine));
+            first = last;
+        }
+        owners
+    }
+
+    /// Adds the columns `first..last` of the small matrices of `piece` to the values of those columns.
+    fn add_columns<const K: usize>(
+        &self,
+        piece: usize,
+        small: &[Vec<f64>; K],
+        first: usize,
+        last: usize,
+        sums: &mut [&mut [f64]; K],
+    ) {
+        let dofs = self.dofs_of(piece);
+        let m = dofs.len();
+        let base = self.column_starts[first];
+        let from = dofs.partition_point(|k| *k < first);
+        for (j, column) in dofs.iter().enumerate().skip(from).take_while(|(_, k)| **k < last) {
+            let start = self.column_starts[*column];
+            let rows = &self.rows[start..self.column_starts[*column + 1]];
+            let mut at = 0;
+            for (i, row) in dofs.iter().enumerate() {
+                if rows.get(at) != Some(row) {
+                    at += rows[at..].partition_point(|r| r < row);
+                }
+                for (sum, matrix) in sums.iter_mut().zip(small) {
+                    if !matrix.is_empty() {
+                        sum[start - base + at] += matrix[j * m + i];
+                    }
+                }
+                at += 1;
+            }
+        }
+    }
+
+    /// A matrix with this pattern.
+    fn with_values(&self, values: Vec<f64>) -> SparseMatrix {
+        let csc = CscMatrix::try_from_csc_data(
+            self.n,
+            self.n,
+            self.column_starts.clone(),
+            self.rows.clone(),
+            values,
+        )
+        .expect("columns ascend and rows are sorted");
+        from_nalgebra(csc)
+    }
+
+    /// The zero matrix on this pattern.
+    pub fn zero(&self) -> SparseMatrix {
+        self.with_values(vec![0.0; self.rows.len()])
+    }
+}
+
+/// The same matrix as faer's type; its three arrays change hands without a copy.
+fn from_nalgebra(csc: CscMatrix<f64>) -> SparseMatrix {
+    let (n_rows, n_columns) = (csc.nrows(), csc.ncols());
+    let (starts, rows, values) = csc.disassemble();
+    SparseMatrix::new(SymbolicSparseColMat::new_checked(n_rows, n_columns, starts, None, rows), values)
+}
+
+/// Free degrees of freedom that the nodes of a piece move with, ascending.
+fn coupled_dofs(dofs: &DofMap, nodes: &[usize]) -> Vec<usize> {
+    let mut list: Vec<usize> = nodes
+        .iter()
+        .flat_map(|node| (0..6).flat_map(|dof| dofs.terms(*node, dof).iter().map(|(k, _)| *k)))
+        .collect();
+    list.sort_unstable();
+    list.dedup();
+    list
+}
+
+/// Tᵀ A T of a matrix on the six degrees of freedom of `nodes`, on the free degrees of freedom `coupled`
+/// (column by column): symmetric to the last bit when A is.
+pub(super) fn reduced(
+    dofs: &DofMap,
+    nodes: &[usize],
+    coupled: &[usize],
+    full: &SMatrix<f64, 18, 18>,
+) -> Vec<f64> {
+    let m = coupled.len();
+    let size = 6 * nodes.len();
+    let row = |k: usize| dofs.terms(nodes[k / 6], k % 6);
+    // Where in `coupled` the first term of each row stands; the terms of a row are neighbours in it.
+    let mut places = [0; 18];
+    for (k, place) in places.iter_mut().enumerate().take(size) {
+        if let Some((first, _)) = row(k).first() {
+            *place = coupled.partition_point(|c| c < first);
+        }
+    }
+    let place_of = |k: usize, dof: usize| {
+        let from = places[k];
+        from + coupled[from..].partition_point(|c| *c < dof)
+    };
+    let mut small = vec![0.0; m * m];
+    for b in 0..size {
+        for (j, tj) in row(b) {
+            let column = place_of(b, *j);
+            for a in 0..size {
+                for (i, ti) in row(a) {
+                    let at = place_of(a, *i);
+                    if at <= column {
+                        small[column * m + at] += ti * tj * full[(a, b)];
+                    }
+                }
+            }
+        }
+    }
+    for column in 0..m {
+        for at in 0..column {
+            small[at * m + column] = small[column * m + at];
+        }
+    }
+    small
+}
+
+fn flattened(lists: &[Vec<usize>]) -> (Vec<usize>, Vec<usize>) {
+    let mut starts = Vec::with_capacity(lists.len() + 1);
+    starts.push(0);
+    let mut all = Vec::with_capacity(lists.iter().map(Vec::len).sum());
+    for list in lists {
+        all.extend_from_slice(list);
+        starts.push(all.len());
+    }
+    (starts, all)
+}
