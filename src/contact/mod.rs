@@ -1,1 +1,18 @@
-//! (room in preparation)
+//! Two bodies that touch: where ([`pairing`]) and with which forces ([`law`], from [`normal`] and [`friction`]).
+//!
+//! A [`SlidingLaw`] is a pure function (penetration, slip velocity) → (N, F₁, F₂) with its Jacobian;
+//! [`pair_surfaces`] builds the contact points of a pair from the meshes of its bodies. Together with a closing
+//! load they make a [`crate::system::ContactPair`].
+
+pub mod friction;
+pub mod law;
+pub mod normal;
+pub mod pairing;
+mod projection;
+mod table;
+
+pub use friction::{Coefficient, Constant, Exponential, FrictionCoefficient};
+pub use law::{FrictionSense, SlidingLaw};
+pub use normal::{NormalForce, NormalLaw};
+pub use pairing::{ContactPatch, ContactSide, Surfaces, pair_surfaces};
+pub use table::Table;

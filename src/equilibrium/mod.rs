@@ -1,4 +1,21 @@
 //! Steady sliding: the static state under load and friction, and the system linearised about it.
+//!
+//! K u₀ + Σ [g N − t₁ F₁ − t₂ F₂] = f, ΣN = load of each pair. [`solve_steady`] finds u₀; [`linearize`] gives
+//! K_c = Σ U k Uᵀ and C_c = Σ U c Uᵀ as small blocks, [`tangent_stiffness`] K + K_σ(u₀).
+
+pub(crate) mod algebra;
+mod condensed;
+mod linear;
+mod newton;
+#[cfg(test)]
+pub(crate) mod samples;
+mod steady;
+#[cfg(test)]
+mod tests;
+
+pub use condensed::Condensed;
+pub use linear::{ContactBlock, LinearContact, contact_force, directions, linearize, tangent_stiffness};
+pub use steady::{SteadyOptions, solve_steady, solve_steady_with};
 
 use crate::system::{ContactForces, ContactTangent};
 

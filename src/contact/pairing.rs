@@ -1,0 +1,321 @@
+//! Contact points from the geometry of two plates.
+
+use super::projection::{Foot, Plate, Vector, add, area_vector, cross, dot, scale, split, subtract};
+use crate::error::{Error, Fault, Faults, Result};
+use crate::linalg::SparseVector;
+use crate::mesh::Element;
+use crate::structure::ShellPart;
+use crate::system::ContactPoint;
+
+/// Two plates that may touch.
+///
+/// The *counter-body* (slider) offers the face that looks towards the body, half its thickness from its mid-surface;
+/// **n** is the outward normal there. The *body* (disc) touches with nodes of its edge or of its face.
+#[derive(Debug, Clone, Copy)]
+pub struct Surfaces<'a> {
+    /// The name of the pair, for faults.
+    pub name: &'a str,
+    /// Coordinates of all nodes \[m\].
+    pub nodes: &'a [[f64; 3]],
+    /// The plate whose nodes touch.
+    pub body: &'a ShellPart,
+    /// Which of its nodes may touch, and how.
+    pub side: ContactSide<'a>,
+    /// The plate whose faces are touched.
+    pub counter: &'a ShellPart,
+    /// The direction in which the counter-body slides past the body; its part across n is t₁.
+    pub sliding_direction: [f64; 3],
+    /// How many of the points are kept.
+    pub patch: ContactPatch,
+    /// How far the counter-body travels in all along t₁ \[m\], half of it either way; zero for none.
+    pub stroke: f64,
+}
+
+/// The part of the body that touches.
+#[derive(Debug, Clone, Copy)]
+pub enum ContactSide<'a> {
+    /// Lines on the edge of the plate (a rim). Every node carries two points, at ±h/2 along the plate's normal: the
+    /// two-point Lobatto rule over the thickness, each with half the node's tributary length \[m\].
+    Edge(&'a [[usize; 2]]),
+    /// Faces of the plate (a pad). Every node carries one point, at h/2 towards the counter-body, with the node's
+    /// tributary area \[m²\].
+    Face(&'a [Element]),
+}
+
+/// Which points are kept.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ContactPatch {
+    /// Those whose gap is at most this \[m\].
+    Reach(f64),
+    /// The node nearest to the counter-body only, of weight 1 (shared by its two points on an edge), for a contact
+    /// stiffness in N/m; an error when it is farther than this \[m\].
+    Nearest(f64),
+}
+
+/// The contact points of a pair, in the order of the body's nodes.
+///
+/// With **d** the vector from a node to its point, a point moves by u + θ × d. For the body's point and its foot on
+/// the counter-face:
+///
+/// * g: gᵀu = −n·(u_body − u_counter), positive when the contact closes;
+/// * t₁ᵀu, t₂ᵀu: tangential displacement of the body relative to the counter-body, t₂ = n × t₁;
+/// * gap = distance along n, positive when open. It is exact at the nodes of a circular rim; between the nodes a
+///   coarse mesh cuts the circle by a chord, which the points do not see.
+///
+/// `reduce` turns a sum of (node, component of (ux, uy, uz, rx, ry, rz), coefficient) into a vector on the degrees of
+/// freedom of the system: held ones drop out, rigidly linked ones pass to their master.
+///
+/// # Errors
+/// Contact nodes that are not on the body, a counter-body out of reach (with the distance), beside it, through it, or
+/// left by the stroke.
+pub fn pair_surfaces(
+    surfaces: &Surfaces<'_>,
+    reduce: &dyn Fn(&[(usize, usize, f64)]) -> SparseVector,
+) -> Result<Vec<ContactPoint>> {
+    let place = format!("contact `{}`", surfaces.name);
+    let touching = touching_nodes(surfaces, &place)?;
+    let mean = touching.iter().fold([0.0; 3], |sum, t| add(sum, surfaces.nodes[t.node]));
+    let mean = scale(1.0 / touching.len() as f64, mean);
+    let plate = Plate::new(surfaces.nodes, &surfaces.counter.faces, mean).ok_or_else(|| {
+        let found = "faces without area or turned against each other";
+        Error::input(Fault::new(
+            format!("part `{}`", surfaces.counter.name),
+            found,
+            "faces that look one way",
+        ))
+    })?;
+    let candidates: Vec<Candidate> = candidates(surfaces, &plate, &touching);
+    check_nearest(surfaces, &plate, &candidates, &place)?;
+    let kept = keep(surfaces.patch, candidates);
+    let mut faults = Faults::new();
+    let mut points = Vec::with_capacity(kept.len());
+    for candidate in &kept {
+        let Some(foot) = &candidate.foot else { continue };
+        let along = subtract(
+            surfaces.sliding_direction,
+            scale(dot(surfaces.sliding_direction, foot.normal), foot.normal),
+        );
+        let (length, whole) =
+            (dot(along, along).sqrt(), dot(surfaces.sliding_direction, surfaces.sliding_direction));
+        if !(length > 0.1 * whole.sqrt()) {
+            let found = format!("{:?}, along the counter-body's normal", surfaces.sliding_direction);
+            return Err(Error::input(Fault::new(
+                format!("{place}, sliding direction"),
+                found,
+                "a direction along its face",
+            )));
+        }
+        let t1 = scale(1.0 / length, along);
+        let t2 = cross(foot.normal, t1);
+        let leaves = [0.5, -0.5].iter().any(|s| {
+            surfaces.stroke != 0.0
+                && plate.foot(add(candidate.position, scale(s * surfaces.stroke, t1))).is_none()
+        });
+        if leaves && faults.0.is_empty() {
+            let found = format!(
+                "{} m, which leaves `{}` at {:?}",
+                surfaces.stroke, surfaces.counter.name, candidate.position
+            );
+            faults.push(Fault::new(
+                format!("{place}, stroke"),
+                found,
+                "a stroke that stays on the counter-body",
+            ));
+        }
+        let direction = |w: Vector, sign: f64| {
+            let mut terms = Vec::with_capacity(24);
+            on_body(candidate, scale(sign, w), &mut terms);
+            on_counter(foot, 0.5 * surfaces.counter.thickness, scale(-sign, w), &mut terms);
+            reduce(&terms)
+        };
+        points.push(ContactPoint {
+            position: candidate.position,
+            gap: candidate.gap,
+            weight: candidate.weight,
+            normal: direction(foot.normal, -1.0),
+            tangents: [direction(t1, 1.0), direction(t2, 1.0)],
+        });
+    }
+    faults.into_result(points)
+}
+
+/// A node of the body that may touch, with its tributary length or area and the plate's normal there.
+struct Touching {
+    node: usize,
+    weight: f64,
+    normal: Vector,
+}
+
+/// A point that may be kept.
+struct Candidate {
+    node: usize,
+    /// From the node to the point.
+    offset: Vector,
+    position: Vector,
+    weight: f64,
+    /// From the counter-face; over its mean plane when the point stands beside it.
+    gap: f64,
+    foot: Option<Foot>,
+}
+
+fn touching_nodes(surfaces: &Surfaces<'_>, place: &str) -> Result<Vec<Touching>> {
+    let n = surfaces.nodes.len();
+    let mut weights = vec![0.0; n];
+    let mut named = vec![false; n];
+    let corners = |t: [usize; 3]| t.map(|node| surfaces.nodes[node]);
+    match surfaces.side {
+        ContactSide::Edge(lines) => {
+            for [a, b] in lines {
+                let side = subtract(surfaces.nodes[*b], surfaces.nodes[*a]);
+                for node in [*a, *b] {
+                    weights[node] += 0.5 * dot(side, side).sqrt();
+                    named[node] = true;
+                }
+            }
+        }
+        ContactSide::Face(faces) => {
+            for triangle in split(faces) {
+                let area = area_vector(&corners(triangle));
+                for node in triangle {
+                    weights[node] += dot(area, area).sqrt() / 3.0;
+                    named[node] = true;
+                }
+            }
+        }
+    }
+    let mut normals = vec![[0.0; 3]; n];
+    let mut on_part = vec![false; n];
+    for triangle in split(&surfaces.body.faces) {
+        let area = area_vector(&corners(triangle));
+        for node in triangle {
+            normals[node] = add(normals[node], area);
+            on_part[node] = true;
+        }
+    }
+    let (touching, off): (Vec<usize>, Vec<usize>) = (0..n).filter(|k| named[*k]).partition(|k| on_part[*k]);
+    if let Some(node) = off.first() {
+        let found = format!(
+            "{} of its nodes off part `{}`, one at {:?}",
+            off.len(),
+            surfaces.body.name,
+            surfaces.nodes[*node]
+        );
+        return Err(Error::input(Fault::new(
+            place,
+            found,
+            format!("contact nodes on `{}`", surfaces.body.name),
+        )));
+    }
+    if touching.is_empty() {
+        return Err(Error::input(Fault::new(place, "no line or face to touch with", "a region of the body")));
+    }
+    let unit = |v: Vector| scale(1.0 / dot(v, v).sqrt().max(f64::MIN_POSITIVE), v);
+    Ok(touching
+        .into_iter()
+        .map(|node| Touching { node, weight: weights[node], normal: unit(normals[node]) })
+        .collect())
+}
+
+fn candidates(surfaces: &Surfaces<'_>, plate: &Plate, touching: &[Touching]) -> Vec<Candidate> {
+    let half = 0.5 * surfaces.body.thickness;
+    let place = |t: &Touching, offset: Vector, weight: f64| {
+        let position = add(surfaces.nodes[t.node], offset);
+        let foot = plate.foot(position);
+        let height = foot.as_ref().map_or_else(|| plate.height_over_plane(position), |f| f.height);
+        let gap = height - 0.5 * surfaces.counter.thickness;
+        Candidate { node: t.node, offset, position, weight, gap, foot }
+    };
+    let mut all = Vec::new();
+    for t in touching {
+        match surfaces.side {
+            ContactSide::Edge(_) => {
+                all.extend([half, -half].map(|h| place(t, scale(h, t.normal), 0.5 * t.weight)));
+            }
+            ContactSide::Face(_) => {
+                let h = if dot(t.normal, plate.normal) > 0.0 { -half } else { half };
+                all.push(place(t, scale(h, t.normal), t.weight));
+            }
+        }
+    }
+    all
+}
+
+fn check_nearest(surfaces: &Surfaces<'_>, plate: &Plate, all: &[Candidate], place: &str) -> Result<()> {
+    let Some(nearest) = all.iter().min_by(|a, b| a.gap.total_cmp(&b.gap)) else { return Ok(()) };
+    let (ContactPatch::Reach(reach) | ContactPatch::Nearest(reach)) = surfaces.patch;
+    let counter = &surfaces.counter.name;
+    let mut faults = Faults::new();
+    if nearest.gap > reach {
+        let found = format!("`{counter}` {:.4e} m away from the nearest contact point", nearest.gap);
+        let expected = format!("a distance within the reach of {reach:.4e} m");
+        faults.push(
+            Fault::new(place, found, expected).with_help("Move the bodies together or check the mesh's unit"),
+        );
+    }
+    // A point of a curved edge may overhang the plate; the nearest one must stand on it.
+    if nearest.foot.is_none() && plate.foot(surfaces.nodes[nearest.node]).is_none() {
+        let found = format!("the nearest contact point at {:?}, beside `{counter}`", nearest.position);
+        faults.push(Fault::new(place, found, format!("a contact position on `{counter}`")));
+    }
+    let thickness = 0.5 * (surfaces.body.thickness + surfaces.counter.thickness);
+    if nearest.foot.is_some() && nearest.gap < -thickness {
+        let found = format!("the bodies {:.4e} m inside each other", -nearest.gap);
+        faults.push(
+            Fault::new(place, found, "bodies that just touch")
+                .with_help("Check the contact position and the thicknesses"),
+        );
+    }
+    faults.into_result(())
+}
+
+fn keep(patch: ContactPatch, all: Vec<Candidate>) -> Vec<Candidate> {
+    let on_plate = all.into_iter().filter(|c| c.foot.is_some());
+    match patch {
+        ContactPatch::Reach(reach) => on_plate.filter(|c| c.gap <= reach).collect(),
+        ContactPatch::Nearest(_) => {
+            let on_plate: Vec<Candidate> = on_plate.collect();
+            let nearest = on_plate.iter().min_by(|a, b| a.gap.total_cmp(&b.gap)).map(|c| c.node);
+            let mut kept: Vec<Candidate> = on_plate.into_iter().filter(|c| Some(c.node) == nearest).collect();
+            let share = 1.0 / kept.len().max(1) as f64;
+            kept.iter_mut().for_each(|c| c.weight = share);
+            kept
+        }
+    }
+}
+
+/// w·(u + θ × d) = w·u + θ·(d × w) at the body's node.
+fn on_body(candidate: &Candidate, w: Vector, terms: &mut Vec<(usize, usize, f64)>) {
+    let moment = cross(candidate.offset, w);
+    for k in 0..3 {
+        terms.push((candidate.node, k, w[k]));
+        terms.push((candidate.node, 3 + k, moment[k]));
+    }
+}
+
+/// The same at the foot on the counter-face, `half` off the mid-surface, interpolated from the triangle's nodes.
+fn on_counter(foot: &Foot, half: f64, w: Vector, terms: &mut Vec<(usize, usize, f64)>) {
+    let moment = cross(scale(half, foot.normal), w);
+    let force = [w[0], w[1], w[2], moment[0], moment[1], moment[2]];
+    let rows = displacement_at(&foot.corners, foot.barycentric);
+    for column in 0..18 {
+        let coefficient: f64 = (0..6).map(|row| force[row] * rows[row][column]).sum();
+        if coefficient != 0.0 {
+            terms.push((foot.nodes[column / 6], column % 6, coefficient));
+        }
+    }
+}
+
+/// (ux, uy, uz, rx, ry, rz) at a point of a triangle's mid-surface as a function of its 18 degrees of freedom, all in
+/// global axes: linear in each component, exact for rigid motions.
+fn displacement_at(_corners: &[Vector; 3], barycentric: [f64; 3]) -> [[f64; 18]; 6] {
+    let mut rows = [[0.0; 18]; 6];
+    for (node, share) in barycentric.iter().enumerate() {
+        for (component, row) in rows.iter_mut().enumerate() {
+            row[6 * node + component] = *share;
+        }
+    }
+    rows
+}
+
+#[cfg(test)]
+mod tests;

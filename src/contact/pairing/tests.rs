@@ -1,0 +1,181 @@
+use super::*;
+use crate::structure::{Material, RayleighDamping};
+
+const DISC_RADIUS: f64 = 0.075;
+const SLIDER: f64 = 0.010;
+
+fn part(name: &str, thickness: f64, faces: Vec<Element>) -> ShellPart {
+    let rayleigh = RayleighDamping::default();
+    let material =
+        Material { youngs_modulus: 2e11, poissons_ratio: 0.3, density: 7850.0, loss_factor: 0.0, rayleigh };
+    ShellPart { name: name.into(), faces, material, thickness, bending_only: false, rotary_inertia: false }
+}
+
+/// A fan of triangles in the y–z plane (tilted by `lead` about y), its lowest rim node touching z = 0 at `x`, and a
+/// slider of quadrilaterals whose upper face is z = 0.
+struct Rig {
+    nodes: Vec<[f64; 3]>,
+    disc: ShellPart,
+    slider: ShellPart,
+    rim: Vec<[usize; 2]>,
+}
+
+fn rig(lead: f64, x: f64, lift: f64) -> Rig {
+    let n = 180;
+    let mut nodes = vec![[0.0; 3]];
+    for k in 0..n {
+        // Node 1 is the lowest.
+        let angle = std::f64::consts::TAU * k as f64 / n as f64 - std::f64::consts::FRAC_PI_2;
+        nodes.push([0.0, DISC_RADIUS * angle.cos(), DISC_RADIUS * angle.sin()]);
+    }
+    // θ > 0 moves the lowest point towards −x.
+    for p in &mut nodes {
+        *p = [p[2] * lead.sin() + x, p[1], p[2] * lead.cos() + DISC_RADIUS + lift];
+    }
+    let ring = |k: usize| 1 + k % n;
+    let faces = (0..n).map(|k| Element::Triangle([0, ring(k), ring(k + 1)])).collect();
+    let rim = (0..n).map(|k| [ring(k), ring(k + 1)]).collect();
+    let first = nodes.len();
+    let (nx, ny) = (10, 6);
+    for i in 0..=nx {
+        for j in 0..=ny {
+            nodes.push([0.02 * i as f64 - 0.1, 0.02 * j as f64 - 0.06, -0.5 * SLIDER]);
+        }
+    }
+    let at = |i: usize, j: usize| first + i * (ny + 1) + j;
+    let quads = (0..nx)
+        .flat_map(|i| (0..ny).map(move |j| (i, j)))
+        .map(|(i, j)| Element::Quadrilateral([at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]))
+        .collect();
+    Rig { nodes, disc: part("disc", 1e-3, faces), slider: part("slider", SLIDER, quads), rim }
+}
+
+fn surfaces<'a>(rig: &'a Rig, patch: ContactPatch) -> Surfaces<'a> {
+    Surfaces {
+        name: "rim",
+        nodes: &rig.nodes,
+        body: &rig.disc,
+        side: ContactSide::Edge(&rig.rim),
+        counter: &rig.slider,
+        sliding_direction: [1.0, 0.0, 0.0],
+        patch,
+        stroke: 0.0,
+    }
+}
+
+fn reduce(terms: &[(usize, usize, f64)]) -> SparseVector {
+    SparseVector::from_entries(terms.iter().map(|(node, dof, c)| (6 * node + dof, *c)))
+}
+
+/// A rigid motion of some nodes: translation `t`, rotation `r` about the origin.
+fn rigid(nodes: &[[f64; 3]], range: std::ops::Range<usize>, t: Vector, r: Vector) -> Vec<f64> {
+    let mut u = vec![0.0; 6 * nodes.len()];
+    for k in range {
+        let moved = add(t, cross(r, nodes[k]));
+        for c in 0..3 {
+            u[6 * k + c] = moved[c];
+            u[6 * k + 3 + c] = r[c];
+        }
+    }
+    u
+}
+
+#[test]
+fn rim_gap_is_that_of_the_circle_and_weights_are_its_length() {
+    let rig = rig(0.0, 0.013, 0.0);
+    let points = pair_surfaces(&surfaces(&rig, ContactPatch::Reach(1e-3)), &reduce).unwrap();
+    let step = std::f64::consts::TAU / 180.0;
+    let chord = 2.0 * DISC_RADIUS * (0.5 * step).sin();
+    for p in &points {
+        let y = p.position[1];
+        let exact = DISC_RADIUS - (DISC_RADIUS * DISC_RADIUS - y * y).sqrt();
+        assert!((p.gap - exact).abs() < 1e-15 && (p.weight - 0.5 * chord).abs() < 1e-15);
+        assert!(((p.position[0] - 0.013).abs() - 0.5e-3).abs() < 1e-15);
+    }
+    // a (1 − cos kα) ≤ 1 mm for k ≤ 4: nine nodes, two points each.
+    assert_eq!(points.len(), 18);
+}
+
+/// Any rigid motion of either body closes and slides each point by what the displacement of that point says.
+#[test]
+fn directions_are_the_relative_displacement_of_the_points() {
+    for lead in [0.0, 0.08] {
+        let rig = rig(lead, -0.031, 0.0);
+        let points = pair_surfaces(&surfaces(&rig, ContactPatch::Reach(2e-3)), &reduce).unwrap();
+        let disc_nodes = 0..181;
+        let (t, r) = ([3e-4, -2e-4, 5e-4], [0.02, -0.03, 0.04]);
+        for (body, range) in [(1.0, disc_nodes.clone()), (-1.0, 181..rig.nodes.len())] {
+            let u = rigid(&rig.nodes, range, t, r);
+            for p in &points {
+                // The foot of the point on z = 0 for the counter-body.
+                let x = if body > 0.0 { p.position } else { [p.position[0], p.position[1], 0.0] };
+                let moved = add(t, cross(r, x));
+                assert!((p.normal.dot(&u) + body * moved[2]).abs() < 1e-15);
+                assert!((p.tangents[0].dot(&u) - body * moved[0]).abs() < 1e-15);
+                assert!((p.tangents[1].dot(&u) - body * moved[1]).abs() < 1e-15);
+            }
+        }
+    }
+}
+
+#[test]
+fn lead_angle_leaves_the_load_to_the_lower_edge() {
+    let lead = 0.05f64;
+    let rig = rig(lead, 0.0, 0.0);
+    let points = pair_surfaces(&surfaces(&rig, ContactPatch::Nearest(1e-3)), &reduce).unwrap();
+    assert_eq!(points.len(), 2);
+    assert!(points.iter().all(|p| p.weight == 0.5));
+    let difference = (points[0].gap - points[1].gap).abs();
+    assert!((difference - 1e-3 * lead.sin()).abs() < 1e-15);
+}
+
+#[test]
+fn a_pad_on_a_face_has_its_area_and_its_thickness() {
+    // A 20 × 20 mm pad of four quadrilaterals, 4 mm thick, lying on the slider with its own side down.
+    let mut rig = rig(0.0, 0.0, 0.0);
+    let first = rig.nodes.len();
+    for i in 0..3 {
+        for j in 0..3 {
+            rig.nodes.push([0.01 * i as f64 + 0.003, 0.01 * j as f64 - 0.005, 2e-3 + 1e-5]);
+        }
+    }
+    let at = |i: usize, j: usize| first + 3 * i + j;
+    let faces: Vec<Element> = (0..2)
+        .flat_map(|i| (0..2).map(move |j| (i, j)))
+        .map(|(i, j)| Element::Quadrilateral([at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)]))
+        .collect();
+    let pad = part("pad", 4e-3, faces.clone());
+    let mut s = surfaces(&rig, ContactPatch::Reach(1e-3));
+    (s.body, s.side) = (&pad, ContactSide::Face(&faces));
+    let points = pair_surfaces(&s, &reduce).unwrap();
+    assert_eq!(points.len(), 9);
+    let area: f64 = points.iter().map(|p| p.weight).sum();
+    assert!((area - 4e-4).abs() < 1e-18);
+    for p in &points {
+        assert!((p.gap - 1e-5).abs() < 1e-15 && (p.position[2] - 1e-5).abs() < 1e-15);
+    }
+}
+
+fn fault(rig: &Rig, change: impl FnOnce(&mut Surfaces<'_>)) -> String {
+    let mut s = surfaces(rig, ContactPatch::Reach(1e-3));
+    change(&mut s);
+    let error = pair_surfaces(&s, &reduce).unwrap_err();
+    assert_eq!(error.exit_code(), 2);
+    error.to_string()
+}
+
+#[test]
+fn misplaced_bodies_are_explained() {
+    assert!(fault(&rig(0.0, 0.0, 0.02), |_| {}).contains("2.0000e-2 m away"));
+    assert!(fault(&rig(0.0, 0.3, 0.0), |_| {}).contains("beside `slider`"));
+    assert!(fault(&rig(0.0, 0.0, -0.02), |_| {}).contains("inside each other"));
+    let centred = rig(0.0, 0.0, 0.0);
+    assert!(fault(&centred, |s| s.stroke = 0.25).contains("leaves `slider`"));
+    assert!(fault(&centred, |s| s.sliding_direction = [0.0, 0.0, 1.0]).contains("sliding direction"));
+    const OFF: &[[usize; 2]] = &[[190, 191]];
+    assert!(fault(&centred, |s| s.side = ContactSide::Edge(OFF)).contains("off part `disc`"));
+    assert!(fault(&centred, |s| s.side = ContactSide::Edge(&[])).contains("no line or face"));
+    let mut s = surfaces(&centred, ContactPatch::Reach(1e-3));
+    s.stroke = 0.15;
+    assert!(pair_surfaces(&s, &reduce).is_ok());
+}

@@ -1,0 +1,132 @@
+//! Equilibrium condensed to the contact: the static compliance seen from the contact points.
+
+use super::algebra::{Factor, add_scaled, multiply};
+use super::linear::directions;
+use crate::error::{Error, Result};
+use crate::linalg::SparseMatrix;
+use crate::system::{ContactMotion, ContactPoint, System};
+use faer::sparse::Triplet;
+use faer::{Mat, MatRef};
+
+/// The structure with its contact springs closed, A = K + Σ d g gᵀ, factorised, and what it answers to a unit force
+/// on every contact direction.
+///
+/// K alone may be singular (a body that only the contact holds), A is not, unless nothing holds the body at all.
+/// The identity K u + U R = f ⇔ A u = f − U R + Σ g d gᵀu is exact, so the d > 0 only decide the conditioning:
+/// they are taken from the law's own stiffness. A depends on neither load, friction nor velocity.
+pub struct Condensed {
+    factor: Factor,
+    /// d \[N/m\] of each point.
+    pub(super) closed: Vec<f64>,
+    /// X = A⁻¹ G, n × points.
+    pub(super) responses: Mat<f64>,
+    /// gᵀA⁻¹g, gᵀA⁻¹t₁, gᵀA⁻¹t₂: points × points each \[m/N\].
+    pub(super) compliance: [Mat<f64>; 3],
+}
+
+impl Condensed {
+    /// Factorises A for the stiffness `k` (K, or K + K_σ).
+    ///
+    /// # Errors
+    /// A rigid motion that not even the closed contact resists.
+    pub fn new(system: &System, k: &SparseMatrix) -> Result<Self> {
+        let n = system.n_dofs();
+        let points: Vec<&ContactPoint> = system.points().map(|(_, point)| point).collect();
+        let closed: Vec<f64> = system.points().map(|(pair, point)| spring(pair, point, k)).collect();
+        let mut springs = Vec::new();
+        for (point, d) in points.iter().zip(&closed) {
+            for (i, a) in point.normal.iter() {
+                springs.extend(point.normal.iter().map(|(j, b)| Triplet::new(i, j, d * (a * b))));
+            }
+        }
+        let a = add_scaled(n, &[(1.0, k)], &springs);
+        let factor =
+            Factor::new(&a).ok_or_else(|| nothing_holds("the stiffness matrix is exactly singular"))?;
+        check_held(&a, &factor)?;
+        let mut responses = Mat::<f64>::zeros(n, points.len());
+        for (p, point) in points.iter().enumerate() {
+            point.normal.iter().for_each(|(i, v)| responses[(i, p)] = v);
+        }
+        factor.solve_in_place(responses.as_mut());
+        let seen_by = |c: usize| {
+            Mat::from_fn(points.len(), points.len(), |p, q| {
+                directions(points[q])[c].iter().map(|(i, v)| v * responses[(i, p)]).sum()
+            })
+        };
+        let compliance = [seen_by(0), seen_by(1), seen_by(2)];
+        Ok(Condensed { factor, closed, responses, compliance })
+    }
+
+    /// A⁻¹ x.
+    pub(super) fn solve(&self, x: &[f64]) -> Vec<f64> {
+        let mut y = Mat::from_fn(x.len(), 1, |i, _| x[i]);
+        self.factor.solve_in_place(y.as_mut());
+        y.col_as_slice(0).to_vec()
+    }
+}
+
+/// The stiffness that stands for a closed point: that of its law at first touch, but no stiffer than the structure
+/// it acts on (A would lose digits), and not nothing (a purely cubic law).
+fn spring(pair: &crate::system::ContactPair, point: &ContactPoint, k: &SparseMatrix) -> f64 {
+    let norm: f64 = point.normal.values().iter().map(|v| v * v).sum();
+    if norm == 0.0 {
+        return 0.0;
+    }
+    let diagonal = |i: usize| k.get(i, i).copied().unwrap_or(0.0);
+    let structure = point.normal.iter().map(|(i, v)| v * v * diagonal(i)).sum::<f64>() / (norm * norm);
+    let motion = ContactMotion {
+        penetration: 1e-12,
+        penetration_rate: 0.0,
+        slip_velocity: [pair.sliding_velocity, 0.0],
+    };
+    let law = pair.law.respond(&motion, point.weight).1.by_penetration[0];
+    match (law > 0.0, structure > 0.0) {
+        (true, true) => law.min(structure).max(1e-6 * structure),
+        (true, false) => law,
+        (false, true) => 1e-3 * structure,
+        (false, false) => 1.0,
+    }
+}
+
+/// Inverse iteration finds the softest motion x of A; when A x is no more than the round-off of forming it, x is a
+/// motion that nothing resists. (The softest elastic motion of a fine plate stands four decades above that.)
+fn check_held(a: &SparseMatrix, factor: &Factor) -> Result<()> {
+    const ROUND_OFF: f64 = 1e-14;
+    let n = a.nrows();
+    // A start that no symmetry of a structure is likely to be orthogonal to.
+    let mut x = Mat::from_fn(n, 1, |i, _| 1.0 + ((i as f64 + 1.0) * 0.618_033_988_749_895).fract());
+    for _ in 0..2 {
+        factor.solve_in_place(x.as_mut());
+        let size = x.col_as_slice(0).iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        if !size.is_finite() || size == 0.0 {
+            return Err(nothing_holds("its equations have no solution"));
+        }
+        x.col_as_slice_mut(0).iter_mut().for_each(|v| *v /= size);
+    }
+    let force = multiply(a, x.as_ref());
+    let terms = multiply_absolute(a, x.as_ref());
+    let largest = |m: &Mat<f64>| m.col_as_slice(0).iter().fold(0.0, |s: f64, v| s.max(v.abs()));
+    if largest(&force) <= ROUND_OFF * largest(&terms) {
+        let dof = (0..n).max_by(|i, j| x[(*i, 0)].abs().total_cmp(&x[(*j, 0)].abs())).unwrap_or(0);
+        return Err(nothing_holds(&format!(
+            "a rigid motion, largest at degree of freedom {dof}, meets no force"
+        )));
+    }
+    Ok(())
+}
+
+/// |A| |x|.
+fn multiply_absolute(a: &SparseMatrix, x: MatRef<'_, f64>) -> Mat<f64> {
+    let (columns, rows, values) = (a.col_ptr(), a.row_idx(), a.val());
+    Mat::from_fn(x.nrows(), 1, |i, _| {
+        (columns[i]..columns[i + 1]).map(|s| (values[s] * x[(rows[s], 0)]).abs()).sum()
+    })
+}
+
+fn nothing_holds(found: &str) -> Error {
+    Error::analysis(
+        "steady sliding",
+        format!("nothing holds the structure, not even with every contact closed: {found}"),
+        "Support it: clamp the bar or the slider, or give it springs to the ground",
+    )
+}

@@ -1,0 +1,84 @@
+//! The contact's forces in any state of motion, and their linearisation at steady sliding.
+
+use super::SteadySliding;
+use super::algebra::add_scaled;
+use crate::error::Result;
+use crate::linalg::{SparseMatrix, SparseVector};
+use crate::system::{ContactMotion, ContactPoint, System};
+use std::borrow::Cow;
+
+/// The linearised contact: K_c = Σ U k Uᵀ and C_c = Σ U c Uᵀ with U = \[g t₁ t₂\] of each point that carries load.
+/// It is kept as these small blocks and never assembled.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LinearContact {
+    /// The blocks of the points that are not silent, ascending in the point's index.
+    pub blocks: Vec<ContactBlock>,
+}
+
+/// One point of the linearised contact. Rows: the forces along g, t₁, t₂ on the left-hand side, (N, −F₁, −F₂).
+/// Columns: the displacements (or velocities) gᵀu, t₁ᵀu, t₂ᵀu.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactBlock {
+    /// Index in [`System::points`].
+    pub point: usize,
+    /// k \[N/m\]: not symmetric, as −∂F₁/∂δ = −μN′ has no counterpart.
+    pub stiffness: [[f64; 3]; 3],
+    /// c \[N s/m\]: the slip velocity is (V − t₁ᵀu̇, −t₂ᵀu̇), which turns the signs of its columns.
+    pub damping: [[f64; 3]; 3],
+}
+
+/// g, t₁, t₂ of a point.
+pub fn directions(point: &ContactPoint) -> [&SparseVector; 3] {
+    [&point.normal, &point.tangents[0], &point.tangents[1]]
+}
+
+/// K_c and C_c at steady sliding: the Jacobian of the laws, point by point.
+pub fn linearize(system: &System, steady: &SteadySliding) -> LinearContact {
+    debug_assert_eq!(system.points().count(), steady.points.len());
+    let mut blocks = Vec::new();
+    for (point, state) in steady.points.iter().enumerate() {
+        let t = &state.tangent;
+        let (mut stiffness, mut damping) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
+        for row in 0..3 {
+            // Friction stands with a minus sign on the left-hand side.
+            let sign = if row == 0 { 1.0 } else { -1.0 };
+            stiffness[row][0] = sign * t.by_penetration[row];
+            damping[row][0] = sign * t.by_penetration_rate[row];
+            damping[row][1] = -sign * t.by_slip_velocity[row][0];
+            damping[row][2] = -sign * t.by_slip_velocity[row][1];
+        }
+        if stiffness.iter().chain(&damping).flatten().any(|v| *v != 0.0) {
+            blocks.push(ContactBlock { point, stiffness, damping });
+        }
+    }
+    LinearContact { blocks }
+}
+
+/// K, or K + K_σ(u₀) when the system asks for the geometric stiffness of the preload.
+pub fn tangent_stiffness<'a>(system: &'a System, displacement: &[f64]) -> Result<Cow<'a, SparseMatrix>> {
+    let Some(prestress) = &system.prestress else {
+        return Ok(Cow::Borrowed(&system.structure.stiffness));
+    };
+    let geometric = prestress.geometric_stiffness(displacement)?;
+    Ok(Cow::Owned(add_scaled(system.n_dofs(), &[(1.0, &system.structure.stiffness), (1.0, &geometric)], &[])))
+}
+
+/// r_c(u, u̇) = Σ \[g N − t₁ F₁ − t₂ F₂\] \[N, N m\], with δ = approach − gap + gᵀu and the pairs' own sliding velocity.
+pub fn contact_force(system: &System, approach: &[f64], displacement: &[f64], velocity: &[f64]) -> Vec<f64> {
+    let mut total = vec![0.0; system.n_dofs()];
+    for (pair, approach) in system.pairs.iter().zip(approach) {
+        for point in &pair.points {
+            let [g, t1, t2] = directions(point);
+            let motion = ContactMotion {
+                penetration: approach - point.gap + g.dot(displacement),
+                penetration_rate: g.dot(velocity),
+                slip_velocity: [pair.sliding_velocity - t1.dot(velocity), -t2.dot(velocity)],
+            };
+            let (forces, _) = pair.law.respond(&motion, point.weight);
+            g.add_to(forces.normal, &mut total);
+            t1.add_to(-forces.friction[0], &mut total);
+            t2.add_to(-forces.friction[1], &mut total);
+        }
+    }
+    total
+}

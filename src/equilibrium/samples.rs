@@ -1,0 +1,133 @@
+//! Small hand-made systems for the tests of equilibrium and stability.
+
+use crate::contact::{Constant, Exponential, NormalLaw, SlidingLaw};
+use crate::linalg::{SparseMatrix, SparseVector};
+use crate::system::{Closing, ContactPair, ContactPoint, Damping, Structure, System};
+use faer::sparse::Triplet;
+use std::sync::Arc;
+
+/// Pseudo-random numbers in [0, 1), the same on every machine.
+pub(crate) struct Random(pub(crate) u64);
+
+impl Random {
+    pub(crate) fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.next()
+    }
+}
+
+/// A sparse matrix from its dense rows.
+pub(crate) fn sparse(n: usize, entry: impl Fn(usize, usize) -> f64) -> SparseMatrix {
+    let all = (0..n).flat_map(|j| (0..n).map(move |i| (i, j)));
+    let triplets: Vec<_> =
+        all.map(|(i, j)| Triplet::new(i, j, entry(i, j))).filter(|t| t.val != 0.0).collect();
+    SparseMatrix::try_new_from_triplets(n, n, &triplets).unwrap()
+}
+
+/// A structure of n dofs without damping.
+pub(crate) fn structure(
+    n: usize,
+    m: impl Fn(usize, usize) -> f64,
+    k: impl Fn(usize, usize) -> f64,
+) -> Structure {
+    Structure { mass: sparse(n, m), stiffness: sparse(n, k), damping: Damping::default() }
+}
+
+pub(crate) fn vector(entries: &[(usize, f64)]) -> SparseVector {
+    SparseVector::from_entries(entries.iter().copied())
+}
+
+pub(crate) fn point(
+    gap: f64,
+    weight: f64,
+    g: SparseVector,
+    t1: SparseVector,
+    t2: SparseVector,
+) -> ContactPoint {
+    ContactPoint { position: [0.0; 3], gap, weight, normal: g, tangents: [t1, t2] }
+}
+
+pub(crate) fn pair(
+    points: Vec<ContactPoint>,
+    law: SlidingLaw,
+    closing: Closing,
+    velocity: f64,
+) -> ContactPair {
+    ContactPair { name: "pair".into(), points, law: Arc::new(law), closing, sliding_velocity: velocity }
+}
+
+/// The two-degree-of-freedom model: one mass, k₁ = 1 along x, k₂ = 1 at 45°, k_t along x, on a belt under it that
+/// moves along +x; bilateral contact. The mass is pressed down (−y), so δ = −y: g = (0, −1), and t = (1, 0).
+pub(crate) fn two_dof(k_t: f64, k_n: f64, mu: f64) -> System {
+    let k = [[1.5 + k_t, -0.5], [-0.5, 0.5]];
+    let normal = NormalLaw { bilateral: true, ..NormalLaw::linear(k_n) };
+    let point = point(0.0, 1.0, vector(&[(1, -1.0)]), vector(&[(0, 1.0)]), SparseVector::default());
+    System {
+        structure: structure(2, |i, j| if i == j { 1.0 } else { 0.0 }, |i, j| k[i][j]),
+        pairs: vec![pair(
+            vec![point],
+            SlidingLaw::new(normal, Constant(mu), 0.0),
+            Closing::Approach(0.0),
+            1.0,
+        )],
+        load: vec![0.0, -1.0],
+        prestress: None,
+    }
+}
+
+/// A random elastic body of `n` degrees of freedom on springs to the ground, with `points` unilateral contact points
+/// of random sparse directions, a cubic normal law and falling friction, pressed by `load`.
+pub(crate) fn random_system(n: usize, points: usize, load: f64, seed: u64) -> System {
+    let mut random = Random(seed);
+    let ground: Vec<f64> = (0..n).map(|_| random.between(50.0, 400.0)).collect();
+    let link: Vec<f64> = (0..n).map(|_| random.between(200.0, 2000.0)).collect();
+    let far: Vec<f64> = (0..n).map(|_| random.between(10.0, 100.0)).collect();
+    let mass: Vec<f64> = (0..n).map(|_| random.between(0.5, 2.0)).collect();
+    let spring = |i: usize, j: usize| -> f64 {
+        let (low, high) = (i.min(j), i.max(j));
+        match high - low {
+            1 => -link[low],
+            5 => -far[low],
+            _ => 0.0,
+        }
+    };
+    let stiffness = |i: usize, j: usize| {
+        if i != j {
+            return spring(i, j);
+        }
+        ground[i] - (0..n).filter(|k| *k != i).map(|k| spring(i, k)).sum::<f64>()
+    };
+    let structure = structure(
+        n,
+        |i, j| match i.abs_diff(j) {
+            0 => mass[i],
+            1 => 0.1,
+            _ => 0.0,
+        },
+        stiffness,
+    );
+    let points = (0..points)
+        .map(|_| {
+            let mut direction = |entries: usize| {
+                let pick: Vec<(usize, f64)> = (0..entries)
+                    .map(|_| (random.between(0.0, n as f64) as usize, random.between(-1.0, 1.0)))
+                    .collect();
+                vector(&pick)
+            };
+            let (g, t1, t2) = (direction(4), direction(4), direction(3));
+            point(random.between(0.0, 0.02), random.between(0.5, 1.5), g, t1, t2)
+        })
+        .collect();
+    let normal = NormalLaw { stiffness: 300.0, cubic_stiffness: 2e4, damping: 0.0, bilateral: false };
+    let law = SlidingLaw::new(normal, Exponential { mu_0: 0.35, mu_1: 0.25, alpha: 0.8 }, 1e-3);
+    System {
+        structure,
+        pairs: vec![pair(points, law, Closing::Load(load), 1.2)],
+        load: (0..n).map(|_| random.between(-1.0, 1.0)).collect(),
+        prestress: None,
+    }
+}

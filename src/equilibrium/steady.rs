@@ -1,0 +1,227 @@
+//! Steady sliding: K u₀ + Σ \[g N − t₁ F₁ − t₂ F₂\] = f with ΣN = load of each pair.
+
+use super::algebra::{multiply, norm_2};
+use super::condensed::Condensed;
+use super::linear::{contact_force, directions, tangent_stiffness};
+use super::newton::{Contact, Stage};
+use super::{PointState, SteadySliding};
+use crate::error::{Error, Fault, Faults, Result};
+use crate::linalg::SparseMatrix;
+use crate::progress::Observer;
+use crate::system::{Closing, System};
+use faer::Mat;
+
+/// What is asked of a steady state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SteadyOptions {
+    /// The deepest penetration that still makes sense \[m\]: about half the thinner body. Infinite by default.
+    pub penetration_limit: f64,
+    /// Newton iterations of one load step.
+    pub max_iterations: usize,
+}
+
+impl Default for SteadyOptions {
+    fn default() -> Self {
+        SteadyOptions { penetration_limit: f64::INFINITY, max_iterations: 60 }
+    }
+}
+
+/// The steady sliding state under the system's load, its closing loads and sliding velocities.
+///
+/// Newton's method with the unsymmetric tangent on the problem condensed to the contact ([`Condensed`]): unknown are
+/// the normal displacement gᵀu of each point and the approach of each pair closed by a load. When it fails, load and
+/// friction grow in steps. The state is then refined against the residual of the *full* system. With a prestress the
+/// whole is repeated with K + K_σ(u₀) until u₀ stays.
+///
+/// # Errors
+/// Input: no sliding velocity, no or a negative load. Analysis: nothing holds the structure; no point touches; the
+/// contact is crushed deeper than the limit; no steady state is found.
+pub fn solve_steady(
+    system: &System,
+    options: &SteadyOptions,
+    observer: &dyn Observer,
+) -> Result<SteadySliding> {
+    check_input(system)?;
+    observer.begin("steady sliding", None);
+    let result = solve_prestressed(system, options, observer);
+    observer.end();
+    result
+}
+
+/// One steady state for a stiffness that does not change, with a compliance that is already there: for sweeps over
+/// load, friction and velocity.
+pub fn solve_steady_with(
+    system: &System,
+    k: &SparseMatrix,
+    condensed: &Condensed,
+    options: &SteadyOptions,
+) -> Result<SteadySliding> {
+    let contact = Contact::new(system, condensed);
+    let mut stage = contact.solve(options)?;
+    let displacement = refine(system, k, &contact, &mut stage);
+    let displacement_residual = residual(system, k, &displacement, &stage.approach);
+    let points = states(system, &stage.approach, &displacement);
+    let steady = SteadySliding {
+        residual: displacement_residual.1,
+        displacement,
+        approach: stage.approach,
+        points,
+        iterations: stage.iterations,
+    };
+    check_contact(system, &steady, options)?;
+    Ok(steady)
+}
+
+fn solve_prestressed(
+    system: &System,
+    options: &SteadyOptions,
+    observer: &dyn Observer,
+) -> Result<SteadySliding> {
+    const ROUNDS: usize = 40;
+    let k = &system.structure.stiffness;
+    let mut steady = solve_steady_with(system, k, &Condensed::new(system, k)?, options)?;
+    observer.advance(1);
+    if system.prestress.is_none() {
+        return Ok(steady);
+    }
+    let mut iterations = steady.iterations;
+    let mut change = f64::INFINITY;
+    for _ in 0..ROUNDS {
+        let k = tangent_stiffness(system, &steady.displacement)?;
+        let next = solve_steady_with(system, &k, &Condensed::new(system, &k)?, options)?;
+        observer.advance(1);
+        iterations += next.iterations;
+        let difference: Vec<f64> =
+            next.displacement.iter().zip(&steady.displacement).map(|(a, b)| a - b).collect();
+        change = norm_2(&difference) / norm_2(&next.displacement).max(f64::MIN_POSITIVE);
+        steady = next;
+        if change <= 1e-12 {
+            let k = tangent_stiffness(system, &steady.displacement)?;
+            steady.residual = residual(system, &k, &steady.displacement, &steady.approach).1;
+            steady.iterations = iterations;
+            return Ok(steady);
+        }
+    }
+    Err(Error::analysis(
+        "steady sliding, stiffness of the preload",
+        format!("after {ROUNDS} rounds the displacement still changes by {change:.1e} of itself"),
+        "The preload may be near buckling: lower the load or leave the geometric stiffness out",
+    ))
+}
+
+/// Newton steps on the full system, by the same condensed tangent, until its residual is at round-off.
+fn refine(system: &System, k: &SparseMatrix, contact: &Contact<'_>, stage: &mut Stage) -> Vec<f64> {
+    let mut u = contact.displacement(stage);
+    let mut approach = stage.approach.clone();
+    let (mut r, mut size) = residual(system, k, &u, &approach);
+    for _ in 0..5 {
+        if size <= 1e-15 {
+            break;
+        }
+        let Some((du, da)) = contact.full_correction(&u, &approach, &r) else { break };
+        let next: Vec<f64> = u.iter().zip(&du).map(|(a, b)| a + b).collect();
+        let next_approach: Vec<f64> = approach.iter().zip(&da).map(|(a, b)| a + b).collect();
+        let (next_r, next_size) = residual(system, k, &next, &next_approach);
+        if next_size >= size || next_size.is_nan() {
+            break;
+        }
+        (u, approach, r, size) = (next, next_approach, next_r, next_size);
+    }
+    stage.approach = approach;
+    u
+}
+
+/// f − K u − r_c, and its size relative to ‖f‖ + ‖r_c‖.
+fn residual(system: &System, k: &SparseMatrix, u: &[f64], approach: &[f64]) -> (Vec<f64>, f64) {
+    let contact = contact_force(system, approach, u, &vec![0.0; u.len()]);
+    let elastic = multiply(k, Mat::from_fn(u.len(), 1, |i, _| u[i]).as_ref());
+    let r: Vec<f64> = (0..u.len()).map(|i| system.load[i] - elastic[(i, 0)] - contact[i]).collect();
+    let scale = norm_2(&system.load) + norm_2(&contact);
+    let size = if scale > 0.0 { norm_2(&r) / scale } else { norm_2(&r) };
+    (r, size)
+}
+
+fn states(system: &System, approach: &[f64], u: &[f64]) -> Vec<PointState> {
+    let mut states = Vec::new();
+    for (pair, approach) in system.pairs.iter().zip(approach) {
+        for point in &pair.points {
+            let penetration = approach - point.gap + directions(point)[0].dot(u);
+            let motion = crate::system::ContactMotion {
+                penetration,
+                penetration_rate: 0.0,
+                slip_velocity: [pair.sliding_velocity, 0.0],
+            };
+            let (forces, tangent) = pair.law.respond(&motion, point.weight);
+            states.push(PointState { penetration, forces, tangent });
+        }
+    }
+    states
+}
+
+fn check_input(system: &System) -> Result<()> {
+    let mut faults = Faults::new();
+    for pair in &system.pairs {
+        let v = pair.sliding_velocity;
+        if !(v.is_finite() && v != 0.0) {
+            let place = format!("contact `{}`, sliding velocity", pair.name);
+            faults.push(
+                Fault::new(place, format!("{v} m/s"), "a velocity other than zero")
+                    .with_help("Steady sliding needs one: friction at rest can have any value up to μN"),
+            );
+        }
+        let (place, bad) = match pair.closing {
+            Closing::Load(load) => ("closing load", (!(load.is_finite() && load > 0.0)).then_some(load)),
+            Closing::Approach(a) => ("approach", (!a.is_finite()).then_some(a)),
+        };
+        if let Some(value) = bad {
+            let place = format!("contact `{}`, {place}", pair.name);
+            faults.push(Fault::new(place, value.to_string(), "a finite value, positive for a load"));
+        }
+        if pair.points.is_empty() {
+            faults.push(Fault::new(
+                format!("contact `{}`", pair.name),
+                "no point",
+                "at least one contact point",
+            ));
+        }
+    }
+    if system.load.len() != system.n_dofs() || system.load.iter().any(|f| !f.is_finite()) {
+        let expected = format!("{} finite forces", system.n_dofs());
+        faults.push(Fault::new(
+            "external load",
+            format!("{} values, some not finite or too few", system.load.len()),
+            expected,
+        ));
+    }
+    faults.into_result(())
+}
+
+fn check_contact(system: &System, steady: &SteadySliding, options: &SteadyOptions) -> Result<()> {
+    let mut first = 0;
+    for (pair, approach) in system.pairs.iter().zip(&steady.approach) {
+        let states = &steady.points[first..first + pair.points.len()];
+        first += pair.points.len();
+        let deepest = states.iter().map(|s| s.penetration).fold(f64::NEG_INFINITY, f64::max);
+        if states.iter().all(|s| s.forces.normal == 0.0) {
+            return Err(Error::analysis(
+                format!("steady sliding, contact `{}`", pair.name),
+                format!(
+                    "no point touches: the nearest stays {:.3e} m away at an approach of {approach:.3e} m",
+                    -deepest
+                ),
+                "Close the contact with a load, move the bodies nearer or press harder",
+            ));
+        }
+        if deepest > options.penetration_limit {
+            let limit = options.penetration_limit;
+            return Err(Error::analysis(
+                format!("steady sliding, contact `{}`", pair.name),
+                format!(
+                    "the load crushes the bodies through: penetration {deepest:.3e} m, limit {limit:.3e} m"
+                ),
+                "Lower the load or raise the contact stiffness",
+            ));
+        }
+    }
+    Ok(())
+}

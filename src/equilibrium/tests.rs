@@ -1,0 +1,207 @@
+use super::samples::*;
+use super::*;
+use crate::contact::{Constant, NormalLaw, SlidingLaw};
+use crate::error::{Error, Result};
+use crate::linalg::{SparseMatrix, SparseVector};
+use crate::system::{Closing, Damping, Prestress, Structure, System};
+use std::sync::Arc;
+
+fn solve(system: &System) -> Result<SteadySliding> {
+    solve_steady(system, &SteadyOptions::default(), &())
+}
+
+#[test]
+fn two_dof_equilibrium_is_that_of_its_two_equations() {
+    let (k_t, k_n, mu) = (0.5, 1.2, 0.4);
+    let steady = solve(&two_dof(k_t, k_n, mu)).unwrap();
+    // [1.5 + kt, −0.5 + μ k_n; −0.5, 0.5 + k_n] (x, y) = (0, −1)
+    let (a, b, c, d) = (1.5 + k_t, -0.5 + mu * k_n, -0.5, 0.5 + k_n);
+    let det = a * d - b * c;
+    let exact = [b / det, -a / det];
+    for (found, exact) in steady.displacement.iter().zip(exact) {
+        assert!((found - exact).abs() < 1e-14);
+    }
+    assert!((steady.points[0].forces.normal + k_n * exact[1]).abs() < 1e-14);
+    assert!(steady.residual < 1e-14);
+}
+
+#[test]
+fn random_systems_carry_their_load_and_balance() {
+    let mut open = 0;
+    for seed in 0..20 {
+        let system = random_system(40 + 7 * seed as usize, 3 + seed as usize, 5.0 + seed as f64, seed);
+        let steady = solve(&system).unwrap();
+        let total: f64 = steady.points.iter().map(|p| p.forces.normal).sum();
+        assert!((total - (5.0 + seed as f64)).abs() < 1e-11, "seed {seed}: ΣN = {total}");
+        assert!(steady.residual < 1e-13, "seed {seed}: {:.1e}", steady.residual);
+        for state in &steady.points {
+            assert_eq!(state.forces.normal > 0.0, state.penetration > 0.0);
+            open += usize::from(!state.closed());
+        }
+    }
+    assert!(open > 20, "the samples must open some points: {open}");
+}
+
+#[test]
+fn cubic_penalty_on_rigid_ground_has_its_closed_form() {
+    // One mass on a very soft spring, closed by a load: N(δ) = 1000 δ + 1e9 δ³ = 9 has δ = 2e-3 minus the spring's part.
+    let normal = NormalLaw { stiffness: 500.0, cubic_stiffness: 1e9, damping: 0.0, bilateral: false };
+    let p = point(0.3, 1.0, vector(&[(0, 1.0)]), SparseVector::default(), SparseVector::default());
+    let system = System {
+        structure: structure(1, |_, _| 1.0, |_, _| 40.0),
+        pairs: vec![pair(vec![p], SlidingLaw::new(normal, Constant(0.3), 0.0), Closing::Load(9.0), 1.0)],
+        load: vec![0.0],
+        prestress: None,
+    };
+    let steady = solve(&system).unwrap();
+    // 500 · 2e-3 + 1e9 · 8e-9 = 9; u = −9/40; approach = δ + gap − u.
+    assert!((steady.points[0].penetration - 2e-3).abs() < 1e-14);
+    assert!((steady.displacement[0] + 9.0 / 40.0).abs() < 1e-14);
+    assert!((steady.approach[0] - (2e-3 + 0.3 + 9.0 / 40.0)).abs() < 1e-13);
+}
+
+/// A body of two masses in y that only the contact holds, pressed by its weight; x held by a spring.
+fn free_body(held_in_x: bool) -> System {
+    let k = [[5.0, -5.0, 0.0], [-5.0, 5.0, 0.0], [0.0, 0.0, if held_in_x { 7.0 } else { 0.0 }]];
+    let p = point(0.0, 1.0, vector(&[(0, -1.0)]), vector(&[(2, 1.0)]), SparseVector::default());
+    System {
+        structure: structure(3, |i, j| if i == j { 1.0 } else { 0.0 }, |i, j| k[i][j]),
+        pairs: vec![pair(
+            vec![p],
+            SlidingLaw::new(NormalLaw::linear(100.0), Constant(0.5), 0.0),
+            Closing::Approach(0.0),
+            1.0,
+        )],
+        load: vec![0.0, -2.0, 0.0],
+        prestress: None,
+    }
+}
+
+#[test]
+fn a_body_held_only_by_the_contact_finds_its_rigid_position() {
+    let steady = solve(&free_body(true)).unwrap();
+    let exact = [-2.0 / 100.0, -2.0 / 100.0 - 2.0 / 5.0, 0.5 * 2.0 / 7.0];
+    for (found, exact) in steady.displacement.iter().zip(exact) {
+        assert!((found - exact).abs() < 1e-13, "{found} {exact}");
+    }
+}
+
+fn analysis_error(system: &System, options: &SteadyOptions) -> String {
+    match solve_steady(system, options, &()) {
+        Err(error @ Error::Analysis { .. }) => error.to_string(),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn what_has_no_steady_state_is_explained() {
+    let options = SteadyOptions::default();
+    assert!(analysis_error(&free_body(false), &options).contains("nothing holds"));
+
+    let mut lifted = free_body(true);
+    lifted.structure.stiffness = sparse(3, |i, j| if i == j { 9.0 } else { 0.0 });
+    lifted.pairs[0].points[0].gap = 1.0;
+    assert!(analysis_error(&lifted, &options).contains("no point touches"));
+
+    let crush = SteadyOptions { penetration_limit: 1e-3, ..options };
+    assert!(analysis_error(&free_body(true), &crush).contains("crushes"));
+
+    // Lifted off and free: no equilibrium at all.
+    let mut flying = free_body(true);
+    flying.load[1] = 2.0;
+    assert!(analysis_error(&flying, &options).contains("no steady state"));
+
+    let mut faulty = free_body(true);
+    faulty.pairs[0].sliding_velocity = 0.0;
+    faulty.pairs[0].closing = Closing::Load(-1.0);
+    let error = solve(&faulty).unwrap_err();
+    assert_eq!(error.exit_code(), 2);
+    assert!(error.to_string().contains("sliding velocity") && error.to_string().contains("closing load"));
+}
+
+#[derive(Debug)]
+struct Stiffening(f64);
+
+impl Prestress for Stiffening {
+    fn geometric_stiffness(&self, displacement: &[f64]) -> Result<SparseMatrix> {
+        Ok(sparse(1, |_, _| self.0 * displacement[0]))
+    }
+}
+
+#[test]
+fn prestress_is_carried_to_its_fixed_point() {
+    // (k + k_n + a u) u = f with bilateral contact: a quadratic in u.
+    let normal = NormalLaw { bilateral: true, ..NormalLaw::linear(30.0) };
+    let p = point(0.0, 1.0, vector(&[(0, 1.0)]), SparseVector::default(), SparseVector::default());
+    let system = System {
+        structure: Structure {
+            mass: sparse(1, |_, _| 1.0),
+            stiffness: sparse(1, |_, _| 70.0),
+            damping: Damping::default(),
+        },
+        pairs: vec![pair(vec![p], SlidingLaw::new(normal, Constant(0.3), 0.0), Closing::Approach(0.0), 1.0)],
+        load: vec![12.0],
+        prestress: Some(Arc::new(Stiffening(80.0))),
+    };
+    let steady = solve(&system).unwrap();
+    let exact = (-100.0 + (100.0f64 * 100.0 + 4.0 * 80.0 * 12.0).sqrt()) / 160.0;
+    assert!((steady.displacement[0] - exact).abs() < 1e-13);
+    let tangent = tangent_stiffness(&system, &steady.displacement).unwrap();
+    assert!((tangent.val()[0] - (70.0 + 80.0 * exact)).abs() < 1e-10);
+}
+
+/// K_c and C_c against differences of r_c in a random direction.
+#[test]
+fn linearised_contact_is_the_derivative_of_the_residual() {
+    for seed in 0..6 {
+        let system = random_system(45, 9, 12.0, 100 + seed);
+        let n = system.n_dofs();
+        let steady = solve(&system).unwrap();
+        let contact = linearize(&system, &steady);
+        assert!(!contact.blocks.is_empty());
+        let points: Vec<_> = system.points().map(|(_, p)| p).collect();
+        let mut random = Random(seed + 1);
+        let du: Vec<f64> = (0..n).map(|_| random.between(-1.0, 1.0)).collect();
+        let dv: Vec<f64> = (0..n).map(|_| random.between(-1.0, 1.0)).collect();
+        let mut exact = vec![0.0; n];
+        for block in &contact.blocks {
+            let u = directions(points[block.point]);
+            for row in 0..3 {
+                let force: f64 = (0..3)
+                    .map(|c| block.stiffness[row][c] * u[c].dot(&du) + block.damping[row][c] * u[c].dot(&dv))
+                    .sum();
+                u[row].add_to(force, &mut exact);
+            }
+        }
+        let h = 1e-6;
+        let at = |s: f64| {
+            let u: Vec<f64> = steady.displacement.iter().zip(&du).map(|(a, b)| a + s * h * b).collect();
+            let v: Vec<f64> = dv.iter().map(|b| s * h * b).collect();
+            contact_force(&system, &steady.approach, &u, &v)
+        };
+        let (plus, minus) = (at(1.0), at(-1.0));
+        let size = exact.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+        for i in 0..n {
+            let difference = (plus[i] - minus[i]) / (2.0 * h);
+            assert!((difference - exact[i]).abs() < 1e-7 * size, "dof {i}: {difference} {}", exact[i]);
+        }
+    }
+}
+
+#[test]
+fn two_dof_contact_stiffness_has_the_signs_of_its_equations() {
+    let system = two_dof(0.5, 1.3, 0.4);
+    let contact = linearize(&system, &solve(&system).unwrap());
+    let u = directions(&system.pairs[0].points[0]);
+    let mut k = [[0.0; 2]; 2];
+    for (j, e) in [[1.0, 0.0], [0.0, 1.0]].iter().enumerate() {
+        for row in 0..3 {
+            let mut column = vec![0.0; 2];
+            let force = (0..3).map(|c| contact.blocks[0].stiffness[row][c] * u[c].dot(e)).sum();
+            u[row].add_to(force, &mut column);
+            k[0][j] += column[0];
+            k[1][j] += column[1];
+        }
+    }
+    assert_eq!(k, [[0.0, 0.4 * 1.3], [0.0, 1.3]]);
+}
