@@ -1,0 +1,185 @@
+//! The tables as CSV: a header with units, a comma between fields, a point in numbers, full precision.
+
+use super::folder::FileNames;
+use super::{ComplexResult, NamedModes, RunResults, SteadyResult, write_atomically};
+use crate::error::Result;
+use std::path::Path;
+
+/// Writes `modes_<set>.csv` for every set of real modes, `contact_points.csv` and `complex_modes.csv`, those of
+/// them that the run has, into the folder `dir`.
+///
+/// # Errors
+/// [`crate::error::Error::Io`] when the folder cannot be made or a file not be written.
+pub fn write_csv(dir: &Path, results: &RunResults) -> Result<()> {
+    let mut names = FileNames::default();
+    for set in &results.modes {
+        write_atomically(dir, &format!("modes_{}.csv", names.next(&set.name)), modes(set).as_bytes())?;
+    }
+    if let Some(steady) = &results.steady {
+        write_atomically(dir, "contact_points.csv", contact_points(steady).as_bytes())?;
+    }
+    if let Some(complex) = &results.complex {
+        write_atomically(dir, "complex_modes.csv", complex_modes(complex).as_bytes())?;
+    }
+    Ok(())
+}
+
+fn modes(set: &NamedModes) -> String {
+    let mut table = Table::new(&[
+        "mode",
+        "frequency [Hz]",
+        "nodal diameters",
+        "nodal circles",
+        "effective mass x [kg]",
+        "effective mass y [kg]",
+        "effective mass z [kg]",
+        "backward error",
+    ]);
+    for k in 0..set.modes.len() {
+        let name = set.names.get(k).copied().flatten();
+        let count = |n: Option<usize>| n.map(|n| n.to_string()).unwrap_or_default();
+        let mut row = vec![
+            (k + 1).to_string(),
+            number(set.modes.frequency_hz(k)),
+            count(name.map(|n| n.nodal_diameters)),
+            count(name.map(|n| n.nodal_circles)),
+        ];
+        row.extend((0..3).map(|axis| set.effective_mass.get(k).map(|m| number(m[axis])).unwrap_or_default()));
+        row.push(number(set.modes.backward_errors[k]));
+        table.row(&row);
+    }
+    table.text
+}
+
+fn contact_points(steady: &SteadyResult) -> String {
+    let mut table = Table::new(&[
+        "point",
+        "pair",
+        "x [m]",
+        "y [m]",
+        "z [m]",
+        "penetration [m]",
+        "normal force [N]",
+        "friction force 1 [N]",
+        "friction force 2 [N]",
+        "closed",
+    ]);
+    for (k, ((pair, [x, y, z]), state)) in steady.points.iter().zip(&steady.state.points).enumerate() {
+        let [f1, f2] = state.forces.friction;
+        let mut row = vec![(k + 1).to_string(), pair.clone()];
+        row.extend([*x, *y, *z, state.penetration, state.forces.normal, f1, f2].map(number));
+        row.push(u8::from(state.closed()).to_string());
+        table.row(&row);
+    }
+    table.text
+}
+
+fn complex_modes(complex: &ComplexResult) -> String {
+    let mut table = Table::new(&[
+        "mode",
+        "frequency [Hz]",
+        "growth rate [1/s]",
+        "damping ratio",
+        "unstable",
+        "growth by structural damping [1/s]",
+        "growth by falling friction [1/s]",
+        "growth by transverse friction [1/s]",
+        "growth by mode coupling [1/s]",
+        "backward error",
+        "eigenvalue error",
+        "condition",
+        "real modes that take part",
+    ]);
+    for (k, mode) in complex.modes.modes.iter().enumerate() {
+        let mut row = vec![(k + 1).to_string()];
+        row.extend([mode.frequency_hz(), mode.growth_rate(), mode.damping_ratio()].map(number));
+        row.push(u8::from(mode.unstable()).to_string());
+        let budget = &mode.growth;
+        let terms = [
+            budget.structural_damping,
+            budget.falling_friction,
+            budget.transverse_friction,
+            budget.mode_coupling,
+        ];
+        row.extend(terms.map(number));
+        row.extend([mode.backward_error, mode.eigenvalue_error, mode.condition].map(number));
+        row.push(complex.participation.get(k).cloned().unwrap_or_default());
+        table.row(&row);
+    }
+    table.text
+}
+
+/// Lines of comma-separated fields.
+struct Table {
+    text: String,
+}
+
+impl Table {
+    fn new(header: &[&str]) -> Self {
+        let mut table = Table { text: String::new() };
+        table.row(header);
+        table
+    }
+
+    fn row(&mut self, fields: &[impl AsRef<str>]) {
+        let quoted: Vec<String> = fields.iter().map(|field| quote(field.as_ref())).collect();
+        self.text.push_str(&quoted.join(","));
+        self.text.push('\n');
+    }
+}
+
+/// A field in quotes where it needs them (RFC 4180).
+fn quote(field: &str) -> String {
+    if field.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", field.replace('"', "\"\""))
+    } else {
+        field.to_string()
+    }
+}
+
+/// The shortest text that reads back as exactly `value`; empty when it is not finite.
+fn number(value: f64) -> String {
+    let magnitude = value.abs();
+    match magnitude {
+        m if !m.is_finite() => String::new(),
+        m if m == 0.0 || (1e-3..1e9).contains(&m) => value.to_string(),
+        _ => format!("{value:e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample;
+    use super::*;
+
+    #[test]
+    fn every_row_has_the_fields_of_its_header_and_reads_back_exactly() {
+        let dir = tempfile::tempdir().unwrap();
+        let results = sample::rig();
+        write_csv(dir.path(), &results).unwrap();
+        for name in ["modes_disc.csv", "modes_rig_with_closed_contact.csv", "contact_points.csv"] {
+            let text = std::fs::read_to_string(dir.path().join(name)).unwrap();
+            let width = text.lines().next().unwrap().split(',').count();
+            assert!(
+                text.lines().count() > 5 && text.lines().all(|l| l.split(',').count() == width),
+                "{name}"
+            );
+        }
+        let text = std::fs::read_to_string(dir.path().join("complex_modes.csv")).unwrap();
+        for (line, mode) in text.lines().skip(1).zip(&results.complex.as_ref().unwrap().modes.modes) {
+            let fields: Vec<&str> = line.split(',').collect();
+            assert_eq!(fields[1].parse::<f64>().unwrap(), mode.frequency_hz());
+            assert_eq!(fields[2].parse::<f64>().unwrap(), mode.growth_rate());
+            let budget: f64 = fields[5..9].iter().map(|f| f.parse::<f64>().unwrap()).sum();
+            assert!((budget - mode.growth_rate()).abs() < 1e-9 * (1.0 + mode.growth_rate().abs()));
+        }
+    }
+
+    #[test]
+    fn fields_are_quoted_and_numbers_short() {
+        assert_eq!(quote("61 % (0,1), \"x\""), "\"61 % (0,1), \"\"x\"\"\"");
+        assert_eq!(number(f64::NAN), "");
+        assert_eq!(number(0.1), "0.1");
+        assert_eq!(number(-2.5e-13), "-2.5e-13");
+    }
+}

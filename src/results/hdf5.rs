@@ -1,0 +1,459 @@
+//! `results.h5`: everything a run produces, in full precision, written stage by stage.
+//!
+//! Each stage ends with a flush, so the file opens normally at any time after it, also when the run was killed; the
+//! root attribute `complete` turns true at the end. An earlier run's file is not touched before this run has a
+//! result to replace it: until its first modes, steady state or complex modes are on disk the new file is called
+//! `results.new.h5`, then it takes the place of `results.h5` in one step (a folder without one gets `results.h5`
+//! at once). Every dataset has the attributes `units` and `description`.
+//!
+//! | group | datasets |
+//! |---|---|
+//! | `/case` | `resolved_toml`, `assumptions`, `warnings` |
+//! | `/geometry` | `nodes`, `element_nodes`, `element_offsets`, `element_part`, `part_names` |
+//! | `/modes/<set>` | `frequency_hz`, `shapes`, `nodal_diameters`, `nodal_circles`, `backward_error`, `effective_mass` |
+//! | `/measured/<k>` | `frequency_hz`, `mode` |
+//! | `/steady` | `displacement`, `approach`, contact points with forces and tangents, pairs |
+//! | `/complex` | `eigenvalue`, `right`, `left`, errors, `growth_…`, `participation` |
+//! | `/timings` | `phase`, `wall_time` |
+
+use super::folder::{FileNames, prepare_folder, refusal};
+use super::{ComplexResult, Geometry, MeasuredComparison, NamedModes, NodalField, RunResults, SteadyResult};
+use crate::error::Result;
+use crate::linalg::c64;
+use crate::stability::ComplexMode;
+use hdf5::types::VarLenUnicode;
+use hdf5::{Group, H5Type};
+use ndarray::{Array1, Array2, Array3, ArrayView, ArrayViewD, Dimension};
+use std::path::{Path, PathBuf};
+
+/// The results file of a run under way.
+#[derive(Debug)]
+pub struct ResultsFile {
+    file: hdf5::File,
+    /// Where the file is now.
+    path: PathBuf,
+    /// Where it belongs.
+    home: PathBuf,
+    names: FileNames,
+}
+
+impl ResultsFile {
+    /// Begins a results file in the folder `dir`, which is made when missing.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Io`], here and in every other method, when the machine refuses: a file in the
+    /// folder's place, a folder that is not writable, a full disk.
+    pub fn create(dir: &Path) -> Result<Self> {
+        prepare_folder(dir)?;
+        let home = dir.join("results.h5");
+        let path = if home.exists() { dir.join("results.new.h5") } else { home.clone() };
+        // The operating system tells why a file cannot be made more plainly than the library.
+        std::fs::File::create(&path).map_err(|source| refusal(&path, source))?;
+        let file = hdf5::File::create(&path).map_err(|source| refusal(&path, plain(&source)))?;
+        let this = ResultsFile { file, path, home, names: FileNames::default() };
+        this.stage(|root| {
+            text_attribute(root, "program", env!("CARGO_PKG_NAME"))?;
+            text_attribute(root, "program_version", env!("CARGO_PKG_VERSION"))?;
+            attribute(root, "complete", &false)
+        })?;
+        Ok(this)
+    }
+
+    /// Writes title, resolved case and assumptions.
+    pub fn write_case(&mut self, results: &RunResults) -> Result<()> {
+        self.stage(|root| {
+            let group = root.create_group("case")?;
+            text_attribute(&group, "title", &results.title)?;
+            let size = &results.size;
+            attribute(&group, "dofs", &(size.dofs as u64))?;
+            attribute(&group, "stiffness_nonzeros", &(size.nonzeros as u64))?;
+            let toml = std::slice::from_ref(&results.resolved_case);
+            texts(&group, "resolved_toml", toml, "the case with every default written out, as TOML")?;
+            texts(
+                &group,
+                "assumptions",
+                &results.assumptions,
+                "what the case assumes and its source does not state",
+            )
+        })
+    }
+
+    /// Writes nodes, elements and parts.
+    pub fn write_geometry(&mut self, geometry: &Geometry) -> Result<()> {
+        self.stage(|root| {
+            let group = Datasets(root.create_group("geometry")?);
+            let nodes = rows(&geometry.nodes);
+            group.write("nodes", nodes.view(), "m", "coordinates of every node: x, y, z")?;
+            let flat: Vec<u64> = geometry.elements.iter().flatten().map(|n| *n as u64).collect();
+            group.list("element_nodes", &flat, "1", "node indices of all elements, one after the other")?;
+            let mut offsets = vec![0_u64];
+            for element in &geometry.elements {
+                offsets.push(offsets.last().expect("begins with one") + element.len() as u64);
+            }
+            let story = "element e has the entries offsets[e] to offsets[e + 1] of element_nodes";
+            group.list("element_offsets", &offsets, "1", story)?;
+            let part: Vec<u64> = geometry.part_of.iter().map(|p| *p as u64).collect();
+            group.list("element_part", &part, "1", "the part of every element, an index into part_names")?;
+            texts(&group.0, "part_names", &geometry.parts, "names of the parts")
+        })
+    }
+
+    /// Writes one set of real modes.
+    pub fn write_modes(&mut self, set: &NamedModes) -> Result<()> {
+        let name = self.names.next(&set.name);
+        self.stage(|root| write_mode_set(root, &name, set))?;
+        self.take_place()
+    }
+
+    /// Writes the measured frequencies with the modes paired with them.
+    pub fn write_measured(&mut self, measured: &[MeasuredComparison]) -> Result<()> {
+        self.stage(|root| {
+            for (k, comparison) in measured.iter().enumerate() {
+                let group = Datasets(root.create_group(&format!("measured/{}", k + 1))?);
+                text_attribute(&group.0, "source", &comparison.source)?;
+                attribute(&group.0, "mode_set", &(comparison.modes as u64))?;
+                attribute(&group.0, "frequency_scale", &comparison.frequency_scale)?;
+                let hz: Vec<f64> = comparison.rows.iter().map(|(hz, _)| *hz).collect();
+                group.list("frequency_hz", &hz, "Hz", "measured frequencies")?;
+                let mode: Vec<i64> =
+                    comparison.rows.iter().map(|(_, m)| m.map_or(-1, |m| m as i64)).collect();
+                group.list("mode", &mode, "1", "index of the paired mode, -1 for none")?;
+            }
+            Ok(())
+        })
+    }
+
+    /// Writes steady sliding.
+    pub fn write_steady(&mut self, steady: &SteadyResult) -> Result<()> {
+        self.stage(|root| write_steady(root, steady))?;
+        self.take_place()
+    }
+
+    /// Writes the complex modes.
+    pub fn write_complex(&mut self, complex: &ComplexResult) -> Result<()> {
+        self.stage(|root| write_complex(root, complex))?;
+        self.take_place()
+    }
+
+    /// Writes warnings and timings, marks the file complete and closes it.
+    pub fn finish(mut self, results: &RunResults) -> Result<()> {
+        self.stage(|root| {
+            texts(root, "warnings", &results.warnings, "what the user should know, one sentence each")?;
+            let group = Datasets(root.create_group("timings")?);
+            let (phases, seconds): (Vec<String>, Vec<f64>) = results.timings.iter().cloned().unzip();
+            texts(&group.0, "phase", &phases, "phases of the run")?;
+            group.list("wall_time", &seconds, "s", "wall time of each phase")?;
+            root.attr("complete")?.write_scalar(&true)
+        })?;
+        self.take_place()
+    }
+
+    /// Writes one stage and flushes it to the disk.
+    fn stage(&self, write: impl FnOnce(&Group) -> hdf5::Result<()>) -> Result<()> {
+        let written = self.file.as_group().and_then(|root| write(&root)).and_then(|()| self.file.flush());
+        written.map_err(|source| refusal(&self.path, plain(&source)))
+    }
+
+    /// Takes the place of an earlier run's file, once.
+    fn take_place(&mut self) -> Result<()> {
+        if self.path != self.home {
+            std::fs::rename(&self.path, &self.home).map_err(|source| refusal(&self.home, source))?;
+            self.path.clone_from(&self.home);
+        }
+        Ok(())
+    }
+}
+
+impl Drop for ResultsFile {
+    /// A run that ends without any result leaves the earlier file and nothing beside it.
+    fn drop(&mut self) {
+        if self.path != self.home {
+            let _ = std::fs::remove_file(&self.path);
+        }
+    }
+}
+
+fn write_mode_set(root: &Group, name: &str, set: &NamedModes) -> hdf5::Result<()> {
+    let group = Datasets(root.create_group(&format!("modes/{name}"))?);
+    text_attribute(&group.0, "name", &set.name)?;
+    attribute(&group.0, "total_mass_kg", &set.total_mass)?;
+    attribute(&group.0, "rigid_bodies", &(set.modes.rigid_bodies as u64))?;
+    let certificate = &set.modes.certificate;
+    attribute(&group.0, "certificate_below_hz", &certificate.below_hz)?;
+    attribute(&group.0, "certificate_shift_1_hz", &certificate.shifts_hz[0])?;
+    attribute(&group.0, "certificate_shift_2_hz", &certificate.shifts_hz[1])?;
+    attribute(&group.0, "certificate_counted_1", &(certificate.counted[0] as u64))?;
+    attribute(&group.0, "certificate_counted_2", &(certificate.counted[1] as u64))?;
+    attribute(&group.0, "certificate_found", &(certificate.found as u64))?;
+    attribute(&group.0, "certificate_holds", &certificate.holds())?;
+    let hz: Vec<f64> = (0..set.modes.len()).map(|k| set.modes.frequency_hz(k)).collect();
+    group.list("frequency_hz", &hz, "Hz", "natural frequencies, ascending")?;
+    group.list("eigenvalue", &set.modes.eigenvalues, "rad²/s²", "ω² as computed")?;
+    let story = "mass-normalised shapes: mode × node × (ux, uy, uz, rx, ry, rz)";
+    group.write("shapes", fields(&set.shapes).view(), "m/√(kg m²), rad/√(kg m²)", story)?;
+    let named = |count: fn(&crate::modal::DiscModeName) -> usize| -> Vec<i32> {
+        set.names.iter().map(|name| name.as_ref().map_or(-1, |name| count(name) as i32)).collect()
+    };
+    group.list(
+        "nodal_diameters",
+        &named(|n| n.nodal_diameters),
+        "1",
+        "nodal diameters, -1 where not named",
+    )?;
+    group.list("nodal_circles", &named(|n| n.nodal_circles), "1", "nodal circles, -1 where not named")?;
+    let story = "‖Kφ − ω²Mφ‖ / ((‖K‖ + |ω²| ‖M‖) ‖φ‖)";
+    group.list("backward_error", &set.modes.backward_errors, "1", story)?;
+    group.write(
+        "effective_mass",
+        rows(&set.effective_mass).view(),
+        "kg",
+        "modal effective mass along x, y, z",
+    )
+}
+
+fn write_steady(root: &Group, steady: &SteadyResult) -> hdf5::Result<()> {
+    let group = Datasets(root.create_group("steady")?);
+    attribute(&group.0, "iterations", &(steady.state.iterations as u64))?;
+    attribute(&group.0, "residual", &steady.state.residual)?;
+    let story = "displacement of every node: ux, uy, uz, rx, ry, rz";
+    group.write("displacement", rows(&steady.displacement).view(), "m, rad", story)?;
+    let pairs: Vec<String> = steady.pairs.iter().map(|(name, ..)| name.clone()).collect();
+    texts(&group.0, "pair_names", &pairs, "contact pairs")?;
+    let load: Vec<f64> = steady.pairs.iter().map(|(_, load, _)| *load).collect();
+    group.list("load", &load, "N", "load of each pair")?;
+    let velocity: Vec<f64> = steady.pairs.iter().map(|(.., velocity)| *velocity).collect();
+    group.list("sliding_velocity", &velocity, "m/s", "sliding velocity of each pair")?;
+    group.list("approach", &steady.state.approach, "m", "approach of each pair")?;
+    let (names, places): (Vec<String>, Vec<[f64; 3]>) = steady.points.iter().cloned().unzip();
+    texts(&group.0, "point_pair", &names, "pair of every contact point")?;
+    group.write("point_position", rows(&places).view(), "m", "position of every contact point")?;
+    let points = &steady.state.points;
+    let of = |value: fn(&crate::equilibrium::PointState) -> f64| -> Vec<f64> {
+        points.iter().map(value).collect()
+    };
+    group.list("penetration", &of(|p| p.penetration), "m", "δ, negative when open")?;
+    group.list("normal_force", &of(|p| p.forces.normal), "N", "N, positive in compression")?;
+    let friction: Vec<[f64; 2]> = points.iter().map(|p| p.forces.friction).collect();
+    group.write("friction_force", rows(&friction).view(), "N", "F₁, F₂ on the body, along t₁ and t₂")?;
+    let closed: Vec<bool> = points.iter().map(|p| p.closed()).collect();
+    group.list("closed", &closed, "1", "whether the point carries load")?;
+    let stiffness: Vec<[f64; 3]> = points.iter().map(|p| p.tangent.by_penetration).collect();
+    group.write("force_by_penetration", rows(&stiffness).view(), "N/m", "∂(N, F₁, F₂)/∂δ")?;
+    let rate: Vec<[f64; 3]> = points.iter().map(|p| p.tangent.by_penetration_rate).collect();
+    group.write("force_by_penetration_rate", rows(&rate).view(), "N s/m", "∂(N, F₁, F₂)/∂δ̇")?;
+    let slip = |(p, i, j): (usize, usize, usize)| points[p].tangent.by_slip_velocity[i][j];
+    let slip = Array3::from_shape_fn((points.len(), 3, 2), slip);
+    group.write("force_by_slip_velocity", slip.view(), "N s/m", "∂(N, F₁, F₂)/∂(v₁, v₂)")
+}
+
+fn write_complex(root: &Group, complex: &ComplexResult) -> hdf5::Result<()> {
+    let group = Datasets(root.create_group("complex")?);
+    let modes = &complex.modes.modes;
+    attribute(&group.0, "subspace_dimension", &(complex.modes.subspace_dimension as u64))?;
+    attribute(&group.0, "refinements", &(complex.modes.refinements as u64))?;
+    group.list("band_hz", &complex.band_hz, "Hz", "frequency band of the analysis")?;
+    let eigenvalues: Vec<c64> = modes.iter().map(|m| m.eigenvalue).collect();
+    group.list("eigenvalue", &eigenvalues, "1/s", "λ = σ + iω; unstable when σ > 0")?;
+    let of = |value: fn(&ComplexMode) -> f64| -> Vec<f64> { modes.iter().map(value).collect() };
+    group.list("frequency_hz", &of(ComplexMode::frequency_hz), "Hz", "ω/2π")?;
+    group.list("growth_rate", &of(ComplexMode::growth_rate), "1/s", "σ")?;
+    group.list("damping_ratio", &of(ComplexMode::damping_ratio), "1", "−σ/|λ|")?;
+    group.list(
+        "backward_error",
+        &of(|m| m.backward_error),
+        "1",
+        "‖Q(λ)φ‖ / ((|λ|²‖M‖ + |λ|‖C‖ + ‖K‖)‖φ‖)",
+    )?;
+    group.list("eigenvalue_error", &of(|m| m.eigenvalue_error), "1", "estimated |Δλ|/|λ|")?;
+    group.list("condition", &of(|m| m.condition), "1", "condition number of λ")?;
+    let part = "part of the growth rate: the four add up to it";
+    group.list("growth_structural_damping", &of(|m| m.growth.structural_damping), "1/s", part)?;
+    group.list("growth_falling_friction", &of(|m| m.growth.falling_friction), "1/s", part)?;
+    group.list("growth_transverse_friction", &of(|m| m.growth.transverse_friction), "1/s", part)?;
+    group.list("growth_mode_coupling", &of(|m| m.growth.mode_coupling), "1/s", part)?;
+    let story = "φ at every node, φᴴMφ = 1: mode × node × (ux, uy, uz, rx, ry, rz)";
+    group.write("right", fields(&complex.shapes).view(), "m/√(kg m²), rad/√(kg m²)", story)?;
+    let n_dofs = modes.first().map_or(0, |m| m.left.len());
+    let left = Array2::from_shape_fn((modes.len(), n_dofs), |(m, i)| modes[m].left[i]);
+    group.write("left", left.view(), "1", "ψ on the free degrees of freedom of the solver, ψᴴQ(λ) = 0")?;
+    let n_real = modes.iter().flat_map(|m| &m.participation).map(|(k, _)| k + 1).max().unwrap_or(0);
+    let mut share = Array2::<f64>::zeros((modes.len(), n_real));
+    for (m, mode) in modes.iter().enumerate() {
+        mode.participation.iter().for_each(|(k, value)| share[(m, *k)] = *value);
+    }
+    group.write("participation", share.view(), "1", "share of each real mode: complex mode × real mode")?;
+    texts(&group.0, "participation_text", &complex.participation, "the real modes that take part, in words")
+}
+
+/// A group whose datasets all carry units and a description.
+struct Datasets(Group);
+
+impl Datasets {
+    fn list<T: H5Type>(&self, name: &str, data: &[T], units: &str, description: &str) -> hdf5::Result<()> {
+        self.write(name, ArrayView::from(data), units, description)
+    }
+
+    /// Arrays of more than a page are stored in chunks of about a megabyte, shuffled and deflated.
+    fn write<T: H5Type, D: Dimension>(
+        &self,
+        name: &str,
+        data: ArrayView<'_, T, D>,
+        units: &str,
+        description: &str,
+    ) -> hdf5::Result<()> {
+        let data: ArrayViewD<'_, T> = data.into_dyn();
+        let builder = self.0.new_dataset::<T>().shape(data.shape().to_vec());
+        let dataset = if data.len() > 4096 && hdf5::filters::deflate_available() {
+            let row: usize = data.shape()[1..].iter().product();
+            let mut chunk = data.shape().to_vec();
+            chunk[0] = (131_072 / row.max(1)).clamp(1, chunk[0]);
+            builder.chunk(chunk).shuffle().deflate(4).create(name)?
+        } else {
+            builder.create(name)?
+        };
+        dataset.write(data)?;
+        text_attribute(&dataset, "units", units)?;
+        text_attribute(&dataset, "description", description)
+    }
+}
+
+/// A list of strings as a dataset.
+fn texts(group: &Group, name: &str, texts: &[String], description: &str) -> hdf5::Result<()> {
+    let values: Array1<VarLenUnicode> = texts.iter().map(|text| unicode(text)).collect();
+    let dataset = group.new_dataset::<VarLenUnicode>().shape(values.len()).create(name)?;
+    dataset.write(values.view())?;
+    text_attribute(&dataset, "units", "text")?;
+    text_attribute(&dataset, "description", description)
+}
+
+fn attribute<T: H5Type>(group: &Group, name: &str, value: &T) -> hdf5::Result<()> {
+    group.new_attr::<T>().create(name)?.write_scalar(value)
+}
+
+fn text_attribute(location: &hdf5::Location, name: &str, text: &str) -> hdf5::Result<()> {
+    location.new_attr::<VarLenUnicode>().create(name)?.write_scalar(&unicode(text))
+}
+
+/// The operating system's words inside an error of the library, which runs over several lines, or its first line.
+fn plain(error: &hdf5::Error) -> String {
+    let text = error.to_string();
+    let cause = text.split_once("error message = '").and_then(|(_, rest)| rest.split_once('\''));
+    cause.map(|(words, _)| words).or(text.lines().next()).unwrap_or_default().to_string()
+}
+
+/// HDF5's strings end at a NUL, so one in the text cannot be kept.
+fn unicode(text: &str) -> VarLenUnicode {
+    text.replace('\0', "").parse().expect("holds no NUL")
+}
+
+fn rows<const N: usize>(values: &[[f64; N]]) -> Array2<f64> {
+    Array2::from_shape_fn((values.len(), N), |(i, j)| values[i][j])
+}
+
+fn fields<T: Copy>(shapes: &[NodalField<T>]) -> Array3<T> {
+    let n_nodes = shapes.first().map_or(0, Vec::len);
+    Array3::from_shape_fn((shapes.len(), n_nodes, 6), |(m, n, d)| shapes[m][n][d])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample;
+    use super::*;
+
+    fn write_all(dir: &Path, results: &RunResults) {
+        let mut file = ResultsFile::create(dir).unwrap();
+        file.write_case(results).unwrap();
+        file.write_geometry(&results.geometry).unwrap();
+        results.modes.iter().for_each(|set| file.write_modes(set).unwrap());
+        file.write_measured(&results.measured).unwrap();
+        file.write_steady(results.steady.as_ref().unwrap()).unwrap();
+        file.write_complex(results.complex.as_ref().unwrap()).unwrap();
+        file.finish(results).unwrap();
+    }
+
+    #[test]
+    fn what_was_written_reads_back_bit_for_bit() {
+        let dir = tempfile::tempdir().unwrap();
+        let results = sample::rig();
+        write_all(dir.path(), &results);
+        let file = hdf5::File::open(dir.path().join("results.h5")).unwrap();
+        assert!(file.attr("complete").unwrap().read_scalar::<bool>().unwrap());
+        let toml = file.dataset("case/resolved_toml").unwrap().read_1d::<VarLenUnicode>().unwrap();
+        assert_eq!(toml[0].as_str(), results.resolved_case);
+        let shapes = file.dataset("modes/disc/shapes").unwrap();
+        assert_eq!(shapes.shape(), [results.modes[0].modes.len(), results.geometry.nodes.len(), 6]);
+        assert_eq!(shapes.read::<f64, ndarray::Ix3>().unwrap(), fields(&results.modes[0].shapes));
+        assert_eq!(
+            shapes.attr("units").unwrap().read_scalar::<VarLenUnicode>().unwrap().as_str(),
+            "m/√(kg m²), rad/√(kg m²)"
+        );
+        assert!(file.group("modes/rig_with_closed_contact").is_ok());
+        let eigenvalues = file.dataset("complex/eigenvalue").unwrap().read_1d::<c64>().unwrap();
+        let complex = results.complex.as_ref().unwrap();
+        assert!(eigenvalues.iter().zip(&complex.modes.modes).all(|(a, b)| *a == b.eigenvalue));
+        let right = file.dataset("complex/right").unwrap().read::<c64, ndarray::Ix3>().unwrap();
+        assert_eq!(right, fields(&complex.shapes));
+        let mode = file.dataset("measured/1/mode").unwrap().read_1d::<i64>().unwrap();
+        assert_eq!(mode[3], -1);
+    }
+
+    #[test]
+    fn every_dataset_has_units_and_a_description() {
+        fn check(group: &Group) -> usize {
+            for dataset in group.datasets().unwrap() {
+                assert!(
+                    dataset.attr("units").is_ok() && dataset.attr("description").is_ok(),
+                    "{}",
+                    dataset.name()
+                );
+            }
+            group.datasets().unwrap().len() + group.groups().unwrap().iter().map(check).sum::<usize>()
+        }
+        let dir = tempfile::tempdir().unwrap();
+        write_all(dir.path(), &sample::rig());
+        assert!(check(&hdf5::File::open(dir.path().join("results.h5")).unwrap()) > 40);
+    }
+
+    #[test]
+    fn an_earlier_file_stays_until_there_is_a_result() {
+        let dir = tempfile::tempdir().unwrap();
+        let results = sample::rig();
+        let home = dir.path().join("results.h5");
+        std::fs::write(&home, "earlier").unwrap();
+        {
+            let mut file = ResultsFile::create(dir.path()).unwrap();
+            file.write_case(&results).unwrap();
+            assert_eq!(std::fs::read(&home).unwrap(), b"earlier");
+        }
+        assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 1, "a run without results leaves nothing");
+        let mut file = ResultsFile::create(dir.path()).unwrap();
+        file.write_modes(&results.modes[0]).unwrap();
+        // What a killed run leaves is what is on the disk after the flush.
+        let copy = dir.path().join("copy.h5");
+        std::fs::copy(&home, &copy).unwrap();
+        let killed = hdf5::File::open(&copy).unwrap();
+        assert!(killed.dataset("modes/disc/frequency_hz").is_ok());
+        assert!(!killed.attr("complete").unwrap().read_scalar::<bool>().unwrap());
+        file.write_steady(results.steady.as_ref().unwrap()).unwrap();
+        file.finish(&results).unwrap();
+        assert!(hdf5::File::open(&home).unwrap().group("steady").is_ok());
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn refusals_of_the_machine_are_errors_of_one_line() {
+        let dir = tempfile::tempdir().unwrap();
+        let occupied = dir.path().join("occupied");
+        std::fs::write(&occupied, "keep").unwrap();
+        std::os::unix::fs::symlink("/dev/full", dir.path().join("results.new.h5")).unwrap();
+        std::fs::write(dir.path().join("results.h5"), "earlier").unwrap();
+        for place in [occupied.as_path(), Path::new("/proc"), dir.path()] {
+            let result = ResultsFile::create(place).and_then(|file| file.finish(&sample::rig()));
+            let error = result.expect_err("the machine refuses");
+            assert_eq!(error.exit_code(), 1);
+            assert!(!error.to_string().contains('\n') && error.to_string().len() < 250, "{error}");
+        }
+        assert_eq!(std::fs::read_to_string(&occupied).unwrap(), "keep");
+        assert_eq!(std::fs::read_to_string(dir.path().join("results.h5")).unwrap(), "earlier");
+    }
+}

@@ -1,0 +1,343 @@
+//! `summary.json`: the figures of a run, a contract that scripts may rely on.
+//!
+//! Keys are snake_case and name the unit where it is not plain SI or obvious (`growth_rate` σ is in 1/s). The
+//! structs below *are* the contract, field by field; a change that could break a reader raises [`SCHEMA_VERSION`].
+//! A number that is not finite is written as `null`, so that the file is valid JSON whatever the run produced.
+
+use super::{
+    ComplexResult, MeasuredComparison, ModelSize, NamedModes, RunResults, SteadyResult, write_atomically,
+};
+use crate::error::Result;
+use serde::Serialize;
+use std::path::Path;
+
+/// The version of the layout of `summary.json`.
+pub const SCHEMA_VERSION: u32 = 1;
+
+#[derive(Serialize)]
+struct Summary<'a> {
+    schema_version: u32,
+    program: &'static str,
+    program_version: &'static str,
+    title: &'a str,
+    assumptions: &'a [String],
+    warnings: &'a [String],
+    model: Model,
+    mode_sets: Vec<ModeSet<'a>>,
+    modes: Vec<Mode<'a>>,
+    measured: Vec<Measured<'a>>,
+    steady_sliding: Option<Steady<'a>>,
+    cea: Option<Cea<'a>>,
+    timings: Vec<Timing<'a>>,
+    case: serde_json::Value,
+}
+
+#[derive(Serialize)]
+struct Model {
+    nodes: usize,
+    elements: usize,
+    dofs: usize,
+    stiffness_nonzeros: usize,
+    contact_points: usize,
+}
+
+#[derive(Serialize)]
+struct ModeSet<'a> {
+    name: &'a str,
+    modes: usize,
+    rigid_bodies: usize,
+    total_mass_kg: f64,
+    certificate: Certificate,
+}
+
+#[derive(Serialize)]
+struct Certificate {
+    below_hz: f64,
+    shifts_hz: [f64; 2],
+    counted: [usize; 2],
+    found: usize,
+    holds: bool,
+}
+
+#[derive(Serialize)]
+struct Mode<'a> {
+    set: &'a str,
+    /// Counts from 1 within its set.
+    number: usize,
+    frequency_hz: f64,
+    nodal_diameters: Option<usize>,
+    nodal_circles: Option<usize>,
+    effective_mass_kg: Option<[f64; 3]>,
+    backward_error: f64,
+}
+
+#[derive(Serialize)]
+struct Measured<'a> {
+    set: Option<&'a str>,
+    source: &'a str,
+    frequency_scale: f64,
+    rows: Vec<MeasuredRow>,
+}
+
+#[derive(Serialize)]
+struct MeasuredRow {
+    measured_hz: f64,
+    /// Number of the paired mode in its set, from 1.
+    mode: Option<usize>,
+    /// Its frequency times the frequency scale.
+    computed_hz: Option<f64>,
+    difference_percent: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct Steady<'a> {
+    iterations: usize,
+    residual: f64,
+    pairs: Vec<Pair<'a>>,
+}
+
+#[derive(Serialize)]
+struct Pair<'a> {
+    name: &'a str,
+    load_n: f64,
+    sliding_velocity_m_per_s: f64,
+    approach_m: Option<f64>,
+    normal_force_n: f64,
+    friction_force_n: [f64; 2],
+    points_closed: usize,
+    points_open: usize,
+    largest_penetration_m: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct Cea<'a> {
+    band_hz: [f64; 2],
+    unstable: usize,
+    subspace_dimension: usize,
+    refinements: usize,
+    eigenvalues: Vec<Eigenvalue<'a>>,
+    measured_squeal: Vec<Squeal<'a>>,
+}
+
+#[derive(Serialize)]
+struct Eigenvalue<'a> {
+    number: usize,
+    frequency_hz: f64,
+    growth_rate: f64,
+    damping_ratio: f64,
+    unstable: bool,
+    backward_error: f64,
+    eigenvalue_error: f64,
+    condition: f64,
+    growth_budget: Budget,
+    participation: Option<&'a str>,
+}
+
+/// The terms of the growth rate \[1/s\].
+#[derive(Serialize)]
+struct Budget {
+    structural_damping: f64,
+    falling_friction: f64,
+    transverse_friction: f64,
+    mode_coupling: f64,
+}
+
+#[derive(Serialize)]
+struct Squeal<'a> {
+    frequency_hz: f64,
+    source: &'a str,
+}
+
+#[derive(Serialize)]
+struct Timing<'a> {
+    phase: &'a str,
+    wall_s: f64,
+}
+
+/// Writes `summary.json` into the folder `dir`, whole or not at all.
+///
+/// # Errors
+/// [`crate::error::Error::Io`] when the folder cannot be made or the file not be written.
+pub fn write_summary(dir: &Path, results: &RunResults) -> Result<()> {
+    let mut text = serde_json::to_string_pretty(&summary(results)).expect("strings, numbers and lists only");
+    text.push('\n');
+    write_atomically(dir, "summary.json", text.as_bytes())
+}
+
+fn summary(results: &RunResults) -> Summary<'_> {
+    let ModelSize { nodes, elements, dofs, nonzeros, contact_points } = results.size;
+    Summary {
+        schema_version: SCHEMA_VERSION,
+        program: env!("CARGO_PKG_NAME"),
+        program_version: env!("CARGO_PKG_VERSION"),
+        title: &results.title,
+        assumptions: &results.assumptions,
+        warnings: &results.warnings,
+        model: Model { nodes, elements, dofs, stiffness_nonzeros: nonzeros, contact_points },
+        mode_sets: results.modes.iter().map(mode_set).collect(),
+        modes: results.modes.iter().flat_map(modes).collect(),
+        measured: results.measured.iter().map(|m| measured(m, &results.modes)).collect(),
+        steady_sliding: results.steady.as_ref().map(steady),
+        cea: results.complex.as_ref().map(cea),
+        timings: results.timings.iter().map(|(phase, wall_s)| Timing { phase, wall_s: *wall_s }).collect(),
+        case: case_object(&results.resolved_case),
+    }
+}
+
+/// The resolved case as a JSON object; `null` where it is not TOML (its text is in `results.h5` all the same).
+fn case_object(toml_text: &str) -> serde_json::Value {
+    let table: Option<toml::Table> = toml_text.parse().ok();
+    table.and_then(|table| serde_json::to_value(table).ok()).unwrap_or_default()
+}
+
+fn mode_set(set: &NamedModes) -> ModeSet<'_> {
+    let c = &set.modes.certificate;
+    ModeSet {
+        name: &set.name,
+        modes: set.modes.len(),
+        rigid_bodies: set.modes.rigid_bodies,
+        total_mass_kg: set.total_mass,
+        certificate: Certificate {
+            below_hz: c.below_hz,
+            shifts_hz: c.shifts_hz,
+            counted: c.counted,
+            found: c.found,
+            holds: c.holds(),
+        },
+    }
+}
+
+fn modes(set: &NamedModes) -> impl Iterator<Item = Mode<'_>> {
+    (0..set.modes.len()).map(|k| {
+        let name = set.names.get(k).copied().flatten();
+        Mode {
+            set: &set.name,
+            number: k + 1,
+            frequency_hz: set.modes.frequency_hz(k),
+            nodal_diameters: name.map(|n| n.nodal_diameters),
+            nodal_circles: name.map(|n| n.nodal_circles),
+            effective_mass_kg: set.effective_mass.get(k).copied(),
+            backward_error: set.modes.backward_errors[k],
+        }
+    })
+}
+
+fn measured<'a>(comparison: &'a MeasuredComparison, sets: &'a [NamedModes]) -> Measured<'a> {
+    let set = sets.get(comparison.modes);
+    let rows = comparison.compare(sets).into_iter().map(|row| MeasuredRow {
+        measured_hz: row.measured_hz,
+        mode: row.mode.map(|k| k + 1),
+        computed_hz: row.computed_hz,
+        difference_percent: row.difference_percent(),
+    });
+    Measured {
+        set: set.map(|s| s.name.as_str()),
+        source: &comparison.source,
+        frequency_scale: comparison.frequency_scale,
+        rows: rows.collect(),
+    }
+}
+
+fn steady(result: &SteadyResult) -> Steady<'_> {
+    let pairs = result.totals().into_iter().map(|t| Pair {
+        name: t.name,
+        load_n: t.load,
+        sliding_velocity_m_per_s: t.sliding_velocity,
+        approach_m: t.approach,
+        normal_force_n: t.normal_force,
+        friction_force_n: t.friction_force,
+        points_closed: t.closed,
+        points_open: t.open,
+        largest_penetration_m: t.largest_penetration,
+    });
+    Steady { iterations: result.state.iterations, residual: result.state.residual, pairs: pairs.collect() }
+}
+
+fn cea(result: &ComplexResult) -> Cea<'_> {
+    let eigenvalues = result.modes.modes.iter().enumerate().map(|(k, mode)| Eigenvalue {
+        number: k + 1,
+        frequency_hz: mode.frequency_hz(),
+        growth_rate: mode.growth_rate(),
+        damping_ratio: mode.damping_ratio(),
+        unstable: mode.unstable(),
+        backward_error: mode.backward_error,
+        eigenvalue_error: mode.eigenvalue_error,
+        condition: mode.condition,
+        growth_budget: Budget {
+            structural_damping: mode.growth.structural_damping,
+            falling_friction: mode.growth.falling_friction,
+            transverse_friction: mode.growth.transverse_friction,
+            mode_coupling: mode.growth.mode_coupling,
+        },
+        participation: result.participation.get(k).map(String::as_str),
+    });
+    let squeal = result.measured_squeal_hz.iter();
+    Cea {
+        band_hz: result.band_hz,
+        unstable: result.modes.modes.iter().filter(|m| m.unstable()).count(),
+        subspace_dimension: result.modes.subspace_dimension,
+        refinements: result.modes.refinements,
+        eigenvalues: eigenvalues.collect(),
+        measured_squeal: squeal.map(|(hz, source)| Squeal { frequency_hz: *hz, source }).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample;
+    use super::*;
+    use serde_json::Value;
+
+    fn written(results: &RunResults) -> Value {
+        let dir = tempfile::tempdir().unwrap();
+        write_summary(dir.path(), results).unwrap();
+        serde_json::from_slice(&std::fs::read(dir.path().join("summary.json")).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn the_contract_holds() {
+        let results = sample::rig();
+        let json = written(&results);
+        assert_eq!(json["schema_version"], SCHEMA_VERSION);
+        assert_eq!(json["program_version"], env!("CARGO_PKG_VERSION"));
+        assert_eq!(json["modes"][0]["frequency_hz"], results.modes[0].modes.frequency_hz(0));
+        assert_eq!(json["modes"][0]["nodal_diameters"], 1);
+        assert_eq!(json["mode_sets"][0]["certificate"]["holds"], true);
+        let complex = results.complex.as_ref().unwrap();
+        let last = complex.modes.modes.len() - 1;
+        assert_eq!(json["cea"]["eigenvalues"][last]["growth_rate"], complex.modes.modes[last].growth_rate());
+        let unstable =
+            json["cea"]["eigenvalues"].as_array().unwrap().iter().filter(|e| e["unstable"] == true);
+        assert_eq!(unstable.count(), json["cea"]["unstable"].as_u64().unwrap() as usize);
+        // The pairs' forces are the sums over their points: the sample is made to carry 20 N at μ = 0.4.
+        let pair = &json["steady_sliding"]["pairs"][0];
+        assert!((pair["normal_force_n"].as_f64().unwrap() - 20.0).abs() < 1e-12);
+        assert!((pair["friction_force_n"][0].as_f64().unwrap() - 8.0).abs() < 1e-12);
+        assert_eq!(json["case"]["contact"]["mu"], 0.4);
+        assert_eq!(json["timings"][1]["phase"], results.timings[1].0.as_str());
+    }
+
+    #[test]
+    fn scaled_frequencies_are_compared_with_the_measured_ones() {
+        let results = sample::rig();
+        let row = &written(&results)["measured"][0]["rows"][1];
+        let k = row["mode"].as_u64().unwrap() as usize - 1;
+        let computed = results.modes[0].modes.frequency_hz(k) * results.measured[0].frequency_scale;
+        assert_eq!(row["computed_hz"], computed);
+        let percent = row["difference_percent"].as_f64().unwrap();
+        assert!((percent - 100.0 * (computed / 936.0 - 1.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn numbers_that_are_not_finite_and_empty_runs_give_valid_json() {
+        let mut results = sample::rig();
+        results.modes[0].modes.backward_errors[0] = f64::NAN;
+        results.timings[0].1 = f64::INFINITY;
+        results.resolved_case = "a = nan\nb = inf".into();
+        let json = written(&results);
+        assert!(json["modes"][0]["backward_error"].is_null() && json["timings"][0]["wall_s"].is_null());
+        assert!(json["case"]["a"].is_null() && json["case"]["b"].is_null());
+        let empty = written(&RunResults::default());
+        assert!(empty["cea"].is_null() && empty["modes"].as_array().unwrap().is_empty());
+    }
+}

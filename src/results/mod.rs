@@ -1,0 +1,161 @@
+//! What a run leaves behind: plain data first ([`RunResults`]), then the writers that take it.
+//!
+//! | file | what it holds | who reads it |
+//! |---|---|---|
+//! | `results.h5` | everything, in full precision, written stage by stage | h5py, MATLAB, Julia |
+//! | `summary.json` | the figures of each analysis: a contract for scripts | any script |
+//! | `modes_<set>.csv`, `contact_points.csv`, `complex_modes.csv` | the tables | spreadsheets |
+//! | `modes_<set>.vtu`, `steady.vtu`, `complex_modes.vtu` | the shapes on the mesh | ParaView, pyvista |
+//!
+//! [`ResultsFile`] is used while the run goes on, [`write_files`] once at its end.
+
+mod csv;
+mod derived;
+mod folder;
+mod hdf5;
+mod json;
+mod vtk;
+
+#[cfg(test)]
+pub(crate) mod sample;
+
+pub use csv::write_csv;
+pub use derived::{ComparedRow, PairTotals};
+pub(crate) use folder::write_atomically;
+pub use hdf5::ResultsFile;
+pub use json::{SCHEMA_VERSION, write_summary};
+pub use vtk::write_vtk;
+
+use crate::equilibrium::SteadySliding;
+use crate::modal::{DiscModeName, RealModes};
+use crate::stability::ComplexModes;
+use std::path::Path;
+
+/// Writes `summary.json`, the tables and the ParaView files of `results` into the folder `dir`.
+///
+/// # Errors
+/// [`crate::error::Error::Io`] when the folder cannot be made or a file not be written.
+pub fn write_files(dir: &Path, results: &RunResults) -> crate::error::Result<()> {
+    write_summary(dir, results)?;
+    write_csv(dir, results)?;
+    write_vtk(dir, results)
+}
+
+/// Everything a run produced, as plain data for the writers and the report.
+#[derive(Debug, Default)]
+pub struct RunResults {
+    /// The case's title.
+    pub title: String,
+    /// The resolved case as TOML, every default written out.
+    pub resolved_case: String,
+    /// Assumptions of the case: what the source does not state, in the user's words.
+    pub assumptions: Vec<String>,
+    /// Things the user should know (a plate too thick for its theory, a guessed value that decides), one sentence each.
+    pub warnings: Vec<String>,
+    /// Nodes and elements for pictures and ParaView.
+    pub geometry: Geometry,
+    /// Degrees of freedom and nonzeros of K.
+    pub size: ModelSize,
+    /// Real modes of parts and of the whole, in the order the case lists them.
+    pub modes: Vec<NamedModes>,
+    /// Measured natural frequencies set beside the computed ones.
+    pub measured: Vec<MeasuredComparison>,
+    /// Steady sliding.
+    pub steady: Option<SteadyResult>,
+    /// Complex eigenvalues.
+    pub complex: Option<ComplexResult>,
+    /// Wall time of each phase \[s\].
+    pub timings: Vec<(String, f64)>,
+}
+
+/// The size of a model.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ModelSize {
+    /// Nodes of the mesh in use.
+    pub nodes: usize,
+    /// Elements in use.
+    pub elements: usize,
+    /// Free degrees of freedom.
+    pub dofs: usize,
+    /// Stored entries of K, both triangles.
+    pub nonzeros: usize,
+    /// Contact points that may touch.
+    pub contact_points: usize,
+}
+
+/// Nodes and elements as the analyses saw them (after the disc was tilted and set on the slider).
+#[derive(Debug, Clone, Default)]
+pub struct Geometry {
+    /// Coordinates \[m\].
+    pub nodes: Vec<[f64; 3]>,
+    /// Node indices of every element: 1 (point), 2 (bar), 3 or 4 (shell).
+    pub elements: Vec<Vec<usize>>,
+    /// The part each element belongs to, an index into `parts`.
+    pub part_of: Vec<usize>,
+    /// The parts' names.
+    pub parts: Vec<String>,
+}
+
+/// A displacement of every node: (ux, uy, uz, rx, ry, rz) \[m, rad\] in the order of [`Geometry::nodes`].
+pub type NodalField<T> = Vec<[T; 6]>;
+
+/// The real modes of one part or of the whole.
+#[derive(Debug)]
+pub struct NamedModes {
+    /// `disc`, `rig`, `rig with closed contact` …
+    pub name: String,
+    /// Eigenvalues, errors and certificate.
+    pub modes: RealModes,
+    /// The shape of each mode at every node; zero outside the part.
+    pub shapes: Vec<NodalField<f64>>,
+    /// The name of each mode, where the part is a disc and the mode bends it.
+    pub names: Vec<Option<DiscModeName>>,
+    /// Effective mass of each mode for translations along x, y, z \[kg\].
+    pub effective_mass: Vec<[f64; 3]>,
+    /// Total mass \[kg\].
+    pub total_mass: f64,
+}
+
+/// A measured frequency and the computed mode set beside it.
+#[derive(Debug, Clone)]
+pub struct MeasuredComparison {
+    /// Index into [`RunResults::modes`].
+    pub modes: usize,
+    /// Where the figure comes from.
+    pub source: String,
+    /// One row a measured frequency: frequency \[Hz\] and the index of its mode, if any is paired.
+    pub rows: Vec<(f64, Option<usize>)>,
+    /// Computed frequencies were multiplied by this before comparison (an assumption of the case); 1 for none.
+    pub frequency_scale: f64,
+}
+
+/// Steady sliding, for people.
+#[derive(Debug)]
+pub struct SteadyResult {
+    /// The solution.
+    pub state: SteadySliding,
+    /// Displacement of every node.
+    pub displacement: NodalField<f64>,
+    /// Pair name and position \[m\] of every contact point.
+    pub points: Vec<(String, [f64; 3])>,
+    /// Load \[N\] and sliding velocity \[m/s\] of each pair, with its name.
+    pub pairs: Vec<(String, f64, f64)>,
+    /// For each pair two unit vectors: where the load presses the body (the disc) and where the counter-body (the
+    /// slider) moves. Pictures draw them as arrows; empty where the case has no geometry.
+    pub directions: Vec<[[f64; 3]; 2]>,
+}
+
+/// Complex modes, for people.
+#[derive(Debug)]
+pub struct ComplexResult {
+    /// Eigenvalues, vectors, errors, budgets.
+    pub modes: ComplexModes,
+    /// The shape of each mode at every node.
+    pub shapes: Vec<NodalField<crate::linalg::c64>>,
+    /// A few words on the real modes that take part in each mode: `61 % disc (0,1), 22 % (3,0)`.
+    pub participation: Vec<String>,
+    /// Frequencies that measurements show squealing \[Hz\], with their source; may be empty.
+    pub measured_squeal_hz: Vec<(f64, String)>,
+    /// Frequency band of the analysis \[Hz\].
+    pub band_hz: [f64; 2],
+}

@@ -1,0 +1,268 @@
+//! A made-up run with the shape of a real one, for the tests of the writers and the report: an annular disc with
+//! shapes cos nθ · R(r), a slider, a bar, steady sliding on a dozen rim nodes, and a few complex modes.
+//! Its figures look like the rig's and are not computed from anything.
+
+use super::*;
+use crate::equilibrium::PointState;
+use crate::linalg::c64;
+use crate::modal::SturmCertificate;
+use crate::stability::{ComplexMode, GrowthBudget};
+use crate::system::{ContactForces, ContactTangent};
+use std::f64::consts::{PI, TAU};
+
+const HUB: f64 = 0.021;
+const RIM: f64 = 0.075;
+const RINGS: usize = 9;
+const SECTORS: usize = 72;
+const LEAD: f64 = 4.0 * PI / 180.0;
+const LOAD: f64 = 20.0;
+const MU: f64 = 0.4;
+
+/// (n, s, frequency \[Hz\], whether it is a double mode), ascending.
+const DISC_MODES: [(usize, usize, f64, bool); 11] = [
+    (1, 0, 272.4, true),
+    (0, 0, 281.3, false),
+    (2, 0, 337.9, true),
+    (3, 0, 582.6, true),
+    (4, 0, 974.8, true),
+    (5, 0, 1484.2, true),
+    (0, 1, 1745.0, false),
+    (1, 1, 1834.7, true),
+    (6, 0, 2098.1, true),
+    (2, 1, 2122.9, true),
+    (3, 1, 2644.3, true),
+];
+
+/// The whole run.
+pub(crate) fn rig() -> RunResults {
+    let (geometry, disc_nodes) = geometry();
+    let disc = disc_modes(&geometry, disc_nodes);
+    let whole = NamedModes { name: "rig with closed contact".into(), ..disc_modes(&geometry, disc_nodes) };
+    let complex = complex_result(&disc);
+    let paired = |n, s| disc.names.iter().position(|name| *name == Some(mode_name(n, s)));
+    let measured = MeasuredComparison {
+        modes: 0,
+        source: "hammer test, free rim".into(),
+        rows: vec![(330.0, paired(2, 0)), (936.0, paired(4, 0)), (1697.0, paired(0, 1)), (2050.0, None)],
+        frequency_scale: 0.972,
+    };
+    RunResults {
+        title: "Disc on slider <reference & \"first\" case>".into(),
+        resolved_case: "title = \"Disc on slider\"\n[contact]\nmu = 0.4\nload = 20.0 # N\n".into(),
+        assumptions: vec!["hub radius 21 mm: not stated".into(), "frequencies scaled by 0.972".into()],
+        warnings: vec!["The slider (10 mm) is thick for Kirchhoff theory: about 2 % at 2600 Hz.".into()],
+        size: ModelSize {
+            nodes: geometry.nodes.len(),
+            elements: geometry.elements.len(),
+            dofs: 6 * geometry.nodes.len() - 60,
+            nonzeros: 40 * geometry.nodes.len(),
+            contact_points: 26,
+        },
+        steady: Some(steady_result(&geometry)),
+        modes: vec![disc, whole],
+        measured: vec![measured],
+        complex: Some(complex),
+        timings: [
+            ("mesh and assembly", 0.21),
+            ("real modes", 1.3),
+            ("steady sliding", 0.07),
+            ("complex", 1.9),
+        ]
+        .map(|(phase, s)| (phase.to_string(), s))
+        .to_vec(),
+        geometry,
+    }
+}
+
+fn mode_name(n: usize, s: usize) -> DiscModeName {
+    DiscModeName { nodal_diameters: n, nodal_circles: s }
+}
+
+/// Turns about the lateral axis through the hub's centre: the lowest rim point moves towards −x.
+fn tilt([x, y, z]: [f64; 3]) -> [f64; 3] {
+    let (s, c) = LEAD.sin_cos();
+    let lowest = RIM - RIM * c;
+    [c * x + s * (z - RIM), y, RIM - s * x + c * (z - RIM) - lowest]
+}
+
+/// The mesh, and how many of its first nodes are the disc's.
+fn geometry() -> (Geometry, usize) {
+    let mut g = Geometry { parts: vec!["disc".into(), "slider".into(), "bar".into()], ..Default::default() };
+    for ring in 0..=RINGS {
+        let r = HUB + (RIM - HUB) * ring as f64 / RINGS as f64;
+        for sector in 0..SECTORS {
+            let angle = TAU * sector as f64 / SECTORS as f64 - 0.5 * PI;
+            g.nodes.push(tilt([0.0, r * angle.cos(), RIM + r * angle.sin()]));
+        }
+    }
+    let n_disc = g.nodes.len();
+    for ring in 0..RINGS {
+        for sector in 0..SECTORS {
+            let (a, b) = (ring * SECTORS + sector, ring * SECTORS + (sector + 1) % SECTORS);
+            g.elements.push(vec![a, a + SECTORS, b + SECTORS]);
+            g.elements.push(vec![a, b + SECTORS, b]);
+        }
+    }
+    g.part_of.resize(g.elements.len(), 0);
+    let (nx, ny) = (20, 12);
+    for j in 0..=ny {
+        for i in 0..=nx {
+            g.nodes.push([-0.1 + 0.2 * i as f64 / nx as f64, -0.06 + 0.12 * j as f64 / ny as f64, -0.005]);
+        }
+    }
+    for j in 0..ny {
+        for i in 0..nx {
+            let a = n_disc + j * (nx + 1) + i;
+            g.elements.push(vec![a, a + 1, a + nx + 2, a + nx + 1]);
+        }
+    }
+    g.part_of.resize(g.elements.len(), 1);
+    let first = g.nodes.len();
+    for i in 0..=10 {
+        g.nodes.push(tilt([0.015 * i as f64, 0.0, RIM]));
+    }
+    g.elements.extend((0..10).map(|i| vec![first + i, first + i + 1]));
+    g.part_of.resize(g.elements.len(), 2);
+    (g, n_disc)
+}
+
+/// The disc's normal after tilting.
+fn disc_normal() -> [f64; 3] {
+    [LEAD.cos(), 0.0, -LEAD.sin()]
+}
+
+fn disc_shape(geometry: &Geometry, n_disc: usize, n: usize, s: usize, phase: f64) -> NodalField<f64> {
+    let normal = disc_normal();
+    let node = |k: usize| {
+        if k >= n_disc {
+            return [0.0; 6];
+        }
+        let xi = (k / SECTORS) as f64 / RINGS as f64;
+        let angle = TAU * (k % SECTORS) as f64 / SECTORS as f64;
+        let radial = if s == 0 { xi * xi } else { 4.0 * xi * xi * (xi - 0.8) };
+        let w = radial * (n as f64 * angle + phase).cos();
+        [w * normal[0], 0.0, w * normal[2], 0.0, 0.0, 0.0]
+    };
+    (0..geometry.nodes.len()).map(node).collect()
+}
+
+fn disc_modes(geometry: &Geometry, n_disc: usize) -> NamedModes {
+    let (mut eigenvalues, mut shapes, mut names) = (vec![], vec![], vec![]);
+    for (n, s, hz, double) in DISC_MODES {
+        for copy in 0..=usize::from(double) {
+            eigenvalues.push((TAU * hz).powi(2) * (1.0 + 1e-9 * copy as f64));
+            shapes.push(disc_shape(geometry, n_disc, n, s, -0.5 * PI * copy as f64));
+            names.push(Some(mode_name(n, s)));
+        }
+    }
+    let count = eigenvalues.len();
+    NamedModes {
+        name: "disc".into(),
+        modes: RealModes {
+            eigenvalues,
+            shapes: faer::Mat::from_fn(6 * geometry.nodes.len(), count, |i, k| shapes[k][i / 6][i % 6]),
+            backward_errors: (0..count).map(|k| 1e-16 * (k + 1) as f64).collect(),
+            rigid_bodies: 0,
+            certificate: SturmCertificate {
+                below_hz: 3000.0,
+                shifts_hz: [2999.0, 3001.0],
+                counted: [count; 2],
+                found: count,
+            },
+        },
+        shapes,
+        names,
+        effective_mass: (0..count).map(|k| [0.08 / (k + 1) as f64, 0.0, 1e-4]).collect(),
+        total_mass: 0.139,
+    }
+}
+
+/// Thirteen rim nodes with a point at each edge; only the lower edge near the lowest point carries the load.
+fn steady_result(geometry: &Geometry) -> SteadyResult {
+    let depth = |y: f64, edge: f64| 4e-6 * (1.0 - (y / 0.012).powi(2)) + 3e-6 * (edge - 1.0);
+    let mut places = vec![];
+    for i in -6..=6i32 {
+        for edge in [-1.0, 1.0] {
+            let y = RIM * (TAU * f64::from(i) / 200.0).sin();
+            places.push(([-0.0052 - 0.0005 * edge, y, y * y / 0.15], depth(y, edge)));
+        }
+    }
+    let total: f64 = places.iter().map(|(_, d)| d.max(0.0)).sum();
+    let point = |&(_, penetration): &([f64; 3], f64)| {
+        let normal = LOAD * penetration.max(0.0) / total;
+        let k = if normal > 0.0 { LOAD / total } else { 0.0 };
+        PointState {
+            penetration,
+            forces: ContactForces { normal, friction: [MU * normal, 0.0] },
+            tangent: ContactTangent { by_penetration: [k, MU * k, 0.0], ..Default::default() },
+        }
+    };
+    SteadyResult {
+        state: SteadySliding {
+            displacement: vec![0.0; 6 * geometry.nodes.len()],
+            approach: vec![5e-6],
+            points: places.iter().map(point).collect(),
+            iterations: 6,
+            residual: 3e-15,
+        },
+        displacement: vec![[1e-6, 0.0, -2e-6, 0.0, 0.0, 0.0]; geometry.nodes.len()],
+        points: places.iter().map(|(place, _)| ("rim".to_string(), *place)).collect(),
+        pairs: vec![("rim".into(), LOAD, 0.5)],
+        directions: vec![[[0.0, 0.0, -1.0], [1.0, 0.0, 0.0]]],
+    }
+}
+
+/// Travelling waves: each shape is one of a pair of disc modes plus i times the other.
+fn complex_result(disc: &NamedModes) -> ComplexResult {
+    let terms = [
+        (272.1, -3.1, 1.0, -0.2, 0.6),
+        (280.9, -2.0, 0.2, -0.1, 0.1),
+        (336.0, -4.0, 1.5, -0.2, 0.3),
+        (340.2, -4.1, 0.3, -0.2, -0.4),
+        (583.1, -7.2, 1.0, -0.1, 0.0),
+        (941.5, -11.0, 5.5, -0.6, 26.0),
+        (975.2, -11.5, 2.0, -0.1, -26.0),
+        (1484.6, -15.0, 0.5, 0.0, 1.0),
+        (1668.3, -19.0, 14.0, -1.2, 118.0),
+        (1702.9, -21.0, 3.0, -0.4, -117.0),
+        (1836.0, -22.0, 1.0, -0.2, 2.0),
+        (2098.8, -26.0, 0.5, 0.0, 0.4),
+        (2603.9, -31.0, 9.0, -0.9, 38.5),
+        (2644.1, -640.0, 1.0, -0.1, -3.0),
+    ];
+    let mode = |(k, &(hz, damping, falling, transverse, coupling)): (usize, &(f64, f64, f64, f64, f64))| {
+        let growth = GrowthBudget {
+            structural_damping: damping,
+            falling_friction: falling,
+            transverse_friction: transverse,
+            mode_coupling: coupling,
+        };
+        let n = disc.modes.shapes.nrows();
+        ComplexMode {
+            eigenvalue: c64::new(damping + falling + transverse + coupling, TAU * hz),
+            right: (0..n)
+                .map(|i| c64::new(disc.modes.shapes[(i, k)], disc.modes.shapes[(i, k + 1)]))
+                .collect(),
+            left: (0..n)
+                .map(|i| c64::new(disc.modes.shapes[(i, k)], -disc.modes.shapes[(i, k + 1)]))
+                .collect(),
+            backward_error: 2e-16 * (k + 1) as f64,
+            eigenvalue_error: 4e-12,
+            condition: 1.5 + k as f64,
+            growth,
+            participation: vec![(k, 0.61), (k + 1, 0.22)],
+        }
+    };
+    let modes: Vec<ComplexMode> = terms.iter().enumerate().map(mode).collect();
+    let shape =
+        |mode: &ComplexMode| mode.right.chunks(6).map(|u| [u[0], u[1], u[2], u[3], u[4], u[5]]).collect();
+    let name = |k: usize| disc.names[k].map(|n| format!("({},{})", n.nodal_diameters, n.nodal_circles));
+    let words = |k: usize| format!("61 % disc {}; 22 % disc {}", name(k).unwrap(), name(k + 1).unwrap());
+    ComplexResult {
+        shapes: modes.iter().map(shape).collect(),
+        participation: (0..modes.len()).map(words).collect(),
+        measured_squeal_hz: [936.0, 1661.0, 2600.0].map(|hz| (hz, "accelerometer".to_string())).to_vec(),
+        band_hz: [100.0, 3000.0],
+        modes: ComplexModes { modes, subspace_dimension: 142, refinements: 2 },
+    }
+}

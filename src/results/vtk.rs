@@ -1,0 +1,165 @@
+//! ParaView files: the mesh in its rest position with one vector array a mode (`.vtu`, binary XML).
+//!
+//! Real modes are `mode_01`, `mode_02` … \[m\], mass-normalised. Complex modes are `mode_01_re` and `mode_01_im`:
+//! the motion is Re(φ e^{iωt}) = re cos ωt − im sin ωt, which ParaView's calculator animates. The cell array `part`
+//! counts the parts from 0 in the order of the case.
+
+use super::folder::{FileNames, refusal};
+use super::{Geometry, NodalField, RunResults, write_atomically};
+use crate::error::Result;
+use crate::linalg::c64;
+use std::path::Path;
+use vtkio::model::{
+    Attribute, Attributes, ByteOrder, CellType, Cells, DataSet, UnstructuredGridPiece, Version,
+    VertexNumbers, Vtk,
+};
+
+/// A named vector at every node.
+type PointVector = (String, Vec<[f64; 3]>);
+
+/// Writes `modes_<set>.vtu` for every set of real modes, `steady.vtu` and `complex_modes.vtu`, those of them that
+/// the run has, into the folder `dir`. Without a mesh (the two-degree-of-freedom model) nothing is written.
+///
+/// # Errors
+/// [`crate::error::Error::Io`] when the folder cannot be made or a file not be written.
+pub fn write_vtk(dir: &Path, results: &RunResults) -> Result<()> {
+    let geometry = &results.geometry;
+    if geometry.elements.is_empty() {
+        return Ok(());
+    }
+    let mut names = FileNames::default();
+    for set in &results.modes {
+        let vectors = numbered(&set.shapes, |number, shape| vec![(number, displacement(shape))]);
+        write_grid(dir, &format!("modes_{}.vtu", names.next(&set.name)), geometry, vectors)?;
+    }
+    if let Some(steady) = &results.steady {
+        let vectors = vec![("displacement".to_string(), displacement(&steady.displacement))];
+        write_grid(dir, "steady.vtu", geometry, vectors)?;
+    }
+    if let Some(complex) = &results.complex {
+        let vectors = numbered(&complex.shapes, |number, shape| {
+            let [re, im] = real_and_imaginary(shape);
+            vec![(format!("{number}_re"), re), (format!("{number}_im"), im)]
+        });
+        write_grid(dir, "complex_modes.vtu", geometry, vectors)?;
+    }
+    Ok(())
+}
+
+/// The vectors of all modes, named `mode_01`, `mode_02` … (more digits when there are more than 99).
+fn numbered<T>(
+    shapes: &[NodalField<T>],
+    vectors: impl Fn(String, &NodalField<T>) -> Vec<PointVector>,
+) -> Vec<PointVector> {
+    let width = shapes.len().to_string().len().max(2);
+    shapes
+        .iter()
+        .enumerate()
+        .flat_map(|(k, shape)| vectors(format!("mode_{:0width$}", k + 1), shape))
+        .collect()
+}
+
+fn displacement(shape: &NodalField<f64>) -> Vec<[f64; 3]> {
+    shape.iter().map(|u| [u[0], u[1], u[2]]).collect()
+}
+
+fn real_and_imaginary(shape: &NodalField<c64>) -> [Vec<[f64; 3]>; 2] {
+    [
+        shape.iter().map(|u| [u[0].re, u[1].re, u[2].re]).collect(),
+        shape.iter().map(|u| [u[0].im, u[1].im, u[2].im]).collect(),
+    ]
+}
+
+fn write_grid(dir: &Path, name: &str, geometry: &Geometry, vectors: Vec<PointVector>) -> Result<()> {
+    let vector = |(name, values): PointVector| {
+        Attribute::DataArray(vtkio::model::DataArray::vectors(name).with_data(flatten(&values)))
+    };
+    let part: Vec<i32> = geometry.part_of.iter().map(|p| *p as i32).collect();
+    let data = Attributes {
+        point: vectors.into_iter().map(vector).collect(),
+        cell: vec![Attribute::DataArray(vtkio::model::DataArray::scalars("part", 1).with_data(part))],
+    };
+    let piece =
+        UnstructuredGridPiece { points: flatten(&geometry.nodes).into(), cells: cells(geometry), data };
+    let grid = Vtk {
+        version: Version::new_xml(1, 0),
+        title: String::new(),
+        byte_order: ByteOrder::LittleEndian,
+        file_path: None,
+        data: DataSet::inline(piece),
+    };
+    let mut bytes = Vec::new();
+    grid.write_xml(&mut bytes).map_err(|source| refusal(&dir.join(name), source))?;
+    write_atomically(dir, name, &bytes)
+}
+
+fn flatten(values: &[[f64; 3]]) -> Vec<f64> {
+    values.iter().flatten().copied().collect()
+}
+
+fn cells(geometry: &Geometry) -> Cells {
+    let mut end = 0;
+    let offsets = geometry.elements.iter().map(|nodes| {
+        end += nodes.len() as u64;
+        end
+    });
+    let offsets = offsets.collect();
+    let connectivity = geometry.elements.iter().flatten().map(|node| *node as u64).collect();
+    let types = geometry.elements.iter().map(|nodes| match nodes.len() {
+        1 => CellType::Vertex,
+        2 => CellType::Line,
+        3 => CellType::Triangle,
+        _ => CellType::Quad,
+    });
+    Cells { cell_verts: VertexNumbers::XML { connectivity, offsets }, types: types.collect() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample;
+    use super::*;
+    use vtkio::model::{IOBuffer, Piece};
+
+    fn read(path: &Path) -> UnstructuredGridPiece {
+        match Vtk::import(path).unwrap().data {
+            DataSet::UnstructuredGrid { mut pieces, .. } => match pieces.remove(0) {
+                Piece::Inline(piece) => *piece,
+                _ => panic!("not inline"),
+            },
+            _ => panic!("not an unstructured grid"),
+        }
+    }
+
+    fn array<'a>(attributes: &'a [Attribute], name: &str) -> &'a IOBuffer {
+        match attributes.iter().find(|a| a.name() == name) {
+            Some(Attribute::DataArray(array)) => &array.data,
+            _ => panic!("no {name}"),
+        }
+    }
+
+    #[test]
+    fn shapes_parts_and_cells_read_back() {
+        let dir = tempfile::tempdir().unwrap();
+        let results = sample::rig();
+        write_vtk(dir.path(), &results).unwrap();
+        let disc = read(&dir.path().join("modes_disc.vtu"));
+        assert_eq!(disc.cells.types.len(), results.geometry.elements.len());
+        let IOBuffer::I32(part) = array(&disc.data.cell, "part") else { panic!("part is i32") };
+        assert!(part.iter().zip(&results.geometry.part_of).all(|(a, b)| *a as usize == *b));
+        let IOBuffer::F64(u) = array(&disc.data.point, "mode_03") else { panic!("modes are f64") };
+        assert_eq!(u.len(), 3 * results.geometry.nodes.len());
+        assert!(u.chunks(3).zip(&results.modes[0].shapes[2]).all(|(a, b)| a == &b[..3]));
+        let complex = read(&dir.path().join("complex_modes.vtu"));
+        let IOBuffer::F64(im) = array(&complex.data.point, "mode_01_im") else { panic!("modes are f64") };
+        let shape = &results.complex.as_ref().unwrap().shapes[0];
+        assert!(im.chunks(3).zip(shape).all(|(a, b)| a[0] == b[0].im && a[2] == b[2].im));
+        assert!(im.iter().any(|v| *v != 0.0));
+    }
+
+    #[test]
+    fn a_model_without_a_mesh_writes_no_grid() {
+        let dir = tempfile::tempdir().unwrap();
+        write_vtk(dir.path(), &RunResults::default()).unwrap();
+        assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 0);
+    }
+}
