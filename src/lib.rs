@@ -17,6 +17,7 @@
 //! | [`results`] | HDF5, VTK, JSON, CSV |
 //! | [`report`] | pictures and the HTML page |
 //! | [`case`] | TOML → validated case → system |
+//! | [`job`] | from a case to its results |
 //! | [`validation`] | what the program is checked against |
 //! | [`cli`] | the command line |
 //!
@@ -27,6 +28,7 @@ pub mod cli;
 pub mod contact;
 pub mod equilibrium;
 pub mod error;
+pub mod job;
 pub mod linalg;
 pub mod mesh;
 pub mod modal;

@@ -3,7 +3,7 @@
 use super::modes::{add_modal_damping, compare, labels, named, part_modes};
 use super::prepared::Prepared;
 use crate::case::{Case, ContactState};
-use crate::equilibrium::{self, SteadySliding};
+use crate::equilibrium::{self, SteadyOptions, SteadySliding};
 use crate::error::Result;
 use crate::modal::{self, Wanted};
 use crate::progress::Observer;
@@ -33,6 +33,8 @@ impl Selection {
 
 /// A result that is ready to be written.
 pub enum Stage<'a> {
+    /// The case, its size and its geometry.
+    Model(&'a RunResults),
     /// Real modes.
     Modes(&'a NamedModes),
     /// Steady sliding.
@@ -50,16 +52,18 @@ pub fn run_case(case: &Case, selection: Selection, out: &Path, observer: &dyn Ob
     let prepared = Prepared::new(case)?;
     let preparation = started.elapsed().as_secs_f64();
     let mut file = ResultsFile::create(out)?;
-    let mut record = |stage: Stage, sofar: &RunResults| match stage {
+    let mut record = |stage: Stage| match stage {
+        Stage::Model(results) => file.write_case(results).and_then(|()| file.write_geometry(&results.geometry)),
         Stage::Modes(modes) => file.write_modes(modes),
         Stage::Steady(steady) => file.write_steady(steady),
-        Stage::Complex(complex) => file.write_complex(complex, &sofar.modes),
+        Stage::Complex(complex) => file.write_complex(complex),
     };
     let mut results = analyse(&prepared, selection, &mut record, observer)?;
     results.timings.insert(0, ("read mesh and assemble".into(), preparation));
     let writing = Instant::now();
-    results::write_all(out, &results)?;
-    crate::report::write(out, &results)?;
+    results::write_files(out, &results)?;
+    crate::report::write_report(out, &results)?;
+    file.write_measured(&results.measured)?;
     results.timings.push(("write results".into(), writing.elapsed().as_secs_f64()));
     file.finish(&results)?;
     Ok(results)
@@ -72,7 +76,7 @@ pub fn run_case(case: &Case, selection: Selection, out: &Path, observer: &dyn Ob
 pub fn analyse(
     prepared: &Prepared,
     selection: Selection,
-    record: &mut dyn FnMut(Stage, &RunResults) -> Result<()>,
+    record: &mut dyn FnMut(Stage) -> Result<()>,
     observer: &dyn Observer,
 ) -> Result<RunResults> {
     let case = prepared.case;
@@ -85,6 +89,7 @@ pub fn analyse(
         size: prepared.size(),
         ..RunResults::default()
     };
+    record(Stage::Model(&results))?;
     let mut clock = Clock::default();
     let contact_modes = case.modes.iter().filter(|(_, m)| m.contact == ContactState::Closed);
     let sliding = (selection.cea && case.cea.is_some()) || (selection.modes && contact_modes.clone().count() > 0);
@@ -96,18 +101,16 @@ pub fn analyse(
                 let set = results.modes.len();
                 results.measured.push(compare(set, &analysis.measured, &analysis.measured_source, &modes));
             }
-            record(Stage::Modes(&modes), &results)?;
+            record(Stage::Modes(&modes))?;
             results.modes.push(modes);
         }
     }
     if sliding {
-        let mut system = prepared.system.clone();
-        let state = clock.time("steady sliding", || equilibrium::solve_steady(&system, observer))?;
-        if let Some(prestress) = &system.prestress {
-            system.structure.add_stiffness(&prestress.geometric_stiffness(&state.displacement)?);
-        }
+        let options = SteadyOptions { penetration_limit: prepared.penetration_limit(), ..Default::default() };
+        let state = clock
+            .time("steady sliding", || equilibrium::solve_steady(&prepared.system, &options, observer))?;
         let steady = steady_result(prepared, state);
-        record(Stage::Steady(&steady), &results)?;
+        record(Stage::Steady(&steady))?;
         results.steady = Some(steady);
         let state = &results.steady.as_ref().expect("set above").state;
         if selection.modes {
@@ -116,18 +119,18 @@ pub fn analyse(
                     (Some(below), _) => Wanted::BelowHz(below),
                     (None, count) => Wanted::Count(count.unwrap_or(1)),
                 };
-                let closed = equilibrium::closed_structure(&system, state);
+                let closed = equilibrium::closed_structure(&prepared.system, state)?;
                 let (modes, _) = clock
                     .time(&format!("real modes, {name}"), || modal::compute(&closed, wanted, observer))?;
                 let modes = named(prepared, name, modes, &prepared.assembled);
-                record(Stage::Modes(&modes), &results)?;
+                record(Stage::Modes(&modes))?;
                 results.modes.push(modes);
             }
         }
         if selection.cea {
             let complex = complex_result(prepared, &mut system, state, &mut clock, observer)?;
             if let Some(complex) = complex {
-                record(Stage::Complex(&complex), &results)?;
+                record(Stage::Complex(&complex))?;
                 results.complex = Some(complex);
             }
         }

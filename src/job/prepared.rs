@@ -10,7 +10,7 @@ use crate::error::{Faults, Result};
 use crate::mesh::generate::{self, BarSide, BarSpec, DiscSpec, Faces, Grading, PlateSpec, RigSpec};
 use crate::mesh::{self, Mesh};
 use crate::results::{Geometry, ModelSize};
-use crate::structure::{Assembled, GeometricStiffness, Model, assemble};
+use crate::structure::{Assembled, Model, assemble};
 use crate::system::System;
 use std::sync::Arc;
 
@@ -56,9 +56,7 @@ impl<'a> Prepared<'a> {
             structure: assembled.structure.clone(),
             pairs,
             load: external_load(case, &regions, &assembled)?,
-            prestress: case
-                .prestress
-                .then(|| Arc::new(GeometricStiffness::new(&model, &assembled.dofs)) as Arc<_>),
+            prestress: case.prestress.then(|| Arc::new(assembled.prestress(model.clone())) as Arc<_>),
         };
         Ok(Prepared { case, regions, model, assembled, system, warnings })
     }
@@ -95,6 +93,11 @@ impl<'a> Prepared<'a> {
             add(name, node.into_iter().map(|n| vec![n]).collect());
         }
         geometry
+    }
+
+    /// Half of the thinnest plate \[m\]: a contact pressed deeper makes no sense.
+    pub fn penetration_limit(&self) -> f64 {
+        0.5 * self.model.shells.iter().map(|s| s.thickness).fold(f64::INFINITY, f64::min)
     }
 
     /// The shell parts that are discs, with their names.

@@ -1,0 +1,100 @@
+//! The rooms of the house and which of them each may use. `lib.rs` tells the same story in words.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// Each room with all the rooms it may use.
+const MAY_USE: [(&str, &[&str]); 16] = [
+    ("error", &[]),
+    ("progress", &[]),
+    ("linalg", &["error", "progress"]),
+    ("system", &["error", "linalg"]),
+    // Mechanics: builds a system, knows no analysis.
+    ("mesh", &["error"]),
+    ("structure", &["error", "linalg", "system", "mesh"]),
+    ("contact", &["error", "linalg", "system", "mesh", "structure"]),
+    // Analyses: take a system, know no mesh and no law.
+    ("equilibrium", &["error", "progress", "linalg", "system"]),
+    ("modal", &["error", "progress", "linalg", "system"]),
+    ("stability", &["error", "progress", "linalg", "system", "equilibrium", "modal"]),
+    // What both wings leave behind.
+    ("results", &["error", "linalg", "equilibrium", "modal", "stability"]),
+    ("report", &["error", "linalg", "equilibrium", "modal", "stability", "results"]),
+    // From a file to results.
+    ("case", &["error", "structure"]),
+    (
+        "job",
+        &[
+            "error", "progress", "linalg", "system", "mesh", "structure", "contact", "equilibrium", "modal",
+            "stability", "results", "report", "case",
+        ],
+    ),
+    (
+        "validation",
+        &["error", "progress", "linalg", "structure", "results", "case", "job"],
+    ),
+    ("cli", &["error", "progress", "mesh", "report", "results", "case", "job", "validation"]),
+];
+
+fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).expect("a folder of the crate").flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            sources(&path, found);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+/// The rooms that `text` names as `crate::room`, its unit tests and comments left out.
+fn rooms_used(text: &str) -> BTreeSet<String> {
+    let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or(text);
+    let mut used = BTreeSet::new();
+    for line in code.lines().filter(|line| !line.trim_start().starts_with("//")) {
+        for (at, _) in line.match_indices("crate::") {
+            let name: String = line[at + 7..].chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+            used.insert(name);
+        }
+    }
+    used
+}
+
+#[test]
+fn rooms_use_only_rooms_above_them() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    sources(&root, &mut files);
+    let mut wrong = Vec::new();
+    let mut seen = BTreeSet::new();
+    for file in files {
+        let inside = file.strip_prefix(&root).expect("below src").with_extension("");
+        let room = inside.iter().next().expect("a file has a name").to_string_lossy().into_owned();
+        if room == "lib" || room == "main" || inside.ends_with("tests") || inside.ends_with("samples") {
+            continue;
+        }
+        let Some((_, allowed)) = MAY_USE.iter().find(|(name, _)| *name == room) else {
+            wrong.push(format!("{}: a room that this test does not know", inside.display()));
+            continue;
+        };
+        seen.insert(room.clone());
+        let text = std::fs::read_to_string(&file).expect("source is text");
+        for used in rooms_used(&text) {
+            let known = MAY_USE.iter().any(|(name, _)| *name == used);
+            if known && used != room && !allowed.contains(&used.as_str()) {
+                wrong.push(format!("{} uses {used}", inside.display()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert_eq!(seen.len(), MAY_USE.len(), "every room of the list exists");
+}
+
+#[test]
+fn the_index_of_the_library_names_every_room() {
+    let index = include_str!("../src/lib.rs");
+    for (room, _) in MAY_USE {
+        assert!(index.contains(&format!("pub mod {room};")), "{room} is not public");
+        assert!(index.contains(&format!("[`{room}`]")), "{room} is not in the index");
+    }
+}

@@ -1,0 +1,225 @@
+//! The program as its users meet it: runs the binary in a temporary folder.
+
+use std::path::Path;
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+/// A small rig that needs no file beside it.
+const RIG: &str = r#"
+title = "A small rig"
+assumptions = ["Everything here is made up."]
+
+[mesh.rig]
+hub_radius = "20 mm"
+contact_size = "2 mm"
+contact_radius = "4 mm"
+disc_size = "12 mm"
+slider_size = "20 mm"
+
+[material.steel]
+youngs_modulus = "210 GPa"
+poissons_ratio = 0.3
+density = 7850
+
+[shell.disc]
+material = "steel"
+thickness = "1 mm"
+
+[shell.slider]
+material = "steel"
+thickness = "10 mm"
+
+[bar.bar]
+material = "steel"
+diameter = "20 mm"
+
+[rigid.hub]
+master = "bar_root"
+follow = "hub"
+
+[support.clamp]
+on = "bar_clamp"
+
+[support.guides]
+on = ["slider_edge_y_min", "slider_edge_y_max"]
+held = ["uy", "uz"]
+
+[spring.drive]
+on = "slider_edge_x_min"
+direction = [1, 0, 0]
+stiffness = "10 MN/m"
+
+[contact.rim]
+body = "rim"
+counter = "slider"
+load = "20 N"
+sliding_velocity = "0.5 m/s"
+placement = { lead_angle = "4 deg" }
+normal = { per = "length", stiffness = "10 GN/m^2" }
+friction = { law = "coulomb", mu0 = 0.4 }
+
+[modes.disc]
+parts = ["disc"]
+clamp = ["hub"]
+below = "1 kHz"
+measured = [330, 936]
+measured_source = "made up"
+
+[cea]
+band = [0, "1.5 kHz"]
+"#;
+
+fn stridor(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_stridor"))
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .expect("the binary runs")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn folder_with(case: &str) -> TempDir {
+    let folder = TempDir::new().expect("a temporary folder");
+    std::fs::write(folder.path().join("rig.toml"), case).expect("a case file");
+    folder
+}
+
+/// Runs the case and expects a refusal: the exit code, and words that the message must have.
+fn refused(folder: &TempDir, code: i32, words: &[&str]) {
+    let output = stridor(folder.path(), &["run", "rig.toml", "--out", "out"]);
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{message}");
+    assert!(message.starts_with("error: "), "{message}");
+    for word in words {
+        assert!(message.contains(word), "\"{word}\" is not in: {message}");
+    }
+    assert!(output.stdout.is_empty(), "{}", text(&output.stdout));
+    if code == 2 {
+        assert!(!folder.path().join("out").exists(), "nothing is written when the input is wrong");
+    }
+}
+
+#[test]
+fn the_main_job_prints_its_tables_and_leaves_a_results_folder() {
+    let folder = folder_with(RIG);
+    let output = stridor(folder.path(), &["run", "rig.toml", "--out", "out"]);
+    let table = text(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    for word in ["330", "936", "20 N", "Hz"] {
+        assert!(table.contains(word), "{word} is not in\n{table}");
+    }
+    for file in ["results.h5", "summary.json", "report.html", "complex_modes.vtu", "complex_modes.csv"] {
+        assert!(folder.path().join("out").join(file).is_file(), "{file} is missing");
+    }
+    let summary = std::fs::read_to_string(folder.path().join("out/summary.json")).expect("a summary");
+    let summary: serde_json::Value = serde_json::from_str(&summary).expect("valid JSON");
+    let modes = summary["cea"]["eigenvalues"].as_array().expect("a list");
+    assert!(!modes.is_empty());
+    assert!(modes.iter().all(|m| m["backward_error"].as_f64().is_some_and(|e| e <= 1e-10)), "{modes:?}");
+    assert!(summary["mode_sets"][0]["certificate"]["holds"].as_bool().expect("a verdict"));
+}
+
+#[test]
+fn one_and_two_threads_give_the_same_numbers() {
+    let folder = folder_with(RIG);
+    let figures = |threads: &str| {
+        let output = stridor(folder.path(), &["cea", "rig.toml", "--json", "--threads", threads, "--out", threads]);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        let mut summary: serde_json::Value = serde_json::from_slice(&output.stdout).expect("valid JSON");
+        summary["timings"].take();
+        summary
+    };
+    assert_eq!(figures("1"), figures("2"));
+}
+
+#[test]
+fn check_lists_every_scalar_and_new_makes_a_case_that_is_sound() {
+    let folder = TempDir::new().expect("a temporary folder");
+    assert_eq!(stridor(folder.path(), &["new", "mine"]).status.code(), Some(0));
+    let output = stridor(folder.path(), &["check", "mine/case.toml", "--parameters"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("contact.rim.friction.mu0 = "));
+    let again = stridor(folder.path(), &["new", "mine"]);
+    assert_eq!(again.status.code(), Some(2));
+    assert!(text(&again.stderr).contains("already"));
+}
+
+#[test]
+fn wrong_case_files_are_refused_with_what_to_do() {
+    let folder = TempDir::new().expect("a temporary folder");
+    refused(&folder, 2, &["rig.toml", "no file there", "stridor new"]);
+    for (from, to, words) in [
+        ("thickness = \"1 mm\"", "thicknes = \"1 mm\"", &["rig.toml:20", "Did you mean `thickness`?"][..]),
+        ("thickness = \"1 mm\"", "thickness = true", &["found true", "a length"]),
+        ("thickness = \"1 mm\"", "thickness = \"-1 mm\"", &["-0.001", "above zero"]),
+        ("poissons_ratio = 0.3", "poissons_ratio = 0.5", &["below 0.5"]),
+        ("[support.clamp]", "[support.clamp", &["rig.toml:34"]),
+        ("sliding_velocity = \"0.5 m/s\"", "sliding_velocity = 0", &["sliding_velocity", "not zero"]),
+        ("body = \"rim\"", "body = \"rimm\"", &["rimm", "Did you mean \"rim\"?", "bar_root"]),
+        ("body = \"rim\"", "body = \"slider_edge_x_min\"", &["contact.rim", "two separate bodies"]),
+        ("counter = \"slider\"", "counter = \"disk\"", &["disk"]),
+        ("lead_angle = \"4 deg\"", "position = [\"150 mm\", 0]", &["position", "0.15"]),
+        ("load = \"20 N\"", "load = \"20 N\"\nstroke = \"500 mm\"", &["stroke"]),
+        ("placement = { lead_angle = \"4 deg\" }", "reach = \"1 nm\"\napproach = 0", &["approach"]),
+    ] {
+        assert!(RIG.contains(from), "{from}");
+        refused(&folder_with(&RIG.replacen(from, to, 1)), 2, words);
+    }
+}
+
+#[test]
+fn wrong_meshes_are_refused_with_what_to_do() {
+    let sound = {
+        let folder = TempDir::new().expect("a temporary folder");
+        let sizes = ["--contact-size", "2 mm", "--disc-size", "12 mm", "--slider-size", "20 mm"];
+        let mut arguments = vec!["mesh", "rig", "--out", "rig.msh"];
+        arguments.extend(sizes);
+        let output = stridor(folder.path(), &arguments);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        std::fs::read_to_string(folder.path().join("rig.msh")).expect("a mesh")
+    };
+    let start = RIG.find("[mesh.rig]").expect("a mesh");
+    let end = RIG.find("[material.steel]").expect("a material");
+    let case = format!("{}[mesh]\nfile = \"rig.msh\"\nunit = \"mm\"\n\n{}", &RIG[..start], &RIG[end..]);
+    let with_mesh = |mesh: Option<&[u8]>| {
+        let folder = folder_with(&case);
+        if let Some(mesh) = mesh {
+            std::fs::write(folder.path().join("rig.msh"), mesh).expect("a mesh");
+        }
+        folder
+    };
+    assert_eq!(
+        stridor(with_mesh(Some(sound.as_bytes())).path(), &["check", "rig.toml"]).status.code(),
+        Some(0)
+    );
+    refused(&with_mesh(None), 2, &["rig.msh"]);
+    refused(&with_mesh(Some(b"")), 2, &["rig.msh", "empty"]);
+    refused(&with_mesh(Some(b"\x00\xff garbage \x17")), 2, &["rig.msh"]);
+    refused(&with_mesh(Some(&sound.as_bytes()[..sound.len() / 2])), 2, &["rig.msh"]);
+    let from = sound.find("$PhysicalNames").expect("names");
+    let to = sound.find("$EndPhysicalNames").expect("names") + "$EndPhysicalNames\n".len();
+    let nameless = format!("{}{}", &sound[..from], &sound[to..]);
+    refused(&with_mesh(Some(nameless.as_bytes())), 2, &["rig.msh", "name"]);
+    let renamed = sound.replace("\"hub\"", "\"hup\"");
+    refused(&with_mesh(Some(renamed.as_bytes())), 2, &["hub", "Did you mean \"hup\"?"]);
+}
+
+#[test]
+fn a_rig_that_nothing_holds_is_explained() {
+    let free = RIG.replace("[support.clamp]\non = \"bar_clamp\"\n", "");
+    refused(&folder_with(&free), 1, &["steady sliding"]);
+}
+
+#[test]
+fn a_results_folder_that_cannot_be_written_is_one_clear_sentence() {
+    let folder = folder_with(RIG);
+    std::fs::write(folder.path().join("out"), "a file in the folder's place").expect("a file");
+    let output = stridor(folder.path(), &["run", "rig.toml", "--out", "out"]);
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("out"), "{}", text(&output.stderr));
+    let kept = std::fs::read_to_string(folder.path().join("out")).expect("still there");
+    assert_eq!(kept, "a file in the folder's place");
+}
