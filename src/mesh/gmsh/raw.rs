@@ -1,0 +1,200 @@
+//! What a file lists, before groups have names and nodes have places.
+
+use super::names::Names;
+use crate::error::{Error, Fault, Faults, Result};
+use crate::mesh::{Element, Mesh, Region};
+use std::collections::{BTreeMap, HashMap};
+
+/// Nodes and elements of a file.
+#[derive(Debug, Default)]
+pub(super) struct RawMesh {
+    /// Tag and coordinates, in the unit of the file.
+    pub nodes: Vec<(u64, [f64; 3])>,
+    pub elements: Vec<RawElement>,
+}
+
+/// One element of a file.
+#[derive(Debug)]
+pub(super) struct RawElement {
+    pub tag: u64,
+    /// Gmsh's number of the element type.
+    pub kind: i64,
+    /// Tags of its nodes.
+    pub nodes: Vec<u64>,
+    /// Physical groups of the element's own dimension.
+    pub groups: Vec<i64>,
+}
+
+/// The number of nodes of Gmsh's element types 1 to 31.
+pub(super) fn n_nodes(kind: i64) -> Option<usize> {
+    const NODES: [usize; 31] = [
+        2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5, 6, 20,
+        35, 56,
+    ];
+    NODES.get(usize::try_from(kind).ok()?.checked_sub(1)?).copied()
+}
+
+/// Dimension of a first-order element that is supported.
+fn dimension(kind: i64) -> Option<usize> {
+    match kind {
+        15 => Some(0),
+        1 => Some(1),
+        2 | 3 => Some(2),
+        _ => None,
+    }
+}
+
+impl RawMesh {
+    /// Names the groups, drops what belongs to none, finds the nodes, and turns to metres.
+    pub fn into_mesh(mut self, names: &Names, place: &str, unit_in_metres: f64) -> Result<Mesh> {
+        if names.is_empty() {
+            let fault =
+                Fault::new(place, "no named physical group", "parts marked by physical groups with names");
+            return Err(Error::input(fault.with_help(
+                "In the .geo file: `Physical Surface(\"disc\") = {1};`, `Physical Curve(\"rim\") = {1, 2};`, then mesh again",
+            )));
+        }
+        let mut faults = Faults::new();
+        self.elements.retain(|e| !e.groups.is_empty());
+        self.refuse_kinds(place, &mut faults);
+        self.elements.sort_by_key(|e| e.tag);
+        self.nodes.sort_by_key(|n| n.0);
+        for (what, twice) in [
+            ("node", self.nodes.windows(2).find(|w| w[0].0 == w[1].0).map(|w| w[0].0)),
+            // MSH 2.2 may list an element once for each of its groups, with a tag of its own or the same one.
+            (
+                "element",
+                self.elements
+                    .windows(2)
+                    .find(|w| w[0].tag == w[1].tag && w[0].nodes != w[1].nodes)
+                    .map(|w| w[0].tag),
+            ),
+        ] {
+            if let Some(tag) = twice {
+                faults.push(Fault::new(
+                    format!("{place}: {what} {tag}"),
+                    "its number twice",
+                    "each number once",
+                ));
+            }
+        }
+        if self.elements.is_empty() {
+            faults.push(Fault::new(
+                place,
+                "no element in any physical group",
+                "elements of named physical groups",
+            ));
+        }
+        faults.into_result(())?;
+        self.assemble(names, place, unit_in_metres)
+    }
+
+    /// One fault for higher orders, one for solids.
+    fn refuse_kinds(&self, place: &str, faults: &mut Faults) {
+        let mut counts: BTreeMap<i64, usize> = BTreeMap::new();
+        for e in self.elements.iter().filter(|e| dimension(e.kind).is_none()) {
+            *counts.entry(e.kind).or_default() += 1;
+        }
+        let solids = |kind: &i64| matches!(kind, 4..=7 | 11..=14 | 17..=19 | 29..=31 | 71..);
+        let listed = |solid: bool| {
+            let some: Vec<String> = counts
+                .iter()
+                .filter(|(kind, _)| solids(kind) == solid)
+                .map(|(kind, count)| format!("{count} of type {kind}"))
+                .collect();
+            some.join(", ")
+        };
+        let higher = listed(false);
+        if !higher.is_empty() {
+            let found = format!("elements of second or higher order ({higher})");
+            let fault = Fault::new(place, found, "first-order points, lines, triangles and quadrilaterals");
+            faults.push(
+                fault.with_help("Mesh again with first order: `gmsh -2 -order 1 model.geo -o model.msh`"),
+            );
+        }
+        let solid = listed(true);
+        if !solid.is_empty() {
+            let fault = Fault::new(
+                place,
+                format!("solid elements ({solid})"),
+                "points, lines, triangles and quadrilaterals",
+            );
+            faults
+                .push(fault.with_help("Plates are meshed as mid-surfaces: `gmsh -2 model.geo -o model.msh`"));
+        }
+    }
+
+    fn assemble(self, names: &Names, place: &str, unit_in_metres: f64) -> Result<Mesh> {
+        let mut mesh = Mesh::default();
+        let known: HashMap<u64, usize> = self.nodes.iter().enumerate().map(|(i, n)| (n.0, i)).collect();
+        let mut used = vec![false; self.nodes.len()];
+        let mut lost = Vec::new();
+        for e in &self.elements {
+            for tag in &e.nodes {
+                match known.get(tag) {
+                    Some(i) => used[*i] = true,
+                    None => lost.push((e.tag, *tag)),
+                }
+            }
+        }
+        if let Some((element, node)) = lost.first() {
+            let found = format!("node {node}, which the file does not hold ({} cases)", lost.len());
+            return Err(Error::input(Fault::new(
+                format!("{place}: element {element}"),
+                found,
+                "nodes of the file",
+            )));
+        }
+        let mut place_of = vec![0; self.nodes.len()];
+        for (i, (tag, p)) in self.nodes.iter().enumerate() {
+            if used[i] {
+                place_of[i] = mesh.nodes.len();
+                mesh.nodes.push(p.map(|c| c * unit_in_metres));
+                mesh.origin.node_tags.push(*tag);
+            } else {
+                mesh.origin.unused_nodes.push(*tag);
+            }
+        }
+        let mut regions: Vec<Region> = Vec::new();
+        let mut region_of: HashMap<(usize, i64), usize> = HashMap::new();
+        for ((dimension, number), name) in names {
+            // Two numbers with one name and dimension are one region.
+            let same = regions.iter().position(|r| r.name == *name && r.dimension == *dimension);
+            let index = same.unwrap_or_else(|| {
+                regions.push(Region { name: name.clone(), dimension: *dimension, elements: vec![] });
+                regions.len() - 1
+            });
+            region_of.insert((*dimension, *number), index);
+        }
+        for RawElement { tag, kind, nodes, groups } in self.elements {
+            let n: Vec<usize> = nodes.iter().map(|tag| place_of[known[tag]]).collect();
+            let element = match (kind, n.as_slice()) {
+                (15, [a]) => Element::Point([*a]),
+                (1, [a, b]) => Element::Line([*a, *b]),
+                (2, [a, b, c]) => Element::Triangle([*a, *b, *c]),
+                (3, [a, b, c, d]) => Element::Quadrilateral([*a, *b, *c, *d]),
+                _ => continue,
+            };
+            let dimension = element.dimension();
+            // The same element once more, for another of its groups.
+            if mesh.origin.element_tags.last() != Some(&tag) {
+                mesh.elements.push(element);
+                mesh.origin.element_tags.push(tag);
+            }
+            for group in groups {
+                let index = *region_of.entry((dimension, group)).or_insert_with(|| {
+                    let name = format!("{} {group}", ["point", "curve", "surface"][dimension]);
+                    regions.push(Region { name, dimension, elements: vec![] });
+                    regions.len() - 1
+                });
+                let last = mesh.elements.len() - 1;
+                if regions[index].elements.last() != Some(&last) {
+                    regions[index].elements.push(last);
+                }
+            }
+        }
+        regions.retain(|region| !region.elements.is_empty());
+        mesh.regions = regions;
+        Ok(mesh)
+    }
+}
