@@ -4,7 +4,8 @@ use super::SteadySliding;
 use super::algebra::add_scaled;
 use crate::error::Result;
 use crate::linalg::{SparseMatrix, SparseVector};
-use crate::system::{ContactMotion, ContactPoint, System};
+use crate::system::{ContactMotion, ContactPoint, Structure, System};
+use faer::sparse::Triplet;
 use std::borrow::Cow;
 
 /// The linearised contact: K_c = Σ U k Uᵀ and C_c = Σ U c Uᵀ with U = \[g t₁ t₂\] of each point that carries load.
@@ -61,6 +62,22 @@ pub fn tangent_stiffness<'a>(system: &'a System, displacement: &[f64]) -> Result
     };
     let geometric = prestress.geometric_stiffness(displacement)?;
     Ok(Cow::Owned(add_scaled(system.n_dofs(), &[(1.0, &system.structure.stiffness), (1.0, &geometric)], &[])))
+}
+
+/// The structure at steady sliding with its contact closed and frictionless: K (+ K_σ) + Σ ∂N/∂δ g gᵀ, for real modes
+/// of the rig in contact. Those modes need an inertia count of the closed structure, so here, and only here, the
+/// contact's normal springs are added to a copy of K.
+pub fn closed_structure(system: &System, steady: &SteadySliding) -> Result<Structure> {
+    let stiffness = tangent_stiffness(system, &steady.displacement)?;
+    let mut springs = Vec::new();
+    for ((_, point), state) in system.points().zip(&steady.points) {
+        let d = state.tangent.by_penetration[0];
+        for (i, a) in point.normal.iter().filter(|_| d != 0.0) {
+            springs.extend(point.normal.iter().map(|(j, b)| Triplet::new(i, j, d * (a * b))));
+        }
+    }
+    let stiffness = add_scaled(system.n_dofs(), &[(1.0, stiffness.as_ref())], &springs);
+    Ok(Structure { stiffness, ..system.structure.clone() })
 }
 
 /// r_c(u, u̇) = Σ \[g N − t₁ F₁ − t₂ F₂\] \[N, N m\], with δ = approach − gap + gᵀu and the pairs' own sliding velocity.

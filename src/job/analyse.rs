@@ -9,7 +9,7 @@ use crate::modal::{self, Wanted};
 use crate::progress::Observer;
 use crate::results::{self, ComplexResult, NamedModes, ResultsFile, RunResults, SteadyResult};
 use crate::stability;
-use crate::system::System;
+use crate::system::Structure;
 use std::path::Path;
 use std::time::Instant;
 
@@ -128,7 +128,7 @@ pub fn analyse(
             }
         }
         if selection.cea {
-            let complex = complex_result(prepared, &mut system, state, &mut clock, observer)?;
+            let complex = complex_result(prepared, state, &mut clock, observer)?;
             if let Some(complex) = complex {
                 record(Stage::Complex(&complex))?;
                 results.complex = Some(complex);
@@ -161,18 +161,20 @@ fn steady_result(prepared: &Prepared, state: SteadySliding) -> SteadyResult {
 
 fn complex_result(
     prepared: &Prepared,
-    system: &mut System,
     state: &SteadySliding,
     clock: &mut Clock,
     observer: &dyn Observer,
 ) -> Result<Option<ComplexResult>> {
     let Some(cea) = &prepared.case.cea else { return Ok(None) };
+    let mut system = prepared.system.clone();
+    let stiffness = equilibrium::tangent_stiffness(&prepared.system, &state.displacement)?.into_owned();
+    let preloaded = Structure { stiffness, ..prepared.system.structure.clone() };
     let (basis, factor) = clock.time("real modes of the whole", || {
-        modal::compute(&system.structure, Wanted::BelowHz(cea.basis_below), observer)
+        modal::compute(&preloaded, Wanted::BelowHz(cea.basis_below), observer)
     })?;
     add_modal_damping(&mut system.structure, &basis, prepared)?;
     let modes = clock.time("complex eigenvalues", || {
-        stability::complex_modes(system, state, &basis, &factor, cea.band, observer)
+        stability::complex_modes(&system, state, &basis, &factor, cea.band, observer)
     })?;
     let real = named(prepared, "whole", basis, &prepared.assembled);
     let labels = labels(prepared, &real, &prepared.assembled);

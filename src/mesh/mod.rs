@@ -102,6 +102,16 @@ impl Element {
     }
 }
 
+/// The length of the unit `m`, `cm`, `mm` or `in` \[m\]; metres for any other word.
+pub fn unit_in_metres(unit: &str) -> f64 {
+    match unit {
+        "mm" => 1e-3,
+        "cm" => 1e-2,
+        "in" => 0.0254,
+        _ => 1.0,
+    }
+}
+
 impl Mesh {
     /// The region called `name`.
     pub fn region(&self, name: &str) -> Option<&Region> {
