@@ -9,7 +9,7 @@ use super::view::{Fit, Vector, View, along, cross, dot};
 use crate::modal::DiscModeName;
 use crate::results::{ComparedRow, Geometry, NamedModes, RunResults};
 
-const COLUMNS: usize = 5;
+const MOST_COLUMNS: usize = 5;
 const MOST: usize = 30;
 const CELL: [f64; 2] = [196.0, 226.0];
 const MARGIN: f64 = 14.0;
@@ -27,15 +27,16 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let rows: Vec<ComparedRow> = comparisons.clone().flat_map(|m| m.compare(&results.modes)).collect();
     let scale = comparisons.map(|m| m.frequency_scale).next();
     let shown = &groups[..groups.len().min(MOST)];
-    let columns = shown.len().min(COLUMNS).max(3) as f64;
-    let lines = shown.len().div_ceil(COLUMNS) as f64;
-    let mut sheet = Sheet::new(columns * CELL[0] + 2.0 * MARGIN, lines * CELL[1] + FOOT + MARGIN);
+    let lines = shown.len().div_ceil(MOST_COLUMNS);
+    let columns = shown.len().div_ceil(lines);
+    let foot = lines as f64 * CELL[1] + 0.5 * MARGIN;
+    let mut sheet = Sheet::new(columns.max(4) as f64 * CELL[0] + 2.0 * MARGIN, foot + FOOT);
     for (k, group) in shown.iter().enumerate() {
-        let corner = [MARGIN + (k % COLUMNS) as f64 * CELL[0], 0.5 * MARGIN + (k / COLUMNS) as f64 * CELL[1]];
+        let corner = [MARGIN + (k % columns) as f64 * CELL[0], 0.5 * MARGIN + (k / columns) as f64 * CELL[1]];
         let row = rows.iter().find(|row| row.mode.is_some_and(|mode| group.modes.contains(&mode)));
         draw_mode(&mut sheet, corner, &disc, set, group, (row, scale));
     }
-    draw_legend(&mut sheet, lines * CELL[1] + 0.5 * MARGIN, scale);
+    draw_legend(&mut sheet, foot, scale);
     let more = if groups.len() > shown.len() { format!("; the first {MOST}") } else { String::new() };
     let caption = format!(
         "Bending modes of {} by (nodal diameters, nodal circles), ×2: two modes at one frequency{more}.",
@@ -118,7 +119,7 @@ impl Disc {
     /// nothing but round-off.
     fn lively(&self, w: &[f64]) -> Vec<[usize; 3]> {
         let held = |t: &[usize; 3]| t.iter().filter(|k| self.held[**k]).count() >= 2;
-        let moves = |t: &[usize; 3]| t.iter().any(|k| w[*k].abs() > 0.01);
+        let moves = |t: &[usize; 3]| t.iter().any(|k| w[*k].abs() > 1e-3);
         self.triangles.iter().filter(|t| moves(t) && !held(t)).copied().collect()
     }
 
@@ -194,13 +195,13 @@ fn draw_mode(
     let ink = Ink { size: 15.0, colour: INK, bold: true, anchor: Anchor::Middle };
     let y = corner[1] + 15.0 + 2.0 * radius + 24.0;
     sheet.text([centre_x, y], &title, ink);
-    let small = Ink { size: 13.0, colour: MUTED, bold: false, anchor: Anchor::Middle };
+    let small = Ink { size: 12.5, colour: MUTED, bold: false, anchor: Anchor::Middle };
     match row {
         Some(row) => {
             let difference =
                 row.difference_percent().map_or(String::new(), |d| format!(" ({} %)", signed(d, 1)));
             let text = format!("measured {} Hz{difference}", given(row.measured_hz));
-            sheet.text([centre_x, y + 18.0], &text, Ink { colour: MEASURED, bold: true, ..small });
+            sheet.text([centre_x, y + 18.0], &text, Ink { colour: MEASURED, ..small });
         }
         None if scale.is_some() => sheet.text([centre_x, y + 18.0], "no measured peak paired", small),
         None => {}
@@ -225,7 +226,7 @@ fn draw_legend(sheet: &mut Sheet, top: f64, scale: Option<f64>) {
         sheet.text([left + place * width, y + 29.0], text, ink);
     }
     let ink = Ink { anchor: Anchor::Start, ..ink };
-    let x = left + width + 22.0;
+    let x = left + width + 40.0;
     sheet.text([x, y + 12.0], "deflection w along the disc's axis", ink);
     sheet.lines(
         [&[[x, y + 25.0], [x + 22.0, y + 25.0]][..]],

@@ -6,10 +6,14 @@
 //!
 //! A table is made once ([`tables`]) and shown in either form; a picture is a pure function from the results to SVG.
 
+mod budget;
+mod chart;
 mod colours;
+mod contact;
 mod contours;
 mod disc_modes;
 mod format;
+mod growth;
 mod html;
 mod rig;
 mod svg;
@@ -36,7 +40,14 @@ pub fn write_report(dir: &Path, results: &RunResults) -> Result<()> {
 
 /// Every picture that the run has something for.
 fn pictures(results: &RunResults) -> Vec<Picture> {
-    [rig::picture(results), disc_modes::picture(results)].into_iter().flatten().collect()
+    let all = [
+        rig::picture(results),
+        disc_modes::picture(results),
+        contact::picture(results),
+        growth::picture(results),
+        budget::picture(results),
+    ];
+    all.into_iter().flatten().collect()
 }
 
 #[cfg(test)]

@@ -35,8 +35,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     }
     draw_legend(&mut sheet, geometry, results.steady.is_some());
     draw_axes(&mut sheet, &view, &fit);
-    let caption = "The model at rest, seen from the side the slider moves to.".to_string();
-    let caption = if arrows.is_empty() { "The model at rest.".to_string() } else { caption };
+    let caption = "The model at rest, as the analyses saw it.".to_string();
     Some(Picture { file: "rig.svg", caption, svg: sheet.finish() })
 }
 
@@ -153,10 +152,10 @@ fn arrows(geometry: &Geometry, steady: &SteadyResult) -> Vec<Arrow> {
     arrows
 }
 
-/// How far the model reaches from `from` along `direction` \[m\].
+/// How far the plates reach from `from` along `direction` \[m\].
 fn extent(geometry: &Geometry, direction: Vector, from: Vector) -> f64 {
-    let reach =
-        geometry.elements.iter().flatten().map(|k| dot(along(geometry.nodes[*k], -1.0, from), direction));
+    let plates = geometry.elements.iter().filter(|e| e.len() >= 3);
+    let reach = plates.flatten().map(|k| dot(along(geometry.nodes[*k], -1.0, from), direction));
     reach.fold(0.0, f64::max)
 }
 
