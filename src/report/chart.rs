@@ -5,6 +5,9 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::error::Error;
 
+/// The typeface of the page and of the hand-drawn pictures.
+const FONT: &str = "system-ui, 'Segoe UI', Helvetica, Arial, sans-serif";
+
 /// A sheet, or a part of one, to draw on.
 pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
@@ -31,12 +34,12 @@ pub(super) fn colour(hex: &str) -> RGBColor {
 
 /// Text of `pixels` height; plotters draws a font at 1/1.24 of the size it is told.
 pub(super) fn text(pixels: f64, hex: &str) -> TextStyle<'static> {
-    ("sans-serif", pixels * 1.24).into_font().color(&colour(hex))
+    (FONT, pixels * 1.24).into_font().color(&colour(hex))
 }
 
 /// The same in bold.
 pub(super) fn bold(pixels: f64, hex: &str) -> TextStyle<'static> {
-    ("sans-serif", pixels * 1.24).into_font().style(FontStyle::Bold).color(&colour(hex))
+    (FONT, pixels * 1.24).into_font().style(FontStyle::Bold).color(&colour(hex))
 }
 
 /// Hangs a text from the middle of its lower edge.

@@ -26,7 +26,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
         }
     };
     let caption = format!(
-        "Growth rate of the complex modes: above zero a mode grows. Triangles: more strongly damped than the axis shows.{squeal}"
+        "Growth rate of the complex modes: above zero a mode grows (orange), below it dies away (grey; a triangle where it lies below the axis).{squeal}"
     );
     Some(Picture { file: "growth.svg", caption, svg })
 }
@@ -84,7 +84,7 @@ fn draw(area: &super::chart::Area, complex: &ComplexResult) -> Result<(), Box<dy
         let drop = if near { 22 } else { 6 };
         let (x, y) = chart.backend_coord(&(*hz, up.end));
         area.draw_text(
-            &format!("squeal {}", given(*hz)),
+            &format!("squeal {} Hz", given(*hz)),
             &below(bold(12.5, MEASURED)),
             local(area, x, y + drop),
         )?;
@@ -112,8 +112,11 @@ fn draw(area: &super::chart::Area, complex: &ComplexResult) -> Result<(), Box<dy
             continue;
         }
         let (x, mut y) = chart.backend_coord(&place);
+        // A label is about 160 wide and stays on the plot.
+        let std::ops::Range { start: left, end: right } = chart.plotting_area().get_x_axis_pixel_range();
+        let x = x.clamp(left + 85, right - 85);
         y -= 12;
-        while taken.iter().any(|(u, v)| (u - x).abs() < 150 && (v - y).abs() < 34) {
+        while taken.iter().any(|(u, v)| (u - x).abs() < 160 && (v - y).abs() < 34) {
             y -= 6;
         }
         taken.push((x, y));
