@@ -1,1 +1,76 @@
-//! (room in preparation)
+//! The report: tables for the terminal and the page, pictures as SVG, and one self-contained HTML page.
+//!
+//! * [`text`]: the tables that the command line prints.
+//! * [`write_report`]: `report.html` and the pictures `rig.svg`, `modes_disc.svg`, `contact.svg`, `growth.svg`,
+//!   `growth_budget.svg`, those of them that the run has something for.
+//!
+//! A table is made once ([`tables`]) and shown in either form; a picture is a pure function from the results to SVG.
+
+mod budget;
+mod chart;
+mod colours;
+mod contact;
+mod contours;
+mod disc_modes;
+mod format;
+mod growth;
+mod html;
+mod rig;
+mod svg;
+mod tables;
+pub mod text;
+mod view;
+
+use crate::error::Result;
+use crate::results::{RunResults, write_atomically};
+use html::Picture;
+use std::path::Path;
+
+/// Writes `report.html` and its pictures into the folder `dir`.
+///
+/// # Errors
+/// [`crate::error::Error::Io`] when the folder cannot be made or a file not be written.
+pub fn write_report(dir: &Path, results: &RunResults) -> Result<()> {
+    let pictures = pictures(results);
+    for picture in &pictures {
+        write_atomically(dir, picture.file, picture.svg.as_bytes())?;
+    }
+    write_atomically(dir, "report.html", html::page(results, &pictures).as_bytes())
+}
+
+/// Every picture that the run has something for.
+fn pictures(results: &RunResults) -> Vec<Picture> {
+    let all = [
+        rig::picture(results),
+        disc_modes::picture(results),
+        contact::picture(results),
+        growth::picture(results),
+        budget::picture(results),
+    ];
+    all.into_iter().flatten().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::sample;
+
+    /// For people: leaves the made-up run's whole folder in the system's folder for temporary files.
+    #[test]
+    #[ignore = "leaves a folder to look at"]
+    fn sample_folder() {
+        let dir = std::env::temp_dir().join("stridor_sample");
+        let results = sample::rig();
+        let mut file = crate::results::ResultsFile::create(&dir).unwrap();
+        file.write_case(&results).unwrap();
+        file.write_geometry(&results.geometry).unwrap();
+        results.modes.iter().for_each(|set| file.write_modes(set).unwrap());
+        file.write_measured(&results.measured).unwrap();
+        file.write_steady(results.steady.as_ref().unwrap()).unwrap();
+        file.write_complex(results.complex.as_ref().unwrap()).unwrap();
+        crate::results::write_files(&dir, &results).unwrap();
+        write_report(&dir, &results).unwrap();
+        std::fs::write(dir.join("stdout.txt"), text::summary(&results)).unwrap();
+        file.finish(&results).unwrap();
+    }
+}

@@ -8,13 +8,13 @@
 //!
 //! | group | datasets |
 //! |---|---|
-//! | `/case` | `resolved_toml`, `assumptions`, `warnings` |
+//! | `/case` | `resolved_toml`, `assumptions` |
 //! | `/geometry` | `nodes`, `element_nodes`, `element_offsets`, `element_part`, `part_names` |
 //! | `/modes/<set>` | `frequency_hz`, `shapes`, `nodal_diameters`, `nodal_circles`, `backward_error`, `effective_mass` |
 //! | `/measured/<k>` | `frequency_hz`, `mode` |
 //! | `/steady` | `displacement`, `approach`, contact points with forces and tangents, pairs |
 //! | `/complex` | `eigenvalue`, `right`, `left`, errors, `growth_…`, `participation` |
-//! | `/timings` | `phase`, `wall_time` |
+//! | `/timings`, `/warnings` | `phase`, `wall_time`; sentences |
 
 use super::folder::{FileNames, prepare_folder, refusal};
 use super::{ComplexResult, Geometry, MeasuredComparison, NamedModes, NodalField, RunResults, SteadyResult};
@@ -25,6 +25,9 @@ use hdf5::types::VarLenUnicode;
 use hdf5::{Group, H5Type};
 use ndarray::{Array1, Array2, Array3, ArrayView, ArrayViewD, Dimension};
 use std::path::{Path, PathBuf};
+
+/// Units of a mass-normalised displacement and rotation: φᵀMφ = 1.
+const SHAPE_UNITS: &str = "1/√kg, 1/(m √kg)";
 
 /// The results file of a run under way.
 #[derive(Debug)]
@@ -67,8 +70,9 @@ impl ResultsFile {
             let size = &results.size;
             attribute(&group, "dofs", &(size.dofs as u64))?;
             attribute(&group, "stiffness_nonzeros", &(size.nonzeros as u64))?;
-            let toml = std::slice::from_ref(&results.resolved_case);
-            texts(&group, "resolved_toml", toml, "the case with every default written out, as TOML")?;
+            let toml = group.new_dataset::<VarLenUnicode>().create("resolved_toml")?;
+            toml.write_scalar(&unicode(&results.resolved_case))?;
+            describe(&toml, "text", "the case with every default written out, as TOML")?;
             texts(
                 &group,
                 "assumptions",
@@ -190,7 +194,7 @@ fn write_mode_set(root: &Group, name: &str, set: &NamedModes) -> hdf5::Result<()
     group.list("frequency_hz", &hz, "Hz", "natural frequencies, ascending")?;
     group.list("eigenvalue", &set.modes.eigenvalues, "rad²/s²", "ω² as computed")?;
     let story = "mass-normalised shapes: mode × node × (ux, uy, uz, rx, ry, rz)";
-    group.write("shapes", fields(&set.shapes).view(), "m/√(kg m²), rad/√(kg m²)", story)?;
+    group.write("shapes", fields(&set.shapes).view(), SHAPE_UNITS, story)?;
     let named = |count: fn(&crate::modal::DiscModeName) -> usize| -> Vec<i32> {
         set.names.iter().map(|name| name.as_ref().map_or(-1, |name| count(name) as i32)).collect()
     };
@@ -272,10 +276,15 @@ fn write_complex(root: &Group, complex: &ComplexResult) -> hdf5::Result<()> {
     group.list("growth_transverse_friction", &of(|m| m.growth.transverse_friction), "1/s", part)?;
     group.list("growth_mode_coupling", &of(|m| m.growth.mode_coupling), "1/s", part)?;
     let story = "φ at every node, φᴴMφ = 1: mode × node × (ux, uy, uz, rx, ry, rz)";
-    group.write("right", fields(&complex.shapes).view(), "m/√(kg m²), rad/√(kg m²)", story)?;
+    group.write("right", fields(&complex.shapes).view(), SHAPE_UNITS, story)?;
     let n_dofs = modes.first().map_or(0, |m| m.left.len());
     let left = Array2::from_shape_fn((modes.len(), n_dofs), |(m, i)| modes[m].left[i]);
-    group.write("left", left.view(), "1", "ψ on the free degrees of freedom of the solver, ψᴴQ(λ) = 0")?;
+    group.write(
+        "left",
+        left.view(),
+        SHAPE_UNITS,
+        "ψ on the free degrees of freedom of the solver, ψᴴQ(λ) = 0",
+    )?;
     let n_real = modes.iter().flat_map(|m| &m.participation).map(|(k, _)| k + 1).max().unwrap_or(0);
     let mut share = Array2::<f64>::zeros((modes.len(), n_real));
     for (m, mode) in modes.iter().enumerate() {
@@ -312,8 +321,7 @@ impl Datasets {
             builder.create(name)?
         };
         dataset.write(data)?;
-        text_attribute(&dataset, "units", units)?;
-        text_attribute(&dataset, "description", description)
+        describe(&dataset, units, description)
     }
 }
 
@@ -322,8 +330,12 @@ fn texts(group: &Group, name: &str, texts: &[String], description: &str) -> hdf5
     let values: Array1<VarLenUnicode> = texts.iter().map(|text| unicode(text)).collect();
     let dataset = group.new_dataset::<VarLenUnicode>().shape(values.len()).create(name)?;
     dataset.write(values.view())?;
-    text_attribute(&dataset, "units", "text")?;
-    text_attribute(&dataset, "description", description)
+    describe(&dataset, "text", description)
+}
+
+fn describe(dataset: &hdf5::Dataset, units: &str, description: &str) -> hdf5::Result<()> {
+    text_attribute(dataset, "units", units)?;
+    text_attribute(dataset, "description", description)
 }
 
 fn attribute<T: H5Type>(group: &Group, name: &str, value: &T) -> hdf5::Result<()> {
@@ -378,14 +390,14 @@ mod tests {
         write_all(dir.path(), &results);
         let file = hdf5::File::open(dir.path().join("results.h5")).unwrap();
         assert!(file.attr("complete").unwrap().read_scalar::<bool>().unwrap());
-        let toml = file.dataset("case/resolved_toml").unwrap().read_1d::<VarLenUnicode>().unwrap();
-        assert_eq!(toml[0].as_str(), results.resolved_case);
+        let toml = file.dataset("case/resolved_toml").unwrap().read_scalar::<VarLenUnicode>().unwrap();
+        assert_eq!(toml.as_str(), results.resolved_case);
         let shapes = file.dataset("modes/disc/shapes").unwrap();
         assert_eq!(shapes.shape(), [results.modes[0].modes.len(), results.geometry.nodes.len(), 6]);
         assert_eq!(shapes.read::<f64, ndarray::Ix3>().unwrap(), fields(&results.modes[0].shapes));
         assert_eq!(
             shapes.attr("units").unwrap().read_scalar::<VarLenUnicode>().unwrap().as_str(),
-            "m/√(kg m²), rad/√(kg m²)"
+            SHAPE_UNITS
         );
         assert!(file.group("modes/rig_with_closed_contact").is_ok());
         let eigenvalues = file.dataset("complex/eigenvalue").unwrap().read_1d::<c64>().unwrap();

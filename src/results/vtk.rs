@@ -1,6 +1,6 @@
 //! ParaView files: the mesh in its rest position with one vector array a mode (`.vtu`, binary XML).
 //!
-//! Real modes are `mode_01`, `mode_02` … \[m\], mass-normalised. Complex modes are `mode_01_re` and `mode_01_im`:
+//! Real modes are `mode_01`, `mode_02` … \[1/√kg\], mass-normalised. Complex modes are `mode_01_re` and `mode_01_im`:
 //! the motion is Re(φ e^{iωt}) = re cos ωt − im sin ωt, which ParaView's calculator animates. The cell array `part`
 //! counts the parts from 0 in the order of the case.
 

@@ -1,0 +1,51 @@
+//! Colours that stay apart in print and for the colour-blind.
+
+/// What stands out: unstable, closed (vermilion of Okabe and Ito's set).
+pub(super) const ALARM: &str = "#d55e00";
+/// What is calm: stable, open.
+pub(super) const CALM: &str = "#8a949e";
+/// What was measured (their blue).
+pub(super) const MEASURED: &str = "#0072b2";
+/// Text and axes.
+pub(super) const INK: &str = "#1b1f24";
+/// Secondary text.
+pub(super) const MUTED: &str = "#5b6570";
+
+/// Fill and outline of the parts, in turn: light fills, so that marks on them can be read.
+pub(super) const PARTS: [[&str; 2]; 6] = [
+    ["#bcd7ea", "#4a7fa5"],
+    ["#efe3c8", "#a58a4c"],
+    ["#59636e", "#2f363d"],
+    ["#cfe6d8", "#4e9270"],
+    ["#ead0de", "#a06488"],
+    ["#dcdfe3", "#7b858f"],
+];
+
+/// Blue – white – red for `value` in \[−1, 1\]: equal lightness at equal distance from zero, so that red and blue are
+/// not the only hint and the zero is light.
+pub(super) fn diverging(value: f64) -> String {
+    const STOPS: [[f64; 3]; 5] = [
+        [33.0, 82.0, 156.0],
+        [116.0, 167.0, 207.0],
+        [247.0, 247.0, 247.0],
+        [239.0, 153.0, 118.0],
+        [172.0, 34.0, 44.0],
+    ];
+    let place = 2.0 * (value.clamp(-1.0, 1.0) + 1.0);
+    let k = (place as usize).min(STOPS.len() - 2);
+    let t = place - k as f64;
+    let [r, g, b] = [0, 1, 2].map(|c| (STOPS[k][c] + t * (STOPS[k + 1][c] - STOPS[k][c])).round() as u8);
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ends_and_the_middle_are_where_they_belong() {
+        assert_eq!(diverging(-1.0), "#21529c");
+        assert_eq!(diverging(0.0), "#f7f7f7");
+        assert_eq!(diverging(7.0), "#ac222c");
+    }
+}

@@ -1,0 +1,281 @@
+//! `modes_disc.svg`: every bending mode of the disc face-on, its nodal lines, and the measured frequency beside it.
+
+use super::colours::{INK, MEASURED, MUTED, diverging};
+use super::contours::at_least;
+use super::format::{fixed, given, signed};
+use super::html::Picture;
+use super::svg::{Anchor, Ink, Point, Sheet};
+use super::view::{Fit, Vector, View, along, cross, dot};
+use crate::modal::DiscModeName;
+use crate::results::{ComparedRow, Geometry, NamedModes, RunResults};
+
+const MOST_COLUMNS: usize = 5;
+const MOST: usize = 30;
+const CELL: [f64; 2] = [196.0, 226.0];
+const MARGIN: f64 = 14.0;
+const FOOT: f64 = 62.0;
+/// Half the number of colour steps.
+const STEPS: i32 = 6;
+
+/// The picture, when a set of modes has named ones.
+pub(super) fn picture(results: &RunResults) -> Option<Picture> {
+    let index = chosen_set(results)?;
+    let set = &results.modes[index];
+    let disc = Disc::new(&results.geometry, set)?;
+    let groups = groups(set);
+    let comparisons = results.measured.iter().filter(|m| m.modes == index);
+    let rows: Vec<ComparedRow> = comparisons.clone().flat_map(|m| m.compare(&results.modes)).collect();
+    let scale = comparisons.map(|m| m.frequency_scale).next();
+    let shown = &groups[..groups.len().min(MOST)];
+    let lines = shown.len().div_ceil(MOST_COLUMNS);
+    let columns = shown.len().div_ceil(lines);
+    let foot = lines as f64 * CELL[1] + 0.5 * MARGIN;
+    let mut sheet = Sheet::new(columns.max(4) as f64 * CELL[0] + 2.0 * MARGIN, foot + FOOT);
+    for (k, group) in shown.iter().enumerate() {
+        let corner = [MARGIN + (k % columns) as f64 * CELL[0], 0.5 * MARGIN + (k / columns) as f64 * CELL[1]];
+        let row = rows.iter().find(|row| row.mode.is_some_and(|mode| group.modes.contains(&mode)));
+        draw_mode(&mut sheet, corner, &disc, set, group, (row, scale));
+    }
+    draw_legend(&mut sheet, foot, scale);
+    let more = if groups.len() > shown.len() { format!("; the first {MOST}") } else { String::new() };
+    let caption = format!(
+        "Bending modes of {} by (nodal diameters, nodal circles), ×2: two modes at one frequency{more}.",
+        set.name
+    );
+    Some(Picture { file: "modes_disc.svg", caption, svg: sheet.finish() })
+}
+
+/// The set with measured frequencies, or the first, among those whose modes have names.
+fn chosen_set(results: &RunResults) -> Option<usize> {
+    let named = |k: &usize| results.modes.get(*k).is_some_and(|set| set.names.iter().any(Option::is_some));
+    results.measured.iter().map(|m| m.modes).find(named).or((0..results.modes.len()).find(named))
+}
+
+/// Modes of one name at one frequency: a disc's double modes.
+struct Group {
+    name: DiscModeName,
+    modes: Vec<usize>,
+}
+
+fn groups(set: &NamedModes) -> Vec<Group> {
+    let mut groups: Vec<Group> = vec![];
+    for (k, name) in set.names.iter().enumerate().take(set.shapes.len()) {
+        let Some(name) = *name else { continue };
+        let hz = set.modes.frequency_hz(k);
+        let same = |group: &&mut Group| {
+            let first = set.modes.frequency_hz(group.modes[0]);
+            group.name == name && group.modes.len() < 2 && (hz - first).abs() <= 2e-3 * first
+        };
+        match groups.iter_mut().rev().find(same) {
+            Some(group) => group.modes.push(k),
+            None => groups.push(Group { name, modes: vec![k] }),
+        }
+    }
+    groups
+}
+
+/// The disc seen along its axis.
+struct Disc {
+    nodes: Vec<usize>,
+    points: Vec<[f64; 2]>,
+    triangles: Vec<[usize; 3]>,
+    normal: Vector,
+    /// Nodes at rest in every mode: a clamped hub.
+    held: Vec<bool>,
+}
+
+impl Disc {
+    fn new(geometry: &Geometry, set: &NamedModes) -> Option<Self> {
+        let part = disc_part(geometry, set)?;
+        let faces =
+            geometry.elements.iter().zip(&geometry.part_of).filter(|(e, p)| **p == part && e.len() >= 3);
+        let corners: Vec<[usize; 3]> =
+            faces.flat_map(|(e, _)| (2..e.len()).map(|k| [e[0], e[k - 1], e[k]])).collect();
+        let mut nodes: Vec<usize> = corners.iter().flatten().copied().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let local = |node: &usize| nodes.binary_search(node).expect("collected from the same corners");
+        let triangles: Vec<[usize; 3]> =
+            corners.iter().map(|c| [local(&c[0]), local(&c[1]), local(&c[2])]).collect();
+        let area = |[a, b, c]: &[usize; 3]| {
+            let [a, b, c] = [*a, *b, *c].map(|k| geometry.nodes[k]);
+            cross(along(b, -1.0, a), along(c, -1.0, a))
+        };
+        // The faces may be turned either way; the first decides.
+        let first = area(corners.first()?);
+        let sum = corners.iter().map(area).fold([0.0; 3], |sum, n| along(sum, dot(n, first).signum(), n));
+        let eye = if sum[0] < 0.0 { sum.map(|c| -c) } else { sum };
+        let view = View::facing(eye)?;
+        let points = nodes.iter().map(|k| view.project(geometry.nodes[*k])).collect();
+        let mut disc = Disc { held: vec![true; nodes.len()], points, triangles, normal: view.towards, nodes };
+        for shape in &set.shapes {
+            let w = disc.deflection(shape);
+            disc.held.iter_mut().zip(&w).for_each(|(held, w)| *held &= w.abs() < 1e-6);
+        }
+        Some(disc)
+    }
+
+    /// The triangles in which the zero of w is a nodal line. Along a clamped hub w is zero too, and next to it
+    /// nothing but round-off.
+    fn lively(&self, w: &[f64]) -> Vec<[usize; 3]> {
+        let held = |t: &[usize; 3]| t.iter().filter(|k| self.held[**k]).count() >= 2;
+        let moves = |t: &[usize; 3]| t.iter().any(|k| w[*k].abs() > 1e-3);
+        self.triangles.iter().filter(|t| moves(t) && !held(t)).copied().collect()
+    }
+
+    /// Displacement along the axis, scaled to 1 at its largest.
+    fn deflection(&self, shape: &[[f64; 6]]) -> Vec<f64> {
+        let w: Vec<f64> =
+            self.nodes.iter().map(|k| dot([shape[*k][0], shape[*k][1], shape[*k][2]], self.normal)).collect();
+        let largest = w.iter().copied().max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(1.0);
+        let scale = if largest == 0.0 || !largest.is_finite() { 1.0 } else { largest };
+        w.iter().map(|w| w / scale).collect()
+    }
+}
+
+/// The part that bears the set's name, or the plate that moves most in its modes.
+fn disc_part(geometry: &Geometry, set: &NamedModes) -> Option<usize> {
+    let motion = |part: usize| -> f64 {
+        let faces =
+            geometry.elements.iter().zip(&geometry.part_of).filter(|(e, p)| **p == part && e.len() >= 3);
+        let nodes: Vec<usize> = faces.flat_map(|(e, _)| e.iter().copied()).collect();
+        let shape = |shape: &Vec<[f64; 6]>| -> f64 {
+            nodes.iter().map(|k| shape[*k][..3].iter().map(|u| u * u).sum::<f64>()).sum()
+        };
+        let named = set.shapes.iter().zip(&set.names).filter(|(_, name)| name.is_some());
+        named.map(|(s, _)| shape(s)).sum::<f64>() / nodes.len().max(1) as f64
+    };
+    let by_name = geometry.parts.iter().position(|part| *part == set.name).filter(|part| motion(*part) > 0.0);
+    by_name.or_else(|| {
+        let parts = (0..geometry.parts.len()).map(|part| (part, motion(part))).filter(|(_, m)| *m > 0.0);
+        parts.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(part, _)| part)
+    })
+}
+
+fn draw_mode(
+    sheet: &mut Sheet,
+    corner: Point,
+    disc: &Disc,
+    set: &NamedModes,
+    group: &Group,
+    (row, scale): (Option<&ComparedRow>, Option<f64>),
+) {
+    let radius = 74.0;
+    let centre_x = corner[0] + 0.5 * CELL[0];
+    if row.is_some() {
+        let style = format!("rx=\"8\" fill=\"#eef5fa\" stroke=\"{MEASURED}\" stroke-width=\"1.2\"");
+        sheet.rectangle([corner[0] + 5.0, corner[1] + 5.0], [CELL[0] - 10.0, CELL[1] - 10.0], &style);
+    }
+    let fit = Fit::new(
+        disc.points.iter().copied(),
+        [centre_x - radius, corner[1] + 15.0],
+        [2.0 * radius, 2.0 * radius],
+    );
+    let pixels: Vec<Point> = disc.points.iter().map(|p| fit.pixel(*p)).collect();
+    let w = disc.deflection(&set.shapes[group.modes[0]]);
+    for step in -STEPS..STEPS {
+        let level = if step == -STEPS { f64::NEG_INFINITY } else { f64::from(step) / f64::from(STEPS) };
+        let region = at_least(&pixels, &disc.triangles, &w, level);
+        let colour = diverging((f64::from(step) + 0.5) / f64::from(STEPS));
+        let outline =
+            if step == -STEPS { format!(" stroke=\"{MUTED}\" stroke-width=\"1.6\"") } else { String::new() };
+        if !region.loops.is_empty() {
+            sheet.polygons(region.loops.iter().map(Vec::as_slice), &format!("fill=\"{colour}\"{outline}"));
+        }
+    }
+    let nodal = at_least(&pixels, &disc.lively(&w), &w, 0.0).level_lines;
+    if !nodal.is_empty() {
+        let style = format!("stroke=\"{INK}\" stroke-width=\"1.8\" stroke-linecap=\"round\"");
+        sheet.lines(nodal.iter().map(|line| &line[..]), &style);
+    }
+    let DiscModeName { nodal_diameters: n, nodal_circles: s } = group.name;
+    let times = if group.modes.len() > 1 { " ×2" } else { "" };
+    let hz = scale.unwrap_or(1.0) * set.modes.frequency_hz(group.modes[0]);
+    let title = format!("({n}, {s}){times}  {} Hz", fixed(hz, if hz < 1000.0 { 1 } else { 0 }));
+    let ink = Ink { size: 15.0, colour: INK, bold: true, anchor: Anchor::Middle };
+    let y = corner[1] + 15.0 + 2.0 * radius + 24.0;
+    sheet.text([centre_x, y], &title, ink);
+    let small = Ink { size: 12.5, colour: MUTED, bold: false, anchor: Anchor::Middle };
+    match row {
+        Some(row) => {
+            let difference =
+                row.difference_percent().map_or(String::new(), |d| format!(" ({} %)", signed(d, 1)));
+            let text = format!("measured {} Hz{difference}", given(row.measured_hz));
+            sheet.text([centre_x, y + 18.0], &text, Ink { colour: MEASURED, ..small });
+        }
+        None if scale.is_some() => sheet.text([centre_x, y + 18.0], "no measured peak paired", small),
+        None => {}
+    }
+}
+
+fn draw_legend(sheet: &mut Sheet, top: f64, scale: Option<f64>) {
+    let (left, y, step) = (MARGIN + 16.0, top + 14.0, 16.0);
+    for k in -STEPS..STEPS {
+        let x = left + step * f64::from(k + STEPS);
+        let colour = diverging((f64::from(k) + 0.5) / f64::from(STEPS));
+        sheet.rectangle([x, y], [step + 0.3, 14.0], &format!("fill=\"{colour}\""));
+    }
+    let width = 2.0 * f64::from(STEPS) * step;
+    sheet.rectangle(
+        [left, y],
+        [width, 14.0],
+        &format!("fill=\"none\" stroke=\"{MUTED}\" stroke-width=\"0.8\""),
+    );
+    let ink = Ink { size: 12.5, colour: INK, bold: false, anchor: Anchor::Middle };
+    for (place, text) in [(0.0, "−max"), (0.5, "0"), (1.0, "+max")] {
+        sheet.text([left + place * width, y + 29.0], text, ink);
+    }
+    let ink = Ink { anchor: Anchor::Start, ..ink };
+    let x = left + width + 40.0;
+    sheet.text([x, y + 12.0], "deflection w along the disc's axis", ink);
+    sheet.lines(
+        [&[[x, y + 25.0], [x + 22.0, y + 25.0]][..]],
+        &format!("stroke=\"{INK}\" stroke-width=\"1.8\""),
+    );
+    let scaled = match scale {
+        Some(scale) if scale != 1.0 => format!(" · frequencies: computed × {} (assumed scale)", given(scale)),
+        _ => String::new(),
+    };
+    sheet.text([x + 28.0, y + 29.0], &format!("nodal line{scaled}"), ink);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::sample;
+
+    #[test]
+    fn double_modes_share_a_disc_and_measured_ones_are_framed() {
+        let results = sample::rig();
+        let groups = groups(&results.modes[0]);
+        assert_eq!(groups.len(), 11);
+        assert_eq!(groups.iter().map(|g| g.modes.len()).sum::<usize>(), results.modes[0].modes.len());
+        let svg = picture(&results).unwrap().svg;
+        assert!(svg.contains("(4, 0) ×2  947.5 Hz") && svg.contains("measured 936 Hz (+1.2 %)"));
+        assert_eq!(svg.matches("no measured peak paired").count(), 8);
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+    }
+
+    #[test]
+    fn the_nodal_lines_are_where_the_shape_vanishes() {
+        let results = sample::rig();
+        let set = &results.modes[0];
+        let disc = Disc::new(&results.geometry, set).unwrap();
+        let k = set.names.iter().position(|n| n.is_some_and(|n| n.nodal_circles == 1)).unwrap();
+        let w = disc.deflection(&set.shapes[k]);
+        let lines = at_least(&disc.points, &disc.lively(&w), &w, 0.0).level_lines;
+        assert!(lines.len() > 100);
+        // The sample's (0, 1) shape vanishes at ξ = 0.8 of the way from hub (21 mm) to rim (75 mm): r = 64.2 mm.
+        let centre = View::facing(disc.normal).unwrap().project(tilted_centre(&results));
+        for [a, _] in lines {
+            let r = (a[0] - centre[0]).hypot(a[1] - centre[1]);
+            assert!((r - 0.0642).abs() < 4e-4, "{r}");
+        }
+    }
+
+    fn tilted_centre(results: &RunResults) -> Vector {
+        let bar =
+            results.geometry.elements.iter().zip(&results.geometry.part_of).find(|(_, p)| **p == 2).unwrap();
+        results.geometry.nodes[bar.0[0]]
+    }
+}

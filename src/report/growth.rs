@@ -1,0 +1,170 @@
+//! `growth.svg`: growth rate over frequency, unstable modes marked, measured squeal as bands.
+
+use super::chart::{above, below, bold, colour, sheet, text, widened};
+use super::colours::{ALARM, CALM, INK, MEASURED, MUTED};
+use super::format::{fixed, given, signed};
+use super::html::Picture;
+use super::tables::SQUEAL_TOLERANCE;
+use crate::results::{ComplexResult, RunResults};
+use plotters::prelude::*;
+use std::error::Error;
+
+const SIZE: (u32, u32) = (980, 520);
+/// Stable modes farther below zero than this many times the largest growth are drawn at the lower edge.
+const DEEPEST: f64 = 2.0;
+/// Unstable modes with a label; the others have their mark only.
+const LABELS: usize = 10;
+
+/// The picture, when the run has complex modes.
+pub(super) fn picture(results: &RunResults) -> Option<Picture> {
+    let complex = results.complex.as_ref().filter(|c| !c.modes.modes.is_empty())?;
+    let svg = sheet(SIZE, |area| draw(area, complex))?;
+    let squeal = match complex.measured_squeal_hz.is_empty() {
+        true => String::new(),
+        false => {
+            format!(" Bands: measured squeal ± {} %.", fixed(100.0 * SQUEAL_TOLERANCE, 0))
+        }
+    };
+    let caption = format!(
+        "Growth rate of the complex modes: above zero a mode grows (orange), below it dies away (grey; a triangle where it lies below the axis).{squeal}"
+    );
+    Some(Picture { file: "growth.svg", caption, svg })
+}
+
+/// What the axis of the growth rate spans.
+fn growth_range(complex: &ComplexResult) -> std::ops::Range<f64> {
+    let rates = || complex.modes.modes.iter().map(|m| m.growth_rate()).filter(|s| s.is_finite());
+    let highest = rates().fold(0.0, f64::max);
+    let lowest = rates().fold(0.0, f64::min);
+    let floor = if highest > 0.0 { lowest.max(-DEEPEST * highest) } else { lowest };
+    let length = (highest - floor).max(f64::MIN_POSITIVE);
+    // Room above for the labels of modes and bands.
+    let range = widened(floor, highest + 0.3 * length, 0.06);
+    if range.end - range.start < 1e-9 { -1.0..1.0 } else { range }
+}
+
+fn draw(area: &super::chart::Area, complex: &ComplexResult) -> Result<(), Box<dyn Error>> {
+    let modes = &complex.modes.modes;
+    let frequencies =
+        modes.iter().map(|m| m.frequency_hz()).chain(complex.measured_squeal_hz.iter().map(|s| s.0));
+    let (low, high) = frequencies
+        .filter(|hz| hz.is_finite())
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), hz| (low.min(hz), high.max(hz)));
+    let across = widened(low, high, 0.05);
+    let up = growth_range(complex);
+    let mut chart = ChartBuilder::on(area)
+        .margin(16)
+        .x_label_area_size(52)
+        .y_label_area_size(78)
+        .build_cartesian_2d(across.clone(), up.clone())?;
+    chart
+        .configure_mesh()
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(colour("#e6e9ed"))
+        .axis_style(colour(MUTED))
+        .label_style(text(13.0, INK))
+        .axis_desc_style(text(14.0, INK))
+        .x_desc("frequency [Hz]")
+        .y_desc("growth rate σ [1/s]")
+        .x_labels(10)
+        .x_label_formatter(&|hz| given(*hz))
+        .y_label_formatter(&|sigma| given(*sigma))
+        .draw()?;
+    let band = colour(MEASURED);
+    for (k, (hz, _)) in complex.measured_squeal_hz.iter().enumerate() {
+        let (left, right) = (hz * (1.0 - SQUEAL_TOLERANCE), hz * (1.0 + SQUEAL_TOLERANCE));
+        chart.draw_series([Rectangle::new([(left, up.start), (right, up.end)], band.mix(0.13).filled())])?;
+        chart.draw_series([PathElement::new(
+            [(*hz, up.start), (*hz, up.end)],
+            band.mix(0.55).stroke_width(1),
+        )])?;
+        let near = complex.measured_squeal_hz[..k]
+            .iter()
+            .any(|(other, _)| (other - hz).abs() < 0.09 * (across.end - across.start));
+        let drop = if near { 22 } else { 6 };
+        let (x, y) = chart.backend_coord(&(*hz, up.end));
+        area.draw_text(
+            &format!("squeal {} Hz", given(*hz)),
+            &below(bold(12.5, MEASURED)),
+            local(area, x, y + drop),
+        )?;
+    }
+    chart.draw_series([PathElement::new(
+        [(across.start, 0.0), (across.end, 0.0)],
+        colour(INK).stroke_width(2),
+    )])?;
+    for mode in modes.iter().filter(|m| !m.unstable()) {
+        let place = (mode.frequency_hz(), mode.growth_rate());
+        if place.1 < up.start {
+            chart.draw_series([TriangleMarker::new((place.0, up.start), -6, colour(CALM).filled())])?;
+        } else {
+            chart.draw_series([Circle::new(place, 4, colour(CALM).filled())])?;
+        }
+    }
+    let mut unstable: Vec<_> = modes.iter().filter(|m| m.unstable()).collect();
+    unstable.sort_by(|a, b| b.growth_rate().total_cmp(&a.growth_rate()));
+    let mut taken: Vec<(i32, i32)> = vec![];
+    for (k, mode) in unstable.iter().enumerate() {
+        let place = (mode.frequency_hz(), mode.growth_rate());
+        chart.draw_series([PathElement::new([(place.0, 0.0), place], colour(ALARM).stroke_width(2))])?;
+        chart.draw_series([Circle::new(place, 6, colour(ALARM).filled())])?;
+        if k >= LABELS {
+            continue;
+        }
+        let (x, mut y) = chart.backend_coord(&place);
+        // A label is about 160 wide and stays on the plot.
+        let std::ops::Range { start: left, end: right } = chart.plotting_area().get_x_axis_pixel_range();
+        let x = x.clamp(left + 85, right - 85);
+        y -= 12;
+        while taken.iter().any(|(u, v)| (u - x).abs() < 160 && (v - y).abs() < 34) {
+            y -= 6;
+        }
+        taken.push((x, y));
+        let rates =
+            format!("σ {}/s, ζ {} %", signed(mode.growth_rate(), 1), signed(100.0 * mode.damping_ratio(), 2));
+        area.draw_text(
+            &format!("{} Hz", fixed(mode.frequency_hz(), 0)),
+            &above(bold(13.5, ALARM)),
+            local(area, x, y - 15),
+        )?;
+        area.draw_text(&rates, &above(text(12.0, INK)), local(area, x, y))?;
+    }
+    Ok(())
+}
+
+/// A pixel of the whole sheet as a pixel of `area`.
+fn local(area: &super::chart::Area, x: i32, y: i32) -> (i32, i32) {
+    let (left, top) = area.get_base_pixel();
+    (x - left, y - top)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::c64;
+    use crate::results::sample;
+
+    #[test]
+    fn unstable_modes_are_labelled_and_a_deep_one_does_not_flatten_the_picture() {
+        let results = sample::rig();
+        let svg = picture(&results).unwrap().svg;
+        for label in ["942 Hz", "1668 Hz", "2604 Hz", "squeal 936", "squeal 1661", "squeal 2600"] {
+            assert!(svg.contains(label), "{label}");
+        }
+        // The strongest growth is 111.8 1/s; the mode at −642 1/s is off the axis.
+        assert!(growth_range(results.complex.as_ref().unwrap()).start > -260.0);
+        assert!(!svg.contains("NaN"));
+    }
+
+    #[test]
+    fn undamped_and_single_modes_draw_too() {
+        let mut results = sample::rig();
+        let complex = results.complex.as_mut().unwrap();
+        complex.modes.modes.truncate(1);
+        complex.modes.modes[0].eigenvalue = c64::new(0.0, 1000.0);
+        complex.measured_squeal_hz.clear();
+        assert!(picture(&results).unwrap().svg.contains("growth rate"));
+        results.complex.as_mut().unwrap().modes.modes.clear();
+        assert!(picture(&results).is_none());
+    }
+}

@@ -1,0 +1,260 @@
+//! `rig.svg`: the model as the analyses saw it, with its contact points, load and sliding direction.
+
+use super::colours::{ALARM, INK, MEASURED, MUTED, PARTS};
+use super::format::given;
+use super::html::Picture;
+use super::svg::{Anchor, Ink, Point, Sheet};
+use super::view::{Fit, Vector, View, along, dot};
+use crate::results::{Geometry, RunResults, SteadyResult};
+use std::collections::BTreeMap;
+
+const SIZE: [f64; 2] = [860.0, 560.0];
+/// Element edges closer than this [px] would make a grey patch: only outlines are drawn then.
+const FINEST_EDGE: f64 = 2.5;
+
+/// The picture, when the model has a mesh.
+pub(super) fn picture(results: &RunResults) -> Option<Picture> {
+    let geometry = &results.geometry;
+    if geometry.elements.is_empty() {
+        return None;
+    }
+    let view = View::facing([0.68, -0.85, 0.55])?;
+    let arrows = results.steady.as_ref().map(|steady| arrows(geometry, steady)).unwrap_or_default();
+    let used = geometry.elements.iter().flatten().map(|k| geometry.nodes[*k]);
+    let ends = arrows.iter().flat_map(|arrow| [arrow.tail, arrow.head]);
+    let places = used.chain(ends).map(|place| view.project(place));
+    let fit = Fit::new(places, [70.0, 66.0], [SIZE[0] - 200.0, SIZE[1] - 132.0]);
+    let pixel = |place: Vector| fit.pixel(view.project(place));
+    let mut sheet = Sheet::new(SIZE[0], SIZE[1]);
+    draw_elements(&mut sheet, geometry, &view, &fit);
+    if let Some(steady) = &results.steady {
+        draw_points(&mut sheet, steady, pixel);
+    }
+    for arrow in &arrows {
+        draw_arrow(&mut sheet, arrow, pixel);
+    }
+    draw_legend(&mut sheet, geometry, results.steady.is_some());
+    draw_axes(&mut sheet, &view, &fit);
+    let caption = "The model at rest, as the analyses saw it.".to_string();
+    Some(Picture { file: "rig.svg", caption, svg: sheet.finish() })
+}
+
+/// Elements from the farthest to the nearest (the painter's algorithm); stretches of one part share a path.
+fn draw_elements(sheet: &mut Sheet, geometry: &Geometry, view: &View, fit: &Fit) {
+    let centre = |element: &[usize]| {
+        let sum = element.iter().fold([0.0; 3], |sum, k| along(sum, 1.0, geometry.nodes[*k]));
+        sum.map(|c| c / element.len().max(1) as f64)
+    };
+    let mut order: Vec<(f64, usize)> =
+        geometry.elements.iter().enumerate().map(|(k, e)| (view.nearness(centre(e)), k)).collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let outline = outlines(geometry);
+    let pixels = |element: &[usize]| -> Vec<Point> {
+        element.iter().map(|k| fit.pixel(view.project(geometry.nodes[*k]))).collect()
+    };
+    let fine = fineness(geometry) * fit.scale() < FINEST_EDGE;
+    let kind = |k: usize| (geometry.part_of[k], geometry.elements[k].len().min(3));
+    for stretch in order.chunk_by(|a, b| kind(a.1) == kind(b.1)) {
+        let (part, corners) = kind(stretch[0].1);
+        let [fill, edge] = PARTS[part % PARTS.len()];
+        let shapes: Vec<Vec<Point>> = stretch.iter().map(|(_, k)| pixels(&geometry.elements[*k])).collect();
+        match corners {
+            1 => shapes.iter().for_each(|s| sheet.circle(s[0], 4.0, &format!("fill=\"{edge}\""))),
+            2 => {
+                let line = shapes.iter().map(Vec::as_slice);
+                sheet.lines(line, &format!("stroke=\"{edge}\" stroke-width=\"7\" stroke-linecap=\"round\""));
+            }
+            _ => {
+                // A stroke of the fill's own colour closes the hairlines between neighbours.
+                let stroke = if fine {
+                    format!("stroke=\"{fill}\" stroke-width=\"0.7\"")
+                } else {
+                    format!("stroke=\"{edge}\" stroke-width=\"0.5\" stroke-opacity=\"0.55\"")
+                };
+                sheet.polygons(shapes.iter().map(Vec::as_slice), &format!("fill=\"{fill}\" {stroke}"));
+                let sides: Vec<Vec<Point>> = stretch
+                    .iter()
+                    .filter_map(|(_, k)| outline.get(k))
+                    .flatten()
+                    .map(|side| pixels(side))
+                    .collect();
+                if !sides.is_empty() {
+                    let style = format!("stroke=\"{edge}\" stroke-width=\"1.6\" stroke-linecap=\"round\"");
+                    sheet.lines(sides.iter().map(Vec::as_slice), &style);
+                }
+            }
+        }
+    }
+}
+
+/// The sides of each face that no other face of its part shares.
+fn outlines(geometry: &Geometry) -> BTreeMap<usize, Vec<[usize; 2]>> {
+    let mut sides: BTreeMap<(usize, usize, usize), (usize, usize)> = BTreeMap::new();
+    for (k, element) in geometry.elements.iter().enumerate().filter(|(_, e)| e.len() >= 3) {
+        for (i, a) in element.iter().enumerate() {
+            let b = element[(i + 1) % element.len()];
+            let entry = sides.entry((geometry.part_of[k], *a.min(&b), *a.max(&b))).or_insert((k, 0));
+            entry.1 += 1;
+        }
+    }
+    let mut outlines: BTreeMap<usize, Vec<[usize; 2]>> = BTreeMap::new();
+    for ((_, a, b), (k, uses)) in sides {
+        if uses == 1 {
+            outlines.entry(k).or_default().push([a, b]);
+        }
+    }
+    outlines
+}
+
+/// The median length of the faces' first sides \[m\].
+fn fineness(geometry: &Geometry) -> f64 {
+    let faces = geometry.elements.iter().filter(|e| e.len() >= 3);
+    let side = |e: &Vec<usize>| {
+        let d = along(geometry.nodes[e[1]], -1.0, geometry.nodes[e[0]]);
+        dot(d, d).sqrt()
+    };
+    let mut sides: Vec<f64> = faces.map(side).collect();
+    sides.sort_by(f64::total_cmp);
+    sides.get(sides.len() / 2).copied().unwrap_or(f64::INFINITY)
+}
+
+/// An arrow in space with its label at the tail or the head.
+struct Arrow {
+    tail: Vector,
+    head: Vector,
+    label: String,
+    colour: &'static str,
+    label_at_head: bool,
+}
+
+/// Load and sliding velocity of every pair, drawn just outside the model.
+fn arrows(geometry: &Geometry, steady: &SteadyResult) -> Vec<Arrow> {
+    let mut arrows = vec![];
+    let size = extent(geometry, [1.0, 0.0, 0.0], [0.0; 3])
+        .max(extent(geometry, [0.0, 1.0, 0.0], [0.0; 3]))
+        .max(extent(geometry, [0.0, 0.0, 1.0], [0.0; 3]));
+    for ((name, load, velocity), [press, slide]) in steady.pairs.iter().zip(&steady.directions) {
+        let all: Vec<Vector> =
+            steady.points.iter().filter(|(pair, _)| pair == name).map(|(_, p)| *p).collect();
+        let centre = all.iter().fold([0.0; 3], |sum, p| along(sum, 1.0 / all.len() as f64, *p));
+        let above = extent(geometry, press.map(|c| -c), centre);
+        let label = format!("load {} N", given(*load));
+        let (tail, head) =
+            (along(centre, -above - 0.24 * size, *press), along(centre, -above - 0.03 * size, *press));
+        arrows.push(Arrow { tail, head, label, colour: ALARM, label_at_head: false });
+        let direction = if *velocity < 0.0 { slide.map(|c| -c) } else { *slide };
+        let ahead = extent(geometry, direction, centre);
+        let label = format!("sliding {} m/s", given(velocity.abs()));
+        let (tail, head) =
+            (along(centre, ahead + 0.03 * size, direction), along(centre, ahead + 0.2 * size, direction));
+        arrows.push(Arrow { tail, head, label, colour: MEASURED, label_at_head: true });
+    }
+    arrows
+}
+
+/// How far the plates reach from `from` along `direction` \[m\].
+fn extent(geometry: &Geometry, direction: Vector, from: Vector) -> f64 {
+    let plates = geometry.elements.iter().filter(|e| e.len() >= 3);
+    let reach = plates.flatten().map(|k| dot(along(geometry.nodes[*k], -1.0, from), direction));
+    reach.fold(0.0, f64::max)
+}
+
+fn draw_arrow(sheet: &mut Sheet, arrow: &Arrow, pixel: impl Fn(Vector) -> Point) {
+    let (tail, head) = (pixel(arrow.tail), pixel(arrow.head));
+    sheet.arrow(tail, head, arrow.colour, 4.0);
+    let ink = Ink { size: 15.0, colour: arrow.colour, bold: true, anchor: Anchor::Middle };
+    let place = if arrow.label_at_head { head } else { tail };
+    let below = if arrow.label_at_head { 22.0 } else { -9.0 };
+    sheet.text([place[0], place[1] + below], &arrow.label, ink);
+}
+
+/// Closed points filled, open ones hollow.
+fn draw_points(sheet: &mut Sheet, steady: &SteadyResult, pixel: impl Fn(Vector) -> Point) {
+    let states = steady.points.iter().zip(&steady.state.points);
+    let (closed, open): (Vec<_>, Vec<_>) = states.partition(|(_, state)| state.closed());
+    for ((_, place), _) in open {
+        sheet.circle(pixel(*place), 2.0, &format!("fill=\"#ffffff\" stroke=\"{MUTED}\" stroke-width=\"1\""));
+    }
+    for ((_, place), _) in closed {
+        sheet.circle(
+            pixel(*place),
+            3.2,
+            &format!("fill=\"{ALARM}\" stroke=\"#ffffff\" stroke-width=\"0.7\""),
+        );
+    }
+}
+
+fn draw_legend(sheet: &mut Sheet, geometry: &Geometry, contact: bool) {
+    let ink = Ink { size: 14.0, colour: INK, bold: false, anchor: Anchor::Start };
+    let (x, mut y) = (22.0, 26.0);
+    for (k, part) in geometry.parts.iter().enumerate() {
+        let [fill, edge] = PARTS[k % PARTS.len()];
+        let style = format!("fill=\"{fill}\" stroke=\"{edge}\" stroke-width=\"1.4\"");
+        sheet.rectangle([x, y - 11.0], [18.0, 13.0], &style);
+        sheet.text([x + 27.0, y], part, ink);
+        y += 23.0;
+    }
+    if contact {
+        let closed = format!("fill=\"{ALARM}\"");
+        let open = format!("fill=\"#ffffff\" stroke=\"{MUTED}\" stroke-width=\"1.2\"");
+        for (style, text) in [(closed, "contact point, closed"), (open, "contact point, open")] {
+            sheet.circle([x + 9.0, y - 5.0], 4.0, &style);
+            sheet.text([x + 27.0, y], text, ink);
+            y += 23.0;
+        }
+    }
+}
+
+/// The three axes and a scale bar in the lower right corner.
+fn draw_axes(sheet: &mut Sheet, view: &View, fit: &Fit) {
+    let origin = [SIZE[0] - 86.0, SIZE[1] - 92.0];
+    for (axis, name) in [([1.0, 0.0, 0.0], "x"), ([0.0, 1.0, 0.0], "y"), ([0.0, 0.0, 1.0], "z")] {
+        let [right, up] = view.project(axis);
+        let at = |length: f64| [origin[0] + length * right, origin[1] - length * up];
+        sheet.arrow(origin, at(42.0), MUTED, 2.2);
+        let ink = Ink { size: 14.0, colour: MUTED, bold: true, anchor: Anchor::Middle };
+        let [x, y] = at(54.0);
+        sheet.text([x, y + 5.0], name, ink);
+    }
+    // The longest of 1, 2, 5 × 10ᵏ m that fits.
+    let longest = 110.0 / fit.scale();
+    let decade = 10_f64.powf(longest.log10().floor());
+    let length = [5.0, 2.0, 1.0].map(|m| m * decade).into_iter().find(|l| *l <= longest).unwrap_or(decade);
+    let (x, y, width) = (SIZE[0] - 30.0, SIZE[1] - 34.0, length * fit.scale());
+    let bar = [[x - width, y - 4.0], [x - width, y], [x, y], [x, y - 4.0]];
+    sheet.lines([&bar[..]], &format!("stroke=\"{INK}\" stroke-width=\"1.4\""));
+    let ink = Ink { size: 13.0, colour: INK, bold: false, anchor: Anchor::End };
+    sheet.text([x, y + 17.0], &format!("{} mm", given(1e3 * length)), ink);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::sample;
+
+    #[test]
+    fn parts_points_and_arrows_are_drawn() {
+        let svg = picture(&sample::rig()).unwrap().svg;
+        for label in ["disc", "slider", "bar", "load 20 N", "sliding 0.5 m/s", "50 mm"] {
+            assert!(svg.contains(&format!(">{label}<")), "{label}");
+        }
+        let steady = sample::rig().steady.unwrap();
+        let closed = steady.state.points.iter().filter(|p| p.closed()).count();
+        assert_eq!(svg.matches("r=\"3.2\"").count(), closed);
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+        assert!(picture(&RunResults::default()).is_none());
+    }
+
+    #[test]
+    fn an_outline_is_what_no_neighbour_shares() {
+        let geometry = Geometry {
+            nodes: vec![[0.0; 3]; 4],
+            elements: vec![vec![0, 1, 2], vec![0, 2, 3]],
+            part_of: vec![0, 0],
+            parts: vec!["plate".into()],
+        };
+        let sides = outlines(&geometry);
+        assert_eq!(sides.values().map(Vec::len).sum::<usize>(), 4);
+        assert!(!sides.values().flatten().any(|side| *side == [0, 2]));
+    }
+}

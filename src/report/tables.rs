@@ -1,0 +1,265 @@
+//! The content of the tables, once for the terminal and the page.
+
+use super::format::{fixed, given, power, signed, significant};
+use crate::results::{ComplexResult, NamedModes, RunResults, SteadyResult};
+
+/// A measured squeal frequency and an unstable mode nearer than this share of it are taken for the same.
+pub(super) const SQUEAL_TOLERANCE: f64 = 0.03;
+
+/// A table with its caption and the notes below it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Table {
+    pub caption: String,
+    pub columns: Vec<Column>,
+    pub rows: Vec<Row>,
+    pub notes: Vec<String>,
+}
+
+/// A column's heading and whether it holds words (set left) or numbers (set right).
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Column {
+    pub heading: &'static str,
+    pub words: bool,
+}
+
+/// A row; `marked` rows stand out.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Row {
+    pub cells: Vec<String>,
+    pub marked: bool,
+}
+
+impl Table {
+    /// An empty table; a heading that begins with `<` is that of a column of words.
+    fn new(caption: impl Into<String>, headings: &[&'static str]) -> Self {
+        let column = |heading: &&'static str| match heading.strip_prefix('<') {
+            Some(heading) => Column { heading, words: true },
+            None => Column { heading, words: false },
+        };
+        Table {
+            caption: caption.into(),
+            columns: headings.iter().map(column).collect(),
+            rows: vec![],
+            notes: vec![],
+        }
+    }
+
+    fn row(&mut self, cells: Vec<String>, marked: bool) {
+        self.rows.push(Row { cells, marked });
+    }
+}
+
+/// The modes of set `index` beside the measured frequencies that were compared with it.
+pub(super) fn modes(results: &RunResults, index: usize) -> Table {
+    let set = &results.modes[index];
+    let comparisons: Vec<_> = results.measured.iter().filter(|m| m.modes == index).collect();
+    let mut headings = vec!["no.", "f [Hz]"];
+    let named = set.names.iter().any(Option::is_some);
+    if named {
+        headings.push("(n, s)");
+    }
+    let scale = comparisons.first().map_or(1.0, |m| m.frequency_scale);
+    let scaled = scale != 1.0;
+    if scaled {
+        headings.push("scaled [Hz]");
+    }
+    if !comparisons.is_empty() {
+        headings.extend(["measured", "diff. [%]"]);
+    }
+    headings.extend(["m_x [%]", "m_y [%]", "m_z [%]", "η"]);
+    let mut table = Table::new(format!("Real modes: {}", set.name), &headings);
+    let rows: Vec<_> = comparisons.iter().flat_map(|m| m.compare(&results.modes)).collect();
+    for k in 0..set.modes.len() {
+        let mut cells = vec![(k + 1).to_string(), fixed(set.modes.frequency_hz(k), 1)];
+        if named {
+            let name = set.names.get(k).copied().flatten();
+            cells.push(name.map_or("–".into(), |n| format!("({}, {})", n.nodal_diameters, n.nodal_circles)));
+        }
+        let paired = rows.iter().find(|row| row.mode == Some(k));
+        if scaled {
+            cells.push(fixed(scale * set.modes.frequency_hz(k), 1));
+        }
+        if !comparisons.is_empty() {
+            cells.push(paired.map_or(String::new(), |row| given(row.measured_hz)));
+            cells.push(
+                paired.and_then(|row| row.difference_percent()).map_or(String::new(), |d| signed(d, 2)),
+            );
+        }
+        let mass = |axis: usize| set.effective_mass.get(k).map(|m| 100.0 * m[axis] / set.total_mass);
+        cells.extend((0..3).map(|axis| mass(axis).map_or("–".into(), |share| fixed(share, 1))));
+        cells.push(set.modes.backward_errors.get(k).map_or("–".into(), |e| power(*e)));
+        table.row(cells, paired.is_some());
+    }
+    table.notes.push(certificate(set));
+    for comparison in comparisons {
+        table.notes.push(format!("Measured: {}.", comparison.source));
+        if comparison.frequency_scale != 1.0 {
+            let scale = given(comparison.frequency_scale);
+            table
+                .notes
+                .push(format!("Scaled: computed frequencies times {scale}, an assumption of the case."));
+        }
+        let alone = comparison.compare(&results.modes).into_iter().filter(|row| row.computed_hz.is_none());
+        let alone: Vec<String> = alone.map(|row| format!("{} Hz", given(row.measured_hz))).collect();
+        if !alone.is_empty() {
+            table.notes.push(format!("Measured without a computed mode beside it: {}.", alone.join(", ")));
+        }
+    }
+    if named {
+        table.notes.push("(n, s): nodal diameters and circles.".into());
+    }
+    table.notes.push("m: effective mass, share of the total; η: backward error.".into());
+    table
+}
+
+/// The Sturm count in words.
+fn certificate(set: &NamedModes) -> String {
+    let c = &set.modes.certificate;
+    let below = given(c.below_hz);
+    if c.holds() {
+        format!("Counted below {below} Hz: {}, found: {}. None is missing.", c.counted[0], c.found)
+    } else {
+        let [a, b] = c.counted;
+        format!("NOT CERTIFIED: counted below {below} Hz: {a} and {b}, found: {}.", c.found)
+    }
+}
+
+/// Steady sliding, one row a pair.
+pub(super) fn steady(result: &SteadyResult) -> Table {
+    let headings = [
+        "<pair",
+        "load [N]",
+        "V [m/s]",
+        "ΣN [N]",
+        "ΣF₁ [N]",
+        "ΣF₂ [N]",
+        "closed",
+        "open",
+        "deepest [µm]",
+        "approach [µm]",
+    ];
+    let mut table = Table::new("Steady sliding", &headings);
+    for t in result.totals() {
+        let micrometres = |length: Option<f64>| length.map_or("–".into(), |d| significant(1e6 * d, 3));
+        let cells = vec![
+            t.name.to_string(),
+            given(t.load),
+            given(t.sliding_velocity),
+            significant(t.normal_force, 4),
+            significant(t.friction_force[0], 4),
+            significant(t.friction_force[1], 4),
+            t.closed.to_string(),
+            t.open.to_string(),
+            micrometres(t.largest_penetration),
+            micrometres(t.approach),
+        ];
+        table.row(cells, false);
+    }
+    let residual = power(result.state.residual);
+    table.notes.push(format!("{} Newton iterations, relative residual {residual}.", result.state.iterations));
+    table
+}
+
+/// The complex eigenvalues, unstable ones marked.
+pub(super) fn complex(result: &ComplexResult) -> Table {
+    let headings =
+        ["no.", "f [Hz]", "σ [1/s]", "ζ [%]", "<", "η", "|Δλ|/|λ|", "κ", "<real modes that take part"];
+    let mut table = Table::new("Complex eigenvalues at steady sliding", &headings);
+    for (k, mode) in result.modes.modes.iter().enumerate() {
+        let cells = vec![
+            (k + 1).to_string(),
+            fixed(mode.frequency_hz(), 1),
+            signed(mode.growth_rate(), 2),
+            signed(100.0 * mode.damping_ratio(), 3),
+            if mode.unstable() { "UNSTABLE".into() } else { String::new() },
+            power(mode.backward_error),
+            power(mode.eigenvalue_error),
+            significant(mode.condition, 2),
+            result.participation.get(k).cloned().unwrap_or_default(),
+        ];
+        table.row(cells, mode.unstable());
+    }
+    table.notes.push("σ: growth rate; ζ = −σ/|λ|: damping ratio, negative when unstable.".into());
+    table.notes.push("η: backward error; |Δλ|/|λ|: estimated eigenvalue error; κ: condition number.".into());
+    table
+}
+
+/// The unstable modes, the strongest growth first, with the nearest measured squeal.
+pub(super) fn unstable(result: &ComplexResult) -> Table {
+    let headings =
+        ["f [Hz]", "growth rate σ [1/s]", "damping ratio [%]", "grows tenfold in [ms]", "<measured squeal"];
+    let mut table = Table::new("Unstable modes", &headings);
+    let mut modes: Vec<_> = result.modes.modes.iter().filter(|m| m.unstable()).collect();
+    modes.sort_by(|a, b| b.growth_rate().total_cmp(&a.growth_rate()));
+    for mode in modes {
+        let hz = mode.frequency_hz();
+        let squeal = match nearest_squeal(result, hz) {
+            Some(measured) => {
+                let difference = signed(100.0 * (hz / measured - 1.0), 1);
+                format!("{} Hz ({difference} %)", given(measured))
+            }
+            None if result.measured_squeal_hz.is_empty() => "no measurement given".into(),
+            None => format!("none within {} %", fixed(100.0 * SQUEAL_TOLERANCE, 0)),
+        };
+        let cells = vec![
+            fixed(hz, 1),
+            signed(mode.growth_rate(), 2),
+            signed(100.0 * mode.damping_ratio(), 3),
+            significant(1e3 * 10_f64.ln() / mode.growth_rate(), 3),
+            squeal,
+        ];
+        table.row(cells, true);
+    }
+    let unmatched: Vec<String> = result
+        .measured_squeal_hz
+        .iter()
+        .filter(|(hz, _)| !result.modes.modes.iter().any(|m| m.unstable() && near(m.frequency_hz(), *hz)))
+        .map(|(hz, source)| format!("{} Hz ({source})", given(*hz)))
+        .collect();
+    if !unmatched.is_empty() {
+        table.notes.push(format!("Measured squeal without an unstable mode: {}.", unmatched.join(", ")));
+    }
+    table
+}
+
+/// Whether a computed frequency is that of a measured squeal.
+fn near(computed: f64, measured: f64) -> bool {
+    (computed / measured - 1.0).abs() <= SQUEAL_TOLERANCE
+}
+
+/// The measured squeal frequency that `hz` is taken for.
+pub(super) fn nearest_squeal(result: &ComplexResult, hz: f64) -> Option<f64> {
+    let all = result
+        .measured_squeal_hz
+        .iter()
+        .map(|(measured, _)| *measured)
+        .filter(|measured| near(hz, *measured));
+    all.min_by(|a, b| (hz / a - 1.0).abs().total_cmp(&(hz / b - 1.0).abs()))
+}
+
+/// The verdict in one sentence.
+pub(super) fn verdict(results: &RunResults) -> String {
+    let Some(complex) = &results.complex else {
+        return "No complex eigenvalues were asked for: this run says nothing about squeal.".into();
+    };
+    let band = complex.band_hz.map(given);
+    let modes = &complex.modes.modes;
+    let unstable = modes.iter().filter(|m| m.unstable()).count();
+    let between = format!("between {} and {} Hz", band[0], band[1]);
+    match (modes.len(), unstable) {
+        (all, 0) => format!("Stable: none of the {all} complex modes {between} grows."),
+        (all, 1) => format!("Unstable: 1 of {all} complex modes {between} grows."),
+        (all, n) => format!("Unstable: {n} of {all} complex modes {between} grow."),
+    }
+}
+
+/// Where the wall time went.
+pub(super) fn timings(results: &RunResults) -> Table {
+    let mut table = Table::new("Wall time", &["<phase", "seconds"]);
+    for (phase, seconds) in &results.timings {
+        table.row(vec![phase.clone(), significant(*seconds, 3)], false);
+    }
+    let total: f64 = results.timings.iter().map(|(_, seconds)| seconds).sum();
+    table.row(vec!["all".into(), significant(total, 3)], true);
+    table
+}
