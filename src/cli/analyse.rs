@@ -28,7 +28,7 @@ pub fn run(options: &Options, common: &Common, selection: Selection) -> Result<E
     if common.json {
         println!("{}", crate::results::summary_json(&results));
     } else if !common.quiet {
-        print!("{}", report::text(&results));
+        print!("{}", report::text::summary(&results));
         println!("\nResults are in {}: open report.html, or *.vtu in ParaView.", out.display());
     }
     Ok(ExitCode::SUCCESS)

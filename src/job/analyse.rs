@@ -120,7 +120,7 @@ pub fn analyse(
                     (None, count) => Wanted::Count(count.unwrap_or(1)),
                 };
                 let closed = equilibrium::closed_structure(&prepared.system, state)?;
-                let (modes, _) = clock
+                let modes = clock
                     .time(&format!("real modes, {name}"), || modal::compute(&closed, wanted, observer))?;
                 let modes = named(prepared, name, modes, &prepared.assembled);
                 record(Stage::Modes(&modes))?;
@@ -155,6 +155,7 @@ fn steady_result(prepared: &Prepared, state: SteadySliding) -> SteadyResult {
         displacement: prepared.assembled.dofs.expand(&state.displacement),
         points: system.points().map(|(pair, point)| (pair.name.clone(), point.position)).collect(),
         pairs,
+        directions: prepared.arrows(),
         state,
     }
 }
@@ -169,12 +170,12 @@ fn complex_result(
     let mut system = prepared.system.clone();
     let stiffness = equilibrium::tangent_stiffness(&prepared.system, &state.displacement)?.into_owned();
     let preloaded = Structure { stiffness, ..prepared.system.structure.clone() };
-    let (basis, factor) = clock.time("real modes of the whole", || {
+    let basis = clock.time("real modes of the whole", || {
         modal::compute(&preloaded, Wanted::BelowHz(cea.basis_below), observer)
     })?;
     add_modal_damping(&mut system.structure, &basis, prepared)?;
     let modes = clock.time("complex eigenvalues", || {
-        stability::complex_modes(&system, state, &basis, &factor, cea.band, observer)
+        stability::complex_modes(&system, state, &basis, cea.band, observer)
     })?;
     let real = named(prepared, "whole", basis, &prepared.assembled);
     let labels = labels(prepared, &real, &prepared.assembled);
@@ -203,7 +204,19 @@ fn thickness_warnings(prepared: &Prepared) -> Vec<String> {
     let case = prepared.case;
     let asked = case.modes.values().filter_map(|m| m.below).chain(case.cea.iter().map(|c| c.band[1]));
     let highest = asked.fold(0.0, f64::max);
-    crate::structure::thick_plate_warnings(&prepared.model, highest)
+    let errors = crate::structure::thickness_errors(&prepared.model, highest);
+    let worth_saying = errors.iter().filter(|e| e.relative_error > 0.01);
+    worth_saying
+        .map(|e| {
+            format!(
+                "Plate `{}` is thick for Kirchhoff's theory: its modes near {:.0} Hz come out about {:.1} % too high (kh = {:.2})",
+                e.part,
+                e.frequency_hz,
+                100.0 * e.relative_error,
+                e.wavenumber_times_thickness
+            )
+        })
+        .collect()
 }
 
 /// Wall times of the phases.

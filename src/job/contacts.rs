@@ -58,7 +58,7 @@ fn law(name: &str, contact: &Contact) -> Result<SlidingLaw> {
     Ok(match &contact.friction.law {
         FrictionCurve::Coulomb { mu0 } => SlidingLaw::new(normal, Constant(*mu0), regularisation),
         FrictionCurve::Exponential { mu0, mu1, alpha } => {
-            SlidingLaw::new(normal, Exponential { mu0: *mu0, mu1: *mu1, alpha: *alpha }, regularisation)
+            SlidingLaw::new(normal, Exponential { mu_0: *mu0, mu_1: *mu1, alpha: *alpha }, regularisation)
         }
         FrictionCurve::Table { velocity, pressure, mu } => {
             let place = format!("`contact.{name}.friction`");
@@ -185,4 +185,20 @@ fn part_with<'a>(model: &'a Model, nodes: &[usize]) -> Option<&'a ShellPart> {
         own.sort_unstable();
         nodes.iter().all(|n| own.binary_search(n).is_ok())
     })
+}
+
+/// Two unit vectors of a pair, for pictures: where the load presses the body, and where the counter-body moves.
+pub fn arrows(contact: &Contact, model: &Model, points: &[ContactPoint]) -> [[f64; 3]; 2] {
+    let sliding = Vector3::from(contact.sliding_direction) * contact.sliding_velocity;
+    let press = match (contact.into, model.shells.iter().find(|s| s.name == contact.counter)) {
+        (Some(into), _) => Vector3::from(into),
+        (None, Some(counter)) => counter.faces.first().map_or(Vector3::zeros(), |face| {
+            let at = |k: usize| Vector3::from(model.nodes[face.nodes()[k]]);
+            let normal = (at(1) - at(0)).cross(&(at(2) - at(0)));
+            let above: f64 = points.iter().map(|p| (Vector3::from(p.position) - at(0)).dot(&normal)).sum();
+            -above.signum() * normal
+        }),
+        (None, None) => Vector3::zeros(),
+    };
+    [press, sliding].map(|v| v.try_normalize(0.0).unwrap_or_default().into())
 }

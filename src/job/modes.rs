@@ -37,7 +37,7 @@ pub fn part_modes(
             "parts that can move",
         )));
     }
-    let (modes, _) = modal::compute(&assembled.structure, wanted, observer)?;
+    let modes = modal::compute(&assembled.structure, wanted, observer)?;
     Ok(named(prepared, name, modes, &assembled))
 }
 

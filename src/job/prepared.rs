@@ -1,13 +1,13 @@
 //! A case made ready: mesh read and placed, structure assembled, contact pairs built.
 
-use super::contacts::contact_pairs;
+use super::contacts::{arrows, contact_pairs};
 use super::disc::Disc;
 use super::model::whole_model;
 use super::place::place;
 use super::regions::Regions;
 use crate::case::{Case, GeneratedMesh, MeshSource, RigMesh};
 use crate::error::{Faults, Result};
-use crate::mesh::generate::{self, BarSide, BarSpec, DiscSpec, Faces, Grading, PlateSpec, RigSpec};
+use crate::mesh::generate::{self, BarSide, BarSpec, DiscSpec, Grading, PlateSpec, RigSpec};
 use crate::mesh::{self, Mesh};
 use crate::results::{Geometry, ModelSize};
 use crate::structure::{Assembled, Model, assemble};
@@ -95,6 +95,12 @@ impl<'a> Prepared<'a> {
         geometry
     }
 
+    /// Two unit vectors of each pair, for pictures: where the load presses the body, and where the counter-body moves.
+    pub fn arrows(&self) -> Vec<[[f64; 3]; 2]> {
+        let pairs = self.system.pairs.iter();
+        pairs.map(|pair| arrows(&self.case.contact[&pair.name], &self.model, &pair.points)).collect()
+    }
+
     /// Half of the thinnest plate \[m\]: a contact pressed deeper makes no sense.
     pub fn penetration_limit(&self) -> f64 {
         0.5 * self.model.shells.iter().map(|s| s.thickness).fold(f64::INFINITY, f64::min)
@@ -113,12 +119,12 @@ fn read_mesh(case: &Case, source: &MeshSource) -> Result<(Mesh, Vec<String>)> {
         MeshSource::File { file, unit } => mesh::read(&case.folder.join(file), mesh::unit_in_metres(unit))?,
         MeshSource::Generated(GeneratedMesh::Rig(rig)) => generate::rig(&rig_spec(case, rig))?,
         MeshSource::Generated(GeneratedMesh::Annulus { outer_radius, hub_radius, radial, around }) => {
-            generate::structured_annulus(*hub_radius, *outer_radius, *radial, *around, Faces::Triangles)?
+            generate::structured_annulus(*hub_radius, *outer_radius, *radial, *around)?
         }
     };
     let diagnosis = mesh::diagnose(&mesh);
     diagnosis.faults.into_result(())?;
-    Ok((mesh, diagnosis.warnings))
+    Ok((mesh, diagnosis.warnings.iter().map(ToString::to_string).collect()))
 }
 
 fn rig_spec(case: &Case, rig: &RigMesh) -> RigSpec {

@@ -1,5 +1,7 @@
 //! Real modes of the structure, without friction: K φ = ω² M φ.
 
+mod compute;
+pub use compute::{Wanted, compute, effective_mass, name_disc_mode};
 use faer::Mat;
 
 /// Real modes, ascending in frequency, with the proof that none is missing.

@@ -159,9 +159,13 @@ struct Timing<'a> {
 /// # Errors
 /// [`crate::error::Error::Io`] when the folder cannot be made or the file not be written.
 pub fn write_summary(dir: &Path, results: &RunResults) -> Result<()> {
-    let mut text = serde_json::to_string_pretty(&summary(results)).expect("strings, numbers and lists only");
-    text.push('\n');
+    let text = format!("{:#}\n", summary_json(results));
     write_atomically(dir, "summary.json", text.as_bytes())
+}
+
+/// What `summary.json` holds.
+pub fn summary_json(results: &RunResults) -> serde_json::Value {
+    serde_json::to_value(summary(results)).expect("strings, numbers and lists only")
 }
 
 fn summary(results: &RunResults) -> Summary<'_> {

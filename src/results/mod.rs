@@ -23,7 +23,7 @@ pub use csv::write_csv;
 pub use derived::{ComparedRow, PairTotals};
 pub(crate) use folder::write_atomically;
 pub use hdf5::ResultsFile;
-pub use json::{SCHEMA_VERSION, write_summary};
+pub use json::{SCHEMA_VERSION, summary_json, write_summary};
 pub use vtk::write_vtk;
 
 use crate::equilibrium::SteadySliding;

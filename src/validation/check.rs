@@ -1,12 +1,12 @@
 //! Computes the quantities of a validation case and sets them beside their references.
 
-use super::kirchhoff;
+use super::kirchhoff::{Edge, PlateMode, ThinPlate, circular_modes};
 use super::reference::{Check, Kind, Reference};
 use crate::case::Case;
 use crate::error::{Error, Fault, Result};
 use crate::job::{Prepared, Selection, analyse};
 use crate::progress::Observer;
-use crate::results::RunResults;
+use crate::results::{NamedModes, RunResults};
 use std::collections::BTreeMap;
 
 /// One quantity, computed beside its reference.
@@ -80,7 +80,7 @@ impl Runs<'_> {
                 .iter()
                 .try_fold(self.case.clone(), |case, (path, value)| case.with_parameter(path, *value))?;
             let prepared = Prepared::new(&case)?;
-            let results = analyse(&prepared, Selection::ALL, &mut |_, _| Ok(()), self.observer)?;
+            let results = analyse(&prepared, Selection::ALL, &mut |_| Ok(()), self.observer)?;
             self.done.insert(key.clone(), results);
         }
         Ok(&self.done[&key])
@@ -100,7 +100,7 @@ fn largest_growth(results: &RunResults) -> f64 {
 fn compute(runs: &mut Runs, check: &Check) -> Result<f64> {
     match &check.kind {
         Kind::Value(pointer) => {
-            let summary = crate::results::summary(runs.with(&check.set)?);
+            let summary = crate::results::summary_json(runs.with(&check.set)?);
             summary.pointer(pointer).and_then(serde_json::Value::as_f64).ok_or_else(|| {
                 Error::input(Fault::new(
                     format!("`{}`", check.quantity),
@@ -142,15 +142,27 @@ fn compute(runs: &mut Runs, check: &Check) -> Result<f64> {
             let results = runs.with(&check.set)?;
             let computed =
                 results.modes.iter().find(|m| &m.name == modes).ok_or_else(|| missing(check, modes))?;
-            let plate = kirchhoff::Plate::new(&case.material[&shell.material], shell.thickness);
-            let exact = kirchhoff::clamped_annulus(&plate, radii[0], radii[1], below);
-            Ok(largest_error(computed, &exact))
+            let material = &case.material[&shell.material];
+            let plate = ThinPlate {
+                youngs_modulus: material.youngs_modulus,
+                poissons_ratio: material.poissons_ratio,
+                density: material.density,
+                thickness: shell.thickness,
+            };
+            let hub = Some((radii[0], Edge::Clamped));
+            Ok(largest_error(computed, &circular_modes(&plate, radii[1], Edge::Free, hub, below)))
         }
     }
 }
 
-/// The largest relative difference between two sorted lists; infinite when their lengths differ.
-fn largest_error(computed: &crate::results::NamedModes, exact: &[f64]) -> f64 {
+/// The largest relative error of the computed modes; infinite when their number is another. Every exact mode with
+/// nodal diameters stands for two.
+fn largest_error(computed: &NamedModes, exact: &[PlateMode]) -> f64 {
+    let exact = exact.iter().flat_map(|mode| {
+        let twins = if mode.nodal_diameters > 0 { 2 } else { 1 };
+        std::iter::repeat_n(mode.frequency_hz, twins)
+    });
+    let exact: Vec<f64> = exact.collect();
     if computed.modes.len() != exact.len() {
         return f64::INFINITY;
     }
