@@ -55,16 +55,17 @@ impl<'a> Basis<'a> {
             .map(|j| (tolerance * tolerance).max(ROUND_OFF * ROUND_OFF * before[(j, j)]))
             .collect();
         let chosen = pivoted_choice(&mut energy, &floor, limit);
-        let mut new = Mat::<f64>::zeros(z.nrows(), 0);
+        let mut new = Mat::<f64>::zeros(z.nrows(), chosen.len());
+        let mut added = 0;
         for j in chosen {
-            let mut column = Mat::from_fn(z.nrows(), 1, |i, _| z[(i, j)]);
-            if self.normalise_against(&mut column, &new) {
-                new = beside(&new, &column);
+            let mut column = z.subcols(j, 1).to_owned();
+            if self.normalise_against(&mut column, new.subcols(0, added)) {
+                new.subcols_mut(added, 1).copy_from(&column);
+                added += 1;
             }
         }
-        let added = new.ncols();
         if added > 0 {
-            self.append(new);
+            self.append(new.subcols(0, added).to_owned());
         }
         added
     }
@@ -82,7 +83,7 @@ impl<'a> Basis<'a> {
     }
 
     /// M-orthonormalises `column` against the basis and the `new` vectors; false when nothing with mass is left.
-    fn normalise_against(&self, column: &mut Mat<f64>, new: &Mat<f64>) -> bool {
+    fn normalise_against(&self, column: &mut Mat<f64>, new: MatRef<'_, f64>) -> bool {
         const LOST: f64 = 1e-12;
         for _ in 0..2 {
             let inertia = multiply(self.operator.mass, column.as_ref());
@@ -90,8 +91,8 @@ impl<'a> Basis<'a> {
             if !(square.is_finite() && square > 0.0) {
                 return false;
             }
-            let share = gram(new.as_ref(), inertia.as_ref());
-            *column -= product(new.as_ref(), share.as_ref());
+            let share = gram(new, inertia.as_ref());
+            *column -= product(new, share.as_ref());
             self.project_out(column);
             let inertia = multiply(self.operator.mass, column.as_ref());
             let left = gram(column.as_ref(), inertia.as_ref())[(0, 0)];
