@@ -14,5 +14,5 @@ mod table;
 pub use friction::{Coefficient, Constant, Exponential, FrictionCoefficient};
 pub use law::{FrictionSense, SlidingLaw};
 pub use normal::{NormalForce, NormalLaw};
-pub use pairing::{ContactPatch, ContactSide, Surfaces, pair_surfaces};
+pub use pairing::{ContactPatch, ContactSide, Reduce, Surfaces, pair_surfaces};
 pub use table::Table;

@@ -52,6 +52,10 @@ pub enum ContactPatch {
     Nearest(f64),
 }
 
+/// Turns a sum of (node, component of (ux, uy, uz, rx, ry, rz), coefficient) into a vector on the degrees of freedom
+/// of the system: held ones drop out, rigidly linked ones pass to their master.
+pub type Reduce<'a> = dyn Fn(&[(usize, usize, f64)]) -> SparseVector + 'a;
+
 /// The contact points of a pair, in the order of the body's nodes.
 ///
 /// With **d** the vector from a node to its point, a point moves by u + θ × d. For the body's point and its foot on
@@ -62,16 +66,10 @@ pub enum ContactPatch {
 /// * gap = distance along n, positive when open. It is exact at the nodes of a circular rim; between the nodes a
 ///   coarse mesh cuts the circle by a chord, which the points do not see.
 ///
-/// `reduce` turns a sum of (node, component of (ux, uy, uz, rx, ry, rz), coefficient) into a vector on the degrees of
-/// freedom of the system: held ones drop out, rigidly linked ones pass to their master.
-///
 /// # Errors
 /// Contact nodes that are not on the body, a counter-body out of reach (with the distance), beside it, through it, or
 /// left by the stroke.
-pub fn pair_surfaces(
-    surfaces: &Surfaces<'_>,
-    reduce: &dyn Fn(&[(usize, usize, f64)]) -> SparseVector,
-) -> Result<Vec<ContactPoint>> {
+pub fn pair_surfaces(surfaces: &Surfaces<'_>, reduce: &Reduce<'_>) -> Result<Vec<ContactPoint>> {
     let place = format!("contact `{}`", surfaces.name);
     let touching = touching_nodes(surfaces, &place)?;
     let mean = touching.iter().fold([0.0; 3], |sum, t| add(sum, surfaces.nodes[t.node]));
@@ -97,7 +95,7 @@ pub fn pair_surfaces(
         );
         let (length, whole) =
             (dot(along, along).sqrt(), dot(surfaces.sliding_direction, surfaces.sliding_direction));
-        if !(length > 0.1 * whole.sqrt()) {
+        if length.is_nan() || length <= 0.1 * whole.sqrt() {
             let found = format!("{:?}, along the counter-body's normal", surfaces.sliding_direction);
             return Err(Error::input(Fault::new(
                 format!("{place}, sliding direction"),
@@ -297,10 +295,10 @@ fn on_counter(foot: &Foot, half: f64, w: Vector, terms: &mut Vec<(usize, usize, 
     let moment = cross(scale(half, foot.normal), w);
     let force = [w[0], w[1], w[2], moment[0], moment[1], moment[2]];
     let rows = displacement_at(&foot.corners, foot.barycentric);
-    for column in 0..18 {
-        let coefficient: f64 = (0..6).map(|row| force[row] * rows[row][column]).sum();
+    for (node, component) in (0..3).flat_map(|n| (0..6).map(move |c| (n, c))) {
+        let coefficient: f64 = force.iter().zip(&rows).map(|(f, row)| f * row[6 * node + component]).sum();
         if coefficient != 0.0 {
-            terms.push((foot.nodes[column / 6], column % 6, coefficient));
+            terms.push((foot.nodes[node], component, coefficient));
         }
     }
 }

@@ -37,7 +37,7 @@ impl Plate {
         let total = areas.iter().fold([0.0; 3], |sum, a| add(sum, *a));
         let area: f64 = areas.iter().map(|a| dot(*a, *a).sqrt()).sum();
         let length = dot(total, total).sqrt();
-        if !(length > 0.5 * area) {
+        if length.is_nan() || length <= 0.5 * area {
             return None;
         }
         let count = 3.0 * corners.len() as f64;

@@ -60,3 +60,15 @@ pub(crate) fn norm_1(a: &SparseMatrix) -> f64 {
 pub(crate) fn norm_2(x: &[f64]) -> f64 {
     x.iter().map(|v| v * v).sum::<f64>().sqrt()
 }
+
+/// Aᵀ B of two tall matrices, on one thread: the same numbers whatever the number of threads.
+pub(crate) fn gram(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
+    product(a.transpose(), b)
+}
+
+/// A B, on one thread.
+pub(crate) fn product(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
+    let mut c = Mat::zeros(a.nrows(), b.ncols());
+    faer::linalg::matmul::matmul(c.as_mut(), faer::Accum::Replace, a, b, 1.0, faer::Par::Seq);
+    c
+}

@@ -206,18 +206,18 @@ impl<'a> Contact<'a> {
         let mut j = Mat::<f64>::zeros(n + self.loaded.len(), n + self.loaded.len());
         for q in 0..n {
             let slope = laws[q].1.by_penetration;
+            let unknown = self.loaded.iter().position(|k| *k == self.points[q].0).map(|c| n + c);
             for p in 0..n {
                 let by_law = s[(p, q)] * slope[0] - t1[(p, q)] * slope[1] - t2[(p, q)] * slope[2];
                 let identity = if p == q { 1.0 } else { 0.0 };
                 j[(p, q)] = identity - s[(p, q)] * self.condensed.closed[q] + by_law;
-                for (c, k) in self.loaded.iter().enumerate().filter(|(_, k)| **k == self.points[q].0) {
-                    debug_assert_eq!(*k, self.points[q].0);
-                    j[(p, n + c)] += by_law;
+                if let Some(approach) = unknown {
+                    j[(p, approach)] += by_law;
                 }
             }
-            for c in (0..self.loaded.len()).filter(|c| self.loaded[*c] == self.points[q].0) {
-                j[(n + c, q)] += slope[0];
-                j[(n + c, n + c)] += slope[0];
+            if let Some(approach) = unknown {
+                j[(approach, q)] += slope[0];
+                j[(approach, approach)] += slope[0];
             }
         }
         j
@@ -290,11 +290,9 @@ impl<'a> Contact<'a> {
 
 /// The approach at which the undeformed bodies carry the load, by bisection (N grows with the approach).
 fn first_approach(pair: &ContactPair, fraction: Fraction) -> f64 {
-    let Closing::Load(load) = pair.closing else {
-        return match pair.closing {
-            Closing::Approach(a) => a,
-            Closing::Load(_) => unreachable!("handled above"),
-        };
+    let load = match pair.closing {
+        Closing::Approach(approach) => return approach,
+        Closing::Load(load) => load,
     };
     let carried = |a: f64| -> f64 {
         let at = |point: &ContactPoint| {

@@ -98,6 +98,26 @@ fn what_has_no_steady_state_is_explained() {
     let options = SteadyOptions::default();
     assert!(analysis_error(&free_body(false), &options).contains("nothing holds"));
 
+    // A chain of masses that floats in x: singular to round-off only, and the contact acts in y.
+    let link = [3.1, 0.7, 1.9, 2.3];
+    let mut floating = free_body(true);
+    floating.load = vec![0.0; 6];
+    floating.load[5] = -1.0;
+    floating.structure = structure(
+        6,
+        |i, j| f64::from(i == j),
+        |i, j| match (i.min(j), i.max(j)) {
+            (5, 5) => 4.0,
+            (_, 5) => 0.0,
+            (a, b) if a == b => link.get(a).unwrap_or(&0.0) + if a > 0 { link[a - 1] } else { 0.0 },
+            (a, b) if a + 1 == b => -link[a],
+            _ => 0.0,
+        },
+    );
+    floating.pairs[0].points[0].normal = vector(&[(5, -1.0)]);
+    floating.pairs[0].points[0].tangents[0] = vector(&[(2, 1.0)]);
+    assert!(analysis_error(&floating, &options).contains("nothing holds"));
+
     let mut lifted = free_body(true);
     lifted.structure.stiffness = sparse(3, |i, j| if i == j { 9.0 } else { 0.0 });
     lifted.pairs[0].points[0].gap = 1.0;

@@ -1,4 +1,18 @@
 //! Complex eigenvalues at steady sliding: (λ² M + λ (C + C_c) + K + K_σ + K_c) φ = 0, λ = σ + iω, unstable when σ > 0.
+//!
+//! [`complex_modes`] projects the problem on real modes and the static responses to the contact directions, solves the
+//! small one, and lets the residuals on the full order enrich the basis until every pair is right there.
+
+mod analysis;
+mod basis;
+mod block;
+mod budget;
+mod operator;
+mod projected;
+#[cfg(test)]
+mod tests;
+
+pub use analysis::complex_modes;
 
 use crate::linalg::c64;
 
@@ -11,6 +25,8 @@ pub struct ComplexModes {
     pub subspace_dimension: usize,
     /// Rounds of full-order refinement.
     pub refinements: usize,
+    /// What the reader of the modes should know: a count that changed, a mode not accepted, too few real modes.
+    pub warnings: Vec<String>,
 }
 
 /// One complex mode with the measures of its own error.
@@ -26,7 +42,8 @@ pub struct ComplexMode {
     pub backward_error: f64,
     /// Estimated |Δλ| / |λ| from the residuals of both vectors.
     pub eigenvalue_error: f64,
-    /// Condition number of λ: large near coalescence.
+    /// Condition number of λ, 2|λ| ‖ψ‖_M ‖φ‖_M / |ψᴴ(2λM + C + C_c)φ|: 1 for an undamped symmetric system, large near
+    /// coalescence.
     pub condition: f64,
     /// Where the growth comes from.
     pub growth: GrowthBudget,
@@ -37,7 +54,7 @@ pub struct ComplexMode {
 /// The terms of σ in 2σω + ω φᴴ(C + C_c)φ + Im φᴴ(K + K_c)φ = 0 \[1/s\]; they add up to the growth rate.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GrowthBudget {
-    /// C and the loss factors (negative: dissipates).
+    /// C, the loss factors and damping of the contact's normal motion (negative: dissipates).
     pub structural_damping: f64,
     /// Falling friction μ′(v).
     pub falling_friction: f64,
@@ -61,6 +78,11 @@ impl ComplexMode {
     /// −σ/|λ|; negative when unstable.
     pub fn damping_ratio(&self) -> f64 {
         -self.eigenvalue.re / self.eigenvalue.norm()
+    }
+
+    /// Whether η ≤ 1e-10 and the estimated error of λ is within 1e-8 of it.
+    pub fn accepted(&self) -> bool {
+        self.backward_error <= 1e-10 && self.eigenvalue_error <= 1e-8
     }
 
     /// Whether the mode grows.

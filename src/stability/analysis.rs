@@ -1,0 +1,285 @@
+//! The analysis: project, solve, measure on the full order, enrich, repeat.
+
+use super::basis::Basis;
+use super::block::Block;
+use super::budget::growth_budget;
+use super::operator::{Operator, Side};
+use super::projected::{SmallPair, project_contact, solve};
+use super::{ComplexMode, ComplexModes};
+use crate::equilibrium::SteadySliding;
+use crate::equilibrium::algebra::{Factor, add_scaled, multiply, product};
+use crate::error::{Error, Fault, Result};
+use crate::linalg::c64;
+use crate::modal::RealModes;
+use crate::progress::Observer;
+use crate::system::System;
+use faer::Mat;
+use std::f64::consts::TAU;
+
+/// Rounds of enrichment at most.
+const ROUNDS: usize = 6;
+/// The most static contact responses that enter the first basis; the residuals ask for the others where they matter.
+const STATIC_RESPONSES: usize = 240;
+/// Aims of the refinement, below what [`ComplexMode::accepted`] asks.
+const BACKWARD_ERROR: f64 = 5e-11;
+const EIGENVALUE_ERROR: f64 = 1e-10;
+
+/// All complex modes with a frequency in `band_hz` = \[lowest, highest\], of `system` sliding steadily.
+///
+/// * Basis: the real modes (of K + K_σ and M, M-orthonormal, best up to twice the band) and A⁻¹U, A = K + K_σ − s M at
+///   a shift s inside the band, for every direction in which the contact has a force.
+/// * Every pair is measured on the full order. Its corrections z = −A⁻¹Q(λ)φ and, for the left vector, −A⁻¹Q(λ)ᴴψ show
+///   no contact motion, because A⁻¹U is in the basis: so the same real symmetric factor serves every pair, whatever the
+///   friction. They enrich the basis until η and the eigenvalue error are small, in six rounds at most.
+/// * ψᴴQ(λ)φ vanishes identically after a projection, so the error of λ is estimated with the *correction* of the left
+///   vector: |z_ψᴴ Q(λ)φ| / |ψᴴ(2λM + C + C_c)φ|.
+///
+/// Modes with ω = 0 (overdamped, or divergence when σ > 0) are given when the band begins at zero. For them and near
+/// λ = 0 the eigenvalue error is relative to 1e-6 of the band's top rather than to |λ|.
+///
+/// # Errors
+/// A band that is none; real modes of another system; a projected problem that cannot be solved.
+pub fn complex_modes(
+    system: &System,
+    steady: &SteadySliding,
+    real: &RealModes,
+    band_hz: [f64; 2],
+    observer: &dyn Observer,
+) -> Result<ComplexModes> {
+    check(system, steady, real, band_hz)?;
+    observer.begin("complex eigenvalues", None);
+    let modes = analyse(system, steady, real, band_hz, observer);
+    observer.end();
+    modes
+}
+
+fn check(system: &System, steady: &SteadySliding, real: &RealModes, band_hz: [f64; 2]) -> Result<()> {
+    let [low, high] = band_hz;
+    if !(low >= 0.0 && high > low && high.is_finite()) {
+        let found = format!("{low} to {high} Hz");
+        return Err(Error::input(Fault::new("frequency band", found, "0 ≤ lowest < highest")));
+    }
+    let n = system.n_dofs();
+    if steady.displacement.len() != n
+        || steady.points.len() != system.points().count()
+        || real.shapes.nrows() != n
+    {
+        let found = format!("{} and {} degrees of freedom", steady.displacement.len(), real.shapes.nrows());
+        return Err(Error::input(Fault::new(
+            "steady state and real modes",
+            found,
+            format!("{n}, those of the system"),
+        )));
+    }
+    Ok(())
+}
+
+/// The pairs of one round with their full-order measures.
+struct Round {
+    lambda: Vec<c64>,
+    phi: Block,
+    psi: Block,
+    /// −A⁻¹ × residual, right and left.
+    corrections: [Block; 2],
+    backward_error: Vec<f64>,
+    eigenvalue_error: Vec<f64>,
+    condition: Vec<f64>,
+}
+
+fn analyse(
+    system: &System,
+    steady: &SteadySliding,
+    real: &RealModes,
+    band_hz: [f64; 2],
+    observer: &dyn Observer,
+) -> Result<ComplexModes> {
+    let operator = Operator::new(system, steady)?;
+    let band = band_hz.map(|f| TAU * f);
+    let factor = shifted_factor(&operator, real, band)?;
+    let mut basis = Basis::new(&operator, real.shapes.as_ref(), band[1] * band[1]);
+    basis.enrich(contact_responses(&operator, &factor, band[1]), 1e-9, STATIC_RESPONSES);
+    let mut warnings = Vec::new();
+    let mut counts = Vec::new();
+    let mut round = evaluate(&operator, &basis, &factor, band)?;
+    observer.advance(1);
+    let mut refinements = 0;
+    loop {
+        counts.push(round.lambda.len());
+        let open: Vec<usize> = (0..round.lambda.len())
+            .filter(|j| {
+                round.backward_error[*j] > BACKWARD_ERROR || round.eigenvalue_error[*j] > EIGENVALUE_ERROR
+            })
+            .collect();
+        if open.is_empty() || refinements == ROUNDS {
+            break;
+        }
+        // The error of λ is quadratic in that of the vectors: coarse first, so that the basis stays small.
+        let tolerance = 1e-6 * 0.01f64.powi(refinements as i32);
+        if basis.enrich(wanted_corrections(&round, &open, 1e-3 * band[1]), tolerance, usize::MAX) == 0 {
+            break;
+        }
+        refinements += 1;
+        round = evaluate(&operator, &basis, &factor, band)?;
+        observer.advance(1);
+    }
+    if let Some(first) = counts.first().filter(|first| counts.iter().any(|c| c != *first)) {
+        let last = counts.last().unwrap_or(first);
+        warnings.push(format!(
+            "the refinement changed the number of complex modes in the band from {first} to {last}"
+        ));
+    }
+    let modes: Vec<ComplexMode> = (0..round.lambda.len()).map(|j| mode(&operator, &round, real, j)).collect();
+    for mode in modes.iter().filter(|mode| !mode.accepted()) {
+        let cause = if mode.condition > 1e4 { ", near the coalescence of two modes" } else { "" };
+        warnings.push(format!(
+            "the mode at {:.2} Hz is not accurate: relative eigenvalue error {:.1e}, backward error {:.1e}{cause}",
+            mode.frequency_hz(),
+            mode.eigenvalue_error,
+            mode.backward_error
+        ));
+    }
+    if real.len() < system.n_dofs() {
+        let highest = real.len().checked_sub(1).map_or(0.0, |last| real.frequency_hz(last));
+        if highest < band_hz[1] {
+            warnings.push(format!(
+                "the real modes end at {highest:.1} Hz, below the band's top of {:.1} Hz: complex modes may be missing",
+                band_hz[1]
+            ));
+        }
+    }
+    Ok(ComplexModes { modes, subspace_dimension: basis.len(), refinements, warnings })
+}
+
+/// A = K + K_σ − s M, with s in the widest gap between the real modes' ω² near the middle of the band.
+fn shifted_factor(operator: &Operator<'_>, real: &RealModes, band: [f64; 2]) -> Result<Factor> {
+    let middle = 0.5 * (band[0] * band[0] + band[1] * band[1]);
+    let (low, high) = (0.5 * middle, 1.5 * middle);
+    let mut ends = vec![low];
+    ends.extend(real.eigenvalues.iter().copied().filter(|w| *w > low && *w < high));
+    ends.push(high);
+    let widest = ends.windows(2).max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
+    let shift = widest.map_or(middle, |gap| 0.5 * (gap[0] + gap[1]));
+    let at = |s: f64| {
+        let a = add_scaled(operator.n(), &[(1.0, &operator.stiffness), (-s, operator.mass)], &[]);
+        Factor::new(&a)
+    };
+    at(shift).or_else(|| at(-middle)).ok_or_else(|| {
+        Error::analysis(
+            "complex eigenvalues",
+            "K − s M is singular at every shift that was tried",
+            "Check the model for degrees of freedom with neither stiffness nor mass",
+        )
+    })
+}
+
+/// A⁻¹U for the directions in which a contact moves or is moved, each weighed by √(contact stiffness) so that its
+/// E-norm tells how much the contact makes of it.
+fn contact_responses(operator: &Operator<'_>, factor: &Factor, omega: f64) -> Mat<f64> {
+    let mut columns = Vec::new();
+    for (block, u) in &operator.contact {
+        for (d, direction) in u.iter().enumerate() {
+            let size = |a: usize, b: usize| block.stiffness[a][b].abs() + omega * block.damping[a][b].abs();
+            let largest = (0..3).map(|other| size(d, other).max(size(other, d))).fold(0.0, f64::max);
+            if largest > 0.0 && !direction.indices().is_empty() {
+                columns.push((largest.sqrt() / omega, *direction));
+            }
+        }
+    }
+    let mut responses = Mat::<f64>::zeros(operator.n(), columns.len());
+    for (j, (weight, direction)) in columns.iter().enumerate() {
+        direction.add_to(*weight, responses.col_as_slice_mut(j));
+    }
+    factor.solve_in_place(responses.as_mut());
+    responses
+}
+
+fn evaluate(operator: &Operator<'_>, basis: &Basis<'_>, factor: &Factor, band: [f64; 2]) -> Result<Round> {
+    let (contact_damping, contact_stiffness) = project_contact(operator, basis);
+    let wanted = |z: c64| {
+        let oscillates = z.im > 1e-9 * z.norm();
+        let real = z.im.abs() <= 1e-9 * z.norm();
+        (oscillates && z.im >= band[0] && z.im <= band[1]) || (real && band[0] == 0.0 && z.norm() <= band[1])
+    };
+    let pairs = solve(
+        &basis.mass,
+        &(&basis.damping + contact_damping),
+        &(&basis.stiffness + contact_stiffness),
+        basis.hysteretic.as_ref(),
+        wanted,
+    )?;
+    let lambda: Vec<c64> = pairs.iter().map(|p| p.lambda).collect();
+    let expand = |pick: fn(&SmallPair) -> Vec<c64>| {
+        let small: Vec<Vec<c64>> = pairs.iter().map(pick).collect();
+        let mut full =
+            Block::from_columns(basis.len(), &small).map(|y| product(basis.vectors.as_ref(), y.as_ref()));
+        let inertia = full.map(|v| multiply(operator.mass, v.as_ref()));
+        for j in 0..full.ncols() {
+            let norm = full.dot(j, &inertia).re.sqrt();
+            full.scale_column(j, 1.0 / norm);
+        }
+        full
+    };
+    let (phi, psi) = (expand(|p| p.right.clone()), expand(|p| p.left.clone()));
+    let (residual, slope) = operator.apply(Side::Right, &lambda, &phi);
+    let (left_residual, _) = operator.apply(Side::Left, &lambda, &psi);
+    let correct = |r: &Block| {
+        r.map(|v| {
+            let mut z = -v;
+            factor.solve_in_place(z.as_mut());
+            z
+        })
+    };
+    let corrections = [correct(&residual), correct(&left_residual)];
+    let floor = 1e-6 * band[1];
+    let of = |f: &dyn Fn(usize) -> f64| (0..lambda.len()).map(f).collect::<Vec<f64>>();
+    let backward_error = of(&|j| residual.norm(j) / (operator.size(lambda[j]) * phi.norm(j)));
+    let steepness: Vec<f64> = of(&|j| psi.dot(j, &slope).norm());
+    let eigenvalue_error =
+        of(&|j| corrections[1].dot(j, &residual).norm() / (steepness[j] * lambda[j].norm().max(floor)));
+    let condition = of(&|j| 2.0 * lambda[j].norm() / steepness[j]);
+    Ok(Round { lambda, phi, psi, corrections, backward_error, eigenvalue_error, condition })
+}
+
+/// Re and Im of the corrections of the `open` pairs, right and left, each divided by |λ|: their squared E-norm is then
+/// about the relative error of λ that they stand for.
+fn wanted_corrections(round: &Round, open: &[usize], floor: f64) -> Mat<f64> {
+    let n = round.phi.re.nrows();
+    let mut columns: Vec<(&[f64], f64)> = Vec::new();
+    for j in open {
+        let size = 1.0 / round.lambda[*j].norm().max(floor);
+        for z in &round.corrections {
+            columns.push((z.re.col_as_slice(*j), size));
+            columns.push((z.im.col_as_slice(*j), size));
+        }
+    }
+    Mat::from_fn(n, columns.len(), |i, c| columns[c].0[i] * columns[c].1)
+}
+
+fn mode(operator: &Operator<'_>, round: &Round, real: &RealModes, j: usize) -> ComplexMode {
+    let lambda = round.lambda[j];
+    ComplexMode {
+        eigenvalue: lambda,
+        right: round.phi.column(j),
+        left: round.psi.column(j),
+        backward_error: round.backward_error[j],
+        eigenvalue_error: round.eigenvalue_error[j],
+        condition: round.condition[j],
+        growth: growth_budget(operator, lambda, &round.phi, j),
+        participation: participation(operator, &round.phi, real, j),
+    }
+}
+
+/// |φₖᵀMφ|² of every real mode that has at least one part in ten thousand, largest first.
+fn participation(operator: &Operator<'_>, phi: &Block, real: &RealModes, j: usize) -> Vec<(usize, f64)> {
+    let part = |m: &Mat<f64>| multiply(operator.mass, m.subcols(j, 1));
+    let (re, im) = (part(&phi.re), part(&phi.im));
+    let along = |k: usize, v: &Mat<f64>| -> f64 {
+        real.shapes.col_as_slice(k).iter().zip(v.col_as_slice(0)).map(|(a, b)| a * b).sum()
+    };
+    let mut shares: Vec<(usize, f64)> = (0..real.len())
+        .map(|k| (k, along(k, &re).powi(2) + along(k, &im).powi(2)))
+        .filter(|(_, share)| *share >= 1e-4)
+        .collect();
+    shares.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+    shares
+}

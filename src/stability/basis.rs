@@ -1,0 +1,169 @@
+//! The subspace that the quadratic problem is projected on, grown by what the full order asks for.
+
+use super::operator::Operator;
+use crate::equilibrium::algebra::{gram, multiply, product};
+use faer::{Mat, MatRef};
+
+/// An M-orthonormal basis B and the projections BᵀMB, BᵀCB, BᵀKB, BᵀHB, and BᵀU of the contact.
+pub(super) struct Basis<'a> {
+    operator: &'a Operator<'a>,
+    /// E = K + τ M measures how much a direction can matter in the band.
+    tau: f64,
+    pub(super) vectors: Mat<f64>,
+    mass_times: Mat<f64>,
+    pub(super) mass: Mat<f64>,
+    pub(super) damping: Mat<f64>,
+    pub(super) stiffness: Mat<f64>,
+    pub(super) hysteretic: Option<Mat<f64>>,
+    /// One row a basis vector; three columns (g, t₁, t₂) a contact block.
+    pub(super) contact: Mat<f64>,
+}
+
+impl<'a> Basis<'a> {
+    /// Starts from M-orthonormal real modes.
+    pub(super) fn new(operator: &'a Operator<'a>, modes: MatRef<'_, f64>, tau: f64) -> Self {
+        let n = operator.n();
+        let mut basis = Basis {
+            operator,
+            tau,
+            vectors: Mat::zeros(n, 0),
+            mass_times: Mat::zeros(n, 0),
+            mass: Mat::zeros(0, 0),
+            damping: Mat::zeros(0, 0),
+            stiffness: Mat::zeros(0, 0),
+            hysteretic: operator.damping.hysteretic.as_ref().map(|_| Mat::zeros(0, 0)),
+            contact: Mat::zeros(0, 3 * operator.contact.len()),
+        };
+        basis.append(modes.to_owned());
+        basis
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.vectors.ncols()
+    }
+
+    /// Adds the directions of `z` that are new: after the basis is projected out, the columns are taken in the order
+    /// of their remaining size in the E-norm, until it is below `tolerance` (or round-off of where the column
+    /// started), or `limit` are taken. Returns how many were added.
+    pub(super) fn enrich(&mut self, mut z: Mat<f64>, tolerance: f64, limit: usize) -> usize {
+        const ROUND_OFF: f64 = 1e-10;
+        let before = self.energy(z.as_ref());
+        self.project_out(&mut z);
+        self.project_out(&mut z);
+        let mut energy = self.energy(z.as_ref());
+        let floor: Vec<f64> = (0..z.ncols())
+            .map(|j| (tolerance * tolerance).max(ROUND_OFF * ROUND_OFF * before[(j, j)]))
+            .collect();
+        let chosen = pivoted_choice(&mut energy, &floor, limit);
+        let mut new = Mat::<f64>::zeros(z.nrows(), chosen.len());
+        let mut added = 0;
+        for j in chosen {
+            let mut column = z.subcols(j, 1).to_owned();
+            if self.normalise_against(&mut column, new.subcols(0, added)) {
+                new.subcols_mut(added, 1).copy_from(&column);
+                added += 1;
+            }
+        }
+        if added > 0 {
+            self.append(new.subcols(0, added).to_owned());
+        }
+        added
+    }
+
+    /// zᵀ(K + τM)z.
+    fn energy(&self, z: MatRef<'_, f64>) -> Mat<f64> {
+        let mut e = multiply(&self.operator.stiffness, z);
+        e += faer::Scale(self.tau) * multiply(self.operator.mass, z);
+        gram(z, e.as_ref())
+    }
+
+    fn project_out(&self, z: &mut Mat<f64>) {
+        let share = gram(self.mass_times.as_ref(), z.as_ref());
+        *z -= product(self.vectors.as_ref(), share.as_ref());
+    }
+
+    /// M-orthonormalises `column` against the basis and the `new` vectors; false when nothing with mass is left.
+    fn normalise_against(&self, column: &mut Mat<f64>, new: MatRef<'_, f64>) -> bool {
+        const LOST: f64 = 1e-12;
+        for _ in 0..2 {
+            let inertia = multiply(self.operator.mass, column.as_ref());
+            let square = gram(column.as_ref(), inertia.as_ref())[(0, 0)];
+            if !(square.is_finite() && square > 0.0) {
+                return false;
+            }
+            let share = gram(new, inertia.as_ref());
+            *column -= product(new, share.as_ref());
+            self.project_out(column);
+            let inertia = multiply(self.operator.mass, column.as_ref());
+            let left = gram(column.as_ref(), inertia.as_ref())[(0, 0)];
+            if left.is_nan() || left <= LOST * LOST * square {
+                return false;
+            }
+            *column *= faer::Scale(1.0 / left.sqrt());
+        }
+        true
+    }
+
+    fn append(&mut self, new: Mat<f64>) {
+        let old = self.len();
+        let inertia = multiply(self.operator.mass, new.as_ref());
+        let elastic = multiply(&self.operator.stiffness, new.as_ref());
+        let damped = self.operator.damping_times(new.as_ref());
+        let lossy = self.operator.damping.hysteretic.as_ref().map(|h| multiply(h, new.as_ref()));
+        self.vectors = beside(&self.vectors, &new);
+        self.mass_times = beside(&self.mass_times, &inertia);
+        let grow = |small: &Mat<f64>, times: &Mat<f64>| {
+            let border = gram(self.vectors.as_ref(), times.as_ref());
+            let m = border.nrows();
+            Mat::from_fn(m, m, |i, j| match (i < old, j < old) {
+                (true, true) => small[(i, j)],
+                (_, false) => border[(i, j - old)],
+                (false, true) => border[(j, i - old)],
+            })
+        };
+        self.mass = grow(&self.mass, &inertia);
+        self.stiffness = grow(&self.stiffness, &elastic);
+        self.damping = match &damped {
+            Some(times) => grow(&self.damping, times),
+            None => Mat::zeros(self.vectors.ncols(), self.vectors.ncols()),
+        };
+        self.hysteretic =
+            self.hysteretic.as_ref().zip(lossy.as_ref()).map(|(small, times)| grow(small, times));
+        let directions: Vec<_> = self.operator.contact.iter().flat_map(|(_, u)| *u).collect();
+        self.contact = Mat::from_fn(self.vectors.ncols(), directions.len(), |i, d| {
+            if i < old { self.contact[(i, d)] } else { directions[d].dot(new.col_as_slice(i - old)) }
+        });
+    }
+}
+
+/// Columns in the order of a pivoted Cholesky factorisation of their Gram matrix, which is overwritten.
+fn pivoted_choice(gram: &mut Mat<f64>, floor: &[f64], limit: usize) -> Vec<usize> {
+    let n = gram.nrows();
+    let mut chosen = Vec::new();
+    let mut open: Vec<usize> = (0..n).collect();
+    while chosen.len() < limit {
+        open.retain(|j| gram[(*j, *j)] > floor[*j]);
+        // The first of equals, so that the choice does not depend on anything but the numbers.
+        let Some(best) = open.iter().copied().reduce(|a, b| if gram[(b, b)] > gram[(a, a)] { b } else { a })
+        else {
+            break;
+        };
+        open.retain(|j| *j != best);
+        let pivot = gram[(best, best)];
+        for j in &open {
+            let factor = gram[(best, *j)] / pivot;
+            for i in &open {
+                gram[(*i, *j)] -= gram[(*i, best)] * factor;
+            }
+        }
+        chosen.push(best);
+    }
+    chosen
+}
+
+fn beside(a: &Mat<f64>, b: &Mat<f64>) -> Mat<f64> {
+    let mut both = Mat::zeros(b.nrows(), a.ncols() + b.ncols());
+    both.subcols_mut(0, a.ncols()).copy_from(a);
+    both.subcols_mut(a.ncols(), b.ncols()).copy_from(b);
+    both
+}

@@ -1,0 +1,66 @@
+//! Blocks of complex vectors, real and imaginary parts apart, so that real matrices and factors work on both.
+
+use crate::linalg::c64;
+use faer::Mat;
+
+/// Complex vectors, one a column.
+#[derive(Debug, Clone)]
+pub(super) struct Block {
+    pub(super) re: Mat<f64>,
+    pub(super) im: Mat<f64>,
+}
+
+impl Block {
+    pub(super) fn zeros(n: usize, columns: usize) -> Self {
+        Block { re: Mat::zeros(n, columns), im: Mat::zeros(n, columns) }
+    }
+
+    pub(super) fn from_columns(n: usize, columns: &[Vec<c64>]) -> Self {
+        let part = |f: fn(&c64) -> f64| Mat::from_fn(n, columns.len(), |i, j| f(&columns[j][i]));
+        Block { re: part(|z| z.re), im: part(|z| z.im) }
+    }
+
+    pub(super) fn ncols(&self) -> usize {
+        self.re.ncols()
+    }
+
+    /// The same operation on both parts.
+    pub(super) fn map(&self, f: impl Fn(&Mat<f64>) -> Mat<f64>) -> Self {
+        Block { re: f(&self.re), im: f(&self.im) }
+    }
+
+    /// self\[:, j\] += factor\[j\] · x\[:, j\].
+    pub(super) fn add_scaled(&mut self, factor: &[c64], x: &Block) {
+        for (j, a) in factor.iter().enumerate() {
+            let (re, im) = (x.re.col_as_slice(j), x.im.col_as_slice(j));
+            let own = self.re.col_as_slice_mut(j).iter_mut().zip(self.im.col_as_slice_mut(j));
+            for ((u, v), (p, q)) in own.zip(re.iter().zip(im)) {
+                *u += a.re * p - a.im * q;
+                *v += a.re * q + a.im * p;
+            }
+        }
+    }
+
+    /// Column `j`.
+    pub(super) fn column(&self, j: usize) -> Vec<c64> {
+        self.re.col_as_slice(j).iter().zip(self.im.col_as_slice(j)).map(|(a, b)| c64::new(*a, *b)).collect()
+    }
+
+    /// self\[:, j\]ᴴ x\[:, j\].
+    pub(super) fn dot(&self, j: usize, x: &Block) -> c64 {
+        let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let (a, b) = (self.re.col_as_slice(j), self.im.col_as_slice(j));
+        let (p, q) = (x.re.col_as_slice(j), x.im.col_as_slice(j));
+        c64::new(sum(a, p) + sum(b, q), sum(a, q) - sum(b, p))
+    }
+
+    /// ‖self\[:, j\]‖₂.
+    pub(super) fn norm(&self, j: usize) -> f64 {
+        self.dot(j, self).re.sqrt()
+    }
+
+    /// self\[:, j\] *= factor.
+    pub(super) fn scale_column(&mut self, j: usize, factor: f64) {
+        self.re.col_as_slice_mut(j).iter_mut().chain(self.im.col_as_slice_mut(j)).for_each(|v| *v *= factor);
+    }
+}

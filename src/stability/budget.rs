@@ -1,0 +1,55 @@
+//! Where the growth of a mode comes from, and which real modes take part in it.
+
+use super::GrowthBudget;
+use super::block::Block;
+use super::operator::Operator;
+use crate::equilibrium::algebra::multiply;
+use crate::linalg::c64;
+
+impl GrowthBudget {
+    /// The sum of the terms: σ.
+    pub fn total(&self) -> f64 {
+        self.structural_damping + self.falling_friction + self.transverse_friction + self.mode_coupling
+    }
+}
+
+/// The terms of σ for φ scaled to φᴴMφ = 1.
+///
+/// The imaginary part of φᴴQ(λ)φ = 0 is 2σω + ω Re γ + σ Im γ + Im κ = 0 with γ = φᴴ(C + C_c)φ and κ = φᴴ(K + iH +
+/// K_c)φ. Each entry of a contact block is one summand of γ or κ: (g, g) is damping in the normal direction and goes
+/// with the structure's, (t₁, t₁) is falling friction, what turns with the transverse slip touches t₂, and a friction
+/// force that follows the normal motion (t, g) couples the modes. A real eigenvalue (ω = 0) has no such balance: all
+/// terms are zero.
+pub(super) fn growth_budget(operator: &Operator<'_>, lambda: c64, phi: &Block, j: usize) -> GrowthBudget {
+    let mut budget = GrowthBudget::default();
+    let omega = lambda.im;
+    if omega <= 0.0 {
+        return budget;
+    }
+    let by_velocity = |gamma: c64| -(omega * gamma.re + lambda.re * gamma.im) / (2.0 * omega);
+    let by_displacement = |kappa: c64| -kappa.im / (2.0 * omega);
+    let single = Block { re: phi.re.subcols(j, 1).to_owned(), im: phi.im.subcols(j, 1).to_owned() };
+    if let (Some(re), Some(im)) =
+        (operator.damping_times(single.re.as_ref()), operator.damping_times(single.im.as_ref()))
+    {
+        budget.structural_damping += by_velocity(single.dot(0, &Block { re, im }));
+    }
+    if let Some(h) = &operator.damping.hysteretic {
+        let lossy = single.dot(0, &single.map(|v| multiply(h, v.as_ref())));
+        budget.structural_damping += by_displacement(c64::new(0.0, 1.0) * lossy);
+    }
+    for ((block, _), motion) in operator.contact.iter().zip(operator.motions(&single, 0)) {
+        for (row, column) in (0..3).flat_map(|r| (0..3).map(move |c| (r, c))) {
+            let product = motion[row].conj() * motion[column];
+            let velocity = by_velocity(product * block.damping[row][column]);
+            let displacement = by_displacement(product * block.stiffness[row][column]);
+            match (row, column) {
+                (0, 0) => budget.structural_damping += velocity + displacement,
+                (_, 0) | (0, _) => budget.mode_coupling += velocity + displacement,
+                (1, 1) => budget.falling_friction += velocity + displacement,
+                _ => budget.transverse_friction += velocity + displacement,
+            }
+        }
+    }
+    budget
+}

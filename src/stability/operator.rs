@@ -1,0 +1,132 @@
+//! The full-order quadratic operator Q(λ) = λ² M + λ (C + C_c) + K + K_σ + iH + K_c, applied without forming it.
+
+use super::block::Block;
+use crate::equilibrium::algebra::{gram, multiply, norm_1, product};
+use crate::equilibrium::{ContactBlock, SteadySliding, directions, linearize, tangent_stiffness};
+use crate::error::Result;
+use crate::linalg::{SparseMatrix, SparseVector, c64};
+use crate::system::{Damping, System};
+use faer::{Mat, MatRef};
+use std::borrow::Cow;
+
+/// Q(λ) of a system at steady sliding. The contact acts through its low-rank blocks.
+pub(super) struct Operator<'a> {
+    pub(super) mass: &'a SparseMatrix,
+    /// K + K_σ.
+    pub(super) stiffness: Cow<'a, SparseMatrix>,
+    pub(super) damping: &'a Damping,
+    /// Contact blocks with their directions \[g t₁ t₂\].
+    pub(super) contact: Vec<(ContactBlock, [&'a SparseVector; 3])>,
+    mass_norm: f64,
+    damping_norm: f64,
+    stiffness_norm: f64,
+}
+
+/// Which vectors an operator acts on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Side {
+    /// Q(λ) φ.
+    Right,
+    /// Q(λ)ᴴ ψ.
+    Left,
+}
+
+impl<'a> Operator<'a> {
+    pub(super) fn new(system: &'a System, steady: &SteadySliding) -> Result<Self> {
+        let points: Vec<_> = system.points().map(|(_, point)| point).collect();
+        let contact = linearize(system, steady).blocks;
+        let contact = contact.into_iter().map(|b| (b, directions(points[b.point]))).collect();
+        let stiffness = tangent_stiffness(system, &steady.displacement)?;
+        let damping = &system.structure.damping;
+        let norm = |m: &Option<SparseMatrix>| m.as_ref().map_or(0.0, norm_1);
+        Ok(Operator {
+            mass: &system.structure.mass,
+            mass_norm: norm_1(&system.structure.mass),
+            damping_norm: norm(&damping.viscous),
+            stiffness_norm: norm_1(&stiffness) + norm(&damping.hysteretic),
+            stiffness,
+            damping,
+            contact,
+        })
+    }
+
+    pub(super) fn n(&self) -> usize {
+        self.mass.nrows()
+    }
+
+    /// C x: viscous and modal damping; `None` when there is neither.
+    pub(super) fn damping_times(&self, x: MatRef<'_, f64>) -> Option<Mat<f64>> {
+        let mut sum = self.damping.viscous.as_ref().map(|c| multiply(c, x));
+        if let Some(modal) = &self.damping.modal {
+            let mut amplitudes = gram(modal.basis.as_ref(), x);
+            for (i, c) in modal.coefficients.iter().enumerate() {
+                (0..amplitudes.ncols()).for_each(|j| amplitudes[(i, j)] *= c);
+            }
+            let modal = product(modal.basis.as_ref(), amplitudes.as_ref());
+            sum = Some(match sum {
+                Some(viscous) => viscous + modal,
+                None => modal,
+            });
+        }
+        sum
+    }
+
+    /// Uᵀ x of one contact block.
+    fn motion(u: &[&SparseVector; 3], x: &Block, j: usize) -> [c64; 3] {
+        u.map(|d| c64::new(d.dot(x.re.col_as_slice(j)), d.dot(x.im.col_as_slice(j))))
+    }
+
+    /// Uᵀ x of every contact block.
+    pub(super) fn motions(&self, x: &Block, j: usize) -> Vec<[c64; 3]> {
+        self.contact.iter().map(|(_, u)| Self::motion(u, x, j)).collect()
+    }
+
+    /// y\[:, j\] += U (k + s c) Uᵀ x\[:, j\], with the blocks transposed for the left side.
+    fn add_contact(&self, s: &[c64], with_stiffness: bool, side: Side, x: &Block, y: &mut Block) {
+        for (j, s) in s.iter().enumerate() {
+            for (block, u) in &self.contact {
+                let motion = Self::motion(u, x, j);
+                for (row, direction) in u.iter().enumerate() {
+                    let mut force = c64::new(0.0, 0.0);
+                    for (column, moved) in motion.iter().enumerate() {
+                        let (a, b) = if side == Side::Right { (row, column) } else { (column, row) };
+                        let k = if with_stiffness { block.stiffness[a][b] } else { 0.0 };
+                        force += *moved * (c64::new(k, 0.0) + *s * c64::new(block.damping[a][b], 0.0));
+                    }
+                    direction.add_to(force.re, y.re.col_as_slice_mut(j));
+                    direction.add_to(force.im, y.im.col_as_slice_mut(j));
+                }
+            }
+        }
+    }
+
+    /// Q(λⱼ) xⱼ and Q′(λⱼ) xⱼ = (2λⱼM + C + C_c) xⱼ, or Q(λⱼ)ᴴ xⱼ and Q′(λⱼ)ᴴ xⱼ.
+    pub(super) fn apply(&self, side: Side, lambda: &[c64], x: &Block) -> (Block, Block) {
+        let conjugate = |z: c64| if side == Side::Right { z } else { z.conj() };
+        let s: Vec<c64> = lambda.iter().map(|z| conjugate(*z)).collect();
+        let one = vec![c64::new(1.0, 0.0); s.len()];
+        let mut value = x.map(|v| multiply(&self.stiffness, v.as_ref()));
+        let mut slope = Block::zeros(self.n(), x.ncols());
+        let inertia = x.map(|v| multiply(self.mass, v.as_ref()));
+        value.add_scaled(&s.iter().map(|s| s * s).collect::<Vec<_>>(), &inertia);
+        slope.add_scaled(&s.iter().map(|s| s * 2.0).collect::<Vec<_>>(), &inertia);
+        if let (Some(re), Some(im)) = (self.damping_times(x.re.as_ref()), self.damping_times(x.im.as_ref())) {
+            let damped = Block { re, im };
+            value.add_scaled(&s, &damped);
+            slope.add_scaled(&one, &damped);
+        }
+        if let Some(h) = &self.damping.hysteretic {
+            let lossy = x.map(|v| multiply(h, v.as_ref()));
+            value.add_scaled(&vec![conjugate(c64::new(0.0, 1.0)); s.len()], &lossy);
+        }
+        self.add_contact(&s, true, side, x, &mut value);
+        self.add_contact(&one, false, side, x, &mut slope);
+        (value, slope)
+    }
+
+    /// |λ|²‖M‖ + |λ|‖C‖ + ‖K‖ in the 1-norm; modal damping and contact left out, so that η is never flattered.
+    pub(super) fn size(&self, lambda: c64) -> f64 {
+        let r = lambda.norm();
+        r * r * self.mass_norm + r * self.damping_norm + self.stiffness_norm
+    }
+}

@@ -1,0 +1,382 @@
+use super::*;
+use crate::contact::{Constant, Exponential, FrictionSense, NormalLaw, SlidingLaw};
+use crate::equilibrium::samples::*;
+use crate::equilibrium::{SteadyOptions, SteadySliding, directions, linearize, solve_steady};
+use crate::linalg::{SparseMatrix, SparseVector};
+use crate::modal::{RealModes, SturmCertificate};
+use crate::system::{Closing, ModalDamping, System};
+use faer::{Mat, Side};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// The lowest real modes by a dense solver.
+fn dense_modes(system: &System, count: usize) -> RealModes {
+    let l = system.structure.mass.to_dense().llt(Side::Lower).unwrap().L().to_owned();
+    let mut k = system.structure.stiffness.to_dense();
+    l.solve_lower_triangular_in_place(k.as_mut());
+    let mut k = k.transpose().to_owned();
+    l.solve_lower_triangular_in_place(k.as_mut());
+    let symmetric = Mat::from_fn(k.nrows(), k.ncols(), |i, j| 0.5 * (k[(i, j)] + k[(j, i)]));
+    let eigen = symmetric.self_adjoint_eigen(Side::Lower).unwrap();
+    let mut shapes = eigen.U().subcols(0, count).to_owned();
+    l.transpose().solve_upper_triangular_in_place(shapes.as_mut());
+    let certificate =
+        SturmCertificate { below_hz: 0.0, shifts_hz: [0.0; 2], counted: [count; 2], found: count };
+    RealModes {
+        eigenvalues: (0..count).map(|i| eigen.S()[i]).collect(),
+        shapes,
+        backward_errors: vec![0.0; count],
+        rigid_bodies: 0,
+        certificate,
+    }
+}
+
+/// Dense K + iH + K_c and C + C_c of the whole system.
+fn dense_matrices(system: &System, steady: &SteadySliding) -> (Mat<c64>, Mat<c64>) {
+    let n = system.n_dofs();
+    let real = |m: &Option<SparseMatrix>| m.as_ref().map_or(Mat::zeros(n, n), |m| m.to_dense());
+    let (s, d) = (&system.structure, &system.structure.damping);
+    let (k0, h, mut c0) = (s.stiffness.to_dense(), real(&d.hysteretic), real(&d.viscous));
+    if let Some(modal) = &d.modal {
+        for (j, c) in modal.coefficients.iter().enumerate() {
+            let b = modal.basis.col(j);
+            c0 += faer::Scale(*c) * (b * b.transpose());
+        }
+    }
+    let mut k = Mat::from_fn(n, n, |i, j| c64::new(k0[(i, j)], h[(i, j)]));
+    let mut c = Mat::from_fn(n, n, |i, j| c64::new(c0[(i, j)], 0.0));
+    let points: Vec<_> = system.points().map(|(_, p)| p).collect();
+    for block in linearize(system, steady).blocks {
+        let u = directions(points[block.point]);
+        for (a, b) in (0..3).flat_map(|a| (0..3).map(move |b| (a, b))) {
+            for (i, x) in u[a].iter() {
+                for (j, y) in u[b].iter() {
+                    k[(i, j)] += c64::new(x * block.stiffness[a][b] * y, 0.0);
+                    c[(i, j)] += c64::new(x * block.damping[a][b] * y, 0.0);
+                }
+            }
+        }
+    }
+    (k, c)
+}
+
+/// Every eigenvalue in the band from the full-order first-order form ẋ = [0 I; −M⁻¹K −M⁻¹C] x.
+fn dense_eigenvalues(system: &System, steady: &SteadySliding, band_hz: [f64; 2]) -> Vec<c64> {
+    use faer::linalg::solvers::Solve;
+    let n = system.n_dofs();
+    let (k, c) = dense_matrices(system, steady);
+    let m = system.structure.mass.to_dense();
+    let lu = Mat::from_fn(n, n, |i, j| c64::new(m[(i, j)], 0.0)).partial_piv_lu();
+    let (k, c) = (lu.solve(&k), lu.solve(&c));
+    let a = Mat::from_fn(2 * n, 2 * n, |i, j| match (i < n, j < n) {
+        (true, true) => -c[(i, j)],
+        (true, false) => -k[(i, j - n)],
+        (false, true) => c64::new(f64::from(i - n == j), 0.0),
+        (false, false) => c64::new(0.0, 0.0),
+    });
+    let mut all = a.eigenvalues().unwrap();
+    all.retain(|z| z.im >= TAU * band_hz[0] && z.im <= TAU * band_hz[1]);
+    all.sort_by(|a, b| a.im.total_cmp(&b.im).then(a.re.total_cmp(&b.re)));
+    all
+}
+
+fn steady(system: &System) -> SteadySliding {
+    solve_steady(system, &SteadyOptions::default(), &()).unwrap()
+}
+
+fn modes_of(system: &System, real: usize, band_hz: [f64; 2]) -> ComplexModes {
+    complex_modes(system, &steady(system), &dense_modes(system, real), band_hz, &()).unwrap()
+}
+
+/// ((λ₁² − λ₂²)/2)² of an undamped two-degree-of-freedom system: positive when stable, negative in flutter.
+fn discriminant(system: &System) -> f64 {
+    let found = modes_of(system, 2, [0.0, 500.0]);
+    assert_eq!(found.modes.len(), 2);
+    let square: Vec<c64> = found.modes.iter().map(|m| m.eigenvalue * m.eigenvalue).collect();
+    let half = (square[0] - square[1]) * 0.5;
+    (half * half).re
+}
+
+/// A flutter pair σ ± has one frequency, so that its order is left to round-off.
+fn nearest(z: c64, among: &[c64]) -> c64 {
+    *among.iter().min_by(|a, b| (*a - z).norm().total_cmp(&(*b - z).norm())).unwrap()
+}
+
+fn root(f: impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
+    let (mut fa, fb) = (f(a), f(b));
+    assert!(fa * fb < 0.0);
+    for _ in 0..60 {
+        let c = 0.5 * (a + b);
+        let fc = f(c);
+        if fa * fc <= 0.0 { b = c } else { (a, fa) = (c, fc) }
+    }
+    0.5 * (a + b)
+}
+
+#[test]
+fn two_dof_critical_friction_and_stiffness_are_those_of_the_closed_form() {
+    let closed = |k_t: f64, k_n: f64, mu: f64| ((1.0 + k_t - k_n) / 2.0).powi(2) + 0.5 * (0.5 - mu * k_n);
+    for (k_t, mu_c, k_c) in [(0.5, 0.625, 1.3), (0.3f64.sqrt(), 0.650, 1.3167)] {
+        let mu = root(|mu| discriminant(&two_dof(k_t, 1.0, mu)), 0.5, 0.8);
+        let exact = root(|mu| closed(k_t, 1.0, mu), 0.5, 0.8);
+        assert!((mu - exact).abs() < 1e-9 && (mu - mu_c).abs() < 3e-4, "{mu} {exact}");
+        let k_n = root(|k| discriminant(&two_dof(k_t, k, 0.4)), 1.1, 1.6);
+        let exact = root(|k| closed(k_t, k, 0.4), 1.1, 1.6);
+        assert!((k_n - exact).abs() < 1e-9 && (k_n - k_c).abs() < 1e-4, "{k_n} {exact}");
+    }
+}
+
+#[test]
+fn two_dof_without_tangential_spring_never_flutters_at_moderate_friction() {
+    for k in 1..200 {
+        let found = modes_of(&two_dof(0.0, 0.05 * k as f64, 0.4), 2, [0.0, 10.0]);
+        assert!(found.modes.iter().all(|m| m.growth_rate() < 1e-7), "k_n = {}", 0.05 * k as f64);
+    }
+}
+
+#[test]
+fn hoffmann_two_dof_flutter() {
+    let (k12, k3) = (3.8971, 11.0);
+    let k = [[23.25, k12], [k12, 18.75 - k3]];
+    let system = |mu: f64| {
+        let normal = NormalLaw { bilateral: true, ..NormalLaw::linear(k3) };
+        let p = point(0.0, 1.0, vector(&[(1, 1.0)]), vector(&[(0, 1.0)]), SparseVector::default());
+        System {
+            structure: structure(2, |i, j| f64::from(i == j), |i, j| k[i][j]),
+            pairs: vec![pair(
+                vec![p],
+                SlidingLaw::new(normal, Constant(mu), 0.0),
+                Closing::Approach(1.0),
+                1.0,
+            )],
+            load: vec![0.0; 2],
+            prestress: None,
+        }
+    };
+    let mu = root(|mu| discriminant(&system(mu)), 0.3, 0.6);
+    assert!((mu - 0.472377).abs() < 5e-7, "{mu}");
+}
+
+/// Sinou and Jézéquel's two-degree-of-freedom system: damping can destabilise. Two contacts that carry all the
+/// stiffness and damping: ω₁² along x with friction along −y, ω₂² along y with friction along x.
+fn sinou(eta: [f64; 2], mu: f64) -> System {
+    let omega = [200.0 * std::f64::consts::PI, 150.0 * std::f64::consts::PI];
+    let pairs = (0..2)
+        .map(|d| {
+            let normal = NormalLaw {
+                stiffness: omega[d] * omega[d],
+                cubic_stiffness: 0.0,
+                damping: eta[d] * omega[d],
+                bilateral: true,
+            };
+            let tangent = if d == 0 { vector(&[(1, -1.0)]) } else { vector(&[(0, 1.0)]) };
+            let p = point(0.0, 1.0, vector(&[(d, 1.0)]), tangent, SparseVector::default());
+            pair(vec![p], SlidingLaw::new(normal, Constant(mu), 0.0), Closing::Approach(0.0), 1.0)
+        })
+        .collect();
+    let structure = structure(2, |i, j| f64::from(i == j), |_, _| 0.0);
+    System { structure, pairs, load: vec![1.0, 1.0], prestress: None }
+}
+
+#[test]
+fn sinou_jezequel_damping_shifts_the_onset() {
+    let undamped = root(|mu| discriminant(&sinou([0.0; 2], mu)) / 1e8, 0.1, 0.4);
+    assert!((undamped - 0.291667).abs() < 5e-7, "{undamped}");
+    for (eta, mu_c) in [
+        ([0.02, 0.02], 0.289425),
+        ([0.02, 0.05], 0.247676),
+        ([0.05, 0.02], 0.280016),
+        ([0.02, 0.001], 0.141296),
+    ] {
+        let growth = |mu: f64| {
+            let found = modes_of(&sinou(eta, mu), 2, [1.0, 500.0]);
+            found.modes.iter().map(|m| m.growth_rate()).fold(f64::NEG_INFINITY, f64::max)
+        };
+        // The table's damped thresholds are those of ηᵢωᵢ as the damping per unit of mass.
+        let mu = root(growth, 0.05, 0.4);
+        assert!((mu - mu_c).abs() < 2e-6, "{eta:?}: {mu} {mu_c}");
+    }
+}
+
+/// A mass on a belt, its normal motion apart: s² + (c + Nμ′)s + k along x.
+fn belt(c: f64, load: f64, velocity: f64, sense: FrictionSense) -> System {
+    let normal = NormalLaw { bilateral: true, ..NormalLaw::linear(50.0) };
+    let mut law = SlidingLaw::new(normal, Exponential { mu_0: 0.3, mu_1: 0.2, alpha: 1.5 }, 0.0);
+    law.sense = sense;
+    let p = point(0.0, 1.0, vector(&[(1, 1.0)]), vector(&[(0, 1.0)]), SparseVector::default());
+    let mut structure =
+        structure(2, |i, j| f64::from(i == j), |i, j| if i == j { 9.0 - 4.0 * i as f64 } else { 0.0 });
+    structure.damping.viscous = Some(sparse(2, |i, j| if i == 0 && j == 0 { c } else { 0.0 }));
+    System {
+        structure,
+        pairs: vec![pair(vec![p], law, Closing::Load(load), velocity)],
+        load: vec![0.0; 2],
+        prestress: None,
+    }
+}
+
+#[test]
+fn falling_friction_is_negative_damping_below_its_bound() {
+    let (load, velocity) = (2.0, 0.4);
+    let slope = load * 0.2 * 1.5 * f64::exp(-1.5 * velocity);
+    for factor in [0.5, 0.99, 1.01, 2.0] {
+        let c = factor * slope;
+        let found = modes_of(&belt(c, load, velocity, FrictionSense::WithSlip), 2, [0.1, 10.0]);
+        let slow = &found.modes[0];
+        assert!((slow.growth_rate() + 0.5 * (c - slope)).abs() < 1e-12);
+        assert_eq!(slow.unstable(), factor < 1.0);
+        assert!((slow.growth.falling_friction - 0.5 * slope).abs() < 1e-12);
+        assert!((slow.growth.structural_damping + 0.5 * c).abs() < 1e-12);
+    }
+    // A belt that pulls against the slip turns the same law into damping.
+    let found = modes_of(&belt(0.0, load, velocity, FrictionSense::AgainstSlip), 2, [0.1, 10.0]);
+    assert!((found.modes[0].growth_rate() + 0.5 * slope).abs() < 1e-12);
+}
+
+/// Damping of every kind by turns.
+fn damped(mut system: System, kind: u64) -> System {
+    let n = system.n_dofs();
+    let (m, k) = (system.structure.mass.to_dense(), system.structure.stiffness.to_dense());
+    let damping = &mut system.structure.damping;
+    if kind & 1 != 0 {
+        damping.viscous = Some(sparse(n, |i, j| 0.02 * m[(i, j)] + 4e-4 * k[(i, j)]));
+    }
+    if kind & 2 != 0 {
+        damping.hysteretic =
+            Some(sparse(n, |i, j| if i < n / 2 && j < n / 2 { 0.01 * k[(i, j)] } else { 0.0 }));
+    }
+    if kind & 4 != 0 {
+        let modes = dense_modes(&system, 6);
+        let coefficients = modes.eigenvalues.iter().map(|w| 2.0 * 0.01 * w.sqrt()).collect();
+        system.structure.damping.modal = Some(ModalDamping { basis: &m * &modes.shapes, coefficients });
+    }
+    system
+}
+
+#[test]
+fn random_systems_agree_with_the_dense_full_order_solution() {
+    let (mut unstable, mut refined, mut partial) = (0, 0, 0);
+    for seed in 0..16 {
+        let n = 40 + 8 * seed as usize;
+        let system = damped(random_system(n, 2 + seed as usize / 5, 20.0, 1000 + seed), seed % 8);
+        let state = steady(&system);
+        let kept = n / 2;
+        let real = dense_modes(&system, kept);
+        let top = 0.5 * (real.frequency_hz(kept / 2) + real.frequency_hz(kept / 2 + 1));
+        let band = [0.01, top];
+        let found = complex_modes(&system, &state, &real, band, &()).unwrap();
+        let exact = dense_eigenvalues(&system, &state, band);
+        assert_eq!(found.modes.len(), exact.len(), "seed {seed}: {:?}", found.warnings);
+        partial += usize::from(found.subspace_dimension < n);
+        for mode in &found.modes {
+            let exact = nearest(mode.eigenvalue, &exact);
+            let error = (mode.eigenvalue - exact).norm() / exact.norm();
+            assert!(
+                error < 1e-9,
+                "seed {seed}: {} {exact}: {error:.1e} estimated {:.1e}",
+                mode.eigenvalue,
+                mode.eigenvalue_error
+            );
+            assert!(mode.accepted(), "seed {seed}: {mode:?}");
+            assert!((mode.growth.total() - mode.growth_rate()).abs() < 1e-8 * exact.norm(), "seed {seed}");
+            assert!(mode.condition > 0.99);
+            let shares: f64 = mode.participation.iter().map(|(_, share)| share).sum();
+            assert!(shares <= 1.0 + 1e-10 && shares > 0.3);
+            unstable += usize::from(mode.unstable());
+        }
+        refined += found.refinements;
+    }
+    assert!(
+        unstable > 0 && refined > 0 && partial > 4,
+        "{unstable} unstable, {refined} rounds, {partial} partial"
+    );
+}
+
+#[test]
+fn modes_do_not_depend_on_the_number_of_threads() {
+    let system = damped(random_system(110, 4, 20.0, 3), 5);
+    let real = dense_modes(&system, 40);
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            complex_modes(&system, &steady(&system), &real, [0.01, real.frequency_hz(20)], &()).unwrap()
+        })
+    };
+    let (one, three) = (run(1), run(3));
+    assert_eq!(one.modes.len(), three.modes.len());
+    for (a, b) in one.modes.iter().zip(&three.modes) {
+        assert!(a.eigenvalue == b.eigenvalue && a.right == b.right && a.left == b.left);
+    }
+}
+
+/// Left vectors solve ψᴴQ(λ) = 0 on the full order, formed here as a dense matrix.
+#[test]
+fn left_vectors_annihilate_the_operator_from_the_left() {
+    let system = damped(random_system(60, 5, 20.0, 77), 7);
+    let state = steady(&system);
+    let real = dense_modes(&system, 30);
+    let found = complex_modes(&system, &state, &real, [0.01, real.frequency_hz(12)], &()).unwrap();
+    let (k, c) = dense_matrices(&system, &state);
+    let m = system.structure.mass.to_dense();
+    for mode in &found.modes {
+        let s = mode.eigenvalue;
+        let q = Mat::from_fn(60, 60, |i, j| s * s * m[(i, j)] + s * c[(i, j)] + k[(i, j)]);
+        let column = |x: &[c64]| Mat::from_fn(60, 1, |i, _| x[i]);
+        let (right, left) = (&q * column(&mode.right), q.adjoint() * column(&mode.left));
+        assert!(right.norm_l2() < 1e-7 * q.norm_l2() && left.norm_l2() < 1e-7 * q.norm_l2());
+    }
+}
+
+/// K_cᵀ is itself a contact, with the normal g − μt₁ and the tangent −t₁: same eigenvalues, left and right swapped.
+#[test]
+fn transposed_contact_swaps_left_and_right_vectors() {
+    let mu = 0.45;
+    let build = |transposed: bool| {
+        let mut system = random_system(50, 4, 1.0, 5);
+        let normal = NormalLaw { bilateral: true, ..NormalLaw::linear(400.0) };
+        system.pairs[0].law = Arc::new(SlidingLaw::new(normal, Constant(mu), 0.0));
+        for p in &mut system.pairs[0].points {
+            p.tangents[1] = SparseVector::default();
+            if transposed {
+                let t = p.tangents[0].clone();
+                p.normal =
+                    SparseVector::from_entries(p.normal.iter().chain(t.iter().map(|(i, v)| (i, -mu * v))));
+                p.tangents[0] = SparseVector::from_entries(t.iter().map(|(i, v)| (i, -v)));
+            }
+        }
+        system
+    };
+    let solve = |system: &System| {
+        let real = dense_modes(system, 25);
+        complex_modes(system, &steady(system), &real, [0.01, real.frequency_hz(10)], &()).unwrap()
+    };
+    let (a, b) = (solve(&build(false)), solve(&build(true)));
+    assert_eq!(a.modes.len(), b.modes.len());
+    let mut differ = 0.0f64;
+    let others: Vec<c64> = b.modes.iter().map(|m| m.eigenvalue).collect();
+    for x in &a.modes {
+        let same = nearest(x.eigenvalue, &others);
+        let y = b.modes.iter().find(|y| y.eigenvalue == same).unwrap();
+        assert!((x.eigenvalue - y.eigenvalue).norm() < 1e-9 * x.eigenvalue.norm());
+        // ψᴴQ = 0 is Qᵀψ̄ = 0: the right vector of the transposed system is the conjugate left vector.
+        let mac = |p: &[c64], q: &[c64]| {
+            let dot = |u: &[c64], v: &[c64]| u.iter().zip(v).map(|(a, b)| a.conj() * b).sum::<c64>();
+            dot(p, q).norm_sqr() / (dot(p, p).re * dot(q, q).re)
+        };
+        let left: Vec<c64> = x.left.iter().map(|z| z.conj()).collect();
+        assert!(mac(&left, &y.right) > 1.0 - 1e-10);
+        differ = differ.max(1.0 - mac(&x.right, &y.right));
+    }
+    assert!(differ > 1e-3, "the two systems must differ in their right vectors");
+}
+
+#[test]
+fn input_that_cannot_be_analysed_is_refused() {
+    let system = two_dof(0.5, 1.0, 0.4);
+    let (state, real) = (steady(&system), dense_modes(&system, 2));
+    for band in [[1.0, 1.0], [-1.0, 2.0], [0.0, f64::NAN], [0.0, f64::INFINITY]] {
+        assert_eq!(complex_modes(&system, &state, &real, band, &()).unwrap_err().exit_code(), 2);
+    }
+    let other = dense_modes(&random_system(30, 2, 1.0, 1), 3);
+    assert_eq!(complex_modes(&system, &state, &other, [0.0, 1.0], &()).unwrap_err().exit_code(), 2);
+}
