@@ -124,4 +124,19 @@ mod tests {
         assert!(["942 Hz", "σ +111.8", "mode coupling"].iter().all(|label| svg.contains(label)));
         assert!(!svg.contains("-642"), "stable modes have no bar");
     }
+
+    #[test]
+    fn round_off_and_absurd_growth_draw_too() {
+        for factor in [1e-300, 1e-15, 1e12, 1e300] {
+            let mut results = sample::rig();
+            for mode in &mut results.complex.as_mut().unwrap().modes.modes {
+                mode.eigenvalue.re *= factor;
+                mode.growth.mode_coupling *= factor;
+            }
+            assert!(
+                picture(&results).is_some() && super::super::growth::picture(&results).is_some(),
+                "{factor}"
+            );
+        }
+    }
 }

@@ -39,7 +39,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     draw_legend(&mut sheet, foot, scale);
     let more = if groups.len() > shown.len() { format!("; the first {MOST}") } else { String::new() };
     let caption = format!(
-        "Bending modes of {} by (nodal diameters, nodal circles), ×2: two modes at one frequency{more}.",
+        "Bending modes ({}) by (nodal diameters, nodal circles); ×2: two modes at one frequency{more}.",
         set.name
     );
     Some(Picture { file: "modes_disc.svg", caption, svg: sheet.finish() })

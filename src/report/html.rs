@@ -23,7 +23,7 @@ padding:.8rem 1.1rem;margin:1rem 0}.verdict.bad{border-color:#d55e00;background:
 font-variant-numeric:tabular-nums}caption{text-align:left;font-weight:600;padding:.3rem 0}\
 th,td{padding:.22rem .7rem;text-align:right;white-space:nowrap;border-bottom:1px solid #e6e9ed}\
 th{border-bottom:2px solid #9aa4af;font-weight:600}.w{text-align:left}\
-tr.m td{background:#fdf3ec;font-weight:600}.note{color:#5b6570;font-size:.88rem;margin:.15rem 0}\
+tr.m td{background:#eef5fa;font-weight:600}.bad tr.m td{background:#fdf3ec}.note{color:#5b6570;font-size:.88rem;margin:.15rem 0}\
 figure{margin:1.2rem 0}figure svg{max-width:100%;height:auto;display:block}\
 figcaption{color:#5b6570;font-size:.9rem;margin-top:.3rem}\
 .warn{border-left:6px solid #e69f00;background:#fdf8ec;padding:.4rem 1.1rem;margin:.5rem 0}\
@@ -45,7 +45,7 @@ pub(super) fn page(results: &RunResults, pictures: &[Picture]) -> String {
     }
     body += &figures(pictures, &["rig.svg"]);
     if let Some(steady) = &results.steady {
-        body += &format!("<h2>Steady sliding</h2>\n{}", table(&tables::steady(steady)));
+        body += &format!("<h2>Steady sliding</h2>\n{}", untitled(tables::steady(steady)));
         body += &figures(pictures, &["contact.svg"]);
     }
     if !results.modes.is_empty() {
@@ -58,10 +58,10 @@ pub(super) fn page(results: &RunResults, pictures: &[Picture]) -> String {
     if let Some(complex) = &results.complex {
         body += "<h2>Complex eigenvalues</h2>\n";
         body += &figures(pictures, &["growth.svg", "growth_budget.svg"]);
-        body += &table(&tables::complex(complex));
+        body += &untitled(tables::complex(complex));
     }
     if !results.timings.is_empty() {
-        body += &format!("<h2>Wall time</h2>\n{}", table(&tables::timings(results)));
+        body += &format!("<h2>Wall time</h2>\n{}", untitled(tables::timings(results)));
     }
     if !results.resolved_case.is_empty() {
         let case = escape(&results.resolved_case);
@@ -95,7 +95,7 @@ fn verdict(results: &RunResults) -> String {
     let bad = unstable.as_ref().is_some_and(|t| !t.rows.is_empty());
     let class = if bad { "verdict bad" } else { "verdict" };
     let shown = match &unstable {
-        Some(t) if bad => table(&Table { caption: String::new(), ..t.clone() }),
+        Some(t) if bad => untitled(t.clone()),
         Some(t) => notes(t),
         None => String::new(),
     };
@@ -116,13 +116,19 @@ fn folded(content: &Table) -> String {
         return table(content);
     }
     let caption = escape(&content.caption);
-    let inner = table(&Table { caption: String::new(), ..content.clone() });
+    let inner = untitled(content.clone());
     format!("<details><summary>{caption} ({} modes)</summary>\n{inner}</details>\n", content.rows.len())
+}
+
+/// A table whose caption a heading above it gives already.
+fn untitled(content: Table) -> String {
+    table(&Table { caption: String::new(), ..content })
 }
 
 fn table(content: &Table) -> String {
     let class = |column: &tables::Column| if column.words { " class=\"w\"" } else { "" };
-    let mut text = String::from("<div class=\"scroll\"><table>\n");
+    let alarm = if content.alarming { " bad" } else { "" };
+    let mut text = format!("<div class=\"scroll{alarm}\"><table>\n");
     if !content.caption.is_empty() {
         text += &format!("<caption>{}</caption>\n", escape(&content.caption));
     }
@@ -160,4 +166,49 @@ pub(super) fn escape(text: &str) -> String {
         }
     }
     safe
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::sample;
+
+    #[test]
+    fn the_page_opens_with_the_verdict_and_needs_nothing_else() {
+        let results = sample::rig();
+        let pictures = [Picture { file: "rig.svg", caption: "a & b".into(), svg: "<svg></svg>".into() }];
+        let page = page(&results, &pictures);
+        let at = |text: &str| page.find(text).unwrap_or_else(|| panic!("no {text}"));
+        let order = [
+            "Unstable: 3 of 14",
+            "1668.3",
+            "is thick for Kirchhoff",
+            "Assumptions",
+            "<svg",
+            "Steady sliding",
+        ];
+        assert!(order.windows(2).all(|pair| at(pair[0]) < at(pair[1])));
+        assert!(
+            at("2050 Hz") > at("Real modes beside") && at("Every value as the run used it") > at("Wall time")
+        );
+        assert!(!page.contains("<script") && !page.contains("<link") && !page.contains("src="));
+    }
+
+    #[test]
+    fn user_text_cannot_break_the_page() {
+        let mut results = sample::rig();
+        results.warnings = vec!["</div><script>alert('x')</script>\u{1}".into()];
+        results.resolved_case = "a = \"</pre><script>\"".into();
+        results.modes[0].name = "<b>disc</b>".into();
+        let page = page(&results, &[]);
+        assert!(!page.contains("<script") && !page.contains("<b>") && !page.contains('\u{1}'));
+        assert!(page.contains("Disc on slider &lt;reference &amp; &quot;first&quot; case&gt;"));
+        assert_eq!(page.matches("<div").count(), page.matches("</div>").count());
+    }
+
+    #[test]
+    fn a_run_without_results_still_has_a_page() {
+        let page = page(&RunResults::default(), &[]);
+        assert!(page.contains("says nothing about squeal") && page.ends_with("</html>\n"));
+    }
 }

@@ -4,7 +4,7 @@
 //! * [`write_report`]: `report.html` and the pictures `rig.svg`, `modes_disc.svg`, `contact.svg`, `growth.svg`,
 //!   `growth_budget.svg`, those of them that the run has something for.
 //!
-//! A table is made once ([`tables`]) and shown in either form; a picture is a pure function from the results to SVG.
+//! A table is made once and shown in either form; a picture is a pure function from the results to SVG.
 
 mod budget;
 mod chart;
@@ -54,6 +54,24 @@ fn pictures(results: &RunResults) -> Vec<Picture> {
 mod tests {
     use super::*;
     use crate::results::sample;
+
+    #[test]
+    fn every_picture_stands_beside_the_page_and_in_it() {
+        let dir = tempfile::tempdir().unwrap();
+        write_report(dir.path(), &sample::rig()).unwrap();
+        let page = std::fs::read_to_string(dir.path().join("report.html")).unwrap();
+        for file in ["rig.svg", "modes_disc.svg", "contact.svg", "growth.svg", "growth_budget.svg"] {
+            let svg = std::fs::read_to_string(dir.path().join(file)).unwrap();
+            assert!(svg.starts_with("<svg") && page.contains(&svg), "{file}");
+        }
+    }
+
+    #[test]
+    fn a_run_with_nothing_has_a_page_and_no_pictures() {
+        let dir = tempfile::tempdir().unwrap();
+        write_report(dir.path(), &RunResults::default()).unwrap();
+        assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 1);
+    }
 
     /// For people: leaves the made-up run's whole folder in the system's folder for temporary files.
     #[test]

@@ -13,6 +13,8 @@ pub(super) struct Table {
     pub columns: Vec<Column>,
     pub rows: Vec<Row>,
     pub notes: Vec<String>,
+    /// Whether its marked rows are bad news.
+    pub alarming: bool,
 }
 
 /// A column's heading and whether it holds words (set left) or numbers (set right).
@@ -41,6 +43,7 @@ impl Table {
             columns: headings.iter().map(column).collect(),
             rows: vec![],
             notes: vec![],
+            alarming: false,
         }
     }
 
@@ -165,6 +168,7 @@ pub(super) fn complex(result: &ComplexResult) -> Table {
     let headings =
         ["no.", "f [Hz]", "σ [1/s]", "ζ [%]", "<", "η", "|Δλ|/|λ|", "κ", "<real modes that take part"];
     let mut table = Table::new("Complex eigenvalues at steady sliding", &headings);
+    table.alarming = true;
     for (k, mode) in result.modes.modes.iter().enumerate() {
         let cells = vec![
             (k + 1).to_string(),
@@ -189,6 +193,7 @@ pub(super) fn unstable(result: &ComplexResult) -> Table {
     let headings =
         ["f [Hz]", "growth rate σ [1/s]", "damping ratio [%]", "grows tenfold in [ms]", "<measured squeal"];
     let mut table = Table::new("Unstable modes", &headings);
+    table.alarming = true;
     let mut modes: Vec<_> = result.modes.modes.iter().filter(|m| m.unstable()).collect();
     modes.sort_by(|a, b| b.growth_rate().total_cmp(&a.growth_rate()));
     for mode in modes {
