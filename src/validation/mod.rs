@@ -1,1 +1,3 @@
-//! (room in preparation)
+//! What the program is checked against.
+
+pub mod kirchhoff;
