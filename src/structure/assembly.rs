@@ -4,7 +4,7 @@ use super::check::check_model;
 use super::dofs::DofMap;
 use super::model::Model;
 use super::pieces::{PieceMatrices, pieces};
-use super::scatter::{Pattern, reduced};
+use super::scatter::{Pattern, Reduction};
 use crate::error::{Error, Fault, Result};
 use crate::linalg::SparseMatrix;
 use crate::system::{Damping, Prestress, Structure};
@@ -39,7 +39,8 @@ pub fn assemble(model: &Model) -> Result<Assembled> {
     let pattern = Pattern::new(&dofs, &piece_nodes);
     let [mass, stiffness, viscous, hysteretic] = pattern.sum(|p, coupled| {
         let PieceMatrices { mass, stiffness, viscous, hysteretic } = pieces[p].matrices(&model.nodes);
-        let reduce = |full| reduced(&dofs, &piece_nodes[p], coupled, full);
+        let reduction = Reduction::new(&dofs, pieces[p].nodes(), coupled);
+        let reduce = |full| reduction.apply(full);
         [
             reduce(&mass),
             reduce(&stiffness),
@@ -94,10 +95,170 @@ impl Prestress for GeometricStiffness {
         let u = self.dofs.expand(displacement);
         let pieces = pieces(&self.model);
         let [sum] = self.pattern.sum(|p, coupled| {
-            let nodes: Vec<usize> = pieces[p].nodes().collect();
             let full = pieces[p].geometric_stiffness(&self.model.nodes, &u);
-            [full.map(|k| reduced(&self.dofs, &nodes, coupled, &k)).unwrap_or_default()]
+            let reduction = Reduction::new(&self.dofs, pieces[p].nodes(), coupled);
+            [full.map(|k| reduction.apply(&k)).unwrap_or_default()]
         });
         Ok(sum.unwrap_or_else(|| self.pattern.zero()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::*;
+    use crate::mesh::Element;
+    use crate::system::Prestress;
+
+    /// A wavy strip of `n` × `n` quadrilaterals and triangles with a bar, a mass, a spring and a rigid link.
+    fn strip(n: usize) -> Model {
+        let material = Material {
+            youngs_modulus: 70e9,
+            poissons_ratio: 0.33,
+            density: 2700.0,
+            loss_factor: 0.01,
+            rayleigh: RayleighDamping { alpha: 2.0, beta: 1e-7 },
+        };
+        let id = |i: usize, j: usize| i * (n + 1) + j;
+        let mut nodes = Vec::new();
+        for i in 0..=n {
+            for j in 0..=n {
+                let (x, y) = (i as f64 / n as f64, j as f64 / n as f64);
+                nodes.push([x, y, 0.05 * (3.0 * x + y).sin()]);
+            }
+        }
+        let mut faces = Vec::new();
+        for i in 0..n {
+            for j in 0..n {
+                let [a, b, c, d] = [id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)];
+                if (i + j) % 3 == 0 {
+                    faces.push(Element::Quadrilateral([a, b, c, d]));
+                } else {
+                    faces.extend([Element::Triangle([a, b, c]), Element::Triangle([a, c, d])]);
+                }
+            }
+        }
+        let last = nodes.len();
+        nodes.push([1.2, 0.5, 0.2]);
+        nodes.push([1.5, 0.5, 0.4]);
+        let plate = |name: &str, faces: Vec<Element>| ShellPart {
+            name: name.into(),
+            faces,
+            material,
+            thickness: 2e-3,
+            bending_only: false,
+            rotary_inertia: true,
+        };
+        Model {
+            nodes,
+            shells: vec![plate("strip", faces)],
+            bars: vec![BarPart {
+                name: "bar".into(),
+                elements: vec![[last, last + 1]],
+                material,
+                section: Section::round(0.01),
+                orientation: [0.0, 1.0, 0.0],
+            }],
+            masses: vec![PointMass { node: last + 1, mass: 0.3, inertia: [1e-4; 3] }],
+            springs: vec![Spring {
+                node: 0,
+                other: Some(last + 1),
+                direction: [1.0, 1.0, 0.0],
+                rotational: false,
+                stiffness: 1e5,
+                damping: 3.0,
+            }],
+            links: vec![RigidLink { master: last, slaves: (0..=n).map(|j| id(n, j)).collect() }],
+            supports: vec![Support {
+                nodes: (0..=n).collect(),
+                held: [true, true, true, false, true, false],
+            }],
+        }
+    }
+
+    #[test]
+    fn any_number_of_threads_gives_the_same_bits_and_symmetry_is_exact() {
+        let model = strip(24);
+        let with = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let assembled = assemble(&model).unwrap();
+                let u: Vec<f64> = (0..assembled.dofs.n_dofs()).map(|k| 1e-5 * (k as f64).sin()).collect();
+                let k_sigma = assembled.prestress(model.clone()).geometric_stiffness(&u).unwrap();
+                (assembled.structure, k_sigma)
+            })
+        };
+        let ((one, one_sigma), (three, three_sigma)) = (with(1), with(3));
+        for (a, b) in [
+            (&one.mass, &three.mass),
+            (&one.stiffness, &three.stiffness),
+            (one.damping.viscous.as_ref().unwrap(), three.damping.viscous.as_ref().unwrap()),
+            (one.damping.hysteretic.as_ref().unwrap(), three.damping.hysteretic.as_ref().unwrap()),
+            (&one_sigma, &three_sigma),
+        ] {
+            assert_eq!(a.val(), b.val());
+            assert_eq!(a.symbolic().row_idx(), b.symbolic().row_idx());
+            assert!(a.val().iter().any(|v| *v != 0.0));
+            let transposed = a.transpose().to_col_major().unwrap();
+            assert_eq!(a.val(), transposed.val());
+        }
+    }
+
+    #[test]
+    fn geometric_stiffness_is_linear_and_free_of_rigid_displacements() {
+        let mut model = strip(6);
+        model.supports.clear();
+        let assembled = assemble(&model).unwrap();
+        let prestress = assembled.prestress(model);
+        let u: Vec<f64> = (0..assembled.dofs.n_dofs()).map(|k| 1e-5 * (k as f64).cos()).collect();
+        let a = prestress.geometric_stiffness(&u).unwrap();
+        let twice = prestress.geometric_stiffness(&u.iter().map(|x| 2.0 * x).collect::<Vec<_>>()).unwrap();
+        assert!(a.val().iter().zip(twice.val()).all(|(x, y)| 2.0 * x == *y));
+        let size = a.val().iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        for rigid in assembled.dofs.rigid_body_vectors([0.1, 0.2, 0.3]) {
+            let scaled: Vec<f64> = rigid.iter().map(|x| 1e-5 * x).collect();
+            let none = prestress.geometric_stiffness(&scaled).unwrap();
+            assert!(none.val().iter().all(|v| v.abs() < 1e-9 * size));
+        }
+    }
+
+    #[test]
+    fn every_fault_of_a_model_is_told_at_once() {
+        let mut model = strip(2);
+        model.shells[0].thickness = -1e-3;
+        model.shells[0].material.poissons_ratio = 0.5;
+        model.shells[0].material.youngs_modulus = f64::NAN;
+        model.bars[0].material.density = -1.0;
+        model.bars[0].elements.push([3, 3]);
+        model.shells[0].faces.push(Element::Triangle([0, 1, 999]));
+        model.shells[0].faces.push(Element::Triangle([0, 0, 1]));
+        model.shells[0].faces.push(Element::Quadrilateral([0, 2, 1, 5]));
+        model.masses[0].mass = f64::INFINITY;
+        model.springs[0].direction = [0.0; 3];
+        model.supports[0].nodes.push(1000);
+        model.nodes[4][1] = f64::NAN;
+        let crate::error::Error::Input(faults) = assemble(&model).unwrap_err() else { panic!("input error") };
+        let text = faults.to_string();
+        for word in [
+            "thickness",
+            "Poisson",
+            "Young",
+            "density",
+            "no length",
+            "node 1000",
+            "node 1001",
+            "without area",
+            "re-entrant",
+            "mass inf",
+            "direction",
+            "finite",
+        ] {
+            assert!(text.contains(word), "{word} missing in {text}");
+        }
+        assert_eq!(faults.0.len(), 12, "{text}");
+    }
+
+    #[test]
+    fn an_empty_model_is_an_explained_fault() {
+        assert!(assemble(&Model::default()).unwrap_err().to_string().contains("can move"));
     }
 }

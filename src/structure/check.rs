@@ -3,6 +3,7 @@
 use super::elements::{Beam, FlatShell, split_face, spring_direction};
 use super::model::{Material, Model};
 use crate::error::{Fault, Faults, Result};
+use crate::mesh::Element;
 
 /// The faults of `model`, all of them; of like faults in one part the first, with their number.
 pub(super) fn check_model(model: &Model) -> Result<()> {
@@ -30,23 +31,26 @@ pub(super) fn check_model(model: &Model) -> Result<()> {
         }
         let missing = part.faces.iter().flat_map(|f| f.nodes()).filter(|n| !known(n));
         missing_nodes(&place, missing, model.nodes.len(), &mut faults);
-        let flat: Vec<usize> = (0..part.faces.len())
-            .filter(|f| {
-                split_face(&part.faces[*f]).iter().any(|t| {
-                    t.nodes.iter().all(sound) && FlatShell::new(&t.nodes.map(|n| model.nodes[n])).is_none()
-                })
-            })
-            .collect();
-        if let Some(first) = flat.first() {
-            let nodes: Vec<usize> = part.faces[*first].nodes().iter().map(|n| n + 1).collect();
-            faults.push(
-                Fault::new(
-                    &place,
-                    format!("{} elements without area, the first with nodes {nodes:?}", flat.len()),
-                    "elements with an area",
-                )
-                .with_help("Merge coincident nodes or mesh the region again"),
-            );
+        let count = part.faces.len();
+        let shapes: Vec<Option<Shape>> =
+            part.faces.iter().map(|f| f.nodes().iter().all(sound).then(|| shape(&model.nodes, f))).collect();
+        for (bad, what, expected) in [
+            (Shape::NoArea, "without area", "elements with an area"),
+            (Shape::Folded, "that are re-entrant or folded", "convex quadrilaterals"),
+        ] {
+            let mut found = (0..count).filter(|f| shapes[*f] == Some(bad));
+            if let Some(first) = found.next() {
+                let nodes: Vec<usize> = part.faces[first].nodes().iter().map(|n| n + 1).collect();
+                let number = 1 + found.count();
+                faults.push(
+                    Fault::new(
+                        &place,
+                        format!("{number} elements {what}, the first with nodes {nodes:?}"),
+                        expected,
+                    )
+                    .with_help("Merge coincident nodes or mesh the region again"),
+                );
+            }
         }
     }
     for part in &model.bars {
@@ -107,6 +111,26 @@ pub(super) fn check_model(model: &Model) -> Result<()> {
         missing_nodes(&place, support.nodes.iter().filter(|n| !known(n)), model.nodes.len(), &mut faults);
     }
     faults.into_result(())
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Shape {
+    Sound,
+    NoArea,
+    Folded,
+}
+
+/// Whether all triangles of a face have an area and look the same way.
+fn shape(nodes: &[[f64; 3]], face: &Element) -> Shape {
+    let triangles = split_face(face);
+    let shells: Vec<FlatShell> =
+        triangles.iter().filter_map(|t| FlatShell::new(&t.nodes.map(|n| nodes[n]))).collect();
+    if shells.len() < triangles.len() {
+        return Shape::NoArea;
+    }
+    let normals: Vec<[f64; 3]> = shells.iter().map(|s| s.triangle().normal()).collect();
+    let turned = |n: &[f64; 3]| n.iter().zip(normals[0]).map(|(a, b)| a * b).sum::<f64>() <= 0.0;
+    if normals.iter().any(turned) { Shape::Folded } else { Shape::Sound }
 }
 
 fn check_material(place: &str, material: &Material, faults: &mut Faults) {

@@ -14,16 +14,12 @@
 //!
 //! The free degrees of freedom of a node are orthonormal directions, along the global axes wherever possible.
 
-use super::elements::{FlatShell, mass_diagonal, split_face, spring_direction};
+use super::constraints::{active_spaces, lead, resolve_links};
 use super::model::Model;
-use crate::error::{Error, Fault, Faults, Result};
+use crate::error::{Error, Fault, Result};
 use crate::linalg::{SparseVector, c64};
 use nalgebra::{SMatrix, SVector, Vector3};
 
-/// Angles \[rad\] below which two directions are the same one.
-const SAME_DIRECTION: f64 = 1e-3;
-/// Components of unit directions below this are round-off.
-const ROUND_OFF: f64 = 1e-12;
 const NAMES: [&str; 6] = ["ux", "uy", "uz", "rx", "ry", "rz"];
 
 /// The map u = T q between nodes and free degrees of freedom.
@@ -153,9 +149,9 @@ impl DofMap {
         }
         let mut free = Vec::new();
         let mut first = vec![0; model.nodes.len() + 1];
-        for node in 0..model.nodes.len() {
+        for (node, &master) in masters.iter().enumerate() {
             first[node] = free.len();
-            if masters[node] == node {
+            if master == node {
                 let directions = spaces[node].free_directions(held[node], lengths[node]);
                 free.extend(directions.into_iter().map(|direction| FreeDof { node, direction }));
             }
@@ -171,8 +167,7 @@ impl DofMap {
         let mut starts = Vec::with_capacity(6 * model.nodes.len() + 1);
         let mut terms = Vec::with_capacity(free.len());
         starts.push(0);
-        for node in 0..model.nodes.len() {
-            let master = masters[node];
+        for (node, &master) in masters.iter().enumerate() {
             let arm = Vector3::from(model.nodes[node]) - Vector3::from(model.nodes[master]);
             let motions: Vec<(usize, [f64; 6])> =
                 (first[master]..first[master + 1]).map(|k| (k, moved(&free[k].direction, &arm))).collect();
@@ -185,220 +180,6 @@ impl DofMap {
     }
 }
 
-/// The last master of every node; its own number for a node that follows none.
-fn resolve_links(model: &Model) -> Result<Vec<usize>> {
-    let mut faults = Faults::new();
-    let mut leader: Vec<usize> = (0..model.nodes.len()).collect();
-    for (k, link) in model.links.iter().enumerate() {
-        let place = format!("rigid link {}", k + 1);
-        for slave in &link.slaves {
-            if *slave == link.master {
-                faults.push(Fault::new(
-                    &place,
-                    format!("node {} as its own slave", slave + 1),
-                    "slaves other than the master",
-                ));
-            } else if leader[*slave] != *slave && leader[*slave] != link.master {
-                faults.push(
-                    Fault::new(
-                        &place,
-                        format!("node {} that already follows node {}", slave + 1, leader[*slave] + 1),
-                        "one master for each slave",
-                    )
-                    .with_help("Link the two masters instead"),
-                );
-            } else {
-                leader[*slave] = link.master;
-            }
-        }
-    }
-    let mut masters = leader.clone();
-    for (node, master) in masters.iter_mut().enumerate() {
-        let mut steps = 0;
-        while leader[*master] != *master && steps <= leader.len() {
-            *master = leader[*master];
-            steps += 1;
-        }
-        if steps > leader.len() {
-            faults.push(Fault::new(
-                "rigid links",
-                format!("a circle through node {}", node + 1),
-                "a master that follows no one in the end",
-            ));
-            return faults.into_result(Vec::new());
-        }
-    }
-    let on_slaves = |support: &super::model::Support| {
-        if !support.held.contains(&true) {
-            return None;
-        }
-        support.nodes.iter().copied().find(|node| masters[*node] != *node)
-    };
-    for (k, support) in model.supports.iter().enumerate() {
-        if let Some(node) = on_slaves(support) {
-            faults.push(
-                Fault::new(
-                    format!("support {}", k + 1),
-                    format!("node {} held, which follows node {} rigidly", node + 1, masters[node] + 1),
-                    "supports on free nodes or masters",
-                )
-                .with_help(format!("Hold the master, node {}", masters[node] + 1)),
-            );
-        }
-    }
-    faults.into_result(masters)
-}
-
-/// The directions in which something acts on a node: an orthonormal basis.
-#[derive(Debug, Clone, Default)]
-struct Space {
-    basis: Vec<SVector<f64, 6>>,
-}
-
-impl Space {
-    fn is_full(&self) -> bool {
-        self.basis.len() == 6
-    }
-
-    fn fill(&mut self) {
-        if !self.is_full() {
-            self.basis = (0..6).map(|k| SVector::<f64, 6>::ith(k, 1.0)).collect();
-        }
-    }
-
-    /// Adds a direction unless it is (nearly) among those there are.
-    fn add(&mut self, direction: SVector<f64, 6>) {
-        let norm = direction.norm();
-        if self.is_full() || norm == 0.0 {
-            return;
-        }
-        let mut rest = direction / norm;
-        // Twice, so that the basis is orthogonal to round-off.
-        for _ in 0..2 {
-            for b in &self.basis {
-                rest -= b * b.dot(&rest);
-            }
-        }
-        if rest.norm() > SAME_DIRECTION {
-            self.basis.push(rest.normalize());
-        }
-    }
-
-    /// The directions left free by `held`. The space's rotations are scaled by `length` (they are θ · length).
-    fn free_directions(&self, held: [bool; 6], length: f64) -> Vec<[f64; 6]> {
-        if self.is_full() {
-            let free = (0..6).filter(|k| !held[*k]);
-            return free.map(|k| std::array::from_fn(|i| f64::from(u8::from(i == k)))).collect();
-        }
-        let mut projector =
-            self.basis.iter().fold(SMatrix::<f64, 6, 6>::zeros(), |sum, b| sum + b * b.transpose());
-        let mut count = self.basis.len();
-        // Within the space, the motion that an axis sees is that axis projected onto it; a held axis takes it away.
-        for k in (0..6).filter(|k| held[*k]) {
-            let seen = projector.column(k).into_owned();
-            if seen.norm() > ROUND_OFF {
-                let seen = seen.normalize();
-                projector -= seen * seen.transpose();
-                count -= 1;
-            }
-        }
-        // The basis nearest to the axes: the axis that the space holds best, projected, then the rest.
-        let mut directions = Vec::with_capacity(count);
-        for _ in 0..count {
-            let best =
-                (0..6).fold(0, |b, k| if projector[(k, k)] > projector[(b, b)] + ROUND_OFF { k } else { b });
-            let axis = projector.column(best).normalize();
-            projector -= axis * axis.transpose();
-            let mut direction: [f64; 6] =
-                std::array::from_fn(|i| if axis[i].abs() < ROUND_OFF { 0.0 } else { axis[i] });
-            if direction.iter().filter(|d| **d != 0.0).count() == 1 {
-                direction[best] = 1.0;
-            }
-            if direction[..3].iter().any(|d| *d != 0.0) {
-                direction[3..].iter_mut().for_each(|d| *d /= length);
-            }
-            directions.push(direction);
-        }
-        directions
-    }
-}
-
-/// What acts on every node through the elements that use it.
-fn active_spaces(model: &Model) -> Vec<Space> {
-    let mut spaces = vec![Space::default(); model.nodes.len()];
-    for part in &model.shells {
-        for triangle in part.faces.iter().flat_map(split_face) {
-            if !part.bending_only {
-                triangle.nodes.iter().for_each(|n| spaces[*n].fill());
-                continue;
-            }
-            if triangle.nodes.iter().all(|n| spaces[*n].is_full()) {
-                continue;
-            }
-            if let Some(shell) = FlatShell::new(&triangle.nodes.map(|n| model.nodes[n])) {
-                let frame = &shell.triangle().frame;
-                let axis = |row: usize, offset: usize| {
-                    let mut a = SVector::<f64, 6>::zeros();
-                    a.fixed_rows_mut::<3>(offset).copy_from(&frame.row(row).transpose());
-                    a
-                };
-                for node in triangle.nodes {
-                    [axis(2, 0), axis(0, 3), axis(1, 3)].into_iter().for_each(|a| spaces[node].add(a));
-                }
-            }
-        }
-    }
-    for node in model.bars.iter().flat_map(|part| part.elements.iter().flatten()) {
-        spaces[*node].fill();
-    }
-    for point in &model.masses {
-        for (k, mass) in mass_diagonal(point).into_iter().enumerate() {
-            if mass > 0.0 {
-                spaces[point.node].add(SVector::<f64, 6>::ith(k, 1.0));
-            }
-        }
-    }
-    for spring in model.springs.iter().filter(|s| s.stiffness != 0.0 || s.damping != 0.0) {
-        if let Some(a) = spring_direction(spring) {
-            for node in std::iter::once(spring.node).chain(spring.other) {
-                spaces[node].add(SVector::from(a));
-            }
-        }
-    }
-    spaces
-}
-
-/// Hands what acts on slaves to their masters; gives for every node the length by which its rotations are scaled.
-fn lead(model: &Model, masters: &[usize], spaces: &mut [Space]) -> Vec<f64> {
-    let mut lengths = vec![0.0_f64; masters.len()];
-    let arm =
-        |slave: usize, master: usize| Vector3::from(model.nodes[slave]) - Vector3::from(model.nodes[master]);
-    for (slave, master) in masters.iter().enumerate() {
-        lengths[*master] = lengths[*master].max(arm(slave, *master).norm());
-    }
-    for length in lengths.iter_mut().filter(|l| **l == 0.0) {
-        *length = 1.0;
-    }
-    // A master's own directions in its scaled rotations: they are purely translations or rotations, unit either way.
-    for (slave, master) in masters.iter().enumerate().filter(|(s, m)| s != *m) {
-        let acting = std::mem::take(&mut spaces[slave].basis);
-        if acting.len() == 6 {
-            spaces[*master].fill();
-        }
-        let r = arm(slave, *master);
-        for a in acting {
-            // a · u_s = a_t · u_m + (a_r + r × a_t) · θ_m.
-            let (force, moment) = (a.fixed_rows::<3>(0).into_owned(), a.fixed_rows::<3>(3).into_owned());
-            let moment = (moment + r.cross(&force)) / lengths[*master];
-            let mut handed = SVector::<f64, 6>::zeros();
-            handed.fixed_rows_mut::<3>(0).copy_from(&force);
-            handed.fixed_rows_mut::<3>(3).copy_from(&moment);
-            spaces[*master].add(handed);
-        }
-    }
-    lengths
-}
-
 /// The rigid motion (u, θ) at a point `arm` away: (u + θ × arm, θ).
 fn moved(motion: &[f64; 6], arm: &Vector3<f64>) -> [f64; 6] {
     let [ux, uy, uz, rx, ry, rz] = *motion;
@@ -408,4 +189,119 @@ fn moved(motion: &[f64; 6], arm: &Vector3<f64>) -> [f64; 6] {
 
 fn dot(a: &[f64; 6], b: &[f64; 6]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::*;
+    use crate::mesh::Element;
+
+    fn steel() -> Material {
+        Material {
+            youngs_modulus: 210e9,
+            poissons_ratio: 0.3,
+            density: 7850.0,
+            loss_factor: 0.0,
+            rayleigh: RayleighDamping::default(),
+        }
+    }
+
+    /// A square of two triangles tilted by `angle` about y, bending only or not, and a master below it.
+    fn tilted(angle: f64, bending_only: bool) -> Model {
+        let (c, s) = (angle.cos(), angle.sin());
+        let nodes =
+            [[0.0, 0.0], [0.1, 0.0], [0.1, 0.1], [0.0, 0.1]].map(|[x, y]| [x * c, y, -x * s]).to_vec();
+        let part = ShellPart {
+            name: "plate".into(),
+            faces: vec![Element::Triangle([0, 1, 2]), Element::Triangle([0, 2, 3])],
+            material: steel(),
+            thickness: 1e-3,
+            bending_only,
+            rotary_inertia: false,
+        };
+        Model { nodes, shells: vec![part], ..Model::default() }
+    }
+
+    #[test]
+    fn a_bending_only_plate_keeps_deflection_and_two_rotations_however_it_is_tilted() {
+        for angle in [0.0, 0.3, std::f64::consts::FRAC_PI_2] {
+            let assembled = assemble(&tilted(angle, true)).unwrap();
+            assert_eq!(assembled.dofs.n_dofs(), 12);
+            let normal = [angle.sin(), 0.0, angle.cos()];
+            let along: f64 =
+                assembled.dofs.free_dofs()[0].direction.iter().zip(normal).map(|(d, n)| d * n).sum();
+            assert!((along.abs() - 1.0).abs() < 1e-14);
+        }
+        let flat = assemble(&tilted(0.0, true)).unwrap();
+        let labels: Vec<String> = flat.dofs.free_dofs()[..3].iter().map(FreeDof::label).collect();
+        assert_eq!(labels, ["uz", "rx", "ry"]);
+        // Held in z alone: an inclined deflection has no room left, the rotations have.
+        let mut model = tilted(0.3, true);
+        model.supports.push(Support { nodes: vec![0], held: [false, false, true, false, false, false] });
+        assert_eq!(assemble(&model).unwrap().dofs.n_dofs(), 11);
+    }
+
+    #[test]
+    fn rigid_slaves_follow_their_master_and_links_chain() {
+        let mut model = tilted(0.2, false);
+        model.nodes.push([0.02, 0.03, -0.05]);
+        model.nodes.push([0.0, 0.0, -0.2]);
+        model.links.push(RigidLink { master: 4, slaves: vec![0, 1] });
+        model.links.push(RigidLink { master: 5, slaves: vec![4] });
+        let assembled = assemble(&model).unwrap();
+        assert_eq!(assembled.dofs.n_dofs(), 18);
+        // Six rigid motions are annihilated by K, carry the mass, and expand to themselves everywhere.
+        let origin = [0.3, -0.1, 0.2];
+        for (k, q) in assembled.dofs.rigid_body_vectors(origin).iter().enumerate() {
+            let mut motion = [0.0; 6];
+            motion[k] = 1.0;
+            for (node, u) in assembled.dofs.expand(q).iter().enumerate() {
+                let arm = nalgebra::Vector3::from(model.nodes[node]) - nalgebra::Vector3::from(origin);
+                let exact = super::moved(&motion, &arm);
+                assert!(u.iter().zip(exact).all(|(a, b)| (a - b).abs() < 1e-15));
+            }
+            let kq = &assembled.structure.stiffness * faer::ColRef::from_slice(q);
+            let norm: f64 = assembled.structure.stiffness.val().iter().map(|v| v * v).sum::<f64>().sqrt();
+            let size: f64 = q.iter().map(|v| v * v).sum::<f64>().sqrt();
+            assert!(kq.norm_l2() <= 1e-12 * norm * size);
+            let mq = &assembled.structure.mass * faer::ColRef::from_slice(q);
+            let kinetic: f64 = q.iter().enumerate().map(|(i, v)| v * mq[i]).sum();
+            if k < 3 {
+                assert!((kinetic / assembled.total_mass - 1.0).abs() < 1e-12);
+            }
+        }
+        // The force on a slave is the master's force and moment.
+        let force = assembled.dofs.reduce(&[(0, 2, 2.0)]);
+        let arm = [0.0, 0.0, 0.2];
+        let terms: Vec<(usize, f64)> = force.iter().collect();
+        let master = assembled.dofs.free_dofs().iter().position(|d| d.node == 5).unwrap();
+        assert_eq!(terms, [(master + 2, 2.0)], "arm {arm:?} is along the force");
+    }
+
+    #[test]
+    fn a_master_takes_only_what_acts_on_its_slaves() {
+        // A bending-only plate hung rigidly on a master off its plane: one deflection and two rotations remain.
+        let mut model = tilted(0.4, true);
+        model.nodes.push([0.05, 0.05, 0.3]);
+        model.links.push(RigidLink { master: 4, slaves: vec![0, 1, 2, 3] });
+        let assembled = assemble(&model).unwrap();
+        assert_eq!(assembled.dofs.n_dofs(), 3);
+        let mass = assembled.structure.mass.to_dense();
+        assert!(mass.llt(faer::Side::Lower).is_ok(), "{mass:?}");
+    }
+
+    #[test]
+    fn circles_double_masters_and_held_slaves_are_refused_with_advice() {
+        let mut model = tilted(0.0, false);
+        model.nodes.push([0.0, 0.0, 1.0]);
+        model.links.push(RigidLink { master: 4, slaves: vec![0] });
+        model.supports.push(Support { nodes: vec![0], held: [true; 6] });
+        let text = assemble(&model).unwrap_err().to_string();
+        assert!(text.contains("Hold the master, node 5"), "{text}");
+        model.supports.clear();
+        model.links.push(RigidLink { master: 1, slaves: vec![0] });
+        assert!(assemble(&model).unwrap_err().to_string().contains("already follows node 5"));
+        model.links[1] = RigidLink { master: 0, slaves: vec![4] };
+        assert!(assemble(&model).unwrap_err().to_string().contains("circle"));
+    }
 }

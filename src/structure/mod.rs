@@ -6,14 +6,17 @@
 
 mod assembly;
 mod check;
+mod constraints;
 mod dofs;
 pub mod elements;
 mod model;
 mod pieces;
 mod scatter;
+mod warnings;
 
 pub use assembly::{Assembled, GeometricStiffness, assemble};
 pub use dofs::{DofMap, FreeDof};
 pub use model::{
     BarPart, Material, Model, PointMass, RayleighDamping, RigidLink, Section, ShellPart, Spring, Support,
 };
+pub use warnings::{ThicknessError, thickness_error, thickness_errors};

@@ -218,48 +218,45 @@ fn coupled_dofs(dofs: &DofMap, nodes: &[usize]) -> Vec<usize> {
     list
 }
 
-/// Tᵀ A T of a matrix on the six degrees of freedom of `nodes`, on the free degrees of freedom `coupled`
-/// (column by column): symmetric to the last bit when A is.
-pub(super) fn reduced(
-    dofs: &DofMap,
-    nodes: &[usize],
-    coupled: &[usize],
-    full: &SMatrix<f64, 18, 18>,
-) -> Vec<f64> {
-    let m = coupled.len();
-    let size = 6 * nodes.len();
-    let row = |k: usize| dofs.terms(nodes[k / 6], k % 6);
-    // Where in `coupled` the first term of each row stands; the terms of a row are neighbours in it.
-    let mut places = [0; 18];
-    for (k, place) in places.iter_mut().enumerate().take(size) {
-        if let Some((first, _)) = row(k).first() {
-            *place = coupled.partition_point(|c| c < first);
-        }
-    }
-    let place_of = |k: usize, dof: usize| {
-        let from = places[k];
-        from + coupled[from..].partition_point(|c| *c < dof)
-    };
-    let mut small = vec![0.0; m * m];
-    for b in 0..size {
-        for (j, tj) in row(b) {
-            let column = place_of(b, *j);
-            for a in 0..size {
-                for (i, ti) in row(a) {
-                    let at = place_of(a, *i);
-                    if at <= column {
-                        small[column * m + at] += ti * tj * full[(a, b)];
-                    }
+/// Takes matrices on the six degrees of freedom of a piece's nodes to Tᵀ A T on the free ones that it couples.
+pub(super) struct Reduction {
+    size: usize,
+    /// (row of A, place among the coupled degrees of freedom, coefficient) of every entry of T.
+    entries: Vec<(usize, usize, f64)>,
+}
+
+impl Reduction {
+    /// The rows of T of `nodes`; `coupled` are the free degrees of freedom in them, ascending.
+    pub fn new(dofs: &DofMap, nodes: impl Iterator<Item = usize>, coupled: &[usize]) -> Self {
+        let mut entries = Vec::with_capacity(18);
+        for (corner, node) in nodes.enumerate() {
+            for dof in 0..6 {
+                for (k, coefficient) in dofs.terms(node, dof) {
+                    entries.push((6 * corner + dof, coupled.partition_point(|c| c < k), *coefficient));
                 }
             }
         }
+        Reduction { size: coupled.len(), entries }
     }
-    for column in 0..m {
-        for at in 0..column {
-            small[at * m + column] = small[column * m + at];
+
+    /// Tᵀ A T, column by column: symmetric to the last bit when A is.
+    pub fn apply(&self, full: &SMatrix<f64, 18, 18>) -> Vec<f64> {
+        let m = self.size;
+        let mut small = vec![0.0; m * m];
+        for (b, column, tb) in &self.entries {
+            let (from, to) = (full.column(*b), &mut small[column * m..(column + 1) * m]);
+            for (a, row, ta) in &self.entries {
+                to[*row] += ta * tb * from[*a];
+            }
         }
+        // Several terms a row may add up in another order on the other side of the diagonal.
+        for column in 0..m {
+            for row in 0..column {
+                small[row * m + column] = small[column * m + row];
+            }
+        }
+        small
     }
-    small
 }
 
 fn flattened(lists: &[Vec<usize>]) -> (Vec<usize>, Vec<usize>) {

@@ -60,3 +60,49 @@ pub fn generalized_eigenvalues(a: &Mat<f64>, b: &Mat<f64>) -> Vec<f64> {
     let symmetric = Mat::from_fn(half.nrows(), half.ncols(), |i, j| 0.5 * (half[(i, j)] + half[(j, i)]));
     symmetric.self_adjoint_eigenvalues(faer::Side::Lower).unwrap()
 }
+
+/// The `count` lowest natural frequencies \[Hz\] by subspace iteration on K + s M, s = (2π shift_hz)², with
+/// Rayleigh–Ritz until the wanted ones stand still to 1e-8.
+pub fn lowest_frequencies(structure: &stridor::system::Structure, count: usize, shift_hz: f64) -> Vec<f64> {
+    let tau = std::f64::consts::TAU;
+    let s = (tau * shift_hz).powi(2);
+    let (k, m) = (&structure.stiffness, &structure.mass);
+    let shifted = {
+        let mut sum = k.clone();
+        for (a, b) in sum.val_mut().iter_mut().zip(m.val()) {
+            *a += s * b;
+        }
+        sum
+    };
+    let factor = shifted.sp_cholesky(faer::Side::Lower).unwrap();
+    let n = structure.n_dofs();
+    let width = (2 * count).max(count + 8).min(n);
+    // A fixed pseudo-random start.
+    let mut seed = 1_u64;
+    let mut x = Mat::from_fn(n, width, |_, _| {
+        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    });
+    let mut last: Vec<f64> = vec![0.0; count];
+    for _ in 0..60 {
+        let y = factor.solve(m * &x);
+        let (a, b) = (y.transpose() * (&shifted * &y), y.transpose() * (m * &y));
+        let l = b.llt(faer::Side::Lower).unwrap().L().to_owned();
+        let mut half = a.clone();
+        l.solve_lower_triangular_in_place(half.as_mut());
+        let mut c = half.transpose().to_owned();
+        l.solve_lower_triangular_in_place(c.as_mut());
+        let c = Mat::from_fn(width, width, |i, j| 0.5 * (c[(i, j)] + c[(j, i)]));
+        let eigen = c.self_adjoint_eigen(faer::Side::Lower).unwrap();
+        let mut v = eigen.U().to_owned();
+        l.transpose().solve_upper_triangular_in_place(v.as_mut());
+        x = &y * v;
+        let values: Vec<f64> = (0..count).map(|i| eigen.S()[i]).collect();
+        let still = values.iter().zip(&last).all(|(v, w)| (v - w).abs() <= 1e-8 * v.abs().max(s));
+        last = values;
+        if still {
+            break;
+        }
+    }
+    last.iter().map(|v| (v - s).max(0.0).sqrt() / tau).collect()
+}

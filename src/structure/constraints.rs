@@ -1,0 +1,230 @@
+//! What moves a node and what holds it: rigid links, the directions in which elements act, supports.
+
+use super::elements::{FlatShell, mass_diagonal, split_face, spring_direction};
+use super::model::Model;
+use crate::error::{Fault, Faults, Result};
+use nalgebra::{SMatrix, SVector, Vector3};
+
+/// Angles \[rad\] below which two directions are the same one.
+const SAME_DIRECTION: f64 = 1e-3;
+/// Components of unit directions below this are round-off.
+const ROUND_OFF: f64 = 1e-12;
+
+/// The last master of every node; its own number for a node that follows none.
+pub(super) fn resolve_links(model: &Model) -> Result<Vec<usize>> {
+    let mut faults = Faults::new();
+    let mut leader: Vec<usize> = (0..model.nodes.len()).collect();
+    for (k, link) in model.links.iter().enumerate() {
+        let place = format!("rigid link {}", k + 1);
+        for slave in &link.slaves {
+            if *slave == link.master {
+                faults.push(Fault::new(
+                    &place,
+                    format!("node {} as its own slave", slave + 1),
+                    "slaves other than the master",
+                ));
+            } else if leader[*slave] != *slave && leader[*slave] != link.master {
+                faults.push(
+                    Fault::new(
+                        &place,
+                        format!("node {} that already follows node {}", slave + 1, leader[*slave] + 1),
+                        "one master for each slave",
+                    )
+                    .with_help("Link the two masters instead"),
+                );
+            } else {
+                leader[*slave] = link.master;
+            }
+        }
+    }
+    let mut masters = leader.clone();
+    for (node, master) in masters.iter_mut().enumerate() {
+        let mut steps = 0;
+        while leader[*master] != *master && steps <= leader.len() {
+            *master = leader[*master];
+            steps += 1;
+        }
+        if steps > leader.len() {
+            faults.push(Fault::new(
+                "rigid links",
+                format!("a circle through node {}", node + 1),
+                "a master that follows no one in the end",
+            ));
+            return faults.into_result(Vec::new());
+        }
+    }
+    let on_slaves = |support: &super::model::Support| {
+        if !support.held.contains(&true) {
+            return None;
+        }
+        support.nodes.iter().copied().find(|node| masters[*node] != *node)
+    };
+    for (k, support) in model.supports.iter().enumerate() {
+        if let Some(node) = on_slaves(support) {
+            faults.push(
+                Fault::new(
+                    format!("support {}", k + 1),
+                    format!("node {} held, which follows node {} rigidly", node + 1, masters[node] + 1),
+                    "supports on free nodes or masters",
+                )
+                .with_help(format!("Hold the master, node {}", masters[node] + 1)),
+            );
+        }
+    }
+    faults.into_result(masters)
+}
+
+/// The directions in which something acts on a node: an orthonormal basis.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Space {
+    basis: Vec<SVector<f64, 6>>,
+}
+
+impl Space {
+    fn is_full(&self) -> bool {
+        self.basis.len() == 6
+    }
+
+    fn fill(&mut self) {
+        if !self.is_full() {
+            self.basis = (0..6).map(|k| SVector::<f64, 6>::ith(k, 1.0)).collect();
+        }
+    }
+
+    /// Adds a direction unless it is (nearly) among those there are.
+    fn add(&mut self, direction: SVector<f64, 6>) {
+        let norm = direction.norm();
+        if self.is_full() || norm == 0.0 {
+            return;
+        }
+        let mut rest = direction / norm;
+        // Twice, so that the basis is orthogonal to round-off.
+        for _ in 0..2 {
+            for b in &self.basis {
+                rest -= b * b.dot(&rest);
+            }
+        }
+        if rest.norm() > SAME_DIRECTION {
+            self.basis.push(rest.normalize());
+        }
+    }
+
+    /// The directions left free by `held`. The space's rotations are scaled by `length` (they are θ · length).
+    pub fn free_directions(&self, held: [bool; 6], length: f64) -> Vec<[f64; 6]> {
+        if self.is_full() {
+            let free = (0..6).filter(|k| !held[*k]);
+            return free.map(|k| std::array::from_fn(|i| f64::from(u8::from(i == k)))).collect();
+        }
+        let mut projector =
+            self.basis.iter().fold(SMatrix::<f64, 6, 6>::zeros(), |sum, b| sum + b * b.transpose());
+        let mut count = self.basis.len();
+        // Within the space, the motion that an axis sees is that axis projected onto it; a held axis takes it away.
+        for k in (0..6).filter(|k| held[*k]) {
+            let seen = projector.column(k).into_owned();
+            if seen.norm() > ROUND_OFF {
+                let seen = seen.normalize();
+                projector -= seen * seen.transpose();
+                count -= 1;
+            }
+        }
+        // The basis nearest to the axes, translations first: the axis that the space holds best, projected, then the rest.
+        let mut directions = Vec::with_capacity(count);
+        for _ in 0..count {
+            let held_best = |axes: std::ops::Range<usize>| {
+                let start = axes.start;
+                axes.fold(start, |b, k| if projector[(k, k)] > projector[(b, b)] + ROUND_OFF { k } else { b })
+            };
+            let translation = held_best(0..3);
+            let moves = projector[(translation, translation)] > SAME_DIRECTION.powi(2);
+            let best = if moves { translation } else { held_best(3..6) };
+            let axis = projector.column(best).normalize();
+            projector -= axis * axis.transpose();
+            let mut direction: [f64; 6] =
+                std::array::from_fn(|i| if axis[i].abs() < ROUND_OFF { 0.0 } else { axis[i] });
+            if direction.iter().filter(|d| **d != 0.0).count() == 1 {
+                direction[best] = 1.0;
+            }
+            if direction[..3].iter().any(|d| *d != 0.0) {
+                direction[3..].iter_mut().for_each(|d| *d /= length);
+            }
+            directions.push(direction);
+        }
+        directions
+    }
+}
+
+/// What acts on every node through the elements that use it.
+pub(super) fn active_spaces(model: &Model) -> Vec<Space> {
+    let mut spaces = vec![Space::default(); model.nodes.len()];
+    for part in &model.shells {
+        for triangle in part.faces.iter().flat_map(split_face) {
+            if !part.bending_only {
+                triangle.nodes.iter().for_each(|n| spaces[*n].fill());
+                continue;
+            }
+            if triangle.nodes.iter().all(|n| spaces[*n].is_full()) {
+                continue;
+            }
+            if let Some(shell) = FlatShell::new(&triangle.nodes.map(|n| model.nodes[n])) {
+                let frame = &shell.triangle().frame;
+                let axis = |row: usize, offset: usize| {
+                    let mut a = SVector::<f64, 6>::zeros();
+                    a.fixed_rows_mut::<3>(offset).copy_from(&frame.row(row).transpose());
+                    a
+                };
+                for node in triangle.nodes {
+                    [axis(2, 0), axis(0, 3), axis(1, 3)].into_iter().for_each(|a| spaces[node].add(a));
+                }
+            }
+        }
+    }
+    for node in model.bars.iter().flat_map(|part| part.elements.iter().flatten()) {
+        spaces[*node].fill();
+    }
+    for point in &model.masses {
+        for (k, mass) in mass_diagonal(point).into_iter().enumerate() {
+            if mass > 0.0 {
+                spaces[point.node].add(SVector::<f64, 6>::ith(k, 1.0));
+            }
+        }
+    }
+    for spring in model.springs.iter().filter(|s| s.stiffness != 0.0 || s.damping != 0.0) {
+        if let Some(a) = spring_direction(spring) {
+            for node in std::iter::once(spring.node).chain(spring.other) {
+                spaces[node].add(SVector::from(a));
+            }
+        }
+    }
+    spaces
+}
+
+/// Hands what acts on slaves to their masters; gives for every node the length by which its rotations are scaled.
+pub(super) fn lead(model: &Model, masters: &[usize], spaces: &mut [Space]) -> Vec<f64> {
+    let mut lengths = vec![0.0_f64; masters.len()];
+    let arm =
+        |slave: usize, master: usize| Vector3::from(model.nodes[slave]) - Vector3::from(model.nodes[master]);
+    for (slave, master) in masters.iter().enumerate() {
+        lengths[*master] = lengths[*master].max(arm(slave, *master).norm());
+    }
+    for length in lengths.iter_mut().filter(|l| **l == 0.0) {
+        *length = 1.0;
+    }
+    // A master's own directions in its scaled rotations: they are purely translations or rotations, unit either way.
+    for (slave, master) in masters.iter().enumerate().filter(|(s, m)| s != *m) {
+        let acting = std::mem::take(&mut spaces[slave].basis);
+        if acting.len() == 6 {
+            spaces[*master].fill();
+        }
+        let r = arm(slave, *master);
+        for a in acting {
+            // a · u_s = a_t · u_m + (a_r + r × a_t) · θ_m.
+            let (force, moment) = (a.fixed_rows::<3>(0).into_owned(), a.fixed_rows::<3>(3).into_owned());
+            let moment = (moment + r.cross(&force)) / lengths[*master];
+            let mut handed = SVector::<f64, 6>::zeros();
+            handed.fixed_rows_mut::<3>(0).copy_from(&force);
+            handed.fixed_rows_mut::<3>(3).copy_from(&moment);
+            spaces[*master].add(handed);
+        }
+    }
+    lengths
+}
