@@ -2,10 +2,10 @@
 //!
 //! Faults make an analysis wrong or impossible; warnings say that a result may be poor.
 
-use super::quality::{face_shape, minus, norm};
+use super::quality::{dot, face_shape, minus, norm};
 use super::{Element, Mesh, Region};
 use crate::error::{Fault, Faults};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 /// The smallest corner angle \[degrees\] that passes without a warning.
 pub const POOR_ANGLE_DEG: f64 = 15.0;
@@ -119,20 +119,17 @@ fn check_coincident(mesh: &Mesh, diagnosis: &mut Diagnosis) {
     if tolerance == 0.0 {
         return;
     }
-    let mut grid: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
-    let cell = |p: [f64; 3]| [0, 1, 2].map(|k| ((p[k] - low[k]) / (2.0 * tolerance)).floor() as i64);
+    // Along a skew direction hardly any but coincident nodes are neighbours.
+    let mut order: Vec<(f64, usize)> =
+        mesh.nodes.iter().enumerate().map(|(n, p)| (dot(*p, [0.577, 0.613, 0.541]), n)).collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let mut pairs: Vec<[usize; 2]> = Vec::new();
-    for n in 0..mesh.nodes.len() {
-        let p = mesh.nodes[n];
-        let home = cell(p);
-        let around = (0..27).map(|s| [home[0] + s % 3 - 1, home[1] + s / 3 % 3 - 1, home[2] + s / 9 - 1]);
-        // One partner is enough: all nodes of a heap find its first one.
-        let partner = around
-            .filter_map(|cell| grid.get(&cell))
-            .flatten()
-            .find(|other| norm(minus(p, mesh.nodes[**other])) <= tolerance);
-        pairs.extend(partner.map(|other| [*other, n]));
-        grid.entry(home).or_default().push(n);
+    for (k, (s, n)) in order.iter().enumerate() {
+        let near = order[k + 1..].iter().take_while(|other| other.0 - s <= tolerance);
+        // One partner is enough: the nodes of a heap form a chain.
+        let partner =
+            near.map(|other| other.1).find(|m| norm(minus(mesh.nodes[*n], mesh.nodes[*m])) <= tolerance);
+        pairs.extend(partner.map(|m| [*n.min(&m), *n.max(&m)]));
     }
     if pairs.is_empty() {
         return;
@@ -237,15 +234,20 @@ fn check_shapes(mesh: &Mesh, diagnosis: &mut Diagnosis) {
 }
 
 fn check_duplicates(mesh: &Mesh, region: &Region, faults: &mut Faults) {
-    let mut seen: HashMap<Vec<usize>, usize> = HashMap::new();
-    let mut twice = Vec::new();
-    for e in &region.elements {
-        let mut key = mesh.elements[*e].nodes().to_vec();
-        key.sort_unstable();
-        if seen.insert(key, *e).is_some() {
-            twice.push(*e);
-        }
-    }
+    let mut keys: Vec<([usize; 4], usize)> = region
+        .elements
+        .iter()
+        .map(|e| {
+            let mut key = [usize::MAX; 4];
+            let n = mesh.elements[*e].nodes();
+            key[..n.len()].copy_from_slice(n);
+            key.sort_unstable();
+            (key, *e)
+        })
+        .collect();
+    keys.sort_unstable();
+    let mut twice: Vec<usize> = keys.windows(2).filter(|w| w[0].0 == w[1].0).map(|w| w[1].1).collect();
+    twice.sort_unstable();
     if !twice.is_empty() {
         let found =
             format!("{} elements on the nodes of another one in region `{}`", twice.len(), region.name);
@@ -258,19 +260,20 @@ fn check_orientation(mesh: &Mesh, region: &Region, faults: &mut Faults) {
     if region.dimension != 2 {
         return;
     }
-    let mut edges: HashMap<[usize; 2], Vec<(usize, bool)>> = HashMap::new();
+    let mut edges: Vec<([usize; 2], usize, bool)> = Vec::with_capacity(4 * region.elements.len());
     for e in &region.elements {
         let n = mesh.elements[*e].nodes();
-        for i in 0..n.len() {
+        edges.extend((0..n.len()).map(|i| {
             let (a, b) = (n[i], n[(i + 1) % n.len()]);
-            edges.entry([a.min(b), a.max(b)]).or_default().push((*e, a < b));
-        }
+            ([a.min(b), a.max(b)], *e, a < b)
+        }));
     }
+    edges.sort_unstable();
     let mut clashing: Vec<[usize; 2]> = edges
-        .values()
-        .filter_map(|faces| match faces.as_slice() {
+        .chunk_by(|a, b| a.0 == b.0)
+        .filter_map(|faces| match faces {
             // Where three or more plates meet there is no common side.
-            [(e, up), (f, also_up)] if e != f && up == also_up => Some([*e.min(f), *e.max(f)]),
+            [(_, e, up), (_, f, also_up)] if e != f && up == also_up => Some([*e, *f]),
             _ => None,
         })
         .collect();
@@ -303,9 +306,7 @@ fn check_pieces(mesh: &Mesh, region: &Region, warnings: &mut Vec<Fault>) {
 
 /// The number of pieces of a region that share no node.
 pub(super) fn count_pieces(mesh: &Mesh, region: &Region) -> usize {
-    let nodes = mesh.region_nodes(region);
-    let place = |n: usize| nodes.binary_search(&n).expect("a node of the region");
-    let mut parent: Vec<usize> = (0..nodes.len()).collect();
+    let mut parent: Vec<usize> = (0..mesh.nodes.len()).collect();
     fn root(parent: &mut [usize], mut i: usize) -> usize {
         while parent[i] != i {
             parent[i] = parent[parent[i]];
@@ -316,11 +317,11 @@ pub(super) fn count_pieces(mesh: &Mesh, region: &Region) -> usize {
     for e in &region.elements {
         let n = mesh.elements[*e].nodes();
         for other in &n[1..] {
-            let (a, b) = (root(&mut parent, place(n[0])), root(&mut parent, place(*other)));
+            let (a, b) = (root(&mut parent, n[0]), root(&mut parent, *other));
             parent[a.max(b)] = a.min(b);
         }
     }
-    (0..parent.len()).filter(|i| parent[*i] == *i).count()
+    mesh.region_nodes(region).into_iter().filter(|n| parent[*n] == *n).count()
 }
 
 /// The corners of the bounding box; `None` for a mesh without nodes.

@@ -9,17 +9,19 @@
 //! point is (0, 0, −a), its faces' normal is +x. The plate lies in the plane z = 0, its normal is +z.
 //!
 //! Regions: `disc` (faces), `rim` and `hub` (lines); `slider` (faces), `slider_edge_x_min`, `_x_max`, `_y_min`,
-//! `_y_max` (lines); `bar` (lines), `bar_root` and `bar_clamp` (points).
+//! `_y_max` (lines); `bar` (lines), `bar_root` and `bar_clamp` (points); `pad` like `slider`.
 
 mod disc;
 mod fill;
 mod grading;
+mod pad;
 mod plate;
 mod rig;
 mod structured;
 
 pub use disc::{DiscSpec, disc};
 pub use grading::Grading;
+pub use pad::{PadOnDiscSpec, pad_on_disc};
 pub use plate::{PlateSpec, plate};
 pub use rig::{BarSide, BarSpec, RigSpec, rig};
 pub use structured::{Faces, structured_annulus, structured_plate};

@@ -148,3 +148,18 @@ fn wrong_specifications_are_explained() {
     let text = fault(rig(&spec));
     assert!(text.contains("2 faults") && text.contains("full disc"), "{text}");
 }
+
+#[test]
+fn a_pad_lies_on_the_face_of_its_disc() {
+    let spec = PadOnDiscSpec::example();
+    let mesh = pad_on_disc(&spec).unwrap();
+    assert!((area(&mesh, "pad") / 6e-4 - 1.0).abs() < 1e-13);
+    for e in &mesh.require("pad", 2).unwrap().elements {
+        let normal = face_shape(&mesh, &mesh.elements[*e]).unwrap().normal;
+        assert!((normal[0] - 1.0).abs() < 1e-15);
+        assert!(mesh.elements[*e].nodes().iter().all(|n| mesh.nodes[*n][0] == 3e-3));
+    }
+    assert!(diagnose(&mesh).faults.0.is_empty() && diagnose(&mesh).warnings.is_empty());
+    let text = pad_on_disc(&PadOnDiscSpec { radius: 0.07, ..spec }).unwrap_err().to_string();
+    assert!(text.contains("on the disc"), "{text}");
+}

@@ -89,7 +89,7 @@ impl<'a> Reader<'a> {
     /// A word that is a number, whatever the encoding.
     pub fn text_number<T: std::str::FromStr>(&mut self, what: &str) -> Result<T> {
         let word = self.word();
-        word.parse().map_err(|_| self.wrong(shown(word), what))
+        word.parse().map_err(|_| self.wrong(shown(word), format!("a number, the {what}")))
     }
 
     /// An integer.

@@ -50,7 +50,7 @@ fn count(file: &mut Reader<'_>, what: &str) -> Result<usize> {
 fn read_nodes(file: &mut Reader<'_>, raw: &mut RawMesh) -> Result<()> {
     for _ in 0..count(file, "number of nodes")? {
         let tag = tag(file, "node number")?;
-        let place = [file.float("x")?, file.float("y")?, file.float("z")?];
+        let place = [file.float("node's x")?, file.float("node's y")?, file.float("node's z")?];
         raw.nodes.push((tag, place));
     }
     Ok(())

@@ -13,11 +13,11 @@ use std::collections::HashMap;
 use std::panic::catch_unwind;
 
 /// Reads the whole file.
-pub(super) fn parse(bytes: &[u8], place: &str) -> Result<RawMesh> {
+pub(super) fn parse(bytes: &[u8], encoding: Encoding, place: &str) -> Result<RawMesh> {
     let wrong = |found: String, expected: &str| Error::input(Fault::new(place, found, expected));
-    let bytes = with_gaps(bytes);
+    let bytes = with_gaps(bytes, encoding);
     let file: MshFile<u64, i32, f64> =
-        match catch_unwind(|| mshio::parse_msh_bytes(&bytes).map_err(|e| explain(&bytes, &e))) {
+        match catch_unwind(|| mshio::parse_msh_bytes(&bytes).map_err(|e| explain(&bytes, encoding, &e))) {
             Ok(Ok(file)) => file,
             Ok(Err(text)) => return Err(wrong(text, "a whole file in the format MSH 4.1")),
             Err(_) => return Err(wrong("something the reader stumbled over".into(), "the format MSH 4.1")),
@@ -77,13 +77,12 @@ pub(super) fn parse(bytes: &[u8], place: &str) -> Result<RawMesh> {
 }
 
 /// The file with the largest node tag of `$Nodes` raised, so that mshio keeps all tags.
-fn with_gaps(bytes: &[u8]) -> Vec<u8> {
+fn with_gaps(bytes: &[u8], encoding: Encoding) -> Vec<u8> {
     let mut file = bytes.to_vec();
     let Some(start) = find(bytes, b"\n$Nodes") else { return file };
     let Some(line) = bytes[start + 1..].iter().position(|b| *b == b'\n') else { return file };
     let head = start + 1 + line + 1;
-    let binary = bytes.starts_with(b"$MeshFormat\n4.1 1") || bytes.starts_with(b"$MeshFormat\r\n4.1 1");
-    if binary {
+    if encoding != Encoding::Ascii {
         // Four eight-byte numbers: blocks, nodes, smallest tag, largest tag.
         if let Some(largest) = file.get_mut(head + 24..head + 32) {
             largest.fill(0xff);
@@ -104,8 +103,7 @@ fn with_gaps(bytes: &[u8]) -> Vec<u8> {
 }
 
 /// Where mshio stopped, and in what.
-fn explain(bytes: &[u8], error: &mshio::MshParserError<&[u8]>) -> String {
-    let encoding = if bytes.get(16..17) == Some(b"1") { Encoding::LittleEndian } else { Encoding::Ascii };
+fn explain(bytes: &[u8], encoding: Encoding, error: &mshio::MshParserError<&[u8]>) -> String {
     let at = error.backtrace.first().map_or(0, |(rest, _)| bytes.len() - rest.len());
     let place = position(bytes, at, encoding);
     let mut parts: Vec<String> =

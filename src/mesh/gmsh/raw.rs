@@ -166,6 +166,8 @@ impl RawMesh {
             });
             region_of.insert((*dimension, *number), index);
         }
+        // Element and regions by nodes.
+        let mut listed: HashMap<(i64, Vec<usize>), (usize, Vec<usize>)> = HashMap::new();
         for RawElement { tag, kind, nodes, groups } in self.elements {
             let n: Vec<usize> = nodes.iter().map(|tag| place_of[known[tag]]).collect();
             let element = match (kind, n.as_slice()) {
@@ -176,23 +178,31 @@ impl RawMesh {
                 _ => continue,
             };
             let dimension = element.dimension();
-            // The same element once more, for another of its groups.
-            if mesh.origin.element_tags.last() != Some(&tag) {
+            let of: Vec<usize> = groups
+                .into_iter()
+                .map(|group| {
+                    *region_of.entry((dimension, group)).or_insert_with(|| {
+                        let name = format!("{} {group}", ["point", "curve", "surface"][dimension]);
+                        regions.push(Region { name, dimension, elements: vec![] });
+                        regions.len() - 1
+                    })
+                })
+                .collect();
+            // MSH 2.2 lists an element once more for every further group; twice in one group is a fault, found later.
+            let listed = listed.entry((kind, n)).or_insert_with(|| (usize::MAX, vec![]));
+            if listed.0 == usize::MAX || of.iter().any(|region| listed.1.contains(region)) {
+                *listed = (mesh.elements.len(), vec![]);
                 mesh.elements.push(element);
                 mesh.origin.element_tags.push(tag);
             }
-            for group in groups {
-                let index = *region_of.entry((dimension, group)).or_insert_with(|| {
-                    let name = format!("{} {group}", ["point", "curve", "surface"][dimension]);
-                    regions.push(Region { name, dimension, elements: vec![] });
-                    regions.len() - 1
-                });
-                let last = mesh.elements.len() - 1;
-                if regions[index].elements.last() != Some(&last) {
-                    regions[index].elements.push(last);
+            for region in of {
+                if !listed.1.contains(&region) {
+                    listed.1.push(region);
+                    regions[region].elements.push(listed.0);
                 }
             }
         }
+        regions.iter_mut().for_each(|region| region.elements.sort_unstable());
         regions.retain(|region| !region.elements.is_empty());
         mesh.regions = regions;
         Ok(mesh)
