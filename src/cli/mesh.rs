@@ -134,14 +134,10 @@ pub struct InfoOptions {
     unit: String,
 }
 
+/// A length with its unit; zero needs none.
 fn length(text: &str) -> std::result::Result<f64, String> {
-    parse_quantity(text, LENGTH)
-        .map_err(|found| format!("found {found}; expected {}", LENGTH.name))
-        .and_then(|value| if text.trim().parse::<f64>().is_ok_and(|v| v != 0.0) {
-            Err(format!("{text} has no unit; expected {}", LENGTH.name))
-        } else {
-            Ok(value)
-        })
+    let text = if text.trim() == "0" { "0 m" } else { text };
+    parse_quantity(text, LENGTH).map_err(|found| format!("found {found}; expected {}", LENGTH.name))
 }
 
 pub fn run(action: &Action, common: &Common) -> Result<ExitCode> {
