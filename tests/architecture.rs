@@ -25,14 +25,22 @@ const MAY_USE: [(&str, &[&str]); 16] = [
     (
         "job",
         &[
-            "error", "progress", "linalg", "system", "mesh", "structure", "contact", "equilibrium", "modal",
-            "stability", "results", "report", "case",
+            "error",
+            "progress",
+            "linalg",
+            "system",
+            "mesh",
+            "structure",
+            "contact",
+            "equilibrium",
+            "modal",
+            "stability",
+            "results",
+            "report",
+            "case",
         ],
     ),
-    (
-        "validation",
-        &["error", "progress", "linalg", "structure", "results", "case", "job"],
-    ),
+    ("validation", &["error", "progress", "linalg", "structure", "results", "case", "job"]),
     ("cli", &["error", "progress", "mesh", "report", "results", "case", "job", "validation"]),
 ];
 
@@ -53,7 +61,8 @@ fn rooms_used(text: &str) -> BTreeSet<String> {
     let mut used = BTreeSet::new();
     for line in code.lines().filter(|line| !line.trim_start().starts_with("//")) {
         for (at, _) in line.match_indices("crate::") {
-            let name: String = line[at + 7..].chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+            let name: String =
+                line[at + 7..].chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
             used.insert(name);
         }
     }

@@ -126,7 +126,8 @@ fn the_main_job_prints_its_tables_and_leaves_a_results_folder() {
 fn one_and_two_threads_give_the_same_numbers() {
     let folder = folder_with(RIG);
     let figures = |threads: &str| {
-        let output = stridor(folder.path(), &["cea", "rig.toml", "--json", "--threads", threads, "--out", threads]);
+        let output =
+            stridor(folder.path(), &["cea", "rig.toml", "--json", "--threads", threads, "--out", threads]);
         assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
         let mut summary: serde_json::Value = serde_json::from_slice(&output.stdout).expect("valid JSON");
         summary["timings"].take();

@@ -93,7 +93,8 @@ fn set_threads(threads: Option<usize>) -> Result<()> {
     if threads == 0 {
         return Err(Error::input(Fault::new("--threads", "0", "at least 1")));
     }
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().map_err(|error| {
-        Error::analysis("starting threads", error.to_string(), "Try fewer --threads")
-    })
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build_global()
+        .map_err(|error| Error::analysis("starting threads", error.to_string(), "Try fewer --threads"))
 }

@@ -14,7 +14,9 @@ mod steady;
 mod tests;
 
 pub use condensed::Condensed;
-pub use linear::{ContactBlock, LinearContact, closed_structure, contact_force, directions, linearize, tangent_stiffness};
+pub use linear::{
+    ContactBlock, LinearContact, closed_structure, contact_force, directions, linearize, tangent_stiffness,
+};
 pub use steady::{SteadyOptions, solve_steady, solve_steady_with};
 
 use crate::system::{ContactForces, ContactTangent};

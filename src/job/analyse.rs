@@ -47,13 +47,20 @@ pub enum Stage<'a> {
 ///
 /// # Errors
 /// Faults of the input, an analysis without an answer, or a folder that cannot be written.
-pub fn run_case(case: &Case, selection: Selection, out: &Path, observer: &dyn Observer) -> Result<RunResults> {
+pub fn run_case(
+    case: &Case,
+    selection: Selection,
+    out: &Path,
+    observer: &dyn Observer,
+) -> Result<RunResults> {
     let started = Instant::now();
     let prepared = Prepared::new(case)?;
     let preparation = started.elapsed().as_secs_f64();
     let mut file = ResultsFile::create(out)?;
     let mut record = |stage: Stage| match stage {
-        Stage::Model(results) => file.write_case(results).and_then(|()| file.write_geometry(&results.geometry)),
+        Stage::Model(results) => {
+            file.write_case(results).and_then(|()| file.write_geometry(&results.geometry))
+        }
         Stage::Modes(modes) => file.write_modes(modes),
         Stage::Steady(steady) => file.write_steady(steady),
         Stage::Complex(complex) => file.write_complex(complex),
@@ -92,11 +99,13 @@ pub fn analyse(
     record(Stage::Model(&results))?;
     let mut clock = Clock::default();
     let contact_modes = case.modes.iter().filter(|(_, m)| m.contact == ContactState::Closed);
-    let sliding = (selection.cea && case.cea.is_some()) || (selection.modes && contact_modes.clone().count() > 0);
+    let sliding =
+        (selection.cea && case.cea.is_some()) || (selection.modes && contact_modes.clone().count() > 0);
 
     if selection.modes {
         for (name, analysis) in case.modes.iter().filter(|(_, m)| m.contact == ContactState::Open) {
-            let modes = clock.time(&format!("real modes, {name}"), || part_modes(prepared, name, observer))?;
+            let modes =
+                clock.time(&format!("real modes, {name}"), || part_modes(prepared, name, observer))?;
             if !analysis.measured.is_empty() {
                 let set = results.modes.len();
                 results.measured.push(compare(set, &analysis.measured, &analysis.measured_source, &modes));

@@ -78,16 +78,16 @@ fn ground_points(
     let nodes = regions.nodes(&contact.body, &format!("`contact.{name}.body`"))?;
     let into = Vector3::from(contact.into.unwrap_or_default());
     let place = |key: &str| format!("`contact.{name}.{key}`");
-    let fault = |key: &str, found: &str, expected: &str| Error::input(Fault::new(place(key), found, expected));
+    let fault =
+        |key: &str, found: &str, expected: &str| Error::input(Fault::new(place(key), found, expected));
     let g = into.try_normalize(0.0).ok_or_else(|| fault("into", "no direction", "a direction"))?;
     let sliding = Vector3::from(contact.sliding_direction);
     let t1 = (sliding - sliding.dot(&g) * g).try_normalize(1e-6 * sliding.norm()).ok_or_else(|| {
         fault("sliding_direction", "the direction into the ground", "a direction along the ground")
     })?;
     let t2 = g.cross(&t1);
-    let direction = |node: usize, d: &Vector3<f64>| {
-        dofs.reduce(&[(node, 0, d.x), (node, 1, d.y), (node, 2, d.z)])
-    };
+    let direction =
+        |node: usize, d: &Vector3<f64>| dofs.reduce(&[(node, 0, d.x), (node, 1, d.y), (node, 2, d.z)]);
     Ok(nodes
         .iter()
         .map(|node| ContactPoint {

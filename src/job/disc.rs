@@ -21,7 +21,8 @@ impl Disc {
     pub fn recognise(part: &ShellPart, positions: &[[f64; 3]]) -> Option<Disc> {
         let at = |node: usize| Vector3::from(positions[node]);
         let first = part.faces.first()?.nodes();
-        let normal = (at(first[1]) - at(first[0])).cross(&(at(first[2]) - at(first[0]))).try_normalize(0.0)?;
+        let normal =
+            (at(first[1]) - at(first[0])).cross(&(at(first[2]) - at(first[0]))).try_normalize(0.0)?;
         let edge: Vec<Vector3<f64>> = boundary_nodes(part).into_iter().map(at).collect();
         let centre = centre_of_rim(&edge)?;
         let mut nodes: Vec<usize> = part.faces.iter().flat_map(|f| f.nodes()).copied().collect();
@@ -144,10 +145,11 @@ mod tests {
     #[test]
     fn a_rectangle_is_no_disc() {
         let (n, m) = (9, 6);
-        let nodes: Vec<[f64; 3]> =
-            (0..n * m).map(|k| [(k % n) as f64, (k / n) as f64, 0.0]).collect();
+        let nodes: Vec<[f64; 3]> = (0..n * m).map(|k| [(k % n) as f64, (k / n) as f64, 0.0]).collect();
         let faces = (0..m - 1)
-            .flat_map(|j| (0..n - 1).map(move |i| [j * n + i, j * n + i + 1, j * n + i + n + 1, j * n + i + n]))
+            .flat_map(|j| {
+                (0..n - 1).map(move |i| [j * n + i, j * n + i + 1, j * n + i + n + 1, j * n + i + n])
+            })
             .map(Element::Quadrilateral)
             .collect();
         assert!(Disc::recognise(&part(faces), &nodes).is_none());

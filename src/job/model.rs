@@ -44,11 +44,10 @@ pub fn whole_model(case: &Case, regions: &Regions) -> Result<Model> {
         }
     }
     for (name, spring) in &case.spring {
-        let nodes = faults.take(regions.nodes(&spring.on, &format!("`spring.{name}.on`"))).unwrap_or_default();
-        let other = spring
-            .to
-            .as_ref()
-            .and_then(|to| faults.take(regions.node(to, &format!("`spring.{name}.to`"))));
+        let nodes =
+            faults.take(regions.nodes(&spring.on, &format!("`spring.{name}.on`"))).unwrap_or_default();
+        let other =
+            spring.to.as_ref().and_then(|to| faults.take(regions.node(to, &format!("`spring.{name}.to`"))));
         for node in &nodes {
             model.springs.push(Spring {
                 node: *node,

@@ -43,9 +43,8 @@ pub fn part_modes(
 
 /// Dresses real modes with nodal shapes, disc names and effective masses.
 pub fn named(prepared: &Prepared, name: &str, modes: RealModes, assembled: &Assembled) -> NamedModes {
-    let shapes: Vec<NodalField<f64>> = (0..modes.len())
-        .map(|k| assembled.dofs.expand(&column(modes.shapes.as_ref(), k)))
-        .collect();
+    let shapes: Vec<NodalField<f64>> =
+        (0..modes.len()).map(|k| assembled.dofs.expand(&column(modes.shapes.as_ref(), k))).collect();
     let discs = prepared.discs();
     let kinetic = kinetic_shares(prepared, &modes, assembled);
     let names = shapes
@@ -146,7 +145,9 @@ pub fn compare(set: usize, measured: &[f64], source: &str, named: &NamedModes) -
         }
     }
     candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let twins = |a: usize, b: usize| a.abs_diff(b) == 1 && named.names[a].is_some() && named.names[a] == named.names[b];
+    let twins = |a: usize, b: usize| {
+        a.abs_diff(b) == 1 && named.names[a].is_some() && named.names[a] == named.names[b]
+    };
     let mut rows: Vec<(f64, Option<usize>)> = measured.iter().map(|f| (*f, None)).collect();
     for (distance, row, k) in candidates {
         let taken = rows.iter().any(|(_, mode)| mode.is_some_and(|m| m == k || twins(m, k)));

@@ -27,8 +27,12 @@ pub fn place(
     let moved = group[body_nodes[0]];
     if counter_nodes.iter().any(|n| group[*n] == moved) {
         return Err(Error::input(
-            Fault::new(place, format!("`{body}` and `{counter}` joined in one body"), "two separate bodies to place")
-                .with_help("Remove the placement, or the nodes and links that join the two"),
+            Fault::new(
+                place,
+                format!("`{body}` and `{counter}` joined in one body"),
+                "two separate bodies to place",
+            )
+            .with_help("Remove the placement, or the nodes and links that join the two"),
         ));
     }
     let nodes = &mut regions.mesh.nodes;
@@ -59,7 +63,11 @@ pub fn place(
             return Err(Error::input(Fault::new(
                 format!("{place} position"),
                 format!("{} m from the middle of `{counter}`", placement.position[axis]),
-                format!("a point on it: at most {} m along {}", 0.5 * (high[axis] - low[axis]), ["x", "y"][axis]),
+                format!(
+                    "a point on it: at most {} m along {}",
+                    0.5 * (high[axis] - low[axis]),
+                    ["x", "y"][axis]
+                ),
             )));
         }
     }
@@ -98,8 +106,7 @@ fn connected_groups(regions: &Regions, case: &Case) -> Vec<usize> {
     regions.mesh.elements.iter().for_each(|element| join(element.nodes()));
     for rigid in case.rigid.values() {
         let names = rigid.follow.iter().chain([&rigid.master]);
-        let nodes: Vec<usize> =
-            names.filter_map(|name| regions.nodes(name, "").ok()).flatten().collect();
+        let nodes: Vec<usize> = names.filter_map(|name| regions.nodes(name, "").ok()).flatten().collect();
         join(&nodes);
     }
     (0..parent.len()).map(|node| root(&mut parent, node)).collect()

@@ -27,7 +27,8 @@ pub fn compute(structure: &Structure, wanted: Wanted, observer: &dyn Observer) -
     };
     let pairs = lowest_eigenpairs(&structure.stiffness, &structure.mass, wanted, observer)?;
     let hz = |theta: f64| theta.max(0.0).sqrt() / TAU;
-    let first_elastic = pairs.values.iter().copied().find(|v| *v > 1e-6 * pairs.values.last().copied().unwrap_or(0.0));
+    let first_elastic =
+        pairs.values.iter().copied().find(|v| *v > 1e-6 * pairs.values.last().copied().unwrap_or(0.0));
     let rigid_bodies = pairs.values.iter().filter(|v| **v < 1e-6 * first_elastic.unwrap_or(0.0)).count();
     Ok(RealModes {
         rigid_bodies,
@@ -45,8 +46,18 @@ pub fn compute(structure: &Structure, wanted: Wanted, observer: &dyn Observer) -
 
 /// temp
 pub fn effective_mass(s: &Structure, shapes: faer::MatRef<'_, f64>, dirs: &[Vec<f64>; 3]) -> Vec<[f64; 3]> {
-    (0..shapes.ncols()).map(|k| { let c: Vec<f64> = shapes.col(k).iter().copied().collect(); let m = linalg::sparse::multiply_vector(&s.mass, &c);
-        [0,1,2].map(|a| { let g: f64 = dirs[a].iter().zip(&m).map(|(x,y)| x*y).sum(); g*g }) }).collect()
+    (0..shapes.ncols())
+        .map(|k| {
+            let c: Vec<f64> = shapes.col(k).iter().copied().collect();
+            let m = linalg::sparse::multiply_vector(&s.mass, &c);
+            [0, 1, 2].map(|a| {
+                let g: f64 = dirs[a].iter().zip(&m).map(|(x, y)| x * y).sum();
+                g * g
+            })
+        })
+        .collect()
 }
 /// temp
-pub fn name_disc_mode(_p: &[[f64; 2]], _w: &[f64]) -> Option<super::DiscModeName> { None }
+pub fn name_disc_mode(_p: &[[f64; 2]], _w: &[f64]) -> Option<super::DiscModeName> {
+    None
+}

@@ -36,7 +36,9 @@ fn folders(root: &Path, filter: Option<&str>) -> Result<Vec<PathBuf>> {
         .flatten()
         .map(|entry| entry.path())
         .filter(|path| path.join("reference.toml").is_file())
-        .filter(|path| filter.is_none_or(|f| path.file_name().is_some_and(|n| n.to_string_lossy().contains(f))))
+        .filter(|path| {
+            filter.is_none_or(|f| path.file_name().is_some_and(|n| n.to_string_lossy().contains(f)))
+        })
         .collect();
     folders.sort();
     if folders.is_empty() {

@@ -80,8 +80,9 @@ pub enum Kind {
 /// Every fault of either file.
 pub fn read(folder: &Path) -> Result<Reference> {
     let path = folder.join("reference.toml");
-    let text = std::fs::read_to_string(&path)
-        .map_err(|error| Error::input(Fault::new(path.display().to_string(), error.to_string(), "a text file")))?;
+    let text = std::fs::read_to_string(&path).map_err(|error| {
+        Error::input(Fault::new(path.display().to_string(), error.to_string(), "a text file"))
+    })?;
     let (title, source, file, checks) = read_document(&path.display().to_string(), &text, |root| {
         let reason = root.string("reason").or(String::new());
         (
@@ -119,7 +120,12 @@ fn read_check(name: &str, s: &Section, reason: &str) -> Check {
     let relative = s.quantity("tolerance", NUMBER).positive().optional();
     let absolute = s.quantity("absolute_tolerance", NUMBER).positive().optional();
     if relative.is_some() == absolute.is_some() {
-        s.fault("tolerance", "both tolerances or neither", "`tolerance` (relative) or `absolute_tolerance`", "");
+        s.fault(
+            "tolerance",
+            "both tolerances or neither",
+            "`tolerance` (relative) or `absolute_tolerance`",
+            "",
+        );
     }
     Check {
         quantity: s.string("quantity").or(name.to_string()),
