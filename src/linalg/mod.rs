@@ -1,8 +1,21 @@
-//! Linear algebra for large sparse symmetric problems; knows no mechanics.
+//! Linear algebra for large sparse symmetric problems and small dense ones; knows no mechanics.
 //!
 //! * [`sparse`]: the matrix type of the whole program, sparse vectors, products.
+//! * [`factor`]: A = L B Lᵀ of a sparse symmetric matrix, definite or not, with its inertia.
+//! * [`eigenpairs`]: the lowest eigenpairs of K x = θ M x with the count that proves none is missing, by
+//!   [`lanczos`].
+//! * [`dense`]: small symmetric eigenproblems and the likeness of two vectors.
 
+pub mod dense;
+pub mod eigenpairs;
+pub mod factor;
+pub mod lanczos;
 pub mod sparse;
 
+#[cfg(test)]
+pub(crate) mod samples;
+
+pub use eigenpairs::{Eigenpairs, SturmCount, Wanted, lowest_eigenpairs};
+pub use factor::{Inertia, SymbolicFactor, SymmetricFactor};
 pub use faer::c64;
 pub use sparse::{SparseMatrix, SparseVector};

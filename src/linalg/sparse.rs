@@ -1,4 +1,9 @@
-//! The sparse matrix of the whole program, and sparse vectors for contact directions.
+//! The sparse matrix of the whole program, its products and norms, and sparse vectors for contact directions.
+
+use faer::sparse::SymbolicSparseColMat;
+use faer::{MatMut, MatRef};
+use rayon::prelude::*;
+use std::ops::{AddAssign, Mul};
 
 /// A sparse matrix in compressed columns. Symmetric matrices are stored whole (both triangles), so that a
 /// column is also a row and products run over rows in parallel.
@@ -63,5 +68,213 @@ impl SparseVector {
         for (i, v) in self.iter() {
             dense[i] += factor * v;
         }
+    }
+}
+
+/// A number that a real sparse matrix can multiply: `f64` or `c64`.
+pub trait Scalar: Copy + Default + Send + Sync + AddAssign + Mul<f64, Output = Self> {}
+impl Scalar for f64 {}
+impl Scalar for super::c64 {}
+
+/// Rows that one task works on; fixed, so that the split does not depend on the number of threads.
+const ROWS_A_TASK: usize = 4096;
+/// Columns that go through the matrix together.
+const PANEL: usize = 4;
+
+/// y = A x for a symmetric `a` stored whole: n × n times n × k, real or complex.
+///
+/// Row i of A is read from column i, so every entry of y is one sum in a fixed order: the same bits for any number
+/// of threads.
+///
+/// # Panics
+/// When the shapes do not agree.
+pub fn multiply<T: Scalar>(a: &SparseMatrix, x: MatRef<'_, T>, mut y: MatMut<'_, T>) {
+    let (n, k) = (a.ncols(), x.ncols());
+    assert!(
+        a.nrows() == n && x.nrows() == n && y.nrows() == n && y.ncols() == k,
+        "shapes of A, x, y disagree"
+    );
+    let mut packed = Vec::new();
+    for start in (0..k).step_by(PANEL) {
+        let width = PANEL.min(k - start);
+        let x = x.subcols(start, width);
+        let y = y.as_mut().subcols_mut(start, width);
+        match width {
+            1 => panel::<T, 1>(a, x, y, &mut packed),
+            2 => panel::<T, 2>(a, x, y, &mut packed),
+            3 => panel::<T, 3>(a, x, y, &mut packed),
+            _ => panel::<T, PANEL>(a, x, y, &mut packed),
+        }
+    }
+}
+
+/// y = A x for W columns. They are first laid side by side, row by row, so that an entry of A meets all its
+/// W factors in one place of memory.
+fn panel<T: Scalar, const W: usize>(
+    a: &SparseMatrix,
+    x: MatRef<'_, T>,
+    y: MatMut<'_, T>,
+    packed: &mut Vec<[T; PANEL]>,
+) {
+    packed.clear();
+    packed.resize(a.ncols(), [T::default(); PANEL]);
+    packed.par_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, rows)| {
+        for (i, row) in rows.iter_mut().enumerate() {
+            for c in 0..W {
+                row[c] = x[(task * ROWS_A_TASK + i, c)];
+            }
+        }
+    });
+    let (starts, rows_of, values) = (a.col_ptr(), a.row_idx(), a.val());
+    y.par_row_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, mut y)| {
+        for i in 0..y.nrows() {
+            let row = task * ROWS_A_TASK + i;
+            let entries = starts[row]..starts[row + 1];
+            let mut sum = [T::default(); W];
+            for (j, v) in rows_of[entries.clone()].iter().zip(&values[entries]) {
+                let x = &packed[*j];
+                for c in 0..W {
+                    sum[c] += x[c] * *v;
+                }
+            }
+            for (c, sum) in sum.into_iter().enumerate() {
+                y[(i, c)] = sum;
+            }
+        }
+    });
+}
+
+/// A x as a new vector, for a symmetric `a` stored whole.
+pub fn multiply_vector<T: Scalar>(a: &SparseMatrix, x: &[T]) -> Vec<T> {
+    let mut y = vec![T::default(); x.len()];
+    multiply(
+        a,
+        MatRef::from_column_major_slice(x, x.len(), 1),
+        MatMut::from_column_major_slice_mut(&mut y, x.len(), 1),
+    );
+    y
+}
+
+/// Σ factor · matrix on the union of the patterns; entries that cancel stay as stored zeros.
+///
+/// # Panics
+/// When there is no term, or the shapes do not agree.
+pub fn add_scaled(terms: &[(f64, &SparseMatrix)]) -> SparseMatrix {
+    let (first, rest) = terms.split_first().expect("a sum has a term");
+    let (nrows, ncols) = (first.1.nrows(), first.1.ncols());
+    assert!(
+        rest.iter().all(|(_, a)| a.nrows() == nrows && a.ncols() == ncols),
+        "shapes of the terms disagree"
+    );
+    let same = rest.iter().all(|(_, a)| a.col_ptr() == first.1.col_ptr() && a.row_idx() == first.1.row_idx());
+    if same {
+        let mut values: Vec<f64> = first.1.val().iter().map(|v| first.0 * v).collect();
+        for (factor, a) in rest {
+            values.iter_mut().zip(a.val()).for_each(|(sum, v)| *sum += factor * v);
+        }
+        let pattern = first.1.symbolic().to_owned().expect("memory for a pattern");
+        return SparseMatrix::new(pattern, values);
+    }
+    // One task a range of columns; each column merges its sorted rows through a dense accumulator.
+    let parts: Vec<(Vec<usize>, Vec<usize>, Vec<f64>)> = (0..ncols.div_ceil(ROWS_A_TASK))
+        .into_par_iter()
+        .map(|task| {
+            let mut accumulator = vec![0.0; nrows];
+            let mut seen = vec![usize::MAX; nrows];
+            let (mut lengths, mut rows, mut values) = (Vec::new(), Vec::new(), Vec::new());
+            for j in task * ROWS_A_TASK..ncols.min((task + 1) * ROWS_A_TASK) {
+                let begin = rows.len();
+                for (factor, a) in terms {
+                    for (i, v) in a.row_idx_of_col_raw(j).iter().zip(a.val_of_col(j)) {
+                        if seen[*i] != j {
+                            seen[*i] = j;
+                            accumulator[*i] = 0.0;
+                            rows.push(*i);
+                        }
+                        accumulator[*i] += factor * v;
+                    }
+                }
+                rows[begin..].sort_unstable();
+                values.extend(rows[begin..].iter().map(|i| accumulator[*i]));
+                lengths.push(rows.len() - begin);
+            }
+            (lengths, rows, values)
+        })
+        .collect();
+    let mut starts = vec![0];
+    let (mut rows, mut values) = (Vec::new(), Vec::new());
+    for (lengths, part_rows, part_values) in parts {
+        for length in lengths {
+            starts.push(starts.last().expect("starts with 0") + length);
+        }
+        rows.extend(part_rows);
+        values.extend(part_values);
+    }
+    SparseMatrix::new(SymbolicSparseColMat::new_checked(nrows, ncols, starts, None, rows), values)
+}
+
+/// ‖A‖₁ = max_j Σ_i |a_ij|, which is also ‖A‖_∞ for a symmetric matrix.
+pub fn norm_1(a: &SparseMatrix) -> f64 {
+    (0..a.ncols()).map(|j| a.val_of_col(j).iter().map(|v| v.abs()).sum()).fold(0.0, f64::max)
+}
+
+/// The entries on the diagonal; zero where none is stored.
+pub fn diagonal(a: &SparseMatrix) -> Vec<f64> {
+    (0..a.ncols())
+        .map(|j| a.row_idx_of_col_raw(j).iter().position(|i| *i == j).map_or(0.0, |k| a.val_of_col(j)[k]))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::c64;
+    use super::super::samples;
+    use super::*;
+    use faer::Mat;
+
+    #[test]
+    fn products_equal_the_dense_ones() {
+        let a = samples::random_symmetric(57, 3);
+        for k in [1, 2, 3, 4, 5, 11] {
+            let x = Mat::from_fn(57, k, |i, j| ((i * 7 + j * 3) as f64).sin());
+            let mut y = Mat::zeros(57, k);
+            multiply(&a, x.as_ref(), y.as_mut());
+            assert!((a.to_dense() * &x - &y).norm_max() < 1e-13);
+            let xc = Mat::from_fn(57, k, |i, j| c64::new(x[(i, j)], -2.0 * x[(i, j)]));
+            let mut yc = Mat::zeros(57, k);
+            multiply(&a, xc.as_ref(), yc.as_mut());
+            let error = (0..k).flat_map(|j| (0..57).map(move |i| (i, j)));
+            assert!(error.map(|p| (yc[p] - c64::new(y[p], -2.0 * y[p])).norm()).fold(0.0, f64::max) < 1e-13);
+        }
+    }
+
+    #[test]
+    fn sums_live_on_the_union_pattern() {
+        let (a, b) = (samples::random_symmetric(40, 1), samples::random_symmetric(40, 2));
+        let sum = add_scaled(&[(2.0, &a), (-0.5, &b)]);
+        let expected = a.to_dense() * faer::Scale(2.0) - b.to_dense() * faer::Scale(0.5);
+        assert!((sum.to_dense() - expected).norm_max() < 1e-14);
+        let same = add_scaled(&[(2.0, &a), (-1.0, &a)]);
+        assert_eq!(same.val(), a.val());
+    }
+
+    #[test]
+    fn norm_and_diagonal() {
+        let a = samples::random_symmetric(30, 5);
+        let dense = a.to_dense();
+        let expected = (0..30).map(|j| dense.col(j).norm_l1()).fold(0.0, f64::max);
+        assert!((norm_1(&a) - expected).abs() < 1e-14 * expected);
+        assert!(diagonal(&a).iter().enumerate().all(|(i, d)| *d == dense[(i, i)]));
+    }
+
+    #[test]
+    fn products_do_not_depend_on_the_number_of_threads() {
+        let a = samples::membrane(100).0;
+        let x: Vec<f64> = (0..a.nrows()).map(|i| (i as f64).sin()).collect();
+        let with = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| multiply_vector(&a, &x))
+        };
+        assert_eq!(with(1), with(3));
     }
 }

@@ -1,0 +1,409 @@
+//! The lowest eigenpairs of K x = θ M x, with the proof that none is missing.
+//!
+//! K is symmetric (singular and even indefinite are allowed), M symmetric positive semidefinite; what M does not see
+//! has no finite eigenvalue and does not appear. By Sylvester's law the negative pivots of K − σM are the number of
+//! eigenvalues below σ. That count is taken at the shift of the iteration, which tells Lanczos how many to find on
+//! either side of it, and at two shifts that enclose the upper bound, which certify the result.
+
+mod small;
+#[cfg(test)]
+mod tests;
+
+use super::SparseMatrix;
+use super::dense::symmetric_eigen;
+use super::factor::{SymbolicFactor, SymmetricFactor};
+use super::lanczos::{BlockLanczos, Ritz, Window, combine, gram};
+use super::sparse::{add_scaled, diagonal, multiply, norm_1};
+use crate::error::{Error, Result};
+use crate::progress::Observer;
+use faer::{Accum, Mat, MatRef};
+
+/// Which eigenpairs are wanted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Wanted {
+    /// All with θ below this positive bound.
+    Below(f64),
+    /// This many of the lowest; a cluster that would be cut is taken whole.
+    Count(usize),
+}
+
+/// Eigenpairs with the measures of their error.
+#[derive(Debug)]
+pub struct Eigenpairs {
+    /// θ, ascending.
+    pub values: Vec<f64>,
+    /// X with XᵀMX = I, one vector a column.
+    pub vectors: Mat<f64>,
+    /// ‖K x − θ M x‖ / ((‖K‖₁ + |θ| ‖M‖₁) ‖x‖), one a pair.
+    pub backward_errors: Vec<f64>,
+    /// The count that certifies them.
+    pub sturm: SturmCount,
+    /// The shift σ of the iteration.
+    pub shift: f64,
+    /// K − σM, factorised.
+    pub factor: Box<dyn SymmetricFactor>,
+}
+
+/// How many eigenvalues lie below a bound, counted at two shifts that enclose it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SturmCount {
+    /// The bound: the wanted one, moved up when an eigenvalue sits on it.
+    pub bound: f64,
+    /// Two shifts, one either side of the bound, with no eigenvalue between.
+    pub shifts: [f64; 2],
+    /// Negative pivots of K − shift · M.
+    pub counted: [usize; 2],
+}
+
+/// Problems up to this size are solved densely.
+const DENSE: usize = 300;
+/// Half the distance of the two certifying shifts, relative to the bound.
+const APART: f64 = 1e-5;
+/// Eigenvalues nearer to each other than this, relative to their size, are one cluster.
+const CLUSTER: f64 = 1e-7;
+
+/// Finds the lowest eigenpairs of K x = θ M x, both symmetric n × n and stored whole.
+///
+/// `Wanted::Count` gives fewer when M has a lower rank, and a few more rather than cut a cluster.
+///
+/// # Errors
+/// [`Error::Analysis`] when a pencil K − σM is singular for every σ (a degree of freedom with neither stiffness nor
+/// mass), when Lanczos does not converge, or when the inertia counts eigenvalues that were not found.
+///
+/// # Panics
+/// When the matrices are not square and of one size.
+pub fn lowest_eigenpairs(
+    k: &SparseMatrix,
+    m: &SparseMatrix,
+    wanted: Wanted,
+    observer: &dyn Observer,
+) -> Result<Eigenpairs> {
+    let n = k.ncols();
+    if n == 0 {
+        return Err(Error::analysis(
+            "eigenvalues",
+            "there is no degree of freedom",
+            "Free some of the supports",
+        ));
+    }
+    assert!(k.nrows() == n && m.nrows() == n && m.ncols() == n, "K and M are of one size");
+    match wanted {
+        Wanted::Below(bound) if !(bound > 0.0 && bound.is_finite()) => {
+            return Err(Error::analysis(
+                "eigenvalues",
+                format!("the bound is {bound}"),
+                "Ask for those below a positive, finite bound",
+            ));
+        }
+        Wanted::Count(0) => {
+            return Err(Error::analysis("eigenvalues", "none was asked for", "Ask for at least one"));
+        }
+        _ => {}
+    }
+    let pencil = Pencil::new(k, m)?;
+    observer.begin("eigenvalues", None);
+    let result = if n <= DENSE {
+        pencil.solve_densely(wanted)
+    } else {
+        match wanted {
+            Wanted::Below(bound) => pencil.below(bound, observer),
+            Wanted::Count(count) => pencil.count(count.min(n), observer),
+        }
+    };
+    observer.end();
+    result
+}
+
+/// ‖K x − θ M x‖₂ / ((‖K‖₁ + |θ| ‖M‖₁) ‖x‖₂) of each pair.
+pub fn backward_errors(
+    k: &SparseMatrix,
+    m: &SparseMatrix,
+    values: &[f64],
+    vectors: MatRef<'_, f64>,
+) -> Vec<f64> {
+    let (k_norm, m_norm) = (norm_1(k), norm_1(m));
+    let (mut kx, mut mx) = (Mat::zeros(k.ncols(), values.len()), Mat::zeros(k.ncols(), values.len()));
+    multiply(k, vectors, kx.as_mut());
+    multiply(m, vectors, mx.as_mut());
+    let error = |(j, theta): (usize, &f64)| {
+        let residual = (0..k.ncols()).map(|i| (kx[(i, j)] - theta * mx[(i, j)]).powi(2)).sum::<f64>().sqrt();
+        residual / ((k_norm + theta.abs() * m_norm) * vectors.col(j).norm_l2()).max(f64::MIN_POSITIVE)
+    };
+    values.iter().enumerate().map(error).collect()
+}
+
+/// K − σM with the analysis of its pattern.
+struct Pencil<'a> {
+    k: &'a SparseMatrix,
+    m: &'a SparseMatrix,
+    symbolic: SymbolicFactor,
+}
+
+type Factor = Box<dyn SymmetricFactor>;
+
+/// Pairs found at a shift.
+struct Found {
+    values: Vec<f64>,
+    vectors: Mat<f64>,
+    shift: f64,
+    factor: Factor,
+}
+
+impl<'a> Pencil<'a> {
+    fn new(k: &'a SparseMatrix, m: &'a SparseMatrix) -> Result<Self> {
+        let union = add_scaled(&[(1.0, k), (1.0, m)]);
+        Ok(Pencil { k, m, symbolic: SymbolicFactor::new(union.symbolic())? })
+    }
+
+    fn factorize(&self, shift: f64) -> Result<Factor> {
+        self.symbolic.factorize(&add_scaled(&[(1.0, self.k), (-shift, self.m)]))
+    }
+
+    /// The factors at the first of `shifts` that does not sit on an eigenvalue.
+    fn factorize_near(&self, shifts: [f64; 3]) -> Result<(f64, Factor)> {
+        let mut refused = None;
+        for shift in shifts {
+            match self.factorize(shift) {
+                Ok(factor) if factor.inertia().zero == 0 => return Ok((shift, factor)),
+                Ok(_) => {}
+                Err(error) => refused = Some(error),
+            }
+        }
+        Err(refused.unwrap_or_else(|| {
+            Error::analysis(
+                "eigenvalues",
+                format!("K − σM is singular to rounding for σ = {shifts:?}"),
+                "A degree of freedom with neither stiffness nor mass does this",
+            )
+        }))
+    }
+
+    /// The number of eigenvalues below each of two shifts, factorised side by side.
+    fn count_at(&self, shifts: [f64; 2]) -> Result<[usize; 2]> {
+        // A shift that sits on an eigenvalue is nudged; the pair stays on its side of the bound.
+        let nudge = 0.01 * (shifts[1] - shifts[0]);
+        let at = |s: f64| self.factorize_near([s, s - nudge, s + nudge]).map(|(_, f)| f.inertia().negative);
+        let (low, high) = rayon::join(|| at(shifts[0]), || at(shifts[1]));
+        Ok([low?, high?])
+    }
+
+    fn below(&self, bound: f64, observer: &dyn Observer) -> Result<Eigenpairs> {
+        let mut shifts = [bound * (1.0 - APART), bound * (1.0 + APART)];
+        // In the middle the two ends of the wanted range are equally far.
+        let middle = [0.5, 0.47, 0.53].map(|part| part * bound);
+        let (counted, middle) = rayon::join(|| self.count_at(shifts), || self.factorize_near(middle));
+        let (mut counted, (shift, factor)) = (counted?, middle?);
+        let negative = factor.inertia().negative;
+        let window = Window {
+            negative,
+            largest: counted[1].saturating_sub(negative),
+            floor: 1.0 / (shifts[1] - shift),
+        };
+        let mut lanczos = BlockLanczos::new(self.m, &*factor, capacity(counted[1]));
+        let ritz = lanczos.converge(window, observer)?.ok_or_else(|| missing(0, counted[1], shifts[1]))?;
+        let (values, vectors) = lanczos.pairs(&ritz, window, shift);
+        let mut found = Found { values, vectors, shift, factor };
+        let mut bound = bound;
+        if counted[0] != counted[1] {
+            let first_above = found.values.partition_point(|v| *v < bound);
+            (bound, shifts) = gap(&found.values, first_above, bound, shifts[1]);
+            counted = self.count_at(shifts)?;
+            found.truncate(found.values.partition_point(|v| *v < bound));
+        }
+        self.certify(found, SturmCount { bound, shifts, counted })
+    }
+
+    fn count(&self, count: usize, observer: &dyn Observer) -> Result<Eigenpairs> {
+        let (shift, factor) = self.shift_for(count, observer)?;
+        let negative = factor.inertia().negative;
+        let mut lanczos = BlockLanczos::new(self.m, &*factor, capacity(count + 1));
+        // One more than wanted shows the gap above them.
+        let mut total = (count + 1).max(negative + 1);
+        for _ in 0..20 {
+            let window = Window { negative, largest: total - negative, floor: 0.0 };
+            let ritz = lanczos.converge(window, observer)?;
+            let all = ritz.is_none();
+            let ritz = ritz.map_or_else(|| lanczos.ritz(), Ok)?;
+            let window = if all { lanczos.everything(&ritz) } else { window };
+            let mut values: Vec<f64> = ritz_values(&ritz, window, shift);
+            values.sort_by(f64::total_cmp);
+            let last = values[values.len() - 1];
+            let cut = if values.len() <= count {
+                values.len()
+            } else {
+                match (count..values.len())
+                    .find(|c| values[*c] - values[*c - 1] > CLUSTER * (values[*c] - shift).abs())
+                {
+                    Some(cut) => cut,
+                    None => {
+                        total += 2;
+                        continue;
+                    }
+                }
+            };
+            let (low, high) = match values.get(cut) {
+                Some(next) => (values[cut - 1], *next),
+                None => (last, last + 0.2 * last.abs().max((last - shift).abs())),
+            };
+            let shifts = [low + 0.3 * (high - low), low + 0.7 * (high - low)];
+            let counted = self.count_at(shifts)?;
+            if counted[0] > cut && !all {
+                // Copies of a multiple eigenvalue that the block has not seen yet.
+                total += counted[0] - cut;
+                lanczos.look_again();
+                continue;
+            }
+            let (values, vectors) = lanczos.pairs(&ritz, window, shift);
+            let mut found = Found { values, vectors, shift, factor };
+            found.truncate(cut);
+            return self.certify(found, SturmCount { bound: 0.5 * (shifts[0] + shifts[1]), shifts, counted });
+        }
+        Err(missing(total, total + 1, shift))
+    }
+
+    /// A shift in the middle of the lowest `count` eigenvalues, from Ritz values of a short run at a small negative one.
+    fn shift_for(&self, count: usize, observer: &dyn Observer) -> Result<(f64, Factor)> {
+        let scale = self.local_scale();
+        let guess = [1e-9, 1e-7, 1e-5].map(|part| -part * scale);
+        let (mut shift, mut factor) = self.factorize_near(guess)?;
+        for _ in 0..6 {
+            let estimate = {
+                let mut lanczos = BlockLanczos::new(self.m, &*factor, count + 40);
+                let ritz = lanczos.explore(count + 32, observer)?;
+                let mut values: Vec<f64> = ritz.values.iter().map(|v| shift + 1.0 / v).collect();
+                values.sort_by(f64::total_cmp);
+                values.get(count - 1).or(values.last()).copied().unwrap_or(scale)
+            };
+            if estimate <= 0.0 {
+                return Ok((shift, factor));
+            }
+            (shift, factor) = self.factorize_near([0.5, 0.47, 0.53].map(|part| part * estimate))?;
+            if factor.inertia().negative <= count + 8 {
+                break;
+            }
+        }
+        Ok((shift, factor))
+    }
+
+    /// The median of K_ii / M_ii: how fast single degrees of freedom would vibrate, far above the lowest eigenvalues.
+    fn local_scale(&self) -> f64 {
+        let (k, m) = (diagonal(self.k), diagonal(self.m));
+        let mut ratios: Vec<f64> =
+            k.iter().zip(m).filter(|(k, m)| **k > 0.0 && *m > 0.0).map(|(k, m)| k / m).collect();
+        ratios.sort_by(f64::total_cmp);
+        ratios.get(ratios.len() / 2).copied().unwrap_or(1.0)
+    }
+
+    /// Orthonormalises, measures the errors, refines where they are large, and compares the counts.
+    fn certify(&self, mut found: Found, sturm: SturmCount) -> Result<Eigenpairs> {
+        let count = found.values.len();
+        if sturm.counted != [count; 2] {
+            let [low, high] = sturm.counted;
+            return Err(missing(count, if low == count { high } else { low }, sturm.bound));
+        }
+        let mut errors = Vec::new();
+        for round in 0..2 {
+            orthonormalise(self.m, &mut found.vectors)?;
+            errors = backward_errors(self.k, self.m, &found.values, found.vectors.as_ref());
+            if round == 1 || errors.iter().all(|e| *e <= 1e-14) {
+                break;
+            }
+            let mut y = Mat::zeros(found.vectors.nrows(), count);
+            multiply(self.m, found.vectors.as_ref(), y.as_mut());
+            found.factor.solve_in_place(y.as_mut());
+            for (j, theta) in found.values.iter().enumerate() {
+                y.col_mut(j).iter_mut().for_each(|v| *v *= theta - found.shift);
+            }
+            found.vectors = y;
+        }
+        if let Some(worst) = errors.iter().copied().find(|e| *e > 1e-10 || e.is_nan()) {
+            return Err(Error::analysis(
+                "eigenvalues",
+                format!("an eigenpair has a backward error of {worst:.1e}"),
+                "The matrices span too many orders of magnitude: check units, thicknesses and stiffnesses",
+            ));
+        }
+        Ok(Eigenpairs {
+            values: found.values,
+            vectors: found.vectors,
+            backward_errors: errors,
+            sturm,
+            shift: found.shift,
+            factor: found.factor,
+        })
+    }
+}
+
+impl Found {
+    fn truncate(&mut self, count: usize) {
+        self.values.truncate(count);
+        self.vectors.resize_with(self.vectors.nrows(), count, |_, _| 0.0);
+    }
+}
+
+/// X ← X (XᵀMX)^-½, which moves the vectors least.
+fn orthonormalise(m: &SparseMatrix, x: &mut Mat<f64>) -> Result<()> {
+    let mut mx = Mat::zeros(x.nrows(), x.ncols());
+    multiply(m, x.as_ref(), mx.as_mut());
+    let (values, u) = symmetric_eigen(gram(x.as_ref(), mx.as_ref()).as_ref())?;
+    if values.iter().any(|v| *v <= 0.0 || v.is_nan()) {
+        return Err(Error::analysis(
+            "eigenvalues",
+            "two eigenvectors fell together",
+            "Ask for fewer modes, or move the bound",
+        ));
+    }
+    let n = values.len();
+    let scaled = Mat::from_fn(n, n, |i, k| u[(i, k)] / values[k].sqrt());
+    let root = super::dense::product(scaled.as_ref(), u.transpose());
+    let mut y = Mat::zeros(x.nrows(), n);
+    combine(y.as_mut(), Accum::Replace, x.as_ref(), root.as_ref(), 1.0);
+    *x = y;
+    Ok(())
+}
+
+/// A bound next to the wanted one with room for two shifts around it: the wanted bound itself unless an eigenvalue
+/// sits on it, else the middle of the next gap above. `values` ascend; those from `first_above` on are not below the
+/// bound, and nothing else lies below `beyond`.
+fn gap(values: &[f64], first_above: usize, bound: f64, beyond: f64) -> (f64, [f64; 2]) {
+    let near = 1e-9 * bound;
+    let reach = APART * bound;
+    let mut k = first_above;
+    loop {
+        let low = if k > 0 { values[k - 1] } else { 0.0 };
+        let high = values.get(k).copied().unwrap_or(beyond);
+        let at = if bound - low > near { bound } else { 0.5 * (low + high) };
+        if (at - low > near && high - at > near) || k >= values.len() {
+            return (at, [at - reach.min(0.5 * (at - low)), at + reach.min(0.5 * (high - at))]);
+        }
+        k += 1;
+    }
+}
+
+/// Columns of the basis for `count` eigenpairs.
+fn capacity(count: usize) -> usize {
+    2 * count + 64
+}
+
+fn ritz_values(ritz: &Ritz, window: Window, shift: f64) -> Vec<f64> {
+    window.indices(ritz).into_iter().map(|k| shift + 1.0 / ritz.values[k]).collect()
+}
+
+fn missing(found: usize, counted: usize, bound: f64) -> Error {
+    Error::analysis(
+        "eigenvalues",
+        format!("the inertia counts {counted} below θ = {bound:.9e}, {found} were found"),
+        "Move the bound a little; if that does not help the matrices are not symmetric or M is not positive semidefinite",
+    )
+}
+
+impl BlockLanczos<'_> {
+    /// The pairs (θ, x) of a window, θ ascending.
+    fn pairs(&self, ritz: &Ritz, window: Window, shift: f64) -> (Vec<f64>, Mat<f64>) {
+        let mut which: Vec<(f64, usize)> =
+            window.indices(ritz).into_iter().map(|k| (shift + 1.0 / ritz.values[k], k)).collect();
+        which.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let columns: Vec<usize> = which.iter().map(|(_, k)| *k).collect();
+        (which.into_iter().map(|(theta, _)| theta).collect(), self.vectors(ritz, &columns))
+    }
+}
