@@ -5,8 +5,12 @@
 //! eigenvalues below σ. That count is taken at the shift of the iteration, which tells Lanczos how many to find on
 //! either side of it, and at two shifts that enclose the upper bound, which certify the result.
 
+mod small;
+#[cfg(test)]
+mod tests;
+
 use super::SparseMatrix;
-use super::dense::{definite_pencil, symmetric_eigen};
+use super::dense::symmetric_eigen;
 use super::factor::{SymbolicFactor, SymmetricFactor};
 use super::lanczos::{BlockLanczos, Ritz, Window, combine, gram};
 use super::sparse::{add_scaled, diagonal, multiply, norm_1};
@@ -290,92 +294,6 @@ impl<'a> Pencil<'a> {
         ratios.get(ratios.len() / 2).copied().unwrap_or(1.0)
     }
 
-    fn solve_densely(&self, wanted: Wanted) -> Result<Eigenpairs> {
-        let all = match wanted {
-            Wanted::Below(bound) => self.dense_pairs(-0.01 * bound)?,
-            Wanted::Count(count) => {
-                let first = self.dense_pairs(-1e-4 * self.local_scale())?;
-                let highest = first.values.get(count - 1).or(first.values.last()).copied().unwrap_or(0.0);
-                if highest > 0.0 { self.dense_pairs(-0.01 * highest)? } else { first }
-            }
-        };
-        let Found { values, vectors, shift, factor } = all;
-        let size = |v: f64| v.abs().max((v - shift).abs());
-        let (cut, bound, shifts) = match wanted {
-            Wanted::Below(bound) => {
-                let first_above = values.partition_point(|v| *v < bound);
-                let beyond = 2.0 * bound.max(values.last().copied().unwrap_or(bound));
-                let (bound, shifts) = gap(&values, first_above, bound, beyond);
-                (values.partition_point(|v| *v < bound), bound, shifts)
-            }
-            Wanted::Count(count) => {
-                let cut = (count.min(values.len())..values.len())
-                    .find(|c| *c > 0 && values[*c] - values[*c - 1] > CLUSTER * size(values[*c]))
-                    .unwrap_or(values.len());
-                let low = if cut > 0 { values[cut - 1] } else { 0.0 };
-                let high = values.get(cut).copied().unwrap_or(low + 0.2 * size(low));
-                let shifts = [low + 0.3 * (high - low), low + 0.7 * (high - low)];
-                (cut, 0.5 * (low + high), shifts)
-            }
-        };
-        let counted = self.count_at(shifts)?;
-        let mut found = Found { values, vectors, shift, factor };
-        found.truncate(cut);
-        self.certify(found, SturmCount { bound, shifts, counted })
-    }
-
-    /// All finite eigenpairs by M y = ν (K − σM) y with σ below them all, where K − σM is positive definite; σ is the
-    /// given one or lower. A distance of a hundredth of the highest wanted θ serves both ends of the range.
-    fn dense_pairs(&self, shift: f64) -> Result<Found> {
-        let n = self.k.ncols();
-        let near = |shift: f64| self.factorize_near([1.0, 1.1, 1.2].map(|part| part * shift));
-        let (mut shift, mut factor) = near(shift)?;
-        for _ in 0..40 {
-            if factor.inertia().negative == 0 {
-                break;
-            }
-            (shift, factor) = near(4.0 * shift)?;
-        }
-        let definite = add_scaled(&[(1.0, self.k), (-shift, self.m)]);
-        let s: Vec<f64> = diagonal(&definite).iter().map(|d| 1.0 / d.abs().sqrt()).collect();
-        let scaled = |a: &SparseMatrix| {
-            let a = a.to_dense();
-            Mat::from_fn(n, n, |i, j| s[i] * a[(i, j)] * s[j])
-        };
-        let (nu, y) = definite_pencil(scaled(self.m).as_ref(), scaled(&definite).as_ref())?;
-        let largest = nu.last().copied().unwrap_or(0.0);
-        let finite: Vec<usize> = (0..n).rev().filter(|k| nu[*k] > 1e-14 * n as f64 * largest).collect();
-        let x = Mat::from_fn(n, finite.len(), |i, k| s[i] * y[(i, finite[k])] / nu[finite[k]].sqrt());
-        let inverted: Vec<f64> = finite.iter().map(|k| shift + 1.0 / nu[*k]).collect();
-        let values = self.sharpen(&inverted, x.as_ref(), shift, largest);
-        let mut order: Vec<usize> = (0..values.len()).collect();
-        order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
-        Ok(Found {
-            vectors: Mat::from_fn(n, order.len(), |i, k| x[(i, order[k])]),
-            values: order.iter().map(|k| values[*k]).collect(),
-            shift,
-            factor,
-        })
-    }
-
-    /// Takes the Rayleigh quotient xᵀKx of an M-normal x where rounding hurts it less than σ + 1/ν.
-    fn sharpen(&self, inverted: &[f64], x: MatRef<'_, f64>, shift: f64, largest: f64) -> Vec<f64> {
-        let one = |(j, theta): (usize, &f64)| {
-            let (mut xkx, mut xmx, mut size) = (0.0, 0.0, 0.0);
-            for (a, sum) in [(self.k, &mut xkx), (self.m, &mut xmx)] {
-                for c in 0..a.ncols() {
-                    for (r, v) in a.row_idx_of_col_raw(c).iter().zip(a.val_of_col(c)) {
-                        *sum += x[(*r, j)] * v * x[(c, j)];
-                        size +=
-                            if std::ptr::eq(a, self.k) { (x[(*r, j)] * v * x[(c, j)]).abs() } else { 0.0 };
-                    }
-                }
-            }
-            if size / xmx < (theta - shift).powi(2) * largest { xkx / xmx } else { *theta }
-        };
-        inverted.iter().enumerate().map(one).collect()
-    }
-
     /// Orthonormalises, measures the errors, refines where they are large, and compares the counts.
     fn certify(&self, mut found: Found, sturm: SturmCount) -> Result<Eigenpairs> {
         let count = found.values.len();
@@ -398,7 +316,7 @@ impl<'a> Pencil<'a> {
             }
             found.vectors = y;
         }
-        if let Some(worst) = errors.iter().copied().find(|e| !(*e <= 1e-10)) {
+        if let Some(worst) = errors.iter().copied().find(|e| *e > 1e-10 || e.is_nan()) {
             return Err(Error::analysis(
                 "eigenvalues",
                 format!("an eigenpair has a backward error of {worst:.1e}"),
@@ -428,7 +346,7 @@ fn orthonormalise(m: &SparseMatrix, x: &mut Mat<f64>) -> Result<()> {
     let mut mx = Mat::zeros(x.nrows(), x.ncols());
     multiply(m, x.as_ref(), mx.as_mut());
     let (values, u) = symmetric_eigen(gram(x.as_ref(), mx.as_ref()).as_ref())?;
-    if values.iter().any(|v| !(*v > 0.0)) {
+    if values.iter().any(|v| *v <= 0.0 || v.is_nan()) {
         return Err(Error::analysis(
             "eigenvalues",
             "two eigenvectors fell together",
@@ -487,188 +405,5 @@ impl BlockLanczos<'_> {
         which.sort_by(|a, b| a.0.total_cmp(&b.0));
         let columns: Vec<usize> = which.iter().map(|(_, k)| *k).collect();
         (which.into_iter().map(|(theta, _)| theta).collect(), self.vectors(ritz, &columns))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::samples;
-    use super::*;
-
-    fn check(k: &SparseMatrix, m: &SparseMatrix, pairs: &Eigenpairs) {
-        let mut mx = Mat::zeros(m.ncols(), pairs.values.len());
-        multiply(m, pairs.vectors.as_ref(), mx.as_mut());
-        let g = gram(pairs.vectors.as_ref(), mx.as_ref());
-        let count = pairs.values.len();
-        assert!((g - Mat::<f64>::identity(count, count)).norm_max() < 1e-12, "M-orthonormal");
-        assert!(pairs.backward_errors.iter().all(|e| *e < 1e-13), "{:?}", pairs.backward_errors);
-        assert_eq!(pairs.sturm.counted, [count; 2]);
-        assert!(pairs.sturm.shifts[0] < pairs.sturm.bound && pairs.sturm.bound < pairs.sturm.shifts[1]);
-        let _ = k;
-    }
-
-    #[test]
-    fn membrane_with_double_eigenvalues() {
-        let (k, m) = samples::membrane(40);
-        let exact = samples::membrane_eigenvalues(40);
-        for wanted in [Wanted::Below(0.5), Wanted::Count(61)] {
-            let pairs = lowest_eigenpairs(&k, &m, wanted, &()).unwrap();
-            check(&k, &m, &pairs);
-            for (value, exact) in pairs.values.iter().zip(&exact) {
-                assert!((value - exact).abs() < 1e-12 * exact, "{value} {exact}");
-            }
-            match wanted {
-                Wanted::Below(bound) => {
-                    assert_eq!(pairs.values.len(), exact.iter().filter(|v| **v < bound).count())
-                }
-                Wanted::Count(count) => {
-                    assert!(pairs.values.len() >= count && pairs.values.len() < count + 3)
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn free_chain_has_its_rigid_body_mode() {
-        for n in [1, 2, 5, 50, 400] {
-            let (k, m) = samples::free_chain(n);
-            let pairs = lowest_eigenpairs(&k, &m, Wanted::Count(n.min(12)), &()).unwrap();
-            check(&k, &m, &pairs);
-            for (j, value) in pairs.values.iter().enumerate() {
-                let exact = 4.0 * (j as f64 * std::f64::consts::PI / (2 * n) as f64).sin().powi(2);
-                assert!((value - exact).abs() < 1e-13, "{n} {j} {value} {exact}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_bound_on_an_eigenvalue_moves_up() {
-        let (k, m) = samples::membrane(20);
-        let exact = samples::membrane_eigenvalues(20);
-        let pairs = lowest_eigenpairs(&k, &m, Wanted::Below(exact[10]), &()).unwrap();
-        check(&k, &m, &pairs);
-        assert!(pairs.values.len() >= 10 && pairs.sturm.bound >= exact[10]);
-    }
-
-    #[test]
-    fn free_plate_agrees_with_the_dense_solver() {
-        let (k, m) = samples::plate(14, false);
-        let (values, _) = definite_pencil(k.to_dense().as_ref(), m.to_dense().as_ref()).unwrap();
-        let bound = 0.5 * (values[40] + values[41]);
-        let pairs = lowest_eigenpairs(&k, &m, Wanted::Below(bound), &()).unwrap();
-        check(&k, &m, &pairs);
-        assert_eq!(pairs.values.len(), 41);
-        for (value, dense) in pairs.values.iter().zip(&values) {
-            assert!((value - dense).abs() < 1e-14 * values[values.len() - 1], "{value} {dense}");
-        }
-        assert!(pairs.values[..3].iter().all(|v| v.abs() < 1e-6 * pairs.values[3]), "three rigid-body modes");
-    }
-
-    #[test]
-    fn massless_degrees_of_freedom_have_no_finite_eigenvalue() {
-        // A chain in which only every tenth point has mass: stiffness of ten springs in series between them.
-        for n in [100, 1000] {
-            let (k, _) = samples::free_chain(n);
-            let entries: Vec<_> = (0..n).step_by(10).map(|p| faer::sparse::Triplet::new(p, p, 1.0)).collect();
-            let m = SparseMatrix::try_new_from_triplets(n, n, &entries).unwrap();
-            let masses = n / 10;
-            let exact =
-                |j: usize| 0.4 * (j as f64 * std::f64::consts::PI / (2 * masses) as f64).sin().powi(2);
-            let few = lowest_eigenpairs(&k, &m, Wanted::Count(6), &()).unwrap();
-            let all = lowest_eigenpairs(&k, &m, Wanted::Count(n), &()).unwrap();
-            let below = lowest_eigenpairs(&k, &m, Wanted::Below(0.5 * (exact(4) + exact(5))), &()).unwrap();
-            assert_eq!((few.values.len(), below.values.len(), all.values.len()), (6, 5, masses));
-            for pairs in [&few, &below, &all] {
-                check(&k, &m, pairs);
-                assert!(pairs.values.iter().enumerate().all(|(j, v)| (v - exact(j)).abs() < 1e-12));
-            }
-        }
-    }
-
-    #[test]
-    fn a_withheld_mode_is_noticed() {
-        let (k, m) = samples::membrane(12);
-        let pencil = Pencil::new(&k, &m).unwrap();
-        let whole = lowest_eigenpairs(&k, &m, Wanted::Count(7), &()).unwrap();
-        let count = whole.values.len();
-        let mut found =
-            Found { values: whole.values, vectors: whole.vectors, shift: whole.shift, factor: whole.factor };
-        found.values.remove(3);
-        found.vectors =
-            Mat::from_fn(144, count - 1, |i, j| found.vectors[(i, if j < 3 { j } else { j + 1 })]);
-        let error = pencil.certify(found, whole.sturm).unwrap_err().to_string();
-        assert!(
-            error.contains(&format!("counts {count}"))
-                && error.contains(&format!("{} were found", count - 1))
-        );
-    }
-
-    #[test]
-    fn many_copies_are_all_found() {
-        // Twenty equal chains side by side: every eigenvalue twenty times, more than a block holds.
-        let (n, copies) = (30, 20);
-        let (k, _) = samples::free_chain(n);
-        let mut entries = Vec::new();
-        for c in 0..copies {
-            for j in 0..n {
-                for (i, v) in k.row_idx_of_col_raw(j).iter().zip(k.val_of_col(j)) {
-                    entries.push(faer::sparse::Triplet::new(c * n + i, c * n + j, *v));
-                }
-            }
-        }
-        let k = SparseMatrix::try_new_from_triplets(n * copies, n * copies, &entries).unwrap();
-        let m = samples::identity(n * copies);
-        for (wanted, expected) in [(Wanted::Below(0.03), 40), (Wanted::Count(45), 60)] {
-            let pairs = lowest_eigenpairs(&k, &m, wanted, &()).unwrap();
-            check(&k, &m, &pairs);
-            assert_eq!(pairs.values.len(), expected, "{wanted:?}");
-        }
-    }
-
-    #[test]
-    fn results_do_not_depend_on_the_number_of_threads() {
-        let (k, m) = samples::plate(18, true);
-        let with = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| lowest_eigenpairs(&k, &m, Wanted::Count(30), &()).unwrap())
-        };
-        let (one, three) = (with(1), with(3));
-        assert!(one.values == three.values && one.vectors == three.vectors);
-    }
-
-    #[test]
-    fn senseless_requests_are_refused() {
-        let (k, m) = samples::free_chain(4);
-        for wanted in [Wanted::Below(-1.0), Wanted::Below(f64::NAN), Wanted::Count(0)] {
-            assert!(lowest_eigenpairs(&k, &m, wanted, &()).is_err());
-        }
-        let none = lowest_eigenpairs(&samples::identity(4), &m, Wanted::Below(0.5), &()).unwrap();
-        assert!(none.values.is_empty() && none.sturm.counted == [0, 0]);
-    }
-
-    #[test]
-    #[ignore = "a measurement: cargo test --release --lib eigenpairs::tests::timing -- --ignored --nocapture"]
-    fn timing() {
-        let cpu = || {
-            let stat = std::fs::read_to_string("/proc/self/stat").unwrap();
-            let fields: Vec<&str> = stat.rsplit(')').next().unwrap().split_whitespace().collect();
-            (fields[11].parse::<f64>().unwrap() + fields[12].parse::<f64>().unwrap()) / 100.0
-        };
-        for (m, hz) in [(81, 9000.0), (257, 6000.0)] {
-            let (k, mass) = samples::plate(m, false);
-            for wanted in [Wanted::Below((std::f64::consts::TAU * hz as f64).powi(2)), Wanted::Count(50)] {
-                let (wall, before) = (std::time::Instant::now(), cpu());
-                let pairs = lowest_eigenpairs(&k, &mass, wanted, &()).unwrap();
-                let worst = pairs.backward_errors.iter().fold(0.0f64, |m, e| m.max(*e));
-                println!(
-                    "{} dof, {} pairs: {:.2} s wall, {:.2} s CPU, backward error {worst:.1e}",
-                    k.nrows(),
-                    pairs.values.len(),
-                    wall.elapsed().as_secs_f64(),
-                    cpu() - before
-                );
-                check(&k, &mass, &pairs);
-            }
-        }
     }
 }

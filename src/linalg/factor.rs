@@ -365,7 +365,7 @@ mod tests {
     #[test]
     fn metres_and_radians_may_differ_by_many_orders() {
         let mut a = samples::random_definite(20, 9).to_dense();
-        let size = |i: usize| if i % 2 == 0 { 1e9 } else { 1e-9 };
+        let size = |i: usize| if i.is_multiple_of(2) { 1e9 } else { 1e-9 };
         a = Mat::from_fn(20, 20, |i, j| a[(i, j)] * size(i) * size(j));
         let factor = factorize(&samples::from_dense(a.as_ref())).unwrap();
         assert_eq!(factor.inertia(), Inertia { negative: 0, zero: 0, positive: 20 });
