@@ -5,6 +5,7 @@ use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::SparseVector;
 use crate::mesh::Element;
 use crate::structure::ShellPart;
+use crate::structure::elements::FlatShell;
 use crate::system::ContactPoint;
 
 /// Two plates that may touch.
@@ -294,25 +295,14 @@ fn on_body(candidate: &Candidate, w: Vector, terms: &mut Vec<(usize, usize, f64)
 fn on_counter(foot: &Foot, half: f64, w: Vector, terms: &mut Vec<(usize, usize, f64)>) {
     let moment = cross(scale(half, foot.normal), w);
     let force = [w[0], w[1], w[2], moment[0], moment[1], moment[2]];
-    let rows = displacement_at(&foot.corners, foot.barycentric);
+    let Some(shell) = FlatShell::new(&foot.corners) else { return };
+    let rows = shell.displacement_at(foot.barycentric);
     for (node, component) in (0..3).flat_map(|n| (0..6).map(move |c| (n, c))) {
         let coefficient: f64 = force.iter().zip(&rows).map(|(f, row)| f * row[6 * node + component]).sum();
         if coefficient != 0.0 {
             terms.push((foot.nodes[node], component, coefficient));
         }
     }
-}
-
-/// (ux, uy, uz, rx, ry, rz) at a point of a triangle's mid-surface as a function of its 18 degrees of freedom, all in
-/// global axes: linear in each component, exact for rigid motions.
-fn displacement_at(_corners: &[Vector; 3], barycentric: [f64; 3]) -> [[f64; 18]; 6] {
-    let mut rows = [[0.0; 18]; 6];
-    for (node, share) in barycentric.iter().enumerate() {
-        for (component, row) in rows.iter_mut().enumerate() {
-            row[6 * node + component] = *share;
-        }
-    }
-    rows
 }
 
 #[cfg(test)]

@@ -1,11 +1,12 @@
 //! Equilibrium condensed to the contact: the static compliance seen from the contact points.
 
-use super::algebra::{Factor, add_scaled, multiply};
 use super::linear::directions;
 use crate::error::{Error, Result};
 use crate::linalg::SparseMatrix;
+use crate::linalg::SymmetricFactor;
+use crate::linalg::factor::factorize;
+use crate::linalg::sparse::{add_scaled, sum_of_squares, times};
 use crate::system::{ContactMotion, ContactPoint, System};
-use faer::sparse::Triplet;
 use faer::{Mat, MatRef};
 
 /// The structure with its contact springs closed, A = K + Σ d g gᵀ, factorised, and what it answers to a unit force
@@ -15,7 +16,7 @@ use faer::{Mat, MatRef};
 /// The identity K u + U R = f ⇔ A u = f − U R + Σ g d gᵀu is exact, so the d > 0 only decide the conditioning:
 /// they are taken from the law's own stiffness. A depends on neither load, friction nor velocity.
 pub struct Condensed {
-    factor: Factor,
+    factor: Box<dyn SymmetricFactor>,
     /// d \[N/m\] of each point.
     pub(super) closed: Vec<f64>,
     /// X = A⁻¹ G, n × points.
@@ -33,16 +34,10 @@ impl Condensed {
         let n = system.n_dofs();
         let points: Vec<&ContactPoint> = system.points().map(|(_, point)| point).collect();
         let closed: Vec<f64> = system.points().map(|(pair, point)| spring(pair, point, k)).collect();
-        let mut springs = Vec::new();
-        for (point, d) in points.iter().zip(&closed) {
-            for (i, a) in point.normal.iter() {
-                springs.extend(point.normal.iter().map(|(j, b)| Triplet::new(i, j, d * (a * b))));
-            }
-        }
-        let a = add_scaled(n, &[(1.0, k)], &springs);
-        let factor =
-            Factor::new(&a).ok_or_else(|| nothing_holds("the stiffness matrix is exactly singular"))?;
-        check_held(&a, &factor)?;
+        let springs = points.iter().zip(&closed).map(|(point, d)| (*d, &point.normal));
+        let a = add_scaled(&[(1.0, k), (1.0, &sum_of_squares(n, springs))]);
+        let factor = factorize(&a).map_err(|error| nothing_holds(&error.to_string()))?;
+        check_held(&a, &*factor)?;
         let mut responses = Mat::<f64>::zeros(n, points.len());
         for (p, point) in points.iter().enumerate() {
             point.normal.iter().for_each(|(i, v)| responses[(i, p)] = v);
@@ -90,7 +85,7 @@ fn spring(pair: &crate::system::ContactPair, point: &ContactPoint, k: &SparseMat
 
 /// Inverse iteration finds the softest motion x of A; when A x is no more than the round-off of forming it, x is a
 /// motion that nothing resists. (The softest elastic motion of a fine plate stands four decades above that.)
-fn check_held(a: &SparseMatrix, factor: &Factor) -> Result<()> {
+fn check_held(a: &SparseMatrix, factor: &dyn SymmetricFactor) -> Result<()> {
     const ROUND_OFF: f64 = 1e-14;
     let n = a.nrows();
     // A start that no symmetry of a structure is likely to be orthogonal to.
@@ -103,7 +98,7 @@ fn check_held(a: &SparseMatrix, factor: &Factor) -> Result<()> {
         }
         x.col_as_slice_mut(0).iter_mut().for_each(|v| *v /= size);
     }
-    let force = multiply(a, x.as_ref());
+    let force = times(a, x.as_ref());
     let terms = multiply_absolute(a, x.as_ref());
     let largest = |m: &Mat<f64>| m.col_as_slice(0).iter().fold(0.0, |s: f64, v| s.max(v.abs()));
     if largest(&force) <= ROUND_OFF * largest(&terms) {

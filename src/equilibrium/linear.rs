@@ -1,11 +1,10 @@
 //! The contact's forces in any state of motion, and their linearisation at steady sliding.
 
 use super::SteadySliding;
-use super::algebra::add_scaled;
 use crate::error::Result;
+use crate::linalg::sparse::{add_scaled, sum_of_squares};
 use crate::linalg::{SparseMatrix, SparseVector};
 use crate::system::{ContactMotion, ContactPoint, Structure, System};
-use faer::sparse::Triplet;
 use std::borrow::Cow;
 
 /// The linearised contact: K_c = Σ U k Uᵀ and C_c = Σ U c Uᵀ with U = \[g t₁ t₂\] of each point that carries load.
@@ -61,7 +60,7 @@ pub fn tangent_stiffness<'a>(system: &'a System, displacement: &[f64]) -> Result
         return Ok(Cow::Borrowed(&system.structure.stiffness));
     };
     let geometric = prestress.geometric_stiffness(displacement)?;
-    Ok(Cow::Owned(add_scaled(system.n_dofs(), &[(1.0, &system.structure.stiffness), (1.0, &geometric)], &[])))
+    Ok(Cow::Owned(add_scaled(&[(1.0, &system.structure.stiffness), (1.0, &geometric)])))
 }
 
 /// The structure at steady sliding with its contact closed and frictionless: K (+ K_σ) + Σ ∂N/∂δ g gᵀ, for real modes
@@ -69,14 +68,11 @@ pub fn tangent_stiffness<'a>(system: &'a System, displacement: &[f64]) -> Result
 /// contact's normal springs are added to a copy of K.
 pub fn closed_structure(system: &System, steady: &SteadySliding) -> Result<Structure> {
     let stiffness = tangent_stiffness(system, &steady.displacement)?;
-    let mut springs = Vec::new();
-    for ((_, point), state) in system.points().zip(&steady.points) {
-        let d = state.tangent.by_penetration[0];
-        for (i, a) in point.normal.iter().filter(|_| d != 0.0) {
-            springs.extend(point.normal.iter().map(|(j, b)| Triplet::new(i, j, d * (a * b))));
-        }
-    }
-    let stiffness = add_scaled(system.n_dofs(), &[(1.0, stiffness.as_ref())], &springs);
+    let closed =
+        system.points().zip(&steady.points).filter(|(_, state)| state.tangent.by_penetration[0] != 0.0);
+    let springs = closed.map(|((_, point), state)| (state.tangent.by_penetration[0], &point.normal));
+    let springs = sum_of_squares(system.n_dofs(), springs);
+    let stiffness = add_scaled(&[(1.0, stiffness.as_ref()), (1.0, &springs)]);
     Ok(Structure { stiffness, ..system.structure.clone() })
 }
 

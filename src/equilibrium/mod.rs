@@ -3,7 +3,6 @@
 //! K u₀ + Σ [g N − t₁ F₁ − t₂ F₂] = f, ΣN = load of each pair. [`solve_steady`] finds u₀; [`linearize`] gives
 //! K_c = Σ U k Uᵀ and C_c = Σ U c Uᵀ as small blocks, [`tangent_stiffness`] K + K_σ(u₀).
 
-pub(crate) mod algebra;
 mod condensed;
 mod linear;
 mod newton;

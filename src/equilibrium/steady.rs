@@ -1,15 +1,14 @@
 //! Steady sliding: K u₀ + Σ \[g N − t₁ F₁ − t₂ F₂\] = f with ΣN = load of each pair.
 
-use super::algebra::{multiply, norm_2};
 use super::condensed::Condensed;
 use super::linear::{contact_force, directions, tangent_stiffness};
 use super::newton::{Contact, Stage};
 use super::{PointState, SteadySliding};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::SparseMatrix;
+use crate::linalg::sparse::multiply_vector;
 use crate::progress::Observer;
 use crate::system::{Closing, System};
-use faer::Mat;
 
 /// What is asked of a steady state.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -134,8 +133,8 @@ fn refine(system: &System, k: &SparseMatrix, contact: &Contact<'_>, stage: &mut 
 /// f − K u − r_c, and its size relative to ‖f‖ + ‖r_c‖.
 fn residual(system: &System, k: &SparseMatrix, u: &[f64], approach: &[f64]) -> (Vec<f64>, f64) {
     let contact = contact_force(system, approach, u, &vec![0.0; u.len()]);
-    let elastic = multiply(k, Mat::from_fn(u.len(), 1, |i, _| u[i]).as_ref());
-    let r: Vec<f64> = (0..u.len()).map(|i| system.load[i] - elastic[(i, 0)] - contact[i]).collect();
+    let elastic = multiply_vector(k, u);
+    let r: Vec<f64> = (0..u.len()).map(|i| system.load[i] - elastic[i] - contact[i]).collect();
     let scale = norm_2(&system.load) + norm_2(&contact);
     let size = if scale > 0.0 { norm_2(&r) / scale } else { norm_2(&r) };
     (r, size)
@@ -224,4 +223,9 @@ fn check_contact(system: &System, steady: &SteadySliding, options: &SteadyOption
         }
     }
     Ok(())
+}
+
+/// ‖x‖₂.
+fn norm_2(x: &[f64]) -> f64 {
+    x.iter().map(|v| v * v).sum::<f64>().sqrt()
 }

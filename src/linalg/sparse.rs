@@ -1,7 +1,7 @@
 //! The sparse matrix of the whole program, its products and norms, and sparse vectors for contact directions.
 
-use faer::sparse::SymbolicSparseColMat;
-use faer::{MatMut, MatRef};
+use faer::sparse::{SymbolicSparseColMat, Triplet};
+use faer::{Mat, MatMut, MatRef};
 use rayon::prelude::*;
 use std::ops::{AddAssign, Mul};
 
@@ -142,6 +142,30 @@ fn panel<T: Scalar, const W: usize>(
             }
         }
     });
+}
+
+/// A X as a new matrix, for a symmetric `a` stored whole: the allocating twin of [`multiply`].
+pub fn times(a: &SparseMatrix, x: MatRef<'_, f64>) -> Mat<f64> {
+    let mut y = Mat::zeros(a.ncols(), x.ncols());
+    multiply(a, x, y.as_mut());
+    y
+}
+
+/// Σ d v vᵀ of order `n`, both triangles stored.
+///
+/// # Panics
+/// When an index of a vector is not below `n`.
+pub fn sum_of_squares<'a>(
+    n: usize,
+    terms: impl IntoIterator<Item = (f64, &'a SparseVector)>,
+) -> SparseMatrix {
+    let mut triplets = Vec::new();
+    for (d, v) in terms {
+        for (i, a) in v.iter() {
+            triplets.extend(v.iter().map(|(j, b)| Triplet::new(i, j, d * (a * b))));
+        }
+    }
+    SparseMatrix::try_new_from_triplets(n, n, &triplets).expect("indices are below n")
 }
 
 /// A x as a new vector, for a symmetric `a` stored whole.

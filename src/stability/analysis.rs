@@ -7,9 +7,12 @@ use super::operator::{Operator, Side};
 use super::projected::{SmallPair, project_contact, solve};
 use super::{ComplexMode, ComplexModes};
 use crate::equilibrium::SteadySliding;
-use crate::equilibrium::algebra::{Factor, add_scaled, multiply, product};
 use crate::error::{Error, Fault, Result};
+use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
+use crate::linalg::dense::product;
+use crate::linalg::factor::factorize;
+use crate::linalg::sparse::{add_scaled, times};
 use crate::modal::RealModes;
 use crate::progress::Observer;
 use crate::system::System;
@@ -97,10 +100,10 @@ fn analyse(
     let band = band_hz.map(|f| TAU * f);
     let factor = shifted_factor(&operator, real, band)?;
     let mut basis = Basis::new(&operator, real.shapes.as_ref(), band[1] * band[1]);
-    basis.enrich(contact_responses(&operator, &factor, band[1]), 1e-9, STATIC_RESPONSES);
+    basis.enrich(contact_responses(&operator, &*factor, band[1]), 1e-9, STATIC_RESPONSES);
     let mut warnings = Vec::new();
     let mut counts = Vec::new();
-    let mut round = evaluate(&operator, &basis, &factor, band)?;
+    let mut round = evaluate(&operator, &basis, &*factor, band)?;
     observer.advance(1);
     let mut refinements = 0;
     loop {
@@ -119,7 +122,7 @@ fn analyse(
             break;
         }
         refinements += 1;
-        round = evaluate(&operator, &basis, &factor, band)?;
+        round = evaluate(&operator, &basis, &*factor, band)?;
         observer.advance(1);
     }
     if let Some(first) = counts.first().filter(|first| counts.iter().any(|c| c != *first)) {
@@ -151,7 +154,11 @@ fn analyse(
 }
 
 /// A = K + K_σ − s M, with s in the widest gap between the real modes' ω² near the middle of the band.
-fn shifted_factor(operator: &Operator<'_>, real: &RealModes, band: [f64; 2]) -> Result<Factor> {
+fn shifted_factor(
+    operator: &Operator<'_>,
+    real: &RealModes,
+    band: [f64; 2],
+) -> Result<Box<dyn SymmetricFactor>> {
     let middle = 0.5 * (band[0] * band[0] + band[1] * band[1]);
     let (low, high) = (0.5 * middle, 1.5 * middle);
     let mut ends = vec![low];
@@ -159,22 +166,13 @@ fn shifted_factor(operator: &Operator<'_>, real: &RealModes, band: [f64; 2]) -> 
     ends.push(high);
     let widest = ends.windows(2).max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
     let shift = widest.map_or(middle, |gap| 0.5 * (gap[0] + gap[1]));
-    let at = |s: f64| {
-        let a = add_scaled(operator.n(), &[(1.0, &operator.stiffness), (-s, operator.mass)], &[]);
-        Factor::new(&a)
-    };
-    at(shift).or_else(|| at(-middle)).ok_or_else(|| {
-        Error::analysis(
-            "complex eigenvalues",
-            "K − s M is singular at every shift that was tried",
-            "Check the model for degrees of freedom with neither stiffness nor mass",
-        )
-    })
+    let at = |s: f64| factorize(&add_scaled(&[(1.0, &*operator.stiffness), (-s, operator.mass)]));
+    at(shift).or_else(|_| at(-middle))
 }
 
 /// A⁻¹U for the directions in which a contact moves or is moved, each weighed by √(contact stiffness) so that its
 /// E-norm tells how much the contact makes of it.
-fn contact_responses(operator: &Operator<'_>, factor: &Factor, omega: f64) -> Mat<f64> {
+fn contact_responses(operator: &Operator<'_>, factor: &dyn SymmetricFactor, omega: f64) -> Mat<f64> {
     let mut columns = Vec::new();
     for (block, u) in &operator.contact {
         for (d, direction) in u.iter().enumerate() {
@@ -193,7 +191,12 @@ fn contact_responses(operator: &Operator<'_>, factor: &Factor, omega: f64) -> Ma
     responses
 }
 
-fn evaluate(operator: &Operator<'_>, basis: &Basis<'_>, factor: &Factor, band: [f64; 2]) -> Result<Round> {
+fn evaluate(
+    operator: &Operator<'_>,
+    basis: &Basis<'_>,
+    factor: &dyn SymmetricFactor,
+    band: [f64; 2],
+) -> Result<Round> {
     let (contact_damping, contact_stiffness) = project_contact(operator, basis);
     let wanted = |z: c64| {
         let oscillates = z.im > 1e-9 * z.norm();
@@ -212,7 +215,7 @@ fn evaluate(operator: &Operator<'_>, basis: &Basis<'_>, factor: &Factor, band: [
         let small: Vec<Vec<c64>> = pairs.iter().map(pick).collect();
         let mut full =
             Block::from_columns(basis.len(), &small).map(|y| product(basis.vectors.as_ref(), y.as_ref()));
-        let inertia = full.map(|v| multiply(operator.mass, v.as_ref()));
+        let inertia = full.map(|v| times(operator.mass, v.as_ref()));
         for j in 0..full.ncols() {
             let norm = full.dot(j, &inertia).re.sqrt();
             full.scale_column(j, 1.0 / norm);
@@ -271,7 +274,7 @@ fn mode(operator: &Operator<'_>, round: &Round, real: &RealModes, j: usize) -> C
 
 /// |φₖᵀMφ|² of every real mode that has at least one part in ten thousand, largest first.
 fn participation(operator: &Operator<'_>, phi: &Block, real: &RealModes, j: usize) -> Vec<(usize, f64)> {
-    let part = |m: &Mat<f64>| multiply(operator.mass, m.subcols(j, 1));
+    let part = |m: &Mat<f64>| times(operator.mass, m.subcols(j, 1));
     let (re, im) = (part(&phi.re), part(&phi.im));
     let along = |k: usize, v: &Mat<f64>| -> f64 {
         real.shapes.col_as_slice(k).iter().zip(v.col_as_slice(0)).map(|(a, b)| a * b).sum()

@@ -1,7 +1,8 @@
 //! The subspace that the quadratic problem is projected on, grown by what the full order asks for.
 
 use super::operator::Operator;
-use crate::equilibrium::algebra::{gram, multiply, product};
+use crate::linalg::dense::{gram, product};
+use crate::linalg::sparse::times;
 use faer::{Mat, MatRef};
 
 /// An M-orthonormal basis B and the projections BᵀMB, BᵀCB, BᵀKB, BᵀHB, and BᵀU of the contact.
@@ -72,8 +73,8 @@ impl<'a> Basis<'a> {
 
     /// zᵀ(K + τM)z.
     fn energy(&self, z: MatRef<'_, f64>) -> Mat<f64> {
-        let mut e = multiply(&self.operator.stiffness, z);
-        e += faer::Scale(self.tau) * multiply(self.operator.mass, z);
+        let mut e = times(&self.operator.stiffness, z);
+        e += faer::Scale(self.tau) * times(self.operator.mass, z);
         gram(z, e.as_ref())
     }
 
@@ -86,7 +87,7 @@ impl<'a> Basis<'a> {
     fn normalise_against(&self, column: &mut Mat<f64>, new: MatRef<'_, f64>) -> bool {
         const LOST: f64 = 1e-12;
         for _ in 0..2 {
-            let inertia = multiply(self.operator.mass, column.as_ref());
+            let inertia = times(self.operator.mass, column.as_ref());
             let square = gram(column.as_ref(), inertia.as_ref())[(0, 0)];
             if !(square.is_finite() && square > 0.0) {
                 return false;
@@ -94,7 +95,7 @@ impl<'a> Basis<'a> {
             let share = gram(new, inertia.as_ref());
             *column -= product(new, share.as_ref());
             self.project_out(column);
-            let inertia = multiply(self.operator.mass, column.as_ref());
+            let inertia = times(self.operator.mass, column.as_ref());
             let left = gram(column.as_ref(), inertia.as_ref())[(0, 0)];
             if left.is_nan() || left <= LOST * LOST * square {
                 return false;
@@ -106,10 +107,10 @@ impl<'a> Basis<'a> {
 
     fn append(&mut self, new: Mat<f64>) {
         let old = self.len();
-        let inertia = multiply(self.operator.mass, new.as_ref());
-        let elastic = multiply(&self.operator.stiffness, new.as_ref());
+        let inertia = times(self.operator.mass, new.as_ref());
+        let elastic = times(&self.operator.stiffness, new.as_ref());
         let damped = self.operator.damping_times(new.as_ref());
-        let lossy = self.operator.damping.hysteretic.as_ref().map(|h| multiply(h, new.as_ref()));
+        let lossy = self.operator.damping.hysteretic.as_ref().map(|h| times(h, new.as_ref()));
         self.vectors = beside(&self.vectors, &new);
         self.mass_times = beside(&self.mass_times, &inertia);
         let grow = |small: &Mat<f64>, times: &Mat<f64>| {

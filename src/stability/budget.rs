@@ -3,8 +3,8 @@
 use super::GrowthBudget;
 use super::block::Block;
 use super::operator::Operator;
-use crate::equilibrium::algebra::multiply;
 use crate::linalg::c64;
+use crate::linalg::sparse::times;
 
 impl GrowthBudget {
     /// The sum of the terms: σ.
@@ -35,7 +35,7 @@ pub(super) fn growth_budget(operator: &Operator<'_>, lambda: c64, phi: &Block, j
         budget.structural_damping += by_velocity(single.dot(0, &Block { re, im }));
     }
     if let Some(h) = &operator.damping.hysteretic {
-        let lossy = single.dot(0, &single.map(|v| multiply(h, v.as_ref())));
+        let lossy = single.dot(0, &single.map(|v| times(h, v.as_ref())));
         budget.structural_damping += by_displacement(c64::new(0.0, 1.0) * lossy);
     }
     for ((block, _), motion) in operator.contact.iter().zip(operator.motions(&single, 0)) {

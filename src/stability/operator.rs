@@ -1,9 +1,10 @@
 //! The full-order quadratic operator Q(λ) = λ² M + λ (C + C_c) + K + K_σ + iH + K_c, applied without forming it.
 
 use super::block::Block;
-use crate::equilibrium::algebra::{gram, multiply, norm_1, product};
 use crate::equilibrium::{ContactBlock, SteadySliding, directions, linearize, tangent_stiffness};
 use crate::error::Result;
+use crate::linalg::dense::{gram, product};
+use crate::linalg::sparse::{norm_1, times};
 use crate::linalg::{SparseMatrix, SparseVector, c64};
 use crate::system::{Damping, System};
 use faer::{Mat, MatRef};
@@ -56,7 +57,7 @@ impl<'a> Operator<'a> {
 
     /// C x: viscous and modal damping; `None` when there is neither.
     pub(super) fn damping_times(&self, x: MatRef<'_, f64>) -> Option<Mat<f64>> {
-        let mut sum = self.damping.viscous.as_ref().map(|c| multiply(c, x));
+        let mut sum = self.damping.viscous.as_ref().map(|c| times(c, x));
         if let Some(modal) = &self.damping.modal {
             let mut amplitudes = gram(modal.basis.as_ref(), x);
             for (i, c) in modal.coefficients.iter().enumerate() {
@@ -105,9 +106,9 @@ impl<'a> Operator<'a> {
         let conjugate = |z: c64| if side == Side::Right { z } else { z.conj() };
         let s: Vec<c64> = lambda.iter().map(|z| conjugate(*z)).collect();
         let one = vec![c64::new(1.0, 0.0); s.len()];
-        let mut value = x.map(|v| multiply(&self.stiffness, v.as_ref()));
+        let mut value = x.map(|v| times(&self.stiffness, v.as_ref()));
         let mut slope = Block::zeros(self.n(), x.ncols());
-        let inertia = x.map(|v| multiply(self.mass, v.as_ref()));
+        let inertia = x.map(|v| times(self.mass, v.as_ref()));
         value.add_scaled(&s.iter().map(|s| s * s).collect::<Vec<_>>(), &inertia);
         slope.add_scaled(&s.iter().map(|s| s * 2.0).collect::<Vec<_>>(), &inertia);
         if let (Some(re), Some(im)) = (self.damping_times(x.re.as_ref()), self.damping_times(x.im.as_ref())) {
@@ -116,7 +117,7 @@ impl<'a> Operator<'a> {
             slope.add_scaled(&one, &damped);
         }
         if let Some(h) = &self.damping.hysteretic {
-            let lossy = x.map(|v| multiply(h, v.as_ref()));
+            let lossy = x.map(|v| times(h, v.as_ref()));
             value.add_scaled(&vec![conjugate(c64::new(0.0, 1.0)); s.len()], &lossy);
         }
         self.add_contact(&s, true, side, x, &mut value);
