@@ -10,9 +10,9 @@ use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Fault, Result};
 use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
-use crate::linalg::dense::product;
+use crate::linalg::dense::gram;
 use crate::linalg::factor::factorize;
-use crate::linalg::sparse::{add_scaled, times};
+use crate::linalg::sparse::add_scaled;
 use crate::modal::RealModes;
 use crate::progress::Observer;
 use crate::system::System;
@@ -82,6 +82,8 @@ struct Round {
     lambda: Vec<c64>,
     phi: Block,
     psi: Block,
+    /// M φ.
+    momentum: Block,
     /// −A⁻¹ × residual, right and left.
     corrections: [Block; 2],
     backward_error: Vec<f64>,
@@ -131,7 +133,9 @@ fn analyse(
             "the refinement changed the number of complex modes in the band from {first} to {last}"
         ));
     }
-    let modes: Vec<ComplexMode> = (0..round.lambda.len()).map(|j| mode(&operator, &round, real, j)).collect();
+    let participations = participations(&round, real).into_iter().enumerate();
+    let modes: Vec<ComplexMode> =
+        participations.map(|(j, shares)| mode(&operator, &round, shares, j)).collect();
     for mode in modes.iter().filter(|mode| !mode.accepted()) {
         let cause = if mode.condition > 1e4 { ", near the coalescence of two modes" } else { "" };
         warnings.push(format!(
@@ -213,18 +217,12 @@ fn evaluate(
     let lambda: Vec<c64> = pairs.iter().map(|p| p.lambda).collect();
     let expand = |pick: fn(&SmallPair) -> Vec<c64>| {
         let small: Vec<Vec<c64>> = pairs.iter().map(pick).collect();
-        let mut full =
-            Block::from_columns(basis.len(), &small).map(|y| product(basis.vectors.as_ref(), y.as_ref()));
-        let inertia = full.map(|v| times(operator.mass, v.as_ref()));
-        for j in 0..full.ncols() {
-            let norm = full.dot(j, &inertia).re.sqrt();
-            full.scale_column(j, 1.0 / norm);
-        }
-        full
+        basis.images(&Block::from_columns(basis.len(), &small)).normalise()
     };
     let (phi, psi) = (expand(|p| p.right.clone()), expand(|p| p.left.clone()));
     let (residual, slope) = operator.apply(Side::Right, &lambda, &phi);
     let (left_residual, _) = operator.apply(Side::Left, &lambda, &psi);
+    let (momentum, phi, psi) = (phi.inertia, phi.vectors, psi.vectors);
     let correct = |r: &Block| {
         r.map(|v| {
             let mut z = -v;
@@ -240,7 +238,7 @@ fn evaluate(
     let eigenvalue_error =
         of(&|j| corrections[1].dot(j, &residual).norm() / (steepness[j] * lambda[j].norm().max(floor)));
     let condition = of(&|j| 2.0 * lambda[j].norm() / steepness[j]);
-    Ok(Round { lambda, phi, psi, corrections, backward_error, eigenvalue_error, condition })
+    Ok(Round { lambda, phi, psi, momentum, corrections, backward_error, eigenvalue_error, condition })
 }
 
 /// Re and Im of the corrections of the `open` pairs, right and left, each divided by |λ|: their squared E-norm is then
@@ -258,7 +256,7 @@ fn wanted_corrections(round: &Round, open: &[usize], floor: f64) -> Mat<f64> {
     Mat::from_fn(n, columns.len(), |i, c| columns[c].0[i] * columns[c].1)
 }
 
-fn mode(operator: &Operator<'_>, round: &Round, real: &RealModes, j: usize) -> ComplexMode {
+fn mode(operator: &Operator<'_>, round: &Round, participation: Vec<(usize, f64)>, j: usize) -> ComplexMode {
     let lambda = round.lambda[j];
     ComplexMode {
         eigenvalue: lambda,
@@ -268,21 +266,20 @@ fn mode(operator: &Operator<'_>, round: &Round, real: &RealModes, j: usize) -> C
         eigenvalue_error: round.eigenvalue_error[j],
         condition: round.condition[j],
         growth: growth_budget(operator, lambda, &round.phi, j),
-        participation: participation(operator, &round.phi, real, j),
+        participation,
     }
 }
 
-/// |φₖᵀMφ|² of every real mode that has at least one part in ten thousand, largest first.
-fn participation(operator: &Operator<'_>, phi: &Block, real: &RealModes, j: usize) -> Vec<(usize, f64)> {
-    let part = |m: &Mat<f64>| times(operator.mass, m.subcols(j, 1));
-    let (re, im) = (part(&phi.re), part(&phi.im));
-    let along = |k: usize, v: &Mat<f64>| -> f64 {
-        real.shapes.col_as_slice(k).iter().zip(v.col_as_slice(0)).map(|(a, b)| a * b).sum()
+/// |φₖᵀMφ|² of every real mode that has at least one part in ten thousand, largest first; one list a complex mode.
+fn participations(round: &Round, real: &RealModes) -> Vec<Vec<(usize, f64)>> {
+    let amplitudes = round.momentum.map(|part| gram(real.shapes.as_ref(), part.as_ref()));
+    let of = |j: usize| {
+        let mut shares: Vec<(usize, f64)> = (0..real.len())
+            .map(|k| (k, amplitudes.re[(k, j)].powi(2) + amplitudes.im[(k, j)].powi(2)))
+            .filter(|(_, share)| *share >= 1e-4)
+            .collect();
+        shares.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        shares
     };
-    let mut shares: Vec<(usize, f64)> = (0..real.len())
-        .map(|k| (k, along(k, &re).powi(2) + along(k, &im).powi(2)))
-        .filter(|(_, share)| *share >= 1e-4)
-        .collect();
-    shares.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-    shares
+    (0..round.lambda.len()).map(of).collect()
 }

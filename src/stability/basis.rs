@@ -1,5 +1,6 @@
 //! The subspace that the quadratic problem is projected on, grown by what the full order asks for.
 
+use super::block::Block;
 use super::operator::Operator;
 use crate::linalg::dense::{gram, product};
 use crate::linalg::sparse::times;
@@ -11,13 +12,40 @@ pub(super) struct Basis<'a> {
     /// E = K + τ M measures how much a direction can matter in the band.
     tau: f64,
     pub(super) vectors: Mat<f64>,
+    /// M B, K B, C B, H B: what the full order makes of the basis, kept so that a residual costs dense products only.
     mass_times: Mat<f64>,
+    stiffness_times: Mat<f64>,
+    damping_times: Option<Mat<f64>>,
+    hysteretic_times: Option<Mat<f64>>,
     pub(super) mass: Mat<f64>,
     pub(super) damping: Mat<f64>,
     pub(super) stiffness: Mat<f64>,
     pub(super) hysteretic: Option<Mat<f64>>,
     /// One row a basis vector; three columns (g, t₁, t₂) a contact block.
     pub(super) contact: Mat<f64>,
+}
+
+/// Complex vectors with what M, K, C and H make of them.
+pub(super) struct Images {
+    pub(super) vectors: Block,
+    pub(super) inertia: Block,
+    pub(super) elastic: Block,
+    pub(super) damped: Option<Block>,
+    pub(super) lossy: Option<Block>,
+}
+
+impl Images {
+    /// Scales every column so that xᴴMx = 1.
+    pub(super) fn normalise(mut self) -> Self {
+        for j in 0..self.vectors.ncols() {
+            let factor = 1.0 / self.vectors.dot(j, &self.inertia).re.sqrt();
+            self.vectors.scale_column(j, factor);
+            self.inertia.scale_column(j, factor);
+            self.elastic.scale_column(j, factor);
+            self.damped.iter_mut().chain(&mut self.lossy).for_each(|block| block.scale_column(j, factor));
+        }
+        self
+    }
 }
 
 impl<'a> Basis<'a> {
@@ -29,6 +57,9 @@ impl<'a> Basis<'a> {
             tau,
             vectors: Mat::zeros(n, 0),
             mass_times: Mat::zeros(n, 0),
+            stiffness_times: Mat::zeros(n, 0),
+            damping_times: None,
+            hysteretic_times: None,
             mass: Mat::zeros(0, 0),
             damping: Mat::zeros(0, 0),
             stiffness: Mat::zeros(0, 0),
@@ -41,6 +72,18 @@ impl<'a> Basis<'a> {
 
     pub(super) fn len(&self) -> usize {
         self.vectors.ncols()
+    }
+
+    /// x = B y of every column of `y`, with M x, K x, C x and H x.
+    pub(super) fn images(&self, y: &Block) -> Images {
+        let of = |times: &Mat<f64>| y.map(|y| product(times.as_ref(), y.as_ref()));
+        Images {
+            vectors: of(&self.vectors),
+            inertia: of(&self.mass_times),
+            elastic: of(&self.stiffness_times),
+            damped: self.damping_times.as_ref().map(of),
+            lossy: self.hysteretic_times.as_ref().map(of),
+        }
     }
 
     /// Adds the directions of `z` that are new: after the basis is projected out, the columns are taken in the order
@@ -113,6 +156,13 @@ impl<'a> Basis<'a> {
         let lossy = self.operator.damping.hysteretic.as_ref().map(|h| times(h, new.as_ref()));
         self.vectors = beside(&self.vectors, &new);
         self.mass_times = beside(&self.mass_times, &inertia);
+        self.stiffness_times = beside(&self.stiffness_times, &elastic);
+        let extend = |old: &Option<Mat<f64>>, new: &Option<Mat<f64>>| {
+            let n = self.vectors.nrows();
+            new.as_ref().map(|new| beside(old.as_ref().unwrap_or(&Mat::zeros(n, 0)), new))
+        };
+        self.damping_times = extend(&self.damping_times, &damped);
+        self.hysteretic_times = extend(&self.hysteretic_times, &lossy);
         let grow = |small: &Mat<f64>, times: &Mat<f64>| {
             let border = gram(self.vectors.as_ref(), times.as_ref());
             let m = border.nrows();

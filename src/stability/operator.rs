@@ -1,5 +1,6 @@
 //! The full-order quadratic operator Q(λ) = λ² M + λ (C + C_c) + K + K_σ + iH + K_c, applied without forming it.
 
+use super::basis::Images;
 use super::block::Block;
 use crate::equilibrium::{ContactBlock, SteadySliding, directions, linearize, tangent_stiffness};
 use crate::error::Result;
@@ -102,26 +103,23 @@ impl<'a> Operator<'a> {
     }
 
     /// Q(λⱼ) xⱼ and Q′(λⱼ) xⱼ = (2λⱼM + C + C_c) xⱼ, or Q(λⱼ)ᴴ xⱼ and Q′(λⱼ)ᴴ xⱼ.
-    pub(super) fn apply(&self, side: Side, lambda: &[c64], x: &Block) -> (Block, Block) {
+    pub(super) fn apply(&self, side: Side, lambda: &[c64], x: &Images) -> (Block, Block) {
         let conjugate = |z: c64| if side == Side::Right { z } else { z.conj() };
         let s: Vec<c64> = lambda.iter().map(|z| conjugate(*z)).collect();
         let one = vec![c64::new(1.0, 0.0); s.len()];
-        let mut value = x.map(|v| times(&self.stiffness, v.as_ref()));
-        let mut slope = Block::zeros(self.n(), x.ncols());
-        let inertia = x.map(|v| times(self.mass, v.as_ref()));
-        value.add_scaled(&s.iter().map(|s| s * s).collect::<Vec<_>>(), &inertia);
-        slope.add_scaled(&s.iter().map(|s| s * 2.0).collect::<Vec<_>>(), &inertia);
-        if let (Some(re), Some(im)) = (self.damping_times(x.re.as_ref()), self.damping_times(x.im.as_ref())) {
-            let damped = Block { re, im };
-            value.add_scaled(&s, &damped);
-            slope.add_scaled(&one, &damped);
+        let mut value = x.elastic.clone();
+        let mut slope = Block::zeros(self.n(), s.len());
+        value.add_scaled(&s.iter().map(|s| s * s).collect::<Vec<_>>(), &x.inertia);
+        slope.add_scaled(&s.iter().map(|s| s * 2.0).collect::<Vec<_>>(), &x.inertia);
+        if let Some(damped) = &x.damped {
+            value.add_scaled(&s, damped);
+            slope.add_scaled(&one, damped);
         }
-        if let Some(h) = &self.damping.hysteretic {
-            let lossy = x.map(|v| times(h, v.as_ref()));
-            value.add_scaled(&vec![conjugate(c64::new(0.0, 1.0)); s.len()], &lossy);
+        if let Some(lossy) = &x.lossy {
+            value.add_scaled(&vec![conjugate(c64::new(0.0, 1.0)); s.len()], lossy);
         }
-        self.add_contact(&s, true, side, x, &mut value);
-        self.add_contact(&one, false, side, x, &mut slope);
+        self.add_contact(&s, true, side, &x.vectors, &mut value);
+        self.add_contact(&one, false, side, &x.vectors, &mut slope);
         (value, slope)
     }
 
