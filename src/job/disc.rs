@@ -74,14 +74,14 @@ fn boundary_nodes(part: &ShellPart) -> Vec<usize> {
 }
 
 /// The centre of the circle that fits the outer edge nodes best, however unevenly they are spread: least squares of
-/// |x|² = 2 c·x + (r² − |c|²), held in the plane by a ridge of 1e-12.
+/// |x|² = 2 c·x + (r² − |c|²), held in the plane by a ridge of 1e-9.
 fn centre_of_rim(edge: &[Vector3<f64>]) -> Option<Vector3<f64>> {
     let low = edge.iter().copied().reduce(|a, b| a.inf(&b))?;
     let high = edge.iter().copied().reduce(|a, b| a.sup(&b))?;
     let middle = 0.5 * (low + high);
     let far = edge.iter().map(|x| (x - middle).norm()).fold(0.0, f64::max);
     let rim: Vec<Vector3<f64>> = edge.iter().map(|x| (x - middle) / far).filter(|d| d.norm() > 0.9).collect();
-    let mut normal_matrix = Matrix4::<f64>::identity() * (1e-12 * rim.len() as f64);
+    let mut normal_matrix = Matrix4::<f64>::identity() * (1e-9 * rim.len() as f64);
     let mut right_side = Vector4::<f64>::zeros();
     for d in &rim {
         let row = Vector4::new(2.0 * d.x, 2.0 * d.y, 2.0 * d.z, 1.0);
