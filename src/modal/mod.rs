@@ -1,4 +1,16 @@
 //! Real modes of the structure, without friction: K φ = ω² M φ.
+//!
+//! * [`compute`]: the modes up to a frequency, with the count that proves that none is missing.
+//! * [`DiscPoints`]: names of disc modes from their transverse displacement.
+//! * [`effective_mass`]: how much of the mass a mode moves along a direction.
+
+mod compute;
+mod effective_mass;
+mod naming;
+
+pub use compute::{ModesWanted, ShiftedStiffness, compute};
+pub use effective_mass::{EffectiveMass, effective_mass};
+pub use naming::DiscPoints;
 
 mod compute;
 pub use compute::{Wanted, compute, effective_mass, name_disc_mode};
