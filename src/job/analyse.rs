@@ -5,7 +5,7 @@ use super::prepared::Prepared;
 use crate::case::{Case, ContactState};
 use crate::equilibrium::{self, SteadyOptions, SteadySliding};
 use crate::error::Result;
-use crate::modal::{self, Wanted};
+use crate::modal::{self, ModesWanted};
 use crate::progress::Observer;
 use crate::results::{self, ComplexResult, NamedModes, ResultsFile, RunResults, SteadyResult};
 use crate::stability;
@@ -125,11 +125,11 @@ pub fn analyse(
         if selection.modes {
             for (name, analysis) in contact_modes {
                 let wanted = match (analysis.below, analysis.count) {
-                    (Some(below), _) => Wanted::BelowHz(below),
-                    (None, count) => Wanted::Count(count.unwrap_or(1)),
+                    (Some(below), _) => ModesWanted::BelowHz(below),
+                    (None, count) => ModesWanted::Count(count.unwrap_or(1)),
                 };
                 let closed = equilibrium::closed_structure(&prepared.system, state)?;
-                let modes = clock
+                let (modes, _) = clock
                     .time(&format!("real modes, {name}"), || modal::compute(&closed, wanted, observer))?;
                 let modes = named(prepared, name, modes, &prepared.assembled);
                 record(Stage::Modes(&modes))?;
@@ -179,8 +179,8 @@ fn complex_result(
     let mut system = prepared.system.clone();
     let stiffness = equilibrium::tangent_stiffness(&prepared.system, &state.displacement)?.into_owned();
     let preloaded = Structure { stiffness, ..prepared.system.structure.clone() };
-    let basis = clock.time("real modes of the whole", || {
-        modal::compute(&preloaded, Wanted::BelowHz(cea.basis_below), observer)
+    let (basis, _) = clock.time("real modes of the whole", || {
+        modal::compute(&preloaded, ModesWanted::BelowHz(cea.basis_below), observer)
     })?;
     add_modal_damping(&mut system.structure, &basis, prepared)?;
     let modes = clock.time("complex eigenvalues", || {

@@ -1,5 +1,6 @@
 //! Recognises a plate that is a disc, and gives its nodes polar coordinates so that its modes can be named.
 
+use crate::modal::{DiscModeName, DiscPoints};
 use crate::results::NodalField;
 use crate::structure::ShellPart;
 use nalgebra::{Matrix4, Vector3, Vector4};
@@ -13,7 +14,8 @@ pub struct Disc {
     /// Nodes of the disc, ascending.
     pub nodes: Vec<usize>,
     /// (r \[m\], θ \[rad\]) of each node about the centre.
-    pub polar: Vec<[f64; 2]>,
+    pub polar: Vec<(f64, f64)>,
+    points: DiscPoints,
 }
 
 impl Disc {
@@ -40,19 +42,21 @@ impl Disc {
         let helper = if normal.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
         let e1 = normal.cross(&helper).try_normalize(0.0)?;
         let e2 = normal.cross(&e1);
-        let polar = nodes
+        let polar: Vec<(f64, f64)> = nodes
             .iter()
             .map(|n| {
                 let d = at(*n) - centre;
-                [d.norm(), d.dot(&e2).atan2(d.dot(&e1))]
+                (d.norm(), d.dot(&e2).atan2(d.dot(&e1)))
             })
             .collect();
-        Some(Disc { normal, nodes, polar })
+        let points = DiscPoints::new(&polar)?;
+        Some(Disc { normal, nodes, polar, points })
     }
 
-    /// Transverse displacement of each node of the disc in `shape`.
-    pub fn transverse(&self, shape: &NodalField<f64>) -> Vec<f64> {
-        self.nodes.iter().map(|n| Vector3::from_row_slice(&shape[*n][..3]).dot(&self.normal)).collect()
+    /// Nodal diameters and circles of the bending in `shape`; `None` when no number of diameters dominates.
+    pub fn name(&self, shape: &NodalField<f64>) -> Option<DiscModeName> {
+        let transverse = |n: &usize| Vector3::from_row_slice(&shape[*n][..3]).dot(&self.normal);
+        self.points.name(&self.nodes.iter().map(transverse).collect::<Vec<f64>>())
     }
 }
 
@@ -137,7 +141,7 @@ mod tests {
         let disc = Disc::recognise(&part(faces), &nodes).expect("it is a disc");
         for (k, node) in disc.nodes.iter().enumerate() {
             let expected = [0.3, 0.7, 1.0][node / n];
-            assert!((disc.polar[k][0] - expected).abs() < 1e-9, "{} {expected}", disc.polar[k][0]);
+            assert!((disc.polar[k].0 - expected).abs() < 1e-9, "{} {expected}", disc.polar[k].0);
         }
         assert!((disc.normal.dot(&e1)).abs() < 1e-12);
     }

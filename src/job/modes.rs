@@ -1,13 +1,12 @@
 //! Real modes of one part or of the whole, with names and effective masses.
 
-use super::disc::Disc;
 use super::prepared::Prepared;
 use crate::error::{Error, Fault, Faults, Result};
-use crate::modal::{self, RealModes, Wanted};
+use crate::modal::{self, ModesWanted, RealModes};
 use crate::results::{MeasuredComparison, NamedModes, NodalField};
 use crate::structure::{Assembled, assemble};
 use crate::system::Structure;
-use faer::MatRef;
+use faer::{Mat, MatRef};
 
 /// A column of `shapes` as a slice.
 pub fn column(shapes: MatRef<'_, f64>, k: usize) -> Vec<f64> {
@@ -27,8 +26,8 @@ pub fn part_modes(
     let model = super::model::part_model(prepared.case, &prepared.regions, &prepared.model, name, analysis)?;
     let assembled = assemble(&model)?;
     let wanted = match (analysis.below, analysis.count) {
-        (Some(below), _) => Wanted::BelowHz(below),
-        (None, count) => Wanted::Count(count.unwrap_or(1).min(assembled.dofs.n_dofs())),
+        (Some(below), _) => ModesWanted::BelowHz(below),
+        (None, count) => ModesWanted::Count(count.unwrap_or(1).min(assembled.dofs.n_dofs())),
     };
     if assembled.dofs.n_dofs() == 0 {
         return Err(Error::input(Fault::new(
@@ -37,7 +36,7 @@ pub fn part_modes(
             "parts that can move",
         )));
     }
-    let modes = modal::compute(&assembled.structure, wanted, observer)?;
+    let (modes, _) = modal::compute(&assembled.structure, wanted, observer)?;
     Ok(named(prepared, name, modes, &assembled))
 }
 
@@ -53,12 +52,14 @@ pub fn named(prepared: &Prepared, name: &str, modes: RealModes, assembled: &Asse
         .map(|(shape, shares)| {
             let (part, _) = dominant(shares)?;
             let (_, disc) = discs.iter().find(|(name, _)| *name == part)?;
-            bending_name(disc, shape)
+            disc.name(shape)
         })
         .collect();
-    let directions = assembled.dofs.rigid_body_vectors([0.0; 3]);
-    let translations = [0, 1, 2].map(|axis| directions[axis].clone());
-    let effective_mass = modal::effective_mass(&assembled.structure, modes.shapes.as_ref(), &translations);
+    let rigid = assembled.dofs.rigid_body_vectors([0.0; 3]);
+    let translations = Mat::from_fn(assembled.dofs.n_dofs(), 3, |i, axis| rigid[axis][i]);
+    let mass = &assembled.structure.mass;
+    let effective = modal::effective_mass(mass, modes.shapes.as_ref(), translations.as_ref()).effective;
+    let effective_mass = (0..modes.len()).map(|k| [0, 1, 2].map(|axis| effective[(k, axis)])).collect();
     NamedModes {
         name: name.to_string(),
         shapes,
@@ -67,10 +68,6 @@ pub fn named(prepared: &Prepared, name: &str, modes: RealModes, assembled: &Asse
         total_mass: assembled.total_mass,
         modes,
     }
-}
-
-fn bending_name(disc: &Disc, shape: &NodalField<f64>) -> Option<modal::DiscModeName> {
-    modal::name_disc_mode(&disc.polar, &disc.transverse(shape))
 }
 
 /// The share of each part in the kinetic energy of each mode.

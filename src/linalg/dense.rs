@@ -9,26 +9,12 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_scratch};
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::{Accum, Mat, MatRef, Par};
-use rayon::iter::{IndexedParallelIterator, ParallelIterator};
 
-/// Columns of a product that one task works on; fixed, so that the split does not depend on the number of threads.
-const COLUMNS: usize = 32;
-
-/// C = A B. Panels of columns of C are formed side by side, each by one thread: the same bits for any number of them.
+/// C = A B on one thread.
 pub fn product(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
     let mut c = Mat::zeros(a.nrows(), b.ncols());
-    if c.nrows() == 0 || c.ncols() == 0 {
-        return c;
-    }
-    c.as_mut().par_col_chunks_mut(COLUMNS).zip(b.par_col_chunks(COLUMNS)).for_each(|(c, b)| {
-        faer::linalg::matmul::matmul(c, Accum::Replace, a, b, 1.0, Par::Seq);
-    });
+    faer::linalg::matmul::matmul(c.as_mut(), Accum::Replace, a, b, 1.0, Par::Seq);
     c
-}
-
-/// AᵀB of two tall matrices.
-pub fn gram(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
-    product(a.transpose(), b)
 }
 
 /// A = S diag(ν) Sᵀ of a symmetric matrix, of which the lower triangle is read: ν ascending, SᵀS = I.

@@ -12,9 +12,10 @@ use super::SparseMatrix;
 use super::dense::{product, symmetric_eigen};
 use super::factor::SymmetricFactor;
 use super::sparse::multiply;
+use super::tall::{ROWS, combine, gram};
 use crate::error::{Error, Result};
 use crate::progress::Observer;
-use faer::{Accum, Mat, MatMut, MatRef, Par};
+use faer::{Accum, Mat, MatMut, MatRef};
 use rayon::prelude::*;
 
 /// Columns of a block: as many right-hand sides as one solve takes at little more than the price of one, and more
@@ -25,8 +26,6 @@ const BLOCK: usize = 8;
 const ACCEPTED: f64 = 1e-12;
 /// Rounding of the solves is no excuse for more than this.
 const UNACCEPTABLE: f64 = 1e-5;
-/// Rows that one task works on.
-const ROWS: usize = 8192;
 /// The most blocks for one search.
 const MOST_STEPS: usize = 1000;
 
@@ -366,31 +365,6 @@ impl<'a> BlockLanczos<'a> {
         combine(w.as_mut(), Accum::Add, v, h.as_ref(), -1.0);
         h
     }
-}
-
-/// AᵀB: partial products of fixed ranges of rows, added in their order.
-pub fn gram(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
-    let n = a.nrows();
-    let parts: Vec<Mat<f64>> = (0..n.div_ceil(ROWS))
-        .into_par_iter()
-        .map(|task| {
-            let (start, rows) = (task * ROWS, ROWS.min(n - task * ROWS));
-            product(a.subrows(start, rows).transpose(), b.subrows(start, rows))
-        })
-        .collect();
-    let mut sum = Mat::zeros(a.ncols(), b.ncols());
-    for part in parts {
-        sum += part;
-    }
-    sum
-}
-
-/// Y (+)= factor · V C, over fixed ranges of rows.
-pub fn combine(y: MatMut<'_, f64>, accumulate: Accum, v: MatRef<'_, f64>, c: MatRef<'_, f64>, factor: f64) {
-    y.par_row_chunks_mut(ROWS).enumerate().for_each(|(task, y)| {
-        let v = v.subrows(task * ROWS, y.nrows());
-        faer::linalg::matmul::matmul(y, accumulate, v, c, factor, Par::Seq);
-    });
 }
 
 /// The first columns of V become V C, range of rows by range of rows.

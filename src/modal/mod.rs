@@ -12,8 +12,6 @@ pub use compute::{ModesWanted, ShiftedStiffness, compute};
 pub use effective_mass::{EffectiveMass, effective_mass};
 pub use naming::DiscPoints;
 
-mod compute;
-pub use compute::{Wanted, compute, effective_mass, name_disc_mode};
 use faer::Mat;
 
 /// Real modes, ascending in frequency, with the proof that none is missing.

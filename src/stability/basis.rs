@@ -2,8 +2,8 @@
 
 use super::block::Block;
 use super::operator::Operator;
-use crate::linalg::dense::{gram, product};
 use crate::linalg::sparse::times;
+use crate::linalg::tall::{expand, gram};
 use faer::{Mat, MatRef};
 
 /// An M-orthonormal basis B and the projections BᵀMB, BᵀCB, BᵀKB, BᵀHB, and BᵀU of the contact.
@@ -76,7 +76,7 @@ impl<'a> Basis<'a> {
 
     /// x = B y of every column of `y`, with M x, K x, C x and H x.
     pub(super) fn images(&self, y: &Block) -> Images {
-        let of = |times: &Mat<f64>| y.map(|y| product(times.as_ref(), y.as_ref()));
+        let of = |times: &Mat<f64>| y.map(|y| expand(times.as_ref(), y.as_ref()));
         Images {
             vectors: of(&self.vectors),
             inertia: of(&self.mass_times),
@@ -123,7 +123,7 @@ impl<'a> Basis<'a> {
 
     fn project_out(&self, z: &mut Mat<f64>) {
         let share = gram(self.mass_times.as_ref(), z.as_ref());
-        *z -= product(self.vectors.as_ref(), share.as_ref());
+        *z -= expand(self.vectors.as_ref(), share.as_ref());
     }
 
     /// M-orthonormalises `column` against the basis and the `new` vectors; false when nothing with mass is left.
@@ -136,7 +136,7 @@ impl<'a> Basis<'a> {
                 return false;
             }
             let share = gram(new, inertia.as_ref());
-            *column -= product(new, share.as_ref());
+            *column -= expand(new, share.as_ref());
             self.project_out(column);
             let inertia = times(self.operator.mass, column.as_ref());
             let left = gram(column.as_ref(), inertia.as_ref())[(0, 0)];

@@ -4,8 +4,8 @@ use super::basis::Images;
 use super::block::Block;
 use crate::equilibrium::{ContactBlock, SteadySliding, directions, linearize, tangent_stiffness};
 use crate::error::Result;
-use crate::linalg::dense::{gram, product};
 use crate::linalg::sparse::{norm_1, times};
+use crate::linalg::tall::{expand, gram};
 use crate::linalg::{SparseMatrix, SparseVector, c64};
 use crate::system::{Damping, System};
 use faer::{Mat, MatRef};
@@ -64,7 +64,7 @@ impl<'a> Operator<'a> {
             for (i, c) in modal.coefficients.iter().enumerate() {
                 (0..amplitudes.ncols()).for_each(|j| amplitudes[(i, j)] *= c);
             }
-            let modal = product(modal.basis.as_ref(), amplitudes.as_ref());
+            let modal = expand(modal.basis.as_ref(), amplitudes.as_ref());
             sum = Some(match sum {
                 Some(viscous) => viscous + modal,
                 None => modal,
