@@ -229,6 +229,8 @@ pub struct Contact {
     /// Direction in which the body moves into the ground; only for a contact with the ground.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub into: Option<[f64; 3]>,
+    /// Contact points across the thickness of a rim: 2, one at each edge, or 1, in the middle.
+    pub points_across: usize,
     /// Points with a larger initial gap are left out \[m\].
     pub reach: f64,
     /// What presses the pair together.

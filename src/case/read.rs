@@ -272,6 +272,7 @@ fn read_contact(s: &Section) -> Contact {
             position: p.quantities("position", LENGTH).or([0.0; 2]),
         }),
         into,
+        points_across: s.count("points_across").check("1 or 2", |n| *n <= 2).or(2),
         reach: s.quantity("reach", LENGTH).positive().or(1e-3),
         pressing,
         sliding_velocity: s

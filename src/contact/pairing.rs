@@ -38,6 +38,9 @@ pub enum ContactSide<'a> {
     /// Lines on the edge of the plate (a rim). Every node carries two points, at ±h/2 along the plate's normal: the
     /// two-point Lobatto rule over the thickness, each with half the node's tributary length \[m\].
     Edge(&'a [[usize; 2]]),
+    /// Lines on the edge of the plate, with one point a node at the middle of the thickness: the line contact of an
+    /// infinitely thin rim, which knows no moment about the line.
+    Middle(&'a [[usize; 2]]),
     /// Faces of the plate (a pad). Every node carries one point, at h/2 towards the counter-body, with the node's
     /// tributary area \[m²\].
     Face(&'a [Element]),
@@ -163,7 +166,7 @@ fn touching_nodes(surfaces: &Surfaces<'_>, place: &str) -> Result<Vec<Touching>>
     let mut named = vec![false; n];
     let corners = |t: [usize; 3]| t.map(|node| surfaces.nodes[node]);
     match surfaces.side {
-        ContactSide::Edge(lines) => {
+        ContactSide::Edge(lines) | ContactSide::Middle(lines) => {
             for [a, b] in lines {
                 let side = subtract(surfaces.nodes[*b], surfaces.nodes[*a]);
                 for node in [*a, *b] {
@@ -230,6 +233,7 @@ fn candidates(surfaces: &Surfaces<'_>, plate: &Plate, touching: &[Touching]) -> 
             ContactSide::Edge(_) => {
                 all.extend([half, -half].map(|h| place(t, scale(h, t.normal), 0.5 * t.weight)));
             }
+            ContactSide::Middle(_) => all.push(place(t, [0.0; 3], t.weight)),
             ContactSide::Face(_) => {
                 let h = if dot(t.normal, plate.normal) > 0.0 { -half } else { half };
                 all.push(place(t, scale(h, t.normal), t.weight));

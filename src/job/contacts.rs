@@ -135,6 +135,7 @@ fn surface_points(
         })
         .collect();
     let (side, natural) = match region.dimension {
+        1 if contact.points_across == 1 => (ContactSide::Middle(&lines), StiffnessPer::Length),
         1 => (ContactSide::Edge(&lines), StiffnessPer::Length),
         2 => (ContactSide::Face(&touching), StiffnessPer::Area),
         _ => {

@@ -53,10 +53,14 @@ impl Disc {
         Some(Disc { normal, nodes, polar, points })
     }
 
-    /// Nodal diameters and circles of the bending in `shape`; `None` when no number of diameters dominates.
+    /// Nodal diameters and circles of the bending in `shape`; `None` when the disc moves more in its plane than across
+    /// it, or when no number of diameters dominates.
     pub fn name(&self, shape: &NodalField<f64>) -> Option<DiscModeName> {
-        let transverse = |n: &usize| Vector3::from_row_slice(&shape[*n][..3]).dot(&self.normal);
-        self.points.name(&self.nodes.iter().map(transverse).collect::<Vec<f64>>())
+        let moved = |n: &usize| Vector3::from_row_slice(&shape[*n][..3]);
+        let transverse: Vec<f64> = self.nodes.iter().map(|n| moved(n).dot(&self.normal)).collect();
+        let across: f64 = transverse.iter().map(|w| w * w).sum();
+        let whole: f64 = self.nodes.iter().map(|n| moved(n).norm_squared()).sum();
+        if across > 0.5 * whole { self.points.name(&transverse) } else { None }
     }
 }
 
