@@ -4,8 +4,8 @@
 // rim; bar along -x. Faces look to +x (disc) and +z (slider).
 
 a = 75;           // disc radius
-b = 20;           // hub radius (assumed)
-bar = 100;        // hub centre to clamp (assumed)
+b = 20.75;           // hub radius (assumed)
+bar = 75;        // hub centre to clamp (assumed)
 length = 200;     // slider along x
 width = 120;      // slider along y
 h = 10;           // slider thickness: places its mid-plane

@@ -364,6 +364,8 @@ pub struct ModesAnalysis {
     pub count: Option<usize>,
     /// Contact open or closed.
     pub contact: ContactState,
+    /// Computed frequencies are multiplied by this before they are compared: an unknown thickness or modulus.
+    pub frequency_scale: f64,
     /// Measured natural frequencies \[Hz\] to set beside the computed ones.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub measured: Vec<f64>,

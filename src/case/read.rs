@@ -87,8 +87,11 @@ fn read_mesh(s: &Section) -> MeshSource {
     let length = |s: &Section, key: &str, default: f64| s.quantity(key, LENGTH).positive().or(default);
     let rig = s.section("rig", |r| RigMesh {
         outer_radius: length(r, "outer_radius", 0.075),
-        hub_radius: length(r, "hub_radius", 0.020),
-        bar_length: r.quantity("bar_length", LENGTH).check("a length other than zero", |v| *v != 0.0).or(0.1),
+        hub_radius: length(r, "hub_radius", 0.02075),
+        bar_length: r
+            .quantity("bar_length", LENGTH)
+            .check("a length other than zero", |v| *v != 0.0)
+            .or(0.075),
         slider: r.quantities("slider", LENGTH).or([0.2, 0.12]),
         contact: r.quantities("contact", LENGTH).or([0.0; 2]),
         contact_size: length(r, "contact_size", 0.4e-3),
@@ -363,6 +366,7 @@ fn read_modes(s: &Section) -> ModesAnalysis {
             "closed" => ContactState::Closed,
             _ => ContactState::Open,
         },
+        frequency_scale: s.quantity("frequency_scale", NUMBER).positive().or(1.0),
         measured: s.quantity_list("measured", FREQUENCY).or(Vec::new()),
         measured_source: s.string("measured_source").or(String::new()),
     }

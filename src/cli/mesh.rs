@@ -88,10 +88,10 @@ pub struct RigOptions {
     #[arg(long, default_value = "75 mm", value_parser = length)]
     outer_radius: f64,
     /// Radius of the hub
-    #[arg(long, default_value = "20 mm", value_parser = length)]
+    #[arg(long, default_value = "20.75 mm", value_parser = length)]
     hub_radius: f64,
     /// Length of the bar from the hub to the clamp; negative for a bar along +x
-    #[arg(long, default_value = "100 mm", value_parser = length, allow_hyphen_values = true)]
+    #[arg(long, default_value = "75 mm", value_parser = length, allow_hyphen_values = true)]
     bar_length: f64,
     /// Elements of the bar
     #[arg(long, default_value_t = 10)]

@@ -108,7 +108,7 @@ pub fn analyse(
                 clock.time(&format!("real modes, {name}"), || part_modes(prepared, name, observer))?;
             if !analysis.measured.is_empty() {
                 let set = results.modes.len();
-                results.measured.push(compare(set, &analysis.measured, &analysis.measured_source, &modes));
+                results.measured.push(compare(set, analysis, &modes));
             }
             record(Stage::Modes(&modes))?;
             results.modes.push(modes);

@@ -1,6 +1,7 @@
 //! Real modes of one part or of the whole, with names and effective masses.
 
 use super::prepared::Prepared;
+use crate::case::ModesAnalysis;
 use crate::error::{Error, Fault, Faults, Result};
 use crate::modal::{self, ModesWanted, RealModes};
 use crate::results::{MeasuredComparison, NamedModes, NodalField};
@@ -49,7 +50,11 @@ pub fn named(prepared: &Prepared, name: &str, modes: RealModes, assembled: &Asse
     let names = shapes
         .iter()
         .zip(&kinetic)
-        .map(|(shape, shares)| {
+        .enumerate()
+        .map(|(k, (shape, shares))| {
+            if k < modes.rigid_bodies {
+                return None;
+            }
             let (part, _) = dominant(shares)?;
             let (_, disc) = discs.iter().find(|(name, _)| *name == part)?;
             disc.name(shape)
@@ -133,8 +138,9 @@ pub fn labels(prepared: &Prepared, named: &NamedModes, assembled: &Assembled) ->
 
 /// Sets measured frequencies beside computed ones: each measured one takes the nearest mode still free, closest pairs
 /// first; a double mode counts once.
-pub fn compare(set: usize, measured: &[f64], source: &str, named: &NamedModes) -> MeasuredComparison {
-    let frequency = |k: usize| named.modes.frequency_hz(k);
+pub fn compare(set: usize, analysis: &ModesAnalysis, named: &NamedModes) -> MeasuredComparison {
+    let measured = &analysis.measured;
+    let frequency = |k: usize| analysis.frequency_scale * named.modes.frequency_hz(k);
     let mut candidates: Vec<(f64, usize, usize)> = Vec::new();
     for (row, f) in measured.iter().enumerate() {
         for k in (0..named.modes.len()).filter(|k| *k >= named.modes.rigid_bodies) {
@@ -152,7 +158,8 @@ pub fn compare(set: usize, measured: &[f64], source: &str, named: &NamedModes) -
             rows[row].1 = Some(k);
         }
     }
-    MeasuredComparison { modes: set, source: source.to_string(), rows, frequency_scale: 1.0 }
+    let source = analysis.measured_source.clone();
+    MeasuredComparison { modes: set, source, rows, frequency_scale: analysis.frequency_scale }
 }
 
 /// C = M Φ diag(2ζω) Φᵀ M for the modal damping of the case, given the real modes of the whole.

@@ -80,7 +80,7 @@ fn draw(area: &super::chart::Area, complex: &ComplexResult) -> Result<(), Box<dy
         )])?;
         let near = complex.measured_squeal_hz[..k]
             .iter()
-            .any(|(other, _)| (other - hz).abs() < 0.09 * (across.end - across.start));
+            .any(|(other, _)| (other - hz).abs() < 0.16 * (across.end - across.start));
         let drop = if near { 22 } else { 6 };
         let (x, y) = chart.backend_coord(&(*hz, up.end));
         area.draw_text(

@@ -57,7 +57,7 @@ pub(super) fn modes(results: &RunResults, index: usize) -> Table {
     let set = &results.modes[index];
     let comparisons: Vec<_> = results.measured.iter().filter(|m| m.modes == index).collect();
     let mut headings = vec!["no.", "f [Hz]"];
-    let named = set.names.iter().any(Option::is_some);
+    let named = set.names.iter().any(Option::is_some) || set.modes.rigid_bodies > 0;
     if named {
         headings.push("(n, s)");
     }
@@ -76,7 +76,11 @@ pub(super) fn modes(results: &RunResults, index: usize) -> Table {
         let mut cells = vec![(k + 1).to_string(), fixed(set.modes.frequency_hz(k), 1)];
         if named {
             let name = set.names.get(k).copied().flatten();
-            cells.push(name.map_or("–".into(), |n| format!("({}, {})", n.nodal_diameters, n.nodal_circles)));
+            cells.push(match name {
+                _ if k < set.modes.rigid_bodies => "rigid".into(),
+                Some(n) => format!("({}, {})", n.nodal_diameters, n.nodal_circles),
+                None => "–".into(),
+            });
         }
         let paired = rows.iter().find(|row| row.mode == Some(k));
         if scaled {

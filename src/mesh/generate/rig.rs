@@ -41,8 +41,8 @@ impl RigSpec {
     /// The reference rig: disc 150 mm, slider 200 × 120 × 10 mm; hub radius and bar are assumptions.
     fn reference(disc: Grading, slider: Grading) -> Self {
         RigSpec {
-            disc: DiscSpec { outer_radius: 0.075, hub_radius: 0.020, grading: disc },
-            bar: BarSpec { length: 0.1, elements: 10, side: BarSide::Minus },
+            disc: DiscSpec { outer_radius: 0.075, hub_radius: 0.02075, grading: disc },
+            bar: BarSpec { length: 0.075, elements: 10, side: BarSide::Minus },
             slider: PlateSpec { length: 0.2, width: 0.12, contact: [0.0, 0.0], grading: slider },
             slider_thickness: 0.01,
         }
