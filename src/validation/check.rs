@@ -5,9 +5,11 @@ use super::reference::{Check, Kind, Reference};
 use crate::case::Case;
 use crate::error::{Error, Fault, Result};
 use crate::job::{Prepared, Selection, analyse};
+use crate::linalg::c64;
 use crate::progress::Observer;
 use crate::results::{NamedModes, RunResults};
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 
 /// One quantity, computed beside its reference.
 #[derive(Debug, Clone)]
@@ -88,9 +90,16 @@ impl Runs<'_> {
 }
 
 /// λ of every complex mode of the run.
-fn eigenvalues(results: &RunResults) -> Vec<crate::linalg::c64> {
+fn eigenvalues(results: &RunResults) -> Vec<c64> {
     let complex = results.complex.iter();
     complex.flat_map(|c| c.modes.modes.iter().map(|m| m.eigenvalue)).collect()
+}
+
+/// λ of the unstable mode nearest to `hz`; not a number when no mode is unstable.
+fn unstable_near(results: &RunResults, hz: f64) -> c64 {
+    let distance = |l: &c64| (l.im / TAU - hz).abs();
+    let unstable = eigenvalues(results).into_iter().filter(|l| l.re > 0.0);
+    unstable.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(c64::new(f64::NAN, f64::NAN))
 }
 
 fn largest_growth(results: &RunResults) -> f64 {
@@ -128,13 +137,8 @@ fn compute(runs: &mut Runs, check: &Check) -> Result<f64> {
             let change = before.iter().zip(&after).map(|(a, b)| (a - b).norm() / a.norm());
             Ok(change.fold(0.0, f64::max))
         }
-        Kind::UnstableNear => {
-            let unstable = eigenvalues(runs.with(&check.set)?).into_iter().filter(|l| l.re > 0.0);
-            let frequencies = unstable.map(|l| l.im / std::f64::consts::TAU);
-            Ok(frequencies
-                .min_by(|a, b| (a - check.reference).abs().total_cmp(&(b - check.reference).abs()))
-                .unwrap_or(f64::NAN))
-        }
+        Kind::UnstableNear => Ok(unstable_near(runs.with(&check.set)?, check.reference).im / TAU),
+        Kind::GrowthNear(hz) => Ok(unstable_near(runs.with(&check.set)?, *hz).re),
         Kind::Annulus { modes, part, radii } => {
             let case = runs.case;
             let shell = case.shell.get(part).ok_or_else(|| missing(check, part))?;

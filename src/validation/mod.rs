@@ -55,20 +55,21 @@ fn folders(root: &Path, filter: Option<&str>) -> Result<Vec<PathBuf>> {
 pub fn table(rows: &[Row]) -> String {
     let mut text = String::new();
     let mut case = "";
+    let width = rows.iter().map(|row| row.quantity.chars().count()).max().unwrap_or(0).max(8);
     for row in rows {
         if row.case != case {
             case = &row.case;
-            text += &format!("\n{}\n  source: {}\n", row.title, row.source);
+            text += &format!("\n{} ({case})\n", row.title);
             text += &format!(
-                "  {:<52} {:>14} {:>14} {:>10} {:>10}\n",
+                "  {:<width$} {:>12} {:>12} {:>10} {:>9}\n",
                 "quantity", "computed", "reference", "difference", "tolerance"
             );
         }
         text += &format!(
-            "  {:<52} {:>14.8} {:>14.8} {:>10.1e} {:>10.1e}  {}\n",
+            "  {:<width$} {:>12} {:>12} {:>10.1e} {:>9.0e}  {}\n",
             row.quantity,
-            row.computed,
-            row.reference,
+            short(row.computed),
+            short(row.reference),
             row.difference(),
             row.tolerance,
             if row.passed() { "pass" } else { "FAIL" }
@@ -76,6 +77,19 @@ pub fn table(rows: &[Row]) -> String {
     }
     let passed = rows.iter().filter(|row| row.passed()).count();
     text + &format!("\n{passed} of {} quantities within tolerance\n", rows.len())
+}
+
+/// A number with seven significant digits, without trailing zeros; powers of ten where it is tiny.
+fn short(x: f64) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return format!("{x}");
+    }
+    let magnitude = x.abs().log10().floor() as i32;
+    if magnitude < -4 {
+        return format!("{x:.1e}");
+    }
+    let text = format!("{x:.*}", (6 - magnitude).max(0) as usize);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
 }
 
 /// The rows as JSON, in the form of the summary's `validation` list.

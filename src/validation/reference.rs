@@ -63,6 +63,8 @@ pub enum Kind {
     Change(Vec<(String, f64)>),
     /// The frequency of the unstable mode nearest to the reference.
     UnstableNear,
+    /// The growth rate of the unstable mode nearest to a frequency \[Hz\].
+    GrowthNear(f64),
     /// The largest relative error of the modes of a clamped annulus against Kirchhoff theory.
     Annulus {
         /// The real-mode analysis, which must be of this annulus alone.
@@ -97,7 +99,7 @@ pub fn read(folder: &Path) -> Result<Reference> {
 }
 
 fn read_check(name: &str, s: &Section, reason: &str) -> Check {
-    let kinds = ["value", "onset", "largest_growth", "change", "unstable_near", "annulus"];
+    let kinds = ["value", "onset", "largest_growth", "change", "unstable_near", "growth_near", "annulus"];
     let parameter = || s.string("parameter").required("the path of a scalar of the case");
     let kind = match s.choice("kind", &kinds).required("how it is computed") {
         "onset" => Kind::Onset {
@@ -110,6 +112,7 @@ fn read_check(name: &str, s: &Section, reason: &str) -> Check {
         },
         "change" => Kind::Change(read_set(s, "to")),
         "unstable_near" => Kind::UnstableNear,
+        "growth_near" => Kind::GrowthNear(s.quantity("near", FREQUENCY).required(FREQUENCY.name)),
         "annulus" => Kind::Annulus {
             modes: s.string("modes").required("the name of an analysis"),
             part: s.string("part").required("the name of a shell"),
