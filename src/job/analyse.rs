@@ -140,6 +140,7 @@ pub fn analyse(
             let complex = complex_result(prepared, state, &mut clock, observer)?;
             if let Some(complex) = complex {
                 record(Stage::Complex(&complex))?;
+                results.warnings.extend(complex.modes.warnings.iter().cloned());
                 results.complex = Some(complex);
             }
         }

@@ -35,7 +35,8 @@ const EIGENVALUE_ERROR: f64 = 1e-10;
 ///   no contact motion, because A⁻¹U is in the basis: so the same real symmetric factor serves every pair, whatever the
 ///   friction. They enrich the basis until η and the eigenvalue error are small, in six rounds at most.
 /// * ψᴴQ(λ)φ vanishes identically after a projection, so the error of λ is estimated with the *correction* of the left
-///   vector: |z_ψᴴ Q(λ)φ| / |ψᴴ(2λM + C + C_c)φ|.
+///   vector: |z_ψᴴ Q(λ)φ| / |ψᴴ(2λM + C + C_c)φ|. As A is symmetric, z_ψᴴ Q(λ)φ = (Q(λ)ᴴψ)ᴴ z, so that only the right
+///   corrections are solved for, and the left ones of the pairs that are not yet right.
 ///
 /// Modes with ω = 0 (overdamped, or divergence when σ > 0) are given when the band begins at zero. For them and near
 /// λ = 0 the eigenvalue error is relative to 1e-6 of the band's top rather than to |λ|.
@@ -84,8 +85,10 @@ struct Round {
     psi: Block,
     /// M φ.
     momentum: Block,
-    /// −A⁻¹ × residual, right and left.
-    corrections: [Block; 2],
+    /// z = −A⁻¹Q(λ)φ.
+    correction: Block,
+    /// Q(λ)ᴴψ.
+    left_residual: Block,
     backward_error: Vec<f64>,
     eigenvalue_error: Vec<f64>,
     condition: Vec<f64>,
@@ -120,7 +123,9 @@ fn analyse(
         }
         // The error of λ is quadratic in that of the vectors: coarse first, so that the basis stays small.
         let tolerance = 1e-6 * 0.01f64.powi(refinements as i32);
-        if basis.enrich(wanted_corrections(&round, &open, 1e-3 * band[1]), tolerance, usize::MAX) == 0 {
+        if basis.enrich(wanted_corrections(&round, &*factor, &open, 1e-3 * band[1]), tolerance, usize::MAX)
+            == 0
+        {
             break;
         }
         refinements += 1;
@@ -230,30 +235,45 @@ fn evaluate(
             z
         })
     };
-    let corrections = [correct(&residual), correct(&left_residual)];
+    let correction = correct(&residual);
     let floor = 1e-6 * band[1];
     let of = |f: &dyn Fn(usize) -> f64| (0..lambda.len()).map(f).collect::<Vec<f64>>();
     let backward_error = of(&|j| residual.norm(j) / (operator.size(lambda[j]) * phi.norm(j)));
     let steepness: Vec<f64> = of(&|j| psi.dot(j, &slope).norm());
     let eigenvalue_error =
-        of(&|j| corrections[1].dot(j, &residual).norm() / (steepness[j] * lambda[j].norm().max(floor)));
+        of(&|j| left_residual.dot(j, &correction).norm() / (steepness[j] * lambda[j].norm().max(floor)));
     let condition = of(&|j| 2.0 * lambda[j].norm() / steepness[j]);
-    Ok(Round { lambda, phi, psi, momentum, corrections, backward_error, eigenvalue_error, condition })
+    Ok(Round {
+        lambda,
+        phi,
+        psi,
+        momentum,
+        correction,
+        left_residual,
+        backward_error,
+        eigenvalue_error,
+        condition,
+    })
 }
 
 /// Re and Im of the corrections of the `open` pairs, right and left, each divided by |λ|: their squared E-norm is then
 /// about the relative error of λ that they stand for.
-fn wanted_corrections(round: &Round, open: &[usize], floor: f64) -> Mat<f64> {
+fn wanted_corrections(round: &Round, factor: &dyn SymmetricFactor, open: &[usize], floor: f64) -> Mat<f64> {
     let n = round.phi.re.nrows();
-    let mut columns: Vec<(&[f64], f64)> = Vec::new();
-    for j in open {
-        let size = 1.0 / round.lambda[*j].norm().max(floor);
-        for z in &round.corrections {
-            columns.push((z.re.col_as_slice(*j), size));
-            columns.push((z.im.col_as_slice(*j), size));
+    let size: Vec<f64> = open.iter().map(|j| 1.0 / round.lambda[*j].norm().max(floor)).collect();
+    let mut left = Mat::from_fn(n, 2 * open.len(), |i, c| {
+        let part = if c % 2 == 0 { &round.left_residual.re } else { &round.left_residual.im };
+        -part[(i, open[c / 2])] * size[c / 2]
+    });
+    factor.solve_in_place(left.as_mut());
+    Mat::from_fn(n, 4 * open.len(), |i, c| {
+        let (k, part) = (c / 4, c % 4);
+        match part {
+            0 => round.correction.re[(i, open[k])] * size[k],
+            1 => round.correction.im[(i, open[k])] * size[k],
+            _ => left[(i, 2 * k + part - 2)],
         }
-    }
-    Mat::from_fn(n, columns.len(), |i, c| columns[c].0[i] * columns[c].1)
+    })
 }
 
 fn mode(operator: &Operator<'_>, round: &Round, participation: Vec<(usize, f64)>, j: usize) -> ComplexMode {
