@@ -107,7 +107,7 @@ fn areas_are_those_of_the_polygons() {
 #[test]
 fn rim_and_hub_are_closed_and_lie_on_their_circles() {
     let mesh = rig(&RigSpec::small()).unwrap();
-    for (name, radius) in [("rim", 0.075), ("hub", 0.02)] {
+    for (name, radius) in [("rim", 0.075), ("hub", 0.02075)] {
         let region = mesh.require(name, 1).unwrap();
         let nodes = mesh.region_nodes(region);
         assert_eq!(nodes.len(), region.elements.len());
