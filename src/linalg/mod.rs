@@ -4,12 +4,14 @@
 //! * [`factor`]: A = L B Lᵀ of a sparse symmetric matrix, definite or not, with its inertia.
 //! * [`eigenpairs`]: the lowest eigenpairs of K x = θ M x with the count that proves none is missing, by
 //!   [`lanczos`].
+//! * [`quadratic`]: all eigenvalues of a small λ² M + λ C + K.
 //! * [`dense`]: small symmetric eigenproblems and the likeness of two vectors.
 
 pub mod dense;
 pub mod eigenpairs;
 pub mod factor;
 pub mod lanczos;
+pub mod quadratic;
 pub mod sparse;
 
 #[cfg(test)]
@@ -18,4 +20,5 @@ pub(crate) mod samples;
 pub use eigenpairs::{Eigenpairs, SturmCount, Wanted, lowest_eigenpairs};
 pub use factor::{Inertia, SymbolicFactor, SymmetricFactor};
 pub use faer::c64;
+pub use quadratic::{QuadraticPair, solve_qep, solve_qep_complex};
 pub use sparse::{SparseMatrix, SparseVector};
