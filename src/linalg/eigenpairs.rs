@@ -60,6 +60,9 @@ pub struct SturmCount {
 const DENSE: usize = 300;
 /// Half the distance of the two certifying shifts, relative to the bound.
 const APART: f64 = 1e-5;
+/// Where in the range the shift lies, with two places to evade to: the ends are about equally far in blocks of
+/// Lanczos, as modes of plates lie denser towards the lower one.
+const INSIDE: [f64; 3] = [0.4, 0.38, 0.42];
 /// Eigenvalues nearer to each other than this, relative to their size, are one cluster.
 const CLUSTER: f64 = 1e-7;
 
@@ -190,8 +193,7 @@ impl<'a> Pencil<'a> {
 
     fn below(&self, bound: f64, observer: &dyn Observer) -> Result<Eigenpairs> {
         let mut shifts = [bound * (1.0 - APART), bound * (1.0 + APART)];
-        // In the middle the two ends of the wanted range are equally far.
-        let middle = [0.5, 0.47, 0.53].map(|part| part * bound);
+        let middle = INSIDE.map(|part| part * bound);
         let (counted, middle) = rayon::join(|| self.count_at(shifts), || self.factorize_near(middle));
         let (mut counted, (shift, factor)) = (counted?, middle?);
         let negative = factor.inertia().negative;
@@ -200,7 +202,8 @@ impl<'a> Pencil<'a> {
             largest: counted[1].saturating_sub(negative),
             floor: 1.0 / (shifts[1] - shift),
         };
-        let mut lanczos = BlockLanczos::new(self.m, &*factor, capacity(counted[1]));
+        let mut lanczos =
+            BlockLanczos::new(self.m, &*factor, capacity(counted[1]), self.accepted(bound - shift));
         let ritz = lanczos.converge(window, observer)?.ok_or_else(|| missing(0, counted[1], shifts[1]))?;
         let (values, vectors) = lanczos.pairs(&ritz, window, shift);
         let mut found = Found { values, vectors, shift, factor };
@@ -215,9 +218,9 @@ impl<'a> Pencil<'a> {
     }
 
     fn count(&self, count: usize, observer: &dyn Observer) -> Result<Eigenpairs> {
-        let (shift, factor) = self.shift_for(count, observer)?;
+        let (shift, factor, reach) = self.shift_for(count, observer)?;
         let negative = factor.inertia().negative;
-        let mut lanczos = BlockLanczos::new(self.m, &*factor, capacity(count + 1));
+        let mut lanczos = BlockLanczos::new(self.m, &*factor, capacity(count + 1), self.accepted(reach));
         // One more than wanted shows the gap above them.
         let mut total = (count + 1).max(negative + 1);
         for _ in 0..20 {
@@ -263,27 +266,41 @@ impl<'a> Pencil<'a> {
     }
 
     /// A shift in the middle of the lowest `count` eigenvalues, from Ritz values of a short run at a small negative one.
-    fn shift_for(&self, count: usize, observer: &dyn Observer) -> Result<(f64, Factor)> {
+    /// Gives also the distance of the farthest.
+    fn shift_for(&self, count: usize, observer: &dyn Observer) -> Result<(f64, Factor, f64)> {
         let scale = self.local_scale();
         let guess = [1e-9, 1e-7, 1e-5].map(|part| -part * scale);
         let (mut shift, mut factor) = self.factorize_near(guess)?;
+        let mut reach = scale;
         for _ in 0..6 {
-            let estimate = {
-                let mut lanczos = BlockLanczos::new(self.m, &*factor, count + 40);
+            let mut values: Vec<f64> = {
+                let mut lanczos = BlockLanczos::new(self.m, &*factor, count + 40, 1.0);
                 let ritz = lanczos.explore(count + 32, observer)?;
-                let mut values: Vec<f64> = ritz.values.iter().map(|v| shift + 1.0 / v).collect();
-                values.sort_by(f64::total_cmp);
-                values.get(count - 1).or(values.last()).copied().unwrap_or(scale)
+                ritz.values.iter().map(|v| shift + 1.0 / v).collect()
             };
+            values.sort_by(f64::total_cmp);
+            let lowest = values.first().copied().unwrap_or(0.0);
+            let estimate = values.get(count - 1).or(values.last()).copied().unwrap_or(scale);
+            reach = (estimate - shift).abs().max((lowest - shift).abs());
             if estimate <= 0.0 {
-                return Ok((shift, factor));
+                // All are negative or rigid-body motions: go below the negative ones, where the shift meets none.
+                if lowest < 1e3 * shift {
+                    (shift, factor) = self.factorize_near([1.5, 1.6, 1.7].map(|part| part * lowest))?;
+                }
+                break;
             }
-            (shift, factor) = self.factorize_near([0.5, 0.47, 0.53].map(|part| part * estimate))?;
+            (shift, factor) = self.factorize_near(INSIDE.map(|part| part * estimate))?;
             if factor.inertia().negative <= count + 8 {
                 break;
             }
         }
-        Ok((shift, factor))
+        Ok((shift, factor, reach))
+    }
+
+    /// For pairs with |θ − σ| up to `reach`, the residual ‖A x − ν x‖_M / |ν| at which the backward error ‖K x − θ M x‖ / ‖K‖ ‖x‖ is near 1e-14: residuals
+    /// are made of modes not far above the wanted ones, for which ‖K‖ is the larger the finer the mesh.
+    fn accepted(&self, reach: f64) -> f64 {
+        (1e-14 * norm_1(self.k) / (reach * norm_1(self.m))).clamp(1e-12, 1e-9)
     }
 
     /// The median of K_ii / M_ii: how fast single degrees of freedom would vibrate, far above the lowest eigenvalues.

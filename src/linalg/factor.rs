@@ -193,10 +193,8 @@ struct BlockFactor {
     inertia: Inertia,
 }
 
-/// Columns solved together by one task; fixed, so that the split does not depend on the number of threads.
-fn columns_a_task(columns: usize) -> usize {
-    columns.div_ceil(2).clamp(1, 8)
-}
+/// Columns solved together by one task: the time is that of reading L, whether for one column or for eight.
+const COLUMNS_A_TASK: usize = 8;
 
 impl BlockFactor {
     fn pivots(&self) -> PermRef<'_, usize> {
@@ -265,9 +263,8 @@ impl SymmetricFactor for BlockFactor {
 
     fn solve_in_place(&self, rhs: MatMut<'_, f64>) {
         assert!(rhs.nrows() == self.n(), "right-hand sides of the wrong length");
-        let width = columns_a_task(rhs.ncols());
         let factor = IntranodeLbltRef::new(&self.symbolic, &self.values, &self.subdiagonal, self.pivots());
-        rhs.par_col_chunks_mut(width).for_each(|mut columns| {
+        rhs.par_col_chunks_mut(COLUMNS_A_TASK).for_each(|mut columns| {
             let scale = |columns: &mut MatMut<'_, f64>| {
                 for j in 0..columns.ncols() {
                     for (i, s) in self.scaling.iter().enumerate() {
@@ -392,5 +389,38 @@ mod tests {
         let symbolic = SymbolicFactor::new(k.symbolic()).unwrap();
         let (low, high) = (symbolic.factorize(&sum(-1e4)).unwrap(), symbolic.factorize(&sum(1e9)).unwrap());
         assert!(low.inertia().negative == 0 && high.inertia().negative > 3);
+    }
+
+    #[test]
+    #[ignore = "a measurement: cargo test --release --lib factor::tests::timing -- --ignored --nocapture"]
+    fn timing() {
+        for m in [81, 257] {
+            let (k, mass) = samples::plate(m, false);
+            let a = add_scaled(&[(1.0, &k), (-(std::f64::consts::TAU * 3000f64).powi(2), &mass)]);
+            let time = std::time::Instant::now;
+            let start = time();
+            let symbolic = SymbolicFactor::new(a.symbolic()).unwrap();
+            println!("{} dof: analysis {:.3} s", a.nrows(), start.elapsed().as_secs_f64());
+            let start = time();
+            let factor = symbolic.factorize(&a).unwrap();
+            println!(
+                "  factorisation {:.3} s, {} MB",
+                start.elapsed().as_secs_f64(),
+                factor.memory_bytes() >> 20
+            );
+            for columns in [1, 4, 8, 16] {
+                let mut x = Mat::from_fn(a.nrows(), columns, |i, j| ((i * 3 + j) as f64).sin());
+                let b = x.clone();
+                let start = time();
+                factor.solve_in_place(x.as_mut());
+                let solved = start.elapsed().as_secs_f64();
+                let start = time();
+                multiply(&a, b.as_ref(), x.as_mut());
+                println!(
+                    "  {columns} columns: solve {solved:.4} s, product {:.4} s",
+                    start.elapsed().as_secs_f64()
+                );
+            }
+        }
     }
 }

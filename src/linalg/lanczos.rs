@@ -21,9 +21,6 @@ use rayon::prelude::*;
 /// Columns of a block: as many right-hand sides as one solve takes at little more than the price of one, and more
 /// than the multiplicity of any eigenvalue but the rigid-body ones of two free parts.
 const BLOCK: usize = 8;
-/// A Ritz pair is accepted at ‖residual‖_M ≤ this · |ν|, or when it has sunk into the rounding of the solves. The
-/// error of ν is quadratic in it, and the vectors get one more application of A.
-const ACCEPTED: f64 = 1e-12;
 /// Rounding of the solves is no excuse for more than this.
 const UNACCEPTABLE: f64 = 1e-5;
 /// The most blocks for one search.
@@ -38,10 +35,15 @@ pub struct BlockLanczos<'a> {
     projected: Mat<f64>,
     len: usize,
     width: usize,
+    /// M X.
+    mass_next: Mat<f64>,
     /// R, `width` × (columns of the block before).
     coupling: Mat<f64>,
     /// The first column of V that X is coupled to by A.
     coupled_from: usize,
+    /// A Ritz pair is accepted at ‖residual‖_M ≤ this · |ν|, or when it has sunk into the rounding of the solves.
+    /// The error of ν is quadratic in it, and the vectors get one more application of A.
+    accepted: f64,
     /// The largest coefficient that is zero but for the rounding of the solves: fine meshes have
     /// ‖K‖ ‖(K − σM)⁻¹‖ of 1e8 and more.
     noise: f64,
@@ -78,8 +80,14 @@ impl Window {
 }
 
 impl<'a> BlockLanczos<'a> {
-    /// An empty basis with room for `capacity` columns, started with vectors that are the same in every run.
-    pub fn new(mass: &'a SparseMatrix, factor: &'a dyn SymmetricFactor, capacity: usize) -> Self {
+    /// An empty basis with room for `capacity` columns, started with vectors that are the same in every run. Ritz pairs
+    /// are accepted at ‖A x − ν x‖_M ≤ `accepted` |ν|.
+    pub fn new(
+        mass: &'a SparseMatrix,
+        factor: &'a dyn SymmetricFactor,
+        capacity: usize,
+        accepted: f64,
+    ) -> Self {
         let mut lanczos = BlockLanczos {
             mass,
             factor,
@@ -87,8 +95,10 @@ impl<'a> BlockLanczos<'a> {
             projected: Mat::zeros(0, 0),
             len: 0,
             width: 0,
+            mass_next: Mat::zeros(mass.ncols(), 0),
             coupling: Mat::zeros(0, 0),
             coupled_from: 0,
+            accepted,
             noise: 0.0,
             random: Random(0x2545_F491_4F6C_DD1D),
         };
@@ -112,12 +122,13 @@ impl<'a> BlockLanczos<'a> {
     /// # Errors
     /// [`Error::Analysis`] when that does not happen within a great number of blocks.
     pub fn converge(&mut self, window: Window, observer: &dyn Observer) -> Result<Option<Ritz>> {
-        self.reserve(window.negative + window.largest + 4 * BLOCK);
         for _ in 0..MOST_STEPS {
             let complete = self.width == 0 && !self.inject();
             if !complete {
-                if self.len + self.width + BLOCK > self.basis.ncols() {
-                    self.restart(window)?;
+                let room = 3 * self.width.max(BLOCK);
+                self.reserve(window.negative + window.largest + 2 * room);
+                if self.len + room > self.basis.ncols() {
+                    self.restart(window, room)?;
                 }
                 self.step()?;
                 observer.advance(1);
@@ -129,7 +140,7 @@ impl<'a> BlockLanczos<'a> {
             let found_negative = ritz.values.iter().filter(|v| **v < 0.0).count();
             let accepted = window.indices(&ritz).iter().all(|k| {
                 let size = ritz.values[*k].abs();
-                ritz.residuals[*k] <= (ACCEPTED * size).max(self.noise.min(UNACCEPTABLE * size))
+                ritz.residuals[*k] <= (self.accepted * size).max(self.noise.min(UNACCEPTABLE * size))
             });
             let missing = found_negative < window.negative
                 || self.len < window.largest
@@ -218,13 +229,18 @@ impl<'a> BlockLanczos<'a> {
     /// One block: W = A X, orthogonalised; its coefficients go into H, what is left is the next X.
     fn step(&mut self) -> Result<()> {
         let (begin, end) = (self.len, self.len + self.width);
-        let mut w = self.apply(self.basis.subcols(begin, self.width));
+        let mut w = self.mass_next.clone();
+        self.factor.solve_in_place(w.as_mut());
         let mut mw = self.mass_times(w.as_ref());
-        let before = column_norms(w.as_ref(), mw.as_ref());
+        let scale = column_norms(w.as_ref(), mw.as_ref()).into_iter().fold(0.0, f64::max);
         let from = self.coupled_from;
         let near = self.orthogonalise(&mut w, &mw, from, end);
         mw = self.mass_times(w.as_ref());
         let all = self.orthogonalise(&mut w, &mw, 0, end);
+        let smallest = column_norms(w.as_ref(), mw.as_ref()).into_iter().fold(scale, f64::min);
+        if all.norm_max() > 1e-14 * smallest {
+            mw = self.mass_times(w.as_ref());
+        }
         for j in 0..self.width {
             for i in 0..end {
                 let first = if i >= from { near[(i - from, j)] } else { 0.0 };
@@ -246,10 +262,10 @@ impl<'a> BlockLanczos<'a> {
         }
         self.coupled_from = begin;
         self.len = end;
-        let scale = before.into_iter().fold(0.0, f64::max);
-        let (x, r) = self.orthonormalise(w, scale)?;
+        let (x, mx, r) = self.orthonormalise(w, mw, scale)?;
         self.width = x.ncols();
         self.basis.subcols_mut(end, x.ncols()).copy_from(&x);
+        self.mass_next = mx;
         self.coupling = r;
         Ok(())
     }
@@ -258,19 +274,14 @@ impl<'a> BlockLanczos<'a> {
     ///
     /// By the eigenvalues of the Gram matrix. Those too small to be trusted are only scaled up in this round and
     /// resolved in the next.
-    fn orthonormalise(&self, mut w: Mat<f64>, scale: f64) -> Result<(Mat<f64>, Mat<f64>)> {
+    /// Takes W and M W; returns X, M X and R.
+    fn orthonormalise(&self, mut w: Mat<f64>, mut mw: Mat<f64>, scale: f64) -> Result<Factored> {
         let mut r = Mat::<f64>::identity(w.ncols(), w.ncols());
-        let mut amplified = false;
         for _ in 0..5 {
-            let mut mw = self.mass_times(w.as_ref());
-            if amplified {
-                self.orthogonalise(&mut w, &mw, 0, self.len);
-                mw = self.mass_times(w.as_ref());
-            }
             let (values, u) = symmetric_eigen(gram(w.as_ref(), mw.as_ref()).as_ref())?;
             let largest = values.last().copied().unwrap_or(0.0);
             if largest <= 0.0 {
-                return Ok((Mat::zeros(w.nrows(), 0), Mat::zeros(0, r.ncols())));
+                return Ok((Mat::zeros(w.nrows(), 0), Mat::zeros(w.nrows(), 0), Mat::zeros(0, r.ncols())));
             }
             let size: Vec<f64> = values.iter().map(|v| v.max(1e-13 * largest).sqrt()).collect();
             let up = Mat::from_fn(size.len(), size.len(), |k, i| u[(i, k)] * size[k]);
@@ -279,27 +290,32 @@ impl<'a> BlockLanczos<'a> {
                 (0..size.len()).filter(|k| next.row(*k).norm_l2() > 1e-15 * scale).collect();
             let down = Mat::from_fn(size.len(), kept.len(), |i, k| u[(i, kept[k])] / size[kept[k]]);
             r = Mat::from_fn(kept.len(), r.ncols(), |k, j| next[(kept[k], j)]);
-            let mut x = Mat::zeros(w.nrows(), kept.len());
-            combine(x.as_mut(), Accum::Replace, w.as_ref(), down.as_ref(), 1.0);
-            w = x;
-            let Some(first) = kept.first() else { break };
+            let through = |a: Mat<f64>| {
+                let mut b = Mat::zeros(a.nrows(), kept.len());
+                combine(b.as_mut(), Accum::Replace, a.as_ref(), down.as_ref(), 1.0);
+                b
+            };
+            (w, mw) = (through(w), through(mw));
             // The error left by this round is rounding over the spread of the eigenvalues.
-            if values[*first] > 1e-2 * largest {
+            if kept.first().is_none_or(|first| values[*first] > 1e-2 * largest) {
                 break;
             }
-            amplified = (0..r.nrows()).any(|k| r.row(k).norm_l2() < 1e-4 * scale);
+            if (0..r.nrows()).any(|k| r.row(k).norm_l2() < 1e-4 * scale) {
+                mw = self.mass_times(w.as_ref());
+                self.orthogonalise(&mut w, &mw, 0, self.len);
+            }
+            mw = self.mass_times(w.as_ref());
         }
-        Ok((w, r))
+        Ok((w, mw, r))
     }
 
     /// Adds new random directions to X, as A maps them; false when M reaches nothing outside the basis.
     fn inject(&mut self) -> bool {
         let n = self.mass.ncols();
-        if self.len + self.width + BLOCK > self.basis.ncols() {
-            self.reserve(self.basis.ncols());
-        }
+        self.reserve(self.len + self.width + BLOCK);
         let start = Mat::from_fn(n, BLOCK, |_, _| self.random.next());
-        let mut w = self.apply(start.as_ref());
+        let mut w = self.mass_times(start.as_ref());
+        self.factor.solve_in_place(w.as_mut());
         let mut mw = self.mass_times(w.as_ref());
         let scale = column_norms(w.as_ref(), mw.as_ref()).into_iter().fold(0.0, f64::max);
         let (len, held) = (self.len, self.len + self.width);
@@ -309,26 +325,28 @@ impl<'a> BlockLanczos<'a> {
         }
         // Against X as well as V: for a moment X counts as part of V.
         self.len = held;
-        let result = self.orthonormalise(w, 1e5 * scale);
+        let result = self.orthonormalise(w, mw, 1e5 * scale);
         self.len = len;
-        let Ok((x, _)) = result else { return false };
+        let Ok((x, mx, _)) = result else { return false };
         if x.ncols() == 0 {
             return false;
         }
         self.basis.subcols_mut(held, x.ncols()).copy_from(&x);
+        let width = self.width;
         self.width += x.ncols();
+        self.mass_next.resize_with(n, self.width, |i, j| mx[(i, j - width)]);
         let tail = self.coupling.ncols();
         self.coupling.resize_with(self.width, tail, |_, _| 0.0);
         true
     }
 
-    /// Keeps the Ritz vectors of the window and the best of the rest as the new V.
-    fn restart(&mut self, window: Window) -> Result<()> {
+    /// Keeps the Ritz vectors of the window and the best of the rest as the new V, with room for more columns.
+    fn restart(&mut self, window: Window, room: usize) -> Result<()> {
         let ritz = self.ritz()?;
         let mut order: Vec<usize> = (0..self.len).collect();
         order.sort_by(|a, b| ritz.values[*b].abs().total_cmp(&ritz.values[*a].abs()));
         let wanted = (window.negative + window.largest).min(self.len);
-        let keep = (wanted + (self.len - wanted) / 2).min(self.len.saturating_sub(BLOCK)).max(1);
+        let keep = (wanted + (self.len - wanted) / 2).min(self.basis.ncols() - room);
         let mut kept = order[..keep].to_vec();
         kept.sort_unstable();
         let s = Mat::from_fn(self.len, keep, |i, k| ritz.coefficients[(i, kept[k])]);
@@ -344,12 +362,6 @@ impl<'a> BlockLanczos<'a> {
         self.len = keep;
         self.coupled_from = 0;
         Ok(())
-    }
-
-    fn apply(&self, x: MatRef<'_, f64>) -> Mat<f64> {
-        let mut w = self.mass_times(x);
-        self.factor.solve_in_place(w.as_mut());
-        w
     }
 
     fn mass_times(&self, x: MatRef<'_, f64>) -> Mat<f64> {
@@ -381,6 +393,9 @@ fn column_norms(x: MatRef<'_, f64>, mx: MatRef<'_, f64>) -> Vec<f64> {
     (0..x.ncols()).map(|j| g[(j, j)].max(0.0).sqrt()).collect()
 }
 
+/// X, M X and R of W = X R.
+type Factored = (Mat<f64>, Mat<f64>, Mat<f64>);
+
 /// Numbers in [-1, 1), the same in every run: Marsaglia's xorshift, J. Stat. Softw. 8 (2003) 14.
 struct Random(u64);
 
@@ -406,11 +421,11 @@ mod tests {
         let shift = (std::f64::consts::TAU * 3000.0).powi(2);
         let a = add_scaled(&[(1.0, &k), (-shift, &m)]);
         let factor = SymbolicFactor::new(a.symbolic()).unwrap().factorize(&a).unwrap();
-        let mut lanczos = BlockLanczos::new(&m, &*factor, 120);
+        let mut lanczos = BlockLanczos::new(&m, &*factor, 120, 1e-12);
         for step in 0..30 {
             if step == 14 {
                 let negative = factor.inertia().negative;
-                lanczos.restart(Window { negative, largest: 10, floor: 0.0 }).unwrap();
+                lanczos.restart(Window { negative, largest: 10, floor: 0.0 }, 3 * BLOCK).unwrap();
             }
             lanczos.step().unwrap();
             if lanczos.len + 3 * BLOCK > lanczos.basis.ncols() {
@@ -422,7 +437,8 @@ mod tests {
         let mut residual = gram(v, lanczos.mass_times(v).as_ref());
         residual -= Mat::<f64>::identity(len + width, len + width);
         assert!(residual.norm_max() < 1e-13, "VᵀMV = I, {:e}", residual.norm_max());
-        let mut r = lanczos.apply(v.subcols(0, len));
+        let mut r = lanczos.mass_times(v.subcols(0, len));
+        factor.solve_in_place(r.as_mut());
         let h = lanczos.projected.as_ref().submatrix(0, 0, len, len);
         combine(r.as_mut(), Accum::Add, v.subcols(0, len), h, -1.0);
         let last = r.as_mut().subcols_mut(len - tail, tail);

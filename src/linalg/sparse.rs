@@ -79,7 +79,7 @@ impl Scalar for super::c64 {}
 /// Rows that one task works on; fixed, so that the split does not depend on the number of threads.
 const ROWS_A_TASK: usize = 4096;
 /// Columns that go through the matrix together.
-const PANEL: usize = 4;
+const PANEL: usize = 8;
 
 /// y = A x for a symmetric `a` stored whole: n × n times n × k, real or complex.
 ///
@@ -94,37 +94,25 @@ pub fn multiply<T: Scalar>(a: &SparseMatrix, x: MatRef<'_, T>, mut y: MatMut<'_,
         a.nrows() == n && x.nrows() == n && y.nrows() == n && y.ncols() == k,
         "shapes of A, x, y disagree"
     );
-    let mut packed = Vec::new();
     for start in (0..k).step_by(PANEL) {
         let width = PANEL.min(k - start);
         let x = x.subcols(start, width);
         let y = y.as_mut().subcols_mut(start, width);
         match width {
-            1 => panel::<T, 1>(a, x, y, &mut packed),
-            2 => panel::<T, 2>(a, x, y, &mut packed),
-            3 => panel::<T, 3>(a, x, y, &mut packed),
-            _ => panel::<T, PANEL>(a, x, y, &mut packed),
+            1 => panel::<T, 1>(a, x, y),
+            2 => panel::<T, 2>(a, x, y),
+            3 | 4 => panel::<T, 4>(a, x, y),
+            _ => panel::<T, PANEL>(a, x, y),
         }
     }
 }
 
 /// y = A x for W columns. They are first laid side by side, row by row, so that an entry of A meets all its
 /// W factors in one place of memory.
-fn panel<T: Scalar, const W: usize>(
-    a: &SparseMatrix,
-    x: MatRef<'_, T>,
-    y: MatMut<'_, T>,
-    packed: &mut Vec<[T; PANEL]>,
-) {
-    packed.clear();
-    packed.resize(a.ncols(), [T::default(); PANEL]);
-    packed.par_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, rows)| {
-        for (i, row) in rows.iter_mut().enumerate() {
-            for c in 0..W {
-                row[c] = x[(task * ROWS_A_TASK + i, c)];
-            }
-        }
-    });
+fn panel<T: Scalar, const W: usize>(a: &SparseMatrix, x: MatRef<'_, T>, y: MatMut<'_, T>) {
+    let width = x.ncols();
+    let row_of = |i: usize| std::array::from_fn(|c| if c < width { x[(i, c)] } else { T::default() });
+    let packed: Vec<[T; W]> = (0..a.ncols()).into_par_iter().with_min_len(ROWS_A_TASK).map(row_of).collect();
     let (starts, rows_of, values) = (a.col_ptr(), a.row_idx(), a.val());
     y.par_row_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, mut y)| {
         for i in 0..y.nrows() {
@@ -137,8 +125,8 @@ fn panel<T: Scalar, const W: usize>(
                     sum[c] += x[c] * *v;
                 }
             }
-            for (c, sum) in sum.into_iter().enumerate() {
-                y[(i, c)] = sum;
+            for c in 0..width {
+                y[(i, c)] = sum[c];
             }
         }
     });

@@ -49,11 +49,16 @@ impl Pencil<'_> {
         let n = self.k.ncols();
         let near = |shift: f64| self.factorize_near([1.0, 1.1, 1.2].map(|part| part * shift));
         let (mut shift, mut factor) = near(shift)?;
+        let first = shift;
         for _ in 0..40 {
             if factor.inertia().negative == 0 {
                 break;
             }
             (shift, factor) = near(4.0 * shift)?;
+        }
+        if shift < first {
+            // The lowest θ may sit right above: keep a distance of the size of θ.
+            (shift, factor) = near(2.0 * shift)?;
         }
         let definite = add_scaled(&[(1.0, self.k), (-shift, self.m)]);
         let s: Vec<f64> = diagonal(&definite).iter().map(|d| 1.0 / d.abs().sqrt()).collect();
