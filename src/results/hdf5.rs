@@ -316,7 +316,7 @@ impl Datasets {
             let row: usize = data.shape()[1..].iter().product();
             let mut chunk = data.shape().to_vec();
             chunk[0] = (131_072 / row.max(1)).clamp(1, chunk[0]);
-            builder.chunk(chunk).shuffle().deflate(4).create(name)?
+            builder.chunk(chunk).shuffle().deflate(1).create(name)?
         } else {
             builder.create(name)?
         };
