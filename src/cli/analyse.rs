@@ -7,7 +7,8 @@ use crate::error::Result;
 use crate::job::{Selection, run_case};
 use crate::report;
 use clap::Args;
-use std::path::PathBuf;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// What the three analysis commands take.
@@ -15,15 +16,14 @@ use std::process::ExitCode;
 pub struct Options {
     /// The case file (TOML)
     case: PathBuf,
-    /// The folder for the results; `results/NAME` by default, NAME being the case file's
+    /// The folder for the results; `results/NAME` by default, NAME being the case file's, or its folder's for case.toml
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
 
 pub fn run(options: &Options, common: &Common, selection: Selection) -> Result<ExitCode> {
     let case = read_case(&options.case)?;
-    let name = options.case.file_stem().unwrap_or_default();
-    let out = options.out.clone().unwrap_or_else(|| PathBuf::from("results").join(name));
+    let out = options.out.clone().unwrap_or_else(|| PathBuf::from("results").join(case_name(&options.case)));
     let results = run_case(&case, selection, &out, &Bars::new(common.quiet))?;
     if common.json {
         println!("{}", crate::results::summary_json(&results));
@@ -32,4 +32,11 @@ pub fn run(options: &Options, common: &Common, selection: Selection) -> Result<E
         println!("\nResults are in {}: open report.html, or *.vtu in ParaView.", out.display());
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// What the results of a case file are called: `disc.toml` → `disc`, `rig/case.toml` → `rig`.
+fn case_name(case: &Path) -> OsString {
+    let stem = case.file_stem().unwrap_or_default();
+    let folder = case.parent().and_then(Path::file_name);
+    folder.filter(|_| stem == "case").unwrap_or(stem).to_os_string()
 }
