@@ -66,7 +66,7 @@ pub fn table(rows: &[Row]) -> String {
             );
         }
         text += &format!(
-            "  {:<width$} {:>12} {:>12} {:>10.1e} {:>9.0e}  {}\n",
+            "  {:<width$} {:>12} {:>12} {:>10.1e} {:>9.1e}  {}\n",
             row.quantity,
             short(row.computed),
             short(row.reference),
