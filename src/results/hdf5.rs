@@ -302,7 +302,8 @@ impl Datasets {
         self.write(name, ArrayView::from(data), units, description)
     }
 
-    /// Arrays of more than a page are stored in chunks of about a megabyte, shuffled and deflated.
+    /// Stored whole and uncompressed: mode shapes in full precision hardly shrink, and deflating them took longer than
+    /// computing them.
     fn write<T: H5Type, D: Dimension>(
         &self,
         name: &str,
@@ -311,15 +312,7 @@ impl Datasets {
         description: &str,
     ) -> hdf5::Result<()> {
         let data: ArrayViewD<'_, T> = data.into_dyn();
-        let builder = self.0.new_dataset::<T>().shape(data.shape().to_vec());
-        let dataset = if data.len() > 4096 && hdf5::filters::deflate_available() {
-            let row: usize = data.shape()[1..].iter().product();
-            let mut chunk = data.shape().to_vec();
-            chunk[0] = (131_072 / row.max(1)).clamp(1, chunk[0]);
-            builder.chunk(chunk).shuffle().deflate(1).create(name)?
-        } else {
-            builder.create(name)?
-        };
+        let dataset = self.0.new_dataset::<T>().shape(data.shape().to_vec()).create(name)?;
         dataset.write(data)?;
         describe(&dataset, units, description)
     }
