@@ -76,6 +76,7 @@ pub(crate) fn two_dof(k_t: f64, k_n: f64, mu: f64) -> System {
         )],
         load: vec![0.0, -1.0],
         prestress: None,
+        coupling: None,
     }
 }
 
@@ -129,5 +130,6 @@ pub(crate) fn random_system(n: usize, points: usize, load: f64, seed: u64) -> Sy
         pairs: vec![pair(points, law, Closing::Load(load), 1.2)],
         load: (0..n).map(|_| random.between(-1.0, 1.0)).collect(),
         prestress: None,
+        coupling: None,
     }
 }

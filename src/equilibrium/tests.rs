@@ -52,6 +52,7 @@ fn cubic_penalty_on_rigid_ground_has_its_closed_form() {
         pairs: vec![pair(vec![p], SlidingLaw::new(normal, Constant(0.3), 0.0), Closing::Load(9.0), 1.0)],
         load: vec![0.0],
         prestress: None,
+        coupling: None,
     };
     let steady = solve(&system).unwrap();
     // 500 · 2e-3 + 1e9 · 8e-9 = 9; u = −9/40; approach = δ + gap − u.
@@ -74,6 +75,7 @@ fn free_body(held_in_x: bool) -> System {
         )],
         load: vec![0.0, -2.0, 0.0],
         prestress: None,
+        coupling: None,
     }
 }
 
@@ -162,6 +164,7 @@ fn prestress_is_carried_to_its_fixed_point() {
         pairs: vec![pair(vec![p], SlidingLaw::new(normal, Constant(0.3), 0.0), Closing::Approach(0.0), 1.0)],
         load: vec![12.0],
         prestress: Some(Arc::new(Stiffening(80.0))),
+        coupling: None,
     };
     let steady = solve(&system).unwrap();
     let exact = (-100.0 + (100.0f64 * 100.0 + 4.0 * 80.0 * 12.0).sqrt()) / 160.0;

@@ -57,6 +57,7 @@ impl<'a> Prepared<'a> {
             pairs,
             load: external_load(case, &regions, &assembled)?,
             prestress: case.prestress.then(|| Arc::new(assembled.prestress(model.clone())) as Arc<_>),
+            coupling: None,
         };
         Ok(Prepared { case, regions, model, assembled, system, warnings })
     }

@@ -4,7 +4,7 @@ use super::basis::Basis;
 use super::block::Block;
 use super::budget::growth_budget;
 use super::operator::{Operator, Side};
-use super::projected::{SmallPair, project_contact, solve};
+use super::projected::{SmallPair, project_interface, solve};
 use super::{ComplexMode, ComplexModes};
 use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Fault, Result};
@@ -29,10 +29,10 @@ const EIGENVALUE_ERROR: f64 = 1e-10;
 
 /// All complex modes with a frequency in `band_hz` = \[lowest, highest\], of `system` sliding steadily.
 ///
-/// * Basis: the real modes (of K + K_σ and M, M-orthonormal, best up to twice the band) and A⁻¹U, A = K + K_σ − s M at
+/// * Basis: the real modes (of K + K_σ and M, M-orthonormal, best up to twice the band) and A⁻¹W, A = K + K_σ − s M at
 ///   a shift s inside the band, for every direction in which the contact has a force.
 /// * Every pair is measured on the full order. Its corrections z = −A⁻¹Q(λ)φ and, for the left vector, −A⁻¹Q(λ)ᴴψ show
-///   no contact motion, because A⁻¹U is in the basis: so the same real symmetric factor serves every pair, whatever the
+///   no contact motion, because A⁻¹W is in the basis: so the same real symmetric factor serves every pair, whatever the
 ///   friction. They enrich the basis until η and the eigenvalue error are small, in six rounds at most.
 /// * ψᴴQ(λ)φ vanishes identically after a projection, so the error of λ is estimated with the *correction* of the left
 ///   vector: |z_ψᴴ Q(λ)φ| / |ψᴴ(2λM + C + C_c)φ|. As A is symmetric, z_ψᴴ Q(λ)φ = (Q(λ)ᴴψ)ᴴ z, so that only the right
@@ -105,7 +105,7 @@ fn analyse(
     let band = band_hz.map(|f| TAU * f);
     let factor = shifted_factor(&operator, real, band)?;
     let mut basis = Basis::new(&operator, real.shapes.as_ref(), band[1] * band[1]);
-    basis.enrich(contact_responses(&operator, &*factor, band[1]), 1e-9, STATIC_RESPONSES);
+    basis.enrich(interface_responses(&operator, &*factor, band[1]), 1e-9, STATIC_RESPONSES);
     let mut warnings = Vec::new();
     let mut counts = Vec::new();
     let mut round = evaluate(&operator, &basis, &*factor, band)?;
@@ -179,22 +179,26 @@ fn shifted_factor(
     at(shift).or_else(|_| at(-middle))
 }
 
-/// A⁻¹U for the directions in which a contact moves or is moved, each weighed by √(contact stiffness) so that its
-/// E-norm tells how much the contact makes of it.
-fn contact_responses(operator: &Operator<'_>, factor: &dyn SymmetricFactor, omega: f64) -> Mat<f64> {
-    let mut columns = Vec::new();
-    for (block, u) in &operator.contact {
-        for (d, direction) in u.iter().enumerate() {
-            let size = |a: usize, b: usize| block.stiffness[a][b].abs() + omega * block.damping[a][b].abs();
-            let largest = (0..3).map(|other| size(d, other).max(size(other, d))).fold(0.0, f64::max);
-            if largest > 0.0 && !direction.indices().is_empty() {
-                columns.push((largest.sqrt() / omega, *direction));
-            }
+/// A⁻¹W for the directions in which the interface moves or is moved, each weighed by √(its stiffness) so that its
+/// E-norm tells how much the interface makes of it.
+fn interface_responses(operator: &Operator<'_>, factor: &dyn SymmetricFactor, omega: f64) -> Mat<f64> {
+    let interface = &operator.interface;
+    let mut largest = vec![0.0f64; interface.directions.len()];
+    for term in &interface.terms {
+        let size = term.stiffness.abs() + omega * term.damping.abs();
+        for end in [term.row, term.column] {
+            largest[end] = largest[end].max(size);
         }
     }
+    let columns: Vec<_> = interface
+        .directions
+        .iter()
+        .zip(&largest)
+        .filter(|(d, size)| **size > 0.0 && !d.indices().is_empty())
+        .collect();
     let mut responses = Mat::<f64>::zeros(operator.n(), columns.len());
-    for (j, (weight, direction)) in columns.iter().enumerate() {
-        direction.add_to(*weight, responses.col_as_slice_mut(j));
+    for (j, (direction, size)) in columns.iter().enumerate() {
+        direction.add_to(size.sqrt() / omega, responses.col_as_slice_mut(j));
     }
     factor.solve_in_place(responses.as_mut());
     responses
@@ -206,7 +210,7 @@ fn evaluate(
     factor: &dyn SymmetricFactor,
     band: [f64; 2],
 ) -> Result<Round> {
-    let (contact_damping, contact_stiffness) = project_contact(operator, basis);
+    let (unsymmetric_damping, unsymmetric_stiffness) = project_interface(operator, basis);
     let wanted = |z: c64| {
         let oscillates = z.im > 1e-9 * z.norm();
         let real = z.im.abs() <= 1e-9 * z.norm();
@@ -214,8 +218,8 @@ fn evaluate(
     };
     let pairs = solve(
         &basis.mass,
-        &(&basis.damping + contact_damping),
-        &(&basis.stiffness + contact_stiffness),
+        &(&basis.damping + unsymmetric_damping),
+        &(&basis.stiffness + unsymmetric_stiffness),
         basis.hysteretic.as_ref(),
         wanted,
     )?;

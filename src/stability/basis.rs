@@ -6,7 +6,7 @@ use crate::linalg::sparse::times;
 use crate::linalg::tall::{expand, gram};
 use faer::{Mat, MatRef};
 
-/// An M-orthonormal basis B and the projections BᵀMB, BᵀCB, BᵀKB, BᵀHB, and BᵀU of the contact.
+/// An M-orthonormal basis B and the projections BᵀMB, BᵀCB, BᵀKB, BᵀHB, and BᵀW of the interface.
 pub(super) struct Basis<'a> {
     operator: &'a Operator<'a>,
     /// E = K + τ M measures how much a direction can matter in the band.
@@ -21,8 +21,8 @@ pub(super) struct Basis<'a> {
     pub(super) damping: Mat<f64>,
     pub(super) stiffness: Mat<f64>,
     pub(super) hysteretic: Option<Mat<f64>>,
-    /// One row a basis vector; three columns (g, t₁, t₂) a contact block.
-    pub(super) contact: Mat<f64>,
+    /// BᵀW: one row a basis vector, one column a direction of the interface.
+    pub(super) interface: Mat<f64>,
 }
 
 /// Complex vectors with what M, K, C and H make of them.
@@ -64,7 +64,7 @@ impl<'a> Basis<'a> {
             damping: Mat::zeros(0, 0),
             stiffness: Mat::zeros(0, 0),
             hysteretic: operator.damping.hysteretic.as_ref().map(|_| Mat::zeros(0, 0)),
-            contact: Mat::zeros(0, 3 * operator.contact.len()),
+            interface: Mat::zeros(0, operator.interface.directions.len()),
         };
         basis.append(modes.to_owned());
         basis
@@ -180,9 +180,9 @@ impl<'a> Basis<'a> {
         };
         self.hysteretic =
             self.hysteretic.as_ref().zip(lossy.as_ref()).map(|(small, times)| grow(small, times));
-        let directions: Vec<_> = self.operator.contact.iter().flat_map(|(_, u)| *u).collect();
-        self.contact = Mat::from_fn(self.vectors.ncols(), directions.len(), |i, d| {
-            if i < old { self.contact[(i, d)] } else { directions[d].dot(new.col_as_slice(i - old)) }
+        let directions = &self.operator.interface.directions;
+        self.interface = Mat::from_fn(self.vectors.ncols(), directions.len(), |i, d| {
+            if i < old { self.interface[(i, d)] } else { directions[d].dot(new.col_as_slice(i - old)) }
         });
     }
 }

@@ -2,6 +2,7 @@
 
 use super::GrowthBudget;
 use super::block::Block;
+use super::interface::Origin;
 use super::operator::Operator;
 use crate::linalg::c64;
 use crate::linalg::sparse::times;
@@ -38,17 +39,15 @@ pub(super) fn growth_budget(operator: &Operator<'_>, lambda: c64, phi: &Block, j
         let lossy = single.dot(0, &single.map(|v| times(h, v.as_ref())));
         budget.structural_damping += by_displacement(c64::new(0.0, 1.0) * lossy);
     }
-    for ((block, _), motion) in operator.contact.iter().zip(operator.motions(&single, 0)) {
-        for (row, column) in (0..3).flat_map(|r| (0..3).map(move |c| (r, c))) {
-            let product = motion[row].conj() * motion[column];
-            let velocity = by_velocity(product * block.damping[row][column]);
-            let displacement = by_displacement(product * block.stiffness[row][column]);
-            match (row, column) {
-                (0, 0) => budget.structural_damping += velocity + displacement,
-                (_, 0) | (0, _) => budget.mode_coupling += velocity + displacement,
-                (1, 1) => budget.falling_friction += velocity + displacement,
-                _ => budget.transverse_friction += velocity + displacement,
-            }
+    let motion = operator.interface.motions(single.re.col_as_slice(0), single.im.col_as_slice(0));
+    for term in &operator.interface.terms {
+        let product = motion[term.row].conj() * motion[term.column];
+        let share = by_velocity(product * term.damping) + by_displacement(product * term.stiffness);
+        match term.origin {
+            Origin::Normal => budget.structural_damping += share,
+            Origin::Falling => budget.falling_friction += share,
+            Origin::Transverse => budget.transverse_friction += share,
+            Origin::Coupling => budget.mode_coupling += share,
         }
     }
     budget

@@ -7,6 +7,7 @@ mod analysis;
 mod basis;
 mod block;
 mod budget;
+mod interface;
 mod operator;
 mod projected;
 #[cfg(test)]

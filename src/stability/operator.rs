@@ -2,23 +2,23 @@
 
 use super::basis::Images;
 use super::block::Block;
-use crate::equilibrium::{ContactBlock, SteadySliding, directions, linearize, tangent_stiffness};
+use super::interface::Interface;
+use crate::equilibrium::{SteadySliding, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::sparse::{norm_1, times};
 use crate::linalg::tall::{expand, gram};
-use crate::linalg::{SparseMatrix, SparseVector, c64};
+use crate::linalg::{SparseMatrix, c64};
 use crate::system::{Damping, System};
 use faer::{Mat, MatRef};
 use std::borrow::Cow;
 
-/// Q(λ) of a system at steady sliding. The contact acts through its low-rank blocks.
+/// Q(λ) of a system at steady sliding. What is not symmetric acts through the interface.
 pub(super) struct Operator<'a> {
     pub(super) mass: &'a SparseMatrix,
     /// K + K_σ.
     pub(super) stiffness: Cow<'a, SparseMatrix>,
     pub(super) damping: &'a Damping,
-    /// Contact blocks with their directions \[g t₁ t₂\].
-    pub(super) contact: Vec<(ContactBlock, [&'a SparseVector; 3])>,
+    pub(super) interface: Interface<'a>,
     mass_norm: f64,
     damping_norm: f64,
     stiffness_norm: f64,
@@ -35,9 +35,6 @@ pub(super) enum Side {
 
 impl<'a> Operator<'a> {
     pub(super) fn new(system: &'a System, steady: &SteadySliding) -> Result<Self> {
-        let points: Vec<_> = system.points().map(|(_, point)| point).collect();
-        let contact = linearize(system, steady).blocks;
-        let contact = contact.into_iter().map(|b| (b, directions(points[b.point]))).collect();
         let stiffness = tangent_stiffness(system, &steady.displacement)?;
         let damping = &system.structure.damping;
         let norm = |m: &Option<SparseMatrix>| m.as_ref().map_or(0.0, norm_1);
@@ -48,7 +45,7 @@ impl<'a> Operator<'a> {
             stiffness_norm: norm_1(&stiffness) + norm(&damping.hysteretic),
             stiffness,
             damping,
-            contact,
+            interface: Interface::new(system, steady),
         })
     }
 
@@ -73,31 +70,22 @@ impl<'a> Operator<'a> {
         sum
     }
 
-    /// Uᵀ x of one contact block.
-    fn motion(u: &[&SparseVector; 3], x: &Block, j: usize) -> [c64; 3] {
-        u.map(|d| c64::new(d.dot(x.re.col_as_slice(j)), d.dot(x.im.col_as_slice(j))))
-    }
-
-    /// Uᵀ x of every contact block.
-    pub(super) fn motions(&self, x: &Block, j: usize) -> Vec<[c64; 3]> {
-        self.contact.iter().map(|(_, u)| Self::motion(u, x, j)).collect()
-    }
-
-    /// y\[:, j\] += U (k + s c) Uᵀ x\[:, j\], with the blocks transposed for the left side.
-    fn add_contact(&self, s: &[c64], with_stiffness: bool, side: Side, x: &Block, y: &mut Block) {
+    /// y\[:, j\] += W (k + s c) Wᵀ x\[:, j\], with k and c transposed for the left side.
+    fn add_interface(&self, s: &[c64], with_stiffness: bool, side: Side, x: &Block, y: &mut Block) {
         for (j, s) in s.iter().enumerate() {
-            for (block, u) in &self.contact {
-                let motion = Self::motion(u, x, j);
-                for (row, direction) in u.iter().enumerate() {
-                    let mut force = c64::new(0.0, 0.0);
-                    for (column, moved) in motion.iter().enumerate() {
-                        let (a, b) = if side == Side::Right { (row, column) } else { (column, row) };
-                        let k = if with_stiffness { block.stiffness[a][b] } else { 0.0 };
-                        force += *moved * (c64::new(k, 0.0) + *s * c64::new(block.damping[a][b], 0.0));
-                    }
-                    direction.add_to(force.re, y.re.col_as_slice_mut(j));
-                    direction.add_to(force.im, y.im.col_as_slice_mut(j));
-                }
+            let motion = self.interface.motions(x.re.col_as_slice(j), x.im.col_as_slice(j));
+            let mut force = vec![c64::new(0.0, 0.0); motion.len()];
+            for term in &self.interface.terms {
+                let (to, from) = match side {
+                    Side::Right => (term.row, term.column),
+                    Side::Left => (term.column, term.row),
+                };
+                let k = if with_stiffness { term.stiffness } else { 0.0 };
+                force[to] += motion[from] * (c64::new(k, 0.0) + *s * c64::new(term.damping, 0.0));
+            }
+            for (direction, force) in self.interface.directions.iter().zip(&force) {
+                direction.add_to(force.re, y.re.col_as_slice_mut(j));
+                direction.add_to(force.im, y.im.col_as_slice_mut(j));
             }
         }
     }
@@ -118,8 +106,8 @@ impl<'a> Operator<'a> {
         if let Some(lossy) = &x.lossy {
             value.add_scaled(&vec![conjugate(c64::new(0.0, 1.0)); s.len()], lossy);
         }
-        self.add_contact(&s, true, side, &x.vectors, &mut value);
-        self.add_contact(&one, false, side, &x.vectors, &mut slope);
+        self.add_interface(&s, true, side, &x.vectors, &mut value);
+        self.add_interface(&one, false, side, &x.vectors, &mut slope);
         (value, slope)
     }
 

@@ -16,27 +16,19 @@ pub(super) struct SmallPair {
     pub(super) left: Vec<c64>,
 }
 
-/// BᵀC_cB, BᵀK_cB from the blocks, by which a contact enters a projected problem of any size.
-pub(super) fn project_contact(operator: &Operator<'_>, basis: &Basis<'_>) -> (Mat<f64>, Mat<f64>) {
-    let m = basis.len();
-    let w = &basis.contact;
-    let (mut damping, mut stiffness) = (Mat::<f64>::zeros(m, m), Mat::<f64>::zeros(m, m));
-    for (b, (block, _)) in operator.contact.iter().enumerate() {
-        for (row, column) in (0..3).flat_map(|r| (0..3).map(move |c| (r, c))) {
-            let (k, c) = (block.stiffness[row][column], block.damping[row][column]);
-            if k == 0.0 && c == 0.0 {
-                continue;
-            }
-            for j in 0..m {
-                let moved = w[(j, 3 * b + column)];
-                for i in 0..m {
-                    stiffness[(i, j)] += w[(i, 3 * b + row)] * k * moved;
-                    damping[(i, j)] += w[(i, 3 * b + row)] * c * moved;
-                }
-            }
+/// BᵀC_cB, BᵀK_cB, by which the interface enters a projected problem of any size.
+pub(super) fn project_interface(operator: &Operator<'_>, basis: &Basis<'_>) -> (Mat<f64>, Mat<f64>) {
+    let (m, r) = (basis.len(), basis.interface.ncols());
+    let w = &basis.interface;
+    // (BᵀW) c and (BᵀW) k column by column, then times (BᵀW)ᵀ.
+    let (mut by_velocity, mut by_displacement) = (Mat::<f64>::zeros(m, r), Mat::<f64>::zeros(m, r));
+    for term in &operator.interface.terms {
+        for i in 0..m {
+            by_velocity[(i, term.column)] += w[(i, term.row)] * term.damping;
+            by_displacement[(i, term.column)] += w[(i, term.row)] * term.stiffness;
         }
     }
-    (damping, stiffness)
+    (by_velocity * w.transpose(), by_displacement * w.transpose())
 }
 
 /// The wanted eigenpairs of (λ² M + λ C + K + iH) y = 0, ascending in (Im λ, Re λ).

@@ -151,6 +151,7 @@ fn hoffmann_two_dof_flutter() {
             )],
             load: vec![0.0; 2],
             prestress: None,
+            coupling: None,
         }
     };
     let mu = root(|mu| discriminant(&system(mu)), 0.3, 0.6);
@@ -175,7 +176,7 @@ fn sinou(eta: [f64; 2], mu: f64) -> System {
         })
         .collect();
     let structure = structure(2, |i, j| f64::from(i == j), |_, _| 0.0);
-    System { structure, pairs, load: vec![1.0, 1.0], prestress: None }
+    System { structure, pairs, load: vec![1.0, 1.0], prestress: None, coupling: None }
 }
 
 #[test]
@@ -212,6 +213,7 @@ fn belt(c: f64, load: f64, velocity: f64, sense: FrictionSense) -> System {
         pairs: vec![pair(vec![p], law, Closing::Load(load), velocity)],
         load: vec![0.0; 2],
         prestress: None,
+        coupling: None,
     }
 }
 

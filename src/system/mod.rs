@@ -15,7 +15,7 @@ mod structure;
 
 pub use interface::{Closing, ContactPair, ContactPoint};
 pub use law::{ContactForces, ContactLaw, ContactMotion, ContactTangent};
-pub use structure::{Damping, ModalDamping, Prestress, Structure};
+pub use structure::{Coupling, Damping, ModalDamping, Prestress, Structure};
 
 use std::sync::Arc;
 
@@ -30,6 +30,8 @@ pub struct System {
     pub load: Vec<f64>,
     /// Geometric stiffness of the preload, when the case asks for it.
     pub prestress: Option<Arc<dyn Prestress>>,
+    /// What imported K and C have beyond the symmetric structure.
+    pub coupling: Option<Coupling>,
 }
 
 impl System {

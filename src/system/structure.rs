@@ -1,7 +1,7 @@
 //! M, C and K of the structure without its contacts.
 
 use crate::error::Result;
-use crate::linalg::SparseMatrix;
+use crate::linalg::{SparseMatrix, SparseVector};
 use faer::Mat;
 use std::fmt::Debug;
 
@@ -50,4 +50,15 @@ pub struct ModalDamping {
 pub trait Prestress: Debug + Send + Sync {
     /// K_σ(u₀) \[N/m, N m\] on the degrees of freedom of the system, symmetric, both triangles stored.
     fn geometric_stiffness(&self, displacement: &[f64]) -> Result<SparseMatrix>;
+}
+
+/// The part of imported matrices that is not symmetric, constant and of low rank r: K gains W k Wᵀ, C gains W c Wᵀ.
+#[derive(Debug, Clone)]
+pub struct Coupling {
+    /// The columns of W, r of them.
+    pub directions: Vec<SparseVector>,
+    /// k \[N/m\], r × r.
+    pub stiffness: Mat<f64>,
+    /// c \[N s/m\], r × r.
+    pub damping: Mat<f64>,
 }

@@ -1,0 +1,91 @@
+//! What is not symmetric, as a few numbers between a few directions: K_c = W k Wᵀ and C_c = W c Wᵀ.
+
+use crate::equilibrium::{ContactBlock, SteadySliding, directions, linearize};
+use crate::linalg::{SparseVector, c64};
+use crate::system::System;
+
+/// The linearised contacts, and what imported matrices have beyond their symmetric part, as one low-rank interface.
+#[derive(Debug, Clone)]
+pub(crate) struct Interface<'a> {
+    /// The columns of W (n × r): g, t₁, t₂ of every contact point that is not silent, then the imported ones.
+    pub(crate) directions: Vec<&'a SparseVector>,
+    /// The entries of k and c that are not both zero.
+    pub(crate) terms: Vec<Term>,
+}
+
+/// One entry of k \[N/m\] and c \[N s/m\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Term {
+    pub(crate) row: usize,
+    pub(crate) column: usize,
+    pub(crate) stiffness: f64,
+    pub(crate) damping: f64,
+    pub(crate) origin: Origin,
+}
+
+/// What an entry does, by which the growth budget sorts it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Origin {
+    /// (g, g): stiffness and damping of the normal motion.
+    Normal,
+    /// (t₁, t₁): friction that falls, or rises, with the slip velocity.
+    Falling,
+    /// What turns with the transverse slip.
+    Transverse,
+    /// Friction that follows the normal motion, and whatever else of imported matrices is not symmetric.
+    Coupling,
+}
+
+impl<'a> Interface<'a> {
+    /// The interface of `system` at steady sliding.
+    pub(crate) fn new(system: &'a System, steady: &SteadySliding) -> Self {
+        let points: Vec<_> = system.points().map(|(_, point)| point).collect();
+        let mut interface = Interface { directions: Vec::new(), terms: Vec::new() };
+        for block in linearize(system, steady).blocks {
+            let first = interface.directions.len();
+            interface.directions.extend(directions(points[block.point]));
+            interface.terms.extend(contact_terms(&block, first));
+        }
+        if let Some(rest) = &system.coupling {
+            let first = interface.directions.len();
+            interface.directions.extend(&rest.directions);
+            for (row, column) in entries(rest.directions.len()) {
+                let (stiffness, damping) = (rest.stiffness[(row, column)], rest.damping[(row, column)]);
+                if stiffness != 0.0 || damping != 0.0 {
+                    let (row, column) = (first + row, first + column);
+                    interface.terms.push(Term { row, column, stiffness, damping, origin: Origin::Coupling });
+                }
+            }
+        }
+        interface
+    }
+
+    /// Wᵀ x.
+    pub(crate) fn motions(&self, re: &[f64], im: &[f64]) -> Vec<c64> {
+        self.directions.iter().map(|d| c64::new(d.dot(re), d.dot(im))).collect()
+    }
+}
+
+/// The entries of one contact point whose g, t₁, t₂ are the directions from `first` on.
+fn contact_terms(block: &ContactBlock, first: usize) -> impl Iterator<Item = Term> {
+    entries(3).filter_map(move |(a, b)| {
+        let (stiffness, damping) = (block.stiffness[a][b], block.damping[a][b]);
+        let origin = match (a, b) {
+            (0, 0) => Origin::Normal,
+            (_, 0) | (0, _) => Origin::Coupling,
+            (1, 1) => Origin::Falling,
+            _ => Origin::Transverse,
+        };
+        (stiffness != 0.0 || damping != 0.0).then_some(Term {
+            row: first + a,
+            column: first + b,
+            stiffness,
+            damping,
+            origin,
+        })
+    })
+}
+
+fn entries(n: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..n).flat_map(move |row| (0..n).map(move |column| (row, column)))
+}
