@@ -1,55 +1,115 @@
-//! Every scalar of a case has a path, such as `contact.rim.friction.mu0`, and can be set to another value.
+//! Every scalar of a case has a path, such as `contact.rim.friction.mu0`, a unit, bounds, and can be set to another value.
 
 use super::Case;
 use crate::error::{Error, Fault, Result, nearest};
+use std::ops::{Bound, RangeBounds};
 use toml::Value;
 
+/// A scalar of a case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameter {
+    /// Keys joined by dots; entries of lists by their index from 0.
+    pub path: String,
+    /// Its value in SI units.
+    pub value: f64,
+    /// The SI unit; empty for a pure number.
+    pub unit: &'static str,
+    /// The values that the case accepts.
+    pub bounds: (Bound<f64>, Bound<f64>),
+    /// What must be computed again when it changes.
+    pub invalidates: Invalidates,
+}
+
+/// What a change of a scalar makes worthless, the cheapest first; each includes those before it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Invalidates {
+    /// What is asked or compared: bands, measured values. The system stays.
+    Question,
+    /// C of the structure. The steady state and the real modes stay.
+    Damping,
+    /// The contact law. The compliance that the steady state is condensed on stays.
+    Law,
+    /// The steady state: loads and velocities.
+    Equilibrium,
+    /// Which points may touch, and their directions.
+    Interface,
+    /// M or K: mesh, materials, sections, springs, where the bodies stand.
+    Structure,
+}
+
+impl Parameter {
+    /// Whether the case accepts `value`.
+    pub fn accepts(&self, value: f64) -> bool {
+        value.is_finite() && self.bounds.contains(&value)
+    }
+}
+
 impl Case {
+    /// Every scalar of the case, in the order of the file's sections.
+    pub fn parameters(&self) -> Vec<Parameter> {
+        let quantities = self.quantities().into_iter();
+        quantities
+            .map(|q| Parameter {
+                invalidates: self.invalidated_by(&q.path),
+                path: q.path,
+                value: q.value,
+                unit: q.unit,
+                bounds: q.bounds,
+            })
+            .collect()
+    }
+
+    /// The scalar at `path`.
+    ///
+    /// # Errors
+    /// A path that is not a number of the case, with the nearest one that is.
+    pub fn parameter(&self, path: &str) -> Result<Parameter> {
+        let all = self.parameters();
+        let near = nearest(path, all.iter().map(|p| p.path.as_str())).map(str::to_string);
+        all.into_iter().find(|p| p.path == path).ok_or_else(|| {
+            let help = near.map_or("`stridor check CASE --parameters` lists them".into(), |n| {
+                format!("Did you mean `{n}`?")
+            });
+            let place = format!("parameter `{path}`");
+            Error::input(
+                Fault::new(place, "no such number in the case", "the path of a scalar").with_help(help),
+            )
+        })
+    }
+
     /// The same case with the scalar at `path` set to `value` \[SI\]; validated like a file.
     ///
     /// # Errors
     /// A path that is not a number of the case (with the nearest one that is), or a value that the case refuses.
     pub fn with_parameter(&self, path: &str, value: f64) -> Result<Case> {
+        self.parameter(path)?;
         let mut table = Value::try_from(self).expect("a case can be written as TOML");
-        let paths = self.parameters();
         let slot = path.split('.').try_fold(&mut table, |node, key| match node {
             Value::Array(list) => list.get_mut(key.parse::<usize>().ok()?),
             _ => node.get_mut(key),
         });
-        match slot {
-            Some(slot @ Value::Float(_)) => *slot = Value::Float(value),
-            _ => {
-                let near = nearest(path, paths.iter().map(|(p, _)| p.as_str()));
-                let help =
-                    near.map_or("`stridor check CASE` lists them".into(), |n| format!("Did you mean `{n}`?"));
-                return Err(Error::input(
-                    Fault::new(
-                        format!("parameter `{path}`"),
-                        "no such number in the case",
-                        "the path of a scalar",
-                    )
-                    .with_help(help),
-                ));
-            }
-        }
+        *slot.expect("a parameter's path leads to its number") = Value::Float(value);
         let text = toml::to_string(&table).expect("a case can be written as TOML");
         Case::parse(&format!("{path} = {value}"), &text, self.folder.clone())
     }
 
-    /// Path and value \[SI\] of every scalar of the case.
-    pub fn parameters(&self) -> Vec<(String, f64)> {
-        let mut found = Vec::new();
-        walk(&Value::try_from(self).expect("a case can be written as TOML"), String::new(), &mut found);
-        found
-    }
-}
-
-fn walk(value: &Value, path: String, found: &mut Vec<(String, f64)>) {
-    let join = |key: &str| if path.is_empty() { key.to_string() } else { format!("{path}.{key}") };
-    match value {
-        Value::Float(number) => found.push((path, *number)),
-        Value::Table(table) => table.iter().for_each(|(key, v)| walk(v, join(key), found)),
-        Value::Array(list) => list.iter().enumerate().for_each(|(i, v)| walk(v, join(&i.to_string()), found)),
-        _ => {}
+    fn invalidated_by(&self, path: &str) -> Invalidates {
+        let keys: Vec<&str> = path.split('.').collect();
+        let own = match keys[..] {
+            ["modes" | "cea", ..] => Invalidates::Question,
+            ["damping", ..] => Invalidates::Damping,
+            // Loss factors and Rayleigh damping do not touch M and K.
+            ["material", _, "loss_factor" | "rayleigh", ..] | ["spring", _, "damping"] => {
+                Invalidates::Damping
+            }
+            ["contact", _, "normal" | "friction", ..] => Invalidates::Law,
+            ["contact", _, "load" | "approach" | "sliding_velocity"] | ["force", ..] => {
+                Invalidates::Equilibrium
+            }
+            ["contact", _, "reach" | "stroke" | "sliding_direction" | "into", ..] => Invalidates::Interface,
+            _ => Invalidates::Structure,
+        };
+        // The preload's geometric stiffness follows the steady state.
+        if self.prestress && own >= Invalidates::Law { Invalidates::Structure } else { own }
     }
 }

@@ -1,10 +1,12 @@
 //! What each section of a case file may say. All faults of the file are found in one pass.
 
-use super::reader::{Section, read_document};
+use super::reader::{Quantity, Section, read_document};
 use super::units::*;
 use super::*;
 use crate::error::{Error, Fault, Result};
 use crate::structure;
+use std::f64::consts::FRAC_PI_4;
+use std::ops::Bound;
 use std::path::Path;
 
 /// Reads and validates the case file at `path`.
@@ -30,7 +32,14 @@ pub fn read_case(path: &Path) -> Result<Case> {
 impl Case {
     /// Reads a case from TOML text; `file` names it in faults and `folder` is where relative paths start.
     pub fn parse(file: &str, text: &str, folder: PathBuf) -> Result<Case> {
-        read_document(file, text, |root| read_root(root, folder))
+        read_document(file, text, |root| read_root(root, folder)).map(|(case, _)| case)
+    }
+
+    /// The quantities of the resolved case, each with its path, value, unit and bounds.
+    pub(super) fn quantities(&self) -> Vec<Quantity> {
+        let read =
+            read_document("the resolved case", &self.to_toml(), |root| read_root(root, PathBuf::new()));
+        read.expect("a resolved case reads back").1
     }
 }
 
@@ -123,7 +132,7 @@ fn read_material(s: &Section) -> Material {
         youngs_modulus: s.quantity("youngs_modulus", PRESSURE).positive().required(PRESSURE.name),
         poissons_ratio: s
             .quantity("poissons_ratio", NUMBER)
-            .check("a value above -1 and below 0.5", |v| *v > -1.0 && *v < 0.5)
+            .within(Bound::Excluded(-1.0), Bound::Excluded(0.5))
             .required("a number such as 0.3"),
         density: s.quantity("density", DENSITY).positive().required(DENSITY.name),
         loss_factor: s.quantity("loss_factor", NUMBER).non_negative().or(0.0),
@@ -239,16 +248,19 @@ fn read_contact(s: &Section) -> Contact {
             "area" => (StiffnessPer::Area, 2),
             _ => (StiffnessPer::Point, 0),
         };
-        let unit = STIFFNESS.per_metre(
-            power,
-            [
-                "a stiffness such as \"10 MN/m\"",
-                "a stiffness per length such as \"10 GN/m^2\"",
-                "a stiffness per area such as \"10 GN/m^3\"",
-            ][power as usize],
-        );
-        let cubic = STIFFNESS.per_metre(power + 2, "a cubic stiffness: the unit of `stiffness` per m^2");
-        let damping = DASHPOT.per_metre(power, "a damping constant: the unit of `stiffness` times s");
+        let [plain, cubic, dashpot] =
+            [["N/m", "N/m^3", "N s/m"], ["N/m^2", "N/m^4", "N s/m^2"], ["N/m^3", "N/m^5", "N s/m^3"]]
+                [power as usize];
+        let example = [
+            "a stiffness such as \"10 MN/m\"",
+            "a stiffness per length such as \"10 GN/m^2\"",
+            "a stiffness per area such as \"10 GN/m^3\"",
+        ][power as usize];
+        let unit = STIFFNESS.per_metre(power, plain, example);
+        let cubic =
+            STIFFNESS.per_metre(power + 2, cubic, "a cubic stiffness: the unit of `stiffness` per m^2");
+        let damping =
+            DASHPOT.per_metre(power, dashpot, "a damping constant: the unit of `stiffness` times s");
         Normal {
             per,
             stiffness: n.quantity("stiffness", unit).non_negative().required(unit.name),
@@ -270,7 +282,7 @@ fn read_contact(s: &Section) -> Contact {
         placement: s.section("placement", |p| Placement {
             lead_angle: p
                 .quantity("lead_angle", ANGLE)
-                .check("an angle between -45 and 45 degrees", |v| v.abs() <= std::f64::consts::FRAC_PI_4)
+                .within(Bound::Included(-FRAC_PI_4), Bound::Included(FRAC_PI_4))
                 .or(0.0),
             position: p.quantities("position", LENGTH).or([0.0; 2]),
         }),
@@ -381,7 +393,7 @@ fn read_cea(s: &Section) -> CeaAnalysis {
         band,
         basis_below: s
             .quantity("basis_below", FREQUENCY)
-            .check("a frequency of at least the band's upper end", |f| *f >= band[1])
+            .within(Bound::Included(band[1]), Bound::Unbounded)
             .or(1.5 * band[1]),
         measured_squeal: s.quantity_list("measured_squeal", FREQUENCY).or(Vec::new()),
         measured_source: s.string("measured_source").or(String::new()),
@@ -528,6 +540,38 @@ measured_squeal = [936, 1661, 2600]
         assert!(error.contains("contact.rim.friction.mu0"), "{error}");
         let error = case.with_parameter("material.steel.poissons_ratio", 0.5).unwrap_err();
         assert_eq!(error.exit_code(), 2);
+    }
+
+    #[test]
+    fn every_number_of_a_case_is_a_parameter_with_unit_and_bounds() {
+        fn count(value: &toml::Value) -> usize {
+            match value {
+                toml::Value::Float(_) => 1,
+                toml::Value::Table(t) => t.values().map(count).sum(),
+                toml::Value::Array(list) => list.iter().map(count).sum(),
+                _ => 0,
+            }
+        }
+        let case = parse(RIG).unwrap();
+        let parameters = case.parameters();
+        assert_eq!(parameters.len(), count(&toml::Value::try_from(&case).unwrap()));
+        for p in &parameters {
+            assert!(p.accepts(p.value), "{p:?}");
+            assert_eq!(case.with_parameter(&p.path, p.value).unwrap(), case, "{}", p.path);
+        }
+        // The rig of this text is prestressed: its load changes the stiffness.
+        assert_eq!(case.parameter("contact.rim.load").unwrap().invalidates, Invalidates::Structure);
+        let free = Case { prestress: false, ..case };
+        let one = |path: &str| free.parameter(path).unwrap();
+        assert_eq!(one("contact.rim.load").invalidates, Invalidates::Equilibrium);
+        let mu = one("contact.rim.friction.mu0");
+        assert_eq!((mu.unit, mu.invalidates), ("", Invalidates::Law));
+        assert!(!mu.accepts(-0.1) && mu.accepts(0.0));
+        assert_eq!(one("contact.rim.normal.cubic").unit, "N/m^4");
+        assert_eq!(one("spring.drive.damping").invalidates, Invalidates::Damping);
+        let nu = one("material.steel.poissons_ratio");
+        assert!(nu.invalidates == Invalidates::Structure && !nu.accepts(0.5) && nu.accepts(0.499));
+        assert_eq!(one("modes.disc.measured.2").invalidates, Invalidates::Question);
     }
 
     #[test]

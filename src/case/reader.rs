@@ -3,6 +3,7 @@
 use super::units::{Dimension, parse_quantity};
 use crate::error::{Error, Fault, Faults, Result, nearest};
 use std::cell::RefCell;
+use std::ops::{Bound, RangeBounds};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -11,6 +12,20 @@ pub struct Reader<'a> {
     file: &'a str,
     text: &'a str,
     faults: RefCell<Faults>,
+    quantities: RefCell<Vec<Quantity>>,
+}
+
+/// A number that the text gives, with what its reader knows about it.
+#[derive(Debug, Clone)]
+pub struct Quantity {
+    /// Keys joined by dots; entries of lists by their index from 0.
+    pub path: String,
+    /// The value in SI units.
+    pub value: f64,
+    /// The SI unit; empty for a pure number.
+    pub unit: &'static str,
+    /// The values that the case accepts.
+    pub bounds: (Bound<f64>, Bound<f64>),
 }
 
 /// One table of the text. Each key is asked for by name; [`Section::finish`] then refuses those nobody asked for.
@@ -30,9 +45,13 @@ pub struct Found<'a, T> {
     faulty: bool,
 }
 
-/// Parses `text` and hands its root to `read`, then gives the value or every fault.
-pub fn read_document<T>(file: &str, text: &str, read: impl FnOnce(&Section) -> T) -> Result<T> {
-    let reader = Reader { file, text, faults: RefCell::default() };
+/// Parses `text` and hands its root to `read`, then gives the value and the quantities it read, or every fault.
+pub fn read_document<T>(
+    file: &str,
+    text: &str,
+    read: impl FnOnce(&Section) -> T,
+) -> Result<(T, Vec<Quantity>)> {
+    let reader = Reader { file, text, faults: RefCell::default(), quantities: RefCell::default() };
     let root = DeTable::parse(text).map_err(|error| {
         let line = error.span().map_or(1, |span| reader.line(span.start));
         let found = format!("`{}`", text.lines().nth(line - 1).unwrap_or("").trim());
@@ -51,7 +70,7 @@ pub fn read_document<T>(file: &str, text: &str, read: impl FnOnce(&Section) -> T
     let value = read(&section);
     section.finish();
     drop(section);
-    reader.faults.into_inner().into_result(value)
+    reader.faults.into_inner().into_result((value, reader.quantities.into_inner()))
 }
 
 impl Reader<'_> {
@@ -121,6 +140,23 @@ impl<'a> Section<'a> {
         Found { section: self, key: key.to_string(), value, faulty }
     }
 
+    fn remember(&self, key: &str, value: impl IntoIterator<Item = f64>, dimension: Dimension) {
+        let bounds = (Bound::Unbounded, Bound::Unbounded);
+        let path = self.path_of(key);
+        self.reader.quantities.borrow_mut().extend(value.into_iter().map(|value| Quantity {
+            path: path.clone(),
+            value,
+            unit: dimension.symbol,
+            bounds,
+        }));
+    }
+
+    fn remember_list<'v>(&self, key: &str, values: impl IntoIterator<Item = &'v f64>, dimension: Dimension) {
+        for (i, value) in values.into_iter().enumerate() {
+            self.remember(&format!("{key}.{i}"), [*value], dimension);
+        }
+    }
+
     /// Whether the table has `key`.
     pub fn has(&self, key: &str) -> bool {
         self.table.contains_key(key)
@@ -128,30 +164,41 @@ impl<'a> Section<'a> {
 
     /// A quantity: a number in SI units, or a string with its unit.
     pub fn quantity(&'a self, key: &str, dimension: Dimension) -> Found<'a, f64> {
-        self.find(key, dimension.name, |value| quantity_of(value, dimension))
+        let found = self.find(key, dimension.name, |value| quantity_of(value, dimension));
+        self.remember(key, found.value, dimension);
+        found
     }
 
     /// A list of `N` quantities.
     pub fn quantities<const N: usize>(&'a self, key: &str, dimension: Dimension) -> Found<'a, [f64; N]> {
-        self.find(key, &format!("a list of {N} values, each {}", dimension.name), |value| {
+        let expected = format!("a list of {N} values, each {}", dimension.name);
+        let found: Found<'a, [f64; N]> = self.find(key, &expected, |value| {
             let list = list_of(value, |item| quantity_of(item, dimension))?;
             let count = list.len();
             list.try_into().map_err(|_| format!("a list of {count}"))
-        })
+        });
+        self.remember_list(key, found.value.iter().flatten(), dimension);
+        found
     }
 
     /// A list of quantities of any length.
     pub fn quantity_list(&'a self, key: &str, dimension: Dimension) -> Found<'a, Vec<f64>> {
-        self.find(key, &format!("a list, each {}", dimension.name), |value| {
+        let found = self.find(key, &format!("a list, each {}", dimension.name), |value| {
             list_of(value, |item| quantity_of(item, dimension))
-        })
+        });
+        self.remember_list(key, found.value.iter().flatten(), dimension);
+        found
     }
 
     /// A list of rows of numbers.
     pub fn rows(&'a self, key: &str, dimension: Dimension) -> Found<'a, Vec<Vec<f64>>> {
-        self.find(key, "a list of rows of numbers", |value| {
+        let found = self.find(key, "a list of rows of numbers", |value| {
             list_of(value, |row| list_of(row, |item| quantity_of(item, dimension)))
-        })
+        });
+        for (i, row) in found.value.iter().flatten().enumerate() {
+            self.remember_list(&format!("{key}.{i}"), row, dimension);
+        }
+        found
     }
 
     /// A string.
@@ -282,13 +329,39 @@ impl<T: Default> Found<'_, T> {
 impl Found<'_, f64> {
     /// Refuses zero and below.
     pub fn positive(self) -> Self {
-        self.check("a value above zero", |v| *v > 0.0)
+        self.within(Bound::Excluded(0.0), Bound::Unbounded)
     }
 
     /// Refuses values below zero.
     pub fn non_negative(self) -> Self {
-        self.check("a value of zero or more", |v| *v >= 0.0)
+        self.within(Bound::Included(0.0), Bound::Unbounded)
     }
+
+    /// Refuses values outside these bounds.
+    pub fn within(self, lower: Bound<f64>, upper: Bound<f64>) -> Self {
+        let path = self.section.path_of(&self.key);
+        let mut quantities = self.section.reader.quantities.borrow_mut();
+        quantities.iter_mut().filter(|q| q.path == path).for_each(|q| q.bounds = (lower, upper));
+        drop(quantities);
+        self.check(&describe_bounds(lower, upper), |v| (lower, upper).contains(v))
+    }
+}
+
+/// Bounds in words: "a value above 0", "a value from 0 to 1".
+fn describe_bounds(lower: Bound<f64>, upper: Bound<f64>) -> String {
+    let zero_or = |v: f64| if v == 0.0 { "zero".to_string() } else { v.to_string() };
+    let low = match lower {
+        Bound::Included(v) => format!(" of {} or more", zero_or(v)),
+        Bound::Excluded(v) => format!(" above {}", zero_or(v)),
+        Bound::Unbounded => String::new(),
+    };
+    let high = match upper {
+        Bound::Included(v) => format!(" of {} or less", zero_or(v)),
+        Bound::Excluded(v) => format!(" below {}", zero_or(v)),
+        Bound::Unbounded => String::new(),
+    };
+    let and = if low.is_empty() || high.is_empty() { "" } else { " and" };
+    format!("a value{low}{and}{high}")
 }
 
 fn quantity_of(value: &DeValue, dimension: Dimension) -> std::result::Result<f64, String> {

@@ -4,57 +4,60 @@
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Dimension {
     powers: [i32; 3],
+    /// Its SI unit; empty for a pure number.
+    pub symbol: &'static str,
     /// What the dimension is called, with an example.
     pub name: &'static str,
 }
 
-const fn dimension(powers: [i32; 3], name: &'static str) -> Dimension {
-    Dimension { powers, name }
+const fn dimension(powers: [i32; 3], symbol: &'static str, name: &'static str) -> Dimension {
+    Dimension { powers, symbol, name }
 }
 
 /// A pure number.
-pub const NUMBER: Dimension = dimension([0, 0, 0], "a number");
+pub const NUMBER: Dimension = dimension([0, 0, 0], "", "a number");
 /// Radians.
-pub const ANGLE: Dimension = dimension([0, 0, 0], "an angle such as \"4 deg\"");
+pub const ANGLE: Dimension = dimension([0, 0, 0], "rad", "an angle such as \"4 deg\"");
 /// Metres.
-pub const LENGTH: Dimension = dimension([0, 1, 0], "a length such as \"1 mm\"");
+pub const LENGTH: Dimension = dimension([0, 1, 0], "m", "a length such as \"1 mm\"");
 /// Square metres.
-pub const AREA: Dimension = dimension([0, 2, 0], "an area such as \"20 mm^2\"");
+pub const AREA: Dimension = dimension([0, 2, 0], "m^2", "an area such as \"20 mm^2\"");
 /// Second moments of area.
-pub const AREA_MOMENT: Dimension = dimension([0, 4, 0], "a second moment of area such as \"200 mm^4\"");
+pub const AREA_MOMENT: Dimension =
+    dimension([0, 4, 0], "m^4", "a second moment of area such as \"200 mm^4\"");
 /// Hertz.
-pub const FREQUENCY: Dimension = dimension([0, 0, -1], "a frequency such as \"6 kHz\"");
+pub const FREQUENCY: Dimension = dimension([0, 0, -1], "Hz", "a frequency such as \"6 kHz\"");
 /// Seconds.
-pub const TIME: Dimension = dimension([0, 0, 1], "a time such as \"1 us\"");
+pub const TIME: Dimension = dimension([0, 0, 1], "s", "a time such as \"1 us\"");
 /// Kilograms.
-pub const MASS: Dimension = dimension([1, 0, 0], "a mass such as \"5 g\"");
+pub const MASS: Dimension = dimension([1, 0, 0], "kg", "a mass such as \"5 g\"");
 /// Moments of inertia.
-pub const INERTIA: Dimension = dimension([1, 2, 0], "a moment of inertia such as \"2 kg*mm^2\"");
+pub const INERTIA: Dimension = dimension([1, 2, 0], "kg m^2", "a moment of inertia such as \"2 kg*mm^2\"");
 /// Metres per second.
-pub const VELOCITY: Dimension = dimension([0, 1, -1], "a velocity such as \"0.1 m/s\"");
+pub const VELOCITY: Dimension = dimension([0, 1, -1], "m/s", "a velocity such as \"0.1 m/s\"");
 /// Inverse velocity.
-pub const INVERSE_VELOCITY: Dimension = dimension([0, -1, 1], "an inverse velocity such as \"5 s/m\"");
+pub const INVERSE_VELOCITY: Dimension = dimension([0, -1, 1], "s/m", "an inverse velocity such as \"5 s/m\"");
 /// Kilograms per cubic metre.
-pub const DENSITY: Dimension = dimension([1, -3, 0], "a density such as \"7850 kg/m^3\"");
+pub const DENSITY: Dimension = dimension([1, -3, 0], "kg/m^3", "a density such as \"7850 kg/m^3\"");
 /// Pascals.
-pub const PRESSURE: Dimension = dimension([1, -1, -2], "a modulus such as \"210 GPa\"");
+pub const PRESSURE: Dimension = dimension([1, -1, -2], "Pa", "a modulus such as \"210 GPa\"");
 /// Newtons.
-pub const FORCE: Dimension = dimension([1, 1, -2], "a force such as \"20 N\"");
+pub const FORCE: Dimension = dimension([1, 1, -2], "N", "a force such as \"20 N\"");
 /// Newtons per metre.
-pub const STIFFNESS: Dimension = dimension([1, 0, -2], "a stiffness such as \"10 MN/m\"");
+pub const STIFFNESS: Dimension = dimension([1, 0, -2], "N/m", "a stiffness such as \"10 MN/m\"");
 /// Newton metres per radian.
 pub const ROTATIONAL_STIFFNESS: Dimension =
-    dimension([1, 2, -2], "a rotational stiffness such as \"10 N*m\"");
+    dimension([1, 2, -2], "N m", "a rotational stiffness such as \"10 N*m\"");
 /// Newton seconds per metre.
-pub const DASHPOT: Dimension = dimension([1, 0, -1], "a damping constant such as \"5 N*s/m\"");
+pub const DASHPOT: Dimension = dimension([1, 0, -1], "N s/m", "a damping constant such as \"5 N*s/m\"");
 /// Newton metre seconds per radian.
 pub const ROTATIONAL_DASHPOT: Dimension =
-    dimension([1, 2, -1], "a rotational damping constant such as \"0.1 N*m*s\"");
+    dimension([1, 2, -1], "N m s", "a rotational damping constant such as \"0.1 N*m*s\"");
 
 impl Dimension {
     /// The same quantity per metre to the power `n` of contact length or area, or times metres when `n` < 0.
-    pub const fn per_metre(self, n: i32, name: &'static str) -> Dimension {
-        Dimension { powers: [self.powers[0], self.powers[1] - n, self.powers[2]], name }
+    pub const fn per_metre(self, n: i32, symbol: &'static str, name: &'static str) -> Dimension {
+        Dimension { powers: [self.powers[0], self.powers[1] - n, self.powers[2]], symbol, name }
     }
 }
 
@@ -161,7 +164,7 @@ mod tests {
         close("12 mm⁴", AREA_MOMENT, 12e-12);
         close("0.5", NUMBER, 0.5);
         close("5 s/m", INVERSE_VELOCITY, 5.0);
-        close("1 GN/m^2", STIFFNESS.per_metre(1, "a stiffness per length"), 1e9);
+        close("1 GN/m^2", STIFFNESS.per_metre(1, "N/m^2", "a stiffness per length"), 1e9);
     }
 
     #[test]

@@ -1,10 +1,11 @@
 //! `stridor check`: the case and its mesh, without an analysis.
 
 use super::Common;
-use crate::case::read_case;
+use crate::case::{Parameter, read_case};
 use crate::error::Result;
 use crate::job::Prepared;
 use clap::Args;
+use std::ops::Bound;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -12,7 +13,7 @@ use std::process::ExitCode;
 pub struct Options {
     /// The case file (TOML)
     case: PathBuf,
-    /// Also list every scalar with its path and value in SI units
+    /// Also list every scalar: path, value, SI unit, the values it may take, what a change makes compute again
     #[arg(long)]
     parameters: bool,
     /// Also print the resolved case, every default written out
@@ -27,8 +28,9 @@ pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
         print!("{}", case.to_toml());
     }
     if options.parameters {
-        for (path, value) in case.parameters() {
-            println!("{path} = {value}");
+        for p in case.parameters() {
+            let redo = format!("{:?}", p.invalidates).to_lowercase();
+            println!("{:<44} {:>22} {:<8} {:<16} {redo}", p.path, number(p.value), p.unit, range(&p));
         }
     }
     if !common.quiet && !options.resolved && !options.parameters {
@@ -46,4 +48,24 @@ pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
         );
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// All digits of a number, with an exponent when it is very large or small.
+fn number(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e6).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
+}
+
+/// Bounds as an interval: "(0, ∞)".
+fn range(parameter: &Parameter) -> String {
+    let low = match parameter.bounds.0 {
+        Bound::Included(v) => format!("[{}", number(v)),
+        Bound::Excluded(v) => format!("({}", number(v)),
+        Bound::Unbounded => "(-∞".into(),
+    };
+    let high = match parameter.bounds.1 {
+        Bound::Included(v) => format!("{}]", number(v)),
+        Bound::Excluded(v) => format!("{})", number(v)),
+        Bound::Unbounded => "∞)".into(),
+    };
+    format!("{low}, {high}")
 }

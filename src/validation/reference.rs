@@ -85,7 +85,7 @@ pub fn read(folder: &Path) -> Result<Reference> {
     let text = std::fs::read_to_string(&path).map_err(|error| {
         Error::input(Fault::new(path.display().to_string(), error.to_string(), "a text file"))
     })?;
-    let (title, source, file, checks) = read_document(&path.display().to_string(), &text, |root| {
+    let ((title, source, file, checks), _) = read_document(&path.display().to_string(), &text, |root| {
         let reason = root.string("reason").or(String::new());
         (
             root.string("title").required("one line"),
