@@ -1,11 +1,11 @@
 //! The analyses of a case in their order, each result handed on as soon as it is there.
 
-use super::modes::{add_modal_damping, compare, labels, named, part_modes};
+use super::modes::{add_modal_damping, compare, labels, named, of_the_whole, part_modes, wanted};
 use super::prepared::Prepared;
 use crate::case::{Case, ContactState};
 use crate::equilibrium::{self, SteadyOptions, SteadySliding};
 use crate::error::Result;
-use crate::modal::{self, ModesWanted};
+use crate::modal::{self, ModesWanted, RealModes};
 use crate::progress::Observer;
 use crate::results::{self, ComplexResult, NamedModes, ResultsFile, RunResults, SteadyResult};
 use crate::stability;
@@ -106,10 +106,23 @@ pub fn analyse(
     let sliding =
         (selection.cea && case.cea.is_some()) || (selection.modes && contact_modes.clone().count() > 0);
 
+    // The modes that span the complex analysis; without prestress they do not wait for the steady state, and lists of
+    // the whole's modes take their share.
+    let basis = match &case.cea {
+        Some(cea) if selection.cea && !case.prestress => {
+            Some(whole_modes(&prepared.system.structure, cea.basis_below, &mut clock, observer)?)
+        }
+        _ => None,
+    };
     if selection.modes {
         for (name, analysis) in case.modes.iter().filter(|(_, m)| m.contact == ContactState::Open) {
-            let modes =
-                clock.time(&format!("real modes, {name}"), || part_modes(prepared, name, observer))?;
+            let known = basis.as_ref().filter(|_| of_the_whole(prepared, analysis));
+            let modes = match known.and_then(|b| b.lowest(wanted(analysis, prepared.system.n_dofs()))) {
+                Some(modes) => named(prepared, name, modes, &prepared.assembled),
+                None => {
+                    clock.time(&format!("real modes, {name}"), || part_modes(prepared, name, observer))?
+                }
+            };
             if !analysis.measured.is_empty() {
                 let set = results.modes.len();
                 results.measured.push(compare(set, analysis, &modes));
@@ -128,10 +141,7 @@ pub fn analyse(
         let state = &results.steady.as_ref().expect("set above").state;
         if selection.modes {
             for (name, analysis) in contact_modes {
-                let wanted = match (analysis.below, analysis.count) {
-                    (Some(below), _) => ModesWanted::BelowHz(below),
-                    (None, count) => ModesWanted::Count(count.unwrap_or(1)),
-                };
+                let wanted = wanted(analysis, prepared.system.n_dofs());
                 let closed = equilibrium::closed_structure(&prepared.system, state)?;
                 let (modes, _) = clock
                     .time(&format!("real modes, {name}"), || modal::compute(&closed, wanted, observer))?;
@@ -141,7 +151,7 @@ pub fn analyse(
             }
         }
         if selection.cea {
-            let complex = complex_result(prepared, state, &mut clock, observer)?;
+            let complex = complex_result(prepared, state, basis, &mut clock, observer)?;
             if let Some(complex) = complex {
                 record(Stage::Complex(&complex))?;
                 results.warnings.extend(complex.modes.warnings.iter().cloned());
@@ -177,22 +187,26 @@ fn steady_result(prepared: &Prepared, state: SteadySliding) -> SteadyResult {
 fn complex_result(
     prepared: &Prepared,
     state: &SteadySliding,
+    basis: Option<RealModes>,
     clock: &mut Clock,
     observer: &dyn Observer,
 ) -> Result<Option<ComplexResult>> {
     let Some(cea) = &prepared.case.cea else { return Ok(None) };
     let mut system = prepared.system.clone();
-    let stiffness = equilibrium::tangent_stiffness(&prepared.system, &state.displacement)?.into_owned();
-    let preloaded = Structure { stiffness, ..prepared.system.structure.clone() };
-    let (basis, _) = clock.time("real modes of the whole", || {
-        modal::compute(&preloaded, ModesWanted::BelowHz(cea.basis_below), observer)
-    })?;
+    let basis = match basis {
+        Some(basis) => basis,
+        None => {
+            let stiffness = equilibrium::tangent_stiffness(&system, &state.displacement)?.into_owned();
+            let preloaded = Structure { stiffness, ..system.structure.clone() };
+            whole_modes(&preloaded, cea.basis_below, clock, observer)?
+        }
+    };
     add_modal_damping(&mut system.structure, &basis, prepared)?;
     let modes = clock.time("complex eigenvalues", || {
         stability::complex_modes(&system, state, &basis, cea.band, observer)
     })?;
     let real = named(prepared, "whole", basis, &prepared.assembled);
-    let labels = labels(prepared, &real, &prepared.assembled);
+    let labels = labels(&real);
     let participation = modes
         .modes
         .iter()
@@ -211,6 +225,18 @@ fn complex_result(
         band_hz: cea.band,
         modes,
     }))
+}
+
+/// The real modes that span the complex analysis.
+fn whole_modes(
+    structure: &Structure,
+    below: f64,
+    clock: &mut Clock,
+    observer: &dyn Observer,
+) -> Result<RealModes> {
+    let modes = clock
+        .time("real modes of the whole", || modal::compute(structure, ModesWanted::BelowHz(below), observer));
+    modes.map(|(modes, _)| modes)
 }
 
 /// Where Kirchhoff's theory is off by more than a percent at the highest frequency asked for.

@@ -1,7 +1,7 @@
 //! Real modes of one part or of the whole, with names and effective masses.
 
 use super::prepared::Prepared;
-use crate::case::ModesAnalysis;
+use crate::case::{ContactState, ModesAnalysis};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::modal::{self, ModesWanted, RealModes};
 use crate::results::{MeasuredComparison, NamedModes, NodalField};
@@ -26,10 +26,6 @@ pub fn part_modes(
     let analysis = &prepared.case.modes[name];
     let model = super::model::part_model(prepared.case, &prepared.regions, &prepared.model, name, analysis)?;
     let assembled = assemble(&model)?;
-    let wanted = match (analysis.below, analysis.count) {
-        (Some(below), _) => ModesWanted::BelowHz(below),
-        (None, count) => ModesWanted::Count(count.unwrap_or(1).min(assembled.dofs.n_dofs())),
-    };
     if assembled.dofs.n_dofs() == 0 {
         return Err(Error::input(Fault::new(
             format!("`modes.{name}`"),
@@ -37,8 +33,27 @@ pub fn part_modes(
             "parts that can move",
         )));
     }
-    let (modes, _) = modal::compute(&assembled.structure, wanted, observer)?;
+    let (modes, _) =
+        modal::compute(&assembled.structure, wanted(analysis, assembled.dofs.n_dofs()), observer)?;
     Ok(named(prepared, name, modes, &assembled))
+}
+
+/// Which modes an analysis of a structure with `n_dofs` degrees of freedom asks for.
+pub fn wanted(analysis: &ModesAnalysis, n_dofs: usize) -> ModesWanted {
+    match (analysis.below, analysis.count) {
+        (Some(below), _) => ModesWanted::BelowHz(below),
+        (None, count) => ModesWanted::Count(count.unwrap_or(1).min(n_dofs)),
+    }
+}
+
+/// Whether an analysis is of the whole structure, held as the case holds it, without contact.
+pub fn of_the_whole(prepared: &Prepared, analysis: &ModesAnalysis) -> bool {
+    let model = &prepared.model;
+    let mut parts = model.shells.iter().map(|s| &s.name).chain(model.bars.iter().map(|b| &b.name));
+    analysis.contact == ContactState::Open
+        && !analysis.free
+        && analysis.clamp.is_empty()
+        && (analysis.parts.is_empty() || parts.all(|part| analysis.parts.contains(part)))
 }
 
 /// Dresses real modes with nodal shapes, disc names and effective masses.
@@ -46,17 +61,16 @@ pub fn named(prepared: &Prepared, name: &str, modes: RealModes, assembled: &Asse
     let shapes: Vec<NodalField<f64>> =
         (0..modes.len()).map(|k| assembled.dofs.expand(&column(modes.shapes.as_ref(), k))).collect();
     let discs = prepared.discs();
-    let kinetic = kinetic_shares(prepared, &modes, assembled);
+    let moving_part = moving_parts(prepared, &modes, assembled);
     let names = shapes
         .iter()
-        .zip(&kinetic)
+        .zip(&moving_part)
         .enumerate()
-        .map(|(k, (shape, shares))| {
+        .map(|(k, (shape, part))| {
             if k < modes.rigid_bodies {
                 return None;
             }
-            let (part, _) = dominant(shares)?;
-            let (_, disc) = discs.iter().find(|(name, _)| *name == part)?;
+            let (_, disc) = discs.iter().find(|(name, _)| part.as_deref() == Some(*name))?;
             disc.name(shape)
         })
         .collect();
@@ -68,6 +82,7 @@ pub fn named(prepared: &Prepared, name: &str, modes: RealModes, assembled: &Asse
     NamedModes {
         name: name.to_string(),
         shapes,
+        moving_part,
         names,
         effective_mass,
         total_mass: assembled.total_mass,
@@ -75,12 +90,8 @@ pub fn named(prepared: &Prepared, name: &str, modes: RealModes, assembled: &Asse
     }
 }
 
-/// The share of each part in the kinetic energy of each mode.
-fn kinetic_shares<'a>(
-    prepared: &'a Prepared,
-    modes: &RealModes,
-    assembled: &Assembled,
-) -> Vec<Vec<(&'a str, f64)>> {
+/// The part with the largest share of the kinetic energy of each mode.
+fn moving_parts(prepared: &Prepared, modes: &RealModes, assembled: &Assembled) -> Vec<Option<String>> {
     let mut owner = vec![Vec::new(); assembled.dofs.n_dofs()];
     let parts: Vec<(&str, Vec<usize>)> = prepared
         .model
@@ -111,23 +122,21 @@ fn kinetic_shares<'a>(
                 let share = modes.shapes[(i, k)] * momentum[(i, k)] / owners.len().max(1) as f64;
                 owners.iter().for_each(|p| energy[*p] += share);
             }
-            parts.iter().map(|(name, _)| *name).zip(energy).collect()
+            let names = parts.iter().map(|(name, _)| *name).zip(energy);
+            names.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(name, _)| name.to_string())
         })
         .collect()
 }
 
-fn dominant<'a>(shares: &[(&'a str, f64)]) -> Option<(&'a str, f64)> {
-    shares.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1))
-}
-
 /// A few words on each real mode: the part that moves most and, for a disc, (nodal diameters, circles).
-pub fn labels(prepared: &Prepared, named: &NamedModes, assembled: &Assembled) -> Vec<String> {
-    kinetic_shares(prepared, &named.modes, assembled)
+pub fn labels(named: &NamedModes) -> Vec<String> {
+    named
+        .moving_part
         .iter()
         .zip(&named.names)
         .enumerate()
-        .map(|(k, (shares, name))| {
-            let part = dominant(shares).map_or("mode", |(part, _)| part);
+        .map(|(k, (part, name))| {
+            let part = part.as_deref().unwrap_or("mode");
             match name {
                 Some(n) => format!("{part} ({}, {})", n.nodal_diameters, n.nodal_circles),
                 None => format!("{part} {:.0} Hz", named.modes.frequency_hz(k)),

@@ -56,6 +56,23 @@ impl RealModes {
         self.eigenvalues[k].max(0.0).sqrt() / std::f64::consts::TAU
     }
 
+    /// The lowest modes that `wanted` asks for, if all of them are here. The certificate stays that of the whole set:
+    /// none is missing up to its frequency.
+    pub fn lowest(&self, wanted: ModesWanted) -> Option<RealModes> {
+        let count = match wanted {
+            ModesWanted::BelowHz(hz) => (hz <= self.certificate.below_hz)
+                .then(|| (0..self.len()).take_while(|k| self.frequency_hz(*k) < hz).count()),
+            ModesWanted::Count(count) => (count <= self.len()).then_some(count),
+        }?;
+        Some(RealModes {
+            eigenvalues: self.eigenvalues[..count].to_vec(),
+            shapes: self.shapes.subcols(0, count).to_owned(),
+            backward_errors: self.backward_errors[..count].to_vec(),
+            rigid_bodies: self.rigid_bodies.min(count),
+            certificate: self.certificate.clone(),
+        })
+    }
+
     /// The number of modes.
     pub fn len(&self) -> usize {
         self.eigenvalues.len()

@@ -57,6 +57,11 @@ pub(super) fn modes(results: &RunResults, index: usize) -> Table {
     let set = &results.modes[index];
     let comparisons: Vec<_> = results.measured.iter().filter(|m| m.modes == index).collect();
     let mut headings = vec!["no.", "f [Hz]"];
+    // Where several parts move, which one moves most tells a disc's mode from a slider's.
+    let parted = set.moving_part.iter().any(|part| *part != set.moving_part[0]);
+    if parted {
+        headings.insert(0, "<part");
+    }
     let named = set.names.iter().any(Option::is_some) || set.modes.rigid_bodies > 0;
     if named {
         headings.push("(n, s)");
@@ -74,6 +79,9 @@ pub(super) fn modes(results: &RunResults, index: usize) -> Table {
     let rows: Vec<_> = comparisons.iter().flat_map(|m| m.compare(&results.modes)).collect();
     for k in 0..set.modes.len() {
         let mut cells = vec![(k + 1).to_string(), fixed(set.modes.frequency_hz(k), 1)];
+        if parted {
+            cells.insert(0, set.moving_part[k].clone().unwrap_or("–".into()));
+        }
         if named {
             let name = set.names.get(k).copied().flatten();
             cells.push(match name {

@@ -28,6 +28,7 @@ fn modes(set: &NamedModes) -> String {
     let mut table = Table::new(&[
         "mode",
         "frequency [Hz]",
+        "moving part",
         "nodal diameters",
         "nodal circles",
         "effective mass x [kg]",
@@ -41,6 +42,7 @@ fn modes(set: &NamedModes) -> String {
         let mut row = vec![
             (k + 1).to_string(),
             number(set.modes.frequency_hz(k)),
+            set.moving_part.get(k).cloned().flatten().unwrap_or_default(),
             count(name.map(|n| n.nodal_diameters)),
             count(name.map(|n| n.nodal_circles)),
         ];

@@ -65,6 +65,7 @@ struct Mode<'a> {
     /// Counts from 1 within its set.
     number: usize,
     frequency_hz: f64,
+    moving_part: Option<&'a str>,
     nodal_diameters: Option<usize>,
     nodal_circles: Option<usize>,
     effective_mass_kg: Option<[f64; 3]>,
@@ -218,6 +219,7 @@ fn modes(set: &NamedModes) -> impl Iterator<Item = Mode<'_>> {
             set: &set.name,
             number: k + 1,
             frequency_hz: set.modes.frequency_hz(k),
+            moving_part: set.moving_part.get(k).and_then(Option::as_deref),
             nodal_diameters: name.map(|n| n.nodal_diameters),
             nodal_circles: name.map(|n| n.nodal_circles),
             effective_mass_kg: set.effective_mass.get(k).copied(),

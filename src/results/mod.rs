@@ -108,6 +108,8 @@ pub struct NamedModes {
     pub modes: RealModes,
     /// The shape of each mode at every node; zero outside the part.
     pub shapes: Vec<NodalField<f64>>,
+    /// The part with the largest share of each mode's kinetic energy; `None` where only points move.
+    pub moving_part: Vec<Option<String>>,
     /// The name of each mode, where the part is a disc and the mode bends it.
     pub names: Vec<Option<DiscModeName>>,
     /// Effective mass of each mode for translations along x, y, z \[kg\].

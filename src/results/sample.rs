@@ -171,6 +171,7 @@ fn disc_modes(geometry: &Geometry, n_disc: usize) -> NamedModes {
             },
         },
         shapes,
+        moving_part: vec![Some("disc".into()); count],
         names,
         effective_mass: (0..count).map(|k| [0.08 / (k + 1) as f64, 0.0, 1e-4]).collect(),
         total_mass: 0.139,
