@@ -1,64 +1,78 @@
-//! P S A S Pᵀ = L B Lᵀ of a sparse symmetric matrix A, definite or not, with its inertia.
+//! P S A S Pᵀ = L B Lᵀ of a sparse symmetric matrix A = Aᵀ, real or complex, definite or not; real ones with their
+//! inertia.
 //!
 //! S is a diagonal of powers of two that brings the diagonal of A near ±1, so that metres and radians weigh the
-//! same when a pivot is chosen, without a rounding error. P reduces fill (approximate minimum degree). B has 1 × 1
-//! and 2 × 2 blocks: Bunch–Kaufman pivoting inside each supernode, which keeps the factors of an indefinite K − σM
-//! bounded where plain LDLᵀ does not. By Sylvester's law B has the inertia of A.
+//! same when a pivot is chosen, without a rounding error. P reduces fill. B has 1 × 1 and 2 × 2 blocks. By Sylvester's
+//! law B has the inertia of a real A. A complex A is symmetric, not Hermitian: nothing is conjugated.
 //!
-//! This file alone knows which library factorises.
+//! The method is multifrontal (Duff & Reid, ACM TOMS 9 (1983) 302):
+//! 1. `ordering` takes equal rows together and orders what remains for little fill;
+//! 2. `symbolic` finds the fronts and their tree, and splits it into tasks: all that the pattern decides, done once;
+//! 3. `numeric` assembles front after front, `front` eliminates each of them with pivots that bound the growth, and
+//!    what cannot be eliminated yet is passed on to the parent;
+//! 4. `solve` goes up and down the tree with up to eight right-hand sides at once.
+//!
+//! `field` holds what real and complex numbers have in common. Tasks run on all threads; the order of every sum is
+//! that of the tree, so the bits do not depend on how many there are.
+
+mod field;
+mod front;
+mod numeric;
+mod ordering;
+mod solve;
+mod symbolic;
+
+pub use field::Field;
 
 use super::SparseMatrix;
 use super::sparse::{multiply, norm_1};
 use crate::error::{Error, Result};
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::perm::PermRef;
-use faer::sparse::SymbolicSparseColMatRef;
-use faer::sparse::linalg::SupernodalThreshold;
-use faer::sparse::linalg::cholesky::supernodal::SupernodalIntranodeLbltRef;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, IntranodeLbltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
-    factorize_symbolic_cholesky,
-};
-use faer::{Conj, Mat, MatMut, MatRef, Par, Side};
+use faer::sparse::{SparseColMat, SymbolicSparseColMatRef};
+use faer::{Mat, MatMut, MatRef};
+use field::Lanes;
+use numeric::Front;
 use rayon::prelude::*;
 use std::fmt::Debug;
 use std::sync::Arc;
+use symbolic::Plan;
 
 /// The numbers of negative, zero and positive eigenvalues.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Inertia {
     /// Negative eigenvalues.
     pub negative: usize,
-    /// Eigenvalues that are zero to rounding: pivots below 1e-14 of the scaled diagonal.
+    /// Eigenvalues that are zero to rounding: those of B below 1e-14, the diagonal of S A S being ±1.
     pub zero: usize,
     /// Positive eigenvalues.
     pub positive: usize,
 }
 
-/// A factorised symmetric matrix A.
-pub trait SymmetricFactor: Debug + Send + Sync {
+/// A factorised symmetric matrix A, real (`f64`) or complex (`c64`).
+pub trait SymmetricFactor<T: Field = f64>: Debug + Send + Sync {
     /// The order of A.
     fn n(&self) -> usize;
 
-    /// Replaces the columns B of `rhs` (n × k) by A⁻¹B; several columns use several threads.
+    /// Replaces the columns B of `rhs` (n × k) by A⁻¹B = A⁻ᵀB; one column uses several threads, too.
     ///
     /// # Panics
     /// When `rhs` has not n rows.
-    fn solve_in_place(&self, rhs: MatMut<'_, f64>);
+    fn solve_in_place(&self, rhs: MatMut<'_, T>);
 
-    /// How many eigenvalues of A are negative, zero, positive.
+    /// How many eigenvalues of a real A are negative, zero, positive. For a complex A the signs of the real parts of
+    /// the eigenvalues of B are counted, which say something only when A is nearly real.
     fn inertia(&self) -> Inertia;
+
+    /// The largest |entry| of L: 1e2 at most; far above 1 says that small pivots had to be taken.
+    fn growth(&self) -> f64;
 
     /// The bytes that the factors take.
     fn memory_bytes(&self) -> usize;
 }
 
-/// The order of elimination and the place of every entry of L, found once for a sparsity pattern.
+/// The order of elimination and the place of every entry of L, found once for a sparsity pattern; it serves real
+/// and complex matrices.
 #[derive(Debug, Clone)]
-pub struct SymbolicFactor {
-    symbolic: Arc<SymbolicCholesky<usize>>,
-    entries: usize,
-}
+pub struct SymbolicFactor(Arc<Plan>);
 
 impl SymbolicFactor {
     /// Analyses a symmetric pattern stored whole.
@@ -69,66 +83,46 @@ impl SymbolicFactor {
     /// # Panics
     /// When the pattern is not square.
     pub fn new(pattern: SymbolicSparseColMatRef<'_, usize>) -> Result<Self> {
-        let parameters = CholeskySymbolicParams {
-            // Below zero: supernodes also where nothing is below the diagonal.
-            supernodal_flop_ratio_threshold: SupernodalThreshold(-1.0),
-            ..Default::default()
-        };
-        let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, SymmetricOrdering::Amd, parameters)
-            .map_err(|e| out_of_memory(pattern.ncols(), &format!("{e:?}")))?;
-        Ok(SymbolicFactor { symbolic: Arc::new(symbolic), entries: pattern.compute_nnz() })
+        assert!(pattern.nrows() == pattern.ncols(), "a symmetric matrix is square");
+        Ok(SymbolicFactor(Arc::new(Plan::new(pattern)?)))
+    }
+
+    /// The entries of L, diagonal included, as far as the pattern decides.
+    pub fn fill(&self) -> usize {
+        self.0.fill
     }
 
     /// Factorises a matrix that has the analysed pattern.
     ///
     /// # Errors
-    /// [`Error::Analysis`] when the matrix is exactly singular, holds a NaN or an infinity, or does not fit in memory.
+    /// [`Error::Analysis`] when the matrix is exactly singular, or holds a NaN or an infinity.
     ///
     /// # Panics
     /// When the pattern is another one.
-    pub fn factorize(&self, a: &SparseMatrix) -> Result<Box<dyn SymmetricFactor>> {
+    pub fn factorize<T: Field>(&self, a: &SparseColMat<usize, T>) -> Result<Box<dyn SymmetricFactor<T>>> {
         let n = a.ncols();
         assert!(
-            n == self.symbolic.nrows() && a.compute_nnz() == self.entries,
+            n == self.0.order.len() && a.compute_nnz() == self.0.entries,
             "the pattern was not the analysed one"
         );
-        if let Some(k) = a.val().iter().position(|v| !v.is_finite()) {
+        if let Some(k) = a.val().iter().position(|v| !v.size().is_finite()) {
             let (row, column) = (a.row_idx()[k], a.col_ptr().partition_point(|start| *start <= k) - 1);
             return Err(Error::analysis(
                 "factorisation",
-                format!("the matrix has {} in row {row}, column {column}", a.val()[k]),
+                format!("the matrix has {:?} in row {row}, column {column}", a.val()[k]),
                 "Look for a length, stiffness or density of zero or beyond 1e150 in the model",
             ));
         }
         let scaling = equilibrate(a);
-        let scaled = scale(a, &scaling);
-        let parallel = Par::Seq;
-        let mut memory = MemBuffer::try_new(
-            self.symbolic.factorize_numeric_intranode_lblt_scratch::<f64>(parallel, Default::default()),
-        )
-        .map_err(|e| out_of_memory(n, &format!("{e:?}")))?;
-        let mut factor = BlockFactor {
-            symbolic: Arc::clone(&self.symbolic),
-            values: vec![0.0; self.symbolic.len_val()],
-            subdiagonal: vec![0.0; n],
-            forward: (0..n).collect(),
-            inverse: (0..n).collect(),
-            scaling,
-            inertia: Inertia::default(),
-        };
-        self.symbolic.factorize_numeric_intranode_lblt(
-            &mut factor.values,
-            &mut factor.subdiagonal,
-            &mut factor.forward,
-            &mut factor.inverse,
-            scaled.as_ref(),
-            Side::Lower,
-            parallel,
-            MemStack::new(&mut memory),
-            Default::default(),
-        );
-        factor.inertia = factor.count_signs()?;
-        Ok(Box::new(factor))
+        let fronts = numeric::factorize(&self.0, a.as_ref(), &scaling).map_err(|stuck| {
+            Error::analysis(
+                "factorisation",
+                format!("the matrix is singular: elimination stops at row {} of {n}", self.0.order[stuck.0]),
+                "A part that nothing holds, a degree of freedom without stiffness and mass, or a shift on an \
+                 eigenvalue does this",
+            )
+        })?;
+        Ok(Box::new(Multifrontal { plan: Arc::clone(&self.0), fronts, scaling }))
     }
 }
 
@@ -136,7 +130,7 @@ impl SymbolicFactor {
 ///
 /// # Errors
 /// Those of [`SymbolicFactor::new`] and [`SymbolicFactor::factorize`].
-pub fn factorize(a: &SparseMatrix) -> Result<Box<dyn SymmetricFactor>> {
+pub fn factorize<T: Field>(a: &SparseColMat<usize, T>) -> Result<Box<dyn SymmetricFactor<T>>> {
     SymbolicFactor::new(a.symbolic())?.factorize(a)
 }
 
@@ -178,143 +172,116 @@ pub fn solve_refined(a: &SparseMatrix, factor: &dyn SymmetricFactor, rhs: MatMut
     error
 }
 
-/// L B Lᵀ in faer's storage.
+/// L B Lᵀ, front by front.
 #[derive(Debug)]
-struct BlockFactor {
-    symbolic: Arc<SymbolicCholesky<usize>>,
-    values: Vec<f64>,
-    /// Below the diagonal of B; nonzero where a 2 × 2 block begins.
-    subdiagonal: Vec<f64>,
-    /// Pivoting inside the supernodes, and its inverse.
-    forward: Vec<usize>,
-    inverse: Vec<usize>,
+struct Multifrontal<T> {
+    plan: Arc<Plan>,
+    fronts: Vec<Front<T>>,
     /// S.
     scaling: Vec<f64>,
-    inertia: Inertia,
 }
 
-/// Columns solved together by one task: the time is that of reading L, whether for one column or for eight.
+/// Right-hand sides that go through the tree together: the time is that of reading L, whether for one or for eight.
 const COLUMNS_A_TASK: usize = 8;
+/// Rows that one task brings into the order of elimination.
+const ROWS_A_TASK: usize = 8192;
 
-impl BlockFactor {
-    fn pivots(&self) -> PermRef<'_, usize> {
-        PermRef::new_checked(&self.forward, &self.inverse, self.forward.len())
-    }
-
-    /// Signs of the eigenvalues of B. A pivot that is exactly zero, or not a number, ends the factorisation.
-    fn count_signs(&self) -> Result<Inertia> {
-        const ZERO: f64 = 1e-14;
-        let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.raw() else {
-            unreachable!("the analysis was told to make supernodes")
-        };
-        let factor =
-            SupernodalIntranodeLbltRef::new(symbolic, &self.values, &self.subdiagonal, self.pivots());
-        let mut inertia = Inertia::default();
-        let mut note = |eigenvalue: f64| match eigenvalue {
-            e if e.abs() <= ZERO => inertia.zero += 1,
-            e if e < 0.0 => inertia.negative += 1,
-            _ => inertia.positive += 1,
-        };
-        for s in 0..symbolic.n_supernodes() {
-            let supernode = factor.supernode(s);
-            let block = supernode.val();
-            let mut k = 0;
-            while k < block.ncols() {
-                let row = supernode.start() + k;
-                let below = self.subdiagonal[row];
-                let wrong = if below == 0.0 {
-                    note(block[(k, k)]);
-                    k += 1;
-                    block[(k - 1, k - 1)] == 0.0 || !block[(k - 1, k - 1)].is_finite()
-                } else {
-                    // det = product and trace = sum of the two eigenvalues; the larger one first, without cancellation.
-                    let (p, q) = (block[(k, k)], block[(k + 1, k + 1)]);
-                    let (half, det) = (0.5 * (p + q), p * q - below * below);
-                    let radius = (0.5 * (p - q)).hypot(below);
-                    let larger = if half >= 0.0 { half + radius } else { half - radius };
-                    note(larger);
-                    note(det / larger);
-                    k += 2;
-                    det == 0.0 || !det.is_finite()
-                };
-                if wrong {
-                    let eliminated = self.forward[row];
-                    let place = self.symbolic.perm().map_or(eliminated, |p| p.arrays().0[eliminated]);
-                    return Err(Error::analysis(
-                        "factorisation",
-                        format!(
-                            "the matrix is singular: elimination stops at row {place} of {}",
-                            self.forward.len()
-                        ),
-                        "A part that nothing holds, a degree of freedom without stiffness and mass, or a shift on an \
-                         eigenvalue does this",
-                    ));
+impl<T: Field> Multifrontal<T> {
+    /// Solves for up to as many columns as `L` has.
+    fn solve_lanes<L: Lanes<T>>(&self, mut rhs: MatMut<'_, T>) {
+        let mut x = vec![L::ZERO; self.n()];
+        let columns = rhs.ncols();
+        let b = rhs.as_ref();
+        x.par_chunks_mut(ROWS_A_TASK).zip(self.plan.order.par_chunks(ROWS_A_TASK)).for_each(|(x, order)| {
+            for (x, row) in x.iter_mut().zip(order) {
+                for k in 0..columns {
+                    x.set(k, b[(*row, k)] * self.scaling[*row]);
                 }
             }
-        }
-        Ok(inertia)
+        });
+        solve::solve(&self.plan, &self.fronts, &mut x);
+        rhs.as_mut().par_row_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, mut rhs)| {
+            for i in 0..rhs.nrows() {
+                let row = task * ROWS_A_TASK + i;
+                let x = &x[self.plan.place[row]];
+                for k in 0..columns {
+                    rhs[(i, k)] = x.get(k) * self.scaling[row];
+                }
+            }
+        });
     }
 }
 
-impl SymmetricFactor for BlockFactor {
+impl<T: Field> SymmetricFactor<T> for Multifrontal<T> {
     fn n(&self) -> usize {
         self.scaling.len()
     }
 
-    fn solve_in_place(&self, rhs: MatMut<'_, f64>) {
+    fn solve_in_place(&self, rhs: MatMut<'_, T>) {
         assert!(rhs.nrows() == self.n(), "right-hand sides of the wrong length");
-        let factor = IntranodeLbltRef::new(&self.symbolic, &self.values, &self.subdiagonal, self.pivots());
-        rhs.par_col_chunks_mut(COLUMNS_A_TASK).for_each(|mut columns| {
-            let scale = |columns: &mut MatMut<'_, f64>| {
-                for j in 0..columns.ncols() {
-                    for (i, s) in self.scaling.iter().enumerate() {
-                        columns[(i, j)] *= s;
-                    }
-                }
-            };
-            let mut memory =
-                MemBuffer::new(self.symbolic.solve_in_place_scratch::<f64>(columns.ncols(), Par::Seq));
-            scale(&mut columns);
-            factor.solve_in_place_with_conj(Conj::No, columns.as_mut(), Par::Seq, MemStack::new(&mut memory));
-            scale(&mut columns);
+        rhs.par_col_chunks_mut(COLUMNS_A_TASK).for_each(|columns| match columns.ncols() {
+            1 => self.solve_lanes::<T::Lanes<1>>(columns),
+            2..=4 => self.solve_lanes::<T::Lanes<4>>(columns),
+            _ => self.solve_lanes::<T::Lanes<COLUMNS_A_TASK>>(columns),
         });
     }
 
     fn inertia(&self) -> Inertia {
-        self.inertia
+        let mut inertia = Inertia::default();
+        // The eigenvalues of B⁻¹ are at hand.
+        let mut note = |eigenvalue: f64| match eigenvalue {
+            e if e.abs() >= 1e14 => inertia.zero += 1,
+            e if e < 0.0 => inertia.negative += 1,
+            _ => inertia.positive += 1,
+        };
+        for front in &self.fronts {
+            let mut blocks = front.inverse.iter().map(|[a, b]| (a.real_part(), b.real_part(), *b != T::default()));
+            while let Some((p, below, double)) = blocks.next() {
+                let (q, _, _) = if double { blocks.next().expect("a block has two columns") } else { (p, 0.0, false) };
+                if !double {
+                    note(p);
+                    continue;
+                }
+                // det = product and trace = sum of the two eigenvalues; the larger one first, without cancellation.
+                let (half, det) = (0.5 * (p + q), p * q - below * below);
+                let radius = (0.5 * (p - q)).hypot(below);
+                let larger = if half >= 0.0 { half + radius } else { half - radius };
+                note(larger);
+                note(det / larger);
+            }
+        }
+        inertia
+    }
+
+    fn growth(&self) -> f64 {
+        self.fronts.iter().map(Front::growth).fold(0.0, f64::max)
     }
 
     fn memory_bytes(&self) -> usize {
-        8 * (self.values.len() + 4 * self.n())
+        let bytes = |front: &Front<T>| {
+            size_of_val(&*front.lower)
+                + size_of_val(&*front.inverse)
+                + 4 * (front.columns.len() + front.above.len())
+        };
+        8 * self.n() + self.fronts.iter().map(bytes).sum::<usize>()
     }
 }
 
 /// S: s_i = 2^-round(½ log₂ |a_ii|), the largest entry of the row standing in where the diagonal is too small.
-fn equilibrate(a: &SparseMatrix) -> Vec<f64> {
+fn equilibrate<T: Field>(a: &SparseColMat<usize, T>) -> Vec<f64> {
     (0..a.ncols())
         .map(|j| {
             let (mut diagonal, mut largest) = (0.0f64, 0.0f64);
             for (i, v) in a.row_idx_of_col_raw(j).iter().zip(a.val_of_col(j)) {
-                largest = largest.max(v.abs());
+                largest = largest.max(v.size());
                 if *i == j {
-                    diagonal = v.abs();
+                    diagonal = v.size();
                 }
             }
             let size = diagonal.max(1e-6 * largest);
             if size > 0.0 { (-(0.5 * size.log2()).round()).exp2() } else { 1.0 }
         })
         .collect()
-}
-
-/// S A S.
-fn scale(a: &SparseMatrix, s: &[f64]) -> SparseMatrix {
-    let mut scaled = a.clone();
-    for j in 0..a.ncols() {
-        for (i, v) in a.row_idx_of_col_raw(j).iter().zip(scaled.val_of_col_mut(j)) {
-            *v *= s[*i] * s[j];
-        }
-    }
-    scaled
 }
 
 fn out_of_memory(n: usize, said: &str) -> Error {

@@ -1,0 +1,194 @@
+//! The numbers that are factorised, real and complex, and bundles of them that a solve carries side by side.
+
+use super::super::{c64, sparse};
+use faer::traits::ComplexField;
+use std::ops::{Add, Div, Neg, Sub};
+
+/// A number of a factorised matrix: `f64` or `c64`.
+pub trait Field:
+    'static
+    + sparse::Scalar
+    + ComplexField<Real = f64>
+    + std::fmt::Debug
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + std::ops::Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// One row of K right-hand sides.
+    type Lanes<const K: usize>: Lanes<Self>;
+
+    /// |x|, or |Re x| + |Im x|, which is within √2 of it and cheaper.
+    fn size(self) -> f64;
+
+    /// Re x.
+    fn real_part(self) -> f64;
+
+    /// self − a b, rounded once for each real product where the processor can.
+    fn minus(self, a: Self, b: Self) -> Self;
+}
+
+/// One row of a block of right-hand sides, its columns side by side in memory.
+pub trait Lanes<T>: Copy + Send + Sync {
+    /// How many columns.
+    const COLUMNS: usize;
+    /// A row of zeros.
+    const ZERO: Self;
+    /// The value in column k.
+    fn get(&self, k: usize) -> T;
+    /// Sets the value in column k.
+    fn set(&mut self, k: usize, value: T);
+    /// self += other.
+    fn add(&mut self, other: &Self);
+    /// self −= l · y.
+    fn subtract(&mut self, l: T, y: &Self);
+
+    /// sums_j −= Σ_i l_ij y_i for J columns of L at once.
+    #[inline(always)]
+    fn subtract_dots<const J: usize>(sums: &mut [Self; J], l: [&[T]; J], y: &[Self])
+    where
+        T: Field,
+    {
+        let l = l.map(|column| &column[..y.len()]);
+        if Self::COLUMNS > 1 {
+            for (i, y) in y.iter().enumerate() {
+                for j in 0..J {
+                    sums[j].subtract(l[j][i], y);
+                }
+            }
+            return;
+        }
+        // A single right-hand side: the vector unit runs along the rows, in eight sums that are added at the end.
+        const ROWS: usize = 8;
+        let mut partial = [[T::default(); ROWS]; J];
+        let whole = y.len() - y.len() % ROWS;
+        for i in (0..whole).step_by(ROWS) {
+            let y: &[Self] = &y[i..i + ROWS];
+            for j in 0..J {
+                let l = &l[j][i..i + ROWS];
+                for r in 0..ROWS {
+                    partial[j][r] = partial[j][r].minus(l[r], y[r].get(0));
+                }
+            }
+        }
+        for j in 0..J {
+            let mut sum = sums[j].get(0);
+            for part in partial[j] {
+                sum += part;
+            }
+            for i in whole..y.len() {
+                sum = sum.minus(l[j][i], y[i].get(0));
+            }
+            sums[j].set(0, sum);
+        }
+    }
+}
+
+impl Field for f64 {
+    type Lanes<const K: usize> = [f64; K];
+
+    #[inline(always)]
+    fn size(self) -> f64 {
+        self.abs()
+    }
+
+    #[inline(always)]
+    fn real_part(self) -> f64 {
+        self
+    }
+
+    #[inline(always)]
+    fn minus(self, a: f64, b: f64) -> f64 {
+        (-a).mul_add(b, self)
+    }
+}
+
+impl Field for c64 {
+    type Lanes<const K: usize> = Split<K>;
+
+    #[inline(always)]
+    fn size(self) -> f64 {
+        self.re.abs() + self.im.abs()
+    }
+
+    #[inline(always)]
+    fn real_part(self) -> f64 {
+        self.re
+    }
+
+    #[inline(always)]
+    fn minus(self, a: c64, b: c64) -> c64 {
+        c64::new(
+            a.im.mul_add(b.im, (-a.re).mul_add(b.re, self.re)),
+            (-a.im).mul_add(b.re, (-a.re).mul_add(b.im, self.im)),
+        )
+    }
+}
+
+impl<const K: usize> Lanes<f64> for [f64; K] {
+    const COLUMNS: usize = K;
+    const ZERO: Self = [0.0; K];
+
+    #[inline(always)]
+    fn get(&self, k: usize) -> f64 {
+        self[k]
+    }
+
+    #[inline(always)]
+    fn set(&mut self, k: usize, value: f64) {
+        self[k] = value;
+    }
+
+    #[inline(always)]
+    fn add(&mut self, other: &Self) {
+        for k in 0..K {
+            self[k] += other[k];
+        }
+    }
+
+    #[inline(always)]
+    fn subtract(&mut self, l: f64, y: &Self) {
+        for k in 0..K {
+            self[k] = (-l).mul_add(y[k], self[k]);
+        }
+    }
+}
+
+/// K complex numbers, the real parts apart from the imaginary ones, as the vector unit likes them.
+#[derive(Debug, Clone, Copy)]
+pub struct Split<const K: usize> {
+    re: [f64; K],
+    im: [f64; K],
+}
+
+impl<const K: usize> Lanes<c64> for Split<K> {
+    const COLUMNS: usize = K;
+    const ZERO: Self = Split { re: [0.0; K], im: [0.0; K] };
+
+    #[inline(always)]
+    fn get(&self, k: usize) -> c64 {
+        c64::new(self.re[k], self.im[k])
+    }
+
+    #[inline(always)]
+    fn set(&mut self, k: usize, value: c64) {
+        (self.re[k], self.im[k]) = (value.re, value.im);
+    }
+
+    #[inline(always)]
+    fn add(&mut self, other: &Self) {
+        for k in 0..K {
+            self.re[k] += other.re[k];
+            self.im[k] += other.im[k];
+        }
+    }
+
+    #[inline(always)]
+    fn subtract(&mut self, l: c64, y: &Self) {
+        for k in 0..K {
+            self.re[k] = l.im.mul_add(y.im[k], (-l.re).mul_add(y.re[k], self.re[k]));
+            self.im[k] = (-l.im).mul_add(y.re[k], (-l.re).mul_add(y.im[k], self.im[k]));
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! The numbers: fronts are assembled and eliminated along the tree, its tasks side by side.
+
+use super::field::Field;
+use super::front::{Panel, subtract_product};
+use super::symbolic::{Plan, Task};
+use faer::sparse::SparseColMatRef;
+use faer::{MatMut, MatRef};
+use rayon::prelude::*;
+
+/// The columns of L that one front gave.
+#[derive(Debug)]
+pub(super) struct Front<T> {
+    /// The columns that were candidates, by their place in the order of elimination: first those that this front
+    /// eliminated, in the order of its pivots, then those that it passed on.
+    pub columns: Vec<u32>,
+    /// The order of the front; the first rows are those of `columns`.
+    pub rows: usize,
+    /// L, `rows` × as many columns as were eliminated, by columns; only what is below the diagonal has a meaning.
+    pub lower: Vec<T>,
+    /// B⁻¹: for each eliminated column its diagonal entry and the entry below it, nonzero where a 2 × 2 block begins.
+    pub inverse: Vec<[T; 2]>,
+    /// Where each row that was not eliminated stands in the parent's front.
+    pub above: Vec<u32>,
+}
+
+impl<T> Front<T> {
+    /// How many columns this front eliminated.
+    pub fn width(&self) -> usize {
+        self.inverse.len()
+    }
+
+    /// The largest |entry| of L.
+    pub fn growth(&self) -> f64
+    where
+        T: Field,
+    {
+        let columns = self.lower.chunks_exact(self.rows.max(1)).enumerate();
+        columns.flat_map(|(j, column)| &column[j + 1..]).map(|l| l.size()).fold(0.0, f64::max)
+    }
+}
+
+/// The place, in the order of elimination, of a column that has no pivot.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stuck(pub usize);
+
+/// What is left of a front when its columns are gone: a lower triangle for the parent.
+struct Remainder<T> {
+    /// The rows, by their place in the order of elimination; the first `passed_on` are columns without a pivot.
+    rows: Vec<u32>,
+    passed_on: usize,
+    /// rows × rows by columns.
+    values: Vec<T>,
+}
+
+/// A matrix on its way through the tree.
+struct Elimination<'a, T> {
+    plan: &'a Plan,
+    a: SparseColMatRef<'a, usize, T>,
+    scaling: &'a [f64],
+}
+
+/// What a task keeps from front to front.
+struct Scratch<T> {
+    /// Where a row stands in the present front, for the rows that it has.
+    places: Vec<u32>,
+    /// W = L B.
+    product: Vec<T>,
+}
+
+/// Factorises S A S.
+pub(super) fn factorize<T: Field>(
+    plan: &Plan,
+    a: SparseColMatRef<'_, usize, T>,
+    scaling: &[f64],
+) -> Result<Vec<Front<T>>, Stuck> {
+    let mut fronts: Vec<Option<Front<T>>> = Vec::new();
+    fronts.resize_with(plan.nodes.len(), || None);
+    Elimination { plan, a, scaling }.run(&plan.root, &mut fronts)?;
+    Ok(fronts.into_iter().map(|front| front.expect("every node belongs to a task")).collect())
+}
+
+/// The parts of `all` that belong to the subtasks; `all` is what belongs to `task`.
+pub(super) fn parts<'a, X>(task: &Task, all: &'a mut [X], start_of: impl Fn(usize) -> usize) -> Vec<&'a mut [X]> {
+    let mut rest = all;
+    let mut at = start_of(task.nodes.start);
+    let mut parts = Vec::with_capacity(task.subtasks.len());
+    for subtask in &task.subtasks {
+        let (begin, end) = (start_of(subtask.nodes.start), start_of(subtask.nodes.end));
+        let (part, after) = std::mem::take(&mut rest)[begin - at..].split_at_mut(end - begin);
+        parts.push(part);
+        (rest, at) = (after, end);
+    }
+    parts
+}
+
+impl<T: Field> Elimination<'_, T> {
+    /// Runs a task and gives the remainders of its last front (none is left of a whole tree).
+    fn run(&self, task: &Task, fronts: &mut [Option<Front<T>>]) -> Result<Vec<Remainder<T>>, Stuck> {
+        let subtasks: Vec<_> = task.subtasks.iter().zip(parts(task, fronts, |s| s)).collect();
+        let results: Vec<_> = subtasks.into_par_iter().map(|(task, fronts)| self.run(task, fronts)).collect();
+        let mut results = task.subtasks.iter().zip(results);
+        let mut stack: Vec<Remainder<T>> = Vec::new();
+        let mut scratch = Scratch { places: vec![0; self.plan.order.len()], product: Vec::new() };
+        let mut ready = results.next();
+        let mut s = task.nodes.start;
+        while s < task.nodes.end {
+            if let Some((subtask, result)) = ready.take_if(|(subtask, _)| subtask.nodes.start == s) {
+                stack.extend(result?);
+                s = subtask.nodes.end;
+                ready = results.next();
+                continue;
+            }
+            let children = stack.split_off(stack.len() - self.plan.nodes[s].children.len());
+            let (front, remainder) = self.front(s, &children, &mut scratch)?;
+            for (child, remainder) in self.plan.nodes[s].children.iter().zip(&children) {
+                let child = fronts[*child - task.nodes.start].as_mut().expect("children come first");
+                child.above = remainder.rows.iter().map(|row| scratch.places[*row as usize]).collect();
+            }
+            fronts[s - task.nodes.start] = Some(front);
+            stack.push(remainder);
+            s += 1;
+        }
+        Ok(stack)
+    }
+
+    /// Assembles node s from A and its children, and eliminates it. `scratch.places` then tells where each of its rows
+    /// stands.
+    fn front(
+        &self,
+        s: usize,
+        children: &[Remainder<T>],
+        scratch: &mut Scratch<T>,
+    ) -> Result<(Front<T>, Remainder<T>), Stuck> {
+        let node = &self.plan.nodes[s];
+        let names = |rows: &[usize]| rows.iter().map(|row| *row as u32).collect::<Vec<u32>>();
+        let mut columns: Vec<u32> = node.columns.clone().map(|column| column as u32).collect();
+        children.iter().for_each(|child| columns.extend(&child.rows[..child.passed_on]));
+        let (width, below) = (columns.len(), names(&node.rows));
+        let m = width + below.len();
+        let places = &mut scratch.places;
+        columns.iter().chain(&below).enumerate().for_each(|(k, row)| places[*row as usize] = k as u32);
+
+        let mut lower = vec![T::default(); m * width];
+        for (k, column) in node.columns.clone().enumerate() {
+            let j = self.plan.order[column];
+            let entries = self.a.row_idx_of_col_raw(j).iter().zip(self.a.val_of_col(j));
+            for (i, v) in entries {
+                let row = self.plan.place[*i];
+                if row >= column {
+                    lower[k * m + places[row] as usize] = *v * (self.scaling[*i] * self.scaling[j]);
+                }
+            }
+        }
+        let mut rest = vec![T::default(); below.len() * below.len()];
+        for child in children {
+            child.add_to(places, &mut lower, &mut rest, m, width);
+        }
+
+        if scratch.product.len() < lower.len() {
+            scratch.product.resize(lower.len(), T::default());
+        }
+        let before = columns.clone();
+        let inverse = Vec::with_capacity(width);
+        let product = &mut scratch.product;
+        let mut panel = Panel { values: &mut lower, product, names: &mut columns, rows: m, inverse };
+        panel.eliminate();
+        let inverse = panel.inverse;
+        let done = inverse.len();
+        if done < width && below.is_empty() {
+            return Err(Stuck(columns[done] as usize));
+        }
+        if columns != before {
+            columns.iter().enumerate().for_each(|(k, row)| scratch.places[*row as usize] = k as u32);
+        }
+        if !below.is_empty() {
+            let part = |values| MatRef::from_column_major_slice(values, m, done).subrows(width, m - width);
+            let c = MatMut::from_column_major_slice_mut(&mut rest, m - width, m - width);
+            subtract_product(c, part(&lower[..m * done]), part(&scratch.product[..m * done]));
+        }
+        let passed_on = width - done;
+        let remainder = Remainder {
+            rows: columns[done..].iter().chain(&below).copied().collect(),
+            passed_on,
+            values: if passed_on == 0 { rest } else { joined(&lower, &rest, m, width, done) },
+        };
+        lower.truncate(m * done);
+        if passed_on > 0 {
+            lower.shrink_to_fit();
+        }
+        Ok((Front { columns, rows: m, lower, inverse, above: Vec::new() }, remainder))
+    }
+}
+
+/// The remainder of a front that passes columns on: those columns, then the rest.
+fn joined<T: Field>(lower: &[T], rest: &[T], m: usize, width: usize, done: usize) -> Vec<T> {
+    let (size, below) = (m - done, m - width);
+    let mut values = Vec::with_capacity(size * size);
+    for column in done..width {
+        values.extend_from_slice(&lower[column * m + done..(column + 1) * m]);
+    }
+    for column in 0..below {
+        values.resize(values.len() + width - done, T::default());
+        values.extend_from_slice(&rest[column * below..(column + 1) * below]);
+    }
+    values
+}
+
+impl<T: Field> Remainder<T> {
+    /// Adds this to the front of the parent, whose rows stand at `places`.
+    fn add_to(&self, places: &[u32], lower: &mut [T], rest: &mut [T], m: usize, width: usize) {
+        let size = self.rows.len();
+        let at: Vec<usize> = self.rows.iter().map(|row| places[*row as usize] as usize).collect();
+        for j in 0..size {
+            let source = &self.values[j * size + j..(j + 1) * size];
+            if j < self.passed_on {
+                // A column that was passed on stands behind the parent's own, so its entries may change sides.
+                for (i, v) in at[j..].iter().zip(source) {
+                    let (row, column) = (at[j].max(*i), at[j].min(*i));
+                    lower[column * m + row] += *v;
+                }
+            } else if at[j] < width {
+                let target = &mut lower[at[j] * m..(at[j] + 1) * m];
+                for (i, v) in at[j..].iter().zip(source) {
+                    target[*i] += *v;
+                }
+            } else {
+                let below = m - width;
+                let column = at[j] - width;
+                let target = &mut rest[column * below..(column + 1) * below];
+                for (i, v) in at[j..].iter().zip(source) {
+                    target[*i - width] += *v;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! Forward and backward substitution along the tree, its tasks side by side, up to eight right-hand sides at once.
+//!
+//! Upwards every front takes its rows of the right-hand side, adds what its children pass on, solves L y = b for its
+//! columns and passes the rest on. Downwards it receives the solution of the rows it passed on and solves Lᵀ x = y.
+//! The order of every sum is that of the tree.
+
+use super::field::{Field, Lanes};
+use super::numeric::{Front, parts};
+use super::symbolic::{Plan, Task};
+use pulp::Arch;
+use rayon::prelude::*;
+
+/// L B Lᵀ x = b, with one row of `x` for each column in the order of elimination.
+pub(super) fn solve<T: Field, L: Lanes<T>>(plan: &Plan, fronts: &[Front<T>], x: &mut [L]) {
+    let substitution = Substitution { plan, fronts };
+    substitution.forward(&plan.root, x);
+    substitution.backward(&plan.root, x, Vec::new());
+}
+
+struct Substitution<'a, T> {
+    plan: &'a Plan,
+    fronts: &'a [Front<T>],
+}
+
+impl<T: Field> Substitution<'_, T> {
+    /// The first column of node s.
+    fn first(&self, s: usize) -> usize {
+        self.plan.nodes.get(s).map_or(self.plan.order.len(), |node| node.columns.start)
+    }
+
+    /// L y = b for the columns of a task, then B⁻¹ y; gives what its last front passes on.
+    fn forward<L: Lanes<T>>(&self, task: &Task, x: &mut [L]) -> Vec<L> {
+        let subtasks: Vec<_> = task.subtasks.iter().zip(parts(task, x, |s| self.first(s))).collect();
+        let results: Vec<_> = subtasks.into_par_iter().map(|(task, x)| self.forward(task, x)).collect();
+        let mut results = task.subtasks.iter().zip(results);
+        let base = self.first(task.nodes.start);
+        let (mut stack, mut v) = (Vec::new(), Vec::new());
+        let mut ready = results.next();
+        let mut s = task.nodes.start;
+        while s < task.nodes.end {
+            if let Some((subtask, passed_on)) = ready.take_if(|(subtask, _)| subtask.nodes.start == s) {
+                stack.extend(passed_on);
+                s = subtask.nodes.end;
+                ready = results.next();
+                continue;
+            }
+            let (front, node) = (&self.fronts[s], &self.plan.nodes[s]);
+            v.clear();
+            v.extend(front.columns.iter().map(|column| {
+                let column = *column as usize;
+                // A column that a child passed on arrives with the child's sums.
+                if node.columns.contains(&column) { x[column - base] } else { L::ZERO }
+            }));
+            v.resize(front.rows, L::ZERO);
+            let arrived: usize = node.children.iter().map(|c| self.fronts[*c].above.len()).sum();
+            let start = stack.len() - arrived;
+            let mut sums = stack[start..].iter();
+            for child in &node.children {
+                for (row, sum) in self.fronts[*child].above.iter().zip(&mut sums) {
+                    v[*row as usize].add(sum);
+                }
+            }
+            stack.truncate(start);
+            front.forward(&mut v);
+            front.columns[..front.width()].iter().zip(&v).for_each(|(c, y)| x[*c as usize - base] = *y);
+            stack.extend_from_slice(&v[front.width()..]);
+            s += 1;
+        }
+        stack
+    }
+
+    /// Lᵀ x = y for the columns of a task; `known` is the solution of the rows that its last front passed on.
+    fn backward<L: Lanes<T>>(&self, task: &Task, x: &mut [L], known: Vec<L>) {
+        let base = self.first(task.nodes.start);
+        let (mut stack, mut v) = (known, Vec::new());
+        let mut waiting: Vec<Vec<L>> = Vec::new();
+        let mut subtasks = task.subtasks.iter().rev().peekable();
+        let mut s = task.nodes.end;
+        while s > task.nodes.start {
+            let front = &self.fronts[s - 1];
+            let known = stack.split_off(stack.len() - front.above.len());
+            if let Some(subtask) = subtasks.next_if(|subtask| subtask.nodes.end == s) {
+                waiting.push(known);
+                s = subtask.nodes.start;
+                continue;
+            }
+            s -= 1;
+            let columns = &front.columns[..front.width()];
+            v.clear();
+            v.extend(columns.iter().map(|column| x[*column as usize - base]));
+            v.extend_from_slice(&known);
+            front.backward(&mut v);
+            columns.iter().zip(&v).for_each(|(c, y)| x[*c as usize - base] = *y);
+            for child in &self.plan.nodes[s].children {
+                stack.extend(self.fronts[*child].above.iter().map(|row| v[*row as usize]));
+            }
+        }
+        let parts = task.subtasks.iter().zip(parts(task, x, |s| self.first(s)));
+        let parts: Vec<_> = parts.zip(waiting.into_iter().rev()).collect();
+        parts.into_par_iter().for_each(|((task, x), known)| self.backward(task, x, known));
+    }
+}
+
+/// Columns of L that go through the rows together.
+const TOGETHER: usize = 4;
+
+impl<T: Field> Front<T> {
+    fn column(&self, j: usize) -> &[T] {
+        &self.lower[j * self.rows..(j + 1) * self.rows]
+    }
+
+    /// v₁ ← L₁₁⁻¹ v₁, v₂ ← v₂ − L₂₁ v₁, then v₁ ← B⁻¹ v₁.
+    fn forward<L: Lanes<T>>(&self, v: &mut [L]) {
+        Arch::new().dispatch(
+            #[inline(always)]
+            || {
+                let width = self.width();
+                let mut j = 0;
+                while j + TOGETHER <= width {
+                    let l: [&[T]; TOGETHER] = std::array::from_fn(|c| self.column(j + c));
+                    for c in 0..TOGETHER {
+                        for r in c + 1..TOGETHER {
+                            let y = v[j + c];
+                            v[j + r].subtract(l[c][j + r], &y);
+                        }
+                    }
+                    let y: [L; TOGETHER] = std::array::from_fn(|c| v[j + c]);
+                    let below = &mut v[j + TOGETHER..];
+                    let l = l.map(|column| &column[j + TOGETHER..][..below.len()]);
+                    for (i, v) in below.iter_mut().enumerate() {
+                        for c in 0..TOGETHER {
+                            v.subtract(l[c][i], &y[c]);
+                        }
+                    }
+                    j += TOGETHER;
+                }
+                for j in j..width {
+                    let y = v[j];
+                    let l = &self.column(j)[j + 1..];
+                    v[j + 1..].iter_mut().zip(l).for_each(|(v, l)| v.subtract(*l, &y));
+                }
+                let mut j = 0;
+                while j < width {
+                    let [a, b] = self.inverse[j];
+                    let (x, mut scaled) = (v[j], L::ZERO);
+                    scaled.subtract(-a, &x);
+                    if b != T::default() {
+                        let (y, d) = (v[j + 1], self.inverse[j + 1][0]);
+                        scaled.subtract(-b, &y);
+                        let mut second = L::ZERO;
+                        second.subtract(-b, &x);
+                        second.subtract(-d, &y);
+                        v[j + 1] = second;
+                    }
+                    v[j] = scaled;
+                    j += if b != T::default() { 2 } else { 1 };
+                }
+            },
+        );
+    }
+
+    /// v₁ ← L₁₁⁻ᵀ (v₁ − L₂₁ᵀ v₂).
+    fn backward<L: Lanes<T>>(&self, v: &mut [L]) {
+        Arch::new().dispatch(
+            #[inline(always)]
+            || {
+                let mut j = self.width();
+                while j > 0 {
+                    if j >= TOGETHER {
+                        j -= TOGETHER;
+                        let l: [&[T]; TOGETHER] = std::array::from_fn(|c| self.column(j + c));
+                        let (head, below) = v.split_at_mut(j + TOGETHER);
+                        let mut y: [L; TOGETHER] = std::array::from_fn(|c| head[j + c]);
+                        L::subtract_dots(&mut y, l.map(|column| &column[j + TOGETHER..]), below);
+                        for c in (0..TOGETHER).rev() {
+                            for r in c + 1..TOGETHER {
+                                let later = y[r];
+                                y[c].subtract(l[c][j + r], &later);
+                            }
+                            head[j + c] = y[c];
+                        }
+                    } else {
+                        j -= 1;
+                        let (head, below) = v.split_at_mut(j + 1);
+                        let mut y = [head[j]];
+                        L::subtract_dots(&mut y, [&self.column(j)[j + 1..]], below);
+                        head[j] = y[0];
+                    }
+                }
+            },
+        );
+    }
+}
