@@ -32,6 +32,24 @@ pub struct Output {
     force: bool,
 }
 
+/// Where the mesh is fine: about the lowest rim point of a disc, about the contact's position on a plate.
+#[derive(Args)]
+pub struct Fine {
+    /// Element size at the contact
+    #[arg(long, default_value = "0.4 mm", value_parser = length)]
+    contact_size: f64,
+    /// Distance from the contact within which elements stay fine
+    #[arg(long, default_value = "2 mm", value_parser = length)]
+    contact_radius: f64,
+}
+
+impl Fine {
+    /// Elements of `coarse` size away from the contact.
+    fn grading(&self, coarse: f64) -> Grading {
+        Grading::graded(self.contact_size, self.contact_radius, coarse)
+    }
+}
+
 #[derive(Args)]
 pub struct DiscOptions {
     #[command(flatten)]
@@ -45,12 +63,8 @@ pub struct DiscOptions {
     /// Element size away from the contact
     #[arg(long, default_value = "3 mm", value_parser = length)]
     size: f64,
-    /// Element size at the contact, the lowest rim point
-    #[arg(long, default_value = "0.4 mm", value_parser = length)]
-    contact_size: f64,
-    /// Distance from the contact within which elements stay fine
-    #[arg(long, default_value = "2 mm", value_parser = length)]
-    contact_radius: f64,
+    #[command(flatten)]
+    fine: Fine,
 }
 
 #[derive(Args)]
@@ -72,12 +86,8 @@ pub struct PlateOptions {
     /// Element size away from the contact
     #[arg(long, default_value = "8 mm", value_parser = length)]
     size: f64,
-    /// Element size at the contact
-    #[arg(long, default_value = "0.4 mm", value_parser = length)]
-    contact_size: f64,
-    /// Distance from the contact within which elements stay fine
-    #[arg(long, default_value = "2 mm", value_parser = length)]
-    contact_radius: f64,
+    #[command(flatten)]
+    fine: Fine,
 }
 
 #[derive(Args)]
@@ -111,12 +121,8 @@ pub struct RigOptions {
     /// Element size of the slider away from the contact
     #[arg(long, default_value = "8 mm", value_parser = length)]
     slider_size: f64,
-    /// Element size at the contact
-    #[arg(long, default_value = "0.4 mm", value_parser = length)]
-    contact_size: f64,
-    /// Distance from the contact within which elements stay fine
-    #[arg(long, default_value = "2 mm", value_parser = length)]
-    contact_radius: f64,
+    #[command(flatten)]
+    fine: Fine,
     /// Position of the contact on the slider along x, from its middle
     #[arg(long, default_value = "0", value_parser = length, allow_hyphen_values = true)]
     contact_x: f64,
@@ -144,12 +150,12 @@ pub fn run(action: &Action, common: &Common) -> Result<ExitCode> {
     match action {
         Action::Info(options) => return info(options, common),
         Action::Disc(o) => {
-            let grading = Grading::graded(o.contact_size, o.contact_radius, o.size);
+            let grading = o.fine.grading(o.size);
             let spec = DiscSpec { outer_radius: o.outer_radius, hub_radius: o.hub_radius, grading };
             write(&generate::disc(&spec)?, &o.output, common)?;
         }
         Action::Plate(o) => {
-            let grading = Grading::graded(o.contact_size, o.contact_radius, o.size);
+            let grading = o.fine.grading(o.size);
             let contact = [o.contact_x, o.contact_y];
             let spec = PlateSpec { length: o.length, width: o.width, contact, grading };
             write(&generate::plate(&spec)?, &o.output, common)?;
@@ -164,7 +170,7 @@ fn rig_spec(o: &RigOptions) -> RigSpec {
         disc: DiscSpec {
             outer_radius: o.outer_radius,
             hub_radius: o.hub_radius,
-            grading: Grading::graded(o.contact_size, o.contact_radius, o.disc_size),
+            grading: o.fine.grading(o.disc_size),
         },
         bar: BarSpec {
             length: o.bar_length.abs(),
@@ -175,7 +181,7 @@ fn rig_spec(o: &RigOptions) -> RigSpec {
             length: o.slider_length,
             width: o.slider_width,
             contact: [o.contact_x, o.contact_y],
-            grading: Grading::graded(o.contact_size, o.contact_radius, o.slider_size),
+            grading: o.fine.grading(o.slider_size),
         },
         slider_thickness: o.slider_thickness,
     }

@@ -1,6 +1,6 @@
 //! The sparse matrix of the whole program, its products and norms, and sparse vectors for contact directions.
 
-use faer::sparse::{SymbolicSparseColMat, Triplet};
+use faer::sparse::{SparseColMat, SymbolicSparseColMat, Triplet};
 use faer::{Mat, MatMut, MatRef};
 use rayon::prelude::*;
 use std::ops::{AddAssign, Mul};
@@ -171,7 +171,7 @@ pub fn multiply_vector<T: Scalar>(a: &SparseMatrix, x: &[T]) -> Vec<T> {
 ///
 /// # Panics
 /// When there is no term, or the shapes do not agree.
-pub fn add_scaled(terms: &[(f64, &SparseMatrix)]) -> SparseMatrix {
+pub fn add_scaled<T: Scalar>(terms: &[(T, &SparseMatrix)]) -> SparseColMat<usize, T> {
     let (first, rest) = terms.split_first().expect("a sum has a term");
     let (nrows, ncols) = (first.1.nrows(), first.1.ncols());
     assert!(
@@ -180,18 +180,18 @@ pub fn add_scaled(terms: &[(f64, &SparseMatrix)]) -> SparseMatrix {
     );
     let same = rest.iter().all(|(_, a)| a.col_ptr() == first.1.col_ptr() && a.row_idx() == first.1.row_idx());
     if same {
-        let mut values: Vec<f64> = first.1.val().iter().map(|v| first.0 * v).collect();
+        let mut values: Vec<T> = first.1.val().iter().map(|v| first.0 * *v).collect();
         for (factor, a) in rest {
-            values.iter_mut().zip(a.val()).for_each(|(sum, v)| *sum += factor * v);
+            values.iter_mut().zip(a.val()).for_each(|(sum, v)| *sum += *factor * *v);
         }
         let pattern = first.1.symbolic().to_owned().expect("memory for a pattern");
-        return SparseMatrix::new(pattern, values);
+        return SparseColMat::new(pattern, values);
     }
     // One task a range of columns; each column merges its sorted rows through a dense accumulator.
-    let parts: Vec<(Vec<usize>, Vec<usize>, Vec<f64>)> = (0..ncols.div_ceil(ROWS_A_TASK))
+    let parts: Vec<(Vec<usize>, Vec<usize>, Vec<T>)> = (0..ncols.div_ceil(ROWS_A_TASK))
         .into_par_iter()
         .map(|task| {
-            let mut accumulator = vec![0.0; nrows];
+            let mut accumulator = vec![T::default(); nrows];
             let mut seen = vec![usize::MAX; nrows];
             let (mut lengths, mut rows, mut values) = (Vec::new(), Vec::new(), Vec::new());
             for j in task * ROWS_A_TASK..ncols.min((task + 1) * ROWS_A_TASK) {
@@ -200,10 +200,10 @@ pub fn add_scaled(terms: &[(f64, &SparseMatrix)]) -> SparseMatrix {
                     for (i, v) in a.row_idx_of_col_raw(j).iter().zip(a.val_of_col(j)) {
                         if seen[*i] != j {
                             seen[*i] = j;
-                            accumulator[*i] = 0.0;
+                            accumulator[*i] = T::default();
                             rows.push(*i);
                         }
-                        accumulator[*i] += factor * v;
+                        accumulator[*i] += *factor * *v;
                     }
                 }
                 rows[begin..].sort_unstable();
@@ -222,7 +222,7 @@ pub fn add_scaled(terms: &[(f64, &SparseMatrix)]) -> SparseMatrix {
         rows.extend(part_rows);
         values.extend(part_values);
     }
-    SparseMatrix::new(SymbolicSparseColMat::new_checked(nrows, ncols, starts, None, rows), values)
+    SparseColMat::new(SymbolicSparseColMat::new_checked(nrows, ncols, starts, None, rows), values)
 }
 
 /// ‖A‖₁ = max_j Σ_i |a_ij|, which is also ‖A‖_∞ for a symmetric matrix.

@@ -1,12 +1,14 @@
 //! Complex eigenvalues at steady sliding: (λ² M + λ (C + C_c) + K + K_σ + K_c) φ = 0, λ = σ + iω, unstable when σ > 0.
 //!
 //! [`complex_modes`] projects the problem on real modes and the static responses to the contact directions, solves the
-//! small one, and lets the residuals on the full order enrich the basis until every pair is right there.
+//! small one, and lets the residuals on the full order enrich the basis until every pair is right there. [`confirm`]
+//! looks for the same pairs by two-level Arnoldi on the full order, which shares nothing with the projection.
 
 mod analysis;
 mod basis;
 mod block;
 mod budget;
+mod full_order;
 mod interface;
 mod operator;
 mod projected;
@@ -14,6 +16,7 @@ mod projected;
 mod tests;
 
 pub use analysis::complex_modes;
+pub use full_order::{Confirmation, confirm};
 
 use crate::linalg::c64;
 

@@ -311,6 +311,26 @@ fn modes_do_not_depend_on_the_number_of_threads() {
     }
 }
 
+/// The projection and two-level Arnoldi on the full order are two ways to the same eigenvalues.
+#[test]
+fn the_second_method_confirms_every_mode_and_notices_one_that_is_left_out() {
+    for kind in 0..8 {
+        let system = damped(random_system(60, 4, 20.0, 300 + kind), kind);
+        let state = steady(&system);
+        let real = dense_modes(&system, 45);
+        let band = [0.01, real.frequency_hz(24)];
+        let mut found = complex_modes(&system, &state, &real, band, &()).unwrap();
+        let confirmation = confirm(&system, &state, &found, band, &()).unwrap();
+        assert!(confirmation.holds(), "kind {kind}: {confirmation:?}");
+        assert_eq!(confirmation.confirmed, found.modes.iter().filter(|m| m.eigenvalue.im > 0.0).count());
+        assert!(confirmation.largest_difference < 1e-8 * confirmation.condition.max(1.0), "{confirmation:?}");
+        let left_out = found.modes.remove(5).eigenvalue;
+        let confirmation = confirm(&system, &state, &found, band, &()).unwrap();
+        assert_eq!(confirmation.missed.len(), 1);
+        assert!((confirmation.missed[0] - left_out).norm() < 1e-8 * left_out.norm());
+    }
+}
+
 /// Left vectors solve ψᴴQ(λ) = 0 on the full order, formed here as a dense matrix.
 #[test]
 fn left_vectors_annihilate_the_operator_from_the_left() {
