@@ -1,6 +1,7 @@
 //! The analyses of a case in their order, each result handed on as soon as it is there.
 
 use super::modes::{add_modal_damping, compare, labels, named, part_modes};
+use super::nearest::{band_around, keep_nearest};
 use super::prepared::Prepared;
 use crate::case::{Case, ContactState};
 use crate::equilibrium::{self, SteadyOptions, SteadySliding};
@@ -123,7 +124,10 @@ pub fn analyse(
         let state = clock
             .time("steady sliding", || equilibrium::solve_steady(&prepared.system, &options, observer))?;
         let steady = steady_result(prepared, state);
-        record(Stage::Steady(&steady))?;
+        let slides = !prepared.system.pairs.is_empty();
+        if slides {
+            record(Stage::Steady(&steady))?;
+        }
         results.steady = Some(steady);
         let state = &results.steady.as_ref().expect("set above").state;
         if selection.modes {
@@ -148,6 +152,7 @@ pub fn analyse(
                 results.complex = Some(complex);
             }
         }
+        results.steady = results.steady.filter(|_| slides);
     }
     results.warnings.extend(thickness_warnings(prepared));
     results.timings = clock.phases;
@@ -184,13 +189,24 @@ fn complex_result(
     let mut system = prepared.system.clone();
     let stiffness = equilibrium::tangent_stiffness(&prepared.system, &state.displacement)?.into_owned();
     let preloaded = Structure { stiffness, ..prepared.system.structure.clone() };
-    let (basis, _) = clock.time("real modes of the whole", || {
-        modal::compute(&preloaded, ModesWanted::BelowHz(cea.basis_below), observer)
-    })?;
-    add_modal_damping(&mut system.structure, &basis, prepared)?;
-    let modes = clock.time("complex eigenvalues", || {
-        stability::complex_modes(&system, state, &basis, cea.band, observer)
-    })?;
+    let mut band = cea.band;
+    if cea.nearest.is_some() {
+        band = clock.time("counting modes", || band_around(&preloaded, cea))?;
+    }
+    let (basis, modes) = loop {
+        let below = if cea.nearest.is_some() { cea.basis_below.min(1.5 * band[1]) } else { cea.basis_below };
+        let (basis, _) = clock.time("real modes of the whole", || {
+            modal::compute(&preloaded, ModesWanted::BelowHz(below), observer)
+        })?;
+        add_modal_damping(&mut system.structure, &basis, prepared)?;
+        let mut modes = clock.time("complex eigenvalues", || {
+            stability::complex_modes(&system, state, &basis, band, observer)
+        })?;
+        match keep_nearest(&mut modes, cea, band) {
+            Some(wider) => band = wider,
+            None => break (basis, modes),
+        }
+    };
     let real = named(prepared, "whole", basis, &prepared.assembled);
     let labels = labels(prepared, &real, &prepared.assembled);
     let participation = modes
@@ -208,7 +224,7 @@ fn complex_result(
         shapes: modes.modes.iter().map(|m| prepared.assembled.dofs.expand_complex(&m.right)).collect(),
         participation,
         measured_squeal_hz: cea.measured_squeal.iter().map(|f| (*f, cea.measured_source.clone())).collect(),
-        band_hz: cea.band,
+        band_hz: band,
         modes,
     }))
 }

@@ -5,12 +5,14 @@
 //! * [`eigenpairs`]: the lowest eigenpairs of K x = θ M x with the count that proves none is missing, by
 //!   [`lanczos`].
 //! * [`dense`]: small symmetric eigenproblems and the likeness of two vectors.
+//! * [`matrix_market`]: matrices from and to files.
 //! * [`tall`]: products of tall matrices, such as a set of modes.
 
 pub mod dense;
 pub mod eigenpairs;
 pub mod factor;
 pub mod lanczos;
+pub mod matrix_market;
 pub mod sparse;
 pub mod tall;
 
