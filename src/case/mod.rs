@@ -33,6 +33,9 @@ pub struct Case {
     /// The mesh, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh: Option<MeshSource>,
+    /// M, C and K from files, instead of a mesh and what stands on it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub matrices: Option<Matrices>,
     /// Nodes given by their coordinates \[m\]; each is a region of one point under its name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub point: BTreeMap<String, [f64; 3]>,
@@ -86,6 +89,39 @@ pub enum MeshSource {
     },
     /// The built-in generator.
     Generated(GeneratedMesh),
+}
+
+/// M, C and K from MatrixMarket files (paths relative to the case file).
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Matrices {
+    /// M \[kg, kg m²\].
+    pub mass: String,
+    /// K \[N/m, N m\]; an imaginary part is hysteretic damping.
+    pub stiffness: String,
+    /// C \[N s/m, N m s\]; none when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub damping: Option<String>,
+    /// External force f \[N, N m\], a matrix of one column; none when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load: Option<String>,
+    /// A table (CSV) of what each row is: `node`, its motion `ux` … `rz`, and the node's coordinates `x`, `y`, `z`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dofs: Option<String>,
+}
+
+/// Contact points that are given, not found on a mesh.
+///
+/// A direction is a sum of degrees of freedom counted from 1, each with an optional factor before it:
+/// `12 -45` is u₁₂ − u₄₅, `-3 +0.5*7` is −u₃ + ½ u₇. The normal closes the contact when u moves along it; the tangents
+/// are the displacement of the body relative to the counter-body along and across the sliding direction.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum ContactPoints {
+    /// A table (CSV) with the columns `normal`, `t1` and, when there are any, `t2`, `weight` (1), `gap` (0) \[m\],
+    /// `x`, `y`, `z` \[m\].
+    File(String),
+    /// Rows of `normal`, `t1` and, when there is one, `t2`.
+    Rows(Vec<Vec<String>>),
 }
 
 /// A mesh made by the built-in generator, so that its sizes are scalars of the case like any other.
@@ -223,9 +259,14 @@ pub enum Pressing {
 /// A contact pair.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Contact {
+    /// The contact points themselves; only with matrices, where they stand for the regions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub points: Option<ContactPoints>,
     /// Region of the body: rim lines, a face, or a point.
+    #[serde(skip_serializing_if = "String::is_empty")]
     pub body: String,
     /// Region of the counter-body, or `ground`.
+    #[serde(skip_serializing_if = "String::is_empty")]
     pub counter: String,
     /// Direction in which the body moves into the ground; only for a contact with the ground.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -377,10 +418,18 @@ pub struct ModesAnalysis {
 /// Complex eigenvalues at steady sliding.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CeaAnalysis {
-    /// Frequency band \[Hz\].
+    /// Frequency band \[Hz\]; the pairs nearest to a frequency are sought inside.
     pub band: [f64; 2],
+    /// Only the pairs whose λ is nearest to iω of this frequency \[Hz\] …
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nearest: Option<f64>,
+    /// … this many of them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub count: Option<usize>,
     /// Real modes up to this frequency span the first subspace \[Hz\].
     pub basis_below: f64,
+    /// Looks for the same modes again by a second, independent method on the full order.
+    pub confirm: bool,
     /// Measured squeal frequencies \[Hz\].
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub measured_squeal: Vec<f64>,

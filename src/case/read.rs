@@ -50,6 +50,13 @@ fn read_root(root: &Section, folder: PathBuf) -> Case {
         prestress: root.boolean("prestress").or(false),
         folder,
         mesh: root.section("mesh", read_mesh),
+        matrices: root.section("matrices", |s| Matrices {
+            mass: s.string("mass").required("the path of a MatrixMarket file"),
+            stiffness: s.string("stiffness").required("the path of a MatrixMarket file"),
+            damping: s.string("damping").optional(),
+            load: s.string("load").optional(),
+            dofs: s.string("dofs").optional(),
+        }),
         point: root
             .section("point", |s| {
                 let position = |name: &String| (name.clone(), s.quantities(name, LENGTH).or([0.0; 3]));
@@ -207,8 +214,26 @@ fn read_support(s: &Section) -> Held {
 }
 
 fn read_contact(s: &Section) -> Contact {
-    let counter = s.string("counter").required("a region, or \"ground\"");
+    let points = if s.is_string("points") {
+        s.string("points").optional().map(ContactPoints::File)
+    } else {
+        let three =
+            |rows: &Vec<Vec<String>>| !rows.is_empty() && rows.iter().all(|r| matches!(r.len(), 2 | 3));
+        s.string_rows("points")
+            .check("rows of normal, t1 and perhaps t2", three)
+            .optional()
+            .map(ContactPoints::Rows)
+    };
+    let given = s.has("points");
+    let region = |key: &str, expected: &str| {
+        let found = s.string(key);
+        if given { found.or(String::new()) } else { found.required(expected) }
+    };
+    let counter = region("counter", "a region, or \"ground\"");
     let ground = counter == "ground";
+    for key in ["body", "counter", "into", "placement"].into_iter().filter(|key| given && s.has(key)) {
+        s.fault(key, "a place on a mesh", "no such key beside `points`", "Remove it");
+    }
     let load = s.quantity("load", FORCE).positive().optional();
     let approach = s.quantity("approach", LENGTH).optional();
     if load.is_some() && approach.is_some() {
@@ -236,7 +261,7 @@ fn read_contact(s: &Section) -> Contact {
             "",
         );
     }
-    if !ground && s.has("into") {
+    if !ground && !given && s.has("into") {
         s.fault("into", "a direction", "no such key for a contact between two parts", "Remove it");
     }
     let normal = s.section("normal", |n| {
@@ -277,7 +302,8 @@ fn read_contact(s: &Section) -> Contact {
         s.fault("friction", "nothing", "a table such as { law = \"coulomb\", mu0 = 0.4 }", "");
     }
     Contact {
-        body: s.string("body").required("a region of rim lines, of faces, or of a point"),
+        points,
+        body: region("body", "a region of rim lines, of faces, or of a point"),
         counter,
         placement: s.section("placement", |p| Placement {
             lead_angle: p
@@ -294,7 +320,11 @@ fn read_contact(s: &Section) -> Contact {
             .quantity("sliding_velocity", VELOCITY)
             .check("a velocity that is not zero (steady sliding has no state at rest)", |v| *v != 0.0)
             .required(VELOCITY.name),
-        stroke: s.quantity("stroke", LENGTH).non_negative().or(0.0),
+        stroke: s
+            .quantity("stroke", LENGTH)
+            .non_negative()
+            .check("0 beside `points`, which do not travel", |v| !given || *v == 0.0)
+            .or(0.0),
         sliding_direction: s
             .quantities("sliding_direction", NUMBER)
             .check("a vector that is not zero", |v| v.iter().any(|x| *x != 0.0))
@@ -385,16 +415,29 @@ fn read_modes(s: &Section) -> ModesAnalysis {
 }
 
 fn read_cea(s: &Section) -> CeaAnalysis {
-    let band = s
-        .quantities("band", FREQUENCY)
-        .check("a lower and a higher frequency", |[a, b]| *a >= 0.0 && b > a)
-        .required("a band such as [0, \"6 kHz\"]");
+    let nearest = s.quantity("nearest", FREQUENCY).positive().optional();
+    let count = s.count("count").optional();
+    if s.has("nearest") != s.has("count") {
+        let absent = if s.has("count") { "nearest" } else { "count" };
+        s.fault(absent, "nothing", "`nearest = \"2 kHz\"` and `count = 50` together", "");
+    }
+    let band =
+        s.quantities("band", FREQUENCY).check("a lower and a higher frequency", |[a, b]| *a >= 0.0 && b > a);
+    let band = match nearest {
+        Some(hz) => band
+            .check("a band that holds the frequency of `nearest`", |[a, b]| *a <= hz && hz <= *b)
+            .or([0.0, 4.0 * hz]),
+        None => band.required("a band such as [0, \"6 kHz\"]"),
+    };
     CeaAnalysis {
+        nearest,
+        count,
         band,
         basis_below: s
             .quantity("basis_below", FREQUENCY)
             .within(Bound::Included(band[1]), Bound::Unbounded)
             .or(1.5 * band[1]),
+        confirm: s.boolean("confirm").or(false),
         measured_squeal: s.quantity_list("measured_squeal", FREQUENCY).or(Vec::new()),
         measured_source: s.string("measured_source").or(String::new()),
     }
@@ -411,6 +454,16 @@ fn check_names(root: &Section, case: &Case) {
     for (key, material) in used {
         if !material.is_empty() && !materials.contains(&material.as_str()) {
             unknown_name(root, &key, material, "material", &materials);
+        }
+    }
+    for (name, contact) in case.contact.iter().filter(|_| case.matrices.is_none()) {
+        if contact.points.is_some() {
+            root.fault(
+                &format!("contact.{name}.points"),
+                "contact points",
+                "`body` and `counter`, on a mesh",
+                "",
+            );
         }
     }
     let parts: Vec<&str> = case.shell.keys().chain(case.bar.keys()).map(String::as_str).collect();
@@ -430,11 +483,57 @@ fn check_names(root: &Section, case: &Case) {
             );
         }
     }
-    if case.cea.is_some() && case.contact.is_empty() {
+    if case.cea.is_some() && case.contact.is_empty() && case.matrices.is_none() {
         root.fault("cea", "no [contact] in the case", "a contact, without which nothing slides", "");
     }
-    if case.mesh.is_none() && case.point.is_empty() {
-        root.fault("mesh", "nothing", "a [mesh] with a file, or [point] coordinates", "");
+    if case.matrices.is_some() {
+        check_matrices(root, case);
+    } else if case.mesh.is_none() && case.point.is_empty() {
+        root.fault("mesh", "nothing", "a [mesh] with a file, [point] coordinates, or [matrices]", "");
+    }
+}
+
+/// What a case with matrices may not say besides, and what only such a case may say.
+fn check_matrices(root: &Section, case: &Case) {
+    let built = ["mesh", "point", "material", "shell", "bar", "mass", "spring", "rigid", "support", "force"];
+    for key in built.into_iter().filter(|key| root.has(key)) {
+        root.fault(
+            key,
+            "a part of a model",
+            "no such section beside [matrices], which are the model",
+            "Remove one of them",
+        );
+    }
+    if case.prestress {
+        root.fault(
+            "prestress",
+            "true",
+            "false beside [matrices]",
+            "Export K with the geometric stiffness in it",
+        );
+    }
+    for (name, contact) in &case.contact {
+        if contact.points.is_none() {
+            let help = "Each point gives its normal and tangential degrees of freedom";
+            root.fault(
+                &format!("contact.{name}.points"),
+                "nothing",
+                "contact points, beside [matrices]",
+                help,
+            );
+        }
+    }
+    for (name, modes) in &case.modes {
+        let parts =
+            [("parts", !modes.parts.is_empty()), ("clamp", !modes.clamp.is_empty()), ("free", modes.free)];
+        for (key, _) in parts.into_iter().filter(|(_, there)| *there) {
+            root.fault(
+                &format!("modes.{name}.{key}"),
+                "a part of a model",
+                "no such key beside [matrices]",
+                "Remove it",
+            );
+        }
     }
 }
 

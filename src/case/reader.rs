@@ -206,6 +206,16 @@ impl<'a> Section<'a> {
         self.find(key, "a string", string_of)
     }
 
+    /// A list of rows of strings.
+    pub fn string_rows(&'a self, key: &str) -> Found<'a, Vec<Vec<String>>> {
+        self.find(key, "a list of rows of strings", |value| list_of(value, |row| list_of(row, string_of)))
+    }
+
+    /// Whether the value of `key` is a string.
+    pub fn is_string(&self, key: &str) -> bool {
+        self.table.get(key).is_some_and(|value| value.get_ref().as_str().is_some())
+    }
+
     /// A list of strings; a single string is a list of one.
     pub fn strings(&'a self, key: &str) -> Found<'a, Vec<String>> {
         self.find(key, "a list of strings", |value| match value {

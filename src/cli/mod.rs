@@ -5,6 +5,7 @@
 
 mod analyse;
 mod check;
+mod export;
 mod mesh;
 mod new;
 mod progress;
@@ -47,6 +48,8 @@ enum Action {
     Cea(analyse::Options),
     /// Check a case and its mesh without running it, and list its parameters
     Check(check::Options),
+    /// Write M, C, K, the degrees of freedom and the contact points of a case, for other programs
+    Export(export::Options),
     /// Write a case and a mesh to start from
     New(new::Options),
     /// Generate or inspect a mesh
@@ -82,6 +85,7 @@ fn act(command: &Command) -> Result<ExitCode> {
         Action::Modes(options) => analyse::run(options, common, crate::job::Selection::MODES),
         Action::Cea(options) => analyse::run(options, common, crate::job::Selection::CEA),
         Action::Check(options) => check::run(options, common),
+        Action::Export(options) => export::run(options, common),
         Action::New(options) => new::run(options, common),
         Action::Mesh(action) => mesh::run(action, common),
         Action::Validate(options) => validate::run(options, common),

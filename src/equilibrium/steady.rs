@@ -41,6 +41,30 @@ pub fn solve_steady(
     observer: &dyn Observer,
 ) -> Result<SteadySliding> {
     check_input(system)?;
+    if system.pairs.is_empty() && system.load.iter().all(|f| *f == 0.0) {
+        // Nothing pushes: u₀ = 0 is exact, also where K is singular.
+        return Ok(SteadySliding {
+            displacement: vec![0.0; system.n_dofs()],
+            approach: Vec::new(),
+            points: Vec::new(),
+            iterations: 0,
+            residual: 0.0,
+        });
+    }
+    if let Some(rest) = &system.coupling
+        && rest.stiffness.norm_max() > 0.0
+    {
+        return Err(Error::input(
+            Fault::new(
+                "steady sliding",
+                "a stiffness that is not symmetric, with a contact or a load",
+                "one or the other",
+            )
+            .with_help(
+                "Friction of contacts belongs to the contacts of the case: export the stiffness without it",
+            ),
+        ));
+    }
     observer.begin("steady sliding", None);
     let result = solve_prestressed(system, options, observer);
     observer.end();

@@ -1,15 +1,16 @@
 //! The analyses of a case in their order, each result handed on as soon as it is there.
 
-use super::modes::{add_modal_damping, compare, labels, named, of_the_whole, part_modes, wanted};
+use super::complex::{complex_result, whole_modes};
+use super::modes::{compare, named, of_the_whole, part_modes, wanted};
 use super::prepared::Prepared;
 use crate::case::{Case, ContactState};
 use crate::equilibrium::{self, SteadyOptions, SteadySliding};
-use crate::error::Result;
-use crate::modal::{self, ModesWanted, RealModes};
+use crate::error::{Error, Result};
+use crate::linalg::c64;
+use crate::modal;
 use crate::progress::Observer;
 use crate::results::{self, ComplexResult, NamedModes, ResultsFile, RunResults, SteadyResult};
-use crate::stability;
-use crate::system::Structure;
+use std::f64::consts::TAU;
 use std::path::Path;
 use std::time::Instant;
 
@@ -77,6 +78,7 @@ pub fn run_case(
     file.write_measured(&results.measured)?;
     results.timings.push(("write results".into(), recording + writing.elapsed().as_secs_f64()));
     file.finish(&results)?;
+    two_methods_agree(&results)?;
     Ok(results)
 }
 
@@ -109,7 +111,7 @@ pub fn analyse(
     // The modes that span the complex analysis; without prestress they do not wait for the steady state, and lists of
     // the whole's modes take their share.
     let basis = match &case.cea {
-        Some(cea) if selection.cea && !case.prestress => {
+        Some(cea) if selection.cea && !case.prestress && cea.nearest.is_none() => {
             Some(whole_modes(&prepared.system.structure, cea.basis_below, &mut clock, observer)?)
         }
         _ => None,
@@ -136,7 +138,10 @@ pub fn analyse(
         let state = clock
             .time("steady sliding", || equilibrium::solve_steady(&prepared.system, &options, observer))?;
         let steady = steady_result(prepared, state);
-        record(Stage::Steady(&steady))?;
+        let slides = !prepared.system.pairs.is_empty();
+        if slides {
+            record(Stage::Steady(&steady))?;
+        }
         results.steady = Some(steady);
         let state = &results.steady.as_ref().expect("set above").state;
         if selection.modes {
@@ -158,6 +163,7 @@ pub fn analyse(
                 results.complex = Some(complex);
             }
         }
+        results.steady = results.steady.filter(|_| slides);
     }
     results.warnings.extend(thickness_warnings(prepared));
     results.timings = clock.phases;
@@ -184,59 +190,23 @@ fn steady_result(prepared: &Prepared, state: SteadySliding) -> SteadyResult {
     }
 }
 
-fn complex_result(
-    prepared: &Prepared,
-    state: &SteadySliding,
-    basis: Option<RealModes>,
-    clock: &mut Clock,
-    observer: &dyn Observer,
-) -> Result<Option<ComplexResult>> {
-    let Some(cea) = &prepared.case.cea else { return Ok(None) };
-    let mut system = prepared.system.clone();
-    let basis = match basis {
-        Some(basis) => basis,
-        None => {
-            let stiffness = equilibrium::tangent_stiffness(&system, &state.displacement)?.into_owned();
-            let preloaded = Structure { stiffness, ..system.structure.clone() };
-            whole_modes(&preloaded, cea.basis_below, clock, observer)?
-        }
+/// A disagreement between the two methods is an error, but only once the results are there to look at.
+fn two_methods_agree(results: &RunResults) -> Result<()> {
+    let confirmation = results.complex.as_ref().and_then(|c| c.confirmation.as_ref());
+    let Some(wrong) = confirmation.filter(|c| !c.holds()) else { return Ok(()) };
+    let list = |all: &[c64]| {
+        let hz: Vec<String> = all.iter().map(|z| format!("{:.2}", z.im / TAU)).collect();
+        if hz.is_empty() { "none".to_string() } else { hz.join(", ") }
     };
-    add_modal_damping(&mut system.structure, &basis, prepared)?;
-    let modes = clock.time("complex eigenvalues", || {
-        stability::complex_modes(&system, state, &basis, cea.band, observer)
-    })?;
-    let real = named(prepared, "whole", basis, &prepared.assembled);
-    let labels = labels(&real);
-    let participation = modes
-        .modes
-        .iter()
-        .map(|mode| {
-            let words = mode.participation.iter().take(3).filter(|(_, share)| *share >= 0.05);
-            words
-                .map(|(k, share)| format!("{:.0} % {}", 100.0 * share, labels[*k]))
-                .collect::<Vec<_>>()
-                .join(", ")
-        })
-        .collect();
-    Ok(Some(ComplexResult {
-        shapes: modes.modes.iter().map(|m| prepared.assembled.dofs.expand_complex(&m.right)).collect(),
-        participation,
-        measured_squeal_hz: cea.measured_squeal.iter().map(|f| (*f, cea.measured_source.clone())).collect(),
-        band_hz: cea.band,
-        modes,
-    }))
-}
-
-/// The real modes that span the complex analysis.
-fn whole_modes(
-    structure: &Structure,
-    below: f64,
-    clock: &mut Clock,
-    observer: &dyn Observer,
-) -> Result<RealModes> {
-    let modes = clock
-        .time("real modes of the whole", || modal::compute(structure, ModesWanted::BelowHz(below), observer));
-    modes.map(|(modes, _)| modes)
+    Err(Error::analysis(
+        "complex eigenvalues by two methods",
+        format!(
+            "modes that only two-level Arnoldi found [Hz]: {}; that only the projection found: {}",
+            list(&wrong.missed),
+            list(&wrong.unconfirmed)
+        ),
+        "The results are written. Raise `basis_below`, and look at the condition numbers of the modes near these",
+    ))
 }
 
 /// Where Kirchhoff's theory is off by more than a percent at the highest frequency asked for.
@@ -261,12 +231,12 @@ fn thickness_warnings(prepared: &Prepared) -> Vec<String> {
 
 /// Wall times of the phases.
 #[derive(Default)]
-struct Clock {
+pub(super) struct Clock {
     phases: Vec<(String, f64)>,
 }
 
 impl Clock {
-    fn time<T>(&mut self, phase: &str, work: impl FnOnce() -> T) -> T {
+    pub(super) fn time<T>(&mut self, phase: &str, work: impl FnOnce() -> T) -> T {
         let started = Instant::now();
         let value = work();
         self.phases.push((phase.to_string(), started.elapsed().as_secs_f64()));

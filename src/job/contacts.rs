@@ -1,5 +1,6 @@
 //! The contact pairs of a case: points from the meshes, laws from the case.
 
+use super::imported::given_points;
 use super::regions::Regions;
 use crate::case::{Case, Contact, FrictionCurve, Pressing, StiffnessPer};
 use crate::contact::{
@@ -25,7 +26,9 @@ pub fn contact_pairs(
     let mut faults = Faults::new();
     let mut pairs = Vec::new();
     for (name, contact) in &case.contact {
-        let points = if contact.counter == "ground" {
+        let points = if let Some(points) = &contact.points {
+            faults.take(given_points(case, name, contact, points, dofs.n_dofs()))
+        } else if contact.counter == "ground" {
             faults.take(ground_points(name, contact, regions, dofs))
         } else {
             faults.take(surface_points(name, contact, regions, model, dofs))

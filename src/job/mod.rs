@@ -3,15 +3,23 @@
 //! 1. [`Prepared::new`] reads the mesh, places the bodies and builds the [`crate::system::System`].
 //! 2. [`analyse`] runs the analyses of the case on it and hands each result on as soon as it is there.
 //! 3. [`run_case`] does both and writes the results folder.
+//!
+//! A case may give M, C and K themselves instead of a mesh; [`export()`] writes any case in that form.
 
 mod analyse;
+mod complex;
 mod contacts;
 mod disc;
+mod export;
+mod imported;
 mod model;
 mod modes;
+mod nearest;
 mod place;
 mod prepared;
 mod regions;
+mod table;
 
 pub use analyse::{Selection, Stage, analyse, run_case};
+pub use export::export;
 pub use prepared::Prepared;

@@ -24,6 +24,14 @@ pub fn part_modes(
     observer: &dyn crate::progress::Observer,
 ) -> Result<NamedModes> {
     let analysis = &prepared.case.modes[name];
+    if prepared.case.matrices.is_some() {
+        let wanted = match (analysis.below, analysis.count) {
+            (Some(below), _) => ModesWanted::BelowHz(below),
+            (None, count) => ModesWanted::Count(count.unwrap_or(1).min(prepared.system.n_dofs())),
+        };
+        let (modes, _) = modal::compute(&prepared.system.structure, wanted, observer)?;
+        return Ok(named(prepared, name, modes, &prepared.assembled));
+    }
     let model = super::model::part_model(prepared.case, &prepared.regions, &prepared.model, name, analysis)?;
     let assembled = assemble(&model)?;
     if assembled.dofs.n_dofs() == 0 {
@@ -78,7 +86,10 @@ pub fn named(prepared: &Prepared, name: &str, modes: RealModes, assembled: &Asse
     let translations = Mat::from_fn(assembled.dofs.n_dofs(), 3, |i, axis| rigid[axis][i]);
     let mass = &assembled.structure.mass;
     let effective = modal::effective_mass(mass, modes.shapes.as_ref(), translations.as_ref()).effective;
-    let effective_mass = (0..modes.len()).map(|k| [0, 1, 2].map(|axis| effective[(k, axis)])).collect();
+    // Without the places of its rows an imported matrix has modes, but no directions.
+    let known = assembled.total_mass.is_finite();
+    let count = if known { modes.len() } else { 0 };
+    let effective_mass = (0..count).map(|k| [0, 1, 2].map(|axis| effective[(k, axis)])).collect();
     NamedModes {
         name: name.to_string(),
         shapes,

@@ -2,10 +2,11 @@
 
 use super::contacts::{arrows, contact_pairs};
 use super::disc::Disc;
+use super::imported::read_model;
 use super::model::whole_model;
 use super::place::place;
 use super::regions::Regions;
-use crate::case::{Case, GeneratedMesh, MeshSource, RigMesh};
+use crate::case::{Case, GeneratedMesh, Matrices, MeshSource, RigMesh};
 use crate::error::{Faults, Result};
 use crate::mesh::generate::{self, BarSide, BarSpec, DiscSpec, Grading, PlateSpec, RigSpec};
 use crate::mesh::{self, Mesh};
@@ -42,6 +43,9 @@ impl<'a> Prepared<'a> {
             None => (Mesh::default(), Vec::new()),
         };
         let mut regions = Regions::new(mesh, case);
+        if let Some(matrices) = &case.matrices {
+            return Self::imported(case, regions, matrices);
+        }
         let mut faults = Faults::new();
         for (name, contact) in &case.contact {
             if let Some(placement) = &contact.placement {
@@ -60,6 +64,22 @@ impl<'a> Prepared<'a> {
             coupling: None,
         };
         Ok(Prepared { case, regions, model, assembled, system, warnings })
+    }
+
+    /// The same for a case that gives the matrices.
+    fn imported(case: &'a Case, regions: Regions, matrices: &Matrices) -> Result<Self> {
+        let imported = read_model(case, matrices)?;
+        let model = Model { nodes: imported.nodes, ..Model::default() };
+        let assembled = Arc::new(imported.assembled);
+        let pairs = contact_pairs(case, &regions, &model, &assembled.dofs)?;
+        let system = System {
+            structure: assembled.structure.clone(),
+            pairs,
+            load: imported.load,
+            prestress: None,
+            coupling: imported.coupling,
+        };
+        Ok(Prepared { case, regions, model, assembled, system, warnings: imported.warnings })
     }
 
     /// Nodes, elements, degrees of freedom.
@@ -89,6 +109,14 @@ impl<'a> Prepared<'a> {
         for bar in &self.model.bars {
             add(&bar.name, bar.elements.iter().map(|e| e.to_vec()).collect());
         }
+        if self.case.matrices.is_some() {
+            if self.model.nodes.is_empty() {
+                geometry.nodes = vec![[0.0; 3]; self.assembled.dofs.n_nodes()];
+            } else {
+                add("nodes", (0..self.model.nodes.len()).map(|n| vec![n]).collect());
+            }
+            return geometry;
+        }
         for name in self.case.mass.keys().filter(|_| self.case.mesh.is_none()) {
             let node = self.regions.nodes(&self.case.mass[name].on, "").unwrap_or_default();
             add(name, node.into_iter().map(|n| vec![n]).collect());
@@ -98,6 +126,9 @@ impl<'a> Prepared<'a> {
 
     /// Two unit vectors of each pair, for pictures: where the load presses the body, and where the counter-body moves.
     pub fn arrows(&self) -> Vec<[[f64; 3]; 2]> {
+        if self.case.matrices.is_some() {
+            return Vec::new();
+        }
         let pairs = self.system.pairs.iter();
         pairs.map(|pair| arrows(&self.case.contact[&pair.name], &self.model, &pair.points)).collect()
     }

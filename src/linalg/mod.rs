@@ -5,6 +5,7 @@
 //! * [`eigenpairs`]: the lowest eigenpairs of K x = θ M x with the count that proves none is missing, by
 //!   [`lanczos`].
 //! * [`dense`]: small symmetric eigenproblems and the likeness of two vectors.
+//! * [`matrix_market`]: matrices from and to files.
 //! * [`tall`]: products of tall matrices, such as a set of modes.
 //! * [`toar`]: eigenpairs of a quadratic problem nearest a shift, by two-level Arnoldi.
 
@@ -12,6 +13,7 @@ pub mod dense;
 pub mod eigenpairs;
 pub mod factor;
 pub mod lanczos;
+pub mod matrix_market;
 pub mod sparse;
 pub mod tall;
 pub mod toar;

@@ -15,7 +15,9 @@ const FINEST_EDGE: f64 = 2.5;
 /// The picture, when the model has a mesh.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let geometry = &results.geometry;
-    if geometry.elements.is_empty() {
+    // Points alone are a picture only while they are few: masses on springs, not the nodes of imported matrices.
+    let cloud = geometry.elements.len() > 500 && geometry.elements.iter().all(|e| e.len() == 1);
+    if geometry.elements.is_empty() || cloud {
         return None;
     }
     let view = View::facing([0.68, -0.85, 0.55])?;

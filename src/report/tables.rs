@@ -1,7 +1,9 @@
 //! The content of the tables, once for the terminal and the page.
 
 use super::format::{fixed, given, power, signed, significant};
+use crate::linalg::c64;
 use crate::results::{ComplexResult, NamedModes, RunResults, SteadyResult};
+use crate::stability::Confirmation;
 
 /// A measured squeal frequency and an unstable mode nearer than this share of it are taken for the same.
 pub(super) const SQUEAL_TOLERANCE: f64 = 0.03;
@@ -197,6 +199,7 @@ pub(super) fn complex(result: &ComplexResult) -> Table {
     }
     table.notes.push("σ: growth rate; ζ = −σ/|λ|: damping ratio, negative when unstable.".into());
     table.notes.push("η: backward error; |Δλ|/|λ|: estimated eigenvalue error; κ: condition number.".into());
+    table.notes.extend(result.confirmation.as_ref().map(second_method));
     table
 }
 
@@ -237,6 +240,28 @@ pub(super) fn unstable(result: &ComplexResult) -> Table {
         table.notes.push(format!("Measured squeal without an unstable mode: {}.", unmatched.join(", ")));
     }
     table
+}
+
+/// What the second method says, in words.
+fn second_method(confirmation: &Confirmation) -> String {
+    if confirmation.holds() {
+        return format!(
+            "Two-level Arnoldi on the full order, at {} shifts, finds the same {} modes; largest relative difference {} (condition number {}).",
+            confirmation.shifts,
+            confirmation.confirmed,
+            power(confirmation.largest_difference),
+            significant(confirmation.condition, 3)
+        );
+    }
+    let list = |all: &[c64]| -> String {
+        let hz: Vec<String> = all.iter().map(|z| fixed(z.im / std::f64::consts::TAU, 2)).collect();
+        if hz.is_empty() { "none".into() } else { hz.join(", ") }
+    };
+    format!(
+        "THE TWO METHODS DISAGREE. Found only by two-level Arnoldi [Hz]: {}; only by the projection [Hz]: {}.",
+        list(&confirmation.missed),
+        list(&confirmation.unconfirmed)
+    )
 }
 
 /// Whether a computed frequency is that of a measured squeal.

@@ -8,7 +8,10 @@ use super::{
     ComplexResult, MeasuredComparison, ModelSize, NamedModes, RunResults, SteadyResult, write_atomically,
 };
 use crate::error::Result;
+use crate::linalg::c64;
+use crate::stability::Confirmation;
 use serde::Serialize;
+use std::f64::consts::TAU;
 use std::path::Path;
 
 /// The version of the layout of `summary.json`.
@@ -117,7 +120,21 @@ struct Cea<'a> {
     subspace_dimension: usize,
     refinements: usize,
     eigenvalues: Vec<Eigenvalue<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    second_method: Option<SecondMethod>,
     measured_squeal: Vec<Squeal<'a>>,
+}
+
+/// What two-level Arnoldi on the full order says.
+#[derive(Serialize)]
+struct SecondMethod {
+    holds: bool,
+    shifts: usize,
+    confirmed: usize,
+    largest_difference: f64,
+    condition: f64,
+    missed_hz: Vec<f64>,
+    unconfirmed_hz: Vec<f64>,
 }
 
 #[derive(Serialize)]
@@ -284,7 +301,21 @@ fn cea(result: &ComplexResult) -> Cea<'_> {
         subspace_dimension: result.modes.subspace_dimension,
         refinements: result.modes.refinements,
         eigenvalues: eigenvalues.collect(),
+        second_method: result.confirmation.as_ref().map(second_method),
         measured_squeal: squeal.map(|(hz, source)| Squeal { frequency_hz: *hz, source }).collect(),
+    }
+}
+
+fn second_method(confirmation: &Confirmation) -> SecondMethod {
+    let hz = |all: &[c64]| all.iter().map(|z| z.im / TAU).collect();
+    SecondMethod {
+        holds: confirmation.holds(),
+        shifts: confirmation.shifts,
+        confirmed: confirmation.confirmed,
+        largest_difference: confirmation.largest_difference,
+        condition: confirmation.condition,
+        missed_hz: hz(&confirmation.missed),
+        unconfirmed_hz: hz(&confirmation.unconfirmed),
     }
 }
 

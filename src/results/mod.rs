@@ -28,7 +28,7 @@ pub use vtk::write_vtk;
 
 use crate::equilibrium::SteadySliding;
 use crate::modal::{DiscModeName, RealModes};
-use crate::stability::ComplexModes;
+use crate::stability::{ComplexModes, Confirmation};
 use std::path::Path;
 
 /// Writes `summary.json`, the tables and the ParaView files of `results` into the folder `dir`.
@@ -160,4 +160,6 @@ pub struct ComplexResult {
     pub measured_squeal_hz: Vec<(f64, String)>,
     /// Frequency band of the analysis \[Hz\].
     pub band_hz: [f64; 2],
+    /// The second method beside it, if the case asked for one.
+    pub confirmation: Option<Confirmation>,
 }

@@ -26,6 +26,8 @@ const STATIC_RESPONSES: usize = 240;
 /// Aims of the refinement, below what [`ComplexMode::accepted`] asks.
 const BACKWARD_ERROR: f64 = 5e-11;
 const EIGENVALUE_ERROR: f64 = 1e-10;
+/// A condition number of λ above this is told.
+const ILL_CONDITIONED: f64 = 1e6;
 
 /// All complex modes with a frequency in `band_hz` = \[lowest, highest\], of `system` sliding steadily.
 ///
@@ -141,6 +143,13 @@ fn analyse(
     let participations = participations(&round, real).into_iter().enumerate();
     let modes: Vec<ComplexMode> =
         participations.map(|(j, shares)| mode(&operator, &round, shares, j)).collect();
+    for mode in modes.iter().filter(|mode| mode.accepted() && mode.condition > ILL_CONDITIONED) {
+        warnings.push(format!(
+            "the mode at {:.2} Hz is ill-conditioned: a relative change of the matrices moves it by {:.0e} times as much",
+            mode.frequency_hz(),
+            mode.condition
+        ));
+    }
     for mode in modes.iter().filter(|mode| !mode.accepted()) {
         let cause = if mode.condition > 1e4 { ", near the coalescence of two modes" } else { "" };
         warnings.push(format!(

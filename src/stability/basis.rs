@@ -6,11 +6,16 @@ use crate::linalg::sparse::times;
 use crate::linalg::tall::{expand, gram};
 use faer::{Mat, MatRef};
 
-/// An M-orthonormal basis B and the projections BᵀMB, BᵀCB, BᵀKB, BᵀHB, and BᵀW of the interface.
+/// A basis B = \[Φ Z\] and the projections BᵀMB, BᵀCB, BᵀKB, BᵀHB, and BᵀW of the interface.
+///
+/// The real modes are M-orthonormal, what is added to them is M-orthogonal to them and orthonormal in E/τ: there, above
+/// the modes, E is positive also where M is singular or K indefinite, and no direction without mass is lost.
 pub(super) struct Basis<'a> {
     operator: &'a Operator<'a>,
     /// E = K + τ M measures how much a direction can matter in the band.
     tau: f64,
+    /// Columns of Φ.
+    modes: usize,
     pub(super) vectors: Mat<f64>,
     /// M B, K B, C B, H B: what the full order makes of the basis, kept so that a residual costs dense products only.
     mass_times: Mat<f64>,
@@ -55,6 +60,7 @@ impl<'a> Basis<'a> {
         let mut basis = Basis {
             operator,
             tau,
+            modes: modes.ncols(),
             vectors: Mat::zeros(n, 0),
             mass_times: Mat::zeros(n, 0),
             stiffness_times: Mat::zeros(n, 0),
@@ -116,30 +122,47 @@ impl<'a> Basis<'a> {
 
     /// zᵀ(K + τM)z.
     fn energy(&self, z: MatRef<'_, f64>) -> Mat<f64> {
+        gram(z, self.energy_times(z, times(self.operator.mass, z).as_ref()).as_ref())
+    }
+
+    /// (K + τM) z, given M z.
+    fn energy_times(&self, z: MatRef<'_, f64>, inertia: MatRef<'_, f64>) -> Mat<f64> {
         let mut e = times(&self.operator.stiffness, z);
-        e += faer::Scale(self.tau) * times(self.operator.mass, z);
-        gram(z, e.as_ref())
+        e += faer::Scale(self.tau) * inertia;
+        e
     }
 
+    /// z ← z − Φ ΦᵀM z − Z ZᵀE z / τ.
     fn project_out(&self, z: &mut Mat<f64>) {
-        let share = gram(self.mass_times.as_ref(), z.as_ref());
-        *z -= expand(self.vectors.as_ref(), share.as_ref());
+        let inertia = times(self.operator.mass, z.as_ref());
+        let modes = self.vectors.subcols(0, self.modes);
+        let mut change = expand(modes, gram(modes, inertia.as_ref()).as_ref());
+        if self.len() > self.modes {
+            let energy = self.energy_times(z.as_ref(), inertia.as_ref());
+            let added = self.vectors.subcols(self.modes, self.len() - self.modes);
+            let share = faer::Scale(1.0 / self.tau) * gram(added, energy.as_ref());
+            change += expand(added, share.as_ref());
+        }
+        *z -= change;
     }
 
-    /// M-orthonormalises `column` against the basis and the `new` vectors; false when nothing with mass is left.
+    /// E/τ-orthonormalises `column` against the basis and the `new` vectors; false when nothing is left.
     fn normalise_against(&self, column: &mut Mat<f64>, new: MatRef<'_, f64>) -> bool {
         const LOST: f64 = 1e-12;
         for _ in 0..2 {
-            let inertia = times(self.operator.mass, column.as_ref());
-            let square = gram(column.as_ref(), inertia.as_ref())[(0, 0)];
+            let energy_times = |z: &Mat<f64>| {
+                let inertia = times(self.operator.mass, z.as_ref());
+                faer::Scale(1.0 / self.tau) * self.energy_times(z.as_ref(), inertia.as_ref())
+            };
+            let energy = energy_times(column);
+            let square = gram(column.as_ref(), energy.as_ref())[(0, 0)];
             if !(square.is_finite() && square > 0.0) {
                 return false;
             }
-            let share = gram(new, inertia.as_ref());
+            let share = gram(new, energy.as_ref());
             *column -= expand(new, share.as_ref());
             self.project_out(column);
-            let inertia = times(self.operator.mass, column.as_ref());
-            let left = gram(column.as_ref(), inertia.as_ref())[(0, 0)];
+            let left = gram(column.as_ref(), energy_times(column).as_ref())[(0, 0)];
             if left.is_nan() || left <= LOST * LOST * square {
                 return false;
             }

@@ -8,6 +8,9 @@ use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 use rayon::prelude::*;
 
+/// What stands for no mass, where vectors of the band have a mass of about one.
+const TRACE_OF_MASS: f64 = 1e-10;
+
 /// An eigenpair of the projected problem with its left vector, in coordinates of the basis.
 #[derive(Debug, Clone)]
 pub(super) struct SmallPair {
@@ -50,8 +53,17 @@ pub(super) fn solve(
             "Check the model for parts without mass or with numbers out of any range",
         )
     };
-    let l =
-        mass.llt(Side::Lower).map_err(|_| failed("the mass matrix is not positive definite"))?.L().to_owned();
+    // Directions with (next to) no mass have eigenvalues at infinity: with a trace of mass they are very large instead.
+    // That moves the others by about as much, which the polishing on the true matrices takes back.
+    let factor = |trace: f64| {
+        let mass = Mat::from_fn(m, m, |i, j| mass[(i, j)] + if i == j { trace } else { 0.0 });
+        mass.llt(Side::Lower).ok().map(|llt| llt.L().to_owned())
+    };
+    let sound = |l: &Mat<f64>| (0..m).all(|i| l[(i, i)] * l[(i, i)] >= TRACE_OF_MASS);
+    let l = factor(0.0)
+        .filter(sound)
+        .or_else(|| factor(TRACE_OF_MASS))
+        .ok_or_else(|| failed("the mass matrix is not positive definite"))?;
     let reduce = |a: &Mat<f64>| {
         let mut x = a.clone();
         l.solve_lower_triangular_in_place(x.as_mut());

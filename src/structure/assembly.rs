@@ -21,7 +21,7 @@ pub struct Assembled {
     pub total_mass: f64,
     /// Its centre \[m\]; the origin when there is no mass.
     pub center_of_mass: [f64; 3],
-    pattern: Arc<Pattern>,
+    pub(super) pattern: Arc<Pattern>,
 }
 
 /// Assembles M, C and K of `model`.

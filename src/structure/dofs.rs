@@ -133,6 +133,21 @@ impl DofMap {
         vectors
     }
 
+    /// The map of degrees of freedom that are given, in their order; every node lies in `nodes`.
+    pub(super) fn given(nodes: Vec<[f64; 3]>, free: Vec<FreeDof>) -> Self {
+        let mut of_node = vec![Vec::new(); nodes.len()];
+        free.iter().enumerate().for_each(|(k, dof)| of_node[dof.node].push(k));
+        let (mut starts, mut terms) = (vec![0], Vec::with_capacity(free.len()));
+        for own in &of_node {
+            for dof in 0..6 {
+                let moves = own.iter().filter(|k| free[**k].direction[dof] != 0.0);
+                terms.extend(moves.map(|k| (*k, free[*k].direction[dof])));
+                starts.push(terms.len());
+            }
+        }
+        DofMap { nodes, free, starts, terms }
+    }
+
     /// The map of `model`, whose node indices and geometry are known to be sound.
     pub(super) fn new(model: &Model) -> Result<Self> {
         let masters = resolve_links(model)?;

@@ -2,13 +2,15 @@
 //!
 //! A [`Model`] is plain data. [`assemble`] checks it, finds its free degrees of freedom u = T q ([`DofMap`]), adds up
 //! the [`elements`] and gives M = Tᵀ (Σ M_e) T, and K and C likewise, with the map from free degrees of freedom back
-//! to nodes. [`Assembled::prestress`] gives the geometric stiffness of a static state.
+//! to nodes. [`Assembled::prestress`] gives the geometric stiffness of a static state, [`Assembled::imported`] the same
+//! form to matrices of another program.
 
 mod assembly;
 mod check;
 mod constraints;
 mod dofs;
 pub mod elements;
+mod imported;
 mod model;
 mod pieces;
 mod scatter;

@@ -9,10 +9,12 @@
 //! The full finite-element model, a reduced model, the two-degree-of-freedom model and imported matrices are all
 //! this one type, and equilibrium, complex eigenvalues, sweeps and transients take nothing else.
 
+mod imported;
 mod interface;
 mod law;
 mod structure;
 
+pub use imported::{Given, Imported, split};
 pub use interface::{Closing, ContactPair, ContactPoint};
 pub use law::{ContactForces, ContactLaw, ContactMotion, ContactTangent};
 pub use structure::{Coupling, Damping, ModalDamping, Prestress, Structure};

@@ -1,0 +1,27 @@
+//! `stridor export`: a case as matrices, for other programs and for tests.
+
+use super::Common;
+use crate::case::read_case;
+use crate::error::Result;
+use crate::job::export;
+use clap::Args;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+#[derive(Args)]
+pub struct Options {
+    /// The case file (TOML)
+    case: PathBuf,
+    /// The folder for mass.mtx, stiffness.mtx, damping.mtx, dofs.csv, contact points and a case that takes them
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+}
+
+pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
+    let left_out = export(&read_case(&options.case)?, &options.out)?;
+    if !common.quiet {
+        left_out.iter().for_each(|sentence| println!("warning: {sentence}."));
+        println!("M, C and K are in {}; case.toml there takes them.", options.out.display());
+    }
+    Ok(ExitCode::SUCCESS)
+}

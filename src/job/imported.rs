@@ -1,0 +1,267 @@
+//! A case made of matrices: files → a system, with the contact points and the places of rows that the case gives.
+
+use super::table::Table;
+use crate::case::{Case, Contact, ContactPoints, Matrices};
+use crate::error::{Error, Fault, Faults, Result};
+use crate::linalg::SparseVector;
+use crate::linalg::matrix_market::{self, MarketMatrix};
+use crate::structure::{Assembled, FreeDof};
+use crate::system::{ContactPoint, Coupling, Given, split};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// The names of the six motions in the table of rows.
+const MOTIONS: [&str; 6] = ["ux", "uy", "uz", "rx", "ry", "rz"];
+
+/// The structure of a case that gives matrices.
+pub struct ImportedModel {
+    /// The symmetric matrices, and the places of their rows.
+    pub assembled: Assembled,
+    /// The rest.
+    pub coupling: Option<Coupling>,
+    /// External force \[N, N m\].
+    pub load: Vec<f64>,
+    /// Coordinates of the nodes \[m\]; empty when the case does not give them.
+    pub nodes: Vec<[f64; 3]>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Reads and splits the matrices of a case.
+///
+/// # Errors
+/// Every fault of every file.
+pub fn read_model(case: &Case, matrices: &Matrices) -> Result<ImportedModel> {
+    let mut faults = Faults::new();
+    let place = |key: &str, file: &str| format!("`matrices.{key}` {}", case.folder.join(file).display());
+    let mut read = |file: &str| faults.take(matrix_market::read(&case.folder.join(file)));
+    let (mass, stiffness) = (read(&matrices.mass), read(&matrices.stiffness));
+    let damping: Option<Option<MarketMatrix>> = matrices.damping.as_ref().map(|file| read(file));
+    let load = matrices.load.as_ref().map(|file| read(file).map(|f| (file, f)));
+    let rows = mass.as_ref().or(stiffness.as_ref()).map_or(0, |m| m.re.nrows());
+    let known = rows > 0;
+    let places = matrices
+        .dofs
+        .as_ref()
+        .filter(|_| known)
+        .and_then(|file| faults.take(read_places(&case.folder.join(file), rows)));
+    let load = match load.flatten() {
+        None => vec![0.0; rows],
+        Some((file, f)) => faults.take(read_load(&place("load", file), &f, rows)).unwrap_or_default(),
+    };
+    let all = mass.zip(stiffness).filter(|_| !matches!(damping, Some(None)));
+    let Some((mass, stiffness)) = all else {
+        return faults.into_result(()).map(|()| unreachable!("a file that is missing is a fault"));
+    };
+    let (mass_place, stiffness_place) =
+        (place("mass", &matrices.mass), place("stiffness", &matrices.stiffness));
+    let damping = damping.flatten().zip(matrices.damping.as_ref().map(|file| place("damping", file)));
+    let imported = faults.take(split(
+        Given { place: &mass_place, matrix: &mass },
+        damping.as_ref().map(|(matrix, place)| Given { place, matrix }),
+        Given { place: &stiffness_place, matrix: &stiffness },
+    ));
+    let imported = faults.into_result(imported)?.expect("a missing one is a fault");
+    let (nodes, free) = places.map_or((Vec::new(), None), |(nodes, free)| (nodes, Some(free)));
+    Ok(ImportedModel {
+        assembled: Assembled::imported(imported.structure, nodes.clone(), free),
+        coupling: imported.coupling,
+        load,
+        nodes,
+        warnings: imported.warnings,
+    })
+}
+
+/// The one column of a real matrix with `n` rows.
+fn read_load(place: &str, f: &MarketMatrix, n: usize) -> Result<Vec<f64>> {
+    let (rows, columns) = (f.re.nrows(), f.re.ncols());
+    if (rows, columns) != (n, 1) || f.im.is_some() {
+        let kind = if f.im.is_some() { "complex" } else { "real" };
+        let found = format!("{rows} × {columns} {kind} numbers");
+        return Err(Error::input(Fault::new(
+            place,
+            found,
+            format!("{n} × 1 real ones, a force for each row"),
+        )));
+    }
+    let mut load = vec![0.0; n];
+    f.re.row_idx_of_col_raw(0).iter().zip(f.re.val_of_col(0)).for_each(|(i, v)| load[*i] = *v);
+    Ok(load)
+}
+
+/// The nodes and what each of the `n` rows is, from a table with one line a row, in the order of the rows.
+fn read_places(path: &Path, n: usize) -> Result<(Vec<[f64; 3]>, Vec<FreeDof>)> {
+    let known = ["dof", "node", "ux", "uy", "uz", "rx", "ry", "rz", "x", "y", "z"];
+    let table = Table::read(path, &["node"], &known)?;
+    let mut faults = Faults::new();
+    let (mut nodes, mut free): (Vec<[f64; 3]>, Vec<FreeDof>) = (Vec::new(), Vec::new());
+    let mut index: BTreeMap<&str, usize> = BTreeMap::new();
+    for (k, row) in table.rows().enumerate() {
+        if faults.0.len() >= 20 {
+            break;
+        }
+        let position = ["x", "y", "z"].map(|c| row.number(c, 0.0, &mut faults));
+        let node = *index.entry(row.cell("node")).or_insert_with(|| {
+            nodes.push(position);
+            nodes.len() - 1
+        });
+        if nodes[node] != position {
+            let found = format!("another place for node {} than before", row.cell("node"));
+            faults.push(Fault::new(row.place(), found, "the same x, y, z in every row of a node"));
+        }
+        if !["", &(k + 1).to_string()].contains(&row.cell("dof")) {
+            let found = format!("dof \"{}\"", row.cell("dof"));
+            faults.push(Fault::new(
+                row.place(),
+                found,
+                format!("dof {}: the rows of the matrices in their order", k + 1),
+            ));
+        }
+        let direction = MOTIONS.map(|c| row.number(c, 0.0, &mut faults));
+        if direction.iter().all(|d| *d == 0.0) && faults.0.is_empty() {
+            faults.push(Fault::new(
+                row.place(),
+                "no motion",
+                "1 in one of the columns ux, uy, uz, rx, ry, rz",
+            ));
+        }
+        free.push(FreeDof { node, direction });
+    }
+    if free.len() != n && faults.0.is_empty() {
+        faults.push(Fault::new(
+            table.name(),
+            format!("{} rows", free.len()),
+            format!("{n}, one for each row of the matrices"),
+        ));
+    }
+    faults.into_result((nodes, free))
+}
+
+/// The contact points that a pair of the case gives, on a system of `n` degrees of freedom.
+///
+/// # Errors
+/// Every fault of the table or the list.
+pub fn given_points(
+    case: &Case,
+    name: &str,
+    contact: &Contact,
+    points: &ContactPoints,
+    n: usize,
+) -> Result<Vec<ContactPoint>> {
+    let mut faults = Faults::new();
+    let mut found = Vec::new();
+    match points {
+        ContactPoints::Rows(rows) => {
+            for (k, row) in rows.iter().enumerate() {
+                let place = format!("`contact.{name}.points` row {}", k + 1);
+                let cell = |c: usize| row.get(c).map_or("", String::as_str);
+                if let Some([normal, t1, t2]) =
+                    directions(&place, [cell(0), cell(1), cell(2)], n, &mut faults)
+                {
+                    let tangents = [t1, t2];
+                    found.push(ContactPoint { position: [0.0; 3], gap: 0.0, weight: 1.0, normal, tangents });
+                }
+            }
+        }
+        ContactPoints::File(file) => {
+            let known = ["normal", "t1", "t2", "weight", "gap", "x", "y", "z"];
+            let table = Table::read(&case.folder.join(file), &["normal", "t1"], &known)?;
+            for row in table.rows() {
+                if faults.0.len() >= 20 {
+                    break;
+                }
+                let place = row.place();
+                let cells = [row.cell("normal"), row.cell("t1"), row.cell("t2")];
+                let weight = row.number("weight", 1.0, &mut faults);
+                if weight <= 0.0 {
+                    faults.push(Fault::new(
+                        format!("{place} `weight`"),
+                        weight.to_string(),
+                        "a weight above zero",
+                    ));
+                }
+                let gap = row.number("gap", 0.0, &mut faults);
+                let position = ["x", "y", "z"].map(|c| row.number(c, 0.0, &mut faults));
+                if let Some([normal, t1, t2]) = directions(&place, cells, n, &mut faults) {
+                    found.push(ContactPoint { position, gap, weight, normal, tangents: [t1, t2] });
+                }
+            }
+            if found.is_empty() && faults.0.is_empty() {
+                faults.push(Fault::new(table.name(), "no row", "at least one contact point"));
+            }
+        }
+    }
+    debug_assert!(contact.points.is_some());
+    faults.into_result(found)
+}
+
+fn directions(place: &str, cells: [&str; 3], n: usize, faults: &mut Faults) -> Option<[SparseVector; 3]> {
+    let mut parsed = Vec::new();
+    for (cell, key) in cells.iter().zip(["normal", "t1", "t2"]) {
+        match direction(cell, n) {
+            Ok(d) if key == "normal" && d.indices().is_empty() => {
+                faults.push(Fault::new(
+                    format!("{place} `normal`"),
+                    format!("\"{cell}\""),
+                    "a direction such as \"12 -45\"",
+                ));
+            }
+            Ok(d) => parsed.push(d),
+            Err(found) => faults.push(Fault::new(
+                format!("{place} `{key}`"),
+                found,
+                format!("degrees of freedom from 1 to {n} such as \"12 -45 0.5*7\""),
+            )),
+        }
+    }
+    parsed.try_into().ok()
+}
+
+/// `12 -45 0.5*7` → e₁₂ − e₄₅ + ½ e₇, counted from 1; 0 and an empty text are no direction (the ground).
+fn direction(text: &str, n: usize) -> std::result::Result<SparseVector, String> {
+    let mut entries = Vec::new();
+    for word in text.split_whitespace() {
+        let wrong = || format!("\"{word}\"");
+        let (factor, dof) = match word.split_once('*') {
+            Some((factor, dof)) => (factor.parse::<f64>().map_err(|_| wrong())?, dof),
+            None => match word.strip_prefix('-') {
+                Some(dof) => (-1.0, dof),
+                None => (1.0, word.strip_prefix('+').unwrap_or(word)),
+            },
+        };
+        match dof.parse::<usize>() {
+            Ok(0) => {}
+            Ok(dof) if dof <= n && factor.is_finite() => entries.push((dof - 1, factor)),
+            _ => return Err(wrong()),
+        }
+    }
+    Ok(SparseVector::from_entries(entries))
+}
+
+/// The text that [`direction`] reads as the same numbers.
+pub fn direction_text(direction: &SparseVector) -> String {
+    let word = |(i, v): (usize, f64)| match v {
+        1.0 => format!("{}", i + 1),
+        -1.0 => format!("-{}", i + 1),
+        _ => format!("{v:e}*{}", i + 1),
+    };
+    direction.iter().map(word).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_are_sums_of_signed_degrees_of_freedom() {
+        let d = direction("+2 -5 -0.25*3 1e-3*1", 5).unwrap();
+        assert_eq!(d.iter().collect::<Vec<_>>(), [(0, 1e-3), (1, 1.0), (2, -0.25), (4, -1.0)]);
+        assert_eq!(direction(&direction_text(&d), 5).unwrap(), d);
+        assert!(
+            direction("0", 5).unwrap().indices().is_empty() && direction("", 5).unwrap().indices().is_empty()
+        );
+        for wrong in ["6", "-6", "1.5", "x", "nan*1", "1*", "--1", "99999999999999999999"] {
+            assert!(direction(wrong, 5).is_err(), "{wrong}");
+        }
+    }
+}

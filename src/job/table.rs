@@ -1,0 +1,100 @@
+//! Small tables in text files: a heading that names the columns, then one row a line (CSV without quotes).
+
+use crate::error::{Error, Fault, Faults, Result};
+use std::path::Path;
+
+/// A table with the file it comes from.
+pub struct Table {
+    name: String,
+    text: String,
+    separator: char,
+    columns: Vec<String>,
+}
+
+/// One row with its line.
+#[derive(Clone, Copy)]
+pub struct Row<'a> {
+    table: &'a Table,
+    line: usize,
+    text: &'a str,
+}
+
+impl Table {
+    /// Reads the file at `path`; its heading may only name columns among `known` and must name all of `required`.
+    ///
+    /// # Errors
+    /// No such file, columns that are not known, missing or named twice, rows of another length.
+    pub fn read(path: &Path, required: &[&str], known: &[&str]) -> Result<Table> {
+        let name = path.display().to_string();
+        let text = std::fs::read_to_string(path)
+            .map_err(|error| Error::input(Fault::new(name.clone(), error.to_string(), "a table (CSV)")))?;
+        let heading = text.lines().next().unwrap_or("").trim_start_matches('\u{feff}');
+        let separator = if heading.contains(';') { ';' } else { ',' };
+        let columns: Vec<String> = heading.split(separator).map(|c| c.trim().to_lowercase()).collect();
+        let mut faults = Faults::new();
+        let all = format!("columns among {}", known.join(", "));
+        for (k, column) in columns.iter().enumerate() {
+            if !known.contains(&column.as_str()) || columns[..k].contains(column) {
+                faults.push(Fault::new(format!("{name}:1"), format!("the column \"{column}\""), all.clone()));
+            }
+        }
+        for column in required.iter().filter(|c| !columns.iter().any(|have| have == *c)) {
+            faults.push(Fault::new(format!("{name}:1"), format!("no column \"{column}\""), all.clone()));
+        }
+        let table = Table { name, separator, columns, text };
+        let width = table.columns.len();
+        for row in table.rows() {
+            let cells = row.text.split(separator).count();
+            if cells != width {
+                faults.push(Fault::new(
+                    row.place(),
+                    format!("{cells} cells"),
+                    format!("{width}, as in the heading"),
+                ));
+            }
+        }
+        faults.0.truncate(20);
+        faults.into_result(table)
+    }
+
+    /// The rows that are not empty.
+    pub fn rows(&self) -> impl Iterator<Item = Row<'_>> {
+        let lines = self.text.lines().enumerate().skip(1).filter(|(_, line)| !line.trim().is_empty());
+        lines.map(|(k, text)| Row { table: self, line: k + 1, text })
+    }
+
+    /// The file's name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+}
+
+impl<'a> Row<'a> {
+    /// File and line.
+    pub fn place(&self) -> String {
+        format!("{}:{}", self.table.name, self.line)
+    }
+
+    /// The cell in `column`; empty when there is no such column.
+    pub fn cell(&self, column: &str) -> &'a str {
+        let index = self.table.columns.iter().position(|c| c == column);
+        index.and_then(|i| self.text.split(self.table.separator).nth(i)).unwrap_or("").trim()
+    }
+
+    /// The number in `column`, or `default` when the cell is empty.
+    pub fn number(&self, column: &str, default: f64, faults: &mut Faults) -> f64 {
+        let cell = self.cell(column);
+        match cell.parse::<f64>() {
+            _ if cell.is_empty() => default,
+            Ok(value) if value.is_finite() => value,
+            _ => {
+                faults.push(Fault::new(
+                    format!("{} `{column}`", self.place()),
+                    format!("\"{cell}\""),
+                    "a finite number",
+                ));
+                default
+            }
+        }
+    }
+}

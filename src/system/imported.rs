@@ -1,0 +1,475 @@
+//! Matrices from elsewhere as a [`Structure`] that is symmetric and a [`Coupling`] of low rank for the rest.
+//!
+//! K = ½(K + Kᵀ) + W k Wᵀ and C = ½(C + Cᵀ) + W c Wᵀ with k and c skew. Friction and other unsymmetric terms act
+//! between the few degrees of freedom of a contact, so the rows that the skew parts touch fall apart into many small
+//! groups. Each group has its own columns of W: an orthonormal basis Q of the joint range of the two skew parts,
+//! from a QR factorisation with column pivoting after the rows are scaled to the size of K. S = −Sᵀ has its columns in
+//! the span of Q, hence its rows too, and S = Q (QᵀSQ) Qᵀ loses nothing but round-off.
+
+use super::{Coupling, Damping, Structure};
+use crate::error::{Error, Fault, Faults, Result};
+use crate::linalg::matrix_market::MarketMatrix;
+use crate::linalg::sparse::{add_scaled, diagonal};
+use crate::linalg::{SparseMatrix, SparseVector};
+use faer::Mat;
+use std::collections::BTreeMap;
+
+/// The largest rank of the coupling: beyond, it is no small part of the problem any more.
+const LARGEST_RANK: usize = 2000;
+/// |a_ij − a_ji| / 2 up to this part of √(r_i r_j), r the largest entry of a row, is rounding of the exporting program.
+const ROUND_OFF: f64 = 1e-14;
+/// The same for M, which must be symmetric: what is larger is told.
+const MASS_ROUND_OFF: f64 = 1e-12;
+
+/// Imported matrices, split.
+#[derive(Debug, Clone)]
+pub struct Imported {
+    /// What is symmetric; Im K is the hysteretic damping.
+    pub structure: Structure,
+    /// What is not.
+    pub coupling: Option<Coupling>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// A matrix with the words that faults call it by.
+#[derive(Debug, Clone, Copy)]
+pub struct Given<'a> {
+    /// Key and file.
+    pub place: &'a str,
+    /// Its entries.
+    pub matrix: &'a MarketMatrix,
+}
+
+/// Splits M, C and K, each n × n.
+///
+/// M \[kg, kg m²\] must be real, symmetric, with no negative entry on its diagonal. C \[N s/m, N m s\] must be real. The
+/// imaginary part of K \[N/m, N m\] must be symmetric: it is taken as that of K(1 + iη), for λ = σ + iω with ω > 0.
+///
+/// # Errors
+/// Every fault at once: other sizes, parts that have no meaning here, a degree of freedom on which nothing acts, a
+/// skew part of high rank.
+pub fn split(mass: Given<'_>, damping: Option<Given<'_>>, stiffness: Given<'_>) -> Result<Imported> {
+    let mut faults = Faults::new();
+    let n = mass.matrix.re.nrows();
+    for given in [Some(mass), damping, Some(stiffness)].into_iter().flatten() {
+        let (rows, columns) = (given.matrix.re.nrows(), given.matrix.re.ncols());
+        if rows != columns || rows != n {
+            let expected = if rows == columns {
+                format!("{n} × {n}, as the mass has it")
+            } else {
+                "a square matrix".to_string()
+            };
+            faults.push(Fault::new(given.place, format!("{rows} × {columns}"), expected));
+        }
+    }
+    faults.into_result(())?;
+    let mut faults = Faults::new();
+    check_mass(mass, &mut faults);
+    if let Some(damping) = damping
+        && has_entries(damping.matrix.im.as_ref())
+    {
+        faults.push(
+            Fault::new(damping.place, "an imaginary part", "a real damping matrix")
+                .with_help("Loss factors go into the imaginary part of the stiffness"),
+        );
+    }
+    let hysteretic = stiffness.matrix.im.as_ref().filter(|im| has_entries(Some(im)));
+    if let Some(h) = hysteretic
+        && let Some(fault) = largest_skew(h, MASS_ROUND_OFF)
+    {
+        faults.push(
+            Fault::new(stiffness.place, format!("an imaginary part with {fault}"), "one that is symmetric")
+                .with_help("It is the hysteretic damping H of K + iH; gyroscopic terms go into the damping"),
+        );
+    }
+    let halves = Halves::of(&stiffness.matrix.re);
+    let damping_halves = damping.map(|given| Halves::of(&given.matrix.re));
+    let size: Vec<f64> = row_sizes(&stiffness.matrix.re);
+    let inertia = row_sizes(&mass.matrix.re);
+    let untouched: Vec<usize> = (0..n).filter(|i| size[*i] == 0.0 && inertia[*i] == 0.0).collect();
+    if let Some(first) = untouched.first() {
+        let found = format!("{} rows of zeros, row {} the first", untouched.len(), first + 1);
+        faults.push(
+            Fault::new(
+                format!("{} and {}", mass.place, stiffness.place),
+                found,
+                "mass or stiffness in every row",
+            )
+            .with_help("Leave degrees of freedom out that nothing acts on"),
+        );
+    }
+    let empty = Vec::new();
+    let skew_damping = damping_halves.as_ref().map_or(&empty, |h| &h.skew);
+    let coupling = couple(n, &halves.skew, skew_damping, &size);
+    let mut warnings = Vec::new();
+    match &coupling {
+        Err(rank) => faults.push(
+            Fault::new(
+                damping.map_or(stiffness.place.to_string(), |c| format!("{} and {}", stiffness.place, c.place)),
+                format!("a part that is not symmetric, of rank {rank}"),
+                format!("rank {LARGEST_RANK} at most"),
+            )
+            .with_help("Contact with friction is of low rank; check that the matrices are not permuted or transposed in part"),
+        ),
+        Ok(Some(c)) if 4 * c.directions.len() > n && n > 400 => warnings.push(format!(
+            "The part of the matrices that is not symmetric has rank {}, more than a quarter of their order {n}: this is slow",
+            c.directions.len()
+        )),
+        Ok(_) => {}
+    }
+    faults.into_result(())?;
+    let structure = Structure {
+        mass: Halves::of(&mass.matrix.re).symmetric,
+        stiffness: halves.symmetric,
+        damping: Damping {
+            viscous: damping_halves.map(|h| h.symmetric).filter(|c| has_entries(Some(c))),
+            modal: None,
+            hysteretic: hysteretic.map(|h| Halves::of(h).symmetric),
+        },
+    };
+    Ok(Imported { structure, coupling: coupling.unwrap_or(None), warnings })
+}
+
+fn has_entries(a: Option<&SparseMatrix>) -> bool {
+    a.is_some_and(|a| a.val().iter().any(|v| *v != 0.0))
+}
+
+fn check_mass(mass: Given<'_>, faults: &mut Faults) {
+    if has_entries(mass.matrix.im.as_ref()) {
+        faults.push(Fault::new(mass.place, "an imaginary part", "a real mass matrix"));
+    }
+    if !has_entries(Some(&mass.matrix.re)) {
+        faults.push(Fault::new(mass.place, "zeros only", "a mass matrix"));
+    }
+    if let Some(found) = largest_skew(&mass.matrix.re, MASS_ROUND_OFF) {
+        faults.push(Fault::new(mass.place, found, "a symmetric mass matrix"));
+    }
+    let negative: Vec<(usize, f64)> =
+        diagonal(&mass.matrix.re).into_iter().enumerate().filter(|(_, m)| *m < 0.0).collect();
+    if let Some((row, value)) = negative.first() {
+        let found = format!("{value:e} in row and column {}", row + 1);
+        let found =
+            if negative.len() > 1 { format!("{found} and {} more", negative.len() - 1) } else { found };
+        faults.push(Fault::new(mass.place, found, "masses of zero or more"));
+    }
+}
+
+/// max_j |a_ij|, |a_ji| of every row i.
+fn row_sizes(a: &SparseMatrix) -> Vec<f64> {
+    let mut size = vec![0.0f64; a.nrows()];
+    for j in 0..a.ncols() {
+        for (i, v) in a.row_idx_of_col_raw(j).iter().zip(a.val_of_col(j)) {
+            size[*i] = size[*i].max(v.abs());
+            size[j] = size[j].max(v.abs());
+        }
+    }
+    size
+}
+
+/// ½(A + Aᵀ), and the entries below the diagonal of ½(A − Aᵀ) that are more than rounding.
+struct Halves {
+    symmetric: SparseMatrix,
+    skew: Vec<(usize, usize, f64)>,
+}
+
+impl Halves {
+    fn of(a: &SparseMatrix) -> Self {
+        let Ok(t) = a.transpose().to_col_major() else {
+            // Only memory can fail here, and add_scaled would need more of it.
+            return Halves { symmetric: a.clone(), skew: Vec::new() };
+        };
+        if t.col_ptr() == a.col_ptr() && t.row_idx() == a.row_idx() && t.val() == a.val() {
+            return Halves { symmetric: t, skew: Vec::new() };
+        }
+        let size = row_sizes(a);
+        let half = add_scaled(&[(0.5, a), (-0.5, &t)]);
+        let mut skew = Vec::new();
+        for j in 0..half.ncols() {
+            for (i, v) in half.row_idx_of_col_raw(j).iter().zip(half.val_of_col(j)) {
+                if *i > j && v.abs() > ROUND_OFF * (size[*i] * size[j]).sqrt() {
+                    skew.push((*i, j, *v));
+                }
+            }
+        }
+        Halves { symmetric: add_scaled(&[(0.5, a), (0.5, &t)]), skew }
+    }
+}
+
+/// The worst pair of entries that ought to be equal, when it is beyond rounding, in words.
+fn largest_skew(a: &SparseMatrix, round_off: f64) -> Option<String> {
+    let size = row_sizes(a);
+    let relative = |(i, j, v): &(usize, usize, f64)| v.abs() / (size[*i] * size[*j]).sqrt();
+    let halves = Halves::of(a);
+    let worst = halves.skew.iter().max_by(|a, b| relative(a).total_cmp(&relative(b)))?;
+    let entry = |i: usize, j: usize| a.get(i, j).copied().unwrap_or(0.0);
+    (relative(worst) > round_off).then(|| {
+        let (i, j, _) = *worst;
+        let (a, b) = (i + 1, j + 1);
+        format!("{:e} in row {a}, column {b} but {:e} in row {b}, column {a}", entry(i, j), entry(j, i))
+    })
+}
+
+/// Two square matrices on the rows of a group.
+struct Group {
+    rows: Vec<usize>,
+    stiffness: Mat<f64>,
+    damping: Mat<f64>,
+}
+
+/// W, k and c of the skew parts; `Err` with the rank when that is too high.
+fn couple(
+    n: usize,
+    stiffness: &[(usize, usize, f64)],
+    damping: &[(usize, usize, f64)],
+    size: &[f64],
+) -> std::result::Result<Option<Coupling>, usize> {
+    let groups = groups(n, stiffness, damping);
+    let mut parts: Vec<(Vec<SparseVector>, Mat<f64>, Mat<f64>)> = Vec::new();
+    let mut rank = 0;
+    for group in &groups {
+        // The range of a larger group is not worth looking for: it would be refused all the same.
+        if group.rows.len() > 2 * LARGEST_RANK {
+            return Err(rank + group.rows.len());
+        }
+        parts.push(factor(group, size));
+        rank += parts[parts.len() - 1].0.len();
+    }
+    if rank > LARGEST_RANK {
+        return Err(rank);
+    }
+    if rank == 0 {
+        return Ok(None);
+    }
+    let (mut k, mut c) = (Mat::zeros(rank, rank), Mat::zeros(rank, rank));
+    let mut directions = Vec::new();
+    for (part, stiffness, damping) in parts {
+        let (first, m) = (directions.len(), part.len());
+        k.as_mut().submatrix_mut(first, first, m, m).copy_from(&stiffness);
+        c.as_mut().submatrix_mut(first, first, m, m).copy_from(&damping);
+        directions.extend(part);
+    }
+    Ok(Some(Coupling { directions, stiffness: k, damping: c }))
+}
+
+/// The rows that the skew parts connect, group by group, in the order of their first row.
+fn groups(n: usize, stiffness: &[(usize, usize, f64)], damping: &[(usize, usize, f64)]) -> Vec<Group> {
+    let mut parent: Vec<usize> = (0..n).collect();
+    fn root(parent: &mut [usize], mut i: usize) -> usize {
+        while parent[i] != i {
+            parent[i] = parent[parent[i]];
+            i = parent[i];
+        }
+        i
+    }
+    for (i, j, _) in stiffness.iter().chain(damping) {
+        let (a, b) = (root(&mut parent, *i), root(&mut parent, *j));
+        parent[a.max(b)] = a.min(b);
+    }
+    let mut rows: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    let mut touched: Vec<usize> = stiffness.iter().chain(damping).flat_map(|(i, j, _)| [*i, *j]).collect();
+    touched.sort_unstable();
+    touched.dedup();
+    let mut place = vec![(0, 0); n];
+    for i in touched {
+        let first = root(&mut parent, i);
+        let list = rows.entry(first).or_default();
+        place[i] = (first, list.len());
+        list.push(i);
+    }
+    let mut groups: BTreeMap<usize, Group> = rows
+        .into_iter()
+        .map(|(first, rows)| {
+            // A group that is refused for its size needs no matrices.
+            let m = if rows.len() > 2 * LARGEST_RANK { 0 } else { rows.len() };
+            (first, Group { rows, stiffness: Mat::zeros(m, m), damping: Mat::zeros(m, m) })
+        })
+        .collect();
+    for (list, which) in [(stiffness, 0), (damping, 1)] {
+        for (i, j, v) in list {
+            let ((first, a), (_, b)) = (place[*i], place[*j]);
+            let group = groups.get_mut(&first).expect("made from the same entries");
+            let matrix = if which == 0 { &mut group.stiffness } else { &mut group.damping };
+            if matrix.nrows() > 0 {
+                matrix[(a, b)] = *v;
+                matrix[(b, a)] = -*v;
+            }
+        }
+    }
+    groups.into_values().collect()
+}
+
+/// The columns of W of one group with k and c on them.
+fn factor(group: &Group, size: &[f64]) -> (Vec<SparseVector>, Mat<f64>, Mat<f64>) {
+    let m = group.rows.len();
+    // D S D has entries of the order one whatever the units of the rows; W = D⁻¹Q.
+    let largest = group.rows.iter().map(|i| size[*i]).fold(0.0, f64::max);
+    let least = if largest > 0.0 { 1e-30 * largest } else { 1.0 };
+    let d: Vec<f64> = group.rows.iter().map(|i| size[*i].max(least).sqrt().recip()).collect();
+    let scaled = |s: &Mat<f64>| Mat::from_fn(m, m, |i, j| d[i] * s[(i, j)] * d[j]);
+    let (k, c) = (scaled(&group.stiffness), scaled(&group.damping));
+    let (k_size, c_size) = (k.norm_max(), c.norm_max());
+    let relative = |v: f64, size: f64| if size > 0.0 { v / size } else { 0.0 };
+    let both = Mat::from_fn(m, 2 * m, |i, j| {
+        if j < m { relative(k[(i, j)], k_size) } else { relative(c[(i, j - m)], c_size) }
+    });
+    let unit = |rows: &[usize]| rows.iter().map(|i| SparseVector::from_entries([(*i, 1.0)])).collect();
+    let qr = both.col_piv_qr();
+    let (q, r) = (qr.compute_thin_Q(), qr.thin_R());
+    let rank = (0..m).take_while(|i| r[(*i, *i)].abs() > 1e-15 * m as f64 * r[(0, 0)].abs()).count();
+    if rank == m {
+        return (unit(&group.rows), group.stiffness.clone(), group.damping.clone());
+    }
+    let q = q.subcols(0, rank).to_owned();
+    let (small_k, small_c) = (q.transpose() * &k * &q, q.transpose() * &c * &q);
+    let lost = |s: &Mat<f64>, small: &Mat<f64>, size: f64| {
+        (s - &q * small * q.transpose()).norm_max() > 1e-14 * m as f64 * size
+    };
+    if lost(&k, &small_k, k_size) || lost(&c, &small_c, c_size) {
+        return (unit(&group.rows), group.stiffness.clone(), group.damping.clone());
+    }
+    let direction = |j: usize| SparseVector::from_entries((0..m).map(|i| (group.rows[i], q[(i, j)] / d[i])));
+    ((0..rank).map(direction).collect(), small_k, small_c)
+}
+
+impl Coupling {
+    /// W k Wᵀ and W c Wᵀ as sparse matrices, for writing.
+    pub fn assembled(&self, n: usize) -> Result<[SparseMatrix; 2]> {
+        let whole = |small: &Mat<f64>| {
+            let mut triplets = Vec::new();
+            for (a, left) in self.directions.iter().enumerate() {
+                for (b, right) in self.directions.iter().enumerate().filter(|(b, _)| small[(a, *b)] != 0.0) {
+                    for (i, x) in left.iter() {
+                        triplets.extend(
+                            right
+                                .iter()
+                                .map(|(j, y)| faer::sparse::Triplet::new(i, j, x * small[(a, b)] * y)),
+                        );
+                    }
+                }
+            }
+            SparseMatrix::try_new_from_triplets(n, n, &triplets).map_err(|e| {
+                Error::analysis("coupling", format!("{e:?}"), "Its directions lie outside the system")
+            })
+        };
+        Ok([whole(&self.stiffness)?, whole(&self.damping)?])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::samples;
+
+    fn real(re: SparseMatrix) -> MarketMatrix {
+        MarketMatrix { re, im: None }
+    }
+
+    fn given(matrix: &MarketMatrix) -> Given<'_> {
+        Given { place: "`matrices.stiffness` k.mtx", matrix }
+    }
+
+    /// K of a plate plus friction-like terms: n points that couple three rows each, in units far apart.
+    fn with_friction(points: usize, unit: f64) -> (SparseMatrix, SparseMatrix) {
+        let (k, m) = samples::plate(8, false);
+        let (n, mut triplets) = (k.nrows(), Vec::new());
+        for p in 0..points {
+            let [w, t, r] = [3 * p, 3 * p + 1, 3 * p + 2];
+            for (row, factor) in [(w, 1e4), (t, 4e3 * unit), (r, -3e3 * unit)] {
+                triplets.push(faer::sparse::Triplet::new(row, w, factor));
+                triplets.push(faer::sparse::Triplet::new(row, n - 3, -factor));
+            }
+        }
+        let contact = SparseMatrix::try_new_from_triplets(n, n, &triplets).unwrap();
+        (add_scaled(&[(1.0, &k), (1.0, &contact)]), m)
+    }
+
+    #[test]
+    fn the_parts_add_up_to_what_was_given() {
+        for (points, unit) in [(1, 1.0), (5, 1e-9), (9, 1.0)] {
+            let (k, m) = with_friction(points, unit);
+            let imported =
+                split(given(&real(m)), Some(given(&real(k.clone()))), given(&real(k.clone()))).unwrap();
+            let coupling = imported.coupling.unwrap();
+            // The points share one dof, hence one group: ½ skew of g tᵀ per point has rank 2 for all that share t.
+            assert!(coupling.directions.len() <= 2 * points, "{} of {points}", coupling.directions.len());
+            let [rest, rest_c] = coupling.assembled(k.nrows()).unwrap();
+            let viscous = imported.structure.damping.viscous.unwrap();
+            let size = row_sizes(&k);
+            for (symmetric, rest) in [(&imported.structure.stiffness, &rest), (&viscous, &rest_c)] {
+                let difference = add_scaled(&[(1.0, &k), (-1.0, symmetric), (-1.0, rest)]);
+                for j in 0..k.ncols() {
+                    for (i, v) in difference.row_idx_of_col_raw(j).iter().zip(difference.val_of_col(j)) {
+                        assert!(v.abs() <= 4e-15 * (size[*i] * size[j]).sqrt(), "{i} {j} {v:e}");
+                    }
+                }
+                let t = symmetric.transpose().to_col_major().unwrap();
+                assert_eq!(t.val(), symmetric.val());
+            }
+        }
+    }
+
+    #[test]
+    fn groups_that_do_not_meet_stay_apart_and_sparse() {
+        let (k, m) = samples::plate(8, false);
+        let triplets: Vec<_> = (0..6).map(|p| faer::sparse::Triplet::new(9 * p, 9 * p + 1, 1e3)).collect();
+        let friction = SparseMatrix::try_new_from_triplets(k.nrows(), k.nrows(), &triplets).unwrap();
+        let k = add_scaled(&[(1.0, &k), (1.0, &friction)]);
+        let coupling = split(given(&real(m)), None, given(&real(k))).unwrap().coupling.unwrap();
+        assert_eq!(coupling.directions.len(), 12);
+        assert!(coupling.directions.iter().all(|d| d.indices().len() == 1));
+        assert!((coupling.stiffness[(0, 1)] - 500.0).abs() < 1e-9 && coupling.stiffness[(0, 2)] == 0.0);
+    }
+
+    #[test]
+    fn rounding_of_the_exporter_is_no_coupling_and_a_loss_factor_is_hysteretic() {
+        let (k, m) = samples::plate(6, false);
+        let mut rounded = k.clone();
+        rounded.val_of_col_mut(5)[0] *= 1.0 + 4.0 * f64::EPSILON;
+        let im = add_scaled(&[(0.01, &k)]);
+        let lossy = MarketMatrix { re: rounded, im: Some(im.clone()) };
+        let imported = split(given(&real(m)), None, given(&lossy)).unwrap();
+        assert!(imported.coupling.is_none() && imported.structure.damping.viscous.is_none());
+        let hysteretic = imported.structure.damping.hysteretic.unwrap();
+        assert!(hysteretic.val().iter().zip(im.val()).all(|(a, b)| (a - b).abs() <= 1e-11));
+    }
+
+    #[test]
+    fn what_has_no_meaning_is_refused_all_at_once() {
+        let (k, m) = with_friction(2, 1.0);
+        let complex = |re: &SparseMatrix, im: &SparseMatrix| MarketMatrix {
+            re: add_scaled(&[(1.0, re), (0.0, im)]),
+            im: Some(add_scaled(&[(0.0, re), (1.0, im)])),
+        };
+        let mut bad_mass = add_scaled(&[(1.0, &k)]);
+        bad_mass.val_of_col_mut(0)[0] = -1.0;
+        let (bad_mass, c, lossy) = (real(bad_mass), complex(&m, &m), complex(&m, &k));
+        let text = split(given(&bad_mass), Some(given(&c)), given(&lossy)).unwrap_err().to_string();
+        for part in ["4 faults", "symmetric mass", "masses of zero", "real damping", "imaginary part with"] {
+            assert!(text.contains(part), "{part} not in\n{text}");
+        }
+        let small = real(samples::plate(5, false).1);
+        let text = split(given(&small), None, given(&real(k.clone()))).unwrap_err().to_string();
+        assert!(text.contains("as the mass has it"), "{text}");
+        let n = k.nrows();
+        let hole =
+            SparseMatrix::try_new_from_triplets(n, n, &[faer::sparse::Triplet::new(0, 0, 1.0)]).unwrap();
+        let hole = real(hole);
+        let text = split(given(&hole), None, given(&hole)).unwrap_err().to_string();
+        assert!(text.contains(&format!("{} rows of zeros, row 2", n - 1)), "{text}");
+    }
+
+    #[test]
+    fn a_skew_part_of_high_rank_is_refused() {
+        let n = 5000;
+        let triplets: Vec<_> = (0..n)
+            .flat_map(|i| [(i, i, 2.0), (i, (i + 1) % n, 0.5)])
+            .map(|(i, j, v)| faer::sparse::Triplet::new(i, j, v))
+            .collect();
+        let k = real(SparseMatrix::try_new_from_triplets(n, n, &triplets).unwrap());
+        let ones: Vec<_> = (0..n).map(|i| faer::sparse::Triplet::new(i, i, 1.0)).collect();
+        let m = real(SparseMatrix::try_new_from_triplets(n, n, &ones).unwrap());
+        let text = split(given(&m), None, given(&k)).unwrap_err().to_string();
+        assert!(text.contains("of rank 5000") && text.contains("2000 at most"), "{text}");
+    }
+}

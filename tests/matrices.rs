@@ -1,0 +1,293 @@
+//! Matrices from files: random systems against a dense solver, and any case against itself exported.
+
+use faer::linalg::solvers::Solve;
+use faer::{Mat, c64};
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::path::Path;
+use stridor::case::Case;
+use stridor::error::Result;
+use stridor::job::{Prepared, Selection, analyse, export};
+use stridor::results::RunResults;
+
+/// Marsaglia's xorshift: numbers in [-1, 1), the same in every run.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+/// M, C, K of a random system.
+struct Random3 {
+    m: Mat<f64>,
+    c: Mat<f64>,
+    k: Mat<f64>,
+}
+
+/// A chain-like random system of order n with stiffness-proportional and random damping; `rows` rows of K and C are not
+/// symmetric, `massless` rows have no mass, and K is singular when `free`.
+fn random_system(n: usize, rows: usize, massless: usize, free: bool, seed: u64) -> Random3 {
+    let mut random = Random(0x9E37_79B9_7F4A_7C15 ^ (seed * 7919 + 1));
+    let (mut m, mut c, mut k) = (Mat::zeros(n, n), Mat::zeros(n, n), Mat::<f64>::zeros(n, n));
+    for i in 0..n {
+        m[(i, i)] = 1.0 + 0.5 * random.next();
+        for j in [i + 1, i + 3, i + 7].into_iter().filter(|j| *j < n) {
+            let spring = 2e6 * (1.2 + random.next());
+            for (a, b, sign) in [(i, i, 1.0), (j, j, 1.0), (i, j, -1.0), (j, i, -1.0)] {
+                k[(a, b)] += sign * spring;
+                c[(a, b)] += sign * spring * 2e-6 * (1.0 + 0.3 * (i % 3) as f64);
+            }
+        }
+        if !free {
+            k[(i, i)] += 1e5 * (1.5 + random.next());
+        }
+        if i + 1 < n {
+            let coupled = 0.2 * random.next();
+            m[(i, i + 1)] = coupled;
+            m[(i + 1, i)] = coupled;
+        }
+    }
+    for p in 0..rows {
+        let (row, column) = ((5 * p + 2) % n, (5 * p + 4) % n);
+        k[(row, column)] += 1.5e6 * random.next();
+        c[(row, (column + 1) % n)] += 20.0 * random.next();
+    }
+    for p in 0..massless {
+        let row = (6 * p + 1) % n;
+        for j in 0..n {
+            m[(row, j)] = 0.0;
+            m[(j, row)] = 0.0;
+            // Without mass, damping between such rows would make first-order modes: keep to stiffness.
+            c[(row, j)] = 0.0;
+            c[(j, row)] = 0.0;
+        }
+    }
+    Random3 { m, c, k }
+}
+
+/// All finite eigenvalues with Im λ > 0 and a frequency in the band, dense, independent of the program: the companion of
+/// μ² Q(s) + μ Q′(s) + M at μ = 1/(λ − s), then Newton's inverse iteration on Q itself.
+fn dense_eigenvalues(system: &Random3, band: [f64; 2]) -> Vec<c64> {
+    let Random3 { m, c, k } = system;
+    let n = m.nrows();
+    let s = TAU * band[1];
+    let value = m * faer::Scale(s * s) + c * faer::Scale(s) + k;
+    let slope = m * faer::Scale(2.0 * s) + c;
+    let lu = value.partial_piv_lu();
+    let (a, b) = (lu.solve(&slope), lu.solve(m));
+    let companion = Mat::from_fn(2 * n, 2 * n, |i, j| match (i < n, j < n) {
+        (true, true) => 0.0,
+        (true, false) => f64::from(i == j - n),
+        (false, true) => -b[(i - n, j)],
+        (false, false) => -a[(i - n, j - n)],
+    });
+    let eigen = companion.eigen().unwrap();
+    let q = |z: c64| Mat::from_fn(n, n, |i, j| z * z * m[(i, j)] + z * c[(i, j)] + k[(i, j)]);
+    let slope = |z: c64| Mat::from_fn(n, n, |i, j| z * 2.0 * m[(i, j)] + c[(i, j)]);
+    let mut found = Vec::new();
+    for index in 0..2 * n {
+        let mu = eigen.S()[index];
+        if mu.norm() * s < 1e-7 {
+            continue;
+        }
+        let mut z = c64::new(s, 0.0) + c64::new(1.0, 0.0) / mu;
+        if z.im < 1e-6 * z.norm() || z.im > 1.5 * s {
+            continue;
+        }
+        let mut x = Mat::from_fn(n, 1, |i, _| eigen.U()[(i, index)]);
+        for _ in 0..4 {
+            let y = q(z).partial_piv_lu().solve(slope(z) * &x);
+            let dot = |u: &Mat<c64>, v: &Mat<c64>| (u.adjoint() * v)[(0, 0)];
+            let step = dot(&x, &x) / dot(&x, &y);
+            if !step.re.is_finite() {
+                break;
+            }
+            z -= step;
+            let size = dot(&y, &y).re.sqrt();
+            x = Mat::from_fn(n, 1, |i, _| y[(i, 0)] / size);
+        }
+        if z.im >= TAU * band[0] && z.im <= TAU * band[1] {
+            found.push(z);
+        }
+    }
+    found.sort_by(|a, b| a.im.total_cmp(&b.im).then(a.re.total_cmp(&b.re)));
+    found
+}
+
+fn write_matrix(folder: &Path, name: &str, a: &Mat<f64>, scale: &[f64], factor: f64) {
+    let mut body = String::new();
+    let mut count = 0;
+    for j in 0..a.ncols() {
+        for i in (0..a.nrows()).filter(|i| a[(*i, j)] != 0.0) {
+            let _ = writeln!(body, "{} {} {:e}", i + 1, j + 1, factor * scale[i] * a[(i, j)] * scale[j]);
+            count += 1;
+        }
+    }
+    let text = format!("%%MatrixMarket matrix coordinate real general\n{0} {0} {count}\n{body}", a.nrows());
+    std::fs::write(folder.join(name), text).unwrap();
+}
+
+fn run(folder: &Path, text: &str) -> Result<RunResults> {
+    let case = Case::parse("case.toml", text, folder.to_path_buf())?;
+    let prepared = Prepared::new(&case)?;
+    analyse(&prepared, Selection::ALL, &mut |_| Ok(()), &())
+}
+
+fn eigenvalues(results: &RunResults) -> Vec<c64> {
+    results.complex.as_ref().unwrap().modes.modes.iter().map(|m| m.eigenvalue).collect()
+}
+
+const MATRICES: &str = "[matrices]\nmass = \"m.mtx\"\nstiffness = \"k.mtx\"\ndamping = \"c.mtx\"\n[cea]\n";
+
+#[test]
+fn random_systems_have_the_eigenvalues_of_a_dense_solver() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut worst: (f64, String) = (0.0, String::new());
+    let mut total = 0;
+    for seed in 0..24u64 {
+        let n = 12 + (seed as usize * 5) % 29;
+        let (rows, massless, free) = (seed as usize % 5, (seed as usize / 2) % 4, seed % 3 == 0);
+        let system = random_system(n, rows, massless, free, seed);
+        let band = [20.0, 450.0];
+        let expected = dense_eigenvalues(&system, band);
+        // Units of the rows apart by up to 1e10, and all forces in another unit.
+        let scales: [fn(usize) -> f64; 3] = [|_| 1.0, |i| [1.0, 1e-5, 1e5][i % 3], |i| [1e5, 1e-5][i % 2]];
+        let scale: Vec<f64> = (0..n).map(scales[seed as usize % 3]).collect();
+        let factor = [1.0, 1e10, 1e-10][(seed as usize / 3) % 3];
+        for (name, a) in [("m.mtx", &system.m), ("c.mtx", &system.c), ("k.mtx", &system.k)] {
+            write_matrix(folder.path(), name, a, &scale, factor);
+        }
+        let label =
+            format!("seed {seed}: n {n}, {rows} rows, {massless} massless, free {free}, factor {factor:e}");
+        let results = run(folder.path(), &format!("{MATRICES}band = [20, 450]"))
+            .unwrap_or_else(|e| panic!("{label}: {e}"));
+        let found = eigenvalues(&results);
+        assert_eq!(found.len(), expected.len(), "{label}: {:?}", results.warnings);
+        total += expected.len();
+        for (a, b) in found.iter().zip(&expected) {
+            let error = (a - b).norm() / b.norm();
+            if error > worst.0 {
+                worst = (error, format!("{label}: {a} {b} {:?}", results.warnings));
+            }
+        }
+    }
+    assert!(total > 150, "{total} eigenvalues compared");
+    println!("{total} eigenvalues, largest relative error {:.1e} at {}", worst.0, worst.1);
+    assert!(worst.0 < 1e-8, "{:.1e} at {}", worst.0, worst.1);
+}
+
+#[test]
+fn an_exported_case_has_the_same_modes() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("validation");
+    for name in ["two-dof", "pad-on-disc"] {
+        let mut case = stridor::case::read_case(&root.join(name).join("case.toml")).unwrap();
+        let cea = case.cea.as_mut().unwrap();
+        (cea.band[1], cea.basis_below) = (cea.band[1].min(600.0), cea.basis_below.min(900.0));
+        let folder = tempfile::tempdir().unwrap();
+        export(&case, folder.path()).unwrap();
+        let exported = stridor::case::read_case(&folder.path().join("case.toml")).unwrap();
+        let of = |case: &Case| {
+            let prepared = Prepared::new(case).unwrap();
+            analyse(&prepared, Selection::CEA, &mut |_| Ok(()), &()).unwrap()
+        };
+        let (direct, back) = (of(&case), of(&exported));
+        let (a, b) = (direct.steady.as_ref().unwrap(), back.steady.as_ref().unwrap());
+        for (p, q) in a.state.points.iter().zip(&b.state.points) {
+            let scale = a.state.points.iter().map(|p| p.penetration.abs()).fold(0.0, f64::max);
+            assert!((p.penetration - q.penetration).abs() <= 1e-9 * scale, "{name}");
+        }
+        let (a, b) = (eigenvalues(&direct), eigenvalues(&back));
+        assert!(!a.is_empty() && a.len() == b.len(), "{name}: {} {}", a.len(), b.len());
+        for (x, y) in a.iter().zip(&b) {
+            assert!((x - y).norm() <= 1e-9 * x.norm(), "{name}: {x} {y}");
+        }
+    }
+}
+
+#[test]
+fn pairs_nearest_to_a_frequency_are_those_of_the_whole_band() {
+    let folder = tempfile::tempdir().unwrap();
+    let system = random_system(40, 4, 0, false, 3);
+    for (name, a) in [("m.mtx", &system.m), ("c.mtx", &system.c), ("k.mtx", &system.k)] {
+        write_matrix(folder.path(), name, a, &[1.0; 40], 1.0);
+    }
+    let all = eigenvalues(&run(folder.path(), &format!("{MATRICES}band = [0, 1200]")).unwrap());
+    for (hz, count) in [(250.0, 5), (400.0, 12), (60.0, 3)] {
+        let nearest =
+            run(folder.path(), &format!("{MATRICES}nearest = {hz:.1}\ncount = {count}\nband = [0, 1200]"))
+                .unwrap();
+        let found = eigenvalues(&nearest);
+        let target = c64::new(0.0, TAU * hz);
+        let mut expected = all.clone();
+        expected.sort_by(|a, b| (a - target).norm().total_cmp(&(b - target).norm()));
+        expected.truncate(count);
+        assert_eq!(found.len(), count);
+        for z in &expected {
+            assert!(found.iter().any(|f| (f - z).norm() < 1e-8 * z.norm()), "{hz} {count}: {z} in {found:?}");
+        }
+    }
+    let few =
+        run(folder.path(), &format!("{MATRICES}nearest = 250.0\ncount = 30\nband = [200, 300]")).unwrap();
+    assert!(few.warnings.iter().any(|w| w.contains("of the 30 complex modes")), "{:?}", few.warnings);
+}
+
+#[test]
+fn faults_of_a_case_with_matrices_come_together() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("m.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 1\n2 2 1\n");
+    write("k.mtx", "%%MatrixMarket matrix coordinate real symmetric\n3 3 2\n1 1 x\n9 2 1\n");
+    write("c.mtx", "%%MatrixMarket matrix coordinate pattern symmetric\n2 2 1\n1 1\n");
+    let error = run(folder.path(), &format!("{MATRICES}band = [0, 100]")).unwrap_err();
+    let text = error.to_string();
+    for part in ["3 faults", "k.mtx:3", "k.mtx:4", "c.mtx:1"] {
+        assert!(text.contains(part), "{part} not in\n{text}");
+    }
+    write("c.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 1\n1 1 1\n");
+    write("k.mtx", "%%MatrixMarket matrix coordinate real general\n2 2 3\n1 1 1000\n2 2 2000\n1 2 100\n");
+    write("contact.csv", "normal;t1;t2;weight;gap\n1;2;;1;0\n-7;x;;-1;nan\n");
+    let contact = |points: &str| {
+        format!(
+            "{MATRICES}band = [0, 100]\n[contact.pad]\npoints = {points}\nload = 1\nsliding_velocity = 1\n\
+             normal = {{ per = \"point\", stiffness = 100 }}\nfriction = {{ law = \"coulomb\", mu0 = 0.3 }}\n"
+        )
+    };
+    let text = run(folder.path(), &contact("\"contact.csv\"")).unwrap_err().to_string();
+    for part in ["4 faults", "contact.csv:3 `weight`", "contact.csv:3 `gap`", "`normal`", "`t1`"] {
+        assert!(text.contains(part), "{part} not in\n{text}");
+    }
+    let text = run(folder.path(), &contact("[[\"1\", \"2\"]]")).unwrap_err().to_string();
+    assert!(text.contains("a stiffness that is not symmetric, with a contact"), "{text}");
+    let mixed = contact("[[\"1\", \"2\"]]").replace("[cea]", "[material.steel]\nyoungs_modulus = 1\n[cea]")
+        + "body = \"rim\"\n[modes.all]\ncount = 1\nclamp = \"hub\"\n";
+    let text = run(folder.path(), &mixed).unwrap_err().to_string();
+    for part in ["`material`", "modes.all.clamp", "no such section beside [matrices]"] {
+        assert!(text.contains(part), "{part} not in\n{text}");
+    }
+}
+
+#[test]
+fn an_exported_and_reread_file_of_rows_names_its_faults() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    for name in ["m.mtx", "k.mtx", "c.mtx"] {
+        write(name, "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 1\n2 2 5\n");
+    }
+    let text =
+        MATRICES.replace("[cea]", "dofs = \"dofs.csv\"\n[modes.all]\ncount = 2\n[cea]") + "band = [0, 100]";
+    write("dofs.csv", "dof,node,uz,rx,x,y,z\n1,7,1,0,0.1,0.2,0.3\n2,7,0,1,0.1,0.2,0.3\n");
+    let results = run(folder.path(), &text).unwrap();
+    let modes = &results.modes[0];
+    assert_eq!(results.geometry.nodes, [[0.1, 0.2, 0.3]]);
+    assert!(modes.shapes[0][0].iter().filter(|u| **u != 0.0).count() == 1 && modes.modes.len() == 2);
+    write("dofs.csv", "dof,node,uz,q\n1,7,1,0\n");
+    assert!(run(folder.path(), &text).unwrap_err().to_string().contains("the column \"q\""));
+    write("dofs.csv", "dof,node,uz,x\n1,7,1,0\n3,7,1,1\n");
+    let message = run(folder.path(), &text).unwrap_err().to_string();
+    assert!(message.contains("another place") && message.contains("dof \"3\""), "{message}");
+}
