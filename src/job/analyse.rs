@@ -2,12 +2,15 @@
 
 use super::modes::{add_modal_damping, compare, labels, named, part_modes};
 use super::prepared::Prepared;
-use crate::case::{Case, ContactState};
+use super::sensitivity::Analysed;
+use crate::case::{Case, ContactState, SensitivityAnalysis};
 use crate::equilibrium::{self, SteadyOptions, SteadySliding};
 use crate::error::Result;
 use crate::modal::{self, ModesWanted};
 use crate::progress::Observer;
-use crate::results::{self, ComplexResult, NamedModes, ResultsFile, RunResults, SteadyResult};
+use crate::results::{
+    self, ComplexResult, NamedModes, ResultsFile, RunResults, SensitivityResult, SteadyResult,
+};
 use crate::stability;
 use crate::system::Structure;
 use std::path::Path;
@@ -20,15 +23,30 @@ pub struct Selection {
     pub modes: bool,
     /// Steady sliding and complex eigenvalues.
     pub cea: bool,
+    /// Sensitivities of complex eigenvalues.
+    pub sensitivity: Sensitivities,
+}
+
+/// When to work out sensitivities.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sensitivities {
+    /// Never.
+    No,
+    /// When the case has a table `[sensitivity]`.
+    WhenListed,
+    /// Always, by default values when the case has no such table.
+    Yes,
 }
 
 impl Selection {
     /// Everything the case lists.
-    pub const ALL: Selection = Selection { modes: true, cea: true };
+    pub const ALL: Selection = Selection { modes: true, cea: true, sensitivity: Sensitivities::WhenListed };
     /// Real modes only.
-    pub const MODES: Selection = Selection { modes: true, cea: false };
+    pub const MODES: Selection = Selection { modes: true, cea: false, sensitivity: Sensitivities::No };
     /// Steady sliding and complex eigenvalues only.
-    pub const CEA: Selection = Selection { modes: false, cea: true };
+    pub const CEA: Selection = Selection { modes: false, cea: true, sensitivity: Sensitivities::No };
+    /// Complex eigenvalues and their sensitivities.
+    pub const SENSITIVITY: Selection = Selection { modes: false, cea: true, sensitivity: Sensitivities::Yes };
 }
 
 /// A result that is ready to be written.
@@ -41,6 +59,8 @@ pub enum Stage<'a> {
     Steady(&'a SteadyResult),
     /// Complex eigenvalues.
     Complex(&'a ComplexResult),
+    /// Their sensitivities.
+    Sensitivity(&'a SensitivityResult),
 }
 
 /// Runs the analyses of a case and writes the results folder `out`; nothing is written when the input is wrong.
@@ -65,6 +85,7 @@ pub fn run_case(
             Stage::Modes(modes) => file.write_modes(modes),
             Stage::Steady(steady) => file.write_steady(steady),
             Stage::Complex(complex) => file.write_complex(complex),
+            Stage::Sensitivity(sensitivity) => file.write_sensitivity(sensitivity),
         };
         recording += started.elapsed().as_secs_f64();
         written
@@ -141,11 +162,21 @@ pub fn analyse(
             }
         }
         if selection.cea {
-            let complex = complex_result(prepared, state, &mut clock, observer)?;
-            if let Some(complex) = complex {
+            let wanted = match selection.sensitivity {
+                Sensitivities::No => None,
+                Sensitivities::WhenListed => case.sensitivity.clone(),
+                Sensitivities::Yes => Some(case.sensitivity.clone().unwrap_or_default()),
+            };
+            let wanted = wanted.as_ref();
+            let complex = complex_result(prepared, state, wanted, &mut clock, observer)?;
+            if let Some((complex, sensitivity)) = complex {
                 record(Stage::Complex(&complex))?;
                 results.warnings.extend(complex.modes.warnings.iter().cloned());
                 results.complex = Some(complex);
+                if let Some(sensitivity) = sensitivity {
+                    record(Stage::Sensitivity(&sensitivity))?;
+                    results.sensitivity = Some(sensitivity);
+                }
             }
         }
     }
@@ -177,9 +208,10 @@ fn steady_result(prepared: &Prepared, state: SteadySliding) -> SteadyResult {
 fn complex_result(
     prepared: &Prepared,
     state: &SteadySliding,
+    wanted: Option<&SensitivityAnalysis>,
     clock: &mut Clock,
     observer: &dyn Observer,
-) -> Result<Option<ComplexResult>> {
+) -> Result<Option<(ComplexResult, Option<SensitivityResult>)>> {
     let Some(cea) = &prepared.case.cea else { return Ok(None) };
     let mut system = prepared.system.clone();
     let stiffness = equilibrium::tangent_stiffness(&prepared.system, &state.displacement)?.into_owned();
@@ -191,6 +223,13 @@ fn complex_result(
     let modes = clock.time("complex eigenvalues", || {
         stability::complex_modes(&system, state, &basis, cea.band, observer)
     })?;
+    let sensitivity = match wanted {
+        Some(wanted) => Some(clock.time("sensitivities", || {
+            let analysed = Analysed { prepared, system: &system, steady: state, real: &basis, modes: &modes };
+            analysed.sensitivities(wanted, observer)
+        })?),
+        None => None,
+    };
     let real = named(prepared, "whole", basis, &prepared.assembled);
     let labels = labels(prepared, &real, &prepared.assembled);
     let participation = modes
@@ -204,13 +243,14 @@ fn complex_result(
                 .join(", ")
         })
         .collect();
-    Ok(Some(ComplexResult {
+    let complex = ComplexResult {
         shapes: modes.modes.iter().map(|m| prepared.assembled.dofs.expand_complex(&m.right)).collect(),
         participation,
         measured_squeal_hz: cea.measured_squeal.iter().map(|f| (*f, cea.measured_source.clone())).collect(),
         band_hz: cea.band,
         modes,
-    }))
+    };
+    Ok(Some((complex, sensitivity)))
 }
 
 /// Where Kirchhoff's theory is off by more than a percent at the highest frequency asked for.

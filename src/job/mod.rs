@@ -12,6 +12,9 @@ mod modes;
 mod place;
 mod prepared;
 mod regions;
+mod scalars;
+mod sensitivity;
+mod verify;
 
-pub use analyse::{Selection, Stage, analyse, run_case};
+pub use analyse::{Selection, Sensitivities, Stage, analyse, run_case};
 pub use prepared::Prepared;

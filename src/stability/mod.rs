@@ -3,17 +3,22 @@
 //! [`complex_modes`] projects the problem on real modes and the static responses to the contact directions, solves the
 //! small one, and lets the residuals on the full order enrich the basis until every pair is right there.
 
+mod advice;
 mod analysis;
 mod basis;
 mod block;
 mod budget;
 mod interface;
+mod modal_damping;
 mod operator;
 mod projected;
+mod sensitivity;
 #[cfg(test)]
 mod tests;
 
+pub use advice::PointRates;
 pub use analysis::complex_modes;
+pub use sensitivity::{Domain, Rate, Sensitivity};
 
 use crate::linalg::c64;
 
