@@ -6,10 +6,10 @@ use std::f64::consts::TAU;
 use std::path::PathBuf;
 use stridor::case::Case;
 use stridor::equilibrium::{SteadyOptions, directions, linearize, solve_steady};
-use stridor::job::Prepared;
+use stridor::job::{Prepared, Selection, analyse};
 use stridor::linalg::c64;
 use stridor::modal::{ModesWanted, compute};
-use stridor::stability::complex_modes;
+use stridor::stability::{ComplexMode, complex_modes};
 
 /// The reference case with a large hub and on a mesh so coarse that dense algebra can follow.
 fn coarse_rig() -> Case {
@@ -81,5 +81,93 @@ fn full_order_eigenvalues_of_the_rig_agree_with_a_dense_solver() {
         let l = mode.eigenvalue;
         let nearest = dense.iter().map(|d| (d - l).norm() / l.norm()).fold(f64::INFINITY, f64::min);
         assert!(nearest < 1e-8, "{l}: {nearest:e}");
+    }
+}
+
+/// The same rig with modal damping, its sensitivities asked for by scalars of every kind.
+fn sensitive_rig(prestress: bool) -> Case {
+    let scalars = [
+        "contact.rim.friction.mu0",
+        "contact.rim.friction.alpha",
+        "contact.rim.sliding_velocity",
+        "contact.rim.load",
+        "contact.rim.normal.stiffness",
+        "contact.rim.placement.lead_angle",
+        "material.steel.youngs_modulus",
+        "material.steel.density",
+        "shell.disc.thickness",
+        "bar.bar.section.inertia_1",
+        "spring.drive.stiffness",
+        "damping.modal_ratio",
+    ];
+    let case = coarse_rig().with_parameter("damping.modal_ratio", 0.0035).expect("a sound ratio");
+    let lists = format!("prestress = {prestress}\n{}", case.to_toml().replace("prestress = false\n", ""));
+    let text = format!(
+        "{lists}\n[sensitivity]\nparameters = {scalars:?}\nadvice = true\nmass = \"0.1 g\"\ndamper = 0.01\nverify = true\n"
+    );
+    Case::parse("sensitive rig", &text, PathBuf::from(".")).expect("a sound case")
+}
+
+/// dλ/dp by sixth-order differences of eigenvalues, every one of an analysis of its own.
+fn by_rerun(case: &Case, path: &str, value: f64, step: f64, lambda: &[c64]) -> Vec<c64> {
+    let at = |p: f64| -> Vec<c64> {
+        let case = case.with_parameter(path, p).expect("the case accepts it");
+        let prepared = Prepared::new(&case).expect("a sound rig");
+        let results = analyse(&prepared, Selection::CEA, &mut |_| Ok(()), &()).expect("an analysis");
+        let modes = results.complex.expect("complex modes").modes.modes;
+        let distance = |m: &ComplexMode, l: &c64| (m.eigenvalue - l).norm();
+        let nearest = |l: &c64| modes.iter().min_by(|a, b| distance(a, l).total_cmp(&distance(b, l)));
+        lambda.iter().map(|l| nearest(l).expect("a mode").eigenvalue).collect()
+    };
+    let central = |h: f64| -> Vec<c64> {
+        at(value + h).iter().zip(at(value - h)).map(|(a, b)| (a - b) / (2.0 * h)).collect()
+    };
+    let [one, two, three] = [1.0, 2.0, 3.0].map(|k| central(k * step));
+    (0..lambda.len()).map(|j| one[j] * 1.5 - two[j] * 0.6 + three[j] * 0.1).collect()
+}
+
+#[test]
+fn sensitivities_of_the_rig_equal_differences_of_runs_anew() {
+    for prestress in [false, true] {
+        let case = sensitive_rig(prestress);
+        let prepared = Prepared::new(&case).expect("a sound rig");
+        let results = analyse(&prepared, Selection::ALL, &mut |_| Ok(()), &()).expect("an analysis");
+        let found = results.sensitivity.expect("sensitivities");
+        assert!(found.left_out.is_empty(), "{:?}", found.left_out);
+        let lambda: Vec<c64> = found.modes.iter().map(|m| m.eigenvalue).collect();
+        assert!(lambda.iter().all(|l| l.re > 0.0));
+        let paths: Vec<(String, f64)> =
+            found.modes[0].parameters.iter().map(|p| (p.path.clone(), p.value)).collect();
+        assert_eq!(paths.len(), 12);
+        for (path, value) in paths {
+            // With prestress a few of each kind are enough.
+            if prestress && !["load", "thickness", "mu0", "modal_ratio"].iter().any(|end| path.ends_with(end))
+            {
+                continue;
+            }
+            let step = 3e-3 * value.abs();
+            let exact = by_rerun(&case, &path, value, step, &lambda);
+            for (mode, exact) in found.modes.iter().zip(exact) {
+                let rate = mode.parameters.iter().find(|p| p.path == path).expect("a rate").rate;
+                let error = (rate - exact).norm() / exact.norm();
+                // What the eigenvalues themselves are known to.
+                let noise = 1e-12 * mode.eigenvalue.norm() / (step * exact.norm());
+                println!(
+                    "{path} {:.1} Hz: p dλ/dp = {:.3e} 1/s, error {error:.1e}, noise {noise:.1e}",
+                    mode.eigenvalue.im / TAU,
+                    value * exact.norm()
+                );
+                assert!(error <= 1e-6 + noise, "{path} at {}: {rate} {exact}, {error:.1e}", mode.eigenvalue);
+            }
+        }
+        for thing in found.modes.iter().flat_map(|m| &m.best) {
+            let done = thing.done.expect("asked for");
+            let error = (done - thing.predicted).norm() / thing.predicted.norm();
+            println!(
+                "{} {:.1e}: predicted {:.4} done {:.4} ({error:.1e})",
+                thing.kind, thing.amount, thing.predicted, done
+            );
+            assert!(done.re < 0.0 && error < 1e-2, "{thing:?}");
+        }
     }
 }

@@ -74,6 +74,9 @@ pub struct Case {
     /// Complex eigenvalue analysis, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cea: Option<CeaAnalysis>,
+    /// Sensitivities of complex eigenvalues and advice, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensitivity: Option<SensitivityAnalysis>,
 }
 
 /// Where the mesh comes from.
@@ -435,6 +438,37 @@ pub struct CeaAnalysis {
     pub measured_squeal: Vec<f64>,
     /// Where they come from.
     pub measured_source: String,
+}
+
+/// How complex eigenvalues answer the scalars of the case, and small things mounted on its nodes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SensitivityAnalysis {
+    /// The complex modes nearest to these frequencies \[Hz\]; the unstable ones when empty.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub modes: Vec<f64>,
+    /// Paths of scalars; a `*` stands for any letters, so that `*` alone is all of them.
+    pub parameters: Vec<String>,
+    /// Whether to work out where a mass, a spring or a damper helps.
+    pub advice: bool,
+    /// The mass that the advice speaks of \[kg\].
+    pub mass: f64,
+    /// The constant of the damper that the advice speaks of \[N s/m\].
+    pub damper: f64,
+    /// Mounts the best mass and the best damper of each mode, and runs the analysis anew.
+    pub verify: bool,
+}
+
+impl Default for SensitivityAnalysis {
+    fn default() -> Self {
+        SensitivityAnalysis {
+            modes: Vec::new(),
+            parameters: vec!["*".into()],
+            advice: true,
+            mass: 1e-3,
+            damper: 1.0,
+            verify: false,
+        }
+    }
 }
 
 impl Case {

@@ -90,6 +90,7 @@ fn read_root(root: &Section, folder: PathBuf) -> Case {
         damping: root.section("damping", read_damping).unwrap_or_default(),
         modes: collect(root, "modes", read_modes),
         cea: root.section("cea", read_cea),
+        sensitivity: root.section("sensitivity", read_sensitivity),
     };
     check_names(root, &case);
     case
@@ -443,6 +444,21 @@ fn read_cea(s: &Section) -> CeaAnalysis {
     }
 }
 
+fn read_sensitivity(s: &Section) -> SensitivityAnalysis {
+    let default = SensitivityAnalysis::default();
+    SensitivityAnalysis {
+        modes: s
+            .quantity_list("modes", FREQUENCY)
+            .check("frequencies of zero or more", |list| list.iter().all(|f| *f >= 0.0))
+            .or(Vec::new()),
+        parameters: s.strings("parameters").or(default.parameters),
+        advice: s.boolean("advice").or(default.advice),
+        mass: s.quantity("mass", MASS).positive().or(default.mass),
+        damper: s.quantity("damper", DASHPOT).positive().or(default.damper),
+        verify: s.boolean("verify").or(default.verify),
+    }
+}
+
 /// Names that must stand elsewhere in the file: materials, parts, contacts.
 fn check_names(root: &Section, case: &Case) {
     let materials: Vec<&str> = case.material.keys().map(String::as_str).collect();
@@ -485,6 +501,9 @@ fn check_names(root: &Section, case: &Case) {
     }
     if case.cea.is_some() && case.contact.is_empty() && case.matrices.is_none() {
         root.fault("cea", "no [contact] in the case", "a contact, without which nothing slides", "");
+    }
+    if case.sensitivity.is_some() && case.cea.is_none() {
+        root.fault("sensitivity", "no [cea] in the case", "a [cea], whose eigenvalues are looked into", "");
     }
     if case.matrices.is_some() {
         check_matrices(root, case);
@@ -611,6 +630,11 @@ measured_source = "hammer"
 [cea]
 band = [0, "6 kHz"]
 measured_squeal = [936, 1661, 2600]
+
+[sensitivity]
+modes = [936, "1.661 kHz"]
+mass = "2 g"
+verify = true
 "#;
 
     fn parse(text: &str) -> Result<Case> {

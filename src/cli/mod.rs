@@ -46,6 +46,8 @@ enum Action {
     Modes(analyse::Options),
     /// Steady sliding and complex eigenvalues only
     Cea(analyse::Options),
+    /// Complex eigenvalues, what they answer to most, and where a mass or a damper helps
+    Sensitivity(analyse::Options),
     /// Check a case and its mesh without running it, and list its parameters
     Check(check::Options),
     /// Write M, C, K, the degrees of freedom and the contact points of a case, for other programs
@@ -84,6 +86,7 @@ fn act(command: &Command) -> Result<ExitCode> {
         Action::Run(options) => analyse::run(options, common, crate::job::Selection::ALL),
         Action::Modes(options) => analyse::run(options, common, crate::job::Selection::MODES),
         Action::Cea(options) => analyse::run(options, common, crate::job::Selection::CEA),
+        Action::Sensitivity(options) => analyse::run(options, common, crate::job::Selection::SENSITIVITY),
         Action::Check(options) => check::run(options, common),
         Action::Export(options) => export::run(options, common),
         Action::New(options) => new::run(options, common),

@@ -5,6 +5,7 @@
 
 mod condensed;
 mod linear;
+mod nearby;
 mod newton;
 #[cfg(test)]
 pub(crate) mod samples;
@@ -16,6 +17,7 @@ pub use condensed::Condensed;
 pub use linear::{
     ContactBlock, LinearContact, closed_structure, contact_force, directions, linearize, tangent_stiffness,
 };
+pub use nearby::Nearby;
 pub use steady::{SteadyOptions, solve_steady, solve_steady_with};
 
 use crate::system::{ContactForces, ContactTangent};

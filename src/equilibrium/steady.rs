@@ -157,7 +157,7 @@ fn refine(system: &System, k: &SparseMatrix, contact: &Contact<'_>, stage: &mut 
 }
 
 /// f − K u − r_c, and its size relative to ‖f‖ + ‖r_c‖.
-fn residual(system: &System, k: &SparseMatrix, u: &[f64], approach: &[f64]) -> (Vec<f64>, f64) {
+pub(super) fn residual(system: &System, k: &SparseMatrix, u: &[f64], approach: &[f64]) -> (Vec<f64>, f64) {
     let contact = contact_force(system, approach, u, &vec![0.0; u.len()]);
     let elastic = multiply_vector(k, u);
     let r: Vec<f64> = (0..u.len()).map(|i| system.load[i] - elastic[i] - contact[i]).collect();
@@ -166,7 +166,7 @@ fn residual(system: &System, k: &SparseMatrix, u: &[f64], approach: &[f64]) -> (
     (r, size)
 }
 
-fn states(system: &System, approach: &[f64], u: &[f64]) -> Vec<PointState> {
+pub(super) fn states(system: &System, approach: &[f64], u: &[f64]) -> Vec<PointState> {
     let mut states = Vec::new();
     for (pair, approach) in system.pairs.iter().zip(approach) {
         for point in &pair.points {

@@ -228,3 +228,22 @@ fn two_dof_contact_stiffness_has_the_signs_of_its_equations() {
     }
     assert_eq!(k, [[0.0, 0.4 * 1.3], [0.0, 1.3]]);
 }
+
+#[test]
+fn a_neighbour_is_found_without_a_new_factorisation() {
+    let system = random_system(60, 5, 20.0, 11);
+    let state = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
+    let nearby = super::Nearby::new(&system, &state).unwrap();
+    let mut other = system.clone();
+    other.pairs[0].closing = Closing::Load(20.4);
+    other.pairs[0].sliding_velocity *= 0.98;
+    let k = system.structure.stiffness.to_dense();
+    other.structure.stiffness =
+        sparse(60, |i, j| if i < 30 && j < 30 { 1.02 * k[(i, j)] } else { k[(i, j)] });
+    let (found, exact) =
+        (nearby.solve(&other).unwrap(), solve_steady(&other, &SteadyOptions::default(), &()).unwrap());
+    let scale = exact.displacement.iter().fold(0.0, |m: f64, u| m.max(u.abs()));
+    assert!(found.displacement.iter().zip(&exact.displacement).all(|(a, b)| (a - b).abs() < 1e-12 * scale));
+    assert!((found.approach[0] - exact.approach[0]).abs() < 1e-12 * scale && found.residual < 1e-14);
+    assert!(nearby.solve(&random_system(61, 5, 20.0, 11)).is_err());
+}

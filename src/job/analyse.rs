@@ -9,7 +9,9 @@ use crate::error::{Error, Result};
 use crate::linalg::c64;
 use crate::modal;
 use crate::progress::Observer;
-use crate::results::{self, ComplexResult, NamedModes, ResultsFile, RunResults, SteadyResult};
+use crate::results::{
+    self, ComplexResult, NamedModes, ResultsFile, RunResults, SensitivityResult, SteadyResult,
+};
 use std::f64::consts::TAU;
 use std::path::Path;
 use std::time::Instant;
@@ -21,15 +23,30 @@ pub struct Selection {
     pub modes: bool,
     /// Steady sliding and complex eigenvalues.
     pub cea: bool,
+    /// Sensitivities of complex eigenvalues.
+    pub sensitivity: Sensitivities,
+}
+
+/// When to work out sensitivities.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sensitivities {
+    /// Never.
+    No,
+    /// When the case has a table `[sensitivity]`.
+    WhenListed,
+    /// Always, by default values when the case has no such table.
+    Yes,
 }
 
 impl Selection {
     /// Everything the case lists.
-    pub const ALL: Selection = Selection { modes: true, cea: true };
+    pub const ALL: Selection = Selection { modes: true, cea: true, sensitivity: Sensitivities::WhenListed };
     /// Real modes only.
-    pub const MODES: Selection = Selection { modes: true, cea: false };
+    pub const MODES: Selection = Selection { modes: true, cea: false, sensitivity: Sensitivities::No };
     /// Steady sliding and complex eigenvalues only.
-    pub const CEA: Selection = Selection { modes: false, cea: true };
+    pub const CEA: Selection = Selection { modes: false, cea: true, sensitivity: Sensitivities::No };
+    /// Complex eigenvalues and their sensitivities.
+    pub const SENSITIVITY: Selection = Selection { modes: false, cea: true, sensitivity: Sensitivities::Yes };
 }
 
 /// A result that is ready to be written.
@@ -42,6 +59,8 @@ pub enum Stage<'a> {
     Steady(&'a SteadyResult),
     /// Complex eigenvalues.
     Complex(&'a ComplexResult),
+    /// Their sensitivities.
+    Sensitivity(&'a SensitivityResult),
 }
 
 /// Runs the analyses of a case and writes the results folder `out`; nothing is written when the input is wrong.
@@ -66,6 +85,7 @@ pub fn run_case(
             Stage::Modes(modes) => file.write_modes(modes),
             Stage::Steady(steady) => file.write_steady(steady),
             Stage::Complex(complex) => file.write_complex(complex),
+            Stage::Sensitivity(sensitivity) => file.write_sensitivity(sensitivity),
         };
         recording += started.elapsed().as_secs_f64();
         written
@@ -156,11 +176,21 @@ pub fn analyse(
             }
         }
         if selection.cea {
-            let complex = complex_result(prepared, state, basis, &mut clock, observer)?;
-            if let Some(complex) = complex {
+            let wanted = match selection.sensitivity {
+                Sensitivities::No => None,
+                Sensitivities::WhenListed => case.sensitivity.clone(),
+                Sensitivities::Yes => Some(case.sensitivity.clone().unwrap_or_default()),
+            };
+            let wanted = wanted.as_ref();
+            let complex = complex_result(prepared, state, basis, wanted, &mut clock, observer)?;
+            if let Some((complex, sensitivity)) = complex {
                 record(Stage::Complex(&complex))?;
                 results.warnings.extend(complex.modes.warnings.iter().cloned());
                 results.complex = Some(complex);
+                if let Some(sensitivity) = sensitivity {
+                    record(Stage::Sensitivity(&sensitivity))?;
+                    results.sensitivity = Some(sensitivity);
+                }
             }
         }
         results.steady = results.steady.filter(|_| slides);

@@ -18,8 +18,11 @@ mod nearest;
 mod place;
 mod prepared;
 mod regions;
+mod scalars;
+mod sensitivity;
 mod table;
+mod verify;
 
-pub use analyse::{Selection, Stage, analyse, run_case};
+pub use analyse::{Selection, Sensitivities, Stage, analyse, run_case};
 pub use export::export;
 pub use prepared::Prepared;

@@ -1,7 +1,7 @@
 //! Real modes of one part or of the whole, with names and effective masses.
 
 use super::prepared::Prepared;
-use crate::case::{ContactState, ModesAnalysis};
+use crate::case::{Case, ContactState, ModesAnalysis};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::modal::{self, ModesWanted, RealModes};
 use crate::results::{MeasuredComparison, NamedModes, NodalField};
@@ -191,6 +191,22 @@ pub fn add_modal_damping(structure: &mut Structure, modes: &RealModes, prepared:
     if damping.modal_ratio == 0.0 && damping.modal_ratios.is_empty() {
         return Ok(());
     }
+    let ratios = modal_ratios(prepared.case, modes)?;
+    structure.damping.modal = Some(crate::system::ModalDamping {
+        basis: &structure.mass * &modes.shapes,
+        coefficients: (0..modes.len())
+            .map(|k| 2.0 * ratios[k] * modes.eigenvalues[k].max(0.0).sqrt())
+            .collect(),
+    });
+    Ok(())
+}
+
+/// ζ of every real mode of the whole.
+///
+/// # Errors
+/// A ratio that names a frequency without a mode near it.
+pub fn modal_ratios(case: &Case, modes: &RealModes) -> Result<Vec<f64>> {
+    let damping = &case.damping;
     let mut ratios = vec![damping.modal_ratio; modes.len()];
     let mut faults = Faults::new();
     for [frequency, ratio] in &damping.modal_ratios {
@@ -204,11 +220,5 @@ pub fn add_modal_damping(structure: &mut Structure, modes: &RealModes, prepared:
             )),
         }
     }
-    structure.damping.modal = Some(crate::system::ModalDamping {
-        basis: &structure.mass * &modes.shapes,
-        coefficients: (0..modes.len())
-            .map(|k| 2.0 * ratios[k] * modes.eigenvalues[k].max(0.0).sqrt())
-            .collect(),
-    });
-    faults.into_result(())
+    faults.into_result(ratios)
 }

@@ -1,11 +1,12 @@
 //! `modes_disc.svg`: every bending mode of the disc face-on, its nodal lines, and the measured frequency beside it.
 
-use super::colours::{INK, MEASURED, MUTED, diverging};
+use super::colours::{INK, MEASURED, MUTED};
 use super::contours::at_least;
 use super::format::{fixed, given, signed};
 use super::html::Picture;
+use super::plate::{Plate, colour_bar};
 use super::svg::{Anchor, Ink, Point, Sheet};
-use super::view::{Fit, Vector, View, along, cross, dot};
+use super::view::{Fit, dot};
 use crate::modal::DiscModeName;
 use crate::results::{ComparedRow, Geometry, NamedModes, RunResults};
 
@@ -14,8 +15,6 @@ const MOST: usize = 30;
 const CELL: [f64; 2] = [196.0, 226.0];
 const MARGIN: f64 = 14.0;
 const FOOT: f64 = 62.0;
-/// Half the number of colour steps.
-const STEPS: i32 = 6;
 
 /// The picture, when a set of modes has named ones.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
@@ -76,10 +75,7 @@ fn groups(set: &NamedModes) -> Vec<Group> {
 
 /// The disc seen along its axis.
 struct Disc {
-    nodes: Vec<usize>,
-    points: Vec<[f64; 2]>,
-    triangles: Vec<[usize; 3]>,
-    normal: Vector,
+    plate: Plate,
     /// Nodes at rest in every mode: a clamped hub.
     held: Vec<bool>,
 }
@@ -87,27 +83,8 @@ struct Disc {
 impl Disc {
     fn new(geometry: &Geometry, set: &NamedModes) -> Option<Self> {
         let part = disc_part(geometry, set)?;
-        let faces =
-            geometry.elements.iter().zip(&geometry.part_of).filter(|(e, p)| **p == part && e.len() >= 3);
-        let corners: Vec<[usize; 3]> =
-            faces.flat_map(|(e, _)| (2..e.len()).map(|k| [e[0], e[k - 1], e[k]])).collect();
-        let mut nodes: Vec<usize> = corners.iter().flatten().copied().collect();
-        nodes.sort_unstable();
-        nodes.dedup();
-        let local = |node: &usize| nodes.binary_search(node).expect("collected from the same corners");
-        let triangles: Vec<[usize; 3]> =
-            corners.iter().map(|c| [local(&c[0]), local(&c[1]), local(&c[2])]).collect();
-        let area = |[a, b, c]: &[usize; 3]| {
-            let [a, b, c] = [*a, *b, *c].map(|k| geometry.nodes[k]);
-            cross(along(b, -1.0, a), along(c, -1.0, a))
-        };
-        // The faces may be turned either way; the first decides.
-        let first = area(corners.first()?);
-        let sum = corners.iter().map(area).fold([0.0; 3], |sum, n| along(sum, dot(n, first).signum(), n));
-        let eye = if sum[0] < 0.0 { sum.map(|c| -c) } else { sum };
-        let view = View::facing(eye)?;
-        let points = nodes.iter().map(|k| view.project(geometry.nodes[*k])).collect();
-        let mut disc = Disc { held: vec![true; nodes.len()], points, triangles, normal: view.towards, nodes };
+        let plate = Plate::new(geometry, part)?;
+        let mut disc = Disc { held: vec![true; plate.nodes.len()], plate };
         for shape in &set.shapes {
             let w = disc.deflection(shape);
             disc.held.iter_mut().zip(&w).for_each(|(held, w)| *held &= w.abs() < 1e-6);
@@ -120,13 +97,17 @@ impl Disc {
     fn lively(&self, w: &[f64]) -> Vec<[usize; 3]> {
         let held = |t: &[usize; 3]| t.iter().filter(|k| self.held[**k]).count() >= 2;
         let moves = |t: &[usize; 3]| t.iter().any(|k| w[*k].abs() > 1e-3);
-        self.triangles.iter().filter(|t| moves(t) && !held(t)).copied().collect()
+        self.plate.triangles.iter().filter(|t| moves(t) && !held(t)).copied().collect()
     }
 
     /// Displacement along the axis, scaled to 1 at its largest.
     fn deflection(&self, shape: &[[f64; 6]]) -> Vec<f64> {
-        let w: Vec<f64> =
-            self.nodes.iter().map(|k| dot([shape[*k][0], shape[*k][1], shape[*k][2]], self.normal)).collect();
+        let w: Vec<f64> = self
+            .plate
+            .nodes
+            .iter()
+            .map(|k| dot([shape[*k][0], shape[*k][1], shape[*k][2]], self.plate.normal))
+            .collect();
         let largest = w.iter().copied().max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(1.0);
         let scale = if largest == 0.0 || !largest.is_finite() { 1.0 } else { largest };
         w.iter().map(|w| w / scale).collect()
@@ -167,22 +148,13 @@ fn draw_mode(
         sheet.rectangle([corner[0] + 5.0, corner[1] + 5.0], [CELL[0] - 10.0, CELL[1] - 10.0], &style);
     }
     let fit = Fit::new(
-        disc.points.iter().copied(),
+        disc.plate.points.iter().copied(),
         [centre_x - radius, corner[1] + 15.0],
         [2.0 * radius, 2.0 * radius],
     );
-    let pixels: Vec<Point> = disc.points.iter().map(|p| fit.pixel(*p)).collect();
+    let pixels: Vec<Point> = disc.plate.points.iter().map(|p| fit.pixel(*p)).collect();
     let w = disc.deflection(&set.shapes[group.modes[0]]);
-    for step in -STEPS..STEPS {
-        let level = if step == -STEPS { f64::NEG_INFINITY } else { f64::from(step) / f64::from(STEPS) };
-        let region = at_least(&pixels, &disc.triangles, &w, level);
-        let colour = diverging((f64::from(step) + 0.5) / f64::from(STEPS));
-        let outline =
-            if step == -STEPS { format!(" stroke=\"{MUTED}\" stroke-width=\"1.6\"") } else { String::new() };
-        if !region.loops.is_empty() {
-            sheet.polygons(region.loops.iter().map(Vec::as_slice), &format!("fill=\"{colour}\"{outline}"));
-        }
-    }
+    disc.plate.paint(sheet, &pixels, &w);
     let nodal = at_least(&pixels, &disc.lively(&w), &w, 0.0).level_lines;
     if !nodal.is_empty() {
         let style = format!("stroke=\"{INK}\" stroke-width=\"1.8\" stroke-linecap=\"round\"");
@@ -209,18 +181,8 @@ fn draw_mode(
 }
 
 fn draw_legend(sheet: &mut Sheet, top: f64, scale: Option<f64>) {
-    let (left, y, step) = (MARGIN + 16.0, top + 14.0, 16.0);
-    for k in -STEPS..STEPS {
-        let x = left + step * f64::from(k + STEPS);
-        let colour = diverging((f64::from(k) + 0.5) / f64::from(STEPS));
-        sheet.rectangle([x, y], [step + 0.3, 14.0], &format!("fill=\"{colour}\""));
-    }
-    let width = 2.0 * f64::from(STEPS) * step;
-    sheet.rectangle(
-        [left, y],
-        [width, 14.0],
-        &format!("fill=\"none\" stroke=\"{MUTED}\" stroke-width=\"0.8\""),
-    );
+    let (left, y) = (MARGIN + 16.0, top + 14.0);
+    let width = colour_bar(sheet, [left, y], 16.0);
     let ink = Ink { size: 12.5, colour: INK, bold: false, anchor: Anchor::Middle };
     for (place, text) in [(0.0, "−max"), (0.5, "0"), (1.0, "+max")] {
         sheet.text([left + place * width, y + 29.0], text, ink);
@@ -241,6 +203,7 @@ fn draw_legend(sheet: &mut Sheet, top: f64, scale: Option<f64>) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::view::{Vector, View};
     use super::*;
     use crate::results::sample;
 
@@ -263,10 +226,10 @@ mod tests {
         let disc = Disc::new(&results.geometry, set).unwrap();
         let k = set.names.iter().position(|n| n.is_some_and(|n| n.nodal_circles == 1)).unwrap();
         let w = disc.deflection(&set.shapes[k]);
-        let lines = at_least(&disc.points, &disc.lively(&w), &w, 0.0).level_lines;
+        let lines = at_least(&disc.plate.points, &disc.lively(&w), &w, 0.0).level_lines;
         assert!(lines.len() > 100);
         // The sample's (0, 1) shape vanishes at ξ = 0.8 of the way from hub (21 mm) to rim (75 mm): r = 64.2 mm.
-        let centre = View::facing(disc.normal).unwrap().project(tilted_centre(&results));
+        let centre = View::facing(disc.plate.normal).unwrap().project(tilted_centre(&results));
         for [a, _] in lines {
             let r = (a[0] - centre[0]).hypot(a[1] - centre[1]);
             assert!((r - 0.0642).abs() < 4e-4, "{r}");

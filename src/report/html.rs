@@ -60,6 +60,15 @@ pub(super) fn page(results: &RunResults, pictures: &[Picture]) -> String {
         body += &figures(pictures, &["growth.svg", "growth_budget.svg"]);
         body += &untitled(tables::complex(complex));
     }
+    if let Some(sensitivity) = &results.sensitivity {
+        body += "<h2>What the modes answer to, and what would calm them</h2>\n";
+        body += &figures(pictures, &["sensitivity.svg", "advice.svg"]);
+        body += &untitled(tables::advice(sensitivity));
+        for mode in &sensitivity.modes {
+            body += &opened(&tables::sensitivity(mode));
+        }
+        body += &notes(&tables::left_out(sensitivity));
+    }
     if !results.timings.is_empty() {
         body += &format!("<h2>Wall time</h2>\n{}", untitled(tables::timings(results)));
     }
@@ -118,6 +127,12 @@ fn folded(content: &Table) -> String {
     let caption = escape(&content.caption);
     let inner = untitled(content.clone());
     format!("<details><summary>{caption} ({} modes)</summary>\n{inner}</details>\n", content.rows.len())
+}
+
+/// A table that the reader opens.
+fn opened(content: &Table) -> String {
+    let inner = untitled(content.clone());
+    format!("<details><summary>{}</summary>\n{inner}</details>\n", escape(&content.caption))
 }
 
 /// A table whose caption a heading above it gives already.

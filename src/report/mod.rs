@@ -2,10 +2,11 @@
 //!
 //! * [`text`]: the tables that the command line prints.
 //! * [`write_report`]: `report.html` and the pictures `rig.svg`, `modes_disc.svg`, `contact.svg`, `growth.svg`,
-//!   `growth_budget.svg`, those of them that the run has something for.
+//!   `growth_budget.svg`, `sensitivity.svg`, `advice.svg`, those of them that the run has something for.
 //!
 //! A table is made once and shown in either form; a picture is a pure function from the results to SVG.
 
+mod advice;
 mod budget;
 mod chart;
 mod colours;
@@ -15,10 +16,12 @@ mod disc_modes;
 mod format;
 mod growth;
 mod html;
+mod plate;
 mod rig;
 mod svg;
 mod tables;
 pub mod text;
+mod tornado;
 mod view;
 
 use crate::error::Result;
@@ -46,6 +49,8 @@ fn pictures(results: &RunResults) -> Vec<Picture> {
         contact::picture(results),
         growth::picture(results),
         budget::picture(results),
+        tornado::picture(results),
+        advice::picture(results),
     ];
     all.into_iter().flatten().collect()
 }
@@ -60,7 +65,15 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         write_report(dir.path(), &sample::rig()).unwrap();
         let page = std::fs::read_to_string(dir.path().join("report.html")).unwrap();
-        for file in ["rig.svg", "modes_disc.svg", "contact.svg", "growth.svg", "growth_budget.svg"] {
+        for file in [
+            "rig.svg",
+            "modes_disc.svg",
+            "contact.svg",
+            "growth.svg",
+            "growth_budget.svg",
+            "sensitivity.svg",
+            "advice.svg",
+        ] {
             let svg = std::fs::read_to_string(dir.path().join(file)).unwrap();
             assert!(svg.starts_with("<svg") && page.contains(&svg), "{file}");
         }
@@ -86,6 +99,7 @@ mod tests {
         file.write_measured(&results.measured).unwrap();
         file.write_steady(results.steady.as_ref().unwrap()).unwrap();
         file.write_complex(results.complex.as_ref().unwrap()).unwrap();
+        file.write_sensitivity(results.sensitivity.as_ref().unwrap()).unwrap();
         crate::results::write_files(&dir, &results).unwrap();
         write_report(&dir, &results).unwrap();
         std::fs::write(dir.join("stdout.txt"), text::summary(&results)).unwrap();

@@ -2,8 +2,11 @@
 
 use super::format::{fixed, given, power, signed, significant};
 use crate::linalg::c64;
-use crate::results::{ComplexResult, NamedModes, RunResults, SteadyResult};
+use crate::results::{
+    ComplexResult, ModeSensitivity, NamedModes, RunResults, SensitivityResult, SteadyResult,
+};
 use crate::stability::Confirmation;
+use std::f64::consts::TAU;
 
 /// A measured squeal frequency and an unstable mode nearer than this share of it are taken for the same.
 pub(super) const SQUEAL_TOLERANCE: f64 = 0.03;
@@ -262,6 +265,85 @@ fn second_method(confirmation: &Confirmation) -> String {
         list(&confirmation.missed),
         list(&confirmation.unconfirmed)
     )
+}
+
+/// What a mode answers to, the scalar that moves its growth rate most first.
+pub(super) fn sensitivity(mode: &ModeSensitivity) -> Table {
+    let caption = format!("Sensitivities of the mode at {} Hz", fixed(mode.eigenvalue.im / TAU, 1));
+    let headings =
+        ["<scalar", "value", "<unit", "dσ/dp", "df/dp", "σ per 1 % [1/s]", "f per 1 % [Hz]", "error"];
+    let mut table = Table::new(caption, &headings);
+    for p in &mode.parameters {
+        let relative = if p.rate.norm() > 0.0 { p.error / p.rate.norm() } else { 0.0 };
+        let cells = vec![
+            p.path.clone(),
+            given(p.value),
+            p.unit.clone(),
+            significant(p.rate.re, 4),
+            significant(p.frequency_rate(), 4),
+            significant(p.growth_per_percent(), 3),
+            significant(p.frequency_per_percent(), 3),
+            if p.kink { format!("{} †", power(relative)) } else { power(relative) },
+        ];
+        table.row(cells, false);
+    }
+    table.notes.push(
+        "Derivatives by SI units, the steady state following the scalar; error: of dλ/dp, relative.".into(),
+    );
+    if mode.parameters.iter().any(|p| p.kink) {
+        table.notes.push("†: the slopes to the two sides differ; their mean is given.".into());
+    }
+    table
+}
+
+/// The best places for a mass and a damper, one row each.
+pub(super) fn advice(result: &SensitivityResult) -> Table {
+    let headings = [
+        "f [Hz]",
+        "σ [1/s]",
+        "<mount",
+        "<at (x, y, z) [mm]",
+        "<along",
+        "σ by the slope",
+        "σ, done",
+        "slope off by",
+    ];
+    let mut table = Table::new("What would calm the modes", &headings);
+    for mode in &result.modes {
+        for thing in &mode.best {
+            let amount = if thing.kind == "mass" {
+                format!("{} g", given(1e3 * thing.amount))
+            } else {
+                format!("damper {} {}", given(thing.amount), thing.unit)
+            };
+            let [x, y, z] = thing.position.map(|c| fixed(1e3 * c, 1));
+            let along = |[x, y, z]: [f64; 3]| format!("({}, {}, {})", fixed(x, 2), fixed(y, 2), fixed(z, 2));
+            let sigma = |d: c64| signed(mode.eigenvalue.re + d.re, 2);
+            let cells = vec![
+                fixed(mode.eigenvalue.im / TAU, 1),
+                signed(mode.eigenvalue.re, 2),
+                amount,
+                format!("({x}, {y}, {z})"),
+                thing.direction.map_or(String::new(), along),
+                sigma(thing.predicted),
+                thing.done.map_or("–".into(), sigma),
+                thing.slope_error.map_or("–".into(), power),
+            ];
+            table.row(cells, false);
+        }
+    }
+    table.notes.push("By the slope: to first order; done: mounted on the model and computed anew.".into());
+    table
+        .notes
+        .push("Slope off by: relative, against a thousandth of the thing, mounted and computed anew.".into());
+    table
+}
+
+/// The scalars without a derivative, as a note.
+pub(super) fn left_out(result: &SensitivityResult) -> Table {
+    let mut table = Table::new("", &[]);
+    table.notes.extend(result.left_out.iter().map(|(path, why)| format!("{path} is left out: {why}.")));
+    table
 }
 
 /// Whether a computed frequency is that of a measured squeal.

@@ -11,6 +11,7 @@ const ROWS: usize = 60;
 pub fn summary(results: &RunResults) -> String {
     let mut parts: Vec<String> = (0..results.modes.len()).map(|k| modes(results, k)).collect();
     parts.extend([steady(results), complex(results)].into_iter().flatten());
+    parts.extend(sensitivity(results));
     parts.extend(results.warnings.iter().map(|warning| wrap(&format!("Warning: {warning}"))));
     parts.push(verdict(results));
     parts.join("\n")
@@ -29,6 +30,22 @@ pub fn steady(results: &RunResults) -> Option<String> {
 /// The complex eigenvalues, when the run has them.
 pub fn complex(results: &RunResults) -> Option<String> {
     results.complex.as_ref().map(|complex| render(&tables::complex(complex)))
+}
+
+/// What the modes answer to most and what would calm them, when the run has it.
+pub fn sensitivity(results: &RunResults) -> Option<String> {
+    const SHOWN: usize = 8;
+    let result = results.sensitivity.as_ref()?;
+    let mode = |mode| {
+        let mut table = tables::sensitivity(mode);
+        table.rows.truncate(SHOWN);
+        render(&table)
+    };
+    let mut parts: Vec<String> = result.modes.iter().map(mode).collect();
+    if result.modes.iter().any(|mode| !mode.best.is_empty()) {
+        parts.push(render(&tables::advice(result)));
+    }
+    Some(parts.join("\n") + &notes(&tables::left_out(result)))
 }
 
 /// The verdict and the unstable modes.

@@ -1,12 +1,12 @@
 //! The tables as CSV: a header with units, a comma between fields, a point in numbers, full precision.
 
 use super::folder::FileNames;
-use super::{ComplexResult, NamedModes, RunResults, SteadyResult, write_atomically};
+use super::{ComplexResult, NamedModes, RunResults, SensitivityResult, SteadyResult, write_atomically};
 use crate::error::Result;
 use std::path::Path;
 
-/// Writes `modes_<set>.csv` for every set of real modes, `contact_points.csv` and `complex_modes.csv`, those of
-/// them that the run has, into the folder `dir`.
+/// Writes `modes_<set>.csv` for every set of real modes, `contact_points.csv`, `complex_modes.csv` and `sensitivities.csv`,
+/// those of them that the run has, into the folder `dir`.
 ///
 /// # Errors
 /// [`crate::error::Error::Io`] when the folder cannot be made or a file not be written.
@@ -20,6 +20,9 @@ pub fn write_csv(dir: &Path, results: &RunResults) -> Result<()> {
     }
     if let Some(complex) = &results.complex {
         write_atomically(dir, "complex_modes.csv", complex_modes(complex).as_bytes())?;
+    }
+    if let Some(sensitivity) = &results.sensitivity {
+        write_atomically(dir, "sensitivities.csv", sensitivities(sensitivity).as_bytes())?;
     }
     Ok(())
 }
@@ -107,6 +110,35 @@ fn complex_modes(complex: &ComplexResult) -> String {
         row.extend([mode.backward_error, mode.eigenvalue_error, mode.condition].map(number));
         row.push(complex.participation.get(k).cloned().unwrap_or_default());
         table.row(&row);
+    }
+    table.text
+}
+
+fn sensitivities(result: &SensitivityResult) -> String {
+    let mut table = Table::new(&[
+        "mode",
+        "frequency [Hz]",
+        "parameter",
+        "value [SI]",
+        "SI unit",
+        "d growth rate / dp [1/s per unit]",
+        "d frequency / dp [Hz per unit]",
+        "error of d lambda / dp [1/s per unit]",
+        "growth rate per 1 % [1/s]",
+        "frequency per 1 % [Hz]",
+        "kink",
+    ]);
+    for mode in &result.modes {
+        for p in &mode.parameters {
+            let hz = mode.eigenvalue.im / std::f64::consts::TAU;
+            let mut row = vec![(mode.mode + 1).to_string(), number(hz), p.path.clone()];
+            row.extend([number(p.value), p.unit.clone()]);
+            let figures =
+                [p.rate.re, p.frequency_rate(), p.error, p.growth_per_percent(), p.frequency_per_percent()];
+            row.extend(figures.map(number));
+            row.push(u8::from(p.kink).to_string());
+            table.row(&row);
+        }
     }
     table.text
 }

@@ -14,10 +14,14 @@
 //! | `/measured/<k>` | `frequency_hz`, `mode` |
 //! | `/steady` | `displacement`, `approach`, contact points with forces and tangents, pairs |
 //! | `/complex` | `eigenvalue`, `right`, `left`, errors, `growth_…`, `participation` |
+//! | `/sensitivity/mode_<k>` | `parameter`, `value`, `rate`, errors; `point_mass`, `point_spring`, `point_damper`, best places |
 //! | `/timings`, `/warnings` | `phase`, `wall_time`; sentences |
 
 use super::folder::{FileNames, prepare_folder, refusal};
-use super::{ComplexResult, Geometry, MeasuredComparison, NamedModes, NodalField, RunResults, SteadyResult};
+use super::{
+    ComplexResult, Geometry, MeasuredComparison, NamedModes, NodalField, ParameterRate, RunResults,
+    SensitivityResult, SteadyResult,
+};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::stability::ComplexMode;
@@ -136,6 +140,12 @@ impl ResultsFile {
     /// Writes the complex modes.
     pub fn write_complex(&mut self, complex: &ComplexResult) -> Result<()> {
         self.stage(|root| write_complex(root, complex))?;
+        self.take_place()
+    }
+
+    /// Writes the sensitivities of the complex modes.
+    pub fn write_sensitivity(&mut self, sensitivity: &SensitivityResult) -> Result<()> {
+        self.stage(|root| write_sensitivity(root, sensitivity))?;
         self.take_place()
     }
 
@@ -294,6 +304,72 @@ fn write_complex(root: &Group, complex: &ComplexResult) -> hdf5::Result<()> {
     texts(&group.0, "participation_text", &complex.participation, "the real modes that take part, in words")
 }
 
+fn write_sensitivity(root: &Group, sensitivity: &SensitivityResult) -> hdf5::Result<()> {
+    let root = root.create_group("sensitivity")?;
+    let (paths, reasons): (Vec<String>, Vec<String>) = sensitivity.left_out.iter().cloned().unzip();
+    texts(&root, "left_out", &paths, "scalars that were asked for and have no derivative")?;
+    texts(&root, "left_out_reason", &reasons, "why they have none")?;
+    for result in &sensitivity.modes {
+        let group = Datasets(root.create_group(&format!("mode_{:02}", result.mode + 1))?);
+        attribute(&group.0, "mode", &(result.mode as u64))?;
+        attribute(&group.0, "growth_rate", &result.eigenvalue.re)?;
+        attribute(&group.0, "frequency_hz", &(result.eigenvalue.im / std::f64::consts::TAU))?;
+        let rates = &result.parameters;
+        let words =
+            |pick: fn(&ParameterRate) -> &String| rates.iter().map(|r| pick(r).clone()).collect::<Vec<_>>();
+        texts(&group.0, "parameter", &words(|r| &r.path), "paths of the scalars")?;
+        texts(&group.0, "parameter_unit", &words(|r| &r.unit), "their SI units")?;
+        let list = |pick: fn(&ParameterRate) -> f64| rates.iter().map(pick).collect::<Vec<f64>>();
+        group.list("value", &list(|r| r.value), "SI unit of the scalar", "their values")?;
+        let rate: Vec<c64> = rates.iter().map(|r| r.rate).collect();
+        let story = "dλ/dp = dσ/dp + i dω/dp";
+        group.list("rate", &rate, "1/s per SI unit of the scalar", story)?;
+        let story = "estimated |error| of the rate";
+        group.list("rate_error", &list(|r| r.error), "1/s per SI unit of the scalar", story)?;
+        let kink: Vec<bool> = rates.iter().map(|r| r.kink).collect();
+        group.list(
+            "kink",
+            &kink,
+            "1",
+            "whether the slopes to the two sides differ; the rate is their mean",
+        )?;
+        let story = "change of σ when the scalar grows by 1 %";
+        group.list("growth_per_percent", &list(ParameterRate::growth_per_percent), "1/s", story)?;
+        let story = "change of the frequency when the scalar grows by 1 %";
+        group.list("frequency_per_percent", &list(ParameterRate::frequency_per_percent), "Hz", story)?;
+        if let Some(advice) = &result.advice {
+            let story = "dλ/dm of a point mass at every node";
+            group.list("point_mass", &advice.mass, "1/(s kg)", story)?;
+            let four = |rates: &[[c64; 4]]| Array2::from_shape_fn((rates.len(), 4), |(i, j)| rates[i][j]);
+            let story =
+                "dλ/dk of a spring to the ground at every node: along x, y, z, and the surface's normal";
+            group.write("point_spring", four(&advice.stiffness).view(), "1/s per N/m", story)?;
+            let story =
+                "dλ/dc of a damper to the ground at every node: along x, y, z, and the surface's normal";
+            group.write("point_damper", four(&advice.damping).view(), "1/s per N s/m", story)?;
+        }
+        for thing in &result.best {
+            let best = group.0.create_group(&format!("best_{}", thing.kind))?;
+            attribute(&best, "amount", &thing.amount)?;
+            text_attribute(&best, "unit", thing.unit)?;
+            attribute(&best, "node", &(thing.node as u64))?;
+            if let Some(error) = thing.slope_error {
+                attribute(&best, "slope_error", &error)?;
+            }
+            let best = Datasets(best);
+            best.list("position", &thing.position, "m", "where it is mounted")?;
+            best.list("predicted", &[thing.predicted], "1/s", "change of λ by the slope")?;
+            if let Some(direction) = &thing.direction {
+                best.list("direction", direction, "1", "along which it acts")?;
+            }
+            if let Some(done) = thing.done {
+                best.list("done", &[done], "1/s", "change of λ when it is mounted and all is computed anew")?;
+            }
+        }
+    }
+    Ok(())
+}
+
 /// A group whose datasets all carry units and a description.
 struct Datasets(Group);
 
@@ -373,6 +449,7 @@ mod tests {
         file.write_measured(&results.measured).unwrap();
         file.write_steady(results.steady.as_ref().unwrap()).unwrap();
         file.write_complex(results.complex.as_ref().unwrap()).unwrap();
+        file.write_sensitivity(results.sensitivity.as_ref().unwrap()).unwrap();
         file.finish(results).unwrap();
     }
 

@@ -5,7 +5,8 @@
 //! A number that is not finite is written as `null`, so that the file is valid JSON whatever the run produced.
 
 use super::{
-    ComplexResult, MeasuredComparison, ModelSize, NamedModes, RunResults, SteadyResult, write_atomically,
+    ComplexResult, MeasuredComparison, ModelSize, NamedModes, RunResults, SensitivityResult, SteadyResult,
+    write_atomically,
 };
 use crate::error::Result;
 use crate::linalg::c64;
@@ -31,6 +32,7 @@ struct Summary<'a> {
     measured: Vec<Measured<'a>>,
     steady_sliding: Option<Steady<'a>>,
     cea: Option<Cea<'a>>,
+    sensitivity: Option<Sensitivity<'a>>,
     timings: Vec<Timing<'a>>,
     case: serde_json::Value,
 }
@@ -167,6 +169,65 @@ struct Squeal<'a> {
 }
 
 #[derive(Serialize)]
+struct Sensitivity<'a> {
+    modes: Vec<SensitiveMode<'a>>,
+    left_out: Vec<LeftOut<'a>>,
+}
+
+#[derive(Serialize)]
+struct SensitiveMode<'a> {
+    /// Number of the complex mode, from 1.
+    mode: usize,
+    frequency_hz: f64,
+    growth_rate: f64,
+    /// The scalar that moves the growth rate most by 1 % of itself first.
+    parameters: Vec<Rate<'a>>,
+    best: Vec<Best<'a>>,
+}
+
+/// Per SI unit of the scalar, and per 1 % of its value.
+#[derive(Serialize)]
+struct Rate<'a> {
+    path: &'a str,
+    value: f64,
+    unit: &'a str,
+    dsigma_dp: f64,
+    dfrequency_dp: f64,
+    growth_per_percent: f64,
+    frequency_per_percent: f64,
+    /// Estimated |error| of dλ/dp \[1/s per unit\].
+    error: f64,
+    kink: bool,
+}
+
+/// A thing mounted where it lowers the growth rate most.
+#[derive(Serialize)]
+struct Best<'a> {
+    kind: &'a str,
+    amount: f64,
+    unit: &'a str,
+    /// Index of the node, from 0.
+    node: usize,
+    position_m: [f64; 3],
+    direction: Option<[f64; 3]>,
+    predicted: Change,
+    done: Option<Change>,
+    slope_error: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct Change {
+    growth_rate: f64,
+    frequency_hz: f64,
+}
+
+#[derive(Serialize)]
+struct LeftOut<'a> {
+    path: &'a str,
+    reason: &'a str,
+}
+
+#[derive(Serialize)]
 struct Timing<'a> {
     phase: &'a str,
     wall_s: f64,
@@ -201,6 +262,7 @@ fn summary(results: &RunResults) -> Summary<'_> {
         measured: results.measured.iter().map(|m| measured(m, &results.modes)).collect(),
         steady_sliding: results.steady.as_ref().map(steady),
         cea: results.complex.as_ref().map(cea),
+        sensitivity: results.sensitivity.as_ref().map(sensitivity),
         timings: results.timings.iter().map(|(phase, wall_s)| Timing { phase, wall_s: *wall_s }).collect(),
         case: case_object(&results.resolved_case),
     }
@@ -317,6 +379,48 @@ fn second_method(confirmation: &Confirmation) -> SecondMethod {
         missed_hz: hz(&confirmation.missed),
         unconfirmed_hz: hz(&confirmation.unconfirmed),
     }
+}
+
+fn sensitivity(result: &SensitivityResult) -> Sensitivity<'_> {
+    let hz = |omega: f64| omega / std::f64::consts::TAU;
+    let change = |d: c64| Change { growth_rate: d.re, frequency_hz: hz(d.im) };
+    let modes = result.modes.iter().map(|mode| SensitiveMode {
+        mode: mode.mode + 1,
+        frequency_hz: hz(mode.eigenvalue.im),
+        growth_rate: mode.eigenvalue.re,
+        parameters: mode
+            .parameters
+            .iter()
+            .map(|p| Rate {
+                path: &p.path,
+                value: p.value,
+                unit: &p.unit,
+                dsigma_dp: p.rate.re,
+                dfrequency_dp: p.frequency_rate(),
+                growth_per_percent: p.growth_per_percent(),
+                frequency_per_percent: p.frequency_per_percent(),
+                error: p.error,
+                kink: p.kink,
+            })
+            .collect(),
+        best: mode
+            .best
+            .iter()
+            .map(|b| Best {
+                kind: b.kind,
+                amount: b.amount,
+                unit: b.unit,
+                node: b.node,
+                position_m: b.position,
+                direction: b.direction,
+                predicted: change(b.predicted),
+                done: b.done.map(change),
+                slope_error: b.slope_error,
+            })
+            .collect(),
+    });
+    let left_out = result.left_out.iter().map(|(path, reason)| LeftOut { path, reason });
+    Sensitivity { modes: modes.collect(), left_out: left_out.collect() }
 }
 
 #[cfg(test)]

@@ -4,8 +4,8 @@
 //! |---|---|---|
 //! | `results.h5` | everything, in full precision, written stage by stage | h5py, MATLAB, Julia |
 //! | `summary.json` | the figures of each analysis: a contract for scripts | any script |
-//! | `modes_<set>.csv`, `contact_points.csv`, `complex_modes.csv` | the tables | spreadsheets |
-//! | `modes_<set>.vtu`, `steady.vtu`, `complex_modes.vtu` | the shapes on the mesh | ParaView, pyvista |
+//! | `modes_<set>.csv`, `contact_points.csv`, `complex_modes.csv`, `sensitivities.csv` | the tables | spreadsheets |
+//! | `modes_<set>.vtu`, `steady.vtu`, `complex_modes.vtu`, `advice.vtu` | the shapes on the mesh | ParaView, pyvista |
 //!
 //! [`ResultsFile`] is used while the run goes on, [`write_files`] once at its end.
 
@@ -14,6 +14,7 @@ mod derived;
 mod folder;
 mod hdf5;
 mod json;
+mod sensitivity;
 mod vtk;
 
 #[cfg(test)]
@@ -24,6 +25,7 @@ pub use derived::{ComparedRow, PairTotals};
 pub(crate) use folder::write_atomically;
 pub use hdf5::ResultsFile;
 pub use json::{SCHEMA_VERSION, summary_json, write_summary};
+pub use sensitivity::{AdviceField, ModeSensitivity, Mounted, ParameterRate, SensitivityResult};
 pub use vtk::write_vtk;
 
 use crate::equilibrium::SteadySliding;
@@ -64,6 +66,8 @@ pub struct RunResults {
     pub steady: Option<SteadyResult>,
     /// Complex eigenvalues.
     pub complex: Option<ComplexResult>,
+    /// How complex eigenvalues answer scalars of the case and things mounted on its nodes.
+    pub sensitivity: Option<SensitivityResult>,
     /// Wall time of each phase \[s\].
     pub timings: Vec<(String, f64)>,
 }

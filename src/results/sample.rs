@@ -46,6 +46,7 @@ pub(crate) fn rig() -> RunResults {
         rows: vec![(330.0, paired(2, 0)), (936.0, paired(4, 0)), (1697.0, paired(0, 1)), (2050.0, None)],
         frequency_scale: 0.972,
     };
+    let sensitivity = sensitivity(&geometry, &complex);
     RunResults {
         title: "Disc on slider <reference & \"first\" case>".into(),
         resolved_case: "title = \"Disc on slider\"\n[contact]\nmu = 0.4\nload = 20.0 # N\n".into(),
@@ -62,6 +63,7 @@ pub(crate) fn rig() -> RunResults {
         modes: vec![disc, whole],
         measured: vec![measured],
         complex: Some(complex),
+        sensitivity: Some(sensitivity),
         timings: [
             ("mesh and assembly", 0.21),
             ("real modes", 1.3),
@@ -267,4 +269,58 @@ fn complex_result(disc: &NamedModes) -> ComplexResult {
         confirmation: None,
         modes: ComplexModes { modes, subspace_dimension: 142, refinements: 2, warnings: Vec::new() },
     }
+}
+
+/// Rates that fall off from the rim's lowest point, and a few scalars, for the unstable modes.
+fn sensitivity(geometry: &Geometry, complex: &ComplexResult) -> SensitivityResult {
+    let far = |x: &[f64; 3]| (x[0] * x[0] + x[1] * x[1] + (x[2] + RIM).powi(2)).sqrt() / RIM;
+    let field = |k: usize| -> Vec<c64> {
+        let scale = 2e3 * (k as f64 + 1.0);
+        let rate = |x| c64::new(-scale * (4.0 * far(x)).cos() * (-far(x)).exp(), -3e4 * (-far(x)).exp());
+        geometry.nodes.iter().map(rate).collect()
+    };
+    let scalars = [
+        ("contact.rim.friction.mu0", 0.4, "", 310.0),
+        ("material.steel.youngs_modulus", 2e11, "Pa", -2.2e-10),
+        ("contact.rim.load", 20.0, "N", 0.7),
+        ("contact.rim.placement.lead_angle", 0.07, "rad", 90.0),
+        ("damping.modal_ratio", 0.0035, "", -1.05e4),
+    ];
+    let unstable = complex.modes.modes.iter().enumerate().filter(|(_, m)| m.unstable());
+    let modes = unstable.map(|(k, mode)| {
+        let mass = field(k);
+        let rate = |(path, value, unit, rate): &(&str, f64, &str, f64)| ParameterRate {
+            path: path.to_string(),
+            value: *value,
+            unit: unit.to_string(),
+            rate: c64::new(*rate, 30.0 * rate),
+            error: 1e-8 * rate.abs(),
+            kink: path.ends_with("angle"),
+        };
+        let node = (0..mass.len()).min_by(|a, b| mass[*a].re.total_cmp(&mass[*b].re)).unwrap();
+        let predicted = 1e-3 * mass[node];
+        ModeSensitivity {
+            mode: k,
+            eigenvalue: mode.eigenvalue,
+            parameters: scalars.iter().map(rate).collect(),
+            best: vec![Mounted {
+                kind: "mass",
+                amount: 1e-3,
+                unit: "kg",
+                node,
+                position: geometry.nodes[node],
+                direction: None,
+                predicted,
+                done: Some(0.97 * predicted),
+                slope_error: Some(2e-5),
+            }],
+            advice: Some(AdviceField {
+                stiffness: mass.iter().map(|m| [-1e-6 * m; 4]).collect(),
+                damping: mass.iter().map(|m| [1e-3 * m; 4]).collect(),
+                mass,
+            }),
+        }
+    });
+    let left_out = vec![("mesh.rig.disc_size".to_string(), "an element size".to_string())];
+    SensitivityResult { modes: modes.collect(), left_out }
 }

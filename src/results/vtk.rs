@@ -5,7 +5,7 @@
 //! counts the parts from 0 in the order of the case.
 
 use super::folder::{FileNames, refusal};
-use super::{Geometry, NodalField, RunResults, write_atomically};
+use super::{Geometry, ModeSensitivity, NodalField, RunResults, write_atomically};
 use crate::error::Result;
 use crate::linalg::c64;
 use std::path::Path;
@@ -17,8 +17,11 @@ use vtkio::model::{
 /// A named vector at every node.
 type PointVector = (String, Vec<[f64; 3]>);
 
-/// Writes `modes_<set>.vtu` for every set of real modes, `steady.vtu` and `complex_modes.vtu`, those of them that
-/// the run has, into the folder `dir`. Without a mesh (the two-degree-of-freedom model) nothing is written.
+/// A named number at every node.
+type PointScalar = (String, Vec<f64>);
+
+/// Writes `modes_<set>.vtu` for every set of real modes, `steady.vtu`, `complex_modes.vtu` and `advice.vtu`,
+/// those of them that the run has, into the folder `dir`. Without a mesh (the two-degree-of-freedom model) nothing is written.
 ///
 /// # Errors
 /// [`crate::error::Error::Io`] when the folder cannot be made or a file not be written.
@@ -42,6 +45,12 @@ pub fn write_vtk(dir: &Path, results: &RunResults) -> Result<()> {
             vec![(format!("{number}_re"), re), (format!("{number}_im"), im)]
         });
         write_grid(dir, "complex_modes.vtu", geometry, vectors)?;
+    }
+    if let Some(sensitivity) = &results.sensitivity {
+        let fields: Vec<PointScalar> = sensitivity.modes.iter().flat_map(advice).collect();
+        if !fields.is_empty() {
+            write_arrays(dir, "advice.vtu", geometry, scalars(fields))?;
+        }
     }
     Ok(())
 }
@@ -70,13 +79,42 @@ fn real_and_imaginary(shape: &NodalField<c64>) -> [Vec<[f64; 3]>; 2] {
     ]
 }
 
+/// What one gram of mass and one N s/m of damping at each node do to σ \[1/s\] and to the frequency \[Hz\].
+fn advice(mode: &ModeSensitivity) -> Vec<PointScalar> {
+    let Some(field) = &mode.advice else { return Vec::new() };
+    let name = |what: &str| format!("mode_{:02}_{what}", mode.mode + 1);
+    let hz = 1.0 / std::f64::consts::TAU;
+    let damper = |axis: usize| field.damping.iter().map(|d| d[axis].re).collect::<Vec<f64>>();
+    let mut fields = vec![
+        (name("growth_per_gram"), field.mass.iter().map(|m| 1e-3 * m.re).collect()),
+        (name("hz_per_gram"), field.mass.iter().map(|m| 1e-3 * hz * m.im).collect()),
+    ];
+    for (axis, direction) in ["x", "y", "z", "normal"].into_iter().enumerate() {
+        fields.push((name(&format!("growth_per_damper_{direction}")), damper(axis)));
+        let spring = field.stiffness.iter().map(|k| 1e3 * k[axis].re).collect();
+        fields.push((name(&format!("growth_per_kN_per_m_{direction}")), spring));
+    }
+    fields
+}
+
+fn scalars(fields: Vec<PointScalar>) -> Vec<Attribute> {
+    let scalar = |(name, values): PointScalar| {
+        Attribute::DataArray(vtkio::model::DataArray::scalars(name, 1).with_data(values))
+    };
+    fields.into_iter().map(scalar).collect()
+}
+
 fn write_grid(dir: &Path, name: &str, geometry: &Geometry, vectors: Vec<PointVector>) -> Result<()> {
     let vector = |(name, values): PointVector| {
         Attribute::DataArray(vtkio::model::DataArray::vectors(name).with_data(flatten(&values)))
     };
+    write_arrays(dir, name, geometry, vectors.into_iter().map(vector).collect())
+}
+
+fn write_arrays(dir: &Path, name: &str, geometry: &Geometry, point: Vec<Attribute>) -> Result<()> {
     let part: Vec<i32> = geometry.part_of.iter().map(|p| *p as i32).collect();
     let data = Attributes {
-        point: vectors.into_iter().map(vector).collect(),
+        point,
         cell: vec![Attribute::DataArray(vtkio::model::DataArray::scalars("part", 1).with_data(part))],
     };
     let piece =

@@ -172,7 +172,7 @@ fn analyse(
 }
 
 /// A = K + K_σ − s M, with s in the widest gap between the real modes' ω² near the middle of the band.
-fn shifted_factor(
+pub(super) fn shifted_factor(
     operator: &Operator<'_>,
     real: &RealModes,
     band: [f64; 2],

@@ -4,19 +4,24 @@
 //! small one, and lets the residuals on the full order enrich the basis until every pair is right there. [`confirm`]
 //! looks for the same pairs by two-level Arnoldi on the full order, which shares nothing with the projection.
 
+mod advice;
 mod analysis;
 mod basis;
 mod block;
 mod budget;
 mod full_order;
 mod interface;
+mod modal_damping;
 mod operator;
 mod projected;
+mod sensitivity;
 #[cfg(test)]
 mod tests;
 
+pub use advice::PointRates;
 pub use analysis::complex_modes;
 pub use full_order::{Confirmation, confirm};
+pub use sensitivity::{Domain, Rate, Sensitivity};
 
 use crate::linalg::c64;
 

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// The lowest real modes by a dense solver.
-fn dense_modes(system: &System, count: usize) -> RealModes {
+pub(super) fn dense_modes(system: &System, count: usize) -> RealModes {
     let l = system.structure.mass.to_dense().llt(Side::Lower).unwrap().L().to_owned();
     let mut k = system.structure.stiffness.to_dense();
     l.solve_lower_triangular_in_place(k.as_mut());
@@ -61,7 +61,7 @@ fn dense_matrices(system: &System, steady: &SteadySliding) -> (Mat<c64>, Mat<c64
 }
 
 /// Every eigenvalue in the band from the full-order first-order form ẋ = [0 I; −M⁻¹K −M⁻¹C] x.
-fn dense_eigenvalues(system: &System, steady: &SteadySliding, band_hz: [f64; 2]) -> Vec<c64> {
+pub(super) fn dense_eigenvalues(system: &System, steady: &SteadySliding, band_hz: [f64; 2]) -> Vec<c64> {
     use faer::linalg::solvers::Solve;
     let n = system.n_dofs();
     let (k, c) = dense_matrices(system, steady);
@@ -80,7 +80,7 @@ fn dense_eigenvalues(system: &System, steady: &SteadySliding, band_hz: [f64; 2])
     all
 }
 
-fn steady(system: &System) -> SteadySliding {
+pub(super) fn steady(system: &System) -> SteadySliding {
     solve_steady(system, &SteadyOptions::default(), &()).unwrap()
 }
 
@@ -98,7 +98,7 @@ fn discriminant(system: &System) -> f64 {
 }
 
 /// A flutter pair σ ± has one frequency, so that its order is left to round-off.
-fn nearest(z: c64, among: &[c64]) -> c64 {
+pub(super) fn nearest(z: c64, among: &[c64]) -> c64 {
     *among.iter().min_by(|a, b| (*a - z).norm().total_cmp(&(*b - z).norm())).unwrap()
 }
 
@@ -200,7 +200,7 @@ fn sinou_jezequel_damping_shifts_the_onset() {
 }
 
 /// A mass on a belt, its normal motion apart: s² + (c + Nμ′)s + k along x.
-fn belt(c: f64, load: f64, velocity: f64, sense: FrictionSense) -> System {
+pub(super) fn belt(c: f64, load: f64, velocity: f64, sense: FrictionSense) -> System {
     let normal = NormalLaw { bilateral: true, ..NormalLaw::linear(50.0) };
     let mut law = SlidingLaw::new(normal, Exponential { mu_0: 0.3, mu_1: 0.2, alpha: 1.5 }, 0.0);
     law.sense = sense;
@@ -236,7 +236,7 @@ fn falling_friction_is_negative_damping_below_its_bound() {
 }
 
 /// Damping of every kind by turns.
-fn damped(mut system: System, kind: u64) -> System {
+pub(super) fn damped(mut system: System, kind: u64) -> System {
     let n = system.n_dofs();
     let (m, k) = (system.structure.mass.to_dense(), system.structure.stiffness.to_dense());
     let damping = &mut system.structure.damping;

@@ -1,0 +1,167 @@
+//! The scalars of a case as something to differentiate by: which can be, in what steps, and the system they lead to.
+
+use super::contacts::with_laws;
+use super::prepared::{Prepared, external_load};
+use crate::case::{Case, Parameter};
+use crate::error::{Error, Fault, Result, nearest};
+use crate::system::System;
+
+/// A scalar of the case that the complex eigenvalues may depend on.
+#[derive(Debug, Clone)]
+pub struct Scalar {
+    /// Its path.
+    pub path: String,
+    /// Its value \[SI\].
+    pub value: f64,
+    /// Its SI unit; empty for a pure number.
+    pub unit: &'static str,
+    /// What it belongs to.
+    pub kind: Kind,
+}
+
+/// What a scalar belongs to, which says how a neighbouring system is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Contact laws, loads, velocities: the structure and the contact points stay.
+    Law,
+    /// Ratios of modal damping: C is linear in them.
+    Ratio,
+    /// Everything else: the model is built anew.
+    Structure,
+}
+
+/// A path with the reason why λ has no derivative by it.
+pub type LeftOut = (String, String);
+
+/// The scalars that `patterns` name, in the order of the case, and those of them that have no derivative.
+///
+/// # Errors
+/// A pattern that names no scalar of the case.
+pub fn chosen(case: &Case, patterns: &[String]) -> Result<(Vec<Scalar>, Vec<LeftOut>)> {
+    let mut all = case.parameters();
+    all.retain(|p| !p.path.starts_with("sensitivity."));
+    for pattern in patterns {
+        if !all.iter().any(|p| matches(pattern, &p.path)) {
+            let near = nearest(pattern, all.iter().map(|p| p.path.as_str()));
+            let help = near.map_or("`stridor check CASE --parameters` lists them".into(), |near| {
+                format!("Did you mean `{near}`?")
+            });
+            let fault = Fault::new(
+                "`sensitivity.parameters`",
+                format!("\"{pattern}\""),
+                "the path of a scalar, or part of one with `*`",
+            );
+            return Err(Error::input(fault.with_help(help)));
+        }
+    }
+    let (mut scalars, mut left_out) = (Vec::new(), Vec::new());
+    for Parameter { path, value, unit, .. } in all {
+        if !patterns.iter().any(|pattern| matches(pattern, &path)) {
+            continue;
+        }
+        match kind(&path) {
+            Ok(Some(kind)) => scalars.push(Scalar { path, value, unit, kind }),
+            Ok(None) => {}
+            Err(reason) => left_out.push((path, reason.to_string())),
+        }
+    }
+    Ok((scalars, left_out))
+}
+
+/// Whether `text` is the pattern, in which every `*` stands for any letters, none included.
+fn matches(pattern: &str, text: &str) -> bool {
+    match pattern.split_once('*') {
+        None => pattern == text,
+        Some((head, tail)) => text.strip_prefix(head).is_some_and(|rest| {
+            (0..=rest.len()).filter(|k| rest.is_char_boundary(*k)).any(|k| matches(tail, &rest[k..]))
+        }),
+    }
+}
+
+/// What a scalar belongs to; `None` when no eigenvalue depends on it; the reason when λ has no derivative by it.
+fn kind(path: &str) -> std::result::Result<Option<Kind>, &'static str> {
+    let keys: Vec<&str> = path.split('.').collect();
+    match keys[..] {
+        ["modes" | "cea", ..] => Ok(None),
+        ["mesh", .., "contact_size" | "contact_radius" | "disc_size" | "slider_size"] => {
+            Err("an element size, which is no property of the machine")
+        }
+        ["contact", _, "reach" | "stroke"] => Err("it only decides which contact points are considered"),
+        ["damping", "modal_ratios", _, "0"] => Err("it names a mode"),
+        ["damping", "modal_ratio"] | ["damping", "modal_ratios", _, "1"] => Ok(Some(Kind::Ratio)),
+        ["contact", _, "normal" | "friction", ..]
+        | ["contact", _, "load" | "approach" | "sliding_velocity"]
+        | ["force", ..] => Ok(Some(Kind::Law)),
+        _ => Ok(Some(Kind::Structure)),
+    }
+}
+
+impl Scalar {
+    /// A step that is small against what the scalar stands for, and a guess where it is zero.
+    pub fn step(&self) -> f64 {
+        const SHARE: f64 = 1e-3;
+        let least = match (self.unit, self.path.rsplit('.').next()) {
+            ("rad", _) => 1e-3,
+            ("m", Some("thickness")) => 0.0,
+            ("m", _) => 1e-6,
+            ("s", _) => 1e-12,
+            ("kg m^2", _) => 1e-12,
+            (unit, _) if unit.starts_with("N/m") => 1.0,
+            _ if self.value == 0.0 => 1e-4,
+            _ => 0.0,
+        };
+        (SHARE * self.value.abs()).max(least)
+    }
+
+    /// The system of the case with this scalar at `value`, which has the degrees of freedom, the elements and the contact
+    /// points that `prepared` has.
+    ///
+    /// # Errors
+    /// A value that the case refuses, or one with which the model is another.
+    pub fn system_at(&self, prepared: &Prepared, value: f64) -> Result<System> {
+        let system = &prepared.system;
+        let case = prepared.case.with_parameter(&self.path, value)?;
+        if self.kind != Kind::Structure {
+            let load = external_load(&case, &prepared.regions, &prepared.assembled)?;
+            return Ok(System { pairs: with_laws(&system.pairs, &case)?, load, ..system.clone() });
+        }
+        let other = Prepared::new(&case)?;
+        let points = |s: &System| s.pairs.iter().map(|p| p.points.len()).collect::<Vec<_>>();
+        if other.regions.mesh.elements != prepared.regions.mesh.elements {
+            return Err(no_derivative("it changes the elements of the mesh"));
+        }
+        if other.system.n_dofs() != system.n_dofs() {
+            return Err(no_derivative("it changes the number of degrees of freedom"));
+        }
+        if points(&other.system) != points(system) {
+            return Err(no_derivative("it changes the number of contact points"));
+        }
+        Ok(other.system)
+    }
+}
+
+fn no_derivative(reason: &str) -> Error {
+    Error::analysis("derivative", reason, "Leave the scalar out")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patterns_match_as_people_expect() {
+        assert!(matches("*", "contact.rim.load") && matches("contact.*.load", "contact.rim.load"));
+        assert!(matches("*load*", "contact.rim.load") && !matches("contact.*.mu0", "contact.rim.load"));
+        assert!(!matches("contact", "contact.rim.load") && matches("contact.rim.load", "contact.rim.load"));
+        assert!(matches("**", "") && !matches("a*a", "a"));
+    }
+
+    #[test]
+    fn questions_are_no_scalars_of_the_machine() {
+        assert_eq!(kind("cea.band.1"), Ok(None));
+        assert!(kind("mesh.rig.disc_size").is_err() && kind("contact.rim.reach").is_err());
+        assert_eq!(kind("mesh.rig.bar_length"), Ok(Some(Kind::Structure)));
+        assert_eq!(kind("contact.rim.friction.mu0"), Ok(Some(Kind::Law)));
+        assert_eq!(kind("damping.modal_ratios.2.1"), Ok(Some(Kind::Ratio)));
+    }
+}

@@ -1,0 +1,290 @@
+//! What the unstable modes of a case answer to: its scalars, and small things mounted on its nodes.
+
+use super::modes::modal_ratios;
+use super::prepared::Prepared;
+use super::scalars::{Kind, Scalar, chosen};
+use super::verify;
+use crate::case::SensitivityAnalysis;
+use crate::equilibrium::SteadySliding;
+use crate::error::{Error, Result};
+use crate::linalg::{SparseVector, c64};
+use crate::modal::RealModes;
+use crate::progress::Observer;
+use crate::results::{AdviceField, ModeSensitivity, Mounted, ParameterRate, SensitivityResult};
+use crate::stability::{ComplexMode, ComplexModes, Domain, PointRates, Rate, Sensitivity};
+use crate::system::System;
+use rayon::prelude::*;
+
+/// The most modes that are looked into, the strongest first.
+const MOST_MODES: usize = 12;
+/// Larger systems are built one at a time, so that memory holds one of them.
+const ONE_AT_A_TIME: usize = 150_000;
+/// The share of a thing that shows the slope.
+const SMALL: f64 = 1e-3;
+
+/// A case with its complex modes.
+pub struct Analysed<'a> {
+    /// The case made ready.
+    pub prepared: &'a Prepared<'a>,
+    /// Its system, modal damping included.
+    pub system: &'a System,
+    /// Its steady state.
+    pub steady: &'a SteadySliding,
+    /// The real modes that span the complex analysis.
+    pub real: &'a RealModes,
+    /// The complex modes.
+    pub modes: &'a ComplexModes,
+}
+
+impl Analysed<'_> {
+    /// Sensitivities, advice and its proof, as `wanted`.
+    ///
+    /// # Errors
+    /// Scalars that the case does not have; an analysis without an answer.
+    pub fn sensitivities(
+        &self,
+        wanted: &SensitivityAnalysis,
+        observer: &dyn Observer,
+    ) -> Result<SensitivityResult> {
+        let (scalars, mut left_out) = chosen(self.prepared.case, &wanted.parameters)?;
+        let picked = self.chosen_modes(&wanted.modes);
+        let modes: Vec<&ComplexMode> = picked.iter().map(|k| &self.modes.modes[*k]).collect();
+        if modes.is_empty() {
+            return Ok(SensitivityResult { modes: Vec::new(), left_out });
+        }
+        let sensitivity = Sensitivity::new(self.system, self.steady, self.real, &modes)?;
+
+        observer.begin("sensitivities", Some(scalars.len() as u64));
+        let of = |scalar: &Scalar| {
+            let rates = self.rates(&sensitivity, scalar);
+            observer.advance(1);
+            rates
+        };
+        let rates: Vec<Result<Vec<Rate>>> = if self.system.n_dofs() > ONE_AT_A_TIME {
+            scalars.iter().map(of).collect()
+        } else {
+            scalars.par_iter().map(of).collect()
+        };
+        observer.end();
+
+        let mut results: Vec<ModeSensitivity> = picked
+            .iter()
+            .zip(&modes)
+            .map(|(k, mode)| ModeSensitivity {
+                mode: *k,
+                eigenvalue: mode.eigenvalue,
+                parameters: Vec::new(),
+                advice: None,
+                best: Vec::new(),
+            })
+            .collect();
+        for (scalar, rates) in scalars.iter().zip(rates) {
+            match rates {
+                Ok(rates) => results.iter_mut().zip(rates).for_each(|(result, rate)| {
+                    result.parameters.push(ParameterRate {
+                        path: scalar.path.clone(),
+                        value: scalar.value,
+                        unit: scalar.unit.to_string(),
+                        rate: rate.value,
+                        error: rate.error,
+                        kink: rate.kink,
+                    });
+                }),
+                Err(error) => left_out.push((scalar.path.clone(), reason(&error))),
+            }
+        }
+        for result in &mut results {
+            result
+                .parameters
+                .sort_by(|a, b| b.growth_per_percent().abs().total_cmp(&a.growth_per_percent().abs()));
+        }
+        if wanted.advice {
+            self.advise(wanted, &sensitivity, &mut results);
+        }
+        if wanted.verify {
+            let all = results.iter().map(|r| r.best.len() as u64).sum();
+            observer.begin("mounting what helps", Some(all));
+            for result in &mut results {
+                let mode = &self.modes.modes[result.mode];
+                for mounted in &mut result.best {
+                    let change = |share: f64| -> Result<c64> {
+                        let thing = Mounted { amount: share * mounted.amount, ..mounted.clone() };
+                        Ok(verify::mounted(self.prepared, mode, &thing)? - mode.eigenvalue)
+                    };
+                    let (done, little) = (change(1.0)?, change(SMALL)? / SMALL);
+                    mounted.done = Some(done);
+                    mounted.slope_error =
+                        Some((little - mounted.predicted).norm() / mounted.predicted.norm());
+                    observer.advance(1);
+                }
+            }
+            observer.end();
+        }
+        Ok(SensitivityResult { modes: results, left_out })
+    }
+
+    /// Indices of the modes nearest to `frequencies`, or of the unstable ones, or of the one nearest to instability;
+    /// ascending.
+    fn chosen_modes(&self, frequencies: &[f64]) -> Vec<usize> {
+        let modes = &self.modes.modes;
+        let by_growth = |a: &usize, b: &usize| modes[*b].growth_rate().total_cmp(&modes[*a].growth_rate());
+        let mut picked: Vec<usize> = if frequencies.is_empty() {
+            let mut all: Vec<usize> = (0..modes.len()).collect();
+            all.sort_by(by_growth);
+            let unstable = all.iter().filter(|k| modes[**k].unstable()).count();
+            all.truncate(unstable.clamp(1, MOST_MODES));
+            all
+        } else {
+            let near = |f: &f64| {
+                let distance = |k: &usize| (modes[*k].frequency_hz() - f).abs();
+                (0..modes.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))
+            };
+            frequencies.iter().filter_map(near).collect()
+        };
+        picked.sort_unstable();
+        picked.dedup();
+        picked
+    }
+
+    /// dλ/dp of every chosen mode.
+    fn rates(&self, sensitivity: &Sensitivity, scalar: &Scalar) -> Result<Vec<Rate>> {
+        let case = self.prepared.case;
+        let value = scalar.value;
+        if scalar.kind == Kind::Ratio {
+            // C is linear in the ratio, so that a step of any size gives the derivative.
+            let step = if value > 0.5 { -0.1 } else { 0.1 };
+            let here = modal_ratios(case, self.real)?;
+            let there = modal_ratios(&case.with_parameter(&scalar.path, value + step)?, self.real)?;
+            let change: Vec<f64> = there.iter().zip(&here).map(|(a, b)| (a - b) / step).collect();
+            let exact = |value: c64| Rate { value, error: 0.0, kink: false };
+            return Ok(sensitivity.change_by_ratios(&change).into_iter().map(exact).collect());
+        }
+        let build = |value: f64| scalar.system_at(self.prepared, value);
+        let mut step = scalar.step();
+        if value == 0.0 {
+            step = self.step_from_zero(sensitivity, &build, step)?;
+        }
+        let accepted = |p: f64| case.with_parameter(&scalar.path, p).is_ok();
+        let domain = if accepted(value - 2.0 * step) { Domain::Inside } else { Domain::AtLowerBound };
+        let rates = sensitivity.differentiate(value, step, domain, &build)?;
+        // The nodes of a generated mesh may be the same in number and yet jump.
+        let rough = |rate: &Rate| rate.kink || rate.error > 1e-3 * rate.value.norm();
+        if scalar.path.starts_with("mesh.") && rates.iter().any(rough) {
+            let found = "the generated mesh does not follow it smoothly";
+            return Err(Error::analysis("derivative", found, "Leave the scalar out"));
+        }
+        Ok(rates)
+    }
+
+    /// A step from zero that changes some λ by about 1e-5 of itself, found from a guess.
+    fn step_from_zero(
+        &self,
+        sensitivity: &Sensitivity,
+        build: &dyn Fn(f64) -> Result<System>,
+        mut step: f64,
+    ) -> Result<f64> {
+        const AIM: f64 = 1e-5;
+        for _ in 0..3 {
+            let change = sensitivity.change(&build(step)?)?;
+            let sizes = change.iter().zip(sensitivity.eigenvalues()).map(|(d, l)| d.norm() / l.norm());
+            let size = sizes.fold(0.0, f64::max);
+            if size.is_nan() || size == 0.0 || (0.1..10.0).contains(&(size / AIM)) {
+                break;
+            }
+            step *= (AIM / size).clamp(1e-8, 1e8);
+        }
+        Ok(step)
+    }
+
+    /// The fields, and the best places, of every chosen mode.
+    fn advise(
+        &self,
+        wanted: &SensitivityAnalysis,
+        sensitivity: &Sensitivity,
+        results: &mut [ModeSensitivity],
+    ) {
+        let dofs = &self.prepared.assembled.dofs;
+        let normals = self.node_normals();
+        let n = self.prepared.model.nodes.len();
+        let rows: Vec<SparseVector> = (0..n)
+            .flat_map(|node| {
+                let along = |d: [f64; 3]| dofs.reduce(&[0, 1, 2].map(|axis| (node, axis, d[axis])));
+                [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], normals[node]].map(along)
+            })
+            .collect();
+        for (result, rates) in results.iter_mut().zip(sensitivity.at(&rows)) {
+            let four = |pick: fn(&PointRates) -> c64| -> Vec<[c64; 4]> {
+                rates.chunks(4).map(|at| [0, 1, 2, 3].map(|d| pick(&at[d]))).collect()
+            };
+            let field = AdviceField {
+                mass: rates.chunks(4).map(|at| at[0].by_mass + at[1].by_mass + at[2].by_mass).collect(),
+                stiffness: four(|r| r.by_stiffness),
+                damping: four(|r| r.by_damping),
+            };
+            result.best = self.best(wanted, &field, &normals);
+            result.advice = Some(field);
+        }
+    }
+
+    /// The node where the mass lowers σ most, and the node and direction for the damper.
+    fn best(&self, wanted: &SensitivityAnalysis, field: &AdviceField, normals: &[[f64; 3]]) -> Vec<Mounted> {
+        let least = |values: &mut dyn Iterator<Item = (usize, f64)>| {
+            let first = values.reduce(|best, next| if next.1 < best.1 { next } else { best });
+            first.filter(|(_, rate)| *rate < 0.0).map(|(k, _)| k)
+        };
+        let mounted = |kind, amount, unit, node: usize, direction, rate: c64| Mounted {
+            kind,
+            amount,
+            unit,
+            node,
+            position: self.prepared.model.nodes[node],
+            direction,
+            predicted: rate * amount,
+            done: None,
+            slope_error: None,
+        };
+        let mut best = Vec::new();
+        if let Some(node) = least(&mut field.mass.iter().map(|r| r.re).enumerate()) {
+            best.push(mounted("mass", wanted.mass, "kg", node, None, field.mass[node]));
+        }
+        if let Some(k) = least(&mut field.damping.iter().flatten().map(|r| r.re).enumerate()) {
+            let (node, axis) = (k / 4, k % 4);
+            let mut direction = [0.0; 3];
+            if axis < 3 {
+                direction[axis] = 1.0;
+            } else {
+                direction = normals[node];
+            }
+            best.push(mounted(
+                "damper",
+                wanted.damper,
+                "N s/m",
+                node,
+                Some(direction),
+                field.damping[node][axis],
+            ));
+        }
+        best
+    }
+
+    /// The mean normal of the shells at each node; zero off the shells.
+    fn node_normals(&self) -> Vec<[f64; 3]> {
+        use nalgebra::Vector3;
+        let model = &self.prepared.model;
+        let mut normals = vec![Vector3::<f64>::zeros(); model.nodes.len()];
+        for face in model.shells.iter().flat_map(|shell| &shell.faces) {
+            let at = |k: usize| Vector3::from(model.nodes[face.nodes()[k]]);
+            let area = (at(1) - at(0)).cross(&(at(2) - at(0)));
+            face.nodes().iter().for_each(|node| normals[*node] += area);
+        }
+        normals.iter().map(|n| n.try_normalize(0.0).unwrap_or_default().into()).collect()
+    }
+}
+
+/// Why a scalar has no derivative, in a few words.
+fn reason(error: &Error) -> String {
+    match error {
+        Error::Analysis { what, found, .. } if what == "derivative" => found.clone(),
+        other => other.to_string(),
+    }
+}
