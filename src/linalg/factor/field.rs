@@ -44,6 +44,57 @@ pub trait Lanes<T>: Copy + Send + Sync {
     /// self −= l · y.
     fn subtract(&mut self, l: T, y: &Self);
 
+    /// rows_i −= Σ_c l_ic y_c, where l_ic = l[c · stride + first + i].
+    #[inline(always)]
+    fn subtract_products(rows: &mut [Self], l: &[T], stride: usize, first: usize, y: &[Self])
+    where
+        T: Field,
+    {
+        let n = rows.len();
+        let column = |c: usize| &l[c * stride + first..][..n];
+        if Self::COLUMNS > 1 {
+            // A few rows at a time stay in registers while the columns pass.
+            const ROWS: usize = 4;
+            let whole = n - n % ROWS;
+            for i in (0..whole).step_by(ROWS) {
+                let mut sums: [Self; ROWS] = [rows[i], rows[i + 1], rows[i + 2], rows[i + 3]];
+                for c in 0..y.len() {
+                    let l: &[T] = &l[c * stride + first + i..][..ROWS];
+                    for r in 0..ROWS {
+                        sums[r].subtract(l[r], &y[c]);
+                    }
+                }
+                rows[i..i + ROWS].copy_from_slice(&sums);
+            }
+            for i in whole..n {
+                let mut sum = rows[i];
+                for c in 0..y.len() {
+                    sum.subtract(l[c * stride + first + i], &y[c]);
+                }
+                rows[i] = sum;
+            }
+            return;
+        }
+        // A single right-hand side: the vector unit runs along the rows.
+        let mut c = 0;
+        while c + 4 <= y.len() {
+            let l = [column(c), column(c + 1), column(c + 2), column(c + 3)];
+            let y = [y[c].get(0), y[c + 1].get(0), y[c + 2].get(0), y[c + 3].get(0)];
+            for i in 0..n {
+                let sum = rows[i].get(0).minus(l[0][i], y[0]).minus(l[1][i], y[1]);
+                rows[i].set(0, sum.minus(l[2][i], y[2]).minus(l[3][i], y[3]));
+            }
+            c += 4;
+        }
+        for c in c..y.len() {
+            let (l, y) = (column(c), y[c].get(0));
+            for i in 0..n {
+                let sum = rows[i].get(0).minus(l[i], y);
+                rows[i].set(0, sum);
+            }
+        }
+    }
+
     /// sums_j −= Σ_i l_ij y_i for J columns of L at once.
     #[inline(always)]
     fn subtract_dots<const J: usize>(sums: &mut [Self; J], l: [&[T]; J], y: &[Self])

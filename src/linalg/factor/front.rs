@@ -9,7 +9,7 @@ use super::field::Field;
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, MatMut, MatRef, Par};
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 /// α of Bunch & Kaufman: (1 + √17)/8.
@@ -148,21 +148,16 @@ impl<T: Field> Panel<'_, T> {
         column.clear();
         column.extend((k..j).map(|i| self.values[j + i * m]));
         column.extend_from_slice(&self.values[j * m + j..(j + 1) * m]);
-        Arch::new().dispatch(
-            #[inline(always)]
-            || {
-                let mut q = updated;
-                while q + 4 <= k {
-                    let l: [&[T]; 4] = std::array::from_fn(|c| &self.values[(q + c) * m + k..(q + c + 1) * m]);
-                    let w: [T; 4] = std::array::from_fn(|c| self.product[(q + c) * m + j]);
-                    subtract_columns(column, l, w);
-                    q += 4;
-                }
-                for q in q..k {
-                    subtract_columns(column, [&self.values[q * m + k..(q + 1) * m]], [self.product[q * m + j]]);
-                }
-            },
-        );
+        let at = |q: usize| (&self.values[q * m + k..(q + 1) * m], self.product[q * m + j]);
+        let mut q = updated;
+        while q + 4 <= k {
+            let terms: [(&[T], T); 4] = std::array::from_fn(|c| at(q + c));
+            Arch::new().dispatch(Subtract { column, terms });
+            q += 4;
+        }
+        for q in q..k {
+            Arch::new().dispatch(Subtract { column, terms: [at(q)] });
+        }
     }
 
     /// Exchanges columns and rows a ≤ b of what is left, and their rows in L and W.
@@ -265,35 +260,58 @@ fn one<T: Field>() -> T {
     faer::traits::math_utils::one()
 }
 
-/// c −= Σ_q w_q l_q.
-#[inline(always)]
-fn subtract_columns<T: Field, const Q: usize>(c: &mut [T], l: [&[T]; Q], w: [T; Q]) {
-    let l = l.map(|column| &column[..c.len()]);
-    for i in 0..c.len() {
-        let mut sum = c[i];
-        for q in 0..Q {
-            sum = sum.minus(l[q][i], w[q]);
+/// column −= Σ w l over the terms (l, w).
+struct Subtract<'a, T, const Q: usize> {
+    column: &'a mut [T],
+    terms: [(&'a [T], T); Q],
+}
+
+impl<T: Field, const Q: usize> WithSimd for Subtract<'_, T, Q> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let column = self.column;
+        let terms = self.terms.map(|(l, w)| (&l[..column.len()], w));
+        for i in 0..column.len() {
+            let mut sum = column[i];
+            for (l, w) in &terms {
+                sum = sum.minus(l[i], *w);
+            }
+            column[i] = sum;
         }
-        c[i] = sum;
     }
 }
 
 /// The largest size of an entry.
 fn largest<T: Field>(column: &[T]) -> f64 {
-    const PARTS: usize = 8;
-    Arch::new().dispatch(
-        #[inline(always)]
-        || {
-            let mut parts = [0.0f64; PARTS];
-            let chunks = column.chunks_exact(PARTS);
-            let rest = chunks.remainder().iter().fold(0.0f64, |most, v| most.max(v.size()));
-            for chunk in chunks {
-                for p in 0..PARTS {
-                    let size = chunk[p].size();
-                    parts[p] = if size > parts[p] { size } else { parts[p] };
-                }
+    Arch::new().dispatch(Largest(column))
+}
+
+struct Largest<'a, T>(&'a [T]);
+
+impl<T: Field> WithSimd for Largest<'_, T> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> f64 {
+        const PARTS: usize = 16;
+        let mut parts = [0.0f64; PARTS];
+        let whole = self.0.len() - self.0.len() % PARTS;
+        for start in (0..whole).step_by(PARTS) {
+            let chunk = &self.0[start..start + PARTS];
+            for p in 0..PARTS {
+                let size = chunk[p].size();
+                parts[p] = if size > parts[p] { size } else { parts[p] };
             }
-            parts.into_iter().fold(rest, f64::max)
-        },
-    )
+        }
+        let mut most = 0.0;
+        for size in parts {
+            most = if size > most { size } else { most };
+        }
+        for v in &self.0[whole..] {
+            most = if v.size() > most { v.size() } else { most };
+        }
+        most
+    }
 }

@@ -235,9 +235,11 @@ impl<T: Field> SymmetricFactor<T> for Multifrontal<T> {
             _ => inertia.positive += 1,
         };
         for front in &self.fronts {
-            let mut blocks = front.inverse.iter().map(|[a, b]| (a.real_part(), b.real_part(), *b != T::default()));
+            let mut blocks =
+                front.inverse.iter().map(|[a, b]| (a.real_part(), b.real_part(), *b != T::default()));
             while let Some((p, below, double)) = blocks.next() {
-                let (q, _, _) = if double { blocks.next().expect("a block has two columns") } else { (p, 0.0, false) };
+                let (q, _, _) =
+                    if double { blocks.next().expect("a block has two columns") } else { (p, 0.0, false) };
                 if !double {
                     note(p);
                     continue;
@@ -361,33 +363,65 @@ mod tests {
     #[test]
     #[ignore = "a measurement: cargo test --release --lib factor::tests::timing -- --ignored --nocapture"]
     fn timing() {
+        use super::super::c64;
         for m in [81, 257] {
             let (k, mass) = samples::plate(m, false);
             let a = add_scaled(&[(1.0, &k), (-(std::f64::consts::TAU * 3000f64).powi(2), &mass)]);
             let time = std::time::Instant::now;
             let start = time();
             let symbolic = SymbolicFactor::new(a.symbolic()).unwrap();
-            println!("{} dof: analysis {:.3} s", a.nrows(), start.elapsed().as_secs_f64());
-            let start = time();
-            let factor = symbolic.factorize(&a).unwrap();
             println!(
-                "  factorisation {:.3} s, {} MB",
+                "n {}, nnz {}, symbolic {:.3}, fronts {}, fill {:.2}M",
+                a.nrows(),
+                a.compute_nnz(),
                 start.elapsed().as_secs_f64(),
-                factor.memory_bytes() >> 20
+                symbolic.0.nodes.len(),
+                symbolic.fill() as f64 / 1e6
             );
-            for columns in [1, 4, 8, 16] {
-                let mut x = Mat::from_fn(a.nrows(), columns, |i, j| ((i * 3 + j) as f64).sin());
-                let b = x.clone();
+            for _ in 0..2 {
+                let start = time();
+                let factor = symbolic.factorize(&a).unwrap();
+                println!(
+                    "  factor {:.3} s, {} MB growth {:.1} {:?}",
+                    start.elapsed().as_secs_f64(),
+                    factor.memory_bytes() >> 20,
+                    factor.growth(),
+                    factor.inertia()
+                );
+                for columns in [1, 4, 8, 32] {
+                    let mut x = Mat::from_fn(a.nrows(), columns, |i, j| ((i * 3 + j) as f64).sin());
+                    let b = x.clone();
+                    let start = time();
+                    factor.solve_in_place(x.as_mut());
+                    let solved = start.elapsed().as_secs_f64();
+                    let start = time();
+                    multiply(&a, b.as_ref(), x.as_mut());
+                    println!(
+                        "  {columns} columns: solve {solved:.4} s, product {:.4} s",
+                        start.elapsed().as_secs_f64()
+                    );
+                }
+            }
+            let values = a.val().iter().zip(k.val()).map(|(a, k)| c64::new(*a, 0.01 * k)).collect();
+            let c = faer::sparse::SparseColMat::new(a.symbolic().to_owned().unwrap(), values);
+            let start = time();
+            let factor = symbolic.factorize(&c).unwrap();
+            println!(
+                "  complex factor {:.3} s, {} MB growth {:.1}",
+                start.elapsed().as_secs_f64(),
+                factor.memory_bytes() >> 20,
+                factor.growth()
+            );
+            for columns in [1, 8] {
+                let mut x =
+                    Mat::from_fn(a.nrows(), columns, |i, j| c64::new(((i * 3 + j) as f64).sin(), 0.2));
                 let start = time();
                 factor.solve_in_place(x.as_mut());
-                let solved = start.elapsed().as_secs_f64();
-                let start = time();
-                multiply(&a, b.as_ref(), x.as_mut());
-                println!(
-                    "  {columns} columns: solve {solved:.4} s, product {:.4} s",
-                    start.elapsed().as_secs_f64()
-                );
+                println!("  {columns} columns: solve {:.4} s", start.elapsed().as_secs_f64());
             }
+            let start = time();
+            let llt = k.sp_cholesky(faer::Side::Lower);
+            println!("  faer llt {} {:.3}", llt.is_ok(), start.elapsed().as_secs_f64());
         }
     }
 }

@@ -80,7 +80,11 @@ pub(super) fn factorize<T: Field>(
 }
 
 /// The parts of `all` that belong to the subtasks; `all` is what belongs to `task`.
-pub(super) fn parts<'a, X>(task: &Task, all: &'a mut [X], start_of: impl Fn(usize) -> usize) -> Vec<&'a mut [X]> {
+pub(super) fn parts<'a, X>(
+    task: &Task,
+    all: &'a mut [X],
+    start_of: impl Fn(usize) -> usize,
+) -> Vec<&'a mut [X]> {
     let mut rest = all;
     let mut at = start_of(task.nodes.start);
     let mut parts = Vec::with_capacity(task.subtasks.len());

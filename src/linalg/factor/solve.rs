@@ -7,7 +7,7 @@
 use super::field::{Field, Lanes};
 use super::numeric::{Front, parts};
 use super::symbolic::{Plan, Task};
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 /// L B Lᵀ x = b, with one row of `x` for each column in the order of elimination.
@@ -61,7 +61,7 @@ impl<T: Field> Substitution<'_, T> {
                 }
             }
             stack.truncate(start);
-            front.forward(&mut v);
+            Arch::new().dispatch(Forward { front, v: &mut v });
             front.columns[..front.width()].iter().zip(&v).for_each(|(c, y)| x[*c as usize - base] = *y);
             stack.extend_from_slice(&v[front.width()..]);
             s += 1;
@@ -89,7 +89,7 @@ impl<T: Field> Substitution<'_, T> {
             v.clear();
             v.extend(columns.iter().map(|column| x[*column as usize - base]));
             v.extend_from_slice(&known);
-            front.backward(&mut v);
+            Arch::new().dispatch(Backward { front, v: &mut v });
             columns.iter().zip(&v).for_each(|(c, y)| x[*c as usize - base] = *y);
             for child in &self.plan.nodes[s].children {
                 stack.extend(self.fronts[*child].above.iter().map(|row| v[*row as usize]));
@@ -102,92 +102,94 @@ impl<T: Field> Substitution<'_, T> {
 }
 
 /// Columns of L that go through the rows together.
-const TOGETHER: usize = 4;
+const TOGETHER: usize = 8;
+/// The same on the way back, where each has a sum in a register.
+const SUMS: usize = 4;
 
 impl<T: Field> Front<T> {
     fn column(&self, j: usize) -> &[T] {
         &self.lower[j * self.rows..(j + 1) * self.rows]
     }
+}
 
-    /// v₁ ← L₁₁⁻¹ v₁, v₂ ← v₂ − L₂₁ v₁, then v₁ ← B⁻¹ v₁.
-    fn forward<L: Lanes<T>>(&self, v: &mut [L]) {
-        Arch::new().dispatch(
-            #[inline(always)]
-            || {
-                let width = self.width();
-                let mut j = 0;
-                while j + TOGETHER <= width {
-                    let l: [&[T]; TOGETHER] = std::array::from_fn(|c| self.column(j + c));
-                    for c in 0..TOGETHER {
-                        for r in c + 1..TOGETHER {
-                            let y = v[j + c];
-                            v[j + r].subtract(l[c][j + r], &y);
-                        }
-                    }
-                    let y: [L; TOGETHER] = std::array::from_fn(|c| v[j + c]);
-                    let below = &mut v[j + TOGETHER..];
-                    let l = l.map(|column| &column[j + TOGETHER..][..below.len()]);
-                    for (i, v) in below.iter_mut().enumerate() {
-                        for c in 0..TOGETHER {
-                            v.subtract(l[c][i], &y[c]);
-                        }
-                    }
-                    j += TOGETHER;
+/// v₁ ← L₁₁⁻¹ v₁, v₂ ← v₂ − L₂₁ v₁, then v₁ ← B⁻¹ v₁.
+struct Forward<'a, T, L> {
+    front: &'a Front<T>,
+    v: &'a mut [L],
+}
+
+impl<T: Field, L: Lanes<T>> WithSimd for Forward<'_, T, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let (front, v) = (self.front, self.v);
+        let width = front.width();
+        let mut j = 0;
+        while j < width {
+            let count = TOGETHER.min(width - j);
+            for r in 1..count {
+                let mut y = v[j + r];
+                for c in 0..r {
+                    y.subtract(front.column(j + c)[j + r], &v[j + c]);
                 }
-                for j in j..width {
-                    let y = v[j];
-                    let l = &self.column(j)[j + 1..];
-                    v[j + 1..].iter_mut().zip(l).for_each(|(v, l)| v.subtract(*l, &y));
-                }
-                let mut j = 0;
-                while j < width {
-                    let [a, b] = self.inverse[j];
-                    let (x, mut scaled) = (v[j], L::ZERO);
-                    scaled.subtract(-a, &x);
-                    if b != T::default() {
-                        let (y, d) = (v[j + 1], self.inverse[j + 1][0]);
-                        scaled.subtract(-b, &y);
-                        let mut second = L::ZERO;
-                        second.subtract(-b, &x);
-                        second.subtract(-d, &y);
-                        v[j + 1] = second;
-                    }
-                    v[j] = scaled;
-                    j += if b != T::default() { 2 } else { 1 };
-                }
-            },
-        );
+                v[j + r] = y;
+            }
+            let (y, below) = v[j..].split_at_mut(count);
+            L::subtract_products(below, &front.lower[j * front.rows..], front.rows, j + count, y);
+            j += count;
+        }
+        let mut j = 0;
+        while j < width {
+            let [a, b] = front.inverse[j];
+            let (x, mut first) = (v[j], L::ZERO);
+            first.subtract(-a, &x);
+            if b != T::default() {
+                let (y, mut second) = (v[j + 1], L::ZERO);
+                first.subtract(-b, &y);
+                second.subtract(-b, &x);
+                second.subtract(-front.inverse[j + 1][0], &y);
+                v[j + 1] = second;
+                j += 1;
+            }
+            v[j - usize::from(b != T::default())] = first;
+            j += 1;
+        }
     }
+}
 
-    /// v₁ ← L₁₁⁻ᵀ (v₁ − L₂₁ᵀ v₂).
-    fn backward<L: Lanes<T>>(&self, v: &mut [L]) {
-        Arch::new().dispatch(
-            #[inline(always)]
-            || {
-                let mut j = self.width();
-                while j > 0 {
-                    if j >= TOGETHER {
-                        j -= TOGETHER;
-                        let l: [&[T]; TOGETHER] = std::array::from_fn(|c| self.column(j + c));
-                        let (head, below) = v.split_at_mut(j + TOGETHER);
-                        let mut y: [L; TOGETHER] = std::array::from_fn(|c| head[j + c]);
-                        L::subtract_dots(&mut y, l.map(|column| &column[j + TOGETHER..]), below);
-                        for c in (0..TOGETHER).rev() {
-                            for r in c + 1..TOGETHER {
-                                let later = y[r];
-                                y[c].subtract(l[c][j + r], &later);
-                            }
-                            head[j + c] = y[c];
-                        }
-                    } else {
-                        j -= 1;
-                        let (head, below) = v.split_at_mut(j + 1);
-                        let mut y = [head[j]];
-                        L::subtract_dots(&mut y, [&self.column(j)[j + 1..]], below);
-                        head[j] = y[0];
-                    }
+/// v₁ ← L₁₁⁻ᵀ (v₁ − L₂₁ᵀ v₂).
+struct Backward<'a, T, L> {
+    front: &'a Front<T>,
+    v: &'a mut [L],
+}
+
+impl<T: Field, L: Lanes<T>> WithSimd for Backward<'_, T, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let (front, v) = (self.front, self.v);
+        let mut j = front.width();
+        while j >= SUMS {
+            j -= SUMS;
+            let l: [&[T]; SUMS] = std::array::from_fn(|c| front.column(j + c));
+            let (head, below) = v.split_at_mut(j + SUMS);
+            let mut y: [L; SUMS] = std::array::from_fn(|c| head[j + c]);
+            L::subtract_dots(&mut y, l.map(|column| &column[j + SUMS..]), below);
+            for c in (0..SUMS).rev() {
+                for r in c + 1..SUMS {
+                    let later = y[r];
+                    y[c].subtract(l[c][j + r], &later);
                 }
-            },
-        );
+                head[j + c] = y[c];
+            }
+        }
+        for j in (0..j).rev() {
+            let (head, below) = v.split_at_mut(j + 1);
+            let mut y = [head[j]];
+            L::subtract_dots(&mut y, [&front.column(j)[j + 1..]], below);
+            head[j] = y[0];
+        }
     }
 }

@@ -191,13 +191,14 @@ impl Graph {
             }
             let height = rows.iter().map(|i| self.weight[*i]).sum();
             // Vertex k − 1 has k in its rows; when it has no others than k has, the two share a front.
-            let extended =
-                children.iter().copied().find(|s| {
-                    supernodes[*s].columns.last() == Some(&(k.wrapping_sub(1))) && supernodes[*s].rows.len() == rows.len() + 1
-                });
+            let extended = children.iter().copied().find(|s| {
+                supernodes[*s].columns.last() == Some(&(k.wrapping_sub(1)))
+                    && supernodes[*s].rows.len() == rows.len() + 1
+            });
             let s = extended.unwrap_or(supernodes.len());
             if extended.is_none() {
-                let new = Supernode { columns: vec![], rows: vec![], parent: NONE, width: 0, height: 0, zeros: 0 };
+                let new =
+                    Supernode { columns: vec![], rows: vec![], parent: NONE, width: 0, height: 0, zeros: 0 };
                 supernodes.push(new);
             }
             children.iter().filter(|c| **c != s).for_each(|c| supernodes[*c].parent = s);
@@ -249,7 +250,10 @@ fn merge(supernodes: &mut [Supernode]) {
 fn may_merge(width: usize, height: usize, zeros: usize) -> bool {
     let entries = (width * (width + 1) / 2 + width * height) as f64;
     let part = zeros as f64 / entries;
-    part <= [(16, 0.5), (48, 0.15), (96, 0.08)].iter().find(|(limit, _)| width <= *limit).map_or(0.03, |(_, p)| *p)
+    part <= [(16, 0.5), (48, 0.15), (96, 0.08)]
+        .iter()
+        .find(|(limit, _)| width <= *limit)
+        .map_or(0.03, |(_, p)| *p)
 }
 
 /// The vertices of a forest, children before parents and each subtree in one piece.
