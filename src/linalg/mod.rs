@@ -6,6 +6,7 @@
 //!   [`lanczos`].
 //! * [`dense`]: small symmetric eigenproblems and the likeness of two vectors.
 //! * [`tall`]: products of tall matrices, such as a set of modes.
+//! * [`unsymmetric`]: small dense eigenproblems that are not symmetric.
 
 pub mod dense;
 pub mod eigenpairs;
@@ -13,6 +14,7 @@ pub mod factor;
 pub mod lanczos;
 pub mod sparse;
 pub mod tall;
+pub mod unsymmetric;
 
 #[cfg(test)]
 pub(crate) mod samples;

@@ -7,13 +7,16 @@ mod analysis;
 mod basis;
 mod block;
 mod budget;
+mod family;
 mod interface;
 mod operator;
 mod projected;
+mod reduced;
 #[cfg(test)]
 mod tests;
 
 pub use analysis::complex_modes;
+pub use family::{Family, FamilyCheck, FamilyModes, Frame, SlidingState};
 
 use crate::linalg::c64;
 
