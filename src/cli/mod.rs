@@ -45,6 +45,8 @@ enum Action {
     Modes(analyse::Options),
     /// Steady sliding and complex eigenvalues only
     Cea(analyse::Options),
+    /// Complex eigenvalues, and the sweeps and maps of the case
+    Sweep(analyse::Options),
     /// Check a case and its mesh without running it, and list its parameters
     Check(check::Options),
     /// Write a case and a mesh to start from
@@ -81,6 +83,7 @@ fn act(command: &Command) -> Result<ExitCode> {
         Action::Run(options) => analyse::run(options, common, crate::job::Selection::ALL),
         Action::Modes(options) => analyse::run(options, common, crate::job::Selection::MODES),
         Action::Cea(options) => analyse::run(options, common, crate::job::Selection::CEA),
+        Action::Sweep(options) => analyse::run(options, common, crate::job::Selection::SWEEPS),
         Action::Check(options) => check::run(options, common),
         Action::New(options) => new::run(options, common),
         Action::Mesh(action) => mesh::run(action, common),

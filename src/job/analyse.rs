@@ -1,15 +1,20 @@
 //! The analyses of a case in their order, each result handed on as soon as it is there.
 
+use super::explore::{KnownMap, KnownMaps, Nominal, explore};
 use super::modes::{add_modal_damping, compare, labels, named, part_modes};
 use super::prepared::Prepared;
 use crate::case::{Case, ContactState};
 use crate::equilibrium::{self, SteadyOptions, SteadySliding};
 use crate::error::Result;
-use crate::modal::{self, ModesWanted};
+use crate::modal::{self, ModesWanted, RealModes};
 use crate::progress::Observer;
-use crate::results::{self, ComplexResult, NamedModes, ResultsFile, RunResults, SteadyResult};
+use crate::results::{
+    self, ComplexResult, MapResult, NamedModes, ResultsFile, RunResults, SteadyResult, SweepResult,
+};
 use crate::stability;
-use crate::system::Structure;
+use crate::sweep::MapPoint;
+use crate::system::{Structure, System};
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
@@ -20,15 +25,19 @@ pub struct Selection {
     pub modes: bool,
     /// Steady sliding and complex eigenvalues.
     pub cea: bool,
+    /// Sweeps and maps, about the complex eigenvalues.
+    pub sweeps: bool,
 }
 
 impl Selection {
     /// Everything the case lists.
-    pub const ALL: Selection = Selection { modes: true, cea: true };
+    pub const ALL: Selection = Selection { modes: true, cea: true, sweeps: true };
     /// Real modes only.
-    pub const MODES: Selection = Selection { modes: true, cea: false };
+    pub const MODES: Selection = Selection { modes: true, cea: false, sweeps: false };
     /// Steady sliding and complex eigenvalues only.
-    pub const CEA: Selection = Selection { modes: false, cea: true };
+    pub const CEA: Selection = Selection { modes: false, cea: true, sweeps: false };
+    /// Steady sliding, complex eigenvalues, sweeps and maps.
+    pub const SWEEPS: Selection = Selection { modes: false, cea: true, sweeps: true };
 }
 
 /// A result that is ready to be written.
@@ -41,9 +50,20 @@ pub enum Stage<'a> {
     Steady(&'a SteadyResult),
     /// Complex eigenvalues.
     Complex(&'a ComplexResult),
+    /// A sweep.
+    Sweep(&'a SweepResult),
+    /// A map of which no new point is there yet, and what is known of it.
+    MapBegins(&'a MapResult, &'a KnownMap),
+    /// New points of the map of this name, from this one on.
+    MapPoints(&'a str, usize, &'a [MapPoint]),
+    /// A whole map.
+    Map(&'a MapResult),
 }
 
 /// Runs the analyses of a case and writes the results folder `out`; nothing is written when the input is wrong.
+///
+/// With `resume` the maps that an earlier run of the same case left in `out` are taken up where it stopped; the result
+/// is the same, bit for bit.
 ///
 /// # Errors
 /// Faults of the input, an analysis without an answer, or a folder that cannot be written.
@@ -51,12 +71,17 @@ pub fn run_case(
     case: &Case,
     selection: Selection,
     out: &Path,
+    resume: bool,
     observer: &dyn Observer,
 ) -> Result<RunResults> {
     let started = Instant::now();
+    let known = if resume { results::read_maps(out, &case.to_toml())? } else { BTreeMap::new() };
+    let known: KnownMaps =
+        known.into_iter().map(|(name, (points, trained))| (name, KnownMap { points, trained })).collect();
     let prepared = Prepared::new(case)?;
     let preparation = started.elapsed().as_secs_f64();
     let mut file = ResultsFile::create(out)?;
+    file.keep_earlier_until(known.len());
     let mut recording = 0.0;
     let mut record = |stage: Stage| {
         let started = Instant::now();
@@ -65,11 +90,15 @@ pub fn run_case(
             Stage::Modes(modes) => file.write_modes(modes),
             Stage::Steady(steady) => file.write_steady(steady),
             Stage::Complex(complex) => file.write_complex(complex),
+            Stage::Sweep(sweep) => file.write_sweep(sweep),
+            Stage::MapBegins(map, known) => file.begin_map(map, &known.points, &known.trained),
+            Stage::MapPoints(name, first, points) => file.write_map_points(name, first, points),
+            Stage::Map(map) => file.finish_map(map),
         };
         recording += started.elapsed().as_secs_f64();
         written
     };
-    let mut results = analyse(&prepared, selection, &mut record, observer)?;
+    let mut results = analyse_from(&prepared, selection, &known, &mut record, observer)?;
     results.timings.insert(0, ("read mesh and assemble".into(), preparation));
     let writing = Instant::now();
     results::write_files(out, &results)?;
@@ -87,6 +116,17 @@ pub fn run_case(
 pub fn analyse(
     prepared: &Prepared,
     selection: Selection,
+    record: &mut dyn FnMut(Stage) -> Result<()>,
+    observer: &dyn Observer,
+) -> Result<RunResults> {
+    analyse_from(prepared, selection, &KnownMaps::new(), record, observer)
+}
+
+/// [`analyse`] with the maps of an earlier run.
+fn analyse_from(
+    prepared: &Prepared,
+    selection: Selection,
+    known: &KnownMaps,
     record: &mut dyn FnMut(Stage) -> Result<()>,
     observer: &dyn Observer,
 ) -> Result<RunResults> {
@@ -142,10 +182,16 @@ pub fn analyse(
         }
         if selection.cea {
             let complex = complex_result(prepared, state, &mut clock, observer)?;
-            if let Some(complex) = complex {
+            if let Some((complex, system, real)) = complex {
                 record(Stage::Complex(&complex))?;
                 results.warnings.extend(complex.modes.warnings.iter().cloned());
                 results.complex = Some(complex);
+                if selection.sweeps && !(case.sweep.is_empty() && case.map.is_empty()) {
+                    let nominal = Nominal { prepared, system: &system, steady: &state.clone(), real: &real };
+                    clock.time("sweeps and maps", || {
+                        explore(&nominal, known, &mut results, record, observer)
+                    })?;
+                }
             }
         }
     }
@@ -179,7 +225,7 @@ fn complex_result(
     state: &SteadySliding,
     clock: &mut Clock,
     observer: &dyn Observer,
-) -> Result<Option<ComplexResult>> {
+) -> Result<Option<(ComplexResult, System, RealModes)>> {
     let Some(cea) = &prepared.case.cea else { return Ok(None) };
     let mut system = prepared.system.clone();
     let stiffness = equilibrium::tangent_stiffness(&prepared.system, &state.displacement)?.into_owned();
@@ -204,13 +250,14 @@ fn complex_result(
                 .join(", ")
         })
         .collect();
-    Ok(Some(ComplexResult {
+    let complex = ComplexResult {
         shapes: modes.modes.iter().map(|m| prepared.assembled.dofs.expand_complex(&m.right)).collect(),
         participation,
         measured_squeal_hz: cea.measured_squeal.iter().map(|f| (*f, cea.measured_source.clone())).collect(),
         band_hz: cea.band,
         modes,
-    }))
+    };
+    Ok(Some((complex, system, real.modes)))
 }
 
 /// Where Kirchhoff's theory is off by more than a percent at the highest frequency asked for.

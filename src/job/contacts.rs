@@ -36,15 +36,36 @@ pub fn contact_pairs(
                 name: name.clone(),
                 points,
                 law: Arc::new(law),
-                closing: match contact.pressing {
-                    Pressing::Load(load) => Closing::Load(load),
-                    Pressing::Approach(approach) => Closing::Approach(approach),
-                },
+                closing: closing(contact),
                 sliding_velocity: contact.sliding_velocity,
             });
         }
     }
     faults.into_result(pairs)
+}
+
+/// `pairs` with the laws, loads and velocities of `case`, their points as they are.
+///
+/// # Errors
+/// Tables that make no sense.
+pub fn with_laws(case: &Case, pairs: &[ContactPair]) -> Result<Vec<ContactPair>> {
+    let varied = |pair: &ContactPair| {
+        let contact = &case.contact[&pair.name];
+        Ok(ContactPair {
+            law: Arc::new(law(&pair.name, contact)?),
+            closing: closing(contact),
+            sliding_velocity: contact.sliding_velocity,
+            ..pair.clone()
+        })
+    };
+    pairs.iter().map(varied).collect()
+}
+
+fn closing(contact: &Contact) -> Closing {
+    match contact.pressing {
+        Pressing::Load(load) => Closing::Load(load),
+        Pressing::Approach(approach) => Closing::Approach(approach),
+    }
 }
 
 fn law(name: &str, contact: &Contact) -> Result<SlidingLaw> {

@@ -7,11 +7,15 @@
 mod analyse;
 mod contacts;
 mod disc;
+mod explore;
 mod model;
 mod modes;
 mod place;
 mod prepared;
 mod regions;
+mod states;
 
 pub use analyse::{Selection, Stage, analyse, run_case};
+pub use explore::{KnownMap, KnownMaps};
 pub use prepared::Prepared;
+pub use states::Whole;

@@ -152,7 +152,7 @@ fn rig_spec(case: &Case, rig: &RigMesh) -> RigSpec {
 }
 
 /// The external force on the degrees of freedom \[N\].
-fn external_load(case: &Case, regions: &Regions, assembled: &Assembled) -> Result<Vec<f64>> {
+pub(super) fn external_load(case: &Case, regions: &Regions, assembled: &Assembled) -> Result<Vec<f64>> {
     let mut load = vec![0.0; assembled.dofs.n_dofs()];
     let mut faults = Faults::new();
     for (name, force) in &case.force {

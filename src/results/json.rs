@@ -5,7 +5,8 @@
 //! A number that is not finite is written as `null`, so that the file is valid JSON whatever the run produced.
 
 use super::{
-    ComplexResult, MeasuredComparison, ModelSize, NamedModes, RunResults, SteadyResult, write_atomically,
+    ComplexResult, MeasuredComparison, ModelSize, NamedModes, RunResults, SteadyResult, explored_json,
+    write_atomically,
 };
 use crate::error::Result;
 use serde::Serialize;
@@ -28,6 +29,9 @@ struct Summary<'a> {
     measured: Vec<Measured<'a>>,
     steady_sliding: Option<Steady<'a>>,
     cea: Option<Cea<'a>>,
+    sweeps: Vec<serde_json::Value>,
+    maps: Vec<serde_json::Value>,
+    damping_verdicts: Option<serde_json::Value>,
     timings: Vec<Timing<'a>>,
     case: serde_json::Value,
 }
@@ -183,6 +187,9 @@ fn summary(results: &RunResults) -> Summary<'_> {
         measured: results.measured.iter().map(|m| measured(m, &results.modes)).collect(),
         steady_sliding: results.steady.as_ref().map(steady),
         cea: results.complex.as_ref().map(cea),
+        sweeps: results.sweeps.iter().map(explored_json::sweep).collect(),
+        maps: results.maps.iter().map(explored_json::map).collect(),
+        damping_verdicts: results.damping.as_ref().map(explored_json::damping),
         timings: results.timings.iter().map(|(phase, wall_s)| Timing { phase, wall_s: *wall_s }).collect(),
         case: case_object(&results.resolved_case),
     }
