@@ -14,6 +14,7 @@
 //! | [`equilibrium`] | steady sliding and its linearisation |
 //! | [`modal`] | real modes, their names, their certificate |
 //! | [`stability`] | complex eigenvalues at steady sliding |
+//! | [`sweep`] | how complex modes change with scalars: branches, critical values, maps |
 //! | [`results`] | HDF5, VTK, JSON, CSV |
 //! | [`report`] | pictures and the HTML page |
 //! | [`case`] | TOML → validated case → system |
@@ -37,5 +38,6 @@ pub mod report;
 pub mod results;
 pub mod stability;
 pub mod structure;
+pub mod sweep;
 pub mod system;
 pub mod validation;

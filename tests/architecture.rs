@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Each room with all the rooms it may use.
-const MAY_USE: [(&str, &[&str]); 16] = [
+const MAY_USE: [(&str, &[&str]); 17] = [
     ("error", &[]),
     ("progress", &[]),
     ("linalg", &["error", "progress"]),
@@ -17,9 +17,10 @@ const MAY_USE: [(&str, &[&str]); 16] = [
     ("equilibrium", &["error", "progress", "linalg", "system"]),
     ("modal", &["error", "progress", "linalg", "system"]),
     ("stability", &["error", "progress", "linalg", "system", "equilibrium", "modal"]),
+    ("sweep", &["error", "progress", "linalg", "stability"]),
     // What both wings leave behind.
-    ("results", &["error", "linalg", "equilibrium", "modal", "stability"]),
-    ("report", &["error", "linalg", "equilibrium", "modal", "stability", "results"]),
+    ("results", &["error", "linalg", "equilibrium", "modal", "stability", "sweep"]),
+    ("report", &["error", "linalg", "equilibrium", "modal", "stability", "sweep", "results"]),
     // From a file to results.
     ("case", &["error", "structure"]),
     (
@@ -35,12 +36,13 @@ const MAY_USE: [(&str, &[&str]); 16] = [
             "equilibrium",
             "modal",
             "stability",
+            "sweep",
             "results",
             "report",
             "case",
         ],
     ),
-    ("validation", &["error", "progress", "linalg", "structure", "results", "case", "job"]),
+    ("validation", &["error", "progress", "linalg", "structure", "sweep", "results", "case", "job"]),
     ("cli", &["error", "progress", "mesh", "report", "results", "case", "job", "validation"]),
 ];
 

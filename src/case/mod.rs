@@ -4,6 +4,7 @@
 //! reported at once with its line. A [`Case`] is complete: every default is filled in, and its TOML form
 //! ([`Case::to_toml`]) reads back as the same case.
 
+mod explore;
 mod parameter;
 mod read;
 pub(crate) mod reader;
@@ -77,6 +78,12 @@ pub struct Case {
     /// Sensitivities of complex eigenvalues and advice, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sensitivity: Option<SensitivityAnalysis>,
+    /// Complex eigenvalues along one scalar, by name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub sweep: BTreeMap<String, SweepAnalysis>,
+    /// Complex eigenvalues over two scalars, by name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub map: BTreeMap<String, MapAnalysis>,
 }
 
 /// Where the mesh comes from.
@@ -471,7 +478,42 @@ impl Default for SensitivityAnalysis {
     }
 }
 
+/// Complex eigenvalues along one scalar of the case.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SweepAnalysis {
+    /// The path of the scalar.
+    pub parameter: String,
+    /// Its first value.
+    pub from: f64,
+    /// Its last value.
+    pub to: f64,
+    /// How many values.
+    pub points: usize,
+    /// Equal ratios instead of equal steps.
+    pub log: bool,
+}
+
+/// Complex eigenvalues over a grid of two scalars of the case.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MapAnalysis {
+    /// The paths of the scalars.
+    pub parameters: [String; 2],
+    /// Their first values.
+    pub from: [f64; 2],
+    /// Their last values.
+    pub to: [f64; 2],
+    /// How many values of each.
+    pub points: [usize; 2],
+    /// Equal ratios instead of equal steps.
+    pub log: [bool; 2],
+}
+
 impl Case {
+    /// The same case without its sweeps and maps, as each of their points is.
+    pub fn without_sweeps(&self) -> Case {
+        Case { sweep: BTreeMap::new(), map: BTreeMap::new(), ..self.clone() }
+    }
+
     /// The case as TOML in SI units with every default written out.
     pub fn to_toml(&self) -> String {
         toml::to_string(self).expect("a case is made of tables, lists, strings and finite numbers")

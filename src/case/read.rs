@@ -91,12 +91,14 @@ fn read_root(root: &Section, folder: PathBuf) -> Case {
         modes: collect(root, "modes", read_modes),
         cea: root.section("cea", read_cea),
         sensitivity: root.section("sensitivity", read_sensitivity),
+        sweep: BTreeMap::new(),
+        map: BTreeMap::new(),
     };
     check_names(root, &case);
-    case
+    super::explore::read(root, case)
 }
 
-fn collect<T>(root: &Section, key: &str, read: impl Fn(&Section) -> T) -> BTreeMap<String, T> {
+pub(super) fn collect<T>(root: &Section, key: &str, read: impl Fn(&Section) -> T) -> BTreeMap<String, T> {
     root.named(key, |name, s| (name.to_string(), read(s))).into_iter().collect()
 }
 

@@ -157,6 +157,16 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// Leaves `keys` unread without calling them unknown: what they mean cannot be told.
+    pub fn skip(&self, keys: &[&str]) {
+        self.known.borrow_mut().extend(keys.iter().map(|key| key.to_string()));
+    }
+
+    /// Whether the text has no fault so far.
+    pub fn sound_so_far(&self) -> bool {
+        self.reader.faults.borrow().0.is_empty()
+    }
+
     /// Whether the table has `key`.
     pub fn has(&self, key: &str) -> bool {
         self.table.contains_key(key)
@@ -178,6 +188,22 @@ impl<'a> Section<'a> {
             list.try_into().map_err(|_| format!("a list of {count}"))
         });
         self.remember_list(key, found.value.iter().flatten(), dimension);
+        found
+    }
+
+    /// A list of two quantities, each with its own dimension.
+    pub fn two_quantities(&'a self, key: &str, dimensions: [Dimension; 2]) -> Found<'a, [f64; 2]> {
+        let found = self.find(key, "a list of two values, one a parameter", |value| match value.as_array() {
+            Some(list) if list.len() == 2 => {
+                let at = |k: usize| quantity_of(list[k].get_ref(), dimensions[k]);
+                Ok([at(0)?, at(1)?])
+            }
+            Some(list) => Err(format!("a list of {}", list.len())),
+            None => Err(describe(value)),
+        });
+        for k in 0..2 {
+            self.remember(&format!("{key}.{k}"), found.value.map(|v| v[k]), dimensions[k]);
+        }
         found
     }
 
@@ -237,6 +263,28 @@ impl<'a> Section<'a> {
                 .and_then(|i| usize::from_str_radix(i.as_str(), i.radix()).ok())
                 .filter(|n| *n >= 1)
                 .ok_or_else(|| describe(value))
+        })
+    }
+
+    /// A list of two whole numbers of at least one.
+    pub fn two_counts(&'a self, key: &str) -> Found<'a, [usize; 2]> {
+        self.find(key, "a list of two whole numbers of at least 1", |value| {
+            let list = list_of(value, |item| {
+                let number =
+                    item.as_integer().and_then(|i| usize::from_str_radix(i.as_str(), i.radix()).ok());
+                number.filter(|n| *n >= 1).ok_or_else(|| describe(item))
+            })?;
+            let count = list.len();
+            list.try_into().map_err(|_| format!("a list of {count}"))
+        })
+    }
+
+    /// A list of two truth values.
+    pub fn two_booleans(&'a self, key: &str) -> Found<'a, [bool; 2]> {
+        self.find(key, "a list of two of true and false", |value| {
+            let list = list_of(value, |item| item.as_bool().ok_or_else(|| describe(item)))?;
+            let count = list.len();
+            list.try_into().map_err(|_| format!("a list of {count}"))
         })
     }
 

@@ -61,6 +61,12 @@ impl Dimension {
     }
 }
 
+/// The dimension of a quantity whose SI unit is `symbol`; a pure number when the symbol is none.
+pub fn dimension_of(symbol: &'static str) -> Dimension {
+    let powers = parse_unit(symbol).map_or([0; 3], |(_, powers)| powers);
+    Dimension { powers, symbol, name: "a value in the unit of the parameter" }
+}
+
 /// Reads `"1.5 mm"` as SI in the dimension asked for; the error says what was found instead.
 pub fn parse_quantity(text: &str, expected: Dimension) -> Result<f64, String> {
     let text = text.trim();

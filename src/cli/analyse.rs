@@ -1,4 +1,4 @@
-//! `stridor run`, `modes` and `cea`.
+//! `stridor run`, `modes`, `cea` and `sweep`.
 
 use super::Common;
 use super::progress::Bars;
@@ -11,7 +11,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// What the three analysis commands take.
+/// What the analysis commands take.
 #[derive(Args)]
 pub struct Options {
     /// The case file (TOML)
@@ -19,12 +19,15 @@ pub struct Options {
     /// The folder for the results; `results/NAME` by default, NAME being the case file's, or its folder's for case.toml
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Take up the maps that an interrupted run of the same case left in the folder
+    #[arg(long)]
+    resume: bool,
 }
 
 pub fn run(options: &Options, common: &Common, selection: Selection) -> Result<ExitCode> {
     let case = read_case(&options.case)?;
     let out = options.out.clone().unwrap_or_else(|| PathBuf::from("results").join(case_name(&options.case)));
-    let results = run_case(&case, selection, &out, &Bars::new(common.quiet))?;
+    let results = run_case(&case, selection, &out, options.resume, &Bars::new(common.quiet))?;
     if common.json {
         println!("{}", crate::results::summary_json(&results));
     } else if !common.quiet {

@@ -48,6 +48,8 @@ enum Action {
     Cea(analyse::Options),
     /// Complex eigenvalues, what they answer to most, and where a mass or a damper helps
     Sensitivity(analyse::Options),
+    /// Complex eigenvalues, and the sweeps and maps of the case
+    Sweep(analyse::Options),
     /// Check a case and its mesh without running it, and list its parameters
     Check(check::Options),
     /// Write M, C, K, the degrees of freedom and the contact points of a case, for other programs
@@ -87,6 +89,7 @@ fn act(command: &Command) -> Result<ExitCode> {
         Action::Modes(options) => analyse::run(options, common, crate::job::Selection::MODES),
         Action::Cea(options) => analyse::run(options, common, crate::job::Selection::CEA),
         Action::Sensitivity(options) => analyse::run(options, common, crate::job::Selection::SENSITIVITY),
+        Action::Sweep(options) => analyse::run(options, common, crate::job::Selection::SWEEPS),
         Action::Check(options) => check::run(options, common),
         Action::Export(options) => export::run(options, common),
         Action::New(options) => new::run(options, common),

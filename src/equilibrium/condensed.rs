@@ -23,6 +23,9 @@ pub struct Condensed {
     pub(super) responses: Mat<f64>,
     /// gᵀA⁻¹g, gᵀA⁻¹t₁, gᵀA⁻¹t₂: points × points each \[m/N\].
     pub(super) compliance: [Mat<f64>; 3],
+    /// The external load f of the system it was made for, and what it does to every point, e₀ = gᵀA⁻¹f.
+    load: Vec<f64>,
+    unloaded: Vec<f64>,
 }
 
 impl Condensed {
@@ -49,7 +52,14 @@ impl Condensed {
             })
         };
         let compliance = [seen_by(0), seen_by(1), seen_by(2)];
-        Ok(Condensed { factor, closed, responses, compliance })
+        let load = system.load.clone();
+        let unloaded = answers(&responses, &load);
+        Ok(Condensed { factor, closed, responses, compliance, load, unloaded })
+    }
+
+    /// e₀ = gᵀA⁻¹f of each point for an external load f; kept for the load of the system it was made for.
+    pub(super) fn unloaded(&self, load: &[f64]) -> Vec<f64> {
+        if load == self.load { self.unloaded.clone() } else { answers(&self.responses, load) }
     }
 
     /// A⁻¹ x.
@@ -58,6 +68,12 @@ impl Condensed {
         self.factor.solve_in_place(y.as_mut());
         y.col_as_slice(0).to_vec()
     }
+}
+
+/// Xᵀ f.
+fn answers(responses: &Mat<f64>, load: &[f64]) -> Vec<f64> {
+    let dot = |p: usize| responses.col_as_slice(p).iter().zip(load).map(|(x, f)| x * f).sum();
+    (0..responses.ncols()).map(dot).collect()
 }
 
 /// The stiffness that stands for a closed point: that of its law at first touch, but no stiffer than the structure

@@ -1,6 +1,6 @@
 //! The contact's forces in any state of motion, and their linearisation at steady sliding.
 
-use super::SteadySliding;
+use super::{PointState, SteadySliding};
 use crate::error::Result;
 use crate::linalg::sparse::{add_scaled, sum_of_squares};
 use crate::linalg::{SparseMatrix, SparseVector};
@@ -35,8 +35,13 @@ pub fn directions(point: &ContactPoint) -> [&SparseVector; 3] {
 /// K_c and C_c at steady sliding: the Jacobian of the laws, point by point.
 pub fn linearize(system: &System, steady: &SteadySliding) -> LinearContact {
     debug_assert_eq!(system.points().count(), steady.points.len());
+    linearize_points(&steady.points)
+}
+
+/// [`linearize`] from the contact points alone.
+pub fn linearize_points(points: &[PointState]) -> LinearContact {
     let mut blocks = Vec::new();
-    for (point, state) in steady.points.iter().enumerate() {
+    for (point, state) in points.iter().enumerate() {
         let t = &state.tangent;
         let (mut stiffness, mut damping) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
         for row in 0..3 {

@@ -15,10 +15,11 @@ mod tests;
 
 pub use condensed::Condensed;
 pub use linear::{
-    ContactBlock, LinearContact, closed_structure, contact_force, directions, linearize, tangent_stiffness,
+    ContactBlock, LinearContact, closed_structure, contact_force, directions, linearize, linearize_points,
+    tangent_stiffness,
 };
 pub use nearby::Nearby;
-pub use steady::{SteadyOptions, solve_steady, solve_steady_with};
+pub use steady::{SteadyOptions, solve_points, solve_steady, solve_steady_with};
 
 use crate::system::{ContactForces, ContactTangent};
 

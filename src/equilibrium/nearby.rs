@@ -56,7 +56,7 @@ impl<'a> Nearby<'a> {
         const STEPS: usize = 40;
         const SETTLED: f64 = 1e-15;
         const ACCEPTED: f64 = 1e-11;
-        let contact = Contact::new(other, &self.condensed);
+        let contact = Contact::new(&other.pairs, &other.load, &self.condensed);
         let mut u = self.steady.displacement.clone();
         let mut approach = self.steady.approach.clone();
         let mut last = f64::INFINITY;
@@ -76,7 +76,8 @@ impl<'a> Nearby<'a> {
             if step <= SETTLED || (step <= ACCEPTED && !shrinks) {
                 let k = tangent_stiffness(other, &u)?;
                 let residual = residual(other, &k, &u, &approach).1;
-                let points = states(other, &approach, &u);
+                let motions: Vec<f64> = other.points().map(|(_, point)| point.normal.dot(&u)).collect();
+                let points = states(&other.pairs, &approach, &motions);
                 return Ok(Some(SteadySliding { displacement: u, approach, points, iterations, residual }));
             }
             last = step;

@@ -4,9 +4,7 @@ use super::condensed::Condensed;
 use super::linear::directions;
 use super::steady::SteadyOptions;
 use crate::error::{Error, Result};
-use crate::system::{
-    Closing, ContactForces, ContactMotion, ContactPair, ContactPoint, ContactTangent, System,
-};
+use crate::system::{Closing, ContactForces, ContactMotion, ContactPair, ContactPoint, ContactTangent};
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 
@@ -14,7 +12,8 @@ use faer::linalg::solvers::Solve;
 ///
 /// e = e₀ + S (d e − N) + T₁ F₁ + T₂ F₂,  ΣN = L,  (N, F) = law(a − gap + e), S = gᵀA⁻¹g, T = gᵀA⁻¹t, e₀ = gᵀA⁻¹f.
 pub(super) struct Contact<'a> {
-    system: &'a System,
+    pairs: &'a [ContactPair],
+    load: &'a [f64],
     condensed: &'a Condensed,
     points: Vec<(usize, &'a ContactPair, &'a ContactPoint)>,
     unloaded: Vec<f64>,
@@ -33,17 +32,15 @@ pub(super) struct Stage {
 type Fraction = f64;
 
 impl<'a> Contact<'a> {
-    pub(super) fn new(system: &'a System, condensed: &'a Condensed) -> Self {
-        let pairs = system.pairs.iter().enumerate();
-        let points: Vec<_> =
-            pairs.flat_map(|(k, pair)| pair.points.iter().map(move |p| (k, pair, p))).collect();
-        let loaded = (0..system.pairs.len())
-            .filter(|k| matches!(system.pairs[*k].closing, Closing::Load(_)))
+    pub(super) fn new(pairs: &'a [ContactPair], load: &'a [f64], condensed: &'a Condensed) -> Self {
+        let points: Vec<_> = pairs
+            .iter()
+            .enumerate()
+            .flat_map(|(k, pair)| pair.points.iter().map(move |p| (k, pair, p)))
             .collect();
-        let unloaded = (0..points.len())
-            .map(|p| condensed.responses.col_as_slice(p).iter().zip(&system.load).map(|(x, f)| x * f).sum())
-            .collect();
-        Contact { system, condensed, points, unloaded, loaded }
+        let loaded = (0..pairs.len()).filter(|k| matches!(pairs[*k].closing, Closing::Load(_))).collect();
+        let unloaded = condensed.unloaded(load);
+        Contact { pairs, load, condensed, points, unloaded, loaded }
     }
 
     /// Newton from first touch; when that fails, in steps of load and friction.
@@ -100,8 +97,7 @@ impl<'a> Contact<'a> {
     /// Where to begin: undeformed, at the approach that carries the load; and with every point pressed a little.
     fn starts(&self, fraction: Fraction) -> Vec<(Vec<f64>, Vec<f64>)> {
         let zero = vec![0.0; self.points.len()];
-        let approach: Vec<f64> =
-            self.system.pairs.iter().map(|pair| first_approach(pair, fraction)).collect();
+        let approach: Vec<f64> = self.pairs.iter().map(|pair| first_approach(pair, fraction)).collect();
         let pressed = self
             .points
             .iter()
@@ -195,7 +191,7 @@ impl<'a> Contact<'a> {
             .collect();
         for k in &self.loaded {
             let carried: f64 = (0..n).filter(|p| self.points[*p].0 == *k).map(|p| laws[p].0.normal).sum();
-            rho.push(carried - fraction * load(&self.system.pairs[*k]));
+            rho.push(carried - fraction * load(&self.pairs[*k]));
         }
         rho
     }
@@ -244,7 +240,7 @@ impl<'a> Contact<'a> {
     /// u = A⁻¹ (f + Σ g (d e − N) + t₁F₁ + t₂F₂).
     pub(super) fn displacement(&self, stage: &Stage) -> Vec<f64> {
         let laws = self.respond(&stage.normal, &stage.approach, 1.0);
-        let mut rhs = self.system.load.clone();
+        let mut rhs = self.load.to_vec();
         for (p, (_, _, point)) in self.points.iter().enumerate() {
             let [g, t1, t2] = directions(point);
             let forces = laws[p].0;

@@ -1,14 +1,14 @@
 //! Steady sliding: K u₀ + Σ \[g N − t₁ F₁ − t₂ F₂\] = f with ΣN = load of each pair.
 
 use super::condensed::Condensed;
-use super::linear::{contact_force, directions, tangent_stiffness};
+use super::linear::{contact_force, tangent_stiffness};
 use super::newton::{Contact, Stage};
 use super::{PointState, SteadySliding};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::SparseMatrix;
 use crate::linalg::sparse::multiply_vector;
 use crate::progress::Observer;
-use crate::system::{Closing, System};
+use crate::system::{Closing, ContactPair, System};
 
 /// What is asked of a steady state.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,7 +40,7 @@ pub fn solve_steady(
     options: &SteadyOptions,
     observer: &dyn Observer,
 ) -> Result<SteadySliding> {
-    check_input(system)?;
+    check_input(&system.pairs, &system.load, system.n_dofs())?;
     if system.pairs.is_empty() && system.load.iter().all(|f| *f == 0.0) {
         // Nothing pushes: u₀ = 0 is exact, also where K is singular.
         return Ok(SteadySliding {
@@ -79,11 +79,12 @@ pub fn solve_steady_with(
     condensed: &Condensed,
     options: &SteadyOptions,
 ) -> Result<SteadySliding> {
-    let contact = Contact::new(system, condensed);
+    let contact = Contact::new(&system.pairs, &system.load, condensed);
     let mut stage = contact.solve(options)?;
     let displacement = refine(system, k, &contact, &mut stage);
     let displacement_residual = residual(system, k, &displacement, &stage.approach);
-    let points = states(system, &stage.approach, &displacement);
+    let motions: Vec<f64> = system.points().map(|(_, point)| point.normal.dot(&displacement)).collect();
+    let points = states(&system.pairs, &stage.approach, &motions);
     let steady = SteadySliding {
         residual: displacement_residual.1,
         displacement,
@@ -91,8 +92,29 @@ pub fn solve_steady_with(
         points,
         iterations: stage.iterations,
     };
-    check_contact(system, &steady, options)?;
+    check_contact(&system.pairs, &steady.approach, &steady.points, options)?;
     Ok(steady)
+}
+
+/// The contact points alone at steady sliding, all that a linearisation needs where the stiffness is constant: no
+/// displacement of the whole is formed, so that a point of a sweep costs Newton's method on the contact only.
+///
+/// `pairs` are those `condensed` was made for, with other laws, loads or velocities; `load` is the external load. The
+/// penetrations carry the round-off of the condensed problem (about 1e-10 of themselves on fine meshes).
+///
+/// # Errors
+/// As [`solve_steady`].
+pub fn solve_points(
+    pairs: &[ContactPair],
+    load: &[f64],
+    condensed: &Condensed,
+    options: &SteadyOptions,
+) -> Result<Vec<PointState>> {
+    check_input(pairs, load, condensed.responses.nrows())?;
+    let stage = Contact::new(pairs, load, condensed).solve(options)?;
+    let points = states(pairs, &stage.approach, &stage.normal);
+    check_contact(pairs, &stage.approach, &points, options)?;
+    Ok(points)
 }
 
 fn solve_prestressed(
@@ -166,26 +188,28 @@ pub(super) fn residual(system: &System, k: &SparseMatrix, u: &[f64], approach: &
     (r, size)
 }
 
-pub(super) fn states(system: &System, approach: &[f64], u: &[f64]) -> Vec<PointState> {
-    let mut states = Vec::new();
-    for (pair, approach) in system.pairs.iter().zip(approach) {
-        for point in &pair.points {
-            let penetration = approach - point.gap + directions(point)[0].dot(u);
+/// The law of every point at its normal displacement `motions` = gᵀu.
+pub(super) fn states(pairs: &[ContactPair], approach: &[f64], motions: &[f64]) -> Vec<PointState> {
+    let points =
+        pairs.iter().zip(approach).flat_map(|(pair, a)| pair.points.iter().map(move |p| (pair, a, p)));
+    points
+        .zip(motions)
+        .map(|((pair, approach, point), motion)| {
+            let penetration = approach - point.gap + motion;
             let motion = crate::system::ContactMotion {
                 penetration,
                 penetration_rate: 0.0,
                 slip_velocity: [pair.sliding_velocity, 0.0],
             };
             let (forces, tangent) = pair.law.respond(&motion, point.weight);
-            states.push(PointState { penetration, forces, tangent });
-        }
-    }
-    states
+            PointState { penetration, forces, tangent }
+        })
+        .collect()
 }
 
-fn check_input(system: &System) -> Result<()> {
+fn check_input(pairs: &[ContactPair], load: &[f64], n: usize) -> Result<()> {
     let mut faults = Faults::new();
-    for pair in &system.pairs {
+    for pair in pairs {
         let v = pair.sliding_velocity;
         if !(v.is_finite() && v != 0.0) {
             let place = format!("contact `{}`, sliding velocity", pair.name);
@@ -210,21 +234,26 @@ fn check_input(system: &System) -> Result<()> {
             ));
         }
     }
-    if system.load.len() != system.n_dofs() || system.load.iter().any(|f| !f.is_finite()) {
-        let expected = format!("{} finite forces", system.n_dofs());
+    if load.len() != n || load.iter().any(|f| !f.is_finite()) {
+        let expected = format!("{n} finite forces");
         faults.push(Fault::new(
             "external load",
-            format!("{} values, some not finite or too few", system.load.len()),
+            format!("{} values, some not finite or too few", load.len()),
             expected,
         ));
     }
     faults.into_result(())
 }
 
-fn check_contact(system: &System, steady: &SteadySliding, options: &SteadyOptions) -> Result<()> {
+fn check_contact(
+    pairs: &[ContactPair],
+    approach: &[f64],
+    points: &[PointState],
+    options: &SteadyOptions,
+) -> Result<()> {
     let mut first = 0;
-    for (pair, approach) in system.pairs.iter().zip(&steady.approach) {
-        let states = &steady.points[first..first + pair.points.len()];
+    for (pair, approach) in pairs.iter().zip(approach) {
+        let states = &points[first..first + pair.points.len()];
         first += pair.points.len();
         let deepest = states.iter().map(|s| s.penetration).fold(f64::NEG_INFINITY, f64::max);
         if states.iter().all(|s| s.forces.normal == 0.0) {

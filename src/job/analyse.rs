@@ -1,8 +1,10 @@
 //! The analyses of a case in their order, each result handed on as soon as it is there.
 
 use super::complex::{complex_result, whole_modes};
+use super::explore::{KnownMap, KnownMaps, Nominal, explore};
 use super::modes::{compare, named, of_the_whole, part_modes, wanted};
 use super::prepared::Prepared;
+use super::sensitivity::Analysed;
 use crate::case::{Case, ContactState};
 use crate::equilibrium::{self, SteadyOptions, SteadySliding};
 use crate::error::{Error, Result};
@@ -10,8 +12,11 @@ use crate::linalg::c64;
 use crate::modal;
 use crate::progress::Observer;
 use crate::results::{
-    self, ComplexResult, NamedModes, ResultsFile, RunResults, SensitivityResult, SteadyResult,
+    self, ComplexResult, MapResult, NamedModes, ResultsFile, RunResults, SensitivityResult, SteadyResult,
+    SweepResult,
 };
+use crate::sweep::MapPoint;
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::path::Path;
 use std::time::Instant;
@@ -25,6 +30,8 @@ pub struct Selection {
     pub cea: bool,
     /// Sensitivities of complex eigenvalues.
     pub sensitivity: Sensitivities,
+    /// Sweeps and maps, about the complex eigenvalues.
+    pub sweeps: bool,
 }
 
 /// When to work out sensitivities.
@@ -40,13 +47,17 @@ pub enum Sensitivities {
 
 impl Selection {
     /// Everything the case lists.
-    pub const ALL: Selection = Selection { modes: true, cea: true, sensitivity: Sensitivities::WhenListed };
+    pub const ALL: Selection =
+        Selection { modes: true, cea: true, sensitivity: Sensitivities::WhenListed, sweeps: true };
     /// Real modes only.
-    pub const MODES: Selection = Selection { modes: true, cea: false, sensitivity: Sensitivities::No };
+    pub const MODES: Selection =
+        Selection { modes: true, cea: false, sensitivity: Sensitivities::No, sweeps: false };
     /// Steady sliding and complex eigenvalues only.
-    pub const CEA: Selection = Selection { modes: false, cea: true, sensitivity: Sensitivities::No };
+    pub const CEA: Selection = Selection { modes: false, cea: true, ..Selection::MODES };
     /// Complex eigenvalues and their sensitivities.
-    pub const SENSITIVITY: Selection = Selection { modes: false, cea: true, sensitivity: Sensitivities::Yes };
+    pub const SENSITIVITY: Selection = Selection { sensitivity: Sensitivities::Yes, ..Selection::CEA };
+    /// Steady sliding, complex eigenvalues, sweeps and maps.
+    pub const SWEEPS: Selection = Selection { sweeps: true, ..Selection::CEA };
 }
 
 /// A result that is ready to be written.
@@ -61,9 +72,20 @@ pub enum Stage<'a> {
     Complex(&'a ComplexResult),
     /// Their sensitivities.
     Sensitivity(&'a SensitivityResult),
+    /// A sweep.
+    Sweep(&'a SweepResult),
+    /// A map of which no new point is there yet, and what is known of it.
+    MapBegins(&'a MapResult, &'a KnownMap),
+    /// New points of the map of this name, from this one on.
+    MapPoints(&'a str, usize, &'a [MapPoint]),
+    /// A whole map.
+    Map(&'a MapResult),
 }
 
 /// Runs the analyses of a case and writes the results folder `out`; nothing is written when the input is wrong.
+///
+/// With `resume` the maps that an earlier run of the same case left in `out` are taken up where it stopped; the result
+/// is the same, bit for bit.
 ///
 /// # Errors
 /// Faults of the input, an analysis without an answer, or a folder that cannot be written.
@@ -71,12 +93,17 @@ pub fn run_case(
     case: &Case,
     selection: Selection,
     out: &Path,
+    resume: bool,
     observer: &dyn Observer,
 ) -> Result<RunResults> {
     let started = Instant::now();
+    let known = if resume { results::read_maps(out, &case.to_toml())? } else { BTreeMap::new() };
+    let known: KnownMaps =
+        known.into_iter().map(|(name, (points, trained))| (name, KnownMap { points, trained })).collect();
     let prepared = Prepared::new(case)?;
     let preparation = started.elapsed().as_secs_f64();
     let mut file = ResultsFile::create(out)?;
+    file.keep_earlier_until(known.len());
     let mut recording = 0.0;
     let mut record = |stage: Stage| {
         let started = Instant::now();
@@ -86,11 +113,15 @@ pub fn run_case(
             Stage::Steady(steady) => file.write_steady(steady),
             Stage::Complex(complex) => file.write_complex(complex),
             Stage::Sensitivity(sensitivity) => file.write_sensitivity(sensitivity),
+            Stage::Sweep(sweep) => file.write_sweep(sweep),
+            Stage::MapBegins(map, known) => file.begin_map(map, &known.points, &known.trained),
+            Stage::MapPoints(name, first, points) => file.write_map_points(name, first, points),
+            Stage::Map(map) => file.finish_map(map),
         };
         recording += started.elapsed().as_secs_f64();
         written
     };
-    let mut results = analyse(&prepared, selection, &mut record, observer)?;
+    let mut results = analyse_from(&prepared, selection, &known, &mut record, observer)?;
     results.timings.insert(0, ("read mesh and assemble".into(), preparation));
     let writing = Instant::now();
     results::write_files(out, &results)?;
@@ -109,6 +140,17 @@ pub fn run_case(
 pub fn analyse(
     prepared: &Prepared,
     selection: Selection,
+    record: &mut dyn FnMut(Stage) -> Result<()>,
+    observer: &dyn Observer,
+) -> Result<RunResults> {
+    analyse_from(prepared, selection, &KnownMaps::new(), record, observer)
+}
+
+/// [`analyse`] with the maps of an earlier run.
+fn analyse_from(
+    prepared: &Prepared,
+    selection: Selection,
+    known: &KnownMaps,
     record: &mut dyn FnMut(Stage) -> Result<()>,
     observer: &dyn Observer,
 ) -> Result<RunResults> {
@@ -176,20 +218,30 @@ pub fn analyse(
             }
         }
         if selection.cea {
-            let wanted = match selection.sensitivity {
-                Sensitivities::No => None,
-                Sensitivities::WhenListed => case.sensitivity.clone(),
-                Sensitivities::Yes => Some(case.sensitivity.clone().unwrap_or_default()),
-            };
-            let wanted = wanted.as_ref();
-            let complex = complex_result(prepared, state, basis, wanted, &mut clock, observer)?;
-            if let Some((complex, sensitivity)) = complex {
+            if let Some((complex, system, real)) =
+                complex_result(prepared, state, basis, &mut clock, observer)?
+            {
                 record(Stage::Complex(&complex))?;
                 results.warnings.extend(complex.modes.warnings.iter().cloned());
-                results.complex = Some(complex);
-                if let Some(sensitivity) = sensitivity {
+                let wanted = match selection.sensitivity {
+                    Sensitivities::No => None,
+                    Sensitivities::WhenListed => case.sensitivity.clone(),
+                    Sensitivities::Yes => Some(case.sensitivity.clone().unwrap_or_default()),
+                };
+                if let Some(wanted) = wanted {
+                    let modes = &complex.modes;
+                    let analysed = Analysed { prepared, system: &system, steady: state, real: &real, modes };
+                    let sensitivity =
+                        clock.time("sensitivities", || analysed.sensitivities(&wanted, observer))?;
                     record(Stage::Sensitivity(&sensitivity))?;
                     results.sensitivity = Some(sensitivity);
+                }
+                results.complex = Some(complex);
+                if selection.sweeps && !(case.sweep.is_empty() && case.map.is_empty()) {
+                    let nominal = Nominal { prepared, system: &system, steady: &state.clone(), real: &real };
+                    clock.time("sweeps and maps", || {
+                        explore(&nominal, known, &mut results, record, observer)
+                    })?;
                 }
             }
         }

@@ -5,26 +5,23 @@ use super::analyse::Clock;
 use super::modes::{add_modal_damping, labels, named};
 use super::nearest::{band_around, keep_nearest};
 use super::prepared::Prepared;
-use super::sensitivity::Analysed;
-use crate::case::SensitivityAnalysis;
 use crate::equilibrium::{self, SteadySliding};
 use crate::error::Result;
 use crate::modal::{self, ModesWanted, RealModes};
 use crate::progress::Observer;
-use crate::results::{ComplexResult, SensitivityResult};
+use crate::results::ComplexResult;
 use crate::stability;
-use crate::system::Structure;
+use crate::system::{Structure, System};
 
-/// Complex eigenvalues at the steady state, and their sensitivities where `wanted`; `basis` are the real modes of the
-/// whole where they are known already.
+/// Complex eigenvalues at the steady state, with the system they belong to (its modal damping in it) and the real modes
+/// of the whole, which `basis` gives where they are known already.
 pub fn complex_result(
     prepared: &Prepared,
     state: &SteadySliding,
     mut basis: Option<RealModes>,
-    wanted: Option<&SensitivityAnalysis>,
     clock: &mut Clock,
     observer: &dyn Observer,
-) -> Result<Option<(ComplexResult, Option<SensitivityResult>)>> {
+) -> Result<Option<(ComplexResult, System, RealModes)>> {
     let Some(cea) = &prepared.case.cea else { return Ok(None) };
     let mut system = prepared.system.clone();
     let stiffness = equilibrium::tangent_stiffness(&prepared.system, &state.displacement)?.into_owned();
@@ -54,13 +51,6 @@ pub fn complex_result(
         }
         false => None,
     };
-    let sensitivity = match wanted {
-        Some(wanted) => Some(clock.time("sensitivities", || {
-            let analysed = Analysed { prepared, system: &system, steady: state, real: &basis, modes: &modes };
-            analysed.sensitivities(wanted, observer)
-        })?),
-        None => None,
-    };
     let real = named(prepared, "whole", basis, &prepared.assembled);
     let labels = labels(&real);
     let participation = modes
@@ -82,7 +72,7 @@ pub fn complex_result(
         confirmation,
         modes,
     };
-    Ok(Some((complex, sensitivity)))
+    Ok(Some((complex, system, real.modes)))
 }
 
 /// The real modes that span the complex analysis.

@@ -8,6 +8,7 @@
 //! * [`matrix_market`]: matrices from and to files.
 //! * [`tall`]: products of tall matrices, such as a set of modes.
 //! * [`toar`]: eigenpairs of a quadratic problem nearest a shift, by two-level Arnoldi.
+//! * [`unsymmetric`]: small dense eigenproblems that are not symmetric.
 
 pub mod dense;
 pub mod eigenpairs;
@@ -17,6 +18,7 @@ pub mod matrix_market;
 pub mod sparse;
 pub mod tall;
 pub mod toar;
+pub mod unsymmetric;
 
 #[cfg(test)]
 pub(crate) mod samples;

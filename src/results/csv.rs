@@ -144,18 +144,18 @@ fn sensitivities(result: &SensitivityResult) -> String {
 }
 
 /// Lines of comma-separated fields.
-struct Table {
-    text: String,
+pub(super) struct Table {
+    pub(super) text: String,
 }
 
 impl Table {
-    fn new(header: &[&str]) -> Self {
+    pub(super) fn new(header: &[&str]) -> Self {
         let mut table = Table { text: String::new() };
         table.row(header);
         table
     }
 
-    fn row(&mut self, fields: &[impl AsRef<str>]) {
+    pub(super) fn row(&mut self, fields: &[impl AsRef<str>]) {
         let quoted: Vec<String> = fields.iter().map(|field| quote(field.as_ref())).collect();
         self.text.push_str(&quoted.join(","));
         self.text.push('\n');
@@ -172,7 +172,7 @@ fn quote(field: &str) -> String {
 }
 
 /// The shortest text that reads back as exactly `value`; empty when it is not finite.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     let magnitude = value.abs();
     match magnitude {
         m if !m.is_finite() => String::new(),

@@ -15,6 +15,7 @@
 //! | `/steady` | `displacement`, `approach`, contact points with forces and tangents, pairs |
 //! | `/complex` | `eigenvalue`, `right`, `left`, errors, `growth_…`, `participation` |
 //! | `/sensitivity/mode_<k>` | `parameter`, `value`, `rate`, errors; `point_mass`, `point_spring`, `point_damper`, best places |
+//! | `/sweep/<name>`, `/map/<name>` | branches, critical values; grids, boundary; see `explored_hdf5.rs` |
 //! | `/timings`, `/warnings` | `phase`, `wall_time`; sentences |
 
 use super::folder::{FileNames, prepare_folder, refusal};
@@ -42,6 +43,8 @@ pub struct ResultsFile {
     /// Where it belongs.
     home: PathBuf,
     names: FileNames,
+    /// Maps of an earlier run that this run takes up and has not yet written: until then the earlier file stays.
+    pub(super) awaited: usize,
 }
 
 impl ResultsFile {
@@ -57,7 +60,7 @@ impl ResultsFile {
         // The operating system tells why a file cannot be made more plainly than the library.
         std::fs::File::create(&path).map_err(|source| refusal(&path, source))?;
         let file = hdf5::File::create(&path).map_err(|source| refusal(&path, plain(&source)))?;
-        let this = ResultsFile { file, path, home, names: FileNames::default() };
+        let this = ResultsFile { file, path, home, names: FileNames::default(), awaited: 0 };
         this.stage(|root| {
             text_attribute(root, "program", env!("CARGO_PKG_NAME"))?;
             text_attribute(root, "program_version", env!("CARGO_PKG_VERSION"))?;
@@ -163,14 +166,19 @@ impl ResultsFile {
     }
 
     /// Writes one stage and flushes it to the disk.
-    fn stage(&self, write: impl FnOnce(&Group) -> hdf5::Result<()>) -> Result<()> {
+    pub(super) fn stage(&self, write: impl FnOnce(&Group) -> hdf5::Result<()>) -> Result<()> {
         let written = self.file.as_group().and_then(|root| write(&root)).and_then(|()| self.file.flush());
         written.map_err(|source| refusal(&self.path, plain(&source)))
     }
 
+    /// Leaves an earlier run's file in its place until `maps` of its maps are in this one.
+    pub fn keep_earlier_until(&mut self, maps: usize) {
+        self.awaited = maps;
+    }
+
     /// Takes the place of an earlier run's file, once.
-    fn take_place(&mut self) -> Result<()> {
-        if self.path != self.home {
+    pub(super) fn take_place(&mut self) -> Result<()> {
+        if self.path != self.home && self.awaited == 0 {
             std::fs::rename(&self.path, &self.home).map_err(|source| refusal(&self.home, source))?;
             self.path.clone_from(&self.home);
         }
@@ -371,16 +379,22 @@ fn write_sensitivity(root: &Group, sensitivity: &SensitivityResult) -> hdf5::Res
 }
 
 /// A group whose datasets all carry units and a description.
-struct Datasets(Group);
+pub(super) struct Datasets(pub(super) Group);
 
 impl Datasets {
-    fn list<T: H5Type>(&self, name: &str, data: &[T], units: &str, description: &str) -> hdf5::Result<()> {
+    pub(super) fn list<T: H5Type>(
+        &self,
+        name: &str,
+        data: &[T],
+        units: &str,
+        description: &str,
+    ) -> hdf5::Result<()> {
         self.write(name, ArrayView::from(data), units, description)
     }
 
     /// Stored whole and uncompressed: mode shapes in full precision hardly shrink, and deflating them took longer than
     /// computing them.
-    fn write<T: H5Type, D: Dimension>(
+    pub(super) fn write<T: H5Type, D: Dimension>(
         &self,
         name: &str,
         data: ArrayView<'_, T, D>,
@@ -395,7 +409,7 @@ impl Datasets {
 }
 
 /// A list of strings as a dataset.
-fn texts(group: &Group, name: &str, texts: &[String], description: &str) -> hdf5::Result<()> {
+pub(super) fn texts(group: &Group, name: &str, texts: &[String], description: &str) -> hdf5::Result<()> {
     let values: Array1<VarLenUnicode> = texts.iter().map(|text| unicode(text)).collect();
     let dataset = group.new_dataset::<VarLenUnicode>().shape(values.len()).create(name)?;
     dataset.write(values.view())?;
@@ -407,16 +421,16 @@ fn describe(dataset: &hdf5::Dataset, units: &str, description: &str) -> hdf5::Re
     text_attribute(dataset, "description", description)
 }
 
-fn attribute<T: H5Type>(group: &Group, name: &str, value: &T) -> hdf5::Result<()> {
+pub(super) fn attribute<T: H5Type>(group: &Group, name: &str, value: &T) -> hdf5::Result<()> {
     group.new_attr::<T>().create(name)?.write_scalar(value)
 }
 
-fn text_attribute(location: &hdf5::Location, name: &str, text: &str) -> hdf5::Result<()> {
+pub(super) fn text_attribute(location: &hdf5::Location, name: &str, text: &str) -> hdf5::Result<()> {
     location.new_attr::<VarLenUnicode>().create(name)?.write_scalar(&unicode(text))
 }
 
 /// The operating system's words inside an error of the library, which runs over several lines, or its first line.
-fn plain(error: &hdf5::Error) -> String {
+pub(super) fn plain(error: &hdf5::Error) -> String {
     let text = error.to_string();
     let cause = text.split_once("error message = '").and_then(|(_, rest)| rest.split_once('\''));
     cause.map(|(words, _)| words).or(text.lines().next()).unwrap_or_default().to_string()
@@ -427,7 +441,7 @@ fn unicode(text: &str) -> VarLenUnicode {
     text.replace('\0', "").parse().expect("holds no NUL")
 }
 
-fn rows<const N: usize>(values: &[[f64; N]]) -> Array2<f64> {
+pub(super) fn rows<const N: usize>(values: &[[f64; N]]) -> Array2<f64> {
     Array2::from_shape_fn((values.len(), N), |(i, j)| values[i][j])
 }
 

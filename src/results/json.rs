@@ -6,7 +6,7 @@
 
 use super::{
     ComplexResult, MeasuredComparison, ModelSize, NamedModes, RunResults, SensitivityResult, SteadyResult,
-    write_atomically,
+    explored_json, write_atomically,
 };
 use crate::error::Result;
 use crate::linalg::c64;
@@ -33,6 +33,9 @@ struct Summary<'a> {
     steady_sliding: Option<Steady<'a>>,
     cea: Option<Cea<'a>>,
     sensitivity: Option<Sensitivity<'a>>,
+    sweeps: Vec<serde_json::Value>,
+    maps: Vec<serde_json::Value>,
+    damping_verdicts: Option<serde_json::Value>,
     timings: Vec<Timing<'a>>,
     case: serde_json::Value,
 }
@@ -263,6 +266,9 @@ fn summary(results: &RunResults) -> Summary<'_> {
         steady_sliding: results.steady.as_ref().map(steady),
         cea: results.complex.as_ref().map(cea),
         sensitivity: results.sensitivity.as_ref().map(sensitivity),
+        sweeps: results.sweeps.iter().map(explored_json::sweep).collect(),
+        maps: results.maps.iter().map(explored_json::map).collect(),
+        damping_verdicts: results.damping.as_ref().map(explored_json::damping),
         timings: results.timings.iter().map(|(phase, wall_s)| Timing { phase, wall_s: *wall_s }).collect(),
         case: case_object(&results.resolved_case),
     }

@@ -5,12 +5,17 @@
 //! | `results.h5` | everything, in full precision, written stage by stage | h5py, MATLAB, Julia |
 //! | `summary.json` | the figures of each analysis: a contract for scripts | any script |
 //! | `modes_<set>.csv`, `contact_points.csv`, `complex_modes.csv`, `sensitivities.csv` | the tables | spreadsheets |
+//! | `critical_values.csv`, `sweep_<name>.csv`, `map_<name>.csv` | sweeps and maps | spreadsheets |
 //! | `modes_<set>.vtu`, `steady.vtu`, `complex_modes.vtu`, `advice.vtu` | the shapes on the mesh | ParaView, pyvista |
 //!
 //! [`ResultsFile`] is used while the run goes on, [`write_files`] once at its end.
 
 mod csv;
 mod derived;
+mod explored;
+mod explored_csv;
+mod explored_hdf5;
+mod explored_json;
 mod folder;
 mod hdf5;
 mod json;
@@ -22,6 +27,8 @@ pub(crate) mod sample;
 
 pub use csv::write_csv;
 pub use derived::{ComparedRow, PairTotals};
+pub use explored::{DampingRow, DampingVerdicts, MapResult, Method, SweepResult};
+pub use explored_hdf5::read_maps;
 pub(crate) use folder::write_atomically;
 pub use hdf5::ResultsFile;
 pub use json::{SCHEMA_VERSION, summary_json, write_summary};
@@ -40,6 +47,7 @@ use std::path::Path;
 pub fn write_files(dir: &Path, results: &RunResults) -> crate::error::Result<()> {
     write_summary(dir, results)?;
     write_csv(dir, results)?;
+    explored_csv::write(dir, results)?;
     write_vtk(dir, results)
 }
 
@@ -68,6 +76,12 @@ pub struct RunResults {
     pub complex: Option<ComplexResult>,
     /// How complex eigenvalues answer scalars of the case and things mounted on its nodes.
     pub sensitivity: Option<SensitivityResult>,
+    /// Complex modes along one scalar.
+    pub sweeps: Vec<SweepResult>,
+    /// Complex modes over two scalars.
+    pub maps: Vec<MapResult>,
+    /// Which verdicts the modal damping decides.
+    pub damping: Option<DampingVerdicts>,
     /// Wall time of each phase \[s\].
     pub timings: Vec<(String, f64)>,
 }

@@ -63,6 +63,9 @@ pub(crate) fn rig() -> RunResults {
         modes: vec![disc, whole],
         measured: vec![measured],
         complex: Some(complex),
+        sweeps: Vec::new(),
+        maps: Vec::new(),
+        damping: None,
         sensitivity: Some(sensitivity),
         timings: [
             ("mesh and assembly", 0.21),

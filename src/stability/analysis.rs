@@ -1,6 +1,6 @@
 //! The analysis: project, solve, measure on the full order, enrich, repeat.
 
-use super::basis::Basis;
+use super::basis::{Basis, Images};
 use super::block::Block;
 use super::budget::growth_budget;
 use super::operator::{Operator, Side};
@@ -81,8 +81,8 @@ fn check(system: &System, steady: &SteadySliding, real: &RealModes, band_hz: [f6
 }
 
 /// The pairs of one round with their full-order measures.
-struct Round {
-    lambda: Vec<c64>,
+pub(super) struct Round {
+    pub(super) lambda: Vec<c64>,
     phi: Block,
     psi: Block,
     /// M φ.
@@ -91,9 +91,19 @@ struct Round {
     correction: Block,
     /// Q(λ)ᴴψ.
     left_residual: Block,
-    backward_error: Vec<f64>,
-    eigenvalue_error: Vec<f64>,
+    pub(super) backward_error: Vec<f64>,
+    pub(super) eigenvalue_error: Vec<f64>,
     condition: Vec<f64>,
+}
+
+impl Round {
+    /// The pairs that are not yet as exact as the refinement aims at.
+    pub(super) fn open(&self) -> Vec<usize> {
+        let right = |j: &usize| {
+            self.backward_error[*j] <= BACKWARD_ERROR && self.eigenvalue_error[*j] <= EIGENVALUE_ERROR
+        };
+        (0..self.lambda.len()).filter(|j| !right(j)).collect()
+    }
 }
 
 fn analyse(
@@ -115,11 +125,7 @@ fn analyse(
     let mut refinements = 0;
     loop {
         counts.push(round.lambda.len());
-        let open: Vec<usize> = (0..round.lambda.len())
-            .filter(|j| {
-                round.backward_error[*j] > BACKWARD_ERROR || round.eigenvalue_error[*j] > EIGENVALUE_ERROR
-            })
-            .collect();
+        let open = round.open();
         if open.is_empty() || refinements == ROUNDS {
             break;
         }
@@ -190,7 +196,11 @@ pub(super) fn shifted_factor(
 
 /// A⁻¹W for the directions in which the interface moves or is moved, each weighed by √(its stiffness) so that its
 /// E-norm tells how much the interface makes of it.
-fn interface_responses(operator: &Operator<'_>, factor: &dyn SymmetricFactor, omega: f64) -> Mat<f64> {
+pub(super) fn interface_responses(
+    operator: &Operator<'_>,
+    factor: &dyn SymmetricFactor,
+    omega: f64,
+) -> Mat<f64> {
     let interface = &operator.interface;
     let mut largest = vec![0.0f64; interface.directions.len()];
     for term in &interface.terms {
@@ -220,17 +230,12 @@ fn evaluate(
     band: [f64; 2],
 ) -> Result<Round> {
     let (unsymmetric_damping, unsymmetric_stiffness) = project_interface(operator, basis);
-    let wanted = |z: c64| {
-        let oscillates = z.im > 1e-9 * z.norm();
-        let real = z.im.abs() <= 1e-9 * z.norm();
-        (oscillates && z.im >= band[0] && z.im <= band[1]) || (real && band[0] == 0.0 && z.norm() <= band[1])
-    };
     let pairs = solve(
         &basis.mass,
         &(&basis.damping + unsymmetric_damping),
         &(&basis.stiffness + unsymmetric_stiffness),
         basis.hysteretic.as_ref(),
-        wanted,
+        |z| in_band(z, band),
     )?;
     let lambda: Vec<c64> = pairs.iter().map(|p| p.lambda).collect();
     let expand = |pick: fn(&SmallPair) -> Vec<c64>| {
@@ -238,6 +243,25 @@ fn evaluate(
         basis.images(&Block::from_columns(basis.len(), &small)).normalise()
     };
     let (phi, psi) = (expand(|p| p.right.clone()), expand(|p| p.left.clone()));
+    Ok(measure(operator, factor, band, lambda, phi, psi))
+}
+
+/// Whether λ is one to give: one of each conjugate pair, its frequency in the band.
+pub(super) fn in_band(z: c64, band: [f64; 2]) -> bool {
+    let oscillates = z.im > 1e-9 * z.norm();
+    let real = z.im.abs() <= 1e-9 * z.norm();
+    (oscillates && z.im >= band[0] && z.im <= band[1]) || (real && band[0] == 0.0 && z.norm() <= band[1])
+}
+
+/// Measures pairs on the full order; `phi` and `psi` are scaled to unit mass.
+pub(super) fn measure(
+    operator: &Operator<'_>,
+    factor: &dyn SymmetricFactor,
+    band: [f64; 2],
+    lambda: Vec<c64>,
+    phi: Images,
+    psi: Images,
+) -> Round {
     let (residual, slope) = operator.apply(Side::Right, &lambda, &phi);
     let (left_residual, _) = operator.apply(Side::Left, &lambda, &psi);
     let (momentum, phi, psi) = (phi.inertia, phi.vectors, psi.vectors);
@@ -256,7 +280,7 @@ fn evaluate(
     let eigenvalue_error =
         of(&|j| left_residual.dot(j, &correction).norm() / (steepness[j] * lambda[j].norm().max(floor)));
     let condition = of(&|j| 2.0 * lambda[j].norm() / steepness[j]);
-    Ok(Round {
+    Round {
         lambda,
         phi,
         psi,
@@ -266,12 +290,17 @@ fn evaluate(
         backward_error,
         eigenvalue_error,
         condition,
-    })
+    }
 }
 
 /// Re and Im of the corrections of the `open` pairs, right and left, each divided by |λ|: their squared E-norm is then
 /// about the relative error of λ that they stand for.
-fn wanted_corrections(round: &Round, factor: &dyn SymmetricFactor, open: &[usize], floor: f64) -> Mat<f64> {
+pub(super) fn wanted_corrections(
+    round: &Round,
+    factor: &dyn SymmetricFactor,
+    open: &[usize],
+    floor: f64,
+) -> Mat<f64> {
     let n = round.phi.re.nrows();
     let size: Vec<f64> = open.iter().map(|j| 1.0 / round.lambda[*j].norm().max(floor)).collect();
     let mut left = Mat::from_fn(n, 2 * open.len(), |i, c| {

@@ -1,8 +1,8 @@
 //! What is not symmetric, as a few numbers between a few directions: K_c = W k Wᵀ and C_c = W c Wᵀ.
 
-use crate::equilibrium::{ContactBlock, SteadySliding, directions, linearize};
+use crate::equilibrium::{ContactBlock, PointState, SteadySliding, directions, linearize, linearize_points};
 use crate::linalg::{SparseVector, c64};
-use crate::system::System;
+use crate::system::{Coupling, System};
 
 /// The linearised contacts, and what imported matrices have beyond their symmetric part, as one low-rank interface.
 #[derive(Debug, Clone)]
@@ -47,17 +47,17 @@ impl<'a> Interface<'a> {
             interface.terms.extend(contact_terms(&block, first));
         }
         if let Some(rest) = &system.coupling {
-            let first = interface.directions.len();
+            interface.terms.extend(imported_terms(rest, interface.directions.len()));
             interface.directions.extend(&rest.directions);
-            for (row, column) in entries(rest.directions.len()) {
-                let (stiffness, damping) = (rest.stiffness[(row, column)], rest.damping[(row, column)]);
-                if stiffness != 0.0 || damping != 0.0 {
-                    let (row, column) = (first + row, first + column);
-                    interface.terms.push(Term { row, column, stiffness, damping, origin: Origin::Coupling });
-                }
-            }
         }
         interface
+    }
+
+    /// The directions of every contact point, those that are silent included, then the imported ones; no terms yet.
+    pub(crate) fn of_every_point(system: &'a System) -> Self {
+        let points = system.points().flat_map(|(_, point)| directions(point));
+        let imported = system.coupling.iter().flat_map(|rest| &rest.directions);
+        Interface { directions: points.chain(imported).collect(), terms: Vec::new() }
     }
 
     /// Wᵀ x.
@@ -66,8 +66,32 @@ impl<'a> Interface<'a> {
     }
 }
 
+/// The terms of a state of the contact points between the directions of [`Interface::of_every_point`].
+pub(crate) fn terms_of_every_point(system: &System, points: &[PointState]) -> Vec<Term> {
+    let blocks = linearize_points(points).blocks;
+    let mut terms: Vec<Term> =
+        blocks.iter().flat_map(|block| contact_terms(block, 3 * block.point)).collect();
+    terms.extend(system.coupling.iter().flat_map(|rest| imported_terms(rest, 3 * points.len())));
+    terms
+}
+
+/// The entries of the imported coupling whose directions are those from `first` on.
+fn imported_terms(rest: &Coupling, first: usize) -> impl Iterator<Item = Term> {
+    entries(rest.directions.len()).filter_map(move |(row, column)| {
+        let (stiffness, damping) = (rest.stiffness[(row, column)], rest.damping[(row, column)]);
+        let (row, column) = (first + row, first + column);
+        (stiffness != 0.0 || damping != 0.0).then_some(Term {
+            row,
+            column,
+            stiffness,
+            damping,
+            origin: Origin::Coupling,
+        })
+    })
+}
+
 /// The entries of one contact point whose g, t₁, t₂ are the directions from `first` on.
-fn contact_terms(block: &ContactBlock, first: usize) -> impl Iterator<Item = Term> {
+fn contact_terms(block: &ContactBlock, first: usize) -> impl Iterator<Item = Term> + '_ {
     entries(3).filter_map(move |(a, b)| {
         let (stiffness, damping) = (block.stiffness[a][b], block.damping[a][b]);
         let origin = match (a, b) {

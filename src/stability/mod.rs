@@ -9,17 +9,20 @@ mod analysis;
 mod basis;
 mod block;
 mod budget;
+mod family;
 mod full_order;
 mod interface;
 mod modal_damping;
 mod operator;
 mod projected;
+mod reduced;
 mod sensitivity;
 #[cfg(test)]
 mod tests;
 
 pub use advice::PointRates;
 pub use analysis::complex_modes;
+pub use family::{Family, FamilyCheck, FamilyModes, Frame, SlidingState};
 pub use full_order::{Confirmation, confirm};
 pub use sensitivity::{Domain, Rate, Sensitivity};
 

@@ -2,7 +2,7 @@
 
 use super::basis::Images;
 use super::block::Block;
-use super::interface::Interface;
+use super::interface::{Interface, Term};
 use crate::equilibrium::{SteadySliding, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::sparse::{norm_1, times};
@@ -36,17 +36,32 @@ pub(super) enum Side {
 impl<'a> Operator<'a> {
     pub(super) fn new(system: &'a System, steady: &SteadySliding) -> Result<Self> {
         let stiffness = tangent_stiffness(system, &steady.displacement)?;
+        Ok(Operator::with_interface(system, stiffness, Interface::new(system, steady)))
+    }
+
+    /// The operator with the tangent stiffness `stiffness` and another interface.
+    pub(super) fn with_interface(
+        system: &'a System,
+        stiffness: Cow<'a, SparseMatrix>,
+        interface: Interface<'a>,
+    ) -> Self {
         let damping = &system.structure.damping;
         let norm = |m: &Option<SparseMatrix>| m.as_ref().map_or(0.0, norm_1);
-        Ok(Operator {
+        Operator {
             mass: &system.structure.mass,
             mass_norm: norm_1(&system.structure.mass),
             damping_norm: norm(&damping.viscous),
             stiffness_norm: norm_1(&stiffness) + norm(&damping.hysteretic),
             stiffness,
             damping,
-            interface: Interface::new(system, steady),
-        })
+            interface,
+        }
+    }
+
+    /// The same operator whose interface has other terms between the same directions.
+    pub(super) fn with_terms(&self, terms: Vec<Term>) -> Operator<'_> {
+        let interface = Interface { directions: self.interface.directions.clone(), terms };
+        Operator { stiffness: Cow::Borrowed(&*self.stiffness), interface, ..*self }
     }
 
     pub(super) fn n(&self) -> usize {
@@ -55,19 +70,7 @@ impl<'a> Operator<'a> {
 
     /// C x: viscous and modal damping; `None` when there is neither.
     pub(super) fn damping_times(&self, x: MatRef<'_, f64>) -> Option<Mat<f64>> {
-        let mut sum = self.damping.viscous.as_ref().map(|c| times(c, x));
-        if let Some(modal) = &self.damping.modal {
-            let mut amplitudes = gram(modal.basis.as_ref(), x);
-            for (i, c) in modal.coefficients.iter().enumerate() {
-                (0..amplitudes.ncols()).for_each(|j| amplitudes[(i, j)] *= c);
-            }
-            let modal = expand(modal.basis.as_ref(), amplitudes.as_ref());
-            sum = Some(match sum {
-                Some(viscous) => viscous + modal,
-                None => modal,
-            });
-        }
-        sum
+        damping_times(self.damping, x)
     }
 
     /// y\[:, j\] += W (k + s c) Wᵀ x\[:, j\], with k and c transposed for the left side.
@@ -116,4 +119,21 @@ impl<'a> Operator<'a> {
         let r = lambda.norm();
         r * r * self.mass_norm + r * self.damping_norm + self.stiffness_norm
     }
+}
+
+/// C x of viscous and modal damping; `None` when there is neither.
+pub(super) fn damping_times(damping: &Damping, x: MatRef<'_, f64>) -> Option<Mat<f64>> {
+    let mut sum = damping.viscous.as_ref().map(|c| times(c, x));
+    if let Some(modal) = &damping.modal {
+        let mut amplitudes = gram(modal.basis.as_ref(), x);
+        for (i, c) in modal.coefficients.iter().enumerate() {
+            (0..amplitudes.ncols()).for_each(|j| amplitudes[(i, j)] *= c);
+        }
+        let modal = expand(modal.basis.as_ref(), amplitudes.as_ref());
+        sum = Some(match sum {
+            Some(viscous) => viscous + modal,
+            None => modal,
+        });
+    }
+    sum
 }

@@ -1,7 +1,9 @@
 use super::*;
 use crate::contact::{Constant, Exponential, FrictionSense, NormalLaw, SlidingLaw};
 use crate::equilibrium::samples::*;
-use crate::equilibrium::{SteadyOptions, SteadySliding, directions, linearize, solve_steady};
+use crate::equilibrium::{
+    Condensed, SteadyOptions, SteadySliding, directions, linearize, solve_points, solve_steady,
+};
 use crate::linalg::{SparseMatrix, SparseVector};
 use crate::modal::{RealModes, SturmCertificate};
 use crate::system::{Closing, ModalDamping, System};
@@ -401,4 +403,76 @@ fn input_that_cannot_be_analysed_is_refused() {
     }
     let other = dense_modes(&random_system(30, 2, 1.0, 1), 3);
     assert_eq!(complex_modes(&system, &state, &other, [0.0, 1.0], &()).unwrap_err().exit_code(), 2);
+}
+
+/// A family trained on two ends of a range of friction gives the modes between them.
+#[test]
+fn a_family_gives_what_a_whole_analysis_gives_at_every_member() {
+    let condense = |system: &System| Condensed::new(system, &system.structure.stiffness).unwrap();
+    let mut partial = 0;
+    for seed in 0..6u64 {
+        let n = 48 + 8 * seed as usize;
+        let base = damped(random_system(n, 2 + seed as usize / 3, 20.0, 500 + seed), seed % 8);
+        let at = |mu_0: f64, velocity: f64| {
+            let mut system = base.clone();
+            let normal = NormalLaw { stiffness: 300.0, cubic_stiffness: 2e4, damping: 0.0, bilateral: false };
+            let law = Exponential { mu_0, mu_1: 0.25, alpha: 0.8 };
+            system.pairs[0].law = Arc::new(SlidingLaw::new(normal, law, 1e-3));
+            system.pairs[0].sliding_velocity = velocity;
+            system
+        };
+        let condensed = condense(&base);
+        let state = |system: &System| SlidingState {
+            points: solve_points(&system.pairs, &system.load, &condensed, &SteadyOptions::default()).unwrap(),
+            damping_weights: vec![1.0],
+        };
+        let kept = n / 3;
+        let real = dense_modes(&base, kept);
+        let band = [0.01, 0.5 * (real.frequency_hz(kept / 2) + real.frequency_hz(kept / 2 + 1))];
+        let frame = Frame::new(&base, &[], &real, Vec::new(), band).unwrap();
+        let ends = [state(&at(0.0, 0.5)), state(&at(0.7, 2.0))];
+        let mut family = Family::new(&frame, &ends).unwrap();
+        for end in &ends {
+            assert!(family.train(end).unwrap().worst() <= 1e-10, "seed {seed}");
+        }
+        for (mu, velocity) in [(0.0, 0.5), (0.2, 1.7), (0.35, 1.2), (0.6, 0.6)] {
+            let system = at(mu, velocity);
+            let member = state(&system);
+            let (found, check) = (family.modes(&member).unwrap(), family.check(&member).unwrap());
+            assert_eq!(found.eigenvalues, check.eigenvalues);
+            let whole = complex_modes(&system, &steady(&system), &real, band, &()).unwrap();
+            assert_eq!(found.eigenvalues.len(), whole.modes.len(), "seed {seed}");
+            let exact: Vec<c64> = whole.modes.iter().map(|m| m.eigenvalue).collect();
+            for (z, estimate) in found.eigenvalues.iter().zip(&check.eigenvalue_errors) {
+                let error = (z - nearest(*z, &exact)).norm() / z.norm();
+                assert!(error < 1e-8, "seed {seed}, mu {mu}: {z} {error:.1e} {estimate:.1e}");
+            }
+        }
+        partial += usize::from(family.dimension() < n);
+    }
+    assert!(partial > 2, "{partial}");
+}
+
+#[test]
+fn weights_of_dampings_are_their_sum_on_the_reduced_and_on_the_full_order() {
+    let base = damped(random_system(80, 3, 20.0, 41), 6);
+    let other = damped(random_system(80, 3, 20.0, 41), 3).structure.damping;
+    let real = dense_modes(&base, 40);
+    let band = [0.01, real.frequency_hz(20)];
+    let frame = Frame::new(&base, &[], &real, vec![&other], band).unwrap();
+    let member =
+        |weights: &[f64]| SlidingState { points: steady(&base).points, damping_weights: weights.to_vec() };
+    let mut family = Family::new(&frame, &[member(&[1.0, 0.0])]).unwrap();
+    for weights in [[1.0, 0.0], [0.0, 1.0]] {
+        assert!(family.train(&member(&weights)).unwrap().worst() <= 1e-10);
+        let mut system = base.clone();
+        if weights[1] == 1.0 {
+            system.structure.damping = other.clone();
+        }
+        let exact = dense_eigenvalues(&system, &steady(&system), band);
+        let found = family.modes(&member(&weights)).unwrap().eigenvalues;
+        assert_eq!(found.len(), exact.len());
+        assert!(found.iter().all(|z| (z - nearest(*z, &exact)).norm() < 1e-9 * z.norm()));
+    }
+    assert!(family.check(&member(&[0.5, 0.5])).unwrap().worst() < 1e-8);
 }

@@ -1,0 +1,155 @@
+//! Eigenvalues of small dense matrices that are not symmetric, with left and right vectors, on one thread.
+
+use super::c64;
+use crate::error::{Error, Result};
+use faer::diag::Diag;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::evd::{ComputeEigenvectors, evd_cplx, evd_real, evd_scratch};
+use faer::{Mat, MatRef, Par};
+
+/// A X = X diag(λ) and YᴴA = diag(λ) Yᴴ.
+#[derive(Debug, Clone)]
+pub struct Spectrum {
+    /// λ, in the order of the algorithm.
+    pub values: Vec<c64>,
+    /// X, one right vector a column.
+    pub right: Mat<c64>,
+    /// Y, one left vector a column.
+    pub left: Mat<c64>,
+}
+
+/// The spectrum of a real matrix by the QR algorithm; the error of a well conditioned λ is about 1e-15 ‖A‖.
+///
+/// ```
+/// use faer::mat;
+/// let spectrum = stridor::linalg::unsymmetric::spectrum(mat![[0.0, 2.0], [-2.0, 0.0]].as_ref()).unwrap();
+/// assert!(spectrum.values.iter().all(|l| l.re.abs() < 1e-15 && (l.im.abs() - 2.0).abs() < 1e-15));
+/// ```
+///
+/// # Errors
+/// [`Error::Analysis`] when a number is not finite or the iteration does not converge.
+pub fn spectrum(a: MatRef<'_, f64>) -> Result<Spectrum> {
+    let n = a.nrows();
+    check(n, a.is_all_finite())?;
+    let (mut re, mut im) = (Diag::zeros(n), Diag::zeros(n));
+    let (mut left, mut right) = (Mat::zeros(n, n), Mat::zeros(n, n));
+    let scratch = evd_scratch::<f64>(
+        n,
+        ComputeEigenvectors::Yes,
+        ComputeEigenvectors::Yes,
+        Par::Seq,
+        Default::default(),
+    );
+    evd_real(
+        a,
+        re.as_mut(),
+        im.as_mut(),
+        Some(left.as_mut()),
+        Some(right.as_mut()),
+        Par::Seq,
+        MemStack::new(&mut MemBuffer::new(scratch)),
+        Default::default(),
+    )
+    .map_err(|_| no_convergence(n))?;
+    let (re, im) = (re.column_vector(), im.column_vector());
+    let values = (0..n).map(|k| c64::new(re[k], im[k])).collect();
+    // A conjugate pair stands in two columns: real part, imaginary part of the one with Im λ > 0.
+    let complex = |u: &Mat<f64>| {
+        Mat::from_fn(n, n, |i, k| match im[k] {
+            w if w > 0.0 => c64::new(u[(i, k)], u[(i, k + 1)]),
+            w if w < 0.0 => c64::new(u[(i, k - 1)], -u[(i, k)]),
+            _ => c64::new(u[(i, k)], 0.0),
+        })
+    };
+    Ok(Spectrum { values, right: complex(&right), left: complex(&left) })
+}
+
+/// [`spectrum`] of a complex matrix.
+///
+/// # Errors
+/// As [`spectrum`].
+pub fn complex_spectrum(a: MatRef<'_, c64>) -> Result<Spectrum> {
+    let n = a.nrows();
+    check(n, a.is_all_finite())?;
+    let mut values = Diag::zeros(n);
+    let (mut left, mut right) = (Mat::zeros(n, n), Mat::zeros(n, n));
+    let scratch = evd_scratch::<c64>(
+        n,
+        ComputeEigenvectors::Yes,
+        ComputeEigenvectors::Yes,
+        Par::Seq,
+        Default::default(),
+    );
+    evd_cplx(
+        a,
+        values.as_mut(),
+        Some(left.as_mut()),
+        Some(right.as_mut()),
+        Par::Seq,
+        MemStack::new(&mut MemBuffer::new(scratch)),
+        Default::default(),
+    )
+    .map_err(|_| no_convergence(n))?;
+    Ok(Spectrum { values: values.column_vector().iter().copied().collect(), right, left })
+}
+
+fn check(n: usize, finite: bool) -> Result<()> {
+    if n > 0 && finite { Ok(()) } else { Err(no_convergence(n)) }
+}
+
+fn no_convergence(n: usize) -> Error {
+    Error::analysis(
+        format!("dense eigenvalues of order {n}"),
+        "the iteration did not converge, most likely because an entry is not finite",
+        "Look for zero or huge stiffnesses, masses and velocities in the model",
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::samples::random_symmetric;
+    use super::*;
+    use std::time::Instant;
+
+    #[test]
+    fn right_and_left_vectors_satisfy_their_equations() {
+        let n = 41;
+        let (a, b) = (random_symmetric(n, 3).to_dense(), random_symmetric(n, 4).to_dense());
+        let skew = Mat::from_fn(n, n, |i, j| if i > j { b[(i, j)] } else { -b[(i, j)] });
+        let real = &a + &skew;
+        let complex = Mat::from_fn(n, n, |i, j| c64::new(real[(i, j)], b[(i, (j + 1) % n)]));
+        let lifted = Mat::from_fn(n, n, |i, j| c64::new(real[(i, j)], 0.0));
+        for (a, s) in [
+            (&lifted, spectrum(real.as_ref()).unwrap()),
+            (&complex, complex_spectrum(complex.as_ref()).unwrap()),
+        ] {
+            let size = a.norm_l2();
+            for (k, value) in s.values.iter().enumerate() {
+                let (x, y) = (s.right.col(k), s.left.col(k));
+                let r = a * x - x * faer::Scale(*value);
+                let l = a.adjoint() * y - y * faer::Scale(value.conj());
+                assert!(r.norm_l2() < 1e-13 * size * x.norm_l2(), "{k} {:e}", r.norm_l2());
+                assert!(l.norm_l2() < 1e-13 * size * y.norm_l2(), "{k} {:e}", l.norm_l2());
+            }
+            assert!(s.values.iter().filter(|z| z.im != 0.0).count() > 4);
+        }
+    }
+
+    #[test]
+    fn what_is_not_finite_is_refused() {
+        assert!(spectrum(faer::mat![[f64::NAN]].as_ref()).is_err());
+        assert!(spectrum(Mat::zeros(0, 0).as_ref()).is_err());
+    }
+
+    #[test]
+    #[ignore = "for people: prints how long it takes"]
+    fn timing() {
+        for n in [100, 150, 200, 300, 400, 600] {
+            let (a, b) = (random_symmetric(n, 3).to_dense(), random_symmetric(n, 4).to_dense());
+            let a = Mat::from_fn(n, n, |i, j| a[(i, j)] + if i > j { b[(i, j)] } else { -b[(i, j)] });
+            let start = Instant::now();
+            spectrum(a.as_ref()).unwrap();
+            println!("{n}: {:.1} ms", 1e3 * start.elapsed().as_secs_f64());
+        }
+    }
+}

@@ -1,0 +1,269 @@
+//! One structure, many sliding states: everything large is done once, a state costs a small dense problem.
+
+use super::analysis::{Round, in_band, interface_responses, measure, shifted_factor, wanted_corrections};
+use super::basis::{Basis, Images};
+use super::block::Block;
+use super::interface::{Interface, Term, terms_of_every_point};
+use super::operator::{Operator, damping_times};
+use super::reduced::{Projection, Reduced, ReducedModes};
+use crate::equilibrium::{PointState, tangent_stiffness};
+use crate::error::Result;
+use crate::linalg::sparse::times;
+use crate::linalg::tall::gram;
+use crate::linalg::{SymmetricFactor, c64};
+use crate::modal::RealModes;
+use crate::system::{Damping, System};
+use faer::Mat;
+use std::f64::consts::TAU;
+
+/// What all states of a family share on the full order: the structure, every direction in which a contact point may
+/// act, and the factor of A = K + K_σ − s M.
+pub struct Frame<'a> {
+    system: &'a System,
+    operator: Operator<'a>,
+    factor: Box<dyn SymmetricFactor>,
+    real: &'a RealModes,
+    /// The other dampings; states weigh them with the system's own.
+    dampings: Vec<&'a Damping>,
+    /// \[rad/s\].
+    band: [f64; 2],
+}
+
+/// One member of a family.
+#[derive(Debug, Clone)]
+pub struct SlidingState {
+    /// The contact points at steady sliding, in the order of [`System::points`].
+    pub points: Vec<PointState>,
+    /// C = w₀C₀ + w₁C₁ + …: the weight of the system's own damping, then of those given to [`Frame::new`]. As damping
+    /// is affine in each of its scalars, weights that add up to one reach every value.
+    pub damping_weights: Vec<f64>,
+}
+
+/// A reduced model that is right at full order on the states it was trained on, and measured on any other.
+pub struct Family<'f> {
+    frame: &'f Frame<'f>,
+    basis: Basis<'f>,
+    /// Closed contact springs of the reference stiffness: direction and N/m.
+    springs: Vec<(usize, f64)>,
+    reduced: Reduced,
+}
+
+/// The complex modes of one state in the coordinates of its family, ascending in (ω, σ); one of each conjugate pair.
+#[derive(Debug, Clone)]
+pub struct FamilyModes {
+    /// λ = σ + iω \[1/s\].
+    pub eigenvalues: Vec<c64>,
+    /// Unit vectors, one a column; their scalar product is φᴴMφ of the full order.
+    pub vectors: Mat<c64>,
+}
+
+/// What the full order says of the modes of one state.
+#[derive(Debug, Clone)]
+pub struct FamilyCheck {
+    /// λ of the modes \[1/s\].
+    pub eigenvalues: Vec<c64>,
+    /// η of each, as in [`super::ComplexMode`].
+    pub backward_errors: Vec<f64>,
+    /// Estimated |Δλ|/|λ| of each.
+    pub eigenvalue_errors: Vec<f64>,
+}
+
+impl FamilyCheck {
+    /// The largest estimated |Δλ|/|λ|.
+    pub fn worst(&self) -> f64 {
+        self.eigenvalue_errors
+            .iter()
+            .fold(0.0, |m: f64, e| if e.is_nan() { f64::INFINITY } else { m.max(*e) })
+    }
+}
+
+impl<'a> Frame<'a> {
+    /// For `system` whose structure does not change, `displacement` being its steady one where a prestress counts;
+    /// `real` are its real modes, best up to twice the band.
+    ///
+    /// # Errors
+    /// A stiffness that cannot be factorised.
+    pub fn new(
+        system: &'a System,
+        displacement: &[f64],
+        real: &'a RealModes,
+        dampings: Vec<&'a Damping>,
+        band_hz: [f64; 2],
+    ) -> Result<Self> {
+        let stiffness = tangent_stiffness(system, displacement)?;
+        let operator = Operator::with_interface(system, stiffness, Interface::of_every_point(system));
+        let band = band_hz.map(|f| TAU * f);
+        let factor = shifted_factor(&operator, real, band)?;
+        Ok(Frame { system, operator, factor, real, dampings, band })
+    }
+
+    fn terms(&self, state: &SlidingState) -> Vec<Term> {
+        terms_of_every_point(self.system, &state.points)
+    }
+}
+
+impl<'f> Family<'f> {
+    /// A family spanned by the real modes, the static responses A⁻¹W to every direction in which a contact of any of
+    /// the `states` has a force, and the next term of their series in ω², A⁻¹M A⁻¹W. These do not depend on friction
+    /// or load; [`Family::train`] adds what a state still lacks.
+    ///
+    /// # Errors
+    /// A projection that is not definite: parts without mass.
+    pub fn new(frame: &'f Frame<'f>, states: &[SlidingState]) -> Result<Self> {
+        const STATIC: usize = 240;
+        let terms = envelope(states.iter().map(|state| frame.terms(state)));
+        let springs: Vec<(usize, f64)> = terms
+            .iter()
+            .filter(|t| t.row == t.column && t.row < 3 * frame.system.points().count() && t.row % 3 == 0)
+            .map(|t| (t.row, t.stiffness))
+            .collect();
+        let mut basis = Basis::new(&frame.operator, frame.real.shapes.as_ref(), frame.band[1].powi(2));
+        let top = frame.band[1];
+        let first = interface_responses(&frame.operator.with_terms(terms), &*frame.factor, top);
+        let mut second = times(frame.operator.mass, first.as_ref());
+        second *= faer::Scale(top * top);
+        frame.factor.solve_in_place(second.as_mut());
+        basis.enrich(first, 1e-9, STATIC);
+        basis.enrich(second, 1e-6, STATIC);
+        let reduced = reduce(frame, &basis, &springs)?;
+        Ok(Family { frame, basis, springs, reduced })
+    }
+
+    /// The size of the reduced model.
+    pub fn dimension(&self) -> usize {
+        self.basis.len()
+    }
+
+    /// The modes of `state`: a small dense problem. Safe to call from many threads.
+    ///
+    /// # Errors
+    /// Numbers that are not finite.
+    pub fn modes(&self, state: &SlidingState) -> Result<FamilyModes> {
+        let modes = self.solve(state)?;
+        Ok(FamilyModes { eigenvalues: modes.eigenvalues, vectors: modes.right })
+    }
+
+    /// Measures the modes of `state` on the full order.
+    ///
+    /// # Errors
+    /// As [`Family::modes`].
+    pub fn check(&self, state: &SlidingState) -> Result<FamilyCheck> {
+        Ok(checked(&self.measure(state)?))
+    }
+
+    /// Enriches the family until the modes of `state` are right at full order, as [`super::complex_modes`] does for a
+    /// single state.
+    ///
+    /// # Errors
+    /// As [`Family::new`].
+    pub fn train(&mut self, state: &SlidingState) -> Result<FamilyCheck> {
+        const ROUNDS: i32 = 6;
+        let mut round = self.measure(state)?;
+        for k in 0..ROUNDS {
+            let open = round.open();
+            let floor = 1e-3 * self.frame.band[1];
+            if open.is_empty() {
+                break;
+            }
+            let corrections = wanted_corrections(&round, &*self.frame.factor, &open, floor);
+            if self.basis.enrich(corrections, 1e-6 * 0.01f64.powi(k), usize::MAX) == 0 {
+                break;
+            }
+            self.reduced = reduce(self.frame, &self.basis, &self.springs)?;
+            round = self.measure(state)?;
+        }
+        Ok(checked(&round))
+    }
+
+    fn solve(&self, state: &SlidingState) -> Result<ReducedModes> {
+        let band = self.frame.band;
+        self.reduced.solve(&self.frame.terms(state), &state.damping_weights, |z| in_band(z, band))
+    }
+
+    fn measure(&self, state: &SlidingState) -> Result<Round> {
+        let modes = self.solve(state)?;
+        let operator = self.frame.operator.with_terms(self.frame.terms(state));
+        let images = |y: &Mat<c64>| {
+            let part = |f: fn(&c64) -> f64| {
+                let y = Mat::from_fn(y.nrows(), y.ncols(), |i, j| f(&y[(i, j)]));
+                crate::linalg::dense::product(self.reduced.rotation.as_ref(), y.as_ref())
+            };
+            let block = Block { re: part(|z| z.re), im: part(|z| z.im) };
+            self.weigh(self.basis.images(&block).normalise(), &state.damping_weights)
+        };
+        let (phi, psi) = (images(&modes.right), images(&modes.left));
+        Ok(measure(&operator, &*self.frame.factor, self.frame.band, modes.eigenvalues, phi, psi))
+    }
+
+    /// C x and H x with the weights of the dampings.
+    fn weigh(&self, mut x: Images, weights: &[f64]) -> Images {
+        let scaled = |w: f64| move |v: &Mat<f64>| v * faer::Scale(w);
+        let own = weights.first().copied().unwrap_or(1.0);
+        if own != 1.0 {
+            x.damped = x.damped.map(|block| block.map(scaled(own)));
+            x.lossy = x.lossy.map(|block| block.map(scaled(own)));
+        }
+        for (damping, w) in self.frame.dampings.iter().zip(weights.iter().skip(1)).filter(|(_, w)| **w != 0.0)
+        {
+            let re = (
+                damping_times(damping, x.vectors.re.as_ref()),
+                damping_times(damping, x.vectors.im.as_ref()),
+            );
+            if let (Some(re), Some(im)) = re {
+                add(&mut x.damped, Block { re, im }, *w);
+            }
+            if let Some(h) = &damping.hysteretic {
+                let lossy = x.vectors.map(|v| times(h, v.as_ref()));
+                add(&mut x.lossy, lossy, *w);
+            }
+        }
+        x
+    }
+}
+
+fn add(sum: &mut Option<Block>, part: Block, weight: f64) {
+    let columns = part.ncols();
+    let sum = sum.get_or_insert_with(|| Block::zeros(part.re.nrows(), columns));
+    sum.add_scaled(&vec![c64::new(weight, 0.0); columns], &part);
+}
+
+fn checked(round: &Round) -> FamilyCheck {
+    FamilyCheck {
+        eigenvalues: round.lambda.clone(),
+        backward_errors: round.backward_error.clone(),
+        eigenvalue_errors: round.eigenvalue_error.clone(),
+    }
+}
+
+/// Projects every damping on the basis and diagonalises.
+fn reduce(frame: &Frame<'_>, basis: &Basis<'_>, springs: &[(usize, f64)]) -> Result<Reduced> {
+    let v = basis.vectors.as_ref();
+    let project = |d: &&Damping| {
+        let c = damping_times(d, v).map_or(Mat::zeros(basis.len(), basis.len()), |cv| gram(v, cv.as_ref()));
+        (c, d.hysteretic.as_ref().map(|h| gram(v, times(h, v).as_ref())))
+    };
+    let variants: Vec<_> = frame.dampings.iter().map(project).collect();
+    let projection = Projection {
+        mass: basis.mass.clone(),
+        stiffness: basis.stiffness.clone(),
+        damping: std::iter::once(&basis.damping).chain(variants.iter().map(|v| &v.0)).cloned().collect(),
+        hysteretic: std::iter::once(&basis.hysteretic)
+            .chain(variants.iter().map(|v| &v.1))
+            .cloned()
+            .collect(),
+        interface: basis.interface.clone(),
+    };
+    Reduced::new(&projection, springs, 1e-3 * frame.band[1])
+}
+
+/// Every entry that any of the lists has, with its largest stiffness and damping.
+fn envelope(lists: impl Iterator<Item = Vec<Term>>) -> Vec<Term> {
+    let mut all = std::collections::BTreeMap::new();
+    for term in lists.flatten() {
+        let largest: &mut Term = all.entry((term.row, term.column)).or_insert(term);
+        let larger = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
+        largest.stiffness = larger(largest.stiffness, term.stiffness);
+        largest.damping = larger(largest.damping, term.damping);
+    }
+    all.into_values().collect()
+}

@@ -1,0 +1,165 @@
+//! A reduced model that serves a whole family of sliding states: between them a few numbers differ.
+
+use super::interface::Term;
+use crate::error::Result;
+use crate::linalg::c64;
+use crate::linalg::dense::{definite_pencil, product};
+use crate::linalg::unsymmetric::{complex_spectrum, spectrum};
+use faer::{Mat, MatRef};
+
+/// (λ² + λ (Σ wᵢCᵢ + B c Bᵀ) + K + i Σ wᵢHᵢ + B k Bᵀ) y = 0 in M-orthonormal coordinates, m of them.
+pub(super) struct Reduced {
+    /// From these coordinates to those of the basis.
+    pub(super) rotation: Mat<f64>,
+    stiffness: Mat<f64>,
+    /// d \[rad/s\]: the frequencies of the reference stiffness, by which the first-order form is balanced.
+    frequencies: Vec<f64>,
+    damping: Vec<Mat<f64>>,
+    hysteretic: Vec<Option<Mat<f64>>>,
+    /// B = VᵀW.
+    interface: Mat<f64>,
+}
+
+/// The matrices of a projection, in the coordinates of the basis.
+pub(super) struct Projection {
+    pub(super) mass: Mat<f64>,
+    pub(super) stiffness: Mat<f64>,
+    pub(super) damping: Vec<Mat<f64>>,
+    pub(super) hysteretic: Vec<Option<Mat<f64>>>,
+    pub(super) interface: Mat<f64>,
+}
+
+/// The modes of a reduced model, ascending in (Im λ, Re λ).
+#[derive(Debug, Clone)]
+pub(super) struct ReducedModes {
+    pub(super) eigenvalues: Vec<c64>,
+    /// Unit right vectors; their scalar products are those of the full order with M.
+    pub(super) right: Mat<c64>,
+    /// Unit left vectors.
+    pub(super) left: Mat<c64>,
+}
+
+impl Reduced {
+    /// Goes to the coordinates in which M = 1 and the reference stiffness K + Σ `springs` · bbᵀ is diagonal; `floor`
+    /// \[rad/s\] is the least frequency to balance by.
+    pub(super) fn new(p: &Projection, springs: &[(usize, f64)], floor: f64) -> Result<Self> {
+        let mut reference = p.stiffness.clone();
+        for (column, d) in springs {
+            let b = p.interface.col(*column);
+            reference += faer::Scale(*d) * (b * b.transpose());
+        }
+        let (squares, rotation) = definite_pencil(reference.as_ref(), p.mass.as_ref())?;
+        let into =
+            |a: &Mat<f64>| product(rotation.transpose(), product(a.as_ref(), rotation.as_ref()).as_ref());
+        Ok(Reduced {
+            stiffness: into(&p.stiffness),
+            frequencies: squares.iter().map(|s| s.max(0.0).sqrt().max(floor)).collect(),
+            damping: p.damping.iter().map(into).collect(),
+            hysteretic: p.hysteretic.iter().map(|h| h.as_ref().map(into)).collect(),
+            interface: product(rotation.transpose(), p.interface.as_ref()),
+            rotation,
+        })
+    }
+
+    /// The eigenvalues that are `wanted`, each corrected by the two-sided Rayleigh quotient of Q.
+    ///
+    /// With D = diag(d) and x = (D y, λ y) the problem is λx = \[0 D; −K D⁻¹ −C\]x, whose entries are of the size of
+    /// the frequencies, not of their squares: the error of the QR algorithm is then about 1e-15 d_max. The lower
+    /// half of its left vector is that of Q.
+    pub(super) fn solve(
+        &self,
+        terms: &[Term],
+        weights: &[f64],
+        wanted: impl Fn(c64) -> bool,
+    ) -> Result<ReducedModes> {
+        let m = self.frequencies.len();
+        let mut c = self.between(terms, |t| t.damping);
+        let mut k = self.between(terms, |t| t.stiffness);
+        k += &self.stiffness;
+        self.damping.iter().zip(weights).for_each(|(part, w)| c += faer::Scale(*w) * part);
+        let mut h = None;
+        for (part, w) in self.hysteretic.iter().zip(weights) {
+            if let Some(part) = part {
+                *h.get_or_insert_with(|| Mat::zeros(m, m)) += faer::Scale(*w) * part;
+            }
+        }
+        let d = &self.frequencies;
+        let entry = |i: usize, j: usize| match (i < m, j < m) {
+            (true, true) => 0.0,
+            (true, false) => f64::from(i == j - m) * d[i],
+            (false, true) => -k[(i - m, j)] / d[j],
+            (false, false) => -c[(i - m, j - m)],
+        };
+        let all = match &h {
+            None => spectrum(Mat::from_fn(2 * m, 2 * m, entry).as_ref())?,
+            Some(h) => {
+                let lossy = |i: usize, j: usize| if i >= m && j < m { -h[(i - m, j)] / d[j] } else { 0.0 };
+                complex_spectrum(
+                    Mat::from_fn(2 * m, 2 * m, |i, j| c64::new(entry(i, j), lossy(i, j))).as_ref(),
+                )?
+            }
+        };
+        let mut chosen: Vec<usize> = (0..2 * m).filter(|j| wanted(all.values[*j])).collect();
+        let before = |a: &usize, b: &usize| {
+            let (a, b) = (all.values[*a], all.values[*b]);
+            a.im.total_cmp(&b.im).then(a.re.total_cmp(&b.re))
+        };
+        chosen.sort_by(before);
+        let right = unit(Mat::from_fn(m, chosen.len(), |i, j| all.right[(i, chosen[j])] / d[i]));
+        let left = unit(Mat::from_fn(m, chosen.len(), |i, j| all.left[(m + i, chosen[j])]));
+        let (damped, mut elastic) = (real_times(&c, &right), real_times(&k, &right));
+        if let Some(h) = &h {
+            elastic += faer::Scale(c64::new(0.0, 1.0)) * real_times(h, &right);
+        }
+        let corrected = |j: usize| {
+            let lambda = all.values[chosen[j]];
+            let (mut rise, mut slope) = (c64::new(0.0, 0.0), c64::new(0.0, 0.0));
+            for i in 0..m {
+                let (z, y) = (left[(i, j)].conj(), right[(i, j)]);
+                rise += z * (lambda * lambda * y + lambda * damped[(i, j)] + elastic[(i, j)]);
+                slope += z * (lambda * 2.0 * y + damped[(i, j)]);
+            }
+            let step = rise / slope;
+            // At a coalescence the quotient says nothing.
+            if step.norm() <= 1e-8 * lambda.norm() { lambda - step } else { lambda }
+        };
+        let eigenvalues = (0..chosen.len()).map(corrected).collect();
+        Ok(ReducedModes { eigenvalues, right, left })
+    }
+
+    /// Σ b_row value b_columnᵀ over the terms.
+    fn between(&self, terms: &[Term], value: impl Fn(&Term) -> f64) -> Mat<f64> {
+        let m = self.interface.nrows();
+        let mut used: Vec<usize> = terms.iter().filter(|t| value(t) != 0.0).map(|t| t.column).collect();
+        used.sort_unstable();
+        used.dedup();
+        if used.is_empty() {
+            return Mat::zeros(m, m);
+        }
+        let mut by_column = Mat::<f64>::zeros(m, used.len());
+        for term in terms.iter().filter(|t| value(t) != 0.0) {
+            let at = used.binary_search(&term.column).expect("listed above");
+            let (factor, row) = (value(term), self.interface.col_as_slice(term.row));
+            by_column.col_as_slice_mut(at).iter_mut().zip(row).for_each(|(sum, b)| *sum += factor * b);
+        }
+        let columns = Mat::from_fn(m, used.len(), |i, j| self.interface[(i, used[j])]);
+        product(by_column.as_ref(), columns.transpose())
+    }
+}
+
+/// Columns scaled to ‖y‖₂ = 1.
+fn unit(mut y: Mat<c64>) -> Mat<c64> {
+    for j in 0..y.ncols() {
+        let norm = y.col_as_slice(j).iter().map(|z| z.norm_sqr()).sum::<f64>().sqrt();
+        y.col_as_slice_mut(j).iter_mut().for_each(|z| *z /= norm);
+    }
+    y
+}
+
+/// A Y of a real A, on one thread.
+pub(super) fn real_times(a: &Mat<f64>, y: &Mat<c64>) -> Mat<c64> {
+    let part = |f: fn(&c64) -> f64| Mat::from_fn(y.nrows(), y.ncols(), |i, j| f(&y[(i, j)]));
+    let times = |y: MatRef<'_, f64>| product(a.as_ref(), y);
+    let (re, im) = (times(part(|z| z.re).as_ref()), times(part(|z| z.im).as_ref()));
+    Mat::from_fn(a.nrows(), y.ncols(), |i, j| c64::new(re[(i, j)], im[(i, j)]))
+}

@@ -1,0 +1,136 @@
+//! The boundary of stability in a map: the line on which the largest growth rate is zero.
+
+use super::map::MapPoint;
+use super::root::{Bracket, narrow};
+use super::{Axis, Problem, ROUND_OFF};
+use crate::error::Result;
+use crate::progress::Observer;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Located points of the boundary and the lines through them.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Boundary {
+    /// Places (first parameter, second parameter).
+    pub points: Vec<[f64; 2]>,
+    /// Lines, each a list of indices into `points`; closed where the last is the first.
+    pub lines: Vec<Vec<usize>>,
+}
+
+/// An edge of the grid: its lower left end and whether it goes up.
+type Edge = (usize, usize, bool);
+
+/// Locates the boundary on every edge of the grid with a stable and an unstable end, to `tolerance` of the value, and
+/// joins the points through the cells. Where all four edges of a cell are cut, the middle of the cell decides.
+///
+/// # Errors
+/// A place near the boundary without an answer.
+pub fn boundary(
+    problem: &dyn Problem,
+    axes: &[Axis; 2],
+    map: &[MapPoint],
+    tolerance: f64,
+    observer: &dyn Observer,
+) -> Result<Boundary> {
+    let [nx, ny] = [axes[0].points, axes[1].points];
+    let state = |i: usize, j: usize| {
+        map.get(i + nx * j).filter(|p| p.growth_rate.is_finite()).map(|p| p.unstable > 0)
+    };
+    let differ = |a: (usize, usize), b: (usize, usize)| match (state(a.0, a.1), state(b.0, b.1)) {
+        (Some(a), Some(b)) => a != b,
+        _ => false,
+    };
+    let mut edges: Vec<Edge> = Vec::new();
+    for j in 0..ny {
+        for i in 0..nx {
+            if i + 1 < nx && differ((i, j), (i + 1, j)) {
+                edges.push((i, j, false));
+            }
+            if j + 1 < ny && differ((i, j), (i, j + 1)) {
+                edges.push((i, j, true));
+            }
+        }
+    }
+    observer.begin("stability boundary", Some(edges.len() as u64));
+    let growth = |at: &[f64]| -> Result<f64> {
+        let modes = problem.modes(at)?;
+        Ok(modes
+            .eigenvalues
+            .iter()
+            .map(|z| z.re - ROUND_OFF * z.norm())
+            .fold(f64::NEG_INFINITY, f64::max)
+            .max(-1e300))
+    };
+    let locate = |&(i, j, rising): &Edge| -> Result<[f64; 2]> {
+        let axis = &axes[usize::from(rising)];
+        let place = |x: f64| if rising { [axes[0].value(i), x] } else { [x, axes[1].value(j)] };
+        let k = if rising { j } else { i };
+        let (a, b) = (axis.value(k), axis.value(k + 1));
+        let (fa, fb) = (growth(&place(a))?, growth(&place(b))?);
+        let bracket = if fa > 0.0 {
+            Bracket { below: (b, fb), above: (a, fa) }
+        } else {
+            Bracket { below: (a, fa), above: (b, fb) }
+        };
+        let width = tolerance * a.abs().max(b.abs());
+        let found = narrow(bracket, width, |x| growth(&place(x)))?;
+        observer.advance(1);
+        Ok(place(0.5 * (found.below.0 + found.above.0)))
+    };
+    let points: Result<Vec<[f64; 2]>> = match problem.parallel() {
+        true => edges.par_iter().map(locate).collect(),
+        false => edges.iter().map(locate).collect(),
+    };
+    observer.end();
+    let points = points?;
+    let index: BTreeMap<Edge, usize> = edges.iter().enumerate().map(|(k, e)| (*e, k)).collect();
+    let mut segments = Vec::new();
+    for j in 0..ny.saturating_sub(1) {
+        for i in 0..nx.saturating_sub(1) {
+            // Bottom, right, top, left.
+            let around = [(i, j, false), (i + 1, j, true), (i, j + 1, false), (i, j, true)];
+            let cut: Vec<usize> = around.iter().filter_map(|e| index.get(e).copied()).collect();
+            match cut[..] {
+                [a, b] => segments.push([a, b]),
+                [bottom, right, top, left] => {
+                    let at = [0, 1].map(|d| {
+                        let k = [i, j][d];
+                        axes[d].between(axes[d].value(k), axes[d].value(k + 1), 0.5)
+                    });
+                    // The middle like the lower left corner: the two corners are joined, the others cut off.
+                    let joined = (growth(&at)? > 0.0) == (state(i, j) == Some(true));
+                    segments.extend(if joined {
+                        [[bottom, right], [top, left]]
+                    } else {
+                        [[bottom, left], [top, right]]
+                    });
+                }
+                _ => {}
+            }
+        }
+    }
+    Ok(Boundary { lines: chains(points.len(), &segments), points })
+}
+
+/// Joins segments that share an end into lines, open ones first.
+fn chains(n: usize, segments: &[[usize; 2]]) -> Vec<Vec<usize>> {
+    let mut at: Vec<Vec<usize>> = vec![Vec::new(); n];
+    for (s, ends) in segments.iter().enumerate() {
+        ends.iter().for_each(|e| at[*e].push(s));
+    }
+    let mut used = vec![false; segments.len()];
+    let mut lines = Vec::new();
+    let starts = (0..n).filter(|p| at[*p].len() == 1).chain((0..n).filter(|p| at[*p].len() > 1));
+    for start in starts.collect::<Vec<_>>() {
+        let mut line = vec![start];
+        while let Some(s) = at[line[line.len() - 1]].iter().copied().find(|s| !used[*s]) {
+            used[s] = true;
+            let [a, b] = segments[s];
+            line.push(if a == line[line.len() - 1] { b } else { a });
+        }
+        if line.len() > 1 {
+            lines.push(line);
+        }
+    }
+    lines
+}

@@ -1,0 +1,118 @@
+//! How the complex modes change with one or two scalars: branches, critical values, maps, the boundary of stability.
+//!
+//! * [`sweep`] follows every mode along one parameter by its shape, through crossings, and *locates* the values at which
+//!   one becomes unstable or stable.
+//! * [`map`] solves a grid over two parameters; [`boundary`] locates the line on which the largest growth is zero.
+//!
+//! All of them take a [`Problem`]: a reduced family or whole analyses, they do not know which.
+
+mod assign;
+mod boundary;
+mod critical;
+mod encounter;
+mod map;
+mod root;
+#[cfg(test)]
+mod tests;
+mod track;
+
+pub use boundary::{Boundary, boundary};
+pub use critical::{Critical, CriticalKind};
+pub use encounter::{Encounter, EncounterKind};
+pub use map::{MapPoint, map};
+pub use track::{Branch, Sweep, sweep};
+
+use crate::error::Result;
+use crate::linalg::c64;
+use faer::Mat;
+
+/// A mode counts as unstable when σ exceeds this share of |λ|: the round-off of an undamped mode is below it, and past
+/// a flutter onset, where σ grows like the square root of the distance, it is reached within 1e-18 of the onset.
+pub const ROUND_OFF: f64 = 1e-9;
+
+/// What a sweep asks of the mechanics: the complex modes at a place of its parameters.
+pub trait Problem: Sync {
+    /// The modes at `at`, one value a parameter.
+    ///
+    /// # Errors
+    /// A place without an answer, such as a contact that opens.
+    fn modes(&self, at: &[f64]) -> Result<Modes>;
+
+    /// The modes at `at` with their errors on the full order.
+    ///
+    /// # Errors
+    /// As [`Problem::modes`].
+    fn check(&self, at: &[f64]) -> Result<Vec<Checked>>;
+
+    /// Whether several places may be solved at once; `false` when a single one takes all memory and threads.
+    fn parallel(&self) -> bool {
+        true
+    }
+}
+
+/// The complex modes at one place, one of each conjugate pair.
+#[derive(Debug, Clone)]
+pub struct Modes {
+    /// λ = σ + iω \[1/s\].
+    pub eigenvalues: Vec<c64>,
+    /// Their shapes, one a column, in coordinates in which likeness is the plain scalar product (the mass matrix is
+    /// one); without rows when shapes at two places cannot be compared.
+    pub vectors: Mat<c64>,
+}
+
+/// A mode measured on the full order.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Checked {
+    /// λ \[1/s\].
+    pub eigenvalue: c64,
+    /// η as in [`crate::stability::ComplexMode`].
+    pub backward_error: f64,
+    /// Estimated |Δλ|/|λ|.
+    pub eigenvalue_error: f64,
+}
+
+/// The values that a parameter takes: equal steps, or equal ratios when `log`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Axis {
+    /// First value.
+    pub from: f64,
+    /// Last value.
+    pub to: f64,
+    /// How many values, at least two.
+    pub points: usize,
+    /// Equal ratios; both ends have the same sign and are not zero.
+    pub log: bool,
+}
+
+impl Axis {
+    /// Value `k` of [`Axis::points`].
+    pub fn value(&self, k: usize) -> f64 {
+        match k {
+            0 => self.from,
+            k if k + 1 >= self.points => self.to,
+            k => self.between(self.from, self.to, k as f64 / (self.points - 1) as f64),
+        }
+    }
+
+    /// All values.
+    pub fn values(&self) -> Vec<f64> {
+        (0..self.points).map(|k| self.value(k)).collect()
+    }
+
+    /// The value a fraction `t` of the way from `a` to `b`.
+    pub(crate) fn between(&self, a: f64, b: f64, t: f64) -> f64 {
+        if self.log { a * (b / a).powf(t) } else { a + t * (b - a) }
+    }
+}
+
+/// Whether a mode grows by more than round-off.
+pub fn unstable(lambda: c64) -> bool {
+    lambda.re > ROUND_OFF * lambda.norm()
+}
+
+impl Modes {
+    /// Column `k` of the shapes.
+    fn vector(&self, k: usize) -> &[c64] {
+        self.vectors.col_as_slice(k)
+    }
+}

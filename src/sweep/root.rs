@@ -1,0 +1,71 @@
+//! Roots of a function of one variable, bracketed.
+
+use crate::error::Result;
+
+/// A bracket: f ≤ 0 at `below`, f > 0 at `above`; either may be the larger.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Bracket {
+    pub(super) below: (f64, f64),
+    pub(super) above: (f64, f64),
+}
+
+/// Narrows a bracket by the ITP method (Oliveira & Takahashi, ACM Trans. Math. Softw. 47 (2020) 5) until it is no
+/// longer than `tolerance`: never slower than bisection by more than one step, faster where f is smooth. At a square
+/// root, where f jumps out of the round-off, it bisects.
+pub(super) fn narrow(
+    mut bracket: Bracket,
+    tolerance: f64,
+    mut f: impl FnMut(f64) -> Result<f64>,
+) -> Result<Bracket> {
+    let length = |b: &Bracket| (b.above.0 - b.below.0).abs();
+    let first = length(&bracket);
+    if tolerance.is_nan() || tolerance <= 0.0 || first <= tolerance {
+        return Ok(bracket);
+    }
+    let steps = (first / tolerance).log2().ceil() as i32 + 1;
+    for step in 0..=steps {
+        let (a, b) = (bracket.below, bracket.above);
+        let size = length(&bracket);
+        let middle = 0.5 * (a.0 + b.0);
+        if size <= tolerance || middle == a.0 || middle == b.0 {
+            break;
+        }
+        let secant = (b.1 * a.0 - a.1 * b.0) / (b.1 - a.1);
+        let towards = (middle - secant).signum();
+        let nudge = 0.2 * size * size / first;
+        let truncated = if nudge <= (middle - secant).abs() { secant + towards * nudge } else { middle };
+        let radius = (0.5 * tolerance * 2f64.powi(steps - step) - 0.5 * size).max(0.0);
+        let x = if (truncated - middle).abs() <= radius { truncated } else { middle - towards * radius };
+        let x = if x.is_finite() && x != a.0 && x != b.0 { x } else { middle };
+        let value = f(x)?;
+        if value > 0.0 { bracket.above = (x, value) } else { bracket.below = (x, value) }
+    }
+    Ok(bracket)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn smooth_roots_take_few_steps_and_square_roots_as_many_as_bisection() {
+        let mut count = 0;
+        let smooth = |x: f64| {
+            count += 1;
+            Ok(x * x * x - 2.0)
+        };
+        let bracket = Bracket { below: (1.0, -1.0), above: (2.0, 6.0) };
+        let found = narrow(bracket, 1e-12, smooth).unwrap();
+        assert!((found.above.0 - 2f64.cbrt()).abs() < 1e-12 && count < 20, "{count}");
+        let mut count = 0;
+        let onset = |x: f64| {
+            count += 1;
+            Ok(if x > 0.3 { (x - 0.3f64).sqrt() } else { -1e-9 })
+        };
+        let bracket = Bracket { below: (0.0, -1e-9), above: (1.0, 0.8) };
+        let found = narrow(bracket, 1e-12, onset).unwrap();
+        assert!((found.above.0 - 0.3).abs() < 1e-12 && count <= 42, "{count}");
+        let falling = narrow(Bracket { below: (3.0, -1.0), above: (0.0, 2.0) }, 1e-10, |x| Ok(2.0 - x));
+        assert!((falling.unwrap().below.0 - 2.0).abs() < 1e-10);
+    }
+}

@@ -1,0 +1,226 @@
+use super::*;
+use crate::contact::{Constant, NormalLaw, SlidingLaw};
+use crate::equilibrium::samples::*;
+use crate::equilibrium::{SteadyOptions, solve_steady};
+use crate::modal::{ModesWanted, RealModes, compute};
+use crate::stability::complex_modes;
+use crate::system::{Closing, System};
+use std::f64::consts::TAU;
+
+/// Whole analyses of small systems, one a place.
+struct Members<F> {
+    system: F,
+    band: [f64; 2],
+}
+
+impl<F: Fn(&[f64]) -> System + Sync> Members<F> {
+    fn analyse(&self, at: &[f64]) -> Result<Vec<crate::stability::ComplexMode>> {
+        let system = (self.system)(at);
+        let steady = solve_steady(&system, &SteadyOptions::default(), &())?;
+        let real: RealModes = compute(&system.structure, ModesWanted::Count(system.n_dofs()), &())?.0;
+        Ok(complex_modes(&system, &steady, &real, self.band, &())?.modes)
+    }
+}
+
+impl<F: Fn(&[f64]) -> System + Sync> Problem for Members<F> {
+    fn modes(&self, at: &[f64]) -> Result<Modes> {
+        let modes = self.analyse(at)?;
+        let n = modes.first().map_or(0, |m| m.right.len());
+        Ok(Modes {
+            eigenvalues: modes.iter().map(|m| m.eigenvalue).collect(),
+            vectors: Mat::from_fn(n, modes.len(), |i, j| modes[j].right[i]),
+        })
+    }
+
+    fn check(&self, at: &[f64]) -> Result<Vec<Checked>> {
+        let checked = |m: &crate::stability::ComplexMode| Checked {
+            eigenvalue: m.eigenvalue,
+            backward_error: m.backward_error,
+            eigenvalue_error: m.eigenvalue_error,
+        };
+        Ok(self.analyse(at)?.iter().map(checked).collect())
+    }
+}
+
+fn axis(from: f64, to: f64, points: usize) -> Axis {
+    Axis { from, to, points, log: false }
+}
+
+#[test]
+fn two_dof_critical_values_are_located_to_nine_digits() {
+    let by_friction = Members { system: |p: &[f64]| two_dof(0.5, 1.0, p[0]), band: [0.0, 1.0] };
+    let found = sweep(&by_friction, &axis(0.1, 0.9, 9), 1e-11, &()).unwrap();
+    assert_eq!(found.critical.len(), 1, "{:?}", found.critical);
+    let onset = found.critical[0];
+    assert!((onset.value / 0.625 - 1.0).abs() < 1e-9 && onset.rises && onset.kind == CriticalKind::Merging);
+    assert!(onset.uncertainty < 1e-11);
+    assert_eq!(found.branches.len(), 2);
+    let by_stiffness = Members { system: |p: &[f64]| two_dof(0.5, p[0], 0.4), band: [0.0, 1.0] };
+    let found = sweep(&by_stiffness, &axis(3.0, 1.0, 21), 1e-11, &()).unwrap();
+    let values: Vec<f64> = found.critical.iter().map(|c| c.value).collect();
+    assert_eq!(values.len(), 2, "{:?}", found.critical);
+    assert!((values[0] / 2.5 - 1.0).abs() < 1e-9 && (values[1] / 1.3 - 1.0).abs() < 1e-9, "{values:?}");
+    assert!(found.critical[0].rises && !found.critical[1].rises, "a sweep downwards meets them in its order");
+}
+
+#[test]
+fn onsets_of_the_literature() {
+    // Hoffmann et al. (2002): k₁₁ = 23.25, k₁₂ = 3.8971, k₂₂ = 18.75, k₃ = 11.
+    let hoffmann = |p: &[f64]| {
+        let k = [[23.25, 3.8971], [3.8971, 7.75]];
+        let law =
+            SlidingLaw::new(NormalLaw { bilateral: true, ..NormalLaw::linear(11.0) }, Constant(p[0]), 0.0);
+        let touch = point(0.0, 1.0, vector(&[(1, 1.0)]), vector(&[(0, 1.0)]), Default::default());
+        System {
+            structure: structure(2, |i, j| f64::from(i == j), |i, j| k[i][j]),
+            pairs: vec![pair(vec![touch], law, Closing::Approach(1.0), 1.0)],
+            load: vec![0.0; 2],
+            prestress: None,
+            coupling: None,
+        }
+    };
+    let found =
+        sweep(&Members { system: hoffmann, band: [0.0, 10.0] }, &axis(0.1, 0.7, 7), 1e-10, &()).unwrap();
+    assert!((found.critical[0].value - 0.472377).abs() < 5e-7);
+    // Sinou & Jézéquel (2007): unequal damping brings the onset down from 0.2917 to 0.1413.
+    let sinou = |p: &[f64]| {
+        let omega = [200.0 * std::f64::consts::PI, 150.0 * std::f64::consts::PI];
+        let eta = [0.02, 0.001];
+        let touch = |d: usize| {
+            let normal = NormalLaw {
+                stiffness: omega[d] * omega[d],
+                cubic_stiffness: 0.0,
+                damping: eta[d] * omega[d],
+                bilateral: true,
+            };
+            let tangent = if d == 0 { vector(&[(1, -1.0)]) } else { vector(&[(0, 1.0)]) };
+            let touch = point(0.0, 1.0, vector(&[(d, 1.0)]), tangent, Default::default());
+            pair(vec![touch], SlidingLaw::new(normal, Constant(p[0]), 0.0), Closing::Approach(0.0), 1.0)
+        };
+        System {
+            structure: structure(2, |i, j| f64::from(i == j), |i, j| if i == j { 1e-9 } else { 0.0 }),
+            pairs: vec![touch(0), touch(1)],
+            load: vec![1.0, 1.0],
+            prestress: None,
+            coupling: None,
+        }
+    };
+    let found =
+        sweep(&Members { system: sinou, band: [1.0, 500.0] }, &axis(0.02, 0.4, 11), 1e-10, &()).unwrap();
+    assert_eq!(found.critical.len(), 1);
+    assert!((found.critical[0].value - 0.141296).abs() < 2e-6, "{:?}", found.critical);
+    assert_eq!(found.critical[0].kind, CriticalKind::Growth);
+}
+
+/// Two undamped oscillators, ω² the eigenvalues of [1 + p, c; c, 2 − p], which meet at p = ½.
+struct Oscillators {
+    coupling: f64,
+}
+
+impl Problem for Oscillators {
+    fn modes(&self, at: &[f64]) -> Result<Modes> {
+        let (half, c) = (0.5 * (2.0 * at[0] - 1.0), self.coupling);
+        let root = half.hypot(c);
+        let angle = 0.5 * f64::atan2(c, half);
+        let z = |x: f64| c64::new(x, 0.0);
+        // At the lower of the two the shape is (−sin, cos), at the upper (cos, sin).
+        let vectors = faer::mat![[z(-angle.sin()), z(angle.cos())], [z(angle.cos()), z(angle.sin())]];
+        let eigenvalues = [1.5 - root, 1.5 + root].map(|w| c64::new(0.0, w.sqrt())).to_vec();
+        Ok(Modes { eigenvalues, vectors })
+    }
+
+    fn check(&self, _: &[f64]) -> Result<Vec<Checked>> {
+        Ok(Vec::new())
+    }
+}
+
+#[test]
+fn branches_pass_through_a_crossing_and_turn_away_at_an_avoided_one() {
+    let follow = |coupling: f64| sweep(&Oscillators { coupling }, &axis(0.0, 1.0, 12), 1e-8, &()).unwrap();
+    let through = follow(0.0);
+    let [a, b] = &through.branches[..] else { panic!("two branches") };
+    let last = through.values.len() - 1;
+    assert!(a.at(0).unwrap().im < b.at(0).unwrap().im && a.at(last).unwrap().im > b.at(last).unwrap().im);
+    assert!(a.lowest_mac > 0.999);
+    assert_eq!(through.encounters.len(), 1);
+    let meeting = through.encounters[0];
+    assert!((meeting.value - 0.5).abs() < 1e-6 && meeting.distance < 1e-6);
+    assert_eq!(meeting.kind, EncounterKind::Crossing);
+    let away = follow(0.005);
+    let [a, b] = &away.branches[..] else { panic!("two branches") };
+    let last = away.values.len() - 1;
+    assert!((0..=last).all(|k| a.at(k).unwrap().im < b.at(k).unwrap().im));
+    assert!(last > 11, "the step is refined where the shapes turn");
+    assert!(a.lowest_mac > 0.8);
+    let meeting = away.encounters[0];
+    assert_eq!(meeting.kind, EncounterKind::Veering);
+    // |ω₂ − ω₁|/ω₂ with ω² = 1.5 ± 0.005.
+    let exact = 1.0 - (1.495f64 / 1.505).sqrt();
+    assert!((meeting.value - 0.5).abs() < 1e-3 && (meeting.distance / exact - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn the_boundary_of_a_map_lies_on_the_closed_form() {
+    let problem = Members { system: |p: &[f64]| two_dof(0.5, p[1], p[0]), band: [0.0, 1.0] };
+    let axes = [axis(0.2, 0.8, 9), axis(0.8, 3.0, 8)];
+    let (points, failure) = map(&problem, &axes, &[], &mut |_, _| Ok(()), &()).unwrap();
+    assert!(failure.is_none() && points.len() == 72);
+    let closed = |mu: f64, k_n: f64| ((1.5 - k_n) / 2.0).powi(2) + 0.5 * (0.5 - mu * k_n);
+    for (k, p) in points.iter().enumerate() {
+        let (mu, k_n) = (axes[0].value(k % 9), axes[1].value(k / 9));
+        let exact = closed(mu, k_n);
+        if exact.abs() > 1e-9 {
+            assert_eq!(p.unstable > 0, exact < 0.0, "{mu} {k_n}");
+        }
+        if exact < 0.0 {
+            // λ² = −a ± i√−d: the growth rate is the real part of its root.
+            let root = c64::new(-0.5 * (2.5 + k_n), (-exact).sqrt()).sqrt();
+            assert!((p.growth_rate - root.re).abs() < 1e-9 * root.norm(), "{} {root}", p.growth_rate);
+            assert!((p.frequency_hz - root.im / TAU).abs() < 1e-9);
+        }
+    }
+    let line = boundary(&problem, &axes, &points, 1e-9, &()).unwrap();
+    assert!(line.points.len() > 8 && !line.lines.is_empty());
+    for [mu, k_n] in &line.points {
+        assert!(closed(*mu, *k_n).abs() < 1e-8, "{mu} {k_n}");
+    }
+    assert_eq!(line.lines.iter().map(Vec::len).sum::<usize>(), line.points.len());
+}
+
+#[test]
+fn a_map_taken_up_again_and_another_number_of_threads_give_the_same_bits() {
+    let problem = Members { system: |p: &[f64]| two_dof(0.5, p[1], p[0]), band: [0.0, 1.0] };
+    let axes = [axis(0.2, 0.8, 8), Axis { from: 0.8, to: 3.0, points: 8, log: true }];
+    let run = |threads: usize, known: &[MapPoint]| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let mut seen = 0;
+        let mut record = |first: usize, chunk: &[MapPoint]| {
+            assert_eq!(first, known.len() + seen);
+            seen += chunk.len();
+            Ok(())
+        };
+        let points = pool.install(|| map(&problem, &axes, known, &mut record, &()).unwrap().0);
+        let line = pool.install(|| boundary(&problem, &axes, &points, 1e-6, &()).unwrap());
+        (points, line)
+    };
+    let whole = run(1, &[]);
+    assert_eq!(whole, run(3, &[]));
+    assert_eq!(whole, run(2, &whole.0[..37]));
+}
+
+#[test]
+fn a_place_without_an_answer_leaves_a_hole_in_the_map_and_ends_a_sweep() {
+    let problem = Members {
+        system: |p: &[f64]| {
+            let mut system = two_dof(0.5, 1.0, 0.4);
+            system.pairs[0].sliding_velocity = p[0];
+            system
+        },
+        band: [0.0, 1.0],
+    };
+    let axes = [axis(-1.0, 1.0, 3), axis(0.0, 1.0, 2)];
+    let (points, failure) = map(&problem, &axes, &[], &mut |_, _| Ok(()), &()).unwrap();
+    assert!(failure.unwrap().contains("velocity"));
+    assert!(points[1].growth_rate.is_nan() && points[0].growth_rate.is_finite());
+    assert!(sweep(&problem, &axes[0], 1e-6, &()).is_err());
+}

@@ -1,0 +1,158 @@
+//! Branches: every mode followed along one parameter.
+
+use super::assign::{Link, assign};
+use super::critical::{Critical, critical_values};
+use super::encounter::{Encounter, encounters};
+use super::{Axis, Modes, Problem};
+use crate::error::Result;
+use crate::linalg::c64;
+use crate::progress::Observer;
+use rayon::prelude::*;
+
+/// Halvings of a step at most where the likeness of shapes leaves a doubt.
+const HALVINGS: usize = 7;
+
+/// The modes along one parameter.
+#[derive(Debug, Clone)]
+pub struct Sweep {
+    /// Every value at which modes were computed, in the order of the sweep: those asked for, and more between them
+    /// where shapes change quickly.
+    pub values: Vec<f64>,
+    /// One a mode, those that begin at the first value first.
+    pub branches: Vec<Branch>,
+    /// Where branches become unstable or stable, in the order of the sweep.
+    pub critical: Vec<Critical>,
+    /// Where two branches come near each other.
+    pub encounters: Vec<Encounter>,
+}
+
+/// One mode followed along the parameter.
+#[derive(Debug, Clone)]
+pub struct Branch {
+    /// Index of its first value in [`Sweep::values`].
+    pub first: usize,
+    /// λ at that value and those after it.
+    pub eigenvalues: Vec<c64>,
+    /// The least likeness (MAC) of its shapes at two neighbouring values; 1 for a single value.
+    pub lowest_mac: f64,
+    /// Its place among the modes of each of its values.
+    pub(super) places: Vec<usize>,
+}
+
+impl Branch {
+    /// λ at value `k` of [`Sweep::values`], where the branch exists.
+    pub fn at(&self, k: usize) -> Option<c64> {
+        k.checked_sub(self.first).and_then(|k| self.eigenvalues.get(k)).copied()
+    }
+
+    /// The place of the branch among the modes at value `k`.
+    pub(super) fn place(&self, k: usize) -> Option<usize> {
+        k.checked_sub(self.first).and_then(|k| self.places.get(k)).copied()
+    }
+}
+
+/// The modes at one value.
+pub(super) struct Sample {
+    pub(super) value: f64,
+    pub(super) modes: Modes,
+}
+
+/// Follows every mode of `problem` along `axis`; critical values are located to `tolerance`, relative to the value.
+///
+/// The values of the axis are solved at once, then linked in their order by [`assign`]; a step is halved where another
+/// link would be about as good. At a coalescence no step is small enough: there the nearest eigenvalue goes on.
+///
+/// # Errors
+/// A value without modes, such as one at which the contact opens.
+pub fn sweep(problem: &dyn Problem, axis: &Axis, tolerance: f64, observer: &dyn Observer) -> Result<Sweep> {
+    let values = axis.values();
+    observer.begin("sweep", Some(values.len() as u64));
+    let solve = |value: f64| {
+        let modes = problem.modes(&[value])?;
+        observer.advance(1);
+        Ok(Sample { value, modes })
+    };
+    let solved: Result<Vec<Sample>> = if problem.parallel() {
+        values.par_iter().map(|v| solve(*v)).collect()
+    } else {
+        values.iter().map(|v| solve(*v)).collect()
+    };
+    observer.end();
+    let mut chain = Chain { problem, axis, samples: Vec::new(), links: Vec::new() };
+    for sample in solved? {
+        chain.reach(sample, HALVINGS)?;
+    }
+    let branches = branches(&chain.samples, &chain.links);
+    let critical = critical_values(problem, axis, tolerance, &chain.samples, &branches, observer)?;
+    let encounters = encounters(problem, axis, tolerance.max(1e-7), &chain.samples, &branches)?;
+    let values = chain.samples.iter().map(|s| s.value).collect();
+    Ok(Sweep { values, branches, critical, encounters })
+}
+
+/// The samples so far and the links between neighbours.
+struct Chain<'a> {
+    problem: &'a dyn Problem,
+    axis: &'a Axis,
+    samples: Vec<Sample>,
+    links: Vec<Link>,
+}
+
+impl Chain<'_> {
+    /// Goes on to `next`, over the middle where the link is doubtful.
+    fn reach(&mut self, next: Sample, halvings: usize) -> Result<()> {
+        if let Some(last) = self.samples.last() {
+            let link = assign(&last.modes, &next.modes);
+            let middle = self.axis.between(last.value, next.value, 0.5);
+            if link.doubtful && halvings > 0 && middle != last.value && middle != next.value {
+                let modes = self.problem.modes(&[middle])?;
+                self.reach(Sample { value: middle, modes }, halvings - 1)?;
+                return self.reach(next, halvings - 1);
+            }
+            self.links.push(link);
+        }
+        self.samples.push(next);
+        Ok(())
+    }
+}
+
+fn branches(samples: &[Sample], links: &[Link]) -> Vec<Branch> {
+    let mut branches: Vec<Branch> = Vec::new();
+    // The branch that each mode of the current sample is on.
+    let mut current: Vec<usize> = Vec::new();
+    for (k, sample) in samples.iter().enumerate() {
+        let mut next = vec![None; sample.modes.eigenvalues.len()];
+        if k > 0 {
+            for (i, to) in links[k - 1].to.iter().enumerate() {
+                if let Some((j, mac)) = to {
+                    next[*j] = Some((current[i], *mac));
+                }
+            }
+        }
+        current = next
+            .into_iter()
+            .enumerate()
+            .map(|(j, from)| {
+                let lambda = sample.modes.eigenvalues[j];
+                match from {
+                    Some((b, mac)) => {
+                        let branch = &mut branches[b];
+                        branch.eigenvalues.push(lambda);
+                        branch.places.push(j);
+                        branch.lowest_mac = branch.lowest_mac.min(mac);
+                        b
+                    }
+                    None => {
+                        branches.push(Branch {
+                            first: k,
+                            eigenvalues: vec![lambda],
+                            lowest_mac: 1.0,
+                            places: vec![j],
+                        });
+                        branches.len() - 1
+                    }
+                }
+            })
+            .collect();
+    }
+    branches
+}
