@@ -44,6 +44,16 @@ impl Case {
     }
 }
 
+/// Whether `text` is the pattern, in which every `*` stands for any letters, none included.
+pub(crate) fn matches(pattern: &str, text: &str) -> bool {
+    match pattern.split_once('*') {
+        None => pattern == text,
+        Some((head, tail)) => text.strip_prefix(head).is_some_and(|rest| {
+            (0..=rest.len()).filter(|k| rest.is_char_boundary(*k)).any(|k| matches(tail, &rest[k..]))
+        }),
+    }
+}
+
 fn walk(value: &Value, path: String, found: &mut Vec<(String, f64)>) {
     let join = |key: &str| if path.is_empty() { key.to_string() } else { format!("{path}.{key}") };
     match value {
@@ -51,5 +61,18 @@ fn walk(value: &Value, path: String, found: &mut Vec<(String, f64)>) {
         Value::Table(table) => table.iter().for_each(|(key, v)| walk(v, join(key), found)),
         Value::Array(list) => list.iter().enumerate().for_each(|(i, v)| walk(v, join(&i.to_string()), found)),
         _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::matches;
+
+    #[test]
+    fn patterns_match_as_people_expect() {
+        assert!(matches("*", "contact.rim.load") && matches("contact.*.load", "contact.rim.load"));
+        assert!(matches("*load*", "contact.rim.load") && !matches("contact.*.mu0", "contact.rim.load"));
+        assert!(!matches("contact", "contact.rim.load") && matches("contact.rim.load", "contact.rim.load"));
+        assert!(matches("**", "") && !matches("a*a", "a"));
     }
 }

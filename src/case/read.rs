@@ -440,6 +440,19 @@ fn check_names(root: &Section, case: &Case) {
     if case.sensitivity.is_some() && case.cea.is_none() {
         root.fault("sensitivity", "no [cea] in the case", "a [cea], whose eigenvalues are looked into", "");
     }
+    if let Some(analysis) = &case.sensitivity {
+        let paths: Vec<String> = case.parameters().into_iter().map(|(path, _)| path).collect();
+        for pattern in &analysis.parameters {
+            if !paths.iter().any(|path| matches(pattern, path)) {
+                let help = crate::error::nearest(pattern, paths.iter().map(String::as_str))
+                    .map_or("`stridor check CASE --parameters` lists them".into(), |near| {
+                        format!("Did you mean \"{near}\"?")
+                    });
+                let expected = "the path of a scalar of the case, or part of one with `*`";
+                root.fault("sensitivity.parameters", format!("\"{pattern}\""), expected, &help);
+            }
+        }
+    }
     if case.mesh.is_none() && case.point.is_empty() {
         root.fault("mesh", "nothing", "a [mesh] with a file, or [point] coordinates", "");
     }
