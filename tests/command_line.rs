@@ -103,6 +103,27 @@ fn refused(folder: &TempDir, code: i32, words: &[&str]) {
 }
 
 #[test]
+fn sensitivities_and_advice_are_printed_and_stored() {
+    let case = RIG.to_string()
+        + "\n[sensitivity]\nparameters = [\"contact.*.load\", \"*.mu0\", \"mesh.rig.disc_size\"]\n";
+    let folder = folder_with(&case);
+    let output = stridor(folder.path(), &["sensitivity", "rig.toml", "--out", "out"]);
+    let table = text(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    for word in ["contact.rim.friction.mu0", "What would calm the modes", "an element size"] {
+        assert!(table.contains(word), "\"{word}\" is not in: {table}");
+    }
+    assert!(folder.path().join("out/advice.vtu").exists());
+    let summary = std::fs::read_to_string(folder.path().join("out/summary.json")).expect("a summary");
+    let summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
+    let rates = summary["sensitivity"]["modes"][0]["parameters"].as_array().expect("rates");
+    assert_eq!(rates.len(), 2);
+    assert!(rates.iter().all(|rate| rate["dsigma_dp"].is_number()));
+    let refusal = folder_with(&case.replace("*.mu0", "*.mu9"));
+    refused(&refusal, 2, &["sensitivity.parameters", "*.mu9"]);
+}
+
+#[test]
 fn the_main_job_prints_its_tables_and_leaves_a_results_folder() {
     let folder = folder_with(RIG);
     let output = stridor(folder.path(), &["run", "rig.toml", "--out", "out"]);

@@ -113,3 +113,16 @@ impl Case {
         if self.prestress && own >= Invalidates::Law { Invalidates::Structure } else { own }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::matches;
+
+    #[test]
+    fn patterns_match_as_people_expect() {
+        assert!(matches("*", "contact.rim.load") && matches("contact.*.load", "contact.rim.load"));
+        assert!(matches("*load*", "contact.rim.load") && !matches("contact.*.mu0", "contact.rim.load"));
+        assert!(!matches("contact", "contact.rim.load") && matches("contact.rim.load", "contact.rim.load"));
+        assert!(matches("**", "") && !matches("a*a", "a"));
+    }
+}

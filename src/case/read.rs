@@ -95,6 +95,7 @@ fn read_root(root: &Section, folder: PathBuf) -> Case {
         map: BTreeMap::new(),
     };
     check_names(root, &case);
+    check_sensitivity(root, &case);
     super::explore::read(root, case)
 }
 
@@ -511,6 +512,24 @@ fn check_names(root: &Section, case: &Case) {
         check_matrices(root, case);
     } else if case.mesh.is_none() && case.point.is_empty() {
         root.fault("mesh", "nothing", "a [mesh] with a file, [point] coordinates, or [matrices]", "");
+    }
+}
+
+/// Refuses patterns that name no scalar of a case that is sound but for them.
+fn check_sensitivity(root: &Section, case: &Case) {
+    let Some(analysis) = case.sensitivity.as_ref().filter(|_| root.sound_so_far()) else {
+        return;
+    };
+    // The scalars of the model: what is asked about them is none.
+    let parameters = Case { sensitivity: None, ..case.clone() }.parameters();
+    let paths = || parameters.iter().map(|p| p.path.as_str());
+    for pattern in analysis.parameters.iter().filter(|pattern| !paths().any(|path| matches(pattern, path))) {
+        let help = crate::error::nearest(pattern, paths())
+            .map_or("`stridor check CASE --parameters` lists them".into(), |near| {
+                format!("Did you mean \"{near}\"?")
+            });
+        let expected = "the path of a scalar of the case, or part of one with `*`";
+        root.fault("sensitivity.parameters", format!("\"{pattern}\""), expected, &help);
     }
 }
 

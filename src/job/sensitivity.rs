@@ -40,13 +40,13 @@ impl Analysed<'_> {
     /// Sensitivities, advice and its proof, as `wanted`.
     ///
     /// # Errors
-    /// Scalars that the case does not have; an analysis without an answer.
+    /// An analysis without an answer.
     pub fn sensitivities(
         &self,
         wanted: &SensitivityAnalysis,
         observer: &dyn Observer,
     ) -> Result<SensitivityResult> {
-        let (scalars, mut left_out) = chosen(self.prepared.case, &wanted.parameters)?;
+        let (scalars, mut left_out) = chosen(self.prepared.case, &wanted.parameters);
         let picked = self.chosen_modes(&wanted.modes);
         let modes: Vec<&ComplexMode> = picked.iter().map(|k| &self.modes.modes[*k]).collect();
         if modes.is_empty() {

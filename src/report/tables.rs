@@ -267,11 +267,13 @@ fn second_method(confirmation: &Confirmation) -> String {
     )
 }
 
-/// What a mode answers to, the scalar that moves its growth rate most first.
+/// What a mode answers to, the scalar that moves its growth rate most first. The derivatives proper are the last two
+/// columns.
 pub(super) fn sensitivity(mode: &ModeSensitivity) -> Table {
-    let caption = format!("Sensitivities of the mode at {} Hz", fixed(mode.eigenvalue.im / TAU, 1));
+    let hz = fixed(mode.eigenvalue.im / TAU, 1);
+    let caption = format!("What the mode at {hz} Hz, σ = {} 1/s, answers to", signed(mode.eigenvalue.re, 2));
     let headings =
-        ["<scalar", "value", "<unit", "dσ/dp", "df/dp", "σ per 1 % [1/s]", "f per 1 % [Hz]", "error"];
+        ["<scalar", "value", "<unit", "σ per 1 % [1/s]", "f per 1 % [Hz]", "error", "dσ/dp", "df/dp"];
     let mut table = Table::new(caption, &headings);
     for p in &mode.parameters {
         let relative = if p.rate.norm() > 0.0 { p.error / p.rate.norm() } else { 0.0 };
@@ -279,16 +281,16 @@ pub(super) fn sensitivity(mode: &ModeSensitivity) -> Table {
             p.path.clone(),
             given(p.value),
             p.unit.clone(),
-            significant(p.rate.re, 4),
-            significant(p.frequency_rate(), 4),
             significant(p.growth_per_percent(), 3),
             significant(p.frequency_per_percent(), 3),
             if p.kink { format!("{} †", power(relative)) } else { power(relative) },
+            significant(p.rate.re, 4),
+            significant(p.frequency_rate(), 4),
         ];
         table.row(cells, false);
     }
     table.notes.push(
-        "Derivatives by SI units, the steady state following the scalar; error: of dλ/dp, relative.".into(),
+        "The steady state follows every scalar. Error: of dλ/dp, relative; dσ/dp, df/dp: per SI unit.".into(),
     );
     if mode.parameters.iter().any(|p| p.kink) {
         table.notes.push("†: the slopes to the two sides differ; their mean is given.".into());
@@ -298,33 +300,24 @@ pub(super) fn sensitivity(mode: &ModeSensitivity) -> Table {
 
 /// The best places for a mass and a damper, one row each.
 pub(super) fn advice(result: &SensitivityResult) -> Table {
-    let headings = [
-        "f [Hz]",
-        "σ [1/s]",
-        "<mount",
-        "<at (x, y, z) [mm]",
-        "<along",
-        "σ by the slope",
-        "σ, done",
-        "slope off by",
-    ];
-    let mut table = Table::new("What would calm the modes", &headings);
+    let headings =
+        ["f [Hz]", "σ [1/s]", "<mount", "<at x, y, z [mm]", "<along", "by slope", "done", "slope error"];
+    let mut table =
+        Table::new("What would calm the modes: σ with a thing mounted at its best place", &headings);
     for mode in &result.modes {
         for thing in &mode.best {
             let amount = if thing.kind == "mass" {
                 format!("{} g", given(1e3 * thing.amount))
             } else {
-                format!("damper {} {}", given(thing.amount), thing.unit)
+                format!("{} {} {}", thing.kind, given(thing.amount), thing.unit)
             };
-            let [x, y, z] = thing.position.map(|c| fixed(1e3 * c, 1));
-            let along = |[x, y, z]: [f64; 3]| format!("({}, {}, {})", fixed(x, 2), fixed(y, 2), fixed(z, 2));
             let sigma = |d: c64| signed(mode.eigenvalue.re + d.re, 2);
             let cells = vec![
                 fixed(mode.eigenvalue.im / TAU, 1),
                 signed(mode.eigenvalue.re, 2),
                 amount,
-                format!("({x}, {y}, {z})"),
-                thing.direction.map_or(String::new(), along),
+                thing.position.map(|c| fixed(1e3 * c, 1)).join(", "),
+                thing.direction.map_or(String::new(), axis),
                 sigma(thing.predicted),
                 thing.done.map_or("–".into(), sigma),
                 thing.slope_error.map_or("–".into(), power),
@@ -332,11 +325,19 @@ pub(super) fn advice(result: &SensitivityResult) -> Table {
             table.row(cells, false);
         }
     }
-    table.notes.push("By the slope: to first order; done: mounted on the model and computed anew.".into());
     table
         .notes
-        .push("Slope off by: relative, against a thousandth of the thing, mounted and computed anew.".into());
+        .push("By slope: to first order; done: mounted on the model and everything computed anew.".into());
+    table.notes.push(
+        "Slope error: how far a thousandth of the thing, really mounted, is from the slope, relative.".into(),
+    );
     table
+}
+
+/// An axis by its name, any other direction as the surface's normal.
+fn axis(direction: [f64; 3]) -> String {
+    let named = [([1.0, 0.0, 0.0], "x"), ([0.0, 1.0, 0.0], "y"), ([0.0, 0.0, 1.0], "z")];
+    named.iter().find(|(axis, _)| *axis == direction).map_or("normal", |(_, name)| name).to_string()
 }
 
 /// The scalars without a derivative, as a note.

@@ -35,10 +35,13 @@ pub fn complex(results: &RunResults) -> Option<String> {
 /// What the modes answer to most and what would calm them, when the run has it.
 pub fn sensitivity(results: &RunResults) -> Option<String> {
     const SHOWN: usize = 8;
+    const COLUMNS: usize = 6;
     let result = results.sensitivity.as_ref()?;
     let mode = |mode| {
         let mut table = tables::sensitivity(mode);
         table.rows.truncate(SHOWN);
+        table.columns.truncate(COLUMNS);
+        table.rows.iter_mut().for_each(|row| row.cells.truncate(COLUMNS));
         render(&table)
     };
     let mut parts: Vec<String> = result.modes.iter().map(mode).collect();

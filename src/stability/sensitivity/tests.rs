@@ -274,3 +274,19 @@ fn another_system_is_refused() {
     assert_eq!(sensitivity.change(&other).unwrap_err().exit_code(), 2);
     assert!(Sensitivity::new(&other, &state, &real, &[&modes[0]]).is_err());
 }
+
+#[test]
+fn sensitivities_do_not_depend_on_the_number_of_threads() {
+    let system = sample(1, 7);
+    let (state, real, modes) = modes_of(&system);
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let sensitivity = Sensitivity::new(&system, &state, &real, &[&modes[0], &modes[1]]).unwrap();
+            let build = |p| Ok(varied(&system, Scalar::Elastic, p));
+            let rates = sensitivity.differentiate(1.0, 1e-3, Domain::Inside, &build).unwrap();
+            (rates, sensitivity.at(&[vector(&[(7, 1.0)])]))
+        })
+    };
+    assert!(run(1) == run(3));
+}
