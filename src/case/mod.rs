@@ -10,7 +10,7 @@ mod read;
 pub(crate) mod reader;
 pub(crate) mod units;
 
-pub(crate) use parameter::matches;
+pub(crate) use parameter::path_matches;
 pub use parameter::{Invalidates, Parameter};
 pub(crate) use read::DOF_NAMES;
 pub use read::read_case;

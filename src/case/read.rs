@@ -523,7 +523,9 @@ fn check_sensitivity(root: &Section, case: &Case) {
     // The scalars of the model: what is asked about them is none.
     let parameters = Case { sensitivity: None, ..case.clone() }.parameters();
     let paths = || parameters.iter().map(|p| p.path.as_str());
-    for pattern in analysis.parameters.iter().filter(|pattern| !paths().any(|path| matches(pattern, path))) {
+    for pattern in
+        analysis.parameters.iter().filter(|pattern| !paths().any(|path| path_matches(pattern, path)))
+    {
         let help = crate::error::nearest(pattern, paths())
             .map_or("`stridor check CASE --parameters` lists them".into(), |near| {
                 format!("Did you mean \"{near}\"?")

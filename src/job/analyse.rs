@@ -5,7 +5,7 @@ use super::explore::{KnownMap, KnownMaps, Nominal, explore};
 use super::modes::{compare, named, of_the_whole, part_modes, wanted};
 use super::prepared::Prepared;
 use super::sensitivity::Analysed;
-use crate::case::{Case, ContactState};
+use crate::case::{Case, ContactState, SensitivityAnalysis};
 use crate::equilibrium::{self, SteadyOptions, SteadySliding};
 use crate::error::{Error, Result};
 use crate::linalg::c64;
@@ -58,6 +58,15 @@ impl Selection {
     pub const SENSITIVITY: Selection = Selection { sensitivity: Sensitivities::Yes, ..Selection::CEA };
     /// Steady sliding, complex eigenvalues, sweeps and maps.
     pub const SWEEPS: Selection = Selection { sweeps: true, ..Selection::CEA };
+
+    /// The sensitivities to compute, if any.
+    fn sensitivities(&self, case: &Case) -> Option<SensitivityAnalysis> {
+        match self.sensitivity {
+            Sensitivities::No => None,
+            Sensitivities::WhenListed => case.sensitivity.clone(),
+            Sensitivities::Yes => Some(case.sensitivity.clone().unwrap_or_default()),
+        }
+    }
 }
 
 /// A result that is ready to be written.
@@ -217,32 +226,26 @@ fn analyse_from(
                 results.modes.push(modes);
             }
         }
-        if selection.cea {
-            if let Some((complex, system, real)) =
-                complex_result(prepared, state, basis, &mut clock, observer)?
-            {
-                record(Stage::Complex(&complex))?;
-                results.warnings.extend(complex.modes.warnings.iter().cloned());
-                let wanted = match selection.sensitivity {
-                    Sensitivities::No => None,
-                    Sensitivities::WhenListed => case.sensitivity.clone(),
-                    Sensitivities::Yes => Some(case.sensitivity.clone().unwrap_or_default()),
-                };
-                if let Some(wanted) = wanted {
-                    let modes = &complex.modes;
-                    let analysed = Analysed { prepared, system: &system, steady: state, real: &real, modes };
-                    let sensitivity =
-                        clock.time("sensitivities", || analysed.sensitivities(&wanted, observer))?;
-                    record(Stage::Sensitivity(&sensitivity))?;
-                    results.sensitivity = Some(sensitivity);
-                }
-                results.complex = Some(complex);
-                if selection.sweeps && !(case.sweep.is_empty() && case.map.is_empty()) {
-                    let nominal = Nominal { prepared, system: &system, steady: &state.clone(), real: &real };
-                    clock.time("sweeps and maps", || {
-                        explore(&nominal, known, &mut results, record, observer)
-                    })?;
-                }
+        let complex = match selection.cea {
+            true => complex_result(prepared, state, basis, &mut clock, observer)?,
+            false => None,
+        };
+        if let Some((complex, system, real)) = complex {
+            record(Stage::Complex(&complex))?;
+            results.warnings.extend(complex.modes.warnings.iter().cloned());
+            let steady = &state.clone();
+            if let Some(wanted) = selection.sensitivities(case) {
+                let analysed =
+                    Analysed { prepared, system: &system, steady, real: &real, modes: &complex.modes };
+                let sensitivity =
+                    clock.time("sensitivities", || analysed.sensitivities(&wanted, observer))?;
+                record(Stage::Sensitivity(&sensitivity))?;
+                results.sensitivity = Some(sensitivity);
+            }
+            results.complex = Some(complex);
+            if selection.sweeps && !(case.sweep.is_empty() && case.map.is_empty()) {
+                let nominal = Nominal { prepared, system: &system, steady, real: &real };
+                clock.time("sweeps and maps", || explore(&nominal, known, &mut results, record, observer))?;
             }
         }
         results.steady = results.steady.filter(|_| slides);

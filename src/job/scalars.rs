@@ -2,7 +2,7 @@
 
 use super::contacts::with_laws;
 use super::prepared::{Prepared, external_load};
-use crate::case::{Case, Parameter, matches};
+use crate::case::{Case, Parameter, path_matches};
 use crate::error::{Error, Result};
 use crate::system::System;
 
@@ -37,7 +37,7 @@ pub type LeftOut = (String, String);
 pub fn chosen(case: &Case, patterns: &[String]) -> (Vec<Scalar>, Vec<LeftOut>) {
     let (mut scalars, mut left_out) = (Vec::new(), Vec::new());
     for Parameter { path, value, unit, .. } in case.parameters() {
-        if path.starts_with("sensitivity.") || !patterns.iter().any(|pattern| matches(pattern, &path)) {
+        if path.starts_with("sensitivity.") || !patterns.iter().any(|pattern| path_matches(pattern, &path)) {
             continue;
         }
         match kind(&path) {

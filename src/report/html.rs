@@ -69,6 +69,7 @@ pub(super) fn page(results: &RunResults, pictures: &[Picture]) -> String {
         }
         body += &notes(&tables::left_out(sensitivity));
     }
+    body += &super::explored::section(results);
     if !results.timings.is_empty() {
         body += &format!("<h2>Wall time</h2>\n{}", untitled(tables::timings(results)));
     }
@@ -114,9 +115,17 @@ fn verdict(results: &RunResults) -> String {
 /// The pictures called `files`, in that order, those there are.
 fn figures(pictures: &[Picture], files: &[&str]) -> String {
     let chosen = files.iter().filter_map(|file| pictures.iter().find(|p| p.file == *file));
-    chosen
-        .map(|p| format!("<figure>{}<figcaption>{}</figcaption></figure>\n", p.svg, escape(&p.caption)))
-        .collect()
+    chosen.map(|p| figure(&p.svg, &p.caption)).collect()
+}
+
+/// A picture with its caption.
+pub(super) fn figure(svg: &str, caption: &str) -> String {
+    format!("<figure>{svg}<figcaption>{}</figcaption></figure>\n", escape(caption))
+}
+
+/// A table under its caption.
+pub(super) fn titled_table(content: &Table) -> String {
+    table(content)
 }
 
 /// A table that the reader opens when it is long.

@@ -2,7 +2,8 @@
 //!
 //! * [`text`]: the tables that the command line prints.
 //! * [`write_report`]: `report.html` and the pictures `rig.svg`, `modes_disc.svg`, `contact.svg`, `growth.svg`,
-//!   `growth_budget.svg`, `sensitivity.svg`, `advice.svg`, those of them that the run has something for.
+//!   `growth_budget.svg`, `sensitivity.svg`, `advice.svg`, those of them that the run has something for;
+//!   `sweep_<name>.svg`, `root_locus_<name>.svg` and `map_<name>.svg` of every sweep and map.
 //!
 //! A table is made once and shown in either form; a picture is a pure function from the results to SVG.
 
@@ -13,6 +14,7 @@ mod colours;
 mod contact;
 mod contours;
 mod disc_modes;
+mod explored;
 mod format;
 mod growth;
 mod html;
@@ -38,6 +40,7 @@ pub fn write_report(dir: &Path, results: &RunResults) -> Result<()> {
     for picture in &pictures {
         write_atomically(dir, picture.file, picture.svg.as_bytes())?;
     }
+    explored::write(dir, results)?;
     write_atomically(dir, "report.html", html::page(results, &pictures).as_bytes())
 }
 

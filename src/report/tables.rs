@@ -38,7 +38,7 @@ pub(super) struct Row {
 
 impl Table {
     /// An empty table; a heading that begins with `<` is that of a column of words.
-    fn new(caption: impl Into<String>, headings: &[&'static str]) -> Self {
+    pub(super) fn new(caption: impl Into<String>, headings: &[&'static str]) -> Self {
         let column = |heading: &&'static str| match heading.strip_prefix('<') {
             Some(heading) => Column { heading, words: true },
             None => Column { heading, words: false },
@@ -52,7 +52,7 @@ impl Table {
         }
     }
 
-    fn row(&mut self, cells: Vec<String>, marked: bool) {
+    pub(super) fn row(&mut self, cells: Vec<String>, marked: bool) {
         self.rows.push(Row { cells, marked });
     }
 }

@@ -1,5 +1,6 @@
 //! The tables for the terminal: aligned, at most 100 columns wide.
 
+use super::explored::{critical_table, damping_table, map_words, sweep_words};
 use super::tables::{self, Table};
 use crate::results::RunResults;
 
@@ -12,9 +13,22 @@ pub fn summary(results: &RunResults) -> String {
     let mut parts: Vec<String> = (0..results.modes.len()).map(|k| modes(results, k)).collect();
     parts.extend([steady(results), complex(results)].into_iter().flatten());
     parts.extend(sensitivity(results));
+    parts.extend(explored(results));
     parts.extend(results.warnings.iter().map(|warning| wrap(&format!("Warning: {warning}"))));
     parts.push(verdict(results));
     parts.join("\n")
+}
+
+/// What the sweeps and maps found, and what damping decides.
+fn explored(results: &RunResults) -> Vec<String> {
+    let say = |words: Vec<String>| words.iter().map(|w| wrap(w)).collect::<String>();
+    let mut parts = Vec::new();
+    for result in &results.sweeps {
+        parts.push(format!("{}{}", render(&critical_table(result)), say(sweep_words(result))));
+    }
+    parts.extend(results.maps.iter().map(|m| format!("Map {}\n{}", m.name, say(map_words(m)))));
+    parts.extend(results.damping.iter().map(|d| render(&damping_table(d))));
+    parts
 }
 
 /// The modes of set `index` of [`RunResults::modes`] beside the measured frequencies.

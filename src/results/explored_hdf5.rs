@@ -188,15 +188,15 @@ fn unit(unit: &str) -> &str {
     if unit.is_empty() { "1" } else { unit }
 }
 
+/// The points of a map, and the places it was trained on.
+pub type EarlierMap = (Vec<MapPoint>, Vec<[f64; 2]>);
+
 /// The points of every map, and the places it was trained on, that an earlier run of the case with this resolved TOML
 /// left in the folder; nothing when the folder has no results.
 ///
 /// # Errors
 /// Results of another case, or a file that cannot be read.
-pub fn read_maps(
-    dir: &Path,
-    resolved_case: &str,
-) -> Result<BTreeMap<String, (Vec<MapPoint>, Vec<[f64; 2]>)>> {
+pub fn read_maps(dir: &Path, resolved_case: &str) -> Result<BTreeMap<String, EarlierMap>> {
     let path = dir.join("results.h5");
     if !path.exists() {
         return Ok(BTreeMap::new());
@@ -220,7 +220,7 @@ pub fn read_maps(
     Ok(maps)
 }
 
-fn read_map(group: &Group) -> hdf5::Result<(Vec<MapPoint>, Vec<[f64; 2]>)> {
+fn read_map(group: &Group) -> hdf5::Result<EarlierMap> {
     let done = group.attr("points_done")?.read_scalar::<u64>()? as usize;
     let growth = group.dataset("growth_rate")?.read_1d::<f64>()?;
     let hz = group.dataset("frequency_hz")?.read_1d::<f64>()?;

@@ -28,7 +28,7 @@ pub(crate) mod sample;
 pub use csv::write_csv;
 pub use derived::{ComparedRow, PairTotals};
 pub use explored::{DampingRow, DampingVerdicts, MapResult, Method, SweepResult};
-pub use explored_hdf5::read_maps;
+pub use explored_hdf5::{EarlierMap, read_maps};
 pub(crate) use folder::write_atomically;
 pub use hdf5::ResultsFile;
 pub use json::{SCHEMA_VERSION, summary_json, write_summary};

@@ -82,7 +82,7 @@ pub fn confirm(
             if reach > farthest * (1.0 + 1e-6) || pairs.values.len() < count || count >= 2 * operator.n() {
                 break pairs.values;
             }
-            count = 2 * count;
+            count *= 2;
         };
         for value in values.iter().filter(|z| z.im > 1e-9 * z.norm()) {
             let near = (0..modes.len())
@@ -114,7 +114,7 @@ pub fn confirm(
 }
 
 fn same((known, condition): (c64, f64), value: c64) -> bool {
-    (known - value).norm() <= SAME * condition.max(1.0).min(1e4) * value.norm()
+    (known - value).norm() <= SAME * condition.clamp(1.0, 1e4) * value.norm()
 }
 
 /// Q at a shift: P = P_s + F G Fᵀ with the sparse, complex symmetric P_s = σ²M + σC + K + iH, and for what is not sparse

@@ -113,7 +113,7 @@ impl<T: Field> Panel<'_, T> {
             let theirs = other[r - k].size();
             let at = std::mem::take(&mut other[r - k]);
             let their_bound = largest(other);
-            let coupling = std::mem::replace(&mut other[0], T::default());
+            let coupling = std::mem::take(&mut other[0]);
             let their_rest = largest(other);
             (other[0], other[r - k]) = (coupling, at);
             if own * their_bound >= ALPHA * bound * bound && own >= (THRESHOLD * bound).max(SMALLEST) {

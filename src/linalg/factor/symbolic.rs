@@ -156,8 +156,8 @@ impl Graph {
         // The parent of k is the first later vertex that its elimination touches (Liu, SIAM J. Matrix Anal. Appl. 11
         // (1990) 134); `ancestor` shortens the walks.
         let (mut parent, mut ancestor) = (vec![NONE; q], vec![NONE; q]);
-        for k in 0..q {
-            for i in neighbours[k].iter().filter(|i| **i < k) {
+        for (k, near) in neighbours.iter().enumerate() {
+            for i in near.iter().filter(|i| **i < k) {
                 let mut i = *i;
                 while i != k {
                     let next = std::mem::replace(&mut ancestor[i], k);

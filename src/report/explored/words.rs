@@ -1,0 +1,212 @@
+//! What a sweep or a map found, in words and tables.
+
+use crate::report::format::{fixed, power, signed, significant};
+use crate::report::tables::Table;
+use crate::results::{DampingVerdicts, MapResult, Method, SweepResult};
+use crate::sweep::{CriticalKind, EncounterKind, unstable};
+use std::f64::consts::TAU;
+
+fn with_unit(value: f64, unit: &str) -> String {
+    let number = significant(value, 6);
+    if unit.is_empty() { number } else { format!("{number} {unit}") }
+}
+
+fn method(method: Method) -> String {
+    match method {
+        Method::Reduced(dimension) => {
+            format!("One reduced model of {dimension} degrees of freedom served every point.")
+        }
+        Method::Whole => {
+            "The scalar changes the structure or the contact's directions: every point was a whole analysis."
+                .into()
+        }
+    }
+}
+
+fn list(words: &[String]) -> String {
+    match words {
+        [] => String::new(),
+        [one] => one.clone(),
+        [most @ .., last] => format!("{} and {last}", most.join(", ")),
+    }
+}
+
+/// What the sweep found.
+pub(in crate::report) fn sweep_words(result: &SweepResult) -> Vec<String> {
+    let (sweep, unit) = (&result.sweep, result.unit.as_str());
+    let grows = |b: &&crate::sweep::Branch| b.eigenvalues.iter().any(|z| unstable(*z));
+    let ever: Vec<_> = sweep.branches.iter().filter(grows).collect();
+    let range = format!(
+        "{} from {} to {}",
+        result.parameter,
+        with_unit(result.axis.from, unit),
+        with_unit(result.axis.to, unit)
+    );
+    let mut first = match ever.len() {
+        0 => format!("Along {range}, none of {} modes grows.", sweep.branches.len()),
+        1 => format!("Along {range}, 1 of {} modes grows somewhere.", sweep.branches.len()),
+        n => format!("Along {range}, {n} of {} modes grow somewhere.", sweep.branches.len()),
+    };
+    let all: Vec<String> = ever
+        .iter()
+        .filter(|b| b.first == 0 && b.eigenvalues.len() == sweep.values.len())
+        .filter(|b| b.eigenvalues.iter().all(|z| unstable(*z)))
+        .map(|b| format!("{} Hz", fixed(b.eigenvalues[0].im / TAU, 0)))
+        .collect();
+    if !all.is_empty() {
+        first += &format!(" At every value: {}.", list(&all));
+    }
+    let mut words = vec![first];
+    let change = |rises: bool| -> Vec<String> {
+        let those = sweep.critical.iter().filter(|c| c.rises == rises);
+        those
+            .map(|c| {
+                let what = match c.kind {
+                    CriticalKind::Merging => ", where two frequencies merge",
+                    CriticalKind::Growth => "",
+                    CriticalKind::Divergence => ", without oscillation",
+                };
+                let hz = fixed(c.eigenvalue.im / TAU, 0);
+                format!("{hz} Hz at {}{what}", with_unit(c.value, unit))
+            })
+            .collect()
+    };
+    for (rises, begin) in [(true, "Modes become unstable"), (false, "Modes become stable")] {
+        let those = change(rises);
+        if !those.is_empty() {
+            words.push(format!("{begin}: {}.", list(&those)));
+        }
+    }
+    let meet = |kind: EncounterKind| -> Vec<String> {
+        let those = sweep.encounters.iter().filter(|e| e.kind == kind);
+        those
+            .map(|e| format!("near {} Hz at {}", fixed(e.frequency_hz, 0), with_unit(e.value, unit)))
+            .collect()
+    };
+    for (kind, begin) in
+        [(EncounterKind::Veering, "Frequencies veer"), (EncounterKind::Crossing, "They cross")]
+    {
+        let those = meet(kind);
+        if !those.is_empty() && those.len() <= 6 {
+            words.push(format!("{begin} {}.", list(&those)));
+        }
+    }
+    let worst = result.sample.iter().map(|(_, e)| *e).fold(0.0, f64::max);
+    let lowest = sweep.branches.iter().map(|b| b.lowest_mac).fold(1.0, f64::min);
+    words.push(format!(
+        "{} The largest error of an eigenvalue, measured on the full order at {} values, is {}; the least likeness (MAC) of neighbouring shapes along a branch is {}.",
+        method(result.method),
+        result.sample.len(),
+        power(worst),
+        fixed(lowest, 2)
+    ));
+    words
+}
+
+/// The critical values of a sweep.
+pub(in crate::report) fn critical_table(result: &SweepResult) -> Table {
+    let headings = ["value", "rel. error", "f [Hz]", "<becomes", "<what happens", "η", "|Δλ|/|λ|"];
+    let unit = if result.unit.is_empty() { String::new() } else { format!(" [{}]", result.unit) };
+    let mut table = Table::new(
+        format!("Sweep {}: critical values of {}{unit}", result.name, result.parameter),
+        &headings,
+    );
+    table.alarming = true;
+    for (k, c) in result.sweep.critical.iter().enumerate() {
+        let full = result.verified.get(k).copied().flatten();
+        let cells = vec![
+            significant(c.value, 8),
+            power(result.value_error(k)),
+            fixed(c.eigenvalue.im / TAU, 1),
+            if c.rises { "unstable".into() } else { "stable".into() },
+            match c.kind {
+                CriticalKind::Merging => "two frequencies merge".into(),
+                CriticalKind::Growth => "growth rate passes zero".into(),
+                CriticalKind::Divergence => "divergence".into(),
+            },
+            full.map_or("–".into(), |f| power(f.backward_error)),
+            full.map_or("–".into(), |f| power(f.eigenvalue_error)),
+        ];
+        table.row(cells, c.rises);
+    }
+    if result.sweep.critical.is_empty() {
+        table.notes.push("No mode becomes unstable or stable in this range.".into());
+    } else {
+        table.notes.push("η and |Δλ|/|λ|: backward and eigenvalue error, measured at full order.".into());
+    }
+    table
+}
+
+/// What the map found.
+pub(in crate::report) fn map_words(result: &MapResult) -> Vec<String> {
+    let n = result.axes[0].points;
+    let answered: Vec<_> =
+        result.points.iter().enumerate().filter(|(_, p)| p.growth_rate.is_finite()).collect();
+    let unstable = answered.iter().filter(|(_, p)| p.unstable > 0).count();
+    let mut words = vec![format!(
+        "{} of {} points over {} and {} are unstable.",
+        unstable,
+        answered.len(),
+        result.parameters[0],
+        result.parameters[1]
+    )];
+    let strongest = answered.iter().max_by(|a, b| a.1.growth_rate.total_cmp(&b.1.growth_rate));
+    if let Some((k, p)) = strongest {
+        words.push(format!(
+            "The largest growth rate, {} 1/s at {} Hz, is at {} and {}.",
+            signed(p.growth_rate, 2),
+            fixed(p.frequency_hz, 0),
+            with_unit(result.axes[0].value(k % n), &result.units[0]),
+            with_unit(result.axes[1].value(k / n), &result.units[1])
+        ));
+    }
+    let worst = result.sample.iter().map(|(_, e)| *e).fold(0.0, f64::max);
+    let line = match result.boundary.points.len() {
+        0 => "No boundary of stability crosses the map.".to_string(),
+        points => format!("The boundary of stability was located at {points} places."),
+    };
+    let checked = match result.sample.len() {
+        0 => String::new(),
+        places => format!(
+            " The largest error of an eigenvalue, measured on the full order at {places} places, is {}.",
+            power(worst)
+        ),
+    };
+    words.push(format!("{line} {}{checked}", method(result.method)));
+    words
+}
+
+/// Which verdicts the modal damping decides.
+pub(in crate::report) fn damping_table(verdicts: &DampingVerdicts) -> Table {
+    let percent = |ratio: f64| format!("{} %", significant(100.0 * ratio, 4));
+    let caption = format!(
+        "Verdicts that damping decides between {} and {}, the case having {}",
+        percent(verdicts.range[0]),
+        percent(verdicts.range[1]),
+        percent(verdicts.ratio)
+    );
+    let headings = ["f [Hz]", "σ [1/s]", "<verdict", "critical damping ratio [%]", "of the case's"];
+    let mut table = Table::new(caption, &headings);
+    table.alarming = true;
+    for row in &verdicts.rows {
+        let grows = unstable(row.eigenvalue);
+        let Some(critical) = row.critical_ratio else { continue };
+        let cells = vec![
+            fixed(row.eigenvalue.im / TAU, 1),
+            signed(row.eigenvalue.re, 2),
+            if grows { "unstable, stable above".into() } else { "stable, unstable below".into() },
+            significant(100.0 * critical, 5),
+            format!("{} ×", fixed(critical / verdicts.ratio, 3)),
+        ];
+        table.row(cells, grows);
+    }
+    let firm = verdicts.rows.iter().filter(|r| r.critical_ratio.is_none() && unstable(r.eigenvalue));
+    let firm: Vec<String> = firm.map(|r| format!("{} Hz", fixed(r.eigenvalue.im / TAU, 0))).collect();
+    if table.rows.is_empty() {
+        table.notes.push("No verdict flips in this range.".into());
+    }
+    if !firm.is_empty() {
+        table.notes.push(format!("Unstable whatever the damping in this range: {}.", list(&firm)));
+    }
+    table
+}
