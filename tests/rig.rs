@@ -162,12 +162,13 @@ fn sensitivities_of_the_rig_equal_differences_of_runs_anew() {
         }
         for thing in found.modes.iter().flat_map(|m| &m.best) {
             let done = thing.done.expect("asked for");
-            let error = (done - thing.predicted).norm() / thing.predicted.norm();
+            let slope_error = thing.slope_error.expect("asked for");
             println!(
-                "{} {:.1e}: predicted {:.4} done {:.4} ({error:.1e})",
+                "{} {:.1e}: predicted {:.4} done {:.4}, slope error {slope_error:.1e}",
                 thing.kind, thing.amount, thing.predicted, done
             );
-            assert!(done.re < 0.0 && error < 1e-2, "{thing:?}");
+            // A whole gram is beyond first order; a thousandth of it, really mounted, is not.
+            assert!(done.re < 0.0 && slope_error < 1e-3, "{thing:?}");
         }
     }
 }

@@ -1,7 +1,7 @@
 //! `stridor run`, `modes`, `cea` and `sweep`.
 
-use super::Common;
 use super::progress::Bars;
+use super::{Common, say};
 use crate::case::read_case;
 use crate::error::Result;
 use crate::job::{Selection, run_case};
@@ -29,10 +29,10 @@ pub fn run(options: &Options, common: &Common, selection: Selection) -> Result<E
     let out = options.out.clone().unwrap_or_else(|| PathBuf::from("results").join(case_name(&options.case)));
     let results = run_case(&case, selection, &out, options.resume, &Bars::new(common.quiet))?;
     if common.json {
-        println!("{}", crate::results::summary_json(&results));
+        say(crate::results::summary_json(&results))?;
     } else if !common.quiet {
-        print!("{}", report::text::summary(&results));
-        println!("\nResults are in {}: open report.html, or *.vtu in ParaView.", out.display());
+        say(report::text::summary(&results))?;
+        say(format!("Results are in {}: open report.html, or *.vtu in ParaView.", out.display()))?;
     }
     Ok(ExitCode::SUCCESS)
 }

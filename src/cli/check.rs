@@ -1,6 +1,6 @@
 //! `stridor check`: the case and its mesh, without an analysis.
 
-use super::Common;
+use super::{Common, say};
 use crate::case::{Parameter, read_case};
 use crate::error::Result;
 use crate::job::Prepared;
@@ -25,27 +25,28 @@ pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
     let case = read_case(&options.case)?;
     let prepared = Prepared::new(&case)?;
     if options.resolved {
-        print!("{}", case.to_toml());
+        say(case.to_toml().trim_end())?;
     }
     if options.parameters {
         for p in case.parameters() {
             let redo = format!("{:?}", p.invalidates).to_lowercase();
-            println!("{:<44} {:>22} {:<8} {:<16} {redo}", p.path, number(p.value), p.unit, range(&p));
+            let value = number(p.value);
+            say(format!("{:<44} {value:>22} {:<8} {:<16} {redo}", p.path, p.unit, range(&p)))?;
         }
     }
     if !common.quiet && !options.resolved && !options.parameters {
         for warning in &prepared.warnings {
-            println!("warning: {warning}");
+            say(format!("warning: {warning}"))?;
         }
         let size = prepared.size();
-        println!(
+        say(format!(
             "{}: sound. {} nodes, {} elements, {} degrees of freedom, {} contact points within reach.",
             options.case.display(),
             size.nodes,
             size.elements,
             size.dofs,
             size.contact_points
-        );
+        ))?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -1,6 +1,6 @@
 //! `stridor export`: a case as matrices, for other programs and for tests.
 
-use super::Common;
+use super::{Common, say};
 use crate::case::read_case;
 use crate::error::Result;
 use crate::job::export;
@@ -20,8 +20,10 @@ pub struct Options {
 pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
     let left_out = export(&read_case(&options.case)?, &options.out)?;
     if !common.quiet {
-        left_out.iter().for_each(|sentence| println!("warning: {sentence}."));
-        println!("M, C and K are in {}; case.toml there takes them.", options.out.display());
+        for sentence in left_out {
+            say(format!("warning: {sentence}."))?;
+        }
+        say(format!("M, C and K are in {}; case.toml there takes them.", options.out.display()))?;
     }
     Ok(ExitCode::SUCCESS)
 }

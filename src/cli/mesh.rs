@@ -1,6 +1,6 @@
 //! `stridor mesh`: generators and a look inside a mesh file.
 
-use super::Common;
+use super::{Common, say};
 use crate::case::units::{LENGTH, parse_quantity};
 use crate::error::{Error, Fault, Result};
 use crate::mesh::generate::{self, BarSide, BarSpec, DiscSpec, Grading, PlateSpec, RigSpec};
@@ -191,7 +191,7 @@ fn write(mesh: &Mesh, output: &Output, common: &Common) -> Result<()> {
     refuse_existing(&output.out, output.force)?;
     mesh::write(&output.out, mesh, 1e-3)?;
     if !common.quiet {
-        println!("{}\nwritten to {} in millimetres", Info::of(mesh), output.out.display());
+        say(format!("{}\nwritten to {} in millimetres", Info::of(mesh), output.out.display()))?;
     }
     Ok(())
 }
@@ -211,9 +211,9 @@ fn info(options: &InfoOptions, common: &Common) -> Result<ExitCode> {
     let mesh = mesh::read(&options.file, mesh::unit_in_metres(&options.unit))?;
     let diagnosis = mesh::diagnose(&mesh);
     if !common.quiet {
-        println!("{}", Info::of(&mesh));
+        say(Info::of(&mesh))?;
         for warning in &diagnosis.warnings {
-            println!("warning: {warning}");
+            say(format!("warning: {warning}"))?;
         }
     }
     diagnosis.faults.into_result(())?;

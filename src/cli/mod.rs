@@ -13,6 +13,8 @@ mod validate;
 
 use crate::error::{Error, Fault, Result};
 use clap::{Args, Parser, Subcommand};
+use std::fmt::Display;
+use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
 #[derive(Parser)]
@@ -75,7 +77,7 @@ pub fn main() -> ExitCode {
     match act(&command) {
         Ok(code) => code,
         Err(error) => {
-            eprintln!("error: {error}");
+            complain(&error);
             ExitCode::from(error.exit_code())
         }
     }
@@ -96,6 +98,21 @@ fn act(command: &Command) -> Result<ExitCode> {
         Action::Mesh(action) => mesh::run(action, common),
         Action::Validate(options) => validate::run(options, common),
     }
+}
+
+/// Prints a line on stdout. A reader that has gone away, such as `head`, has seen what it wanted.
+fn say(text: impl Display) -> Result<()> {
+    match writeln!(std::io::stdout(), "{text}") {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Error::io("standard output", error, "The results folder, if any, is complete"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Prints a line on stderr, where nobody may listen.
+fn complain(text: impl Display) {
+    let _ = writeln!(std::io::stderr(), "error: {text}");
 }
 
 fn set_threads(threads: Option<usize>) -> Result<()> {

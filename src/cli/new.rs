@@ -1,7 +1,7 @@
 //! `stridor new`: a folder with the reference case and a small mesh to start from.
 
-use super::Common;
 use super::mesh::refuse_existing;
+use super::{Common, say};
 use crate::error::{Error, Result};
 use crate::mesh::generate::{self, RigSpec};
 use clap::Args;
@@ -28,7 +28,7 @@ pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
     std::fs::write(&case, TEMPLATE.replace(TEMPLATE_MESH, "rig.msh"))
         .map_err(|error| Error::io(&case, error, "Choose a folder that can be written"))?;
     if !common.quiet {
-        println!("{} and its mesh are ready. Next: stridor run {}", case.display(), case.display());
+        say(format!("{} and its mesh are ready. Next: stridor run {}", case.display(), case.display()))?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -1,7 +1,7 @@
 //! `stridor validate`: computed beside reference, one row a quantity.
 
-use super::Common;
 use super::progress::Bars;
+use super::{Common, complain, say};
 use crate::error::Result;
 use crate::validation;
 use clap::Args;
@@ -20,13 +20,13 @@ pub struct Options {
 pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
     let rows = validation::run(&options.from, options.filter.as_deref(), &Bars::new(common.quiet))?;
     if common.json {
-        println!("{}", validation::to_json(&rows));
+        say(validation::to_json(&rows))?;
     } else if !common.quiet {
-        print!("{}", validation::table(&rows));
+        say(validation::table(&rows).trim_end())?;
     }
     let failed = rows.iter().filter(|row| !row.passed()).count();
     if failed > 0 {
-        eprintln!("error: {failed} of {} quantities are outside their tolerance", rows.len());
+        complain(format!("{failed} of {} quantities are outside their tolerance", rows.len()));
     }
     Ok(ExitCode::from(u8::from(failed > 0)))
 }

