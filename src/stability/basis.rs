@@ -6,6 +6,9 @@ use crate::linalg::sparse::times;
 use crate::linalg::tall::{expand, gram};
 use faer::{Mat, MatRef};
 
+/// Columns that are orthonormalised together.
+const PANEL: usize = 32;
+
 /// A basis B = \[Φ Z\] and the projections BᵀMB, BᵀCB, BᵀKB, BᵀHB, and BᵀW of the interface.
 ///
 /// The real modes are M-orthonormal, what is added to them is M-orthogonal to them and orthonormal in E/τ: there, above
@@ -104,20 +107,19 @@ impl<'a> Basis<'a> {
         let floor: Vec<f64> = (0..z.ncols())
             .map(|j| (tolerance * tolerance).max(ROUND_OFF * ROUND_OFF * before[(j, j)]))
             .collect();
-        let chosen = pivoted_choice(&mut energy, &floor, limit);
-        let mut new = Mat::<f64>::zeros(z.nrows(), chosen.len());
-        let mut added = 0;
-        for j in chosen {
-            let mut column = z.subcols(j, 1).to_owned();
-            if self.normalise_against(&mut column, new.subcols(0, added)) {
-                new.subcols_mut(added, 1).copy_from(&column);
-                added += 1;
+        let mut open = pivoted_choice(&mut energy, &floor, limit);
+        let first = self.len();
+        while !open.is_empty() {
+            let now: Vec<usize> = open.drain(..open.len().min(PANEL)).collect();
+            let columns = Mat::from_fn(z.nrows(), now.len(), |i, j| z[(i, now[j])]);
+            let (new, later) = self.orthonormal(columns);
+            // Columns too much like others of the panel: once those are in the basis, more of them can be seen.
+            if new.ncols() > 0 {
+                open.splice(..0, later.iter().map(|j| now[*j]));
+                self.append(new);
             }
         }
-        if added > 0 {
-            self.append(new.subcols(0, added).to_owned());
-        }
-        added
+        self.len() - first
     }
 
     /// zᵀ(K + τM)z.
@@ -146,29 +148,62 @@ impl<'a> Basis<'a> {
         *z -= change;
     }
 
-    /// E/τ-orthonormalises `column` against the basis and the `new` vectors; false when nothing is left.
-    fn normalise_against(&self, column: &mut Mat<f64>, new: MatRef<'_, f64>) -> bool {
+    /// The columns E/τ-orthonormalised against the basis and each other, by two rounds of projection and Cholesky
+    /// factorisation of their Gram matrix. Left out are those of which nothing is left, and, returned as indices,
+    /// those that lie within a thousandth in the span of the others.
+    fn orthonormal(&self, mut columns: Mat<f64>) -> (Mat<f64>, Vec<usize>) {
         const LOST: f64 = 1e-12;
-        for _ in 0..2 {
-            let energy_times = |z: &Mat<f64>| {
-                let inertia = times(self.operator.mass, z.as_ref());
-                faer::Scale(1.0 / self.tau) * self.energy_times(z.as_ref(), inertia.as_ref())
-            };
-            let energy = energy_times(column);
-            let square = gram(column.as_ref(), energy.as_ref())[(0, 0)];
-            if !(square.is_finite() && square > 0.0) {
-                return false;
+        const ALIKE: f64 = 1e-3;
+        let energy = |z: &Mat<f64>| faer::Scale(1.0 / self.tau) * self.energy(z.as_ref());
+        let before = energy(&columns);
+        let (mut kept, mut later): (Vec<usize>, Vec<usize>) = ((0..columns.ncols()).collect(), Vec::new());
+        for round in 0..2 {
+            self.project_out(&mut columns);
+            let gram = energy(&columns);
+            let m = columns.ncols();
+            // Rows of the Cholesky factor of the Gram matrix of the columns that stay, each column scaled to length one.
+            let mut stay: Vec<usize> = Vec::new();
+            let mut factor = Mat::<f64>::zeros(m, m);
+            for j in 0..m {
+                let square = gram[(j, j)];
+                let was = if round == 0 { before[(j, j)] } else { 1.0 };
+                if !(square > LOST * LOST * was && square.is_finite()) {
+                    continue;
+                }
+                let row = stay.len();
+                for (c, other) in stay.iter().enumerate() {
+                    let cosine = gram[(j, *other)] / (square * gram[(*other, *other)]).sqrt();
+                    let known: f64 = (0..c).map(|k| factor[(row, k)] * factor[(c, k)]).sum();
+                    factor[(row, c)] = (cosine - known) / factor[(c, c)];
+                }
+                let left = 1.0 - (0..row).map(|k| factor[(row, k)].powi(2)).sum::<f64>();
+                if left > ALIKE * ALIKE {
+                    factor[(row, row)] = left.sqrt();
+                    stay.push(j);
+                } else {
+                    later.push(kept[j]);
+                }
             }
-            let share = gram(new, energy.as_ref());
-            *column -= expand(new, share.as_ref());
-            self.project_out(column);
-            let left = gram(column.as_ref(), energy_times(column).as_ref())[(0, 0)];
-            if left.is_nan() || left <= LOST * LOST * square {
-                return false;
+            let r = stay.len();
+            // L⁻ᵀ, which makes the scaled columns orthonormal.
+            let mut turned = Mat::<f64>::identity(r, r);
+            factor
+                .as_ref()
+                .submatrix(0, 0, r, r)
+                .transpose()
+                .solve_upper_triangular_in_place(turned.as_mut());
+            let mut mix = Mat::<f64>::zeros(m, r);
+            for (c, j) in stay.iter().enumerate() {
+                let length = gram[(*j, *j)].sqrt();
+                (0..r).for_each(|k| mix[(*j, k)] = turned[(c, k)] / length);
             }
-            *column *= faer::Scale(1.0 / left.sqrt());
+            columns = expand(columns.as_ref(), mix.as_ref());
+            kept = stay.iter().map(|j| kept[*j]).collect();
+            if round == 0 && r == 0 {
+                break;
+            }
         }
-        true
+        (columns, later)
     }
 
     fn append(&mut self, new: Mat<f64>) {

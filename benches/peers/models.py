@@ -1,0 +1,107 @@
+"""The models of the benches, made by stridor itself and stored for every program: `models.py STRIDOR FOLDER KIND DOFS`.
+
+`real`: a steel annulus (15 to 75 mm, 1 mm thick) clamped at its hub, triangles of one size, three degrees of freedom a node.
+
+`complex`: two such discs, 1 mm and 1.3 mm thick, pressed on each other at about 100 nodes. Each pair carries the normal
+stiffness k and damping c between the two deflections; friction μ on faces 2.5 mm off the mid-planes turns the normal force
+into moments about the radius, which makes K and C unsymmetric in 600 rows. Rayleigh damping besides.
+
+FOLDER gets m.mtx, k.mtx, c.mtx for stridor, the same as .npz for the others, and case files.
+"""
+import csv
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import scipy.io
+import scipy.sparse as sp
+from scipy.spatial import cKDTree
+
+OUTER, HUB = 0.075, 0.015
+CASE = """title = "A clamped disc"
+[mesh]
+file = "disc.msh"
+unit = "mm"
+[material.steel]
+youngs_modulus = "210 GPa"
+poissons_ratio = 0.3
+density = "7850 kg/m^3"
+[shell.disc]
+material = "steel"
+thickness = {thickness}
+bending_only = true
+rotary_inertia = false
+[support.hub]
+on = "hub"
+"""
+# Normal stiffness [N/m] and damping [N s/m] of all pairs, friction, lever of the faces [m], Rayleigh damping [1/s, s].
+STIFFNESS, DAMPING, FRICTION, LEVER, ALPHA, BETA = 1e6, 1.0, 0.5, 2.5e-3, 5.0, 1.6e-8
+
+
+def disc(stridor, folder, dofs, thickness):
+    """M and K of a disc, and y, z of its nodes; every node has a deflection ux and the rotations ry, rz."""
+    folder.mkdir(parents=True, exist_ok=True)
+    # Equilateral triangles of side h: one node for every √3/2 h² of area.
+    nodes = dofs / 3
+    size = np.sqrt(np.pi * (OUTER**2 - HUB**2) / (nodes * np.sqrt(3) / 2))
+    mesh = folder / "disc.msh"
+    if not mesh.exists():
+        subprocess.run([stridor, "mesh", "disc", "--out", mesh, "--outer-radius", f"{OUTER} m", "--hub-radius",
+                        f"{HUB} m", "--size", f"{size} m", "--contact-size", f"{size} m", "--quiet"], check=True)
+    (folder / "case.toml").write_text(CASE.format(thickness=thickness))
+    out = folder / f"{thickness}"
+    subprocess.run([stridor, "export", folder / "case.toml", "--out", out, "--quiet"], check=True)
+    m, k = (sp.csr_matrix(scipy.io.mmread(out / f"{name}.mtx")) for name in ("mass", "stiffness"))
+    with open(out / "dofs.csv") as rows:
+        places = np.array([[float(row["y"]), float(row["z"])] for row in csv.DictReader(rows) if row["ux"] == "1"])
+    assert m.shape[0] == 3 * len(places)
+    return m, k, places
+
+
+def two_discs(stridor, folder, dofs):
+    (m_1, k_1, places), (m_2, k_2, _) = (disc(stridor, folder / "parts", dofs / 2, h) for h in (1e-3, 1.3e-3))
+    n = m_1.shape[0]
+    m, k = sp.block_diag((m_1, m_2), "csr"), sp.block_diag((k_1, k_2), "csr")
+    radius, angle = np.meshgrid(np.linspace(0.05, 0.07, 10), np.radians(np.linspace(-25, 25, 10)))
+    wanted = np.c_[(radius * np.cos(angle)).ravel(), (radius * np.sin(angle)).ravel()]
+    touching = np.unique(cKDTree(places).query(wanted)[1])
+    pairs = len(touching)
+    columns = np.arange(pairs)
+
+    def directions(*parts):
+        rows = np.concatenate([row for row, _ in parts])
+        values = np.concatenate([np.broadcast_to(value, pairs) for _, value in parts])
+        return sp.csr_matrix((values, (rows, np.tile(columns, len(parts)))), (2 * n, pairs))
+
+    theta = np.arctan2(places[touching, 1], places[touching, 0])
+    first, second = 3 * touching, n + 3 * touching
+    gap = directions((first, 1.0), (second, -1.0))
+    moment = directions(*((side + 1 + axis, FRICTION * LEVER * turn) for side in (first, second)
+                          for axis, turn in enumerate((np.cos(theta), np.sin(theta)))))
+    normal, friction = gap @ gap.T, moment @ gap.T
+    stiffness, damping = STIFFNESS / pairs, DAMPING / pairs
+    return (m, ALPHA * m + BETA * (k + stiffness * normal) + damping * (normal + friction),
+            k + stiffness * (normal + friction))
+
+
+def main(stridor, folder, kind, dofs):
+    if kind == "real":
+        m, k, _ = disc(stridor, folder / "parts", dofs, 1e-3)
+        matrices = {"m": m, "k": k}
+    else:
+        matrices = dict(zip("mck", two_discs(stridor, folder, dofs)))
+    for name, matrix in matrices.items():
+        matrix = matrix.tocsr()
+        matrix.sort_indices()
+        sp.save_npz(folder / f"{name}.npz", matrix, compressed=False)
+        symmetry = "symmetric" if abs(matrix - matrix.T).max() == 0 else "general"
+        scipy.io.mmwrite(folder / f"{name}.mtx", matrix, symmetry=symmetry, precision=17)
+    skew = matrices["k"] - matrices["k"].T
+    skew.eliminate_zeros()
+    print(f"{kind}: {matrices['k'].shape[0]} degrees of freedom, {matrices['k'].nnz} entries of K, "
+          f"{len(np.unique(skew.nonzero()[0]))} rows not symmetric")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], Path(sys.argv[2]).absolute(), sys.argv[3], float(sys.argv[4]))
