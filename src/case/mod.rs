@@ -439,6 +439,8 @@ pub struct CeaAnalysis {
     pub count: Option<usize>,
     /// Real modes up to this frequency span the first subspace \[Hz\].
     pub basis_below: f64,
+    /// Counts the unstable eigenvalues of the band, to certify that none was missed.
+    pub certify: bool,
     /// Looks for the same modes again by a second, independent method on the full order.
     pub confirm: bool,
     /// Measured squeal frequencies \[Hz\].

@@ -1,14 +1,15 @@
 //! The analyses of a case in their order, each result handed on as soon as it is there.
 
+use super::clock::Clock;
 use super::complex::{complex_result, whole_modes};
 use super::explore::{KnownMap, KnownMaps, Nominal, explore};
+use super::missed::nothing_is_missed;
 use super::modes::{compare, named, of_the_whole, part_modes, wanted};
 use super::prepared::Prepared;
 use super::sensitivity::Analysed;
 use crate::case::{Case, ContactState, SensitivityAnalysis};
 use crate::equilibrium::{self, SteadyOptions, SteadySliding};
-use crate::error::{Error, Result};
-use crate::linalg::c64;
+use crate::error::Result;
 use crate::modal;
 use crate::progress::Observer;
 use crate::results::{
@@ -17,7 +18,6 @@ use crate::results::{
 };
 use crate::sweep::MapPoint;
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
 use std::path::Path;
 use std::time::Instant;
 
@@ -138,7 +138,7 @@ pub fn run_case(
     file.write_measured(&results.measured)?;
     results.timings.push(("write results".into(), recording + writing.elapsed().as_secs_f64()));
     file.finish(&results)?;
-    two_methods_agree(&results)?;
+    nothing_is_missed(&results)?;
     Ok(results)
 }
 
@@ -275,25 +275,6 @@ fn steady_result(prepared: &Prepared, state: SteadySliding) -> SteadyResult {
     }
 }
 
-/// A disagreement between the two methods is an error, but only once the results are there to look at.
-fn two_methods_agree(results: &RunResults) -> Result<()> {
-    let confirmation = results.complex.as_ref().and_then(|c| c.confirmation.as_ref());
-    let Some(wrong) = confirmation.filter(|c| !c.holds()) else { return Ok(()) };
-    let list = |all: &[c64]| {
-        let hz: Vec<String> = all.iter().map(|z| format!("{:.2}", z.im / TAU)).collect();
-        if hz.is_empty() { "none".to_string() } else { hz.join(", ") }
-    };
-    Err(Error::analysis(
-        "complex eigenvalues by two methods",
-        format!(
-            "modes that only two-level Arnoldi found [Hz]: {}; that only the projection found: {}",
-            list(&wrong.missed),
-            list(&wrong.unconfirmed)
-        ),
-        "The results are written. Raise `basis_below`, and look at the condition numbers of the modes near these",
-    ))
-}
-
 /// Where Kirchhoff's theory is off by more than a percent at the highest frequency asked for.
 fn thickness_warnings(prepared: &Prepared) -> Vec<String> {
     let case = prepared.case;
@@ -312,19 +293,4 @@ fn thickness_warnings(prepared: &Prepared) -> Vec<String> {
             )
         })
         .collect()
-}
-
-/// Wall times of the phases.
-#[derive(Default)]
-pub(super) struct Clock {
-    phases: Vec<(String, f64)>,
-}
-
-impl Clock {
-    pub(super) fn time<T>(&mut self, phase: &str, work: impl FnOnce() -> T) -> T {
-        let started = Instant::now();
-        let value = work();
-        self.phases.push((phase.to_string(), started.elapsed().as_secs_f64()));
-        value
-    }
 }

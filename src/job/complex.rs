@@ -1,7 +1,7 @@
 //! The complex eigenvalue analysis of a case: its band, the real modes that span it, its modes in words, and the second
 //! method beside it.
 
-use super::analyse::Clock;
+use super::clock::Clock;
 use super::modes::{add_modal_damping, labels, named};
 use super::nearest::{band_around, keep_nearest};
 use super::prepared::Prepared;
@@ -30,19 +30,22 @@ pub fn complex_result(
     if cea.nearest.is_some() {
         band = clock.time("counting modes", || band_around(&preloaded, cea))?;
     }
-    let (basis, modes) = loop {
+    let (basis, modes, certificate) = loop {
         let below = if cea.nearest.is_some() { cea.basis_below.min(1.5 * band[1]) } else { cea.basis_below };
         let basis = match basis.take() {
             Some(basis) => basis,
             None => whole_modes(&preloaded, below, clock, observer)?,
         };
         add_modal_damping(&mut system.structure, &basis, prepared)?;
-        let mut modes = clock.time("complex eigenvalues", || {
-            stability::complex_modes(&system, state, &basis, band, observer)
+        let (mut modes, certificate) = clock.watch(observer, |observer| match cea.certify {
+            true => stability::certified_modes(&system, state, &basis, band, observer),
+            false => {
+                stability::complex_modes(&system, state, &basis, band, observer).map(|modes| (modes, None))
+            }
         })?;
         match keep_nearest(&mut modes, cea, band) {
             Some(wider) => band = wider,
-            None => break (basis, modes),
+            None => break (basis, modes, certificate),
         }
     };
     let confirmation = match cea.confirm {
@@ -69,6 +72,7 @@ pub fn complex_result(
         participation,
         measured_squeal_hz: cea.measured_squeal.iter().map(|f| (*f, cea.measured_source.clone())).collect(),
         band_hz: band,
+        certificate,
         confirmation,
         modes,
     };

@@ -7,12 +7,14 @@
 //! A case may give M, C and K themselves instead of a mesh; [`export()`] writes any case in that form.
 
 mod analyse;
+mod clock;
 mod complex;
 mod contacts;
 mod disc;
 mod explore;
 mod export;
 mod imported;
+mod missed;
 mod model;
 mod modes;
 mod nearest;

@@ -5,7 +5,7 @@ use crate::linalg::c64;
 use crate::results::{
     ComplexResult, ModeSensitivity, NamedModes, RunResults, SensitivityResult, SteadyResult,
 };
-use crate::stability::Confirmation;
+use crate::stability::{Certificate, Confirmation};
 use std::f64::consts::TAU;
 
 /// A measured squeal frequency and an unstable mode nearer than this share of it are taken for the same.
@@ -242,7 +242,32 @@ pub(super) fn unstable(result: &ComplexResult) -> Table {
     if !unmatched.is_empty() {
         table.notes.push(format!("Measured squeal without an unstable mode: {}.", unmatched.join(", ")));
     }
+    table.notes.extend(result.certificate.as_ref().map(counted));
     table
+}
+
+/// What the count of the unstable eigenvalues says, in words.
+fn counted(certificate: &Certificate) -> String {
+    let ([low, high], [slow, _]) = (certificate.band_hz, certificate.growth);
+    let region =
+        format!("between {} and {} Hz with σ > {} 1/s", given(low), fixed(high, 0), significant(slow, 2));
+    let with_conjugates = if low == 0.0 { ", conjugates included," } else { "" };
+    let count = format!("{} eigenvalues {region}{with_conjugates}", certificate.counted);
+    let mut words = if certificate.holds() {
+        let margin = significant(certificate.margin, 2);
+        format!(
+            "Certified: {count} were counted, as many as were found; proven at full order, margin {margin}."
+        )
+    } else if certificate.agrees() {
+        format!("{count} were counted, as many as were found; not proven at full order.")
+    } else {
+        format!("A MODE WAS MISSED: {count} were counted, {} found.", certificate.found)
+    };
+    for call in &certificate.close_calls {
+        let hz = fixed(call.frequency_hz, 1);
+        words += &format!(" Close call: the mode at {hz} Hz, σ = {} 1/s.", significant(call.growth_rate, 2));
+    }
+    words
 }
 
 /// What the second method says, in words.

@@ -274,6 +274,16 @@ fn write_complex(root: &Group, complex: &ComplexResult) -> hdf5::Result<()> {
     attribute(&group.0, "subspace_dimension", &(complex.modes.subspace_dimension as u64))?;
     attribute(&group.0, "refinements", &(complex.modes.refinements as u64))?;
     group.list("band_hz", &complex.band_hz, "Hz", "frequency band of the analysis")?;
+    if let Some(certificate) = &complex.certificate {
+        attribute(&group.0, "certificate_holds", &certificate.holds())?;
+        attribute(&group.0, "certificate_unstable_counted", &certificate.counted)?;
+        attribute(&group.0, "certificate_unstable_found", &certificate.found)?;
+        attribute(&group.0, "certificate_margin", &certificate.margin)?;
+        let growth = "growth rates between which eigenvalues were counted";
+        group.list("certificate_growth_rate", &certificate.growth, "1/s", growth)?;
+        let band = "frequencies between which eigenvalues were counted; from zero on with their conjugates";
+        group.list("certificate_band_hz", &certificate.band_hz, "Hz", band)?;
+    }
     let eigenvalues: Vec<c64> = modes.iter().map(|m| m.eigenvalue).collect();
     group.list("eigenvalue", &eigenvalues, "1/s", "λ = σ + iω; unstable when σ > 0")?;
     let of = |value: fn(&ComplexMode) -> f64| -> Vec<f64> { modes.iter().map(value).collect() };

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::error::Result;
 use crate::linalg::c64;
-use crate::stability::Confirmation;
+use crate::stability::{Certificate, Confirmation};
 use serde::Serialize;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -55,11 +55,11 @@ struct ModeSet<'a> {
     modes: usize,
     rigid_bodies: usize,
     total_mass_kg: f64,
-    certificate: Certificate,
+    certificate: Sturm,
 }
 
 #[derive(Serialize)]
-struct Certificate {
+struct Sturm {
     below_hz: f64,
     shifts_hz: [f64; 2],
     counted: [usize; 2],
@@ -126,8 +126,36 @@ struct Cea<'a> {
     refinements: usize,
     eigenvalues: Vec<Eigenvalue<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    certificate: Option<Count>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     second_method: Option<SecondMethod>,
     measured_squeal: Vec<Squeal<'a>>,
+}
+
+/// How many eigenvalues grow, counted; a band from zero holds the conjugates too.
+#[derive(Serialize)]
+struct Count {
+    holds: bool,
+    band_hz: [f64; 2],
+    growth_rate: [f64; 2],
+    unstable_counted: i64,
+    unstable_found: i64,
+    margin: f64,
+    tightest_hz: f64,
+    points: usize,
+    structure_poles: usize,
+    dissipative: bool,
+    nothing_faster: bool,
+    close_calls: Vec<NearContour>,
+}
+
+/// A mode near the contour of the count.
+#[derive(Serialize)]
+struct NearContour {
+    frequency_hz: f64,
+    growth_rate: f64,
+    distance: f64,
+    inside: bool,
 }
 
 /// What two-level Arnoldi on the full order says.
@@ -287,7 +315,7 @@ fn mode_set(set: &NamedModes) -> ModeSet<'_> {
         modes: set.modes.len(),
         rigid_bodies: set.modes.rigid_bodies,
         total_mass_kg: set.total_mass,
-        certificate: Certificate {
+        certificate: Sturm {
             below_hz: c.below_hz,
             shifts_hz: c.shifts_hz,
             counted: c.counted,
@@ -369,8 +397,32 @@ fn cea(result: &ComplexResult) -> Cea<'_> {
         subspace_dimension: result.modes.subspace_dimension,
         refinements: result.modes.refinements,
         eigenvalues: eigenvalues.collect(),
+        certificate: result.certificate.as_ref().map(count),
         second_method: result.confirmation.as_ref().map(second_method),
         measured_squeal: squeal.map(|(hz, source)| Squeal { frequency_hz: *hz, source }).collect(),
+    }
+}
+
+fn count(certificate: &Certificate) -> Count {
+    let near = certificate.close_calls.iter().map(|call| NearContour {
+        frequency_hz: call.frequency_hz,
+        growth_rate: call.growth_rate,
+        distance: call.distance,
+        inside: call.inside,
+    });
+    Count {
+        holds: certificate.holds(),
+        band_hz: certificate.band_hz,
+        growth_rate: certificate.growth,
+        unstable_counted: certificate.counted,
+        unstable_found: certificate.found,
+        margin: certificate.margin,
+        tightest_hz: certificate.tightest[0],
+        points: certificate.points,
+        structure_poles: certificate.structure_poles,
+        dissipative: certificate.dissipative,
+        nothing_faster: certificate.nothing_faster,
+        close_calls: near.collect(),
     }
 }
 

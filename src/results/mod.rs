@@ -37,7 +37,7 @@ pub use vtk::write_vtk;
 
 use crate::equilibrium::SteadySliding;
 use crate::modal::{DiscModeName, RealModes};
-use crate::stability::{ComplexModes, Confirmation};
+use crate::stability::{Certificate, ComplexModes, Confirmation};
 use std::path::Path;
 
 /// Writes `summary.json`, the tables and the ParaView files of `results` into the folder `dir`.
@@ -178,6 +178,8 @@ pub struct ComplexResult {
     pub measured_squeal_hz: Vec<(f64, String)>,
     /// Frequency band of the analysis \[Hz\].
     pub band_hz: [f64; 2],
+    /// The count of the unstable eigenvalues, where there is one.
+    pub certificate: Option<Certificate>,
     /// The second method beside it, if the case asked for one.
     pub confirmation: Option<Confirmation>,
 }

@@ -269,6 +269,7 @@ fn complex_result(disc: &NamedModes) -> ComplexResult {
         participation: (0..modes.len()).map(words).collect(),
         measured_squeal_hz: [936.0, 1661.0, 2600.0].map(|hz| (hz, "accelerometer".to_string())).to_vec(),
         band_hz: [100.0, 3000.0],
+        certificate: None,
         confirmation: None,
         modes: ComplexModes { modes, subspace_dimension: 142, refinements: 2, warnings: Vec::new() },
     }

@@ -52,11 +52,67 @@ pub fn complex_modes(
     band_hz: [f64; 2],
     observer: &dyn Observer,
 ) -> Result<ComplexModes> {
+    analyse(system, steady, real, band_hz, observer, |_, _| ()).map(|(modes, ())| modes)
+}
+
+/// What an analysis has at hand when its modes are found.
+pub(super) struct Analysis<'a> {
+    pub(super) operator: &'a Operator<'a>,
+    pub(super) basis: &'a Basis<'a>,
+    /// A = K + K_σ − shift · M.
+    pub(super) factor: &'a dyn SymmetricFactor,
+    pub(super) shift: f64,
+    /// How many of the first vectors of the basis are real modes.
+    pub(super) n_real: usize,
+    /// Ω_b²: every real mode below it is in the basis, as the Sturm count proves; zero when it does not.
+    pub(super) complete_below: f64,
+    /// What the basis misses of the static responses to the interface, squared E-norms added up.
+    pub(super) left_out: f64,
+    pub(super) band_hz: [f64; 2],
+}
+
+/// [`complex_modes`], and what `then` makes of them and the analysis.
+pub(super) fn analyse<T>(
+    system: &System,
+    steady: &SteadySliding,
+    real: &RealModes,
+    band_hz: [f64; 2],
+    observer: &dyn Observer,
+    then: impl FnOnce(&mut ComplexModes, Analysis<'_>) -> T,
+) -> Result<(ComplexModes, T)> {
     check(system, steady, real, band_hz)?;
+    let operator = Operator::new(system, steady)?;
+    let band = band_hz.map(|f| TAU * f);
     observer.begin("complex eigenvalues", None);
-    let modes = analyse(system, steady, real, band_hz, observer);
+    let solved = shifted_factor(&operator, real, band).and_then(|(factor, shift)| {
+        let solved = solve_and_refine(&operator, &*factor, real, band_hz, observer)?;
+        Ok((factor, shift, solved))
+    });
     observer.end();
-    modes
+    let (factor, shift, (mut modes, basis, left_out)) = solved?;
+    let analysis = Analysis {
+        operator: &operator,
+        basis: &basis,
+        factor: &*factor,
+        shift,
+        n_real: real.len(),
+        complete_below: complete_below(system, real),
+        left_out,
+        band_hz,
+    };
+    let rest = then(&mut modes, analysis);
+    Ok((modes, rest))
+}
+
+/// Ω_b² below which no real mode is missing.
+fn complete_below(system: &System, real: &RealModes) -> f64 {
+    if real.len() == system.n_dofs() {
+        f64::INFINITY
+    } else if real.certificate.holds() {
+        (TAU * real.certificate.below_hz).powi(2)
+    } else {
+        0.0
+    }
 }
 
 fn check(system: &System, steady: &SteadySliding, real: &RealModes, band_hz: [f64; 2]) -> Result<()> {
@@ -106,21 +162,21 @@ impl Round {
     }
 }
 
-fn analyse(
-    system: &System,
-    steady: &SteadySliding,
+/// The modes, the basis they were found in, and what that misses of the static responses to the interface.
+fn solve_and_refine<'a>(
+    operator: &'a Operator<'a>,
+    factor: &dyn SymmetricFactor,
     real: &RealModes,
     band_hz: [f64; 2],
     observer: &dyn Observer,
-) -> Result<ComplexModes> {
-    let operator = Operator::new(system, steady)?;
+) -> Result<(ComplexModes, Basis<'a>, f64)> {
     let band = band_hz.map(|f| TAU * f);
-    let factor = shifted_factor(&operator, real, band)?;
-    let mut basis = Basis::new(&operator, real.shapes.as_ref(), band[1] * band[1]);
-    basis.enrich(interface_responses(&operator, &*factor, band[1]), 1e-9, STATIC_RESPONSES);
+    let mut basis = Basis::new(operator, real.shapes.as_ref(), band[1] * band[1]);
+    let responses = interface_responses(operator, factor, band[1]);
+    let left_out = basis.enrich(responses, 1e-9, STATIC_RESPONSES).left_out;
     let mut warnings = Vec::new();
     let mut counts = Vec::new();
-    let mut round = evaluate(&operator, &basis, &*factor, band)?;
+    let mut round = evaluate(operator, &basis, factor, band)?;
     observer.advance(1);
     let mut refinements = 0;
     loop {
@@ -131,13 +187,15 @@ fn analyse(
         }
         // The error of λ is quadratic in that of the vectors: coarse first, so that the basis stays small.
         let tolerance = 1e-6 * 0.01f64.powi(refinements as i32);
-        if basis.enrich(wanted_corrections(&round, &*factor, &open, 1e-3 * band[1]), tolerance, usize::MAX)
+        if basis
+            .enrich(wanted_corrections(&round, factor, &open, 1e-3 * band[1]), tolerance, usize::MAX)
+            .added
             == 0
         {
             break;
         }
         refinements += 1;
-        round = evaluate(&operator, &basis, &*factor, band)?;
+        round = evaluate(operator, &basis, factor, band)?;
         observer.advance(1);
     }
     if let Some(first) = counts.first().filter(|first| counts.iter().any(|c| c != *first)) {
@@ -148,7 +206,7 @@ fn analyse(
     }
     let participations = participations(&round, real).into_iter().enumerate();
     let modes: Vec<ComplexMode> =
-        participations.map(|(j, shares)| mode(&operator, &round, shares, j)).collect();
+        participations.map(|(j, shares)| mode(operator, &round, shares, j)).collect();
     for mode in modes.iter().filter(|mode| mode.accepted() && mode.condition > ILL_CONDITIONED) {
         warnings.push(format!(
             "the mode at {:.2} Hz is ill-conditioned: a relative change of the matrices moves it by {:.0e} times as much",
@@ -165,7 +223,7 @@ fn analyse(
             mode.backward_error
         ));
     }
-    if real.len() < system.n_dofs() {
+    if real.len() < operator.n() {
         let highest = real.len().checked_sub(1).map_or(0.0, |last| real.frequency_hz(last));
         if highest < band_hz[1] {
             warnings.push(format!(
@@ -174,15 +232,16 @@ fn analyse(
             ));
         }
     }
-    Ok(ComplexModes { modes, subspace_dimension: basis.len(), refinements, warnings })
+    let modes = ComplexModes { modes, subspace_dimension: basis.len(), refinements, warnings };
+    Ok((modes, basis, left_out))
 }
 
-/// A = K + K_σ − s M, with s in the widest gap between the real modes' ω² near the middle of the band.
+/// A = K + K_σ − s M and s, in the widest gap between the real modes' ω² near the middle of the band.
 pub(super) fn shifted_factor(
     operator: &Operator<'_>,
     real: &RealModes,
     band: [f64; 2],
-) -> Result<Box<dyn SymmetricFactor>> {
+) -> Result<(Box<dyn SymmetricFactor>, f64)> {
     let middle = 0.5 * (band[0] * band[0] + band[1] * band[1]);
     let (low, high) = (0.5 * middle, 1.5 * middle);
     let mut ends = vec![low];
@@ -190,7 +249,9 @@ pub(super) fn shifted_factor(
     ends.push(high);
     let widest = ends.windows(2).max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
     let shift = widest.map_or(middle, |gap| 0.5 * (gap[0] + gap[1]));
-    let at = |s: f64| factorize(&add_scaled(&[(1.0, &*operator.stiffness), (-s, operator.mass)]));
+    let at = |s: f64| {
+        factorize(&add_scaled(&[(1.0, &*operator.stiffness), (-s, operator.mass)])).map(|factor| (factor, s))
+    };
     at(shift).or_else(|_| at(-middle))
 }
 
@@ -202,13 +263,7 @@ pub(super) fn interface_responses(
     omega: f64,
 ) -> Mat<f64> {
     let interface = &operator.interface;
-    let mut largest = vec![0.0f64; interface.directions.len()];
-    for term in &interface.terms {
-        let size = term.stiffness.abs() + omega * term.damping.abs();
-        for end in [term.row, term.column] {
-            largest[end] = largest[end].max(size);
-        }
-    }
+    let largest = interface.sizes(omega);
     let columns: Vec<_> = interface
         .directions
         .iter()

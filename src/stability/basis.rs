@@ -21,7 +21,7 @@ pub(super) struct Basis<'a> {
     modes: usize,
     pub(super) vectors: Mat<f64>,
     /// M B, K B, C B, H B: what the full order makes of the basis, kept so that a residual costs dense products only.
-    mass_times: Mat<f64>,
+    pub(super) mass_times: Mat<f64>,
     stiffness_times: Mat<f64>,
     damping_times: Option<Mat<f64>>,
     hysteretic_times: Option<Mat<f64>>,
@@ -31,6 +31,15 @@ pub(super) struct Basis<'a> {
     pub(super) hysteretic: Option<Mat<f64>>,
     /// BᵀW: one row a basis vector, one column a direction of the interface.
     pub(super) interface: Mat<f64>,
+}
+
+/// What an enrichment came to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Enriched {
+    /// The directions that were added.
+    pub(super) added: usize,
+    /// The squared E-norms, added up, of what the basis still misses of the columns that were not taken.
+    pub(super) left_out: f64,
 }
 
 /// Complex vectors with what M, K, C and H make of them.
@@ -97,8 +106,8 @@ impl<'a> Basis<'a> {
 
     /// Adds the directions of `z` that are new: after the basis is projected out, the columns are taken in the order
     /// of their remaining size in the E-norm, until it is below `tolerance` (or round-off of where the column
-    /// started), or `limit` are taken. Returns how many were added.
-    pub(super) fn enrich(&mut self, mut z: Mat<f64>, tolerance: f64, limit: usize) -> usize {
+    /// started), or `limit` are taken.
+    pub(super) fn enrich(&mut self, mut z: Mat<f64>, tolerance: f64, limit: usize) -> Enriched {
         const ROUND_OFF: f64 = 1e-10;
         let before = self.energy(z.as_ref());
         self.project_out(&mut z);
@@ -108,6 +117,7 @@ impl<'a> Basis<'a> {
             .map(|j| (tolerance * tolerance).max(ROUND_OFF * ROUND_OFF * before[(j, j)]))
             .collect();
         let mut open = pivoted_choice(&mut energy, &floor, limit);
+        let left_out = (0..z.ncols()).filter(|j| !open.contains(j)).map(|j| energy[(j, j)].max(0.0)).sum();
         let first = self.len();
         while !open.is_empty() {
             let now: Vec<usize> = open.drain(..open.len().min(PANEL)).collect();
@@ -119,7 +129,7 @@ impl<'a> Basis<'a> {
                 self.append(new);
             }
         }
-        self.len() - first
+        Enriched { added: self.len() - first, left_out }
     }
 
     /// zᵀ(K + τM)z.

@@ -93,7 +93,7 @@ impl<'a> Frame<'a> {
         let stiffness = tangent_stiffness(system, displacement)?;
         let operator = Operator::with_interface(system, stiffness, Interface::of_every_point(system));
         let band = band_hz.map(|f| TAU * f);
-        let factor = shifted_factor(&operator, real, band)?;
+        let (factor, _) = shifted_factor(&operator, real, band)?;
         Ok(Frame { system, operator, factor, real, dampings, band })
     }
 
@@ -166,7 +166,7 @@ impl<'f> Family<'f> {
                 break;
             }
             let corrections = wanted_corrections(&round, &*self.frame.factor, &open, floor);
-            if self.basis.enrich(corrections, 1e-6 * 0.01f64.powi(k), usize::MAX) == 0 {
+            if self.basis.enrich(corrections, 1e-6 * 0.01f64.powi(k), usize::MAX).added == 0 {
                 break;
             }
             self.reduced = reduce(self.frame, &self.basis, &self.springs)?;

@@ -60,6 +60,18 @@ impl<'a> Interface<'a> {
         Interface { directions: points.chain(imported).collect(), terms: Vec::new() }
     }
 
+    /// The largest |k| + ω|c| among the terms of each direction \[N/m\]: zero where there is none.
+    pub(crate) fn sizes(&self, omega: f64) -> Vec<f64> {
+        let mut sizes = vec![0.0f64; self.directions.len()];
+        for term in &self.terms {
+            let size = term.stiffness.abs() + omega * term.damping.abs();
+            for end in [term.row, term.column] {
+                sizes[end] = sizes[end].max(size);
+            }
+        }
+        sizes
+    }
+
     /// Wᵀ x.
     pub(crate) fn motions(&self, re: &[f64], im: &[f64]) -> Vec<c64> {
         self.directions.iter().map(|d| c64::new(d.dot(re), d.dot(im))).collect()

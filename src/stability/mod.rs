@@ -1,14 +1,16 @@
 //! Complex eigenvalues at steady sliding: (λ² M + λ (C + C_c) + K + K_σ + K_c) φ = 0, λ = σ + iω, unstable when σ > 0.
 //!
 //! [`complex_modes`] projects the problem on real modes and the static responses to the contact directions, solves the
-//! small one, and lets the residuals on the full order enrich the basis until every pair is right there. [`confirm`]
-//! looks for the same pairs by two-level Arnoldi on the full order, which shares nothing with the projection.
+//! small one, and lets the residuals on the full order enrich the basis until every pair is right there.
+//! [`certified_modes`] also counts the unstable eigenvalues, without looking for them. [`confirm`] looks for the same
+//! pairs by two-level Arnoldi on the full order, which shares nothing with the projection.
 
 mod advice;
 mod analysis;
 mod basis;
 mod block;
 mod budget;
+mod certificate;
 mod family;
 mod full_order;
 mod interface;
@@ -22,6 +24,7 @@ mod tests;
 
 pub use advice::PointRates;
 pub use analysis::complex_modes;
+pub use certificate::{Certificate, CloseCall, SLOWEST_GROWTH, certified_modes};
 pub use family::{Family, FamilyCheck, FamilyModes, Frame, SlidingState};
 pub use full_order::{Confirmation, confirm};
 pub use sensitivity::{Domain, Rate, Sensitivity};

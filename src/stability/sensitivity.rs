@@ -97,7 +97,7 @@ impl<'a> Sensitivity<'a> {
             Some(damping) if damping.coefficients.iter().any(|c| *c != 0.0) && !modes.is_empty() => {
                 let sizes = || lambda.iter().map(|l| l.norm());
                 let band = [sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max)];
-                let factor = shifted_factor(&operator, real, band)?;
+                let (factor, _) = shifted_factor(&operator, real, band)?;
                 Some(ModalChange::new(&operator, real, damping, &*factor, &phi, &psi)?)
             }
             _ => None,
@@ -296,7 +296,7 @@ fn sharpen(
 ) -> Result<()> {
     let mut factors = Vec::new();
     for l in lambda {
-        factors.push(shifted_factor(operator, real, [l.norm(); 2])?);
+        factors.push(shifted_factor(operator, real, [l.norm(); 2])?.0);
     }
     for (side, vectors) in sides {
         let (residual, _) = operator.apply(side, lambda, &operator.images(vectors));

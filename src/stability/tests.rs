@@ -22,8 +22,11 @@ pub(super) fn dense_modes(system: &System, count: usize) -> RealModes {
     let eigen = symmetric.self_adjoint_eigen(Side::Lower).unwrap();
     let mut shapes = eigen.U().subcols(0, count).to_owned();
     l.transpose().solve_upper_triangular_in_place(shapes.as_mut());
+    // Complete up to just below the next one.
+    let next = (count < eigen.S().dim()).then(|| eigen.S()[count]);
+    let below_hz = next.unwrap_or(2.0 * eigen.S()[count - 1]).max(0.0).sqrt() * (1.0 - 1e-9) / TAU;
     let certificate =
-        SturmCertificate { below_hz: 0.0, shifts_hz: [0.0; 2], counted: [count; 2], found: count };
+        SturmCertificate { below_hz, shifts_hz: [below_hz; 2], counted: [count; 2], found: count };
     RealModes {
         eigenvalues: (0..count).map(|i| eigen.S()[i]).collect(),
         shapes,
@@ -34,7 +37,7 @@ pub(super) fn dense_modes(system: &System, count: usize) -> RealModes {
 }
 
 /// Dense K + iH + K_c and C + C_c of the whole system.
-fn dense_matrices(system: &System, steady: &SteadySliding) -> (Mat<c64>, Mat<c64>) {
+pub(super) fn dense_matrices(system: &System, steady: &SteadySliding) -> (Mat<c64>, Mat<c64>) {
     let n = system.n_dofs();
     let real = |m: &Option<SparseMatrix>| m.as_ref().map_or(Mat::zeros(n, n), |m| m.to_dense());
     let (s, d) = (&system.structure, &system.structure.damping);
@@ -59,11 +62,28 @@ fn dense_matrices(system: &System, steady: &SteadySliding) -> (Mat<c64>, Mat<c64
             }
         }
     }
+    if let Some(rest) = &system.coupling {
+        for (a, u) in rest.directions.iter().enumerate() {
+            for (b, v) in rest.directions.iter().enumerate() {
+                for ((i, x), (j, y)) in u.iter().flat_map(|x| v.iter().map(move |y| (x, y))) {
+                    k[(i, j)] += c64::new(x * rest.stiffness[(a, b)] * y, 0.0);
+                    c[(i, j)] += c64::new(x * rest.damping[(a, b)] * y, 0.0);
+                }
+            }
+        }
+    }
     (k, c)
 }
 
-/// Every eigenvalue in the band from the full-order first-order form ẋ = [0 I; −M⁻¹K −M⁻¹C] x.
+/// Every eigenvalue in the band.
 pub(super) fn dense_eigenvalues(system: &System, steady: &SteadySliding, band_hz: [f64; 2]) -> Vec<c64> {
+    let mut all = dense_spectrum(system, steady);
+    all.retain(|z| z.im >= TAU * band_hz[0] && z.im <= TAU * band_hz[1]);
+    all
+}
+
+/// Every eigenvalue from the full-order first-order form ẋ = [0 I; −M⁻¹K −M⁻¹C] x.
+pub(super) fn dense_spectrum(system: &System, steady: &SteadySliding) -> Vec<c64> {
     use faer::linalg::solvers::Solve;
     let n = system.n_dofs();
     let (k, c) = dense_matrices(system, steady);
@@ -77,7 +97,6 @@ pub(super) fn dense_eigenvalues(system: &System, steady: &SteadySliding, band_hz
         (false, false) => c64::new(0.0, 0.0),
     });
     let mut all = a.eigenvalues().unwrap();
-    all.retain(|z| z.im >= TAU * band_hz[0] && z.im <= TAU * band_hz[1]);
     all.sort_by(|a, b| a.im.total_cmp(&b.im).then(a.re.total_cmp(&b.re)));
     all
 }

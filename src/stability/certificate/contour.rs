@@ -1,0 +1,142 @@
+//! The winding number of d along a rectangle, covered by discs in which its phase cannot be misread.
+
+use super::pencil::{Pencil, Point};
+use crate::linalg::c64;
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+
+/// A closed region of the plane of s: growth \[1/s\] times angular frequency \[rad/s\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Region {
+    pub(super) growth: [f64; 2],
+    /// When it begins at zero, the region reaches as far below the real axis as above.
+    pub(super) omega: [f64; 2],
+}
+
+impl Region {
+    /// Whether the region is symmetric about the real axis.
+    pub(super) fn symmetric(&self) -> bool {
+        self.omega[0] == 0.0
+    }
+
+    fn bottom(&self) -> f64 {
+        if self.symmetric() { -self.omega[1] } else { self.omega[0] }
+    }
+
+    /// Whether `s` lies inside.
+    pub(super) fn contains(&self, s: c64) -> bool {
+        s.re > self.growth[0] && s.re < self.growth[1] && s.im > self.bottom() && s.im < self.omega[1]
+    }
+
+    /// The distance of `s` from the boundary.
+    pub(super) fn distance(&self, s: c64) -> f64 {
+        let ([left, right], [bottom, top]) = (self.growth, [self.bottom(), self.omega[1]]);
+        let outside = |x: f64, low: f64, high: f64| (low - x).max(x - high).max(0.0);
+        let (dx, dy) = (outside(s.re, left, right), outside(s.im, bottom, top));
+        if dx > 0.0 || dy > 0.0 {
+            return dx.hypot(dy);
+        }
+        (s.re - left).min(right - s.re).min(s.im - bottom).min(top - s.im)
+    }
+
+    /// The corners of the path, counter-clockwise: the upper half of a symmetric region, the whole of another.
+    fn path(&self) -> Vec<c64> {
+        let ([left, right], [low, high]) = (self.growth, self.omega);
+        let mut path =
+            vec![c64::new(right, low), c64::new(right, high), c64::new(left, high), c64::new(left, low)];
+        if !self.symmetric() {
+            path.push(path[0]);
+        }
+        path
+    }
+}
+
+/// What a walk round a region found.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Winding {
+    /// The number of times that d winds round zero: zeros less poles inside.
+    pub(super) turns: i64,
+    /// Discs that cover the contour.
+    pub(super) points: usize,
+    /// The largest ρ, and where.
+    pub(super) defect: f64,
+    pub(super) worst: c64,
+}
+
+/// Pieces of an edge that are covered independently of each other.
+const PIECES: usize = 16;
+/// The most points on a piece.
+const POINTS: usize = 20_000;
+
+/// Walks round `region`.
+///
+/// # Errors
+/// The place where the contour passes so near an eigenvalue or a pole that it cannot be followed.
+pub(super) fn wind(pencil: &Pencil<'_>, region: &Region) -> Result<Winding, c64> {
+    let path = region.path();
+    let pieces: Vec<[c64; 2]> = path
+        .windows(2)
+        .flat_map(|edge| {
+            let at = |k: usize| edge[0] + (edge[1] - edge[0]) * (k as f64 / PIECES as f64);
+            let (first, last) = (edge[0], edge[1]);
+            (0..PIECES).map(move |k| {
+                [if k == 0 { first } else { at(k) }, if k + 1 == PIECES { last } else { at(k + 1) }]
+            })
+        })
+        .collect();
+    let resolution = 1e-11 * region.omega[1];
+    let covered: Result<Vec<Vec<Point>>, c64> =
+        pieces.par_iter().map(|[a, b]| cover(pencil, *a, *b, resolution)).collect();
+    let mut points: Vec<Point> = covered?.into_iter().flatten().collect();
+    let count = points.len();
+    let worst = points.iter().copied().reduce(|a, b| if b.defect > a.defect { b } else { a });
+    if region.symmetric() {
+        // d is real on the real axis: close the half with its ends there.
+        let ends = [path[0], path[path.len() - 1]];
+        let on_axis = |s: c64| pencil.point(s, resolution).ok_or(s);
+        points.insert(0, on_axis(ends[0])?);
+        points.push(on_axis(ends[1])?);
+    } else if let Some(first) = points.first().copied() {
+        points.push(first);
+    }
+    // Two neighbouring discs touch, and in each the phase is within asin(3/4) of its centre's: less than half a turn.
+    let change: f64 = points.windows(2).map(|p| (p[1].phase * p[0].phase.conj()).arg()).sum();
+    let turns = if region.symmetric() { 2.0 * change / TAU } else { change / TAU };
+    let whole = turns.round();
+    match worst {
+        Some(worst) if (turns - whole).abs() < 1e-3 => {
+            Ok(Winding { turns: whole as i64, points: count, defect: worst.defect, worst: worst.s })
+        }
+        _ => Err(path[0]),
+    }
+}
+
+/// Discs that cover the line from `a` to `b`, in order.
+fn cover(pencil: &Pencil<'_>, a: c64, b: c64, resolution: f64) -> Result<Vec<Point>, c64> {
+    let length = (b - a).norm();
+    let direction = (b - a) / length;
+    let mut done = Vec::new();
+    // What is still open, the next stretch last.
+    let mut open = vec![(0.0, length)];
+    let mut evaluated = 0;
+    while let Some((from, to)) = open.pop() {
+        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+        let s = a + direction * middle;
+        evaluated += 1;
+        let point = pencil.point(s, half).ok_or(s)?;
+        if point.reach >= half {
+            done.push((middle, point));
+            continue;
+        }
+        if point.reach < resolution || evaluated > POINTS {
+            return Err(s);
+        }
+        // A shade less than the reach, so that rounding leaves no gap.
+        let reach = 0.999 * point.reach;
+        done.push((middle, point));
+        open.push((middle + reach, to));
+        open.push((from, middle - reach));
+    }
+    done.sort_by(|x, y| x.0.total_cmp(&y.0));
+    Ok(done.into_iter().map(|(_, point)| point).collect())
+}

@@ -1,0 +1,234 @@
+//! The certificate that no unstable mode was missed.
+//!
+//! The eigenvalues inside a closed region, growth ε … R times the band, are *counted* without looking for them. With
+//! Q_B the projection of Q on the basis of the analysis, brought to oscillators p(s) = s² + a s + θ + i h,
+//!
+//! det Q_B(s) = Π p(s) · d(s), d(s) = det(I + H(s) κ(s)), H = W_Bᵀ diag(1/p) W_B, κ = k + s c,
+//!
+//! d is as small as the contact, and the zeros of Q_B inside are the turns of d round zero along the contour plus the
+//! zeros of p inside, which are known in closed form. Three statements make it a proof, up to rounding:
+//!
+//! 1. *Between the points.* Each point of the contour comes with a disc in which d has no zero and its phase changes by
+//!    less than a quarter turn ([`pencil`]). The discs cover the contour ([`contour`]): a turn cannot be overlooked.
+//! 2. *Beyond the basis.* With the real modes below Ω_b complete, by the Sturm count, the full order differs from the
+//!    basis by a perturbation of relative size ρ on the contour ([`remainder`]). Where ρ < 1 everywhere the full
+//!    determinant winds like the small one. The margin is the smallest 1/ρ.
+//! 3. *Beyond the region.* Nothing in the band grows faster than R ([`beyond`]); said where it could be shown.
+//!
+//! What is assumed: the real modes are exact (their residuals enter squared), rounding errors are not bounded, and modal
+//! damping counts as acting on real modes when one random combination of its modes does.
+
+mod beyond;
+mod contour;
+mod pencil;
+mod proportional;
+mod reduced;
+mod remainder;
+#[cfg(test)]
+mod tests;
+
+use super::ComplexModes;
+use super::analysis::{Analysis, analyse};
+use crate::equilibrium::SteadySliding;
+use crate::error::{Error, Result};
+use crate::linalg::c64;
+use crate::modal::RealModes;
+use crate::progress::Observer;
+use crate::system::System;
+use contour::{Region, Winding, wind};
+use pencil::Pencil;
+use reduced::ReducedModel;
+use std::f64::consts::TAU;
+
+/// ε relative to the band's top, 2π f: the slowest growth that is counted. At the band's top it is a damping ratio of
+/// −1e-5, an amplitude that takes 16,000 periods to grow e-fold: less than the damping of any built structure is known
+/// to. It keeps the contour clear of the modes of an undamped structure, which lie on the imaginary axis.
+pub const SLOWEST_GROWTH: f64 = 1e-5;
+
+/// How many eigenvalues lie in a closed region, counted, beside how many were found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Certificate {
+    /// The region's frequencies ω/2π \[Hz\]. When they begin at zero the region reaches as far below the real axis as
+    /// above: it holds real eigenvalues (divergence), and both of each conjugate pair.
+    pub band_hz: [f64; 2],
+    /// The region's growth rates σ \[1/s\].
+    pub growth: [f64; 2],
+    /// Eigenvalues counted inside.
+    pub counted: i64,
+    /// Eigenvalues found inside.
+    pub found: i64,
+    /// The smallest 1/ρ on the contour: above 1 the count holds at full order; at most 1e16.
+    pub margin: f64,
+    /// Frequency \[Hz\] and growth rate \[1/s\] on the contour where the margin is smallest.
+    pub tightest: [f64; 2],
+    /// Points of the contour.
+    pub points: usize,
+    /// Zeros of the oscillators inside, accounted for in the count; none when the structure dissipates and K is
+    /// positive semidefinite.
+    pub structure_poles: usize,
+    /// Whether C and H are known to dissipate.
+    pub dissipative: bool,
+    /// Whether it was shown that no eigenvalue of the band grows faster than the region reaches.
+    pub nothing_faster: bool,
+    /// What came near to the contour or is not inside it though unstable.
+    pub close_calls: Vec<CloseCall>,
+}
+
+/// A mode that is near the contour, or grows too slowly to be counted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CloseCall {
+    /// ω/2π of the mode \[Hz\].
+    pub frequency_hz: f64,
+    /// σ of the mode \[1/s\].
+    pub growth_rate: f64,
+    /// Its distance from the contour \[1/s\].
+    pub distance: f64,
+    /// Whether it was counted as inside.
+    pub inside: bool,
+}
+
+impl Certificate {
+    /// Whether the count equals the number found.
+    pub fn agrees(&self) -> bool {
+        self.counted == self.found
+    }
+
+    /// Whether the count equals the number found and holds at full order.
+    pub fn holds(&self) -> bool {
+        self.agrees() && self.margin > 1.0
+    }
+}
+
+/// How often the contour is moved a little when an eigenvalue is too near for it.
+const ATTEMPTS: usize = 3;
+
+/// [`complex_modes`](super::complex_modes) of the band, and the count of those that grow.
+///
+/// The caller compares: [`Certificate::agrees`] tells whether a mode was missed. Where the modes cannot be counted, such
+/// as with an eigenvalue on the contour wherever it is drawn, there is no certificate but a warning.
+///
+/// # Errors
+/// Those of [`complex_modes`](super::complex_modes).
+pub fn certified_modes(
+    system: &System,
+    steady: &SteadySliding,
+    real: &RealModes,
+    band_hz: [f64; 2],
+    observer: &dyn Observer,
+) -> Result<(ComplexModes, Option<Certificate>)> {
+    analyse(system, steady, real, band_hz, observer, |modes, analysis| {
+        observer.begin("certificate", None);
+        let certificate = count(&analysis, modes);
+        observer.end();
+        match certificate {
+            Ok(certificate) => {
+                if certificate.agrees() && !certificate.holds() {
+                    modes.warnings.push(weak(&certificate));
+                }
+                Some(certificate)
+            }
+            Err(error) => {
+                modes.warnings.push(format!("the unstable modes could not be counted: {error}"));
+                None
+            }
+        }
+    })
+}
+
+/// The count agrees, and yet is no proof.
+fn weak(certificate: &Certificate) -> String {
+    format!(
+        "the count of the unstable modes is no proof at full order: near {:.1} Hz what the basis leaves out may be {:.1e} times what would change it; take more real modes (`cea.basis_below`)",
+        certificate.tightest[0],
+        1.0 / certificate.margin
+    )
+}
+
+fn count(analysis: &Analysis<'_>, modes: &ComplexModes) -> Result<Certificate> {
+    let model = ReducedModel::new(analysis)?;
+    let top = TAU * analysis.band_hz[1];
+    let interface = &analysis.operator.interface;
+    let pencil = Pencil::new(&model, &interface.terms, &interface.sizes(top), top)?;
+    let mut best: Option<(Region, Winding)> = None;
+    let mut stuck = c64::new(0.0, 0.0);
+    for attempt in 0..ATTEMPTS {
+        let region = region(analysis, attempt);
+        match wind(&pencil, &region) {
+            Ok(winding) => {
+                let better = best.as_ref().is_none_or(|(_, b)| winding.defect < b.defect);
+                if better {
+                    best = Some((region, winding));
+                }
+                if winding.defect < 1.0 {
+                    break;
+                }
+            }
+            Err(place) => stuck = place,
+        }
+    }
+    let Some((region, winding)) = best else {
+        return Err(Error::analysis(
+            "certificate of the unstable modes",
+            format!(
+                "an eigenvalue lies on the contour near {:.6} Hz, growth {:.3e} 1/s",
+                stuck.im / TAU,
+                stuck.re
+            ),
+            "Move the ends of the band by a few hertz",
+        ));
+    };
+    let structure_poles =
+        model.oscillators.iter().flat_map(|o| o.roots()).filter(|root| region.contains(*root)).count();
+    let counted = winding.turns + structure_poles as i64;
+    let found = found(modes, &region);
+    Ok(Certificate {
+        band_hz: region.omega.map(|w| w / TAU),
+        growth: region.growth,
+        counted,
+        found,
+        margin: 1.0 / winding.defect.max(1e-16),
+        tightest: [winding.worst.im / TAU, winding.worst.re],
+        points: winding.points,
+        structure_poles,
+        dissipative: model.dissipative,
+        nothing_faster: beyond::nothing_faster(&model, analysis)?,
+        close_calls: close_calls(modes, &region),
+    })
+}
+
+/// The band of the analysis times ε … R, each attempt a little smaller.
+fn region(analysis: &Analysis<'_>, attempt: usize) -> Region {
+    let [low, high] = analysis.band_hz.map(|f| TAU * f);
+    let inward = 1e-5 * attempt as f64;
+    // With loss factors the spectrum is not symmetric, and at ω = 0 they mean nothing.
+    let bottom = if low == 0.0 && analysis.operator.damping.hysteretic.is_some() { 1e-3 * high } else { low };
+    let growth = SLOWEST_GROWTH * high * (1.0 + 0.1 * attempt as f64);
+    Region {
+        growth: [growth, high],
+        omega: [if bottom > 0.0 { bottom + inward * high } else { 0.0 }, high * (1.0 - inward)],
+    }
+}
+
+/// The eigenvalues found inside: each once, or both of a pair when the region holds both.
+fn found(modes: &ComplexModes, region: &Region) -> i64 {
+    let inside = modes.modes.iter().map(|m| m.eigenvalue).filter(|z| region.contains(*z));
+    inside.map(|z| if region.symmetric() && z.im > 1e-9 * z.norm() { 2 } else { 1 }).sum()
+}
+
+/// Modes within half of ε, or within their own error, of the contour, and unstable ones slower than ε.
+fn close_calls(modes: &ComplexModes, region: &Region) -> Vec<CloseCall> {
+    let slowest = region.growth[0];
+    let call = |mode: &super::ComplexMode| {
+        let z = mode.eigenvalue;
+        let error = mode.eigenvalue_error * z.norm();
+        let distance = region.distance(z);
+        let slow = z.re > (1e-2 * slowest).max(10.0 * error) && z.re <= slowest;
+        (distance <= (0.5 * slowest).max(10.0 * error) || slow).then_some(CloseCall {
+            frequency_hz: z.im / TAU,
+            growth_rate: z.re,
+            distance,
+            inside: region.contains(z),
+        })
+    };
+    modes.modes.iter().filter_map(call).collect()
+}

@@ -1,0 +1,145 @@
+//! The system as its interface sees it: oscillators, what couples them, and a bound on what the basis leaves out.
+
+use super::proportional::Proportional;
+use super::remainder::Remainder;
+use crate::error::Result;
+use crate::linalg::dense::{definite_pencil, product};
+use crate::linalg::sparse::times;
+use crate::linalg::tall::{expand, gram};
+use crate::stability::analysis::Analysis;
+use faer::Mat;
+use std::f64::consts::TAU;
+
+/// BᵀQ(s)B = s² + diag(s a + θ + i h) + s C_r + i H_r + W_B κ(s) W_Bᵀ in the coordinates of the Ritz vectors B
+/// (BᵀMB = 1, BᵀKB = diag θ): the structure is a row of oscillators, and the interface acts between them.
+///
+/// It does not depend on the numbers of the contact laws (κ), only on the directions in which contacts act.
+#[derive(Debug)]
+pub(crate) struct ReducedModel {
+    /// The oscillators, ascending in θ.
+    pub(super) oscillators: Vec<Oscillator>,
+    /// C_r \[1/s\] and H_r \[1/s²\], m × m: damping that couples the real modes.
+    pub(super) coupled_damping: Option<Mat<f64>>,
+    pub(super) coupled_loss: Option<Mat<f64>>,
+    /// The directions of the interface that matter, as indices into those of the operator.
+    pub(super) active: Vec<usize>,
+    /// W_B of the active directions, m × r.
+    pub(super) interface: Mat<f64>,
+    /// What the full order has beyond the basis; `None` when the basis is the whole space.
+    pub(super) remainder: Option<Remainder>,
+    /// Whether C and H are known to dissipate.
+    pub(super) dissipative: bool,
+}
+
+/// p(s) = s² + a s + θ + i h.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Oscillator {
+    /// a \[1/s\].
+    pub(super) damping: f64,
+    /// θ \[1/s²\].
+    pub(super) stiffness: f64,
+    /// h \[1/s²\].
+    pub(super) loss: f64,
+}
+
+/// The damping of a structure, what is proportional apart from what couples the real modes.
+pub(super) struct DampingParts {
+    pub(super) viscous: Proportional,
+    pub(super) loss: Proportional,
+    /// Whether the modal damping acts on real modes of the basis only.
+    pub(super) modal_inside: bool,
+    /// D B and H_r B, where D is all of C but its proportional part and the modal damping inside the basis.
+    pub(super) damped: Option<Mat<f64>>,
+    pub(super) lossy: Option<Mat<f64>>,
+}
+
+impl DampingParts {
+    fn new(analysis: &Analysis<'_>) -> Self {
+        let (operator, basis) = (&analysis.operator, &analysis.basis);
+        let none = || Proportional { mass_factor: 0.0, stiffness_factor: 0.0, rest: None };
+        let split = |x| Proportional::split(x, operator.mass, &operator.stiffness);
+        let viscous = operator.damping.viscous.as_ref().map_or_else(none, split);
+        let loss = operator.damping.hysteretic.as_ref().map_or_else(none, split);
+        let modal_inside = modal_inside(analysis);
+        let mut damped = viscous.rest.as_ref().map(|d| times(d, basis.vectors.as_ref()));
+        if let Some(modal) = operator.damping.modal.as_ref().filter(|_| !modal_inside) {
+            let mut amplitudes = gram(modal.basis.as_ref(), basis.vectors.as_ref());
+            for (i, c) in modal.coefficients.iter().enumerate() {
+                (0..amplitudes.ncols()).for_each(|j| amplitudes[(i, j)] *= c);
+            }
+            let modal = expand(modal.basis.as_ref(), amplitudes.as_ref());
+            damped = Some(damped.map_or(modal.clone(), |d| d + modal));
+        }
+        let lossy = loss.rest.as_ref().map(|h| times(h, basis.vectors.as_ref()));
+        DampingParts { viscous, loss, modal_inside, damped, lossy }
+    }
+}
+
+/// Whether every column of M Ψ of the modal damping is M times a combination of the real modes, told from one
+/// combination of the columns with fixed, unrelated weights.
+fn modal_inside(analysis: &Analysis<'_>) -> bool {
+    let Some(modal) = &analysis.operator.damping.modal else { return true };
+    let weights = Mat::from_fn(modal.basis.ncols(), 1, |j, _| 1.0 + (1.7 * (j + 1) as f64).sin());
+    let probe = expand(modal.basis.as_ref(), weights.as_ref());
+    let shapes = analysis.basis.vectors.subcols(0, analysis.n_real);
+    let inertia = analysis.basis.mass_times.subcols(0, analysis.n_real);
+    let rest = &probe - expand(inertia, gram(shapes, probe.as_ref()).as_ref());
+    rest.norm_l2() <= 1e-8 * probe.norm_l2()
+}
+
+impl ReducedModel {
+    /// Brings the projections of the analysis to diagonal form and bounds what they leave out.
+    pub(crate) fn new(analysis: &Analysis<'_>) -> Result<Self> {
+        let (operator, basis) = (&analysis.operator, &analysis.basis);
+        let top = TAU * analysis.band_hz[1];
+        let parts = DampingParts::new(analysis);
+        let (theta, x) = definite_pencil(basis.stiffness.as_ref(), basis.mass.as_ref())?;
+        let rotate = |a: &Mat<f64>| product(x.transpose(), product(a.as_ref(), x.as_ref()).as_ref());
+        let small = |image: &Mat<f64>| rotate(&gram(basis.vectors.as_ref(), image.as_ref()));
+        let mut coupled = parts.damped.as_ref().map(small);
+        let mut regular = rotate(&basis.damping);
+        if let Some(rest) = &coupled {
+            regular -= rest;
+        }
+        if let Some(twins) = off_diagonal(&regular, analysis.n_real) {
+            coupled = Some(coupled.map_or(twins.clone(), |rest| rest + twins));
+        }
+        let oscillators = (0..theta.len())
+            .map(|i| Oscillator {
+                damping: regular[(i, i)],
+                stiffness: theta[i],
+                loss: parts.loss.mass_factor + parts.loss.stiffness_factor * theta[i],
+            })
+            .collect();
+        let sizes = operator.interface.sizes(top);
+        let directions = &operator.interface.directions;
+        let active: Vec<usize> =
+            (0..sizes.len()).filter(|d| sizes[*d] > 0.0 && !directions[*d].indices().is_empty()).collect();
+        let w = Mat::from_fn(basis.len(), active.len(), |i, j| basis.interface[(i, active[j])]);
+        let (indefinite, dissipative) = super::remainder::dissipation(analysis, &parts);
+        let whole = basis.len() == operator.n() || analysis.complete_below == f64::INFINITY;
+        let remainder =
+            if whole { None } else { Some(Remainder::new(analysis, &parts, &theta, &x, indefinite)?) };
+        Ok(ReducedModel {
+            oscillators,
+            coupled_damping: coupled,
+            coupled_loss: parts.lossy.as_ref().map(small),
+            active,
+            interface: product(x.transpose(), w.as_ref()),
+            remainder,
+            dissipative,
+        })
+    }
+}
+
+/// The entries off the diagonal, when they are more than the round-off of a diagonal matrix: twin modes with different
+/// damping ratios.
+fn off_diagonal(a: &Mat<f64>, n_real: usize) -> Option<Mat<f64>> {
+    let m = a.nrows();
+    let typical = (0..n_real.min(m)).fold(0.0f64, |s, i| s.max(a[(i, i)].abs()));
+    let kept = Mat::from_fn(m, m, |i, j| {
+        let noise = 1e-10 * ((a[(i, i)] * a[(j, j)]).abs().sqrt() + typical);
+        if i == j || a[(i, j)].abs() <= noise { 0.0 } else { 0.5 * (a[(i, j)] + a[(j, i)]) }
+    });
+    (kept.norm_max() > 0.0).then_some(kept)
+}

@@ -1,0 +1,188 @@
+//! What the full order has beyond the basis, bounded.
+//!
+//! Z is the complement of the basis B that is orthogonal to it in A = K + K_σ − σ_A M, the matrix that the analysis has
+//! factorised. Every real mode below Ω_b is in B, so that A is positive on Z, and with P(s) = s²M + sC + K + K_σ + iH
+//!
+//! Re xᴴP(s)x ≥ (Re s² + w) ‖x‖²_M with w ≥ Ω_b², hence Re xᴴP(s)x ≥ xᴴAx / q(s), q(s) = (w − σ_A) / (w + Re s²) at its
+//! largest,
+//!
+//! for any loss factors and any viscous damping that dissipates. As ZᵀKB = σ_A ZᵀMB, the structure couples Z and B by
+//! Γ(s) = (s² + σ_A + s(α + βσ_A) + i(α_h + β_hσ_A)) ZᵀMB + s ZᵀDB + i ZᵀH_rB alone. Elimination of B gives
+//!
+//! det Q(s) = det Q_B(s) · det(P_ZZ(s) − E(s)), E = Γ D_B Γᵀ − (Y − W_Z) κ N⁻¹ (Y − W_Z)ᵀ, Y = Γ D_B W_B,
+//!
+//! with D_B the inverse of the structure's part of Q_B and N = I + W_BᵀD_BW_B κ. Where ρ = q ‖E‖ < 1 (‖·‖ relative to A
+//! on both sides) P_ZZ − tE is regular for every t in \[0, 1\], so that det Q and det Q_B wind alike. The norms need
+//! ZᵀF (ZᵀAZ)⁻¹FᵀZ = Fᵀ(A⁻¹ − B(BᵀAB)⁻¹Bᵀ)F of the columns F = \[MB DB H_rB\] only: one block solve.
+
+use super::proportional::Proportional;
+use super::reduced::DampingParts;
+use crate::error::Result;
+use crate::linalg::SparseMatrix;
+use crate::linalg::c64;
+use crate::linalg::dense::{product, symmetric_eigen};
+use crate::linalg::factor::SymbolicFactor;
+use crate::linalg::sparse::{add_scaled, times};
+use crate::linalg::tall::{expand, gram};
+use crate::stability::analysis::Analysis;
+use faer::Mat;
+use std::f64::consts::TAU;
+
+/// Γ(s) in the A-norm of Z, and what q(s) needs.
+#[derive(Debug)]
+pub(super) struct Remainder {
+    /// Ω_b²: no real mode below it is outside the basis.
+    pub(super) complete_below: f64,
+    /// σ_A.
+    pub(super) shift: f64,
+    /// The terms of Γ(s)ᵀ (m × f each), with the polynomial that multiplies each.
+    pub(super) terms: Vec<(Factor, Mat<f64>)>,
+    /// γ \[s\]: C ≥ −γ (K + τM) outside the basis.
+    pub(super) indefinite: f64,
+    /// τ of γ \[1/s²\].
+    pub(super) tau: f64,
+    /// ‖W_Z‖ of the scaled directions: what the basis misses of the static responses to the interface.
+    pub(super) missed_response: f64,
+}
+
+/// s² + linear · s + constant, or s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Factor {
+    square: f64,
+    linear: f64,
+    constant: c64,
+}
+
+impl Factor {
+    /// Its value at `s`.
+    pub(super) fn at(&self, s: c64) -> c64 {
+        s * s * self.square + s * self.linear + self.constant
+    }
+
+    /// A bound on its change within `h` of `s`.
+    pub(super) fn change(&self, s: c64, h: f64) -> f64 {
+        h * ((s * (2.0 * self.square) + self.linear).norm() + h * self.square)
+    }
+}
+
+impl Remainder {
+    /// Solves for A⁻¹F, with `theta` and `x` the Ritz values and vectors in the basis.
+    pub(super) fn new(
+        analysis: &Analysis<'_>,
+        parts: &DampingParts,
+        theta: &[f64],
+        x: &Mat<f64>,
+        indefinite: f64,
+    ) -> Result<Self> {
+        let (operator, basis, shift) = (&analysis.operator, &analysis.basis, analysis.shift);
+        let (m, first) = (basis.len(), analysis.n_real);
+        let inertia = basis.mass_times.subcols(first, m - first);
+        let mut columns = vec![inertia.to_owned()];
+        columns.extend(parts.damped.iter().chain(&parts.lossy).cloned());
+        let f: usize = columns.iter().map(Mat::ncols).sum();
+        let mut forces = Mat::zeros(operator.n(), f);
+        let mut start = 0;
+        for block in &columns {
+            forces.subcols_mut(start, block.ncols()).copy_from(block);
+            start += block.ncols();
+        }
+        // V = A⁻¹F − B (BᵀAB)⁻¹ BᵀF, with BᵀAB = diag(θ − σ_A) for the Ritz vectors.
+        let mut v = forces.clone();
+        analysis.factor.solve_in_place(v.as_mut());
+        let mut share = product(x.transpose(), gram(basis.vectors.as_ref(), forces.as_ref()).as_ref());
+        for i in 0..m {
+            (0..f).for_each(|j| share[(i, j)] /= theta[i] - shift);
+        }
+        v -= expand(basis.vectors.as_ref(), product(x.as_ref(), share.as_ref()).as_ref());
+        let mut av = times(&operator.stiffness, v.as_ref());
+        av -= faer::Scale(shift) * times(operator.mass, v.as_ref());
+        let square = gram(v.as_ref(), av.as_ref());
+        let (values, vectors) = symmetric_eigen(square.as_ref())?;
+        let largest = values.last().copied().unwrap_or(0.0).max(0.0);
+        let kept: Vec<usize> = (0..f).filter(|j| values[*j] > 1e-24 * largest).collect();
+        let root = |row: usize, j: usize| vectors[(row, kept[j])] * values[kept[j]].sqrt();
+        let mut terms = Vec::new();
+        let (alpha, beta) = (parts.viscous.mass_factor, parts.viscous.stiffness_factor);
+        let (alpha_h, beta_h) = (parts.loss.mass_factor, parts.loss.stiffness_factor);
+        let of_mass = Factor {
+            square: 1.0,
+            linear: alpha + beta * shift,
+            constant: c64::new(shift, alpha_h + beta_h * shift),
+        };
+        let of_damping = Factor { square: 0.0, linear: 1.0, constant: c64::new(0.0, 0.0) };
+        let of_loss = Factor { square: 0.0, linear: 0.0, constant: c64::new(0.0, 1.0) };
+        let mut start = 0;
+        let kinds =
+            [Some(of_mass), parts.damped.as_ref().map(|_| of_damping), parts.lossy.as_ref().map(|_| of_loss)];
+        for (kind, block) in kinds.into_iter().flatten().zip(&columns) {
+            // Only the last columns of the basis have M B outside it.
+            let offset = m - block.ncols();
+            let rows =
+                Mat::from_fn(
+                    m,
+                    kept.len(),
+                    |i, j| if i < offset { 0.0 } else { root(start + i - offset, j) },
+                );
+            terms.push((kind, product(x.transpose(), rows.as_ref())));
+            start += block.ncols();
+        }
+        let top = TAU * analysis.band_hz[1];
+        Ok(Remainder {
+            complete_below: analysis.complete_below,
+            shift,
+            terms,
+            indefinite,
+            tau: top * top,
+            missed_response: top * analysis.left_out.max(0.0).sqrt(),
+        })
+    }
+
+    /// The largest q(s) for Re s in \[`growth`\] and |Im s| ≤ `omega`; infinite when P may be singular on Z.
+    pub(super) fn amplification(&self, growth: [f64; 2], omega: f64) -> f64 {
+        let gamma = self.indefinite * growth[1].max(0.0);
+        let slope = 1.0 - gamma;
+        let constant = growth[0].max(0.0).powi(2) - omega * omega - gamma * self.tau;
+        let at = |w: f64| (w - self.shift) / (slope * w + constant);
+        let bottom = slope * self.complete_below + constant;
+        if self.complete_below <= self.shift || slope <= 0.0 || bottom.is_nan() || bottom <= 0.0 {
+            return f64::INFINITY;
+        }
+        at(self.complete_below).max(1.0 / slope)
+    }
+}
+
+/// γ with C ≥ −γ(K + K_σ + τM) outside the basis, τ the square of the band's top, and whether C and H are known to be
+/// positive semidefinite. What is not proportional is settled by the inertia of C + γ(K + K_σ + τM) for growing γ.
+pub(super) fn dissipation(analysis: &Analysis<'_>, parts: &DampingParts) -> (f64, bool) {
+    let (operator, damping) = (&analysis.operator, analysis.operator.damping);
+    let top = TAU * analysis.band_hz[1];
+    let worst_modal =
+        damping.modal.as_ref().map_or(0.0, |modal| modal.coefficients.iter().fold(0.0f64, |w, c| w.max(-c)));
+    let energy = || add_scaled(&[(1.0, &*operator.stiffness), (top * top, operator.mass)]);
+    let settle = |whole: &Option<SparseMatrix>, part: &Proportional, unit: f64| match (whole, &part.rest) {
+        (Some(whole), Some(_)) => least_shift(whole, &energy(), unit),
+        _ => Some(0.0),
+    };
+    let viscous = settle(&damping.viscous, &parts.viscous, 1.0 / top);
+    let losses = settle(&damping.hysteretic, &parts.loss, 1.0);
+    let modal = if parts.modal_inside { 0.0 } else { worst_modal / (top * top) };
+    let dissipative = worst_modal == 0.0
+        && viscous.is_some_and(|g| g * top <= 2.0 * SHIFTS[0])
+        && losses.is_some_and(|g| g <= 2.0 * SHIFTS[0]);
+    (viscous.unwrap_or(f64::INFINITY) + modal, dissipative)
+}
+
+/// Shifts that are tried; the first is round-off.
+const SHIFTS: [f64; 5] = [1e-9, 1e-7, 1e-5, 1e-3, 1e-1];
+
+/// The least of the shifts (in `unit`) for which `a` + shift · `energy` has no negative eigenvalue.
+fn least_shift(a: &SparseMatrix, energy: &SparseMatrix, unit: f64) -> Option<f64> {
+    let at = |g: f64| add_scaled(&[(1.0, a), (g * unit, energy)]);
+    let pattern = at(1.0);
+    let symbolic = SymbolicFactor::new(pattern.symbolic()).ok()?;
+    let definite = |g: &&f64| {
+        let inertia = symbolic.factorize(&at(**g)).map(|factor| factor.inertia());
+        inertia.is_ok_and(|inertia| inertia.negative == 0)
+    };
+    SHIFTS.iter().find(definite).map(|g| g * unit)
+}

@@ -1,0 +1,280 @@
+use super::contour::Region;
+use super::*;
+use crate::equilibrium::SteadySliding;
+use crate::equilibrium::samples::*;
+use crate::linalg::SparseVector;
+use crate::modal::RealModes;
+use crate::stability::analysis::analyse;
+use crate::stability::basis::Basis;
+use crate::stability::tests::{damped, dense_matrices, dense_modes, dense_spectrum, steady};
+use crate::system::{Coupling, System};
+use faer::linalg::solvers::Solve;
+use faer::{Mat, Side};
+
+fn dense_count(spectrum: &[c64], certificate: &Certificate) -> i64 {
+    let [low, high] = certificate.band_hz.map(|f| TAU * f);
+    let bottom = if low == 0.0 { -high } else { low };
+    let [slow, fast] = certificate.growth;
+    spectrum.iter().filter(|z| z.re > slow && z.re < fast && z.im > bottom && z.im < high).count() as i64
+}
+
+/// A small system with random contacts, damping of the given kind, and a random unsymmetric coupling strong enough for
+/// flutter and divergence.
+fn small_system(seed: u64) -> System {
+    let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+    // Up to twelve degrees of freedom, and now and then more than the basis will span.
+    let n = if seed % 16 == 9 { 60 } else { 2 + (random.next() * 11.0) as usize };
+    let load = random.between(5.0, 40.0);
+    let mut system = random_system(n, 1 + (random.next() * 3.0) as usize, load, seed);
+    let r = 1 + (random.next() * 4.0) as usize;
+    let size = 4000.0 * random.next().powi(2);
+    let directions: Vec<SparseVector> = (0..r)
+        .map(|_| vector(&[0, 1, 2].map(|_| ((random.next() * n as f64) as usize, random.between(-1.0, 1.0)))))
+        .collect();
+    let stiffness = Mat::from_fn(r, r, |_, _| size * random.between(-1.0, 1.0));
+    let push = if seed.is_multiple_of(3) { 0.0 } else { random.between(0.0, 4.0) };
+    let damping = Mat::from_fn(r, r, |_, _| push * random.between(-1.0, 1.0));
+    system.coupling = Some(Coupling { directions, stiffness, damping });
+    damped_small(system, seed % 16, &mut random)
+}
+
+/// Damping of every kind by turns: Rayleigh, hysteretic of a part, modal, dashpots; none at all for kind 0.
+fn damped_small(mut system: System, kind: u64, random: &mut Random) -> System {
+    let n = system.n_dofs();
+    let (m, k) = (system.structure.mass.to_dense(), system.structure.stiffness.to_dense());
+    let dashpot: Vec<f64> =
+        (0..n).map(|_| if random.next() < 0.3 { random.between(0.0, 2.0) } else { 0.0 }).collect();
+    let (rayleigh, dashpots) = (kind & 1 != 0, kind & 8 != 0);
+    if rayleigh || dashpots {
+        system.structure.damping.viscous = Some(sparse(n, |i, j| {
+            let proportional = if rayleigh { 0.02 * m[(i, j)] + 4e-4 * k[(i, j)] } else { 0.0 };
+            proportional + if dashpots && i == j { dashpot[i] } else { 0.0 }
+        }));
+    }
+    if kind & 2 != 0 {
+        let part = if kind & 4 != 0 { n } else { n / 2 };
+        system.structure.damping.hysteretic =
+            Some(sparse(n, |i, j| if i < part && j < part { 0.01 * k[(i, j)] } else { 0.0 }));
+    }
+    if kind & 4 != 0 {
+        let modes = dense_modes(&system, (n / 2).max(1));
+        let coefficients = modes.eigenvalues.iter().map(|w| 2.0 * 0.01 * w.sqrt()).collect();
+        system.structure.damping.modal =
+            Some(crate::system::ModalDamping { basis: &m * &modes.shapes, coefficients });
+    }
+    system
+}
+
+#[test]
+fn a_thousand_random_systems_agree_with_the_dense_count() {
+    let (mut stable, mut several, mut diverging, mut partial, mut held, mut bounded) = (0, 0, 0, 0, 0, 0);
+    for seed in 0..1000 {
+        let system = small_system(seed);
+        let n = system.n_dofs();
+        let state = steady(&System { coupling: None, ..system.clone() });
+        let kept = if n == 60 { 8 } else { (n / 2 + 1 + (seed % 5) as usize).min(n) };
+        let real = dense_modes(&system, kept);
+        let top = 0.6 * real.certificate.below_hz;
+        let low = if seed % 2 == 0 { 0.0 } else { 0.1 * top };
+        let (modes, certificate) = certified_modes(&system, &state, &real, [low, top], &()).unwrap();
+        let certificate = certificate.unwrap_or_else(|| panic!("seed {seed}: {:?}", modes.warnings));
+        let spectrum = dense_spectrum(&system, &state);
+        let exact = dense_count(&spectrum, &certificate);
+        held += usize::from(certificate.holds());
+        assert!(
+            certificate.counted == exact || certificate.margin <= 1.0,
+            "seed {seed}: {exact} by the dense solver, {certificate:?}"
+        );
+        let fastest = spectrum.iter().filter(|z| z.im.abs() <= TAU * top).fold(0.0f64, |g, z| g.max(z.re));
+        assert!(!certificate.nothing_faster || fastest < certificate.growth[1], "seed {seed}");
+        assert!(certificate.dissipative && certificate.structure_poles == 0, "seed {seed}: {certificate:?}");
+        bounded += usize::from(certificate.nothing_faster);
+        stable += usize::from(exact == 0);
+        several += usize::from(exact > 2);
+        let real_root = |z: &&c64| z.im.abs() < 1e-9 * z.norm() && z.re > certificate.growth[0];
+        diverging += usize::from(low == 0.0 && spectrum.iter().any(|z| real_root(&z)));
+        partial += usize::from(modes.subspace_dimension < n);
+    }
+    println!("{stable} {several} {diverging} {partial} {held} {bounded}");
+    assert!(held >= 950, "{held} of 1000 proven");
+    assert!(stable > 100 && several > 50 && diverging > 50 && partial > 30 && bounded > 300);
+}
+
+/// A system larger than its basis, with a coupling that makes pairs of modes flutter.
+fn large(seed: u64, kind: u64) -> (System, SteadySliding, RealModes, [f64; 2]) {
+    let n = 140;
+    let mut system = damped(random_system(n, 3, 20.0, seed), kind);
+    let state = steady(&system);
+    let real = dense_modes(&system, 40);
+    let top = 0.5 * (real.frequency_hz(4) + real.frequency_hz(5));
+    let mut random = Random(seed);
+    let mut direction =
+        || vector(&[0, 1, 2].map(|_| ((random.next() * n as f64) as usize, random.between(-1.0, 1.0))));
+    let directions = vec![direction(), direction()];
+    let (stiffness, damping) = (faer::mat![[0.0, 900.0], [-900.0, 0.0]], faer::mat![[-8.0, 0.0], [0.0, 0.0]]);
+    system.coupling = Some(Coupling { directions, stiffness, damping });
+    (system, state, real, [0.0, top])
+}
+
+#[test]
+fn a_truncated_basis_is_bounded_and_counts_as_the_full_order() {
+    let mut unstable = 0;
+    for kind in 0..8 {
+        let (system, state, real, band) = large(1000 + kind, kind);
+        let (modes, certificate) = certified_modes(&system, &state, &real, band, &()).unwrap();
+        assert!(modes.subspace_dimension < system.n_dofs());
+        let certificate = certificate.unwrap();
+        let exact = dense_count(&dense_spectrum(&system, &state), &certificate);
+        println!("{kind} {} {certificate:?}", modes.subspace_dimension);
+        assert!(certificate.holds(), "{certificate:?}");
+        assert_eq!(certificate.counted, exact);
+        unstable += exact;
+    }
+    assert!(unstable > 0);
+}
+
+#[test]
+fn a_mode_too_few_or_too_many_is_noticed() {
+    let (system, state, real, band) = large(1004, 4);
+    analyse(&system, &state, &real, band, &(), |modes, analysis| {
+        assert!(count(&analysis, modes).unwrap().agrees());
+        let at = modes.modes.iter().position(|m| m.growth_rate() > 1e-3).expect("a mode that grows");
+        let removed = modes.modes.remove(at);
+        let fewer = count(&analysis, modes).unwrap();
+        assert!(!fewer.agrees() && !fewer.holds() && fewer.counted == fewer.found + 2);
+        modes.modes.extend([removed.clone(), removed]);
+        assert!(!count(&analysis, modes).unwrap().agrees());
+    })
+    .unwrap();
+}
+
+#[test]
+fn too_few_real_modes_or_static_responses_do_not_pass_for_a_proof() {
+    let (system, state, real, [_, top]) = large(1003, 1);
+    // The band reaches above what the Sturm count covers.
+    let few = dense_modes(&system, 6);
+    let high = 1.05 * few.certificate.below_hz;
+    let (modes, certificate) = certified_modes(&system, &state, &few, [0.0, high], &()).unwrap();
+    assert!(modes.subspace_dimension < system.n_dofs());
+    assert!(!modes.warnings.is_empty());
+    assert!(certificate.is_none_or(|c| !c.holds() && c.margin == 0.0));
+    // A count of the real modes that does not hold.
+    let mut doubtful = real.clone();
+    doubtful.certificate.counted[0] += 1;
+    let (_, certificate) = certified_modes(&system, &state, &doubtful, [0.0, top], &()).unwrap();
+    assert!(!certificate.unwrap().holds());
+    // Real modes alone, their static responses missing: an honest 1/ρ far below that of the whole basis.
+    analyse(&system, &state, &real, [0.0, top], &(), |modes, analysis| {
+        let whole = count(&analysis, modes).unwrap();
+        let omega = TAU * top;
+        let mut poor = Basis::new(analysis.operator, real.shapes.as_ref(), omega * omega);
+        let responses =
+            crate::stability::analysis::interface_responses(analysis.operator, analysis.factor, omega);
+        let left_out = poor.enrich(responses, 1e-9, 0).left_out;
+        let poor = count(&Analysis { left_out, basis: &poor, ..analysis }, modes);
+        assert!(poor.is_ok_and(|poor| !poor.holds() && poor.margin < 0.1 * whole.margin));
+    })
+    .unwrap();
+}
+
+/// ρ and the disc of each point, against dense matrices of the full order.
+#[test]
+fn bounds_hold_at_full_order() {
+    for kind in 0..8 {
+        let (system, state, real, band) = large(1010 + kind, kind);
+        analyse(&system, &state, &real, band, &(), |_, analysis| {
+            bounds_hold(kind, &system, &state, band, &analysis)
+        })
+        .unwrap();
+    }
+}
+
+fn bounds_hold(kind: u64, system: &System, state: &SteadySliding, band: [f64; 2], analysis: &Analysis<'_>) {
+    let model = ReducedModel::new(analysis).unwrap();
+    let top = TAU * band[1];
+    let interface = &analysis.operator.interface;
+    let pencil = Pencil::new(&model, &interface.terms, &interface.sizes(top), top).unwrap();
+    let (k, c) = dense_matrices(system, state);
+    let (m, n) = (system.structure.mass.to_dense(), system.n_dofs());
+    let real_k = system.structure.stiffness.to_dense();
+    let a = &real_k - faer::Scale(analysis.shift) * &m;
+    // Z: orthogonal to the basis in A, ZᵀAZ = 1.
+    let b = &analysis.basis.vectors;
+    let ab = &a * b;
+    let project =
+        Mat::<f64>::identity(n, n) - b * (b.transpose() * &ab).partial_piv_lu().solve(ab.transpose());
+    let az = project.transpose() * &a * &project;
+    let eigen = az.self_adjoint_eigen(Side::Lower).unwrap();
+    let outside = n - b.ncols();
+    let z = Mat::from_fn(n, outside, |i, j| {
+        let j = n - outside + j;
+        (0..n).map(|l| project[(i, l)] * eigen.U()[(l, j)]).sum::<f64>() / eigen.S()[j].sqrt()
+    });
+    let complex = |x: &Mat<f64>| Mat::from_fn(x.nrows(), x.ncols(), |i, j| c64::new(x[(i, j)], 0.0));
+    let (b, z) = (complex(b), complex(&z));
+    let mut random = Random(kind);
+    for _ in 0..12 {
+        let s = c64::new(random.between(1e-5, 0.3) * top, random.next() * top);
+        let point = pencil.point(s, 0.05 * top).unwrap();
+        let q = Mat::from_fn(n, n, |i, j| s * s * m[(i, j)] + s * c[(i, j)] + k[(i, j)]);
+        let block = |x: &Mat<c64>, y: &Mat<c64>| x.transpose() * &q * y;
+        let schur = block(&z, &z) - block(&z, &b) * block(&b, &b).partial_piv_lu().solve(block(&b, &z));
+        // P_ZZ: the structure without its contact.
+        let structure = {
+            let mut bare = system.clone();
+            bare.pairs.clear();
+            bare.coupling = None;
+            let bare_state = SteadySliding { points: Vec::new(), ..state.clone() };
+            let (k, c) = dense_matrices(&bare, &bare_state);
+            Mat::from_fn(n, n, |i, j| s * s * m[(i, j)] + s * c[(i, j)] + k[(i, j)])
+        };
+        let p = z.transpose() * structure * &z;
+        let e = &p - schur;
+        let rho = p.partial_piv_lu().solve(&e).svd().unwrap().S().column_vector()[0].norm();
+        assert!(rho <= point.defect * (1.0 + 1e-6) + 1e-11, "kind {kind}: {rho:.2e} {:.2e}", point.defect);
+        for _ in 0..4 {
+            let turn = random.next() * TAU;
+            let near = s + c64::new(turn.cos(), turn.sin()) * (point.reach * random.next());
+            let other = pencil.point(near, 1e-6 * top).unwrap();
+            let change = (other.phase * point.phase.conj()).arg();
+            assert!(change.abs() <= 0.75f64.asin() + 1e-9, "kind {kind}: {change}");
+        }
+    }
+}
+
+#[test]
+fn the_contour_leaves_out_what_is_outside() {
+    let region = Region { growth: [1.0, 10.0], omega: [0.0, 20.0] };
+    assert!(
+        region.symmetric() && region.contains(c64::new(2.0, -5.0)) && !region.contains(c64::new(0.5, 1.0))
+    );
+    assert_eq!(region.distance(c64::new(3.0, 0.0)), 2.0);
+    assert_eq!(region.distance(c64::new(-2.0, 24.0)), 5.0);
+}
+
+/// A flutter pair of the two-degree-of-freedom model, slower than ε, faster, and its divergence: closed form.
+#[test]
+fn two_dof_pairs_are_counted_and_slow_ones_are_named() {
+    let run = |mu: f64| {
+        let system = two_dof(0.5, 1.0, mu);
+        let real = dense_modes(&system, 2);
+        certified_modes(&system, &steady(&system), &real, [0.0, 0.5], &()).unwrap().1.unwrap()
+    };
+    let (stable, unstable) = (run(0.6), run(0.7));
+    assert!(stable.holds() && stable.counted == 0 && stable.close_calls.is_empty());
+    assert!(unstable.holds() && unstable.counted == 2 && unstable.nothing_faster);
+    // λ² = −(1 + k_t + k_n)/2 … ± i √−Δ: σ ≈ √−Δ / 2ω; just past μ_c = 0.625 it is below ε = 1e-5 · π.
+    let slow = run(0.625 + 1e-9);
+    assert_eq!(slow.counted, 0);
+    assert!(slow.close_calls.iter().any(|call| call.growth_rate > 0.0 && !call.inside), "{slow:?}");
+}
+
+#[test]
+fn the_certificate_does_not_depend_on_the_number_of_threads() {
+    let (system, state, real, band) = large(1005, 5);
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| certified_modes(&system, &state, &real, band, &()).unwrap().1)
+    };
+    assert_eq!(run(1), run(3));
+}
