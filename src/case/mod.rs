@@ -439,8 +439,10 @@ pub struct CeaAnalysis {
     pub count: Option<usize>,
     /// Real modes up to this frequency span the first subspace \[Hz\].
     pub basis_below: f64,
-    /// Counts the unstable eigenvalues of the band, to certify that none was missed.
-    pub certify: bool,
+    /// Counts the unstable eigenvalues of the band, to certify that none was missed: always, never, or, when not said,
+    /// where it takes seconds.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certify: Option<bool>,
     /// Looks for the same modes again by a second, independent method on the full order.
     pub confirm: bool,
     /// Measured squeal frequencies \[Hz\].

@@ -441,7 +441,7 @@ fn read_cea(s: &Section) -> CeaAnalysis {
             .quantity("basis_below", FREQUENCY)
             .within(Bound::Included(band[1]), Bound::Unbounded)
             .or(1.5 * band[1]),
-        certify: s.boolean("certify").or(true),
+        certify: s.boolean("certify").optional(),
         confirm: s.boolean("confirm").or(false),
         measured_squeal: s.quantity_list("measured_squeal", FREQUENCY).or(Vec::new()),
         measured_source: s.string("measured_source").or(String::new()),

@@ -129,7 +129,7 @@ mod tests {
             band,
             nearest: Some(nearest),
             count: Some(count),
-            certify: false,
+            certify: None,
             confirm: false,
             basis_below: 1e5,
             measured_squeal: Vec::new(),

@@ -2,23 +2,25 @@
 
 use super::block::Block;
 use super::operator::Operator;
-use crate::linalg::sparse::times;
-use crate::linalg::tall::{expand, gram};
-use faer::{Mat, MatRef};
+use crate::linalg::SparseMatrix;
+use crate::linalg::sparse::{add_scaled, times};
+use crate::linalg::tall::{combine, expand, gram};
+use faer::{Accum, Mat, MatMut, MatRef};
 
 /// Columns that are orthonormalised together.
 const PANEL: usize = 32;
 
 /// A basis B = \[Φ Z\] and the projections BᵀMB, BᵀCB, BᵀKB, BᵀHB, and BᵀW of the interface.
 ///
-/// The real modes are M-orthonormal, what is added to them is M-orthogonal to them and orthonormal in E/τ: there, above
-/// the modes, E is positive also where M is singular or K indefinite, and no direction without mass is lost.
+/// E = K + τM measures how much a direction can matter in the band. The real modes, which are M-orthonormal, are
+/// orthogonal in E too; what is added is E-orthogonal to them and orthonormal in E/τ: there, above the modes, E is
+/// positive also where M is singular or K indefinite, and no direction without mass is lost.
 pub(super) struct Basis<'a> {
     operator: &'a Operator<'a>,
-    /// E = K + τ M measures how much a direction can matter in the band.
+    energy: SparseMatrix,
     tau: f64,
-    /// Columns of Φ.
-    modes: usize,
+    /// bᵀEb of every column.
+    sizes: Vec<f64>,
     pub(super) vectors: Mat<f64>,
     /// M B, K B, C B, H B: what the full order makes of the basis, kept so that a residual costs dense products only.
     pub(super) mass_times: Mat<f64>,
@@ -71,8 +73,9 @@ impl<'a> Basis<'a> {
         let n = operator.n();
         let mut basis = Basis {
             operator,
+            energy: add_scaled(&[(1.0, &*operator.stiffness), (tau, operator.mass)]),
             tau,
-            modes: modes.ncols(),
+            sizes: Vec::new(),
             vectors: Mat::zeros(n, 0),
             mass_times: Mat::zeros(n, 0),
             stiffness_times: Mat::zeros(n, 0),
@@ -85,6 +88,8 @@ impl<'a> Basis<'a> {
             interface: Mat::zeros(0, operator.interface.directions.len()),
         };
         basis.append(modes.to_owned());
+        basis.sizes =
+            (0..modes.ncols()).map(|j| basis.stiffness[(j, j)] + tau * basis.mass[(j, j)]).collect();
         basis
     }
 
@@ -109,111 +114,83 @@ impl<'a> Basis<'a> {
     /// started), or `limit` are taken.
     pub(super) fn enrich(&mut self, mut z: Mat<f64>, tolerance: f64, limit: usize) -> Enriched {
         const ROUND_OFF: f64 = 1e-10;
-        let before = self.energy(z.as_ref());
-        self.project_out(&mut z);
-        self.project_out(&mut z);
-        let mut energy = self.energy(z.as_ref());
+        let mut image = times(&self.energy, z.as_ref());
         let floor: Vec<f64> = (0..z.ncols())
-            .map(|j| (tolerance * tolerance).max(ROUND_OFF * ROUND_OFF * before[(j, j)]))
+            .map(|j| {
+                let before: f64 =
+                    z.col_as_slice(j).iter().zip(image.col_as_slice(j)).map(|(a, b)| a * b).sum();
+                (tolerance * tolerance).max(ROUND_OFF * ROUND_OFF * before)
+            })
             .collect();
-        let mut open = pivoted_choice(&mut energy, &floor, limit);
+        for _ in 0..2 {
+            self.project_out(z.as_mut(), image.as_ref());
+            image = times(&self.energy, z.as_ref());
+        }
+        let mut energy = gram(z.as_ref(), image.as_ref());
+        let open = pivoted_choice(&mut energy, &floor, limit);
         let left_out = (0..z.ncols()).filter(|j| !open.contains(j)).map(|j| energy[(j, j)].max(0.0)).sum();
-        let first = self.len();
+        let new = self.orthonormal(&z, &image, open);
+        let added = new.ncols();
+        if added > 0 {
+            self.append(new);
+        }
+        self.sizes.resize(self.len(), self.tau);
+        Enriched { added, left_out }
+    }
+
+    /// z ← z − B (BᵀEB)⁻¹Bᵀ E z, given E z.
+    fn project_out(&self, z: MatMut<'_, f64>, image: MatRef<'_, f64>) {
+        let mut share = gram(self.vectors.as_ref(), image);
+        for (i, size) in self.sizes.iter().enumerate() {
+            // A mode on which E vanishes, just as stiff as −τ, cannot be told apart by E.
+            let factor = if size.abs() > 1e-9 * self.tau { 1.0 / size } else { 0.0 };
+            (0..share.ncols()).for_each(|j| share[(i, j)] *= factor);
+        }
+        combine(z, Accum::Add, self.vectors.as_ref(), share.as_ref(), -1.0);
+    }
+
+    /// The columns `open` of `z`, which are E-orthogonal to the basis, made E/τ-orthonormal; `image` is E z. A panel at
+    /// a time they are projected and their Gram matrix factorised, twice. Left out are those of which nothing is left;
+    /// those that lie within a thousandth in the span of the others of their panel wait for the next one.
+    fn orthonormal(&self, z: &Mat<f64>, image: &Mat<f64>, mut open: Vec<usize>) -> Mat<f64> {
+        let n = z.nrows();
+        let pick = |a: &Mat<f64>, columns: &[usize]| {
+            let mut picked = Mat::zeros(n, columns.len());
+            columns.iter().enumerate().for_each(|(k, j)| picked.col_mut(k).copy_from(a.col(*j)));
+            picked
+        };
+        let (mut new, mut new_image) = (Mat::<f64>::zeros(n, open.len()), Mat::<f64>::zeros(n, open.len()));
+        let mut done = 0;
         while !open.is_empty() {
             let now: Vec<usize> = open.drain(..open.len().min(PANEL)).collect();
-            let columns = Mat::from_fn(z.nrows(), now.len(), |i, j| z[(i, now[j])]);
-            let (new, later) = self.orthonormal(columns);
-            // Columns too much like others of the panel: once those are in the basis, more of them can be seen.
-            if new.ncols() > 0 {
-                open.splice(..0, later.iter().map(|j| now[*j]));
-                self.append(new);
+            let (mut x, mut ex) = (pick(z, &now), pick(image, &now));
+            let (mut kept, mut later): (Vec<usize>, Vec<usize>) = (now, Vec::new());
+            let mut before: Vec<f64> = gram_diagonal(&x, &ex).iter().map(|v| v / self.tau).collect();
+            for _ in 0..2 {
+                let (found, images) = (new.subcols(0, done), new_image.subcols(0, done));
+                let mut share = gram(found, ex.as_ref());
+                share *= faer::Scale(1.0 / self.tau);
+                combine(x.as_mut(), Accum::Add, found, share.as_ref(), -1.0);
+                combine(ex.as_mut(), Accum::Add, images, share.as_ref(), -1.0);
+                self.project_out(x.as_mut(), ex.as_ref());
+                ex = times(&self.energy, x.as_ref());
+                let mut square = gram(x.as_ref(), ex.as_ref());
+                square *= faer::Scale(1.0 / self.tau);
+                let (mix, stay, alike) = orthonormalising(&square, &before);
+                later.extend(alike.iter().map(|j| kept[*j]));
+                kept = stay.iter().map(|j| kept[*j]).collect();
+                (x, ex) = (expand(x.as_ref(), mix.as_ref()), expand(ex.as_ref(), mix.as_ref()));
+                before = vec![1.0; kept.len()];
+            }
+            // Columns too much like others of the panel: once those are taken, more of them can be seen.
+            if !kept.is_empty() {
+                new.subcols_mut(done, kept.len()).copy_from(&x);
+                new_image.subcols_mut(done, kept.len()).copy_from(&ex);
+                done += kept.len();
+                open.splice(..0, later);
             }
         }
-        Enriched { added: self.len() - first, left_out }
-    }
-
-    /// zᵀ(K + τM)z.
-    fn energy(&self, z: MatRef<'_, f64>) -> Mat<f64> {
-        gram(z, self.energy_times(z, times(self.operator.mass, z).as_ref()).as_ref())
-    }
-
-    /// (K + τM) z, given M z.
-    fn energy_times(&self, z: MatRef<'_, f64>, inertia: MatRef<'_, f64>) -> Mat<f64> {
-        let mut e = times(&self.operator.stiffness, z);
-        e += faer::Scale(self.tau) * inertia;
-        e
-    }
-
-    /// z ← z − Φ ΦᵀM z − Z ZᵀE z / τ.
-    fn project_out(&self, z: &mut Mat<f64>) {
-        let inertia = times(self.operator.mass, z.as_ref());
-        let modes = self.vectors.subcols(0, self.modes);
-        let mut change = expand(modes, gram(modes, inertia.as_ref()).as_ref());
-        if self.len() > self.modes {
-            let energy = self.energy_times(z.as_ref(), inertia.as_ref());
-            let added = self.vectors.subcols(self.modes, self.len() - self.modes);
-            let share = faer::Scale(1.0 / self.tau) * gram(added, energy.as_ref());
-            change += expand(added, share.as_ref());
-        }
-        *z -= change;
-    }
-
-    /// The columns E/τ-orthonormalised against the basis and each other, by two rounds of projection and Cholesky
-    /// factorisation of their Gram matrix. Left out are those of which nothing is left, and, returned as indices,
-    /// those that lie within a thousandth in the span of the others.
-    fn orthonormal(&self, mut columns: Mat<f64>) -> (Mat<f64>, Vec<usize>) {
-        const LOST: f64 = 1e-12;
-        const ALIKE: f64 = 1e-3;
-        let energy = |z: &Mat<f64>| faer::Scale(1.0 / self.tau) * self.energy(z.as_ref());
-        let before = energy(&columns);
-        let (mut kept, mut later): (Vec<usize>, Vec<usize>) = ((0..columns.ncols()).collect(), Vec::new());
-        for round in 0..2 {
-            self.project_out(&mut columns);
-            let gram = energy(&columns);
-            let m = columns.ncols();
-            // Rows of the Cholesky factor of the Gram matrix of the columns that stay, each column scaled to length one.
-            let mut stay: Vec<usize> = Vec::new();
-            let mut factor = Mat::<f64>::zeros(m, m);
-            for j in 0..m {
-                let square = gram[(j, j)];
-                let was = if round == 0 { before[(j, j)] } else { 1.0 };
-                if !(square > LOST * LOST * was && square.is_finite()) {
-                    continue;
-                }
-                let row = stay.len();
-                for (c, other) in stay.iter().enumerate() {
-                    let cosine = gram[(j, *other)] / (square * gram[(*other, *other)]).sqrt();
-                    let known: f64 = (0..c).map(|k| factor[(row, k)] * factor[(c, k)]).sum();
-                    factor[(row, c)] = (cosine - known) / factor[(c, c)];
-                }
-                let left = 1.0 - (0..row).map(|k| factor[(row, k)].powi(2)).sum::<f64>();
-                if left > ALIKE * ALIKE {
-                    factor[(row, row)] = left.sqrt();
-                    stay.push(j);
-                } else {
-                    later.push(kept[j]);
-                }
-            }
-            let r = stay.len();
-            // L⁻ᵀ, which makes the scaled columns orthonormal.
-            let mut turned = Mat::<f64>::identity(r, r);
-            factor
-                .as_ref()
-                .submatrix(0, 0, r, r)
-                .transpose()
-                .solve_upper_triangular_in_place(turned.as_mut());
-            let mut mix = Mat::<f64>::zeros(m, r);
-            for (c, j) in stay.iter().enumerate() {
-                let length = gram[(*j, *j)].sqrt();
-                (0..r).for_each(|k| mix[(*j, k)] = turned[(c, k)] / length);
-            }
-            columns = expand(columns.as_ref(), mix.as_ref());
-            kept = stay.iter().map(|j| kept[*j]).collect();
-            if round == 0 && r == 0 {
-                break;
-            }
-        }
-        (columns, later)
+        new.subcols(0, done).to_owned()
     }
 
     fn append(&mut self, new: Mat<f64>) {
@@ -253,6 +230,52 @@ impl<'a> Basis<'a> {
             if i < old { self.interface[(i, d)] } else { directions[d].dot(new.col_as_slice(i - old)) }
         });
     }
+}
+
+/// xⱼᵀyⱼ of every column.
+fn gram_diagonal(x: &Mat<f64>, y: &Mat<f64>) -> Vec<f64> {
+    let dot = |j: usize| x.col_as_slice(j).iter().zip(y.col_as_slice(j)).map(|(a, b)| a * b).sum();
+    (0..x.ncols()).map(dot).collect()
+}
+
+/// What makes columns with this Gram matrix orthonormal, one column for each that stays; the columns that stay; and those
+/// that are too much like them. `before` are the squares of their lengths before what was known was taken from them.
+fn orthonormalising(square: &Mat<f64>, before: &[f64]) -> (Mat<f64>, Vec<usize>, Vec<usize>) {
+    const LOST: f64 = 1e-12;
+    const ALIKE: f64 = 1e-3;
+    let m = square.nrows();
+    let (mut stay, mut alike): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
+    // Rows of the Cholesky factor of the Gram matrix of the columns that stay, each column scaled to length one.
+    let mut factor = Mat::<f64>::zeros(m, m);
+    for j in 0..m {
+        let own = square[(j, j)];
+        if !(own > LOST * LOST * before[j] && own.is_finite()) {
+            continue;
+        }
+        let row = stay.len();
+        for (c, other) in stay.iter().enumerate() {
+            let cosine = square[(j, *other)] / (own * square[(*other, *other)]).sqrt();
+            let known: f64 = (0..c).map(|k| factor[(row, k)] * factor[(c, k)]).sum();
+            factor[(row, c)] = (cosine - known) / factor[(c, c)];
+        }
+        let left = 1.0 - (0..row).map(|k| factor[(row, k)].powi(2)).sum::<f64>();
+        if left > ALIKE * ALIKE {
+            factor[(row, row)] = left.sqrt();
+            stay.push(j);
+        } else {
+            alike.push(j);
+        }
+    }
+    let r = stay.len();
+    // L⁻ᵀ, which makes the scaled columns orthonormal.
+    let mut turned = Mat::<f64>::identity(r, r);
+    factor.as_ref().submatrix(0, 0, r, r).transpose().solve_upper_triangular_in_place(turned.as_mut());
+    let mut mix = Mat::<f64>::zeros(m, r);
+    for (c, j) in stay.iter().enumerate() {
+        let length = square[(*j, *j)].sqrt();
+        (0..r).for_each(|k| mix[(*j, k)] = turned[(c, k)] / length);
+    }
+    (mix, stay, alike)
 }
 
 /// Columns in the order of a pivoted Cholesky factorisation of their Gram matrix, which is overwritten.

@@ -105,7 +105,8 @@ const ATTEMPTS: usize = 3;
 /// [`complex_modes`](super::complex_modes) of the band, and the count of those that grow.
 ///
 /// The caller compares: [`Certificate::agrees`] tells whether a mode was missed. Where the modes cannot be counted, such
-/// as with an eigenvalue on the contour wherever it is drawn, there is no certificate but a warning.
+/// as with an eigenvalue on the contour wherever it is drawn, or where that is expected to take more than `most_work`
+/// floating-point operations (infinity for no limit), there is no certificate but a warning.
 ///
 /// # Errors
 /// Those of [`complex_modes`](super::complex_modes).
@@ -114,9 +115,18 @@ pub fn certified_modes(
     steady: &SteadySliding,
     real: &RealModes,
     band_hz: [f64; 2],
+    most_work: f64,
     observer: &dyn Observer,
 ) -> Result<(ComplexModes, Option<Certificate>)> {
     analyse(system, steady, real, band_hz, observer, |modes, analysis| {
+        let work = expected_work(&analysis, modes);
+        if work > most_work {
+            modes.warnings.push(format!(
+                "the unstable modes were not counted: with {} directions of contact that would take about {work:.0e} operations; `cea.certify = true` counts them all the same",
+                directions(&analysis)
+            ));
+            return None;
+        }
         observer.begin("certificate", None);
         let certificate = count(&analysis, modes);
         observer.end();
@@ -133,6 +143,20 @@ pub fn certified_modes(
             }
         }
     })
+}
+
+/// The directions in which the interface acts.
+fn directions(analysis: &Analysis<'_>) -> usize {
+    let sizes = analysis.operator.interface.sizes(TAU * analysis.band_hz[1]);
+    sizes.iter().filter(|size| **size > 0.0).count()
+}
+
+/// Floating-point operations that a count is expected to take: about thirty points of the contour a mode, and at each a
+/// few products of matrices of the sizes of the basis (m) and the interface (r).
+fn expected_work(analysis: &Analysis<'_>, modes: &ComplexModes) -> f64 {
+    let (m, r) = (modes.subspace_dimension as f64, directions(analysis) as f64);
+    let beyond = m - analysis.n_real as f64;
+    30.0 * (modes.modes.len() + 10) as f64 * (r * r * (16.0 * m + 40.0 * r) + 4.0 * m * r * beyond)
 }
 
 /// The count agrees, and yet is no proof.

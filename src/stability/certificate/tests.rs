@@ -76,7 +76,8 @@ fn a_thousand_random_systems_agree_with_the_dense_count() {
         let real = dense_modes(&system, kept);
         let top = 0.6 * real.certificate.below_hz;
         let low = if seed % 2 == 0 { 0.0 } else { 0.1 * top };
-        let (modes, certificate) = certified_modes(&system, &state, &real, [low, top], &()).unwrap();
+        let (modes, certificate) =
+            certified_modes(&system, &state, &real, [low, top], f64::INFINITY, &()).unwrap();
         let certificate = certificate.unwrap_or_else(|| panic!("seed {seed}: {:?}", modes.warnings));
         let spectrum = dense_spectrum(&system, &state);
         let exact = dense_count(&spectrum, &certificate);
@@ -121,7 +122,7 @@ fn a_truncated_basis_is_bounded_and_counts_as_the_full_order() {
     let mut unstable = 0;
     for kind in 0..8 {
         let (system, state, real, band) = large(1000 + kind, kind);
-        let (modes, certificate) = certified_modes(&system, &state, &real, band, &()).unwrap();
+        let (modes, certificate) = certified_modes(&system, &state, &real, band, f64::INFINITY, &()).unwrap();
         assert!(modes.subspace_dimension < system.n_dofs());
         let certificate = certificate.unwrap();
         let exact = dense_count(&dense_spectrum(&system, &state), &certificate);
@@ -154,14 +155,16 @@ fn too_few_real_modes_or_static_responses_do_not_pass_for_a_proof() {
     // The band reaches above what the Sturm count covers.
     let few = dense_modes(&system, 6);
     let high = 1.05 * few.certificate.below_hz;
-    let (modes, certificate) = certified_modes(&system, &state, &few, [0.0, high], &()).unwrap();
+    let (modes, certificate) =
+        certified_modes(&system, &state, &few, [0.0, high], f64::INFINITY, &()).unwrap();
     assert!(modes.subspace_dimension < system.n_dofs());
     assert!(!modes.warnings.is_empty());
     assert!(certificate.is_none_or(|c| !c.holds() && c.margin == 0.0));
     // A count of the real modes that does not hold.
     let mut doubtful = real.clone();
     doubtful.certificate.counted[0] += 1;
-    let (_, certificate) = certified_modes(&system, &state, &doubtful, [0.0, top], &()).unwrap();
+    let (_, certificate) =
+        certified_modes(&system, &state, &doubtful, [0.0, top], f64::INFINITY, &()).unwrap();
     assert!(!certificate.unwrap().holds());
     // Real modes alone, their static responses missing: an honest 1/ρ far below that of the whole basis.
     analyse(&system, &state, &real, [0.0, top], &(), |modes, analysis| {
@@ -258,7 +261,7 @@ fn two_dof_pairs_are_counted_and_slow_ones_are_named() {
     let run = |mu: f64| {
         let system = two_dof(0.5, 1.0, mu);
         let real = dense_modes(&system, 2);
-        certified_modes(&system, &steady(&system), &real, [0.0, 0.5], &()).unwrap().1.unwrap()
+        certified_modes(&system, &steady(&system), &real, [0.0, 0.5], f64::INFINITY, &()).unwrap().1.unwrap()
     };
     let (stable, unstable) = (run(0.6), run(0.7));
     assert!(stable.holds() && stable.counted == 0 && stable.close_calls.is_empty());
@@ -274,7 +277,7 @@ fn the_certificate_does_not_depend_on_the_number_of_threads() {
     let (system, state, real, band) = large(1005, 5);
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| certified_modes(&system, &state, &real, band, &()).unwrap().1)
+        pool.install(|| certified_modes(&system, &state, &real, band, f64::INFINITY, &()).unwrap().1)
     };
     assert_eq!(run(1), run(3));
 }
