@@ -65,16 +65,16 @@ impl Case {
     /// A path that is not a number of the case, with the nearest one that is.
     pub fn parameter(&self, path: &str) -> Result<Parameter> {
         let all = self.parameters();
-        let near = nearest(path, all.iter().map(|p| p.path.as_str())).map(str::to_string);
-        all.into_iter().find(|p| p.path == path).ok_or_else(|| {
-            let help = near.map_or("`stridor check CASE --parameters` lists them".into(), |n| {
-                format!("Did you mean `{n}`?")
-            });
-            let place = format!("parameter `{path}`");
-            Error::input(
-                Fault::new(place, "no such number in the case", "the path of a scalar").with_help(help),
-            )
-        })
+        if let Some(found) = all.iter().find(|p| p.path == path) {
+            return Ok(found.clone());
+        }
+        let near = nearest(path, all.iter().map(|p| p.path.as_str()));
+        let help = near.map_or("`stridor check CASE --parameters` lists them".into(), |n| {
+            format!("Did you mean `{n}`?")
+        });
+        let place = format!("parameter `{path}`");
+        let fault = Fault::new(place, "no such number in the case", "the path of a scalar");
+        Err(Error::input(fault.with_help(help)))
     }
 
     /// The same case with the scalar at `path` set to `value` \[SI\]; validated like a file.

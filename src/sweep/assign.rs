@@ -2,7 +2,8 @@
 
 use super::Modes;
 use crate::linalg::c64;
-use crate::linalg::dense::mac;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, Par};
 
 /// Below this MAC a step is refined.
 const SURE: f64 = 0.9;
@@ -22,43 +23,54 @@ pub(super) struct Link {
     pub(super) to: Vec<Option<(usize, f64)>>,
     /// Whether another assignment would be about as good.
     pub(super) doubtful: bool,
+    /// Whether modes that change places may have turned away from each other in between.
+    pub(super) exchange: bool,
+    /// The least MAC of the links that are in doubt, zero for a mode that is lost; 1 without doubt.
+    pub(super) certainty: f64,
 }
 
 /// How much two modes differ: 1 − MAC of their shapes, and half of their distance in units of 2 % of |λ|, at most ½.
 /// Shapes decide where modes cross; where two merge their shapes become one, and the distance decides.
-pub(super) fn difference(a: (c64, &[c64]), b: (c64, &[c64])) -> f64 {
-    let likeness = likeness(a.1, b.1);
-    let size = a.0.norm().max(b.0.norm()).max(f64::MIN_POSITIVE);
-    let distance = (a.0 - b.0).norm() / size;
+pub(super) fn difference(a: c64, b: c64, likeness: f64) -> f64 {
+    let size = a.norm().max(b.norm()).max(f64::MIN_POSITIVE);
+    let distance = (a - b).norm() / size;
     if likeness < 0.2 || distance > 0.3 {
         return NONE;
     }
     1.0 - likeness + 0.5 * (distance / 0.02).min(1.0)
 }
 
-/// MAC; 1 when there are no shapes to compare.
-fn likeness(a: &[c64], b: &[c64]) -> f64 {
-    if a.is_empty() { 1.0 } else { mac(a, b) }
+/// The MAC of every mode of `a` (a row each) with every mode of `b`; 1 when there are no shapes to compare.
+fn likenesses(a: &Modes, b: &Modes) -> Mat<f64> {
+    let (rows, columns) = (a.eigenvalues.len(), b.eigenvalues.len());
+    if a.vectors.nrows() != b.vectors.nrows() || a.vectors.nrows() == 0 {
+        return Mat::from_fn(rows, columns, |_, _| 1.0);
+    }
+    let mut products = Mat::<c64>::zeros(rows, columns);
+    let one = c64::new(1.0, 0.0);
+    matmul(products.as_mut(), Accum::Replace, a.vectors.adjoint(), &b.vectors, one, Par::Seq);
+    let squares = |modes: &Modes| -> Vec<f64> {
+        (0..modes.eigenvalues.len()).map(|k| modes.vectors.col(k).squared_norm_l2()).collect()
+    };
+    let (left, right) = (squares(a), squares(b));
+    Mat::from_fn(rows, columns, |i, j| {
+        let size = left[i] * right[j];
+        if size > 0.0 { (products[(i, j)].norm_sqr() / size).min(1.0) } else { 0.0 }
+    })
 }
 
 /// Assigns the modes of `a` to those of `b`.
 pub(super) fn assign(a: &Modes, b: &Modes) -> Link {
     let (rows, columns) = (a.eigenvalues.len(), b.eigenvalues.len());
-    let comparable = a.vectors.nrows() == b.vectors.nrows();
-    let shape = |modes: &'_ Modes, k: usize| if comparable { modes.vector(k).to_vec() } else { Vec::new() };
-    let here: Vec<Vec<c64>> = (0..rows).map(|i| shape(a, i)).collect();
-    let there: Vec<Vec<c64>> = (0..columns).map(|j| shape(b, j)).collect();
-    let cost: Vec<Vec<f64>> = (0..rows)
-        .map(|i| {
-            let of = |j: usize| difference((a.eigenvalues[i], &here[i]), (b.eigenvalues[j], &there[j]));
-            (0..columns).map(of).collect()
-        })
-        .collect();
+    let comparable = a.vectors.nrows() == b.vectors.nrows() && a.vectors.nrows() > 0;
+    let likeness = likenesses(a, b);
+    let of = |i: usize, j: usize| difference(a.eigenvalues[i], b.eigenvalues[j], likeness[(i, j)]);
+    let cost: Vec<Vec<f64>> = (0..rows).map(|i| (0..columns).map(|j| of(i, j)).collect()).collect();
     let chosen = least_cost(&cost, rows, columns);
     let mut to = vec![None; rows];
     let mut taken = vec![false; columns];
     for (i, j) in chosen.into_iter().filter(|(i, j)| cost[*i][*j] < NONE) {
-        to[i] = Some((j, likeness(&here[i], &there[j])));
+        to[i] = Some((j, likeness[(i, j)]));
         taken[j] = true;
     }
     let lost = |i: usize| {
@@ -69,10 +81,10 @@ pub(super) fn assign(a: &Modes, b: &Modes) -> Link {
         None => lost(i),
         Some((j, mac)) => {
             let rival = |k: usize| {
-                let other = likeness(&here[i], &there[k]);
+                let other = likeness[(i, k)];
                 k != *j && cost[i][k] < NONE && other > RIVAL && other > mac - 0.2
             };
-            *mac < SURE || (!here[i].is_empty() && (0..columns).any(rival))
+            *mac < SURE || (comparable && (0..columns).any(rival))
         }
     };
     // Above or below, where it is the frequency in which two modes differ; inside flutter it is the growth rate.
@@ -82,13 +94,15 @@ pub(super) fn assign(a: &Modes, b: &Modes) -> Link {
             let here_order = order(a.eigenvalues[i], a.eigenvalues[k]);
             let there_order = order(b.eigenvalues[j], b.eigenvalues[l]);
             let swapped = here_order.zip(there_order).is_some_and(|(p, q)| p != q);
-            swapped && comparable && likeness(&here[i], &there[l]) > EXCHANGE
+            swapped && comparable && likeness[(i, l)] > EXCHANGE
         }
         _ => false,
     };
-    let turned_away = (0..rows).any(|i| (0..i).any(|k| exchange(i, k)));
-    let doubtful = turned_away || to.iter().enumerate().any(unsure);
-    Link { to, doubtful }
+    let exchange = (0..rows).any(|i| (0..i).any(|k| exchange(i, k)));
+    let doubts = to.iter().enumerate().filter(|link| unsure(*link));
+    let certainty = doubts.map(|(_, link)| link.map_or(0.0, |(_, mac)| mac)).fold(1.0, f64::min);
+    let doubtful = exchange || to.iter().enumerate().any(unsure);
+    Link { to, doubtful, exchange, certainty }
 }
 
 /// The pairs of rows and columns with the least total cost, min(rows, columns) of them: the Hungarian method with

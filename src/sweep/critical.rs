@@ -6,6 +6,7 @@ use super::track::{Branch, Sample};
 use super::{Axis, Modes, Problem, ROUND_OFF, unstable};
 use crate::error::Result;
 use crate::linalg::c64;
+use crate::linalg::dense::mac;
 use crate::progress::Observer;
 
 /// A value of the parameter at which a branch becomes unstable or stable.
@@ -114,10 +115,9 @@ fn locate(
         let near = growing.min_by(|a, b| (a.value - x).abs().total_cmp(&(b.value - x).abs()));
         let near = near.unwrap_or(above);
         let cost = |k: &usize| {
-            let other = if modes.vectors.nrows() == near.vector.len() { modes.vector(*k) } else { &[] };
-            let own: &[c64] = if other.is_empty() { &[] } else { &near.vector };
-            let unlike = difference((near.lambda, own), (modes.eigenvalues[*k], other));
-            unlike
+            let comparable = modes.vectors.nrows() == near.vector.len() && !near.vector.is_empty();
+            let likeness = if comparable { mac(&near.vector, modes.vector(*k)) } else { 1.0 };
+            difference(near.lambda, modes.eigenvalues[*k], likeness)
                 + 0.5 * (modes.eigenvalues[*k] - near.lambda).norm()
                     / near.lambda.norm().max(f64::MIN_POSITIVE)
         };

@@ -4,11 +4,14 @@ use super::assign::assign;
 use super::track::{Branch, Sample};
 use super::{Axis, Modes, Problem};
 use crate::error::Result;
+use rayon::prelude::*;
 
 /// Branches that come nearer than this share of |λ| meet …
 const NEAR: f64 = 0.01;
 /// … and samples so near are looked at, because the nearest place lies between them.
 const WORTH_A_LOOK: f64 = 0.05;
+/// A minimum by less than this part of the distance is none: twin modes keep theirs, but for round-off.
+const DIP: f64 = 1e-3;
 
 /// Two branches near each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,7 +47,7 @@ pub(super) fn encounters(
     samples: &[Sample],
     branches: &[Branch],
 ) -> Result<Vec<Encounter>> {
-    let mut found = Vec::new();
+    let mut near = Vec::new();
     for a in 0..branches.len() {
         for b in a + 1..branches.len() {
             let distance = |k: usize| {
@@ -56,13 +59,20 @@ pub(super) fn encounters(
                 else {
                     continue;
                 };
-                if here < WORTH_A_LOOK && here < before && here <= after {
-                    let meeting = encounter(problem, axis, tolerance, samples, branches, [a, b], k)?;
-                    found.extend(Some(meeting).filter(|m| m.distance < NEAR));
+                let dips = here < before && here <= after && before.max(after) > (1.0 + DIP) * here;
+                if here < WORTH_A_LOOK && dips {
+                    near.push(([a, b], k));
                 }
             }
         }
     }
+    let look =
+        |(pair, k): &([usize; 2], usize)| encounter(problem, axis, tolerance, samples, branches, *pair, *k);
+    let looked: Result<Vec<Encounter>> = match problem.parallel() {
+        true => near.par_iter().map(look).collect(),
+        false => near.iter().map(look).collect(),
+    };
+    let mut found: Vec<Encounter> = looked?.into_iter().filter(|m| m.distance < NEAR).collect();
     let along = (axis.to - axis.from).signum();
     found.sort_by(|x, y| (along * x.value).total_cmp(&(along * y.value)).then(x.branches.cmp(&y.branches)));
     Ok(found)

@@ -11,6 +11,8 @@ use rayon::prelude::*;
 
 /// Halvings of a step at most where the likeness of shapes leaves a doubt.
 const HALVINGS: usize = 7;
+/// A halving that raises the MAC of what is in doubt by less than this does not help.
+const SURER: f64 = 0.02;
 
 /// The modes along one parameter.
 #[derive(Debug, Clone)]
@@ -105,8 +107,13 @@ impl Chain<'_> {
             let middle = self.axis.between(last.value, next.value, 0.5);
             if link.doubtful && halvings > 0 && middle != last.value && middle != next.value {
                 let modes = self.problem.modes(&[middle])?;
-                self.reach(Sample { value: middle, modes }, halvings - 1)?;
-                return self.reach(next, halvings - 1);
+                let halves = [assign(&last.modes, &modes), assign(&modes, &next.modes)];
+                let surer = halves.iter().all(|half| half.certainty > link.certainty + SURER);
+                // Twin modes turn in their plane, and merging ones become one, however small the step.
+                let helps = surer || link.exchange || halves.iter().any(|half| half.exchange);
+                let left = if helps { halvings - 1 } else { 0 };
+                self.reach(Sample { value: middle, modes }, left)?;
+                return self.reach(next, left);
             }
             self.links.push(link);
         }

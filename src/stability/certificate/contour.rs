@@ -4,6 +4,7 @@ use super::pencil::{Pencil, Point};
 use crate::linalg::c64;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A closed region of the plane of s: growth \[1/s\] times angular frequency \[rad/s\].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,16 +64,22 @@ pub(super) struct Winding {
     pub(super) worst: c64,
 }
 
+/// Why a walk ended early.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Stopped {
+    /// The contour passes so near an eigenvalue or a pole that it cannot be followed here.
+    At(c64),
+    /// It takes more points than wanted.
+    TooManyPoints,
+}
+
 /// Pieces of an edge that are covered independently of each other.
 const PIECES: usize = 16;
 /// The most points on a piece.
 const POINTS: usize = 20_000;
 
-/// Walks round `region`.
-///
-/// # Errors
-/// The place where the contour passes so near an eigenvalue or a pole that it cannot be followed.
-pub(super) fn wind(pencil: &Pencil<'_>, region: &Region) -> Result<Winding, c64> {
+/// Walks round `region`, with `most_points` points at most.
+pub(super) fn wind(pencil: &Pencil<'_>, region: &Region, most_points: usize) -> Result<Winding, Stopped> {
     let path = region.path();
     let pieces: Vec<[c64; 2]> = path
         .windows(2)
@@ -85,15 +92,21 @@ pub(super) fn wind(pencil: &Pencil<'_>, region: &Region) -> Result<Winding, c64>
         })
         .collect();
     let resolution = 1e-11 * region.omega[1];
-    let covered: Result<Vec<Vec<Point>>, c64> =
-        pieces.par_iter().map(|[a, b]| cover(pencil, *a, *b, resolution)).collect();
+    // Whether all pieces together stay below the limit does not depend on who counts first.
+    let budget = Budget { evaluated: AtomicUsize::new(0), most: most_points };
+    let covered: Vec<Result<Vec<Point>, Stopped>> =
+        pieces.par_iter().map(|[a, b]| cover(pencil, *a, *b, resolution, &budget)).collect();
+    if budget.spent() {
+        return Err(Stopped::TooManyPoints);
+    }
+    let covered: Result<Vec<Vec<Point>>, Stopped> = covered.into_iter().collect();
     let mut points: Vec<Point> = covered?.into_iter().flatten().collect();
     let count = points.len();
     let worst = points.iter().copied().reduce(|a, b| if b.defect > a.defect { b } else { a });
     if region.symmetric() {
         // d is real on the real axis: close the half with its ends there.
         let ends = [path[0], path[path.len() - 1]];
-        let on_axis = |s: c64| pencil.point(s, resolution).ok_or(s);
+        let on_axis = |s: c64| pencil.point(s, resolution).ok_or(Stopped::At(s));
         points.insert(0, on_axis(ends[0])?);
         points.push(on_axis(ends[1])?);
     } else if let Some(first) = points.first().copied() {
@@ -107,12 +120,35 @@ pub(super) fn wind(pencil: &Pencil<'_>, region: &Region) -> Result<Winding, c64>
         Some(worst) if (turns - whole).abs() < 1e-3 => {
             Ok(Winding { turns: whole as i64, points: count, defect: worst.defect, worst: worst.s })
         }
-        _ => Err(path[0]),
+        _ => Err(Stopped::At(path[0])),
+    }
+}
+
+/// The points of a contour, over all its pieces.
+struct Budget {
+    evaluated: AtomicUsize,
+    most: usize,
+}
+
+impl Budget {
+    /// Counts a point; whether it is one too many.
+    fn take(&self) -> bool {
+        self.evaluated.fetch_add(1, Ordering::Relaxed) >= self.most
+    }
+
+    fn spent(&self) -> bool {
+        self.evaluated.load(Ordering::Relaxed) > self.most
     }
 }
 
 /// Discs that cover the line from `a` to `b`, in order.
-fn cover(pencil: &Pencil<'_>, a: c64, b: c64, resolution: f64) -> Result<Vec<Point>, c64> {
+fn cover(
+    pencil: &Pencil<'_>,
+    a: c64,
+    b: c64,
+    resolution: f64,
+    budget: &Budget,
+) -> Result<Vec<Point>, Stopped> {
     let length = (b - a).norm();
     let direction = (b - a) / length;
     let mut done = Vec::new();
@@ -123,13 +159,16 @@ fn cover(pencil: &Pencil<'_>, a: c64, b: c64, resolution: f64) -> Result<Vec<Poi
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         let s = a + direction * middle;
         evaluated += 1;
-        let point = pencil.point(s, half).ok_or(s)?;
+        if budget.take() {
+            return Err(Stopped::TooManyPoints);
+        }
+        let point = pencil.point(s, half).ok_or(Stopped::At(s))?;
         if point.reach >= half {
             done.push((middle, point));
             continue;
         }
         if point.reach < resolution || evaluated > POINTS {
-            return Err(s);
+            return Err(Stopped::At(s));
         }
         // A shade less than the reach, so that rounding leaves no gap.
         let reach = 0.999 * point.reach;

@@ -31,11 +31,10 @@ use super::ComplexModes;
 use super::analysis::{Analysis, analyse};
 use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Result};
-use crate::linalg::c64;
 use crate::modal::RealModes;
 use crate::progress::Observer;
 use crate::system::System;
-use contour::{Region, Winding, wind};
+use contour::{Region, Stopped, Winding, wind};
 use pencil::Pencil;
 use reduced::ReducedModel;
 use std::f64::consts::TAU;
@@ -128,7 +127,7 @@ pub fn certified_modes(
             return None;
         }
         observer.begin("certificate", None);
-        let certificate = count(&analysis, modes);
+        let certificate = count(&analysis, modes, most_work);
         observer.end();
         match certificate {
             Ok(certificate) => {
@@ -151,12 +150,16 @@ fn directions(analysis: &Analysis<'_>) -> usize {
     sizes.iter().filter(|size| **size > 0.0).count()
 }
 
-/// Floating-point operations that a count is expected to take: about thirty points of the contour a mode, and at each a
-/// few products of matrices of the sizes of the basis (m) and the interface (r).
+/// About the floating-point operations of a point of the contour: products of matrices of the sizes of the basis (m) and
+/// the interface (r), and what small ones cost besides.
+fn work_of_a_point(analysis: &Analysis<'_>) -> f64 {
+    let (m, r) = (analysis.basis.len() as f64, directions(analysis) as f64);
+    r * r * (16.0 * m + 40.0 * r) + 4.0 * m * r * (m - analysis.n_real as f64) + 3e5
+}
+
+/// What a count is expected to take: about thirty points of the contour a mode.
 fn expected_work(analysis: &Analysis<'_>, modes: &ComplexModes) -> f64 {
-    let (m, r) = (modes.subspace_dimension as f64, directions(analysis) as f64);
-    let beyond = m - analysis.n_real as f64;
-    30.0 * (modes.modes.len() + 10) as f64 * (r * r * (16.0 * m + 40.0 * r) + 4.0 * m * r * beyond)
+    30.0 * (modes.modes.len() + 10) as f64 * work_of_a_point(analysis)
 }
 
 /// The count agrees, and yet is no proof.
@@ -168,16 +171,17 @@ fn weak(certificate: &Certificate) -> String {
     )
 }
 
-fn count(analysis: &Analysis<'_>, modes: &ComplexModes) -> Result<Certificate> {
+fn count(analysis: &Analysis<'_>, modes: &ComplexModes, most_work: f64) -> Result<Certificate> {
     let model = ReducedModel::new(analysis)?;
     let top = TAU * analysis.band_hz[1];
     let interface = &analysis.operator.interface;
     let pencil = Pencil::new(&model, &interface.terms, &interface.sizes(top), top)?;
     let mut best: Option<(Region, Winding)> = None;
-    let mut stuck = c64::new(0.0, 0.0);
+    let most_points = (most_work / work_of_a_point(analysis)).min(1e9) as usize;
+    let mut stopped = Stopped::TooManyPoints;
     for attempt in 0..ATTEMPTS {
         let region = region(analysis, attempt);
-        match wind(&pencil, &region) {
+        match wind(&pencil, &region, most_points) {
             Ok(winding) => {
                 let better = best.as_ref().is_none_or(|(_, b)| winding.defect < b.defect);
                 if better {
@@ -187,19 +191,25 @@ fn count(analysis: &Analysis<'_>, modes: &ComplexModes) -> Result<Certificate> {
                     break;
                 }
             }
-            Err(place) => stuck = place,
+            Err(why) => stopped = why,
         }
     }
     let Some((region, winding)) = best else {
-        return Err(Error::analysis(
-            "certificate of the unstable modes",
-            format!(
-                "an eigenvalue lies on the contour near {:.6} Hz, growth {:.3e} 1/s",
-                stuck.im / TAU,
-                stuck.re
+        let (found, help) = match stopped {
+            Stopped::At(place) => (
+                format!(
+                    "an eigenvalue lies on the contour near {:.6} Hz, growth {:.3e} 1/s",
+                    place.im / TAU,
+                    place.re
+                ),
+                "Move the ends of the band by a few hertz",
             ),
-            "Move the ends of the band by a few hertz",
-        ));
+            Stopped::TooManyPoints => (
+                format!("the contour takes more than {most_points} points"),
+                "`cea.certify = true` counts them all the same",
+            ),
+        };
+        return Err(Error::analysis("certificate of the unstable modes", found, help));
     };
     let structure_poles =
         model.oscillators.iter().flat_map(|o| o.roots()).filter(|root| region.contains(*root)).count();

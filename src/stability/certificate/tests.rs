@@ -2,7 +2,7 @@ use super::contour::Region;
 use super::*;
 use crate::equilibrium::SteadySliding;
 use crate::equilibrium::samples::*;
-use crate::linalg::SparseVector;
+use crate::linalg::{SparseVector, c64};
 use crate::modal::RealModes;
 use crate::stability::analysis::analyse;
 use crate::stability::basis::Basis;
@@ -138,13 +138,13 @@ fn a_truncated_basis_is_bounded_and_counts_as_the_full_order() {
 fn a_mode_too_few_or_too_many_is_noticed() {
     let (system, state, real, band) = large(1004, 4);
     analyse(&system, &state, &real, band, &(), |modes, analysis| {
-        assert!(count(&analysis, modes).unwrap().agrees());
+        assert!(count(&analysis, modes, f64::INFINITY).unwrap().agrees());
         let at = modes.modes.iter().position(|m| m.growth_rate() > 1e-3).expect("a mode that grows");
         let removed = modes.modes.remove(at);
-        let fewer = count(&analysis, modes).unwrap();
+        let fewer = count(&analysis, modes, f64::INFINITY).unwrap();
         assert!(!fewer.agrees() && !fewer.holds() && fewer.counted == fewer.found + 2);
         modes.modes.extend([removed.clone(), removed]);
-        assert!(!count(&analysis, modes).unwrap().agrees());
+        assert!(!count(&analysis, modes, f64::INFINITY).unwrap().agrees());
     })
     .unwrap();
 }
@@ -168,13 +168,13 @@ fn too_few_real_modes_or_static_responses_do_not_pass_for_a_proof() {
     assert!(!certificate.unwrap().holds());
     // Real modes alone, their static responses missing: an honest 1/ρ far below that of the whole basis.
     analyse(&system, &state, &real, [0.0, top], &(), |modes, analysis| {
-        let whole = count(&analysis, modes).unwrap();
+        let whole = count(&analysis, modes, f64::INFINITY).unwrap();
         let omega = TAU * top;
         let mut poor = Basis::new(analysis.operator, real.shapes.as_ref(), omega * omega);
         let responses =
             crate::stability::analysis::interface_responses(analysis.operator, analysis.factor, omega);
         let left_out = poor.enrich(responses, 1e-9, 0).left_out;
-        let poor = count(&Analysis { left_out, basis: &poor, ..analysis }, modes);
+        let poor = count(&Analysis { left_out, basis: &poor, ..analysis }, modes, f64::INFINITY);
         assert!(poor.is_ok_and(|poor| !poor.holds() && poor.margin < 0.1 * whole.margin));
     })
     .unwrap();
