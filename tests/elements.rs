@@ -289,34 +289,3 @@ fn euler_column_buckles() {
     let exact = std::f64::consts::PI.powi(2) * 210e9 * section.inertia_1 / (4.0 * l * l);
     assert!((load / exact - 1.0).abs() < 1e-4, "{load} {exact}");
 }
-
-/// Seconds of an assembly of about 400,000 degrees of freedom: run with `--ignored --nocapture`.
-#[test]
-#[ignore = "a measurement"]
-fn assembly_speed() {
-    for n in [57, 258] {
-        let nodes = (0..=n).flat_map(|i| (0..=n).map(move |j| [f64::from(i), f64::from(j), 0.0])).collect();
-        let id = |i: i32, j: i32| (i * (n + 1) + j) as usize;
-        let cells = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
-        let faces = cells
-            .flat_map(|(i, j)| {
-                [
-                    stridor::mesh::Element::Triangle([id(i, j), id(i + 1, j), id(i + 1, j + 1)]),
-                    stridor::mesh::Element::Triangle([id(i, j), id(i + 1, j + 1), id(i, j + 1)]),
-                ]
-            })
-            .collect();
-        let part = ShellPart {
-            name: "plate".into(),
-            faces,
-            material: steel(),
-            thickness: 0.1,
-            bending_only: false,
-            rotary_inertia: false,
-        };
-        let model = Model { nodes, shells: vec![part], ..Model::default() };
-        let start = std::time::Instant::now();
-        let assembled = assemble(&model).unwrap();
-        println!("{} dof: {:.2} s", assembled.dofs.n_dofs(), start.elapsed().as_secs_f64());
-    }
-}

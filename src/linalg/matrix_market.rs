@@ -537,15 +537,4 @@ mod tests {
         let back = parse("k", to_text(&one_sided, Some(&k), "general").as_bytes()).unwrap();
         assert_eq!((back.re.val(), back.im.unwrap().val()), (one_sided.val(), k.val()));
     }
-
-    #[test]
-    #[ignore = "a measurement: cargo test --release --lib matrix_market::tests::speed -- --ignored --nocapture"]
-    fn speed() {
-        let k = samples::plate(260, false).0;
-        let text = to_text(&k, None, "a plate");
-        let start = std::time::Instant::now();
-        let back = parse("k", text.as_bytes()).unwrap();
-        let mb = text.len() as f64 / 1e6;
-        println!("{mb:.0} MB, {} entries: {:.2} s", back.re.compute_nnz(), start.elapsed().as_secs_f64());
-    }
 }

@@ -109,7 +109,6 @@ fn no_convergence(n: usize) -> Error {
 mod tests {
     use super::super::samples::random_symmetric;
     use super::*;
-    use std::time::Instant;
 
     #[test]
     fn right_and_left_vectors_satisfy_their_equations() {
@@ -139,17 +138,5 @@ mod tests {
     fn what_is_not_finite_is_refused() {
         assert!(spectrum(faer::mat![[f64::NAN]].as_ref()).is_err());
         assert!(spectrum(Mat::zeros(0, 0).as_ref()).is_err());
-    }
-
-    #[test]
-    #[ignore = "for people: prints how long it takes"]
-    fn timing() {
-        for n in [100, 150, 200, 300, 400, 600] {
-            let (a, b) = (random_symmetric(n, 3).to_dense(), random_symmetric(n, 4).to_dense());
-            let a = Mat::from_fn(n, n, |i, j| a[(i, j)] + if i > j { b[(i, j)] } else { -b[(i, j)] });
-            let start = Instant::now();
-            spectrum(a.as_ref()).unwrap();
-            println!("{n}: {:.1} ms", 1e3 * start.elapsed().as_secs_f64());
-        }
     }
 }

@@ -88,24 +88,4 @@ mod tests {
         write_report(dir.path(), &RunResults::default()).unwrap();
         assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 1);
     }
-
-    /// For people: leaves the made-up run's whole folder in the system's folder for temporary files.
-    #[test]
-    #[ignore = "leaves a folder to look at"]
-    fn sample_folder() {
-        let dir = std::env::temp_dir().join("stridor_sample");
-        let results = sample::rig();
-        let mut file = crate::results::ResultsFile::create(&dir).unwrap();
-        file.write_case(&results).unwrap();
-        file.write_geometry(&results.geometry).unwrap();
-        results.modes.iter().for_each(|set| file.write_modes(set).unwrap());
-        file.write_measured(&results.measured).unwrap();
-        file.write_steady(results.steady.as_ref().unwrap()).unwrap();
-        file.write_complex(results.complex.as_ref().unwrap()).unwrap();
-        file.write_sensitivity(results.sensitivity.as_ref().unwrap()).unwrap();
-        crate::results::write_files(&dir, &results).unwrap();
-        write_report(&dir, &results).unwrap();
-        std::fs::write(dir.join("stdout.txt"), text::summary(&results)).unwrap();
-        file.finish(&results).unwrap();
-    }
 }

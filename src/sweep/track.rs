@@ -61,7 +61,7 @@ pub(super) struct Sample {
 
 /// Follows every mode of `problem` along `axis`; critical values are located to `tolerance`, relative to the value.
 ///
-/// The values of the axis are solved at once, then linked in their order by [`assign`]; a step is halved where another
+/// The values of the axis are solved at once, then linked in their order by their shapes; a step is halved where another
 /// link would be about as good. At a coalescence no step is small enough: there the nearest eigenvalue goes on.
 ///
 /// # Errors

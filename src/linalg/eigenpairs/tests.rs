@@ -149,44 +149,6 @@ fn senseless_requests_are_refused() {
     assert!(none.values.is_empty() && none.sturm.counted == [0, 0]);
 }
 
-/// Counts the blocks of an iteration.
-#[derive(Default)]
-struct Blocks(std::sync::atomic::AtomicU64);
-
-impl Observer for Blocks {
-    fn advance(&self, steps: u64) {
-        self.0.fetch_add(steps, std::sync::atomic::Ordering::Relaxed);
-    }
-}
-
-#[test]
-#[ignore = "a measurement: cargo test --release --lib eigenpairs::tests::timing -- --ignored --nocapture"]
-fn timing() {
-    let cpu = || {
-        let stat = std::fs::read_to_string("/proc/self/stat").unwrap();
-        let fields: Vec<&str> = stat.rsplit(')').next().unwrap().split_whitespace().collect();
-        (fields[11].parse::<f64>().unwrap() + fields[12].parse::<f64>().unwrap()) / 100.0
-    };
-    for (m, hz) in [(81, 9000.0f64), (257, 6000.0)] {
-        let (k, mass) = samples::plate(m, false);
-        for wanted in [Wanted::Below((std::f64::consts::TAU * hz).powi(2)), Wanted::Count(50)] {
-            let (wall, before) = (std::time::Instant::now(), cpu());
-            let blocks = Blocks::default();
-            let pairs = lowest_eigenpairs(&k, &mass, wanted, &blocks).unwrap();
-            let worst = pairs.backward_errors.iter().fold(0.0f64, |m, e| m.max(*e));
-            println!(
-                "{} dof, {} pairs: {:.2} s wall, {:.2} s CPU, {} blocks, backward error {worst:.1e}",
-                k.nrows(),
-                pairs.values.len(),
-                wall.elapsed().as_secs_f64(),
-                cpu() - before,
-                blocks.0.load(std::sync::atomic::Ordering::Relaxed)
-            );
-            check(&mass, &pairs);
-        }
-    }
-}
-
 #[test]
 fn negative_eigenvalues_belong_to_the_lowest() {
     // A preload beyond buckling makes K indefinite.
