@@ -259,3 +259,16 @@ fn a_reader_that_goes_away_is_no_error() {
         .expect("the program starts");
     assert_eq!((output.status.code(), text(&output.stderr).as_str()), (Some(0), ""));
 }
+
+#[test]
+fn what_the_readme_asks_of_a_case_is_accepted() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let readme = std::fs::read_to_string(root.join("README.md")).expect("README.md");
+    let (_, block) = readme.split_once("```toml\n").expect("a TOML block");
+    let (block, _) = block.split_once("```").expect("its end");
+    let folder = TempDir::new().expect("a temporary folder");
+    let case = RIG.to_string() + "\n" + block;
+    std::fs::write(folder.path().join("case.toml"), case).expect("a file");
+    let output = stridor(folder.path(), &["check", "case.toml"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+}
