@@ -50,7 +50,8 @@ pub struct Eigenpairs {
 pub struct SturmCount {
     /// The bound: the wanted one, moved up when an eigenvalue sits on it.
     pub bound: f64,
-    /// Two shifts, one either side of the bound, with no eigenvalue between.
+    /// Two shifts, one either side of the bound, with no eigenvalue between; both are the bound when that was put in
+    /// the middle of a gap.
     pub shifts: [f64; 2],
     /// Negative pivots of K − shift · M.
     pub counted: [usize; 2],
@@ -63,6 +64,10 @@ const APART: f64 = 1e-5;
 /// Where in the range the shift lies, with two places to evade to: the ends are about equally far in blocks of
 /// Lanczos, as modes of plates lie denser towards the lower one.
 const INSIDE: [f64; 3] = [0.4, 0.38, 0.42];
+/// The first look at the spectrum sees about this many of the lowest eigenvalues; where the others lie is extrapolated.
+const EXPLORED: usize = 16;
+/// Ritz values with ‖A x − ν x‖_M below this part of |ν| are taken for eigenvalues in the first look.
+const SETTLED: f64 = 1e-2;
 /// Eigenvalues nearer to each other than this, relative to their size, are one cluster.
 const CLUSTER: f64 = 1e-7;
 
@@ -249,18 +254,21 @@ impl<'a> Pencil<'a> {
                 Some(next) => (values[cut - 1], *next),
                 None => (last, last + 0.2 * last.abs().max((last - shift).abs())),
             };
-            let shifts = [low + 0.3 * (high - low), low + 0.7 * (high - low)];
-            let counted = self.count_at(shifts)?;
-            if counted[0] > cut && !all {
+            // In a gap one count says all.
+            let part = |part: f64| low + part * (high - low);
+            let (bound, counter) = self.factorize_near([0.5, 0.4, 0.6].map(part))?;
+            let counted = counter.inertia().negative;
+            if counted > cut && !all {
                 // Copies of a multiple eigenvalue that the block has not seen yet.
-                total += counted[0] - cut;
+                total += counted - cut;
                 lanczos.look_again();
                 continue;
             }
             let (values, vectors) = lanczos.pairs(&ritz, window, shift);
             let mut found = Found { values, vectors, shift, factor };
             found.truncate(cut);
-            return self.certify(found, SturmCount { bound: 0.5 * (shifts[0] + shifts[1]), shifts, counted });
+            let sturm = SturmCount { bound, shifts: [bound; 2], counted: [counted; 2] };
+            return self.certify(found, sturm);
         }
         Err(missing(total, total + 1, shift))
     }
@@ -273,14 +281,22 @@ impl<'a> Pencil<'a> {
         let (mut shift, mut factor) = self.factorize_near(guess)?;
         let mut reach = scale;
         for _ in 0..6 {
-            let mut values: Vec<f64> = {
-                let mut lanczos = BlockLanczos::new(self.m, &*factor, count + 40, 1.0);
-                let ritz = lanczos.explore(count + 32, observer)?;
-                ritz.values.iter().map(|v| shift + 1.0 / v).collect()
-            };
+            let (mut values, mut settled) = (Vec::new(), Vec::new());
+            let mut lanczos = BlockLanczos::new(self.m, &*factor, count.min(EXPLORED) + 40, 1.0);
+            let ritz = lanczos.explore(count.min(EXPLORED) + 32, observer)?;
+            for (v, residual) in ritz.values.iter().zip(&ritz.residuals) {
+                values.push(shift + 1.0 / v);
+                if *residual <= SETTLED * v.abs() {
+                    settled.push(shift + 1.0 / v);
+                }
+            }
+            drop(lanczos);
             values.sort_by(f64::total_cmp);
+            settled.sort_by(f64::total_cmp);
             let lowest = values.first().copied().unwrap_or(0.0);
-            let estimate = values.get(count - 1).or(values.last()).copied().unwrap_or(scale);
+            let estimate = extrapolated(&settled, count)
+                .or(values.get(count - 1).or(values.last()).copied())
+                .unwrap_or(scale);
             reach = (estimate - shift).abs().max((lowest - shift).abs());
             if estimate <= 0.0 {
                 // All are negative or rigid-body motions: go below the negative ones, where the shift meets none.
@@ -396,6 +412,23 @@ fn gap(values: &[f64], first_above: usize, bound: f64, beyond: f64) -> (f64, [f6
         }
         k += 1;
     }
+}
+
+/// Where the eigenvalue number `count` lies, as those known from the lowest on have it: their number grows with a power
+/// of θ. `None` when there are too few to tell.
+fn extrapolated(known: &[f64], count: usize) -> Option<f64> {
+    if let Some(value) = known.get(count - 1) {
+        return Some(*value);
+    }
+    let (m, half) = (known.len(), known.len() / 2);
+    let (last, middle) = (*known.last()?, *known.get(half.checked_sub(1)?)?);
+    // Rigid bodies tell nothing of the power.
+    if m < 8 || middle <= 1e-6 * last {
+        return None;
+    }
+    // From bending of a beam, N ~ θ^¼, to a solid, N ~ θ^(3/2).
+    let power = ((m as f64 / half as f64).ln() / (last / middle).ln()).clamp(0.25, 1.5);
+    Some(last * (count as f64 / m as f64).powf(1.0 / power))
 }
 
 /// Columns of the basis for `count` eigenpairs.

@@ -11,6 +11,7 @@
 use super::SparseMatrix;
 use super::dense::{product, symmetric_eigen};
 use super::factor::SymmetricFactor;
+use super::random::Random;
 use super::sparse::multiply;
 use super::tall::{ROWS, combine, gram};
 use crate::error::{Error, Result};
@@ -37,6 +38,8 @@ pub struct BlockLanczos<'a> {
     width: usize,
     /// M X.
     mass_next: Mat<f64>,
+    /// M times the columns of V from `coupled_from` on; empty when they are not just the block before.
+    mass_last: Mat<f64>,
     /// R, `width` × (columns of the block before).
     coupling: Mat<f64>,
     /// The first column of V that X is coupled to by A.
@@ -96,11 +99,12 @@ impl<'a> BlockLanczos<'a> {
             len: 0,
             width: 0,
             mass_next: Mat::zeros(mass.ncols(), 0),
+            mass_last: Mat::zeros(mass.ncols(), 0),
             coupling: Mat::zeros(0, 0),
             coupled_from: 0,
             accepted,
             noise: 0.0,
-            random: Random(0x2545_F491_4F6C_DD1D),
+            random: Random::new(),
         };
         lanczos.reserve(capacity);
         lanczos.inject();
@@ -231,13 +235,24 @@ impl<'a> BlockLanczos<'a> {
         let (begin, end) = (self.len, self.len + self.width);
         let mut w = self.mass_next.clone();
         self.factor.solve_in_place(w.as_mut());
-        let mut mw = self.mass_times(w.as_ref());
-        let scale = column_norms(w.as_ref(), mw.as_ref()).into_iter().fold(0.0, f64::max);
         let from = self.coupled_from;
-        let near = self.orthogonalise(&mut w, &mw, from, end);
-        mw = self.mass_times(w.as_ref());
+        let near = if self.mass_last.ncols() == begin - from {
+            // VᵀMW = (MV)ᵀW, and the M V of the last two blocks are at hand.
+            let h =
+                stacked(gram(self.mass_last.as_ref(), w.as_ref()), gram(self.mass_next.as_ref(), w.as_ref()));
+            combine(w.as_mut(), Accum::Add, self.basis.subcols(from, end - from), h.as_ref(), -1.0);
+            h
+        } else {
+            let mw = self.mass_times(w.as_ref());
+            self.orthogonalise(&mut w, &mw, from, end)
+        };
+        let mut mw = self.mass_times(w.as_ref());
         let all = self.orthogonalise(&mut w, &mw, 0, end);
-        let smallest = column_norms(w.as_ref(), mw.as_ref()).into_iter().fold(scale, f64::min);
+        let rest = column_norms(w.as_ref(), mw.as_ref());
+        // By Pythagoras: what was taken out is M-orthonormal.
+        let before = |j: usize| near.col(j).norm_l2().hypot(rest[j]);
+        let scale = (0..self.width).map(before).fold(0.0, f64::max);
+        let smallest = rest.iter().copied().fold(scale, f64::min);
         if all.norm_max() > 1e-14 * smallest {
             mw = self.mass_times(w.as_ref());
         }
@@ -265,7 +280,7 @@ impl<'a> BlockLanczos<'a> {
         let (x, mx, r) = self.orthonormalise(w, mw, scale)?;
         self.width = x.ncols();
         self.basis.subcols_mut(end, x.ncols()).copy_from(&x);
-        self.mass_next = mx;
+        self.mass_last = std::mem::replace(&mut self.mass_next, mx);
         self.coupling = r;
         Ok(())
     }
@@ -361,6 +376,7 @@ impl<'a> BlockLanczos<'a> {
         }
         self.len = keep;
         self.coupled_from = 0;
+        self.mass_last = Mat::zeros(self.mass.ncols(), 0);
         Ok(())
     }
 
@@ -387,6 +403,12 @@ fn rotate(v: MatMut<'_, f64>, c: MatRef<'_, f64>) {
     });
 }
 
+/// A above B.
+fn stacked(a: Mat<f64>, b: Mat<f64>) -> Mat<f64> {
+    let above = a.nrows();
+    Mat::from_fn(above + b.nrows(), a.ncols(), |i, j| if i < above { a[(i, j)] } else { b[(i - above, j)] })
+}
+
 /// (xᵀ M x)^½ of each column.
 fn column_norms(x: MatRef<'_, f64>, mx: MatRef<'_, f64>) -> Vec<f64> {
     let g = gram(x, mx);
@@ -395,18 +417,6 @@ fn column_norms(x: MatRef<'_, f64>, mx: MatRef<'_, f64>) -> Vec<f64> {
 
 /// X, M X and R of W = X R.
 type Factored = (Mat<f64>, Mat<f64>, Mat<f64>);
-
-/// Numbers in [-1, 1), the same in every run: Marsaglia's xorshift, J. Stat. Softw. 8 (2003) 14.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
 
 #[cfg(test)]
 mod tests {

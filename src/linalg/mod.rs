@@ -6,6 +6,8 @@
 //!   [`lanczos`].
 //! * [`dense`]: small symmetric eigenproblems and the likeness of two vectors.
 //! * [`matrix_market`]: matrices from and to files.
+//! * [`merged`]: products with several sparse matrices at once.
+//! * [`random`]: start vectors that are the same in every run.
 //! * [`tall`]: products of tall matrices, such as a set of modes.
 //! * [`toar`]: eigenpairs of a quadratic problem nearest a shift, by two-level Arnoldi.
 //! * [`unsymmetric`]: small dense eigenproblems that are not symmetric.
@@ -15,6 +17,8 @@ pub mod eigenpairs;
 pub mod factor;
 pub mod lanczos;
 pub mod matrix_market;
+pub mod merged;
+pub mod random;
 pub mod sparse;
 pub mod tall;
 pub mod toar;

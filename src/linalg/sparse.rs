@@ -2,6 +2,7 @@
 
 use faer::sparse::{SparseColMat, SymbolicSparseColMat, Triplet};
 use faer::{Mat, MatMut, MatRef};
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use std::ops::{AddAssign, Mul};
 
@@ -77,9 +78,9 @@ impl Scalar for f64 {}
 impl Scalar for super::c64 {}
 
 /// Rows that one task works on; fixed, so that the split does not depend on the number of threads.
-const ROWS_A_TASK: usize = 4096;
+pub(super) const ROWS_A_TASK: usize = 4096;
 /// Columns that go through the matrix together.
-const PANEL: usize = 8;
+pub(super) const PANEL: usize = 8;
 
 /// y = A x for a symmetric `a` stored whole: n × n times n × k, real or complex.
 ///
@@ -111,25 +112,54 @@ pub fn multiply<T: Scalar>(a: &SparseMatrix, x: MatRef<'_, T>, mut y: MatMut<'_,
 /// W factors in one place of memory.
 fn panel<T: Scalar, const W: usize>(a: &SparseMatrix, x: MatRef<'_, T>, y: MatMut<'_, T>) {
     let width = x.ncols();
-    let row_of = |i: usize| std::array::from_fn(|c| if c < width { x[(i, c)] } else { T::default() });
-    let packed: Vec<[T; W]> = (0..a.ncols()).into_par_iter().with_min_len(ROWS_A_TASK).map(row_of).collect();
-    let (starts, rows_of, values) = (a.col_ptr(), a.row_idx(), a.val());
+    let packed = &pack(x);
     y.par_row_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, mut y)| {
-        for i in 0..y.nrows() {
-            let row = task * ROWS_A_TASK + i;
-            let entries = starts[row]..starts[row + 1];
-            let mut sum = [T::default(); W];
-            for (j, v) in rows_of[entries.clone()].iter().zip(&values[entries]) {
-                let x = &packed[*j];
-                for c in 0..W {
-                    sum[c] += x[c] * *v;
-                }
-            }
-            for c in 0..width {
-                y[(i, c)] = sum[c];
-            }
+        let mut sums = vec![[T::default(); W]; y.nrows()];
+        Arch::new().dispatch(Rows { a, first: task * ROWS_A_TASK, packed, sums: &mut sums });
+        for c in 0..width {
+            y.as_mut().col_mut(c).iter_mut().zip(&sums).for_each(|(y, sum)| *y = sum[c]);
         }
     });
+}
+
+/// Columns side by side, row by row; those that are missing are zero.
+pub(super) fn pack<T: Scalar, const W: usize>(x: MatRef<'_, T>) -> Vec<[T; W]> {
+    let mut packed = vec![[T::default(); W]; x.nrows()];
+    packed.par_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, packed)| {
+        for c in 0..x.ncols() {
+            let column = x.col(c).subrows(task * ROWS_A_TASK, packed.len());
+            packed.iter_mut().zip(column.iter()).for_each(|(row, v)| row[c] = *v);
+        }
+    });
+    packed
+}
+
+/// The rows of A from `first` on, times packed columns.
+struct Rows<'a, T, const W: usize> {
+    a: &'a SparseMatrix,
+    first: usize,
+    packed: &'a [[T; W]],
+    sums: &'a mut [[T; W]],
+}
+
+impl<T: Scalar, const W: usize> WithSimd for Rows<'_, T, W> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let (starts, rows_of, values) = (self.a.col_ptr(), self.a.row_idx(), self.a.val());
+        for (i, sum) in self.sums.iter_mut().enumerate() {
+            let entries = starts[self.first + i]..starts[self.first + i + 1];
+            let mut own = [T::default(); W];
+            for (j, v) in rows_of[entries.clone()].iter().zip(&values[entries]) {
+                let x = &self.packed[*j];
+                for c in 0..W {
+                    own[c] += x[c] * *v;
+                }
+            }
+            *sum = own;
+        }
+    }
 }
 
 /// A X as a new matrix, for a symmetric `a` stored whole: the allocating twin of [`multiply`].

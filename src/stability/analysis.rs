@@ -1,18 +1,19 @@
 //! The analysis: project, solve, measure on the full order, enrich, repeat.
 
-use super::basis::{Basis, Images};
+use super::basis::{Basis, beside};
 use super::block::Block;
-use super::budget::growth_budget;
-use super::operator::{Operator, Side};
+use super::budget::growth_budgets;
+use super::operator::{Images, Operator, Side};
 use super::projected::{SmallPair, project_interface, solve};
-use super::{ComplexMode, ComplexModes};
+use super::{ComplexMode, ComplexModes, GrowthBudget};
 use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Fault, Result};
 use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
 use crate::linalg::factor::factorize;
-use crate::linalg::sparse::add_scaled;
-use crate::linalg::tall::gram;
+use crate::linalg::random::Random;
+use crate::linalg::sparse::{add_scaled, times};
+use crate::linalg::tall::{expand, gram};
 use crate::modal::RealModes;
 use crate::progress::Observer;
 use crate::system::System;
@@ -21,11 +22,19 @@ use std::f64::consts::TAU;
 
 /// Rounds of enrichment at most.
 const ROUNDS: usize = 6;
-/// The most static contact responses that enter the first basis; the residuals ask for the others where they matter.
+/// The most static contact responses that enter the first basis; of more directions the residuals ask for what matters.
 const STATIC_RESPONSES: usize = 240;
 /// Aims of the refinement, below what [`ComplexMode::accepted`] asks.
 const BACKWARD_ERROR: f64 = 5e-11;
 const EIGENVALUE_ERROR: f64 = 1e-10;
+/// Two eigenvalues nearer than this part of |λ| may be taken for each other.
+const ALONE: f64 = 1e-6;
+/// The E-norm below which a first correction is left out.
+const FIRST_TOLERANCE: f64 = 1e-6;
+/// Pairs that are expanded together.
+const TOGETHER: usize = 16;
+/// Random combinations that stand for many residuals.
+const SKETCH: usize = 64;
 /// A condition number of λ above this is told.
 const ILL_CONDITIONED: f64 = 1e6;
 
@@ -66,8 +75,9 @@ pub(super) struct Analysis<'a> {
     pub(super) n_real: usize,
     /// Ω_b²: every real mode below it is in the basis, as the Sturm count proves; zero when it does not.
     pub(super) complete_below: f64,
-    /// What the basis misses of the static responses to the interface, squared E-norms added up.
-    pub(super) left_out: f64,
+    /// What the basis misses of the static responses to the interface, squared E-norms added up; unknown when they did not
+    /// enter it.
+    left_out: Option<f64>,
     pub(super) band_hz: [f64; 2],
 }
 
@@ -136,29 +146,53 @@ fn check(system: &System, steady: &SteadySliding, real: &RealModes, band_hz: [f6
     Ok(())
 }
 
-/// The pairs of one round with their full-order measures.
+/// Pairs with their measures on the full order.
 pub(super) struct Round {
     pub(super) lambda: Vec<c64>,
     phi: Block,
     psi: Block,
-    /// M φ.
-    momentum: Block,
-    /// z = −A⁻¹Q(λ)φ.
-    correction: Block,
-    /// Q(λ)ᴴψ.
-    left_residual: Block,
     pub(super) backward_error: Vec<f64>,
     pub(super) eigenvalue_error: Vec<f64>,
     condition: Vec<f64>,
+    /// z = −A⁻¹Q(λ)φ and Q(λ)ᴴψ of the pairs that were measured last, whose places are `measured`.
+    correction: Block,
+    left_residual: Block,
+    measured: Vec<usize>,
 }
 
 impl Round {
-    /// The pairs that are not yet as exact as the refinement aims at.
+    /// Those measured last that are not yet as exact as the refinement aims at, as places in `measured`.
     pub(super) fn open(&self) -> Vec<usize> {
-        let right = |j: &usize| {
-            self.backward_error[*j] <= BACKWARD_ERROR && self.eigenvalue_error[*j] <= EIGENVALUE_ERROR
-        };
-        (0..self.lambda.len()).filter(|j| !right(j)).collect()
+        (0..self.measured.len()).filter(|k| !self.right(self.measured[*k])).collect()
+    }
+
+    fn right(&self, j: usize) -> bool {
+        self.backward_error[j] <= BACKWARD_ERROR && self.eigenvalue_error[j] <= EIGENVALUE_ERROR
+    }
+
+    /// The pair that is right and no other than the one with this λ, when both rounds have just one there.
+    fn settled(&self, all: &[SmallPair], lambda: c64) -> Option<usize> {
+        let near = |z: c64| (z - lambda).norm() <= ALONE * lambda.norm();
+        let mut own = (0..self.lambda.len()).filter(|j| near(self.lambda[*j]));
+        let alone = all.iter().filter(|pair| near(pair.lambda)).count() == 1;
+        let j = own.next().filter(|j| alone && own.next().is_none() && self.right(*j))?;
+        ((self.lambda[j] - lambda).norm() <= EIGENVALUE_ERROR * lambda.norm()).then_some(j)
+    }
+}
+
+impl Analysis<'_> {
+    /// The same with another basis that begins with the real modes.
+    #[cfg(test)]
+    pub(super) fn with_basis<'b>(&'b self, basis: &'b Basis<'b>) -> Analysis<'b> {
+        Analysis { basis, left_out: None, ..*self }
+    }
+
+    /// What the basis misses of the static responses to the interface, squared E-norms added up.
+    pub(super) fn left_out(&self) -> f64 {
+        self.left_out.unwrap_or_else(|| {
+            let omega = TAU * self.band_hz[1];
+            self.basis.missing(interface_responses(self.operator, self.factor, omega))
+        })
     }
 }
 
@@ -169,17 +203,25 @@ fn solve_and_refine<'a>(
     real: &RealModes,
     band_hz: [f64; 2],
     observer: &dyn Observer,
-) -> Result<(ComplexModes, Basis<'a>, f64)> {
+) -> Result<(ComplexModes, Basis<'a>, Option<f64>)> {
     let band = band_hz.map(|f| TAU * f);
     let mut basis = Basis::new(operator, real.shapes.as_ref(), band[1] * band[1]);
-    let responses = interface_responses(operator, factor, band[1]);
-    // Few directions: all of them, and the corrections show no contact motion. Many: those that matter, and the
-    // corrections bring what is needed of the others.
-    let tolerance = if responses.ncols() <= real.len() { 1e-9 } else { 1e-2 };
-    let left_out = basis.enrich(responses, tolerance, STATIC_RESPONSES).left_out;
+    // Few directions: all their responses, so that the corrections show no contact motion. Many: the corrections
+    // bring what is needed of them.
+    let few = operator.interface.active(band[1]).len() <= real.len();
+    let left_out = few.then(|| {
+        let responses = interface_responses(operator, factor, band[1]);
+        basis.enrich(responses, 1e-9, STATIC_RESPONSES).left_out
+    });
+    let floor = 1e-3 * band[1];
     let mut warnings = Vec::new();
     let mut counts = Vec::new();
-    let mut round = evaluate(operator, &basis, factor, band)?;
+    if !few {
+        let responses = coupled_responses(operator, &basis, factor, band);
+        basis.enrich(responses, FIRST_TOLERANCE, usize::MAX);
+        observer.advance(1);
+    }
+    let mut round = evaluate(operator, &basis, factor, band, None)?;
     observer.advance(1);
     let mut refinements = 0;
     loop {
@@ -189,16 +231,12 @@ fn solve_and_refine<'a>(
             break;
         }
         // The error of λ is quadratic in that of the vectors: coarse first, so that the basis stays small.
-        let tolerance = 1e-6 * 0.01f64.powi(refinements as i32);
-        if basis
-            .enrich(wanted_corrections(&round, factor, &open, 1e-3 * band[1]), tolerance, usize::MAX)
-            .added
-            == 0
-        {
+        let tolerance = FIRST_TOLERANCE * 0.01f64.powi(refinements as i32);
+        if basis.enrich(wanted_corrections(&round, factor, &open, floor), tolerance, usize::MAX).added == 0 {
             break;
         }
         refinements += 1;
-        round = evaluate(operator, &basis, factor, band)?;
+        round = evaluate(operator, &basis, factor, band, Some(round))?;
         observer.advance(1);
     }
     if let Some(first) = counts.first().filter(|first| counts.iter().any(|c| c != *first)) {
@@ -207,9 +245,10 @@ fn solve_and_refine<'a>(
             "the refinement changed the number of complex modes in the band from {first} to {last}"
         ));
     }
-    let participations = participations(&round, real).into_iter().enumerate();
-    let modes: Vec<ComplexMode> =
-        participations.map(|(j, shares)| mode(operator, &round, shares, j)).collect();
+    let participations = participations(operator, &round, real);
+    let growths = growth_budgets(operator, &round.lambda, &round.phi);
+    let each = growths.into_iter().zip(participations).enumerate();
+    let modes: Vec<ComplexMode> = each.map(|(j, (growth, shares))| mode(&round, growth, shares, j)).collect();
     for mode in modes.iter().filter(|mode| mode.accepted() && mode.condition > ILL_CONDITIONED) {
         warnings.push(format!(
             "the mode at {:.2} Hz is ill-conditioned: a relative change of the matrices moves it by {:.0e} times as much",
@@ -266,42 +305,107 @@ pub(super) fn interface_responses(
     omega: f64,
 ) -> Mat<f64> {
     let interface = &operator.interface;
-    let largest = interface.sizes(omega);
-    let columns: Vec<_> = interface
-        .directions
-        .iter()
-        .zip(&largest)
-        .filter(|(d, size)| **size > 0.0 && !d.indices().is_empty())
-        .collect();
-    let mut responses = Mat::<f64>::zeros(operator.n(), columns.len());
-    for (j, (direction, size)) in columns.iter().enumerate() {
-        direction.add_to(size.sqrt() / omega, responses.col_as_slice_mut(j));
+    let (largest, active) = (interface.sizes(omega), interface.active(omega));
+    let mut responses = Mat::<f64>::zeros(operator.n(), active.len());
+    for (j, d) in active.iter().enumerate() {
+        interface.directions[*d].add_to(largest[*d].sqrt() / omega, responses.col_as_slice_mut(j));
     }
     factor.solve_in_place(responses.as_mut());
     responses
 }
 
-fn evaluate(
+/// What the forces that do not decouple the real modes bring about: A⁻¹R and ω²A⁻¹M A⁻¹R, the first two terms of the
+/// response in ω², R being the forces of damping and interface, right and left, in random combinations of the real
+/// modes. A few such columns reveal what the responses to all modes have in common.
+fn coupled_responses(
     operator: &Operator<'_>,
     basis: &Basis<'_>,
     factor: &dyn SymmetricFactor,
     band: [f64; 2],
-) -> Result<Round> {
+) -> Mat<f64> {
+    let mut random = Random::new();
+    let mut mixed = || {
+        let mut part = || Mat::from_fn(basis.len(), SKETCH / 4, |_, _| random.next());
+        Block { re: part(), im: part() }
+    };
+    let s = vec![c64::new(0.0, band[1]); SKETCH / 4];
+    let mut responses = Mat::zeros(operator.n(), 0);
+    for side in [Side::Right, Side::Left] {
+        let images = operator.images(basis.expand(&mixed()));
+        let mut forces = Block::zeros(operator.n(), s.len());
+        operator.add_rest(side, &s, &images, &mut forces);
+        responses = beside(&beside(&responses, &forces.re), &forces.im);
+    }
+    responses *= faer::Scale(1.0 / band[1]);
+    factor.solve_in_place(responses.as_mut());
+    let mut second = times(operator.mass, responses.as_ref());
+    second *= faer::Scale(band[1] * band[1]);
+    factor.solve_in_place(second.as_mut());
+    beside(&responses, &second)
+}
+
+/// The pairs of the projected problem in the band.
+fn small_pairs(operator: &Operator<'_>, basis: &Basis<'_>, band: [f64; 2]) -> Result<Vec<SmallPair>> {
     let (unsymmetric_damping, unsymmetric_stiffness) = project_interface(operator, basis);
-    let pairs = solve(
+    solve(
         &basis.mass,
         &(&basis.damping + unsymmetric_damping),
         &(&basis.stiffness + unsymmetric_stiffness),
         basis.hysteretic.as_ref(),
         |z| in_band(z, band),
-    )?;
-    let lambda: Vec<c64> = pairs.iter().map(|p| p.lambda).collect();
-    let expand = |pick: fn(&SmallPair) -> Vec<c64>| {
-        let small: Vec<Vec<c64>> = pairs.iter().map(pick).collect();
-        basis.images(&Block::from_columns(basis.len(), &small)).normalise()
+    )
+}
+
+/// Some pairs of the projected problem on the full order, as [`residuals`] takes them.
+fn vectors<'a>(
+    operator: &'a Operator<'_>,
+    basis: &'a Basis<'_>,
+    pairs: &'a [SmallPair],
+    which: &'a [usize],
+) -> impl Iterator<Item = Vectors> + 'a {
+    which.chunks(TOGETHER).map(move |chunk| {
+        let expand = |pick: fn(&SmallPair) -> &Vec<c64>| {
+            let small: Vec<&[c64]> = chunk.iter().map(|j| pick(&pairs[*j]).as_slice()).collect();
+            operator.images(basis.expand(&Block::from_columns(basis.len(), &small))).normalise()
+        };
+        let lambda = chunk.iter().map(|j| pairs[*j].lambda).collect();
+        Vectors { lambda, right: expand(|p| &p.right), left: expand(|p| &p.left) }
+    })
+}
+
+/// The pairs of the projected problem, measured on the full order; those that are `known` to be right are kept.
+fn evaluate(
+    operator: &Operator<'_>,
+    basis: &Basis<'_>,
+    factor: &dyn SymmetricFactor,
+    band: [f64; 2],
+    known: Option<Round>,
+) -> Result<Round> {
+    let pairs = small_pairs(operator, basis, band)?;
+    let kept: Vec<Option<usize>> =
+        pairs.iter().map(|p| known.as_ref().and_then(|known| known.settled(&pairs, p.lambda))).collect();
+    let fresh: Vec<usize> = (0..pairs.len()).filter(|j| kept[*j].is_none()).collect();
+    let new = measure(factor, band, residuals(operator, vectors(operator, basis, &pairs, &fresh)));
+    let Some(known) = known.filter(|_| fresh.len() < pairs.len()) else { return Ok(new) };
+    let mut place = vec![0; pairs.len()];
+    fresh.iter().enumerate().for_each(|(k, j)| place[*j] = k);
+    let from = |j: usize| kept[j].map_or((&new, place[j]), |k| (&known, k));
+    let of = |list: fn(&Round) -> &Vec<f64>| -> Vec<f64> {
+        (0..pairs.len()).map(|j| list(from(j).0)[from(j).1]).collect()
     };
-    let (phi, psi) = (expand(|p| p.right.clone()), expand(|p| p.left.clone()));
-    Ok(measure(operator, factor, band, lambda, phi, psi))
+    let block =
+        |pick: fn(&Round) -> &Block| Block::gathered((0..pairs.len()).map(|j| (pick(from(j).0), from(j).1)));
+    Ok(Round {
+        lambda: (0..pairs.len()).map(|j| from(j).0.lambda[from(j).1]).collect(),
+        phi: block(|round| &round.phi),
+        psi: block(|round| &round.psi),
+        backward_error: of(|round| &round.backward_error),
+        eigenvalue_error: of(|round| &round.eigenvalue_error),
+        condition: of(|round| &round.condition),
+        correction: new.correction,
+        left_residual: new.left_residual,
+        measured: fresh,
+    })
 }
 
 /// Whether λ is one to give: one of each conjugate pair, its frequency in the band.
@@ -311,88 +415,144 @@ pub(super) fn in_band(z: c64, band: [f64; 2]) -> bool {
     (oscillates && z.im >= band[0] && z.im <= band[1]) || (real && band[0] == 0.0 && z.norm() <= band[1])
 }
 
-/// Measures pairs on the full order; `phi` and `psi` are scaled to unit mass.
-pub(super) fn measure(
-    operator: &Operator<'_>,
-    factor: &dyn SymmetricFactor,
-    band: [f64; 2],
+/// A few pairs with what the structure makes of their vectors, which are scaled to unit mass.
+pub(super) struct Vectors {
+    pub(super) lambda: Vec<c64>,
+    pub(super) right: Images,
+    pub(super) left: Images,
+}
+
+/// Pairs with their residuals on the full order.
+pub(super) struct Residuals {
     lambda: Vec<c64>,
-    phi: Images,
-    psi: Images,
-) -> Round {
-    let (residual, slope) = operator.apply(Side::Right, &lambda, &phi);
-    let (left_residual, _) = operator.apply(Side::Left, &lambda, &psi);
-    let (momentum, phi, psi) = (phi.inertia, phi.vectors, psi.vectors);
-    let correct = |r: &Block| {
-        r.map(|v| {
-            let mut z = -v;
-            factor.solve_in_place(z.as_mut());
-            z
-        })
+    phi: Block,
+    psi: Block,
+    /// Q(λ)φ.
+    right: Block,
+    /// Q(λ)ᴴψ.
+    left: Block,
+    backward_error: Vec<f64>,
+    /// |ψᴴQ′(λ)φ|.
+    steepness: Vec<f64>,
+}
+
+/// The residuals of pairs that come a few at a time, so that little memory is held.
+pub(super) fn residuals(operator: &Operator<'_>, pairs: impl Iterator<Item = Vectors>) -> Residuals {
+    let n = operator.n();
+    let empty = || Block::zeros(n, 0);
+    let mut all = Residuals {
+        lambda: Vec::new(),
+        phi: empty(),
+        psi: empty(),
+        right: empty(),
+        left: empty(),
+        backward_error: Vec::new(),
+        steepness: Vec::new(),
     };
-    let correction = correct(&residual);
+    for Vectors { lambda, right: phi, left: psi } in pairs {
+        let (right, slope) = operator.apply(Side::Right, &lambda, &phi);
+        let (left, _) = operator.apply(Side::Left, &lambda, &psi);
+        let (phi, psi) = (phi.vectors, psi.vectors);
+        for (j, z) in lambda.iter().enumerate() {
+            all.backward_error.push(right.norm(j) / (operator.size(*z) * phi.norm(j)));
+            all.steepness.push(psi.dot(j, &slope).norm());
+        }
+        all.lambda.extend(lambda);
+        all.phi.append(phi);
+        all.psi.append(psi);
+        all.right.append(right);
+        all.left.append(left);
+    }
+    all
+}
+
+/// Solves for the right corrections, which tell the errors of λ and φ.
+pub(super) fn measure(factor: &dyn SymmetricFactor, band: [f64; 2], pairs: Residuals) -> Round {
+    let Residuals { lambda, phi, psi, right, left, backward_error, steepness } = pairs;
+    let correction = right.map(|v| {
+        let mut z = -v;
+        factor.solve_in_place(z.as_mut());
+        z
+    });
     let floor = 1e-6 * band[1];
     let of = |f: &dyn Fn(usize) -> f64| (0..lambda.len()).map(f).collect::<Vec<f64>>();
-    let backward_error = of(&|j| residual.norm(j) / (operator.size(lambda[j]) * phi.norm(j)));
-    let steepness: Vec<f64> = of(&|j| psi.dot(j, &slope).norm());
-    let eigenvalue_error =
-        of(&|j| left_residual.dot(j, &correction).norm() / (steepness[j] * lambda[j].norm().max(floor)));
-    let condition = of(&|j| 2.0 * lambda[j].norm() / steepness[j]);
     Round {
+        eigenvalue_error: of(&|j| {
+            left.dot(j, &correction).norm() / (steepness[j] * lambda[j].norm().max(floor))
+        }),
+        condition: of(&|j| 2.0 * lambda[j].norm() / steepness[j]),
+        measured: (0..lambda.len()).collect(),
+        left_residual: left,
         lambda,
         phi,
         psi,
-        momentum,
-        correction,
-        left_residual,
         backward_error,
-        eigenvalue_error,
-        condition,
+        correction,
     }
 }
 
-/// Re and Im of the corrections of the `open` pairs, right and left, each divided by |λ|: their squared E-norm is then
-/// about the relative error of λ that they stand for.
+/// The corrections of the `open` pairs of those measured last, right and left, as [`corrections`] gives them.
 pub(super) fn wanted_corrections(
     round: &Round,
     factor: &dyn SymmetricFactor,
     open: &[usize],
     floor: f64,
 ) -> Mat<f64> {
-    let n = round.phi.re.nrows();
-    let size: Vec<f64> = open.iter().map(|j| 1.0 / round.lambda[*j].norm().max(floor)).collect();
-    let mut left = Mat::from_fn(n, 2 * open.len(), |i, c| {
-        let part = if c % 2 == 0 { &round.left_residual.re } else { &round.left_residual.im };
-        -part[(i, open[c / 2])] * size[c / 2]
-    });
-    factor.solve_in_place(left.as_mut());
-    Mat::from_fn(n, 4 * open.len(), |i, c| {
-        let (k, part) = (c / 4, c % 4);
-        match part {
-            0 => round.correction.re[(i, open[k])] * size[k],
-            1 => round.correction.im[(i, open[k])] * size[k],
-            _ => left[(i, 2 * k + part - 2)],
-        }
-    })
+    let lambda: Vec<c64> = open.iter().map(|k| round.lambda[round.measured[*k]]).collect();
+    let right = Block::gathered(open.iter().map(|k| (&round.correction, *k)));
+    let left = Block::gathered(open.iter().map(|k| (&round.left_residual, *k)));
+    corrections(&lambda, [(&right, false), (&left, true)], factor, floor)
 }
 
-fn mode(operator: &Operator<'_>, round: &Round, participation: Vec<(usize, f64)>, j: usize) -> ComplexMode {
-    let lambda = round.lambda[j];
+/// Re and Im of corrections, each divided by |λ|: their squared E-norm is then about the relative error of λ that they
+/// stand for. Blocks marked `true` are residuals that are still to be solved for: of many only as many random
+/// combinations as reveal what they have in common (Halko, Martinsson & Tropp, SIAM Rev. 53 (2011) 217), as contact
+/// forces that differ between many pairs come from few motions.
+fn corrections(
+    lambda: &[c64],
+    blocks: [(&Block, bool); 2],
+    factor: &dyn SymmetricFactor,
+    floor: f64,
+) -> Mat<f64> {
+    let n = factor.n();
+    let size: Vec<f64> = lambda.iter().map(|z| 1.0 / z.norm().max(floor)).collect();
+    let scaled = |block: &Block| {
+        Mat::from_fn(n, 2 * lambda.len(), |i, c| {
+            let part = if c % 2 == 0 { &block.re } else { &block.im };
+            part[(i, c / 2)] * size[c / 2]
+        })
+    };
+    let mut ready = Mat::zeros(n, 0);
+    let mut forces = Mat::zeros(n, 0);
+    for (block, to_solve) in blocks {
+        let target = if to_solve { &mut forces } else { &mut ready };
+        *target = beside(target, &scaled(block));
+    }
+    if forces.ncols() > SKETCH {
+        let mut random = Random::new();
+        forces = expand(forces.as_ref(), Mat::from_fn(forces.ncols(), SKETCH, |_, _| random.next()).as_ref());
+    }
+    factor.solve_in_place(forces.as_mut());
+    beside(&ready, &forces)
+}
+
+fn mode(round: &Round, growth: GrowthBudget, participation: Vec<(usize, f64)>, j: usize) -> ComplexMode {
     ComplexMode {
-        eigenvalue: lambda,
+        eigenvalue: round.lambda[j],
         right: round.phi.column(j),
         left: round.psi.column(j),
         backward_error: round.backward_error[j],
         eigenvalue_error: round.eigenvalue_error[j],
         condition: round.condition[j],
-        growth: growth_budget(operator, lambda, &round.phi, j),
+        growth,
         participation,
     }
 }
 
 /// |φₖᵀMφ|² of every real mode that has at least one part in ten thousand, largest first; one list a complex mode.
-fn participations(round: &Round, real: &RealModes) -> Vec<Vec<(usize, f64)>> {
-    let amplitudes = round.momentum.map(|part| gram(real.shapes.as_ref(), part.as_ref()));
+fn participations(operator: &Operator<'_>, round: &Round, real: &RealModes) -> Vec<Vec<(usize, f64)>> {
+    let momentum = times(operator.mass, real.shapes.as_ref());
+    let amplitudes = round.phi.map(|part| gram(momentum.as_ref(), part.as_ref()));
     let of = |j: usize| {
         let mut shares: Vec<(usize, f64)> = (0..real.len())
             .map(|k| (k, amplitudes.re[(k, j)].powi(2) + amplitudes.im[(k, j)].powi(2)))

@@ -1,14 +1,17 @@
 //! The subspace that the quadratic problem is projected on, grown by what the full order asks for.
 
 use super::block::Block;
-use super::operator::Operator;
+use super::operator::{Operator, Products};
 use crate::linalg::SparseMatrix;
+use crate::linalg::dense::product;
 use crate::linalg::sparse::{add_scaled, times};
 use crate::linalg::tall::{combine, expand, gram};
 use faer::{Accum, Mat, MatMut, MatRef};
 
 /// Columns that are orthonormalised together.
 const PANEL: usize = 32;
+/// More columns than this are sorted out by their Gram matrix first.
+const WIDE: usize = 48;
 
 /// A basis B = \[Φ Z\] and the projections BᵀMB, BᵀCB, BᵀKB, BᵀHB, and BᵀW of the interface.
 ///
@@ -22,11 +25,8 @@ pub(super) struct Basis<'a> {
     /// bᵀEb of every column.
     sizes: Vec<f64>,
     pub(super) vectors: Mat<f64>,
-    /// M B, K B, C B, H B: what the full order makes of the basis, kept so that a residual costs dense products only.
+    /// M B.
     pub(super) mass_times: Mat<f64>,
-    stiffness_times: Mat<f64>,
-    damping_times: Option<Mat<f64>>,
-    hysteretic_times: Option<Mat<f64>>,
     pub(super) mass: Mat<f64>,
     pub(super) damping: Mat<f64>,
     pub(super) stiffness: Mat<f64>,
@@ -44,29 +44,6 @@ pub(super) struct Enriched {
     pub(super) left_out: f64,
 }
 
-/// Complex vectors with what M, K, C and H make of them.
-pub(super) struct Images {
-    pub(super) vectors: Block,
-    pub(super) inertia: Block,
-    pub(super) elastic: Block,
-    pub(super) damped: Option<Block>,
-    pub(super) lossy: Option<Block>,
-}
-
-impl Images {
-    /// Scales every column so that xᴴMx = 1.
-    pub(super) fn normalise(mut self) -> Self {
-        for j in 0..self.vectors.ncols() {
-            let factor = 1.0 / self.vectors.dot(j, &self.inertia).re.sqrt();
-            self.vectors.scale_column(j, factor);
-            self.inertia.scale_column(j, factor);
-            self.elastic.scale_column(j, factor);
-            self.damped.iter_mut().chain(&mut self.lossy).for_each(|block| block.scale_column(j, factor));
-        }
-        self
-    }
-}
-
 impl<'a> Basis<'a> {
     /// Starts from M-orthonormal real modes.
     pub(super) fn new(operator: &'a Operator<'a>, modes: MatRef<'_, f64>, tau: f64) -> Self {
@@ -78,9 +55,6 @@ impl<'a> Basis<'a> {
             sizes: Vec::new(),
             vectors: Mat::zeros(n, 0),
             mass_times: Mat::zeros(n, 0),
-            stiffness_times: Mat::zeros(n, 0),
-            damping_times: None,
-            hysteretic_times: None,
             mass: Mat::zeros(0, 0),
             damping: Mat::zeros(0, 0),
             stiffness: Mat::zeros(0, 0),
@@ -97,16 +71,9 @@ impl<'a> Basis<'a> {
         self.vectors.ncols()
     }
 
-    /// x = B y of every column of `y`, with M x, K x, C x and H x.
-    pub(super) fn images(&self, y: &Block) -> Images {
-        let of = |times: &Mat<f64>| y.map(|y| expand(times.as_ref(), y.as_ref()));
-        Images {
-            vectors: of(&self.vectors),
-            inertia: of(&self.mass_times),
-            elastic: of(&self.stiffness_times),
-            damped: self.damping_times.as_ref().map(of),
-            lossy: self.hysteretic_times.as_ref().map(of),
-        }
+    /// B y of every column of `y`.
+    pub(super) fn expand(&self, y: &Block) -> Block {
+        y.map(|y| expand(self.vectors.as_ref(), y.as_ref()))
     }
 
     /// Adds the directions of `z` that are new: after the basis is projected out, the columns are taken in the order
@@ -115,6 +82,10 @@ impl<'a> Basis<'a> {
     pub(super) fn enrich(&mut self, mut z: Mat<f64>, tolerance: f64, limit: usize) -> Enriched {
         const ROUND_OFF: f64 = 1e-10;
         let mut image = times(&self.energy, z.as_ref());
+        let wide = z.ncols() > WIDE && limit == usize::MAX;
+        if wide {
+            (z, image) = self.preselected(z, image, tolerance);
+        }
         let floor: Vec<f64> = (0..z.ncols())
             .map(|j| {
                 let before: f64 =
@@ -122,7 +93,8 @@ impl<'a> Basis<'a> {
                 (tolerance * tolerance).max(ROUND_OFF * ROUND_OFF * before)
             })
             .collect();
-        for _ in 0..2 {
+        // Once is enough for those that were chosen already: they are projected twice more as they are orthonormalised.
+        for _ in 0..if wide { 1 } else { 2 } {
             self.project_out(z.as_mut(), image.as_ref());
             image = times(&self.energy, z.as_ref());
         }
@@ -138,12 +110,40 @@ impl<'a> Basis<'a> {
         Enriched { added, left_out }
     }
 
+    /// What the basis misses of the columns of `z`, squared E-norms added up.
+    pub(super) fn missing(&self, mut z: Mat<f64>) -> f64 {
+        for _ in 0..2 {
+            let image = times(&self.energy, z.as_ref());
+            self.project_out(z.as_mut(), image.as_ref());
+        }
+        gram_diagonal(&z, &times(&self.energy, z.as_ref())).iter().map(|v| v.max(0.0)).sum()
+    }
+
+    /// Of many columns, with E z, those that [`Basis::enrich`] is going to take: by their Gram matrix less what the basis
+    /// has of it, which loses digits but is a small matrix. What is lost is below 1e-7 of a column.
+    fn preselected(&self, z: Mat<f64>, image: Mat<f64>, tolerance: f64) -> (Mat<f64>, Mat<f64>) {
+        const DIGITS_LEFT: f64 = 1e-14;
+        let share = gram(self.vectors.as_ref(), image.as_ref());
+        let mut energy = gram(z.as_ref(), image.as_ref());
+        let floor: Vec<f64> =
+            (0..z.ncols()).map(|j| (tolerance * tolerance).max(DIGITS_LEFT * energy[(j, j)].abs())).collect();
+        let weighted =
+            Mat::from_fn(share.nrows(), share.ncols(), |i, j| share[(i, j)] * self.inverse_size(i));
+        energy -= product(share.transpose(), weighted.as_ref());
+        let chosen = pivoted_choice(&mut energy, &floor, usize::MAX);
+        (picked(&z, &chosen), picked(&image, &chosen))
+    }
+
+    /// 1 / bᵢᵀEbᵢ; zero for a mode on which E vanishes, just as stiff as −τ, which cannot be told apart by E.
+    fn inverse_size(&self, i: usize) -> f64 {
+        if self.sizes[i].abs() > 1e-9 * self.tau { 1.0 / self.sizes[i] } else { 0.0 }
+    }
+
     /// z ← z − B (BᵀEB)⁻¹Bᵀ E z, given E z.
     fn project_out(&self, z: MatMut<'_, f64>, image: MatRef<'_, f64>) {
         let mut share = gram(self.vectors.as_ref(), image);
-        for (i, size) in self.sizes.iter().enumerate() {
-            // A mode on which E vanishes, just as stiff as −τ, cannot be told apart by E.
-            let factor = if size.abs() > 1e-9 * self.tau { 1.0 / size } else { 0.0 };
+        for i in 0..self.len() {
+            let factor = self.inverse_size(i);
             (0..share.ncols()).for_each(|j| share[(i, j)] *= factor);
         }
         combine(z, Accum::Add, self.vectors.as_ref(), share.as_ref(), -1.0);
@@ -154,16 +154,11 @@ impl<'a> Basis<'a> {
     /// those that lie within a thousandth in the span of the others of their panel wait for the next one.
     fn orthonormal(&self, z: &Mat<f64>, image: &Mat<f64>, mut open: Vec<usize>) -> Mat<f64> {
         let n = z.nrows();
-        let pick = |a: &Mat<f64>, columns: &[usize]| {
-            let mut picked = Mat::zeros(n, columns.len());
-            columns.iter().enumerate().for_each(|(k, j)| picked.col_mut(k).copy_from(a.col(*j)));
-            picked
-        };
         let (mut new, mut new_image) = (Mat::<f64>::zeros(n, open.len()), Mat::<f64>::zeros(n, open.len()));
         let mut done = 0;
         while !open.is_empty() {
             let now: Vec<usize> = open.drain(..open.len().min(PANEL)).collect();
-            let (mut x, mut ex) = (pick(z, &now), pick(image, &now));
+            let (mut x, mut ex) = (picked(z, &now), picked(image, &now));
             let (mut kept, mut later): (Vec<usize>, Vec<usize>) = (now, Vec::new());
             let mut before: Vec<f64> = gram_diagonal(&x, &ex).iter().map(|v| v / self.tau).collect();
             for _ in 0..2 {
@@ -195,19 +190,9 @@ impl<'a> Basis<'a> {
 
     fn append(&mut self, new: Mat<f64>) {
         let old = self.len();
-        let inertia = times(self.operator.mass, new.as_ref());
-        let elastic = times(&self.operator.stiffness, new.as_ref());
-        let damped = self.operator.damping_times(new.as_ref());
-        let lossy = self.operator.damping.hysteretic.as_ref().map(|h| times(h, new.as_ref()));
+        let Products { inertia, elastic, damped, lossy } = self.operator.products(new.as_ref());
         self.vectors = beside(&self.vectors, &new);
         self.mass_times = beside(&self.mass_times, &inertia);
-        self.stiffness_times = beside(&self.stiffness_times, &elastic);
-        let extend = |old: &Option<Mat<f64>>, new: &Option<Mat<f64>>| {
-            let n = self.vectors.nrows();
-            new.as_ref().map(|new| beside(old.as_ref().unwrap_or(&Mat::zeros(n, 0)), new))
-        };
-        self.damping_times = extend(&self.damping_times, &damped);
-        self.hysteretic_times = extend(&self.hysteretic_times, &lossy);
         let grow = |small: &Mat<f64>, times: &Mat<f64>| {
             let border = gram(self.vectors.as_ref(), times.as_ref());
             let m = border.nrows();
@@ -230,6 +215,13 @@ impl<'a> Basis<'a> {
             if i < old { self.interface[(i, d)] } else { directions[d].dot(new.col_as_slice(i - old)) }
         });
     }
+}
+
+/// Some columns of a matrix.
+fn picked(a: &Mat<f64>, columns: &[usize]) -> Mat<f64> {
+    let mut picked = Mat::zeros(a.nrows(), columns.len());
+    columns.iter().enumerate().for_each(|(k, j)| picked.col_mut(k).copy_from(a.col(*j)));
+    picked
 }
 
 /// xⱼᵀyⱼ of every column.
@@ -303,7 +295,8 @@ fn pivoted_choice(gram: &mut Mat<f64>, floor: &[f64], limit: usize) -> Vec<usize
     chosen
 }
 
-fn beside(a: &Mat<f64>, b: &Mat<f64>) -> Mat<f64> {
+/// \[A B\].
+pub(super) fn beside(a: &Mat<f64>, b: &Mat<f64>) -> Mat<f64> {
     let mut both = Mat::zeros(b.nrows(), a.ncols() + b.ncols());
     both.subcols_mut(0, a.ncols()).copy_from(a);
     both.subcols_mut(a.ncols(), b.ncols()).copy_from(b);

@@ -15,9 +15,30 @@ impl Block {
         Block { re: Mat::zeros(n, columns), im: Mat::zeros(n, columns) }
     }
 
-    pub(super) fn from_columns(n: usize, columns: &[Vec<c64>]) -> Self {
+    pub(super) fn from_columns(n: usize, columns: &[&[c64]]) -> Self {
         let part = |f: fn(&c64) -> f64| Mat::from_fn(n, columns.len(), |i, j| f(&columns[j][i]));
         Block { re: part(|z| z.re), im: part(|z| z.im) }
+    }
+
+    /// Columns of other blocks, which all have as many rows.
+    pub(super) fn gathered<'b>(columns: impl Iterator<Item = (&'b Block, usize)>) -> Self {
+        let columns: Vec<_> = columns.collect();
+        let n = columns.first().map_or(0, |(block, _)| block.re.nrows());
+        let mut gathered = Block::zeros(n, columns.len());
+        for (k, (block, j)) in columns.into_iter().enumerate() {
+            gathered.re.col_mut(k).copy_from(block.re.col(j));
+            gathered.im.col_mut(k).copy_from(block.im.col(j));
+        }
+        gathered
+    }
+
+    /// Puts the columns of `other` behind the own ones.
+    pub(super) fn append(&mut self, other: Block) {
+        let (n, before, added) = (other.re.nrows(), self.ncols(), other.ncols());
+        for (own, other) in [(&mut self.re, other.re), (&mut self.im, other.im)] {
+            own.resize_with(n, before + added, |_, _| 0.0);
+            own.subcols_mut(before, added).copy_from(&other);
+        }
     }
 
     pub(super) fn ncols(&self) -> usize {

@@ -6,6 +6,7 @@ use super::interface::Origin;
 use super::operator::Operator;
 use crate::linalg::c64;
 use crate::linalg::sparse::times;
+use faer::Mat;
 
 impl GrowthBudget {
     /// The sum of the terms: σ.
@@ -14,41 +15,43 @@ impl GrowthBudget {
     }
 }
 
-/// The terms of σ for φ scaled to φᴴMφ = 1.
+/// The terms of σ of every pair, for φ scaled to φᴴMφ = 1.
 ///
 /// The imaginary part of φᴴQ(λ)φ = 0 is 2σω + ω Re γ + σ Im γ + Im κ = 0 with γ = φᴴ(C + C_c)φ and κ = φᴴ(K + iH +
 /// K_c)φ. Each entry of a contact block is one summand of γ or κ: (g, g) is damping in the normal direction and goes
 /// with the structure's, (t₁, t₁) is falling friction, what turns with the transverse slip touches t₂, and a friction
 /// force that follows the normal motion (t, g) couples the modes. A real eigenvalue (ω = 0) has no such balance: all
 /// terms are zero.
-pub(super) fn growth_budget(operator: &Operator<'_>, lambda: c64, phi: &Block, j: usize) -> GrowthBudget {
-    let mut budget = GrowthBudget::default();
-    let omega = lambda.im;
-    if omega <= 0.0 {
-        return budget;
-    }
-    let by_velocity = |gamma: c64| -(omega * gamma.re + lambda.re * gamma.im) / (2.0 * omega);
-    let by_displacement = |kappa: c64| -kappa.im / (2.0 * omega);
-    let single = Block { re: phi.re.subcols(j, 1).to_owned(), im: phi.im.subcols(j, 1).to_owned() };
-    if let (Some(re), Some(im)) =
-        (operator.damping_times(single.re.as_ref()), operator.damping_times(single.im.as_ref()))
-    {
-        budget.structural_damping += by_velocity(single.dot(0, &Block { re, im }));
-    }
-    if let Some(h) = &operator.damping.hysteretic {
-        let lossy = single.dot(0, &single.map(|v| times(h, v.as_ref())));
-        budget.structural_damping += by_displacement(c64::new(0.0, 1.0) * lossy);
-    }
-    let motion = operator.interface.motions(single.re.col_as_slice(0), single.im.col_as_slice(0));
-    for term in &operator.interface.terms {
-        let product = motion[term.row].conj() * motion[term.column];
-        let share = by_velocity(product * term.damping) + by_displacement(product * term.stiffness);
-        match term.origin {
-            Origin::Normal => budget.structural_damping += share,
-            Origin::Falling => budget.falling_friction += share,
-            Origin::Transverse => budget.transverse_friction += share,
-            Origin::Coupling => budget.mode_coupling += share,
+pub(super) fn growth_budgets(operator: &Operator<'_>, lambda: &[c64], phi: &Block) -> Vec<GrowthBudget> {
+    let both = |re: Option<Mat<f64>>, im: Option<Mat<f64>>| re.zip(im).map(|(re, im)| Block { re, im });
+    let damped = both(operator.damping_times(phi.re.as_ref()), operator.damping_times(phi.im.as_ref()));
+    let lossy = operator.damping.hysteretic.as_ref().map(|h| phi.map(|v| times(h, v.as_ref())));
+    let of = |(j, lambda): (usize, &c64)| {
+        let mut budget = GrowthBudget::default();
+        let omega = lambda.im;
+        if omega <= 0.0 {
+            return budget;
         }
-    }
-    budget
+        let by_velocity = |gamma: c64| -(omega * gamma.re + lambda.re * gamma.im) / (2.0 * omega);
+        let by_displacement = |kappa: c64| -kappa.im / (2.0 * omega);
+        if let Some(damped) = &damped {
+            budget.structural_damping += by_velocity(phi.dot(j, damped));
+        }
+        if let Some(lossy) = &lossy {
+            budget.structural_damping += by_displacement(c64::new(0.0, 1.0) * phi.dot(j, lossy));
+        }
+        let motion = operator.interface.motions(phi.re.col_as_slice(j), phi.im.col_as_slice(j));
+        for term in &operator.interface.terms {
+            let product = motion[term.row].conj() * motion[term.column];
+            let share = by_velocity(product * term.damping) + by_displacement(product * term.stiffness);
+            match term.origin {
+                Origin::Normal => budget.structural_damping += share,
+                Origin::Falling => budget.falling_friction += share,
+                Origin::Transverse => budget.transverse_friction += share,
+                Origin::Coupling => budget.mode_coupling += share,
+            }
+        }
+        budget
+    };
+    lambda.iter().enumerate().map(of).collect()
 }

@@ -1,10 +1,12 @@
 //! One structure, many sliding states: everything large is done once, a state costs a small dense problem.
 
-use super::analysis::{Round, in_band, interface_responses, measure, shifted_factor, wanted_corrections};
-use super::basis::{Basis, Images};
+use super::analysis::{
+    Round, Vectors, in_band, interface_responses, measure, residuals, shifted_factor, wanted_corrections,
+};
+use super::basis::Basis;
 use super::block::Block;
 use super::interface::{Interface, Term, terms_of_every_point};
-use super::operator::{Operator, damping_times};
+use super::operator::{Images, Operator, damping_times};
 use super::reduced::{Projection, Reduced, ReducedModes};
 use crate::equilibrium::{PointState, tangent_stiffness};
 use crate::error::Result;
@@ -189,10 +191,12 @@ impl<'f> Family<'f> {
                 crate::linalg::dense::product(self.reduced.rotation.as_ref(), y.as_ref())
             };
             let block = Block { re: part(|z| z.re), im: part(|z| z.im) };
-            self.weigh(self.basis.images(&block).normalise(), &state.damping_weights)
+            self.weigh(operator.images(self.basis.expand(&block)).normalise(), &state.damping_weights)
         };
-        let (phi, psi) = (images(&modes.right), images(&modes.left));
-        Ok(measure(&operator, &*self.frame.factor, self.frame.band, modes.eigenvalues, phi, psi))
+        let (right, left) = (images(&modes.right), images(&modes.left));
+        let pairs = Vectors { lambda: modes.eigenvalues, right, left };
+        let residuals = residuals(&operator, std::iter::once(pairs));
+        Ok(measure(&*self.frame.factor, self.frame.band, residuals))
     }
 
     /// C x and H x with the weights of the dampings.

@@ -72,6 +72,12 @@ impl<'a> Interface<'a> {
         sizes
     }
 
+    /// The directions in which it moves or is moved.
+    pub(crate) fn active(&self, omega: f64) -> Vec<usize> {
+        let sizes = self.sizes(omega);
+        (0..sizes.len()).filter(|d| sizes[*d] > 0.0 && !self.directions[*d].indices().is_empty()).collect()
+    }
+
     /// Wᵀ x.
     pub(crate) fn motions(&self, re: &[f64], im: &[f64]) -> Vec<c64> {
         self.directions.iter().map(|d| c64::new(d.dot(re), d.dot(im))).collect()

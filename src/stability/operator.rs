@@ -1,16 +1,17 @@
 //! The full-order quadratic operator Q(λ) = λ² M + λ (C + C_c) + K + K_σ + iH + K_c, applied without forming it.
 
-use super::basis::Images;
 use super::block::Block;
 use super::interface::{Interface, Term};
 use crate::equilibrium::{SteadySliding, tangent_stiffness};
 use crate::error::Result;
+use crate::linalg::merged::Merged;
 use crate::linalg::sparse::{norm_1, times};
 use crate::linalg::tall::{expand, gram};
 use crate::linalg::{SparseMatrix, c64};
 use crate::system::{Damping, System};
 use faer::{Mat, MatRef};
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// Q(λ) of a system at steady sliding. What is not symmetric acts through the interface.
 pub(super) struct Operator<'a> {
@@ -19,9 +20,46 @@ pub(super) struct Operator<'a> {
     pub(super) stiffness: Cow<'a, SparseMatrix>,
     pub(super) damping: &'a Damping,
     pub(super) interface: Interface<'a>,
+    /// M, K + K_σ, and C and H where there are any.
+    merged: Arc<Merged>,
     mass_norm: f64,
     damping_norm: f64,
     stiffness_norm: f64,
+}
+
+/// What the matrices of the structure make of real vectors.
+pub(super) struct Products {
+    /// M x.
+    pub(super) inertia: Mat<f64>,
+    /// (K + K_σ) x.
+    pub(super) elastic: Mat<f64>,
+    /// C x.
+    pub(super) damped: Option<Mat<f64>>,
+    /// H x.
+    pub(super) lossy: Option<Mat<f64>>,
+}
+
+/// Complex vectors with what M, K, C and H make of them.
+pub(super) struct Images {
+    pub(super) vectors: Block,
+    pub(super) inertia: Block,
+    pub(super) elastic: Block,
+    pub(super) damped: Option<Block>,
+    pub(super) lossy: Option<Block>,
+}
+
+impl Images {
+    /// Scales every column so that xᴴMx = 1.
+    pub(super) fn normalise(mut self) -> Self {
+        for j in 0..self.vectors.ncols() {
+            let factor = 1.0 / self.vectors.dot(j, &self.inertia).re.sqrt();
+            self.vectors.scale_column(j, factor);
+            self.inertia.scale_column(j, factor);
+            self.elastic.scale_column(j, factor);
+            self.damped.iter_mut().chain(&mut self.lossy).for_each(|block| block.scale_column(j, factor));
+        }
+        self
+    }
 }
 
 /// Which vectors an operator acts on.
@@ -47,7 +85,10 @@ impl<'a> Operator<'a> {
     ) -> Self {
         let damping = &system.structure.damping;
         let norm = |m: &Option<SparseMatrix>| m.as_ref().map_or(0.0, norm_1);
+        let mut sparse: Vec<&SparseMatrix> = vec![&system.structure.mass, &stiffness];
+        sparse.extend(damping.viscous.iter().chain(&damping.hysteretic));
         Operator {
+            merged: Arc::new(Merged::new(&sparse)),
             mass: &system.structure.mass,
             mass_norm: norm_1(&system.structure.mass),
             damping_norm: norm(&damping.viscous),
@@ -61,7 +102,8 @@ impl<'a> Operator<'a> {
     /// The same operator whose interface has other terms between the same directions.
     pub(super) fn with_terms(&self, terms: Vec<Term>) -> Operator<'_> {
         let interface = Interface { directions: self.interface.directions.clone(), terms };
-        Operator { stiffness: Cow::Borrowed(&*self.stiffness), interface, ..*self }
+        let (stiffness, merged) = (Cow::Borrowed(&*self.stiffness), Arc::clone(&self.merged));
+        Operator { stiffness, interface, merged, ..*self }
     }
 
     pub(super) fn n(&self) -> usize {
@@ -71,6 +113,33 @@ impl<'a> Operator<'a> {
     /// C x: viscous and modal damping; `None` when there is neither.
     pub(super) fn damping_times(&self, x: MatRef<'_, f64>) -> Option<Mat<f64>> {
         damping_times(self.damping, x)
+    }
+
+    /// M x, K x, C x and H x.
+    pub(super) fn products(&self, x: MatRef<'_, f64>) -> Products {
+        let mut products = self.merged.times(x).into_iter();
+        let mut next = || products.next().expect("one for each matrix");
+        let (inertia, elastic) = (next(), next());
+        let viscous = self.damping.viscous.as_ref().map(|_| next());
+        let lossy = self.damping.hysteretic.as_ref().map(|_| next());
+        let damped = match (viscous, modal_times(self.damping, x)) {
+            (Some(viscous), Some(modal)) => Some(viscous + modal),
+            (viscous, modal) => viscous.or(modal),
+        };
+        Products { inertia, elastic, damped, lossy }
+    }
+
+    /// What M, K, C and H make of complex vectors.
+    pub(super) fn images(&self, vectors: Block) -> Images {
+        let (re, im) = (self.products(vectors.re.as_ref()), self.products(vectors.im.as_ref()));
+        let both = |re: Option<Mat<f64>>, im: Option<Mat<f64>>| re.zip(im).map(|(re, im)| Block { re, im });
+        Images {
+            vectors,
+            inertia: Block { re: re.inertia, im: im.inertia },
+            elastic: Block { re: re.elastic, im: im.elastic },
+            damped: both(re.damped, im.damped),
+            lossy: both(re.lossy, im.lossy),
+        }
     }
 
     /// y\[:, j\] += W (k + s c) Wᵀ x\[:, j\], with k and c transposed for the left side.
@@ -93,6 +162,18 @@ impl<'a> Operator<'a> {
         }
     }
 
+    /// y\[:, j\] += (sⱼ (C + C_c) + iH + K_c) xⱼ; for the left side iH is conjugated, C_c and K_c are transposed.
+    pub(super) fn add_rest(&self, side: Side, s: &[c64], x: &Images, y: &mut Block) {
+        if let Some(damped) = &x.damped {
+            y.add_scaled(s, damped);
+        }
+        if let Some(lossy) = &x.lossy {
+            let i = c64::new(0.0, if side == Side::Right { 1.0 } else { -1.0 });
+            y.add_scaled(&vec![i; s.len()], lossy);
+        }
+        self.add_interface(s, true, side, &x.vectors, y);
+    }
+
     /// Q(λⱼ) xⱼ and Q′(λⱼ) xⱼ = (2λⱼM + C + C_c) xⱼ, or Q(λⱼ)ᴴ xⱼ and Q′(λⱼ)ᴴ xⱼ.
     pub(super) fn apply(&self, side: Side, lambda: &[c64], x: &Images) -> (Block, Block) {
         let conjugate = |z: c64| if side == Side::Right { z } else { z.conj() };
@@ -103,13 +184,9 @@ impl<'a> Operator<'a> {
         value.add_scaled(&s.iter().map(|s| s * s).collect::<Vec<_>>(), &x.inertia);
         slope.add_scaled(&s.iter().map(|s| s * 2.0).collect::<Vec<_>>(), &x.inertia);
         if let Some(damped) = &x.damped {
-            value.add_scaled(&s, damped);
             slope.add_scaled(&one, damped);
         }
-        if let Some(lossy) = &x.lossy {
-            value.add_scaled(&vec![conjugate(c64::new(0.0, 1.0)); s.len()], lossy);
-        }
-        self.add_interface(&s, true, side, &x.vectors, &mut value);
+        self.add_rest(side, &s, x, &mut value);
         self.add_interface(&one, false, side, &x.vectors, &mut slope);
         (value, slope)
     }
@@ -123,17 +200,19 @@ impl<'a> Operator<'a> {
 
 /// C x of viscous and modal damping; `None` when there is neither.
 pub(super) fn damping_times(damping: &Damping, x: MatRef<'_, f64>) -> Option<Mat<f64>> {
-    let mut sum = damping.viscous.as_ref().map(|c| times(c, x));
-    if let Some(modal) = &damping.modal {
-        let mut amplitudes = gram(modal.basis.as_ref(), x);
-        for (i, c) in modal.coefficients.iter().enumerate() {
-            (0..amplitudes.ncols()).for_each(|j| amplitudes[(i, j)] *= c);
-        }
-        let modal = expand(modal.basis.as_ref(), amplitudes.as_ref());
-        sum = Some(match sum {
-            Some(viscous) => viscous + modal,
-            None => modal,
-        });
+    let viscous = damping.viscous.as_ref().map(|c| times(c, x));
+    match (viscous, modal_times(damping, x)) {
+        (Some(viscous), Some(modal)) => Some(viscous + modal),
+        (viscous, modal) => viscous.or(modal),
     }
-    sum
+}
+
+/// C x of modal damping.
+fn modal_times(damping: &Damping, x: MatRef<'_, f64>) -> Option<Mat<f64>> {
+    let modal = damping.modal.as_ref()?;
+    let mut amplitudes = gram(modal.basis.as_ref(), x);
+    for (i, c) in modal.coefficients.iter().enumerate() {
+        (0..amplitudes.ncols()).for_each(|j| amplitudes[(i, j)] *= c);
+    }
+    Some(expand(modal.basis.as_ref(), amplitudes.as_ref()))
 }

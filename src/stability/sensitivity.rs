@@ -6,7 +6,6 @@
 
 use super::ComplexMode;
 use super::analysis::shifted_factor;
-use super::basis::Images;
 use super::block::Block;
 use super::interface::Interface;
 use super::modal_damping::ModalChange;
@@ -85,13 +84,13 @@ impl<'a> Sensitivity<'a> {
         let operator = Operator::new(system, steady)?;
         let nearby = Nearby::new(system, steady)?;
         let columns = |pick: fn(&ComplexMode) -> &Vec<c64>| {
-            let all: Vec<Vec<c64>> = modes.iter().map(|mode| pick(mode).clone()).collect();
+            let all: Vec<&[c64]> = modes.iter().map(|mode| pick(mode).as_slice()).collect();
             Block::from_columns(n, &all)
         };
         let (mut phi, mut psi) = (columns(|m| &m.right), columns(|m| &m.left));
         let lambda: Vec<c64> = modes.iter().map(|m| m.eigenvalue).collect();
         sharpen(&operator, real, &lambda, [(Side::Right, &mut phi), (Side::Left, &mut psi)])?;
-        let (_, slope) = operator.apply(Side::Right, &lambda, &operator.images(&phi));
+        let (_, slope) = operator.apply(Side::Right, &lambda, &operator.images(phi.clone()));
         let steepness = (0..lambda.len()).map(|i| psi.dot(i, &slope)).collect();
         let modal = match &system.structure.damping.modal {
             Some(damping) if damping.coefficients.iter().any(|c| *c != 0.0) && !modes.is_empty() => {
@@ -268,21 +267,6 @@ impl<'a> Sensitivity<'a> {
     }
 }
 
-impl Operator<'_> {
-    /// What M, K, C and H make of vectors.
-    fn images(&self, x: &Block) -> Images {
-        let both = |re: Option<Mat<f64>>, im: Option<Mat<f64>>| re.zip(im).map(|(re, im)| Block { re, im });
-        let lossy = |part: &Mat<f64>| self.damping.hysteretic.as_ref().map(|h| times(h, part.as_ref()));
-        Images {
-            vectors: x.clone(),
-            inertia: x.map(|part| times(self.mass, part.as_ref())),
-            elastic: x.map(|part| times(&self.stiffness, part.as_ref())),
-            damped: both(self.damping_times(x.re.as_ref()), self.damping_times(x.im.as_ref())),
-            lossy: both(lossy(&x.re), lossy(&x.im)),
-        }
-    }
-}
-
 /// One correction z = −A⁻¹Q(λ)φ of each vector, A = K + K_σ − s M with s near |λ|², where it makes the residual smaller.
 ///
 /// The error of λ is quadratic in that of the vectors, the error of dλ/dp linear: the vectors of an accurate λ leave
@@ -299,7 +283,7 @@ fn sharpen(
         factors.push(shifted_factor(operator, real, [l.norm(); 2])?.0);
     }
     for (side, vectors) in sides {
-        let (residual, _) = operator.apply(side, lambda, &operator.images(vectors));
+        let (residual, _) = operator.apply(side, lambda, &operator.images(vectors.clone()));
         let mut better = vectors.clone();
         for (j, factor) in factors.iter().enumerate() {
             let mut z = Mat::from_fn(residual.re.nrows(), 2, |i, part| {
@@ -310,7 +294,7 @@ fn sharpen(
             subtract(better.re.col_as_slice_mut(j), z.col_as_slice(0));
             subtract(better.im.col_as_slice_mut(j), z.col_as_slice(1));
         }
-        let (after, _) = operator.apply(side, lambda, &operator.images(&better));
+        let (after, _) = operator.apply(side, lambda, &operator.images(better.clone()));
         for j in (0..lambda.len()).filter(|j| after.norm(*j) < residual.norm(*j)) {
             vectors.re.col_as_slice_mut(j).copy_from_slice(better.re.col_as_slice(j));
             vectors.im.col_as_slice_mut(j).copy_from_slice(better.im.col_as_slice(j));

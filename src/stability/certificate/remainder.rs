@@ -133,7 +133,7 @@ impl Remainder {
             terms,
             indefinite,
             tau: top * top,
-            missed_response: top * analysis.left_out.max(0.0).sqrt(),
+            missed_response: top * analysis.left_out().max(0.0).sqrt(),
         })
     }
 
