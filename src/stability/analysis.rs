@@ -1,50 +1,45 @@
 //! The analysis: project, solve, measure on the full order, enrich, repeat.
 
-use super::basis::{Basis, beside};
+use super::basis::Basis;
 use super::block::Block;
 use super::budget::growth_budgets;
-use super::operator::{Images, Operator, Side};
+use super::operator::Operator;
 use super::projected::{SmallPair, project_interface, solve};
+use super::responses::{coupled_responses, interface_responses};
+use super::round::{Round, Vectors, measure, residuals, wanted_corrections};
 use super::{ComplexMode, ComplexModes, GrowthBudget};
 use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Fault, Result};
 use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
 use crate::linalg::factor::factorize;
-use crate::linalg::random::Random;
 use crate::linalg::sparse::{add_scaled, times};
-use crate::linalg::tall::{expand, gram};
+use crate::linalg::tall::gram;
 use crate::modal::RealModes;
 use crate::progress::Observer;
 use crate::system::System;
-use faer::Mat;
 use std::f64::consts::TAU;
 
 /// Rounds of enrichment at most.
 const ROUNDS: usize = 6;
 /// The most static contact responses that enter the first basis; of more directions the residuals ask for what matters.
 const STATIC_RESPONSES: usize = 240;
-/// Aims of the refinement, below what [`ComplexMode::accepted`] asks.
-const BACKWARD_ERROR: f64 = 5e-11;
-const EIGENVALUE_ERROR: f64 = 1e-10;
-/// Two eigenvalues nearer than this part of |λ| may be taken for each other.
-const ALONE: f64 = 1e-6;
 /// The E-norm below which a first correction is left out.
 const FIRST_TOLERANCE: f64 = 1e-6;
 /// Pairs that are expanded together.
 const TOGETHER: usize = 16;
-/// Random combinations that stand for many residuals.
-const SKETCH: usize = 64;
 /// A condition number of λ above this is told.
 const ILL_CONDITIONED: f64 = 1e6;
 
 /// All complex modes with a frequency in `band_hz` = \[lowest, highest\], of `system` sliding steadily.
 ///
 /// * Basis: the real modes (of K + K_σ and M, M-orthonormal, best up to twice the band) and A⁻¹W, A = K + K_σ − s M at
-///   a shift s inside the band, for every direction in which the contact has a force.
+///   a shift s inside the band, for every direction in which the contact has a force. When there are more directions
+///   than real modes, a sketch of the responses to damping and interface stands for them.
 /// * Every pair is measured on the full order. Its corrections z = −A⁻¹Q(λ)φ and, for the left vector, −A⁻¹Q(λ)ᴴψ show
 ///   no contact motion where A⁻¹W is in the basis: so the same real symmetric factor serves every pair, whatever the
-///   friction. (Of more directions than real modes only those that matter enter at once.) They enrich the basis until η and the eigenvalue error are small, in six rounds at most.
+///   friction. They enrich the basis until η and the eigenvalue error are small, in six rounds at most; pairs that are
+///   right are not measured again.
 /// * ψᴴQ(λ)φ vanishes identically after a projection, so the error of λ is estimated with the *correction* of the left
 ///   vector: |z_ψᴴ Q(λ)φ| / |ψᴴ(2λM + C + C_c)φ|. As A is symmetric, z_ψᴴ Q(λ)φ = (Q(λ)ᴴψ)ᴴ z, so that only the right
 ///   corrections are solved for, and the left ones of the pairs that are not yet right.
@@ -144,40 +139,6 @@ fn check(system: &System, steady: &SteadySliding, real: &RealModes, band_hz: [f6
         )));
     }
     Ok(())
-}
-
-/// Pairs with their measures on the full order.
-pub(super) struct Round {
-    pub(super) lambda: Vec<c64>,
-    phi: Block,
-    psi: Block,
-    pub(super) backward_error: Vec<f64>,
-    pub(super) eigenvalue_error: Vec<f64>,
-    condition: Vec<f64>,
-    /// z = −A⁻¹Q(λ)φ and Q(λ)ᴴψ of the pairs that were measured last, whose places are `measured`.
-    correction: Block,
-    left_residual: Block,
-    measured: Vec<usize>,
-}
-
-impl Round {
-    /// Those measured last that are not yet as exact as the refinement aims at, as places in `measured`.
-    pub(super) fn open(&self) -> Vec<usize> {
-        (0..self.measured.len()).filter(|k| !self.right(self.measured[*k])).collect()
-    }
-
-    fn right(&self, j: usize) -> bool {
-        self.backward_error[j] <= BACKWARD_ERROR && self.eigenvalue_error[j] <= EIGENVALUE_ERROR
-    }
-
-    /// The pair that is right and no other than the one with this λ, when both rounds have just one there.
-    fn settled(&self, all: &[SmallPair], lambda: c64) -> Option<usize> {
-        let near = |z: c64| (z - lambda).norm() <= ALONE * lambda.norm();
-        let mut own = (0..self.lambda.len()).filter(|j| near(self.lambda[*j]));
-        let alone = all.iter().filter(|pair| near(pair.lambda)).count() == 1;
-        let j = own.next().filter(|j| alone && own.next().is_none() && self.right(*j))?;
-        ((self.lambda[j] - lambda).norm() <= EIGENVALUE_ERROR * lambda.norm()).then_some(j)
-    }
 }
 
 impl Analysis<'_> {
@@ -297,53 +258,6 @@ pub(super) fn shifted_factor(
     at(shift).or_else(|_| at(-middle))
 }
 
-/// A⁻¹W for the directions in which the interface moves or is moved, each weighed by √(its stiffness) so that its
-/// E-norm tells how much the interface makes of it.
-pub(super) fn interface_responses(
-    operator: &Operator<'_>,
-    factor: &dyn SymmetricFactor,
-    omega: f64,
-) -> Mat<f64> {
-    let interface = &operator.interface;
-    let (largest, active) = (interface.sizes(omega), interface.active(omega));
-    let mut responses = Mat::<f64>::zeros(operator.n(), active.len());
-    for (j, d) in active.iter().enumerate() {
-        interface.directions[*d].add_to(largest[*d].sqrt() / omega, responses.col_as_slice_mut(j));
-    }
-    factor.solve_in_place(responses.as_mut());
-    responses
-}
-
-/// What the forces that do not decouple the real modes bring about: A⁻¹R and ω²A⁻¹M A⁻¹R, the first two terms of the
-/// response in ω², R being the forces of damping and interface, right and left, in random combinations of the real
-/// modes. A few such columns reveal what the responses to all modes have in common.
-fn coupled_responses(
-    operator: &Operator<'_>,
-    basis: &Basis<'_>,
-    factor: &dyn SymmetricFactor,
-    band: [f64; 2],
-) -> Mat<f64> {
-    let mut random = Random::new();
-    let mut mixed = || {
-        let mut part = || Mat::from_fn(basis.len(), SKETCH / 4, |_, _| random.next());
-        Block { re: part(), im: part() }
-    };
-    let s = vec![c64::new(0.0, band[1]); SKETCH / 4];
-    let mut responses = Mat::zeros(operator.n(), 0);
-    for side in [Side::Right, Side::Left] {
-        let images = operator.images(basis.expand(&mixed()));
-        let mut forces = Block::zeros(operator.n(), s.len());
-        operator.add_rest(side, &s, &images, &mut forces);
-        responses = beside(&beside(&responses, &forces.re), &forces.im);
-    }
-    responses *= faer::Scale(1.0 / band[1]);
-    factor.solve_in_place(responses.as_mut());
-    let mut second = times(operator.mass, responses.as_ref());
-    second *= faer::Scale(band[1] * band[1]);
-    factor.solve_in_place(second.as_mut());
-    beside(&responses, &second)
-}
-
 /// The pairs of the projected problem in the band.
 fn small_pairs(operator: &Operator<'_>, basis: &Basis<'_>, band: [f64; 2]) -> Result<Vec<SmallPair>> {
     let (unsymmetric_damping, unsymmetric_stiffness) = project_interface(operator, basis);
@@ -386,25 +300,9 @@ fn evaluate(
         pairs.iter().map(|p| known.as_ref().and_then(|known| known.settled(&pairs, p.lambda))).collect();
     let fresh: Vec<usize> = (0..pairs.len()).filter(|j| kept[*j].is_none()).collect();
     let new = measure(factor, band, residuals(operator, vectors(operator, basis, &pairs, &fresh)));
-    let Some(known) = known.filter(|_| fresh.len() < pairs.len()) else { return Ok(new) };
-    let mut place = vec![0; pairs.len()];
-    fresh.iter().enumerate().for_each(|(k, j)| place[*j] = k);
-    let from = |j: usize| kept[j].map_or((&new, place[j]), |k| (&known, k));
-    let of = |list: fn(&Round) -> &Vec<f64>| -> Vec<f64> {
-        (0..pairs.len()).map(|j| list(from(j).0)[from(j).1]).collect()
-    };
-    let block =
-        |pick: fn(&Round) -> &Block| Block::gathered((0..pairs.len()).map(|j| (pick(from(j).0), from(j).1)));
-    Ok(Round {
-        lambda: (0..pairs.len()).map(|j| from(j).0.lambda[from(j).1]).collect(),
-        phi: block(|round| &round.phi),
-        psi: block(|round| &round.psi),
-        backward_error: of(|round| &round.backward_error),
-        eigenvalue_error: of(|round| &round.eigenvalue_error),
-        condition: of(|round| &round.condition),
-        correction: new.correction,
-        left_residual: new.left_residual,
-        measured: fresh,
+    Ok(match known {
+        Some(known) if fresh.len() < pairs.len() => new.beside(&known, &kept),
+        _ => new,
     })
 }
 
@@ -413,127 +311,6 @@ pub(super) fn in_band(z: c64, band: [f64; 2]) -> bool {
     let oscillates = z.im > 1e-9 * z.norm();
     let real = z.im.abs() <= 1e-9 * z.norm();
     (oscillates && z.im >= band[0] && z.im <= band[1]) || (real && band[0] == 0.0 && z.norm() <= band[1])
-}
-
-/// A few pairs with what the structure makes of their vectors, which are scaled to unit mass.
-pub(super) struct Vectors {
-    pub(super) lambda: Vec<c64>,
-    pub(super) right: Images,
-    pub(super) left: Images,
-}
-
-/// Pairs with their residuals on the full order.
-pub(super) struct Residuals {
-    lambda: Vec<c64>,
-    phi: Block,
-    psi: Block,
-    /// Q(λ)φ.
-    right: Block,
-    /// Q(λ)ᴴψ.
-    left: Block,
-    backward_error: Vec<f64>,
-    /// |ψᴴQ′(λ)φ|.
-    steepness: Vec<f64>,
-}
-
-/// The residuals of pairs that come a few at a time, so that little memory is held.
-pub(super) fn residuals(operator: &Operator<'_>, pairs: impl Iterator<Item = Vectors>) -> Residuals {
-    let n = operator.n();
-    let empty = || Block::zeros(n, 0);
-    let mut all = Residuals {
-        lambda: Vec::new(),
-        phi: empty(),
-        psi: empty(),
-        right: empty(),
-        left: empty(),
-        backward_error: Vec::new(),
-        steepness: Vec::new(),
-    };
-    for Vectors { lambda, right: phi, left: psi } in pairs {
-        let (right, slope) = operator.apply(Side::Right, &lambda, &phi);
-        let (left, _) = operator.apply(Side::Left, &lambda, &psi);
-        let (phi, psi) = (phi.vectors, psi.vectors);
-        for (j, z) in lambda.iter().enumerate() {
-            all.backward_error.push(right.norm(j) / (operator.size(*z) * phi.norm(j)));
-            all.steepness.push(psi.dot(j, &slope).norm());
-        }
-        all.lambda.extend(lambda);
-        all.phi.append(phi);
-        all.psi.append(psi);
-        all.right.append(right);
-        all.left.append(left);
-    }
-    all
-}
-
-/// Solves for the right corrections, which tell the errors of λ and φ.
-pub(super) fn measure(factor: &dyn SymmetricFactor, band: [f64; 2], pairs: Residuals) -> Round {
-    let Residuals { lambda, phi, psi, right, left, backward_error, steepness } = pairs;
-    let correction = right.map(|v| {
-        let mut z = -v;
-        factor.solve_in_place(z.as_mut());
-        z
-    });
-    let floor = 1e-6 * band[1];
-    let of = |f: &dyn Fn(usize) -> f64| (0..lambda.len()).map(f).collect::<Vec<f64>>();
-    Round {
-        eigenvalue_error: of(&|j| {
-            left.dot(j, &correction).norm() / (steepness[j] * lambda[j].norm().max(floor))
-        }),
-        condition: of(&|j| 2.0 * lambda[j].norm() / steepness[j]),
-        measured: (0..lambda.len()).collect(),
-        left_residual: left,
-        lambda,
-        phi,
-        psi,
-        backward_error,
-        correction,
-    }
-}
-
-/// The corrections of the `open` pairs of those measured last, right and left, as [`corrections`] gives them.
-pub(super) fn wanted_corrections(
-    round: &Round,
-    factor: &dyn SymmetricFactor,
-    open: &[usize],
-    floor: f64,
-) -> Mat<f64> {
-    let lambda: Vec<c64> = open.iter().map(|k| round.lambda[round.measured[*k]]).collect();
-    let right = Block::gathered(open.iter().map(|k| (&round.correction, *k)));
-    let left = Block::gathered(open.iter().map(|k| (&round.left_residual, *k)));
-    corrections(&lambda, [(&right, false), (&left, true)], factor, floor)
-}
-
-/// Re and Im of corrections, each divided by |λ|: their squared E-norm is then about the relative error of λ that they
-/// stand for. Blocks marked `true` are residuals that are still to be solved for: of many only as many random
-/// combinations as reveal what they have in common (Halko, Martinsson & Tropp, SIAM Rev. 53 (2011) 217), as contact
-/// forces that differ between many pairs come from few motions.
-fn corrections(
-    lambda: &[c64],
-    blocks: [(&Block, bool); 2],
-    factor: &dyn SymmetricFactor,
-    floor: f64,
-) -> Mat<f64> {
-    let n = factor.n();
-    let size: Vec<f64> = lambda.iter().map(|z| 1.0 / z.norm().max(floor)).collect();
-    let scaled = |block: &Block| {
-        Mat::from_fn(n, 2 * lambda.len(), |i, c| {
-            let part = if c % 2 == 0 { &block.re } else { &block.im };
-            part[(i, c / 2)] * size[c / 2]
-        })
-    };
-    let mut ready = Mat::zeros(n, 0);
-    let mut forces = Mat::zeros(n, 0);
-    for (block, to_solve) in blocks {
-        let target = if to_solve { &mut forces } else { &mut ready };
-        *target = beside(target, &scaled(block));
-    }
-    if forces.ncols() > SKETCH {
-        let mut random = Random::new();
-        forces = expand(forces.as_ref(), Mat::from_fn(forces.ncols(), SKETCH, |_, _| random.next()).as_ref());
-    }
-    factor.solve_in_place(forces.as_mut());
-    beside(&ready, &forces)
 }
 
 fn mode(round: &Round, growth: GrowthBudget, participation: Vec<(usize, f64)>, j: usize) -> ComplexMode {

@@ -1,13 +1,13 @@
 //! One structure, many sliding states: everything large is done once, a state costs a small dense problem.
 
-use super::analysis::{
-    Round, Vectors, in_band, interface_responses, measure, residuals, shifted_factor, wanted_corrections,
-};
+use super::analysis::{in_band, shifted_factor};
 use super::basis::Basis;
 use super::block::Block;
 use super::interface::{Interface, Term, terms_of_every_point};
 use super::operator::{Images, Operator, damping_times};
 use super::reduced::{Projection, Reduced, ReducedModes};
+use super::responses::interface_responses;
+use super::round::{Round, Vectors, measure, residuals, wanted_corrections};
 use crate::equilibrium::{PointState, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::sparse::times;

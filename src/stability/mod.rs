@@ -18,6 +18,8 @@ mod modal_damping;
 mod operator;
 mod projected;
 mod reduced;
+mod responses;
+mod round;
 mod sensitivity;
 #[cfg(test)]
 mod tests;

@@ -315,6 +315,28 @@ fn random_systems_agree_with_the_dense_full_order_solution() {
     );
 }
 
+/// More contact directions than real modes: a sketch of the responses stands for them.
+#[test]
+fn many_contact_directions_agree_with_the_dense_full_order_solution() {
+    for seed in [1, 3, 6] {
+        let n = 360;
+        let system = damped(random_system(n, 14, 20.0, 500 + seed), seed);
+        let state = steady(&system);
+        let real = dense_modes(&system, 24);
+        assert!(linearize(&system, &state).blocks.len() * 3 > real.len());
+        let band = [0.01, 0.5 * (real.frequency_hz(11) + real.frequency_hz(12))];
+        let found = complex_modes(&system, &state, &real, band, &()).unwrap();
+        let exact = dense_eigenvalues(&system, &state, band);
+        assert_eq!(found.modes.len(), exact.len(), "seed {seed}: {:?}", found.warnings);
+        assert!(found.subspace_dimension < n, "seed {seed}: the basis spans everything");
+        for mode in &found.modes {
+            let exact = nearest(mode.eigenvalue, &exact);
+            let error = (mode.eigenvalue - exact).norm() / exact.norm();
+            assert!(error < 1e-9 && mode.accepted(), "seed {seed}: {error:.1e} {mode:?}");
+        }
+    }
+}
+
 #[test]
 fn modes_do_not_depend_on_the_number_of_threads() {
     let system = damped(random_system(110, 4, 20.0, 3), 5);

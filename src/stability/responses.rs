@@ -1,0 +1,60 @@
+//! What interface and damping make of the structure: the first directions besides the real modes.
+
+use super::basis::{Basis, beside};
+use super::block::Block;
+use super::operator::{Operator, Side};
+use crate::linalg::SymmetricFactor;
+use crate::linalg::c64;
+use crate::linalg::random::Random;
+use crate::linalg::sparse::times;
+use faer::Mat;
+
+/// Random combinations that stand for many forces.
+pub(super) const SKETCH: usize = 64;
+
+/// A⁻¹W for the directions in which the interface moves or is moved, each weighed by √(its stiffness) so that its
+/// E-norm tells how much the interface makes of it.
+pub(super) fn interface_responses(
+    operator: &Operator<'_>,
+    factor: &dyn SymmetricFactor,
+    omega: f64,
+) -> Mat<f64> {
+    let interface = &operator.interface;
+    let (largest, active) = (interface.sizes(omega), interface.active(omega));
+    let mut responses = Mat::<f64>::zeros(operator.n(), active.len());
+    for (j, d) in active.iter().enumerate() {
+        interface.directions[*d].add_to(largest[*d].sqrt() / omega, responses.col_as_slice_mut(j));
+    }
+    factor.solve_in_place(responses.as_mut());
+    responses
+}
+
+/// What the forces that do not decouple the real modes bring about: A⁻¹R and ω²A⁻¹M A⁻¹R, the first two terms of the
+/// response in ω², R being the forces of damping and interface, right and left, in random combinations of the real
+/// modes. A few such columns reveal what the responses to all modes have in common.
+pub(super) fn coupled_responses(
+    operator: &Operator<'_>,
+    basis: &Basis<'_>,
+    factor: &dyn SymmetricFactor,
+    band: [f64; 2],
+) -> Mat<f64> {
+    let mut random = Random::new();
+    let mut mixed = || {
+        let mut part = || Mat::from_fn(basis.len(), SKETCH / 4, |_, _| random.next());
+        Block { re: part(), im: part() }
+    };
+    let s = vec![c64::new(0.0, band[1]); SKETCH / 4];
+    let mut responses = Mat::zeros(operator.n(), 0);
+    for side in [Side::Right, Side::Left] {
+        let images = operator.images(basis.expand(&mixed()));
+        let mut forces = Block::zeros(operator.n(), s.len());
+        operator.add_rest(side, &s, &images, &mut forces);
+        responses = beside(&beside(&responses, &forces.re), &forces.im);
+    }
+    responses *= faer::Scale(1.0 / band[1]);
+    factor.solve_in_place(responses.as_mut());
+    let mut second = times(operator.mass, responses.as_ref());
+    second *= faer::Scale(band[1] * band[1]);
+    factor.solve_in_place(second.as_mut());
+    beside(&responses, &second)
+}
