@@ -66,8 +66,6 @@ pub(super) struct Analysis<'a> {
     pub(super) n_real: usize,
     /// Ω_b²: every real mode below it is in the basis, as the Sturm count proves; zero when it does not.
     pub(super) complete_below: f64,
-    /// What the basis misses of the static responses to the interface, squared E-norms added up.
-    pub(super) left_out: f64,
     pub(super) band_hz: [f64; 2],
 }
 
@@ -89,7 +87,7 @@ pub(super) fn analyse<T>(
         Ok((factor, shift, solved))
     });
     observer.end();
-    let (factor, shift, (mut modes, basis, left_out)) = solved?;
+    let (factor, shift, (mut modes, basis)) = solved?;
     let analysis = Analysis {
         operator: &operator,
         basis: &basis,
@@ -97,7 +95,6 @@ pub(super) fn analyse<T>(
         shift,
         n_real: real.len(),
         complete_below: complete_below(system, real),
-        left_out,
         band_hz,
     };
     let rest = then(&mut modes, analysis);
@@ -162,21 +159,21 @@ impl Round {
     }
 }
 
-/// The modes, the basis they were found in, and what that misses of the static responses to the interface.
+/// The modes, and the basis they were found in.
 fn solve_and_refine<'a>(
     operator: &'a Operator<'a>,
     factor: &dyn SymmetricFactor,
     real: &RealModes,
     band_hz: [f64; 2],
     observer: &dyn Observer,
-) -> Result<(ComplexModes, Basis<'a>, f64)> {
+) -> Result<(ComplexModes, Basis<'a>)> {
     let band = band_hz.map(|f| TAU * f);
     let mut basis = Basis::new(operator, real.shapes.as_ref(), band[1] * band[1]);
     let responses = interface_responses(operator, factor, band[1]);
     // Few directions: all of them, and the corrections show no contact motion. Many: those that matter, and the
     // corrections bring what is needed of the others.
     let tolerance = if responses.ncols() <= real.len() { 1e-9 } else { 1e-2 };
-    let left_out = basis.enrich(responses, tolerance, STATIC_RESPONSES).left_out;
+    basis.enrich(responses, tolerance, STATIC_RESPONSES);
     let mut warnings = Vec::new();
     let mut counts = Vec::new();
     let mut round = evaluate(operator, &basis, factor, band)?;
@@ -190,10 +187,7 @@ fn solve_and_refine<'a>(
         }
         // The error of λ is quadratic in that of the vectors: coarse first, so that the basis stays small.
         let tolerance = 1e-6 * 0.01f64.powi(refinements as i32);
-        if basis
-            .enrich(wanted_corrections(&round, factor, &open, 1e-3 * band[1]), tolerance, usize::MAX)
-            .added
-            == 0
+        if basis.enrich(wanted_corrections(&round, factor, &open, 1e-3 * band[1]), tolerance, usize::MAX) == 0
         {
             break;
         }
@@ -236,7 +230,7 @@ fn solve_and_refine<'a>(
         }
     }
     let modes = ComplexModes { modes, subspace_dimension: basis.len(), refinements, warnings };
-    Ok((modes, basis, left_out))
+    Ok((modes, basis))
 }
 
 /// A = K + K_σ − s M and s, in the widest gap between the real modes' ω² near the middle of the band.

@@ -35,15 +35,6 @@ pub(super) struct Basis<'a> {
     pub(super) interface: Mat<f64>,
 }
 
-/// What an enrichment came to.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Enriched {
-    /// The directions that were added.
-    pub(super) added: usize,
-    /// The squared E-norms, added up, of what the basis still misses of the columns that were not taken.
-    pub(super) left_out: f64,
-}
-
 /// Complex vectors with what M, K, C and H make of them.
 pub(super) struct Images {
     pub(super) vectors: Block,
@@ -111,8 +102,8 @@ impl<'a> Basis<'a> {
 
     /// Adds the directions of `z` that are new: after the basis is projected out, the columns are taken in the order
     /// of their remaining size in the E-norm, until it is below `tolerance` (or round-off of where the column
-    /// started), or `limit` are taken.
-    pub(super) fn enrich(&mut self, mut z: Mat<f64>, tolerance: f64, limit: usize) -> Enriched {
+    /// started), or `limit` are taken. Says how many were.
+    pub(super) fn enrich(&mut self, mut z: Mat<f64>, tolerance: f64, limit: usize) -> usize {
         const ROUND_OFF: f64 = 1e-10;
         let mut image = times(&self.energy, z.as_ref());
         let floor: Vec<f64> = (0..z.ncols())
@@ -128,14 +119,13 @@ impl<'a> Basis<'a> {
         }
         let mut energy = gram(z.as_ref(), image.as_ref());
         let open = pivoted_choice(&mut energy, &floor, limit);
-        let left_out = (0..z.ncols()).filter(|j| !open.contains(j)).map(|j| energy[(j, j)].max(0.0)).sum();
         let new = self.orthonormal(&z, &image, open);
         let added = new.ncols();
         if added > 0 {
             self.append(new);
         }
         self.sizes.resize(self.len(), self.tau);
-        Enriched { added, left_out }
+        added
     }
 
     /// z ← z − B (BᵀEB)⁻¹Bᵀ E z, given E z.

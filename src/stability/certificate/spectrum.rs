@@ -15,7 +15,10 @@
 //!
 //! x_k the columns of Ω⁻¹X_u and z_kᵀ the rows of Z_v, and with it what the basis leaves out ([`remainder`](super::remainder)):
 //!
-//! E = Q_ZB Q_B⁻¹ Q_BZ − W_Z κ W_Zᵀ, ‖Q_ZB x_k‖ ≤ ‖Γ x_k‖ + ‖W_Z‖ ‖κ W_Bᵀ x_k‖, and so for z_k.
+//! E = Q_ZB Q_B⁻¹ Q_BZ − W_Z κ W_Zᵀ, Q_ZB = Γ + W_Z κ W_Bᵀ.
+//!
+//! Q_ZB(s) x_k is a polynomial in s that all but vanishes at λ_k, as the basis was refined until it did: what is left out
+//! does not resonate with the modes that were found.
 
 use super::contour::{Region, Stopped, Winding};
 use super::reduced::ReducedModel;
@@ -40,13 +43,34 @@ pub(super) struct Spectrum<'a> {
     values: Vec<c64>,
     /// The row sums of |R| and of |F|.
     rests: Vec<[f64; 2]>,
-    /// ‖L x_k‖ and ‖L z_k‖ of every term of the remainder.
-    flexible: Vec<Vec<[f64; 2]>>,
-    /// ‖k W_Bᵀ x_k‖ and ‖kᵀ W_Bᵀ z_k‖, and the same of c, in the scale of the directions.
-    stiff: Vec<[f64; 2]>,
-    damped: Vec<[f64; 2]>,
-    /// Bounds on ‖k‖ and ‖c‖.
-    interface: [f64; 2],
+    /// Q_ZB x_k and Q_ZBᵀ of z_k.
+    reaches: [Vec<Reach>; 2],
+    /// Bounds on ‖W_Z k W_Zᵀ‖ and ‖W_Z c W_Zᵀ‖.
+    missed: [f64; 2],
+}
+
+/// The size of a vector p₀ + s p₁ + s² p₂, by the products pᵢᴴpⱼ.
+#[derive(Debug, Clone, Copy)]
+struct Reach([[c64; 3]; 3]);
+
+impl Reach {
+    /// ‖Σ wᵢ pᵢ‖, not less in spite of rounding.
+    fn size(&self, weights: [c64; 3]) -> f64 {
+        let (mut square, mut terms) = (0.0, 0.0);
+        for i in 0..3 {
+            for j in 0..3 {
+                square += (weights[i].conj() * self.0[i][j] * weights[j]).re;
+            }
+            terms += weights[i].norm() * self.0[i][i].re.sqrt();
+        }
+        (square.max(0.0) + 8.0 * f64::EPSILON * terms * terms).sqrt()
+    }
+
+    /// A bound on the size within `h` of `c`.
+    fn within(&self, c: c64, h: f64) -> f64 {
+        let (zero, one) = (c64::new(0.0, 0.0), c64::new(1.0, 0.0));
+        self.size([one, c, c * c]) + h * (self.size([zero, one, c * 2.0]) + h * self.size([zero, zero, one]))
+    }
 }
 
 /// The discs of a contour at most.
@@ -120,13 +144,17 @@ impl<'a> Spectrum<'a> {
         let rests = (0..2 * m).map(|i| [row(&rest, i), row(&defect, i)]).collect();
         let x = Mat::from_fn(m, 2 * m, |i, k| x[(i, k)] / omega[i]);
         let z = Mat::from_fn(m, 2 * m, |i, k| z[(k, m + i)]);
-        let both = |left: &Mat<f64>, right: &Mat<f64>| -> Vec<[f64; 2]> {
-            sizes_of(left, &x).into_iter().zip(sizes_of(right, &z)).map(|(x, z)| [x, z]).collect()
-        };
         let remainder = model.remainder.as_ref();
-        let flexible = remainder.map_or(Vec::new(), |r| r.terms.iter().map(|(_, l)| both(l, l)).collect());
-        let (stiff, damped) = (both(&wkt, &wk), both(&wct, &wc));
-        Ok(Spectrum { remainder, values, rests, flexible, stiff, damped, interface: [norm(&k), norm(&c)] })
+        let (mut reaches, mut missed) = ([Vec::new(), Vec::new()], [0.0; 2]);
+        if let Some(remainder) = remainder {
+            let through = |a: &Mat<f64>| product(a.as_ref(), remainder.missed.as_ref());
+            reaches = [
+                reaches_of(remainder, &through(&wkt), &through(&wct), &x),
+                reaches_of(remainder, &through(&wk), &through(&wc), &z),
+            ];
+            missed = [&k, &c].map(|a| product(remainder.missed.transpose(), through(a).as_ref()).norm_l2());
+        }
+        Ok(Spectrum { remainder, values, rests, reaches, missed })
     }
 
     /// Covers the boundary of `region` with discs and counts what lies inside.
@@ -187,18 +215,12 @@ impl<'a> Spectrum<'a> {
         let Some(remainder) = self.remainder else { return Some(0.0) };
         let omega = (c.im.abs() + h).min(remainder.tau.sqrt());
         let q = remainder.amplification([(c.re - h).max(0.0), c.re + h], omega);
-        let factors: Vec<f64> =
-            remainder.terms.iter().map(|(factor, _)| factor.at(c).norm() + factor.change(c, h)).collect();
-        let missed = remainder.missed_response;
-        let reaches = |k: usize, side: usize| {
-            let own: f64 = factors.iter().zip(&self.flexible).map(|(g, sizes)| g * sizes[k][side]).sum();
-            own + missed * (self.stiff[k][side] + reach * self.damped[k][side])
-        };
-        let right: Vec<f64> = (0..near.len()).map(|k| near[k][0] * reaches(k, 1)).collect();
+        let right: Vec<f64> = (0..near.len()).map(|k| near[k][0] * self.reaches[1][k].within(c, h)).collect();
         let largest = right.iter().fold(0.0f64, |l, v| l.max(*v));
-        let sum: f64 =
-            (0..near.len()).map(|k| reaches(k, 0) * (right[k] + near[k][1] * largest / (1.0 - delta))).sum();
-        Some(q * (sum + missed * missed * (self.interface[0] + reach * self.interface[1])))
+        let sum: f64 = (0..near.len())
+            .map(|k| self.reaches[0][k].within(c, h) * (right[k] + near[k][1] * largest / (1.0 - delta)))
+            .sum();
+        Some(q * (sum + self.missed[0] + reach * self.missed[1]))
     }
 }
 
@@ -209,19 +231,29 @@ fn times(a: &Mat<c64>, b: &Mat<c64>) -> Mat<c64> {
     c
 }
 
-/// ‖Aᵀ x_k‖ of every column.
-fn sizes_of(a: &Mat<f64>, x: &Mat<c64>) -> Vec<f64> {
-    let part = |f: fn(&c64) -> f64| {
-        let part = Mat::from_fn(x.nrows(), x.ncols(), |i, k| f(&x[(i, k)]));
-        product(a.transpose(), part.as_ref())
+/// (Γ + W_Z (k + s c) W_Bᵀ) x of every column x, with `stiff` and `damped` W_B kᵀ W_Zᵀ and W_B cᵀ W_Zᵀ.
+fn reaches_of(remainder: &Remainder, stiff: &Mat<f64>, damped: &Mat<f64>, x: &Mat<c64>) -> Vec<Reach> {
+    let (re, im) = (part(x, |z| z.re), part(x, |z| z.im));
+    let image = |a: &Mat<f64>| {
+        let (re, im) = (product(a.transpose(), re.as_ref()), product(a.transpose(), im.as_ref()));
+        Mat::from_fn(re.nrows(), re.ncols(), |i, k| c64::new(re[(i, k)], im[(i, k)]))
     };
-    let (re, im) = (part(|z| z.re), part(|z| z.im));
-    (0..x.ncols()).map(|k| re.col(k).norm_l2().hypot(im.col(k).norm_l2())).collect()
+    let mut powers = [image(stiff), image(damped), Mat::zeros(stiff.ncols(), x.ncols())];
+    for (factor, l) in &remainder.terms {
+        let flexible = image(l);
+        let (linear, square) = (c64::new(factor.linear, 0.0), c64::new(factor.square, 0.0));
+        for (power, weight) in powers.iter_mut().zip([factor.constant, linear, square]) {
+            *power += &flexible * faer::Scale(weight);
+        }
+    }
+    let dot = |k: usize, i: usize, j: usize| -> c64 {
+        let (a, b) = (powers[i].col_as_slice(k), powers[j].col_as_slice(k));
+        a.iter().zip(b).map(|(a, b)| a.conj() * b).sum()
+    };
+    let reach = |k: usize| Reach([0, 1, 2].map(|i| [0, 1, 2].map(|j| dot(k, i, j))));
+    (0..x.ncols()).map(reach).collect()
 }
 
-/// ‖A‖ ≤ √(‖A‖₁ ‖A‖_∞).
-fn norm(a: &Mat<f64>) -> f64 {
-    let column = (0..a.ncols()).map(|j| a.col(j).norm_l1()).fold(0.0, f64::max);
-    let row = (0..a.nrows()).map(|i| a.row(i).norm_l1()).fold(0.0, f64::max);
-    (column * row).sqrt()
+fn part(x: &Mat<c64>, of: fn(&c64) -> f64) -> Mat<f64> {
+    Mat::from_fn(x.nrows(), x.ncols(), |i, k| of(&x[(i, k)]))
 }
