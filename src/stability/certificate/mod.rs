@@ -202,13 +202,16 @@ enum Way {
     Spectrum,
 }
 
+/// What counts the zeros of Q_B in a region.
+type Count<'a> = dyn Fn(&Region) -> std::result::Result<Winding, Stopped> + 'a;
+
 fn count_by(way: Way, analysis: &Analysis<'_>, modes: &ComplexModes, most_work: f64) -> Result<Certificate> {
     let model = ReducedModel::new(analysis)?;
     let top = TAU * analysis.band_hz[1];
     let interface = &analysis.operator.interface;
     let sizes = interface.sizes(top);
     let most_points = (most_work / work_of_a_point(analysis)).min(1e9) as usize;
-    let count: Box<dyn Fn(&Region) -> std::result::Result<Winding, Stopped>> = match way {
+    let count: Box<Count<'_>> = match way {
         Way::Walk => {
             let pencil = Pencil::new(&model, &interface.terms, &sizes, top)?;
             Box::new(move |region| wind(&pencil, region, most_points))

@@ -87,17 +87,18 @@ impl Remainder {
         columns.extend(parts.damped.iter().cloned());
         columns.extend(parts.lossy.iter().map(|h| h * faer::Scale(1.0 / top)));
         columns.push(directions(analysis, active, top));
-        let f: usize = columns.iter().map(Mat::ncols).sum();
+        let widths: Vec<usize> = columns.iter().map(Mat::ncols).collect();
+        let f: usize = widths.iter().sum();
         let mut forces = Mat::zeros(operator.n(), f);
         let mut start = 0;
-        for block in &columns {
-            forces.subcols_mut(start, block.ncols()).copy_from(block);
+        for block in columns {
+            forces.subcols_mut(start, block.ncols()).copy_from(&block);
             start += block.ncols();
         }
         // V = A⁻¹F − B (BᵀAB)⁻¹ BᵀF, with BᵀAB = diag(θ − σ_A) for the Ritz vectors.
-        let mut v = forces.clone();
-        analysis.factor.solve_in_place(v.as_mut());
         let mut share = product(x.transpose(), gram(basis.vectors.as_ref(), forces.as_ref()).as_ref());
+        let mut v = forces;
+        analysis.factor.solve_in_place(v.as_mut());
         for i in 0..m {
             (0..f).for_each(|j| share[(i, j)] /= theta[i] - shift);
         }
@@ -127,14 +128,14 @@ impl Remainder {
             (top, parts.lossy.as_ref().map(|_| of_loss)),
         ];
         let kinds = kinds.into_iter().filter_map(|(scale, kind)| Some((scale, kind?)));
-        for ((scale, kind), block) in kinds.zip(&columns) {
+        for ((scale, kind), width) in kinds.zip(widths) {
             // Only the last columns of the basis have M B outside it.
-            let offset = m - block.ncols();
+            let offset = m - width;
             let rows = Mat::from_fn(m, kept.len(), |i, j| {
                 if i < offset { 0.0 } else { scale * root(start + i - offset, j) }
             });
             terms.push((kind, product(x.transpose(), rows.as_ref())));
-            start += block.ncols();
+            start += width;
         }
         let (sizes, _) = symmetric_eigen(product(missed.as_ref(), missed.transpose()).as_ref())?;
         Ok(Remainder {

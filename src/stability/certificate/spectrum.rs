@@ -174,7 +174,7 @@ impl<'a> Spectrum<'a> {
                     .min(0.5 * (length - done))
                     .min(0.02 * region.omega[1]);
                 let c = edge[0] + direction * (done + h);
-                if nearest < resolution || points > DISCS {
+                if nearest < 10.0 * resolution || points > DISCS {
                     return Err(Stopped::At(c));
                 }
                 // A shade more than the radius, so that rounding leaves no gap.
@@ -209,7 +209,7 @@ impl<'a> Spectrum<'a> {
             })
             .collect();
         let delta = near.iter().fold(0.0f64, |l, [_, rest]| l.max(*rest));
-        if !(delta < 0.5) {
+        if delta >= 0.5 || near.iter().any(|[d, rest]| !d.is_finite() || rest.is_nan()) {
             return None;
         }
         let Some(remainder) = self.remainder else { return Some(0.0) };
@@ -220,7 +220,9 @@ impl<'a> Spectrum<'a> {
         let sum: f64 = (0..near.len())
             .map(|k| self.reaches[0][k].within(c, h) * (right[k] + near[k][1] * largest / (1.0 - delta)))
             .sum();
-        Some(q * (sum + self.missed[0] + reach * self.missed[1]))
+        let bound = q * (sum + self.missed[0] + reach * self.missed[1]);
+        // A product of zero and infinity is no bound.
+        Some(if bound.is_nan() { f64::INFINITY } else { bound })
     }
 }
 
