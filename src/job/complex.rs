@@ -78,6 +78,7 @@ pub fn complex_result(
     let complex = ComplexResult {
         shapes: modes.modes.iter().map(|m| prepared.assembled.dofs.expand_complex(&m.right)).collect(),
         participation,
+        real_modes: labels,
         measured_squeal_hz: cea.measured_squeal.iter().map(|f| (*f, cea.measured_source.clone())).collect(),
         band_hz: band,
         certificate,

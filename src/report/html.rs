@@ -57,7 +57,7 @@ pub(super) fn page(results: &RunResults, pictures: &[Picture]) -> String {
     }
     if let Some(complex) = &results.complex {
         body += "<h2>Complex eigenvalues</h2>\n";
-        body += &figures(pictures, &["growth.svg", "growth_budget.svg"]);
+        body += &figures(pictures, &["growth.svg", "growth_budget.svg", "participation.svg"]);
         body += &untitled(tables::complex(complex));
     }
     if let Some(sensitivity) = &results.sensitivity {

@@ -2,7 +2,7 @@
 //!
 //! * [`text`]: the tables that the command line prints.
 //! * [`write_report`]: `report.html` and the pictures `rig.svg`, `modes_disc.svg`, `contact.svg`, `growth.svg`,
-//!   `growth_budget.svg`, `sensitivity.svg`, `advice.svg`, those of them that the run has something for;
+//!   `growth_budget.svg`, `participation.svg`, `sensitivity.svg`, `advice.svg`, those of them that the run has something for;
 //!   `sweep_<name>.svg`, `root_locus_<name>.svg` and `map_<name>.svg` of every sweep and map.
 //!
 //! A table is made once and shown in either form; a picture is a pure function from the results to SVG.
@@ -18,6 +18,7 @@ mod explored;
 mod format;
 mod growth;
 mod html;
+mod participation;
 mod plate;
 mod rig;
 mod svg;
@@ -52,6 +53,7 @@ fn pictures(results: &RunResults) -> Vec<Picture> {
         contact::picture(results),
         growth::picture(results),
         budget::picture(results),
+        participation::picture(results),
         tornado::picture(results),
         advice::picture(results),
     ];
@@ -74,6 +76,7 @@ mod tests {
             "contact.svg",
             "growth.svg",
             "growth_budget.svg",
+            "participation.svg",
             "sensitivity.svg",
             "advice.svg",
         ] {

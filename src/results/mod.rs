@@ -174,6 +174,9 @@ pub struct ComplexResult {
     pub shapes: Vec<NodalField<crate::linalg::c64>>,
     /// A few words on the real modes that take part in each mode: `61 % disc (0,1), 22 % (3,0)`.
     pub participation: Vec<String>,
+    /// What the real modes are called, in the order that [`ComplexMode::participation`](crate::stability::ComplexMode)
+    /// counts them: `disc (0, 1)`, `mode 1718 Hz`.
+    pub real_modes: Vec<String>,
     /// Frequencies that measurements show squealing \[Hz\], with their source; may be empty.
     pub measured_squeal_hz: Vec<(f64, String)>,
     /// Frequency band of the analysis \[Hz\].

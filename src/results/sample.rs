@@ -267,6 +267,12 @@ fn complex_result(disc: &NamedModes) -> ComplexResult {
     ComplexResult {
         shapes: modes.iter().map(shape).collect(),
         participation: (0..modes.len()).map(words).collect(),
+        real_modes: (0..disc.names.len())
+            .map(|k| {
+                disc.names[k]
+                    .map_or(String::new(), |n| format!("disc ({}, {})", n.nodal_diameters, n.nodal_circles))
+            })
+            .collect(),
         measured_squeal_hz: [936.0, 1661.0, 2600.0].map(|hz| (hz, "accelerometer".to_string())).to_vec(),
         band_hz: [100.0, 3000.0],
         certificate: None,

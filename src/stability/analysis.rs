@@ -70,9 +70,6 @@ pub(super) struct Analysis<'a> {
     pub(super) n_real: usize,
     /// Ω_b²: every real mode below it is in the basis, as the Sturm count proves; zero when it does not.
     pub(super) complete_below: f64,
-    /// What the basis misses of the static responses to the interface, squared E-norms added up; unknown when they did not
-    /// enter it.
-    left_out: Option<f64>,
     pub(super) band_hz: [f64; 2],
 }
 
@@ -94,7 +91,7 @@ pub(super) fn analyse<T>(
         Ok((factor, shift, solved))
     });
     observer.end();
-    let (factor, shift, (mut modes, basis, left_out)) = solved?;
+    let (factor, shift, (mut modes, basis)) = solved?;
     let analysis = Analysis {
         operator: &operator,
         basis: &basis,
@@ -102,7 +99,6 @@ pub(super) fn analyse<T>(
         shift,
         n_real: real.len(),
         complete_below: complete_below(system, real),
-        left_out,
         band_hz,
     };
     let rest = then(&mut modes, analysis);
@@ -141,47 +137,28 @@ fn check(system: &System, steady: &SteadySliding, real: &RealModes, band_hz: [f6
     Ok(())
 }
 
-impl Analysis<'_> {
-    /// The same with another basis that begins with the real modes.
-    #[cfg(test)]
-    pub(super) fn with_basis<'b>(&'b self, basis: &'b Basis<'b>) -> Analysis<'b> {
-        Analysis { basis, left_out: None, ..*self }
-    }
-
-    /// What the basis misses of the static responses to the interface, squared E-norms added up.
-    pub(super) fn left_out(&self) -> f64 {
-        self.left_out.unwrap_or_else(|| {
-            let omega = TAU * self.band_hz[1];
-            self.basis.missing(interface_responses(self.operator, self.factor, omega))
-        })
-    }
-}
-
-/// The modes, the basis they were found in, and what that misses of the static responses to the interface.
+/// The modes, and the basis they were found in.
 fn solve_and_refine<'a>(
     operator: &'a Operator<'a>,
     factor: &dyn SymmetricFactor,
     real: &RealModes,
     band_hz: [f64; 2],
     observer: &dyn Observer,
-) -> Result<(ComplexModes, Basis<'a>, Option<f64>)> {
+) -> Result<(ComplexModes, Basis<'a>)> {
     let band = band_hz.map(|f| TAU * f);
     let mut basis = Basis::new(operator, real.shapes.as_ref(), band[1] * band[1]);
     // Few directions: all their responses, so that the corrections show no contact motion. Many: the corrections
     // bring what is needed of them.
-    let few = operator.interface.active(band[1]).len() <= real.len();
-    let left_out = few.then(|| {
+    if operator.interface.active(band[1]).len() <= real.len() {
         let responses = interface_responses(operator, factor, band[1]);
-        basis.enrich(responses, 1e-9, STATIC_RESPONSES).left_out
-    });
+        basis.enrich(responses, 1e-9, STATIC_RESPONSES);
+    } else {
+        let responses = coupled_responses(operator, &basis, factor, band);
+        basis.enrich(responses, FIRST_TOLERANCE, usize::MAX);
+    }
     let floor = 1e-3 * band[1];
     let mut warnings = Vec::new();
     let mut counts = Vec::new();
-    if !few {
-        let responses = coupled_responses(operator, &basis, factor, band);
-        basis.enrich(responses, FIRST_TOLERANCE, usize::MAX);
-        observer.advance(1);
-    }
     let mut round = evaluate(operator, &basis, factor, band, None)?;
     observer.advance(1);
     let mut refinements = 0;
@@ -193,7 +170,7 @@ fn solve_and_refine<'a>(
         }
         // The error of λ is quadratic in that of the vectors: coarse first, so that the basis stays small.
         let tolerance = FIRST_TOLERANCE * 0.01f64.powi(refinements as i32);
-        if basis.enrich(wanted_corrections(&round, factor, &open, floor), tolerance, usize::MAX).added == 0 {
+        if basis.enrich(wanted_corrections(&round, factor, &open, floor), tolerance, usize::MAX) == 0 {
             break;
         }
         refinements += 1;
@@ -236,7 +213,7 @@ fn solve_and_refine<'a>(
         }
     }
     let modes = ComplexModes { modes, subspace_dimension: basis.len(), refinements, warnings };
-    Ok((modes, basis, left_out))
+    Ok((modes, basis))
 }
 
 /// A = K + K_σ − s M and s, in the widest gap between the real modes' ω² near the middle of the band.

@@ -35,15 +35,6 @@ pub(super) struct Basis<'a> {
     pub(super) interface: Mat<f64>,
 }
 
-/// What an enrichment came to.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Enriched {
-    /// The directions that were added.
-    pub(super) added: usize,
-    /// The squared E-norms, added up, of what the basis still misses of the columns that were not taken.
-    pub(super) left_out: f64,
-}
-
 impl<'a> Basis<'a> {
     /// Starts from M-orthonormal real modes.
     pub(super) fn new(operator: &'a Operator<'a>, modes: MatRef<'_, f64>, tau: f64) -> Self {
@@ -78,8 +69,8 @@ impl<'a> Basis<'a> {
 
     /// Adds the directions of `z` that are new: after the basis is projected out, the columns are taken in the order
     /// of their remaining size in the E-norm, until it is below `tolerance` (or round-off of where the column
-    /// started), or `limit` are taken.
-    pub(super) fn enrich(&mut self, mut z: Mat<f64>, tolerance: f64, limit: usize) -> Enriched {
+    /// started), or `limit` are taken. Says how many were.
+    pub(super) fn enrich(&mut self, mut z: Mat<f64>, tolerance: f64, limit: usize) -> usize {
         const ROUND_OFF: f64 = 1e-10;
         let mut image = times(&self.energy, z.as_ref());
         let wide = z.ncols() > WIDE && limit == usize::MAX;
@@ -100,23 +91,13 @@ impl<'a> Basis<'a> {
         }
         let mut energy = gram(z.as_ref(), image.as_ref());
         let open = pivoted_choice(&mut energy, &floor, limit);
-        let left_out = (0..z.ncols()).filter(|j| !open.contains(j)).map(|j| energy[(j, j)].max(0.0)).sum();
         let new = self.orthonormal(&z, &image, open);
         let added = new.ncols();
         if added > 0 {
             self.append(new);
         }
         self.sizes.resize(self.len(), self.tau);
-        Enriched { added, left_out }
-    }
-
-    /// What the basis misses of the columns of `z`, squared E-norms added up.
-    pub(super) fn missing(&self, mut z: Mat<f64>) -> f64 {
-        for _ in 0..2 {
-            let image = times(&self.energy, z.as_ref());
-            self.project_out(z.as_mut(), image.as_ref());
-        }
-        gram_diagonal(&z, &times(&self.energy, z.as_ref())).iter().map(|v| v.max(0.0)).sum()
+        added
     }
 
     /// Of many columns, with E z, those that [`Basis::enrich`] is going to take: by their Gram matrix less what the basis

@@ -168,7 +168,7 @@ impl<'f> Family<'f> {
                 break;
             }
             let corrections = wanted_corrections(&round, &*self.frame.factor, &open, floor);
-            if self.basis.enrich(corrections, 1e-6 * 0.01f64.powi(k), usize::MAX).added == 0 {
+            if self.basis.enrich(corrections, 1e-6 * 0.01f64.powi(k), usize::MAX) == 0 {
                 break;
             }
             self.reduced = reduce(self.frame, &self.basis, &self.springs)?;

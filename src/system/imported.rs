@@ -3,8 +3,13 @@
 //! K = ½(K + Kᵀ) + W k Wᵀ and C = ½(C + Cᵀ) + W c Wᵀ with k and c skew. Friction and other unsymmetric terms act
 //! between the few degrees of freedom of a contact, so the rows that the skew parts touch fall apart into many small
 //! groups. Each group has its own columns of W: an orthonormal basis Q of the joint range of the two skew parts,
-//! from a QR factorisation with column pivoting after the rows are scaled to the size of K. S = −Sᵀ has its columns in
-//! the span of Q, hence its rows too, and S = Q (QᵀSQ) Qᵀ loses nothing but round-off.
+//! from a QR factorisation with column pivoting after the rows are scaled to the size of K and C. S = −Sᵀ has its
+//! columns in the span of Q, hence its rows too, and S = Q (QᵀSQ) Qᵀ loses nothing but round-off.
+//!
+//! A skew entry s_ij = ½(a_ij − a_ji) is the difference of two sums that were rounded at the size of a, however small it
+//! is itself: its noise is |ν_ij| ≤ p u √(r_i r_j), u = 2⁻⁵³, p the roundings of a sum and r_i the largest entry of
+//! row i. With every row scaled by 1/√r the m × 2m matrix [K C] of a group carries a noise of ‖ν‖ ≤ √2 m p u (Frobenius),
+//! and what is left after the pivots of the true rank is that noise alone: no rank is seen in what is smaller.
 
 use super::{Coupling, Damping, Structure};
 use crate::error::{Error, Fault, Faults, Result};
@@ -18,7 +23,9 @@ use std::collections::BTreeMap;
 const LARGEST_RANK: usize = 2000;
 /// |a_ij − a_ji| / 2 up to this part of √(r_i r_j), r the largest entry of a row, is rounding of the exporting program.
 const ROUND_OFF: f64 = 1e-14;
-/// The same for M, which must be symmetric: what is larger is told.
+/// p u: an entry that friction was added to has been rounded a few times at its own size.
+const ENTRY_NOISE: f64 = 4.0 * 0.5 * f64::EPSILON;
+/// The same as [`ROUND_OFF`] for M, which must be symmetric: what is larger is told.
 const MASS_ROUND_OFF: f64 = 1e-12;
 
 /// Imported matrices, split.
@@ -101,7 +108,8 @@ pub fn split(mass: Given<'_>, damping: Option<Given<'_>>, stiffness: Given<'_>) 
     }
     let empty = Vec::new();
     let skew_damping = damping_halves.as_ref().map_or(&empty, |h| &h.skew);
-    let coupling = couple(n, &halves.skew, skew_damping, &size);
+    let damping_size = damping.map_or(vec![0.0; n], |given| row_sizes(&given.matrix.re));
+    let coupling = couple(n, &halves.skew, skew_damping, [&size, &damping_size]);
     let mut warnings = Vec::new();
     match &coupling {
         Err(rank) => faults.push(
@@ -222,7 +230,7 @@ fn couple(
     n: usize,
     stiffness: &[(usize, usize, f64)],
     damping: &[(usize, usize, f64)],
-    size: &[f64],
+    sizes: [&[f64]; 2],
 ) -> std::result::Result<Option<Coupling>, usize> {
     let groups = groups(n, stiffness, damping);
     let mut parts: Vec<(Vec<SparseVector>, Mat<f64>, Mat<f64>)> = Vec::new();
@@ -232,7 +240,7 @@ fn couple(
         if group.rows.len() > 2 * LARGEST_RANK {
             return Err(rank + group.rows.len());
         }
-        parts.push(factor(group, size));
+        parts.push(factor(group, sizes));
         rank += parts[parts.len() - 1].0.len();
     }
     if rank > LARGEST_RANK {
@@ -299,37 +307,45 @@ fn groups(n: usize, stiffness: &[(usize, usize, f64)], damping: &[(usize, usize,
     groups.into_values().collect()
 }
 
-/// The columns of W of one group with k and c on them.
-fn factor(group: &Group, size: &[f64]) -> (Vec<SparseVector>, Mat<f64>, Mat<f64>) {
+/// The columns of W of one group with k and c on them; `sizes` are the largest entries of the rows of all K and all C.
+fn factor(group: &Group, sizes: [&[f64]; 2]) -> (Vec<SparseVector>, Mat<f64>, Mat<f64>) {
     let m = group.rows.len();
-    // D S D has entries of the order one whatever the units of the rows; W = D⁻¹Q.
-    let largest = group.rows.iter().map(|i| size[*i]).fold(0.0, f64::max);
-    let least = if largest > 0.0 { 1e-30 * largest } else { 1.0 };
-    let d: Vec<f64> = group.rows.iter().map(|i| size[*i].max(least).sqrt().recip()).collect();
-    let scaled = |s: &Mat<f64>| Mat::from_fn(m, m, |i, j| d[i] * s[(i, j)] * d[j]);
-    let (k, c) = (scaled(&group.stiffness), scaled(&group.damping));
-    let (k_size, c_size) = (k.norm_max(), c.norm_max());
-    let relative = |v: f64, size: f64| if size > 0.0 { v / size } else { 0.0 };
-    let both = Mat::from_fn(m, 2 * m, |i, j| {
-        if j < m { relative(k[(i, j)], k_size) } else { relative(c[(i, j - m)], c_size) }
-    });
+    // κ brings C to the size of K, and r_i is the larger of the two in row i: with D = diag(1/√r) neither D K D nor
+    // κ D C D has an entry, or noise of an entry, above that of a matrix of ones. W = D⁻¹Q.
+    let largest = |size: &[f64]| group.rows.iter().map(|i| size[*i]).fold(0.0, f64::max);
+    let (k_size, c_size) = (largest(sizes[0]), largest(sizes[1]));
+    let kappa = if k_size > 0.0 && c_size > 0.0 { k_size / c_size } else { 1.0 };
+    let d: Vec<f64> =
+        group.rows.iter().map(|i| sizes[0][*i].max(kappa * sizes[1][*i]).sqrt().recip()).collect();
+    let scaled = |s: &Mat<f64>, factor: f64| Mat::from_fn(m, m, |i, j| d[i] * s[(i, j)] * d[j] * factor);
+    let (k, c) = (scaled(&group.stiffness, 1.0), scaled(&group.damping, kappa));
+    let both = Mat::from_fn(m, 2 * m, |i, j| if j < m { k[(i, j)] } else { c[(i, j - m)] });
     let unit = |rows: &[usize]| rows.iter().map(|i| SparseVector::from_entries([(*i, 1.0)])).collect();
     let qr = both.col_piv_qr();
     let (q, r) = (qr.compute_thin_Q(), qr.thin_R());
-    let rank = (0..m).take_while(|i| r[(*i, *i)].abs() > 1e-15 * m as f64 * r[(0, 0)].abs()).count();
+    let noise = std::f64::consts::SQRT_2 * m as f64 * ENTRY_NOISE;
+    // The rows of R from the pivot on are what the directions before it do not span.
+    let mut left = 0.0f64;
+    let mut rank = m;
+    while rank > 0 {
+        left = left.hypot(r.row(rank - 1).norm_l2());
+        if left > noise {
+            break;
+        }
+        rank -= 1;
+    }
     if rank == m {
         return (unit(&group.rows), group.stiffness.clone(), group.damping.clone());
     }
     let q = q.subcols(0, rank).to_owned();
     let (small_k, small_c) = (q.transpose() * &k * &q, q.transpose() * &c * &q);
-    let lost = |s: &Mat<f64>, small: &Mat<f64>, size: f64| {
-        (s - &q * small * q.transpose()).norm_max() > 1e-14 * m as f64 * size
-    };
-    if lost(&k, &small_k, k_size) || lost(&c, &small_c, c_size) {
+    // Twice: what the columns lose, the rows lose too.
+    let lost = |s: &Mat<f64>, small: &Mat<f64>| (s - &q * small * q.transpose()).norm_l2() > 2.0 * noise;
+    if lost(&k, &small_k) || lost(&c, &small_c) {
         return (unit(&group.rows), group.stiffness.clone(), group.damping.clone());
     }
     let direction = |j: usize| SparseVector::from_entries((0..m).map(|i| (group.rows[i], q[(i, j)] / d[i])));
-    ((0..rank).map(direction).collect(), small_k, small_c)
+    ((0..rank).map(direction).collect(), small_k, small_c * faer::Scale(kappa.recip()))
 }
 
 impl Coupling {
@@ -406,6 +422,34 @@ mod tests {
                 let t = symmetric.transpose().to_col_major().unwrap();
                 assert_eq!(t.val(), symmetric.val());
             }
+        }
+    }
+
+    /// Two discs' worth of contact pairs, each friction term a moment about a slanted axis and far smaller than the
+    /// entries of K that it is added to.
+    #[test]
+    fn rounding_of_small_terms_on_large_entries_is_no_rank() {
+        let (k, m) = samples::plate(12, false);
+        let (n, pairs) = (k.nrows(), 20);
+        for size in [1e-2, 1e-5, 1e-7] {
+            let mut triplets = Vec::new();
+            for p in 0..pairs {
+                let angle = 0.3 + p as f64;
+                let [upper, lower] = [3 * p, n - 3 - 3 * p];
+                for moment in [upper, lower] {
+                    for (row, part) in [(moment + 1, angle.cos()), (moment + 2, angle.sin())] {
+                        let scale = size * (k[(row, row)] * k[(upper, upper)]).sqrt() * part;
+                        triplets.push(faer::sparse::Triplet::new(row, upper, scale));
+                        triplets.push(faer::sparse::Triplet::new(row, lower, -scale));
+                    }
+                }
+            }
+            let friction = SparseMatrix::try_new_from_triplets(n, n, &triplets).unwrap();
+            let noisy = add_scaled(&[(1.0, &k), (1.0, &friction)]);
+            let damping = add_scaled(&[(1e-5, &k), (3.0, &m), (1e-6, &friction)]);
+            let (k, c) = (real(noisy), real(damping));
+            let coupling = split(given(&real(m.clone())), Some(given(&c)), given(&k)).unwrap().coupling;
+            assert_eq!(coupling.unwrap().directions.len(), 2 * pairs, "{size:e}");
         }
     }
 

@@ -41,7 +41,7 @@ impl Region {
     }
 
     /// The corners of the path, counter-clockwise: the upper half of a symmetric region, the whole of another.
-    fn path(&self) -> Vec<c64> {
+    pub(super) fn path(&self) -> Vec<c64> {
         let ([left, right], [low, high]) = (self.growth, self.omega);
         let mut path =
             vec![c64::new(right, low), c64::new(right, high), c64::new(left, high), c64::new(left, low)];
@@ -55,8 +55,8 @@ impl Region {
 /// What a walk round a region found.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Winding {
-    /// The number of times that d winds round zero: zeros less poles inside.
-    pub(super) turns: i64,
+    /// The zeros of Q_B inside.
+    pub(super) zeros: i64,
     /// Discs that cover the contour.
     pub(super) points: usize,
     /// The largest ρ, and where.
@@ -118,7 +118,9 @@ pub(super) fn wind(pencil: &Pencil<'_>, region: &Region, most_points: usize) -> 
     let whole = turns.round();
     match worst {
         Some(worst) if (turns - whole).abs() < 1e-3 => {
-            Ok(Winding { turns: whole as i64, points: count, defect: worst.defect, worst: worst.s })
+            // d has as many more zeros than poles inside as it has turns; its poles are the zeros of Π p.
+            let zeros = whole as i64 + pencil.poles_inside(region);
+            Ok(Winding { zeros, points: count, defect: worst.defect, worst: worst.s })
         }
         _ => Err(Stopped::At(path[0])),
     }

@@ -13,6 +13,9 @@
 //! 2. *Beyond the basis.* With the real modes below Ω_b complete, by the Sturm count, the full order differs from the
 //!    basis by a perturbation of relative size ρ on the contour ([`remainder`]). Where ρ < 1 everywhere the full
 //!    determinant winds like the small one. The margin is the smallest 1/ρ.
+//!    Of a large interface d costs too much: the eigenvalues of the reduced model are then computed and counted one by
+//!    one, their number inside is proven from what is left of the matrix in their coordinates, and the same coordinates
+//!    bound ρ ([`spectrum`]).
 //! 3. *Beyond the region.* Nothing in the band grows faster than R ([`beyond`]); said where it could be shown.
 //!
 //! What is assumed: the real modes are exact (their residuals enter squared), rounding errors are not bounded, and modal
@@ -24,6 +27,7 @@ mod pencil;
 mod proportional;
 mod reduced;
 mod remainder;
+mod spectrum;
 #[cfg(test)]
 mod tests;
 
@@ -37,6 +41,7 @@ use crate::system::System;
 use contour::{Region, Stopped, Winding, wind};
 use pencil::Pencil;
 use reduced::ReducedModel;
+use spectrum::Spectrum;
 use std::f64::consts::TAU;
 
 /// ε relative to the band's top, 2π f: the slowest growth that is counted. At the band's top it is a damping ratio of
@@ -101,6 +106,9 @@ impl Certificate {
 /// How often the contour is moved a little when an eigenvalue is too near for it.
 const ATTEMPTS: usize = 3;
 
+/// Operations of a walk round the region, some seconds, beyond which a cheaper way to count is taken.
+const LONG_WALK: f64 = 5e9;
+
 /// [`complex_modes`](super::complex_modes) of the band, and the count of those that grow.
 ///
 /// The caller compares: [`Certificate::agrees`] tells whether a mode was missed. Where the modes cannot be counted, such
@@ -118,7 +126,7 @@ pub fn certified_modes(
     observer: &dyn Observer,
 ) -> Result<(ComplexModes, Option<Certificate>)> {
     analyse(system, steady, real, band_hz, observer, |modes, analysis| {
-        let work = expected_work(&analysis, modes);
+        let work = expected_work(&analysis, modes).min(spectrum::work(analysis.basis.len()));
         if work > most_work {
             modes.warnings.push(format!(
                 "the unstable modes were not counted: with {} directions of contact that would take about {work:.0e} operations; `cea.certify = true` counts them all the same",
@@ -171,17 +179,53 @@ fn weak(certificate: &Certificate) -> String {
     )
 }
 
+/// The count by the walk round the region, or from the spectrum where that is long: then the walk is the last resort.
 fn count(analysis: &Analysis<'_>, modes: &ComplexModes, most_work: f64) -> Result<Certificate> {
+    let walk = expected_work(analysis, modes);
+    if walk <= LONG_WALK.max(spectrum::work(analysis.basis.len())) {
+        return count_by(Way::Walk, analysis, modes, most_work);
+    }
+    let certificate = count_by(Way::Spectrum, analysis, modes, most_work);
+    match certificate {
+        Ok(certificate) if certificate.margin > 1.0 => Ok(certificate),
+        weak if walk > most_work => weak,
+        weak => count_by(Way::Walk, analysis, modes, most_work).or(weak),
+    }
+}
+
+/// How the eigenvalues of the reduced model are counted.
+#[derive(Debug, Clone, Copy)]
+enum Way {
+    /// By the turns of d ([`contour`]).
+    Walk,
+    /// One by one ([`spectrum`]).
+    Spectrum,
+}
+
+/// What counts the zeros of Q_B in a region.
+type Count<'a> = dyn Fn(&Region) -> std::result::Result<Winding, Stopped> + 'a;
+
+fn count_by(way: Way, analysis: &Analysis<'_>, modes: &ComplexModes, most_work: f64) -> Result<Certificate> {
     let model = ReducedModel::new(analysis)?;
     let top = TAU * analysis.band_hz[1];
     let interface = &analysis.operator.interface;
-    let pencil = Pencil::new(&model, &interface.terms, &interface.sizes(top), top)?;
-    let mut best: Option<(Region, Winding)> = None;
+    let sizes = interface.sizes(top);
     let most_points = (most_work / work_of_a_point(analysis)).min(1e9) as usize;
+    let count: Box<Count<'_>> = match way {
+        Way::Walk => {
+            let pencil = Pencil::new(&model, &interface.terms, &sizes, top)?;
+            Box::new(move |region| wind(&pencil, region, most_points))
+        }
+        Way::Spectrum => {
+            let spectrum = Spectrum::new(&model, &interface.terms, &sizes, top)?;
+            Box::new(move |region| spectrum.count(region))
+        }
+    };
+    let mut best: Option<(Region, Winding)> = None;
     let mut stopped = Stopped::TooManyPoints;
     for attempt in 0..ATTEMPTS {
         let region = region(analysis, attempt);
-        match wind(&pencil, &region, most_points) {
+        match count(&region) {
             Ok(winding) => {
                 let better = best.as_ref().is_none_or(|(_, b)| winding.defect < b.defect);
                 if better {
@@ -213,12 +257,11 @@ fn count(analysis: &Analysis<'_>, modes: &ComplexModes, most_work: f64) -> Resul
     };
     let structure_poles =
         model.oscillators.iter().flat_map(|o| o.roots()).filter(|root| region.contains(*root)).count();
-    let counted = winding.turns + structure_poles as i64;
     let found = found(modes, &region);
     Ok(Certificate {
         band_hz: region.omega.map(|w| w / TAU),
         growth: region.growth,
-        counted,
+        counted: winding.zeros,
         found,
         margin: 1.0 / winding.defect.max(1e-16),
         tightest: [winding.worst.im / TAU, winding.worst.re],

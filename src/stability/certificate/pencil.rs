@@ -1,5 +1,6 @@
 //! The contact-size determinant d(s) = det(I + H(s) κ(s)) at a point, with a disc around it in which it is understood.
 
+use super::contour::Region;
 use super::reduced::{Oscillator, ReducedModel};
 use super::remainder::Remainder;
 use crate::error::Result;
@@ -134,6 +135,11 @@ impl<'a> Pencil<'a> {
             balanced_squares,
             row_norms,
         })
+    }
+
+    /// The zeros of Π p in a region.
+    pub(super) fn poles_inside(&self, region: &Region) -> i64 {
+        self.oscillators.iter().flat_map(|o| o.roots()).filter(|root| region.contains(*root)).count() as i64
     }
 
     /// κ(s) and c, r × the columns that are not zero, when they are full enough to be multiplied as matrices.

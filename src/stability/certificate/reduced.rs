@@ -118,8 +118,11 @@ impl ReducedModel {
         let w = Mat::from_fn(basis.len(), active.len(), |i, j| basis.interface[(i, active[j])]);
         let (indefinite, dissipative) = super::remainder::dissipation(analysis, &parts);
         let whole = basis.len() == operator.n() || analysis.complete_below == f64::INFINITY;
-        let remainder =
-            if whole { None } else { Some(Remainder::new(analysis, &parts, &theta, &x, indefinite)?) };
+        let remainder = if whole {
+            None
+        } else {
+            Some(Remainder::new(analysis, &parts, &theta, &x, &active, indefinite)?)
+        };
         Ok(ReducedModel {
             oscillators,
             coupled_damping: coupled,

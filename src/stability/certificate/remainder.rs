@@ -13,7 +13,7 @@
 //!
 //! with D_B the inverse of the structure's part of Q_B and N = I + W_BᵀD_BW_B κ. Where ρ = q ‖E‖ < 1 (‖·‖ relative to A
 //! on both sides) P_ZZ − tE is regular for every t in \[0, 1\], so that det Q and det Q_B wind alike. The norms need
-//! ZᵀF (ZᵀAZ)⁻¹FᵀZ = Fᵀ(A⁻¹ − B(BᵀAB)⁻¹Bᵀ)F of the columns F = \[MB DB H_rB\] only: one block solve.
+//! ZᵀF (ZᵀAZ)⁻¹FᵀZ = Fᵀ(A⁻¹ − B(BᵀAB)⁻¹Bᵀ)F of the columns F = \[MB DB H_rB W\] only: one block solve.
 
 use super::proportional::Proportional;
 use super::reduced::DampingParts;
@@ -41,16 +41,19 @@ pub(super) struct Remainder {
     pub(super) indefinite: f64,
     /// τ of γ \[1/s²\].
     pub(super) tau: f64,
-    /// ‖W_Z‖ of the scaled directions: what the basis misses of the static responses to the interface.
+    /// W_Zᵀ of the active directions (r × f), each times the root of its size: what the basis misses of the static
+    /// responses to the interface.
+    pub(super) missed: Mat<f64>,
+    /// ‖W_Z‖.
     pub(super) missed_response: f64,
 }
 
 /// s² + linear · s + constant, or s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Factor {
-    square: f64,
-    linear: f64,
-    constant: c64,
+    pub(super) square: f64,
+    pub(super) linear: f64,
+    pub(super) constant: c64,
 }
 
 impl Factor {
@@ -66,30 +69,36 @@ impl Factor {
 }
 
 impl Remainder {
-    /// Solves for A⁻¹F, with `theta` and `x` the Ritz values and vectors in the basis.
+    /// Solves for A⁻¹F, with `theta` and `x` the Ritz values and vectors in the basis, and W of the `active` directions.
     pub(super) fn new(
         analysis: &Analysis<'_>,
         parts: &DampingParts,
         theta: &[f64],
         x: &Mat<f64>,
+        active: &[usize],
         indefinite: f64,
     ) -> Result<Self> {
         let (operator, basis, shift) = (&analysis.operator, &analysis.basis, analysis.shift);
         let (m, first) = (basis.len(), analysis.n_real);
+        let top = TAU * analysis.band_hz[1];
         let inertia = basis.mass_times.subcols(first, m - first);
-        let mut columns = vec![inertia.to_owned()];
-        columns.extend(parts.damped.iter().chain(&parts.lossy).cloned());
-        let f: usize = columns.iter().map(Mat::ncols).sum();
+        // Of one size, so that the smallest are not lost in the rounding of the largest: \[top MB, DB, H_rB/top, W\].
+        let mut columns = vec![inertia * faer::Scale(top)];
+        columns.extend(parts.damped.iter().cloned());
+        columns.extend(parts.lossy.iter().map(|h| h * faer::Scale(1.0 / top)));
+        columns.push(directions(analysis, active, top));
+        let widths: Vec<usize> = columns.iter().map(Mat::ncols).collect();
+        let f: usize = widths.iter().sum();
         let mut forces = Mat::zeros(operator.n(), f);
         let mut start = 0;
-        for block in &columns {
-            forces.subcols_mut(start, block.ncols()).copy_from(block);
+        for block in columns {
+            forces.subcols_mut(start, block.ncols()).copy_from(&block);
             start += block.ncols();
         }
         // V = A⁻¹F − B (BᵀAB)⁻¹ BᵀF, with BᵀAB = diag(θ − σ_A) for the Ritz vectors.
-        let mut v = forces.clone();
-        analysis.factor.solve_in_place(v.as_mut());
         let mut share = product(x.transpose(), gram(basis.vectors.as_ref(), forces.as_ref()).as_ref());
+        let mut v = forces;
+        analysis.factor.solve_in_place(v.as_mut());
         for i in 0..m {
             (0..f).for_each(|j| share[(i, j)] /= theta[i] - shift);
         }
@@ -101,6 +110,7 @@ impl Remainder {
         let largest = values.last().copied().unwrap_or(0.0).max(0.0);
         let kept: Vec<usize> = (0..f).filter(|j| values[*j] > 1e-24 * largest).collect();
         let root = |row: usize, j: usize| vectors[(row, kept[j])] * values[kept[j]].sqrt();
+        let missed = Mat::from_fn(active.len(), kept.len(), |i, j| root(f - active.len() + i, j));
         let mut terms = Vec::new();
         let (alpha, beta) = (parts.viscous.mass_factor, parts.viscous.stiffness_factor);
         let (alpha_h, beta_h) = (parts.loss.mass_factor, parts.loss.stiffness_factor);
@@ -112,28 +122,30 @@ impl Remainder {
         let of_damping = Factor { square: 0.0, linear: 1.0, constant: c64::new(0.0, 0.0) };
         let of_loss = Factor { square: 0.0, linear: 0.0, constant: c64::new(0.0, 1.0) };
         let mut start = 0;
-        let kinds =
-            [Some(of_mass), parts.damped.as_ref().map(|_| of_damping), parts.lossy.as_ref().map(|_| of_loss)];
-        for (kind, block) in kinds.into_iter().flatten().zip(&columns) {
+        let kinds = [
+            (1.0 / top, Some(of_mass)),
+            (1.0, parts.damped.as_ref().map(|_| of_damping)),
+            (top, parts.lossy.as_ref().map(|_| of_loss)),
+        ];
+        let kinds = kinds.into_iter().filter_map(|(scale, kind)| Some((scale, kind?)));
+        for ((scale, kind), width) in kinds.zip(widths) {
             // Only the last columns of the basis have M B outside it.
-            let offset = m - block.ncols();
-            let rows =
-                Mat::from_fn(
-                    m,
-                    kept.len(),
-                    |i, j| if i < offset { 0.0 } else { root(start + i - offset, j) },
-                );
+            let offset = m - width;
+            let rows = Mat::from_fn(m, kept.len(), |i, j| {
+                if i < offset { 0.0 } else { scale * root(start + i - offset, j) }
+            });
             terms.push((kind, product(x.transpose(), rows.as_ref())));
-            start += block.ncols();
+            start += width;
         }
-        let top = TAU * analysis.band_hz[1];
+        let (sizes, _) = symmetric_eigen(product(missed.as_ref(), missed.transpose()).as_ref())?;
         Ok(Remainder {
             complete_below: analysis.complete_below,
             shift,
             terms,
             indefinite,
             tau: top * top,
-            missed_response: top * analysis.left_out().max(0.0).sqrt(),
+            missed,
+            missed_response: sizes.last().map_or(0.0, |s| s.max(0.0).sqrt()),
         })
     }
 
@@ -149,6 +161,17 @@ impl Remainder {
         }
         at(self.complete_below).max(1.0 / slope)
     }
+}
+
+/// W of the `active` directions, each times the root of its size.
+fn directions(analysis: &Analysis<'_>, active: &[usize], top: f64) -> Mat<f64> {
+    let interface = &analysis.operator.interface;
+    let sizes = interface.sizes(top);
+    let mut columns = Mat::zeros(analysis.operator.n(), active.len());
+    for (j, d) in active.iter().enumerate() {
+        interface.directions[*d].add_to(sizes[*d].sqrt(), columns.col_as_slice_mut(j));
+    }
+    columns
 }
 
 /// γ with C ≥ −γ(K + K_σ + τM) outside the basis, τ the square of the band's top, and whether C and H are known to be

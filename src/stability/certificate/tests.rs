@@ -68,6 +68,7 @@ fn damped_small(mut system: System, kind: u64, random: &mut Random) -> System {
 #[test]
 fn a_thousand_random_systems_agree_with_the_dense_count() {
     let (mut stable, mut several, mut diverging, mut partial, mut held, mut bounded) = (0, 0, 0, 0, 0, 0);
+    let mut one_by_one = 0;
     for seed in 0..1000 {
         let system = small_system(seed);
         let n = system.n_dofs();
@@ -86,6 +87,16 @@ fn a_thousand_random_systems_agree_with_the_dense_count() {
             certificate.counted == exact || certificate.margin <= 1.0,
             "seed {seed}: {exact} by the dense solver, {certificate:?}"
         );
+        analyse(&system, &state, &real, [low, top], &(), |modes, analysis| {
+            let listed = count_by(Way::Spectrum, &analysis, modes, f64::INFINITY);
+            let proven = listed.as_ref().is_ok_and(Certificate::holds);
+            one_by_one += usize::from(proven);
+            if let Ok(listed) = listed {
+                let exact = dense_count(&spectrum, &listed);
+                assert!(listed.counted == exact || listed.margin <= 1.0, "seed {seed}: {exact}, {listed:?}");
+            }
+        })
+        .unwrap();
         let fastest = spectrum.iter().filter(|z| z.im.abs() <= TAU * top).fold(0.0f64, |g, z| g.max(z.re));
         assert!(!certificate.nothing_faster || fastest < certificate.growth[1], "seed {seed}");
         assert!(certificate.dissipative && certificate.structure_poles == 0, "seed {seed}: {certificate:?}");
@@ -96,8 +107,8 @@ fn a_thousand_random_systems_agree_with_the_dense_count() {
         diverging += usize::from(low == 0.0 && spectrum.iter().any(|z| real_root(&z)));
         partial += usize::from(modes.subspace_dimension < n);
     }
-    println!("{stable} {several} {diverging} {partial} {held} {bounded}");
-    assert!(held >= 950, "{held} of 1000 proven");
+    println!("{stable} {several} {diverging} {partial} {held} {one_by_one} {bounded}");
+    assert!(held >= 950 && one_by_one >= 950, "{held} and {one_by_one} of 1000 proven");
     assert!(stable > 100 && several > 50 && diverging > 50 && partial > 30 && bounded > 300);
 }
 
@@ -130,6 +141,12 @@ fn a_truncated_basis_is_bounded_and_counts_as_the_full_order() {
         assert!(certificate.holds(), "{certificate:?}");
         assert_eq!(certificate.counted, exact);
         unstable += exact;
+        analyse(&system, &state, &real, band, &(), |modes, analysis| {
+            let listed = count_by(Way::Spectrum, &analysis, modes, f64::INFINITY).unwrap();
+            println!("{kind} one by one: {listed:?}");
+            assert!(listed.holds() && listed.counted == exact, "{listed:?}");
+        })
+        .unwrap();
     }
     assert!(unstable > 0);
 }
@@ -169,10 +186,12 @@ fn too_few_real_modes_or_static_responses_do_not_pass_for_a_proof() {
     // Real modes alone, their static responses missing: an honest 1/ρ far below that of the whole basis.
     analyse(&system, &state, &real, [0.0, top], &(), |modes, analysis| {
         let whole = count(&analysis, modes, f64::INFINITY).unwrap();
-        let omega = TAU * top;
-        let poor = Basis::new(analysis.operator, real.shapes.as_ref(), omega * omega);
-        let poor = count(&analysis.with_basis(&poor), modes, f64::INFINITY);
-        assert!(poor.is_ok_and(|poor| !poor.holds() && poor.margin < 0.1 * whole.margin));
+        let poor = Basis::new(analysis.operator, real.shapes.as_ref(), (TAU * top).powi(2));
+        let analysis = Analysis { basis: &poor, ..analysis };
+        for way in [Way::Walk, Way::Spectrum] {
+            let poor = count_by(way, &analysis, modes, f64::INFINITY);
+            assert!(poor.is_ok_and(|poor| !poor.holds() && poor.margin < 0.1 * whole.margin));
+        }
     })
     .unwrap();
 }
@@ -183,7 +202,10 @@ fn bounds_hold_at_full_order() {
     for kind in 0..8 {
         let (system, state, real, band) = large(1010 + kind, kind);
         analyse(&system, &state, &real, band, &(), |_, analysis| {
-            bounds_hold(kind, &system, &state, band, &analysis)
+            bounds_hold(kind, &system, &state, band, &analysis);
+            // Without the static responses to the interface, W_Z and its coupling with Γ count.
+            let poor = Basis::new(analysis.operator, real.shapes.as_ref(), (TAU * band[1]).powi(2));
+            bounds_hold(kind, &system, &state, band, &Analysis { basis: &poor, ..analysis });
         })
         .unwrap();
     }
@@ -194,6 +216,7 @@ fn bounds_hold(kind: u64, system: &System, state: &SteadySliding, band: [f64; 2]
     let top = TAU * band[1];
     let interface = &analysis.operator.interface;
     let pencil = Pencil::new(&model, &interface.terms, &interface.sizes(top), top).unwrap();
+    let spectrum = Spectrum::new(&model, &interface.terms, &interface.sizes(top), top).unwrap();
     let (k, c) = dense_matrices(system, state);
     let (m, n) = (system.structure.mass.to_dense(), system.n_dofs());
     let real_k = system.structure.stiffness.to_dense();
@@ -232,6 +255,8 @@ fn bounds_hold(kind: u64, system: &System, state: &SteadySliding, band: [f64; 2]
         let e = &p - schur;
         let rho = p.partial_piv_lu().solve(&e).svd().unwrap().S().column_vector()[0].norm();
         assert!(rho <= point.defect * (1.0 + 1e-6) + 1e-11, "kind {kind}: {rho:.2e} {:.2e}", point.defect);
+        let bound = spectrum.bound(s, 0.0).unwrap();
+        assert!(rho <= bound * (1.0 + 1e-6) + 1e-11, "kind {kind}: {rho:.2e} {bound:.2e} one by one");
         for _ in 0..4 {
             let turn = random.next() * TAU;
             let near = s + c64::new(turn.cos(), turn.sin()) * (point.reach * random.next());
