@@ -8,6 +8,7 @@ use crate::case::{Case, Invalidates, MapAnalysis, SweepAnalysis};
 use crate::equilibrium::{Condensed, SteadySliding, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::c64;
+use crate::linalg::sparse::times;
 use crate::modal::RealModes;
 use crate::progress::Observer;
 use crate::results::{DampingRow, DampingVerdicts, MapResult, Method, RunResults, SweepResult};
@@ -65,7 +66,7 @@ pub(super) fn explore(
     let condensed = Condensed::new(nominal.system, &k)?;
     let displacement = &nominal.steady.displacement;
     let frame = Frame::new(nominal.system, displacement, nominal.real, others.iter().collect(), cea.band)?;
-    let reference = &nominal.system.structure.mass * &nominal.real.shapes;
+    let reference = times(&nominal.system.structure.mass, nominal.real.shapes.as_ref());
     let explorer = Explorer { nominal, case: &case, condensed, frame, dampings, reference, observer };
     for (name, analysis) in &prepared.case.sweep {
         let result = explorer.sweep(name, analysis)?;

@@ -3,6 +3,7 @@
 use super::prepared::Prepared;
 use crate::case::{Case, ContactState, ModesAnalysis};
 use crate::error::{Error, Fault, Faults, Result};
+use crate::linalg::sparse::times;
 use crate::modal::{self, ModesWanted, RealModes};
 use crate::results::{MeasuredComparison, NamedModes, NodalField};
 use crate::structure::{Assembled, assemble};
@@ -125,7 +126,10 @@ fn moving_parts(prepared: &Prepared, modes: &RealModes, assembled: &Assembled) -
             }
         }
     }
-    let momentum = &assembled.structure.mass * &modes.shapes;
+    if parts.is_empty() {
+        return vec![None; modes.len()];
+    }
+    let momentum = times(&assembled.structure.mass, modes.shapes.as_ref());
     (0..modes.len())
         .map(|k| {
             let mut energy = vec![0.0; parts.len()];
@@ -193,7 +197,7 @@ pub fn add_modal_damping(structure: &mut Structure, modes: &RealModes, prepared:
     }
     let ratios = modal_ratios(prepared.case, modes)?;
     structure.damping.modal = Some(crate::system::ModalDamping {
-        basis: &structure.mass * &modes.shapes,
+        basis: times(&structure.mass, modes.shapes.as_ref()),
         coefficients: (0..modes.len())
             .map(|k| 2.0 * ratios[k] * modes.eigenvalues[k].max(0.0).sqrt())
             .collect(),

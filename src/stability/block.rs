@@ -2,6 +2,7 @@
 
 use crate::linalg::c64;
 use faer::Mat;
+use rayon::prelude::*;
 
 /// Complex vectors, one a column.
 #[derive(Debug, Clone)]
@@ -52,14 +53,14 @@ impl Block {
 
     /// self\[:, j\] += factor\[j\] · x\[:, j\].
     pub(super) fn add_scaled(&mut self, factor: &[c64], x: &Block) {
-        for (j, a) in factor.iter().enumerate() {
-            let (re, im) = (x.re.col_as_slice(j), x.im.col_as_slice(j));
-            let own = self.re.col_as_slice_mut(j).iter_mut().zip(self.im.col_as_slice_mut(j));
-            for ((u, v), (p, q)) in own.zip(re.iter().zip(im)) {
+        let own = self.re.par_col_iter_mut().zip(self.im.par_col_iter_mut());
+        let others = x.re.par_col_iter().zip(x.im.par_col_iter());
+        own.zip(others).zip(factor).for_each(|(((u, v), (p, q)), a)| {
+            for (((u, v), p), q) in u.iter_mut().zip(v.iter_mut()).zip(p.iter()).zip(q.iter()) {
                 *u += a.re * p - a.im * q;
                 *v += a.re * q + a.im * p;
             }
-        }
+        });
     }
 
     /// Column `j`.
@@ -80,8 +81,11 @@ impl Block {
         self.dot(j, self).re.sqrt()
     }
 
-    /// self\[:, j\] *= factor.
-    pub(super) fn scale_column(&mut self, j: usize, factor: f64) {
-        self.re.col_as_slice_mut(j).iter_mut().chain(self.im.col_as_slice_mut(j)).for_each(|v| *v *= factor);
+    /// self\[:, j\] *= factor\[j\].
+    pub(super) fn scale(&mut self, factor: &[f64]) {
+        for part in [&mut self.re, &mut self.im] {
+            let columns = part.par_col_iter_mut().zip(factor);
+            columns.for_each(|(column, factor)| column.iter_mut().for_each(|v| *v *= factor));
+        }
     }
 }

@@ -10,6 +10,7 @@ use crate::linalg::tall::{expand, gram};
 use crate::linalg::{SparseMatrix, c64};
 use crate::system::{Damping, System};
 use faer::{Mat, MatRef};
+use rayon::prelude::*;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -51,13 +52,12 @@ pub(super) struct Images {
 impl Images {
     /// Scales every column so that xᴴMx = 1.
     pub(super) fn normalise(mut self) -> Self {
-        for j in 0..self.vectors.ncols() {
-            let factor = 1.0 / self.vectors.dot(j, &self.inertia).re.sqrt();
-            self.vectors.scale_column(j, factor);
-            self.inertia.scale_column(j, factor);
-            self.elastic.scale_column(j, factor);
-            self.damped.iter_mut().chain(&mut self.lossy).for_each(|block| block.scale_column(j, factor));
-        }
+        let columns = 0..self.vectors.ncols();
+        let factors: Vec<f64> =
+            columns.into_par_iter().map(|j| 1.0 / self.vectors.dot(j, &self.inertia).re.sqrt()).collect();
+        let rest = self.damped.iter_mut().chain(&mut self.lossy);
+        let all = [&mut self.vectors, &mut self.inertia, &mut self.elastic].into_iter().chain(rest);
+        all.for_each(|block| block.scale(&factors));
         self
     }
 }

@@ -10,6 +10,7 @@ use crate::linalg::c64;
 use crate::linalg::random::Random;
 use crate::linalg::tall::expand;
 use faer::Mat;
+use rayon::prelude::*;
 
 /// Aims of the refinement, below what [`super::ComplexMode::accepted`] asks.
 const BACKWARD_ERROR: f64 = 5e-11;
@@ -115,10 +116,13 @@ pub(super) fn residuals(operator: &Operator<'_>, pairs: impl Iterator<Item = Vec
         let (right, slope) = operator.apply(Side::Right, &lambda, &phi);
         let (left, _) = operator.apply(Side::Left, &lambda, &psi);
         let (phi, psi) = (phi.vectors, psi.vectors);
-        for (j, z) in lambda.iter().enumerate() {
-            all.backward_error.push(right.norm(j) / (operator.size(*z) * phi.norm(j)));
-            all.steepness.push(psi.dot(j, &slope).norm());
-        }
+        let measures = lambda.par_iter().enumerate().map(|(j, z)| {
+            let backward_error = right.norm(j) / (operator.size(*z) * phi.norm(j));
+            (backward_error, psi.dot(j, &slope).norm())
+        });
+        let (backward_error, steepness): (Vec<f64>, Vec<f64>) = measures.unzip();
+        all.backward_error.extend(backward_error);
+        all.steepness.extend(steepness);
         all.lambda.extend(lambda);
         all.phi.append(phi);
         all.psi.append(psi);
@@ -137,7 +141,8 @@ pub(super) fn measure(factor: &dyn SymmetricFactor, band: [f64; 2], pairs: Resid
         z
     });
     let floor = 1e-6 * band[1];
-    let of = |f: &dyn Fn(usize) -> f64| (0..lambda.len()).map(f).collect::<Vec<f64>>();
+    let of =
+        |f: &(dyn Fn(usize) -> f64 + Sync)| (0..lambda.len()).into_par_iter().map(f).collect::<Vec<f64>>();
     Round {
         eigenvalue_error: of(&|j| {
             left.dot(j, &correction).norm() / (steepness[j] * lambda[j].norm().max(floor))
