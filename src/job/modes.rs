@@ -104,7 +104,6 @@ pub fn named(prepared: &Prepared, name: &str, modes: RealModes, assembled: &Asse
 
 /// The part with the largest share of the kinetic energy of each mode.
 fn moving_parts(prepared: &Prepared, modes: &RealModes, assembled: &Assembled) -> Vec<Option<String>> {
-    let mut owner = vec![Vec::new(); assembled.dofs.n_dofs()];
     let parts: Vec<(&str, Vec<usize>)> = prepared
         .model
         .shells
@@ -112,6 +111,10 @@ fn moving_parts(prepared: &Prepared, modes: &RealModes, assembled: &Assembled) -
         .map(|s| (s.name.as_str(), s.faces.iter().flat_map(|f| f.nodes()).copied().collect()))
         .chain(prepared.model.bars.iter().map(|b| (b.name.as_str(), b.elements.concat())))
         .collect();
+    if parts.is_empty() {
+        return vec![None; modes.len()];
+    }
+    let mut owner = vec![Vec::new(); assembled.dofs.n_dofs()];
     for (p, (_, nodes)) in parts.iter().enumerate() {
         let mut nodes = nodes.clone();
         nodes.sort_unstable();
@@ -125,9 +128,6 @@ fn moving_parts(prepared: &Prepared, modes: &RealModes, assembled: &Assembled) -
                 }
             }
         }
-    }
-    if parts.is_empty() {
-        return vec![None; modes.len()];
     }
     let momentum = times(&assembled.structure.mass, modes.shapes.as_ref());
     (0..modes.len())

@@ -153,7 +153,7 @@ fn solve_and_refine<'a>(
         let responses = interface_responses(operator, factor, band[1]);
         basis.enrich(responses, 1e-9, STATIC_RESPONSES);
     } else {
-        let responses = coupled_responses(operator, &basis, factor, band);
+        let responses = coupled_responses(operator, &basis, factor, band[1]);
         basis.enrich(responses, FIRST_TOLERANCE, usize::MAX);
     }
     let floor = 1e-3 * band[1];

@@ -16,6 +16,11 @@ impl Block {
         Block { re: Mat::zeros(n, columns), im: Mat::zeros(n, columns) }
     }
 
+    /// What is there for both parts or for neither.
+    pub(super) fn both(re: Option<Mat<f64>>, im: Option<Mat<f64>>) -> Option<Self> {
+        re.zip(im).map(|(re, im)| Block { re, im })
+    }
+
     pub(super) fn from_columns(n: usize, columns: &[&[c64]]) -> Self {
         let part = |f: fn(&c64) -> f64| Mat::from_fn(n, columns.len(), |i, j| f(&columns[j][i]));
         Block { re: part(|z| z.re), im: part(|z| z.im) }

@@ -6,7 +6,6 @@ use super::interface::Origin;
 use super::operator::Operator;
 use crate::linalg::c64;
 use crate::linalg::sparse::times;
-use faer::Mat;
 
 impl GrowthBudget {
     /// The sum of the terms: σ.
@@ -23,8 +22,8 @@ impl GrowthBudget {
 /// force that follows the normal motion (t, g) couples the modes. A real eigenvalue (ω = 0) has no such balance: all
 /// terms are zero.
 pub(super) fn growth_budgets(operator: &Operator<'_>, lambda: &[c64], phi: &Block) -> Vec<GrowthBudget> {
-    let both = |re: Option<Mat<f64>>, im: Option<Mat<f64>>| re.zip(im).map(|(re, im)| Block { re, im });
-    let damped = both(operator.damping_times(phi.re.as_ref()), operator.damping_times(phi.im.as_ref()));
+    let damped =
+        Block::both(operator.damping_times(phi.re.as_ref()), operator.damping_times(phi.im.as_ref()));
     let lossy = operator.damping.hysteretic.as_ref().map(|h| phi.map(|v| times(h, v.as_ref())));
     let of = |(j, lambda): (usize, &c64)| {
         let mut budget = GrowthBudget::default();

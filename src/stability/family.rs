@@ -209,12 +209,9 @@ impl<'f> Family<'f> {
         }
         for (damping, w) in self.frame.dampings.iter().zip(weights.iter().skip(1)).filter(|(_, w)| **w != 0.0)
         {
-            let re = (
-                damping_times(damping, x.vectors.re.as_ref()),
-                damping_times(damping, x.vectors.im.as_ref()),
-            );
-            if let (Some(re), Some(im)) = re {
-                add(&mut x.damped, Block { re, im }, *w);
+            let of = |part: &Mat<f64>| damping_times(damping, part.as_ref());
+            if let Some(damped) = Block::both(of(&x.vectors.re), of(&x.vectors.im)) {
+                add(&mut x.damped, damped, *w);
             }
             if let Some(h) = &damping.hysteretic {
                 let lossy = x.vectors.map(|v| times(h, v.as_ref()));

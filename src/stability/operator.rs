@@ -132,13 +132,12 @@ impl<'a> Operator<'a> {
     /// What M, K, C and H make of complex vectors.
     pub(super) fn images(&self, vectors: Block) -> Images {
         let (re, im) = (self.products(vectors.re.as_ref()), self.products(vectors.im.as_ref()));
-        let both = |re: Option<Mat<f64>>, im: Option<Mat<f64>>| re.zip(im).map(|(re, im)| Block { re, im });
         Images {
             vectors,
             inertia: Block { re: re.inertia, im: im.inertia },
             elastic: Block { re: re.elastic, im: im.elastic },
-            damped: both(re.damped, im.damped),
-            lossy: both(re.lossy, im.lossy),
+            damped: Block::both(re.damped, im.damped),
+            lossy: Block::both(re.lossy, im.lossy),
         }
     }
 

@@ -36,14 +36,14 @@ pub(super) fn coupled_responses(
     operator: &Operator<'_>,
     basis: &Basis<'_>,
     factor: &dyn SymmetricFactor,
-    band: [f64; 2],
+    omega: f64,
 ) -> Mat<f64> {
     let mut random = Random::new();
     let mut mixed = || {
         let mut part = || Mat::from_fn(basis.len(), SKETCH / 4, |_, _| random.next());
         Block { re: part(), im: part() }
     };
-    let s = vec![c64::new(0.0, band[1]); SKETCH / 4];
+    let s = vec![c64::new(0.0, omega); SKETCH / 4];
     let mut responses = Mat::zeros(operator.n(), 0);
     for side in [Side::Right, Side::Left] {
         let images = operator.images(basis.expand(&mixed()));
@@ -51,10 +51,10 @@ pub(super) fn coupled_responses(
         operator.add_rest(side, &s, &images, &mut forces);
         responses = beside(&beside(&responses, &forces.re), &forces.im);
     }
-    responses *= faer::Scale(1.0 / band[1]);
+    responses *= faer::Scale(1.0 / omega);
     factor.solve_in_place(responses.as_mut());
     let mut second = times(operator.mass, responses.as_ref());
-    second *= faer::Scale(band[1] * band[1]);
+    second *= faer::Scale(omega * omega);
     factor.solve_in_place(second.as_mut());
     beside(&responses, &second)
 }

@@ -35,10 +35,10 @@ pub(super) struct Round {
 impl Round {
     /// Those measured last that are not yet as exact as the refinement aims at, as places in `measured`.
     pub(super) fn open(&self) -> Vec<usize> {
-        (0..self.measured.len()).filter(|k| !self.right(self.measured[*k])).collect()
+        (0..self.measured.len()).filter(|k| !self.exact(self.measured[*k])).collect()
     }
 
-    fn right(&self, j: usize) -> bool {
+    fn exact(&self, j: usize) -> bool {
         self.backward_error[j] <= BACKWARD_ERROR && self.eigenvalue_error[j] <= EIGENVALUE_ERROR
     }
 
@@ -68,12 +68,12 @@ impl Round {
         }
     }
 
-    /// The pair that is right and no other than the one with this λ, when both rounds have just one there.
+    /// The pair that is exact enough and no other than the one with this λ, when both rounds have just one there.
     pub(super) fn settled(&self, all: &[SmallPair], lambda: c64) -> Option<usize> {
         let near = |z: c64| (z - lambda).norm() <= ALONE * lambda.norm();
         let mut own = (0..self.lambda.len()).filter(|j| near(self.lambda[*j]));
         let alone = all.iter().filter(|pair| near(pair.lambda)).count() == 1;
-        let j = own.next().filter(|j| alone && own.next().is_none() && self.right(*j))?;
+        let j = own.next().filter(|j| alone && own.next().is_none() && self.exact(*j))?;
         ((self.lambda[j] - lambda).norm() <= EIGENVALUE_ERROR * lambda.norm()).then_some(j)
     }
 }

@@ -154,8 +154,7 @@ pub fn certified_modes(
 
 /// The directions in which the interface acts.
 fn directions(analysis: &Analysis<'_>) -> usize {
-    let sizes = analysis.operator.interface.sizes(TAU * analysis.band_hz[1]);
-    sizes.iter().filter(|size| **size > 0.0).count()
+    analysis.operator.interface.active(TAU * analysis.band_hz[1]).len()
 }
 
 /// About the floating-point operations of a point of the contour: products of matrices of the sizes of the basis (m) and

@@ -111,10 +111,7 @@ impl ReducedModel {
                 loss: parts.loss.mass_factor + parts.loss.stiffness_factor * theta[i],
             })
             .collect();
-        let sizes = operator.interface.sizes(top);
-        let directions = &operator.interface.directions;
-        let active: Vec<usize> =
-            (0..sizes.len()).filter(|d| sizes[*d] > 0.0 && !directions[*d].indices().is_empty()).collect();
+        let active = operator.interface.active(top);
         let w = Mat::from_fn(basis.len(), active.len(), |i, j| basis.interface[(i, active[j])]);
         let (indefinite, dissipative) = super::remainder::dissipation(analysis, &parts);
         let whole = basis.len() == operator.n() || analysis.complete_below == f64::INFINITY;

@@ -1,0 +1,128 @@
+//! What sections say of each other: names that must stand elsewhere, and what does not go together.
+
+use super::super::reader::Section;
+use super::super::{Case, ContactState, path_matches};
+
+/// Names that must stand elsewhere in the file: materials, parts, contacts.
+pub(super) fn check_names(root: &Section, case: &Case) {
+    let materials: Vec<&str> = case.material.keys().map(String::as_str).collect();
+    let used = case
+        .shell
+        .iter()
+        .map(|(name, s)| (format!("shell.{name}.material"), &s.material))
+        .chain(case.bar.iter().map(|(name, b)| (format!("bar.{name}.material"), &b.material)));
+    for (key, material) in used {
+        if !material.is_empty() && !materials.contains(&material.as_str()) {
+            unknown_name(root, &key, material, "material", &materials);
+        }
+    }
+    for (name, contact) in case.contact.iter().filter(|_| case.matrices.is_none()) {
+        if contact.points.is_some() {
+            root.fault(
+                &format!("contact.{name}.points"),
+                "contact points",
+                "`body` and `counter`, on a mesh",
+                "",
+            );
+        }
+    }
+    let parts: Vec<&str> = case.shell.keys().chain(case.bar.keys()).map(String::as_str).collect();
+    for (name, analysis) in &case.modes {
+        for part in analysis.parts.iter().filter(|p| !parts.contains(&p.as_str())) {
+            unknown_name(root, &format!("modes.{name}.parts"), part, "shell or bar", &parts);
+        }
+        if analysis.contact == ContactState::Closed && case.contact.is_empty() {
+            root.fault(&format!("modes.{name}.contact"), "closed", "open, as the case has no [contact]", "");
+        }
+        if analysis.contact == ContactState::Closed && !analysis.parts.is_empty() {
+            root.fault(
+                &format!("modes.{name}.contact"),
+                "closed",
+                "open, when only some parts are analysed",
+                "",
+            );
+        }
+    }
+    if case.cea.is_some() && case.contact.is_empty() && case.matrices.is_none() {
+        root.fault("cea", "no [contact] in the case", "a contact, without which nothing slides", "");
+    }
+    if case.sensitivity.is_some() && case.cea.is_none() {
+        root.fault("sensitivity", "no [cea] in the case", "a [cea], whose eigenvalues are looked into", "");
+    }
+    if case.matrices.is_some() {
+        check_matrices(root, case);
+    } else if case.mesh.is_none() && case.point.is_empty() {
+        root.fault("mesh", "nothing", "a [mesh] with a file, [point] coordinates, or [matrices]", "");
+    }
+}
+
+/// Refuses patterns that name no scalar of a case that is sound but for them.
+pub(super) fn check_sensitivity(root: &Section, case: &Case) {
+    let Some(analysis) = case.sensitivity.as_ref().filter(|_| root.sound_so_far()) else {
+        return;
+    };
+    // The scalars of the model: what is asked about them is none.
+    let parameters = Case { sensitivity: None, ..case.clone() }.parameters();
+    let paths = || parameters.iter().map(|p| p.path.as_str());
+    for pattern in
+        analysis.parameters.iter().filter(|pattern| !paths().any(|path| path_matches(pattern, path)))
+    {
+        let help = crate::error::nearest(pattern, paths())
+            .map_or("`stridor check CASE --parameters` lists them".into(), |near| {
+                format!("Did you mean \"{near}\"?")
+            });
+        let expected = "the path of a scalar of the case, or part of one with `*`";
+        root.fault("sensitivity.parameters", format!("\"{pattern}\""), expected, &help);
+    }
+}
+
+/// What a case with matrices may not say besides, and what only such a case may say.
+fn check_matrices(root: &Section, case: &Case) {
+    let built = ["mesh", "point", "material", "shell", "bar", "mass", "spring", "rigid", "support", "force"];
+    for key in built.into_iter().filter(|key| root.has(key)) {
+        root.fault(
+            key,
+            "a part of a model",
+            "no such section beside [matrices], which are the model",
+            "Remove one of them",
+        );
+    }
+    if case.prestress {
+        root.fault(
+            "prestress",
+            "true",
+            "false beside [matrices]",
+            "Export K with the geometric stiffness in it",
+        );
+    }
+    for (name, contact) in &case.contact {
+        if contact.points.is_none() {
+            let help = "Each point gives its normal and tangential degrees of freedom";
+            root.fault(
+                &format!("contact.{name}.points"),
+                "nothing",
+                "contact points, beside [matrices]",
+                help,
+            );
+        }
+    }
+    for (name, modes) in &case.modes {
+        let parts =
+            [("parts", !modes.parts.is_empty()), ("clamp", !modes.clamp.is_empty()), ("free", modes.free)];
+        for (key, _) in parts.into_iter().filter(|(_, there)| *there) {
+            root.fault(
+                &format!("modes.{name}.{key}"),
+                "a part of a model",
+                "no such key beside [matrices]",
+                "Remove it",
+            );
+        }
+    }
+}
+
+fn unknown_name(root: &Section, key: &str, name: &str, kind: &str, known: &[&str]) {
+    let help = crate::error::nearest(name, known.iter().copied())
+        .map_or(String::new(), |near| format!("Did you mean \"{near}\"?"));
+    let list = if known.is_empty() { "none is defined".to_string() } else { known.join(", ") };
+    root.fault(key, format!("\"{name}\""), format!("the name of a {kind} ({list})"), &help);
+}

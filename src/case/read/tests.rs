@@ -1,0 +1,165 @@
+use super::*;
+
+const RIG: &str = r#"
+title = "A small rig"
+assumptions = ["The hub's radius is not stated."]
+prestress = true
+
+[mesh]
+file = "rig.msh"
+unit = "mm"
+
+[material.steel]
+youngs_modulus = "210 GPa"
+poissons_ratio = 0.3
+density = 7850
+rayleigh = { alpha = 1.0, beta = "1 us" }
+
+[shell.disc]
+material = "steel"
+thickness = "1 mm"
+rotary_inertia = false
+
+[shell.slider]
+material = "steel"
+thickness = "10 mm"
+
+[bar.bar]
+material = "steel"
+diameter = "20 mm"
+
+[rigid.hub]
+master = "bar_root"
+follow = "hub"
+
+[support.clamp]
+on = "bar_clamp"
+
+[spring.drive]
+on = "slider"
+direction = [1, 0, 0]
+stiffness = "1 MN/m"
+damping = "10 N*s/m"
+
+[contact.rim]
+body = "rim"
+counter = "slider"
+load = "20 N"
+sliding_velocity = "0.1 m/s"
+placement = { lead_angle = "4 deg", position = ["10 mm", 0] }
+normal = { per = "length", stiffness = "10 GN/m^2", cubic = 1e18 }
+friction = { law = "exponential", mu0 = 0.3, mu1 = 0.1, alpha = "5 s/m" }
+
+[damping]
+modal_ratio = 0.001
+
+[modes.disc]
+parts = ["disc"]
+clamp = ["hub"]
+below = "3 kHz"
+measured = [330, 936, 1697, 2600]
+measured_source = "hammer"
+
+[cea]
+band = [0, "6 kHz"]
+measured_squeal = [936, 1661, 2600]
+
+[sensitivity]
+modes = [936, "1.661 kHz"]
+mass = "2 g"
+verify = true
+"#;
+
+fn parse(text: &str) -> Result<Case> {
+    Case::parse("rig.toml", text, PathBuf::from("."))
+}
+
+#[test]
+fn the_resolved_case_reads_back_as_the_same_case() {
+    let case = parse(RIG).unwrap();
+    assert_eq!(case.shell["disc"].thickness, 1e-3);
+    assert_eq!(case.contact["rim"].pressing, Pressing::Load(20.0));
+    assert_eq!(case.contact["rim"].normal.stiffness, 1e10);
+    assert_eq!(case.cea.as_ref().unwrap().basis_below, 9000.0);
+    assert_eq!(parse(&case.to_toml()).unwrap(), case);
+}
+
+#[test]
+fn a_parameter_is_set_by_its_path() {
+    let case = parse(RIG).unwrap();
+    let other = case.with_parameter("contact.rim.friction.mu0", 0.5).unwrap();
+    assert_eq!(
+        other.contact["rim"].friction.law,
+        FrictionCurve::Exponential { mu0: 0.5, mu1: 0.1, alpha: 5.0 }
+    );
+    let error = case.with_parameter("contact.rim.friction.mu", 0.5).unwrap_err().to_string();
+    assert!(error.contains("contact.rim.friction.mu0"), "{error}");
+    let error = case.with_parameter("material.steel.poissons_ratio", 0.5).unwrap_err();
+    assert_eq!(error.exit_code(), 2);
+}
+
+#[test]
+fn every_number_of_a_case_is_a_parameter_with_unit_and_bounds() {
+    fn count(value: &toml::Value) -> usize {
+        match value {
+            toml::Value::Float(_) => 1,
+            toml::Value::Table(t) => t.values().map(count).sum(),
+            toml::Value::Array(list) => list.iter().map(count).sum(),
+            _ => 0,
+        }
+    }
+    let case = parse(RIG).unwrap();
+    let parameters = case.parameters();
+    assert_eq!(parameters.len(), count(&toml::Value::try_from(&case).unwrap()));
+    for p in &parameters {
+        assert!(p.accepts(p.value), "{p:?}");
+        assert_eq!(case.with_parameter(&p.path, p.value).unwrap(), case, "{}", p.path);
+    }
+    // The rig of this text is prestressed: its load changes the stiffness.
+    assert_eq!(case.parameter("contact.rim.load").unwrap().invalidates, Invalidates::Structure);
+    let free = Case { prestress: false, ..case };
+    let one = |path: &str| free.parameter(path).unwrap();
+    assert_eq!(one("contact.rim.load").invalidates, Invalidates::Equilibrium);
+    let mu = one("contact.rim.friction.mu0");
+    assert_eq!((mu.unit, mu.invalidates), ("", Invalidates::Law));
+    assert!(!mu.accepts(-0.1) && mu.accepts(0.0));
+    assert_eq!(one("contact.rim.normal.cubic").unit, "N/m^4");
+    assert_eq!(one("spring.drive.damping").invalidates, Invalidates::Damping);
+    let nu = one("material.steel.poissons_ratio");
+    assert!(nu.invalidates == Invalidates::Structure && !nu.accepts(0.5) && nu.accepts(0.499));
+    assert_eq!(one("modes.disc.measured.2").invalidates, Invalidates::Question);
+}
+
+#[test]
+fn every_fault_is_found_at_once_with_its_line() {
+    let text = RIG
+        .replace("thickness = \"1 mm\"", "thicknes = \"1 mm\"")
+        .replace("\"10 mm\"\n\n[bar", "\"-10 mm\"\n\n[bar")
+        .replace("poissons_ratio = 0.3", "poissons_ratio = 0.5")
+        .replace("diameter = \"20 mm\"", "diameter = \"20 kg\"")
+        .replace("sliding_velocity = \"0.1 m/s\"", "sliding_velocity = 0")
+        .replace("below = \"3 kHz\"", "below = true")
+        .replace("material = \"steel\"\ndiameter", "material = \"stel\"\ndiameter");
+    let error = parse(&text).unwrap_err().to_string();
+    for expected in [
+        "8 faults",
+        "rig.toml:18 `shell.disc.thicknes`",
+        "Did you mean `thickness`?",
+        "-0.01; expected a value above zero",
+        "below 0.5",
+        "another dimension",
+        "steady sliding has no state at rest",
+        "found true; expected a frequency",
+        "bar.bar.material",
+        "Did you mean \"steel\"?",
+    ] {
+        assert!(error.contains(expected), "{expected} not in\n{error}");
+    }
+}
+
+#[test]
+fn text_that_is_not_toml_is_refused_with_its_line() {
+    let error = parse("title = \"a\"\n[mesh\n").unwrap_err().to_string();
+    assert!(error.contains("rig.toml:2"), "{error}");
+    assert!(parse("").is_err());
+}
