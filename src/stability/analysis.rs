@@ -243,8 +243,18 @@ fn small_pairs(operator: &Operator<'_>, basis: &Basis<'_>, band: [f64; 2]) -> Re
         &(&basis.damping + unsymmetric_damping),
         &(&basis.stiffness + unsymmetric_stiffness),
         basis.hysteretic.as_ref(),
+        middle_frequency(basis, band[1]),
         |z| in_band(z, band),
     )
+}
+
+/// The median of the frequencies √(bᵀKb/bᵀMb) of the basis that are below `top` \[rad/s\]; `top` when there is none.
+fn middle_frequency(basis: &Basis<'_>, top: f64) -> f64 {
+    let square = |i: usize| basis.stiffness[(i, i)] / basis.mass[(i, i)];
+    let mut below: Vec<f64> =
+        (0..basis.len()).map(square).filter(|w| *w > 0.0 && *w < top * top).map(f64::sqrt).collect();
+    below.sort_by(f64::total_cmp);
+    below.get(below.len() / 2).copied().unwrap_or(top)
 }
 
 /// Some pairs of the projected problem on the full order, as [`residuals`] takes them.

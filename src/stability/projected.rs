@@ -4,12 +4,9 @@ use super::basis::Basis;
 use super::operator::Operator;
 use crate::error::{Error, Result};
 use crate::linalg::c64;
+use faer::Mat;
 use faer::linalg::solvers::Solve;
-use faer::{Mat, Side};
 use rayon::prelude::*;
-
-/// What stands for no mass, where vectors of the band have a mass of about one.
-const TRACE_OF_MASS: f64 = 1e-10;
 
 /// An eigenpair of the projected problem with its left vector, in coordinates of the basis.
 #[derive(Debug, Clone)]
@@ -34,15 +31,21 @@ pub(super) fn project_interface(operator: &Operator<'_>, basis: &Basis<'_>) -> (
     (by_velocity * w.transpose(), by_displacement * w.transpose())
 }
 
-/// The wanted eigenpairs of (λ² M + λ C + K + iH) y = 0, ascending in (Im λ, Re λ).
+/// The wanted eigenpairs of Q(λ) y = (λ² M + λ C + K + iH) y = 0, ascending in (Im λ, Re λ).
 ///
-/// Through the companion matrix of the problem scaled to ‖K‖ = 1, then one step of inverse iteration on Q(λ) itself,
-/// which removes the companion's loss of digits for λ far below the highest frequency of the basis.
+/// With λ = s + s/θ for a real s > 0 of the size of the wanted eigenvalues, θ are the eigenvalues of
+/// θ² Q(s) + θ s Q′(s) + s² M. Its companion matrix needs Q(s)⁻¹, not M⁻¹: directions (next to) without mass are at
+/// θ = 0 and nothing of them is large, so that a singular M costs no digits. One step of inverse iteration on Q(λ)
+/// itself then takes back what the linearisation lost.
+///
+/// # Errors
+/// Q(s) is singular, or the eigenvalues do not converge.
 pub(super) fn solve(
     mass: &Mat<f64>,
     damping: &Mat<f64>,
     stiffness: &Mat<f64>,
     hysteretic: Option<&Mat<f64>>,
+    s: f64,
     wanted: impl Fn(c64) -> bool + Sync,
 ) -> Result<Vec<SmallPair>> {
     let m = mass.nrows();
@@ -53,60 +56,48 @@ pub(super) fn solve(
             "Check the model for parts without mass or with numbers out of any range",
         )
     };
-    // Directions with (next to) no mass have eigenvalues at infinity: with a trace of mass they are very large instead.
-    // That moves the others by about as much, which the polishing on the true matrices takes back.
-    let factor = |trace: f64| {
-        let mass = Mat::from_fn(m, m, |i, j| mass[(i, j)] + if i == j { trace } else { 0.0 });
-        mass.llt(Side::Lower).ok().map(|llt| llt.L().to_owned())
-    };
-    let sound = |l: &Mat<f64>| (0..m).all(|i| l[(i, i)] * l[(i, i)] >= TRACE_OF_MASS);
-    let l = factor(0.0)
-        .filter(sound)
-        .or_else(|| factor(TRACE_OF_MASS))
-        .ok_or_else(|| failed("the mass matrix is not positive definite"))?;
-    let reduce = |a: &Mat<f64>| {
-        let mut x = a.clone();
-        l.solve_lower_triangular_in_place(x.as_mut());
-        let mut y = x.transpose().to_owned();
-        l.solve_lower_triangular_in_place(y.as_mut());
-        y.transpose().to_owned()
-    };
-    let (c, k, h) = (reduce(damping), reduce(stiffness), hysteretic.map(&reduce));
-    let scale = k.norm_l2().sqrt().max(c.norm_l2()).max(f64::MIN_POSITIVE);
-    let entry = |i: usize, j: usize, k_entry: f64| match (i < m, j < m) {
-        (true, true) => 0.0,
-        (true, false) => f64::from(i == j - m),
-        (false, true) => -k_entry / (scale * scale),
-        (false, false) => -c[(i - m, j - m)] / scale,
-    };
-    let part = |a: &Mat<f64>, i: usize, j: usize| if i >= m && j < m { a[(i - m, j)] } else { 0.0 };
-    let eigen = match &h {
-        None => Mat::from_fn(2 * m, 2 * m, |i, j| entry(i, j, part(&k, i, j))).eigen(),
-        Some(h) => Mat::from_fn(2 * m, 2 * m, |i, j| {
-            c64::new(entry(i, j, part(&k, i, j)), -part(h, i, j) / (scale * scale))
-        })
-        .eigen(),
+    let value = Mat::from_fn(m, m, |i, j| {
+        let real = s * (s * mass[(i, j)] + damping[(i, j)]) + stiffness[(i, j)];
+        c64::new(real, hysteretic.map_or(0.0, |h| h[(i, j)]))
+    });
+    let lu = value.partial_piv_lu();
+    // −Q(s)⁻¹ \[s² M, s Q′(s)\], the lower half of the companion matrix.
+    let lower = lu.solve(Mat::from_fn(m, 2 * m, |i, j| {
+        let rest = match j < m {
+            true => mass[(i, j)],
+            false => 2.0 * mass[(i, j - m)] + damping[(i, j - m)] / s,
+        };
+        c64::new(-s * s * rest, 0.0)
+    }));
+    if !lower.is_all_finite() {
+        return Err(failed(&format!("its matrix at s = {s:e} is singular")));
+    }
+    let companion = Mat::from_fn(2 * m, 2 * m, |i, j| match i < m {
+        true => c64::new(f64::from(j == i + m), 0.0),
+        false => lower[(i - m, j)],
+    });
+    // Without losses all numbers are real.
+    let eigen = match hysteretic {
+        None => companion.map(|z| z.re).eigen(),
+        Some(_) => companion.eigen(),
     }
     .map_err(|_| failed("its eigenvalues did not converge"))?;
     let v = eigen.U().to_owned();
     let mut chosen: Vec<(c64, usize)> =
-        (0..2 * m).map(|i| (eigen.S()[i] * scale, i)).filter(|(z, _)| wanted(*z)).collect();
+        (0..2 * m).map(|i| (s + s / eigen.S()[i], i)).filter(|(z, _)| z.is_finite() && wanted(*z)).collect();
     chosen.sort_by(|a, b| a.0.im.total_cmp(&b.0.im).then(a.0.re.total_cmp(&b.0.re)));
-    // The rows of V⁻¹ are the left vectors wᴴ; their second half is ψᴴ.
+    // The rows of V⁻¹ are the left vectors wᴴ of the companion matrix; their second half is ψᴴQ(s).
     let mut inverse_rows =
         Mat::from_fn(2 * m, chosen.len(), |i, j| c64::new(f64::from(i == chosen[j].1), 0.0));
     v.transpose().partial_piv_lu().solve_in_place(inverse_rows.as_mut());
-    let back = |y: Vec<c64>| -> Vec<c64> {
-        let mut parts = Mat::from_fn(m, 2, |i, p| if p == 0 { y[i].re } else { y[i].im });
-        l.transpose().solve_upper_triangular_in_place(parts.as_mut());
-        unit((0..m).map(|i| c64::new(parts[(i, 0)], parts[(i, 1)])).collect())
-    };
+    let mut left = Mat::from_fn(m, chosen.len(), |i, j| inverse_rows[(m + i, j)].conj());
+    lu.solve_adjoint_in_place(left.as_mut());
     let pairs: Vec<SmallPair> = chosen
         .par_iter()
         .enumerate()
         .map(|(j, (lambda, column))| {
-            let right = back((0..m).map(|i| v[(i, *column)]).collect());
-            let left = back((0..m).map(|i| inverse_rows[(m + i, j)].conj()).collect());
+            let right = unit((0..m).map(|i| v[(i, *column)]).collect());
+            let left = unit((0..m).map(|i| left[(i, j)]).collect());
             polish(mass, damping, stiffness, hysteretic, SmallPair { lambda: *lambda, right, left })
         })
         .collect();
