@@ -228,8 +228,11 @@ impl<'a> Pencil<'a> {
         let mut lanczos = BlockLanczos::new(self.m, &*factor, capacity(count + 1), self.accepted(reach));
         // One more than wanted shows the gap above them.
         let mut total = (count + 1).max(negative + 1);
+        // A bound above all of them and how many there are below it, once a count has shown that some were not seen.
+        let mut known: Option<(f64, usize)> = None;
         for _ in 0..20 {
-            let window = Window { negative, largest: total - negative, floor: 0.0 };
+            let floor = known.map_or(0.0, |(bound, _)| 1.0 / (bound - shift));
+            let window = Window { negative, largest: total - negative, floor };
             let ritz = lanczos.converge(window, observer)?;
             let all = ritz.is_none();
             let ritz = ritz.map_or_else(|| lanczos.ritz(), Ok)?;
@@ -254,13 +257,18 @@ impl<'a> Pencil<'a> {
                 Some(next) => (values[cut - 1], *next),
                 None => (last, last + 0.2 * last.abs().max((last - shift).abs())),
             };
-            // In a gap one count says all.
-            let part = |part: f64| low + part * (high - low);
-            let (bound, counter) = self.factorize_near([0.5, 0.4, 0.6].map(part))?;
-            let counted = counter.inertia().negative;
+            let (bound, counted) = match known {
+                Some((bound, counted)) if counted == cut && cut == values.len() => (bound, counted),
+                // In a gap one count says all.
+                _ => {
+                    let part = |part: f64| low + part * (high - low);
+                    let (bound, counter) = self.factorize_near([0.5, 0.4, 0.6].map(part))?;
+                    (bound, counter.inertia().negative)
+                }
+            };
             if counted > cut && !all {
-                // Copies of a multiple eigenvalue that the block has not seen yet.
-                total += counted - cut;
+                // Copies of a multiple eigenvalue that the block has not seen yet: Lanczos goes on until it has all.
+                (total, known) = (counted, Some((bound, counted)));
                 lanczos.look_again();
                 continue;
             }
@@ -273,44 +281,46 @@ impl<'a> Pencil<'a> {
         Err(missing(total, total + 1, shift))
     }
 
-    /// A shift in the middle of the lowest `count` eigenvalues, from Ritz values of a short run at a small negative one.
-    /// Gives also the distance of the farthest.
+    /// A shift in the middle of the lowest `count` eigenvalues, from Ritz values of a short run at a small negative one and,
+    /// where that went too far, from the counts. Gives also the distance of the farthest.
     fn shift_for(&self, count: usize, observer: &dyn Observer) -> Result<(f64, Factor, f64)> {
         let scale = self.local_scale();
         let guess = [1e-9, 1e-7, 1e-5].map(|part| -part * scale);
         let (mut shift, mut factor) = self.factorize_near(guess)?;
-        let mut reach = scale;
-        for _ in 0..6 {
-            let (mut values, mut settled) = (Vec::new(), Vec::new());
-            let mut lanczos = BlockLanczos::new(self.m, &*factor, count.min(EXPLORED) + 40, 1.0);
-            let ritz = lanczos.explore(count.min(EXPLORED) + 32, observer)?;
-            for (v, residual) in ritz.values.iter().zip(&ritz.residuals) {
-                values.push(shift + 1.0 / v);
-                if *residual <= SETTLED * v.abs() {
-                    settled.push(shift + 1.0 / v);
-                }
-            }
-            drop(lanczos);
-            values.sort_by(f64::total_cmp);
-            settled.sort_by(f64::total_cmp);
-            let lowest = values.first().copied().unwrap_or(0.0);
-            let estimate = extrapolated(&settled, count)
-                .or(values.get(count - 1).or(values.last()).copied())
-                .unwrap_or(scale);
-            reach = (estimate - shift).abs().max((lowest - shift).abs());
-            if estimate <= 0.0 {
-                // All are negative or rigid-body motions: go below the negative ones, where the shift meets none.
-                if lowest < 1e3 * shift {
-                    (shift, factor) = self.factorize_near([1.5, 1.6, 1.7].map(|part| part * lowest))?;
-                }
-                break;
-            }
-            (shift, factor) = self.factorize_near(INSIDE.map(|part| part * estimate))?;
-            if factor.inertia().negative <= count + 8 {
-                break;
+        let (mut values, mut settled) = (Vec::new(), Vec::new());
+        let mut lanczos = BlockLanczos::new(self.m, &*factor, count.min(EXPLORED) + 40, 1.0);
+        let ritz = lanczos.explore(count.min(EXPLORED) + 32, observer)?;
+        for (v, residual) in ritz.values.iter().zip(&ritz.residuals) {
+            values.push(shift + 1.0 / v);
+            if *residual <= SETTLED * v.abs() {
+                settled.push(shift + 1.0 / v);
             }
         }
-        Ok((shift, factor, reach))
+        drop(lanczos);
+        values.sort_by(f64::total_cmp);
+        settled.sort_by(f64::total_cmp);
+        let lowest = values.first().copied().unwrap_or(0.0);
+        let mut estimate = extrapolated(&settled, count)
+            .or(values.get(count - 1).or(values.last()).copied())
+            .unwrap_or(scale);
+        if estimate <= 0.0 {
+            // All are negative or rigid-body motions: go below the negative ones, where the shift meets none.
+            let reach = (estimate - shift).abs().max((lowest - shift).abs());
+            if lowest < 1e3 * shift {
+                (shift, factor) = self.factorize_near([1.5, 1.6, 1.7].map(|part| part * lowest))?;
+            }
+            return Ok((shift, factor, reach));
+        }
+        for _ in 0..6 {
+            (shift, factor) = self.factorize_near(INSIDE.map(|part| part * estimate))?;
+            let below = factor.inertia().negative;
+            if below <= count + 8 {
+                break;
+            }
+            // The modes of plates are about equally far in ω = √θ.
+            estimate = shift * (count as f64 / below as f64).powi(2);
+        }
+        Ok((shift, factor, (estimate - shift).abs().max((lowest - shift).abs())))
     }
 
     /// For pairs with |θ − σ| up to `reach`, the residual ‖A x − ν x‖_M / |ν| at which the backward error ‖K x − θ M x‖ / ‖K‖ ‖x‖ is near 1e-14: residuals
