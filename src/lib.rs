@@ -13,7 +13,10 @@
 //! | [`contact`] | pairing of two bodies, normal and friction laws |
 //! | [`equilibrium`] | steady sliding and its linearisation |
 //! | [`modal`] | real modes, their names, their certificate |
+//! | [`reduction`] | a small system that moves like a large one at its contacts |
 //! | [`stability`] | complex eigenvalues at steady sliding |
+//! | [`transient`] | motion in time: implicit integration, contact condensed |
+//! | [`signal`] | spectra, peaks, growth of a record |
 //! | [`sweep`] | how complex modes change with scalars: branches, critical values, maps |
 //! | [`results`] | HDF5, VTK, JSON, CSV |
 //! | [`report`] | pictures and the HTML page |
@@ -34,10 +37,13 @@ pub mod linalg;
 pub mod mesh;
 pub mod modal;
 pub mod progress;
+pub mod reduction;
 pub mod report;
 pub mod results;
+pub mod signal;
 pub mod stability;
 pub mod structure;
 pub mod sweep;
 pub mod system;
+pub mod transient;
 pub mod validation;

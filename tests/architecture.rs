@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Each room with all the rooms it may use.
-const MAY_USE: [(&str, &[&str]); 17] = [
+const MAY_USE: [(&str, &[&str]); 20] = [
     ("error", &[]),
     ("progress", &[]),
     ("linalg", &["error", "progress"]),
@@ -16,11 +16,14 @@ const MAY_USE: [(&str, &[&str]); 17] = [
     // Analyses: take a system, know no mesh and no law.
     ("equilibrium", &["error", "progress", "linalg", "system"]),
     ("modal", &["error", "progress", "linalg", "system"]),
+    ("reduction", &["error", "linalg", "system", "equilibrium", "modal"]),
     ("stability", &["error", "progress", "linalg", "system", "equilibrium", "modal"]),
     ("sweep", &["error", "progress", "linalg", "stability"]),
+    ("transient", &["error", "progress", "linalg", "system", "equilibrium"]),
+    ("signal", &[]),
     // What both wings leave behind.
-    ("results", &["error", "linalg", "equilibrium", "modal", "stability", "sweep"]),
-    ("report", &["error", "linalg", "equilibrium", "modal", "stability", "sweep", "results"]),
+    ("results", &["error", "linalg", "equilibrium", "modal", "stability", "sweep", "transient", "signal"]),
+    ("report", &["error", "linalg", "equilibrium", "modal", "stability", "sweep", "signal", "results"]),
     // From a file to results.
     ("case", &["error", "structure"]),
     (
@@ -37,6 +40,9 @@ const MAY_USE: [(&str, &[&str]); 17] = [
             "modal",
             "stability",
             "sweep",
+            "reduction",
+            "transient",
+            "signal",
             "results",
             "report",
             "case",

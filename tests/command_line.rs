@@ -157,6 +157,75 @@ fn one_and_two_threads_give_the_same_numbers() {
     assert_eq!(figures("1"), figures("2"));
 }
 
+/// The transient that is added to the small rig; the disc rings after a blow.
+const BLOW: &str = r#"
+[transient]
+duration = "4 ms"
+time_step = "10 us"
+scheme = "newmark"
+
+[transient.disturbance]
+amplitude = "1 nm"
+
+[transient.push.blow]
+on = "bar_root"
+force = ["1 N", 0, "1 N"]
+begin = "0.5 ms"
+duration = "0.4 ms"
+
+[transient.probe.disc]
+at = [0, 0, "20 mm"]
+direction = [1, 0, 0]
+"#;
+
+#[test]
+fn motion_in_time_is_the_same_in_full_condensed_and_for_any_number_of_threads() {
+    let folder = folder_with(&format!("{RIG}{BLOW}"));
+    let history = |name: &str, extra: &str, threads: &str| -> Vec<Vec<f64>> {
+        let case = format!("{RIG}{}", BLOW.replace("scheme", &format!("{extra}\nscheme")));
+        std::fs::write(folder.path().join("rig.toml"), case).expect("a case file");
+        let output = stridor(folder.path(), &["transient", "rig.toml", "--out", name, "--threads", threads]);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        assert!(text(&output.stdout).contains("Motion in time: 400 steps"), "{}", text(&output.stdout));
+        let table = std::fs::read_to_string(folder.path().join(name).join("transient.csv")).expect("a table");
+        let row = |line: &str| line.split(',').map(|v| v.parse().expect("a number")).collect();
+        table.lines().skip(1).map(row).collect()
+    };
+    let one = history("one", "", "1");
+    assert_eq!(one.len(), 401);
+    assert!(one == history("two", "", "2"), "the numbers depend on the number of threads");
+    let far = |other: &[Vec<f64>], column: usize| {
+        let size = one.iter().map(|row| row[column].abs()).fold(0.0, f64::max);
+        let off = one.iter().zip(other).map(|(a, b)| (a[column] - b[column]).abs()).fold(0.0, f64::max);
+        off / size
+    };
+    let whole = history("whole", "full_newton = true", "2");
+    assert!((1..6).all(|column| far(&whole, column) < 1e-7), "{:?}", [1, 2, 3, 4, 5].map(|c| far(&whole, c)));
+    // Of the reduced model the motion and the forces follow; modes above its band are not in it.
+    let reduced = history("reduced", "model = \"reduced\"", "2");
+    assert!(far(&reduced, 1) < 0.02 && far(&reduced, 4) < 0.02, "{:?}", [1, 4].map(|c| far(&reduced, c)));
+    for file in ["transient.svg", "transient_spectrum.svg", "results.h5", "transient_spectrum.csv"] {
+        assert!(folder.path().join("one").join(file).is_file(), "{file} is missing");
+    }
+}
+
+#[test]
+fn faults_of_a_transient_come_together() {
+    let wrong = BLOW
+        .replace("duration = \"4 ms\"", "duration = \"1 us\"")
+        .replace("at = [0, 0, \"20 mm\"]", "at = [0, 0, 0]\non = \"disc\"")
+        + "[transient.slide.rim]\nmotion = \"reciprocating\"\nfrequency = \"5 Hz\"\n\
+           [transient.slide.rip]\nmotion = \"ramp\"\nduration = \"1 ms\"\n";
+    let folder = folder_with(&format!("{RIG}{wrong}"));
+    refused(
+        &folder,
+        2,
+        &["4 faults", "time_step", "both `on` and `at`", "friction.regularisation", "Did you mean \"rim\"?"],
+    );
+    let lost = folder_with(&format!("{RIG}{}", BLOW.replace("\"bar_root\"", "\"bar_rot\"")));
+    refused(&lost, 2, &["transient.push.blow.on", "bar_root"]);
+}
+
 #[test]
 fn check_lists_every_scalar_and_new_makes_a_case_that_is_sound() {
     let folder = TempDir::new().expect("a temporary folder");

@@ -8,12 +8,14 @@ mod explore;
 mod parameter;
 mod read;
 pub(crate) mod reader;
+mod transient;
 pub(crate) mod units;
 
 pub(crate) use parameter::path_matches;
 pub use parameter::{Invalidates, Parameter};
 pub(crate) use read::DOF_NAMES;
 pub use read::read_case;
+pub use transient::{Disturbance, ModelChoice, Probe, PushedRegion, SchemeChoice, Slide, TransientAnalysis};
 
 use crate::structure::{Material, Section};
 use serde::Serialize;
@@ -79,6 +81,9 @@ pub struct Case {
     /// Sensitivities of complex eigenvalues and advice, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sensitivity: Option<SensitivityAnalysis>,
+    /// Motion in time, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub transient: Option<TransientAnalysis>,
     /// Complex eigenvalues along one scalar, by name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub sweep: BTreeMap<String, SweepAnalysis>,

@@ -96,6 +96,7 @@ fn read_root(root: &Section, folder: PathBuf) -> Case {
         modes: collect(root, "modes", read_modes),
         cea: root.section("cea", read_cea),
         sensitivity: root.section("sensitivity", read_sensitivity),
+        transient: root.section("transient", super::transient::read),
         sweep: BTreeMap::new(),
         map: BTreeMap::new(),
     };

@@ -52,6 +52,8 @@ enum Action {
     Sensitivity(analyse::Options),
     /// Complex eigenvalues, and the sweeps and maps of the case
     Sweep(analyse::Options),
+    /// Complex eigenvalues, and motion in time from steady sliding
+    Transient(analyse::Options),
     /// Check a case and its mesh without running it, and list its parameters
     Check(check::Options),
     /// Write M, C, K, the degrees of freedom and the contact points of a case, for other programs
@@ -74,7 +76,8 @@ pub fn main() -> ExitCode {
             return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
         }
     };
-    match act(&command) {
+    // On a thread of the pool: work that is too small to be shared then costs no handing over.
+    match set_threads(command.common.threads).and_then(|()| rayon::scope(|_| act(&command))) {
         Ok(code) => code,
         Err(error) => {
             complain(&error);
@@ -84,7 +87,6 @@ pub fn main() -> ExitCode {
 }
 
 fn act(command: &Command) -> Result<ExitCode> {
-    set_threads(command.common.threads)?;
     let common = &command.common;
     match &command.action {
         Action::Run(options) => analyse::run(options, common, crate::job::Selection::ALL),
@@ -92,6 +94,7 @@ fn act(command: &Command) -> Result<ExitCode> {
         Action::Cea(options) => analyse::run(options, common, crate::job::Selection::CEA),
         Action::Sensitivity(options) => analyse::run(options, common, crate::job::Selection::SENSITIVITY),
         Action::Sweep(options) => analyse::run(options, common, crate::job::Selection::SWEEPS),
+        Action::Transient(options) => analyse::run(options, common, crate::job::Selection::TRANSIENT),
         Action::Check(options) => check::run(options, common),
         Action::Export(options) => export::run(options, common),
         Action::New(options) => new::run(options, common),

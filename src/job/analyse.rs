@@ -7,14 +7,15 @@ use super::missed::nothing_is_missed;
 use super::modes::{compare, named, of_the_whole, part_modes, wanted};
 use super::prepared::Prepared;
 use super::sensitivity::Analysed;
-use crate::case::{Case, ContactState, SensitivityAnalysis};
+use super::transient::{InTime, Places, places};
+use crate::case::{Case, ContactState, SensitivityAnalysis, TransientAnalysis};
 use crate::equilibrium::{self, SteadyOptions, SteadySliding};
 use crate::error::Result;
 use crate::modal;
 use crate::progress::Observer;
 use crate::results::{
-    self, ComplexResult, MapResult, NamedModes, ResultsFile, RunResults, SensitivityResult, SteadyResult,
-    SweepResult,
+    self, Channel, ComplexResult, MapResult, NamedModes, ResultsFile, RunResults, SensitivityResult,
+    SteadyResult, SweepResult, TransientResult,
 };
 use crate::sweep::MapPoint;
 use std::collections::BTreeMap;
@@ -32,6 +33,8 @@ pub struct Selection {
     pub sensitivity: Sensitivities,
     /// Sweeps and maps, about the complex eigenvalues.
     pub sweeps: bool,
+    /// Motion in time, from steady sliding.
+    pub transient: bool,
 }
 
 /// When to work out sensitivities.
@@ -47,17 +50,30 @@ pub enum Sensitivities {
 
 impl Selection {
     /// Everything the case lists.
-    pub const ALL: Selection =
-        Selection { modes: true, cea: true, sensitivity: Sensitivities::WhenListed, sweeps: true };
+    pub const ALL: Selection = Selection {
+        modes: true,
+        cea: true,
+        sensitivity: Sensitivities::WhenListed,
+        sweeps: true,
+        transient: true,
+    };
     /// Real modes only.
-    pub const MODES: Selection =
-        Selection { modes: true, cea: false, sensitivity: Sensitivities::No, sweeps: false };
+    pub const MODES: Selection = Selection {
+        modes: true,
+        cea: false,
+        sensitivity: Sensitivities::No,
+        sweeps: false,
+        transient: false,
+    };
     /// Steady sliding and complex eigenvalues only.
     pub const CEA: Selection = Selection { modes: false, cea: true, ..Selection::MODES };
     /// Complex eigenvalues and their sensitivities.
     pub const SENSITIVITY: Selection = Selection { sensitivity: Sensitivities::Yes, ..Selection::CEA };
     /// Steady sliding, complex eigenvalues, sweeps and maps.
     pub const SWEEPS: Selection = Selection { sweeps: true, ..Selection::CEA };
+
+    /// Steady sliding, complex eigenvalues and motion in time.
+    pub const TRANSIENT: Selection = Selection { transient: true, ..Selection::CEA };
 
     /// The sensitivities to compute, if any.
     fn sensitivities(&self, case: &Case) -> Option<SensitivityAnalysis> {
@@ -89,6 +105,12 @@ pub enum Stage<'a> {
     MapPoints(&'a str, usize, &'a [MapPoint]),
     /// A whole map.
     Map(&'a MapResult),
+    /// A run in time of which nothing is there yet: its time step \[s\] and its channels.
+    TransientBegins(f64, &'a [Channel]),
+    /// New values of the channels, from this one on.
+    TransientRows(usize, &'a [Channel]),
+    /// A whole run in time.
+    Transient(&'a TransientResult),
 }
 
 /// Runs the analyses of a case and writes the results folder `out`; nothing is written when the input is wrong.
@@ -110,6 +132,8 @@ pub fn run_case(
     let known: KnownMaps =
         known.into_iter().map(|(name, (points, trained))| (name, KnownMap { points, trained })).collect();
     let prepared = Prepared::new(case)?;
+    // Its faults are told before anything is written.
+    in_time(&prepared, selection)?;
     let preparation = started.elapsed().as_secs_f64();
     let mut file = ResultsFile::create(out)?;
     file.keep_earlier_until(known.len());
@@ -126,6 +150,9 @@ pub fn run_case(
             Stage::MapBegins(map, known) => file.begin_map(map, &known.points, &known.trained),
             Stage::MapPoints(name, first, points) => file.write_map_points(name, first, points),
             Stage::Map(map) => file.finish_map(map),
+            Stage::TransientBegins(step, channels) => file.begin_transient(step, channels),
+            Stage::TransientRows(first, channels) => file.write_transient_rows(first, channels),
+            Stage::Transient(transient) => file.finish_transient(transient),
         };
         recording += started.elapsed().as_secs_f64();
         written
@@ -164,6 +191,7 @@ fn analyse_from(
     observer: &dyn Observer,
 ) -> Result<RunResults> {
     let case = prepared.case;
+    let mut in_time = in_time(prepared, selection)?;
     let mut results = RunResults {
         title: case.title.clone(),
         resolved_case: case.to_toml(),
@@ -242,6 +270,12 @@ fn analyse_from(
                 record(Stage::Sensitivity(&sensitivity))?;
                 results.sensitivity = Some(sensitivity);
             }
+            if let Some((wanted, places)) = in_time.take() {
+                let run = InTime { system: &system, steady, complex: &complex, real: &real };
+                let transient = clock.time("transient", || run.run(wanted, places, record, observer))?;
+                record(Stage::Transient(&transient))?;
+                results.transient = Some(transient);
+            }
             results.complex = Some(complex);
             if selection.sweeps && !(case.sweep.is_empty() && case.map.is_empty()) {
                 let nominal = Nominal { prepared, system: &system, steady, real: &real };
@@ -253,6 +287,15 @@ fn analyse_from(
     results.warnings.extend(thickness_warnings(prepared));
     results.timings = clock.phases;
     Ok(results)
+}
+
+/// The run in time that is selected, with its places.
+fn in_time<'a>(
+    prepared: &'a Prepared<'_>,
+    selection: Selection,
+) -> Result<Option<(&'a TransientAnalysis, Places)>> {
+    let wanted = prepared.case.transient.as_ref().filter(|_| selection.transient && selection.cea);
+    wanted.map(|wanted| Ok((wanted, places(prepared, wanted)?))).transpose()
 }
 
 fn steady_result(prepared: &Prepared, state: SteadySliding) -> SteadyResult {

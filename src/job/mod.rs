@@ -25,6 +25,7 @@ mod scalars;
 mod sensitivity;
 mod states;
 mod table;
+mod transient;
 mod verify;
 
 pub use analyse::{Selection, Sensitivities, Stage, analyse, run_case};

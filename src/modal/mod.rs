@@ -7,6 +7,8 @@
 mod compute;
 mod effective_mass;
 mod naming;
+#[cfg(test)]
+pub(crate) mod samples;
 
 pub use compute::{ModesWanted, ShiftedStiffness, compute};
 pub use effective_mass::{EffectiveMass, effective_mass};

@@ -69,6 +69,11 @@ pub(super) fn page(results: &RunResults, pictures: &[Picture]) -> String {
         }
         body += &notes(&tables::left_out(sensitivity));
     }
+    if let Some(transient) = &results.transient {
+        body += "<h2>Motion in time</h2>\n";
+        body += &figures(pictures, &["transient.svg", "transient_spectrum.svg"]);
+        body += &untitled(super::transient::table(transient));
+    }
     body += &super::explored::section(results);
     if !results.timings.is_empty() {
         body += &format!("<h2>Wall time</h2>\n{}", untitled(tables::timings(results)));

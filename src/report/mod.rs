@@ -2,7 +2,7 @@
 //!
 //! * [`text`]: the tables that the command line prints.
 //! * [`write_report`]: `report.html` and the pictures `rig.svg`, `modes_disc.svg`, `contact.svg`, `growth.svg`,
-//!   `growth_budget.svg`, `participation.svg`, `sensitivity.svg`, `advice.svg`, those of them that the run has something for;
+//!   `growth_budget.svg`, `participation.svg`, `sensitivity.svg`, `advice.svg`, `transient.svg`, `transient_spectrum.svg`, those of them that the run has something for;
 //!   `sweep_<name>.svg`, `root_locus_<name>.svg` and `map_<name>.svg` of every sweep and map.
 //!
 //! A table is made once and shown in either form; a picture is a pure function from the results to SVG.
@@ -25,6 +25,7 @@ mod svg;
 mod tables;
 pub mod text;
 mod tornado;
+mod transient;
 mod view;
 
 use crate::error::Result;
@@ -56,6 +57,8 @@ fn pictures(results: &RunResults) -> Vec<Picture> {
         participation::picture(results),
         tornado::picture(results),
         advice::picture(results),
+        transient::history(results),
+        transient::spectra(results),
     ];
     all.into_iter().flatten().collect()
 }
@@ -79,6 +82,8 @@ mod tests {
             "participation.svg",
             "sensitivity.svg",
             "advice.svg",
+            "transient.svg",
+            "transient_spectrum.svg",
         ] {
             let svg = std::fs::read_to_string(dir.path().join(file)).unwrap();
             assert!(svg.starts_with("<svg") && page.contains(&svg), "{file}");

@@ -13,6 +13,7 @@ pub fn summary(results: &RunResults) -> String {
     let mut parts: Vec<String> = (0..results.modes.len()).map(|k| modes(results, k)).collect();
     parts.extend([steady(results), complex(results)].into_iter().flatten());
     parts.extend(sensitivity(results));
+    parts.extend(results.transient.iter().map(|run| render(&super::transient::table(run))));
     parts.extend(explored(results));
     parts.extend(results.warnings.iter().map(|warning| wrap(&format!("Warning: {warning}"))));
     parts.push(verdict(results));

@@ -15,6 +15,7 @@
 //! | `/steady` | `displacement`, `approach`, contact points with forces and tangents, pairs |
 //! | `/complex` | `eigenvalue`, `right`, `left`, errors, `growth_…`, `participation` |
 //! | `/sensitivity/mode_<k>` | `parameter`, `value`, `rate`, errors; `point_mass`, `point_spring`, `point_damper`, best places |
+//! | `/transient` | a growing dataset for each channel; spectra with their peaks; see `transient_hdf5.rs` |
 //! | `/sweep/<name>`, `/map/<name>` | branches, critical values; grids, boundary; see `explored_hdf5.rs` |
 //! | `/timings`, `/warnings` | `phase`, `wall_time`; sentences |
 
@@ -426,7 +427,7 @@ pub(super) fn texts(group: &Group, name: &str, texts: &[String], description: &s
     describe(&dataset, "text", description)
 }
 
-fn describe(dataset: &hdf5::Dataset, units: &str, description: &str) -> hdf5::Result<()> {
+pub(super) fn describe(dataset: &hdf5::Dataset, units: &str, description: &str) -> hdf5::Result<()> {
     text_attribute(dataset, "units", units)?;
     text_attribute(dataset, "description", description)
 }

@@ -6,7 +6,7 @@
 
 use super::{
     ComplexResult, MeasuredComparison, ModelSize, NamedModes, RunResults, SensitivityResult, SteadyResult,
-    explored_json, write_atomically,
+    explored_json, transient_json, write_atomically,
 };
 use crate::error::Result;
 use crate::linalg::c64;
@@ -33,6 +33,7 @@ struct Summary<'a> {
     steady_sliding: Option<Steady<'a>>,
     cea: Option<Cea<'a>>,
     sensitivity: Option<Sensitivity<'a>>,
+    transient: Option<serde_json::Value>,
     sweeps: Vec<serde_json::Value>,
     maps: Vec<serde_json::Value>,
     damping_verdicts: Option<serde_json::Value>,
@@ -294,6 +295,7 @@ fn summary(results: &RunResults) -> Summary<'_> {
         steady_sliding: results.steady.as_ref().map(steady),
         cea: results.complex.as_ref().map(cea),
         sensitivity: results.sensitivity.as_ref().map(sensitivity),
+        transient: results.transient.as_ref().map(transient_json::transient),
         sweeps: results.sweeps.iter().map(explored_json::sweep).collect(),
         maps: results.maps.iter().map(explored_json::map).collect(),
         damping_verdicts: results.damping.as_ref().map(explored_json::damping),

@@ -5,6 +5,7 @@
 //! | `results.h5` | everything, in full precision, written stage by stage | h5py, MATLAB, Julia |
 //! | `summary.json` | the figures of each analysis: a contract for scripts | any script |
 //! | `modes_<set>.csv`, `contact_points.csv`, `complex_modes.csv`, `sensitivities.csv` | the tables | spreadsheets |
+//! | `transient.csv`, `transient_spectrum.csv` | motion in time, step by step, and its spectra | spreadsheets |
 //! | `critical_values.csv`, `sweep_<name>.csv`, `map_<name>.csv` | sweeps and maps | spreadsheets |
 //! | `modes_<set>.vtu`, `steady.vtu`, `complex_modes.vtu`, `advice.vtu` | the shapes on the mesh | ParaView, pyvista |
 //!
@@ -20,6 +21,9 @@ mod folder;
 mod hdf5;
 mod json;
 mod sensitivity;
+mod transient;
+mod transient_hdf5;
+mod transient_json;
 mod vtk;
 
 #[cfg(test)]
@@ -33,6 +37,7 @@ pub(crate) use folder::write_atomically;
 pub use hdf5::ResultsFile;
 pub use json::{SCHEMA_VERSION, summary_json, write_summary};
 pub use sensitivity::{AdviceField, ModeSensitivity, Mounted, ParameterRate, SensitivityResult};
+pub use transient::{Channel, GrowthCompared, SpectrumOf, TransientResult};
 pub use vtk::write_vtk;
 
 use crate::equilibrium::SteadySliding;
@@ -80,6 +85,8 @@ pub struct RunResults {
     pub sweeps: Vec<SweepResult>,
     /// Complex modes over two scalars.
     pub maps: Vec<MapResult>,
+    /// Motion in time.
+    pub transient: Option<TransientResult>,
     /// Which verdicts the modal damping decides.
     pub damping: Option<DampingVerdicts>,
     /// Wall time of each phase \[s\].

@@ -76,6 +76,7 @@ pub(crate) fn rig() -> RunResults {
         .map(|(phase, s)| (phase.to_string(), s))
         .to_vec(),
         geometry,
+        transient: Some(transient()),
     }
 }
 
@@ -333,4 +334,41 @@ fn sensitivity(geometry: &Geometry, complex: &ComplexResult) -> SensitivityResul
     });
     let left_out = vec![("mesh.rig.disc_size".to_string(), "an element size".to_string())];
     SensitivityResult { modes: modes.collect(), left_out }
+}
+
+/// A decaying transient at 1668 Hz with its double.
+fn transient() -> TransientResult {
+    let (step, steps) = (2e-5, 4000);
+    let of = |f: &dyn Fn(f64) -> f64| (0..=steps).map(|k| f(k as f64 * step)).collect::<Vec<f64>>();
+    let squeal = |t: f64| 0.3 * (TAU * 1668.0 * t).sin() * (1.0 - (-60.0 * t).exp());
+    let channel = |name: &str, unit: &'static str, values: Vec<f64>| Channel {
+        name: name.into(),
+        unit,
+        about: name.replace('_', " "),
+        values,
+    };
+    let channels = vec![
+        channel("rim_velocity", "m/s", of(&squeal)),
+        channel("contact_friction_force", "N", of(&|t| 8.0 + 2.0 * squeal(t) + squeal(t).powi(2))),
+        channel("penetration", "m", of(&|t| 1e-6 * (1.0 + 0.2 * squeal(t)))),
+    ];
+    let spectra = [0, 1].map(|channel| {
+        let spectrum = crate::signal::spectrum(&channels[channel].values[steps / 2..], step, 1000);
+        let peaks = crate::signal::peaks(&spectrum, 1e-2, 5);
+        SpectrumOf { channel, window: [0.04, 0.08], spectrum, peaks }
+    });
+    TransientResult {
+        time_step: step,
+        scheme: "HHT, α = -0.05".into(),
+        reduced: None,
+        channels,
+        shown: [0, 1],
+        spectra: spectra.into(),
+        growth: Some(GrowthCompared { mode: 3, eigenvalue: c64::new(60.0, TAU * 1668.0), found: None }),
+        work: crate::transient::Work { drive: 0.5, heat: 0.49, damping: -0.01, ..Default::default() },
+        worst_residual: 1e-13,
+        split: (0, 1),
+        open: 0.0,
+        backwards: 0.0,
+    }
 }

@@ -12,6 +12,7 @@ mod block;
 mod budget;
 mod certificate;
 mod family;
+mod filter;
 mod full_order;
 mod interface;
 mod modal_damping;
@@ -28,6 +29,7 @@ pub use advice::PointRates;
 pub use analysis::complex_modes;
 pub use certificate::{Certificate, CloseCall, SLOWEST_GROWTH, certified_modes};
 pub use family::{Family, FamilyCheck, FamilyModes, Frame, SlidingState};
+pub use filter::{ModalFilter, modal_filter};
 pub use full_order::{Confirmation, confirm};
 pub use sensitivity::{Domain, Rate, Sensitivity};
 

@@ -139,6 +139,17 @@ fn compute(runs: &mut Runs, check: &Check) -> Result<f64> {
         }
         Kind::UnstableNear => Ok(unstable_near(runs.with(&check.set)?, check.reference).im / TAU),
         Kind::GrowthNear(hz) => Ok(unstable_near(runs.with(&check.set)?, *hz).re),
+        Kind::Disturbance { growth } => {
+            let transient = runs.with(&check.set)?.transient.as_ref();
+            let compared = transient
+                .and_then(|t| t.growth.as_ref())
+                .ok_or_else(|| missing(check, "transient.disturbance"))?;
+            let (sigma, omega) = (compared.eigenvalue.re, compared.eigenvalue.im);
+            Ok(compared.found.map_or(f64::NAN, |found| match growth {
+                true => (found.rate / sigma - 1.0).abs(),
+                false => (TAU * found.frequency_hz / omega - 1.0).abs(),
+            }))
+        }
         Kind::Annulus { modes, part, radii } => {
             let case = runs.case;
             let shell = case.shell.get(part).ok_or_else(|| missing(check, part))?;

@@ -65,6 +65,12 @@ pub enum Kind {
     UnstableNear,
     /// The growth rate of the unstable mode nearest to a frequency \[Hz\].
     GrowthNear(f64),
+    /// |σ̂/σ − 1| (or |f̂/f − 1|) of the growth (or frequency) of a small disturbance in time, against the complex mode that
+    /// it starts along.
+    Disturbance {
+        /// Growth, not frequency.
+        growth: bool,
+    },
     /// The largest relative error of the modes of a clamped annulus against Kirchhoff theory.
     Annulus {
         /// The real-mode analysis, which must be of this annulus alone.
@@ -99,7 +105,17 @@ pub fn read(folder: &Path) -> Result<Reference> {
 }
 
 fn read_check(name: &str, s: &Section, reason: &str) -> Check {
-    let kinds = ["value", "onset", "largest_growth", "change", "unstable_near", "growth_near", "annulus"];
+    let kinds = [
+        "value",
+        "onset",
+        "largest_growth",
+        "change",
+        "unstable_near",
+        "growth_near",
+        "growth_in_time",
+        "frequency_in_time",
+        "annulus",
+    ];
     let parameter = || s.string("parameter").required("the path of a scalar of the case");
     let kind = match s.choice("kind", &kinds).required("how it is computed") {
         "onset" => Kind::Onset {
@@ -113,6 +129,8 @@ fn read_check(name: &str, s: &Section, reason: &str) -> Check {
         "change" => Kind::Change(read_set(s, "to")),
         "unstable_near" => Kind::UnstableNear,
         "growth_near" => Kind::GrowthNear(s.quantity("near", FREQUENCY).required(FREQUENCY.name)),
+        "growth_in_time" => Kind::Disturbance { growth: true },
+        "frequency_in_time" => Kind::Disturbance { growth: false },
         "annulus" => Kind::Annulus {
             modes: s.string("modes").required("the name of an analysis"),
             part: s.string("part").required("the name of a shell"),

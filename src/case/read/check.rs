@@ -49,6 +49,30 @@ pub(super) fn check_names(root: &Section, case: &Case) {
     if case.sensitivity.is_some() && case.cea.is_none() {
         root.fault("sensitivity", "no [cea] in the case", "a [cea], whose eigenvalues are looked into", "");
     }
+    if let Some(transient) = &case.transient {
+        if case.cea.is_none() {
+            let expected = "a [cea], whose modes the motion starts along and is compared with";
+            root.fault("transient", "no [cea] in the case", expected, "");
+        }
+        let contacts: Vec<&str> = case.contact.keys().map(String::as_str).collect();
+        for name in transient.slide.keys().filter(|name| !contacts.contains(&name.as_str())) {
+            unknown_name(root, &format!("transient.slide.{name}"), name, "contact", &contacts);
+        }
+        for (name, contact) in &case.contact {
+            let stops = transient.slide.get(name).is_some_and(|slide| slide.stops());
+            if stops && contact.friction.regularisation == 0.0 {
+                let help =
+                    "Friction jumps where the slip turns round; a thousandth of the velocity is a start";
+                let key = format!("contact.{name}.friction.regularisation");
+                root.fault(&key, "0", "a velocity above zero, as the sliding stops on its way", help);
+            }
+        }
+        let plain = |name: &str| name.chars().all(|c| c.is_alphanumeric() || c == '-' || c == '_');
+        for name in transient.probe.keys().filter(|name| !plain(name)) {
+            let key = format!("transient.probe.{name}");
+            root.fault(&key, format!("the name \"{name}\""), "letters, digits, `-` and `_`", "");
+        }
+    }
     if case.matrices.is_some() {
         check_matrices(root, case);
     } else if case.mesh.is_none() && case.point.is_empty() {

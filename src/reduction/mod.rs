@@ -1,0 +1,292 @@
+//! A small system that moves like a large one where its contacts act: free-interface modes and residual attachment.
+//!
+//! u = V q with V = \[Φ, Ψ\]: Φ the real modes up to a frequency, Ψ what the static responses K⁻¹g, K⁻¹t₁, K⁻¹t₂ of the
+//! contact points, those of the loads, and u₀ have besides them (D. J. Rixen, J. Comput. Appl. Math. 168 (2004) 383, for
+//! the residual attachment of free-interface methods). Ψ is made M-orthogonal to Φ and diagonalised by itself, so that
+//! VᵀMV = I and VᵀKV = diag(ω²): the reduced model is a [`System`] with contact points of its own, and every analysis
+//! takes it like the large one. Its static compliance at the contact is that of the large one; steady sliding is the
+//! same.
+
+use crate::equilibrium::{SteadySliding, tangent_stiffness};
+use crate::error::Result;
+use crate::linalg::dense::symmetric_eigen;
+use crate::linalg::factor::factorize;
+use crate::linalg::sparse::{add_scaled, times};
+use crate::linalg::tall::{combine, expand, gram};
+use crate::linalg::{SparseMatrix, SparseVector};
+use crate::modal::RealModes;
+use crate::system::{ContactPair, ContactPoint, Damping, Structure, System};
+use faer::sparse::Triplet;
+use faer::{Accum, Mat};
+
+/// A reduced system with the basis that leads back.
+#[derive(Debug, Clone)]
+pub struct Reduced {
+    /// M = I, K = diag(ω²), the contacts and the load of the large system seen through V; the geometric stiffness of
+    /// the preload is in K.
+    pub system: System,
+    /// V, n × m.
+    pub basis: Mat<f64>,
+    /// M V.
+    pub inertia: Mat<f64>,
+    /// How many of the first columns are real modes.
+    pub modes: usize,
+}
+
+impl Reduced {
+    /// Vᵀx of a linear form x of u: a direction, a force.
+    pub fn form(&self, x: &SparseVector) -> SparseVector {
+        form(&self.basis, x)
+    }
+
+    /// VᵀM u: the coordinates of a displacement in the span of V.
+    pub fn coordinates(&self, u: &[f64]) -> Vec<f64> {
+        let u = faer::MatRef::from_column_major_slice(u, u.len(), 1);
+        gram(self.inertia.as_ref(), u).col_as_slice(0).to_vec()
+    }
+
+    /// Vᵀx of a dense linear form of u.
+    pub fn dual(&self, x: &[f64]) -> Vec<f64> {
+        let x = faer::MatRef::from_column_major_slice(x, x.len(), 1);
+        gram(self.basis.as_ref(), x).col_as_slice(0).to_vec()
+    }
+
+    /// V q.
+    pub fn expand(&self, q: &[f64]) -> Vec<f64> {
+        let q = faer::MatRef::from_column_major_slice(q, q.len(), 1);
+        expand(self.basis.as_ref(), q).col_as_slice(0).to_vec()
+    }
+
+    /// The steady state seen through V.
+    pub fn steady(&self, steady: &SteadySliding) -> SteadySliding {
+        SteadySliding { displacement: self.coordinates(&steady.displacement), ..steady.clone() }
+    }
+}
+
+/// Reduces `system` about its steady state to its real modes `real` and the residual attachment of its contact points
+/// and of the `forces` on it.
+///
+/// # Errors
+/// A stiffness that cannot be factorised, even with a little mass on it.
+pub fn reduce(
+    system: &System,
+    steady: &SteadySliding,
+    real: &RealModes,
+    forces: &[SparseVector],
+) -> Result<Reduced> {
+    let n = system.n_dofs();
+    let stiffness = tangent_stiffness(system, &steady.displacement)?;
+    let mass = &system.structure.mass;
+    let imported = system.coupling.iter().flat_map(|rest| &rest.directions);
+    let touched = system.points().flat_map(|(_, point)| {
+        [&point.normal, &point.tangents[0], &point.tangents[1]]
+            .into_iter()
+            .filter(|d| !d.indices().is_empty())
+    });
+    let directions: Vec<&SparseVector> = touched.chain(imported).chain(forces).collect();
+    let mut responses = Mat::<f64>::zeros(n, directions.len() + 1);
+    for (j, d) in directions.iter().enumerate() {
+        d.add_to(1.0, responses.col_as_slice_mut(j));
+    }
+    responses.col_as_slice_mut(directions.len()).copy_from_slice(&system.load);
+    softened(&stiffness, mass, real)?.solve_in_place(responses.as_mut());
+    let responses = with_column(responses, &steady.displacement);
+    let attached = attachment(&stiffness, mass, real, responses)?;
+    let modes = real.len();
+    let m = modes + attached.1.ncols();
+    let mut basis = Mat::<f64>::zeros(n, m);
+    basis.as_mut().subcols_mut(0, modes).copy_from(&real.shapes);
+    basis.as_mut().subcols_mut(modes, m - modes).copy_from(&attached.1);
+    let squares: Vec<f64> = real.eigenvalues.iter().chain(&attached.0).copied().collect();
+    let inertia = times(mass, basis.as_ref());
+    let structure = Structure {
+        mass: diagonal(&vec![1.0; m]),
+        stiffness: diagonal(&squares),
+        damping: damping(&system.structure.damping, &basis, modes),
+    };
+    let reduced_point = |point: &ContactPoint| ContactPoint {
+        normal: form(&basis, &point.normal),
+        tangents: [form(&basis, &point.tangents[0]), form(&basis, &point.tangents[1])],
+        ..point.clone()
+    };
+    let pairs = system
+        .pairs
+        .iter()
+        .map(|pair| ContactPair { points: pair.points.iter().map(reduced_point).collect(), ..pair.clone() });
+    let load = gram(basis.as_ref(), faer::MatRef::from_column_major_slice(&system.load, n, 1));
+    let coupling = system.coupling.as_ref().map(|rest| crate::system::Coupling {
+        directions: rest.directions.iter().map(|d| form(&basis, d)).collect(),
+        ..rest.clone()
+    });
+    let system = System {
+        structure,
+        pairs: pairs.collect(),
+        load: load.col_as_slice(0).to_vec(),
+        prestress: None,
+        coupling,
+    };
+    Ok(Reduced { system, basis, inertia, modes })
+}
+
+/// K, or K with as much mass on it as a tenth of the first elastic mode has stiffness where K alone is singular.
+fn softened(
+    stiffness: &SparseMatrix,
+    mass: &SparseMatrix,
+    real: &RealModes,
+) -> Result<Box<dyn crate::linalg::SymmetricFactor>> {
+    if real.rigid_bodies == 0
+        && let Ok(factor) = factorize(stiffness)
+        && factor.inertia().zero == 0
+    {
+        return Ok(factor);
+    }
+    let first = real.eigenvalues.get(real.rigid_bodies).copied().unwrap_or(1.0).abs();
+    factorize(&add_scaled(&[(1.0, stiffness), (0.1 * first, mass)]))
+}
+
+/// ω² and shapes of what `responses` have besides the modes: M-orthonormal, K-orthogonal, and both to the modes.
+fn attachment(
+    stiffness: &SparseMatrix,
+    mass: &SparseMatrix,
+    real: &RealModes,
+    mut responses: Mat<f64>,
+) -> Result<(Vec<f64>, Mat<f64>)> {
+    /// A response of which less than this is left without the modes is theirs but for round-off.
+    const LEFT: f64 = 1e-8;
+    /// A direction below this part of the largest, in the energy of its own column, is round-off.
+    const ROUND_OFF: f64 = 1e-10;
+    let strain = |x: &Mat<f64>| {
+        let energy = gram(x.as_ref(), times(stiffness, x.as_ref()).as_ref());
+        let own = (0..energy.nrows()).map(|j| energy[(j, j)].abs().sqrt()).collect::<Vec<f64>>();
+        (energy, own)
+    };
+    let (_, before) = strain(&responses);
+    let modal = times(mass, real.shapes.as_ref());
+    for _ in 0..2 {
+        let share = gram(modal.as_ref(), responses.as_ref());
+        combine(responses.as_mut(), Accum::Add, real.shapes.as_ref(), share.as_ref(), -1.0);
+    }
+    // Each column to unit strain energy, then the directions of their span by the energy they hold.
+    let (energy, own) = strain(&responses);
+    let scaled = |j: usize| if own[j] > LEFT * before[j] { 1.0 / own[j] } else { 0.0 };
+    let unit = Mat::from_fn(energy.nrows(), energy.ncols(), |i, j| energy[(i, j)] * scaled(i) * scaled(j));
+    let (values, vectors) = symmetric_eigen(unit.as_ref())?;
+    let largest = values.last().copied().unwrap_or(0.0).max(f64::MIN_POSITIVE);
+    let kept: Vec<usize> = (0..values.len()).filter(|k| values[*k] > ROUND_OFF * largest).collect();
+    let mix = Mat::from_fn(energy.nrows(), kept.len(), |i, c| {
+        scaled(i) * vectors[(i, kept[c])] / values[kept[c]].sqrt()
+    });
+    let mut shapes = expand(responses.as_ref(), mix.as_ref());
+    // Now ΨᵀKΨ = I: M Ψ y = ν K Ψ y with ω² = 1/ν.
+    let share = gram(modal.as_ref(), shapes.as_ref());
+    combine(shapes.as_mut(), Accum::Add, real.shapes.as_ref(), share.as_ref(), -1.0);
+    let inertia = gram(shapes.as_ref(), times(mass, shapes.as_ref()).as_ref());
+    let (nu, turned) = symmetric_eigen(inertia.as_ref())?;
+    let top = nu.last().copied().unwrap_or(0.0);
+    let massive: Vec<usize> = (0..nu.len()).rev().filter(|k| nu[*k] > 1e-14 * top).collect();
+    let mix = Mat::from_fn(nu.len(), massive.len(), |i, c| turned[(i, massive[c])] / nu[massive[c]].sqrt());
+    Ok((massive.iter().map(|k| 1.0 / nu[*k]).collect(), expand(shapes.as_ref(), mix.as_ref())))
+}
+
+/// VᵀCV; modal damping is that of the modes alone, whose VᵀB is diagonal.
+fn damping(full: &Damping, basis: &Mat<f64>, modes: usize) -> Damping {
+    let mut small = Mat::<f64>::zeros(basis.ncols(), basis.ncols());
+    if let Some(c) = &full.viscous {
+        small += gram(basis.as_ref(), times(c, basis.as_ref()).as_ref());
+    }
+    if let Some(modal) = &full.modal {
+        let share = gram(basis.as_ref(), modal.basis.as_ref());
+        for (k, c) in modal.coefficients.iter().enumerate() {
+            for i in 0..modes {
+                for j in 0..modes {
+                    small[(i, j)] += share[(i, k)] * c * share[(j, k)];
+                }
+            }
+        }
+    }
+    let largest = (0..small.ncols()).map(|i| small[(i, i)].abs()).fold(0.0, f64::max);
+    let mut entries = Vec::new();
+    for j in 0..small.ncols() {
+        for i in 0..small.nrows() {
+            let value = 0.5 * (small[(i, j)] + small[(j, i)]);
+            // Modal damping is diagonal but for round-off.
+            if value.abs() > 1e-13 * largest {
+                entries.push(Triplet::new(i, j, value));
+            }
+        }
+    }
+    let viscous = (!entries.is_empty()).then(|| {
+        SparseMatrix::try_new_from_triplets(small.nrows(), small.ncols(), &entries)
+            .expect("indices are below the size")
+    });
+    Damping { viscous, modal: None, hysteretic: None }
+}
+
+fn form(basis: &Mat<f64>, x: &SparseVector) -> SparseVector {
+    let entries = (0..basis.ncols()).map(|j| (j, x.dot(basis.col_as_slice(j)))).filter(|(_, v)| *v != 0.0);
+    SparseVector::from_entries(entries)
+}
+
+fn diagonal(values: &[f64]) -> SparseMatrix {
+    let entries: Vec<_> = values.iter().enumerate().map(|(i, v)| Triplet::new(i, i, *v)).collect();
+    SparseMatrix::try_new_from_triplets(values.len(), values.len(), &entries)
+        .expect("indices are below the size")
+}
+
+fn with_column(a: Mat<f64>, column: &[f64]) -> Mat<f64> {
+    let mut wider = Mat::zeros(a.nrows(), a.ncols() + 1);
+    wider.as_mut().subcols_mut(0, a.ncols()).copy_from(&a);
+    wider.col_as_slice_mut(a.ncols()).copy_from_slice(column);
+    wider
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::equilibrium::samples::random_system;
+    use crate::equilibrium::{SteadyOptions, solve_steady};
+    use crate::modal::samples::dense_modes;
+
+    #[test]
+    fn the_reduced_system_slides_like_the_large_one_and_keeps_its_modes() {
+        for seed in 1..6 {
+            let system = random_system(40, 4, 3.0, seed);
+            let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
+            let real = dense_modes(&system, 9);
+            let push = SparseVector::from_entries([(7, 1.0), (20, -0.5)]);
+            let reduced = reduce(&system, &steady, &real, std::slice::from_ref(&push)).unwrap();
+            let m = reduced.basis.ncols();
+            assert!(reduced.modes == 9 && m > 9 && m <= 9 + 4 * 3 + 3, "{m}");
+            let off = |a: &Mat<f64>, expected: &dyn Fn(usize) -> f64| {
+                let product = gram(reduced.basis.as_ref(), a.as_ref());
+                let scale = |i: usize, j: usize| (expected(i) * expected(j)).sqrt().max(1e-3);
+                let pairs = (0..m).flat_map(|i| (0..m).map(move |j| (i, j)));
+                pairs.fold(0.0, |worst: f64, (i, j)| {
+                    let wanted = if i == j { expected(i) } else { 0.0 };
+                    worst.max((product[(i, j)] - wanted).abs() / scale(i, j))
+                })
+            };
+            let squares: Vec<f64> = (0..m).map(|i| reduced.system.structure.stiffness[(i, i)]).collect();
+            assert!(off(&reduced.inertia, &|_| 1.0) < 1e-9);
+            let elastic = times(&system.structure.stiffness, reduced.basis.as_ref());
+            assert!(off(&elastic, &|i| squares[i]) < 1e-9);
+            // Its steady sliding, solved for anew.
+            let small = solve_steady(&reduced.system, &SteadyOptions::default(), &()).unwrap();
+            for (a, b) in small.points.iter().zip(&steady.points) {
+                let (a, b) = (a.forces.normal, b.forces.normal);
+                assert!((a - b).abs() < 1e-9, "{a} {b}");
+            }
+            let back = reduced.expand(&small.displacement);
+            let size = steady.displacement.iter().fold(0.0f64, |s, x| s.max(x.abs()));
+            assert!(back.iter().zip(&steady.displacement).all(|(a, b)| (a - b).abs() < 1e-9 * size));
+            // What a static push does at its own place.
+            let force = reduced.form(&push);
+            let mut answer = Mat::<f64>::zeros(40, 1);
+            push.add_to(1.0, answer.col_as_slice_mut(0));
+            factorize(&system.structure.stiffness).unwrap().solve_in_place(answer.as_mut());
+            let static_small: f64 = force.iter().map(|(i, f)| f * f / squares[i]).sum();
+            let exact = push.dot(answer.col_as_slice(0));
+            assert!((static_small / exact - 1.0).abs() < 1e-9, "{static_small} {exact}");
+        }
+    }
+}

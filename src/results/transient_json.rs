@@ -1,0 +1,74 @@
+//! The part of `summary.json` on motion in time.
+
+use super::{SpectrumOf, TransientResult};
+use serde_json::{Value, json};
+use std::f64::consts::TAU;
+
+pub(super) fn transient(result: &TransientResult) -> Value {
+    let channels: Vec<Value> = result
+        .channels
+        .iter()
+        .map(|c| {
+            let range = c
+                .values
+                .iter()
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(*v), high.max(*v)]);
+            json!({ "name": c.name, "unit": c.unit, "range": range, "last": c.values.last() })
+        })
+        .collect();
+    let spectrum = |of: &SpectrumOf| {
+        let peaks: Vec<Value> = of
+            .peaks
+            .iter()
+            .map(|p| {
+                json!({ "frequency_hz": p.frequency_hz, "amplitude": p.amplitude, "relation": p.relation })
+            })
+            .collect();
+        let channel = &result.channels[of.channel];
+        json!({
+            "channel": channel.name,
+            "unit": channel.unit,
+            "window_s": of.window,
+            "resolution_hz": of.spectrum.resolution_hz,
+            "peaks": peaks,
+        })
+    };
+    let growth = result.growth.as_ref().map(|g| {
+        json!({
+            "mode": g.mode + 1,
+            "cea_growth_rate": g.eigenvalue.re,
+            "cea_frequency_hz": g.eigenvalue.im / TAU,
+            "growth_rate": g.found.map(|f| f.rate),
+            "frequency_hz": g.found.map(|f| f.frequency_hz),
+            "window_s": g.found.map(|f| f.window),
+            "deviation": g.found.map(|f| f.deviation),
+        })
+    });
+    let work = &result.work;
+    json!({
+        "time_step_s": result.time_step,
+        "steps": result.len().saturating_sub(1),
+        "duration_s": result.len().saturating_sub(1) as f64 * result.time_step,
+        "scheme": result.scheme,
+        "reduced": result.reduced.map(|[modes, attached]| json!({ "modes": modes, "attachment": attached })),
+        "channels": channels,
+        "spectrum": result.spectra.iter().map(spectrum).collect::<Vec<_>>(),
+        "growth": growth,
+        "open_fraction": result.open,
+        "backwards_fraction": result.backwards,
+        "steps_split": result.split.0,
+        "most_parts": result.split.1,
+        "energy_j": {
+            "stored": work.kinetic + work.strain,
+            "external": work.external,
+            "normal": work.normal,
+            "drive": work.drive,
+            "heat": work.heat,
+            "damping": work.damping,
+            "coupling": work.coupling,
+            "algorithm": work.algorithm,
+            "residual": work.residual(),
+        },
+        "worst_energy_residual": result.worst_residual,
+    })
+}

@@ -1,0 +1,197 @@
+//! One implicit step, condensed exactly onto the directions in which contact acts.
+
+use super::effective::Effective;
+use super::model::Model;
+use super::reaction::Reaction;
+use super::scheme::Weights;
+use super::state::State;
+use super::stepper::{Solver, Stuck, combine};
+use crate::error::Result;
+use faer::Mat;
+use faer::linalg::solvers::{PartialPivLu, Solve};
+
+/// Newton's iterations of one step.
+const ITERATIONS: usize = 40;
+/// Steps of Newton's method below this part of the motion are round-off.
+const ROUND_OFF: f64 = 1e-14;
+
+/// With x = DᵀΔ and S = DᵀA⁻¹D the step is x − DᵀA⁻¹h + b S r(Dᵀu_t + x, Dᵀv_t + c₁x) = 0, as small as the contact, for
+/// Newton's method with the consistent unsymmetric tangent. Then Δ = A⁻¹h − b A⁻¹D r: one solution with A a step, and
+/// what comes out is that of Newton's method on the whole but for round-off.
+#[derive(Debug)]
+pub(super) struct Condensed<'a> {
+    model: &'a Model<'a>,
+    weights: Weights,
+    effective: Effective<'a>,
+    /// A⁻¹D, n × r.
+    responses: Mat<f64>,
+    /// BᵀA⁻¹D.
+    modal_responses: Mat<f64>,
+    contact: Contact,
+}
+
+impl<'a> Condensed<'a> {
+    /// # Errors
+    /// A matrix that is singular: a part without stiffness and mass.
+    pub(super) fn new(model: &'a Model<'a>, weights: Weights) -> Result<Self> {
+        let effective = Effective::new(model, &weights)?;
+        let (n, r) = (model.n(), model.directions.len());
+        let mut dense = Mat::<f64>::zeros(n, r);
+        for (j, d) in model.directions.iter().enumerate() {
+            d.add_to(1.0, dense.col_as_slice_mut(j));
+        }
+        let responses = effective.responses(dense);
+        let contact = Contact {
+            compliance: Mat::from_fn(r, r, |i, j| model.directions[i].dot(responses.col_as_slice(j))),
+            share: weights.share(),
+            rate: weights.rate,
+            free: vec![0.0; r],
+            predicted: [vec![0.0; r], vec![0.0; r]],
+            reaction: Reaction::new(model),
+        };
+        let modal_responses = effective.modal_share(&responses);
+        Ok(Condensed { model, weights, effective, responses, modal_responses, contact })
+    }
+}
+
+impl Solver for Condensed<'_> {
+    fn increment(
+        &mut self,
+        h: &mut Mat<f64>,
+        modal: &mut Mat<f64>,
+        from: &State,
+        to: &mut State,
+    ) -> std::result::Result<(), Stuck> {
+        let (model, weights) = (self.model, &self.weights);
+        self.effective.solve(h.as_mut(), modal);
+        let contact = &mut self.contact;
+        model.motions(h.col_as_slice(0), &mut contact.free);
+        let along = [0, 1, 2].map(|k| from.along.col_as_slice(k));
+        combine(weights.predicted(), along, &mut contact.predicted[0]);
+        combine(weights.predicted_rate(), along, &mut contact.predicted[1]);
+        contact.solve(model, &from.reaction, &to.speeds)?;
+        to.reaction.copy_from_slice(&contact.reaction.force);
+        let increment = h.col_as_slice_mut(0);
+        for (j, r) in to.reaction.iter().enumerate().filter(|(_, r)| **r != 0.0) {
+            let factor = -weights.share() * r;
+            increment.iter_mut().zip(self.responses.col_as_slice(j)).for_each(|(x, w)| *x += factor * w);
+            (0..modal.nrows()).for_each(|i| modal[(i, 0)] += factor * self.modal_responses[(i, j)]);
+        }
+        Ok(())
+    }
+}
+
+/// The step along the directions.
+#[derive(Debug)]
+struct Contact {
+    /// S = DᵀA⁻¹D \[m/N\].
+    compliance: Mat<f64>,
+    /// b.
+    share: f64,
+    /// c₁ \[1/s\].
+    rate: f64,
+    /// x* = DᵀA⁻¹h.
+    free: Vec<f64>,
+    /// q_t, q̇_t: what the motion along the directions would be without Δ.
+    predicted: [Vec<f64>; 2],
+    /// The forces at the last place looked at.
+    reaction: Reaction,
+}
+
+impl Contact {
+    /// Newton's method from where the last reaction would lead, with steps halved while they do not bring the next one down
+    /// (Deuflhard's natural monotonicity test). Leaves r in `reaction`.
+    fn solve(&mut self, model: &Model<'_>, last: &[f64], speeds: &[f64]) -> std::result::Result<(), Stuck> {
+        let mut x = self.moved(last);
+        let mut rho = self.residual(model, &x, speeds);
+        let mut length = 0.0;
+        for _ in 0..ITERATIONS {
+            let tangent = Tangent::new(model, self);
+            let step = tangent.solve(&rho);
+            length = longest(&step);
+            if !length.is_finite() {
+                return Err(Stuck::NotFinite);
+            }
+            let scale = x.iter().chain(&self.free).fold(0.0f64, |m, v| m.max(v.abs()));
+            if length <= ROUND_OFF * scale.max(self.farthest()) {
+                return Ok(());
+            }
+            let mut damping = 1.0;
+            loop {
+                let next: Vec<f64> = x.iter().zip(&step).map(|(x, s)| x - damping * s).collect();
+                let there = self.residual(model, &next, speeds);
+                let again = longest(&tangent.solve(&there));
+                if again <= (1.0 - 0.25 * damping) * length || damping < 1e-3 {
+                    (x, rho) = (next, there);
+                    break;
+                }
+                damping *= 0.5;
+            }
+        }
+        // What only round-off keeps from converging is good enough.
+        let enough = length <= 1e3 * ROUND_OFF * self.farthest();
+        if enough { Ok(()) } else { Err(Stuck::Newton(length)) }
+    }
+
+    /// x* − b S r for given forces.
+    fn moved(&self, force: &[f64]) -> Vec<f64> {
+        let mut x = self.free.clone();
+        for (j, force) in force.iter().enumerate().filter(|(_, f)| **f != 0.0) {
+            let factor = self.share * force;
+            x.iter_mut().zip(self.compliance.col_as_slice(j)).for_each(|(x, s)| *x -= factor * s);
+        }
+        x
+    }
+
+    /// x − x* + b S r(x), whose r is left in `reaction`.
+    fn residual(&mut self, model: &Model<'_>, x: &[f64], speeds: &[f64]) -> Vec<f64> {
+        let [place, velocity] = &self.predicted;
+        let q: Vec<f64> = x.iter().zip(place).map(|(x, p)| p + x).collect();
+        let rate: Vec<f64> = x.iter().zip(velocity).map(|(x, v)| v + self.rate * x).collect();
+        self.reaction.evaluate(model, &q, &rate, speeds);
+        let moved = self.moved(&self.reaction.force);
+        x.iter().zip(moved).map(|(x, moved)| x - moved).collect()
+    }
+
+    /// The largest displacement along a direction.
+    fn farthest(&self) -> f64 {
+        self.predicted[0].iter().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()))
+    }
+}
+
+/// J = I + b S (∂r/∂q + c₁ ∂r/∂q̇), whose columns differ from those of I only where something acts: those are solved for,
+/// the others follow.
+struct Tangent {
+    /// Where something acts.
+    active: Vec<usize>,
+    /// The columns of J − I there.
+    columns: Mat<f64>,
+    small: PartialPivLu<f64>,
+}
+
+impl Tangent {
+    fn new(model: &Model<'_>, contact: &Contact) -> Self {
+        let (active, columns) =
+            contact.reaction.slopes(model, &contact.compliance, contact.share, contact.rate);
+        let m = active.len();
+        let small = Mat::from_fn(m, m, |i, j| columns[(active[i], j)] + if i == j { 1.0 } else { 0.0 });
+        Tangent { active, columns, small: small.partial_piv_lu() }
+    }
+
+    /// J⁻¹ρ.
+    fn solve(&self, rho: &[f64]) -> Vec<f64> {
+        let some = self.small.solve(Mat::from_fn(self.active.len(), 1, |i, _| rho[self.active[i]]));
+        let mut step = rho.to_vec();
+        for j in 0..self.active.len() {
+            let factor = some[(j, 0)];
+            step.iter_mut().zip(self.columns.col_as_slice(j)).for_each(|(s, c)| *s -= factor * c);
+        }
+        self.active.iter().enumerate().for_each(|(j, place)| step[*place] = some[(j, 0)]);
+        step
+    }
+}
+
+/// max |x|; not a number when one is not.
+fn longest(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |m: f64, v| if v.is_nan() || m.is_nan() { f64::NAN } else { m.max(v.abs()) })
+}

@@ -1,0 +1,81 @@
+//! The matrix of an implicit step, factorised once.
+
+use super::model::Model;
+use super::scheme::Weights;
+use crate::error::Result;
+use crate::linalg::SymmetricFactor;
+use crate::linalg::factor::factorize;
+use crate::linalg::sparse::add_scaled;
+use crate::linalg::tall::{combine, expand, gram};
+use faer::linalg::solvers::{PartialPivLu, Solve};
+use faer::{Accum, Mat, MatMut};
+
+/// A = (1−α_m)/(β Δt²) M + (1−α_f) c₁ C + (1−α_f) K, with the modal part of C as an update of low rank:
+/// A = A₀ + B E Bᵀ, E = (1−α_f) c₁ diag(c), so A⁻¹h = y − X (E⁻¹ + G)⁻¹ Bᵀy with y = A₀⁻¹h, X = A₀⁻¹B, G = BᵀX
+/// (Sherman, Morrison & Woodbury).
+#[derive(Debug)]
+pub(super) struct Effective<'a> {
+    factor: Box<dyn SymmetricFactor>,
+    modal: Option<ModalUpdate<'a>>,
+}
+
+#[derive(Debug)]
+struct ModalUpdate<'a> {
+    basis: &'a Mat<f64>,
+    /// X.
+    responses: Mat<f64>,
+    /// G.
+    seen: Mat<f64>,
+    /// E⁻¹ + G.
+    small: PartialPivLu<f64>,
+}
+
+impl<'a> Effective<'a> {
+    pub(super) fn new(model: &Model<'a>, weights: &Weights) -> Result<Self> {
+        let [m, c, k] = weights.effective();
+        let mut terms = vec![(m, model.mass), (k, &*model.stiffness)];
+        terms.extend(model.damping.viscous.iter().map(|viscous| (c, viscous)));
+        let factor = factorize(&add_scaled(&terms))?;
+        let modal = model.damping.modal.as_ref().map(|modal| {
+            let mut responses = modal.basis.clone();
+            factor.solve_in_place(responses.as_mut());
+            let seen = gram(modal.basis.as_ref(), responses.as_ref());
+            let mut small = seen.clone();
+            for (i, own) in modal.coefficients.iter().enumerate() {
+                small[(i, i)] += 1.0 / (c * own);
+            }
+            ModalUpdate { basis: &modal.basis, responses, seen, small: small.partial_piv_lu() }
+        });
+        Ok(Effective { factor, modal })
+    }
+
+    /// h ← A⁻¹(h + B w) of one column; Bᵀ of the result is left in `w`, which is empty without modal damping.
+    pub(super) fn solve(&self, mut h: MatMut<'_, f64>, w: &mut Mat<f64>) {
+        self.factor.solve_in_place(h.as_mut());
+        if let Some(update) = &self.modal {
+            let seen = gram(update.basis.as_ref(), h.as_ref());
+            let part = update.small.solve(&seen + &update.seen * &*w);
+            let factors = &*w - part;
+            combine(h, Accum::Add, update.responses.as_ref(), factors.as_ref(), 1.0);
+            *w = seen + &update.seen * factors;
+        }
+    }
+
+    /// A⁻¹D of dense columns.
+    pub(super) fn responses(&self, mut d: Mat<f64>) -> Mat<f64> {
+        self.factor.solve_in_place(d.as_mut());
+        if let Some(update) = &self.modal {
+            let part = update.small.solve(gram(update.basis.as_ref(), d.as_ref()));
+            d -= expand(update.responses.as_ref(), part.as_ref());
+        }
+        d
+    }
+
+    /// Bᵀx, m × columns; nothing without modal damping.
+    pub(super) fn modal_share(&self, x: &Mat<f64>) -> Mat<f64> {
+        match &self.modal {
+            Some(update) => gram(update.basis.as_ref(), x.as_ref()),
+            None => Mat::zeros(0, x.ncols()),
+        }
+    }
+}

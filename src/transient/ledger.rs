@@ -1,0 +1,139 @@
+//! Where the energy goes, step by step.
+
+use super::model::Model;
+use super::scheme::Weights;
+use super::state::State;
+
+/// The work of one step or, summed, of many \[J\].
+///
+/// With X̄ the mean and ΔX the difference of n+1 and n, Newmark's formulas give exactly
+///
+/// Δ(½vᵀMv + ½uᵀKu) = Δuᵀ(f̄ − C v̄ − D r̄) + W_alg,
+/// W_alg = (½−α_f) Δuᵀ(Δf − CΔv − KΔu − DΔr) + (γ−1+α_m) ΔuᵀMΔa − Δt²(β−½γ)\[ΔaᵀMā + (γ−½) ΔaᵀMΔa\],
+///
+/// where W_alg is what the scheme itself adds or (mostly) takes; it vanishes for β = ¼, γ = ½, α = 0. What is left of
+/// the balance is the error of solving the step.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Work {
+    /// Δuᵀf̄ of constant load and excitations.
+    pub external: f64,
+    /// −Δuᵀ C v̄: what structural damping takes.
+    pub damping: f64,
+    /// −Σ Δ(gᵀu) N̄: what the normal forces of the contacts do to the structure.
+    pub normal: f64,
+    /// Σ V̄ Δt F̄₁: what the drives of the counter-bodies spend against friction.
+    pub drive: f64,
+    /// What friction turns into heat: Σ F̄₁(V̄ Δt − Δ(t₁ᵀu)) − F̄₂ Δ(t₂ᵀu). The structure gains drive − heat.
+    pub heat: f64,
+    /// What imported unsymmetric terms do to the structure.
+    pub coupling: f64,
+    /// W_alg.
+    pub algorithm: f64,
+    /// ½vᵀMv gained.
+    pub kinetic: f64,
+    /// ½uᵀKu gained.
+    pub strain: f64,
+}
+
+impl Work {
+    /// The work between two states.
+    pub(super) fn between(model: &Model<'_>, weights: &Weights, from: &State, to: &State) -> Work {
+        let n = model.n();
+        let [u0, v0, a0] = [0, 1, 2].map(|k| from.motion.col_as_slice(k));
+        let [u1, v1, a1] = [0, 1, 2].map(|k| to.motion.col_as_slice(k));
+        let (ku0, ku1) = (from.elastic.col_as_slice(0), to.elastic.col_as_slice(0));
+        let [mv0, ma0] = [0, 1].map(|k| from.inertia.col_as_slice(k));
+        let [mv1, ma1] = [0, 1].map(|k| to.inertia.col_as_slice(k));
+        let (mut external, mut kinetic, mut strain) = (0.0, 0.0, 0.0);
+        let (mut stiff, mut heavy, mut mean, mut change) = (0.0, 0.0, 0.0, 0.0);
+        for i in 0..n {
+            let (du, da, dma) = (u1[i] - u0[i], a1[i] - a0[i], ma1[i] - ma0[i]);
+            external += du * model.load[i];
+            // ½(x₁ᵀA x₁ − x₀ᵀA x₀) as (x₁ − x₀)ᵀA x̄, which loses no digits where the motion is steady.
+            kinetic += 0.5 * (v1[i] - v0[i]) * (mv1[i] + mv0[i]);
+            strain += 0.5 * du * (ku1[i] + ku0[i]);
+            stiff += du * (ku1[i] - ku0[i]);
+            heavy += du * dma;
+            mean += 0.5 * da * (ma1[i] + ma0[i]);
+            change += da * dma;
+        }
+        let (mut damping, mut damping_change) = (0.0, 0.0);
+        if let (Some(c0), Some(c1)) = (&from.viscous, &to.viscous) {
+            let (cv0, cv1) = (c0.col_as_slice(0), c1.col_as_slice(0));
+            for i in 0..n {
+                damping -= 0.5 * (u1[i] - u0[i]) * (cv1[i] + cv0[i]);
+                damping_change -= (u1[i] - u0[i]) * (cv1[i] - cv0[i]);
+            }
+        }
+        if let (Some(modal), Some(old), Some(new)) = (&model.damping.modal, &from.modal, &to.modal) {
+            for (i, c) in modal.coefficients.iter().enumerate() {
+                let moved = c * (new[(i, 0)] - old[(i, 0)]);
+                damping -= 0.5 * moved * (new[(i, 1)] + old[(i, 1)]);
+                damping_change -= moved * (new[(i, 1)] - old[(i, 1)]);
+            }
+        }
+        let mut force_change = damping_change - stiff;
+        for (k, push) in model.pushes.iter().enumerate() {
+            let moved = push.direction.dot(u1) - push.direction.dot(u0);
+            external += 0.5 * moved * (to.pushes[k] + from.pushes[k]);
+            force_change += moved * (to.pushes[k] - from.pushes[k]);
+        }
+        let mut work = Work { external, damping, kinetic, strain, ..Work::default() };
+        for (d, (old, new)) in from.reaction.iter().zip(&to.reaction).enumerate() {
+            let moved = to.along[(d, 0)] - from.along[(d, 0)];
+            let mean = 0.5 * (old + new);
+            force_change -= moved * (new - old);
+            match (model.points.get(d / 3), d % 3) {
+                (Some(_), 0) => work.normal -= moved * mean,
+                (Some(point), 1) => {
+                    let slid = 0.5 * weights.step * (from.speeds[point.pair] + to.speeds[point.pair]);
+                    work.drive -= slid * mean;
+                    work.heat -= (slid - moved) * mean;
+                }
+                (Some(_), _) => work.heat += moved * mean,
+                (None, _) => work.coupling -= moved * mean,
+            }
+        }
+        let scheme = weights.scheme;
+        let lag = weights.step * weights.step * (scheme.beta - 0.5 * scheme.gamma);
+        work.algorithm = (0.5 - scheme.alpha_f) * force_change
+            + (scheme.gamma - 1.0 + scheme.alpha_m) * heavy
+            - lag * (mean + (scheme.gamma - 0.5) * change);
+        work
+    }
+
+    /// What the balance lacks: kinetic + strain − everything that feeds them.
+    pub fn residual(&self) -> f64 {
+        let fed = self.external + self.damping + self.normal + self.drive - self.heat + self.coupling;
+        self.kinetic + self.strain - fed - self.algorithm
+    }
+
+    /// The sum of the sizes of all its terms, which the residual is measured by.
+    pub fn turnover(&self) -> f64 {
+        let terms = [
+            self.external,
+            self.damping,
+            self.normal,
+            self.drive,
+            self.heat,
+            self.coupling,
+            self.algorithm,
+            self.kinetic,
+            self.strain,
+        ];
+        terms.iter().map(|t| t.abs()).sum()
+    }
+
+    /// Adds the work of another step.
+    pub(super) fn add(&mut self, other: &Work) {
+        self.external += other.external;
+        self.damping += other.damping;
+        self.normal += other.normal;
+        self.drive += other.drive;
+        self.heat += other.heat;
+        self.coupling += other.coupling;
+        self.algorithm += other.algorithm;
+        self.kinetic += other.kinetic;
+        self.strain += other.strain;
+    }
+}

@@ -1,0 +1,28 @@
+//! Motion in time: implicit integration of M ü + C u̇ + K u + D r(Dᵀu, Dᵀu̇) = f with the contact laws as they are.
+//!
+//! [`Scheme`] is the generalised-α family, [`Model`] what it needs of a system, [`march`] the run. The structure is
+//! factorised once for a time step; contact is condensed exactly onto the few directions in which it acts, so that a
+//! step costs one solution with sparse factors and Newton's method on a small dense system (`condensed`). Newton's method
+//! on the whole is kept beside it to compare with (`full_newton`). [`Work`] is the balance of energy.
+
+mod condensed;
+mod drive;
+mod effective;
+mod full_newton;
+mod ledger;
+mod march;
+mod model;
+mod reaction;
+mod scheme;
+mod state;
+mod stepper;
+#[cfg(test)]
+mod tests;
+
+pub use drive::{Profile, Push};
+pub use ledger::Work;
+pub use march::{Marched, Moment, Plan, march};
+pub use model::{Model, refuse_hysteretic};
+pub use scheme::Scheme;
+pub use state::State;
+pub use stepper::Method;

@@ -1,0 +1,134 @@
+//! Where a system stands: its motion, and what the matrices make of it.
+
+use super::model::Model;
+use super::reaction::Reaction;
+use crate::equilibrium::SteadySliding;
+use crate::linalg::c64;
+use crate::linalg::sparse::multiply;
+use crate::linalg::tall::gram;
+use faer::Mat;
+
+/// u, v and a are the columns 0, 1, 2 of `motion` and of what is derived from it.
+#[derive(Debug, Clone)]
+pub struct State {
+    /// t \[s\].
+    pub time: f64,
+    /// u, v, a \[m, m/s, m/s²; radians for rotations\], n × 3.
+    pub motion: Mat<f64>,
+    /// K u, K v, K a.
+    pub(super) elastic: Mat<f64>,
+    /// M v, M a.
+    pub(super) inertia: Mat<f64>,
+    /// C v, C a of the sparse viscous matrix.
+    pub(super) viscous: Option<Mat<f64>>,
+    /// Bᵀu, Bᵀv, Bᵀa of modal damping C = B diag(c) Bᵀ.
+    pub(super) modal: Option<Mat<f64>>,
+    /// Dᵀu, Dᵀv, Dᵀa, r × 3.
+    pub(super) along: Mat<f64>,
+    /// r along the directions \[N\].
+    pub(super) reaction: Vec<f64>,
+    /// p(t) of each push.
+    pub(super) pushes: Vec<f64>,
+    /// V of each pair at t \[m/s\].
+    pub(super) speeds: Vec<f64>,
+}
+
+impl State {
+    /// Steady sliding: at rest, displaced by u₀.
+    pub fn steady(model: &Model<'_>, steady: &SteadySliding) -> Self {
+        let mut state = State::empty(model);
+        state.motion.col_as_slice_mut(0).copy_from_slice(&steady.displacement);
+        state.settle(model);
+        state
+    }
+
+    /// Moves along a complex mode: u += Re(s φ), v += Re(s λ φ), a += Re(s λ² φ), with s = `factor`.
+    pub fn disturbed(mut self, model: &Model<'_>, lambda: c64, shape: &[c64], factor: f64) -> Self {
+        let mut turned = c64::new(factor, 0.0);
+        for k in 0..3 {
+            let column = self.motion.col_as_slice_mut(k);
+            column.iter_mut().zip(shape).for_each(|(x, z)| *x += (turned * z).re);
+            turned *= lambda;
+        }
+        self.settle(model);
+        self
+    }
+
+    /// What follows from time and motion.
+    pub(super) fn settle(&mut self, model: &Model<'_>) {
+        self.act(model, self.time);
+        self.derive(model);
+        if let (Some(modal), Some(out)) = (&model.damping.modal, &mut self.modal) {
+            *out = gram(modal.basis.as_ref(), self.motion.as_ref());
+        }
+        let mut reaction = Reaction::new(model);
+        reaction.evaluate(model, self.along.col_as_slice(0), self.along.col_as_slice(1), &self.speeds);
+        self.reaction = reaction.force;
+    }
+
+    /// What acts at a time.
+    pub(super) fn act(&mut self, model: &Model<'_>, time: f64) {
+        self.time = time;
+        self.speeds.iter_mut().zip(model.speeds(time)).for_each(|(now, v)| *now = v);
+        self.pushes.iter_mut().zip(&model.pushes).for_each(|(now, push)| *now = push.factor(time));
+    }
+
+    /// V of each pair \[m/s\].
+    pub fn speeds(&self) -> &[f64] {
+        &self.speeds
+    }
+
+    /// N, F₁, F₂ \[N\] of a contact point, friction on the body.
+    pub fn contact_forces(&self, point: usize) -> [f64; 3] {
+        let at = 3 * point;
+        [self.reaction[at], -self.reaction[at + 1], -self.reaction[at + 2]]
+    }
+
+    /// δ \[m\] of a contact point.
+    pub fn penetration(&self, model: &Model<'_>, point: usize) -> f64 {
+        model.points[point].closeness + self.along[(3 * point, 0)]
+    }
+
+    /// The slip velocity of a contact point along t₁ and t₂ \[m/s\].
+    pub fn slip_velocity(&self, model: &Model<'_>, point: usize) -> [f64; 2] {
+        let at = 3 * point;
+        [self.speeds[model.points[point].pair] - self.along[(at + 1, 1)], -self.along[(at + 2, 1)]]
+    }
+
+    /// ½vᵀMv + ½uᵀKu \[J\].
+    pub fn energy(&self) -> f64 {
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        0.5 * dot(self.motion.col_as_slice(1), self.inertia.col_as_slice(0))
+            + 0.5 * dot(self.motion.col_as_slice(0), self.elastic.col_as_slice(0))
+    }
+
+    /// Room for a state of `model`.
+    pub(super) fn empty(model: &Model<'_>) -> Self {
+        let (n, r) = (model.n(), model.directions.len());
+        State {
+            time: 0.0,
+            motion: Mat::zeros(n, 3),
+            elastic: Mat::zeros(n, 3),
+            inertia: Mat::zeros(n, 2),
+            viscous: model.damping.viscous.as_ref().map(|_| Mat::zeros(n, 2)),
+            modal: model.damping.modal.as_ref().map(|modal| Mat::zeros(modal.coefficients.len(), 3)),
+            along: Mat::zeros(r, 3),
+            reaction: vec![0.0; r],
+            pushes: vec![0.0; model.pushes.len()],
+            speeds: model.velocities.clone(),
+        }
+    }
+
+    /// What the sparse matrices make of the motion, and the motion along the directions.
+    pub(super) fn derive(&mut self, model: &Model<'_>) {
+        let rates = self.motion.as_ref().subcols(1, 2);
+        multiply(&model.stiffness, self.motion.as_ref(), self.elastic.as_mut());
+        multiply(model.mass, rates, self.inertia.as_mut());
+        if let (Some(c), Some(out)) = (&model.damping.viscous, &mut self.viscous) {
+            multiply(c, rates, out.as_mut());
+        }
+        for k in 0..3 {
+            model.motions(self.motion.col_as_slice(k), self.along.col_as_slice_mut(k));
+        }
+    }
+}
