@@ -177,16 +177,25 @@ pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Pla
         duration: push.duration,
     });
     let pushes: Vec<Push> = pushes.collect();
-    let mut probes: Vec<(String, SparseVector)> = Vec::new();
+    let (mut probes, mut lost) = (Vec::<(String, SparseVector)>::new(), Vec::new());
     for (name, probe) in &wanted.probe {
         let length = probe.direction.iter().map(|d| d * d).sum::<f64>().sqrt();
         let direction = probe.direction.map(|d| d / length);
         let form = match (&probe.on, probe.at) {
             (Some(on), _) => reduced(on, format!("`transient.probe.{name}.on`"), direction),
-            (None, at) => nearest(prepared, at.unwrap_or_default(), direction),
+            (None, at) if !prepared.model.nodes.is_empty() => {
+                nearest(prepared, at.unwrap_or_default(), direction)
+            }
+            (None, _) => {
+                let (place, expected) =
+                    (format!("`transient.probe.{name}.at`"), "a case whose nodes have coordinates");
+                lost.push(Fault::new(place, "a place", expected).with_help("`matrices.dofs` may give them"));
+                continue;
+            }
         };
         probes.push((name.clone(), form));
     }
+    lost.into_iter().for_each(|fault| faults.push(fault));
     for (name, _) in probes.iter().filter(|(_, d)| d.indices().is_empty()) {
         faults.push(Fault::new(
             format!("`transient.probe.{name}`"),

@@ -11,8 +11,8 @@ use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::{Accum, Mat, MatMut};
 
 /// A = (1−α_m)/(β Δt²) M + (1−α_f) c₁ C + (1−α_f) K, with the modal part of C as an update of low rank:
-/// A = A₀ + B E Bᵀ, E = (1−α_f) c₁ diag(c), so A⁻¹h = y − X (E⁻¹ + G)⁻¹ Bᵀy with y = A₀⁻¹h, X = A₀⁻¹B, G = BᵀX
-/// (Sherman, Morrison & Woodbury).
+/// A = A₀ + B E Bᵀ, E = (1−α_f) c₁ diag(c), so A⁻¹h = y − X (I + E G)⁻¹E Bᵀy with y = A₀⁻¹h, X = A₀⁻¹B, G = BᵀX
+/// (Sherman, Morrison & Woodbury, in the form that allows modes without damping).
 #[derive(Debug)]
 pub(super) struct Effective<'a> {
     factor: Box<dyn SymmetricFactor>,
@@ -26,8 +26,17 @@ struct ModalUpdate<'a> {
     responses: Mat<f64>,
     /// G.
     seen: Mat<f64>,
-    /// E⁻¹ + G.
+    /// The diagonal of E.
+    weights: Vec<f64>,
+    /// I + E G.
     small: PartialPivLu<f64>,
+}
+
+impl ModalUpdate<'_> {
+    /// (I + E G)⁻¹E x.
+    fn answer(&self, x: &Mat<f64>) -> Mat<f64> {
+        self.small.solve(Mat::from_fn(x.nrows(), x.ncols(), |i, j| self.weights[i] * x[(i, j)]))
+    }
 }
 
 impl<'a> Effective<'a> {
@@ -40,11 +49,11 @@ impl<'a> Effective<'a> {
             let mut responses = modal.basis.clone();
             factor.solve_in_place(responses.as_mut());
             let seen = gram(modal.basis.as_ref(), responses.as_ref());
-            let mut small = seen.clone();
-            for (i, own) in modal.coefficients.iter().enumerate() {
-                small[(i, i)] += 1.0 / (c * own);
-            }
-            ModalUpdate { basis: &modal.basis, responses, seen, small: small.partial_piv_lu() }
+            let weights: Vec<f64> = modal.coefficients.iter().map(|own| c * own).collect();
+            let small = Mat::from_fn(seen.nrows(), seen.ncols(), |i, j| {
+                weights[i] * seen[(i, j)] + if i == j { 1.0 } else { 0.0 }
+            });
+            ModalUpdate { basis: &modal.basis, responses, seen, weights, small: small.partial_piv_lu() }
         });
         Ok(Effective { factor, modal })
     }
@@ -54,7 +63,7 @@ impl<'a> Effective<'a> {
         self.factor.solve_in_place(h.as_mut());
         if let Some(update) = &self.modal {
             let seen = gram(update.basis.as_ref(), h.as_ref());
-            let part = update.small.solve(&seen + &update.seen * &*w);
+            let part = update.answer(&(&seen + &update.seen * &*w));
             let factors = &*w - part;
             combine(h, Accum::Add, update.responses.as_ref(), factors.as_ref(), 1.0);
             *w = seen + &update.seen * factors;
@@ -65,7 +74,7 @@ impl<'a> Effective<'a> {
     pub(super) fn responses(&self, mut d: Mat<f64>) -> Mat<f64> {
         self.factor.solve_in_place(d.as_mut());
         if let Some(update) = &self.modal {
-            let part = update.small.solve(gram(update.basis.as_ref(), d.as_ref()));
+            let part = update.answer(&gram(update.basis.as_ref(), d.as_ref()));
             d -= expand(update.responses.as_ref(), part.as_ref());
         }
         d

@@ -156,7 +156,7 @@ fn damped(seed: u64) -> System {
             (1e-3, &system.structure.stiffness),
             (0.05, &system.structure.mass),
         ])),
-        modal: Some(ModalDamping { basis: basis.clone(), coefficients: vec![0.1, 0.2, 0.3, 0.4, 0.5] }),
+        modal: Some(ModalDamping { basis: basis.clone(), coefficients: vec![0.0, 0.2, 0.3, 0.4, 0.5] }),
         hysteretic: None,
     };
     system
