@@ -4,7 +4,7 @@ use super::{PointState, SteadySliding};
 use crate::error::Result;
 use crate::linalg::sparse::{add_scaled, sum_of_squares};
 use crate::linalg::{SparseMatrix, SparseVector};
-use crate::system::{ContactMotion, ContactPoint, Structure, System};
+use crate::system::{ContactMotion, ContactPoint, ContactTangent, Structure, System};
 use std::borrow::Cow;
 
 /// The linearised contact: K_c = Σ U k Uᵀ and C_c = Σ U c Uᵀ with U = \[g t₁ t₂\] of each point that carries load.
@@ -27,6 +27,27 @@ pub struct ContactBlock {
     pub damping: [[f64; 3]; 3],
 }
 
+impl ContactBlock {
+    /// The block of a point from the derivatives of its law.
+    pub fn new(point: usize, t: &ContactTangent) -> Self {
+        let (mut stiffness, mut damping) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
+        for row in 0..3 {
+            // Friction stands with a minus sign on the left-hand side.
+            let sign = if row == 0 { 1.0 } else { -1.0 };
+            stiffness[row][0] = sign * t.by_penetration[row];
+            damping[row][0] = sign * t.by_penetration_rate[row];
+            damping[row][1] = -sign * t.by_slip_velocity[row][0];
+            damping[row][2] = -sign * t.by_slip_velocity[row][1];
+        }
+        ContactBlock { point, stiffness, damping }
+    }
+
+    /// Whether the point is not silent.
+    pub fn acts(&self) -> bool {
+        self.stiffness.iter().chain(&self.damping).flatten().any(|v| *v != 0.0)
+    }
+}
+
 /// g, t₁, t₂ of a point.
 pub fn directions(point: &ContactPoint) -> [&SparseVector; 3] {
     [&point.normal, &point.tangents[0], &point.tangents[1]]
@@ -42,18 +63,9 @@ pub fn linearize(system: &System, steady: &SteadySliding) -> LinearContact {
 pub fn linearize_points(points: &[PointState]) -> LinearContact {
     let mut blocks = Vec::new();
     for (point, state) in points.iter().enumerate() {
-        let t = &state.tangent;
-        let (mut stiffness, mut damping) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
-        for row in 0..3 {
-            // Friction stands with a minus sign on the left-hand side.
-            let sign = if row == 0 { 1.0 } else { -1.0 };
-            stiffness[row][0] = sign * t.by_penetration[row];
-            damping[row][0] = sign * t.by_penetration_rate[row];
-            damping[row][1] = -sign * t.by_slip_velocity[row][0];
-            damping[row][2] = -sign * t.by_slip_velocity[row][1];
-        }
-        if stiffness.iter().chain(&damping).flatten().any(|v| *v != 0.0) {
-            blocks.push(ContactBlock { point, stiffness, damping });
+        let block = ContactBlock::new(point, &state.tangent);
+        if block.acts() {
+            blocks.push(block);
         }
     }
     LinearContact { blocks }

@@ -169,6 +169,13 @@ pub fn times(a: &SparseMatrix, x: MatRef<'_, f64>) -> Mat<f64> {
     y
 }
 
+/// Sparse vectors as the columns of a dense matrix of `n` rows.
+pub fn dense_columns(n: usize, vectors: &[&SparseVector]) -> Mat<f64> {
+    let mut dense = Mat::zeros(n, vectors.len());
+    vectors.iter().enumerate().for_each(|(j, v)| v.add_to(1.0, dense.col_as_slice_mut(j)));
+    dense
+}
+
 /// Σ d v vᵀ of order `n`, both triangles stored.
 ///
 /// # Panics

@@ -45,6 +45,14 @@ pub fn combine<T: ComplexField>(
     });
 }
 
+/// \[A B\].
+pub fn beside(a: &Mat<f64>, b: &Mat<f64>) -> Mat<f64> {
+    let mut both = Mat::zeros(b.nrows(), a.ncols() + b.ncols());
+    both.subcols_mut(0, a.ncols()).copy_from(a);
+    both.subcols_mut(a.ncols(), b.ncols()).copy_from(b);
+    both
+}
+
 /// V C as a new matrix, over fixed ranges of rows.
 pub fn expand<T: ComplexField>(v: MatRef<'_, T>, c: MatRef<'_, T>) -> Mat<T> {
     let mut y = Mat::zeros(v.nrows(), c.ncols());

@@ -11,13 +11,13 @@ use crate::equilibrium::{SteadySliding, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::dense::symmetric_eigen;
 use crate::linalg::factor::factorize;
-use crate::linalg::sparse::{add_scaled, times};
-use crate::linalg::tall::{combine, expand, gram};
+use crate::linalg::sparse::{add_scaled, dense_columns, times};
+use crate::linalg::tall::{beside, combine, expand, gram};
 use crate::linalg::{SparseMatrix, SparseVector};
 use crate::modal::RealModes;
 use crate::system::{ContactPair, ContactPoint, Damping, Structure, System};
 use faer::sparse::Triplet;
-use faer::{Accum, Mat};
+use faer::{Accum, Mat, MatRef};
 
 /// A reduced system with the basis that leads back.
 #[derive(Debug, Clone)]
@@ -41,19 +41,19 @@ impl Reduced {
 
     /// VᵀM u: the coordinates of a displacement in the span of V.
     pub fn coordinates(&self, u: &[f64]) -> Vec<f64> {
-        let u = faer::MatRef::from_column_major_slice(u, u.len(), 1);
+        let u = MatRef::from_column_major_slice(u, u.len(), 1);
         gram(self.inertia.as_ref(), u).col_as_slice(0).to_vec()
     }
 
     /// Vᵀx of a dense linear form of u.
     pub fn dual(&self, x: &[f64]) -> Vec<f64> {
-        let x = faer::MatRef::from_column_major_slice(x, x.len(), 1);
+        let x = MatRef::from_column_major_slice(x, x.len(), 1);
         gram(self.basis.as_ref(), x).col_as_slice(0).to_vec()
     }
 
     /// V q.
     pub fn expand(&self, q: &[f64]) -> Vec<f64> {
-        let q = faer::MatRef::from_column_major_slice(q, q.len(), 1);
+        let q = MatRef::from_column_major_slice(q, q.len(), 1);
         expand(self.basis.as_ref(), q).col_as_slice(0).to_vec()
     }
 
@@ -84,23 +84,18 @@ pub fn reduce(
             .filter(|d| !d.indices().is_empty())
     });
     let directions: Vec<&SparseVector> = touched.chain(imported).chain(forces).collect();
-    let mut responses = Mat::<f64>::zeros(n, directions.len() + 1);
-    for (j, d) in directions.iter().enumerate() {
-        d.add_to(1.0, responses.col_as_slice_mut(j));
-    }
-    responses.col_as_slice_mut(directions.len()).copy_from_slice(&system.load);
+    let column = |x: &[f64]| Mat::from_fn(n, 1, |i, _| x[i]);
+    let load = column(&system.load);
+    let mut responses = beside(&dense_columns(n, &directions), &load);
     softened(&stiffness, mass, real)?.solve_in_place(responses.as_mut());
-    let responses = with_column(responses, &steady.displacement);
+    let responses = beside(&responses, &column(&steady.displacement));
     let attached = attachment(&stiffness, mass, real, responses)?;
     let modes = real.len();
-    let m = modes + attached.1.ncols();
-    let mut basis = Mat::<f64>::zeros(n, m);
-    basis.as_mut().subcols_mut(0, modes).copy_from(&real.shapes);
-    basis.as_mut().subcols_mut(modes, m - modes).copy_from(&attached.1);
+    let basis = beside(&real.shapes, &attached.1);
     let squares: Vec<f64> = real.eigenvalues.iter().chain(&attached.0).copied().collect();
     let inertia = times(mass, basis.as_ref());
     let structure = Structure {
-        mass: diagonal(&vec![1.0; m]),
+        mass: diagonal(&vec![1.0; basis.ncols()]),
         stiffness: diagonal(&squares),
         damping: damping(&system.structure.damping, &basis, modes),
     };
@@ -113,7 +108,7 @@ pub fn reduce(
         .pairs
         .iter()
         .map(|pair| ContactPair { points: pair.points.iter().map(reduced_point).collect(), ..pair.clone() });
-    let load = gram(basis.as_ref(), faer::MatRef::from_column_major_slice(&system.load, n, 1));
+    let load = gram(basis.as_ref(), load.as_ref());
     let coupling = system.coupling.as_ref().map(|rest| crate::system::Coupling {
         directions: rest.directions.iter().map(|d| form(&basis, d)).collect(),
         ..rest.clone()
@@ -231,13 +226,6 @@ fn diagonal(values: &[f64]) -> SparseMatrix {
     let entries: Vec<_> = values.iter().enumerate().map(|(i, v)| Triplet::new(i, i, *v)).collect();
     SparseMatrix::try_new_from_triplets(values.len(), values.len(), &entries)
         .expect("indices are below the size")
-}
-
-fn with_column(a: Mat<f64>, column: &[f64]) -> Mat<f64> {
-    let mut wider = Mat::zeros(a.nrows(), a.ncols() + 1);
-    wider.as_mut().subcols_mut(0, a.ncols()).copy_from(&a);
-    wider.col_as_slice_mut(a.ncols()).copy_from_slice(column);
-    wider
 }
 
 #[cfg(test)]

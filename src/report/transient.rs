@@ -86,7 +86,7 @@ fn axes<'a>(
         .label_style(text(12.0, INK))
         .axis_desc_style(text(13.0, INK))
         .x_desc(below.unwrap_or_default())
-        .y_desc(format!("{} [{}]", channel.name.replace('_', " "), channel.unit))
+        .y_desc(channel.heading())
         .x_labels(10)
         .y_labels(5)
         .x_label_formatter(&|x| given(*x))

@@ -2,7 +2,8 @@
 
 use super::folder::FileNames;
 use super::{
-    ComplexResult, NamedModes, RunResults, SensitivityResult, SteadyResult, TransientResult, write_atomically,
+    Channel, ComplexResult, NamedModes, RunResults, SensitivityResult, SteadyResult, TransientResult,
+    write_atomically,
 };
 use crate::error::Result;
 use std::path::Path;
@@ -86,8 +87,7 @@ fn contact_points(steady: &SteadyResult) -> String {
 }
 
 fn history(transient: &TransientResult) -> String {
-    let named: Vec<String> =
-        transient.channels.iter().map(|c| format!("{} [{}]", c.name.replace('_', " "), c.unit)).collect();
+    let named: Vec<String> = transient.channels.iter().map(Channel::heading).collect();
     let headings: Vec<&str> = std::iter::once("time [s]").chain(named.iter().map(String::as_str)).collect();
     let mut table = Table::new(&headings);
     for k in 0..transient.len() {
@@ -100,12 +100,8 @@ fn history(transient: &TransientResult) -> String {
 }
 
 fn spectra(transient: &TransientResult) -> String {
-    let named: Vec<String> = transient
-        .spectra
-        .iter()
-        .map(|of| &transient.channels[of.channel])
-        .map(|c| format!("{} [{}]", c.name.replace('_', " "), c.unit))
-        .collect();
+    let named: Vec<String> =
+        transient.spectra.iter().map(|of| transient.channels[of.channel].heading()).collect();
     let headings: Vec<&str> =
         std::iter::once("frequency [Hz]").chain(named.iter().map(String::as_str)).collect();
     let mut table = Table::new(&headings);

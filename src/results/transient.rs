@@ -17,6 +17,13 @@ pub struct Channel {
     pub values: Vec<f64>,
 }
 
+impl Channel {
+    /// `rim velocity [m/s]`.
+    pub fn heading(&self) -> String {
+        format!("{} [{}]", self.name.replace('_', " "), self.unit)
+    }
+}
+
 /// A channel over frequency.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpectrumOf {

@@ -5,7 +5,7 @@ use super::operator::{Operator, Products};
 use crate::linalg::SparseMatrix;
 use crate::linalg::dense::product;
 use crate::linalg::sparse::{add_scaled, times};
-use crate::linalg::tall::{combine, expand, gram};
+use crate::linalg::tall::{beside, combine, expand, gram};
 use faer::{Accum, Mat, MatMut, MatRef};
 
 /// Columns that are orthonormalised together.
@@ -274,12 +274,4 @@ fn pivoted_choice(gram: &mut Mat<f64>, floor: &[f64], limit: usize) -> Vec<usize
         chosen.push(best);
     }
     chosen
-}
-
-/// \[A B\].
-pub(super) fn beside(a: &Mat<f64>, b: &Mat<f64>) -> Mat<f64> {
-    let mut both = Mat::zeros(b.nrows(), a.ncols() + b.ncols());
-    both.subcols_mut(0, a.ncols()).copy_from(a);
-    both.subcols_mut(a.ncols(), b.ncols()).copy_from(b);
-    both
 }

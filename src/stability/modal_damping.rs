@@ -14,7 +14,7 @@ use super::operator::Operator;
 use crate::error::Result;
 use crate::linalg::dense::symmetric_eigen;
 use crate::linalg::sparse::times;
-use crate::linalg::tall::{expand, gram};
+use crate::linalg::tall::{beside, expand, gram};
 use crate::linalg::{SparseMatrix, SparseVector, SymmetricFactor, c64};
 use crate::modal::RealModes;
 use crate::system::ModalDamping;
@@ -275,13 +275,6 @@ fn entrywise(a: &Mat<f64>, b: &Mat<f64>) -> f64 {
 
 fn dot(x: &[f64], y: &[f64]) -> f64 {
     x.iter().zip(y).map(|(x, y)| x * y).sum()
-}
-
-fn beside(a: &Mat<f64>, b: &Mat<f64>) -> Mat<f64> {
-    let mut both = Mat::zeros(b.nrows(), a.ncols() + b.ncols());
-    both.subcols_mut(0, a.ncols()).copy_from(a);
-    both.subcols_mut(a.ncols(), b.ncols()).copy_from(b);
-    both
 }
 
 fn above(a: &Mat<f64>, b: &Mat<f64>) -> Mat<f64> {

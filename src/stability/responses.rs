@@ -1,12 +1,13 @@
 //! What interface and damping make of the structure: the first directions besides the real modes.
 
-use super::basis::{Basis, beside};
+use super::basis::Basis;
 use super::block::Block;
 use super::operator::{Operator, Side};
 use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
 use crate::linalg::random::Random;
 use crate::linalg::sparse::times;
+use crate::linalg::tall::beside;
 use faer::Mat;
 
 /// Random combinations that stand for many forces.

@@ -1,6 +1,5 @@
 //! Pairs measured on the full order: residuals, errors, and the corrections that make them better.
 
-use super::basis::beside;
 use super::block::Block;
 use super::operator::{Images, Operator, Side};
 use super::projected::SmallPair;
@@ -8,7 +7,7 @@ use super::responses::SKETCH;
 use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
 use crate::linalg::random::Random;
-use crate::linalg::tall::expand;
+use crate::linalg::tall::{beside, expand};
 use faer::Mat;
 use rayon::prelude::*;
 

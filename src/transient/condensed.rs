@@ -5,15 +5,11 @@ use super::model::Model;
 use super::reaction::Reaction;
 use super::scheme::Weights;
 use super::state::State;
-use super::stepper::{Solver, Stuck, combine};
+use super::stepper::{ITERATIONS, ROUND_OFF, Solver, Stuck};
 use crate::error::Result;
+use crate::linalg::sparse::dense_columns;
 use faer::Mat;
 use faer::linalg::solvers::{PartialPivLu, Solve};
-
-/// Newton's iterations of one step.
-const ITERATIONS: usize = 40;
-/// Steps of Newton's method below this part of the motion are round-off.
-const ROUND_OFF: f64 = 1e-14;
 
 /// With x = DᵀΔ and S = DᵀA⁻¹D the step is x − DᵀA⁻¹h + b S r(Dᵀu_t + x, Dᵀv_t + c₁x) = 0, as small as the contact, for
 /// Newton's method with the consistent unsymmetric tangent. Then Δ = A⁻¹h − b A⁻¹D r: one solution with A a step, and
@@ -35,12 +31,8 @@ impl<'a> Condensed<'a> {
     /// A matrix that is singular: a part without stiffness and mass.
     pub(super) fn new(model: &'a Model<'a>, weights: Weights) -> Result<Self> {
         let effective = Effective::new(model, &weights)?;
-        let (n, r) = (model.n(), model.directions.len());
-        let mut dense = Mat::<f64>::zeros(n, r);
-        for (j, d) in model.directions.iter().enumerate() {
-            d.add_to(1.0, dense.col_as_slice_mut(j));
-        }
-        let responses = effective.responses(dense);
+        let r = model.directions.len();
+        let responses = effective.responses(dense_columns(model.n(), &model.directions));
         let contact = Contact {
             compliance: Mat::from_fn(r, r, |i, j| model.directions[i].dot(responses.col_as_slice(j))),
             share: weights.share(),
@@ -66,9 +58,7 @@ impl Solver for Condensed<'_> {
         self.effective.solve(h.as_mut(), modal);
         let contact = &mut self.contact;
         model.motions(h.col_as_slice(0), &mut contact.free);
-        let along = [0, 1, 2].map(|k| from.along.col_as_slice(k));
-        combine(weights.predicted(), along, &mut contact.predicted[0]);
-        combine(weights.predicted_rate(), along, &mut contact.predicted[1]);
+        from.predict_along(weights, &mut contact.predicted);
         contact.solve(model, &from.reaction, &to.speeds)?;
         to.reaction.copy_from_slice(&contact.reaction.force);
         let increment = h.col_as_slice_mut(0);

@@ -5,7 +5,6 @@ use super::scheme::Weights;
 use crate::error::Result;
 use crate::linalg::SymmetricFactor;
 use crate::linalg::factor::factorize;
-use crate::linalg::sparse::add_scaled;
 use crate::linalg::tall::{combine, expand, gram};
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::{Accum, Mat, MatMut};
@@ -41,10 +40,8 @@ impl ModalUpdate<'_> {
 
 impl<'a> Effective<'a> {
     pub(super) fn new(model: &Model<'a>, weights: &Weights) -> Result<Self> {
-        let [m, c, k] = weights.effective();
-        let mut terms = vec![(m, model.mass), (k, &*model.stiffness)];
-        terms.extend(model.damping.viscous.iter().map(|viscous| (c, viscous)));
-        let factor = factorize(&add_scaled(&terms))?;
+        let [_, c, _] = weights.effective();
+        let factor = factorize(&model.effective(weights))?;
         let modal = model.damping.modal.as_ref().map(|modal| {
             let mut responses = modal.basis.clone();
             factor.solve_in_place(responses.as_mut());

@@ -4,16 +4,13 @@ use super::model::Model;
 use super::reaction::Reaction;
 use super::scheme::Weights;
 use super::state::State;
-use super::stepper::{Solver, Stuck, combine};
+use super::stepper::{ITERATIONS, ROUND_OFF, Solver, Stuck};
 use crate::linalg::SparseMatrix;
 use crate::linalg::sparse::{add_scaled, multiply_vector};
 use crate::linalg::tall::{expand, gram};
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 use faer::sparse::Triplet;
-
-const ITERATIONS: usize = 40;
-const ROUND_OFF: f64 = 1e-14;
 
 /// A₀Δ + B E BᵀΔ + b D r(u_t + Δ, v_t + c₁Δ) − h − B w = 0 with the tangent A₀ + b D (∂r/∂q + c₁ ∂r/∂q̇) Dᵀ. The modal
 /// part B E Bᵀ, dense but small beside A₀, is left to the iteration.
@@ -27,10 +24,7 @@ pub(super) struct FullNewton<'a> {
 
 impl<'a> FullNewton<'a> {
     pub(super) fn new(model: &'a Model<'a>, weights: Weights) -> Self {
-        let [m, c, k] = weights.effective();
-        let mut terms = vec![(m, model.mass), (k, &*model.stiffness)];
-        terms.extend(model.damping.viscous.iter().map(|viscous| (c, viscous)));
-        FullNewton { model, weights, linear: add_scaled(&terms), reaction: Reaction::new(model) }
+        FullNewton { model, weights, linear: model.effective(&weights), reaction: Reaction::new(model) }
     }
 
     /// The residual at Δ, without B w.
@@ -58,10 +52,8 @@ impl Solver for FullNewton<'_> {
     ) -> Result<(), Stuck> {
         let (model, weights) = (self.model, self.weights);
         let n = model.n();
-        let along = [0, 1, 2].map(|k| from.along.col_as_slice(k));
-        let mut at = [vec![0.0; along[0].len()], vec![0.0; along[0].len()]];
-        combine(weights.predicted(), along, &mut at[0]);
-        combine(weights.predicted_rate(), along, &mut at[1]);
+        let mut at = [0, 1].map(|_| vec![0.0; model.directions.len()]);
+        from.predict_along(&weights, &mut at);
         let mut force = h.col_as_slice(0).to_vec();
         if let Some(own) = &model.damping.modal {
             let part = expand(own.basis.as_ref(), modal.as_ref());

@@ -1,8 +1,10 @@
 //! What time integration needs of a system.
 
 use super::drive::{Profile, Push};
+use super::scheme::Weights;
 use crate::equilibrium::{SteadySliding, directions, tangent_stiffness};
 use crate::error::{Error, Fault, Result};
+use crate::linalg::sparse::add_scaled;
 use crate::linalg::{SparseMatrix, SparseVector};
 use crate::system::{ContactLaw, Damping, System};
 use faer::Mat;
@@ -93,6 +95,14 @@ impl<'a> Model<'a> {
     /// The number of degrees of freedom.
     pub fn n(&self) -> usize {
         self.mass.nrows()
+    }
+
+    /// A₀ = (1−α_m)/(β Δt²) M + (1−α_f) c₁ C + (1−α_f) K with the sparse part of C.
+    pub(super) fn effective(&self, weights: &Weights) -> SparseMatrix {
+        let [m, c, k] = weights.effective();
+        let mut terms = vec![(m, self.mass), (k, &*self.stiffness)];
+        terms.extend(self.damping.viscous.iter().map(|viscous| (c, viscous)));
+        add_scaled(&terms)
     }
 
     /// Dᵀx.

@@ -1,7 +1,8 @@
 //! The forces along the directions D, as functions of the motion along them.
 
 use super::model::Model;
-use crate::system::ContactMotion;
+use crate::equilibrium::ContactBlock;
+use crate::system::{ContactMotion, ContactTangent};
 use faer::Mat;
 
 /// r(q, q̇) with q = Dᵀu, on the left-hand side: (N, −F₁, −F₂) of every contact point, then k q + c q̇ of what was
@@ -10,19 +11,16 @@ use faer::Mat;
 pub(super) struct Reaction {
     /// r \[N\].
     pub(super) force: Vec<f64>,
-    /// ∂r/∂q of each point \[N/m\].
-    by_place: Vec<[[f64; 3]; 3]>,
-    /// ∂r/∂q̇ of each point \[N s/m\].
-    by_rate: Vec<[[f64; 3]; 3]>,
+    /// ∂r/∂q \[N/m\] and ∂r/∂q̇ \[N s/m\] of each point.
+    blocks: Vec<ContactBlock>,
 }
 
 impl Reaction {
     pub(super) fn new(model: &Model<'_>) -> Self {
-        let points = model.points.len();
+        let silent = |point| ContactBlock::new(point, &ContactTangent::default());
         Reaction {
             force: vec![0.0; model.directions.len()],
-            by_place: vec![[[0.0; 3]; 3]; points],
-            by_rate: vec![[[0.0; 3]; 3]; points],
+            blocks: (0..model.points.len()).map(silent).collect(),
         }
     }
 
@@ -38,13 +36,7 @@ impl Reaction {
             let (forces, tangent) = point.law.respond(&motion, point.weight);
             let values = [forces.normal, -forces.friction[0], -forces.friction[1]];
             self.force[at..at + 3].copy_from_slice(&values);
-            for row in 0..3 {
-                let sign = if row == 0 { 1.0 } else { -1.0 };
-                let slip = tangent.by_slip_velocity[row];
-                self.by_place[p][row][0] = sign * tangent.by_penetration[row];
-                self.by_rate[p][row] =
-                    [sign * tangent.by_penetration_rate[row], -sign * slip[0], -sign * slip[1]];
-            }
+            self.blocks[p] = ContactBlock::new(p, &tangent);
         }
         let first = 3 * model.points.len();
         if let Some([k, c]) = model.coupling {
@@ -64,10 +56,8 @@ impl Reaction {
         share: f64,
         rate: f64,
     ) -> (Vec<usize>, Mat<f64>) {
-        let closed = (0..self.by_place.len()).filter(|p| {
-            self.by_place[*p].iter().chain(&self.by_rate[*p]).flatten().any(|slope| *slope != 0.0)
-        });
-        let mut active: Vec<usize> = closed.flat_map(|p| 3 * p..3 * p + 3).collect();
+        let closed = self.blocks.iter().filter(|block| block.acts());
+        let mut active: Vec<usize> = closed.flat_map(|b| 3 * b.point..3 * b.point + 3).collect();
         let first = 3 * model.points.len();
         let touching = active.len();
         active.extend(first..model.directions.len());
@@ -79,7 +69,7 @@ impl Reaction {
         for (column, place) in active[..touching].iter().enumerate() {
             let (p, own) = (place / 3, place % 3);
             for row in 0..3 {
-                let slope = self.by_place[p][row][own] + rate * self.by_rate[p][row][own];
+                let slope = self.blocks[p].stiffness[row][own] + rate * self.blocks[p].damping[row][own];
                 add(column, 3 * p + row, share * slope);
             }
         }
@@ -104,7 +94,8 @@ impl Reaction {
         };
         for p in 0..model.points.len() {
             for (row, column) in (0..3).flat_map(|row| (0..3).map(move |column| (row, column))) {
-                let slope = self.by_place[p][row][column] + rate * self.by_rate[p][row][column];
+                let slope =
+                    self.blocks[p].stiffness[row][column] + rate * self.blocks[p].damping[row][column];
                 add(3 * p + row, 3 * p + column, slope);
             }
         }

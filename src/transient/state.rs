@@ -2,6 +2,8 @@
 
 use super::model::Model;
 use super::reaction::Reaction;
+use super::scheme::Weights;
+use super::stepper::combine;
 use crate::equilibrium::SteadySliding;
 use crate::linalg::c64;
 use crate::linalg::sparse::multiply;
@@ -71,6 +73,13 @@ impl State {
         self.time = time;
         self.speeds.iter_mut().zip(model.speeds(time)).for_each(|(now, v)| *now = v);
         self.pushes.iter_mut().zip(&model.pushes).for_each(|(now, push)| *now = push.factor(time));
+    }
+
+    /// Dᵀu_t and Dᵀv_t, the motion along the directions at the end of a step as far as it is known at its beginning.
+    pub(super) fn predict_along(&self, weights: &Weights, out: &mut [Vec<f64>; 2]) {
+        let along = [0, 1, 2].map(|k| self.along.col_as_slice(k));
+        combine(weights.predicted(), along, &mut out[0]);
+        combine(weights.predicted_rate(), along, &mut out[1]);
     }
 
     /// V of each pair \[m/s\].

@@ -10,6 +10,11 @@ use crate::error::Result;
 use faer::Mat;
 use std::fmt::Debug;
 
+/// Newton's iterations of one step.
+pub(super) const ITERATIONS: usize = 40;
+/// Steps of Newton's method below this part of the motion are round-off.
+pub(super) const ROUND_OFF: f64 = 1e-14;
+
 /// How a step is solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Method {
