@@ -15,7 +15,9 @@ pub(crate) use parameter::path_matches;
 pub use parameter::{Invalidates, Parameter};
 pub(crate) use read::DOF_NAMES;
 pub use read::read_case;
-pub use transient::{Disturbance, ModelChoice, Probe, PushedRegion, SchemeChoice, Slide, TransientAnalysis};
+pub use transient::{
+    Course, Disturbance, ModelChoice, Probe, PushedRegion, SchemeChoice, Slide, TransientAnalysis,
+};
 
 use crate::structure::{Material, Section};
 use serde::Serialize;
@@ -307,6 +309,18 @@ pub struct Contact {
     pub normal: Normal,
     /// Friction law.
     pub friction: Friction,
+    /// What bends before a point slips.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bristle: Option<BristleChoice>,
+}
+
+/// Elastic bristles between the bodies, for sticking in time; in the unit of the normal stiffness.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BristleChoice {
+    /// k_t.
+    pub stiffness: f64,
+    /// c_t.
+    pub damping: f64,
 }
 
 /// Where the body stands on the counter-body.
@@ -373,6 +387,24 @@ pub enum FrictionCurve {
         mu1: f64,
         /// α \[s/m\].
         alpha: f64,
+    },
+    /// μ = μ_k + (μ_s − μ_k) exp(−(|v|/v_s)^δ).
+    Stribeck {
+        /// μ_s.
+        mu_static: f64,
+        /// μ_k.
+        mu_kinetic: f64,
+        /// v_s \[m/s\].
+        stribeck_velocity: f64,
+        /// δ.
+        exponent: f64,
+    },
+    /// μ = μ_s/(1 + a|v|).
+    Hyperbolic {
+        /// μ_s.
+        mu_static: f64,
+        /// a \[s/m\].
+        decline: f64,
     },
     /// μ over slip velocity and pressure.
     Table {

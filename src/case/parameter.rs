@@ -102,7 +102,7 @@ impl Case {
             ["material", _, "loss_factor" | "rayleigh", ..] | ["spring", _, "damping"] => {
                 Invalidates::Damping
             }
-            ["contact", _, "normal" | "friction", ..] => Invalidates::Law,
+            ["contact", _, "normal" | "friction" | "bristle", ..] => Invalidates::Law,
             ["contact", _, "load" | "approach" | "sliding_velocity"] | ["force", ..] => {
                 Invalidates::Equilibrium
             }

@@ -278,27 +278,15 @@ fn read_contact(s: &Section) -> Contact {
         let per = n
             .choice("per", &["point", "length", "area"])
             .required("what the stiffness belongs to: point, length or area");
-        let (per, power) = match per {
-            "length" => (StiffnessPer::Length, 1),
-            "area" => (StiffnessPer::Area, 2),
-            _ => (StiffnessPer::Point, 0),
+        let per = match per {
+            "length" => StiffnessPer::Length,
+            "area" => StiffnessPer::Area,
+            _ => StiffnessPer::Point,
         };
-        let [plain, cubic, dashpot] =
-            [["N/m", "N/m^3", "N s/m"], ["N/m^2", "N/m^4", "N s/m^2"], ["N/m^3", "N/m^5", "N s/m^3"]]
-                [power as usize];
-        let example = [
-            "a stiffness such as \"10 MN/m\"",
-            "a stiffness per length such as \"10 GN/m^2\"",
-            "a stiffness per area such as \"10 GN/m^3\"",
-        ][power as usize];
-        let unit = STIFFNESS.per_metre(power, plain, example);
-        let cubic =
-            STIFFNESS.per_metre(power + 2, cubic, "a cubic stiffness: the unit of `stiffness` per m^2");
-        let damping =
-            DASHPOT.per_metre(power, dashpot, "a damping constant: the unit of `stiffness` times s");
+        let [stiffness, cubic, damping] = contact_units(per);
         Normal {
             per,
-            stiffness: n.quantity("stiffness", unit).non_negative().required(unit.name),
+            stiffness: n.quantity("stiffness", stiffness).non_negative().required(stiffness.name),
             cubic: n.quantity("cubic", cubic).non_negative().or(0.0),
             damping: n.quantity("damping", damping).non_negative().or(0.0),
             unilateral: n.boolean("unilateral").or(true),
@@ -307,6 +295,14 @@ fn read_contact(s: &Section) -> Contact {
     if normal.as_ref().is_none_or(|n| n.stiffness == 0.0 && n.cubic == 0.0) {
         s.fault("normal", "no contact stiffness", "a table with `per` and a `stiffness` above zero", "");
     }
+    let per = normal.as_ref().map_or(StiffnessPer::Point, |n| n.per);
+    let bristle = s.section("bristle", |b| {
+        let [stiffness, _, damping] = contact_units(per);
+        BristleChoice {
+            stiffness: b.quantity("stiffness", stiffness).positive().required(stiffness.name),
+            damping: b.quantity("damping", damping).non_negative().or(0.0),
+        }
+    });
     let friction = s.section("friction", read_friction);
     if friction.is_none() && !s.has("friction") {
         s.fault("friction", "nothing", "a table such as { law = \"coulomb\", mu0 = 0.4 }", "");
@@ -348,40 +344,71 @@ fn read_contact(s: &Section) -> Contact {
         }),
         friction: friction
             .unwrap_or(Friction { law: FrictionCurve::Coulomb { mu0: 0.0 }, regularisation: 0.0 }),
+        bristle,
     }
+}
+
+/// The units of stiffness, cubic stiffness and damping of a contact.
+fn contact_units(per: StiffnessPer) -> [Dimension; 3] {
+    let (power, [plain, cubic, dashpot], example) = match per {
+        StiffnessPer::Point => (0, ["N/m", "N/m^3", "N s/m"], "a stiffness such as \"10 MN/m\""),
+        StiffnessPer::Length => {
+            (1, ["N/m^2", "N/m^4", "N s/m^2"], "a stiffness per length such as \"10 GN/m^2\"")
+        }
+        StiffnessPer::Area => {
+            (2, ["N/m^3", "N/m^5", "N s/m^3"], "a stiffness per area such as \"10 GN/m^3\"")
+        }
+    };
+    [
+        STIFFNESS.per_metre(power, plain, example),
+        STIFFNESS.per_metre(power + 2, cubic, "a cubic stiffness: the unit of `stiffness` per m^2"),
+        DASHPOT.per_metre(power, dashpot, "a damping constant: the unit of `stiffness` times s"),
+    ]
 }
 
 fn read_friction(s: &Section) -> Friction {
     let coefficient = |key: &str| s.quantity(key, NUMBER).non_negative();
-    let law =
-        match s.choice("law", &["coulomb", "exponential", "table"]).required("coulomb, exponential or table")
-        {
-            "exponential" => FrictionCurve::Exponential {
-                mu0: coefficient("mu0").required("a friction coefficient"),
-                mu1: s.quantity("mu1", NUMBER).required("a friction coefficient"),
-                alpha: s.quantity("alpha", INVERSE_VELOCITY).non_negative().required(INVERSE_VELOCITY.name),
-            },
-            "table" => {
-                let ascending = |v: &Vec<f64>| !v.is_empty() && v.windows(2).all(|w| w[0] < w[1]);
-                let velocity = s
-                    .quantity_list("velocity", VELOCITY)
-                    .check("velocities in ascending order", ascending)
-                    .required("a list of velocities");
-                let pressure = s
-                    .quantity_list("pressure", NUMBER)
-                    .check("pressures in ascending order", ascending)
-                    .or(vec![0.0]);
-                let mu = s
-                    .rows("mu", NUMBER)
-                    .check("one row a pressure, with one value of zero or more a velocity", |rows| {
-                        rows.len() == pressure.len()
-                            && rows.iter().all(|r| r.len() == velocity.len() && r.iter().all(|m| *m >= 0.0))
-                    })
-                    .required("rows of friction coefficients");
-                FrictionCurve::Table { velocity, pressure, mu }
-            }
-            _ => FrictionCurve::Coulomb { mu0: coefficient("mu0").required("a friction coefficient") },
-        };
+    const LAWS: [&str; 5] = ["coulomb", "exponential", "stribeck", "hyperbolic", "table"];
+    let law = match s.choice("law", &LAWS).required("coulomb, exponential, stribeck, hyperbolic or table") {
+        "exponential" => FrictionCurve::Exponential {
+            mu0: coefficient("mu0").required("a friction coefficient"),
+            mu1: s.quantity("mu1", NUMBER).required("a friction coefficient"),
+            alpha: s.quantity("alpha", INVERSE_VELOCITY).non_negative().required(INVERSE_VELOCITY.name),
+        },
+        "stribeck" => FrictionCurve::Stribeck {
+            mu_static: coefficient("mu_static").required("a friction coefficient"),
+            mu_kinetic: coefficient("mu_kinetic").required("a friction coefficient"),
+            stribeck_velocity: s.quantity("stribeck_velocity", VELOCITY).positive().required(VELOCITY.name),
+            exponent: s
+                .quantity("exponent", NUMBER)
+                .within(Bound::Included(1.0), Bound::Included(10.0))
+                .or(2.0),
+        },
+        "hyperbolic" => FrictionCurve::Hyperbolic {
+            mu_static: coefficient("mu_static").required("a friction coefficient"),
+            decline: s.quantity("decline", INVERSE_VELOCITY).non_negative().required(INVERSE_VELOCITY.name),
+        },
+        "table" => {
+            let ascending = |v: &Vec<f64>| !v.is_empty() && v.windows(2).all(|w| w[0] < w[1]);
+            let velocity = s
+                .quantity_list("velocity", VELOCITY)
+                .check("velocities in ascending order", ascending)
+                .required("a list of velocities");
+            let pressure = s
+                .quantity_list("pressure", NUMBER)
+                .check("pressures in ascending order", ascending)
+                .or(vec![0.0]);
+            let mu = s
+                .rows("mu", NUMBER)
+                .check("one row a pressure, with one value of zero or more a velocity", |rows| {
+                    rows.len() == pressure.len()
+                        && rows.iter().all(|r| r.len() == velocity.len() && r.iter().all(|m| *m >= 0.0))
+                })
+                .required("rows of friction coefficients");
+            FrictionCurve::Table { velocity, pressure, mu }
+        }
+        _ => FrictionCurve::Coulomb { mu0: coefficient("mu0").required("a friction coefficient") },
+    };
     Friction { law, regularisation: s.quantity("regularisation", VELOCITY).non_negative().or(0.0) }
 }
 

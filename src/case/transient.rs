@@ -99,18 +99,30 @@ pub struct Probe {
     pub direction: [f64; 3],
 }
 
-/// How a sliding velocity runs in time, as factors of the contact's `sliding_velocity`.
+/// How a counter-body slides.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Slide {
+    /// Its velocity, in parts of the contact's `sliding_velocity`.
+    #[serde(flatten)]
+    pub course: Course,
+    /// Whether the contact runs over the mesh of the counter-body, or stays in its place.
+    pub travels: bool,
+}
+
+/// How something runs in time, as factors of what the case gives for it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "motion", rename_all = "snake_case")]
-pub enum Slide {
-    /// Linearly from a part of the velocity to the whole of it.
+pub enum Course {
+    /// The whole at all times.
+    Constant,
+    /// Linearly from a part of it to the whole.
     Ramp {
         /// The part at the start.
         from: f64,
         /// How long it takes \[s\].
         duration: f64,
     },
-    /// V cos(2π f t + φ).
+    /// Times cos(2π f t + φ).
     Reciprocating {
         /// f \[Hz\].
         frequency: f64,
@@ -126,13 +138,14 @@ pub enum Slide {
     },
 }
 
-impl Slide {
-    /// Whether the velocity reaches zero, or turns round.
+impl Course {
+    /// Whether it reaches zero, or turns round.
     pub fn stops(&self) -> bool {
         match self {
-            Slide::Ramp { from, .. } => *from <= 0.0,
-            Slide::Reciprocating { .. } => true,
-            Slide::Table { factor, .. } => {
+            Course::Constant => false,
+            Course::Ramp { from, .. } => *from <= 0.0,
+            Course::Reciprocating { .. } => true,
+            Course::Table { factor, .. } => {
                 factor.iter().any(|f| *f <= 0.0) && factor.iter().any(|f| *f >= 0.0)
             }
         }
@@ -194,8 +207,14 @@ fn read_probe(s: &Section) -> Probe {
 }
 
 fn read_slide(s: &Section) -> Slide {
-    match s.choice("motion", &["ramp", "reciprocating", "table"]).required("ramp, reciprocating or table") {
-        "reciprocating" => Slide::Reciprocating {
+    Slide { course: read_course(s), travels: s.boolean("travels").or(true) }
+}
+
+fn read_course(s: &Section) -> Course {
+    const MOTIONS: [&str; 4] = ["constant", "ramp", "reciprocating", "table"];
+    match s.choice("motion", &MOTIONS).required("constant, ramp, reciprocating or table") {
+        "constant" => Course::Constant,
+        "reciprocating" => Course::Reciprocating {
             frequency: s.quantity("frequency", FREQUENCY).positive().required(FREQUENCY.name),
             phase: s.quantity("phase", ANGLE).or(0.0),
         },
@@ -208,9 +227,9 @@ fn read_slide(s: &Section) -> Slide {
                 .quantity_list("factor", NUMBER)
                 .check("one factor a time", |f| f.len() == time.len())
                 .required("a list of factors, one a time");
-            Slide::Table { time, factor }
+            Course::Table { time, factor }
         }
-        _ => Slide::Ramp {
+        _ => Course::Ramp {
             from: s.quantity("from", NUMBER).or(0.0),
             duration: s.quantity("duration", TIME).positive().required(TIME.name),
         },

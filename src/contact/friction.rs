@@ -51,6 +51,49 @@ impl FrictionCoefficient for Exponential {
     }
 }
 
+/// Static and kinetic friction with Stribeck's transition: μ(v) = μ_k + (μ_s − μ_k) exp(−(|v|/v_s)^δ) (B. Armstrong-Hélouvry,
+/// P. Dupont & C. Canudas de Wit, Automatica 30 (1994) 1083).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stribeck {
+    /// μ_s, at rest.
+    pub at_rest: f64,
+    /// μ_k, at high speed.
+    pub kinetic: f64,
+    /// v_s \[m/s\].
+    pub velocity: f64,
+    /// δ ≥ 1: 1 for an exponential, 2 for a bell.
+    pub exponent: f64,
+}
+
+impl FrictionCoefficient for Stribeck {
+    fn mu(&self, speed: f64, _pressure: f64) -> Coefficient {
+        let part = speed / self.velocity;
+        let above = (self.at_rest - self.kinetic) * (-part.powf(self.exponent)).exp();
+        let slope = self.exponent * part.powf(self.exponent - 1.0) / self.velocity;
+        Coefficient { value: self.kinetic + above, by_speed: -slope * above, by_pressure: 0.0 }
+    }
+}
+
+/// Friction that falls to nothing: μ(v) = μ_s/(1 + a|v|), as in textbook examples of stick–slip.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hyperbolic {
+    /// μ_s, at rest.
+    pub at_rest: f64,
+    /// a \[s/m\].
+    pub decline: f64,
+}
+
+impl FrictionCoefficient for Hyperbolic {
+    fn mu(&self, speed: f64, _pressure: f64) -> Coefficient {
+        let value = self.at_rest / (1.0 + self.decline * speed);
+        Coefficient {
+            value,
+            by_speed: -self.decline * value / (1.0 + self.decline * speed),
+            by_pressure: 0.0,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -64,5 +107,23 @@ mod tests {
         assert!((slow.value - (0.3 + 0.2 * (-1.0f64).exp())).abs() < 1e-15);
         let difference = (law.mu(0.25 + h, 0.0).value - law.mu(0.25 - h, 0.0).value) / (2.0 * h);
         assert!((slow.by_speed - difference).abs() < 1e-9);
+    }
+
+    #[test]
+    fn falling_laws_start_at_rest_and_have_the_slopes_of_their_curves() {
+        let bell = Stribeck { at_rest: 0.6, kinetic: 0.4, velocity: 0.05, exponent: 2.0 };
+        let laws: [(&dyn FrictionCoefficient, f64, f64); 3] = [
+            (&bell, 0.6, 0.4 + 0.2 * (-0.36f64).exp()),
+            (&Stribeck { exponent: 1.0, ..bell }, 0.6, 0.4 + 0.2 * (-0.6f64).exp()),
+            (&Hyperbolic { at_rest: 1.0, decline: 3.0 }, 1.0, 1.0 / 1.09),
+        ];
+        for (law, at_rest, moving) in laws {
+            assert_eq!(law.mu(0.0, 0.0).value, at_rest);
+            assert!(law.mu(0.0, 0.0).by_speed.is_finite());
+            let (there, h) = (law.mu(0.03, 0.0), 1e-7);
+            assert!((there.value - moving).abs() < 1e-14, "{law:?}");
+            let slope = (law.mu(0.03 + h, 0.0).value - law.mu(0.03 - h, 0.0).value) / (2.0 * h);
+            assert!((there.by_speed - slope).abs() < 1e-6, "{law:?}");
+        }
     }
 }

@@ -1,8 +1,9 @@
 //! The sliding contact: a normal law and a friction coefficient make a [`ContactLaw`].
 
+use super::bristle::Bristle;
 use super::friction::FrictionCoefficient;
 use super::normal::NormalLaw;
-use crate::system::{ContactForces, ContactLaw, ContactMotion, ContactTangent};
+use crate::system::{ContactForces, ContactLaw, ContactMotion, ContactTangent, SlipAnswer, SlipStep};
 use std::sync::Arc;
 
 /// **F** = μ(|v|, p) N **v** / √(|v|² + v_ε²), with N of the normal law and p = N/weight.
@@ -20,6 +21,8 @@ pub struct SlidingLaw {
     pub regularisation: f64,
     /// Which way friction pulls.
     pub sense: FrictionSense,
+    /// What bends before the point slips; in time only, as steady sliding has bent it as far as it goes.
+    pub bristle: Option<Bristle>,
 }
 
 /// Which way friction pulls the body.
@@ -36,7 +39,8 @@ pub enum FrictionSense {
 impl SlidingLaw {
     /// A law whose friction pulls along the slip velocity.
     pub fn new(normal: NormalLaw, friction: impl FrictionCoefficient + 'static, regularisation: f64) -> Self {
-        SlidingLaw { normal, friction: Arc::new(friction), regularisation, sense: FrictionSense::WithSlip }
+        let sense = FrictionSense::WithSlip;
+        SlidingLaw { normal, friction: Arc::new(friction), regularisation, sense, bristle: None }
     }
 }
 
@@ -72,6 +76,18 @@ impl ContactLaw for SlidingLaw {
             }
         }
         (forces, tangent)
+    }
+
+    fn advance(&self, motion: &ContactMotion, since: &SlipStep, weight: f64) -> SlipAnswer {
+        if let Some(bristle) = &self.bristle {
+            return bristle.advance(&self.normal, &*self.friction, motion, since, weight);
+        }
+        let (forces, tangent) = self.respond(motion, weight);
+        SlipAnswer { forces, tangent, ..SlipAnswer::default() }
+    }
+
+    fn bent(&self, friction: [f64; 2], weight: f64) -> [f64; 2] {
+        self.bristle.map_or([0.0; 2], |bristle| friction.map(|f| f / (weight * bristle.stiffness)))
     }
 }
 

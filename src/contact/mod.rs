@@ -4,6 +4,7 @@
 //! [`pair_surfaces`] builds the contact points of a pair from the meshes of its bodies. Together with a closing
 //! load they make a [`crate::system::ContactPair`].
 
+mod bristle;
 pub mod friction;
 pub mod law;
 pub mod normal;
@@ -11,7 +12,8 @@ pub mod pairing;
 mod projection;
 mod table;
 
-pub use friction::{Coefficient, Constant, Exponential, FrictionCoefficient};
+pub use bristle::Bristle;
+pub use friction::{Coefficient, Constant, Exponential, FrictionCoefficient, Hyperbolic, Stribeck};
 pub use law::{FrictionSense, SlidingLaw};
 pub use normal::{NormalForce, NormalLaw};
 pub use pairing::{ContactPatch, ContactSide, Reduce, Surfaces, pair_surfaces};

@@ -4,7 +4,8 @@ use super::imported::given_points;
 use super::regions::Regions;
 use crate::case::{Case, Contact, FrictionCurve, Pressing, StiffnessPer};
 use crate::contact::{
-    Constant, ContactPatch, ContactSide, Exponential, NormalLaw, SlidingLaw, Surfaces, Table, pair_surfaces,
+    Bristle, Constant, ContactPatch, ContactSide, Exponential, FrictionCoefficient, FrictionSense,
+    Hyperbolic, NormalLaw, SlidingLaw, Stribeck, Surfaces, Table, pair_surfaces,
 };
 use crate::error::{Error, Fault, Faults, Result};
 use crate::mesh::Element;
@@ -31,7 +32,7 @@ pub fn contact_pairs(
         } else if contact.counter == "ground" {
             faults.take(ground_points(name, contact, regions, dofs))
         } else {
-            faults.take(surface_points(name, contact, regions, model, dofs))
+            faults.take(surface_points(name, contact, (regions, model, dofs), &Stand::first(contact)))
         };
         let law = faults.take(law(name, contact));
         if let (Some(points), Some(law)) = (points, law) {
@@ -78,17 +79,33 @@ fn law(name: &str, contact: &Contact) -> Result<SlidingLaw> {
         damping: contact.normal.damping,
         bilateral: !contact.normal.unilateral,
     };
-    let regularisation = contact.friction.regularisation;
-    Ok(match &contact.friction.law {
-        FrictionCurve::Coulomb { mu0 } => SlidingLaw::new(normal, Constant(*mu0), regularisation),
+    let friction: Arc<dyn FrictionCoefficient> = match &contact.friction.law {
+        FrictionCurve::Coulomb { mu0 } => Arc::new(Constant(*mu0)),
         FrictionCurve::Exponential { mu0, mu1, alpha } => {
-            SlidingLaw::new(normal, Exponential { mu_0: *mu0, mu_1: *mu1, alpha: *alpha }, regularisation)
+            Arc::new(Exponential { mu_0: *mu0, mu_1: *mu1, alpha: *alpha })
+        }
+        FrictionCurve::Stribeck { mu_static, mu_kinetic, stribeck_velocity, exponent } => {
+            Arc::new(Stribeck {
+                at_rest: *mu_static,
+                kinetic: *mu_kinetic,
+                velocity: *stribeck_velocity,
+                exponent: *exponent,
+            })
+        }
+        FrictionCurve::Hyperbolic { mu_static, decline } => {
+            Arc::new(Hyperbolic { at_rest: *mu_static, decline: *decline })
         }
         FrictionCurve::Table { velocity, pressure, mu } => {
             let place = format!("`contact.{name}.friction`");
-            let table = Table::new(&place, velocity.clone(), pressure.clone(), mu.clone())?;
-            SlidingLaw::new(normal, table, regularisation)
+            Arc::new(Table::new(&place, velocity.clone(), pressure.clone(), mu.clone())?)
         }
+    };
+    Ok(SlidingLaw {
+        normal,
+        friction,
+        regularisation: contact.friction.regularisation,
+        sense: FrictionSense::WithSlip,
+        bristle: contact.bristle.as_ref().map(|b| Bristle { stiffness: b.stiffness, damping: b.damping }),
     })
 }
 
@@ -124,13 +141,28 @@ fn ground_points(
         .collect())
 }
 
+/// How the bodies of a pair stand to each other.
+#[derive(Debug, Clone, Copy)]
+pub struct Stand {
+    /// How far the counter-body has come along the sliding direction \[m\].
+    pub travel: f64,
+    /// What is taken off the gaps \[m\]; the least of them when absent.
+    pub touch: Option<f64>,
+}
+
+impl Stand {
+    /// As the case has it. The approach of a placed body counts from the first touch.
+    fn first(contact: &Contact) -> Self {
+        Stand { travel: 0.0, touch: contact.placement.is_none().then_some(0.0) }
+    }
+}
+
 /// Points of a rim or a face against another plate.
-fn surface_points(
+pub fn surface_points(
     name: &str,
     contact: &Contact,
-    regions: &Regions,
-    model: &Model,
-    dofs: &DofMap,
+    (regions, model, dofs): (&Regions, &Model, &DofMap),
+    stand: &Stand,
 ) -> Result<Vec<ContactPoint>> {
     let place = |key: &str| format!("`contact.{name}.{key}`");
     let region = regions.region(&contact.body, &place("body"))?;
@@ -184,9 +216,10 @@ fn surface_points(
             )));
         }
     };
+    let moved = (stand.travel != 0.0).then(|| travelled(&model.nodes, counter, contact, stand.travel));
     let surfaces = Surfaces {
         name,
-        nodes: &model.nodes,
+        nodes: moved.as_ref().unwrap_or(&model.nodes),
         body,
         side,
         counter,
@@ -195,12 +228,20 @@ fn surface_points(
         stroke: contact.stroke,
     };
     let mut points = pair_surfaces(&surfaces, &|terms| dofs.reduce(terms))?;
-    if contact.placement.is_some() {
-        // The approach of a placed body counts from the first touch.
-        let first = points.iter().map(|p| p.gap).fold(f64::INFINITY, f64::min);
-        points.iter_mut().for_each(|p| p.gap -= first);
-    }
+    let touch = stand.touch.unwrap_or_else(|| points.iter().map(|p| p.gap).fold(f64::INFINITY, f64::min));
+    points.iter_mut().for_each(|p| p.gap -= touch);
     Ok(points)
+}
+
+/// The nodes with those of the counter-body moved along the sliding direction.
+fn travelled(nodes: &[[f64; 3]], counter: &ShellPart, contact: &Contact, travel: f64) -> Vec<[f64; 3]> {
+    let way = Vector3::from(contact.sliding_direction).normalize() * travel;
+    let mut nodes = nodes.to_vec();
+    let mut own: Vec<usize> = counter.faces.iter().flat_map(Element::nodes).copied().collect();
+    own.sort_unstable();
+    own.dedup();
+    own.into_iter().for_each(|node| nodes[node] = (Vector3::from(nodes[node]) + way).into());
+    nodes
 }
 
 /// The shell that has all of `nodes`.

@@ -26,6 +26,7 @@ mod sensitivity;
 mod states;
 mod table;
 mod transient;
+mod travel;
 mod verify;
 
 pub use analyse::{Selection, Sensitivities, Stage, analyse, run_case};

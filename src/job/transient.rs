@@ -2,7 +2,8 @@
 
 use super::analyse::Stage;
 use super::prepared::Prepared;
-use crate::case::{Disturbance, ModelChoice, SchemeChoice, Slide, TransientAnalysis};
+use super::travel::tracks;
+use crate::case::{Course, Disturbance, ModelChoice, SchemeChoice, TransientAnalysis};
 use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::{SparseVector, c64};
@@ -13,7 +14,7 @@ use crate::results::{Channel, ComplexResult, GrowthCompared, SpectrumOf, Transie
 use crate::signal;
 use crate::stability::{ModalFilter, modal_filter};
 use crate::system::System;
-use crate::transient::{self, Method, Model, Moment, Plan, Profile, Push, Scheme, State, march};
+use crate::transient::{self, Method, Model, Moment, Plan, Profile, Push, Scheme, State, Track, march};
 
 /// Steps between two writings.
 const CHUNK: usize = 4096;
@@ -49,25 +50,38 @@ impl InTime<'_> {
         record: &mut dyn FnMut(Stage) -> Result<()>,
         observer: &dyn Observer,
     ) -> Result<TransientResult> {
-        let Places { mut pushes, mut probes } = places;
+        let Places { mut pushes, mut probes, mut tracks } = places;
         let mut disturbed = wanted.disturbance.as_ref().map(|d| self.along(d)).transpose()?;
         let reduced = match wanted.model {
             ModelChoice::Full => None,
             ModelChoice::Reduced => {
-                let forces: Vec<SparseVector> = pushes.iter().map(|push| push.direction.clone()).collect();
+                let stations = tracks.iter().flatten().flat_map(|track| track.stations.iter().flatten());
+                let stations =
+                    stations.flat_map(|point| [&point.normal, &point.tangents[0], &point.tangents[1]]);
+                let pushed = pushes.iter().map(|push| &push.direction);
+                let forces: Vec<SparseVector> = pushed.chain(stations).cloned().collect();
                 let reduced = reduce(self.system, self.steady, self.real, &forces)?;
                 pushes.iter_mut().for_each(|push| push.direction = reduced.form(&push.direction));
                 probes.iter_mut().for_each(|(_, direction)| *direction = reduced.form(direction));
                 disturbed = disturbed.map(|along| along.reduced(&reduced));
+                let points =
+                    tracks.iter_mut().flatten().flat_map(|track| track.stations.iter_mut().flatten());
+                points.for_each(|point| *point = reduced.point(point));
                 Some(reduced)
             }
         };
         let small = reduced.as_ref().map(|reduced| reduced.steady(self.steady));
         let steady = small.as_ref().unwrap_or(self.steady);
         let system = reduced.as_ref().map_or(self.system, |reduced| &reduced.system);
-        let profiles: Vec<Profile> =
-            self.system.pairs.iter().map(|pair| profile(wanted.slide.get(&pair.name))).collect();
-        let model = Model::new(system, steady)?.driven(profiles, pushes);
+        let profiles: Vec<Profile> = self
+            .system
+            .pairs
+            .iter()
+            .map(|pair| profile(wanted.slide.get(&pair.name).map(|s| &s.course)))
+            .collect();
+        let model = Model::new(system, steady)?
+            .driven(profiles, pushes)
+            .travelling(tracks.iter().map(Option::as_ref).collect());
         let mut start = State::steady(&model, steady);
         if let (Some(along), Some(wanted)) = (&disturbed, &wanted.disturbance) {
             start = start.disturbed(&model, along.eigenvalue, &along.shape, wanted.amplitude / along.largest);
@@ -153,6 +167,8 @@ pub struct Places {
     pushes: Vec<Push>,
     /// Names and directions.
     probes: Vec<(String, SparseVector)>,
+    /// How the contact points of each pair travel.
+    tracks: Vec<Option<Track>>,
 }
 
 /// The places of a run in time; asked for before anything is computed or written.
@@ -203,7 +219,8 @@ pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Pla
             "one that can move",
         ));
     }
-    faults.into_result(Places { pushes, probes })
+    let tracks = faults.take(tracks(prepared, wanted)).unwrap_or_default();
+    faults.into_result(Places { pushes, probes, tracks })
 }
 
 /// The motion of the node nearest to a place along a direction.
@@ -215,14 +232,15 @@ fn nearest(prepared: &Prepared<'_>, place: [f64; 3], direction: [f64; 3]) -> Spa
     prepared.assembled.dofs.reduce(&entries)
 }
 
-fn profile(slide: Option<&Slide>) -> Profile {
-    match slide {
-        None => Profile::Constant,
-        Some(Slide::Ramp { from, duration }) => Profile::Ramp { from: *from, duration: *duration },
-        Some(Slide::Reciprocating { frequency, phase }) => {
+/// How something runs in time.
+pub(super) fn profile(course: Option<&Course>) -> Profile {
+    match course {
+        None | Some(Course::Constant) => Profile::Constant,
+        Some(Course::Ramp { from, duration }) => Profile::Ramp { from: *from, duration: *duration },
+        Some(Course::Reciprocating { frequency, phase }) => {
             Profile::Reciprocating { frequency_hz: *frequency, phase: *phase }
         }
-        Some(Slide::Table { time, factor }) => {
+        Some(Course::Table { time, factor }) => {
             Profile::Table { times: time.clone(), factors: factor.clone() }
         }
     }
@@ -403,7 +421,7 @@ impl<'a> Recorder<'a> {
             row.extend([sum(0), sum(1), state.speeds()[k]]);
         }
         let slip = if self.pairs.is_empty() { 0.0 } else { state.slip_velocity(self.model, self.point)[0] };
-        let deep = if self.pairs.is_empty() { 0.0 } else { state.penetration(self.model, self.point) };
+        let deep = if self.pairs.is_empty() { 0.0 } else { state.penetration(self.point) };
         row.extend([deep, slip, work.kinetic + work.strain, work.drive, work.heat, work.damping]);
         row.push(work.algorithm);
         if let Some(along) = &self.along {

@@ -39,6 +39,11 @@ impl Reduced {
         form(&self.basis, x)
     }
 
+    /// A contact point seen through V.
+    pub fn point(&self, point: &ContactPoint) -> ContactPoint {
+        seen(&self.basis, point)
+    }
+
     /// VᵀM u: the coordinates of a displacement in the span of V.
     pub fn coordinates(&self, u: &[f64]) -> Vec<f64> {
         let u = MatRef::from_column_major_slice(u, u.len(), 1);
@@ -99,15 +104,10 @@ pub fn reduce(
         stiffness: diagonal(&squares),
         damping: damping(&system.structure.damping, &basis, modes),
     };
-    let reduced_point = |point: &ContactPoint| ContactPoint {
-        normal: form(&basis, &point.normal),
-        tangents: [form(&basis, &point.tangents[0]), form(&basis, &point.tangents[1])],
-        ..point.clone()
-    };
-    let pairs = system
-        .pairs
-        .iter()
-        .map(|pair| ContactPair { points: pair.points.iter().map(reduced_point).collect(), ..pair.clone() });
+    let pairs = system.pairs.iter().map(|pair| ContactPair {
+        points: pair.points.iter().map(|point| seen(&basis, point)).collect(),
+        ..pair.clone()
+    });
     let load = gram(basis.as_ref(), load.as_ref());
     let coupling = system.coupling.as_ref().map(|rest| crate::system::Coupling {
         directions: rest.directions.iter().map(|d| form(&basis, d)).collect(),
@@ -215,6 +215,14 @@ fn damping(full: &Damping, basis: &Mat<f64>, modes: usize) -> Damping {
             .expect("indices are below the size")
     });
     Damping { viscous, modal: None, hysteretic: None }
+}
+
+fn seen(basis: &Mat<f64>, point: &ContactPoint) -> ContactPoint {
+    ContactPoint {
+        normal: form(basis, &point.normal),
+        tangents: [form(basis, &point.tangents[0]), form(basis, &point.tangents[1])],
+        ..point.clone()
+    }
 }
 
 fn form(basis: &Mat<f64>, x: &SparseVector) -> SparseVector {

@@ -33,6 +33,32 @@ pub struct ContactTangent {
     pub by_slip_velocity: [[f64; 2]; 3],
 }
 
+/// How far a point slid in a time step, and what it remembers of the steps before.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlipStep {
+    /// s \[m\] along t₁ and t₂: by how much the bristles of the point were bent when the step began.
+    pub bristle: [f64; 2],
+    /// Δ \[m\]: ∫v dt over the step.
+    pub slid: [f64; 2],
+    /// Δt \[s\].
+    pub duration: f64,
+}
+
+/// What a law answers at the end of a time step.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SlipAnswer {
+    /// The forces.
+    pub forces: ContactForces,
+    /// Their derivatives by the motion at the end of the step, Δ held.
+    pub tangent: ContactTangent,
+    /// ∂(F₁, F₂)/∂Δ \[N/m\].
+    pub by_slid: [[f64; 2]; 2],
+    /// s \[m\] at the end of the step.
+    pub bristle: [f64; 2],
+    /// Whether the point did not slip.
+    pub sticks: bool,
+}
+
 /// A contact law: (motion, weight) → (forces, their Jacobian). Pure: the same input gives the same output.
 ///
 /// `weight` is the contact length or area that the point stands for \[m or m²\], or its share of one when the
@@ -40,4 +66,15 @@ pub struct ContactTangent {
 pub trait ContactLaw: Debug + Send + Sync {
     /// Forces and Jacobian at one point.
     fn respond(&self, motion: &ContactMotion, weight: f64) -> (ContactForces, ContactTangent);
+
+    /// Forces at the end of a time step, for a law that remembers. One that does not answers as ever.
+    fn advance(&self, motion: &ContactMotion, _since: &SlipStep, weight: f64) -> SlipAnswer {
+        let (forces, tangent) = self.respond(motion, weight);
+        SlipAnswer { forces, tangent, ..SlipAnswer::default() }
+    }
+
+    /// How far steady friction **F** \[N\] has bent the bristles of a point: s \[m\].
+    fn bent(&self, _friction: [f64; 2], _weight: f64) -> [f64; 2] {
+        [0.0; 2]
+    }
 }

@@ -16,7 +16,7 @@ mod structure;
 
 pub use imported::{Given, Imported, split};
 pub use interface::{Closing, ContactPair, ContactPoint};
-pub use law::{ContactForces, ContactLaw, ContactMotion, ContactTangent};
+pub use law::{ContactForces, ContactLaw, ContactMotion, ContactTangent, SlipAnswer, SlipStep};
 pub use structure::{Coupling, Damping, ModalDamping, Prestress, Structure};
 
 use std::sync::Arc;

@@ -1,6 +1,7 @@
 //! One implicit step, condensed exactly onto the directions in which contact acts.
 
 use super::effective::Effective;
+use super::interface::{Interface, parts};
 use super::model::Model;
 use super::reaction::Reaction;
 use super::scheme::Weights;
@@ -19,10 +20,12 @@ pub(super) struct Condensed<'a> {
     model: &'a Model<'a>,
     weights: Weights,
     effective: Effective<'a>,
-    /// A⁻¹D, n × r.
+    /// A⁻¹P, n × columns.
     responses: Mat<f64>,
-    /// BᵀA⁻¹D.
+    /// BᵀA⁻¹P.
     modal_responses: Mat<f64>,
+    /// PᵀA⁻¹P \[m/N\].
+    seen: Mat<f64>,
     contact: Contact,
 }
 
@@ -31,18 +34,21 @@ impl<'a> Condensed<'a> {
     /// A matrix that is singular: a part without stiffness and mass.
     pub(super) fn new(model: &'a Model<'a>, weights: Weights) -> Result<Self> {
         let effective = Effective::new(model, &weights)?;
-        let r = model.directions.len();
-        let responses = effective.responses(dense_columns(model.n(), &model.directions));
-        let contact = Contact {
-            compliance: Mat::from_fn(r, r, |i, j| model.directions[i].dot(responses.col_as_slice(j))),
+        let (r, columns) = (model.n_directions(), model.columns.len());
+        let responses = effective.responses(dense_columns(model.n(), &model.columns));
+        let seen = Mat::from_fn(columns, columns, |i, j| model.columns[i].dot(responses.col_as_slice(j)));
+        let mut contact = Contact {
+            compliance: Mat::zeros(r, r),
             share: weights.share(),
             rate: weights.rate,
+            step: weights.step,
             free: vec![0.0; r],
             predicted: [vec![0.0; r], vec![0.0; r]],
             reaction: Reaction::new(model),
         };
+        contact.mix(&seen, &Interface::new(model));
         let modal_responses = effective.modal_share(&responses);
-        Ok(Condensed { model, weights, effective, responses, modal_responses, contact })
+        Ok(Condensed { model, weights, effective, responses, modal_responses, seen, contact })
     }
 }
 
@@ -57,15 +63,22 @@ impl Solver for Condensed<'_> {
         let (model, weights) = (self.model, &self.weights);
         self.effective.solve(h.as_mut(), modal);
         let contact = &mut self.contact;
-        model.motions(h.col_as_slice(0), &mut contact.free);
-        from.predict_along(weights, &mut contact.predicted);
-        contact.solve(model, &from.reaction, &to.speeds)?;
+        if model.travels() {
+            contact.mix(&self.seen, &to.interface);
+        }
+        to.interface.motions(model, h.col_as_slice(0), &mut contact.free);
+        to.predict_along(weights, &mut contact.predicted);
+        contact.solve(model, from, to)?;
         to.reaction.copy_from_slice(&contact.reaction.force);
+        to.bristles.copy_from_slice(&contact.reaction.bristles);
         let increment = h.col_as_slice_mut(0);
-        for (j, r) in to.reaction.iter().enumerate().filter(|(_, r)| **r != 0.0) {
-            let factor = -weights.share() * r;
-            increment.iter_mut().zip(self.responses.col_as_slice(j)).for_each(|(x, w)| *x += factor * w);
-            (0..modal.nrows()).for_each(|i| modal[(i, 0)] += factor * self.modal_responses[(i, j)]);
+        for (mix, r) in to.interface.mixes.iter().zip(&to.reaction).filter(|(_, r)| **r != 0.0) {
+            for (column, share) in parts(mix) {
+                let factor = -weights.share() * share * r;
+                let response = self.responses.col_as_slice(column);
+                increment.iter_mut().zip(response).for_each(|(x, w)| *x += factor * w);
+                (0..modal.nrows()).for_each(|i| modal[(i, 0)] += factor * self.modal_responses[(i, column)]);
+            }
         }
         Ok(())
     }
@@ -80,6 +93,8 @@ struct Contact {
     share: f64,
     /// c₁ \[1/s\].
     rate: f64,
+    /// Δt \[s\].
+    step: f64,
     /// x* = DᵀA⁻¹h.
     free: Vec<f64>,
     /// q_t, q̇_t: what the motion along the directions would be without Δ.
@@ -89,11 +104,23 @@ struct Contact {
 }
 
 impl Contact {
+    /// S from PᵀA⁻¹P.
+    fn mix(&mut self, seen: &Mat<f64>, at: &Interface) {
+        for (j, right) in at.mixes.iter().enumerate() {
+            for (i, left) in at.mixes.iter().enumerate() {
+                let entry = |(column, share): (usize, f64)| -> f64 {
+                    share * parts(left).map(|(row, own)| own * seen[(row, column)]).sum::<f64>()
+                };
+                self.compliance[(i, j)] = parts(right).map(entry).sum();
+            }
+        }
+    }
+
     /// Newton's method from where the last reaction would lead, with steps halved while they do not bring the next one down
     /// (Deuflhard's natural monotonicity test). Leaves r in `reaction`.
-    fn solve(&mut self, model: &Model<'_>, last: &[f64], speeds: &[f64]) -> std::result::Result<(), Stuck> {
-        let mut x = self.moved(last);
-        let mut rho = self.residual(model, &x, speeds);
+    fn solve(&mut self, model: &Model<'_>, from: &State, to: &State) -> std::result::Result<(), Stuck> {
+        let mut x = self.moved(&from.reaction);
+        let mut rho = self.residual(model, &x, from, to);
         let mut length = 0.0;
         for _ in 0..ITERATIONS {
             let tangent = Tangent::new(model, self);
@@ -109,7 +136,7 @@ impl Contact {
             let mut damping = 1.0;
             loop {
                 let next: Vec<f64> = x.iter().zip(&step).map(|(x, s)| x - damping * s).collect();
-                let there = self.residual(model, &next, speeds);
+                let there = self.residual(model, &next, from, to);
                 let again = longest(&tangent.solve(&there));
                 if again <= (1.0 - 0.25 * damping) * length || damping < 1e-3 {
                     (x, rho) = (next, there);
@@ -134,11 +161,11 @@ impl Contact {
     }
 
     /// x − x* + b S r(x), whose r is left in `reaction`.
-    fn residual(&mut self, model: &Model<'_>, x: &[f64], speeds: &[f64]) -> Vec<f64> {
+    fn residual(&mut self, model: &Model<'_>, x: &[f64], from: &State, to: &State) -> Vec<f64> {
         let [place, velocity] = &self.predicted;
         let q: Vec<f64> = x.iter().zip(place).map(|(x, p)| p + x).collect();
         let rate: Vec<f64> = x.iter().zip(velocity).map(|(x, v)| v + self.rate * x).collect();
-        self.reaction.evaluate(model, &q, &rate, speeds);
+        self.reaction.evaluate(model, [&q, &rate], to, Some((from, self.step)));
         let moved = self.moved(&self.reaction.force);
         x.iter().zip(moved).map(|(x, moved)| x - moved).collect()
     }

@@ -1,9 +1,9 @@
-//! What acts in time: how the counter-bodies slide, and pushes.
+//! What acts in time: how the counter-bodies slide, how loads run, and pushes.
 
 use crate::linalg::SparseVector;
 use std::f64::consts::{PI, TAU};
 
-/// How a sliding velocity runs in time: V(t) = V · factor(t).
+/// How a sliding velocity or a load runs in time: V(t) = V · factor(t).
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Profile {
     /// V.
@@ -57,6 +57,59 @@ impl Profile {
     }
 }
 
+impl Profile {
+    /// ∫factor dt from 0 to `time` \[s\]: V times it is how far a counter-body has come.
+    pub fn integral(&self, time: f64) -> f64 {
+        match self {
+            Profile::Constant => time,
+            Profile::Ramp { from, duration } => {
+                let ramped = time.min(*duration);
+                let over =
+                    if *duration > 0.0 { 0.5 * (1.0 - from) * ramped * ramped / duration } else { 0.0 };
+                from * ramped + over + (time - ramped)
+            }
+            Profile::Reciprocating { frequency_hz, phase } => {
+                let omega = TAU * frequency_hz;
+                ((omega * time + phase).sin() - phase.sin()) / omega
+            }
+            Profile::Table { times, .. } => {
+                // The trapezoidal rule is exact between the kinks.
+                let kinks = times.iter().copied().filter(|t| *t > 0.0 && *t < time);
+                let (mut at, mut sum) = ((0.0, self.factor(0.0)), 0.0);
+                for t in kinks.chain([time]) {
+                    let next = (t, self.factor(t));
+                    sum += 0.5 * (next.0 - at.0) * (at.1 + next.1);
+                    at = next;
+                }
+                sum
+            }
+        }
+    }
+
+    /// The least and the greatest of [`Profile::integral`] from 0 to `duration` \[s\].
+    pub fn reach(&self, duration: f64) -> [f64; 2] {
+        let mut turns = vec![0.0, duration];
+        match self {
+            Profile::Constant => {}
+            Profile::Ramp { from, duration: whole } => turns.push(whole * from / (from - 1.0)),
+            Profile::Reciprocating { frequency_hz, phase } => {
+                // cos is zero at (k + ½)π: as many turns as it takes for every one to have come.
+                let first = ((phase / PI - 0.5).ceil() as i64).max(i64::MIN / 2);
+                let turn = |k: i64| ((k as f64 + 0.5) * PI - phase) / (TAU * frequency_hz);
+                turns.extend((0..3).map(|k| turn(first + k)));
+            }
+            Profile::Table { times, factors } => {
+                turns.extend(times);
+                for (t, f) in times.windows(2).zip(factors.windows(2)).filter(|(_, f)| f[0] * f[1] < 0.0) {
+                    turns.push(t[0] + (t[1] - t[0]) * f[0] / (f[0] - f[1]));
+                }
+            }
+        }
+        let within = turns.into_iter().filter(|t| (0.0..=duration).contains(t)).map(|t| self.integral(t));
+        within.fold([0.0, 0.0], |[low, high], s| [low.min(s), high.max(s)])
+    }
+}
+
 /// A push on the structure: a half sine, p(t) = sin(π (t − begin)/duration) while it lasts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Push {
@@ -91,6 +144,19 @@ mod tests {
         assert!(ramped.iter().zip([0.2, 0.6, 1.0]).all(|(a, b)| (a - b).abs() < 1e-15));
         let back = Profile::Reciprocating { frequency_hz: 2.0, phase: 0.0 };
         assert!((back.factor(0.25) + 1.0).abs() < 1e-15);
+        // ∫factor against the midpoint rule, and its reach against all of its values.
+        let other = Profile::Reciprocating { frequency_hz: 2.0, phase: 1.1 };
+        let falling = Profile::Ramp { from: -0.5, duration: 2.0 };
+        for profile in [table, ramp, back, other, falling, Profile::Constant] {
+            let (mut sum, mut low, mut high) = (0.0, 0.0f64, 0.0f64);
+            for k in 0..50_000 {
+                sum += 1e-4 * profile.factor((f64::from(k) + 0.5) * 1e-4);
+                (low, high) = (low.min(sum), high.max(sum));
+            }
+            assert!((profile.integral(5.0) - sum).abs() < 1e-6, "{profile:?}");
+            let reach = profile.reach(5.0);
+            assert!((reach[0] - low).abs() < 1e-6 && (reach[1] - high).abs() < 1e-6, "{profile:?} {reach:?}");
+        }
         let push = Push { direction: SparseVector::from_entries([(0, 2.0)]), begin: 1.0, duration: 2.0 };
         assert_eq!([push.factor(0.9), push.factor(2.0), push.factor(3.1)], [0.0, 1.0, 0.0]);
     }

@@ -28,16 +28,17 @@ impl<'a> FullNewton<'a> {
     }
 
     /// The residual at Δ, without B w.
-    fn residual(&mut self, delta: &[f64], h: &[f64], at: &[Vec<f64>; 2], speeds: &[f64]) -> Vec<f64> {
+    fn residual(&mut self, delta: &[f64], h: &[f64], at: &[Vec<f64>; 2], ends: [&State; 2]) -> Vec<f64> {
         let model = self.model;
-        let mut along = vec![0.0; model.directions.len()];
-        model.motions(delta, &mut along);
+        let [from, to] = ends;
+        let mut along = vec![0.0; model.n_directions()];
+        to.interface.motions(model, delta, &mut along);
         let q: Vec<f64> = along.iter().zip(&at[0]).map(|(x, p)| p + x).collect();
         let rate: Vec<f64> = along.iter().zip(&at[1]).map(|(x, v)| v + self.weights.rate * x).collect();
-        self.reaction.evaluate(model, &q, &rate, speeds);
+        self.reaction.evaluate(model, [&q, &rate], to, Some((from, self.weights.step)));
         let mut rho = multiply_vector(&self.linear, delta);
         rho.iter_mut().zip(h).for_each(|(rho, h)| *rho -= h);
-        model.add_reactions(self.weights.share(), &self.reaction.force, &mut rho);
+        to.interface.add_reactions(model, self.weights.share(), &self.reaction.force, &mut rho);
         rho
     }
 }
@@ -52,8 +53,8 @@ impl Solver for FullNewton<'_> {
     ) -> Result<(), Stuck> {
         let (model, weights) = (self.model, self.weights);
         let n = model.n();
-        let mut at = [0, 1].map(|_| vec![0.0; model.directions.len()]);
-        from.predict_along(&weights, &mut at);
+        let mut at = [0, 1].map(|_| vec![0.0; model.n_directions()]);
+        to.predict_along(&weights, &mut at);
         let mut force = h.col_as_slice(0).to_vec();
         if let Some(own) = &model.damping.modal {
             let part = expand(own.basis.as_ref(), modal.as_ref());
@@ -64,7 +65,7 @@ impl Solver for FullNewton<'_> {
         let mut delta: Vec<f64> = from.motion.col_as_slice(2).iter().map(|a| a / weights.inertia).collect();
         let mut length = 0.0;
         for _ in 0..ITERATIONS {
-            let mut rho = self.residual(&delta, &force, &at, &to.speeds);
+            let mut rho = self.residual(&delta, &force, &at, [from, to]);
             let column = Mat::from_fn(n, 1, |i, _| delta[i]);
             if let Some(own) = &model.damping.modal {
                 let mut share = gram(own.basis.as_ref(), column.as_ref());
@@ -72,7 +73,7 @@ impl Solver for FullNewton<'_> {
                 let part = expand(own.basis.as_ref(), share.as_ref());
                 rho.iter_mut().zip(part.col_as_slice(0)).for_each(|(r, p)| *r += p);
             }
-            let entries = self.reaction.tangent(model, weights.rate).into_iter();
+            let entries = self.reaction.tangent(model, &to.interface, weights.rate).into_iter();
             let entries: Vec<_> = entries.map(|(i, j, v)| Triplet::new(i, j, weights.share() * v)).collect();
             let contact =
                 SparseMatrix::try_new_from_triplets(n, n, &entries).map_err(|_| Stuck::NotFinite)?;
@@ -86,8 +87,9 @@ impl Solver for FullNewton<'_> {
             (0..n).for_each(|i| delta[i] -= step[(i, 0)]);
             let scale = from.motion.col(0).norm_max().max(column.norm_max());
             if length <= ROUND_OFF * scale {
-                self.residual(&delta, &force, &at, &to.speeds);
+                self.residual(&delta, &force, &at, [from, to]);
                 to.reaction.copy_from_slice(&self.reaction.force);
+                to.bristles.copy_from_slice(&self.reaction.bristles);
                 h.col_as_slice_mut(0).copy_from_slice(&delta);
                 if let Some(own) = &model.damping.modal {
                     *modal = gram(own.basis.as_ref(), h.as_ref());

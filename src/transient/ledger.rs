@@ -19,11 +19,12 @@ pub struct Work {
     pub external: f64,
     /// −Δuᵀ C v̄: what structural damping takes.
     pub damping: f64,
-    /// −Σ Δ(gᵀu) N̄: what the normal forces of the contacts do to the structure.
+    /// −Σ gᵀΔu N̄: what the normal forces of the contacts do to the structure.
     pub normal: f64,
-    /// Σ V̄ Δt F̄₁: what the drives of the counter-bodies spend against friction.
+    /// Σ ∫V dt F̄₁: what the drives of the counter-bodies spend against friction.
     pub drive: f64,
-    /// What friction turns into heat: Σ F̄₁(V̄ Δt − Δ(t₁ᵀu)) − F̄₂ Δ(t₂ᵀu). The structure gains drive − heat.
+    /// What friction turns into heat, or bends bristles with: Σ F̄₁(∫V dt − t₁ᵀΔu) − F̄₂ t₂ᵀΔu. The structure gains
+    /// drive − heat.
     pub heat: f64,
     /// What imported unsymmetric terms do to the structure.
     pub coupling: f64,
@@ -80,18 +81,24 @@ impl Work {
         }
         let mut work = Work { external, damping, kinetic, strain, ..Work::default() };
         for (d, (old, new)) in from.reaction.iter().zip(&to.reaction).enumerate() {
-            let moved = to.along[(d, 0)] - from.along[(d, 0)];
-            let mean = 0.5 * (old + new);
-            force_change -= moved * (new - old);
+            // Δu along the directions of both ends, which differ where a contact travels.
+            let ahead = to.along[(d, 0)] - to.before[(d, 0)];
+            let behind = if model.travels() {
+                from.interface.motion(model, d, u1) - from.along[(d, 0)]
+            } else {
+                ahead
+            };
+            let mean = 0.5 * (behind * old + ahead * new);
+            force_change -= ahead * new - behind * old;
             match (model.points.get(d / 3), d % 3) {
-                (Some(_), 0) => work.normal -= moved * mean,
+                (Some(_), 0) => work.normal -= mean,
                 (Some(point), 1) => {
-                    let slid = 0.5 * weights.step * (from.speeds[point.pair] + to.speeds[point.pair]);
-                    work.drive -= slid * mean;
-                    work.heat -= (slid - moved) * mean;
+                    let slid = to.interface.travel[point.pair] - from.interface.travel[point.pair];
+                    work.drive -= 0.5 * slid * (old + new);
+                    work.heat -= 0.5 * slid * (old + new) - mean;
                 }
-                (Some(_), _) => work.heat += moved * mean,
-                (None, _) => work.coupling -= moved * mean,
+                (Some(_), _) => work.heat += mean,
+                (None, _) => work.coupling -= mean,
             }
         }
         let scheme = weights.scheme;

@@ -9,6 +9,7 @@ mod condensed;
 mod drive;
 mod effective;
 mod full_newton;
+mod interface;
 mod ledger;
 mod march;
 mod model;
@@ -18,6 +19,7 @@ mod state;
 mod stepper;
 #[cfg(test)]
 mod tests;
+mod track;
 
 pub use drive::{Profile, Push};
 pub use ledger::Work;
@@ -26,3 +28,4 @@ pub use model::{Model, refuse_hysteretic};
 pub use scheme::Scheme;
 pub use state::State;
 pub use stepper::Method;
+pub use track::Track;

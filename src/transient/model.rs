@@ -1,7 +1,9 @@
 //! What time integration needs of a system.
 
 use super::drive::{Profile, Push};
+use super::interface::Interface;
 use super::scheme::Weights;
+use super::track::Track;
 use crate::equilibrium::{SteadySliding, directions, tangent_stiffness};
 use crate::error::{Error, Fault, Result};
 use crate::linalg::sparse::add_scaled;
@@ -20,8 +22,9 @@ pub struct Model<'a> {
     pub(super) stiffness: Cow<'a, SparseMatrix>,
     /// f \[N, N m\].
     pub(super) load: &'a [f64],
-    /// The columns of D: g, t₁, t₂ of every contact point, then the imported ones.
-    pub(super) directions: Vec<&'a SparseVector>,
+    /// P, what the directions D are made of: g, t₁, t₂ of every contact point, at each of its stations where it travels,
+    /// then the imported ones.
+    pub(super) columns: Vec<&'a SparseVector>,
     pub(super) points: Vec<Touch<'a>>,
     /// k and c between the imported directions.
     pub(super) coupling: Option<[&'a Mat<f64>; 2]>,
@@ -29,6 +32,8 @@ pub struct Model<'a> {
     pub(super) velocities: Vec<f64>,
     /// How each of them runs in time.
     pub(super) profiles: Vec<Profile>,
+    /// How the points of each pair change as its counter-body travels; those of the others stay.
+    pub(super) tracks: Vec<Option<&'a Track>>,
     /// Pushes on the structure.
     pub(super) pushes: Vec<Push>,
 }
@@ -40,8 +45,10 @@ pub(super) struct Touch<'a> {
     pub(super) pair: usize,
     pub(super) law: &'a dyn ContactLaw,
     pub(super) weight: f64,
-    /// approach − gap \[m\], δ at gᵀu = 0.
-    pub(super) closeness: f64,
+    /// The approach of its pair \[m\].
+    pub(super) approach: f64,
+    /// Its gap where it does not travel \[m\].
+    pub(super) gap: f64,
 }
 
 impl<'a> Model<'a> {
@@ -59,7 +66,8 @@ impl<'a> Model<'a> {
                     pair: k,
                     law: &*pair.law,
                     weight: point.weight,
-                    closeness: approach - point.gap,
+                    approach: *approach,
+                    gap: point.gap,
                 })
             })
             .collect();
@@ -69,11 +77,12 @@ impl<'a> Model<'a> {
             damping: &system.structure.damping,
             stiffness: tangent_stiffness(system, &steady.displacement)?,
             load: &system.load,
-            directions: system.points().flat_map(|(_, point)| directions(point)).chain(imported).collect(),
+            columns: system.points().flat_map(|(_, point)| directions(point)).chain(imported).collect(),
             points,
             coupling: system.coupling.as_ref().map(|rest| [&rest.stiffness, &rest.damping]),
             velocities: system.pairs.iter().map(|pair| pair.sliding_velocity).collect(),
             profiles: vec![Profile::Constant; system.pairs.len()],
+            tracks: vec![None; system.pairs.len()],
             pushes: Vec::new(),
         })
     }
@@ -85,6 +94,75 @@ impl<'a> Model<'a> {
     pub fn driven(self, profiles: Vec<Profile>, pushes: Vec<Push>) -> Self {
         assert!(profiles.len() == self.velocities.len(), "one profile a pair");
         Model { profiles, pushes, ..self }
+    }
+
+    /// The same model whose points run along tracks, one a pair, as its counter-body travels.
+    ///
+    /// # Panics
+    /// When there is not one entry for each pair, or a station has not the points of its pair.
+    pub fn travelling(mut self, tracks: Vec<Option<&'a Track>>) -> Self {
+        assert!(tracks.len() == self.velocities.len(), "one entry a pair");
+        let imported = self.columns.split_off(3 * self.points.len());
+        let still = std::mem::take(&mut self.columns);
+        for (pair, track) in tracks.iter().enumerate() {
+            let own: Vec<usize> = (0..self.points.len()).filter(|p| self.points[*p].pair == pair).collect();
+            match track {
+                Some(track) => {
+                    assert!(track.stations.len() > 1, "two stations or more");
+                    for station in &track.stations {
+                        assert!(station.len() == own.len(), "the points of the pair");
+                        self.columns.extend(station.iter().flat_map(directions));
+                    }
+                }
+                None => self.columns.extend(own.iter().flat_map(|p| &still[3 * p..3 * p + 3]).copied()),
+            }
+        }
+        self.columns.extend(imported);
+        Model { tracks, ..self }
+    }
+
+    /// Whether a direction changes in time.
+    pub(super) fn travels(&self) -> bool {
+        self.tracks.iter().any(Option::is_some)
+    }
+
+    /// How many directions there are: three a point, and those that were imported.
+    pub(super) fn n_directions(&self) -> usize {
+        3 * self.points.len() + self.coupling.map_or(0, |[k, _]| k.nrows())
+    }
+
+    /// Where the contacts act at a time \[s\].
+    pub(super) fn locate(&self, time: f64, at: &mut Interface) {
+        let travelled =
+            self.velocities.iter().zip(&self.profiles).map(|(v, profile)| v * profile.integral(time));
+        at.travel.iter_mut().zip(travelled).for_each(|(at, travel)| *at = travel);
+        // The first column of the pair, and the first of its points.
+        let (mut column, mut first) = (0, 0);
+        for (pair, track) in self.tracks.iter().enumerate() {
+            let count = self.points[first..].iter().take_while(|point| point.pair == pair).count();
+            let shares = track.map(|track| track.shares(at.travel[pair]));
+            for p in 0..count {
+                let point = &self.points[first + p];
+                let mut gap = point.gap;
+                if let (Some(track), Some(shares)) = (track, &shares) {
+                    gap = shares.iter().map(|(station, share)| share * track.stations[*station][p].gap).sum();
+                }
+                at.closeness[first + p] = point.approach - gap;
+                for c in 0..3 {
+                    at.mixes[3 * (first + p) + c] = match &shares {
+                        Some(shares) => {
+                            shares.map(|(station, share)| (column + 3 * (station * count + p) + c, share))
+                        }
+                        None => alone(column + 3 * p + c),
+                    };
+                }
+            }
+            first += count;
+            column += 3 * count * track.map_or(1, |track| track.stations.len());
+        }
+        for (k, mix) in at.mixes[3 * first..].iter_mut().enumerate() {
+            *mix = alone(column + k);
+        }
     }
 
     /// V of each pair at a time \[m/s\].
@@ -104,18 +182,11 @@ impl<'a> Model<'a> {
         terms.extend(self.damping.viscous.iter().map(|viscous| (c, viscous)));
         add_scaled(&terms)
     }
+}
 
-    /// Dᵀx.
-    pub(super) fn motions(&self, x: &[f64], out: &mut [f64]) {
-        self.directions.iter().zip(out).for_each(|(d, out)| *out = d.dot(x));
-    }
-
-    /// x += factor · D r.
-    pub(super) fn add_reactions(&self, factor: f64, r: &[f64], x: &mut [f64]) {
-        for (d, r) in self.directions.iter().zip(r).filter(|(_, r)| **r != 0.0) {
-            d.add_to(factor * r, x);
-        }
-    }
+/// One column as it is.
+fn alone(column: usize) -> [(usize, f64); 4] {
+    [(column, 1.0), (column, 0.0), (column, 0.0), (column, 0.0)]
 }
 
 /// Loss factors are defined for harmonic motion only.

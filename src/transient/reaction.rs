@@ -1,8 +1,10 @@
 //! The forces along the directions D, as functions of the motion along them.
 
+use super::interface::Interface;
 use super::model::Model;
+use super::state::State;
 use crate::equilibrium::ContactBlock;
-use crate::system::{ContactMotion, ContactTangent};
+use crate::system::{ContactMotion, ContactTangent, SlipAnswer, SlipStep};
 use faer::Mat;
 
 /// r(q, q̇) with q = Dᵀu, on the left-hand side: (N, −F₁, −F₂) of every contact point, then k q + c q̇ of what was
@@ -11,32 +13,77 @@ use faer::Mat;
 pub(super) struct Reaction {
     /// r \[N\].
     pub(super) force: Vec<f64>,
+    /// What each point remembers.
+    pub(super) bristles: Vec<Bristles>,
     /// ∂r/∂q \[N/m\] and ∂r/∂q̇ \[N s/m\] of each point.
     blocks: Vec<ContactBlock>,
 }
+
+/// What a contact point remembers from step to step.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Bristles {
+    /// How far they are bent along t₁ and t₂ \[m\].
+    pub(super) bent: [f64; 2],
+    /// Whether the point did not slip in the step that ended here.
+    pub(super) stick: bool,
+}
+
+/// The step that a reaction ends: where it began, and how long it is \[s\].
+pub(super) type Since<'a> = (&'a State, f64);
 
 impl Reaction {
     pub(super) fn new(model: &Model<'_>) -> Self {
         let silent = |point| ContactBlock::new(point, &ContactTangent::default());
         Reaction {
-            force: vec![0.0; model.directions.len()],
+            force: vec![0.0; model.n_directions()],
+            bristles: vec![Bristles::default(); model.points.len()],
             blocks: (0..model.points.len()).map(silent).collect(),
         }
     }
 
-    /// Evaluates at q, q̇ \[m, m/s\] while the counter-bodies slide with `speeds` \[m/s\], one a pair.
-    pub(super) fn evaluate(&mut self, model: &Model<'_>, q: &[f64], rate: &[f64], speeds: &[f64]) {
+    /// Evaluates at q, q̇ \[m, m/s\] with what acts at the time of `to`, at the end of a step; or without one, at the start
+    /// of all, as in steady sliding.
+    pub(super) fn evaluate(
+        &mut self,
+        model: &Model<'_>,
+        [q, rate]: [&[f64]; 2],
+        to: &State,
+        since: Option<Since<'_>>,
+    ) {
         for (p, point) in model.points.iter().enumerate() {
             let at = 3 * p;
             let motion = ContactMotion {
-                penetration: point.closeness + q[at],
+                penetration: to.interface.closeness[p] + q[at],
                 penetration_rate: rate[at],
-                slip_velocity: [speeds[point.pair] - rate[at + 1], -rate[at + 2]],
+                slip_velocity: [to.speeds[point.pair] - rate[at + 1], -rate[at + 2]],
             };
-            let (forces, tangent) = point.law.respond(&motion, point.weight);
+            let answer = match since {
+                Some((from, duration)) => {
+                    let travel = to.interface.travel[point.pair] - from.interface.travel[point.pair];
+                    let moved = [1, 2].map(|c| q[at + c] - to.before[(at + c, 0)]);
+                    let since = SlipStep {
+                        bristle: from.bristles[p].bent,
+                        slid: [travel - moved[0], -moved[1]],
+                        duration,
+                    };
+                    point.law.advance(&motion, &since, point.weight)
+                }
+                None => {
+                    let (forces, tangent) = point.law.respond(&motion, point.weight);
+                    let bristle = point.law.bent(forces.friction, point.weight);
+                    SlipAnswer { forces, tangent, bristle, ..SlipAnswer::default() }
+                }
+            };
+            let SlipAnswer { forces, tangent, by_slid, .. } = answer;
             let values = [forces.normal, -forces.friction[0], -forces.friction[1]];
             self.force[at..at + 3].copy_from_slice(&values);
-            self.blocks[p] = ContactBlock::new(p, &tangent);
+            self.bristles[p] = Bristles { bent: answer.bristle, stick: answer.sticks };
+            let mut block = ContactBlock::new(p, &tangent);
+            for (i, row) in by_slid.iter().enumerate() {
+                // Both −F and −Δ: the signs cancel.
+                (0..2).for_each(|j| block.stiffness[1 + i][1 + j] += row[j]);
+            }
+            self.blocks[p] = block;
         }
         let first = 3 * model.points.len();
         if let Some([k, c]) = model.coupling {
@@ -60,7 +107,7 @@ impl Reaction {
         let mut active: Vec<usize> = closed.flat_map(|b| 3 * b.point..3 * b.point + 3).collect();
         let first = 3 * model.points.len();
         let touching = active.len();
-        active.extend(first..model.directions.len());
+        active.extend(first..model.n_directions());
         let mut columns = Mat::<f64>::zeros(compliance.nrows(), active.len());
         let mut add = |column: usize, row: usize, slope: f64| {
             let out = columns.col_as_slice_mut(column);
@@ -83,12 +130,13 @@ impl Reaction {
     }
 
     /// D (∂r/∂q + c₁ ∂r/∂q̇) Dᵀ as triplets, for the tangent of the whole.
-    pub(super) fn tangent(&self, model: &Model<'_>, rate: f64) -> Vec<(usize, usize, f64)> {
+    pub(super) fn tangent(&self, model: &Model<'_>, at: &Interface, rate: f64) -> Vec<(usize, usize, f64)> {
         let mut triplets = Vec::new();
+        let directions: Vec<_> = (0..model.n_directions()).map(|k| at.direction(model, k)).collect();
         let mut add = |row: usize, column: usize, slope: f64| {
             if slope != 0.0 {
-                for (i, a) in model.directions[row].iter() {
-                    triplets.extend(model.directions[column].iter().map(|(j, b)| (i, j, a * slope * b)));
+                for (i, a) in directions[row].iter() {
+                    triplets.extend(directions[column].iter().map(|(j, b)| (i, j, a * slope * b)));
                 }
             }
         };

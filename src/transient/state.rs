@@ -1,7 +1,8 @@
 //! Where a system stands: its motion, and what the matrices make of it.
 
+use super::interface::Interface;
 use super::model::Model;
-use super::reaction::Reaction;
+use super::reaction::{Bristles, Reaction};
 use super::scheme::Weights;
 use super::stepper::combine;
 use crate::equilibrium::SteadySliding;
@@ -29,10 +30,16 @@ pub struct State {
     pub(super) along: Mat<f64>,
     /// r along the directions \[N\].
     pub(super) reaction: Vec<f64>,
+    /// What each contact point remembers.
+    pub(super) bristles: Vec<Bristles>,
     /// p(t) of each push.
     pub(super) pushes: Vec<f64>,
     /// V of each pair at t \[m/s\].
     pub(super) speeds: Vec<f64>,
+    /// Where the contacts act at t.
+    pub(super) interface: Interface,
+    /// Dᵀu, Dᵀv, Dᵀa of the motion at the beginning of the step that ended here, with its D: r × 3.
+    pub(super) before: Mat<f64>,
 }
 
 impl State {
@@ -64,8 +71,10 @@ impl State {
             *out = gram(modal.basis.as_ref(), self.motion.as_ref());
         }
         let mut reaction = Reaction::new(model);
-        reaction.evaluate(model, self.along.col_as_slice(0), self.along.col_as_slice(1), &self.speeds);
+        let along = [0, 1].map(|k| self.along.col_as_slice(k));
+        reaction.evaluate(model, along, self, None);
         self.reaction = reaction.force;
+        self.bristles = reaction.bristles;
     }
 
     /// What acts at a time.
@@ -73,11 +82,23 @@ impl State {
         self.time = time;
         self.speeds.iter_mut().zip(model.speeds(time)).for_each(|(now, v)| *now = v);
         self.pushes.iter_mut().zip(&model.pushes).for_each(|(now, push)| *now = push.factor(time));
+        model.locate(time, &mut self.interface);
+    }
+
+    /// The motion that a step to here begins with, along the directions at its end.
+    pub(super) fn look_back(&mut self, model: &Model<'_>, from: &State) {
+        if model.travels() {
+            for k in 0..3 {
+                self.interface.motions(model, from.motion.col_as_slice(k), self.before.col_as_slice_mut(k));
+            }
+        } else {
+            self.before.copy_from(&from.along);
+        }
     }
 
     /// Dᵀu_t and Dᵀv_t, the motion along the directions at the end of a step as far as it is known at its beginning.
     pub(super) fn predict_along(&self, weights: &Weights, out: &mut [Vec<f64>; 2]) {
-        let along = [0, 1, 2].map(|k| self.along.col_as_slice(k));
+        let along = [0, 1, 2].map(|k| self.before.col_as_slice(k));
         combine(weights.predicted(), along, &mut out[0]);
         combine(weights.predicted_rate(), along, &mut out[1]);
     }
@@ -93,9 +114,14 @@ impl State {
         [self.reaction[at], -self.reaction[at + 1], -self.reaction[at + 2]]
     }
 
+    /// Whether a contact point did not slip in the last step; only a law with bristles can say so.
+    pub fn sticks(&self, point: usize) -> bool {
+        self.bristles[point].stick
+    }
+
     /// δ \[m\] of a contact point.
-    pub fn penetration(&self, model: &Model<'_>, point: usize) -> f64 {
-        model.points[point].closeness + self.along[(3 * point, 0)]
+    pub fn penetration(&self, point: usize) -> f64 {
+        self.interface.closeness[point] + self.along[(3 * point, 0)]
     }
 
     /// The slip velocity of a contact point along t₁ and t₂ \[m/s\].
@@ -113,7 +139,7 @@ impl State {
 
     /// Room for a state of `model`.
     pub(super) fn empty(model: &Model<'_>) -> Self {
-        let (n, r) = (model.n(), model.directions.len());
+        let (n, r) = (model.n(), model.n_directions());
         State {
             time: 0.0,
             motion: Mat::zeros(n, 3),
@@ -123,8 +149,11 @@ impl State {
             modal: model.damping.modal.as_ref().map(|modal| Mat::zeros(modal.coefficients.len(), 3)),
             along: Mat::zeros(r, 3),
             reaction: vec![0.0; r],
+            bristles: vec![Bristles::default(); model.points.len()],
             pushes: vec![0.0; model.pushes.len()],
             speeds: model.velocities.clone(),
+            interface: Interface::new(model),
+            before: Mat::zeros(r, 3),
         }
     }
 
@@ -137,7 +166,7 @@ impl State {
             multiply(c, rates, out.as_mut());
         }
         for k in 0..3 {
-            model.motions(self.motion.col_as_slice(k), self.along.col_as_slice_mut(k));
+            self.interface.motions(model, self.motion.col_as_slice(k), self.along.col_as_slice_mut(k));
         }
     }
 }

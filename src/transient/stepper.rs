@@ -74,9 +74,10 @@ impl<'a> Stepper<'a> {
         Ok(Stepper { model, weights, solver, increment: Mat::zeros(model.n(), 1) })
     }
 
-    /// Advances `from` to `to`, whose time, speeds and pushes say what acts at its end; says what work was done.
+    /// Advances `from` to `to`, which says what acts at its end ([`State::act`]); says what work was done.
     pub(super) fn step(&mut self, from: &State, to: &mut State) -> std::result::Result<Work, Stuck> {
         let (model, weights) = (self.model, self.weights);
+        to.look_back(model, from);
         let mut modal = self.force(from, to);
         self.solver.increment(&mut self.increment, &mut modal, from, to)?;
         advance(&weights, &from.motion, self.increment.col_as_slice(0), &mut to.motion);
@@ -110,7 +111,7 @@ impl<'a> Stepper<'a> {
         for (k, push) in model.pushes.iter().enumerate() {
             push.direction.add_to(share * to.pushes[k] + alpha * from.pushes[k], h);
         }
-        model.add_reactions(-alpha, &from.reaction, h);
+        from.interface.add_reactions(model, -alpha, &from.reaction, h);
         match (&model.damping.modal, &from.modal) {
             (Some(modal), Some(along)) => Mat::from_fn(modal.coefficients.len(), 1, |i, _| {
                 modal.coefficients[i] * (dashpot[1] * along[(i, 1)] + dashpot[2] * along[(i, 2)])

@@ -1,5 +1,5 @@
 use super::*;
-use crate::contact::{Constant, NormalLaw, SlidingLaw};
+use crate::contact::{Bristle, Constant, Hyperbolic, NormalLaw, SlidingLaw, Stribeck};
 use crate::equilibrium::samples::{pair, point, random_system, sparse, structure, two_dof, vector};
 use crate::equilibrium::{SteadyOptions, SteadySliding, solve_steady};
 use crate::linalg::{SparseVector, c64};
@@ -308,4 +308,145 @@ fn a_model_reduced_to_all_it_has_moves_like_the_full_one() {
     let size = a.motion.col(0).norm_max();
     let off = back.iter().zip(a.motion.col_as_slice(0)).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
     assert!(off < 1e-8 * size, "{off:e} of {size:e}");
+}
+
+/// A track of six stations whose contact points turn round a little from one to the next.
+fn winding(system: &System) -> Track {
+    let n = system.n_dofs();
+    let station = |k: usize| {
+        let moved = |d: &SparseVector, by: usize| {
+            let extra = [((7 * by + 3) % n, 0.1 * (k as f64 - 2.0)), ((5 * by + 11) % n, 0.04 * k as f64)];
+            SparseVector::from_entries(d.iter().chain(extra))
+        };
+        let points = system.pairs[0].points.iter().enumerate();
+        points
+            .map(|(p, point)| crate::system::ContactPoint {
+                gap: point.gap + 1e-6 * (k as f64 - 2.0).powi(2),
+                normal: moved(&point.normal, p),
+                tangents: [moved(&point.tangents[0], p + 1), moved(&point.tangents[1], p + 2)],
+                ..point.clone()
+            })
+            .collect()
+    };
+    Track { first: -0.4, spacing: 0.2, stations: (0..6).map(station).collect() }
+}
+
+#[test]
+fn a_travelling_contact_that_sticks_is_condensed_exactly_too() {
+    for (seed, scheme) in [Scheme::TRAPEZOIDAL, Scheme::hht(-0.1)].into_iter().enumerate() {
+        let mut system = damped(seed as u64 + 2);
+        let normal = NormalLaw { stiffness: 60.0, cubic_stiffness: 5.0, damping: 0.5, bilateral: false };
+        let friction = Stribeck { at_rest: 0.5, kinetic: 0.3, velocity: 0.2, exponent: 2.0 };
+        let bristle = Some(Bristle { stiffness: 40.0, damping: 0.4 });
+        let law = SlidingLaw { bristle, ..SlidingLaw::new(normal, friction, 0.0) };
+        system.pairs[0].law = std::sync::Arc::new(law);
+        let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
+        let track = winding(&system);
+        let push =
+            Push { direction: vector(&[(3, 40.0), (11, -60.0), (20, 50.0)]), begin: 0.01, duration: 0.3 };
+        let back = Profile::Reciprocating { frequency_hz: 1.0, phase: 0.1 };
+        let model = Model::new(&system, &steady).unwrap().driven(vec![back], vec![push]);
+        let model = model.travelling(vec![Some(&track)]);
+        let (mut open, mut stuck, mut far) = (0, 0, 0.0f64);
+        let mut states = Vec::new();
+        let condensed = plan(scheme, 2e-3, 1000);
+        let end = march(&model, State::steady(&model, &steady), &condensed, &(), &mut |moment| {
+            let points = 0..model.points.len();
+            open += points.clone().filter(|p| moment.state.contact_forces(*p)[0] == 0.0).count();
+            stuck += points.filter(|p| moment.state.sticks(*p)).count();
+            far = far.max(moment.state.interface.travel[0].abs());
+            states.push(moment.state.motion.clone());
+            Ok(())
+        })
+        .unwrap();
+        assert!(open > 20 && stuck > 100 && stuck < 3900 && far > 0.1, "{open} {stuck} {far}");
+        assert!(end.worst_residual < 1e-9, "{scheme:?}: {:e}", end.worst_residual);
+        let full = Plan { method: Method::FullNewton, ..condensed };
+        let largest = states.iter().map(|m| m.col(0).norm_max()).fold(0.0, f64::max);
+        march(&model, State::steady(&model, &steady), &full, &(), &mut |moment| {
+            let difference = (moment.state.motion.col(0) - states[moment.step].col(0)).norm_max();
+            assert!(difference <= 1e-10 * largest, "{scheme:?}, step {}: {difference:e}", moment.step);
+            Ok(())
+        })
+        .unwrap();
+    }
+}
+
+#[test]
+fn a_contact_that_has_travelled_slowly_stands_like_one_that_was_set_there() {
+    let mut system = damped(4);
+    system.pairs[0].sliding_velocity = 0.2 / 400.0;
+    let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
+    let track = winding(&system);
+    let model = Model::new(&system, &steady)
+        .unwrap()
+        .driven(vec![Profile::Constant], vec![])
+        .travelling(vec![Some(&track)]);
+    // From the third station, where the pair stands, to the fifth.
+    let end = run(&model, State::steady(&model, &steady), plan(Scheme::hht(-0.3), 0.05, 16_000)).state;
+    let mut there = system.clone();
+    there.pairs[0].points = track.stations[4].clone();
+    there.pairs[0].closing = Closing::Approach(steady.approach[0]);
+    let there = solve_steady(&there, &SteadyOptions::default(), &()).unwrap();
+    let largest = there.points.iter().map(|p| p.forces.normal).fold(0.0, f64::max);
+    for (p, point) in there.points.iter().enumerate() {
+        let off = end.contact_forces(p)[0] - point.forces.normal;
+        assert!(off.abs() < 1e-3 * largest, "{p}: {off:e} of {largest}");
+    }
+    assert!(
+        there
+            .points
+            .iter()
+            .zip(&steady.points)
+            .any(|(a, b)| (a.forces.normal - b.forces.normal).abs() > 0.01)
+    );
+}
+
+#[test]
+fn a_mass_on_a_belt_sticks_and_slips_with_the_period_of_the_exact_solution() {
+    // m = k = F_s = 1, belt 0.2, F = F_s/(1 + 3|v|). The contact is pressed by 1 N on a spring of its own.
+    let free = structure(2, |i, j| f64::from(i == j), |i, j| if (i, j) == (0, 0) { 1.0 } else { 0.0 });
+    let touch = point(0.0, 1.0, vector(&[(1, 1.0)]), vector(&[(0, 1.0)]), SparseVector::default());
+    let bristle = Some(Bristle { stiffness: 1e5, damping: 600.0 });
+    let friction = Hyperbolic { at_rest: 1.0, decline: 3.0 };
+    let law = SlidingLaw { bristle, ..SlidingLaw::new(NormalLaw::linear(1e3), friction, 0.0) };
+    let system = System {
+        structure: free,
+        pairs: vec![pair(vec![touch], law, Closing::Approach(0.0), 0.2)],
+        load: vec![0.0, 1.0],
+        prestress: None,
+        coupling: None,
+    };
+    let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
+    let model = Model::new(&system, &steady).unwrap();
+    // A push away from steady sliding, which is unstable.
+    let from = start(&model, &[0.9, 1e-3], &[0.0, 0.0], &[0.0, 0.0]);
+    let step = 1e-3;
+    let (mut begins, mut stuck, mut range) = (Vec::new(), false, [f64::INFINITY, f64::NEG_INFINITY]);
+    let (mut sticking, mut from_period) = (0, None);
+    march(&model, from, &plan(Scheme::hht(-0.1), step, 60_000), &(), &mut |moment| {
+        let now = moment.state.sticks(0);
+        // After a first period, from one beginning of sticking to another.
+        if moment.step > 20_000 {
+            if now && !stuck {
+                begins.push(moment.step as f64 * step);
+                from_period.get_or_insert(moment.step);
+            }
+            if begins.len() == 1 || begins.len() == 2 {
+                sticking += usize::from(now);
+            }
+            let x = moment.state.motion[(0, 0)];
+            range = [range[0].min(x), range[1].max(x)];
+        }
+        stuck = now;
+        Ok(())
+    })
+    .unwrap();
+    let periods: Vec<f64> = begins.windows(2).map(|w| w[1] - w[0]).collect();
+    assert!(periods.len() >= 2, "{begins:?}");
+    let near = |found: f64, exact: f64| assert!((found / exact - 1.0).abs() < 1e-3, "{found} {exact}");
+    periods.iter().for_each(|period| near(*period, 12.001031));
+    near(sticking as f64 * step / 2.0, 7.705032);
+    near(range[1], 1.133945);
+    near(range[0], -0.555433);
 }

@@ -49,6 +49,25 @@ pub(super) fn check_names(root: &Section, case: &Case) {
     if case.sensitivity.is_some() && case.cea.is_none() {
         root.fault("sensitivity", "no [cea] in the case", "a [cea], whose eigenvalues are looked into", "");
     }
+    for (name, contact) in case.contact.iter().filter(|(_, contact)| contact.bristle.is_some()) {
+        let refuse = |key: &str, found: &str, expected: &str| {
+            root.fault(&format!("contact.{name}.{key}"), found, expected, "");
+        };
+        if contact.friction.regularisation > 0.0 {
+            refuse(
+                "friction.regularisation",
+                "a velocity",
+                "none beside a `bristle`, which sticks by itself",
+            );
+        }
+        if !contact.normal.unilateral {
+            refuse(
+                "normal.unilateral",
+                "false",
+                "true beside a `bristle`: a contact that pulls does not stick",
+            );
+        }
+    }
     if let Some(transient) = &case.transient {
         if case.cea.is_none() {
             let expected = "a [cea], whose modes the motion starts along and is compared with";
@@ -59,12 +78,17 @@ pub(super) fn check_names(root: &Section, case: &Case) {
             unknown_name(root, &format!("transient.slide.{name}"), name, "contact", &contacts);
         }
         for (name, contact) in &case.contact {
-            let stops = transient.slide.get(name).is_some_and(|slide| slide.stops());
-            if stops && contact.friction.regularisation == 0.0 {
-                let help =
-                    "Friction jumps where the slip turns round; a thousandth of the velocity is a start";
-                let key = format!("contact.{name}.friction.regularisation");
-                root.fault(&key, "0", "a velocity above zero, as the sliding stops on its way", help);
+            let stops = transient.slide.get(name).is_some_and(|slide| slide.course.stops());
+            if stops && contact.friction.regularisation == 0.0 && contact.bristle.is_none() {
+                let help = "Friction jumps where the slip turns round: give the contact a `bristle` of the stiffness \
+                            of its normal law, or the friction a `regularisation` of a thousandth of the velocity";
+                let key = format!("contact.{name}.bristle");
+                root.fault(
+                    &key,
+                    "nothing",
+                    "what makes the contact stick, as the sliding stops on its way",
+                    help,
+                );
             }
         }
         let plain = |name: &str| name.chars().all(|c| c.is_alphanumeric() || c == '-' || c == '_');

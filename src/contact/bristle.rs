@@ -1,0 +1,277 @@
+//! Friction that sticks: elastic bristles that bend before they slip, with return mapping.
+
+use super::friction::{Coefficient, FrictionCoefficient};
+use super::normal::NormalLaw;
+use crate::system::{ContactMotion, SlipAnswer, SlipStep};
+
+/// Bristles between the bodies, bent by **s** along the face, with stiffness k_t and damping c_t:
+///
+/// k_t **s** + c_t ṡ = **F**, |**F**| ≤ μ N, and the point slips, with **v** − ṡ along **F**, only where |**F**| = μ N.
+///
+/// A time step first bends them by the whole slip Δ, **F*** = κ(**s** + Δ) − (c_t/Δt) **s** with κ = k_t + c_t/Δt. Up to
+/// μ(0) N that is the force, and the point sticks. Beyond, **F** = μ(w) N **F***/|**F***|, and the bristles bend back to
+/// what this force bends: the return mapping of elastoplasticity (J. C. Simo & T. J. R. Hughes, Computational
+/// Inelasticity, 1998). The mean speed of slip v_p in the step follows from κ Δt v_p + μ(w) N = |**F***|; μ is taken at
+/// the speed at the end of the step, w = v_p + (**v** − Δ/Δt)·**F***/|**F***|, which keeps the order of the integrator,
+/// but nowhere beyond 0 … 2 v_p, so that the force runs on into sticking without a jump.
+///
+/// μ(0) is the static coefficient. With μ falling steeper than κ Δt the force has a jump where slip begins, as it should.
+/// A contact that pulls (N < 0) does not rub.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bristle {
+    /// k_t \[N/m per unit of weight\].
+    pub stiffness: f64,
+    /// c_t \[N s/m per unit of weight\].
+    pub damping: f64,
+}
+
+impl Bristle {
+    pub(super) fn advance(
+        &self,
+        normal: &NormalLaw,
+        friction: &dyn FrictionCoefficient,
+        motion: &ContactMotion,
+        since: &SlipStep,
+        weight: f64,
+    ) -> SlipAnswer {
+        let unit = normal.force(motion.penetration, motion.penetration_rate);
+        let pressure = unit.value.max(0.0);
+        let mut answer = SlipAnswer::default();
+        answer.forces.normal = weight * unit.value;
+        answer.tangent.by_penetration[0] = weight * unit.by_penetration;
+        answer.tangent.by_penetration_rate[0] = weight * unit.by_penetration_rate;
+        if pressure == 0.0 {
+            return answer;
+        }
+        let viscous = weight * self.damping / since.duration;
+        let bend = weight * self.stiffness + viscous;
+        let trial = [0, 1].map(|i| bend * (since.bristle[i] + since.slid[i]) - viscous * since.bristle[i]);
+        let size = trial[0].hypot(trial[1]);
+        let load = weight * pressure;
+        if size <= friction.mu(0.0, pressure).value * load {
+            answer.forces.friction = trial;
+            answer.by_slid = [[bend, 0.0], [0.0, bend]];
+            answer.bristle = [0, 1].map(|i| since.bristle[i] + since.slid[i]);
+            answer.sticks = true;
+            return answer;
+        }
+        let towards = trial.map(|f| f / size);
+        let excess = [0, 1].map(|i| motion.slip_velocity[i] - since.slid[i] / since.duration);
+        let slip = Slip {
+            friction,
+            pressure,
+            load,
+            resistance: bend * since.duration,
+            late: towards[0] * excess[0] + towards[1] * excess[1],
+        };
+        let at = slip.solve(size);
+        let force = at.mu.value * load;
+        // |F| by |F*|, by `late`, by N.
+        let share = load * at.mu.by_speed * at.by_speed / slip.resistance;
+        let by_size = share / (1.0 + share);
+        let by_late = load * at.mu.by_speed * at.by_late / (1.0 + share);
+        let by_normal = (at.mu.value + pressure * at.mu.by_pressure) / (1.0 + share);
+        for i in 0..2 {
+            answer.forces.friction[i] = force * towards[i];
+            answer.tangent.by_penetration[1 + i] = by_normal * answer.tangent.by_penetration[0] * towards[i];
+            answer.tangent.by_penetration_rate[1 + i] =
+                by_normal * answer.tangent.by_penetration_rate[0] * towards[i];
+            answer.bristle[i] = (force * towards[i] + viscous * since.bristle[i]) / bend;
+            for j in 0..2 {
+                let across = if i == j { 1.0 } else { 0.0 } - towards[i] * towards[j];
+                // `late` changes with its own Δ, and as F* turns.
+                let turned = (excess[j] - slip.late * towards[j]) * bend / size;
+                let along = by_size * bend * towards[j] + by_late * (turned - towards[j] / since.duration);
+                answer.by_slid[i][j] = towards[i] * along + force / size * bend * across;
+                answer.tangent.by_slip_velocity[1 + i][j] = by_late * towards[i] * towards[j];
+            }
+        }
+        answer
+    }
+}
+
+/// The equation for the speed of slip v ≥ 0: κ Δt v + μ(w(v)) N = |**F***|.
+struct Slip<'a> {
+    friction: &'a dyn FrictionCoefficient,
+    pressure: f64,
+    /// N.
+    load: f64,
+    /// κ Δt \[N s/m\].
+    resistance: f64,
+    /// By how much the speed at the end of the step is above its mean.
+    late: f64,
+}
+
+/// A speed with μ there.
+struct Slipping {
+    mu: Coefficient,
+    /// ∂w/∂v.
+    by_speed: f64,
+    /// ∂w/∂late.
+    by_late: f64,
+}
+
+impl Slip<'_> {
+    fn at(&self, speed: f64) -> Slipping {
+        let (w, by_speed, by_late) = if self.late >= speed {
+            (2.0 * speed, 2.0, 0.0)
+        } else if self.late <= -speed {
+            (0.0, 0.0, 0.0)
+        } else {
+            (speed + self.late, 1.0, 1.0)
+        };
+        Slipping { mu: self.friction.mu(w, self.pressure), by_speed, by_late }
+    }
+
+    /// The solution with the highest speed that Newton's method, kept inside a bracket, comes to from above; there is
+    /// one because the left-hand side is below `size` at v = 0 and not below it at size/(κ Δt).
+    fn solve(&self, size: f64) -> Slipping {
+        let (mut low, mut high) = (0.0, size / self.resistance);
+        let mut speed = high;
+        let mut at = self.at(speed);
+        for _ in 0..100 {
+            let over = self.resistance * speed + self.load * at.mu.value - size;
+            if over.abs() <= 4.0 * f64::EPSILON * size || high - low <= f64::EPSILON * high {
+                break;
+            }
+            if over > 0.0 {
+                high = speed;
+            } else {
+                low = speed;
+            }
+            let slope = self.resistance + self.load * at.mu.by_speed * at.by_speed;
+            let newton = speed - over / slope;
+            speed = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+            at = self.at(speed);
+        }
+        at
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::{Constant, Exponential, Hyperbolic, SlidingLaw, Stribeck};
+    use crate::system::ContactLaw;
+
+    const BRISTLE: Bristle = Bristle { stiffness: 5e5, damping: 20.0 };
+
+    fn law(friction: impl FrictionCoefficient + 'static) -> SlidingLaw {
+        let normal = NormalLaw { stiffness: 2e6, cubic_stiffness: 4e16, damping: 30.0, bilateral: false };
+        SlidingLaw { bristle: Some(BRISTLE), ..SlidingLaw::new(normal, friction, 0.0) }
+    }
+
+    fn motion(v: [f64; 2]) -> ContactMotion {
+        ContactMotion { penetration: 1e-5, penetration_rate: 0.01, slip_velocity: v }
+    }
+
+    fn values(answer: &SlipAnswer) -> [f64; 3] {
+        [answer.forces.normal, answer.forces.friction[0], answer.forces.friction[1]]
+    }
+
+    #[test]
+    fn the_point_sticks_elastically_up_to_static_friction_and_slips_beyond() {
+        let law = law(Stribeck { at_rest: 0.6, kinetic: 0.4, velocity: 0.01, exponent: 1.0 });
+        let (weight, duration) = (2.0, 1e-5);
+        let at = |slid: f64, v: f64| {
+            law.advance(
+                &motion([v, 0.0]),
+                &SlipStep { bristle: [0.0; 2], slid: [slid, 0.0], duration },
+                weight,
+            )
+        };
+        let small = at(1e-6, 0.1);
+        let bend = weight * (BRISTLE.stiffness + BRISTLE.damping / duration);
+        assert!(small.sticks && (small.forces.friction[0] - bend * 1e-6).abs() < 1e-9);
+        assert_eq!(small.bristle, [1e-6, 0.0]);
+        // The last force of sticking, and the first of slipping.
+        let limit = 0.6 * small.forces.normal / bend;
+        let (below, above) = (at(limit * (1.0 - 1e-9), 0.0), at(limit * (1.0 + 1e-9), 0.0));
+        assert!(below.sticks && !above.sticks);
+        assert!((below.forces.friction[0] / above.forces.friction[0] - 1.0).abs() < 1e-6);
+        let far = at(1e-4, 10.0);
+        assert!((far.forces.friction[0] / far.forces.normal - 0.4).abs() < 1e-6);
+        // An open contact forgets.
+        let open = ContactMotion { penetration: -1e-6, ..motion([0.1, 0.0]) };
+        let since = SlipStep { bristle: [1e-6, 0.0], slid: [1e-6, 0.0], duration };
+        assert_eq!(law.advance(&open, &since, weight), SlipAnswer::default());
+    }
+
+    #[test]
+    fn steady_slip_has_the_friction_of_the_law_without_bristles() {
+        for law in [law(Hyperbolic { at_rest: 0.7, decline: 3.0 }), law(Constant(0.4))] {
+            let (v, duration) = ([0.3, 0.4], 1e-4);
+            let slid = v.map(|v| v * duration);
+            let steady = law.respond(&motion(v), 1.0).0;
+            let mut bristle = [0.0; 2];
+            for _ in 0..400 {
+                let answer = law.advance(&motion(v), &SlipStep { bristle, slid, duration }, 1.0);
+                bristle = answer.bristle;
+                assert!(answer.forces.friction[0].hypot(answer.forces.friction[1]) <= 0.7 * steady.normal);
+            }
+            let answer = law.advance(&motion(v), &SlipStep { bristle, slid, duration }, 1.0);
+            for i in 0..2 {
+                let off = answer.forces.friction[i] / steady.friction[i] - 1.0;
+                assert!(off.abs() < 1e-12, "{off:e}");
+                assert!((law.bent(steady.friction, 1.0)[i] / bristle[i] - 1.0).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn jacobian_agrees_with_differences_while_it_sticks_and_slips() {
+        let (weight, duration) = (0.7, 1e-5);
+        let laws = [
+            law(Constant(0.4)),
+            law(Exponential { mu_0: 0.3, mu_1: 0.25, alpha: 3.0 }),
+            law(Stribeck { at_rest: 0.6, kinetic: 0.4, velocity: 0.05, exponent: 2.0 }),
+        ];
+        let steps = [
+            ([0.0, 0.0], [1e-6, 5e-7], [0.1, 0.05]),
+            ([8e-5, -1e-5], [4e-6, 1e-6], [0.35, 0.12]),
+            ([8e-5, -1e-5], [4e-6, 1e-6], [0.45, 0.12]),
+            ([-7e-5, 5e-5], [-1e-6, 2e-6], [-0.3, 0.2]),
+        ];
+        let mut stuck = 0;
+        for law in &laws {
+            for (bristle, slid, v) in steps {
+                let of = |x: [f64; 6]| {
+                    let m = ContactMotion {
+                        penetration: x[0],
+                        penetration_rate: x[1],
+                        slip_velocity: [x[2], x[3]],
+                    };
+                    law.advance(&m, &SlipStep { bristle, slid: [x[4], x[5]], duration }, weight)
+                };
+                let at = [1e-5, 0.01, v[0], v[1], slid[0], slid[1]];
+                let answer = of(at);
+                stuck += usize::from(answer.sticks);
+                for input in 0..6 {
+                    let h = [1e-10, 1e-5, 1e-6, 1e-6, 1e-11, 1e-11][input];
+                    let moved = |s: f64| {
+                        let mut x = at;
+                        x[input] += s * h;
+                        values(&of(x))
+                    };
+                    let (plus, minus) = (moved(1.0), moved(-1.0));
+                    for row in 0..3 {
+                        let exact = match input {
+                            0 => answer.tangent.by_penetration[row],
+                            1 => answer.tangent.by_penetration_rate[row],
+                            2 | 3 => answer.tangent.by_slip_velocity[row][input - 2],
+                            _ if row == 0 => 0.0,
+                            _ => answer.by_slid[row - 1][input - 4],
+                        };
+                        let difference = (plus[row] - minus[row]) / (2.0 * h);
+                        let scale = answer.forces.normal * [1e5, 1.0, 1.0, 1.0, 1e5, 1e5][input];
+                        assert!(
+                            (exact - difference).abs() < 1e-5 * (exact.abs() + scale),
+                            "{law:?} {bristle:?} row {row}, input {input}: {exact} {difference}"
+                        );
+                    }
+                }
+            }
+        }
+        assert!(stuck > 0 && stuck < 9, "{stuck}");
+    }
+}

@@ -1,0 +1,87 @@
+//! Contacts that run over the mesh of their counter-body in time.
+
+use super::contacts::{Stand, surface_points};
+use super::prepared::Prepared;
+use super::transient::profile;
+use crate::case::{Contact, TransientAnalysis};
+use crate::error::{Error, Fault, Faults, Result};
+use crate::system::ContactPoint;
+use crate::transient::Track;
+
+/// Stations on each element of the counter-body.
+const STATIONS: f64 = 2.0;
+
+/// The track of each pair of the case; none where the points stay.
+///
+/// # Errors
+/// A way that leaves the counter-body.
+pub fn tracks(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Vec<Option<Track>>> {
+    let mut faults = Faults::new();
+    let pairs = prepared.system.pairs.iter();
+    let tracks = pairs.map(|pair| {
+        let contact = &prepared.case.contact[&pair.name];
+        let slides = wanted.slide.get(&pair.name).is_some_and(|slide| slide.travels);
+        if !slides || contact.points.is_some() || contact.counter == "ground" {
+            return None;
+        }
+        let course = wanted.slide.get(&pair.name).map(|slide| &slide.course);
+        let factors = profile(course).reach(wanted.duration);
+        let way = factors.map(|factor| factor * contact.sliding_velocity);
+        let way = [way[0].min(way[1]), way[0].max(way[1])];
+        faults.take(track(prepared, &pair.name, contact, &pair.points, way))
+    });
+    let tracks: Vec<_> = tracks.collect();
+    faults.into_result(tracks)
+}
+
+/// Stations from the least to the greatest travel \[m\]; one of them is where the pair stands.
+fn track(
+    prepared: &Prepared<'_>,
+    name: &str,
+    contact: &Contact,
+    points: &[ContactPoint],
+    [low, high]: [f64; 2],
+) -> Result<Track> {
+    let spacing = element_size(prepared, &contact.counter) / STATIONS;
+    let first = (low / spacing).floor() as i64;
+    let last = ((high / spacing).ceil() as i64).max(first + 1);
+    let model = (&prepared.regions, &prepared.model, &*prepared.assembled.dofs);
+    // The same gaps as where the pair stands, whatever was taken off them there.
+    let touch = match contact.placement {
+        Some(_) => {
+            let bare = Stand { travel: 0.0, touch: Some(0.0) };
+            let there = surface_points(name, contact, model, &bare)?;
+            there.first().map_or(0.0, |p| p.gap) - points.first().map_or(0.0, |p| p.gap)
+        }
+        None => 0.0,
+    };
+    let stations = (first..=last).map(|k| {
+        let stand = Stand { travel: k as f64 * spacing, touch: Some(touch) };
+        surface_points(name, contact, model, &stand).ok().filter(|there| there.len() == points.len())
+    });
+    let stations: Option<Vec<_>> = stations.collect();
+    let stations = stations.ok_or_else(|| {
+        let found = format!("a way from {low:.4} m to {high:.4} m, which leaves `{}`", contact.counter);
+        Error::input(
+            Fault::new(format!("`transient.slide.{name}`"), found, "a way that stays on the counter-body")
+                .with_help("Shorten the stroke or the run, or set `travels = false` to keep the contact in its place"),
+        )
+    })?;
+    Ok(Track { first: first as f64 * spacing, spacing, stations })
+}
+
+/// The mean length of the edges of a plate's elements \[m\].
+fn element_size(prepared: &Prepared<'_>, shell: &str) -> f64 {
+    let nodes = &prepared.model.nodes;
+    let faces = prepared.model.shells.iter().filter(|s| s.name == shell).flat_map(|s| &s.faces);
+    let (mut sum, mut count) = (0.0, 0);
+    for face in faces {
+        let corners = face.nodes();
+        for (k, a) in corners.iter().enumerate() {
+            let b = corners[(k + 1) % corners.len()];
+            sum += (0..3).map(|i| (nodes[*a][i] - nodes[b][i]).powi(2)).sum::<f64>().sqrt();
+            count += 1;
+        }
+    }
+    sum / f64::from(count.max(1))
+}
