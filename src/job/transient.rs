@@ -14,7 +14,9 @@ use crate::results::{Channel, ComplexResult, GrowthCompared, SpectrumOf, Transie
 use crate::signal;
 use crate::stability::{ModalFilter, modal_filter};
 use crate::system::System;
-use crate::transient::{self, Method, Model, Moment, Plan, Profile, Push, Scheme, State, Track, march};
+use crate::transient::{
+    self, Method, Model, Moment, Plan, Profile, Pulse, Push, Scheme, State, Track, march,
+};
 
 /// Steps between two writings.
 const CHUNK: usize = 4096;
@@ -189,8 +191,7 @@ pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Pla
     };
     let pushes = wanted.push.iter().map(|(name, push)| Push {
         direction: reduced(&push.on, format!("`transient.push.{name}.on`"), push.force),
-        begin: push.begin,
-        duration: push.duration,
+        course: Pulse::HalfSine { begin: push.begin, duration: push.duration },
     });
     let pushes: Vec<Push> = pushes.collect();
     let (mut probes, mut lost) = (Vec::<(String, SparseVector)>::new(), Vec::new());

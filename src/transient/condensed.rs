@@ -7,10 +7,10 @@ use super::reaction::Reaction;
 use super::scheme::Weights;
 use super::state::State;
 use super::stepper::{ITERATIONS, ROUND_OFF, Solver, Stuck};
+use super::tangent::Tangent;
 use crate::error::Result;
 use crate::linalg::sparse::dense_columns;
 use faer::Mat;
-use faer::linalg::solvers::{PartialPivLu, Solve};
 
 /// With x = DᵀΔ and S = DᵀA⁻¹D the step is x − DᵀA⁻¹h + b S r(Dᵀu_t + x, Dᵀv_t + c₁x) = 0, as small as the contact, for
 /// Newton's method with the consistent unsymmetric tangent. Then Δ = A⁻¹h − b A⁻¹D r: one solution with A a step, and
@@ -37,14 +37,23 @@ impl<'a> Condensed<'a> {
         let (r, columns) = (model.n_directions(), model.columns.len());
         let responses = effective.responses(dense_columns(model.n(), &model.columns));
         let seen = Mat::from_fn(columns, columns, |i, j| model.columns[i].dot(responses.col_as_slice(j)));
+        let room = || vec![0.0; r];
         let mut contact = Contact {
             compliance: Mat::zeros(r, r),
             share: weights.share(),
             rate: weights.rate,
             step: weights.step,
-            free: vec![0.0; r],
-            predicted: [vec![0.0; r], vec![0.0; r]],
+            free: room(),
+            predicted: [room(), room()],
             reaction: Reaction::new(model),
+            tangent: Tangent::new(),
+            x: room(),
+            last: room(),
+            motion: [room(), room()],
+            moved: room(),
+            rho: room(),
+            newton: room(),
+            again: room(),
         };
         contact.mix(&seen, &Interface::new(model));
         let modal_responses = effective.modal_share(&responses);
@@ -101,6 +110,19 @@ struct Contact {
     predicted: [Vec<f64>; 2],
     /// The forces at the last place looked at.
     reaction: Reaction,
+    tangent: Tangent,
+    /// x, and x before the step of Newton's method.
+    x: Vec<f64>,
+    last: Vec<f64>,
+    /// q, q̇ at x.
+    motion: [Vec<f64>; 2],
+    /// x* − b S r.
+    moved: Vec<f64>,
+    /// ρ = x − x* + b S r.
+    rho: Vec<f64>,
+    /// J⁻¹ρ, and with the same J after the step.
+    newton: Vec<f64>,
+    again: Vec<f64>,
 }
 
 impl Contact {
@@ -119,27 +141,31 @@ impl Contact {
     /// Newton's method from where the last reaction would lead, with steps halved while they do not bring the next one down
     /// (Deuflhard's natural monotonicity test). Leaves r in `reaction`.
     fn solve(&mut self, model: &Model<'_>, from: &State, to: &State) -> std::result::Result<(), Stuck> {
-        let mut x = self.moved(&from.reaction);
-        let mut rho = self.residual(model, &x, from, to);
+        self.moved(&from.reaction);
+        std::mem::swap(&mut self.x, &mut self.moved);
+        self.evaluate(model, from, to);
+        self.residual();
         let mut length = 0.0;
         for _ in 0..ITERATIONS {
-            let tangent = Tangent::new(model, self);
-            let step = tangent.solve(&rho);
-            length = longest(&step);
+            self.tangent.set(model, &self.reaction, &self.compliance, (self.share, self.rate));
+            self.tangent.solve(&self.rho, &mut self.newton);
+            length = longest(&self.newton);
             if !length.is_finite() {
                 return Err(Stuck::NotFinite);
             }
-            let scale = x.iter().chain(&self.free).fold(0.0f64, |m, v| m.max(v.abs()));
+            let scale = self.x.iter().chain(&self.free).fold(0.0f64, |m, v| m.max(v.abs()));
             if length <= ROUND_OFF * scale.max(self.farthest()) {
                 return Ok(());
             }
+            self.last.copy_from_slice(&self.x);
             let mut damping = 1.0;
             loop {
-                let next: Vec<f64> = x.iter().zip(&step).map(|(x, s)| x - damping * s).collect();
-                let there = self.residual(model, &next, from, to);
-                let again = longest(&tangent.solve(&there));
-                if again <= (1.0 - 0.25 * damping) * length || damping < 1e-3 {
-                    (x, rho) = (next, there);
+                let stepped = self.last.iter().zip(&self.newton).map(|(x, s)| x - damping * s);
+                self.x.iter_mut().zip(stepped).for_each(|(x, next)| *x = next);
+                self.evaluate(model, from, to);
+                self.residual();
+                self.tangent.solve(&self.rho, &mut self.again);
+                if longest(&self.again) <= (1.0 - 0.25 * damping) * length || damping < 1e-3 {
                     break;
                 }
                 damping *= 0.5;
@@ -150,61 +176,38 @@ impl Contact {
         if enough { Ok(()) } else { Err(Stuck::Newton(length)) }
     }
 
-    /// x* − b S r for given forces.
-    fn moved(&self, force: &[f64]) -> Vec<f64> {
-        let mut x = self.free.clone();
+    /// `moved` = x* − b S r for given forces.
+    fn moved(&mut self, force: &[f64]) {
+        self.moved.copy_from_slice(&self.free);
         for (j, force) in force.iter().enumerate().filter(|(_, f)| **f != 0.0) {
             let factor = self.share * force;
-            x.iter_mut().zip(self.compliance.col_as_slice(j)).for_each(|(x, s)| *x -= factor * s);
+            self.moved.iter_mut().zip(self.compliance.col_as_slice(j)).for_each(|(x, s)| *x -= factor * s);
         }
-        x
     }
 
-    /// x − x* + b S r(x), whose r is left in `reaction`.
-    fn residual(&mut self, model: &Model<'_>, x: &[f64], from: &State, to: &State) -> Vec<f64> {
+    /// r at x.
+    fn evaluate(&mut self, model: &Model<'_>, from: &State, to: &State) {
         let [place, velocity] = &self.predicted;
-        let q: Vec<f64> = x.iter().zip(place).map(|(x, p)| p + x).collect();
-        let rate: Vec<f64> = x.iter().zip(velocity).map(|(x, v)| v + self.rate * x).collect();
-        self.reaction.evaluate(model, [&q, &rate], to, Some((from, self.step)));
-        let moved = self.moved(&self.reaction.force);
-        x.iter().zip(moved).map(|(x, moved)| x - moved).collect()
+        let [q, rate] = &mut self.motion;
+        for (i, x) in self.x.iter().enumerate() {
+            q[i] = place[i] + x;
+            rate[i] = velocity[i] + self.rate * x;
+        }
+        self.reaction.evaluate(model, [q, rate], to, Some((from, self.step)));
+    }
+
+    /// `rho` = x − x* + b S r.
+    fn residual(&mut self) {
+        let force = std::mem::take(&mut self.reaction.force);
+        self.moved(&force);
+        self.reaction.force = force;
+        let terms = self.x.iter().zip(&self.moved);
+        self.rho.iter_mut().zip(terms).for_each(|(rho, (x, moved))| *rho = x - moved);
     }
 
     /// The largest displacement along a direction.
     fn farthest(&self) -> f64 {
         self.predicted[0].iter().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()))
-    }
-}
-
-/// J = I + b S (∂r/∂q + c₁ ∂r/∂q̇), whose columns differ from those of I only where something acts: those are solved for,
-/// the others follow.
-struct Tangent {
-    /// Where something acts.
-    active: Vec<usize>,
-    /// The columns of J − I there.
-    columns: Mat<f64>,
-    small: PartialPivLu<f64>,
-}
-
-impl Tangent {
-    fn new(model: &Model<'_>, contact: &Contact) -> Self {
-        let (active, columns) =
-            contact.reaction.slopes(model, &contact.compliance, contact.share, contact.rate);
-        let m = active.len();
-        let small = Mat::from_fn(m, m, |i, j| columns[(active[i], j)] + if i == j { 1.0 } else { 0.0 });
-        Tangent { active, columns, small: small.partial_piv_lu() }
-    }
-
-    /// J⁻¹ρ.
-    fn solve(&self, rho: &[f64]) -> Vec<f64> {
-        let some = self.small.solve(Mat::from_fn(self.active.len(), 1, |i, _| rho[self.active[i]]));
-        let mut step = rho.to_vec();
-        for j in 0..self.active.len() {
-            let factor = some[(j, 0)];
-            step.iter_mut().zip(self.columns.col_as_slice(j)).for_each(|(s, c)| *s -= factor * c);
-        }
-        self.active.iter().enumerate().for_each(|(j, place)| step[*place] = some[(j, 0)]);
-        step
     }
 }
 

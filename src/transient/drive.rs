@@ -110,22 +110,64 @@ impl Profile {
     }
 }
 
-/// A push on the structure: a half sine, p(t) = sin(π (t − begin)/duration) while it lasts.
+/// A force on the structure that runs in time, beside the constant load: p(t) times a direction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Push {
-    /// The force on the degrees of freedom at its peak \[N, N m\].
+    /// The force on the degrees of freedom \[N, N m\] at p = 1.
     pub direction: SparseVector,
-    /// When it begins \[s\].
-    pub begin: f64,
-    /// How long it lasts \[s\].
-    pub duration: f64,
+    /// p(t).
+    pub course: Pulse,
+}
+
+/// p(t) of a force.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Pulse {
+    /// A half sine, sin(π (t − begin)/duration) while it lasts.
+    HalfSine {
+        /// When it begins \[s\].
+        begin: f64,
+        /// How long it lasts \[s\].
+        duration: f64,
+    },
+    /// factor(t) − 1 of a profile: what a force that is part of the constant load has more or less than that.
+    Change(Profile),
 }
 
 impl Push {
     /// p(t).
     pub fn factor(&self, time: f64) -> f64 {
-        let part = (time - self.begin) / self.duration;
-        if part > 0.0 && part < 1.0 { (PI * part).sin() } else { 0.0 }
+        match &self.course {
+            Pulse::HalfSine { begin, duration } => {
+                let part = (time - begin) / duration;
+                if part > 0.0 && part < 1.0 { (PI * part).sin() } else { 0.0 }
+            }
+            Pulse::Change(profile) => profile.factor(time) - 1.0,
+        }
+    }
+}
+
+/// The approach of a pair whose closing load runs in time: that of steady equilibrium under the load of the moment, as of
+/// a loading device without inertia that follows slowly.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Loading {
+    /// How the load runs.
+    pub profile: Profile,
+    /// The approach \[m\] at equally spaced factors from the first to the last of `factors`; linear between them.
+    pub approaches: Vec<f64>,
+    /// The least and the greatest factor of the load.
+    pub factors: [f64; 2],
+}
+
+impl Loading {
+    /// The approach at a time \[m\].
+    pub fn approach(&self, time: f64) -> f64 {
+        let last = self.approaches.len() - 1;
+        let [low, high] = self.factors;
+        let place = (self.profile.factor(time) - low) / (high - low).max(f64::MIN_POSITIVE) * last as f64;
+        let place = place.clamp(0.0, last as f64);
+        let from = (place as usize).min(last.saturating_sub(1));
+        let next = (from + 1).min(last);
+        self.approaches[from] + (place - from as f64) * (self.approaches[next] - self.approaches[from])
     }
 }
 
@@ -157,7 +199,13 @@ mod tests {
             let reach = profile.reach(5.0);
             assert!((reach[0] - low).abs() < 1e-6 && (reach[1] - high).abs() < 1e-6, "{profile:?} {reach:?}");
         }
-        let push = Push { direction: SparseVector::from_entries([(0, 2.0)]), begin: 1.0, duration: 2.0 };
+        let half_sine = Pulse::HalfSine { begin: 1.0, duration: 2.0 };
+        let push = Push { direction: SparseVector::from_entries([(0, 2.0)]), course: half_sine };
         assert_eq!([push.factor(0.9), push.factor(2.0), push.factor(3.1)], [0.0, 1.0, 0.0]);
+        let ramp = Profile::Ramp { from: 0.0, duration: 2.0 };
+        let less = Push { course: Pulse::Change(ramp.clone()), ..push };
+        assert_eq!([less.factor(0.0), less.factor(1.0), less.factor(2.0)], [-1.0, -0.5, 0.0]);
+        let loading = Loading { profile: ramp, approaches: vec![0.0, 2.0, 3.0], factors: [0.0, 1.0] };
+        assert_eq!([0.0, 0.5, 1.0, 2.0].map(|t| loading.approach(t)), [0.0, 1.0, 2.0, 3.0]);
     }
 }

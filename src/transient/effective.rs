@@ -1,8 +1,9 @@
 //! The matrix of an implicit step, factorised once.
 
+use super::diagonal::Diagonal;
 use super::model::Model;
 use super::scheme::Weights;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::linalg::SymmetricFactor;
 use crate::linalg::factor::factorize;
 use crate::linalg::tall::{combine, expand, gram};
@@ -14,8 +15,47 @@ use faer::{Accum, Mat, MatMut};
 /// (Sherman, Morrison & Woodbury, in the form that allows modes without damping).
 #[derive(Debug)]
 pub(super) struct Effective<'a> {
-    factor: Box<dyn SymmetricFactor>,
+    inverse: Inverse,
     modal: Option<ModalUpdate<'a>>,
+}
+
+/// A₀⁻¹.
+#[derive(Debug)]
+enum Inverse {
+    Factor(Box<dyn SymmetricFactor>),
+    /// The diagonal of A₀⁻¹.
+    Diagonal(Vec<f64>),
+}
+
+impl Inverse {
+    fn new(model: &Model<'_>, weights: &Weights) -> Result<Self> {
+        let Some(Diagonal { mass, stiffness, viscous }) = &model.diagonal else {
+            return Ok(Inverse::Factor(factorize(&model.effective(weights))?));
+        };
+        let [m, c, k] = weights.effective();
+        let entries = mass.iter().zip(stiffness).zip(viscous);
+        let sums: Vec<f64> =
+            entries.map(|((mass, stiff), viscous)| m * mass + c * viscous + k * stiff).collect();
+        if let Some(dof) = sums.iter().position(|sum| *sum == 0.0) {
+            return Err(Error::analysis(
+                "transient",
+                format!("degree of freedom {dof} has neither stiffness nor mass"),
+                "Give it one of them, or leave it out",
+            ));
+        }
+        Ok(Inverse::Diagonal(sums.iter().map(|sum| 1.0 / sum).collect()))
+    }
+
+    fn apply(&self, mut x: MatMut<'_, f64>) {
+        match self {
+            Inverse::Factor(factor) => factor.solve_in_place(x),
+            Inverse::Diagonal(values) => {
+                for k in 0..x.ncols() {
+                    x.as_mut().col_mut(k).iter_mut().zip(values).for_each(|(x, value)| *x *= value);
+                }
+            }
+        }
+    }
 }
 
 #[derive(Debug)]
@@ -41,10 +81,10 @@ impl ModalUpdate<'_> {
 impl<'a> Effective<'a> {
     pub(super) fn new(model: &Model<'a>, weights: &Weights) -> Result<Self> {
         let [_, c, _] = weights.effective();
-        let factor = factorize(&model.effective(weights))?;
+        let inverse = Inverse::new(model, weights)?;
         let modal = model.damping.modal.as_ref().map(|modal| {
             let mut responses = modal.basis.clone();
-            factor.solve_in_place(responses.as_mut());
+            inverse.apply(responses.as_mut());
             let seen = gram(modal.basis.as_ref(), responses.as_ref());
             let weights: Vec<f64> = modal.coefficients.iter().map(|own| c * own).collect();
             let small = Mat::from_fn(seen.nrows(), seen.ncols(), |i, j| {
@@ -52,12 +92,12 @@ impl<'a> Effective<'a> {
             });
             ModalUpdate { basis: &modal.basis, responses, seen, weights, small: small.partial_piv_lu() }
         });
-        Ok(Effective { factor, modal })
+        Ok(Effective { inverse, modal })
     }
 
     /// h ← A⁻¹(h + B w) of one column; Bᵀ of the result is left in `w`, which is empty without modal damping.
     pub(super) fn solve(&self, mut h: MatMut<'_, f64>, w: &mut Mat<f64>) {
-        self.factor.solve_in_place(h.as_mut());
+        self.inverse.apply(h.as_mut());
         if let Some(update) = &self.modal {
             let seen = gram(update.basis.as_ref(), h.as_ref());
             let part = update.answer(&(&seen + &update.seen * &*w));
@@ -69,7 +109,7 @@ impl<'a> Effective<'a> {
 
     /// A⁻¹D of dense columns.
     pub(super) fn responses(&self, mut d: Mat<f64>) -> Mat<f64> {
-        self.factor.solve_in_place(d.as_mut());
+        self.inverse.apply(d.as_mut());
         if let Some(update) = &self.modal {
             let part = update.answer(&gram(update.basis.as_ref(), d.as_ref()));
             d -= expand(update.responses.as_ref(), part.as_ref());

@@ -6,6 +6,7 @@
 //! on the whole is kept beside it to compare with (`full_newton`). [`Work`] is the balance of energy.
 
 mod condensed;
+mod diagonal;
 mod drive;
 mod effective;
 mod full_newton;
@@ -17,11 +18,12 @@ mod reaction;
 mod scheme;
 mod state;
 mod stepper;
+mod tangent;
 #[cfg(test)]
 mod tests;
 mod track;
 
-pub use drive::{Profile, Push};
+pub use drive::{Loading, Profile, Pulse, Push};
 pub use ledger::Work;
 pub use march::{Marched, Moment, Plan, march};
 pub use model::{Model, refuse_hysteretic};

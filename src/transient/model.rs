@@ -1,6 +1,7 @@
 //! What time integration needs of a system.
 
-use super::drive::{Profile, Push};
+use super::diagonal::Diagonal;
+use super::drive::{Loading, Profile, Push};
 use super::interface::Interface;
 use super::scheme::Weights;
 use super::track::Track;
@@ -20,6 +21,8 @@ pub struct Model<'a> {
     pub(super) damping: &'a Damping,
     /// K + K_σ(u₀).
     pub(super) stiffness: Cow<'a, SparseMatrix>,
+    /// M, K and C where all are diagonal.
+    pub(super) diagonal: Option<Diagonal>,
     /// f \[N, N m\].
     pub(super) load: &'a [f64],
     /// P, what the directions D are made of: g, t₁, t₂ of every contact point, at each of its stations where it travels,
@@ -36,6 +39,8 @@ pub struct Model<'a> {
     pub(super) tracks: Vec<Option<&'a Track>>,
     /// Pushes on the structure.
     pub(super) pushes: Vec<Push>,
+    /// How the load that closes each pair runs in time, if it does.
+    pub(super) loadings: Vec<Option<Loading>>,
 }
 
 /// A point that may touch, without its directions.
@@ -72,10 +77,13 @@ impl<'a> Model<'a> {
             })
             .collect();
         let imported = system.coupling.iter().flat_map(|rest| &rest.directions);
+        let (mass, damping) = (&system.structure.mass, &system.structure.damping);
+        let stiffness = tangent_stiffness(system, &steady.displacement)?;
         Ok(Model {
-            mass: &system.structure.mass,
-            damping: &system.structure.damping,
-            stiffness: tangent_stiffness(system, &steady.displacement)?,
+            mass,
+            damping,
+            diagonal: Diagonal::of(mass, &stiffness, damping),
+            stiffness,
             load: &system.load,
             columns: system.points().flat_map(|(_, point)| directions(point)).chain(imported).collect(),
             points,
@@ -84,6 +92,7 @@ impl<'a> Model<'a> {
             profiles: vec![Profile::Constant; system.pairs.len()],
             tracks: vec![None; system.pairs.len()],
             pushes: Vec::new(),
+            loadings: vec![None; system.pairs.len()],
         })
     }
 
@@ -121,6 +130,15 @@ impl<'a> Model<'a> {
         Model { tracks, ..self }
     }
 
+    /// The same model whose closing loads run in time, one entry a pair.
+    ///
+    /// # Panics
+    /// When there is not one entry for each pair.
+    pub fn loaded(self, loadings: Vec<Option<Loading>>) -> Self {
+        assert!(loadings.len() == self.velocities.len(), "one entry a pair");
+        Model { loadings, ..self }
+    }
+
     /// Whether a direction changes in time.
     pub(super) fn travels(&self) -> bool {
         self.tracks.iter().any(Option::is_some)
@@ -141,13 +159,14 @@ impl<'a> Model<'a> {
         for (pair, track) in self.tracks.iter().enumerate() {
             let count = self.points[first..].iter().take_while(|point| point.pair == pair).count();
             let shares = track.map(|track| track.shares(at.travel[pair]));
+            let approach = self.loadings[pair].as_ref().map(|loading| loading.approach(time));
             for p in 0..count {
                 let point = &self.points[first + p];
                 let mut gap = point.gap;
                 if let (Some(track), Some(shares)) = (track, &shares) {
                     gap = shares.iter().map(|(station, share)| share * track.stations[*station][p].gap).sum();
                 }
-                at.closeness[first + p] = point.approach - gap;
+                at.closeness[first + p] = approach.unwrap_or(point.approach) - gap;
                 for c in 0..3 {
                     at.mixes[3 * (first + p) + c] = match &shares {
                         Some(shares) => {

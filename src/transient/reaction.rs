@@ -95,38 +95,22 @@ impl Reaction {
         }
     }
 
-    /// The directions on whose motion r depends, and the columns of share · S (∂r/∂q + c₁ ∂r/∂q̇) there.
-    pub(super) fn slopes(
-        &self,
-        model: &Model<'_>,
-        compliance: &Mat<f64>,
-        share: f64,
-        rate: f64,
-    ) -> (Vec<usize>, Mat<f64>) {
-        let closed = self.blocks.iter().filter(|block| block.acts());
-        let mut active: Vec<usize> = closed.flat_map(|b| 3 * b.point..3 * b.point + 3).collect();
-        let first = 3 * model.points.len();
-        let touching = active.len();
-        active.extend(first..model.n_directions());
-        let mut columns = Mat::<f64>::zeros(compliance.nrows(), active.len());
-        let mut add = |column: usize, row: usize, slope: f64| {
-            let out = columns.col_as_slice_mut(column);
-            out.iter_mut().zip(compliance.col_as_slice(row)).for_each(|(out, s)| *out += slope * s);
-        };
-        for (column, place) in active[..touching].iter().enumerate() {
-            let (p, own) = (place / 3, place % 3);
-            for row in 0..3 {
-                let slope = self.blocks[p].stiffness[row][own] + rate * self.blocks[p].damping[row][own];
-                add(column, 3 * p + row, share * slope);
+    /// Tells of every direction on whose motion r depends, with the entries of ∂r/∂q + c₁ ∂r/∂q̇ in its column.
+    pub(super) fn slopes(&self, model: &Model<'_>, rate: f64, tell: &mut dyn FnMut(usize, &[(usize, f64)])) {
+        for block in self.blocks.iter().filter(|block| block.acts()) {
+            let first = 3 * block.point;
+            for own in 0..3 {
+                let slope = |row: usize| block.stiffness[row][own] + rate * block.damping[row][own];
+                tell(first + own, &[0, 1, 2].map(|row| (first + row, slope(row))));
             }
         }
         if let Some([k, c]) = model.coupling {
+            let first = 3 * model.points.len();
             for j in 0..k.ncols() {
-                (0..k.nrows())
-                    .for_each(|i| add(touching + j, first + i, share * (k[(i, j)] + rate * c[(i, j)])));
+                let column = (0..k.nrows()).map(|i| (first + i, k[(i, j)] + rate * c[(i, j)]));
+                tell(first + j, &column.collect::<Vec<_>>());
             }
         }
-        (active, columns)
     }
 
     /// D (∂r/∂q + c₁ ∂r/∂q̇) Dᵀ as triplets, for the tangent of the whole.

@@ -1,5 +1,6 @@
 //! Where a system stands: its motion, and what the matrices make of it.
 
+use super::diagonal::scale;
 use super::interface::Interface;
 use super::model::Model;
 use super::reaction::{Bristles, Reaction};
@@ -51,6 +52,19 @@ impl State {
         state
     }
 
+    /// At rest, displaced by the u of a state without friction: nothing slid yet, and no bristle is bent.
+    pub fn at_rest(model: &Model<'_>, still: &SteadySliding) -> Self {
+        let mut state = State::empty(model);
+        state.motion.col_as_slice_mut(0).copy_from_slice(&still.displacement);
+        state.act(model, 0.0);
+        state.derive(model);
+        state.project(model);
+        let speeds = std::mem::replace(&mut state.speeds, vec![0.0; model.velocities.len()]);
+        state.react(model);
+        state.speeds = speeds;
+        state
+    }
+
     /// Moves along a complex mode: u += Re(s φ), v += Re(s λ φ), a += Re(s λ² φ), with s = `factor`.
     pub fn disturbed(mut self, model: &Model<'_>, lambda: c64, shape: &[c64], factor: f64) -> Self {
         let mut turned = c64::new(factor, 0.0);
@@ -67,9 +81,19 @@ impl State {
     pub(super) fn settle(&mut self, model: &Model<'_>) {
         self.act(model, self.time);
         self.derive(model);
+        self.project(model);
+        self.react(model);
+    }
+
+    /// The motion of the modes that are damped.
+    fn project(&mut self, model: &Model<'_>) {
         if let (Some(modal), Some(out)) = (&model.damping.modal, &mut self.modal) {
             *out = gram(modal.basis.as_ref(), self.motion.as_ref());
         }
+    }
+
+    /// The reaction to the motion, as in steady sliding.
+    fn react(&mut self, model: &Model<'_>) {
         let mut reaction = Reaction::new(model);
         let along = [0, 1].map(|k| self.along.col_as_slice(k));
         reaction.evaluate(model, along, self, None);
@@ -160,10 +184,18 @@ impl State {
     /// What the sparse matrices make of the motion, and the motion along the directions.
     pub(super) fn derive(&mut self, model: &Model<'_>) {
         let rates = self.motion.as_ref().subcols(1, 2);
-        multiply(&model.stiffness, self.motion.as_ref(), self.elastic.as_mut());
-        multiply(model.mass, rates, self.inertia.as_mut());
-        if let (Some(c), Some(out)) = (&model.damping.viscous, &mut self.viscous) {
-            multiply(c, rates, out.as_mut());
+        if let Some(diagonal) = &model.diagonal {
+            scale(&diagonal.stiffness, self.motion.as_ref(), self.elastic.as_mut());
+            scale(&diagonal.mass, rates, self.inertia.as_mut());
+            if let Some(out) = &mut self.viscous {
+                scale(&diagonal.viscous, rates, out.as_mut());
+            }
+        } else {
+            multiply(&model.stiffness, self.motion.as_ref(), self.elastic.as_mut());
+            multiply(model.mass, rates, self.inertia.as_mut());
+            if let (Some(c), Some(out)) = (&model.damping.viscous, &mut self.viscous) {
+                multiply(c, rates, out.as_mut());
+            }
         }
         for k in 0..3 {
             self.interface.motions(model, self.motion.col_as_slice(k), self.along.col_as_slice_mut(k));

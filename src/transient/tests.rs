@@ -173,8 +173,10 @@ fn the_condensed_step_is_the_full_newton_step_through_lift_off() {
             system.structure.damping = Damping::default();
         }
         let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
-        let push =
-            Push { direction: vector(&[(3, 40.0), (11, -60.0), (20, 50.0)]), begin: 0.01, duration: 0.3 };
+        let push = Push {
+            direction: vector(&[(3, 40.0), (11, -60.0), (20, 50.0)]),
+            course: Pulse::HalfSine { begin: 0.01, duration: 0.3 },
+        };
         let model = Model::new(&system, &steady)
             .unwrap()
             .driven(vec![Profile::Reciprocating { frequency_hz: 0.2, phase: 0.1 }], vec![push]);
@@ -297,7 +299,10 @@ fn a_model_reduced_to_all_it_has_moves_like_the_full_one() {
     let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
     let reduced = crate::reduction::reduce(&system, &steady, &dense_modes(&system, 30), &[]).unwrap();
     let small = reduced.steady(&steady);
-    let push = Push { direction: vector(&[(3, 40.0), (20, 50.0)]), begin: 0.01, duration: 0.3 };
+    let push = Push {
+        direction: vector(&[(3, 40.0), (20, 50.0)]),
+        course: Pulse::HalfSine { begin: 0.01, duration: 0.3 },
+    };
     let seen = Push { direction: reduced.form(&push.direction), ..push.clone() };
     let full = Model::new(&system, &steady).unwrap().driven(vec![Profile::Constant], vec![push]);
     let few = Model::new(&reduced.system, &small).unwrap().driven(vec![Profile::Constant], vec![seen]);
@@ -342,8 +347,10 @@ fn a_travelling_contact_that_sticks_is_condensed_exactly_too() {
         system.pairs[0].law = std::sync::Arc::new(law);
         let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
         let track = winding(&system);
-        let push =
-            Push { direction: vector(&[(3, 40.0), (11, -60.0), (20, 50.0)]), begin: 0.01, duration: 0.3 };
+        let push = Push {
+            direction: vector(&[(3, 40.0), (11, -60.0), (20, 50.0)]),
+            course: Pulse::HalfSine { begin: 0.01, duration: 0.3 },
+        };
         let back = Profile::Reciprocating { frequency_hz: 1.0, phase: 0.1 };
         let model = Model::new(&system, &steady).unwrap().driven(vec![back], vec![push]);
         let model = model.travelling(vec![Some(&track)]);
