@@ -14,6 +14,7 @@ mod disc;
 mod explore;
 mod export;
 mod imported;
+mod keeper;
 mod missed;
 mod model;
 mod modes;
@@ -28,8 +29,9 @@ mod table;
 mod transient;
 mod verify;
 
-pub use analyse::{Selection, Sensitivities, Stage, analyse, run_case};
+pub use analyse::{Selection, Sensitivities, analyse, run_case};
 pub use explore::{KnownMap, KnownMaps};
 pub use export::export;
+pub use keeper::{Keeper, Stage};
 pub use prepared::Prepared;
 pub use states::Whole;

@@ -8,13 +8,7 @@ pub(super) fn transient(result: &TransientResult) -> Value {
     let channels: Vec<Value> = result
         .channels
         .iter()
-        .map(|c| {
-            let range = c
-                .values
-                .iter()
-                .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(*v), high.max(*v)]);
-            json!({ "name": c.name, "unit": c.unit, "range": range, "last": c.values.last() })
-        })
+        .map(|c| json!({ "name": c.name, "unit": c.unit, "range": c.range, "last": c.last }))
         .collect();
     let spectrum = |of: &SpectrumOf| {
         let peaks: Vec<Value> = of
