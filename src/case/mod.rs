@@ -16,7 +16,8 @@ pub use parameter::{Invalidates, Parameter};
 pub(crate) use read::DOF_NAMES;
 pub use read::read_case;
 pub use transient::{
-    Course, Disturbance, ModelChoice, Probe, PushedRegion, SchemeChoice, Slide, TransientAnalysis,
+    Course, Disturbance, ModelChoice, Probe, PushedRegion, SchemeChoice, Slide, StartChoice,
+    TransientAnalysis,
 };
 
 use crate::structure::{Material, Section};

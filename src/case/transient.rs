@@ -21,7 +21,9 @@ pub struct TransientAnalysis {
     pub model: ModelChoice,
     /// Newton's method on the whole instead of the condensed step, to compare.
     pub full_newton: bool,
-    /// What disturbs steady sliding at the start.
+    /// What the motion begins with.
+    pub start: StartChoice,
+    /// What disturbs it at the start.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub disturbance: Option<Disturbance>,
     /// Pushes by name.
@@ -33,6 +35,19 @@ pub struct TransientAnalysis {
     /// How the counter-body of a contact slides, by the contact's name; constantly where it is not named.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub slide: BTreeMap<String, Slide>,
+    /// How a force, or the load that closes a contact, runs in time, by its name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub load: BTreeMap<String, Course>,
+}
+
+/// What a run in time begins with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StartChoice {
+    /// Steady sliding at the velocities and loads of t = 0.
+    Steady,
+    /// Equilibrium without friction: nothing has slid yet.
+    Rest,
 }
 
 /// What moves.
@@ -89,14 +104,18 @@ pub struct PushedRegion {
 /// A place whose motion is recorded.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Probe {
-    /// A region, the mean of its nodes where it has several …
+    /// A spring, whose force is recorded, as by a load cell; or the motion of …
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spring: Option<String>,
+    /// … a region, the mean of its nodes where it has several …
     #[serde(skip_serializing_if = "Option::is_none")]
     pub on: Option<String>,
     /// … or a place \[m\], whose nearest node it is.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at: Option<[f64; 3]>,
-    /// The direction.
-    pub direction: [f64; 3],
+    /// The direction of motion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub direction: Option<[f64; 3]>,
 }
 
 /// How a counter-body slides.
@@ -139,6 +158,21 @@ pub enum Course {
 }
 
 impl Course {
+    /// The least and the greatest factor.
+    pub fn range(&self) -> [f64; 2] {
+        match self {
+            Course::Constant => [1.0, 1.0],
+            Course::Ramp { from, .. } => [from.min(1.0), from.max(1.0)],
+            Course::Reciprocating { .. } => [-1.0, 1.0],
+            Course::Table { factor, .. } => {
+                let ends = factor
+                    .iter()
+                    .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], f| [low.min(*f), high.max(*f)]);
+                if factor.is_empty() { [1.0, 1.0] } else { ends }
+            }
+        }
+    }
+
     /// Whether it reaches zero, or turns round.
     pub fn stops(&self) -> bool {
         match self {
@@ -175,6 +209,10 @@ pub(super) fn read(s: &Section) -> TransientAnalysis {
             _ => ModelChoice::Full,
         },
         full_newton: s.boolean("full_newton").or(false),
+        start: match s.choice("start", &["steady", "rest"]).or("steady") {
+            "rest" => StartChoice::Rest,
+            _ => StartChoice::Steady,
+        },
         disturbance: s.section("disturbance", |d| Disturbance {
             mode_near: d.quantity("mode_near", FREQUENCY).positive().optional(),
             amplitude: d.quantity("amplitude", LENGTH).positive().required("a length such as \"1 nm\""),
@@ -187,23 +225,29 @@ pub(super) fn read(s: &Section) -> TransientAnalysis {
         }),
         probe: collect(s, "probe", read_probe),
         slide: collect(s, "slide", read_slide),
+        load: collect(s, "load", read_course),
     }
 }
 
 fn read_probe(s: &Section) -> Probe {
     let (on, at) = (s.string("on").optional(), s.quantities("at", LENGTH).optional());
-    if s.has("on") == s.has("at") {
-        let found = if s.has("on") { "both `on` and `at`" } else { "nothing" };
-        s.fault("on", found, "a region `on`, or a place `at` as three lengths", "");
+    let spring = s.string("spring").optional();
+    let given = ["on", "at", "spring"].map(|key| s.has(key));
+    if given.iter().filter(|given| **given).count() != 1 {
+        let found = if given.contains(&true) { "several of `on`, `at` and `spring`" } else { "nothing" };
+        s.fault("on", found, "a region `on`, a place `at` as three lengths, or a `spring`", "");
     }
-    Probe {
-        on,
-        at,
-        direction: s
-            .quantities("direction", NUMBER)
-            .check("a vector that is not zero", |v| v.iter().any(|x| *x != 0.0))
-            .required("a vector such as [1, 0, 0]"),
+    let direction =
+        s.quantities("direction", NUMBER).check("a vector that is not zero", |v| v.iter().any(|x| *x != 0.0));
+    let direction = if spring.is_some() {
+        direction.optional()
+    } else {
+        Some(direction.required("a vector such as [1, 0, 0]"))
+    };
+    if spring.is_some() && direction.is_some() {
+        s.fault("direction", "a vector", "none beside a `spring`, which has its own", "");
     }
+    Probe { spring, on, at, direction }
 }
 
 fn read_slide(s: &Section) -> Slide {

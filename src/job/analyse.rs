@@ -3,6 +3,7 @@
 use super::clock::Clock;
 use super::complex::{complex_result, whole_modes};
 use super::explore::{KnownMap, KnownMaps, Nominal, explore};
+use super::keeper::{Folder, Keeper, Memory, Stage};
 use super::missed::nothing_is_missed;
 use super::modes::{compare, named, of_the_whole, part_modes, wanted};
 use super::prepared::Prepared;
@@ -13,14 +14,13 @@ use crate::equilibrium::{self, SteadyOptions, SteadySliding};
 use crate::error::Result;
 use crate::modal;
 use crate::progress::Observer;
-use crate::results::{
-    self, Channel, ComplexResult, MapResult, NamedModes, ResultsFile, RunResults, SensitivityResult,
-    SteadyResult, SweepResult, TransientResult,
-};
-use crate::sweep::MapPoint;
+use crate::results::{self, ResultsFile, RunResults, SteadyResult};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
+
+/// The phase of motion in time.
+const IN_TIME: &str = "transient";
 
 /// Which analyses to run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,34 +85,6 @@ impl Selection {
     }
 }
 
-/// A result that is ready to be written.
-pub enum Stage<'a> {
-    /// The case, its size and its geometry.
-    Model(&'a RunResults),
-    /// Real modes.
-    Modes(&'a NamedModes),
-    /// Steady sliding.
-    Steady(&'a SteadyResult),
-    /// Complex eigenvalues.
-    Complex(&'a ComplexResult),
-    /// Their sensitivities.
-    Sensitivity(&'a SensitivityResult),
-    /// A sweep.
-    Sweep(&'a SweepResult),
-    /// A map of which no new point is there yet, and what is known of it.
-    MapBegins(&'a MapResult, &'a KnownMap),
-    /// New points of the map of this name, from this one on.
-    MapPoints(&'a str, usize, &'a [MapPoint]),
-    /// A whole map.
-    Map(&'a MapResult),
-    /// A run in time of which nothing is there yet: its time step \[s\] and its channels.
-    TransientBegins(f64, &'a [Channel]),
-    /// New values of the channels, from this one on.
-    TransientRows(usize, &'a [Channel]),
-    /// A whole run in time.
-    Transient(&'a TransientResult),
-}
-
 /// Runs the analyses of a case and writes the results folder `out`; nothing is written when the input is wrong.
 ///
 /// With `resume` the maps that an earlier run of the same case left in `out` are taken up where it stopped; the result
@@ -137,27 +109,12 @@ pub fn run_case(
     let preparation = started.elapsed().as_secs_f64();
     let mut file = ResultsFile::create(out)?;
     file.keep_earlier_until(known.len());
-    let mut recording = 0.0;
-    let mut record = |stage: Stage| {
-        let started = Instant::now();
-        let written = match stage {
-            Stage::Model(model) => file.write_case(model).and_then(|()| file.write_geometry(&model.geometry)),
-            Stage::Modes(modes) => file.write_modes(modes),
-            Stage::Steady(steady) => file.write_steady(steady),
-            Stage::Complex(complex) => file.write_complex(complex),
-            Stage::Sensitivity(sensitivity) => file.write_sensitivity(sensitivity),
-            Stage::Sweep(sweep) => file.write_sweep(sweep),
-            Stage::MapBegins(map, known) => file.begin_map(map, &known.points, &known.trained),
-            Stage::MapPoints(name, first, points) => file.write_map_points(name, first, points),
-            Stage::Map(map) => file.finish_map(map),
-            Stage::TransientBegins(step, channels) => file.begin_transient(step, channels),
-            Stage::TransientRows(first, channels) => file.write_transient_rows(first, channels),
-            Stage::Transient(transient) => file.finish_transient(transient),
-        };
-        recording += started.elapsed().as_secs_f64();
-        written
-    };
-    let mut results = analyse_from(&prepared, selection, &known, &mut record, observer)?;
+    let mut folder = Folder::new(out, file);
+    let mut results = analyse_from(&prepared, selection, &known, &mut folder, observer)?;
+    // The time of a phase is that of computing.
+    let in_time = results.timings.iter_mut().find(|(phase, _)| phase == IN_TIME);
+    in_time.into_iter().for_each(|(_, seconds)| *seconds -= folder.seconds_in_time);
+    let Folder { mut file, seconds: recording, .. } = folder;
     results.timings.insert(0, ("read mesh and assemble".into(), preparation));
     let writing = Instant::now();
     results::write_files(out, &results)?;
@@ -179,7 +136,7 @@ pub fn analyse(
     record: &mut dyn FnMut(Stage) -> Result<()>,
     observer: &dyn Observer,
 ) -> Result<RunResults> {
-    analyse_from(prepared, selection, &KnownMaps::new(), record, observer)
+    analyse_from(prepared, selection, &KnownMaps::new(), &mut Memory::new(record), observer)
 }
 
 /// [`analyse`] with the maps of an earlier run.
@@ -187,7 +144,7 @@ fn analyse_from(
     prepared: &Prepared,
     selection: Selection,
     known: &KnownMaps,
-    record: &mut dyn FnMut(Stage) -> Result<()>,
+    keeper: &mut dyn Keeper,
     observer: &dyn Observer,
 ) -> Result<RunResults> {
     let case = prepared.case;
@@ -201,7 +158,7 @@ fn analyse_from(
         size: prepared.size(),
         ..RunResults::default()
     };
-    record(Stage::Model(&results))?;
+    keeper.record(Stage::Model(&results))?;
     let mut clock = Clock::default();
     let contact_modes = case.modes.iter().filter(|(_, m)| m.contact == ContactState::Closed);
     let sliding =
@@ -228,7 +185,7 @@ fn analyse_from(
                 let set = results.modes.len();
                 results.measured.push(compare(set, analysis, &modes));
             }
-            record(Stage::Modes(&modes))?;
+            keeper.record(Stage::Modes(&modes))?;
             results.modes.push(modes);
         }
     }
@@ -239,7 +196,7 @@ fn analyse_from(
         let steady = steady_result(prepared, state);
         let slides = !prepared.system.pairs.is_empty();
         if slides {
-            record(Stage::Steady(&steady))?;
+            keeper.record(Stage::Steady(&steady))?;
         }
         results.steady = Some(steady);
         let state = &results.steady.as_ref().expect("set above").state;
@@ -250,7 +207,7 @@ fn analyse_from(
                 let (modes, _) = clock
                     .time(&format!("real modes, {name}"), || modal::compute(&closed, wanted, observer))?;
                 let modes = named(prepared, name, modes, &prepared.assembled);
-                record(Stage::Modes(&modes))?;
+                keeper.record(Stage::Modes(&modes))?;
                 results.modes.push(modes);
             }
         }
@@ -259,7 +216,7 @@ fn analyse_from(
             false => None,
         };
         if let Some((complex, system, real)) = complex {
-            record(Stage::Complex(&complex))?;
+            keeper.record(Stage::Complex(&complex))?;
             results.warnings.extend(complex.modes.warnings.iter().cloned());
             let steady = &state.clone();
             if let Some(wanted) = selection.sensitivities(case) {
@@ -267,19 +224,22 @@ fn analyse_from(
                     Analysed { prepared, system: &system, steady, real: &real, modes: &complex.modes };
                 let sensitivity =
                     clock.time("sensitivities", || analysed.sensitivities(&wanted, observer))?;
-                record(Stage::Sensitivity(&sensitivity))?;
+                keeper.record(Stage::Sensitivity(&sensitivity))?;
                 results.sensitivity = Some(sensitivity);
             }
             if let Some((wanted, places)) = in_time.take() {
                 let run = InTime { system: &system, steady, complex: &complex, real: &real };
-                let transient = clock.time("transient", || run.run(wanted, places, record, observer))?;
-                record(Stage::Transient(&transient))?;
+                let transient = clock.time(IN_TIME, || run.run(wanted, places, keeper, observer))?;
+                keeper.record(Stage::Transient(&transient))?;
                 results.transient = Some(transient);
             }
             results.complex = Some(complex);
             if selection.sweeps && !(case.sweep.is_empty() && case.map.is_empty()) {
                 let nominal = Nominal { prepared, system: &system, steady, real: &real };
-                clock.time("sweeps and maps", || explore(&nominal, known, &mut results, record, observer))?;
+                let mut record = |stage: Stage| keeper.record(stage);
+                clock.time("sweeps and maps", || {
+                    explore(&nominal, known, &mut results, &mut record, observer)
+                })?;
             }
         }
         results.steady = results.steady.filter(|_| slides);

@@ -1,6 +1,6 @@
 //! The sweeps and maps of a case, and what its damping decides.
 
-use super::analyse::Stage;
+use super::keeper::Stage;
 use super::modes::add_modal_damping;
 use super::prepared::Prepared;
 use super::states::{OnFamily, States, Whole, keeps_the_structure};

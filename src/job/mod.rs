@@ -14,6 +14,7 @@ mod disc;
 mod explore;
 mod export;
 mod imported;
+mod keeper;
 mod missed;
 mod model;
 mod modes;
@@ -29,8 +30,9 @@ mod transient;
 mod travel;
 mod verify;
 
-pub use analyse::{Selection, Sensitivities, Stage, analyse, run_case};
+pub use analyse::{Selection, Sensitivities, analyse, run_case};
 pub use explore::{KnownMap, KnownMaps};
 pub use export::export;
+pub use keeper::{Keeper, Stage};
 pub use prepared::Prepared;
 pub use states::Whole;

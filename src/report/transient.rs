@@ -13,8 +13,6 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 const SIZE: (u32, u32) = (980, 640);
-/// Columns that a long line is drawn in, so that no spike is lost.
-const COLUMNS: usize = 840;
 /// Decades below the highest line that a spectrum shows.
 const DECADES: f64 = 5.0;
 
@@ -28,7 +26,7 @@ pub(super) fn history(results: &RunResults) -> Option<Picture> {
         let parts = area.split_evenly((shown.len(), 1));
         for (k, (part, channel)) in parts.iter().zip(&shown).enumerate() {
             let ink = if k == 0 { ALARM } else { MEASURED };
-            panel(part, channel, run.time_step, ink, k + 1 == shown.len())?;
+            panel(part, channel, (run.len() - 1) as f64 * run.time_step, ink, k + 1 == shown.len())?;
         }
         Ok(())
     })?;
@@ -43,22 +41,17 @@ pub(super) fn history(results: &RunResults) -> Option<Picture> {
 /// The channels of the picture.
 fn panels(run: &TransientResult) -> Vec<&Channel> {
     let named = |name: &str| run.channels.iter().find(|c| c.name == name);
-    let varies = |c: &&Channel| c.values.iter().any(|v| *v != c.values[0]);
+    let varies = |c: &&Channel| c.range[0] != c.range[1];
     let sliding = run.channels.iter().find(|c| c.name.ends_with("_sliding_velocity")).filter(varies);
     let shown = run.shown.iter().map(|k| &run.channels[*k]);
     shown.chain(named("penetration")).chain(sliding).collect()
 }
 
-fn panel(area: &Area, channel: &Channel, step: f64, ink: &str, last: bool) -> Result<(), Box<dyn Error>> {
-    let values = &channel.values;
-    let (low, high) = values
-        .iter()
-        .filter(|v| v.is_finite())
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
-    let end = (values.len() - 1) as f64 * step;
+fn panel(area: &Area, channel: &Channel, end: f64, ink: &str, last: bool) -> Result<(), Box<dyn Error>> {
+    let [low, high] = channel.range;
     let below = last.then_some("time [s]");
     let mut chart = axes(area, (0.0..end, widened(low, high, 0.08)), below, channel, |v| significant(v, 3))?;
-    let line = PathElement::new(thinned(values, step), colour(ink).stroke_width(2));
+    let line = PathElement::new(channel.line.clone(), colour(ink).stroke_width(2));
     chart.draw_series([line])?;
     Ok(())
 }
@@ -93,25 +86,6 @@ fn axes<'a>(
         .y_label_formatter(&|y| label(*y))
         .draw()?;
     Ok(chart)
-}
-
-/// The values themselves or, where there are many, the least and the greatest of each column, one above the other.
-fn thinned(values: &[f64], step: f64) -> Vec<(f64, f64)> {
-    let each = values.len().div_ceil(COLUMNS);
-    if each <= 2 {
-        return values.iter().enumerate().map(|(k, v)| (k as f64 * step, *v)).collect();
-    }
-    let mut line = Vec::with_capacity(2 * COLUMNS);
-    for (k, part) in values.chunks(each).enumerate() {
-        let time = (k * each + part.len() / 2) as f64 * step;
-        let (low, high) = part
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
-        // Up and down in turn, so that the line does not cross the column twice.
-        let ends = if k % 2 == 0 { [low, high] } else { [high, low] };
-        line.extend(ends.map(|v| (time, v)));
-    }
-    line
 }
 
 /// Motion and friction over frequency.
@@ -223,8 +197,9 @@ pub(super) fn table(run: &TransientResult) -> Table {
         });
     }
     table.notes.push(format!(
-        "The point that carries most was open {} % and slid backwards {} % of the time.",
+        "The point that carries most was open {} %, stuck {} % and slid backwards {} % of the time.",
         fixed(100.0 * run.open, 1),
+        fixed(100.0 * run.sticking, 1),
         fixed(100.0 * run.backwards, 1)
     ));
     let work = &run.work;

@@ -2,14 +2,13 @@
 
 use super::folder::FileNames;
 use super::{
-    Channel, ComplexResult, NamedModes, RunResults, SensitivityResult, SteadyResult, TransientResult,
-    write_atomically,
+    ComplexResult, NamedModes, RunResults, SensitivityResult, SteadyResult, TransientResult, write_atomically,
 };
 use crate::error::Result;
 use std::path::Path;
 
 /// Writes `modes_<set>.csv` for every set of real modes, `contact_points.csv`, `complex_modes.csv`, `sensitivities.csv`,
-/// `transient.csv` and `transient_spectrum.csv`, those of them that the run has, into the folder `dir`.
+/// and `transient_spectrum.csv`, those of them that the run has, into the folder `dir`.
 ///
 /// # Errors
 /// [`crate::error::Error::Io`] when the folder cannot be made or a file not be written.
@@ -28,7 +27,6 @@ pub fn write_csv(dir: &Path, results: &RunResults) -> Result<()> {
         write_atomically(dir, "sensitivities.csv", sensitivities(sensitivity).as_bytes())?;
     }
     if let Some(transient) = &results.transient {
-        write_atomically(dir, "transient.csv", history(transient).as_bytes())?;
         write_atomically(dir, "transient_spectrum.csv", spectra(transient).as_bytes())?;
     }
     Ok(())
@@ -81,19 +79,6 @@ fn contact_points(steady: &SteadyResult) -> String {
         let mut row = vec![(k + 1).to_string(), pair.clone()];
         row.extend([*x, *y, *z, state.penetration, state.forces.normal, f1, f2].map(number));
         row.push(u8::from(state.closed()).to_string());
-        table.row(&row);
-    }
-    table.text
-}
-
-fn history(transient: &TransientResult) -> String {
-    let named: Vec<String> = transient.channels.iter().map(Channel::heading).collect();
-    let headings: Vec<&str> = std::iter::once("time [s]").chain(named.iter().map(String::as_str)).collect();
-    let mut table = Table::new(&headings);
-    for k in 0..transient.len() {
-        let values = transient.channels.iter().map(|c| number(c.values[k]));
-        let row: Vec<String> =
-            std::iter::once(number(k as f64 * transient.time_step)).chain(values).collect();
         table.row(&row);
     }
     table.text

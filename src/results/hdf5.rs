@@ -46,6 +46,8 @@ pub struct ResultsFile {
     names: FileNames,
     /// Maps of an earlier run that this run takes up and has not yet written: until then the earlier file stays.
     pub(super) awaited: usize,
+    /// The channels of the run in time.
+    pub(super) channels: Vec<String>,
 }
 
 impl ResultsFile {
@@ -61,7 +63,8 @@ impl ResultsFile {
         // The operating system tells why a file cannot be made more plainly than the library.
         std::fs::File::create(&path).map_err(|source| refusal(&path, source))?;
         let file = hdf5::File::create(&path).map_err(|source| refusal(&path, plain(&source)))?;
-        let this = ResultsFile { file, path, home, names: FileNames::default(), awaited: 0 };
+        let this =
+            ResultsFile { file, path, home, names: FileNames::default(), awaited: 0, channels: Vec::new() };
         this.stage(|root| {
             text_attribute(root, "program", env!("CARGO_PKG_NAME"))?;
             text_attribute(root, "program_version", env!("CARGO_PKG_VERSION"))?;
@@ -170,6 +173,12 @@ impl ResultsFile {
     pub(super) fn stage(&self, write: impl FnOnce(&Group) -> hdf5::Result<()>) -> Result<()> {
         let written = self.file.as_group().and_then(|root| write(&root)).and_then(|()| self.file.flush());
         written.map_err(|source| refusal(&self.path, plain(&source)))
+    }
+
+    /// Reads what was written.
+    pub(super) fn read<T>(&self, read: impl FnOnce(&Group) -> hdf5::Result<T>) -> Result<T> {
+        let found = self.file.as_group().and_then(|root| read(&root));
+        found.map_err(|source| refusal(&self.path, plain(&source)))
     }
 
     /// Leaves an earlier run's file in its place until `maps` of its maps are in this one.

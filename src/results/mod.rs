@@ -22,6 +22,7 @@ mod hdf5;
 mod json;
 mod sensitivity;
 mod transient;
+mod transient_csv;
 mod transient_hdf5;
 mod transient_json;
 mod vtk;
@@ -37,7 +38,8 @@ pub(crate) use folder::write_atomically;
 pub use hdf5::ResultsFile;
 pub use json::{SCHEMA_VERSION, summary_json, write_summary};
 pub use sensitivity::{AdviceField, ModeSensitivity, Mounted, ParameterRate, SensitivityResult};
-pub use transient::{Channel, GrowthCompared, SpectrumOf, TransientResult};
+pub use transient::{Channel, GrowthCompared, Piece, Recording, SpectrumOf, TransientResult};
+pub use transient_csv::HistoryTable;
 pub use vtk::write_vtk;
 
 use crate::equilibrium::SteadySliding;

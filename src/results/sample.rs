@@ -341,24 +341,27 @@ fn transient() -> TransientResult {
     let (step, steps) = (2e-5, 4000);
     let of = |f: &dyn Fn(f64) -> f64| (0..=steps).map(|k| f(k as f64 * step)).collect::<Vec<f64>>();
     let squeal = |t: f64| 0.3 * (TAU * 1668.0 * t).sin() * (1.0 - (-60.0 * t).exp());
-    let channel = |name: &str, unit: &'static str, values: Vec<f64>| Channel {
-        name: name.into(),
-        unit,
-        about: name.replace('_', " "),
-        values,
-    };
-    let channels = vec![
-        channel("rim_velocity", "m/s", of(&squeal)),
-        channel("contact_friction_force", "N", of(&|t| 8.0 + 2.0 * squeal(t) + squeal(t).powi(2))),
-        channel("penetration", "m", of(&|t| 1e-6 * (1.0 + 0.2 * squeal(t)))),
+    let records = [
+        ("rim_velocity", "m/s", of(&squeal)),
+        ("contact_friction_force", "N", of(&|t| 8.0 + 2.0 * squeal(t) + squeal(t).powi(2))),
+        ("penetration", "m", of(&|t| 1e-6 * (1.0 + 0.2 * squeal(t)))),
     ];
+    let channel = |(name, unit, values): &(&str, &'static str, Vec<f64>)| {
+        let mut channel = Channel::new(name.to_string(), unit, name.replace('_', " "));
+        channel
+            .look(values.len(), step, |part| Ok(values[part].to_vec()))
+            .expect("reading memory does not fail");
+        channel
+    };
+    let channels = records.iter().map(channel).collect();
     let spectra = [0, 1].map(|channel| {
-        let spectrum = crate::signal::spectrum(&channels[channel].values[steps / 2..], step, 1000);
+        let spectrum = crate::signal::spectrum(&records[channel].2[steps / 2..], step, 1000);
         let peaks = crate::signal::peaks(&spectrum, 1e-2, 5);
         SpectrumOf { channel, window: [0.04, 0.08], spectrum, peaks }
     });
     TransientResult {
         time_step: step,
+        rows: steps + 1,
         scheme: "HHT, α = -0.05".into(),
         reduced: None,
         channels,
@@ -370,5 +373,6 @@ fn transient() -> TransientResult {
         split: (0, 1),
         open: 0.0,
         backwards: 0.0,
+        sticking: 0.0,
     }
 }

@@ -2,9 +2,10 @@
 //! run leaves what it had reached.
 
 use super::hdf5::{Datasets, ResultsFile, attribute, describe, text_attribute};
-use super::{Channel, TransientResult};
+use super::{Piece, Recording, TransientResult};
 use crate::error::Result;
 use ndarray::s;
+use std::ops::Range;
 
 /// Values that HDF5 stores together.
 const CHUNK: usize = 4096;
@@ -14,34 +15,47 @@ impl ResultsFile {
     ///
     /// # Errors
     /// The machine refuses.
-    pub fn begin_transient(&mut self, time_step: f64, channels: &[Channel]) -> Result<()> {
+    pub fn begin_transient(&mut self, recording: &Recording) -> Result<()> {
         self.stage(|root| {
             let group = root.create_group("transient")?;
-            attribute(&group, "time_step", &time_step)?;
+            attribute(&group, "time_step", &recording.time_step)?;
             attribute(&group, "complete", &false)?;
-            for channel in channels {
+            for channel in recording.channels {
                 let dataset =
                     group.new_dataset::<f64>().shape(0..).chunk(CHUNK).create(channel.name.as_str())?;
                 describe(&dataset, channel.unit, &channel.about)?;
             }
             Ok(())
         })?;
+        self.channels = recording.channels.iter().map(|channel| channel.name.clone()).collect();
         self.take_place()
     }
 
-    /// Adds the values of the channels from value `first` on.
+    /// Adds new rows.
     ///
     /// # Errors
     /// The machine refuses.
-    pub fn write_transient_rows(&mut self, first: usize, channels: &[Channel]) -> Result<()> {
+    pub fn write_transient_piece(&mut self, piece: &Piece) -> Result<()> {
         self.stage(|root| {
             let group = root.group("transient")?;
-            for channel in channels {
-                let dataset = group.dataset(&channel.name)?;
-                dataset.resize(channel.values.len())?;
-                dataset.write_slice(&channel.values[first..], s![first..channel.values.len()])?;
+            for (name, values) in self.channels.iter().zip(piece.values) {
+                let dataset = group.dataset(name)?;
+                let end = piece.first + values.len();
+                dataset.resize(end)?;
+                dataset.write_slice(values, s![piece.first..end])?;
             }
             Ok(())
+        })
+    }
+
+    /// Rows of a channel of the run in time.
+    ///
+    /// # Errors
+    /// The machine refuses.
+    pub fn read_transient(&self, channel: &str, rows: Range<usize>) -> Result<Vec<f64>> {
+        self.read(|root| {
+            let dataset = root.group("transient")?.dataset(channel)?;
+            Ok(dataset.read_slice_1d::<f64, _>(s![rows])?.to_vec())
         })
     }
 

@@ -8,13 +8,7 @@ pub(super) fn transient(result: &TransientResult) -> Value {
     let channels: Vec<Value> = result
         .channels
         .iter()
-        .map(|c| {
-            let range = c
-                .values
-                .iter()
-                .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(*v), high.max(*v)]);
-            json!({ "name": c.name, "unit": c.unit, "range": range, "last": c.values.last() })
-        })
+        .map(|c| json!({ "name": c.name, "unit": c.unit, "range": c.range, "last": c.last }))
         .collect();
     let spectrum = |of: &SpectrumOf| {
         let peaks: Vec<Value> = of
@@ -56,6 +50,7 @@ pub(super) fn transient(result: &TransientResult) -> Value {
         "growth": growth,
         "open_fraction": result.open,
         "backwards_fraction": result.backwards,
+        "sticking_fraction": result.sticking,
         "steps_split": result.split.0,
         "most_parts": result.split.1,
         "energy_j": {

@@ -117,30 +117,32 @@ impl Work {
 
     /// The sum of the sizes of all its terms, which the residual is measured by.
     pub fn turnover(&self) -> f64 {
-        let terms = [
-            self.external,
-            self.damping,
-            self.normal,
-            self.drive,
-            self.heat,
-            self.coupling,
-            self.algorithm,
-            self.kinetic,
-            self.strain,
-        ];
-        terms.iter().map(|t| t.abs()).sum()
+        self.terms().iter().map(|t| t.abs()).sum()
     }
 
     /// Adds the work of another step.
     pub(super) fn add(&mut self, other: &Work) {
-        self.external += other.external;
-        self.damping += other.damping;
-        self.normal += other.normal;
-        self.drive += other.drive;
-        self.heat += other.heat;
-        self.coupling += other.coupling;
-        self.algorithm += other.algorithm;
-        self.kinetic += other.kinetic;
-        self.strain += other.strain;
+        self.terms_mut().into_iter().zip(other.terms()).for_each(|(sum, term)| *sum += term);
+    }
+
+    /// All its terms.
+    pub(super) fn terms(&self) -> [f64; 9] {
+        let mut copy = *self;
+        copy.terms_mut().map(|term| *term)
+    }
+
+    /// All its terms, to be changed.
+    pub(super) fn terms_mut(&mut self) -> [&mut f64; 9] {
+        [
+            &mut self.external,
+            &mut self.damping,
+            &mut self.normal,
+            &mut self.drive,
+            &mut self.heat,
+            &mut self.coupling,
+            &mut self.algorithm,
+            &mut self.kinetic,
+            &mut self.strain,
+        ]
     }
 }

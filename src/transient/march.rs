@@ -24,28 +24,29 @@ pub struct Plan {
     pub method: Method,
 }
 
-/// Where a march stands after a step.
-#[derive(Debug, Clone, Copy)]
-pub struct Moment<'a> {
+/// How far a march has come: what is seen of it after a step, what it leaves behind, and what it can go on from.
+#[derive(Debug, Clone)]
+pub struct Marched {
+    /// When it began \[s\].
+    pub begin: f64,
     /// Steps done.
     pub step: usize,
     /// The motion.
-    pub state: &'a State,
-    /// All work since the start.
-    pub work: &'a Work,
-}
-
-/// What a march leaves behind.
-#[derive(Debug, Clone)]
-pub struct Marched {
-    /// The last state.
     pub state: State,
-    /// All work.
+    /// All work since the start.
     pub work: Work,
     /// The largest |residual| of the energy balance of one step, as a part of the turnover of that step.
     pub worst_residual: f64,
     /// Steps that had to be split, and into how many parts at most.
     pub split: (usize, usize),
+}
+
+impl From<State> for Marched {
+    /// The first state, nothing done.
+    fn from(state: State) -> Self {
+        let begin = state.time;
+        Marched { begin, step: 0, state, work: Work::default(), worst_residual: 0.0, split: (0, 1) }
+    }
 }
 
 /// Marches from `start`; `record` sees the start and the end of every step.
@@ -57,27 +58,44 @@ pub fn march(
     start: State,
     plan: &Plan,
     observer: &dyn Observer,
-    record: &mut dyn FnMut(&Moment<'_>) -> Result<()>,
+    record: &mut dyn FnMut(&Marched) -> Result<()>,
 ) -> Result<Marched> {
-    let begin = start.time;
+    let mut marched = Marched::from(start);
+    record(&marched)?;
+    go_on(model, &mut marched, plan, observer, record)?;
+    Ok(marched)
+}
+
+/// Marches on to the end of the plan; `record` sees the end of every step. The motion is that of one march, bit for bit.
+///
+/// # Errors
+/// As [`march`]; `marched` is then where the last good step ended.
+pub fn go_on(
+    model: &Model<'_>,
+    marched: &mut Marched,
+    plan: &Plan,
+    observer: &dyn Observer,
+    record: &mut dyn FnMut(&Marched) -> Result<()>,
+) -> Result<()> {
     let mut steppers = Steppers { model, plan, levels: Vec::new() };
-    let (mut now, mut next, mut work) = (start, State::empty(model), Work::default());
-    let (mut worst_residual, mut split): (f64, (usize, usize)) = (0.0, (0, 1));
-    record(&Moment { step: 0, state: &now, work: &work })?;
+    let mut next = State::empty(model);
     observer.begin("transient", Some(plan.steps as u64));
-    for step in 1..=plan.steps {
-        let ends = [step - 1, step].map(|k| begin + k as f64 * plan.step);
-        let (done, parts) = steppers.advance(&mut now, &mut next, ends)?;
+    observer.advance(marched.step as u64);
+    for step in marched.step + 1..=plan.steps {
+        let ends = [step - 1, step].map(|k| marched.begin + k as f64 * plan.step);
+        let (done, parts) = steppers.advance(&mut marched.state, &mut next, ends)?;
         if parts > 1 {
-            split = (split.0 + 1, split.1.max(parts));
+            marched.split = (marched.split.0 + 1, marched.split.1.max(parts));
         }
-        worst_residual = worst_residual.max(done.residual().abs() / done.turnover().max(f64::MIN_POSITIVE));
-        work.add(&done);
-        record(&Moment { step, state: &now, work: &work })?;
+        let left = done.residual().abs() / done.turnover().max(f64::MIN_POSITIVE);
+        marched.worst_residual = marched.worst_residual.max(left);
+        marched.work.add(&done);
+        marched.step = step;
+        record(marched)?;
         observer.advance(1);
     }
     observer.end();
-    Ok(Marched { state: now, work, worst_residual, split })
+    Ok(())
 }
 
 /// The steps of Δt, Δt/2, Δt/4 …, each made ready when it is first needed.

@@ -3,8 +3,10 @@
 //! [`Scheme`] is the generalised-α family, [`Model`] what it needs of a system, [`march`] the run. The structure is
 //! factorised once for a time step; contact is condensed exactly onto the few directions in which it acts, so that a
 //! step costs one solution with sparse factors and Newton's method on a small dense system (`condensed`). Newton's method
-//! on the whole is kept beside it to compare with (`full_newton`). [`Work`] is the balance of energy.
+//! on the whole is kept beside it to compare with (`full_newton`). [`Work`] is the balance of energy. A [`Checkpoint`] holds
+//! what a march needs to go on later as if it had never stopped.
 
+mod checkpoint;
 mod condensed;
 mod diagonal;
 mod drive;
@@ -23,9 +25,10 @@ mod tangent;
 mod tests;
 mod track;
 
+pub use checkpoint::Checkpoint;
 pub use drive::{Loading, Profile, Pulse, Push};
 pub use ledger::Work;
-pub use march::{Marched, Moment, Plan, march};
+pub use march::{Marched, Plan, go_on, march};
 pub use model::{Model, refuse_hysteretic};
 pub use scheme::Scheme;
 pub use state::State;

@@ -1,7 +1,7 @@
 //! What sections say of each other: names that must stand elsewhere, and what does not go together.
 
 use super::super::reader::Section;
-use super::super::{Case, ContactState, path_matches};
+use super::super::{Case, ContactState, Pressing, path_matches};
 
 /// Names that must stand elsewhere in the file: materials, parts, contacts.
 pub(super) fn check_names(root: &Section, case: &Case) {
@@ -90,6 +90,26 @@ pub(super) fn check_names(root: &Section, case: &Case) {
                     help,
                 );
             }
+        }
+        let pressed = case.contact.iter().filter(|(_, c)| matches!(c.pressing, Pressing::Load(_)));
+        let loads: Vec<&str> =
+            pressed.map(|(name, _)| name.as_str()).chain(case.force.keys().map(String::as_str)).collect();
+        for name in transient.load.keys().filter(|name| !loads.contains(&name.as_str())) {
+            unknown_name(
+                root,
+                &format!("transient.load.{name}"),
+                name,
+                "force or contact with a load",
+                &loads,
+            );
+        }
+        for (name, _) in transient
+            .load
+            .iter()
+            .filter(|(name, course)| course.range()[0] < 0.0 && case.contact.contains_key(name.as_str()))
+        {
+            let expected = "factors of zero or more: a load presses";
+            root.fault(&format!("transient.load.{name}"), "a factor below zero", expected, "");
         }
         let plain = |name: &str| name.chars().all(|c| c.is_alphanumeric() || c == '-' || c == '_');
         for name in transient.probe.keys().filter(|name| !plain(name)) {

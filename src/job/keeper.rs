@@ -1,0 +1,165 @@
+//! Where results go as they come.
+
+use super::explore::KnownMap;
+use crate::error::Result;
+use crate::results::{
+    ComplexResult, HistoryTable, MapResult, NamedModes, Piece, Recording, ResultsFile, RunResults,
+    SensitivityResult, SteadyResult, SweepResult, TransientResult,
+};
+use crate::sweep::MapPoint;
+use crate::transient::Checkpoint;
+use std::ops::Range;
+use std::path::Path;
+use std::time::Instant;
+
+/// A result that is ready to be written.
+pub enum Stage<'a> {
+    /// The case, its size and its geometry.
+    Model(&'a RunResults),
+    /// Real modes.
+    Modes(&'a NamedModes),
+    /// Steady sliding.
+    Steady(&'a SteadyResult),
+    /// Complex eigenvalues.
+    Complex(&'a ComplexResult),
+    /// Their sensitivities.
+    Sensitivity(&'a SensitivityResult),
+    /// A sweep.
+    Sweep(&'a SweepResult),
+    /// A map of which no new point is there yet, and what is known of it.
+    MapBegins(&'a MapResult, &'a KnownMap),
+    /// New points of the map of this name, from this one on.
+    MapPoints(&'a str, usize, &'a [MapPoint]),
+    /// A whole map.
+    Map(&'a MapResult),
+    /// A run in time that begins or, after [`Keeper::stopped`] had an answer, goes on.
+    TransientBegins(&'a Recording<'a>),
+    /// New rows of it.
+    TransientPiece(&'a Piece<'a>),
+    /// A whole run in time.
+    Transient(&'a TransientResult),
+}
+
+/// Takes results as they come, and has the record of a run in time at hand, which is too long for memory.
+pub trait Keeper {
+    /// Takes a result.
+    ///
+    /// # Errors
+    /// The machine refuses.
+    fn record(&mut self, stage: Stage<'_>) -> Result<()>;
+
+    /// Rows of a channel of the run in time.
+    ///
+    /// # Errors
+    /// The machine refuses.
+    fn recorded(&self, channel: &str, rows: Range<usize>) -> Result<Vec<f64>>;
+
+    /// Where an earlier run in time stopped that is to be taken up.
+    ///
+    /// # Errors
+    /// The machine refuses.
+    fn stopped(&self) -> Result<Option<Checkpoint>>;
+}
+
+/// Hands results on to a function and holds the record of a run in time itself, for runs that are short.
+pub(super) struct Memory<'a> {
+    record: &'a mut dyn FnMut(Stage) -> Result<()>,
+    /// The name and the values of each channel.
+    channels: Vec<(String, Vec<f64>)>,
+}
+
+impl<'a> Memory<'a> {
+    pub(super) fn new(record: &'a mut dyn FnMut(Stage) -> Result<()>) -> Self {
+        Memory { record, channels: Vec::new() }
+    }
+}
+
+impl Keeper for Memory<'_> {
+    fn record(&mut self, stage: Stage<'_>) -> Result<()> {
+        match &stage {
+            Stage::TransientBegins(recording) => {
+                self.channels = recording.channels.iter().map(|c| (c.name.clone(), Vec::new())).collect();
+            }
+            Stage::TransientPiece(piece) => {
+                let pairs = self.channels.iter_mut().zip(piece.values);
+                pairs.for_each(|((_, all), new)| all.extend(new));
+            }
+            _ => {}
+        }
+        (self.record)(stage)
+    }
+
+    fn recorded(&self, channel: &str, rows: Range<usize>) -> Result<Vec<f64>> {
+        let values =
+            self.channels.iter().find(|(name, _)| name == channel).and_then(|(_, all)| all.get(rows));
+        Ok(values.unwrap_or_default().to_vec())
+    }
+
+    fn stopped(&self) -> Result<Option<Checkpoint>> {
+        Ok(None)
+    }
+}
+
+/// Writes results into a folder, each as soon as it is there.
+pub(super) struct Folder<'a> {
+    dir: &'a Path,
+    pub(super) file: ResultsFile,
+    /// `transient.csv`.
+    history: Option<HistoryTable>,
+    /// How long it took \[s\].
+    pub(super) seconds: f64,
+    /// The part of it that was taken from a run in time.
+    pub(super) seconds_in_time: f64,
+}
+
+impl<'a> Folder<'a> {
+    pub(super) fn new(dir: &'a Path, file: ResultsFile) -> Self {
+        Folder { dir, file, history: None, seconds: 0.0, seconds_in_time: 0.0 }
+    }
+
+    fn write(&mut self, stage: &Stage<'_>) -> Result<()> {
+        let file = &mut self.file;
+        match stage {
+            Stage::Model(model) => file.write_case(model).and_then(|()| file.write_geometry(&model.geometry)),
+            Stage::Modes(modes) => file.write_modes(modes),
+            Stage::Steady(steady) => file.write_steady(steady),
+            Stage::Complex(complex) => file.write_complex(complex),
+            Stage::Sensitivity(sensitivity) => file.write_sensitivity(sensitivity),
+            Stage::Sweep(sweep) => file.write_sweep(sweep),
+            Stage::MapBegins(map, known) => file.begin_map(map, &known.points, &known.trained),
+            Stage::MapPoints(name, first, points) => file.write_map_points(name, *first, points),
+            Stage::Map(map) => file.finish_map(map),
+            Stage::TransientBegins(recording) => {
+                file.begin_transient(recording)?;
+                self.history = Some(HistoryTable::create(self.dir, recording)?);
+                Ok(())
+            }
+            Stage::TransientPiece(piece) => {
+                file.write_transient_piece(piece)?;
+                self.history.iter_mut().try_for_each(|table| table.append(piece.first, piece.values))
+            }
+            Stage::Transient(transient) => file.finish_transient(transient),
+        }
+    }
+}
+
+impl Keeper for Folder<'_> {
+    fn record(&mut self, stage: Stage<'_>) -> Result<()> {
+        let started = Instant::now();
+        let written = self.write(&stage);
+        let seconds = started.elapsed().as_secs_f64();
+        self.seconds += seconds;
+        if matches!(stage, Stage::TransientBegins(_) | Stage::TransientPiece(_)) {
+            self.seconds_in_time += seconds;
+        }
+        written
+    }
+
+    fn recorded(&self, channel: &str, rows: Range<usize>) -> Result<Vec<f64>> {
+        self.file.read_transient(channel, rows)
+    }
+
+    fn stopped(&self) -> Result<Option<Checkpoint>> {
+        Ok(None)
+    }
+}

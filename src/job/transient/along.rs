@@ -1,0 +1,69 @@
+//! The complex mode that the motion starts along.
+
+use super::InTime;
+use crate::case::Disturbance;
+use crate::error::{Error, Fault, Result};
+use crate::linalg::c64;
+use crate::reduction::Reduced;
+use crate::stability::{ModalFilter, modal_filter};
+
+/// A complex mode, and what measures its amplitude.
+pub(super) struct Along {
+    pub(super) mode: usize,
+    pub(super) eigenvalue: c64,
+    pub(super) shape: Vec<c64>,
+    pub(super) filter: ModalFilter,
+    /// The largest translation of its shape.
+    pub(super) largest: f64,
+}
+
+impl Along {
+    /// The same seen through the basis V of a reduced model: VᵀMφ, and Vᵀ of the filter.
+    pub(super) fn reduced(self, reduced: &Reduced) -> Along {
+        let parts = |x: &[c64], of: &dyn Fn(&[f64]) -> Vec<f64>| -> Vec<c64> {
+            let re = of(&x.iter().map(|z| z.re).collect::<Vec<f64>>());
+            let im = of(&x.iter().map(|z| z.im).collect::<Vec<f64>>());
+            re.into_iter().zip(im).map(|(re, im)| c64::new(re, im)).collect()
+        };
+        let shape = parts(&self.shape, &|x| reduced.coordinates(x));
+        let filter = ModalFilter {
+            displacement: parts(&self.filter.displacement, &|x| reduced.dual(x)),
+            velocity: parts(&self.filter.velocity, &|x| reduced.dual(x)),
+        };
+        Along { shape, filter, ..self }
+    }
+}
+
+impl InTime<'_> {
+    /// The mode that a disturbance is along.
+    pub(super) fn along(&self, disturbance: &Disturbance) -> Result<Along> {
+        let mode = self.mode(disturbance.mode_near)?;
+        let own = &self.complex.modes.modes[mode];
+        let moves = |node: &[c64; 6]| (0..3).map(|k| node[k].norm_sqr()).sum::<f64>().sqrt();
+        let largest = self.complex.shapes[mode].iter().map(moves).fold(f64::MIN_POSITIVE, f64::max);
+        let filter = modal_filter(self.system, self.steady, own)?;
+        Ok(Along { mode, eigenvalue: own.eigenvalue, shape: own.right.clone(), filter, largest })
+    }
+
+    /// The mode nearest to a frequency, one that grows if any does, or the one that grows fastest.
+    fn mode(&self, near: Option<f64>) -> Result<usize> {
+        let modes = &self.complex.modes.modes;
+        let all = 0..modes.len();
+        let grows = modes.iter().any(|mode| mode.unstable());
+        let chosen = match near {
+            // Of a pair that coupled it is the one that grows that is meant.
+            Some(hz) => all.filter(|k| modes[*k].unstable() || !grows).min_by(|a, b| {
+                let distance = |k: usize| (modes[k].frequency_hz() - hz).abs();
+                distance(*a).total_cmp(&distance(*b))
+            }),
+            None => all.max_by(|a, b| modes[*a].growth_rate().total_cmp(&modes[*b].growth_rate())),
+        };
+        chosen.ok_or_else(|| {
+            Error::input(Fault::new(
+                "`transient.disturbance`",
+                "no complex mode in the band of [cea]",
+                "a band with modes",
+            ))
+        })
+    }
+}

@@ -1,0 +1,139 @@
+//! A case in time: what is recorded, step after step, and what the record says.
+//!
+//! [`places`] says what acts and where motion is recorded, `along` finds the complex mode to start along, `recorder`
+//! makes a row of every step, `tape` hands the rows on a piece at a time, so that memory does not grow with the run, and
+//! `findings` reads them back in parts: spectra, growth, what a picture needs.
+
+mod along;
+mod findings;
+mod places;
+mod recorder;
+mod start;
+mod tape;
+
+pub use places::{Places, places, profile};
+
+use super::keeper::Keeper;
+use crate::case::{ModelChoice, SchemeChoice, TransientAnalysis};
+use crate::equilibrium::SteadySliding;
+use crate::error::Result;
+use crate::linalg::SparseVector;
+use crate::modal::RealModes;
+use crate::progress::Observer;
+use crate::reduction::reduce;
+use crate::results::{ComplexResult, TransientResult};
+use crate::system::System;
+use crate::transient::{Method, Model, Plan, Profile, Scheme, State, go_on};
+use recorder::Recorder;
+use start::Start;
+use tape::Tape;
+
+/// A run in time of `system`, whose modal damping is in it, from its steady state.
+pub struct InTime<'a> {
+    /// The system with its modal damping.
+    pub system: &'a System,
+    /// Where it starts.
+    pub steady: &'a SteadySliding,
+    /// Its complex modes.
+    pub complex: &'a ComplexResult,
+    /// The real modes that span them.
+    pub real: &'a RealModes,
+}
+
+impl InTime<'_> {
+    /// Marches; `keeper` gets what is recorded a piece at a time.
+    ///
+    /// # Errors
+    /// A mode to disturb that is not there, a step without a solution; what was recorded until then is kept.
+    pub fn run(
+        &self,
+        wanted: &TransientAnalysis,
+        places: Places,
+        keeper: &mut dyn Keeper,
+        observer: &dyn Observer,
+    ) -> Result<TransientResult> {
+        let start = self.start(wanted, &places)?;
+        let loadings = self.loadings(wanted)?;
+        let Places { mut pushes, mut probes, mut gauges, mut tracks, .. } = places;
+        let mut disturbed = wanted.disturbance.as_ref().map(|d| self.along(d)).transpose()?;
+        let reduced = match wanted.model {
+            ModelChoice::Full => None,
+            ModelChoice::Reduced => {
+                let stations = tracks.iter().flatten().flat_map(|track| track.stations.iter().flatten());
+                let stations =
+                    stations.flat_map(|point| [&point.normal, &point.tangents[0], &point.tangents[1]]);
+                let pushed = pushes.iter().map(|push| &push.direction);
+                let forces: Vec<SparseVector> = pushed.chain(stations).cloned().collect();
+                let reduced = reduce(self.system, self.steady, self.real, &forces)?;
+                pushes.iter_mut().for_each(|push| push.direction = reduced.form(&push.direction));
+                probes.iter_mut().for_each(|(_, direction)| *direction = reduced.form(direction));
+                for gauge in &mut gauges {
+                    gauge.stiffness = reduced.form(&gauge.stiffness);
+                    gauge.damping = reduced.form(&gauge.damping);
+                }
+                let points =
+                    tracks.iter_mut().flatten().flat_map(|track| track.stations.iter_mut().flatten());
+                points.for_each(|point| *point = reduced.point(point));
+                disturbed = disturbed.map(|along| along.reduced(&reduced));
+                Some(reduced)
+            }
+        };
+        let Start { state: origin, at_rest } = start;
+        let small = reduced.as_ref().map(|reduced| reduced.steady(&origin));
+        let steady = small.as_ref().unwrap_or(&origin);
+        let system = reduced.as_ref().map_or(self.system, |reduced| &reduced.system);
+        let profiles: Vec<Profile> = self
+            .system
+            .pairs
+            .iter()
+            .map(|pair| profile(wanted.slide.get(&pair.name).map(|s| &s.course)))
+            .collect();
+        let model = Model::new(system, steady)?
+            .driven(profiles, pushes)
+            .loaded(loadings)
+            .travelling(tracks.iter().map(Option::as_ref).collect());
+        let begin = if at_rest { State::at_rest } else { State::steady };
+        let mut start = begin(&model, steady);
+        if let (Some(along), Some(wanted)) = (&disturbed, &wanted.disturbance) {
+            start = start.disturbed(&model, along.eigenvalue, &along.shape, wanted.amplitude / along.largest);
+        }
+        let (scheme, words) = scheme(wanted.scheme);
+        let steps = (wanted.duration / wanted.time_step).round().max(1.0) as usize;
+        let method = if wanted.full_newton { Method::FullNewton } else { Method::Condensed };
+        let plan = Plan { scheme, step: wanted.time_step, steps, method };
+        let mut tape = Tape::new(Recorder::new(system, steady, &model, (probes, gauges), disturbed), keeper);
+        let mut marched = tape.begin(start, &model, &plan)?;
+        let reached = go_on(&model, &mut marched, &plan, observer, &mut |marched| tape.take(marched));
+        let kept = tape.flush(&marched);
+        reached.and(kept)?;
+        let share = |count: usize| count as f64 / (steps + 1) as f64;
+        let found = tape.findings(steps + 1, plan.step)?;
+        let recorder = tape.recorder;
+        Ok(TransientResult {
+            time_step: plan.step,
+            rows: steps + 1,
+            scheme: words,
+            reduced: reduced.as_ref().map(|r| [r.modes, r.basis.ncols() - r.modes]),
+            shown: recorder.shown,
+            open: share(recorder.open),
+            backwards: share(recorder.backwards),
+            sticking: share(recorder.sticking),
+            channels: recorder.channels,
+            spectra: found.spectra,
+            growth: found.growth,
+            work: marched.work,
+            worst_residual: marched.worst_residual,
+            split: marched.split,
+        })
+    }
+}
+
+fn scheme(choice: SchemeChoice) -> (Scheme, String) {
+    match choice {
+        SchemeChoice::Newmark => (Scheme::TRAPEZOIDAL, "Newmark, β = 1/4, γ = 1/2".into()),
+        SchemeChoice::Hht { alpha } => (Scheme::hht(alpha), format!("HHT, α = {alpha}")),
+        SchemeChoice::GeneralisedAlpha { rho } => {
+            (Scheme::generalised_alpha(rho), format!("generalised α, ρ∞ = {rho}"))
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! What acts on the structure in time, and where its motion is recorded.
+
+use crate::case::{Course, FrictionCurve, TransientAnalysis};
+use crate::error::{Error, Fault, Faults, Result};
+use crate::job::contacts::with_laws;
+use crate::job::prepared::Prepared;
+use crate::job::travel::tracks;
+use crate::linalg::SparseVector;
+use crate::system::ContactPair;
+use crate::transient::{self, Profile, Pulse, Push, Track};
+
+/// What acts on the structure in time, and where its motion is recorded.
+#[derive(Debug, Clone)]
+pub struct Places {
+    pub(super) pushes: Vec<Push>,
+    /// Names and directions.
+    pub(super) probes: Vec<(String, SparseVector)>,
+    /// Load cells.
+    pub(super) gauges: Vec<Gauge>,
+    /// How the contact points of each pair travel.
+    pub(super) tracks: Vec<Option<Track>>,
+    /// The pairs without friction, as they stand still.
+    pub(super) still: Vec<ContactPair>,
+}
+
+/// The places of a run in time; asked for before anything is computed or written.
+///
+/// # Errors
+/// Every name that the mesh does not have, and damping that time does not know.
+pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Places> {
+    transient::refuse_hysteretic(&prepared.system)?;
+    let mut faults = Faults::new();
+    let mut reduced = |on: &str, place: String, vector: [f64; 3]| {
+        let nodes = faults.take(prepared.regions.nodes(on, &place)).unwrap_or_default();
+        let share = vector.map(|v| v / nodes.len().max(1) as f64);
+        let entries: Vec<(usize, usize, f64)> = nodes
+            .iter()
+            .flat_map(|node| share.iter().enumerate().map(|(axis, v)| (*node, axis, *v)))
+            .collect();
+        prepared.assembled.dofs.reduce(&entries)
+    };
+    let pushes = wanted.push.iter().map(|(name, push)| Push {
+        direction: reduced(&push.on, format!("`transient.push.{name}.on`"), push.force),
+        course: Pulse::HalfSine { begin: push.begin, duration: push.duration },
+    });
+    let mut pushes: Vec<Push> = pushes.collect();
+    // What a force of the case has more or less than itself.
+    pushes.extend(wanted.load.iter().filter_map(|(name, course)| {
+        let force = prepared.case.force.get(name)?;
+        let direction = reduced(&force.on, format!("`force.{name}.on`"), force.force);
+        Some(Push { direction, course: Pulse::Change(profile(Some(course))) })
+    }));
+    let (mut probes, mut lost) = (Vec::<(String, SparseVector)>::new(), Vec::new());
+    let mut gauges = Vec::new();
+    for (name, probe) in &wanted.probe {
+        if let Some(spring) = &probe.spring {
+            gauges.push(gauge(prepared, name, spring));
+            continue;
+        }
+        let direction = probe.direction.unwrap_or_default();
+        let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
+        let direction = direction.map(|d| d / length);
+        let form = match (&probe.on, probe.at) {
+            (Some(on), _) => reduced(on, format!("`transient.probe.{name}.on`"), direction),
+            (None, at) if !prepared.model.nodes.is_empty() => {
+                nearest(prepared, at.unwrap_or_default(), direction)
+            }
+            (None, _) => {
+                let (place, expected) =
+                    (format!("`transient.probe.{name}.at`"), "a case whose nodes have coordinates");
+                lost.push(Fault::new(place, "a place", expected).with_help("`matrices.dofs` may give them"));
+                continue;
+            }
+        };
+        probes.push((name.clone(), form));
+    }
+    lost.into_iter().for_each(|fault| faults.push(fault));
+    for (name, _) in probes.iter().filter(|(_, d)| d.indices().is_empty()) {
+        faults.push(Fault::new(
+            format!("`transient.probe.{name}`"),
+            "a place that is held in this direction",
+            "one that can move",
+        ));
+    }
+    let gauges: Vec<Gauge> = gauges.into_iter().filter_map(|gauge| faults.take(gauge)).collect();
+    let tracks = faults.take(tracks(prepared, wanted)).unwrap_or_default();
+    let mut smooth = prepared.case.clone();
+    smooth
+        .contact
+        .values_mut()
+        .for_each(|contact| contact.friction.law = FrictionCurve::Coulomb { mu0: 0.0 });
+    let still = faults.take(with_laws(&prepared.system.pairs, &smooth)).unwrap_or_default();
+    faults.into_result(Places { pushes, probes, gauges, tracks, still })
+}
+
+/// The motion of the node nearest to a place along a direction.
+fn nearest(prepared: &Prepared<'_>, place: [f64; 3], direction: [f64; 3]) -> SparseVector {
+    let away = |node: &[f64; 3]| (0..3).map(|k| (node[k] - place[k]).powi(2)).sum::<f64>();
+    let nodes = prepared.model.nodes.iter().enumerate();
+    let node = nodes.min_by(|a, b| away(a.1).total_cmp(&away(b.1))).map_or(0, |(node, _)| node);
+    let entries: Vec<_> = direction.iter().enumerate().map(|(axis, d)| (node, axis, *d)).collect();
+    prepared.assembled.dofs.reduce(&entries)
+}
+
+/// How something runs in time.
+pub fn profile(course: Option<&Course>) -> Profile {
+    match course {
+        None | Some(Course::Constant) => Profile::Constant,
+        Some(Course::Ramp { from, duration }) => Profile::Ramp { from: *from, duration: *duration },
+        Some(Course::Reciprocating { frequency, phase }) => {
+            Profile::Reciprocating { frequency_hz: *frequency, phase: *phase }
+        }
+        Some(Course::Table { time, factor }) => {
+            Profile::Table { times: time.clone(), factors: factor.clone() }
+        }
+    }
+}
+
+/// A spring whose force is recorded.
+#[derive(Debug, Clone)]
+pub struct Gauge {
+    pub(super) name: String,
+    /// The name of the spring.
+    pub(super) spring: String,
+    /// Its force is kᵀu + cᵀv \[N\], positive when its nodes have moved along its direction.
+    pub(super) stiffness: SparseVector,
+    pub(super) damping: SparseVector,
+}
+
+/// A spring of the case as a load cell.
+fn gauge(prepared: &Prepared<'_>, name: &str, spring: &str) -> Result<Gauge> {
+    let place = format!("`transient.probe.{name}.spring`");
+    let known: Vec<&str> = prepared.case.spring.keys().map(String::as_str).collect();
+    let Some(set) = prepared.case.spring.get(spring) else {
+        let expected = format!("one of the case's springs ({})", known.join(", "));
+        return Err(Error::input(Fault::new(place, format!("\"{spring}\""), expected)));
+    };
+    let nodes = prepared.regions.nodes(&set.on, &format!("`spring.{spring}.on`"))?;
+    let other = set.to.as_ref().map(|to| prepared.regions.node(to, &format!("`spring.{spring}.to`")));
+    let other = other.transpose()?;
+    let length = set.direction.iter().map(|d| d * d).sum::<f64>().sqrt();
+    let first = if set.rotational { 3 } else { 0 };
+    let form = |total: f64| {
+        let share = set.direction.map(|d| total / nodes.len() as f64 * d / length);
+        let entries = nodes.iter().flat_map(|node| {
+            let own = share.iter().enumerate().map(move |(axis, s)| (*node, first + axis, *s));
+            let far = share.iter().enumerate().map(move |(axis, s)| (other, first + axis, -s));
+            own.chain(far.filter_map(|(node, axis, s)| node.map(|node| (node, axis, s))))
+        });
+        prepared.assembled.dofs.reduce(&entries.collect::<Vec<_>>())
+    };
+    let (stiffness, damping) = (form(set.stiffness), form(set.damping));
+    Ok(Gauge { name: name.to_string(), spring: spring.to_string(), stiffness, damping })
+}

@@ -1,0 +1,207 @@
+//! What is recorded of every step.
+
+use super::along::Along;
+use super::places::Gauge;
+use crate::equilibrium::SteadySliding;
+use crate::error::Result;
+use crate::linalg::SparseVector;
+use crate::results::Channel;
+use crate::system::System;
+use crate::transient::{Checkpoint, Marched, Model};
+
+/// Makes a row of every step: a value for each channel. Holds the rows that are not yet written.
+pub(super) struct Recorder<'a> {
+    model: &'a Model<'a>,
+    /// Directions, and where they stand in steady sliding.
+    probes: Vec<(SparseVector, f64)>,
+    /// k and c of the springs whose force is recorded.
+    gauges: Vec<[SparseVector; 2]>,
+    /// The points of each pair.
+    pairs: Vec<std::ops::Range<usize>>,
+    /// The point that carries most at the start.
+    point: usize,
+    pub(super) channels: Vec<Channel>,
+    /// The channels to show: motion and friction.
+    pub(super) shown: [usize; 2],
+    /// The channel of the penetration of the most loaded point.
+    pub(super) penetration: usize,
+    pub(super) along: Option<Along>,
+    /// The channels of its amplitude, re and im.
+    pub(super) amplitude: [usize; 2],
+    /// The rows at hand, by channel.
+    pub(super) values: Vec<Vec<f64>>,
+    /// u₀.
+    origin: &'a [f64],
+    /// u − u₀.
+    moved: Vec<f64>,
+    /// Rows in which the point that carries most was open, and in which it slid backwards.
+    pub(super) open: usize,
+    pub(super) backwards: usize,
+    /// Rows in which it stuck.
+    pub(super) sticking: usize,
+}
+
+impl<'a> Recorder<'a> {
+    pub(super) fn new(
+        system: &System,
+        steady: &'a SteadySliding,
+        model: &'a Model<'a>,
+        (mut probes, gauges): (Vec<(String, SparseVector)>, Vec<Gauge>),
+        along: Option<Along>,
+    ) -> Self {
+        let points = &steady.points;
+        let heaviest = |a: &usize, b: &usize| points[*a].forces.normal.total_cmp(&points[*b].forces.normal);
+        let point = (0..points.len()).max_by(heaviest).unwrap_or(0);
+        if probes.is_empty()
+            && let Some((_, place)) = system.points().nth(point)
+        {
+            probes.push(("contact".into(), place.tangents[0].clone()));
+        }
+        let mut channels = Vec::new();
+        let mut add = |name: String, unit: &'static str, about: String| {
+            channels.push(Channel::new(name, unit, about));
+            channels.len() - 1
+        };
+        let mut shown = [0, 0];
+        for (k, (name, _)) in probes.iter().enumerate() {
+            add(format!("{name}_displacement"), "m", format!("displacement at {name}, from steady sliding"));
+            let velocity = add(format!("{name}_velocity"), "m/s", format!("velocity at {name}"));
+            add(format!("{name}_acceleration"), "m/s^2", format!("acceleration at {name}"));
+            if k == 0 {
+                shown[0] = velocity;
+            }
+        }
+        for gauge in &gauges {
+            add(format!("{}_force", gauge.name), "N", format!("force in the spring {}", gauge.spring));
+        }
+        let gauges = gauges.into_iter().map(|gauge| [gauge.stiffness, gauge.damping]).collect();
+        let mut first = 0;
+        let mut pairs = Vec::new();
+        for (k, pair) in system.pairs.iter().enumerate() {
+            pairs.push(first..first + pair.points.len());
+            first += pair.points.len();
+            let name = &pair.name;
+            add(format!("{name}_normal_force"), "N", format!("sum of the normal forces of {name}"));
+            let friction = add(
+                format!("{name}_friction_force"),
+                "N",
+                format!("sum of friction of {name} on the body along the sliding direction"),
+            );
+            add(format!("{name}_sliding_velocity"), "m/s", format!("velocity of the counter-body of {name}"));
+            if k == 0 {
+                shown[1] = friction;
+            }
+        }
+        let penetration =
+            add("penetration".into(), "m", "of the point that carries most in steady sliding".into());
+        add("slip_velocity".into(), "m/s", "of the same point along the sliding direction".into());
+        let story = "½vᵀMv + ½uᵀKu gained since the start";
+        add("energy_stored".into(), "J", story.into());
+        for (name, about) in [
+            ("energy_drive", "spent by the drives of the counter-bodies against friction"),
+            ("energy_heat", "turned into heat by friction"),
+            ("energy_damping", "taken by structural damping (negative)"),
+            ("energy_algorithm", "added by the integrator (mostly negative)"),
+        ] {
+            add(name.into(), "J", format!("{about}, since the start"));
+        }
+        let amplitude = [("mode_re", "real"), ("mode_im", "imaginary")].map(|(name, part)| {
+            let about =
+                format!("{part} part of the amplitude of the disturbed mode, its largest translation");
+            if along.is_some() { add(name.into(), "m", about) } else { 0 }
+        });
+        let placed = |(_, direction): (String, SparseVector)| {
+            let origin = direction.dot(&steady.displacement);
+            (direction, origin)
+        };
+        let probes = probes.into_iter().map(placed).collect();
+        let (origin, moved) = (&steady.displacement, Vec::new());
+        let values = vec![Vec::new(); channels.len()];
+        Recorder {
+            model,
+            probes,
+            gauges,
+            pairs,
+            point,
+            channels,
+            shown,
+            penetration,
+            along,
+            amplitude,
+            values,
+            origin,
+            moved,
+            open: 0,
+            backwards: 0,
+            sticking: 0,
+        }
+    }
+
+    /// Adds the row of a step.
+    pub(super) fn take(&mut self, marched: &Marched) {
+        let Marched { state, work, .. } = marched;
+        let mut row = Vec::with_capacity(self.channels.len());
+        for (direction, origin) in &self.probes {
+            row.push(direction.dot(state.motion.col_as_slice(0)) - origin);
+            row.extend([1, 2].map(|k| direction.dot(state.motion.col_as_slice(k))));
+        }
+        for [stiffness, damping] in &self.gauges {
+            let [u, v] = [0, 1].map(|k| state.motion.col_as_slice(k));
+            row.push(stiffness.dot(u) + damping.dot(v));
+        }
+        for (k, points) in self.pairs.iter().enumerate() {
+            let sum = |component: usize| -> f64 {
+                points.clone().map(|p| state.contact_forces(p)[component]).sum()
+            };
+            row.extend([sum(0), sum(1), state.speeds()[k]]);
+        }
+        let slip = if self.pairs.is_empty() { 0.0 } else { state.slip_velocity(self.model, self.point)[0] };
+        let deep = if self.pairs.is_empty() { 0.0 } else { state.penetration(self.point) };
+        row.extend([deep, slip, work.kinetic + work.strain, work.drive, work.heat, work.damping]);
+        row.push(work.algorithm);
+        if let Some(along) = &self.along {
+            let (u, v) = (state.motion.col_as_slice(0), state.motion.col_as_slice(1));
+            self.moved.clear();
+            self.moved.extend(u.iter().zip(self.origin).map(|(u, origin)| u - origin));
+            let amplitude = along.filter.amplitude(&self.moved, v) * along.largest;
+            row.extend([amplitude.re, amplitude.im]);
+        }
+        if !self.pairs.is_empty() {
+            self.open += usize::from(state.contact_forces(self.point)[0] == 0.0);
+            let along = state.speeds()[self.pair_of_point()];
+            let sticks = state.sticks(self.point);
+            self.sticking += usize::from(sticks);
+            self.backwards += usize::from(slip * along < 0.0 && !sticks);
+        }
+        self.values.iter_mut().zip(row).for_each(|(values, value)| values.push(value));
+    }
+
+    /// How many rows are at hand.
+    pub(super) fn rows(&self) -> usize {
+        self.values.first().map_or(0, Vec::len)
+    }
+
+    /// Lets go of the rows at hand.
+    pub(super) fn forget(&mut self) {
+        self.values.iter_mut().for_each(Vec::clear);
+    }
+
+    /// Adds what the rows to come depend on.
+    pub(super) fn put(&self, checkpoint: &mut Checkpoint) {
+        checkpoint.put("recorder", &[self.open, self.backwards, self.sticking].map(|count| count as f64));
+    }
+
+    /// Goes on from what was put away.
+    ///
+    /// # Errors
+    /// Input: it is of another model.
+    pub(super) fn restore(&mut self, checkpoint: &Checkpoint) -> Result<()> {
+        [self.open, self.backwards, self.sticking] =
+            checkpoint.numbers("recorder")?.map(|count| count as usize);
+        Ok(())
+    }
+
+    fn pair_of_point(&self) -> usize {
+        self.pairs.iter().position(|points| points.contains(&self.point)).unwrap_or(0)
+    }
+}

@@ -1,0 +1,81 @@
+//! Where a run in time begins, and how the approach of a pair follows a load that runs in time.
+
+use super::InTime;
+use super::places::{Places, profile};
+use crate::case::{StartChoice, TransientAnalysis};
+use crate::equilibrium::{SteadyOptions, SteadySliding, solve_steady};
+use crate::error::Result;
+use crate::system::{Closing, System};
+use crate::transient::Loading;
+
+/// Equilibria between the least and the greatest load; the approach is linear between two of them.
+const EQUILIBRIA: usize = 33;
+/// The part of a load that stands for none: a pair that nothing presses has no equilibrium.
+const NO_LOAD: f64 = 1e-6;
+
+/// How a run begins.
+pub(super) struct Start {
+    /// The equilibrium it begins at.
+    pub(super) state: SteadySliding,
+    /// Whether nothing has slid yet.
+    pub(super) at_rest: bool,
+}
+
+impl InTime<'_> {
+    /// Steady sliding at the velocities and loads of t = 0; without friction where a pair stands still then, or all do.
+    ///
+    /// # Errors
+    /// No equilibrium.
+    pub(super) fn start(&self, wanted: &TransientAnalysis, places: &Places) -> Result<Start> {
+        let velocity = |name: &str| profile(wanted.slide.get(name).map(|slide| &slide.course)).factor(0.0);
+        let load = |name: &str| profile(wanted.load.get(name)).factor(0.0);
+        let at_rest = wanted.start == StartChoice::Rest
+            || (!self.system.pairs.is_empty() && self.system.pairs.iter().all(|p| velocity(&p.name) == 0.0));
+        let as_given = |name: &str| velocity(name) == 1.0 && load(name) == 1.0;
+        let pushed = places.pushes.iter().any(|push| push.factor(0.0) != 0.0);
+        if !at_rest && !pushed && self.system.pairs.iter().all(|pair| as_given(&pair.name)) {
+            return Ok(Start { state: self.steady.clone(), at_rest });
+        }
+        let mut system = self.system.clone();
+        for (pair, still) in system.pairs.iter_mut().zip(&places.still) {
+            if at_rest || velocity(&pair.name) == 0.0 {
+                pair.law = still.law.clone();
+            } else {
+                pair.sliding_velocity *= velocity(&pair.name);
+            }
+            press(&mut pair.closing, load(&pair.name));
+        }
+        for push in &places.pushes {
+            push.direction.add_to(push.factor(0.0), &mut system.load);
+        }
+        Ok(Start { state: solve_steady(&system, &SteadyOptions::default(), &())?, at_rest })
+    }
+
+    /// How the approach of each pair follows its load, where that runs in time.
+    ///
+    /// # Errors
+    /// A load without an equilibrium.
+    pub(super) fn loadings(&self, wanted: &TransientAnalysis) -> Result<Vec<Option<Loading>>> {
+        let pairs = self.system.pairs.iter().enumerate();
+        let loading = |(k, pair): (usize, &crate::system::ContactPair)| {
+            let course = wanted.load.get(&pair.name);
+            let (Some(course), Closing::Load(_)) = (course, pair.closing) else { return Ok(None) };
+            let factors = course.range();
+            let approach = |part: usize| {
+                let share = part as f64 / (EQUILIBRIA - 1) as f64;
+                let mut system: System = self.system.clone();
+                press(&mut system.pairs[k].closing, factors[0] + share * (factors[1] - factors[0]));
+                Ok(solve_steady(&system, &SteadyOptions::default(), &())?.approach[k])
+            };
+            let approaches = (0..EQUILIBRIA).map(approach).collect::<Result<Vec<f64>>>()?;
+            Ok(Some(Loading { profile: profile(Some(course)), approaches, factors }))
+        };
+        pairs.map(loading).collect()
+    }
+}
+
+fn press(closing: &mut Closing, factor: f64) {
+    if let Closing::Load(load) = closing {
+        *load *= factor.max(NO_LOAD);
+    }
+}

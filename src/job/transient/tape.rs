@@ -1,0 +1,100 @@
+//! Hands on what is recorded, a piece at a time.
+
+use super::recorder::Recorder;
+use crate::error::{Error, Fault, Result};
+use crate::job::keeper::{Keeper, Stage};
+use crate::results::{Piece, Recording};
+use crate::transient::{Checkpoint, Marched, Model, Plan, State};
+use std::time::{Duration, Instant};
+
+/// Rows of a piece, at most.
+const ROWS: usize = 4096;
+/// A piece is handed on at the latest after this time.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// What the recorder makes, on its way to its keeper. Each piece comes with a checkpoint; memory does not grow with the
+/// run. How the rows are cut into pieces has no influence on them.
+pub(super) struct Tape<'a, 'k> {
+    pub(super) recorder: Recorder<'a>,
+    pub(super) keeper: &'k mut dyn Keeper,
+    /// The first row that is at hand.
+    first: usize,
+    last_piece: Instant,
+}
+
+impl<'a, 'k> Tape<'a, 'k> {
+    pub(super) fn new(recorder: Recorder<'a>, keeper: &'k mut dyn Keeper) -> Self {
+        Tape { recorder, keeper, first: 0, last_piece: Instant::now() }
+    }
+
+    /// Begins with the first row or, where an earlier run stopped, goes on from there.
+    ///
+    /// # Errors
+    /// Input: what the earlier run left is not of this model.
+    pub(super) fn begin(&mut self, start: State, model: &Model<'_>, plan: &Plan) -> Result<Marched> {
+        let mut marched = Marched::from(start);
+        self.recorder.take(&marched);
+        let earlier = self.keeper.stopped()?;
+        if let Some(checkpoint) = &earlier {
+            self.begins_alike()?;
+            marched = checkpoint.march(model)?;
+            self.recorder.restore(checkpoint)?;
+            self.recorder.forget();
+            self.first = marched.step + 1;
+        }
+        let checkpoint = self.checkpoint(&marched);
+        self.keeper.record(Stage::TransientBegins(&Recording {
+            time_step: plan.step,
+            rows: plan.steps + 1,
+            channels: &self.recorder.channels,
+            checkpoint: &checkpoint,
+        }))?;
+        self.flush(&marched)?;
+        Ok(marched)
+    }
+
+    /// A mesh, a program or a machine that is another gives another first row.
+    fn begins_alike(&self) -> Result<()> {
+        for (channel, own) in self.recorder.channels.iter().zip(&self.recorder.values) {
+            let earlier = self.keeper.recorded(&channel.name, 0..1)?;
+            if earlier.iter().map(|v| v.to_bits()).ne(own.iter().map(|v| v.to_bits())) {
+                let (found, expected) =
+                    (format!("{earlier:?} at the start"), format!("{own:?} as in this run"));
+                let place = format!("the earlier run's `{}`", channel.name);
+                return Err(Error::input(Fault::new(place, found, expected).with_help(
+                    "The mesh or the program has changed since: run without --resume, or name another folder with --out",
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes a step.
+    pub(super) fn take(&mut self, marched: &Marched) -> Result<()> {
+        self.recorder.take(marched);
+        if self.recorder.rows() >= ROWS || self.last_piece.elapsed() >= PATIENCE {
+            self.flush(marched)?;
+        }
+        Ok(())
+    }
+
+    /// Hands on the rows at hand, the last of which is of `marched`.
+    pub(super) fn flush(&mut self, marched: &Marched) -> Result<()> {
+        if self.recorder.rows() > 0 {
+            let checkpoint = self.checkpoint(marched);
+            let piece = Piece { first: self.first, values: &self.recorder.values, checkpoint: &checkpoint };
+            self.keeper.record(Stage::TransientPiece(&piece))?;
+            self.first += self.recorder.rows();
+            self.recorder.forget();
+        }
+        self.last_piece = Instant::now();
+        Ok(())
+    }
+
+    fn checkpoint(&self, marched: &Marched) -> Checkpoint {
+        let mut checkpoint = Checkpoint::default();
+        checkpoint.put_march(marched);
+        self.recorder.put(&mut checkpoint);
+        checkpoint
+    }
+}
