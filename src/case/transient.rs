@@ -14,6 +14,9 @@ pub struct TransientAnalysis {
     pub duration: f64,
     /// Δt \[s\].
     pub time_step: f64,
+    /// The relative error of frequencies beyond which a step is split into shorter ones; none are when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<f64>,
     /// The integrator.
     #[serde(flatten)]
     pub scheme: SchemeChoice,
@@ -199,6 +202,10 @@ pub(super) fn read(s: &Section) -> TransientAnalysis {
     TransientAnalysis {
         duration,
         time_step,
+        tolerance: s
+            .quantity("tolerance", NUMBER)
+            .within(Bound::Excluded(0.0), Bound::Excluded(1.0))
+            .optional(),
         scheme: match s.choice("scheme", &["newmark", "hht", "generalised_alpha"]).or("hht") {
             "newmark" => SchemeChoice::Newmark,
             "hht" => SchemeChoice::Hht { alpha: unit("alpha", -1.0 / 3.0, 0.0, -0.05) },

@@ -213,8 +213,8 @@ pub(super) fn table(run: &TransientResult) -> Table {
     ));
     if run.split.0 > 0 {
         table.notes.push(format!(
-            "{} steps were split, into up to {} parts, for Newton's method to converge.",
-            run.split.0, run.split.1
+            "{} steps were split, into up to {} parts: {} in all.",
+            run.split.0, run.split.1, run.parts
         ));
     }
     table

@@ -374,5 +374,6 @@ fn transient() -> TransientResult {
         open: 0.0,
         backwards: 0.0,
         sticking: 0.0,
+        parts: 0,
     }
 }

@@ -149,6 +149,8 @@ pub struct TransientResult {
     pub worst_residual: f64,
     /// Steps that had to be split, and the most parts.
     pub split: (usize, usize),
+    /// Steps and parts of steps in all.
+    pub parts: usize,
     /// The share of time in which the most loaded point was open, and in which it slid backwards.
     pub open: f64,
     /// See [`TransientResult::open`].

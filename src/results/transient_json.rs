@@ -52,6 +52,7 @@ pub(super) fn transient(result: &TransientResult) -> Value {
         "backwards_fraction": result.backwards,
         "sticking_fraction": result.sticking,
         "steps_split": result.split.0,
+        "parts": result.parts,
         "most_parts": result.split.1,
         "energy_j": {
             "stored": work.kinetic + work.strain,

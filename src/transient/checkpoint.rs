@@ -1,7 +1,7 @@
 //! What a march needs to go on, as named arrays that any file can hold.
 
 use super::ledger::Work;
-use super::march::Marched;
+use super::march::{Control, Marched};
 use super::model::Model;
 use super::reaction::Bristles;
 use super::state::State;
@@ -52,9 +52,9 @@ impl Checkpoint {
 
     /// Adds all that a march goes on from.
     pub fn put_march(&mut self, marched: &Marched) {
-        let Marched { begin, step, state, work, worst_residual, split } = marched;
-        let counts = [*step, split.0, split.1].map(|count| count as f64);
-        self.put("march", &[*begin, state.time, *worst_residual]);
+        let Marched { begin, step, state, work, worst_residual, split, control } = marched;
+        let counts = [*step, split.0, split.1, control.level, control.parts].map(|count| count as f64);
+        self.put("march", &[*begin, state.time, *worst_residual, control.fastest]);
         self.put("march_counts", &counts);
         self.put("work", &work.terms());
         // What a state does not follow from otherwise. What a law remembers belongs here too.
@@ -71,8 +71,9 @@ impl Checkpoint {
     /// # Errors
     /// Input: it is of another model.
     pub fn march(&self, model: &Model<'_>) -> Result<Marched> {
-        let [begin, time, worst_residual] = self.numbers("march")?;
-        let [step, split, parts] = self.numbers("march_counts")?.map(|count: f64| count as usize);
+        let [begin, time, worst_residual, fastest] = self.numbers("march")?;
+        let [step, split, most, level, parts] =
+            self.numbers("march_counts")?.map(|count: f64| count as usize);
         let terms: [f64; 9] = self.numbers("work")?;
         let mut work = Work::default();
         work.terms_mut().into_iter().zip(terms).for_each(|(term, value)| *term = value);
@@ -87,7 +88,8 @@ impl Checkpoint {
         }
         state.act(model, time);
         state.derive(model);
-        Ok(Marched { begin, step, state, work, worst_residual, split: (split, parts) })
+        let control = Control { level, fastest, parts };
+        Ok(Marched { begin, step, state, work, worst_residual, split: (split, most), control })
     }
 
     /// Adds a matrix, column after column.
@@ -127,7 +129,8 @@ mod tests {
             let model = Model::new(&system, &steady).unwrap().driven(vec![profile], vec![]);
             let shape: Vec<c64> = (0..12).map(|k| c64::new(0.02 * k as f64, 0.1)).collect();
             let start = State::steady(&model, &steady).disturbed(&model, c64::new(0.0, 3.0), &shape, 1.0);
-            let plan = Plan { scheme: Scheme::hht(-0.05), step: 1e-2, steps: 200, method };
+            let scheme = Scheme::hht(-0.05);
+            let plan = Plan { scheme, step: 1e-2, steps: 200, method, tolerance: None };
             let mut middle = Checkpoint::default();
             let whole = march(&model, start, &plan, &(), &mut |marched| {
                 if marched.step == 77 {

@@ -22,6 +22,27 @@ pub struct Plan {
     pub steps: usize,
     /// How each is solved.
     pub method: Method,
+    /// The local error that each may have at most, see [`Control`]; any when absent.
+    pub tolerance: Option<f64>,
+}
+
+/// How finely steps are split for the error they make.
+///
+/// The local error of Newmark's displacement is |β − 1/6| Δt² Δa (O. C. Zienkiewicz & Y. M. Xie, Earthq. Eng. Struct. Dyn.
+/// 20 (1991) 871). As a part of the way Δt |v| that the motion makes at its fastest,
+///
+/// η = |β − 1/6| Δt ‖Δa‖_M/max ‖v‖_M,
+///
+/// it is the relative error of the frequency of a harmonic motion, (ωΔt)²/12 for β = ¼. A step with η above the tolerance
+/// is done again in twice as many parts; one with less than an eighth of it lets the next have half as many.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Control {
+    /// Steps are split into 2^level parts.
+    pub level: usize,
+    /// max vᵀMv so far.
+    pub fastest: f64,
+    /// Parts done in all.
+    pub parts: usize,
 }
 
 /// How far a march has come: what is seen of it after a step, what it leaves behind, and what it can go on from.
@@ -39,13 +60,16 @@ pub struct Marched {
     pub worst_residual: f64,
     /// Steps that had to be split, and into how many parts at most.
     pub split: (usize, usize),
+    /// How finely.
+    pub control: Control,
 }
 
 impl From<State> for Marched {
     /// The first state, nothing done.
     fn from(state: State) -> Self {
         let begin = state.time;
-        Marched { begin, step: 0, state, work: Work::default(), worst_residual: 0.0, split: (0, 1) }
+        let (work, control) = (Work::default(), Control::default());
+        Marched { begin, step: 0, state, work, worst_residual: 0.0, split: (0, 1), control }
     }
 }
 
@@ -83,7 +107,7 @@ pub fn go_on(
     observer.advance(marched.step as u64);
     for step in marched.step + 1..=plan.steps {
         let ends = [step - 1, step].map(|k| marched.begin + k as f64 * plan.step);
-        let (done, parts) = steppers.advance(&mut marched.state, &mut next, ends)?;
+        let (done, parts) = steppers.advance(&mut marched.state, &mut next, ends, &mut marched.control)?;
         if parts > 1 {
             marched.split = (marched.split.0 + 1, marched.split.1.max(parts));
         }
@@ -107,18 +131,34 @@ struct Steppers<'a> {
 
 impl Steppers<'_> {
     /// Brings `now` from the first to the second time, in as many parts as it takes; says the work and the parts.
-    fn advance(&mut self, now: &mut State, next: &mut State, ends: [f64; 2]) -> Result<(Work, usize)> {
+    fn advance(
+        &mut self,
+        now: &mut State,
+        next: &mut State,
+        ends: [f64; 2],
+        control: &mut Control,
+    ) -> Result<(Work, usize)> {
         let mut stuck = Stuck::NotFinite;
-        for level in 0..=SPLITS {
-            if self.levels.len() == level {
-                let step = self.plan.step / (1 << level) as f64;
+        let tolerance = self.plan.tolerance.unwrap_or(f64::INFINITY);
+        for level in control.level..=SPLITS {
+            while self.levels.len() <= level {
+                let step = self.plan.step / (1 << self.levels.len()) as f64;
                 self.levels.push(Stepper::new(self.model, self.plan.scheme, step, self.plan.method)?);
             }
             let parts = 1usize << level;
-            // What is kept to go back to; a step that is not split needs none.
-            let before = (level > 0).then(|| now.clone());
-            match self.parts(level, now, next, ends) {
-                Ok(work) => return Ok((work, parts)),
+            // What is kept to go back to; a single step that may fail but not err needs none.
+            let before = (level > 0 || self.plan.tolerance.is_some()).then(|| now.clone());
+            let mut fastest = control.fastest;
+            match self.parts(level, now, next, ends, &mut fastest) {
+                Ok((work, error)) if error <= tolerance || level == SPLITS => {
+                    control.fastest = fastest;
+                    control.parts += parts;
+                    if self.plan.tolerance.is_some() {
+                        control.level = if error < tolerance / 8.0 { level.saturating_sub(1) } else { level };
+                    }
+                    return Ok((work, parts));
+                }
+                Ok(_) => {}
                 Err(why) => stuck = why,
             }
             if let Some(before) = before {
@@ -140,25 +180,39 @@ impl Steppers<'_> {
         ))
     }
 
+    /// The work of 2^level parts, and the largest error of one.
     fn parts(
         &mut self,
         level: usize,
         now: &mut State,
         next: &mut State,
         ends: [f64; 2],
-    ) -> std::result::Result<Work, Stuck> {
+        fastest: &mut f64,
+    ) -> std::result::Result<(Work, f64), Stuck> {
         let parts = 1usize << level;
-        let mut work = Work::default();
+        let (mut work, mut worst) = (Work::default(), 0.0f64);
+        let length = (ends[1] - ends[0]) / parts as f64;
         for part in 1..=parts {
-            let time = if part == parts {
-                ends[1]
-            } else {
-                ends[0] + (ends[1] - ends[0]) * part as f64 / parts as f64
-            };
+            let time = if part == parts { ends[1] } else { ends[0] + length * part as f64 };
             next.act(self.model, time);
             work.add(&self.levels[level].step(now, next)?);
             std::mem::swap(now, next);
+            if self.plan.tolerance.is_some() {
+                // `next` is where the part began.
+                let (mut jump, mut speed) = (0.0, 0.0);
+                let [v, a, b] =
+                    [(&*now, 1), (&*now, 2), (&*next, 2)].map(|(state, k)| state.motion.col_as_slice(k));
+                let inertia =
+                    [(&*now, 0), (&*now, 1), (&*next, 1)].map(|(state, k)| state.inertia.col_as_slice(k));
+                for i in 0..v.len() {
+                    speed += v[i] * inertia[0][i];
+                    jump += (a[i] - b[i]) * (inertia[1][i] - inertia[2][i]);
+                }
+                *fastest = fastest.max(speed);
+                let share = (self.plan.scheme.beta - 1.0 / 6.0).abs() * length;
+                worst = worst.max(share * (jump.max(0.0) / fastest.max(f64::MIN_POSITIVE)).sqrt());
+            }
         }
-        Ok(work)
+        Ok((work, worst))
     }
 }

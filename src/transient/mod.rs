@@ -28,7 +28,7 @@ mod track;
 pub use checkpoint::Checkpoint;
 pub use drive::{Loading, Profile, Pulse, Push};
 pub use ledger::Work;
-pub use march::{Marched, Plan, go_on, march};
+pub use march::{Control, Marched, Plan, go_on, march};
 pub use model::{Model, refuse_hysteretic};
 pub use scheme::Scheme;
 pub use state::State;

@@ -52,7 +52,7 @@ fn run(model: &Model<'_>, from: State, plan: Plan) -> Marched {
 }
 
 fn plan(scheme: Scheme, step: f64, steps: usize) -> Plan {
-    Plan { scheme, step, steps, method: Method::Condensed }
+    Plan { scheme, step, steps, method: Method::Condensed, tolerance: None }
 }
 
 /// The amplification matrix of x = (u, Δt v, Δt² a) of an undamped oscillator, from the equations of the scheme as
@@ -456,4 +456,21 @@ fn a_mass_on_a_belt_sticks_and_slips_with_the_period_of_the_exact_solution() {
     near(sticking as f64 * step / 2.0, 7.705032);
     near(range[1], 1.133945);
     near(range[0], -0.555433);
+}
+
+#[test]
+fn steps_are_split_until_the_frequency_is_as_right_as_was_asked() {
+    let (system, steady) = oscillator(TAU);
+    let model = Model::new(&system, &steady).unwrap();
+    let go = |tolerance: f64| {
+        let plan = Plan { tolerance: Some(tolerance), ..plan(Scheme::TRAPEZOIDAL, 0.1, 200) };
+        let end = run(&model, start(&model, &[1.0], &[0.0], &[-TAU * TAU]), plan);
+        let (u, v) = (end.state.motion[(0, 0)], end.state.motion[(0, 1)] / TAU);
+        // Twenty turns: what is left of the angle is the error of the frequency.
+        ((-v).atan2(u).abs() / (20.0 * TAU), end.control.parts)
+    };
+    let (coarse, few) = go(1e-2);
+    let (fine, many) = go(1e-4);
+    assert!(coarse < 1e-2 && fine < 1e-4 && fine > 1e-6, "{coarse:e} {fine:e}");
+    assert!(few < many && many < 200 * 16, "{few} {many}");
 }

@@ -100,7 +100,7 @@ impl InTime<'_> {
         let (scheme, words) = scheme(wanted.scheme);
         let steps = (wanted.duration / wanted.time_step).round().max(1.0) as usize;
         let method = if wanted.full_newton { Method::FullNewton } else { Method::Condensed };
-        let plan = Plan { scheme, step: wanted.time_step, steps, method };
+        let plan = Plan { scheme, step: wanted.time_step, steps, method, tolerance: wanted.tolerance };
         let mut tape = Tape::new(Recorder::new(system, steady, &model, (probes, gauges), disturbed), keeper);
         let mut marched = tape.begin(start, &model, &plan)?;
         let reached = go_on(&model, &mut marched, &plan, observer, &mut |marched| tape.take(marched));
@@ -124,6 +124,7 @@ impl InTime<'_> {
             work: marched.work,
             worst_residual: marched.worst_residual,
             split: marched.split,
+            parts: marched.control.parts,
         })
     }
 }
