@@ -19,7 +19,7 @@ pub struct Options {
     /// The folder for the results; `results/NAME` by default, NAME being the case file's, or its folder's for case.toml
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Take up the maps that an interrupted run of the same case left in the folder
+    /// Take up the maps and the run in time that an interrupted run of the same case left in the folder
     #[arg(long)]
     resume: bool,
 }

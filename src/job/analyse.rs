@@ -87,8 +87,8 @@ impl Selection {
 
 /// Runs the analyses of a case and writes the results folder `out`; nothing is written when the input is wrong.
 ///
-/// With `resume` the maps that an earlier run of the same case left in `out` are taken up where it stopped; the result
-/// is the same, bit for bit.
+/// With `resume` the maps and the run in time that an earlier run of the same case left in `out` are taken up where it
+/// stopped; the result is the same, bit for bit. Results of another case are refused.
 ///
 /// # Errors
 /// Faults of the input, an analysis without an answer, or a folder that cannot be written.
@@ -107,8 +107,7 @@ pub fn run_case(
     // Its faults are told before anything is written.
     in_time(&prepared, selection)?;
     let preparation = started.elapsed().as_secs_f64();
-    let mut file = ResultsFile::create(out)?;
-    file.keep_earlier_until(known.len());
+    let file = if resume { ResultsFile::resume(out)? } else { ResultsFile::create(out)? };
     let mut folder = Folder::new(out, file);
     let mut results = analyse_from(&prepared, selection, &known, &mut folder, observer)?;
     // The time of a phase is that of computing.

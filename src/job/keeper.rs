@@ -3,7 +3,7 @@
 use super::explore::KnownMap;
 use crate::error::Result;
 use crate::results::{
-    ComplexResult, HistoryTable, MapResult, NamedModes, Piece, Recording, ResultsFile, RunResults,
+    Channel, ComplexResult, HistoryTable, MapResult, NamedModes, Piece, Recording, ResultsFile, RunResults,
     SensitivityResult, SteadyResult, SweepResult, TransientResult,
 };
 use crate::sweep::MapPoint;
@@ -11,6 +11,9 @@ use crate::transient::Checkpoint;
 use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
+
+/// Rows that an earlier run recorded are copied to a new table so many at once.
+const AT_ONCE: usize = 4096;
 
 /// A result that is ready to be written.
 pub enum Stage<'a> {
@@ -131,7 +134,14 @@ impl<'a> Folder<'a> {
             Stage::Map(map) => file.finish_map(map),
             Stage::TransientBegins(recording) => {
                 file.begin_transient(recording)?;
-                self.history = Some(HistoryTable::create(self.dir, recording)?);
+                let mut table = HistoryTable::create(self.dir, recording)?;
+                for first in (0..recording.done).step_by(AT_ONCE) {
+                    let rows = first..recording.done.min(first + AT_ONCE);
+                    let read = |c: &Channel| self.file.read_transient(&c.name, rows.clone());
+                    let values: Vec<Vec<f64>> = recording.channels.iter().map(read).collect::<Result<_>>()?;
+                    table.append(first, &values)?;
+                }
+                self.history = Some(table);
                 Ok(())
             }
             Stage::TransientPiece(piece) => {
@@ -160,6 +170,6 @@ impl Keeper for Folder<'_> {
     }
 
     fn stopped(&self) -> Result<Option<Checkpoint>> {
-        Ok(None)
+        self.file.stopped()
     }
 }

@@ -6,8 +6,8 @@
 //! | `/sweep/<name>` | `value`, `eigenvalue` (branch × value), `lowest_mac`, `critical_…`, `encounter_…`, `sample_…` |
 //! | `/map/<name>` | `value_1`, `value_2`, `growth_rate`, `frequency_hz`, `unstable` (2 × 1), `boundary_…`, `sample_…` |
 
-use super::hdf5::{Datasets, ResultsFile, attribute, plain, rows, text_attribute, texts};
-use super::{MapResult, Method, SweepResult};
+use super::hdf5::{Datasets, attribute, plain, rows, text_attribute, texts};
+use super::{MapResult, Method, ResultsFile, SweepResult};
 use crate::error::{Error, Fault, Result};
 use crate::linalg::c64;
 use crate::sweep::{Checked, Critical, CriticalKind, Encounter, EncounterKind, MapPoint};
@@ -41,8 +41,7 @@ impl ResultsFile {
     /// # Errors
     /// As every method of the file: the machine refuses.
     pub fn write_sweep(&mut self, sweep: &SweepResult) -> Result<()> {
-        self.stage(|root| write_sweep(root, sweep))?;
-        self.take_place()
+        self.keep(|root| write_sweep(root, sweep))
     }
 
     /// Begins a map, or begins it again: its axes, room for its points, and those that are `known`.
@@ -50,11 +49,8 @@ impl ResultsFile {
     /// # Errors
     /// The machine refuses.
     pub fn begin_map(&mut self, map: &MapResult, known: &[MapPoint], trained: &[[f64; 2]]) -> Result<()> {
-        self.stage(|root| begin_map(root, map, trained))?;
+        self.keep(|root| begin_map(root, map, trained))?;
         self.write_map_points(&map.name, 0, known)?;
-        if !known.is_empty() || !trained.is_empty() {
-            self.awaited = self.awaited.saturating_sub(1);
-        }
         self.take_place()
     }
 
@@ -63,7 +59,7 @@ impl ResultsFile {
     /// # Errors
     /// The machine refuses.
     pub fn write_map_points(&mut self, name: &str, first: usize, points: &[MapPoint]) -> Result<()> {
-        self.stage(|root| {
+        self.fill(|root| {
             let group = root.group(&format!("map/{name}"))?;
             let part = s![first..first + points.len()];
             let growth: Vec<f64> = points.iter().map(|p| p.growth_rate).collect();
@@ -71,7 +67,11 @@ impl ResultsFile {
             let hz: Vec<f64> = points.iter().map(|p| p.frequency_hz).collect();
             group.dataset("frequency_hz")?.write_slice(&hz, part)?;
             let unstable: Vec<u32> = points.iter().map(|p| p.unstable).collect();
-            group.dataset("unstable")?.write_slice(&unstable, part)?;
+            group.dataset("unstable")?.write_slice(&unstable, part)
+        })?;
+        // They count when they are on the disk.
+        self.fill(|root| {
+            let group = root.group(&format!("map/{name}"))?;
             group.attr("points_done")?.write_scalar(&((first + points.len()) as u64))
         })
     }

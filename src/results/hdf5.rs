@@ -1,10 +1,6 @@
-//! `results.h5`: everything a run produces, in full precision, written stage by stage.
+//! What stands in `results.h5`, stage by stage; how it is written safely: `file.rs`.
 //!
-//! Each stage ends with a flush, so the file opens normally at any time after it, also when the run was killed; the
-//! root attribute `complete` turns true at the end. An earlier run's file is not touched before this run has a
-//! result to replace it: until its first modes, steady state or complex modes are on disk the new file is called
-//! `results.new.h5`, then it takes the place of `results.h5` in one step (a folder without one gets `results.h5`
-//! at once). Every dataset has the attributes `units` and `description`.
+//! Every dataset has the attributes `units` and `description`.
 //!
 //! | group | datasets |
 //! |---|---|
@@ -15,14 +11,13 @@
 //! | `/steady` | `displacement`, `approach`, contact points with forces and tangents, pairs |
 //! | `/complex` | `eigenvalue`, `right`, `left`, errors, `growth_…`, `participation` |
 //! | `/sensitivity/mode_<k>` | `parameter`, `value`, `rate`, errors; `point_mass`, `point_spring`, `point_damper`, best places |
-//! | `/transient` | a growing dataset for each channel; spectra with their peaks; see `transient_hdf5.rs` |
+//! | `/transient` | a dataset for each channel; spectra with their peaks; checkpoints; see `transient_hdf5.rs` |
 //! | `/sweep/<name>`, `/map/<name>` | branches, critical values; grids, boundary; see `explored_hdf5.rs` |
 //! | `/timings`, `/warnings` | `phase`, `wall_time`; sentences |
 
-use super::folder::{FileNames, prepare_folder, refusal};
 use super::{
-    ComplexResult, Geometry, MeasuredComparison, NamedModes, NodalField, ParameterRate, RunResults,
-    SensitivityResult, SteadyResult,
+    ComplexResult, Geometry, MeasuredComparison, NamedModes, NodalField, ParameterRate, ResultsFile,
+    RunResults, SensitivityResult, SteadyResult,
 };
 use crate::error::Result;
 use crate::linalg::c64;
@@ -30,49 +25,11 @@ use crate::stability::ComplexMode;
 use hdf5::types::VarLenUnicode;
 use hdf5::{Group, H5Type};
 use ndarray::{Array1, Array2, Array3, ArrayView, ArrayViewD, Dimension};
-use std::path::{Path, PathBuf};
 
 /// Units of a mass-normalised displacement and rotation: φᵀMφ = 1.
 const SHAPE_UNITS: &str = "1/√kg, 1/(m √kg)";
 
-/// The results file of a run under way.
-#[derive(Debug)]
-pub struct ResultsFile {
-    file: hdf5::File,
-    /// Where the file is now.
-    path: PathBuf,
-    /// Where it belongs.
-    home: PathBuf,
-    names: FileNames,
-    /// Maps of an earlier run that this run takes up and has not yet written: until then the earlier file stays.
-    pub(super) awaited: usize,
-    /// The channels of the run in time.
-    pub(super) channels: Vec<String>,
-}
-
 impl ResultsFile {
-    /// Begins a results file in the folder `dir`, which is made when missing.
-    ///
-    /// # Errors
-    /// [`crate::error::Error::Io`], here and in every other method, when the machine refuses: a file in the
-    /// folder's place, a folder that is not writable, a full disk.
-    pub fn create(dir: &Path) -> Result<Self> {
-        prepare_folder(dir)?;
-        let home = dir.join("results.h5");
-        let path = if home.exists() { dir.join("results.new.h5") } else { home.clone() };
-        // The operating system tells why a file cannot be made more plainly than the library.
-        std::fs::File::create(&path).map_err(|source| refusal(&path, source))?;
-        let file = hdf5::File::create(&path).map_err(|source| refusal(&path, plain(&source)))?;
-        let this =
-            ResultsFile { file, path, home, names: FileNames::default(), awaited: 0, channels: Vec::new() };
-        this.stage(|root| {
-            text_attribute(root, "program", env!("CARGO_PKG_NAME"))?;
-            text_attribute(root, "program_version", env!("CARGO_PKG_VERSION"))?;
-            attribute(root, "complete", &false)
-        })?;
-        Ok(this)
-    }
-
     /// Writes title, resolved case and assumptions.
     pub fn write_case(&mut self, results: &RunResults) -> Result<()> {
         self.stage(|root| {
@@ -116,8 +73,7 @@ impl ResultsFile {
     /// Writes one set of real modes.
     pub fn write_modes(&mut self, set: &NamedModes) -> Result<()> {
         let name = self.names.next(&set.name);
-        self.stage(|root| write_mode_set(root, &name, set))?;
-        self.take_place()
+        self.keep(|root| write_mode_set(root, &name, set))
     }
 
     /// Writes the measured frequencies with the modes paired with them.
@@ -140,68 +96,17 @@ impl ResultsFile {
 
     /// Writes steady sliding.
     pub fn write_steady(&mut self, steady: &SteadyResult) -> Result<()> {
-        self.stage(|root| write_steady(root, steady))?;
-        self.take_place()
+        self.keep(|root| write_steady(root, steady))
     }
 
     /// Writes the complex modes.
     pub fn write_complex(&mut self, complex: &ComplexResult) -> Result<()> {
-        self.stage(|root| write_complex(root, complex))?;
-        self.take_place()
+        self.keep(|root| write_complex(root, complex))
     }
 
     /// Writes the sensitivities of the complex modes.
     pub fn write_sensitivity(&mut self, sensitivity: &SensitivityResult) -> Result<()> {
-        self.stage(|root| write_sensitivity(root, sensitivity))?;
-        self.take_place()
-    }
-
-    /// Writes warnings and timings, marks the file complete and closes it.
-    pub fn finish(mut self, results: &RunResults) -> Result<()> {
-        self.stage(|root| {
-            texts(root, "warnings", &results.warnings, "what the user should know, one sentence each")?;
-            let group = Datasets(root.create_group("timings")?);
-            let (phases, seconds): (Vec<String>, Vec<f64>) = results.timings.iter().cloned().unzip();
-            texts(&group.0, "phase", &phases, "phases of the run")?;
-            group.list("wall_time", &seconds, "s", "wall time of each phase")?;
-            root.attr("complete")?.write_scalar(&true)
-        })?;
-        self.take_place()
-    }
-
-    /// Writes one stage and flushes it to the disk.
-    pub(super) fn stage(&self, write: impl FnOnce(&Group) -> hdf5::Result<()>) -> Result<()> {
-        let written = self.file.as_group().and_then(|root| write(&root)).and_then(|()| self.file.flush());
-        written.map_err(|source| refusal(&self.path, plain(&source)))
-    }
-
-    /// Reads what was written.
-    pub(super) fn read<T>(&self, read: impl FnOnce(&Group) -> hdf5::Result<T>) -> Result<T> {
-        let found = self.file.as_group().and_then(|root| read(&root));
-        found.map_err(|source| refusal(&self.path, plain(&source)))
-    }
-
-    /// Leaves an earlier run's file in its place until `maps` of its maps are in this one.
-    pub fn keep_earlier_until(&mut self, maps: usize) {
-        self.awaited = maps;
-    }
-
-    /// Takes the place of an earlier run's file, once.
-    pub(super) fn take_place(&mut self) -> Result<()> {
-        if self.path != self.home && self.awaited == 0 {
-            std::fs::rename(&self.path, &self.home).map_err(|source| refusal(&self.home, source))?;
-            self.path.clone_from(&self.home);
-        }
-        Ok(())
-    }
-}
-
-impl Drop for ResultsFile {
-    /// A run that ends without any result leaves the earlier file and nothing beside it.
-    fn drop(&mut self) {
-        if self.path != self.home {
-            let _ = std::fs::remove_file(&self.path);
-        }
+        self.keep(|root| write_sensitivity(root, sensitivity))
     }
 }
 
@@ -452,6 +357,9 @@ pub(super) fn text_attribute(location: &hdf5::Location, name: &str, text: &str) 
 /// The operating system's words inside an error of the library, which runs over several lines, or its first line.
 pub(super) fn plain(error: &hdf5::Error) -> String {
     let text = error.to_string();
+    if text.contains("Resource temporarily unavailable") {
+        return "another program has the file open".into();
+    }
     let cause = text.split_once("error message = '").and_then(|(_, rest)| rest.split_once('\''));
     cause.map(|(words, _)| words).or(text.lines().next()).unwrap_or_default().to_string()
 }
@@ -474,6 +382,7 @@ fn fields<T: Copy>(shapes: &[NodalField<T>]) -> Array3<T> {
 mod tests {
     use super::super::sample;
     use super::*;
+    use std::path::Path;
 
     fn write_all(dir: &Path, results: &RunResults) {
         let mut file = ResultsFile::create(dir).unwrap();
@@ -528,48 +437,5 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         write_all(dir.path(), &sample::rig());
         assert!(check(&hdf5::File::open(dir.path().join("results.h5")).unwrap()) > 40);
-    }
-
-    #[test]
-    fn an_earlier_file_stays_until_there_is_a_result() {
-        let dir = tempfile::tempdir().unwrap();
-        let results = sample::rig();
-        let home = dir.path().join("results.h5");
-        std::fs::write(&home, "earlier").unwrap();
-        {
-            let mut file = ResultsFile::create(dir.path()).unwrap();
-            file.write_case(&results).unwrap();
-            assert_eq!(std::fs::read(&home).unwrap(), b"earlier");
-        }
-        assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 1, "a run without results leaves nothing");
-        let mut file = ResultsFile::create(dir.path()).unwrap();
-        file.write_modes(&results.modes[0]).unwrap();
-        // What a killed run leaves is what is on the disk after the flush.
-        let copy = dir.path().join("copy.h5");
-        std::fs::copy(&home, &copy).unwrap();
-        let killed = hdf5::File::open(&copy).unwrap();
-        assert!(killed.dataset("modes/disc/frequency_hz").is_ok());
-        assert!(!killed.attr("complete").unwrap().read_scalar::<bool>().unwrap());
-        file.write_steady(results.steady.as_ref().unwrap()).unwrap();
-        file.finish(&results).unwrap();
-        assert!(hdf5::File::open(&home).unwrap().group("steady").is_ok());
-    }
-
-    #[test]
-    #[cfg(target_os = "linux")]
-    fn refusals_of_the_machine_are_errors_of_one_line() {
-        let dir = tempfile::tempdir().unwrap();
-        let occupied = dir.path().join("occupied");
-        std::fs::write(&occupied, "keep").unwrap();
-        std::os::unix::fs::symlink("/dev/full", dir.path().join("results.new.h5")).unwrap();
-        std::fs::write(dir.path().join("results.h5"), "earlier").unwrap();
-        for place in [occupied.as_path(), Path::new("/proc"), dir.path()] {
-            let result = ResultsFile::create(place).and_then(|file| file.finish(&sample::rig()));
-            let error = result.expect_err("the machine refuses");
-            assert_eq!(error.exit_code(), 1);
-            assert!(!error.to_string().contains('\n') && error.to_string().len() < 250, "{error}");
-        }
-        assert_eq!(std::fs::read_to_string(&occupied).unwrap(), "keep");
-        assert_eq!(std::fs::read_to_string(dir.path().join("results.h5")).unwrap(), "earlier");
     }
 }

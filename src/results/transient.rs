@@ -83,6 +83,8 @@ pub struct Recording<'a> {
     pub time_step: f64,
     /// Steps, the start included.
     pub rows: usize,
+    /// How many of them an earlier run has recorded.
+    pub done: usize,
     /// What is recorded at each.
     pub channels: &'a [Channel],
     /// A checkpoint, for the room that it takes.

@@ -1,50 +1,95 @@
-//! `/transient` of `results.h5`: one dataset a channel that grows as the run goes on, each piece flushed, so that a killed
-//! run leaves what it had reached.
+//! `/transient` of `results.h5`: room for every channel, filled as the run goes on, so that a killed run leaves what it had
+//! reached and can be taken up.
+//!
+//! | in `/transient` | |
+//! |---|---|
+//! | attribute `rows` | how many values of every channel are there; the others are not a number |
+//! | `<channel>` | a value for every step, the start included |
+//! | `checkpoint/0`, `checkpoint/1` | what the run goes on from after its last rows and, in turn, after those before |
+//! | attribute `latest` | which of the two is whole, -1 for none; changed when the other is on the disk |
+//! | `spectrum_<channel>` | lines and peaks |
 
-use super::hdf5::{Datasets, ResultsFile, attribute, describe, text_attribute};
-use super::{Piece, Recording, TransientResult};
+use super::file::room;
+use super::hdf5::{Datasets, attribute, describe, text_attribute};
+use super::{Piece, Recording, ResultsFile, TransientResult};
 use crate::error::Result;
+use crate::transient::Checkpoint;
+use hdf5::Group;
 use ndarray::s;
 use std::ops::Range;
 
-/// Values that HDF5 stores together.
-const CHUNK: usize = 4096;
+/// Attributes that a whole run has.
+const SAID: [&str; 2] = ["scheme", "worst_energy_residual"];
 
 impl ResultsFile {
-    /// Begins a run in time: an empty dataset for each channel.
+    /// Begins a run in time with room for all it is going to record, or takes it up where [`ResultsFile::stopped`] has
+    /// an answer. The file takes its place then.
     ///
     /// # Errors
     /// The machine refuses.
     pub fn begin_transient(&mut self, recording: &Recording) -> Result<()> {
-        self.stage(|root| {
-            let group = root.create_group("transient")?;
-            attribute(&group, "time_step", &recording.time_step)?;
-            attribute(&group, "complete", &false)?;
-            for channel in recording.channels {
-                let dataset =
-                    group.new_dataset::<f64>().shape(0..).chunk(CHUNK).create(channel.name.as_str())?;
-                describe(&dataset, channel.unit, &channel.about)?;
+        let goes_on = self.stopped()?.is_some();
+        self.keep(|root| {
+            if goes_on {
+                let group = root.group("transient")?;
+                let spectra = group.member_names()?.into_iter().filter(|name| name.starts_with("spectrum_"));
+                spectra.into_iter().try_for_each(|name| group.unlink(&name))?;
+                let said = group.attr_names()?.into_iter().filter(|name| SAID.contains(&name.as_str()));
+                said.into_iter().try_for_each(|name| group.delete_attr(&name))?;
+                return group.attr("complete")?.write_scalar(&false);
             }
-            Ok(())
+            if root.link_exists("transient") {
+                root.unlink("transient")?;
+            }
+            make_room(&root.create_group("transient")?, recording)
         })?;
         self.channels = recording.channels.iter().map(|channel| channel.name.clone()).collect();
         self.take_place()
     }
 
-    /// Adds new rows.
+    /// Adds new rows and the checkpoint after them. They count when they are on the disk.
     ///
     /// # Errors
     /// The machine refuses.
     pub fn write_transient_piece(&mut self, piece: &Piece) -> Result<()> {
-        self.stage(|root| {
+        let slot = self.read(|root| latest(&root.group("transient")?))?.map_or(0, |slot| 1 - slot);
+        let end = piece.first + piece.values.first().map_or(0, Vec::len);
+        let channels = std::mem::take(&mut self.channels);
+        let filled = self.fill(|root| {
             let group = root.group("transient")?;
-            for (name, values) in self.channels.iter().zip(piece.values) {
-                let dataset = group.dataset(name)?;
-                let end = piece.first + values.len();
-                dataset.resize(end)?;
-                dataset.write_slice(values, s![piece.first..end])?;
+            for (name, values) in channels.iter().zip(piece.values) {
+                group.dataset(name)?.write_slice(values, s![piece.first..end])?;
+            }
+            let group = group.group(&format!("checkpoint/{slot}"))?;
+            for (name, values) in &piece.checkpoint.arrays {
+                group.dataset(name)?.write(values)?;
             }
             Ok(())
+        });
+        self.channels = channels;
+        filled?;
+        self.fill(|root| {
+            let group = root.group("transient")?;
+            group.attr("rows")?.write_scalar(&(end as u64))?;
+            group.attr("latest")?.write_scalar(&slot)
+        })
+    }
+
+    /// Where the run in time of an earlier run stopped, if there is one to be taken up.
+    ///
+    /// # Errors
+    /// The machine refuses.
+    pub fn stopped(&self) -> Result<Option<Checkpoint>> {
+        self.read(|root| {
+            if !root.link_exists("transient") {
+                return Ok(None);
+            }
+            let group = root.group("transient")?;
+            let Some(slot) = latest(&group)? else { return Ok(None) };
+            let group = group.group(&format!("checkpoint/{slot}"))?;
+            let array = |name: String| Ok((name.clone(), group.dataset(&name)?.read_raw::<f64>()?));
+            let arrays = group.member_names()?.into_iter().map(array).collect::<hdf5::Result<_>>()?;
+            Ok(Some(Checkpoint { arrays }))
         })
     }
 
@@ -66,8 +111,8 @@ impl ResultsFile {
     pub fn finish_transient(&mut self, result: &TransientResult) -> Result<()> {
         self.stage(|root| {
             let group = root.group("transient")?;
-            text_attribute(&group, "scheme", &result.scheme)?;
-            attribute(&group, "worst_energy_residual", &result.worst_residual)?;
+            text_attribute(&group, SAID[0], &result.scheme)?;
+            attribute(&group, SAID[1], &result.worst_residual)?;
             for of in &result.spectra {
                 let channel = &result.channels[of.channel];
                 let spectrum = Datasets(group.create_group(&format!("spectrum_{}", channel.name))?);
@@ -81,5 +126,141 @@ impl ResultsFile {
             }
             group.attr("complete")?.write_scalar(&true)
         })
+    }
+}
+
+/// Which checkpoint is whole.
+fn latest(group: &Group) -> hdf5::Result<Option<i64>> {
+    // A run of an earlier version of the program has none.
+    if !group.link_exists("checkpoint") {
+        return Ok(None);
+    }
+    let slot = group.attr("latest")?.read_scalar::<i64>()?;
+    Ok((slot >= 0).then_some(slot))
+}
+
+fn make_room(group: &Group, recording: &Recording) -> hdf5::Result<()> {
+    attribute(group, "time_step", &recording.time_step)?;
+    attribute(group, "complete", &false)?;
+    attribute(group, "rows", &0_u64)?;
+    attribute(group, "latest", &-1_i64)?;
+    for channel in recording.channels {
+        describe(&room(group, &channel.name, recording.rows)?, channel.unit, &channel.about)?;
+    }
+    for slot in ["checkpoint/0", "checkpoint/1"] {
+        let slot = group.create_group(slot)?;
+        for (name, values) in &recording.checkpoint.arrays {
+            describe(&room(&slot, name, values.len())?, "SI", "what the run goes on from")?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::Channel;
+    use std::path::Path;
+
+    const ROWS: usize = 5000;
+
+    fn value(channel: usize, row: usize) -> f64 {
+        (row as f64 + 0.25) * (1.0 + channel as f64)
+    }
+
+    fn checkpoint(row: usize) -> Checkpoint {
+        let mut checkpoint = Checkpoint::default();
+        checkpoint.put("motion", &[row as f64; 777]);
+        checkpoint.put("counts", &[row as f64]);
+        checkpoint.put("nothing", &[]);
+        checkpoint
+    }
+
+    fn begin(file: &mut ResultsFile) {
+        let channels = ["a", "b"].map(|name| Channel::new(name.into(), "m", "a channel".into()));
+        let (checkpoint, time_step) = (checkpoint(0), 1e-5);
+        file.begin_transient(&Recording {
+            time_step,
+            rows: ROWS,
+            done: 0,
+            channels: &channels,
+            checkpoint: &checkpoint,
+        })
+        .unwrap();
+    }
+
+    fn add(file: &mut ResultsFile, rows: Range<usize>) {
+        let values = [0, 1].map(|channel| rows.clone().map(|row| value(channel, row)).collect::<Vec<f64>>());
+        let checkpoint = checkpoint(rows.end - 1);
+        file.write_transient_piece(&Piece { first: rows.start, values: &values, checkpoint: &checkpoint })
+            .unwrap();
+    }
+
+    /// Where the numbers of the datasets of a group stand in the file.
+    fn rooms(group: &Group, found: &mut Vec<Range<usize>>) {
+        for dataset in group.datasets().unwrap() {
+            let begin = dataset.offset().unwrap_or(0) as usize;
+            found.push(begin..begin + 8 * dataset.size());
+        }
+        group.groups().unwrap().iter().for_each(|inner| rooms(inner, found));
+    }
+
+    #[test]
+    fn a_run_under_way_changes_numbers_and_nothing_else() {
+        let dir = tempfile::tempdir().unwrap();
+        let home = dir.path().join("results.h5");
+        let mut file = ResultsFile::create(dir.path()).unwrap();
+        begin(&mut file);
+        let before = std::fs::read(&home).unwrap();
+        let mut numbers = Vec::new();
+        file.read(|root| Ok(rooms(&root.group("transient")?, &mut numbers))).unwrap();
+        for first in (0..4500).step_by(900) {
+            add(&mut file, first..first + 900);
+        }
+        let after = std::fs::read(&home).unwrap();
+        assert_eq!(before.len(), after.len());
+        let elsewhere = |at: &usize| !numbers.iter().any(|room| room.contains(at));
+        let changed: Vec<usize> =
+            (0..before.len()).filter(|k| before[*k] != after[*k]).filter(elsewhere).collect();
+        // The two counts, 8 bytes each.
+        assert!(changed.len() <= 16 && numbers.len() == 8, "{changed:?}");
+    }
+
+    /// Copies what is on the disk at a moment, as a kill leaves it, and takes it up.
+    #[test]
+    fn what_is_on_the_disk_at_any_moment_is_taken_up() {
+        let dir = tempfile::tempdir().unwrap();
+        let mut file = ResultsFile::create(dir.path()).unwrap();
+        begin(&mut file);
+        let copy = |name: &str| {
+            let other = dir.path().join(name);
+            std::fs::create_dir(&other).unwrap();
+            std::fs::copy(dir.path().join("results.h5"), other.join("results.h5")).unwrap();
+            other
+        };
+        let reached = |dir: &Path| {
+            let file = ResultsFile::resume(dir).unwrap();
+            file.stopped().unwrap().map(|checkpoint| checkpoint.numbers::<1>("counts").unwrap()[0])
+        };
+        assert_eq!(reached(&copy("none")), None);
+        add(&mut file, 0..1000);
+        add(&mut file, 1000..2000);
+        assert_eq!(reached(&copy("two")), Some(1999.0));
+        // Half of a third piece: its rows and its checkpoint are there and do not count.
+        file.fill(|root| {
+            root.dataset("transient/a")?.write_slice(&[-1.0; 700], s![2000..2700])?;
+            root.dataset("transient/checkpoint/0/motion")?.write(&[-1.0; 777])
+        })
+        .unwrap();
+        let half = copy("half");
+        assert_eq!(reached(&half), Some(1999.0));
+        let mut again = ResultsFile::resume(&half).unwrap();
+        assert!(again.stopped().unwrap() == Some(checkpoint(1999)));
+        begin(&mut again);
+        add(&mut again, 2000..ROWS);
+        for (channel, name) in ["a", "b"].into_iter().enumerate() {
+            let all = again.read_transient(name, 0..ROWS).unwrap();
+            assert!(all.iter().enumerate().all(|(row, v)| *v == value(channel, row)), "{name}");
+        }
     }
 }

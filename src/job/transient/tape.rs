@@ -46,6 +46,7 @@ impl<'a, 'k> Tape<'a, 'k> {
         self.keeper.record(Stage::TransientBegins(&Recording {
             time_step: plan.step,
             rows: plan.steps + 1,
+            done: self.first,
             channels: &self.recorder.channels,
             checkpoint: &checkpoint,
         }))?;
