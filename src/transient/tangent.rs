@@ -57,7 +57,7 @@ impl Tangent {
         self.some.extend(self.active.iter().map(|place| rho[*place]));
         self.small.solve(&mut self.some);
         step.copy_from_slice(rho);
-        for (factor, column) in self.some.iter().zip(self.columns.chunks(rho.len())) {
+        for (factor, column) in self.some.iter().zip(self.columns.chunks(rho.len().max(1))) {
             step.iter_mut().zip(column).for_each(|(s, c)| *s -= factor * c);
         }
         self.active.iter().zip(&self.some).for_each(|(place, value)| step[*place] = *value);
