@@ -373,5 +373,6 @@ fn transient() -> TransientResult {
         split: (0, 1),
         open: 0.0,
         backwards: 0.0,
+        events: [2, 1, 4],
     }
 }

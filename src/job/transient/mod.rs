@@ -93,6 +93,7 @@ impl InTime<'_> {
             shown: recorder.shown,
             open: share(recorder.open),
             backwards: share(recorder.backwards),
+            events: recorder.happened,
             channels: recorder.channels,
             spectra: found.spectra,
             growth: found.growth,
