@@ -3,8 +3,8 @@
 use super::explore::KnownMap;
 use crate::error::Result;
 use crate::results::{
-    Channel, ComplexResult, HistoryTable, MapResult, NamedModes, Piece, Recording, ResultsFile, RunResults,
-    SensitivityResult, SteadyResult, SweepResult, TransientResult,
+    Channel, ComplexResult, EventTable, HistoryTable, MapResult, NamedModes, Piece, Recording, ResultsFile,
+    RunResults, SensitivityResult, SteadyResult, SweepResult, TransientResult,
 };
 use crate::sweep::MapPoint;
 use crate::transient::Checkpoint;
@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
 
-/// Rows that an earlier run recorded are copied to a new table so many at once.
+/// Lines that an earlier run recorded are written to a new table so many at once.
 const AT_ONCE: usize = 4096;
 
 /// A result that is ready to be written.
@@ -107,8 +107,8 @@ impl Keeper for Memory<'_> {
 pub(super) struct Folder<'a> {
     dir: &'a Path,
     pub(super) file: ResultsFile,
-    /// `transient.csv`.
-    history: Option<HistoryTable>,
+    /// `transient.csv` and `events.csv`.
+    tables: Option<(HistoryTable, EventTable)>,
     /// How long it took \[s\].
     pub(super) seconds: f64,
     /// The part of it that was taken from a run in time.
@@ -117,7 +117,7 @@ pub(super) struct Folder<'a> {
 
 impl<'a> Folder<'a> {
     pub(super) fn new(dir: &'a Path, file: ResultsFile) -> Self {
-        Folder { dir, file, history: None, seconds: 0.0, seconds_in_time: 0.0 }
+        Folder { dir, file, tables: None, seconds: 0.0, seconds_in_time: 0.0 }
     }
 
     fn write(&mut self, stage: &Stage<'_>) -> Result<()> {
@@ -134,19 +134,27 @@ impl<'a> Folder<'a> {
             Stage::Map(map) => file.finish_map(map),
             Stage::TransientBegins(recording) => {
                 file.begin_transient(recording)?;
-                let mut table = HistoryTable::create(self.dir, recording)?;
+                let mut history = HistoryTable::create(self.dir, recording)?;
+                let mut events = EventTable::create(self.dir, recording)?;
                 for first in (0..recording.done).step_by(AT_ONCE) {
                     let rows = first..recording.done.min(first + AT_ONCE);
                     let read = |c: &Channel| self.file.read_transient(&c.name, rows.clone());
                     let values: Vec<Vec<f64>> = recording.channels.iter().map(read).collect::<Result<_>>()?;
-                    table.append(first, &values)?;
+                    history.append(first, &values)?;
                 }
-                self.history = Some(table);
+                let known = self.file.events()?;
+                for first in (0..known).step_by(AT_ONCE) {
+                    events.append(&self.file.read_events(first..known.min(first + AT_ONCE))?)?;
+                }
+                self.tables = Some((history, events));
                 Ok(())
             }
             Stage::TransientPiece(piece) => {
                 file.write_transient_piece(piece)?;
-                self.history.iter_mut().try_for_each(|table| table.append(piece.first, piece.values))
+                self.tables.iter_mut().try_for_each(|(history, events)| {
+                    history.append(piece.first, piece.values)?;
+                    events.append(piece.events)
+                })
             }
             Stage::Transient(transient) => file.finish_transient(transient),
         }

@@ -16,8 +16,9 @@ use super::RunResults;
 use super::folder::{FileNames, prepare_folder, refusal};
 use super::hdf5::{Datasets, attribute, plain, text_attribute, texts};
 use crate::error::Result;
-use hdf5::Group;
 use hdf5::plist::dataset_create::{AllocTime, FillTime};
+use hdf5::types::OwnedDynValue;
+use hdf5::{Group, H5Type};
 use std::path::{Path, PathBuf};
 
 /// What an interrupted run leaves to be taken up.
@@ -161,10 +162,15 @@ impl Drop for ResultsFile {
     }
 }
 
-/// Room for `count` numbers, all of it on the disk, to be filled later; not a number until then.
-pub(super) fn room(group: &Group, name: &str, count: usize) -> hdf5::Result<hdf5::Dataset> {
-    let room = group.new_dataset::<f64>().shape(count).alloc_time(Some(AllocTime::Early));
-    room.fill_time(FillTime::Alloc).fill_value(f64::NAN).create(name)
+/// Room for `count` numbers, all of it on the disk, to be filled later; `empty` until then.
+pub(super) fn room<T: H5Type + Into<OwnedDynValue>>(
+    group: &Group,
+    name: &str,
+    count: usize,
+    empty: T,
+) -> hdf5::Result<hdf5::Dataset> {
+    let room = group.new_dataset::<T>().shape(count).alloc_time(Some(AllocTime::Early));
+    room.fill_time(FillTime::Alloc).fill_value(empty).create(name)
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 //! | `results.h5` | everything, in full precision, written stage by stage | h5py, MATLAB, Julia |
 //! | `summary.json` | the figures of each analysis: a contract for scripts | any script |
 //! | `modes_<set>.csv`, `contact_points.csv`, `complex_modes.csv`, `sensitivities.csv` | the tables | spreadsheets |
-//! | `transient.csv`, `transient_spectrum.csv` | motion in time, step by step, and its spectra | spreadsheets |
+//! | `transient.csv`, `transient_spectrum.csv`, `events.csv` | motion in time, step by step, its spectra, what happened at the contacts | spreadsheets |
 //! | `critical_values.csv`, `sweep_<name>.csv`, `map_<name>.csv` | sweeps and maps | spreadsheets |
 //! | `modes_<set>.vtu`, `steady.vtu`, `complex_modes.vtu`, `advice.vtu` | the shapes on the mesh | ParaView, pyvista |
 //!
@@ -13,6 +13,7 @@
 
 mod csv;
 mod derived;
+mod events_hdf5;
 mod explored;
 mod explored_csv;
 mod explored_hdf5;
@@ -40,7 +41,7 @@ pub(crate) use folder::write_atomically;
 pub use json::{SCHEMA_VERSION, summary_json, write_summary};
 pub use sensitivity::{AdviceField, ModeSensitivity, Mounted, ParameterRate, SensitivityResult};
 pub use transient::{Channel, GrowthCompared, Piece, Recording, SpectrumOf, TransientResult};
-pub use transient_csv::HistoryTable;
+pub use transient_csv::{EventTable, HistoryTable};
 pub use vtk::write_vtk;
 
 use crate::equilibrium::SteadySliding;

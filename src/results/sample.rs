@@ -375,5 +375,6 @@ fn transient() -> TransientResult {
         backwards: 0.0,
         sticking: 0.0,
         parts: 0,
+        events: [2, 1, 4, 0, 0],
     }
 }

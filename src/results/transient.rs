@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::signal::{Growth, Peak, Spectrum};
-use crate::transient::{Checkpoint, Work};
+use crate::transient::{Checkpoint, Event, EventKind, Work};
 use std::ops::Range;
 
 /// Columns that a long record is drawn in, so that no spike is lost.
@@ -87,6 +87,8 @@ pub struct Recording<'a> {
     pub done: usize,
     /// What is recorded at each.
     pub channels: &'a [Channel],
+    /// The name of the pair of every contact point.
+    pub pairs: &'a [String],
     /// A checkpoint, for the room that it takes.
     pub checkpoint: &'a Checkpoint,
 }
@@ -98,6 +100,8 @@ pub struct Piece<'a> {
     pub first: usize,
     /// The values of each channel.
     pub values: &'a [Vec<f64>],
+    /// What happened at the contact points during these rows.
+    pub events: &'a [Event],
     /// Where the run stands after its last row.
     pub checkpoint: &'a Checkpoint,
 }
@@ -159,6 +163,8 @@ pub struct TransientResult {
     pub backwards: f64,
     /// The share of time in which it stuck, for a contact with bristles.
     pub sticking: f64,
+    /// How often each [`EventKind`] happened, at all contact points together.
+    pub events: [usize; EventKind::ALL.len()],
 }
 
 impl TransientResult {

@@ -1,9 +1,10 @@
-//! `transient.csv`, which grows while the run goes on.
+//! `transient.csv` and `events.csv`, which grow while the run goes on.
 
 use super::csv::{Table, number};
 use super::folder::refusal;
 use super::{Channel, Recording};
 use crate::error::Result;
+use crate::transient::Event;
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -11,8 +12,7 @@ use std::path::{Path, PathBuf};
 /// A table with a line for every step. Whole lines are added, so that it can be watched.
 #[derive(Debug)]
 pub struct HistoryTable {
-    file: File,
-    path: PathBuf,
+    lines: Lines,
     /// Δt \[s\].
     time_step: f64,
 }
@@ -23,13 +23,11 @@ impl HistoryTable {
     /// # Errors
     /// [`crate::error::Error::Io`], here and later, when the machine refuses.
     pub fn create(dir: &Path, recording: &Recording) -> Result<Self> {
-        let path = dir.join("transient.csv");
-        let file = File::create(&path).map_err(|source| refusal(&path, source))?;
-        let mut table = HistoryTable { file, path, time_step: recording.time_step };
         let named: Vec<String> = recording.channels.iter().map(Channel::heading).collect();
-        let headings = std::iter::once("time [s]").chain(named.iter().map(String::as_str));
-        table.write(&Table::new(&headings.collect::<Vec<&str>>()).text)?;
-        Ok(table)
+        let headings: Vec<&str> =
+            std::iter::once("time [s]").chain(named.iter().map(String::as_str)).collect();
+        let lines = Lines::create(dir.join("transient.csv"), &headings)?;
+        Ok(HistoryTable { lines, time_step: recording.time_step })
     }
 
     /// Adds rows, the first of which is row `first`, from the values of each channel.
@@ -46,7 +44,55 @@ impl HistoryTable {
             }
             text.push('\n');
         }
-        self.write(&text)
+        self.lines.write(&text)
+    }
+}
+
+/// A table with a line for everything that happens at a contact point.
+#[derive(Debug)]
+pub struct EventTable {
+    lines: Lines,
+    /// The name of the pair of every contact point.
+    pairs: Vec<String>,
+}
+
+impl EventTable {
+    /// Begins `events.csv` in the folder `dir`, in the place of an earlier one.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Io`], here and later, when the machine refuses.
+    pub fn create(dir: &Path, recording: &Recording) -> Result<Self> {
+        let lines = Lines::create(dir.join("events.csv"), &["time [s]", "point", "pair", "event"])?;
+        Ok(EventTable { lines, pairs: recording.pairs.to_vec() })
+    }
+
+    /// Adds events.
+    ///
+    /// # Errors
+    /// The machine refuses.
+    pub fn append(&mut self, events: &[Event]) -> Result<()> {
+        let mut table = Table { text: String::new() };
+        for Event { time, point, kind } in events {
+            let pair = self.pairs.get(*point).cloned().unwrap_or_default();
+            table.row(&[number(*time), (point + 1).to_string(), pair, kind.name().to_string()]);
+        }
+        self.lines.write(&table.text)
+    }
+}
+
+/// A file that whole lines are added to.
+#[derive(Debug)]
+struct Lines {
+    file: File,
+    path: PathBuf,
+}
+
+impl Lines {
+    fn create(path: PathBuf, headings: &[&str]) -> Result<Self> {
+        let file = File::create(&path).map_err(|source| refusal(&path, source))?;
+        let mut lines = Lines { file, path };
+        lines.write(&Table::new(headings).text)?;
+        Ok(lines)
     }
 
     fn write(&mut self, text: &str) -> Result<()> {

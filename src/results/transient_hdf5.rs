@@ -7,8 +7,12 @@
 //! | `<channel>` | a value for every step, the start included |
 //! | `checkpoint/0`, `checkpoint/1` | what the run goes on from after its last rows and, in turn, after those before |
 //! | attribute `latest` | which of the two is whole, -1 for none; changed when the other is on the disk |
+//! | `events/time`, `events/point`, `events/kind` | what happened at the contact points; attribute `events` says how many |
 //! | `spectrum_<channel>` | lines and peaks |
+//!
+//! Nobody knows how many events there will be: when their room is full the file is copied with twice the room.
 
+use super::events_hdf5 as events;
 use super::file::room;
 use super::hdf5::{Datasets, attribute, describe, text_attribute};
 use super::{Piece, Recording, ResultsFile, TransientResult};
@@ -52,6 +56,7 @@ impl ResultsFile {
     /// # Errors
     /// The machine refuses.
     pub fn write_transient_piece(&mut self, piece: &Piece) -> Result<()> {
+        self.room_for_events(piece.events.len())?;
         let slot = self.read(|root| latest(&root.group("transient")?))?.map_or(0, |slot| 1 - slot);
         let end = piece.first + piece.values.first().map_or(0, Vec::len);
         let channels = std::mem::take(&mut self.channels);
@@ -60,6 +65,7 @@ impl ResultsFile {
             for (name, values) in channels.iter().zip(piece.values) {
                 group.dataset(name)?.write_slice(values, s![piece.first..end])?;
             }
+            events::write(&group, piece.events)?;
             let group = group.group(&format!("checkpoint/{slot}"))?;
             for (name, values) in &piece.checkpoint.arrays {
                 group.dataset(name)?.write(values)?;
@@ -71,6 +77,8 @@ impl ResultsFile {
         self.fill(|root| {
             let group = root.group("transient")?;
             group.attr("rows")?.write_scalar(&(end as u64))?;
+            let events = group.attr("events")?;
+            events.write_scalar(&(events.read_scalar::<u64>()? + piece.events.len() as u64))?;
             group.attr("latest")?.write_scalar(&slot)
         })
     }
@@ -124,6 +132,7 @@ impl ResultsFile {
                 let height: Vec<f64> = of.peaks.iter().map(|p| p.amplitude).collect();
                 spectrum.list("peak_amplitude", &height, channel.unit, "their amplitudes")?;
             }
+            events::fit(&group)?;
             group.attr("complete")?.write_scalar(&true)
         })
     }
@@ -144,13 +153,15 @@ fn make_room(group: &Group, recording: &Recording) -> hdf5::Result<()> {
     attribute(group, "complete", &false)?;
     attribute(group, "rows", &0_u64)?;
     attribute(group, "latest", &-1_i64)?;
+    attribute(group, "events", &0_u64)?;
+    events::make_room(group, events::FIRST)?;
     for channel in recording.channels {
-        describe(&room(group, &channel.name, recording.rows)?, channel.unit, &channel.about)?;
+        describe(&room(group, &channel.name, recording.rows, f64::NAN)?, channel.unit, &channel.about)?;
     }
     for slot in ["checkpoint/0", "checkpoint/1"] {
         let slot = group.create_group(slot)?;
         for (name, values) in &recording.checkpoint.arrays {
-            describe(&room(&slot, name, values.len())?, "SI", "what the run goes on from")?;
+            describe(&room(&slot, name, values.len(), f64::NAN)?, "SI", "what the run goes on from")?;
         }
     }
     Ok(())
@@ -160,6 +171,7 @@ fn make_room(group: &Group, recording: &Recording) -> hdf5::Result<()> {
 mod tests {
     use super::*;
     use crate::results::Channel;
+    use crate::transient::{Event, EventKind};
     use std::path::Path;
 
     const ROWS: usize = 5000;
@@ -176,31 +188,44 @@ mod tests {
         checkpoint
     }
 
+    /// So many events at every row.
+    fn events(rows: Range<usize>, often: usize) -> Vec<Event> {
+        let event = |k: usize| Event { time: k as f64, point: k % 7, kind: EventKind::ALL[k % 3] };
+        (rows.start * often..rows.end * often).map(event).collect()
+    }
+
     fn begin(file: &mut ResultsFile) {
         let channels = ["a", "b"].map(|name| Channel::new(name.into(), "m", "a channel".into()));
-        let (checkpoint, time_step) = (checkpoint(0), 1e-5);
         file.begin_transient(&Recording {
-            time_step,
+            time_step: 1e-5,
             rows: ROWS,
             done: 0,
             channels: &channels,
-            checkpoint: &checkpoint,
+            pairs: &[],
+            checkpoint: &checkpoint(0),
         })
         .unwrap();
     }
 
-    fn add(file: &mut ResultsFile, rows: Range<usize>) {
+    fn add(file: &mut ResultsFile, rows: Range<usize>, often: usize) {
         let values = [0, 1].map(|channel| rows.clone().map(|row| value(channel, row)).collect::<Vec<f64>>());
-        let checkpoint = checkpoint(rows.end - 1);
-        file.write_transient_piece(&Piece { first: rows.start, values: &values, checkpoint: &checkpoint })
-            .unwrap();
+        let (first, checkpoint) = (rows.start, checkpoint(rows.end - 1));
+        let events = events(rows, often);
+        file.write_transient_piece(&Piece {
+            first,
+            values: &values,
+            events: &events,
+            checkpoint: &checkpoint,
+        })
+        .unwrap();
     }
 
     /// Where the numbers of the datasets of a group stand in the file.
     fn rooms(group: &Group, found: &mut Vec<Range<usize>>) {
         for dataset in group.datasets().unwrap() {
             let begin = dataset.offset().unwrap_or(0) as usize;
-            found.push(begin..begin + 8 * dataset.size());
+            let each = dataset.dtype().unwrap().size();
+            found.push(begin..begin + each * dataset.size());
         }
         group.groups().unwrap().iter().for_each(|inner| rooms(inner, found));
     }
@@ -215,15 +240,15 @@ mod tests {
         let mut numbers = Vec::new();
         file.read(|root| Ok(rooms(&root.group("transient")?, &mut numbers))).unwrap();
         for first in (0..4500).step_by(900) {
-            add(&mut file, first..first + 900);
+            add(&mut file, first..first + 900, 1);
         }
         let after = std::fs::read(&home).unwrap();
         assert_eq!(before.len(), after.len());
         let elsewhere = |at: &usize| !numbers.iter().any(|room| room.contains(at));
         let changed: Vec<usize> =
             (0..before.len()).filter(|k| before[*k] != after[*k]).filter(elsewhere).collect();
-        // The two counts, 8 bytes each.
-        assert!(changed.len() <= 16 && numbers.len() == 8, "{changed:?}");
+        // The three counts, 8 bytes each.
+        assert!(changed.len() <= 24 && numbers.len() == 11, "{changed:?}");
     }
 
     /// Copies what is on the disk at a moment, as a kill leaves it, and takes it up.
@@ -243,8 +268,8 @@ mod tests {
             file.stopped().unwrap().map(|checkpoint| checkpoint.numbers::<1>("counts").unwrap()[0])
         };
         assert_eq!(reached(&copy("none")), None);
-        add(&mut file, 0..1000);
-        add(&mut file, 1000..2000);
+        add(&mut file, 0..1000, 2);
+        add(&mut file, 1000..2000, 2);
         assert_eq!(reached(&copy("two")), Some(1999.0));
         // Half of a third piece: its rows and its checkpoint are there and do not count.
         file.fill(|root| {
@@ -257,10 +282,35 @@ mod tests {
         let mut again = ResultsFile::resume(&half).unwrap();
         assert!(again.stopped().unwrap() == Some(checkpoint(1999)));
         begin(&mut again);
-        add(&mut again, 2000..ROWS);
+        add(&mut again, 2000..ROWS, 2);
         for (channel, name) in ["a", "b"].into_iter().enumerate() {
             let all = again.read_transient(name, 0..ROWS).unwrap();
             assert!(all.iter().enumerate().all(|(row, v)| *v == value(channel, row)), "{name}");
         }
+        assert_eq!(again.read_events(0..again.events().unwrap()).unwrap(), events(0..ROWS, 2));
+    }
+
+    #[test]
+    fn there_is_always_room_for_events() {
+        let dir = tempfile::tempdir().unwrap();
+        let mut file = ResultsFile::create(dir.path()).unwrap();
+        begin(&mut file);
+        let room =
+            |file: &ResultsFile| file.read(|root| Ok(root.dataset("transient/events/time")?.size())).unwrap();
+        assert_eq!(room(&file), events::FIRST);
+        add(&mut file, 0..1500, 20);
+        add(&mut file, 1500..ROWS, 20);
+        assert!(room(&file) >= 20 * ROWS);
+        // A copy has taken the place, and is the one that is written.
+        let killed = tempfile::tempdir().unwrap();
+        std::fs::copy(dir.path().join("results.h5"), killed.path().join("results.h5")).unwrap();
+        let again = ResultsFile::resume(killed.path()).unwrap();
+        assert_eq!(again.events().unwrap(), 20 * ROWS);
+        assert!(again.read_events(0..20 * ROWS).unwrap() == self::events(0..ROWS, 20));
+        let fit = |file: &mut ResultsFile| file.stage(|root| events::fit(&root.group("transient")?));
+        fit(&mut file).unwrap();
+        assert!(
+            room(&file) == 20 * ROWS && file.read_events(0..20 * ROWS).unwrap() == self::events(0..ROWS, 20)
+        );
     }
 }

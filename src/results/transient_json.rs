@@ -1,6 +1,7 @@
 //! The part of `summary.json` on motion in time.
 
 use super::{SpectrumOf, TransientResult};
+use crate::transient::EventKind;
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 
@@ -38,6 +39,9 @@ pub(super) fn transient(result: &TransientResult) -> Value {
             "deviation": g.found.map(|f| f.deviation),
         })
     });
+    let counts =
+        EventKind::ALL.iter().zip(result.events).map(|(kind, n)| (kind.name().to_string(), n.into()));
+    let events: serde_json::Map<String, Value> = counts.collect();
     let work = &result.work;
     json!({
         "time_step_s": result.time_step,
@@ -48,6 +52,7 @@ pub(super) fn transient(result: &TransientResult) -> Value {
         "channels": channels,
         "spectrum": result.spectra.iter().map(spectrum).collect::<Vec<_>>(),
         "growth": growth,
+        "events": events,
         "open_fraction": result.open,
         "backwards_fraction": result.backwards,
         "sticking_fraction": result.sticking,

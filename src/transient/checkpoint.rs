@@ -7,18 +7,19 @@ use super::reaction::Bristles;
 use super::state::State;
 use crate::error::{Error, Fault, Result};
 use faer::Mat;
+use std::collections::BTreeMap;
 
 /// Named arrays of numbers. Counts are among them: a double holds every whole number below 2⁵³.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Checkpoint {
-    /// Each array with its name, a name once.
-    pub arrays: Vec<(String, Vec<f64>)>,
+    /// Each array by its name.
+    pub arrays: BTreeMap<String, Vec<f64>>,
 }
 
 impl Checkpoint {
     /// Adds an array.
     pub fn put(&mut self, name: impl Into<String>, values: &[f64]) {
-        self.arrays.push((name.into(), values.to_vec()));
+        self.arrays.insert(name.into(), values.to_vec());
     }
 
     /// Copies the array of this name to `values`.
@@ -26,11 +27,10 @@ impl Checkpoint {
     /// # Errors
     /// Input: there is none, or it has another length. It is of another model then.
     pub fn get(&self, name: &str, values: &mut [f64]) -> Result<()> {
-        let array = self.arrays.iter().find(|(own, _)| own == name).map(|(_, array)| array.as_slice());
-        match array {
+        match self.arrays.get(name) {
             Some(array) if array.len() == values.len() => values.copy_from_slice(array),
-            _ => {
-                let found = format!("{} numbers", array.map_or(0, <[f64]>::len));
+            array => {
+                let found = format!("{} numbers", array.map_or(0, Vec::len));
                 let fault =
                     Fault::new(format!("checkpoint `{name}`"), found, format!("{} numbers", values.len()));
                 let help = "It is of another model: run without --resume";
@@ -95,7 +95,7 @@ impl Checkpoint {
     /// Adds a matrix, column after column.
     fn put_columns(&mut self, name: &str, matrix: &Mat<f64>) {
         let values = (0..matrix.ncols()).flat_map(|k| matrix.col_as_slice(k)).copied().collect();
-        self.arrays.push((name.into(), values));
+        self.arrays.insert(name.into(), values);
     }
 
     fn get_columns(&self, name: &str, matrix: &mut Mat<f64>) -> Result<()> {

@@ -4,13 +4,14 @@
 //! factorised once for a time step; contact is condensed exactly onto the few directions in which it acts, so that a
 //! step costs one solution with sparse factors and Newton's method on a small dense system (`condensed`). Newton's method
 //! on the whole is kept beside it to compare with (`full_newton`). [`Work`] is the balance of energy. A [`Checkpoint`] holds
-//! what a march needs to go on later as if it had never stopped.
+//! what a march needs to go on later as if it had never stopped; a [`Watch`] tells when contact points open, close and turn.
 
 mod checkpoint;
 mod condensed;
 mod diagonal;
 mod drive;
 mod effective;
+mod events;
 mod full_newton;
 mod interface;
 mod ledger;
@@ -27,6 +28,7 @@ mod track;
 
 pub use checkpoint::Checkpoint;
 pub use drive::{Loading, Profile, Pulse, Push};
+pub use events::{Event, EventKind, Watch};
 pub use ledger::Work;
 pub use march::{Control, Marched, Plan, go_on, march};
 pub use model::{Model, refuse_hysteretic};

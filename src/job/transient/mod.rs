@@ -118,6 +118,7 @@ impl InTime<'_> {
             open: share(recorder.open),
             backwards: share(recorder.backwards),
             sticking: share(recorder.sticking),
+            events: recorder.happened,
             channels: recorder.channels,
             spectra: found.spectra,
             growth: found.growth,

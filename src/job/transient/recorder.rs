@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::linalg::SparseVector;
 use crate::results::Channel;
 use crate::system::System;
-use crate::transient::{Checkpoint, Marched, Model};
+use crate::transient::{Checkpoint, Event, EventKind, Marched, Model, Watch};
 
 /// Makes a row of every step: a value for each channel. Holds the rows that are not yet written.
 pub(super) struct Recorder<'a> {
@@ -16,6 +16,8 @@ pub(super) struct Recorder<'a> {
     probes: Vec<(SparseVector, f64)>,
     /// k and c of the springs whose force is recorded.
     gauges: Vec<[SparseVector; 2]>,
+    /// The name of the pair of every contact point.
+    pub(super) named: Vec<String>,
     /// The points of each pair.
     pairs: Vec<std::ops::Range<usize>>,
     /// The point that carries most at the start.
@@ -30,6 +32,11 @@ pub(super) struct Recorder<'a> {
     pub(super) amplitude: [usize; 2],
     /// The rows at hand, by channel.
     pub(super) values: Vec<Vec<f64>>,
+    /// What happened at the contact points during these rows.
+    pub(super) events: Vec<Event>,
+    /// How often each kind of event happened since the start.
+    pub(super) happened: [usize; EventKind::ALL.len()],
+    watch: Option<Watch>,
     /// u₀.
     origin: &'a [f64],
     /// u − u₀.
@@ -121,6 +128,7 @@ impl<'a> Recorder<'a> {
             model,
             probes,
             gauges,
+            named: system.points().map(|(pair, _)| pair.name.clone()).collect(),
             pairs,
             point,
             channels,
@@ -129,6 +137,9 @@ impl<'a> Recorder<'a> {
             along,
             amplitude,
             values,
+            events: Vec::new(),
+            happened: Default::default(),
+            watch: None,
             origin,
             moved,
             open: 0,
@@ -174,6 +185,10 @@ impl<'a> Recorder<'a> {
             self.backwards += usize::from(slip * along < 0.0 && !sticks);
         }
         self.values.iter_mut().zip(row).for_each(|(values, value)| values.push(value));
+        let earlier = self.events.len();
+        let watch = self.watch.get_or_insert_with(|| Watch::new(self.model, state));
+        watch.look(self.model, state, &mut self.events);
+        self.events[earlier..].iter().for_each(|event| self.happened[event.kind as usize] += 1);
     }
 
     /// How many rows are at hand.
@@ -184,20 +199,25 @@ impl<'a> Recorder<'a> {
     /// Lets go of the rows at hand.
     pub(super) fn forget(&mut self) {
         self.values.iter_mut().for_each(Vec::clear);
+        self.events.clear();
     }
 
     /// Adds what the rows to come depend on.
     pub(super) fn put(&self, checkpoint: &mut Checkpoint) {
         checkpoint.put("recorder", &[self.open, self.backwards, self.sticking].map(|count| count as f64));
+        checkpoint.put("events", &self.happened.map(|count| count as f64));
     }
 
-    /// Goes on from what was put away.
+    /// Goes on from what was put away together with a march.
     ///
     /// # Errors
     /// Input: it is of another model.
-    pub(super) fn restore(&mut self, checkpoint: &Checkpoint) -> Result<()> {
+    pub(super) fn restore(&mut self, checkpoint: &Checkpoint, marched: &Marched) -> Result<()> {
+        self.forget();
         [self.open, self.backwards, self.sticking] =
             checkpoint.numbers("recorder")?.map(|count| count as usize);
+        self.happened = checkpoint.numbers("events")?.map(|count| count as usize);
+        self.watch = Some(Watch::new(self.model, &marched.state));
         Ok(())
     }
 

@@ -38,8 +38,7 @@ impl<'a, 'k> Tape<'a, 'k> {
         if let Some(checkpoint) = &earlier {
             self.begins_alike()?;
             marched = checkpoint.march(model)?;
-            self.recorder.restore(checkpoint)?;
-            self.recorder.forget();
+            self.recorder.restore(checkpoint, &marched)?;
             self.first = marched.step + 1;
         }
         let checkpoint = self.checkpoint(&marched);
@@ -48,6 +47,7 @@ impl<'a, 'k> Tape<'a, 'k> {
             rows: plan.steps + 1,
             done: self.first,
             channels: &self.recorder.channels,
+            pairs: &self.recorder.named,
             checkpoint: &checkpoint,
         }))?;
         self.flush(&marched)?;
@@ -83,7 +83,8 @@ impl<'a, 'k> Tape<'a, 'k> {
     pub(super) fn flush(&mut self, marched: &Marched) -> Result<()> {
         if self.recorder.rows() > 0 {
             let checkpoint = self.checkpoint(marched);
-            let piece = Piece { first: self.first, values: &self.recorder.values, checkpoint: &checkpoint };
+            let Recorder { values, events, .. } = &self.recorder;
+            let piece = Piece { first: self.first, values, events, checkpoint: &checkpoint };
             self.keeper.record(Stage::TransientPiece(&piece))?;
             self.first += self.recorder.rows();
             self.recorder.forget();

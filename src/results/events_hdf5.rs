@@ -1,0 +1,102 @@
+//! `/transient/events` of `results.h5`: what happened at the contact points, in room that is doubled when it is full.
+
+use super::ResultsFile;
+use super::file::room;
+use super::hdf5::describe;
+use crate::error::Result;
+use crate::transient::{Event, EventKind};
+use hdf5::Group;
+use ndarray::s;
+use std::ops::Range;
+
+/// The room at the start.
+pub(super) const FIRST: usize = 1 << 14;
+/// Events that are copied at once.
+const AT_ONCE: usize = 1 << 16;
+
+impl ResultsFile {
+    /// Makes sure that there is room for some more events.
+    pub(super) fn room_for_events(&mut self, more: usize) -> Result<()> {
+        let (events, room) = self.read(|root| {
+            let group = root.group("transient")?;
+            Ok((count(&group)?, group.dataset("events/time")?.size()))
+        })?;
+        if events + more <= room {
+            return Ok(());
+        }
+        self.stage(|root| resize(&root.group("transient")?, (events + more).max(2 * room)))?;
+        self.take_place()
+    }
+
+    /// Events of the run in time.
+    ///
+    /// # Errors
+    /// The machine refuses.
+    pub fn read_events(&self, part: Range<usize>) -> Result<Vec<Event>> {
+        self.read(|root| read(&root.group("transient/events")?, part))
+    }
+
+    /// How many events of the run in time there are.
+    ///
+    /// # Errors
+    /// The machine refuses.
+    pub fn events(&self) -> Result<usize> {
+        self.read(|root| count(&root.group("transient")?))
+    }
+}
+
+fn count(group: &Group) -> hdf5::Result<usize> {
+    Ok(group.attr("events")?.read_scalar::<u64>()? as usize)
+}
+
+/// Adds events to those that count.
+pub(super) fn write(group: &Group, events: &[Event]) -> hdf5::Result<()> {
+    put(&group.group("events")?, count(group)?, events)
+}
+
+/// Cuts the room to what is there.
+pub(super) fn fit(group: &Group) -> hdf5::Result<()> {
+    resize(group, count(group)?)
+}
+
+pub(super) fn make_room(group: &Group, events: usize) -> hdf5::Result<()> {
+    let group = group.create_group("events")?;
+    describe(&room(&group, "time", events, f64::NAN)?, "s", "when it happened")?;
+    describe(&room(&group, "point", events, 0_u32)?, "1", "the contact point, counted from 0")?;
+    let kinds = EventKind::ALL.iter().enumerate().map(|(k, kind)| format!("{k} {}", kind.name()));
+    let story = format!("what it did: {}", kinds.collect::<Vec<String>>().join(", "));
+    describe(&room(&group, "kind", events, 0_u8)?, "1", &story)
+}
+
+fn resize(group: &Group, events: usize) -> hdf5::Result<()> {
+    group.relink("events", "events_before")?;
+    make_room(group, events)?;
+    let (from, to) = (group.group("events_before")?, group.group("events")?);
+    let all = count(group)?;
+    for first in (0..all).step_by(AT_ONCE) {
+        put(&to, first, &read(&from, first..all.min(first + AT_ONCE))?)?;
+    }
+    group.unlink("events_before")
+}
+
+fn put(group: &Group, first: usize, events: &[Event]) -> hdf5::Result<()> {
+    let part = s![first..first + events.len()];
+    let time: Vec<f64> = events.iter().map(|e| e.time).collect();
+    group.dataset("time")?.write_slice(&time, part)?;
+    let point: Vec<u32> = events.iter().map(|e| e.point as u32).collect();
+    group.dataset("point")?.write_slice(&point, part)?;
+    let kind: Vec<u8> = events.iter().map(|e| e.kind as u8).collect();
+    group.dataset("kind")?.write_slice(&kind, part)
+}
+
+fn read(group: &Group, part: Range<usize>) -> hdf5::Result<Vec<Event>> {
+    let part = s![part];
+    let time = group.dataset("time")?.read_slice_1d::<f64, _>(part)?;
+    let point = group.dataset("point")?.read_slice_1d::<u32, _>(part)?;
+    let kind = group.dataset("kind")?.read_slice_1d::<u8, _>(part)?;
+    let events = time.iter().zip(&point).zip(&kind).map(|((time, point), kind)| {
+        let kind = EventKind::ALL.get(usize::from(*kind)).copied();
+        Ok(Event { time: *time, point: *point as usize, kind: kind.ok_or("an event of an unknown kind")? })
+    });
+    events.collect()
+}
