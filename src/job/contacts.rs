@@ -2,9 +2,10 @@
 
 use super::imported::given_points;
 use super::regions::Regions;
-use crate::case::{Case, Contact, FrictionCurve, Pressing, StiffnessPer};
+use crate::case::{Case, Contact, FrictionCurve, Pressing, Sense, StiffnessPer};
 use crate::contact::{
-    Constant, ContactPatch, ContactSide, Exponential, NormalLaw, SlidingLaw, Surfaces, Table, pair_surfaces,
+    Constant, ContactPatch, ContactSide, Exponential, FrictionSense, NormalLaw, SlidingLaw, Surfaces, Table,
+    pair_surfaces,
 };
 use crate::error::{Error, Fault, Faults, Result};
 use crate::mesh::Element;
@@ -79,7 +80,11 @@ fn law(name: &str, contact: &Contact) -> Result<SlidingLaw> {
         bilateral: !contact.normal.unilateral,
     };
     let regularisation = contact.friction.regularisation;
-    Ok(match &contact.friction.law {
+    let sense = match contact.friction.sense {
+        Sense::WithSlip => FrictionSense::WithSlip,
+        Sense::AgainstSliding => FrictionSense::AgainstSliding,
+    };
+    let law = match &contact.friction.law {
         FrictionCurve::Coulomb { mu0 } => SlidingLaw::new(normal, Constant(*mu0), regularisation),
         FrictionCurve::Exponential { mu0, mu1, alpha } => {
             SlidingLaw::new(normal, Exponential { mu_0: *mu0, mu_1: *mu1, alpha: *alpha }, regularisation)
@@ -89,7 +94,8 @@ fn law(name: &str, contact: &Contact) -> Result<SlidingLaw> {
             let table = Table::new(&place, velocity.clone(), pressure.clone(), mu.clone())?;
             SlidingLaw::new(normal, table, regularisation)
         }
-    })
+    };
+    Ok(SlidingLaw { sense, ..law })
 }
 
 /// Points of a region against rigid ground: g along `into`, t₁ along the sliding direction, t₂ across both.
