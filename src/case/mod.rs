@@ -369,6 +369,18 @@ pub struct Friction {
     pub law: FrictionCurve,
     /// v_ε \[m/s\] of the regularised slip direction.
     pub regularisation: f64,
+    /// Which way friction pulls the body.
+    pub sense: Sense,
+}
+
+/// Which way friction pulls the body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Sense {
+    /// Along the velocity of the counter-body relative to the body, as friction does.
+    WithSlip,
+    /// Against the sliding direction whatever the slip, for the comparison with equations that are written so.
+    AgainstSliding,
 }
 
 /// The curve of the friction coefficient.

@@ -342,8 +342,11 @@ fn read_contact(s: &Section) -> Contact {
             damping: 0.0,
             unilateral: true,
         }),
-        friction: friction
-            .unwrap_or(Friction { law: FrictionCurve::Coulomb { mu0: 0.0 }, regularisation: 0.0 }),
+        friction: friction.unwrap_or(Friction {
+            law: FrictionCurve::Coulomb { mu0: 0.0 },
+            regularisation: 0.0,
+            sense: Sense::WithSlip,
+        }),
         bristle,
     }
 }
@@ -409,7 +412,14 @@ fn read_friction(s: &Section) -> Friction {
         }
         _ => FrictionCurve::Coulomb { mu0: coefficient("mu0").required("a friction coefficient") },
     };
-    Friction { law, regularisation: s.quantity("regularisation", VELOCITY).non_negative().or(0.0) }
+    Friction {
+        law,
+        regularisation: s.quantity("regularisation", VELOCITY).non_negative().or(0.0),
+        sense: match s.choice("sense", &["with_slip", "against_sliding"]).or("with_slip") {
+            "against_sliding" => Sense::AgainstSliding,
+            _ => Sense::WithSlip,
+        },
+    }
 }
 
 fn read_damping(s: &Section) -> StructureDamping {

@@ -31,9 +31,10 @@ pub enum FrictionSense {
     /// Along the velocity of the counter-body relative to the body: physics. Falling friction feeds energy in.
     #[default]
     WithSlip,
-    /// Against it, as two-degree-of-freedom models are sometimes written (a belt that pulls towards −x while the
-    /// slip is taken as V − ẋ). Falling friction then damps. For the comparison with such equations only.
-    AgainstSlip,
+    /// Against the sliding direction t₁ whatever the slip, F₁ = −μ(|v|) N, as two-degree-of-freedom models are sometimes
+    /// written (a belt that pulls towards −x while the slip is taken as V − ẋ). Falling friction then damps, and
+    /// nothing turns round where the slip does. For the comparison with such equations only.
+    AgainstSliding,
 }
 
 impl SlidingLaw {
@@ -51,28 +52,29 @@ impl ContactLaw for SlidingLaw {
         let pressure = unit.value.max(0.0);
         let v = motion.slip_velocity;
         let speed = v[0].hypot(v[1]);
+        let turns = self.sense == FrictionSense::WithSlip;
         let smoothed = speed.hypot(self.regularisation);
         let mut forces = ContactForces { normal, friction: [0.0; 2] };
         let mut tangent = ContactTangent::default();
         tangent.by_penetration[0] = weight * unit.by_penetration;
         tangent.by_penetration_rate[0] = weight * unit.by_penetration_rate;
-        if smoothed == 0.0 {
+        if turns && smoothed == 0.0 {
             return (forces, tangent);
         }
         let mu = self.friction.mu(speed, pressure);
-        let sign = if self.sense == FrictionSense::WithSlip { 1.0 } else { -1.0 };
         // ∂(μN)/∂N = μ + p ∂μ/∂p, because p is proportional to N.
-        let by_normal = sign * (mu.value + pressure * mu.by_pressure);
-        let towards = [v[0] / smoothed, v[1] / smoothed];
+        let by_normal = mu.value + pressure * mu.by_pressure;
+        let towards = if turns { [v[0] / smoothed, v[1] / smoothed] } else { [-1.0, 0.0] };
         for i in 0..2 {
-            forces.friction[i] = sign * mu.value * normal * towards[i];
+            forces.friction[i] = mu.value * normal * towards[i];
             tangent.by_penetration[1 + i] = by_normal * tangent.by_penetration[0] * towards[i];
             tangent.by_penetration_rate[1 + i] = by_normal * tangent.by_penetration_rate[0] * towards[i];
             for j in 0..2 {
                 let identity = if i == j { 1.0 } else { 0.0 };
-                let turning = mu.value * (identity - towards[i] * towards[j]) / smoothed;
+                let turning =
+                    if turns { mu.value * (identity - towards[i] * towards[j]) / smoothed } else { 0.0 };
                 let falling = if speed > 0.0 { mu.by_speed * towards[i] * v[j] / speed } else { 0.0 };
-                tangent.by_slip_velocity[1 + i][j] = sign * normal * (turning + falling);
+                tangent.by_slip_velocity[1 + i][j] = normal * (turning + falling);
             }
         }
         (forces, tangent)
@@ -154,7 +156,7 @@ mod tests {
             SlidingLaw::new(normal, table, 1e-2),
             SlidingLaw::new(NormalLaw { bilateral: true, ..normal }, exponential, 1e-2),
         ];
-        laws.push(SlidingLaw { sense: FrictionSense::AgainstSlip, ..laws[1].clone() });
+        laws.push(SlidingLaw { sense: FrictionSense::AgainstSliding, ..laws[1].clone() });
         for law in &laws {
             for (v1, v2) in [(0.7, 0.0), (0.5, -0.3), (-0.4, 0.2), (0.013, 0.004), (2e-3, -1e-3), (0.05, 0.0)]
             {
@@ -180,6 +182,23 @@ mod tests {
         let smooth = SlidingLaw { regularisation: 1e-3, ..law };
         let slope = smooth.respond(&motion(1e-5, 0.0, 0.0, 0.0), 2.0).1.by_slip_velocity[1][0];
         assert!((slope - 0.5 * 20.0 / 1e-3).abs() < 1e-6);
+    }
+
+    #[test]
+    fn friction_against_the_sliding_direction_does_not_turn_with_the_slip() {
+        let falling = Exponential { mu_0: 0.3, mu_1: 0.2, alpha: 2.0 };
+        let law = SlidingLaw {
+            sense: FrictionSense::AgainstSliding,
+            ..SlidingLaw::new(NormalLaw::linear(1e6), falling, 0.0)
+        };
+        for v in [0.5, 0.0, -0.5] {
+            let (forces, tangent) = law.respond(&motion(1e-5, 0.0, v, 0.0), 1.0);
+            let mu = falling.mu(v.abs(), 0.0);
+            assert!((forces.friction[0] + 10.0 * mu.value).abs() < 1e-14 && forces.friction[1] == 0.0);
+            // At rest, where −μ(|v|) N has its corner, the mean of both sides.
+            let slope = -10.0 * mu.by_speed * if v == 0.0 { 0.0 } else { v.signum() };
+            assert!((tangent.by_slip_velocity[1][0] - slope).abs() < 1e-14);
+        }
     }
 
     #[test]

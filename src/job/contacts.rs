@@ -2,7 +2,7 @@
 
 use super::imported::given_points;
 use super::regions::Regions;
-use crate::case::{Case, Contact, FrictionCurve, Pressing, StiffnessPer};
+use crate::case::{Case, Contact, FrictionCurve, Pressing, Sense, StiffnessPer};
 use crate::contact::{
     Bristle, Constant, ContactPatch, ContactSide, Exponential, FrictionCoefficient, FrictionSense,
     Hyperbolic, NormalLaw, SlidingLaw, Stribeck, Surfaces, Table, pair_surfaces,
@@ -104,7 +104,10 @@ fn law(name: &str, contact: &Contact) -> Result<SlidingLaw> {
         normal,
         friction,
         regularisation: contact.friction.regularisation,
-        sense: FrictionSense::WithSlip,
+        sense: match contact.friction.sense {
+            Sense::WithSlip => FrictionSense::WithSlip,
+            Sense::AgainstSliding => FrictionSense::AgainstSliding,
+        },
         bristle: contact.bristle.as_ref().map(|b| Bristle { stiffness: b.stiffness, damping: b.damping }),
     })
 }

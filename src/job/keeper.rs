@@ -64,22 +64,17 @@ pub trait Keeper {
     fn stopped(&self) -> Result<Option<Checkpoint>>;
 }
 
-/// Hands results on to a function and holds the record of a run in time itself, for runs that are short.
-pub(super) struct Memory<'a> {
-    record: &'a mut dyn FnMut(Stage) -> Result<()>,
+/// The histories of a run in time that is short enough for memory, gathered from its stages.
+#[derive(Debug, Default)]
+pub struct Histories {
     /// The name and the values of each channel.
     channels: Vec<(String, Vec<f64>)>,
 }
 
-impl<'a> Memory<'a> {
-    pub(super) fn new(record: &'a mut dyn FnMut(Stage) -> Result<()>) -> Self {
-        Memory { record, channels: Vec::new() }
-    }
-}
-
-impl Keeper for Memory<'_> {
-    fn record(&mut self, stage: Stage<'_>) -> Result<()> {
-        match &stage {
+impl Histories {
+    /// Adds what a stage brings.
+    pub fn keep(&mut self, stage: &Stage<'_>) {
+        match stage {
             Stage::TransientBegins(recording) => {
                 self.channels = recording.channels.iter().map(|c| (c.name.clone(), Vec::new())).collect();
             }
@@ -89,12 +84,34 @@ impl Keeper for Memory<'_> {
             }
             _ => {}
         }
+    }
+
+    /// The values of a channel, the start included.
+    pub fn of(&self, channel: &str) -> Option<&[f64]> {
+        self.channels.iter().find(|(name, _)| name == channel).map(|(_, all)| all.as_slice())
+    }
+}
+
+/// Hands results on to a function and holds the record of a run in time itself, for runs that are short.
+pub(super) struct Memory<'a> {
+    record: &'a mut dyn FnMut(Stage) -> Result<()>,
+    histories: Histories,
+}
+
+impl<'a> Memory<'a> {
+    pub(super) fn new(record: &'a mut dyn FnMut(Stage) -> Result<()>) -> Self {
+        Memory { record, histories: Histories::default() }
+    }
+}
+
+impl Keeper for Memory<'_> {
+    fn record(&mut self, stage: Stage<'_>) -> Result<()> {
+        self.histories.keep(&stage);
         (self.record)(stage)
     }
 
     fn recorded(&self, channel: &str, rows: Range<usize>) -> Result<Vec<f64>> {
-        let values =
-            self.channels.iter().find(|(name, _)| name == channel).and_then(|(_, all)| all.get(rows));
+        let values = self.histories.of(channel).and_then(|all| all.get(rows));
         Ok(values.unwrap_or_default().to_vec())
     }
 

@@ -33,6 +33,6 @@ mod verify;
 pub use analyse::{Selection, Sensitivities, analyse, run_case};
 pub use explore::{KnownMap, KnownMaps};
 pub use export::export;
-pub use keeper::{Keeper, Stage};
+pub use keeper::{Histories, Keeper, Stage};
 pub use prepared::Prepared;
 pub use states::Whole;

@@ -226,8 +226,8 @@ fn falling_friction_is_negative_damping_below_its_bound() {
         assert!((slow.growth.falling_friction - 0.5 * slope).abs() < 1e-12);
         assert!((slow.growth.structural_damping + 0.5 * c).abs() < 1e-12);
     }
-    // A belt that pulls against the slip turns the same law into damping.
-    let found = modes_of(&belt(0.0, load, velocity, FrictionSense::AgainstSlip), 2, [0.1, 10.0]);
+    // A belt that pulls against the sliding turns the same law into damping.
+    let found = modes_of(&belt(0.0, load, velocity, FrictionSense::AgainstSliding), 2, [0.1, 10.0]);
     assert!((found.modes[0].growth_rate() + 0.5 * slope).abs() < 1e-12);
 }
 

@@ -1,10 +1,12 @@
 //! Computes the quantities of a validation case and sets them beside their references.
 
+use super::in_time;
 use super::kirchhoff::{Edge, PlateMode, ThinPlate, circular_modes};
-use super::reference::{Check, Kind, Reference};
+use super::reference::{Check, Kind, Measure, Reference};
+use super::two_dof::TwoDof;
 use crate::case::Case;
 use crate::error::{Error, Fault, Result};
-use crate::job::{Prepared, Selection, analyse};
+use crate::job::{Histories, Prepared, Selection, Stage, analyse};
 use crate::linalg::c64;
 use crate::progress::Observer;
 use crate::results::{NamedModes, RunResults};
@@ -70,20 +72,37 @@ pub fn run(reference: &Reference, observer: &dyn Observer) -> Result<Vec<Row>> {
 /// The analyses of one case with scalars set to values, each done once.
 struct Runs<'a> {
     case: &'a Case,
-    done: BTreeMap<String, RunResults>,
+    done: BTreeMap<String, Run>,
     observer: &'a dyn Observer,
 }
 
+/// What the analyses of a case brought.
+pub(super) struct Run {
+    pub(super) results: RunResults,
+    pub(super) histories: Histories,
+}
+
 impl Runs<'_> {
+    fn case_with(&self, set: &[(String, f64)]) -> Result<Case> {
+        set.iter().try_fold(self.case.clone(), |case, (path, value)| case.with_parameter(path, *value))
+    }
+
     fn with(&mut self, set: &[(String, f64)]) -> Result<&RunResults> {
+        Ok(&self.run(set)?.results)
+    }
+
+    fn run(&mut self, set: &[(String, f64)]) -> Result<&Run> {
         let key = set.iter().map(|(path, value)| format!("{path}={value:e} ")).collect::<String>();
         if !self.done.contains_key(&key) {
-            let case = set
-                .iter()
-                .try_fold(self.case.clone(), |case, (path, value)| case.with_parameter(path, *value))?;
+            let case = self.case_with(set)?;
             let prepared = Prepared::new(&case)?;
-            let results = analyse(&prepared, Selection::ALL, &mut |_| Ok(()), self.observer)?;
-            self.done.insert(key.clone(), results);
+            let mut histories = Histories::default();
+            let mut keep = |stage: Stage<'_>| {
+                histories.keep(&stage);
+                Ok(())
+            };
+            let results = analyse(&prepared, Selection::ALL, &mut keep, self.observer)?;
+            self.done.insert(key.clone(), Run { results, histories });
         }
         Ok(&self.done[&key])
     }
@@ -100,6 +119,11 @@ fn unstable_near(results: &RunResults, hz: f64) -> c64 {
     let distance = |l: &c64| (l.im / TAU - hz).abs();
     let unstable = eigenvalues(results).into_iter().filter(|l| l.re > 0.0);
     unstable.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(c64::new(f64::NAN, f64::NAN))
+}
+
+/// The largest σ of any mode \[1/s\].
+fn growth_rate(results: &RunResults) -> f64 {
+    eigenvalues(results).iter().map(|l| l.re).fold(f64::NEG_INFINITY, f64::max)
 }
 
 fn largest_growth(results: &RunResults) -> f64 {
@@ -149,6 +173,29 @@ fn compute(runs: &mut Runs, check: &Check) -> Result<f64> {
                 true => (found.rate / sigma - 1.0).abs(),
                 false => (TAU * found.frequency_hz / omega - 1.0).abs(),
             }))
+        }
+        Kind::GrowthRate => Ok(growth_rate(runs.with(&check.set)?)),
+        Kind::InTime(span, measure) => {
+            let found = in_time::measured(runs.run(&check.set)?, span, *measure);
+            found.ok_or_else(|| missing(check, &span.channel))
+        }
+        Kind::Rises { parameter, values, of } => {
+            let mut levels = Vec::new();
+            for value in values {
+                let run = runs.run(&set_also(&check.set, parameter, *value))?;
+                levels.push(match of {
+                    None => growth_rate(&run.results),
+                    Some(span) => in_time::measured(run, span, Measure::Amplitude)
+                        .ok_or_else(|| missing(check, &span.channel))?,
+                });
+            }
+            Ok(levels.windows(2).filter(|pair| pair[1] > pair[0]).count() as f64)
+        }
+        Kind::PaperEquations(span) => {
+            let case = runs.case_with(&check.set)?;
+            let model = TwoDof::of(&case).ok_or_else(|| missing(check, "belt"))?;
+            let found = in_time::deviation(runs.run(&check.set)?, span, &model);
+            found.ok_or_else(|| missing(check, &span.channel))
         }
         Kind::Annulus { modes, part, radii } => {
             let case = runs.case;

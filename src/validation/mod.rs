@@ -2,8 +2,13 @@
 //! quantities, reference values, tolerances, and the reason for each.
 
 mod check;
+pub mod extrapolation;
+mod in_time;
 pub mod kirchhoff;
+mod record;
 mod reference;
+pub mod stick_slip;
+pub mod two_dof;
 
 pub use check::Row;
 

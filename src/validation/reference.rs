@@ -1,7 +1,7 @@
 //! `reference.toml`: what a validation case must show.
 
 use crate::case::reader::{Section, read_document};
-use crate::case::units::{FREQUENCY, LENGTH, NUMBER};
+use crate::case::units::{FREQUENCY, LENGTH, NUMBER, TIME};
 use crate::case::{Case, read_case};
 use crate::error::{Error, Fault, Result};
 use std::path::Path;
@@ -71,6 +71,23 @@ pub enum Kind {
         /// Growth, not frequency.
         growth: bool,
     },
+    /// The largest growth rate of any mode \[1/s\].
+    GrowthRate,
+    /// What a channel of the run in time does between two times.
+    InTime(Span, Measure),
+    /// At how many of the steps from one value of a scalar to the next something rises: the amplitude of a channel between
+    /// two times, or the largest growth rate.
+    Rises {
+        /// Path of the scalar.
+        parameter: String,
+        /// Its values.
+        values: Vec<f64>,
+        /// Where the amplitude is taken.
+        of: Option<Span>,
+    },
+    /// The largest deviation of a channel from what Eqs. (3)–(5) of Rusli et al. (2020) give, integrated apart, as a part of
+    /// its amplitude there.
+    PaperEquations(Span),
     /// The largest relative error of the modes of a clamped annulus against Kirchhoff theory.
     Annulus {
         /// The real-mode analysis, which must be of this annulus alone.
@@ -80,6 +97,34 @@ pub enum Kind {
         /// b, a \[m\].
         radii: [f64; 2],
     },
+}
+
+/// A channel of the run in time, between two times \[s\].
+#[derive(Debug, Clone)]
+pub struct Span {
+    /// Its name.
+    pub channel: String,
+    /// The first and the last time.
+    pub window: [f64; 2],
+}
+
+/// What is measured of a channel.
+#[derive(Debug, Clone, Copy)]
+pub enum Measure {
+    /// Half of what it spans.
+    Amplitude,
+    /// Its amplitude over that between two other times.
+    AmplitudeOver([f64; 2]),
+    /// The rate at which its amplitude has grown since the window between two other times, as long \[1/s\].
+    GrowthSince([f64; 2]),
+    /// Its largest value.
+    Highest,
+    /// Its smallest value.
+    Lowest,
+    /// Its period \[s\].
+    Period,
+    /// The time from its lowest value in a period to the next highest \[s\].
+    Rise,
 }
 
 /// Reads `folder/reference.toml` and its case.
@@ -105,7 +150,7 @@ pub fn read(folder: &Path) -> Result<Reference> {
 }
 
 fn read_check(name: &str, s: &Section, reason: &str) -> Check {
-    let kinds = [
+    const KINDS: [&str; 19] = [
         "value",
         "onset",
         "largest_growth",
@@ -115,9 +160,21 @@ fn read_check(name: &str, s: &Section, reason: &str) -> Check {
         "growth_in_time",
         "frequency_in_time",
         "annulus",
+        "growth_rate",
+        "rises",
+        "paper_equations",
+        "amplitude",
+        "amplitude_over",
+        "growth_since",
+        "highest",
+        "lowest",
+        "period",
+        "rise_time",
     ];
     let parameter = || s.string("parameter").required("the path of a scalar of the case");
-    let kind = match s.choice("kind", &kinds).required("how it is computed") {
+    let earlier = || s.quantities("since", TIME).required("two times");
+    let in_time = |measure: Measure| Kind::InTime(read_span(s), measure);
+    let kind = match s.choice("kind", &KINDS).required("how it is computed") {
         "onset" => Kind::Onset {
             parameter: parameter(),
             between: s.quantities("between", NUMBER).required("a stable and an unstable value"),
@@ -131,6 +188,20 @@ fn read_check(name: &str, s: &Section, reason: &str) -> Check {
         "growth_near" => Kind::GrowthNear(s.quantity("near", FREQUENCY).required(FREQUENCY.name)),
         "growth_in_time" => Kind::Disturbance { growth: true },
         "frequency_in_time" => Kind::Disturbance { growth: false },
+        "growth_rate" => Kind::GrowthRate,
+        "rises" => Kind::Rises {
+            parameter: parameter(),
+            values: s.quantity_list("values", NUMBER).required("a list of values"),
+            of: s.has("channel").then(|| read_span(s)),
+        },
+        "paper_equations" => Kind::PaperEquations(read_span(s)),
+        "amplitude" => in_time(Measure::Amplitude),
+        "amplitude_over" => in_time(Measure::AmplitudeOver(earlier())),
+        "growth_since" => in_time(Measure::GrowthSince(earlier())),
+        "highest" => in_time(Measure::Highest),
+        "lowest" => in_time(Measure::Lowest),
+        "period" => in_time(Measure::Period),
+        "rise_time" => in_time(Measure::Rise),
         "annulus" => Kind::Annulus {
             modes: s.string("modes").required("the name of an analysis"),
             part: s.string("part").required("the name of a shell"),
@@ -156,6 +227,13 @@ fn read_check(name: &str, s: &Section, reason: &str) -> Check {
         tolerance: relative.or(absolute).unwrap_or(0.0),
         relative: relative.is_some(),
         reason: s.string("reason").or(reason.to_string()),
+    }
+}
+
+fn read_span(s: &Section) -> Span {
+    Span {
+        channel: s.string("channel").required("the name of a channel of the run in time"),
+        window: s.quantities("window", TIME).required("two times"),
     }
 }
 

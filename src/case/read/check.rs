@@ -1,7 +1,7 @@
 //! What sections say of each other: names that must stand elsewhere, and what does not go together.
 
 use super::super::reader::Section;
-use super::super::{Case, ContactState, Pressing, path_matches};
+use super::super::{Case, ContactState, Pressing, Sense, path_matches};
 
 /// Names that must stand elsewhere in the file: materials, parts, contacts.
 pub(super) fn check_names(root: &Section, case: &Case) {
@@ -59,6 +59,9 @@ pub(super) fn check_names(root: &Section, case: &Case) {
                 "a velocity",
                 "none beside a `bristle`, which sticks by itself",
             );
+        }
+        if contact.friction.sense != Sense::WithSlip {
+            refuse("friction.sense", "against_sliding", "with_slip beside a `bristle`");
         }
         if !contact.normal.unilateral {
             refuse(

@@ -1,0 +1,92 @@
+//! What a channel of a run in time does between two times.
+
+/// The part of a channel that is looked at.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Record<'a> {
+    pub(super) values: &'a [f64],
+    /// Δt \[s\].
+    step: f64,
+}
+
+impl<'a> Record<'a> {
+    /// The samples from the first to the last time \[s\], those there are.
+    pub(super) fn new(values: &'a [f64], step: f64, window: [f64; 2]) -> Self {
+        let [first, last] = window.map(|t| (t / step).round().max(0.0) as usize);
+        let end = (last + 1).min(values.len());
+        Record { values: &values[first.min(end)..end], step }
+    }
+
+    /// The largest value; not a number without samples, as in what follows.
+    pub(super) fn highest(&self) -> f64 {
+        self.values.iter().copied().fold(f64::NAN, f64::max)
+    }
+
+    /// The smallest value.
+    pub(super) fn lowest(&self) -> f64 {
+        self.values.iter().copied().fold(f64::NAN, f64::min)
+    }
+
+    /// Half of what the values span.
+    pub(super) fn amplitude(&self) -> f64 {
+        0.5 * (self.highest() - self.lowest())
+    }
+
+    /// The mean time between upward crossings of the middle of the span \[s\].
+    pub(super) fn period(&self) -> f64 {
+        let crossings = self.crossings();
+        match (crossings.first(), crossings.last()) {
+            (Some(first), Some(last)) if crossings.len() > 1 => {
+                (last - first) / (crossings.len() - 1) as f64 * self.step
+            }
+            _ => f64::NAN,
+        }
+    }
+
+    /// The mean time from the lowest value of a period to the next highest \[s\], over the whole periods there are.
+    pub(super) fn rise(&self) -> f64 {
+        let crossings = self.crossings();
+        // Of a period about an upward crossing: from the crossing before to the one after.
+        let times: Vec<f64> = crossings
+            .windows(3)
+            .map(|of| {
+                let part = |from: f64, to: f64| from.ceil() as usize..(to.floor() as usize) + 1;
+                let by_value = |a: &usize, b: &usize| self.values[*a].total_cmp(&self.values[*b]);
+                let low = part(of[0], of[1]).min_by(by_value).unwrap_or(0);
+                let high = part(of[1], of[2]).max_by(by_value).unwrap_or(0);
+                (high as f64 - low as f64) * self.step
+            })
+            .collect();
+        times.iter().sum::<f64>() / times.len() as f64
+    }
+
+    /// Where the values rise through the middle of their span, in samples, between them by a straight line.
+    fn crossings(&self) -> Vec<f64> {
+        let middle = 0.5 * (self.highest() + self.lowest());
+        let pairs = self.values.windows(2).enumerate();
+        pairs
+            .filter(|(_, pair)| pair[0] < middle && pair[1] >= middle)
+            .map(|(k, pair)| k as f64 + (middle - pair[0]) / (pair[1] - pair[0]))
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_saw_is_measured() {
+        // Up in 0.3 s, down in 0.1 s, between 1 and 3.
+        let at = |t: f64| {
+            let part = t.rem_euclid(0.4);
+            if part < 0.3 { 1.0 + part / 0.15 } else { 3.0 - (part - 0.3) / 0.05 }
+        };
+        let values: Vec<f64> = (0..5000).map(|k| at(1e-3 * k as f64)).collect();
+        let record = Record::new(&values, 1e-3, [1.0, 4.0]);
+        assert!((record.period() - 0.4).abs() < 1e-9 && (record.rise() - 0.3).abs() < 1.1e-3);
+        assert!((record.amplitude() - 1.0).abs() < 0.02 && (record.highest() - 3.0).abs() < 0.02);
+        let short = Record::new(&values, 1e-3, [1.0, 1.2]);
+        assert!(short.period().is_nan() && short.rise().is_nan() && short.lowest() >= 1.0);
+        assert!(Record::new(&values, 1e-3, [7.0, 8.0]).amplitude().is_nan());
+    }
+}
