@@ -182,8 +182,9 @@ mod tests {
 
     fn checkpoint(row: usize) -> Checkpoint {
         let mut checkpoint = Checkpoint::default();
-        checkpoint.put("motion", &[row as f64; 777]);
+        // In the order of their names, as a file has them.
         checkpoint.put("counts", &[row as f64]);
+        checkpoint.put("motion", &[row as f64; 777]);
         checkpoint.put("nothing", &[]);
         checkpoint
     }
