@@ -203,6 +203,7 @@ mod tests {
             channels: &channels,
             pairs: &[],
             checkpoint: &checkpoint(0),
+            fields: None,
         })
         .unwrap();
     }
