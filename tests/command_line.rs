@@ -209,18 +209,88 @@ fn motion_in_time_is_the_same_in_full_condensed_and_for_any_number_of_threads() 
     }
 }
 
+/// The arrays of the motion in `transient.vtkhdf`, and how many steps it says.
+fn fields(out: &Path) -> ([Vec<f32>; 2], i64) {
+    let file = hdf5::File::open(out.join("transient.vtkhdf")).expect("fields");
+    let array =
+        |name: &str| file.dataset(&format!("VTKHDF/PointData/{name}")).and_then(|d| d.read_raw::<f32>());
+    let steps = file.group("VTKHDF/Steps").and_then(|g| g.attr("NSteps")?.read_scalar::<i64>());
+    (["displacement", "velocity"].map(|name| array(name).expect("an array")), steps.expect("a count"))
+}
+
+#[test]
+fn fields_in_time_are_those_of_the_probe_in_full_and_reduced_and_go_on() {
+    let folder = folder_with("");
+    let at = folder.path();
+    let run = |name: &str, extra: &str, resume: bool| {
+        let every = format!("fields_every = \"0.25 ms\"\n{extra}\nscheme");
+        std::fs::write(at.join("rig.toml"), format!("{RIG}{}", BLOW.replace("scheme", &every)))
+            .expect("a case file");
+        let mut arguments = vec!["transient", "rig.toml", "--out", name];
+        arguments.extend(resume.then_some("--resume"));
+        let output = stridor(at, &arguments);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        fields(&at.join(name))
+    };
+    let (full, steps) = run("full", "", false);
+    let (reduced, _) = run("reduced", "model = \"reduced\"", false);
+    assert_eq!(steps, 17);
+    let largest = |values: &[f32]| values.iter().fold(0.0f32, |m, v| m.max(v.abs()));
+    for (a, b) in full.iter().zip(&reduced) {
+        assert!(a.len() == b.len() && a.iter().all(|v| v.is_finite()));
+        let off = a.iter().zip(b).fold(0.0f32, |m, (a, b)| m.max((a - b).abs()));
+        assert!(off < 0.1 * largest(a), "{off:e} of {:e}", largest(a));
+    }
+    // The probe stands at the node nearest to (0, 0, 20 mm) and looks along x.
+    let file = hdf5::File::open(at.join("full/results.h5")).expect("results");
+    let nodes = file.dataset("geometry/nodes").and_then(|d| d.read_2d::<f64>()).expect("nodes");
+    let away =
+        |row: usize| nodes[(row, 0)].powi(2) + nodes[(row, 1)].powi(2) + (nodes[(row, 2)] - 0.02).powi(2);
+    let probe = (0..nodes.nrows()).min_by(|a, b| away(*a).total_cmp(&away(*b))).expect("a node");
+    for (array, name) in full.iter().zip(["disc_displacement", "disc_velocity"]) {
+        let record =
+            file.dataset(&format!("transient/{name}")).and_then(|d| d.read_1d::<f64>()).expect("a record");
+        let agree = |k: &usize| array[3 * (k * nodes.nrows() + probe)] == record[25 * k] as f32;
+        assert!((0..17).all(|k| agree(&k)), "{name}");
+    }
+    drop(file);
+    // As a kill after the first row leaves it, the later fields half written.
+    let file = hdf5::File::open_rw(at.join("full/results.h5")).expect("results");
+    file.group("transient").and_then(|g| g.attr("latest")?.write_scalar(&0_i64)).expect("it is written");
+    drop(file);
+    let file = hdf5::File::open_rw(at.join("full/transient.vtkhdf")).expect("fields");
+    let velocity = file.dataset("VTKHDF/PointData/velocity").expect("an array");
+    velocity.write_raw(&vec![1.0_f32; velocity.size()]).expect("it is written");
+    drop((velocity, file));
+    std::fs::copy(at.join("full/transient.csv"), at.join("before.csv")).expect("a table");
+    let (again, steps) = run("full", "", true);
+    let nodes = 3 * nodes.nrows();
+    assert!(steps == 17 && again[0] == full[0] && again[1][nodes..] == full[1][nodes..]);
+    let [before, after] =
+        ["before.csv", "full/transient.csv"].map(|name| std::fs::read(at.join(name)).expect("a table"));
+    assert!(before == after && before.len() > 10_000);
+}
+
 #[test]
 fn faults_of_a_transient_come_together() {
     let wrong = BLOW
         .replace("duration = \"4 ms\"", "duration = \"1 us\"")
         .replace("at = [0, 0, \"20 mm\"]", "at = [0, 0, 0]\non = \"disc\"")
+        .replace("scheme =", "fields_every = \"1 s\"\nscheme =")
         + "[transient.slide.rim]\nmotion = \"reciprocating\"\nfrequency = \"5 Hz\"\n\
            [transient.slide.rip]\nmotion = \"ramp\"\nduration = \"1 ms\"\n";
     let folder = folder_with(&format!("{RIG}{wrong}"));
     refused(
         &folder,
         2,
-        &["4 faults", "time_step", "both `on` and `at`", "friction.regularisation", "Did you mean \"rim\"?"],
+        &[
+            "5 faults",
+            "time_step",
+            "fields_every",
+            "both `on` and `at`",
+            "friction.regularisation",
+            "Did you mean \"rim\"?",
+        ],
     );
     let lost = folder_with(&format!("{RIG}{}", BLOW.replace("\"bar_root\"", "\"bar_rot\"")));
     refused(&lost, 2, &["transient.push.blow.on", "bar_root"]);

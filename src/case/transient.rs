@@ -24,6 +24,9 @@ pub struct TransientAnalysis {
     pub model: ModelChoice,
     /// Newton's method on the whole instead of the condensed step, to compare.
     pub full_newton: bool,
+    /// How often the motion of all nodes is written, to the nearest time step \[s\]; never when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fields_every: Option<f64>,
     /// What the motion begins with.
     pub start: StartChoice,
     /// What disturbs it at the start.
@@ -220,6 +223,10 @@ pub(super) fn read(s: &Section) -> TransientAnalysis {
             "rest" => StartChoice::Rest,
             _ => StartChoice::Steady,
         },
+        fields_every: s
+            .quantity("fields_every", TIME)
+            .check("a time between the time step and the duration", |t| (time_step..=duration).contains(t))
+            .optional(),
         disturbance: s.section("disturbance", |d| Disturbance {
             mode_near: d.quantity("mode_near", FREQUENCY).positive().optional(),
             amplitude: d.quantity("amplitude", LENGTH).positive().required("a length such as \"1 nm\""),

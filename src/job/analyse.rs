@@ -227,7 +227,8 @@ fn analyse_from(
                 results.sensitivity = Some(sensitivity);
             }
             if let Some((wanted, places)) = in_time.take() {
-                let run = InTime { system: &system, steady, complex: &complex, real: &real };
+                let (dofs, geometry) = (&prepared.assembled.dofs, &results.geometry);
+                let run = InTime { system: &system, steady, complex: &complex, real: &real, dofs, geometry };
                 let transient = clock.time(IN_TIME, || run.run(wanted, places, keeper, observer))?;
                 keeper.record(Stage::Transient(&transient))?;
                 results.transient = Some(transient);

@@ -3,8 +3,8 @@
 use super::explore::KnownMap;
 use crate::error::Result;
 use crate::results::{
-    Channel, ComplexResult, EventTable, HistoryTable, MapResult, NamedModes, Piece, Recording, ResultsFile,
-    RunResults, SensitivityResult, SteadyResult, SweepResult, TransientResult,
+    Channel, ComplexResult, EventTable, Field, FieldsFile, HistoryTable, MapResult, NamedModes, Piece,
+    Recording, ResultsFile, RunResults, SensitivityResult, SteadyResult, SweepResult, TransientResult,
 };
 use crate::sweep::MapPoint;
 use crate::transient::Checkpoint;
@@ -39,6 +39,8 @@ pub enum Stage<'a> {
     TransientBegins(&'a Recording<'a>),
     /// New rows of it.
     TransientPiece(&'a Piece<'a>),
+    /// The motion of all nodes at one of its times.
+    TransientField(&'a Field<'a>),
     /// A whole run in time.
     Transient(&'a TransientResult),
 }
@@ -126,6 +128,8 @@ pub(super) struct Folder<'a> {
     pub(super) file: ResultsFile,
     /// `transient.csv` and `events.csv`.
     tables: Option<(HistoryTable, EventTable)>,
+    /// `transient.vtkhdf`.
+    fields: Option<FieldsFile>,
     /// How long it took \[s\].
     pub(super) seconds: f64,
     /// The part of it that was taken from a run in time.
@@ -134,7 +138,7 @@ pub(super) struct Folder<'a> {
 
 impl<'a> Folder<'a> {
     pub(super) fn new(dir: &'a Path, file: ResultsFile) -> Self {
-        Folder { dir, file, tables: None, seconds: 0.0, seconds_in_time: 0.0 }
+        Folder { dir, file, tables: None, fields: None, seconds: 0.0, seconds_in_time: 0.0 }
     }
 
     fn write(&mut self, stage: &Stage<'_>) -> Result<()> {
@@ -150,6 +154,8 @@ impl<'a> Folder<'a> {
             Stage::MapPoints(name, first, points) => file.write_map_points(name, *first, points),
             Stage::Map(map) => file.finish_map(map),
             Stage::TransientBegins(recording) => {
+                let fields = recording.fields.as_ref();
+                self.fields = fields.map(|fields| FieldsFile::begin(self.dir, fields)).transpose()?;
                 file.begin_transient(recording)?;
                 let mut history = HistoryTable::create(self.dir, recording)?;
                 let mut events = EventTable::create(self.dir, recording)?;
@@ -173,6 +179,7 @@ impl<'a> Folder<'a> {
                     events.append(piece.events)
                 })
             }
+            Stage::TransientField(field) => self.fields.iter_mut().try_for_each(|file| file.write(field)),
             Stage::Transient(transient) => file.finish_transient(transient),
         }
     }
@@ -184,7 +191,7 @@ impl Keeper for Folder<'_> {
         let written = self.write(&stage);
         let seconds = started.elapsed().as_secs_f64();
         self.seconds += seconds;
-        if matches!(stage, Stage::TransientBegins(_) | Stage::TransientPiece(_)) {
+        if matches!(stage, Stage::TransientBegins(_) | Stage::TransientPiece(_) | Stage::TransientField(_)) {
             self.seconds_in_time += seconds;
         }
         written

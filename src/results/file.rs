@@ -18,7 +18,7 @@ use super::hdf5::{Datasets, attribute, plain, text_attribute, texts};
 use crate::error::Result;
 use hdf5::plist::dataset_create::{AllocTime, FillTime};
 use hdf5::types::OwnedDynValue;
-use hdf5::{Group, H5Type};
+use hdf5::{Extents, Group, H5Type};
 use std::path::{Path, PathBuf};
 
 /// What an interrupted run leaves to be taken up.
@@ -166,7 +166,7 @@ impl Drop for ResultsFile {
 pub(super) fn room<T: H5Type + Into<OwnedDynValue>>(
     group: &Group,
     name: &str,
-    count: usize,
+    count: impl Into<Extents>,
     empty: T,
 ) -> hdf5::Result<hdf5::Dataset> {
     let room = group.new_dataset::<T>().shape(count).alloc_time(Some(AllocTime::Early));

@@ -7,6 +7,7 @@
 //! | `modes_<set>.csv`, `contact_points.csv`, `complex_modes.csv`, `sensitivities.csv` | the tables | spreadsheets |
 //! | `transient.csv`, `transient_spectrum.csv`, `events.csv` | motion in time, step by step, its spectra, what happened at the contacts | spreadsheets |
 //! | `critical_values.csv`, `sweep_<name>.csv`, `map_<name>.csv` | sweeps and maps | spreadsheets |
+//! | `transient.vtkhdf` | the motion of all nodes at regular times | ParaView |
 //! | `modes_<set>.vtu`, `steady.vtu`, `complex_modes.vtu`, `advice.vtu` | the shapes on the mesh | ParaView, pyvista |
 //!
 //! [`ResultsFile`] is used while the run goes on, [`write_files`] once at its end.
@@ -18,6 +19,7 @@ mod explored;
 mod explored_csv;
 mod explored_hdf5;
 mod explored_json;
+mod fields;
 mod file;
 mod folder;
 mod hdf5;
@@ -36,11 +38,12 @@ pub use csv::write_csv;
 pub use derived::{ComparedRow, PairTotals};
 pub use explored::{DampingRow, DampingVerdicts, MapResult, Method, SweepResult};
 pub use explored_hdf5::{EarlierMap, read_maps};
+pub use fields::FieldsFile;
 pub use file::ResultsFile;
 pub(crate) use folder::write_atomically;
 pub use json::{SCHEMA_VERSION, summary_json, write_summary};
 pub use sensitivity::{AdviceField, ModeSensitivity, Mounted, ParameterRate, SensitivityResult};
-pub use transient::{Channel, GrowthCompared, Piece, Recording, SpectrumOf, TransientResult};
+pub use transient::{Channel, Field, Fields, GrowthCompared, Piece, Recording, SpectrumOf, TransientResult};
 pub use transient_csv::{EventTable, HistoryTable};
 pub use vtk::write_vtk;
 

@@ -1,5 +1,6 @@
 //! A run in time, as plain data.
 
+use super::{Geometry, NodalField};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::signal::{Growth, Peak, Spectrum};
@@ -91,6 +92,32 @@ pub struct Recording<'a> {
     pub pairs: &'a [String],
     /// A checkpoint, for the room that it takes.
     pub checkpoint: &'a Checkpoint,
+    /// Whether fields are written, too.
+    pub fields: Option<Fields<'a>>,
+}
+
+/// The motion of all nodes at regular times, to be written.
+#[derive(Debug, Clone, Copy)]
+pub struct Fields<'a> {
+    /// The mesh that moves.
+    pub geometry: &'a Geometry,
+    /// The first is written at the start, the others every so many seconds.
+    pub every: f64,
+    /// How many there will be.
+    pub count: usize,
+    /// How many of them an earlier run has written.
+    pub done: usize,
+}
+
+/// The motion of all nodes at a time.
+#[derive(Debug, Clone, Copy)]
+pub struct Field<'a> {
+    /// How many were written before it.
+    pub number: usize,
+    /// From steady sliding \[m\].
+    pub displacement: &'a NodalField<f64>,
+    /// \[m/s\].
+    pub velocity: &'a NodalField<f64>,
 }
 
 /// A piece of the record, and what the run needs to go on after it.

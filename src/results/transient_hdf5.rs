@@ -204,6 +204,7 @@ mod tests {
             channels: &channels,
             pairs: &[],
             checkpoint: &checkpoint(0),
+            fields: None,
         })
         .unwrap();
     }

@@ -76,6 +76,10 @@ pub(super) fn check_names(root: &Section, case: &Case) {
             let expected = "a [cea], whose modes the motion starts along and is compared with";
             root.fault("transient", "no [cea] in the case", expected, "");
         }
+        if transient.fields_every.is_some() && case.mesh.is_none() {
+            let expected = "a case with a [mesh], whose nodes have the fields";
+            root.fault("transient.fields_every", "no [mesh] in the case", expected, "");
+        }
         let contacts: Vec<&str> = case.contact.keys().map(String::as_str).collect();
         for name in transient.slide.keys().filter(|name| !contacts.contains(&name.as_str())) {
             unknown_name(root, &format!("transient.slide.{name}"), name, "contact", &contacts);

@@ -1,13 +1,14 @@
 //! A case in time: what is recorded, step after step, and what the record says.
 //!
 //! [`places`] says what acts and where motion is recorded, `along` finds the complex mode to start along, `recorder`
-//! makes a row of every step, `tape` hands the rows on a piece at a time, so that memory does not grow with the run, and
+//! makes a row of every step, `snapshots` take the motion of all nodes now and then, `tape` hands the rows on a piece at a time, so that memory does not grow with the run, and
 //! `findings` reads them back in parts: spectra, growth, what a picture needs.
 
 mod along;
 mod findings;
 mod places;
 mod recorder;
+mod snapshots;
 mod start;
 mod tape;
 
@@ -21,10 +22,12 @@ use crate::linalg::SparseVector;
 use crate::modal::RealModes;
 use crate::progress::Observer;
 use crate::reduction::reduce;
-use crate::results::{ComplexResult, TransientResult};
+use crate::results::{ComplexResult, Geometry, TransientResult};
+use crate::structure::DofMap;
 use crate::system::System;
 use crate::transient::{Method, Model, Plan, Profile, Scheme, State, go_on};
 use recorder::Recorder;
+use snapshots::Snapshots;
 use start::Start;
 use tape::Tape;
 
@@ -38,6 +41,10 @@ pub struct InTime<'a> {
     pub complex: &'a ComplexResult,
     /// The real modes that span them.
     pub real: &'a RealModes,
+    /// The way to the motion of every node.
+    pub dofs: &'a DofMap,
+    /// The mesh that moves.
+    pub geometry: &'a Geometry,
 }
 
 impl InTime<'_> {
@@ -101,7 +108,15 @@ impl InTime<'_> {
         let steps = (wanted.duration / wanted.time_step).round().max(1.0) as usize;
         let method = if wanted.full_newton { Method::FullNewton } else { Method::Condensed };
         let plan = Plan { scheme, step: wanted.time_step, steps, method, tolerance: wanted.tolerance };
-        let mut tape = Tape::new(Recorder::new(system, steady, &model, (probes, gauges), disturbed), keeper);
+        let snapshots = wanted.fields_every.map(|every| Snapshots {
+            every: (every / wanted.time_step).round().max(1.0) as usize,
+            geometry: self.geometry,
+            dofs: self.dofs,
+            reduced: reduced.as_ref(),
+            origin: &steady.displacement,
+        });
+        let recorder = Recorder::new(system, steady, &model, (probes, gauges), disturbed);
+        let mut tape = Tape::new(recorder, snapshots, keeper);
         let mut marched = tape.begin(start, &model, &plan)?;
         let reached = go_on(&model, &mut marched, &plan, observer, &mut |marched| tape.take(marched));
         let kept = tape.flush(&marched);

@@ -1,9 +1,10 @@
 //! Hands on what is recorded, a piece at a time.
 
 use super::recorder::Recorder;
+use super::snapshots::Snapshots;
 use crate::error::{Error, Fault, Result};
 use crate::job::keeper::{Keeper, Stage};
-use crate::results::{Piece, Recording};
+use crate::results::{Field, Piece, Recording};
 use crate::transient::{Checkpoint, Marched, Model, Plan, State};
 use std::time::{Duration, Instant};
 
@@ -17,14 +18,19 @@ const PATIENCE: Duration = Duration::from_secs(2);
 pub(super) struct Tape<'a, 'k> {
     pub(super) recorder: Recorder<'a>,
     pub(super) keeper: &'k mut dyn Keeper,
+    snapshots: Option<Snapshots<'a>>,
     /// The first row that is at hand.
     first: usize,
     last_piece: Instant,
 }
 
 impl<'a, 'k> Tape<'a, 'k> {
-    pub(super) fn new(recorder: Recorder<'a>, keeper: &'k mut dyn Keeper) -> Self {
-        Tape { recorder, keeper, first: 0, last_piece: Instant::now() }
+    pub(super) fn new(
+        recorder: Recorder<'a>,
+        snapshots: Option<Snapshots<'a>>,
+        keeper: &'k mut dyn Keeper,
+    ) -> Self {
+        Tape { recorder, keeper, snapshots, first: 0, last_piece: Instant::now() }
     }
 
     /// Begins with the first row or, where an earlier run stopped, goes on from there.
@@ -49,7 +55,11 @@ impl<'a, 'k> Tape<'a, 'k> {
             channels: &self.recorder.channels,
             pairs: &self.recorder.named,
             checkpoint: &checkpoint,
+            fields: self.snapshots.as_ref().map(|s| s.fields(plan.steps, self.first, plan.step)),
         }))?;
+        if earlier.is_none() {
+            self.snapshot(&marched)?;
+        }
         self.flush(&marched)?;
         Ok(marched)
     }
@@ -73,6 +83,7 @@ impl<'a, 'k> Tape<'a, 'k> {
     /// Takes a step.
     pub(super) fn take(&mut self, marched: &Marched) -> Result<()> {
         self.recorder.take(marched);
+        self.snapshot(marched)?;
         if self.recorder.rows() >= ROWS || self.last_piece.elapsed() >= PATIENCE {
             self.flush(marched)?;
         }
@@ -91,6 +102,15 @@ impl<'a, 'k> Tape<'a, 'k> {
         }
         self.last_piece = Instant::now();
         Ok(())
+    }
+
+    /// Hands on the motion of all nodes, where it is time for it.
+    fn snapshot(&mut self, marched: &Marched) -> Result<()> {
+        let due = |snapshots: &&Snapshots| marched.step.is_multiple_of(snapshots.every);
+        let Some(snapshots) = self.snapshots.as_ref().filter(due) else { return Ok(()) };
+        let number = marched.step / snapshots.every;
+        let [displacement, velocity] = &snapshots.take(&marched.state);
+        self.keeper.record(Stage::TransientField(&Field { number, displacement, velocity }))
     }
 
     fn checkpoint(&self, marched: &Marched) -> Checkpoint {

@@ -1,0 +1,195 @@
+//! `transient.vtkhdf`: the motion of all nodes at regular times, for ParaView.
+//!
+//! VTKHDF 2 (docs.vtk.org, VTKHDF file format): an unstructured grid with `Steps`; the mesh is written once, in its rest
+//! position. Point arrays `displacement` \[m\], from steady sliding, and `velocity` \[m/s\], single precision, one step after
+//! the other; the cell array `part` counts the parts from 0 in the order of the case. There is room for all steps from the
+//! start; `NSteps` says how many are there, so that a run under way can be looked at.
+
+use super::file::room;
+use super::folder::refusal;
+use super::hdf5::{attribute, plain, rows};
+use super::{Field, Fields, NodalField};
+use crate::error::{Error, Fault, Result};
+use hdf5::Group;
+use hdf5::types::FixedAscii;
+use ndarray::{Array2, s};
+use std::path::{Path, PathBuf};
+
+/// The arrays of the motion.
+const ARRAYS: [&str; 2] = ["displacement", "velocity"];
+
+/// `transient.vtkhdf` of a run under way.
+#[derive(Debug)]
+pub struct FieldsFile {
+    file: hdf5::File,
+    path: PathBuf,
+    nodes: usize,
+}
+
+impl FieldsFile {
+    /// Begins the file in the folder `dir`, or goes on with the one that an earlier run left.
+    ///
+    /// # Errors
+    /// Input: the earlier one is gone. [`Error::Io`], here and later: the machine refuses.
+    pub fn begin(dir: &Path, fields: &Fields) -> Result<Self> {
+        let path = dir.join("transient.vtkhdf");
+        let nodes = fields.geometry.nodes.len();
+        let refused = |source: hdf5::Error| refusal(&path, plain(&source));
+        if fields.done == 0 {
+            let aside = dir.join("transient.new.vtkhdf");
+            std::fs::File::create(&aside).map_err(|source| refusal(&aside, source))?;
+            let file = hdf5::File::create(&aside).map_err(refused)?;
+            create(&file, fields).and_then(|()| file.flush()).map_err(refused)?;
+            std::fs::rename(&aside, &path).map_err(|source| refusal(&path, source))?;
+            return Ok(FieldsFile { file, path, nodes });
+        }
+        let found = hdf5::File::open_rw(&path).and_then(|file| {
+            let shape = file.dataset("VTKHDF/PointData/velocity")?.shape();
+            Ok((shape == [fields.count * nodes, 3]).then_some(file))
+        });
+        let file = found.ok().flatten().ok_or_else(|| {
+            let expected = "the file that the interrupted run has left";
+            Error::input(
+                Fault::new(path.display().to_string(), "none, or another", expected)
+                    .with_help("Put it back, or run without --resume"),
+            )
+        })?;
+        let mut this = FieldsFile { file, path, nodes };
+        this.count(fields.done)?;
+        Ok(this)
+    }
+
+    /// Writes the motion at the next of the times.
+    ///
+    /// # Errors
+    /// The machine refuses.
+    pub fn write(&mut self, field: &Field) -> Result<()> {
+        let part = field.number * self.nodes..(field.number + 1) * self.nodes;
+        let put = |name: &str, values: &NodalField<f64>| {
+            let short = Array2::from_shape_fn((values.len(), 3), |(node, axis)| values[node][axis] as f32);
+            let array = self.file.dataset(&format!("VTKHDF/PointData/{name}"))?;
+            array.write_slice(short.view(), s![part.clone(), ..])
+        };
+        let written = put(ARRAYS[0], field.displacement).and_then(|()| put(ARRAYS[1], field.velocity));
+        written.and_then(|()| self.file.flush()).map_err(|source| self.refused(&source))?;
+        self.count(field.number + 1)
+    }
+
+    /// Says how many are there.
+    fn count(&mut self, steps: usize) -> Result<()> {
+        let said = self.file.group("VTKHDF/Steps").and_then(|group| {
+            group.attr("NSteps")?.write_scalar(&(steps as i64))?;
+            self.file.flush()
+        });
+        said.map_err(|source| self.refused(&source))
+    }
+
+    fn refused(&self, source: &hdf5::Error) -> Error {
+        refusal(&self.path, plain(source))
+    }
+}
+
+fn create(file: &hdf5::File, fields: &Fields) -> hdf5::Result<()> {
+    let root = file.create_group("VTKHDF")?;
+    root.new_attr::<i64>().shape(2).create("Version")?.write(&[2_i64, 1])?;
+    // Readers want a string of this very length.
+    let kind = FixedAscii::<16>::from_ascii(b"UnstructuredGrid").map_err(|error| error.to_string())?;
+    root.new_attr::<FixedAscii<16>>().create("Type")?.write_scalar(&kind)?;
+    let geometry = fields.geometry;
+    let list = |group: &Group, name: &str, values: &[i64]| {
+        group.new_dataset::<i64>().shape(values.len()).create(name)?.write(values)
+    };
+    let connectivity: Vec<i64> = geometry.elements.iter().flatten().map(|node| *node as i64).collect();
+    let mut offsets = vec![0_i64];
+    offsets.extend(geometry.elements.iter().scan(0, |end, nodes| {
+        *end += nodes.len() as i64;
+        Some(*end)
+    }));
+    list(&root, "NumberOfPoints", &[geometry.nodes.len() as i64])?;
+    list(&root, "NumberOfCells", &[geometry.elements.len() as i64])?;
+    list(&root, "NumberOfConnectivityIds", &[connectivity.len() as i64])?;
+    list(&root, "Connectivity", &connectivity)?;
+    list(&root, "Offsets", &offsets)?;
+    root.new_dataset_builder().with_data(&rows(&geometry.nodes)).create("Points")?;
+    let types: Vec<u8> = geometry.elements.iter().map(|nodes| cell_type(nodes.len())).collect();
+    root.new_dataset_builder().with_data(&types).create("Types")?;
+    let part: Vec<i32> = geometry.part_of.iter().map(|part| *part as i32).collect();
+    root.create_group("CellData")?.new_dataset_builder().with_data(&part).create("part")?;
+    let motion = root.create_group("PointData")?;
+    for name in ARRAYS {
+        room(&motion, name, (fields.count * geometry.nodes.len(), 3), f32::NAN)?;
+    }
+    let steps = root.create_group("Steps")?;
+    attribute(&steps, "NSteps", &0_i64)?;
+    let times: Vec<f64> = (0..fields.count).map(|k| k as f64 * fields.every).collect();
+    steps.new_dataset_builder().with_data(&times).create("Values")?;
+    // One mesh for all steps.
+    let nothing = vec![0_i64; fields.count];
+    list(&steps, "NumberOfParts", &vec![1; fields.count])?;
+    list(&steps, "PartOffsets", &nothing)?;
+    list(&steps, "PointOffsets", &nothing)?;
+    for name in ["CellOffsets", "ConnectivityIdOffsets"] {
+        steps.new_dataset_builder().with_data(&Array2::<i64>::zeros((fields.count, 1))).create(name)?;
+    }
+    list(&steps.create_group("CellDataOffsets")?, "part", &nothing)?;
+    let offsets = steps.create_group("PointDataOffsets")?;
+    let begins: Vec<i64> = (0..fields.count).map(|k| (k * geometry.nodes.len()) as i64).collect();
+    ARRAYS.iter().try_for_each(|name| list(&offsets, name, &begins))
+}
+
+/// VTK's numbers of vertex, line, triangle and quadrilateral.
+fn cell_type(nodes: usize) -> u8 {
+    match nodes {
+        1 => 1,
+        2 => 3,
+        3 => 5,
+        _ => 9,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample;
+    use super::*;
+
+    fn motion(number: usize, nodes: usize) -> NodalField<f64> {
+        (0..nodes)
+            .map(|node| std::array::from_fn(|k| (number * 7 + node) as f64 + 0.125 * k as f64))
+            .collect()
+    }
+
+    #[test]
+    fn fields_are_there_as_they_were_written_and_an_interrupted_file_goes_on() {
+        let dir = tempfile::tempdir().unwrap();
+        let geometry = sample::rig().geometry;
+        let nodes = geometry.nodes.len();
+        let fields = Fields { geometry: &geometry, every: 1e-3, count: 5, done: 0 };
+        let gone = FieldsFile::begin(dir.path(), &Fields { done: 3, ..fields }).unwrap_err();
+        assert!(gone.exit_code() == 2 && gone.to_string().contains("--resume"), "{gone}");
+        let write = |file: &mut FieldsFile, number: usize| {
+            let (displacement, velocity) = (&motion(number, nodes), &motion(number + 100, nodes));
+            file.write(&Field { number, displacement, velocity }).unwrap();
+        };
+        let mut file = FieldsFile::begin(dir.path(), &fields).unwrap();
+        (0..4).for_each(|number| write(&mut file, number));
+        drop(file);
+        let mut file = FieldsFile::begin(dir.path(), &Fields { done: 2, ..fields }).unwrap();
+        let steps = |file: &FieldsFile| {
+            file.file.group("VTKHDF/Steps").unwrap().attr("NSteps").unwrap().read_scalar::<i64>().unwrap()
+        };
+        assert_eq!(steps(&file), 2);
+        (2..5).for_each(|number| write(&mut file, number));
+        assert_eq!(steps(&file), 5);
+        let velocity = file.file.dataset("VTKHDF/PointData/velocity").unwrap().read_2d::<f32>().unwrap();
+        let begins =
+            file.file.dataset("VTKHDF/Steps/PointDataOffsets/velocity").unwrap().read_1d::<i64>().unwrap();
+        for number in 0..5 {
+            let expected = motion(number + 100, nodes);
+            let first = begins[number] as usize;
+            assert!(
+                (0..nodes)
+                    .all(|node| (0..3).all(|k| velocity[(first + node, k)] == expected[node][k] as f32))
+            );
+        }
+    }
+}
