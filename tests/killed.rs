@@ -98,8 +98,11 @@ fn kill_after(time: Duration, folder: &Path, case: &str, out: &str, resume: bool
     child.wait().expect("it ends");
 }
 
-/// Every array of numbers in a group and below, by name, as bits.
-fn numbers(group: &hdf5::Group, found: &mut Vec<(String, Vec<u64>)>) {
+/// Arrays of numbers by name, as bits.
+type Record = Vec<(String, Vec<u64>)>;
+
+/// Every array of numbers in a group and below.
+fn numbers(group: &hdf5::Group, found: &mut Record) {
     for dataset in group.datasets().expect("datasets") {
         if let Ok(values) = dataset.read_raw::<f64>() {
             found.push((dataset.name(), values.iter().map(|v| v.to_bits()).collect()));
@@ -109,7 +112,7 @@ fn numbers(group: &hdf5::Group, found: &mut Vec<(String, Vec<u64>)>) {
 }
 
 /// What a finished run says: the numbers of its record, its summary without wall times, its tables.
-fn said(out: &Path) -> (Vec<(String, Vec<u64>)>, serde_json::Value, [Vec<u8>; 2]) {
+fn said(out: &Path) -> (Record, serde_json::Value, [Vec<u8>; 2]) {
     let file = hdf5::File::open(out.join("results.h5")).expect("results.h5 opens");
     assert!(file.attr("complete").and_then(|a| a.read_scalar::<bool>()).expect("a root attribute"));
     let mut record = Vec::new();

@@ -165,9 +165,9 @@ impl<'a> Folder<'a> {
                     let values: Vec<Vec<f64>> = recording.channels.iter().map(read).collect::<Result<_>>()?;
                     history.append(first, &values)?;
                 }
-                let known = self.file.events()?;
-                for first in (0..known).step_by(AT_ONCE) {
-                    events.append(&self.file.read_events(first..known.min(first + AT_ONCE))?)?;
+                for first in (0..recording.happened).step_by(AT_ONCE) {
+                    let part = first..recording.happened.min(first + AT_ONCE);
+                    events.append(&self.file.read_events(part)?)?;
                 }
                 self.tables = Some((history, events));
                 Ok(())

@@ -35,17 +35,10 @@ impl ResultsFile {
     pub fn read_events(&self, part: Range<usize>) -> Result<Vec<Event>> {
         self.read(|root| read(&root.group("transient/events")?, part))
     }
-
-    /// How many events of the run in time there are.
-    ///
-    /// # Errors
-    /// The machine refuses.
-    pub fn events(&self) -> Result<usize> {
-        self.read(|root| count(&root.group("transient")?))
-    }
 }
 
-fn count(group: &Group) -> hdf5::Result<usize> {
+/// How many there are.
+pub(super) fn count(group: &Group) -> hdf5::Result<usize> {
     Ok(group.attr("events")?.read_scalar::<u64>()? as usize)
 }
 

@@ -86,6 +86,8 @@ pub struct Recording<'a> {
     pub rows: usize,
     /// How many of them an earlier run has recorded.
     pub done: usize,
+    /// How many events it has recorded with them.
+    pub happened: usize,
     /// What is recorded at each.
     pub channels: &'a [Channel],
     /// The name of the pair of every contact point.

@@ -52,6 +52,7 @@ impl<'a, 'k> Tape<'a, 'k> {
             time_step: plan.step,
             rows: plan.steps + 1,
             done: self.first,
+            happened: if earlier.is_some() { self.recorder.happened.iter().sum() } else { 0 },
             channels: &self.recorder.channels,
             pairs: &self.recorder.named,
             checkpoint: &checkpoint,
