@@ -210,11 +210,15 @@ mod tests {
                 assert!(answer.forces.friction[0].hypot(answer.forces.friction[1]) <= 0.7 * steady.normal);
             }
             let answer = law.advance(&motion(v), &SlipStep { bristle, slid, duration }, 1.0);
-            for i in 0..2 {
-                let off = answer.forces.friction[i] / steady.friction[i] - 1.0;
-                assert!(off.abs() < 1e-12, "{off:e}");
-                assert!((law.bent(steady.friction, 1.0)[i] / bristle[i] - 1.0).abs() < 1e-12);
-            }
+            let same = |found: [f64; 2], expected: [f64; 2]| {
+                let pairs = found.iter().zip(expected);
+                assert!(
+                    pairs.map(|(a, b)| (a / b - 1.0).abs()).all(|off| off < 1e-12),
+                    "{found:?} {expected:?}"
+                );
+            };
+            same(answer.forces.friction, steady.friction);
+            same(law.bent(steady.friction, 1.0), bristle);
         }
     }
 

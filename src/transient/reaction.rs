@@ -28,6 +28,9 @@ pub(super) struct Bristles {
     pub(super) stick: bool,
 }
 
+/// Takes a column and its entries, each with its row.
+pub(super) type TellColumn<'a> = dyn FnMut(usize, &[(usize, f64)]) + 'a;
+
 /// The step that a reaction ends: where it began, and how long it is \[s\].
 pub(super) type Since<'a> = (&'a State, f64);
 
@@ -96,7 +99,7 @@ impl Reaction {
     }
 
     /// Tells of every direction on whose motion r depends, with the entries of ∂r/∂q + c₁ ∂r/∂q̇ in its column.
-    pub(super) fn slopes(&self, model: &Model<'_>, rate: f64, tell: &mut dyn FnMut(usize, &[(usize, f64)])) {
+    pub(super) fn slopes(&self, model: &Model<'_>, rate: f64, tell: &mut TellColumn<'_>) {
         for block in self.blocks.iter().filter(|block| block.acts()) {
             let first = 3 * block.point;
             for own in 0..3 {
