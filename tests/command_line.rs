@@ -287,8 +287,9 @@ fn faults_of_a_transient_come_together() {
             "5 faults",
             "time_step",
             "fields_every",
-            "both `on` and `at`",
-            "friction.regularisation",
+            "several of `on`, `at` and `spring`",
+            "contact.rim.bristle",
+            "friction a `regularisation`",
             "Did you mean \"rim\"?",
         ],
     );
