@@ -2,6 +2,7 @@
 
 use super::read::collect;
 use super::reader::Section;
+use super::sound::SoundAnalysis;
 use super::units::{ANGLE, FORCE, FREQUENCY, LENGTH, NUMBER, TIME};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -33,6 +34,9 @@ pub struct TransientAnalysis {
     /// How the counter-body of a contact slides, by the contact's name; constantly where it is not named.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub slide: BTreeMap<String, Slide>,
+    /// How loud it is, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sound: Option<SoundAnalysis>,
 }
 
 /// What moves.
@@ -174,6 +178,7 @@ pub(super) fn read(s: &Section) -> TransientAnalysis {
         }),
         probe: collect(s, "probe", read_probe),
         slide: collect(s, "slide", read_slide),
+        sound: s.section("sound", super::sound::read),
     }
 }
 

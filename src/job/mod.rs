@@ -23,10 +23,12 @@ mod prepared;
 mod regions;
 mod scalars;
 mod sensitivity;
+mod sound;
 mod states;
 mod table;
 mod transient;
 mod verify;
+mod watch;
 
 pub use analyse::{Selection, Sensitivities, Stage, analyse, run_case};
 pub use explore::{KnownMap, KnownMaps};

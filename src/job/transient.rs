@@ -2,6 +2,8 @@
 
 use super::analyse::Stage;
 use super::prepared::Prepared;
+use super::sound::{Ears, Listener, ears};
+use super::watch::{Glance, Watch};
 use crate::case::{Disturbance, ModelChoice, SchemeChoice, Slide, TransientAnalysis};
 use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Fault, Faults, Result};
@@ -22,6 +24,8 @@ const SEGMENTS: usize = 3;
 /// Peaks named, and how far below the highest they may be.
 const PEAKS: usize = 12;
 const FLOOR: f64 = 1e-3;
+/// Spectrograms reach this many times as high as the band of the complex eigenvalues.
+const WATCHED: f64 = 1.25;
 /// A disturbance is small while the penetration changes by less than this part of itself.
 const SMALL: f64 = 0.01;
 
@@ -49,7 +53,7 @@ impl InTime<'_> {
         record: &mut dyn FnMut(Stage) -> Result<()>,
         observer: &dyn Observer,
     ) -> Result<TransientResult> {
-        let Places { mut pushes, mut probes } = places;
+        let Places { mut pushes, mut probes, ears } = places;
         let mut disturbed = wanted.disturbance.as_ref().map(|d| self.along(d)).transpose()?;
         let reduced = match wanted.model {
             ModelChoice::Full => None,
@@ -79,8 +83,17 @@ impl InTime<'_> {
         let mut recorder = Recorder::new(system, steady, &model, probes, disturbed);
         record(Stage::TransientBegins(wanted.time_step, &recorder.channels))?;
         let mut written = 0;
+        let mass = reduced.is_none().then_some(&self.system.structure.mass);
+        let mut listener = ears.map(|ears| Listener::new(ears, self.real, mass, plan.step, steps));
+        let points = system.points().count();
+        let top = WATCHED * self.complex.band_hz[1];
+        let mut watch = Watch::new(steps, plan.step, points, recorder.shown, top);
         let marched = march(&model, start, &plan, observer, &mut |moment| {
             recorder.take(moment);
+            watch.take(recorder.glance(), &model, moment.state, |p| recorder.pair_of(p));
+            if let Some(listener) = &mut listener {
+                listener.take(moment.state.motion.col_as_slice(2));
+            }
             if moment.step - written >= CHUNK || moment.step == steps {
                 record(Stage::TransientRows(written, &recorder.channels))?;
                 written = moment.step + 1;
@@ -96,7 +109,8 @@ impl InTime<'_> {
             let [re, im] = amplitude.map(|channel| &channels[channel].values);
             GrowthCompared { mode, eigenvalue, found: signal::growth(re, im, plan.step, window) }
         });
-        let spectra = shown.map(|channel| spectrum_of(&channels, channel, plan.step)).into();
+        let spectra: Vec<SpectrumOf> = shown.map(|channel| spectrum_of(&channels, channel, plan.step)).into();
+        let watched = watch.finish(&spectra);
         let share = |count: usize| count as f64 / (steps + 1) as f64;
         Ok(TransientResult {
             time_step: plan.step,
@@ -111,6 +125,8 @@ impl InTime<'_> {
             split: marched.split,
             open: share(open),
             backwards: share(backwards),
+            watched,
+            sound: listener.map(Listener::finish),
         })
     }
 
@@ -153,6 +169,7 @@ pub struct Places {
     pushes: Vec<Push>,
     /// Names and directions.
     probes: Vec<(String, SparseVector)>,
+    ears: Option<Ears>,
 }
 
 /// The places of a run in time; asked for before anything is computed or written.
@@ -203,7 +220,8 @@ pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Pla
             "one that can move",
         ));
     }
-    faults.into_result(Places { pushes, probes })
+    let ears = wanted.sound.as_ref().and_then(|sound| faults.take(ears(prepared, sound)));
+    faults.into_result(Places { pushes, probes, ears })
 }
 
 /// The motion of the node nearest to a place along a direction.
@@ -422,6 +440,21 @@ impl<'a> Recorder<'a> {
     }
 
     fn pair_of_point(&self) -> usize {
-        self.pairs.iter().position(|points| points.contains(&self.point)).unwrap_or(0)
+        self.pair_of(self.point)
+    }
+
+    fn pair_of(&self, point: usize) -> usize {
+        self.pairs.iter().position(|points| points.contains(&point)).unwrap_or(0)
+    }
+
+    /// The last row as it is shown.
+    fn glance(&self) -> Glance {
+        let last = |channel: usize| self.channels[channel].values.last().copied().unwrap_or(0.0);
+        let [velocity, friction] = self.shown;
+        Glance {
+            motion: [last(velocity - 1), last(velocity)],
+            friction: last(friction),
+            slip: last(self.penetration + 1),
+        }
     }
 }

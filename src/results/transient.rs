@@ -1,5 +1,6 @@
 //! A run in time, as plain data.
 
+use super::{Sound, Watched};
 use crate::linalg::c64;
 use crate::signal::{Growth, Peak, Spectrum};
 use crate::transient::Work;
@@ -75,6 +76,10 @@ pub struct TransientResult {
     pub open: f64,
     /// See [`TransientResult::open`].
     pub backwards: f64,
+    /// What it looks like.
+    pub watched: Watched,
+    /// How loud it is, if the case asks for it.
+    pub sound: Option<Sound>,
 }
 
 impl TransientResult {

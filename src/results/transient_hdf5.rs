@@ -65,6 +65,7 @@ impl ResultsFile {
                 let height: Vec<f64> = of.peaks.iter().map(|p| p.amplitude).collect();
                 spectrum.list("peak_amplitude", &height, channel.unit, "their amplitudes")?;
             }
+            super::sound_hdf5::write(&group, result)?;
             group.attr("complete")?.write_scalar(&true)
         })
     }
