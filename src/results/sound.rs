@@ -191,3 +191,31 @@ pub(super) fn summary(sound: &Sound) -> Value {
         "limits": "each plate in an infinite rigid baffle, free field: an upper estimate below coincidence",
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample;
+
+    #[test]
+    fn levels_follow_from_power_and_files_say_their_scale() {
+        let results = sample::rig();
+        let sound = results.transient.as_ref().unwrap().sound.as_ref().unwrap();
+        let whole: f64 = (0..sound.lines()).map(|k| sound.power(k)).sum();
+        let [level, weighted] = sound.power_levels();
+        assert!((level - 10.0 * (whole / 1e-12).log10()).abs() < 1e-9);
+        // Nearly all of it is at 1668 Hz, where the weight is +1.0 dB.
+        assert!((weighted - level - 1.0).abs() < 0.1, "{weighted} {level}");
+        // A watt makes 120 dB, and 109.1 dB in the mean at 1 m: ρ₀c/(4π · 400) of it.
+        assert!((sound.mean_levels(1.0)[0] - level + 10.85).abs() < 0.01);
+        assert!((sound.mean_levels(2.0)[1] - sound.mean_levels(1.0)[1] + 6.02).abs() < 0.01);
+        let dir = tempfile::tempdir().unwrap();
+        super::write(dir.path(), sound).unwrap();
+        let wav = std::fs::read(dir.path().join("sound_axis.wav")).unwrap();
+        assert!(wav.windows(22).any(|w| w == b"full scale is 3.333333"), "0.3 Pa is 0.9 of it");
+        let table = std::fs::read_to_string(dir.path().join("sound_spectrum.csv")).unwrap();
+        assert!(table.lines().count() == 501 && table.starts_with("frequency [Hz],sound power of disc [W]"));
+        let summary = super::summary(sound);
+        assert_eq!(summary["wav"]["file"], "sound_axis.wav");
+        assert!((summary["plates"][0]["share"].as_f64().unwrap() - 1.0 / 1.02).abs() < 1e-9);
+    }
+}

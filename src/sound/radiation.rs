@@ -173,6 +173,17 @@ mod tests {
     }
 
     #[test]
+    fn modes_that_move_together_radiate_like_their_sum() {
+        let (one, two) = (|r: f64, _: f64| 1.0 - 2.0 * r * r, |r: f64, t: f64| r * r + r * (2.0 * t).cos());
+        let sum = |r: f64, t: f64| one(r, t) - 0.7 * two(r, t);
+        let radiation = Radiation::new(&disc(0.1, 20, &[&one, &two, &sum]), 100.0);
+        let air = Air::default();
+        let parts = radiation.power(air, 63.0, &[1.0, -0.7, 0.49, 0.0, 0.0, 0.0]);
+        let whole = radiation.power(air, 63.0, &[0.0, 0.0, 0.0, 0.0, 0.0, 1.0])[2];
+        assert!(((parts[0] + parts[1]) / whole - 1.0).abs() < 1e-12 && parts[2] == 0.0, "{parts:?} {whole}");
+    }
+
+    #[test]
     fn a_supported_square_radiates_as_published() {
         // Radiation efficiency σ = W/(½ρ₀ c A ⟨v²⟩) of one side for ka ≪ 1: C. E. Wallace, J. Acoust. Soc. Am. 51 (1972)
         // 946. Mode (1, 1) is a monopole, mode (2, 1) a dipole.
