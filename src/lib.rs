@@ -16,7 +16,8 @@
 //! | [`reduction`] | a small system that moves like a large one at its contacts |
 //! | [`stability`] | complex eigenvalues at steady sliding |
 //! | [`transient`] | motion in time: implicit integration, contact condensed |
-//! | [`signal`] | spectra, peaks, growth of a record |
+//! | [`signal`] | spectra, spectrograms, peaks, growth and size of a record |
+//! | [`sound`] | how loud vibrating plates are: Rayleigh's integral |
 //! | [`sweep`] | how complex modes change with scalars: branches, critical values, maps |
 //! | [`results`] | HDF5, VTK, JSON, CSV |
 //! | [`report`] | pictures and the HTML page |
@@ -41,6 +42,7 @@ pub mod reduction;
 pub mod report;
 pub mod results;
 pub mod signal;
+pub mod sound;
 pub mod stability;
 pub mod structure;
 pub mod sweep;

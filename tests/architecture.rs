@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Each room with all the rooms it may use.
-const MAY_USE: [(&str, &[&str]); 20] = [
+const MAY_USE: [(&str, &[&str]); 21] = [
     ("error", &[]),
     ("progress", &[]),
     ("linalg", &["error", "progress"]),
@@ -21,9 +21,16 @@ const MAY_USE: [(&str, &[&str]); 20] = [
     ("sweep", &["error", "progress", "linalg", "stability"]),
     ("transient", &["error", "progress", "linalg", "system", "equilibrium"]),
     ("signal", &[]),
+    ("sound", &["linalg", "signal"]),
     // What both wings leave behind.
-    ("results", &["error", "linalg", "equilibrium", "modal", "stability", "sweep", "transient", "signal"]),
-    ("report", &["error", "linalg", "equilibrium", "modal", "stability", "sweep", "signal", "results"]),
+    (
+        "results",
+        &["error", "linalg", "equilibrium", "modal", "stability", "sweep", "transient", "signal", "sound"],
+    ),
+    (
+        "report",
+        &["error", "linalg", "equilibrium", "modal", "stability", "sweep", "signal", "sound", "results"],
+    ),
     // From a file to results.
     ("case", &["error", "structure"]),
     (
@@ -43,6 +50,7 @@ const MAY_USE: [(&str, &[&str]); 20] = [
             "reduction",
             "transient",
             "signal",
+            "sound",
             "results",
             "report",
             "case",

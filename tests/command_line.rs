@@ -176,6 +176,10 @@ duration = "0.4 ms"
 [transient.probe.disc]
 at = [0, 0, "20 mm"]
 direction = [1, 0, 0]
+
+[transient.sound]
+distance = "0.5 m"
+microphone.behind = { at = [-0.3, "0.2 m", "10 cm"] }
 "#;
 
 #[test]
@@ -204,8 +208,20 @@ fn motion_in_time_is_the_same_in_full_condensed_and_for_any_number_of_threads() 
     // Of the reduced model the motion and the forces follow; modes above its band are not in it.
     let reduced = history("reduced", "model = \"reduced\"", "2");
     assert!(far(&reduced, 1) < 0.02 && far(&reduced, 4) < 0.02, "{:?}", [1, 4].map(|c| far(&reduced, c)));
-    for file in ["transient.svg", "transient_spectrum.svg", "results.h5", "transient_spectrum.csv"] {
+    for file in [
+        "transient.svg",
+        "transient_spectrum.svg",
+        "transient_phase.svg",
+        "transient_contact.svg",
+        "sound.svg",
+        "results.h5",
+        "transient_spectrum.csv",
+    ] {
         assert!(folder.path().join("one").join(file).is_file(), "{file} is missing");
+    }
+    for file in ["sound_axis.wav", "sound_spectrum.csv"] {
+        let bytes = |name: &str| std::fs::read(folder.path().join(name).join(file)).expect("a file");
+        assert!(bytes("one") == bytes("two"), "{file} depends on the number of threads");
     }
 }
 
@@ -295,6 +311,10 @@ fn faults_of_a_transient_come_together() {
     );
     let lost = folder_with(&format!("{RIG}{}", BLOW.replace("\"bar_root\"", "\"bar_rot\"")));
     refused(&lost, 2, &["transient.push.blow.on", "bar_root"]);
+    let deaf = BLOW.replace("distance = \"0.5 m\"", "plates = [\"dics\"]");
+    refused(&folder_with(&format!("{RIG}{deaf}")), 2, &["transient.sound.plates", "Did you mean \"disc\"?"]);
+    let near = BLOW.replace("[-0.3, \"0.2 m\", \"10 cm\"]", "[0, 0, \"5 cm\"]");
+    refused(&folder_with(&format!("{RIG}{near}")), 2, &["transient.sound.microphone.behind.at", "on `disc`"]);
 }
 
 #[test]

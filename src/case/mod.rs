@@ -8,6 +8,7 @@ mod explore;
 mod parameter;
 mod read;
 pub(crate) mod reader;
+mod sound;
 mod transient;
 pub(crate) mod units;
 
@@ -15,6 +16,7 @@ pub(crate) use parameter::path_matches;
 pub use parameter::{Invalidates, Parameter};
 pub(crate) use read::DOF_NAMES;
 pub use read::read_case;
+pub use sound::{AirChoice, Microphone, ON_AXIS, SoundAnalysis};
 pub use transient::{
     Course, Disturbance, ModelChoice, Probe, PushedRegion, SchemeChoice, Slide, StartChoice,
     TransientAnalysis,

@@ -2,6 +2,7 @@
 
 use super::read::collect;
 use super::reader::Section;
+use super::sound::SoundAnalysis;
 use super::units::{ANGLE, FORCE, FREQUENCY, LENGTH, NUMBER, TIME};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -44,6 +45,9 @@ pub struct TransientAnalysis {
     /// How a force, or the load that closes a contact, runs in time, by its name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub load: BTreeMap<String, Course>,
+    /// How loud it is, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sound: Option<SoundAnalysis>,
 }
 
 /// What a run in time begins with.
@@ -240,6 +244,7 @@ pub(super) fn read(s: &Section) -> TransientAnalysis {
         probe: collect(s, "probe", read_probe),
         slide: collect(s, "slide", read_slide),
         load: collect(s, "load", read_course),
+        sound: s.section("sound", super::sound::read),
     }
 }
 

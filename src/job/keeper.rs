@@ -5,6 +5,7 @@ use crate::error::Result;
 use crate::results::{
     Channel, ComplexResult, EventTable, Field, FieldsFile, HistoryTable, MapResult, NamedModes, Piece,
     Recording, ResultsFile, RunResults, SensitivityResult, SteadyResult, SweepResult, TransientResult,
+    modal_channel,
 };
 use crate::sweep::MapPoint;
 use crate::transient::Checkpoint;
@@ -78,11 +79,15 @@ impl Histories {
     pub fn keep(&mut self, stage: &Stage<'_>) {
         match stage {
             Stage::TransientBegins(recording) => {
-                self.channels = recording.channels.iter().map(|c| (c.name.clone(), Vec::new())).collect();
+                let names = recording.channels.iter().map(|channel| channel.name.clone());
+                let names = names.chain((0..recording.modes).map(modal_channel));
+                self.channels = names.map(|name| (name, Vec::new())).collect();
             }
             Stage::TransientPiece(piece) => {
-                let pairs = self.channels.iter_mut().zip(piece.values);
-                pairs.for_each(|((_, all), new)| all.extend(new));
+                let (channels, modal) = self.channels.split_at_mut(piece.values.len());
+                channels.iter_mut().zip(piece.values).for_each(|((_, all), new)| all.extend(new));
+                let modal = modal.iter_mut().zip(piece.modal);
+                modal.for_each(|((_, all), new)| all.extend(new.iter().map(|a| f64::from(*a))));
             }
             _ => {}
         }

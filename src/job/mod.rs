@@ -24,6 +24,7 @@ mod prepared;
 mod regions;
 mod scalars;
 mod sensitivity;
+mod sound;
 mod states;
 mod table;
 mod transient;

@@ -71,8 +71,10 @@ pub(super) fn page(results: &RunResults, pictures: &[Picture]) -> String {
     }
     if let Some(transient) = &results.transient {
         body += "<h2>Motion in time</h2>\n";
-        body += &figures(pictures, &["transient.svg", "transient_spectrum.svg"]);
+        body += &figures(pictures, &super::transient::FILES);
         body += &untitled(super::transient::table(transient));
+        let modes = results.complex.as_ref().map_or(&[][..], |complex| &complex.real_modes);
+        body += &super::transient::sound_table(transient, modes).map_or(String::new(), |t| table(&t));
     }
     body += &super::explored::section(results);
     if !results.timings.is_empty() {

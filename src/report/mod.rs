@@ -2,7 +2,8 @@
 //!
 //! * [`text`]: the tables that the command line prints.
 //! * [`write_report`]: `report.html` and the pictures `rig.svg`, `modes_disc.svg`, `contact.svg`, `growth.svg`,
-//!   `growth_budget.svg`, `participation.svg`, `sensitivity.svg`, `advice.svg`, `transient.svg`, `transient_spectrum.svg`, those of them that the run has something for;
+//!   `growth_budget.svg`, `participation.svg`, `sensitivity.svg`, `advice.svg`, `transient.svg`, `transient_spectrum.svg`,
+//!   `transient_spectrogram.svg`, `transient_phase.svg`, `transient_contact.svg`, `sound.svg`, those of them that the run has something for;
 //!   `sweep_<name>.svg`, `root_locus_<name>.svg` and `map_<name>.svg` of every sweep and map.
 //!
 //! A table is made once and shown in either form; a picture is a pure function from the results to SVG.
@@ -57,10 +58,8 @@ fn pictures(results: &RunResults) -> Vec<Picture> {
         participation::picture(results),
         tornado::picture(results),
         advice::picture(results),
-        transient::history(results),
-        transient::spectra(results),
     ];
-    all.into_iter().flatten().collect()
+    all.into_iter().flatten().chain(transient::pictures(results)).collect()
 }
 
 #[cfg(test)]
@@ -82,9 +81,10 @@ mod tests {
             "participation.svg",
             "sensitivity.svg",
             "advice.svg",
-            "transient.svg",
-            "transient_spectrum.svg",
-        ] {
+        ]
+        .into_iter()
+        .chain(transient::FILES)
+        {
             let svg = std::fs::read_to_string(dir.path().join(file)).unwrap();
             assert!(svg.starts_with("<svg") && page.contains(&svg), "{file}");
         }

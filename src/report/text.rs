@@ -14,6 +14,7 @@ pub fn summary(results: &RunResults) -> String {
     parts.extend([steady(results), complex(results)].into_iter().flatten());
     parts.extend(sensitivity(results));
     parts.extend(results.transient.iter().map(|run| render(&super::transient::table(run))));
+    parts.extend(sound(results));
     parts.extend(explored(results));
     parts.extend(results.warnings.iter().map(|warning| wrap(&format!("Warning: {warning}"))));
     parts.push(verdict(results));
@@ -64,6 +65,12 @@ pub fn sensitivity(results: &RunResults) -> Option<String> {
         parts.push(render(&tables::advice(result)));
     }
     Some(parts.join("\n") + &notes(&tables::left_out(result)))
+}
+
+/// How loud it is, when the run has it.
+pub fn sound(results: &RunResults) -> Option<String> {
+    let modes = results.complex.as_ref().map_or(&[][..], |complex| &complex.real_modes);
+    Some(render(&super::transient::sound_table(results.transient.as_ref()?, modes)?))
 }
 
 /// The verdict and the unstable modes.

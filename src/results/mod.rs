@@ -6,6 +6,7 @@
 //! | `summary.json` | the figures of each analysis: a contract for scripts | any script |
 //! | `modes_<set>.csv`, `contact_points.csv`, `complex_modes.csv`, `sensitivities.csv` | the tables | spreadsheets |
 //! | `transient.csv`, `transient_spectrum.csv`, `events.csv` | motion in time, step by step, its spectra, what happened at the contacts | spreadsheets |
+//! | `sound_<microphone>.wav`, `sound_spectrum.csv` | what is heard, and sound power and pressure over frequency | ears, spreadsheets |
 //! | `critical_values.csv`, `sweep_<name>.csv`, `map_<name>.csv` | sweeps and maps | spreadsheets |
 //! | `transient.vtkhdf` | the motion of all nodes at regular times | ParaView |
 //! | `modes_<set>.vtu`, `steady.vtu`, `complex_modes.vtu`, `advice.vtu` | the shapes on the mesh | ParaView, pyvista |
@@ -25,11 +26,14 @@ mod folder;
 mod hdf5;
 mod json;
 mod sensitivity;
+mod sound;
+mod sound_hdf5;
 mod transient;
 mod transient_csv;
 mod transient_hdf5;
 mod transient_json;
 mod vtk;
+mod watched;
 
 #[cfg(test)]
 pub(crate) mod sample;
@@ -43,9 +47,14 @@ pub use file::ResultsFile;
 pub(crate) use folder::write_atomically;
 pub use json::{SCHEMA_VERSION, summary_json, write_summary};
 pub use sensitivity::{AdviceField, ModeSensitivity, Mounted, ParameterRate, SensitivityResult};
-pub use transient::{Channel, Field, Fields, GrowthCompared, Piece, Recording, SpectrumOf, TransientResult};
+pub use sound::{Heard, Sound, Sounding, Tone};
+pub use transient::{
+    Channel, Field, Fields, GrowthCompared, Piece, Recording, SpectrumOf, TransientResult, modal_channel,
+};
 pub use transient_csv::{EventTable, HistoryTable};
 pub use vtk::write_vtk;
+pub(crate) use watched::ContactWatch;
+pub use watched::{ContactHistory, Orbit, TouchState, Watched};
 
 use crate::equilibrium::SteadySliding;
 use crate::modal::{DiscModeName, RealModes};
@@ -60,6 +69,9 @@ pub fn write_files(dir: &Path, results: &RunResults) -> crate::error::Result<()>
     write_summary(dir, results)?;
     write_csv(dir, results)?;
     explored_csv::write(dir, results)?;
+    if let Some(sound) = results.transient.as_ref().and_then(|run| run.sound.as_ref()) {
+        sound::write(dir, sound)?;
+    }
     write_vtk(dir, results)
 }
 

@@ -359,6 +359,24 @@ fn transient() -> TransientResult {
         let peaks = crate::signal::peaks(&spectrum, 1e-2, 5);
         SpectrumOf { channel, window: [0.04, 0.08], spectrum, peaks }
     });
+    let short = |k: usize| (k, crate::signal::spectrogram(&records[k].2, step, 4000.0));
+    let cycle = |k: usize| crate::signal::limit_cycle(&records[k].2[3000..], step, 1668.0).map(|c| (k, c));
+    let motion: Vec<[f64; 2]> = records[0].2[3600..].iter().map(|v| [1e-4 * v.abs().sqrt(), *v]).collect();
+    let mut contact = ContactWatch::new(steps + 1, step, 4);
+    for k in 0..=steps {
+        contact.take([k / 400 % 2, k / 800 % 2, 1]);
+    }
+    let watched = Watched {
+        spectrograms: [0, 1].map(short).into(),
+        cycles: [0, 1].into_iter().filter_map(cycle).collect(),
+        window: [0.06, 0.08],
+        orbit: Orbit {
+            periods: [12.0, 1668.0],
+            friction: motion.iter().map(|[_, v]| [0.5 - v, 8.0 + 2.0 * v]).collect(),
+            motion,
+        },
+        contact: contact.finish(),
+    };
     TransientResult {
         time_step: step,
         rows: steps + 1,
@@ -376,5 +394,36 @@ fn transient() -> TransientResult {
         sticking: 0.0,
         parts: 0,
         events: [2, 1, 4, 0, 0],
+        watched,
+        sound: Some(sound()),
+    }
+}
+
+/// Two plates that sound at 1668 Hz and its double, and a second of it.
+fn sound() -> Sound {
+    let line = |k: usize, scale: f64| {
+        let near = |at: f64| (-((k as f64 * 10.0 - at) / 12.0).powi(2)).exp();
+        scale * (1e-3 * near(1668.0) + 1e-5 * near(3336.0) + 1e-10)
+    };
+    let lines =
+        |scale: f64| (0..500).map(|k| if k == 0 { 0.0 } else { line(k, scale) }).collect::<Vec<f64>>();
+    let spectrum = crate::signal::Spectrum {
+        resolution_hz: 10.0,
+        amplitude: lines(1.0).iter().map(|w| (100.0 * w).sqrt()).collect(),
+    };
+    let peak = crate::signal::Peak { frequency_hz: 1668.0, amplitude: 0.0316, relation: String::new() };
+    Sound {
+        window: [0.04, 0.08],
+        air: crate::sound::Air::default(),
+        resolution_hz: 10.0,
+        plates: vec![("disc".into(), lines(1.0)), ("slider".into(), lines(0.02))],
+        mode_shares: vec![0.01, 0.9, 0.09],
+        tones: vec![Tone { peak, power: 2e-3, share: 0.98 }],
+        microphones: vec![Heard { name: "axis".into(), at: [1.0, 0.0, 0.075], spectrum }],
+        recording: Sounding {
+            begin: 0.0,
+            rate: 48_000,
+            pressure: (0..4800).map(|k| 0.3 * (TAU * 1668.0 * k as f64 / 48e3).sin()).collect(),
+        },
     }
 }

@@ -1,6 +1,6 @@
 //! A run in time, as plain data.
 
-use super::{Geometry, NodalField};
+use super::{Geometry, NodalField, Sound, Watched};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::signal::{Growth, Peak, Spectrum};
@@ -90,6 +90,8 @@ pub struct Recording<'a> {
     pub happened: usize,
     /// What is recorded at each.
     pub channels: &'a [Channel],
+    /// How many real modes there are whose accelerations are recorded, too.
+    pub modes: usize,
     /// The name of the pair of every contact point.
     pub pairs: &'a [String],
     /// A checkpoint, for the room that it takes.
@@ -129,6 +131,8 @@ pub struct Piece<'a> {
     pub first: usize,
     /// The values of each channel.
     pub values: &'a [Vec<f64>],
+    /// Accelerations of the real modes \[√kg m/s²\], if they are recorded.
+    pub modal: &'a [Vec<f32>],
     /// What happened at the contact points during these rows.
     pub events: &'a [Event],
     /// Where the run stands after its last row.
@@ -194,6 +198,15 @@ pub struct TransientResult {
     pub sticking: f64,
     /// How often each [`EventKind`] happened, at all contact points together.
     pub events: [usize; EventKind::ALL.len()],
+    /// What it looks like.
+    pub watched: Watched,
+    /// How loud it is, if the case asks for it.
+    pub sound: Option<Sound>,
+}
+
+/// The name under which the acceleration of a real mode, counted from 0, is recorded.
+pub fn modal_channel(mode: usize) -> String {
+    format!("modal_acceleration/{mode}")
 }
 
 impl TransientResult {

@@ -5,23 +5,27 @@
 //! |---|---|
 //! | attribute `rows` | how many values of every channel are there; the others are not a number |
 //! | `<channel>` | a value for every step, the start included |
+//! | `modal_acceleration/<k>` | the same of real mode k, counted from 0, where sound is asked for |
 //! | `checkpoint/0`, `checkpoint/1` | what the run goes on from after its last rows and, in turn, after those before |
 //! | attribute `latest` | which of the two is whole, -1 for none; changed when the other is on the disk |
 //! | `events/time`, `events/point`, `events/kind` | what happened at the contact points; attribute `events` says how many |
-//! | `spectrum_<channel>` | lines and peaks |
+//! | `spectrum_<channel>`, `spectrogram_<channel>`, `limit_cycle_<channel>` | lines and peaks; over time, too; the size in the end |
+//! | `contact_state`, `sound` | what the contact points did; how loud it is |
 //!
 //! Nobody knows how many events there will be: when their room is full the file is copied with twice the room.
 
 use super::events_hdf5 as events;
 use super::file::room;
 use super::hdf5::{Datasets, attribute, describe, text_attribute};
-use super::{Piece, Recording, ResultsFile, TransientResult};
+use super::{Piece, Recording, ResultsFile, TransientResult, modal_channel};
 use crate::error::Result;
 use crate::transient::Checkpoint;
 use hdf5::Group;
 use ndarray::s;
 use std::ops::Range;
 
+/// Groups that are written while the run goes on; the others say what the whole record says.
+const RECORDED: [&str; 3] = ["modal_acceleration", "checkpoint", "events"];
 /// Attributes that a whole run has.
 const SAID: [&str; 2] = ["scheme", "worst_energy_residual"];
 
@@ -36,8 +40,10 @@ impl ResultsFile {
         self.keep(|root| {
             if goes_on {
                 let group = root.group("transient")?;
-                let spectra = group.member_names()?.into_iter().filter(|name| name.starts_with("spectrum_"));
-                spectra.into_iter().try_for_each(|name| group.unlink(&name))?;
+                let groups = group.groups()?.into_iter().map(|inner| inner.name());
+                let names = groups.filter_map(|path| path.rsplit('/').next().map(str::to_string));
+                let said = names.filter(|name| !RECORDED.contains(&name.as_str()));
+                said.into_iter().try_for_each(|name| group.unlink(&name))?;
                 let said = group.attr_names()?.into_iter().filter(|name| SAID.contains(&name.as_str()));
                 said.into_iter().try_for_each(|name| group.delete_attr(&name))?;
                 group.attr("rows")?.write_scalar(&(recording.done as u64))?;
@@ -66,6 +72,9 @@ impl ResultsFile {
             let group = root.group("transient")?;
             for (name, values) in channels.iter().zip(piece.values) {
                 group.dataset(name)?.write_slice(values, s![piece.first..end])?;
+            }
+            for (mode, values) in piece.modal.iter().enumerate() {
+                group.dataset(&modal_channel(mode))?.write_slice(values, s![piece.first..end])?;
             }
             events::write(&group, piece.events)?;
             let group = group.group(&format!("checkpoint/{slot}"))?;
@@ -135,6 +144,7 @@ impl ResultsFile {
                 spectrum.list("peak_amplitude", &height, channel.unit, "their amplitudes")?;
             }
             events::fit(&group)?;
+            super::sound_hdf5::write(&group, result)?;
             group.attr("complete")?.write_scalar(&true)
         })
     }
@@ -160,6 +170,13 @@ fn make_room(group: &Group, recording: &Recording) -> hdf5::Result<()> {
     for channel in recording.channels {
         describe(&room(group, &channel.name, recording.rows, f64::NAN)?, channel.unit, &channel.about)?;
     }
+    if recording.modes > 0 {
+        group.create_group("modal_acceleration")?;
+    }
+    for mode in 0..recording.modes {
+        let room = room(group, &modal_channel(mode), recording.rows, f32::NAN)?;
+        describe(&room, "sqrt(kg) m/s^2", "acceleration of a mass-normalised real mode")?;
+    }
     for slot in ["checkpoint/0", "checkpoint/1"] {
         let slot = group.create_group(slot)?;
         for (name, values) in &recording.checkpoint.arrays {
@@ -177,9 +194,14 @@ mod tests {
     use std::path::Path;
 
     const ROWS: usize = 5000;
+    const MODES: usize = 2;
 
     fn value(channel: usize, row: usize) -> f64 {
         (row as f64 + 0.25) * (1.0 + channel as f64)
+    }
+
+    fn modal(mode: usize, row: usize) -> f32 {
+        row as f32 - mode as f32
     }
 
     fn checkpoint(row: usize) -> Checkpoint {
@@ -203,6 +225,7 @@ mod tests {
             time_step: 1e-5,
             rows: ROWS,
             done,
+            modes: MODES,
             happened: 2 * done,
             channels: &channels,
             pairs: &[],
@@ -214,11 +237,13 @@ mod tests {
 
     fn add(file: &mut ResultsFile, rows: Range<usize>, often: usize) {
         let values = [0, 1].map(|channel| rows.clone().map(|row| value(channel, row)).collect::<Vec<f64>>());
+        let modal = [0, 1].map(|mode| rows.clone().map(|row| modal(mode, row)).collect::<Vec<f32>>());
         let (first, checkpoint) = (rows.start, checkpoint(rows.end - 1));
         let events = events(rows, often);
         file.write_transient_piece(&Piece {
             first,
             values: &values,
+            modal: &modal,
             events: &events,
             checkpoint: &checkpoint,
         })
@@ -257,7 +282,7 @@ mod tests {
         let changed: Vec<usize> =
             (0..before.len()).filter(|k| before[*k] != after[*k]).filter(elsewhere).collect();
         // The three counts, 8 bytes each.
-        assert!(changed.len() <= 24 && numbers.len() == 11, "{changed:?}");
+        assert!(changed.len() <= 24 && numbers.len() == 11 + MODES, "{changed:?}");
     }
 
     /// Copies what is on the disk at a moment, as a kill leaves it, and takes it up.
@@ -295,6 +320,10 @@ mod tests {
         for (channel, name) in ["a", "b"].into_iter().enumerate() {
             let all = again.read_transient(name, 0..ROWS).unwrap();
             assert!(all.iter().enumerate().all(|(row, v)| *v == value(channel, row)), "{name}");
+        }
+        for mode in 0..MODES {
+            let all = again.read_transient(&modal_channel(mode), 0..ROWS).unwrap();
+            assert!(all.iter().enumerate().all(|(row, v)| *v == f64::from(modal(mode, row))));
         }
         assert_eq!(again.read_events(0..happened(&again)).unwrap(), events(0..ROWS, 2));
     }

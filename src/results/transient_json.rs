@@ -1,6 +1,7 @@
 //! The part of `summary.json` on motion in time.
 
 use super::{SpectrumOf, TransientResult};
+use crate::signal::LimitCycle;
 use crate::transient::EventKind;
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
@@ -42,6 +43,19 @@ pub(super) fn transient(result: &TransientResult) -> Value {
     let counts =
         EventKind::ALL.iter().zip(result.events).map(|(kind, n)| (kind.name().to_string(), n.into()));
     let events: serde_json::Map<String, Value> = counts.collect();
+    let cycle = |(channel, cycle): &(usize, LimitCycle)| {
+        let channel = &result.channels[*channel];
+        json!({
+            "channel": channel.name,
+            "unit": channel.unit,
+            "window_s": result.watched.window,
+            "amplitude": cycle.amplitude,
+            "rms": cycle.rms,
+            "mean": cycle.mean,
+            "drift": cycle.drift,
+            "steady": cycle.steady(),
+        })
+    };
     let work = &result.work;
     json!({
         "time_step_s": result.time_step,
@@ -71,5 +85,7 @@ pub(super) fn transient(result: &TransientResult) -> Value {
             "residual": work.residual(),
         },
         "worst_energy_residual": result.worst_residual,
+        "limit_cycle": result.watched.cycles.iter().map(cycle).collect::<Vec<_>>(),
+        "sound": result.sound.as_ref().map(super::sound::summary),
     })
 }

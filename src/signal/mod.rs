@@ -1,9 +1,18 @@
-//! What a record of motion says: its spectrum, its peaks and what they are of each other, how it grows.
+//! What a record of motion says: its spectrum, its peaks and what they are of each other, how it grows, when which
+//! frequency sounds, how large it is in the end.
 
 mod growth;
+mod hann;
+mod limit_cycle;
 mod peaks;
+mod resample;
+mod spectrogram;
 mod spectrum;
 
 pub use growth::{Growth, growth};
+pub use hann::{Hann, NOISE_BANDWIDTH};
+pub use limit_cycle::{LimitCycle, limit_cycle};
 pub use peaks::{Peak, name_peaks, peaks};
-pub use spectrum::{Spectrum, spectrum};
+pub use resample::Resampler;
+pub use spectrogram::{ShortTime, Spectrogram, spectrogram};
+pub use spectrum::{Spectrum, Welch, spectrum};

@@ -1,7 +1,6 @@
 //! Welch's averaged spectrum.
 
-use realfft::RealFftPlanner;
-use std::f64::consts::TAU;
+use super::hann::{Hann, NOISE_BANDWIDTH};
 
 /// The amplitude of a record over frequency.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -17,6 +16,12 @@ impl Spectrum {
     /// The frequency of line k \[Hz\].
     pub fn frequency_hz(&self, k: usize) -> f64 {
         k as f64 * self.resolution_hz
+    }
+
+    /// What line k adds to the mean square of the record, ½a²/1.5 under a Hann window: a sine spreads over three or four
+    /// lines, whose sum is its mean square.
+    pub fn mean_square(&self, k: usize) -> f64 {
+        0.5 * self.amplitude[k].powi(2) / NOISE_BANDWIDTH
     }
 }
 
@@ -36,24 +41,71 @@ pub fn spectrum(record: &[f64], step: f64, length: usize) -> Spectrum {
     if length < 4 {
         return Spectrum::default();
     }
-    let window: Vec<f64> = (0..length).map(|k| 0.5 - 0.5 * (TAU * k as f64 / length as f64).cos()).collect();
-    let scale = 2.0 / window.iter().sum::<f64>();
-    let fft = RealFftPlanner::<f64>::new().plan_fft_forward(length);
-    let (mut buffer, mut lines) = (fft.make_input_vec(), fft.make_output_vec());
-    let mut square = vec![0.0; lines.len()];
-    let mut segments = 0;
-    for begin in (0..=record.len() - length).step_by(length / 2) {
-        let segment = &record[begin..begin + length];
-        let mean = segment.iter().sum::<f64>() / length as f64;
-        for ((out, x), w) in buffer.iter_mut().zip(segment).zip(&window) {
-            *out = (x - mean) * w;
+    let mut welch = Welch::new(length, step);
+    welch.take(record);
+    welch.finish()
+}
+
+/// [`spectrum`] of a record that comes in pieces.
+#[derive(Debug)]
+pub struct Welch {
+    hann: Hann,
+    step: f64,
+    pending: Vec<f64>,
+    square: Vec<f64>,
+    segments: usize,
+}
+
+impl Welch {
+    /// Segments of `length` samples, one every `step` seconds.
+    pub fn new(length: usize, step: f64) -> Self {
+        let hann = Hann::new(length);
+        let square = vec![0.0; hann.length() / 2 + 1];
+        Welch { hann, step, pending: Vec::new(), square, segments: 0 }
+    }
+
+    /// The next samples.
+    pub fn take(&mut self, values: &[f64]) {
+        self.pending.extend_from_slice(values);
+        let (length, mut begin) = (self.hann.length(), 0);
+        while begin + length <= self.pending.len() {
+            let lines = self.hann.transform(&self.pending[begin..begin + length]);
+            self.square.iter_mut().zip(lines).for_each(|(sum, z)| *sum += z.norm_sqr());
+            self.segments += 1;
+            begin += length / 2;
         }
-        if fft.process(&mut buffer, &mut lines).is_err() {
+        self.pending.drain(..begin);
+    }
+
+    /// The spectrum; empty when not one segment was full.
+    pub fn finish(self) -> Spectrum {
+        if self.segments == 0 {
             return Spectrum::default();
         }
-        square.iter_mut().zip(&lines).for_each(|(sum, z)| *sum += z.norm_sqr());
-        segments += 1;
+        let amplitude =
+            self.square.iter().map(|s| self.hann.scale * (s / self.segments as f64).sqrt()).collect();
+        Spectrum { resolution_hz: 1.0 / (self.hann.length() as f64 * self.step), amplitude }
     }
-    let amplitude = square.iter().map(|s| scale * (s / segments as f64).sqrt()).collect();
-    Spectrum { resolution_hz: 1.0 / (length as f64 * step), amplitude }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_give_the_same_bits_and_lines_add_up_to_the_mean_square() {
+        let (step, parts) = (2e-5, [(1661.3, 0.7), (3333.0, 0.2)]);
+        let at = |k: usize| -> f64 {
+            parts.iter().map(|(f, a)| a * (std::f64::consts::TAU * f * step * k as f64).sin()).sum()
+        };
+        let record: Vec<f64> = (0..30_000).map(at).collect();
+        let whole = spectrum(&record, step, 4000);
+        let mut welch = Welch::new(4000, step);
+        record.chunks(777).for_each(|piece| welch.take(piece));
+        assert_eq!(welch.finish(), whole);
+        let sum: f64 = (0..whole.amplitude.len()).map(|k| whole.mean_square(k)).sum();
+        let exact: f64 = parts.iter().map(|(_, a)| 0.5 * a * a).sum();
+        assert!((sum / exact - 1.0).abs() < 1e-3, "{sum} {exact}");
+        assert_eq!(Welch::new(100, step).finish(), Spectrum::default());
+    }
 }

@@ -123,6 +123,11 @@ pub(super) fn check_names(root: &Section, case: &Case) {
             let key = format!("transient.probe.{name}");
             root.fault(&key, format!("the name \"{name}\""), "letters, digits, `-` and `_`", "");
         }
+        let plates: Vec<&str> = case.shell.keys().map(String::as_str).collect();
+        let heard = transient.sound.iter().flat_map(|sound| &sound.plates);
+        for name in heard.filter(|name| !plates.contains(&name.as_str())) {
+            unknown_name(root, "transient.sound.plates", name, "shell", &plates);
+        }
     }
     if case.matrices.is_some() {
         check_matrices(root, case);

@@ -2,19 +2,22 @@
 //!
 //! [`places`] says what acts and where motion is recorded, `along` finds the complex mode to start along, `recorder`
 //! makes a row of every step, `snapshots` take the motion of all nodes now and then, `tape` hands the rows on a piece at a time, so that memory does not grow with the run, and
-//! `findings` reads them back in parts: spectra, growth, what a picture needs.
+//! `findings`, `watched` and `modal` read them back in parts: spectra and growth, what the pictures show, what is heard.
 
 mod along;
 mod findings;
+mod modal;
 mod places;
 mod recorder;
 mod snapshots;
 mod start;
 mod tape;
+mod watched;
 
 pub use places::{Places, places, profile};
 
 use super::keeper::Keeper;
+use super::sound::Listener;
 use crate::case::{ModelChoice, SchemeChoice, TransientAnalysis};
 use crate::equilibrium::SteadySliding;
 use crate::error::Result;
@@ -26,10 +29,14 @@ use crate::results::{ComplexResult, Geometry, TransientResult};
 use crate::structure::DofMap;
 use crate::system::System;
 use crate::transient::{Method, Model, Plan, Profile, Scheme, State, go_on};
+use modal::ModalMotion;
 use recorder::Recorder;
 use snapshots::Snapshots;
 use start::Start;
 use tape::Tape;
+
+/// Spectrograms reach this many times as high as the band of the complex eigenvalues.
+const WATCHED: f64 = 1.25;
 
 /// A run in time of `system`, whose modal damping is in it, from its steady state.
 pub struct InTime<'a> {
@@ -61,7 +68,7 @@ impl InTime<'_> {
     ) -> Result<TransientResult> {
         let start = self.start(wanted, &places)?;
         let loadings = self.loadings(wanted)?;
-        let Places { mut pushes, mut probes, mut gauges, mut tracks, .. } = places;
+        let Places { mut pushes, mut probes, mut gauges, mut tracks, ears, .. } = places;
         let mut disturbed = wanted.disturbance.as_ref().map(|d| self.along(d)).transpose()?;
         let reduced = match wanted.model {
             ModelChoice::Full => None,
@@ -115,7 +122,10 @@ impl InTime<'_> {
             reduced: reduced.as_ref(),
             origin: &steady.displacement,
         });
-        let recorder = Recorder::new(system, steady, &model, (probes, gauges), disturbed);
+        let listener = ears.map(|ears| Listener::new(ears, self.real, plan.step, steps));
+        let mass = reduced.is_none().then_some(&self.system.structure.mass);
+        let modal = listener.as_ref().map(|_| ModalMotion::new(self.real, mass));
+        let recorder = Recorder::new(system, steady, &model, (probes, gauges), disturbed, modal);
         let mut tape = Tape::new(recorder, snapshots, keeper);
         let mut marched = tape.begin(start, &model, &plan)?;
         let reached = go_on(&model, &mut marched, &plan, observer, &mut |marched| tape.take(marched));
@@ -123,6 +133,9 @@ impl InTime<'_> {
         reached.and(kept)?;
         let share = |count: usize| count as f64 / (steps + 1) as f64;
         let found = tape.findings(steps + 1, plan.step)?;
+        let watched =
+            tape.watched(steps + 1, plan.step, &found.spectra, WATCHED * self.complex.band_hz[1])?;
+        let sound = listener.map(|listener| tape.heard(listener, steps + 1)).transpose()?;
         let recorder = tape.recorder;
         Ok(TransientResult {
             time_step: plan.step,
@@ -141,6 +154,8 @@ impl InTime<'_> {
             worst_residual: marched.worst_residual,
             split: marched.split,
             parts: marched.control.parts,
+            watched,
+            sound,
         })
     }
 }

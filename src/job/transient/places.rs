@@ -4,6 +4,7 @@ use crate::case::{Course, FrictionCurve, TransientAnalysis};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::job::contacts::with_laws;
 use crate::job::prepared::Prepared;
+use crate::job::sound::{Ears, ears};
 use crate::job::travel::tracks;
 use crate::linalg::SparseVector;
 use crate::system::ContactPair;
@@ -21,6 +22,8 @@ pub struct Places {
     pub(super) tracks: Vec<Option<Track>>,
     /// The pairs without friction, as they stand still.
     pub(super) still: Vec<ContactPair>,
+    /// What listens, if anything does.
+    pub(super) ears: Option<Ears>,
 }
 
 /// The places of a run in time; asked for before anything is computed or written.
@@ -90,7 +93,8 @@ pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Pla
         .values_mut()
         .for_each(|contact| contact.friction.law = FrictionCurve::Coulomb { mu0: 0.0 });
     let still = faults.take(with_laws(&prepared.system.pairs, &smooth)).unwrap_or_default();
-    faults.into_result(Places { pushes, probes, gauges, tracks, still })
+    let ears = wanted.sound.as_ref().and_then(|sound| faults.take(ears(prepared, sound)));
+    faults.into_result(Places { pushes, probes, gauges, tracks, still, ears })
 }
 
 /// The motion of the node nearest to a place along a direction.

@@ -1,13 +1,14 @@
 //! What is recorded of every step.
 
 use super::along::Along;
+use super::modal::ModalMotion;
 use super::places::Gauge;
 use crate::equilibrium::SteadySliding;
 use crate::error::Result;
 use crate::linalg::SparseVector;
 use crate::results::Channel;
 use crate::system::System;
-use crate::transient::{Checkpoint, Event, EventKind, Marched, Model, Watch};
+use crate::transient::{Checkpoint, Event, EventKind, Marched, Model, State, Watch};
 
 /// Makes a row of every step: a value for each channel. Holds the rows that are not yet written.
 pub(super) struct Recorder<'a> {
@@ -34,6 +35,12 @@ pub(super) struct Recorder<'a> {
     pub(super) values: Vec<Vec<f64>>,
     /// What happened at the contact points during these rows.
     pub(super) events: Vec<Event>,
+    /// The channels that count the points that stick, slip backwards and slip forwards begin here.
+    pub(super) states: Option<usize>,
+    /// Whether each contact point has touched.
+    pub(super) touched: Vec<bool>,
+    /// What the sound is made of, if it is asked for.
+    pub(super) modal: Option<ModalMotion>,
     /// How often each kind of event happened since the start.
     pub(super) happened: [usize; EventKind::ALL.len()],
     watch: Option<Watch>,
@@ -55,6 +62,7 @@ impl<'a> Recorder<'a> {
         model: &'a Model<'a>,
         (mut probes, gauges): (Vec<(String, SparseVector)>, Vec<Gauge>),
         along: Option<Along>,
+        modal: Option<ModalMotion>,
     ) -> Self {
         let points = &steady.points;
         let heaviest = |a: &usize, b: &usize| points[*a].forces.normal.total_cmp(&points[*b].forces.normal);
@@ -102,6 +110,12 @@ impl<'a> Recorder<'a> {
         let penetration =
             add("penetration".into(), "m", "of the point that carries most in steady sliding".into());
         add("slip_velocity".into(), "m/s", "of the same point along the sliding direction".into());
+        let states = (!points.is_empty()).then(|| {
+            let of = |words: &str| format!("contact points that {words}");
+            add("points_sticking".into(), "1", of("stick"));
+            add("points_backwards".into(), "1", of("slip against the motion of the counter-body"));
+            add("points_forwards".into(), "1", of("slip as the counter-body moves")) - 2
+        });
         let story = "½vᵀMv + ½uᵀKu gained since the start";
         add("energy_stored".into(), "J", story.into());
         for (name, about) in [
@@ -138,6 +152,9 @@ impl<'a> Recorder<'a> {
             amplitude,
             values,
             events: Vec::new(),
+            states,
+            touched: vec![false; points.len()],
+            modal,
             happened: Default::default(),
             watch: None,
             origin,
@@ -168,7 +185,11 @@ impl<'a> Recorder<'a> {
         }
         let slip = if self.pairs.is_empty() { 0.0 } else { state.slip_velocity(self.model, self.point)[0] };
         let deep = if self.pairs.is_empty() { 0.0 } else { state.penetration(self.point) };
-        row.extend([deep, slip, work.kinetic + work.strain, work.drive, work.heat, work.damping]);
+        row.extend([deep, slip]);
+        if self.states.is_some() {
+            row.extend(self.count(state).map(|count| count as f64));
+        }
+        row.extend([work.kinetic + work.strain, work.drive, work.heat, work.damping]);
         row.push(work.algorithm);
         if let Some(along) = &self.along {
             let (u, v) = (state.motion.col_as_slice(0), state.motion.col_as_slice(1));
@@ -185,6 +206,9 @@ impl<'a> Recorder<'a> {
             self.backwards += usize::from(slip * along < 0.0 && !sticks);
         }
         self.values.iter_mut().zip(row).for_each(|(values, value)| values.push(value));
+        if let Some(modal) = &mut self.modal {
+            modal.take(state.motion.col_as_slice(2));
+        }
         let earlier = self.events.len();
         let watch = self.watch.get_or_insert_with(|| Watch::new(self.model, state));
         watch.look(self.model, state, &mut self.events);
@@ -200,12 +224,15 @@ impl<'a> Recorder<'a> {
     pub(super) fn forget(&mut self) {
         self.values.iter_mut().for_each(Vec::clear);
         self.events.clear();
+        self.modal.iter_mut().for_each(ModalMotion::forget);
     }
 
     /// Adds what the rows to come depend on.
     pub(super) fn put(&self, checkpoint: &mut Checkpoint) {
         checkpoint.put("recorder", &[self.open, self.backwards, self.sticking].map(|count| count as f64));
         checkpoint.put("events", &self.happened.map(|count| count as f64));
+        let touched: Vec<f64> = self.touched.iter().map(|touched| f64::from(*touched)).collect();
+        checkpoint.put("touched", &touched);
     }
 
     /// Goes on from what was put away together with a march.
@@ -217,8 +244,31 @@ impl<'a> Recorder<'a> {
         [self.open, self.backwards, self.sticking] =
             checkpoint.numbers("recorder")?.map(|count| count as usize);
         self.happened = checkpoint.numbers("events")?.map(|count| count as usize);
+        let mut touched = vec![0.0; self.touched.len()];
+        checkpoint.get("touched", &mut touched)?;
+        self.touched = touched.into_iter().map(|touched| touched == 1.0).collect();
         self.watch = Some(Watch::new(self.model, &marched.state));
         Ok(())
+    }
+
+    /// How many points stick, slip backwards and slip forwards.
+    fn count(&mut self, state: &State) -> [usize; 3] {
+        let mut counts = [0; 3];
+        for (pair, points) in self.pairs.iter().enumerate() {
+            for point in points.clone().filter(|point| state.contact_forces(*point)[0] != 0.0) {
+                self.touched[point] = true;
+                let against = || state.slip_velocity(self.model, point)[0] * state.speeds()[pair] < 0.0;
+                let does = if state.sticks(point) {
+                    0
+                } else if against() {
+                    1
+                } else {
+                    2
+                };
+                counts[does] += 1;
+            }
+        }
+        counts
     }
 
     fn pair_of_point(&self) -> usize {

@@ -54,6 +54,7 @@ impl<'a, 'k> Tape<'a, 'k> {
             done: self.first,
             happened: if earlier.is_some() { self.recorder.happened.iter().sum() } else { 0 },
             channels: &self.recorder.channels,
+            modes: self.recorder.modal.as_ref().map_or(0, |modal| modal.rows.len()),
             pairs: &self.recorder.named,
             checkpoint: &checkpoint,
             fields: self.snapshots.as_ref().map(|s| s.fields(plan.steps, self.first, plan.step)),
@@ -95,8 +96,9 @@ impl<'a, 'k> Tape<'a, 'k> {
     pub(super) fn flush(&mut self, marched: &Marched) -> Result<()> {
         if self.recorder.rows() > 0 {
             let checkpoint = self.checkpoint(marched);
-            let Recorder { values, events, .. } = &self.recorder;
-            let piece = Piece { first: self.first, values, events, checkpoint: &checkpoint };
+            let Recorder { values, events, modal, .. } = &self.recorder;
+            let modal = modal.as_ref().map_or(&[][..], |modal| &modal.rows);
+            let piece = Piece { first: self.first, values, modal, events, checkpoint: &checkpoint };
             self.keeper.record(Stage::TransientPiece(&piece))?;
             self.first += self.recorder.rows();
             self.recorder.forget();

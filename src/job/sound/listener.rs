@@ -1,0 +1,170 @@
+//! What is heard of a run while it goes on.
+
+use super::Ears;
+use crate::modal::RealModes;
+use crate::results::{Heard, Sound, Sounding, Tone};
+use crate::signal::{Resampler, Spectrum, Welch, name_peaks, peaks};
+use crate::sound::{CrossSpectra, Plate, Radiation, Receiver};
+use std::f64::consts::TAU;
+
+/// No one hears beyond this \[Hz\].
+const AUDIBLE: f64 = 20_000.0;
+/// Lines of the spectra are this far apart, if the run is long enough and they fit in memory \[Hz, bytes\].
+const RESOLUTION: f64 = 10.0;
+const MEMORY: f64 = 64e6;
+/// Tones named, and how far below the highest they may be.
+const TONES: usize = 8;
+const FLOOR: f64 = 1e-2;
+/// Lines on either side of a peak that belong to it.
+const SKIRT: usize = 2;
+/// Samples a second of the recording, and how many of its last seconds are kept.
+const RATE: u32 = 48_000;
+const KEPT: usize = 60;
+/// Steps that are best worked on together.
+pub const BLOCK: usize = 1024;
+
+/// Listens to a run: modal accelerations in, block by block, levels and a recording out; its memory does not grow with
+/// the run.
+pub struct Listener {
+    modes: usize,
+    plates: Vec<Plate>,
+    air: crate::sound::Air,
+    step: f64,
+    /// Steps worked on, the first that counts for the levels, and the highest frequency that does \[Hz\].
+    heard: usize,
+    counted: usize,
+    top: f64,
+    cross: CrossSpectra,
+    microphones: Vec<(String, [f64; 3], Receiver, Welch)>,
+    resampler: Resampler,
+    recording: Vec<f64>,
+    dropped: usize,
+}
+
+impl Listener {
+    /// For a run of `steps` steps of `step` seconds of a model whose real modes are `real`. Levels are taken over its
+    /// second half.
+    pub fn new(ears: Ears, real: &RealModes, step: f64, steps: usize) -> Self {
+        let modes = real.len();
+        let plates: Vec<Plate> = ears.plates.iter().map(|plate| plate.moving(&real.shapes)).collect();
+        let counted = steps / 2;
+        // Modes are complete up to their highest; a time step carries what it samples well.
+        let highest = (0..modes).map(|k| real.frequency_hz(k)).fold(0.0, f64::max);
+        let top = AUDIBLE.min(0.4 / step).min(highest.max(RESOLUTION));
+        let most = (MEMORY / (4 * modes * (modes + 1)).max(1) as f64).max(16.0);
+        let seconds = (1.0 / RESOLUTION).min(0.5 * (steps + 1 - counted) as f64 * step).min(most / top);
+        let length = (seconds / step) as usize;
+        let microphone = |(name, at): (String, [f64; 3])| {
+            let receiver = Receiver::new(&plates, at, ears.air, step);
+            (name, at, receiver, Welch::new(length, step))
+        };
+        let microphones: Vec<_> = ears.microphones.into_iter().map(microphone).collect();
+        let mut resampler = Resampler::new(step, f64::from(RATE));
+        let mut recording = Vec::new();
+        if let Some((_, _, receiver, _)) = microphones.first() {
+            resampler.take(&vec![0.0; receiver.delay()], &mut recording);
+        }
+        Listener {
+            modes,
+            cross: CrossSpectra::new(modes, length, step, top),
+            plates,
+            air: ears.air,
+            step,
+            heard: 0,
+            counted,
+            top,
+            microphones,
+            resampler,
+            recording,
+            dropped: 0,
+        }
+    }
+
+    /// The next accelerations of the modes, one list each, all of one length; the start comes first.
+    pub fn hear(&mut self, mut block: Vec<Vec<f64>>) {
+        let length = block.first().map_or(0, Vec::len);
+        let early = self.counted.saturating_sub(self.heard).min(length);
+        for (k, (_, _, receiver, welch)) in self.microphones.iter_mut().enumerate() {
+            let pressure = receiver.hear(&block);
+            welch.take(&pressure[early..]);
+            if k == 0 {
+                self.resampler.take(&pressure, &mut self.recording);
+            }
+        }
+        self.forget();
+        block.iter_mut().for_each(|mode| drop(mode.drain(..early)));
+        self.cross.take(&block);
+        self.heard += length;
+    }
+
+    /// Keeps the end of the recording.
+    fn forget(&mut self) {
+        let kept = KEPT * RATE as usize;
+        if self.recording.len() > 2 * kept {
+            let dropped = self.recording.len() - kept;
+            self.recording.drain(..dropped);
+            self.dropped += dropped;
+        }
+    }
+
+    /// What was heard.
+    pub fn finish(mut self) -> Sound {
+        let Listener { cross, air, plates, step, .. } = &self;
+        let (lines, resolution_hz) = (cross.lines(), cross.resolution_hz());
+        let mut mode_shares = vec![0.0; self.modes];
+        let mut power = vec![vec![0.0; lines]; plates.len()];
+        let wavenumber = |hz: f64| TAU * hz / air.speed;
+        for (plate, power) in plates.iter().zip(&mut power) {
+            let radiation = Radiation::new(plate, wavenumber(self.top));
+            // Line 0 holds what is left of the mean.
+            for (k, power) in power.iter_mut().enumerate().skip(1) {
+                let own = radiation.power(*air, wavenumber(k as f64 * resolution_hz), &cross.products(k));
+                *power = own.iter().sum();
+                mode_shares.iter_mut().zip(own).for_each(|(share, own)| *share += own);
+            }
+        }
+        let whole: f64 = power.iter().flatten().sum();
+        mode_shares.iter_mut().for_each(|share| *share /= whole.max(f64::MIN_POSITIVE));
+        let each: Vec<f64> = (0..lines).map(|k| power.iter().map(|p| p[k]).sum()).collect();
+        let window = [self.counted as f64 * step, self.heard.saturating_sub(1) as f64 * step];
+        let names = plates.iter().map(|plate| plate.name.clone());
+        let plates = names.zip(power).collect();
+        let microphones = self.microphones.into_iter().map(|(name, at, _, welch)| {
+            let mut spectrum = welch.finish();
+            spectrum.amplitude.truncate(lines);
+            spectrum.amplitude.iter_mut().take(1).for_each(|a| *a = 0.0);
+            Heard { name, at, spectrum }
+        });
+        let microphones = microphones.collect();
+        self.resampler.finish(&mut self.recording);
+        let excess = self.recording.len().saturating_sub(KEPT * RATE as usize);
+        self.recording.drain(..excess);
+        let begin = (self.dropped + excess) as f64 / f64::from(RATE);
+        Sound {
+            window,
+            air: self.air,
+            resolution_hz,
+            plates,
+            mode_shares,
+            tones: tones(&each, resolution_hz),
+            microphones,
+            recording: Sounding { begin, rate: RATE, pressure: self.recording },
+        }
+    }
+}
+
+/// The peaks of a power.
+fn tones(power: &[f64], resolution_hz: f64) -> Vec<Tone> {
+    let amplitude = power.iter().map(|w| w.max(0.0).sqrt()).collect();
+    let spectrum = Spectrum { resolution_hz, amplitude };
+    let mut found = peaks(&spectrum, FLOOR, TONES);
+    name_peaks(&mut found, 0.5 * resolution_hz);
+    let whole: f64 = power.iter().sum();
+    let tone = |peak: crate::signal::Peak| {
+        let line = (peak.frequency_hz / resolution_hz).round() as usize;
+        let about = line.saturating_sub(SKIRT)..(line + SKIRT + 1).min(power.len());
+        let power = power[about].iter().sum::<f64>();
+        Tone { peak, power, share: power / whole }
+    };
+    found.into_iter().map(tone).collect()
+}

@@ -1,0 +1,89 @@
+use super::ears::ears;
+use super::{BLOCK, Listener};
+use crate::case::Case;
+use crate::case::{ON_AXIS, SoundAnalysis};
+use crate::job::Prepared;
+use crate::modal::{ModesWanted, compute};
+use crate::sound::Air;
+use crate::sound::{power_level, pressure_level};
+use std::f64::consts::TAU;
+
+const CASE: &str = r#"
+[mesh.annulus]
+outer_radius = "75 mm"
+hub_radius = "15 mm"
+radial = 8
+around = 48
+[material.steel]
+youngs_modulus = "210 GPa"
+poissons_ratio = 0.3
+density = "7850 kg/m^3"
+[shell.disc]
+material = "steel"
+thickness = "1 mm"
+bending_only = true
+[support.hub]
+on = "hub"
+"#;
+
+fn wanted(distance: Option<f64>, at: &[(&str, [f64; 3])]) -> SoundAnalysis {
+    let place = |(name, at): &(&str, [f64; 3])| (name.to_string(), crate::case::Microphone { at: *at });
+    SoundAnalysis {
+        distance,
+        direction: None,
+        plates: Vec::new(),
+        air: Default::default(),
+        microphone: at.iter().map(place).collect(),
+    }
+}
+
+#[test]
+fn one_mode_sounds_as_loud_as_its_closed_form() {
+    let case = Case::parse("disc", CASE, ".".into()).unwrap();
+    let prepared = Prepared::new(&case).unwrap();
+    let structure = &prepared.system.structure;
+    let (real, _) = compute(structure, ModesWanted::Count(3), &()).unwrap();
+    // The mode without nodal diameters: the one that displaces the most volume.
+    let ears = ears(&prepared, &wanted(Some(0.5), &[("far", [-4.0, 0.3, 0.0])])).unwrap();
+    let plate = ears.plates[0].moving(&real.shapes);
+    let volume = |m: usize| plate.strength.col_as_slice(m).iter().sum::<f64>();
+    let mode = (0..3).max_by(|a, b| volume(*a).abs().total_cmp(&volume(*b).abs())).unwrap();
+    let (step, steps, hz) = (2e-5, 20_000, 180.0);
+    let q = |k: usize| 3.0 * (TAU * hz * step * k as f64).sin();
+    let mut listener = Listener::new(ears, &real, step, steps);
+    for first in (0..=steps).step_by(BLOCK) {
+        let moments = first..(first + BLOCK).min(steps + 1);
+        let motion = |m: usize| moments.clone().map(|k| if m == mode { q(k) } else { 0.0 }).collect();
+        listener.hear((0..3).map(motion).collect());
+    }
+    let sound = listener.finish();
+    // Small beside the wavelength of 1.9 m: a monopole in a baffle, whichever its shape.
+    let (air, volume) = (Air::default(), 3.0 * volume(mode).abs());
+    let watt = air.density * volume * volume / (2.0 * std::f64::consts::PI * air.speed);
+    let [level, weighted] = sound.power_levels();
+    assert!((level - power_level(watt)).abs() < 0.1, "{level} {}", power_level(watt));
+    assert!((weighted - level - 20.0 * crate::sound::a_weighting(hz).log10()).abs() < 0.05);
+    for heard in &sound.microphones {
+        let r = heard.at.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let amplitude = air.density * volume / (TAU * r);
+        let exact = pressure_level(0.5 * amplitude * amplitude);
+        assert!((heard.levels()[0] - exact).abs() < 0.1, "{} {exact}", heard.levels()[0]);
+    }
+    assert!((sound.mode_shares[mode] - 1.0).abs() < 1e-9);
+    assert_eq!(sound.tones.len(), 1);
+    assert!((sound.tones[0].peak.frequency_hz - hz).abs() < 0.1 && sound.tones[0].share > 0.99);
+    let far = &sound.microphones[1];
+    assert!(far.name == "far" && sound.recording.pressure.len().abs_diff(19_200 + 70) < 5);
+}
+
+#[test]
+fn places_where_nothing_can_be_said_are_refused() {
+    let case = Case::parse("disc", CASE, ".".into()).unwrap();
+    let prepared = Prepared::new(&case).unwrap();
+    let faults = |at: [f64; 3]| ears(&prepared, &wanted(None, &[("here", at)])).unwrap_err().to_string();
+    assert!(faults([0.001, 0.05, 0.0]).contains("a place on `disc`"));
+    assert!(faults([0.0, 0.5, 0.2]).contains("in the plane of the plates"));
+    let ears = ears(&prepared, &wanted(Some(1.0), &[])).unwrap();
+    let [(name, at)] = &ears.microphones[..] else { panic!("one microphone") };
+    assert!(name == ON_AXIS && (at[0] - 1.0).abs() < 1e-12 && at[1].abs() < 1e-12 && at[2].abs() < 1e-12);
+}

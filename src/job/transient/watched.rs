@@ -1,0 +1,94 @@
+//! What the pictures of a run show, read back from its record in parts.
+
+use super::tape::Tape;
+use crate::error::Result;
+use crate::results::{ContactHistory, ContactWatch, Orbit, SpectrumOf, Watched};
+use crate::signal::{LimitCycle, ShortTime, Spectrogram, limit_cycle};
+
+/// The size of an oscillation is taken from this last part of the run, and from no more steps than these.
+const PART: usize = 4;
+const TAIL: usize = 1 << 16;
+/// Periods of the strongest line that a phase plane shows, and points that it has at most.
+const PERIODS: f64 = 12.0;
+const POINTS: usize = 4000;
+/// Rows that are read at once.
+const AT_ONCE: usize = 1 << 16;
+
+impl Tape<'_, '_> {
+    /// Looks through the record of `rows` rows, `step` seconds apart, whose `spectra` are known; spectrograms reach up to
+    /// `top_hz`.
+    pub(super) fn watched(
+        &self,
+        rows: usize,
+        step: f64,
+        spectra: &[SpectrumOf],
+        top_hz: f64,
+    ) -> Result<Watched> {
+        let strongest = |channel: usize| {
+            let of = spectra.iter().find(|of| of.channel == channel)?;
+            let peak = of.peaks.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude))?;
+            Some(peak.frequency_hz)
+        };
+        let shown = self.recorder.shown;
+        let begin = rows - (rows / PART).clamp(1, TAIL).min(rows);
+        let mut spectrograms: Vec<(usize, Spectrogram)> = Vec::new();
+        let mut cycles: Vec<(usize, LimitCycle)> = Vec::new();
+        for channel in shown {
+            let mut short = ShortTime::new(rows, step, top_hz);
+            for first in (0..rows).step_by(AT_ONCE) {
+                let part = self.read(channel, first..rows.min(first + AT_ONCE))?;
+                part.into_iter().for_each(|value| short.take(value));
+            }
+            spectrograms.push((channel, short.finish()));
+            if let Some(hz) = strongest(channel) {
+                let cycle = limit_cycle(&self.read(channel, begin..rows)?, step, hz);
+                cycles.extend(cycle.map(|cycle| (channel, cycle)));
+            }
+        }
+        spectrograms.retain(|(_, spectrogram)| spectrogram.columns() > 0);
+        let orbit = strongest(shown[0]).map(|hz| self.orbit(rows, begin, step, hz)).transpose()?;
+        Ok(Watched {
+            spectrograms,
+            cycles,
+            window: [begin as f64 * step, rows.saturating_sub(1) as f64 * step],
+            orbit: orbit.unwrap_or_default(),
+            contact: self.contact(rows, step)?,
+        })
+    }
+
+    /// The last periods of the strongest line, not before row `begin`.
+    fn orbit(&self, rows: usize, begin: usize, step: f64, hz: f64) -> Result<Orbit> {
+        let wanted = ((PERIODS / (hz * step)).ceil() as usize).clamp(1, rows - begin);
+        let every = wanted.div_ceil(POINTS).max(1);
+        let read = |channel: usize| -> Result<Vec<f64>> {
+            Ok(self.read(channel, rows - wanted..rows)?.into_iter().step_by(every).collect())
+        };
+        let join = |x: Vec<f64>, y: Vec<f64>| x.into_iter().zip(y).map(|(x, y)| [x, y]).collect();
+        let [velocity, friction] = self.recorder.shown;
+        // A displacement stands before its velocity, the slip after the penetration.
+        let displacement = velocity.saturating_sub(1);
+        Ok(Orbit {
+            periods: [wanted as f64 * step * hz, hz],
+            motion: join(read(displacement)?, read(velocity)?),
+            friction: join(read(self.recorder.penetration + 1)?, read(friction)?),
+        })
+    }
+
+    /// What the contact points that ever touched did.
+    fn contact(&self, rows: usize, step: f64) -> Result<ContactHistory> {
+        let points = self.recorder.touched.iter().filter(|touched| **touched).count();
+        let mut watch = ContactWatch::new(rows, step, points);
+        let Some(first_channel) = self.recorder.states.filter(|_| points > 0) else {
+            return Ok(watch.finish());
+        };
+        for first in (0..rows).step_by(AT_ONCE) {
+            let part = first..rows.min(first + AT_ONCE);
+            let [stick, back, forth] = [0, 1, 2].map(|k| self.read(first_channel + k, part.clone()));
+            let (stick, back, forth) = (stick?, back?, forth?);
+            for ((stick, back), forth) in stick.iter().zip(&back).zip(&forth) {
+                watch.take([*stick, *back, *forth].map(|count| count as usize));
+            }
+        }
+        Ok(watch.finish())
+    }
+}

@@ -1,0 +1,83 @@
+//! What the charts over time and frequency share.
+
+use crate::report::chart::{Area, colour, text};
+use crate::report::colours::{INK, MUTED};
+use crate::report::format::given;
+use crate::results::TransientResult;
+use plotters::coord::types::RangedCoordf64;
+use plotters::prelude::*;
+use std::error::Error;
+use std::ops::Range;
+
+pub(super) const SIZE: (u32, u32) = (980, 640);
+
+pub(super) type Chart<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+/// The axes of one of several panels above each other; the words below stand under the last only.
+pub(super) fn axes<'a>(
+    area: &Area<'a>,
+    ranges: (Range<f64>, Range<f64>),
+    below: Option<&str>,
+    beside: &str,
+    label: impl Fn(f64) -> String,
+) -> Result<Chart<'a>, Box<dyn Error>> {
+    let words = Words { below, beside, across: &given, up: &label, labels: 10, grid: true };
+    labelled(area, ranges, &words)
+}
+
+/// What stands at the axes.
+pub(super) struct Words<'a> {
+    /// Under the axis across; the labels only when absent.
+    pub below: Option<&'a str>,
+    /// Beside the axis up.
+    pub beside: &'a str,
+    /// Labels of either axis.
+    pub across: &'a dyn Fn(f64) -> String,
+    /// See `across`.
+    pub up: &'a dyn Fn(f64) -> String,
+    /// About how many labels the axis across has.
+    pub labels: usize,
+    /// Whether there are lines at the labels.
+    pub grid: bool,
+}
+
+/// Axes with words of one's own.
+pub(super) fn labelled<'a>(
+    area: &Area<'a>,
+    (across, up): (Range<f64>, Range<f64>),
+    words: &Words,
+) -> Result<Chart<'a>, Box<dyn Error>> {
+    let mut chart = ChartBuilder::on(area)
+        .margin_left(16)
+        .margin_right(20)
+        .margin_top(10)
+        .x_label_area_size(if words.below.is_some() { 46 } else { 22 })
+        .y_label_area_size(104)
+        .build_cartesian_2d(across, up)?;
+    chart
+        .configure_mesh()
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(colour("#e6e9ed").mix(if words.grid { 1.0 } else { 0.0 }))
+        .axis_style(colour(MUTED))
+        .label_style(text(12.0, INK))
+        .axis_desc_style(text(13.0, INK))
+        .x_desc(words.below.unwrap_or_default())
+        .y_desc(words.beside)
+        .x_labels(words.labels)
+        .y_labels(5)
+        .x_label_formatter(&|x| (words.across)(*x))
+        .y_label_formatter(&|y| (words.up)(*y))
+        .draw()?;
+    Ok(chart)
+}
+
+/// Where something is to be seen: up to a third beyond the last named peak, and some harmonics of the strongest.
+pub(super) fn highest_frequency(run: &TransientResult) -> f64 {
+    let Some(first) = run.spectra.first() else { return 0.0 };
+    let peaks = || run.spectra.iter().flat_map(|of| &of.peaks);
+    let last = peaks().map(|p| p.frequency_hz).fold(0.0, f64::max);
+    let strongest = first.peaks.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
+    let harmonics = strongest.map_or(f64::INFINITY, |p| 6.5 * p.frequency_hz);
+    let nyquist = first.spectrum.frequency_hz(first.spectrum.amplitude.len().saturating_sub(1));
+    if last > 0.0 { (1.33 * last).min(harmonics).min(nyquist) } else { nyquist }
+}

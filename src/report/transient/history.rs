@@ -1,0 +1,50 @@
+//! `transient.svg`: motion, friction and penetration over time.
+
+use super::axes::{SIZE, axes};
+use crate::report::chart::{Area, colour, sheet, widened};
+use crate::report::colours::{ALARM, SECOND};
+use crate::report::format::significant;
+use crate::report::html::Picture;
+use crate::results::{Channel, RunResults, TransientResult};
+use plotters::prelude::*;
+use std::error::Error;
+
+/// Motion and forces over time.
+pub(super) fn picture(results: &RunResults) -> Option<Picture> {
+    let run = results.transient.as_ref().filter(|run| run.len() > 1)?;
+    let svg = sheet(SIZE, |area| {
+        let shown = panels(run);
+        let parts = area.split_evenly((shown.len(), 1));
+        for (k, (part, channel)) in parts.iter().zip(&shown).enumerate() {
+            let ink = if k == 0 { ALARM } else { SECOND };
+            panel(part, channel, (run.len() - 1) as f64 * run.time_step, ink, k + 1 == shown.len())?;
+        }
+        Ok(())
+    })?;
+    let motion = &run.channels[run.shown[0]].about;
+    let caption = format!(
+        "Motion in time from steady sliding ({}): {motion}; friction; penetration of the point that carries most.",
+        run.scheme
+    );
+    Some(Picture { file: "transient.svg", caption, svg })
+}
+
+/// The channels of the picture.
+fn panels(run: &TransientResult) -> Vec<&Channel> {
+    let named = |name: &str| run.channels.iter().find(|c| c.name == name);
+    let varies = |c: &&Channel| c.range[0] != c.range[1];
+    let sliding = run.channels.iter().find(|c| c.name.ends_with("_sliding_velocity")).filter(varies);
+    let shown = run.shown.iter().map(|k| &run.channels[*k]);
+    shown.chain(named("penetration")).chain(sliding).collect()
+}
+
+fn panel(area: &Area, channel: &Channel, end: f64, ink: &str, last: bool) -> Result<(), Box<dyn Error>> {
+    let [low, high] = channel.range;
+    let below = last.then_some("time [s]");
+    // A tick that is zero but for round-off.
+    let label = |v: f64| significant(if v.abs() < 1e-9 * (high - low) { 0.0 } else { v }, 3);
+    let mut chart = axes(area, (0.0..end, widened(low, high, 0.08)), below, &channel.heading(), label)?;
+    let line = PathElement::new(channel.line.clone(), colour(ink).stroke_width(2));
+    chart.draw_series([line])?;
+    Ok(())
+}

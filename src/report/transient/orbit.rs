@@ -1,0 +1,67 @@
+//! `transient_phase.svg`: velocity over displacement, and friction over slip, in the last periods.
+
+use super::axes::{Words, labelled};
+use crate::report::chart::{Area, colour, sheet, widened};
+use crate::report::colours::{ALARM, MUTED, SECOND};
+use crate::report::format::{fixed, significant};
+use crate::report::html::Picture;
+use crate::results::RunResults;
+use plotters::prelude::*;
+use std::error::Error;
+
+const SIZE: (u32, u32) = (980, 440);
+
+/// The orbit of the motion and the one of the friction.
+pub(super) fn picture(results: &RunResults) -> Option<Picture> {
+    let run = results.transient.as_ref()?;
+    let orbit = &run.watched.orbit;
+    let varies = |points: &[[f64; 2]]| points.iter().any(|p| *p != points[0]);
+    if !varies(&orbit.motion) {
+        return None;
+    }
+    let motion = &run.channels[run.shown[0]];
+    let friction = &run.channels[run.shown[1]];
+    let place = motion.name.strip_suffix("_velocity").unwrap_or(&motion.name).replace('_', " ");
+    let below = format!("{place} displacement [m]");
+    let slips = run.shown[0] != run.shown[1] && varies(&orbit.friction);
+    let svg = sheet(SIZE, |area| {
+        let parts = if slips { area.split_evenly((1, 2)) } else { vec![area.clone()] };
+        curve(&parts[0], &orbit.motion, [&below, &motion.heading()], ALARM)?;
+        if let Some(part) = parts.get(1) {
+            curve(part, &orbit.friction, ["slip velocity [m/s]", &friction.heading()], SECOND)?;
+        }
+        Ok(())
+    })?;
+    let second = if slips {
+        " Right: friction over the slip of the point that carries most; left of the line it slips backwards."
+    } else {
+        ""
+    };
+    let caption = format!(
+        "The last {} periods of {} Hz: velocity over displacement.{second}",
+        fixed(orbit.periods[0], 0),
+        fixed(orbit.periods[1], 0)
+    );
+    Some(Picture { file: "transient_phase.svg", caption, svg })
+}
+
+fn curve(area: &Area, points: &[[f64; 2]], words: [&str; 2], ink: &str) -> Result<(), Box<dyn Error>> {
+    let range = |k: usize| {
+        let finite = points.iter().map(|p| p[k]).filter(|v| v.is_finite());
+        let (low, high) =
+            finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+        widened(low, high, 0.08)
+    };
+    let (across, up) = (range(0), range(1));
+    let label = |v: f64| significant(v, 2);
+    let [below, beside] = words;
+    let words = Words { below: Some(below), beside, across: &label, up: &label, labels: 5, grid: true };
+    let mut chart = labelled(area, (across.clone(), up.clone()), &words)?;
+    if across.contains(&0.0) {
+        let line = [(0.0, up.start), (0.0, up.end)];
+        chart.draw_series([PathElement::new(line, colour(MUTED).stroke_width(1))])?;
+    }
+    let path: Vec<(f64, f64)> = points.iter().map(|[x, y]| (*x, *y)).collect();
+    chart.draw_series([PathElement::new(path, colour(ink).stroke_width(1))])?;
+    Ok(())
+}

@@ -1,0 +1,105 @@
+//! `transient_spectrum.svg`: motion and friction over frequency.
+
+use super::axes::{Chart, SIZE, axes, highest_frequency};
+use crate::report::chart::{Area, above, bold, colour, sheet, text};
+use crate::report::colours::{ALARM, INK, MEASURED, SECOND};
+use crate::report::format::{fixed, given, significant};
+use crate::report::html::Picture;
+use crate::results::{Channel, RunResults, SpectrumOf};
+use plotters::prelude::*;
+use std::error::Error;
+use std::ops::Range;
+
+/// Decades below the highest line that a spectrum shows.
+const DECADES: f64 = 5.0;
+
+/// Motion and friction over frequency.
+pub(super) fn picture(results: &RunResults) -> Option<Picture> {
+    let run = results.transient.as_ref()?;
+    let known = |of: &&SpectrumOf| of.spectrum.amplitude.iter().any(|a| *a > 0.0);
+    let shown: Vec<&SpectrumOf> = run.spectra.iter().filter(known).collect();
+    let first = shown.first()?;
+    let end = highest_frequency(run);
+    let measured = squeal(results);
+    let svg = sheet(SIZE, |area| {
+        for (k, (part, of)) in area.split_evenly((shown.len(), 1)).iter().zip(&shown).enumerate() {
+            let ink = if k == 0 { ALARM } else { SECOND };
+            let below = (k + 1 == shown.len()).then_some("frequency [Hz]");
+            lines(part, (of, &run.channels[of.channel]), end, ink, &measured, below)?;
+        }
+        Ok(())
+    })?;
+    let [begin, stop] = first.window;
+    let caption = format!(
+        "Spectra from {} to {} s (Welch, Hann window, amplitude of a sine, lines every {} Hz).",
+        given(begin),
+        given(stop),
+        significant(first.spectrum.resolution_hz, 3)
+    ) + if measured.is_empty() { "" } else { " Blue: measured squeal." };
+    Some(Picture { file: "transient_spectrum.svg", caption, svg })
+}
+
+fn lines(
+    area: &Area,
+    (of, channel): (&SpectrumOf, &Channel),
+    end: f64,
+    ink: &str,
+    measured: &[f64],
+    below: Option<&str>,
+) -> Result<(), Box<dyn Error>> {
+    let amplitude = &of.spectrum.amplitude;
+    let highest = amplitude.iter().skip(2).fold(f64::MIN_POSITIVE, |m: f64, v| m.max(*v));
+    let (top, floor) = (highest.log10() + 0.7, highest.log10() - DECADES);
+    let heading = channel.heading();
+    let mut chart =
+        axes(area, (0.0..end, floor..top), below, &heading, |v| format!("{:.0e}", 10f64.powf(v)))?;
+    mark(area, &mut chart, measured, end, floor..top)?;
+    let line = amplitude
+        .iter()
+        .enumerate()
+        .map(|(k, a)| (of.spectrum.frequency_hz(k), a.max(f64::MIN_POSITIVE).log10().max(floor)))
+        .take_while(|(hz, _)| *hz <= end);
+    chart.draw_series([PathElement::new(line.collect::<Vec<_>>(), colour(ink).stroke_width(1))])?;
+    let (left, upper) = area.get_base_pixel();
+    let mut taken: Vec<i32> = Vec::new();
+    let mut strongest: Vec<_> = of.peaks.iter().collect();
+    strongest.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
+    for peak in strongest.into_iter().filter(|peak| peak.frequency_hz < end) {
+        let (x, y) = chart.backend_coord(&(peak.frequency_hz, peak.amplitude.log10()));
+        if taken.iter().any(|u| (u - x).abs() < 60) {
+            continue;
+        }
+        taken.push(x);
+        let label = format!("{} Hz", fixed(peak.frequency_hz, 0));
+        area.draw_text(&label, &above(bold(12.0, INK)), (x - left, y - upper - 4))?;
+    }
+    Ok(())
+}
+
+/// Frequencies at which squeal was measured \[Hz\].
+pub(super) fn squeal(results: &RunResults) -> Vec<f64> {
+    results.complex.iter().flat_map(|complex| &complex.measured_squeal_hz).map(|(hz, _)| *hz).collect()
+}
+
+/// Lines at the frequencies of measured squeal, each with its figure at the head, lower where it would hide another.
+fn mark(
+    area: &Area,
+    chart: &mut Chart,
+    measured: &[f64],
+    end: f64,
+    up: Range<f64>,
+) -> Result<(), Box<dyn Error>> {
+    let (left, upper) = area.get_base_pixel();
+    let mut taken: Vec<(i32, i32)> = Vec::new();
+    for hz in measured.iter().filter(|hz| **hz < end) {
+        let line = [(*hz, up.start), (*hz, up.end)];
+        chart.draw_series([PathElement::new(line, colour(MEASURED).mix(0.6).stroke_width(1))])?;
+        let (x, mut y) = chart.backend_coord(&(*hz, up.end));
+        while taken.iter().any(|(u, v)| (u - x).abs() < 36 && (v - y).abs() < 13) {
+            y += 13;
+        }
+        taken.push((x, y));
+        area.draw_text(&given(*hz), &text(11.5, MEASURED), (x - left + 4, y - upper))?;
+    }
+    Ok(())
+}
