@@ -7,6 +7,9 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::ops::Bound;
 
+/// Steps of a reduced model that are compared with the full one, when the case does not say.
+const COMPARED: f64 = 100.0;
+
 /// A run in time from steady sliding.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TransientAnalysis {
@@ -19,6 +22,9 @@ pub struct TransientAnalysis {
     pub scheme: SchemeChoice,
     /// The full finite-element model, or one reduced to its modes and the responses to its contacts.
     pub model: ModelChoice,
+    /// How many steps of a reduced model are compared with the full one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub compare_steps: Option<usize>,
     /// Newton's method on the whole instead of the condensed step, to compare.
     pub full_newton: bool,
     /// What disturbs steady sliding at the start.
@@ -146,6 +152,7 @@ pub(super) fn read(s: &Section) -> TransientAnalysis {
         .positive()
         .check("a time step that is shorter than the duration", |step| *step <= duration)
         .required(TIME.name);
+    let reduced = s.choice("model", &["full", "reduced"]).or("full") == "reduced";
     let unit = |key: &str, low: f64, high: f64, default: f64| {
         s.quantity(key, NUMBER).within(Bound::Included(low), Bound::Included(high)).or(default)
     };
@@ -157,10 +164,11 @@ pub(super) fn read(s: &Section) -> TransientAnalysis {
             "hht" => SchemeChoice::Hht { alpha: unit("alpha", -1.0 / 3.0, 0.0, -0.05) },
             _ => SchemeChoice::GeneralisedAlpha { rho: unit("rho", 0.0, 1.0, 0.9) },
         },
-        model: match s.choice("model", &["full", "reduced"]).or("full") {
-            "reduced" => ModelChoice::Reduced,
-            _ => ModelChoice::Full,
-        },
+        model: if reduced { ModelChoice::Reduced } else { ModelChoice::Full },
+        compare_steps: reduced.then(|| {
+            let steps = s.quantity("compare_steps", NUMBER).non_negative();
+            steps.check("a whole number", |n| n.fract() == 0.0).or(COMPARED) as usize
+        }),
         full_newton: s.boolean("full_newton").or(false),
         disturbance: s.section("disturbance", |d| Disturbance {
             mode_near: d.quantity("mode_near", FREQUENCY).positive().optional(),

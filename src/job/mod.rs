@@ -20,6 +20,7 @@ mod modes;
 mod nearest;
 mod place;
 mod prepared;
+mod reduced_check;
 mod regions;
 mod scalars;
 mod sensitivity;

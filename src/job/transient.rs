@@ -2,6 +2,7 @@
 
 use super::analyse::Stage;
 use super::prepared::Prepared;
+use super::reduced_check::{first_steps, reduced_check};
 use crate::case::{Disturbance, ModelChoice, SchemeChoice, Slide, TransientAnalysis};
 use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Fault, Faults, Result};
@@ -49,6 +50,7 @@ impl InTime<'_> {
         record: &mut dyn FnMut(Stage) -> Result<()>,
         observer: &dyn Observer,
     ) -> Result<TransientResult> {
+        let beside = first_steps(self, wanted, &places, observer)?;
         let Places { mut pushes, mut probes } = places;
         let mut disturbed = wanted.disturbance.as_ref().map(|d| self.along(d)).transpose()?;
         let reduced = match wanted.model {
@@ -97,10 +99,19 @@ impl InTime<'_> {
             GrowthCompared { mode, eigenvalue, found: signal::growth(re, im, plan.step, window) }
         });
         let spectra = shown.map(|channel| spectrum_of(&channels, channel, plan.step)).into();
+        let first = |name: &str, count: usize| {
+            let values = channels.iter().find(|channel| channel.name == name).map(|c| &c.values[..count]);
+            Ok(values.unwrap_or_default().to_vec())
+        };
+        let compared = reduced
+            .as_ref()
+            .map(|r| reduced_check(self, r, beside.as_ref(), &first, observer))
+            .transpose()?;
         let share = |count: usize| count as f64 / (steps + 1) as f64;
         Ok(TransientResult {
             time_step: plan.step,
             scheme: words,
+            reduced_check: compared,
             channels,
             reduced: reduced.as_ref().map(|r| [r.modes, r.basis.ncols() - r.modes]),
             shown,

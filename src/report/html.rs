@@ -73,6 +73,9 @@ pub(super) fn page(results: &RunResults, pictures: &[Picture]) -> String {
         body += "<h2>Motion in time</h2>\n";
         body += &figures(pictures, &["transient.svg", "transient_spectrum.svg"]);
         body += &untitled(super::transient::table(transient));
+        if let Some(check) = &transient.reduced_check {
+            body += &table(&super::reduced_check::table(check, results.complex.as_ref()));
+        }
     }
     body += &super::explored::section(results);
     if !results.timings.is_empty() {

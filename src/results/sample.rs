@@ -336,6 +336,21 @@ fn sensitivity(geometry: &Geometry, complex: &ComplexResult) -> SensitivityResul
     SensitivityResult { modes: modes.collect(), left_out }
 }
 
+/// A reduced model that is as good as one may expect.
+fn reduced_check() -> ReducedCheck {
+    ReducedCheck {
+        modes: [14, 14],
+        eigenvalue: Some(Deviation { relative: 3.2e-6, mode: 9 }),
+        growth: Some(Deviation { relative: 1.4e-4, mode: 3 }),
+        motion: Some(MotionCompared {
+            steps: 100,
+            probe: "rim".into(),
+            displacement: Some(2.5e-4),
+            normal_force: None,
+        }),
+    }
+}
+
 /// A decaying transient at 1668 Hz with its double.
 fn transient() -> TransientResult {
     let (step, steps) = (2e-5, 4000);
@@ -360,7 +375,8 @@ fn transient() -> TransientResult {
     TransientResult {
         time_step: step,
         scheme: "HHT, α = -0.05".into(),
-        reduced: None,
+        reduced: Some([88, 13]),
+        reduced_check: Some(reduced_check()),
         channels,
         shown: [0, 1],
         spectra: spectra.into(),

@@ -1,5 +1,6 @@
 //! A run in time, as plain data.
 
+use super::ReducedCheck;
 use crate::linalg::c64;
 use crate::signal::{Growth, Peak, Spectrum};
 use crate::transient::Work;
@@ -57,6 +58,8 @@ pub struct TransientResult {
     pub scheme: String,
     /// Real modes and attachment shapes of a reduced model; `None` for the full one.
     pub reduced: Option<[usize; 2]>,
+    /// A reduced model beside the full one.
+    pub reduced_check: Option<ReducedCheck>,
     /// What was recorded.
     pub channels: Vec<Channel>,
     /// The channel that stands for the motion in pictures, and that of friction.

@@ -42,8 +42,10 @@ impl<'a> Record<'a> {
         }
     }
 
-    /// The mean time from the lowest value of a period to the next highest \[s\], over the whole periods there are.
+    /// The mean time from the lowest value of a period to the next highest \[s\], over the whole periods there are. Of
+    /// several that are as high but for 1e-4 of the span the first counts.
     pub(super) fn rise(&self) -> f64 {
+        let near = 1e-4 * (self.highest() - self.lowest());
         let crossings = self.crossings();
         // Of a period about an upward crossing: from the crossing before to the one after.
         let times: Vec<f64> = crossings
@@ -52,7 +54,9 @@ impl<'a> Record<'a> {
                 let part = |from: f64, to: f64| from.ceil() as usize..(to.floor() as usize) + 1;
                 let by_value = |a: &usize, b: &usize| self.values[*a].total_cmp(&self.values[*b]);
                 let low = part(of[0], of[1]).min_by(by_value).unwrap_or(0);
-                let high = part(of[1], of[2]).max_by(by_value).unwrap_or(0);
+                let rising = part(of[1], of[2]);
+                let top = rising.clone().map(|k| self.values[k]).fold(f64::NEG_INFINITY, f64::max);
+                let high = rising.into_iter().find(|k| self.values[*k] >= top - near).unwrap_or(low);
                 (high as f64 - low as f64) * self.step
             })
             .collect();
