@@ -168,7 +168,7 @@ mod tests {
         let system = random_system(40, 4, 3.0, 2);
         let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
         let real = dense_modes(&system, 40);
-        let top = 0.5 * real.frequency_hz(10);
+        let top = real.frequency_hz(8);
         let modes = complex_modes(&system, &steady, &real, [0.0, top], &()).unwrap();
         let complex = ComplexResult {
             shapes: vec![],
@@ -192,7 +192,7 @@ mod tests {
         let off = |check: &ReducedCheck| check.eigenvalue.unwrap().relative;
         assert!(some.modes[0] > 3 && some.modes[1] == some.modes[0], "{some:?}");
         assert!(off(&all) < 1e-10 && off(&more) < 0.5 * off(&some) && off(&some) > 1e-9, "{some:?} {more:?}");
-        assert!(all.growth.unwrap().relative < 1e-8 && all.motion.is_none());
+        assert!(all.growth.unwrap().relative < 1e-6 && all.motion.is_none());
     }
 
     #[test]
