@@ -208,6 +208,14 @@ fn motion_in_time_is_the_same_in_full_condensed_and_for_any_number_of_threads() 
     // Of the reduced model the motion and the forces follow; modes above its band are not in it.
     let reduced = history("reduced", "model = \"reduced\"", "2");
     assert!(far(&reduced, 1) < 0.02 && far(&reduced, 4) < 0.02, "{:?}", [1, 4].map(|c| far(&reduced, c)));
+    let summary = std::fs::read_to_string(folder.path().join("reduced/summary.json")).expect("a summary");
+    let summary: serde_json::Value = serde_json::from_str(&summary).expect("valid JSON");
+    let check = &summary["transient"]["reduced_check"];
+    assert_eq!(check["modes"], check["modes_found"]);
+    let deviations =
+        ["/eigenvalue/relative", "/growth_rate/relative", "/motion/displacement", "/motion/normal_force"];
+    let deviations = deviations.map(|at| check.pointer(at).and_then(serde_json::Value::as_f64));
+    assert!(deviations.iter().all(|d| d.is_some_and(|d| d < 0.02)), "{check}");
     for file in [
         "transient.svg",
         "transient_spectrum.svg",

@@ -8,6 +8,9 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::ops::Bound;
 
+/// Steps of a reduced model that are compared with the full one, when the case does not say.
+const COMPARED: f64 = 100.0;
+
 /// A run in time from steady sliding.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TransientAnalysis {
@@ -23,6 +26,9 @@ pub struct TransientAnalysis {
     pub scheme: SchemeChoice,
     /// The full finite-element model, or one reduced to its modes and the responses to its contacts.
     pub model: ModelChoice,
+    /// How many steps of a reduced model are compared with the full one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub compare_steps: Option<usize>,
     /// Newton's method on the whole instead of the condensed step, to compare.
     pub full_newton: bool,
     /// How often the motion of all nodes is written, to the nearest time step \[s\]; never when absent.
@@ -126,6 +132,9 @@ pub struct Probe {
     /// The direction of motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub direction: Option<[f64; 3]>,
+    /// Peaks that a sensor in its place measured \[Hz\], to compare.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub measured: Vec<f64>,
 }
 
 /// How a counter-body slides.
@@ -203,6 +212,7 @@ pub(super) fn read(s: &Section) -> TransientAnalysis {
         .positive()
         .check("a time step that is shorter than the duration", |step| *step <= duration)
         .required(TIME.name);
+    let reduced = s.choice("model", &["full", "reduced"]).or("full") == "reduced";
     let unit = |key: &str, low: f64, high: f64, default: f64| {
         s.quantity(key, NUMBER).within(Bound::Included(low), Bound::Included(high)).or(default)
     };
@@ -218,10 +228,11 @@ pub(super) fn read(s: &Section) -> TransientAnalysis {
             "hht" => SchemeChoice::Hht { alpha: unit("alpha", -1.0 / 3.0, 0.0, -0.05) },
             _ => SchemeChoice::GeneralisedAlpha { rho: unit("rho", 0.0, 1.0, 0.9) },
         },
-        model: match s.choice("model", &["full", "reduced"]).or("full") {
-            "reduced" => ModelChoice::Reduced,
-            _ => ModelChoice::Full,
-        },
+        model: if reduced { ModelChoice::Reduced } else { ModelChoice::Full },
+        compare_steps: reduced.then(|| {
+            let steps = s.quantity("compare_steps", NUMBER).non_negative();
+            steps.check("a whole number", |n| n.fract() == 0.0).or(COMPARED) as usize
+        }),
         full_newton: s.boolean("full_newton").or(false),
         start: match s.choice("start", &["steady", "rest"]).or("steady") {
             "rest" => StartChoice::Rest,
@@ -266,7 +277,8 @@ fn read_probe(s: &Section) -> Probe {
     if spring.is_some() && direction.is_some() {
         s.fault("direction", "a vector", "none beside a `spring`, which has its own", "");
     }
-    Probe { spring, on, at, direction }
+    let measured = s.quantity_list("measured", FREQUENCY).or(Vec::new());
+    Probe { spring, on, at, direction, measured }
 }
 
 fn read_slide(s: &Section) -> Slide {

@@ -93,16 +93,21 @@ impl Histories {
         }
     }
 
+    /// The name and the values of each channel, the start included.
+    pub fn all(&self) -> impl Iterator<Item = (&str, &[f64])> {
+        self.channels.iter().map(|(name, all)| (name.as_str(), all.as_slice()))
+    }
+
     /// The values of a channel, the start included.
     pub fn of(&self, channel: &str) -> Option<&[f64]> {
-        self.channels.iter().find(|(name, _)| name == channel).map(|(_, all)| all.as_slice())
+        self.all().find(|(name, _)| *name == channel).map(|(_, all)| all)
     }
 }
 
 /// Hands results on to a function and holds the record of a run in time itself, for runs that are short.
 pub(super) struct Memory<'a> {
     record: &'a mut dyn FnMut(Stage) -> Result<()>,
-    histories: Histories,
+    pub(super) histories: Histories,
 }
 
 impl<'a> Memory<'a> {

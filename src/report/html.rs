@@ -75,6 +75,9 @@ pub(super) fn page(results: &RunResults, pictures: &[Picture]) -> String {
         body += &untitled(super::transient::table(transient));
         let modes = results.complex.as_ref().map_or(&[][..], |complex| &complex.real_modes);
         body += &super::transient::sound_table(transient, modes).map_or(String::new(), |t| table(&t));
+        if let Some(check) = &transient.reduced_check {
+            body += &table(&super::reduced_check::table(check, results.complex.as_ref()));
+        }
     }
     body += &super::explored::section(results);
     if !results.timings.is_empty() {

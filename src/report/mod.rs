@@ -21,6 +21,7 @@ mod growth;
 mod html;
 mod participation;
 mod plate;
+mod reduced_check;
 mod rig;
 mod svg;
 mod tables;

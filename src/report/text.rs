@@ -15,6 +15,8 @@ pub fn summary(results: &RunResults) -> String {
     parts.extend(sensitivity(results));
     parts.extend(results.transient.iter().map(|run| render(&super::transient::table(run))));
     parts.extend(sound(results));
+    let check = results.transient.iter().filter_map(|run| run.reduced_check.as_ref());
+    parts.extend(check.map(|check| render(&super::reduced_check::table(check, results.complex.as_ref()))));
     parts.extend(explored(results));
     parts.extend(results.warnings.iter().map(|warning| wrap(&format!("Warning: {warning}"))));
     parts.push(verdict(results));

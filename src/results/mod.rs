@@ -25,6 +25,7 @@ mod file;
 mod folder;
 mod hdf5;
 mod json;
+mod reduced_check;
 mod sensitivity;
 mod sound;
 mod sound_hdf5;
@@ -46,6 +47,7 @@ pub use fields::FieldsFile;
 pub use file::ResultsFile;
 pub(crate) use folder::write_atomically;
 pub use json::{SCHEMA_VERSION, summary_json, write_summary};
+pub use reduced_check::{Deviation, MotionCompared, ReducedCheck};
 pub use sensitivity::{AdviceField, ModeSensitivity, Mounted, ParameterRate, SensitivityResult};
 pub use sound::{Heard, Sound, Sounding, Tone};
 pub use transient::{
@@ -54,7 +56,7 @@ pub use transient::{
 pub use transient_csv::{EventTable, HistoryTable};
 pub use vtk::write_vtk;
 pub(crate) use watched::ContactWatch;
-pub use watched::{ContactHistory, Orbit, TouchState, Watched};
+pub use watched::{ContactHistory, Curve, Orbit, TouchState, Watched};
 
 use crate::equilibrium::SteadySliding;
 use crate::modal::{DiscModeName, RealModes};

@@ -336,6 +336,21 @@ fn sensitivity(geometry: &Geometry, complex: &ComplexResult) -> SensitivityResul
     SensitivityResult { modes: modes.collect(), left_out }
 }
 
+/// A reduced model that is as good as one may expect.
+fn reduced_check() -> ReducedCheck {
+    ReducedCheck {
+        modes: [14, 14],
+        eigenvalue: Some(Deviation { relative: 3.2e-6, mode: 9 }),
+        growth: Some(Deviation { relative: 1.4e-4, mode: 3 }),
+        motion: Some(MotionCompared {
+            steps: 100,
+            probe: "rim".into(),
+            displacement: Some(2.5e-4),
+            normal_force: None,
+        }),
+    }
+}
+
 /// A decaying transient at 1668 Hz with its double.
 fn transient() -> TransientResult {
     let (step, steps) = (2e-5, 4000);
@@ -357,7 +372,8 @@ fn transient() -> TransientResult {
     let spectra = [0, 1].map(|channel| {
         let spectrum = crate::signal::spectrum(&records[channel].2[steps / 2..], step, 1000);
         let peaks = crate::signal::peaks(&spectrum, 1e-2, 5);
-        SpectrumOf { channel, window: [0.04, 0.08], spectrum, peaks }
+        let measured = if channel == 0 { vec![936.0, 1661.0, 2600.0] } else { Vec::new() };
+        SpectrumOf { channel, window: [0.04, 0.08], spectrum, peaks, measured }
     });
     let short = |k: usize| (k, crate::signal::spectrogram(&records[k].2, step, 4000.0));
     let cycle = |k: usize| crate::signal::limit_cycle(&records[k].2[3000..], step, 1668.0).map(|c| (k, c));
@@ -372,8 +388,13 @@ fn transient() -> TransientResult {
         window: [0.06, 0.08],
         orbit: Orbit {
             periods: [12.0, 1668.0],
-            friction: motion.iter().map(|[_, v]| [0.5 - v, 8.0 + 2.0 * v]).collect(),
-            motion,
+            curves: vec![
+                Curve {
+                    axes: ["slip velocity [m/s]", "friction [N]"].map(String::from),
+                    points: motion.iter().map(|[_, v]| [0.5 - v, 8.0 + 2.0 * v]).collect(),
+                },
+                Curve { axes: ["displacement [m]", "velocity [m/s]"].map(String::from), points: motion },
+            ],
         },
         contact: contact.finish(),
     };
@@ -381,9 +402,10 @@ fn transient() -> TransientResult {
         time_step: step,
         rows: steps + 1,
         scheme: "HHT, α = -0.05".into(),
-        reduced: None,
+        reduced: Some([88, 13]),
+        reduced_check: Some(reduced_check()),
         channels,
-        shown: [0, 1],
+        shown: vec![0, 1],
         spectra: spectra.into(),
         growth: Some(GrowthCompared { mode: 3, eigenvalue: c64::new(60.0, TAU * 1668.0), found: None }),
         work: crate::transient::Work { drive: 0.5, heat: 0.49, damping: -0.01, ..Default::default() },

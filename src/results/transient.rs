@@ -1,6 +1,6 @@
 //! A run in time, as plain data.
 
-use super::{Geometry, NodalField, Sound, Watched};
+use super::{Geometry, NodalField, ReducedCheck, Sound, Watched};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::signal::{Growth, Peak, Spectrum};
@@ -150,6 +150,8 @@ pub struct SpectrumOf {
     pub spectrum: Spectrum,
     /// The peaks of it.
     pub peaks: Vec<Peak>,
+    /// Those that were measured \[Hz\], if any.
+    pub measured: Vec<f64>,
 }
 
 /// The growth of a small disturbance beside the complex mode that it started along.
@@ -174,10 +176,13 @@ pub struct TransientResult {
     pub scheme: String,
     /// Real modes and attachment shapes of a reduced model; `None` for the full one.
     pub reduced: Option<[usize; 2]>,
+    /// A reduced model beside the full one.
+    pub reduced_check: Option<ReducedCheck>,
     /// What was recorded.
     pub channels: Vec<Channel>,
-    /// The channel that stands for the motion in pictures, and that of friction.
-    pub shown: [usize; 2],
+    /// The channels that stand for the run in pictures: acceleration, friction, and the force in a load cell, those of them
+    /// that there are.
+    pub shown: Vec<usize>,
     /// Spectra of the second half of the run.
     pub spectra: Vec<SpectrumOf>,
     /// Growth beside the complex eigenvalue.

@@ -142,6 +142,7 @@ impl ResultsFile {
                 spectrum.list("peak_frequency_hz", &hz, "Hz", "its peaks")?;
                 let height: Vec<f64> = of.peaks.iter().map(|p| p.amplitude).collect();
                 spectrum.list("peak_amplitude", &height, channel.unit, "their amplitudes")?;
+                spectrum.list("measured_hz", &of.measured, "Hz", "peaks that were measured")?;
             }
             events::fit(&group)?;
             super::sound_hdf5::write(&group, result)?;

@@ -1,6 +1,6 @@
 //! The part of `summary.json` on motion in time.
 
-use super::{SpectrumOf, TransientResult};
+use super::{Deviation, ReducedCheck, SpectrumOf, TransientResult};
 use crate::signal::LimitCycle;
 use crate::transient::EventKind;
 use serde_json::{Value, json};
@@ -27,6 +27,7 @@ pub(super) fn transient(result: &TransientResult) -> Value {
             "window_s": of.window,
             "resolution_hz": of.spectrum.resolution_hz,
             "peaks": peaks,
+            "measured_hz": of.measured,
         })
     };
     let growth = result.growth.as_ref().map(|g| {
@@ -63,6 +64,7 @@ pub(super) fn transient(result: &TransientResult) -> Value {
         "duration_s": result.len().saturating_sub(1) as f64 * result.time_step,
         "scheme": result.scheme,
         "reduced": result.reduced.map(|[modes, attached]| json!({ "modes": modes, "attachment": attached })),
+        "reduced_check": result.reduced_check.as_ref().map(reduced_check),
         "channels": channels,
         "spectrum": result.spectra.iter().map(spectrum).collect::<Vec<_>>(),
         "growth": growth,
@@ -87,5 +89,25 @@ pub(super) fn transient(result: &TransientResult) -> Value {
         "worst_energy_residual": result.worst_residual,
         "limit_cycle": result.watched.cycles.iter().map(cycle).collect::<Vec<_>>(),
         "sound": result.sound.as_ref().map(super::sound::summary),
+    })
+}
+
+/// A reduced model beside the full one.
+fn reduced_check(check: &ReducedCheck) -> Value {
+    let deviation = |of: Option<Deviation>| of.map(|d| json!({ "relative": d.relative, "mode": d.mode + 1 }));
+    let motion = check.motion.as_ref().map(|m| {
+        json!({
+            "steps": m.steps,
+            "probe": m.probe,
+            "displacement": m.displacement,
+            "normal_force": m.normal_force,
+        })
+    });
+    json!({
+        "modes": check.modes[0],
+        "modes_found": check.modes[1],
+        "eigenvalue": deviation(check.eigenvalue),
+        "growth_rate": deviation(check.growth),
+        "motion": motion,
     })
 }

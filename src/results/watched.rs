@@ -22,10 +22,17 @@ pub struct Watched {
 pub struct Orbit {
     /// How many periods of the strongest line they are, and its frequency \[Hz\].
     pub periods: [f64; 2],
-    /// Displacement \[m\] and velocity \[m/s\] of the motion shown.
-    pub motion: Vec<[f64; 2]>,
-    /// Slip velocity \[m/s\] of the point that carries most and the friction force \[N\] shown.
-    pub friction: Vec<[f64; 2]>,
+    /// Velocity over displacement, and friction over the slip of the point that carries most where there is a contact.
+    pub curves: Vec<Curve>,
+}
+
+/// One record over another.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Curve {
+    /// What is across and what is up, with units.
+    pub axes: [String; 2],
+    /// Their values.
+    pub points: Vec<[f64; 2]>,
 }
 
 /// What a contact point does.

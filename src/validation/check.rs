@@ -4,7 +4,7 @@ use super::in_time;
 use super::kirchhoff::{Edge, PlateMode, ThinPlate, circular_modes};
 use super::reference::{Check, Kind, Measure, Reference};
 use super::two_dof::TwoDof;
-use crate::case::Case;
+use crate::case::{Case, ModelChoice, TransientAnalysis};
 use crate::error::{Error, Fault, Result};
 use crate::job::{Histories, Prepared, Selection, Stage, analyse};
 use crate::linalg::c64;
@@ -92,9 +92,18 @@ impl Runs<'_> {
     }
 
     fn run(&mut self, set: &[(String, f64)]) -> Result<&Run> {
-        let key = set.iter().map(|(path, value)| format!("{path}={value:e} ")).collect::<String>();
+        self.run_as(set, None)
+    }
+
+    /// With the motion in time of a model of this kind instead of the case's own.
+    fn run_as(&mut self, set: &[(String, f64)], model: Option<ModelChoice>) -> Result<&Run> {
+        let mut key = set.iter().map(|(path, value)| format!("{path}={value:e} ")).collect::<String>();
+        key += &model.map_or(String::new(), |model| format!("{model:?}"));
         if !self.done.contains_key(&key) {
-            let case = self.case_with(set)?;
+            let mut case = self.case_with(set)?;
+            if let (Some(model), Some(transient)) = (model, &mut case.transient) {
+                *transient = TransientAnalysis { model, compare_steps: None, ..transient.clone() };
+            }
             let prepared = Prepared::new(&case)?;
             let mut histories = Histories::default();
             let mut keep = |stage: Stage<'_>| {
@@ -175,9 +184,13 @@ fn compute(runs: &mut Runs, check: &Check) -> Result<f64> {
             }))
         }
         Kind::GrowthRate => Ok(growth_rate(runs.with(&check.set)?)),
-        Kind::InTime(span, measure) => {
-            let found = in_time::measured(runs.run(&check.set)?, span, *measure);
-            found.ok_or_else(|| missing(check, &span.channel))
+        Kind::InTime { of: span, measure, over_full } => {
+            let mut measured = |model: Option<ModelChoice>| {
+                let found = in_time::measured(runs.run_as(&check.set, model)?, span, *measure);
+                found.ok_or_else(|| missing(check, &span.channel))
+            };
+            let own = measured(None)?;
+            Ok(if *over_full { own / measured(Some(ModelChoice::Full))? } else { own })
         }
         Kind::Rises { parameter, values, of } => {
             let mut levels = Vec::new();

@@ -74,7 +74,14 @@ pub enum Kind {
     /// The largest growth rate of any mode \[1/s\].
     GrowthRate,
     /// What a channel of the run in time does between two times.
-    InTime(Span, Measure),
+    InTime {
+        /// Which and when.
+        of: Span,
+        /// What of it.
+        measure: Measure,
+        /// As a part of what the full model says, for a case whose model is reduced.
+        over_full: bool,
+    },
     /// At how many of the steps from one value of a scalar to the next something rises: the amplitude of a channel between
     /// two times, or the largest growth rate.
     Rises {
@@ -173,7 +180,10 @@ fn read_check(name: &str, s: &Section, reason: &str) -> Check {
     ];
     let parameter = || s.string("parameter").required("the path of a scalar of the case");
     let earlier = || s.quantities("since", TIME).required("two times");
-    let in_time = |measure: Measure| Kind::InTime(read_span(s), measure);
+    let in_time = |measure: Measure| {
+        let over_full = s.boolean("over_full").or(false);
+        Kind::InTime { of: read_span(s), measure, over_full }
+    };
     let kind = match s.choice("kind", &KINDS).required("how it is computed") {
         "onset" => Kind::Onset {
             parameter: parameter(),

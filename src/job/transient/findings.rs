@@ -1,5 +1,6 @@
 //! What a whole record says, read back from its keeper in parts.
 
+use super::recorder::Shown;
 use super::tape::Tape;
 use crate::error::Result;
 use crate::results::{GrowthCompared, SpectrumOf};
@@ -25,16 +26,17 @@ pub(super) struct Findings {
 }
 
 impl Tape<'_, '_> {
-    /// Looks through the record of `rows` rows, `step` seconds apart.
-    pub(super) fn findings(&mut self, rows: usize, step: f64) -> Result<Findings> {
+    /// Looks through the record of `rows` rows, `step` seconds apart; peaks are named up to `top_hz`.
+    pub(super) fn findings(&mut self, rows: usize, step: f64, top_hz: f64) -> Result<Findings> {
         let mut channels = std::mem::take(&mut self.recorder.channels);
         for channel in &mut channels {
             let name = channel.name.clone();
             channel.look(rows, step, |part| self.keeper.recorded(&name, part))?;
         }
         self.recorder.channels = channels;
-        let spectra = self.recorder.shown.map(|channel| self.spectrum_of(channel, rows, step));
-        let spectra = spectra.into_iter().collect::<Result<Vec<SpectrumOf>>>()?;
+        let shown = self.recorder.shown.iter();
+        let spectra =
+            shown.map(|shown| self.spectrum_of(shown, rows, step, top_hz)).collect::<Result<_>>()?;
         Ok(Findings { spectra, growth: self.growth(rows, step)? })
     }
 
@@ -42,19 +44,22 @@ impl Tape<'_, '_> {
         self.keeper.recorded(&self.recorder.channels[channel].name, part)
     }
 
-    /// The spectrum of the second half of a channel.
-    fn spectrum_of(&self, channel: usize, rows: usize, step: f64) -> Result<SpectrumOf> {
+    /// The spectrum of the second half of a channel, and its peaks up to `top_hz`.
+    fn spectrum_of(&self, shown: &Shown, rows: usize, step: f64, top_hz: f64) -> Result<SpectrumOf> {
         let first = rows / 2;
         let length = (rows - first).min(AT_ONCE) * 2 / (SEGMENTS + 1);
         let mut welch = Welch::new(length, step);
         for begin in (first..rows).step_by(AT_ONCE) {
-            welch.take(&self.read(channel, begin..rows.min(begin + AT_ONCE))?);
+            welch.take(&self.read(shown.channel, begin..rows.min(begin + AT_ONCE))?);
         }
         let spectrum = welch.finish();
-        let mut peaks = signal::peaks(&spectrum, FLOOR, PEAKS);
+        let mut lines = spectrum.clone();
+        lines.amplitude.truncate((top_hz / spectrum.resolution_hz) as usize + 1);
+        let mut peaks = signal::peaks(&lines, FLOOR, PEAKS);
         signal::name_peaks(&mut peaks, 0.5 * spectrum.resolution_hz);
         let window = [first as f64 * step, rows.saturating_sub(1) as f64 * step];
-        Ok(SpectrumOf { channel, window, spectrum, peaks })
+        let Shown { channel, measured } = shown.clone();
+        Ok(SpectrumOf { channel, window, spectrum, peaks, measured })
     }
 
     /// How a disturbance grew while it was small.

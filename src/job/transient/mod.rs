@@ -9,6 +9,7 @@ mod findings;
 mod modal;
 mod places;
 mod recorder;
+mod reduced_check;
 mod snapshots;
 mod start;
 mod tape;
@@ -31,11 +32,13 @@ use crate::system::System;
 use crate::transient::{Method, Model, Plan, Profile, Scheme, State, go_on};
 use modal::ModalMotion;
 use recorder::Recorder;
+use reduced_check::{first_steps, reduced_check};
 use snapshots::Snapshots;
 use start::Start;
 use tape::Tape;
 
-/// Spectrograms reach this many times as high as the band of the complex eigenvalues.
+/// Peaks and spectrograms reach this many times as high as the band of the complex eigenvalues: modes above it are neither
+/// damped nor resolved as those in it are.
 const WATCHED: f64 = 1.25;
 
 /// A run in time of `system`, whose modal damping is in it, from its steady state.
@@ -66,6 +69,7 @@ impl InTime<'_> {
         keeper: &mut dyn Keeper,
         observer: &dyn Observer,
     ) -> Result<TransientResult> {
+        let beside = first_steps(self, wanted, &places, observer)?;
         let start = self.start(wanted, &places)?;
         let loadings = self.loadings(wanted)?;
         let Places { mut pushes, mut probes, mut gauges, mut tracks, ears, .. } = places;
@@ -80,7 +84,7 @@ impl InTime<'_> {
                 let forces: Vec<SparseVector> = pushed.chain(stations).cloned().collect();
                 let reduced = reduce(self.system, self.steady, self.real, &forces)?;
                 pushes.iter_mut().for_each(|push| push.direction = reduced.form(&push.direction));
-                probes.iter_mut().for_each(|(_, direction)| *direction = reduced.form(direction));
+                probes.iter_mut().for_each(|probe| probe.direction = reduced.form(&probe.direction));
                 for gauge in &mut gauges {
                     gauge.stiffness = reduced.form(&gauge.stiffness);
                     gauge.damping = reduced.form(&gauge.damping);
@@ -125,24 +129,32 @@ impl InTime<'_> {
         let listener = ears.map(|ears| Listener::new(ears, self.real, plan.step, steps));
         let mass = reduced.is_none().then_some(&self.system.structure.mass);
         let modal = listener.as_ref().map(|_| ModalMotion::new(self.real, mass));
-        let recorder = Recorder::new(system, steady, &model, (probes, gauges), disturbed, modal);
+        let mut recorder = Recorder::new(system, steady, &model, (probes, gauges), disturbed, modal);
+        if let Some(motion) = recorder.shown.first_mut().filter(|shown| shown.measured.is_empty()) {
+            motion.measured = self.complex.measured_squeal_hz.iter().map(|(hz, _)| *hz).collect();
+        }
         let mut tape = Tape::new(recorder, snapshots, keeper);
         let mut marched = tape.begin(start, &model, &plan)?;
         let reached = go_on(&model, &mut marched, &plan, observer, &mut |marched| tape.take(marched));
         let kept = tape.flush(&marched);
         reached.and(kept)?;
         let share = |count: usize| count as f64 / (steps + 1) as f64;
-        let found = tape.findings(steps + 1, plan.step)?;
-        let watched =
-            tape.watched(steps + 1, plan.step, &found.spectra, WATCHED * self.complex.band_hz[1])?;
+        let top = WATCHED * self.complex.band_hz[1];
+        let found = tape.findings(steps + 1, plan.step, top)?;
+        let watched = tape.watched(steps + 1, plan.step, &found.spectra, top)?;
         let sound = listener.map(|listener| tape.heard(listener, steps + 1)).transpose()?;
+        let first = |name: &str, count: usize| tape.keeper.recorded(name, 0..count);
+        let own = (self.steady, self.complex);
+        let check = |reduced| reduced_check(reduced, own, beside.as_ref(), &first, observer);
+        let reduced_check = reduced.as_ref().map(check).transpose()?;
         let recorder = tape.recorder;
         Ok(TransientResult {
             time_step: plan.step,
             rows: steps + 1,
             scheme: words,
             reduced: reduced.as_ref().map(|r| [r.modes, r.basis.ncols() - r.modes]),
-            shown: recorder.shown,
+            reduced_check,
+            shown: recorder.shown.into_iter().map(|shown| shown.channel).collect(),
             open: share(recorder.open),
             backwards: share(recorder.backwards),
             sticking: share(recorder.sticking),

@@ -14,8 +14,8 @@ use crate::transient::{self, Profile, Pulse, Push, Track};
 #[derive(Debug, Clone)]
 pub struct Places {
     pub(super) pushes: Vec<Push>,
-    /// Names and directions.
-    pub(super) probes: Vec<(String, SparseVector)>,
+    /// Where motion is recorded.
+    pub(super) probes: Vec<Probe>,
     /// Load cells.
     pub(super) gauges: Vec<Gauge>,
     /// How the contact points of each pair travel.
@@ -53,17 +53,18 @@ pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Pla
         let direction = reduced(&force.on, format!("`force.{name}.on`"), force.force);
         Some(Push { direction, course: Pulse::Change(profile(Some(course))) })
     }));
-    let (mut probes, mut lost) = (Vec::<(String, SparseVector)>::new(), Vec::new());
+    let (mut probes, mut lost) = (Vec::<Probe>::new(), Vec::new());
     let mut gauges = Vec::new();
     for (name, probe) in &wanted.probe {
         if let Some(spring) = &probe.spring {
-            gauges.push(gauge(prepared, name, spring));
+            let measured = probe.measured.clone();
+            gauges.push(gauge(prepared, name, spring).map(|gauge| Gauge { measured, ..gauge }));
             continue;
         }
         let direction = probe.direction.unwrap_or_default();
         let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
         let direction = direction.map(|d| d / length);
-        let form = match (&probe.on, probe.at) {
+        let direction = match (&probe.on, probe.at) {
             (Some(on), _) => reduced(on, format!("`transient.probe.{name}.on`"), direction),
             (None, at) if !prepared.model.nodes.is_empty() => {
                 nearest(prepared, at.unwrap_or_default(), direction)
@@ -75,12 +76,12 @@ pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Pla
                 continue;
             }
         };
-        probes.push((name.clone(), form));
+        probes.push(Probe { name: name.clone(), direction, measured: probe.measured.clone() });
     }
     lost.into_iter().for_each(|fault| faults.push(fault));
-    for (name, _) in probes.iter().filter(|(_, d)| d.indices().is_empty()) {
+    for probe in probes.iter().filter(|probe| probe.direction.indices().is_empty()) {
         faults.push(Fault::new(
-            format!("`transient.probe.{name}`"),
+            format!("`transient.probe.{}`", probe.name),
             "a place that is held in this direction",
             "one that can move",
         ));
@@ -120,6 +121,15 @@ pub fn profile(course: Option<&Course>) -> Profile {
     }
 }
 
+/// A place whose motion is recorded.
+#[derive(Debug, Clone)]
+pub struct Probe {
+    pub(super) name: String,
+    pub(super) direction: SparseVector,
+    /// Peaks that were measured there \[Hz\].
+    pub(super) measured: Vec<f64>,
+}
+
 /// A spring whose force is recorded.
 #[derive(Debug, Clone)]
 pub struct Gauge {
@@ -129,6 +139,8 @@ pub struct Gauge {
     /// Its force is kᵀu + cᵀv \[N\], positive when its nodes have moved along its direction.
     pub(super) stiffness: SparseVector,
     pub(super) damping: SparseVector,
+    /// Peaks that were measured there \[Hz\].
+    pub(super) measured: Vec<f64>,
 }
 
 /// A spring of the case as a load cell.
@@ -154,5 +166,5 @@ fn gauge(prepared: &Prepared<'_>, name: &str, spring: &str) -> Result<Gauge> {
         prepared.assembled.dofs.reduce(&entries.collect::<Vec<_>>())
     };
     let (stiffness, damping) = (form(set.stiffness), form(set.damping));
-    Ok(Gauge { name: name.to_string(), spring: spring.to_string(), stiffness, damping })
+    Ok(Gauge { name: name.to_string(), spring: spring.to_string(), stiffness, damping, measured: Vec::new() })
 }

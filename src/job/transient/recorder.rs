@@ -2,7 +2,7 @@
 
 use super::along::Along;
 use super::modal::ModalMotion;
-use super::places::Gauge;
+use super::places::{Gauge, Probe};
 use crate::equilibrium::SteadySliding;
 use crate::error::Result;
 use crate::linalg::SparseVector;
@@ -24,8 +24,8 @@ pub(super) struct Recorder<'a> {
     /// The point that carries most at the start.
     point: usize,
     pub(super) channels: Vec<Channel>,
-    /// The channels to show: motion and friction.
-    pub(super) shown: [usize; 2],
+    /// The channels to show: acceleration, friction, and the force in the first load cell, those of them that there are.
+    pub(super) shown: Vec<Shown>,
     /// The channel of the penetration of the most loaded point.
     pub(super) penetration: usize,
     pub(super) along: Option<Along>,
@@ -55,12 +55,19 @@ pub(super) struct Recorder<'a> {
     pub(super) sticking: usize,
 }
 
+/// A channel to show, and the peaks that were measured in its place \[Hz\].
+#[derive(Debug, Clone)]
+pub(super) struct Shown {
+    pub(super) channel: usize,
+    pub(super) measured: Vec<f64>,
+}
+
 impl<'a> Recorder<'a> {
     pub(super) fn new(
         system: &System,
         steady: &'a SteadySliding,
         model: &'a Model<'a>,
-        (mut probes, gauges): (Vec<(String, SparseVector)>, Vec<Gauge>),
+        (mut probes, gauges): (Vec<Probe>, Vec<Gauge>),
         along: Option<Along>,
         modal: Option<ModalMotion>,
     ) -> Self {
@@ -70,24 +77,27 @@ impl<'a> Recorder<'a> {
         if probes.is_empty()
             && let Some((_, place)) = system.points().nth(point)
         {
-            probes.push(("contact".into(), place.tangents[0].clone()));
+            let direction = place.tangents[0].clone();
+            probes.push(Probe { name: "contact".into(), direction, measured: Vec::new() });
         }
         let mut channels = Vec::new();
         let mut add = |name: String, unit: &'static str, about: String| {
             channels.push(Channel::new(name, unit, about));
             channels.len() - 1
         };
-        let mut shown = [0, 0];
-        for (k, (name, _)) in probes.iter().enumerate() {
+        let (mut shown, mut cell) = (Vec::new(), None);
+        for Probe { name, measured, .. } in &probes {
             add(format!("{name}_displacement"), "m", format!("displacement at {name}, from steady sliding"));
-            let velocity = add(format!("{name}_velocity"), "m/s", format!("velocity at {name}"));
-            add(format!("{name}_acceleration"), "m/s^2", format!("acceleration at {name}"));
-            if k == 0 {
-                shown[0] = velocity;
+            add(format!("{name}_velocity"), "m/s", format!("velocity at {name}"));
+            let channel = add(format!("{name}_acceleration"), "m/s^2", format!("acceleration at {name}"));
+            if shown.is_empty() {
+                shown.push(Shown { channel, measured: measured.clone() });
             }
         }
         for gauge in &gauges {
-            add(format!("{}_force", gauge.name), "N", format!("force in the spring {}", gauge.spring));
+            let about = format!("force in the spring {}", gauge.spring);
+            let channel = add(format!("{}_force", gauge.name), "N", about);
+            cell.get_or_insert(Shown { channel, measured: gauge.measured.clone() });
         }
         let gauges = gauges.into_iter().map(|gauge| [gauge.stiffness, gauge.damping]).collect();
         let mut first = 0;
@@ -104,9 +114,10 @@ impl<'a> Recorder<'a> {
             );
             add(format!("{name}_sliding_velocity"), "m/s", format!("velocity of the counter-body of {name}"));
             if k == 0 {
-                shown[1] = friction;
+                shown.push(Shown { channel: friction, measured: Vec::new() });
             }
         }
+        shown.extend(cell);
         let penetration =
             add("penetration".into(), "m", "of the point that carries most in steady sliding".into());
         add("slip_velocity".into(), "m/s", "of the same point along the sliding direction".into());
@@ -131,9 +142,9 @@ impl<'a> Recorder<'a> {
                 format!("{part} part of the amplitude of the disturbed mode, its largest translation");
             if along.is_some() { add(name.into(), "m", about) } else { 0 }
         });
-        let placed = |(_, direction): (String, SparseVector)| {
-            let origin = direction.dot(&steady.displacement);
-            (direction, origin)
+        let placed = |probe: Probe| {
+            let origin = probe.direction.dot(&steady.displacement);
+            (probe.direction, origin)
         };
         let probes = probes.into_iter().map(placed).collect();
         let (origin, moved) = (&steady.displacement, Vec::new());
@@ -213,6 +224,15 @@ impl<'a> Recorder<'a> {
         let watch = self.watch.get_or_insert_with(|| Watch::new(self.model, state));
         watch.look(self.model, state, &mut self.events);
         self.events[earlier..].iter().for_each(|event| self.happened[event.kind as usize] += 1);
+    }
+
+    /// The channels that are drawn over each other: velocity over displacement, friction over slip.
+    pub(super) fn orbits(&self) -> Vec<[usize; 2]> {
+        // The first probe comes first; the slip follows the penetration.
+        let motion = (!self.probes.is_empty()).then_some([0, 1]);
+        let friction = self.shown.get(1).filter(|_| !self.pairs.is_empty());
+        let friction = friction.map(|friction| [self.penetration + 1, friction.channel]);
+        motion.into_iter().chain(friction).collect()
     }
 
     /// How many rows are at hand.

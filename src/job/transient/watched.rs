@@ -2,7 +2,7 @@
 
 use super::tape::Tape;
 use crate::error::Result;
-use crate::results::{ContactHistory, ContactWatch, Orbit, SpectrumOf, Watched};
+use crate::results::{ContactHistory, ContactWatch, Curve, Orbit, SpectrumOf, Watched};
 use crate::signal::{LimitCycle, ShortTime, Spectrogram, limit_cycle};
 
 /// The size of an oscillation is taken from this last part of the run, and from no more steps than these.
@@ -29,11 +29,11 @@ impl Tape<'_, '_> {
             let peak = of.peaks.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude))?;
             Some(peak.frequency_hz)
         };
-        let shown = self.recorder.shown;
+        let shown = &self.recorder.shown;
         let begin = rows - (rows / PART).clamp(1, TAIL).min(rows);
         let mut spectrograms: Vec<(usize, Spectrogram)> = Vec::new();
         let mut cycles: Vec<(usize, LimitCycle)> = Vec::new();
-        for channel in shown {
+        for channel in shown.iter().map(|shown| shown.channel) {
             let mut short = ShortTime::new(rows, step, top_hz);
             for first in (0..rows).step_by(AT_ONCE) {
                 let part = self.read(channel, first..rows.min(first + AT_ONCE))?;
@@ -46,7 +46,8 @@ impl Tape<'_, '_> {
             }
         }
         spectrograms.retain(|(_, spectrogram)| spectrogram.columns() > 0);
-        let orbit = strongest(shown[0]).map(|hz| self.orbit(rows, begin, step, hz)).transpose()?;
+        let hz = shown.first().and_then(|motion| strongest(motion.channel));
+        let orbit = hz.map(|hz| self.orbit(rows, begin, step, hz)).transpose()?;
         Ok(Watched {
             spectrograms,
             cycles,
@@ -63,15 +64,12 @@ impl Tape<'_, '_> {
         let read = |channel: usize| -> Result<Vec<f64>> {
             Ok(self.read(channel, rows - wanted..rows)?.into_iter().step_by(every).collect())
         };
-        let join = |x: Vec<f64>, y: Vec<f64>| x.into_iter().zip(y).map(|(x, y)| [x, y]).collect();
-        let [velocity, friction] = self.recorder.shown;
-        // A displacement stands before its velocity, the slip after the penetration.
-        let displacement = velocity.saturating_sub(1);
-        Ok(Orbit {
-            periods: [wanted as f64 * step * hz, hz],
-            motion: join(read(displacement)?, read(velocity)?),
-            friction: join(read(self.recorder.penetration + 1)?, read(friction)?),
-        })
+        let curve = |[across, up]: [usize; 2]| -> Result<Curve> {
+            let points = read(across)?.into_iter().zip(read(up)?).map(|(x, y)| [x, y]).collect();
+            Ok(Curve { axes: [across, up].map(|channel| self.recorder.channels[channel].heading()), points })
+        };
+        let curves = self.recorder.orbits().into_iter().map(curve).collect::<Result<_>>()?;
+        Ok(Orbit { periods: [wanted as f64 * step * hz, hz], curves })
     }
 
     /// What the contact points that ever touched did.

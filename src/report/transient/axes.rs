@@ -9,7 +9,7 @@ use plotters::prelude::*;
 use std::error::Error;
 use std::ops::Range;
 
-pub(super) const SIZE: (u32, u32) = (980, 640);
+pub(super) const WIDTH: u32 = 980;
 
 pub(super) type Chart<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 

@@ -1,6 +1,6 @@
 //! `transient.svg`: motion, friction and penetration over time.
 
-use super::axes::{SIZE, axes};
+use super::axes::{WIDTH, axes};
 use crate::report::chart::{Area, colour, sheet, widened};
 use crate::report::colours::{ALARM, SECOND};
 use crate::report::format::significant;
@@ -12,8 +12,8 @@ use std::error::Error;
 /// Motion and forces over time.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let run = results.transient.as_ref().filter(|run| run.len() > 1)?;
-    let svg = sheet(SIZE, |area| {
-        let shown = panels(run);
+    let shown = panels(run);
+    let svg = sheet((WIDTH, 180 * shown.len() as u32), |area| {
         let parts = area.split_evenly((shown.len(), 1));
         for (k, (part, channel)) in parts.iter().zip(&shown).enumerate() {
             let ink = if k == 0 { ALARM } else { SECOND };
@@ -21,11 +21,8 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
         }
         Ok(())
     })?;
-    let motion = &run.channels[run.shown[0]].about;
-    let caption = format!(
-        "Motion in time from steady sliding ({}): {motion}; friction; penetration of the point that carries most.",
-        run.scheme
-    );
+    let abouts: Vec<&str> = shown.iter().map(|channel| channel.about.as_str()).collect();
+    let caption = format!("Motion in time ({}): {}.", run.scheme, abouts.join("; "));
     Some(Picture { file: "transient.svg", caption, svg })
 }
 

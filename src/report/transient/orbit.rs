@@ -5,7 +5,7 @@ use crate::report::chart::{Area, colour, sheet, widened};
 use crate::report::colours::{ALARM, MUTED, SECOND};
 use crate::report::format::{fixed, significant};
 use crate::report::html::Picture;
-use crate::results::RunResults;
+use crate::results::{Curve, RunResults};
 use plotters::prelude::*;
 use std::error::Error;
 
@@ -15,24 +15,18 @@ const SIZE: (u32, u32) = (980, 440);
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let run = results.transient.as_ref()?;
     let orbit = &run.watched.orbit;
-    let varies = |points: &[[f64; 2]]| points.iter().any(|p| *p != points[0]);
-    if !varies(&orbit.motion) {
+    let varies = |curve: &&Curve| curve.points.iter().any(|p| *p != curve.points[0]);
+    let shown: Vec<&Curve> = orbit.curves.iter().filter(varies).collect();
+    if shown.is_empty() {
         return None;
     }
-    let motion = &run.channels[run.shown[0]];
-    let friction = &run.channels[run.shown[1]];
-    let place = motion.name.strip_suffix("_velocity").unwrap_or(&motion.name).replace('_', " ");
-    let below = format!("{place} displacement [m]");
-    let slips = run.shown[0] != run.shown[1] && varies(&orbit.friction);
     let svg = sheet(SIZE, |area| {
-        let parts = if slips { area.split_evenly((1, 2)) } else { vec![area.clone()] };
-        curve(&parts[0], &orbit.motion, [&below, &motion.heading()], ALARM)?;
-        if let Some(part) = parts.get(1) {
-            curve(part, &orbit.friction, ["slip velocity [m/s]", &friction.heading()], SECOND)?;
+        for ((part, of), ink) in area.split_evenly((1, shown.len())).iter().zip(&shown).zip([ALARM, SECOND]) {
+            curve(part, of, ink)?;
         }
         Ok(())
     })?;
-    let second = if slips {
+    let second = if shown.len() > 1 {
         " Right: friction over the slip of the point that carries most; left of the line it slips backwards."
     } else {
         ""
@@ -45,7 +39,11 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     Some(Picture { file: "transient_phase.svg", caption, svg })
 }
 
-fn curve(area: &Area, points: &[[f64; 2]], words: [&str; 2], ink: &str) -> Result<(), Box<dyn Error>> {
+fn curve(
+    area: &Area,
+    Curve { axes: [below, beside], points }: &Curve,
+    ink: &str,
+) -> Result<(), Box<dyn Error>> {
     let range = |k: usize| {
         let finite = points.iter().map(|p| p[k]).filter(|v| v.is_finite());
         let (low, high) =
@@ -54,7 +52,6 @@ fn curve(area: &Area, points: &[[f64; 2]], words: [&str; 2], ink: &str) -> Resul
     };
     let (across, up) = (range(0), range(1));
     let label = |v: f64| significant(v, 2);
-    let [below, beside] = words;
     let words = Words { below: Some(below), beside, across: &label, up: &label, labels: 5, grid: true };
     let mut chart = labelled(area, (across.clone(), up.clone()), &words)?;
     if across.contains(&0.0) {

@@ -1,6 +1,6 @@
 //! `sound.svg` and the table: how loud it is.
 
-use super::axes::{SIZE, axes, highest_frequency};
+use super::axes::{WIDTH, axes, highest_frequency};
 use crate::report::chart::{Area, above, bold, colour, sheet, text};
 use crate::report::colours::{ALARM, INK, SECOND};
 use crate::report::format::{fixed, given, significant};
@@ -27,7 +27,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     }
     let heard = sound.microphones.first();
     let end = highest_frequency(run).min(sound.frequency_hz(sound.lines() - 1));
-    let svg = sheet(SIZE, |area| {
+    let svg = sheet((WIDTH, 640), |area| {
         let parts = area.split_evenly((1 + usize::from(heard.is_some()), 1));
         let last = |k: usize| (k + 1 == parts.len()).then_some("frequency [Hz]");
         let [level, weighted] = sound.power_levels();

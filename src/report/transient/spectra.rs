@@ -1,6 +1,6 @@
 //! `transient_spectrum.svg`: motion and friction over frequency.
 
-use super::axes::{Chart, SIZE, axes, highest_frequency};
+use super::axes::{Chart, WIDTH, axes, highest_frequency};
 use crate::report::chart::{Area, above, bold, colour, sheet, text};
 use crate::report::colours::{ALARM, INK, MEASURED, SECOND};
 use crate::report::format::{fixed, given, significant};
@@ -20,12 +20,12 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let shown: Vec<&SpectrumOf> = run.spectra.iter().filter(known).collect();
     let first = shown.first()?;
     let end = highest_frequency(run);
-    let measured = squeal(results);
-    let svg = sheet(SIZE, |area| {
+    let measured = shown.iter().any(|of| !of.measured.is_empty());
+    let svg = sheet((WIDTH, 320 * shown.len() as u32), |area| {
         for (k, (part, of)) in area.split_evenly((shown.len(), 1)).iter().zip(&shown).enumerate() {
             let ink = if k == 0 { ALARM } else { SECOND };
             let below = (k + 1 == shown.len()).then_some("frequency [Hz]");
-            lines(part, (of, &run.channels[of.channel]), end, ink, &measured, below)?;
+            lines(part, (of, &run.channels[of.channel]), end, ink, below)?;
         }
         Ok(())
     })?;
@@ -35,7 +35,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
         given(begin),
         given(stop),
         significant(first.spectrum.resolution_hz, 3)
-    ) + if measured.is_empty() { "" } else { " Blue: measured squeal." };
+    ) + if measured { " Blue: measured." } else { "" };
     Some(Picture { file: "transient_spectrum.svg", caption, svg })
 }
 
@@ -44,7 +44,6 @@ fn lines(
     (of, channel): (&SpectrumOf, &Channel),
     end: f64,
     ink: &str,
-    measured: &[f64],
     below: Option<&str>,
 ) -> Result<(), Box<dyn Error>> {
     let amplitude = &of.spectrum.amplitude;
@@ -53,7 +52,7 @@ fn lines(
     let heading = channel.heading();
     let mut chart =
         axes(area, (0.0..end, floor..top), below, &heading, |v| format!("{:.0e}", 10f64.powf(v)))?;
-    mark(area, &mut chart, measured, end, floor..top)?;
+    mark(area, &mut chart, &of.measured, end, floor..top)?;
     let line = amplitude
         .iter()
         .enumerate()
@@ -76,12 +75,7 @@ fn lines(
     Ok(())
 }
 
-/// Frequencies at which squeal was measured \[Hz\].
-pub(super) fn squeal(results: &RunResults) -> Vec<f64> {
-    results.complex.iter().flat_map(|complex| &complex.measured_squeal_hz).map(|(hz, _)| *hz).collect()
-}
-
-/// Lines at the frequencies of measured squeal, each with its figure at the head, lower where it would hide another.
+/// Lines at measured frequencies, each with its figure at the head, lower where it would hide another.
 fn mark(
     area: &Area,
     chart: &mut Chart,

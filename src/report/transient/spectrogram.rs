@@ -1,8 +1,7 @@
 //! `transient_spectrogram.svg`: which frequencies sound when.
 
-use super::axes::{Words, highest_frequency, labelled};
+use super::axes::{WIDTH, Words, highest_frequency, labelled};
 use super::raster::image;
-use super::spectra::squeal;
 use crate::report::chart::{Area, colour, sheet, text};
 use crate::report::colours::{INK, MEASURED, sequential};
 use crate::report::format::{given, significant};
@@ -13,7 +12,6 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::error::Error;
 
-const SIZE: (u32, u32) = (980, 720);
 /// Decades between the lightest and the darkest colour.
 const DECADES: f64 = 3.0;
 /// Columns that the colour bar takes.
@@ -22,28 +20,25 @@ const BAR: u32 = 110;
 /// Motion and friction over time and frequency.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let run = results.transient.as_ref()?;
-    let shown: Vec<(&Channel, &Spectrogram)> = run
-        .watched
-        .spectrograms
-        .iter()
-        .map(|(k, s)| (&run.channels[*k], s))
-        .filter(|(_, s)| alive(s))
-        .collect();
+    let shown: Vec<&(usize, Spectrogram)> =
+        run.watched.spectrograms.iter().filter(|(_, s)| alive(s)).collect();
     let (_, first) = shown.first()?;
     let (end, duration) = (highest_frequency(run), run.len().saturating_sub(1) as f64 * run.time_step);
-    let measured = squeal(results);
+    let measured = |channel: usize| -> &[f64] {
+        run.spectra.iter().find(|of| of.channel == channel).map_or(&[], |of| &of.measured)
+    };
     let mut images = String::new();
-    let svg = sheet(SIZE, |area| {
+    let svg = sheet((WIDTH, 360 * shown.len() as u32), |area| {
         for (k, (part, (channel, of))) in area.split_evenly((shown.len(), 1)).iter().zip(&shown).enumerate() {
             let below = (k + 1 == shown.len()).then_some("time [s]");
-            images += &panel(part, channel, of, [duration, end], &measured, below)?;
+            images += &panel(part, &run.channels[*channel], of, [duration, end], measured(*channel), below)?;
         }
         Ok(())
     })?;
     // Right after the white sheet, so that axes and marks lie on the colours.
     let at = svg.find("/>").map_or(0, |at| at + 2);
     let svg = format!("{}\n{images}{}", &svg[..at], &svg[at..]);
-    let blue = if measured.is_empty() { "" } else { " Blue: measured squeal." };
+    let blue = if run.spectra.iter().all(|of| of.measured.is_empty()) { "" } else { " Blue: measured." };
     let caption = format!(
         "Spectrograms (Hann window of {} s, amplitude of a sine, three decades below the highest).{blue}",
         significant(first.segment, 2)
@@ -55,7 +50,7 @@ fn highest(of: &Spectrogram) -> f64 {
     of.amplitude.iter().filter(|a| a.is_finite()).fold(0.0, |m: f64, a| m.max(*a))
 }
 
-fn alive(of: &&Spectrogram) -> bool {
+fn alive(of: &Spectrogram) -> bool {
     of.rows > 2 && highest(of) > 0.0
 }
 
@@ -68,7 +63,7 @@ fn panel(
     measured: &[f64],
     below: Option<&str>,
 ) -> Result<String, Box<dyn Error>> {
-    let (main, bar) = area.split_horizontally(SIZE.0 - BAR);
+    let (main, bar) = area.split_horizontally(WIDTH - BAR);
     let rows = (1 + (end / of.resolution_hz) as usize).clamp(3, of.rows);
     let top = (rows as f64 - 0.5) * of.resolution_hz;
     let words =

@@ -1,9 +1,12 @@
 //! The figures of a run in time.
 
-use crate::report::format::{fixed, power, signed, significant};
+use crate::report::format::{fixed, given, power, signed, significant};
 use crate::report::tables::Table;
 use crate::results::TransientResult;
 use std::f64::consts::TAU;
+
+/// A measured peak stands beside one that differs from it by less than this part.
+const NEAR: f64 = 0.05;
 
 /// The figures of a run in time.
 pub(in crate::report) fn table(run: &TransientResult) -> Table {
@@ -14,7 +17,7 @@ pub(in crate::report) fn table(run: &TransientResult) -> Table {
             power(run.time_step),
             run.scheme
         ),
-        &["<spectrum of", "peak [Hz]", "amplitude", "<unit", "<is"],
+        &["<spectrum of", "peak [Hz]", "amplitude", "<unit", "measured [Hz]", "<is"],
     );
     for of in &run.spectra {
         let channel = &run.channels[of.channel];
@@ -24,6 +27,7 @@ pub(in crate::report) fn table(run: &TransientResult) -> Table {
                 fixed(peak.frequency_hz, 1),
                 significant(peak.amplitude, 3),
                 channel.unit.to_string(),
+                near(&of.measured, peak.frequency_hz),
                 peak.relation.clone(),
             ];
             table.row(cells, false);
@@ -87,4 +91,11 @@ pub(in crate::report) fn table(run: &TransientResult) -> Table {
         ));
     }
     table
+}
+
+/// The measured peak that is nearest to a frequency, if it is near.
+fn near(measured: &[f64], hz: f64) -> String {
+    let away = |other: &f64| (other / hz - 1.0).abs();
+    let nearest = measured.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
+    nearest.filter(|other| away(other) < NEAR).map_or(String::new(), |hz| given(*hz))
 }

@@ -1,0 +1,62 @@
+//! The table that sets a reduced model beside the full one.
+
+use super::format::{fixed, power};
+use super::tables::Table;
+use crate::results::{ComplexResult, Deviation, ReducedCheck};
+
+/// The largest deviations, one a row.
+pub(super) fn table(check: &ReducedCheck, complex: Option<&ComplexResult>) -> Table {
+    let mut table =
+        Table::new("Reduced model beside the full one", &["<largest deviation of", "relative", "<at"]);
+    let mode = |of: &Deviation| {
+        let modes = complex.and_then(|c| c.modes.modes.get(of.mode));
+        modes.map_or(String::new(), |mode| {
+            format!("mode {}, {} Hz", of.mode + 1, fixed(mode.frequency_hz(), 1))
+        })
+    };
+    let mut row = |what: String, value: f64, place: String| table.row(vec![what, power(value), place], false);
+    let [modes, found] = check.modes;
+    if let Some(of) = &check.eigenvalue {
+        row(format!("λ, of {found} complex modes"), of.relative, mode(of));
+    }
+    if let Some(of) = &check.growth {
+        row("growth rate".into(), of.relative, mode(of));
+    }
+    if let Some(motion) = &check.motion {
+        let place = format!("in {} steps, of its span", motion.steps);
+        if let Some(value) = motion.displacement {
+            row(format!("displacement at {}", motion.probe), value, place.clone());
+        }
+        if let Some(value) = motion.normal_force {
+            row("normal force".into(), value, place);
+        }
+        if motion.displacement.is_none() && motion.normal_force.is_none() {
+            table
+                .notes
+                .push(format!("Nothing moved in the first {} steps, which are compared.", motion.steps));
+        }
+    }
+    if found < modes {
+        table.notes.push(format!("{} of {modes} complex modes are not in the reduced model.", modes - found));
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::sample;
+
+    #[test]
+    fn deviations_stand_beside_their_modes_and_what_is_missing_is_said() {
+        let results = sample::rig();
+        let mut check = results.transient.unwrap().reduced_check.unwrap();
+        let rows = table(&check, results.complex.as_ref()).rows;
+        assert_eq!(rows.len(), 3);
+        assert!(rows[1].cells[2].starts_with("mode 4, ") && rows[2].cells[0] == "displacement at rim");
+        check.modes = [14, 12];
+        check.motion.as_mut().unwrap().displacement = None;
+        let notes = table(&check, None).notes;
+        assert!(notes[0].starts_with("Nothing moved") && notes[1].starts_with("2 of 14"), "{notes:?}");
+    }
+}
