@@ -203,7 +203,7 @@ fn left(out: &Path, whole: &[(String, Vec<u64>)]) -> Option<usize> {
 fn a_killed_run_opens_and_goes_on_bit_for_bit() {
     let folder = TempDir::new().expect("a temporary folder");
     let at = folder.path();
-    let reduced = BLOCK.replace("[transient]\n", "[transient]\nmodel = \"reduced\"\n");
+    let reduced = BLOCK.replace("[transient]\n", "[transient]\nmodel = \"reduced\"\ntolerance = 1e-5\n");
     std::fs::write(at.join("full.toml"), BLOCK).expect("a case");
     std::fs::write(at.join("reduced.toml"), reduced).expect("a case");
     std::fs::write(at.join("disc.toml"), DISC).expect("a case");
@@ -229,6 +229,7 @@ fn a_killed_run_opens_and_goes_on_bit_for_bit() {
         assert!(said(&at.join(&out)) == *whole, "killed at {moment} of the time: {rows:?} rows were left");
         std::fs::remove_dir_all(at.join(&out)).expect("it is there");
     }
+    assert!(wholes[1].1.1["transient"]["steps_split"].as_u64() > Some(0), "the tolerance splits no step");
     assert!(wholes[2].1.1["transient"]["sound"]["power_level_db"].as_f64() > Some(40.0));
     let events = wholes[0].1.1["transient"]["events"].clone();
     assert!(["opens", "closes", "turns"].iter().all(|kind| events[kind].as_u64() > Some(0)), "{events}");

@@ -313,3 +313,73 @@ fn square_plate_buckles_at_four() {
     let k = critical / (std::f64::consts::PI.powi(2) * rigidity);
     assert!((k - 4.0).abs() < 0.02, "{k}");
 }
+
+/// A disc held at its hub, as a case.
+const IN_TIME: &str = r#"
+[mesh.annulus]
+outer_radius = "75 mm"
+hub_radius = "15 mm"
+radial = 4
+around = 16
+[material.steel]
+youngs_modulus = "210 GPa"
+poissons_ratio = 0.3
+density = "7850 kg/m^3"
+[shell.disc]
+material = "steel"
+thickness = "1 mm"
+bending_only = true
+[support.hub]
+on = "hub"
+"#;
+
+/// A plate that starts along a real mode stays along it, and its amplitude follows the scheme's recursion: from the
+/// balance α-weighted between two steps, (1−α_m) a₁ + α_m a₀ + ω²((1−α_f) u₁ + α_f u₀) = 0 (J. Chung & G. M. Hulbert,
+/// J. Appl. Mech. 60 (1993) 371), whose error falls with the square of the step.
+#[test]
+fn a_plate_vibrates_in_time_as_its_modes_say() {
+    use stridor::equilibrium::{SteadyOptions, solve_steady};
+    use stridor::linalg::c64;
+    use stridor::transient::{Method, Model, Plan, Scheme, State, march};
+    let case = stridor::case::Case::parse("disc", IN_TIME, ".".into()).expect("a case");
+    let prepared = stridor::job::Prepared::new(&case).expect("a model");
+    let system = &prepared.system;
+    let (real, _) = stridor::modal::compute(&system.structure, stridor::modal::ModesWanted::Count(6), &())
+        .expect("modes");
+    let steady = solve_steady(system, &SteadyOptions::default(), &()).expect("nothing loads it");
+    let model = Model::new(system, &steady).expect("a model");
+    for mode in [0, 2, 5] {
+        let (shape, omega) = (real.shapes.col_as_slice(mode), real.eigenvalues[mode].sqrt());
+        let along: Vec<c64> = shape.iter().map(|x| c64::new(*x, 0.0)).collect();
+        for scheme in [Scheme::TRAPEZOIDAL, Scheme::hht(-0.1)] {
+            let errors = [64, 128].map(|steps| {
+                let step = 1.25 * std::f64::consts::TAU / (omega * steps as f64);
+                let start =
+                    State::steady(&model, &steady).disturbed(&model, c64::new(0.0, omega), &along, 1e-6);
+                let plan = Plan { scheme, step, steps, method: Method::Condensed, tolerance: None };
+                let end = march(&model, start, &plan, &(), &mut |_| Ok(())).expect("a march");
+                let u = end.state.motion.col_as_slice(0);
+                let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
+                let amplitude = dot(u, shape) / dot(shape, shape);
+                let aside = u.iter().zip(shape).map(|(u, x)| (u - amplitude * x).abs()).fold(0.0, f64::max);
+                let largest = 1e-6 * shape.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+                assert!(aside < 1e-7 * largest, "mode {mode}: {aside:e} beside {largest:e}");
+                // The same for one degree of freedom: [u, v, a] in units of the step.
+                let w = (omega * step).powi(2);
+                let Scheme { alpha_m, alpha_f, beta, gamma } = scheme;
+                let (mut x, mut v, mut a) = (1e-6, 0.0, -1e-6 * w);
+                for _ in 0..steps {
+                    let (xp, vp) = (x + v + (0.5 - beta) * a, v + (1.0 - gamma) * a);
+                    let next = -(alpha_m * a + w * ((1.0 - alpha_f) * xp + alpha_f * x))
+                        / (1.0 - alpha_m + w * (1.0 - alpha_f) * beta);
+                    (x, v, a) = (xp + beta * next, vp + gamma * next, next);
+                }
+                assert!((amplitude - x).abs() < 1e-13, "mode {mode}: {amplitude:e} {x:e}");
+                // cos(2.5 π) = 0.
+                amplitude.abs()
+            });
+            let order = (errors[0] / errors[1]).log2();
+            assert!((order - 2.0).abs() < 0.1, "mode {mode}, {scheme:?}: {order}");
+        }
+    }
+}

@@ -373,7 +373,7 @@ fn transient() -> TransientResult {
         let spectrum = crate::signal::spectrum(&records[channel].2[steps / 2..], step, 1000);
         let peaks = crate::signal::peaks(&spectrum, 1e-2, 5);
         let measured = if channel == 0 { vec![936.0, 1661.0, 2600.0] } else { Vec::new() };
-        SpectrumOf { channel, window: [0.04, 0.08], spectrum, peaks, measured }
+        SpectrumOf { channel, window: [0.04, 0.08], spectrum, peaks, measured, beyond: None }
     });
     let short = |k: usize| (k, crate::signal::spectrogram(&records[k].2, step, 4000.0));
     let cycle = |k: usize| crate::signal::limit_cycle(&records[k].2[3000..], step, 1668.0).map(|c| (k, c));

@@ -152,6 +152,8 @@ pub struct SpectrumOf {
     pub peaks: Vec<Peak>,
     /// Those that were measured \[Hz\], if any.
     pub measured: Vec<f64>,
+    /// Where the highest line is \[Hz\], when that is beyond the modes of the case.
+    pub beyond: Option<f64>,
 }
 
 /// The growth of a small disturbance beside the complex mode that it started along.

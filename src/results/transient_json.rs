@@ -28,6 +28,7 @@ pub(super) fn transient(result: &TransientResult) -> Value {
             "resolution_hz": of.spectrum.resolution_hz,
             "peaks": peaks,
             "measured_hz": of.measured,
+            "strongest_beyond_hz": of.beyond,
         })
     };
     let growth = result.growth.as_ref().map(|g| {

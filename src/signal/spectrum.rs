@@ -18,6 +18,12 @@ impl Spectrum {
         k as f64 * self.resolution_hz
     }
 
+    /// The highest line; the mean, which is taken off, does not count. `None` where all are zero.
+    pub fn strongest(&self) -> Option<usize> {
+        let lines = self.amplitude.iter().enumerate().skip(1).filter(|(_, a)| **a > 0.0);
+        lines.max_by(|a, b| a.1.total_cmp(b.1)).map(|(k, _)| k)
+    }
+
     /// What line k adds to the mean square of the record, ½a²/1.5 under a Hann window: a sine spreads over three or four
     /// lines, whose sum is its mean square.
     pub fn mean_square(&self, k: usize) -> f64 {
@@ -103,6 +109,8 @@ mod tests {
         let mut welch = Welch::new(4000, step);
         record.chunks(777).for_each(|piece| welch.take(piece));
         assert_eq!(welch.finish(), whole);
+        assert!((whole.frequency_hz(whole.strongest().unwrap()) - 1661.3).abs() < 0.51 * whole.resolution_hz);
+        assert!(Spectrum::default().strongest().is_none());
         let sum: f64 = (0..whole.amplitude.len()).map(|k| whole.mean_square(k)).sum();
         let exact: f64 = parts.iter().map(|(_, a)| 0.5 * a * a).sum();
         assert!((sum / exact - 1.0).abs() < 1e-3, "{sum} {exact}");

@@ -19,6 +19,8 @@ pub(super) fn measured(run: &Run, span: &Span, measure: Measure) -> Option<f64> 
         Measure::Lowest => record.lowest(),
         Measure::Period => record.period(),
         Measure::Rise => record.rise(),
+        Measure::Tone => record.tone().amplitude,
+        Measure::ToneFrequency => record.tone().frequency_hz,
     })
 }
 

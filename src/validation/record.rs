@@ -1,5 +1,10 @@
 //! What a channel of a run in time does between two times.
 
+use crate::signal::{self, Peak};
+
+/// Lines among which the strongest is looked for.
+const LINES: usize = 8;
+
 /// The part of a channel that is looked at.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Record<'a> {
@@ -63,6 +68,16 @@ impl<'a> Record<'a> {
         times.iter().sum::<f64>() / times.len() as f64
     }
 
+    /// The strongest line; not a number where there is none.
+    pub(super) fn tone(&self) -> Peak {
+        let spectrum = signal::spectrum(self.values, self.step, self.values.len());
+        let strongest = signal::peaks(&spectrum, 0.1, LINES)
+            .into_iter()
+            .max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
+        let none = Peak { frequency_hz: f64::NAN, amplitude: f64::NAN, relation: String::new() };
+        strongest.unwrap_or(none)
+    }
+
     /// Where the values rise through the middle of their span, in samples, between them by a straight line.
     fn crossings(&self) -> Vec<f64> {
         let middle = 0.5 * (self.highest() + self.lowest());
@@ -87,6 +102,10 @@ mod tests {
         };
         let values: Vec<f64> = (0..5000).map(|k| at(1e-3 * k as f64)).collect();
         let record = Record::new(&values, 1e-3, [1.0, 4.0]);
+        // b₁ = A/(π² d (1 − d)) sin πd of a triangle with rise d = 0.75 and amplitude A = 1, times 2.
+        let line = 2.0 * (0.75 * std::f64::consts::PI).sin() / (std::f64::consts::PI.powi(2) * 0.75 * 0.25);
+        assert!((record.tone().frequency_hz - 2.5).abs() < 1e-3, "{:?}", record.tone());
+        assert!((record.tone().amplitude / line - 1.0).abs() < 2e-3, "{:?} {line}", record.tone());
         assert!((record.period() - 0.4).abs() < 1e-9 && (record.rise() - 0.3).abs() < 1.1e-3);
         assert!((record.amplitude() - 1.0).abs() < 0.02 && (record.highest() - 3.0).abs() < 0.02);
         let short = Record::new(&values, 1e-3, [1.0, 1.2]);

@@ -130,6 +130,10 @@ pub enum Measure {
     Lowest,
     /// Its period \[s\].
     Period,
+    /// The amplitude of its strongest line.
+    Tone,
+    /// The frequency of its strongest line \[Hz\].
+    ToneFrequency,
     /// The time from its lowest value in a period to the next highest \[s\].
     Rise,
 }
@@ -157,7 +161,7 @@ pub fn read(folder: &Path) -> Result<Reference> {
 }
 
 fn read_check(name: &str, s: &Section, reason: &str) -> Check {
-    const KINDS: [&str; 19] = [
+    const KINDS: [&str; 21] = [
         "value",
         "onset",
         "largest_growth",
@@ -177,6 +181,8 @@ fn read_check(name: &str, s: &Section, reason: &str) -> Check {
         "lowest",
         "period",
         "rise_time",
+        "tone",
+        "tone_frequency",
     ];
     let parameter = || s.string("parameter").required("the path of a scalar of the case");
     let earlier = || s.quantities("since", TIME).required("two times");
@@ -212,6 +218,8 @@ fn read_check(name: &str, s: &Section, reason: &str) -> Check {
         "lowest" => in_time(Measure::Lowest),
         "period" => in_time(Measure::Period),
         "rise_time" => in_time(Measure::Rise),
+        "tone" => in_time(Measure::Tone),
+        "tone_frequency" => in_time(Measure::ToneFrequency),
         "annulus" => Kind::Annulus {
             modes: s.string("modes").required("the name of an analysis"),
             part: s.string("part").required("the name of a shell"),

@@ -55,11 +55,12 @@ impl Tape<'_, '_> {
         let spectrum = welch.finish();
         let mut lines = spectrum.clone();
         lines.amplitude.truncate((top_hz / spectrum.resolution_hz) as usize + 1);
+        let beyond = spectrum.strongest().map(|k| spectrum.frequency_hz(k)).filter(|hz| *hz > top_hz);
         let mut peaks = signal::peaks(&lines, FLOOR, PEAKS);
         signal::name_peaks(&mut peaks, 0.5 * spectrum.resolution_hz);
         let window = [first as f64 * step, rows.saturating_sub(1) as f64 * step];
         let Shown { channel, measured } = shown.clone();
-        Ok(SpectrumOf { channel, window, spectrum, peaks, measured })
+        Ok(SpectrumOf { channel, window, spectrum, peaks, measured, beyond })
     }
 
     /// How a disturbance grew while it was small.

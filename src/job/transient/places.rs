@@ -7,6 +7,7 @@ use crate::job::prepared::Prepared;
 use crate::job::sound::{Ears, ears};
 use crate::job::travel::tracks;
 use crate::linalg::SparseVector;
+use crate::structure::ShellPart;
 use crate::system::ContactPair;
 use crate::transient::{self, Profile, Pulse, Push, Track};
 
@@ -64,8 +65,10 @@ pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Pla
         let direction = probe.direction.unwrap_or_default();
         let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
         let direction = direction.map(|d| d / length);
-        let direction = match (&probe.on, probe.at) {
-            (Some(on), _) => reduced(on, format!("`transient.probe.{name}.on`"), direction),
+        let (place, direction) = match (&probe.on, probe.at) {
+            (Some(on), _) => {
+                (format!("region {on}"), reduced(on, format!("`transient.probe.{name}.on`"), direction))
+            }
             (None, at) if !prepared.model.nodes.is_empty() => {
                 nearest(prepared, at.unwrap_or_default(), direction)
             }
@@ -76,7 +79,7 @@ pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Pla
                 continue;
             }
         };
-        probes.push(Probe { name: name.clone(), direction, measured: probe.measured.clone() });
+        probes.push(Probe { name: name.clone(), place, direction, measured: probe.measured.clone() });
     }
     lost.into_iter().for_each(|fault| faults.push(fault));
     for probe in probes.iter().filter(|probe| probe.direction.indices().is_empty()) {
@@ -98,13 +101,17 @@ pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Pla
     faults.into_result(Places { pushes, probes, gauges, tracks, still, ears })
 }
 
-/// The motion of the node nearest to a place along a direction.
-fn nearest(prepared: &Prepared<'_>, place: [f64; 3], direction: [f64; 3]) -> SparseVector {
+/// The node nearest to a place, in words, and its motion along a direction.
+fn nearest(prepared: &Prepared<'_>, place: [f64; 3], direction: [f64; 3]) -> (String, SparseVector) {
     let away = |node: &[f64; 3]| (0..3).map(|k| (node[k] - place[k]).powi(2)).sum::<f64>();
     let nodes = prepared.model.nodes.iter().enumerate();
     let node = nodes.min_by(|a, b| away(a.1).total_cmp(&away(b.1))).map_or(0, |(node, _)| node);
     let entries: Vec<_> = direction.iter().enumerate().map(|(axis, d)| (node, axis, *d)).collect();
-    prepared.assembled.dofs.reduce(&entries)
+    let own = |part: &&ShellPart| part.faces.iter().any(|face| face.nodes().contains(&node));
+    let part = prepared.model.shells.iter().find(own);
+    let part = part.map_or(String::new(), |part| format!(" of {}", part.name));
+    let far = 1e3 * away(&prepared.model.nodes[node]).sqrt();
+    (format!("a node{part}, {far:.1} mm from the place"), prepared.assembled.dofs.reduce(&entries))
 }
 
 /// How something runs in time.
@@ -125,6 +132,8 @@ pub fn profile(course: Option<&Course>) -> Profile {
 #[derive(Debug, Clone)]
 pub struct Probe {
     pub(super) name: String,
+    /// Where it is, in words.
+    pub(super) place: String,
     pub(super) direction: SparseVector,
     /// Peaks that were measured there \[Hz\].
     pub(super) measured: Vec<f64>,

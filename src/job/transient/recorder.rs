@@ -78,7 +78,8 @@ impl<'a> Recorder<'a> {
             && let Some((_, place)) = system.points().nth(point)
         {
             let direction = place.tangents[0].clone();
-            probes.push(Probe { name: "contact".into(), direction, measured: Vec::new() });
+            let place = "the point that carries most".into();
+            probes.push(Probe { name: "contact".into(), place, direction, measured: Vec::new() });
         }
         let mut channels = Vec::new();
         let mut add = |name: String, unit: &'static str, about: String| {
@@ -86,10 +87,15 @@ impl<'a> Recorder<'a> {
             channels.len() - 1
         };
         let (mut shown, mut cell) = (Vec::new(), None);
-        for Probe { name, measured, .. } in &probes {
-            add(format!("{name}_displacement"), "m", format!("displacement at {name}, from steady sliding"));
-            add(format!("{name}_velocity"), "m/s", format!("velocity at {name}"));
-            let channel = add(format!("{name}_acceleration"), "m/s^2", format!("acceleration at {name}"));
+        for Probe { name, place, measured, .. } in &probes {
+            add(
+                format!("{name}_displacement"),
+                "m",
+                format!("displacement at {name} ({place}), from steady sliding"),
+            );
+            add(format!("{name}_velocity"), "m/s", format!("velocity at {name} ({place})"));
+            let channel =
+                add(format!("{name}_acceleration"), "m/s^2", format!("acceleration at {name} ({place})"));
             if shown.is_empty() {
                 shown.push(Shown { channel, measured: measured.clone() });
             }

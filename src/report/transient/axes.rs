@@ -47,6 +47,9 @@ pub(super) fn labelled<'a>(
     (across, up): (Range<f64>, Range<f64>),
     words: &Words,
 ) -> Result<Chart<'a>, Box<dyn Error>> {
+    // A tick that is zero but for round-off.
+    let clean = |v: f64, of: &Range<f64>| if v.abs() < 1e-9 * (of.end - of.start) { 0.0 } else { v };
+    let (wide, high) = (across.clone(), up.clone());
     let mut chart = ChartBuilder::on(area)
         .margin_left(16)
         .margin_right(20)
@@ -65,8 +68,8 @@ pub(super) fn labelled<'a>(
         .y_desc(words.beside)
         .x_labels(words.labels)
         .y_labels(5)
-        .x_label_formatter(&|x| (words.across)(*x))
-        .y_label_formatter(&|y| (words.up)(*y))
+        .x_label_formatter(&|x| (words.across)(clean(*x, &wide)))
+        .y_label_formatter(&|y| (words.up)(clean(*y, &high)))
         .draw()?;
     Ok(chart)
 }

@@ -38,9 +38,8 @@ fn panels(run: &TransientResult) -> Vec<&Channel> {
 fn panel(area: &Area, channel: &Channel, end: f64, ink: &str, last: bool) -> Result<(), Box<dyn Error>> {
     let [low, high] = channel.range;
     let below = last.then_some("time [s]");
-    // A tick that is zero but for round-off.
-    let label = |v: f64| significant(if v.abs() < 1e-9 * (high - low) { 0.0 } else { v }, 3);
-    let mut chart = axes(area, (0.0..end, widened(low, high, 0.08)), below, &channel.heading(), label)?;
+    let ranges = (0.0..end, widened(low, high, 0.08));
+    let mut chart = axes(area, ranges, below, &channel.heading(), |v| significant(v, 3))?;
     let line = PathElement::new(channel.line.clone(), colour(ink).stroke_width(2));
     chart.draw_series([line])?;
     Ok(())

@@ -51,7 +51,7 @@ fn curve(
         widened(low, high, 0.08)
     };
     let (across, up) = (range(0), range(1));
-    let label = |v: f64| significant(v, 2);
+    let label = |v: f64| significant(v, 3);
     let words = Words { below: Some(below), beside, across: &label, up: &label, labels: 5, grid: true };
     let mut chart = labelled(area, (across.clone(), up.clone()), &words)?;
     if across.contains(&0.0) {

@@ -15,7 +15,7 @@ use std::error::Error;
 /// Decades between the lightest and the darkest colour.
 const DECADES: f64 = 3.0;
 /// Columns that the colour bar takes.
-const BAR: u32 = 110;
+const BAR: u32 = 140;
 
 /// Motion and friction over time and frequency.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {

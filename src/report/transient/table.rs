@@ -33,6 +33,15 @@ pub(in crate::report) fn table(run: &TransientResult) -> Table {
             table.row(cells, false);
         }
     }
+    for of in &run.spectra {
+        let name = run.channels[of.channel].name.replace('_', " ");
+        table.notes.extend(of.beyond.map(|hz| {
+            format!(
+                "The strongest line of {name} is at {} Hz, beyond the modes of the case, where a ratio given for them damps nothing: give [cea] a wider band or the materials `rayleigh` damping.",
+                fixed(hz, 0)
+            )
+        }));
+    }
     if let Some([modes, attached]) = run.reduced {
         table.notes.push(format!(
             "Reduced model: {modes} real modes and {attached} shapes for the static response to contacts and forces."
