@@ -5,6 +5,7 @@
 //! ([`Case::to_toml`]) reads back as the same case.
 
 mod explore;
+mod frf;
 mod parameter;
 mod read;
 pub(crate) mod reader;
@@ -12,6 +13,7 @@ mod sound;
 mod transient;
 pub(crate) mod units;
 
+pub use frf::{FrfAnalysis, FrfContact, FrfQuantity, FrfSolution, MotionAt};
 pub(crate) use parameter::path_matches;
 pub use parameter::{Invalidates, Parameter};
 pub(crate) use read::DOF_NAMES;
@@ -89,6 +91,9 @@ pub struct Case {
     /// Motion in time, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub transient: Option<TransientAnalysis>,
+    /// Frequency responses by name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub frf: BTreeMap<String, FrfAnalysis>,
     /// Complex eigenvalues along one scalar, by name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub sweep: BTreeMap<String, SweepAnalysis>,

@@ -97,6 +97,7 @@ fn read_root(root: &Section, folder: PathBuf) -> Case {
         cea: root.section("cea", read_cea),
         sensitivity: root.section("sensitivity", read_sensitivity),
         transient: root.section("transient", super::transient::read),
+        frf: collect(root, "frf", super::frf::read),
         sweep: BTreeMap::new(),
         map: BTreeMap::new(),
     };

@@ -54,6 +54,8 @@ enum Action {
     Sweep(analyse::Options),
     /// Complex eigenvalues, and motion in time from steady sliding
     Transient(analyse::Options),
+    /// Frequency responses: motion at some places for a harmonic force at another
+    Frf(analyse::Options),
     /// Check a case and its mesh without running it, and list its parameters
     Check(check::Options),
     /// Write M, C, K, the degrees of freedom and the contact points of a case, for other programs
@@ -95,6 +97,7 @@ fn act(command: &Command) -> Result<ExitCode> {
         Action::Sensitivity(options) => analyse::run(options, common, crate::job::Selection::SENSITIVITY),
         Action::Sweep(options) => analyse::run(options, common, crate::job::Selection::SWEEPS),
         Action::Transient(options) => analyse::run(options, common, crate::job::Selection::TRANSIENT),
+        Action::Frf(options) => analyse::run(options, common, crate::job::Selection::FRF),
         Action::Check(options) => check::run(options, common),
         Action::Export(options) => export::run(options, common),
         Action::New(options) => new::run(options, common),

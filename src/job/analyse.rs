@@ -3,6 +3,7 @@
 use super::clock::Clock;
 use super::complex::{complex_result, whole_modes};
 use super::explore::{KnownMap, KnownMaps, Nominal, explore};
+use super::frf::{Frf, frfs};
 use super::keeper::{Folder, Keeper, Memory, Stage};
 use super::missed::nothing_is_missed;
 use super::modes::{compare, named, of_the_whole, part_modes, wanted};
@@ -35,6 +36,8 @@ pub struct Selection {
     pub sweeps: bool,
     /// Motion in time, from steady sliding.
     pub transient: bool,
+    /// Frequency responses.
+    pub frf: bool,
 }
 
 /// When to work out sensitivities.
@@ -56,6 +59,7 @@ impl Selection {
         sensitivity: Sensitivities::WhenListed,
         sweeps: true,
         transient: true,
+        frf: true,
     };
     /// Real modes only.
     pub const MODES: Selection = Selection {
@@ -64,6 +68,7 @@ impl Selection {
         sensitivity: Sensitivities::No,
         sweeps: false,
         transient: false,
+        frf: false,
     };
     /// Steady sliding and complex eigenvalues only.
     pub const CEA: Selection = Selection { modes: false, cea: true, ..Selection::MODES };
@@ -72,6 +77,8 @@ impl Selection {
     /// Steady sliding, complex eigenvalues, sweeps and maps.
     pub const SWEEPS: Selection = Selection { sweeps: true, ..Selection::CEA };
 
+    /// Frequency responses only.
+    pub const FRF: Selection = Selection { modes: false, frf: true, ..Selection::MODES };
     /// Steady sliding, complex eigenvalues and motion in time.
     pub const TRANSIENT: Selection = Selection { transient: true, ..Selection::CEA };
 
@@ -106,6 +113,9 @@ pub fn run_case(
     let prepared = Prepared::new(case)?;
     // Its faults are told before anything is written.
     in_time(&prepared, selection)?;
+    if selection.frf {
+        frfs(&prepared)?;
+    }
     let preparation = started.elapsed().as_secs_f64();
     let file = if resume { ResultsFile::resume(out)? } else { ResultsFile::create(out)? };
     let mut folder = Folder::new(out, file);
@@ -148,6 +158,7 @@ fn analyse_from(
 ) -> Result<RunResults> {
     let case = prepared.case;
     let mut in_time = in_time(prepared, selection)?;
+    let frfs = if selection.frf { frfs(prepared)? } else { Vec::new() };
     let mut results = RunResults {
         title: case.title.clone(),
         resolved_case: case.to_toml(),
@@ -162,6 +173,7 @@ fn analyse_from(
     let contact_modes = case.modes.iter().filter(|(_, m)| m.contact == ContactState::Closed);
     let sliding =
         (selection.cea && case.cea.is_some()) || (selection.modes && contact_modes.clone().count() > 0);
+    let sliding = sliding || frfs.iter().any(Frf::slides);
 
     // The modes that span the complex analysis; without prestress they do not wait for the steady state, and lists of
     // the whole's modes take their share.
@@ -243,6 +255,13 @@ fn analyse_from(
             }
         }
         results.steady = results.steady.filter(|_| slides);
+    }
+    for frf in &frfs {
+        let steady = results.steady.as_ref().map(|steady| &steady.state);
+        let response = clock
+            .time(&format!("frequency response {}", frf.name()), || frf.run(prepared, steady, observer))?;
+        keeper.record(Stage::Frf(&response))?;
+        results.frfs.push(response);
     }
     results.warnings.extend(thickness_warnings(prepared));
     results.timings = clock.phases;

@@ -3,8 +3,8 @@
 use super::explore::KnownMap;
 use crate::error::Result;
 use crate::results::{
-    Channel, ComplexResult, EventTable, Field, FieldsFile, HistoryTable, MapResult, NamedModes, Piece,
-    Recording, ResultsFile, RunResults, SensitivityResult, SteadyResult, SweepResult, TransientResult,
+    Channel, ComplexResult, EventTable, Field, FieldsFile, FrfResult, HistoryTable, MapResult, NamedModes,
+    Piece, Recording, ResultsFile, RunResults, SensitivityResult, SteadyResult, SweepResult, TransientResult,
     modal_channel,
 };
 use crate::sweep::MapPoint;
@@ -42,6 +42,8 @@ pub enum Stage<'a> {
     TransientPiece(&'a Piece<'a>),
     /// The motion of all nodes at one of its times.
     TransientField(&'a Field<'a>),
+    /// A frequency response.
+    Frf(&'a FrfResult),
     /// A whole run in time.
     Transient(&'a TransientResult),
 }
@@ -190,6 +192,7 @@ impl<'a> Folder<'a> {
                 })
             }
             Stage::TransientField(field) => self.fields.iter_mut().try_for_each(|file| file.write(field)),
+            Stage::Frf(frf) => file.write_frf(frf),
             Stage::Transient(transient) => file.finish_transient(transient),
         }
     }

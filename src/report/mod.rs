@@ -3,12 +3,13 @@
 //! * [`text`]: the tables that the command line prints.
 //! * [`write_report`]: `report.html` and the pictures `rig.svg`, `modes_disc.svg`, `contact.svg`, `growth.svg`,
 //!   `growth_budget.svg`, `participation.svg`, `sensitivity.svg`, `advice.svg`, `transient.svg`, `transient_spectrum.svg`,
-//!   `transient_spectrogram.svg`, `transient_phase.svg`, `transient_contact.svg`, `sound.svg`, those of them that the run has something for;
+//!   `transient_spectrogram.svg`, `transient_phase.svg`, `transient_contact.svg`, `sound.svg`, `frf_<name>.svg`, those of them that the run has something for;
 //!   `sweep_<name>.svg`, `root_locus_<name>.svg` and `map_<name>.svg` of every sweep and map.
 //!
 //! A table is made once and shown in either form; a picture is a pure function from the results to SVG.
 
 mod advice;
+mod axes;
 mod budget;
 mod chart;
 mod colours;
@@ -17,6 +18,7 @@ mod contours;
 mod disc_modes;
 mod explored;
 mod format;
+mod frf;
 mod growth;
 mod html;
 mod participation;
@@ -45,6 +47,7 @@ pub fn write_report(dir: &Path, results: &RunResults) -> Result<()> {
         write_atomically(dir, picture.file, picture.svg.as_bytes())?;
     }
     explored::write(dir, results)?;
+    frf::write(dir, results)?;
     write_atomically(dir, "report.html", html::page(results, &pictures).as_bytes())
 }
 

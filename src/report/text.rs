@@ -11,6 +11,7 @@ const ROWS: usize = 60;
 /// Everything the command line prints after a run: modes, steady sliding, complex eigenvalues, the verdict.
 pub fn summary(results: &RunResults) -> String {
     let mut parts: Vec<String> = (0..results.modes.len()).map(|k| modes(results, k)).collect();
+    parts.extend(results.frfs.iter().map(|frf| render(&super::frf::table(frf))));
     parts.extend([steady(results), complex(results)].into_iter().flatten());
     parts.extend(sensitivity(results));
     parts.extend(results.transient.iter().map(|run| render(&super::transient::table(run))));

@@ -32,11 +32,11 @@ pub(super) fn refusal(path: &Path, source: impl Into<Box<dyn std::error::Error +
 
 /// Gives every name a form fit for file and group names, each once: `rig, closed` → `rig_closed`.
 #[derive(Debug, Default)]
-pub(super) struct FileNames(Vec<String>);
+pub(crate) struct FileNames(Vec<String>);
 
 impl FileNames {
     /// The next name's form; letters, digits, `-` and `_` stay, a run of anything else becomes one `_`.
-    pub(super) fn next(&mut self, name: &str) -> String {
+    pub(crate) fn next(&mut self, name: &str) -> String {
         let words: Vec<&str> = name
             .split(|c: char| !(c.is_alphanumeric() || c == '-' || c == '_'))
             .filter(|w| !w.is_empty())

@@ -7,6 +7,7 @@
 //! | `modes_<set>.csv`, `contact_points.csv`, `complex_modes.csv`, `sensitivities.csv` | the tables | spreadsheets |
 //! | `transient.csv`, `transient_spectrum.csv`, `events.csv` | motion in time, step by step, its spectra, what happened at the contacts | spreadsheets |
 //! | `sound_<microphone>.wav`, `sound_spectrum.csv` | what is heard, and sound power and pressure over frequency | ears, spreadsheets |
+//! | `frf_<name>.csv`, `frf_<name>.uff` | frequency responses | spreadsheets, test-data programs |
 //! | `critical_values.csv`, `sweep_<name>.csv`, `map_<name>.csv` | sweeps and maps | spreadsheets |
 //! | `transient.vtkhdf` | the motion of all nodes at regular times | ParaView |
 //! | `modes_<set>.vtu`, `steady.vtu`, `complex_modes.vtu`, `advice.vtu` | the shapes on the mesh | ParaView, pyvista |
@@ -23,6 +24,7 @@ mod explored_json;
 mod fields;
 mod file;
 mod folder;
+mod frf;
 mod hdf5;
 mod json;
 mod reduced_check;
@@ -33,6 +35,7 @@ mod transient;
 mod transient_csv;
 mod transient_hdf5;
 mod transient_json;
+mod uff;
 mod vtk;
 mod watched;
 
@@ -45,7 +48,8 @@ pub use explored::{DampingRow, DampingVerdicts, MapResult, Method, SweepResult};
 pub use explored_hdf5::{EarlierMap, read_maps};
 pub use fields::FieldsFile;
 pub use file::ResultsFile;
-pub(crate) use folder::write_atomically;
+pub(crate) use folder::{FileNames, write_atomically};
+pub use frf::{FrfResponse, FrfResult, Resonance};
 pub use json::{SCHEMA_VERSION, summary_json, write_summary};
 pub use reduced_check::{Deviation, MotionCompared, ReducedCheck};
 pub use sensitivity::{AdviceField, ModeSensitivity, Mounted, ParameterRate, SensitivityResult};
@@ -74,6 +78,7 @@ pub fn write_files(dir: &Path, results: &RunResults) -> crate::error::Result<()>
     if let Some(sound) = results.transient.as_ref().and_then(|run| run.sound.as_ref()) {
         sound::write(dir, sound)?;
     }
+    frf::write(dir, &results.frfs)?;
     write_vtk(dir, results)
 }
 
@@ -108,6 +113,8 @@ pub struct RunResults {
     pub maps: Vec<MapResult>,
     /// Motion in time.
     pub transient: Option<TransientResult>,
+    /// Frequency responses, in the order of their names.
+    pub frfs: Vec<FrfResult>,
     /// Which verdicts the modal damping decides.
     pub damping: Option<DampingVerdicts>,
     /// Wall time of each phase \[s\].

@@ -77,6 +77,7 @@ pub(crate) fn rig() -> RunResults {
         .to_vec(),
         geometry,
         transient: Some(transient()),
+        frfs: vec![frf()],
     }
 }
 
@@ -348,6 +349,43 @@ fn reduced_check() -> ReducedCheck {
             displacement: Some(2.5e-4),
             normal_force: None,
         }),
+    }
+}
+
+/// Two resonances, of which the second does not show at the second place.
+fn frf() -> FrfResult {
+    let frequencies_hz: Vec<f64> = (0..400).map(|k| 100.0 + 5.0 * k as f64).collect();
+    let term = |hz: f64, own: f64| {
+        let turn = hz / own;
+        -(c64::new(turn * turn, 0.0) / c64::new(1.0 - turn * turn, 0.007 * turn))
+    };
+    let response = |(name, parts): (&str, [f64; 2])| FrfResponse {
+        name: name.into(),
+        place: "a node of disc, 0.3 mm from the place".into(),
+        values: frequencies_hz
+            .iter()
+            .map(|hz| term(*hz, 338.0) * parts[0] + term(*hz, 1745.0) * parts[1])
+            .collect(),
+    };
+    let resonance = |frequency_hz, name: &str, seen: [f64; 2]| Resonance {
+        frequency_hz,
+        name: name.into(),
+        seen: seen.to_vec(),
+    };
+    FrfResult {
+        name: "hammer".into(),
+        quantity: ["accelerance", "m/(N s^2)"],
+        about: "contacts open; superposition of 88 real modes and 2 static residuals".into(),
+        excitation: "a node of disc, 0.3 mm from the place".into(),
+        responses: [("rim", [10.0, 25.0]), ("inside", [4.0, 1e-3])].map(response).into(),
+        resonances: vec![
+            resonance(338.0, "disc (2, 0)", [0.4, 1.0]),
+            resonance(1745.0, "disc (0, 1)", [1.0, 2.5e-4]),
+        ],
+        measured: vec![330.0, 1697.0],
+        deviation: 3e-5,
+        compared: 5,
+        frequencies_hz,
     }
 }
 

@@ -121,7 +121,7 @@ fn same((known, condition): (c64, f64), value: c64) -> bool {
 /// or not symmetric F = \[B W\], G = diag(σ c, k + σ c_c) of the modal damping and the interface.
 ///
 /// P⁻¹ r = y − Y (I + G FᵀY)⁻¹ G Fᵀ y with y = P_s⁻¹ r and Y = P_s⁻¹ F (Sherman, Morrison & Woodbury).
-struct Shifted<'a> {
+pub(super) struct Shifted<'a> {
     operator: &'a Operator<'a>,
     shift: c64,
     factor: Box<dyn SymmetricFactor<c64>>,
@@ -134,7 +134,7 @@ struct Shifted<'a> {
 }
 
 impl<'a> Shifted<'a> {
-    fn new(operator: &'a Operator<'a>, shift: c64) -> Result<Self> {
+    pub(super) fn new(operator: &'a Operator<'a>, shift: c64) -> Result<Self> {
         let one = c64::new(1.0, 0.0);
         let mut terms: Vec<(c64, &SparseMatrix)> =
             vec![(one, &operator.stiffness), (shift * shift, operator.mass)];
@@ -198,7 +198,7 @@ impl<'a> Shifted<'a> {
     }
 
     /// P⁻¹ r.
-    fn invert(&self, mut r: Mat<c64>) -> Mat<c64> {
+    pub(super) fn invert(&self, mut r: Mat<c64>) -> Mat<c64> {
         self.factor.solve_in_place(r.as_mut());
         let force = self.lu.solve(&self.small * self.along(r.as_ref()));
         r - expand(self.responses.as_ref(), force.as_ref())

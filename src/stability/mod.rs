@@ -14,6 +14,7 @@ mod certificate;
 mod family;
 mod filter;
 mod full_order;
+mod harmonic;
 mod interface;
 mod modal_damping;
 mod operator;
@@ -31,6 +32,7 @@ pub use certificate::{Certificate, CloseCall, SLOWEST_GROWTH, certified_modes};
 pub use family::{Family, FamilyCheck, FamilyModes, Frame, SlidingState};
 pub use filter::{ModalFilter, modal_filter};
 pub use full_order::{Confirmation, confirm};
+pub use harmonic::Harmonic;
 pub use sensitivity::{Domain, Rate, Sensitivity};
 
 use crate::linalg::c64;

@@ -3,11 +3,11 @@
 use crate::case::{Course, FrictionCurve, TransientAnalysis};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::job::contacts::with_laws;
+use crate::job::motion::{Motion, motion, spread};
 use crate::job::prepared::Prepared;
 use crate::job::sound::{Ears, ears};
 use crate::job::travel::tracks;
 use crate::linalg::SparseVector;
-use crate::structure::ShellPart;
 use crate::system::ContactPair;
 use crate::transient::{self, Profile, Pulse, Push, Track};
 
@@ -36,12 +36,7 @@ pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Pla
     let mut faults = Faults::new();
     let mut reduced = |on: &str, place: String, vector: [f64; 3]| {
         let nodes = faults.take(prepared.regions.nodes(on, &place)).unwrap_or_default();
-        let share = vector.map(|v| v / nodes.len().max(1) as f64);
-        let entries: Vec<(usize, usize, f64)> = nodes
-            .iter()
-            .flat_map(|node| share.iter().enumerate().map(|(axis, v)| (*node, axis, *v)))
-            .collect();
-        prepared.assembled.dofs.reduce(&entries)
+        spread(prepared, &nodes, vector)
     };
     let pushes = wanted.push.iter().map(|(name, push)| Push {
         direction: reduced(&push.on, format!("`transient.push.{name}.on`"), push.force),
@@ -54,41 +49,19 @@ pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Pla
         let direction = reduced(&force.on, format!("`force.{name}.on`"), force.force);
         Some(Push { direction, course: Pulse::Change(profile(Some(course))) })
     }));
-    let (mut probes, mut lost) = (Vec::<Probe>::new(), Vec::new());
-    let mut gauges = Vec::new();
+    let (mut probes, mut gauges) = (Vec::new(), Vec::new());
     for (name, probe) in &wanted.probe {
         if let Some(spring) = &probe.spring {
             let measured = probe.measured.clone();
             gauges.push(gauge(prepared, name, spring).map(|gauge| Gauge { measured, ..gauge }));
             continue;
         }
-        let direction = probe.direction.unwrap_or_default();
-        let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
-        let direction = direction.map(|d| d / length);
-        let (place, direction) = match (&probe.on, probe.at) {
-            (Some(on), _) => {
-                (format!("region {on}"), reduced(on, format!("`transient.probe.{name}.on`"), direction))
-            }
-            (None, at) if !prepared.model.nodes.is_empty() => {
-                nearest(prepared, at.unwrap_or_default(), direction)
-            }
-            (None, _) => {
-                let (place, expected) =
-                    (format!("`transient.probe.{name}.at`"), "a case whose nodes have coordinates");
-                lost.push(Fault::new(place, "a place", expected).with_help("`matrices.dofs` may give them"));
-                continue;
-            }
-        };
-        probes.push(Probe { name: name.clone(), place, direction, measured: probe.measured.clone() });
+        let (on, direction) = (probe.on.as_deref(), probe.direction.unwrap_or_default());
+        let found = motion(prepared, on, probe.at, direction, &format!("transient.probe.{name}"));
+        let (name, measured) = (name.clone(), probe.measured.clone());
+        probes.push(found.map(|Motion { place, direction }| Probe { name, place, direction, measured }));
     }
-    lost.into_iter().for_each(|fault| faults.push(fault));
-    for probe in probes.iter().filter(|probe| probe.direction.indices().is_empty()) {
-        faults.push(Fault::new(
-            format!("`transient.probe.{}`", probe.name),
-            "a place that is held in this direction",
-            "one that can move",
-        ));
-    }
+    let probes: Vec<Probe> = probes.into_iter().filter_map(|probe| faults.take(probe)).collect();
     let gauges: Vec<Gauge> = gauges.into_iter().filter_map(|gauge| faults.take(gauge)).collect();
     let tracks = faults.take(tracks(prepared, wanted)).unwrap_or_default();
     let mut smooth = prepared.case.clone();
@@ -99,19 +72,6 @@ pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Pla
     let still = faults.take(with_laws(&prepared.system.pairs, &smooth)).unwrap_or_default();
     let ears = wanted.sound.as_ref().and_then(|sound| faults.take(ears(prepared, sound)));
     faults.into_result(Places { pushes, probes, gauges, tracks, still, ears })
-}
-
-/// The node nearest to a place, in words, and its motion along a direction.
-fn nearest(prepared: &Prepared<'_>, place: [f64; 3], direction: [f64; 3]) -> (String, SparseVector) {
-    let away = |node: &[f64; 3]| (0..3).map(|k| (node[k] - place[k]).powi(2)).sum::<f64>();
-    let nodes = prepared.model.nodes.iter().enumerate();
-    let node = nodes.min_by(|a, b| away(a.1).total_cmp(&away(b.1))).map_or(0, |(node, _)| node);
-    let entries: Vec<_> = direction.iter().enumerate().map(|(axis, d)| (node, axis, *d)).collect();
-    let own = |part: &&ShellPart| part.faces.iter().any(|face| face.nodes().contains(&node));
-    let part = prepared.model.shells.iter().find(own);
-    let part = part.map_or(String::new(), |part| format!(" of {}", part.name));
-    let far = 1e3 * away(&prepared.model.nodes[node]).sqrt();
-    (format!("a node{part}, {far:.1} mm from the place"), prepared.assembled.dofs.reduce(&entries))
 }
 
 /// How something runs in time.

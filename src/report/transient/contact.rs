@@ -1,6 +1,6 @@
 //! `transient_contact.svg`: what the contact points do over time.
 
-use super::axes::axes;
+use crate::report::axes::axes;
 use crate::report::chart::{Area, colour, sheet, text};
 use crate::report::colours::{ALARM, INK, PARTS};
 use crate::report::format::fixed;

@@ -1,6 +1,6 @@
 //! `transient.svg`: motion, friction and penetration over time.
 
-use super::axes::{WIDTH, axes};
+use crate::report::axes::{WIDTH, axes};
 use crate::report::chart::{Area, colour, sheet, widened};
 use crate::report::colours::{ALARM, SECOND};
 use crate::report::format::significant;

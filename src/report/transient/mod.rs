@@ -1,7 +1,6 @@
 //! Motion in time: pictures of the histories, their spectra and spectrograms, the orbit, the contact and the sound; and
 //! the tables.
 
-mod axes;
 mod contact;
 mod history;
 mod orbit;

@@ -1,6 +1,6 @@
 //! `transient_phase.svg`: velocity over displacement, and friction over slip, in the last periods.
 
-use super::axes::{Words, labelled};
+use crate::report::axes::{Words, labelled};
 use crate::report::chart::{Area, colour, sheet, widened};
 use crate::report::colours::{ALARM, MUTED, SECOND};
 use crate::report::format::{fixed, significant};

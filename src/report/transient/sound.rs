@@ -1,6 +1,7 @@
 //! `sound.svg` and the table: how loud it is.
 
-use super::axes::{WIDTH, axes, highest_frequency};
+use super::spectra::highest_frequency;
+use crate::report::axes::{WIDTH, axes};
 use crate::report::chart::{Area, above, bold, colour, sheet, text};
 use crate::report::colours::{ALARM, INK, SECOND};
 use crate::report::format::{fixed, given, significant};
@@ -63,7 +64,7 @@ fn lines<'a>(
     end: f64,
     [beside, words]: [&str; 2],
     below: Option<&str>,
-) -> Result<super::axes::Chart<'a>, Box<dyn Error>> {
+) -> Result<crate::report::axes::Chart<'a>, Box<dyn Error>> {
     let highest = levels.iter().skip(1).filter(|l| l.is_finite()).fold(f64::NEG_INFINITY, |m, l| m.max(*l));
     let highest = if highest.is_finite() { highest } else { 0.0 };
     let (top, floor) = (highest + 14.0, highest - DEPTH);
@@ -81,7 +82,7 @@ fn lines<'a>(
 /// The frequencies of the tones.
 fn label(
     area: &Area,
-    chart: &mut super::axes::Chart,
+    chart: &mut crate::report::axes::Chart,
     sound: &Sound,
     levels: &[f64],
     end: f64,

@@ -1,11 +1,11 @@
 //! `transient_spectrum.svg`: motion and friction over frequency.
 
-use super::axes::{Chart, WIDTH, axes, highest_frequency};
+use crate::report::axes::{Chart, WIDTH, axes};
 use crate::report::chart::{Area, above, bold, colour, sheet, text};
 use crate::report::colours::{ALARM, INK, MEASURED, SECOND};
 use crate::report::format::{fixed, given, significant};
 use crate::report::html::Picture;
-use crate::results::{Channel, RunResults, SpectrumOf};
+use crate::results::{Channel, RunResults, SpectrumOf, TransientResult};
 use plotters::prelude::*;
 use std::error::Error;
 use std::ops::Range;
@@ -96,4 +96,15 @@ fn mark(
         area.draw_text(&given(*hz), &text(11.5, MEASURED), (x - left + 4, y - upper))?;
     }
     Ok(())
+}
+
+/// Where something is to be seen: up to a third beyond the last named peak, and some harmonics of the strongest.
+pub(super) fn highest_frequency(run: &TransientResult) -> f64 {
+    let Some(first) = run.spectra.first() else { return 0.0 };
+    let peaks = || run.spectra.iter().flat_map(|of| &of.peaks);
+    let last = peaks().map(|p| p.frequency_hz).fold(0.0, f64::max);
+    let strongest = first.peaks.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
+    let harmonics = strongest.map_or(f64::INFINITY, |p| 6.5 * p.frequency_hz);
+    let nyquist = first.spectrum.frequency_hz(first.spectrum.amplitude.len().saturating_sub(1));
+    if last > 0.0 { (1.33 * last).min(harmonics).min(nyquist) } else { nyquist }
 }

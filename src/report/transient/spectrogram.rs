@@ -1,7 +1,8 @@
 //! `transient_spectrogram.svg`: which frequencies sound when.
 
-use super::axes::{WIDTH, Words, highest_frequency, labelled};
 use super::raster::image;
+use super::spectra::highest_frequency;
+use crate::report::axes::{WIDTH, Words, labelled};
 use crate::report::chart::{Area, colour, sheet, text};
 use crate::report::colours::{INK, MEASURED, sequential};
 use crate::report::format::{given, significant};

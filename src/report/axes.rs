@@ -1,9 +1,8 @@
-//! What the charts over time and frequency share.
+//! Axes of the charts over time and frequency.
 
 use crate::report::chart::{Area, colour, text};
 use crate::report::colours::{INK, MUTED};
 use crate::report::format::given;
-use crate::results::TransientResult;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use std::error::Error;
@@ -72,15 +71,4 @@ pub(super) fn labelled<'a>(
         .y_label_formatter(&|y| (words.up)(clean(*y, &high)))
         .draw()?;
     Ok(chart)
-}
-
-/// Where something is to be seen: up to a third beyond the last named peak, and some harmonics of the strongest.
-pub(super) fn highest_frequency(run: &TransientResult) -> f64 {
-    let Some(first) = run.spectra.first() else { return 0.0 };
-    let peaks = || run.spectra.iter().flat_map(|of| &of.peaks);
-    let last = peaks().map(|p| p.frequency_hz).fold(0.0, f64::max);
-    let strongest = first.peaks.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
-    let harmonics = strongest.map_or(f64::INFINITY, |p| 6.5 * p.frequency_hz);
-    let nyquist = first.spectrum.frequency_hz(first.spectrum.amplitude.len().saturating_sub(1));
-    if last > 0.0 { (1.33 * last).min(harmonics).min(nyquist) } else { nyquist }
 }

@@ -1,0 +1,371 @@
+//! Frequency responses of a case.
+
+use super::modes::{add_modal_damping, labels, named};
+use super::motion::{Motion, motion};
+use super::prepared::Prepared;
+use crate::case::{FrfAnalysis, FrfContact, FrfQuantity, FrfSolution};
+use crate::equilibrium::{SteadyOptions, SteadySliding, solve_steady, tangent_stiffness};
+use crate::error::{Faults, Result};
+use crate::linalg::{SparseVector, c64};
+use crate::modal::{ModesWanted, RealModes, compute};
+use crate::progress::Observer;
+use crate::reduction::reduce;
+use crate::results::{FrfResponse, FrfResult, Resonance};
+use crate::stability::Harmonic;
+use crate::system::{Structure, System};
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+
+/// Real modes are taken up to this many times the highest frequency.
+const MODES: f64 = 2.0;
+/// Frequencies to begin with, evenly spaced on a logarithmic scale, and the most there are in the end.
+const FIRST: usize = 128;
+const MOST: usize = 4000;
+/// An interval is halved where the response bends by more than this part of itself away from a straight line.
+const BEND: f64 = 0.01;
+/// Frequencies at which superposition and direct solution are compared.
+const COMPARED: usize = 5;
+
+/// A frequency response whose places are known.
+pub struct Frf<'a> {
+    name: &'a str,
+    wanted: &'a FrfAnalysis,
+    force: Motion,
+    seen: Vec<(String, Motion)>,
+}
+
+/// The frequency responses of the case; asked for before anything is computed or written.
+///
+/// # Errors
+/// Every place that the mesh does not have.
+pub fn frfs<'a>(prepared: &Prepared<'a>) -> Result<Vec<Frf<'a>>> {
+    let mut faults = Faults::new();
+    let mut all = Vec::new();
+    for (name, wanted) in &prepared.case.frf {
+        let mut place = |of: &crate::case::MotionAt, key: String| {
+            faults.take(motion(prepared, of.on.as_deref(), of.at, of.direction, &key))
+        };
+        let force = place(&wanted.excitation, format!("frf.{name}.excitation"));
+        let mut seen: Vec<(String, Motion)> = Vec::new();
+        for (own, of) in &wanted.response {
+            let found = place(of, format!("frf.{name}.response.{own}"));
+            seen.extend(found.map(|motion| (own.clone(), motion)));
+        }
+        let Some(force) = force else { continue };
+        if wanted.response.is_empty() {
+            seen.push(("drive_point".into(), force.clone()));
+        }
+        all.push(Frf { name, wanted, force, seen });
+    }
+    faults.into_result(all)
+}
+
+impl Frf<'_> {
+    /// Its name.
+    pub fn name(&self) -> &str {
+        self.name
+    }
+
+    /// Whether it is about steady sliding.
+    pub fn slides(&self) -> bool {
+        self.wanted.contact == FrfContact::Sliding
+    }
+
+    /// The response; `steady` is steady sliding, where the contacts slide.
+    ///
+    /// # Errors
+    /// Modes that cannot be computed, a resonance that nothing damps.
+    pub fn run(
+        &self,
+        prepared: &Prepared<'_>,
+        steady: Option<&SteadySliding>,
+        observer: &dyn Observer,
+    ) -> Result<FrfResult> {
+        let FrfAnalysis { quantity, band, contact, solution, .. } = *self.wanted;
+        let (mut system, steady) = match steady.filter(|_| contact == FrfContact::Sliding) {
+            Some(steady) => (prepared.system.clone(), steady.clone()),
+            None => {
+                let free = alone(&prepared.system);
+                let still = solve_steady(&free, &SteadyOptions::default(), &())?;
+                (free, still)
+            }
+        };
+        let stiffness = tangent_stiffness(&system, &steady.displacement)?.into_owned();
+        let structure = Structure { stiffness, ..system.structure.clone() };
+        let (real, _) = compute(&structure, ModesWanted::BelowHz(MODES * band[1]), observer)?;
+        add_modal_damping(&mut system.structure, &real, prepared)?;
+        let places: Vec<SparseVector> = self.seen.iter().map(|(_, m)| m.direction.clone()).collect();
+        let forces: Vec<SparseVector> =
+            std::iter::once(&self.force.direction).chain(&places).cloned().collect();
+        let reduced = reduce(&system, &steady, &real, &forces)?;
+        let small = reduced.steady(&steady);
+        let few = Harmonic::new(&reduced.system, &small)?;
+        let full = Harmonic::new(&system, &steady)?;
+        let (force, seen) = (reduced.form(&self.force.direction), places.iter().map(|p| reduced.form(p)));
+        let seen: Vec<SparseVector> = seen.collect();
+        let superposed = |hz: f64| few.at(TAU * hz, &force, &seen);
+        let direct = |hz: f64| full.at(TAU * hz, &self.force.direction, &places);
+        let resonances = self.resonances(prepared, real)?;
+        let near: Vec<f64> = resonances.iter().map(|r| r.frequency_hz).collect();
+        let (frequencies, mut lines) = grid(band, &near, &superposed)?;
+        let compared: Vec<usize> =
+            (0..COMPARED).map(|k| (2 * k + 1) * frequencies.len() / (2 * COMPARED)).collect();
+        observer.begin(
+            "frequency response",
+            Some(match solution {
+                FrfSolution::Modes => COMPARED as u64,
+                FrfSolution::Direct => frequencies.len() as u64,
+            }),
+        );
+        let exact = |k: usize| {
+            let line = direct(frequencies[k]);
+            observer.advance(1);
+            line
+        };
+        let mut deviation: f64 = 0.0;
+        match solution {
+            FrfSolution::Modes => {
+                let exact = compared.par_iter().map(|k| exact(*k)).collect::<Result<Vec<_>>>()?;
+                compared
+                    .iter()
+                    .zip(&exact)
+                    .for_each(|(k, line)| deviation = deviation.max(apart(&lines[*k], line)));
+            }
+            FrfSolution::Direct => {
+                let all = (0..frequencies.len()).into_par_iter().map(exact).collect::<Result<Vec<_>>>()?;
+                all.iter().zip(&lines).for_each(|(line, few)| deviation = deviation.max(apart(few, line)));
+                lines = all;
+            }
+        }
+        observer.end();
+        let responses = self.seen.iter().enumerate().map(|(k, (name, motion))| FrfResponse {
+            name: name.clone(),
+            place: motion.place.clone(),
+            values: frequencies
+                .iter()
+                .zip(&lines)
+                .map(|(hz, line)| factor(quantity, *hz) * line[k])
+                .collect(),
+        });
+        let contacts = match contact {
+            FrfContact::Open => "contacts open",
+            FrfContact::Sliding => "contacts in steady sliding",
+        };
+        let way = match solution {
+            FrfSolution::Modes => {
+                let attached = reduced.basis.ncols() - reduced.modes;
+                format!("superposition of {} real modes and {attached} static residuals", reduced.modes)
+            }
+            FrfSolution::Direct => "solved at full order at every frequency".into(),
+        };
+        Ok(FrfResult {
+            name: self.name.to_string(),
+            quantity: [quantity.name(), quantity.unit()],
+            about: format!("{contacts}; {way}"),
+            excitation: self.force.place.clone(),
+            responses: responses.collect(),
+            resonances,
+            measured: self.wanted.measured.clone(),
+            deviation,
+            compared: if solution == FrfSolution::Modes { COMPARED } else { frequencies.len() },
+            frequencies_hz: frequencies,
+        })
+    }
+
+    /// The real modes in the band, and how much of them shows.
+    fn resonances(&self, prepared: &Prepared<'_>, real: RealModes) -> Result<Vec<Resonance>> {
+        let named = named(prepared, "frf", real, &prepared.assembled);
+        let (names, real) = (labels(&named), &named.modes);
+        let [low, high] = self.wanted.band;
+        let inside: Vec<usize> =
+            (0..real.len()).filter(|k| (low..=high).contains(&real.frequency_hz(*k))).collect();
+        let at = |motion: &Motion, k: usize| motion.direction.dot(real.shapes.col_as_slice(k));
+        let products: Vec<Vec<f64>> = inside
+            .iter()
+            .map(|k| {
+                let driven = at(&self.force, *k);
+                self.seen.iter().map(|(_, motion)| (driven * at(motion, *k)).abs()).collect()
+            })
+            .collect();
+        let largest = |place: usize| products.iter().map(|p| p[place]).fold(f64::MIN_POSITIVE, f64::max);
+        let share = |products: &Vec<f64>| {
+            products.iter().enumerate().map(|(place, p)| p / largest(place)).collect::<Vec<f64>>()
+        };
+        let resonance = |(k, products): (&usize, &Vec<f64>)| Resonance {
+            frequency_hz: real.frequency_hz(*k),
+            name: names[*k].clone(),
+            seen: share(products),
+        };
+        Ok(inside.iter().zip(&products).map(resonance).collect())
+    }
+}
+
+/// A system whose contacts are open, and that nothing loads.
+fn alone(system: &System) -> System {
+    System { pairs: Vec::new(), load: vec![0.0; system.n_dofs()], prestress: None, ..system.clone() }
+}
+
+/// iω to the power that leads from displacement to the quantity.
+fn factor(quantity: FrfQuantity, hz: f64) -> c64 {
+    let turn = c64::new(0.0, TAU * hz);
+    match quantity {
+        FrfQuantity::Receptance => c64::new(1.0, 0.0),
+        FrfQuantity::Mobility => turn,
+        FrfQuantity::Accelerance => turn * turn,
+    }
+}
+
+/// The largest |a − b| over |b|.
+fn apart(a: &[c64], b: &[c64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).norm() / b.norm().max(f64::MIN_POSITIVE)).fold(0.0, f64::max)
+}
+
+type Lines = (Vec<f64>, Vec<Vec<c64>>);
+
+/// Frequencies \[Hz\] that show every bend of a response within `band`, and the response there. Begins with an even
+/// logarithmic grid and the frequencies `near` which something happens, and halves every interval whose middle is off the
+/// straight line between its ends by more than 1 %.
+fn grid(band: [f64; 2], near: &[f64], response: &(impl Fn(f64) -> Result<Vec<c64>> + Sync)) -> Result<Lines> {
+    let ratio = (band[1] / band[0]).powf(1.0 / (FIRST - 1) as f64);
+    let even = (0..FIRST).map(|k| if k + 1 < FIRST { band[0] * ratio.powi(k as i32) } else { band[1] });
+    let mut all: Vec<f64> = even.chain(near.iter().copied()).collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup_by(|a, b| *a - *b < 1e-9 * *a);
+    let answers = |hz: &[f64]| hz.par_iter().map(|hz| response(*hz)).collect::<Result<Vec<_>>>();
+    let first = answers(&all)?;
+    let mut lines: Vec<(f64, Vec<c64>)> = all.into_iter().zip(first).collect();
+    // Intervals that may still be too long, by their lower ends.
+    let mut open = vec![true; lines.len() - 1];
+    while lines.len() < MOST && open.contains(&true) {
+        let middles: Vec<Option<f64>> = lines
+            .windows(2)
+            .zip(&open)
+            .map(|(ends, open)| open.then(|| 0.5 * (ends[0].0 + ends[1].0)))
+            .collect();
+        let asked: Vec<f64> = middles.iter().flatten().copied().collect();
+        let mut found = answers(&asked)?.into_iter();
+        let (mut next, mut next_open) = (Vec::new(), Vec::new());
+        for (k, line) in lines.iter().enumerate() {
+            next.push(line.clone());
+            let Some(middle) = middles.get(k).copied() else { continue };
+            let (Some(hz), Some(answer)) = (middle, middle.and_then(|_| found.next())) else {
+                next_open.push(false);
+                continue;
+            };
+            let bends = bends(&line.1, &answer, &lines[k + 1].1);
+            next.push((hz, answer));
+            next_open.extend([bends; 2]);
+        }
+        (lines, open) = (next, next_open);
+    }
+    Ok(lines.into_iter().unzip())
+}
+
+/// Whether the middle is off the straight line between the ends.
+fn bends(from: &[c64], middle: &[c64], to: &[c64]) -> bool {
+    from.iter().zip(middle).zip(to).any(|((a, m), b)| {
+        let size = a.norm().max(m.norm()).max(b.norm());
+        ((a + b) * 0.5 - m).norm() > BEND * size
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::Case;
+
+    const DISC: &str = r#"
+[mesh.annulus]
+outer_radius = "75 mm"
+hub_radius = "15 mm"
+radial = 6
+around = 24
+[material.steel]
+youngs_modulus = "210 GPa"
+poissons_ratio = 0.3
+density = "7850 kg/m^3"
+[shell.disc]
+material = "steel"
+thickness = "1 mm"
+bending_only = true
+[support.hub]
+on = "hub"
+[damping]
+modal_ratio = 0.003
+[frf.rim]
+excitation = { at = [0, 0, "75 mm"], direction = [1, 0, 0] }
+response.rim = { at = [0, 0, "75 mm"], direction = [1, 0, 0] }
+response.inside = { at = [0, "40 mm", 0], direction = [2, 0, 0] }
+quantity = "receptance"
+band = ["50 Hz", "2 kHz"]
+[frf.back]
+excitation = { at = [0, "40 mm", 0], direction = [1, 0, 0] }
+response.rim = { at = [0, 0, "75 mm"], direction = [1, 0, 0] }
+quantity = "receptance"
+band = ["50 Hz", "2 kHz"]
+solution = "direct"
+"#;
+
+    fn results(text: &str) -> Vec<FrfResult> {
+        let case = Case::parse("disc", text, ".".into()).unwrap();
+        let prepared = Prepared::new(&case).unwrap();
+        let steady = solve_steady(&prepared.system, &SteadyOptions::default(), &()).unwrap();
+        frfs(&prepared).unwrap().iter().map(|frf| frf.run(&prepared, Some(&steady), &()).unwrap()).collect()
+    }
+
+    #[test]
+    fn superposition_and_direct_solution_agree_and_the_way_back_is_the_same() {
+        let [back, rim] = &results(DISC)[..] else { panic!("two responses") };
+        assert!(back.deviation < 1e-3 && rim.deviation < 1e-3, "{} {}", back.deviation, rim.deviation);
+        // Maxwell and Betti: from the rim to the inside as from the inside to the rim.
+        let there = &rim.responses.iter().find(|r| r.name == "inside").unwrap().values;
+        let mut same = 0;
+        for (hz, value) in back.frequencies_hz.iter().zip(&back.responses[0].values) {
+            if let Some(k) = rim.frequencies_hz.iter().position(|other| other == hz) {
+                assert!((there[k] - value).norm() < 2e-3 * value.norm(), "{hz} Hz");
+                same += 1;
+            }
+        }
+        assert!(same > 100);
+        // At the driving point the force never gains energy from a structure at rest: Im h < 0.
+        let drive = &rim.responses.iter().find(|r| r.name == "rim").unwrap().values;
+        assert!(drive.iter().all(|h| h.im < 0.0));
+        // A resonance of ratio ζ stands at |h| ≈ φ²/(2ζω²): between two lines of the grid it is not missed.
+        let first = rim.resonances[0].frequency_hz;
+        let peak = rim.frequencies_hz.iter().position(|hz| (hz - first).abs() < 1e-9 * first).unwrap();
+        assert!(drive[peak].norm() > 50.0 * drive[0].norm());
+        let double = rim.resonances.iter().filter(|r| r.seen[1] < 1e-3).count();
+        assert!(double >= 3, "a node line of one of each double mode goes through the rim's place: {double}");
+    }
+
+    #[test]
+    fn a_free_oscillation_of_the_grid_is_resolved() {
+        // One degree of freedom, ζ = 1e-3: the straight lines between the grid's points stay within 3 % of |h| at its peak.
+        let (f0, zeta) = (300.0, 1e-3);
+        let h = |hz: f64| {
+            let r: f64 = hz / f0;
+            vec![c64::new(1.0, 0.0) / c64::new(1.0 - r * r, 2.0 * zeta * r)]
+        };
+        let (hz, lines) = grid([10.0, 1000.0], &[], &|hz| Ok(h(hz))).unwrap();
+        let largest = lines.iter().map(|l| l[0].norm()).fold(0.0, f64::max);
+        assert!(largest > 490.0 && hz.len() < 1000, "{largest} {}", hz.len());
+        for (ends, values) in hz.windows(2).zip(lines.windows(2)) {
+            let middle = h(0.5 * (ends[0] + ends[1]))[0];
+            let straight = (values[0][0] + values[1][0]) * 0.5;
+            assert!((middle - straight).norm() < 0.02 * middle.norm());
+        }
+    }
+
+    #[test]
+    fn places_that_are_not_there_are_told_together() {
+        let wrong = DISC.replace("at = [0, \"40 mm\", 0], direction = [2", "on = \"hub\", direction = [2");
+        let wrong = wrong.replace("excitation = { at = [0, \"40 mm\", 0]", "excitation = { on = \"him\"");
+        let case = Case::parse("disc", &wrong, ".".into()).unwrap();
+        let prepared = Prepared::new(&case).unwrap();
+        let error = frfs(&prepared).err().unwrap().to_string();
+        assert!(
+            error.contains("frf.back.excitation.on") && error.contains("frf.rim.response.inside"),
+            "{error}"
+        );
+    }
+}

@@ -1,0 +1,68 @@
+//! The motion of a place along a direction, as a linear form of the degrees of freedom.
+
+use super::prepared::Prepared;
+use crate::error::{Error, Fault, Result};
+use crate::linalg::SparseVector;
+use crate::structure::ShellPart;
+
+/// A place whose motion is looked at, or that is pushed.
+#[derive(Debug, Clone)]
+pub struct Motion {
+    /// Where it is, in words.
+    pub place: String,
+    /// The motion; a unit force there is the same form.
+    pub direction: SparseVector,
+}
+
+/// The motion along `direction`, of whatever length, of the region `on` (the mean of its nodes) or of the node nearest to
+/// `at`; `key` is where the case says so.
+///
+/// # Errors
+/// A region that the mesh does not have, nodes without coordinates, a place that is held.
+pub fn motion(
+    prepared: &Prepared<'_>,
+    on: Option<&str>,
+    at: Option<[f64; 3]>,
+    direction: [f64; 3],
+    key: &str,
+) -> Result<Motion> {
+    let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
+    let along = direction.map(|d| d / length);
+    let (place, nodes) = match on {
+        Some(on) => (format!("region {on}"), prepared.regions.nodes(on, &format!("`{key}.on`"))?),
+        None if prepared.model.nodes.is_empty() => {
+            let fault = Fault::new(format!("`{key}.at`"), "a place", "a case whose nodes have coordinates");
+            return Err(Error::input(fault.with_help("`matrices.dofs` may give them")));
+        }
+        None => {
+            let (words, node) = nearest(prepared, at.unwrap_or_default());
+            (words, vec![node])
+        }
+    };
+    let direction = spread(prepared, &nodes, along);
+    if direction.indices().is_empty() {
+        let fault =
+            Fault::new(format!("`{key}`"), "a place that is held in this direction", "one that can move");
+        return Err(Error::input(fault));
+    }
+    Ok(Motion { place, direction })
+}
+
+/// The mean over `nodes` of their motion along a vector.
+pub fn spread(prepared: &Prepared<'_>, nodes: &[usize], vector: [f64; 3]) -> SparseVector {
+    let share = vector.map(|v| v / nodes.len().max(1) as f64);
+    let of = |node: &usize| share.iter().enumerate().map(|(axis, v)| (*node, axis, *v)).collect::<Vec<_>>();
+    prepared.assembled.dofs.reduce(&nodes.iter().flat_map(of).collect::<Vec<_>>())
+}
+
+/// The node nearest to a place, and where it is in words.
+fn nearest(prepared: &Prepared<'_>, place: [f64; 3]) -> (String, usize) {
+    let away = |node: &[f64; 3]| (0..3).map(|k| (node[k] - place[k]).powi(2)).sum::<f64>();
+    let nodes = prepared.model.nodes.iter().enumerate();
+    let node = nodes.min_by(|a, b| away(a.1).total_cmp(&away(b.1))).map_or(0, |(node, _)| node);
+    let own = |part: &&ShellPart| part.faces.iter().any(|face| face.nodes().contains(&node));
+    let part = prepared.model.shells.iter().find(own);
+    let part = part.map_or(String::new(), |part| format!(" of {}", part.name));
+    let far = 1e3 * away(&prepared.model.nodes[node]).sqrt();
+    (format!("a node{part}, {far:.1} mm from the place"), node)
+}

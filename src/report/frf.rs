@@ -1,0 +1,182 @@
+//! Frequency responses: magnitude and phase, and which resonances show.
+
+use super::axes::{WIDTH, Words, labelled};
+use super::chart::{Area, colour, sheet, text};
+use super::colours::{ALARM, INK, MEASURED, MUTED, PARTS};
+use super::format::{fixed, given, power, significant};
+use super::html::{escape, figure, titled_table};
+use super::tables::Table;
+use crate::linalg::c64;
+use crate::results::{FrfResult, RunResults, write_atomically};
+use plotters::prelude::*;
+use std::error::Error;
+
+/// Decades below the highest magnitude that are shown.
+const DECADES: f64 = 6.0;
+/// A mode with less than this part of the largest product of shapes does not show.
+const HIDDEN: f64 = 0.01;
+/// A measured resonance stands beside a mode that differs from it by less than this part.
+const NEAR: f64 = 0.05;
+
+/// Writes the picture of every response into the folder.
+pub(super) fn write(dir: &std::path::Path, results: &RunResults) -> crate::error::Result<()> {
+    for (name, svg) in pictures(results) {
+        write_atomically(dir, &name, svg.as_bytes())?;
+    }
+    Ok(())
+}
+
+/// Names of files and pictures, in the order of the responses.
+fn pictures(results: &RunResults) -> Vec<(String, String)> {
+    let mut names = crate::results::FileNames::default();
+    let drawn = |frf: &FrfResult| Some((format!("frf_{}.svg", names.next(&frf.name)), picture(frf)?));
+    results.frfs.iter().filter_map(drawn).collect()
+}
+
+/// The part of the page on frequency responses; empty when the run has none.
+pub(super) fn section(results: &RunResults) -> String {
+    let mut body = String::new();
+    for frf in &results.frfs {
+        body += &format!("<h2>Frequency response: {}</h2>\n", escape(&frf.name));
+        if let Some(svg) = picture(frf) {
+            body += &figure(&svg, &caption(frf));
+        }
+        body += &titled_table(&table(frf));
+    }
+    body
+}
+
+fn caption(frf: &FrfResult) -> String {
+    let measured = if frf.measured.is_empty() { "" } else { " Blue: measured resonances." };
+    format!(
+        "{} for a force at {}; {}. Dotted: natural frequencies.{measured}",
+        capital(frf.quantity[0]),
+        frf.excitation,
+        frf.about
+    )
+}
+
+fn capital(word: &str) -> String {
+    let mut letters = word.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+fn picture(frf: &FrfResult) -> Option<String> {
+    let largest = magnitudes(frf).fold(0.0, f64::max);
+    if largest <= 0.0 {
+        return None;
+    }
+    sheet((WIDTH, 620), |area| {
+        let (legend, main) = area.split_vertically(34);
+        let (upper, lower) = main.split_vertically(390);
+        for (k, response) in frf.responses.iter().enumerate() {
+            let x = 120 + 190 * (k % 4) as i32;
+            legend.draw(&Rectangle::new([(x, 12), (x + 16, 26)], colour(ink(k)).filled()))?;
+            legend.draw_text(&response.name.replace('_', " "), &text(13.0, INK), (x + 22, 11))?;
+        }
+        let top = largest.log10() + 0.3;
+        let low = magnitudes(frf).filter(|v| *v > 0.0).fold(largest, f64::min).log10() - 0.3;
+        let range = low.max(top - DECADES)..top;
+        let beside = format!("{} [{}]", frf.quantity[0], frf.quantity[1]);
+        let exponent = |v: f64| format!("{:.0e}", 10f64.powf(v));
+        curves(&upper, frf, range, (&beside, &exponent, None), |v| v.norm().max(f64::MIN_POSITIVE).log10())?;
+        let degrees = |v: f64| fixed(v, 0);
+        let below = Some("frequency [Hz]");
+        curves(&lower, frf, -185.0..185.0, ("phase [°]", &degrees, below), |v| v.arg().to_degrees())
+    })
+}
+
+fn magnitudes(frf: &FrfResult) -> impl Iterator<Item = f64> + '_ {
+    frf.responses.iter().flat_map(|of| &of.values).map(|v| v.norm()).filter(|v| v.is_finite())
+}
+
+fn ink(k: usize) -> &'static str {
+    [ALARM, PARTS[0][0], PARTS[2][0], PARTS[5][0]][k % 4]
+}
+
+type Label<'a> = (&'a str, &'a dyn Fn(f64) -> String, Option<&'a str>);
+
+fn curves(
+    area: &Area,
+    frf: &FrfResult,
+    up: std::ops::Range<f64>,
+    (beside, label, below): Label,
+    of: impl Fn(&c64) -> f64,
+) -> Result<(), Box<dyn Error>> {
+    let hz = &frf.frequencies_hz;
+    let ends = hz.first().copied().unwrap_or(0.0)..hz.last().copied().unwrap_or(1.0);
+    let words = Words { below, beside, across: &given, up: label, labels: 10, grid: true };
+    let mut chart = labelled(area, (ends.clone(), up.clone()), &words)?;
+    for resonance in &frf.resonances {
+        let dots = (0..40).map(|k| up.start + (up.end - up.start) * f64::from(k) / 40.0);
+        chart.draw_series(
+            dots.map(|y| Circle::new((resonance.frequency_hz, y), 1, colour(MUTED).mix(0.35).filled())),
+        )?;
+    }
+    for measured in frf.measured.iter().filter(|f| ends.contains(f)) {
+        let line = [(*measured, up.start), (*measured, up.end)];
+        chart.draw_series([PathElement::new(line, colour(MEASURED).mix(0.7).stroke_width(1))])?;
+        if below.is_none() {
+            let (x, y) = chart.backend_coord(&(*measured, up.end));
+            let (left, upper) = area.get_base_pixel();
+            area.draw_text(&given(*measured), &text(11.5, MEASURED), (x - left + 4, y - upper))?;
+        }
+    }
+    for (k, response) in frf.responses.iter().enumerate() {
+        let points = hz.iter().zip(&response.values).map(|(hz, value)| (*hz, of(value).max(up.start)));
+        chart.draw_series([PathElement::new(points.collect::<Vec<_>>(), colour(ink(k)).stroke_width(1))])?;
+    }
+    Ok(())
+}
+
+/// The real modes of the band, and how much of each shows at each place.
+pub(super) fn table(frf: &FrfResult) -> Table {
+    let headings = ["<mode", "f [Hz]", "measured [Hz]", "<place", "seen [%]", "<why"];
+    let mut table = Table::new(
+        format!("Frequency response {}: {} for a force at {}", frf.name, frf.quantity[0], frf.excitation),
+        &headings,
+    );
+    for resonance in &frf.resonances {
+        let away = |hz: &f64| (hz / resonance.frequency_hz - 1.0).abs();
+        let nearest = frf.measured.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
+        let beside = nearest.filter(|hz| away(hz) < NEAR).map_or(String::new(), |hz| given(*hz));
+        for (place, response) in frf.responses.iter().enumerate() {
+            let seen = resonance.seen[place];
+            let why = if seen < HIDDEN { "hidden: a node of it is at the place or the force" } else { "" };
+            let first = place == 0;
+            let cells = vec![
+                if first { resonance.name.clone() } else { String::new() },
+                if first { fixed(resonance.frequency_hz, 1) } else { String::new() },
+                if first { beside.clone() } else { String::new() },
+                response.name.replace('_', " "),
+                significant(100.0 * seen, 2),
+                why.to_string(),
+            ];
+            table.row(cells, false);
+        }
+    }
+    table.notes.push(format!("{}; {} frequencies.", capital(&frf.about), frf.frequencies_hz.len()));
+    table.notes.push(format!(
+        "Superposition differs from the direct solution by {} at most, at {} frequencies.",
+        power(frf.deviation),
+        frf.compared
+    ));
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::sample;
+
+    #[test]
+    fn every_response_has_a_picture_and_hidden_modes_are_named() {
+        let results = sample::rig();
+        let all = pictures(&results);
+        assert!(all.len() == 1 && all[0].0 == "frf_hammer.svg" && all[0].1.contains("1697"));
+        let table = table(&results.frfs[0]);
+        assert_eq!(table.rows.len(), 4);
+        assert!(table.rows[3].cells[5].starts_with("hidden") && table.rows[2].cells[2] == "1697");
+        assert!(section(&results).contains("Superposition differs"));
+    }
+}

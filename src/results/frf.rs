@@ -1,0 +1,145 @@
+//! Frequency responses, as plain data, and their files.
+
+use super::csv::{Table, number};
+use super::folder::FileNames;
+use super::hdf5::{Datasets, attribute, text_attribute};
+use super::{ResultsFile, uff, write_atomically};
+use crate::error::Result;
+use crate::linalg::c64;
+use ndarray::Array2;
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// Motion at some places for a harmonic force at another.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrfResult {
+    /// Its name.
+    pub name: String,
+    /// `receptance`, `mobility` or `accelerance`, and its SI unit.
+    pub quantity: [&'static str; 2],
+    /// What the contacts do, and how it was computed, in words.
+    pub about: String,
+    /// Where the force acts, in words.
+    pub excitation: String,
+    /// f \[Hz\], ascending; closer where the response bends.
+    pub frequencies_hz: Vec<f64>,
+    /// Motion over force, by place.
+    pub responses: Vec<FrfResponse>,
+    /// The real modes in the band.
+    pub resonances: Vec<Resonance>,
+    /// Resonances that were measured \[Hz\].
+    pub measured: Vec<f64>,
+    /// At some of the frequencies, the largest difference of superposition and direct solution over the latter.
+    pub deviation: f64,
+    /// How many of them.
+    pub compared: usize,
+}
+
+/// The response of a place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrfResponse {
+    /// Its name.
+    pub name: String,
+    /// Where it is, in words.
+    pub place: String,
+    /// One value a frequency, in the unit of the quantity; positive phase leads.
+    pub values: Vec<c64>,
+}
+
+/// A real mode, and how much of it shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Resonance {
+    /// f \[Hz\].
+    pub frequency_hz: f64,
+    /// What it is called.
+    pub name: String,
+    /// For each place |φ(place) φ(excitation)| over the largest of that product of any mode in the band: near zero where
+    /// either of them stands on a node of the mode.
+    pub seen: Vec<f64>,
+}
+
+/// Writes `frf_<name>.csv` and `frf_<name>.uff` into the folder `dir`.
+pub(super) fn write(dir: &Path, frfs: &[FrfResult]) -> Result<()> {
+    let mut names = FileNames::default();
+    for frf in frfs {
+        let name = names.next(&frf.name);
+        write_atomically(dir, &format!("frf_{name}.csv"), table(frf).as_bytes())?;
+        write_atomically(dir, &format!("frf_{name}.uff"), uff::datasets(frf).as_bytes())?;
+    }
+    Ok(())
+}
+
+fn table(frf: &FrfResult) -> String {
+    let [quantity, unit] = frf.quantity;
+    let parts = |of: &FrfResponse| {
+        let name = of.name.replace('_', " ");
+        [format!("re {quantity} {name} [{unit}]"), format!("im {quantity} {name} [{unit}]")]
+    };
+    let headings: Vec<String> =
+        std::iter::once("frequency [Hz]".into()).chain(frf.responses.iter().flat_map(parts)).collect();
+    let mut table = Table::new(&headings.iter().map(String::as_str).collect::<Vec<_>>());
+    for (k, hz) in frf.frequencies_hz.iter().enumerate() {
+        let values = frf.responses.iter().flat_map(|of| [of.values[k].re, of.values[k].im]);
+        table.row(&std::iter::once(*hz).chain(values).map(number).collect::<Vec<_>>());
+    }
+    table.text
+}
+
+impl ResultsFile {
+    /// Writes a frequency response to `/frf/<name>`.
+    ///
+    /// # Errors
+    /// The machine refuses.
+    pub fn write_frf(&mut self, frf: &FrfResult) -> Result<()> {
+        self.stage(|root| {
+            let all = match root.link_exists("frf") {
+                true => root.group("frf")?,
+                false => root.create_group("frf")?,
+            };
+            let group = Datasets(all.create_group(&frf.name.replace('/', "_"))?);
+            text_attribute(&group.0, "quantity", frf.quantity[0])?;
+            text_attribute(&group.0, "about", &frf.about)?;
+            text_attribute(&group.0, "excitation", &frf.excitation)?;
+            attribute(&group.0, "superposition_deviation", &frf.deviation)?;
+            group.list("frequency_hz", &frf.frequencies_hz, "Hz", "where the response is known")?;
+            for of in &frf.responses {
+                let cells = Array2::from_shape_fn((of.values.len(), 2), |(k, part)| match part {
+                    0 => of.values[k].re,
+                    _ => of.values[k].im,
+                });
+                let story = format!("{} at {}: real and imaginary part", frf.quantity[0], of.place);
+                group.write(&of.name, cells.view(), frf.quantity[1], &story)?;
+            }
+            Ok(())
+        })
+    }
+}
+
+/// The part of `summary.json` on a frequency response.
+pub(super) fn summary(frf: &FrfResult) -> Value {
+    let response = |(place, of): (usize, &FrfResponse)| {
+        let mut seen: Vec<(f64, f64)> =
+            frf.resonances.iter().map(|r| (r.seen[place], r.frequency_hz)).collect();
+        seen.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let largest = of.values.iter().map(|v| v.norm()).fold(0.0, f64::max);
+        json!({
+            "name": of.name,
+            "place": of.place,
+            "largest": largest,
+            "seen": seen.iter().map(|(seen, hz)| json!({ "frequency_hz": hz, "share": seen })).collect::<Vec<_>>(),
+        })
+    };
+    json!({
+        "name": frf.name,
+        "quantity": frf.quantity[0],
+        "unit": frf.quantity[1],
+        "about": frf.about,
+        "excitation": frf.excitation,
+        "frequencies": frf.frequencies_hz.len(),
+        "band_hz": [frf.frequencies_hz.first(), frf.frequencies_hz.last()],
+        "superposition_deviation": frf.deviation,
+        "compared": frf.compared,
+        "measured_hz": frf.measured,
+        "responses": frf.responses.iter().enumerate().map(response).collect::<Vec<_>>(),
+    })
+}

@@ -1,0 +1,82 @@
+//! What a harmonic force moves, at full order.
+
+use super::full_order::Shifted;
+use super::operator::Operator;
+use crate::equilibrium::SteadySliding;
+use crate::error::Result;
+use crate::linalg::{SparseVector, c64};
+use crate::system::System;
+use faer::Mat;
+
+/// Receptances of a system about steady sliding: for a force Re(f e^{iωt}) along f the displacement Re(dᵀu e^{iωt}) along
+/// d is Re(h e^{iωt}) with
+///
+/// h(ω) = dᵀ Q(iω)⁻¹ f,   Q(λ) = λ² M + λ (C + C_c) + K + K_σ + iH + K_c,
+///
+/// \[m/N\] for unit vectors. The contacts are linear about steady sliding: K_c and C_c are not symmetric there, so that
+/// the way from one place to another is not that back; without them it is (Maxwell–Betti).
+pub struct Harmonic<'a> {
+    operator: Operator<'a>,
+}
+
+impl<'a> Harmonic<'a> {
+    /// Of a system at steady sliding.
+    ///
+    /// # Errors
+    /// A geometric stiffness that cannot be worked out.
+    pub fn new(system: &'a System, steady: &SteadySliding) -> Result<Self> {
+        Ok(Harmonic { operator: Operator::new(system, steady)? })
+    }
+
+    /// h of each direction of `seen` for a force along `force` at ω \[rad/s\], by one factorisation of Q(iω).
+    ///
+    /// # Errors
+    /// A frequency at which nothing damps a resonance.
+    pub fn at(&self, omega: f64, force: &SparseVector, seen: &[SparseVector]) -> Result<Vec<c64>> {
+        let mut column = Mat::<c64>::zeros(self.operator.n(), 1);
+        force.iter().for_each(|(i, v)| column[(i, 0)] = c64::new(v, 0.0));
+        let moved = Shifted::new(&self.operator, c64::new(0.0, omega))?.invert(column);
+        let along = |d: &SparseVector| d.iter().map(|(i, v)| moved[(i, 0)] * v).sum();
+        Ok(seen.iter().map(along).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::equilibrium::samples::random_system;
+    use crate::equilibrium::{SteadyOptions, solve_steady};
+    use crate::linalg::sparse::add_scaled;
+    use crate::modal::samples::dense_modes;
+
+    fn unit(at: usize) -> SparseVector {
+        SparseVector::from_entries([(at, 1.0)])
+    }
+
+    /// With C = β K: H = Σ_k φ_k φ_kᵀ/(ω_k² (1 + iβω) − ω²).
+    #[test]
+    fn modes_of_a_chain_add_up_to_the_response() {
+        let mut system = System { load: vec![0.0; 40], ..random_system(40, 0, 3.0, 4) };
+        let beta = 2e-3;
+        system.structure.damping.modal = None;
+        system.structure.damping.viscous = Some(add_scaled(&[(beta, &system.structure.stiffness)]));
+        let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
+        let modes = dense_modes(&system, 40);
+        let harmonic = Harmonic::new(&system, &steady).unwrap();
+        let (a, b) = (3, 17);
+        for omega in [0.3, 1.0, 2.2].map(|part| part * modes.eigenvalues[4].sqrt()) {
+            let found = harmonic.at(omega, &unit(a), &[unit(a), unit(b)]).unwrap();
+            let back = harmonic.at(omega, &unit(b), &[unit(a)]).unwrap();
+            for (h, place) in found.iter().zip([a, b]) {
+                let term = |k: usize| {
+                    let square = modes.eigenvalues[k];
+                    let residue = modes.shapes[(a, k)] * modes.shapes[(place, k)];
+                    residue / (c64::new(1.0, beta * omega) * square - omega * omega)
+                };
+                let exact: c64 = (0..40).map(term).sum();
+                assert!((h - exact).norm() < 1e-9 * exact.norm(), "{h} {exact}");
+            }
+            assert!((found[1] - back[0]).norm() < 1e-10 * back[0].norm());
+        }
+    }
+}
