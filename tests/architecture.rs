@@ -56,7 +56,10 @@ const MAY_USE: [(&str, &[&str]); 21] = [
             "case",
         ],
     ),
-    ("validation", &["error", "progress", "linalg", "structure", "sweep", "results", "case", "job"]),
+    (
+        "validation",
+        &["error", "progress", "linalg", "structure", "sweep", "signal", "results", "case", "job"],
+    ),
     ("cli", &["error", "progress", "mesh", "report", "results", "case", "job", "validation"]),
 ];
 

@@ -26,8 +26,9 @@ impl Tape<'_, '_> {
     ) -> Result<Watched> {
         let strongest = |channel: usize| {
             let of = spectra.iter().find(|of| of.channel == channel)?;
-            let peak = of.peaks.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude))?;
-            Some(peak.frequency_hz)
+            let peak = of.peaks.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
+            let line = || of.spectrum.strongest().map(|k| of.spectrum.frequency_hz(k));
+            peak.map(|peak| peak.frequency_hz).or_else(line)
         };
         let shown = &self.recorder.shown;
         let begin = rows - (rows / PART).clamp(1, TAIL).min(rows);
