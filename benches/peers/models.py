@@ -6,9 +6,13 @@
 stiffness k and damping c between the two deflections; friction μ on faces 2.5 mm off the mid-planes turns the normal force
 into moments about the radius, which makes K and C unsymmetric in 600 rows. Rayleigh damping besides.
 
+`step`: one such disc with Rayleigh damping, pressed at ten nodes on a counter-body that slides past. The stiffness and friction of
+the contact stay out of the matrices: case.toml has them.
+
 FOLDER gets m.mtx, k.mtx, c.mtx for stridor, the same as .npz for the others, and case files.
 """
 import csv
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -34,6 +38,18 @@ bending_only = true
 rotary_inertia = false
 [support.hub]
 on = "hub"
+"""
+STEP = """title = "A disc in sliding contact at ten points"
+[matrices]
+mass = "m.mtx"
+stiffness = "k.mtx"
+damping = "c.mtx"
+[contact.pad]
+points = {points}
+load = "50 N"
+sliding_velocity = "0.5 m/s"
+normal = {{ per = "point", stiffness = "1 MN/m" }}
+friction = {{ law = "exponential", mu0 = 0.3, mu1 = 0.2, alpha = "2 s/m", regularisation = "1 mm/s" }}
 """
 # Normal stiffness [N/m] and damping [N s/m] of all pairs, friction, lever of the faces [m], Rayleigh damping [1/s, s].
 STIFFNESS, DAMPING, FRICTION, LEVER, ALPHA, BETA = 1e6, 1.0, 0.5, 2.5e-3, 5.0, 1.6e-8
@@ -85,10 +101,26 @@ def two_discs(stridor, folder, dofs):
             k + stiffness * (normal + friction))
 
 
+def pressed(places):
+    """The case of `step`: normal ux; the sliding direction is that of the circumference on a face off the mid-plane."""
+    angle = np.radians(36 * np.arange(10))
+    nodes = cKDTree(places).query(0.065 * np.c_[np.cos(angle), np.sin(angle)])[1]
+    points = []
+    for node in nodes:
+        cos, sin = places[node] / np.linalg.norm(places[node])
+        along, across = (" ".join(f"{LEVER * turn:.17e}*{3 * node + axis}" for axis, turn in ((2, a), (3, b)))
+                         for a, b in ((cos, sin), (-sin, cos)))
+        points.append([str(3 * node + 1), along, across])
+    return STEP.format(points=json.dumps(points))
+
+
 def main(stridor, folder, kind, dofs):
-    if kind == "real":
-        m, k, _ = disc(stridor, folder / "parts", dofs, 1e-3)
+    if kind in ("real", "step"):
+        m, k, places = disc(stridor, folder / "parts", dofs, 1e-3)
         matrices = {"m": m, "k": k}
+        if kind == "step":
+            matrices["c"] = ALPHA * m + BETA * k
+            (folder / "case.toml").write_text(pressed(places))
     else:
         matrices = dict(zip("mck", two_discs(stridor, folder, dofs)))
     for name, matrix in matrices.items():

@@ -106,17 +106,98 @@ impl Merged {
             }
         }
     }
+
+    /// Y = A X for every matrix A with the columns of X that it wants: all from the one that stands beside Y on. X has four
+    /// columns at most. As [`Merged::times`], without its memory: made for a few columns again and again.
+    ///
+    /// # Panics
+    /// When the shapes do not agree.
+    pub fn multiply<const C: usize>(&self, out: [(usize, MatMut<'_, f64>); C], x: MatRef<'_, f64>) {
+        let n = self.starts.len() - 1;
+        assert!(self.count == C && x.nrows() == n && x.ncols() <= FEW, "shapes of A and X disagree");
+        let mut packed = Vec::new();
+        let columns: [&[f64]; FEW] = std::array::from_fn(|c| slice(x, c));
+        let row = |i: usize| columns.map(|column| column.get(i).copied().unwrap_or(0.0));
+        (0..n).into_par_iter().with_min_len(ROWS_A_TASK).map(row).collect_into_vec(&mut packed);
+        let mut tasks: Vec<[Vec<&mut [f64]>; C]> = Vec::new();
+        tasks.resize_with(n.div_ceil(ROWS_A_TASK), || std::array::from_fn(|_| Vec::new()));
+        let first = out.each_ref().map(|(first, _)| *first);
+        for (a, (first, y)) in out.into_iter().enumerate() {
+            assert!(y.nrows() == n && first + y.ncols() <= x.ncols(), "shapes of X and Y disagree");
+            for column in y.col_iter_mut() {
+                let column = column.try_as_col_major_mut().expect("columns in one piece").as_slice_mut();
+                let parts = column.chunks_mut(ROWS_A_TASK);
+                tasks.iter_mut().zip(parts).for_each(|(task, part)| task[a].push(part));
+            }
+        }
+        tasks.into_par_iter().enumerate().for_each(|(task, mut out)| {
+            let rows = task * ROWS_A_TASK..n.min((task + 1) * ROWS_A_TASK);
+            let mut sums = [[[0.0; FEW]; C]; BLOCK];
+            for begin in rows.clone().step_by(BLOCK) {
+                let sums = &mut sums[..BLOCK.min(rows.end - begin)];
+                Arch::new().dispatch(Rows { merged: self, first: begin, packed: &packed, sums });
+                for (a, columns) in out.iter_mut().enumerate() {
+                    for (c, y) in columns.iter_mut().enumerate() {
+                        let y = y[begin - rows.start..].iter_mut().zip(&*sums);
+                        y.for_each(|(y, sum)| *y = sum[a][first[a] + c]);
+                    }
+                }
+            }
+        });
+    }
+
+    /// The factors with which the last of three matrices is the sum of the first two, but for round-off; none when it is
+    /// not.
+    pub fn proportion(&self) -> Option<[f64; 2]> {
+        /// What is left of an entry after a sum was rounded, and its factors.
+        const ROUND_OFF: f64 = 1e-13;
+        let (entries, []) = self.values.as_chunks::<3>() else { return None };
+        let mut factors = [0.0; 2];
+        // Least squares over all entries, each by its own size: small ones count as well. Long sums round, so what the
+        // first factors leave is fitted once more.
+        for _ in 0..2 {
+            let (mut normal, mut right) = ([[0.0; 2]; 2], [0.0; 2]);
+            for [x, y, z] in entries.iter().filter(|[_, _, z]| *z != 0.0) {
+                let row = [x / z, y / z];
+                let left = (z - factors[0] * x - factors[1] * y) / z;
+                for i in 0..2 {
+                    (0..2).for_each(|j| normal[i][j] += row[i] * row[j]);
+                    right[i] += row[i] * left;
+                }
+            }
+            let determinant = normal[0][0] * normal[1][1] - normal[0][1] * normal[1][0];
+            factors[0] += (right[0] * normal[1][1] - right[1] * normal[0][1]) / determinant;
+            factors[1] += (right[1] * normal[0][0] - right[0] * normal[1][0]) / determinant;
+        }
+        let fits = |[x, y, z]: &[f64; 3]| {
+            let (x, y) = (factors[0] * x, factors[1] * y);
+            (x + y - z).abs() <= ROUND_OFF * (x.abs() + y.abs())
+        };
+        entries.iter().all(fits).then_some(factors)
+    }
+}
+
+/// The most columns of [`Merged::multiply`], and the rows whose sums it keeps at hand.
+const FEW: usize = 4;
+const BLOCK: usize = 128;
+
+/// A column in one piece; nothing where there is none.
+fn slice(x: MatRef<'_, f64>, c: usize) -> &[f64] {
+    if c >= x.ncols() {
+        return &[];
+    }
+    x.col(c).try_as_col_major().expect("columns in one piece").as_slice()
 }
 
 /// The rows of all matrices from `first` on, times packed columns.
-struct Rows<'a, const C: usize> {
+struct Rows<'a, const C: usize, const W: usize> {
     merged: &'a Merged,
     first: usize,
-    packed: &'a [[f64; PANEL]],
-    sums: &'a mut [[[f64; PANEL]; C]],
+    packed: &'a [[f64; W]],
+    sums: &'a mut [[[f64; W]; C]],
 }
 
-impl<const C: usize> WithSimd for Rows<'_, C> {
+impl<const C: usize, const W: usize> WithSimd for Rows<'_, C, W> {
     type Output = ();
 
     #[inline(always)]
@@ -124,11 +205,11 @@ impl<const C: usize> WithSimd for Rows<'_, C> {
         let (starts, (values, _)) = (&self.merged.starts, self.merged.values.as_chunks::<C>());
         for (i, sums) in self.sums.iter_mut().enumerate() {
             let entries = starts[self.first + i]..starts[self.first + i + 1];
-            let mut own = [[0.0; PANEL]; C];
+            let mut own = [[0.0; W]; C];
             for (j, v) in self.merged.rows[entries.clone()].iter().zip(&values[entries]) {
                 let x = &self.packed[*j as usize];
                 for a in 0..C {
-                    for c in 0..PANEL {
+                    for c in 0..W {
                         own[a][c] += x[c] * v[a];
                     }
                 }
@@ -153,7 +234,7 @@ fn merge_column(matrices: &[&SparseMatrix], j: usize, rows: &mut Vec<u32>, value
 #[cfg(test)]
 mod tests {
     use super::super::samples;
-    use super::super::sparse::times;
+    use super::super::sparse::{add_scaled, times};
     use super::*;
 
     #[test]
@@ -167,6 +248,24 @@ mod tests {
             for (product, a) in products.iter().zip(given) {
                 assert!((product - times(a, x.as_ref())).norm_max() < 1e-13);
             }
+        }
+    }
+
+    #[test]
+    fn products_with_some_columns_each_and_sums_of_matrices() {
+        let [a, b] = [1, 2].map(|seed| samples::random_symmetric(301, seed));
+        let c = add_scaled(&[(5.0, &a), (3e-7, &b)]);
+        let merged = Merged::new(&[&a, &b, &c]);
+        let [p, q] = merged.proportion().unwrap();
+        assert!((p / 5.0 - 1.0).abs() < 1e-12 && (q / 3e-7 - 1.0).abs() < 1e-6, "{p} {q}");
+        assert_eq!(Merged::new(&[&a, &b, &samples::random_symmetric(301, 3)]).proportion(), None);
+        let x = Mat::from_fn(301, 3, |i, j| ((i * 7 + j * 3) as f64).sin());
+        let mut out = [3, 2, 1].map(|k| Mat::zeros(301, k));
+        let [first, second, third] = out.each_mut().map(|y| y.as_mut());
+        merged.multiply([(0, first), (1, second), (2, third)], x.as_ref());
+        for (y, (begin, a)) in out.iter().zip([(0, &a), (1, &b), (2, &c)]) {
+            let expected = times(a, x.subcols(begin, 3 - begin));
+            assert!((y - expected).norm_max() < 1e-13 * a.to_dense().norm_max() * 301.0);
         }
     }
 }

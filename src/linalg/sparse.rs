@@ -44,6 +44,13 @@ impl SparseVector {
         vector
     }
 
+    /// The entries of a dense vector that are not zero.
+    pub fn from_dense(dense: &[f64]) -> Self {
+        let entries = dense.iter().enumerate().filter(|(_, v)| **v != 0.0);
+        let (indices, values) = entries.map(|(i, v)| (i, *v)).unzip();
+        SparseVector { indices, values }
+    }
+
     /// The places of the entries, ascending.
     pub fn indices(&self) -> &[usize] {
         &self.indices
@@ -59,17 +66,43 @@ impl SparseVector {
         self.indices.iter().copied().zip(self.values.iter().copied())
     }
 
+    /// Where its entries begin, if there is no gap between them.
+    fn run(&self) -> Option<usize> {
+        let (first, last) = (*self.indices.first()?, *self.indices.last()?);
+        (last - first + 1 == self.indices.len()).then_some(first)
+    }
+
     /// The scalar product with a dense vector.
     pub fn dot(&self, dense: &[f64]) -> f64 {
-        self.iter().map(|(i, v)| v * dense[i]).sum()
+        match self.run() {
+            Some(first) => dot(&self.values, &dense[first..first + self.values.len()]),
+            None => self.iter().map(|(i, v)| v * dense[i]).sum(),
+        }
     }
 
     /// `dense += factor · self`.
     pub fn add_to(&self, factor: f64, dense: &mut [f64]) {
+        if let Some(first) = self.run() {
+            let places = dense[first..first + self.values.len()].iter_mut();
+            places.zip(&self.values).for_each(|(x, v)| *x += factor * v);
+            return;
+        }
         for (i, v) in self.iter() {
             dense[i] += factor * v;
         }
     }
+}
+
+/// Σ x y, in sums side by side.
+fn dot(x: &[f64], y: &[f64]) -> f64 {
+    const SUMS: usize = 8;
+    let ((x, x_rest), (y, y_rest)) = (x.as_chunks::<SUMS>(), y.as_chunks::<SUMS>());
+    let mut sums = [0.0; SUMS];
+    for (x, y) in x.iter().zip(y) {
+        (0..SUMS).for_each(|k| sums[k] += x[k] * y[k]);
+    }
+    let rest: f64 = x_rest.iter().zip(y_rest).map(|(x, y)| x * y).sum();
+    sums.iter().sum::<f64>() + rest
 }
 
 /// A number that a real sparse matrix can multiply: `f64` or `c64`.
@@ -295,6 +328,26 @@ mod tests {
             let error = (0..k).flat_map(|j| (0..57).map(move |i| (i, j)));
             assert!(error.map(|p| (yc[p] - c64::new(y[p], -2.0 * y[p])).norm()).fold(0.0, f64::max) < 1e-13);
         }
+    }
+
+    #[test]
+    fn vectors_with_and_without_gaps_multiply_and_add_alike() {
+        let dense: Vec<f64> = (0..40).map(|i| (i as f64 * 0.7).sin()).collect();
+        for step in [1, 2] {
+            let entries: Vec<(usize, f64)> =
+                (5..36).step_by(step).map(|i| (i, (i as f64 * 1.3).cos())).collect();
+            let vector = SparseVector::from_entries(entries.iter().copied());
+            let expected: f64 = entries.iter().map(|(i, v)| v * dense[*i]).sum();
+            assert!((vector.dot(&dense) - expected).abs() < 1e-14);
+            let mut sum = dense.clone();
+            vector.add_to(2.0, &mut sum);
+            entries.iter().for_each(|(i, v)| sum[*i] -= 2.0 * v);
+            assert!(sum.iter().zip(&dense).all(|(a, b)| (a - b).abs() < 1e-15));
+            let mut own = vec![0.0; 40];
+            vector.add_to(1.0, &mut own);
+            assert_eq!(SparseVector::from_dense(&own), vector);
+        }
+        assert_eq!(SparseVector::default().dot(&dense), 0.0);
     }
 
     #[test]

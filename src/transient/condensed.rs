@@ -9,23 +9,17 @@ use super::state::State;
 use super::stepper::{ITERATIONS, ROUND_OFF, Solver, Stuck};
 use super::tangent::Tangent;
 use crate::error::Result;
-use crate::linalg::sparse::dense_columns;
 use faer::Mat;
 
 /// With x = DᵀΔ and S = DᵀA⁻¹D the step is x − DᵀA⁻¹h + b S r(Dᵀu_t + x, Dᵀv_t + c₁x) = 0, as small as the contact, for
-/// Newton's method with the consistent unsymmetric tangent. Then Δ = A⁻¹h − b A⁻¹D r: one solution with A a step, and
-/// what comes out is that of Newton's method on the whole but for round-off.
+/// Newton's method with the consistent unsymmetric tangent. Then A Δ = h − b D r. DᵀA⁻¹h is known halfway through the
+/// solution with the factors of A, so that r joins h there: one solution a step, and what comes out is that of Newton's
+/// method on the whole but for round-off.
 #[derive(Debug)]
 pub(super) struct Condensed<'a> {
     model: &'a Model<'a>,
     weights: Weights,
-    effective: Effective<'a>,
-    /// A⁻¹P, n × columns.
-    responses: Mat<f64>,
-    /// BᵀA⁻¹P.
-    modal_responses: Mat<f64>,
-    /// PᵀA⁻¹P \[m/N\].
-    seen: Mat<f64>,
+    effective: Effective,
     contact: Contact,
 }
 
@@ -34,9 +28,7 @@ impl<'a> Condensed<'a> {
     /// A matrix that is singular: a part without stiffness and mass.
     pub(super) fn new(model: &'a Model<'a>, weights: Weights) -> Result<Self> {
         let effective = Effective::new(model, &weights)?;
-        let (r, columns) = (model.n_directions(), model.columns.len());
-        let responses = effective.responses(dense_columns(model.n(), &model.columns));
-        let seen = Mat::from_fn(columns, columns, |i, j| model.columns[i].dot(responses.col_as_slice(j)));
+        let r = model.n_directions();
         let room = || vec![0.0; r];
         let mut contact = Contact {
             compliance: Mat::zeros(r, r),
@@ -55,9 +47,8 @@ impl<'a> Condensed<'a> {
             newton: room(),
             again: room(),
         };
-        contact.mix(&seen, &Interface::new(model));
-        let modal_responses = effective.modal_share(&responses);
-        Ok(Condensed { model, weights, effective, responses, modal_responses, seen, contact })
+        contact.mix(&effective.seen, &Interface::new(model));
+        Ok(Condensed { model, weights, effective, contact })
     }
 }
 
@@ -70,25 +61,22 @@ impl Solver for Condensed<'_> {
         to: &mut State,
     ) -> std::result::Result<(), Stuck> {
         let (model, weights) = (self.model, &self.weights);
-        self.effective.solve(h.as_mut(), modal);
-        let contact = &mut self.contact;
+        let (effective, contact) = (&mut self.effective, &mut self.contact);
+        effective.begin(h.col_as_slice(0), modal);
         if model.travels() {
-            contact.mix(&self.seen, &to.interface);
+            contact.mix(&effective.seen, &to.interface);
         }
-        to.interface.motions(model, h.col_as_slice(0), &mut contact.free);
+        for (free, mix) in contact.free.iter_mut().zip(&to.interface.mixes) {
+            *free = parts(mix).map(|(column, share)| share * effective.free(column)).sum();
+        }
         to.predict_along(weights, &mut contact.predicted);
         contact.solve(model, from, to)?;
         to.reaction.copy_from_slice(&contact.reaction.force);
         to.bristles.copy_from_slice(&contact.reaction.bristles);
-        let increment = h.col_as_slice_mut(0);
         for (mix, r) in to.interface.mixes.iter().zip(&to.reaction).filter(|(_, r)| **r != 0.0) {
-            for (column, share) in parts(mix) {
-                let factor = -weights.share() * share * r;
-                let response = self.responses.col_as_slice(column);
-                increment.iter_mut().zip(response).for_each(|(x, w)| *x += factor * w);
-                (0..modal.nrows()).for_each(|i| modal[(i, 0)] += factor * self.modal_responses[(i, column)]);
-            }
+            parts(mix).for_each(|(column, share)| effective.push(column, -weights.share() * share * r));
         }
+        effective.finish(h.col_as_slice_mut(0), modal);
         Ok(())
     }
 }
@@ -140,13 +128,14 @@ impl Contact {
 
     /// Newton's method from where the last reaction would lead, with steps halved while they do not bring the next one down
     /// (Deuflhard's natural monotonicity test). Leaves r in `reaction`.
-    fn solve(&mut self, model: &Model<'_>, from: &State, to: &State) -> std::result::Result<(), Stuck> {
+    fn solve(&mut self, model: &Model<'_>, from: &State, to: &mut State) -> std::result::Result<(), Stuck> {
         self.moved(&from.reaction);
         std::mem::swap(&mut self.x, &mut self.moved);
         self.evaluate(model, from, to);
         self.residual();
         let mut length = 0.0;
-        for _ in 0..ITERATIONS {
+        for iteration in 1..=ITERATIONS {
+            to.iterations = iteration;
             self.tangent.set(model, &self.reaction, &self.compliance, (self.share, self.rate));
             self.tangent.solve(&self.rho, &mut self.newton);
             length = longest(&self.newton);

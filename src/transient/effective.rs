@@ -1,22 +1,36 @@
 //! The matrix of an implicit step, factorised once.
 
-use super::diagonal::Diagonal;
 use super::model::Model;
+use super::products::Diagonal;
 use super::scheme::Weights;
 use crate::error::{Error, Result};
-use crate::linalg::SymmetricFactor;
 use crate::linalg::factor::factorize;
-use crate::linalg::tall::{combine, expand, gram};
+use crate::linalg::tall::{combine, gram};
+use crate::linalg::{SparseVector, SymmetricFactor};
 use faer::linalg::solvers::{PartialPivLu, Solve};
-use faer::{Accum, Mat, MatMut};
+use faer::{Accum, Mat, MatMut, MatRef};
+use rayon::prelude::*;
 
-/// A = (1−α_m)/(β Δt²) M + (1−α_f) c₁ C + (1−α_f) K, with the modal part of C as an update of low rank:
-/// A = A₀ + B E Bᵀ, E = (1−α_f) c₁ diag(c), so A⁻¹h = y − X (I + E G)⁻¹E Bᵀy with y = A₀⁻¹h, X = A₀⁻¹B, G = BᵀX
+/// A = (1−α_m)/(β Δt²) M + (1−α_f) c₁ C + (1−α_f) K = A₀ + B E Bᵀ: the modal part of C, E = (1−α_f) c₁ diag(c), apart from
+/// the sparse rest, which is factorised: A₀ = H J Hᵀ with the pivots J, H⁻¹ being the half of a solution that goes up the
+/// tree.
+///
+/// The step solves A Δ = h + B w + P φ, with forces φ along the columns of P that depend on PᵀA⁻¹(h + B w). What is needed
+/// of the columns is seen halfway, in y = H⁻¹h, where each has few entries. With X = A₀⁻¹B, G = BᵀX, V = BᵀA₀⁻¹P,
+///
+/// s = w − (I + E G)⁻¹E (Xᵀh + G w),   PᵀA⁻¹(h + B w) = PᵀA₀⁻¹h + Vᵀs,   A₀Δ = h + P φ + B (s − (I + E G)⁻¹E V φ)
+///
 /// (Sherman, Morrison & Woodbury, in the form that allows modes without damping).
 #[derive(Debug)]
-pub(super) struct Effective<'a> {
+pub(super) struct Effective {
     inverse: Inverse,
-    modal: Option<ModalUpdate<'a>>,
+    /// Halves of the columns of P: those that take forces in, and with the pivots those that measure.
+    columns: Vec<[SparseVector; 2]>,
+    /// PᵀA⁻¹P \[m/N\].
+    pub(super) seen: Mat<f64>,
+    modal: Option<ModalUpdate>,
+    /// y.
+    half: Vec<[f64; 1]>,
 }
 
 /// A₀⁻¹.
@@ -29,7 +43,7 @@ enum Inverse {
 
 impl Inverse {
     fn new(model: &Model<'_>, weights: &Weights) -> Result<Self> {
-        let Some(Diagonal { mass, stiffness, viscous }) = &model.diagonal else {
+        let Some(Diagonal { mass, stiffness, viscous }) = model.products.diagonal() else {
             return Ok(Inverse::Factor(factorize(&model.effective(weights))?));
         };
         let [m, c, k] = weights.effective();
@@ -46,82 +60,174 @@ impl Inverse {
         Ok(Inverse::Diagonal(sums.iter().map(|sum| 1.0 / sum).collect()))
     }
 
-    fn apply(&self, mut x: MatMut<'_, f64>) {
+    /// y = H⁻¹b.
+    fn forward(&self, b: &[f64], y: &mut [[f64; 1]]) {
         match self {
-            Inverse::Factor(factor) => factor.solve_in_place(x),
+            Inverse::Factor(factor) => factor.forward(b, y),
+            Inverse::Diagonal(_) => y.as_flattened_mut().copy_from_slice(b),
+        }
+    }
+
+    /// y ← J⁻¹y.
+    fn pivots(&self, y: &mut [[f64; 1]]) {
+        match self {
+            Inverse::Factor(factor) => factor.pivots(y),
             Inverse::Diagonal(values) => {
-                for k in 0..x.ncols() {
-                    x.as_mut().col_mut(k).iter_mut().zip(values).for_each(|(x, value)| *x *= value);
-                }
+                y.as_flattened_mut().iter_mut().zip(values).for_each(|(y, value)| *y *= value);
             }
         }
+    }
+
+    /// x = H⁻ᵀJ⁻¹y.
+    fn backward(&self, y: &mut [[f64; 1]], x: &mut [f64]) {
+        match self {
+            Inverse::Factor(factor) => factor.backward(y, x),
+            Inverse::Diagonal(values) => {
+                let scaled = y.as_flattened().iter().zip(values);
+                x.iter_mut().zip(scaled).for_each(|(x, (y, value))| *x = y * value);
+            }
+        }
+    }
+
+    /// Both halves of a column.
+    fn halves(&self, n: usize, column: &SparseVector) -> [SparseVector; 2] {
+        let (mut b, mut y) = (vec![0.0; n], vec![[0.0]; n]);
+        column.add_to(1.0, &mut b);
+        self.forward(&b, &mut y);
+        let entries = |y: &[[f64; 1]]| SparseVector::from_dense(y.as_flattened());
+        let taken = entries(&y);
+        self.pivots(&mut y);
+        [taken, entries(&y)]
     }
 }
 
 #[derive(Debug)]
-struct ModalUpdate<'a> {
-    basis: &'a Mat<f64>,
-    /// X.
-    responses: Mat<f64>,
+struct ModalUpdate {
+    /// Halves of B.
+    halves: Mat<f64>,
     /// G.
     seen: Mat<f64>,
+    /// V.
+    columns: Mat<f64>,
+    /// (I + E G)⁻¹E V.
+    answers: Mat<f64>,
     /// The diagonal of E.
     weights: Vec<f64>,
     /// I + E G.
     small: PartialPivLu<f64>,
+    /// Xᵀh + V φ.
+    motion: Mat<f64>,
+    /// s, then what B is multiplied by.
+    factors: Mat<f64>,
+    /// J⁻¹y.
+    measured: Vec<[f64; 1]>,
 }
 
-impl ModalUpdate<'_> {
+impl ModalUpdate {
     /// (I + E G)⁻¹E x.
     fn answer(&self, x: &Mat<f64>) -> Mat<f64> {
         self.small.solve(Mat::from_fn(x.nrows(), x.ncols(), |i, j| self.weights[i] * x[(i, j)]))
     }
+
+    fn new(
+        basis: &Mat<f64>,
+        weights: Vec<f64>,
+        inverse: &Inverse,
+        columns: &[[SparseVector; 2]],
+    ) -> ModalUpdate {
+        let (n, m) = (basis.nrows(), basis.ncols());
+        let mut halves = Mat::zeros(n, m);
+        let mut measures = Mat::zeros(n, m);
+        let mut half = vec![[0.0]; n];
+        for j in 0..m {
+            inverse.forward(basis.col_as_slice(j), &mut half);
+            halves.col_as_slice_mut(j).copy_from_slice(half.as_flattened());
+            inverse.pivots(&mut half);
+            measures.col_as_slice_mut(j).copy_from_slice(half.as_flattened());
+        }
+        let seen = gram(halves.as_ref(), measures.as_ref());
+        let small = Mat::from_fn(m, m, |i, j| weights[i] * seen[(i, j)] + if i == j { 1.0 } else { 0.0 });
+        let along = Mat::from_fn(m, columns.len(), |i, p| columns[p][1].dot(halves.col_as_slice(i)));
+        let (motion, factors) = (Mat::zeros(m, 1), Mat::zeros(m, 1));
+        let (answers, measured) = (Mat::zeros(0, 0), half);
+        let small = small.partial_piv_lu();
+        let mut update =
+            ModalUpdate { halves, seen, columns: along, answers, weights, small, motion, factors, measured };
+        update.answers = update.answer(&update.columns);
+        update
+    }
 }
 
-impl<'a> Effective<'a> {
-    pub(super) fn new(model: &Model<'a>, weights: &Weights) -> Result<Self> {
+impl Effective {
+    pub(super) fn new(model: &Model<'_>, weights: &Weights) -> Result<Self> {
         let [_, c, _] = weights.effective();
+        let n = model.n();
         let inverse = Inverse::new(model, weights)?;
+        let columns: Vec<[SparseVector; 2]> =
+            model.columns.par_iter().map(|column| inverse.halves(n, column)).collect();
+        let mut dense = vec![0.0; n];
+        let mut seen = Mat::zeros(columns.len(), columns.len());
+        for (j, [taken, _]) in columns.iter().enumerate() {
+            taken.add_to(1.0, &mut dense);
+            columns.iter().enumerate().for_each(|(i, [_, measure])| seen[(i, j)] = measure.dot(&dense));
+            taken.indices().iter().for_each(|i| dense[*i] = 0.0);
+        }
         let modal = model.damping.modal.as_ref().map(|modal| {
-            let mut responses = modal.basis.clone();
-            inverse.apply(responses.as_mut());
-            let seen = gram(modal.basis.as_ref(), responses.as_ref());
-            let weights: Vec<f64> = modal.coefficients.iter().map(|own| c * own).collect();
-            let small = Mat::from_fn(seen.nrows(), seen.ncols(), |i, j| {
-                weights[i] * seen[(i, j)] + if i == j { 1.0 } else { 0.0 }
-            });
-            ModalUpdate { basis: &modal.basis, responses, seen, weights, small: small.partial_piv_lu() }
+            let weights = modal.coefficients.iter().map(|own| c * own).collect();
+            ModalUpdate::new(&modal.basis, weights, &inverse, &columns)
         });
-        Ok(Effective { inverse, modal })
+        if let Some(update) = &modal {
+            seen -= update.columns.transpose() * &update.answers;
+        }
+        Ok(Effective { inverse, columns, seen, modal, half: vec![[0.0]; n] })
     }
 
-    /// h ← A⁻¹(h + B w) of one column; Bᵀ of the result is left in `w`, which is empty without modal damping.
-    pub(super) fn solve(&self, mut h: MatMut<'_, f64>, w: &mut Mat<f64>) {
-        self.inverse.apply(h.as_mut());
-        if let Some(update) = &self.modal {
-            let seen = gram(update.basis.as_ref(), h.as_ref());
-            let part = update.answer(&(&seen + &update.seen * &*w));
-            let factors = &*w - part;
-            combine(h, Accum::Add, update.responses.as_ref(), factors.as_ref(), 1.0);
-            *w = seen + &update.seen * factors;
+    /// Goes half of the way from h + B w; `w` is empty without modal damping.
+    pub(super) fn begin(&mut self, h: &[f64], w: &Mat<f64>) {
+        self.inverse.forward(h, &mut self.half);
+        if let Some(update) = &mut self.modal {
+            update.measured.copy_from_slice(&self.half);
+            self.inverse.pivots(&mut update.measured);
+            update.motion = gram(update.halves.as_ref(), column(update.measured.as_flattened()));
+            update.factors = w - update.answer(&(&update.motion + &update.seen * w));
         }
     }
 
-    /// A⁻¹D of dense columns.
-    pub(super) fn responses(&self, mut d: Mat<f64>) -> Mat<f64> {
-        self.inverse.apply(d.as_mut());
-        if let Some(update) = &self.modal {
-            let part = update.answer(&gram(update.basis.as_ref(), d.as_ref()));
-            d -= expand(update.responses.as_ref(), part.as_ref());
-        }
-        d
-    }
-
-    /// Bᵀx, m × columns; nothing without modal damping.
-    pub(super) fn modal_share(&self, x: &Mat<f64>) -> Mat<f64> {
+    /// An entry of PᵀA⁻¹(h + B w).
+    pub(super) fn free(&self, column: usize) -> f64 {
+        let motion = self.columns[column][1].dot(self.half.as_flattened());
         match &self.modal {
-            Some(update) => gram(update.basis.as_ref(), x.as_ref()),
-            None => Mat::zeros(0, x.ncols()),
+            Some(update) => {
+                let share = update.columns.col_as_slice(column).iter().zip(update.factors.col_as_slice(0));
+                motion + share.map(|(v, s)| v * s).sum::<f64>()
+            }
+            None => motion,
         }
     }
+
+    /// Adds a force along a column of P.
+    pub(super) fn push(&mut self, column: usize, force: f64) {
+        self.columns[column][0].add_to(force, self.half.as_flattened_mut());
+        if let Some(update) = &mut self.modal {
+            for i in 0..update.weights.len() {
+                update.motion[(i, 0)] += force * update.columns[(i, column)];
+                update.factors[(i, 0)] -= force * update.answers[(i, column)];
+            }
+        }
+    }
+
+    /// Goes the rest of the way: Δ, and BᵀΔ in `w`.
+    pub(super) fn finish(&mut self, increment: &mut [f64], w: &mut Mat<f64>) {
+        if let Some(update) = &self.modal {
+            let half = self.half.as_flattened_mut();
+            let half = MatMut::from_column_major_slice_mut(half, update.halves.nrows(), 1);
+            combine(half, Accum::Add, update.halves.as_ref(), update.factors.as_ref(), 1.0);
+            *w = &update.motion + &update.seen * &update.factors;
+        }
+        self.inverse.backward(&mut self.half, increment);
+    }
+}
+
+fn column(x: &[f64]) -> MatRef<'_, f64> {
+    MatRef::from_column_major_slice(x, x.len(), 1)
 }

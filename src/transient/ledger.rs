@@ -1,8 +1,10 @@
 //! Where the energy goes, step by step.
 
 use super::model::Model;
+use super::rows::sums;
 use super::scheme::Weights;
 use super::state::State;
+use std::ops::Range;
 
 /// The work of one step or, summed, of many \[J\].
 ///
@@ -45,26 +47,35 @@ impl Work {
         let (ku0, ku1) = (from.elastic.col_as_slice(0), to.elastic.col_as_slice(0));
         let [mv0, ma0] = [0, 1].map(|k| from.inertia.col_as_slice(k));
         let [mv1, ma1] = [0, 1].map(|k| to.inertia.col_as_slice(k));
-        let (mut external, mut kinetic, mut strain) = (0.0, 0.0, 0.0);
-        let (mut stiff, mut heavy, mut mean, mut change) = (0.0, 0.0, 0.0, 0.0);
-        for i in 0..n {
-            let (du, da, dma) = (u1[i] - u0[i], a1[i] - a0[i], ma1[i] - ma0[i]);
-            external += du * model.load[i];
-            // ½(x₁ᵀA x₁ − x₀ᵀA x₀) as (x₁ − x₀)ᵀA x̄, which loses no digits where the motion is steady.
-            kinetic += 0.5 * (v1[i] - v0[i]) * (mv1[i] + mv0[i]);
-            strain += 0.5 * du * (ku1[i] + ku0[i]);
-            stiff += du * (ku1[i] - ku0[i]);
-            heavy += du * dma;
-            mean += 0.5 * da * (ma1[i] + ma0[i]);
-            change += da * dma;
-        }
+        let structure = |rows: Range<usize>| {
+            let (mut external, mut kinetic, mut strain) = (0.0, 0.0, 0.0);
+            let (mut stiff, mut heavy, mut mean, mut change) = (0.0, 0.0, 0.0, 0.0);
+            for i in rows {
+                let (du, da, dma) = (u1[i] - u0[i], a1[i] - a0[i], ma1[i] - ma0[i]);
+                external += du * model.load[i];
+                // ½(x₁ᵀA x₁ − x₀ᵀA x₀) as (x₁ − x₀)ᵀA x̄, which loses no digits where the motion is steady.
+                kinetic += 0.5 * (v1[i] - v0[i]) * (mv1[i] + mv0[i]);
+                strain += 0.5 * du * (ku1[i] + ku0[i]);
+                stiff += du * (ku1[i] - ku0[i]);
+                heavy += du * dma;
+                mean += 0.5 * da * (ma1[i] + ma0[i]);
+                change += da * dma;
+            }
+            [external, kinetic, strain, stiff, heavy, mean, change]
+        };
+        let [mut external, kinetic, strain, stiff, heavy, mean, change] = sums(n, structure);
         let (mut damping, mut damping_change) = (0.0, 0.0);
         if let (Some(c0), Some(c1)) = (&from.viscous, &to.viscous) {
             let (cv0, cv1) = (c0.col_as_slice(0), c1.col_as_slice(0));
-            for i in 0..n {
-                damping -= 0.5 * (u1[i] - u0[i]) * (cv1[i] + cv0[i]);
-                damping_change -= (u1[i] - u0[i]) * (cv1[i] - cv0[i]);
-            }
+            let lost = |rows: Range<usize>| {
+                let (mut damping, mut change) = (0.0, 0.0);
+                for i in rows {
+                    damping -= 0.5 * (u1[i] - u0[i]) * (cv1[i] + cv0[i]);
+                    change -= (u1[i] - u0[i]) * (cv1[i] - cv0[i]);
+                }
+                [damping, change]
+            };
+            [damping, damping_change] = sums(n, lost);
         }
         if let (Some(modal), Some(old), Some(new)) = (&model.damping.modal, &from.modal, &to.modal) {
             for (i, c) in modal.coefficients.iter().enumerate() {

@@ -8,7 +8,6 @@
 
 mod checkpoint;
 mod condensed;
-mod diagonal;
 mod drive;
 mod effective;
 mod events;
@@ -17,7 +16,9 @@ mod interface;
 mod ledger;
 mod march;
 mod model;
+mod products;
 mod reaction;
+mod rows;
 mod scheme;
 mod state;
 mod stepper;

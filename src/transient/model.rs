@@ -1,8 +1,8 @@
 //! What time integration needs of a system.
 
-use super::diagonal::Diagonal;
 use super::drive::{Loading, Profile, Push};
 use super::interface::Interface;
+use super::products::Products;
 use super::scheme::Weights;
 use super::track::Track;
 use crate::equilibrium::{SteadySliding, directions, tangent_stiffness};
@@ -21,8 +21,8 @@ pub struct Model<'a> {
     pub(super) damping: &'a Damping,
     /// K + K_σ(u₀).
     pub(super) stiffness: Cow<'a, SparseMatrix>,
-    /// M, K and C where all are diagonal.
-    pub(super) diagonal: Option<Diagonal>,
+    /// What M, K and C make of a motion.
+    pub(super) products: Products,
     /// f \[N, N m\].
     pub(super) load: &'a [f64],
     /// P, what the directions D are made of: g, t₁, t₂ of every contact point, at each of its stations where it travels,
@@ -82,7 +82,7 @@ impl<'a> Model<'a> {
         Ok(Model {
             mass,
             damping,
-            diagonal: Diagonal::of(mass, &stiffness, damping),
+            products: Products::new(mass, &stiffness, damping),
             stiffness,
             load: &system.load,
             columns: system.points().flat_map(|(_, point)| directions(point)).chain(imported).collect(),

@@ -1,14 +1,13 @@
 //! Where a system stands: its motion, and what the matrices make of it.
 
-use super::diagonal::scale;
 use super::interface::Interface;
 use super::model::Model;
+use super::products::Derived;
 use super::reaction::{Bristles, Reaction};
 use super::scheme::Weights;
 use super::stepper::combine;
 use crate::equilibrium::SteadySliding;
 use crate::linalg::c64;
-use crate::linalg::sparse::multiply;
 use crate::linalg::tall::gram;
 use faer::Mat;
 
@@ -41,6 +40,8 @@ pub struct State {
     pub(super) interface: Interface,
     /// Dᵀu, Dᵀv, Dᵀa of the motion at the beginning of the step that ended here, with its D: r × 3.
     pub(super) before: Mat<f64>,
+    /// Newton's steps that its last step took.
+    pub(super) iterations: usize,
 }
 
 impl State {
@@ -127,6 +128,11 @@ impl State {
         combine(weights.predicted_rate(), along, &mut out[1]);
     }
 
+    /// How many times Newton's method solved for the contact in the step that ended here.
+    pub fn iterations(&self) -> usize {
+        self.iterations
+    }
+
     /// V of each pair \[m/s\].
     pub fn speeds(&self) -> &[f64] {
         &self.speeds
@@ -178,25 +184,14 @@ impl State {
             speeds: model.velocities.clone(),
             interface: Interface::new(model),
             before: Mat::zeros(r, 3),
+            iterations: 0,
         }
     }
 
     /// What the sparse matrices make of the motion, and the motion along the directions.
     pub(super) fn derive(&mut self, model: &Model<'_>) {
-        let rates = self.motion.as_ref().subcols(1, 2);
-        if let Some(diagonal) = &model.diagonal {
-            scale(&diagonal.stiffness, self.motion.as_ref(), self.elastic.as_mut());
-            scale(&diagonal.mass, rates, self.inertia.as_mut());
-            if let Some(out) = &mut self.viscous {
-                scale(&diagonal.viscous, rates, out.as_mut());
-            }
-        } else {
-            multiply(&model.stiffness, self.motion.as_ref(), self.elastic.as_mut());
-            multiply(model.mass, rates, self.inertia.as_mut());
-            if let (Some(c), Some(out)) = (&model.damping.viscous, &mut self.viscous) {
-                multiply(c, rates, out.as_mut());
-            }
-        }
+        let (elastic, inertia) = (&mut self.elastic, &mut self.inertia);
+        model.products.derive(&self.motion, Derived { elastic, inertia, viscous: self.viscous.as_mut() });
         for k in 0..3 {
             self.interface.motions(model, self.motion.col_as_slice(k), self.along.col_as_slice_mut(k));
         }

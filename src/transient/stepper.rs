@@ -4,6 +4,7 @@ use super::condensed::Condensed;
 use super::full_newton::FullNewton;
 use super::ledger::Work;
 use super::model::Model;
+use super::rows::chunks;
 use super::scheme::{Scheme, Weights};
 use super::state::State;
 use crate::error::Result;
@@ -85,10 +86,9 @@ impl<'a> Stepper<'a> {
             advance(&weights, old, modal.col_as_slice(0), new);
         }
         to.derive(model);
-        if !(to.motion.as_ref().norm_max().is_finite()) {
-            return Err(Stuck::NotFinite);
-        }
-        Ok(Work::between(model, &weights, from, to))
+        let work = Work::between(model, &weights, from, to);
+        // Every number of the motion is in it.
+        if work.turnover().is_finite() { Ok(work) } else { Err(Stuck::NotFinite) }
     }
 
     /// h but for its modal part goes to `increment`; returned is w of that part, B w.
@@ -100,14 +100,20 @@ impl<'a> Stepper<'a> {
         let mut dashpot = weights.predicted_rate().map(|p| -share * p);
         dashpot[1] -= alpha;
         let mass = -weights.scheme.alpha_m;
-        let h = self.increment.col_as_slice_mut(0);
-        combine(spring, [0, 1, 2].map(|k| from.elastic.col_as_slice(k)), h);
+        let elastic = [0, 1, 2].map(|k| from.elastic.col_as_slice(k));
         let inertia = from.inertia.col_as_slice(1);
-        (0..h.len()).for_each(|i| h[i] += model.load[i] + mass * inertia[i]);
-        if let Some(viscous) = &from.viscous {
-            let (v, a) = (viscous.col_as_slice(0), viscous.col_as_slice(1));
-            (0..h.len()).for_each(|i| h[i] += dashpot[1] * v[i] + dashpot[2] * a[i]);
-        }
+        let viscous = from.viscous.as_ref().map(|viscous| [0, 1].map(|k| viscous.col_as_slice(k)));
+        let h = self.increment.col_as_slice_mut(0);
+        chunks([&mut *h], |first, [h]| {
+            let rows = first..first + h.len();
+            combine(spring, elastic.map(|x| &x[rows.clone()]), h);
+            let given = model.load[rows.clone()].iter().zip(&inertia[rows.clone()]);
+            h.iter_mut().zip(given).for_each(|(h, (load, inertia))| *h += load + mass * inertia);
+            if let Some([v, a]) = viscous {
+                let rates = v[rows.clone()].iter().zip(&a[rows]);
+                h.iter_mut().zip(rates).for_each(|(h, (v, a))| *h += dashpot[1] * v + dashpot[2] * a);
+            }
+        });
         for (k, push) in model.pushes.iter().enumerate() {
             push.direction.add_to(share * to.pushes[k] + alpha * from.pushes[k], h);
         }
@@ -123,18 +129,32 @@ impl<'a> Stepper<'a> {
 
 /// out = Σ factor · x.
 pub(super) fn combine(factors: [f64; 3], x: [&[f64]; 3], out: &mut [f64]) {
-    for (i, out) in out.iter_mut().enumerate() {
-        *out = factors[0] * x[0][i] + factors[1] * x[1][i] + factors[2] * x[2][i];
+    let [x, y, z] = x.map(|x| &x[..out.len()]);
+    for i in 0..out.len() {
+        out[i] = factors[0] * x[i] + factors[1] * y[i] + factors[2] * z[i];
     }
 }
 
 /// u, v, a at the end of a step from those at its beginning and from Δ.
 fn advance(weights: &Weights, old: &Mat<f64>, increment: &[f64], new: &mut Mat<f64>) {
     let motion = [0, 1, 2].map(|k| old.col_as_slice(k));
-    combine(weights.predicted(), motion, new.col_as_slice_mut(0));
-    combine(weights.predicted_rate(), motion, new.col_as_slice_mut(1));
-    for (k, factor) in [1.0, weights.rate].into_iter().enumerate() {
-        new.col_as_slice_mut(k).iter_mut().zip(increment).for_each(|(x, d)| *x += factor * d);
-    }
-    new.col_as_slice_mut(2).iter_mut().zip(increment).for_each(|(a, d)| *a = weights.inertia * d);
+    let (by_u, by_v) = (weights.predicted(), weights.predicted_rate());
+    let (u, rest) = new.as_mut().split_at_col_mut(1);
+    let (v, a) = rest.split_at_col_mut(1);
+    let new = [u, v, a].map(|x| {
+        let column = x.col_mut(0).try_as_col_major_mut();
+        column.expect("the columns of a matrix are in one piece").as_slice_mut()
+    });
+    chunks(new, |first, [u, v, a]| {
+        let rows = first..first + u.len();
+        let [old_u, old_v, old_a] = motion.map(|x| &x[rows.clone()]);
+        let increment = &increment[rows];
+        let (v, a) = (&mut v[..u.len()], &mut a[..u.len()]);
+        for i in 0..u.len() {
+            let d = increment[i];
+            u[i] = old_u[i] + by_u[1] * old_v[i] + by_u[2] * old_a[i] + d;
+            v[i] = old_v[i] + by_v[2] * old_a[i] + weights.rate * d;
+            a[i] = weights.inertia * d;
+        }
+    });
 }

@@ -32,6 +32,7 @@ use faer::{Mat, MatMut, MatRef};
 use field::Lanes;
 use numeric::Front;
 use rayon::prelude::*;
+use solve::Substitution;
 use std::fmt::Debug;
 use std::sync::Arc;
 use symbolic::Plan;
@@ -57,6 +58,24 @@ pub trait SymmetricFactor<T: Field = f64>: Debug + Send + Sync {
     /// # Panics
     /// When `rhs` has not n rows.
     fn solve_in_place(&self, rhs: MatMut<'_, T>);
+
+    /// y = L⁻¹ P S b: the first half of a solution, in the order of elimination.
+    ///
+    /// Together with [`SymmetricFactor::pivots`] it measures aᵀA⁻¹b = (L⁻¹PSa)ᵀ B⁻¹ (L⁻¹PSb) without the second half, and the
+    /// half of a sparse vector has entries on its way to the root only.
+    ///
+    /// # Panics
+    /// When a length is not n.
+    fn forward(&self, b: &[T], y: &mut [T::Lanes<1>]);
+
+    /// y ← B⁻¹ y.
+    fn pivots(&self, y: &mut [T::Lanes<1>]);
+
+    /// x = S Pᵀ L⁻ᵀ B⁻¹ y, the second half; y is lost.
+    ///
+    /// # Panics
+    /// When a length is not n.
+    fn backward(&self, y: &mut [T::Lanes<1>], x: &mut [T]);
 
     /// How many eigenvalues of a real A are negative, zero, positive. For a complex A the signs of the real parts of
     /// the eigenvalues of B are counted, which say something only when A is nearly real.
@@ -187,6 +206,10 @@ const COLUMNS_A_TASK: usize = 8;
 const ROWS_A_TASK: usize = 8192;
 
 impl<T: Field> Multifrontal<T> {
+    fn substitution(&self) -> Substitution<'_, T> {
+        Substitution { plan: &self.plan, fronts: &self.fronts }
+    }
+
     /// Solves for up to as many columns as `L` has.
     fn solve_lanes<L: Lanes<T>>(&self, mut rhs: MatMut<'_, T>) {
         let mut x = vec![L::ZERO; self.n()];
@@ -199,7 +222,8 @@ impl<T: Field> Multifrontal<T> {
                 }
             }
         });
-        solve::solve(&self.plan, &self.fronts, &mut x);
+        self.substitution().up(&mut x);
+        self.substitution().down(&mut x);
         rhs.as_mut().par_row_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, mut rhs)| {
             for i in 0..rhs.nrows() {
                 let row = task * ROWS_A_TASK + i;
@@ -223,6 +247,29 @@ impl<T: Field> SymmetricFactor<T> for Multifrontal<T> {
             1 => self.solve_lanes::<T::Lanes<1>>(columns),
             2..=4 => self.solve_lanes::<T::Lanes<4>>(columns),
             _ => self.solve_lanes::<T::Lanes<COLUMNS_A_TASK>>(columns),
+        });
+    }
+
+    fn forward(&self, b: &[T], y: &mut [T::Lanes<1>]) {
+        assert!(b.len() == self.n() && y.len() == self.n(), "vectors of the wrong length");
+        y.par_chunks_mut(ROWS_A_TASK).zip(self.plan.order.par_chunks(ROWS_A_TASK)).for_each(|(y, order)| {
+            y.iter_mut().zip(order).for_each(|(y, row)| y.set(0, b[*row] * self.scaling[*row]));
+        });
+        self.substitution().up(y);
+    }
+
+    fn pivots(&self, y: &mut [T::Lanes<1>]) {
+        self.substitution().pivots(y);
+    }
+
+    fn backward(&self, y: &mut [T::Lanes<1>], x: &mut [T]) {
+        assert!(x.len() == self.n() && y.len() == self.n(), "vectors of the wrong length");
+        self.substitution().down(y);
+        x.par_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, x)| {
+            let first = task * ROWS_A_TASK;
+            let rows = first..first + x.len();
+            let places = self.plan.place[rows.clone()].iter().zip(&self.scaling[rows]);
+            x.iter_mut().zip(places).for_each(|(x, (place, scale))| *x = y[*place].get(0) * *scale);
         });
     }
 
@@ -326,6 +373,33 @@ mod tests {
                 assert!(solve_refined(&a, &*factor, x.as_mut()) < 1e-16);
             }
         }
+    }
+
+    #[test]
+    fn two_halves_are_a_solution_and_measure_without_the_second() {
+        let (k, m) = samples::plate(24, false);
+        let a = add_scaled(&[(1.0, &k), (-(std::f64::consts::TAU * 5000.0).powi(2), &m)]);
+        let factor = factorize(&a).unwrap();
+        assert!(factor.inertia().negative > 0);
+        let n = a.ncols();
+        let b: Vec<f64> = (0..n).map(|i| (i as f64 * 0.7).sin()).collect();
+        let mut c = vec![0.0; n];
+        c[n / 3] = 1.0;
+        let half = |b: &[f64]| {
+            let mut y = vec![[0.0]; n];
+            factor.forward(b, &mut y);
+            y
+        };
+        let mut whole = Mat::from_fn(n, 1, |i, _| b[i]);
+        factor.solve_in_place(whole.as_mut());
+        let (mut y, few, mut x) = (half(&b), half(&c), vec![0.0; n]);
+        assert!(few.iter().filter(|row| row[0] != 0.0).count() < n / 2);
+        let mut measured = few.clone();
+        factor.pivots(&mut measured);
+        let seen: f64 = measured.iter().zip(&y).map(|(a, b)| a[0] * b[0]).sum();
+        assert!((seen - whole[(n / 3, 0)]).abs() < 1e-10 * whole.norm_max());
+        factor.backward(&mut y, &mut x);
+        assert_eq!(x, whole.col_as_slice(0));
     }
 
     #[test]

@@ -10,25 +10,51 @@ use super::symbolic::{Plan, Task};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-/// L B Lᵀ x = b, with one row of `x` for each column in the order of elimination.
-pub(super) fn solve<T: Field, L: Lanes<T>>(plan: &Plan, fronts: &[Front<T>], x: &mut [L]) {
-    let substitution = Substitution { plan, fronts };
-    substitution.forward(&plan.root, x);
-    substitution.backward(&plan.root, x, Vec::new());
-}
-
-struct Substitution<'a, T> {
-    plan: &'a Plan,
-    fronts: &'a [Front<T>],
+/// Goes up and down the tree, with one row of x for each column in the order of elimination.
+pub(super) struct Substitution<'a, T> {
+    pub plan: &'a Plan,
+    pub fronts: &'a [Front<T>],
 }
 
 impl<T: Field> Substitution<'_, T> {
+    /// L⁻¹ x.
+    pub fn up<L: Lanes<T>>(&self, x: &mut [L]) {
+        self.forward(&self.plan.root, x);
+    }
+
+    /// B⁻¹ x.
+    pub fn pivots<L: Lanes<T>>(&self, x: &mut [L]) {
+        let mut v = Vec::new();
+        for front in self.fronts {
+            let columns = &front.columns[..front.width()];
+            v.clear();
+            v.extend(columns.iter().map(|c| x[*c as usize]));
+            front.apply_pivots(&mut v);
+            columns.iter().zip(&v).for_each(|(c, y)| x[*c as usize] = *y);
+        }
+    }
+
+    /// L⁻ᵀ B⁻¹ x.
+    pub fn down<L: Lanes<T>>(&self, x: &mut [L]) {
+        self.backward(&self.plan.root, x, Vec::new());
+    }
+
     /// The first column of node s.
     fn first(&self, s: usize) -> usize {
         self.plan.nodes.get(s).map_or(self.plan.order.len(), |node| node.columns.start)
     }
 
-    /// L y = b for the columns of a task, then B⁻¹ y; gives what its last front passes on.
+    /// Asks memory for what a front begins with; there may be no such front.
+    fn fetch(&self, s: usize) {
+        if let Some(front) = self.fronts.get(s) {
+            begin_to_load(&front.columns);
+            begin_to_load(&front.above);
+            begin_to_load(&front.inverse);
+            begin_to_load(&front.lower);
+        }
+    }
+
+    /// L y = b for the columns of a task; gives what its last front passes on.
     fn forward<L: Lanes<T>>(&self, task: &Task, x: &mut [L]) -> Vec<L> {
         let subtasks: Vec<_> = task.subtasks.iter().zip(parts(task, x, |s| self.first(s))).collect();
         let results: Vec<_> = subtasks.into_par_iter().map(|(task, x)| self.forward(task, x)).collect();
@@ -45,6 +71,7 @@ impl<T: Field> Substitution<'_, T> {
                 continue;
             }
             let (front, node) = (&self.fronts[s], &self.plan.nodes[s]);
+            self.fetch(s + AHEAD);
             v.clear();
             v.extend(front.columns.iter().map(|column| {
                 let column = *column as usize;
@@ -61,7 +88,10 @@ impl<T: Field> Substitution<'_, T> {
                 }
             }
             stack.truncate(start);
-            Arch::new().dispatch(Forward { front, v: &mut v });
+            // Most of the tree sees nothing of a right-hand side with few entries.
+            if v.iter().any(|row| (0..L::COLUMNS).any(|k| row.get(k) != T::default())) {
+                Arch::new().dispatch(Forward { front, v: &mut v });
+            }
             front.columns[..front.width()].iter().zip(&v).for_each(|(c, y)| x[*c as usize - base] = *y);
             stack.extend_from_slice(&v[front.width()..]);
             s += 1;
@@ -69,7 +99,7 @@ impl<T: Field> Substitution<'_, T> {
         stack
     }
 
-    /// Lᵀ x = y for the columns of a task; `known` is the solution of the rows that its last front passed on.
+    /// B Lᵀ x = y for the columns of a task; `known` is the solution of the rows that its last front passed on.
     fn backward<L: Lanes<T>>(&self, task: &Task, x: &mut [L], known: Vec<L>) {
         let base = self.first(task.nodes.start);
         let (mut stack, mut v) = (known, Vec::new());
@@ -78,17 +108,19 @@ impl<T: Field> Substitution<'_, T> {
         let mut s = task.nodes.end;
         while s > task.nodes.start {
             let front = &self.fronts[s - 1];
-            let known = stack.split_off(stack.len() - front.above.len());
+            let known = stack.len() - front.above.len();
             if let Some(subtask) = subtasks.next_if(|subtask| subtask.nodes.end == s) {
-                waiting.push(known);
+                waiting.push(stack.split_off(known));
                 s = subtask.nodes.start;
                 continue;
             }
             s -= 1;
+            self.fetch(s.wrapping_sub(AHEAD));
             let columns = &front.columns[..front.width()];
             v.clear();
             v.extend(columns.iter().map(|column| x[*column as usize - base]));
-            v.extend_from_slice(&known);
+            v.extend_from_slice(&stack[known..]);
+            stack.truncate(known);
             Arch::new().dispatch(Backward { front, v: &mut v });
             columns.iter().zip(&v).for_each(|(c, y)| x[*c as usize - base] = *y);
             for child in &self.plan.nodes[s].children {
@@ -101,6 +133,22 @@ impl<T: Field> Substitution<'_, T> {
     }
 }
 
+/// How many fronts ahead memory is asked for the next one: most are so small that waiting for them takes as long as the work.
+const AHEAD: usize = 2;
+
+/// Brings the first lines of a slice into the cache, if the processor can be asked to.
+#[inline(always)]
+fn begin_to_load<T>(slice: &[T]) {
+    #[cfg(target_arch = "x86_64")]
+    for line in slice.chunks(64usize.div_ceil(size_of::<T>())).take(8) {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // SAFETY: a hint; nothing is read, whatever the address.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(line.as_ptr().cast()) }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = slice;
+}
+
 /// Columns of L that go through the rows together.
 const TOGETHER: usize = 8;
 /// The same on the way back, where each has a sum in a register.
@@ -110,9 +158,30 @@ impl<T: Field> Front<T> {
     fn column(&self, j: usize) -> &[T] {
         &self.lower[j * self.rows..(j + 1) * self.rows]
     }
+
+    /// v ← B⁻¹ v for the eliminated columns, which v begins with.
+    #[inline(always)]
+    fn apply_pivots<L: Lanes<T>>(&self, v: &mut [L]) {
+        let mut j = 0;
+        while j < self.width() {
+            let [a, b] = self.inverse[j];
+            let (x, mut first) = (v[j], L::ZERO);
+            first.subtract(-a, &x);
+            let double = b != T::default();
+            if double {
+                let (y, mut second) = (v[j + 1], L::ZERO);
+                first.subtract(-b, &y);
+                second.subtract(-b, &x);
+                second.subtract(-self.inverse[j + 1][0], &y);
+                v[j + 1] = second;
+            }
+            v[j] = first;
+            j += 1 + usize::from(double);
+        }
+    }
 }
 
-/// v₁ ← L₁₁⁻¹ v₁, v₂ ← v₂ − L₂₁ v₁, then v₁ ← B⁻¹ v₁.
+/// v₁ ← L₁₁⁻¹ v₁, v₂ ← v₂ − L₂₁ v₁.
 struct Forward<'a, T, L> {
     front: &'a Front<T>,
     v: &'a mut [L],
@@ -139,26 +208,10 @@ impl<T: Field, L: Lanes<T>> WithSimd for Forward<'_, T, L> {
             L::subtract_products(below, &front.lower[j * front.rows..], front.rows, j + count, y);
             j += count;
         }
-        let mut j = 0;
-        while j < width {
-            let [a, b] = front.inverse[j];
-            let (x, mut first) = (v[j], L::ZERO);
-            first.subtract(-a, &x);
-            if b != T::default() {
-                let (y, mut second) = (v[j + 1], L::ZERO);
-                first.subtract(-b, &y);
-                second.subtract(-b, &x);
-                second.subtract(-front.inverse[j + 1][0], &y);
-                v[j + 1] = second;
-                j += 1;
-            }
-            v[j - usize::from(b != T::default())] = first;
-            j += 1;
-        }
     }
 }
 
-/// v₁ ← L₁₁⁻ᵀ (v₁ − L₂₁ᵀ v₂).
+/// v₁ ← L₁₁⁻ᵀ (B⁻¹ v₁ − L₂₁ᵀ v₂).
 struct Backward<'a, T, L> {
     front: &'a Front<T>,
     v: &'a mut [L],
@@ -170,6 +223,7 @@ impl<T: Field, L: Lanes<T>> WithSimd for Backward<'_, T, L> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let (front, v) = (self.front, self.v);
+        front.apply_pivots(v);
         let mut j = front.width();
         while j >= SUMS {
             j -= SUMS;

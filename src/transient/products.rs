@@ -1,0 +1,139 @@
+//! What the matrices make of a motion, once a step.
+
+use super::rows::chunks;
+use crate::linalg::SparseMatrix;
+use crate::linalg::merged::Merged;
+use crate::system::Damping;
+use faer::{Mat, MatMut, MatRef};
+
+/// K u, K v, K a, M v, M a and, with viscous damping, C v and C a.
+#[derive(Debug)]
+pub(super) enum Products {
+    /// All matrices are diagonal, as those of reduced models: nothing to factorise, a few products a step.
+    Diagonal(Diagonal),
+    /// M and K in one pass, C = αM + βK for free.
+    Proportional { matrices: Merged, factors: Option<[f64; 2]> },
+    /// M, K and C in one pass.
+    General { matrices: Merged },
+}
+
+/// The diagonals of M, K and C.
+#[derive(Debug)]
+pub(super) struct Diagonal {
+    pub(super) mass: Vec<f64>,
+    pub(super) stiffness: Vec<f64>,
+    /// Zero without viscous damping.
+    pub(super) viscous: Vec<f64>,
+}
+
+/// Where the products go.
+pub(super) struct Derived<'a> {
+    /// K u, K v, K a.
+    pub(super) elastic: &'a mut Mat<f64>,
+    /// M v, M a.
+    pub(super) inertia: &'a mut Mat<f64>,
+    /// C v, C a.
+    pub(super) viscous: Option<&'a mut Mat<f64>>,
+}
+
+impl Products {
+    pub(super) fn new(mass: &SparseMatrix, stiffness: &SparseMatrix, damping: &Damping) -> Self {
+        if let Some(diagonal) = Diagonal::of(mass, stiffness, damping) {
+            return Products::Diagonal(diagonal);
+        }
+        let Some(viscous) = &damping.viscous else {
+            return Products::Proportional { matrices: Merged::new(&[stiffness, mass]), factors: None };
+        };
+        let matrices = Merged::new(&[stiffness, mass, viscous]);
+        match matrices.proportion() {
+            Some([by_stiffness, by_mass]) => Products::Proportional {
+                matrices: Merged::new(&[stiffness, mass]),
+                factors: Some([by_mass, by_stiffness]),
+            },
+            None => Products::General { matrices },
+        }
+    }
+
+    /// The diagonals, where there is nothing else.
+    pub(super) fn diagonal(&self) -> Option<&Diagonal> {
+        match self {
+            Products::Diagonal(diagonal) => Some(diagonal),
+            _ => None,
+        }
+    }
+
+    /// Of u, v and a, the columns of `motion`.
+    pub(super) fn derive(&self, motion: &Mat<f64>, out: Derived<'_>) {
+        let rates = motion.as_ref().subcols(1, 2);
+        let (elastic, inertia) = (out.elastic.as_mut(), out.inertia.as_mut());
+        match self {
+            Products::Diagonal(diagonal) => {
+                scale(&diagonal.stiffness, motion.as_ref(), elastic);
+                scale(&diagonal.mass, rates, inertia);
+                if let Some(viscous) = out.viscous {
+                    scale(&diagonal.viscous, rates, viscous.as_mut());
+                }
+            }
+            Products::Proportional { matrices, factors } => {
+                matrices.multiply([(0, elastic), (1, inertia)], motion.as_ref());
+                if let (Some(factors), Some(viscous)) = (factors, out.viscous) {
+                    combine(*factors, out.inertia, out.elastic, viscous);
+                }
+            }
+            Products::General { matrices } => match out.viscous {
+                Some(viscous) => {
+                    matrices.multiply([(0, elastic), (1, inertia), (1, viscous.as_mut())], motion.as_ref());
+                }
+                None => unreachable!("three matrices are merged where there is damping"),
+            },
+        }
+    }
+}
+
+/// C v and C a = α M· + β K·.
+fn combine([alpha, beta]: [f64; 2], inertia: &Mat<f64>, elastic: &Mat<f64>, viscous: &mut Mat<f64>) {
+    for k in 0..2 {
+        let (m, s) = (inertia.col_as_slice(k), elastic.col_as_slice(k + 1));
+        chunks([viscous.col_as_slice_mut(k)], |first, [out]| {
+            let rows = first..first + out.len();
+            let terms = m[rows.clone()].iter().zip(&s[rows]);
+            out.iter_mut().zip(terms).for_each(|(out, (m, s))| *out = alpha * m + beta * s);
+        });
+    }
+}
+
+impl Diagonal {
+    /// That of a structure, if it is one.
+    fn of(mass: &SparseMatrix, stiffness: &SparseMatrix, damping: &Damping) -> Option<Self> {
+        if damping.modal.is_some() {
+            return None;
+        }
+        let viscous = match &damping.viscous {
+            Some(c) => diagonal(c)?,
+            None => vec![0.0; mass.ncols()],
+        };
+        Some(Diagonal { mass: diagonal(mass)?, stiffness: diagonal(stiffness)?, viscous })
+    }
+}
+
+/// The entries of a matrix that has none beside its diagonal.
+fn diagonal(a: &SparseMatrix) -> Option<Vec<f64>> {
+    let mut values = vec![0.0; a.ncols()];
+    for (j, value) in values.iter_mut().enumerate() {
+        for entry in a.col_ptr()[j]..a.col_ptr()[j + 1] {
+            if a.row_idx()[entry] != j {
+                return None;
+            }
+            *value = a.val()[entry];
+        }
+    }
+    Some(values)
+}
+
+/// y = diag(d) x.
+fn scale(d: &[f64], x: MatRef<'_, f64>, mut y: MatMut<'_, f64>) {
+    for k in 0..x.ncols() {
+        let column = y.as_mut().col_mut(k).iter_mut().zip(x.col(k).iter());
+        column.zip(d).for_each(|((y, x), d)| *y = d * x);
+    }
+}
