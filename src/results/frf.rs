@@ -10,6 +10,9 @@ use ndarray::Array2;
 use serde_json::{Value, json};
 use std::path::Path;
 
+/// A peak stands beside a measured one that differs from it by less than this part.
+const NEAR: f64 = 0.05;
+
 /// Motion at some places for a harmonic force at another.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrfResult {
@@ -56,6 +59,19 @@ pub struct Resonance {
     /// For each place |φ(place) φ(excitation)| over the largest of that product of any mode in the band: near zero where
     /// either of them stands on a node of the mode.
     pub seen: Vec<f64>,
+}
+
+impl FrfResult {
+    /// The frequency \[Hz\] of the highest peak of a place that differs from `hz` by less than 5 %; a peak stands above
+    /// both its neighbours.
+    pub fn peak(&self, place: usize, hz: f64) -> Option<f64> {
+        let height = |k: usize| self.responses[place].values[k].norm();
+        let near = |k: &usize| (self.frequencies_hz[*k] / hz - 1.0).abs() < NEAR;
+        let stands = |k: &usize| height(*k) > height(k - 1) && height(*k) > height(k + 1);
+        let inner = 1..self.frequencies_hz.len().saturating_sub(1);
+        let peaks = inner.filter(near).filter(stands);
+        peaks.max_by(|a, b| height(*a).total_cmp(&height(*b))).map(|k| self.frequencies_hz[k])
+    }
 }
 
 /// Writes `frf_<name>.csv` and `frf_<name>.uff` into the folder `dir`.
@@ -122,10 +138,13 @@ pub(super) fn summary(frf: &FrfResult) -> Value {
             frf.resonances.iter().map(|r| (r.seen[place], r.frequency_hz)).collect();
         seen.sort_by(|a, b| b.0.total_cmp(&a.0));
         let largest = of.values.iter().map(|v| v.norm()).fold(0.0, f64::max);
+        let measured =
+            frf.measured.iter().map(|hz| json!({ "frequency_hz": hz, "peak_hz": frf.peak(place, *hz) }));
         json!({
             "name": of.name,
             "place": of.place,
             "largest": largest,
+            "measured": measured.collect::<Vec<_>>(),
             "seen": seen.iter().map(|(seen, hz)| json!({ "frequency_hz": hz, "share": seen })).collect::<Vec<_>>(),
         })
     };
@@ -139,7 +158,27 @@ pub(super) fn summary(frf: &FrfResult) -> Value {
         "band_hz": [frf.frequencies_hz.first(), frf.frequencies_hz.last()],
         "superposition_deviation": frf.deviation,
         "compared": frf.compared,
-        "measured_hz": frf.measured,
         "responses": frf.responses.iter().enumerate().map(response).collect::<Vec<_>>(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample;
+
+    #[test]
+    fn measured_resonances_stand_beside_the_peaks_that_show() {
+        let results = sample::rig();
+        let frf = &results.frfs[0];
+        assert!((frf.peak(0, 330.0).unwrap() - 338.0).abs() < 5.0 && frf.peak(0, 1697.0).unwrap() == 1745.0);
+        assert!(frf.peak(0, 936.0).is_none());
+        let dir = tempfile::tempdir().unwrap();
+        super::write(dir.path(), &results.frfs).unwrap();
+        let table = std::fs::read_to_string(dir.path().join("frf_hammer.csv")).unwrap();
+        assert!(
+            table.lines().count() == 401
+                && table.starts_with("frequency [Hz],re accelerance rim [m/(N s^2)]")
+        );
+        assert!(dir.path().join("frf_hammer.uff").is_file());
+    }
 }
