@@ -24,7 +24,7 @@ pub(super) fn chunks<const N: usize>(out: [&mut [f64]; N], work: impl Fn(usize, 
     tasks.into_par_iter().for_each(|(first, parts)| work(first, to_array(parts)));
 }
 
-fn to_array<'a, const N: usize>(parts: Vec<&'a mut [f64]>) -> [&'a mut [f64]; N] {
+fn to_array<const N: usize>(parts: Vec<&mut [f64]>) -> [&mut [f64]; N] {
     parts.try_into().unwrap_or_else(|_| unreachable!("as many parts as vectors"))
 }
 
