@@ -2,8 +2,8 @@
 
 use super::axes::{WIDTH, Words, labelled};
 use super::chart::{Area, colour, sheet, text};
-use super::colours::{ALARM, INK, MEASURED, MUTED, PARTS};
-use super::format::{fixed, given, power, significant};
+use super::colours::{ALARM, INK, MEASURED, MUTED, PARTS, SECOND};
+use super::format::{fixed, given, power};
 use super::html::{escape, figure, titled_table};
 use super::tables::Table;
 use crate::linalg::c64;
@@ -91,7 +91,7 @@ fn magnitudes(frf: &FrfResult) -> impl Iterator<Item = f64> + '_ {
 }
 
 fn ink(k: usize) -> &'static str {
-    [ALARM, PARTS[0][0], PARTS[2][0], PARTS[5][0]][k % 4]
+    [ALARM, SECOND, PARTS[2][0], INK][k % 4]
 }
 
 type Label<'a> = (&'a str, &'a dyn Fn(f64) -> String, Option<&'a str>);
@@ -136,25 +136,25 @@ pub(super) fn table(frf: &FrfResult) -> Table {
         format!("Frequency response {}: {} for a force at {}", frf.name, frf.quantity[0], frf.excitation),
         &headings,
     );
-    for resonance in &frf.resonances {
-        let away = |hz: &f64| (hz / resonance.frequency_hz - 1.0).abs();
-        let nearest = frf.measured.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
-        let beside = nearest.filter(|hz| away(hz) < NEAR).map_or(String::new(), |hz| given(*hz));
+    let beside = beside(frf);
+    for (k, resonance) in frf.resonances.iter().enumerate() {
         for (place, response) in frf.responses.iter().enumerate() {
             let seen = resonance.seen[place];
-            let why = if seen < HIDDEN { "hidden: a node of it is at the place or the force" } else { "" };
+            let why = if seen < HIDDEN { "hidden: a node of it" } else { "" };
             let first = place == 0;
             let cells = vec![
                 if first { resonance.name.clone() } else { String::new() },
                 if first { fixed(resonance.frequency_hz, 1) } else { String::new() },
-                if first { beside.clone() } else { String::new() },
+                if first { beside[k].clone() } else { String::new() },
                 response.name.replace('_', " "),
-                significant(100.0 * seen, 2),
+                fixed(100.0 * seen, 1),
                 why.to_string(),
             ];
             table.row(cells, false);
         }
     }
+    let node = "Hidden: the place or the force stands on a node of the mode.";
+    table.notes.push(node.into());
     table.notes.push(format!("{}; {} frequencies.", capital(&frf.about), frf.frequencies_hz.len()));
     table.notes.push(format!(
         "Superposition differs from the direct solution by {} at most, at {} frequencies.",
@@ -162,6 +162,20 @@ pub(super) fn table(frf: &FrfResult) -> Table {
         frf.compared
     ));
     table
+}
+
+/// What was measured beside each mode: of the modes that show somewhere the nearest, if it is near.
+fn beside(frf: &FrfResult) -> Vec<String> {
+    let mut beside = vec![String::new(); frf.resonances.len()];
+    for measured in &frf.measured {
+        let away = |k: &usize| (measured / frf.resonances[*k].frequency_hz - 1.0).abs();
+        let shows = |k: &usize| frf.resonances[*k].seen.iter().any(|seen| *seen >= HIDDEN);
+        let nearest = (0..beside.len()).filter(shows).min_by(|a, b| away(a).total_cmp(&away(b)));
+        if let Some(k) = nearest.filter(|k| away(k) < NEAR) {
+            beside[k] = given(*measured);
+        }
+    }
+    beside
 }
 
 #[cfg(test)]

@@ -56,7 +56,7 @@ mod tests {
     /// With C = β K: H = Σ_k φ_k φ_kᵀ/(ω_k² (1 + iβω) − ω²).
     #[test]
     fn modes_of_a_chain_add_up_to_the_response() {
-        let mut system = System { load: vec![0.0; 40], ..random_system(40, 0, 3.0, 4) };
+        let mut system = System { load: vec![0.0; 40], pairs: vec![], ..random_system(40, 1, 3.0, 4) };
         let beta = 2e-3;
         system.structure.damping.modal = None;
         system.structure.damping.viscous = Some(add_scaled(&[(beta, &system.structure.stiffness)]));

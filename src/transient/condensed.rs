@@ -148,16 +148,22 @@ impl Contact {
             }
             self.last.copy_from_slice(&self.x);
             let mut damping = 1.0;
-            loop {
+            let left = loop {
                 let stepped = self.last.iter().zip(&self.newton).map(|(x, s)| x - damping * s);
                 self.x.iter_mut().zip(stepped).for_each(|(x, next)| *x = next);
                 self.evaluate(model, from, to);
                 self.residual();
                 self.tangent.solve(&self.rho, &mut self.again);
-                if longest(&self.again) <= (1.0 - 0.25 * damping) * length || damping < 1e-3 {
-                    break;
+                let left = longest(&self.again);
+                if left <= (1.0 - 0.25 * damping) * length || damping < 1e-3 {
+                    break left;
                 }
                 damping *= 0.5;
+            };
+            // What is left is round-off, and so it is after another step, with this tangent or a softer one.
+            let round_off = ROUND_OFF * scale.max(self.farthest());
+            if left <= round_off && longest(&self.rho) <= round_off {
+                return Ok(());
             }
         }
         // What only round-off keeps from converging is good enough.

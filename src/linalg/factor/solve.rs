@@ -44,16 +44,6 @@ impl<T: Field> Substitution<'_, T> {
         self.plan.nodes.get(s).map_or(self.plan.order.len(), |node| node.columns.start)
     }
 
-    /// Asks memory for what a front begins with; there may be no such front.
-    fn fetch(&self, s: usize) {
-        if let Some(front) = self.fronts.get(s) {
-            begin_to_load(&front.columns);
-            begin_to_load(&front.above);
-            begin_to_load(&front.inverse);
-            begin_to_load(&front.lower);
-        }
-    }
-
     /// L y = b for the columns of a task; gives what its last front passes on.
     fn forward<L: Lanes<T>>(&self, task: &Task, x: &mut [L]) -> Vec<L> {
         let subtasks: Vec<_> = task.subtasks.iter().zip(parts(task, x, |s| self.first(s))).collect();
@@ -71,7 +61,6 @@ impl<T: Field> Substitution<'_, T> {
                 continue;
             }
             let (front, node) = (&self.fronts[s], &self.plan.nodes[s]);
-            self.fetch(s + AHEAD);
             v.clear();
             v.extend(front.columns.iter().map(|column| {
                 let column = *column as usize;
@@ -115,7 +104,6 @@ impl<T: Field> Substitution<'_, T> {
                 continue;
             }
             s -= 1;
-            self.fetch(s.wrapping_sub(AHEAD));
             let columns = &front.columns[..front.width()];
             v.clear();
             v.extend(columns.iter().map(|column| x[*column as usize - base]));
@@ -131,22 +119,6 @@ impl<T: Field> Substitution<'_, T> {
         let parts: Vec<_> = parts.zip(waiting.into_iter().rev()).collect();
         parts.into_par_iter().for_each(|((task, x), known)| self.backward(task, x, known));
     }
-}
-
-/// How many fronts ahead memory is asked for the next one: most are so small that waiting for them takes as long as the work.
-const AHEAD: usize = 2;
-
-/// Brings the first lines of a slice into the cache, if the processor can be asked to.
-#[inline(always)]
-fn begin_to_load<T>(slice: &[T]) {
-    #[cfg(target_arch = "x86_64")]
-    for line in slice.chunks(64usize.div_ceil(size_of::<T>())).take(8) {
-        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        // SAFETY: a hint; nothing is read, whatever the address.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(line.as_ptr().cast()) }
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    let _ = slice;
 }
 
 /// Columns of L that go through the rows together.
