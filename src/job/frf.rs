@@ -324,16 +324,18 @@ solution = "direct"
         assert!(back.deviation < 1e-3 && rim.deviation < 1e-3, "{} {}", back.deviation, rim.deviation);
         // Maxwell and Betti: from the rim to the inside as from the inside to the rim.
         let there = &rim.responses.iter().find(|r| r.name == "inside").unwrap().values;
+        let drive = &rim.responses.iter().find(|r| r.name == "rim").unwrap().values;
         let mut same = 0;
         for (hz, value) in back.frequencies_hz.iter().zip(&back.responses[0].values) {
             if let Some(k) = rim.frequencies_hz.iter().position(|other| other == hz) {
-                assert!((there[k] - value).norm() < 2e-3 * value.norm(), "{hz} Hz");
+                // Between two resonances there is next to nothing of it.
+                let size = value.norm().max(0.1 * drive[0].norm());
+                assert!((there[k] - value).norm() < 2e-3 * size, "{hz} Hz");
                 same += 1;
             }
         }
         assert!(same > 100);
         // At the driving point the force never gains energy from a structure at rest: Im h < 0.
-        let drive = &rim.responses.iter().find(|r| r.name == "rim").unwrap().values;
         assert!(drive.iter().all(|h| h.im < 0.0));
         // A resonance of ratio ζ stands at |h| ≈ φ²/(2ζω²): between two lines of the grid it is not missed.
         let first = rim.resonances[0].frequency_hz;
