@@ -1,7 +1,7 @@
 //! `[frf.NAME]`: frequency response functions.
 
 use super::reader::Section;
-use super::units::{FREQUENCY, LENGTH, NUMBER};
+use super::units::{FREQUENCY, LENGTH};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -133,7 +133,6 @@ fn read_motion(s: &Section) -> MotionAt {
         let found = if on.is_some() { "both `on` and `at`" } else { "nothing" };
         s.fault("at", found, "a place `at` as three lengths, or a region `on`", "");
     }
-    let direction =
-        s.quantities("direction", NUMBER).check("a vector that is not zero", |v| v.iter().any(|x| *x != 0.0));
+    let direction = s.direction("direction");
     MotionAt { on, at, direction: direction.required("a vector such as [1, 0, 0]") }
 }

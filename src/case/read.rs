@@ -183,10 +183,7 @@ fn read_bar(s: &Section) -> Bar {
     Bar {
         material: s.string("material").required("the name of a material"),
         section,
-        orientation: s
-            .quantities("orientation", NUMBER)
-            .check("a vector that is not zero", |v| v.iter().any(|x| *x != 0.0))
-            .or([0.0, 0.0, 1.0]),
+        orientation: s.direction("orientation").or([0.0, 0.0, 1.0]),
     }
 }
 
@@ -197,10 +194,7 @@ fn read_spring(s: &Section) -> SpringSet {
     SpringSet {
         on: s.string("on").required("a region"),
         to: s.string("to").optional(),
-        direction: s
-            .quantities("direction", NUMBER)
-            .check("a vector that is not zero", |v| v.iter().any(|x| *x != 0.0))
-            .required("a direction such as [1, 0, 0]"),
+        direction: s.direction("direction").required("a direction such as [1, 0, 0]"),
         rotational,
         stiffness: s.quantity("stiffness", stiffness).non_negative().required(stiffness.name),
         damping: s.quantity("damping", damping).non_negative().or(0.0),
@@ -260,10 +254,7 @@ fn read_contact(s: &Section) -> Contact {
             Pressing::Approach(0.0)
         }
     };
-    let into = s
-        .quantities("into", NUMBER)
-        .check("a vector that is not zero", |v| v.iter().any(|x| *x != 0.0))
-        .optional();
+    let into = s.direction("into").optional();
     if ground && into.is_none() && !s.has("into") {
         s.fault(
             "into",
@@ -332,10 +323,7 @@ fn read_contact(s: &Section) -> Contact {
             .non_negative()
             .check("0 beside `points`, which do not travel", |v| !given || *v == 0.0)
             .or(0.0),
-        sliding_direction: s
-            .quantities("sliding_direction", NUMBER)
-            .check("a vector that is not zero", |v| v.iter().any(|x| *x != 0.0))
-            .or([1.0, 0.0, 0.0]),
+        sliding_direction: s.direction("sliding_direction").or([1.0, 0.0, 0.0]),
         normal: normal.unwrap_or(Normal {
             per: StiffnessPer::Point,
             stiffness: 0.0,

@@ -1,6 +1,6 @@
 //! Reads TOML section by section, remembering every fault with its line: unknown keys, wrong types, wrong units.
 
-use super::units::{Dimension, parse_quantity};
+use super::units::{Dimension, NUMBER, parse_quantity};
 use crate::error::{Error, Fault, Faults, Result, nearest};
 use std::cell::RefCell;
 use std::ops::{Bound, RangeBounds};
@@ -177,6 +177,11 @@ impl<'a> Section<'a> {
         let found = self.find(key, dimension.name, |value| quantity_of(value, dimension));
         self.remember(key, found.value, dimension);
         found
+    }
+
+    /// A vector that is not zero, of whatever length.
+    pub fn direction(&'a self, key: &str) -> Found<'a, [f64; 3]> {
+        self.quantities(key, NUMBER).check("a vector that is not zero", |v| v.iter().any(|x| *x != 0.0))
     }
 
     /// A list of `N` quantities.

@@ -2,7 +2,7 @@
 
 use super::read::collect;
 use super::reader::Section;
-use super::units::{DENSITY, LENGTH, NUMBER, VELOCITY};
+use super::units::{DENSITY, LENGTH, VELOCITY};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -57,10 +57,7 @@ pub(super) fn read(s: &Section) -> SoundAnalysis {
     let distance = s.quantity("distance", LENGTH).positive().optional();
     SoundAnalysis {
         distance: distance.or_else(|| microphone.is_empty().then_some(1.0)),
-        direction: s
-            .quantities("direction", NUMBER)
-            .check("a vector that is not zero", |v| v.iter().any(|x| *x != 0.0))
-            .optional(),
+        direction: s.direction("direction").optional(),
         plates: s.strings("plates").or(Vec::new()),
         air: s
             .section("air", |a| AirChoice {

@@ -267,8 +267,7 @@ fn read_probe(s: &Section) -> Probe {
         let found = if given.contains(&true) { "several of `on`, `at` and `spring`" } else { "nothing" };
         s.fault("on", found, "a region `on`, a place `at` as three lengths, or a `spring`", "");
     }
-    let direction =
-        s.quantities("direction", NUMBER).check("a vector that is not zero", |v| v.iter().any(|x| *x != 0.0));
+    let direction = s.direction("direction");
     let direction = if spring.is_some() {
         direction.optional()
     } else {

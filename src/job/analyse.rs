@@ -112,14 +112,11 @@ pub fn run_case(
         known.into_iter().map(|(name, (points, trained))| (name, KnownMap { points, trained })).collect();
     let prepared = Prepared::new(case)?;
     // Its faults are told before anything is written.
-    in_time(&prepared, selection)?;
-    if selection.frf {
-        frfs(&prepared)?;
-    }
+    let asked = Asked::new(&prepared, selection)?;
     let preparation = started.elapsed().as_secs_f64();
     let file = if resume { ResultsFile::resume(out)? } else { ResultsFile::create(out)? };
     let mut folder = Folder::new(out, file);
-    let mut results = analyse_from(&prepared, selection, &known, &mut folder, observer)?;
+    let mut results = analyse_from(&prepared, asked, &known, &mut folder, observer)?;
     // The time of a phase is that of computing.
     let in_time = results.timings.iter_mut().find(|(phase, _)| phase == IN_TIME);
     in_time.into_iter().for_each(|(_, seconds)| *seconds -= folder.seconds_in_time);
@@ -145,20 +142,19 @@ pub fn analyse(
     record: &mut dyn FnMut(Stage) -> Result<()>,
     observer: &dyn Observer,
 ) -> Result<RunResults> {
-    analyse_from(prepared, selection, &KnownMaps::new(), &mut Memory::new(record), observer)
+    let asked = Asked::new(prepared, selection)?;
+    analyse_from(prepared, asked, &KnownMaps::new(), &mut Memory::new(record), observer)
 }
 
 /// [`analyse`] with the maps of an earlier run.
 fn analyse_from(
     prepared: &Prepared,
-    selection: Selection,
+    Asked { selection, mut in_time, frfs }: Asked<'_>,
     known: &KnownMaps,
     keeper: &mut dyn Keeper,
     observer: &dyn Observer,
 ) -> Result<RunResults> {
     let case = prepared.case;
-    let mut in_time = in_time(prepared, selection)?;
-    let frfs = if selection.frf { frfs(prepared)? } else { Vec::new() };
     let mut results = RunResults {
         title: case.title.clone(),
         resolved_case: case.to_toml(),
@@ -268,13 +264,21 @@ fn analyse_from(
     Ok(results)
 }
 
-/// The run in time that is selected, with its places.
-fn in_time<'a>(
-    prepared: &'a Prepared<'_>,
+/// The analyses that are selected, with the places that they need.
+struct Asked<'a> {
     selection: Selection,
-) -> Result<Option<(&'a TransientAnalysis, Places)>> {
-    let wanted = prepared.case.transient.as_ref().filter(|_| selection.transient && selection.cea);
-    wanted.map(|wanted| Ok((wanted, places(prepared, wanted)?))).transpose()
+    in_time: Option<(&'a TransientAnalysis, Places)>,
+    frfs: Vec<Frf<'a>>,
+}
+
+impl<'a> Asked<'a> {
+    /// Tells the faults of the places before anything is computed or written.
+    fn new(prepared: &Prepared<'a>, selection: Selection) -> Result<Self> {
+        let wanted = prepared.case.transient.as_ref().filter(|_| selection.transient && selection.cea);
+        let in_time = wanted.map(|wanted| Ok((wanted, places(prepared, wanted)?))).transpose()?;
+        let frfs = if selection.frf { frfs(prepared)? } else { Vec::new() };
+        Ok(Asked { selection, in_time, frfs })
+    }
 }
 
 fn steady_result(prepared: &Prepared, state: SteadySliding) -> SteadyResult {

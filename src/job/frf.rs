@@ -278,23 +278,9 @@ fn bends(from: &[c64], middle: &[c64], to: &[c64]) -> bool {
 mod tests {
     use super::*;
     use crate::case::Case;
+    use crate::job::samples::disc;
 
-    const DISC: &str = r#"
-[mesh.annulus]
-outer_radius = "75 mm"
-hub_radius = "15 mm"
-radial = 6
-around = 24
-[material.steel]
-youngs_modulus = "210 GPa"
-poissons_ratio = 0.3
-density = "7850 kg/m^3"
-[shell.disc]
-material = "steel"
-thickness = "1 mm"
-bending_only = true
-[support.hub]
-on = "hub"
+    const RESPONSES: &str = r#"
 [damping]
 modal_ratio = 0.003
 [frf.rim]
@@ -320,7 +306,7 @@ solution = "direct"
 
     #[test]
     fn superposition_and_direct_solution_agree_and_the_way_back_is_the_same() {
-        let [back, rim] = &results(DISC)[..] else { panic!("two responses") };
+        let [back, rim] = &results(&(disc(6, 24) + RESPONSES))[..] else { panic!("two responses") };
         assert!(back.deviation < 1e-3 && rim.deviation < 1e-3, "{} {}", back.deviation, rim.deviation);
         // Maxwell and Betti: from the rim to the inside as from the inside to the rim.
         let there = &rim.responses.iter().find(|r| r.name == "inside").unwrap().values;
@@ -366,7 +352,8 @@ solution = "direct"
 
     #[test]
     fn places_that_are_not_there_are_told_together() {
-        let wrong = DISC.replace("at = [0, \"40 mm\", 0], direction = [2", "on = \"hub\", direction = [2");
+        let wrong = disc(6, 24) + RESPONSES;
+        let wrong = wrong.replace("at = [0, \"40 mm\", 0], direction = [2", "on = \"hub\", direction = [2");
         let wrong = wrong.replace("excitation = { at = [0, \"40 mm\", 0]", "excitation = { on = \"him\"");
         let case = Case::parse("disc", &wrong, ".".into()).unwrap();
         let prepared = Prepared::new(&case).unwrap();

@@ -24,6 +24,8 @@ mod nearest;
 mod place;
 mod prepared;
 mod regions;
+#[cfg(test)]
+mod samples;
 mod scalars;
 mod sensitivity;
 mod sound;

@@ -162,6 +162,26 @@ fn damped(seed: u64) -> System {
     system
 }
 
+/// A blow on three degrees of freedom of [`damped`].
+fn blow() -> Push {
+    Push {
+        direction: vector(&[(3, 40.0), (11, -60.0), (20, 50.0)]),
+        course: Pulse::HalfSine { begin: 0.01, duration: 0.3 },
+    }
+}
+
+/// Holds the `states` of a condensed march against Newton's method on the whole.
+fn full_newton_agrees(model: &Model<'_>, steady: &SteadySliding, condensed: Plan, states: &[Mat<f64>]) {
+    let full = Plan { method: Method::FullNewton, ..condensed };
+    let largest = states.iter().map(|m| m.col(0).norm_max()).fold(0.0, f64::max);
+    march(model, State::steady(model, steady), &full, &(), &mut |moment| {
+        let difference = (moment.state.motion.col(0) - states[moment.step].col(0)).norm_max();
+        assert!(difference <= 1e-10 * largest, "{:?}, step {}: {difference:e}", full.scheme, moment.step);
+        Ok(())
+    })
+    .unwrap();
+}
+
 #[test]
 fn the_condensed_step_is_the_full_newton_step_through_lift_off() {
     for (seed, scheme) in schemes().into_iter().enumerate() {
@@ -173,10 +193,7 @@ fn the_condensed_step_is_the_full_newton_step_through_lift_off() {
             system.structure.damping = Damping::default();
         }
         let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
-        let push = Push {
-            direction: vector(&[(3, 40.0), (11, -60.0), (20, 50.0)]),
-            course: Pulse::HalfSine { begin: 0.01, duration: 0.3 },
-        };
+        let push = blow();
         let model = Model::new(&system, &steady)
             .unwrap()
             .driven(vec![Profile::Reciprocating { frequency_hz: 0.2, phase: 0.1 }], vec![push]);
@@ -193,14 +210,7 @@ fn the_condensed_step_is_the_full_newton_step_through_lift_off() {
         .unwrap();
         assert!(open > 100 && open < 3900 && back > 0, "{open} {back}");
         assert!(end.worst_residual < 1e-9, "{scheme:?}: {:e}", end.worst_residual);
-        let full = Plan { method: Method::FullNewton, ..condensed };
-        let largest = states.iter().map(|m| m.col(0).norm_max()).fold(0.0, f64::max);
-        march(&model, State::steady(&model, &steady), &full, &(), &mut |moment| {
-            let difference = (moment.state.motion.col(0) - states[moment.step].col(0)).norm_max();
-            assert!(difference <= 1e-10 * largest, "{scheme:?}, step {}: {difference:e}", moment.step);
-            Ok(())
-        })
-        .unwrap();
+        full_newton_agrees(&model, &steady, condensed, &states);
     }
 }
 
@@ -347,10 +357,7 @@ fn a_travelling_contact_that_sticks_is_condensed_exactly_too() {
         system.pairs[0].law = std::sync::Arc::new(law);
         let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
         let track = winding(&system);
-        let push = Push {
-            direction: vector(&[(3, 40.0), (11, -60.0), (20, 50.0)]),
-            course: Pulse::HalfSine { begin: 0.01, duration: 0.3 },
-        };
+        let push = blow();
         let back = Profile::Reciprocating { frequency_hz: 1.0, phase: 0.1 };
         let model = Model::new(&system, &steady).unwrap().driven(vec![back], vec![push]);
         let model = model.travelling(vec![Some(&track)]);
@@ -368,14 +375,7 @@ fn a_travelling_contact_that_sticks_is_condensed_exactly_too() {
         .unwrap();
         assert!(open > 20 && stuck > 100 && stuck < 3900 && far > 0.1, "{open} {stuck} {far}");
         assert!(end.worst_residual < 1e-9, "{scheme:?}: {:e}", end.worst_residual);
-        let full = Plan { method: Method::FullNewton, ..condensed };
-        let largest = states.iter().map(|m| m.col(0).norm_max()).fold(0.0, f64::max);
-        march(&model, State::steady(&model, &steady), &full, &(), &mut |moment| {
-            let difference = (moment.state.motion.col(0) - states[moment.step].col(0)).norm_max();
-            assert!(difference <= 1e-10 * largest, "{scheme:?}, step {}: {difference:e}", moment.step);
-            Ok(())
-        })
-        .unwrap();
+        full_newton_agrees(&model, &steady, condensed, &states);
     }
 }
 

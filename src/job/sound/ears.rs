@@ -7,6 +7,8 @@ use crate::linalg::SparseVector;
 use crate::sound::{Air, Plate};
 use crate::structure::ShellPart;
 use faer::Mat;
+use nalgebra::Vector3;
+use std::collections::BTreeMap;
 
 /// A plate is flat when its nodes are within this part of its extent of its plane.
 const FLAT: f64 = 1e-3;
@@ -93,13 +95,12 @@ impl Seen {
     fn new(prepared: &Prepared<'_>, part: &ShellPart) -> Option<Seen> {
         let nodes = &prepared.model.nodes;
         // The vector area of each node: a third of its triangles; a quadrilateral is four of half weight.
-        let mut areas = std::collections::BTreeMap::<usize, [f64; 3]>::new();
-        let mut add = |corners: [usize; 3], weight: f64| {
-            let side = |k: usize| [0, 1, 2].map(|c| nodes[corners[k]][c] - nodes[corners[0]][c]);
-            let area = cross(side(1), side(2)).map(|a| 0.5 * weight * a / 3.0);
-            for node in corners {
-                let sum = areas.entry(node).or_default();
-                (0..3).for_each(|c| sum[c] += area[c]);
+        let mut areas = BTreeMap::<usize, Vector3<f64>>::new();
+        let at = |node: usize| Vector3::from(nodes[node]);
+        let mut add = |[a, b, c]: [usize; 3], weight: f64| {
+            let area = (at(b) - at(a)).cross(&(at(c) - at(a))) * (0.5 * weight / 3.0);
+            for node in [a, b, c] {
+                *areas.entry(node).or_default() += area;
             }
         };
         for face in &part.faces {
@@ -111,31 +112,26 @@ impl Seen {
                 _ => {}
             }
         }
-        let whole = areas.values().fold([0.0; 3], |sum, a| [0, 1, 2].map(|c| sum[c] + a[c]));
-        let area = dot(whole, whole).sqrt();
-        let mut normal = whole.map(|a| a / area);
+        let whole: Vector3<f64> = areas.values().sum();
+        let area = whole.norm();
         // The front is where the largest component of the normal is positive.
-        let widest = (0..3).max_by(|a, b| normal[*a].abs().total_cmp(&normal[*b].abs())).unwrap_or(0);
-        let turn = normal[widest].signum();
-        normal = normal.map(|n| turn * n);
-        let share = |a: [f64; 3]| turn * dot(a, normal);
-        let mut middle = [0.0; 3];
-        for (node, a) in &areas {
-            (0..3).for_each(|c| middle[c] += share(*a) * nodes[*node][c] / area);
-        }
-        let from_middle = |node: usize| [0, 1, 2].map(|c| nodes[node][c] - middle[c]);
-        let extent = areas.keys().map(|n| dot(from_middle(*n), from_middle(*n)).sqrt()).fold(0.0, f64::max);
-        let flat = areas.keys().all(|n| dot(from_middle(*n), normal).abs() <= FLAT * extent);
-        let form = |(node, a): (&usize, &[f64; 3])| {
+        let turn = whole[whole.iamax()].signum();
+        let normal = whole * (turn / area);
+        let share = |a: &Vector3<f64>| turn * a.dot(&normal);
+        let middle: Vector3<f64> = areas.iter().map(|(node, a)| at(*node) * (share(a) / area)).sum();
+        let from_middle = |node: &usize| at(*node) - middle;
+        let extent = areas.keys().map(|n| from_middle(n).norm()).fold(0.0, f64::max);
+        let flat = areas.keys().all(|n| from_middle(n).dot(&normal).abs() <= FLAT * extent);
+        let form = |(node, a): (&usize, &Vector3<f64>)| {
             let entries: Vec<_> = (0..3).map(|c| (*node, c, turn * a[c])).collect();
             prepared.assembled.dofs.reduce(&entries)
         };
         (flat && area > 0.0).then(|| Seen {
             name: part.name.clone(),
-            normal,
-            middle,
+            normal: normal.into(),
+            middle: middle.into(),
             area,
-            largest: areas.values().map(|a| share(*a)).fold(0.0, f64::max),
+            largest: areas.values().map(share).fold(0.0, f64::max),
             points: areas.keys().map(|n| nodes[*n]).collect(),
             forms: areas.iter().map(form).collect(),
         })
@@ -165,12 +161,4 @@ impl Seen {
             strength,
         }
     }
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
 }

@@ -3,28 +3,11 @@ use super::{BLOCK, Listener};
 use crate::case::Case;
 use crate::case::{ON_AXIS, SoundAnalysis};
 use crate::job::Prepared;
+use crate::job::samples::disc;
 use crate::modal::{ModesWanted, compute};
 use crate::sound::Air;
 use crate::sound::{power_level, pressure_level};
 use std::f64::consts::TAU;
-
-const CASE: &str = r#"
-[mesh.annulus]
-outer_radius = "75 mm"
-hub_radius = "15 mm"
-radial = 8
-around = 48
-[material.steel]
-youngs_modulus = "210 GPa"
-poissons_ratio = 0.3
-density = "7850 kg/m^3"
-[shell.disc]
-material = "steel"
-thickness = "1 mm"
-bending_only = true
-[support.hub]
-on = "hub"
-"#;
 
 fn wanted(distance: Option<f64>, at: &[(&str, [f64; 3])]) -> SoundAnalysis {
     let place = |(name, at): &(&str, [f64; 3])| (name.to_string(), crate::case::Microphone { at: *at });
@@ -39,7 +22,7 @@ fn wanted(distance: Option<f64>, at: &[(&str, [f64; 3])]) -> SoundAnalysis {
 
 #[test]
 fn one_mode_sounds_as_loud_as_its_closed_form() {
-    let case = Case::parse("disc", CASE, ".".into()).unwrap();
+    let case = Case::parse("disc", &disc(8, 48), ".".into()).unwrap();
     let prepared = Prepared::new(&case).unwrap();
     let structure = &prepared.system.structure;
     let (real, _) = compute(structure, ModesWanted::Count(3), &()).unwrap();
@@ -78,7 +61,7 @@ fn one_mode_sounds_as_loud_as_its_closed_form() {
 
 #[test]
 fn places_where_nothing_can_be_said_are_refused() {
-    let case = Case::parse("disc", CASE, ".".into()).unwrap();
+    let case = Case::parse("disc", &disc(8, 48), ".".into()).unwrap();
     let prepared = Prepared::new(&case).unwrap();
     let faults = |at: [f64; 3]| ears(&prepared, &wanted(None, &[("here", at)])).unwrap_err().to_string();
     assert!(faults([0.001, 0.05, 0.0]).contains("a place on `disc`"));
