@@ -133,6 +133,26 @@ pub struct Matrices {
     /// A table (CSV) of what each row is: `node`, its motion `ux` … `rz`, and the node's coordinates `x`, `y`, `z`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dofs: Option<String>,
+    /// What is added to them, by name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub term: BTreeMap<String, MatrixTerm>,
+}
+
+/// Matrices that are added with a common factor, a scalar of the case: M + a M₁, C + a C₁, K + a K₁. So a friction
+/// coefficient or a speed can be varied in a model that another program exported.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MatrixTerm {
+    /// a.
+    pub factor: f64,
+    /// M₁.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mass: Option<String>,
+    /// C₁.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub damping: Option<String>,
+    /// K₁.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stiffness: Option<String>,
 }
 
 /// Contact points that are given, not found on a mesh.
@@ -156,7 +176,7 @@ pub enum ContactPoints {
 pub enum GeneratedMesh {
     /// Disc, bar and slider.
     Rig(RigMesh),
-    /// A structured annulus: regions `disc`, `rim`, `hub`.
+    /// A structured annulus: regions `disc`, `rim`, `hub`; without a hub the whole disc.
     Annulus {
         /// a \[m\].
         outer_radius: f64,
@@ -166,6 +186,17 @@ pub enum GeneratedMesh {
         radial: usize,
         /// Elements around.
         around: usize,
+    },
+    /// A structured rectangle in the plane z = 0: regions `plate`, `plate_edge_x_min`, `plate_edge_x_max`, …
+    Plate {
+        /// Along x \[m\].
+        length: f64,
+        /// Along y \[m\].
+        width: f64,
+        /// Cells along x.
+        cells_along: usize,
+        /// Cells along y.
+        cells_across: usize,
     },
 }
 

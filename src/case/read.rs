@@ -55,13 +55,7 @@ fn read_root(root: &Section, folder: PathBuf) -> Case {
         prestress: root.boolean("prestress").or(false),
         folder,
         mesh: root.section("mesh", read_mesh),
-        matrices: root.section("matrices", |s| Matrices {
-            mass: s.string("mass").required("the path of a MatrixMarket file"),
-            stiffness: s.string("stiffness").required("the path of a MatrixMarket file"),
-            damping: s.string("damping").optional(),
-            load: s.string("load").optional(),
-            dofs: s.string("dofs").optional(),
-        }),
+        matrices: root.section("matrices", read_matrices),
         point: root
             .section("point", |s| {
                 let position = |name: &String| (name.clone(), s.quantities(name, LENGTH).or([0.0; 3]));
@@ -106,6 +100,30 @@ fn read_root(root: &Section, folder: PathBuf) -> Case {
     super::explore::read(root, case)
 }
 
+fn read_matrices(s: &Section) -> Matrices {
+    const FILE: &str = "the path of a MatrixMarket file";
+    let term = |t: &Section| {
+        let term = MatrixTerm {
+            factor: t.quantity("factor", NUMBER).required("a number"),
+            mass: t.string("mass").optional(),
+            damping: t.string("damping").optional(),
+            stiffness: t.string("stiffness").optional(),
+        };
+        if [&term.mass, &term.damping, &term.stiffness].iter().all(|file| file.is_none()) {
+            t.fault("stiffness", "no matrix", "`mass`, `damping` or `stiffness`", "");
+        }
+        term
+    };
+    Matrices {
+        mass: s.string("mass").required(FILE),
+        stiffness: s.string("stiffness").required(FILE),
+        damping: s.string("damping").optional(),
+        load: s.string("load").optional(),
+        dofs: s.string("dofs").optional(),
+        term: collect(s, "term", term),
+    }
+}
+
 pub(super) fn collect<T>(root: &Section, key: &str, read: impl Fn(&Section) -> T) -> BTreeMap<String, T> {
     root.named(key, |name, s| (name.to_string(), read(s))).into_iter().collect()
 }
@@ -128,13 +146,20 @@ fn read_mesh(s: &Section) -> MeshSource {
     });
     let annulus = s.section("annulus", |a| GeneratedMesh::Annulus {
         outer_radius: a.quantity("outer_radius", LENGTH).positive().required(LENGTH.name),
-        hub_radius: a.quantity("hub_radius", LENGTH).positive().required(LENGTH.name),
+        hub_radius: a.quantity("hub_radius", LENGTH).non_negative().required(LENGTH.name),
         radial: a.count("radial").or(10),
         around: a.count("around").or(60),
     });
-    let generated = rig.map(GeneratedMesh::Rig).or(annulus);
-    if s.names().iter().filter(|key| ["file", "rig", "annulus"].contains(&key.as_str())).count() > 1 {
-        s.fault("", "more than one of `file`, `rig`, `annulus`", "one of them", "");
+    let plate = s.section("plate", |p| GeneratedMesh::Plate {
+        length: p.quantity("length", LENGTH).positive().required(LENGTH.name),
+        width: p.quantity("width", LENGTH).positive().required(LENGTH.name),
+        cells_along: p.count("cells_along").or(20),
+        cells_across: p.count("cells_across").or(20),
+    });
+    let generated = rig.map(GeneratedMesh::Rig).or(annulus).or(plate);
+    if s.names().iter().filter(|key| ["file", "rig", "annulus", "plate"].contains(&key.as_str())).count() > 1
+    {
+        s.fault("", "more than one of `file`, `rig`, `annulus`, `plate`", "one of them", "");
     }
     match generated {
         Some(generated) => MeshSource::Generated(generated),

@@ -64,6 +64,7 @@ pub fn export(case: &Case, out: &Path) -> Result<Vec<String>> {
         damping: damping.map(|_| "damping.mtx".into()),
         load: load.map(|_| "load.mtx".into()),
         dofs: Some("dofs.csv".into()),
+        term: BTreeMap::new(),
     };
     write("case.toml", as_matrices(case, matrices).to_toml())?;
     let mut left_out = Vec::new();

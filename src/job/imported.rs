@@ -3,8 +3,9 @@
 use super::table::Table;
 use crate::case::{Case, Contact, ContactPoints, Matrices};
 use crate::error::{Error, Fault, Faults, Result};
-use crate::linalg::SparseVector;
 use crate::linalg::matrix_market::{self, MarketMatrix};
+use crate::linalg::sparse::add_scaled;
+use crate::linalg::{SparseMatrix, SparseVector};
 use crate::structure::{Assembled, FreeDof};
 use crate::system::{ContactPoint, Coupling, Given, split};
 use std::collections::BTreeMap;
@@ -49,16 +50,25 @@ pub fn read_model(case: &Case, matrices: &Matrices) -> Result<ImportedModel> {
         None => vec![0.0; rows],
         Some((file, f)) => faults.take(read_load(&place("load", file), &f, rows)).unwrap_or_default(),
     };
+    let terms = read_terms(case, matrices, rows, &mut faults);
     let all = mass.zip(stiffness).filter(|_| !matches!(damping, Some(None)));
-    let Some((mass, stiffness)) = all else {
+    let Some(((mass, stiffness), terms)) = all.zip(terms) else {
         return faults.into_result(()).map(|()| unreachable!("a file that is missing is a fault"));
     };
     let (mass_place, stiffness_place) =
         (place("mass", &matrices.mass), place("stiffness", &matrices.stiffness));
-    let damping = damping.flatten().zip(matrices.damping.as_ref().map(|file| place("damping", file)));
+    let damping_place = matrices
+        .damping
+        .as_ref()
+        .map_or_else(|| "`matrices.term`".to_string(), |file| place("damping", file));
+    let [mass, damping, stiffness] = [Some(mass), damping.flatten(), Some(stiffness)];
+    let [mass_terms, damping_terms, stiffness_terms] = terms;
+    let sums = (with_terms(mass, mass_terms), with_terms(stiffness, stiffness_terms));
+    let (Some(mass), Some(stiffness)) = sums else { unreachable!("both have a term: themselves") };
+    let damping = with_terms(damping, damping_terms);
     let imported = faults.take(split(
         Given { place: &mass_place, matrix: &mass },
-        damping.as_ref().map(|(matrix, place)| Given { place, matrix }),
+        damping.as_ref().map(|matrix| Given { place: &damping_place, matrix }),
         Given { place: &stiffness_place, matrix: &stiffness },
     ));
     let imported = faults.into_result(imported)?.expect("a missing one is a fault");
@@ -70,6 +80,42 @@ pub fn read_model(case: &Case, matrices: &Matrices) -> Result<ImportedModel> {
         nodes,
         warnings: imported.warnings,
     })
+}
+
+/// A factor and the matrix it multiplies.
+type Term = (f64, MarketMatrix);
+
+/// What is added to M, C and K, each matrix of `rows` rows and columns; none when there is a fault.
+fn read_terms(case: &Case, matrices: &Matrices, rows: usize, faults: &mut Faults) -> Option<[Vec<Term>; 3]> {
+    let mut terms = [Vec::new(), Vec::new(), Vec::new()];
+    let earlier = faults.0.len();
+    for (name, term) in &matrices.term {
+        let files = [("mass", &term.mass), ("damping", &term.damping), ("stiffness", &term.stiffness)];
+        for ((key, file), terms) in files.into_iter().zip(&mut terms) {
+            let path = file.as_ref().map(|file| case.folder.join(file));
+            let Some(path) = path else { continue };
+            let Some(matrix) = faults.take(matrix_market::read(&path)) else { continue };
+            let (m, n) = (matrix.re.nrows(), matrix.re.ncols());
+            if rows > 0 && (m, n) != (rows, rows) {
+                faults.push(Fault::new(
+                    format!("`matrices.term.{name}.{key}` {}", path.display()),
+                    format!("{m} × {n} numbers"),
+                    format!("{rows} × {rows}, as M has"),
+                ));
+            }
+            terms.push((term.factor, matrix));
+        }
+    }
+    (faults.0.len() == earlier).then_some(terms)
+}
+
+/// The matrix with what is added to it, if there is anything.
+fn with_terms(matrix: Option<MarketMatrix>, terms: Vec<Term>) -> Option<MarketMatrix> {
+    let all: Vec<Term> = matrix.into_iter().map(|matrix| (1.0, matrix)).chain(terms).collect();
+    let sum = |parts: Vec<(f64, &SparseMatrix)>| (!parts.is_empty()).then(|| add_scaled(&parts));
+    let re = sum(all.iter().map(|(factor, matrix)| (*factor, &matrix.re)).collect())?;
+    let im = sum(all.iter().filter_map(|(factor, matrix)| Some((*factor, matrix.im.as_ref()?))).collect());
+    Some(MarketMatrix { re, im })
 }
 
 /// The one column of a real matrix with `n` rows.

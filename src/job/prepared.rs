@@ -8,7 +8,7 @@ use super::place::place;
 use super::regions::Regions;
 use crate::case::{Case, GeneratedMesh, Matrices, MeshSource, RigMesh};
 use crate::error::{Faults, Result};
-use crate::mesh::generate::{self, BarSide, BarSpec, DiscSpec, Grading, PlateSpec, RigSpec};
+use crate::mesh::generate::{self, BarSide, BarSpec, DiscSpec, Faces, Grading, PlateSpec, RigSpec};
 use crate::mesh::{self, Mesh};
 use crate::results::{Geometry, ModelSize};
 use crate::structure::{Assembled, Model, assemble};
@@ -152,6 +152,9 @@ fn read_mesh(case: &Case, source: &MeshSource) -> Result<(Mesh, Vec<String>)> {
         MeshSource::Generated(GeneratedMesh::Rig(rig)) => generate::rig(&rig_spec(case, rig))?,
         MeshSource::Generated(GeneratedMesh::Annulus { outer_radius, hub_radius, radial, around }) => {
             generate::structured_annulus(*hub_radius, *outer_radius, *radial, *around)?
+        }
+        MeshSource::Generated(GeneratedMesh::Plate { length, width, cells_along, cells_across }) => {
+            generate::structured_plate(*length, *width, *cells_along, *cells_across, Faces::Triangles)?
         }
     };
     let diagnosis = mesh::diagnose(&mesh);

@@ -157,6 +157,6 @@ mod tests {
         assert_eq!(info.regions[0].edges, [0.5, 0.5f64.hypot(0.5)]);
         assert!((info.smallest_angle_deg.unwrap() - 45.0).abs() < 1e-12);
         let text = info.to_string();
-        assert!(text.contains("15 nodes") && text.contains("slider_edge_x_min"), "{text}");
+        assert!(text.contains("15 nodes") && text.contains("plate_edge_x_min"), "{text}");
     }
 }

@@ -1,6 +1,6 @@
 //! A run in time, as plain data.
 
-use super::{Geometry, NodalField, ReducedCheck, Sound, Watched};
+use super::{Geometry, NodalField, ReducedCheck, Sound, TouchState, Watched};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::signal::{Growth, Peak, Spectrum};
@@ -197,12 +197,8 @@ pub struct TransientResult {
     pub split: (usize, usize),
     /// Steps and parts of steps in all.
     pub parts: usize,
-    /// The share of time in which the most loaded point was open, and in which it slid backwards.
-    pub open: f64,
-    /// See [`TransientResult::open`].
-    pub backwards: f64,
-    /// The share of time in which it stuck, for a contact with bristles.
-    pub sticking: f64,
+    /// The share of time in which the most loaded point was in each state of [`TouchState::ALL`].
+    pub spent: [f64; TouchState::ALL.len()],
     /// How often each [`EventKind`] happened, at all contact points together.
     pub events: [usize; EventKind::ALL.len()],
     /// What it looks like.

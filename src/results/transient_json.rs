@@ -59,6 +59,7 @@ pub(super) fn transient(result: &TransientResult) -> Value {
         })
     };
     let work = &result.work;
+    let [open, sticking, backwards, _] = result.spent;
     json!({
         "time_step_s": result.time_step,
         "steps": result.len().saturating_sub(1),
@@ -70,9 +71,9 @@ pub(super) fn transient(result: &TransientResult) -> Value {
         "spectrum": result.spectra.iter().map(spectrum).collect::<Vec<_>>(),
         "growth": growth,
         "events": events,
-        "open_fraction": result.open,
-        "backwards_fraction": result.backwards,
-        "sticking_fraction": result.sticking,
+        "open_fraction": open,
+        "backwards_fraction": backwards,
+        "sticking_fraction": sticking,
         "steps_split": result.split.0,
         "parts": result.parts,
         "most_parts": result.split.1,

@@ -1,7 +1,7 @@
 //! Computes the quantities of a validation case and sets them beside their references.
 
 use super::in_time;
-use super::kirchhoff::{Edge, PlateMode, ThinPlate, circular_modes};
+use super::kirchhoff::{PlateMode, ThinPlate, circular_modes};
 use super::reference::{Check, Kind, Measure, Reference};
 use super::two_dof::TwoDof;
 use crate::case::{Case, ModelChoice, TransientAnalysis};
@@ -54,7 +54,7 @@ impl Row {
 /// # Errors
 /// A case that cannot be analysed, or a quantity that the case does not have.
 pub fn run(reference: &Reference, observer: &dyn Observer) -> Result<Vec<Row>> {
-    let mut runs = Runs { case: &reference.case, done: BTreeMap::new(), observer };
+    let mut runs: BTreeMap<&str, Runs> = BTreeMap::new();
     let row = |check: &Check, computed: f64| Row {
         case: reference.name.clone(),
         title: reference.title.clone(),
@@ -66,7 +66,13 @@ pub fn run(reference: &Reference, observer: &dyn Observer) -> Result<Vec<Row>> {
         relative: check.relative,
         reason: check.reason.clone(),
     };
-    reference.checks.iter().map(|check| Ok(row(check, compute(&mut runs, check)?))).collect()
+    let mut rows = Vec::new();
+    for check in &reference.checks {
+        let case = &reference.cases[&check.case];
+        let runs = runs.entry(&check.case).or_insert_with(|| Runs { case, done: BTreeMap::new(), observer });
+        rows.push(row(check, compute(runs, check)?));
+    }
+    Ok(rows)
 }
 
 /// The analyses of one case with scalars set to values, each done once.
@@ -151,7 +157,7 @@ fn compute(runs: &mut Runs, check: &Check) -> Result<f64> {
                 ))
             })
         }
-        Kind::Onset { parameter, between } => onset(runs, check, parameter, *between),
+        Kind::Onset { parameter, between, above } => onset(runs, check, parameter, *between, *above),
         Kind::LargestGrowth { parameter, values } => {
             let mut largest = f64::NEG_INFINITY;
             for value in values {
@@ -210,7 +216,7 @@ fn compute(runs: &mut Runs, check: &Check) -> Result<f64> {
             let found = in_time::deviation(runs.run(&check.set)?, span, &model);
             found.ok_or_else(|| missing(check, &span.channel))
         }
-        Kind::Annulus { modes, part, radii } => {
+        Kind::RoundPlate { modes, part, outer, inner } => {
             let case = runs.case;
             let shell = case.shell.get(part).ok_or_else(|| missing(check, part))?;
             let below = case.modes.get(modes).and_then(|m| m.below).ok_or_else(|| missing(check, modes))?;
@@ -224,24 +230,25 @@ fn compute(runs: &mut Runs, check: &Check) -> Result<f64> {
                 density: material.density,
                 thickness: shell.thickness,
             };
-            let hub = Some((radii[0], Edge::Clamped));
-            Ok(largest_error(computed, &circular_modes(&plate, radii[1], Edge::Free, hub, below)))
+            let exact = circular_modes(&plate, outer.0, outer.1, *inner, below);
+            Ok(largest_error(computed, &exact))
         }
     }
 }
 
-/// The largest relative error of the computed modes; infinite when their number is another. Every exact mode with
-/// nodal diameters stands for two.
+/// The largest relative error of the computed modes that are no motions of a rigid body; infinite when their number is
+/// another. Every exact mode with nodal diameters stands for two.
 fn largest_error(computed: &NamedModes, exact: &[PlateMode]) -> f64 {
     let exact = exact.iter().flat_map(|mode| {
         let twins = if mode.nodal_diameters > 0 { 2 } else { 1 };
         std::iter::repeat_n(mode.frequency_hz, twins)
     });
     let exact: Vec<f64> = exact.collect();
-    if computed.modes.len() != exact.len() {
+    let rigid = computed.modes.rigid_bodies;
+    if computed.modes.len() - rigid != exact.len() {
         return f64::INFINITY;
     }
-    let error = |(k, f): (usize, &f64)| (computed.modes.frequency_hz(k) / f - 1.0).abs();
+    let error = |(k, f): (usize, &f64)| (computed.modes.frequency_hz(rigid + k) / f - 1.0).abs();
     exact.iter().enumerate().map(error).fold(0.0, f64::max)
 }
 
@@ -255,11 +262,12 @@ fn set_also(set: &[(String, f64)], parameter: &str, value: f64) -> Vec<(String, 
     set
 }
 
-/// Bisects until the bracket is at round-off. A mode counts as unstable when σ > 1e-6 |λ|: past a flutter onset σ grows
-/// like the square root of the distance, so that this threshold is reached within 1e-12 of it.
-fn onset(runs: &mut Runs, check: &Check, parameter: &str, between: [f64; 2]) -> Result<f64> {
+/// Bisects until the bracket is at round-off. A mode counts as unstable when σ > `above` |λ|. Past the onset of flutter
+/// without damping σ grows like the square root of the distance, so that 1e-6 is reached within 1e-12 of it; with damping
+/// it grows like the distance, and the threshold must be as small as the error that is wanted.
+fn onset(runs: &mut Runs, check: &Check, parameter: &str, between: [f64; 2], above: f64) -> Result<f64> {
     let mut unstable = |value: f64| -> Result<bool> {
-        Ok(largest_growth(runs.with(&set_also(&check.set, parameter, value))?) > 1e-6)
+        Ok(largest_growth(runs.with(&set_also(&check.set, parameter, value))?) > above)
     };
     let [mut a, mut b] = between;
     let at_a = unstable(a)?;

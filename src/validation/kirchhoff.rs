@@ -39,6 +39,8 @@ impl ThinPlate {
 pub enum Edge {
     /// No deflection, no slope.
     Clamped,
+    /// No deflection, no moment.
+    SimplySupported,
     /// No moment, no shear.
     Free,
 }
@@ -138,16 +140,13 @@ fn edge_conditions(
     // Z_n′ = ± Z_{n+1} + (n/x) Z_n: + for I, − for J, Y, K.
     let sign = if kind == 1 { 1.0 } else { -1.0 };
     let slope = k * (sign * bessel(n as u32 + 1, x) + order / x * w);
+    let laplace = if kind == 1 || kind == 3 { k * k } else { -k * k };
+    let curvature = laplace * w - slope / r + nn / (r * r) * w;
+    let moment = curvature + nu * (slope / r - nn * w / (r * r));
     match condition {
         Edge::Clamped => [w, slope],
-        Edge::Free => {
-            let laplace = if kind == 1 || kind == 3 { k * k } else { -k * k };
-            let curvature = laplace * w - slope / r + nn / (r * r) * w;
-            [
-                curvature + nu * (slope / r - nn * w / (r * r)),
-                laplace * slope - (1.0 - nu) * nn / (r * r) * (slope - w / r),
-            ]
-        }
+        Edge::SimplySupported => [w, moment],
+        Edge::Free => [moment, laplace * slope - (1.0 - nu) * nn / (r * r) * (slope - w / r)],
     }
 }
 

@@ -1,9 +1,11 @@
 //! `reference.toml`: what a validation case must show.
 
+use super::kirchhoff::Edge;
 use crate::case::reader::{Section, read_document};
 use crate::case::units::{FREQUENCY, LENGTH, NUMBER, TIME};
 use crate::case::{Case, read_case};
-use crate::error::{Error, Fault, Result};
+use crate::error::{Error, Fault, Faults, Result};
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// A validation case with its reference values.
@@ -15,8 +17,8 @@ pub struct Reference {
     pub title: String,
     /// Where the reference values come from.
     pub source: String,
-    /// The case to run.
-    pub case: Case,
+    /// The cases to run, by their files.
+    pub cases: BTreeMap<String, Case>,
     /// What to check.
     pub checks: Vec<Check>,
 }
@@ -26,6 +28,8 @@ pub struct Reference {
 pub struct Check {
     /// What it is, in words.
     pub quantity: String,
+    /// The file of the case.
+    pub case: String,
     /// How it is computed.
     pub kind: Kind,
     /// Scalars of the case to set first.
@@ -51,6 +55,8 @@ pub enum Kind {
         parameter: String,
         /// A stable and an unstable value, in either order.
         between: [f64; 2],
+        /// A mode is unstable when σ exceeds this part of |λ|.
+        above: f64,
     },
     /// The largest |σ|/|λ| over all modes, for every one of some values of a scalar.
     LargestGrowth {
@@ -95,14 +101,16 @@ pub enum Kind {
     /// The largest deviation of a channel from what Eqs. (3)–(5) of Rusli et al. (2020) give, integrated apart, as a part of
     /// its amplitude there.
     PaperEquations(Span),
-    /// The largest relative error of the modes of a clamped annulus against Kirchhoff theory.
-    Annulus {
-        /// The real-mode analysis, which must be of this annulus alone.
+    /// The largest relative error of the modes of a round plate against Kirchhoff theory.
+    RoundPlate {
+        /// The real-mode analysis, which must be of this plate alone.
         modes: String,
         /// The shell part.
         part: String,
-        /// b, a \[m\].
-        radii: [f64; 2],
+        /// The outer edge: a \[m\] and how it is held.
+        outer: (f64, Edge),
+        /// The inner edge, if there is a hole: b \[m\] and how it is held.
+        inner: Option<(f64, Edge)>,
     },
 }
 
@@ -138,7 +146,7 @@ pub enum Measure {
     Rise,
 }
 
-/// Reads `folder/reference.toml` and its case.
+/// Reads `folder/reference.toml` and its cases.
 ///
 /// # Errors
 /// Every fault of either file.
@@ -147,20 +155,26 @@ pub fn read(folder: &Path) -> Result<Reference> {
     let text = std::fs::read_to_string(&path).map_err(|error| {
         Error::input(Fault::new(path.display().to_string(), error.to_string(), "a text file"))
     })?;
-    let ((title, source, file, checks), _) = read_document(&path.display().to_string(), &text, |root| {
+    let ((title, source, checks), _) = read_document(&path.display().to_string(), &text, |root| {
+        let case = root.string("case").or("case.toml".into());
         let reason = root.string("reason").or(String::new());
         (
             root.string("title").required("one line"),
             root.string("source").required("where the reference values come from"),
-            root.string("case").or("case.toml".into()),
-            root.named("check", |name, s| read_check(name, s, &reason)),
+            root.named("check", |name, s| read_check(name, s, &case, &reason)),
         )
     })?;
+    let mut faults = Faults::new();
+    let files: BTreeSet<&String> = checks.iter().map(|check| &check.case).collect();
+    let cases = files
+        .into_iter()
+        .filter_map(|file| faults.take(read_case(&folder.join(file))).map(|case| (file.clone(), case)));
+    let cases: BTreeMap<String, Case> = cases.collect();
     let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(Reference { name, title, source, case: read_case(&folder.join(file))?, checks })
+    faults.into_result(Reference { name, title, source, cases, checks })
 }
 
-fn read_check(name: &str, s: &Section, reason: &str) -> Check {
+fn read_check(name: &str, s: &Section, case: &str, reason: &str) -> Check {
     const KINDS: [&str; 21] = [
         "value",
         "onset",
@@ -170,7 +184,7 @@ fn read_check(name: &str, s: &Section, reason: &str) -> Check {
         "growth_near",
         "growth_in_time",
         "frequency_in_time",
-        "annulus",
+        "round_plate",
         "growth_rate",
         "rises",
         "paper_equations",
@@ -194,6 +208,7 @@ fn read_check(name: &str, s: &Section, reason: &str) -> Check {
         "onset" => Kind::Onset {
             parameter: parameter(),
             between: s.quantities("between", NUMBER).required("a stable and an unstable value"),
+            above: s.quantity("above", NUMBER).positive().or(1e-6),
         },
         "largest_growth" => Kind::LargestGrowth {
             parameter: parameter(),
@@ -220,10 +235,14 @@ fn read_check(name: &str, s: &Section, reason: &str) -> Check {
         "rise_time" => in_time(Measure::Rise),
         "tone" => in_time(Measure::Tone),
         "tone_frequency" => in_time(Measure::ToneFrequency),
-        "annulus" => Kind::Annulus {
+        "round_plate" => Kind::RoundPlate {
             modes: s.string("modes").required("the name of an analysis"),
             part: s.string("part").required("the name of a shell"),
-            radii: s.quantities("radii", LENGTH).required("inner and outer radius"),
+            outer: s.section("outer", read_edge).unwrap_or_else(|| {
+                s.fault("outer", "no outer edge", "a table of `radius` and `edge`", "");
+                (1.0, Edge::Free)
+            }),
+            inner: s.section("inner", read_edge),
         },
         _ => Kind::Value(s.string("pointer").or(String::new())),
     };
@@ -239,6 +258,7 @@ fn read_check(name: &str, s: &Section, reason: &str) -> Check {
     }
     Check {
         quantity: s.string("quantity").or(name.to_string()),
+        case: s.string("case").or(case.to_string()),
         kind,
         set: read_set(s, "set"),
         reference: s.quantity("reference", FREQUENCY).or(0.0),
@@ -246,6 +266,15 @@ fn read_check(name: &str, s: &Section, reason: &str) -> Check {
         relative: relative.is_some(),
         reason: s.string("reason").or(reason.to_string()),
     }
+}
+
+fn read_edge(s: &Section) -> (f64, Edge) {
+    let edge = match s.choice("edge", &["clamped", "simply_supported", "free"]).required("how it is held") {
+        "clamped" => Edge::Clamped,
+        "simply_supported" => Edge::SimplySupported,
+        _ => Edge::Free,
+    };
+    (s.quantity("radius", LENGTH).positive().required(LENGTH.name), edge)
 }
 
 fn read_span(s: &Section) -> Span {

@@ -6,7 +6,7 @@ use super::places::{Gauge, Probe};
 use crate::equilibrium::SteadySliding;
 use crate::error::Result;
 use crate::linalg::SparseVector;
-use crate::results::Channel;
+use crate::results::{Channel, TouchState};
 use crate::system::System;
 use crate::transient::{Checkpoint, Event, EventKind, Marched, Model, State, Watch};
 
@@ -48,11 +48,8 @@ pub(super) struct Recorder<'a> {
     origin: &'a [f64],
     /// u − u₀.
     moved: Vec<f64>,
-    /// Rows in which the point that carries most was open, and in which it slid backwards.
-    pub(super) open: usize,
-    pub(super) backwards: usize,
-    /// Rows in which it stuck.
-    pub(super) sticking: usize,
+    /// Rows in which the point that carries most was in each state of [`TouchState::ALL`].
+    pub(super) spent: [usize; TouchState::ALL.len()],
 }
 
 /// A channel to show, and the peaks that were measured in its place \[Hz\].
@@ -176,9 +173,7 @@ impl<'a> Recorder<'a> {
             watch: None,
             origin,
             moved,
-            open: 0,
-            backwards: 0,
-            sticking: 0,
+            spent: [0; TouchState::ALL.len()],
         }
     }
 
@@ -204,7 +199,8 @@ impl<'a> Recorder<'a> {
         let deep = if self.pairs.is_empty() { 0.0 } else { state.penetration(self.point) };
         row.extend([deep, slip]);
         if self.states.is_some() {
-            row.extend(self.count(state).map(|count| count as f64));
+            let [_, counts @ ..] = self.look(state);
+            row.extend(counts.map(|count| count as f64));
         }
         row.extend([work.kinetic + work.strain, work.drive, work.heat, work.damping]);
         row.push(work.algorithm);
@@ -214,13 +210,6 @@ impl<'a> Recorder<'a> {
             self.moved.extend(u.iter().zip(self.origin).map(|(u, origin)| u - origin));
             let amplitude = along.filter.amplitude(&self.moved, v) * along.largest;
             row.extend([amplitude.re, amplitude.im]);
-        }
-        if !self.pairs.is_empty() {
-            self.open += usize::from(state.contact_forces(self.point)[0] == 0.0);
-            let along = state.speeds()[self.pair_of_point()];
-            let sticks = state.sticks(self.point);
-            self.sticking += usize::from(sticks);
-            self.backwards += usize::from(slip * along < 0.0 && !sticks);
         }
         self.values.iter_mut().zip(row).for_each(|(values, value)| values.push(value));
         if let Some(modal) = &mut self.modal {
@@ -255,7 +244,7 @@ impl<'a> Recorder<'a> {
 
     /// Adds what the rows to come depend on.
     pub(super) fn put(&self, checkpoint: &mut Checkpoint) {
-        checkpoint.put("recorder", &[self.open, self.backwards, self.sticking].map(|count| count as f64));
+        checkpoint.put("recorder", &self.spent.map(|count| count as f64));
         checkpoint.put("events", &self.happened.map(|count| count as f64));
         let touched: Vec<f64> = self.touched.iter().map(|touched| f64::from(*touched)).collect();
         checkpoint.put("touched", &touched);
@@ -267,8 +256,7 @@ impl<'a> Recorder<'a> {
     /// Input: it is of another model.
     pub(super) fn restore(&mut self, checkpoint: &Checkpoint, marched: &Marched) -> Result<()> {
         self.forget();
-        [self.open, self.backwards, self.sticking] =
-            checkpoint.numbers("recorder")?.map(|count| count as usize);
+        self.spent = checkpoint.numbers("recorder")?.map(|count| count as usize);
         self.happened = checkpoint.numbers("events")?.map(|count| count as usize);
         let mut touched = vec![0.0; self.touched.len()];
         checkpoint.get("touched", &mut touched)?;
@@ -277,27 +265,32 @@ impl<'a> Recorder<'a> {
         Ok(())
     }
 
-    /// How many points stick, slip backwards and slip forwards.
-    fn count(&mut self, state: &State) -> [usize; 3] {
-        let mut counts = [0; 3];
+    /// How many points are in each state of [`TouchState::ALL`].
+    fn look(&mut self, state: &State) -> [usize; TouchState::ALL.len()] {
+        let mut counts = [0; TouchState::ALL.len()];
         for (pair, points) in self.pairs.iter().enumerate() {
-            for point in points.clone().filter(|point| state.contact_forces(*point)[0] != 0.0) {
-                self.touched[point] = true;
-                let against = || state.slip_velocity(self.model, point)[0] * state.speeds()[pair] < 0.0;
-                let does = if state.sticks(point) {
-                    0
-                } else if against() {
-                    1
-                } else {
-                    2
-                };
-                counts[does] += 1;
+            for point in points.clone() {
+                let does = does(self.model, state, pair, point);
+                counts[does as usize] += 1;
+                self.touched[point] |= does != TouchState::Open;
+                if point == self.point {
+                    self.spent[does as usize] += 1;
+                }
             }
         }
         counts
     }
+}
 
-    fn pair_of_point(&self) -> usize {
-        self.pairs.iter().position(|points| points.contains(&self.point)).unwrap_or(0)
+/// What a contact point of a pair does.
+fn does(model: &Model<'_>, state: &State, pair: usize, point: usize) -> TouchState {
+    if state.contact_forces(point)[0] == 0.0 {
+        TouchState::Open
+    } else if state.sticks(point) {
+        TouchState::Stick
+    } else if state.slip_velocity(model, point)[0] * state.speeds()[pair] < 0.0 {
+        TouchState::Backwards
+    } else {
+        TouchState::Forwards
     }
 }

@@ -77,7 +77,7 @@ pub fn plate(spec: &PlateSpec) -> Result<Mesh> {
         }));
     }
     mesh.add_region("slider", 2, faces);
-    add_edges(&mut mesh, length, width);
+    add_edges(&mut mesh, "slider", length, width);
     Ok(mesh)
 }
 
@@ -98,18 +98,19 @@ fn quarter(far: [f64; 2], grading: &Grading) -> Result<Patch> {
     fill(&boundary, size)
 }
 
-/// The lines on the four edges of a rectangle in the plane z = 0, in the order of their coordinate.
-pub(super) fn add_edges(mesh: &mut Mesh, length: f64, width: f64) {
+/// The lines on the four edges of a rectangle in the plane z = 0, in the order of their coordinate: regions
+/// `part_edge_x_min`, `part_edge_x_max` ….
+pub(super) fn add_edges(mesh: &mut Mesh, part: &str, length: f64, width: f64) {
     let edges = [
-        ("slider_edge_x_min", 0, -length / 2.0),
-        ("slider_edge_x_max", 0, length / 2.0),
-        ("slider_edge_y_min", 1, -width / 2.0),
-        ("slider_edge_y_max", 1, width / 2.0),
+        ("x_min", 0, -length / 2.0),
+        ("x_max", 0, length / 2.0),
+        ("y_min", 1, -width / 2.0),
+        ("y_max", 1, width / 2.0),
     ];
-    for (name, across, at) in edges {
+    for (side, across, at) in edges {
         let mut nodes: Vec<usize> = (0..mesh.nodes.len()).filter(|n| mesh.nodes[*n][across] == at).collect();
         nodes.sort_by(|i, j| mesh.nodes[*i][1 - across].total_cmp(&mesh.nodes[*j][1 - across]));
         let lines: Vec<Element> = nodes.windows(2).map(|w| Element::Line([w[0], w[1]])).collect();
-        mesh.add_region(name, 1, lines);
+        mesh.add_region(&format!("{part}_edge_{side}"), 1, lines);
     }
 }

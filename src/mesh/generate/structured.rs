@@ -15,8 +15,8 @@ pub enum Faces {
     Quadrilaterals,
 }
 
-/// A rectangle of `nx` × `ny` equal cells in the plane z = 0, centre at the origin, normals +z; regions as in
-/// [`super::plate`]. With even `nx` and `ny` it is its own mirror image in x and y.
+/// A rectangle of `nx` × `ny` equal cells in the plane z = 0, centre at the origin, normals +z; regions
+/// `plate` and `plate_edge_x_min` …. With even `nx` and `ny` it is its own mirror image in x and y.
 ///
 /// # Errors
 /// Lengths that are not positive, no cells or too many.
@@ -24,7 +24,7 @@ pub enum Faces {
 /// ```
 /// use stridor::mesh::generate::{Faces, structured_plate};
 /// let mesh = structured_plate(1.0, 0.5, 4, 2, Faces::Quadrilaterals)?;
-/// assert_eq!((mesh.nodes.len(), mesh.region("slider").unwrap().elements.len()), (15, 8));
+/// assert_eq!((mesh.nodes.len(), mesh.region("plate").unwrap().elements.len()), (15, 8));
 /// # Ok::<(), stridor::error::Error>(())
 /// ```
 pub fn structured_plate(length: f64, width: f64, nx: usize, ny: usize, faces: Faces) -> Result<Mesh> {
@@ -46,20 +46,23 @@ pub fn structured_plate(length: f64, width: f64, nx: usize, ny: usize, faces: Fa
             cell([node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)], i + j, faces)
         })
         .collect();
-    mesh.add_region("slider", 2, elements);
-    add_edges(&mut mesh, length, width);
+    mesh.add_region("plate", 2, elements);
+    add_edges(&mut mesh, "plate", length, width);
     Ok(mesh)
 }
 
-/// Triangles of an annulus b ≤ r ≤ a in the plane x = 0, normals +x, with equal steps in radius and angle; the
+/// Triangles of an annulus b ≤ r ≤ a, or of a disc with a node in the middle where b = 0, in the plane x = 0, normals +x, with equal steps in radius and angle; the
 /// first node of each ring is at the bottom (y = 0, z = −r). `n_angular` must be even: diagonals alternate, so that
 /// the mesh is its own mirror image in y and repeats itself every two cells.
-/// Regions `disc` (faces), `rim` and `hub` (lines).
+/// Regions `disc` (faces), `rim` and, where b > 0, `hub` (lines).
 ///
 /// # Errors
-/// Radii that are not 0 < b < a, an odd `n_angular` or fewer than 6, no cells or too many.
+/// Radii that are not 0 ≤ b < a, an odd `n_angular` or fewer than 6, no cells or too many.
 pub fn structured_annulus(b: f64, a: f64, n_radial: usize, n_angular: usize) -> Result<Mesh> {
-    let mut faults = require_positive("annulus", &[("hub radius", b), ("outer radius", a)]);
+    let mut faults = require_positive("annulus", &[("outer radius", a)]);
+    if b != 0.0 {
+        faults.0.extend(require_positive("annulus", &[("hub radius", b)]).0);
+    }
     require_cells(&mut faults, "annulus", n_radial, n_angular);
     if b >= a {
         let found = format!("{b} m, not smaller than the outer radius, {a} m");
@@ -70,18 +73,31 @@ pub fn structured_annulus(b: f64, a: f64, n_radial: usize, n_angular: usize) -> 
     }
     faults.into_result(())?;
     let mut mesh = Mesh::default();
-    for i in 0..=n_radial {
+    let whole = b == 0.0;
+    if whole {
+        mesh.nodes.push([0.0; 3]);
+    }
+    for i in usize::from(whole)..=n_radial {
         let r = if i == n_radial { a } else { b + (a - b) * i as f64 / n_radial as f64 };
         mesh.nodes.extend((0..n_angular).map(|j| {
             let [y, z] = on_circle(j, n_angular);
             [0.0, r * y, r * z]
         }));
     }
-    let node = |i: usize, j: usize| i * n_angular + j % n_angular;
+    let node = |i: usize, j: usize| match (whole, i) {
+        (true, 0) => 0,
+        (true, _) => 1 + (i - 1) * n_angular + j % n_angular,
+        (false, _) => i * n_angular + j % n_angular,
+    };
     let cells = (0..n_radial).flat_map(|i| (0..n_angular).map(move |j| (i, j)));
     let elements: Vec<Element> = cells
-        .flat_map(|(i, j)| {
-            cell([node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)], i + j, Faces::Triangles)
+        .flat_map(|(i, j)| match whole && i == 0 {
+            true => vec![Element::Triangle([0, node(1, j), node(1, j + 1)])],
+            false => cell(
+                [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)],
+                i + j,
+                Faces::Triangles,
+            ),
         })
         .collect();
     mesh.add_region("disc", 2, elements);
@@ -90,7 +106,9 @@ pub fn structured_annulus(b: f64, a: f64, n_radial: usize, n_angular: usize) -> 
         1,
         (0..n_angular).map(|j| Element::Line([node(n_radial, j), node(n_radial, j + 1)])),
     );
-    mesh.add_region("hub", 1, (0..n_angular).map(|j| Element::Line([node(0, j), node(0, j + 1)])));
+    if !whole {
+        mesh.add_region("hub", 1, (0..n_angular).map(|j| Element::Line([node(0, j), node(0, j + 1)])));
+    }
     Ok(mesh)
 }
 

@@ -78,11 +78,9 @@ pub(in crate::report) fn table(run: &TransientResult) -> Table {
             significant(cycle.rms, 3)
         ));
     }
+    let [open, stuck, backwards, _] = run.spent.map(|share| fixed(100.0 * share, 1));
     table.notes.push(format!(
-        "The point that carries most was open {} %, stuck {} % and slid backwards {} % of the time.",
-        fixed(100.0 * run.open, 1),
-        fixed(100.0 * run.sticking, 1),
-        fixed(100.0 * run.backwards, 1)
+        "The point that carries most was open {open} %, stuck {stuck} % and slid backwards {backwards} % of the time."
     ));
     let work = &run.work;
     table.notes.push(format!(
