@@ -3,6 +3,8 @@
 use super::progress::Bars;
 use super::{Common, complain, say};
 use crate::error::Result;
+use crate::report::write_validation;
+use crate::results::passed;
 use crate::validation;
 use clap::Args;
 use std::path::PathBuf;
@@ -15,18 +17,25 @@ pub struct Options {
     /// The folder that holds the validation cases
     #[arg(long, value_name = "DIR", default_value = "validation")]
     from: PathBuf,
+    /// Write the page validation.html with its picture into this folder
+    #[arg(long, value_name = "DIR")]
+    report: Option<PathBuf>,
 }
 
 pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
-    let rows = validation::run(&options.from, options.filter.as_deref(), &Bars::new(common.quiet))?;
+    let cases = validation::run(&options.from, options.filter.as_deref(), &Bars::new(common.quiet))?;
     if common.json {
-        say(validation::to_json(&rows))?;
+        say(validation::to_json(&cases))?;
     } else if !common.quiet {
-        say(validation::table(&rows).trim_end())?;
+        say(validation::table(&cases).trim_end())?;
     }
-    let failed = rows.iter().filter(|row| !row.passed()).count();
+    if let Some(folder) = &options.report {
+        write_validation(folder, &cases)?;
+    }
+    let [all, within] = passed(&cases);
+    let failed = all - within;
     if failed > 0 {
-        complain(format!("{failed} of {} quantities are outside their tolerance", rows.len()));
+        complain(format!("{failed} of {all} quantities are outside their tolerance"));
     }
     Ok(ExitCode::from(u8::from(failed > 0)))
 }

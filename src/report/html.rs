@@ -90,6 +90,11 @@ pub(super) fn page(results: &RunResults, pictures: &[Picture]) -> String {
             "<h2>The case</h2>\n<details><summary>Every value as the run used it</summary><pre>{case}</pre></details>\n"
         );
     }
+    document(title, &body)
+}
+
+/// A page with its style.
+pub(super) fn document(title: &str, body: &str) -> String {
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\

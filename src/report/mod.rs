@@ -1,6 +1,7 @@
 //! The report: tables for the terminal and the page, pictures as SVG, and one self-contained HTML page.
 //!
 //! * [`text`]: the tables that the command line prints.
+//! * [`write_validation`]: the page of the validation suite.
 //! * [`write_report`]: `report.html` and the pictures `rig.svg`, `modes_disc.svg`, `contact.svg`, `growth.svg`,
 //!   `growth_budget.svg`, `participation.svg`, `sensitivity.svg`, `advice.svg`, `transient.svg`, `transient_spectrum.svg`,
 //!   `transient_spectrogram.svg`, `transient_phase.svg`, `transient_contact.svg`, `sound.svg`, `frf_<name>.svg`, those of them that the run has something for;
@@ -30,7 +31,10 @@ mod tables;
 pub mod text;
 mod tornado;
 mod transient;
+mod validation;
 mod view;
+
+pub use validation::write_validation;
 
 use crate::error::Result;
 use crate::results::{RunResults, write_atomically};

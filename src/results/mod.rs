@@ -36,6 +36,7 @@ mod transient_csv;
 mod transient_hdf5;
 mod transient_json;
 mod uff;
+mod validation;
 mod vtk;
 mod watched;
 
@@ -58,6 +59,7 @@ pub use transient::{
     Channel, Field, Fields, GrowthCompared, Piece, Recording, SpectrumOf, TransientResult, modal_channel,
 };
 pub use transient_csv::{EventTable, HistoryTable};
+pub use validation::{Checked, CheckedCase, passed};
 pub use vtk::write_vtk;
 pub(crate) use watched::ContactWatch;
 pub use watched::{ContactHistory, Curve, Orbit, TouchState, Watched};

@@ -9,70 +9,34 @@ use crate::error::{Error, Fault, Result};
 use crate::job::{Histories, Prepared, Selection, Stage, analyse};
 use crate::linalg::c64;
 use crate::progress::Observer;
-use crate::results::{NamedModes, RunResults};
+use crate::results::{Checked, CheckedCase, NamedModes, RunResults};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
-
-/// One quantity, computed beside its reference.
-#[derive(Debug, Clone)]
-pub struct Row {
-    /// The validation case's folder.
-    pub case: String,
-    /// Its title.
-    pub title: String,
-    /// Where the reference comes from.
-    pub source: String,
-    /// What was computed.
-    pub quantity: String,
-    /// The computed value.
-    pub computed: f64,
-    /// The reference value.
-    pub reference: f64,
-    /// The largest difference that passes.
-    pub tolerance: f64,
-    /// The difference is relative to the reference.
-    pub relative: bool,
-    /// Why this tolerance.
-    pub reason: String,
-}
-
-impl Row {
-    /// |computed − reference|, over |reference| when relative.
-    pub fn difference(&self) -> f64 {
-        let difference = (self.computed - self.reference).abs();
-        if self.relative { difference / self.reference.abs() } else { difference }
-    }
-
-    /// Whether the difference is within the tolerance; a value that is not a number never is.
-    pub fn passed(&self) -> bool {
-        self.difference() <= self.tolerance
-    }
-}
+use std::time::Instant;
 
 /// Computes every quantity of `reference`.
 ///
 /// # Errors
 /// A case that cannot be analysed, or a quantity that the case does not have.
-pub fn run(reference: &Reference, observer: &dyn Observer) -> Result<Vec<Row>> {
+pub fn run(reference: &Reference, observer: &dyn Observer) -> Result<CheckedCase> {
+    let started = Instant::now();
     let mut runs: BTreeMap<&str, Runs> = BTreeMap::new();
-    let row = |check: &Check, computed: f64| Row {
-        case: reference.name.clone(),
-        title: reference.title.clone(),
-        source: reference.source.clone(),
-        quantity: check.quantity.clone(),
-        computed,
-        reference: check.reference,
-        tolerance: check.tolerance,
-        relative: check.relative,
-        reason: check.reason.clone(),
-    };
     let mut rows = Vec::new();
     for check in &reference.checks {
         let case = &reference.cases[&check.case];
         let runs = runs.entry(&check.case).or_insert_with(|| Runs { case, done: BTreeMap::new(), observer });
-        rows.push(row(check, compute(runs, check)?));
+        rows.push(Checked {
+            computed: compute(runs, check)?,
+            quantity: check.quantity.clone(),
+            reference: check.reference,
+            tolerance: check.tolerance,
+            relative: check.relative,
+            reason: check.reason.clone(),
+        });
     }
-    Ok(rows)
+    let Reference { name, title, source, .. } = reference;
+    let seconds = started.elapsed().as_secs_f64();
+    Ok(CheckedCase { name: name.clone(), title: title.clone(), source: source.clone(), rows, seconds })
 }
 
 /// The analyses of one case with scalars set to values, each done once.

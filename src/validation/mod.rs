@@ -10,24 +10,22 @@ mod reference;
 pub mod stick_slip;
 pub mod two_dof;
 
-pub use check::Row;
-
-use crate::error::{Error, Fault, Result};
+use crate::error::{Error, Fault, Faults, Result};
 use crate::progress::Observer;
+use crate::results::{CheckedCase, passed};
 use std::path::{Path, PathBuf};
 
 /// Runs every validation case below `root` whose folder name contains `filter`.
 ///
 /// # Errors
 /// A folder without cases, a reference file with faults, or a case that cannot be analysed.
-pub fn run(root: &Path, filter: Option<&str>, observer: &dyn Observer) -> Result<Vec<Row>> {
+pub fn run(root: &Path, filter: Option<&str>, observer: &dyn Observer) -> Result<Vec<CheckedCase>> {
+    let mut faults = Faults::new();
     let folders = folders(root, filter)?;
-    let mut rows = Vec::new();
-    for folder in &folders {
-        let reference = reference::read(folder)?;
-        rows.extend(check::run(&reference, observer)?);
-    }
-    Ok(rows)
+    let references: Vec<_> =
+        folders.iter().filter_map(|folder| faults.take(reference::read(folder))).collect();
+    faults.into_result(())?;
+    references.iter().map(|reference| check::run(reference, observer)).collect()
 }
 
 fn folders(root: &Path, filter: Option<&str>) -> Result<Vec<PathBuf>> {
@@ -57,31 +55,30 @@ fn folders(root: &Path, filter: Option<&str>) -> Result<Vec<PathBuf>> {
 }
 
 /// The rows as a table for people.
-pub fn table(rows: &[Row]) -> String {
+pub fn table(cases: &[CheckedCase]) -> String {
     let mut text = String::new();
-    let mut case = "";
-    let width = rows.iter().map(|row| row.quantity.chars().count()).max().unwrap_or(0).max(8);
-    for row in rows {
-        if row.case != case {
-            case = &row.case;
-            text += &format!("\n{} ({case})\n", row.title);
+    let rows = cases.iter().flat_map(|case| &case.rows);
+    let width = rows.map(|row| row.quantity.chars().count()).max().unwrap_or(0).max(8);
+    for case in cases {
+        text += &format!("\n{} ({})\n", case.title, case.name);
+        text += &format!(
+            "  {:<width$} {:>12} {:>12} {:>10} {:>9}\n",
+            "quantity", "computed", "reference", "difference", "tolerance"
+        );
+        for row in &case.rows {
             text += &format!(
-                "  {:<width$} {:>12} {:>12} {:>10} {:>9}\n",
-                "quantity", "computed", "reference", "difference", "tolerance"
+                "  {:<width$} {:>12} {:>12} {:>10.1e} {:>9.1e}  {}\n",
+                row.quantity,
+                short(row.computed),
+                short(row.reference),
+                row.difference(),
+                row.tolerance,
+                if row.passed() { "pass" } else { "FAIL" }
             );
         }
-        text += &format!(
-            "  {:<width$} {:>12} {:>12} {:>10.1e} {:>9.1e}  {}\n",
-            row.quantity,
-            short(row.computed),
-            short(row.reference),
-            row.difference(),
-            row.tolerance,
-            if row.passed() { "pass" } else { "FAIL" }
-        );
     }
-    let passed = rows.iter().filter(|row| row.passed()).count();
-    text + &format!("\n{passed} of {} quantities within tolerance\n", rows.len())
+    let [all, within] = passed(cases);
+    text + &format!("\n{within} of {all} quantities within tolerance\n")
 }
 
 /// A number with seven significant digits, without trailing zeros; powers of ten where it is tiny.
@@ -98,19 +95,20 @@ fn short(x: f64) -> String {
 }
 
 /// The rows as JSON, in the form of the summary's `validation` list.
-pub fn to_json(rows: &[Row]) -> String {
-    let list: Vec<serde_json::Value> = rows
+pub fn to_json(cases: &[CheckedCase]) -> String {
+    let list: Vec<serde_json::Value> = cases
         .iter()
-        .map(|row| {
+        .flat_map(|case| case.rows.iter().map(move |row| (case, row)))
+        .map(|(case, row)| {
             serde_json::json!({
-                "case": row.case,
+                "case": case.name,
                 "quantity": row.quantity,
                 "computed": row.computed,
                 "reference": row.reference,
                 "difference": row.difference(),
                 "tolerance": row.tolerance,
                 "relative": row.relative,
-                "source": row.source,
+                "source": case.source,
                 "reason": row.reason,
                 "passed": row.passed(),
             })

@@ -1,0 +1,143 @@
+//! The page of the validation suite: every quantity beside its reference, with source and reason, and all differences as
+//! parts of their tolerances in one picture.
+
+use super::colours::{ALARM, INK, MEASURED, MUTED};
+use super::format::{fixed, given, power};
+use super::html::{self, escape};
+use super::svg::{Anchor, Ink, Sheet};
+use super::tables::Table;
+use crate::error::Result;
+use crate::results::{CheckedCase, passed, write_atomically};
+use std::path::Path;
+
+const WIDTH: f64 = 980.0;
+const LABELS: f64 = 300.0;
+const ROW: f64 = 24.0;
+const TOP: f64 = 34.0;
+/// The decades of difference ÷ tolerance that are drawn; what is smaller or larger stands at the ends.
+const DECADES: [i32; 2] = [-4, 1];
+
+/// Writes `validation.html` and `validation.svg` into the folder `dir`.
+///
+/// # Errors
+/// [`crate::error::Error::Io`] when the folder cannot be made or a file not be written.
+pub fn write_validation(dir: &Path, cases: &[CheckedCase]) -> Result<()> {
+    let svg = picture(cases);
+    write_atomically(dir, "validation.svg", svg.as_bytes())?;
+    write_atomically(dir, "validation.html", page(cases, &svg).as_bytes())
+}
+
+fn page(cases: &[CheckedCase], svg: &str) -> String {
+    let [all, within] = passed(cases);
+    let seconds: f64 = cases.iter().map(|case| case.seconds).sum();
+    let class = if within == all { "verdict" } else { "verdict bad" };
+    let mut body = format!(
+        "<h1>Validation</h1>\n<p class=\"sub\">{} {} · {} cases in {} s</p>\n\
+         <div class=\"{class}\"><p>{within} of {all} quantities within tolerance</p></div>\n",
+        env!("CARGO_PKG_NAME"),
+        env!("CARGO_PKG_VERSION"),
+        cases.len(),
+        fixed(seconds, 0),
+    );
+    let caption = "Every quantity as a dot: its difference from the reference as a part of its tolerance. \
+                   What is further left than the axis agrees better; right of the line fails.";
+    body += &html::figure(svg, caption);
+    for case in cases {
+        body += &format!("<h2>{}</h2>\n", escape(&case.title));
+        body += &html::titled_table(&table(case));
+    }
+    html::document("Validation", &body)
+}
+
+fn table(case: &CheckedCase) -> Table {
+    let headings = ["<quantity", "computed", "reference", "difference", "tolerance", "<"];
+    let mut table = Table::new("", &headings);
+    table.alarming = true;
+    let mut reasons: Vec<&str> = Vec::new();
+    for row in &case.rows {
+        let verdict = if row.passed() { "pass" } else { "FAIL" };
+        let cells = vec![
+            row.quantity.clone(),
+            crate::report::format::significant(row.computed, 7),
+            given(row.reference),
+            power(row.difference()) + if row.relative { "" } else { " (absolute)" },
+            power(row.tolerance),
+            verdict.to_string(),
+        ];
+        table.row(cells, !row.passed());
+        if !row.reason.is_empty() && !reasons.contains(&row.reason.as_str()) {
+            reasons.push(&row.reason);
+        }
+    }
+    table.notes.push(format!("Source: {}.", case.source.trim_end_matches('.')));
+    table.notes.extend(reasons.iter().map(|reason| format!("Tolerance: {reason}")));
+    table.notes.push(format!("validation/{}, {} s", case.name, fixed(case.seconds, 1)));
+    table
+}
+
+fn picture(cases: &[CheckedCase]) -> String {
+    let bottom = TOP + ROW * cases.len() as f64;
+    let mut sheet = Sheet::new(WIDTH, bottom + 52.0);
+    let [low, high] = DECADES.map(f64::from);
+    let across = |part: f64| {
+        let decade = part.max(f64::MIN_POSITIVE).log10().clamp(low, high);
+        LABELS + (WIDTH - LABELS - 40.0) * (decade - low) / (high - low)
+    };
+    let small = |colour, anchor| Ink { size: 12.0, colour, bold: false, anchor };
+    for decade in DECADES[0]..=DECADES[1] {
+        let x = across(10f64.powi(decade));
+        let limit = decade == 0;
+        let style = if limit { "stroke=\"#1b1f24\" stroke-width=\"1.4\"" } else { "stroke=\"#e6e9ed\"" };
+        sheet.lines([&[[x, TOP - 6.0], [x, bottom]][..]], style);
+        let label = if limit { "tolerance".to_string() } else { given(10f64.powi(decade)) };
+        sheet.text([x, bottom + 18.0], &label, small(INK, Anchor::Middle));
+    }
+    for (k, case) in cases.iter().enumerate() {
+        let y = TOP + ROW * (k as f64 + 0.5);
+        sheet.text([LABELS - 14.0, y + 4.0], &case.name, small(INK, Anchor::End));
+        for row in &case.rows {
+            let colour = if row.passed() { MEASURED } else { ALARM };
+            let part = row.difference() / row.tolerance;
+            let x = across(if part.is_nan() { f64::INFINITY } else { part });
+            sheet.circle([x, y], 4.2, &format!("fill=\"{colour}\" fill-opacity=\"0.55\""));
+        }
+    }
+    let foot = "difference from the reference ÷ tolerance";
+    sheet.text([0.5 * (LABELS + WIDTH - 40.0), bottom + 40.0], foot, small(MUTED, Anchor::Middle));
+    sheet.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::Checked;
+
+    #[test]
+    fn a_failure_is_told_on_the_page_and_in_the_picture() {
+        let row = |computed: f64| Checked {
+            quantity: "f < g".into(),
+            computed,
+            reference: 1.0,
+            tolerance: 0.1,
+            relative: true,
+            reason: "because".into(),
+        };
+        let case = |rows: Vec<Checked>| CheckedCase {
+            name: "disc".into(),
+            title: "A disc".into(),
+            source: "a book".into(),
+            rows,
+            seconds: 1.0,
+        };
+        let dir = tempfile::tempdir().unwrap();
+        let read = |name: &str| std::fs::read_to_string(dir.path().join(name)).unwrap();
+        write_validation(dir.path(), &[case(vec![row(1.01), row(1.0)])]).unwrap();
+        let good = read("validation.html");
+        assert!(good.contains("2 of 2") && !good.contains("verdict bad") && good.contains("f &lt; g"));
+        assert!(!read("validation.svg").contains(ALARM));
+        write_validation(dir.path(), &[case(vec![row(1.2), row(f64::NAN)])]).unwrap();
+        let bad = read("validation.html");
+        assert!(bad.contains("0 of 2") && bad.contains("verdict bad"));
+        assert_eq!(read("validation.svg").matches(ALARM).count(), 2);
+    }
+}
