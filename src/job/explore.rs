@@ -244,16 +244,25 @@ impl Explorer<'_> {
         };
         let corners = [(0.0, 0.0), (1.0, 1.0), (0.0, 1.0), (1.0, 0.0), (0.5, 0.5)];
         let mut on = self.family(&states, &corners.map(|(u, v)| place(u, v)))?;
+        let inside = [(0.3, 0.7), (0.75, 0.2)].map(|(u, v)| place(u, v)).map(|p| [p[0], p[1]]);
         for at in &known.trained {
             on.family.train(&states.at(at)?)?;
+        }
+        if known.trained.is_empty() {
+            // What the corners do not tell is learnt before the many points, not after.
+            for at in inside {
+                if on.check(&at).is_ok_and(|checks| worst_alone(&checks) > ACCURACY) {
+                    on.family.train(&states.at(&at)?)?;
+                    known.trained.push(at);
+                }
+            }
         }
         let mut round = 0;
         loop {
             let failure = self.fill(&on, &mut result, &known, record)?;
             result.boundary = sweep::boundary(&on, &axes, &result.points, 1e-7, self.observer)?;
             result.method = Method::Reduced(on.family.dimension());
-            let mut places: Vec<[f64; 2]> =
-                [(0.3, 0.7), (0.75, 0.2)].map(|(u, v)| place(u, v)).iter().map(|p| [p[0], p[1]]).collect();
+            let mut places = inside.to_vec();
             let line = &result.boundary.points;
             places.extend((0..line.len().min(4)).map(|k| line[k * line.len() / line.len().min(4)]));
             self.observer.begin("full-order check", Some(places.len() as u64));
@@ -262,8 +271,7 @@ impl Explorer<'_> {
             for at in places {
                 // A place without an answer has nothing to measure.
                 let Ok(checks) = on.check(&at) else { continue };
-                let worst = checks.iter().filter(|c| !merged(c, &checks)).map(|c| c.eigenvalue_error);
-                let worst = worst.fold(0.0, f64::max);
+                let worst = worst_alone(&checks);
                 result.sample.push((at, worst));
                 if worst > ACCURACY {
                     poor.push(at);
@@ -357,13 +365,17 @@ fn measure(problem: &dyn Problem, sweep: &sweep::Sweep, sample: &[f64]) -> Resul
     };
     let worst = |value: &f64| -> Result<(f64, f64)> {
         let checks = problem.check(&[*value])?;
-        let errors = checks.iter().filter(|c| !merged(c, &checks)).map(|c| c.eigenvalue_error);
-        Ok((*value, errors.fold(0.0, f64::max)))
+        Ok((*value, worst_alone(&checks)))
     };
     Ok(Measured {
         critical: sweep.critical.iter().map(critical).collect::<Result<_>>()?,
         sample: sample.iter().map(worst).collect::<Result<_>>()?,
     })
+}
+
+/// The largest estimated |Δλ|/|λ| of the modes that no other merges with.
+fn worst_alone(checks: &[Checked]) -> f64 {
+    checks.iter().filter(|c| !merged(c, checks)).map(|c| c.eigenvalue_error).fold(0.0, f64::max)
 }
 
 /// Whether another mode is so near that λ says little by itself.

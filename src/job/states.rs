@@ -80,6 +80,10 @@ impl Problem for OnFamily<'_, '_> {
         Ok(Modes { eigenvalues: modes.eigenvalues, vectors: modes.vectors })
     }
 
+    fn eigenvalues(&self, at: &[f64]) -> Result<Vec<c64>> {
+        self.family.eigenvalues(&self.states.at(at)?)
+    }
+
     fn check(&self, at: &[f64]) -> Result<Vec<Checked>> {
         let check = self.family.check(&self.states.at(at)?)?;
         let errors = check.backward_errors.into_iter().zip(check.eigenvalue_errors);

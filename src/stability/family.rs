@@ -145,6 +145,15 @@ impl<'f> Family<'f> {
         Ok(FamilyModes { eigenvalues: modes.eigenvalues, vectors: modes.right })
     }
 
+    /// λ of the modes of `state` alone, in no order, at a third of the cost.
+    ///
+    /// # Errors
+    /// As [`Family::modes`].
+    pub fn eigenvalues(&self, state: &SlidingState) -> Result<Vec<c64>> {
+        let band = self.frame.band;
+        self.reduced.eigenvalues(&self.frame.terms(state), &state.damping_weights, |z| in_band(z, band))
+    }
+
     /// Measures the modes of `state` on the full order.
     ///
     /// # Errors

@@ -4,7 +4,7 @@ use super::interface::Term;
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::linalg::dense::{definite_pencil, product};
-use crate::linalg::unsymmetric::{complex_spectrum, spectrum};
+use crate::linalg::unsymmetric::{complex_spectrum, eigenvalues, spectrum};
 use faer::{Mat, MatRef};
 
 /// (λ² + λ (Σ wᵢCᵢ + B c Bᵀ) + K + i Σ wᵢHᵢ + B k Bᵀ) y = 0 in M-orthonormal coordinates, m of them.
@@ -72,31 +72,16 @@ impl Reduced {
         weights: &[f64],
         wanted: impl Fn(c64) -> bool,
     ) -> Result<ReducedModes> {
-        let m = self.frequencies.len();
-        let mut c = self.between(terms, |t| t.damping);
-        let mut k = self.between(terms, |t| t.stiffness);
-        k += &self.stiffness;
-        self.damping.iter().zip(weights).for_each(|(part, w)| c += faer::Scale(*w) * part);
-        let mut h = None;
-        for (part, w) in self.hysteretic.iter().zip(weights) {
-            if let Some(part) = part {
-                *h.get_or_insert_with(|| Mat::zeros(m, m)) += faer::Scale(*w) * part;
-            }
-        }
-        let d = &self.frequencies;
-        let entry = |i: usize, j: usize| match (i < m, j < m) {
-            (true, true) => 0.0,
-            (true, false) => f64::from(i == j - m) * d[i],
-            (false, true) => -k[(i - m, j)] / d[j],
-            (false, false) => -c[(i - m, j - m)],
-        };
+        let (m, d) = (self.frequencies.len(), &self.frequencies);
+        let (c, k) = self.matrices(terms, weights);
+        let h = self.losses(weights);
+        let companion = self.companion(&c, &k);
         let all = match &h {
-            None => spectrum(Mat::from_fn(2 * m, 2 * m, entry).as_ref())?,
+            None => spectrum(companion.as_ref())?,
             Some(h) => {
                 let lossy = |i: usize, j: usize| if i >= m && j < m { -h[(i - m, j)] / d[j] } else { 0.0 };
-                complex_spectrum(
-                    Mat::from_fn(2 * m, 2 * m, |i, j| c64::new(entry(i, j), lossy(i, j))).as_ref(),
-                )?
+                let entry = |i: usize, j: usize| c64::new(companion[(i, j)], lossy(i, j));
+                complex_spectrum(Mat::from_fn(2 * m, 2 * m, entry).as_ref())?
             }
         };
         let mut chosen: Vec<usize> = (0..2 * m).filter(|j| wanted(all.values[*j])).collect();
@@ -125,6 +110,57 @@ impl Reduced {
         };
         let eigenvalues = (0..chosen.len()).map(corrected).collect();
         Ok(ReducedModes { eigenvalues, right, left })
+    }
+
+    /// The eigenvalues that are `wanted`, in no order and without the correction of [`Reduced::solve`], at a third of its
+    /// cost.
+    ///
+    /// # Errors
+    /// Numbers that are not finite.
+    pub(super) fn eigenvalues(
+        &self,
+        terms: &[Term],
+        weights: &[f64],
+        wanted: impl Fn(c64) -> bool,
+    ) -> Result<Vec<c64>> {
+        if self.losses(weights).is_some() {
+            return Ok(self.solve(terms, weights, wanted)?.eigenvalues);
+        }
+        let (c, k) = self.matrices(terms, weights);
+        let all = eigenvalues(self.companion(&c, &k).as_ref())?;
+        Ok(all.into_iter().filter(|z| wanted(*z)).collect())
+    }
+
+    /// C and K with the interface.
+    fn matrices(&self, terms: &[Term], weights: &[f64]) -> (Mat<f64>, Mat<f64>) {
+        let mut c = self.between(terms, |t| t.damping);
+        let mut k = self.between(terms, |t| t.stiffness);
+        k += &self.stiffness;
+        self.damping.iter().zip(weights).for_each(|(part, w)| c += faer::Scale(*w) * part);
+        (c, k)
+    }
+
+    /// H, where there is one.
+    fn losses(&self, weights: &[f64]) -> Option<Mat<f64>> {
+        let m = self.frequencies.len();
+        let mut sum = None;
+        for (part, w) in self.hysteretic.iter().zip(weights) {
+            if let Some(part) = part {
+                *sum.get_or_insert_with(|| Mat::zeros(m, m)) += faer::Scale(*w) * part;
+            }
+        }
+        sum
+    }
+
+    /// \[0 D; −K D⁻¹ −C\].
+    fn companion(&self, c: &Mat<f64>, k: &Mat<f64>) -> Mat<f64> {
+        let (m, d) = (self.frequencies.len(), &self.frequencies);
+        Mat::from_fn(2 * m, 2 * m, |i, j| match (i < m, j < m) {
+            (true, true) => 0.0,
+            (true, false) => f64::from(i == j - m) * d[i],
+            (false, true) => -k[(i - m, j)] / d[j],
+            (false, false) => -c[(i - m, j - m)],
+        })
     }
 
     /// Σ b_row value b_columnᵀ over the terms.

@@ -53,9 +53,8 @@ pub fn boundary(
     }
     observer.begin("stability boundary", Some(edges.len() as u64));
     let growth = |at: &[f64]| -> Result<f64> {
-        let modes = problem.modes(at)?;
-        Ok(modes
-            .eigenvalues
+        let all = problem.eigenvalues(at)?;
+        Ok(all
             .iter()
             .map(|z| z.re - ROUND_OFF * z.norm())
             .fold(f64::NEG_INFINITY, f64::max)

@@ -1,7 +1,8 @@
 //! Maps: the strongest growth over two parameters.
 
-use super::{Axis, Modes, Problem, unstable};
+use super::{Axis, Problem, unstable};
 use crate::error::Result;
+use crate::linalg::c64;
 use crate::progress::Observer;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -24,12 +25,12 @@ impl MapPoint {
     /// A point without an answer.
     pub const NONE: MapPoint = MapPoint { growth_rate: f64::NAN, frequency_hz: f64::NAN, unstable: 0 };
 
-    fn of(modes: &Modes) -> Self {
-        let strongest = modes.eigenvalues.iter().max_by(|a, b| a.re.total_cmp(&b.re));
+    fn of(eigenvalues: &[c64]) -> Self {
+        let strongest = eigenvalues.iter().max_by(|a, b| a.re.total_cmp(&b.re));
         strongest.map_or(MapPoint::NONE, |z| MapPoint {
             growth_rate: z.re,
             frequency_hz: z.im / TAU,
-            unstable: modes.eigenvalues.iter().filter(|z| unstable(**z)).count() as u32,
+            unstable: eigenvalues.iter().filter(|z| unstable(**z)).count() as u32,
         })
     }
 }
@@ -58,7 +59,7 @@ pub fn map(
         let first = points.len();
         let solve = |k: usize| {
             let at = [across.value(k % across.points), up.value(k / across.points)];
-            let point = problem.modes(&at).map(|modes| MapPoint::of(&modes));
+            let point = problem.eigenvalues(&at).map(|all| MapPoint::of(&all));
             observer.advance(1);
             point
         };

@@ -38,6 +38,14 @@ pub trait Problem: Sync {
     /// A place without an answer, such as a contact that opens.
     fn modes(&self, at: &[f64]) -> Result<Modes>;
 
+    /// λ of the modes at `at` alone, in any order.
+    ///
+    /// # Errors
+    /// As [`Problem::modes`].
+    fn eigenvalues(&self, at: &[f64]) -> Result<Vec<c64>> {
+        Ok(self.modes(at)?.eigenvalues)
+    }
+
     /// The modes at `at` with their errors on the full order.
     ///
     /// # Errors
