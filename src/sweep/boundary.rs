@@ -54,11 +54,7 @@ pub fn boundary(
     observer.begin("stability boundary", Some(edges.len() as u64));
     let growth = |at: &[f64]| -> Result<f64> {
         let all = problem.eigenvalues(at)?;
-        Ok(all
-            .iter()
-            .map(|z| z.re - ROUND_OFF * z.norm())
-            .fold(f64::NEG_INFINITY, f64::max)
-            .max(-1e300))
+        Ok(all.iter().map(|z| z.re - ROUND_OFF * z.norm()).fold(f64::NEG_INFINITY, f64::max).max(-1e300))
     };
     let locate = |&(i, j, rising): &Edge| -> Result<[f64; 2]> {
         let axis = &axes[usize::from(rising)];

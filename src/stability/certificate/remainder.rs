@@ -18,14 +18,14 @@
 use super::proportional::Proportional;
 use super::reduced::DampingParts;
 use crate::error::Result;
-use crate::linalg::SparseMatrix;
-use crate::linalg::c64;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::factor::SymbolicFactor;
 use crate::linalg::sparse::{add_scaled, times};
-use crate::linalg::tall::{expand, gram};
+use crate::linalg::tall::{expand, gram, lower_gram};
+use crate::linalg::{SparseMatrix, SparseVector, c64};
 use crate::stability::analysis::Analysis;
 use faer::Mat;
+use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// Γ(s) in the A-norm of Z, and what q(s) needs.
@@ -81,22 +81,35 @@ impl Remainder {
         let (operator, basis, shift) = (&analysis.operator, &analysis.basis, analysis.shift);
         let (m, first) = (basis.len(), analysis.n_real);
         let top = TAU * analysis.band_hz[1];
-        let inertia = basis.mass_times.subcols(first, m - first);
+        let w = Directions::new(analysis, active, top);
+        let damped = parts.damped.as_ref().map(|image| w.or_own(image));
+        let lossy = parts.lossy.as_ref().map(|image| w.or_own(image));
+        let beyond = m - first;
         // Of one size, so that the smallest are not lost in the rounding of the largest: \[top MB, DB, H_rB/top, W\].
-        let mut columns = vec![inertia * faer::Scale(top)];
-        columns.extend(parts.damped.iter().cloned());
-        columns.extend(parts.lossy.iter().map(|h| h * faer::Scale(1.0 / top)));
-        columns.push(directions(analysis, active, top));
-        let widths: Vec<usize> = columns.iter().map(Mat::ncols).collect();
+        // Each with what it is of the basis, BᵀF.
+        let inertia = basis.mass_times.subcols(first, beyond) * faer::Scale(top);
+        let mut columns = vec![(inertia, basis.mass.subcols(first, beyond) * faer::Scale(top))];
+        for (image, scale) in [(&damped, 1.0), (&lossy, 1.0 / top)] {
+            if let Some(Image::Own(image)) = image {
+                let scaled = *image * faer::Scale(scale);
+                let share = gram(basis.vectors.as_ref(), scaled.as_ref());
+                columns.push((scaled, share));
+            }
+        }
+        let own = |i: usize, j: usize| basis.interface[(i, active[j])] * w.scales[j];
+        let of_basis = Mat::from_fn(m, active.len(), own);
+        columns.push((w.columns, of_basis));
+        let widths: Vec<usize> = columns.iter().map(|(forces, _)| forces.ncols()).collect();
         let f: usize = widths.iter().sum();
-        let mut forces = Mat::zeros(operator.n(), f);
+        let (mut forces, mut share) = (Mat::zeros(operator.n(), f), Mat::zeros(m, f));
         let mut start = 0;
-        for block in columns {
+        for (block, of_basis) in columns {
             forces.subcols_mut(start, block.ncols()).copy_from(&block);
+            share.subcols_mut(start, block.ncols()).copy_from(&of_basis);
             start += block.ncols();
         }
         // V = A⁻¹F − B (BᵀAB)⁻¹ BᵀF, with BᵀAB = diag(θ − σ_A) for the Ritz vectors.
-        let mut share = product(x.transpose(), gram(basis.vectors.as_ref(), forces.as_ref()).as_ref());
+        let mut share = product(x.transpose(), share.as_ref());
         let mut v = forces;
         analysis.factor.solve_in_place(v.as_mut());
         for i in 0..m {
@@ -105,7 +118,7 @@ impl Remainder {
         v -= expand(basis.vectors.as_ref(), product(x.as_ref(), share.as_ref()).as_ref());
         let mut av = times(&operator.stiffness, v.as_ref());
         av -= faer::Scale(shift) * times(operator.mass, v.as_ref());
-        let square = gram(v.as_ref(), av.as_ref());
+        let square = lower_gram(v.as_ref(), av.as_ref());
         let (values, vectors) = symmetric_eigen(square.as_ref())?;
         let largest = values.last().copied().unwrap_or(0.0).max(0.0);
         let kept: Vec<usize> = (0..f).filter(|j| values[*j] > 1e-24 * largest).collect();
@@ -121,22 +134,24 @@ impl Remainder {
         };
         let of_damping = Factor { square: 0.0, linear: 1.0, constant: c64::new(0.0, 0.0) };
         let of_loss = Factor { square: 0.0, linear: 0.0, constant: c64::new(0.0, 1.0) };
-        let mut start = 0;
-        let kinds = [
-            (1.0 / top, Some(of_mass)),
-            (1.0, parts.damped.as_ref().map(|_| of_damping)),
-            (top, parts.lossy.as_ref().map(|_| of_loss)),
-        ];
-        let kinds = kinds.into_iter().filter_map(|(scale, kind)| Some((scale, kind?)));
-        for ((scale, kind), width) in kinds.zip(widths) {
-            // Only the last columns of the basis have M B outside it.
-            let offset = m - width;
-            let rows = Mat::from_fn(m, kept.len(), |i, j| {
-                if i < offset { 0.0 } else { scale * root(start + i - offset, j) }
-            });
-            terms.push((kind, product(x.transpose(), rows.as_ref())));
-            start += width;
+        // The rows of F that an image of the basis has, and the first vector that has one.
+        let mut start = widths[0];
+        let inertia =
+            Mat::from_fn(m, kept.len(), |i, j| if i < first { 0.0 } else { root(i - first, j) / top });
+        let mut images = vec![(of_mass, inertia)];
+        for (image, scale, kind) in [(&damped, 1.0, of_damping), (&lossy, top, of_loss)] {
+            let rows = match image {
+                None => continue,
+                Some(Image::Own(image)) => {
+                    let at = start;
+                    start += image.ncols();
+                    Mat::from_fn(m, kept.len(), |i, j| scale * root(at + i, j))
+                }
+                Some(Image::OfDirections(weights)) => product(weights.transpose(), missed.as_ref()),
+            };
+            images.push((kind, rows));
         }
+        terms.extend(images.iter().map(|(kind, rows)| (*kind, product(x.transpose(), rows.as_ref()))));
         let (sizes, _) = symmetric_eigen(product(missed.as_ref(), missed.transpose()).as_ref())?;
         Ok(Remainder {
             complete_below: analysis.complete_below,
@@ -163,15 +178,65 @@ impl Remainder {
     }
 }
 
-/// W of the `active` directions, each times the root of its size.
-fn directions(analysis: &Analysis<'_>, active: &[usize], top: f64) -> Mat<f64> {
-    let interface = &analysis.operator.interface;
-    let sizes = interface.sizes(top);
-    let mut columns = Mat::zeros(analysis.operator.n(), active.len());
-    for (j, d) in active.iter().enumerate() {
-        interface.directions[*d].add_to(sizes[*d].sqrt(), columns.col_as_slice_mut(j));
+/// W of the active directions, each times the root of its size.
+struct Directions<'a> {
+    sparse: Vec<&'a SparseVector>,
+    scales: Vec<f64>,
+    columns: Mat<f64>,
+}
+
+/// D B of a damping matrix D.
+enum Image<'a> {
+    /// Itself.
+    Own(&'a Mat<f64>),
+    /// T of D B = W T: nothing that W does not have. Dashpots in the contacts are such.
+    OfDirections(Mat<f64>),
+}
+
+impl<'a> Directions<'a> {
+    fn new(analysis: &Analysis<'a>, active: &[usize], top: f64) -> Self {
+        let interface = &analysis.operator.interface;
+        let sizes = interface.sizes(top);
+        let scales: Vec<f64> = active.iter().map(|d| sizes[*d].sqrt()).collect();
+        let sparse: Vec<&SparseVector> = active.iter().map(|d| interface.directions[*d]).collect();
+        let mut columns = Mat::zeros(analysis.operator.n(), active.len());
+        for (j, (direction, scale)) in sparse.iter().zip(&scales).enumerate() {
+            direction.add_to(*scale, columns.col_as_slice_mut(j));
+        }
+        Directions { sparse, scales, columns }
     }
-    columns
+
+    /// T by least squares, where W T gives the image back.
+    fn or_own<'i>(&self, image: &'i Mat<f64>) -> Image<'i> {
+        self.of_directions(image).map_or(Image::Own(image), Image::OfDirections)
+    }
+
+    fn of_directions(&self, image: &Mat<f64>) -> Option<Mat<f64>> {
+        let along = |of: &Mat<f64>| {
+            Mat::from_fn(self.sparse.len(), of.ncols(), |i, j| {
+                self.scales[i] * self.sparse[i].dot(of.col_as_slice(j))
+            })
+        };
+        let (values, vectors) = symmetric_eigen(along(&self.columns).as_ref()).ok()?;
+        let largest = values.last().copied().unwrap_or(0.0);
+        let mut weights = product(vectors.transpose(), along(image).as_ref());
+        for (i, value) in values.iter().enumerate() {
+            let inverse = if *value > 1e-12 * largest { 1.0 / value } else { 0.0 };
+            (0..image.ncols()).for_each(|j| weights[(i, j)] *= inverse);
+        }
+        let weights = product(vectors.as_ref(), weights.as_ref());
+        let given_back = |j: usize| {
+            let mut rest = image.col_as_slice(j).to_vec();
+            let directions = self.sparse.iter().zip(&self.scales).enumerate();
+            directions.for_each(|(i, (d, scale))| d.add_to(-scale * weights[(i, j)], &mut rest));
+            norm(&rest) <= 1e-9 * norm(image.col_as_slice(j))
+        };
+        (0..image.ncols()).into_par_iter().all(given_back).then_some(weights)
+    }
+}
+
+fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 /// γ with C ≥ −γ(K + K_σ + τM) outside the basis, τ the square of the band's top, and whether C and H are known to be
