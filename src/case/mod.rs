@@ -6,6 +6,7 @@
 
 mod explore;
 mod frf;
+mod measured;
 mod parameter;
 mod read;
 pub(crate) mod reader;
@@ -14,6 +15,7 @@ mod transient;
 pub(crate) mod units;
 
 pub use frf::{FrfAnalysis, FrfContact, FrfQuantity, FrfSolution, MotionAt};
+pub use measured::{MeasuredData, Transform};
 pub(crate) use parameter::path_matches;
 pub use parameter::{Invalidates, Parameter};
 pub(crate) use read::DOF_NAMES;
@@ -94,6 +96,9 @@ pub struct Case {
     /// Frequency responses by name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub frf: BTreeMap<String, FrfAnalysis>,
+    /// What tests found, by name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub measured: BTreeMap<String, MeasuredData>,
     /// Complex eigenvalues along one scalar, by name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub sweep: BTreeMap<String, SweepAnalysis>,

@@ -4,6 +4,7 @@ mod check;
 #[cfg(test)]
 mod tests;
 
+pub(super) use self::check::unknown_name;
 use self::check::{check_names, check_sensitivity};
 use super::reader::{Quantity, Section, read_document};
 use super::units::*;
@@ -98,10 +99,12 @@ fn read_root(root: &Section, folder: PathBuf) -> Case {
         sensitivity: root.section("sensitivity", read_sensitivity),
         transient: root.section("transient", super::transient::read),
         frf: collect(root, "frf", super::frf::read),
+        measured: collect(root, "measured", super::measured::read),
         sweep: BTreeMap::new(),
         map: BTreeMap::new(),
     };
     check_names(root, &case);
+    super::measured::check(root, &case);
     check_sensitivity(root, &case);
     super::explore::read(root, case)
 }

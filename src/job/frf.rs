@@ -3,7 +3,7 @@
 use super::modes::{add_modal_damping, labels, named};
 use super::motion::{Motion, motion};
 use super::prepared::Prepared;
-use crate::case::{FrfAnalysis, FrfContact, FrfQuantity, FrfSolution};
+use crate::case::{FrfAnalysis, FrfContact, FrfSolution};
 use crate::equilibrium::{SteadyOptions, SteadySliding, solve_steady, tangent_stiffness};
 use crate::error::{Faults, Result};
 use crate::linalg::{SparseVector, c64};
@@ -146,11 +146,7 @@ impl Frf<'_> {
         let responses = self.seen.iter().enumerate().map(|(k, (name, motion))| FrfResponse {
             name: name.clone(),
             place: motion.place.clone(),
-            values: frequencies
-                .iter()
-                .zip(&lines)
-                .map(|(hz, line)| factor(quantity, *hz) * line[k])
-                .collect(),
+            values: frequencies.iter().zip(&lines).map(|(hz, line)| quantity.factor(*hz) * line[k]).collect(),
         });
         let contacts = match contact {
             FrfContact::Open => "contacts open",
@@ -208,16 +204,6 @@ impl Frf<'_> {
 /// A system whose contacts are open, and that nothing loads.
 fn alone(system: &System) -> System {
     System { pairs: Vec::new(), load: vec![0.0; system.n_dofs()], prestress: None, ..system.clone() }
-}
-
-/// iω to the power that leads from displacement to the quantity.
-fn factor(quantity: FrfQuantity, hz: f64) -> c64 {
-    let turn = c64::new(0.0, TAU * hz);
-    match quantity {
-        FrfQuantity::Receptance => c64::new(1.0, 0.0),
-        FrfQuantity::Mobility => turn,
-        FrfQuantity::Accelerance => turn * turn,
-    }
 }
 
 /// The largest |a − b| over |b|.
