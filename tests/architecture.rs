@@ -55,7 +55,7 @@ const MAY_USE: [(&str, &[&str]); 22] = [
         ],
     ),
     // From a file to results.
-    ("case", &["error", "structure", "measured"]),
+    ("case", &["error", "linalg", "structure", "measured"]),
     (
         "job",
         &[

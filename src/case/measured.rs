@@ -94,7 +94,7 @@ pub(super) fn read(s: &Section) -> MeasuredData {
     }
 }
 
-fn read_points(s: &Section) -> BTreeMap<String, [f64; 3]> {
+pub(super) fn read_points(s: &Section) -> BTreeMap<String, [f64; 3]> {
     for name in s.names().iter().filter(|name| name.parse::<u64>().is_err()) {
         s.fault(name, format!("the name \"{name}\""), "the number of a point of the test", "");
     }
@@ -127,6 +127,11 @@ pub(super) fn check(root: &Section, case: &super::Case) {
             if let Some(wanted) = wanted.as_deref().filter(|wanted| !known.contains(wanted)) {
                 super::read::unknown_name(root, &format!("measured.{name}.{key}"), wanted, kind, known);
             }
+        }
+        if case.modes.get(name).is_some_and(|analysis| !analysis.measured.is_empty()) {
+            let expected = "another name, or no `measured` in that analysis";
+            let found = format!("the name of [modes.{name}], which has measured frequencies itself");
+            root.fault(&format!("measured.{name}"), found, expected, "");
         }
         if data.of.is_none() && (data.frf.is_none() || !data.frequencies.is_empty()) {
             let expected = "the [modes] analysis whose modes were measured";

@@ -11,6 +11,7 @@ mod parameter;
 mod read;
 pub(crate) mod reader;
 mod sound;
+mod test_file;
 mod transient;
 pub(crate) mod units;
 
@@ -21,6 +22,7 @@ pub use parameter::{Invalidates, Parameter};
 pub(crate) use read::DOF_NAMES;
 pub use read::read_case;
 pub use sound::{AirChoice, Microphone, ON_AXIS, SoundAnalysis};
+pub use test_file::read_test;
 pub use transient::{
     Course, Disturbance, ModelChoice, Probe, PushedRegion, SchemeChoice, Slide, StartChoice,
     TransientAnalysis,
@@ -486,6 +488,8 @@ pub struct ModesAnalysis {
     pub measured: Vec<f64>,
     /// Where they come from.
     pub measured_source: String,
+    /// Writes the shapes as a universal file too.
+    pub uff: bool,
 }
 
 /// Complex eigenvalues at steady sliding.

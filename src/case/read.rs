@@ -450,6 +450,7 @@ fn read_modes(s: &Section) -> ModesAnalysis {
         frequency_scale: s.quantity("frequency_scale", NUMBER).positive().or(1.0),
         measured: s.quantity_list("measured", FREQUENCY).or(Vec::new()),
         measured_source: s.string("measured_source").or(String::new()),
+        uff: s.boolean("uff").or(false),
     }
 }
 

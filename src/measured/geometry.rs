@@ -102,7 +102,8 @@ mod tests {
         let standing: Vec<c64> = [1.0, -0.5, 0.3].iter().map(|v| turn * *v).collect();
         let (real, rest) = in_phase(&standing);
         assert!(rest < 1e-30 && (real[1] / real[0] + 0.5).abs() < 1e-15);
-        let travelling: Vec<c64> = (0..8).map(|k| c64::from_polar(1.0, f64::from(k) * 0.785398163)).collect();
+        let travelling: Vec<c64> =
+            (0..8).map(|k| c64::from_polar(1.0, f64::from(k) * std::f64::consts::FRAC_PI_4)).collect();
         assert!((in_phase(&travelling).1 - 0.5).abs() < 1e-9);
     }
 }

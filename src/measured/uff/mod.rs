@@ -93,3 +93,6 @@ pub fn functions_text<'a>(
     let functions: String = functions.map(|f| function::write(&f)).collect();
     units::SI.to_string() + &nodes::write(points) + &functions
 }
+
+#[cfg(test)]
+mod tests;
