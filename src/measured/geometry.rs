@@ -1,7 +1,5 @@
 //! Where the frame of a test lies in the mesh, and which nodes its points are.
 
-use crate::linalg::c64;
-
 /// A frame: x_mesh = origin + R x_test. The columns of R are `axes`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
@@ -60,19 +58,6 @@ pub fn largest_and_mean(distances: impl Iterator<Item = f64> + Clone) -> [f64; 2
     [distances.clone().fold(0.0, f64::max), distances.sum::<f64>() / count as f64]
 }
 
-/// A shape turned into real numbers as far as it can be: e^(iα)ψ with the greatest real part in the mean square, and the
-/// share Σ(Im)²/Σ|ψ|² that stays imaginary, 0 for a shape whose points move in phase and ½ for a travelling wave.
-///
-/// α = −½ arg Σψ².
-pub fn in_phase(shape: &[c64]) -> (Vec<f64>, f64) {
-    let square: c64 = shape.iter().map(|v| v * v).sum();
-    let turn = c64::from_polar(1.0, -0.5 * square.arg());
-    let turned: Vec<c64> = shape.iter().map(|v| v * turn).collect();
-    let whole: f64 = turned.iter().map(|v| v.norm_sqr()).sum();
-    let rest: f64 = turned.iter().map(|v| v.im * v.im).sum();
-    (turned.iter().map(|v| v.re).collect(), if whole > 0.0 { rest / whole } else { 0.0 })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -94,16 +79,5 @@ mod tests {
         assert_eq!(nearest(&[[1.0, 0.0, 0.5]], &nodes, &[0, 2])[0].0, 2);
         assert!(nearest(&[[0.0; 3]], &nodes, &[]).is_empty());
         assert_eq!(largest_and_mean([1.0, 3.0].into_iter()), [3.0, 2.0]);
-    }
-
-    #[test]
-    fn a_standing_wave_is_real_and_a_travelling_one_is_not() {
-        let turn = c64::from_polar(2.0, 0.7);
-        let standing: Vec<c64> = [1.0, -0.5, 0.3].iter().map(|v| turn * *v).collect();
-        let (real, rest) = in_phase(&standing);
-        assert!(rest < 1e-30 && (real[1] / real[0] + 0.5).abs() < 1e-15);
-        let travelling: Vec<c64> =
-            (0..8).map(|k| c64::from_polar(1.0, f64::from(k) * std::f64::consts::FRAC_PI_4)).collect();
-        assert!((in_phase(&travelling).1 - 0.5).abs() < 1e-9);
     }
 }

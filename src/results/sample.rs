@@ -2,6 +2,8 @@
 //! shapes cos nθ · R(r), a slider, a bar, steady sliding on a dozen rim nodes, and a few complex modes.
 //! Its figures look like the rig's and are not computed from anything.
 
+mod measured;
+
 use super::*;
 use crate::equilibrium::PointState;
 use crate::linalg::c64;
@@ -40,7 +42,7 @@ pub(crate) fn rig() -> RunResults {
     let whole = NamedModes { name: "rig with closed contact".into(), ..disc_modes(&geometry, disc_nodes) };
     let complex = complex_result(&disc);
     let paired = |n, s| disc.names.iter().position(|name| *name == Some(mode_name(n, s)));
-    let measured = measured(&disc, [paired(2, 0), paired(4, 0), paired(0, 1), None]);
+    let measured = measured::modes(&disc, [paired(2, 0), paired(4, 0), paired(0, 1), None]);
     let sensitivity = sensitivity(&geometry, &complex);
     RunResults {
         title: "Disc on slider <reference & \"first\" case>".into(),
@@ -57,7 +59,7 @@ pub(crate) fn rig() -> RunResults {
         steady: Some(steady_result(&geometry)),
         modes: vec![disc, whole],
         measured: vec![measured],
-        measured_frfs: vec![measured_responses()],
+        measured_frfs: vec![measured::responses(frf())],
         complex: Some(complex),
         sweeps: Vec::new(),
         maps: Vec::new(),
@@ -278,59 +280,6 @@ fn complex_result(disc: &NamedModes) -> ComplexResult {
         certificate: None,
         confirmation: None,
         modes: ComplexModes { modes, subspace_dimension: 142, refinements: 2, warnings: Vec::new() },
-    }
-}
-
-/// Four measured modes, of which the last is like none of the computed ones.
-fn measured(disc: &NamedModes, modes: [Option<usize>; 4]) -> MeasuredComparison {
-    let hz: Vec<f64> = (0..disc.modes.len()).map(|k| disc.modes.frequency_hz(k)).collect();
-    let levels = crate::measured::compare::levels(&hz, |a, b| disc.names[a] == disc.names[b]);
-    let level = |k: Option<usize>| k.and_then(|k| levels.iter().position(|level| level.contains(&k)));
-    let row = |(frequency_hz, mode): (f64, Option<usize>)| MeasuredRow {
-        frequency_hz,
-        deviation: Some(0.005),
-        damping_ratio: Some(0.002),
-        mode,
-        likeness: mode.map(|_| 0.97),
-    };
-    let alike = |k: Option<usize>| {
-        let of = |j: usize| if level(k) == Some(j) { 0.97 } else { 0.3 / (1.0 + j as f64) };
-        (0..levels.len()).map(of).collect()
-    };
-    MeasuredComparison {
-        name: "impact".into(),
-        modes: 0,
-        source: "hammer test, free rim".into(),
-        rows: [330.0, 936.0, 1697.0, 2050.0].into_iter().zip(modes).map(row).collect(),
-        frequency_scale: 0.972,
-        likeness: modes.map(alike).into(),
-        levels,
-        placed: Some(Placed { points: 24, dofs: 24, largest: 1.2e-3, mean: 0.6e-3 }),
-    }
-}
-
-/// A measured response that is near the computed one, and one that has none beside it.
-fn measured_responses() -> MeasuredResponses {
-    let frf = frf();
-    let computed = frf.responses[0].values.clone();
-    let measured: Vec<c64> = computed.iter().map(|h| h * c64::new(0.9, 0.1)).collect();
-    MeasuredResponses {
-        name: "impact".into(),
-        source: "hammer test".into(),
-        frf: frf.name.clone(),
-        pairs: vec![ResponsePair {
-            name: "point 3 over 1".into(),
-            place: "rim".into(),
-            swapped: false,
-            away: [4e-4, 2e-4],
-            quantity: frf.quantity,
-            frequencies_hz: frf.frequencies_hz.clone(),
-            assurance: crate::linalg::dense::mac(&measured, &computed),
-            measured,
-            computed,
-        }],
-        measured_alone: vec!["point 9 over 1: no response of the case is there".into()],
-        computed_alone: vec!["inside".into()],
     }
 }
 

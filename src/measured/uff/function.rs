@@ -95,14 +95,16 @@ impl Form {
 
 /// Reads dataset 58; what it is, in words, where it is no frequency response of motion over force.
 ///
-/// A unit in the label of an axis says what its numbers are; else they are in `units`, or SI where there are none.
+/// A unit in the label of an axis says what its numbers are; else they are in `units`, or SI where there are none. Whether
+/// the file states the units is told beside the response.
 pub(super) fn read(
     dataset: &Dataset<'_>,
     units: Option<Units>,
-) -> Result<std::result::Result<FunctionRecord, String>> {
+) -> Result<std::result::Result<(FunctionRecord, bool), String>> {
     let [first, second] = [dataset.line(0)?.trim(), dataset.line(1)?.trim()];
-    let name = if first == "NONE" || first.is_empty() { second } else { first }.to_string();
+    let title = if first == "NONE" || first.is_empty() { second } else { first };
     let who = who(dataset)?;
+    let name = format!("{title}, {}/{}", dof(who.response), dof(who.reference));
     let form = Form::read(dataset)?;
     if who.kind != FRF {
         return Ok(Err(format!("functions of type {}, which are no frequency responses", who.kind)));
@@ -120,9 +122,10 @@ pub(super) fn read(
     let (Some(excitation), Some(response)) = (direction(who.reference.1), direction(who.response.1)) else {
         return Ok(Err("responses of rotations or moments".into()));
     };
-    let unit = |label: &str, general: f64| labelled(label).unwrap_or(general);
-    let scale = unit(&ordinate.unit, units.map_or(1.0, |u| u.length))
-        / unit(&denominator.unit, units.map_or(1.0, |u| u.force));
+    let over = labelled(&ordinate.unit).or(units.map(|u| u.length));
+    let under = labelled(&denominator.unit).or(units.map(|u| u.force));
+    let stated = over.is_some() && under.is_some();
+    let scale = over.unwrap_or(1.0) / under.unwrap_or(1.0);
     let numbers = match &dataset.binary {
         Some(binary) => binary_numbers(dataset, binary, &form)?,
         None => text_numbers(dataset, &form)?,
@@ -143,7 +146,7 @@ pub(super) fn read(
         ));
     }
     let (excitation, response) = ((who.reference.0, excitation), (who.response.0, response));
-    Ok(Ok(FunctionRecord { name, quantity, excitation, response, frequencies_hz, values }))
+    Ok(Ok((FunctionRecord { name, quantity, excitation, response, frequencies_hz, values }, stated)))
 }
 
 /// What a function is, and of which points, with codes of directions.
@@ -173,6 +176,15 @@ fn who(dataset: &Dataset<'_>) -> Result<Who> {
             .map_err(|_| dataset.fault(RECORD, format!("node {node}"), "a node of zero or more"))
     };
     Ok(Who { kind, response: (label(node)?, along), reference: (label(base)?, driven) })
+}
+
+/// A point and a direction as test engineers write them: `3-y`.
+fn dof((node, code): (u64, i64)) -> String {
+    let along = ["", "x", "y", "z", "rx", "ry", "rz"].get(code.unsigned_abs() as usize).unwrap_or(&"");
+    match code {
+        0 => node.to_string(),
+        code => format!("{node}{}{along}", if code < 0 { '-' } else { '+' }),
+    }
 }
 
 /// What is along an axis, and its unit.

@@ -38,7 +38,7 @@ pub fn read(file: &str, bytes: &[u8], unit: f64) -> Result<Records> {
     let mut faults = Faults::new();
     let mut units = None;
     let mut skipped: BTreeMap<String, usize> = BTreeMap::new();
-    let mut local = Vec::new();
+    let (mut local, mut unstated) = (Vec::new(), 0);
     for dataset in file::datasets(file, bytes)? {
         let mut skip = |what: String| *skipped.entry(what).or_insert(0) += 1;
         match dataset.kind {
@@ -53,7 +53,10 @@ pub fn read(file: &str, bytes: &[u8], unit: f64) -> Result<Records> {
                 None => {}
             },
             58 => match faults.take(function::read(&dataset, units)) {
-                Some(Ok(function)) => records.functions.push(function),
+                Some(Ok((function, stated))) => {
+                    unstated += usize::from(!stated);
+                    records.functions.push(function);
+                }
                 Some(Err(what)) => skip(what),
                 None => {}
             },
@@ -67,6 +70,10 @@ pub fn read(file: &str, bytes: &[u8], unit: f64) -> Result<Records> {
         count => format!("{file}: skipped {count} times {what}"),
     };
     records.warnings.extend(skipped.iter().map(told));
+    if unstated > 0 {
+        let words = "frequency responses do not state their units; they are taken as SI";
+        records.warnings.push(format!("{file}: {unstated} {words}"));
+    }
     if let Some(first) = local.first() {
         let words = "are given in a coordinate system of their own; they are taken as global";
         records.warnings.push(format!("{file}: {} points, {first} the first, {words}", local.len()));

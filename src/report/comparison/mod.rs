@@ -85,7 +85,7 @@ mod tests {
         );
         assert!(table.rows[3].cells.iter().any(|cell| cell == "none"));
         let notes = table.notes.join(" ");
-        assert!(notes.contains("(3, 0) ×2 566.3 Hz") && notes.contains("1.2 mm"), "{notes}");
+        assert!(notes.contains("(3, 0) ×2 566.3 Hz") && notes.contains("1.20 mm"), "{notes}");
         assert!(
             !notes.contains("(2, 0)") && !notes.contains("2570"),
             "paired, or beyond the measured: {notes}"

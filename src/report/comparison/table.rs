@@ -42,8 +42,8 @@ pub(in crate::report) fn modes_table(results: &RunResults, comparison: &Measured
             "Shapes at {} points ({} directions); from its node each is {} mm at most, {} mm in the mean.",
             placed.points,
             placed.dofs,
-            significant(1e3 * placed.largest, 2),
-            significant(1e3 * placed.mean, 2)
+            fixed(1e3 * placed.largest, 2),
+            fixed(1e3 * placed.mean, 2)
         ));
     }
     if comparison.rows.iter().any(|row| row.deviation.is_some()) {
@@ -70,7 +70,7 @@ pub(in crate::report) fn responses_table(responses: &MeasuredResponses) -> Table
             pair.name.clone(),
             pair.place.replace('_', " "),
             if pair.swapped { "force and motion changed".into() } else { String::new() },
-            significant(1e3 * pair.away[0].max(pair.away[1]), 2),
+            fixed(1e3 * pair.away[0].max(pair.away[1]), 2),
             pair.frequencies_hz.len().to_string(),
             end(pair.frequencies_hz.first()),
             end(pair.frequencies_hz.last()),
