@@ -78,7 +78,7 @@ pub fn has_measured_frf(case: &Case, name: &str) -> bool {
 /// Reads the tests of a case and places them on its mesh; gives what the user should know about them.
 ///
 /// # Errors
-/// See [`Tests::new`].
+/// Every file that cannot be read, and every point of a shape that lies off the mesh.
 pub fn check_tests(prepared: &Prepared<'_>) -> Result<Vec<String>> {
     Ok(Tests::new(prepared, &mut frfs(prepared)?)?.warnings)
 }
