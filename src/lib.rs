@@ -19,6 +19,7 @@
 //! | [`signal`] | spectra, spectrograms, peaks, growth and size of a record |
 //! | [`sound`] | how loud vibrating plates are: Rayleigh's integral |
 //! | [`sweep`] | how complex modes change with scalars: branches, critical values, maps |
+//! | [`measured`] | what a test found, and how like it the computed is |
 //! | [`results`] | HDF5, VTK, JSON, CSV |
 //! | [`report`] | pictures and the HTML page |
 //! | [`case`] | TOML → validated case → system |
@@ -35,6 +36,7 @@ pub mod equilibrium;
 pub mod error;
 pub mod job;
 pub mod linalg;
+pub mod measured;
 pub mod mesh;
 pub mod modal;
 pub mod progress;

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Each room with all the rooms it may use.
-const MAY_USE: [(&str, &[&str]); 21] = [
+const MAY_USE: [(&str, &[&str]); 22] = [
     ("error", &[]),
     ("progress", &[]),
     ("linalg", &["error", "progress"]),
@@ -22,17 +22,40 @@ const MAY_USE: [(&str, &[&str]); 21] = [
     ("transient", &["error", "progress", "linalg", "system", "equilibrium"]),
     ("signal", &[]),
     ("sound", &["linalg", "signal"]),
+    ("measured", &["error", "linalg"]),
     // What both wings leave behind.
     (
         "results",
-        &["error", "linalg", "equilibrium", "modal", "stability", "sweep", "transient", "signal", "sound"],
+        &[
+            "error",
+            "linalg",
+            "equilibrium",
+            "modal",
+            "stability",
+            "sweep",
+            "transient",
+            "signal",
+            "sound",
+            "measured",
+        ],
     ),
     (
         "report",
-        &["error", "linalg", "equilibrium", "modal", "stability", "sweep", "signal", "sound", "results"],
+        &[
+            "error",
+            "linalg",
+            "equilibrium",
+            "modal",
+            "stability",
+            "sweep",
+            "signal",
+            "sound",
+            "measured",
+            "results",
+        ],
     ),
     // From a file to results.
-    ("case", &["error", "structure"]),
+    ("case", &["error", "linalg", "structure", "measured"]),
     (
         "job",
         &[
@@ -51,6 +74,7 @@ const MAY_USE: [(&str, &[&str]); 21] = [
             "transient",
             "signal",
             "sound",
+            "measured",
             "results",
             "report",
             "case",

@@ -2,6 +2,7 @@
 
 use super::reader::Section;
 use super::units::{FREQUENCY, LENGTH};
+pub use crate::measured::Quantity as FrfQuantity;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -37,38 +38,6 @@ pub struct MotionAt {
     pub at: Option<[f64; 3]>,
     /// The direction.
     pub direction: [f64; 3],
-}
-
-/// What of the motion is set over the force.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum FrfQuantity {
-    /// Displacement: u/F \[m/N\].
-    Receptance,
-    /// Velocity: iω u/F \[m/(N s)\].
-    Mobility,
-    /// Acceleration: −ω² u/F \[1/kg\].
-    Accelerance,
-}
-
-impl FrfQuantity {
-    /// `receptance`, `mobility` or `accelerance`.
-    pub fn name(self) -> &'static str {
-        match self {
-            FrfQuantity::Receptance => "receptance",
-            FrfQuantity::Mobility => "mobility",
-            FrfQuantity::Accelerance => "accelerance",
-        }
-    }
-
-    /// The SI unit.
-    pub fn unit(self) -> &'static str {
-        match self {
-            FrfQuantity::Receptance => "m/N",
-            FrfQuantity::Mobility => "m/(N s)",
-            FrfQuantity::Accelerance => "m/(N s^2)",
-        }
-    }
 }
 
 /// What the contacts do.

@@ -6,19 +6,23 @@
 
 mod explore;
 mod frf;
+mod measured;
 mod parameter;
 mod read;
 pub(crate) mod reader;
 mod sound;
+mod test_file;
 mod transient;
 pub(crate) mod units;
 
 pub use frf::{FrfAnalysis, FrfContact, FrfQuantity, FrfSolution, MotionAt};
+pub use measured::{MeasuredData, Transform};
 pub(crate) use parameter::path_matches;
 pub use parameter::{Invalidates, Parameter};
 pub(crate) use read::DOF_NAMES;
 pub use read::read_case;
 pub use sound::{AirChoice, Microphone, ON_AXIS, SoundAnalysis};
+pub use test_file::read_test;
 pub use transient::{
     Course, Disturbance, ModelChoice, Probe, PushedRegion, SchemeChoice, Slide, StartChoice,
     TransientAnalysis,
@@ -94,6 +98,9 @@ pub struct Case {
     /// Frequency responses by name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub frf: BTreeMap<String, FrfAnalysis>,
+    /// What tests found, by name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub measured: BTreeMap<String, MeasuredData>,
     /// Complex eigenvalues along one scalar, by name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub sweep: BTreeMap<String, SweepAnalysis>,
@@ -512,6 +519,8 @@ pub struct ModesAnalysis {
     pub measured: Vec<f64>,
     /// Where they come from.
     pub measured_source: String,
+    /// Writes the shapes as a universal file too.
+    pub uff: bool,
 }
 
 /// Complex eigenvalues at steady sliding.

@@ -4,6 +4,7 @@ mod check;
 #[cfg(test)]
 mod tests;
 
+pub(super) use self::check::unknown_name;
 use self::check::{check_names, check_sensitivity};
 use super::reader::{Quantity, Section, read_document};
 use super::units::*;
@@ -92,10 +93,12 @@ fn read_root(root: &Section, folder: PathBuf) -> Case {
         sensitivity: root.section("sensitivity", read_sensitivity),
         transient: root.section("transient", super::transient::read),
         frf: collect(root, "frf", super::frf::read),
+        measured: collect(root, "measured", super::measured::read),
         sweep: BTreeMap::new(),
         map: BTreeMap::new(),
     };
     check_names(root, &case);
+    super::measured::check(root, &case);
     check_sensitivity(root, &case);
     super::explore::read(root, case)
 }
@@ -472,6 +475,7 @@ fn read_modes(s: &Section) -> ModesAnalysis {
         frequency_scale: s.quantity("frequency_scale", NUMBER).positive().or(1.0),
         measured: s.quantity_list("measured", FREQUENCY).or(Vec::new()),
         measured_source: s.string("measured_source").or(String::new()),
+        uff: s.boolean("uff").or(false),
     }
 }
 

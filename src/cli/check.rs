@@ -3,7 +3,7 @@
 use super::{Common, say};
 use crate::case::{Parameter, read_case};
 use crate::error::Result;
-use crate::job::Prepared;
+use crate::job::{Prepared, check_tests};
 use clap::Args;
 use std::ops::Bound;
 use std::path::PathBuf;
@@ -24,6 +24,7 @@ pub struct Options {
 pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
     let case = read_case(&options.case)?;
     let prepared = Prepared::new(&case)?;
+    let tests = check_tests(&prepared)?;
     if options.resolved {
         say(case.to_toml().trim_end())?;
     }
@@ -35,7 +36,7 @@ pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
         }
     }
     if !common.quiet && !options.resolved && !options.parameters {
-        for warning in &prepared.warnings {
+        for warning in prepared.warnings.iter().chain(&tests) {
             say(format!("warning: {warning}"))?;
         }
         let size = prepared.size();

@@ -56,6 +56,8 @@ enum Action {
     Transient(analyse::Options),
     /// Frequency responses: motion at some places for a harmonic force at another
     Frf(analyse::Options),
+    /// What tests measured beside the real modes and frequency responses that they are of
+    Compare(analyse::Options),
     /// Check a case and its mesh without running it, and list its parameters
     Check(check::Options),
     /// Write M, C, K, the degrees of freedom and the contact points of a case, for other programs
@@ -98,6 +100,7 @@ fn act(command: &Command) -> Result<ExitCode> {
         Action::Sweep(options) => analyse::run(options, common, crate::job::Selection::SWEEPS),
         Action::Transient(options) => analyse::run(options, common, crate::job::Selection::TRANSIENT),
         Action::Frf(options) => analyse::run(options, common, crate::job::Selection::FRF),
+        Action::Compare(options) => analyse::run(options, common, crate::job::Selection::COMPARE),
         Action::Check(options) => check::run(options, common),
         Action::Export(options) => export::run(options, common),
         Action::New(options) => new::run(options, common),

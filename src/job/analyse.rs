@@ -1,18 +1,19 @@
 //! The analyses of a case in their order, each result handed on as soon as it is there.
 
 use super::clock::Clock;
+use super::compare::{Tests, has_measured_frf, has_measured_modes};
 use super::complex::{complex_result, whole_modes};
 use super::explore::{KnownMap, KnownMaps, Nominal, explore};
 use super::frf::{Frf, frfs};
 use super::keeper::{Folder, Keeper, Memory, Stage};
 use super::missed::nothing_is_missed;
-use super::modes::{compare, named, of_the_whole, part_modes, wanted};
+use super::modes::{named, of_the_whole, part_modes, wanted};
 use super::prepared::Prepared;
 use super::sensitivity::Analysed;
 use super::transient::{InTime, Places, places};
 use crate::case::{Case, ContactState, SensitivityAnalysis, TransientAnalysis};
 use crate::equilibrium::{self, SteadyOptions, SteadySliding};
-use crate::error::Result;
+use crate::error::{Error, Fault, Result};
 use crate::modal;
 use crate::progress::Observer;
 use crate::results::{self, ResultsFile, RunResults, SteadyResult};
@@ -38,6 +39,8 @@ pub struct Selection {
     pub transient: bool,
     /// Frequency responses.
     pub frf: bool,
+    /// Of real modes and frequency responses only those that a test found something of.
+    pub measured_only: bool,
 }
 
 /// When to work out sensitivities.
@@ -60,6 +63,7 @@ impl Selection {
         sweeps: true,
         transient: true,
         frf: true,
+        measured_only: false,
     };
     /// Real modes only.
     pub const MODES: Selection = Selection {
@@ -69,6 +73,7 @@ impl Selection {
         sweeps: false,
         transient: false,
         frf: false,
+        measured_only: false,
     };
     /// Steady sliding and complex eigenvalues only.
     pub const CEA: Selection = Selection { modes: false, cea: true, ..Selection::MODES };
@@ -79,6 +84,8 @@ impl Selection {
 
     /// Frequency responses only.
     pub const FRF: Selection = Selection { modes: false, frf: true, ..Selection::MODES };
+    /// Real modes and frequency responses that have a measured side.
+    pub const COMPARE: Selection = Selection { frf: true, measured_only: true, ..Selection::MODES };
     /// Steady sliding, complex eigenvalues and motion in time.
     pub const TRANSIENT: Selection = Selection { transient: true, ..Selection::CEA };
 
@@ -126,6 +133,7 @@ pub fn run_case(
     results::write_files(out, &results)?;
     crate::report::write_report(out, &results)?;
     file.write_measured(&results.measured)?;
+    file.write_measured_frfs(&results.measured_frfs)?;
     results.timings.push(("write results".into(), recording + writing.elapsed().as_secs_f64()));
     file.finish(&results)?;
     nothing_is_missed(&results)?;
@@ -149,7 +157,7 @@ pub fn analyse(
 /// [`analyse`] with the maps of an earlier run.
 fn analyse_from(
     prepared: &Prepared,
-    Asked { selection, mut in_time, frfs }: Asked<'_>,
+    Asked { selection, mut in_time, frfs, tests }: Asked<'_>,
     known: &KnownMaps,
     keeper: &mut dyn Keeper,
     observer: &dyn Observer,
@@ -159,14 +167,16 @@ fn analyse_from(
         title: case.title.clone(),
         resolved_case: case.to_toml(),
         assumptions: case.assumptions.clone(),
-        warnings: prepared.warnings.clone(),
+        warnings: prepared.warnings.iter().chain(&tests.warnings).cloned().collect(),
         geometry: prepared.geometry(),
         size: prepared.size(),
         ..RunResults::default()
     };
     keeper.record(Stage::Model(&results))?;
     let mut clock = Clock::default();
-    let contact_modes = case.modes.iter().filter(|(_, m)| m.contact == ContactState::Closed);
+    let asked = |name: &str| !selection.measured_only || has_measured_modes(case, name);
+    let all_modes = case.modes.iter().filter(|(name, _)| asked(name));
+    let contact_modes = all_modes.clone().filter(|(_, m)| m.contact == ContactState::Closed);
     let sliding =
         (selection.cea && case.cea.is_some()) || (selection.modes && contact_modes.clone().count() > 0);
     let sliding = sliding || frfs.iter().any(Frf::slides);
@@ -180,7 +190,7 @@ fn analyse_from(
         _ => None,
     };
     if selection.modes {
-        for (name, analysis) in case.modes.iter().filter(|(_, m)| m.contact == ContactState::Open) {
+        for (name, analysis) in all_modes.filter(|(_, m)| m.contact == ContactState::Open) {
             let known = basis.as_ref().filter(|_| of_the_whole(prepared, analysis));
             let modes = match known.and_then(|b| b.lowest(wanted(analysis, prepared.system.n_dofs()))) {
                 Some(modes) => named(prepared, name, modes, &prepared.assembled),
@@ -188,10 +198,7 @@ fn analyse_from(
                     clock.time(&format!("real modes, {name}"), || part_modes(prepared, name, observer))?
                 }
             };
-            if !analysis.measured.is_empty() {
-                let set = results.modes.len();
-                results.measured.push(compare(set, analysis, &modes));
-            }
+            results.measured.extend(tests.modes(results.modes.len(), analysis, &modes));
             keeper.record(Stage::Modes(&modes))?;
             results.modes.push(modes);
         }
@@ -214,6 +221,7 @@ fn analyse_from(
                 let (modes, _) = clock
                     .time(&format!("real modes, {name}"), || modal::compute(&closed, wanted, observer))?;
                 let modes = named(prepared, name, modes, &prepared.assembled);
+                results.measured.extend(tests.modes(results.modes.len(), analysis, &modes));
                 keeper.record(Stage::Modes(&modes))?;
                 results.modes.push(modes);
             }
@@ -254,8 +262,9 @@ fn analyse_from(
     }
     for frf in &frfs {
         let steady = results.steady.as_ref().map(|steady| &steady.state);
-        let response = clock
+        let (response, beside) = clock
             .time(&format!("frequency response {}", frf.name()), || frf.run(prepared, steady, observer))?;
+        results.measured_frfs.extend(tests.responses(&response, &beside));
         keeper.record(Stage::Frf(&response))?;
         results.frfs.push(response);
     }
@@ -269,6 +278,7 @@ struct Asked<'a> {
     selection: Selection,
     in_time: Option<(&'a TransientAnalysis, Places)>,
     frfs: Vec<Frf<'a>>,
+    tests: Tests,
 }
 
 impl<'a> Asked<'a> {
@@ -276,8 +286,17 @@ impl<'a> Asked<'a> {
     fn new(prepared: &Prepared<'a>, selection: Selection) -> Result<Self> {
         let wanted = prepared.case.transient.as_ref().filter(|_| selection.transient && selection.cea);
         let in_time = wanted.map(|wanted| Ok((wanted, places(prepared, wanted)?))).transpose()?;
-        let frfs = if selection.frf { frfs(prepared)? } else { Vec::new() };
-        Ok(Asked { selection, in_time, frfs })
+        let mut frfs = if selection.frf { frfs(prepared)? } else { Vec::new() };
+        frfs.retain(|frf| !selection.measured_only || has_measured_frf(prepared.case, frf.name()));
+        let tests = match selection.modes || selection.frf {
+            true => Tests::new(prepared, &mut frfs)?,
+            false => Tests::default(),
+        };
+        if selection.measured_only && tests.is_empty() {
+            let fault = Fault::new("`measured`", "no measured data in the case", "a table [measured.NAME]");
+            return Err(Error::input(fault));
+        }
+        Ok(Asked { selection, in_time, frfs, tests })
     }
 }
 

@@ -106,6 +106,7 @@ fn as_matrices(case: &Case, matrices: Matrices) -> Case {
         rigid: BTreeMap::new(),
         support: BTreeMap::new(),
         force: BTreeMap::new(),
+        measured: BTreeMap::new(),
         ..case.clone()
     };
     exported.modes.retain(|_, m| m.parts.is_empty() && m.clamp.is_empty() && !m.free);

@@ -3,14 +3,14 @@
 use super::modes::{add_modal_damping, labels, named};
 use super::motion::{Motion, motion};
 use super::prepared::Prepared;
-use crate::case::{FrfAnalysis, FrfContact, FrfQuantity, FrfSolution};
+use crate::case::{FrfAnalysis, FrfContact, FrfSolution};
 use crate::equilibrium::{SteadyOptions, SteadySliding, solve_steady, tangent_stiffness};
 use crate::error::{Faults, Result};
 use crate::linalg::{SparseVector, c64};
 use crate::modal::{ModesWanted, RealModes, compute};
 use crate::progress::Observer;
 use crate::reduction::reduce;
-use crate::results::{FrfResponse, FrfResult, Resonance};
+use crate::results::{FrfResponse, FrfResult, PlaceAndDirection, Resonance};
 use crate::stability::Harmonic;
 use crate::system::{Structure, System};
 use rayon::prelude::*;
@@ -32,6 +32,7 @@ pub struct Frf<'a> {
     wanted: &'a FrfAnalysis,
     force: Motion,
     seen: Vec<(String, Motion)>,
+    beside: Vec<(usize, Vec<f64>)>,
 }
 
 /// The frequency responses of the case; asked for before anything is computed or written.
@@ -55,7 +56,7 @@ pub fn frfs<'a>(prepared: &Prepared<'a>) -> Result<Vec<Frf<'a>>> {
         if wanted.response.is_empty() {
             seen.push(("drive_point".into(), force.clone()));
         }
-        all.push(Frf { name, wanted, force, seen });
+        all.push(Frf { name, wanted, force, seen, beside: Vec::new() });
     }
     faults.into_result(all)
 }
@@ -71,7 +72,35 @@ impl Frf<'_> {
         self.wanted.contact == FrfContact::Sliding
     }
 
-    /// The response; `steady` is steady sliding, where the contacts slide.
+    /// Where the force acts.
+    pub fn force(&self) -> &Motion {
+        &self.force
+    }
+
+    /// The names of the places whose motion is looked at, and where they are.
+    pub fn seen(&self) -> &[(String, Motion)] {
+        &self.seen
+    }
+
+    /// Whether force and motion may change places: nothing slides.
+    pub fn reciprocal(&self) -> bool {
+        !self.slides()
+    }
+
+    /// The frequencies \[Hz\] that it is asked for.
+    pub fn band(&self) -> [f64; 2] {
+        self.wanted.band
+    }
+
+    /// Asks for the receptance of a place at frequencies \[Hz\] of its own, besides; gives where it will be in the second
+    /// answer of [`Frf::run`].
+    pub fn also_at(&mut self, place: usize, frequencies_hz: Vec<f64>) -> usize {
+        self.beside.push((place, frequencies_hz));
+        self.beside.len() - 1
+    }
+
+    /// The response, and the receptances that were asked for besides \[m/N\]; `steady` is steady sliding, where the
+    /// contacts slide.
     ///
     /// # Errors
     /// Modes that cannot be computed, a resonance that nothing damps.
@@ -80,7 +109,7 @@ impl Frf<'_> {
         prepared: &Prepared<'_>,
         steady: Option<&SteadySliding>,
         observer: &dyn Observer,
-    ) -> Result<FrfResult> {
+    ) -> Result<(FrfResult, Vec<Vec<c64>>)> {
         let FrfAnalysis { quantity, band, contact, solution, .. } = *self.wanted;
         let (mut system, steady) = match steady.filter(|_| contact == FrfContact::Sliding) {
             Some(steady) => (prepared.system.clone(), steady.clone()),
@@ -143,14 +172,19 @@ impl Frf<'_> {
             }
         }
         observer.end();
+        let answer = |hz: f64| match solution {
+            FrfSolution::Modes => superposed(hz),
+            FrfSolution::Direct => direct(hz),
+        };
+        let along = |(place, hz): &(usize, Vec<f64>)| {
+            hz.par_iter().map(|hz| answer(*hz).map(|line| line[*place])).collect::<Result<Vec<c64>>>()
+        };
+        let beside = self.beside.iter().map(along).collect::<Result<Vec<_>>>()?;
         let responses = self.seen.iter().enumerate().map(|(k, (name, motion))| FrfResponse {
             name: name.clone(),
             place: motion.place.clone(),
-            values: frequencies
-                .iter()
-                .zip(&lines)
-                .map(|(hz, line)| factor(quantity, *hz) * line[k])
-                .collect(),
+            at: place_of(motion),
+            values: frequencies.iter().zip(&lines).map(|(hz, line)| quantity.factor(*hz) * line[k]).collect(),
         });
         let contacts = match contact {
             FrfContact::Open => "contacts open",
@@ -163,9 +197,10 @@ impl Frf<'_> {
             }
             FrfSolution::Direct => "solved at full order at every frequency".into(),
         };
-        Ok(FrfResult {
+        let result = FrfResult {
             name: self.name.to_string(),
-            quantity: [quantity.name(), quantity.unit()],
+            quantity,
+            force: place_of(&self.force),
             about: format!("{contacts}; {way}"),
             excitation: self.force.place.clone(),
             responses: responses.collect(),
@@ -174,7 +209,8 @@ impl Frf<'_> {
             deviation,
             compared: COMPARED,
             frequencies_hz: frequencies,
-        })
+        };
+        Ok((result, beside))
     }
 
     /// The real modes in the band, and how much of them shows.
@@ -205,19 +241,13 @@ impl Frf<'_> {
     }
 }
 
+fn place_of(motion: &Motion) -> PlaceAndDirection {
+    PlaceAndDirection { position: motion.at, direction: motion.along }
+}
+
 /// A system whose contacts are open, and that nothing loads.
 fn alone(system: &System) -> System {
     System { pairs: Vec::new(), load: vec![0.0; system.n_dofs()], prestress: None, ..system.clone() }
-}
-
-/// iω to the power that leads from displacement to the quantity.
-fn factor(quantity: FrfQuantity, hz: f64) -> c64 {
-    let turn = c64::new(0.0, TAU * hz);
-    match quantity {
-        FrfQuantity::Receptance => c64::new(1.0, 0.0),
-        FrfQuantity::Mobility => turn,
-        FrfQuantity::Accelerance => turn * turn,
-    }
 }
 
 /// The largest |a − b| over |b|.
@@ -301,7 +331,7 @@ solution = "direct"
         let case = Case::parse("disc", text, ".".into()).unwrap();
         let prepared = Prepared::new(&case).unwrap();
         let steady = solve_steady(&prepared.system, &SteadyOptions::default(), &()).unwrap();
-        frfs(&prepared).unwrap().iter().map(|frf| frf.run(&prepared, Some(&steady), &()).unwrap()).collect()
+        frfs(&prepared).unwrap().iter().map(|frf| frf.run(&prepared, Some(&steady), &()).unwrap().0).collect()
     }
 
     #[test]

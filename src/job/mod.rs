@@ -8,6 +8,7 @@
 
 mod analyse;
 mod clock;
+mod compare;
 mod complex;
 mod contacts;
 mod disc;
@@ -16,6 +17,7 @@ mod export;
 mod frf;
 mod imported;
 mod keeper;
+mod measured;
 mod missed;
 mod model;
 mod modes;
@@ -36,8 +38,10 @@ mod travel;
 mod verify;
 
 pub use analyse::{Selection, Sensitivities, analyse, run_case};
+pub use compare::check_tests;
 pub use explore::{KnownMap, KnownMaps};
 pub use export::export;
 pub use keeper::{Histories, Keeper, Stage};
+pub use measured::measured_set;
 pub use prepared::Prepared;
 pub use states::Whole;

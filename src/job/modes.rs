@@ -5,9 +5,9 @@ use crate::case::{Case, ContactState, ModesAnalysis};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::sparse::times;
 use crate::modal::{self, ModesWanted, RealModes};
-use crate::results::{MeasuredComparison, NamedModes, NodalField};
+use crate::results::{NamedModes, NodalField};
 use crate::structure::{Assembled, assemble};
-use crate::system::Structure;
+use crate::system::{Damping, Structure};
 use faer::{Mat, MatRef};
 
 /// A column of `shapes` as a slice.
@@ -98,8 +98,30 @@ pub fn named(prepared: &Prepared, name: &str, modes: RealModes, assembled: &Asse
         names,
         effective_mass,
         total_mass: assembled.total_mass,
+        damping_ratio: damping_ratios(prepared.case, &modes, &assembled.structure.damping),
+        universal: prepared.case.modes.get(name).is_some_and(|analysis| analysis.uff),
         modes,
     }
+}
+
+/// ζ = ζ_modal + φᵀCφ/(2ω) + φᵀHφ/(2ω²) of mass-normalised real modes: the case's modal damping, C of Rayleigh damping and
+/// dashpots, H of loss factors. A ratio that the case gives for one mode goes to the nearest within 10 %.
+fn damping_ratios(case: &Case, modes: &RealModes, damping: &Damping) -> Vec<f64> {
+    let mut ratios = vec![case.damping.modal_ratio; modes.len()];
+    for [frequency, ratio] in &case.damping.modal_ratios {
+        let near = |k: &usize| (modes.frequency_hz(*k) - frequency).abs();
+        let nearest = (0..modes.len()).min_by(|a, b| near(a).total_cmp(&near(b)));
+        nearest.filter(|k| near(k) <= 0.1 * frequency).into_iter().for_each(|k| ratios[k] = *ratio);
+    }
+    for (matrix, power) in [(&damping.viscous, 1), (&damping.hysteretic, 2)] {
+        let Some(matrix) = matrix else { continue };
+        let product = times(matrix, modes.shapes.as_ref());
+        for (k, ratio) in ratios.iter_mut().enumerate().skip(modes.rigid_bodies) {
+            let work = modes.shapes.col(k).transpose() * product.col(k);
+            *ratio += work / (2.0 * modes.eigenvalues[k].max(f64::MIN_POSITIVE).sqrt().powi(power));
+        }
+    }
+    ratios
 }
 
 /// The part with the largest share of the kinetic energy of each mode.
@@ -158,32 +180,6 @@ pub fn labels(named: &NamedModes) -> Vec<String> {
             }
         })
         .collect()
-}
-
-/// Sets measured frequencies beside computed ones: each measured one takes the nearest mode still free, closest pairs
-/// first; a double mode counts once.
-pub fn compare(set: usize, analysis: &ModesAnalysis, named: &NamedModes) -> MeasuredComparison {
-    let measured = &analysis.measured;
-    let frequency = |k: usize| analysis.frequency_scale * named.modes.frequency_hz(k);
-    let mut candidates: Vec<(f64, usize, usize)> = Vec::new();
-    for (row, f) in measured.iter().enumerate() {
-        for k in (0..named.modes.len()).filter(|k| *k >= named.modes.rigid_bodies) {
-            candidates.push(((frequency(k) / f).ln().abs(), row, k));
-        }
-    }
-    candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let twins = |a: usize, b: usize| {
-        a.abs_diff(b) == 1 && named.names[a].is_some() && named.names[a] == named.names[b]
-    };
-    let mut rows: Vec<(f64, Option<usize>)> = measured.iter().map(|f| (*f, None)).collect();
-    for (distance, row, k) in candidates {
-        let taken = rows.iter().any(|(_, mode)| mode.is_some_and(|m| m == k || twins(m, k)));
-        if rows[row].1.is_none() && !taken && distance < 0.2 {
-            rows[row].1 = Some(k);
-        }
-    }
-    let source = analysis.measured_source.clone();
-    MeasuredComparison { modes: set, source, rows, frequency_scale: analysis.frequency_scale }
 }
 
 /// C = M Φ diag(2ζω) Φᵀ M for the modal damping of the case, given the real modes of the whole.

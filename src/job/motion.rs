@@ -10,6 +10,10 @@ use crate::structure::ShellPart;
 pub struct Motion {
     /// Where it is, in words.
     pub place: String,
+    /// Its coordinates, the mean of its nodes \[m\].
+    pub at: [f64; 3],
+    /// The unit vector that it is along.
+    pub along: [f64; 3],
     /// The motion; a unit force there is the same form.
     pub direction: SparseVector,
 }
@@ -39,13 +43,17 @@ pub fn motion(
             (words, vec![node])
         }
     };
+    let mean = |axis: usize| {
+        nodes.iter().map(|n| prepared.model.nodes[*n][axis]).sum::<f64>() / nodes.len().max(1) as f64
+    };
+    let at = [0, 1, 2].map(mean);
     let direction = spread(prepared, &nodes, along);
     if direction.indices().is_empty() {
         let fault =
             Fault::new(format!("`{key}`"), "a place that is held in this direction", "one that can move");
         return Err(Error::input(fault));
     }
-    Ok(Motion { place, direction })
+    Ok(Motion { place, at, along, direction })
 }
 
 /// The mean over `nodes` of their motion along a vector.

@@ -53,7 +53,7 @@ pub fn chosen(case: &Case, patterns: &[String]) -> (Vec<Scalar>, Vec<LeftOut>) {
 fn kind(path: &str) -> std::result::Result<Option<Kind>, &'static str> {
     let keys: Vec<&str> = path.split('.').collect();
     match keys[..] {
-        ["modes" | "cea", ..] | ["contact", _, "bristle", _] => Ok(None),
+        ["modes" | "cea" | "frf" | "measured", ..] | ["contact", _, "bristle", _] => Ok(None),
         ["mesh", .., "contact_size" | "contact_radius" | "disc_size" | "slider_size"] => {
             Err("an element size, which is no property of the machine")
         }

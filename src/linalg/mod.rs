@@ -4,6 +4,7 @@
 //! * [`factor`]: A = L B Lᵀ of a sparse symmetric matrix, definite or not, with its inertia.
 //! * [`eigenpairs`]: the lowest eigenpairs of K x = θ M x with the count that proves none is missing, by
 //!   [`lanczos`].
+//! * [`assignment`]: the pairs of least total cost.
 //! * [`dense`]: small symmetric eigenproblems and the likeness of two vectors.
 //! * [`matrix_market`]: matrices from and to files.
 //! * [`merged`]: products with several sparse matrices at once.
@@ -12,6 +13,7 @@
 //! * [`toar`]: eigenpairs of a quadratic problem nearest a shift, by two-level Arnoldi.
 //! * [`unsymmetric`]: small dense eigenproblems that are not symmetric.
 
+pub mod assignment;
 pub mod dense;
 pub mod eigenpairs;
 pub mod factor;

@@ -50,7 +50,7 @@ fn caption(frf: &FrfResult) -> String {
     let measured = if frf.measured.is_empty() { "" } else { " Blue: measured resonances." };
     format!(
         "{} for a force at {}; {}. Dotted: natural frequencies.{measured}",
-        capital(frf.quantity[0]),
+        capital(frf.quantity.name()),
         frf.excitation,
         frf.about
     )
@@ -77,7 +77,7 @@ fn picture(frf: &FrfResult) -> Option<String> {
         let top = largest.log10() + 0.3;
         let low = magnitudes(frf).filter(|v| *v > 0.0).fold(largest, f64::min).log10() - 0.3;
         let range = low.max(top - DECADES)..top;
-        let beside = format!("{} [{}]", frf.quantity[0], frf.quantity[1]);
+        let beside = format!("{} [{}]", frf.quantity.name(), frf.quantity.unit());
         let exponent = |v: f64| format!("{:.0e}", 10f64.powf(v));
         curves(&upper, frf, range, (&beside, &exponent, None), |v| v.norm().max(f64::MIN_POSITIVE).log10())?;
         let degrees = |v: f64| fixed(v, 0);
@@ -133,7 +133,7 @@ fn curves(
 pub(super) fn table(frf: &FrfResult) -> Table {
     let headings = ["<mode", "f [Hz]", "measured [Hz]", "<place", "seen [%]", "<why"];
     let mut table = Table::new(
-        format!("Frequency response {}: {} for a force at {}", frf.name, frf.quantity[0], frf.excitation),
+        format!("Frequency response {}: {} for a force at {}", frf.name, frf.quantity.name(), frf.excitation),
         &headings,
     );
     let beside = beside(frf);

@@ -55,6 +55,7 @@ pub(super) fn page(results: &RunResults, pictures: &[Picture]) -> String {
             body += &folded(&tables::modes(results, k));
         }
     }
+    body += &super::comparison::section(results);
     body += &super::frf::section(results);
     if let Some(complex) = &results.complex {
         body += "<h2>Complex eigenvalues</h2>\n";

@@ -5,6 +5,7 @@
 //! * [`write_report`]: `report.html` and the pictures `rig.svg`, `modes_disc.svg`, `contact.svg`, `growth.svg`,
 //!   `growth_budget.svg`, `participation.svg`, `sensitivity.svg`, `advice.svg`, `transient.svg`, `transient_spectrum.svg`,
 //!   `transient_spectrogram.svg`, `transient_phase.svg`, `transient_contact.svg`, `sound.svg`, `frf_<name>.svg`, those of them that the run has something for;
+//!   `mac_<name>.svg`, `frequencies_<name>.svg` and `measured_frf_<name>.svg` of measured data;
 //!   `sweep_<name>.svg`, `root_locus_<name>.svg` and `map_<name>.svg` of every sweep and map.
 //!
 //! A table is made once and shown in either form; a picture is a pure function from the results to SVG.
@@ -14,6 +15,7 @@ mod axes;
 mod budget;
 mod chart;
 mod colours;
+mod comparison;
 mod contact;
 mod contours;
 mod disc_modes;
@@ -52,6 +54,7 @@ pub fn write_report(dir: &Path, results: &RunResults) -> Result<()> {
     }
     explored::write(dir, results)?;
     frf::write(dir, results)?;
+    comparison::write(dir, results)?;
     write_atomically(dir, "report.html", html::page(results, &pictures).as_bytes())
 }
 

@@ -11,6 +11,10 @@ const ROWS: usize = 60;
 /// Everything the command line prints after a run: modes, steady sliding, complex eigenvalues, the verdict.
 pub fn summary(results: &RunResults) -> String {
     let mut parts: Vec<String> = (0..results.modes.len()).map(|k| modes(results, k)).collect();
+    let compared = results.measured.iter().filter_map(|c| super::comparison::modes_table(results, c));
+    parts.extend(compared.map(|table| render(&table)));
+    let responses = results.measured_frfs.iter().map(super::comparison::responses_table);
+    parts.extend(responses.map(|table| render(&table)));
     parts.extend(results.frfs.iter().map(|frf| render(&super::frf::table(frf))));
     parts.extend([steady(results), complex(results)].into_iter().flatten());
     parts.extend(sensitivity(results));

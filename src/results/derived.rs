@@ -1,6 +1,6 @@
 //! What several writers and the report work out from the plain data: comparisons, sums over a contact pair.
 
-use super::{MeasuredComparison, NamedModes, SteadyResult};
+use super::{MeasuredComparison, MeasuredRow, NamedModes, SteadyResult};
 
 /// A measured frequency with the computed mode set beside it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,7 +28,11 @@ impl MeasuredComparison {
             let (set, k) = (set?, mode?);
             (k < set.modes.len()).then(|| self.frequency_scale * set.modes.frequency_hz(k))
         };
-        let row = |&(measured_hz, mode)| ComparedRow { measured_hz, mode, computed_hz: computed(mode) };
+        let row = |row: &MeasuredRow| ComparedRow {
+            measured_hz: row.frequency_hz,
+            mode: row.mode,
+            computed_hz: computed(row.mode),
+        };
         self.rows.iter().map(row).collect()
     }
 }

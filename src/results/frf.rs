@@ -6,6 +6,7 @@ use super::hdf5::{Datasets, attribute, text_attribute};
 use super::{ResultsFile, uff, write_atomically};
 use crate::error::Result;
 use crate::linalg::c64;
+use crate::measured::Quantity;
 use ndarray::Array2;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -18,12 +19,14 @@ const NEAR: f64 = 0.05;
 pub struct FrfResult {
     /// Its name.
     pub name: String,
-    /// `receptance`, `mobility` or `accelerance`, and its SI unit.
-    pub quantity: [&'static str; 2],
+    /// What of the motion.
+    pub quantity: Quantity,
     /// What the contacts do, and how it was computed, in words.
     pub about: String,
     /// Where the force acts, in words.
     pub excitation: String,
+    /// Where and along what.
+    pub force: PlaceAndDirection,
     /// f \[Hz\], ascending; closer where the response bends.
     pub frequencies_hz: Vec<f64>,
     /// Motion over force, by place.
@@ -38,6 +41,15 @@ pub struct FrfResult {
     pub compared: usize,
 }
 
+/// A place and a direction.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PlaceAndDirection {
+    /// \[m\].
+    pub position: [f64; 3],
+    /// A unit vector.
+    pub direction: [f64; 3],
+}
+
 /// The response of a place.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrfResponse {
@@ -45,6 +57,8 @@ pub struct FrfResponse {
     pub name: String,
     /// Where it is, in words.
     pub place: String,
+    /// Where, and along what.
+    pub at: PlaceAndDirection,
     /// One value a frequency, in the unit of the quantity; positive phase leads.
     pub values: Vec<c64>,
 }
@@ -80,13 +94,13 @@ pub(super) fn write(dir: &Path, frfs: &[FrfResult]) -> Result<()> {
     for frf in frfs {
         let name = names.next(&frf.name);
         write_atomically(dir, &format!("frf_{name}.csv"), table(frf).as_bytes())?;
-        write_atomically(dir, &format!("frf_{name}.uff"), uff::datasets(frf).as_bytes())?;
+        write_atomically(dir, &format!("frf_{name}.uff"), uff::functions(frf).as_bytes())?;
     }
     Ok(())
 }
 
 fn table(frf: &FrfResult) -> String {
-    let [quantity, unit] = frf.quantity;
+    let (quantity, unit) = (frf.quantity.name(), frf.quantity.unit());
     let parts = |of: &FrfResponse| {
         let name = of.name.replace('_', " ");
         [format!("re {quantity} {name} [{unit}]"), format!("im {quantity} {name} [{unit}]")]
@@ -113,7 +127,7 @@ impl ResultsFile {
                 false => root.create_group("frf")?,
             };
             let group = Datasets(all.create_group(&frf.name.replace('/', "_"))?);
-            text_attribute(&group.0, "quantity", frf.quantity[0])?;
+            text_attribute(&group.0, "quantity", frf.quantity.name())?;
             text_attribute(&group.0, "about", &frf.about)?;
             text_attribute(&group.0, "excitation", &frf.excitation)?;
             attribute(&group.0, "superposition_deviation", &frf.deviation)?;
@@ -123,8 +137,8 @@ impl ResultsFile {
                     0 => of.values[k].re,
                     _ => of.values[k].im,
                 });
-                let story = format!("{} at {}: real and imaginary part", frf.quantity[0], of.place);
-                group.write(&of.name, cells.view(), frf.quantity[1], &story)?;
+                let story = format!("{} at {}: real and imaginary part", frf.quantity.name(), of.place);
+                group.write(&of.name, cells.view(), frf.quantity.unit(), &story)?;
             }
             Ok(())
         })
@@ -150,8 +164,8 @@ pub(super) fn summary(frf: &FrfResult) -> Value {
     };
     json!({
         "name": frf.name,
-        "quantity": frf.quantity[0],
-        "unit": frf.quantity[1],
+        "quantity": frf.quantity.name(),
+        "unit": frf.quantity.unit(),
         "about": frf.about,
         "excitation": frf.excitation,
         "frequencies": frf.frequencies_hz.len(),

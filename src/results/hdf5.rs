@@ -7,7 +7,8 @@
 //! | `/case` | `resolved_toml`, `assumptions` |
 //! | `/geometry` | `nodes`, `element_nodes`, `element_offsets`, `element_part`, `part_names` |
 //! | `/modes/<set>` | `frequency_hz`, `shapes`, `nodal_diameters`, `nodal_circles`, `backward_error`, `effective_mass` |
-//! | `/measured/<k>` | `frequency_hz`, `mode` |
+//! | `/measured/<k>` | `frequency_hz`, `deviation`, `damping_ratio`, `mode`, `level`, `mac` |
+//! | `/measured_frf/<name>/<k>` | `frequency_hz`, `measured`, `computed` |
 //! | `/steady` | `displacement`, `approach`, contact points with forces and tangents, pairs |
 //! | `/complex` | `eigenvalue`, `right`, `left`, errors, `growth_…`, `participation` |
 //! | `/sensitivity/mode_<k>` | `parameter`, `value`, `rate`, errors; `point_mass`, `point_spring`, `point_damper`, best places |
@@ -16,8 +17,8 @@
 //! | `/timings`, `/warnings` | `phase`, `wall_time`; sentences |
 
 use super::{
-    ComplexResult, Geometry, MeasuredComparison, NamedModes, NodalField, ParameterRate, ResultsFile,
-    RunResults, SensitivityResult, SteadyResult,
+    ComplexResult, Geometry, NamedModes, NodalField, ParameterRate, ResultsFile, RunResults,
+    SensitivityResult, SteadyResult,
 };
 use crate::error::Result;
 use crate::linalg::c64;
@@ -76,24 +77,6 @@ impl ResultsFile {
         self.keep(|root| write_mode_set(root, &name, set))
     }
 
-    /// Writes the measured frequencies with the modes paired with them.
-    pub fn write_measured(&mut self, measured: &[MeasuredComparison]) -> Result<()> {
-        self.stage(|root| {
-            for (k, comparison) in measured.iter().enumerate() {
-                let group = Datasets(root.create_group(&format!("measured/{}", k + 1))?);
-                text_attribute(&group.0, "source", &comparison.source)?;
-                attribute(&group.0, "mode_set", &(comparison.modes as u64))?;
-                attribute(&group.0, "frequency_scale", &comparison.frequency_scale)?;
-                let hz: Vec<f64> = comparison.rows.iter().map(|(hz, _)| *hz).collect();
-                group.list("frequency_hz", &hz, "Hz", "measured frequencies")?;
-                let mode: Vec<i64> =
-                    comparison.rows.iter().map(|(_, m)| m.map_or(-1, |m| m as i64)).collect();
-                group.list("mode", &mode, "1", "index of the paired mode, -1 for none")?;
-            }
-            Ok(())
-        })
-    }
-
     /// Writes steady sliding.
     pub fn write_steady(&mut self, steady: &SteadyResult) -> Result<()> {
         self.keep(|root| write_steady(root, steady))
@@ -140,6 +123,7 @@ fn write_mode_set(root: &Group, name: &str, set: &NamedModes) -> hdf5::Result<()
     group.list("nodal_circles", &named(|n| n.nodal_circles), "1", "nodal circles, -1 where not named")?;
     let story = "‖Kφ − ω²Mφ‖ / ((‖K‖ + |ω²| ‖M‖) ‖φ‖)";
     group.list("backward_error", &set.modes.backward_errors, "1", story)?;
+    group.list("damping_ratio", &set.damping_ratio, "1", "by the damping of the case")?;
     group.write(
         "effective_mass",
         rows(&set.effective_mass).view(),
@@ -390,6 +374,7 @@ mod tests {
         file.write_geometry(&results.geometry).unwrap();
         results.modes.iter().for_each(|set| file.write_modes(set).unwrap());
         file.write_measured(&results.measured).unwrap();
+        file.write_measured_frfs(&results.measured_frfs).unwrap();
         file.write_steady(results.steady.as_ref().unwrap()).unwrap();
         file.write_complex(results.complex.as_ref().unwrap()).unwrap();
         file.write_sensitivity(results.sensitivity.as_ref().unwrap()).unwrap();

@@ -8,12 +8,15 @@
 //! | `transient.csv`, `transient_spectrum.csv`, `events.csv` | motion in time, step by step, its spectra, what happened at the contacts | spreadsheets |
 //! | `sound_<microphone>.wav`, `sound_spectrum.csv` | what is heard, and sound power and pressure over frequency | ears, spreadsheets |
 //! | `frf_<name>.csv`, `frf_<name>.uff` | frequency responses | spreadsheets, test-data programs |
+//! | `comparison_<name>.csv`, `comparison_<name>_frf.csv` | measured modes and responses beside the computed ones | spreadsheets |
+//! | `modes_<set>.uff` | the shapes, for test-data programs | test-data programs |
 //! | `critical_values.csv`, `sweep_<name>.csv`, `map_<name>.csv` | sweeps and maps | spreadsheets |
 //! | `transient.vtkhdf` | the motion of all nodes at regular times | ParaView |
 //! | `modes_<set>.vtu`, `steady.vtu`, `complex_modes.vtu`, `advice.vtu` | the shapes on the mesh | ParaView, pyvista |
 //!
 //! [`ResultsFile`] is used while the run goes on, [`write_files`] once at its end.
 
+mod comparison;
 mod csv;
 mod derived;
 mod events_hdf5;
@@ -43,6 +46,7 @@ mod watched;
 #[cfg(test)]
 pub(crate) mod sample;
 
+pub use comparison::{MeasuredComparison, MeasuredResponses, MeasuredRow, Placed, ResponsePair};
 pub use csv::write_csv;
 pub use derived::{ComparedRow, PairTotals};
 pub use explored::{DampingRow, DampingVerdicts, MapResult, Method, SweepResult};
@@ -50,7 +54,7 @@ pub use explored_hdf5::{EarlierMap, read_maps};
 pub use fields::FieldsFile;
 pub use file::ResultsFile;
 pub(crate) use folder::{FileNames, write_atomically};
-pub use frf::{FrfResponse, FrfResult, Resonance};
+pub use frf::{FrfResponse, FrfResult, PlaceAndDirection, Resonance};
 pub use json::{SCHEMA_VERSION, summary_json, write_summary};
 pub use reduced_check::{Deviation, MotionCompared, ReducedCheck};
 pub use sensitivity::{AdviceField, ModeSensitivity, Mounted, ParameterRate, SensitivityResult};
@@ -81,6 +85,8 @@ pub fn write_files(dir: &Path, results: &RunResults) -> crate::error::Result<()>
         sound::write(dir, sound)?;
     }
     frf::write(dir, &results.frfs)?;
+    comparison::write(dir, results)?;
+    uff::write_modes(dir, results)?;
     write_vtk(dir, results)
 }
 
@@ -101,8 +107,10 @@ pub struct RunResults {
     pub size: ModelSize,
     /// Real modes of parts and of the whole, in the order the case lists them.
     pub modes: Vec<NamedModes>,
-    /// Measured natural frequencies set beside the computed ones.
+    /// Measured modes set beside the computed ones.
     pub measured: Vec<MeasuredComparison>,
+    /// Measured frequency responses set beside the computed ones.
+    pub measured_frfs: Vec<MeasuredResponses>,
     /// Steady sliding.
     pub steady: Option<SteadyResult>,
     /// Complex eigenvalues.
@@ -171,19 +179,10 @@ pub struct NamedModes {
     pub effective_mass: Vec<[f64; 3]>,
     /// Total mass \[kg\].
     pub total_mass: f64,
-}
-
-/// A measured frequency and the computed mode set beside it.
-#[derive(Debug, Clone)]
-pub struct MeasuredComparison {
-    /// Index into [`RunResults::modes`].
-    pub modes: usize,
-    /// Where the figure comes from.
-    pub source: String,
-    /// One row a measured frequency: frequency \[Hz\] and the index of its mode, if any is paired.
-    pub rows: Vec<(f64, Option<usize>)>,
-    /// Computed frequencies were multiplied by this before comparison (an assumption of the case); 1 for none.
-    pub frequency_scale: f64,
+    /// ζ of each mode by the damping of the case.
+    pub damping_ratio: Vec<f64>,
+    /// Whether `modes_<set>.uff` is wanted.
+    pub universal: bool,
 }
 
 /// Steady sliding, for people.

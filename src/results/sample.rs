@@ -2,6 +2,8 @@
 //! shapes cos nθ · R(r), a slider, a bar, steady sliding on a dozen rim nodes, and a few complex modes.
 //! Its figures look like the rig's and are not computed from anything.
 
+mod measured;
+
 use super::*;
 use crate::equilibrium::PointState;
 use crate::linalg::c64;
@@ -40,12 +42,7 @@ pub(crate) fn rig() -> RunResults {
     let whole = NamedModes { name: "rig with closed contact".into(), ..disc_modes(&geometry, disc_nodes) };
     let complex = complex_result(&disc);
     let paired = |n, s| disc.names.iter().position(|name| *name == Some(mode_name(n, s)));
-    let measured = MeasuredComparison {
-        modes: 0,
-        source: "hammer test, free rim".into(),
-        rows: vec![(330.0, paired(2, 0)), (936.0, paired(4, 0)), (1697.0, paired(0, 1)), (2050.0, None)],
-        frequency_scale: 0.972,
-    };
+    let measured = measured::modes(&disc, [paired(2, 0), paired(4, 0), paired(0, 1), None]);
     let sensitivity = sensitivity(&geometry, &complex);
     RunResults {
         title: "Disc on slider <reference & \"first\" case>".into(),
@@ -62,6 +59,7 @@ pub(crate) fn rig() -> RunResults {
         steady: Some(steady_result(&geometry)),
         modes: vec![disc, whole],
         measured: vec![measured],
+        measured_frfs: vec![measured::responses(frf())],
         complex: Some(complex),
         sweeps: Vec::new(),
         maps: Vec::new(),
@@ -182,6 +180,8 @@ fn disc_modes(geometry: &Geometry, n_disc: usize) -> NamedModes {
         names,
         effective_mass: (0..count).map(|k| [0.08 / (k + 1) as f64, 0.0, 1e-4]).collect(),
         total_mass: 0.139,
+        damping_ratio: vec![0.0035; count],
+        universal: false,
     }
 }
 
@@ -362,6 +362,7 @@ fn frf() -> FrfResult {
     let response = |(name, parts): (&str, [f64; 2])| FrfResponse {
         name: name.into(),
         place: "a node of disc, 0.3 mm from the place".into(),
+        at: PlaceAndDirection { position: [0.0, 0.0, -0.07], direction: [0.8, 0.6, 0.0] },
         values: frequencies_hz
             .iter()
             .map(|hz| term(*hz, 338.0) * parts[0] + term(*hz, 1745.0) * parts[1])
@@ -374,7 +375,8 @@ fn frf() -> FrfResult {
     };
     FrfResult {
         name: "hammer".into(),
-        quantity: ["accelerance", "m/(N s^2)"],
+        quantity: crate::measured::Quantity::Accelerance,
+        force: PlaceAndDirection { position: [0.0, 0.0, -0.07], direction: [1.0, 0.0, 0.0] },
         about: "contacts open; superposition of 88 real modes and 2 static residuals".into(),
         excitation: "a node of disc, 0.3 mm from the place".into(),
         responses: [("rim", [10.0, 25.0]), ("inside", [4.0, 1e-3])].map(response).into(),

@@ -1,110 +1,118 @@
-//! Frequency responses as datasets 58 of the Universal File Format, which test-data programs read
-//! (SDRC's *Universal File Datasets Summary*; functions at nodal degrees of freedom).
+//! What goes to test-data programs, as universal files: frequency responses and mode shapes.
 
-use super::FrfResult;
+use super::{FileNames, FrfResult, NamedModes, PlaceAndDirection, RunResults, write_atomically};
+use crate::error::Result;
+use crate::measured::uff::{Function, RealShape, functions_text, modes_text};
+use std::path::Path;
 
-/// Codes of dataset 58: frequency response function; complex in double precision.
-const FRF: u32 = 4;
-const COMPLEX_DOUBLE: u32 = 6;
-/// Specific data types: frequency, excitation force.
-const FREQUENCY: u32 = 18;
-const FORCE: u32 = 13;
-
-/// All places of a response, one dataset each: the excitation is node 1, the places are nodes 2, 3 …; directions are
-/// scalar, since they need not be along an axis.
-pub(super) fn datasets(frf: &FrfResult) -> String {
-    let mut text = String::new();
-    let (kind, label) = match frf.quantity[0] {
-        "receptance" => (8, "Displacement"),
-        "mobility" => (11, "Velocity"),
-        _ => (12, "Acceleration"),
+/// All places of a response: the force acts at point 1, the places are points 2, 3 …
+pub(super) fn functions(frf: &FrfResult) -> String {
+    let label = |k: usize| k as u64 + 2;
+    let points = std::iter::once((1, frf.force.position))
+        .chain(frf.responses.iter().enumerate().map(|(k, of)| (label(k), of.at.position)));
+    let titles: Vec<String> = frf
+        .responses
+        .iter()
+        .map(|of| format!("{} of {} for a force at {}", frf.quantity.name(), of.name, frf.name))
+        .collect();
+    let function = |k: usize| Function {
+        title: [&titles[k], &frf.about],
+        quantity: frf.quantity,
+        excitation: (1, code(&frf.force)),
+        response: (label(k), code(&frf.responses[k].at)),
+        frequencies_hz: &frf.frequencies_hz,
+        values: &frf.responses[k].values,
     };
-    let unit = match kind {
-        8 => "m",
-        11 => "m/s",
-        _ => "m/s^2",
-    };
-    for (k, response) in frf.responses.iter().enumerate() {
-        let line = |text: &str| {
-            format!("{:<80}\n", text.chars().filter(char::is_ascii).take(80).collect::<String>())
-        };
-        text += "    -1\n    58\n";
-        text += &line(&format!("{} of {} for a force at {}", frf.quantity[0], response.name, frf.name));
-        text += &line(&response.place);
-        text += &line("NONE");
-        text += &line(&frf.about);
-        text += &line(&format!("Force: {}", frf.excitation));
-        text += &format!(
-            "{FRF:5}{:10}{:5}{:10} {:<10}{:10}{:4} {:<10}{:10}{:4}\n",
-            0,
-            0,
-            0,
-            "NONE",
-            k + 2,
-            0,
-            "NONE",
-            1,
-            0
-        );
-        // Uneven: every line gives its own frequency.
-        text += &format!(
-            "{COMPLEX_DOUBLE:10}{:10}{:10}{}{}{}\n",
-            frf.frequencies_hz.len(),
-            0,
-            number(0.0, 13, 5),
-            number(0.0, 13, 5),
-            number(0.0, 13, 5)
-        );
-        let axis = |kind: u32, label: &str, unit: &str| {
-            format!("{kind:10}{:5}{:5}{:5} {label:<20} {unit:<20}\n", 0, 0, 0)
-        };
-        text += &axis(FREQUENCY, "Frequency", "Hz");
-        text += &axis(kind, label, unit);
-        text += &axis(FORCE, "Force", "N");
-        text += &axis(0, "NONE", "NONE");
-        for (hz, value) in frf.frequencies_hz.iter().zip(&response.values) {
-            text +=
-                &format!("{}{}{}\n", number(*hz, 13, 5), number(value.re, 20, 12), number(value.im, 20, 12));
-        }
-        text += "    -1\n";
-    }
-    text
+    functions_text(points, (0..frf.responses.len()).map(function))
 }
 
-/// Fortran's E format: ` 1.66123E+03`.
-fn number(x: f64, width: usize, digits: usize) -> String {
-    let plain = format!("{x:.digits$e}");
-    let (mantissa, exponent) = plain.split_once('e').unwrap_or((&plain, "0"));
-    let exponent: i32 = exponent.parse().unwrap_or(0);
-    let sign = if exponent < 0 { '-' } else { '+' };
-    let text = format!("{mantissa}E{sign}{:02}", exponent.abs());
-    format!("{text:>width$}")
+/// ±1, ±2, ±3 along an axis; 0, a scalar, along anything else.
+fn code(place: &PlaceAndDirection) -> i64 {
+    let axis = (0..3).find(|k| place.direction[*k].abs() > 1.0 - 1e-9);
+    axis.map_or(0, |k| place.direction[k].signum() as i64 * (k as i64 + 1))
+}
+
+/// Writes `modes_<set>.uff` of the sets that ask for it.
+pub(super) fn write_modes(dir: &Path, results: &RunResults) -> Result<()> {
+    let mut names = FileNames::default();
+    for set in &results.modes {
+        // A name for every set, so that the files of a set bear one name.
+        let name = names.next(&set.name);
+        if set.universal {
+            let text = modes(&results.geometry.nodes, set);
+            write_atomically(dir, &format!("modes_{name}.uff"), text.as_bytes())?;
+        }
+    }
+    Ok(())
+}
+
+/// Every mode of a set; node k has label k + 1. Nodes at rest are left out of a shape.
+fn modes(nodes: &[[f64; 3]], set: &NamedModes) -> String {
+    let label = |k: usize| k as u64 + 1;
+    let mut motions: Vec<_> = set
+        .shapes
+        .iter()
+        .map(|shape| {
+            let motion = shape.iter().enumerate().map(|(k, u)| (label(k), [u[0], u[1], u[2]]));
+            motion.filter(|(_, u)| u.iter().any(|v| *v != 0.0))
+        })
+        .collect();
+    let modes = motions.iter_mut().enumerate().map(|(k, motion)| RealShape {
+        number: k + 1,
+        frequency_hz: set.modes.frequency_hz(k),
+        modal_mass: 1.0,
+        damping_ratio: set.damping_ratio.get(k).copied().unwrap_or(0.0),
+        motion,
+    });
+    modes_text(&set.name, nodes.iter().enumerate().map(|(k, x)| (label(k), *x)), modes)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measured::uff::read;
     use crate::results::sample;
 
     #[test]
-    fn datasets_have_the_columns_of_the_format() {
+    fn responses_come_back_as_they_were_written() {
         let results = sample::rig();
         let frf = &results.frfs[0];
-        let text = datasets(frf);
+        let text = functions(frf);
         let lines: Vec<&str> = text.lines().collect();
-        assert_eq!(lines.iter().filter(|l| l.trim() == "-1").count(), 2 * frf.responses.len());
-        assert_eq!(&lines[1][..6], "    58");
-        assert_eq!(lines[7].len(), 5 + 10 + 5 + 10 + 1 + 10 + 10 + 4 + 1 + 10 + 10 + 4);
-        assert_eq!(lines[8][10..20].trim().parse::<usize>().unwrap(), frf.frequencies_hz.len());
-        let value = |line: &str| {
-            [&line[..13], &line[13..33], &line[33..]].map(|part| part.trim().parse::<f64>().unwrap())
-        };
-        let [hz, re, im] = value(lines[13]);
-        let exact = frf.responses[0].values[0];
-        assert!((hz / frf.frequencies_hz[0] - 1.0).abs() < 1e-5);
-        assert!(
-            (re - exact.re).abs() <= 1e-12 * exact.norm() && (im - exact.im).abs() <= 1e-12 * exact.norm()
-        );
-        assert_eq!(number(-0.00123456789, 13, 5), " -1.23457E-03");
+        // Columns of the format: degrees of freedom and form of the data.
+        let begin = lines.iter().position(|l| l.trim_end() == "    58").unwrap();
+        assert_eq!(lines[begin + 6].len(), 5 + 10 + 5 + 10 + 1 + 10 + 10 + 4 + 1 + 10 + 10 + 4);
+        assert_eq!(lines[begin + 7][10..20].trim().parse::<usize>().unwrap(), frf.frequencies_hz.len());
+        let (set, warnings) = read("t", text.as_bytes(), 1e-3).unwrap().into_set();
+        assert!(warnings.is_empty() && set.frfs.len() == frf.responses.len(), "{warnings:?}");
+        for (found, exact) in set.frfs.iter().zip(&frf.responses) {
+            assert_eq!(found.quantity, frf.quantity);
+            assert_eq!(found.excitation.direction, [1.0, 0.0, 0.0]);
+            assert_eq!(found.response.direction, [0.0; 3], "along no axis");
+            assert_eq!(set.points[found.response.point].position, exact.at.position);
+            let near =
+                found.values.iter().zip(&exact.values).all(|(a, b)| (a - b).norm() <= 1e-12 * b.norm());
+            assert!(near);
+        }
+    }
+
+    #[test]
+    fn shapes_come_back_as_they_were_written() {
+        let results = sample::rig();
+        let set = &results.modes[0];
+        let text = modes(&results.geometry.nodes, set);
+        let (back, warnings) = read("t", text.as_bytes(), 1.0).unwrap().into_set();
+        assert!(warnings.is_empty() && back.modes.len() == set.modes.len(), "{warnings:?}");
+        assert_eq!(back.points.len(), results.geometry.nodes.len());
+        for (k, mode) in back.modes.iter().enumerate() {
+            assert!((mode.frequency_hz / set.modes.frequency_hz(k) - 1.0).abs() < 1e-5);
+            assert_eq!(mode.damping_ratio, Some(0.0035));
+            let shape = mode.shape.as_ref().unwrap();
+            for (dof, value) in back.dofs.iter().zip(shape) {
+                let node = back.points[dof.point].id as usize - 1;
+                let exact: f64 = (0..3).map(|a| dof.direction[a] * set.shapes[k][node][a]).sum();
+                assert!(value.im == 0.0 && (value.re - exact).abs() <= 1e-5 * exact.abs());
+            }
+        }
     }
 }

@@ -200,7 +200,7 @@ fn check_matrices(root: &Section, case: &Case) {
     }
 }
 
-fn unknown_name(root: &Section, key: &str, name: &str, kind: &str, known: &[&str]) {
+pub(in crate::case) fn unknown_name(root: &Section, key: &str, name: &str, kind: &str, known: &[&str]) {
     let help = crate::error::nearest(name, known.iter().copied())
         .map_or(String::new(), |near| format!("Did you mean \"{near}\"?"));
     let list = if known.is_empty() { "none is defined".to_string() } else { known.join(", ") };

@@ -59,7 +59,7 @@ pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Pla
         let (on, direction) = (probe.on.as_deref(), probe.direction.unwrap_or_default());
         let found = motion(prepared, on, probe.at, direction, &format!("transient.probe.{name}"));
         let (name, measured) = (name.clone(), probe.measured.clone());
-        probes.push(found.map(|Motion { place, direction }| Probe { name, place, direction, measured }));
+        probes.push(found.map(|Motion { place, direction, .. }| Probe { name, place, direction, measured }));
     }
     let probes: Vec<Probe> = probes.into_iter().filter_map(|probe| faults.take(probe)).collect();
     let gauges: Vec<Gauge> = gauges.into_iter().filter_map(|gauge| faults.take(gauge)).collect();

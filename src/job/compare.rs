@@ -1,0 +1,371 @@
+//! What tests found beside what is computed.
+
+use super::frf::{Frf, frfs};
+use super::measured::measured_set;
+use super::motion::Motion;
+use super::prepared::Prepared;
+use crate::case::{Case, MeasuredData, ModesAnalysis};
+use crate::error::{Error, Fault, Faults, Result};
+use crate::linalg::{c64, dense};
+use crate::measured::compare::{ComputedModes, Measured, levels, likenesses, pair};
+use crate::measured::geometry::{Frame, distance, dot, largest_and_mean, nearest};
+use crate::measured::{MeasuredDof, MeasuredFrf, MeasuredMode, MeasuredSet, Quantity};
+use crate::results::{
+    FrfResult, MeasuredComparison, MeasuredResponses, MeasuredRow, NamedModes, Placed, ResponsePair,
+};
+
+/// Directions that are farther apart than this are two: cos 15°.
+const ALONG: f64 = 0.966;
+/// More points than this that lie off the mesh are not told one by one.
+const TOLD: usize = 10;
+
+/// All tests of a case, placed on its mesh.
+#[derive(Default)]
+pub struct Tests {
+    tests: Vec<Test>,
+    /// What the user should know about them.
+    pub warnings: Vec<String>,
+}
+
+/// One of them.
+struct Test {
+    name: String,
+    /// The analysis whose modes it found.
+    of: Option<String>,
+    source: String,
+    set: MeasuredSet,
+    /// For each of the set's degrees of freedom its node and its direction in the mesh; empty where no shape is known.
+    motions: Vec<(usize, [f64; 3])>,
+    placed: Option<Placed>,
+    responses: Option<Responses>,
+}
+
+/// The frequency responses of a test that have a computed one beside them.
+struct Responses {
+    frf: String,
+    matches: Vec<Match>,
+    measured_alone: Vec<String>,
+    computed_alone: Vec<String>,
+}
+
+/// A measured response, and where the computed one will be.
+struct Match {
+    /// Index into the set's responses.
+    measured: usize,
+    /// The name of the computed place.
+    place: String,
+    swapped: bool,
+    away: [f64; 2],
+    /// −1 where one of the directions of the test is against that of the case.
+    sign: f64,
+    /// Which of the measured frequencies are in the band.
+    lines: std::ops::Range<usize>,
+    /// Index into the second answer of [`Frf::run`].
+    answer: usize,
+}
+
+/// Whether an analysis of real modes has a measured side.
+pub fn has_measured_modes(case: &Case, name: &str) -> bool {
+    let short = case.modes.get(name).is_some_and(|analysis| !analysis.measured.is_empty());
+    short || case.measured.values().any(|data| data.of.as_deref() == Some(name))
+}
+
+/// Whether a frequency response has a measured side.
+pub fn has_measured_frf(case: &Case, name: &str) -> bool {
+    case.measured.values().any(|data| data.frf.as_deref() == Some(name))
+}
+
+/// Reads the tests of a case and places them on its mesh; gives what the user should know about them.
+///
+/// # Errors
+/// Every file that cannot be read, and every point of a shape that lies off the mesh.
+pub fn check_tests(prepared: &Prepared<'_>) -> Result<Vec<String>> {
+    Ok(Tests::new(prepared, &mut frfs(prepared)?)?.warnings)
+}
+
+impl Tests {
+    /// Reads the tests of the case and finds their places; asks `frfs` for the responses that were measured.
+    ///
+    /// # Errors
+    /// Every file that cannot be read, and every point of a shape that lies off the mesh.
+    pub fn new(prepared: &Prepared<'_>, frfs: &mut [Frf<'_>]) -> Result<Tests> {
+        let case = prepared.case;
+        let (mut faults, mut tests, mut warnings) = (Faults::new(), Vec::new(), Vec::new());
+        for (name, analysis) in case.modes.iter().filter(|(_, analysis)| !analysis.measured.is_empty()) {
+            tests.push(Test::listed(name, analysis));
+        }
+        for (name, data) in &case.measured {
+            let Some((set, told)) = faults.take(measured_set(case, name)) else { continue };
+            warnings.extend(told);
+            let Some(test) = faults.take(Test::placed(prepared, name, data, set)) else { continue };
+            let test = match data.frf.as_deref().and_then(|of| frfs.iter_mut().find(|frf| frf.name() == of)) {
+                Some(frf) => Test { responses: Some(Responses::new(data, &test.set, frf)), ..test },
+                None => test,
+            };
+            let left_out = |count: usize, what: &str, key: &str| {
+                format!("Measured {name}: {count} {what} were not compared, as it has no `{key}`")
+            };
+            if data.of.is_none() && !test.set.modes.is_empty() {
+                warnings.push(left_out(test.set.modes.len(), "modes", "of"));
+            }
+            if data.frf.is_none() && !test.set.frfs.is_empty() {
+                warnings.push(left_out(test.set.frfs.len(), "frequency responses", "frf"));
+            }
+            tests.push(test);
+        }
+        faults.into_result(Tests { tests, warnings })
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.tests.is_empty()
+    }
+
+    /// The tests of an analysis beside its modes, which are set `index`.
+    pub fn modes(
+        &self,
+        index: usize,
+        analysis: &ModesAnalysis,
+        named: &NamedModes,
+    ) -> Vec<MeasuredComparison> {
+        let own = self.tests.iter().filter(|test| test.of.as_deref() == Some(&named.name));
+        own.filter(|test| !test.set.modes.is_empty())
+            .map(|test| test.compare(index, analysis, named))
+            .collect()
+    }
+
+    /// The tests of a frequency response beside the receptances that they asked for \[m/N\].
+    pub fn responses(&self, computed: &FrfResult, receptances: &[Vec<c64>]) -> Vec<MeasuredResponses> {
+        let of = |test: &Test| {
+            let responses = test.responses.as_ref().filter(|responses| responses.frf == computed.name)?;
+            let pair = |found: &Match| found.pair(&test.set.frfs[found.measured], &receptances[found.answer]);
+            Some(MeasuredResponses {
+                name: test.name.clone(),
+                source: test.source.clone(),
+                frf: responses.frf.clone(),
+                pairs: responses.matches.iter().map(pair).collect(),
+                measured_alone: responses.measured_alone.clone(),
+                computed_alone: responses.computed_alone.clone(),
+            })
+        };
+        self.tests.iter().filter_map(of).collect()
+    }
+}
+
+impl Test {
+    /// The frequencies that an analysis lists itself.
+    fn listed(name: &str, analysis: &ModesAnalysis) -> Test {
+        let mode =
+            |hz: &f64| MeasuredMode { frequency_hz: *hz, damping_ratio: None, deviation: None, shape: None };
+        Test {
+            name: name.to_string(),
+            of: Some(name.to_string()),
+            source: analysis.measured_source.clone(),
+            set: MeasuredSet {
+                modes: analysis.measured.iter().map(mode).collect(),
+                ..MeasuredSet::default()
+            },
+            motions: Vec::new(),
+            placed: None,
+            responses: None,
+        }
+    }
+
+    /// A test whose shapes are placed on the mesh.
+    fn placed(prepared: &Prepared<'_>, name: &str, data: &MeasuredData, set: MeasuredSet) -> Result<Test> {
+        let test = |set, motions, placed| Test {
+            name: name.to_string(),
+            of: data.of.clone(),
+            source: data.source.clone(),
+            set,
+            motions,
+            placed,
+            responses: None,
+        };
+        let Some(of) = data.of.as_ref().filter(|_| set.modes.iter().any(|mode| mode.shape.is_some())) else {
+            return Ok(test(set, Vec::new(), None));
+        };
+        let place = format!("`measured.{name}`");
+        let among = nodes_of(prepared, &prepared.case.modes[of]);
+        if among.is_empty() {
+            let fault = Fault::new(place, "mode shapes", "a case whose nodes have coordinates");
+            return Err(Error::input(fault.with_help("`matrices.dofs` may give them")));
+        }
+        let frame = frame(data);
+        // The points that a shape moves, each once.
+        let mut used: Vec<usize> = set.dofs.iter().map(|dof| dof.point).collect();
+        used.dedup();
+        let there: Vec<[f64; 3]> =
+            used.iter().map(|point| frame.point(set.points[*point].position)).collect();
+        let found = nearest(&there, &prepared.model.nodes, &among);
+        let mut faults = Faults::new();
+        let far = || used.iter().zip(&there).zip(&found).filter(|(_, (_, away))| *away > data.reach);
+        for ((point, at), (_, away)) in far().take(TOLD) {
+            let [x, y, z] = at.map(|c| 1e3 * c);
+            let words = format!(
+                "point {} at ({x:.1}, {y:.1}, {z:.1}) mm of the mesh, {:.1} mm from the nearest node",
+                set.points[*point].id,
+                1e3 * away
+            );
+            let expected = format!("a node within the `reach` of {:.1} mm", 1e3 * data.reach);
+            let help = "Look at `transform`: origin, axes and the unit of the test";
+            faults.push(Fault::new(&*place, words, expected).with_help(help));
+        }
+        let more = far().count().saturating_sub(TOLD);
+        if more > 0 {
+            faults.push(Fault::new(
+                &*place,
+                format!("{more} points more beyond `reach`"),
+                "points on the mesh",
+            ));
+        }
+        faults.into_result(())?;
+        let node = |point: usize| used.binary_search(&point).map_or(0, |k| found[k].0);
+        let motions = set.dofs.iter().map(|dof| (node(dof.point), frame.direction(dof.direction))).collect();
+        let [largest, mean] = largest_and_mean(found.iter().map(|(_, away)| *away));
+        let placed = Placed { points: used.len(), dofs: set.dofs.len(), largest, mean };
+        Ok(test(set, motions, Some(placed)))
+    }
+
+    fn compare(&self, index: usize, analysis: &ModesAnalysis, named: &NamedModes) -> MeasuredComparison {
+        // Rigid bodies have no frequency to compare.
+        let first = named.modes.rigid_bodies;
+        let scale = analysis.frequency_scale;
+        let hz: Vec<f64> = (first..named.modes.len()).map(|k| scale * named.modes.frequency_hz(k)).collect();
+        let twins = |a: usize, b: usize| {
+            let name = |k: usize| named.names[first + k];
+            name(a).is_some() && name(a) == name(b) && hz[b] - hz[a] < 2e-2 * hz[b]
+        };
+        let levels = levels(&hz, twins);
+        let motion = |k: usize| -> Vec<f64> {
+            let shape = &named.shapes[first + k];
+            self.motions.iter().map(|(node, d)| dot([0, 1, 2].map(|axis| shape[*node][axis]), *d)).collect()
+        };
+        let seen = self.set.modes.iter().any(|mode| mode.shape.is_some());
+        let motions: Vec<Vec<f64>> = if seen { (0..hz.len()).map(motion).collect() } else { Vec::new() };
+        let computed = ComputedModes { frequencies_hz: &hz, levels: &levels, motions: &motions };
+        let own = self.set.modes.iter();
+        let measured: Vec<Measured> = own
+            .map(|mode| Measured { frequency_hz: mode.frequency_hz, shape: mode.shape.as_deref() })
+            .collect();
+        let likeness = likenesses(&measured, &computed);
+        let pairs = pair(&measured, &computed, &likeness);
+        let rows = self.set.modes.iter().zip(&pairs).map(|(mode, pair)| MeasuredRow {
+            frequency_hz: mode.frequency_hz,
+            deviation: mode.deviation,
+            damping_ratio: mode.damping_ratio,
+            mode: pair.map(|pair| first + pair.mode),
+            likeness: pair.and_then(|pair| pair.likeness),
+        });
+        MeasuredComparison {
+            name: self.name.clone(),
+            modes: index,
+            source: self.source.clone(),
+            rows: rows.collect(),
+            frequency_scale: scale,
+            levels: levels.iter().map(|level| first + level.start..first + level.end).collect(),
+            likeness,
+            placed: self.placed,
+        }
+    }
+}
+
+fn frame(data: &MeasuredData) -> Frame {
+    Frame::new(data.transform.origin, data.transform.x_axis, data.transform.y_axis)
+}
+
+/// The nodes of the parts that an analysis is of.
+fn nodes_of(prepared: &Prepared<'_>, analysis: &ModesAnalysis) -> Vec<usize> {
+    let geometry = prepared.geometry();
+    if prepared.model.nodes.is_empty() {
+        return Vec::new();
+    }
+    let own = |part: &usize| analysis.parts.is_empty() || analysis.parts.contains(&geometry.parts[*part]);
+    let elements = geometry.elements.iter().zip(&geometry.part_of).filter(|(_, part)| own(part));
+    let mut nodes: Vec<usize> = elements.flat_map(|(element, _)| element.iter().copied()).collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
+}
+
+impl Responses {
+    fn new(data: &MeasuredData, set: &MeasuredSet, frf: &mut Frf<'_>) -> Responses {
+        let (frame, [low, high]) = (frame(data), frf.band());
+        let at = |dof: &MeasuredDof, motion: &Motion| place_sign(&frame, set, dof, motion, data.reach);
+        let mut responses = Responses {
+            frf: frf.name().to_string(),
+            matches: Vec::new(),
+            measured_alone: Vec::new(),
+            computed_alone: Vec::new(),
+        };
+        for (measured, function) in set.frfs.iter().enumerate() {
+            let ways =
+                [(&function.excitation, &function.response), (&function.response, &function.excitation)];
+            let ways = ways.into_iter().enumerate().filter(|(swapped, _)| *swapped == 0 || frf.reciprocal());
+            let found = ways.flat_map(|(swapped, (force, motion))| {
+                let driven = at(force, frf.force());
+                let seen = frf.seen().iter().enumerate();
+                seen.filter_map(move |(k, (_, place))| Some((swapped == 1, k, driven?, at(motion, place)?)))
+            });
+            let nearest = found.min_by(|a, b| (a.2.0 + a.3.0).total_cmp(&(b.2.0 + b.3.0)));
+            let name = function.name.clone();
+            let Some((swapped, k, driven, seen)) = nearest else {
+                responses.measured_alone.push(format!("{name}: no response of the case is there"));
+                continue;
+            };
+            let hz = &function.frequencies_hz;
+            let lines = hz.partition_point(|f| *f < low)..hz.partition_point(|f| *f <= high);
+            if lines.len() < 2 {
+                responses.measured_alone.push(format!("{name}: no frequencies in the band"));
+                continue;
+            }
+            let (place, answer) = (frf.seen()[k].0.clone(), frf.also_at(k, hz[lines.clone()].to_vec()));
+            let (away, sign) = ([driven.0, seen.0], driven.1 * seen.1);
+            responses.matches.push(Match { measured, place, swapped, away, sign, lines, answer });
+        }
+        let alone = frf.seen().iter().map(|(name, _)| name);
+        let alone = alone.filter(|name| !responses.matches.iter().any(|m| m.place == **name));
+        responses.computed_alone = alone.cloned().collect();
+        responses
+    }
+}
+
+/// How far a degree of freedom of a test is from a place of the case \[m\], and 1 or −1 as it is along or against it;
+/// `None` where it is another one. A direction that the test does not state is that of the case.
+fn place_sign(
+    frame: &Frame,
+    set: &MeasuredSet,
+    dof: &MeasuredDof,
+    motion: &Motion,
+    reach: f64,
+) -> Option<(f64, f64)> {
+    let away = distance(frame.point(set.points[dof.point].position), motion.at);
+    let along = dot(frame.direction(dof.direction), motion.along);
+    let stated = dof.direction != [0.0; 3];
+    let same = away <= reach && (!stated || along.abs() >= ALONG);
+    same.then_some((away, if along < 0.0 { -1.0 } else { 1.0 }))
+}
+
+impl Match {
+    fn pair(&self, function: &MeasuredFrf, receptance: &[c64]) -> ResponsePair {
+        let frequencies_hz = function.frequencies_hz[self.lines.clone()].to_vec();
+        let measured: Vec<c64> = function.values[self.lines.clone()].iter().map(|v| v * self.sign).collect();
+        let quantity: Quantity = function.quantity;
+        let along = frequencies_hz.iter().zip(receptance);
+        let computed: Vec<c64> = along.map(|(hz, h)| quantity.factor(*hz) * h).collect();
+        ResponsePair {
+            name: function.name.clone(),
+            place: self.place.clone(),
+            swapped: self.swapped,
+            away: self.away,
+            quantity,
+            assurance: dense::mac(&measured, &computed),
+            frequencies_hz,
+            measured,
+            computed,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

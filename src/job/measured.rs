@@ -1,0 +1,126 @@
+//! Reads what tests found: the tables `[measured.NAME]` and their files.
+
+use super::table::Table;
+use crate::case::{Case, MeasuredData, read_test};
+use crate::error::{Error, Fault, Faults, Result};
+use crate::measured::{MeasuredSet, ModeRecord, Records, uff};
+use crate::mesh::unit_in_metres;
+use std::collections::BTreeMap;
+
+/// The columns of a CSV file of modes.
+const COLUMNS: [&str; 3] = ["frequency_hz", "damping_ratio", "deviation"];
+
+/// The data of `[measured.NAME]`, and what the user should know about them. Every mode has a deviation: that of the file, or
+/// that of the case.
+///
+/// # Errors
+/// A file that is not there, of another kind, or whose content cannot be read; a file without modes and responses.
+pub fn measured_set(case: &Case, name: &str) -> Result<(MeasuredSet, Vec<String>)> {
+    let data = &case.measured[name];
+    let mut records = match &data.file {
+        None => listed(data),
+        Some(file) => read_file(case, name, file, unit_in_metres(&data.transform.unit))?,
+    };
+    let given = data.point.iter().filter_map(|(number, x)| Some((number.parse().ok()?, *x)));
+    records.points.extend(given);
+    let (mut set, warnings) = records.into_set();
+    for mode in &mut set.modes {
+        mode.deviation.get_or_insert(data.deviation);
+    }
+    if set.modes.is_empty() && set.frfs.is_empty() {
+        let place = format!("`measured.{name}.file`");
+        let mut fault = Fault::new(place, "no mode and no frequency response in the file", "some of either");
+        if !warnings.is_empty() {
+            fault = fault.with_help(warnings.join("; "));
+        }
+        return Err(Error::input(fault));
+    }
+    Ok((set, warnings.into_iter().map(|warning| format!("Measured {name}: {warning}")).collect()))
+}
+
+/// The frequencies in the case itself.
+fn listed(data: &MeasuredData) -> Records {
+    let mode = |(k, hz): (usize, &f64)| ModeRecord {
+        frequency_hz: *hz,
+        damping_ratio: data.damping_ratios.get(k).copied(),
+        deviation: None,
+        shape: BTreeMap::new(),
+    };
+    Records { modes: data.frequencies.iter().enumerate().map(mode).collect(), ..Records::default() }
+}
+
+fn read_file(case: &Case, name: &str, file: &str, unit: f64) -> Result<Records> {
+    let path = case.folder.join(file);
+    let shown = path.display().to_string();
+    let kind = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let key = format!("`measured.{name}.file`");
+    let unreadable =
+        |error: std::io::Error| Error::input(Fault::new(&*key, format!("{shown}: {error}"), "a file"));
+    match kind.as_str() {
+        "csv" => table(&Table::read(&path, &COLUMNS[..1], &COLUMNS)?),
+        "toml" => read_test(&shown, &std::fs::read_to_string(&path).map_err(unreadable)?),
+        "uff" | "unv" | "uf" | "ufb" => uff::read(&shown, &std::fs::read(&path).map_err(unreadable)?, unit),
+        _ => Err(Error::input(Fault::new(key, format!("\"{file}\""), "a file .uff, .unv, .csv or .toml"))),
+    }
+}
+
+fn table(table: &Table) -> Result<Records> {
+    let mut faults = Faults::new();
+    let mut modes = Vec::new();
+    for row in table.rows() {
+        let mut share = |column: &str, low: f64| {
+            if row.cell(column).is_empty() {
+                return None;
+            }
+            let value = row.number(column, low, &mut faults);
+            if !(low..1.0).contains(&value) {
+                let place = format!("{} `{column}`", row.place());
+                faults.push(Fault::new(place, format!("{value}"), format!("a share from {low} to below 1")));
+            }
+            Some(value)
+        };
+        let (damping_ratio, deviation) = (share(COLUMNS[1], 0.0), share(COLUMNS[2], f64::MIN_POSITIVE));
+        let frequency_hz = row.number(COLUMNS[0], 0.0, &mut faults);
+        if frequency_hz <= 0.0 {
+            let place = format!("{} `{}`", row.place(), COLUMNS[0]);
+            faults.push(Fault::new(place, format!("\"{}\"", row.cell(COLUMNS[0])), "a frequency above zero"));
+        }
+        modes.push(ModeRecord { frequency_hz, damping_ratio, deviation, shape: BTreeMap::new() });
+    }
+    faults.0.truncate(20);
+    faults.into_result(Records { modes, ..Records::default() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn set(file: &str, content: &[u8]) -> Result<(MeasuredSet, Vec<String>)> {
+        let dir = tempfile::tempdir().unwrap();
+        std::fs::write(dir.path().join(file), content).unwrap();
+        let text = format!(
+            "[point]\na = [0, 0, 0]\n[modes.m]\ncount = 1\n[measured.t]\nof = \"m\"\nfile = \"{file}\"\n"
+        );
+        measured_set(&Case::parse("case", &text, dir.path().into()).unwrap(), "t")
+    }
+
+    #[test]
+    fn a_table_gives_modes_in_order_and_the_case_their_deviation() {
+        let (set, _) =
+            set("a.csv", b"frequency_hz;damping_ratio;deviation\n936;;0.01\n330;0.002;\n").unwrap();
+        assert_eq!(set.modes.iter().map(|m| m.frequency_hz).collect::<Vec<_>>(), [330.0, 936.0]);
+        assert_eq!((set.modes[0].damping_ratio, set.modes[0].deviation), (Some(0.002), Some(0.005)));
+        assert_eq!((set.modes[1].damping_ratio, set.modes[1].deviation), (None, Some(0.01)));
+    }
+
+    #[test]
+    fn wrong_files_are_told() {
+        let said = |file: &str, content: &[u8]| set(file, content).unwrap_err().to_string();
+        assert!(said("a.xlsx", b"").contains("a.xlsx") && said("a.csv", b"hz\n1\n").contains("frequency_hz"));
+        let wrong = said("a.csv", b"frequency_hz,deviation\n-1,0.1\n330,2\nx,\n");
+        assert!(["a.csv:2", "a.csv:3 `deviation`", "a.csv:4"].iter().all(|p| wrong.contains(p)), "{wrong}");
+        assert!(said("a.csv", b"frequency_hz\n").contains("no mode and no frequency response"));
+        assert!(said("a.uff", b"    -1\n  2412\n    -1\n").contains("dataset 2412"));
+        assert!(said("a.toml", b"x = 1\n").contains("a.toml:1 `x`"));
+    }
+}

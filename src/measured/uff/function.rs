@@ -1,0 +1,303 @@
+//! Frequency responses: dataset 58 and its binary form, functions at nodal degrees of freedom.
+
+use super::super::records::FunctionRecord;
+use super::super::set::Quantity;
+use super::file::{Binary, Dataset, shown};
+use super::record::{columns, e_format, text_line, whole};
+use super::units::{Units, labelled};
+use crate::error::Result;
+use crate::linalg::c64;
+
+/// Code of a frequency response function.
+const FRF: i64 = 4;
+/// Specific data types.
+const DISPLACEMENT: i64 = 8;
+const REACTION: i64 = 9;
+const VELOCITY: i64 = 11;
+const ACCELERATION: i64 = 12;
+const FORCE: i64 = 13;
+const FREQUENCY: i64 = 18;
+/// Columns of the record of degrees of freedom: type, number, version, load case; blank, name, node, direction, twice.
+const WHO: [usize; 12] = [5, 10, 5, 10, 1, 10, 10, 4, 1, 10, 10, 4];
+/// Columns of an axis: type, three exponents, label, unit.
+const AXIS: [usize; 8] = [10, 5, 5, 5, 1, 20, 1, 20];
+
+/// How the numbers of a function are stored.
+pub(super) struct Form {
+    /// 2, 4: real; 5, 6: complex; single and double precision.
+    pub kind: i64,
+    /// How many values.
+    pub count: usize,
+    /// Whether abscissas follow from the first and the step.
+    pub even: bool,
+    first: f64,
+    step: f64,
+}
+
+impl Form {
+    /// Reads record 7.
+    pub fn read(dataset: &Dataset<'_>) -> Result<Form> {
+        const FORM: usize = 6;
+        let cells = columns(dataset.line(FORM)?, &[10, 10, 10, 13, 13, 13]);
+        let words: Vec<String> = dataset.line(FORM)?.split_whitespace().map(str::to_string).collect();
+        let cells = if words.len() == 6 { words } else { cells };
+        let whole = |k: usize| {
+            whole(&cells[k]).ok_or_else(|| dataset.fault(FORM, shown(&cells[k]), "a whole number"))
+        };
+        let real = |k: usize| {
+            let number = if cells[k].is_empty() { Some(0.0) } else { super::record::float(&cells[k]) };
+            number.ok_or_else(|| dataset.fault(FORM, shown(&cells[k]), "a finite number"))
+        };
+        let (kind, count, spacing) = (whole(0)?, whole(1)?, whole(2)?);
+        if !matches!(kind, 2 | 4 | 5 | 6) {
+            let expected = "2 or 4 (real), 5 or 6 (complex)";
+            return Err(dataset.fault(FORM, format!("ordinates of type {kind}"), expected));
+        }
+        let count = usize::try_from(count)
+            .map_err(|_| dataset.fault(FORM, format!("{count} values"), "a count of zero or more"))?;
+        if !matches!(spacing, 0 | 1) {
+            let expected = "0 (uneven) or 1 (even)";
+            return Err(dataset.fault(FORM, format!("abscissa spacing {spacing}"), expected));
+        }
+        Ok(Form { kind, count, even: spacing == 1, first: real(3)?, step: real(4)? })
+    }
+
+    fn complex(&self) -> bool {
+        self.kind > 4
+    }
+
+    fn double(&self) -> bool {
+        matches!(self.kind, 4 | 6)
+    }
+
+    /// Numbers of a value: one, or a real and an imaginary part.
+    pub fn parts(&self) -> usize {
+        if self.complex() { 2 } else { 1 }
+    }
+
+    /// Sizes in bytes of an abscissa and of a number of a value, as the type says first; then as other writers have it.
+    pub fn sizes(&self) -> Vec<[usize; 2]> {
+        let all = if self.double() { [[8, 8], [4, 8], [4, 4]] } else { [[4, 4], [8, 8], [4, 8]] };
+        let even = |[abscissa, value]: [usize; 2]| [if self.even { 0 } else { abscissa }, value];
+        all.map(even).to_vec()
+    }
+
+    /// Widths of the columns of a line of numbers.
+    fn widths(&self) -> &'static [usize] {
+        match (self.double(), self.even, self.complex()) {
+            (false, ..) => &[13],
+            (true, true, _) => &[20],
+            (true, false, false) => &[13, 20],
+            (true, false, true) => &[13, 20, 20],
+        }
+    }
+}
+
+/// Reads dataset 58; what it is, in words, where it is no frequency response of motion over force.
+///
+/// A unit in the label of an axis says what its numbers are; else they are in `units`, or SI where there are none. Whether
+/// the file states the units is told beside the response.
+pub(super) fn read(
+    dataset: &Dataset<'_>,
+    units: Option<Units>,
+) -> Result<std::result::Result<(FunctionRecord, bool), String>> {
+    let [first, second] = [dataset.line(0)?.trim(), dataset.line(1)?.trim()];
+    let title = if first == "NONE" || first.is_empty() { second } else { first };
+    let who = who(dataset)?;
+    let name = format!("{title}, {}/{}", dof(who.response), dof(who.reference));
+    let form = Form::read(dataset)?;
+    if who.kind != FRF {
+        return Ok(Err(format!("functions of type {}, which are no frequency responses", who.kind)));
+    }
+    let [abscissa, ordinate, denominator] = [axis(dataset, 7)?, axis(dataset, 8)?, axis(dataset, 9)?];
+    let quantity = match ordinate.kind {
+        DISPLACEMENT => Quantity::Receptance,
+        VELOCITY => Quantity::Mobility,
+        ACCELERATION => Quantity::Accelerance,
+        kind => return Ok(Err(format!("responses of data type {kind}, which is no motion"))),
+    };
+    if !matches!(denominator.kind, FORCE | REACTION) || !matches!(abscissa.kind, 0 | FREQUENCY) {
+        return Ok(Err("responses that are not motion over force over frequency".into()));
+    }
+    let (Some(excitation), Some(response)) = (direction(who.reference.1), direction(who.response.1)) else {
+        return Ok(Err("responses of rotations or moments".into()));
+    };
+    let over = labelled(&ordinate.unit).or(units.map(|u| u.length));
+    let under = labelled(&denominator.unit).or(units.map(|u| u.force));
+    let stated = over.is_some() && under.is_some();
+    let scale = over.unwrap_or(1.0) / under.unwrap_or(1.0);
+    let numbers = match &dataset.binary {
+        Some(binary) => binary_numbers(dataset, binary, &form)?,
+        None => text_numbers(dataset, &form)?,
+    };
+    let stride = form.parts() + usize::from(!form.even);
+    let (mut frequencies_hz, mut values) = (Vec::new(), Vec::new());
+    for (k, row) in numbers.chunks_exact(stride).enumerate() {
+        let (hz, value) =
+            if form.even { (form.first + k as f64 * form.step, row) } else { (row[0], &row[1..]) };
+        frequencies_hz.push(hz);
+        values.push(scale * c64::new(value[0], value.get(1).copied().unwrap_or(0.0)));
+    }
+    if frequencies_hz.windows(2).any(|pair| pair[0] >= pair[1]) || frequencies_hz.iter().any(|f| *f < 0.0) {
+        return Err(dataset.fault(
+            6,
+            "frequencies that do not rise",
+            "ascending frequencies of zero or more",
+        ));
+    }
+    let (excitation, response) = ((who.reference.0, excitation), (who.response.0, response));
+    Ok(Ok((FunctionRecord { name, quantity, excitation, response, frequencies_hz, values }, stated)))
+}
+
+/// What a function is, and of which points, with codes of directions.
+struct Who {
+    kind: i64,
+    response: (u64, i64),
+    reference: (u64, i64),
+}
+
+fn who(dataset: &Dataset<'_>) -> Result<Who> {
+    const RECORD: usize = 5;
+    let text = dataset.line(RECORD)?;
+    let cells = columns(text, &WHO);
+    let words: Vec<&str> = text.split_whitespace().collect();
+    // In its columns, or between white space.
+    let in_columns = [0, 6, 7, 10, 11].map(|k| whole(&cells[k]));
+    let all = |found: [Option<i64>; 5]| -> Option<[i64; 5]> {
+        let found: Option<Vec<i64>> = found.into_iter().collect();
+        found?.try_into().ok()
+    };
+    let between = || all([0, 5, 6, 8, 9].map(|k| words.get(k).and_then(|word| whole(word))));
+    let found = all(in_columns).or_else(between);
+    let [kind, node, along, base, driven] = found
+        .ok_or_else(|| dataset.fault(RECORD, shown(text), "a type, and twice a name, a node, a direction"))?;
+    let label = |node: i64| {
+        u64::try_from(node)
+            .map_err(|_| dataset.fault(RECORD, format!("node {node}"), "a node of zero or more"))
+    };
+    Ok(Who { kind, response: (label(node)?, along), reference: (label(base)?, driven) })
+}
+
+/// A point and a direction as test engineers write them: `3-y`.
+fn dof((node, code): (u64, i64)) -> String {
+    let along = ["", "x", "y", "z", "rx", "ry", "rz"].get(code.unsigned_abs() as usize).unwrap_or(&"");
+    match code {
+        0 => node.to_string(),
+        code => format!("{node}{}{along}", if code < 0 { '-' } else { '+' }),
+    }
+}
+
+/// What is along an axis, and its unit.
+struct Axis {
+    kind: i64,
+    unit: String,
+}
+
+fn axis(dataset: &Dataset<'_>, record: usize) -> Result<Axis> {
+    let text = dataset.line(record)?;
+    let cells = columns(text, &AXIS);
+    let first = text.split_whitespace().next().unwrap_or("");
+    let kind = whole(&cells[0]).or(whole(first));
+    let kind = kind.ok_or_else(|| dataset.fault(record, shown(&cells[0]), "a specific data type"))?;
+    Ok(Axis { kind, unit: cells[7].clone() })
+}
+
+/// The unit vector of a code: ±1, ±2, ±3; zero where the direction is not stated; `None` for rotations.
+fn direction(code: i64) -> Option<[f64; 3]> {
+    match code {
+        0 => Some([0.0; 3]),
+        -3..=3 => {
+            let axis = code.unsigned_abs() as usize - 1;
+            Some([0, 1, 2].map(|k| if k == axis { code.signum() as f64 } else { 0.0 }))
+        }
+        _ => None,
+    }
+}
+
+fn text_numbers(dataset: &Dataset<'_>, form: &Form) -> Result<Vec<f64>> {
+    const FIRST: usize = 11;
+    let mut numbers = Vec::new();
+    for index in FIRST..dataset.lines.len() {
+        numbers.extend(dataset.numbers(index, form.widths())?);
+    }
+    let wanted = form.count.saturating_mul(form.parts() + usize::from(!form.even));
+    // The last line may be filled up.
+    if numbers.len() < wanted || numbers.len() > wanted.saturating_add(5) {
+        let last = dataset.lines.len().saturating_sub(1);
+        return Err(dataset.fault(last, format!("{} numbers", numbers.len()), format!("{wanted}")));
+    }
+    numbers.truncate(wanted);
+    Ok(numbers)
+}
+
+fn binary_numbers(dataset: &Dataset<'_>, binary: &Binary<'_>, form: &Form) -> Result<Vec<f64>> {
+    let [abscissa, value] = binary.sizes;
+    let row = [abscissa].into_iter().filter(|size| *size > 0).chain(std::iter::repeat_n(value, form.parts()));
+    let row: Vec<usize> = row.collect();
+    let (mut at, mut numbers) = (0, Vec::new());
+    for size in row.iter().cycle() {
+        let Some(bytes) = binary.data.get(at..at + size).filter(|bytes| !bytes.is_empty()) else { break };
+        let number = match (<[u8; 8]>::try_from(bytes), <[u8; 4]>::try_from(bytes)) {
+            (Ok(b), _) if binary.big_endian => f64::from_be_bytes(b),
+            (Ok(b), _) => f64::from_le_bytes(b),
+            (_, Ok(b)) if binary.big_endian => f64::from(f32::from_be_bytes(b)),
+            (_, Ok(b)) => f64::from(f32::from_le_bytes(b)),
+            _ => break,
+        };
+        if !number.is_finite() {
+            let place = format!("{number} at byte {}", binary.at + at);
+            return Err(dataset.fault(6, place, "finite numbers"));
+        }
+        numbers.push(number);
+        at += size;
+    }
+    Ok(numbers)
+}
+
+/// A frequency response to write.
+pub struct Function<'a> {
+    /// Two lines of text: what it is, and how it came about.
+    pub title: [&'a str; 2],
+    /// What of the motion.
+    pub quantity: Quantity,
+    /// Label of the point that the force acts on, and the code of its direction.
+    pub excitation: (u64, i64),
+    /// Label of the point whose motion it is, and the code of its direction.
+    pub response: (u64, i64),
+    /// \[Hz\].
+    pub frequencies_hz: &'a [f64],
+    /// In the SI unit of the quantity.
+    pub values: &'a [c64],
+}
+
+/// Dataset 58: complex in double precision, uneven frequencies.
+pub(super) fn write(function: &Function<'_>) -> String {
+    let (kind, label, unit) = match function.quantity {
+        Quantity::Receptance => (DISPLACEMENT, "Displacement", "m"),
+        Quantity::Mobility => (VELOCITY, "Velocity", "m/s"),
+        Quantity::Accelerance => (ACCELERATION, "Acceleration", "m/s^2"),
+    };
+    let mut text = String::from("    -1\n    58\n");
+    text += &text_line(function.title[0]);
+    text += &text_line(function.title[1]);
+    text += &text_line("NONE").repeat(3);
+    let ((node, along), (base, driven)) = (function.response, function.excitation);
+    text += &format!(
+        "{FRF:5}{:10}{:5}{:10} {:<10}{node:10}{along:4} {:<10}{base:10}{driven:4}\n",
+        0, 0, 0, "NONE", "NONE"
+    );
+    let zero = e_format(0.0, 13, 5);
+    text += &format!("{:10}{:10}{:10}{}\n", 6, function.frequencies_hz.len(), 0, zero.repeat(3));
+    let axis = |kind: i64, label: &str, unit: &str| {
+        format!("{kind:10}{:5}{:5}{:5} {label:<20} {unit:<20}\n", 0, 0, 0)
+    };
+    text += &axis(FREQUENCY, "Frequency", "Hz");
+    text += &axis(kind, label, unit);
+    text += &axis(FORCE, "Force", "N");
+    text += &axis(0, "NONE", "NONE");
+    for (hz, value) in function.frequencies_hz.iter().zip(function.values) {
+        let [re, im] = [value.re, value.im].map(|v| e_format(v, 20, 12));
+        text += &format!("{}{re}{im}\n", e_format(*hz, 13, 5));
+    }
+    text + "    -1\n"
+}

@@ -1,0 +1,93 @@
+//! Fields of a record as Fortran writes and reads them.
+
+/// The fields of a line: between white space where there are as many as `widths`, in fixed columns otherwise.
+pub(super) fn fields(text: &str, widths: &[usize]) -> Vec<String> {
+    let words: Vec<&str> = text.split_whitespace().collect();
+    if words.len() == widths.len() {
+        return words.into_iter().map(str::to_string).collect();
+    }
+    columns(text, widths)
+}
+
+/// The fields of a line in fixed columns, without the blanks about them; empty beyond its end.
+pub(super) fn columns(text: &str, widths: &[usize]) -> Vec<String> {
+    let mut letters = text.chars();
+    let mut field = |width: &usize| letters.by_ref().take(*width).collect::<String>().trim().to_string();
+    widths.iter().map(&mut field).collect()
+}
+
+/// Every number of a line: between white space, or in columns of these widths, over and over, where numbers touch.
+pub(super) fn numbers(text: &str, widths: &[usize]) -> Result<Vec<f64>, String> {
+    let words: Option<Vec<f64>> = text.split_whitespace().map(float).collect();
+    if let Some(words) = words {
+        return Ok(words);
+    }
+    let pattern: Vec<usize> = widths.iter().copied().cycle().take(text.len()).collect();
+    let cells = columns(text.trim_end(), &pattern);
+    cells.iter().filter(|cell| !cell.is_empty()).map(|cell| float(cell).ok_or(cell.clone())).collect()
+}
+
+/// A finite number with an exponent in E or D, or in neither as Fortran writes `1.5-103`.
+pub(super) fn float(text: &str) -> Option<f64> {
+    let plain: String = text.trim().chars().map(|c| if "dDe".contains(c) { 'E' } else { c }).collect();
+    let sign = plain.rfind(['+', '-']).filter(|at| *at > 0 && plain.as_bytes()[at - 1] != b'E');
+    let text = match sign {
+        Some(at) if !plain.contains('E') => format!("{}E{}", &plain[..at], &plain[at..]),
+        _ => plain,
+    };
+    text.parse().ok().filter(|x: &f64| x.is_finite())
+}
+
+/// A whole number, also written as `12.`; zero where nothing is written.
+pub(super) fn whole(text: &str) -> Option<i64> {
+    let text = text.trim();
+    if text.is_empty() { Some(0) } else { text.strip_suffix('.').unwrap_or(text).parse().ok() }
+}
+
+/// A number in Fortran's E format: ` 1.66123E+03`.
+pub(super) fn e_format(x: f64, width: usize, digits: usize) -> String {
+    let plain = format!("{x:.digits$e}");
+    let (mantissa, exponent) = plain.split_once('e').unwrap_or((&plain, "0"));
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    let sign = if exponent < 0 { '-' } else { '+' };
+    let text = format!("{mantissa}E{sign}{:02}", exponent.abs());
+    format!("{text:>width$}")
+}
+
+/// A line of 80 columns; what is not ASCII is left out.
+pub(super) fn text_line(text: &str) -> String {
+    let text: String = text.chars().filter(|c| c.is_ascii() && !c.is_ascii_control()).take(80).collect();
+    // A line of text may not be blank.
+    let text = if text.trim().is_empty() { "NONE" } else { &text };
+    format!("{text:<80}\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_read_however_fortran_wrote_them() {
+        assert_eq!(float(" 1.5D+03"), Some(1500.0));
+        assert_eq!(float("-1.5-103"), Some(-1.5e-103));
+        assert_eq!(float("-2"), Some(-2.0));
+        for wrong in ["", "nan", "inf", "1e999", "--1", "é-1", "+", "1-2-3"] {
+            assert_eq!(float(wrong), None, "{wrong}");
+        }
+        assert_eq!(whole(" 12"), Some(12));
+        assert_eq!(whole(""), Some(0));
+        // Numbers that touch: columns of 13.
+        let touching = "-1.23456e-103-1.23456e+103  1.00000E+00";
+        assert_eq!(numbers(touching, &[13]).unwrap(), [-1.23456e-103, -1.23456e103, 1.0]);
+        assert_eq!(numbers("1 2   3", &[13]).unwrap(), [1.0, 2.0, 3.0]);
+        assert!(numbers("1 x", &[13]).is_err());
+        assert_eq!(fields("  12   3", &[5, 5, 5]), ["12", "3", ""]);
+    }
+
+    #[test]
+    fn numbers_are_written_in_columns() {
+        assert_eq!(e_format(-0.00123456789, 13, 5), " -1.23457E-03");
+        assert_eq!(e_format(0.0, 13, 5), "  0.00000E+00");
+        assert_eq!(text_line("½").trim_end(), "½".replace('½', "NONE"));
+    }
+}

@@ -1,0 +1,76 @@
+//! `mac_<name>.svg`: how like each measured shape is to each level of computed modes.
+
+use super::super::colours::{INK, MEASURED, MUTED, sequential};
+use super::super::format::{fixed, given};
+use super::super::svg::{Anchor, Ink, Sheet};
+use super::{Drawn, level_name};
+use crate::results::{MeasuredComparison, NamedModes};
+
+const CELL: [f64; 2] = [46.0, 30.0];
+/// Room for the labels of the rows, and of the columns.
+const MARGIN: [f64; 2] = [130.0, 112.0];
+/// Columns beyond the highest paired level are of no interest; and there are at most so many.
+const BEYOND: usize = 2;
+const MOST: usize = 40;
+
+pub(super) fn picture(comparison: &MeasuredComparison, set: &NamedModes, name: &str) -> Option<Drawn> {
+    let rows: Vec<usize> =
+        (0..comparison.rows.len()).filter(|k| !comparison.likeness[*k].is_empty()).collect();
+    let hz =
+        |level: usize| comparison.frequency_scale * set.modes.frequency_hz(comparison.levels[level].start);
+    let highest = rows.iter().map(|k| comparison.rows[*k].frequency_hz).fold(0.0, f64::max);
+    let paired = rows.iter().filter_map(|k| comparison.level_of(comparison.rows[*k].mode?)).max();
+    let inside = (0..comparison.levels.len()).filter(|level| hz(*level) <= highest).count();
+    let columns = inside.max(paired.map_or(0, |level| level + 1)) + BEYOND;
+    let columns = columns.min(comparison.levels.len()).min(MOST);
+    if rows.is_empty() || columns == 0 {
+        return None;
+    }
+    let (width, height) = (columns as f64 * CELL[0], rows.len() as f64 * CELL[1]);
+    let mut sheet = Sheet::new((MARGIN[0] + width + 30.0).max(460.0), MARGIN[1] + height + 34.0);
+    let ink = Ink { size: 12.5, colour: INK, bold: false, anchor: Anchor::Middle };
+    for column in 0..columns {
+        let x = MARGIN[0] + (column as f64 + 0.5) * CELL[0];
+        let name = level_name(set, &comparison.levels[column]);
+        // Two lines and the frequency, so that labels of neighbours do not touch.
+        let (first, second) = name.split_once(" ×").map_or((name.as_str(), ""), |(a, b)| (a, b));
+        let lines = [first.to_string(), if second.is_empty() { String::new() } else { format!("×{second}") }];
+        for (k, line) in lines.iter().enumerate() {
+            sheet.text([x, MARGIN[1] - 40.0 + 15.0 * k as f64], line, ink);
+        }
+        sheet.text([x, MARGIN[1] - 10.0], &fixed(hz(column), 0), Ink { colour: MUTED, ..ink });
+    }
+    let left = Ink { anchor: Anchor::Start, ..ink };
+    sheet.text(
+        [MARGIN[0], 24.0],
+        "MAC: squared cosine between shapes",
+        Ink { bold: true, size: 14.0, ..left },
+    );
+    sheet.text([MARGIN[0], 46.0], "computed [Hz]", left);
+    sheet.text([12.0, MARGIN[1] - 10.0], "measured [Hz]", Ink { colour: MEASURED, ..left });
+    let style = format!("fill=\"none\" stroke=\"{MEASURED}\" stroke-width=\"2.4\"");
+    for (place, k) in rows.iter().enumerate() {
+        let row = &comparison.rows[*k];
+        let y = MARGIN[1] + place as f64 * CELL[1];
+        let label = Ink { colour: MEASURED, anchor: Anchor::End, ..ink };
+        sheet.text([MARGIN[0] - 10.0, y + 20.0], &given(row.frequency_hz), label);
+        for (column, like) in comparison.likeness[*k][..columns].iter().enumerate() {
+            let corner = [MARGIN[0] + column as f64 * CELL[0], y];
+            sheet.rectangle(corner, CELL, &format!("fill=\"{}\" stroke=\"#ffffff\"", sequential(*like)));
+            let colour = if *like > 0.55 { "#ffffff" } else { INK };
+            sheet.text([corner[0] + 0.5 * CELL[0], y + 20.0], &fixed(*like, 2), Ink { colour, ..ink });
+        }
+    }
+    for (place, k) in rows.iter().enumerate() {
+        let level = comparison.rows[*k].mode.and_then(|mode| comparison.level_of(mode));
+        if let Some(column) = level.filter(|level| *level < columns) {
+            let corner = [MARGIN[0] + column as f64 * CELL[0], MARGIN[1] + place as f64 * CELL[1]];
+            sheet.rectangle(corner, CELL, &style);
+        }
+    }
+    let note = "Framed: paired. A level of several modes counts as the space they span.";
+    sheet.text([12.0, MARGIN[1] + height + 22.0], note, Ink { colour: MUTED, ..left });
+    let caption =
+        format!("Likeness (MAC) of the measured shapes ({}) with the computed ones.", comparison.name);
+    Some(Drawn { file: format!("mac_{name}.svg"), caption, svg: sheet.finish() })
+}

@@ -1,0 +1,285 @@
+//! Universal files both ways with pyuff, an independent reader and writer (Python), which this test installs below the
+//! target folder.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use stridor::linalg::c64;
+use stridor::measured::Quantity;
+use stridor::measured::uff::{Function, RealShape, functions_text, modes_text, read};
+
+/// The release whose behaviour the test knows.
+const PYUFF: &str = "2.5.8";
+
+/// Writes `theirs.uff`, reads `modes.uff` and `frf.uff`, and prints the largest relative deviation of each.
+const SCRIPT: &str = r#"
+import json, sys
+import numpy as np, pyuff
+n, m = 5, 7
+ids = np.arange(1, n + 1)
+xyz = np.array([[0.25 * k, -0.5 * k, 3.0 + k] for k in range(n)])
+shape = np.array([[np.sin(1.0 + k + 3 * a) for a in range(3)] for k in range(n)])
+hz = 10.0 + 2.5 * np.arange(m)
+h = np.array([complex(np.sin(1.0 + k), np.cos(2.0 * k)) for k in range(m)])
+
+def function(binary, even, kind, double):
+    return {'type': 58, 'binary': binary, 'id1': 'test', 'func_type': 4, 'rsp_node': 2, 'rsp_dir': -3, 'ref_node': 4,
+            'ref_dir': 1, 'abscissa_spacing': even, 'abscissa_spec_data_type': 18, 'ordinate_spec_data_type': kind,
+            'orddenom_spec_data_type': 13, 'x': hz, 'data': h, 'ord_data_type': 6 if double else 5}
+
+def theirs(path):
+    file = pyuff.UFF(path)
+    file.write_sets([
+        {'type': 151, 'model_name': 'm', 'description': 'd', 'db_app': 'a', 'program': 'p'},
+        {'type': 164, 'units_code': 9, 'units_description': 'mm', 'temp_mode': 1, 'length': 1000.0, 'force': 1.0,
+         'temp': 1.0, 'temp_offset': 1.0},
+        {'type': 15, 'node_nums': ids, 'x': xyz[:, 0], 'y': xyz[:, 1], 'z': xyz[:, 2]},
+        {'type': 55, 'analysis_type': 2, 'data_ch': 2, 'spec_data_type': 8, 'load_case': 1, 'mode_n': 1, 'freq': 123.5,
+         'modal_damp_vis': 0.0125, 'node_nums': ids, 'r1': shape[:, 0], 'r2': shape[:, 1], 'r3': shape[:, 2]},
+        {'type': 55, 'analysis_type': 3, 'data_ch': 2, 'spec_data_type': 8, 'load_case': 1, 'mode_n': 2,
+         'eig': complex(-20.0, 1500.0), 'node_nums': ids, 'r1': shape[:, 0] * (1 + 2j), 'r2': shape[:, 1] * 1j,
+         'r3': shape[:, 2] * (1 + 0j)},
+        function(0, 0, 12, True), function(0, 1, 11, True), function(1, 0, 8, True), function(1, 1, 12, True),
+    ], 'overwrite')
+    file.write_sets([function(0, 1, 12, False)], 'add', force_double=False)
+
+def ours(folder):
+    off = lambda a, b: float(np.max(np.abs(np.asarray(a) - b)) / np.max(np.abs(b)))
+    modes = pyuff.UFF(folder + '/modes.uff')
+    sets = modes.read_sets()
+    assert list(modes.get_set_types()) == [164, 15, 55], modes.get_set_types()
+    units, nodes, mode = sets
+    assert units['length'] == 1.0 and units['force'] == 1.0
+    points = np.array([nodes['x'], nodes['y'], nodes['z']]).T
+    motion = np.array([mode['r1'], mode['r2'], mode['r3']]).T
+    assert list(nodes['node_nums']) == list(ids) and list(mode['node_nums']) == list(ids)
+    assert mode['freq'] == 123.5 and mode['modal_damp_vis'] == 0.0125 and mode['modal_m'] == 1.0
+    frf = [s for s in pyuff.UFF(folder + '/frf.uff').read_sets() if s['type'] == 58]
+    assert len(frf) == 1
+    frf = frf[0]
+    assert (frf['func_type'], frf['ref_node'], frf['ref_dir'], frf['rsp_node'], frf['rsp_dir']) == (4, 4, 1, 2, -3)
+    assert frf['ordinate_spec_data_type'] == 12 and frf['orddenom_spec_data_type'] == 13
+    return {'points': off(points, xyz), 'shape': off(motion, shape), 'hz': off(frf['x'], hz), 'frf': off(frf['data'], h)}
+
+theirs(sys.argv[1] + '/theirs.uff')
+print(json.dumps(ours(sys.argv[1])))
+"#;
+
+/// A Python with pyuff, in an environment of its own.
+fn python() -> PathBuf {
+    let home = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("pyuff-{PYUFF}"));
+    let own = home.join("bin/python");
+    let knows = |python: &Path| {
+        let version = format!("import pyuff; assert pyuff.__version__ == '{PYUFF}'");
+        Command::new(python).args(["-c", &version]).output().is_ok_and(|done| done.status.success())
+    };
+    if knows(&own) {
+        return own;
+    }
+    let run = |program: &Path, arguments: &[&str], what: &str| {
+        let done = Command::new(program).args(arguments).output();
+        let said = match &done {
+            Ok(done) if done.status.success() => return,
+            Ok(done) => String::from_utf8_lossy(&done.stderr).into_owned(),
+            Err(error) => error.to_string(),
+        };
+        panic!(
+            "{what} failed; it needs Python 3.11 or newer with venv (Debian: python3-venv) and a network: {said}"
+        );
+    };
+    let folder = home.to_string_lossy();
+    run(Path::new("python3"), &["-m", "venv", "--clear", &folder], "making a Python environment");
+    let pyuff = format!("pyuff=={PYUFF}");
+    let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", &pyuff];
+    run(&own, &pip, "installing pyuff");
+    assert!(knows(&own), "pyuff {PYUFF} is not there after its installation");
+    own
+}
+
+/// The numbers of the script.
+fn points() -> Vec<[f64; 3]> {
+    (0..5).map(f64::from).map(|k| [0.25 * k, -0.5 * k, 3.0 + k]).collect()
+}
+
+fn shape() -> Vec<[f64; 3]> {
+    (0..5).map(f64::from).map(|k| [0.0, 1.0, 2.0].map(|a| (1.0 + k + 3.0 * a).sin())).collect()
+}
+
+fn response() -> (Vec<f64>, Vec<c64>) {
+    let k = || (0..7).map(f64::from);
+    (k().map(|k| 10.0 + 2.5 * k).collect(), k().map(|k| c64::new((1.0 + k).sin(), (2.0 * k).cos())).collect())
+}
+
+#[test]
+fn universal_files_go_both_ways_with_pyuff() {
+    let python = python();
+    let dir = tempfile::tempdir().unwrap();
+    let label = |k: usize| k as u64 + 1;
+    let labelled = || points().into_iter().enumerate().map(move |(k, x)| (label(k), x));
+    let mut motion = shape().into_iter().enumerate().map(|(k, u)| (label(k), u));
+    let mode = RealShape {
+        number: 1,
+        frequency_hz: 123.5,
+        modal_mass: 1.0,
+        damping_ratio: 0.0125,
+        motion: &mut motion,
+    };
+    let modes = modes_text("test", labelled(), std::iter::once(mode));
+    std::fs::write(dir.path().join("modes.uff"), modes).unwrap();
+    let (hz, h) = response();
+    let function = Function {
+        title: ["test", "NONE"],
+        quantity: Quantity::Accelerance,
+        excitation: (4, 1),
+        response: (2, -3),
+        frequencies_hz: &hz,
+        values: &h,
+    };
+    let frf = functions_text(labelled(), std::iter::once(function));
+    std::fs::write(dir.path().join("frf.uff"), frf).unwrap();
+
+    let done = Command::new(python).args(["-c", SCRIPT]).arg(dir.path()).output().unwrap();
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let off: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+    let off = |key: &str| off[key].as_f64().unwrap();
+    // Six digits in single precision; the frequencies have fewer.
+    assert!(off("points") < 1e-6 && off("shape") < 1e-5 && off("hz") == 0.0 && off("frf") < 1e-12);
+
+    let bytes = std::fs::read(dir.path().join("theirs.uff")).unwrap();
+    let records = read("theirs.uff", &bytes, 1.0).unwrap();
+    assert!(records.warnings.is_empty(), "{:?}", records.warnings);
+    for (point, exact) in records.points.values().zip(points()) {
+        assert!((0..3).all(|k| (1e3 * point[k] - exact[k]).abs() < 1e-6), "{point:?} {exact:?} in mm");
+    }
+    let [real, complex] = &records.modes[..] else { panic!("two modes") };
+    assert_eq!((real.frequency_hz, real.damping_ratio), (123.5, Some(0.0125)));
+    let size = 20f64.hypot(1500.0);
+    assert!((complex.frequency_hz - size / std::f64::consts::TAU).abs() < 1e-9);
+    assert!((complex.damping_ratio.unwrap() - 20.0 / size).abs() < 1e-12);
+    let turn = [c64::new(1.0, 2.0), c64::new(0.0, 1.0), c64::new(1.0, 0.0)];
+    for (k, exact) in shape().iter().enumerate() {
+        for axis in 0..3 {
+            let (a, b) = (real.shape[&label(k)][axis], complex.shape[&label(k)][axis]);
+            // Written with six digits.
+            assert!((a - exact[axis]).norm() <= 5e-6 * exact[axis].abs(), "{k} {axis}: {a}");
+            assert!((b - turn[axis] * exact[axis]).norm() <= 1e-5 * b.norm(), "{k} {axis}: {b}");
+        }
+    }
+    // Text with twelve digits (even and uneven), binary (both), text with six. The file is in mm and N: what has no label
+    // is in mm over N.
+    let quantities = [
+        (Quantity::Accelerance, 1e-11),
+        (Quantity::Mobility, 1e-11),
+        (Quantity::Receptance, 1e-12),
+        (Quantity::Accelerance, 1e-12),
+        (Quantity::Accelerance, 1e-5),
+    ];
+    assert_eq!(records.functions.len(), quantities.len());
+    for (function, (quantity, tolerance)) in records.functions.iter().zip(quantities) {
+        assert_eq!((function.quantity, &function.frequencies_hz), (quantity, &hz));
+        assert_eq!((function.excitation, function.response), ((4, [1.0, 0.0, 0.0]), (2, [0.0, 0.0, -1.0])));
+        for (value, exact) in function.values.iter().zip(&h) {
+            assert!((1e3 * value - exact).norm() <= tolerance * exact.norm(), "{value} {exact}");
+        }
+    }
+}
+
+/// A disc, and a test of it that the program itself wrote.
+const DISC: &str = r#"
+[mesh.annulus]
+outer_radius = "75 mm"
+hub_radius = "15 mm"
+radial = 4
+around = 24
+[material.steel]
+youngs_modulus = "210 GPa"
+poissons_ratio = 0.3
+density = 7850
+[shell.disc]
+material = "steel"
+thickness = "1 mm"
+bending_only = true
+[support.hub]
+on = "hub"
+[damping]
+modal_ratio = 0.003
+[modes.disc]
+below = "1 kHz"
+uff = true
+[modes.other]
+count = 2
+[frf.hammer]
+excitation = { at = [0, 0, "75 mm"], direction = [1, 0, 0] }
+response.side = { at = [0, "75 mm", 0], direction = [1, 0, 0] }
+band = ["50 Hz", "1 kHz"]
+"#;
+
+fn stridor(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+    let program =
+        Command::new(env!("CARGO_BIN_EXE_stridor")).args(arguments).current_dir(folder).output().unwrap();
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (program.status.code().unwrap(), text(&program.stdout), text(&program.stderr))
+}
+
+#[test]
+fn what_the_program_wrote_is_compared_with_itself() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = dir.path();
+    std::fs::write(folder.join("disc.toml"), DISC).unwrap();
+    for command in ["modes", "frf"] {
+        let (code, _, error) = stridor(folder, &[command, "disc.toml", "--out", command]);
+        assert_eq!(code, 0, "{error}");
+    }
+    let measured = "[measured.shapes]\nof = \"disc\"\nfile = \"modes/modes_disc.uff\"\n\
+                    [measured.responses]\nfrf = \"hammer\"\nfile = \"frf/frf_hammer.uff\"\n";
+    std::fs::write(folder.join("case.toml"), DISC.to_string() + measured).unwrap();
+    let (code, table, error) = stridor(folder, &["compare", "case.toml", "--out", "out"]);
+    assert_eq!(code, 0, "{error}");
+    assert!(table.contains("FRAC") && table.contains("Every computed level"), "{table}");
+    let summary = std::fs::read_to_string(folder.join("out/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    let comparison = &summary["comparison"];
+    let rows = comparison["shapes"]["modes"].as_array().unwrap();
+    assert!(rows.len() > 5);
+    for row in rows {
+        assert!(row["mac"].as_f64().unwrap() > 1.0 - 1e-9, "{row}");
+        assert!(row["difference_percent"].as_f64().unwrap().abs() < 1e-3, "{row}");
+        assert_eq!(row["measured_damping_ratio"], row["computed_damping_ratio"]);
+    }
+    // Coordinates of six digits.
+    assert!(comparison["shapes"]["geometry"]["largest_distance_m"].as_f64().unwrap() < 1e-6);
+    let response = &comparison["responses"]["frf"]["responses"][0];
+    assert!(response["frac"].as_f64().unwrap() > 1.0 - 1e-6 && response["computed"] == "side", "{response}");
+    // What no test is of is not computed; the files are there.
+    let sets = summary["mode_sets"].as_array().unwrap();
+    assert!(sets.len() == 1 && sets[0]["name"] == "disc");
+    for file in
+        ["comparison_shapes.csv", "comparison_responses_frf.csv", "mac_shapes.svg", "frequencies_shapes.svg"]
+    {
+        assert!(folder.join("out").join(file).is_file(), "{file}");
+    }
+    let (code, table, _) = stridor(folder, &["check", "case.toml"]);
+    assert!(code == 0 && table.contains("sound"), "{table}");
+}
+
+#[test]
+fn wrong_measured_files_are_refused_before_anything_is_written() {
+    let refused = |file: &str, content: &str, words: &[&str]| {
+        let dir = tempfile::tempdir().unwrap();
+        std::fs::write(dir.path().join(file), content).unwrap();
+        let case = format!(
+            "{DISC}[measured.test]\nof = \"disc\"\nfile = \"{file}\"\n[measured.gone]\nof = \"disc\"\nfile = \"gone.uff\"\n"
+        );
+        std::fs::write(dir.path().join("case.toml"), case).unwrap();
+        for command in ["compare", "run", "check"] {
+            let (code, _, error) = stridor(dir.path(), &[command, "case.toml"]);
+            assert_eq!(code, 2, "{error}");
+            assert!(words.iter().all(|word| error.contains(word)) && error.contains("gone.uff"), "{error}");
+            assert!(!dir.path().join("results").exists());
+        }
+    };
+    refused("a.csv", "frequency_hz,colour\n330,red\n", &["a.csv:1", "colour"]);
+    refused("a.toml", "[mode.1]\nfrequency = \"330 m\"\n", &["a.toml:2", "mode.1.frequency"]);
+    refused("a.uff", "330\n936\n", &["a.uff:1", "begins a dataset"]);
+    refused("a.unv", "    -1\n    55\n    -1\n", &["a.unv:2", "dataset 55", "the end of the dataset"]);
+    refused("a.mat", "", &["measured.test.file", "a.mat"]);
+}
