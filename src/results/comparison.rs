@@ -195,10 +195,9 @@ fn responses_table(responses: &MeasuredResponses) -> String {
 /// The object `comparison` of `summary.json`: a key a name.
 pub(super) fn summary(results: &RunResults) -> Value {
     let mut all = serde_json::Map::new();
-    let mut names = FileNames::default();
     for comparison in &results.measured {
         let Some(set) = results.modes.get(comparison.modes) else { continue };
-        all.insert(names.next(&comparison.name), modes_summary(comparison, set));
+        all.insert(comparison.name.clone(), modes_summary(comparison, set));
     }
     for responses in &results.measured_frfs {
         let pair = |pair: &ResponsePair| {
