@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Each room with all the rooms it may use.
-const MAY_USE: [(&str, &[&str]); 21] = [
+const MAY_USE: [(&str, &[&str]); 22] = [
     ("error", &[]),
     ("progress", &[]),
     ("linalg", &["error", "progress"]),
@@ -21,11 +21,23 @@ const MAY_USE: [(&str, &[&str]); 21] = [
     ("sweep", &["error", "progress", "linalg", "stability"]),
     ("transient", &["error", "progress", "linalg", "system", "equilibrium"]),
     ("signal", &[]),
+    ("calibration", &["error", "progress", "linalg"]),
     ("sound", &["linalg", "signal"]),
     // What both wings leave behind.
     (
         "results",
-        &["error", "linalg", "equilibrium", "modal", "stability", "sweep", "transient", "signal", "sound"],
+        &[
+            "error",
+            "linalg",
+            "equilibrium",
+            "modal",
+            "stability",
+            "sweep",
+            "transient",
+            "signal",
+            "sound",
+            "calibration",
+        ],
     ),
     (
         "report",
@@ -51,6 +63,7 @@ const MAY_USE: [(&str, &[&str]); 21] = [
             "transient",
             "signal",
             "sound",
+            "calibration",
             "results",
             "report",
             "case",

@@ -4,6 +4,7 @@
 //! reported at once with its line. A [`Case`] is complete: every default is filled in, and its TOML form
 //! ([`Case::to_toml`]) reads back as the same case.
 
+mod calibrate;
 mod explore;
 mod frf;
 mod parameter;
@@ -13,6 +14,7 @@ mod sound;
 mod transient;
 pub(crate) mod units;
 
+pub use calibrate::{CalibrateAnalysis, CalibratedParameter, SQUEAL};
 pub use frf::{FrfAnalysis, FrfContact, FrfQuantity, FrfSolution, MotionAt};
 pub(crate) use parameter::path_matches;
 pub use parameter::{Invalidates, Parameter};
@@ -94,6 +96,9 @@ pub struct Case {
     /// Frequency responses by name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub frf: BTreeMap<String, FrfAnalysis>,
+    /// Scalars to be found from measured frequencies, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub calibrate: Option<CalibrateAnalysis>,
     /// Complex eigenvalues along one scalar, by name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub sweep: BTreeMap<String, SweepAnalysis>,

@@ -96,7 +96,7 @@ impl Case {
     fn invalidated_by(&self, path: &str) -> Invalidates {
         let keys: Vec<&str> = path.split('.').collect();
         let own = match keys[..] {
-            ["modes" | "cea" | "sensitivity" | "transient" | "frf" | "sweep" | "map", ..] => {
+            ["modes" | "cea" | "sensitivity" | "transient" | "frf" | "calibrate" | "sweep" | "map", ..] => {
                 Invalidates::Question
             }
             ["damping", ..] => Invalidates::Damping,

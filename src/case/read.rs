@@ -98,12 +98,13 @@ fn read_root(root: &Section, folder: PathBuf) -> Case {
         sensitivity: root.section("sensitivity", read_sensitivity),
         transient: root.section("transient", super::transient::read),
         frf: collect(root, "frf", super::frf::read),
+        calibrate: None,
         sweep: BTreeMap::new(),
         map: BTreeMap::new(),
     };
     check_names(root, &case);
     check_sensitivity(root, &case);
-    super::explore::read(root, case)
+    super::calibrate::read(root, super::explore::read(root, case))
 }
 
 pub(super) fn collect<T>(root: &Section, key: &str, read: impl Fn(&Section) -> T) -> BTreeMap<String, T> {

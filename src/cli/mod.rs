@@ -56,6 +56,8 @@ enum Action {
     Transient(analyse::Options),
     /// Frequency responses: motion at some places for a harmonic force at another
     Frf(analyse::Options),
+    /// Find numbers of the case from measured frequencies, and what the agreement is worth
+    Calibrate(analyse::Options),
     /// Check a case and its mesh without running it, and list its parameters
     Check(check::Options),
     /// Write M, C, K, the degrees of freedom and the contact points of a case, for other programs
@@ -98,6 +100,7 @@ fn act(command: &Command) -> Result<ExitCode> {
         Action::Sweep(options) => analyse::run(options, common, crate::job::Selection::SWEEPS),
         Action::Transient(options) => analyse::run(options, common, crate::job::Selection::TRANSIENT),
         Action::Frf(options) => analyse::run(options, common, crate::job::Selection::FRF),
+        Action::Calibrate(options) => analyse::run(options, common, crate::job::Selection::CALIBRATE),
         Action::Check(options) => check::run(options, common),
         Action::Export(options) => export::run(options, common),
         Action::New(options) => new::run(options, common),

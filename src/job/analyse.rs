@@ -1,5 +1,6 @@
 //! The analyses of a case in their order, each result handed on as soon as it is there.
 
+use super::calibrate::Calibrate;
 use super::clock::Clock;
 use super::complex::{complex_result, whole_modes};
 use super::explore::{KnownMap, KnownMaps, Nominal, explore};
@@ -38,6 +39,8 @@ pub struct Selection {
     pub transient: bool,
     /// Frequency responses.
     pub frf: bool,
+    /// Numbers of the case from measured frequencies.
+    pub calibrate: bool,
 }
 
 /// When to work out sensitivities.
@@ -60,6 +63,7 @@ impl Selection {
         sweeps: true,
         transient: true,
         frf: true,
+        calibrate: true,
     };
     /// Real modes only.
     pub const MODES: Selection = Selection {
@@ -69,6 +73,7 @@ impl Selection {
         sweeps: false,
         transient: false,
         frf: false,
+        calibrate: false,
     };
     /// Steady sliding and complex eigenvalues only.
     pub const CEA: Selection = Selection { modes: false, cea: true, ..Selection::MODES };
@@ -79,6 +84,8 @@ impl Selection {
 
     /// Frequency responses only.
     pub const FRF: Selection = Selection { modes: false, frf: true, ..Selection::MODES };
+    /// Numbers of the case from measured frequencies only.
+    pub const CALIBRATE: Selection = Selection { modes: false, calibrate: true, ..Selection::MODES };
     /// Steady sliding, complex eigenvalues and motion in time.
     pub const TRANSIENT: Selection = Selection { transient: true, ..Selection::CEA };
 
@@ -149,7 +156,7 @@ pub fn analyse(
 /// [`analyse`] with the maps of an earlier run.
 fn analyse_from(
     prepared: &Prepared,
-    Asked { selection, mut in_time, frfs }: Asked<'_>,
+    Asked { selection, mut in_time, frfs, calibrate }: Asked<'_>,
     known: &KnownMaps,
     keeper: &mut dyn Keeper,
     observer: &dyn Observer,
@@ -259,6 +266,11 @@ fn analyse_from(
         keeper.record(Stage::Frf(&response))?;
         results.frfs.push(response);
     }
+    if let Some(calibrate) = calibrate {
+        let found = clock.time("calibration", || calibrate.run(observer))?;
+        keeper.record(Stage::Calibration(&found))?;
+        results.calibration = Some(found);
+    }
     results.warnings.extend(thickness_warnings(prepared));
     results.timings = clock.phases;
     Ok(results)
@@ -269,15 +281,18 @@ struct Asked<'a> {
     selection: Selection,
     in_time: Option<(&'a TransientAnalysis, Places)>,
     frfs: Vec<Frf<'a>>,
+    calibrate: Option<Calibrate<'a>>,
 }
 
 impl<'a> Asked<'a> {
-    /// Tells the faults of the places before anything is computed or written.
-    fn new(prepared: &Prepared<'a>, selection: Selection) -> Result<Self> {
+    /// Tells the faults of the places and of the calibration before anything is computed or written.
+    fn new(prepared: &'a Prepared<'a>, selection: Selection) -> Result<Self> {
         let wanted = prepared.case.transient.as_ref().filter(|_| selection.transient && selection.cea);
         let in_time = wanted.map(|wanted| Ok((wanted, places(prepared, wanted)?))).transpose()?;
         let frfs = if selection.frf { frfs(prepared)? } else { Vec::new() };
-        Ok(Asked { selection, in_time, frfs })
+        let wanted = prepared.case.calibrate.as_ref().filter(|_| selection.calibrate);
+        let calibrate = wanted.map(|wanted| Calibrate::new(prepared, wanted)).transpose()?;
+        Ok(Asked { selection, in_time, frfs, calibrate })
     }
 }
 

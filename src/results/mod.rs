@@ -8,12 +8,14 @@
 //! | `transient.csv`, `transient_spectrum.csv`, `events.csv` | motion in time, step by step, its spectra, what happened at the contacts | spreadsheets |
 //! | `sound_<microphone>.wav`, `sound_spectrum.csv` | what is heard, and sound power and pressure over frequency | ears, spreadsheets |
 //! | `frf_<name>.csv`, `frf_<name>.uff` | frequency responses | spreadsheets, test-data programs |
+//! | `calibrated.toml`, `calibration.csv` | the case with the numbers that were found, and measured beside computed frequencies | stridor, spreadsheets |
 //! | `critical_values.csv`, `sweep_<name>.csv`, `map_<name>.csv` | sweeps and maps | spreadsheets |
 //! | `transient.vtkhdf` | the motion of all nodes at regular times | ParaView |
 //! | `modes_<set>.vtu`, `steady.vtu`, `complex_modes.vtu`, `advice.vtu` | the shapes on the mesh | ParaView, pyvista |
 //!
 //! [`ResultsFile`] is used while the run goes on, [`write_files`] once at its end.
 
+mod calibration;
 mod csv;
 mod derived;
 mod events_hdf5;
@@ -42,6 +44,7 @@ mod watched;
 #[cfg(test)]
 pub(crate) mod sample;
 
+pub use calibration::{CalibratedDatum, CalibratedNumber, CalibrationResult};
 pub use csv::write_csv;
 pub use derived::{ComparedRow, PairTotals};
 pub use explored::{DampingRow, DampingVerdicts, MapResult, Method, SweepResult};
@@ -79,6 +82,9 @@ pub fn write_files(dir: &Path, results: &RunResults) -> crate::error::Result<()>
         sound::write(dir, sound)?;
     }
     frf::write(dir, &results.frfs)?;
+    if let Some(calibration) = &results.calibration {
+        calibration::write(dir, calibration)?;
+    }
     write_vtk(dir, results)
 }
 
@@ -115,6 +121,8 @@ pub struct RunResults {
     pub transient: Option<TransientResult>,
     /// Frequency responses, in the order of their names.
     pub frfs: Vec<FrfResult>,
+    /// Numbers of the case that were found from measured frequencies.
+    pub calibration: Option<CalibrationResult>,
     /// Which verdicts the modal damping decides.
     pub damping: Option<DampingVerdicts>,
     /// Wall time of each phase \[s\].
