@@ -119,6 +119,7 @@ pub fn calibrate(
     ranked.iter_mut().for_each(|r| r.weight = (-0.5 * (r.fit.chi2 - least)).exp());
 
     let best = &ranked[0];
+    let knowledge = Knowledge::new(problem, &best.assignment, &best.fit);
     let left_out = match options.leave_one_out {
         true => leave_one_out(model, problem, best, observer)?,
         false => Vec::new(),
@@ -130,10 +131,10 @@ pub fn calibrate(
     });
     let trials = match options.trials {
         0 => None,
-        count => Some(Trials::new(model, problem, &best.assignment, &best.fit, count, observer)?),
+        count => Some(Trials::new(model, problem, &best.assignment, (&best.fit, &knowledge), count)?),
     };
     Ok(Calibration {
-        knowledge: Knowledge::new(problem, &best.assignment, &best.fit),
+        knowledge,
         plausible: counted,
         all_counted,
         all_searched: found.complete,

@@ -21,6 +21,7 @@ mod chance;
 mod fit;
 mod knowledge;
 mod linear;
+mod nearby;
 mod quadratic;
 #[cfg(test)]
 mod samples;

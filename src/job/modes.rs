@@ -36,12 +36,14 @@ pub fn part_modes(
 /// # Errors
 /// Regions that are missing, or nothing that can move.
 pub fn part_assembled(prepared: &Prepared, name: &str) -> Result<Arc<Assembled>> {
-    if prepared.case.matrices.is_some() {
-        return Ok(prepared.assembled.clone());
-    }
     let analysis = &prepared.case.modes[name];
-    let model = super::model::part_model(prepared.case, &prepared.regions, &prepared.model, name, analysis)?;
-    let assembled = assemble(&model)?;
+    let assembled = if prepared.case.matrices.is_some() || of_the_whole(prepared, analysis) {
+        prepared.assembled.clone()
+    } else {
+        let model =
+            super::model::part_model(prepared.case, &prepared.regions, &prepared.model, name, analysis)?;
+        Arc::new(assemble(&model)?)
+    };
     if assembled.dofs.n_dofs() == 0 {
         return Err(Error::input(Fault::new(
             format!("`modes.{name}`"),
@@ -49,7 +51,7 @@ pub fn part_assembled(prepared: &Prepared, name: &str) -> Result<Arc<Assembled>>
             "parts that can move",
         )));
     }
-    Ok(Arc::new(assembled))
+    Ok(assembled)
 }
 
 /// Which modes an analysis of a structure with `n_dofs` degrees of freedom asks for.

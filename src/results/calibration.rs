@@ -235,6 +235,7 @@ pub(super) fn summary(result: &CalibrationResult) -> Value {
         json!({
             "count": t.count,
             "converged": t.converged,
+            "model_error": t.model_error,
             "coverage": share(&t.covered, t.count),
             "least_coverage": share(&t.covered, t.count).into_iter().fold(1.0, f64::min),
             "scaled_coverage": t.scaled_covered.as_ref().map(|c| share(c, t.count)),
@@ -262,4 +263,114 @@ pub(super) fn summary(result: &CalibrationResult) -> Value {
         "chance": chance,
         "trials": trials,
     })
+}
+
+/// A made-up calibration: two numbers, the second at its bound and not determined, three data.
+#[cfg(test)]
+pub(super) fn sample() -> CalibrationResult {
+    use crate::calibration::{Chance, Fit, Knowledge, LeftOut, Level, Trials};
+    let level = |frequency_hz: f64| Some(Level { frequency_hz, slope: vec![0.1, 0.02], split: vec![0.0; 2] });
+    let fit = |converged: bool| Fit {
+        x: vec![0.2, 1.0],
+        levels: [333.3, 936.0, 1705.0].map(level).to_vec(),
+        chi2: 5.2,
+        iterations: 4,
+        evaluations: 4,
+        gradient: 1e-9,
+        converged,
+    };
+    let ranked = |weight: f64| Ranked {
+        assignment: vec![0, 1, 2],
+        fit: fit(weight == 1.0),
+        linear_chi2: 5.3,
+        largest_error: 0.01,
+        weight,
+    };
+    let number = |name: &str, unit: &str, after: f64, at_bound: bool| CalibratedNumber {
+        name: name.into(),
+        paths: vec!["mesh.annulus.hub_radius".into()],
+        unit: unit.into(),
+        between: [0.015, 0.025],
+        expected: 0.02,
+        deviation: (!at_bound).then_some(0.002),
+        log: at_bound,
+        before: 0.02,
+        after,
+        deviation_after: 2e-4,
+        interval: [after - 4e-4, (after + 4e-4).min(0.025)],
+        scaled_interval: Some([after - 2e-3, (after + 2e-3).min(0.025)]),
+        at_bound,
+    };
+    let datum = |measured_hz: f64, after: f64, level: &str| CalibratedDatum {
+        set: "disc".into(),
+        measured_hz,
+        deviation: 0.005,
+        level: level.into(),
+        before_hz: Some(1.05 * measured_hz),
+        after_hz: Some(after),
+        left_out_hz: Some(0.97 * measured_hz),
+        growth: None,
+    };
+    CalibrationResult {
+        numbers: vec![number("hub", "m", 0.021, false), number("stiffness", "N/m", 0.025, true)],
+        data: vec![
+            datum(330.0, 333.3, "disc (2, 0)"),
+            datum(936.0, 936.0, "disc (4, 0)"),
+            datum(1697.0, 1705.0, "disc (0, 1)"),
+        ],
+        levels: ["disc (2, 0)", "disc (4, 0)", "disc (0, 1)"].map(String::from).to_vec(),
+        level_sets: vec!["disc".into(); 3],
+        calibration: Calibration {
+            before: [340.0, 980.0, 1750.0].map(level).to_vec(),
+            ranked: vec![ranked(1.0), ranked(0.03)],
+            plausible: 24,
+            all_counted: true,
+            all_searched: true,
+            knowledge: Knowledge {
+                singular_values: vec![30.0, 0.4],
+                directions: vec![vec![0.98, 0.2], vec![-0.2, 0.98]],
+                deviations: vec![0.04, 2.5],
+                correlations: vec![vec![1.0, 0.3], vec![0.3, 1.0]],
+                intervals: vec![[0.1, 0.3], [-1.0, 1.0]],
+                scaled_intervals: Some(vec![[0.0, 0.4], [-1.0, 1.0]]),
+                reduced_chi2: Some(2.6),
+                chi2_probability: Some(0.07),
+            },
+            left_out: vec![LeftOut { x: vec![0.1, 1.0], predicted_hz: Some(320.0), converged: true }; 3],
+            chance: Some(Chance { draws: 999, by_error: 49, by_chi2: 59 }),
+            trials: Some(Trials {
+                count: 100,
+                converged: 100,
+                covered: vec![95, 96],
+                scaled_covered: Some(vec![94, 97]),
+                model_error: 1e-3,
+                scatter: vec![0.1, 1.0],
+            }),
+        },
+        calibrated_case: "title = \"calibrated\"\n".into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{RunResults, summary_json, write_files};
+    use super::*;
+
+    #[test]
+    fn the_files_say_what_was_found() {
+        let results = RunResults { calibration: Some(sample()), ..RunResults::default() };
+        let json = &summary_json(&results)["calibration"];
+        assert!((json["largest_error_percent"].as_f64().unwrap() - 1.0).abs() < 1e-9);
+        assert!((json["data"][0]["left_out_percent"].as_f64().unwrap() + 3.0).abs() < 1e-9);
+        assert!((json["chance"]["probability_by_largest_error"].as_f64().unwrap() - 0.05).abs() < 1e-12);
+        assert_eq!(json["trials"]["least_coverage"], 0.95);
+        assert_eq!(json["assignments"][0]["modes"][2], "disc (0, 1)");
+        let dir = tempfile::tempdir().unwrap();
+        write_files(dir.path(), &results).unwrap();
+        let table = std::fs::read_to_string(dir.path().join("calibration.csv")).unwrap();
+        assert!(table.lines().count() == 4 && table.contains("disc,\"disc (2, 0)\""), "{table}");
+        assert!(dir.path().join("calibrated.toml").is_file());
+        let mut file = ResultsFile::create(dir.path()).unwrap();
+        file.write_calibration(&sample()).unwrap();
+    }
 }

@@ -28,7 +28,8 @@ enum Start {
 /// One kind of modes.
 pub struct Set {
     start: Start,
-    levels: Picks,
+    /// The modes of each level at the start.
+    pub levels: Picks,
     /// What each level is called.
     pub names: Vec<String>,
 }
@@ -70,9 +71,9 @@ impl<'a> CaseModel<'a> {
                     .map(|c| c.parameter.between[0])
                     .fold(prepared.case.modes[name].frequency_scale, f64::min);
                 let below_hz = RANGE * highest / least;
-                let solved = Box::new(Solved::new(prepared, name, below_hz)?);
+                let solved = Box::new(Solved::new(prepared, name, below_hz, None)?);
                 let levels = solved.levels();
-                let names = solved.names(&levels);
+                let names = solved.labels(&levels);
                 Ok(Set { start: Start::Real { name: name.clone(), below_hz, solved }, levels, names })
             }
             Of::Unstable => {
@@ -185,8 +186,10 @@ impl Model for CaseModel<'_> {
         for set in &self.sets {
             match &set.start {
                 Start::Real { name, below_hz, solved } => {
-                    let here = Solved::new(&prepared, name, *below_hz)?;
-                    let solve = |x: &[f64]| Solved::new(&Prepared::new(&self.case_at(x)?)?, name, *below_hz);
+                    let here = Solved::new(&prepared, name, *below_hz, Some(solved))?;
+                    let solve = |x: &[f64]| {
+                        Solved::new(&Prepared::new(&self.case_at(x)?)?, name, *below_hz, Some(solved))
+                    };
                     let follow = |a: &Solved, picks: &Picks, b: &Solved| a.follow(picks, b);
                     let path = Path { solve: &solve, follow: &follow };
                     let picks = path.along((&self.start, solved, &set.levels), (x, &here))?;
