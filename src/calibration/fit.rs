@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// The fit has converged when the projected gradient, each entry over √(JᵀJ)_jj, is below this share of √χ², or of 1 where
 /// χ² is less. What χ² could still lose is about the square of it.
-const CONVERGED: f64 = 1e-6;
+const CONVERGED: f64 = 1e-5;
 /// Most iterations.
 const MOST_ITERATIONS: usize = 60;
 /// Damping beyond which no step helps.

@@ -40,7 +40,7 @@ pub struct CalibratedParameter {
     pub path: Vec<String>,
     /// The least and the largest value \[SI\].
     pub between: [f64; 2],
-    /// What is expected \[SI\].
+    /// What is expected \[SI\]; the value of the case where the file does not say.
     pub expected: f64,
     /// Standard deviation of what is expected \[SI\]; its share of the value where `log`. Without it every value inside the
     /// bounds is as good.
@@ -108,7 +108,7 @@ fn read_parameter(s: &Section, case: &Case, scalars: Option<&[Parameter]>) -> Ca
     let expected = s
         .quantity("expected", dimension)
         .check("a value inside the bounds", |v| !sound || (low..=high).contains(v))
-        .or(first.value);
+        .or(if sound { first.value.clamp(low, high) } else { first.value });
     let share = if log { NUMBER } else { dimension };
     let deviation = s.quantity("deviation", share).positive().optional();
     CalibratedParameter { path, between, expected, deviation, log }

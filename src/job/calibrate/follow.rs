@@ -76,7 +76,7 @@ mod tests {
 
     #[test]
     fn shapes_that_turn_are_followed_on_the_way() {
-        // Two modes in a plane that turn by x: at 100° each looks like the other.
+        // Two modes in a plane that turn by x: at 50° each looks more like the other.
         let solve = |x: &[f64]| Ok(x[0]);
         let follow = |a: &f64, levels: &Picks, b: &f64| {
             let angle = |own: usize, k: usize| {
@@ -86,8 +86,8 @@ mod tests {
         };
         let path = Path { solve: &solve, follow: &follow };
         let levels = vec![vec![0], vec![1]];
-        assert_eq!(follow(&0.0, &levels, &100.0).0, vec![vec![1], vec![0]]);
-        assert_eq!(path.along((&[0.0], &0.0, &levels), (&[100.0], &100.0)).unwrap(), levels);
+        assert_eq!(follow(&0.0, &levels, &50.0).0, vec![vec![1], vec![0]]);
+        assert_eq!(path.along((&[0.0], &0.0, &levels), (&[50.0], &50.0)).unwrap(), levels);
     }
 
     #[test]
