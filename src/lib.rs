@@ -20,6 +20,7 @@
 //! | [`sound`] | how loud vibrating plates are: Rayleigh's integral |
 //! | [`sweep`] | how complex modes change with scalars: branches, critical values, maps |
 //! | [`measured`] | what a test found, and how like it the computed is |
+//! | [`calibration`] | scalars found from measured frequencies, and what the agreement is worth |
 //! | [`results`] | HDF5, VTK, JSON, CSV |
 //! | [`report`] | pictures and the HTML page |
 //! | [`case`] | TOML → validated case → system |
@@ -29,6 +30,7 @@
 //!
 //! M ü + C u̇ + K u + Σ [g N − t₁ F₁ − t₂ F₂] = f. SI units (m, kg, s, N, rad) everywhere inside.
 
+pub mod calibration;
 pub mod case;
 pub mod cli;
 pub mod contact;

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Each room with all the rooms it may use.
-const MAY_USE: [(&str, &[&str]); 22] = [
+const MAY_USE: [(&str, &[&str]); 23] = [
     ("error", &[]),
     ("progress", &[]),
     ("linalg", &["error", "progress"]),
@@ -21,6 +21,7 @@ const MAY_USE: [(&str, &[&str]); 22] = [
     ("sweep", &["error", "progress", "linalg", "stability"]),
     ("transient", &["error", "progress", "linalg", "system", "equilibrium"]),
     ("signal", &[]),
+    ("calibration", &["error", "progress", "linalg"]),
     ("sound", &["linalg", "signal"]),
     ("measured", &["error", "linalg"]),
     // What both wings leave behind.
@@ -37,6 +38,7 @@ const MAY_USE: [(&str, &[&str]); 22] = [
             "signal",
             "sound",
             "measured",
+            "calibration",
         ],
     ),
     (
@@ -75,6 +77,7 @@ const MAY_USE: [(&str, &[&str]); 22] = [
             "signal",
             "sound",
             "measured",
+            "calibration",
             "results",
             "report",
             "case",

@@ -440,3 +440,28 @@ fn what_the_readme_asks_of_a_case_is_accepted() {
     let output = stridor(folder.path(), &["check", "case.toml"]);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
 }
+
+#[test]
+fn a_calibrated_case_is_a_case() {
+    let case = include_str!("../validation/calibrate-disc/case.toml")
+        .replace("radial = 32", "radial = 5")
+        .replace("around = 96", "around = 24")
+        .replace("2600]", "2700]")
+        .replace("trials = 100", "trials = 5\nchance_draws = 50");
+    let folder = folder_with(&case);
+    let output = stridor(folder.path(), &["calibrate", "rig.toml", "--out", "found"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let printed = text(&output.stdout);
+    assert!(printed.contains("Numbers found") && printed.contains("by chance"), "{printed}");
+    for file in ["calibration.csv", "calibration_errors.svg", "calibration_numbers.svg", "report.html"] {
+        assert!(folder.path().join("found").join(file).is_file(), "{file}");
+    }
+    let output = stridor(folder.path(), &["check", "found/calibrated.toml"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+
+    let faulty = case.replace("\"15 mm\", \"25 mm\"", "\"21 mm\", \"25 mm\"");
+    std::fs::write(folder.path().join("faulty.toml"), faulty).expect("a file");
+    let output = stridor(folder.path(), &["calibrate", "faulty.toml", "--out", "nothing"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("own value 0.02") && !folder.path().join("nothing").exists());
+}

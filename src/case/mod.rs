@@ -4,6 +4,7 @@
 //! reported at once with its line. A [`Case`] is complete: every default is filled in, and its TOML form
 //! ([`Case::to_toml`]) reads back as the same case.
 
+mod calibrate;
 mod explore;
 mod frf;
 mod measured;
@@ -15,6 +16,7 @@ mod test_file;
 mod transient;
 pub(crate) mod units;
 
+pub use calibrate::{CalibrateAnalysis, CalibratedParameter, SQUEAL};
 pub use frf::{FrfAnalysis, FrfContact, FrfQuantity, FrfSolution, MotionAt};
 pub use measured::{MeasuredData, Transform};
 pub(crate) use parameter::path_matches;
@@ -101,6 +103,9 @@ pub struct Case {
     /// What tests found, by name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub measured: BTreeMap<String, MeasuredData>,
+    /// Scalars to be found from measured frequencies, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub calibrate: Option<CalibrateAnalysis>,
     /// Complex eigenvalues along one scalar, by name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub sweep: BTreeMap<String, SweepAnalysis>,

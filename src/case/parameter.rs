@@ -96,9 +96,11 @@ impl Case {
     fn invalidated_by(&self, path: &str) -> Invalidates {
         let keys: Vec<&str> = path.split('.').collect();
         let own = match keys[..] {
-            ["modes" | "cea" | "sensitivity" | "transient" | "frf" | "measured" | "sweep" | "map", ..] => {
-                Invalidates::Question
-            }
+            [
+                "modes" | "cea" | "sensitivity" | "transient" | "frf" | "measured" | "calibrate" | "sweep"
+                | "map",
+                ..,
+            ] => Invalidates::Question,
             ["damping", ..] => Invalidates::Damping,
             // Loss factors and Rayleigh damping do not touch M and K.
             ["material", _, "loss_factor" | "rayleigh", ..] | ["spring", _, "damping"] => {

@@ -94,13 +94,14 @@ fn read_root(root: &Section, folder: PathBuf) -> Case {
         transient: root.section("transient", super::transient::read),
         frf: collect(root, "frf", super::frf::read),
         measured: collect(root, "measured", super::measured::read),
+        calibrate: None,
         sweep: BTreeMap::new(),
         map: BTreeMap::new(),
     };
     check_names(root, &case);
     super::measured::check(root, &case);
     check_sensitivity(root, &case);
-    super::explore::read(root, case)
+    super::calibrate::read(root, super::explore::read(root, case))
 }
 
 fn read_matrices(s: &Section) -> Matrices {

@@ -271,6 +271,15 @@ impl<'a> Section<'a> {
         })
     }
 
+    /// A whole number of zero or more.
+    pub fn whole(&'a self, key: &str) -> Found<'a, usize> {
+        self.find(key, "a whole number of zero or more", |value| {
+            let integer = value.as_integer();
+            let whole = integer.and_then(|i| usize::from_str_radix(i.as_str(), i.radix()).ok());
+            whole.ok_or_else(|| describe(value))
+        })
+    }
+
     /// A list of two whole numbers of at least one.
     pub fn two_counts(&'a self, key: &str) -> Found<'a, [usize; 2]> {
         self.find(key, "a list of two whole numbers of at least 1", |value| {

@@ -58,6 +58,8 @@ enum Action {
     Frf(analyse::Options),
     /// What tests measured beside the real modes and frequency responses that they are of
     Compare(analyse::Options),
+    /// Find numbers of the case from measured frequencies, and what the agreement is worth
+    Calibrate(analyse::Options),
     /// Check a case and its mesh without running it, and list its parameters
     Check(check::Options),
     /// Write M, C, K, the degrees of freedom and the contact points of a case, for other programs
@@ -101,6 +103,7 @@ fn act(command: &Command) -> Result<ExitCode> {
         Action::Transient(options) => analyse::run(options, common, crate::job::Selection::TRANSIENT),
         Action::Frf(options) => analyse::run(options, common, crate::job::Selection::FRF),
         Action::Compare(options) => analyse::run(options, common, crate::job::Selection::COMPARE),
+        Action::Calibrate(options) => analyse::run(options, common, crate::job::Selection::CALIBRATE),
         Action::Check(options) => check::run(options, common),
         Action::Export(options) => export::run(options, common),
         Action::New(options) => new::run(options, common),

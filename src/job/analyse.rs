@@ -1,5 +1,6 @@
 //! The analyses of a case in their order, each result handed on as soon as it is there.
 
+use super::calibrate::Calibrate;
 use super::clock::Clock;
 use super::compare::{Tests, has_measured_frf, has_measured_modes};
 use super::complex::{complex_result, whole_modes};
@@ -41,6 +42,8 @@ pub struct Selection {
     pub frf: bool,
     /// Of real modes and frequency responses only those that a test found something of.
     pub measured_only: bool,
+    /// Numbers of the case from measured frequencies.
+    pub calibrate: bool,
 }
 
 /// When to work out sensitivities.
@@ -64,6 +67,7 @@ impl Selection {
         transient: true,
         frf: true,
         measured_only: false,
+        calibrate: true,
     };
     /// Real modes only.
     pub const MODES: Selection = Selection {
@@ -74,6 +78,7 @@ impl Selection {
         transient: false,
         frf: false,
         measured_only: false,
+        calibrate: false,
     };
     /// Steady sliding and complex eigenvalues only.
     pub const CEA: Selection = Selection { modes: false, cea: true, ..Selection::MODES };
@@ -86,6 +91,8 @@ impl Selection {
     pub const FRF: Selection = Selection { modes: false, frf: true, ..Selection::MODES };
     /// Real modes and frequency responses that have a measured side.
     pub const COMPARE: Selection = Selection { frf: true, measured_only: true, ..Selection::MODES };
+    /// Numbers of the case from measured frequencies only.
+    pub const CALIBRATE: Selection = Selection { modes: false, calibrate: true, ..Selection::MODES };
     /// Steady sliding, complex eigenvalues and motion in time.
     pub const TRANSIENT: Selection = Selection { transient: true, ..Selection::CEA };
 
@@ -157,7 +164,7 @@ pub fn analyse(
 /// [`analyse`] with the maps of an earlier run.
 fn analyse_from(
     prepared: &Prepared,
-    Asked { selection, mut in_time, frfs, tests }: Asked<'_>,
+    Asked { selection, mut in_time, frfs, tests, calibrate }: Asked<'_>,
     known: &KnownMaps,
     keeper: &mut dyn Keeper,
     observer: &dyn Observer,
@@ -268,6 +275,11 @@ fn analyse_from(
         keeper.record(Stage::Frf(&response))?;
         results.frfs.push(response);
     }
+    if let Some(calibrate) = calibrate {
+        let found = clock.time("calibration", || calibrate.run(observer))?;
+        keeper.record(Stage::Calibration(&found))?;
+        results.calibration = Some(found);
+    }
     results.warnings.extend(thickness_warnings(prepared));
     results.timings = clock.phases;
     Ok(results)
@@ -279,11 +291,12 @@ struct Asked<'a> {
     in_time: Option<(&'a TransientAnalysis, Places)>,
     frfs: Vec<Frf<'a>>,
     tests: Tests,
+    calibrate: Option<Calibrate<'a>>,
 }
 
 impl<'a> Asked<'a> {
-    /// Tells the faults of the places before anything is computed or written.
-    fn new(prepared: &Prepared<'a>, selection: Selection) -> Result<Self> {
+    /// Tells the faults of the places and of the calibration before anything is computed or written.
+    fn new(prepared: &'a Prepared<'a>, selection: Selection) -> Result<Self> {
         let wanted = prepared.case.transient.as_ref().filter(|_| selection.transient && selection.cea);
         let in_time = wanted.map(|wanted| Ok((wanted, places(prepared, wanted)?))).transpose()?;
         let mut frfs = if selection.frf { frfs(prepared)? } else { Vec::new() };
@@ -296,7 +309,9 @@ impl<'a> Asked<'a> {
             let fault = Fault::new("`measured`", "no measured data in the case", "a table [measured.NAME]");
             return Err(Error::input(fault));
         }
-        Ok(Asked { selection, in_time, frfs, tests })
+        let wanted = prepared.case.calibrate.as_ref().filter(|_| selection.calibrate);
+        let calibrate = wanted.map(|wanted| Calibrate::new(prepared, wanted)).transpose()?;
+        Ok(Asked { selection, in_time, frfs, tests, calibrate })
     }
 }
 

@@ -3,9 +3,9 @@
 use super::explore::KnownMap;
 use crate::error::Result;
 use crate::results::{
-    Channel, ComplexResult, EventTable, Field, FieldsFile, FrfResult, HistoryTable, MapResult, NamedModes,
-    Piece, Recording, ResultsFile, RunResults, SensitivityResult, SteadyResult, SweepResult, TransientResult,
-    modal_channel,
+    CalibrationResult, Channel, ComplexResult, EventTable, Field, FieldsFile, FrfResult, HistoryTable,
+    MapResult, NamedModes, Piece, Recording, ResultsFile, RunResults, SensitivityResult, SteadyResult,
+    SweepResult, TransientResult, modal_channel,
 };
 use crate::sweep::MapPoint;
 use crate::transient::Checkpoint;
@@ -44,6 +44,8 @@ pub enum Stage<'a> {
     TransientField(&'a Field<'a>),
     /// A frequency response.
     Frf(&'a FrfResult),
+    /// Numbers that were found from measured frequencies.
+    Calibration(&'a CalibrationResult),
     /// A whole run in time.
     Transient(&'a TransientResult),
 }
@@ -193,6 +195,7 @@ impl<'a> Folder<'a> {
             }
             Stage::TransientField(field) => self.fields.iter_mut().try_for_each(|file| file.write(field)),
             Stage::Frf(frf) => file.write_frf(frf),
+            Stage::Calibration(calibration) => file.write_calibration(calibration),
             Stage::Transient(transient) => file.finish_transient(transient),
         }
     }

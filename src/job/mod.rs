@@ -7,6 +7,7 @@
 //! A case may give M, C and K themselves instead of a mesh; [`export()`] writes any case in that form.
 
 mod analyse;
+mod calibrate;
 mod clock;
 mod compare;
 mod complex;

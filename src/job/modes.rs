@@ -9,6 +9,7 @@ use crate::results::{NamedModes, NodalField};
 use crate::structure::{Assembled, assemble};
 use crate::system::{Damping, Structure};
 use faer::{Mat, MatRef};
+use std::sync::Arc;
 
 /// A column of `shapes` as a slice.
 pub fn column(shapes: MatRef<'_, f64>, k: usize) -> Vec<f64> {
@@ -24,17 +25,25 @@ pub fn part_modes(
     name: &str,
     observer: &dyn crate::progress::Observer,
 ) -> Result<NamedModes> {
+    let assembled = part_assembled(prepared, name)?;
+    let wanted = wanted(&prepared.case.modes[name], assembled.dofs.n_dofs());
+    let (modes, _) = modal::compute(&assembled.structure, wanted, observer)?;
+    Ok(named(prepared, name, modes, &assembled))
+}
+
+/// The structure that one real-mode analysis of the case looks at: parts alone, or the whole, held as it says.
+///
+/// # Errors
+/// Regions that are missing, or nothing that can move.
+pub fn part_assembled(prepared: &Prepared, name: &str) -> Result<Arc<Assembled>> {
     let analysis = &prepared.case.modes[name];
-    if prepared.case.matrices.is_some() {
-        let wanted = match (analysis.below, analysis.count) {
-            (Some(below), _) => ModesWanted::BelowHz(below),
-            (None, count) => ModesWanted::Count(count.unwrap_or(1).min(prepared.system.n_dofs())),
-        };
-        let (modes, _) = modal::compute(&prepared.system.structure, wanted, observer)?;
-        return Ok(named(prepared, name, modes, &prepared.assembled));
-    }
-    let model = super::model::part_model(prepared.case, &prepared.regions, &prepared.model, name, analysis)?;
-    let assembled = assemble(&model)?;
+    let assembled = if prepared.case.matrices.is_some() || of_the_whole(prepared, analysis) {
+        prepared.assembled.clone()
+    } else {
+        let model =
+            super::model::part_model(prepared.case, &prepared.regions, &prepared.model, name, analysis)?;
+        Arc::new(assemble(&model)?)
+    };
     if assembled.dofs.n_dofs() == 0 {
         return Err(Error::input(Fault::new(
             format!("`modes.{name}`"),
@@ -42,9 +51,7 @@ pub fn part_modes(
             "parts that can move",
         )));
     }
-    let (modes, _) =
-        modal::compute(&assembled.structure, wanted(analysis, assembled.dofs.n_dofs()), observer)?;
-    Ok(named(prepared, name, modes, &assembled))
+    Ok(assembled)
 }
 
 /// Which modes an analysis of a structure with `n_dofs` degrees of freedom asks for.

@@ -53,7 +53,7 @@ pub fn chosen(case: &Case, patterns: &[String]) -> (Vec<Scalar>, Vec<LeftOut>) {
 fn kind(path: &str) -> std::result::Result<Option<Kind>, &'static str> {
     let keys: Vec<&str> = path.split('.').collect();
     match keys[..] {
-        ["modes" | "cea" | "frf" | "measured", ..] | ["contact", _, "bristle", _] => Ok(None),
+        ["modes" | "cea" | "frf" | "measured" | "calibrate", ..] | ["contact", _, "bristle", _] => Ok(None),
         ["mesh", .., "contact_size" | "contact_radius" | "disc_size" | "slider_size"] => {
             Err("an element size, which is no property of the machine")
         }
@@ -64,6 +64,18 @@ fn kind(path: &str) -> std::result::Result<Option<Kind>, &'static str> {
         | ["contact", _, "load" | "approach" | "sliding_velocity"]
         | ["force", ..] => Ok(Some(Kind::Law)),
         _ => Ok(Some(Kind::Structure)),
+    }
+}
+
+/// The scalar at `path`.
+///
+/// # Errors
+/// A path that is not a number of the case, or one that nothing has a derivative by.
+pub fn scalar(case: &Case, path: &str) -> Result<Option<Scalar>> {
+    let Parameter { path, value, unit, .. } = case.parameter(path)?;
+    match kind(&path) {
+        Ok(kind) => Ok(kind.map(|kind| Scalar { path, value, unit, kind })),
+        Err(reason) => Err(no_derivative(reason)),
     }
 }
 
@@ -111,7 +123,7 @@ impl Scalar {
     }
 }
 
-fn no_derivative(reason: &str) -> Error {
+pub(super) fn no_derivative(reason: &str) -> Error {
     Error::analysis("derivative", reason, "Leave the scalar out")
 }
 

@@ -147,7 +147,7 @@ impl Analysed<'_> {
     }
 
     /// dλ/dp of every chosen mode.
-    fn rates(&self, sensitivity: &Sensitivity, scalar: &Scalar) -> Result<Vec<Rate>> {
+    pub(super) fn rates(&self, sensitivity: &Sensitivity, scalar: &Scalar) -> Result<Vec<Rate>> {
         let case = self.prepared.case;
         let value = scalar.value;
         if scalar.kind == Kind::Ratio {

@@ -82,6 +82,7 @@ pub(super) fn page(results: &RunResults, pictures: &[Picture]) -> String {
         }
     }
     body += &super::explored::section(results);
+    body += &super::calibration::section(results);
     if !results.timings.is_empty() {
         body += &format!("<h2>Wall time</h2>\n{}", untitled(tables::timings(results)));
     }

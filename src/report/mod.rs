@@ -13,6 +13,7 @@
 mod advice;
 mod axes;
 mod budget;
+mod calibration;
 mod chart;
 mod colours;
 mod comparison;
@@ -70,7 +71,8 @@ fn pictures(results: &RunResults) -> Vec<Picture> {
         tornado::picture(results),
         advice::picture(results),
     ];
-    all.into_iter().flatten().chain(transient::pictures(results)).collect()
+    let more = transient::pictures(results).into_iter().chain(calibration::pictures(results));
+    all.into_iter().flatten().chain(more).collect()
 }
 
 #[cfg(test)]

@@ -23,6 +23,7 @@ pub fn summary(results: &RunResults) -> String {
     let check = results.transient.iter().filter_map(|run| run.reduced_check.as_ref());
     parts.extend(check.map(|check| render(&super::reduced_check::table(check, results.complex.as_ref()))));
     parts.extend(explored(results));
+    parts.extend(calibration(results));
     parts.extend(results.warnings.iter().map(|warning| wrap(&format!("Warning: {warning}"))));
     parts.push(verdict(results));
     parts.join("\n")
@@ -38,6 +39,15 @@ fn explored(results: &RunResults) -> Vec<String> {
     parts.extend(results.maps.iter().map(|m| format!("Map {}\n{}", m.name, say(map_words(m)))));
     parts.extend(results.damping.iter().map(|d| render(&damping_table(d))));
     parts
+}
+
+/// What was found from measured frequencies, and what it is worth.
+fn calibration(results: &RunResults) -> Vec<String> {
+    use super::calibration::{assignment_table, fit_table, number_table, words};
+    let Some(result) = &results.calibration else { return Vec::new() };
+    let worth: String = words(result).iter().map(|w| wrap(w)).collect();
+    let tables = [fit_table(result), number_table(result), assignment_table(result)];
+    tables.iter().map(render).chain([worth]).collect()
 }
 
 /// The modes of set `index` of [`RunResults::modes`] beside the measured frequencies.

@@ -10,12 +10,14 @@
 //! | `frf_<name>.csv`, `frf_<name>.uff` | frequency responses | spreadsheets, test-data programs |
 //! | `comparison_<name>.csv`, `comparison_<name>_frf.csv` | measured modes and responses beside the computed ones | spreadsheets |
 //! | `modes_<set>.uff` | the shapes, for test-data programs | test-data programs |
+//! | `calibrated.toml`, `calibration.csv` | the case with the numbers that were found, and measured beside computed frequencies | stridor, spreadsheets |
 //! | `critical_values.csv`, `sweep_<name>.csv`, `map_<name>.csv` | sweeps and maps | spreadsheets |
 //! | `transient.vtkhdf` | the motion of all nodes at regular times | ParaView |
 //! | `modes_<set>.vtu`, `steady.vtu`, `complex_modes.vtu`, `advice.vtu` | the shapes on the mesh | ParaView, pyvista |
 //!
 //! [`ResultsFile`] is used while the run goes on, [`write_files`] once at its end.
 
+mod calibration;
 mod comparison;
 mod csv;
 mod derived;
@@ -46,6 +48,7 @@ mod watched;
 #[cfg(test)]
 pub(crate) mod sample;
 
+pub use calibration::{CalibratedDatum, CalibratedNumber, CalibrationResult};
 pub use comparison::{MeasuredComparison, MeasuredResponses, MeasuredRow, Placed, ResponsePair};
 pub use csv::write_csv;
 pub use derived::{ComparedRow, PairTotals};
@@ -87,6 +90,9 @@ pub fn write_files(dir: &Path, results: &RunResults) -> crate::error::Result<()>
     frf::write(dir, &results.frfs)?;
     comparison::write(dir, results)?;
     uff::write_modes(dir, results)?;
+    if let Some(calibration) = &results.calibration {
+        calibration::write(dir, calibration)?;
+    }
     write_vtk(dir, results)
 }
 
@@ -125,6 +131,8 @@ pub struct RunResults {
     pub transient: Option<TransientResult>,
     /// Frequency responses, in the order of their names.
     pub frfs: Vec<FrfResult>,
+    /// Numbers of the case that were found from measured frequencies.
+    pub calibration: Option<CalibrationResult>,
     /// Which verdicts the modal damping decides.
     pub damping: Option<DampingVerdicts>,
     /// Wall time of each phase \[s\].

@@ -76,6 +76,7 @@ pub(crate) fn rig() -> RunResults {
         geometry,
         transient: Some(transient()),
         frfs: vec![frf()],
+        calibration: Some(super::calibration::sample()),
     }
 }
 

@@ -1,0 +1,99 @@
+//! The model linearised at one place: what a fit would find there, in microseconds.
+
+use super::quadratic::least_in_box;
+use super::{Datum, Level, Levels, Problem};
+use nalgebra::{DMatrix, DVector};
+
+/// ln f_k(x) ≈ ln f_k(x₀) + g_k·(x − x₀).
+#[derive(Debug, Clone)]
+pub(super) struct Linear<'a> {
+    problem: &'a Problem,
+    x: Vec<f64>,
+    levels: &'a Levels,
+}
+
+/// χ²(x) ≈ constant + 2 (½ dᵀHd + gᵀd), d = x − x₀, of the residuals that were added.
+#[derive(Debug, Clone)]
+pub(super) struct Misfit {
+    h: DMatrix<f64>,
+    g: DVector<f64>,
+    constant: f64,
+}
+
+impl Misfit {
+    /// Adds the residual `at` + `row`·d.
+    fn add(&mut self, at: f64, row: impl Fn(usize) -> f64) {
+        let row = DVector::from_fn(self.g.len(), |j, _| row(j));
+        self.h.ger(1.0, &row, &row, 1.0);
+        self.g.axpy(at, &row, 1.0);
+        self.constant += at * at;
+    }
+}
+
+impl<'a> Linear<'a> {
+    pub(super) fn new(problem: &'a Problem, x: &[f64], levels: &'a Levels) -> Self {
+        Linear { problem, x: x.to_vec(), levels }
+    }
+
+    /// The levels that may be what was measured: of the same set, and inside the bounds they come as near as a factor
+    /// 1 + `reach`. They are in the order of the levels.
+    pub(super) fn plausible(&self, datum: &Datum, reach: f64) -> Vec<usize> {
+        let y = datum.frequency_hz.ln();
+        let near = |level: &Level| {
+            let (mut low, mut high) = (level.frequency_hz.ln(), level.frequency_hz.ln());
+            for ((slope, x), unknown) in level.slope.iter().zip(&self.x).zip(&self.problem.unknowns) {
+                let ends = unknown.bounds.map(|bound| slope * (bound - x));
+                low += ends[0].min(ends[1]);
+                high += ends[0].max(ends[1]);
+            }
+            low - reach.ln_1p() <= y && y <= high + reach.ln_1p()
+        };
+        let same = |k: &usize| self.problem.level_sets[*k] == datum.set;
+        (0..self.levels.len()).filter(same).filter(|k| self.levels[*k].as_ref().is_some_and(near)).collect()
+    }
+
+    /// The misfit of what was expected alone.
+    pub(super) fn expected(&self) -> Misfit {
+        let n = self.x.len();
+        let mut misfit = Misfit { h: DMatrix::zeros(n, n), g: DVector::zeros(n), constant: 0.0 };
+        for (j, unknown) in self.problem.unknowns.iter().enumerate() {
+            if let Some(expected) = unknown.expected {
+                misfit.add(self.x[j] - expected, |k| f64::from(u8::from(j == k)));
+            }
+        }
+        misfit
+    }
+
+    /// `misfit` with one more datum, which is taken for a level that was found.
+    pub(super) fn with(&self, misfit: &Misfit, datum: &Datum, level: usize) -> Misfit {
+        let mut more = misfit.clone();
+        if let Some(level) = &self.levels[level] {
+            let at = (level.frequency_hz / datum.frequency_hz).ln() / datum.deviation;
+            more.add(at, |j| level.slope[j] / datum.deviation);
+        }
+        more
+    }
+
+    /// The least χ² inside the bounds, and where it is.
+    pub(super) fn least(&self, misfit: &Misfit) -> (f64, Vec<f64>) {
+        let room = |k: usize| {
+            let each = self.problem.unknowns.iter().zip(&self.x);
+            each.map(|(unknown, x)| unknown.bounds[k] - x).collect::<Vec<f64>>()
+        };
+        let d = least_in_box(&misfit.h, &misfit.g, &room(0), &room(1));
+        let chi2 = misfit.constant + (&misfit.h * &d + 2.0 * &misfit.g).dot(&d);
+        (chi2.max(0.0), self.x.iter().zip(&d).map(|(x, d)| x + d).collect())
+    }
+
+    /// max |f/y − 1| at `x`.
+    pub(super) fn largest_error(&self, data: &[Datum], assignment: &[usize], x: &[f64]) -> f64 {
+        let error = |(datum, k): (&Datum, &usize)| {
+            self.levels[*k].as_ref().map_or(f64::INFINITY, |level| {
+                let moved: f64 =
+                    level.slope.iter().zip(x.iter().zip(&self.x)).map(|(g, (x, x0))| g * (x - x0)).sum();
+                (level.frequency_hz * moved.exp() / datum.frequency_hz - 1.0).abs()
+            })
+        };
+        data.iter().zip(assignment).map(error).fold(0.0, f64::max)
+    }
+}

@@ -1,0 +1,163 @@
+//! Whether the intervals hold the truth as often as they say: the fit repeated on data made from its own model.
+
+use super::knowledge::{Interval, Knowledge};
+use super::nearby::Nearby;
+use super::{Datum, Fit, Model, Problem, Unknown, fit};
+use crate::error::Result;
+use crate::linalg::random::Random;
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+/// The model is looked at no nearer to the truth than this, in units of the unknowns.
+const LEAST_STEP: f64 = 1e-2;
+
+/// Trials with synthetic data (parametric bootstrap): the calibrated values are the truth, each frequency is the computed
+/// one with the stated relative deviation, normally distributed, and what was expected scatters about the truth likewise.
+/// The fits are made to the model near the truth, quadratic in ln f; how far that is from the model itself is told.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trials {
+    /// How many.
+    pub count: usize,
+    /// Those whose fit converged.
+    pub converged: usize,
+    /// Of all, those whose 95 % interval with the stated deviations holds the truth, for each unknown.
+    pub covered: Vec<usize>,
+    /// The same for the intervals scaled by χ²/ν; `None` where ν = 0.
+    pub scaled_covered: Option<Vec<usize>>,
+    /// The largest difference of ln f between the quadratic model and the model itself, in standard deviations of the datum, at
+    /// the estimates that are furthest from the truth.
+    pub model_error: f64,
+    /// Root mean square of estimate less truth, for each unknown.
+    pub scatter: Vec<f64>,
+}
+
+impl Trials {
+    pub(super) fn new(
+        model: &dyn Model,
+        problem: &Problem,
+        assignment: &[usize],
+        (truth, known): (&Fit, &Knowledge),
+        count: usize,
+    ) -> Result<Trials> {
+        let mut normal = Normal { random: Random::new(), second: None };
+        let problems: Vec<Problem> =
+            (0..count).map(|_| synthetic(problem, assignment, truth, &mut normal)).collect();
+        let steps: Vec<f64> = known.deviations.iter().map(|d| d.clamp(LEAST_STEP, 1.0)).collect();
+        let near = Nearby::new(model, problem, (&truth.x, &truth.levels), &steps)?;
+        let one = |trial: &Problem| -> Result<(bool, Vec<f64>, Knowledge)> {
+            let found = fit(&near, trial, assignment, (&truth.x, &truth.levels))?;
+            let known = Knowledge::new(trial, assignment, &found);
+            Ok((found.converged, found.x, known))
+        };
+        let done: Vec<_> = problems.par_iter().map(one).collect::<Result<_>>()?;
+        let n = truth.x.len();
+        let holds = |of: &[Interval], j: usize| (of[j][0]..=of[j][1]).contains(&truth.x[j]);
+        let covered = |of: &dyn Fn(&Knowledge) -> Option<Vec<Interval>>| -> Option<Vec<usize>> {
+            let intervals = done.iter().map(|d| of(&d.2)).collect::<Option<Vec<_>>>()?;
+            Some((0..n).map(|j| intervals.iter().filter(|of| holds(of, j)).count()).collect())
+        };
+        let squares = |j: usize| done.iter().map(|d| (d.1[j] - truth.x[j]).powi(2)).sum::<f64>();
+        Ok(Trials {
+            count,
+            converged: done.iter().filter(|d| d.0).count(),
+            covered: covered(&|known| Some(known.intervals.clone())).unwrap_or_default(),
+            scaled_covered: covered(&|known| known.scaled_intervals.clone()),
+            model_error: model_error(model, &near, problem, assignment, truth, done.iter().map(|d| &d.1))?,
+            scatter: (0..n).map(|j| (squares(j) / count.max(1) as f64).sqrt()).collect(),
+        })
+    }
+}
+
+/// |Δ ln f|/s at the estimates with the largest and the smallest value of each unknown.
+fn model_error<'a>(
+    model: &dyn Model,
+    near: &Nearby,
+    problem: &Problem,
+    assignment: &[usize],
+    truth: &Fit,
+    estimates: impl Iterator<Item = &'a Vec<f64>> + Clone,
+) -> Result<f64> {
+    let by = |j: usize| move |a: &&Vec<f64>, b: &&Vec<f64>| a[j].total_cmp(&b[j]);
+    let ends = (0..truth.x.len())
+        .flat_map(|j| [estimates.clone().max_by(by(j)), estimates.clone().min_by(by(j))])
+        .flatten()
+        .collect::<Vec<_>>();
+    let error = |x: &&Vec<f64>| -> Result<f64> {
+        let (own, exact) = (near.levels(x)?, model.levels(x)?);
+        let each = problem.data.iter().zip(assignment).map(|(datum, k)| match (&own[*k], &exact[*k]) {
+            (Some(a), Some(b)) => (a.frequency_hz / b.frequency_hz).ln().abs() / datum.deviation,
+            _ => f64::INFINITY,
+        });
+        Ok(each.fold(0.0, f64::max))
+    };
+    let errors: Vec<f64> = ends.par_iter().map(error).collect::<Result<_>>()?;
+    Ok(errors.into_iter().fold(0.0, f64::max))
+}
+
+fn synthetic(problem: &Problem, assignment: &[usize], truth: &Fit, normal: &mut Normal) -> Problem {
+    let datum = |(datum, k): (&Datum, &usize), normal: &mut Normal| {
+        let exact = truth.levels[*k].as_ref().map_or(datum.frequency_hz, |level| level.frequency_hz);
+        Datum { frequency_hz: exact * (datum.deviation * normal.next()).exp(), ..*datum }
+    };
+    let expected = |(unknown, x): (&Unknown, &f64), normal: &mut Normal| Unknown {
+        expected: unknown.expected.map(|_| x + normal.next()),
+        ..*unknown
+    };
+    Problem {
+        data: problem.data.iter().zip(assignment).map(|pair| datum(pair, normal)).collect(),
+        unknowns: problem.unknowns.iter().zip(&truth.x).map(|pair| expected(pair, normal)).collect(),
+        level_sets: problem.level_sets.clone(),
+    }
+}
+
+/// Normally distributed numbers, by Box and Muller's transformation (Ann. Math. Stat. 29 (1958) 610).
+struct Normal {
+    random: Random,
+    second: Option<f64>,
+}
+
+impl Normal {
+    fn next(&mut self) -> f64 {
+        if let Some(second) = self.second.take() {
+            return second;
+        }
+        // Uniform in (0, 1].
+        let uniform = 0.5 * (1.0 - self.random.next());
+        let (size, angle) = ((-2.0 * uniform.max(f64::MIN_POSITIVE).ln()).sqrt(), PI * self.random.next());
+        self.second = Some(size * angle.sin());
+        size * angle.cos()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::samples::{Powers, problem};
+    use super::*;
+
+    #[test]
+    fn normal_numbers_have_their_moments() {
+        let mut normal = Normal { random: Random::new(), second: None };
+        let all: Vec<f64> = (0..40_000).map(|_| normal.next()).collect();
+        let moment = |p: i32| all.iter().map(|x| x.powi(p)).sum::<f64>() / all.len() as f64;
+        assert!(moment(1).abs() < 0.02 && (moment(2) - 1.0).abs() < 0.03 && (moment(4) - 3.0).abs() < 0.2);
+    }
+
+    #[test]
+    fn intervals_hold_the_truth_in_95_of_100_trials() {
+        let model = Powers::new(6, 2, 1);
+        let truth = [0.2, -0.3];
+        let levels = model.levels(&truth).unwrap();
+        let exact: Vec<f64> = levels.iter().flatten().map(|level| level.frequency_hz).collect();
+        let mut problem = problem(&model, &exact, 0.005);
+        problem.unknowns[0].expected = Some(0.9);
+        let assignment = [0, 1, 2, 3, 4, 5];
+        let start = fit(&model, &problem, &assignment, (&truth, &levels)).unwrap();
+        let known = Knowledge::new(&problem, &assignment, &start);
+        let trials = Trials::new(&model, &problem, &assignment, (&start, &known), 1000).unwrap();
+        assert!(trials.converged == 1000 && trials.model_error < 1e-9);
+        // Four standard deviations of a binomial distribution about 950.
+        for covered in trials.covered.iter().chain(trials.scaled_covered.iter().flatten()) {
+            assert!((922..=978).contains(covered), "{trials:?}");
+        }
+    }
+}

@@ -1,0 +1,312 @@
+//! `[calibrate]`: scalars of the case to be found from measured frequencies.
+
+use super::reader::Section;
+use super::units::{NUMBER, dimension_of};
+use super::{Case, ContactPoints, ContactState, Invalidates, Matrices, MatrixTerm, MeshSource, Parameter};
+use crate::error::{Error, nearest};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::ops::Bound;
+
+/// The name in `against` that stands for `cea.measured_squeal`.
+pub const SQUEAL: &str = "squeal";
+
+/// Relative standard deviation of a measured frequency that the case does not state.
+const DEVIATION: f64 = 0.005;
+
+/// Scalars to be found from measured frequencies.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CalibrateAnalysis {
+    /// Names of `[modes.NAME]` with measured frequencies, and `squeal` for those of `[cea]`.
+    pub against: Vec<String>,
+    /// Relative standard deviation of a measured frequency.
+    pub deviation: f64,
+    /// A computed mode may be what was measured when, linearised, it comes as near as a factor 1 + this inside the bounds.
+    pub mode_reach: f64,
+    /// Predicts each measured frequency from the others.
+    pub leave_one_out: bool,
+    /// Draws of measured sets that mean nothing, for the probability of a match by chance; 0 for none.
+    pub chance_draws: usize,
+    /// Fits of synthetic data, for the coverage of the intervals; 0 for none.
+    pub trials: usize,
+    /// What is to be found, by name.
+    pub parameter: BTreeMap<String, CalibratedParameter>,
+}
+
+/// A number to be found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CalibratedParameter {
+    /// The paths of the scalars that have this value.
+    pub path: Vec<String>,
+    /// The least and the largest value \[SI\].
+    pub between: [f64; 2],
+    /// What is expected \[SI\]; the value of the case where the file does not say.
+    pub expected: f64,
+    /// Standard deviation of what is expected \[SI\]; its share of the value where `log`. Without it every value inside the
+    /// bounds is as good.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub deviation: Option<f64>,
+    /// Takes equal ratios, not equal differences, as equal steps.
+    pub log: bool,
+}
+
+/// Reads `[calibrate]` of a case that is read but for it. Its scalars are looked up when the rest of the file is sound.
+pub(super) fn read(root: &Section, case: Case) -> Case {
+    if !root.has("calibrate") {
+        return case;
+    }
+    let scalars = root.sound_so_far().then(|| case.parameters());
+    let calibrate = root.section("calibrate", |s| {
+        let analysis = CalibrateAnalysis {
+            against: s
+                .strings("against")
+                .required("names of [modes.NAME] with measured frequencies, or \"squeal\""),
+            deviation: s.quantity("deviation", NUMBER).positive().or(DEVIATION),
+            mode_reach: s
+                .quantity("mode_reach", NUMBER)
+                .within(Bound::Included(0.0), Bound::Excluded(1.0))
+                .or(0.2),
+            leave_one_out: s.boolean("leave_one_out").or(true),
+            chance_draws: s.whole("chance_draws").check("at most a million", |n| *n <= 1_000_000).or(1000),
+            trials: s.whole("trials").check("at most a million", |n| *n <= 1_000_000).or(0),
+            parameter: super::read::collect(s, "parameter", |p| read_parameter(p, &case, scalars.as_deref())),
+        };
+        check_against(s, &case, &analysis.against);
+        check_paths(s, &analysis.parameter);
+        analysis
+    });
+    Case { calibrate, ..case }
+}
+
+fn read_parameter(s: &Section, case: &Case, scalars: Option<&[Parameter]>) -> CalibratedParameter {
+    let path =
+        s.strings("path").required("the path of a scalar of the case, or of several that are the same");
+    let log = s.boolean("log").or(false);
+    let found: Option<Vec<&Parameter>> =
+        scalars.and_then(|all| path.iter().map(|path| find(s, all, path)).collect());
+    let Some(first) = found.as_ref().and_then(|found| found.first()) else {
+        s.skip(&["between", "expected", "deviation"]);
+        return CalibratedParameter { path, between: [0.0, 1.0], expected: 0.5, deviation: None, log };
+    };
+    let dimension = dimension_of(first.unit);
+    for other in found.iter().flatten().filter(|p| p.unit != first.unit) {
+        let found = format!("`{}` in {} beside {}", other.path, other.unit, first.unit);
+        s.fault("path", found, "scalars of one unit", "");
+    }
+    let between = s
+        .quantities("between", dimension)
+        .check("the lower bound before the upper one", |[low, high]| low < high)
+        .check("bounds above zero with `log`", |[low, _]| !log || *low > 0.0)
+        .required("two bounds");
+    let [low, high] = between;
+    let sound = low < high;
+    for value in between.into_iter().filter(|_| sound) {
+        if let Some(expected) = path.iter().find_map(|path| refused(case, path, value)) {
+            s.fault("between", format!("{value}"), expected, "");
+        }
+    }
+    let expected = s
+        .quantity("expected", dimension)
+        .check("a value inside the bounds", |v| !sound || (low..=high).contains(v))
+        .or(if sound { first.value.clamp(low, high) } else { first.value });
+    let share = if log { NUMBER } else { dimension };
+    let deviation = s.quantity("deviation", share).positive().optional();
+    CalibratedParameter { path, between, expected, deviation, log }
+}
+
+/// Why the case does not take `value` at `path`, if it does not.
+fn refused(case: &Case, path: &str, value: f64) -> Option<String> {
+    match case.with_parameter(path, value) {
+        Ok(_) => None,
+        Err(Error::Input(faults)) => {
+            Some(faults.0.first().map_or(String::new(), |f| format!("{} for `{path}`", f.expected)))
+        }
+        Err(other) => Some(other.to_string()),
+    }
+}
+
+fn find<'a>(s: &Section, all: &'a [Parameter], path: &str) -> Option<&'a Parameter> {
+    let found = all.iter().find(|p| p.path == path);
+    match found {
+        Some(p) if p.invalidates == Invalidates::Question && !is_scale(path) => {
+            let expected = "a scalar of the model, or the `frequency_scale` of real modes";
+            s.fault("path", format!("`{path}`, which only says what is asked"), expected, "");
+            None
+        }
+        Some(p) => Some(p),
+        None => {
+            let help = nearest(path, all.iter().map(|p| p.path.as_str()))
+                .map_or("`stridor check CASE --parameters` lists them".to_string(), |near| {
+                    format!("Did you mean `{near}`?")
+                });
+            s.fault("path", format!("`{path}`, no number of the case"), "the path of a scalar", &help);
+            None
+        }
+    }
+}
+
+/// Whether `path` is the `frequency_scale` of a set of real modes.
+fn is_scale(path: &str) -> bool {
+    matches!(path.split('.').collect::<Vec<_>>()[..], ["modes", _, "frequency_scale"])
+}
+
+fn check_against(s: &Section, case: &Case, against: &[String]) {
+    for (k, name) in against.iter().enumerate() {
+        let fault =
+            |found: &str, expected: &str| s.fault("against", format!("\"{name}\"{found}"), expected, "");
+        if against[..k].contains(name) {
+            fault(" twice", "each name once");
+        }
+        if name == SQUEAL {
+            if case.cea.as_ref().is_none_or(|cea| cea.measured_squeal.is_empty()) {
+                fault(" without measured frequencies", "a [cea] with `measured_squeal`");
+            }
+            continue;
+        }
+        match case.modes.get(name) {
+            None => {
+                let known: Vec<&str> = case.modes.keys().map(String::as_str).collect();
+                fault("", &format!("\"{SQUEAL}\", or the name of real modes ({})", known.join(", ")));
+            }
+            Some(modes) if modes.measured.is_empty() => {
+                fault(" without measured frequencies", &format!("`measured` in [modes.{name}]"));
+            }
+            Some(modes) if modes.contact == ContactState::Closed => {
+                fault(" with closed contact", "real modes with open contact");
+            }
+            Some(_) => {}
+        }
+    }
+    if s.has("against") && against.is_empty() {
+        s.fault("against", "nothing", "at least one name", "");
+    }
+}
+
+fn check_paths(s: &Section, parameters: &BTreeMap<String, CalibratedParameter>) {
+    if parameters.is_empty() && !s.has("parameter") {
+        s.fault("parameter", "nothing", "at least one table [calibrate.parameter.NAME]", "");
+    }
+    let all: Vec<(&String, &String)> =
+        parameters.iter().flat_map(|(name, p)| p.path.iter().map(move |path| (name, path))).collect();
+    for (k, (name, path)) in all.iter().enumerate() {
+        if all[..k].iter().any(|(_, other)| other == path) {
+            s.fault(&format!("parameter.{name}.path"), format!("`{path}` twice"), "each scalar once", "");
+        }
+    }
+}
+
+impl Case {
+    /// The same case with every number that is to be found at its value in `values` \[SI\], in the order of the names.
+    ///
+    /// # Errors
+    /// A value that the case refuses.
+    pub fn with_calibrated(&self, values: &[f64]) -> crate::error::Result<Case> {
+        let parameters = self.calibrate.iter().flat_map(|c| c.parameter.values());
+        let scalars =
+            parameters.zip(values).flat_map(|(p, value)| p.path.iter().map(move |path| (path, *value)));
+        let mut case = Case { calibrate: None, ..self.clone() };
+        for (path, value) in scalars {
+            case = case.with_parameter(path, value)?;
+        }
+        Ok(Case { calibrate: self.calibrate.clone(), ..case })
+    }
+
+    /// The same case with the whole path of every file it names, so that it loads from any folder.
+    pub fn with_absolute_paths(&self) -> Case {
+        let mut case = self.clone();
+        let whole = |file: &mut String| {
+            // Without a current folder, which is all that can be missing, the path stays as it is.
+            if let Ok(path) = std::path::absolute(self.folder.join(&*file)) {
+                *file = path.to_string_lossy().into_owned();
+            }
+        };
+        if let Some(MeshSource::File { file, .. }) = &mut case.mesh {
+            whole(file);
+        }
+        if let Some(Matrices { mass, stiffness, damping, load, dofs, term }) = &mut case.matrices {
+            [mass, stiffness].into_iter().for_each(whole);
+            [damping, load, dofs].into_iter().flatten().for_each(whole);
+            for MatrixTerm { factor: _, mass, damping, stiffness } in term.values_mut() {
+                [mass, damping, stiffness].into_iter().flatten().for_each(whole);
+            }
+        }
+        case.measured.values_mut().filter_map(|measured| measured.file.as_mut()).for_each(whole);
+        for contact in case.contact.values_mut() {
+            if let Some(ContactPoints::File(file)) = &mut contact.points {
+                whole(file);
+            }
+        }
+        case
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Result;
+
+    const CASE: &str = include_str!("../../validation/annulus-02/case.toml");
+
+    fn parse(more: &str) -> Result<Case> {
+        let measured = format!("{CASE}measured = [200, 300]\n[modes.other]\ncount = 3\n");
+        Case::parse("case.toml", &format!("{measured}{more}"), ".".into())
+    }
+
+    #[test]
+    fn it_reads_back_from_the_resolved_case() {
+        let case = parse(
+            "[calibrate]\nagainst = \"disc\"\n[calibrate.parameter.hub]\npath = \"mesh.annulus.hub_radius\"\n\
+             between = [\"10 mm\", \"20 mm\"]\ndeviation = \"2 mm\"\n[calibrate.parameter.scale]\n\
+             path = \"modes.disc.frequency_scale\"\nbetween = [0.9, 1.1]\nlog = true\n",
+        )
+        .unwrap();
+        let calibrate = case.calibrate.as_ref().unwrap();
+        let hub = &calibrate.parameter["hub"];
+        assert_eq!((hub.between, hub.expected, hub.deviation), ([0.01, 0.02], 0.015, Some(0.002)));
+        assert_eq!((calibrate.deviation, calibrate.chance_draws, calibrate.trials), (0.005, 1000, 0));
+        assert_eq!(Case::parse("again", &case.to_toml(), ".".into()).unwrap(), case);
+        let moved = case.with_calibrated(&[0.018, 0.97]).unwrap();
+        assert_eq!(moved.parameter("mesh.annulus.hub_radius").unwrap().value, 0.018);
+        assert_eq!(moved.modes["disc"].frequency_scale, 0.97);
+        assert_eq!(Case::parse("again", &moved.to_toml(), ".".into()).unwrap(), moved);
+    }
+
+    #[test]
+    fn every_fault_is_found_at_once() {
+        let error = parse(
+            "[calibrate]\nagainst = [\"disc\", \"disk\", \"other\", \"squeal\", \"disc\"]\ndeviation = 0\n\
+             [calibrate.parameter.a]\npath = \"mesh.annulus.hub_radiu\"\nbetween = [1, 2]\n\
+             [calibrate.parameter.b]\npath = \"shell.disc.thickness\"\nbetween = [\"2 mm\", \"0 mm\"]\n\
+             [calibrate.parameter.c]\npath = \"shell.disc.thickness\"\nbetween = [\"2 mm\", \"3 mm\"]\n\
+             [calibrate.parameter.d]\npath = \"material.steel.poissons_ratio\"\nbetween = [0.2, 0.6]\nexpected = 0.7\n\
+             [calibrate.parameter.e]\npath = \"modes.disc.below\"\n\
+             [calibrate.parameter.f]\npath = [\"material.steel.density\", \"material.steel.youngs_modulus\"]\n\
+             between = [0, 9e9]\nlog = true\nfoo = 1\n",
+        )
+        .unwrap_err()
+        .to_string();
+        for expected in [
+            "\"disk\"; expected \"squeal\", or the name of real modes (disc, other)",
+            "\"other\" without measured",
+            "\"squeal\" without measured",
+            "\"disc\" twice",
+            "Did you mean `mesh.annulus.hub_radius`?",
+            "the lower bound before the upper one",
+            "`shell.disc.thickness` twice",
+            "below 0.5 for `material.steel.poissons_ratio`",
+            "a value inside the bounds",
+            "only says what is asked",
+            "scalars of one unit",
+            "bounds above zero with `log`",
+            "`calibrate.deviation`",
+            "unknown key",
+        ] {
+            assert!(error.contains(expected), "{expected} not in\n{error}");
+        }
+        let error = parse("[calibrate]\nagainst = []\n").unwrap_err().to_string();
+        assert!(
+            error.contains("at least one name") && error.contains("[calibrate.parameter.NAME]"),
+            "{error}"
+        );
+    }
+}

@@ -1,0 +1,152 @@
+//! `[calibrate]`: the numbers of a case that make its modes those that were measured.
+//!
+//! [`facts`](facts::facts) says what was measured, a [`Coordinate`] turns a number of the case into an unknown,
+//! [`CaseModel`] computes frequencies and slopes, and [`crate::calibration`] does the rest.
+
+mod coordinate;
+mod facts;
+mod follow;
+mod model;
+mod neighbours;
+mod real;
+#[cfg(test)]
+mod tests;
+mod unstable;
+
+use self::coordinate::Coordinate;
+use self::facts::Facts;
+use self::model::{CaseModel, scalars};
+use super::prepared::Prepared;
+use crate::calibration::{self, Datum, Options, Problem};
+use crate::case::{CalibrateAnalysis, Case};
+use crate::error::{Error, Fault, Faults, Result};
+use crate::progress::Observer;
+use crate::results::{CalibratedDatum, CalibratedNumber, CalibrationResult};
+
+/// A calibration whose faults are told.
+pub struct Calibrate<'a> {
+    prepared: &'a Prepared<'a>,
+    wanted: &'a CalibrateAnalysis,
+    coordinates: Vec<Coordinate<'a>>,
+    facts: Vec<Facts>,
+}
+
+impl<'a> Calibrate<'a> {
+    /// The calibration that the case asks for.
+    ///
+    /// # Errors
+    /// Values outside their bounds, scalars that share a number and differ, scalars that no mode has a derivative by.
+    pub fn new(prepared: &'a Prepared<'a>, wanted: &'a CalibrateAnalysis) -> Result<Self> {
+        let mut faults = Faults::new();
+        let mut coordinates = Vec::new();
+        for (name, parameter) in &wanted.parameter {
+            let place = |key: &str| format!("`calibrate.parameter.{name}.{key}`");
+            let coordinate = Coordinate::new(parameter);
+            let values = parameter.path.iter().map(|path| Ok(prepared.case.parameter(path)?.value));
+            if let Some(values) = faults.take(values.collect::<Result<Vec<f64>>>()) {
+                let [low, high] = parameter.between;
+                if values.iter().any(|value| *value != values[0]) {
+                    faults.push(Fault::new(
+                        place("path"),
+                        format!("values {values:?}"),
+                        "scalars of one value",
+                    ));
+                } else if !(low..=high).contains(&values[0]) {
+                    let found = format!("bounds {low} to {high} without the case's own value {}", values[0]);
+                    let expected = "bounds that hold the value of the case, where the search starts";
+                    faults.push(Fault::new(place("between"), found, expected));
+                }
+            }
+            if let Err(error) = scalars(prepared.case, &coordinate) {
+                let expected = "a scalar that modes have a derivative by";
+                let found = match &error {
+                    Error::Analysis { found, .. } => found.clone(),
+                    other => other.to_string(),
+                };
+                faults.push(Fault::new(place("path"), found, expected));
+            }
+            coordinates.push(coordinate);
+        }
+        let facts = facts::facts(prepared.case);
+        faults.into_result(Calibrate { prepared, wanted, coordinates, facts })
+    }
+
+    /// Calibrates.
+    ///
+    /// # Errors
+    /// A model that cannot be computed, or measured frequencies that nothing comes near.
+    pub fn run(&self, observer: &dyn Observer) -> Result<CalibrationResult> {
+        let case = self.prepared.case;
+        let model = CaseModel::new(self.prepared, &self.coordinates, &self.facts)?;
+        let data = |(set, facts): (usize, &Facts)| {
+            let datum = move |hz: &f64| Datum { set, frequency_hz: *hz, deviation: facts.deviation };
+            facts.frequencies_hz.iter().map(datum).collect::<Vec<_>>()
+        };
+        let problem = Problem {
+            unknowns: self.coordinates.iter().map(Coordinate::unknown).collect(),
+            data: self.facts.iter().enumerate().flat_map(data).collect(),
+            level_sets: model.level_sets(),
+        };
+        let options = Options {
+            reach: self.wanted.mode_reach,
+            leave_one_out: self.wanted.leave_one_out,
+            chance_draws: self.wanted.chance_draws,
+            trials: self.wanted.trials,
+        };
+        let found = calibration::calibrate(&model, &problem, model.start(), &options, observer)?;
+        let best = found.best();
+        let values = model.values(&best.fit.x);
+        let known = &found.knowledge;
+        let both = |j: usize, ends: [f64; 2]| ends.map(|x| self.coordinates[j].value(x));
+        let number = |(j, (name, parameter)): (usize, (&String, _))| -> Result<CalibratedNumber> {
+            let c: &Coordinate = &self.coordinates[j];
+            let _: &crate::case::CalibratedParameter = parameter;
+            let scalar = case.parameter(&parameter.path[0])?;
+            Ok(CalibratedNumber {
+                name: name.clone(),
+                paths: parameter.path.clone(),
+                unit: scalar.unit.to_string(),
+                between: parameter.between,
+                expected: parameter.expected,
+                deviation: parameter.deviation,
+                log: parameter.log,
+                before: scalar.value,
+                after: values[j],
+                deviation_after: known.deviations[j] * c.rate(values[j]),
+                interval: both(j, known.intervals[j]),
+                scaled_interval: known.scaled_intervals.as_ref().map(|all| both(j, all[j])),
+                at_bound: problem.unknowns[j].bounds.contains(&best.fit.x[j]),
+            })
+        };
+        let numbers = self.wanted.parameter.iter().enumerate().map(number).collect::<Result<Vec<_>>>()?;
+        let names = model.level_names();
+        let growth = model.growth(&best.fit.x)?;
+        let datum = |(i, datum): (usize, &Datum)| {
+            let k = best.assignment[i];
+            let hz = |levels: &calibration::Levels| levels[k].as_ref().map(|level| level.frequency_hz);
+            CalibratedDatum {
+                set: self.facts[datum.set].of.name().to_string(),
+                measured_hz: datum.frequency_hz,
+                deviation: datum.deviation,
+                level: names[k].clone(),
+                before_hz: hz(&found.before),
+                after_hz: hz(&best.fit.levels),
+                left_out_hz: found.left_out.get(i).and_then(|left| left.predicted_hz),
+                growth: growth[k],
+            }
+        };
+        Ok(CalibrationResult {
+            data: problem.data.iter().enumerate().map(datum).collect(),
+            levels: names,
+            level_sets: problem.level_sets.iter().map(|k| self.facts[*k].of.name().to_string()).collect(),
+            calibrated_case: calibrated_case(case, &values)?,
+            numbers,
+            calibration: found,
+        })
+    }
+}
+
+/// The case with the values that were found, as TOML that loads from any folder.
+fn calibrated_case(case: &Case, values: &[f64]) -> Result<String> {
+    Ok(case.with_calibrated(values)?.with_absolute_paths().to_toml())
+}

@@ -1,0 +1,268 @@
+//! The frequencies of a case as functions of the numbers that are to be found.
+
+use super::super::modes::part_assembled;
+use super::super::prepared::Prepared;
+use super::super::scalars::{Kind, Scalar, no_derivative, scalar};
+use super::coordinate::Coordinate;
+use super::facts::{Facts, Of};
+use super::follow::{Path, Picks};
+use super::neighbours::{Change, derivatives};
+use super::real::Solved;
+use super::unstable::Sliding;
+use crate::calibration::{Levels, Model};
+use crate::case::{Case, CeaAnalysis};
+use crate::error::Result;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Real modes are computed up to this many times the highest measured frequency, so that none of those that may be measured
+/// leaves the range.
+const RANGE: f64 = 1.4;
+
+/// Modes of one kind at the start, which all others are followed from.
+enum Start {
+    Real { name: String, below_hz: f64, solved: Box<Solved> },
+    Unstable(Box<Sliding>),
+}
+
+/// One kind of modes.
+pub struct Set {
+    start: Start,
+    /// The modes of each level at the start.
+    pub levels: Picks,
+    /// What each level is called.
+    pub names: Vec<String>,
+}
+
+/// A case with numbers to be found.
+pub struct CaseModel<'a> {
+    /// With nothing to do but what is compared.
+    case: Case,
+    coordinates: &'a [Coordinate<'a>],
+    start: Vec<f64>,
+    /// The kinds of modes, in the order of the facts.
+    pub sets: Vec<Set>,
+}
+
+impl<'a> CaseModel<'a> {
+    /// The model of `case`, which is prepared, for the `facts`.
+    ///
+    /// # Errors
+    /// Modes that cannot be computed.
+    pub fn new(prepared: &Prepared, coordinates: &'a [Coordinate<'a>], facts: &[Facts]) -> Result<Self> {
+        let case = lean(prepared.case);
+        let value = |c: &Coordinate| Ok(c.x(case.parameter(&c.parameter.path[0])?.value));
+        let start: Vec<f64> = coordinates.iter().map(value).collect::<Result<_>>()?;
+        let mut model = CaseModel { case, coordinates, start, sets: Vec::new() };
+        let here = Prepared::new(&model.case)?;
+        let sets = facts.iter().map(|facts| model.set(&here, facts)).collect::<Result<_>>()?;
+        drop(here);
+        model.sets = sets;
+        Ok(model)
+    }
+
+    fn set(&self, prepared: &Prepared, facts: &Facts) -> Result<Set> {
+        match &facts.of {
+            Of::RealModes(name) => {
+                let highest = facts.frequencies_hz.iter().fold(0.0f64, |m, f| m.max(*f));
+                let path = scale_path(name);
+                let scaled = self.coordinates.iter().filter(|c| c.parameter.path.contains(&path));
+                let least = scaled
+                    .map(|c| c.parameter.between[0])
+                    .fold(prepared.case.modes[name].frequency_scale, f64::min);
+                let below_hz = RANGE * highest / least;
+                let solved = Box::new(Solved::new(prepared, name, below_hz, None)?);
+                let levels = solved.levels();
+                let names = solved.labels(&levels);
+                Ok(Set { start: Start::Real { name: name.clone(), below_hz, solved }, levels, names })
+            }
+            Of::Unstable => {
+                let sliding = Box::new(Sliding::new(prepared)?);
+                let levels = sliding.levels();
+                let names = sliding.names(&levels);
+                Ok(Set { start: Start::Unstable(sliding), levels, names })
+            }
+        }
+    }
+
+    /// The unknowns of the case itself.
+    pub fn start(&self) -> &[f64] {
+        &self.start
+    }
+
+    /// The set of every level, in their order.
+    pub fn level_sets(&self) -> Vec<usize> {
+        let of = |(k, set): (usize, &Set)| vec![k; set.levels.len()];
+        self.sets.iter().enumerate().flat_map(of).collect()
+    }
+
+    /// What every level is called.
+    pub fn level_names(&self) -> Vec<String> {
+        self.sets.iter().flat_map(|set| set.names.iter().cloned()).collect()
+    }
+
+    /// The values of the numbers at `x`.
+    pub fn values(&self, x: &[f64]) -> Vec<f64> {
+        self.coordinates.iter().zip(x).map(|(c, x)| c.value(*x)).collect()
+    }
+
+    fn case_at(&self, x: &[f64]) -> Result<Case> {
+        let case = self.case.clone();
+        self.coordinates.iter().zip(self.values(x)).try_fold(case, |case, (c, value)| with(&case, c, value))
+    }
+
+    /// Growth rate \[1/s\] of every level at `x`; none of real modes.
+    pub fn growth(&self, x: &[f64]) -> Result<Vec<Option<f64>>> {
+        let case = self.case_at(x)?;
+        let prepared = Prepared::new(&case)?;
+        let mut all = Vec::new();
+        for set in &self.sets {
+            match &set.start {
+                Start::Real { .. } => all.extend(set.levels.iter().map(|_| None)),
+                Start::Unstable(start) => {
+                    let here = Sliding::new(&prepared)?;
+                    let picks = self.follow_sliding(start, &set.levels, (x, &here))?;
+                    all.extend(here.growth(&picks));
+                }
+            }
+        }
+        Ok(all)
+    }
+
+    fn follow_sliding(&self, start: &Sliding, levels: &Picks, to: (&[f64], &Sliding)) -> Result<Picks> {
+        let solve = |x: &[f64]| Sliding::new(&Prepared::new(&self.case_at(x)?)?);
+        let follow = |a: &Sliding, picks: &Picks, b: &Sliding| a.follow(picks, b);
+        Path { solve: &solve, follow: &follow }.along((&self.start, start, levels), to)
+    }
+
+    /// ∂K and ∂M of every set of real modes by every unknown; none by an unknown that no structure depends on.
+    fn changes(&self, case: &Case, prepared: &Prepared, values: &[f64]) -> Result<Vec<Option<Vec<Change>>>> {
+        let names: Vec<&String> = self
+            .sets
+            .iter()
+            .filter_map(|set| match &set.start {
+                Start::Real { name, .. } => Some(name),
+                Start::Unstable(_) => None,
+            })
+            .collect();
+        let of = |(c, value): (&Coordinate, &f64)| -> Result<Option<Vec<Change>>> {
+            let scalars = scalars(case, c)?;
+            let Some(first) =
+                scalars.iter().find(|s| s.kind == Kind::Structure).filter(|_| !names.is_empty())
+            else {
+                return Ok(None);
+            };
+            let build = |value: f64| {
+                let case = with(case, c, value)?;
+                let other = Prepared::new(&case)?;
+                if other.regions.mesh.elements != prepared.regions.mesh.elements
+                    || other.system.n_dofs() != prepared.system.n_dofs()
+                {
+                    return Err(no_derivative("it changes the elements of the mesh"));
+                }
+                names.iter().map(|name| part_assembled(&other, name)).collect()
+            };
+            let accepted = |value: f64| with(case, c, value).is_ok();
+            let changes =
+                derivatives(*value, first.step(), &accepted, &build).map_err(|error| of_number(c, error))?;
+            let rate = c.rate(*value);
+            Ok(Some(changes.into_iter().map(|change| change.scaled(rate)).collect()))
+        };
+        self.coordinates.par_iter().zip(values).map(of).collect()
+    }
+}
+
+impl Model for CaseModel<'_> {
+    fn levels(&self, x: &[f64]) -> Result<Levels> {
+        let case = self.case_at(x)?;
+        let values = self.values(x);
+        let prepared = Prepared::new(&case)?;
+        let mut changes = self.changes(&case, &prepared, &values)?;
+        // The changes of one set, taken from the front.
+        let mut of_set = || -> Vec<Option<Change>> {
+            changes.iter_mut().map(|all| all.as_mut().map(|all| all.remove(0))).collect()
+        };
+        let mut levels = Levels::new();
+        for set in &self.sets {
+            match &set.start {
+                Start::Real { name, below_hz, solved } => {
+                    let here = Solved::new(&prepared, name, *below_hz, Some(solved))?;
+                    let solve = |x: &[f64]| {
+                        Solved::new(&Prepared::new(&self.case_at(x)?)?, name, *below_hz, Some(solved))
+                    };
+                    let follow = |a: &Solved, picks: &Picks, b: &Solved| a.follow(picks, b);
+                    let path = Path { solve: &solve, follow: &follow };
+                    let picks = path.along((&self.start, solved, &set.levels), (x, &here))?;
+                    let changes = of_set();
+                    // What the scale of the analysis adds: ∂ ln f/∂x = (ds/dx)/s.
+                    let by_scale: Vec<f64> = self
+                        .coordinates
+                        .iter()
+                        .zip(&values)
+                        .map(|(c, value)| match c.parameter.path.contains(&scale_path(name)) {
+                            true => c.rate(*value) / here.scale,
+                            false => 0.0,
+                        })
+                        .collect();
+                    levels.extend(picks.iter().map(|pick| {
+                        let mut level = (!pick.is_empty()).then(|| here.level(pick, &changes))?;
+                        level.slope.iter_mut().zip(&by_scale).for_each(|(slope, more)| *slope += more);
+                        Some(level)
+                    }));
+                }
+                Start::Unstable(start) => {
+                    let here = Sliding::new(&prepared)?;
+                    let picks = self.follow_sliding(start, &set.levels, (x, &here))?;
+                    let unknowns: Vec<(Vec<Scalar>, f64)> = self
+                        .coordinates
+                        .iter()
+                        .zip(&values)
+                        .map(|(c, value)| Ok((scalars(&case, c)?, c.rate(*value))))
+                        .collect::<Result<_>>()?;
+                    levels.extend(here.slopes(&prepared, &picks, &unknowns)?);
+                }
+            }
+        }
+        Ok(levels)
+    }
+}
+
+/// The case with one number at another value.
+fn with(case: &Case, c: &Coordinate, value: f64) -> Result<Case> {
+    c.parameter.path.iter().try_fold(case.clone(), |case, path| case.with_parameter(path, value))
+}
+
+/// The scalars that a number stands for, those of them that modes depend on.
+pub fn scalars(case: &Case, c: &Coordinate) -> Result<Vec<Scalar>> {
+    let all = c.parameter.path.iter().map(|path| scalar(case, path)).collect::<Result<Vec<_>>>()?;
+    Ok(all.into_iter().flatten().collect())
+}
+
+fn scale_path(name: &str) -> String {
+    format!("modes.{name}.frequency_scale")
+}
+
+fn of_number(c: &Coordinate, error: crate::error::Error) -> crate::error::Error {
+    use crate::error::Error;
+    match error {
+        Error::Analysis { what, found, help } => {
+            Error::Analysis { what: format!("{what} by `{}`", c.parameter.path.join("`, `")), found, help }
+        }
+        other => other,
+    }
+}
+
+/// The case without what is not compared.
+fn lean(case: &Case) -> Case {
+    let cea = case.cea.clone().map(|cea| CeaAnalysis { certify: Some(false), confirm: false, ..cea });
+    Case {
+        sensitivity: None,
+        transient: None,
+        frf: BTreeMap::new(),
+        calibrate: None,
+        sweep: BTreeMap::new(),
+        map: BTreeMap::new(),
+        cea,
+        ..case.clone()
+    }
+}

@@ -1,0 +1,160 @@
+//! Levels of real modes: the same ones at every value of the parameters, and their slopes.
+
+use super::super::modes::{labels, named, part_assembled};
+use super::super::prepared::Prepared;
+use super::follow::{Picks, most_alike};
+use super::neighbours::Change;
+use crate::calibration::Level;
+use crate::error::Result;
+use crate::linalg::sparse::times;
+use crate::linalg::tall::gram;
+use crate::modal::{self, DiscModeName, ModesWanted, RealModes};
+use crate::structure::Assembled;
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// Neighbours of one name whose frequencies differ by less than this part are a double level.
+const DOUBLE: f64 = 2e-3;
+/// The same without a name.
+const DOUBLE_WITHOUT_NAME: f64 = 1e-6;
+
+/// What a mode is called: the part that moves most, and its disc name.
+type Name = (Option<String>, Option<DiscModeName>);
+
+/// The real modes of one analysis of the case at some values of the parameters.
+pub struct Solved {
+    assembled: Arc<Assembled>,
+    modes: RealModes,
+    /// Measured frequencies stand beside computed ones times this.
+    pub scale: f64,
+    /// Name and label of every mode; none where shapes tell which is which.
+    names: Option<(Vec<Name>, Vec<String>)>,
+}
+
+impl Solved {
+    /// Computes all modes of the analysis `name` below a frequency, without their names where they have the degrees of
+    /// freedom of `like`.
+    pub fn new(prepared: &Prepared, name: &str, below_hz: f64, like: Option<&Solved>) -> Result<Solved> {
+        let assembled = part_assembled(prepared, name)?;
+        let (modes, _) = modal::compute(&assembled.structure, ModesWanted::BelowHz(below_hz), &())?;
+        let scale = prepared.case.modes[name].frequency_scale;
+        let mut solved = Solved { assembled, modes, scale, names: None };
+        if like.is_none_or(|like| like.n_dofs() != solved.n_dofs()) {
+            let named = named(prepared, name, solved.modes, &solved.assembled);
+            let labels = labels(&named);
+            solved.names = Some((named.moving_part.into_iter().zip(named.names).collect(), labels));
+            solved.modes = named.modes;
+        }
+        Ok(solved)
+    }
+
+    fn n_dofs(&self) -> usize {
+        self.assembled.dofs.n_dofs()
+    }
+
+    fn name(&self, k: usize) -> Option<&Name> {
+        self.names.as_ref().map(|(names, _)| &names[k])
+    }
+
+    fn disc_name(&self, k: usize) -> Option<DiscModeName> {
+        self.name(k).and_then(|name| name.1)
+    }
+
+    /// The modes as levels: a single mode, or two that bear one name and differ little.
+    pub fn levels(&self) -> Picks {
+        let modes = &self.modes;
+        let mut levels = Picks::new();
+        for k in modes.rigid_bodies..modes.len() {
+            let twin = levels.last().filter(|level| level.len() == 1).is_some_and(|level| {
+                let (a, b) = (self.disc_name(level[0]), self.disc_name(k));
+                let near = if a.is_some() { DOUBLE } else { DOUBLE_WITHOUT_NAME };
+                let turns = a.is_none_or(|name| name.nodal_diameters > 0);
+                a == b && turns && (modes.frequency_hz(k) / modes.frequency_hz(level[0]) - 1.0) < near
+            });
+            match levels.last_mut() {
+                Some(last) if twin => last.push(k),
+                _ => levels.push(vec![k]),
+            }
+        }
+        levels
+    }
+
+    /// What each of `levels` is called.
+    pub fn labels(&self, levels: &Picks) -> Vec<String> {
+        let label = |k: usize| match &self.names {
+            Some((_, labels)) => labels[k].clone(),
+            None => format!("{:.0} Hz", self.modes.frequency_hz(k)),
+        };
+        levels.iter().map(|level| label(level[0])).collect()
+    }
+
+    /// `levels` of `self` among the modes of `other`, an empty one where it is not found, and whether that is sure.
+    ///
+    /// By shape where both have the same degrees of freedom: the modes of `other` that have the largest share of themselves,
+    /// Σ (φᵢᵀMφ)²/φᵀMφ, in the level. By name, and the order among equal names, where the mesh is another.
+    pub fn follow(&self, levels: &Picks, other: &Solved) -> (Picks, bool) {
+        if self.n_dofs() != other.n_dofs() {
+            return (self.follow_by_name(levels, other), true);
+        }
+        let (here, there) = (&self.modes, &other.modes);
+        let mass = times(&self.assembled.structure.mass, there.shapes.as_ref());
+        let products = gram(here.shapes.as_ref(), mass.as_ref());
+        let size = |k: usize| there.shapes.col(k).iter().zip(mass.col(k).iter()).map(|(a, b)| a * b).sum();
+        let sizes: Vec<f64> = (0..there.len()).map(size).collect();
+        let share = |level: usize, k: usize| -> f64 {
+            levels[level].iter().map(|i| products[(*i, k)].powi(2)).sum::<f64>() / sizes[k]
+        };
+        most_alike(levels, there.rigid_bodies..there.len(), share)
+    }
+
+    fn follow_by_name(&self, levels: &Picks, other: &Solved) -> Picks {
+        let of_name = |of: &Solved, wanted: &Name| -> Vec<usize> {
+            (of.modes.rigid_bodies..of.modes.len()).filter(|k| of.name(*k) == Some(wanted)).collect()
+        };
+        let there = |k: &usize| {
+            let wanted = self.name(*k)?;
+            let order = of_name(self, wanted).iter().position(|j| j == k)?;
+            of_name(other, wanted).get(order).copied()
+        };
+        let level = |level: &Vec<usize>| level.iter().map(there).collect::<Option<_>>().unwrap_or_default();
+        levels.iter().map(level).collect()
+    }
+
+    fn omega2(&self, k: usize) -> f64 {
+        self.modes.eigenvalues[k]
+    }
+
+    /// The frequency of a level, √(mean ω²)/2π times the scale of the analysis, and its slopes by the `changes` of K and M
+    /// with each unknown; `None` stands for an unknown that K and M do not depend on.
+    ///
+    /// On the modes Φ of the level, ΦᵀMΦ = 1, the matrix Φᵀ(∂K − ω²∂M)Φ has the derivatives of ω² of its modes as its
+    /// eigenvalues (Fox and Kapoor, AIAA J. 6 (1968) 2426; for double modes Ojalvo, AIAA J. 26 (1988) 361). Their mean is what
+    /// the level feels, half of their distance is its split.
+    pub fn level(&self, level: &[usize], changes: &[Option<Change>]) -> Level {
+        let mean = level.iter().map(|k| self.omega2(*k)).sum::<f64>() / level.len() as f64;
+        let of = |change: &Option<Change>| -> [f64; 2] {
+            let Some(change) = change else { return [0.0; 2] };
+            let shapes = self.modes.shapes.as_ref();
+            let column = |k: usize| shapes.subcols(k, 1);
+            let form = |i: usize, j: usize| {
+                let s = if i == j { self.omega2(level[i]) } else { mean };
+                let (a, b) = (column(level[i]), column(level[j]));
+                let on = |matrix| gram(a, times(matrix, b).as_ref())[(0, 0)];
+                on(&change.stiffness) - s * on(&change.mass)
+            };
+            let diagonal: Vec<f64> = (0..level.len()).map(|i| form(i, i)).collect();
+            let rise = diagonal.iter().sum::<f64>() / level.len() as f64;
+            let split = match diagonal[..] {
+                [a, b] => (0.5 * (a - b)).hypot(form(0, 1)),
+                _ => 0.0,
+            };
+            [rise, split].map(|rate| 0.5 * rate / mean)
+        };
+        let rates: Vec<[f64; 2]> = changes.iter().map(of).collect();
+        Level {
+            frequency_hz: self.scale * mean.max(0.0).sqrt() / TAU,
+            slope: rates.iter().map(|r| r[0]).collect(),
+            split: rates.iter().map(|r| r[1]).collect(),
+        }
+    }
+}

@@ -1,0 +1,169 @@
+use super::super::samples::disc;
+use super::coordinate::Coordinate;
+use super::facts::facts;
+use super::model::CaseModel;
+use super::*;
+use crate::calibration::{Level, Model};
+use crate::case::Case;
+
+fn case(more: &str) -> Case {
+    let text = format!("{}{more}", disc(6, 36));
+    Case::parse("case.toml", &text, ".".into()).unwrap()
+}
+
+/// Runs `work` on the model of a case with `[calibrate]`.
+fn with_model<T>(case: &Case, work: impl FnOnce(&CaseModel) -> T) -> T {
+    let prepared = Prepared::new(case).unwrap();
+    let coordinates: Vec<Coordinate> =
+        case.calibrate.as_ref().unwrap().parameter.values().map(Coordinate::new).collect();
+    work(&CaseModel::new(&prepared, &coordinates, &facts(case)).unwrap())
+}
+
+const SIX: &str = "[modes.disc]\nbelow = \"3 kHz\"\nmeasured = [450, 900]\n[calibrate]\nagainst = \"disc\"\n\
+    [calibrate.parameter.hub]\npath = \"mesh.annulus.hub_radius\"\nbetween = [\"10 mm\", \"20 mm\"]\n\
+    [calibrate.parameter.thickness]\npath = \"shell.disc.thickness\"\nbetween = [\"0.8 mm\", \"1.2 mm\"]\nlog = true\n\
+    [calibrate.parameter.poisson]\npath = \"material.steel.poissons_ratio\"\nbetween = [0.25, 0.35]\n\
+    deviation = 0.01\nexpected = 0.29\n\
+    [calibrate.parameter.scale]\npath = \"modes.disc.frequency_scale\"\nbetween = [0.9, 1.1]\n\
+    [calibrate.parameter.steel]\npath = \"material.steel.density\"\nbetween = [7000, 8000]\n\
+    [calibrate.parameter.twist]\npath = \"spring.twist.stiffness\"\nbetween = [0.001, 100.001]\n\
+    [spring.twist]\non = \"rim\"\ndirection = [0, 1, 0]\nrotational = true\nstiffness = 0.01\n";
+
+/// ∂ ln f/∂x by (4 D(h) − D(2h))/3.
+fn differences(model: &CaseModel, j: usize, h: f64) -> Vec<f64> {
+    let at = |k: f64| -> Vec<f64> {
+        let mut x = model.start().to_vec();
+        x[j] += k * h;
+        model.levels(&x).unwrap().iter().map(|l| l.as_ref().unwrap().frequency_hz.ln()).collect()
+    };
+    let [up, down, up2, down2] = [1.0, -1.0, 2.0, -2.0].map(at);
+    (0..up.len()).map(|l| (8.0 * (up[l] - down[l]) - (up2[l] - down2[l])) / (12.0 * h)).collect()
+}
+
+#[test]
+fn one_sided_derivatives_are_those_of_both_sides() {
+    let case = case(SIX);
+    let build = |thickness: f64| {
+        let case = case.with_parameter("shell.disc.thickness", thickness)?;
+        Ok(vec![Prepared::new(&case)?.assembled])
+    };
+    let from = |lowest: f64, highest: f64| {
+        let inside = |v: f64| (lowest..=highest).contains(&v);
+        super::neighbours::derivatives(1e-3, 1e-6, &inside, &build).unwrap().remove(0)
+    };
+    let (both, up, down) = (from(0.0, 1.0), from(1e-3, 1.0), from(0.0, 1e-3));
+    for one in [up, down] {
+        for (a, b) in [(&one.stiffness, &both.stiffness), (&one.mass, &both.mass)] {
+            let size = b.val().iter().fold(0.0f64, |m, v| m.max(v.abs()));
+            assert!(a.val().iter().zip(b.val()).all(|(a, b)| (a - b).abs() < 1e-8 * size));
+        }
+    }
+    let none = super::neighbours::derivatives(1e-3, 1e-6, &|v| v == 1e-3, &build);
+    assert!(none.err().unwrap().to_string().contains("both sides"));
+}
+
+#[test]
+fn slopes_are_those_of_differences_of_frequencies_of_double_modes_too() {
+    let case = case(SIX);
+    with_model(&case, |model| {
+        let levels: Vec<Level> = model.levels(model.start()).unwrap().into_iter().flatten().collect();
+        let names = model.level_names();
+        let set = &model.sets[0];
+        let double = set.levels.iter().filter(|level| level.len() == 2).count();
+        assert!(double >= 3 && double < levels.len(), "{names:?}");
+        // In the order of the names: hub, poisson, scale, steel, thickness, twist.
+        for j in 0..6 {
+            let expected = differences(model, j, if j == 5 { 4e-5 } else { 4e-3 });
+            let largest = expected.iter().fold(0.0f64, |m, s| m.max(s.abs()));
+            assert!(largest > 1e-3);
+            for (k, level) in levels.iter().enumerate() {
+                let error = (level.slope[j] - expected[k]).abs();
+                assert!(error < 1e-6 * largest, "{} by {j}: {} {}", names[k], level.slope[j], expected[k]);
+                // What keeps the disc round splits no double mode; springs that resist turning about y do.
+                let split = level.split[j].abs();
+                let splits = j == 5 && set.levels[k].len() == 2 && names[k].contains("(1, ");
+                assert_eq!(splits, split > 1e-4 * largest, "{} by {j}: {split}", names[k]);
+            }
+        }
+    });
+}
+
+#[test]
+fn a_double_mode_parts_as_its_split_says() {
+    let text = SIX.replace("stiffness = 0.01\n", "stiffness = 0.03\n");
+    let (round, twisted) = (case(SIX), case(&text));
+    let pair = |case: &Case| {
+        with_model(case, |model| {
+            let set = &model.sets[0];
+            let k = set.names.iter().position(|name| name == "disc (1, 0)").unwrap();
+            (model.levels(model.start()).unwrap()[k].clone().unwrap(), set.levels[k].clone())
+        })
+    };
+    let (level, modes) = pair(&round);
+    assert_eq!(modes.len(), 2);
+    let prepared = Prepared::new(&twisted).unwrap();
+    let named = super::super::modes::part_modes(&prepared, "disc", &()).unwrap();
+    let [a, b] = [modes[0], modes[1]].map(|k| named.modes.frequency_hz(k).ln());
+    // One unknown is 50 N m: half of the width of its bounds.
+    assert!((0.5 * (b - a) / (0.03 / 50.0) / level.split[5] - 1.0).abs() < 1e-3, "{b} {a} {level:?}");
+    let mean = 0.5 * (a + b) - level.frequency_hz.ln();
+    assert!((mean / (0.02 / 50.0) / level.slope[5] - 1.0).abs() < 1e-3, "{mean} {level:?}");
+}
+
+/// Frequencies that a disc with another hub and another thickness would have.
+const MADE: &str = "[modes.disc]\nbelow = \"3 kHz\"\nmeasured = MEASURED\n[calibrate]\nagainst = \"disc\"\n\
+    deviation = 0.003\ntrials = 20\nchance_draws = 100\n\
+    [calibrate.parameter.hub]\npath = \"mesh.annulus.hub_radius\"\nbetween = [\"10 mm\", \"22 mm\"]\n\
+    [calibrate.parameter.thickness]\npath = \"shell.disc.thickness\"\nbetween = [\"0.8 mm\", \"1.2 mm\"]\n";
+
+#[test]
+fn a_disc_that_was_made_is_found_again() {
+    let made = case(&MADE.replace("MEASURED", "[1]"))
+        .with_parameter("mesh.annulus.hub_radius", 0.0185)
+        .and_then(|case| case.with_parameter("shell.disc.thickness", 0.97e-3))
+        .unwrap();
+    let named = super::super::modes::part_modes(&Prepared::new(&made).unwrap(), "disc", &()).unwrap();
+    let hz = |n: usize, s: usize| {
+        let at = |k: &usize| named.names[*k].is_some_and(|m| (m.nodal_diameters, m.nodal_circles) == (n, s));
+        named.modes.frequency_hz((0..named.modes.len()).find(at).unwrap())
+    };
+    let noise = [1.002, 0.998, 1.001, 0.9995];
+    let wanted = [(2, 0), (4, 0), (0, 1), (3, 1)];
+    let measured: Vec<f64> = wanted.iter().zip(noise).map(|((n, s), e)| e * hz(*n, *s)).collect();
+    let case = case(&MADE.replace("MEASURED", &format!("{measured:?}")));
+    let prepared = Prepared::new(&case).unwrap();
+    let calibrate = Calibrate::new(&prepared, case.calibrate.as_ref().unwrap()).unwrap();
+    let found = calibrate.run(&()).unwrap();
+    for (datum, (n, s)) in found.data.iter().zip(wanted) {
+        assert_eq!(datum.level, format!("disc ({n}, {s})"));
+    }
+    for (number, truth) in found.numbers.iter().zip([0.0185, 0.97e-3]) {
+        assert!(number.interval[0] < truth && truth < number.interval[1] && !number.at_bound, "{number:?}");
+    }
+    let best = found.calibration.best();
+    assert!(
+        best.fit.converged && best.fit.chi2 < 6.0 && found.largest_percent(|d| d.after_hz).unwrap() < 0.5
+    );
+    let trials = found.calibration.trials.as_ref().unwrap();
+    assert!(trials.converged == 20 && trials.covered.iter().all(|covered| *covered >= 17), "{trials:?}");
+    // The calibrated case loads as a case, and has the modes that were promised.
+    let again = Case::parse("calibrated.toml", &found.calibrated_case, "elsewhere".into()).unwrap();
+    assert_eq!(again.parameter("mesh.annulus.hub_radius").unwrap().value, found.numbers[0].after);
+    let named = super::super::modes::part_modes(&Prepared::new(&again).unwrap(), "disc", &()).unwrap();
+    let after = found.data[0].after_hz.unwrap();
+    assert!((0..named.modes.len()).any(|k| (named.modes.frequency_hz(k) / after - 1.0).abs() < 1e-9));
+}
+
+#[test]
+fn faults_are_told_at_once_before_anything_is_computed() {
+    let text = "[modes.disc]\nbelow = 1\nmeasured = [450]\n[calibrate]\nagainst = \"disc\"\n\
+        [calibrate.parameter.a]\npath = \"shell.disc.thickness\"\nbetween = [\"2 mm\", \"3 mm\"]\n\
+        [calibrate.parameter.b]\npath = [\"mesh.annulus.hub_radius\", \"mesh.annulus.outer_radius\"]\n\
+        between = [\"10 mm\", \"30 mm\"]\n";
+    let case = case(text);
+    let prepared = Prepared::new(&case).unwrap();
+    let error = Calibrate::new(&prepared, case.calibrate.as_ref().unwrap()).err().unwrap();
+    let text = error.to_string();
+    assert!(text.contains("calibrate.parameter.a.between") && text.contains("own value 0.001"), "{text}");
+    assert!(text.contains("calibrate.parameter.b.path") && error.exit_code() == 2, "{text}");
+}

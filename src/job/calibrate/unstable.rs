@@ -1,0 +1,113 @@
+//! Levels of unstable complex modes at steady sliding: the same ones at every value of the parameters, and their slopes.
+
+use super::super::clock::Clock;
+use super::super::complex::complex_result;
+use super::super::prepared::Prepared;
+use super::super::scalars::Scalar;
+use super::super::sensitivity::Analysed;
+use super::follow::{Picks, most_alike};
+use crate::calibration::Level;
+use crate::equilibrium::{self, SteadyOptions, SteadySliding};
+use crate::error::{Error, Result};
+use crate::linalg::dense::mac;
+use crate::modal::RealModes;
+use crate::results::ComplexResult;
+use crate::stability::{ComplexMode, Sensitivity};
+use crate::system::System;
+use std::f64::consts::TAU;
+
+/// Half of this share of |λ| between two modes counts as much as shapes that have nothing in common.
+const FAR: f64 = 0.04;
+
+/// The complex modes of a case at some values of the parameters.
+pub struct Sliding {
+    steady: SteadySliding,
+    complex: ComplexResult,
+    system: System,
+    real: RealModes,
+}
+
+impl Sliding {
+    /// Steady sliding and its complex modes.
+    pub fn new(prepared: &Prepared) -> Result<Sliding> {
+        let options = SteadyOptions { penetration_limit: prepared.penetration_limit(), ..Default::default() };
+        let steady = equilibrium::solve_steady(&prepared.system, &options, &())?;
+        let complex = complex_result(prepared, &steady, None, &mut Clock::default(), &())?;
+        let Some((complex, system, real)) = complex else {
+            return Err(Error::analysis("complex eigenvalues", "no [cea] in the case", "Give the case one"));
+        };
+        Ok(Sliding { steady, complex, system, real })
+    }
+
+    fn modes(&self) -> &[ComplexMode] {
+        &self.complex.modes.modes
+    }
+
+    /// The modes that grow, one a level.
+    pub fn levels(&self) -> Picks {
+        (0..self.modes().len()).filter(|k| self.modes()[*k].unstable()).map(|k| vec![k]).collect()
+    }
+
+    /// What each of `levels` is called.
+    pub fn names(&self, levels: &Picks) -> Vec<String> {
+        let name = |level: &Vec<usize>| {
+            let words = &self.complex.participation[level[0]];
+            words.split(',').next().map_or(String::new(), |first| format!("unstable, {first}"))
+        };
+        levels.iter().map(name).collect()
+    }
+
+    /// Growth rate \[1/s\] of each level; none where it is not found.
+    pub fn growth(&self, levels: &Picks) -> Vec<Option<f64>> {
+        levels.iter().map(|level| level.first().map(|k| self.modes()[*k].growth_rate())).collect()
+    }
+
+    /// `levels` of `self` among the modes of `other`, and whether that is sure: by shape, less what λ moved. Where two modes
+    /// have merged their shapes are one, and λ tells which of them grows. With another mesh λ alone decides.
+    pub fn follow(&self, levels: &Picks, other: &Sliding) -> (Picks, bool) {
+        let same_size = self.system.n_dofs() == other.system.n_dofs();
+        let likeness = |l: usize, k: usize| {
+            let (a, b) = (&self.modes()[levels[l][0]], &other.modes()[k]);
+            let moved = (a.eigenvalue - b.eigenvalue).norm() / a.eigenvalue.norm();
+            let alike = if same_size { mac(&a.right, &b.right) } else { 1.0 };
+            alike - 0.5 * (moved / FAR).min(1.0)
+        };
+        most_alike(levels, 0..other.modes().len(), likeness)
+    }
+
+    /// Frequencies ω/2π of `levels` and their slopes ∂ ln ω/∂x = Im(∂λ/∂p) (dp/dx)/ω by the scalars of each unknown, which
+    /// come with their dp/dx. The steady state follows every scalar.
+    pub fn slopes(
+        &self,
+        prepared: &Prepared,
+        levels: &Picks,
+        unknowns: &[(Vec<Scalar>, f64)],
+    ) -> Result<Vec<Option<Level>>> {
+        let found: Vec<usize> = levels.iter().filter_map(|level| level.first().copied()).collect();
+        let modes: Vec<&ComplexMode> = found.iter().map(|k| &self.modes()[*k]).collect();
+        let sensitivity = Sensitivity::new(&self.system, &self.steady, &self.real, &modes)?;
+        let analysed = Analysed {
+            prepared,
+            system: &self.system,
+            steady: &self.steady,
+            real: &self.real,
+            modes: &self.complex.modes,
+        };
+        let mut slopes = vec![vec![0.0; unknowns.len()]; modes.len()];
+        for (j, (scalars, rate)) in unknowns.iter().enumerate() {
+            for scalar in scalars {
+                let rates = analysed.rates(&sensitivity, scalar)?;
+                for (slopes, (of, mode)) in slopes.iter_mut().zip(rates.iter().zip(&modes)) {
+                    slopes[j] += rate * of.value.im / mode.eigenvalue.im;
+                }
+            }
+        }
+        let mut slopes = slopes.into_iter().zip(&modes);
+        let mut next = || {
+            let (slope, mode) = slopes.next()?;
+            let split = vec![0.0; unknowns.len()];
+            Some(Level { frequency_hz: mode.eigenvalue.im / TAU, slope, split })
+        };
+        Ok(levels.iter().map(|level| if level.is_empty() { None } else { next() }).collect())
+    }
+}

@@ -1,0 +1,178 @@
+//! Numbers found from measured frequencies: tables, words and pictures.
+
+mod picture;
+mod words;
+
+use super::format::{fixed, given, power, signed, significant};
+use super::html::{Picture, figure, titled_table};
+use super::tables::Table;
+use crate::results::{CalibratedNumber, CalibrationResult, RunResults};
+pub(super) use words::words;
+
+/// The pictures, when the run has a calibration.
+pub(super) fn pictures(results: &RunResults) -> Vec<Picture> {
+    results
+        .calibration
+        .iter()
+        .flat_map(|result| [picture::errors(result), picture::numbers(result)])
+        .collect()
+}
+
+/// The part of the page on a calibration; empty when the run has none.
+pub(super) fn section(results: &RunResults) -> String {
+    let Some(result) = &results.calibration else { return String::new() };
+    let mut body = "<h2>Calibration</h2>\n".to_string();
+    let [errors, numbers] = [picture::errors(result), picture::numbers(result)];
+    body += &figure(&errors.svg, &errors.caption);
+    body += &titled_table(&fit_table(result));
+    body += &figure(&numbers.svg, &numbers.caption);
+    let mut table = number_table(result);
+    table.notes.extend(words(result));
+    body += &titled_table(&table);
+    body += &titled_table(&assignment_table(result));
+    body
+}
+
+/// Measured beside computed frequencies, before and after.
+pub(super) fn fit_table(result: &CalibrationResult) -> Table {
+    let sets = result.data.iter().any(|d| d.set != result.data[0].set);
+    let grows = result.data.iter().any(|d| d.growth.is_some());
+    let mut headings = vec![
+        "<mode",
+        "measured [Hz]",
+        "before [Hz]",
+        "error [%]",
+        "after [Hz]",
+        "error [%]",
+        "from the others [Hz]",
+        "error [%]",
+    ];
+    if sets {
+        headings.insert(0, "<set");
+    }
+    if grows {
+        headings.push("σ [1/s]");
+    }
+    let mut table = Table::new("Calibration: measured and computed frequencies", &headings);
+    for d in &result.data {
+        let mut cells = vec![d.level.clone(), given(d.measured_hz)];
+        for hz in [d.before_hz, d.after_hz, d.left_out_hz] {
+            cells.push(hz.map_or("–".into(), |hz| fixed(hz, 1)));
+            cells.push(d.error_percent(hz).map_or("–".into(), |e| signed(e, 2)));
+        }
+        if sets {
+            cells.insert(0, d.set.clone());
+        }
+        if grows {
+            cells.push(d.growth.map_or("–".into(), |g| signed(g, 2)));
+        }
+        table.row(cells, false);
+    }
+    table.notes.push(
+        "From the others: the frequency that the numbers predict when they are found without this datum."
+            .into(),
+    );
+    table
+}
+
+/// The numbers with their intervals.
+pub(super) fn number_table(result: &CalibrationResult) -> Table {
+    let headings = [
+        "<number",
+        "before",
+        "found",
+        "95 % from",
+        "to",
+        "scaled from",
+        "to",
+        "<bounds",
+        "<expected",
+        "<unit",
+        "<",
+    ];
+    let mut table = Table::new("Numbers found", &headings);
+    for n in &result.numbers {
+        let value = |v: f64| significant(v, 4);
+        let scaled = |k: usize| n.scaled_interval.map_or("–".into(), |ends| value(ends[k]));
+        let cells = vec![
+            n.name.clone(),
+            value(n.before),
+            significant(n.after, 5),
+            value(n.interval[0]),
+            value(n.interval[1]),
+            scaled(0),
+            scaled(1),
+            format!("{} to {}", given(n.between[0]), given(n.between[1])),
+            expected(n),
+            n.unit.clone(),
+            if n.at_bound { "at its bound".into() } else { String::new() },
+        ];
+        table.row(cells, n.at_bound);
+    }
+    table.alarming = true;
+    table.notes.push(
+        "95 %: the stated deviations trusted, with what was expected. Scaled: deviations as large as the misfit shows, with \
+         Student's t. Both end at the bounds."
+            .into(),
+    );
+    table
+}
+
+fn expected(n: &CalibratedNumber) -> String {
+    match n.deviation {
+        Some(d) if n.log => format!("{} ± {} %", given(n.expected), given(100.0 * d)),
+        Some(d) => format!("{} ± {}", given(n.expected), given(d)),
+        None => "all alike".into(),
+    }
+}
+
+/// The assignments that were fitted.
+pub(super) fn assignment_table(result: &CalibrationResult) -> Table {
+    let headings =
+        ["<modes, in the order of the measured frequencies", "χ²", "largest error [%]", "weight", "<"];
+    let mut table = Table::new("Assignments of modes to measured frequencies", &headings);
+    for r in &result.calibration.ranked {
+        let modes: Vec<&str> = r.assignment.iter().map(|k| result.levels[*k].as_str()).collect();
+        let cells = vec![
+            modes.join(", "),
+            significant(r.fit.chi2, 4),
+            fixed(100.0 * r.largest_error, 2),
+            if r.weight > 1e-3 { significant(r.weight, 2) } else { power(r.weight) },
+            if r.fit.converged { String::new() } else { "not converged".into() },
+        ];
+        table.row(cells, false);
+    }
+    table.notes.push(
+        "Weight: exp(−Δχ²/2) beside the best, with the stated deviations; where the misfit is larger than they explain, the \
+         weights are too sharp."
+            .into(),
+    );
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::sample;
+
+    #[test]
+    fn tables_words_and_pictures_tell_the_same() {
+        let results = sample::rig();
+        let result = results.calibration.as_ref().unwrap();
+        let table = fit_table(result);
+        assert_eq!((table.rows.len(), table.columns.len()), (3, 8));
+        assert!(table.rows[0].cells.contains(&"+1.00".to_string()), "{:?}", table.rows[0]);
+        let numbers = number_table(result);
+        assert!(numbers.rows[1].marked && numbers.rows[1].cells.last().unwrap() == "at its bound");
+        let page = section(&results);
+        assert_eq!(page.matches("<svg").count(), 2);
+        assert!(page.contains("not converged") && page.contains("stiffness"));
+        let words = words(result).join(" ");
+        for expected in
+            ["2 numbers", "3 measured", "determine 1 of 2", "by chance", "of 100 trials", "at its bound"]
+        {
+            assert!(words.contains(expected), "{expected} not in {words}");
+        }
+        assert!(section(&RunResults::default()).is_empty());
+    }
+}

@@ -1,0 +1,173 @@
+//! What a calibration is worth, in sentences.
+
+use super::super::format::{fixed, given, power, significant};
+use crate::results::CalibrationResult;
+
+/// A misfit less probable than this is told.
+const IMPROBABLE: f64 = 0.05;
+/// Numbers that are correlated more than this are told.
+const TIED: f64 = 0.95;
+
+/// Facts against numbers, what the data determine, the assignments, chance, trials.
+pub(in crate::report) fn words(result: &CalibrationResult) -> Vec<String> {
+    let mut words = vec![counted(result)];
+    words.extend(misfit(result));
+    words.push(determined(result));
+    words.extend(tied(result));
+    words.push(assignments(result));
+    if result.calibration.left_out.is_empty() && result.data.len() <= result.numbers.len() {
+        words.push(
+            "No frequency can be predicted from the others: they are no more than the numbers that are to be found.".into(),
+        );
+    }
+    words.extend(chance(result));
+    words.extend(trials(result));
+    for n in result.numbers.iter().filter(|n| n.at_bound) {
+        let name = &n.name;
+        words.push(format!(
+            "`{name}` is at its bound: the data pull beyond it, or its bounds say what they do not."
+        ));
+    }
+    for d in result.data.iter().filter(|d| d.growth.is_some_and(|g| g <= 0.0)) {
+        words.push(format!(
+            "The mode beside {} Hz does not grow with the values found.",
+            given(d.measured_hz)
+        ));
+    }
+    if !result.calibration.best().fit.converged {
+        words.push("The fit has not converged: its values are not the best ones.".into());
+    }
+    words
+}
+
+fn counted(result: &CalibrationResult) -> String {
+    let expected = result.numbers.iter().filter(|n| n.deviation.is_some()).count();
+    let (numbers, data) = (result.numbers.len(), result.data.len());
+    let free = (data + expected).saturating_sub(numbers);
+    let expectations = match expected {
+        0 => String::new(),
+        n => format!(" and {n} expected values"),
+    };
+    format!(
+        "{numbers} numbers were found from {data} measured frequencies{expectations}: {free} facts are left over."
+    )
+}
+
+fn misfit(result: &CalibrationResult) -> Option<String> {
+    let known = &result.calibration.knowledge;
+    let (reduced, probability) = (known.reduced_chi2?, known.chi2_probability?);
+    let chi2 = significant(result.calibration.best().fit.chi2, 3);
+    let stated = match probability < IMPROBABLE {
+        true => format!(
+            "so much has the probability {}. The model, or the stated deviation, is wrong by more than it says: trust the \
+             scaled intervals, which take deviations {} times as large",
+            power(probability),
+            significant(reduced.sqrt(), 2)
+        ),
+        false => format!("so much or more has the probability {}", significant(probability, 2)),
+    };
+    Some(format!("χ² = {chi2}, {} a fact left over; {stated}.", significant(reduced, 3)))
+}
+
+fn determined(result: &CalibrationResult) -> String {
+    let known = &result.calibration.knowledge;
+    let (determined, all) = (known.determined(), known.singular_values.len());
+    let condition = known.condition();
+    let mut text = format!("The data determine {determined} of {all} combinations of the numbers");
+    if condition.is_finite() && all > 1 {
+        text += &format!(" (condition number {})", significant(condition, 3));
+    }
+    for (value, direction) in known.singular_values.iter().zip(&known.directions).skip(determined) {
+        text += &format!(
+            "; they leave open {} (known to {} of its unit)",
+            combination(result, direction),
+            if *value > 1e-9 { significant(1.0 / value, 2) } else { "any multiple".into() }
+        );
+    }
+    if determined < all || all > 1 {
+        text += ". Each number counts in units of its expected deviation, or of half the width of its bounds";
+    }
+    if determined == all && all > 1 {
+        text += &format!("; the least known is {}", combination(result, &known.directions[all - 1]));
+    }
+    text + "."
+}
+
+/// `0.71 hub − 0.70 scale`, parts below a twentieth left out.
+fn combination(result: &CalibrationResult, direction: &[f64]) -> String {
+    let mut parts: Vec<(f64, &str)> =
+        direction.iter().zip(&result.numbers).map(|(v, n)| (*v, n.name.as_str())).collect();
+    parts.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
+    let mut text = String::new();
+    for (k, (v, name)) in parts.iter().filter(|(v, _)| v.abs() >= 0.05).enumerate() {
+        let sign = match (k, *v < 0.0) {
+            (0, false) => "",
+            (0, true) => "−",
+            (_, false) => " + ",
+            (_, true) => " − ",
+        };
+        text += &format!("{sign}{} {name}", fixed(v.abs(), 2));
+    }
+    text
+}
+
+fn tied(result: &CalibrationResult) -> Vec<String> {
+    let correlations = &result.calibration.knowledge.correlations;
+    let n = result.numbers.len();
+    let pairs = (0..n).flat_map(|i| (0..i).map(move |j| (j, i)));
+    let tied = pairs.filter(|(j, i)| correlations[*i][*j].abs() > TIED);
+    tied.map(|(j, i)| {
+        let (a, b) = (&result.numbers[j].name, &result.numbers[i].name);
+        format!(
+            "`{a}` and `{b}` are hard to tell apart: their correlation is {}.",
+            fixed(correlations[i][j], 3)
+        )
+    })
+    .collect()
+}
+
+fn assignments(result: &CalibrationResult) -> String {
+    let found = &result.calibration;
+    let more = if found.all_counted { "" } else { "more than " };
+    let mut text = format!(
+        "{more}{} assignments of {} computed levels are plausible; the best {} on the linearised model were fitted",
+        found.plausible,
+        result.levels.len(),
+        found.ranked.len()
+    );
+    if !found.all_searched {
+        text += ", of those that a search cut short had found";
+    }
+    if let Some(second) = found.ranked.get(1) {
+        text += &format!("; the next best has the weight {}", power(second.weight));
+    }
+    text + "."
+}
+
+fn chance(result: &CalibrationResult) -> Option<String> {
+    let chance = result.calibration.chance?;
+    let percent = |k: usize| significant(100.0 * chance.probability(k), 2);
+    Some(format!(
+        "Of {} sets of as many frequencies drawn at random, evenly in their logarithm over the measured span, {} are matched as \
+         well in their largest error and {} in χ², with the numbers free and the best assignment (linearised): a match as good \
+         arises by chance with a probability of {} % and {} %.",
+        chance.draws,
+        chance.by_error,
+        chance.by_chi2,
+        percent(chance.by_error),
+        percent(chance.by_chi2)
+    ))
+}
+
+fn trials(result: &CalibrationResult) -> Option<String> {
+    let trials = result.calibration.trials.as_ref()?;
+    let each = result.numbers.iter().zip(&trials.covered).map(|(n, held)| format!("`{}` in {held}", n.name));
+    Some(format!(
+        "With synthetic data of the stated deviation the 95 % interval holds the truth of {} of {} trials; {} of their fits \
+         converged (on a model quadratic near it, which is wrong by {} of the deviation at most).",
+        each.collect::<Vec<_>>().join(", of "),
+        trials.count,
+        trials.converged,
+        significant(trials.model_error, 2)
+    ))
+}
