@@ -17,7 +17,7 @@ const DEVIATION: f64 = 0.005;
 /// Scalars to be found from measured frequencies.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CalibrateAnalysis {
-    /// Names of `[modes.NAME]` with measured frequencies, and `squeal` for those of `[cea]`.
+    /// Names of `[modes.NAME]` with measured frequencies, of `[measured.NAME]`, and `squeal` for those of `[cea]`.
     pub against: Vec<String>,
     /// Relative standard deviation of a measured frequency.
     pub deviation: f64,
@@ -58,9 +58,9 @@ pub(super) fn read(root: &Section, case: Case) -> Case {
     let scalars = root.sound_so_far().then(|| case.parameters());
     let calibrate = root.section("calibrate", |s| {
         let analysis = CalibrateAnalysis {
-            against: s
-                .strings("against")
-                .required("names of [modes.NAME] with measured frequencies, or \"squeal\""),
+            against: s.strings("against").required(
+                "names of [modes.NAME] with measured frequencies, of [measured.NAME], or \"squeal\"",
+            ),
             deviation: s.quantity("deviation", NUMBER).positive().or(DEVIATION),
             mode_reach: s
                 .quantity("mode_reach", NUMBER)
@@ -169,10 +169,27 @@ fn check_against(s: &Section, case: &Case, against: &[String]) {
             }
             continue;
         }
+        if let Some(of) = case.measured.get(name).map(|measured| &measured.of) {
+            if case.modes.contains_key(name) {
+                fault(", which is the name of real modes, too", "another name of [measured.NAME]");
+            }
+            let modes = of.as_ref().and_then(|of| case.modes.get(of));
+            if modes.is_none_or(|modes| modes.contact == ContactState::Closed) {
+                fault(" without real modes", &format!("`of` in [measured.{name}]: modes with open contact"));
+            }
+            continue;
+        }
         match case.modes.get(name) {
             None => {
-                let known: Vec<&str> = case.modes.keys().map(String::as_str).collect();
-                fault("", &format!("\"{SQUEAL}\", or the name of real modes ({})", known.join(", ")));
+                let known: Vec<&str> =
+                    case.modes.keys().chain(case.measured.keys()).map(String::as_str).collect();
+                fault(
+                    "",
+                    &format!(
+                        "\"{SQUEAL}\", or the name of real modes or of measured data ({})",
+                        known.join(", ")
+                    ),
+                );
             }
             Some(modes) if modes.measured.is_empty() => {
                 fault(" without measured frequencies", &format!("`measured` in [modes.{name}]"));

@@ -1,6 +1,8 @@
 //! What was measured, and of what: the one place where measured frequencies enter a calibration.
 
 use crate::case::{Case, SQUEAL};
+use crate::error::{Fault, Faults, Result};
+use crate::job::measured_set;
 
 /// Measured frequencies of one kind.
 #[derive(Debug, Clone, PartialEq)]
@@ -10,7 +12,7 @@ pub struct Facts {
     /// f \[Hz\].
     pub frequencies_hz: Vec<f64>,
     /// Relative standard deviation of each.
-    pub deviation: f64,
+    pub deviations: Vec<f64>,
 }
 
 /// What has a frequency.
@@ -33,15 +35,36 @@ impl Of {
 }
 
 /// The measured frequencies that a case is calibrated against.
-pub fn facts(case: &Case) -> Vec<Facts> {
+///
+/// # Errors
+/// Every file of measured data that cannot be read, or has no modes.
+pub fn facts(case: &Case) -> Result<Vec<Facts>> {
+    let mut faults = Faults::new();
     let wanted = case.calibrate.iter().flat_map(|c| c.against.iter().map(|name| (name, c.deviation)));
-    let of = |(name, deviation): (&String, f64)| -> Option<Facts> {
+    let found = wanted.filter_map(|(name, deviation)| {
+        let listed = |of: Of, frequencies_hz: &[f64]| Facts {
+            of,
+            deviations: vec![deviation; frequencies_hz.len()],
+            frequencies_hz: frequencies_hz.to_vec(),
+        };
         if name == SQUEAL {
-            let frequencies_hz = case.cea.as_ref()?.measured_squeal.clone();
-            return Some(Facts { of: Of::Unstable, frequencies_hz, deviation });
+            return Some(listed(Of::Unstable, &case.cea.as_ref()?.measured_squeal));
         }
-        let frequencies_hz = case.modes.get(name)?.measured.clone();
-        Some(Facts { of: Of::RealModes(name.clone()), frequencies_hz, deviation })
-    };
-    wanted.filter_map(of).collect()
+        if let Some(modes) = case.modes.get(name) {
+            return Some(listed(Of::RealModes(name.clone()), &modes.measured));
+        }
+        let of = case.measured.get(name)?.of.clone()?;
+        let (set, _) = faults.take(measured_set(case, name))?;
+        if set.modes.is_empty() {
+            let found = "frequency responses without modes";
+            faults.push(Fault::new(format!("`calibrate.against` \"{name}\""), found, "measured modes"));
+        }
+        Some(Facts {
+            of: Of::RealModes(of),
+            frequencies_hz: set.modes.iter().map(|mode| mode.frequency_hz).collect(),
+            deviations: set.modes.iter().map(|mode| mode.deviation.unwrap_or(deviation)).collect(),
+        })
+    });
+    let found = found.collect();
+    faults.into_result(found)
 }

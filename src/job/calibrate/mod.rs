@@ -67,7 +67,7 @@ impl<'a> Calibrate<'a> {
             }
             coordinates.push(coordinate);
         }
-        let facts = facts::facts(prepared.case);
+        let facts = faults.take(facts::facts(prepared.case)).unwrap_or_default();
         faults.into_result(Calibrate { prepared, wanted, coordinates, facts })
     }
 
@@ -79,8 +79,9 @@ impl<'a> Calibrate<'a> {
         let case = self.prepared.case;
         let model = CaseModel::new(self.prepared, &self.coordinates, &self.facts)?;
         let data = |(set, facts): (usize, &Facts)| {
-            let datum = move |hz: &f64| Datum { set, frequency_hz: *hz, deviation: facts.deviation };
-            facts.frequencies_hz.iter().map(datum).collect::<Vec<_>>()
+            let datum =
+                move |(hz, deviation): (&f64, &f64)| Datum { set, frequency_hz: *hz, deviation: *deviation };
+            facts.frequencies_hz.iter().zip(&facts.deviations).map(datum).collect::<Vec<_>>()
         };
         let problem = Problem {
             unknowns: self.coordinates.iter().map(Coordinate::unknown).collect(),

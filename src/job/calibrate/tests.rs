@@ -16,7 +16,7 @@ fn with_model<T>(case: &Case, work: impl FnOnce(&CaseModel) -> T) -> T {
     let prepared = Prepared::new(case).unwrap();
     let coordinates: Vec<Coordinate> =
         case.calibrate.as_ref().unwrap().parameter.values().map(Coordinate::new).collect();
-    work(&CaseModel::new(&prepared, &coordinates, &facts(case)).unwrap())
+    work(&CaseModel::new(&prepared, &coordinates, &facts(case).unwrap()).unwrap())
 }
 
 const SIX: &str = "[modes.disc]\nbelow = \"3 kHz\"\nmeasured = [450, 900]\n[calibrate]\nagainst = \"disc\"\n\
@@ -167,4 +167,20 @@ fn faults_are_told_at_once_before_anything_is_computed() {
     let text = error.to_string();
     assert!(text.contains("calibrate.parameter.a.between") && text.contains("own value 0.001"), "{text}");
     assert!(text.contains("calibrate.parameter.b.path") && error.exit_code() == 2, "{text}");
+}
+
+#[test]
+fn measured_data_bring_their_own_deviations() {
+    let more = "[modes.disc]\nbelow = \"3 kHz\"\n[measured.tap]\nof = \"disc\"\nfrequencies = [450, 900]\ndeviation = 0.01\n\
+        [calibrate]\nagainst = \"tap\"\n[calibrate.parameter.scale]\npath = \"modes.disc.frequency_scale\"\n\
+        between = [0.9, 1.1]\n";
+    let found = facts(&case(more)).unwrap();
+    assert_eq!(found.len(), 1);
+    assert_eq!((found[0].of.name(), &found[0].deviations[..]), ("disc", &[0.01, 0.01][..]));
+    assert_eq!(found[0].frequencies_hz, [450.0, 900.0]);
+    let gone = more.replace("frequencies = [450, 900]", "file = \"gone.uff\"");
+    assert!(facts(&case(&gone)).unwrap_err().to_string().contains("gone.uff"));
+    let text = format!("{}{}", disc(5, 32), more.replace("of = \"disc\"", "frf = \"h\""));
+    let wrong = Case::parse("case.toml", &text, ".".into()).unwrap_err().to_string();
+    assert!(wrong.contains("calibrate.against") && wrong.contains("measured.tap"), "{wrong}");
 }
