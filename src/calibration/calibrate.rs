@@ -1,8 +1,9 @@
 //! The whole calibration: assignments, fits, and what they are worth.
 
 use super::fit::misfit;
+use super::knowledge::left_open;
 use super::linear::Linear;
-use super::{Chance, Fit, Knowledge, Levels, Model, Problem, Trials, assignments, fit};
+use super::{Chance, Fit, Knowledge, Level, Levels, Model, Problem, Trials, assignments, fit};
 use crate::error::{Error, Result};
 use crate::progress::Observer;
 use rayon::prelude::*;
@@ -75,7 +76,8 @@ pub struct Ranked {
 pub struct LeftOut {
     /// The unknowns without it.
     pub x: Vec<f64>,
-    /// What they predict for it \[Hz\]; `None` where the level is not found.
+    /// What they predict for it \[Hz\]; `None` where the level is not found, or where what the others leave open moves it by
+    /// more than the deviation of the datum.
     pub predicted_hz: Option<f64>,
     /// Whether the fit converged.
     pub converged: bool,
@@ -179,8 +181,12 @@ fn leave_one_out(
         observer.advance(1);
         let level = found.levels[best.assignment[out]].as_ref();
         let known = misfit(&others, &assignment, &found.x, &found.levels).is_finite();
+        let told = |level: &&Level| {
+            let open = left_open(&others, &assignment, &found.levels, &level.slope);
+            known && open <= problem.data[out].deviation
+        };
         Ok(LeftOut {
-            predicted_hz: level.filter(|_| known).map(|level| level.frequency_hz),
+            predicted_hz: level.filter(told).map(|level| level.frequency_hz),
             converged: found.converged,
             x: found.x,
         })
@@ -223,7 +229,7 @@ mod tests {
         let best = found.best();
         assert!(best.assignment == chosen && best.fit.converged && best.largest_error < 2e-3);
         assert!(found.plausible > 50 && found.all_counted && found.all_searched);
-        assert!(found.ranked.len() > 1 && found.ranked[1].weight < 1e-3 && best.weight == 1.0);
+        assert!(best.weight == 1.0 && found.ranked[1..].iter().all(|other| other.weight < 1e-3));
         let inside = |j: usize| {
             let [low, high] = found.knowledge.intervals[j];
             low <= truth[j] && truth[j] <= high
@@ -244,6 +250,22 @@ mod tests {
         let two = problem(&model, &[300.0, 360.0], 0.01);
         let found = calibrate(&model, &two, &[0.0; 2], &ALL, &()).unwrap();
         assert!(found.left_out.is_empty() && found.knowledge.reduced_chi2.is_none());
+    }
+
+    #[test]
+    fn what_only_one_datum_tells_is_not_predicted_from_the_others() {
+        let mut model = Powers::new(4, 2, 3);
+        // The second unknown moves the last level alone.
+        model.exponents.iter_mut().for_each(|a| a[1] = 0.0);
+        model.exponents[3][1] = 0.1;
+        let levels = model.levels(&[0.3, -0.4]).unwrap();
+        let data: Vec<f64> = levels.iter().flatten().map(|level| level.frequency_hz).collect();
+        let problem = problem(&model, &data, 0.002);
+        let options = Options { reach: 0.02, chance_draws: 0, trials: 0, ..ALL };
+        let found = calibrate(&model, &problem, &[0.0; 2], &options, &()).unwrap();
+        assert_eq!(found.best().assignment, [0, 1, 2, 3]);
+        let told: Vec<bool> = found.left_out.iter().map(|left| left.predicted_hz.is_some()).collect();
+        assert_eq!(told, [true, true, true, false]);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! What the data determine: singular values of the sensitivity, covariance, intervals.
 
-use super::{Fit, Problem};
+use super::{Fit, Levels, Problem};
 use nalgebra::DMatrix;
 
 /// Standard deviations either side of the mean that hold 95 % of a normal distribution.
@@ -41,17 +41,7 @@ impl Knowledge {
     /// What the fit of `assignment` leaves known.
     pub(super) fn new(problem: &Problem, assignment: &[usize], fit: &Fit) -> Knowledge {
         let n = problem.unknowns.len();
-        let slope = |i: usize, j: usize| {
-            let level = fit.levels[assignment[i]].as_ref();
-            level.map_or(0.0, |level| level.slope[j] / problem.data[i].deviation)
-        };
-        // Rows of zeros leave the singular values as they are, and there are then as many as unknowns.
-        let rows = problem.data.len().max(n);
-        let w = DMatrix::from_fn(rows, n, |i, j| if i < problem.data.len() { slope(i, j) } else { 0.0 });
-        let mut h = w.tr_mul(&w);
-        for (j, unknown) in problem.unknowns.iter().enumerate() {
-            h[(j, j)] += if unknown.expected.is_some() { 1.0 } else { 0.0 };
-        }
+        let (w, h) = sensitivity(problem, assignment, &fit.levels);
         let svd = w.svd(false, true);
         let mut order: Vec<usize> = (0..n).collect();
         order.sort_by(|a, b| svd.singular_values[*b].total_cmp(&svd.singular_values[*a]));
@@ -98,6 +88,32 @@ impl Knowledge {
     pub fn determined(&self) -> usize {
         self.singular_values.iter().filter(|s| **s > 1.0).count()
     }
+}
+
+/// W, and WᵀW + P.
+fn sensitivity(problem: &Problem, assignment: &[usize], levels: &Levels) -> (DMatrix<f64>, DMatrix<f64>) {
+    let n = problem.unknowns.len();
+    let slope = |i: usize, j: usize| {
+        let level = levels[assignment[i]].as_ref();
+        level.map_or(0.0, |level| level.slope[j] / problem.data[i].deviation)
+    };
+    // Rows of zeros leave the singular values as they are, and there are then as many as unknowns.
+    let rows = problem.data.len().max(n);
+    let w = DMatrix::from_fn(rows, n, |i, j| if i < problem.data.len() { slope(i, j) } else { 0.0 });
+    let mut h = w.tr_mul(&w);
+    for (j, unknown) in problem.unknowns.iter().enumerate() {
+        h[(j, j)] += if unknown.expected.is_some() { 1.0 } else { 0.0 };
+    }
+    (w, h)
+}
+
+/// How much a level with this `slope` moves, |Δ ln f|, when what the data leave open moves by its unit: the part of the slope
+/// along the directions that they determine no better than the bounds do.
+pub(super) fn left_open(problem: &Problem, assignment: &[usize], levels: &Levels, slope: &[f64]) -> f64 {
+    let eigen = sensitivity(problem, assignment, levels).1.symmetric_eigen();
+    let open = (0..slope.len()).filter(|k| eigen.eigenvalues[*k] < 1.0);
+    let along = |k: usize| eigen.eigenvectors.column(k).iter().zip(slope).map(|(v, g)| v * g).sum::<f64>();
+    open.map(|k| along(k).powi(2)).sum::<f64>().sqrt()
 }
 
 /// The vector with its largest entry positive.

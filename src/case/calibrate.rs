@@ -79,8 +79,10 @@ pub(super) fn read(root: &Section, case: Case) -> Case {
 }
 
 fn read_parameter(s: &Section, case: &Case, scalars: Option<&[Parameter]>) -> CalibratedParameter {
-    let path =
-        s.strings("path").required("the path of a scalar of the case, or of several that are the same");
+    let path = s
+        .strings("path")
+        .check("at least one path", |paths| !paths.is_empty())
+        .required("the path of a scalar of the case, or of several that are the same");
     let log = s.boolean("log").or(false);
     let found: Option<Vec<&Parameter>> =
         scalars.and_then(|all| path.iter().map(|path| find(s, all, path)).collect());
@@ -151,6 +153,7 @@ fn is_scale(path: &str) -> bool {
 }
 
 fn check_against(s: &Section, case: &Case, against: &[String]) {
+    let positive = |all: &[f64]| all.iter().all(|hz| *hz > 0.0);
     for (k, name) in against.iter().enumerate() {
         let fault =
             |found: &str, expected: &str| s.fault("against", format!("\"{name}\"{found}"), expected, "");
@@ -161,6 +164,9 @@ fn check_against(s: &Section, case: &Case, against: &[String]) {
             if case.cea.as_ref().is_none_or(|cea| cea.measured_squeal.is_empty()) {
                 fault(" without measured frequencies", "a [cea] with `measured_squeal`");
             }
+            if case.cea.as_ref().is_some_and(|cea| !positive(&cea.measured_squeal)) {
+                fault(" with a measured frequency that is not above zero", "frequencies above zero");
+            }
             continue;
         }
         match case.modes.get(name) {
@@ -170,6 +176,9 @@ fn check_against(s: &Section, case: &Case, against: &[String]) {
             }
             Some(modes) if modes.measured.is_empty() => {
                 fault(" without measured frequencies", &format!("`measured` in [modes.{name}]"));
+            }
+            Some(modes) if !positive(&modes.measured) => {
+                fault(" with a measured frequency that is not above zero", "frequencies above zero");
             }
             Some(modes) if modes.contact == ContactState::Closed => {
                 fault(" with closed contact", "real modes with open contact");
@@ -299,6 +308,9 @@ mod tests {
         ] {
             assert!(error.contains(expected), "{expected} not in\n{error}");
         }
+        let error =
+            parse("[calibrate]\nagainst = \"disc\"\n[calibrate.parameter.a]\npath = []\n").unwrap_err();
+        assert!(error.to_string().contains("at least one path"), "{error}");
         let error = parse("[calibrate]\nagainst = []\n").unwrap_err().to_string();
         assert!(
             error.contains("at least one name") && error.contains("[calibrate.parameter.NAME]"),

@@ -72,7 +72,7 @@ pub struct CalibratedDatum {
     pub before_hz: Option<f64>,
     /// Computed with the values that were found \[Hz\].
     pub after_hz: Option<f64>,
-    /// Computed with the values that the other data lead to \[Hz\].
+    /// Computed with the values that the other data lead to \[Hz\]; none where they do not tell.
     pub left_out_hz: Option<f64>,
     /// Growth rate of the mode with the values that were found \[1/s\]; none of a real mode.
     pub growth: Option<f64>,

@@ -162,9 +162,7 @@ impl<'a> CaseModel<'a> {
                 }
                 names.iter().map(|name| part_assembled(&other, name)).collect()
             };
-            let accepted = |value: f64| with(case, c, value).is_ok();
-            let changes =
-                derivatives(*value, first.step(), &accepted, &build).map_err(|error| of_number(c, error))?;
+            let changes = derivatives(*value, first.step(), &build).map_err(|error| of_number(c, error))?;
             let rate = c.rate(*value);
             Ok(Some(changes.into_iter().map(|change| change.scaled(rate)).collect()))
         };

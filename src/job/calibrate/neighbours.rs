@@ -1,7 +1,7 @@
 //! ∂K/∂p and ∂M/∂p, between systems that are assembled anew at neighbouring values.
 
 use super::super::scalars::no_derivative;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::linalg::SparseMatrix;
 use crate::linalg::sparse::add_scaled;
 use crate::structure::Assembled;
@@ -34,43 +34,41 @@ impl Change {
 ///
 /// # Errors
 /// What `build` returns, and matrices that do not follow the value smoothly.
-pub fn derivatives(
-    value: f64,
-    step: f64,
-    accepted: &dyn Fn(f64) -> bool,
-    build: &dyn Fn(f64) -> Result<Vec<Arc<Assembled>>>,
-) -> Result<Vec<Change>> {
-    let mut tried = differences(value, step, accepted, build);
+pub fn derivatives(value: f64, step: f64, build: &Build) -> Result<Vec<Change>> {
+    let mut tried = differences(value, step, build);
     for smaller in [0.1, 0.01] {
-        if tried.is_err() {
-            tried = differences(value, smaller * step, accepted, build);
+        if matches!(tried, Err(Error::Analysis { .. })) {
+            tried = differences(value, smaller * step, build);
         }
     }
     tried
 }
 
-fn differences(
-    value: f64,
-    step: f64,
-    accepted: &dyn Fn(f64) -> bool,
-    build: &dyn Fn(f64) -> Result<Vec<Arc<Assembled>>>,
-) -> Result<Vec<Change>> {
-    let side = |sign: f64| (1..=4).all(|k| accepted(value + sign * f64::from(k) * step));
-    let two_sided = [-2.0, -1.0, 1.0, 2.0].iter().all(|k| accepted(value + k * step));
-    // Offsets in steps, with the weights of the derivative; what does not change cancels pair by pair.
-    let one_sided = |sign: f64| -> Vec<(f64, f64)> {
+/// Gives the structures at a value.
+pub type Build<'a> = dyn Fn(f64) -> Result<Vec<Arc<Assembled>>> + 'a;
+
+/// Offsets in steps, with the weights of the derivative; what does not change cancels pair by pair.
+type Stencil = Vec<(f64, f64)>;
+
+fn differences(value: f64, step: f64, build: &Build) -> Result<Vec<Change>> {
+    let one_sided = |sign: f64| -> Stencil {
         let weights = [-25.0, 48.0, -36.0, 16.0, -3.0].map(|w| sign * w / 12.0);
         (0..5).map(|k| (sign * f64::from(k as u8), weights[k])).collect()
     };
-    let stencil = match two_sided {
-        true => vec![(1.0, 2.0 / 3.0), (-1.0, -2.0 / 3.0), (2.0, -1.0 / 12.0), (-2.0, 1.0 / 12.0)],
-        false if side(1.0) => one_sided(1.0),
-        false if side(-1.0) => one_sided(-1.0),
-        false => return Err(no_derivative("the case refuses its neighbours on both sides")),
+    let both = vec![(1.0, 2.0 / 3.0), (-1.0, -2.0 / 3.0), (2.0, -1.0 / 12.0), (-2.0, 1.0 / 12.0)];
+    let at = |stencil: &Stencil| -> Result<Vec<Vec<Arc<Assembled>>>> {
+        stencil.iter().map(|(offset, _)| build(value + offset * step)).collect()
     };
-    let at = |(offset, _): &(f64, f64)| build(value + offset * step);
-    let systems: Vec<Vec<Arc<Assembled>>> = stencil.iter().map(at).collect::<Result<_>>()?;
-    let count = systems[0].len();
+    let (mut stencil, mut systems) = (both, Err(no_derivative("it has no neighbours")));
+    for other in [None, Some(1.0), Some(-1.0)] {
+        stencil = other.map_or(stencil, one_sided);
+        systems = at(&stencil);
+        // A value that the case refuses; what is wrong with the others is wrong on the other side too.
+        if !matches!(systems, Err(Error::Input(_))) {
+            break;
+        }
+    }
+    let (systems, two_sided) = (systems?, stencil.len() == 4);
     let sum = |k: usize, pick: fn(&Assembled) -> &SparseMatrix| -> Result<SparseMatrix> {
         let terms: Vec<(f64, &SparseMatrix)> =
             stencil.iter().zip(&systems).map(|((_, w), system)| (w / step, pick(&system[k]))).collect();
@@ -84,12 +82,8 @@ fn differences(
         }
         Ok(sum)
     };
-    (0..count)
-        .map(|k| {
-            Ok(Change {
-                stiffness: sum(k, |a| &a.structure.stiffness)?,
-                mass: sum(k, |a| &a.structure.mass)?,
-            })
-        })
-        .collect()
+    let change = |k: usize| -> Result<Change> {
+        Ok(Change { stiffness: sum(k, |a| &a.structure.stiffness)?, mass: sum(k, |a| &a.structure.mass)? })
+    };
+    (0..systems[0].len()).map(change).collect()
 }

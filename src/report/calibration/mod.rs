@@ -102,7 +102,7 @@ pub(super) fn number_table(result: &CalibrationResult) -> Table {
             value(n.interval[1]),
             scaled(0),
             scaled(1),
-            format!("{} to {}", given(n.between[0]), given(n.between[1])),
+            format!("{} to {}", short(n.between[0]), short(n.between[1])),
             expected(n),
             n.unit.clone(),
             if n.at_bound { "at its bound".into() } else { String::new() },
@@ -118,10 +118,16 @@ pub(super) fn number_table(result: &CalibrationResult) -> Table {
     table
 }
 
+/// A value that a person gave; with two digits where it takes a power of ten.
+fn short(value: f64) -> String {
+    let text = given(value);
+    if text.contains('e') { significant(value, 2) } else { text }
+}
+
 fn expected(n: &CalibratedNumber) -> String {
     match n.deviation {
-        Some(d) if n.log => format!("{} ± {} %", given(n.expected), given(100.0 * d)),
-        Some(d) => format!("{} ± {}", given(n.expected), given(d)),
+        Some(d) if n.log => format!("{} ± {} %", short(n.expected), short(100.0 * d)),
+        Some(d) => format!("{} ± {}", short(n.expected), short(d)),
         None => "all alike".into(),
     }
 }

@@ -83,11 +83,13 @@ pub(super) fn numbers(result: &CalibrationResult) -> Picture {
     const ROW: f64 = 74.0;
     let mut sheet = Sheet::new(WIDTH, 44.0 + ROW * result.numbers.len() as f64 + 10.0);
     let mut x = LABELS;
-    for (words, colour) in [
+    let marks = [
         ("found, 95 % (thin: scaled by the misfit)", ALARM),
         ("the case", CALM),
         ("expected, 95 %", "#bcd7ea"),
-    ] {
+    ];
+    let shown = if result.numbers.iter().any(|n| n.deviation.is_some()) { 3 } else { 2 };
+    for (words, colour) in &marks[..shown] {
         sheet.rectangle([x, 14.0], [14.0, 14.0], &format!("fill=\"{colour}\""));
         sheet.text([x + 20.0, 26.0], words, ink(INK, Anchor::Start));
         x += 44.0 + 7.0 * words.len() as f64;
@@ -137,7 +139,7 @@ fn draw(sheet: &mut Sheet, top: f64, n: &CalibratedNumber) {
         &format!("fill=\"{ALARM}\" stroke=\"#ffffff\" stroke-width=\"1.5\""),
     );
     for (v, anchor) in [(n.between[0], Anchor::Start), (n.between[1], Anchor::End)] {
-        let words = format!("{} {}", given(v), n.unit);
+        let words = format!("{} {}", super::short(v), n.unit);
         sheet.text([place(v), y + 28.0], words.trim_end(), ink(MUTED, anchor));
     }
 }

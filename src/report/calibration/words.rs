@@ -20,6 +20,14 @@ pub(in crate::report) fn words(result: &CalibrationResult) -> Vec<String> {
             "No frequency can be predicted from the others: they are no more than the numbers that are to be found.".into(),
         );
     }
+    for (d, _) in
+        result.data.iter().zip(&result.calibration.left_out).filter(|(d, _)| d.left_out_hz.is_none())
+    {
+        words.push(format!(
+            "The other frequencies do not predict {} Hz: they leave open what it depends on.",
+            given(d.measured_hz)
+        ));
+    }
     words.extend(chance(result));
     words.extend(trials(result));
     for n in result.numbers.iter().filter(|n| n.at_bound) {
