@@ -248,15 +248,6 @@ impl Explorer<'_> {
         for at in &known.trained {
             on.family.train(&states.at(at)?)?;
         }
-        if known.trained.is_empty() {
-            // What the corners do not tell is learnt before the many points, not after.
-            for at in inside {
-                if on.check(&at).is_ok_and(|checks| worst_alone(&checks) > ACCURACY) {
-                    on.family.train(&states.at(&at)?)?;
-                    known.trained.push(at);
-                }
-            }
-        }
         let mut round = 0;
         loop {
             let failure = self.fill(&on, &mut result, &known, record)?;
@@ -358,11 +349,8 @@ impl Measured {
 
 /// Measures every critical mode and all modes at the `sample` values.
 fn measure(problem: &dyn Problem, sweep: &sweep::Sweep, sample: &[f64]) -> Result<Measured> {
-    let critical = |c: &sweep::Critical| -> Result<Option<Checked>> {
-        let checks = problem.check(&[c.value])?;
-        let far = |x: &Checked| (x.eigenvalue - c.eigenvalue).norm();
-        Ok(checks.into_iter().min_by(|a, b| far(a).total_cmp(&far(b))))
-    };
+    let critical =
+        |c: &sweep::Critical| -> Result<Option<Checked>> { problem.check_nearest(&[c.value], c.eigenvalue) };
     let worst = |value: &f64| -> Result<(f64, f64)> {
         let checks = problem.check(&[*value])?;
         Ok((*value, worst_alone(&checks)))

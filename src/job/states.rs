@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::linalg::c64;
 use crate::linalg::tall::gram;
 use crate::modal::{self, ModesWanted};
-use crate::stability::{ComplexMode, Family, SlidingState, complex_modes};
+use crate::stability::{ComplexMode, Family, FamilyCheck, SlidingState, complex_modes};
 use crate::sweep::{Checked, Modes, Problem};
 use crate::system::Structure;
 use faer::Mat;
@@ -85,15 +85,22 @@ impl Problem for OnFamily<'_, '_> {
     }
 
     fn check(&self, at: &[f64]) -> Result<Vec<Checked>> {
-        let check = self.family.check(&self.states.at(at)?)?;
-        let errors = check.backward_errors.into_iter().zip(check.eigenvalue_errors);
-        let checked = |(eigenvalue, (backward_error, eigenvalue_error))| Checked {
-            eigenvalue,
-            backward_error,
-            eigenvalue_error,
-        };
-        Ok(check.eigenvalues.into_iter().zip(errors).map(checked).collect())
+        Ok(rows(self.family.check(&self.states.at(at)?)?))
     }
+
+    fn check_nearest(&self, at: &[f64], near: c64) -> Result<Option<Checked>> {
+        Ok(rows(self.family.check_nearest(&self.states.at(at)?, near)?).pop())
+    }
+}
+
+fn rows(check: FamilyCheck) -> Vec<Checked> {
+    let errors = check.backward_errors.into_iter().zip(check.eigenvalue_errors);
+    let row = |(eigenvalue, (backward_error, eigenvalue_error))| Checked {
+        eigenvalue,
+        backward_error,
+        eigenvalue_error,
+    };
+    check.eigenvalues.into_iter().zip(errors).map(row).collect()
 }
 
 /// The members of a sweep by whole analyses, for scalars that change the structure.

@@ -159,7 +159,25 @@ impl<'f> Family<'f> {
     /// # Errors
     /// As [`Family::modes`].
     pub fn check(&self, state: &SlidingState) -> Result<FamilyCheck> {
-        Ok(checked(&self.measure(state)?))
+        Ok(checked(&self.measure(state, &self.solve(state)?)))
+    }
+
+    /// [`Family::check`] of the one mode whose λ is nearest to `near`; empty where there is no mode.
+    ///
+    /// # Errors
+    /// As [`Family::modes`].
+    pub fn check_nearest(&self, state: &SlidingState, near: c64) -> Result<FamilyCheck> {
+        let modes = self.solve(state)?;
+        let far = |k: &usize| (modes.eigenvalues[*k] - near).norm();
+        let nearest = (0..modes.eigenvalues.len()).min_by(|a, b| far(a).total_cmp(&far(b)));
+        let of = |k: usize, vectors: &Mat<c64>| Mat::from_fn(vectors.nrows(), 1, |i, _| vectors[(i, k)]);
+        let one = |k: usize| ReducedModes {
+            eigenvalues: vec![modes.eigenvalues[k]],
+            right: of(k, &modes.right),
+            left: of(k, &modes.left),
+        };
+        let none = FamilyCheck { eigenvalues: vec![], backward_errors: vec![], eigenvalue_errors: vec![] };
+        Ok(nearest.map_or(none, |k| checked(&self.measure(state, &one(k)))))
     }
 
     /// Enriches the family until the modes of `state` are right at full order, as [`super::complex_modes`] does for a
@@ -169,7 +187,7 @@ impl<'f> Family<'f> {
     /// As [`Family::new`].
     pub fn train(&mut self, state: &SlidingState) -> Result<FamilyCheck> {
         const ROUNDS: i32 = 6;
-        let mut round = self.measure(state)?;
+        let mut round = self.measure(state, &self.solve(state)?);
         for k in 0..ROUNDS {
             let open = round.open();
             let floor = 1e-3 * self.frame.band[1];
@@ -181,7 +199,7 @@ impl<'f> Family<'f> {
                 break;
             }
             self.reduced = reduce(self.frame, &self.basis, &self.springs)?;
-            round = self.measure(state)?;
+            round = self.measure(state, &self.solve(state)?);
         }
         Ok(checked(&round))
     }
@@ -191,8 +209,8 @@ impl<'f> Family<'f> {
         self.reduced.solve(&self.frame.terms(state), &state.damping_weights, |z| in_band(z, band))
     }
 
-    fn measure(&self, state: &SlidingState) -> Result<Round> {
-        let modes = self.solve(state)?;
+    /// Some modes of `state` on the full order.
+    fn measure(&self, state: &SlidingState, modes: &ReducedModes) -> Round {
         let operator = self.frame.operator.with_terms(self.frame.terms(state));
         let images = |y: &Mat<c64>| {
             let part = |f: fn(&c64) -> f64| {
@@ -203,9 +221,9 @@ impl<'f> Family<'f> {
             self.weigh(operator.images(self.basis.expand(&block)).normalise(), &state.damping_weights)
         };
         let (right, left) = (images(&modes.right), images(&modes.left));
-        let pairs = Vectors { lambda: modes.eigenvalues, right, left };
+        let pairs = Vectors { lambda: modes.eigenvalues.clone(), right, left };
         let residuals = residuals(&operator, std::iter::once(pairs));
-        Ok(measure(&*self.frame.factor, self.frame.band, residuals))
+        measure(&*self.frame.factor, self.frame.band, residuals)
     }
 
     /// C x and H x with the weights of the dampings.

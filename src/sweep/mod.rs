@@ -52,6 +52,15 @@ pub trait Problem: Sync {
     /// As [`Problem::modes`].
     fn check(&self, at: &[f64]) -> Result<Vec<Checked>>;
 
+    /// The mode at `at` that is nearest to λ = `near`, with its error on the full order.
+    ///
+    /// # Errors
+    /// As [`Problem::modes`].
+    fn check_nearest(&self, at: &[f64], near: c64) -> Result<Option<Checked>> {
+        let far = |mode: &Checked| (mode.eigenvalue - near).norm();
+        Ok(self.check(at)?.into_iter().min_by(|a, b| far(a).total_cmp(&far(b))))
+    }
+
     /// Whether several places may be solved at once; `false` when a single one takes all memory and threads.
     fn parallel(&self) -> bool {
         true
