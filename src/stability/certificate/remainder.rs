@@ -22,10 +22,9 @@ use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::factor::SymbolicFactor;
 use crate::linalg::sparse::{add_scaled, times};
 use crate::linalg::tall::{expand, gram, lower_gram};
-use crate::linalg::{SparseMatrix, SparseVector, c64};
+use crate::linalg::{SparseMatrix, c64};
 use crate::stability::analysis::Analysis;
 use faer::Mat;
-use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// Γ(s) in the A-norm of Z, and what q(s) needs.
@@ -81,24 +80,22 @@ impl Remainder {
         let (operator, basis, shift) = (&analysis.operator, &analysis.basis, analysis.shift);
         let (m, first) = (basis.len(), analysis.n_real);
         let top = TAU * analysis.band_hz[1];
-        let w = Directions::new(analysis, active, top);
-        let damped = parts.damped.as_ref().map(|image| w.or_own(image));
-        let lossy = parts.lossy.as_ref().map(|image| w.or_own(image));
         let beyond = m - first;
         // Of one size, so that the smallest are not lost in the rounding of the largest: \[top MB, DB, H_rB/top, W\].
         // Each with what it is of the basis, BᵀF.
         let inertia = basis.mass_times.subcols(first, beyond) * faer::Scale(top);
         let mut columns = vec![(inertia, basis.mass.subcols(first, beyond) * faer::Scale(top))];
-        for (image, scale) in [(&damped, 1.0), (&lossy, 1.0 / top)] {
-            if let Some(Image::Own(image)) = image {
-                let scaled = *image * faer::Scale(scale);
+        for (image, scale) in [(&parts.damped, 1.0), (&parts.lossy, 1.0 / top)] {
+            if let Some(image) = image {
+                let scaled = image * faer::Scale(scale);
                 let share = gram(basis.vectors.as_ref(), scaled.as_ref());
                 columns.push((scaled, share));
             }
         }
-        let own = |i: usize, j: usize| basis.interface[(i, active[j])] * w.scales[j];
-        let of_basis = Mat::from_fn(m, active.len(), own);
-        columns.push((w.columns, of_basis));
+        let sizes = operator.interface.sizes(top);
+        let scales: Vec<f64> = active.iter().map(|d| sizes[*d].sqrt()).collect();
+        let of_basis = Mat::from_fn(m, active.len(), |i, j| basis.interface[(i, active[j])] * scales[j]);
+        columns.push((directions(analysis, active, &scales), of_basis));
         let widths: Vec<usize> = columns.iter().map(|(forces, _)| forces.ncols()).collect();
         let f: usize = widths.iter().sum();
         let (mut forces, mut share) = (Mat::zeros(operator.n(), f), Mat::zeros(m, f));
@@ -139,17 +136,12 @@ impl Remainder {
         let inertia =
             Mat::from_fn(m, kept.len(), |i, j| if i < first { 0.0 } else { root(i - first, j) / top });
         let mut images = vec![(of_mass, inertia)];
-        for (image, scale, kind) in [(&damped, 1.0, of_damping), (&lossy, top, of_loss)] {
-            let rows = match image {
-                None => continue,
-                Some(Image::Own(image)) => {
-                    let at = start;
-                    start += image.ncols();
-                    Mat::from_fn(m, kept.len(), |i, j| scale * root(at + i, j))
-                }
-                Some(Image::OfDirections(weights)) => product(weights.transpose(), missed.as_ref()),
-            };
-            images.push((kind, rows));
+        for (image, scale, kind) in [(&parts.damped, 1.0, of_damping), (&parts.lossy, top, of_loss)] {
+            if let Some(image) = image {
+                let rows = Mat::from_fn(m, kept.len(), |i, j| scale * root(start + i, j));
+                start += image.ncols();
+                images.push((kind, rows));
+            }
         }
         terms.extend(images.iter().map(|(kind, rows)| (*kind, product(x.transpose(), rows.as_ref()))));
         let (sizes, _) = symmetric_eigen(product(missed.as_ref(), missed.transpose()).as_ref())?;
@@ -178,65 +170,14 @@ impl Remainder {
     }
 }
 
-/// W of the active directions, each times the root of its size.
-struct Directions<'a> {
-    sparse: Vec<&'a SparseVector>,
-    scales: Vec<f64>,
-    columns: Mat<f64>,
-}
-
-/// D B of a damping matrix D.
-enum Image<'a> {
-    /// Itself.
-    Own(&'a Mat<f64>),
-    /// T of D B = W T: nothing that W does not have. Dashpots in the contacts are such.
-    OfDirections(Mat<f64>),
-}
-
-impl<'a> Directions<'a> {
-    fn new(analysis: &Analysis<'a>, active: &[usize], top: f64) -> Self {
-        let interface = &analysis.operator.interface;
-        let sizes = interface.sizes(top);
-        let scales: Vec<f64> = active.iter().map(|d| sizes[*d].sqrt()).collect();
-        let sparse: Vec<&SparseVector> = active.iter().map(|d| interface.directions[*d]).collect();
-        let mut columns = Mat::zeros(analysis.operator.n(), active.len());
-        for (j, (direction, scale)) in sparse.iter().zip(&scales).enumerate() {
-            direction.add_to(*scale, columns.col_as_slice_mut(j));
-        }
-        Directions { sparse, scales, columns }
+/// W of the `active` directions, each times the root of its size.
+fn directions(analysis: &Analysis<'_>, active: &[usize], scales: &[f64]) -> Mat<f64> {
+    let interface = &analysis.operator.interface;
+    let mut columns = Mat::zeros(analysis.operator.n(), active.len());
+    for (j, (d, scale)) in active.iter().zip(scales).enumerate() {
+        interface.directions[*d].add_to(*scale, columns.col_as_slice_mut(j));
     }
-
-    /// T by least squares, where W T gives the image back.
-    fn or_own<'i>(&self, image: &'i Mat<f64>) -> Image<'i> {
-        self.of_directions(image).map_or(Image::Own(image), Image::OfDirections)
-    }
-
-    fn of_directions(&self, image: &Mat<f64>) -> Option<Mat<f64>> {
-        let along = |of: &Mat<f64>| {
-            Mat::from_fn(self.sparse.len(), of.ncols(), |i, j| {
-                self.scales[i] * self.sparse[i].dot(of.col_as_slice(j))
-            })
-        };
-        let (values, vectors) = symmetric_eigen(along(&self.columns).as_ref()).ok()?;
-        let largest = values.last().copied().unwrap_or(0.0);
-        let mut weights = product(vectors.transpose(), along(image).as_ref());
-        for (i, value) in values.iter().enumerate() {
-            let inverse = if *value > 1e-12 * largest { 1.0 / value } else { 0.0 };
-            (0..image.ncols()).for_each(|j| weights[(i, j)] *= inverse);
-        }
-        let weights = product(vectors.as_ref(), weights.as_ref());
-        let given_back = |j: usize| {
-            let mut rest = image.col_as_slice(j).to_vec();
-            let directions = self.sparse.iter().zip(&self.scales).enumerate();
-            directions.for_each(|(i, (d, scale))| d.add_to(-scale * weights[(i, j)], &mut rest));
-            norm(&rest) <= 1e-9 * norm(image.col_as_slice(j))
-        };
-        (0..image.ncols()).into_par_iter().all(given_back).then_some(weights)
-    }
-}
-
-fn norm(x: &[f64]) -> f64 {
-    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+    columns
 }
 
 /// γ with C ≥ −γ(K + K_σ + τM) outside the basis, τ the square of the band's top, and whether C and H are known to be
