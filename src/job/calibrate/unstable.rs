@@ -51,8 +51,11 @@ impl Sliding {
     /// What each of `levels` is called.
     pub fn names(&self, levels: &Picks) -> Vec<String> {
         let name = |level: &Vec<usize>| {
+            // `61 % disc (0, 1), 22 % mode 1718 Hz`: the first of them, whose name may hold a comma in its brackets.
             let words = &self.complex.participation[level[0]];
-            words.split(',').next().map_or(String::new(), |first| format!("unstable, {first}"))
+            let closed = words.find("), ").map(|k| k + 1).filter(|k| words[..*k].contains('('));
+            let plain = words.find(", ").filter(|k| !words[..*k].contains('('));
+            format!("unstable, {}", &words[..plain.or(closed).unwrap_or(words.len())])
         };
         levels.iter().map(name).collect()
     }
