@@ -312,7 +312,7 @@ mod tests {
         .unwrap_err()
         .to_string();
         for expected in [
-            "\"disk\"; expected \"squeal\", or the name of real modes (disc, other)",
+            "\"disk\"; expected \"squeal\", or the name of real modes or of measured data (disc, other)",
             "\"other\" without measured",
             "\"squeal\" without measured",
             "\"disc\" twice",

@@ -424,7 +424,7 @@ mod tests {
         let moved = mesh.regions.remove(5).elements;
         mesh.regions[0].elements.extend(moved);
         let text = Faults(diagnose(&mesh).warnings).to_string();
-        assert!(text.contains("`slider`: found 2 pieces"), "{text}");
+        assert!(text.contains("`plate`: found 2 pieces"), "{text}");
     }
 
     #[test]
