@@ -10,7 +10,7 @@ from pathlib import Path
 JOBS = {"map": ("map", 100_000)}
 # The reference rig, generated, so that it is as fine as is asked.
 MESH = """[mesh.rig]
-disc_size = "1.25 mm"
+disc_size = "1.2 mm"
 slider_size = "3.4 mm"
 """
 MAP = """
