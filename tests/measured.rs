@@ -1,6 +1,9 @@
 //! Universal files both ways with pyuff, an independent reader and writer (Python), which this test installs below the
 //! target folder.
 
+mod common;
+
+use common::samples;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use stridor::linalg::c64;
@@ -183,23 +186,8 @@ fn universal_files_go_both_ways_with_pyuff() {
     }
 }
 
-/// A disc, and a test of it that the program itself wrote.
-const DISC: &str = r#"
-[mesh.annulus]
-outer_radius = "75 mm"
-hub_radius = "15 mm"
-radial = 4
-around = 24
-[material.steel]
-youngs_modulus = "210 GPa"
-poissons_ratio = 0.3
-density = 7850
-[shell.disc]
-material = "steel"
-thickness = "1 mm"
-bending_only = true
-[support.hub]
-on = "hub"
+/// What is asked of a disc, and a test of it that the program itself wrote.
+const ASKED: &str = r#"
 [damping]
 modal_ratio = 0.003
 [modes.disc]
@@ -213,6 +201,10 @@ response.side = { at = [0, "75 mm", 0], direction = [1, 0, 0] }
 band = ["50 Hz", "1 kHz"]
 "#;
 
+fn disc_case() -> String {
+    samples::disc(4, 24) + ASKED
+}
+
 fn stridor(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
     let program =
         Command::new(env!("CARGO_BIN_EXE_stridor")).args(arguments).current_dir(folder).output().unwrap();
@@ -224,14 +216,15 @@ fn stridor(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
 fn what_the_program_wrote_is_compared_with_itself() {
     let dir = tempfile::tempdir().unwrap();
     let folder = dir.path();
-    std::fs::write(folder.join("disc.toml"), DISC).unwrap();
+    let disc = disc_case();
+    std::fs::write(folder.join("disc.toml"), &disc).unwrap();
     for command in ["modes", "frf"] {
         let (code, _, error) = stridor(folder, &[command, "disc.toml", "--out", command]);
         assert_eq!(code, 0, "{error}");
     }
     let measured = "[measured.shapes]\nof = \"disc\"\nfile = \"modes/modes_disc.uff\"\n\
                     [measured.responses]\nfrf = \"hammer\"\nfile = \"frf/frf_hammer.uff\"\n";
-    std::fs::write(folder.join("case.toml"), DISC.to_string() + measured).unwrap();
+    std::fs::write(folder.join("case.toml"), disc.clone() + measured).unwrap();
     let (code, table, error) = stridor(folder, &["compare", "case.toml", "--out", "out"]);
     assert_eq!(code, 0, "{error}");
     assert!(table.contains("FRAC") && table.contains("Every computed level"), "{table}");
@@ -267,7 +260,8 @@ fn wrong_measured_files_are_refused_before_anything_is_written() {
         let dir = tempfile::tempdir().unwrap();
         std::fs::write(dir.path().join(file), content).unwrap();
         let case = format!(
-            "{DISC}[measured.test]\nof = \"disc\"\nfile = \"{file}\"\n[measured.gone]\nof = \"disc\"\nfile = \"gone.uff\"\n"
+            "{}[measured.test]\nof = \"disc\"\nfile = \"{file}\"\n[measured.gone]\nof = \"disc\"\nfile = \"gone.uff\"\n",
+            disc_case()
         );
         std::fs::write(dir.path().join("case.toml"), case).unwrap();
         for command in ["compare", "run", "check"] {

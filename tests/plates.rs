@@ -314,25 +314,6 @@ fn square_plate_buckles_at_four() {
     assert!((k - 4.0).abs() < 0.02, "{k}");
 }
 
-/// A disc held at its hub, as a case.
-const IN_TIME: &str = r#"
-[mesh.annulus]
-outer_radius = "75 mm"
-hub_radius = "15 mm"
-radial = 4
-around = 16
-[material.steel]
-youngs_modulus = "210 GPa"
-poissons_ratio = 0.3
-density = "7850 kg/m^3"
-[shell.disc]
-material = "steel"
-thickness = "1 mm"
-bending_only = true
-[support.hub]
-on = "hub"
-"#;
-
 /// A plate that starts along a real mode stays along it, and its amplitude follows the scheme's recursion: from the
 /// balance α-weighted between two steps, (1−α_m) a₁ + α_m a₀ + ω²((1−α_f) u₁ + α_f u₀) = 0 (J. Chung & G. M. Hulbert,
 /// J. Appl. Mech. 60 (1993) 371), whose error falls with the square of the step.
@@ -341,7 +322,7 @@ fn a_plate_vibrates_in_time_as_its_modes_say() {
     use stridor::equilibrium::{SteadyOptions, solve_steady};
     use stridor::linalg::c64;
     use stridor::transient::{Method, Model, Plan, Scheme, State, march};
-    let case = stridor::case::Case::parse("disc", IN_TIME, ".".into()).expect("a case");
+    let case = stridor::case::Case::parse("disc", &samples::disc(4, 16), ".".into()).expect("a case");
     let prepared = stridor::job::Prepared::new(&case).expect("a model");
     let system = &prepared.system;
     let (real, _) = stridor::modal::compute(&system.structure, stridor::modal::ModesWanted::Count(6), &())

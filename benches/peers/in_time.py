@@ -60,12 +60,16 @@ def reduced(root, stridor, threads):
 
 def run_rig(root, stridor, threads, duration):
     """The summary of a run."""
+    text = (root / "validation/rig/case.toml").read_text().replace("../../meshes", str(root / "meshes")).replace(*SMOOTH)
+    return summary_of(stridor, "transient", text + REDUCED.replace("1 s", duration), threads)
+
+
+def summary_of(stridor, command, text, threads):
+    """The summary of a subcommand on a case, or None with the reason on stderr."""
     with tempfile.TemporaryDirectory() as folder:
-        text = (root / "validation/rig/case.toml").read_text().replace("../../meshes", str(root / "meshes")).replace(*SMOOTH)
-        case = Path(folder) / "case.toml"
-        case.write_text(text + REDUCED.replace("1 s", duration))
-        out = Path(folder) / "out"
-        line = [stridor, "transient", case, "--out", out, "--quiet", "--threads", str(threads)]
+        case, out = Path(folder) / "case.toml", Path(folder) / "out"
+        case.write_text(text)
+        line = [stridor, command, case, "--out", out, "--quiet", "--threads", str(threads)]
         done = subprocess.run(line, capture_output=True, text=True, env=environment(threads))
         if done.returncode:
             print(f"  failed: {done.stderr.strip()}", file=sys.stderr)

@@ -1,11 +1,8 @@
 """The map of benches/run: a thousand complex eigenvalue analyses of the rig over friction and speed, at full order."""
-import json
 import os
 import re
-import subprocess
-import sys
-import tempfile
-from pathlib import Path
+
+from in_time import summary_of
 
 JOBS = {"map": ("map", 100_000)}
 # The reference rig, generated, so that it is as fine as is asked.
@@ -23,25 +20,18 @@ points = [40, 25]
 
 
 def once(root, stridor, threads):
-    with tempfile.TemporaryDirectory() as folder:
-        text = (root / "validation/rig/case.toml").read_text()
-        case, out = Path(folder) / "case.toml", Path(folder) / "out"
-        case.write_text(re.sub(r"\[mesh\]\n(.+\n)+", MESH, text, count=1) + MAP)
-        line = [stridor, "sweep", case, "--out", out, "--quiet", "--threads", str(threads)]
-        before = os.times()
-        done = subprocess.run(line, capture_output=True, text=True)
-        after = os.times()
-        if done.returncode:
-            print(f"  failed: {done.stderr.strip()}", file=sys.stderr)
-            return None
-        summary = json.loads((out / "summary.json").read_text())
-        phases = {phase["phase"]: phase["wall_s"] for phase in summary["timings"]}
-        cpu = sum(after[2:4]) - sum(before[2:4])
-        found = summary["maps"][0]
-        return {"dofs": summary["model"]["dofs"], "phases": phases, "seconds": phases["sweeps and maps"], "cpu": cpu,
-                "points": found["answered"], "dimension": found["method"]["dimension"],
-                "error": max(sample["eigenvalue_error"] for sample in found["full_order_sample"]),
-                "checked": len(found["full_order_sample"])}
+    text = (root / "validation/rig/case.toml").read_text()
+    before = os.times()
+    summary = summary_of(stridor, "sweep", re.sub(r"\[mesh\]\n(.+\n)+", MESH, text, count=1) + MAP, threads)
+    after = os.times()
+    if not summary:
+        return None
+    phases = {phase["phase"]: phase["wall_s"] for phase in summary["timings"]}
+    found = summary["maps"][0]
+    return {"dofs": summary["model"]["dofs"], "phases": phases, "seconds": phases["sweeps and maps"],
+            "cpu": sum(after[2:4]) - sum(before[2:4]), "points": found["answered"], "dimension": found["method"]["dimension"],
+            "error": max(sample["eigenvalue_error"] for sample in found["full_order_sample"]),
+            "checked": len(found["full_order_sample"])}
 
 
 def run_job(name, arguments, root, stridor):

@@ -128,10 +128,7 @@ mod tests {
                         if (0..4).any(|i| (0..i).any(|j| chosen[i] == chosen[j])) {
                             continue;
                         }
-                        let mut misfit = linear.expected();
-                        for (datum, level) in problem.data.iter().zip(chosen) {
-                            misfit = linear.with(&misfit, datum, level);
-                        }
+                        let misfit = linear.misfit(&problem.data, &chosen);
                         all.push((linear.least(&misfit).0, chosen.to_vec()));
                     }
                 }

@@ -51,10 +51,7 @@ impl Chance {
             let plausible: Vec<Vec<usize>> = data.iter().map(|d| linear.plausible(d, reach)).collect();
             let found = assignments::best(linear, data, &plausible, 1);
             let Some((least, assignment)) = found.best.first() else { return [0, 0] };
-            let mut misfit = linear.expected();
-            for (datum, level) in data.iter().zip(assignment) {
-                misfit = linear.with(&misfit, datum, *level);
-            }
+            let misfit = linear.misfit(data, assignment);
             let error = linear.largest_error(data, assignment, &linear.least(&misfit).1);
             [usize::from(error <= largest_error), usize::from(*least <= chi2)]
         };

@@ -74,6 +74,12 @@ impl<'a> Linear<'a> {
         more
     }
 
+    /// The misfit of what was expected and of all data, taken for these levels.
+    pub(super) fn misfit(&self, data: &[Datum], assignment: &[usize]) -> Misfit {
+        let each = data.iter().zip(assignment);
+        each.fold(self.expected(), |misfit, (datum, level)| self.with(&misfit, datum, *level))
+    }
+
     /// The least χ² inside the bounds, and where it is.
     pub(super) fn least(&self, misfit: &Misfit) -> (f64, Vec<f64>) {
         let room = |k: usize| {

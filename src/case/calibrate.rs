@@ -230,10 +230,7 @@ impl Case {
         let parameters = self.calibrate.iter().flat_map(|c| c.parameter.values());
         let scalars =
             parameters.zip(values).flat_map(|(p, value)| p.path.iter().map(move |path| (path, *value)));
-        let mut case = Case { calibrate: None, ..self.clone() };
-        for (path, value) in scalars {
-            case = case.with_parameter(path, value)?;
-        }
+        let case = Case { calibrate: None, ..self.clone() }.with_parameters(scalars)?;
         Ok(Case { calibrate: self.calibrate.clone(), ..case })
     }
 

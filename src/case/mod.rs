@@ -7,7 +7,9 @@
 mod calibrate;
 mod explore;
 mod frf;
+mod matrices;
 mod measured;
+mod mesh;
 mod parameter;
 mod read;
 pub(crate) mod reader;
@@ -18,7 +20,9 @@ pub(crate) mod units;
 
 pub use calibrate::{CalibrateAnalysis, CalibratedParameter, SQUEAL};
 pub use frf::{FrfAnalysis, FrfContact, FrfQuantity, FrfSolution, MotionAt};
+pub use matrices::{Matrices, MatrixTerm};
 pub use measured::{MeasuredData, Transform};
+pub use mesh::{GeneratedMesh, MeshSource, RigMesh};
 pub(crate) use parameter::path_matches;
 pub use parameter::{Invalidates, Parameter};
 pub(crate) use read::DOF_NAMES;
@@ -114,59 +118,6 @@ pub struct Case {
     pub map: BTreeMap<String, MapAnalysis>,
 }
 
-/// Where the mesh comes from.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(untagged)]
-pub enum MeshSource {
-    /// A Gmsh file.
-    File {
-        /// Path, relative to the case file.
-        file: String,
-        /// `m`, `cm`, `mm` or `in`.
-        unit: String,
-    },
-    /// The built-in generator.
-    Generated(GeneratedMesh),
-}
-
-/// M, C and K from MatrixMarket files (paths relative to the case file).
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Matrices {
-    /// M \[kg, kg m²\].
-    pub mass: String,
-    /// K \[N/m, N m\]; an imaginary part is hysteretic damping.
-    pub stiffness: String,
-    /// C \[N s/m, N m s\]; none when absent.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub damping: Option<String>,
-    /// External force f \[N, N m\], a matrix of one column; none when absent.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub load: Option<String>,
-    /// A table (CSV) of what each row is: `node`, its motion `ux` … `rz`, and the node's coordinates `x`, `y`, `z`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub dofs: Option<String>,
-    /// What is added to them, by name.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub term: BTreeMap<String, MatrixTerm>,
-}
-
-/// Matrices that are added with a common factor, a scalar of the case: M + a M₁, C + a C₁, K + a K₁. So a friction
-/// coefficient or a speed can be varied in a model that another program exported.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct MatrixTerm {
-    /// a.
-    pub factor: f64,
-    /// M₁.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub mass: Option<String>,
-    /// C₁.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub damping: Option<String>,
-    /// K₁.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub stiffness: Option<String>,
-}
-
 /// Contact points that are given, not found on a mesh.
 ///
 /// A direction is a sum of degrees of freedom counted from 1, each with an optional factor before it:
@@ -180,59 +131,6 @@ pub enum ContactPoints {
     File(String),
     /// Rows of `normal`, `t1` and, when there is one, `t2`.
     Rows(Vec<Vec<String>>),
-}
-
-/// A mesh made by the built-in generator, so that its sizes are scalars of the case like any other.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum GeneratedMesh {
-    /// Disc, bar and slider.
-    Rig(RigMesh),
-    /// A structured annulus: regions `disc`, `rim`, `hub`; without a hub the whole disc.
-    Annulus {
-        /// a \[m\].
-        outer_radius: f64,
-        /// b \[m\].
-        hub_radius: f64,
-        /// Elements along the radius.
-        radial: usize,
-        /// Elements around.
-        around: usize,
-    },
-    /// A structured rectangle in the plane z = 0: regions `plate`, `plate_edge_x_min`, `plate_edge_x_max`, …
-    Plate {
-        /// Along x \[m\].
-        length: f64,
-        /// Along y \[m\].
-        width: f64,
-        /// Cells along x.
-        cells_along: usize,
-        /// Cells along y.
-        cells_across: usize,
-    },
-}
-
-/// Sizes of a generated rig \[m\].
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct RigMesh {
-    /// Outer radius of the disc.
-    pub outer_radius: f64,
-    /// Radius of the hub.
-    pub hub_radius: f64,
-    /// From the hub's centre to the clamp, along −x; along +x when negative.
-    pub bar_length: f64,
-    /// Slider along x and y.
-    pub slider: [f64; 2],
-    /// Where the contact is on the slider, from its middle; the mesh is fine there.
-    pub contact: [f64; 2],
-    /// Element size at the contact.
-    pub contact_size: f64,
-    /// Distance from the contact within which elements stay fine.
-    pub contact_radius: f64,
-    /// Element size of the disc elsewhere.
-    pub disc_size: f64,
-    /// Element size of the slider elsewhere.
-    pub slider_size: f64,
 }
 
 /// A plate.

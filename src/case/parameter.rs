@@ -93,6 +93,14 @@ impl Case {
         Case::parse(&format!("{path} = {value}"), &text, self.folder.clone())
     }
 
+    /// The same case with the scalars at some paths set to values \[SI\], one after the other.
+    ///
+    /// # Errors
+    /// As [`Case::with_parameter`].
+    pub fn with_parameters<'a>(&self, values: impl IntoIterator<Item = (&'a String, f64)>) -> Result<Case> {
+        values.into_iter().try_fold(self.clone(), |case, (path, value)| case.with_parameter(path, value))
+    }
+
     fn invalidated_by(&self, path: &str) -> Invalidates {
         let keys: Vec<&str> = path.split('.').collect();
         let own = match keys[..] {

@@ -55,8 +55,8 @@ fn read_root(root: &Section, folder: PathBuf) -> Case {
         assumptions: root.strings("assumptions").or(Vec::new()),
         prestress: root.boolean("prestress").or(false),
         folder,
-        mesh: root.section("mesh", read_mesh),
-        matrices: root.section("matrices", read_matrices),
+        mesh: root.section("mesh", super::mesh::read),
+        matrices: root.section("matrices", super::matrices::read),
         point: root
             .section("point", |s| {
                 let position = |name: &String| (name.clone(), s.quantities(name, LENGTH).or([0.0; 3]));
@@ -104,74 +104,8 @@ fn read_root(root: &Section, folder: PathBuf) -> Case {
     super::calibrate::read(root, super::explore::read(root, case))
 }
 
-fn read_matrices(s: &Section) -> Matrices {
-    const FILE: &str = "the path of a MatrixMarket file";
-    let term = |t: &Section| {
-        let term = MatrixTerm {
-            factor: t.quantity("factor", NUMBER).required("a number"),
-            mass: t.string("mass").optional(),
-            damping: t.string("damping").optional(),
-            stiffness: t.string("stiffness").optional(),
-        };
-        if [&term.mass, &term.damping, &term.stiffness].iter().all(|file| file.is_none()) {
-            t.fault("stiffness", "no matrix", "`mass`, `damping` or `stiffness`", "");
-        }
-        term
-    };
-    Matrices {
-        mass: s.string("mass").required(FILE),
-        stiffness: s.string("stiffness").required(FILE),
-        damping: s.string("damping").optional(),
-        load: s.string("load").optional(),
-        dofs: s.string("dofs").optional(),
-        term: collect(s, "term", term),
-    }
-}
-
 pub(super) fn collect<T>(root: &Section, key: &str, read: impl Fn(&Section) -> T) -> BTreeMap<String, T> {
     root.named(key, |name, s| (name.to_string(), read(s))).into_iter().collect()
-}
-
-fn read_mesh(s: &Section) -> MeshSource {
-    let length = |s: &Section, key: &str, default: f64| s.quantity(key, LENGTH).positive().or(default);
-    let rig = s.section("rig", |r| RigMesh {
-        outer_radius: length(r, "outer_radius", 0.075),
-        hub_radius: length(r, "hub_radius", 0.02075),
-        bar_length: r
-            .quantity("bar_length", LENGTH)
-            .check("a length other than zero", |v| *v != 0.0)
-            .or(0.075),
-        slider: r.quantities("slider", LENGTH).or([0.2, 0.12]),
-        contact: r.quantities("contact", LENGTH).or([0.0; 2]),
-        contact_size: length(r, "contact_size", 0.4e-3),
-        contact_radius: length(r, "contact_radius", 2e-3),
-        disc_size: length(r, "disc_size", 3e-3),
-        slider_size: length(r, "slider_size", 8e-3),
-    });
-    let annulus = s.section("annulus", |a| GeneratedMesh::Annulus {
-        outer_radius: a.quantity("outer_radius", LENGTH).positive().required(LENGTH.name),
-        hub_radius: a.quantity("hub_radius", LENGTH).non_negative().required(LENGTH.name),
-        radial: a.count("radial").or(10),
-        around: a.count("around").or(60),
-    });
-    let plate = s.section("plate", |p| GeneratedMesh::Plate {
-        length: p.quantity("length", LENGTH).positive().required(LENGTH.name),
-        width: p.quantity("width", LENGTH).positive().required(LENGTH.name),
-        cells_along: p.count("cells_along").or(20),
-        cells_across: p.count("cells_across").or(20),
-    });
-    let generated = rig.map(GeneratedMesh::Rig).or(annulus).or(plate);
-    if s.names().iter().filter(|key| ["file", "rig", "annulus", "plate"].contains(&key.as_str())).count() > 1
-    {
-        s.fault("", "more than one of `file`, `rig`, `annulus`, `plate`", "one of them", "");
-    }
-    match generated {
-        Some(generated) => MeshSource::Generated(generated),
-        None => MeshSource::File {
-            file: s.string("file").required("the path of a Gmsh file, or a table [mesh.rig] to generate one"),
-            unit: s.choice("unit", &["m", "cm", "mm", "in"]).required("one of m, cm, mm, in").to_string(),
-        },
-    }
 }
 
 fn read_material(s: &Section) -> Material {

@@ -13,7 +13,7 @@ use super::prepared::Prepared;
 use super::sensitivity::Analysed;
 use super::transient::{InTime, Places, places};
 use crate::case::{Case, ContactState, SensitivityAnalysis, TransientAnalysis};
-use crate::equilibrium::{self, SteadyOptions, SteadySliding};
+use crate::equilibrium::{self, SteadySliding};
 use crate::error::{Error, Fault, Result};
 use crate::modal;
 use crate::progress::Observer;
@@ -211,7 +211,7 @@ fn analyse_from(
         }
     }
     if sliding {
-        let options = SteadyOptions { penetration_limit: prepared.penetration_limit(), ..Default::default() };
+        let options = prepared.steady_options();
         let state = clock
             .time("steady sliding", || equilibrium::solve_steady(&prepared.system, &options, observer))?;
         let steady = steady_result(prepared, state);

@@ -7,6 +7,7 @@ use super::model::whole_model;
 use super::place::place;
 use super::regions::Regions;
 use crate::case::{Case, GeneratedMesh, Matrices, MeshSource, RigMesh};
+use crate::equilibrium::SteadyOptions;
 use crate::error::{Faults, Result};
 use crate::mesh::generate::{self, BarSide, BarSpec, DiscSpec, Faces, Grading, PlateSpec, RigSpec};
 use crate::mesh::{self, Mesh};
@@ -133,9 +134,10 @@ impl<'a> Prepared<'a> {
         pairs.map(|pair| arrows(&self.case.contact[&pair.name], &self.model, &pair.points)).collect()
     }
 
-    /// Half of the thinnest plate \[m\]: a contact pressed deeper makes no sense.
-    pub fn penetration_limit(&self) -> f64 {
-        0.5 * self.model.shells.iter().map(|s| s.thickness).fold(f64::INFINITY, f64::min)
+    /// How steady sliding is looked for. A contact pressed deeper than half of the thinnest plate makes no sense.
+    pub fn steady_options(&self) -> SteadyOptions {
+        let thinnest = self.model.shells.iter().map(|s| s.thickness).fold(f64::INFINITY, f64::min);
+        SteadyOptions { penetration_limit: 0.5 * thinnest, ..SteadyOptions::default() }
     }
 
     /// The shell parts that are discs, with their names.

@@ -1,7 +1,7 @@
-//! What several tests of this room start from.
+//! What several tests start from, those in `tests` too.
 
 /// A steel disc of 1 mm, held at its hub: `radial` and `around` cells.
-pub(super) fn disc(radial: usize, around: usize) -> String {
+pub(crate) fn disc(radial: usize, around: usize) -> String {
     format!(
         r#"
 [mesh.annulus]

@@ -4,7 +4,7 @@ use super::contacts::with_laws;
 use super::modes::add_modal_damping;
 use super::prepared::{Prepared, external_load};
 use crate::case::{Case, Invalidates};
-use crate::equilibrium::{self, Condensed, PointState, SteadyOptions, solve_points};
+use crate::equilibrium::{self, Condensed, PointState, solve_points};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::linalg::tall::gram;
@@ -23,7 +23,7 @@ pub(super) fn keeps_the_structure(case: &Case, path: &str) -> Result<bool> {
 
 /// The case with the scalars at `paths` set to `at`.
 pub(super) fn varied(case: &Case, paths: &[String], at: &[f64]) -> Result<Case> {
-    paths.iter().zip(at).try_fold(case.clone(), |case, (path, value)| case.with_parameter(path, *value))
+    case.with_parameters(paths.iter().zip(at.iter().copied()))
 }
 
 /// What the sliding states of a sweep share.
@@ -51,8 +51,7 @@ impl States<'_> {
                 true => Cow::Owned(external_load(&case, &self.prepared.regions, &self.prepared.assembled)?),
                 false => Cow::Borrowed(&system.load),
             };
-            let options =
-                SteadyOptions { penetration_limit: self.prepared.penetration_limit(), ..Default::default() };
+            let options = self.prepared.steady_options();
             solve_points(&with_laws(&system.pairs, &case)?, &load, self.condensed, &options)?
         } else {
             self.nominal.to_vec()
@@ -123,7 +122,7 @@ impl<'a> Whole<'a> {
         let Some(cea) = case.cea.clone() else { return Ok(Vec::new()) };
         let prepared = Prepared::new(&case)?;
         let mut system = prepared.system.clone();
-        let options = SteadyOptions { penetration_limit: prepared.penetration_limit(), ..Default::default() };
+        let options = prepared.steady_options();
         let steady = equilibrium::solve_steady(&system, &options, &())?;
         let stiffness = equilibrium::tangent_stiffness(&system, &steady.displacement)?.into_owned();
         let preloaded = Structure { stiffness, ..system.structure.clone() };

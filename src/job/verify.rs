@@ -2,7 +2,7 @@
 
 use super::modes::add_modal_damping;
 use super::prepared::Prepared;
-use crate::equilibrium::{SteadyOptions, solve_steady, tangent_stiffness};
+use crate::equilibrium::{solve_steady, tangent_stiffness};
 use crate::error::{Error, Result};
 use crate::linalg::c64;
 use crate::linalg::sparse::multiply_vector;
@@ -38,7 +38,7 @@ pub fn mounted(prepared: &Prepared, mode: &ComplexMode, thing: &Mounted) -> Resu
     }
     let Some(cea) = &prepared.case.cea else { return Err(refused("no complex eigenvalues were asked for")) };
     let mut system = System { structure: assembled.structure.clone(), ..prepared.system.clone() };
-    let options = SteadyOptions { penetration_limit: prepared.penetration_limit(), ..Default::default() };
+    let options = prepared.steady_options();
     let steady = solve_steady(&system, &options, &())?;
     let stiffness = tangent_stiffness(&system, &steady.displacement)?.into_owned();
     let preloaded = Structure { stiffness, ..system.structure.clone() };

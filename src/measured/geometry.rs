@@ -1,45 +1,42 @@
 //! Where the frame of a test lies in the mesh, and which nodes its points are.
 
-/// A frame: x_mesh = origin + R x_test. The columns of R are `axes`.
+use nalgebra::{Matrix3, Vector3};
+
+/// A frame: x_mesh = origin + R x_test.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
-    origin: [f64; 3],
-    axes: [[f64; 3]; 3],
+    origin: Vector3<f64>,
+    rotation: Matrix3<f64>,
 }
 
 impl Frame {
     /// The frame whose x axis is along `x`, and whose xy plane holds `y`; neither is zero, nor are they parallel.
     pub fn new(origin: [f64; 3], x: [f64; 3], y: [f64; 3]) -> Frame {
-        let unit = |v: [f64; 3]| v.map(|c| c / dot(v, v).sqrt());
-        let first = unit(x);
-        let along = dot(first, y);
-        let second = unit([0, 1, 2].map(|k| y[k] - along * first[k]));
-        let [[a, b, c], [d, e, f]] = [first, second];
-        let third = [b * f - c * e, c * d - a * f, a * e - b * d];
-        Frame { origin, axes: [first, second, third] }
+        let (first, y) = (Vector3::from(x).normalize(), Vector3::from(y));
+        let second = (y - first.dot(&y) * first).normalize();
+        let rotation = Matrix3::from_columns(&[first, second, first.cross(&second)]);
+        Frame { origin: origin.into(), rotation }
     }
 
     /// A direction of the test in the mesh.
     pub fn direction(&self, of: [f64; 3]) -> [f64; 3] {
-        [0, 1, 2].map(|k| (0..3).map(|axis| self.axes[axis][k] * of[axis]).sum())
+        (self.rotation * Vector3::from(of)).into()
     }
 
     /// A point of the test in the mesh.
     pub fn point(&self, of: [f64; 3]) -> [f64; 3] {
-        let turned = self.direction(of);
-        [0, 1, 2].map(|k| self.origin[k] + turned[k])
+        (self.origin + self.rotation * Vector3::from(of)).into()
     }
 }
 
 /// The scalar product.
 pub fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    Vector3::from(a).dot(&Vector3::from(b))
 }
 
 /// The distance of two points \[m\].
 pub fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    let d = [0, 1, 2].map(|k| a[k] - b[k]);
-    dot(d, d).sqrt()
+    Vector3::from(a).metric_distance(&Vector3::from(b))
 }
 
 /// Of the nodes `among`, indices into `nodes`, the one nearest to each point, and how far it is \[m\]; the first of

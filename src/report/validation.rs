@@ -2,7 +2,7 @@
 //! parts of their tolerances in one picture.
 
 use super::colours::{ALARM, INK, MEASURED, MUTED};
-use super::format::{fixed, given, power};
+use super::format::{fixed, given, power, significant};
 use super::html::{self, escape};
 use super::svg::{Anchor, Ink, Sheet};
 use super::tables::Table;
@@ -58,7 +58,7 @@ fn table(case: &CheckedCase) -> Table {
         let verdict = if row.passed() { "pass" } else { "FAIL" };
         let cells = vec![
             row.quantity.clone(),
-            crate::report::format::significant(row.computed, 7),
+            significant(row.computed, 7),
             given(row.reference),
             power(row.difference()) + if row.relative { "" } else { " (absolute)" },
             power(row.tolerance),

@@ -54,7 +54,7 @@ pub(super) struct Run {
 
 impl Runs<'_> {
     fn case_with(&self, set: &[(String, f64)]) -> Result<Case> {
-        set.iter().try_fold(self.case.clone(), |case, (path, value)| case.with_parameter(path, *value))
+        self.case.with_parameters(set.iter().map(|(path, value)| (path, *value)))
     }
 
     fn with(&mut self, set: &[(String, f64)]) -> Result<&RunResults> {

@@ -1,6 +1,9 @@
 //! Small tools of the tests: steel, rigid motions, structured meshes, dense oracles.
 #![allow(dead_code)]
 
+#[path = "../../src/job/samples.rs"]
+pub mod samples;
+
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 use stridor::linalg::SparseMatrix;

@@ -99,9 +99,8 @@ impl<'a> Calibrate<'a> {
         let values = model.values(&best.fit.x);
         let known = &found.knowledge;
         let both = |j: usize, ends: [f64; 2]| ends.map(|x| self.coordinates[j].value(x));
-        let number = |(j, (name, parameter)): (usize, (&String, _))| -> Result<CalibratedNumber> {
-            let c: &Coordinate = &self.coordinates[j];
-            let _: &crate::case::CalibratedParameter = parameter;
+        let number = |(j, (name, c)): (usize, (&String, &Coordinate))| -> Result<CalibratedNumber> {
+            let parameter = c.parameter;
             let scalar = case.parameter(&parameter.path[0])?;
             Ok(CalibratedNumber {
                 name: name.clone(),
@@ -119,7 +118,14 @@ impl<'a> Calibrate<'a> {
                 at_bound: problem.unknowns[j].bounds.contains(&best.fit.x[j]),
             })
         };
-        let numbers = self.wanted.parameter.iter().enumerate().map(number).collect::<Result<Vec<_>>>()?;
+        let numbers = self
+            .wanted
+            .parameter
+            .keys()
+            .zip(&self.coordinates)
+            .enumerate()
+            .map(number)
+            .collect::<Result<Vec<_>>>()?;
         let names = model.level_names();
         let growth = model.growth(&best.fit.x)?;
         let datum = |(i, datum): (usize, &Datum)| {

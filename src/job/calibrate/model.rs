@@ -227,7 +227,7 @@ impl Model for CaseModel<'_> {
 
 /// The case with one number at another value.
 fn with(case: &Case, c: &Coordinate, value: f64) -> Result<Case> {
-    c.parameter.path.iter().try_fold(case.clone(), |case, path| case.with_parameter(path, value))
+    case.with_parameters(c.parameter.path.iter().map(|path| (path, value)))
 }
 
 /// The scalars that a number stands for, those of them that modes depend on.

@@ -7,7 +7,7 @@ use super::super::scalars::Scalar;
 use super::super::sensitivity::Analysed;
 use super::follow::{Picks, most_alike};
 use crate::calibration::Level;
-use crate::equilibrium::{self, SteadyOptions, SteadySliding};
+use crate::equilibrium::{self, SteadySliding};
 use crate::error::{Error, Result};
 use crate::linalg::dense::mac;
 use crate::modal::RealModes;
@@ -30,7 +30,7 @@ pub struct Sliding {
 impl Sliding {
     /// Steady sliding and its complex modes.
     pub fn new(prepared: &Prepared) -> Result<Sliding> {
-        let options = SteadyOptions { penetration_limit: prepared.penetration_limit(), ..Default::default() };
+        let options = prepared.steady_options();
         let steady = equilibrium::solve_steady(&prepared.system, &options, &())?;
         let complex = complex_result(prepared, &steady, None, &mut Clock::default(), &())?;
         let Some((complex, system, real)) = complex else {
