@@ -3,25 +3,39 @@
 
 use super::clock::Clock;
 use super::modes::{add_modal_damping, labels, named};
-use super::nearest::{band_around, keep_nearest};
+use super::nearest::{band_around, band_expected, keep_nearest};
 use super::prepared::Prepared;
+use crate::case::CeaAnalysis;
 use crate::equilibrium::{self, SteadySliding};
 use crate::error::Result;
 use crate::modal::{self, ModesWanted, RealModes};
 use crate::progress::Observer;
 use crate::results::ComplexResult;
-use crate::stability;
+use crate::stability::{self, Certificate, ComplexModes, Structural};
 use crate::system::{Structure, System};
+use std::f64::consts::TAU;
 
 /// Floating-point operations of a certificate that nobody asked for: some seconds.
 const CHEAP: f64 = 5e9;
+/// How far real modes reach beyond the band that they span where the case leaves it open, by the band's top; and how far
+/// at least, where the band turned out wider than expected.
+const SPANNED: f64 = 1.5;
+const SPANNED_AT_LEAST: f64 = 1.4;
+
+/// What an analysis found, and in which band, spanned by which real modes.
+struct Found {
+    band: [f64; 2],
+    basis: RealModes,
+    modes: ComplexModes,
+    certificate: Option<Certificate>,
+}
 
 /// Complex eigenvalues at the steady state, with the system they belong to (its modal damping in it) and the real modes
 /// of the whole, which `basis` gives where they are known already.
 pub fn complex_result(
     prepared: &Prepared,
     state: &SteadySliding,
-    mut basis: Option<RealModes>,
+    basis: Option<RealModes>,
     clock: &mut Clock,
     observer: &dyn Observer,
 ) -> Result<Option<(ComplexResult, System, RealModes)>> {
@@ -29,33 +43,19 @@ pub fn complex_result(
     let mut system = prepared.system.clone();
     let stiffness = equilibrium::tangent_stiffness(&prepared.system, &state.displacement)?.into_owned();
     let preloaded = Structure { stiffness, ..prepared.system.structure.clone() };
-    let mut band = cea.band;
-    if cea.nearest.is_some() {
-        band = clock.time("counting modes", || band_around(&preloaded, cea))?;
-    }
-    let (basis, modes, certificate) = loop {
-        let below = if cea.nearest.is_some() { cea.basis_below.min(1.5 * band[1]) } else { cea.basis_below };
-        let basis = match basis.take() {
-            Some(basis) => basis,
-            None => whole_modes(&preloaded, below, clock, observer)?,
-        };
-        add_modal_damping(&mut system.structure, &basis, prepared)?;
-        let (mut modes, certificate) = clock.watch(observer, |observer| {
-            let certified =
-                |most_work| stability::certified_modes(&system, state, &basis, band, most_work, observer);
-            match cea.certify {
-                Some(false) => {
-                    stability::complex_modes(&system, state, &basis, band, observer).map(|m| (m, None))
-                }
-                Some(true) => certified(f64::INFINITY),
-                None => certified(CHEAP),
-            }
-        })?;
-        match keep_nearest(&mut modes, cea, band) {
-            Some(wider) => band = wider,
-            None => break (basis, modes, certificate),
+    let mut problem = Problem { prepared, cea, system: &mut system, state, clock, observer };
+    let found = match cea.nearest {
+        Some(target) => problem.nearest(target, &preloaded)?,
+        None => {
+            let basis = match basis {
+                Some(basis) => basis,
+                None => whole_modes(&preloaded, cea.basis_below, problem.clock, observer)?,
+            };
+            let (modes, certificate) = problem.modes((&basis).into(), cea.band)?;
+            Found { band: cea.band, basis, modes, certificate }
         }
     };
+    let Found { band, basis, modes, certificate } = found;
     let confirmation = match cea.confirm {
         true => {
             Some(clock.time("second method", || stability::confirm(&system, state, &modes, band, observer))?)
@@ -86,6 +86,70 @@ pub fn complex_result(
         modes,
     };
     Ok(Some((complex, system, real.modes)))
+}
+
+/// What a complex eigenvalue analysis needs.
+struct Problem<'a> {
+    prepared: &'a Prepared<'a>,
+    cea: &'a CeaAnalysis,
+    system: &'a mut System,
+    state: &'a SteadySliding,
+    clock: &'a mut Clock,
+    observer: &'a dyn Observer,
+}
+
+impl Problem<'_> {
+    /// The complex modes of a band, counted where the case asks for it or where that is cheap.
+    fn modes(
+        &mut self,
+        known: Structural<'_>,
+        band: [f64; 2],
+    ) -> Result<(ComplexModes, Option<Certificate>)> {
+        add_modal_damping(&mut self.system.structure, known.real, self.prepared)?;
+        let (system, state) = (&*self.system, self.state);
+        self.clock.watch(self.observer, |observer| {
+            let certified =
+                |most_work| stability::certified_modes(system, state, known, band, most_work, observer);
+            match self.cea.certify {
+                Some(false) => {
+                    stability::complex_modes(system, state, known, band, observer).map(|m| (m, None))
+                }
+                Some(true) => certified(f64::INFINITY),
+                None => certified(CHEAP),
+            }
+        })
+    }
+
+    /// The complex modes nearest to a frequency: the factors that count the modes below it find the real ones, those tell
+    /// the band, and all three serve the complex ones.
+    fn nearest(&mut self, target: f64, structure: &Structure) -> Result<Found> {
+        let (mut expected, shifted) =
+            self.clock.time("counting modes", || band_expected(structure, self.cea))?;
+        let mut start = Some(shifted);
+        let mut least = [target; 2];
+        loop {
+            let below = self.cea.basis_below.min(SPANNED * expected[1]);
+            let inside = |shift: f64| shift < 0.9 * (TAU * below).powi(2);
+            let (basis, shifted) = self.clock.time("real modes of the whole", || {
+                match start.take().filter(|start| inside(start.shift)) {
+                    Some(start) => modal::compute_from(structure, below, start, self.observer),
+                    None => modal::compute(structure, ModesWanted::BelowHz(below), self.observer),
+                }
+            })?;
+            let around = band_around(&basis, self.cea);
+            let band = [around[0].min(least[0]), around[1].max(least[1])];
+            if below < self.cea.basis_below.min(SPANNED_AT_LEAST * band[1]) {
+                (expected, start) = (band, Some(shifted));
+                continue;
+            }
+            let (mut modes, certificate) =
+                self.modes(Structural { real: &basis, shifted: Some(&shifted) }, band)?;
+            match keep_nearest(&mut modes, self.cea, band) {
+                Some(wider) => (expected, least, start) = (wider, wider, Some(shifted)),
+                None => return Ok(Found { band, basis, modes, certificate }),
+            }
+        }
+    }
 }
 
 /// The real modes that span the complex analysis.

@@ -1,65 +1,69 @@
 //! The complex pairs nearest to a frequency: a band that holds enough of them, found by counting.
 
 use crate::case::CeaAnalysis;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::linalg::c64;
-use crate::linalg::factor::SymbolicFactor;
+use crate::linalg::factor::factorize;
 use crate::linalg::sparse::add_scaled;
+use crate::modal::{RealModes, ShiftedStiffness};
 use crate::stability::ComplexModes;
 use crate::system::Structure;
-
 use std::f64::consts::TAU;
 
-/// Rounds of counting at most; each has two factorisations at most.
-const ROUNDS: usize = 12;
+/// Real modes that the band needs so that `count` complex ones are among them: complex frequencies lie near the real
+/// ones.
+fn enough(count: usize) -> usize {
+    count + 2 + count / 16
+}
 
-/// A band around `cea.nearest`, inside `cea.band`, with at least `cea.count` real modes of `structure` and a few more,
-/// but not many more: complex frequencies lie near the real ones.
-///
-/// The real modes below a frequency are counted by the inertia of K − ω²M (Sylvester's law), so that none needs to be
-/// computed.
+/// A band around `cea.nearest`, inside `cea.band`, that is expected to hold enough modes of `structure`, and K − ω²M
+/// factorised at the frequency asked for: its inertia counts the modes below (Sylvester's law), and modes of plates lie
+/// evenly over frequency.
 ///
 /// # Errors
-/// A pencil that is singular at every shift.
-pub fn band_around(structure: &Structure, cea: &CeaAnalysis) -> Result<[f64; 2]> {
-    let (Some(target), Some(count)) = (cea.nearest, cea.count) else { return Ok(cea.band) };
+/// A pencil that is singular there.
+pub fn band_expected(structure: &Structure, cea: &CeaAnalysis) -> Result<([f64; 2], ShiftedStiffness)> {
     let [lowest, highest] = cea.band;
-    let counter = Counter::new(structure)?;
-    let least = count + 2 + count / 16;
-    let most = least + 4 + count / 4;
-    let at_target = counter.below(target)?;
-    let at_lowest = counter.below(lowest)?;
-    // Modes of plates lie evenly over frequency.
-    let density = (at_target.saturating_sub(at_lowest).max(1)) as f64 / (target - lowest).max(1e-3 * target);
-    let (mut inside, mut outside) = (0.0, f64::INFINITY);
-    let mut reach = 0.5 * (least + most) as f64 / (2.0 * density);
-    for _ in 0..ROUNDS {
-        let band = [(target - reach).max(lowest), (target + reach).min(highest)];
-        let (low, high) = rayon::join(
-            || if band[0] == lowest { Ok(at_lowest) } else { counter.below(band[0]) },
-            || counter.below(band[1]),
-        );
-        let held = high?.saturating_sub(low?);
-        if held < least && band == cea.band {
-            return Ok(band);
-        }
-        if (least..=most).contains(&held) || (held > most && outside - inside < 1e-6 * target) {
-            return Ok(band);
-        }
-        let factor = 0.5 * (least + most) as f64 / held.max(1) as f64;
-        if held < least {
-            inside = reach;
-            let next = reach * factor.clamp(1.05, 4.0);
-            reach = if next < outside { next } else { 0.5 * (inside + outside) };
-        } else {
-            outside = reach;
-            let next = reach * factor.clamp(0.1, 0.95);
-            reach = if next > inside { next } else { 0.5 * (inside + outside) };
+    let target = cea.nearest.unwrap_or(highest);
+    let at = |hz: f64| -> Result<ShiftedStiffness> {
+        let shift = (TAU * hz).powi(2);
+        let factor = factorize(&add_scaled(&[(1.0, &structure.stiffness), (-shift, &structure.mass)]))?;
+        Ok(ShiftedStiffness { shift, factor })
+    };
+    // A shift that sits on an eigenvalue is moved a little.
+    let mut shifted = at(target);
+    for nudge in [1.0 - 1e-4, 1.0 + 1.3e-4] {
+        match &shifted {
+            Ok(there) if there.factor.inertia().zero == 0 => break,
+            _ => shifted = at(target * nudge),
         }
     }
-    // A cluster of modes: the band with it is wide enough.
-    let reach = if outside.is_finite() { outside } else { reach };
-    Ok([(target - reach).max(lowest), (target + reach).min(highest)])
+    let shifted = shifted?;
+    let density = shifted.factor.inertia().negative.max(1) as f64 / target;
+    // A tenth more, so that a second look is seldom needed.
+    let wide = 1.1 * enough(cea.count.unwrap_or(1)) as f64 / density;
+    let below = target - lowest;
+    let reach = if wide <= 2.0 * below { 0.5 * wide } else { wide - below };
+    Ok(([(target - reach).max(lowest), (target + reach).min(highest)], shifted))
+}
+
+/// The band around `cea.nearest`, inside `cea.band`, that holds just enough of the real modes, or where they end.
+pub fn band_around(real: &RealModes, cea: &CeaAnalysis) -> [f64; 2] {
+    let (Some(target), Some(count)) = (cea.nearest, cea.count) else { return cea.band };
+    let [lowest, highest] = cea.band;
+    let inside = (0..real.len()).map(|k| real.frequency_hz(k)).filter(|f| (lowest..=highest).contains(f));
+    let mut distances: Vec<f64> = inside.map(|f| (f - target).abs()).collect();
+    distances.sort_by(f64::total_cmp);
+    let end = (real.certificate.below_hz - target).max(0.0);
+    let needed = enough(count);
+    let reach = match (distances.get(needed - 1), distances.get(needed)) {
+        (Some(last), Some(next)) => 0.5 * (last + next),
+        (Some(last), None) => 0.5 * (last + end.max(*last)),
+        _ => end,
+    };
+    // Beyond the last real mode that is known nothing is known to lie near.
+    let reach = reach.min(end.max(1e-3 * target));
+    [(target - reach).max(lowest), (target + reach).min(highest)]
 }
 
 /// Keeps the `cea.count` modes whose λ is nearest to iω of `cea.nearest`, when they are all inside `band`; otherwise
@@ -86,35 +90,6 @@ pub fn keep_nearest(modes: &mut ComplexModes, cea: &CeaAnalysis, band: [f64; 2])
         )),
     }
     None
-}
-
-/// Counts real modes.
-struct Counter<'a> {
-    structure: &'a Structure,
-    symbolic: SymbolicFactor,
-}
-
-impl<'a> Counter<'a> {
-    fn new(structure: &'a Structure) -> Result<Self> {
-        let union = add_scaled(&[(1.0, &structure.stiffness), (1.0, &structure.mass)]);
-        Ok(Counter { structure, symbolic: SymbolicFactor::new(union.symbolic())? })
-    }
-
-    /// The number of ω² below (2π hz)², negative ones among them.
-    fn below(&self, hz: f64) -> Result<usize> {
-        let mut refused = None;
-        // A shift that sits on an eigenvalue is moved a little.
-        for nudge in [1.0, 1.0 - 1e-6, 1.0 + 1.3e-6] {
-            let shift = if hz > 0.0 { (TAU * hz * nudge).powi(2) } else { -1e-3 * nudge };
-            let pencil = add_scaled(&[(1.0, &self.structure.stiffness), (-shift, &self.structure.mass)]);
-            match self.symbolic.factorize(&pencil) {
-                Ok(factor) if factor.inertia().zero == 0 => return Ok(factor.inertia().negative),
-                Ok(factor) => refused = Some(Ok(factor.inertia().negative)),
-                Err(error) => refused = Some(Err(error)),
-            }
-        }
-        refused.unwrap_or_else(|| Err(Error::analysis("counting modes", "no shift", "Ask for a band")))
-    }
 }
 
 #[cfg(test)]
@@ -146,15 +121,19 @@ mod tests {
             (0..modes.len()).filter(|k| (low..=high).contains(&modes.frequency_hz(*k))).count()
         };
         for (target, count) in [(3e3, 1), (3e3, 20), (1e3, 10), (100.0, 3), (6e3, 40)] {
-            let band = band_around(&structure, &analysis(target, count, [0.0, 4.0 * target])).unwrap();
+            let cea = analysis(target, count, [0.0, 4.0 * target]);
+            let (expected, shifted) = band_expected(&structure, &cea).unwrap();
+            assert!(expected[0] <= target && target <= expected[1] && expected[1] <= 4.0 * target);
+            let below = held([0.0, (shifted.shift.sqrt()) / TAU]);
+            assert_eq!(shifted.factor.inertia().negative, below);
+            let band = band_around(&modes, &cea);
             let found = held(band);
             assert!(
-                found >= count && band[0] <= target && target <= band[1],
+                found == enough(count) && band[0] <= target && target <= band[1],
                 "{target} {count}: {found} in {band:?}"
             );
-            assert!(found <= count + 8 + count / 2, "{target} {count}: {found} in {band:?}");
         }
         let narrow = analysis(3e3, 500, [2.5e3, 3.5e3]);
-        assert_eq!(band_around(&structure, &narrow).unwrap(), narrow.band);
+        assert_eq!(band_around(&modes, &narrow), narrow.band);
     }
 }

@@ -97,17 +97,11 @@ pub fn lowest_eigenpairs(
     }
     assert!(k.nrows() == n && m.nrows() == n && m.ncols() == n, "K and M are of one size");
     match wanted {
-        Wanted::Below(bound) if !(bound > 0.0 && bound.is_finite()) => {
-            return Err(Error::analysis(
-                "eigenvalues",
-                format!("the bound is {bound}"),
-                "Ask for those below a positive, finite bound",
-            ));
-        }
+        Wanted::Below(bound) => check_bound(bound)?,
         Wanted::Count(0) => {
             return Err(Error::analysis("eigenvalues", "none was asked for", "Ask for at least one"));
         }
-        _ => {}
+        Wanted::Count(_) => {}
     }
     let pencil = Pencil::new(k, m)?;
     observer.begin("eigenvalues", None);
@@ -121,6 +115,40 @@ pub fn lowest_eigenpairs(
     };
     observer.end();
     result
+}
+
+/// The eigenpairs below `bound`, or a shade above it, where K − σM is factorised already at a shift σ below the bound: it is
+/// taken for the iteration, and the analysis of its pattern for the count.
+///
+/// # Errors
+/// As [`lowest_eigenpairs`].
+///
+/// # Panics
+/// When the matrices are not square and of one size.
+pub fn eigenpairs_below(
+    k: &SparseMatrix,
+    m: &SparseMatrix,
+    bound: f64,
+    start: (f64, Box<dyn SymmetricFactor>),
+    observer: &dyn Observer,
+) -> Result<Eigenpairs> {
+    check_bound(bound)?;
+    let pencil = Pencil { k, m, symbolic: start.1.symbolic() };
+    if k.ncols() <= DENSE {
+        return pencil.solve_densely(Wanted::Below(bound));
+    }
+    observer.begin("eigenvalues", None);
+    let result = pencil.below_from(start, bound * (1.0 + APART), observer);
+    observer.end();
+    result
+}
+
+fn check_bound(bound: f64) -> Result<()> {
+    if bound > 0.0 && bound.is_finite() {
+        return Ok(());
+    }
+    let found = format!("the bound is {bound}");
+    Err(Error::analysis("eigenvalues", found, "Ask for those below a positive, finite bound"))
 }
 
 /// ‖K x − θ M x‖₂ / ((‖K‖₁ + |θ| ‖M‖₁) ‖x‖₂) of each pair.
@@ -200,18 +228,8 @@ impl<'a> Pencil<'a> {
         let mut shifts = [bound * (1.0 - APART), bound * (1.0 + APART)];
         let middle = INSIDE.map(|part| part * bound);
         let (counted, middle) = rayon::join(|| self.count_at(shifts), || self.factorize_near(middle));
-        let (mut counted, (shift, factor)) = (counted?, middle?);
-        let negative = factor.inertia().negative;
-        let window = Window {
-            negative,
-            largest: counted[1].saturating_sub(negative),
-            floor: 1.0 / (shifts[1] - shift),
-        };
-        let mut lanczos =
-            BlockLanczos::new(self.m, &*factor, capacity(counted[1]), self.accepted(bound - shift));
-        let ritz = lanczos.converge(window, observer)?.ok_or_else(|| missing(0, counted[1], shifts[1]))?;
-        let (values, vectors) = lanczos.pairs(&ritz, window, shift);
-        let mut found = Found { values, vectors, shift, factor };
+        let mut counted = counted?;
+        let mut found = self.found_below(middle?, shifts[1], counted[1], observer)?;
         let mut bound = bound;
         if counted[0] != counted[1] {
             let first_above = found.values.partition_point(|v| *v < bound);
@@ -220,6 +238,49 @@ impl<'a> Pencil<'a> {
             found.truncate(found.values.partition_point(|v| *v < bound));
         }
         self.certify(found, SturmCount { bound, shifts, counted })
+    }
+
+    /// The pairs below `bound`, where one count says all unless an eigenvalue that was found sits on it.
+    fn below_from(
+        &self,
+        start: (f64, Factor),
+        mut bound: f64,
+        observer: &dyn Observer,
+    ) -> Result<Eigenpairs> {
+        let (mut above, counter) =
+            self.factorize_near([bound, bound * (1.0 + 0.1 * APART), bound * (1.0 + 0.2 * APART)])?;
+        let mut counted = counter.inertia().negative;
+        drop(counter);
+        let mut found = self.found_below(start, above, counted, observer)?;
+        let near = |v: &f64| above - v < 1e-9 * bound;
+        if found.values.last().is_some_and(near) {
+            let first_above = found.values.partition_point(|v| above - v >= 1e-9 * bound);
+            let below = first_above.checked_sub(1).map_or(0.0, |k| found.values[k]);
+            bound = 0.5 * (below + found.values[first_above]);
+            let (shift, counter) = self.factorize_near([bound; 3])?;
+            (above, counted) = (shift, counter.inertia().negative);
+            found.truncate(first_above);
+        }
+        self.certify(found, SturmCount { bound: above, shifts: [above; 2], counted: [counted; 2] })
+    }
+
+    /// The pairs below `above`, `counted` in number, by an iteration at a shift.
+    fn found_below(
+        &self,
+        (shift, factor): (f64, Factor),
+        above: f64,
+        counted: usize,
+        observer: &dyn Observer,
+    ) -> Result<Found> {
+        let negative = factor.inertia().negative;
+        let window =
+            Window { negative, largest: counted.saturating_sub(negative), floor: 1.0 / (above - shift) };
+        let mut lanczos =
+            BlockLanczos::new(self.m, &*factor, capacity(counted), self.accepted(above - shift));
+        let ritz = lanczos.converge(window, observer)?.ok_or_else(|| missing(0, counted, above))?;
+        let (values, vectors) = lanczos.pairs(&ritz, window, shift);
+        drop(lanczos);
+        Ok(Found { values, vectors, shift, factor })
     }
 
     fn count(&self, count: usize, observer: &dyn Observer) -> Result<Eigenpairs> {

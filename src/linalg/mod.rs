@@ -29,7 +29,7 @@ pub mod unsymmetric;
 #[cfg(test)]
 pub(crate) mod samples;
 
-pub use eigenpairs::{Eigenpairs, SturmCount, Wanted, lowest_eigenpairs};
+pub use eigenpairs::{Eigenpairs, SturmCount, Wanted, eigenpairs_below, lowest_eigenpairs};
 pub use factor::{Inertia, SymbolicFactor, SymmetricFactor};
 pub use faer::c64;
 pub use sparse::{SparseMatrix, SparseVector};

@@ -94,7 +94,7 @@ impl SparseVector {
 }
 
 /// Σ x y, in sums side by side.
-fn dot(x: &[f64], y: &[f64]) -> f64 {
+pub fn dot(x: &[f64], y: &[f64]) -> f64 {
     const SUMS: usize = 8;
     let ((x, x_rest), (y, y_rest)) = (x.as_chunks::<SUMS>(), y.as_chunks::<SUMS>());
     let mut sums = [0.0; SUMS];

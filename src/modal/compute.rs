@@ -2,7 +2,7 @@
 
 use super::{RealModes, SturmCertificate};
 use crate::error::{Error, Fault, Result};
-use crate::linalg::{SparseMatrix, SymmetricFactor, Wanted, lowest_eigenpairs};
+use crate::linalg::{Eigenpairs, SparseMatrix, SymmetricFactor, Wanted, eigenpairs_below, lowest_eigenpairs};
 use crate::progress::Observer;
 use crate::system::Structure;
 use faer::Mat;
@@ -50,13 +50,37 @@ pub fn compute(
         ModesWanted::BelowHz(hz) => (format!("below {hz} Hz"), Wanted::Below((TAU * hz).powi(2))),
         ModesWanted::Count(count) => (format!("the lowest {count}"), Wanted::Count(count)),
     };
-    let pairs =
-        lowest_eigenpairs(&structure.stiffness, &structure.mass, below, observer).map_err(|e| match e {
-            Error::Analysis { what, found, help } => {
-                Error::analysis(format!("real modes, {range}, {what} θ = ω²"), found, help)
-            }
-            other => other,
-        })?;
+    let pairs = lowest_eigenpairs(&structure.stiffness, &structure.mass, below, observer);
+    pairs.map(|pairs| told(structure, pairs)).map_err(|e| failed(&range, e))
+}
+
+/// Real modes of `structure` below `hz`, or a shade above it, where K − σM is factorised already at a shift σ among them.
+///
+/// # Errors
+/// As [`compute`].
+pub fn compute_from(
+    structure: &Structure,
+    hz: f64,
+    start: ShiftedStiffness,
+    observer: &dyn Observer,
+) -> Result<(RealModes, ShiftedStiffness)> {
+    let (start, bound) = ((start.shift, start.factor), (TAU * hz).powi(2));
+    let pairs = eigenpairs_below(&structure.stiffness, &structure.mass, bound, start, observer);
+    pairs.map(|pairs| told(structure, pairs)).map_err(|e| failed(&format!("below {hz} Hz"), e))
+}
+
+/// An error of the eigenvalues as one of the modes in a range.
+fn failed(range: &str, error: Error) -> Error {
+    match error {
+        Error::Analysis { what, found, help } => {
+            Error::analysis(format!("real modes, {range}, {what} θ = ω²"), found, help)
+        }
+        other => other,
+    }
+}
+
+/// Eigenpairs as modes.
+fn told(structure: &Structure, pairs: Eigenpairs) -> (RealModes, ShiftedStiffness) {
     let hz = |theta: f64| theta.max(0.0).sqrt() / TAU;
     let certificate = SturmCertificate {
         below_hz: hz(pairs.sturm.bound),
@@ -71,7 +95,7 @@ pub fn compute(
         backward_errors: pairs.backward_errors,
         certificate,
     };
-    Ok((modes, ShiftedStiffness { shift: pairs.shift, factor: pairs.factor }))
+    (modes, ShiftedStiffness { shift: pairs.shift, factor: pairs.factor })
 }
 
 /// The number of leading modes with ω ≤ 1e-3 of the first elastic one and no strain energy: φᵀKφ vanishes against the

@@ -10,7 +10,7 @@ mod naming;
 #[cfg(test)]
 pub(crate) mod samples;
 
-pub use compute::{ModesWanted, ShiftedStiffness, compute};
+pub use compute::{ModesWanted, ShiftedStiffness, compute, compute_from};
 pub use effective_mass::{EffectiveMass, effective_mass};
 pub use naming::DiscPoints;
 

@@ -12,10 +12,11 @@ use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Fault, Result};
 use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
+use crate::linalg::dense::product;
 use crate::linalg::factor::factorize;
 use crate::linalg::sparse::{add_scaled, times};
 use crate::linalg::tall::gram;
-use crate::modal::RealModes;
+use crate::modal::{RealModes, ShiftedStiffness};
 use crate::progress::Observer;
 use crate::system::System;
 use std::f64::consts::TAU;
@@ -49,14 +50,30 @@ const ILL_CONDITIONED: f64 = 1e6;
 ///
 /// # Errors
 /// A band that is none; real modes of another system; a projected problem that cannot be solved.
-pub fn complex_modes(
+pub fn complex_modes<'a>(
     system: &System,
     steady: &SteadySliding,
-    real: &RealModes,
+    known: impl Into<Structural<'a>>,
     band_hz: [f64; 2],
     observer: &dyn Observer,
 ) -> Result<ComplexModes> {
-    analyse(system, steady, real, band_hz, observer, |_, _| ()).map(|(modes, ())| modes)
+    analyse(system, steady, known, band_hz, observer, |_, _| ()).map(|(modes, ())| modes)
+}
+
+/// What is known of the structure alone, without contact: its real modes and, where they are at hand, factors of
+/// K + K_σ − σM at a shift among them.
+#[derive(Debug, Clone, Copy)]
+pub struct Structural<'a> {
+    /// Real modes of K + K_σ and M.
+    pub real: &'a RealModes,
+    /// Used where σ lies inside the band, and clear of the modes.
+    pub shifted: Option<&'a ShiftedStiffness>,
+}
+
+impl<'a> From<&'a RealModes> for Structural<'a> {
+    fn from(real: &'a RealModes) -> Self {
+        Structural { real, shifted: None }
+    }
 }
 
 /// What an analysis has at hand when its modes are found.
@@ -74,35 +91,60 @@ pub(super) struct Analysis<'a> {
 }
 
 /// [`complex_modes`], and what `then` makes of them and the analysis.
-pub(super) fn analyse<T>(
+pub(super) fn analyse<'a, T>(
     system: &System,
     steady: &SteadySliding,
-    real: &RealModes,
+    known: impl Into<Structural<'a>>,
     band_hz: [f64; 2],
     observer: &dyn Observer,
     then: impl FnOnce(&mut ComplexModes, Analysis<'_>) -> T,
 ) -> Result<(ComplexModes, T)> {
+    let known = known.into();
+    let real = known.real;
     check(system, steady, real, band_hz)?;
     let operator = Operator::new(system, steady)?;
     let band = band_hz.map(|f| TAU * f);
     observer.begin("complex eigenvalues", None);
-    let solved = shifted_factor(&operator, real, band).and_then(|(factor, shift)| {
-        let solved = solve_and_refine(&operator, &*factor, real, band_hz, observer)?;
-        Ok((factor, shift, solved))
+    let own = match serves(known, band) {
+        true => Ok(None),
+        false => shifted_factor(&operator, real, band)
+            .map(|(factor, shift)| Some(ShiftedStiffness { shift, factor })),
+    };
+    let solved = own.and_then(|own| {
+        let factor = &*at(&own, known).factor;
+        let solved = solve_and_refine(&operator, factor, real, band_hz, observer)?;
+        Ok((own, solved))
     });
     observer.end();
-    let (factor, shift, (mut modes, basis)) = solved?;
+    let (own, (mut modes, basis)) = solved?;
+    let shifted = at(&own, known);
     let analysis = Analysis {
         operator: &operator,
         basis: &basis,
-        factor: &*factor,
-        shift,
+        factor: &*shifted.factor,
+        shift: shifted.shift,
         n_real: real.len(),
         complete_below: complete_below(system, real),
         band_hz,
     };
     let rest = then(&mut modes, analysis);
     Ok((modes, rest))
+}
+
+/// Whether the factors at hand lie inside the band, and clear of the modes: then they cost no digits.
+fn serves(known: Structural<'_>, band: [f64; 2]) -> bool {
+    /// The distance of a shift from the modes, relative to it.
+    const CLEAR: f64 = 1e-3;
+    let middle = 0.5 * (band[0] * band[0] + band[1] * band[1]);
+    known.shifted.is_some_and(|s| {
+        (s.shift - middle).abs() <= 0.5 * middle
+            && known.real.eigenvalues.iter().all(|w| (w - s.shift).abs() > CLEAR * s.shift)
+    })
+}
+
+/// The factors made here, or those at hand where none were.
+fn at<'a>(own: &'a Option<ShiftedStiffness>, known: Structural<'a>) -> &'a ShiftedStiffness {
+    own.as_ref().or(known.shifted).expect("made where none serve")
 }
 
 /// Ω_b² below which no real mode is missing.
@@ -267,11 +309,19 @@ fn vectors<'a>(
     which.chunks(TOGETHER).map(move |chunk| {
         let expand = |pick: fn(&SmallPair) -> &Vec<c64>| {
             let small: Vec<&[c64]> = chunk.iter().map(|j| pick(&pairs[*j]).as_slice()).collect();
-            operator.images(basis.expand(&Block::from_columns(basis.len(), &small))).normalise()
+            operator.images(basis.expand(&unit_mass(basis, Block::from_columns(basis.len(), &small))))
         };
         let lambda = chunk.iter().map(|j| pairs[*j].lambda).collect();
         Vectors { lambda, right: expand(|p| &p.right), left: expand(|p| &p.left) }
     })
+}
+
+/// Coordinates scaled so that the vectors which they stand for have xᴴMx = 1.
+fn unit_mass(basis: &Basis<'_>, mut y: Block) -> Block {
+    let inertia = y.map(|part| product(basis.mass.as_ref(), part.as_ref()));
+    let factors: Vec<f64> = (0..y.ncols()).map(|j| 1.0 / y.dot(j, &inertia).re.sqrt()).collect();
+    y.scale(&factors);
+    y
 }
 
 /// The pairs of the projected problem, measured on the full order; those that are `known` to be right are kept.

@@ -3,21 +3,22 @@
 use super::block::Block;
 use super::operator::{Operator, Products};
 use crate::linalg::SparseMatrix;
-use crate::linalg::dense::product;
+use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::sparse::{add_scaled, times};
-use crate::linalg::tall::{beside, combine, expand, gram};
+use crate::linalg::tall::{beside, combine, expand, gram, lower_gram};
 use faer::{Accum, Mat, MatMut, MatRef};
 
 /// Columns that are orthonormalised together.
 const PANEL: usize = 32;
-/// More columns than this are sorted out by their Gram matrix first.
+/// Of more columns than this the principal directions are taken.
 const WIDE: usize = 48;
 
 /// A basis B = \[Φ Z\] and the projections BᵀMB, BᵀCB, BᵀKB, BᵀHB, and BᵀW of the interface.
 ///
 /// E = K + τM measures how much a direction can matter in the band. The real modes, which are M-orthonormal, are
 /// orthogonal in E too; what is added is E-orthogonal to them and orthonormal in E/τ: there, above the modes, E is
-/// positive also where M is singular or K indefinite, and no direction without mass is lost.
+/// positive also where M is singular or K indefinite, and no direction without mass is lost. Of many columns at once it is
+/// orthogonal only as far as the digits of their Gram matrix go.
 pub(super) struct Basis<'a> {
     operator: &'a Operator<'a>,
     energy: SparseMatrix,
@@ -25,8 +26,6 @@ pub(super) struct Basis<'a> {
     /// bᵀEb of every column.
     sizes: Vec<f64>,
     pub(super) vectors: Mat<f64>,
-    /// M B.
-    pub(super) mass_times: Mat<f64>,
     pub(super) mass: Mat<f64>,
     pub(super) damping: Mat<f64>,
     pub(super) stiffness: Mat<f64>,
@@ -45,7 +44,6 @@ impl<'a> Basis<'a> {
             tau,
             sizes: Vec::new(),
             vectors: Mat::zeros(n, 0),
-            mass_times: Mat::zeros(n, 0),
             mass: Mat::zeros(0, 0),
             damping: Mat::zeros(0, 0),
             stiffness: Mat::zeros(0, 0),
@@ -64,55 +62,73 @@ impl<'a> Basis<'a> {
 
     /// B y of every column of `y`.
     pub(super) fn expand(&self, y: &Block) -> Block {
-        y.map(|y| expand(self.vectors.as_ref(), y.as_ref()))
+        y.map(|y| self.expand_real(y))
     }
 
-    /// Adds the directions of `z` that are new: after the basis is projected out, the columns are taken in the order
-    /// of their remaining size in the E-norm, until it is below `tolerance` (or round-off of where the column
-    /// started), or `limit` are taken. Says how many were.
-    pub(super) fn enrich(&mut self, mut z: Mat<f64>, tolerance: f64, limit: usize) -> usize {
+    /// B y of real columns.
+    pub(super) fn expand_real(&self, y: &Mat<f64>) -> Mat<f64> {
+        expand(self.vectors.as_ref(), y.as_ref())
+    }
+
+    /// Adds the directions of `z` that are new. Of a few columns, after the basis is projected out, those are taken whose
+    /// remaining size in the E-norm is largest, until it is below `tolerance` (or round-off of where the column started), or
+    /// `limit` are taken; of many, the principal directions of what remains of all of them, down to `tolerance`. Says how
+    /// many were.
+    pub(super) fn enrich(&mut self, z: Mat<f64>, tolerance: f64, limit: usize) -> usize {
+        let new = match z.ncols() > WIDE && limit == usize::MAX {
+            true => self.principal(&z, tolerance),
+            false => self.largest(z, tolerance, limit),
+        };
+        let (old, added) = (self.len(), new.ncols());
+        if added > 0 {
+            self.append(new);
+        }
+        self.sizes.extend((old..self.len()).map(|j| self.stiffness[(j, j)] + self.tau * self.mass[(j, j)]));
+        added
+    }
+
+    /// The columns of `z` with the largest rest, made E/τ-orthonormal.
+    fn largest(&self, mut z: Mat<f64>, tolerance: f64, limit: usize) -> Mat<f64> {
         const ROUND_OFF: f64 = 1e-10;
         let mut image = times(&self.energy, z.as_ref());
-        let wide = z.ncols() > WIDE && limit == usize::MAX;
-        if wide {
-            (z, image) = self.preselected(z, image, tolerance);
-        }
-        let floor: Vec<f64> = (0..z.ncols())
-            .map(|j| {
-                let before: f64 =
-                    z.col_as_slice(j).iter().zip(image.col_as_slice(j)).map(|(a, b)| a * b).sum();
-                (tolerance * tolerance).max(ROUND_OFF * ROUND_OFF * before)
-            })
-            .collect();
-        // Once is enough for those that were chosen already: they are projected twice more as they are orthonormalised.
-        for _ in 0..if wide { 1 } else { 2 } {
+        let before = gram_diagonal(&z, &image);
+        let floor: Vec<f64> =
+            before.iter().map(|b| (tolerance * tolerance).max(ROUND_OFF * ROUND_OFF * b)).collect();
+        for _ in 0..2 {
             self.project_out(z.as_mut(), image.as_ref());
             image = times(&self.energy, z.as_ref());
         }
         let mut energy = gram(z.as_ref(), image.as_ref());
         let open = pivoted_choice(&mut energy, &floor, limit);
-        let new = self.orthonormal(&z, &image, open);
-        let added = new.ncols();
-        if added > 0 {
-            self.append(new);
-        }
-        self.sizes.resize(self.len(), self.tau);
-        added
+        self.orthonormal(&z, &image, open)
     }
 
-    /// Of many columns, with E z, those that [`Basis::enrich`] is going to take: by their Gram matrix less what the basis
-    /// has of it, which loses digits but is a small matrix. What is lost is below 1e-7 of a column.
-    fn preselected(&self, z: Mat<f64>, image: Mat<f64>, tolerance: f64) -> (Mat<f64>, Mat<f64>) {
+    /// The principal directions of the columns of `z` in the E-norm, once the basis is projected out, that are larger than
+    /// `tolerance`: by the eigenvalues of the Gram matrix less what the basis has of it, which is a small matrix. The
+    /// difference is right to 1e-16 of the largest column, and the directions to what that is of their own size: they need
+    /// not be orthogonal, as the projections are those of the vectors as they come out.
+    fn principal(&self, z: &Mat<f64>, tolerance: f64) -> Mat<f64> {
         const DIGITS_LEFT: f64 = 1e-14;
+        let image = times(&self.energy, z.as_ref());
         let share = gram(self.vectors.as_ref(), image.as_ref());
-        let mut energy = gram(z.as_ref(), image.as_ref());
-        let floor: Vec<f64> =
-            (0..z.ncols()).map(|j| (tolerance * tolerance).max(DIGITS_LEFT * energy[(j, j)].abs())).collect();
+        let mut energy = lower_gram(z.as_ref(), image.as_ref());
+        drop(image);
+        let largest = (0..z.ncols()).fold(0.0f64, |l, j| l.max(energy[(j, j)]));
         let weighted =
             Mat::from_fn(share.nrows(), share.ncols(), |i, j| share[(i, j)] * self.inverse_size(i));
         energy -= product(share.transpose(), weighted.as_ref());
-        let chosen = pivoted_choice(&mut energy, &floor, usize::MAX);
-        (picked(&z, &chosen), picked(&image, &chosen))
+        let Ok((sizes, directions)) = symmetric_eigen(energy.as_ref()) else {
+            return Mat::zeros(z.nrows(), 0);
+        };
+        let floor = (tolerance * tolerance).max(DIGITS_LEFT * largest);
+        let kept: Vec<usize> = (0..sizes.len()).rev().filter(|j| sizes[*j] > floor).collect();
+        let mix = Mat::from_fn(z.ncols(), kept.len(), |i, k| {
+            directions[(i, kept[k])] * (self.tau / sizes[kept[k]]).sqrt()
+        });
+        let mut new = expand(z.as_ref(), mix.as_ref());
+        let known = product(weighted.as_ref(), mix.as_ref());
+        combine(new.as_mut(), Accum::Add, self.vectors.as_ref(), known.as_ref(), -1.0);
+        new
     }
 
     /// 1 / bᵢᵀEbᵢ; zero for a mode on which E vanishes, just as stiff as −τ, which cannot be told apart by E.
@@ -173,7 +189,6 @@ impl<'a> Basis<'a> {
         let old = self.len();
         let Products { inertia, elastic, damped, lossy } = self.operator.products(new.as_ref());
         self.vectors = beside(&self.vectors, &new);
-        self.mass_times = beside(&self.mass_times, &inertia);
         let grow = |small: &Mat<f64>, times: &Mat<f64>| {
             let border = gram(self.vectors.as_ref(), times.as_ref());
             let m = border.nrows();

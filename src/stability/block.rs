@@ -1,6 +1,7 @@
 //! Blocks of complex vectors, real and imaginary parts apart, so that real matrices and factors work on both.
 
 use crate::linalg::c64;
+use crate::linalg::sparse::dot;
 use faer::Mat;
 use rayon::prelude::*;
 
@@ -75,15 +76,15 @@ impl Block {
 
     /// self\[:, j\]ᴴ x\[:, j\].
     pub(super) fn dot(&self, j: usize, x: &Block) -> c64 {
-        let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let (a, b) = (self.re.col_as_slice(j), self.im.col_as_slice(j));
         let (p, q) = (x.re.col_as_slice(j), x.im.col_as_slice(j));
-        c64::new(sum(a, p) + sum(b, q), sum(a, q) - sum(b, p))
+        c64::new(dot(a, p) + dot(b, q), dot(a, q) - dot(b, p))
     }
 
     /// ‖self\[:, j\]‖₂.
     pub(super) fn norm(&self, j: usize) -> f64 {
-        self.dot(j, self).re.sqrt()
+        let [re, im] = [&self.re, &self.im].map(|part| dot(part.col_as_slice(j), part.col_as_slice(j)));
+        (re + im).sqrt()
     }
 
     /// self\[:, j\] *= factor\[j\].

@@ -218,7 +218,7 @@ impl<'f> Family<'f> {
                 crate::linalg::dense::product(self.reduced.rotation.as_ref(), y.as_ref())
             };
             let block = Block { re: part(|z| z.re), im: part(|z| z.im) };
-            self.weigh(operator.images(self.basis.expand(&block)).normalise(), &state.damping_weights)
+            self.weigh(operator.images(self.basis.expand(&block)), &state.damping_weights)
         };
         let (right, left) = (images(&modes.right), images(&modes.left));
         let pairs = Vectors { lambda: modes.eigenvalues.clone(), right, left };

@@ -39,7 +39,7 @@ pub fn modal_filter(system: &System, steady: &SteadySliding, mode: &ComplexMode)
     let n = operator.n();
     let images = operator.images(Block::from_columns(n, &[&mode.left]));
     // Q′(λ)ᴴψ and Mψ.
-    let (_, slope) = operator.apply(Side::Left, &[mode.eigenvalue], &images);
+    let slope = operator.slope(Side::Left, &[mode.eigenvalue], &images);
     let (slope, inertia) = (slope.column(0), images.inertia.column(0));
     let steepness = slope.iter().zip(&mode.right).fold(c64::new(0.0, 0.0), |sum, (s, x)| sum + s.conj() * x);
     let lambda = mode.eigenvalue.conj();

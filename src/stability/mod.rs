@@ -27,7 +27,7 @@ mod sensitivity;
 mod tests;
 
 pub use advice::PointRates;
-pub use analysis::complex_modes;
+pub use analysis::{Structural, complex_modes};
 pub use certificate::{Certificate, CloseCall, SLOWEST_GROWTH, certified_modes};
 pub use family::{Family, FamilyCheck, FamilyModes, Frame, SlidingState};
 pub use filter::{ModalFilter, modal_filter};

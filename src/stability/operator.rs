@@ -49,19 +49,6 @@ pub(super) struct Images {
     pub(super) lossy: Option<Block>,
 }
 
-impl Images {
-    /// Scales every column so that xᴴMx = 1.
-    pub(super) fn normalise(mut self) -> Self {
-        let columns = 0..self.vectors.ncols();
-        let factors: Vec<f64> =
-            columns.into_par_iter().map(|j| 1.0 / self.vectors.dot(j, &self.inertia).re.sqrt()).collect();
-        let rest = self.damped.iter_mut().chain(&mut self.lossy);
-        let all = [&mut self.vectors, &mut self.inertia, &mut self.elastic].into_iter().chain(rest);
-        all.for_each(|block| block.scale(&factors));
-        self
-    }
-}
-
 /// Which vectors an operator acts on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Side {
@@ -173,21 +160,40 @@ impl<'a> Operator<'a> {
         self.add_interface(s, true, side, &x.vectors, y);
     }
 
-    /// Q(λⱼ) xⱼ and Q′(λⱼ) xⱼ = (2λⱼM + C + C_c) xⱼ, or Q(λⱼ)ᴴ xⱼ and Q′(λⱼ)ᴴ xⱼ.
-    pub(super) fn apply(&self, side: Side, lambda: &[c64], x: &Images) -> (Block, Block) {
-        let conjugate = |z: c64| if side == Side::Right { z } else { z.conj() };
-        let s: Vec<c64> = lambda.iter().map(|z| conjugate(*z)).collect();
-        let one = vec![c64::new(1.0, 0.0); s.len()];
+    /// Q(λⱼ) xⱼ, or Q(λⱼ)ᴴ xⱼ.
+    pub(super) fn value(&self, side: Side, lambda: &[c64], x: &Images) -> Block {
+        let s = on_side(side, lambda);
         let mut value = x.elastic.clone();
-        let mut slope = Block::zeros(self.n(), s.len());
         value.add_scaled(&s.iter().map(|s| s * s).collect::<Vec<_>>(), &x.inertia);
-        slope.add_scaled(&s.iter().map(|s| s * 2.0).collect::<Vec<_>>(), &x.inertia);
+        self.add_rest(side, &s, x, &mut value);
+        value
+    }
+
+    /// Q′(λⱼ) xⱼ = (2λⱼM + C + C_c) xⱼ, or Q′(λⱼ)ᴴ xⱼ.
+    pub(super) fn slope(&self, side: Side, lambda: &[c64], x: &Images) -> Block {
+        let one = vec![c64::new(1.0, 0.0); lambda.len()];
+        let mut slope = Block::zeros(self.n(), lambda.len());
+        slope.add_scaled(&on_side(side, lambda).iter().map(|s| s * 2.0).collect::<Vec<_>>(), &x.inertia);
         if let Some(damped) = &x.damped {
             slope.add_scaled(&one, damped);
         }
-        self.add_rest(side, &s, x, &mut value);
         self.add_interface(&one, false, side, &x.vectors, &mut slope);
-        (value, slope)
+        slope
+    }
+
+    /// ψⱼᴴQ′(λⱼ)φⱼ.
+    pub(super) fn steepness(&self, lambda: &[c64], left: &Block, right: &Images) -> Vec<c64> {
+        let one = |j: usize| {
+            let mut sum = lambda[j] * 2.0 * left.dot(j, &right.inertia);
+            if let Some(damped) = &right.damped {
+                sum += left.dot(j, damped);
+            }
+            let motions = |x: &Block| self.interface.motions(x.re.col_as_slice(j), x.im.col_as_slice(j));
+            let (to, from) = (motions(left), motions(&right.vectors));
+            let terms = self.interface.terms.iter();
+            sum + terms.map(|t| to[t.row].conj() * from[t.column] * t.damping).sum::<c64>()
+        };
+        (0..lambda.len()).into_par_iter().map(one).collect()
     }
 
     /// |λ|²‖M‖ + |λ|‖C‖ + ‖K‖ in the 1-norm; modal damping and contact left out, so that η is never flattered.
@@ -195,6 +201,11 @@ impl<'a> Operator<'a> {
         let r = lambda.norm();
         r * r * self.mass_norm + r * self.damping_norm + self.stiffness_norm
     }
+}
+
+/// λ, or its conjugate for the left side.
+fn on_side(side: Side, lambda: &[c64]) -> Vec<c64> {
+    lambda.iter().map(|z| if side == Side::Right { *z } else { z.conj() }).collect()
 }
 
 /// C x of viscous and modal damping; `None` when there is neither.

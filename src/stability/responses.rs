@@ -7,7 +7,7 @@ use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
 use crate::linalg::random::Random;
 use crate::linalg::sparse::times;
-use crate::linalg::tall::beside;
+use crate::linalg::tall::{beside, gram};
 use faer::Mat;
 
 /// Random combinations that stand for many forces.
@@ -32,7 +32,7 @@ pub(super) fn interface_responses(
 
 /// What the forces that do not decouple the real modes bring about: A⁻¹R and ω²A⁻¹M A⁻¹R, the first two terms of the
 /// response in ω², R being the forces of damping and interface, right and left, in random combinations of the real
-/// modes. A few such columns reveal what the responses to all modes have in common.
+/// modes, less what moves those modes. A few such columns reveal what the responses to all modes have in common.
 pub(super) fn coupled_responses(
     operator: &Operator<'_>,
     basis: &Basis<'_>,
@@ -53,6 +53,9 @@ pub(super) fn coupled_responses(
         responses = beside(&beside(&responses, &forces.re), &forces.im);
     }
     responses *= faer::Scale(1.0 / omega);
+    // The response of the real modes is theirs: without it no digits are lost when they are projected out.
+    let share = gram(basis.vectors.as_ref(), responses.as_ref());
+    responses -= times(operator.mass, basis.expand_real(&share).as_ref());
     factor.solve_in_place(responses.as_mut());
     let mut second = times(operator.mass, responses.as_ref());
     second *= faer::Scale(omega * omega);

@@ -77,7 +77,7 @@ impl Round {
     }
 }
 
-/// A few pairs with what the structure makes of their vectors, which are scaled to unit mass.
+/// A few pairs with what the structure makes of their vectors, whose mass is one.
 pub(super) struct Vectors {
     pub(super) lambda: Vec<c64>,
     pub(super) right: Images,
@@ -112,16 +112,12 @@ pub(super) fn residuals(operator: &Operator<'_>, pairs: impl Iterator<Item = Vec
         steepness: Vec::new(),
     };
     for Vectors { lambda, right: phi, left: psi } in pairs {
-        let (right, slope) = operator.apply(Side::Right, &lambda, &phi);
-        let (left, _) = operator.apply(Side::Left, &lambda, &psi);
+        let right = operator.value(Side::Right, &lambda, &phi);
+        let left = operator.value(Side::Left, &lambda, &psi);
+        all.steepness.extend(operator.steepness(&lambda, &psi.vectors, &phi).iter().map(|s| s.norm()));
         let (phi, psi) = (phi.vectors, psi.vectors);
-        let measures = lambda.par_iter().enumerate().map(|(j, z)| {
-            let backward_error = right.norm(j) / (operator.size(*z) * phi.norm(j));
-            (backward_error, psi.dot(j, &slope).norm())
-        });
-        let (backward_error, steepness): (Vec<f64>, Vec<f64>) = measures.unzip();
-        all.backward_error.extend(backward_error);
-        all.steepness.extend(steepness);
+        let error = |(j, z): (usize, &c64)| right.norm(j) / (operator.size(*z) * phi.norm(j));
+        all.backward_error.par_extend(lambda.par_iter().enumerate().map(error));
         all.lambda.extend(lambda);
         all.phi.append(phi);
         all.psi.append(psi);
@@ -133,12 +129,11 @@ pub(super) fn residuals(operator: &Operator<'_>, pairs: impl Iterator<Item = Vec
 
 /// Solves for the right corrections, which tell the errors of λ and φ.
 pub(super) fn measure(factor: &dyn SymmetricFactor, band: [f64; 2], pairs: Residuals) -> Round {
-    let Residuals { lambda, phi, psi, right, left, backward_error, steepness } = pairs;
-    let correction = right.map(|v| {
-        let mut z = -v;
-        factor.solve_in_place(z.as_mut());
-        z
-    });
+    let Residuals { lambda, phi, psi, right: mut correction, left, backward_error, steepness } = pairs;
+    for part in [&mut correction.re, &mut correction.im] {
+        *part *= faer::Scale(-1.0);
+        factor.solve_in_place(part.as_mut());
+    }
     let floor = 1e-6 * band[1];
     let of =
         |f: &(dyn Fn(usize) -> f64 + Sync)| (0..lambda.len()).into_par_iter().map(f).collect::<Vec<f64>>();

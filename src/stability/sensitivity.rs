@@ -90,8 +90,7 @@ impl<'a> Sensitivity<'a> {
         let (mut phi, mut psi) = (columns(|m| &m.right), columns(|m| &m.left));
         let lambda: Vec<c64> = modes.iter().map(|m| m.eigenvalue).collect();
         sharpen(&operator, real, &lambda, [(Side::Right, &mut phi), (Side::Left, &mut psi)])?;
-        let (_, slope) = operator.apply(Side::Right, &lambda, &operator.images(phi.clone()));
-        let steepness = (0..lambda.len()).map(|i| psi.dot(i, &slope)).collect();
+        let steepness = operator.steepness(&lambda, &psi, &operator.images(phi.clone()));
         let modal = match &system.structure.damping.modal {
             Some(damping) if damping.coefficients.iter().any(|c| *c != 0.0) && !modes.is_empty() => {
                 let sizes = || lambda.iter().map(|l| l.norm());
@@ -283,7 +282,7 @@ fn sharpen(
         factors.push(shifted_factor(operator, real, [l.norm(); 2])?.0);
     }
     for (side, vectors) in sides {
-        let (residual, _) = operator.apply(side, lambda, &operator.images(vectors.clone()));
+        let residual = operator.value(side, lambda, &operator.images(vectors.clone()));
         let mut better = vectors.clone();
         for (j, factor) in factors.iter().enumerate() {
             let mut z = Mat::from_fn(residual.re.nrows(), 2, |i, part| {
@@ -294,7 +293,7 @@ fn sharpen(
             subtract(better.re.col_as_slice_mut(j), z.col_as_slice(0));
             subtract(better.im.col_as_slice_mut(j), z.col_as_slice(1));
         }
-        let (after, _) = operator.apply(side, lambda, &operator.images(better.clone()));
+        let after = operator.value(side, lambda, &operator.images(better.clone()));
         for j in (0..lambda.len()).filter(|j| after.norm(*j) < residual.norm(*j)) {
             vectors.re.col_as_slice_mut(j).copy_from_slice(better.re.col_as_slice(j));
             vectors.im.col_as_slice_mut(j).copy_from_slice(better.im.col_as_slice(j));

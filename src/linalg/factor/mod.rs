@@ -10,19 +10,21 @@
 //! 2. `symbolic` finds the fronts and their tree, and splits it into tasks: all that the pattern decides, done once;
 //! 3. `numeric` assembles front after front, `front` eliminates each of them with pivots that bound the growth, and
 //!    what cannot be eliminated yet is passed on to the parent;
-//! 4. `solve` goes up and down the tree with up to eight right-hand sides at once.
+//! 4. `solve` goes up and down the tree with up to sixteen right-hand sides at once.
 //!
 //! `field` holds what real and complex numbers have in common. Tasks run on all threads; the order of every sum is
 //! that of the tree, so the bits do not depend on how many there are.
 
 mod field;
 mod front;
+mod halves;
 mod numeric;
 mod ordering;
 mod solve;
 mod symbolic;
 
 pub use field::Field;
+pub use halves::compliances;
 
 use super::SparseMatrix;
 use super::sparse::{multiply, norm_1};
@@ -30,12 +32,13 @@ use crate::error::{Error, Result};
 use faer::sparse::{SparseColMat, SymbolicSparseColMatRef};
 use faer::{Mat, MatMut, MatRef};
 use field::Lanes;
+use halves::Half;
 use numeric::Front;
 use rayon::prelude::*;
 use solve::Substitution;
 use std::fmt::Debug;
 use std::sync::Arc;
-use symbolic::Plan;
+use symbolic::{Plan, fingerprint};
 
 /// The numbers of negative, zero and positive eigenvalues.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -77,6 +80,21 @@ pub trait SymmetricFactor<T: Field = f64>: Debug + Send + Sync {
     /// When a length is not n.
     fn backward(&self, y: &mut [T::Lanes<1>], x: &mut [T]);
 
+    /// The columns b of `rhs` (n × k) become L⁻¹PSb, in the order of elimination: [`SymmetricFactor::forward`] of many.
+    ///
+    /// # Panics
+    /// When `rhs` has not n rows.
+    fn forward_in_place(&self, rhs: MatMut<'_, T>);
+
+    /// The columns y of `rhs` become B⁻¹y.
+    ///
+    /// # Panics
+    /// When `rhs` has not n rows.
+    fn pivots_in_place(&self, rhs: MatMut<'_, T>);
+
+    /// The analysis of the pattern, which serves other matrices of the same one.
+    fn symbolic(&self) -> SymbolicFactor;
+
     /// How many eigenvalues of a real A are negative, zero, positive. For a complex A the signs of the real parts of
     /// the eigenvalues of B are counted, which say something only when A is nearly real.
     fn inertia(&self) -> Inertia;
@@ -109,6 +127,11 @@ impl SymbolicFactor {
     /// The entries of L, diagonal included, as far as the pattern decides.
     pub fn fill(&self) -> usize {
         self.0.fill
+    }
+
+    /// Whether this is the analysis of `pattern`.
+    pub fn fits(&self, pattern: SymbolicSparseColMatRef<'_, usize>) -> bool {
+        self.0.fingerprint == fingerprint(pattern)
     }
 
     /// Factorises a matrix that has the analysed pattern.
@@ -151,6 +174,18 @@ impl SymbolicFactor {
 /// Those of [`SymbolicFactor::new`] and [`SymbolicFactor::factorize`].
 pub fn factorize<T: Field>(a: &SparseColMat<usize, T>) -> Result<Box<dyn SymmetricFactor<T>>> {
     SymbolicFactor::new(a.symbolic())?.factorize(a)
+}
+
+/// Factorises `a` with the analysis of a matrix factorised before, where both have the same pattern.
+///
+/// # Errors
+/// As [`factorize`].
+pub fn factorize_like<T: Field>(
+    known: &dyn SymmetricFactor<T>,
+    a: &SparseColMat<usize, T>,
+) -> Result<Box<dyn SymmetricFactor<T>>> {
+    let symbolic = known.symbolic();
+    if symbolic.fits(a.symbolic()) { symbolic.factorize(a) } else { factorize(a) }
 }
 
 /// Solves A X = B with iterative refinement (at most three rounds), and returns the largest
@@ -200,8 +235,9 @@ struct Multifrontal<T> {
     scaling: Vec<f64>,
 }
 
-/// Right-hand sides that go through the tree together: the time is that of reading L, whether for one or for eight.
-const COLUMNS_A_TASK: usize = 8;
+/// Right-hand sides that go through the tree together: the time is that of reading L for one and for eight, and little
+/// more for sixteen, as two vectors a row keep the arithmetic units busy.
+const COLUMNS_A_TASK: usize = 16;
 /// Rows that one task brings into the order of elimination.
 const ROWS_A_TASK: usize = 8192;
 
@@ -246,8 +282,21 @@ impl<T: Field> SymmetricFactor<T> for Multifrontal<T> {
         rhs.par_col_chunks_mut(COLUMNS_A_TASK).for_each(|columns| match columns.ncols() {
             1 => self.solve_lanes::<T::Lanes<1>>(columns),
             2..=4 => self.solve_lanes::<T::Lanes<4>>(columns),
+            5..=8 => self.solve_lanes::<T::Lanes<8>>(columns),
             _ => self.solve_lanes::<T::Lanes<COLUMNS_A_TASK>>(columns),
         });
+    }
+
+    fn forward_in_place(&self, rhs: MatMut<'_, T>) {
+        self.each_half(rhs, Half::Forward);
+    }
+
+    fn pivots_in_place(&self, rhs: MatMut<'_, T>) {
+        self.each_half(rhs, Half::Pivots);
+    }
+
+    fn symbolic(&self) -> SymbolicFactor {
+        SymbolicFactor(Arc::clone(&self.plan))
     }
 
     fn forward(&self, b: &[T], y: &mut [T::Lanes<1>]) {

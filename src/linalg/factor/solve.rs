@@ -1,4 +1,4 @@
-//! Forward and backward substitution along the tree, its tasks side by side, up to eight right-hand sides at once.
+//! Forward and backward substitution along the tree, its tasks side by side, up to sixteen right-hand sides at once.
 //!
 //! Upwards every front takes its rows of the right-hand side, adds what its children pass on, solves L y = b for its
 //! columns and passes the rest on. Downwards it receives the solution of the rows it passed on and solves Lᵀ x = y.

@@ -15,6 +15,8 @@ use std::ops::Range;
 pub(super) struct Plan {
     /// The number of stored entries of the analysed pattern.
     pub entries: usize,
+    /// By which the pattern is known again.
+    pub fingerprint: u64,
     /// order[k] is the row of A that is eliminated as number k.
     pub order: Vec<usize>,
     /// The inverse of `order`.
@@ -108,8 +110,22 @@ impl Plan {
         let mut place = vec![0; order.len()];
         order.iter().enumerate().for_each(|(k, row)| place[*row] = k);
         let root = Task::split(&nodes);
-        Plan { entries: pattern.compute_nnz(), order, place, nodes, root, fill }
+        Plan {
+            entries: pattern.compute_nnz(),
+            fingerprint: fingerprint(pattern),
+            order,
+            place,
+            nodes,
+            root,
+            fill,
+        }
     }
+}
+
+/// A number that two patterns share only when they are the same, but for one chance in 2⁶⁴ (FNV-1a over whole words).
+pub(super) fn fingerprint(pattern: SymbolicSparseColMatRef<'_, usize>) -> u64 {
+    let words = pattern.col_ptr().iter().chain(pattern.row_idx());
+    words.fold(0xcbf2_9ce4_8422_2325, |hash, word| (hash ^ *word as u64).wrapping_mul(0x0000_0100_0000_01b3))
 }
 
 const NONE: usize = usize::MAX;

@@ -27,15 +27,15 @@ mod pencil;
 mod proportional;
 mod reduced;
 mod remainder;
+mod rows;
 mod spectrum;
 #[cfg(test)]
 mod tests;
 
 use super::ComplexModes;
-use super::analysis::{Analysis, analyse};
+use super::analysis::{Analysis, Structural, analyse};
 use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Result};
-use crate::modal::RealModes;
 use crate::progress::Observer;
 use crate::system::System;
 use contour::{Region, Stopped, Winding, wind};
@@ -117,15 +117,15 @@ const LONG_WALK: f64 = 5e9;
 ///
 /// # Errors
 /// Those of [`complex_modes`](super::complex_modes).
-pub fn certified_modes(
+pub fn certified_modes<'a>(
     system: &System,
     steady: &SteadySliding,
-    real: &RealModes,
+    known: impl Into<Structural<'a>>,
     band_hz: [f64; 2],
     most_work: f64,
     observer: &dyn Observer,
 ) -> Result<(ComplexModes, Option<Certificate>)> {
-    analyse(system, steady, real, band_hz, observer, |modes, analysis| {
+    analyse(system, steady, known, band_hz, observer, |modes, analysis| {
         let work = expected_work(&analysis, modes).min(spectrum::work(analysis.basis.len()));
         if work > most_work {
             modes.warnings.push(format!(

@@ -2,6 +2,7 @@
 
 use super::proportional::Proportional;
 use super::remainder::Remainder;
+use super::rows::Rows;
 use crate::error::Result;
 use crate::linalg::dense::{definite_pencil, product};
 use crate::linalg::sparse::times;
@@ -49,8 +50,8 @@ pub(super) struct DampingParts {
     /// Whether the modal damping acts on real modes of the basis only.
     pub(super) modal_inside: bool,
     /// D B and H_r B, where D is all of C but its proportional part and the modal damping inside the basis.
-    pub(super) damped: Option<Mat<f64>>,
-    pub(super) lossy: Option<Mat<f64>>,
+    pub(super) damped: Option<Rows>,
+    pub(super) lossy: Option<Rows>,
 }
 
 impl DampingParts {
@@ -61,16 +62,20 @@ impl DampingParts {
         let viscous = operator.damping.viscous.as_ref().map_or_else(none, split);
         let loss = operator.damping.hysteretic.as_ref().map_or_else(none, split);
         let modal_inside = modal_inside(analysis);
-        let mut damped = viscous.rest.as_ref().map(|d| times(d, basis.vectors.as_ref()));
+        let mut damped = viscous.rest.as_ref().map(|d| Rows::image(d, basis.vectors.as_ref()));
         if let Some(modal) = operator.damping.modal.as_ref().filter(|_| !modal_inside) {
             let mut amplitudes = gram(modal.basis.as_ref(), basis.vectors.as_ref());
             for (i, c) in modal.coefficients.iter().enumerate() {
                 (0..amplitudes.ncols()).for_each(|j| amplitudes[(i, j)] *= c);
             }
             let modal = expand(modal.basis.as_ref(), amplitudes.as_ref());
-            damped = Some(damped.map_or(modal.clone(), |d| d + modal));
+            let modal = Rows::whole(modal);
+            damped = Some(match damped {
+                Some(rest) => modal.plus(&rest),
+                None => modal,
+            });
         }
-        let lossy = loss.rest.as_ref().map(|h| times(h, basis.vectors.as_ref()));
+        let lossy = loss.rest.as_ref().map(|h| Rows::image(h, basis.vectors.as_ref()));
         DampingParts { viscous, loss, modal_inside, damped, lossy }
     }
 }
@@ -82,8 +87,8 @@ fn modal_inside(analysis: &Analysis<'_>) -> bool {
     let weights = Mat::from_fn(modal.basis.ncols(), 1, |j, _| 1.0 + (1.7 * (j + 1) as f64).sin());
     let probe = expand(modal.basis.as_ref(), weights.as_ref());
     let shapes = analysis.basis.vectors.subcols(0, analysis.n_real);
-    let inertia = analysis.basis.mass_times.subcols(0, analysis.n_real);
-    let rest = &probe - expand(inertia, gram(shapes, probe.as_ref()).as_ref());
+    let inside = expand(shapes, gram(shapes, probe.as_ref()).as_ref());
+    let rest = &probe - times(analysis.operator.mass, inside.as_ref());
     rest.norm_l2() <= 1e-8 * probe.norm_l2()
 }
 
@@ -95,7 +100,7 @@ impl ReducedModel {
         let parts = DampingParts::new(analysis);
         let (theta, x) = definite_pencil(basis.stiffness.as_ref(), basis.mass.as_ref())?;
         let rotate = |a: &Mat<f64>| product(x.transpose(), product(a.as_ref(), x.as_ref()).as_ref());
-        let small = |image: &Mat<f64>| rotate(&gram(basis.vectors.as_ref(), image.as_ref()));
+        let small = |image: &Rows| rotate(&image.seen_by(basis.vectors.as_ref()));
         let mut coupled = parts.damped.as_ref().map(small);
         let mut regular = rotate(&basis.damping);
         if let Some(rest) = &coupled {

@@ -13,15 +13,16 @@
 //!
 //! with D_B the inverse of the structure's part of Q_B and N = I + W_BᵀD_BW_B κ. Where ρ = q ‖E‖ < 1 (‖·‖ relative to A
 //! on both sides) P_ZZ − tE is regular for every t in \[0, 1\], so that det Q and det Q_B wind alike. The norms need
-//! ZᵀF (ZᵀAZ)⁻¹FᵀZ = Fᵀ(A⁻¹ − B(BᵀAB)⁻¹Bᵀ)F of the columns F = \[MB DB H_rB W\] only: one block solve.
+//! ZᵀF (ZᵀAZ)⁻¹FᵀZ = Fᵀ(A⁻¹ − B(BᵀAB)⁻¹Bᵀ)F of the columns F = \[MB DB H_rB W\] only: half a block solve
+//! ([`compliances`]).
 
 use super::proportional::Proportional;
 use super::reduced::DampingParts;
+use super::rows::Rows;
 use crate::error::Result;
 use crate::linalg::dense::{product, symmetric_eigen};
-use crate::linalg::factor::SymbolicFactor;
+use crate::linalg::factor::{SymmetricFactor, compliances, factorize_like};
 use crate::linalg::sparse::{add_scaled, times};
-use crate::linalg::tall::{expand, gram, lower_gram};
 use crate::linalg::{SparseMatrix, c64};
 use crate::stability::analysis::Analysis;
 use faer::Mat;
@@ -81,45 +82,43 @@ impl Remainder {
         let (m, first) = (basis.len(), analysis.n_real);
         let top = TAU * analysis.band_hz[1];
         let beyond = m - first;
-        // Of one size, so that the smallest are not lost in the rounding of the largest: \[top MB, DB, H_rB/top, W\].
-        // Each with what it is of the basis, BᵀF.
-        let inertia = basis.mass_times.subcols(first, beyond) * faer::Scale(top);
-        let mut columns = vec![(inertia, basis.mass.subcols(first, beyond) * faer::Scale(top))];
-        for (image, scale) in [(&parts.damped, 1.0), (&parts.lossy, 1.0 / top)] {
-            if let Some(image) = image {
-                let scaled = image * faer::Scale(scale);
-                let share = gram(basis.vectors.as_ref(), scaled.as_ref());
-                columns.push((scaled, share));
-            }
-        }
+        // Of one size, so that the smallest are not lost in the rounding of the largest: \[top MB, DB, H_rB/top, W\]. The
+        // last three have entries in a few rows, and a few columns span them.
         let sizes = operator.interface.sizes(top);
         let scales: Vec<f64> = active.iter().map(|d| sizes[*d].sqrt()).collect();
-        let of_basis = Mat::from_fn(m, active.len(), |i, j| basis.interface[(i, active[j])] * scales[j]);
-        columns.push((directions(analysis, active, &scales), of_basis));
-        let widths: Vec<usize> = columns.iter().map(|(forces, _)| forces.ncols()).collect();
-        let f: usize = widths.iter().sum();
-        let (mut forces, mut share) = (Mat::zeros(operator.n(), f), Mat::zeros(m, f));
-        let mut start = 0;
-        for (block, of_basis) in columns {
-            forces.subcols_mut(start, block.ncols()).copy_from(&block);
-            share.subcols_mut(start, block.ncols()).copy_from(&of_basis);
-            start += block.ncols();
+        let mut few = directions(analysis, active, &scales);
+        for (image, scale) in [(&parts.lossy, 1.0 / top), (&parts.damped, 1.0)] {
+            if let Some(image) = image {
+                let values = &image.values * faer::Scale(scale);
+                few = Rows { rows: image.rows.clone(), values }.beside(&few);
+            }
         }
-        // V = A⁻¹F − B (BᵀAB)⁻¹ BᵀF, with BᵀAB = diag(θ − σ_A) for the Ritz vectors.
-        let mut share = product(x.transpose(), share.as_ref());
-        let mut v = forces;
-        analysis.factor.solve_in_place(v.as_mut());
-        for i in 0..m {
-            (0..f).for_each(|j| share[(i, j)] /= theta[i] - shift);
-        }
-        v -= expand(basis.vectors.as_ref(), product(x.as_ref(), share.as_ref()).as_ref());
-        let mut av = times(&operator.stiffness, v.as_ref());
-        av -= faer::Scale(shift) * times(operator.mass, v.as_ref());
-        let square = lower_gram(v.as_ref(), av.as_ref());
+        let behind = few.values.ncols();
+        let (few, coefficients) = few.spanned();
+        let f = beyond + few.values.ncols();
+        let mut forces = Mat::zeros(operator.n(), f);
+        let inertia = times(operator.mass, basis.vectors.subcols(first, beyond)) * faer::Scale(top);
+        forces.subcols_mut(0, beyond).copy_from(&inertia);
+        drop(inertia);
+        few.write(forces.subcols_mut(beyond, f - beyond));
+        let mut share = Mat::zeros(m, f);
+        share.subcols_mut(0, beyond).copy_from(basis.mass.subcols(first, beyond) * faer::Scale(top));
+        share.subcols_mut(beyond, f - beyond).copy_from(few.seen_by(basis.vectors.as_ref()));
+        // FᵀA⁻¹F − FᵀB (BᵀAB)⁻¹ BᵀF, with BᵀAB = diag(θ − σ) for the Ritz vectors.
+        let share = product(x.transpose(), share.as_ref());
+        let weighted = Mat::from_fn(m, f, |i, j| share[(i, j)] / (theta[i] - shift));
+        let mut square = compliances(analysis.factor, forces.as_mut());
+        drop(forces);
+        square -= product(share.transpose(), weighted.as_ref());
         let (values, vectors) = symmetric_eigen(square.as_ref())?;
         let largest = values.last().copied().unwrap_or(0.0).max(0.0);
         let kept: Vec<usize> = (0..f).filter(|j| values[*j] > 1e-24 * largest).collect();
-        let root = |row: usize, j: usize| vectors[(row, kept[j])] * values[kept[j]].sqrt();
+        // A root of it, one row a column of F: those of the few directions stand for all that they span.
+        let of_few = Mat::from_fn(f, kept.len(), |i, j| vectors[(i, kept[j])] * values[kept[j]].sqrt());
+        let spanned = product(coefficients.transpose(), of_few.as_ref().subrows(beyond, f - beyond));
+        let root =
+            |row: usize, j: usize| if row < beyond { of_few[(row, j)] } else { spanned[(row - beyond, j)] };
+        let f = beyond + behind;
         let missed = Mat::from_fn(active.len(), kept.len(), |i, j| root(f - active.len() + i, j));
         let mut terms = Vec::new();
         let (alpha, beta) = (parts.viscous.mass_factor, parts.viscous.stiffness_factor);
@@ -132,14 +131,14 @@ impl Remainder {
         let of_damping = Factor { square: 0.0, linear: 1.0, constant: c64::new(0.0, 0.0) };
         let of_loss = Factor { square: 0.0, linear: 0.0, constant: c64::new(0.0, 1.0) };
         // The rows of F that an image of the basis has, and the first vector that has one.
-        let mut start = widths[0];
+        let mut start = beyond;
         let inertia =
             Mat::from_fn(m, kept.len(), |i, j| if i < first { 0.0 } else { root(i - first, j) / top });
         let mut images = vec![(of_mass, inertia)];
         for (image, scale, kind) in [(&parts.damped, 1.0, of_damping), (&parts.lossy, top, of_loss)] {
             if let Some(image) = image {
                 let rows = Mat::from_fn(m, kept.len(), |i, j| scale * root(start + i, j));
-                start += image.ncols();
+                start += image.values.ncols();
                 images.push((kind, rows));
             }
         }
@@ -171,13 +170,16 @@ impl Remainder {
 }
 
 /// W of the `active` directions, each times the root of its size.
-fn directions(analysis: &Analysis<'_>, active: &[usize], scales: &[f64]) -> Mat<f64> {
-    let interface = &analysis.operator.interface;
-    let mut columns = Mat::zeros(analysis.operator.n(), active.len());
-    for (j, (d, scale)) in active.iter().zip(scales).enumerate() {
-        interface.directions[*d].add_to(*scale, columns.col_as_slice_mut(j));
+fn directions(analysis: &Analysis<'_>, active: &[usize], scales: &[f64]) -> Rows {
+    let all: Vec<_> = active.iter().map(|d| analysis.operator.interface.directions[*d]).collect();
+    let mut rows: Vec<usize> = all.iter().flat_map(|d| d.indices().iter().copied()).collect();
+    rows.sort_unstable();
+    rows.dedup();
+    let mut values = Mat::zeros(rows.len(), all.len());
+    for (j, (direction, scale)) in all.iter().zip(scales).enumerate() {
+        direction.iter().for_each(|(i, v)| values[(rows.partition_point(|r| *r < i), j)] = scale * v);
     }
-    columns
+    Rows { rows, values }
 }
 
 /// γ with C ≥ −γ(K + K_σ + τM) outside the basis, τ the square of the band's top, and whether C and H are known to be
@@ -189,7 +191,7 @@ pub(super) fn dissipation(analysis: &Analysis<'_>, parts: &DampingParts) -> (f64
         damping.modal.as_ref().map_or(0.0, |modal| modal.coefficients.iter().fold(0.0f64, |w, c| w.max(-c)));
     let energy = || add_scaled(&[(1.0, &*operator.stiffness), (top * top, operator.mass)]);
     let settle = |whole: &Option<SparseMatrix>, part: &Proportional, unit: f64| match (whole, &part.rest) {
-        (Some(whole), Some(_)) => least_shift(whole, &energy(), unit),
+        (Some(whole), Some(_)) => least_shift(analysis.factor, whole, &energy(), unit),
         _ => Some(0.0),
     };
     let viscous = settle(&damping.viscous, &parts.viscous, 1.0 / top);
@@ -204,14 +206,17 @@ pub(super) fn dissipation(analysis: &Analysis<'_>, parts: &DampingParts) -> (f64
 /// Shifts that are tried; the first is round-off.
 const SHIFTS: [f64; 5] = [1e-9, 1e-7, 1e-5, 1e-3, 1e-1];
 
-/// The least of the shifts (in `unit`) for which `a` + shift · `energy` has no negative eigenvalue.
-fn least_shift(a: &SparseMatrix, energy: &SparseMatrix, unit: f64) -> Option<f64> {
-    let at = |g: f64| add_scaled(&[(1.0, a), (g * unit, energy)]);
-    let pattern = at(1.0);
-    let symbolic = SymbolicFactor::new(pattern.symbolic()).ok()?;
+/// The least of the shifts (in `unit`) for which `a` + shift · `energy` has no negative eigenvalue; `known` is a factor
+/// with the pattern of the energy.
+fn least_shift(
+    known: &dyn SymmetricFactor,
+    a: &SparseMatrix,
+    energy: &SparseMatrix,
+    unit: f64,
+) -> Option<f64> {
     let definite = |g: &&f64| {
-        let inertia = symbolic.factorize(&at(**g)).map(|factor| factor.inertia());
-        inertia.is_ok_and(|inertia| inertia.negative == 0)
+        let sum = add_scaled(&[(1.0, a), (**g * unit, energy)]);
+        factorize_like(known, &sum).is_ok_and(|factor| factor.inertia().negative == 0)
     };
     SHIFTS.iter().find(definite).map(|g| g * unit)
 }

@@ -1,0 +1,186 @@
+//! Tall vectors that are zero but in some rows, such as the forces of a few dashpots and contacts, and as few directions as
+//! span them.
+
+use crate::linalg::SparseMatrix;
+use crate::linalg::sparse::{dot, times};
+use crate::linalg::tall::gram;
+use faer::sparse::Triplet;
+use faer::{Mat, MatMut, MatRef};
+
+/// Columns with entries in the rows `rows` (ascending) only.
+#[derive(Debug, Clone)]
+pub(super) struct Rows {
+    pub(super) rows: Vec<usize>,
+    pub(super) values: Mat<f64>,
+}
+
+impl Rows {
+    /// Columns with entries everywhere.
+    pub(super) fn whole(values: Mat<f64>) -> Self {
+        Rows { rows: (0..values.nrows()).collect(), values }
+    }
+
+    /// D B of a symmetric D.
+    pub(super) fn image(d: &SparseMatrix, b: MatRef<'_, f64>) -> Self {
+        let rows: Vec<usize> = (0..d.ncols()).filter(|j| !d.row_idx_of_col_raw(*j).is_empty()).collect();
+        let place = |row: usize| rows.partition_point(|r| *r < row);
+        let entries = rows.iter().enumerate().flat_map(|(j, column)| {
+            let entries = d.row_idx_of_col_raw(*column).iter().zip(d.val_of_col(*column));
+            entries.map(move |(i, v)| (*i, j, *v))
+        });
+        let triplets: Vec<_> = entries.map(|(i, j, v)| Triplet::new(place(i), j, v)).collect();
+        let size = rows.len();
+        let own = SparseMatrix::try_new_from_triplets(size, size, &triplets).expect("rows of D");
+        let values = times(&own, picked(b, &rows).as_ref());
+        Rows { rows, values }
+    }
+
+    /// The columns of both, one behind the other.
+    pub(super) fn beside(&self, other: &Rows) -> Self {
+        let rows = union(&self.rows, &other.rows);
+        let mut values = Mat::zeros(rows.len(), self.values.ncols() + other.values.ncols());
+        for (part, first) in [(self, 0), (other, self.values.ncols())] {
+            let places: Vec<usize> = part.rows.iter().map(|row| rows.partition_point(|r| r < row)).collect();
+            for j in 0..part.values.ncols() {
+                let to = values.col_as_slice_mut(first + j);
+                places.iter().zip(part.values.col_as_slice(j)).for_each(|(i, v)| to[*i] = *v);
+            }
+        }
+        Rows { rows, values }
+    }
+
+    /// The sum of as many columns.
+    pub(super) fn plus(&self, other: &Rows) -> Self {
+        let (both, k) = (self.beside(other), self.values.ncols());
+        Rows { values: both.values.subcols(0, k) + both.values.subcols(k, k), rows: both.rows }
+    }
+
+    /// VᵀF.
+    pub(super) fn seen_by(&self, v: MatRef<'_, f64>) -> Mat<f64> {
+        gram(picked(v, &self.rows).as_ref(), self.values.as_ref())
+    }
+
+    /// Writes the columns out.
+    pub(super) fn write(&self, mut out: MatMut<'_, f64>) {
+        for (j, mut column) in out.as_mut().col_iter_mut().enumerate() {
+            let values = self.rows.iter().zip(self.values.col_as_slice(j));
+            values.for_each(|(i, v)| column[*i] = *v);
+        }
+    }
+
+    /// F = G C with as few columns of G as span those of F to 1e-12 of each, by Gram and Schmidt with the largest rest first
+    /// and each direction cleaned twice. The columns of G are orthogonal, their sizes those of the rests.
+    ///
+    /// Columns with entries nearly everywhere stay as they are: there is nothing to gain.
+    pub(super) fn spanned(self) -> (Rows, Mat<f64>) {
+        const NOTHING_LEFT: f64 = 1e-12;
+        let (n, k) = (self.rows.len(), self.values.ncols());
+        if n > 8 * k {
+            return (self, Mat::identity(k, k));
+        }
+        let lengths: Vec<f64> = (0..k).map(|j| length(self.values.col_as_slice(j))).collect();
+        let mut rest = Mat::from_fn(n, k, |i, j| match lengths[j] > 0.0 {
+            true => self.values[(i, j)] / lengths[j],
+            false => 0.0,
+        });
+        let mut left: Vec<f64> = lengths.iter().map(|l| if *l > 0.0 { 1.0 } else { 0.0 }).collect();
+        let (mut found, mut shares): (Vec<Vec<f64>>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
+        while found.len() < n.min(k) {
+            // The first of equals.
+            let Some(best) = (0..k).reduce(|a, b| if left[b] > left[a] { b } else { a }) else { break };
+            if left[best] <= NOTHING_LEFT {
+                break;
+            }
+            let mut q = rest.col_as_slice(best).to_vec();
+            for known in &found {
+                let share = dot(known, &q);
+                q.iter_mut().zip(known).for_each(|(q, k)| *q -= share * k);
+            }
+            let size = length(&q);
+            q.iter_mut().for_each(|q| *q /= size);
+            let mut row = vec![0.0; k];
+            for j in 0..k {
+                let column = rest.col_as_slice_mut(j);
+                row[j] = dot(&q, column);
+                column.iter_mut().zip(&q).for_each(|(x, q)| *x -= row[j] * q);
+                left[j] = length(column);
+            }
+            found.push(q);
+            shares.push(row);
+        }
+        // What a direction stands for in the original columns tells its size.
+        let size = |row: &Vec<f64>| row.iter().zip(&lengths).fold(0.0f64, |s, (r, l)| s.max((r * l).abs()));
+        let sizes: Vec<f64> = shares.iter().map(size).collect();
+        let values = Mat::from_fn(n, found.len(), |i, q| found[q][i] * sizes[q]);
+        let coefficients =
+            Mat::from_fn(found.len(), k, |q, j| shares[q][j] * lengths[j] / sizes[q].max(f64::MIN_POSITIVE));
+        (Rows { rows: self.rows, values }, coefficients)
+    }
+}
+
+fn length(x: &[f64]) -> f64 {
+    dot(x, x).sqrt()
+}
+
+/// Some rows of a tall matrix.
+fn picked(v: MatRef<'_, f64>, rows: &[usize]) -> Mat<f64> {
+    Mat::from_fn(rows.len(), v.ncols(), |i, j| v[(rows[i], j)])
+}
+
+/// Two ascending lists as one.
+fn union(a: &[usize], b: &[usize]) -> Vec<usize> {
+    let mut all = [a, b].concat();
+    all.sort_unstable();
+    all.dedup();
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::dense::product;
+    use crate::linalg::samples;
+
+    fn written(n: usize, x: &Rows) -> Mat<f64> {
+        let mut all = Mat::zeros(n, x.values.ncols());
+        x.write(all.as_mut());
+        all
+    }
+
+    #[test]
+    fn images_and_their_products_are_those_of_whole_matrices() {
+        let n = 60;
+        let few = Mat::from_fn(n, n, |i, j| {
+            let seldom = i % 7 == 3 && j % 7 == 3;
+            if seldom { ((i * j) as f64).cos() } else { 0.0 }
+        });
+        let d = samples::from_dense(few.as_ref());
+        let b = Mat::from_fn(n, 11, |i, j| ((3 * i + 5 * j) as f64).sin());
+        let image = Rows::image(&d, b.as_ref());
+        assert_eq!(image.rows, (0..n).filter(|i| i % 7 == 3).collect::<Vec<_>>());
+        let whole = &few * &b;
+        assert!((written(n, &image) - &whole).norm_max() < 1e-13);
+        assert!((image.seen_by(b.as_ref()) - b.transpose() * &whole).norm_max() < 1e-12);
+        let twice = Rows::whole(whole.clone()).plus(&image);
+        assert!((written(n, &twice) - &whole - &whole).norm_max() < 1e-12);
+    }
+
+    #[test]
+    fn few_directions_span_many_columns() {
+        let (n, rank) = (40, 9);
+        let base = Mat::from_fn(n, rank, |i, j| ((i * i + 3 * j) as f64 * 0.37).sin());
+        // Columns of sizes over twelve orders, one of them zero.
+        let mix = Mat::from_fn(rank, 25, |i, j| match j {
+            7 => 0.0,
+            _ => ((5 * i + j * j) as f64).cos() * 10f64.powi(j as i32 % 13 - 6),
+        });
+        let values = &base * &mix;
+        let (few, coefficients) = Rows::whole(values.clone()).spanned();
+        assert_eq!(few.values.ncols(), rank);
+        let again = product(few.values.as_ref(), coefficients.as_ref());
+        for j in 0..25 {
+            let error = (again.col(j) - values.col(j)).norm_l2();
+            assert!(error <= 1e-11 * values.col(j).norm_l2(), "{j}: {error:e}");
+        }
+    }
+}
