@@ -4,10 +4,13 @@
 //! common, so that three products cost little more than one.
 
 use super::SparseMatrix;
-use super::sparse::{PANEL, ROWS_A_TASK, pack};
+use super::sparse::{ROWS_A_TASK, pack};
 use faer::{Mat, MatMut, MatRef};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
+
+/// Columns that go through the matrices together in [`Merged::times`].
+const PANEL: usize = 16;
 
 /// Symmetric matrices of one size (one to four), stored whole on the union of their patterns.
 #[derive(Debug, Clone)]

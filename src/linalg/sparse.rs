@@ -113,7 +113,7 @@ impl Scalar for super::c64 {}
 /// Rows that one task works on; fixed, so that the split does not depend on the number of threads.
 pub(super) const ROWS_A_TASK: usize = 4096;
 /// Columns that go through the matrix together.
-pub(super) const PANEL: usize = 8;
+const PANEL: usize = 8;
 
 /// y = A x for a symmetric `a` stored whole: n × n times n × k, real or complex.
 ///

@@ -2,20 +2,19 @@
 
 use super::basis::Basis;
 use super::block::Block;
-use super::budget::growth_budgets;
+use super::finish::finished;
 use super::operator::Operator;
 use super::projected::{SmallPair, project_interface, solve};
 use super::responses::{coupled_responses, interface_responses};
 use super::round::{Round, Vectors, measure, residuals, wanted_corrections};
-use super::{ComplexMode, ComplexModes, GrowthBudget};
+use super::{ComplexModes, Structural};
 use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Fault, Result};
 use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
 use crate::linalg::dense::product;
 use crate::linalg::factor::factorize;
-use crate::linalg::sparse::{add_scaled, times};
-use crate::linalg::tall::gram;
+use crate::linalg::sparse::add_scaled;
 use crate::modal::{RealModes, ShiftedStiffness};
 use crate::progress::Observer;
 use crate::system::System;
@@ -58,22 +57,6 @@ pub fn complex_modes<'a>(
     observer: &dyn Observer,
 ) -> Result<ComplexModes> {
     analyse(system, steady, known, band_hz, observer, |_, _| ()).map(|(modes, ())| modes)
-}
-
-/// What is known of the structure alone, without contact: its real modes and, where they are at hand, factors of
-/// K + K_σ − σM at a shift among them.
-#[derive(Debug, Clone, Copy)]
-pub struct Structural<'a> {
-    /// Real modes of K + K_σ and M.
-    pub real: &'a RealModes,
-    /// Used where σ lies inside the band, and clear of the modes.
-    pub shifted: Option<&'a ShiftedStiffness>,
-}
-
-impl<'a> From<&'a RealModes> for Structural<'a> {
-    fn from(real: &'a RealModes) -> Self {
-        Structural { real, shifted: None }
-    }
 }
 
 /// What an analysis has at hand when its modes are found.
@@ -225,10 +208,7 @@ fn solve_and_refine<'a>(
             "the refinement changed the number of complex modes in the band from {first} to {last}"
         ));
     }
-    let participations = participations(operator, &round, real);
-    let growths = growth_budgets(operator, &round.lambda, &round.phi);
-    let each = growths.into_iter().zip(participations).enumerate();
-    let modes: Vec<ComplexMode> = each.map(|(j, (growth, shares))| mode(&round, growth, shares, j)).collect();
+    let modes = finished(operator, round, real);
     for mode in modes.iter().filter(|mode| mode.accepted() && mode.condition > ILL_CONDITIONED) {
         warnings.push(format!(
             "the mode at {:.2} Hz is ill-conditioned: a relative change of the matrices moves it by {:.0e} times as much",
@@ -348,32 +328,4 @@ pub(super) fn in_band(z: c64, band: [f64; 2]) -> bool {
     let oscillates = z.im > 1e-9 * z.norm();
     let real = z.im.abs() <= 1e-9 * z.norm();
     (oscillates && z.im >= band[0] && z.im <= band[1]) || (real && band[0] == 0.0 && z.norm() <= band[1])
-}
-
-fn mode(round: &Round, growth: GrowthBudget, participation: Vec<(usize, f64)>, j: usize) -> ComplexMode {
-    ComplexMode {
-        eigenvalue: round.lambda[j],
-        right: round.phi.column(j),
-        left: round.psi.column(j),
-        backward_error: round.backward_error[j],
-        eigenvalue_error: round.eigenvalue_error[j],
-        condition: round.condition[j],
-        growth,
-        participation,
-    }
-}
-
-/// |φₖᵀMφ|² of every real mode that has at least one part in ten thousand, largest first; one list a complex mode.
-fn participations(operator: &Operator<'_>, round: &Round, real: &RealModes) -> Vec<Vec<(usize, f64)>> {
-    let momentum = times(operator.mass, real.shapes.as_ref());
-    let amplitudes = round.phi.map(|part| gram(momentum.as_ref(), part.as_ref()));
-    let of = |j: usize| {
-        let mut shares: Vec<(usize, f64)> = (0..real.len())
-            .map(|k| (k, amplitudes.re[(k, j)].powi(2) + amplitudes.im[(k, j)].powi(2)))
-            .filter(|(_, share)| *share >= 1e-4)
-            .collect();
-        shares.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        shares
-    };
-    (0..round.lambda.len()).map(of).collect()
 }

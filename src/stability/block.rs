@@ -74,6 +74,19 @@ impl Block {
         self.re.col_as_slice(j).iter().zip(self.im.col_as_slice(j)).map(|(a, b)| c64::new(*a, *b)).collect()
     }
 
+    /// Column `j` becomes column `k` of `x`.
+    pub(super) fn set_column(&mut self, j: usize, x: &Block, k: usize) {
+        self.re.col_mut(j).copy_from(x.re.col(k));
+        self.im.col_mut(j).copy_from(x.im.col(k));
+    }
+
+    /// Adds column `k` of `x` to column `j`.
+    pub(super) fn add_column(&mut self, j: usize, x: &Block, k: usize) {
+        let add = |to: &mut [f64], from: &[f64]| to.iter_mut().zip(from).for_each(|(y, x)| *y += x);
+        add(self.re.col_as_slice_mut(j), x.re.col_as_slice(k));
+        add(self.im.col_as_slice_mut(j), x.im.col_as_slice(k));
+    }
+
     /// self\[:, j\]ᴴ x\[:, j\].
     pub(super) fn dot(&self, j: usize, x: &Block) -> c64 {
         let (a, b) = (self.re.col_as_slice(j), self.im.col_as_slice(j));

@@ -1,11 +1,9 @@
 //! Where the growth of a mode comes from, and which real modes take part in it.
 
 use super::GrowthBudget;
-use super::block::Block;
 use super::interface::Origin;
-use super::operator::Operator;
+use super::operator::{Images, Operator};
 use crate::linalg::c64;
-use crate::linalg::sparse::times;
 
 impl GrowthBudget {
     /// The sum of the terms: σ.
@@ -21,10 +19,8 @@ impl GrowthBudget {
 /// with the structure's, (t₁, t₁) is falling friction, what turns with the transverse slip touches t₂, and a friction
 /// force that follows the normal motion (t, g) couples the modes. A real eigenvalue (ω = 0) has no such balance: all
 /// terms are zero.
-pub(super) fn growth_budgets(operator: &Operator<'_>, lambda: &[c64], phi: &Block) -> Vec<GrowthBudget> {
-    let damped =
-        Block::both(operator.damping_times(phi.re.as_ref()), operator.damping_times(phi.im.as_ref()));
-    let lossy = operator.damping.hysteretic.as_ref().map(|h| phi.map(|v| times(h, v.as_ref())));
+pub(super) fn growth_budgets(operator: &Operator<'_>, lambda: &[c64], images: &Images) -> Vec<GrowthBudget> {
+    let Images { vectors: phi, damped, lossy, .. } = images;
     let of = |(j, lambda): (usize, &c64)| {
         let mut budget = GrowthBudget::default();
         let omega = lambda.im;
@@ -33,10 +29,10 @@ pub(super) fn growth_budgets(operator: &Operator<'_>, lambda: &[c64], phi: &Bloc
         }
         let by_velocity = |gamma: c64| -(omega * gamma.re + lambda.re * gamma.im) / (2.0 * omega);
         let by_displacement = |kappa: c64| -kappa.im / (2.0 * omega);
-        if let Some(damped) = &damped {
+        if let Some(damped) = damped {
             budget.structural_damping += by_velocity(phi.dot(j, damped));
         }
-        if let Some(lossy) = &lossy {
+        if let Some(lossy) = lossy {
             budget.structural_damping += by_displacement(c64::new(0.0, 1.0) * phi.dot(j, lossy));
         }
         let motion = operator.interface.motions(phi.re.col_as_slice(j), phi.im.col_as_slice(j));

@@ -1,7 +1,8 @@
 //! Complex eigenvalues at steady sliding: (λ² M + λ (C + C_c) + K + K_σ + K_c) φ = 0, λ = σ + iω, unstable when σ > 0.
 //!
 //! [`complex_modes`] projects the problem on real modes and the static responses to the contact directions, solves the
-//! small one, and lets the residuals on the full order enrich the basis until every pair is right there.
+//! small one, and lets the residuals on the full order enrich the basis until every pair is right there; the last
+//! corrections then sharpen the right vectors.
 //! [`certified_modes`] also counts the unstable eigenvalues, without looking for them. [`confirm`] looks for the same
 //! pairs by two-level Arnoldi on the full order, which shares nothing with the projection.
 
@@ -13,6 +14,7 @@ mod budget;
 mod certificate;
 mod family;
 mod filter;
+mod finish;
 mod full_order;
 mod harmonic;
 mod interface;
@@ -23,17 +25,19 @@ mod reduced;
 mod responses;
 mod round;
 mod sensitivity;
+mod structural;
 #[cfg(test)]
 mod tests;
 
 pub use advice::PointRates;
-pub use analysis::{Structural, complex_modes};
+pub use analysis::complex_modes;
 pub use certificate::{Certificate, CloseCall, SLOWEST_GROWTH, certified_modes};
 pub use family::{Family, FamilyCheck, FamilyModes, Frame, SlidingState};
 pub use filter::{ModalFilter, modal_filter};
 pub use full_order::{Confirmation, confirm};
 pub use harmonic::Harmonic;
 pub use sensitivity::{Domain, Rate, Sensitivity};
+pub use structural::Structural;
 
 use crate::linalg::c64;
 

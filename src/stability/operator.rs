@@ -49,6 +49,19 @@ pub(super) struct Images {
     pub(super) lossy: Option<Block>,
 }
 
+impl Images {
+    /// Scales every column so that xᴴMx = 1.
+    pub(super) fn normalise(mut self) -> Self {
+        let columns = 0..self.vectors.ncols();
+        let factors: Vec<f64> =
+            columns.into_par_iter().map(|j| 1.0 / self.vectors.dot(j, &self.inertia).re.sqrt()).collect();
+        let rest = self.damped.iter_mut().chain(&mut self.lossy);
+        let all = [&mut self.vectors, &mut self.inertia, &mut self.elastic].into_iter().chain(rest);
+        all.for_each(|block| block.scale(&factors));
+        self
+    }
+}
+
 /// Which vectors an operator acts on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Side {
@@ -95,11 +108,6 @@ impl<'a> Operator<'a> {
 
     pub(super) fn n(&self) -> usize {
         self.mass.nrows()
-    }
-
-    /// C x: viscous and modal damping; `None` when there is neither.
-    pub(super) fn damping_times(&self, x: MatRef<'_, f64>) -> Option<Mat<f64>> {
-        damping_times(self.damping, x)
     }
 
     /// M x, K x, C x and H x.

@@ -37,6 +37,23 @@ impl Round {
         (0..self.measured.len()).filter(|k| !self.exact(self.measured[*k])).collect()
     }
 
+    /// φ + z of some pairs, φ of those that were not measured last.
+    pub(super) fn corrected(&self, pairs: &[usize]) -> Block {
+        let mut sum = Block::gathered(pairs.iter().map(|j| (&self.phi, *j)));
+        for (k, j) in pairs.iter().enumerate() {
+            if let Ok(place) = self.measured.binary_search(j) {
+                sum.add_column(k, &self.correction, place);
+            }
+        }
+        sum
+    }
+
+    /// Gives back the memory of corrections and residuals.
+    pub(super) fn forget_corrections(&mut self) {
+        let n = self.phi.re.nrows();
+        (self.correction, self.left_residual) = (Block::zeros(n, 0), Block::zeros(n, 0));
+    }
+
     fn exact(&self, j: usize) -> bool {
         self.backward_error[j] <= BACKWARD_ERROR && self.eigenvalue_error[j] <= EIGENVALUE_ERROR
     }

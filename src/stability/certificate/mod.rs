@@ -33,7 +33,8 @@ mod spectrum;
 mod tests;
 
 use super::ComplexModes;
-use super::analysis::{Analysis, Structural, analyse};
+use super::Structural;
+use super::analysis::{Analysis, analyse};
 use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Result};
 use crate::progress::Observer;

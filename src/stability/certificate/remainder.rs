@@ -14,7 +14,7 @@
 //! with D_B the inverse of the structure's part of Q_B and N = I + W_BᵀD_BW_B κ. Where ρ = q ‖E‖ < 1 (‖·‖ relative to A
 //! on both sides) P_ZZ − tE is regular for every t in \[0, 1\], so that det Q and det Q_B wind alike. The norms need
 //! ZᵀF (ZᵀAZ)⁻¹FᵀZ = Fᵀ(A⁻¹ − B(BᵀAB)⁻¹Bᵀ)F of the columns F = \[MB DB H_rB W\] only: half a block solve
-//! ([`compliances`]).
+//! ([`compliances`]) of F − AB(BᵀAB)⁻¹BᵀF.
 
 use super::proportional::Proportional;
 use super::reduced::DampingParts;
@@ -23,9 +23,10 @@ use crate::error::Result;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::factor::{SymmetricFactor, compliances, factorize_like};
 use crate::linalg::sparse::{add_scaled, times};
+use crate::linalg::tall::combine;
 use crate::linalg::{SparseMatrix, c64};
 use crate::stability::analysis::Analysis;
-use faer::Mat;
+use faer::{Accum, Mat};
 use std::f64::consts::TAU;
 
 /// Γ(s) in the A-norm of Z, and what q(s) needs.
@@ -104,12 +105,19 @@ impl Remainder {
         let mut share = Mat::zeros(m, f);
         share.subcols_mut(0, beyond).copy_from(basis.mass.subcols(first, beyond) * faer::Scale(top));
         share.subcols_mut(beyond, f - beyond).copy_from(few.seen_by(basis.vectors.as_ref()));
-        // FᵀA⁻¹F − FᵀB (BᵀAB)⁻¹ BᵀF, with BᵀAB = diag(θ − σ) for the Ritz vectors.
-        let share = product(x.transpose(), share.as_ref());
-        let weighted = Mat::from_fn(m, f, |i, j| share[(i, j)] / (theta[i] - shift));
-        let mut square = compliances(analysis.factor, forces.as_mut());
+        // F less AB (BᵀAB)⁻¹ BᵀF, what the basis takes of it, with BᵀAB = diag(θ − σ) for the Ritz vectors: before the
+        // solution, so that what is small is not lost in what is resonant.
+        let mut taken = product(x.transpose(), share.as_ref());
+        for i in 0..m {
+            (0..f).for_each(|j| taken[(i, j)] /= theta[i] - shift);
+        }
+        let a = add_scaled(&[(1.0, &*operator.stiffness), (-shift, operator.mass)]);
+        let of_basis = times(&a, basis.vectors.as_ref());
+        let taken = product(x.as_ref(), taken.as_ref());
+        combine(forces.as_mut(), Accum::Add, of_basis.as_ref(), taken.as_ref(), -1.0);
+        drop(of_basis);
+        let square = compliances(analysis.factor, forces.as_mut());
         drop(forces);
-        square -= product(share.transpose(), weighted.as_ref());
         let (values, vectors) = symmetric_eigen(square.as_ref())?;
         let largest = values.last().copied().unwrap_or(0.0).max(0.0);
         let kept: Vec<usize> = (0..f).filter(|j| values[*j] > 1e-24 * largest).collect();
