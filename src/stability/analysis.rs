@@ -5,7 +5,7 @@ use super::block::Block;
 use super::finish::finished;
 use super::operator::Operator;
 use super::projected::{SmallPair, project_interface, solve};
-use super::responses::{coupled_responses, interface_responses};
+use super::responses::{coupled_responses, few_responses};
 use super::round::{Round, Vectors, measure, residuals, wanted_corrections};
 use super::{ComplexModes, Structural};
 use crate::equilibrium::SteadySliding;
@@ -34,8 +34,9 @@ const ILL_CONDITIONED: f64 = 1e6;
 /// All complex modes with a frequency in `band_hz` = \[lowest, highest\], of `system` sliding steadily.
 ///
 /// * Basis: the real modes (of K + K_σ and M, M-orthonormal, best up to twice the band) and A⁻¹W, A = K + K_σ − s M at
-///   a shift s inside the band, for every direction in which the contact has a force. When there are more directions
-///   than real modes, a sketch of the responses to damping and interface stands for them.
+///   a shift s inside the band, for every direction in which the contact has a force, with some more terms of their
+///   series in ω². When there are more directions than real modes, a sketch of the responses to damping and interface
+///   stands for them.
 /// * Every pair is measured on the full order. Its corrections z = −A⁻¹Q(λ)φ and, for the left vector, −A⁻¹Q(λ)ᴴψ show
 ///   no contact motion where A⁻¹W is in the basis: so the same real symmetric factor serves every pair, whatever the
 ///   friction. They enrich the basis until η and the eigenvalue error are small, in six rounds at most; pairs that are
@@ -172,11 +173,14 @@ fn solve_and_refine<'a>(
 ) -> Result<(ComplexModes, Basis<'a>)> {
     let band = band_hz.map(|f| TAU * f);
     let mut basis = Basis::new(operator, real.shapes.as_ref(), band[1] * band[1]);
-    // Few directions: all their responses, so that the corrections show no contact motion. Many: the corrections
-    // bring what is needed of them.
+    // Few directions: all their responses, so that the corrections show no contact motion. Many: what the forces of some
+    // combinations of the modes have in common; the corrections bring what is missing.
     if operator.interface.active(band[1]).len() <= real.len() {
-        let responses = interface_responses(operator, factor, band[1]);
-        basis.enrich(responses, 1e-9, STATIC_RESPONSES);
+        let responses = few_responses(operator, &basis, factor, band[1]);
+        let directions = operator.interface.active(band[1]).len();
+        basis.enrich(responses.subcols(0, directions).to_owned(), 1e-9, STATIC_RESPONSES);
+        let further = responses.subcols(directions, responses.ncols() - directions);
+        basis.enrich(further.to_owned(), FIRST_TOLERANCE, STATIC_RESPONSES);
     } else {
         let responses = coupled_responses(operator, &basis, factor, band[1]);
         basis.enrich(responses, FIRST_TOLERANCE, usize::MAX);

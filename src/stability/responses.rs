@@ -20,14 +20,62 @@ pub(super) fn interface_responses(
     factor: &dyn SymmetricFactor,
     omega: f64,
 ) -> Mat<f64> {
-    let interface = &operator.interface;
-    let (largest, active) = (interface.sizes(omega), interface.active(omega));
-    let mut responses = Mat::<f64>::zeros(operator.n(), active.len());
-    for (j, d) in active.iter().enumerate() {
-        interface.directions[*d].add_to(largest[*d].sqrt() / omega, responses.col_as_slice_mut(j));
-    }
+    let mut responses = interface_forces(operator, omega);
     factor.solve_in_place(responses.as_mut());
     responses
+}
+
+/// W of [`interface_responses`].
+fn interface_forces(operator: &Operator<'_>, omega: f64) -> Mat<f64> {
+    let interface = &operator.interface;
+    let (largest, active) = (interface.sizes(omega), interface.active(omega));
+    let mut forces = Mat::<f64>::zeros(operator.n(), active.len());
+    for (j, d) in active.iter().enumerate() {
+        interface.directions[*d].add_to(largest[*d].sqrt() / omega, forces.col_as_slice_mut(j));
+    }
+    forces
+}
+
+/// ω²ᵏ(A⁻¹M)ᵏA⁻¹F of `forces` F for k = 0, 1, … `terms` − 1: the series of the response in ω². F is taken without what moves
+/// the real modes, which the basis has: so no digits are lost when they are projected out, and no power of A⁻¹M turns into
+/// the mode nearest to the shift.
+fn series(
+    operator: &Operator<'_>,
+    basis: &Basis<'_>,
+    factor: &dyn SymmetricFactor,
+    omega: f64,
+    forces: Mat<f64>,
+    terms: usize,
+) -> Mat<f64> {
+    let (n, r) = (forces.nrows(), forces.ncols());
+    let share = gram(basis.vectors.as_ref(), forces.as_ref());
+    let mut response = forces - times(operator.mass, basis.expand_real(&share).as_ref());
+    let mut all = Mat::zeros(n, r * terms);
+    for k in 0..terms {
+        if k > 0 {
+            response = times(operator.mass, response.as_ref());
+            response *= faer::Scale(omega * omega);
+        }
+        factor.solve_in_place(response.as_mut());
+        all.subcols_mut(k * r, r).copy_from(&response);
+    }
+    all
+}
+
+/// Terms of the series of a few directions.
+const TERMS_OF_FEW: usize = 6;
+
+/// The responses to a few directions and, where they are far fewer than the real modes, further terms of their series, the
+/// first `active` columns being [`interface_responses`] but for real modes. `basis` are the real modes.
+pub(super) fn few_responses(
+    operator: &Operator<'_>,
+    basis: &Basis<'_>,
+    factor: &dyn SymmetricFactor,
+    omega: f64,
+) -> Mat<f64> {
+    let forces = interface_forces(operator, omega);
+    let terms = if TERMS_OF_FEW * forces.ncols() <= basis.len() { TERMS_OF_FEW } else { 1 };
+    series(operator, basis, factor, omega, forces, terms)
 }
 
 /// Combinations of the modes whose forces are sampled, complex ones, for either side.
@@ -36,9 +84,8 @@ const SAMPLES: usize = 12;
 /// real modes which are left out, here about a third.
 const TERMS: usize = 4;
 
-/// What the forces that do not decouple the real modes bring about: ω²ᵏ(A⁻¹M)ᵏA⁻¹R, the first terms of the response in
-/// ω², R being the forces of damping and interface, right and left, in random combinations of the real modes, less what
-/// moves those modes. A few such columns reveal what the responses to all modes have in common.
+/// What the forces that do not decouple the real modes bring about: the first terms of the response in ω² to R, the forces
+/// of damping and interface, right and left, in random combinations of the real modes. A few such columns reveal what the responses to all modes have in common.
 pub(super) fn coupled_responses(
     operator: &Operator<'_>,
     basis: &Basis<'_>,
@@ -51,24 +98,13 @@ pub(super) fn coupled_responses(
         Block { re: part(), im: part() }
     };
     let s = vec![c64::new(0.0, omega); SAMPLES];
-    let mut responses = Mat::zeros(operator.n(), 0);
+    let mut sampled = Mat::zeros(operator.n(), 0);
     for side in [Side::Right, Side::Left] {
         let images = operator.images(basis.expand(&mixed()));
         let mut forces = Block::zeros(operator.n(), s.len());
         operator.add_rest(side, &s, &images, &mut forces);
-        responses = beside(&beside(&responses, &forces.re), &forces.im);
+        sampled = beside(&beside(&sampled, &forces.re), &forces.im);
     }
-    responses *= faer::Scale(1.0 / omega);
-    // The response of the real modes is theirs: without it no digits are lost when they are projected out.
-    let share = gram(basis.vectors.as_ref(), responses.as_ref());
-    responses -= times(operator.mass, basis.expand_real(&share).as_ref());
-    factor.solve_in_place(responses.as_mut());
-    let mut all = responses.clone();
-    for _ in 1..TERMS {
-        responses = times(operator.mass, responses.as_ref());
-        responses *= faer::Scale(omega * omega);
-        factor.solve_in_place(responses.as_mut());
-        all = beside(&all, &responses);
-    }
-    all
+    sampled *= faer::Scale(1.0 / omega);
+    series(operator, basis, factor, omega, sampled, TERMS)
 }
