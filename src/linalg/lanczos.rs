@@ -21,9 +21,7 @@ use rayon::prelude::*;
 
 /// Columns of a block: as many right-hand sides as one solve takes at little more than the price of one, and more
 /// than the multiplicity of any eigenvalue but the rigid-body ones of two free parts.
-fn block() -> usize {
-    std::env::var("BLOCK").ok().and_then(|v| v.parse().ok()).unwrap_or(8)
-}
+const BLOCK: usize = 8;
 /// Rounding of the solves is no excuse for more than this.
 const UNACCEPTABLE: f64 = 1e-5;
 /// The most blocks for one search.
@@ -115,7 +113,7 @@ impl<'a> BlockLanczos<'a> {
 
     /// Makes room for `capacity` columns and two blocks.
     pub fn reserve(&mut self, capacity: usize) {
-        let total = capacity.max(4 * block()) + 2 * block();
+        let total = capacity.max(4 * BLOCK) + 2 * BLOCK;
         if total > self.basis.ncols() {
             self.basis.resize_with(self.mass.ncols(), total, |_, _| 0.0);
             self.projected.resize_with(total, total, |_, _| 0.0);
@@ -131,7 +129,7 @@ impl<'a> BlockLanczos<'a> {
         for _ in 0..MOST_STEPS {
             let complete = self.width == 0 && !self.inject();
             if !complete {
-                let room = 3 * self.width.max(block());
+                let room = 3 * self.width.max(BLOCK);
                 self.reserve(window.negative + window.largest + 2 * room);
                 if self.len + room > self.basis.ncols() {
                     self.restart(window, room)?;
@@ -176,7 +174,7 @@ impl<'a> BlockLanczos<'a> {
     /// # Errors
     /// [`Error::Analysis`] when numbers overflow.
     pub fn explore(&mut self, columns: usize, observer: &dyn Observer) -> Result<Ritz> {
-        self.reserve(columns + block());
+        self.reserve(columns + BLOCK);
         while self.len < columns && (self.width > 0 || self.inject()) {
             self.step()?;
             observer.advance(1);
@@ -329,8 +327,8 @@ impl<'a> BlockLanczos<'a> {
     /// Adds new random directions to X, as A maps them; false when M reaches nothing outside the basis.
     fn inject(&mut self) -> bool {
         let n = self.mass.ncols();
-        self.reserve(self.len + self.width + block());
-        let start = Mat::from_fn(n, block(), |_, _| self.random.next());
+        self.reserve(self.len + self.width + BLOCK);
+        let start = Mat::from_fn(n, BLOCK, |_, _| self.random.next());
         let mut w = self.mass_times(start.as_ref());
         self.factor.solve_in_place(w.as_mut());
         let mut mw = self.mass_times(w.as_ref());
@@ -437,10 +435,10 @@ mod tests {
         for step in 0..30 {
             if step == 14 {
                 let negative = factor.inertia().negative;
-                lanczos.restart(Window { negative, largest: 10, floor: 0.0 }, 3 * block()).unwrap();
+                lanczos.restart(Window { negative, largest: 10, floor: 0.0 }, 3 * BLOCK).unwrap();
             }
             lanczos.step().unwrap();
-            if lanczos.len + 3 * block() > lanczos.basis.ncols() {
+            if lanczos.len + 3 * BLOCK > lanczos.basis.ncols() {
                 break;
             }
         }
