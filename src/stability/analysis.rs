@@ -178,19 +178,19 @@ fn solve_and_refine<'a>(
     if operator.interface.active(band[1]).len() <= real.len() {
         let responses = few_responses(operator, &basis, factor, band[1]);
         let directions = operator.interface.active(band[1]).len();
-        basis.enrich(responses.subcols(0, directions).to_owned(), 1e-9, STATIC_RESPONSES);
+        basis.enrich(&responses.subcols(0, directions).to_owned(), 1e-9, STATIC_RESPONSES);
         let further = responses.subcols(directions, responses.ncols() - directions);
-        basis.enrich(further.to_owned(), FIRST_TOLERANCE, STATIC_RESPONSES);
+        basis.enrich(&further.to_owned(), FIRST_TOLERANCE, STATIC_RESPONSES);
     } else {
         let responses = coupled_responses(operator, &basis, factor, band[1]);
-        basis.enrich(responses, FIRST_TOLERANCE, usize::MAX);
+        basis.enrich(&responses, FIRST_TOLERANCE, usize::MAX);
     }
     let floor = 1e-3 * band[1];
     let mut warnings = Vec::new();
     let mut counts = Vec::new();
     let mut round = evaluate(operator, &basis, factor, band, None)?;
     observer.advance(1);
-    let mut refinements = 0;
+    let (mut refinements, mut finer) = (0, 0);
     loop {
         counts.push(round.lambda.len());
         let open = round.open();
@@ -198,8 +198,14 @@ fn solve_and_refine<'a>(
             break;
         }
         // The error of λ is quadratic in that of the vectors: coarse first, so that the basis stays small.
-        let tolerance = FIRST_TOLERANCE * 0.01f64.powi(refinements as i32);
-        if basis.enrich(wanted_corrections(&round, factor, &open, floor), tolerance, usize::MAX) == 0 {
+        let corrections = wanted_corrections(&round, factor, &open, floor);
+        let mut added = 0;
+        while added == 0 && finer < ROUNDS {
+            let tolerance = FIRST_TOLERANCE * 0.01f64.powi(finer as i32);
+            added = basis.enrich(&corrections, tolerance, usize::MAX);
+            finer += 1;
+        }
+        if added == 0 {
             break;
         }
         refinements += 1;

@@ -74,10 +74,10 @@ impl<'a> Basis<'a> {
     /// remaining size in the E-norm is largest, until it is below `tolerance` (or round-off of where the column started), or
     /// `limit` are taken; of many, the principal directions of what remains of all of them, down to `tolerance`. Says how
     /// many were.
-    pub(super) fn enrich(&mut self, z: Mat<f64>, tolerance: f64, limit: usize) -> usize {
+    pub(super) fn enrich(&mut self, z: &Mat<f64>, tolerance: f64, limit: usize) -> usize {
         let new = match z.ncols() > WIDE && limit == usize::MAX {
-            true => self.principal(&z, tolerance),
-            false => self.largest(z, tolerance, limit),
+            true => self.principal(z, tolerance),
+            false => self.largest(z.clone(), tolerance, limit),
         };
         let (old, added) = (self.len(), new.ncols());
         if added > 0 {

@@ -125,8 +125,8 @@ impl<'f> Family<'f> {
         let mut second = times(frame.operator.mass, first.as_ref());
         second *= faer::Scale(top * top);
         frame.factor.solve_in_place(second.as_mut());
-        basis.enrich(first, 1e-9, STATIC);
-        basis.enrich(second, 1e-6, STATIC);
+        basis.enrich(&first, 1e-9, STATIC);
+        basis.enrich(&second, 1e-6, STATIC);
         let reduced = reduce(frame, &basis, &springs)?;
         Ok(Family { frame, basis, springs, reduced })
     }
@@ -195,7 +195,7 @@ impl<'f> Family<'f> {
                 break;
             }
             let corrections = wanted_corrections(&round, &*self.frame.factor, &open, floor);
-            if self.basis.enrich(corrections, 1e-6 * 0.01f64.powi(k), usize::MAX) == 0 {
+            if self.basis.enrich(&corrections, 1e-6 * 0.01f64.powi(k), usize::MAX) == 0 {
                 break;
             }
             self.reduced = reduce(self.frame, &self.basis, &self.springs)?;

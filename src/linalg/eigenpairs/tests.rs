@@ -1,4 +1,5 @@
 use super::super::dense::definite_pencil;
+use super::super::factor::factorize;
 use super::super::samples;
 use super::*;
 
@@ -54,6 +55,27 @@ fn a_bound_on_an_eigenvalue_moves_up() {
     let pairs = lowest_eigenpairs(&k, &m, Wanted::Below(exact[10]), &()).unwrap();
     check(&m, &pairs);
     assert!(pairs.values.len() >= 10 && pairs.sturm.bound >= exact[10]);
+}
+
+#[test]
+fn factors_at_hand_find_the_same_pairs() {
+    let (k, m) = samples::membrane(40);
+    let exact = samples::membrane_eigenvalues(40);
+    // Where the count is taken at the second bound, there is an eigenvalue.
+    for bound in [0.5, exact[20] / (1.0 + APART)] {
+        let shift = 0.17 * bound;
+        let factor = factorize(&add_scaled(&[(1.0, &k), (-shift, &m)])).unwrap();
+        let pairs = eigenpairs_below(&k, &m, bound, (shift, factor), &()).unwrap();
+        check(&m, &pairs);
+        assert_eq!(pairs.shift, shift);
+        let below = exact.iter().filter(|v| **v < pairs.sturm.bound).count();
+        assert!(pairs.values.len() == below && below >= exact.iter().filter(|v| **v < bound).count());
+        for (value, exact) in pairs.values.iter().zip(&exact) {
+            assert!((value - exact).abs() < 1e-12 * exact, "{value} {exact}");
+        }
+    }
+    let factor = factorize(&k).unwrap();
+    assert!(eigenpairs_below(&k, &m, f64::NAN, (0.0, factor), &()).is_err());
 }
 
 #[test]

@@ -168,11 +168,11 @@ mod tests {
     #[test]
     fn few_directions_span_many_columns() {
         let (n, rank) = (40, 9);
-        let base = Mat::from_fn(n, rank, |i, j| ((i * i + 3 * j) as f64 * 0.37).sin());
+        let base = Mat::from_fn(n, rank, |i, j| ((i * (2 * j + 3)) as f64 * 0.1).sin());
         // Columns of sizes over twelve orders, one of them zero.
         let mix = Mat::from_fn(rank, 25, |i, j| match j {
             7 => 0.0,
-            _ => ((5 * i + j * j) as f64).cos() * 10f64.powi(j as i32 % 13 - 6),
+            _ => (((i + 1) * (j + 2)) as f64).cos() * 10f64.powi(j as i32 % 13 - 6),
         });
         let values = &base * &mix;
         let (few, coefficients) = Rows::whole(values.clone()).spanned();
