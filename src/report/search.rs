@@ -171,12 +171,13 @@ fn cost_picture(result: &SearchResult) -> String {
     for (k, cost) in costs.iter().enumerate().filter(|(_, cost)| cost.is_finite()) {
         sheet.circle([across(k), down(*cost)], 2.2, &format!("fill=\"{CALM}\" fill-opacity=\"0.5\""));
         if *cost < least {
-            line.extend([[across(k), down(least.min(high))], [across(k), down(*cost)]]);
+            // Down from what was least before, if anything was.
+            line.extend([least, *cost].into_iter().filter(|c| c.is_finite()).map(|c| [across(k), down(c)]));
             least = *cost;
         }
     }
     line.push([WIDTH - 30.0, down(least)]);
-    sheet.lines([&line[..]], &format!("stroke=\"{ALARM}\" stroke-width=\"2\" fill=\"none\""));
+    sheet.lines([&line[..]], &format!("stroke=\"{ALARM}\" stroke-width=\"2\""));
     sheet.text([LEFT - 60.0, 14.0], "cost", small(MUTED, Anchor::Start));
     let foot = format!("evaluations, 1 to {}", costs.len());
     sheet.text([0.5 * (LEFT + WIDTH), HEIGHT + 36.0], &foot, small(MUTED, Anchor::Middle));
