@@ -3,11 +3,13 @@
 //!
 //! A fact is a check of the validation suite: a quantity, a reference, a tolerance. With d the difference over the tolerance
 //!
-//!   cost = Σ 16 ln(1 + d²/16) + Σ ((p − p̄)/s)²
+//!   cost = Σ 18 (√(1 + d²/9) − 1) + Σ ((p − p̄)/s)²
 //!
-//! over the facts and over the numbers of which something is known before. It is d² where a fact is nearly met and grows
-//! slowly where it is missed, so that one fact that the model cannot meet does not outweigh the others (Cauchy's loss). A fact
-//! without an answer, such as the frequency of an unstable mode where none is unstable, counts as missed by thirty tolerances.
+//! over the facts and over the numbers of which something is known before. It is d² where a fact is nearly met and 6 d where it
+//! is missed, so that one fact that the model cannot meet does not outweigh the others (the pseudo-Huber loss: convex, unlike
+//! those that level off, so that it adds no valleys of its own; P. Charbonnier et al., IEEE Trans. Image Process. 6 (1997) 298).
+//! A fact without an answer, such as the frequency of an unstable mode where none is unstable, counts as missed by fifty
+//! tolerances.
 //!
 //! Such facts come and go with the numbers: there is no slope to follow. The cost is brought down by the adaptation of the
 //! covariance matrix of samples (N. Hansen and A. Ostermeier, Evolutionary Computation 9 (2001) 159), a generation at a time, all
