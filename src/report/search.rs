@@ -72,6 +72,17 @@ fn words(result: &SearchResult) -> Vec<String> {
         words.push("There are no more facts than free numbers: that they are met proves nothing.".into());
     }
     let cost = result.costs[1];
+    let each = result.numbers.iter().flat_map(|n| n.moved.iter().flatten().map(move |moved| (n, moved)));
+    let least = each.min_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+    if let Some((number, moved)) = least.filter(|(_, moved)| moved.cost < cost) {
+        words.push(format!(
+            "The search is not at the bottom: with `{}` alone at {} {} the cost is {}. Start it again from found.toml.",
+            number.name,
+            given(moved.to),
+            number.unit,
+            significant(moved.cost, 4)
+        ));
+    }
     let by_weight = |a: &&SearchedNumber, b: &&SearchedNumber| a.weight(cost).total_cmp(&b.weight(cost));
     if let Some(number) = result.numbers.iter().max_by(by_weight).filter(|n| n.weight(cost) > 0.0) {
         let moved = number.moved.iter().flatten().max_by(|a, b| a.cost.total_cmp(&b.cost));
@@ -265,6 +276,10 @@ mod tests {
             found_case: String::new(),
         };
         let text = search_text(&result);
+        assert!(!text.contains("bottom"));
+        let mut better = result.clone();
+        better.costs[1] = 2.6;
+        assert!(search_text(&better).contains("not at the bottom: with `lead` alone"));
         for words in
             ["1 of 2 facts", "2 numbers free", "proves nothing", "`stiffness`", "“peak”", "1 of them without"]
         {
