@@ -26,6 +26,7 @@
 //! | [`case`] | TOML → validated case → system |
 //! | [`job`] | from a case to its results |
 //! | [`validation`] | what the program is checked against |
+//! | [`search`] | numbers of a case searched for, so that it meets facts of any kind |
 //! | [`cli`] | the command line |
 //!
 //! M ü + C u̇ + K u + Σ [g N − t₁ F₁ − t₂ F₂] = f. SI units (m, kg, s, N, rad) everywhere inside.
@@ -45,6 +46,7 @@ pub mod progress;
 pub mod reduction;
 pub mod report;
 pub mod results;
+pub mod search;
 pub mod signal;
 pub mod sound;
 pub mod stability;

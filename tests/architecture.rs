@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Each room with all the rooms it may use.
-const MAY_USE: [(&str, &[&str]); 23] = [
+const MAY_USE: [(&str, &[&str]); 24] = [
     ("error", &[]),
     ("progress", &[]),
     ("linalg", &["error", "progress"]),
@@ -87,7 +87,8 @@ const MAY_USE: [(&str, &[&str]); 23] = [
         "validation",
         &["error", "progress", "linalg", "structure", "sweep", "signal", "results", "case", "job"],
     ),
-    ("cli", &["error", "progress", "mesh", "report", "results", "case", "job", "validation"]),
+    ("search", &["error", "progress", "results", "case", "job", "validation"]),
+    ("cli", &["error", "progress", "mesh", "report", "results", "case", "job", "validation", "search"]),
 ];
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {

@@ -8,12 +8,12 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use stridor::linalg::c64;
 use stridor::measured::Quantity;
-use stridor::measured::uff::{Function, RealShape, functions_text, modes_text, read};
+use stridor::measured::uff::{Function, RealShape, functions_file, modes_text, read};
 
 /// The release whose behaviour the test knows.
 const PYUFF: &str = "2.5.8";
 
-/// Writes `theirs.uff`, reads `modes.uff` and `frf.uff`, and prints the largest relative deviation of each.
+/// Writes `theirs.uff`, reads `modes.uff`, `frf.uff` and `frf_binary.uff`, and prints the largest relative deviation of each.
 const SCRIPT: &str = r#"
 import json, sys
 import numpy as np, pyuff
@@ -56,12 +56,15 @@ def ours(folder):
     motion = np.array([mode['r1'], mode['r2'], mode['r3']]).T
     assert list(nodes['node_nums']) == list(ids) and list(mode['node_nums']) == list(ids)
     assert mode['freq'] == 123.5 and mode['modal_damp_vis'] == 0.0125 and mode['modal_m'] == 1.0
-    frf = [s for s in pyuff.UFF(folder + '/frf.uff').read_sets() if s['type'] == 58]
-    assert len(frf) == 1
-    frf = frf[0]
-    assert (frf['func_type'], frf['ref_node'], frf['ref_dir'], frf['rsp_node'], frf['rsp_dir']) == (4, 4, 1, 2, -3)
-    assert frf['ordinate_spec_data_type'] == 12 and frf['orddenom_spec_data_type'] == 13
-    return {'points': off(points, xyz), 'shape': off(motion, shape), 'hz': off(frf['x'], hz), 'frf': off(frf['data'], h)}
+    deviations = {'points': off(points, xyz), 'shape': off(motion, shape)}
+    for name, binary in [('frf', 0), ('frf_binary', 1)]:
+        frf = [s for s in pyuff.UFF(folder + '/' + name + '.uff').read_sets() if s['type'] == 58]
+        assert len(frf) == 1 and frf[0]['binary'] == binary
+        frf = frf[0]
+        assert (frf['func_type'], frf['ref_node'], frf['ref_dir'], frf['rsp_node'], frf['rsp_dir']) == (4, 4, 1, 2, -3)
+        assert frf['ordinate_spec_data_type'] == 12 and frf['orddenom_spec_data_type'] == 13
+        deviations |= {name + '_hz': off(frf['x'], hz), name: off(frf['data'], h)}
+    return deviations
 
 theirs(sys.argv[1] + '/theirs.uff')
 print(json.dumps(ours(sys.argv[1])))
@@ -137,15 +140,18 @@ fn universal_files_go_both_ways_with_pyuff() {
         frequencies_hz: &hz,
         values: &h,
     };
-    let frf = functions_text(labelled(), std::iter::once(function));
-    std::fs::write(dir.path().join("frf.uff"), frf).unwrap();
+    for (name, binary) in [("frf.uff", false), ("frf_binary.uff", true)] {
+        let file = functions_file(labelled(), std::iter::once(&function).cloned(), binary);
+        std::fs::write(dir.path().join(name), file).unwrap();
+    }
 
     let done = Command::new(python).args(["-c", SCRIPT]).arg(dir.path()).output().unwrap();
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     let off: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
     let off = |key: &str| off[key].as_f64().unwrap();
     // Six digits in single precision; the frequencies have fewer.
-    assert!(off("points") < 1e-6 && off("shape") < 1e-5 && off("hz") == 0.0 && off("frf") < 1e-12);
+    assert!(off("points") < 1e-6 && off("shape") < 1e-5 && off("frf") < 1e-12);
+    assert!(off("frf_hz") == 0.0 && off("frf_binary_hz") == 0.0 && off("frf_binary") == 0.0);
 
     let bytes = std::fs::read(dir.path().join("theirs.uff")).unwrap();
     let records = read("theirs.uff", &bytes, 1.0).unwrap();

@@ -96,7 +96,7 @@ fn sensitive_rig(prestress: bool) -> Case {
         "material.steel.youngs_modulus",
         "material.steel.density",
         "shell.disc.thickness",
-        "bar.bar.section.inertia_1",
+        "bar.bar.diameter",
         "spring.drive.stiffness",
         "damping.modal_ratio",
     ];

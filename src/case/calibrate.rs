@@ -78,7 +78,9 @@ pub(super) fn read(root: &Section, case: Case) -> Case {
     Case { calibrate, ..case }
 }
 
-fn read_parameter(s: &Section, case: &Case, scalars: Option<&[Parameter]>) -> CalibratedParameter {
+/// A number of `case` to be found: `path`, `between`, `expected`, `deviation`, `log`; `scalars` are those of the case, where they
+/// are known.
+pub(crate) fn read_parameter(s: &Section, case: &Case, scalars: Option<&[Parameter]>) -> CalibratedParameter {
     let path = s
         .strings("path")
         .check("at least one path", |paths| !paths.is_empty())

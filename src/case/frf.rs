@@ -22,6 +22,9 @@ pub struct FrfAnalysis {
     pub contact: FrfContact,
     /// How it is computed.
     pub solution: FrfSolution,
+    /// Whether the universal file has its numbers in binary form (dataset 58b) rather than as text.
+    #[serde(rename = "uff", serialize_with = "uff_name")]
+    pub binary: bool,
     /// Resonances that were measured \[Hz\], to compare.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub measured: Vec<f64>,
@@ -92,8 +95,13 @@ pub(super) fn read(s: &Section) -> FrfAnalysis {
             "direct" => FrfSolution::Direct,
             _ => FrfSolution::Modes,
         },
+        binary: s.choice("uff", &["text", "binary"]).or("text") == "binary",
         measured: s.quantity_list("measured", FREQUENCY).or(Vec::new()),
     }
+}
+
+fn uff_name<S: serde::Serializer>(binary: &bool, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(if *binary { "binary" } else { "text" })
 }
 
 fn read_motion(s: &Section) -> MotionAt {

@@ -18,6 +18,7 @@ mod test_file;
 mod transient;
 pub(crate) mod units;
 
+pub(crate) use calibrate::read_parameter;
 pub use calibrate::{CalibrateAnalysis, CalibratedParameter, SQUEAL};
 pub use frf::{FrfAnalysis, FrfContact, FrfQuantity, FrfSolution, MotionAt};
 pub use matrices::{Matrices, MatrixTerm};
@@ -153,8 +154,35 @@ pub struct Bar {
     pub material: String,
     /// A vector in the plane of the section's first axis.
     pub orientation: [f64; 3],
-    /// Its section, from a diameter or in full.
-    pub section: Section,
+    /// Its section.
+    #[serde(flatten)]
+    pub profile: Profile,
+}
+
+/// The section of a bar: a diameter that is a scalar of the case, or its properties in full.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Profile {
+    /// A full round bar.
+    Round {
+        /// d \[m\].
+        diameter: f64,
+    },
+    /// Any section.
+    Full {
+        /// Its properties.
+        section: Section,
+    },
+}
+
+impl Profile {
+    /// The properties of the section.
+    pub fn section(&self) -> Section {
+        match *self {
+            Profile::Round { diameter } => Section::round(diameter),
+            Profile::Full { section } => section,
+        }
+    }
 }
 
 /// A concentrated mass at every point of a region.

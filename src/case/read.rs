@@ -134,18 +134,18 @@ fn read_bar(s: &Section) -> Bar {
         torsion: f.quantity("torsion", AREA_MOMENT).positive().required(AREA_MOMENT.name),
     });
     let diameter = s.quantity("diameter", LENGTH).positive();
-    let section = match full {
-        Some(full) => {
+    let profile = match full {
+        Some(section) => {
             if s.has("diameter") {
                 s.fault("diameter", "both `diameter` and `section`", "one of them", "");
             }
-            full
+            Profile::Full { section }
         }
-        None => structure::Section::round(diameter.required("a diameter, or a [section] in full")),
+        None => Profile::Round { diameter: diameter.required("a diameter, or a [section] in full") },
     };
     Bar {
         material: s.string("material").required("the name of a material"),
-        section,
+        profile,
         orientation: s.direction("orientation").or([0.0, 0.0, 1.0]),
     }
 }

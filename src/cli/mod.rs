@@ -9,6 +9,7 @@ mod export;
 mod mesh;
 mod new;
 mod progress;
+mod search;
 mod validate;
 
 use crate::error::{Error, Fault, Result};
@@ -60,6 +61,8 @@ enum Action {
     Compare(analyse::Options),
     /// Find numbers of the case from measured frequencies, and what the agreement is worth
     Calibrate(analyse::Options),
+    /// Search for numbers of a case inside bounds, so that it meets facts of any kind
+    Search(search::Options),
     /// Check a case and its mesh without running it, and list its parameters
     Check(check::Options),
     /// Write M, C, K, the degrees of freedom and the contact points of a case, for other programs
@@ -104,6 +107,7 @@ fn act(command: &Command) -> Result<ExitCode> {
         Action::Frf(options) => analyse::run(options, common, crate::job::Selection::FRF),
         Action::Compare(options) => analyse::run(options, common, crate::job::Selection::COMPARE),
         Action::Calibrate(options) => analyse::run(options, common, crate::job::Selection::CALIBRATE),
+        Action::Search(options) => search::run(options, common),
         Action::Check(options) => check::run(options, common),
         Action::Export(options) => export::run(options, common),
         Action::New(options) => new::run(options, common),

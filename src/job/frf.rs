@@ -209,6 +209,7 @@ impl Frf<'_> {
             deviation,
             compared: COMPARED,
             frequencies_hz: frequencies,
+            binary: self.wanted.binary,
         };
         Ok((result, beside))
     }

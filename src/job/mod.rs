@@ -39,6 +39,7 @@ mod travel;
 mod verify;
 
 pub use analyse::{Selection, Sensitivities, analyse, run_case};
+pub use calibrate::Coordinate;
 pub use compare::check_tests;
 pub use explore::{KnownMap, KnownMaps};
 pub use export::export;

@@ -34,7 +34,7 @@ pub fn whole_model(case: &Case, regions: &Regions) -> Result<Model> {
             name: name.clone(),
             elements: lines.unwrap_or_default().iter().filter_map(ends).collect(),
             material: case.material[&bar.material],
-            section: bar.section,
+            section: bar.profile.section(),
             orientation: bar.orientation,
         });
     }

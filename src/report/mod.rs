@@ -29,6 +29,7 @@ mod participation;
 mod plate;
 mod reduced_check;
 mod rig;
+mod search;
 mod svg;
 mod tables;
 pub mod text;
@@ -37,6 +38,7 @@ mod transient;
 mod validation;
 mod view;
 
+pub use search::{search_text, write_search};
 pub use validation::write_validation;
 
 use crate::error::Result;

@@ -102,7 +102,7 @@ pub fn verdict(results: &RunResults) -> String {
     }
 }
 
-fn render(table: &Table) -> String {
+pub(super) fn render(table: &Table) -> String {
     let shown = &table.rows[..table.rows.len().min(ROWS)];
     let mut widths: Vec<usize> = table.columns.iter().map(|column| length(column.heading)).collect();
     for row in shown {
@@ -149,7 +149,7 @@ fn cut(text: &str) -> String {
 }
 
 /// Lines of at most [`WIDTH`] columns, indented by one.
-fn wrap(text: &str) -> String {
+pub(super) fn wrap(text: &str) -> String {
     let (mut lines, mut line) = (String::new(), String::new());
     for word in text.split_whitespace() {
         if !line.is_empty() && length(&line) + length(word) + 2 > WIDTH {

@@ -39,6 +39,8 @@ pub struct FrfResult {
     pub deviation: f64,
     /// How many of them.
     pub compared: usize,
+    /// Whether its universal file has binary numbers (dataset 58b).
+    pub binary: bool,
 }
 
 /// A place and a direction.
@@ -94,7 +96,7 @@ pub(super) fn write(dir: &Path, frfs: &[FrfResult]) -> Result<()> {
     for frf in frfs {
         let name = names.next(&frf.name);
         write_atomically(dir, &format!("frf_{name}.csv"), table(frf).as_bytes())?;
-        write_atomically(dir, &format!("frf_{name}.uff"), uff::functions(frf).as_bytes())?;
+        write_atomically(dir, &format!("frf_{name}.uff"), &uff::functions(frf))?;
     }
     Ok(())
 }

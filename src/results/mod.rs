@@ -33,6 +33,7 @@ mod frf;
 mod hdf5;
 mod json;
 mod reduced_check;
+mod search;
 mod sensitivity;
 mod sound;
 mod sound_hdf5;
@@ -60,6 +61,7 @@ pub(crate) use folder::{FileNames, write_atomically};
 pub use frf::{FrfResponse, FrfResult, PlaceAndDirection, Resonance};
 pub use json::{SCHEMA_VERSION, summary_json, write_summary};
 pub use reduced_check::{Deviation, MotionCompared, ReducedCheck};
+pub use search::{Moved, SearchResult, SearchedNumber};
 pub use sensitivity::{AdviceField, ModeSensitivity, Mounted, ParameterRate, SensitivityResult};
 pub use sound::{Heard, Sound, Sounding, Tone};
 pub use transient::{

@@ -389,6 +389,7 @@ fn frf() -> FrfResult {
         deviation: 3e-5,
         compared: 5,
         frequencies_hz,
+        binary: false,
     }
 }
 

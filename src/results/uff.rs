@@ -2,11 +2,11 @@
 
 use super::{FileNames, FrfResult, NamedModes, PlaceAndDirection, RunResults, write_atomically};
 use crate::error::Result;
-use crate::measured::uff::{Function, RealShape, functions_text, modes_text};
+use crate::measured::uff::{Function, RealShape, functions_file, modes_text};
 use std::path::Path;
 
 /// All places of a response: the force acts at point 1, the places are points 2, 3 …
-pub(super) fn functions(frf: &FrfResult) -> String {
+pub(super) fn functions(frf: &FrfResult) -> Vec<u8> {
     let label = |k: usize| k as u64 + 2;
     let points = std::iter::once((1, frf.force.position))
         .chain(frf.responses.iter().enumerate().map(|(k, of)| (label(k), of.at.position)));
@@ -23,7 +23,7 @@ pub(super) fn functions(frf: &FrfResult) -> String {
         frequencies_hz: &frf.frequencies_hz,
         values: &frf.responses[k].values,
     };
-    functions_text(points, (0..frf.responses.len()).map(function))
+    functions_file(points, (0..frf.responses.len()).map(function), frf.binary)
 }
 
 /// ±1, ±2, ±3 along an axis; 0, a scalar, along anything else.
@@ -77,7 +77,7 @@ mod tests {
     fn responses_come_back_as_they_were_written() {
         let results = sample::rig();
         let frf = &results.frfs[0];
-        let text = functions(frf);
+        let text = String::from_utf8(functions(frf)).unwrap();
         let lines: Vec<&str> = text.lines().collect();
         // Columns of the format: degrees of freedom and form of the data.
         let begin = lines.iter().position(|l| l.trim_end() == "    58").unwrap();
@@ -93,6 +93,12 @@ mod tests {
             let near =
                 found.values.iter().zip(&exact.values).all(|(a, b)| (a - b).norm() <= 1e-12 * b.norm());
             assert!(near);
+        }
+        let binary = functions(&FrfResult { binary: true, ..frf.clone() });
+        let (set, warnings) = read("b", &binary, 1e-3).unwrap().into_set();
+        assert!(warnings.is_empty() && set.frfs.len() == frf.responses.len(), "{warnings:?}");
+        for (found, exact) in set.frfs.iter().zip(&frf.responses) {
+            assert!(found.values == exact.values && found.frequencies_hz == frf.frequencies_hz);
         }
     }
 

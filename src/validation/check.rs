@@ -9,7 +9,7 @@ use crate::error::{Error, Fault, Result};
 use crate::job::{Histories, Prepared, Selection, Stage, analyse};
 use crate::linalg::c64;
 use crate::progress::Observer;
-use crate::results::{Checked, CheckedCase, NamedModes, RunResults};
+use crate::results::{CheckedCase, NamedModes, RunResults};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::time::Instant;
@@ -20,23 +20,32 @@ use std::time::Instant;
 /// A case that cannot be analysed, or a quantity that the case does not have.
 pub fn run(reference: &Reference, observer: &dyn Observer) -> Result<CheckedCase> {
     let started = Instant::now();
-    let mut runs: BTreeMap<&str, Runs> = BTreeMap::new();
-    let mut rows = Vec::new();
-    for check in &reference.checks {
-        let case = &reference.cases[&check.case];
-        let runs = runs.entry(&check.case).or_insert_with(|| Runs { case, done: BTreeMap::new(), observer });
-        rows.push(Checked {
-            computed: compute(runs, check)?,
-            quantity: check.quantity.clone(),
-            reference: check.reference,
-            tolerance: check.tolerance,
-            relative: check.relative,
-            reason: check.reason.clone(),
-        });
-    }
-    let Reference { name, title, source, .. } = reference;
+    let Reference { name, title, source, cases, checks } = reference;
+    let computed = computed(cases, checks, observer)?;
+    let rows = checks.iter().zip(computed).map(|(check, computed)| check.beside(computed)).collect();
     let seconds = started.elapsed().as_secs_f64();
     Ok(CheckedCase { name: name.clone(), title: title.clone(), source: source.clone(), rows, seconds })
+}
+
+/// The quantity of every check; the analyses of a case are done once for all that ask for them.
+///
+/// # Errors
+/// As [`run`].
+///
+/// # Panics
+/// When the case of a check is not among the `cases`.
+pub fn computed(
+    cases: &BTreeMap<String, Case>,
+    checks: &[Check],
+    observer: &dyn Observer,
+) -> Result<Vec<f64>> {
+    let mut runs: BTreeMap<&str, Runs> = BTreeMap::new();
+    let mut computed = Vec::new();
+    for check in checks {
+        let new = || Runs { case: &cases[&check.case], done: BTreeMap::new(), observer };
+        computed.push(compute(runs.entry(&check.case).or_insert_with(new), check)?);
+    }
+    Ok(computed)
 }
 
 /// The analyses of one case with scalars set to values, each done once.
@@ -156,7 +165,7 @@ fn compute(runs: &mut Runs, check: &Check) -> Result<f64> {
         Kind::GrowthRate => Ok(growth_rate(runs.with(&check.set)?)),
         Kind::InTime { of: span, measure, over_full } => {
             let mut measured = |model: Option<ModelChoice>| {
-                let found = in_time::measured(runs.run_as(&check.set, model)?, span, *measure);
+                let found = in_time::measured(runs.run_as(&check.set, model)?, span, measure);
                 found.ok_or_else(|| missing(check, &span.channel))
             };
             let own = measured(None)?;
@@ -168,7 +177,7 @@ fn compute(runs: &mut Runs, check: &Check) -> Result<f64> {
                 let run = runs.run(&set_also(&check.set, parameter, *value))?;
                 levels.push(match of {
                     None => growth_rate(&run.results),
-                    Some(span) => in_time::measured(run, span, Measure::Amplitude)
+                    Some(span) => in_time::measured(run, span, &Measure::Amplitude)
                         .ok_or_else(|| missing(check, &span.channel))?,
                 });
             }

@@ -6,9 +6,9 @@ use super::reference::{Measure, Span};
 use super::two_dof::TwoDof;
 
 /// What `measure` says of a channel; `None` when the run does not have it.
-pub(super) fn measured(run: &Run, span: &Span, measure: Measure) -> Option<f64> {
+pub(super) fn measured(run: &Run, span: &Span, measure: &Measure) -> Option<f64> {
     let record = record(run, span)?;
-    let earlier = |window: [f64; 2]| self::record(run, &Span { window, ..span.clone() });
+    let earlier = |window: &[f64; 2]| self::record(run, &Span { window: *window, ..span.clone() });
     Some(match measure {
         Measure::Amplitude => record.amplitude(),
         Measure::AmplitudeOver(window) => record.amplitude() / earlier(window)?.amplitude(),
@@ -21,6 +21,9 @@ pub(super) fn measured(run: &Run, span: &Span, measure: Measure) -> Option<f64> 
         Measure::Rise => record.rise(),
         Measure::Tone => record.tone().amplitude,
         Measure::ToneFrequency => record.tone().frequency_hz,
+        Measure::PeakNear(near) => record.peak_near(near),
+        Measure::Level(near) => record.level(near, true),
+        Measure::OtherLevel(near) => record.level(near, false),
     })
 }
 

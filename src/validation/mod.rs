@@ -10,6 +10,9 @@ mod reference;
 pub mod stick_slip;
 pub mod two_dof;
 
+pub(crate) use check::computed;
+pub(crate) use reference::{Check, read_check};
+
 use crate::error::{Error, Fault, Faults, Result};
 use crate::progress::Observer;
 use crate::results::{CheckedCase, passed};

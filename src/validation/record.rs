@@ -1,5 +1,6 @@
 //! What a channel of a run in time does between two times.
 
+use super::reference::Near;
 use crate::signal::{self, Peak};
 
 /// Lines among which the strongest is looked for.
@@ -78,6 +79,29 @@ impl<'a> Record<'a> {
         strongest.unwrap_or(none)
     }
 
+    /// The frequency of the highest peak \[Hz\]; not a number where there is none.
+    pub(super) fn peak_near(&self, near: &Near) -> f64 {
+        let spectrum = signal::spectrum(self.values, self.step, self.values.len());
+        let peaks =
+            signal::peaks(&spectrum, 0.0, usize::MAX).into_iter().filter(|p| near.holds(p.frequency_hz));
+        let highest = peaks.max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
+        highest.map_or(f64::NAN, |peak| peak.frequency_hz)
+    }
+
+    /// The highest line that is near, or near none, over the highest of all, both below the bound \[dB\]; the mean does not
+    /// count.
+    pub(super) fn level(&self, near: &Near, wanted: bool) -> f64 {
+        let spectrum = signal::spectrum(self.values, self.step, self.values.len());
+        let lines = || {
+            let all =
+                spectrum.amplitude.iter().enumerate().skip(2).map(|(k, a)| (spectrum.frequency_hz(k), *a));
+            all.filter(|(hz, _)| *hz <= near.below_hz)
+        };
+        let highest = |of: &mut dyn Iterator<Item = (f64, f64)>| of.map(|(_, a)| a).fold(f64::NAN, f64::max);
+        let part = highest(&mut lines().filter(|(hz, _)| near.holds(*hz) == wanted)) / highest(&mut lines());
+        20.0 * part.log10()
+    }
+
     /// Where the values rise through the middle of their span, in samples, between them by a straight line.
     fn crossings(&self) -> Vec<f64> {
         let middle = 0.5 * (self.highest() + self.lowest());
@@ -89,9 +113,38 @@ impl<'a> Record<'a> {
     }
 }
 
+impl Near {
+    fn holds(&self, hz: f64) -> bool {
+        self.frequencies_hz.iter().any(|f| (hz / f - 1.0).abs() <= self.within)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn peaks_are_found_where_they_are_looked_for_and_measured_against_the_highest() {
+        let parts = [(936.4, 0.1), (1661.0, 1.0), (2000.0, 0.03), (2600.0, 0.3)];
+        let at = |t: f64| parts.iter().map(|(f, a)| a * (std::f64::consts::TAU * f * t).sin()).sum::<f64>();
+        let values: Vec<f64> = (0..20_000).map(|k| at(2e-5 * k as f64)).collect();
+        let record = Record::new(&values, 2e-5, [0.1, 0.4]);
+        let near = |frequencies: &[f64], below_hz: f64| Near {
+            frequencies_hz: frequencies.to_vec(),
+            within: 0.02,
+            below_hz,
+        };
+        assert!((record.peak_near(&near(&[936.0], 1e9)) - 936.4).abs() < 0.05);
+        assert!((record.level(&near(&[936.0], 1e9), true) + 20.0).abs() < 1.0);
+        assert!(record.level(&near(&[1650.0, 936.0], 1e9), true).abs() < 1e-12);
+        assert!((record.level(&near(&[1661.0], 1e9), false) + 10.5).abs() < 1.0);
+        assert!((record.level(&near(&[1661.0, 936.0], 2200.0), false) + 30.5).abs() < 1.0);
+        let silent = Record::new(&values, 2e-5, [1.0, 2.0]);
+        assert!(
+            silent.peak_near(&near(&[936.0], 1e9)).is_nan()
+                && silent.level(&near(&[936.0], 1e9), true).is_nan()
+        );
+    }
 
     #[test]
     fn a_saw_is_measured() {

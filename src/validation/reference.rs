@@ -5,7 +5,9 @@ use crate::case::reader::{Section, read_document};
 use crate::case::units::{FREQUENCY, LENGTH, NUMBER, TIME};
 use crate::case::{Case, read_case};
 use crate::error::{Error, Fault, Faults, Result};
+use crate::results::Checked;
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Bound;
 use std::path::Path;
 
 /// A validation case with its reference values.
@@ -124,7 +126,7 @@ pub struct Span {
 }
 
 /// What is measured of a channel.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub enum Measure {
     /// Half of what it spans.
     Amplitude,
@@ -144,6 +146,37 @@ pub enum Measure {
     ToneFrequency,
     /// The time from its lowest value in a period to the next highest \[s\].
     Rise,
+    /// The frequency of the highest peak near the reference \[Hz\].
+    PeakNear(Near),
+    /// How high the lines near some frequencies are beside the highest of all \[dB\].
+    Level(Near),
+    /// How high the highest line is that is near none of some frequencies, beside the highest of all \[dB\].
+    OtherLevel(Near),
+}
+
+/// Parts of a spectrum.
+#[derive(Debug, Clone)]
+pub struct Near {
+    /// About these frequencies \[Hz\] …
+    pub frequencies_hz: Vec<f64>,
+    /// … as far as this share of them to either side.
+    pub within: f64,
+    /// What is above does not count \[Hz\].
+    pub below_hz: f64,
+}
+
+impl Check {
+    /// The check with what was computed for it.
+    pub fn beside(&self, computed: f64) -> Checked {
+        Checked {
+            computed,
+            quantity: self.quantity.clone(),
+            reference: self.reference,
+            tolerance: self.tolerance,
+            relative: self.relative,
+            reason: self.reason.clone(),
+        }
+    }
 }
 
 /// Reads `folder/reference.toml` and its cases.
@@ -174,8 +207,10 @@ pub fn read(folder: &Path) -> Result<Reference> {
     faults.into_result(Reference { name, title, source, cases, checks })
 }
 
-fn read_check(name: &str, s: &Section, case: &str, reason: &str) -> Check {
-    const KINDS: [&str; 21] = [
+/// A quantity of the case file `case` with its reference, tolerance and the `reason` for it, which the table may state
+/// otherwise.
+pub fn read_check(name: &str, s: &Section, case: &str, reason: &str) -> Check {
+    const KINDS: [&str; 24] = [
         "value",
         "onset",
         "largest_growth",
@@ -197,9 +232,13 @@ fn read_check(name: &str, s: &Section, case: &str, reason: &str) -> Check {
         "rise_time",
         "tone",
         "tone_frequency",
+        "peak_near",
+        "level",
+        "other_level",
     ];
     let parameter = || s.string("parameter").required("the path of a scalar of the case");
     let earlier = || s.quantities("since", TIME).required("two times");
+    let near = || s.quantity_list("near", FREQUENCY).required("a list of frequencies");
     let in_time = |measure: Measure| {
         let over_full = s.boolean("over_full").or(false);
         Kind::InTime { of: read_span(s), measure, over_full }
@@ -235,6 +274,12 @@ fn read_check(name: &str, s: &Section, case: &str, reason: &str) -> Check {
         "rise_time" => in_time(Measure::Rise),
         "tone" => in_time(Measure::Tone),
         "tone_frequency" => in_time(Measure::ToneFrequency),
+        "peak_near" => {
+            let reference = s.quantity("reference", FREQUENCY).optional();
+            in_time(Measure::PeakNear(read_near(s, reference.into_iter().collect())))
+        }
+        "level" => in_time(Measure::Level(read_near(s, near()))),
+        "other_level" => in_time(Measure::OtherLevel(read_near(s, near()))),
         "round_plate" => Kind::RoundPlate {
             modes: s.string("modes").required("the name of an analysis"),
             part: s.string("part").required("the name of a shell"),
@@ -282,6 +327,12 @@ fn read_span(s: &Section) -> Span {
         channel: s.string("channel").required("the name of a channel of the run in time"),
         window: s.quantities("window", TIME).required("two times"),
     }
+}
+
+fn read_near(s: &Section, frequencies_hz: Vec<f64>) -> Near {
+    let within = s.quantity("within", NUMBER).within(Bound::Excluded(0.0), Bound::Excluded(1.0));
+    let below_hz = s.quantity("below", FREQUENCY).positive();
+    Near { frequencies_hz, within: within.or(0.03), below_hz: below_hz.or(f64::INFINITY) }
 }
 
 fn read_set(s: &Section, key: &str) -> Vec<(String, f64)> {

@@ -13,7 +13,7 @@ mod real;
 mod tests;
 mod unstable;
 
-use self::coordinate::Coordinate;
+pub use self::coordinate::Coordinate;
 use self::facts::Facts;
 use self::model::{CaseModel, scalars};
 use super::prepared::Prepared;

@@ -2,7 +2,7 @@ use super::*;
 use crate::job::modes::part_modes;
 use crate::job::samples::disc;
 use crate::linalg::random::Random;
-use crate::measured::uff::{Function, RealShape, functions_text, modes_text};
+use crate::measured::uff::{Function, RealShape, functions_file, modes_text};
 use std::path::Path;
 
 const MODES: &str = "[modes.disc]\nbelow = \"1.6 kHz\"\n[damping]\nmodal_ratio = 0.003\n";
@@ -152,9 +152,9 @@ fn measured_responses_stand_beside_computed_ones_at_their_own_frequencies() {
         values: &values,
     };
     // Directions that the test does not state are those of the case; the first is turned by its sign below.
-    let text =
-        functions_text(points.into_iter(), [function((1, 0), (2, 0)), function((3, 1), (2, 1))].into_iter());
-    std::fs::write(dir.path().join("test.unv"), text).unwrap();
+    let functions = [function((1, 0), (2, 0)), function((3, 1), (2, 1))];
+    let file = functions_file(points.into_iter(), functions.into_iter(), false);
+    std::fs::write(dir.path().join("test.unv"), file).unwrap();
     let measured = format!("[measured.own]\nfrf = \"hammer\"\nfile = \"test.unv\"\n{}", transform("m"));
     let with = case(&(frf.to_string() + &measured), dir.path());
     let prepared = Prepared::new(&with).unwrap();

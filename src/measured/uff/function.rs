@@ -255,6 +255,7 @@ fn binary_numbers(dataset: &Dataset<'_>, binary: &Binary<'_>, form: &Form) -> Re
 }
 
 /// A frequency response to write.
+#[derive(Debug, Clone)]
 pub struct Function<'a> {
     /// Two lines of text: what it is, and how it came about.
     pub title: [&'a str; 2],
@@ -270,15 +271,14 @@ pub struct Function<'a> {
     pub values: &'a [c64],
 }
 
-/// Dataset 58: complex in double precision, uneven frequencies.
-pub(super) fn write(function: &Function<'_>) -> String {
+/// The lines of text of dataset 58 before its numbers: complex in double precision, uneven frequencies.
+fn heading(function: &Function<'_>) -> String {
     let (kind, label, unit) = match function.quantity {
         Quantity::Receptance => (DISPLACEMENT, "Displacement", "m"),
         Quantity::Mobility => (VELOCITY, "Velocity", "m/s"),
         Quantity::Accelerance => (ACCELERATION, "Acceleration", "m/s^2"),
     };
-    let mut text = String::from("    -1\n    58\n");
-    text += &text_line(function.title[0]);
+    let mut text = text_line(function.title[0]);
     text += &text_line(function.title[1]);
     text += &text_line("NONE").repeat(3);
     let ((node, along), (base, driven)) = (function.response, function.excitation);
@@ -294,10 +294,30 @@ pub(super) fn write(function: &Function<'_>) -> String {
     text += &axis(FREQUENCY, "Frequency", "Hz");
     text += &axis(kind, label, unit);
     text += &axis(FORCE, "Force", "N");
-    text += &axis(0, "NONE", "NONE");
+    text + &axis(0, "NONE", "NONE")
+}
+
+/// Dataset 58: complex in double precision, uneven frequencies.
+pub(super) fn write(function: &Function<'_>) -> Vec<u8> {
+    let mut text = String::from("    -1\n    58\n") + &heading(function);
     for (hz, value) in function.frequencies_hz.iter().zip(function.values) {
         let [re, im] = [value.re, value.im].map(|v| e_format(v, 20, 12));
         text += &format!("{}{re}{im}\n", e_format(*hz, 13, 5));
     }
-    text + "    -1\n"
+    (text + "    -1\n").into_bytes()
+}
+
+/// Dataset 58b: the same in IEEE 754 numbers of eight bytes, the lowest first; a frequency, a real and an imaginary part each.
+pub(super) fn write_binary(function: &Function<'_>) -> Vec<u8> {
+    const LOWEST_FIRST: u32 = 1;
+    const IEEE_754: u32 = 2;
+    let heading = heading(function);
+    let (lines, size) = (heading.lines().count(), 3 * size_of::<f64>() * function.values.len());
+    let form = format!("{LOWEST_FIRST:6}{IEEE_754:6}{lines:12}{size:12}{:6}{:6}{:12}{:12}", 0, 0, 0, 0);
+    let mut bytes = format!("    -1\n    58b{form}\n{heading}").into_bytes();
+    for (hz, value) in function.frequencies_hz.iter().zip(function.values) {
+        bytes.extend([*hz, value.re, value.im].iter().flat_map(|number| number.to_le_bytes()));
+    }
+    bytes.extend(b"\n    -1\n");
+    bytes
 }

@@ -6,7 +6,7 @@
 //! | 15, 2411: points | yes | 15 |
 //! | 55: modes, real and complex | yes | real |
 //! | 58: functions, in text | yes | complex, double precision |
-//! | 58b: functions, in IEEE 754 numbers of either byte order | yes | |
+//! | 58b: functions, in IEEE 754 numbers of either byte order | yes | complex, double precision |
 //! | 164: units | yes | SI |
 //! | 151: header | skipped | |
 //!
@@ -92,13 +92,16 @@ pub fn modes_text<'a>(
     units::SI.to_string() + &nodes::write(points) + &modes
 }
 
-/// A universal file in SI: units, points by label \[m\], frequency responses.
-pub fn functions_text<'a>(
+/// A universal file in SI: units, points by label \[m\], frequency responses with their numbers in text or `binary`.
+pub fn functions_file<'a>(
     points: impl Iterator<Item = (u64, [f64; 3])>,
     functions: impl Iterator<Item = Function<'a>>,
-) -> String {
-    let functions: String = functions.map(|f| function::write(&f)).collect();
-    units::SI.to_string() + &nodes::write(points) + &functions
+    binary: bool,
+) -> Vec<u8> {
+    let write = if binary { function::write_binary } else { function::write };
+    let mut bytes = (units::SI.to_string() + &nodes::write(points)).into_bytes();
+    bytes.extend(functions.flat_map(|f| write(&f)));
+    bytes
 }
 
 #[cfg(test)]

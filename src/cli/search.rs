@@ -1,0 +1,37 @@
+//! `stridor search`: numbers of a case, so that it meets facts of any kind.
+
+use super::progress::Bars;
+use super::{Common, say};
+use crate::error::Result;
+use crate::report::{search_text, write_search};
+use crate::search::{read_search, search};
+use clap::Args;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+#[derive(Args)]
+pub struct Options {
+    /// The file of the search (TOML): a case, its numbers with their bounds, and the facts
+    file: PathBuf,
+    /// The folder for the results; `results/NAME` by default, NAME being the file's, or its folder's for search.toml
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Go on with the evaluations that an interrupted run of the same search left in the folder
+    #[arg(long)]
+    resume: bool,
+}
+
+pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
+    let file = read_search(&options.file)?;
+    let out = options.out.clone().unwrap_or_else(|| PathBuf::from("results").join(&file.name));
+    let result = search(&file, &out, options.resume, &Bars::new(common.quiet))?;
+    result.write(&out)?;
+    write_search(&out, &result)?;
+    if common.json {
+        say(serde_json::to_string_pretty(&result.to_json()).expect("numbers and strings are JSON"))?;
+    } else if !common.quiet {
+        say(search_text(&result))?;
+        say(format!("Results are in {}: open search.html; the case is found.toml.", out.display()))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,125 @@
+//! The file of a search: the case, its numbers that are searched for, and the facts.
+
+use crate::case::reader::{Section, read_document};
+use crate::case::units::NUMBER;
+use crate::case::{CalibratedParameter, Case, read_case, read_parameter};
+use crate::error::{Error, Fault, Faults, Result};
+use crate::validation::{Check, read_check};
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Bound;
+use std::path::Path;
+
+/// A search.
+#[derive(Debug)]
+pub struct SearchFile {
+    /// The file's name, or its folder's for `search.toml`.
+    pub name: String,
+    /// One line.
+    pub title: String,
+    /// Where the facts come from.
+    pub source: String,
+    /// The case at whose values the search starts.
+    pub case: Case,
+    /// The cases that the facts are of, by their files.
+    pub(super) cases: BTreeMap<String, Case>,
+    /// Most evaluations.
+    pub evaluations: usize,
+    /// The seed of the random samples.
+    pub seed: u64,
+    /// The standard deviation of the first samples, as a share of the bounds.
+    pub spread: f64,
+    /// What is searched for, by name.
+    pub parameters: BTreeMap<String, CalibratedParameter>,
+    /// The values of the case \[SI\].
+    pub(super) start: Vec<f64>,
+    /// The facts.
+    pub(super) checks: Vec<Check>,
+}
+
+/// Reads the file of a search, and its cases.
+///
+/// # Errors
+/// Every fault of any of the files.
+pub fn read_search(path: &Path) -> Result<SearchFile> {
+    let place = path.display().to_string();
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| Error::input(Fault::new(&place, error.to_string(), "a text file")))?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut faults = Faults::new();
+    let read = read_document(&place, &text, |root| {
+        let file = root.string("case").or("case.toml".into());
+        match faults.take(read_case(&folder.join(&file))) {
+            Some(case) => Some(read_root(root, &file, case)),
+            None => {
+                root.skip(&["title", "source", "evaluations", "seed", "spread", "parameter", "fact"]);
+                None
+            }
+        }
+    });
+    let found = faults.take(read.map(|(found, _)| found)).flatten();
+    let Some(mut found) = found else { return Err(Error::Input(faults)) };
+    let files: BTreeSet<&String> = found.checks.iter().map(|check| &check.case).collect();
+    let cases = files
+        .into_iter()
+        .filter_map(|file| faults.take(read_case(&folder.join(file))).map(|case| (file.clone(), case)));
+    found.cases = cases.collect();
+    let mut start = Vec::new();
+    for (name, parameter) in &found.parameters {
+        let key = |key: &str| format!("{place}: `parameter.{name}.{key}`");
+        let values: Vec<f64> =
+            parameter.path.iter().filter_map(|path| Some(found.case.parameter(path).ok()?.value)).collect();
+        let [low, high] = parameter.between;
+        if values.iter().any(|value| *value != values[0]) {
+            faults.push(Fault::new(key("path"), format!("values {values:?}"), "scalars of one value"));
+        } else if !values.iter().all(|value| (low..=high).contains(value)) {
+            let found = format!("bounds {low} to {high} without the case's own value {}", values[0]);
+            let expected = "bounds that hold the value of the case, where the search starts";
+            faults.push(Fault::new(key("between"), found, expected));
+        }
+        for (file, case) in &found.cases {
+            for path in parameter.path.iter().filter(|path| case.parameter(path).is_err()) {
+                let found = format!("`{path}`, no number of {file}");
+                faults.push(Fault::new(key("path"), found, "scalars that every case of the facts has"));
+            }
+        }
+        start.push(values.first().copied().unwrap_or(low));
+    }
+    found.start = start;
+    let stem = path.file_stem().unwrap_or_default();
+    let name = folder.file_name().filter(|_| stem == "search").unwrap_or(stem);
+    found.name = name.to_string_lossy().into_owned();
+    faults.into_result(found)
+}
+
+fn read_root(root: &Section, file: &str, case: Case) -> SearchFile {
+    let scalars = case.parameters();
+    let parameters: Vec<(String, CalibratedParameter)> =
+        root.named("parameter", |name, s| (name.to_string(), read_parameter(s, &case, Some(&scalars))));
+    let checks = root.named("fact", |name, s| read_check(name, s, file, ""));
+    for (key, none) in [("parameter", parameters.is_empty()), ("fact", checks.is_empty())] {
+        if none {
+            root.fault(key, "nothing", format!("at least one table [{key}.NAME]"), "");
+        }
+    }
+    SearchFile {
+        name: String::new(),
+        title: root.string("title").required("one line"),
+        source: root.string("source").required("where the facts come from"),
+        case,
+        cases: BTreeMap::new(),
+        evaluations: root.count("evaluations").or(1000),
+        seed: root.count("seed").or(1) as u64,
+        spread: root.quantity("spread", NUMBER).within(Bound::Excluded(0.0), Bound::Included(1.0)).or(0.2),
+        parameters: parameters.into_iter().collect(),
+        start: Vec::new(),
+        checks,
+    }
+}
+
+impl SearchFile {
+    /// `case` with the numbers at `values` \[SI\].
+    pub(super) fn with(&self, case: &Case, values: &[f64]) -> Result<Case> {
+        let each = self.parameters.values().zip(values);
+        case.with_parameters(each.flat_map(|(p, value)| p.path.iter().map(move |path| (path, *value))))
+    }
+}

@@ -1,0 +1,146 @@
+//! `search.csv`: every evaluation, so that a search that was killed goes on where it was.
+
+use super::cost::Facts;
+use super::file::SearchFile;
+use crate::error::{Error, Fault, Result};
+use crate::results::write_atomically;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+const NAME: &str = "search.csv";
+
+/// The evaluations of a search.
+pub(super) struct Log {
+    dir: PathBuf,
+    heading: String,
+    facts: usize,
+    kept: Mutex<Kept>,
+}
+
+#[derive(Default)]
+struct Kept {
+    /// All that is known, by the values of the numbers; of an earlier run also what this one has not come to yet.
+    known: BTreeMap<Vec<u64>, Row>,
+    /// The values that this run has come to.
+    seen: BTreeSet<Vec<u64>>,
+    /// Rows in the order of the search.
+    rows: Vec<Row>,
+    /// Rows of this generation, in the order in which the threads came.
+    fresh: Vec<Row>,
+}
+
+#[derive(Clone)]
+struct Row {
+    values: Vec<f64>,
+    cost: f64,
+    computed: Vec<f64>,
+}
+
+impl Log {
+    /// An empty log, or that of an earlier run of the same search in `dir`.
+    ///
+    /// # Errors
+    /// A log of another search, or one that cannot be read.
+    pub(super) fn open(dir: &Path, file: &SearchFile, resume: bool) -> Result<Log> {
+        let name = |name: &str| name.replace(',', ";");
+        let numbers = file.parameters.keys().map(|n| name(n));
+        let facts = file.checks.iter().map(|check| name(&check.quantity));
+        let heading: Vec<String> = ["cost".to_string()].into_iter().chain(numbers).chain(facts).collect();
+        let log = Log {
+            dir: dir.to_path_buf(),
+            heading: heading.join(","),
+            facts: file.checks.len(),
+            kept: Mutex::default(),
+        };
+        let path = dir.join(NAME);
+        if resume && path.exists() {
+            let text = std::fs::read_to_string(&path)
+                .map_err(|error| Error::io(&path, error, "Search without --resume"))?;
+            log.read(&text, &path, file.parameters.len())?;
+        }
+        Ok(log)
+    }
+
+    fn read(&self, text: &str, path: &Path, numbers: usize) -> Result<()> {
+        let fault = |line: usize, found: &str, expected: &str| {
+            let place = format!("{}:{line}", path.display());
+            Error::input(Fault::new(place, found, expected).with_help("Search without --resume"))
+        };
+        let mut lines = text.lines();
+        if lines.next() != Some(self.heading.as_str()) {
+            return Err(fault(1, "the columns of another search", &format!("`{}`", self.heading)));
+        }
+        let mut kept = self.kept.lock().expect("no thread panics here");
+        for (k, line) in lines.enumerate() {
+            let cells: std::result::Result<Vec<f64>, _> =
+                line.split(',').filter(|cell| !cell.is_empty()).map(str::parse).collect();
+            let cells = cells.map_err(|_| fault(k + 2, "a cell that is no number", "numbers"))?;
+            if cells.len() != 1 + numbers && cells.len() != 1 + numbers + self.facts {
+                return Err(fault(
+                    k + 2,
+                    &format!("{} cells", cells.len()),
+                    "a cost, numbers, and facts or none",
+                ));
+            }
+            let (values, computed) = cells[1..].split_at(numbers);
+            let row = Row { values: values.to_vec(), cost: cells[0], computed: computed.to_vec() };
+            kept.known.insert(key(values), row);
+        }
+        Ok(())
+    }
+
+    /// What was computed at these values.
+    pub(super) fn find(&self, values: &[f64]) -> Option<Vec<f64>> {
+        self.kept
+            .lock()
+            .expect("no thread panics here")
+            .known
+            .get(&key(values))
+            .map(|row| row.computed.clone())
+    }
+
+    /// Keeps an evaluation until [`Log::flush`].
+    pub(super) fn keep(&self, values: &[f64], facts: &Facts) {
+        let mut kept = self.kept.lock().expect("no thread panics here");
+        let row = Row { values: values.to_vec(), cost: facts.cost, computed: facts.computed.clone() };
+        if kept.seen.insert(key(values)) {
+            kept.known.insert(key(values), row.clone());
+            kept.fresh.push(row);
+        }
+    }
+
+    /// Writes all, those since the last time in the order of their cost.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub(super) fn flush(&self) -> Result<()> {
+        let mut kept = self.kept.lock().expect("no thread panics here");
+        let mut fresh = std::mem::take(&mut kept.fresh);
+        fresh.sort_by(|a, b| a.cost.total_cmp(&b.cost).then_with(|| key(&a.values).cmp(&key(&b.values))));
+        kept.rows.extend(fresh);
+        let mut text = self.heading.clone() + "\n";
+        let ahead = kept.known.iter().filter(|(values, _)| !kept.seen.contains(*values)).map(|(_, row)| row);
+        for row in kept.rows.iter().chain(ahead) {
+            let cells =
+                std::iter::once(&row.cost).chain(&row.values).chain(&row.computed).map(f64::to_string);
+            text += &(cells.collect::<Vec<_>>().join(",") + "\n");
+        }
+        write_atomically(&self.dir, NAME, text.as_bytes())
+    }
+
+    /// The cost of every evaluation, in their order.
+    pub(super) fn costs(&self) -> Vec<f64> {
+        self.kept.lock().expect("no thread panics here").rows.iter().map(|row| row.cost).collect()
+    }
+
+    /// How many evaluations had no answer.
+    pub(super) fn without_answer(&self) -> usize {
+        let kept = self.kept.lock().expect("no thread panics here");
+        kept.rows.iter().filter(|row| row.computed.is_empty()).count()
+    }
+}
+
+fn key(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|value| value.to_bits()).collect()
+}
