@@ -1,8 +1,8 @@
 //! The whole calibration: assignments, fits, and what they are worth.
 
-use super::fit::misfit;
 use super::knowledge::left_open;
 use super::linear::Linear;
+use super::residuals::misfit;
 use super::{Chance, Fit, Knowledge, Level, Levels, Model, Problem, Trials, assignments, fit};
 use crate::error::{Error, Result};
 use crate::progress::Observer;
@@ -67,6 +67,8 @@ pub struct Ranked {
     pub linear_chi2: f64,
     /// max |f/y − 1|.
     pub largest_error: f64,
+    /// The least MAC of a measured shape with its level; none without shapes.
+    pub least_likeness: Option<f64>,
     /// exp(−Δχ²/2) beside the best.
     pub weight: f64,
 }
@@ -79,6 +81,8 @@ pub struct LeftOut {
     /// What they predict for it \[Hz\]; `None` where the level is not found, or where what the others leave open moves it by
     /// more than the deviation of the datum.
     pub predicted_hz: Option<f64>,
+    /// MAC of its shape, if it has one, with the one that they predict; likewise `None`.
+    pub likeness: Option<f64>,
     /// Whether the fit converged.
     pub converged: bool,
 }
@@ -99,7 +103,7 @@ pub fn calibrate(
     let plausible: Vec<Vec<usize>> =
         problem.data.iter().map(|datum| linear.plausible(datum, options.reach)).collect();
     let mut found = assignments::best(&linear, &problem.data, &plausible, FITTED);
-    let (counted, all_counted) = assignments::count(&plausible);
+    let (counted, all_counted) = assignments::count(problem, &plausible);
     if found.best.is_empty() {
         return Err(nothing_near(problem, &plausible, options.reach));
     }
@@ -112,6 +116,7 @@ pub fn calibrate(
         observer.advance(1);
         Ok(Ranked {
             largest_error: largest_error(problem, assignment, &fit.levels),
+            least_likeness: least_likeness(problem, assignment, &fit.levels),
             assignment: assignment.clone(),
             linear_chi2: *linear_chi2,
             weight: 0.0,
@@ -131,9 +136,11 @@ pub fn calibrate(
         false => Vec::new(),
     };
     let chance = (options.chance_draws > 0).then(|| {
-        let linear = Linear::new(problem, &best.fit.x, &best.fit.levels);
-        let own = (best.fit.chi2, best.largest_error);
-        Chance::new(problem, &linear, options.reach, options.chance_draws, own)
+        let problem = problem.frequencies_alone();
+        let linear = Linear::new(&problem, &best.fit.x, &best.fit.levels);
+        let (chi2, x) = linear.least(&linear.misfit(&problem.data, &best.assignment));
+        let own = (chi2, linear.largest_error(&problem.data, &best.assignment, &x));
+        Chance::new(&linear, options.reach, options.chance_draws, own)
     });
     let trials = match options.trials {
         0 => None,
@@ -160,6 +167,15 @@ fn largest_error(problem: &Problem, assignment: &[usize], levels: &Levels) -> f6
     problem.data.iter().zip(assignment).map(error).fold(0.0, f64::max)
 }
 
+/// The least MAC of a measured shape with its level; none without shapes.
+fn least_likeness(problem: &Problem, assignment: &[usize], levels: &Levels) -> Option<f64> {
+    let each = problem.data.iter().zip(assignment).filter_map(|(datum, k)| {
+        let (shape, level) = (datum.shape.as_ref()?, levels[*k].as_ref());
+        Some(level.and_then(|level| level.span.as_ref()).map_or(0.0, |span| span.likeness(shape)))
+    });
+    each.reduce(f64::min)
+}
+
 /// Fits all data but one, each in turn, and predicts that one. Nothing where the others are fewer than the unknowns: what
 /// they leave open would stay where the fit of all data put it.
 fn leave_one_out(
@@ -168,7 +184,7 @@ fn leave_one_out(
     best: &Ranked,
     observer: &dyn Observer,
 ) -> Result<Vec<LeftOut>> {
-    if problem.degrees_of_freedom() == 0 {
+    if problem.degrees_of_freedom(&best.assignment, &best.fit.levels) == 0 {
         return Ok(Vec::new());
     }
     let n = problem.data.len();
@@ -181,12 +197,14 @@ fn leave_one_out(
         observer.advance(1);
         let level = found.levels[best.assignment[out]].as_ref();
         let known = misfit(&others, &assignment, &found.x, &found.levels).is_finite();
-        let told = |level: &&Level| {
-            let open = left_open(&others, &assignment, &found.levels, &level.slope);
-            known && open <= problem.data[out].deviation
+        let datum = &problem.data[out];
+        let told = |level: &Level, what: usize| {
+            known && left_open(&others, &assignment, &found.levels, (datum, level))[what] <= 1.0
         };
+        let likeness = |level: &Level| Some(level.span.as_ref()?.likeness(datum.shape.as_ref()?));
         Ok(LeftOut {
-            predicted_hz: level.filter(told).map(|level| level.frequency_hz),
+            predicted_hz: level.filter(|level| told(level, 0)).map(|level| level.frequency_hz),
+            likeness: level.filter(|level| told(level, 1)).and_then(likeness),
             converged: found.converged,
             x: found.x,
         })
@@ -202,9 +220,12 @@ fn nothing_near(problem: &Problem, plausible: &[Vec<usize>], reach: f64) -> Erro
     let found = if alone.is_empty() {
         "there are more measured frequencies than modes near them".to_string()
     } else {
-        format!("no computed mode comes within {:.0} % of {}", 100.0 * reach, alone.join(", "))
+        let like =
+            if problem.data.iter().any(|d| d.shape.is_some()) { ", and is like its shape" } else { "" };
+        format!("no computed mode comes within {:.0} % of {}{like}", 100.0 * reach, alone.join(", "))
     };
-    let help = "Widen the bounds of the parameters or `mode_reach`, or leave the frequency out";
+    let help = "Widen the bounds of the parameters or `mode_reach`, or leave the frequency, or with `shapes = false` the \
+                measured shapes, out";
     Error::analysis("assigning modes to measured frequencies", found, help)
 }
 

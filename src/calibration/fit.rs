@@ -1,7 +1,8 @@
 //! Bounded nonlinear least squares: Levenberg and Marquardt's method with the bounds in the subproblem.
 
 use super::quadratic::least_in_box;
-use super::{Level, Levels, Model, Problem};
+use super::residuals::Residuals;
+use super::{Levels, Model, Problem};
 use crate::error::Result;
 use nalgebra::{DMatrix, DVector};
 
@@ -43,34 +44,13 @@ struct Here {
 impl Here {
     /// `None` where a level of the assignment is not found.
     fn new(problem: &Problem, assignment: &[usize], x: &[f64], levels: &Levels) -> Option<Here> {
-        let n = problem.unknowns.len();
-        let mut rows: Vec<(f64, Vec<f64>)> = Vec::with_capacity(problem.n_facts());
-        for (datum, k) in problem.data.iter().zip(assignment) {
-            let level: &Level = levels[*k].as_ref()?;
-            let residual = (level.frequency_hz / datum.frequency_hz).ln() / datum.deviation;
-            rows.push((residual, level.slope.iter().map(|g| g / datum.deviation).collect()));
-        }
-        for (j, unknown) in problem.unknowns.iter().enumerate() {
-            if let Some(expected) = unknown.expected {
-                let row = (0..n).map(|k| f64::from(u8::from(j == k))).collect();
-                rows.push((x[j] - expected, row));
-            }
-        }
-        let finite = rows.iter().all(|(r, row)| r.is_finite() && row.iter().all(|v| v.is_finite()));
-        finite.then(|| Here {
-            residuals: DVector::from_iterator(rows.len(), rows.iter().map(|r| r.0)),
-            jacobian: DMatrix::from_fn(rows.len(), n, |i, j| rows[i].1[j]),
-        })
+        let all = Residuals::all(problem, assignment, x, levels)?;
+        Some(Here { residuals: all.vector(), jacobian: all.jacobian(x.len()) })
     }
 
     fn chi2(&self) -> f64 {
         self.residuals.norm_squared()
     }
-}
-
-/// χ² of an assignment at `x`, whose `levels` are known; infinite where a level is not found.
-pub(super) fn misfit(problem: &Problem, assignment: &[usize], x: &[f64], levels: &Levels) -> f64 {
-    Here::new(problem, assignment, x, levels).map_or(f64::INFINITY, |here| here.chi2())
 }
 
 /// The least χ² of `assignment` inside the bounds, from `start`, where the levels are known.
@@ -151,6 +131,7 @@ fn projected(problem: &Problem, x: &[f64], h: &DMatrix<f64>, g: &DVector<f64>) -
 
 #[cfg(test)]
 mod tests {
+    use super::super::residuals::misfit;
     use super::super::samples::{Powers, problem};
     use super::*;
 

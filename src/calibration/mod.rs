@@ -1,9 +1,12 @@
-//! Scalars of a model found from measured frequencies, and what the agreement is worth.
+//! Scalars of a model found from measured frequencies and shapes, and what the agreement is worth.
 //!
 //! Unknowns x and computed frequencies f(x), *levels* (a mode, or a double pair), stand against measured ones y. With an
 //! assignment a of measured frequencies to levels, the residuals are
 //!
 //!   r_i = ln(f_a(i)(x) / y_i) / s_i   and, where something was known before,   r_j = x_j − x̄_j,
+//!
+//! and beside each measured shape ψ, in standard deviations of a component, (I − P)ψ with the orthogonal projection P on the
+//! motions that the level makes where ψ was measured ([`Span`]): m components less a scale factor for each mode of the level.
 //!
 //! χ² = Σ r² is least inside the bounds. Every unknown is measured in its own unit: the standard deviation of what was
 //! known before, or half the width of its bounds where nothing was (Mottershead and Friswell, J. Sound Vib. 167 (1993) 347).
@@ -23,17 +26,23 @@ mod knowledge;
 mod linear;
 mod nearby;
 mod quadratic;
+mod residuals;
 #[cfg(test)]
 mod samples;
+mod span;
 mod trials;
 
 pub use calibrate::{Calibration, LeftOut, Options, Ranked, calibrate};
 pub use chance::Chance;
 pub use fit::{Fit, fit};
 pub use knowledge::{Interval, Knowledge};
+pub use linear::LIKE;
+pub use span::{Apart, Span};
 pub use trials::Trials;
 
 use crate::error::Result;
+use residuals::Residuals;
+use std::sync::Arc;
 
 /// Computed frequencies as functions of the unknowns.
 pub trait Model: Sync {
@@ -56,10 +65,12 @@ pub struct Level {
     pub slope: Vec<f64>,
     /// Of a double level: the two frequencies part with ∂ ln f/∂x_j = slope ± split.
     pub split: Vec<f64>,
+    /// Its motions where shapes were measured; none where no measured shape is like them.
+    pub span: Option<Span>,
 }
 
-/// A measured frequency.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A measured frequency, and a shape if one was measured.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Datum {
     /// It is one of the levels of this set.
     pub set: usize,
@@ -67,6 +78,8 @@ pub struct Datum {
     pub frequency_hz: f64,
     /// s: relative standard deviation of y.
     pub deviation: f64,
+    /// ψ, in standard deviations of one of its components.
+    pub shape: Option<Arc<[f64]>>,
 }
 
 /// An unknown x_j, in a unit in which what was known before has the standard deviation 1.
@@ -87,17 +100,23 @@ pub struct Problem {
     pub data: Vec<Datum>,
     /// The set that each level of the model belongs to.
     pub level_sets: Vec<usize>,
+    /// How many modes each level has: so many data may be that level.
+    pub level_modes: Vec<usize>,
 }
 
 impl Problem {
-    /// Measured frequencies and expectations.
-    pub fn n_facts(&self) -> usize {
-        self.data.len() + self.unknowns.iter().filter(|u| u.expected.is_some()).count()
+    /// Facts beyond the number of unknowns; none when there are no more. Facts are measured frequencies, expectations, and
+    /// the components of measured shapes less the scale factors that fit them to their levels.
+    pub fn degrees_of_freedom(&self, assignment: &[usize], levels: &Levels) -> usize {
+        let measured = Residuals::measured(self, assignment, levels).facts();
+        let expected = self.unknowns.iter().filter(|u| u.expected.is_some()).count();
+        (measured + expected).saturating_sub(self.unknowns.len())
     }
 
-    /// Facts beyond the number of unknowns; none when there are no more.
-    pub fn degrees_of_freedom(&self) -> usize {
-        self.n_facts().saturating_sub(self.unknowns.len())
+    /// The same without shapes.
+    fn frequencies_alone(&self) -> Problem {
+        let data = self.data.iter().map(|datum| Datum { shape: None, ..datum.clone() }).collect();
+        Problem { data, ..self.clone() }
     }
 
     /// `x` moved inside the bounds.

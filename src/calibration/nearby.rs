@@ -1,10 +1,10 @@
-//! A model near one place: quadratic in ln f, so that thousands of fits cost nothing.
+//! A model near one place: quadratic in ln f and linear in the shapes, so that thousands of fits cost nothing.
 
 use super::{Level, Levels, Model, Problem};
 use crate::error::Result;
 use rayon::prelude::*;
 
-/// ln f(x) ≈ ln f₀ + gᵀd + ½ dᵀHd, d = x − x₀, with the slopes g + Hd.
+/// ln f(x) ≈ ln f₀ + gᵀd + ½ dᵀHd, d = x − x₀, with the slopes g + Hd; Φ(x) ≈ Φ₀ + Σ d_j ∂Φ/∂x_j.
 pub(super) struct Nearby {
     x: Vec<f64>,
     levels: Levels,
@@ -56,6 +56,7 @@ impl Model for Nearby {
                 frequency_hz: level.frequency_hz * (dot(&level.slope) + 0.5 * dot(&bend)).exp(),
                 slope: level.slope.iter().zip(&bend).map(|(g, b)| g + b).collect(),
                 split: level.split.clone(),
+                span: level.span.as_ref().map(|span| span.moved(&d)),
             })
         };
         Ok(self.levels.iter().zip(&self.curvature).map(level).collect())

@@ -2,18 +2,21 @@
 
 use super::knowledge::{Interval, Knowledge};
 use super::nearby::Nearby;
-use super::{Datum, Fit, Model, Problem, Unknown, fit};
+use super::residuals::Residuals;
+use super::{Datum, Fit, Levels, Model, Problem, Span, Unknown, fit};
 use crate::error::Result;
 use crate::linalg::random::Random;
 use rayon::prelude::*;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// The model is looked at no nearer to the truth than this, in units of the unknowns.
 const LEAST_STEP: f64 = 1e-2;
 
 /// Trials with synthetic data (parametric bootstrap): the calibrated values are the truth, each frequency is the computed
-/// one with the stated relative deviation, normally distributed, and what was expected scatters about the truth likewise.
-/// The fits are made to the model near the truth, quadratic in ln f; how far that is from the model itself is told.
+/// one with the stated relative deviation, normally distributed, each shape the computed one nearest to the measured one, its
+/// components with their deviation, and what was expected scatters about the truth likewise.
+/// The fits are made to the model near the truth, quadratic in ln f and linear in the shapes; how far that is from the model itself is told.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trials {
     /// How many.
@@ -24,8 +27,8 @@ pub struct Trials {
     pub covered: Vec<usize>,
     /// The same for the intervals scaled by χ²/ν; `None` where ν = 0.
     pub scaled_covered: Option<Vec<usize>>,
-    /// The largest difference of ln f between the quadratic model and the model itself, in standard deviations of the datum, at
-    /// the estimates that are furthest from the truth.
+    /// The largest difference of a residual between that model and the model itself, in standard deviations, at the estimates
+    /// that are furthest from the truth.
     pub model_error: f64,
     /// Root mean square of estimate less truth, for each unknown.
     pub scatter: Vec<f64>,
@@ -84,11 +87,11 @@ fn model_error<'a>(
         .collect::<Vec<_>>();
     let error = |x: &&Vec<f64>| -> Result<f64> {
         let (own, exact) = (near.levels(x)?, model.levels(x)?);
-        let each = problem.data.iter().zip(assignment).map(|(datum, k)| match (&own[*k], &exact[*k]) {
-            (Some(a), Some(b)) => (a.frequency_hz / b.frequency_hz).ln().abs() / datum.deviation,
+        let all = |levels: &Levels| Residuals::all(problem, assignment, x, levels).map(|all| all.values);
+        Ok(match (all(&own), all(&exact)) {
+            (Some(a), Some(b)) => a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max),
             _ => f64::INFINITY,
-        });
-        Ok(each.fold(0.0, f64::max))
+        })
     };
     let errors: Vec<f64> = ends.par_iter().map(error).collect::<Result<_>>()?;
     Ok(errors.into_iter().fold(0.0, f64::max))
@@ -96,8 +99,15 @@ fn model_error<'a>(
 
 fn synthetic(problem: &Problem, assignment: &[usize], truth: &Fit, normal: &mut Normal) -> Problem {
     let datum = |(datum, k): (&Datum, &usize), normal: &mut Normal| {
-        let exact = truth.levels[*k].as_ref().map_or(datum.frequency_hz, |level| level.frequency_hz);
-        Datum { frequency_hz: exact * (datum.deviation * normal.next()).exp(), ..*datum }
+        let level = truth.levels[*k].as_ref();
+        let exact = level.map_or(datum.frequency_hz, |level| level.frequency_hz);
+        let frequency_hz = exact * (datum.deviation * normal.next()).exp();
+        let span = level.and_then(|level| level.span.as_ref());
+        let noisy = |(shape, span): (&Arc<[f64]>, &Span)| {
+            span.nearest(shape).into_iter().map(|v| v + normal.next()).collect::<Arc<[f64]>>()
+        };
+        let shape = datum.shape.as_ref().zip(span).map(noisy);
+        Datum { frequency_hz, shape, ..*datum }
     };
     let expected = |(unknown, x): (&Unknown, &f64), normal: &mut Normal| Unknown {
         expected: unknown.expected.map(|_| x + normal.next()),
@@ -106,7 +116,7 @@ fn synthetic(problem: &Problem, assignment: &[usize], truth: &Fit, normal: &mut 
     Problem {
         data: problem.data.iter().zip(assignment).map(|pair| datum(pair, normal)).collect(),
         unknowns: problem.unknowns.iter().zip(&truth.x).map(|pair| expected(pair, normal)).collect(),
-        level_sets: problem.level_sets.clone(),
+        ..problem.clone()
     }
 }
 

@@ -21,6 +21,8 @@ pub struct CalibrateAnalysis {
     pub against: Vec<String>,
     /// Relative standard deviation of a measured frequency.
     pub deviation: f64,
+    /// Takes the measured shapes of [measured.NAME] in, not its frequencies alone.
+    pub shapes: bool,
     /// A computed mode may be what was measured when, linearised, it comes as near as a factor 1 + this inside the bounds.
     pub mode_reach: f64,
     /// Predicts each measured frequency from the others.
@@ -62,6 +64,7 @@ pub(super) fn read(root: &Section, case: Case) -> Case {
                 "names of [modes.NAME] with measured frequencies, of [measured.NAME], or \"squeal\"",
             ),
             deviation: s.quantity("deviation", NUMBER).positive().or(DEVIATION),
+            shapes: s.boolean("shapes").or(true),
             mode_reach: s
                 .quantity("mode_reach", NUMBER)
                 .within(Bound::Included(0.0), Bound::Excluded(1.0))

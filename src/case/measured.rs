@@ -29,6 +29,9 @@ pub struct MeasuredData {
     pub damping_ratios: Vec<f64>,
     /// Standard deviation of each frequency over the frequency, where the file does not state it.
     pub deviation: f64,
+    /// Standard deviation of a component of a measured shape over the root mean square of its components.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shape_deviation: Option<f64>,
     /// Where the figures come from.
     pub source: String,
     /// Points of the test by number, in its own frame \[m\], where the file does not have them.
@@ -87,6 +90,7 @@ pub(super) fn read(s: &Section) -> MeasuredData {
             .quantity("deviation", NUMBER)
             .check("a share above 0 and below 1", |v| *v > 0.0 && *v < 1.0)
             .or(0.005),
+        shape_deviation: s.quantity("shape_deviation", NUMBER).positive().optional(),
         source: s.string("source").or(String::new()),
         point: s.section("point", read_points).unwrap_or_default(),
         transform: s.section("transform", read_transform).unwrap_or_default(),

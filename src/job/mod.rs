@@ -31,6 +31,7 @@ mod regions;
 mod samples;
 mod scalars;
 mod sensitivity;
+mod sensors;
 mod sound;
 mod states;
 mod table;

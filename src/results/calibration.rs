@@ -1,4 +1,4 @@
-//! Numbers of a case that were found from measured frequencies, as plain data, and their files.
+//! Numbers of a case that were found from measured frequencies and shapes, as plain data, and their files.
 
 use super::csv::{Table, number};
 use super::hdf5::{Datasets, attribute, text_attribute};
@@ -76,12 +76,32 @@ pub struct CalibratedDatum {
     pub left_out_hz: Option<f64>,
     /// Growth rate of the mode with the values that were found \[1/s\]; none of a real mode.
     pub growth: Option<f64>,
+    /// Its shape, if it was measured and taken in.
+    pub shape: Option<CalibratedShape>,
+}
+
+/// MAC of a measured shape with the computed level.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CalibratedShape {
+    /// How many components were measured.
+    pub components: usize,
+    /// With the values of the case.
+    pub before: Option<f64>,
+    /// With the values that were found.
+    pub after: Option<f64>,
+    /// With the values that the other data lead to; none where they do not tell.
+    pub left_out: Option<f64>,
 }
 
 impl CalibratedDatum {
     /// 100 (computed − measured)/measured \[%\]: positive when the computed frequency is too high.
     pub fn error_percent(&self, computed_hz: Option<f64>) -> Option<f64> {
         computed_hz.map(|hz| 100.0 * (hz / self.measured_hz - 1.0))
+    }
+
+    /// One of the MAC of its shape.
+    pub fn mac(&self, pick: impl Fn(&CalibratedShape) -> Option<f64>) -> Option<f64> {
+        self.shape.as_ref().and_then(pick)
     }
 }
 
@@ -90,6 +110,17 @@ impl CalibrationResult {
     pub fn largest_percent(&self, pick: impl Fn(&CalibratedDatum) -> Option<f64>) -> Option<f64> {
         let errors = self.data.iter().map(|datum| Some(datum.error_percent(pick(datum))?.abs()));
         errors.collect::<Option<Vec<f64>>>().map(|all| all.into_iter().fold(0.0, f64::max))
+    }
+
+    /// The data with measured shapes.
+    pub fn shapes(&self) -> impl Iterator<Item = &CalibratedShape> {
+        self.data.iter().filter_map(|datum| datum.shape.as_ref())
+    }
+
+    /// The least MAC of `pick`; none where there are no shapes, or one of them has none.
+    pub fn least_mac(&self, pick: impl Fn(&CalibratedShape) -> Option<f64>) -> Option<f64> {
+        let all = self.shapes().map(pick).collect::<Option<Vec<f64>>>()?;
+        all.into_iter().reduce(f64::min)
     }
 }
 
@@ -109,6 +140,9 @@ fn table(result: &CalibrationResult) -> String {
         "after [Hz]",
         "error [%]",
         "from the others [Hz]",
+        "MAC before",
+        "MAC after",
+        "MAC from the others",
     ]);
     let cell = |value: Option<f64>| value.map(number).unwrap_or_default();
     for datum in &result.data {
@@ -121,6 +155,9 @@ fn table(result: &CalibrationResult) -> String {
             cell(datum.after_hz),
             cell(datum.error_percent(datum.after_hz)),
             cell(datum.left_out_hz),
+            cell(datum.mac(|shape| shape.before)),
+            cell(datum.mac(|shape| shape.after)),
+            cell(datum.mac(|shape| shape.left_out)),
         ]);
     }
     table.text
@@ -157,6 +194,12 @@ impl ResultsFile {
                 "Hz",
                 "predicted from the other frequencies",
             )?;
+            if result.shapes().next().is_some() {
+                let words = "MAC of each measured shape with its level; NaN where no shape was measured";
+                group.list("mac_before", &of(|d| d.mac(|s| s.before)), "1", words)?;
+                group.list("mac_after", &of(|d| d.mac(|s| s.after)), "1", words)?;
+                group.list("mac_left_out", &of(|d| d.mac(|s| s.left_out)), "1", words)?;
+            }
             let slope = |(i, j): (usize, usize)| {
                 best.fit.levels[best.assignment[i]].as_ref().map_or(f64::NAN, |level| level.slope[j])
             };
@@ -204,6 +247,12 @@ pub(super) fn summary(result: &CalibrationResult) -> Value {
             "left_out_hz": d.left_out_hz,
             "left_out_percent": d.error_percent(d.left_out_hz),
             "growth_rate": d.growth,
+            "shape": d.shape.map(|s| json!({
+                "components": s.components,
+                "mac_before": s.before,
+                "mac_after": s.after,
+                "mac_left_out": s.left_out,
+            })),
         })
     };
     let ranked = |r: &Ranked| {
@@ -212,6 +261,7 @@ pub(super) fn summary(result: &CalibrationResult) -> Value {
             "chi2": r.fit.chi2,
             "linear_chi2": r.linear_chi2,
             "largest_error_percent": 100.0 * r.largest_error,
+            "least_mac": r.least_likeness,
             "weight": r.weight,
             "converged": r.fit.converged,
             "iterations": r.fit.iterations,
@@ -245,8 +295,11 @@ pub(super) fn summary(result: &CalibrationResult) -> Value {
         "parameters": result.numbers.iter().map(number).collect::<Vec<_>>(),
         "data": result.data.iter().map(datum).collect::<Vec<_>>(),
         "largest_error_percent": result.largest_percent(|d| d.after_hz),
+        "least_mac": result.least_mac(|s| s.after),
+        "least_left_out_mac": result.least_mac(|s| s.left_out),
         "largest_left_out_percent": result.largest_percent(|d| d.left_out_hz),
         "chi2": found.best().fit.chi2,
+        "degrees_of_freedom": known.freedom,
         "reduced_chi2": known.reduced_chi2,
         "chi2_probability": known.chi2_probability,
         "converged": found.best().fit.converged,
@@ -269,7 +322,9 @@ pub(super) fn summary(result: &CalibrationResult) -> Value {
 #[cfg(test)]
 pub(super) fn sample() -> CalibrationResult {
     use crate::calibration::{Chance, Fit, Knowledge, LeftOut, Level, Trials};
-    let level = |frequency_hz: f64| Some(Level { frequency_hz, slope: vec![0.1, 0.02], split: vec![0.0; 2] });
+    let level = |frequency_hz: f64| {
+        Some(Level { frequency_hz, slope: vec![0.1, 0.02], split: vec![0.0; 2], span: None })
+    };
     let fit = |converged: bool| Fit {
         x: vec![0.2, 1.0],
         levels: [333.3, 936.0, 1705.0].map(level).to_vec(),
@@ -284,6 +339,7 @@ pub(super) fn sample() -> CalibrationResult {
         fit: fit(weight == 1.0),
         linear_chi2: 5.3,
         largest_error: 0.01,
+        least_likeness: Some(0.97),
         weight,
     };
     let number = |name: &str, unit: &str, after: f64, at_bound: bool| CalibratedNumber {
@@ -310,6 +366,12 @@ pub(super) fn sample() -> CalibrationResult {
         after_hz: Some(after),
         left_out_hz: Some(0.97 * measured_hz),
         growth: None,
+        shape: (measured_hz < 1e3).then_some(CalibratedShape {
+            components: 24,
+            before: Some(0.9),
+            after: Some(0.97),
+            left_out: Some(0.96),
+        }),
     };
     CalibrationResult {
         numbers: vec![number("hub", "m", 0.021, false), number("stiffness", "N/m", 0.025, true)],
@@ -327,6 +389,7 @@ pub(super) fn sample() -> CalibrationResult {
             all_counted: true,
             all_searched: true,
             knowledge: Knowledge {
+                freedom: 2,
                 singular_values: vec![30.0, 0.4],
                 directions: vec![vec![0.98, 0.2], vec![-0.2, 0.98]],
                 deviations: vec![0.04, 2.5],
@@ -336,7 +399,15 @@ pub(super) fn sample() -> CalibrationResult {
                 reduced_chi2: Some(2.6),
                 chi2_probability: Some(0.07),
             },
-            left_out: vec![LeftOut { x: vec![0.1, 1.0], predicted_hz: Some(320.0), converged: true }; 3],
+            left_out: vec![
+                LeftOut {
+                    x: vec![0.1, 1.0],
+                    predicted_hz: Some(320.0),
+                    likeness: Some(0.96),
+                    converged: true
+                };
+                3
+            ],
             chance: Some(Chance { draws: 999, by_error: 49, by_chi2: 59 }),
             trials: Some(Trials {
                 count: 100,
@@ -364,6 +435,11 @@ mod tests {
         assert!((json["data"][0]["left_out_percent"].as_f64().unwrap() + 3.0).abs() < 1e-9);
         assert!((json["chance"]["probability_by_largest_error"].as_f64().unwrap() - 0.05).abs() < 1e-12);
         assert_eq!(json["trials"]["least_coverage"], 0.95);
+        assert_eq!(
+            (&json["data"][0]["shape"]["mac_after"], &json["least_mac"]),
+            (&json!(0.97), &json!(0.97))
+        );
+        assert!(json["data"][2]["shape"].is_null());
         assert_eq!(json["assignments"][0]["modes"][2], "disc (0, 1)");
         let dir = tempfile::tempdir().unwrap();
         write_files(dir.path(), &results).unwrap();

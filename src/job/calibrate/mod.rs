@@ -10,18 +10,21 @@ mod model;
 mod neighbours;
 mod real;
 #[cfg(test)]
+mod shape_tests;
+mod shapes;
+#[cfg(test)]
 mod tests;
 mod unstable;
 
 use self::coordinate::Coordinate;
-use self::facts::Facts;
+use self::facts::{Fact, Facts};
 use self::model::{CaseModel, scalars};
 use super::prepared::Prepared;
 use crate::calibration::{self, Datum, Options, Problem};
 use crate::case::{CalibrateAnalysis, Case};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::progress::Observer;
-use crate::results::{CalibratedDatum, CalibratedNumber, CalibrationResult};
+use crate::results::{CalibratedDatum, CalibratedNumber, CalibratedShape, CalibrationResult};
 
 /// A calibration whose faults are told.
 pub struct Calibrate<'a> {
@@ -67,7 +70,7 @@ impl<'a> Calibrate<'a> {
             }
             coordinates.push(coordinate);
         }
-        let facts = faults.take(facts::facts(prepared.case)).unwrap_or_default();
+        let facts = faults.take(facts::facts(prepared)).unwrap_or_default();
         faults.into_result(Calibrate { prepared, wanted, coordinates, facts })
     }
 
@@ -79,14 +82,19 @@ impl<'a> Calibrate<'a> {
         let case = self.prepared.case;
         let model = CaseModel::new(self.prepared, &self.coordinates, &self.facts)?;
         let data = |(set, facts): (usize, &Facts)| {
-            let datum =
-                move |(hz, deviation): (&f64, &f64)| Datum { set, frequency_hz: *hz, deviation: *deviation };
-            facts.frequencies_hz.iter().zip(&facts.deviations).map(datum).collect::<Vec<_>>()
+            let datum = move |fact: &Fact| Datum {
+                set,
+                frequency_hz: fact.frequency_hz,
+                deviation: fact.deviation,
+                shape: fact.shape.clone(),
+            };
+            facts.modes.iter().map(datum).collect::<Vec<_>>()
         };
         let problem = Problem {
             unknowns: self.coordinates.iter().map(Coordinate::unknown).collect(),
             data: self.facts.iter().enumerate().flat_map(data).collect(),
             level_sets: model.level_sets(),
+            level_modes: model.level_modes(),
         };
         let options = Options {
             reach: self.wanted.mode_reach,
@@ -140,6 +148,17 @@ impl<'a> Calibrate<'a> {
                 after_hz: hz(&best.fit.levels),
                 left_out_hz: found.left_out.get(i).and_then(|left| left.predicted_hz),
                 growth: growth[k],
+                shape: datum.shape.as_ref().map(|shape| {
+                    let likeness = |levels: &calibration::Levels| {
+                        levels[k].as_ref()?.span.as_ref().map(|span| span.likeness(shape))
+                    };
+                    CalibratedShape {
+                        components: shape.len(),
+                        before: likeness(&found.before),
+                        after: likeness(&best.fit.levels),
+                        left_out: found.left_out.get(i).and_then(|left| left.likeness),
+                    }
+                }),
             }
         };
         Ok(CalibrationResult {

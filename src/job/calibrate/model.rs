@@ -3,13 +3,14 @@
 use super::super::modes::part_assembled;
 use super::super::prepared::Prepared;
 use super::super::scalars::{Kind, Scalar, no_derivative, scalar};
+use super::super::sensors::Sensors;
 use super::coordinate::Coordinate;
 use super::facts::{Facts, Of};
 use super::follow::{Path, Picks};
-use super::neighbours::{Change, derivatives};
+use super::neighbours::{Change, Neighbour, derivatives};
 use super::real::Solved;
 use super::unstable::Sliding;
-use crate::calibration::{Levels, Model};
+use crate::calibration::{LIKE, Levels, Model, Span};
 use crate::case::{Case, CeaAnalysis};
 use crate::error::Result;
 use rayon::prelude::*;
@@ -21,7 +22,7 @@ const RANGE: f64 = 1.4;
 
 /// Modes of one kind at the start, which all others are followed from.
 enum Start {
-    Real { name: String, below_hz: f64, solved: Box<Solved> },
+    Real { name: String, below_hz: f64, solved: Box<Solved>, sensors: Option<Sensors> },
     Unstable(Box<Sliding>),
 }
 
@@ -32,6 +33,8 @@ pub struct Set {
     pub levels: Picks,
     /// What each level is called.
     pub names: Vec<String>,
+    /// Whether a measured shape is at all like each level.
+    pub like: Vec<bool>,
 }
 
 /// A case with numbers to be found.
@@ -64,23 +67,28 @@ impl<'a> CaseModel<'a> {
     fn set(&self, prepared: &Prepared, facts: &Facts) -> Result<Set> {
         match &facts.of {
             Of::RealModes(name) => {
-                let highest = facts.frequencies_hz.iter().fold(0.0f64, |m, f| m.max(*f));
+                let highest = facts.modes.iter().fold(0.0f64, |m, mode| m.max(mode.frequency_hz));
                 let path = scale_path(name);
                 let scaled = self.coordinates.iter().filter(|c| c.parameter.path.contains(&path));
                 let least = scaled
                     .map(|c| c.parameter.between[0])
                     .fold(prepared.case.modes[name].frequency_scale, f64::min);
                 let below_hz = RANGE * highest / least;
-                let solved = Box::new(Solved::new(prepared, name, below_hz, None)?);
+                let sensors = facts.sensors.clone();
+                let solved =
+                    Box::new(Solved::new(prepared, (name.as_str(), below_hz), sensors.clone(), None)?);
                 let levels = solved.levels();
                 let names = solved.labels(&levels);
-                Ok(Set { start: Start::Real { name: name.clone(), below_hz, solved }, levels, names })
+                let like = levels.iter().map(|level| like(&solved, level, facts)).collect();
+                let start = Start::Real { name: name.clone(), below_hz, solved, sensors };
+                Ok(Set { start, levels, names, like })
             }
             Of::Unstable => {
                 let sliding = Box::new(Sliding::new(prepared)?);
                 let levels = sliding.levels();
                 let names = sliding.names(&levels);
-                Ok(Set { start: Start::Unstable(sliding), levels, names })
+                let like = vec![false; levels.len()];
+                Ok(Set { start: Start::Unstable(sliding), levels, names, like })
             }
         }
     }
@@ -94,6 +102,11 @@ impl<'a> CaseModel<'a> {
     pub fn level_sets(&self) -> Vec<usize> {
         let of = |(k, set): (usize, &Set)| vec![k; set.levels.len()];
         self.sets.iter().enumerate().flat_map(of).collect()
+    }
+
+    /// How many modes every level has.
+    pub fn level_modes(&self) -> Vec<usize> {
+        self.sets.iter().flat_map(|set| set.levels.iter().map(Vec::len)).collect()
     }
 
     /// What every level is called.
@@ -135,20 +148,27 @@ impl<'a> CaseModel<'a> {
         Path { solve: &solve, follow: &follow }.along((&self.start, start, levels), to)
     }
 
-    /// ∂K and ∂M of every set of real modes by every unknown; none by an unknown that no structure depends on.
-    fn changes(&self, case: &Case, prepared: &Prepared, values: &[f64]) -> Result<Vec<Option<Vec<Change>>>> {
-        let names: Vec<&String> = self
-            .sets
-            .iter()
-            .filter_map(|set| match &set.start {
-                Start::Real { name, .. } => Some(name),
-                Start::Unstable(_) => None,
-            })
-            .collect();
+    /// Where the shapes of every set of real modes were measured, on the mesh of a case.
+    fn sensors(&self, prepared: &Prepared) -> Vec<(&String, Option<Sensors>)> {
+        let real = self.sets.iter().filter_map(|set| match &set.start {
+            Start::Real { name, sensors, .. } => Some((name, sensors)),
+            Start::Unstable(_) => None,
+        });
+        let on = |name: &str, sensors: &Sensors| sensors.on(prepared, &prepared.case.modes[name]);
+        real.map(|(name, sensors)| (name, sensors.as_ref().map(|sensors| on(name, sensors)))).collect()
+    }
+
+    /// ∂ of every set of real modes, which have `sensors`, by every unknown; none by an unknown that no structure depends on.
+    fn changes(
+        &self,
+        (case, prepared): (&Case, &Prepared),
+        sensors: &[(&String, Option<Sensors>)],
+        values: &[f64],
+    ) -> Result<Vec<Option<Vec<Change>>>> {
         let of = |(c, value): (&Coordinate, &f64)| -> Result<Option<Vec<Change>>> {
             let scalars = scalars(case, c)?;
             let Some(first) =
-                scalars.iter().find(|s| s.kind == Kind::Structure).filter(|_| !names.is_empty())
+                scalars.iter().find(|s| s.kind == Kind::Structure).filter(|_| !sensors.is_empty())
             else {
                 return Ok(None);
             };
@@ -160,7 +180,12 @@ impl<'a> CaseModel<'a> {
                 {
                     return Err(no_derivative("it changes the elements of the mesh"));
                 }
-                names.iter().map(|name| part_assembled(&other, name)).collect()
+                let neighbour = |(name, sensors): &(&String, Option<Sensors>)| -> Result<Neighbour> {
+                    let assembled = part_assembled(&other, name)?;
+                    let forms = |s: &Sensors| s.forms(&other.model.nodes, &assembled.dofs);
+                    Ok(Neighbour { seen: sensors.as_ref().map(forms).unwrap_or_default(), assembled })
+                };
+                sensors.iter().map(neighbour).collect()
             };
             let changes = derivatives(*value, first.step(), &build).map_err(|error| of_number(c, error))?;
             let rate = c.rate(*value);
@@ -175,7 +200,9 @@ impl Model for CaseModel<'_> {
         let case = self.case_at(x)?;
         let values = self.values(x);
         let prepared = Prepared::new(&case)?;
-        let mut changes = self.changes(&case, &prepared, &values)?;
+        let sensors = self.sensors(&prepared);
+        let mut changes = self.changes((&case, &prepared), &sensors, &values)?;
+        let mut sensors = sensors.into_iter().map(|(_, sensors)| sensors);
         // The changes of one set, taken from the front.
         let mut of_set = || -> Vec<Option<Change>> {
             changes.iter_mut().map(|all| all.as_mut().map(|all| all.remove(0))).collect()
@@ -183,10 +210,11 @@ impl Model for CaseModel<'_> {
         let mut levels = Levels::new();
         for set in &self.sets {
             match &set.start {
-                Start::Real { name, below_hz, solved } => {
-                    let here = Solved::new(&prepared, name, *below_hz, Some(solved))?;
+                Start::Real { name, below_hz, solved, .. } => {
+                    let wanted = (name.as_str(), *below_hz);
+                    let here = Solved::new(&prepared, wanted, sensors.next().flatten(), Some(solved))?;
                     let solve = |x: &[f64]| {
-                        Solved::new(&Prepared::new(&self.case_at(x)?)?, name, *below_hz, Some(solved))
+                        Solved::new(&Prepared::new(&self.case_at(x)?)?, wanted, None, Some(solved))
                     };
                     let follow = |a: &Solved, picks: &Picks, b: &Solved| a.follow(picks, b);
                     let path = Path { solve: &solve, follow: &follow };
@@ -202,8 +230,11 @@ impl Model for CaseModel<'_> {
                             false => 0.0,
                         })
                         .collect();
+                    let mut spans = spans(&here, set, &picks, &changes).into_iter();
                     levels.extend(picks.iter().map(|pick| {
+                        let span = spans.next().flatten();
                         let mut level = (!pick.is_empty()).then(|| here.level(pick, &changes))?;
+                        level.span = span;
                         level.slope.iter_mut().zip(&by_scale).for_each(|(slope, more)| *slope += more);
                         Some(level)
                     }));
@@ -223,6 +254,24 @@ impl Model for CaseModel<'_> {
         }
         Ok(levels)
     }
+}
+
+/// Whether a measured shape is at all like a level.
+fn like(solved: &Solved, level: &[usize], facts: &Facts) -> bool {
+    let Some(seen) = solved.seen() else { return false };
+    let span = Span { motions: seen.motions(level), slopes: Vec::new() };
+    facts.modes.iter().filter_map(|mode| mode.shape.as_ref()).any(|shape| span.likeness(shape) >= LIKE)
+}
+
+/// What the test sees of those levels that a measured shape is like.
+fn spans(here: &Solved, set: &Set, picks: &Picks, changes: &[Option<Change>]) -> Vec<Option<Span>> {
+    let Some(seen) = here.seen() else { return vec![None; picks.len()] };
+    let wanted: Vec<bool> =
+        picks.iter().zip(&set.like).map(|(pick, like)| *like && !pick.is_empty()).collect();
+    let chosen: Vec<&Vec<usize>> =
+        picks.iter().zip(&wanted).filter(|(_, w)| **w).map(|(pick, _)| pick).collect();
+    let mut found = seen.spans(&chosen, changes).into_iter();
+    wanted.iter().map(|wanted| if *wanted { found.next() } else { None }).collect()
 }
 
 /// The case with one number at another value.

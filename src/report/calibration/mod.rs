@@ -47,6 +47,10 @@ pub(super) fn fit_table(result: &CalibrationResult) -> Table {
         "from the others [Hz]",
         "error [%]",
     ];
+    let shapes = result.shapes().next().is_some();
+    if shapes {
+        headings.extend(["MAC before", "after", "from the others"]);
+    }
     if sets {
         headings.insert(0, "<set");
     }
@@ -60,6 +64,10 @@ pub(super) fn fit_table(result: &CalibrationResult) -> Table {
             cells.push(hz.map_or("–".into(), |hz| fixed(hz, 1)));
             cells.push(d.error_percent(hz).map_or("–".into(), |e| signed(e, 2)));
         }
+        if shapes {
+            let macs = d.shape.map_or([None; 3], |s| [s.before, s.after, s.left_out]);
+            cells.extend(macs.map(|mac| mac.map_or("–".into(), |mac| fixed(mac, 3))));
+        }
         if sets {
             cells.insert(0, d.set.clone());
         }
@@ -69,7 +77,7 @@ pub(super) fn fit_table(result: &CalibrationResult) -> Table {
         table.row(cells, false);
     }
     table.notes.push(
-        "From the others: the frequency that the numbers predict when they are found without this datum."
+        "From the others: what the numbers predict when they are found without this frequency and its shape."
             .into(),
     );
     table
@@ -134,18 +142,25 @@ fn expected(n: &CalibratedNumber) -> String {
 
 /// The assignments that were fitted.
 pub(super) fn assignment_table(result: &CalibrationResult) -> Table {
-    let headings =
-        ["<modes, in the order of the measured frequencies", "χ²", "largest error [%]", "weight", "<"];
+    let mut headings =
+        vec!["<modes, in the order of the measured frequencies", "χ²", "largest error [%]", "weight", "<"];
+    let shapes = result.shapes().next().is_some();
+    if shapes {
+        headings.insert(3, "least MAC");
+    }
     let mut table = Table::new("Assignments of modes to measured frequencies", &headings);
     for r in &result.calibration.ranked {
         let modes: Vec<&str> = r.assignment.iter().map(|k| result.levels[*k].as_str()).collect();
-        let cells = vec![
+        let mut cells = vec![
             modes.join(", "),
             significant(r.fit.chi2, 4),
             fixed(100.0 * r.largest_error, 2),
             if r.weight > 1e-3 { significant(r.weight, 2) } else { power(r.weight) },
             if r.fit.converged { String::new() } else { "not converged".into() },
         ];
+        if shapes {
+            cells.insert(3, r.least_likeness.map_or("–".into(), |mac| fixed(mac, 3)));
+        }
         table.row(cells, false);
     }
     table.notes.push(
@@ -166,7 +181,8 @@ mod tests {
         let results = sample::rig();
         let result = results.calibration.as_ref().unwrap();
         let table = fit_table(result);
-        assert_eq!((table.rows.len(), table.columns.len()), (3, 8));
+        assert_eq!((table.rows.len(), table.columns.len()), (3, 11));
+        assert!(table.rows[0].cells.contains(&"0.970".to_string()) && table.rows[2].cells[10] == "–");
         assert!(table.rows[0].cells.contains(&"+1.00".to_string()), "{:?}", table.rows[0]);
         let numbers = number_table(result);
         assert!(numbers.rows[1].marked && numbers.rows[1].cells.last().unwrap() == "at its bound");

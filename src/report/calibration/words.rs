@@ -15,16 +15,16 @@ pub(in crate::report) fn words(result: &CalibrationResult) -> Vec<String> {
     words.push(determined(result));
     words.extend(tied(result));
     words.push(assignments(result));
-    if result.calibration.left_out.is_empty() && result.data.len() <= result.numbers.len() {
+    if result.calibration.left_out.is_empty() && result.calibration.knowledge.freedom == 0 {
         words.push(
-            "No frequency can be predicted from the others: they are no more than the numbers that are to be found.".into(),
+            "No frequency can be predicted from the others: the facts are no more than the numbers that are to be found.".into(),
         );
     }
     for (d, _) in
         result.data.iter().zip(&result.calibration.left_out).filter(|(d, _)| d.left_out_hz.is_none())
     {
         words.push(format!(
-            "The other frequencies do not predict {} Hz: they leave open what it depends on.",
+            "The other data do not predict {} Hz: they leave open what it depends on.",
             given(d.measured_hz)
         ));
     }
@@ -51,13 +51,22 @@ pub(in crate::report) fn words(result: &CalibrationResult) -> Vec<String> {
 fn counted(result: &CalibrationResult) -> String {
     let expected = result.numbers.iter().filter(|n| n.deviation.is_some()).count();
     let (numbers, data) = (result.numbers.len(), result.data.len());
-    let free = (data + expected).saturating_sub(numbers);
+    let free = result.calibration.knowledge.freedom;
     let expectations = match expected {
         0 => String::new(),
         n => format!(" and {n} expected values"),
     };
+    let shapes = match result.shapes().count() {
+        0 => String::new(),
+        n => {
+            let components: usize = result.shapes().map(|shape| shape.components).sum();
+            format!(
+                ", {n} measured shapes of {components} components together, each in the scale that fits it best,"
+            )
+        }
+    };
     format!(
-        "{numbers} numbers were found from {data} measured frequencies{expectations}: {free} facts are left over."
+        "{numbers} numbers were found from {data} measured frequencies{shapes}{expectations}: {free} facts are left over."
     )
 }
 
@@ -155,8 +164,13 @@ fn assignments(result: &CalibrationResult) -> String {
 fn chance(result: &CalibrationResult) -> Option<String> {
     let chance = result.calibration.chance?;
     let percent = |k: usize| significant(100.0 * chance.probability(k), 2);
+    let alone = if result.shapes().next().is_some() {
+        "About the frequencies alone, without shapes: of"
+    } else {
+        "Of"
+    };
     Some(format!(
-        "Of {} sets of as many frequencies drawn at random, evenly in their logarithm over the measured span, {} are matched as \
+        "{alone} {} sets of as many frequencies drawn at random, evenly in their logarithm over the measured span, {} are matched as \
          well in their largest error and {} in χ², with the numbers free and the best assignment (linearised): a match as good \
          arises by chance with a probability of {} % and {} %.",
         chance.draws,
@@ -172,7 +186,7 @@ fn trials(result: &CalibrationResult) -> Option<String> {
     let each = result.numbers.iter().zip(&trials.covered).map(|(n, held)| format!("`{}` in {held}", n.name));
     Some(format!(
         "With synthetic data of the stated deviation the 95 % interval holds the truth of {} of {} trials; {} of their fits \
-         converged (on a model quadratic near it, which is wrong by {} of the deviation at most).",
+         converged (on a model quadratic in ln f near it, which is wrong by {} of the deviation at most).",
         each.collect::<Vec<_>>().join(", of "),
         trials.count,
         trials.converged,
