@@ -128,7 +128,7 @@ mod tests {
         let data = [310.0, 520.0, 640.0, 1010.0];
         let problem: Problem = problem(&model, &data, 0.01);
         let x = [0.1, -0.2];
-        let levels = model.levels(&x).unwrap();
+        let levels = model.compute(&x).unwrap().levels;
         let linear = Linear::new(&problem, &x, &levels);
         let plausible: Vec<Vec<usize>> = problem.data.iter().map(|d| linear.plausible(d, 0.3)).collect();
         let found = best(&linear, &problem.data, &plausible, 5);

@@ -71,14 +71,14 @@ fn span(data: &[Datum], set: usize) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::super::samples::level;
-    use super::super::{Levels, Problem, Unknown};
+    use super::super::{Level, Problem, Unknown};
     use super::*;
 
     /// Levels a fixed ratio apart and no free unknown: what chance does is known.
     #[test]
     fn rigid_levels_are_matched_as_often_as_geometry_says() {
         // Levels at 1, e^0.1, …; a drawn frequency lies within ±1 % of one of them in a share 0.2 of all cases.
-        let levels: Levels =
+        let levels: Vec<Option<Level>> =
             (0..11).map(|k| Some(level(100.0 * (0.1 * f64::from(k)).exp(), vec![0.0]))).collect();
         let datum = |f: f64| Datum { set: 0, frequency_hz: f, deviation: 0.01, shape: None };
         let problem = Problem {
@@ -86,6 +86,7 @@ mod tests {
             data: vec![datum(100.0), datum(100.0 * 1.0f64.exp())],
             level_sets: vec![0; 11],
             level_modes: vec![1; 11],
+            lines: Vec::new(),
         };
         let linear = Linear::new(&problem, &[0.0], &levels);
         let chance = Chance::new(&linear, 0.2, 4000, (1.0, 0.01));

@@ -1,7 +1,7 @@
 //! What the data determine: singular values of the sensitivity, covariance, intervals.
 
 use super::residuals::Residuals;
-use super::{Datum, Fit, Level, Levels, Problem};
+use super::{Computed, Datum, Fit, Level, Problem};
 use nalgebra::DMatrix;
 
 /// Standard deviations either side of the mean that hold 95 % of a normal distribution.
@@ -44,7 +44,7 @@ impl Knowledge {
     /// What the fit of `assignment` leaves known.
     pub(super) fn new(problem: &Problem, assignment: &[usize], fit: &Fit) -> Knowledge {
         let n = problem.unknowns.len();
-        let (w, h) = sensitivity(problem, assignment, &fit.levels);
+        let (w, h) = sensitivity(problem, assignment, &fit.computed);
         let svd = w.svd(false, true);
         let mut order: Vec<usize> = (0..n).collect();
         order.sort_by(|a, b| svd.singular_values[*b].total_cmp(&svd.singular_values[*a]));
@@ -56,7 +56,7 @@ impl Knowledge {
             let product = deviations[i] * deviations[j];
             if product > 0.0 && product.is_finite() { covariance[(i, j)] / product } else { f64::NAN }
         };
-        let freedom = problem.degrees_of_freedom(assignment, &fit.levels);
+        let freedom = problem.degrees_of_freedom(assignment, &fit.computed);
         let around = |j: usize, half: f64| -> Interval {
             let [lower, upper] = problem.unknowns[j].bounds;
             [(fit.x[j] - half).max(lower), (fit.x[j] + half).min(upper)]
@@ -95,9 +95,9 @@ impl Knowledge {
 }
 
 /// W, and WᵀW + P.
-fn sensitivity(problem: &Problem, assignment: &[usize], levels: &Levels) -> (DMatrix<f64>, DMatrix<f64>) {
+fn sensitivity(problem: &Problem, assignment: &[usize], computed: &Computed) -> (DMatrix<f64>, DMatrix<f64>) {
     let n = problem.unknowns.len();
-    let measured = Residuals::measured(problem, assignment, levels).jacobian(n);
+    let measured = Residuals::measured(problem, assignment, computed).jacobian(n);
     // Rows of zeros leave the singular values as they are, and there are then as many as unknowns.
     let rows = measured.nrows().max(n);
     let w = measured.resize_vertically(rows, 0.0);
@@ -114,10 +114,10 @@ fn sensitivity(problem: &Problem, assignment: &[usize], levels: &Levels) -> (DMa
 pub(super) fn left_open(
     problem: &Problem,
     assignment: &[usize],
-    levels: &Levels,
+    computed: &Computed,
     (datum, level): (&Datum, &Level),
 ) -> [f64; 2] {
-    let eigen = sensitivity(problem, assignment, levels).1.symmetric_eigen();
+    let eigen = sensitivity(problem, assignment, computed).1.symmetric_eigen();
     let n = problem.unknowns.len();
     let open: Vec<usize> = (0..n).filter(|k| eigen.eigenvalues[*k] < 1.0).collect();
     let moved = Residuals::of(datum, level).jacobian(n) * eigen.eigenvectors.select_columns(&open);
@@ -169,7 +169,7 @@ mod tests {
         problem.unknowns = vec![Unknown { bounds: [-9.0, 9.0], expected: None }; 2];
         let fit = Fit {
             x: vec![0.0; 2],
-            levels: t.iter().map(straight).collect(),
+            computed: Computed { levels: t.iter().map(straight).collect(), lines: Vec::new() },
             chi2: 6.0,
             iterations: 0,
             evaluations: 0,
@@ -190,7 +190,7 @@ mod tests {
         problem.unknowns.push(Unknown { bounds: [-1.0, 1.0], expected: None });
         let mut fit = fit;
         fit.x.push(0.3);
-        fit.levels.iter_mut().flatten().for_each(|level| level.slope.push(0.0));
+        fit.computed.levels.iter_mut().flatten().for_each(|level| level.slope.push(0.0));
         let known = Knowledge::new(&problem, &[0, 1, 2, 3], &fit);
         assert!(known.determined() == 2 && known.condition().is_infinite());
         assert_eq!(known.intervals[2], [-1.0, 1.0]);

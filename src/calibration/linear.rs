@@ -1,18 +1,19 @@
 //! The model linearised at one place: what a fit would find there, in microseconds.
 
 use super::quadratic::least_in_box;
-use super::{Datum, Level, Levels, Problem};
+use super::{Datum, Level, Problem};
 use nalgebra::{DMatrix, DVector};
 
 /// A mode whose shape is less like the measured one than this is not what was measured, however near its frequency.
 pub const LIKE: f64 = 0.1;
 
-/// ln f_k(x) ≈ ln f_k(x₀) + g_k·(x − x₀); shapes stay as they are at x₀, where the slopes of modes that mix promise too much.
+/// ln f_k(x) ≈ ln f_k(x₀) + g_k·(x − x₀); shapes stay as they are at x₀, where the slopes of modes that mix promise too much, and
+/// frequency responses, whose peaks must meet before a slope says anything, take no part.
 #[derive(Debug, Clone)]
 pub(super) struct Linear<'a> {
     pub(super) problem: &'a Problem,
     x: Vec<f64>,
-    levels: &'a Levels,
+    levels: &'a [Option<Level>],
     /// χ² of the shape of each datum with each level.
     shapes: Vec<Vec<f64>>,
 }
@@ -36,7 +37,7 @@ impl Misfit {
 }
 
 impl<'a> Linear<'a> {
-    pub(super) fn new(problem: &'a Problem, x: &[f64], levels: &'a Levels) -> Self {
+    pub(super) fn new(problem: &'a Problem, x: &[f64], levels: &'a [Option<Level>]) -> Self {
         let apart = |datum: &Datum, level: &Option<Level>| match (&datum.shape, level.as_ref()) {
             (Some(shape), Some(Level { span: Some(span), .. })) => {
                 let size: f64 = shape.iter().map(|v| v * v).sum();

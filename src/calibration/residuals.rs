@@ -1,6 +1,6 @@
 //! What is left between measured and computed, and its derivatives.
 
-use super::{Datum, Level, Levels, Problem};
+use super::{Computed, Datum, Level, Problem};
 use nalgebra::{DMatrix, DVector};
 
 /// Residuals r_i with their rows ∂r_i/∂x_j, in standard deviations.
@@ -41,12 +41,15 @@ impl Residuals {
     }
 
     /// Of everything measured, with the levels of `assignment`; those that are not found say nothing.
-    pub(super) fn measured(problem: &Problem, assignment: &[usize], levels: &Levels) -> Residuals {
+    pub(super) fn measured(problem: &Problem, assignment: &[usize], computed: &Computed) -> Residuals {
         let mut all = Residuals::default();
         for (datum, k) in problem.data.iter().zip(assignment) {
-            if let Some(level) = &levels[*k] {
+            if let Some(level) = &computed.levels[*k] {
                 all.append(Residuals::of(datum, level));
             }
+        }
+        for (line, [measured, deviation]) in computed.lines.iter().zip(&problem.lines) {
+            all.push((line.value - measured) / deviation, line.slope.iter().map(|g| g / deviation));
         }
         all
     }
@@ -56,12 +59,12 @@ impl Residuals {
         problem: &Problem,
         assignment: &[usize],
         x: &[f64],
-        levels: &Levels,
+        computed: &Computed,
     ) -> Option<Residuals> {
-        if assignment.iter().any(|k| levels[*k].is_none()) {
+        if assignment.iter().any(|k| computed.levels[*k].is_none()) {
             return None;
         }
-        let mut all = Residuals::measured(problem, assignment, levels);
+        let mut all = Residuals::measured(problem, assignment, computed);
         for (j, unknown) in problem.unknowns.iter().enumerate() {
             if let Some(expected) = unknown.expected {
                 all.push(x[j] - expected, (0..x.len()).map(|k| f64::from(u8::from(j == k))));
@@ -87,8 +90,8 @@ impl Residuals {
     }
 }
 
-/// χ² of an assignment at `x`, whose `levels` are known; infinite where a level is not found.
-pub(super) fn misfit(problem: &Problem, assignment: &[usize], x: &[f64], levels: &Levels) -> f64 {
-    Residuals::all(problem, assignment, x, levels)
+/// χ² of an assignment at `x`, where everything is `computed`; infinite where a level is not found.
+pub(super) fn misfit(problem: &Problem, assignment: &[usize], x: &[f64], computed: &Computed) -> f64 {
+    Residuals::all(problem, assignment, x, computed)
         .map_or(f64::INFINITY, |all| all.values.iter().map(|r| r * r).sum())
 }

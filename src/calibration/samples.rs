@@ -1,6 +1,6 @@
 //! Models with a closed form for the tests.
 
-use super::{Datum, Level, Levels, Model, Problem, Span, Unknown};
+use super::{Computed, Datum, Level, Model, Problem, Span, Unknown};
 use crate::error::Result;
 use crate::linalg::random::Random;
 use nalgebra::DMatrix;
@@ -51,7 +51,7 @@ impl Powers {
 }
 
 impl Model for Powers {
-    fn levels(&self, x: &[f64]) -> Result<Levels> {
+    fn compute(&self, x: &[f64]) -> Result<Computed> {
         let level = |(k, (base, a)): (usize, (&f64, &Vec<f64>))| {
             let s: f64 = a.iter().zip(x).map(|(a, x)| a * x).sum();
             Some(Level {
@@ -61,7 +61,8 @@ impl Model for Powers {
                 span: (self.components > 0).then(|| turning_as(k, self.components, 1 + k % 2, x)),
             })
         };
-        Ok(self.base.iter().zip(&self.exponents).enumerate().map(level).collect())
+        let levels = self.base.iter().zip(&self.exponents).enumerate().map(level).collect();
+        Ok(Computed { levels, lines: Vec::new() })
     }
 }
 
@@ -74,5 +75,6 @@ pub(super) fn problem(model: &Powers, data: &[f64], deviation: f64) -> Problem {
         data: data.iter().map(datum).collect(),
         level_sets: vec![0; model.base.len()],
         level_modes: vec![1; model.base.len()],
+        lines: Vec::new(),
     }
 }

@@ -23,6 +23,8 @@ pub struct CalibrateAnalysis {
     pub deviation: f64,
     /// Takes the measured shapes of [measured.NAME] in, not its frequencies alone.
     pub shapes: bool,
+    /// Takes the measured frequency responses of [measured.NAME] with `frf` in.
+    pub responses: bool,
     /// A computed mode may be what was measured when, linearised, it comes as near as a factor 1 + this inside the bounds.
     pub mode_reach: f64,
     /// Predicts each measured frequency from the others.
@@ -65,6 +67,7 @@ pub(super) fn read(root: &Section, case: Case) -> Case {
             ),
             deviation: s.quantity("deviation", NUMBER).positive().or(DEVIATION),
             shapes: s.boolean("shapes").or(true),
+            responses: s.boolean("responses").or(true),
             mode_reach: s
                 .quantity("mode_reach", NUMBER)
                 .within(Bound::Included(0.0), Bound::Excluded(1.0))
@@ -74,7 +77,7 @@ pub(super) fn read(root: &Section, case: Case) -> Case {
             trials: s.whole("trials").check("at most a million", |n| *n <= 1_000_000).or(0),
             parameter: super::read::collect(s, "parameter", |p| read_parameter(p, &case, scalars.as_deref())),
         };
-        check_against(s, &case, &analysis.against);
+        check_against(s, &case, &analysis);
         check_paths(s, &analysis.parameter);
         analysis
     });
@@ -155,7 +158,8 @@ fn is_scale(path: &str) -> bool {
     matches!(path.split('.').collect::<Vec<_>>()[..], ["modes", _, "frequency_scale"])
 }
 
-fn check_against(s: &Section, case: &Case, against: &[String]) {
+fn check_against(s: &Section, case: &Case, analysis: &CalibrateAnalysis) {
+    let against = &analysis.against;
     let positive = |all: &[f64]| all.iter().all(|hz| *hz > 0.0);
     for (k, name) in against.iter().enumerate() {
         let fault =
@@ -172,12 +176,13 @@ fn check_against(s: &Section, case: &Case, against: &[String]) {
             }
             continue;
         }
-        if let Some(of) = case.measured.get(name).map(|measured| &measured.of) {
+        if let Some(measured) = case.measured.get(name) {
             if case.modes.contains_key(name) {
                 fault(", which is the name of real modes, too", "another name of [measured.NAME]");
             }
-            let modes = of.as_ref().and_then(|of| case.modes.get(of));
-            if modes.is_none_or(|modes| modes.contact == ContactState::Closed) {
+            let modes = measured.of.as_ref().and_then(|of| case.modes.get(of));
+            let responses = measured.of.is_none() && measured.frf.is_some() && analysis.responses;
+            if !responses && modes.is_none_or(|modes| modes.contact == ContactState::Closed) {
                 fault(" without real modes", &format!("`of` in [measured.{name}]: modes with open contact"));
             }
             continue;

@@ -228,45 +228,61 @@ impl Test {
     }
 }
 
+/// A measured response that is of a place of the case.
+pub struct Found {
+    /// Index into the set's responses.
+    pub measured: usize,
+    /// Index of the place.
+    pub seen: usize,
+    swapped: bool,
+    away: [f64; 2],
+    sign: f64,
+}
+
+/// The measured responses that are of places of `frf`, and those that are not.
+pub fn matches(data: &MeasuredData, set: &MeasuredSet, frf: &Frf<'_>) -> (Vec<Found>, Vec<String>) {
+    let frame = frame(data);
+    let at = |dof: &MeasuredDof, motion: &Motion| place_sign(&frame, set, dof, motion, data.reach);
+    let (mut all, mut alone) = (Vec::new(), Vec::new());
+    for (measured, function) in set.frfs.iter().enumerate() {
+        let ways = [(&function.excitation, &function.response), (&function.response, &function.excitation)];
+        let ways = ways.into_iter().enumerate().filter(|(swapped, _)| *swapped == 0 || frf.reciprocal());
+        let found = ways.flat_map(|(swapped, (force, motion))| {
+            let driven = at(force, frf.force());
+            let seen = frf.seen().iter().enumerate();
+            seen.filter_map(move |(k, (_, place))| Some((swapped == 1, k, driven?, at(motion, place)?)))
+        });
+        match found.min_by(|a, b| (a.2.0 + a.3.0).total_cmp(&(b.2.0 + b.3.0))) {
+            Some((swapped, seen, driven, motion)) => {
+                let (away, sign) = ([driven.0, motion.0], driven.1 * motion.1);
+                all.push(Found { measured, seen, swapped, away, sign });
+            }
+            None => alone.push(format!("{}: no response of the case is there", function.name)),
+        }
+    }
+    (all, alone)
+}
+
 impl Responses {
     fn new(data: &MeasuredData, set: &MeasuredSet, frf: &mut Frf<'_>) -> Responses {
-        let (frame, [low, high]) = (frame(data), frf.band());
-        let at = |dof: &MeasuredDof, motion: &Motion| place_sign(&frame, set, dof, motion, data.reach);
-        let mut responses = Responses {
-            frf: frf.name().to_string(),
-            matches: Vec::new(),
-            measured_alone: Vec::new(),
-            computed_alone: Vec::new(),
-        };
-        for (measured, function) in set.frfs.iter().enumerate() {
-            let ways =
-                [(&function.excitation, &function.response), (&function.response, &function.excitation)];
-            let ways = ways.into_iter().enumerate().filter(|(swapped, _)| *swapped == 0 || frf.reciprocal());
-            let found = ways.flat_map(|(swapped, (force, motion))| {
-                let driven = at(force, frf.force());
-                let seen = frf.seen().iter().enumerate();
-                seen.filter_map(move |(k, (_, place))| Some((swapped == 1, k, driven?, at(motion, place)?)))
-            });
-            let nearest = found.min_by(|a, b| (a.2.0 + a.3.0).total_cmp(&(b.2.0 + b.3.0)));
-            let name = function.name.clone();
-            let Some((swapped, k, driven, seen)) = nearest else {
-                responses.measured_alone.push(format!("{name}: no response of the case is there"));
-                continue;
-            };
+        let [low, high] = frf.band();
+        let (found, mut measured_alone) = matches(data, set, frf);
+        let mut matches = Vec::new();
+        for Found { measured, seen, swapped, away, sign } in found {
+            let function = &set.frfs[measured];
             let hz = &function.frequencies_hz;
             let lines = hz.partition_point(|f| *f < low)..hz.partition_point(|f| *f <= high);
             if lines.len() < 2 {
-                responses.measured_alone.push(format!("{name}: no frequencies in the band"));
+                measured_alone.push(format!("{}: no frequencies in the band", function.name));
                 continue;
             }
-            let (place, answer) = (frf.seen()[k].0.clone(), frf.also_at(k, hz[lines.clone()].to_vec()));
-            let (away, sign) = ([driven.0, seen.0], driven.1 * seen.1);
-            responses.matches.push(Match { measured, place, swapped, away, sign, lines, answer });
+            let (place, answer) = (frf.seen()[seen].0.clone(), frf.also_at(seen, hz[lines.clone()].to_vec()));
+            matches.push(Match { measured, place, swapped, away, sign, lines, answer });
         }
         let alone = frf.seen().iter().map(|(name, _)| name);
-        let alone = alone.filter(|name| !responses.matches.iter().any(|m| m.place == **name));
-        responses.computed_alone = alone.cloned().collect();
-        responses
+        let alone = alone.filter(|name| !matches.iter().any(|m: &Match| m.place == **name));
+        let computed_alone = alone.cloned().collect();
+        Responses { frf: frf.name().to_string(), matches, measured_alone, computed_alone }
     }
 }
 

@@ -26,6 +26,7 @@ mod motion;
 mod nearest;
 mod place;
 mod prepared;
+mod receptance;
 mod regions;
 #[cfg(test)]
 mod samples;

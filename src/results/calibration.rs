@@ -5,6 +5,7 @@ use super::hdf5::{Datasets, attribute, text_attribute};
 use super::{ResultsFile, write_atomically};
 use crate::calibration::{Calibration, Ranked};
 use crate::error::Result;
+use crate::measured::Quantity;
 use ndarray::Array2;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -16,6 +17,8 @@ pub struct CalibrationResult {
     pub numbers: Vec<CalibratedNumber>,
     /// The measured frequencies beside the computed ones of the best assignment.
     pub data: Vec<CalibratedDatum>,
+    /// The measured frequency responses beside the computed ones.
+    pub responses: Vec<CalibratedResponse>,
     /// What each computed level is called.
     pub levels: Vec<String>,
     /// The set that each level belongs to.
@@ -80,6 +83,38 @@ pub struct CalibratedDatum {
     pub shape: Option<CalibratedShape>,
 }
 
+/// A measured frequency response beside the computed one, at the lines that were compared. Sizes are √(|h|² + n²), with a floor n
+/// below which nothing is compared, in the SI unit of the quantity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CalibratedResponse {
+    /// The name of the measured set.
+    pub set: String,
+    /// What the test calls it.
+    pub name: String,
+    /// What the case calls its place.
+    pub place: String,
+    /// What of the motion.
+    pub quantity: Quantity,
+    /// Standard deviation of ln |h|.
+    pub deviation: f64,
+    /// \[Hz\].
+    pub frequencies_hz: Vec<f64>,
+    /// Measured.
+    pub measured: Vec<f64>,
+    /// Computed with the values of the case.
+    pub before: Vec<f64>,
+    /// Computed with the values that were found.
+    pub after: Vec<f64>,
+}
+
+impl CalibratedResponse {
+    /// Root mean square of 20 log₁₀ (computed/measured) \[dB\].
+    pub fn apart_db(&self, computed: &[f64]) -> f64 {
+        let squares = computed.iter().zip(&self.measured).map(|(a, b)| (20.0 * (a / b).log10()).powi(2));
+        (squares.sum::<f64>() / computed.len().max(1) as f64).sqrt()
+    }
+}
+
 /// MAC of a measured shape with the computed level.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CalibratedShape {
@@ -127,7 +162,24 @@ impl CalibrationResult {
 /// Writes `calibrated.toml` and `calibration.csv` into the folder `dir`.
 pub(super) fn write(dir: &Path, result: &CalibrationResult) -> Result<()> {
     write_atomically(dir, "calibrated.toml", result.calibrated_case.as_bytes())?;
+    if !result.responses.is_empty() {
+        write_atomically(dir, "calibration_responses.csv", responses(result).as_bytes())?;
+    }
     write_atomically(dir, "calibration.csv", table(result).as_bytes())
+}
+
+fn responses(result: &CalibrationResult) -> String {
+    let mut table =
+        Table::new(&["set", "response", "place", "frequency [Hz]", "measured", "before", "after", "unit"]);
+    for r in &result.responses {
+        for (k, hz) in r.frequencies_hz.iter().enumerate() {
+            let words = [&r.set, &r.name, &r.place].map(String::clone);
+            let numbers = [*hz, r.measured[k], r.before[k], r.after[k]].map(number);
+            let unit = [r.quantity.unit().to_string()];
+            table.row(&words.into_iter().chain(numbers).chain(unit).collect::<Vec<_>>());
+        }
+    }
+    table.text
 }
 
 fn table(result: &CalibrationResult) -> String {
@@ -200,8 +252,24 @@ impl ResultsFile {
                 group.list("mac_after", &of(|d| d.mac(|s| s.after)), "1", words)?;
                 group.list("mac_left_out", &of(|d| d.mac(|s| s.left_out)), "1", words)?;
             }
+            if !result.responses.is_empty() {
+                let of = |pick: fn(&CalibratedResponse) -> &[f64]| -> Vec<f64> {
+                    result.responses.iter().flat_map(|r| pick(r).iter().copied()).collect()
+                };
+                let each = result.responses.iter().enumerate();
+                let which: Vec<f64> =
+                    each.flat_map(|(k, r)| vec![k as f64; r.frequencies_hz.len()]).collect();
+                let names: Vec<&str> = result.responses.iter().map(|r| r.name.as_str()).collect();
+                text_attribute(&group.0, "responses", &names.join("; "))?;
+                group.list("response", &which, "1", "which frequency response each line is of")?;
+                group.list("response_hz", &of(|r| &r.frequencies_hz), "Hz", "lines of the responses")?;
+                let size = "sqrt(|h|^2 + n^2) with the floor n";
+                group.list("response_measured", &of(|r| &r.measured), "SI", size)?;
+                group.list("response_before", &of(|r| &r.before), "SI", "with the values of the case")?;
+                group.list("response_after", &of(|r| &r.after), "SI", "with the values that were found")?;
+            }
             let slope = |(i, j): (usize, usize)| {
-                best.fit.levels[best.assignment[i]].as_ref().map_or(f64::NAN, |level| level.slope[j])
+                best.fit.computed.levels[best.assignment[i]].as_ref().map_or(f64::NAN, |level| level.slope[j])
             };
             let slopes = Array2::from_shape_fn((data.len(), numbers.len()), slope);
             let story = "d ln f by each number, in units of its deviation or half the width of its bounds";
@@ -255,6 +323,18 @@ pub(super) fn summary(result: &CalibrationResult) -> Value {
             })),
         })
     };
+    let response = |r: &CalibratedResponse| {
+        json!({
+            "set": r.set,
+            "name": r.name,
+            "place": r.place,
+            "lines": r.frequencies_hz.len(),
+            "band_hz": [r.frequencies_hz.first(), r.frequencies_hz.last()],
+            "deviation": r.deviation,
+            "before_db": r.apart_db(&r.before),
+            "after_db": r.apart_db(&r.after),
+        })
+    };
     let ranked = |r: &Ranked| {
         json!({
             "modes": r.assignment.iter().map(|k| &result.levels[*k]).collect::<Vec<_>>(),
@@ -294,6 +374,7 @@ pub(super) fn summary(result: &CalibrationResult) -> Value {
     json!({
         "parameters": result.numbers.iter().map(number).collect::<Vec<_>>(),
         "data": result.data.iter().map(datum).collect::<Vec<_>>(),
+        "responses": result.responses.iter().map(response).collect::<Vec<_>>(),
         "largest_error_percent": result.largest_percent(|d| d.after_hz),
         "least_mac": result.least_mac(|s| s.after),
         "least_left_out_mac": result.least_mac(|s| s.left_out),
@@ -321,13 +402,13 @@ pub(super) fn summary(result: &CalibrationResult) -> Value {
 /// A made-up calibration: two numbers, the second at its bound and not determined, three data.
 #[cfg(test)]
 pub(super) fn sample() -> CalibrationResult {
-    use crate::calibration::{Chance, Fit, Knowledge, LeftOut, Level, Trials};
+    use crate::calibration::{Chance, Computed, Fit, Knowledge, LeftOut, Level, Trials};
     let level = |frequency_hz: f64| {
         Some(Level { frequency_hz, slope: vec![0.1, 0.02], split: vec![0.0; 2], span: None })
     };
     let fit = |converged: bool| Fit {
         x: vec![0.2, 1.0],
-        levels: [333.3, 936.0, 1705.0].map(level).to_vec(),
+        computed: Computed { levels: [333.3, 936.0, 1705.0].map(level).to_vec(), lines: vec![] },
         chi2: 5.2,
         iterations: 4,
         evaluations: 4,
@@ -380,10 +461,21 @@ pub(super) fn sample() -> CalibrationResult {
             datum(936.0, 936.0, "disc (4, 0)"),
             datum(1697.0, 1705.0, "disc (0, 1)"),
         ],
+        responses: vec![CalibratedResponse {
+            set: "tap".into(),
+            name: "1, 2+x/1+x".into(),
+            place: "rim".into(),
+            quantity: Quantity::Accelerance,
+            deviation: 0.1,
+            frequencies_hz: vec![300.0, 330.0, 400.0],
+            measured: vec![1.0, 10.0, 2.0],
+            before: vec![2.0, 5.0, 2.0],
+            after: vec![1.0, 9.0, 2.0],
+        }],
         levels: ["disc (2, 0)", "disc (4, 0)", "disc (0, 1)"].map(String::from).to_vec(),
         level_sets: vec!["disc".into(); 3],
         calibration: Calibration {
-            before: [340.0, 980.0, 1750.0].map(level).to_vec(),
+            before: Computed { levels: [340.0, 980.0, 1750.0].map(level).to_vec(), lines: vec![] },
             ranked: vec![ranked(1.0), ranked(0.03)],
             plausible: 24,
             all_counted: true,

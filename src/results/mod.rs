@@ -48,7 +48,9 @@ mod watched;
 #[cfg(test)]
 pub(crate) mod sample;
 
-pub use calibration::{CalibratedDatum, CalibratedNumber, CalibratedShape, CalibrationResult};
+pub use calibration::{
+    CalibratedDatum, CalibratedNumber, CalibratedResponse, CalibratedShape, CalibrationResult,
+};
 pub use comparison::{MeasuredComparison, MeasuredResponses, MeasuredRow, Placed, ResponsePair};
 pub use csv::write_csv;
 pub use derived::{ComparedRow, PairTotals};

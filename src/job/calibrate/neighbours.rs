@@ -24,6 +24,10 @@ pub struct Change {
     pub stiffness: SparseMatrix,
     /// ∂M.
     pub mass: SparseMatrix,
+    /// ∂C of Rayleigh damping and dashpots, if there is any.
+    pub viscous: Option<SparseMatrix>,
+    /// ∂H of loss factors, if there are any.
+    pub hysteretic: Option<SparseMatrix>,
     /// ∂ of the measured degrees of freedom as forms.
     pub seen: Vec<SparseVector>,
 }
@@ -36,6 +40,8 @@ impl Change {
         Change {
             stiffness: add_scaled(&[(rate, &self.stiffness)]),
             mass: add_scaled(&[(rate, &self.mass)]),
+            viscous: self.viscous.map(|c| add_scaled(&[(rate, &c)])),
+            hysteretic: self.hysteretic.map(|h| add_scaled(&[(rate, &h)])),
             seen: self.seen.iter().map(scaled).collect(),
         }
     }
@@ -108,10 +114,18 @@ fn differences(value: f64, step: f64, build: &Build) -> Result<Vec<Change>> {
             .flat_map(|((_, w), system)| system[k].seen[i].iter().map(move |(at, v)| (at, w / step * v)));
         SparseVector::from_entries(terms)
     };
+    let damping = |k: usize, pick: fn(&Assembled) -> Option<&SparseMatrix>| {
+        let each = stencil.iter().zip(&systems);
+        let terms: Vec<(f64, &SparseMatrix)> =
+            each.filter_map(|((_, w), system)| Some((w / step, pick(&system[k].assembled)?))).collect();
+        (!terms.is_empty()).then(|| add_scaled(&terms))
+    };
     let change = |k: usize| -> Result<Change> {
         Ok(Change {
             stiffness: sum(k, |a| &a.structure.stiffness)?,
             mass: sum(k, |a| &a.structure.mass)?,
+            viscous: damping(k, |a| a.structure.damping.viscous.as_ref()),
+            hysteretic: damping(k, |a| a.structure.damping.hysteretic.as_ref()),
             seen: (0..systems[0][k].seen.len()).map(|i| form(k, i)).collect(),
         })
     };

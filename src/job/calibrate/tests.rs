@@ -1,6 +1,6 @@
 use super::super::samples::disc;
 use super::coordinate::Coordinate;
-use super::facts::facts;
+use super::facts::{Facts, measurements};
 use super::model::CaseModel;
 use super::neighbours::Neighbour;
 use super::*;
@@ -17,7 +17,7 @@ fn with_model<T>(case: &Case, work: impl FnOnce(&CaseModel) -> T) -> T {
     let prepared = Prepared::new(case).unwrap();
     let coordinates: Vec<Coordinate> =
         case.calibrate.as_ref().unwrap().parameter.values().map(Coordinate::new).collect();
-    work(&CaseModel::new(&prepared, &coordinates, &facts(&prepared).unwrap()).unwrap())
+    work(&CaseModel::new(&prepared, &coordinates, &measurements(&prepared).unwrap()).unwrap())
 }
 
 const SIX: &str = "[modes.disc]\nbelow = \"3 kHz\"\nmeasured = [450, 900]\n[calibrate]\nagainst = \"disc\"\n\
@@ -34,7 +34,7 @@ fn differences(model: &CaseModel, j: usize, h: f64) -> Vec<f64> {
     let at = |k: f64| -> Vec<f64> {
         let mut x = model.start().to_vec();
         x[j] += k * h;
-        model.levels(&x).unwrap().iter().map(|l| l.as_ref().unwrap().frequency_hz.ln()).collect()
+        model.compute(&x).unwrap().levels.iter().map(|l| l.as_ref().unwrap().frequency_hz.ln()).collect()
     };
     let [up, down, up2, down2] = [1.0, -1.0, 2.0, -2.0].map(at);
     (0..up.len()).map(|l| (8.0 * (up[l] - down[l]) - (up2[l] - down2[l])) / (12.0 * h)).collect()
@@ -67,7 +67,7 @@ fn one_sided_derivatives_are_those_of_both_sides() {
 fn slopes_are_those_of_differences_of_frequencies_of_double_modes_too() {
     let case = case(SIX);
     with_model(&case, |model| {
-        let levels: Vec<Level> = model.levels(model.start()).unwrap().into_iter().flatten().collect();
+        let levels: Vec<Level> = model.compute(model.start()).unwrap().levels.into_iter().flatten().collect();
         let names = model.level_names();
         let set = &model.sets[0];
         let double = set.levels.iter().filter(|level| level.len() == 2).count();
@@ -97,7 +97,7 @@ fn a_double_mode_parts_as_its_split_says() {
         with_model(case, |model| {
             let set = &model.sets[0];
             let k = set.names.iter().position(|name| name == "disc (1, 0)").unwrap();
-            (model.levels(model.start()).unwrap()[k].clone().unwrap(), set.levels[k].clone())
+            (model.compute(model.start()).unwrap().levels[k].clone().unwrap(), set.levels[k].clone())
         })
     };
     let (level, modes) = pair(&round);
@@ -174,7 +174,8 @@ fn measured_data_bring_their_own_deviations() {
     let more = "[modes.disc]\nbelow = \"3 kHz\"\n[measured.tap]\nof = \"disc\"\nfrequencies = [450, 900]\ndeviation = 0.01\n\
         [calibrate]\nagainst = \"tap\"\n[calibrate.parameter.scale]\npath = \"modes.disc.frequency_scale\"\n\
         between = [0.9, 1.1]\n";
-    let facts_of = |more: &str| facts(&Prepared::new(&case(more)).unwrap());
+    let facts_of =
+        |more: &str| -> Result<Vec<Facts>> { Ok(measurements(&Prepared::new(&case(more)).unwrap())?.modes) };
     let found = facts_of(more).unwrap();
     assert_eq!(found.len(), 1);
     let fact = |frequency_hz| Fact { frequency_hz, deviation: 0.01, shape: None };
