@@ -9,6 +9,8 @@ mod follow;
 mod model;
 mod neighbours;
 mod real;
+#[cfg(test)]
+mod response_tests;
 mod responses;
 #[cfg(test)]
 mod shape_tests;
