@@ -181,7 +181,8 @@ fn check_against(s: &Section, case: &Case, analysis: &CalibrateAnalysis) {
                 fault(", which is the name of real modes, too", "another name of [measured.NAME]");
             }
             let modes = measured.of.as_ref().and_then(|of| case.modes.get(of));
-            let responses = measured.of.is_none() && measured.frf.is_some() && analysis.responses;
+            let known = measured.frf.as_ref().is_some_and(|frf| case.frf.contains_key(frf));
+            let responses = measured.of.is_none() && known && analysis.responses;
             if !responses && modes.is_none_or(|modes| modes.contact == ContactState::Closed) {
                 fault(" without real modes", &format!("`of` in [measured.{name}]: modes with open contact"));
             }

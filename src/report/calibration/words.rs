@@ -14,7 +14,10 @@ pub(in crate::report) fn words(result: &CalibrationResult) -> Vec<String> {
     words.extend(misfit(result));
     words.push(determined(result));
     words.extend(tied(result));
-    words.push(assignments(result));
+    words.extend((!result.data.is_empty()).then(|| assignments(result)));
+    if !result.responses.is_empty() && !result.calibration.left_out.is_empty() {
+        words.push("Modes alone are left out in turn; the responses stay.".into());
+    }
     if result.calibration.left_out.is_empty() && result.calibration.knowledge.freedom == 0 {
         words.push(
             "No frequency can be predicted from the others: the facts are no more than the numbers that are to be found.".into(),
@@ -50,24 +53,27 @@ pub(in crate::report) fn words(result: &CalibrationResult) -> Vec<String> {
 
 fn counted(result: &CalibrationResult) -> String {
     let expected = result.numbers.iter().filter(|n| n.deviation.is_some()).count();
-    let (numbers, data) = (result.numbers.len(), result.data.len());
-    let free = result.calibration.knowledge.freedom;
-    let expectations = match expected {
-        0 => String::new(),
-        n => format!(" and {n} expected values"),
-    };
-    let shapes = match result.shapes().count() {
-        0 => String::new(),
-        n => {
-            let components: usize = result.shapes().map(|shape| shape.components).sum();
+    let components: usize = result.shapes().map(|shape| shape.components).sum();
+    let lines: usize = result.responses.iter().map(|r| r.frequencies_hz.len()).sum();
+    let parts = [
+        (result.data.len(), "measured frequencies".to_string()),
+        (
+            result.shapes().count(),
             format!(
-                ", {n} measured shapes of {components} components together, each in the scale that fits it best,"
-            )
-        }
+                "measured shapes (of {components} components together, each in the scale that fits it best)"
+            ),
+        ),
+        (result.responses.len(), format!("measured responses (of {lines} lines together)")),
+        (expected, "expected values".to_string()),
+    ];
+    let parts: Vec<String> =
+        parts.iter().filter(|(n, _)| *n > 0).map(|(n, words)| format!("{n} {words}")).collect();
+    let list = match parts.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
+        _ => parts.concat(),
     };
-    format!(
-        "{numbers} numbers were found from {data} measured frequencies{shapes}{expectations}: {free} facts are left over."
-    )
+    let (numbers, free) = (result.numbers.len(), result.calibration.knowledge.freedom);
+    format!("{numbers} numbers were found from {list}: {free} facts are left over.")
 }
 
 fn misfit(result: &CalibrationResult) -> Option<String> {
@@ -164,8 +170,8 @@ fn assignments(result: &CalibrationResult) -> String {
 fn chance(result: &CalibrationResult) -> Option<String> {
     let chance = result.calibration.chance?;
     let percent = |k: usize| significant(100.0 * chance.probability(k), 2);
-    let alone = if result.shapes().next().is_some() {
-        "About the frequencies alone, without shapes: of"
+    let alone = if result.shapes().next().is_some() || !result.responses.is_empty() {
+        "About the frequencies alone, without shapes and responses: of"
     } else {
         "Of"
     };
