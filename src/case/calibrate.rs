@@ -1,4 +1,4 @@
-//! `[calibrate]`: scalars of the case to be found from measured frequencies.
+//! `[calibrate]`: scalars of the case to be found from measured modes and frequency responses.
 
 use super::reader::Section;
 use super::units::{NUMBER, dimension_of};
@@ -14,7 +14,7 @@ pub const SQUEAL: &str = "squeal";
 /// Relative standard deviation of a measured frequency that the case does not state.
 const DEVIATION: f64 = 0.005;
 
-/// Scalars to be found from measured frequencies.
+/// Scalars to be found from measured modes and frequency responses.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CalibrateAnalysis {
     /// Names of `[modes.NAME]` with measured frequencies, of `[measured.NAME]`, and `squeal` for those of `[cea]`.

@@ -1,7 +1,7 @@
-//! `[calibrate]`: the numbers of a case that make its modes those that were measured.
+//! `[calibrate]`: the numbers of a case that make its modes and responses those that were measured.
 //!
 //! [`measurements`](facts::measurements) says what was measured, a [`Coordinate`] turns a number of the case into an unknown,
-//! [`CaseModel`] computes frequencies and slopes, and [`crate::calibration`] does the rest.
+//! [`CaseModel`] computes frequencies, shapes and responses with their slopes, and [`crate::calibration`] does the rest.
 
 mod coordinate;
 mod facts;
