@@ -31,6 +31,9 @@ pub(super) fn section(results: &RunResults) -> String {
         body += &figure(&errors.svg, &errors.caption);
         body += &titled_table(&fit_table(result));
     }
+    if result.shapes().next().is_some() {
+        body += &titled_table(&shape_table(result));
+    }
     if let Some(responses) = picture::responses(result) {
         body += &figure(&responses.svg, &responses.caption);
         body += &titled_table(&response_table(result));
@@ -50,10 +53,31 @@ pub(super) fn tables(result: &CalibrationResult) -> Vec<Table> {
     let (modes, responses) = (!result.data.is_empty(), !result.responses.is_empty());
     let mut all = Vec::new();
     all.extend(modes.then(|| fit_table(result)));
+    all.extend(result.shapes().next().map(|_| shape_table(result)));
     all.extend(responses.then(|| response_table(result)));
     all.push(number_table(result));
     all.extend(modes.then(|| assignment_table(result)));
     all
+}
+
+/// How like the computed shapes are to the measured ones, before and after.
+fn shape_table(result: &CalibrationResult) -> Table {
+    let headings = ["<mode", "measured [Hz]", "components", "MAC before", "MAC after", "MAC from the others"];
+    let mut table = Table::new("Calibration: measured and computed shapes", &headings);
+    for d in &result.data {
+        let Some(shape) = d.shape else { continue };
+        let mac = |mac: Option<f64>| mac.map_or("–".into(), |mac| fixed(mac, 4));
+        let cells = vec![
+            d.level.clone(),
+            given(d.measured_hz),
+            shape.components.to_string(),
+            mac(shape.before),
+            mac(shape.after),
+            mac(shape.left_out),
+        ];
+        table.row(cells, false);
+    }
+    table
 }
 
 /// How far the computed responses are from the measured ones, before and after.
@@ -95,10 +119,6 @@ fn fit_table(result: &CalibrationResult) -> Table {
         "from the others [Hz]",
         "error [%]",
     ];
-    let shapes = result.shapes().next().is_some();
-    if shapes {
-        headings.extend(["MAC before", "after", "from the others"]);
-    }
     if sets {
         headings.insert(0, "<set");
     }
@@ -111,10 +131,6 @@ fn fit_table(result: &CalibrationResult) -> Table {
         for hz in [d.before_hz, d.after_hz, d.left_out_hz] {
             cells.push(hz.map_or("–".into(), |hz| fixed(hz, 1)));
             cells.push(d.error_percent(hz).map_or("–".into(), |e| signed(e, 2)));
-        }
-        if shapes {
-            let macs = d.shape.map_or([None; 3], |s| [s.before, s.after, s.left_out]);
-            cells.extend(macs.map(|mac| mac.map_or("–".into(), |mac| fixed(mac, 3))));
         }
         if sets {
             cells.insert(0, d.set.clone());
@@ -229,8 +245,9 @@ mod tests {
         let results = sample::rig();
         let result = results.calibration.as_ref().unwrap();
         let table = fit_table(result);
-        assert_eq!((table.rows.len(), table.columns.len()), (3, 11));
-        assert!(table.rows[0].cells.contains(&"0.970".to_string()) && table.rows[2].cells[10] == "–");
+        assert_eq!((table.rows.len(), table.columns.len()), (3, 8));
+        let shapes = shape_table(result);
+        assert_eq!((shapes.rows.len(), &shapes.rows[0].cells[4][..]), (2, "0.9700"));
         assert!(table.rows[0].cells.contains(&"+1.00".to_string()), "{:?}", table.rows[0]);
         let numbers = number_table(result);
         assert!(numbers.rows[1].marked && numbers.rows[1].cells.last().unwrap() == "at its bound");
