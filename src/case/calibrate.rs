@@ -21,9 +21,9 @@ pub struct CalibrateAnalysis {
     pub against: Vec<String>,
     /// Relative standard deviation of a measured frequency.
     pub deviation: f64,
-    /// Takes the measured shapes of [measured.NAME] in, not its frequencies alone.
+    /// Takes the measured shapes of `[measured.NAME]` in, not its frequencies alone.
     pub shapes: bool,
-    /// Takes the measured frequency responses of [measured.NAME] with `frf` in.
+    /// Takes the measured frequency responses of `[measured.NAME]` with `frf` in.
     pub responses: bool,
     /// A computed mode may be what was measured when, linearised, it comes as near as a factor 1 + this inside the bounds.
     pub mode_reach: f64,

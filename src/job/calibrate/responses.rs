@@ -14,6 +14,7 @@ use crate::linalg::sparse::{multiply, times};
 use crate::linalg::tall::gram;
 use crate::linalg::{SparseMatrix, SparseVector, c64};
 use crate::measured::{MeasuredFrf, Quantity};
+use crate::modal::RealModes;
 use crate::stability::Harmonic;
 use faer::Mat;
 use rayon::prelude::*;
@@ -195,6 +196,9 @@ impl<'a> Places<'a> {
     }
 }
 
+/// ∂ζ of every real mode by every unknown; none by one that damping ratios do not depend on.
+pub type Ratios<'a> = dyn Fn(&RealModes) -> Result<Vec<Option<Vec<f64>>>> + 'a;
+
 /// Derivatives of the reduced matrices, VᵀAV.
 struct Small {
     stiffness: Mat<f64>,
@@ -225,7 +229,7 @@ pub fn lines(
     prepared: &Prepared,
     (measured, places): (&Measured, &Places),
     changes: &[Option<Change>],
-    ratios: &dyn Fn(&crate::modal::RealModes) -> Result<Vec<Option<Vec<f64>>>>,
+    ratios: &Ratios,
 ) -> Result<Vec<Line>> {
     let wanted = &prepared.case.frf[&measured.frf];
     let forms = places.forms(prepared);
@@ -342,9 +346,9 @@ fn applied(change: &Change, omega: f64, u: &Mat<c64>) -> Mat<c64> {
 /// VᵀAV of the changes of a structure. Of modal damping C = MΦGΦᵀM, G = diag(g) with g = 2ζω, in which modes and
 /// frequencies follow K and M: with A = Vᵀ∂KV and B = Vᵀ∂MV
 ///
-/// (Vᵀ∂CV)_kl = A_kl g[λ_k, λ_l] − B_kl (λg)[λ_k, λ_l] + B_kl (g_k + g_l) + δ_kl 2ω_k ∂ζ_k
+/// (Vᵀ∂CV)_kl = A_kl g\[λ_k, λ_l\] − B_kl (λg)\[λ_k, λ_l\] + B_kl (g_k + g_l) + δ_kl 2ω_k ∂ζ_k
 ///
-/// with the divided differences f[a, b] = (f(a) − f(b))/(a − b) (Daleckii and Krein; Higham, Functions of Matrices, 2008,
+/// with the divided differences f\[a, b\] = (f(a) − f(b))/(a − b) (Daleckii and Krein; Higham, Functions of Matrices, 2008,
 /// theorem 3.11); g is zero beyond the modes. At full order the small viscous matrix has this part alone.
 fn reduced(
     whole: &Receptance,

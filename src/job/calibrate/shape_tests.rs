@@ -203,7 +203,7 @@ fn shapes_decide_between_assignments_that_frequencies_leave_alike() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("validation/calibrate-shapes");
     let text = include_str!("../../../validation/calibrate-shapes/case.toml");
     let text =
-        text.replace("radial = 32\naround = 96", "radial = 16\naround = 48").replace("trials = 100", "");
+        text.replace("radial = 32\naround = 96", "radial = 24\naround = 72").replace("trials = 100", "");
     let with = |shapes: bool| {
         let text = text.replace("[calibrate]\n", &format!("[calibrate]\nshapes = {shapes}\n"));
         let text = if shapes { text } else { text.replace("shape_deviation = 0.03", "") };
