@@ -82,18 +82,18 @@ fn shape_table(result: &CalibrationResult) -> Table {
 
 /// How far the computed responses are from the measured ones, before and after.
 fn response_table(result: &CalibrationResult) -> Table {
-    let headings = ["<response", "<place", "lines", "from [Hz]", "to [Hz]", "before [dB]", "after [dB]"];
+    let headings = ["<place", "lines", "from [Hz]", "to [Hz]", "before [dB]", "after [dB]", "<response"];
     let mut table = Table::new("Calibration: measured and computed frequency responses", &headings);
     for r in &result.responses {
         let end = |hz: Option<&f64>| hz.map_or("–".into(), |hz| fixed(*hz, 1));
         let cells = vec![
-            r.name.clone(),
             r.place.clone(),
             r.frequencies_hz.len().to_string(),
             end(r.frequencies_hz.first()),
             end(r.frequencies_hz.last()),
             fixed(r.apart_db(&r.before), 2),
             fixed(r.apart_db(&r.after), 2),
+            r.name.clone(),
         ];
         table.row(cells, false);
     }
@@ -253,7 +253,7 @@ mod tests {
         assert!(numbers.rows[1].marked && numbers.rows[1].cells.last().unwrap() == "at its bound");
         let page = section(&results);
         assert_eq!(page.matches("<svg").count(), 3);
-        assert_eq!(response_table(result).rows[0].cells[5..], ["4.92", "0.53"]);
+        assert_eq!(response_table(result).rows[0].cells[4..6], ["4.92", "0.53"]);
         assert!(page.contains("not converged") && page.contains("stiffness"));
         let words = words(result).join(" ");
         for expected in
