@@ -3,13 +3,16 @@
 //! The least χ² of some of the data bounds that of all of them from below, so that a branch that is worse already than the
 //! last of the best needs no further look (Land and Doig, Econometrica 28 (1960) 497).
 
-use super::Datum;
 use super::linear::{Linear, Misfit};
+use super::{Datum, Problem};
 
 /// More fits than this are not tried.
 const MOST_FITS: usize = 2_000_000;
 /// More assignments than this are not counted one by one.
 const MOST_COUNTED: usize = 1_000_000;
+
+/// Two data whose frequencies differ by less than this part may be the two modes of a double level that a test found parted.
+const PARTED: f64 = 0.02;
 
 /// The best assignments.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,7 +23,8 @@ pub(super) struct Found {
     pub complete: bool,
 }
 
-/// The `keep` assignments with the least linearised χ², each level taken once; `plausible` lists the levels that each datum
+/// The `keep` assignments with the least linearised χ², each level taken once, or by so many neighbouring data as it has
+/// modes; `plausible` lists the levels that each datum
 /// may be.
 pub(super) fn best(linear: &Linear, data: &[Datum], plausible: &[Vec<usize>], keep: usize) -> Found {
     // The data with the fewest choices first: their branches are few, and bound the others.
@@ -40,24 +44,31 @@ pub(super) fn best(linear: &Linear, data: &[Datum], plausible: &[Vec<usize>], ke
     Found { best: search.best, complete: search.fits <= MOST_FITS }
 }
 
-/// How many injective assignments there are, at most [`MOST_COUNTED`], and whether that is all.
-pub(super) fn count(plausible: &[Vec<usize>]) -> (usize, bool) {
-    fn descend(plausible: &[Vec<usize>], taken: &mut Vec<usize>, counted: &mut usize) {
+/// How many assignments there are, at most [`MOST_COUNTED`], and whether that is all.
+pub(super) fn count(problem: &Problem, plausible: &[Vec<usize>]) -> (usize, bool) {
+    fn descend(problem: &Problem, plausible: &[Vec<usize>], taken: &mut Vec<usize>, counted: &mut usize) {
         let Some(choices) = plausible.get(taken.len()) else {
             *counted += 1;
             return;
         };
         for k in choices {
-            if *counted < MOST_COUNTED && !taken.contains(k) {
+            if *counted < MOST_COUNTED && free(problem, &problem.data, taken, taken.len(), *k) {
                 taken.push(*k);
-                descend(plausible, taken, counted);
+                descend(problem, plausible, taken, counted);
                 taken.pop();
             }
         }
     }
     let mut counted = 0;
-    descend(plausible, &mut Vec::new(), &mut counted);
+    descend(problem, plausible, &mut Vec::new(), &mut counted);
     (counted, counted < MOST_COUNTED)
+}
+
+/// Whether `level` is free for `datum` when the data took the levels `chosen`.
+fn free(problem: &Problem, data: &[Datum], chosen: &[usize], datum: usize, level: usize) -> bool {
+    let others = || (0..chosen.len()).filter(|i| chosen[*i] == level);
+    let near = |i: usize| (data[i].frequency_hz / data[datum].frequency_hz).ln().abs() < PARTED;
+    others().count() < problem.level_modes[level] && others().all(near)
 }
 
 struct Search<'a> {
@@ -83,10 +94,12 @@ impl Search<'_> {
             self.best.truncate(self.keep);
             return;
         };
-        let free = self.plausible[datum].iter().filter(|k| !self.chosen.contains(k));
-        let mut branches: Vec<(f64, usize, Misfit)> = free
+        let free = |k: &&usize| free(self.linear.problem, self.data, &self.chosen, datum, **k);
+        let mut branches: Vec<(f64, usize, Misfit)> = self.plausible[datum]
+            .iter()
+            .filter(free)
             .map(|k| {
-                let more = self.linear.with(misfit, &self.data[datum], *k);
+                let more = self.linear.with(misfit, (self.data, datum), *k);
                 (self.linear.least(&more).0, *k, more)
             })
             .collect();
@@ -115,7 +128,7 @@ mod tests {
         let data = [310.0, 520.0, 640.0, 1010.0];
         let problem: Problem = problem(&model, &data, 0.01);
         let x = [0.1, -0.2];
-        let levels = model.levels(&x).unwrap();
+        let levels = model.compute(&x).unwrap().levels;
         let linear = Linear::new(&problem, &x, &levels);
         let plausible: Vec<Vec<usize>> = problem.data.iter().map(|d| linear.plausible(d, 0.3)).collect();
         let found = best(&linear, &problem.data, &plausible, 5);
@@ -134,7 +147,7 @@ mod tests {
                 }
             }
         }
-        assert_eq!(count(&plausible), (all.len(), true));
+        assert_eq!(count(&problem, &plausible), (all.len(), true));
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         assert!(found.complete && all.len() > 20, "{}", all.len());
         for (found, expected) in found.best.iter().zip(&all) {

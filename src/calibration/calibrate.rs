@@ -1,9 +1,9 @@
 //! The whole calibration: assignments, fits, and what they are worth.
 
-use super::fit::misfit;
 use super::knowledge::left_open;
 use super::linear::Linear;
-use super::{Chance, Fit, Knowledge, Level, Levels, Model, Problem, Trials, assignments, fit};
+use super::residuals::misfit;
+use super::{Chance, Computed, Fit, Knowledge, Level, Model, Problem, Trials, assignments, fit};
 use crate::error::{Error, Result};
 use crate::progress::Observer;
 use rayon::prelude::*;
@@ -29,8 +29,8 @@ pub struct Options {
 /// A calibrated model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Calibration {
-    /// The levels at the start.
-    pub before: Levels,
+    /// What the model gives at the start.
+    pub before: Computed,
     /// The fitted assignments, the least χ² first.
     pub ranked: Vec<Ranked>,
     /// How many assignments are plausible, or that there are at least so many where `all_counted` is false.
@@ -67,6 +67,8 @@ pub struct Ranked {
     pub linear_chi2: f64,
     /// max |f/y − 1|.
     pub largest_error: f64,
+    /// The least MAC of a measured shape with its level; none without shapes.
+    pub least_likeness: Option<f64>,
     /// exp(−Δχ²/2) beside the best.
     pub weight: f64,
 }
@@ -79,6 +81,8 @@ pub struct LeftOut {
     /// What they predict for it \[Hz\]; `None` where the level is not found, or where what the others leave open moves it by
     /// more than the deviation of the datum.
     pub predicted_hz: Option<f64>,
+    /// MAC of its shape, if it has one, with the one that they predict; likewise `None`.
+    pub likeness: Option<f64>,
     /// Whether the fit converged.
     pub converged: bool,
 }
@@ -94,12 +98,12 @@ pub fn calibrate(
     options: &Options,
     observer: &dyn Observer,
 ) -> Result<Calibration> {
-    let before = model.levels(start)?;
-    let linear = Linear::new(problem, start, &before);
+    let before = model.compute(start)?;
+    let linear = Linear::new(problem, start, &before.levels);
     let plausible: Vec<Vec<usize>> =
         problem.data.iter().map(|datum| linear.plausible(datum, options.reach)).collect();
     let mut found = assignments::best(&linear, &problem.data, &plausible, FITTED);
-    let (counted, all_counted) = assignments::count(&plausible);
+    let (counted, all_counted) = assignments::count(problem, &plausible);
     if found.best.is_empty() {
         return Err(nothing_near(problem, &plausible, options.reach));
     }
@@ -111,7 +115,8 @@ pub fn calibrate(
         let fit = fit(model, problem, assignment, (start, &before))?;
         observer.advance(1);
         Ok(Ranked {
-            largest_error: largest_error(problem, assignment, &fit.levels),
+            largest_error: largest_error(problem, assignment, &fit.computed),
+            least_likeness: least_likeness(problem, assignment, &fit.computed),
             assignment: assignment.clone(),
             linear_chi2: *linear_chi2,
             weight: 0.0,
@@ -130,10 +135,12 @@ pub fn calibrate(
         true => leave_one_out(model, problem, best, observer)?,
         false => Vec::new(),
     };
-    let chance = (options.chance_draws > 0).then(|| {
-        let linear = Linear::new(problem, &best.fit.x, &best.fit.levels);
-        let own = (best.fit.chi2, best.largest_error);
-        Chance::new(problem, &linear, options.reach, options.chance_draws, own)
+    let chance = (options.chance_draws > 0 && !problem.data.is_empty()).then(|| {
+        let problem = problem.frequencies_alone();
+        let linear = Linear::new(&problem, &best.fit.x, &best.fit.computed.levels);
+        let (chi2, x) = linear.least(&linear.misfit(&problem.data, &best.assignment));
+        let own = (chi2, linear.largest_error(&problem.data, &best.assignment, &x));
+        Chance::new(&linear, options.reach, options.chance_draws, own)
     });
     let trials = match options.trials {
         0 => None,
@@ -153,11 +160,22 @@ pub fn calibrate(
 }
 
 /// max |f/y − 1| of an assignment; infinite where a level is not found.
-fn largest_error(problem: &Problem, assignment: &[usize], levels: &Levels) -> f64 {
+fn largest_error(problem: &Problem, assignment: &[usize], computed: &Computed) -> f64 {
     let error = |(datum, k): (&super::Datum, &usize)| {
-        levels[*k].as_ref().map_or(f64::INFINITY, |l| (l.frequency_hz / datum.frequency_hz - 1.0).abs())
+        computed.levels[*k]
+            .as_ref()
+            .map_or(f64::INFINITY, |l| (l.frequency_hz / datum.frequency_hz - 1.0).abs())
     };
     problem.data.iter().zip(assignment).map(error).fold(0.0, f64::max)
+}
+
+/// The least MAC of a measured shape with its level; none without shapes.
+fn least_likeness(problem: &Problem, assignment: &[usize], computed: &Computed) -> Option<f64> {
+    let each = problem.data.iter().zip(assignment).filter_map(|(datum, k)| {
+        let (shape, level) = (datum.shape.as_ref()?, computed.levels[*k].as_ref());
+        Some(level.and_then(|level| level.span.as_ref()).map_or(0.0, |span| span.likeness(shape)))
+    });
+    each.reduce(f64::min)
 }
 
 /// Fits all data but one, each in turn, and predicts that one. Nothing where the others are fewer than the unknowns: what
@@ -168,7 +186,7 @@ fn leave_one_out(
     best: &Ranked,
     observer: &dyn Observer,
 ) -> Result<Vec<LeftOut>> {
-    if problem.degrees_of_freedom() == 0 {
+    if problem.degrees_of_freedom(&best.assignment, &best.fit.computed) == 0 {
         return Ok(Vec::new());
     }
     let n = problem.data.len();
@@ -177,16 +195,18 @@ fn leave_one_out(
         let (mut others, mut assignment) = (problem.clone(), best.assignment.clone());
         others.data.remove(out);
         assignment.remove(out);
-        let found = fit(model, &others, &assignment, (&best.fit.x, &best.fit.levels))?;
+        let found = fit(model, &others, &assignment, (&best.fit.x, &best.fit.computed))?;
         observer.advance(1);
-        let level = found.levels[best.assignment[out]].as_ref();
-        let known = misfit(&others, &assignment, &found.x, &found.levels).is_finite();
-        let told = |level: &&Level| {
-            let open = left_open(&others, &assignment, &found.levels, &level.slope);
-            known && open <= problem.data[out].deviation
+        let level = found.computed.levels[best.assignment[out]].as_ref();
+        let known = misfit(&others, &assignment, &found.x, &found.computed).is_finite();
+        let datum = &problem.data[out];
+        let told = |level: &Level, what: usize| {
+            known && left_open(&others, &assignment, &found.computed, (datum, level))[what] <= 1.0
         };
+        let likeness = |level: &Level| Some(level.span.as_ref()?.likeness(datum.shape.as_ref()?));
         Ok(LeftOut {
-            predicted_hz: level.filter(told).map(|level| level.frequency_hz),
+            predicted_hz: level.filter(|level| told(level, 0)).map(|level| level.frequency_hz),
+            likeness: level.filter(|level| told(level, 1)).and_then(likeness),
             converged: found.converged,
             x: found.x,
         })
@@ -202,9 +222,12 @@ fn nothing_near(problem: &Problem, plausible: &[Vec<usize>], reach: f64) -> Erro
     let found = if alone.is_empty() {
         "there are more measured frequencies than modes near them".to_string()
     } else {
-        format!("no computed mode comes within {:.0} % of {}", 100.0 * reach, alone.join(", "))
+        let like =
+            if problem.data.iter().any(|d| d.shape.is_some()) { ", and is like its shape" } else { "" };
+        format!("no computed mode comes within {:.0} % of {}{like}", 100.0 * reach, alone.join(", "))
     };
-    let help = "Widen the bounds of the parameters or `mode_reach`, or leave the frequency out";
+    let help = "Widen the bounds of the parameters or `mode_reach`, or leave the frequency, or with `shapes = false` the \
+                measured shapes, out";
     Error::analysis("assigning modes to measured frequencies", found, help)
 }
 
@@ -219,7 +242,7 @@ mod tests {
     fn the_assignment_that_made_the_data_wins() {
         let model = Powers::new(9, 2, 2);
         let truth = [0.9, -0.6];
-        let levels = model.levels(&truth).unwrap();
+        let levels = model.compute(&truth).unwrap().levels;
         let chosen = [1, 3, 4, 6, 7];
         let noise = [1.001, 0.9992, 1.0006, 0.9995, 1.0004];
         let data: Vec<f64> =
@@ -258,7 +281,7 @@ mod tests {
         // The second unknown moves the last level alone.
         model.exponents.iter_mut().for_each(|a| a[1] = 0.0);
         model.exponents[3][1] = 0.1;
-        let levels = model.levels(&[0.3, -0.4]).unwrap();
+        let levels = model.compute(&[0.3, -0.4]).unwrap().levels;
         let data: Vec<f64> = levels.iter().flatten().map(|level| level.frequency_hz).collect();
         let problem = problem(&model, &data, 0.002);
         let options = Options { reach: 0.02, chance_draws: 0, trials: 0, ..ALL };

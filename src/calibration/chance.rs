@@ -1,8 +1,8 @@
 //! How often as good a match arises by chance.
 
+use super::Datum;
 use super::assignments;
 use super::linear::Linear;
-use super::{Datum, Problem};
 use crate::linalg::random::Random;
 use rayon::prelude::*;
 
@@ -10,7 +10,8 @@ use rayon::prelude::*;
 ///
 /// Each draw replaces the measured frequencies of every set by as many that are log-uniform between the lowest and the
 /// highest of them, and fits the unknowns to them with the best assignment, on the model linearised at the calibrated values.
-/// Frequencies that no level can reach are no match.
+/// Frequencies that no level can reach are no match. It is about the frequencies alone: shapes take no part in it, on either
+/// side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Chance {
     /// How many draws.
@@ -28,21 +29,21 @@ impl Chance {
         (as_good + 1) as f64 / (self.draws + 1) as f64
     }
 
-    /// Draws, and compares with the data at their own `chi2` and `largest_error`.
+    /// Draws, and compares with the data at their own χ² and largest error. The problem has no shapes.
     pub(super) fn new(
-        problem: &Problem,
         linear: &Linear,
         reach: f64,
         draws: usize,
         (chi2, largest_error): (f64, f64),
     ) -> Chance {
+        let problem = linear.problem;
         let spans: Vec<[f64; 2]> = problem.data.iter().map(|datum| span(&problem.data, datum.set)).collect();
         let mut random = Random::new();
         let mut drawn = || -> Vec<Datum> {
             let each = problem.data.iter().zip(&spans);
             each.map(|(datum, [low, high])| {
                 let part = 0.5 * (random.next() + 1.0);
-                Datum { frequency_hz: (low + part * (high - low)).exp(), ..*datum }
+                Datum { frequency_hz: (low + part * (high - low)).exp(), ..datum.clone() }
             })
             .collect()
         };
@@ -69,27 +70,26 @@ fn span(data: &[Datum], set: usize) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Level, Levels, Unknown};
+    use super::super::samples::level;
+    use super::super::{Level, Problem, Unknown};
     use super::*;
 
     /// Levels a fixed ratio apart and no free unknown: what chance does is known.
     #[test]
     fn rigid_levels_are_matched_as_often_as_geometry_says() {
         // Levels at 1, e^0.1, …; a drawn frequency lies within ±1 % of one of them in a share 0.2 of all cases.
-        let levels: Levels = (0..11)
-            .map(|k| {
-                let frequency_hz = 100.0 * (0.1 * f64::from(k)).exp();
-                Some(Level { frequency_hz, slope: vec![0.0], split: vec![0.0] })
-            })
-            .collect();
-        let datum = |f: f64| Datum { set: 0, frequency_hz: f, deviation: 0.01 };
+        let levels: Vec<Option<Level>> =
+            (0..11).map(|k| Some(level(100.0 * (0.1 * f64::from(k)).exp(), vec![0.0]))).collect();
+        let datum = |f: f64| Datum { set: 0, frequency_hz: f, deviation: 0.01, shape: None };
         let problem = Problem {
             unknowns: vec![Unknown { bounds: [-1.0, 1.0], expected: None }],
             data: vec![datum(100.0), datum(100.0 * 1.0f64.exp())],
             level_sets: vec![0; 11],
+            level_modes: vec![1; 11],
+            lines: Vec::new(),
         };
         let linear = Linear::new(&problem, &[0.0], &levels);
-        let chance = Chance::new(&problem, &linear, 0.2, 4000, (1.0, 0.01));
+        let chance = Chance::new(&linear, 0.2, 4000, (1.0, 0.01));
         // Both near different levels: 0.2² × 9/10 or so; the two may not share a level.
         let share = chance.by_error as f64 / 4000.0;
         assert!((share - 0.2 * 0.2 * 0.9).abs() < 0.012, "{share}");

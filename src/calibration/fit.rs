@@ -1,7 +1,8 @@
 //! Bounded nonlinear least squares: Levenberg and Marquardt's method with the bounds in the subproblem.
 
 use super::quadratic::least_in_box;
-use super::{Level, Levels, Model, Problem};
+use super::residuals::Residuals;
+use super::{Computed, Model, Problem};
 use crate::error::Result;
 use nalgebra::{DMatrix, DVector};
 
@@ -20,8 +21,8 @@ const SMALLEST_STEP: f64 = 1e-10;
 pub struct Fit {
     /// The unknowns.
     pub x: Vec<f64>,
-    /// Every level there.
-    pub levels: Levels,
+    /// What the model gives there.
+    pub computed: Computed,
     /// χ².
     pub chi2: f64,
     /// Accepted and refused steps.
@@ -42,25 +43,9 @@ struct Here {
 
 impl Here {
     /// `None` where a level of the assignment is not found.
-    fn new(problem: &Problem, assignment: &[usize], x: &[f64], levels: &Levels) -> Option<Here> {
-        let n = problem.unknowns.len();
-        let mut rows: Vec<(f64, Vec<f64>)> = Vec::with_capacity(problem.n_facts());
-        for (datum, k) in problem.data.iter().zip(assignment) {
-            let level: &Level = levels[*k].as_ref()?;
-            let residual = (level.frequency_hz / datum.frequency_hz).ln() / datum.deviation;
-            rows.push((residual, level.slope.iter().map(|g| g / datum.deviation).collect()));
-        }
-        for (j, unknown) in problem.unknowns.iter().enumerate() {
-            if let Some(expected) = unknown.expected {
-                let row = (0..n).map(|k| f64::from(u8::from(j == k))).collect();
-                rows.push((x[j] - expected, row));
-            }
-        }
-        let finite = rows.iter().all(|(r, row)| r.is_finite() && row.iter().all(|v| v.is_finite()));
-        finite.then(|| Here {
-            residuals: DVector::from_iterator(rows.len(), rows.iter().map(|r| r.0)),
-            jacobian: DMatrix::from_fn(rows.len(), n, |i, j| rows[i].1[j]),
-        })
+    fn new(problem: &Problem, assignment: &[usize], x: &[f64], computed: &Computed) -> Option<Here> {
+        let all = Residuals::all(problem, assignment, x, computed)?;
+        Some(Here { residuals: all.vector(), jacobian: all.jacobian(x.len()) })
     }
 
     fn chi2(&self) -> f64 {
@@ -68,12 +53,7 @@ impl Here {
     }
 }
 
-/// χ² of an assignment at `x`, whose `levels` are known; infinite where a level is not found.
-pub(super) fn misfit(problem: &Problem, assignment: &[usize], x: &[f64], levels: &Levels) -> f64 {
-    Here::new(problem, assignment, x, levels).map_or(f64::INFINITY, |here| here.chi2())
-}
-
-/// The least χ² of `assignment` inside the bounds, from `start`, where the levels are known.
+/// The least χ² of `assignment` inside the bounds, from a start where the model is computed.
 ///
 /// Each step d is the least value of ½ dᵀ(JᵀJ + λD)d + (Jᵀr)ᵀd inside the bounds, D the diagonal of JᵀJ: Levenberg and
 /// Marquardt's step with the bounds as an active set (Nocedal and Wright, Numerical Optimization, 2nd ed., ch. 10 and 16). λ
@@ -85,18 +65,18 @@ pub fn fit(
     model: &dyn Model,
     problem: &Problem,
     assignment: &[usize],
-    (x, levels): (&[f64], &Levels),
+    (x, computed): (&[f64], &Computed),
 ) -> Result<Fit> {
     let mut fit = Fit {
         x: x.to_vec(),
-        levels: levels.clone(),
+        computed: computed.clone(),
         chi2: f64::INFINITY,
         iterations: 0,
         evaluations: 0,
         gradient: f64::INFINITY,
         converged: false,
     };
-    let Some(mut here) = Here::new(problem, assignment, x, levels) else { return Ok(fit) };
+    let Some(mut here) = Here::new(problem, assignment, x, computed) else { return Ok(fit) };
     fit.chi2 = here.chi2();
     let (mut damping, mut growth) = (1e-4, 2.0);
     loop {
@@ -118,17 +98,17 @@ pub fn fit(
             return Ok(fit);
         }
         let moved: Vec<f64> = problem.inside(&fit.x.iter().zip(&d).map(|(x, d)| x + d).collect::<Vec<_>>());
-        let levels = model.levels(&moved)?;
+        let computed = model.compute(&moved)?;
         fit.iterations += 1;
         fit.evaluations += 1;
-        let there = Here::new(problem, assignment, &moved, &levels).filter(|there| there.chi2() < fit.chi2);
+        let there = Here::new(problem, assignment, &moved, &computed).filter(|there| there.chi2() < fit.chi2);
         match there {
             Some(there) => {
                 let expected = -(2.0 * &g + &h * &d).dot(&d);
                 let ratio = (fit.chi2 - there.chi2()) / expected.max(f64::MIN_POSITIVE);
                 damping *= (1.0 - (2.0 * ratio - 1.0).powi(3)).max(0.1);
                 growth = 2.0;
-                (fit.x, fit.levels, fit.chi2) = (moved, levels, there.chi2());
+                (fit.x, fit.computed, fit.chi2) = (moved, computed, there.chi2());
                 here = there;
             }
             None => {
@@ -151,6 +131,7 @@ fn projected(problem: &Problem, x: &[f64], h: &DMatrix<f64>, g: &DVector<f64>) -
 
 #[cfg(test)]
 mod tests {
+    use super::super::residuals::misfit;
     use super::super::samples::{Powers, problem};
     use super::*;
 
@@ -159,10 +140,10 @@ mod tests {
         let model = Powers::new(5, 3, 0);
         let truth = [0.7, -1.1, 0.4];
         let exact: Vec<f64> =
-            model.levels(&truth).unwrap().iter().flatten().map(|level| level.frequency_hz).collect();
+            model.compute(&truth).unwrap().levels.iter().flatten().map(|level| level.frequency_hz).collect();
         let problem = problem(&model, &exact, 0.005);
         let start = [0.0; 3];
-        let fit = fit(&model, &problem, &[0, 1, 2, 3, 4], (&start, &model.levels(&start).unwrap())).unwrap();
+        let fit = fit(&model, &problem, &[0, 1, 2, 3, 4], (&start, &model.compute(&start).unwrap())).unwrap();
         assert!(fit.converged && fit.chi2 < 1e-10 && fit.iterations < 15, "{fit:?}");
         assert!(fit.x.iter().zip(truth).all(|(x, t)| (x - t).abs() < 1e-6), "{:?}", fit.x);
     }
@@ -172,16 +153,16 @@ mod tests {
         let model = Powers::new(5, 2, 3);
         let truth = [2.6, -0.5];
         let exact: Vec<f64> =
-            model.levels(&truth).unwrap().iter().flatten().map(|level| level.frequency_hz).collect();
+            model.compute(&truth).unwrap().levels.iter().flatten().map(|level| level.frequency_hz).collect();
         let mut problem = problem(&model, &exact, 0.01);
         problem.unknowns[1].expected = Some(0.2);
         let start = [0.0; 2];
         let assignment = [0, 1, 2, 3, 4];
-        let found = fit(&model, &problem, &assignment, (&start, &model.levels(&start).unwrap())).unwrap();
+        let found = fit(&model, &problem, &assignment, (&start, &model.compute(&start).unwrap())).unwrap();
         assert!(found.converged && found.x[0] == 2.0 && found.chi2 > 0.01, "{found:?}");
         for other in [[1.99, found.x[1]], [2.0, found.x[1] + 0.01], [2.0, found.x[1] - 0.01]] {
-            let levels = model.levels(&other).unwrap();
-            assert!(misfit(&problem, &assignment, &other, &levels) > found.chi2);
+            let there = model.compute(&other).unwrap();
+            assert!(misfit(&problem, &assignment, &other, &there) > found.chi2);
         }
     }
 }

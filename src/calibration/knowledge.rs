@@ -1,6 +1,7 @@
 //! What the data determine: singular values of the sensitivity, covariance, intervals.
 
-use super::{Fit, Levels, Problem};
+use super::residuals::Residuals;
+use super::{Computed, Datum, Fit, Level, Problem};
 use nalgebra::DMatrix;
 
 /// Standard deviations either side of the mean that hold 95 % of a normal distribution.
@@ -15,7 +16,7 @@ pub type Interval = [f64; 2];
 
 /// What is known of the unknowns after the fit, the model taken as linear near it.
 ///
-/// W_ij = (∂ ln f_i/∂x_j)/s_i is the sensitivity in standard deviations of the data. With P = 1 for each unknown that was
+/// W_ij = ∂r_i/∂x_j is the sensitivity in standard deviations of the data, (∂ ln f_i/∂x_j)/s_i of a frequency. With P = 1 for each unknown that was
 /// expected, and 0 for the others, the covariance is (WᵀW + P)⁻¹ (Mottershead and Friswell, J. Sound Vib. 167 (1993) 347).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Knowledge {
@@ -31,6 +32,8 @@ pub struct Knowledge {
     pub intervals: Vec<Interval>,
     /// 95 %: Student's t with the degrees of freedom, deviations scaled by √(χ²/ν); `None` where ν = 0.
     pub scaled_intervals: Option<Vec<Interval>>,
+    /// ν: facts beyond the number of unknowns.
+    pub freedom: usize,
     /// χ²/ν.
     pub reduced_chi2: Option<f64>,
     /// The probability of a χ² at least as large when model and deviations are right.
@@ -41,7 +44,7 @@ impl Knowledge {
     /// What the fit of `assignment` leaves known.
     pub(super) fn new(problem: &Problem, assignment: &[usize], fit: &Fit) -> Knowledge {
         let n = problem.unknowns.len();
-        let (w, h) = sensitivity(problem, assignment, &fit.levels);
+        let (w, h) = sensitivity(problem, assignment, &fit.computed);
         let svd = w.svd(false, true);
         let mut order: Vec<usize> = (0..n).collect();
         order.sort_by(|a, b| svd.singular_values[*b].total_cmp(&svd.singular_values[*a]));
@@ -53,13 +56,14 @@ impl Knowledge {
             let product = deviations[i] * deviations[j];
             if product > 0.0 && product.is_finite() { covariance[(i, j)] / product } else { f64::NAN }
         };
-        let freedom = problem.degrees_of_freedom();
+        let freedom = problem.degrees_of_freedom(assignment, &fit.computed);
         let around = |j: usize, half: f64| -> Interval {
             let [lower, upper] = problem.unknowns[j].bounds;
             [(fit.x[j] - half).max(lower), (fit.x[j] + half).min(upper)]
         };
         let reduced_chi2 = (freedom > 0).then(|| fit.chi2 / freedom as f64);
         Knowledge {
+            freedom,
             singular_values: order.iter().map(|k| svd.singular_values[*k]).collect(),
             directions,
             correlations: (0..n).map(|i| (0..n).map(|j| correlation(i, j)).collect()).collect(),
@@ -91,15 +95,12 @@ impl Knowledge {
 }
 
 /// W, and WᵀW + P.
-fn sensitivity(problem: &Problem, assignment: &[usize], levels: &Levels) -> (DMatrix<f64>, DMatrix<f64>) {
+fn sensitivity(problem: &Problem, assignment: &[usize], computed: &Computed) -> (DMatrix<f64>, DMatrix<f64>) {
     let n = problem.unknowns.len();
-    let slope = |i: usize, j: usize| {
-        let level = levels[assignment[i]].as_ref();
-        level.map_or(0.0, |level| level.slope[j] / problem.data[i].deviation)
-    };
+    let measured = Residuals::measured(problem, assignment, computed).jacobian(n);
     // Rows of zeros leave the singular values as they are, and there are then as many as unknowns.
-    let rows = problem.data.len().max(n);
-    let w = DMatrix::from_fn(rows, n, |i, j| if i < problem.data.len() { slope(i, j) } else { 0.0 });
+    let rows = measured.nrows().max(n);
+    let w = measured.resize_vertically(rows, 0.0);
     let mut h = w.tr_mul(&w);
     for (j, unknown) in problem.unknowns.iter().enumerate() {
         h[(j, j)] += if unknown.expected.is_some() { 1.0 } else { 0.0 };
@@ -107,13 +108,21 @@ fn sensitivity(problem: &Problem, assignment: &[usize], levels: &Levels) -> (DMa
     (w, h)
 }
 
-/// How much a level with this `slope` moves, |Δ ln f|, when what the data leave open moves by its unit: the part of the slope
-/// along the directions that they determine no better than the bounds do.
-pub(super) fn left_open(problem: &Problem, assignment: &[usize], levels: &Levels, slope: &[f64]) -> f64 {
-    let eigen = sensitivity(problem, assignment, levels).1.symmetric_eigen();
-    let open = (0..slope.len()).filter(|k| eigen.eigenvalues[*k] < 1.0);
-    let along = |k: usize| eigen.eigenvectors.column(k).iter().zip(slope).map(|(v, g)| v * g).sum::<f64>();
-    open.map(|k| along(k).powi(2)).sum::<f64>().sqrt()
+/// How much frequency and shape of a level move, in standard deviations of the datum beside it, when what the data leave open
+/// moves by its unit: along the directions that they determine no better than the bounds do. Of the shape the root mean square
+/// of its components.
+pub(super) fn left_open(
+    problem: &Problem,
+    assignment: &[usize],
+    computed: &Computed,
+    (datum, level): (&Datum, &Level),
+) -> [f64; 2] {
+    let eigen = sensitivity(problem, assignment, computed).1.symmetric_eigen();
+    let n = problem.unknowns.len();
+    let open: Vec<usize> = (0..n).filter(|k| eigen.eigenvalues[*k] < 1.0).collect();
+    let moved = Residuals::of(datum, level).jacobian(n) * eigen.eigenvectors.select_columns(&open);
+    let components = (moved.nrows() - 1).max(1) as f64;
+    [moved.row(0).norm(), (moved.rows_range(1..).norm_squared() / components).sqrt()]
 }
 
 /// The vector with its largest entry positive.
@@ -139,8 +148,8 @@ fn student(freedom: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::samples::{Powers, problem};
-    use super::super::{Level, Unknown};
+    use super::super::Unknown;
+    use super::super::samples::{Powers, level, problem};
     use super::*;
 
     #[test]
@@ -154,13 +163,13 @@ mod tests {
     fn a_straight_line_has_the_covariance_of_the_textbook() {
         // ln f_i = a + b t_i with deviation s: var b = s²/Σ(t − t̄)², var a = s² Σt²/(n Σ(t − t̄)²).
         let t = [-1.0, 0.0, 2.0, 3.0];
-        let level = |t: &f64| Some(Level { frequency_hz: 100.0, slope: vec![1.0, *t], split: vec![0.0; 2] });
+        let straight = |t: &f64| Some(level(100.0, vec![1.0, *t]));
         let model = Powers::new(4, 2, 0);
         let mut problem = problem(&model, &[101.0, 99.0, 100.0, 100.0], 0.01);
         problem.unknowns = vec![Unknown { bounds: [-9.0, 9.0], expected: None }; 2];
         let fit = Fit {
             x: vec![0.0; 2],
-            levels: t.iter().map(level).collect(),
+            computed: Computed { levels: t.iter().map(straight).collect(), lines: Vec::new() },
             chi2: 6.0,
             iterations: 0,
             evaluations: 0,
@@ -181,7 +190,7 @@ mod tests {
         problem.unknowns.push(Unknown { bounds: [-1.0, 1.0], expected: None });
         let mut fit = fit;
         fit.x.push(0.3);
-        fit.levels.iter_mut().flatten().for_each(|level| level.slope.push(0.0));
+        fit.computed.levels.iter_mut().flatten().for_each(|level| level.slope.push(0.0));
         let known = Knowledge::new(&problem, &[0, 1, 2, 3], &fit);
         assert!(known.determined() == 2 && known.condition().is_infinite());
         assert_eq!(known.intervals[2], [-1.0, 1.0]);

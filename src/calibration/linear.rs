@@ -1,15 +1,21 @@
 //! The model linearised at one place: what a fit would find there, in microseconds.
 
 use super::quadratic::least_in_box;
-use super::{Datum, Level, Levels, Problem};
+use super::{Datum, Level, Problem};
 use nalgebra::{DMatrix, DVector};
 
-/// ln f_k(x) ≈ ln f_k(x₀) + g_k·(x − x₀).
+/// A mode whose shape is less like the measured one than this is not what was measured, however near its frequency.
+pub const LIKE: f64 = 0.1;
+
+/// ln f_k(x) ≈ ln f_k(x₀) + g_k·(x − x₀); shapes stay as they are at x₀, where the slopes of modes that mix promise too much, and
+/// frequency responses, whose peaks must meet before a slope says anything, take no part.
 #[derive(Debug, Clone)]
 pub(super) struct Linear<'a> {
-    problem: &'a Problem,
+    pub(super) problem: &'a Problem,
     x: Vec<f64>,
-    levels: &'a Levels,
+    levels: &'a [Option<Level>],
+    /// χ² of the shape of each datum with each level.
+    shapes: Vec<Vec<f64>>,
 }
 
 /// χ²(x) ≈ constant + 2 (½ dᵀHd + gᵀd), d = x − x₀, of the residuals that were added.
@@ -31,12 +37,20 @@ impl Misfit {
 }
 
 impl<'a> Linear<'a> {
-    pub(super) fn new(problem: &'a Problem, x: &[f64], levels: &'a Levels) -> Self {
-        Linear { problem, x: x.to_vec(), levels }
+    pub(super) fn new(problem: &'a Problem, x: &[f64], levels: &'a [Option<Level>]) -> Self {
+        let apart = |datum: &Datum, level: &Option<Level>| match (&datum.shape, level.as_ref()) {
+            (Some(shape), Some(Level { span: Some(span), .. })) => {
+                let size: f64 = shape.iter().map(|v| v * v).sum();
+                (1.0 - span.likeness(shape)) * size
+            }
+            _ => 0.0,
+        };
+        let row = |datum: &Datum| levels.iter().map(|level| apart(datum, level)).collect();
+        Linear { problem, x: x.to_vec(), levels, shapes: problem.data.iter().map(row).collect() }
     }
 
-    /// The levels that may be what was measured: of the same set, and inside the bounds they come as near as a factor
-    /// 1 + `reach`. They are in the order of the levels.
+    /// The levels that may be what was measured: of the same set, of a shape that is at all like the measured one, and inside
+    /// the bounds they come as near as a factor 1 + `reach`. They are in the order of the levels.
     pub(super) fn plausible(&self, datum: &Datum, reach: f64) -> Vec<usize> {
         let y = datum.frequency_hz.ln();
         let near = |level: &Level| {
@@ -48,8 +62,14 @@ impl<'a> Linear<'a> {
             }
             low - reach.ln_1p() <= y && y <= high + reach.ln_1p()
         };
+        let like = |level: &Level| match (&datum.shape, &level.span) {
+            (Some(shape), Some(span)) => span.likeness(shape) >= LIKE,
+            (Some(_), None) => false,
+            (None, _) => true,
+        };
         let same = |k: &usize| self.problem.level_sets[*k] == datum.set;
-        (0..self.levels.len()).filter(same).filter(|k| self.levels[*k].as_ref().is_some_and(near)).collect()
+        let may = |k: &usize| self.levels[*k].as_ref().is_some_and(|level| near(level) && like(level));
+        (0..self.levels.len()).filter(same).filter(may).collect()
     }
 
     /// The misfit of what was expected alone.
@@ -64,9 +84,13 @@ impl<'a> Linear<'a> {
         misfit
     }
 
-    /// `misfit` with one more datum, which is taken for a level that was found.
-    pub(super) fn with(&self, misfit: &Misfit, datum: &Datum, level: usize) -> Misfit {
+    /// `misfit` with one more of the data, which is taken for a level that was found.
+    pub(super) fn with(&self, misfit: &Misfit, (data, datum): (&[Datum], usize), level: usize) -> Misfit {
         let mut more = misfit.clone();
+        if data[datum].shape.is_some() {
+            more.constant += self.shapes[datum][level];
+        }
+        let datum = &data[datum];
         if let Some(level) = &self.levels[level] {
             let at = (level.frequency_hz / datum.frequency_hz).ln() / datum.deviation;
             more.add(at, |j| level.slope[j] / datum.deviation);
@@ -76,8 +100,8 @@ impl<'a> Linear<'a> {
 
     /// The misfit of what was expected and of all data, taken for these levels.
     pub(super) fn misfit(&self, data: &[Datum], assignment: &[usize]) -> Misfit {
-        let each = data.iter().zip(assignment);
-        each.fold(self.expected(), |misfit, (datum, level)| self.with(&misfit, datum, *level))
+        let each = assignment.iter().enumerate();
+        each.fold(self.expected(), |misfit, (datum, level)| self.with(&misfit, (data, datum), *level))
     }
 
     /// The least χ² inside the bounds, and where it is.

@@ -1,9 +1,16 @@
-//! Scalars of a model found from measured frequencies, and what the agreement is worth.
+//! Scalars of a model found from measured frequencies, shapes and frequency responses, and what the agreement is worth.
 //!
 //! Unknowns x and computed frequencies f(x), *levels* (a mode, or a double pair), stand against measured ones y. With an
 //! assignment a of measured frequencies to levels, the residuals are
 //!
 //!   r_i = ln(f_a(i)(x) / y_i) / s_i   and, where something was known before,   r_j = x_j − x̄_j,
+//!
+//! and beside each measured shape ψ, in standard deviations of a component, (I − P)ψ with the orthogonal projection P on the
+//! motions that the level makes where ψ was measured ([`Span`]): m components less a scale factor for each mode of the level.
+//!
+//! Beside each line of a measured frequency response its logarithm less the measured one, over its standard deviation (Grafe,
+//! Model Updating of Large Structural Dynamics Models Using Measured Response Functions, thesis, Imperial College 1998), which
+//! needs no assignment.
 //!
 //! χ² = Σ r² is least inside the bounds. Every unknown is measured in its own unit: the standard deviation of what was
 //! known before, or half the width of its bounds where nothing was (Mottershead and Friswell, J. Sound Vib. 167 (1993) 347).
@@ -23,29 +30,50 @@ mod knowledge;
 mod linear;
 mod nearby;
 mod quadratic;
+mod residuals;
 #[cfg(test)]
 mod samples;
+mod span;
 mod trials;
 
 pub use calibrate::{Calibration, LeftOut, Options, Ranked, calibrate};
 pub use chance::Chance;
 pub use fit::{Fit, fit};
 pub use knowledge::{Interval, Knowledge};
+pub use linear::LIKE;
+pub use span::{Apart, Span};
 pub use trials::Trials;
 
 use crate::error::Result;
+use residuals::Residuals;
+use std::sync::Arc;
 
-/// Computed frequencies as functions of the unknowns.
+/// What is computed, as a function of the unknowns.
 pub trait Model: Sync {
-    /// Every level at `x`, in the same order for every `x`; `None` where a level is not found.
+    /// Every level and line at `x`, in the same order for every `x`.
     ///
     /// # Errors
     /// A model that cannot be computed at `x`.
-    fn levels(&self, x: &[f64]) -> Result<Levels>;
+    fn compute(&self, x: &[f64]) -> Result<Computed>;
 }
 
-/// The levels of a model at one place; `None` where one is not found.
-pub type Levels = Vec<Option<Level>>;
+/// What a model gives at one place.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Computed {
+    /// The levels; `None` where one is not found.
+    pub levels: Vec<Option<Level>>,
+    /// The lines of its frequency responses.
+    pub lines: Vec<Line>,
+}
+
+/// A frequency response at one frequency.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Line {
+    /// Its logarithm.
+    pub value: f64,
+    /// ∂value/∂x_j.
+    pub slope: Vec<f64>,
+}
 
 /// A computed frequency.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,10 +84,12 @@ pub struct Level {
     pub slope: Vec<f64>,
     /// Of a double level: the two frequencies part with ∂ ln f/∂x_j = slope ± split.
     pub split: Vec<f64>,
+    /// Its motions where shapes were measured; none where no measured shape is like them.
+    pub span: Option<Span>,
 }
 
-/// A measured frequency.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A measured frequency, and a shape if one was measured.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Datum {
     /// It is one of the levels of this set.
     pub set: usize,
@@ -67,6 +97,8 @@ pub struct Datum {
     pub frequency_hz: f64,
     /// s: relative standard deviation of y.
     pub deviation: f64,
+    /// ψ, in standard deviations of one of its components.
+    pub shape: Option<Arc<[f64]>>,
 }
 
 /// An unknown x_j, in a unit in which what was known before has the standard deviation 1.
@@ -87,17 +119,25 @@ pub struct Problem {
     pub data: Vec<Datum>,
     /// The set that each level of the model belongs to.
     pub level_sets: Vec<usize>,
+    /// How many modes each level has: so many data may be that level.
+    pub level_modes: Vec<usize>,
+    /// The measured lines: logarithm and its standard deviation, in the order of the computed ones.
+    pub lines: Vec<[f64; 2]>,
 }
 
 impl Problem {
-    /// Measured frequencies and expectations.
-    pub fn n_facts(&self) -> usize {
-        self.data.len() + self.unknowns.iter().filter(|u| u.expected.is_some()).count()
+    /// Facts beyond the number of unknowns; none when there are no more. Facts are measured frequencies, lines, expectations,
+    /// and the components of measured shapes less the scale factors that fit them to their levels.
+    pub fn degrees_of_freedom(&self, assignment: &[usize], computed: &Computed) -> usize {
+        let measured = Residuals::measured(self, assignment, computed).facts();
+        let expected = self.unknowns.iter().filter(|u| u.expected.is_some()).count();
+        (measured + expected).saturating_sub(self.unknowns.len())
     }
 
-    /// Facts beyond the number of unknowns; none when there are no more.
-    pub fn degrees_of_freedom(&self) -> usize {
-        self.n_facts().saturating_sub(self.unknowns.len())
+    /// The same without shapes and lines.
+    fn frequencies_alone(&self) -> Problem {
+        let data = self.data.iter().map(|datum| Datum { shape: None, ..datum.clone() }).collect();
+        Problem { data, lines: Vec::new(), ..self.clone() }
     }
 
     /// `x` moved inside the bounds.

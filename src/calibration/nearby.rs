@@ -1,64 +1,86 @@
-//! A model near one place: quadratic in ln f, so that thousands of fits cost nothing.
+//! A model near one place: quadratic in ln f and in the lines, linear in the shapes, so that thousands of fits cost nothing.
 
-use super::{Level, Levels, Model, Problem};
+use super::{Computed, Level, Line, Model, Problem};
 use crate::error::Result;
 use rayon::prelude::*;
 
-/// ln f(x) ≈ ln f₀ + gᵀd + ½ dᵀHd, d = x − x₀, with the slopes g + Hd.
+/// ln f(x) ≈ ln f₀ + gᵀd + ½ dᵀHd, d = x − x₀, with the slopes g + Hd, of lines alike; Φ(x) ≈ Φ₀ + Σ d_j ∂Φ/∂x_j.
 pub(super) struct Nearby {
     x: Vec<f64>,
-    levels: Levels,
-    /// H of every level, by rows.
+    here: Computed,
+    /// H of every level and every line, by rows.
     curvature: Vec<Vec<Vec<f64>>>,
 }
 
+/// The slope of a level, or of a line beyond the levels.
+fn slope(computed: &Computed, k: usize) -> Option<&[f64]> {
+    match k.checked_sub(computed.levels.len()) {
+        None => computed.levels[k].as_ref().map(|level| &level.slope[..]),
+        Some(line) => Some(&computed.lines[line].slope),
+    }
+}
+
 impl Nearby {
-    /// The model near `x`, where its `levels` are known: H_jk = (g_j(x + h_k) − g_j(x − h_k))/2h_k, made symmetric, with steps
-    /// of `steps`, shorter towards a bound.
+    /// The model near `x`, where it is known: H_jk = (g_j(x + h_k) − g_j(x − h_k))/2h_k, made symmetric, with steps of
+    /// `steps`, shorter towards a bound.
     pub(super) fn new(
         model: &dyn Model,
         problem: &Problem,
-        (x, levels): (&[f64], &Levels),
+        (x, here): (&[f64], &Computed),
         steps: &[f64],
     ) -> Result<Nearby> {
         let n = x.len();
         let sides: Vec<(usize, f64)> = (0..n).flat_map(|j| [(j, steps[j]), (j, -steps[j])]).collect();
-        let moved = |(j, step): &(usize, f64)| -> Result<(f64, Levels)> {
+        let moved = |(j, step): &(usize, f64)| -> Result<(f64, Computed)> {
             let mut there = x.to_vec();
             there[*j] += step;
             let there = problem.inside(&there);
-            Ok((there[*j] - x[*j], if there[*j] == x[*j] { levels.clone() } else { model.levels(&there)? }))
+            Ok((there[*j] - x[*j], if there[*j] == x[*j] { here.clone() } else { model.compute(&there)? }))
         };
-        let around: Vec<(f64, Levels)> = sides.par_iter().map(moved).collect::<Result<_>>()?;
-        let slope = |levels: &Levels, l: usize, j: usize| levels[l].as_ref().map(|level| level.slope[j]);
+        let around: Vec<(f64, Computed)> = sides.par_iter().map(moved).collect::<Result<_>>()?;
         let rate = |l: usize, j: usize, k: usize| -> f64 {
             let ((up, above), (down, below)) = (&around[2 * k], &around[2 * k + 1]);
-            match (slope(above, l, j), slope(below, l, j)) {
-                (Some(a), Some(b)) if up > down => (a - b) / (up - down),
+            match (slope(above, l), slope(below, l)) {
+                (Some(a), Some(b)) if up > down => (a[j] - b[j]) / (up - down),
                 _ => 0.0,
             }
         };
         let symmetric = |l: usize, j: usize, k: usize| 0.5 * (rate(l, j, k) + rate(l, k, j));
         let of = |l: usize| (0..n).map(|j| (0..n).map(|k| symmetric(l, j, k)).collect()).collect();
-        let curvature = (0..levels.len()).map(of).collect();
-        Ok(Nearby { x: x.to_vec(), levels: levels.clone(), curvature })
+        let curvature = (0..here.levels.len() + here.lines.len()).map(of).collect();
+        Ok(Nearby { x: x.to_vec(), here: here.clone(), curvature })
     }
 }
 
 impl Model for Nearby {
-    fn levels(&self, x: &[f64]) -> Result<Levels> {
+    fn compute(&self, x: &[f64]) -> Result<Computed> {
         let d: Vec<f64> = x.iter().zip(&self.x).map(|(x, x0)| x - x0).collect();
         let dot = |row: &[f64]| row.iter().zip(&d).map(|(a, d)| a * d).sum::<f64>();
+        // How far the value moves, and its slope there.
+        let moved = |slope: &[f64], h: &Vec<Vec<f64>>| -> (f64, Vec<f64>) {
+            let bend: Vec<f64> = h.iter().map(|row| dot(row)).collect();
+            let there = slope.iter().zip(&bend).map(|(g, b)| g + b).collect();
+            (dot(slope) + 0.5 * dot(&bend), there)
+        };
+        let (of_levels, of_lines) = self.curvature.split_at(self.here.levels.len());
         let level = |(level, h): (&Option<Level>, &Vec<Vec<f64>>)| {
             let level = level.as_ref()?;
-            let bend: Vec<f64> = h.iter().map(|row| dot(row)).collect();
+            let (rise, slope) = moved(&level.slope, h);
             Some(Level {
-                frequency_hz: level.frequency_hz * (dot(&level.slope) + 0.5 * dot(&bend)).exp(),
-                slope: level.slope.iter().zip(&bend).map(|(g, b)| g + b).collect(),
+                frequency_hz: level.frequency_hz * rise.exp(),
+                slope,
                 split: level.split.clone(),
+                span: level.span.as_ref().map(|span| span.moved(&d)),
             })
         };
-        Ok(self.levels.iter().zip(&self.curvature).map(level).collect())
+        let line = |(line, h): (&Line, &Vec<Vec<f64>>)| {
+            let (rise, slope) = moved(&line.slope, h);
+            Line { value: line.value + rise, slope }
+        };
+        Ok(Computed {
+            levels: self.here.levels.iter().zip(of_levels).map(level).collect(),
+            lines: self.here.lines.iter().zip(of_lines).map(line).collect(),
+        })
     }
 }
 
@@ -72,10 +94,11 @@ mod tests {
         let model = Powers::new(4, 3, 5);
         let problem = problem(&model, &[300.0], 0.01);
         let x = [0.3, -0.4, 1.9];
-        let levels = model.levels(&x).unwrap();
-        let near = Nearby::new(&model, &problem, (&x, &levels), &[0.5; 3]).unwrap();
+        let here = model.compute(&x).unwrap();
+        let near = Nearby::new(&model, &problem, (&x, &here), &[0.5; 3]).unwrap();
         let there = [0.9, -1.0, 1.2];
-        for (a, b) in near.levels(&there).unwrap().iter().zip(&model.levels(&there).unwrap()) {
+        let (own, exact) = (near.compute(&there).unwrap(), model.compute(&there).unwrap());
+        for (a, b) in own.levels.iter().zip(&exact.levels) {
             let (a, b) = (a.as_ref().unwrap(), b.as_ref().unwrap());
             assert!((a.frequency_hz / b.frequency_hz - 1.0).abs() < 1e-12);
             assert!(a.slope.iter().zip(&b.slope).all(|(a, b)| (a - b).abs() < 1e-12));

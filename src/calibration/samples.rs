@@ -1,14 +1,39 @@
 //! Models with a closed form for the tests.
 
-use super::{Datum, Level, Levels, Model, Problem, Unknown};
+use super::{Computed, Datum, Level, Model, Problem, Span, Unknown};
 use crate::error::Result;
 use crate::linalg::random::Random;
+use nalgebra::DMatrix;
 
 /// f_k = f_k0 exp(Σ a_kj x_j + ½ b (Σ a_kj x_j)²): smooth, with slopes that are known.
 pub(super) struct Powers {
     pub base: Vec<f64>,
     pub exponents: Vec<Vec<f64>>,
     pub bend: f64,
+    /// Measured components of a shape; none for frequencies alone.
+    pub components: usize,
+}
+
+/// A single level without a shape.
+pub(super) fn level(frequency_hz: f64, slope: Vec<f64>) -> Level {
+    let split = vec![0.0; slope.len()];
+    Level { frequency_hz, slope, split, span: None }
+}
+
+/// Motions that turn with the unknowns, each along its own way.
+pub(super) fn turning(components: usize, modes: usize, x: &[f64]) -> Span {
+    turning_as(0, components, modes, x)
+}
+
+/// The same for many levels.
+fn turning_as(level: usize, components: usize, modes: usize, x: &[f64]) -> Span {
+    let phase = |i: usize, k: usize| (1.0 + 0.7 * k as f64 + 0.37 * level as f64) * (i as f64 + 0.5);
+    let way = |i: usize, k: usize, j: usize| (phase(i, k) * (2.3 + j as f64)).cos();
+    let motion = |i: usize, k: usize| {
+        phase(i, k).sin() + x.iter().enumerate().map(|(j, x)| 0.3 * way(i, k, j) * x.sin()).sum::<f64>()
+    };
+    let slope = |j: usize| DMatrix::from_fn(components, modes, |i, k| 0.3 * way(i, k, j) * x[j].cos());
+    Span { motions: DMatrix::from_fn(components, modes, motion), slopes: (0..x.len()).map(slope).collect() }
 }
 
 impl Powers {
@@ -21,27 +46,35 @@ impl Powers {
         let base =
             (0..levels).map(|k| 300.0 * 1.2f64.powi(k as i32) * (1.0 + 0.05 * random.next())).collect();
         let exponents = (0..levels).map(|_| (0..unknowns).map(|_| 0.1 * random.next()).collect()).collect();
-        Powers { base, exponents, bend: 0.5 }
+        Powers { base, exponents, bend: 0.5, components: 0 }
     }
 }
 
 impl Model for Powers {
-    fn levels(&self, x: &[f64]) -> Result<Levels> {
-        let level = |(base, a): (&f64, &Vec<f64>)| {
+    fn compute(&self, x: &[f64]) -> Result<Computed> {
+        let level = |(k, (base, a)): (usize, (&f64, &Vec<f64>))| {
             let s: f64 = a.iter().zip(x).map(|(a, x)| a * x).sum();
             Some(Level {
                 frequency_hz: base * (s + 0.5 * self.bend * s * s).exp(),
                 slope: a.iter().map(|a| a * (1.0 + self.bend * s)).collect(),
                 split: vec![0.0; x.len()],
+                span: (self.components > 0).then(|| turning_as(k, self.components, 1 + k % 2, x)),
             })
         };
-        Ok(self.base.iter().zip(&self.exponents).map(level).collect())
+        let levels = self.base.iter().zip(&self.exponents).enumerate().map(level).collect();
+        Ok(Computed { levels, lines: Vec::new() })
     }
 }
 
 /// Unknowns in ±2 without expectation and measured frequencies of one set.
 pub(super) fn problem(model: &Powers, data: &[f64], deviation: f64) -> Problem {
     let unknowns = vec![Unknown { bounds: [-2.0, 2.0], expected: None }; model.exponents[0].len()];
-    let datum = |f: &f64| Datum { set: 0, frequency_hz: *f, deviation };
-    Problem { unknowns, data: data.iter().map(datum).collect(), level_sets: vec![0; model.base.len()] }
+    let datum = |f: &f64| Datum { set: 0, frequency_hz: *f, deviation, shape: None };
+    Problem {
+        unknowns,
+        data: data.iter().map(datum).collect(),
+        level_sets: vec![0; model.base.len()],
+        level_modes: vec![1; model.base.len()],
+        lines: Vec::new(),
+    }
 }

@@ -2,18 +2,21 @@
 
 use super::knowledge::{Interval, Knowledge};
 use super::nearby::Nearby;
-use super::{Datum, Fit, Model, Problem, Unknown, fit};
+use super::residuals::Residuals;
+use super::{Computed, Datum, Fit, Line, Model, Problem, Span, Unknown, fit};
 use crate::error::Result;
 use crate::linalg::random::Random;
 use rayon::prelude::*;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// The model is looked at no nearer to the truth than this, in units of the unknowns.
 const LEAST_STEP: f64 = 1e-2;
 
 /// Trials with synthetic data (parametric bootstrap): the calibrated values are the truth, each frequency is the computed
-/// one with the stated relative deviation, normally distributed, and what was expected scatters about the truth likewise.
-/// The fits are made to the model near the truth, quadratic in ln f; how far that is from the model itself is told.
+/// one with the stated relative deviation, normally distributed, each shape the computed one nearest to the measured one, its
+/// components with their deviation, lines with theirs, and what was expected scatters about the truth likewise.
+/// The fits are made to the model near the truth, quadratic in ln f and linear in the shapes; how far that is from the model itself is told.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trials {
     /// How many.
@@ -24,8 +27,8 @@ pub struct Trials {
     pub covered: Vec<usize>,
     /// The same for the intervals scaled by χ²/ν; `None` where ν = 0.
     pub scaled_covered: Option<Vec<usize>>,
-    /// The largest difference of ln f between the quadratic model and the model itself, in standard deviations of the datum, at
-    /// the estimates that are furthest from the truth.
+    /// The largest difference of a residual between that model and the model itself, in standard deviations, at the estimates
+    /// that are furthest from the truth.
     pub model_error: f64,
     /// Root mean square of estimate less truth, for each unknown.
     pub scatter: Vec<f64>,
@@ -43,9 +46,9 @@ impl Trials {
         let problems: Vec<Problem> =
             (0..count).map(|_| synthetic(problem, assignment, truth, &mut normal)).collect();
         let steps: Vec<f64> = known.deviations.iter().map(|d| d.clamp(LEAST_STEP, 1.0)).collect();
-        let near = Nearby::new(model, problem, (&truth.x, &truth.levels), &steps)?;
+        let near = Nearby::new(model, problem, (&truth.x, &truth.computed), &steps)?;
         let one = |trial: &Problem| -> Result<(bool, Vec<f64>, Knowledge)> {
-            let found = fit(&near, trial, assignment, (&truth.x, &truth.levels))?;
+            let found = fit(&near, trial, assignment, (&truth.x, &truth.computed))?;
             let known = Knowledge::new(trial, assignment, &found);
             Ok((found.converged, found.x, known))
         };
@@ -83,12 +86,12 @@ fn model_error<'a>(
         .flatten()
         .collect::<Vec<_>>();
     let error = |x: &&Vec<f64>| -> Result<f64> {
-        let (own, exact) = (near.levels(x)?, model.levels(x)?);
-        let each = problem.data.iter().zip(assignment).map(|(datum, k)| match (&own[*k], &exact[*k]) {
-            (Some(a), Some(b)) => (a.frequency_hz / b.frequency_hz).ln().abs() / datum.deviation,
+        let (own, exact) = (near.compute(x)?, model.compute(x)?);
+        let all = |there: &Computed| Residuals::all(problem, assignment, x, there).map(|all| all.values);
+        Ok(match (all(&own), all(&exact)) {
+            (Some(a), Some(b)) => a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max),
             _ => f64::INFINITY,
-        });
-        Ok(each.fold(0.0, f64::max))
+        })
     };
     let errors: Vec<f64> = ends.par_iter().map(error).collect::<Result<_>>()?;
     Ok(errors.into_iter().fold(0.0, f64::max))
@@ -96,8 +99,18 @@ fn model_error<'a>(
 
 fn synthetic(problem: &Problem, assignment: &[usize], truth: &Fit, normal: &mut Normal) -> Problem {
     let datum = |(datum, k): (&Datum, &usize), normal: &mut Normal| {
-        let exact = truth.levels[*k].as_ref().map_or(datum.frequency_hz, |level| level.frequency_hz);
-        Datum { frequency_hz: exact * (datum.deviation * normal.next()).exp(), ..*datum }
+        let level = truth.computed.levels[*k].as_ref();
+        let exact = level.map_or(datum.frequency_hz, |level| level.frequency_hz);
+        let frequency_hz = exact * (datum.deviation * normal.next()).exp();
+        let span = level.and_then(|level| level.span.as_ref());
+        let noisy = |(shape, span): (&Arc<[f64]>, &Span)| {
+            span.nearest(shape).into_iter().map(|v| v + normal.next()).collect::<Arc<[f64]>>()
+        };
+        let shape = datum.shape.as_ref().zip(span).map(noisy);
+        Datum { frequency_hz, shape, ..*datum }
+    };
+    let line = |([_, deviation], line): (&[f64; 2], &Line), normal: &mut Normal| {
+        [line.value + deviation * normal.next(), *deviation]
     };
     let expected = |(unknown, x): (&Unknown, &f64), normal: &mut Normal| Unknown {
         expected: unknown.expected.map(|_| x + normal.next()),
@@ -105,8 +118,9 @@ fn synthetic(problem: &Problem, assignment: &[usize], truth: &Fit, normal: &mut 
     };
     Problem {
         data: problem.data.iter().zip(assignment).map(|pair| datum(pair, normal)).collect(),
+        lines: problem.lines.iter().zip(&truth.computed.lines).map(|pair| line(pair, normal)).collect(),
         unknowns: problem.unknowns.iter().zip(&truth.x).map(|pair| expected(pair, normal)).collect(),
-        level_sets: problem.level_sets.clone(),
+        ..problem.clone()
     }
 }
 
@@ -146,12 +160,12 @@ mod tests {
     fn intervals_hold_the_truth_in_95_of_100_trials() {
         let model = Powers::new(6, 2, 1);
         let truth = [0.2, -0.3];
-        let levels = model.levels(&truth).unwrap();
-        let exact: Vec<f64> = levels.iter().flatten().map(|level| level.frequency_hz).collect();
+        let computed = model.compute(&truth).unwrap();
+        let exact: Vec<f64> = computed.levels.iter().flatten().map(|level| level.frequency_hz).collect();
         let mut problem = problem(&model, &exact, 0.005);
         problem.unknowns[0].expected = Some(0.9);
         let assignment = [0, 1, 2, 3, 4, 5];
-        let start = fit(&model, &problem, &assignment, (&truth, &levels)).unwrap();
+        let start = fit(&model, &problem, &assignment, (&truth, &computed)).unwrap();
         let known = Knowledge::new(&problem, &assignment, &start);
         let trials = Trials::new(&model, &problem, &assignment, (&start, &known), 1000).unwrap();
         assert!(trials.converged == 1000 && trials.model_error < 1e-9);

@@ -1,4 +1,4 @@
-//! `[calibrate]`: scalars of the case to be found from measured frequencies.
+//! `[calibrate]`: scalars of the case to be found from measured modes and frequency responses.
 
 use super::reader::Section;
 use super::units::{NUMBER, dimension_of};
@@ -14,13 +14,17 @@ pub const SQUEAL: &str = "squeal";
 /// Relative standard deviation of a measured frequency that the case does not state.
 const DEVIATION: f64 = 0.005;
 
-/// Scalars to be found from measured frequencies.
+/// Scalars to be found from measured modes and frequency responses.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CalibrateAnalysis {
     /// Names of `[modes.NAME]` with measured frequencies, of `[measured.NAME]`, and `squeal` for those of `[cea]`.
     pub against: Vec<String>,
     /// Relative standard deviation of a measured frequency.
     pub deviation: f64,
+    /// Takes the measured shapes of `[measured.NAME]` in, not its frequencies alone.
+    pub shapes: bool,
+    /// Takes the measured frequency responses of `[measured.NAME]` with `frf` in.
+    pub responses: bool,
     /// A computed mode may be what was measured when, linearised, it comes as near as a factor 1 + this inside the bounds.
     pub mode_reach: f64,
     /// Predicts each measured frequency from the others.
@@ -62,6 +66,8 @@ pub(super) fn read(root: &Section, case: Case) -> Case {
                 "names of [modes.NAME] with measured frequencies, of [measured.NAME], or \"squeal\"",
             ),
             deviation: s.quantity("deviation", NUMBER).positive().or(DEVIATION),
+            shapes: s.boolean("shapes").or(true),
+            responses: s.boolean("responses").or(true),
             mode_reach: s
                 .quantity("mode_reach", NUMBER)
                 .within(Bound::Included(0.0), Bound::Excluded(1.0))
@@ -71,7 +77,7 @@ pub(super) fn read(root: &Section, case: Case) -> Case {
             trials: s.whole("trials").check("at most a million", |n| *n <= 1_000_000).or(0),
             parameter: super::read::collect(s, "parameter", |p| read_parameter(p, &case, scalars.as_deref())),
         };
-        check_against(s, &case, &analysis.against);
+        check_against(s, &case, &analysis);
         check_paths(s, &analysis.parameter);
         analysis
     });
@@ -154,7 +160,8 @@ fn is_scale(path: &str) -> bool {
     matches!(path.split('.').collect::<Vec<_>>()[..], ["modes", _, "frequency_scale"])
 }
 
-fn check_against(s: &Section, case: &Case, against: &[String]) {
+fn check_against(s: &Section, case: &Case, analysis: &CalibrateAnalysis) {
+    let against = &analysis.against;
     let positive = |all: &[f64]| all.iter().all(|hz| *hz > 0.0);
     for (k, name) in against.iter().enumerate() {
         let fault =
@@ -171,12 +178,14 @@ fn check_against(s: &Section, case: &Case, against: &[String]) {
             }
             continue;
         }
-        if let Some(of) = case.measured.get(name).map(|measured| &measured.of) {
+        if let Some(measured) = case.measured.get(name) {
             if case.modes.contains_key(name) {
                 fault(", which is the name of real modes, too", "another name of [measured.NAME]");
             }
-            let modes = of.as_ref().and_then(|of| case.modes.get(of));
-            if modes.is_none_or(|modes| modes.contact == ContactState::Closed) {
+            let modes = measured.of.as_ref().and_then(|of| case.modes.get(of));
+            let known = measured.frf.as_ref().is_some_and(|frf| case.frf.contains_key(frf));
+            let responses = measured.of.is_none() && known && analysis.responses;
+            if !responses && modes.is_none_or(|modes| modes.contact == ContactState::Closed) {
                 fault(" without real modes", &format!("`of` in [measured.{name}]: modes with open contact"));
             }
             continue;

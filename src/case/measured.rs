@@ -29,6 +29,18 @@ pub struct MeasuredData {
     pub damping_ratios: Vec<f64>,
     /// Standard deviation of each frequency over the frequency, where the file does not state it.
     pub deviation: f64,
+    /// Standard deviation of a component of a measured shape over the root mean square of its components.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shape_deviation: Option<f64>,
+    /// Standard deviation of ln |h| at a line of a measured response, in a calibration.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub response_deviation: Option<f64>,
+    /// The lowest and the highest line \[Hz\] of a response that a calibration takes; those of the `[frf]` where not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub response_band: Option<[f64; 2]>,
+    /// The most lines of a response that a calibration takes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub response_lines: Option<usize>,
     /// Where the figures come from.
     pub source: String,
     /// Points of the test by number, in its own frame \[m\], where the file does not have them.
@@ -87,6 +99,13 @@ pub(super) fn read(s: &Section) -> MeasuredData {
             .quantity("deviation", NUMBER)
             .check("a share above 0 and below 1", |v| *v > 0.0 && *v < 1.0)
             .or(0.005),
+        shape_deviation: s.quantity("shape_deviation", NUMBER).positive().optional(),
+        response_deviation: s.quantity("response_deviation", NUMBER).positive().optional(),
+        response_band: s
+            .quantities("response_band", FREQUENCY)
+            .check("two frequencies above zero, the lower one first", |[low, high]| 0.0 < *low && low < high)
+            .optional(),
+        response_lines: s.whole("response_lines").check("at least 2", |n| *n >= 2).optional(),
         source: s.string("source").or(String::new()),
         point: s.section("point", read_points).unwrap_or_default(),
         transform: s.section("transform", read_transform).unwrap_or_default(),

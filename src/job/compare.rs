@@ -4,20 +4,19 @@ use super::frf::{Frf, frfs};
 use super::measured::measured_set;
 use super::motion::Motion;
 use super::prepared::Prepared;
+use super::sensors::{Sensors, frame};
 use crate::case::{Case, MeasuredData, ModesAnalysis};
-use crate::error::{Error, Fault, Faults, Result};
+use crate::error::{Faults, Result};
 use crate::linalg::{c64, dense};
 use crate::measured::compare::{ComputedModes, Measured, levels, likenesses, pair};
-use crate::measured::geometry::{Frame, distance, dot, largest_and_mean, nearest};
+use crate::measured::geometry::{Frame, distance, dot};
 use crate::measured::{MeasuredDof, MeasuredFrf, MeasuredMode, MeasuredSet, Quantity};
 use crate::results::{
-    FrfResult, MeasuredComparison, MeasuredResponses, MeasuredRow, NamedModes, Placed, ResponsePair,
+    FrfResult, MeasuredComparison, MeasuredResponses, MeasuredRow, NamedModes, ResponsePair,
 };
 
 /// Directions that are farther apart than this are two: cos 15°.
 const ALONG: f64 = 0.966;
-/// More points than this that lie off the mesh are not told one by one.
-const TOLD: usize = 10;
 
 /// All tests of a case, placed on its mesh.
 #[derive(Default)]
@@ -34,9 +33,10 @@ struct Test {
     of: Option<String>,
     source: String,
     set: MeasuredSet,
-    /// For each of the set's degrees of freedom its node and its direction in the mesh; empty where no shape is known.
-    motions: Vec<(usize, [f64; 3])>,
-    placed: Option<Placed>,
+    /// Where its shapes were measured, if it has any.
+    sensors: Option<Sensors>,
+    /// The nodes of the mesh.
+    nodes: Vec<[f64; 3]>,
     responses: Option<Responses>,
 }
 
@@ -165,66 +165,25 @@ impl Test {
                 modes: analysis.measured.iter().map(mode).collect(),
                 ..MeasuredSet::default()
             },
-            motions: Vec::new(),
-            placed: None,
+            sensors: None,
+            nodes: Vec::new(),
             responses: None,
         }
     }
 
     /// A test whose shapes are placed on the mesh.
     fn placed(prepared: &Prepared<'_>, name: &str, data: &MeasuredData, set: MeasuredSet) -> Result<Test> {
-        let test = |set, motions, placed| Test {
+        let of = data.of.as_ref().filter(|_| set.modes.iter().any(|mode| mode.shape.is_some()));
+        let place = |of: &String| Sensors::new(prepared, name, data, &set, &prepared.case.modes[of]);
+        Ok(Test {
             name: name.to_string(),
             of: data.of.clone(),
             source: data.source.clone(),
+            sensors: of.map(place).transpose()?,
+            nodes: prepared.model.nodes.clone(),
             set,
-            motions,
-            placed,
             responses: None,
-        };
-        let Some(of) = data.of.as_ref().filter(|_| set.modes.iter().any(|mode| mode.shape.is_some())) else {
-            return Ok(test(set, Vec::new(), None));
-        };
-        let place = format!("`measured.{name}`");
-        let among = nodes_of(prepared, &prepared.case.modes[of]);
-        if among.is_empty() {
-            let fault = Fault::new(place, "mode shapes", "a case whose nodes have coordinates");
-            return Err(Error::input(fault.with_help("`matrices.dofs` may give them")));
-        }
-        let frame = frame(data);
-        // The points that a shape moves, each once.
-        let mut used: Vec<usize> = set.dofs.iter().map(|dof| dof.point).collect();
-        used.dedup();
-        let there: Vec<[f64; 3]> =
-            used.iter().map(|point| frame.point(set.points[*point].position)).collect();
-        let found = nearest(&there, &prepared.model.nodes, &among);
-        let mut faults = Faults::new();
-        let far = || used.iter().zip(&there).zip(&found).filter(|(_, (_, away))| *away > data.reach);
-        for ((point, at), (_, away)) in far().take(TOLD) {
-            let [x, y, z] = at.map(|c| 1e3 * c);
-            let words = format!(
-                "point {} at ({x:.1}, {y:.1}, {z:.1}) mm of the mesh, {:.1} mm from the nearest node",
-                set.points[*point].id,
-                1e3 * away
-            );
-            let expected = format!("a node within the `reach` of {:.1} mm", 1e3 * data.reach);
-            let help = "Look at `transform`: origin, axes and the unit of the test";
-            faults.push(Fault::new(&*place, words, expected).with_help(help));
-        }
-        let more = far().count().saturating_sub(TOLD);
-        if more > 0 {
-            faults.push(Fault::new(
-                &*place,
-                format!("{more} points more beyond `reach`"),
-                "points on the mesh",
-            ));
-        }
-        faults.into_result(())?;
-        let node = |point: usize| used.binary_search(&point).map_or(0, |k| found[k].0);
-        let motions = set.dofs.iter().map(|dof| (node(dof.point), frame.direction(dof.direction))).collect();
-        let [largest, mean] = largest_and_mean(found.iter().map(|(_, away)| *away));
-        let placed = Placed { points: used.len(), dofs: set.dofs.len(), largest, mean };
-        Ok(test(set, motions, Some(placed)))
+        })
     }
 
     fn compare(&self, index: usize, analysis: &ModesAnalysis, named: &NamedModes) -> MeasuredComparison {
@@ -237,12 +196,11 @@ impl Test {
             name(a).is_some() && name(a) == name(b) && hz[b] - hz[a] < 2e-2 * hz[b]
         };
         let levels = levels(&hz, twins);
-        let motion = |k: usize| -> Vec<f64> {
-            let shape = &named.shapes[first + k];
-            self.motions.iter().map(|(node, d)| dot([0, 1, 2].map(|axis| shape[*node][axis]), *d)).collect()
+        let motion = |k: usize, sensors: &Sensors| sensors.motions(&self.nodes, &named.shapes[first + k]);
+        let motions: Vec<Vec<f64>> = match &self.sensors {
+            Some(sensors) => (0..hz.len()).map(|k| motion(k, sensors)).collect(),
+            None => Vec::new(),
         };
-        let seen = self.set.modes.iter().any(|mode| mode.shape.is_some());
-        let motions: Vec<Vec<f64>> = if seen { (0..hz.len()).map(motion).collect() } else { Vec::new() };
         let computed = ComputedModes { frequencies_hz: &hz, levels: &levels, motions: &motions };
         let own = self.set.modes.iter();
         let measured: Vec<Measured> = own
@@ -265,68 +223,66 @@ impl Test {
             frequency_scale: scale,
             levels: levels.iter().map(|level| first + level.start..first + level.end).collect(),
             likeness,
-            placed: self.placed,
+            placed: self.sensors.as_ref().map(|sensors| sensors.placed),
         }
     }
 }
 
-fn frame(data: &MeasuredData) -> Frame {
-    Frame::new(data.transform.origin, data.transform.x_axis, data.transform.y_axis)
+/// A measured response that is of a place of the case.
+pub struct Found {
+    /// Index into the set's responses.
+    pub measured: usize,
+    /// Index of the place.
+    pub seen: usize,
+    swapped: bool,
+    away: [f64; 2],
+    sign: f64,
 }
 
-/// The nodes of the parts that an analysis is of.
-fn nodes_of(prepared: &Prepared<'_>, analysis: &ModesAnalysis) -> Vec<usize> {
-    let geometry = prepared.geometry();
-    if prepared.model.nodes.is_empty() {
-        return Vec::new();
+/// The measured responses that are of places of `frf`, and those that are not.
+pub fn matches(data: &MeasuredData, set: &MeasuredSet, frf: &Frf<'_>) -> (Vec<Found>, Vec<String>) {
+    let frame = frame(data);
+    let at = |dof: &MeasuredDof, motion: &Motion| place_sign(&frame, set, dof, motion, data.reach);
+    let (mut all, mut alone) = (Vec::new(), Vec::new());
+    for (measured, function) in set.frfs.iter().enumerate() {
+        let ways = [(&function.excitation, &function.response), (&function.response, &function.excitation)];
+        let ways = ways.into_iter().enumerate().filter(|(swapped, _)| *swapped == 0 || frf.reciprocal());
+        let found = ways.flat_map(|(swapped, (force, motion))| {
+            let driven = at(force, frf.force());
+            let seen = frf.seen().iter().enumerate();
+            seen.filter_map(move |(k, (_, place))| Some((swapped == 1, k, driven?, at(motion, place)?)))
+        });
+        match found.min_by(|a, b| (a.2.0 + a.3.0).total_cmp(&(b.2.0 + b.3.0))) {
+            Some((swapped, seen, driven, motion)) => {
+                let (away, sign) = ([driven.0, motion.0], driven.1 * motion.1);
+                all.push(Found { measured, seen, swapped, away, sign });
+            }
+            None => alone.push(format!("{}: no response of the case is there", function.name)),
+        }
     }
-    let own = |part: &usize| analysis.parts.is_empty() || analysis.parts.contains(&geometry.parts[*part]);
-    let elements = geometry.elements.iter().zip(&geometry.part_of).filter(|(_, part)| own(part));
-    let mut nodes: Vec<usize> = elements.flat_map(|(element, _)| element.iter().copied()).collect();
-    nodes.sort_unstable();
-    nodes.dedup();
-    nodes
+    (all, alone)
 }
 
 impl Responses {
     fn new(data: &MeasuredData, set: &MeasuredSet, frf: &mut Frf<'_>) -> Responses {
-        let (frame, [low, high]) = (frame(data), frf.band());
-        let at = |dof: &MeasuredDof, motion: &Motion| place_sign(&frame, set, dof, motion, data.reach);
-        let mut responses = Responses {
-            frf: frf.name().to_string(),
-            matches: Vec::new(),
-            measured_alone: Vec::new(),
-            computed_alone: Vec::new(),
-        };
-        for (measured, function) in set.frfs.iter().enumerate() {
-            let ways =
-                [(&function.excitation, &function.response), (&function.response, &function.excitation)];
-            let ways = ways.into_iter().enumerate().filter(|(swapped, _)| *swapped == 0 || frf.reciprocal());
-            let found = ways.flat_map(|(swapped, (force, motion))| {
-                let driven = at(force, frf.force());
-                let seen = frf.seen().iter().enumerate();
-                seen.filter_map(move |(k, (_, place))| Some((swapped == 1, k, driven?, at(motion, place)?)))
-            });
-            let nearest = found.min_by(|a, b| (a.2.0 + a.3.0).total_cmp(&(b.2.0 + b.3.0)));
-            let name = function.name.clone();
-            let Some((swapped, k, driven, seen)) = nearest else {
-                responses.measured_alone.push(format!("{name}: no response of the case is there"));
-                continue;
-            };
+        let [low, high] = frf.band();
+        let (found, mut measured_alone) = matches(data, set, frf);
+        let mut matches = Vec::new();
+        for Found { measured, seen, swapped, away, sign } in found {
+            let function = &set.frfs[measured];
             let hz = &function.frequencies_hz;
             let lines = hz.partition_point(|f| *f < low)..hz.partition_point(|f| *f <= high);
             if lines.len() < 2 {
-                responses.measured_alone.push(format!("{name}: no frequencies in the band"));
+                measured_alone.push(format!("{}: no frequencies in the band", function.name));
                 continue;
             }
-            let (place, answer) = (frf.seen()[k].0.clone(), frf.also_at(k, hz[lines.clone()].to_vec()));
-            let (away, sign) = ([driven.0, seen.0], driven.1 * seen.1);
-            responses.matches.push(Match { measured, place, swapped, away, sign, lines, answer });
+            let (place, answer) = (frf.seen()[seen].0.clone(), frf.also_at(seen, hz[lines.clone()].to_vec()));
+            matches.push(Match { measured, place, swapped, away, sign, lines, answer });
         }
         let alone = frf.seen().iter().map(|(name, _)| name);
-        let alone = alone.filter(|name| !responses.matches.iter().any(|m| m.place == **name));
-        responses.computed_alone = alone.cloned().collect();
-        responses
+        let alone = alone.filter(|name| !matches.iter().any(|m: &Match| m.place == **name));
+        let computed_alone = alone.cloned().collect();
+        Responses { frf: frf.name().to_string(), matches, measured_alone, computed_alone }
     }
 }
 

@@ -1,23 +1,20 @@
 //! Frequency responses of a case.
 
-use super::modes::{add_modal_damping, labels, named};
+use super::modes::{labels, named};
 use super::motion::{Motion, motion};
 use super::prepared::Prepared;
+use super::receptance::Receptance;
 use crate::case::{FrfAnalysis, FrfContact, FrfSolution};
-use crate::equilibrium::{SteadyOptions, SteadySliding, solve_steady, tangent_stiffness};
+use crate::equilibrium::SteadySliding;
 use crate::error::{Faults, Result};
 use crate::linalg::{SparseVector, c64};
-use crate::modal::{ModesWanted, RealModes, compute};
+use crate::modal::RealModes;
 use crate::progress::Observer;
-use crate::reduction::reduce;
 use crate::results::{FrfResponse, FrfResult, PlaceAndDirection, Resonance};
 use crate::stability::Harmonic;
-use crate::system::{Structure, System};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Real modes are taken up to this many times the highest frequency.
-const MODES: f64 = 2.0;
 /// Frequencies to begin with, evenly spaced on a logarithmic scale, and the most there are in the end.
 const FIRST: usize = 128;
 const MOST: usize = 4000;
@@ -111,27 +108,12 @@ impl Frf<'_> {
         observer: &dyn Observer,
     ) -> Result<(FrfResult, Vec<Vec<c64>>)> {
         let FrfAnalysis { quantity, band, contact, solution, .. } = *self.wanted;
-        let (mut system, steady) = match steady.filter(|_| contact == FrfContact::Sliding) {
-            Some(steady) => (prepared.system.clone(), steady.clone()),
-            None => {
-                let free = alone(&prepared.system);
-                let still = solve_steady(&free, &SteadyOptions::default(), &())?;
-                (free, still)
-            }
-        };
-        let stiffness = tangent_stiffness(&system, &steady.displacement)?.into_owned();
-        let structure = Structure { stiffness, ..system.structure.clone() };
-        let (real, _) = compute(&structure, ModesWanted::BelowHz(MODES * band[1]), observer)?;
-        add_modal_damping(&mut system.structure, &real, prepared)?;
         let places: Vec<SparseVector> = self.seen.iter().map(|(_, m)| m.direction.clone()).collect();
-        let forces: Vec<SparseVector> =
+        let forms: Vec<SparseVector> =
             std::iter::once(&self.force.direction).chain(&places).cloned().collect();
-        // Besides the static responses, what their inertia moves: the residual is right to ω², the response to ω⁴.
-        let first = reduce(&system, &steady, &real, &forces)?;
-        let inertia = (first.modes..first.inertia.ncols())
-            .map(|k| SparseVector::from_dense(first.inertia.col_as_slice(k)));
-        let forces: Vec<SparseVector> = forces.iter().cloned().chain(inertia).collect();
-        let reduced = reduce(&system, &steady, &real, &forces)?;
+        let steady = steady.filter(|_| contact == FrfContact::Sliding);
+        let Receptance { system, steady, real, reduced } =
+            Receptance::new(prepared, steady, band[1], &forms, observer)?;
         let small = reduced.steady(&steady);
         let few = Harmonic::new(&reduced.system, &small)?;
         let full = Harmonic::new(&system, &steady)?;
@@ -246,11 +228,6 @@ fn place_of(motion: &Motion) -> PlaceAndDirection {
     PlaceAndDirection { position: motion.at, direction: motion.along }
 }
 
-/// A system whose contacts are open, and that nothing loads.
-fn alone(system: &System) -> System {
-    System { pairs: Vec::new(), load: vec![0.0; system.n_dofs()], prestress: None, ..system.clone() }
-}
-
 /// The largest |a − b| over |b|.
 fn apart(a: &[c64], b: &[c64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).norm() / b.norm().max(f64::MIN_POSITIVE)).fold(0.0, f64::max)
@@ -309,6 +286,7 @@ fn bends(from: &[c64], middle: &[c64], to: &[c64]) -> bool {
 mod tests {
     use super::*;
     use crate::case::Case;
+    use crate::equilibrium::{SteadyOptions, solve_steady};
     use crate::job::samples::disc;
 
     const RESPONSES: &str = r#"

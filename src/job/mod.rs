@@ -26,11 +26,13 @@ mod motion;
 mod nearest;
 mod place;
 mod prepared;
+mod receptance;
 mod regions;
 #[cfg(test)]
 mod samples;
 mod scalars;
 mod sensitivity;
+mod sensors;
 mod sound;
 mod states;
 mod table;

@@ -14,6 +14,8 @@ pub struct Motion {
     pub at: [f64; 3],
     /// The unit vector that it is along.
     pub along: [f64; 3],
+    /// The nodes whose mean it is.
+    pub nodes: Vec<usize>,
     /// The motion; a unit force there is the same form.
     pub direction: SparseVector,
 }
@@ -53,7 +55,7 @@ pub fn motion(
             Fault::new(format!("`{key}`"), "a place that is held in this direction", "one that can move");
         return Err(Error::input(fault));
     }
-    Ok(Motion { place, at, along, direction })
+    Ok(Motion { place, at, along, nodes, direction })
 }
 
 /// The mean over `nodes` of their motion along a vector.

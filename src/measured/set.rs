@@ -47,6 +47,18 @@ pub struct MeasuredMode {
     pub shape: Option<Vec<c64>>,
 }
 
+impl MeasuredMode {
+    /// The shape of a real mode that it is nearest to: Re(ψ e^{iα}) with the phase α in which it is largest, the imaginary
+    /// rest left out (Ewins, Modal Testing, 2nd ed. 2000, on complex modes made real).
+    pub fn real_shape(&self) -> Option<Vec<f64>> {
+        let shape = self.shape.as_ref()?;
+        // Σ Re(ψ e^{iα})² = ½ Σ |ψ|² + ½ Re(e^{2iα} Σ ψ²).
+        let square: c64 = shape.iter().map(|v| v * v).sum();
+        let turn = c64::from_polar(1.0, -0.5 * square.arg());
+        Some(shape.iter().map(|v| (v * turn).re).collect())
+    }
+}
+
 /// A frequency response that was measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredFrf {

@@ -183,12 +183,10 @@ fn attachment(
     Ok((massive.iter().map(|k| 1.0 / nu[*k]).collect(), expand(shapes.as_ref(), mix.as_ref())))
 }
 
-/// VᵀCV; modal damping is that of the modes alone, whose VᵀB is diagonal.
+/// VᵀCV and VᵀHV; modal damping is that of the modes alone, whose VᵀB is diagonal.
 fn damping(full: &Damping, basis: &Mat<f64>, modes: usize) -> Damping {
-    let mut small = Mat::<f64>::zeros(basis.ncols(), basis.ncols());
-    if let Some(c) = &full.viscous {
-        small += gram(basis.as_ref(), times(c, basis.as_ref()).as_ref());
-    }
+    let onto = |a: &SparseMatrix| gram(basis.as_ref(), times(a, basis.as_ref()).as_ref());
+    let mut small = full.viscous.as_ref().map_or_else(|| Mat::zeros(basis.ncols(), basis.ncols()), onto);
     if let Some(modal) = &full.modal {
         let share = gram(basis.as_ref(), modal.basis.as_ref());
         for (k, c) in modal.coefficients.iter().enumerate() {
@@ -199,22 +197,26 @@ fn damping(full: &Damping, basis: &Mat<f64>, modes: usize) -> Damping {
             }
         }
     }
+    let hysteretic = full.hysteretic.as_ref().and_then(|h| sparse(&onto(h)));
+    Damping { viscous: sparse(&small), modal: None, hysteretic }
+}
+
+/// The symmetric part of a matrix without what is round-off; modal damping is diagonal but for that. `None` of a zero matrix.
+fn sparse(small: &Mat<f64>) -> Option<SparseMatrix> {
     let largest = (0..small.ncols()).map(|i| small[(i, i)].abs()).fold(0.0, f64::max);
     let mut entries = Vec::new();
     for j in 0..small.ncols() {
         for i in 0..small.nrows() {
             let value = 0.5 * (small[(i, j)] + small[(j, i)]);
-            // Modal damping is diagonal but for round-off.
             if value.abs() > 1e-13 * largest {
                 entries.push(Triplet::new(i, j, value));
             }
         }
     }
-    let viscous = (!entries.is_empty()).then(|| {
+    (!entries.is_empty()).then(|| {
         SparseMatrix::try_new_from_triplets(small.nrows(), small.ncols(), &entries)
             .expect("indices are below the size")
-    });
-    Damping { viscous, modal: None, hysteretic: None }
+    })
 }
 
 fn seen(basis: &Mat<f64>, point: &ContactPoint) -> ContactPoint {

@@ -43,11 +43,10 @@ fn explored(results: &RunResults) -> Vec<String> {
 
 /// What was found from measured frequencies, and what it is worth.
 fn calibration(results: &RunResults) -> Vec<String> {
-    use super::calibration::{assignment_table, fit_table, number_table, words};
+    use super::calibration::{tables, words};
     let Some(result) = &results.calibration else { return Vec::new() };
     let worth: String = words(result).iter().map(|w| wrap(w)).collect();
-    let tables = [fit_table(result), number_table(result), assignment_table(result)];
-    tables.iter().map(render).chain([worth]).collect()
+    tables(result).iter().map(render).chain([worth]).collect()
 }
 
 /// The modes of set `index` of [`RunResults::modes`] beside the measured frequencies.

@@ -1,12 +1,10 @@
-//! Numbers of a case that were found from measured frequencies, as plain data, and their files.
+//! Numbers of a case that were found from measured frequencies and shapes, as plain data, and their files.
 
 use super::csv::{Table, number};
-use super::hdf5::{Datasets, attribute, text_attribute};
-use super::{ResultsFile, write_atomically};
-use crate::calibration::{Calibration, Ranked};
+use super::write_atomically;
+use crate::calibration::Calibration;
 use crate::error::Result;
-use ndarray::Array2;
-use serde_json::{Value, json};
+use crate::measured::Quantity;
 use std::path::Path;
 
 /// A calibration.
@@ -16,6 +14,8 @@ pub struct CalibrationResult {
     pub numbers: Vec<CalibratedNumber>,
     /// The measured frequencies beside the computed ones of the best assignment.
     pub data: Vec<CalibratedDatum>,
+    /// The measured frequency responses beside the computed ones.
+    pub responses: Vec<CalibratedResponse>,
     /// What each computed level is called.
     pub levels: Vec<String>,
     /// The set that each level belongs to.
@@ -76,6 +76,53 @@ pub struct CalibratedDatum {
     pub left_out_hz: Option<f64>,
     /// Growth rate of the mode with the values that were found \[1/s\]; none of a real mode.
     pub growth: Option<f64>,
+    /// Its shape, if it was measured and taken in.
+    pub shape: Option<CalibratedShape>,
+}
+
+/// A measured frequency response beside the computed one, at the lines that were compared. Sizes are √(|h|² + n²), with a floor n
+/// below which nothing is compared, in the SI unit of the quantity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CalibratedResponse {
+    /// The name of the measured set.
+    pub set: String,
+    /// What the test calls it.
+    pub name: String,
+    /// What the case calls its place.
+    pub place: String,
+    /// What of the motion.
+    pub quantity: Quantity,
+    /// Standard deviation of ln |h|.
+    pub deviation: f64,
+    /// \[Hz\].
+    pub frequencies_hz: Vec<f64>,
+    /// Measured.
+    pub measured: Vec<f64>,
+    /// Computed with the values of the case.
+    pub before: Vec<f64>,
+    /// Computed with the values that were found.
+    pub after: Vec<f64>,
+}
+
+impl CalibratedResponse {
+    /// Root mean square of 20 log₁₀ (computed/measured) \[dB\].
+    pub fn apart_db(&self, computed: &[f64]) -> f64 {
+        let squares = computed.iter().zip(&self.measured).map(|(a, b)| (20.0 * (a / b).log10()).powi(2));
+        (squares.sum::<f64>() / computed.len().max(1) as f64).sqrt()
+    }
+}
+
+/// MAC of a measured shape with the computed level.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CalibratedShape {
+    /// How many components were measured.
+    pub components: usize,
+    /// With the values of the case.
+    pub before: Option<f64>,
+    /// With the values that were found.
+    pub after: Option<f64>,
+    /// With the values that the other data lead to; none where they do not tell.
+    pub left_out: Option<f64>,
 }
 
 impl CalibratedDatum {
@@ -83,20 +130,53 @@ impl CalibratedDatum {
     pub fn error_percent(&self, computed_hz: Option<f64>) -> Option<f64> {
         computed_hz.map(|hz| 100.0 * (hz / self.measured_hz - 1.0))
     }
+
+    /// One of the MAC of its shape.
+    pub fn mac(&self, pick: impl Fn(&CalibratedShape) -> Option<f64>) -> Option<f64> {
+        self.shape.as_ref().and_then(pick)
+    }
 }
 
 impl CalibrationResult {
-    /// The largest |error| of `pick` among the data \[%\]; none where one of them has none.
+    /// The largest |error| of `pick` among the data \[%\]; none where there are none, or one of them has none.
     pub fn largest_percent(&self, pick: impl Fn(&CalibratedDatum) -> Option<f64>) -> Option<f64> {
         let errors = self.data.iter().map(|datum| Some(datum.error_percent(pick(datum))?.abs()));
-        errors.collect::<Option<Vec<f64>>>().map(|all| all.into_iter().fold(0.0, f64::max))
+        errors.collect::<Option<Vec<f64>>>()?.into_iter().reduce(f64::max)
+    }
+
+    /// The data with measured shapes.
+    pub fn shapes(&self) -> impl Iterator<Item = &CalibratedShape> {
+        self.data.iter().filter_map(|datum| datum.shape.as_ref())
+    }
+
+    /// The least MAC of `pick`; none where there are no shapes, or one of them has none.
+    pub fn least_mac(&self, pick: impl Fn(&CalibratedShape) -> Option<f64>) -> Option<f64> {
+        let all = self.shapes().map(pick).collect::<Option<Vec<f64>>>()?;
+        all.into_iter().reduce(f64::min)
     }
 }
 
 /// Writes `calibrated.toml` and `calibration.csv` into the folder `dir`.
 pub(super) fn write(dir: &Path, result: &CalibrationResult) -> Result<()> {
     write_atomically(dir, "calibrated.toml", result.calibrated_case.as_bytes())?;
+    if !result.responses.is_empty() {
+        write_atomically(dir, "calibration_responses.csv", responses(result).as_bytes())?;
+    }
     write_atomically(dir, "calibration.csv", table(result).as_bytes())
+}
+
+fn responses(result: &CalibrationResult) -> String {
+    let mut table =
+        Table::new(&["set", "response", "place", "frequency [Hz]", "measured", "before", "after", "unit"]);
+    for r in &result.responses {
+        for (k, hz) in r.frequencies_hz.iter().enumerate() {
+            let words = [&r.set, &r.name, &r.place].map(String::clone);
+            let numbers = [*hz, r.measured[k], r.before[k], r.after[k]].map(number);
+            let unit = [r.quantity.unit().to_string()];
+            table.row(&words.into_iter().chain(numbers).chain(unit).collect::<Vec<_>>());
+        }
+    }
+    table.text
 }
 
 fn table(result: &CalibrationResult) -> String {
@@ -109,6 +189,9 @@ fn table(result: &CalibrationResult) -> String {
         "after [Hz]",
         "error [%]",
         "from the others [Hz]",
+        "MAC before",
+        "MAC after",
+        "MAC from the others",
     ]);
     let cell = |value: Option<f64>| value.map(number).unwrap_or_default();
     for datum in &result.data {
@@ -121,240 +204,19 @@ fn table(result: &CalibrationResult) -> String {
             cell(datum.after_hz),
             cell(datum.error_percent(datum.after_hz)),
             cell(datum.left_out_hz),
+            cell(datum.mac(|shape| shape.before)),
+            cell(datum.mac(|shape| shape.after)),
+            cell(datum.mac(|shape| shape.left_out)),
         ]);
     }
     table.text
 }
 
-impl ResultsFile {
-    /// Writes a calibration to `/calibration`.
-    ///
-    /// # Errors
-    /// The machine refuses.
-    pub fn write_calibration(&mut self, result: &CalibrationResult) -> Result<()> {
-        self.stage(|root| {
-            let group = Datasets(root.create_group("calibration")?);
-            let (numbers, data) = (&result.numbers, &result.data);
-            let of = |pick: fn(&CalibratedNumber) -> f64| numbers.iter().map(pick).collect::<Vec<f64>>();
-            let names: Vec<&str> = numbers.iter().map(|n| n.name.as_str()).collect();
-            let best = result.calibration.best();
-            text_attribute(&group.0, "numbers", &names.join(", "))?;
-            text_attribute(&group.0, "calibrated_case", &result.calibrated_case)?;
-            attribute(&group.0, "chi2", &best.fit.chi2)?;
-            group.list("before", &of(|n| n.before), "SI", "values of the case, one a number")?;
-            group.list("after", &of(|n| n.after), "SI", "values that were found")?;
-            group.list("lower_95", &of(|n| n.interval[0]), "SI", "lower end of the 95 % interval")?;
-            group.list("upper_95", &of(|n| n.interval[1]), "SI", "upper end of the 95 % interval")?;
-            let of = |pick: fn(&CalibratedDatum) -> Option<f64>| -> Vec<f64> {
-                data.iter().map(|d| pick(d).unwrap_or(f64::NAN)).collect()
-            };
-            group.list("measured_hz", &of(|d| Some(d.measured_hz)), "Hz", "measured frequencies")?;
-            group.list("before_hz", &of(|d| d.before_hz), "Hz", "computed with the values of the case")?;
-            group.list("after_hz", &of(|d| d.after_hz), "Hz", "computed with the values that were found")?;
-            group.list(
-                "left_out_hz",
-                &of(|d| d.left_out_hz),
-                "Hz",
-                "predicted from the other frequencies",
-            )?;
-            let slope = |(i, j): (usize, usize)| {
-                best.fit.levels[best.assignment[i]].as_ref().map_or(f64::NAN, |level| level.slope[j])
-            };
-            let slopes = Array2::from_shape_fn((data.len(), numbers.len()), slope);
-            let story = "d ln f by each number, in units of its deviation or half the width of its bounds";
-            group.write("sensitivity", slopes.view(), "1", story)?;
-            let correlations = &result.calibration.knowledge.correlations;
-            let square = Array2::from_shape_fn((numbers.len(), numbers.len()), |(i, j)| correlations[i][j]);
-            group.write("correlation", square.view(), "1", "correlation of the numbers")
-        })
-    }
-}
-
-/// The part of `summary.json` on a calibration.
-pub(super) fn summary(result: &CalibrationResult) -> Value {
-    let found = &result.calibration;
-    let known = &found.knowledge;
-    let number = |n: &CalibratedNumber| {
-        json!({
-            "name": n.name,
-            "paths": n.paths,
-            "unit": n.unit,
-            "between": n.between,
-            "expected": n.expected,
-            "prior_deviation": n.deviation,
-            "log": n.log,
-            "before": n.before,
-            "after": n.after,
-            "deviation": n.deviation_after,
-            "interval_95": n.interval,
-            "scaled_interval_95": n.scaled_interval,
-            "at_bound": n.at_bound,
-        })
-    };
-    let datum = |d: &CalibratedDatum| {
-        json!({
-            "set": d.set,
-            "mode": d.level,
-            "measured_hz": d.measured_hz,
-            "relative_deviation": d.deviation,
-            "before_hz": d.before_hz,
-            "after_hz": d.after_hz,
-            "before_percent": d.error_percent(d.before_hz),
-            "error_percent": d.error_percent(d.after_hz),
-            "left_out_hz": d.left_out_hz,
-            "left_out_percent": d.error_percent(d.left_out_hz),
-            "growth_rate": d.growth,
-        })
-    };
-    let ranked = |r: &Ranked| {
-        json!({
-            "modes": r.assignment.iter().map(|k| &result.levels[*k]).collect::<Vec<_>>(),
-            "chi2": r.fit.chi2,
-            "linear_chi2": r.linear_chi2,
-            "largest_error_percent": 100.0 * r.largest_error,
-            "weight": r.weight,
-            "converged": r.fit.converged,
-            "iterations": r.fit.iterations,
-            "evaluations": r.fit.evaluations,
-            "gradient": r.fit.gradient,
-        })
-    };
-    let chance = found.chance.map(|c| {
-        json!({
-            "draws": c.draws,
-            "as_good_by_largest_error": c.by_error,
-            "as_good_by_chi2": c.by_chi2,
-            "probability_by_largest_error": c.probability(c.by_error),
-            "probability_by_chi2": c.probability(c.by_chi2),
-        })
-    });
-    let share = |covered: &Vec<usize>, of: usize| -> Vec<f64> {
-        covered.iter().map(|c| *c as f64 / of as f64).collect()
-    };
-    let trials = found.trials.as_ref().map(|t| {
-        json!({
-            "count": t.count,
-            "converged": t.converged,
-            "model_error": t.model_error,
-            "coverage": share(&t.covered, t.count),
-            "least_coverage": share(&t.covered, t.count).into_iter().fold(1.0, f64::min),
-            "scaled_coverage": t.scaled_covered.as_ref().map(|c| share(c, t.count)),
-        })
-    });
-    json!({
-        "parameters": result.numbers.iter().map(number).collect::<Vec<_>>(),
-        "data": result.data.iter().map(datum).collect::<Vec<_>>(),
-        "largest_error_percent": result.largest_percent(|d| d.after_hz),
-        "largest_left_out_percent": result.largest_percent(|d| d.left_out_hz),
-        "chi2": found.best().fit.chi2,
-        "reduced_chi2": known.reduced_chi2,
-        "chi2_probability": known.chi2_probability,
-        "converged": found.best().fit.converged,
-        "assignments": found.ranked.iter().map(ranked).collect::<Vec<_>>(),
-        "plausible_assignments": found.plausible,
-        "all_assignments_counted": found.all_counted,
-        "all_assignments_searched": found.all_searched,
-        "levels": result.levels.len(),
-        "singular_values": known.singular_values,
-        "directions": known.directions,
-        "condition": known.condition(),
-        "determined_combinations": known.determined(),
-        "correlations": known.correlations,
-        "chance": chance,
-        "trials": trials,
-    })
-}
-
-/// A made-up calibration: two numbers, the second at its bound and not determined, three data.
-#[cfg(test)]
-pub(super) fn sample() -> CalibrationResult {
-    use crate::calibration::{Chance, Fit, Knowledge, LeftOut, Level, Trials};
-    let level = |frequency_hz: f64| Some(Level { frequency_hz, slope: vec![0.1, 0.02], split: vec![0.0; 2] });
-    let fit = |converged: bool| Fit {
-        x: vec![0.2, 1.0],
-        levels: [333.3, 936.0, 1705.0].map(level).to_vec(),
-        chi2: 5.2,
-        iterations: 4,
-        evaluations: 4,
-        gradient: 1e-9,
-        converged,
-    };
-    let ranked = |weight: f64| Ranked {
-        assignment: vec![0, 1, 2],
-        fit: fit(weight == 1.0),
-        linear_chi2: 5.3,
-        largest_error: 0.01,
-        weight,
-    };
-    let number = |name: &str, unit: &str, after: f64, at_bound: bool| CalibratedNumber {
-        name: name.into(),
-        paths: vec!["mesh.annulus.hub_radius".into()],
-        unit: unit.into(),
-        between: [0.015, 0.025],
-        expected: 0.02,
-        deviation: (!at_bound).then_some(0.002),
-        log: at_bound,
-        before: 0.02,
-        after,
-        deviation_after: 2e-4,
-        interval: [after - 4e-4, (after + 4e-4).min(0.025)],
-        scaled_interval: Some([after - 2e-3, (after + 2e-3).min(0.025)]),
-        at_bound,
-    };
-    let datum = |measured_hz: f64, after: f64, level: &str| CalibratedDatum {
-        set: "disc".into(),
-        measured_hz,
-        deviation: 0.005,
-        level: level.into(),
-        before_hz: Some(1.05 * measured_hz),
-        after_hz: Some(after),
-        left_out_hz: Some(0.97 * measured_hz),
-        growth: None,
-    };
-    CalibrationResult {
-        numbers: vec![number("hub", "m", 0.021, false), number("stiffness", "N/m", 0.025, true)],
-        data: vec![
-            datum(330.0, 333.3, "disc (2, 0)"),
-            datum(936.0, 936.0, "disc (4, 0)"),
-            datum(1697.0, 1705.0, "disc (0, 1)"),
-        ],
-        levels: ["disc (2, 0)", "disc (4, 0)", "disc (0, 1)"].map(String::from).to_vec(),
-        level_sets: vec!["disc".into(); 3],
-        calibration: Calibration {
-            before: [340.0, 980.0, 1750.0].map(level).to_vec(),
-            ranked: vec![ranked(1.0), ranked(0.03)],
-            plausible: 24,
-            all_counted: true,
-            all_searched: true,
-            knowledge: Knowledge {
-                singular_values: vec![30.0, 0.4],
-                directions: vec![vec![0.98, 0.2], vec![-0.2, 0.98]],
-                deviations: vec![0.04, 2.5],
-                correlations: vec![vec![1.0, 0.3], vec![0.3, 1.0]],
-                intervals: vec![[0.1, 0.3], [-1.0, 1.0]],
-                scaled_intervals: Some(vec![[0.0, 0.4], [-1.0, 1.0]]),
-                reduced_chi2: Some(2.6),
-                chi2_probability: Some(0.07),
-            },
-            left_out: vec![LeftOut { x: vec![0.1, 1.0], predicted_hz: Some(320.0), converged: true }; 3],
-            chance: Some(Chance { draws: 999, by_error: 49, by_chi2: 59 }),
-            trials: Some(Trials {
-                count: 100,
-                converged: 100,
-                covered: vec![95, 96],
-                scaled_covered: Some(vec![94, 97]),
-                model_error: 1e-3,
-                scatter: vec![0.1, 1.0],
-            }),
-        },
-        calibrated_case: "title = \"calibrated\"\n".into(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::{RunResults, summary_json, write_files};
-    use super::*;
+    use super::super::sample::calibration as sample;
+    use super::super::{ResultsFile, RunResults, summary_json, write_files};
+    use serde_json::json;
 
     #[test]
     fn the_files_say_what_was_found() {
@@ -364,6 +226,11 @@ mod tests {
         assert!((json["data"][0]["left_out_percent"].as_f64().unwrap() + 3.0).abs() < 1e-9);
         assert!((json["chance"]["probability_by_largest_error"].as_f64().unwrap() - 0.05).abs() < 1e-12);
         assert_eq!(json["trials"]["least_coverage"], 0.95);
+        assert_eq!(
+            (&json["data"][0]["shape"]["mac_after"], &json["least_mac"]),
+            (&json!(0.97), &json!(0.97))
+        );
+        assert!(json["data"][2]["shape"].is_null());
         assert_eq!(json["assignments"][0]["modes"][2], "disc (0, 1)");
         let dir = tempfile::tempdir().unwrap();
         write_files(dir.path(), &results).unwrap();

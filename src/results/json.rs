@@ -301,7 +301,7 @@ fn summary(results: &RunResults) -> Summary<'_> {
         sensitivity: results.sensitivity.as_ref().map(sensitivity),
         transient: results.transient.as_ref().map(transient_json::transient),
         frf: results.frfs.iter().map(super::frf::summary).collect(),
-        calibration: results.calibration.as_ref().map(super::calibration::summary),
+        calibration: results.calibration.as_ref().map(super::calibration_json::summary),
         sweeps: results.sweeps.iter().map(explored_json::sweep).collect(),
         maps: results.maps.iter().map(explored_json::map).collect(),
         damping_verdicts: results.damping.as_ref().map(explored_json::damping),

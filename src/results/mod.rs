@@ -10,7 +10,7 @@
 //! | `frf_<name>.csv`, `frf_<name>.uff` | frequency responses | spreadsheets, test-data programs |
 //! | `comparison_<name>.csv`, `comparison_<name>_frf.csv` | measured modes and responses beside the computed ones | spreadsheets |
 //! | `modes_<set>.uff` | the shapes, for test-data programs | test-data programs |
-//! | `calibrated.toml`, `calibration.csv` | the case with the numbers that were found, and measured beside computed frequencies | stridor, spreadsheets |
+//! | `calibrated.toml`, `calibration.csv` | the case with the numbers that were found, and measured beside computed frequencies; `calibration_responses.csv`: responses | stridor, spreadsheets |
 //! | `critical_values.csv`, `sweep_<name>.csv`, `map_<name>.csv` | sweeps and maps | spreadsheets |
 //! | `transient.vtkhdf` | the motion of all nodes at regular times | ParaView |
 //! | `modes_<set>.vtu`, `steady.vtu`, `complex_modes.vtu`, `advice.vtu` | the shapes on the mesh | ParaView, pyvista |
@@ -18,6 +18,8 @@
 //! [`ResultsFile`] is used while the run goes on, [`write_files`] once at its end.
 
 mod calibration;
+mod calibration_hdf5;
+mod calibration_json;
 mod comparison;
 mod csv;
 mod derived;
@@ -49,7 +51,9 @@ mod watched;
 #[cfg(test)]
 pub(crate) mod sample;
 
-pub use calibration::{CalibratedDatum, CalibratedNumber, CalibrationResult};
+pub use calibration::{
+    CalibratedDatum, CalibratedNumber, CalibratedResponse, CalibratedShape, CalibrationResult,
+};
 pub use comparison::{MeasuredComparison, MeasuredResponses, MeasuredRow, Placed, ResponsePair};
 pub use csv::write_csv;
 pub use derived::{ComparedRow, PairTotals};

@@ -33,11 +33,21 @@ impl<'a> Harmonic<'a> {
     /// # Errors
     /// A frequency at which nothing damps a resonance.
     pub fn at(&self, omega: f64, force: &SparseVector, seen: &[SparseVector]) -> Result<Vec<c64>> {
-        let mut column = Mat::<c64>::zeros(self.operator.n(), 1);
-        force.iter().for_each(|(i, v)| column[(i, 0)] = c64::new(v, 0.0));
-        let moved = Shifted::new(&self.operator, c64::new(0.0, omega))?.invert(column);
+        let moved = self.moved(omega, std::slice::from_ref(force))?;
         let along = |d: &SparseVector| d.iter().map(|(i, v)| moved[(i, 0)] * v).sum();
         Ok(seen.iter().map(along).collect())
+    }
+
+    /// Q(iω)⁻¹ f for each f of `forces`, one a column.
+    ///
+    /// # Errors
+    /// A frequency at which nothing damps a resonance.
+    pub fn moved(&self, omega: f64, forces: &[SparseVector]) -> Result<Mat<c64>> {
+        let mut columns = Mat::<c64>::zeros(self.operator.n(), forces.len());
+        for (k, force) in forces.iter().enumerate() {
+            force.iter().for_each(|(i, v)| columns[(i, k)] = c64::new(v, 0.0));
+        }
+        Ok(Shifted::new(&self.operator, c64::new(0.0, omega))?.invert(columns))
     }
 }
 

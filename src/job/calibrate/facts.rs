@@ -1,18 +1,46 @@
-//! What was measured, and of what: the one place where measured frequencies enter a calibration.
+//! What was measured, and of what: the one place where measured data enter a calibration.
 
-use crate::case::{Case, SQUEAL};
-use crate::error::{Fault, Faults, Result};
+use super::super::prepared::Prepared;
+use super::super::sensors::Sensors;
+use super::responses::{self, Measured};
+use crate::case::{Case, MeasuredData, SQUEAL};
+use crate::error::{Error, Fault, Faults, Result};
 use crate::job::measured_set;
+use crate::measured::{MeasuredMode, MeasuredSet};
+use std::sync::Arc;
 
-/// Measured frequencies of one kind.
-#[derive(Debug, Clone, PartialEq)]
+/// Standard deviation of a component of a measured shape, over their root mean square, that the case does not state.
+const SHAPE_DEVIATION: f64 = 0.1;
+
+/// Everything that a case is calibrated against.
+#[derive(Debug, Clone, Default)]
+pub struct Measurements {
+    /// Modes.
+    pub modes: Vec<Facts>,
+    /// Frequency responses.
+    pub responses: Vec<Measured>,
+}
+
+/// Measured modes of one kind.
+#[derive(Debug, Clone)]
 pub struct Facts {
-    /// What they are frequencies of.
+    /// What they are modes of.
     pub of: Of,
+    /// The modes.
+    pub modes: Vec<Fact>,
+    /// Where their shapes were measured, if they have any.
+    pub sensors: Option<Sensors>,
+}
+
+/// A measured mode.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fact {
     /// f \[Hz\].
-    pub frequencies_hz: Vec<f64>,
-    /// Relative standard deviation of each.
-    pub deviations: Vec<f64>,
+    pub frequency_hz: f64,
+    /// Relative standard deviation of it.
+    pub deviation: f64,
+    /// Its shape in standard deviations of a component.
+    pub shape: Option<Arc<[f64]>>,
 }
 
 /// What has a frequency.
@@ -34,37 +62,80 @@ impl Of {
     }
 }
 
-/// The measured frequencies that a case is calibrated against.
+/// What a case is calibrated against, its shapes and responses placed on the mesh.
 ///
 /// # Errors
-/// Every file of measured data that cannot be read, or has no modes.
-pub fn facts(case: &Case) -> Result<Vec<Facts>> {
+/// Every file of measured data that cannot be read, or has nothing of what it is asked for; points of shapes that lie off the
+/// mesh, responses of no place of the case.
+pub fn measurements(prepared: &Prepared) -> Result<Measurements> {
+    let case = prepared.case;
     let mut faults = Faults::new();
-    let wanted = case.calibrate.iter().flat_map(|c| c.against.iter().map(|name| (name, c.deviation)));
-    let found = wanted.filter_map(|(name, deviation)| {
-        let listed = |of: Of, frequencies_hz: &[f64]| Facts {
-            of,
-            deviations: vec![deviation; frequencies_hz.len()],
-            frequencies_hz: frequencies_hz.to_vec(),
+    let mut all = Measurements::default();
+    for (name, calibrate) in case.calibrate.iter().flat_map(|c| c.against.iter().map(move |name| (name, c))) {
+        let listed = |of: Of, frequencies_hz: &[f64]| {
+            let fact = |hz: &f64| Fact { frequency_hz: *hz, deviation: calibrate.deviation, shape: None };
+            Facts { of, modes: frequencies_hz.iter().map(fact).collect(), sensors: None }
         };
         if name == SQUEAL {
-            return Some(listed(Of::Unstable, &case.cea.as_ref()?.measured_squeal));
+            all.modes.extend(case.cea.as_ref().map(|cea| listed(Of::Unstable, &cea.measured_squeal)));
+        } else if let Some(modes) = case.modes.get(name) {
+            all.modes.push(listed(Of::RealModes(name.clone()), &modes.measured));
+        } else if let Some(data) = case.measured.get(name) {
+            if data.of.is_some() {
+                all.modes.extend(faults.take(modes(prepared, name, data)));
+            }
+            if let Some(frf) = data.frf.as_ref().filter(|_| calibrate.responses) {
+                all.responses.extend(faults.take(responses::measured(prepared, name, data, frf)));
+            }
         }
-        if let Some(modes) = case.modes.get(name) {
-            return Some(listed(Of::RealModes(name.clone()), &modes.measured));
-        }
-        let of = case.measured.get(name)?.of.clone()?;
-        let (set, _) = faults.take(measured_set(case, name))?;
-        if set.modes.is_empty() {
-            let found = "frequency responses without modes";
-            faults.push(Fault::new(format!("`calibrate.against` \"{name}\""), found, "measured modes"));
-        }
-        Some(Facts {
-            of: Of::RealModes(of),
-            frequencies_hz: set.modes.iter().map(|mode| mode.frequency_hz).collect(),
-            deviations: set.modes.iter().map(|mode| mode.deviation.unwrap_or(deviation)).collect(),
-        })
-    });
-    let found = found.collect();
-    faults.into_result(found)
+    }
+    faults.into_result(all)
+}
+
+/// The modes of `[measured.NAME]`.
+fn modes(prepared: &Prepared, name: &str, data: &MeasuredData) -> Result<Facts> {
+    let case = prepared.case;
+    let (of, calibrate) = (data.of.clone().unwrap_or_default(), case.calibrate.as_ref());
+    let deviation = calibrate.map_or(data.deviation, |calibrate| calibrate.deviation);
+    let (set, _) = measured_set(case, name)?;
+    let mut faults = Faults::new();
+    if set.modes.is_empty() {
+        let found = "frequency responses without modes";
+        let help = "Without `of` its responses alone are taken";
+        let fault = Fault::new(format!("`calibrate.against` \"{name}\""), found, "measured modes");
+        faults.push(fault.with_help(help));
+    }
+    let shapes = calibrate.is_some_and(|calibrate| calibrate.shapes)
+        && set.modes.iter().any(|mode| mode.shape.is_some());
+    faults.take(check_deviation(case, name, data, &set));
+    let place = || Sensors::new(prepared, name, data, &set, &case.modes[&of]);
+    let sensors = if shapes { faults.take(place()) } else { None };
+    let fact = |mode: &MeasuredMode| Fact {
+        frequency_hz: mode.frequency_hz,
+        deviation: mode.deviation.unwrap_or(deviation),
+        shape: if shapes { shape(mode, data.shape_deviation.unwrap_or(SHAPE_DEVIATION)) } else { None },
+    };
+    let facts = Facts { modes: set.modes.iter().map(fact).collect(), of: Of::RealModes(of), sensors };
+    faults.into_result(facts)
+}
+
+/// A deviation of shapes is for shapes.
+fn check_deviation(case: &Case, name: &str, data: &MeasuredData, set: &MeasuredSet) -> Result<()> {
+    let used = case.calibrate.as_ref().is_some_and(|calibrate| calibrate.shapes);
+    let found = match (data.shape_deviation, set.modes.iter().any(|mode| mode.shape.is_some())) {
+        (Some(_), false) => "no mode with a shape",
+        (Some(_), true) if !used => "`shapes = false` in [calibrate]",
+        _ => return Ok(()),
+    };
+    let place = format!("`measured.{name}.shape_deviation`");
+    let expected = "measured shapes that the case is calibrated against, or no deviation of shapes";
+    Err(Error::input(Fault::new(place, found, expected)))
+}
+
+/// The shape of a mode, made real, in units of `deviation` times the root mean square of its components.
+fn shape(mode: &MeasuredMode, deviation: f64) -> Option<Arc<[f64]>> {
+    let shape = mode.real_shape()?;
+    let mean_square = shape.iter().map(|v| v * v).sum::<f64>() / shape.len() as f64;
+    let unit = deviation * mean_square.sqrt();
+    Some(shape.iter().map(|v| v / unit).collect())
 }

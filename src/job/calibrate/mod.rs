@@ -1,7 +1,7 @@
-//! `[calibrate]`: the numbers of a case that make its modes those that were measured.
+//! `[calibrate]`: the numbers of a case that make its modes and responses those that were measured.
 //!
-//! [`facts`](facts::facts) says what was measured, a [`Coordinate`] turns a number of the case into an unknown,
-//! [`CaseModel`] computes frequencies and slopes, and [`crate::calibration`] does the rest.
+//! [`measurements`](facts::measurements) says what was measured, a [`Coordinate`] turns a number of the case into an unknown,
+//! [`CaseModel`] computes frequencies, shapes and responses with their slopes, and [`crate::calibration`] does the rest.
 
 mod coordinate;
 mod facts;
@@ -10,25 +10,34 @@ mod model;
 mod neighbours;
 mod real;
 #[cfg(test)]
+mod response_tests;
+mod responses;
+#[cfg(test)]
+mod shape_tests;
+mod shapes;
+#[cfg(test)]
 mod tests;
 mod unstable;
 
 pub use self::coordinate::Coordinate;
-use self::facts::Facts;
+use self::facts::{Fact, Facts, Measurements};
 use self::model::{CaseModel, scalars};
+use self::responses::Response;
 use super::prepared::Prepared;
-use crate::calibration::{self, Datum, Options, Problem};
+use crate::calibration::{self, Computed, Datum, Options, Problem};
 use crate::case::{CalibrateAnalysis, Case};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::progress::Observer;
-use crate::results::{CalibratedDatum, CalibratedNumber, CalibrationResult};
+use crate::results::{
+    CalibratedDatum, CalibratedNumber, CalibratedResponse, CalibratedShape, CalibrationResult,
+};
 
 /// A calibration whose faults are told.
 pub struct Calibrate<'a> {
     prepared: &'a Prepared<'a>,
     wanted: &'a CalibrateAnalysis,
     coordinates: Vec<Coordinate<'a>>,
-    facts: Vec<Facts>,
+    measured: Measurements,
 }
 
 impl<'a> Calibrate<'a> {
@@ -67,8 +76,8 @@ impl<'a> Calibrate<'a> {
             }
             coordinates.push(coordinate);
         }
-        let facts = faults.take(facts::facts(prepared.case)).unwrap_or_default();
-        faults.into_result(Calibrate { prepared, wanted, coordinates, facts })
+        let measured = faults.take(facts::measurements(prepared)).unwrap_or_default();
+        faults.into_result(Calibrate { prepared, wanted, coordinates, measured })
     }
 
     /// Calibrates.
@@ -77,16 +86,22 @@ impl<'a> Calibrate<'a> {
     /// A model that cannot be computed, or measured frequencies that nothing comes near.
     pub fn run(&self, observer: &dyn Observer) -> Result<CalibrationResult> {
         let case = self.prepared.case;
-        let model = CaseModel::new(self.prepared, &self.coordinates, &self.facts)?;
+        let model = CaseModel::new(self.prepared, &self.coordinates, &self.measured)?;
         let data = |(set, facts): (usize, &Facts)| {
-            let datum =
-                move |(hz, deviation): (&f64, &f64)| Datum { set, frequency_hz: *hz, deviation: *deviation };
-            facts.frequencies_hz.iter().zip(&facts.deviations).map(datum).collect::<Vec<_>>()
+            let datum = move |fact: &Fact| Datum {
+                set,
+                frequency_hz: fact.frequency_hz,
+                deviation: fact.deviation,
+                shape: fact.shape.clone(),
+            };
+            facts.modes.iter().map(datum).collect::<Vec<_>>()
         };
         let problem = Problem {
             unknowns: self.coordinates.iter().map(Coordinate::unknown).collect(),
-            data: self.facts.iter().enumerate().flat_map(data).collect(),
+            data: self.measured.modes.iter().enumerate().flat_map(data).collect(),
             level_sets: model.level_sets(),
+            level_modes: model.level_modes(),
+            lines: self.responses().flat_map(|r| r.levels().map(|level| [level, r.deviation])).collect(),
         };
         let options = Options {
             reach: self.wanted.mode_reach,
@@ -130,26 +145,75 @@ impl<'a> Calibrate<'a> {
         let growth = model.growth(&best.fit.x)?;
         let datum = |(i, datum): (usize, &Datum)| {
             let k = best.assignment[i];
-            let hz = |levels: &calibration::Levels| levels[k].as_ref().map(|level| level.frequency_hz);
+            let hz = |there: &Computed| there.levels[k].as_ref().map(|level| level.frequency_hz);
             CalibratedDatum {
-                set: self.facts[datum.set].of.name().to_string(),
+                set: self.measured.modes[datum.set].of.name().to_string(),
                 measured_hz: datum.frequency_hz,
                 deviation: datum.deviation,
                 level: names[k].clone(),
                 before_hz: hz(&found.before),
-                after_hz: hz(&best.fit.levels),
+                after_hz: hz(&best.fit.computed),
                 left_out_hz: found.left_out.get(i).and_then(|left| left.predicted_hz),
                 growth: growth[k],
+                shape: datum.shape.as_ref().map(|shape| {
+                    let likeness = |there: &Computed| {
+                        there.levels[k].as_ref()?.span.as_ref().map(|span| span.likeness(shape))
+                    };
+                    CalibratedShape {
+                        components: shape.len(),
+                        before: likeness(&found.before),
+                        after: likeness(&best.fit.computed),
+                        left_out: found.left_out.get(i).and_then(|left| left.likeness),
+                    }
+                }),
             }
         };
         Ok(CalibrationResult {
             data: problem.data.iter().enumerate().map(datum).collect(),
+            responses: self.compared(&found.before, &best.fit.computed),
             levels: names,
-            level_sets: problem.level_sets.iter().map(|k| self.facts[*k].of.name().to_string()).collect(),
+            level_sets: problem
+                .level_sets
+                .iter()
+                .map(|k| self.measured.modes[*k].of.name().to_string())
+                .collect(),
             calibrated_case: calibrated_case(case, &values)?,
             numbers,
             calibration: found,
         })
+    }
+}
+
+impl Calibrate<'_> {
+    fn responses(&self) -> impl Iterator<Item = &Response> {
+        self.measured.responses.iter().flat_map(|measured| &measured.responses)
+    }
+
+    /// The measured responses beside the computed ones before and after, whose lines are in their order.
+    fn compared(&self, before: &Computed, after: &Computed) -> Vec<CalibratedResponse> {
+        let mut first = 0;
+        let mut all = Vec::new();
+        for measured in &self.measured.responses {
+            for own in &measured.responses {
+                let lines = first..first + own.frequencies_hz.len();
+                first = lines.end;
+                let sizes = |there: &Computed| -> Vec<f64> {
+                    there.lines[lines.clone()].iter().map(|line| line.value.exp()).collect()
+                };
+                all.push(CalibratedResponse {
+                    set: measured.name.clone(),
+                    name: own.name.clone(),
+                    place: own.place.clone(),
+                    quantity: own.quantity,
+                    deviation: own.deviation,
+                    frequencies_hz: own.frequencies_hz.clone(),
+                    measured: own.levels().map(f64::exp).collect(),
+                    before: sizes(before),
+                    after: sizes(after),
+                });
+            }
+        }
+        all
     }
 }
 

@@ -1,17 +1,20 @@
 //! The frequencies of a case as functions of the numbers that are to be found.
 
-use super::super::modes::part_assembled;
+use super::super::modes::{modal_ratios, part_assembled};
 use super::super::prepared::Prepared;
 use super::super::scalars::{Kind, Scalar, no_derivative, scalar};
+use super::super::sensors::Sensors;
 use super::coordinate::Coordinate;
-use super::facts::{Facts, Of};
+use super::facts::{Facts, Measurements, Of};
 use super::follow::{Path, Picks};
-use super::neighbours::{Change, derivatives};
+use super::neighbours::{Change, Neighbour, derivatives};
 use super::real::Solved;
+use super::responses::{self, Measured, Places};
 use super::unstable::Sliding;
-use crate::calibration::{Levels, Model};
+use crate::calibration::{Computed, LIKE, Model, Span};
 use crate::case::{Case, CeaAnalysis};
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::modal::RealModes;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -21,7 +24,7 @@ const RANGE: f64 = 1.4;
 
 /// Modes of one kind at the start, which all others are followed from.
 enum Start {
-    Real { name: String, below_hz: f64, solved: Box<Solved> },
+    Real { name: String, below_hz: f64, solved: Box<Solved>, sensors: Option<Sensors> },
     Unstable(Box<Sliding>),
 }
 
@@ -32,6 +35,8 @@ pub struct Set {
     pub levels: Picks,
     /// What each level is called.
     pub names: Vec<String>,
+    /// Whether a measured shape is at all like each level.
+    pub like: Vec<bool>,
 }
 
 /// A case with numbers to be found.
@@ -42,20 +47,26 @@ pub struct CaseModel<'a> {
     start: Vec<f64>,
     /// The kinds of modes, in the order of the facts.
     pub sets: Vec<Set>,
+    responses: &'a [Measured],
 }
 
 impl<'a> CaseModel<'a> {
-    /// The model of `case`, which is prepared, for the `facts`.
+    /// The model of `case`, which is prepared, for what was measured.
     ///
     /// # Errors
     /// Modes that cannot be computed.
-    pub fn new(prepared: &Prepared, coordinates: &'a [Coordinate<'a>], facts: &[Facts]) -> Result<Self> {
-        let case = lean(prepared.case);
+    pub fn new(
+        prepared: &Prepared,
+        coordinates: &'a [Coordinate<'a>],
+        measured: &'a Measurements,
+    ) -> Result<Self> {
+        let case = lean(prepared.case, measured);
         let value = |c: &Coordinate| Ok(c.x(case.parameter(&c.parameter.path[0])?.value));
         let start: Vec<f64> = coordinates.iter().map(value).collect::<Result<_>>()?;
-        let mut model = CaseModel { case, coordinates, start, sets: Vec::new() };
+        let mut model =
+            CaseModel { case, coordinates, start, sets: Vec::new(), responses: &measured.responses };
         let here = Prepared::new(&model.case)?;
-        let sets = facts.iter().map(|facts| model.set(&here, facts)).collect::<Result<_>>()?;
+        let sets = measured.modes.iter().map(|facts| model.set(&here, facts)).collect::<Result<_>>()?;
         drop(here);
         model.sets = sets;
         Ok(model)
@@ -64,23 +75,28 @@ impl<'a> CaseModel<'a> {
     fn set(&self, prepared: &Prepared, facts: &Facts) -> Result<Set> {
         match &facts.of {
             Of::RealModes(name) => {
-                let highest = facts.frequencies_hz.iter().fold(0.0f64, |m, f| m.max(*f));
+                let highest = facts.modes.iter().fold(0.0f64, |m, mode| m.max(mode.frequency_hz));
                 let path = scale_path(name);
                 let scaled = self.coordinates.iter().filter(|c| c.parameter.path.contains(&path));
                 let least = scaled
                     .map(|c| c.parameter.between[0])
                     .fold(prepared.case.modes[name].frequency_scale, f64::min);
                 let below_hz = RANGE * highest / least;
-                let solved = Box::new(Solved::new(prepared, name, below_hz, None)?);
+                let sensors = facts.sensors.clone();
+                let solved =
+                    Box::new(Solved::new(prepared, (name.as_str(), below_hz), sensors.clone(), None)?);
                 let levels = solved.levels();
                 let names = solved.labels(&levels);
-                Ok(Set { start: Start::Real { name: name.clone(), below_hz, solved }, levels, names })
+                let like = levels.iter().map(|level| like(&solved, level, facts)).collect();
+                let start = Start::Real { name: name.clone(), below_hz, solved, sensors };
+                Ok(Set { start, levels, names, like })
             }
             Of::Unstable => {
                 let sliding = Box::new(Sliding::new(prepared)?);
                 let levels = sliding.levels();
                 let names = sliding.names(&levels);
-                Ok(Set { start: Start::Unstable(sliding), levels, names })
+                let like = vec![false; levels.len()];
+                Ok(Set { start: Start::Unstable(sliding), levels, names, like })
             }
         }
     }
@@ -94,6 +110,11 @@ impl<'a> CaseModel<'a> {
     pub fn level_sets(&self) -> Vec<usize> {
         let of = |(k, set): (usize, &Set)| vec![k; set.levels.len()];
         self.sets.iter().enumerate().flat_map(of).collect()
+    }
+
+    /// How many modes every level has.
+    pub fn level_modes(&self) -> Vec<usize> {
+        self.sets.iter().flat_map(|set| set.levels.iter().map(Vec::len)).collect()
     }
 
     /// What every level is called.
@@ -135,20 +156,31 @@ impl<'a> CaseModel<'a> {
         Path { solve: &solve, follow: &follow }.along((&self.start, start, levels), to)
     }
 
-    /// ∂K and ∂M of every set of real modes by every unknown; none by an unknown that no structure depends on.
-    fn changes(&self, case: &Case, prepared: &Prepared, values: &[f64]) -> Result<Vec<Option<Vec<Change>>>> {
-        let names: Vec<&String> = self
-            .sets
-            .iter()
-            .filter_map(|set| match &set.start {
-                Start::Real { name, .. } => Some(name),
-                Start::Unstable(_) => None,
-            })
-            .collect();
+    /// What is looked at of a case: every set of real modes, then every frequency response.
+    fn views<'c>(&'c self, prepared: &Prepared<'c>) -> Result<Vec<View<'c>>> {
+        let real = self.sets.iter().filter_map(|set| match &set.start {
+            Start::Real { name, sensors, .. } => Some((name, sensors)),
+            Start::Unstable(_) => None,
+        });
+        let part = |(name, sensors): (&'c String, &Option<Sensors>)| {
+            let on = |sensors: &Sensors| sensors.on(prepared, &prepared.case.modes[name]);
+            Ok(View::Part(name, sensors.as_ref().map(on)))
+        };
+        let whole = |measured: &Measured| Ok(View::Whole(Places::new(prepared, &measured.frf)?));
+        real.map(part).chain(self.responses.iter().map(whole)).collect()
+    }
+
+    /// ∂ of every view by every unknown; none by an unknown that no structure depends on.
+    fn changes(
+        &self,
+        (case, prepared): (&Case, &Prepared),
+        views: &[View],
+        values: &[f64],
+    ) -> Result<Vec<Option<Vec<Change>>>> {
         let of = |(c, value): (&Coordinate, &f64)| -> Result<Option<Vec<Change>>> {
             let scalars = scalars(case, c)?;
             let Some(first) =
-                scalars.iter().find(|s| s.kind == Kind::Structure).filter(|_| !names.is_empty())
+                scalars.iter().find(|s| s.kind == Kind::Structure).filter(|_| !views.is_empty())
             else {
                 return Ok(None);
             };
@@ -160,7 +192,7 @@ impl<'a> CaseModel<'a> {
                 {
                     return Err(no_derivative("it changes the elements of the mesh"));
                 }
-                names.iter().map(|name| part_assembled(&other, name)).collect()
+                views.iter().map(|view| view.of(&other)).collect()
             };
             let changes = derivatives(*value, first.step(), &build).map_err(|error| of_number(c, error))?;
             let rate = c.rate(*value);
@@ -171,27 +203,34 @@ impl<'a> CaseModel<'a> {
 }
 
 impl Model for CaseModel<'_> {
-    fn levels(&self, x: &[f64]) -> Result<Levels> {
+    fn compute(&self, x: &[f64]) -> Result<Computed> {
         let case = self.case_at(x)?;
         let values = self.values(x);
         let prepared = Prepared::new(&case)?;
-        let mut changes = self.changes(&case, &prepared, &values)?;
-        // The changes of one set, taken from the front.
-        let mut of_set = || -> Vec<Option<Change>> {
+        let views = self.views(&prepared)?;
+        let mut changes = self.changes((&case, &prepared), &views, &values)?;
+        let mut views = views.into_iter();
+        // The changes of one view, taken from the front.
+        let mut of_view = || -> Vec<Option<Change>> {
             changes.iter_mut().map(|all| all.as_mut().map(|all| all.remove(0))).collect()
         };
-        let mut levels = Levels::new();
+        let mut levels = Vec::new();
         for set in &self.sets {
             match &set.start {
-                Start::Real { name, below_hz, solved } => {
-                    let here = Solved::new(&prepared, name, *below_hz, Some(solved))?;
+                Start::Real { name, below_hz, solved, .. } => {
+                    let wanted = (name.as_str(), *below_hz);
+                    let sensors = match views.next() {
+                        Some(View::Part(_, sensors)) => sensors,
+                        _ => None,
+                    };
+                    let here = Solved::new(&prepared, wanted, sensors, Some(solved))?;
                     let solve = |x: &[f64]| {
-                        Solved::new(&Prepared::new(&self.case_at(x)?)?, name, *below_hz, Some(solved))
+                        Solved::new(&Prepared::new(&self.case_at(x)?)?, wanted, None, Some(solved))
                     };
                     let follow = |a: &Solved, picks: &Picks, b: &Solved| a.follow(picks, b);
                     let path = Path { solve: &solve, follow: &follow };
                     let picks = path.along((&self.start, solved, &set.levels), (x, &here))?;
-                    let changes = of_set();
+                    let changes = of_view();
                     // What the scale of the analysis adds: ∂ ln f/∂x = (ds/dx)/s.
                     let by_scale: Vec<f64> = self
                         .coordinates
@@ -202,8 +241,11 @@ impl Model for CaseModel<'_> {
                             false => 0.0,
                         })
                         .collect();
+                    let mut spans = spans(&here, set, &picks, &changes).into_iter();
                     levels.extend(picks.iter().map(|pick| {
+                        let span = spans.next().flatten();
                         let mut level = (!pick.is_empty()).then(|| here.level(pick, &changes))?;
+                        level.span = span;
                         level.slope.iter_mut().zip(&by_scale).for_each(|(slope, more)| *slope += more);
                         Some(level)
                     }));
@@ -221,8 +263,71 @@ impl Model for CaseModel<'_> {
                 }
             }
         }
-        Ok(levels)
+        let ratios = |real: &RealModes| -> Result<Vec<Option<Vec<f64>>>> {
+            let each = self.coordinates.iter().zip(&values);
+            each.map(|(c, value)| ratio_rates(&case, c, *value, real)).collect()
+        };
+        let mut lines = Vec::new();
+        for (measured, view) in self.responses.iter().zip(views) {
+            if let View::Whole(places) = view {
+                lines.extend(responses::lines(&prepared, (measured, &places), &of_view(), &ratios)?);
+            }
+        }
+        Ok(Computed { levels, lines })
     }
+}
+
+/// What is looked at of a case.
+enum View<'c> {
+    /// The structure of `[modes.NAME]`, and where its shapes were measured.
+    Part(&'c String, Option<Sensors>),
+    /// The whole, and the places of its frequency responses.
+    Whole(Places<'c>),
+}
+
+impl View<'_> {
+    /// The same of a neighbouring case.
+    fn of(&self, other: &Prepared) -> Result<Neighbour> {
+        match self {
+            View::Part(name, sensors) => {
+                let assembled = part_assembled(other, name)?;
+                let forms = |s: &Sensors| s.forms(&other.model.nodes, &assembled.dofs);
+                Ok(Neighbour { seen: sensors.as_ref().map(forms).unwrap_or_default(), assembled })
+            }
+            View::Whole(places) => {
+                Ok(Neighbour { seen: places.forms(other), assembled: other.assembled.clone() })
+            }
+        }
+    }
+}
+
+/// ∂ζ/∂x of the modal damping of every real mode, in which it is linear; none by what it does not depend on.
+fn ratio_rates(case: &Case, c: &Coordinate, value: f64, real: &RealModes) -> Result<Option<Vec<f64>>> {
+    let all = scalars(case, c)?;
+    let Some(first) = all.iter().find(|s| s.kind == Kind::Ratio) else { return Ok(None) };
+    let at = |step: f64| Ok((step, modal_ratios(&with(case, c, value + step)?, real)?));
+    let (step, there) = at(first.step()).or_else(|_: Error| at(-first.step()))?;
+    let rate = c.rate(value) / step;
+    let here = modal_ratios(case, real)?;
+    Ok(Some(there.iter().zip(&here).map(|(a, b)| rate * (a - b)).collect()))
+}
+
+/// Whether a measured shape is at all like a level.
+fn like(solved: &Solved, level: &[usize], facts: &Facts) -> bool {
+    let Some(seen) = solved.seen() else { return false };
+    let span = Span { motions: seen.motions(level), slopes: Vec::new() };
+    facts.modes.iter().filter_map(|mode| mode.shape.as_ref()).any(|shape| span.likeness(shape) >= LIKE)
+}
+
+/// What the test sees of those levels that a measured shape is like.
+fn spans(here: &Solved, set: &Set, picks: &Picks, changes: &[Option<Change>]) -> Vec<Option<Span>> {
+    let Some(seen) = here.seen() else { return vec![None; picks.len()] };
+    let wanted: Vec<bool> =
+        picks.iter().zip(&set.like).map(|(pick, like)| *like && !pick.is_empty()).collect();
+    let chosen: Vec<&Vec<usize>> =
+        picks.iter().zip(&wanted).filter(|(_, w)| **w).map(|(pick, _)| pick).collect();
+    let mut found = seen.spans(&chosen, changes).into_iter();
+    wanted.iter().map(|wanted| if *wanted { found.next() } else { None }).collect()
 }
 
 /// The case with one number at another value.
@@ -240,8 +345,7 @@ fn scale_path(name: &str) -> String {
     format!("modes.{name}.frequency_scale")
 }
 
-fn of_number(c: &Coordinate, error: crate::error::Error) -> crate::error::Error {
-    use crate::error::Error;
+fn of_number(c: &Coordinate, error: Error) -> Error {
     match error {
         Error::Analysis { what, found, help } => {
             Error::Analysis { what: format!("{what} by `{}`", c.parameter.path.join("`, `")), found, help }
@@ -251,12 +355,14 @@ fn of_number(c: &Coordinate, error: crate::error::Error) -> crate::error::Error 
 }
 
 /// The case without what is not compared.
-fn lean(case: &Case) -> Case {
+fn lean(case: &Case, measured: &Measurements) -> Case {
+    let compared = |name: &String| measured.responses.iter().any(|m| m.frf == *name);
+    let frf = case.frf.iter().filter(|(name, _)| compared(name));
     let cea = case.cea.clone().map(|cea| CeaAnalysis { certify: Some(false), confirm: false, ..cea });
     Case {
         sensitivity: None,
         transient: None,
-        frf: BTreeMap::new(),
+        frf: frf.map(|(name, frf)| (name.clone(), frf.clone())).collect(),
         calibrate: None,
         sweep: BTreeMap::new(),
         map: BTreeMap::new(),

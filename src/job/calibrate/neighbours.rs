@@ -1,27 +1,49 @@
-//! ∂K/∂p and ∂M/∂p, between systems that are assembled anew at neighbouring values.
+//! ∂K/∂p, ∂M/∂p and how what a test measures follows p, between systems that are assembled anew at neighbouring values.
 
 use super::super::scalars::no_derivative;
 use crate::error::{Error, Result};
-use crate::linalg::SparseMatrix;
 use crate::linalg::sparse::add_scaled;
+use crate::linalg::{SparseMatrix, SparseVector};
 use crate::structure::Assembled;
 use std::sync::Arc;
 
 /// Where the two estimates of a derivative differ by more than this part, it is none.
 const ROUGH: f64 = 1e-3;
 
-/// Derivatives of K and M by an unknown.
+/// A structure, and what a test would measure of it.
+pub struct Neighbour {
+    /// The structure.
+    pub assembled: Arc<Assembled>,
+    /// The measured degrees of freedom as forms of its own.
+    pub seen: Vec<SparseVector>,
+}
+
+/// Derivatives of K, M and what is measured by an unknown.
 pub struct Change {
     /// ∂K.
     pub stiffness: SparseMatrix,
     /// ∂M.
     pub mass: SparseMatrix,
+    /// ∂C of Rayleigh damping and dashpots, if there is any.
+    pub viscous: Option<SparseMatrix>,
+    /// ∂H of loss factors, if there are any.
+    pub hysteretic: Option<SparseMatrix>,
+    /// ∂ of the measured degrees of freedom as forms.
+    pub seen: Vec<SparseVector>,
 }
 
 impl Change {
     /// The same in another unit of the unknown.
     pub fn scaled(self, rate: f64) -> Change {
-        Change { stiffness: add_scaled(&[(rate, &self.stiffness)]), mass: add_scaled(&[(rate, &self.mass)]) }
+        let scaled =
+            |form: &SparseVector| SparseVector::from_entries(form.iter().map(|(i, v)| (i, rate * v)));
+        Change {
+            stiffness: add_scaled(&[(rate, &self.stiffness)]),
+            mass: add_scaled(&[(rate, &self.mass)]),
+            viscous: self.viscous.map(|c| add_scaled(&[(rate, &c)])),
+            hysteretic: self.hysteretic.map(|h| add_scaled(&[(rate, &h)])),
+            seen: self.seen.iter().map(scaled).collect(),
+        }
     }
 }
 
@@ -45,7 +67,7 @@ pub fn derivatives(value: f64, step: f64, build: &Build) -> Result<Vec<Change>> 
 }
 
 /// Gives the structures at a value.
-pub type Build<'a> = dyn Fn(f64) -> Result<Vec<Arc<Assembled>>> + 'a;
+pub type Build<'a> = dyn Fn(f64) -> Result<Vec<Neighbour>> + 'a;
 
 /// Offsets in steps, with the weights of the derivative; what does not change cancels pair by pair.
 type Stencil = Vec<(f64, f64)>;
@@ -56,7 +78,7 @@ fn differences(value: f64, step: f64, build: &Build) -> Result<Vec<Change>> {
         (0..5).map(|k| (sign * f64::from(k as u8), weights[k])).collect()
     };
     let both = vec![(1.0, 2.0 / 3.0), (-1.0, -2.0 / 3.0), (2.0, -1.0 / 12.0), (-2.0, 1.0 / 12.0)];
-    let at = |stencil: &Stencil| -> Result<Vec<Vec<Arc<Assembled>>>> {
+    let at = |stencil: &Stencil| -> Result<Vec<Vec<Neighbour>>> {
         stencil.iter().map(|(offset, _)| build(value + offset * step)).collect()
     };
     let (mut stencil, mut systems) = (both, Err(no_derivative("it has no neighbours")));
@@ -70,8 +92,11 @@ fn differences(value: f64, step: f64, build: &Build) -> Result<Vec<Change>> {
     }
     let (systems, two_sided) = (systems?, stencil.len() == 4);
     let sum = |k: usize, pick: fn(&Assembled) -> &SparseMatrix| -> Result<SparseMatrix> {
-        let terms: Vec<(f64, &SparseMatrix)> =
-            stencil.iter().zip(&systems).map(|((_, w), system)| (w / step, pick(&system[k]))).collect();
+        let terms: Vec<(f64, &SparseMatrix)> = stencil
+            .iter()
+            .zip(&systems)
+            .map(|((_, w), system)| (w / step, pick(&system[k].assembled)))
+            .collect();
         let sum = add_scaled(&terms);
         if two_sided {
             let near = add_scaled(&[(0.5 / step, terms[0].1), (-0.5 / step, terms[1].1)]);
@@ -82,8 +107,27 @@ fn differences(value: f64, step: f64, build: &Build) -> Result<Vec<Change>> {
         }
         Ok(sum)
     };
+    let form = |k: usize, i: usize| {
+        let terms = stencil
+            .iter()
+            .zip(&systems)
+            .flat_map(|((_, w), system)| system[k].seen[i].iter().map(move |(at, v)| (at, w / step * v)));
+        SparseVector::from_entries(terms)
+    };
+    let damping = |k: usize, pick: fn(&Assembled) -> Option<&SparseMatrix>| {
+        let each = stencil.iter().zip(&systems);
+        let terms: Vec<(f64, &SparseMatrix)> =
+            each.filter_map(|((_, w), system)| Some((w / step, pick(&system[k].assembled)?))).collect();
+        (!terms.is_empty()).then(|| add_scaled(&terms))
+    };
     let change = |k: usize| -> Result<Change> {
-        Ok(Change { stiffness: sum(k, |a| &a.structure.stiffness)?, mass: sum(k, |a| &a.structure.mass)? })
+        Ok(Change {
+            stiffness: sum(k, |a| &a.structure.stiffness)?,
+            mass: sum(k, |a| &a.structure.mass)?,
+            viscous: damping(k, |a| a.structure.damping.viscous.as_ref()),
+            hysteretic: damping(k, |a| a.structure.damping.hysteretic.as_ref()),
+            seen: (0..systems[0][k].seen.len()).map(|i| form(k, i)).collect(),
+        })
     };
     (0..systems[0].len()).map(change).collect()
 }

@@ -2,8 +2,10 @@
 
 use super::super::modes::{labels, named, part_assembled};
 use super::super::prepared::Prepared;
+use super::super::sensors::Sensors;
 use super::follow::{Picks, most_alike};
 use super::neighbours::Change;
+use super::shapes::{Eyes, Seen};
 use crate::calibration::Level;
 use crate::error::Result;
 use crate::linalg::sparse::times;
@@ -29,16 +31,24 @@ pub struct Solved {
     pub scale: f64,
     /// Name and label of every mode; none where shapes tell which is which.
     names: Option<(Vec<Name>, Vec<String>)>,
+    eyes: Option<Eyes>,
 }
 
 impl Solved {
     /// Computes all modes of the analysis `name` below a frequency, without their names where they have the degrees of
-    /// freedom of `like`.
-    pub fn new(prepared: &Prepared, name: &str, below_hz: f64, like: Option<&Solved>) -> Result<Solved> {
+    /// freedom of `like`; the `sensors`, if there are any, will look at them.
+    pub fn new(
+        prepared: &Prepared,
+        (name, below_hz): (&str, f64),
+        sensors: Option<Sensors>,
+        like: Option<&Solved>,
+    ) -> Result<Solved> {
         let assembled = part_assembled(prepared, name)?;
-        let (modes, _) = modal::compute(&assembled.structure, ModesWanted::BelowHz(below_hz), &())?;
+        let (modes, factor) = modal::compute(&assembled.structure, ModesWanted::BelowHz(below_hz), &())?;
         let scale = prepared.case.modes[name].frequency_scale;
-        let mut solved = Solved { assembled, modes, scale, names: None };
+        let eyes = sensors
+            .map(|sensors| Eyes { forms: sensors.forms(&prepared.model.nodes, &assembled.dofs), factor });
+        let mut solved = Solved { assembled, modes, scale, names: None, eyes };
         if like.is_none_or(|like| like.n_dofs() != solved.n_dofs()) {
             let named = named(prepared, name, solved.modes, &solved.assembled);
             let labels = labels(&named);
@@ -46,6 +56,12 @@ impl Solved {
             solved.modes = named.modes;
         }
         Ok(solved)
+    }
+
+    /// The modes as the test sees them, if it measured shapes.
+    pub fn seen(&self) -> Option<Seen<'_>> {
+        let eyes = self.eyes.as_ref()?;
+        Some(Seen { structure: &self.assembled.structure, modes: &self.modes, eyes })
     }
 
     fn n_dofs(&self) -> usize {
@@ -155,6 +171,7 @@ impl Solved {
             frequency_hz: self.scale * mean.max(0.0).sqrt() / TAU,
             slope: rates.iter().map(|r| r[0]).collect(),
             split: rates.iter().map(|r| r[1]).collect(),
+            span: None,
         }
     }
 }

@@ -1,7 +1,8 @@
 use super::super::samples::disc;
 use super::coordinate::Coordinate;
-use super::facts::facts;
+use super::facts::{Facts, measurements};
 use super::model::CaseModel;
+use super::neighbours::Neighbour;
 use super::*;
 use crate::calibration::{Level, Model};
 use crate::case::Case;
@@ -16,7 +17,7 @@ fn with_model<T>(case: &Case, work: impl FnOnce(&CaseModel) -> T) -> T {
     let prepared = Prepared::new(case).unwrap();
     let coordinates: Vec<Coordinate> =
         case.calibrate.as_ref().unwrap().parameter.values().map(Coordinate::new).collect();
-    work(&CaseModel::new(&prepared, &coordinates, &facts(case).unwrap()).unwrap())
+    work(&CaseModel::new(&prepared, &coordinates, &measurements(&prepared).unwrap()).unwrap())
 }
 
 const SIX: &str = "[modes.disc]\nbelow = \"3 kHz\"\nmeasured = [450, 900]\n[calibrate]\nagainst = \"disc\"\n\
@@ -33,7 +34,7 @@ fn differences(model: &CaseModel, j: usize, h: f64) -> Vec<f64> {
     let at = |k: f64| -> Vec<f64> {
         let mut x = model.start().to_vec();
         x[j] += k * h;
-        model.levels(&x).unwrap().iter().map(|l| l.as_ref().unwrap().frequency_hz.ln()).collect()
+        model.compute(&x).unwrap().levels.iter().map(|l| l.as_ref().unwrap().frequency_hz.ln()).collect()
     };
     let [up, down, up2, down2] = [1.0, -1.0, 2.0, -2.0].map(at);
     (0..up.len()).map(|l| (8.0 * (up[l] - down[l]) - (up2[l] - down2[l])) / (12.0 * h)).collect()
@@ -48,7 +49,7 @@ fn one_sided_derivatives_are_those_of_both_sides() {
                 return Err(Error::input(Fault::new("thickness", "another", "one inside")));
             }
             let case = case.with_parameter("shell.disc.thickness", thickness)?;
-            Ok(vec![Prepared::new(&case)?.assembled])
+            Ok(vec![Neighbour { assembled: Prepared::new(&case)?.assembled, seen: Vec::new() }])
         };
         super::neighbours::derivatives(1e-3, 1e-6, &build).map(|mut all| all.remove(0))
     };
@@ -66,7 +67,7 @@ fn one_sided_derivatives_are_those_of_both_sides() {
 fn slopes_are_those_of_differences_of_frequencies_of_double_modes_too() {
     let case = case(SIX);
     with_model(&case, |model| {
-        let levels: Vec<Level> = model.levels(model.start()).unwrap().into_iter().flatten().collect();
+        let levels: Vec<Level> = model.compute(model.start()).unwrap().levels.into_iter().flatten().collect();
         let names = model.level_names();
         let set = &model.sets[0];
         let double = set.levels.iter().filter(|level| level.len() == 2).count();
@@ -96,7 +97,7 @@ fn a_double_mode_parts_as_its_split_says() {
         with_model(case, |model| {
             let set = &model.sets[0];
             let k = set.names.iter().position(|name| name == "disc (1, 0)").unwrap();
-            (model.levels(model.start()).unwrap()[k].clone().unwrap(), set.levels[k].clone())
+            (model.compute(model.start()).unwrap().levels[k].clone().unwrap(), set.levels[k].clone())
         })
     };
     let (level, modes) = pair(&round);
@@ -173,12 +174,14 @@ fn measured_data_bring_their_own_deviations() {
     let more = "[modes.disc]\nbelow = \"3 kHz\"\n[measured.tap]\nof = \"disc\"\nfrequencies = [450, 900]\ndeviation = 0.01\n\
         [calibrate]\nagainst = \"tap\"\n[calibrate.parameter.scale]\npath = \"modes.disc.frequency_scale\"\n\
         between = [0.9, 1.1]\n";
-    let found = facts(&case(more)).unwrap();
+    let facts_of =
+        |more: &str| -> Result<Vec<Facts>> { Ok(measurements(&Prepared::new(&case(more)).unwrap())?.modes) };
+    let found = facts_of(more).unwrap();
     assert_eq!(found.len(), 1);
-    assert_eq!((found[0].of.name(), &found[0].deviations[..]), ("disc", &[0.01, 0.01][..]));
-    assert_eq!(found[0].frequencies_hz, [450.0, 900.0]);
+    let fact = |frequency_hz| Fact { frequency_hz, deviation: 0.01, shape: None };
+    assert_eq!((found[0].of.name(), &found[0].modes[..]), ("disc", &[fact(450.0), fact(900.0)][..]));
     let gone = more.replace("frequencies = [450, 900]", "file = \"gone.uff\"");
-    assert!(facts(&case(&gone)).unwrap_err().to_string().contains("gone.uff"));
+    assert!(facts_of(&gone).unwrap_err().to_string().contains("gone.uff"));
     let text = format!("{}{}", disc(5, 32), more.replace("of = \"disc\"", "frf = \"h\""));
     let wrong = Case::parse("case.toml", &text, ".".into()).unwrap_err().to_string();
     assert!(wrong.contains("calibrate.against") && wrong.contains("measured.tap"), "{wrong}");

@@ -50,10 +50,8 @@ impl Sliding {
 
     /// What each of `levels` is called.
     pub fn names(&self, levels: &Picks) -> Vec<String> {
-        let name = |level: &Vec<usize>| {
-            let words = &self.complex.participation[level[0]];
-            words.split(',').next().map_or(String::new(), |first| format!("unstable, {first}"))
-        };
+        let name =
+            |level: &Vec<usize>| format!("unstable, {}", first_part(&self.complex.participation[level[0]]));
         levels.iter().map(name).collect()
     }
 
@@ -106,8 +104,34 @@ impl Sliding {
         let mut next = || {
             let (slope, mode) = slopes.next()?;
             let split = vec![0.0; unknowns.len()];
-            Some(Level { frequency_hz: mode.eigenvalue.im / TAU, slope, split })
+            Some(Level { frequency_hz: mode.eigenvalue.im / TAU, slope, split, span: None })
         };
         Ok(levels.iter().map(|level| if level.is_empty() { None } else { next() }).collect())
+    }
+}
+
+/// The first of several parts, as in "disc (2, 0) 87 %, bar 400 Hz 9 %": up to a comma that is not in brackets.
+fn first_part(words: &str) -> &str {
+    let mut depth = 0;
+    let end = words.char_indices().find(|(_, letter)| {
+        depth += match letter {
+            '(' => 1,
+            ')' => -1,
+            _ => 0,
+        };
+        *letter == ',' && depth == 0
+    });
+    end.map_or(words, |(end, _)| &words[..end])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::first_part;
+
+    #[test]
+    fn names_keep_their_brackets() {
+        assert_eq!(first_part("disc (2, 0) 87 %, bar 400 Hz 9 %"), "disc (2, 0) 87 %");
+        assert_eq!(first_part("slider 310 Hz"), "slider 310 Hz");
+        assert_eq!(first_part(""), "");
     }
 }

@@ -1,4 +1,4 @@
-//! Numbers found from measured frequencies: tables, words and pictures.
+//! Numbers found from measured frequencies, shapes and responses: tables, words and pictures.
 
 mod picture;
 mod words;
@@ -14,7 +14,10 @@ pub(super) fn pictures(results: &RunResults) -> Vec<Picture> {
     results
         .calibration
         .iter()
-        .flat_map(|result| [picture::errors(result), picture::numbers(result)])
+        .flat_map(|result| {
+            let errors = (!result.data.is_empty()).then(|| picture::errors(result));
+            errors.into_iter().chain([picture::numbers(result)]).chain(picture::responses(result))
+        })
         .collect()
 }
 
@@ -22,19 +25,88 @@ pub(super) fn pictures(results: &RunResults) -> Vec<Picture> {
 pub(super) fn section(results: &RunResults) -> String {
     let Some(result) = &results.calibration else { return String::new() };
     let mut body = "<h2>Calibration</h2>\n".to_string();
-    let [errors, numbers] = [picture::errors(result), picture::numbers(result)];
-    body += &figure(&errors.svg, &errors.caption);
-    body += &titled_table(&fit_table(result));
+    let numbers = picture::numbers(result);
+    if !result.data.is_empty() {
+        let errors = picture::errors(result);
+        body += &figure(&errors.svg, &errors.caption);
+        body += &titled_table(&fit_table(result));
+    }
+    if result.shapes().next().is_some() {
+        body += &titled_table(&shape_table(result));
+    }
+    if let Some(responses) = picture::responses(result) {
+        body += &figure(&responses.svg, &responses.caption);
+        body += &titled_table(&response_table(result));
+    }
     body += &figure(&numbers.svg, &numbers.caption);
     let mut table = number_table(result);
     table.notes.extend(words(result));
     body += &titled_table(&table);
-    body += &titled_table(&assignment_table(result));
+    if !result.data.is_empty() {
+        body += &titled_table(&assignment_table(result));
+    }
     body
 }
 
+/// What a terminal shows: the tables that the calibration has.
+pub(super) fn tables(result: &CalibrationResult) -> Vec<Table> {
+    let (modes, responses) = (!result.data.is_empty(), !result.responses.is_empty());
+    let mut all = Vec::new();
+    all.extend(modes.then(|| fit_table(result)));
+    all.extend(result.shapes().next().map(|_| shape_table(result)));
+    all.extend(responses.then(|| response_table(result)));
+    all.push(number_table(result));
+    all.extend(modes.then(|| assignment_table(result)));
+    all
+}
+
+/// How like the computed shapes are to the measured ones, before and after.
+fn shape_table(result: &CalibrationResult) -> Table {
+    let headings = ["<mode", "measured [Hz]", "components", "MAC before", "MAC after", "MAC from the others"];
+    let mut table = Table::new("Calibration: measured and computed shapes", &headings);
+    for d in &result.data {
+        let Some(shape) = d.shape else { continue };
+        let mac = |mac: Option<f64>| mac.map_or("–".into(), |mac| fixed(mac, 4));
+        let cells = vec![
+            d.level.clone(),
+            given(d.measured_hz),
+            shape.components.to_string(),
+            mac(shape.before),
+            mac(shape.after),
+            mac(shape.left_out),
+        ];
+        table.row(cells, false);
+    }
+    table
+}
+
+/// How far the computed responses are from the measured ones, before and after.
+fn response_table(result: &CalibrationResult) -> Table {
+    let headings = ["<place", "lines", "from [Hz]", "to [Hz]", "before [dB]", "after [dB]", "<response"];
+    let mut table = Table::new("Calibration: measured and computed frequency responses", &headings);
+    for r in &result.responses {
+        let end = |hz: Option<&f64>| hz.map_or("–".into(), |hz| fixed(*hz, 1));
+        let cells = vec![
+            r.place.clone(),
+            r.frequencies_hz.len().to_string(),
+            end(r.frequencies_hz.first()),
+            end(r.frequencies_hz.last()),
+            fixed(r.apart_db(&r.before), 2),
+            fixed(r.apart_db(&r.after), 2),
+            r.name.clone(),
+        ];
+        table.row(cells, false);
+    }
+    table.notes.push(
+        "Root mean square of 20 log₁₀ of computed over measured size; what is below a twentieth of the median, as at an \
+         antiresonance, counts as no smaller. Half of the lines lie evenly, half where the measured response changes most."
+            .into(),
+    );
+    table
+}
+
 /// Measured beside computed frequencies, before and after.
-pub(super) fn fit_table(result: &CalibrationResult) -> Table {
+fn fit_table(result: &CalibrationResult) -> Table {
     let sets = result.data.iter().any(|d| d.set != result.data[0].set);
     let grows = result.data.iter().any(|d| d.growth.is_some());
     let mut headings = vec![
@@ -69,14 +141,14 @@ pub(super) fn fit_table(result: &CalibrationResult) -> Table {
         table.row(cells, false);
     }
     table.notes.push(
-        "From the others: the frequency that the numbers predict when they are found without this datum."
+        "From the others: what the numbers predict when they are found without this frequency and its shape."
             .into(),
     );
     table
 }
 
 /// The numbers with their intervals.
-pub(super) fn number_table(result: &CalibrationResult) -> Table {
+fn number_table(result: &CalibrationResult) -> Table {
     let headings = [
         "<number",
         "before",
@@ -133,19 +205,26 @@ fn expected(n: &CalibratedNumber) -> String {
 }
 
 /// The assignments that were fitted.
-pub(super) fn assignment_table(result: &CalibrationResult) -> Table {
-    let headings =
-        ["<modes, in the order of the measured frequencies", "χ²", "largest error [%]", "weight", "<"];
+fn assignment_table(result: &CalibrationResult) -> Table {
+    let mut headings =
+        vec!["<modes, in the order of the measured frequencies", "χ²", "largest error [%]", "weight", "<"];
+    let shapes = result.shapes().next().is_some();
+    if shapes {
+        headings.insert(3, "least MAC");
+    }
     let mut table = Table::new("Assignments of modes to measured frequencies", &headings);
     for r in &result.calibration.ranked {
         let modes: Vec<&str> = r.assignment.iter().map(|k| result.levels[*k].as_str()).collect();
-        let cells = vec![
+        let mut cells = vec![
             modes.join(", "),
             significant(r.fit.chi2, 4),
             fixed(100.0 * r.largest_error, 2),
             if r.weight > 1e-3 { significant(r.weight, 2) } else { power(r.weight) },
             if r.fit.converged { String::new() } else { "not converged".into() },
         ];
+        if shapes {
+            cells.insert(3, r.least_likeness.map_or("–".into(), |mac| fixed(mac, 3)));
+        }
         table.row(cells, false);
     }
     table.notes.push(
@@ -167,11 +246,14 @@ mod tests {
         let result = results.calibration.as_ref().unwrap();
         let table = fit_table(result);
         assert_eq!((table.rows.len(), table.columns.len()), (3, 8));
+        let shapes = shape_table(result);
+        assert_eq!((shapes.rows.len(), &shapes.rows[0].cells[4][..]), (2, "0.9700"));
         assert!(table.rows[0].cells.contains(&"+1.00".to_string()), "{:?}", table.rows[0]);
         let numbers = number_table(result);
         assert!(numbers.rows[1].marked && numbers.rows[1].cells.last().unwrap() == "at its bound");
         let page = section(&results);
-        assert_eq!(page.matches("<svg").count(), 2);
+        assert_eq!(page.matches("<svg").count(), 3);
+        assert_eq!(response_table(result).rows[0].cells[4..6], ["4.92", "0.53"]);
         assert!(page.contains("not converged") && page.contains("stiffness"));
         let words = words(result).join(" ");
         for expected in

@@ -1,10 +1,11 @@
 //! `calibration_errors.svg` and `calibration_numbers.svg`.
 
 use super::super::colours::{ALARM, CALM, INK, MEASURED, MUTED};
+use super::super::comparison::{Panel, stacked};
 use super::super::format::{given, signed, significant};
 use super::super::html::Picture;
 use super::super::svg::{Anchor, Ink, Sheet};
-use crate::results::{CalibratedNumber, CalibrationResult};
+use crate::results::{CalibratedNumber, CalibratedResponse, CalibrationResult};
 
 const WIDTH: f64 = 980.0;
 const LABELS: f64 = 230.0;
@@ -76,6 +77,24 @@ pub(super) fn errors(result: &CalibrationResult) -> Picture {
     let caption =
         "Errors of the computed frequencies with the values of the case and with those found.".to_string();
     Picture { file: "calibration_errors.svg", caption, svg: sheet.finish() }
+}
+
+/// The measured responses over the computed ones before and after; `None` where there are none.
+pub(super) fn responses(result: &CalibrationResult) -> Option<Picture> {
+    let panel = |r: &CalibratedResponse| Panel {
+        frequencies_hz: r.frequencies_hz.clone(),
+        quantity: r.quantity,
+        curves: vec![
+            ("before".to_string(), CALM, r.before.clone()),
+            ("after".to_string(), ALARM, r.after.clone()),
+            (format!("measured at {}", r.place.replace('_', " ")), MEASURED, r.measured.clone()),
+        ],
+    };
+    let panels: Vec<Panel> = result.responses.iter().map(panel).collect();
+    let svg = stacked(&panels)?;
+    let caption =
+        "Measured responses, and the computed ones with the values of the case and with those found.".into();
+    Some(Picture { file: "calibration_responses.svg", caption, svg })
 }
 
 /// Each number inside its bounds: what was expected, what was found, and its intervals.

@@ -14,17 +14,20 @@ pub(in crate::report) fn words(result: &CalibrationResult) -> Vec<String> {
     words.extend(misfit(result));
     words.push(determined(result));
     words.extend(tied(result));
-    words.push(assignments(result));
-    if result.calibration.left_out.is_empty() && result.data.len() <= result.numbers.len() {
+    words.extend((!result.data.is_empty()).then(|| assignments(result)));
+    if !result.responses.is_empty() && !result.calibration.left_out.is_empty() {
+        words.push("Modes alone are left out in turn; the responses stay.".into());
+    }
+    if result.calibration.left_out.is_empty() && result.calibration.knowledge.freedom == 0 {
         words.push(
-            "No frequency can be predicted from the others: they are no more than the numbers that are to be found.".into(),
+            "No frequency can be predicted from the others: the facts are no more than the numbers that are to be found.".into(),
         );
     }
     for (d, _) in
         result.data.iter().zip(&result.calibration.left_out).filter(|(d, _)| d.left_out_hz.is_none())
     {
         words.push(format!(
-            "The other frequencies do not predict {} Hz: they leave open what it depends on.",
+            "The other data do not predict {} Hz: they leave open what it depends on.",
             given(d.measured_hz)
         ));
     }
@@ -50,15 +53,27 @@ pub(in crate::report) fn words(result: &CalibrationResult) -> Vec<String> {
 
 fn counted(result: &CalibrationResult) -> String {
     let expected = result.numbers.iter().filter(|n| n.deviation.is_some()).count();
-    let (numbers, data) = (result.numbers.len(), result.data.len());
-    let free = (data + expected).saturating_sub(numbers);
-    let expectations = match expected {
-        0 => String::new(),
-        n => format!(" and {n} expected values"),
+    let components: usize = result.shapes().map(|shape| shape.components).sum();
+    let lines: usize = result.responses.iter().map(|r| r.frequencies_hz.len()).sum();
+    let parts = [
+        (result.data.len(), "measured frequencies".to_string()),
+        (
+            result.shapes().count(),
+            format!(
+                "measured shapes (of {components} components together, each in the scale that fits it best)"
+            ),
+        ),
+        (result.responses.len(), format!("measured responses (of {lines} lines together)")),
+        (expected, "expected values".to_string()),
+    ];
+    let parts: Vec<String> =
+        parts.iter().filter(|(n, _)| *n > 0).map(|(n, words)| format!("{n} {words}")).collect();
+    let list = match parts.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
+        _ => parts.concat(),
     };
-    format!(
-        "{numbers} numbers were found from {data} measured frequencies{expectations}: {free} facts are left over."
-    )
+    let (numbers, free) = (result.numbers.len(), result.calibration.knowledge.freedom);
+    format!("{numbers} numbers were found from {list}: {free} facts are left over.")
 }
 
 fn misfit(result: &CalibrationResult) -> Option<String> {
@@ -155,8 +170,13 @@ fn assignments(result: &CalibrationResult) -> String {
 fn chance(result: &CalibrationResult) -> Option<String> {
     let chance = result.calibration.chance?;
     let percent = |k: usize| significant(100.0 * chance.probability(k), 2);
+    let alone = if result.shapes().next().is_some() || !result.responses.is_empty() {
+        "About the frequencies alone, without shapes and responses: of"
+    } else {
+        "Of"
+    };
     Some(format!(
-        "Of {} sets of as many frequencies drawn at random, evenly in their logarithm over the measured span, {} are matched as \
+        "{alone} {} sets of as many frequencies drawn at random, evenly in their logarithm over the measured span, {} are matched as \
          well in their largest error and {} in χ², with the numbers free and the best assignment (linearised): a match as good \
          arises by chance with a probability of {} % and {} %.",
         chance.draws,
@@ -172,7 +192,7 @@ fn trials(result: &CalibrationResult) -> Option<String> {
     let each = result.numbers.iter().zip(&trials.covered).map(|(n, held)| format!("`{}` in {held}", n.name));
     Some(format!(
         "With synthetic data of the stated deviation the 95 % interval holds the truth of {} of {} trials; {} of their fits \
-         converged (on a model quadratic near it, which is wrong by {} of the deviation at most).",
+         converged (on a model quadratic in ln f near it, which is wrong by {} of the deviation at most).",
         each.collect::<Vec<_>>().join(", of "),
         trials.count,
         trials.converged,

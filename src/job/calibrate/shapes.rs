@@ -1,0 +1,132 @@
+//! How mode shapes, and what a test sees of them, turn with the unknowns.
+
+use super::neighbours::Change;
+use crate::calibration::Span;
+use crate::linalg::SparseVector;
+use crate::linalg::sparse::times;
+use crate::linalg::tall::{combine, expand, gram};
+use crate::modal::{RealModes, ShiftedStiffness};
+use crate::system::Structure;
+use faer::{Accum, Mat};
+use nalgebra::DMatrix;
+use std::f64::consts::TAU;
+
+/// The iteration ends when it changes nothing by more than this part.
+const CONVERGED: f64 = 1e-12;
+/// It gains a factor of four or more at each step.
+const MOST_STEPS: usize = 40;
+/// Modes whose eigenvalues differ by less than this part are as good as one level.
+const SAME: f64 = 1e-9;
+
+/// What a test sees of a structure.
+pub struct Eyes {
+    /// Each measured degree of freedom as a form of the structure's own.
+    pub forms: Vec<SparseVector>,
+    /// K − σM, factorised.
+    pub factor: ShiftedStiffness,
+}
+
+/// The modes of a structure that a test sees.
+pub struct Seen<'a> {
+    /// M and K.
+    pub structure: &'a Structure,
+    /// All modes up to a frequency.
+    pub modes: &'a RealModes,
+    /// What sees them.
+    pub eyes: &'a Eyes,
+}
+
+impl Seen<'_> {
+    /// What the test sees of the modes `level`: one column each.
+    pub fn motions(&self, level: &[usize]) -> DMatrix<f64> {
+        self.look(&self.eyes.forms, level.iter().map(|k| self.modes.shapes.col_as_slice(*k)))
+    }
+
+    fn look<'b>(
+        &self,
+        forms: &[SparseVector],
+        columns: impl ExactSizeIterator<Item = &'b [f64]>,
+    ) -> DMatrix<f64> {
+        let count = columns.len();
+        let values: Vec<f64> = columns.flat_map(|x| forms.iter().map(|form| form.dot(x))).collect();
+        DMatrix::from_vec(forms.len(), count, values)
+    }
+
+    /// The motions of each of `levels` and their slopes by the `changes`; an unknown without one moves nothing.
+    pub fn spans(&self, levels: &[&Vec<usize>], changes: &[Option<Change>]) -> Vec<Span> {
+        let all: Vec<(usize, &[usize])> =
+            levels.iter().flat_map(|level| level.iter().map(|k| (*k, &level[..]))).collect();
+        let by = |change: &Change| {
+            let turned = self.turned(&all, change);
+            let moved = self.look(&self.eyes.forms, (0..all.len()).map(|c| turned.col_as_slice(c)));
+            let shapes = all.iter().map(|(k, _)| self.modes.shapes.col_as_slice(*k));
+            moved + self.look(&change.seen, shapes)
+        };
+        let slopes: Vec<Option<DMatrix<f64>>> =
+            changes.iter().map(|change| change.as_ref().map(by)).collect();
+        let mut first = 0;
+        let span = |level: &&Vec<usize>| {
+            let (from, count) = (first, level.len());
+            first += count;
+            let own = |slope: &Option<DMatrix<f64>>| match slope {
+                Some(slope) => slope.columns(from, count).into_owned(),
+                None => DMatrix::zeros(self.eyes.forms.len(), count),
+            };
+            Span { motions: self.motions(level), slopes: slopes.iter().map(own).collect() }
+        };
+        levels.iter().map(span).collect()
+    }
+
+    /// ∂φ_i of each mode i by an unknown, less what of it lies in its level: v with ΦᵀMv = 0 on the level's modes Φ and
+    ///
+    /// (K − λ_i M) v = −(I − MΦΦᵀ)(∂K − λ_i ∂M) φ_i.
+    ///
+    /// On the other computed modes it is φ_k φ_kᵀ(…)/(λ_i − λ_k) (Fox and Kapoor, AIAA J. 6 (1968) 2426); the modes of a
+    /// double level need none of each other, so that their span turns by v although they themselves may jump (Ojalvo, AIAA J.
+    /// 26 (1988) 361). What lies beyond the computed modes is solved for by v ← v + ω (K − σM)⁻¹ r with the residual r and the
+    /// factors that found the modes: there the eigenvalues of (K − σM)⁻¹(K − λ_i M) lie between b = (λ̄ − λ_i)/(λ̄ − σ) and 1,
+    /// λ̄ being where the computed modes end, and ω = 2/(1 + b).
+    fn turned(&self, wanted: &[(usize, &[usize])], change: &Change) -> Mat<f64> {
+        let Seen { structure, modes, eyes } = self;
+        let (n, shapes) = (modes.shapes.nrows(), modes.shapes.as_ref());
+        let lambda: Vec<f64> = wanted.iter().map(|(k, _)| modes.eigenvalues[*k]).collect();
+        let own = Mat::from_fn(n, wanted.len(), |i, c| modes.shapes[(i, wanted[c].0)]);
+        let less = |mut a: Mat<f64>, b: Mat<f64>| {
+            (0..lambda.len()).for_each(|c| (0..n).for_each(|i| a[(i, c)] -= lambda[c] * b[(i, c)]));
+            a
+        };
+        let mut force = less(times(&change.stiffness, own.as_ref()), times(&change.mass, own.as_ref()));
+        (0..lambda.len()).for_each(|c| force.col_mut(c).iter_mut().for_each(|f| *f = -*f));
+        let inertia = times(&structure.mass, shapes);
+        let share = gram(shapes, force.as_ref());
+        let part = |k: usize, c: usize| {
+            let apart = modes.eigenvalues[k] - lambda[c];
+            let same = wanted[c].1.contains(&k) || apart.abs() <= SAME * lambda[c].abs();
+            if same { 0.0 } else { share[(k, c)] / apart }
+        };
+        let near = expand(shapes, Mat::from_fn(modes.len(), wanted.len(), part).as_ref());
+        combine(force.as_mut(), Accum::Add, inertia.as_ref(), share.as_ref(), -1.0);
+        let end = (TAU * modes.certificate.below_hz).powi(2);
+        let pace = |c: usize| 2.0 / (1.0 + (end - lambda[c]) / (end - eyes.factor.shift));
+        let mut far = Mat::<f64>::zeros(n, wanted.len());
+        for _ in 0..MOST_STEPS {
+            let applied =
+                less(times(&structure.stiffness, far.as_ref()), times(&structure.mass, far.as_ref()));
+            let mut step = &force - applied;
+            eyes.factor.factor.solve_in_place(step.as_mut());
+            // What round-off brings back of the computed modes.
+            let share = gram(inertia.as_ref(), step.as_ref());
+            combine(step.as_mut(), Accum::Add, shapes, share.as_ref(), -1.0);
+            let mut largest: f64 = 0.0;
+            for c in 0..lambda.len() {
+                (0..n).for_each(|i| far[(i, c)] += pace(c) * step[(i, c)]);
+                let size = far.col(c).norm_l2() + near.col(c).norm_l2();
+                largest = largest.max(step.col(c).norm_l2() / size.max(f64::MIN_POSITIVE));
+            }
+            if largest <= CONVERGED {
+                break;
+            }
+        }
+        near + far
+    }
+}
