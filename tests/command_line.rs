@@ -444,8 +444,8 @@ fn what_the_readme_asks_of_a_case_is_accepted() {
 #[test]
 fn a_calibrated_case_is_a_case() {
     let case = include_str!("../validation/calibrate-disc/case.toml")
-        .replace("radial = 32", "radial = 5")
-        .replace("around = 96", "around = 24")
+        .replace("radial = 48", "radial = 5")
+        .replace("around = 144", "around = 24")
         .replace("2600]", "2700]")
         .replace("trials = 100", "trials = 5\nchance_draws = 50");
     let folder = folder_with(&case);
@@ -464,4 +464,29 @@ fn a_calibrated_case_is_a_case() {
     let output = stridor(folder.path(), &["calibrate", "faulty.toml", "--out", "nothing"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(text(&output.stderr).contains("own value 0.02") && !folder.path().join("nothing").exists());
+}
+
+#[test]
+fn a_search_leaves_a_case_and_a_page() {
+    let case = include_str!("../validation/hoffmann/case.toml");
+    let folder = folder_with(case);
+    let search = "title = \"t\"\nsource = \"s\"\ncase = \"rig.toml\"\nevaluations = 60\n\
+                  [parameter.friction]\npath = \"contact.belt.friction.mu0\"\nbetween = [0, 1]\n\
+                  [fact.growth]\nkind = \"growth_rate\"\nreference = 0.5\nabsolute_tolerance = 1e-3\n";
+    std::fs::write(folder.path().join("search.toml"), search).expect("a file");
+    let output = stridor(folder.path(), &["search", "search.toml", "--out", "found"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let printed = text(&output.stdout);
+    assert!(printed.contains("1 of 1 facts are met") && printed.contains("proves nothing"), "{printed}");
+    for file in ["search.csv", "search.json", "search.html", "search_cost.svg", "search_weights.svg"] {
+        assert!(folder.path().join("found").join(file).is_file(), "{file}");
+    }
+    let output = stridor(folder.path(), &["check", "found/found.toml"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+
+    let faulty = search.replace("[0, 1]", "[0.5, 1]").replace("growth_rate", "growth_ratio");
+    std::fs::write(folder.path().join("faulty.toml"), faulty).expect("a file");
+    let output = stridor(folder.path(), &["search", "faulty.toml", "--out", "nothing"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("growth_ratio") && !folder.path().join("nothing").exists());
 }
