@@ -5,7 +5,7 @@ use super::model::CaseModel;
 use super::*;
 use crate::calibration::{Line, Model};
 use crate::measured::Quantity;
-use crate::measured::uff::{Function, functions_text};
+use crate::measured::uff::{Function, functions_file};
 use std::path::Path;
 
 const FRF: &str = "[frf.hammer]\nexcitation = { at = [0, 0, \"75 mm\"], direction = [1, 0, 0] }\n\
@@ -35,7 +35,7 @@ fn case(folder: &Path, text: &str, values: &[(&str, f64)], hz: &[f64]) -> Case {
         frequencies_hz: hz,
         values,
     });
-    std::fs::write(folder.join("tap.unv"), functions_text(points.into_iter(), functions)).unwrap();
+    std::fs::write(folder.join("tap.unv"), functions_file(points.into_iter(), functions, false)).unwrap();
     plain
 }
 
