@@ -102,7 +102,7 @@ fn words(result: &SearchResult) -> Vec<String> {
 
 fn fact_table(result: &SearchResult) -> Table {
     let mut table =
-        Table::new("Facts", &["<fact", "wanted", "tolerance", "before", "found", "÷ tolerance", "<"]);
+        Table::new("Facts", &["<fact", "wanted", "tolerance", "before", "found", "÷ tol.", "<"]);
     table.alarming = true;
     for (row, before) in result.facts.rows.iter().zip(&result.before) {
         let tolerance = match row.relative {
@@ -126,7 +126,7 @@ fn fact_table(result: &SearchResult) -> Table {
 
 /// The first words of a long name, so that the figures beside it have room.
 fn shortened(words: &str) -> String {
-    const MOST: usize = 44;
+    const MOST: usize = 42;
     match words.char_indices().nth(MOST) {
         Some((end, _)) => format!("{}…", &words[..end]),
         None => words.to_string(),
