@@ -101,8 +101,7 @@ fn words(result: &SearchResult) -> Vec<String> {
 }
 
 fn fact_table(result: &SearchResult) -> Table {
-    let mut table =
-        Table::new("Facts", &["<fact", "wanted", "tolerance", "before", "found", "÷ tol.", "<"]);
+    let mut table = Table::new("Facts", &["<fact", "wanted", "tolerance", "before", "found", "÷ tol.", "<"]);
     table.alarming = true;
     for (row, before) in result.facts.rows.iter().zip(&result.before) {
         let tolerance = match row.relative {
