@@ -3,7 +3,7 @@
 use super::reader::Section;
 use super::units::{NUMBER, dimension_of};
 use super::{Case, ContactPoints, ContactState, Invalidates, Matrices, MatrixTerm, MeshSource, Parameter};
-use crate::error::{Error, nearest};
+use crate::error::{Error, Fault, Result, nearest};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::ops::Bound;
@@ -232,16 +232,49 @@ fn check_paths(s: &Section, parameters: &BTreeMap<String, CalibratedParameter>) 
     }
 }
 
+impl CalibratedParameter {
+    /// The value that its scalars have in `case`, where a search starts; `place` says where a key of it stands.
+    ///
+    /// # Errors
+    /// Scalars whose values differ, or are outside the bounds.
+    pub fn start(&self, case: &Case, place: impl Fn(&str) -> String) -> Result<f64> {
+        let values = self.path.iter().map(|path| Ok(case.parameter(path)?.value));
+        let values: Vec<f64> = values.collect::<Result<_>>()?;
+        let [low, high] = self.between;
+        if values.iter().any(|value| *value != values[0]) {
+            let found = format!("values {values:?}");
+            return Err(Error::input(Fault::new(place("path"), found, "scalars of one value")));
+        }
+        if !(low..=high).contains(&values[0]) {
+            let found = format!("bounds {low} to {high} without the case's own value {}", values[0]);
+            let expected = "bounds that hold the value of the case, where the search starts";
+            return Err(Error::input(Fault::new(place("between"), found, expected)));
+        }
+        Ok(values[0])
+    }
+}
+
 impl Case {
+    /// The same case with the scalars of some numbers at values \[SI\], one a number.
+    ///
+    /// # Errors
+    /// A value that the case refuses.
+    pub(crate) fn with_numbers<'a>(
+        &self,
+        numbers: impl IntoIterator<Item = &'a CalibratedParameter>,
+        values: &[f64],
+    ) -> Result<Case> {
+        let each = numbers.into_iter().zip(values);
+        self.with_parameters(each.flat_map(|(p, value)| p.path.iter().map(move |path| (path, *value))))
+    }
+
     /// The same case with every number that is to be found at its value in `values` \[SI\], in the order of the names.
     ///
     /// # Errors
     /// A value that the case refuses.
-    pub fn with_calibrated(&self, values: &[f64]) -> crate::error::Result<Case> {
+    pub fn with_calibrated(&self, values: &[f64]) -> Result<Case> {
         let parameters = self.calibrate.iter().flat_map(|c| c.parameter.values());
-        let scalars =
-            parameters.zip(values).flat_map(|(p, value)| p.path.iter().map(move |path| (path, *value)));
-        let case = Case { calibrate: None, ..self.clone() }.with_parameters(scalars)?;
+        let case = Case { calibrate: None, ..self.clone() }.with_numbers(parameters, values)?;
         Ok(Case { calibrate: self.calibrate.clone(), ..case })
     }
 
@@ -277,7 +310,6 @@ impl Case {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::Result;
 
     const CASE: &str = include_str!("../../validation/annulus-02/case.toml");
 

@@ -7,7 +7,7 @@ use crate::progress::Observer;
 use cmaes::{CMAESOptions, DVector};
 use std::sync::Mutex;
 
-/// What a sample costs for each unit, squared, that it lies outside the bounds, where half their width is about one.
+/// What a sample costs for lying outside the bounds, times the square of how far in units of their width.
 const OUTSIDE: f64 = 100.0;
 
 /// The unknowns of the least cost among at most `evaluations` samples, from `start`. The samples depend on the seed alone.

@@ -20,7 +20,7 @@ pub struct SearchFile {
     pub source: String,
     /// The case at whose values the search starts.
     pub case: Case,
-    /// The cases that the facts are of, by their files.
+    /// The case and those that the facts are of, by their files.
     pub(super) cases: BTreeMap<String, Case>,
     /// Most evaluations.
     pub evaluations: usize,
@@ -59,30 +59,21 @@ pub fn read_search(path: &Path) -> Result<SearchFile> {
     let found = faults.take(read.map(|(found, _)| found)).flatten();
     let Some(mut found) = found else { return Err(Error::Input(faults)) };
     let files: BTreeSet<&String> = found.checks.iter().map(|check| &check.case).collect();
-    let cases = files
-        .into_iter()
-        .filter_map(|file| faults.take(read_case(&folder.join(file))).map(|case| (file.clone(), case)));
-    found.cases = cases.collect();
+    for file in files {
+        if !found.cases.contains_key(file) {
+            found.cases.extend(faults.take(read_case(&folder.join(file))).map(|case| (file.clone(), case)));
+        }
+    }
     let mut start = Vec::new();
     for (name, parameter) in &found.parameters {
         let key = |key: &str| format!("{place}: `parameter.{name}.{key}`");
-        let values: Vec<f64> =
-            parameter.path.iter().filter_map(|path| Some(found.case.parameter(path).ok()?.value)).collect();
-        let [low, high] = parameter.between;
-        if values.iter().any(|value| *value != values[0]) {
-            faults.push(Fault::new(key("path"), format!("values {values:?}"), "scalars of one value"));
-        } else if !values.iter().all(|value| (low..=high).contains(value)) {
-            let found = format!("bounds {low} to {high} without the case's own value {}", values[0]);
-            let expected = "bounds that hold the value of the case, where the search starts";
-            faults.push(Fault::new(key("between"), found, expected));
-        }
+        start.extend(faults.take(parameter.start(&found.case, key)));
         for (file, case) in &found.cases {
             for path in parameter.path.iter().filter(|path| case.parameter(path).is_err()) {
                 let found = format!("`{path}`, no number of {file}");
                 faults.push(Fault::new(key("path"), found, "scalars that every case of the facts has"));
             }
         }
-        start.push(values.first().copied().unwrap_or(low));
     }
     found.start = start;
     let stem = path.file_stem().unwrap_or_default();
@@ -105,8 +96,8 @@ fn read_root(root: &Section, file: &str, case: Case) -> SearchFile {
         name: String::new(),
         title: root.string("title").required("one line"),
         source: root.string("source").required("where the facts come from"),
+        cases: BTreeMap::from([(file.to_string(), case.clone())]),
         case,
-        cases: BTreeMap::new(),
         evaluations: root.count("evaluations").or(1000),
         seed: root.count("seed").or(1) as u64,
         spread: root.quantity("spread", NUMBER).within(Bound::Excluded(0.0), Bound::Included(1.0)).or(0.2),
@@ -119,7 +110,6 @@ fn read_root(root: &Section, file: &str, case: Case) -> SearchFile {
 impl SearchFile {
     /// `case` with the numbers at `values` \[SI\].
     pub(super) fn with(&self, case: &Case, values: &[f64]) -> Result<Case> {
-        let each = self.parameters.values().zip(values);
-        case.with_parameters(each.flat_map(|(p, value)| p.path.iter().map(move |path| (path, *value))))
+        case.with_numbers(self.parameters.values(), values)
     }
 }

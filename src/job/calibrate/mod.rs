@@ -51,21 +51,7 @@ impl<'a> Calibrate<'a> {
         for (name, parameter) in &wanted.parameter {
             let place = |key: &str| format!("`calibrate.parameter.{name}.{key}`");
             let coordinate = Coordinate::new(parameter);
-            let values = parameter.path.iter().map(|path| Ok(prepared.case.parameter(path)?.value));
-            if let Some(values) = faults.take(values.collect::<Result<Vec<f64>>>()) {
-                let [low, high] = parameter.between;
-                if values.iter().any(|value| *value != values[0]) {
-                    faults.push(Fault::new(
-                        place("path"),
-                        format!("values {values:?}"),
-                        "scalars of one value",
-                    ));
-                } else if !(low..=high).contains(&values[0]) {
-                    let found = format!("bounds {low} to {high} without the case's own value {}", values[0]);
-                    let expected = "bounds that hold the value of the case, where the search starts";
-                    faults.push(Fault::new(place("between"), found, expected));
-                }
-            }
+            faults.take(parameter.start(prepared.case, place));
             if let Err(error) = scalars(prepared.case, &coordinate) {
                 let expected = "a scalar that modes have a derivative by";
                 let found = match &error {
