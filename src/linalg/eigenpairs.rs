@@ -13,11 +13,11 @@ use super::SparseMatrix;
 use super::dense::symmetric_eigen;
 use super::factor::{SymbolicFactor, SymmetricFactor};
 use super::lanczos::{BlockLanczos, Ritz, Window};
-use super::sparse::{add_scaled, diagonal, multiply, norm_1};
-use super::tall::{combine, gram};
+use super::sparse::{add_scaled, diagonal, norm_1, times};
+use super::tall::{gram, rotate};
 use crate::error::{Error, Result};
 use crate::progress::Observer;
-use faer::{Accum, Mat, MatRef};
+use faer::{Mat, MatRef};
 
 /// Which eigenpairs are wanted.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,6 +68,8 @@ const INSIDE: [f64; 3] = [0.4, 0.38, 0.42];
 const EXPLORED: usize = 16;
 /// Ritz values with ‖A x − ν x‖_M below this part of |ν| are taken for eigenvalues in the first look.
 const SETTLED: f64 = 1e-2;
+/// Columns that go through the matrices together where there may be many: few, so that little memory is held.
+const TOGETHER: usize = 32;
 /// Eigenvalues nearer to each other than this, relative to their size, are one cluster.
 const CLUSTER: f64 = 1e-7;
 
@@ -159,14 +161,18 @@ pub fn backward_errors(
     vectors: MatRef<'_, f64>,
 ) -> Vec<f64> {
     let (k_norm, m_norm) = (norm_1(k), norm_1(m));
-    let (mut kx, mut mx) = (Mat::zeros(k.ncols(), values.len()), Mat::zeros(k.ncols(), values.len()));
-    multiply(k, vectors, kx.as_mut());
-    multiply(m, vectors, mx.as_mut());
-    let error = |(j, theta): (usize, &f64)| {
-        let residual = (0..k.ncols()).map(|i| (kx[(i, j)] - theta * mx[(i, j)]).powi(2)).sum::<f64>().sqrt();
-        residual / ((k_norm + theta.abs() * m_norm) * vectors.col(j).norm_l2()).max(f64::MIN_POSITIVE)
-    };
-    values.iter().enumerate().map(error).collect()
+    let mut errors = Vec::new();
+    for (chunk, values) in values.chunks(TOGETHER).enumerate() {
+        let x = vectors.subcols(chunk * TOGETHER, values.len());
+        let (kx, mx) = (times(k, x), times(m, x));
+        let error = |(j, theta): (usize, &f64)| {
+            let entries = kx.col_as_slice(j).iter().zip(mx.col_as_slice(j));
+            let residual = entries.map(|(k, m)| (k - theta * m).powi(2)).sum::<f64>().sqrt();
+            residual / ((k_norm + theta.abs() * m_norm) * x.col(j).norm_l2()).max(f64::MIN_POSITIVE)
+        };
+        errors.extend(values.iter().enumerate().map(error));
+    }
+    errors
 }
 
 /// K − σM with the analysis of its pattern.
@@ -413,8 +419,7 @@ impl<'a> Pencil<'a> {
             if round == 1 || errors.iter().all(|e| *e <= 1e-14) {
                 break;
             }
-            let mut y = Mat::zeros(found.vectors.nrows(), count);
-            multiply(self.m, found.vectors.as_ref(), y.as_mut());
+            let mut y = times(self.m, found.vectors.as_ref());
             found.factor.solve_in_place(y.as_mut());
             for (j, theta) in found.values.iter().enumerate() {
                 y.col_mut(j).iter_mut().for_each(|v| *v *= theta - found.shift);
@@ -448,9 +453,12 @@ impl Found {
 
 /// X ← X (XᵀMX)^-½, which moves the vectors least.
 fn orthonormalise(m: &SparseMatrix, x: &mut Mat<f64>) -> Result<()> {
-    let mut mx = Mat::zeros(x.nrows(), x.ncols());
-    multiply(m, x.as_ref(), mx.as_mut());
-    let (values, u) = symmetric_eigen(gram(x.as_ref(), mx.as_ref()).as_ref())?;
+    let mut square = Mat::zeros(x.ncols(), x.ncols());
+    for start in (0..x.ncols()).step_by(TOGETHER) {
+        let mx = times(m, x.subcols(start, TOGETHER.min(x.ncols() - start)));
+        square.subcols_mut(start, mx.ncols()).copy_from(gram(x.as_ref(), mx.as_ref()));
+    }
+    let (values, u) = symmetric_eigen(square.as_ref())?;
     if values.iter().any(|v| *v <= 0.0 || v.is_nan()) {
         return Err(Error::analysis(
             "eigenvalues",
@@ -461,9 +469,7 @@ fn orthonormalise(m: &SparseMatrix, x: &mut Mat<f64>) -> Result<()> {
     let n = values.len();
     let scaled = Mat::from_fn(n, n, |i, k| u[(i, k)] / values[k].sqrt());
     let root = super::dense::product(scaled.as_ref(), u.transpose());
-    let mut y = Mat::zeros(x.nrows(), n);
-    combine(y.as_mut(), Accum::Replace, x.as_ref(), root.as_ref(), 1.0);
-    *x = y;
+    rotate(x.as_mut(), root.as_ref());
     Ok(())
 }
 

@@ -13,11 +13,10 @@ use super::dense::{product, symmetric_eigen};
 use super::factor::SymmetricFactor;
 use super::random::Random;
 use super::sparse::multiply;
-use super::tall::{ROWS, combine, gram};
+use super::tall::{combine, gram, rotate};
 use crate::error::{Error, Result};
 use crate::progress::Observer;
-use faer::{Accum, Mat, MatMut, MatRef};
-use rayon::prelude::*;
+use faer::{Accum, Mat, MatRef};
 
 /// Columns of a block: as many right-hand sides as one solve takes at little more than the price of one, and more
 /// than the multiplicity of any eigenvalue but the rigid-body ones of two free parts.
@@ -33,6 +32,8 @@ pub struct BlockLanczos<'a> {
     factor: &'a dyn SymmetricFactor,
     /// V in the first `len` columns, X in the `width` columns after them.
     basis: Mat<f64>,
+    /// The columns that the basis has room for.
+    capacity: usize,
     projected: Mat<f64>,
     len: usize,
     width: usize,
@@ -95,6 +96,7 @@ impl<'a> BlockLanczos<'a> {
             mass,
             factor,
             basis: Mat::zeros(mass.ncols(), 0),
+            capacity: 0,
             projected: Mat::zeros(0, 0),
             len: 0,
             width: 0,
@@ -114,10 +116,17 @@ impl<'a> BlockLanczos<'a> {
     /// Makes room for `capacity` columns and two blocks.
     pub fn reserve(&mut self, capacity: usize) {
         let total = capacity.max(4 * BLOCK) + 2 * BLOCK;
-        if total > self.basis.ncols() {
-            self.basis.resize_with(self.mass.ncols(), total, |_, _| 0.0);
+        if total > self.capacity {
+            self.capacity = total;
+            self.basis.reserve(self.mass.ncols(), total);
             self.projected.resize_with(total, total, |_, _| 0.0);
         }
+    }
+
+    /// Puts X into the basis, from column `first` on.
+    fn put(&mut self, first: usize, x: &Mat<f64>) {
+        self.basis.truncate(x.nrows(), first.min(self.basis.ncols()));
+        self.basis.resize_with(x.nrows(), first + x.ncols(), |i, j| x[(i, j - first)]);
     }
 
     /// Extends the basis, restarting when it is full, until the window is complete and its pairs are accepted.
@@ -131,7 +140,7 @@ impl<'a> BlockLanczos<'a> {
             if !complete {
                 let room = 3 * self.width.max(BLOCK);
                 self.reserve(window.negative + window.largest + 2 * room);
-                if self.len + room > self.basis.ncols() {
+                if self.len + room > self.capacity {
                     self.restart(window, room)?;
                 }
                 self.step()?;
@@ -279,7 +288,7 @@ impl<'a> BlockLanczos<'a> {
         self.len = end;
         let (x, mx, r) = self.orthonormalise(w, mw, scale)?;
         self.width = x.ncols();
-        self.basis.subcols_mut(end, x.ncols()).copy_from(&x);
+        self.put(end, &x);
         self.mass_last = std::mem::replace(&mut self.mass_next, mx);
         self.coupling = r;
         Ok(())
@@ -346,7 +355,7 @@ impl<'a> BlockLanczos<'a> {
         if x.ncols() == 0 {
             return false;
         }
-        self.basis.subcols_mut(held, x.ncols()).copy_from(&x);
+        self.put(held, &x);
         let width = self.width;
         self.width += x.ncols();
         self.mass_next.resize_with(n, self.width, |i, j| mx[(i, j - width)]);
@@ -361,13 +370,13 @@ impl<'a> BlockLanczos<'a> {
         let mut order: Vec<usize> = (0..self.len).collect();
         order.sort_by(|a, b| ritz.values[*b].abs().total_cmp(&ritz.values[*a].abs()));
         let wanted = (window.negative + window.largest).min(self.len);
-        let keep = (wanted + (self.len - wanted) / 2).min(self.basis.ncols() - room);
+        let keep = (wanted + (self.len - wanted) / 2).min(self.capacity - room);
         let mut kept = order[..keep].to_vec();
         kept.sort_unstable();
         let s = Mat::from_fn(self.len, keep, |i, k| ritz.coefficients[(i, kept[k])]);
         let next = self.basis.subcols(self.len, self.width).to_owned();
         rotate(self.basis.subcols_mut(0, self.len), s.as_ref());
-        self.basis.subcols_mut(keep, self.width).copy_from(&next);
+        self.put(keep, &next);
         let tail = self.coupling.ncols();
         self.coupling = product(self.coupling.as_ref(), s.subrows(self.len - tail, tail));
         self.projected.fill(0.0);
@@ -393,14 +402,6 @@ impl<'a> BlockLanczos<'a> {
         combine(w.as_mut(), Accum::Add, v, h.as_ref(), -1.0);
         h
     }
-}
-
-/// The first columns of V become V C, range of rows by range of rows.
-fn rotate(v: MatMut<'_, f64>, c: MatRef<'_, f64>) {
-    v.par_row_chunks_mut(ROWS).for_each(|mut v| {
-        let rotated = product(v.as_ref(), c);
-        v.as_mut().subcols_mut(0, c.ncols()).copy_from(&rotated);
-    });
 }
 
 /// A above B.
@@ -438,7 +439,7 @@ mod tests {
                 lanczos.restart(Window { negative, largest: 10, floor: 0.0 }, 3 * BLOCK).unwrap();
             }
             lanczos.step().unwrap();
-            if lanczos.len + 3 * BLOCK > lanczos.basis.ncols() {
+            if lanczos.len + 3 * BLOCK > lanczos.capacity {
                 break;
             }
         }

@@ -70,7 +70,7 @@ impl Merged {
     pub fn times(&self, x: MatRef<'_, f64>) -> Vec<Mat<f64>> {
         let n = self.starts.len() - 1;
         assert!(x.nrows() == n, "shapes of A and x disagree");
-        let mut products = vec![Mat::zeros(n, x.ncols()); self.count];
+        let mut products: Vec<Mat<f64>> = (0..self.count).map(|_| Mat::zeros(n, x.ncols())).collect();
         for start in (0..x.ncols()).step_by(PANEL) {
             let width = PANEL.min(x.ncols() - start);
             let packed = pack::<f64, PANEL>(x.subcols(start, width));

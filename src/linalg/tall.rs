@@ -3,7 +3,7 @@
 //! Work is split over fixed ranges of rows, and sums are added in the order of the ranges: the same bits for any number
 //! of threads.
 
-use faer::linalg::matmul::triangular::{BlockStructure, matmul};
+use super::dense::product;
 use faer::traits::ComplexField;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
 use rayon::prelude::*;
@@ -13,15 +13,6 @@ pub(super) const ROWS: usize = 8192;
 
 /// AᴴB: partial products of fixed ranges of rows, added in their order.
 pub fn gram<T: ComplexField>(a: MatRef<'_, T>, b: MatRef<'_, T>) -> Mat<T> {
-    summed(a, b, BlockStructure::Rectangular)
-}
-
-/// The lower triangle of AᴴB, for a product that is known to be symmetric; zeros above.
-pub fn lower_gram<T: ComplexField>(a: MatRef<'_, T>, b: MatRef<'_, T>) -> Mat<T> {
-    summed(a, b, BlockStructure::TriangularLower)
-}
-
-fn summed<T: ComplexField>(a: MatRef<'_, T>, b: MatRef<'_, T>, wanted: BlockStructure) -> Mat<T> {
     let n = a.nrows();
     let parts: Vec<Mat<T>> = (0..n.div_ceil(ROWS))
         .into_par_iter()
@@ -29,9 +20,8 @@ fn summed<T: ComplexField>(a: MatRef<'_, T>, b: MatRef<'_, T>, wanted: BlockStru
             let (start, rows) = (task * ROWS, ROWS.min(n - task * ROWS));
             let (a, b) = (a.subrows(start, rows), b.subrows(start, rows));
             let mut part = Mat::zeros(a.ncols(), b.ncols());
-            let (whole, one) = (BlockStructure::Rectangular, faer::traits::math_utils::one::<T>());
-            let (part_mut, a) = (part.as_mut(), a.adjoint());
-            matmul(part_mut, wanted, Accum::Replace, a, whole, b, whole, one, Par::Seq);
+            let one = faer::traits::math_utils::one::<T>();
+            faer::linalg::matmul::matmul(part.as_mut(), Accum::Replace, a.adjoint(), b, one, Par::Seq);
             part
         })
         .collect();
@@ -53,6 +43,14 @@ pub fn combine<T: ComplexField>(
     y.par_row_chunks_mut(ROWS).enumerate().for_each(|(task, y)| {
         let v = v.subrows(task * ROWS, y.nrows());
         faer::linalg::matmul::matmul(y, accumulate, v, c, factor.clone(), Par::Seq);
+    });
+}
+
+/// The first columns of V become V C, range of rows by range of rows.
+pub fn rotate(v: MatMut<'_, f64>, c: MatRef<'_, f64>) {
+    v.par_row_chunks_mut(ROWS).for_each(|mut v| {
+        let rotated = product(v.as_ref(), c);
+        v.as_mut().subcols_mut(0, c.ncols()).copy_from(&rotated);
     });
 }
 

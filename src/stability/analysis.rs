@@ -6,8 +6,8 @@ use super::finish::finished;
 use super::operator::Operator;
 use super::projected::{SmallPair, project_interface, solve};
 use super::responses::{coupled_responses, few_responses};
-use super::round::{Round, Vectors, measure, residuals, wanted_corrections};
-use super::{ComplexModes, Structural};
+use super::round::{Pairs, Scale, TOGETHER, Wanted};
+use super::{ComplexMode, ComplexModes, Structural};
 use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Fault, Result};
 use crate::linalg::SymmetricFactor;
@@ -26,8 +26,10 @@ const ROUNDS: usize = 6;
 const STATIC_RESPONSES: usize = 240;
 /// The E-norm below which a first correction is left out.
 const FIRST_TOLERANCE: f64 = 1e-6;
-/// Pairs that are expanded together.
-const TOGETHER: usize = 16;
+/// Two eigenvalues nearer than this part of |λ| may be taken for each other.
+const ALONE: f64 = 1e-6;
+/// An eigenvalue that moved by less than this part of |λ| is the same.
+const UNMOVED: f64 = 1e-10;
 /// A condition number of λ above this is told.
 const ILL_CONDITIONED: f64 = 1e6;
 
@@ -185,20 +187,19 @@ fn solve_and_refine<'a>(
         let responses = coupled_responses(operator, &basis, factor, band[1]);
         basis.enrich(&responses, FIRST_TOLERANCE, usize::MAX);
     }
-    let floor = 1e-3 * band[1];
     let mut warnings = Vec::new();
     let mut counts = Vec::new();
-    let mut round = evaluate(operator, &basis, factor, band, None)?;
+    let scale = Scale { operator, factor, top: band[1] };
+    let (mut found, mut wanted) = evaluate(&scale, &basis, real, band, Vec::new())?;
     observer.advance(1);
     let (mut refinements, mut finer) = (0, 0);
     loop {
-        counts.push(round.lambda.len());
-        let open = round.open();
-        if open.is_empty() || refinements == ROUNDS {
+        counts.push(found.len());
+        if wanted.is_empty() || refinements == ROUNDS {
             break;
         }
         // The error of λ is quadratic in that of the vectors: coarse first, so that the basis stays small.
-        let corrections = wanted_corrections(&round, factor, &open, floor);
+        let corrections = wanted.corrections(factor);
         let mut added = 0;
         while added == 0 && finer < ROUNDS {
             let tolerance = FIRST_TOLERANCE * 0.01f64.powi(finer as i32);
@@ -209,7 +210,7 @@ fn solve_and_refine<'a>(
             break;
         }
         refinements += 1;
-        round = evaluate(operator, &basis, factor, band, Some(round))?;
+        (found, wanted) = evaluate(&scale, &basis, real, band, found)?;
         observer.advance(1);
     }
     if let Some(first) = counts.first().filter(|first| counts.iter().any(|c| c != *first)) {
@@ -218,7 +219,7 @@ fn solve_and_refine<'a>(
             "the refinement changed the number of complex modes in the band from {first} to {last}"
         ));
     }
-    let modes = finished(operator, round, real);
+    let modes: Vec<ComplexMode> = found.into_iter().map(|found| found.mode).collect();
     for mode in modes.iter().filter(|mode| mode.accepted() && mode.condition > ILL_CONDITIONED) {
         warnings.push(format!(
             "the mode at {:.2} Hz is ill-conditioned: a relative change of the matrices moves it by {:.0e} times as much",
@@ -289,21 +290,14 @@ fn middle_frequency(basis: &Basis<'_>, top: f64) -> f64 {
     below.get(below.len() / 2).copied().unwrap_or(top)
 }
 
-/// Some pairs of the projected problem on the full order, as [`residuals`] takes them.
-fn vectors<'a>(
-    operator: &'a Operator<'_>,
-    basis: &'a Basis<'_>,
-    pairs: &'a [SmallPair],
-    which: &'a [usize],
-) -> impl Iterator<Item = Vectors> + 'a {
-    which.chunks(TOGETHER).map(move |chunk| {
-        let expand = |pick: fn(&SmallPair) -> &Vec<c64>| {
-            let small: Vec<&[c64]> = chunk.iter().map(|j| pick(&pairs[*j]).as_slice()).collect();
-            operator.images(basis.expand(&unit_mass(basis, Block::from_columns(basis.len(), &small))))
-        };
-        let lambda = chunk.iter().map(|j| pairs[*j].lambda).collect();
-        Vectors { lambda, right: expand(|p| &p.right), left: expand(|p| &p.left) }
-    })
+/// Pairs of the projected problem on the full order.
+fn expanded(basis: &Basis<'_>, pairs: &[&SmallPair]) -> Pairs {
+    let expand = |pick: fn(&SmallPair) -> &Vec<c64>| {
+        let small: Vec<&[c64]> = pairs.iter().map(|pair| pick(pair).as_slice()).collect();
+        basis.expand(&unit_mass(basis, Block::from_columns(basis.len(), &small)))
+    };
+    let lambda = pairs.iter().map(|pair| pair.lambda).collect();
+    Pairs { lambda, right: expand(|p| &p.right), left: expand(|p| &p.left) }
 }
 
 /// Coordinates scaled so that the vectors which they stand for have xᴴMx = 1.
@@ -314,23 +308,48 @@ fn unit_mass(basis: &Basis<'_>, mut y: Block) -> Block {
     y
 }
 
-/// The pairs of the projected problem, measured on the full order; those that are `known` to be right are kept.
+/// A mode, and whether it is as exact as the refinement aims at.
+struct Found {
+    mode: ComplexMode,
+    exact: bool,
+}
+
+/// The modes of the projected problem, measured on the full order, and what those ask for that are not exact. Of those found
+/// before, the exact ones are kept.
 fn evaluate(
-    operator: &Operator<'_>,
+    scale: &Scale<'_>,
     basis: &Basis<'_>,
-    factor: &dyn SymmetricFactor,
+    real: &RealModes,
     band: [f64; 2],
-    known: Option<Round>,
-) -> Result<Round> {
-    let pairs = small_pairs(operator, basis, band)?;
-    let kept: Vec<Option<usize>> =
-        pairs.iter().map(|p| known.as_ref().and_then(|known| known.settled(&pairs, p.lambda))).collect();
-    let fresh: Vec<usize> = (0..pairs.len()).filter(|j| kept[*j].is_none()).collect();
-    let new = measure(factor, band, residuals(operator, vectors(operator, basis, &pairs, &fresh)));
-    Ok(match known {
-        Some(known) if fresh.len() < pairs.len() => new.beside(&known, &kept),
-        _ => new,
-    })
+    before: Vec<Found>,
+) -> Result<(Vec<Found>, Wanted)> {
+    let pairs = small_pairs(scale.operator, basis, band)?;
+    let settled: Vec<Option<usize>> = pairs.iter().map(|p| settled(&before, &pairs, p.lambda)).collect();
+    let fresh: Vec<&SmallPair> =
+        pairs.iter().zip(&settled).filter(|(_, place)| place.is_none()).map(|(pair, _)| pair).collect();
+    let (mut wanted, mut new) = (Wanted::default(), Vec::new());
+    for chunk in fresh.chunks(TOGETHER) {
+        let measured = scale.measure(expanded(basis, chunk), |vectors| scale.operator.images(vectors));
+        wanted.add(&measured, scale.top);
+        let exact: Vec<bool> = (0..chunk.len()).map(|j| measured.exact(j)).collect();
+        let modes = finished(scale.operator, measured, real);
+        new.extend(modes.into_iter().zip(exact).map(|(mode, exact)| Found { mode, exact }));
+    }
+    let (mut before, mut new): (Vec<_>, _) = (before.into_iter().map(Some).collect(), new.into_iter());
+    let of = |place: Option<usize>| match place {
+        Some(k) => before[k].take().expect("one pair settles on it"),
+        None => new.next().expect("one for each pair that did not settle"),
+    };
+    Ok((settled.into_iter().map(of).collect(), wanted))
+}
+
+/// The place of the exact mode that has this λ, when there is just one mode and one pair of `all` there.
+fn settled(before: &[Found], all: &[SmallPair], lambda: c64) -> Option<usize> {
+    let apart = |z: c64| (z - lambda).norm() / lambda.norm();
+    let mut own = (0..before.len()).filter(|j| apart(before[*j].mode.eigenvalue) <= ALONE);
+    let alone = all.iter().filter(|pair| apart(pair.lambda) <= ALONE).count() == 1;
+    let j = own.next().filter(|j| alone && own.next().is_none() && before[*j].exact)?;
+    (apart(before[j].mode.eigenvalue) <= UNMOVED).then_some(j)
 }
 
 /// Whether λ is one to give: one of each conjugate pair, its frequency in the band.

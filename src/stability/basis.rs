@@ -5,13 +5,17 @@ use super::operator::{Operator, Products};
 use crate::linalg::SparseMatrix;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::sparse::{add_scaled, times};
-use crate::linalg::tall::{beside, combine, expand, gram, lower_gram};
+use crate::linalg::tall::{combine, expand, gram};
 use faer::{Accum, Mat, MatMut, MatRef};
 
 /// Columns that are orthonormalised together.
 const PANEL: usize = 32;
 /// Of more columns than this the principal directions are taken.
 const WIDE: usize = 48;
+/// Columns that go through the matrices together: few, so that little memory is held.
+const TOGETHER: usize = 32;
+/// Vectors that a basis has room for before it is moved.
+const ROOM: usize = 160;
 
 /// A basis B = \[Φ Z\] and the projections BᵀMB, BᵀCB, BᵀKB, BᵀHB, and BᵀW of the interface.
 ///
@@ -43,16 +47,14 @@ impl<'a> Basis<'a> {
             energy: add_scaled(&[(1.0, &*operator.stiffness), (tau, operator.mass)]),
             tau,
             sizes: Vec::new(),
-            vectors: Mat::zeros(n, 0),
+            vectors: Mat::with_capacity(n, modes.ncols() + ROOM),
             mass: Mat::zeros(0, 0),
             damping: Mat::zeros(0, 0),
             stiffness: Mat::zeros(0, 0),
             hysteretic: operator.damping.hysteretic.as_ref().map(|_| Mat::zeros(0, 0)),
             interface: Mat::zeros(0, operator.interface.directions.len()),
         };
-        basis.append(modes.to_owned());
-        basis.sizes =
-            (0..modes.ncols()).map(|j| basis.stiffness[(j, j)] + tau * basis.mass[(j, j)]).collect();
+        basis.append(modes);
         basis
     }
 
@@ -75,16 +77,14 @@ impl<'a> Basis<'a> {
     /// `limit` are taken; of many, the principal directions of what remains of all of them, down to `tolerance`. Says how
     /// many were.
     pub(super) fn enrich(&mut self, z: &Mat<f64>, tolerance: f64, limit: usize) -> usize {
-        let new = match z.ncols() > WIDE && limit == usize::MAX {
-            true => self.principal(z, tolerance),
-            false => self.largest(z.clone(), tolerance, limit),
-        };
-        let (old, added) = (self.len(), new.ncols());
-        if added > 0 {
-            self.append(new);
+        let old = self.len();
+        if z.ncols() > WIDE && limit == usize::MAX {
+            self.append_principal(z, tolerance);
+        } else {
+            let new = self.largest(z.clone(), tolerance, limit);
+            self.append(new.as_ref());
         }
-        self.sizes.extend((old..self.len()).map(|j| self.stiffness[(j, j)] + self.tau * self.mass[(j, j)]));
-        added
+        self.len() - old
     }
 
     /// The columns of `z` with the largest rest, made E/τ-orthonormal.
@@ -103,32 +103,36 @@ impl<'a> Basis<'a> {
         self.orthonormal(&z, &image, open)
     }
 
-    /// The principal directions of the columns of `z` in the E-norm, once the basis is projected out, that are larger than
-    /// `tolerance`: by the eigenvalues of the Gram matrix less what the basis has of it, which is a small matrix. The
+    /// Adds the principal directions of the columns of `z` in the E-norm, once the basis is projected out, that are larger
+    /// than `tolerance`: by the eigenvalues of the Gram matrix less what the basis has of it, which is a small matrix. The
     /// difference is right to 1e-16 of the largest column, and the directions to what that is of their own size: they need
     /// not be orthogonal, as the projections are those of the vectors as they come out.
-    fn principal(&self, z: &Mat<f64>, tolerance: f64) -> Mat<f64> {
+    fn append_principal(&mut self, z: &Mat<f64>, tolerance: f64) {
         const DIGITS_LEFT: f64 = 1e-14;
-        let image = times(&self.energy, z.as_ref());
-        let share = gram(self.vectors.as_ref(), image.as_ref());
-        let mut energy = lower_gram(z.as_ref(), image.as_ref());
-        drop(image);
-        let largest = (0..z.ncols()).fold(0.0f64, |l, j| l.max(energy[(j, j)]));
-        let weighted =
-            Mat::from_fn(share.nrows(), share.ncols(), |i, j| share[(i, j)] * self.inverse_size(i));
+        let (m, count) = (self.len(), z.ncols());
+        let (mut share, mut energy) = (Mat::<f64>::zeros(m, count), Mat::<f64>::zeros(count, count));
+        for start in (0..count).step_by(TOGETHER) {
+            let width = TOGETHER.min(count - start);
+            let image = times(&self.energy, z.subcols(start, width));
+            share.subcols_mut(start, width).copy_from(gram(self.vectors.as_ref(), image.as_ref()));
+            let below = gram(z.subcols(start, count - start), image.as_ref());
+            energy.submatrix_mut(start, start, count - start, width).copy_from(below);
+        }
+        let largest = (0..count).fold(0.0f64, |l, j| l.max(energy[(j, j)]));
+        let weighted = Mat::from_fn(m, count, |i, j| share[(i, j)] * self.inverse_size(i));
         energy -= product(share.transpose(), weighted.as_ref());
-        let Ok((sizes, directions)) = symmetric_eigen(energy.as_ref()) else {
-            return Mat::zeros(z.nrows(), 0);
-        };
+        let Ok((sizes, directions)) = symmetric_eigen(energy.as_ref()) else { return };
         let floor = (tolerance * tolerance).max(DIGITS_LEFT * largest);
         let kept: Vec<usize> = (0..sizes.len()).rev().filter(|j| sizes[*j] > floor).collect();
-        let mix = Mat::from_fn(z.ncols(), kept.len(), |i, k| {
+        let mix = Mat::from_fn(count, kept.len(), |i, k| {
             directions[(i, kept[k])] * (self.tau / sizes[kept[k]]).sqrt()
         });
-        let mut new = expand(z.as_ref(), mix.as_ref());
         let known = product(weighted.as_ref(), mix.as_ref());
-        combine(new.as_mut(), Accum::Add, self.vectors.as_ref(), known.as_ref(), -1.0);
-        new
+        self.vectors.resize_with(z.nrows(), m + kept.len(), |_, _| 0.0);
+        let (basis, mut new) = self.vectors.as_mut().split_at_col_mut(m);
+        combine(new.as_mut(), Accum::Replace, z.as_ref(), mix.as_ref(), 1.0);
+        combine(new, Accum::Add, basis.as_ref(), known.as_ref(), -1.0);
+        self.project();
     }
 
     /// 1 / bᵢᵀEbᵢ; zero for a mode on which E vanishes, just as stiff as −τ, which cannot be told apart by E.
@@ -185,31 +189,48 @@ impl<'a> Basis<'a> {
         new.subcols(0, done).to_owned()
     }
 
-    fn append(&mut self, new: Mat<f64>) {
+    fn append(&mut self, new: MatRef<'_, f64>) {
         let old = self.len();
-        let Products { inertia, elastic, damped, lossy } = self.operator.products(new.as_ref());
-        self.vectors = beside(&self.vectors, &new);
-        let grow = |small: &Mat<f64>, times: &Mat<f64>| {
-            let border = gram(self.vectors.as_ref(), times.as_ref());
-            let m = border.nrows();
+        self.vectors.resize_with(new.nrows(), old + new.ncols(), |i, j| new[(i, j - old)]);
+        self.project();
+    }
+
+    /// Projects what has come to the vectors since the last time.
+    fn project(&mut self) {
+        let (old, m) = (self.sizes.len(), self.len());
+        let border = || Mat::<f64>::zeros(m, m - old);
+        let (mut mass, mut stiffness, mut damping) = (border(), border(), border());
+        let mut hysteretic = self.hysteretic.as_ref().map(|_| border());
+        for start in (old..m).step_by(TOGETHER) {
+            let width = TOGETHER.min(m - start);
+            let products = self.operator.products(self.vectors.subcols(start, width));
+            let Products { inertia, elastic, damped, lossy } = products;
+            let onto = |border: &mut Mat<f64>, times: &Mat<f64>| {
+                let part = gram(self.vectors.as_ref(), times.as_ref());
+                border.subcols_mut(start - old, width).copy_from(part);
+            };
+            onto(&mut mass, &inertia);
+            onto(&mut stiffness, &elastic);
+            damped.iter().for_each(|times| onto(&mut damping, times));
+            hysteretic.iter_mut().zip(&lossy).for_each(|(border, times)| onto(border, times));
+        }
+        let grow = |small: &Mat<f64>, border: &Mat<f64>| {
             Mat::from_fn(m, m, |i, j| match (i < old, j < old) {
                 (true, true) => small[(i, j)],
                 (_, false) => border[(i, j - old)],
                 (false, true) => border[(j, i - old)],
             })
         };
-        self.mass = grow(&self.mass, &inertia);
-        self.stiffness = grow(&self.stiffness, &elastic);
-        self.damping = match &damped {
-            Some(times) => grow(&self.damping, times),
-            None => Mat::zeros(self.vectors.ncols(), self.vectors.ncols()),
-        };
+        self.mass = grow(&self.mass, &mass);
+        self.stiffness = grow(&self.stiffness, &stiffness);
+        self.damping = grow(&self.damping, &damping);
         self.hysteretic =
-            self.hysteretic.as_ref().zip(lossy.as_ref()).map(|(small, times)| grow(small, times));
+            self.hysteretic.as_ref().zip(hysteretic.as_ref()).map(|(small, new)| grow(small, new));
         let directions = &self.operator.interface.directions;
-        self.interface = Mat::from_fn(self.vectors.ncols(), directions.len(), |i, d| {
-            if i < old { self.interface[(i, d)] } else { directions[d].dot(new.col_as_slice(i - old)) }
+        self.interface = Mat::from_fn(m, directions.len(), |i, d| {
+            if i < old { self.interface[(i, d)] } else { directions[d].dot(self.vectors.col_as_slice(i)) }
         });
+        self.sizes.extend((old..m).map(|j| self.stiffness[(j, j)] + self.tau * self.mass[(j, j)]));
     }
 }
 

@@ -27,25 +27,9 @@ impl Block {
         Block { re: part(|z| z.re), im: part(|z| z.im) }
     }
 
-    /// Columns of other blocks, which all have as many rows.
-    pub(super) fn gathered<'b>(columns: impl Iterator<Item = (&'b Block, usize)>) -> Self {
-        let columns: Vec<_> = columns.collect();
-        let n = columns.first().map_or(0, |(block, _)| block.re.nrows());
-        let mut gathered = Block::zeros(n, columns.len());
-        for (k, (block, j)) in columns.into_iter().enumerate() {
-            gathered.re.col_mut(k).copy_from(block.re.col(j));
-            gathered.im.col_mut(k).copy_from(block.im.col(j));
-        }
-        gathered
-    }
-
-    /// Puts the columns of `other` behind the own ones.
-    pub(super) fn append(&mut self, other: Block) {
-        let (n, before, added) = (other.re.nrows(), self.ncols(), other.ncols());
-        for (own, other) in [(&mut self.re, other.re), (&mut self.im, other.im)] {
-            own.resize_with(n, before + added, |_, _| 0.0);
-            own.subcols_mut(before, added).copy_from(&other);
-        }
+    /// Some columns of another block.
+    pub(super) fn gathered(block: &Block, columns: &[usize]) -> Self {
+        block.map(|part| Mat::from_fn(part.nrows(), columns.len(), |i, k| part[(i, columns[k])]))
     }
 
     pub(super) fn ncols(&self) -> usize {
@@ -72,12 +56,6 @@ impl Block {
     /// Column `j`.
     pub(super) fn column(&self, j: usize) -> Vec<c64> {
         self.re.col_as_slice(j).iter().zip(self.im.col_as_slice(j)).map(|(a, b)| c64::new(*a, *b)).collect()
-    }
-
-    /// Column `j` becomes column `k` of `x`.
-    pub(super) fn set_column(&mut self, j: usize, x: &Block, k: usize) {
-        self.re.col_mut(j).copy_from(x.re.col(k));
-        self.im.col_mut(j).copy_from(x.im.col(k));
     }
 
     /// Adds column `k` of `x` to column `j`.

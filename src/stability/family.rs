@@ -7,9 +7,10 @@ use super::interface::{Interface, Term, terms_of_every_point};
 use super::operator::{Images, Operator, damping_times};
 use super::reduced::{Projection, Reduced, ReducedModes};
 use super::responses::interface_responses;
-use super::round::{Round, Vectors, measure, residuals, wanted_corrections};
+use super::round::{Pairs, Scale, TOGETHER, Wanted};
 use crate::equilibrium::{PointState, tangent_stiffness};
 use crate::error::Result;
+use crate::linalg::dense::product;
 use crate::linalg::sparse::times;
 use crate::linalg::tall::gram;
 use crate::linalg::{SymmetricFactor, c64};
@@ -60,7 +61,7 @@ pub struct FamilyModes {
 }
 
 /// What the full order says of the modes of one state.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct FamilyCheck {
     /// λ of the modes \[1/s\].
     pub eigenvalues: Vec<c64>,
@@ -159,7 +160,7 @@ impl<'f> Family<'f> {
     /// # Errors
     /// As [`Family::modes`].
     pub fn check(&self, state: &SlidingState) -> Result<FamilyCheck> {
-        Ok(checked(&self.measure(state, &self.solve(state)?)))
+        Ok(self.measure(state, &self.solve(state)?).0)
     }
 
     /// [`Family::check`] of the one mode whose λ is nearest to `near`; empty where there is no mode.
@@ -176,8 +177,7 @@ impl<'f> Family<'f> {
             right: of(k, &modes.right),
             left: of(k, &modes.left),
         };
-        let none = FamilyCheck { eigenvalues: vec![], backward_errors: vec![], eigenvalue_errors: vec![] };
-        Ok(nearest.map_or(none, |k| checked(&self.measure(state, &one(k)))))
+        Ok(nearest.map_or(FamilyCheck::default(), |k| self.measure(state, &one(k)).0))
     }
 
     /// Enriches the family until the modes of `state` are right at full order, as [`super::complex_modes`] does for a
@@ -187,21 +187,19 @@ impl<'f> Family<'f> {
     /// As [`Family::new`].
     pub fn train(&mut self, state: &SlidingState) -> Result<FamilyCheck> {
         const ROUNDS: i32 = 6;
-        let mut round = self.measure(state, &self.solve(state)?);
+        let (mut check, mut wanted) = self.measure(state, &self.solve(state)?);
         for k in 0..ROUNDS {
-            let open = round.open();
-            let floor = 1e-3 * self.frame.band[1];
-            if open.is_empty() {
+            if wanted.is_empty() {
                 break;
             }
-            let corrections = wanted_corrections(&round, &*self.frame.factor, &open, floor);
+            let corrections = wanted.corrections(&*self.frame.factor);
             if self.basis.enrich(&corrections, 1e-6 * 0.01f64.powi(k), usize::MAX) == 0 {
                 break;
             }
             self.reduced = reduce(self.frame, &self.basis, &self.springs)?;
-            round = self.measure(state, &self.solve(state)?);
+            (check, wanted) = self.measure(state, &self.solve(state)?);
         }
-        Ok(checked(&round))
+        Ok(check)
     }
 
     fn solve(&self, state: &SlidingState) -> Result<ReducedModes> {
@@ -209,21 +207,29 @@ impl<'f> Family<'f> {
         self.reduced.solve(&self.frame.terms(state), &state.damping_weights, |z| in_band(z, band))
     }
 
-    /// Some modes of `state` on the full order.
-    fn measure(&self, state: &SlidingState, modes: &ReducedModes) -> Round {
+    /// Some modes of `state` on the full order, and what those ask for that are not exact.
+    fn measure(&self, state: &SlidingState, modes: &ReducedModes) -> (FamilyCheck, Wanted) {
         let operator = self.frame.operator.with_terms(self.frame.terms(state));
-        let images = |y: &Mat<c64>| {
+        let scale = Scale { operator: &operator, factor: &*self.frame.factor, top: self.frame.band[1] };
+        let expand = |y: &Mat<c64>, first: usize, count: usize| {
             let part = |f: fn(&c64) -> f64| {
-                let y = Mat::from_fn(y.nrows(), y.ncols(), |i, j| f(&y[(i, j)]));
-                crate::linalg::dense::product(self.reduced.rotation.as_ref(), y.as_ref())
+                let y = Mat::from_fn(y.nrows(), count, |i, j| f(&y[(i, first + j)]));
+                product(self.reduced.rotation.as_ref(), y.as_ref())
             };
-            let block = Block { re: part(|z| z.re), im: part(|z| z.im) };
-            self.weigh(operator.images(self.basis.expand(&block)), &state.damping_weights)
+            self.basis.expand(&Block { re: part(|z| z.re), im: part(|z| z.im) })
         };
-        let (right, left) = (images(&modes.right), images(&modes.left));
-        let pairs = Vectors { lambda: modes.eigenvalues.clone(), right, left };
-        let residuals = residuals(&operator, std::iter::once(pairs));
-        measure(&*self.frame.factor, self.frame.band, residuals)
+        let (mut check, mut wanted) = (FamilyCheck::default(), Wanted::default());
+        for (chunk, lambda) in modes.eigenvalues.chunks(TOGETHER).enumerate() {
+            let of = |y: &Mat<c64>| expand(y, chunk * TOGETHER, lambda.len());
+            let pairs = Pairs { lambda: lambda.to_vec(), right: of(&modes.right), left: of(&modes.left) };
+            let images = |vectors| self.weigh(operator.images(vectors), &state.damping_weights);
+            let measured = scale.measure(pairs, images);
+            wanted.add(&measured, scale.top);
+            check.eigenvalues.extend(measured.pairs.lambda);
+            check.backward_errors.extend(measured.backward_error);
+            check.eigenvalue_errors.extend(measured.eigenvalue_error);
+        }
+        (check, wanted)
     }
 
     /// C x and H x with the weights of the dampings.
@@ -253,14 +259,6 @@ fn add(sum: &mut Option<Block>, part: Block, weight: f64) {
     let columns = part.ncols();
     let sum = sum.get_or_insert_with(|| Block::zeros(part.re.nrows(), columns));
     sum.add_scaled(&vec![c64::new(weight, 0.0); columns], &part);
-}
-
-fn checked(round: &Round) -> FamilyCheck {
-    FamilyCheck {
-        eigenvalues: round.lambda.clone(),
-        backward_errors: round.backward_error.clone(),
-        eigenvalue_errors: round.eigenvalue_error.clone(),
-    }
 }
 
 /// Projects every damping on the basis and diagonalises.

@@ -5,82 +5,67 @@ use super::GrowthBudget;
 use super::block::Block;
 use super::budget::growth_budgets;
 use super::operator::{Operator, Side};
-use super::round::Round;
+use super::round::Measured;
 use crate::linalg::c64;
 use crate::linalg::tall::gram;
 use crate::modal::RealModes;
 
-/// Pairs that are worked on together.
-const TOGETHER: usize = 16;
-
-/// What is told of one right vector.
+/// Right vectors with unit mass, and what is told of them.
 struct Told {
-    backward_error: f64,
-    growth: GrowthBudget,
-    participation: Vec<(usize, f64)>,
+    vectors: Block,
+    backward_error: Vec<f64>,
+    growth: Vec<GrowthBudget>,
+    participation: Vec<Vec<(usize, f64)>>,
 }
 
-/// The modes of a round. The error of φ is about the correction z = −A⁻¹Q(λ)φ, which was solved for to tell that of λ: φ + z
-/// is given where its residual is the smaller one, which leaves a few hundredths of that error. Its contact motion and its
-/// share of the modes are settled by the projection; z meets only the rest of the spectrum, as far as the basis goes.
-pub(super) fn finished(operator: &Operator<'_>, mut round: Round, real: &RealModes) -> Vec<ComplexMode> {
-    let (n, count) = (operator.n(), round.lambda.len());
-    let all: Vec<usize> = (0..count).collect();
-    let mut told: Vec<Option<Told>> = (0..count).map(|_| None).collect();
-    let mut plain = Vec::new();
-    for chunk in all.chunks(TOGETHER) {
-        let lambda: Vec<c64> = chunk.iter().map(|j| round.lambda[*j]).collect();
-        let (vectors, found) = told_of(operator, &lambda, round.corrected(chunk), real);
-        for (k, (j, found)) in chunk.iter().zip(found).enumerate() {
-            if found.backward_error < round.backward_error[*j] {
-                round.phi.set_column(*j, &vectors, k);
-                told[*j] = Some(found);
-            } else {
-                plain.push(*j);
-            }
+/// The modes of pairs that were measured. The error of φ is about the correction z = −A⁻¹Q(λ)φ, which was solved for to tell
+/// that of λ: φ + z is given where its residual is the smaller one, which leaves a few hundredths of that error. Its contact
+/// motion and its share of the modes are settled by the projection; z meets only the rest of the spectrum, as far as the
+/// basis goes.
+pub(super) fn finished(operator: &Operator<'_>, measured: Measured, real: &RealModes) -> Vec<ComplexMode> {
+    let Measured { pairs, mut correction, backward_error, eigenvalue_error, condition, .. } = measured;
+    let all: Vec<usize> = (0..pairs.lambda.len()).collect();
+    all.iter().for_each(|j| correction.add_column(*j, &pairs.right, *j));
+    let corrected = Told::of(operator, &pairs.lambda, correction, real);
+    let better = |j: &usize| corrected.backward_error[*j] < backward_error[*j];
+    let plain: Vec<usize> = all.iter().copied().filter(|j| !better(j)).collect();
+    let lambda: Vec<c64> = plain.iter().map(|j| pairs.lambda[*j]).collect();
+    let uncorrected = Told::of(operator, &lambda, Block::gathered(&pairs.right, &plain), real);
+    let mode = |j: usize| {
+        let (told, k) = match plain.binary_search(&j) {
+            Ok(k) => (&uncorrected, k),
+            Err(_) => (&corrected, j),
+        };
+        ComplexMode {
+            eigenvalue: pairs.lambda[j],
+            right: told.vectors.column(k),
+            left: pairs.left.column(j),
+            backward_error: told.backward_error[k],
+            eigenvalue_error: eigenvalue_error[j],
+            condition: condition[j],
+            growth: told.growth[k],
+            participation: told.participation[k].clone(),
+        }
+    };
+    all.into_iter().map(mode).collect()
+}
+
+impl Told {
+    /// Of vectors that are yet to be scaled to unit mass.
+    fn of(operator: &Operator<'_>, lambda: &[c64], vectors: Block, real: &RealModes) -> Self {
+        let images = operator.images(vectors).normalise();
+        let growth = growth_budgets(operator, lambda, &images);
+        let amplitudes = images.inertia.map(|part| gram(real.shapes.as_ref(), part.as_ref()));
+        let residual = operator.value(Side::Right, lambda, &images);
+        let error = |j: usize| residual.norm(j) / (operator.size(lambda[j]) * images.vectors.norm(j));
+        let columns = 0..lambda.len();
+        Told {
+            backward_error: columns.clone().map(error).collect(),
+            growth,
+            participation: columns.map(|j| shares(&amplitudes, j)).collect(),
+            vectors: images.vectors,
         }
     }
-    for chunk in plain.chunks(TOGETHER) {
-        let lambda: Vec<c64> = chunk.iter().map(|j| round.lambda[*j]).collect();
-        let vectors = Block::gathered(chunk.iter().map(|j| (&round.phi, *j)));
-        let (_, found) = told_of(operator, &lambda, vectors, real);
-        chunk.iter().zip(found).for_each(|(j, found)| told[*j] = Some(found));
-    }
-    round.forget_corrections();
-    let right: Vec<Vec<c64>> = all.iter().map(|j| round.phi.column(*j)).collect();
-    round.phi = Block::zeros(n, 0);
-    let left: Vec<Vec<c64>> = all.iter().map(|j| round.psi.column(*j)).collect();
-    let vectors = right.into_iter().zip(left).zip(told).enumerate();
-    vectors
-        .map(|(j, ((right, left), told))| {
-            let Told { backward_error, growth, participation } = told.expect("one for each pair");
-            ComplexMode {
-                eigenvalue: round.lambda[j],
-                right,
-                left,
-                backward_error,
-                eigenvalue_error: round.eigenvalue_error[j],
-                condition: round.condition[j],
-                growth,
-                participation,
-            }
-        })
-        .collect()
-}
-
-/// Vectors scaled to unit mass, and what is told of them.
-fn told_of(operator: &Operator<'_>, lambda: &[c64], vectors: Block, real: &RealModes) -> (Block, Vec<Told>) {
-    let images = operator.images(vectors).normalise();
-    let growths = growth_budgets(operator, lambda, &images);
-    let amplitudes = images.inertia.map(|part| gram(real.shapes.as_ref(), part.as_ref()));
-    let residual = operator.value(Side::Right, lambda, &images);
-    let told = growths.into_iter().enumerate().map(|(j, growth)| Told {
-        backward_error: residual.norm(j) / (operator.size(lambda[j]) * images.vectors.norm(j)),
-        growth,
-        participation: shares(&amplitudes, j),
-    });
-    let told = told.collect();
-    (images.vectors, told)
 }
 
 /// |φₖᵀMφ|² of every real mode that has at least one part in ten thousand, largest first.

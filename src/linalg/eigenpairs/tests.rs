@@ -4,8 +4,7 @@ use super::super::samples;
 use super::*;
 
 fn check(m: &SparseMatrix, pairs: &Eigenpairs) {
-    let mut mx = Mat::zeros(m.ncols(), pairs.values.len());
-    multiply(m, pairs.vectors.as_ref(), mx.as_mut());
+    let mx = times(m, pairs.vectors.as_ref());
     let g = gram(pairs.vectors.as_ref(), mx.as_ref());
     let count = pairs.values.len();
     assert!((g - Mat::<f64>::identity(count, count)).norm_max() < 1e-12, "M-orthonormal");

@@ -29,6 +29,9 @@ use crate::stability::analysis::Analysis;
 use faer::{Accum, Mat};
 use std::f64::consts::TAU;
 
+/// Columns that go through a matrix together: few, so that little memory is held.
+const TOGETHER: usize = 32;
+
 /// Γ(s) in the A-norm of Z, and what q(s) needs.
 #[derive(Debug)]
 pub(super) struct Remainder {
@@ -98,9 +101,11 @@ impl Remainder {
         let (few, coefficients) = few.spanned();
         let f = beyond + few.values.ncols();
         let mut forces = Mat::zeros(operator.n(), f);
-        let inertia = times(operator.mass, basis.vectors.subcols(first, beyond)) * faer::Scale(top);
-        forces.subcols_mut(0, beyond).copy_from(&inertia);
-        drop(inertia);
+        for start in (0..beyond).step_by(TOGETHER) {
+            let width = TOGETHER.min(beyond - start);
+            let inertia = times(operator.mass, basis.vectors.subcols(first + start, width));
+            forces.subcols_mut(start, width).copy_from(inertia * faer::Scale(top));
+        }
         few.write(forces.subcols_mut(beyond, f - beyond));
         let mut share = Mat::zeros(m, f);
         share.subcols_mut(0, beyond).copy_from(basis.mass.subcols(first, beyond) * faer::Scale(top));
@@ -112,10 +117,13 @@ impl Remainder {
             (0..f).for_each(|j| taken[(i, j)] /= theta[i] - shift);
         }
         let a = add_scaled(&[(1.0, &*operator.stiffness), (-shift, operator.mass)]);
-        let of_basis = times(&a, basis.vectors.as_ref());
         let taken = product(x.as_ref(), taken.as_ref());
-        combine(forces.as_mut(), Accum::Add, of_basis.as_ref(), taken.as_ref(), -1.0);
-        drop(of_basis);
+        for start in (0..m).step_by(TOGETHER) {
+            let width = TOGETHER.min(m - start);
+            let of_basis = times(&a, basis.vectors.subcols(start, width));
+            combine(forces.as_mut(), Accum::Add, of_basis.as_ref(), taken.subrows(start, width), -1.0);
+        }
+        drop(a);
         let square = compliances(analysis.factor, forces.as_mut());
         drop(forces);
         let (values, vectors) = symmetric_eigen(square.as_ref())?;
