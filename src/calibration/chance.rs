@@ -10,8 +10,12 @@ use rayon::prelude::*;
 ///
 /// Each draw replaces the measured frequencies of every set by as many that are log-uniform between the lowest and the
 /// highest of them, and fits the unknowns to them with the best assignment, on the model linearised at the calibrated values.
-/// Frequencies that no level can reach are no match. It is about the frequencies alone: shapes take no part in it, on either
-/// side.
+/// Frequencies that no level can reach are no match.
+///
+/// It is about the frequencies alone: shapes and responses take no part in it, on either side. A response is compared line by
+/// line and not matched with one of many, so that there is nothing that chance could hit. The assignment of the data is the one
+/// that all of them chose, which has no smaller χ² of its frequencies than their own best one: the share by χ² is not told too
+/// small for that.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Chance {
     /// How many draws.
@@ -86,7 +90,7 @@ mod tests {
             data: vec![datum(100.0), datum(100.0 * 1.0f64.exp())],
             level_sets: vec![0; 11],
             level_modes: vec![1; 11],
-            lines: Vec::new(),
+            curves: Vec::new(),
         };
         let linear = Linear::new(&problem, &[0.0], &levels);
         let chance = Chance::new(&linear, 0.2, 4000, (1.0, 0.01));

@@ -98,7 +98,7 @@ pub fn fit(
             return Ok(fit);
         }
         let moved: Vec<f64> = problem.inside(&fit.x.iter().zip(&d).map(|(x, d)| x + d).collect::<Vec<_>>());
-        let computed = model.compute(&moved)?;
+        let computed = problem.compute(model, &moved)?;
         fit.iterations += 1;
         fit.evaluations += 1;
         let there = Here::new(problem, assignment, &moved, &computed).filter(|there| there.chi2() < fit.chi2);

@@ -1,7 +1,7 @@
 //! What the data determine: singular values of the sensitivity, covariance, intervals.
 
 use super::residuals::Residuals;
-use super::{Computed, Datum, Fit, Level, Problem};
+use super::{Computed, Fit, Problem};
 use nalgebra::DMatrix;
 
 /// Standard deviations either side of the mean that hold 95 % of a normal distribution.
@@ -108,21 +108,19 @@ fn sensitivity(problem: &Problem, assignment: &[usize], computed: &Computed) -> 
     (w, h)
 }
 
-/// How much frequency and shape of a level move, in standard deviations of the datum beside it, when what the data leave open
-/// moves by its unit: along the directions that they determine no better than the bounds do. Of the shape the root mean square
-/// of its components.
+/// How much each of some residuals moves when what the data leave open moves by its unit: along the directions that they
+/// determine no better than the bounds do.
 pub(super) fn left_open(
     problem: &Problem,
     assignment: &[usize],
     computed: &Computed,
-    (datum, level): (&Datum, &Level),
-) -> [f64; 2] {
+    residuals: &Residuals,
+) -> Vec<f64> {
     let eigen = sensitivity(problem, assignment, computed).1.symmetric_eigen();
     let n = problem.unknowns.len();
     let open: Vec<usize> = (0..n).filter(|k| eigen.eigenvalues[*k] < 1.0).collect();
-    let moved = Residuals::of(datum, level).jacobian(n) * eigen.eigenvectors.select_columns(&open);
-    let components = (moved.nrows() - 1).max(1) as f64;
-    [moved.row(0).norm(), (moved.rows_range(1..).norm_squared() / components).sqrt()]
+    let moved = residuals.jacobian(n) * eigen.eigenvectors.select_columns(&open);
+    moved.row_iter().map(|row| row.norm()).collect()
 }
 
 /// The vector with its largest entry positive.

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 pub const LIKE: f64 = 0.1;
 
 /// ln f_k(x) ≈ ln f_k(x₀) + g_k·(x − x₀); shapes stay as they are at x₀, where the slopes of modes that mix promise too much, and
-/// frequency responses, whose peaks must meet before a slope says anything, take no part.
+/// frequency responses, whose peaks must meet before a slope says anything, take no part before the modes have met.
 #[derive(Debug, Clone)]
 pub(super) struct Linear<'a> {
     pub(super) problem: &'a Problem,

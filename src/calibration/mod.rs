@@ -16,9 +16,10 @@
 //! known before, or half the width of its bounds where nothing was (Mottershead and Friswell, J. Sound Vib. 167 (1993) 347).
 //!
 //! 1. [`calibrate`] tries every plausible assignment on the model linearised at the start, by branch and bound,
-//! 2. fits the best of them to the model itself ([`fit()`]),
-//! 3. asks what the data determine ([`Knowledge`]), predicts each datum from the others ([`LeftOut`]), counts how often as
-//!    good a match arises by chance ([`Chance`]) and whether its own intervals hold the truth ([`Trials`]).
+//! 2. fits the best of them to the model itself ([`fit()`]), to the modes first where there are responses, and ranks them by the
+//!    whole χ² ([`Ranked`]),
+//! 3. asks what the data determine ([`Knowledge`]), predicts each datum and each response from all others ([`LeftOut`]), counts
+//!    how often frequencies match as well by chance ([`Chance`]) and whether its own intervals hold the truth ([`Trials`]).
 //!
 //! The room knows no mechanics: a [`Model`] gives levels with their slopes.
 
@@ -27,25 +28,30 @@ mod calibrate;
 mod chance;
 mod fit;
 mod knowledge;
+mod left_out;
 mod linear;
 mod nearby;
 mod quadratic;
+mod ranked;
 mod residuals;
 #[cfg(test)]
 mod samples;
 mod span;
 mod trials;
 
-pub use calibrate::{Calibration, LeftOut, Options, Ranked, calibrate};
+pub use calibrate::{Calibration, Options, calibrate};
 pub use chance::Chance;
 pub use fit::{Fit, fit};
 pub use knowledge::{Interval, Knowledge};
+pub use left_out::{LeftOut, LeftOutCurve, LeftOutDatum};
 pub use linear::LIKE;
+pub use ranked::Ranked;
 pub use span::{Apart, Span};
 pub use trials::Trials;
 
 use crate::error::Result;
 use residuals::Residuals;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// What is computed, as a function of the unknowns.
@@ -55,6 +61,14 @@ pub trait Model: Sync {
     /// # Errors
     /// A model that cannot be computed at `x`.
     fn compute(&self, x: &[f64]) -> Result<Computed>;
+
+    /// The levels; lines need not be there.
+    ///
+    /// # Errors
+    /// As [`compute`](Model::compute).
+    fn levels(&self, x: &[f64]) -> Result<Computed> {
+        self.compute(x)
+    }
 }
 
 /// What a model gives at one place.
@@ -101,6 +115,24 @@ pub struct Datum {
     pub shape: Option<Arc<[f64]>>,
 }
 
+/// A measured frequency response.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curve {
+    /// Where its lines begin among the computed ones.
+    pub first: usize,
+    /// Its logarithm at each.
+    pub values: Vec<f64>,
+    /// Standard deviation of that.
+    pub deviation: f64,
+}
+
+impl Curve {
+    /// Its lines among the computed ones.
+    pub fn lines(&self) -> Range<usize> {
+        self.first..self.first + self.values.len()
+    }
+}
+
 /// An unknown x_j, in a unit in which what was known before has the standard deviation 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unknown {
@@ -121,8 +153,8 @@ pub struct Problem {
     pub level_sets: Vec<usize>,
     /// How many modes each level has: so many data may be that level.
     pub level_modes: Vec<usize>,
-    /// The measured lines: logarithm and its standard deviation, in the order of the computed ones.
-    pub lines: Vec<[f64; 2]>,
+    /// The measured frequency responses.
+    pub curves: Vec<Curve>,
 }
 
 impl Problem {
@@ -134,10 +166,20 @@ impl Problem {
         (measured + expected).saturating_sub(self.unknowns.len())
     }
 
-    /// The same without shapes and lines.
+    /// What of `model` at `x` stands against what was measured.
+    fn compute(&self, model: &dyn Model, x: &[f64]) -> Result<Computed> {
+        if self.curves.is_empty() { model.levels(x) } else { model.compute(x) }
+    }
+
+    /// The same without responses.
+    fn modes_alone(&self) -> Problem {
+        Problem { curves: Vec::new(), ..self.clone() }
+    }
+
+    /// The same without shapes and responses.
     fn frequencies_alone(&self) -> Problem {
         let data = self.data.iter().map(|datum| Datum { shape: None, ..datum.clone() }).collect();
-        Problem { data, lines: Vec::new(), ..self.clone() }
+        Problem { data, ..self.modes_alone() }
     }
 
     /// `x` moved inside the bounds.

@@ -35,7 +35,10 @@ impl Nearby {
             let mut there = x.to_vec();
             there[*j] += step;
             let there = problem.inside(&there);
-            Ok((there[*j] - x[*j], if there[*j] == x[*j] { here.clone() } else { model.compute(&there)? }))
+            Ok((
+                there[*j] - x[*j],
+                if there[*j] == x[*j] { here.clone() } else { problem.compute(model, &there)? },
+            ))
         };
         let around: Vec<(f64, Computed)> = sides.par_iter().map(moved).collect::<Result<_>>()?;
         let rate = |l: usize, j: usize, k: usize| -> f64 {

@@ -1,6 +1,6 @@
 //! What is left between measured and computed, and its derivatives.
 
-use super::{Computed, Datum, Level, Problem};
+use super::{Computed, Curve, Datum, Level, Line, Problem};
 use nalgebra::{DMatrix, DVector};
 
 /// Residuals r_i with their rows ∂r_i/∂x_j, in standard deviations.
@@ -40,6 +40,16 @@ impl Residuals {
         all
     }
 
+    /// A measured response beside its own of all computed lines.
+    pub(super) fn along(curve: &Curve, lines: &[Line]) -> Residuals {
+        let mut all = Residuals::default();
+        let s = curve.deviation;
+        for (line, value) in lines[curve.lines()].iter().zip(&curve.values) {
+            all.push((line.value - value) / s, line.slope.iter().map(|g| g / s));
+        }
+        all
+    }
+
     /// Of everything measured, with the levels of `assignment`; those that are not found say nothing.
     pub(super) fn measured(problem: &Problem, assignment: &[usize], computed: &Computed) -> Residuals {
         let mut all = Residuals::default();
@@ -48,9 +58,7 @@ impl Residuals {
                 all.append(Residuals::of(datum, level));
             }
         }
-        for (line, [measured, deviation]) in computed.lines.iter().zip(&problem.lines) {
-            all.push((line.value - measured) / deviation, line.slope.iter().map(|g| g / deviation));
-        }
+        problem.curves.iter().for_each(|curve| all.append(Residuals::along(curve, &computed.lines)));
         all
     }
 

@@ -1,7 +1,8 @@
 //! Models with a closed form for the tests.
 
-use super::{Computed, Datum, Level, Model, Problem, Span, Unknown};
+use super::{Computed, Curve, Datum, Level, Line, Model, Problem, Span, Unknown};
 use crate::error::Result;
+use crate::linalg::c64;
 use crate::linalg::random::Random;
 use nalgebra::DMatrix;
 
@@ -12,6 +13,33 @@ pub(super) struct Powers {
     pub bend: f64,
     /// Measured components of a shape; none for frequencies alone.
     pub components: usize,
+    /// Its frequency responses.
+    pub heard: Vec<Heard>,
+}
+
+/// ln |Σ w_k / (f_k² − f² + iηf_k²)| with η = 2 %, at some frequencies.
+pub(super) struct Heard {
+    /// w_k of each level.
+    pub weights: Vec<f64>,
+    pub frequencies_hz: Vec<f64>,
+}
+
+impl Heard {
+    fn line(&self, hz: f64, levels: &[Option<Level>]) -> Line {
+        let loss = c64::new(1.0, 0.02);
+        let unknowns = levels.iter().flatten().next().map_or(0, |level| level.slope.len());
+        let (mut h, mut slope) = (c64::new(0.0, 0.0), vec![c64::new(0.0, 0.0); unknowns]);
+        for (weight, level) in self.weights.iter().zip(levels.iter().flatten()) {
+            let square = loss * level.frequency_hz.powi(2);
+            let part = *weight / (square - hz * hz);
+            h += part;
+            // ∂f² = 2f² ∂ ln f.
+            let turn = -2.0 * part * square / (square - hz * hz);
+            slope.iter_mut().zip(&level.slope).for_each(|(sum, g)| *sum += turn * *g);
+        }
+        let along = |d: &c64| (h.conj() * d).re / h.norm_sqr();
+        Line { value: h.norm().ln(), slope: slope.iter().map(along).collect() }
+    }
 }
 
 /// A single level without a shape.
@@ -46,7 +74,7 @@ impl Powers {
         let base =
             (0..levels).map(|k| 300.0 * 1.2f64.powi(k as i32) * (1.0 + 0.05 * random.next())).collect();
         let exponents = (0..levels).map(|_| (0..unknowns).map(|_| 0.1 * random.next()).collect()).collect();
-        Powers { base, exponents, bend: 0.5, components: 0 }
+        Powers { base, exponents, bend: 0.5, components: 0, heard: Vec::new() }
     }
 }
 
@@ -61,9 +89,25 @@ impl Model for Powers {
                 span: (self.components > 0).then(|| turning_as(k, self.components, 1 + k % 2, x)),
             })
         };
-        let levels = self.base.iter().zip(&self.exponents).enumerate().map(level).collect();
-        Ok(Computed { levels, lines: Vec::new() })
+        let levels: Vec<Option<Level>> =
+            self.base.iter().zip(&self.exponents).enumerate().map(level).collect();
+        let of = |heard: &Heard| -> Vec<Line> {
+            heard.frequencies_hz.iter().map(|hz| heard.line(*hz, &levels)).collect()
+        };
+        Ok(Computed { lines: self.heard.iter().flat_map(of).collect(), levels })
     }
+}
+
+/// What the responses of a model at `x` are measured as, without noise.
+pub(super) fn curves(model: &Powers, x: &[f64], deviation: f64) -> Vec<Curve> {
+    let lines = model.compute(x).unwrap().lines;
+    let mut first = 0;
+    let curve = |heard: &Heard| {
+        let own = first..first + heard.frequencies_hz.len();
+        first = own.end;
+        Curve { first: own.start, values: lines[own].iter().map(|line| line.value).collect(), deviation }
+    };
+    model.heard.iter().map(curve).collect()
 }
 
 /// Unknowns in ±2 without expectation and measured frequencies of one set.
@@ -75,6 +119,6 @@ pub(super) fn problem(model: &Powers, data: &[f64], deviation: f64) -> Problem {
         data: data.iter().map(datum).collect(),
         level_sets: vec![0; model.base.len()],
         level_modes: vec![1; model.base.len()],
-        lines: Vec::new(),
+        curves: Vec::new(),
     }
 }

@@ -3,7 +3,7 @@
 use super::knowledge::{Interval, Knowledge};
 use super::nearby::Nearby;
 use super::residuals::Residuals;
-use super::{Computed, Datum, Fit, Line, Model, Problem, Span, Unknown, fit};
+use super::{Computed, Curve, Datum, Fit, Model, Problem, Span, Unknown, fit};
 use crate::error::Result;
 use crate::linalg::random::Random;
 use rayon::prelude::*;
@@ -15,7 +15,7 @@ const LEAST_STEP: f64 = 1e-2;
 
 /// Trials with synthetic data (parametric bootstrap): the calibrated values are the truth, each frequency is the computed
 /// one with the stated relative deviation, normally distributed, each shape the computed one nearest to the measured one, its
-/// components with their deviation, lines with theirs, and what was expected scatters about the truth likewise.
+/// components with their deviation, responses line by line with theirs, and what was expected scatters about the truth likewise.
 /// The fits are made to the model near the truth, quadratic in ln f and linear in the shapes; how far that is from the model itself is told.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trials {
@@ -86,7 +86,7 @@ fn model_error<'a>(
         .flatten()
         .collect::<Vec<_>>();
     let error = |x: &&Vec<f64>| -> Result<f64> {
-        let (own, exact) = (near.compute(x)?, model.compute(x)?);
+        let (own, exact) = (near.compute(x)?, problem.compute(model, x)?);
         let all = |there: &Computed| Residuals::all(problem, assignment, x, there).map(|all| all.values);
         Ok(match (all(&own), all(&exact)) {
             (Some(a), Some(b)) => a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max),
@@ -109,8 +109,9 @@ fn synthetic(problem: &Problem, assignment: &[usize], truth: &Fit, normal: &mut 
         let shape = datum.shape.as_ref().zip(span).map(noisy);
         Datum { frequency_hz, shape, ..*datum }
     };
-    let line = |([_, deviation], line): (&[f64; 2], &Line), normal: &mut Normal| {
-        [line.value + deviation * normal.next(), *deviation]
+    let curve = |curve: &Curve, normal: &mut Normal| {
+        let exact = truth.computed.lines[curve.lines()].iter().map(|line| line.value);
+        Curve { values: exact.map(|v| v + curve.deviation * normal.next()).collect(), ..curve.clone() }
     };
     let expected = |(unknown, x): (&Unknown, &f64), normal: &mut Normal| Unknown {
         expected: unknown.expected.map(|_| x + normal.next()),
@@ -118,7 +119,7 @@ fn synthetic(problem: &Problem, assignment: &[usize], truth: &Fit, normal: &mut 
     };
     Problem {
         data: problem.data.iter().zip(assignment).map(|pair| datum(pair, normal)).collect(),
-        lines: problem.lines.iter().zip(&truth.computed.lines).map(|pair| line(pair, normal)).collect(),
+        curves: problem.curves.iter().map(|measured| curve(measured, normal)).collect(),
         unknowns: problem.unknowns.iter().zip(&truth.x).map(|pair| expected(pair, normal)).collect(),
         ..problem.clone()
     }

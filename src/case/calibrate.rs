@@ -27,9 +27,9 @@ pub struct CalibrateAnalysis {
     pub responses: bool,
     /// A computed mode may be what was measured when, linearised, it comes as near as a factor 1 + this inside the bounds.
     pub mode_reach: f64,
-    /// Predicts each measured frequency from the others.
+    /// Predicts each measured mode and each response from all others.
     pub leave_one_out: bool,
-    /// Draws of measured sets that mean nothing, for the probability of a match by chance; 0 for none.
+    /// Draws of measured sets that mean nothing, for the probability that frequencies match by chance; 0 for none.
     pub chance_draws: usize,
     /// Fits of synthetic data, for the coverage of the intervals; 0 for none.
     pub trials: usize,

@@ -1,10 +1,11 @@
-//! Numbers of a case that were found from measured frequencies and shapes, as plain data, and their files.
+//! Numbers of a case that were found from measured modes and responses, as plain data, and their files.
 
 use super::csv::{Table, number};
 use super::write_atomically;
 use crate::calibration::Calibration;
 use crate::error::Result;
 use crate::measured::Quantity;
+use std::f64::consts::LN_10;
 use std::path::Path;
 
 /// A calibration.
@@ -102,6 +103,8 @@ pub struct CalibratedResponse {
     pub before: Vec<f64>,
     /// Computed with the values that were found.
     pub after: Vec<f64>,
+    /// Computed with the values that all other data lead to; none where they do not tell.
+    pub left_out: Option<Vec<f64>>,
 }
 
 impl CalibratedResponse {
@@ -109,6 +112,11 @@ impl CalibratedResponse {
     pub fn apart_db(&self, computed: &[f64]) -> f64 {
         let squares = computed.iter().zip(&self.measured).map(|(a, b)| (20.0 * (a / b).log10()).powi(2));
         (squares.sum::<f64>() / computed.len().max(1) as f64).sqrt()
+    }
+
+    /// Root mean square of ln (computed/measured) over its standard deviation: √(χ² a line).
+    pub fn apart(&self, computed: &[f64]) -> f64 {
+        self.apart_db(computed) * LN_10 / (20.0 * self.deviation)
     }
 }
 
@@ -166,14 +174,24 @@ pub(super) fn write(dir: &Path, result: &CalibrationResult) -> Result<()> {
 }
 
 fn responses(result: &CalibrationResult) -> String {
-    let mut table =
-        Table::new(&["set", "response", "place", "frequency [Hz]", "measured", "before", "after", "unit"]);
+    let mut table = Table::new(&[
+        "set",
+        "response",
+        "place",
+        "frequency [Hz]",
+        "measured",
+        "before",
+        "after",
+        "from the others",
+        "unit",
+    ]);
     for r in &result.responses {
         for (k, hz) in r.frequencies_hz.iter().enumerate() {
             let words = [&r.set, &r.name, &r.place].map(String::clone);
             let numbers = [*hz, r.measured[k], r.before[k], r.after[k]].map(number);
-            let unit = [r.quantity.unit().to_string()];
-            table.row(&words.into_iter().chain(numbers).chain(unit).collect::<Vec<_>>());
+            let left_out = r.left_out.as_ref().map(|sizes| number(sizes[k])).unwrap_or_default();
+            let last = [left_out, r.quantity.unit().to_string()];
+            table.row(&words.into_iter().chain(numbers).chain(last).collect::<Vec<_>>());
         }
     }
     table.text
@@ -232,11 +250,18 @@ mod tests {
         );
         assert!(json["data"][2]["shape"].is_null());
         assert_eq!(json["assignments"][0]["modes"][2], "disc (0, 1)");
+        // 8 beside 10 at one line of three, with a deviation of 0.1.
+        let response = &json["responses"][0];
+        let apart = 1.25f64.ln() / 3f64.sqrt();
+        assert!((response["left_out_deviations"].as_f64().unwrap() - 10.0 * apart).abs() < 1e-12);
+        assert!((response["left_out_db"].as_f64().unwrap() - 8.685889638 * apart).abs() < 1e-8);
         let dir = tempfile::tempdir().unwrap();
         write_files(dir.path(), &results).unwrap();
         let table = std::fs::read_to_string(dir.path().join("calibration.csv")).unwrap();
         assert!(table.lines().count() == 4 && table.contains("disc,\"disc (2, 0)\""), "{table}");
         assert!(dir.path().join("calibrated.toml").is_file());
+        let lines = std::fs::read_to_string(dir.path().join("calibration_responses.csv")).unwrap();
+        assert!(lines.lines().nth(2).unwrap().contains(",10,5,9,8,"), "{lines}");
         let mut file = ResultsFile::create(dir.path()).unwrap();
         file.write_calibration(&sample()).unwrap();
     }

@@ -57,6 +57,11 @@ impl ResultsFile {
                 group.list("response_measured", &of(|r| &r.measured), "SI", size)?;
                 group.list("response_before", &of(|r| &r.before), "SI", "with the values of the case")?;
                 group.list("response_after", &of(|r| &r.after), "SI", "with the values that were found")?;
+                let left_out = |r: &CalibratedResponse| {
+                    r.left_out.clone().unwrap_or(vec![f64::NAN; r.frequencies_hz.len()])
+                };
+                let left_out: Vec<f64> = result.responses.iter().flat_map(left_out).collect();
+                group.list("response_left_out", &left_out, "SI", "predicted from all other data, or NaN")?;
             }
             let slope = |(i, j): (usize, usize)| {
                 best.fit.computed.levels[best.assignment[i]].as_ref().map_or(f64::NAN, |level| level.slope[j])

@@ -56,6 +56,9 @@ pub(super) fn summary(result: &CalibrationResult) -> Value {
             "deviation": r.deviation,
             "before_db": r.apart_db(&r.before),
             "after_db": r.apart_db(&r.after),
+            "left_out_db": r.left_out.as_ref().map(|sizes| r.apart_db(sizes)),
+            "after_deviations": r.apart(&r.after),
+            "left_out_deviations": r.left_out.as_ref().map(|sizes| r.apart(sizes)),
         })
     };
     let ranked = |r: &Ranked| {
@@ -109,6 +112,7 @@ pub(super) fn summary(result: &CalibrationResult) -> Value {
         "converged": found.best().fit.converged,
         "assignments": found.ranked.iter().map(ranked).collect::<Vec<_>>(),
         "plausible_assignments": found.plausible,
+        "tried_assignments": found.tried,
         "all_assignments_counted": found.all_counted,
         "all_assignments_searched": found.all_searched,
         "levels": result.levels.len(),

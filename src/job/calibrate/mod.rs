@@ -22,9 +22,9 @@ mod unstable;
 pub use self::coordinate::Coordinate;
 use self::facts::{Fact, Facts, Measurements};
 use self::model::{CaseModel, scalars};
-use self::responses::Response;
+use self::responses::{Measured, Response};
 use super::prepared::Prepared;
-use crate::calibration::{self, Computed, Datum, Options, Problem};
+use crate::calibration::{self, Calibration, Computed, Curve, Datum, Options, Problem};
 use crate::case::{CalibrateAnalysis, Case};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::progress::Observer;
@@ -87,7 +87,7 @@ impl<'a> Calibrate<'a> {
             data: self.measured.modes.iter().enumerate().flat_map(data).collect(),
             level_sets: model.level_sets(),
             level_modes: model.level_modes(),
-            lines: self.responses().flat_map(|r| r.levels().map(|level| [level, r.deviation])).collect(),
+            curves: self.curves(),
         };
         let options = Options {
             reach: self.wanted.mode_reach,
@@ -139,7 +139,7 @@ impl<'a> Calibrate<'a> {
                 level: names[k].clone(),
                 before_hz: hz(&found.before),
                 after_hz: hz(&best.fit.computed),
-                left_out_hz: found.left_out.get(i).and_then(|left| left.predicted_hz),
+                left_out_hz: found.left_out.data.get(i).and_then(|left| left.predicted_hz),
                 growth: growth[k],
                 shape: datum.shape.as_ref().map(|shape| {
                     let likeness = |there: &Computed| {
@@ -149,14 +149,14 @@ impl<'a> Calibrate<'a> {
                         components: shape.len(),
                         before: likeness(&found.before),
                         after: likeness(&best.fit.computed),
-                        left_out: found.left_out.get(i).and_then(|left| left.likeness),
+                        left_out: found.left_out.data.get(i).and_then(|left| left.likeness),
                     }
                 }),
             }
         };
         Ok(CalibrationResult {
             data: problem.data.iter().enumerate().map(datum).collect(),
-            responses: self.compared(&found.before, &best.fit.computed),
+            responses: self.compared(&problem.curves, &found),
             levels: names,
             level_sets: problem
                 .level_sets
@@ -175,31 +175,40 @@ impl Calibrate<'_> {
         self.measured.responses.iter().flat_map(|measured| &measured.responses)
     }
 
-    /// The measured responses beside the computed ones before and after, whose lines are in their order.
-    fn compared(&self, before: &Computed, after: &Computed) -> Vec<CalibratedResponse> {
+    /// The measured responses, whose lines the model gives in their order.
+    fn curves(&self) -> Vec<Curve> {
         let mut first = 0;
-        let mut all = Vec::new();
-        for measured in &self.measured.responses {
-            for own in &measured.responses {
-                let lines = first..first + own.frequencies_hz.len();
-                first = lines.end;
-                let sizes = |there: &Computed| -> Vec<f64> {
-                    there.lines[lines.clone()].iter().map(|line| line.value.exp()).collect()
-                };
-                all.push(CalibratedResponse {
-                    set: measured.name.clone(),
-                    name: own.name.clone(),
-                    place: own.place.clone(),
-                    quantity: own.quantity,
-                    deviation: own.deviation,
-                    frequencies_hz: own.frequencies_hz.clone(),
-                    measured: own.levels().map(f64::exp).collect(),
-                    before: sizes(before),
-                    after: sizes(after),
-                });
+        let curve = |own: &Response| {
+            let curve = Curve { first, values: own.levels().collect(), deviation: own.deviation };
+            first = curve.lines().end;
+            curve
+        };
+        self.responses().map(curve).collect()
+    }
+
+    /// The measured responses beside the computed ones.
+    fn compared(&self, curves: &[Curve], found: &Calibration) -> Vec<CalibratedResponse> {
+        let sets =
+            self.measured.responses.iter().flat_map(|set| set.responses.iter().map(move |own| (set, own)));
+        let compared = |(i, ((set, own), curve)): (usize, ((&Measured, &Response), &Curve))| {
+            let sizes = |there: &Computed| -> Vec<f64> {
+                there.lines[curve.lines()].iter().map(|line| line.value.exp()).collect()
+            };
+            let left_out = found.left_out.curves.get(i).and_then(|left| left.predicted.as_ref());
+            CalibratedResponse {
+                set: set.name.clone(),
+                name: own.name.clone(),
+                place: own.place.clone(),
+                quantity: own.quantity,
+                deviation: own.deviation,
+                frequencies_hz: own.frequencies_hz.clone(),
+                measured: curve.values.iter().map(|value| value.exp()).collect(),
+                before: sizes(&found.before),
+                after: sizes(&found.best().fit.computed),
+                left_out: left_out.map(|values| values.iter().map(|value| value.exp()).collect()),
             }
-        }
-        all
+        };
+        sets.zip(curves).enumerate().map(compared).collect()
     }
 }
 

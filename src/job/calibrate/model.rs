@@ -157,7 +157,7 @@ impl<'a> CaseModel<'a> {
     }
 
     /// What is looked at of a case: every set of real modes, then every frequency response.
-    fn views<'c>(&'c self, prepared: &Prepared<'c>) -> Result<Vec<View<'c>>> {
+    fn views<'c>(&'c self, prepared: &Prepared<'c>, responses: &[Measured]) -> Result<Vec<View<'c>>> {
         let real = self.sets.iter().filter_map(|set| match &set.start {
             Start::Real { name, sensors, .. } => Some((name, sensors)),
             Start::Unstable(_) => None,
@@ -167,7 +167,7 @@ impl<'a> CaseModel<'a> {
             Ok(View::Part(name, sensors.as_ref().map(on)))
         };
         let whole = |measured: &Measured| Ok(View::Whole(Places::new(prepared, &measured.frf)?));
-        real.map(part).chain(self.responses.iter().map(whole)).collect()
+        real.map(part).chain(responses.iter().map(whole)).collect()
     }
 
     /// ∂ of every view by every unknown; none by an unknown that no structure depends on.
@@ -200,14 +200,13 @@ impl<'a> CaseModel<'a> {
         };
         self.coordinates.par_iter().zip(values).map(of).collect()
     }
-}
 
-impl Model for CaseModel<'_> {
-    fn compute(&self, x: &[f64]) -> Result<Computed> {
+    /// Every level, and the lines of `responses`, at `x`.
+    fn at(&self, x: &[f64], responses: &[Measured]) -> Result<Computed> {
         let case = self.case_at(x)?;
         let values = self.values(x);
         let prepared = Prepared::new(&case)?;
-        let views = self.views(&prepared)?;
+        let views = self.views(&prepared, responses)?;
         let mut changes = self.changes((&case, &prepared), &views, &values)?;
         let mut views = views.into_iter();
         // The changes of one view, taken from the front.
@@ -268,12 +267,22 @@ impl Model for CaseModel<'_> {
             each.map(|(c, value)| ratio_rates(&case, c, *value, real)).collect()
         };
         let mut lines = Vec::new();
-        for (measured, view) in self.responses.iter().zip(views) {
+        for (measured, view) in responses.iter().zip(views) {
             if let View::Whole(places) = view {
                 lines.extend(responses::lines(&prepared, (measured, &places), &of_view(), &ratios)?);
             }
         }
         Ok(Computed { levels, lines })
+    }
+}
+
+impl Model for CaseModel<'_> {
+    fn compute(&self, x: &[f64]) -> Result<Computed> {
+        self.at(x, self.responses)
+    }
+
+    fn levels(&self, x: &[f64]) -> Result<Computed> {
+        self.at(x, &[])
     }
 }
 
@@ -363,6 +372,7 @@ fn lean(case: &Case, measured: &Measurements) -> Case {
         sensitivity: None,
         transient: None,
         frf: frf.map(|(name, frf)| (name.clone(), frf.clone())).collect(),
+        measured: BTreeMap::new(),
         calibrate: None,
         sweep: BTreeMap::new(),
         map: BTreeMap::new(),

@@ -132,6 +132,47 @@ fn a_response_tells_thickness_and_damping() {
     for response in &found.responses {
         assert!(response.apart_db(&response.after) < 0.01 && response.apart_db(&response.before) > 0.5);
         assert!(response.frequencies_hz.len() <= 60);
+        let left_out = response.left_out.as_ref().unwrap();
+        assert!(response.apart_db(left_out) < 0.01 && response.apart(left_out) < 0.02);
+    }
+}
+
+#[test]
+fn a_response_decides_which_mode_a_frequency_is() {
+    const BOTH: &str = "[\"disc\", \"tap\"]";
+    let dir = tempfile::tempdir().unwrap();
+    let made = [("mesh.annulus.hub_radius", 0.0165), ("shell.disc.thickness", 0.98e-3)];
+    let text = |measured_hz: f64, against: &str| {
+        format!(
+            "{}[damping]\nmodal_ratio = 0.006\n{}[modes.disc]\nbelow = \"1 kHz\"\nmeasured = [{measured_hz}]\n\
+             {}{HUB}{THICKNESS}",
+            disc(5, 32),
+            FRF.replace("SOLUTION", "modes"),
+            MEASURED.replace("\"tap\"\n", &format!("{against}\n"))
+        )
+    };
+    let truth = case(dir.path(), &text(1.0, BOTH), &made, &hz());
+    let truth = made.iter().fold(truth, |case, (path, v)| case.with_parameter(path, *v).unwrap());
+    let named = super::super::modes::part_modes(&Prepared::new(&truth).unwrap(), "disc", &()).unwrap();
+    let own = |k: &usize| named.names[*k].is_some_and(|m| (m.nodal_diameters, m.nodal_circles) == (1, 0));
+    let measured_hz = named.modes.frequency_hz((0..named.modes.len()).find(own).unwrap());
+    let found = |against: &str| {
+        let case = case(dir.path(), &text(measured_hz, against), &made, &hz());
+        let prepared = Prepared::new(&case).unwrap();
+        Calibrate::new(&prepared, case.calibrate.as_ref().unwrap()).unwrap().run(&()).unwrap()
+    };
+    let alone = found("\"disc\"").calibration;
+    assert!(alone.ranked.len() > 1 && alone.ranked[1].weight > 0.9, "{:?}", alone.ranked);
+    let with = found(BOTH);
+    assert_eq!(with.data[0].level, "disc (1, 0)");
+    assert!(with.calibration.ranked[1].weight < 1e-6);
+    // In the order of the names: hub, thickness.
+    for (number, (_, truth)) in with.numbers.iter().zip(made) {
+        assert!((number.after / truth - 1.0).abs() < 1e-4, "{} {}", number.name, number.after);
+    }
+    assert!((with.data[0].left_out_hz.unwrap() / measured_hz - 1.0).abs() < 1e-4);
+    for response in &with.responses {
+        assert!(response.apart_db(response.left_out.as_ref().unwrap()) < 0.05);
     }
 }
 

@@ -82,9 +82,23 @@ fn shape_table(result: &CalibrationResult) -> Table {
 
 /// How far the computed responses are from the measured ones, before and after.
 fn response_table(result: &CalibrationResult) -> Table {
-    let headings = ["<place", "lines", "from [Hz]", "to [Hz]", "before [dB]", "after [dB]", "<response"];
+    let headings = [
+        "<place",
+        "lines",
+        "from [Hz]",
+        "to [Hz]",
+        "before [dB]",
+        "after [dB]",
+        "[deviations]",
+        "from the others [dB]",
+        "[deviations]",
+        "<response",
+    ];
     let mut table = Table::new("Calibration: measured and computed frequency responses", &headings);
     for r in &result.responses {
+        let left_out = |apart: &dyn Fn(&[f64]) -> f64| {
+            r.left_out.as_ref().map_or("–".into(), |sizes| fixed(apart(sizes), 2))
+        };
         let end = |hz: Option<&f64>| hz.map_or("–".into(), |hz| fixed(*hz, 1));
         let cells = vec![
             r.place.clone(),
@@ -93,13 +107,18 @@ fn response_table(result: &CalibrationResult) -> Table {
             end(r.frequencies_hz.last()),
             fixed(r.apart_db(&r.before), 2),
             fixed(r.apart_db(&r.after), 2),
+            fixed(r.apart(&r.after), 2),
+            left_out(&|sizes| r.apart_db(sizes)),
+            left_out(&|sizes| r.apart(sizes)),
             r.name.clone(),
         ];
         table.row(cells, false);
     }
     table.notes.push(
         "Root mean square of 20 log₁₀ of computed over measured size; what is below a twentieth of the median, as at an \
-         antiresonance, counts as no smaller. Half of the lines lie evenly, half where the measured response changes most."
+         antiresonance, counts as no smaller. Deviations: the same over the standard deviation of a line, as the fit weighs it. Half \
+         of the lines lie evenly, half where the measured response changes most. From the others: what the numbers predict \
+         when they are found without this response."
             .into(),
     );
     table
@@ -140,10 +159,10 @@ fn fit_table(result: &CalibrationResult) -> Table {
         }
         table.row(cells, false);
     }
-    table.notes.push(
-        "From the others: what the numbers predict when they are found without this frequency and its shape."
-            .into(),
-    );
+    let kept = if result.responses.is_empty() { "" } else { "; the responses stay" };
+    table.notes.push(format!(
+        "From the others: what the numbers predict when they are found without this frequency and its shape{kept}."
+    ));
     table
 }
 
@@ -228,7 +247,7 @@ fn assignment_table(result: &CalibrationResult) -> Table {
         table.row(cells, false);
     }
     table.notes.push(
-        "Weight: exp(−Δχ²/2) beside the best, with the stated deviations; where the misfit is larger than they explain, the \
+        "χ²: of all that was measured and expected, responses included. Weight: exp(−Δχ²/2) beside the best, with the stated deviations; where the misfit is larger than they explain, the \
          weights are too sharp."
             .into(),
     );
@@ -253,12 +272,22 @@ mod tests {
         assert!(numbers.rows[1].marked && numbers.rows[1].cells.last().unwrap() == "at its bound");
         let page = section(&results);
         assert_eq!(page.matches("<svg").count(), 3);
-        assert_eq!(response_table(result).rows[0].cells[4..6], ["4.92", "0.53"]);
+        // 20 log₁₀ of 2, of 2 and of 1; of 10/9 and of 10/8 at one of three lines; a deviation is 0.87 dB.
+        let cells = &response_table(result).rows[0].cells;
+        assert_eq!(cells[4..9], ["4.92", "0.53", "0.61", "1.12", "1.29"]);
         assert!(page.contains("not converged") && page.contains("stiffness"));
         let words = words(result).join(" ");
-        for expected in
-            ["2 numbers", "3 measured", "determine 1 of 2", "by chance", "of 100 trials", "at its bound"]
-        {
+        for expected in [
+            "2 numbers",
+            "3 measured",
+            "determine 1 of 2",
+            "best 20 on the linearised model were fitted to the modes",
+            "ranked by the χ² of all",
+            "Chance is asked about the frequencies alone",
+            "by chance",
+            "of 100 trials",
+            "at its bound",
+        ] {
             assert!(words.contains(expected), "{expected} not in {words}");
         }
         assert!(section(&RunResults::default()).is_empty());

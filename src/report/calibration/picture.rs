@@ -1,6 +1,6 @@
 //! `calibration_errors.svg` and `calibration_numbers.svg`.
 
-use super::super::colours::{ALARM, CALM, INK, MEASURED, MUTED};
+use super::super::colours::{ALARM, CALM, INK, MEASURED, MUTED, SECOND};
 use super::super::comparison::{Panel, stacked};
 use super::super::format::{given, signed, significant};
 use super::super::html::Picture;
@@ -84,16 +84,25 @@ pub(super) fn responses(result: &CalibrationResult) -> Option<Picture> {
     let panel = |r: &CalibratedResponse| Panel {
         frequencies_hz: r.frequencies_hz.clone(),
         quantity: r.quantity,
-        curves: vec![
-            ("before".to_string(), CALM, r.before.clone()),
-            ("after".to_string(), ALARM, r.after.clone()),
-            (format!("measured at {}", r.place.replace('_', " ")), MEASURED, r.measured.clone()),
-        ],
+        curves: [
+            Some(("before".to_string(), CALM, r.before.clone())),
+            r.left_out.clone().map(|sizes| ("from the others".to_string(), SECOND, sizes)),
+            Some(("after".to_string(), ALARM, r.after.clone())),
+            Some((format!("measured at {}", r.place.replace('_', " ")), MEASURED, r.measured.clone())),
+        ]
+        .into_iter()
+        .flatten()
+        .collect(),
     };
     let panels: Vec<Panel> = result.responses.iter().map(panel).collect();
     let svg = stacked(&panels)?;
-    let caption =
-        "Measured responses, and the computed ones with the values of the case and with those found.".into();
+    let others = match result.responses.iter().any(|r| r.left_out.is_some()) {
+        true => ", and with those found without the response",
+        false => "",
+    };
+    let caption = format!(
+        "Measured responses, and the computed ones with the values of the case, with those found{others}."
+    );
     Some(Picture { file: "calibration_responses.svg", caption, svg })
 }
 

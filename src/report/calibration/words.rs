@@ -15,20 +15,25 @@ pub(in crate::report) fn words(result: &CalibrationResult) -> Vec<String> {
     words.push(determined(result));
     words.extend(tied(result));
     words.extend((!result.data.is_empty()).then(|| assignments(result)));
-    if !result.responses.is_empty() && !result.calibration.left_out.is_empty() {
-        words.push("Modes alone are left out in turn; the responses stay.".into());
-    }
-    if result.calibration.left_out.is_empty() && result.calibration.knowledge.freedom == 0 {
+    if result.calibration.knowledge.freedom == 0 {
         words.push(
-            "No frequency can be predicted from the others: the facts are no more than the numbers that are to be found.".into(),
+            "Nothing can be predicted from the others: the facts are no more than the numbers that are to be found.".into(),
         );
     }
     for (d, _) in
-        result.data.iter().zip(&result.calibration.left_out).filter(|(d, _)| d.left_out_hz.is_none())
+        result.data.iter().zip(&result.calibration.left_out.data).filter(|(d, _)| d.left_out_hz.is_none())
     {
         words.push(format!(
             "The other data do not predict {} Hz: they leave open what it depends on.",
             given(d.measured_hz)
+        ));
+    }
+    for (r, _) in
+        result.responses.iter().zip(&result.calibration.left_out.curves).filter(|(r, _)| r.left_out.is_none())
+    {
+        words.push(format!(
+            "The other data do not predict the response {} at {}: they leave open what it depends on.",
+            r.name, r.place
         ));
     }
     words.extend(chance(result));
@@ -156,10 +161,17 @@ fn assignments(result: &CalibrationResult) -> String {
         "{more}{} assignments of {} computed levels are plausible; the best {} on the linearised model were fitted",
         found.plausible,
         result.levels.len(),
-        found.ranked.len()
+        found.tried
     );
     if !found.all_searched {
         text += ", of those that a search cut short had found";
+    }
+    if !result.responses.is_empty() {
+        text += &format!(
+            " to the modes; with the responses computed there, the best {} of them were fitted to all, and are ranked by \
+             the χ² of all",
+            found.ranked.len()
+        );
     }
     if let Some(second) = found.ranked.get(1) {
         text += &format!("; the next best has the weight {}", power(second.weight));
@@ -170,13 +182,16 @@ fn assignments(result: &CalibrationResult) -> String {
 fn chance(result: &CalibrationResult) -> Option<String> {
     let chance = result.calibration.chance?;
     let percent = |k: usize| significant(100.0 * chance.probability(k), 2);
-    let alone = if result.shapes().next().is_some() || !result.responses.is_empty() {
-        "About the frequencies alone, without shapes and responses: of"
-    } else {
-        "Of"
+    let alone = match (result.shapes().next().is_some(), !result.responses.is_empty()) {
+        (_, true) => {
+            "Chance is asked about the frequencies alone: shapes take no part in it, nor do responses, which are not matched \
+             with one of many. "
+        }
+        (true, false) => "Chance is asked about the frequencies alone: shapes take no part in it. ",
+        (false, false) => "",
     };
     Some(format!(
-        "{alone} {} sets of as many frequencies drawn at random, evenly in their logarithm over the measured span, {} are matched as \
+        "{alone}Of {} sets of as many frequencies drawn at random, evenly in their logarithm over the measured span, {} are matched as \
          well in their largest error and {} in χ², with the numbers free and the best assignment (linearised): a match as good \
          arises by chance with a probability of {} % and {} %.",
         chance.draws,

@@ -3,7 +3,9 @@
 use super::super::{
     CalibratedDatum, CalibratedNumber, CalibratedResponse, CalibratedShape, CalibrationResult,
 };
-use crate::calibration::{Calibration, Chance, Computed, Fit, Knowledge, LeftOut, Level, Ranked, Trials};
+use crate::calibration::{
+    Calibration, Chance, Computed, Fit, Knowledge, LeftOut, LeftOutCurve, LeftOutDatum, Level, Ranked, Trials,
+};
 use crate::measured::Quantity;
 
 /// A made-up calibration: two numbers, the second at its bound and not determined, three data.
@@ -76,6 +78,7 @@ pub fn calibration() -> CalibrationResult {
             measured: vec![1.0, 10.0, 2.0],
             before: vec![2.0, 5.0, 2.0],
             after: vec![1.0, 9.0, 2.0],
+            left_out: Some(vec![1.0, 8.0, 2.0]),
         }],
         levels: ["disc (2, 0)", "disc (4, 0)", "disc (0, 1)"].map(String::from).to_vec(),
         level_sets: vec!["disc".into(); 3],
@@ -83,6 +86,7 @@ pub fn calibration() -> CalibrationResult {
             before: Computed { levels: [340.0, 980.0, 1750.0].map(level).to_vec(), lines: vec![] },
             ranked: vec![ranked(1.0), ranked(0.03)],
             plausible: 24,
+            tried: 20,
             all_counted: true,
             all_searched: true,
             knowledge: Knowledge {
@@ -96,15 +100,22 @@ pub fn calibration() -> CalibrationResult {
                 reduced_chi2: Some(2.6),
                 chi2_probability: Some(0.07),
             },
-            left_out: vec![
-                LeftOut {
+            left_out: LeftOut {
+                data: vec![
+                    LeftOutDatum {
+                        x: vec![0.1, 1.0],
+                        predicted_hz: Some(320.0),
+                        likeness: Some(0.96),
+                        converged: true
+                    };
+                    3
+                ],
+                curves: vec![LeftOutCurve {
                     x: vec![0.1, 1.0],
-                    predicted_hz: Some(320.0),
-                    likeness: Some(0.96),
-                    converged: true
-                };
-                3
-            ],
+                    predicted: Some(vec![0.0, 2.08, 0.69]),
+                    converged: true,
+                }],
+            },
             chance: Some(Chance { draws: 999, by_error: 49, by_chi2: 59 }),
             trials: Some(Trials {
                 count: 100,
