@@ -1,7 +1,7 @@
 //! `calibration_errors.svg` and `calibration_numbers.svg`.
 
 use super::super::colours::{ALARM, CALM, INK, MEASURED, MUTED};
-use super::super::comparison::{Panel, stacked};
+use super::super::comparison::{Curve, Panel, stacked};
 use super::super::format::{given, signed, significant};
 use super::super::html::Picture;
 use super::super::svg::{Anchor, Ink, Sheet};
@@ -81,13 +81,20 @@ pub(super) fn errors(result: &CalibrationResult) -> Picture {
 
 /// The measured responses over the computed ones before and after; `None` where there are none.
 pub(super) fn responses(result: &CalibrationResult) -> Option<Picture> {
+    // Calibration is against ln |h|.
+    let curve = |words: String, hex: &'static str, sizes: &[f64]| Curve {
+        words,
+        hex,
+        sizes: sizes.to_vec(),
+        phases: Vec::new(),
+    };
     let panel = |r: &CalibratedResponse| Panel {
         frequencies_hz: r.frequencies_hz.clone(),
         quantity: r.quantity,
         curves: vec![
-            ("before".to_string(), CALM, r.before.clone()),
-            ("after".to_string(), ALARM, r.after.clone()),
-            (format!("measured at {}", r.place.replace('_', " ")), MEASURED, r.measured.clone()),
+            curve("before".to_string(), CALM, &r.before),
+            curve("after".to_string(), ALARM, &r.after),
+            curve(format!("measured at {}", r.place.replace('_', " ")), MEASURED, &r.measured),
         ],
     };
     let panels: Vec<Panel> = result.responses.iter().map(panel).collect();
