@@ -210,6 +210,64 @@ fn an_exported_case_has_the_same_modes() {
 }
 
 #[test]
+fn an_exported_case_keeps_what_was_measured_of_what_it_has() {
+    let (from, to) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    std::fs::write(from.path().join("tap.csv"), "frequency_hz,damping_ratio\n0.2,0.01\n").unwrap();
+    let text = include_str!("../validation/two-dof/case.toml").to_string()
+        + r#"
+[modes.whole]
+count = 2
+[modes.free]
+count = 2
+free = true
+[frf.place]
+excitation = { at = [0, 0, 0], direction = [1, 0, 0] }
+band = [0.01, 1]
+[frf.region]
+excitation = { on = "block", direction = [1, 0, 0] }
+band = [0.01, 1]
+[measured.tap]
+of = "whole"
+file = "tap.csv"
+[measured.listed]
+of = "free"
+frequencies = [0.2]
+[sweep.mu]
+parameter = "contact.belt.friction.mu0"
+from = 0.1
+to = 0.5
+points = 3
+[sweep.k]
+parameter = "spring.k1.stiffness"
+from = 1
+to = 2
+points = 3
+[calibrate]
+against = ["tap"]
+parameter.k = { path = "spring.k1.stiffness", between = [0.5, 2] }
+"#;
+    let case = Case::parse("case.toml", &text, from.path().into()).unwrap();
+    let left_out = export(&case, to.path()).unwrap().join("\n");
+    let exported = stridor::case::read_case(&to.path().join("case.toml")).unwrap();
+    let names = |table: &str, kept: &str, gone: &str| {
+        assert!(left_out.contains(&format!("[{table}.{gone}] is left out")), "{left_out}");
+        assert!(!left_out.contains(&format!("[{table}.{kept}]")), "{left_out}");
+    };
+    names("modes", "whole", "free");
+    names("frf", "place", "region");
+    names("measured", "tap", "listed");
+    names("sweep", "mu", "k");
+    assert!(left_out.contains("[calibrate] is left out") && exported.calibrate.is_none(), "{left_out}");
+    let of = |case: &Case| {
+        let selection = Selection::COMPARE;
+        analyse(&Prepared::new(case).unwrap(), selection, &mut |_| Ok(()), &()).unwrap()
+    };
+    let row = |case: &Case| of(case).measured.iter().find(|m| m.name == "tap").unwrap().rows[0];
+    assert_eq!(exported.measured["tap"].file.as_deref(), Some("measured_tap.csv"));
+    assert_eq!((row(&exported).mode, row(&exported).damping_ratio), (row(&case).mode, Some(0.01)));
+}
+
+#[test]
 fn pairs_nearest_to_a_frequency_are_those_of_the_whole_band() {
     let folder = tempfile::tempdir().unwrap();
     let system = random_system(40, 4, 0, false, 3);

@@ -6,6 +6,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+from runs import answers, best_of
+
 PEERS = Path(__file__).resolve().parent
 # name: kind and degrees of freedom.
 JOBS = {f"step-{dofs}": ("step", dofs) for dofs in (5_000, 20_000, 50_000, 200_000, 500_000)}
@@ -41,7 +43,8 @@ def step(program, threads, work, bench, folder, dofs):
     command = [bench, folder / "case.toml", "--threads", str(threads)]
     if program != "stridor":
         command = [work / "venv/bin/python", PEERS / "step.py", folder, "--solver", program]
-    return last_line([*command, *blocks], environment(threads))
+    found = answers([*command, *blocks], environment(threads))
+    return found and found[-1]
 
 
 def reduced(root, stridor, threads):
@@ -77,15 +80,6 @@ def summary_of(stridor, command, text, threads):
         return json.loads((out / "summary.json").read_text())
 
 
-def last_line(command, variables):
-    done = subprocess.run(command, capture_output=True, text=True, env=variables)
-    lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
-    if done.returncode or not lines:
-        print(f"  failed: {(done.stderr.strip().splitlines() or ['no output'])[-1]}", file=sys.stderr)
-        return None
-    return json.loads(lines[-1])
-
-
 def took(result, threads):
     """CPU milliseconds of a step at one thread, which another load on the machine hardly moves, else those of the clock; the
     seconds of the rig."""
@@ -96,16 +90,12 @@ def run_job(name, arguments, root, stridor, bench, model):
     """The best of the repeats; ours and the peers' runs take turns."""
     kind, dofs = JOBS[name]
     folder = model(arguments.work, stridor, kind, dofs) if kind == "step" else None
-    runs = {program: {} for program in PROGRAMS[kind]}
-    for threads in arguments.threads:
-        for _ in range(arguments.repeats):
-            for program in runs:
-                print(f"{name}: {program}, {threads} thread(s)", flush=True)
-                result = (step(program, threads, arguments.work, bench, folder, dofs) if kind == "step"
-                          else reduced(root, stridor, threads))
-                best = runs[program].get(threads)
-                if result and (best is None or took(result, threads) < took(best, threads)):
-                    runs[program][threads] = result
+
+    def once(program, threads):
+        return (step(program, threads, arguments.work, bench, folder, dofs) if kind == "step"
+                else reduced(root, stridor, threads))
+
+    runs = best_of(name, PROGRAMS[kind], arguments, once, took)
     return {"name": name, "kind": kind, "runs": {program: by for program, by in runs.items() if by},
             "missing": [program for program, by in runs.items() if not by]}
 

@@ -2,7 +2,8 @@
 import os
 import re
 
-from in_time import summary_of
+from in_time import summary_of, took
+from runs import best_of
 
 JOBS = {"map": ("map", 100_000)}
 # The reference rig, generated, so that it is as fine as is asked.
@@ -35,14 +36,8 @@ def once(root, stridor, threads):
 
 
 def run_job(name, arguments, root, stridor):
-    runs = {}
-    for threads in arguments.threads:
-        for _ in range(arguments.repeats):
-            print(f"{name}: stridor, {threads} thread(s)", flush=True)
-            result = once(root, stridor, threads)
-            if result and (threads not in runs or result["seconds"] < runs[threads]["seconds"]):
-                runs[threads] = result
-    return {"name": name, "kind": "map", "runs": {"stridor": runs}, "missing": []}
+    runs = best_of(name, ["stridor"], arguments, lambda _, threads: once(root, stridor, threads), took)
+    return {"name": name, "kind": "map", "runs": runs, "missing": []}
 
 
 def tables(jobs):

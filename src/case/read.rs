@@ -119,7 +119,7 @@ fn read_material(s: &Section) -> Material {
         loss_factor: s.quantity("loss_factor", NUMBER).non_negative().or(0.0),
         rayleigh: s
             .section("rayleigh", |r| structure::RayleighDamping {
-                alpha: r.quantity("alpha", FREQUENCY).non_negative().or(0.0),
+                alpha: r.quantity("alpha", RATE).non_negative().or(0.0),
                 beta: r.quantity("beta", TIME).non_negative().or(0.0),
             })
             .unwrap_or_default(),

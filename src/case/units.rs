@@ -1,88 +1,92 @@
 //! Quantities with units: `"1 mm"`, `"10 MN/m"`, `"210 GPa"` → SI values, with their dimension checked.
 
-/// A dimension as powers of (kg, m, s); angles have none.
+/// A dimension as powers of (kg, m, s, turn). Angles have none; turns are counted, so that a frequency \[Hz\] and a rate \[1/s\],
+/// which differ by 2π where something turns, are not taken for one another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Dimension {
-    powers: [i32; 3],
+    powers: Powers,
     /// Its SI unit; empty for a pure number.
     pub symbol: &'static str,
     /// What the dimension is called, with an example.
     pub name: &'static str,
 }
 
-const fn dimension(powers: [i32; 3], symbol: &'static str, name: &'static str) -> Dimension {
+/// Of kg, m, s and turns.
+type Powers = [i32; 4];
+
+const fn dimension(powers: Powers, symbol: &'static str, name: &'static str) -> Dimension {
     Dimension { powers, symbol, name }
 }
 
 /// A pure number.
-pub const NUMBER: Dimension = dimension([0, 0, 0], "", "a number");
+pub const NUMBER: Dimension = dimension([0, 0, 0, 0], "", "a number");
 /// Radians.
-pub const ANGLE: Dimension = dimension([0, 0, 0], "rad", "an angle such as \"4 deg\"");
+pub const ANGLE: Dimension = dimension([0, 0, 0, 0], "rad", "an angle such as \"4 deg\"");
 /// Metres.
-pub const LENGTH: Dimension = dimension([0, 1, 0], "m", "a length such as \"1 mm\"");
+pub const LENGTH: Dimension = dimension([0, 1, 0, 0], "m", "a length such as \"1 mm\"");
 /// Square metres.
-pub const AREA: Dimension = dimension([0, 2, 0], "m^2", "an area such as \"20 mm^2\"");
+pub const AREA: Dimension = dimension([0, 2, 0, 0], "m^2", "an area such as \"20 mm^2\"");
 /// Second moments of area.
 pub const AREA_MOMENT: Dimension =
-    dimension([0, 4, 0], "m^4", "a second moment of area such as \"200 mm^4\"");
+    dimension([0, 4, 0, 0], "m^4", "a second moment of area such as \"200 mm^4\"");
 /// Hertz.
-pub const FREQUENCY: Dimension = dimension([0, 0, -1], "Hz", "a frequency such as \"6 kHz\"");
+pub const FREQUENCY: Dimension = dimension([0, 0, -1, 1], "Hz", "a frequency such as \"6 kHz\"");
+/// Per second.
+pub const RATE: Dimension = dimension([0, 0, -1, 0], "1/s", "a rate such as \"5 1/s\"");
 /// Seconds.
-pub const TIME: Dimension = dimension([0, 0, 1], "s", "a time such as \"1 us\"");
+pub const TIME: Dimension = dimension([0, 0, 1, 0], "s", "a time such as \"1 us\"");
 /// Kilograms.
-pub const MASS: Dimension = dimension([1, 0, 0], "kg", "a mass such as \"5 g\"");
+pub const MASS: Dimension = dimension([1, 0, 0, 0], "kg", "a mass such as \"5 g\"");
 /// Moments of inertia.
-pub const INERTIA: Dimension = dimension([1, 2, 0], "kg m^2", "a moment of inertia such as \"2 kg*mm^2\"");
+pub const INERTIA: Dimension = dimension([1, 2, 0, 0], "kg m^2", "a moment of inertia such as \"2 kg*mm^2\"");
 /// Metres per second.
-pub const VELOCITY: Dimension = dimension([0, 1, -1], "m/s", "a velocity such as \"0.1 m/s\"");
+pub const VELOCITY: Dimension = dimension([0, 1, -1, 0], "m/s", "a velocity such as \"0.1 m/s\"");
 /// Inverse velocity.
-pub const INVERSE_VELOCITY: Dimension = dimension([0, -1, 1], "s/m", "an inverse velocity such as \"5 s/m\"");
+pub const INVERSE_VELOCITY: Dimension =
+    dimension([0, -1, 1, 0], "s/m", "an inverse velocity such as \"5 s/m\"");
 /// Kilograms per cubic metre.
-pub const DENSITY: Dimension = dimension([1, -3, 0], "kg/m^3", "a density such as \"7850 kg/m^3\"");
+pub const DENSITY: Dimension = dimension([1, -3, 0, 0], "kg/m^3", "a density such as \"7850 kg/m^3\"");
 /// Pascals.
-pub const PRESSURE: Dimension = dimension([1, -1, -2], "Pa", "a modulus such as \"210 GPa\"");
+pub const PRESSURE: Dimension = dimension([1, -1, -2, 0], "Pa", "a modulus such as \"210 GPa\"");
 /// Newtons.
-pub const FORCE: Dimension = dimension([1, 1, -2], "N", "a force such as \"20 N\"");
+pub const FORCE: Dimension = dimension([1, 1, -2, 0], "N", "a force such as \"20 N\"");
 /// Newtons per metre.
-pub const STIFFNESS: Dimension = dimension([1, 0, -2], "N/m", "a stiffness such as \"10 MN/m\"");
+pub const STIFFNESS: Dimension = dimension([1, 0, -2, 0], "N/m", "a stiffness such as \"10 MN/m\"");
 /// Newton metres per radian.
 pub const ROTATIONAL_STIFFNESS: Dimension =
-    dimension([1, 2, -2], "N m", "a rotational stiffness such as \"10 N*m\"");
+    dimension([1, 2, -2, 0], "N m", "a rotational stiffness such as \"10 N*m\"");
 /// Newton seconds per metre.
-pub const DASHPOT: Dimension = dimension([1, 0, -1], "N s/m", "a damping constant such as \"5 N*s/m\"");
+pub const DASHPOT: Dimension = dimension([1, 0, -1, 0], "N s/m", "a damping constant such as \"5 N*s/m\"");
 /// Newton metre seconds per radian.
 pub const ROTATIONAL_DASHPOT: Dimension =
-    dimension([1, 2, -1], "N m s", "a rotational damping constant such as \"0.1 N*m*s\"");
+    dimension([1, 2, -1, 0], "N m s", "a rotational damping constant such as \"0.1 N*m*s\"");
 
 impl Dimension {
     /// The same quantity per metre to the power `n` of contact length or area, or times metres when `n` < 0.
     pub const fn per_metre(self, n: i32, symbol: &'static str, name: &'static str) -> Dimension {
-        Dimension { powers: [self.powers[0], self.powers[1] - n, self.powers[2]], symbol, name }
+        let [mass, length, time, turns] = self.powers;
+        Dimension { powers: [mass, length - n, time, turns], symbol, name }
     }
 }
 
 /// The dimension of a quantity whose SI unit is `symbol`; a pure number when the symbol is none.
 pub fn dimension_of(symbol: &'static str) -> Dimension {
-    let powers = parse_unit(symbol).map_or([0; 3], |(_, powers)| powers);
+    let powers = parse_unit(symbol).map_or([0; 4], |(_, powers)| powers);
     Dimension { powers, symbol, name: "a value in the unit of the parameter" }
 }
 
 /// Reads `"1.5 mm"` as SI in the dimension asked for; the error says what was found instead.
 pub fn parse_quantity(text: &str, expected: Dimension) -> Result<f64, String> {
     let text = text.trim();
-    let split = text
-        .char_indices()
-        .find(|(i, c)| {
-            c.is_alphabetic()
-                && !(matches!(c, 'e' | 'E')
-                    && text[i + 1..].starts_with(|d: char| d.is_ascii_digit() || "+-".contains(d)))
-                || *c == 'µ'
-        })
-        .map_or(text.len(), |(i, _)| i);
-    let number: f64 = text[..split]
-        .trim()
-        .parse()
-        .map_err(|_| format!("\"{text}\", which does not begin with a number"))?;
+    let bytes = text.as_bytes();
+    let exponent = |i: usize| {
+        matches!(bytes[i], b'e' | b'E')
+            && bytes.get(i + 1).is_some_and(|next| next.is_ascii_digit() || b"+-".contains(next))
+    };
+    let of_number = |i: usize| bytes[i].is_ascii_digit() || b".+-".contains(&bytes[i]) || exponent(i);
+    let split = (0..bytes.len()).find(|i| !of_number(*i)).unwrap_or(bytes.len());
+    let number: f64 =
+        text[..split].parse().map_err(|_| format!("\"{text}\", which does not begin with a number"))?;
     let (factor, powers) = parse_unit(text[split..].trim())
         .ok_or_else(|| format!("\"{text}\", whose unit \"{}\" is not known", text[split..].trim()))?;
     if powers != expected.powers {
@@ -91,11 +95,12 @@ pub fn parse_quantity(text: &str, expected: Dimension) -> Result<f64, String> {
     Ok(number * factor)
 }
 
-/// The SI factor and the powers of (kg, m, s) of a unit such as `MN/m^2`; what follows each `/` divides.
-fn parse_unit(unit: &str) -> Option<(f64, [i32; 3])> {
+/// The SI factor and the powers of a unit such as `MN/m^2` or `1/s`; what follows each `/` divides.
+fn parse_unit(unit: &str) -> Option<(f64, Powers)> {
     let mut factor = 1.0;
-    let mut powers = [0; 3];
-    for (k, side) in unit.split('/').enumerate() {
+    let mut powers = [0; 4];
+    let one_over = unit.strip_prefix('1').filter(|rest| rest.trim_start().starts_with('/'));
+    for (k, side) in one_over.unwrap_or(unit).split('/').enumerate() {
         for token in side.split(['*', '·', ' ']).map(str::trim).filter(|t| !t.is_empty()) {
             let sign = if k == 0 { 1 } else { -1 };
             let (symbol, power) = split_power(token)?;
@@ -122,21 +127,21 @@ fn split_power(token: &str) -> Option<(&str, i32)> {
     Some((symbol.strip_suffix('^').unwrap_or(symbol), power))
 }
 
-/// The SI factor and the powers of (kg, m, s) of one symbol with its prefix.
-fn symbol_in_si(symbol: &str) -> Option<(f64, [i32; 3])> {
-    const UNITS: [(&str, f64, [i32; 3]); 12] = [
-        ("kg", 1.0, [1, 0, 0]),
-        ("deg", std::f64::consts::PI / 180.0, [0; 3]),
-        ("°", std::f64::consts::PI / 180.0, [0; 3]),
-        ("rad", 1.0, [0; 3]),
-        ("rpm", std::f64::consts::TAU / 60.0, [0, 0, -1]),
-        ("Hz", 1.0, [0, 0, -1]),
-        ("Pa", 1.0, [1, -1, -2]),
-        ("N", 1.0, [1, 1, -2]),
-        ("m", 1.0, [0, 1, 0]),
-        ("s", 1.0, [0, 0, 1]),
-        ("g", 1e-3, [1, 0, 0]),
-        ("%", 1e-2, [0; 3]),
+/// The SI factor and the powers of one symbol with its prefix.
+fn symbol_in_si(symbol: &str) -> Option<(f64, Powers)> {
+    const UNITS: [(&str, f64, Powers); 12] = [
+        ("kg", 1.0, [1, 0, 0, 0]),
+        ("deg", std::f64::consts::PI / 180.0, [0; 4]),
+        ("°", std::f64::consts::PI / 180.0, [0; 4]),
+        ("rad", 1.0, [0; 4]),
+        ("rpm", 1.0 / 60.0, [0, 0, -1, 1]),
+        ("Hz", 1.0, [0, 0, -1, 1]),
+        ("Pa", 1.0, [1, -1, -2, 0]),
+        ("N", 1.0, [1, 1, -2, 0]),
+        ("m", 1.0, [0, 1, 0, 0]),
+        ("s", 1.0, [0, 0, 1, 0]),
+        ("g", 1e-3, [1, 0, 0, 0]),
+        ("%", 1e-2, [0; 4]),
     ];
     const PREFIXES: [(&str, f64); 8] =
         [("G", 1e9), ("M", 1e6), ("k", 1e3), ("c", 1e-2), ("m", 1e-3), ("u", 1e-6), ("µ", 1e-6), ("n", 1e-9)];
@@ -169,6 +174,13 @@ mod tests {
         close("5 N*s/m", DASHPOT, 5.0);
         close("12 mm⁴", AREA_MOMENT, 12e-12);
         close("0.5", NUMBER, 0.5);
+        close("0.2 %", NUMBER, 2e-3);
+        close("1e-1%", NUMBER, 1e-3);
+        close("4°", ANGLE, std::f64::consts::PI / 45.0);
+        close("5 1/s", RATE, 5.0);
+        close("5/ms", RATE, 5e3);
+        close("-2e3 rad/s", RATE, -2e3);
+        close("1200 rpm", FREQUENCY, 20.0);
         close("5 s/m", INVERSE_VELOCITY, 5.0);
         close("1 GN/m^2", STIFFNESS.per_metre(1, "N/m^2", "a stiffness per length"), 1e9);
     }
@@ -179,6 +191,10 @@ mod tests {
         assert!(parse_quantity("1 furlong", LENGTH).unwrap_err().contains("furlong"));
         assert!(parse_quantity("mm", LENGTH).unwrap_err().contains("number"));
         assert!(parse_quantity("", LENGTH).is_err());
+        // 2π lies between them.
+        assert!(parse_quantity("20 Hz", RATE).unwrap_err().contains("dimension"));
+        assert!(parse_quantity("20 rad/s", FREQUENCY).unwrap_err().contains("dimension"));
+        assert!(parse_quantity("20 1", NUMBER).is_err() && parse_quantity("20 1 s", TIME).is_err());
         assert!(parse_quantity("1 m^99999999999", LENGTH).is_err());
     }
 }

@@ -2,8 +2,8 @@
 
 use super::imported::direction_text;
 use super::prepared::Prepared;
-use crate::case::{Case, ContactPoints, Matrices};
-use crate::error::Result;
+use crate::case::{CalibrateAnalysis, Case, ContactPoints, Matrices, SQUEAL};
+use crate::error::{Error, Fault, Result};
 use crate::linalg::SparseMatrix;
 use crate::linalg::matrix_market::to_text;
 use crate::linalg::sparse::add_scaled;
@@ -14,10 +14,12 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 /// Writes `mass.mtx`, `stiffness.mtx`, `damping.mtx` and `load.mtx` (when there are any), `dofs.csv`, `contact_NAME.csv` of each pair
-/// and `case.toml` into the folder `out`. That case gives the same eigenvalues as the one it came from.
+/// and `case.toml` into the folder `out`, with the files of what was measured as `measured_NAME`. That case gives the same
+/// eigenvalues as the one it came from.
 ///
 /// Loss factors are the imaginary part of the stiffness. Modal damping stays a key of the case. What depends on the
-/// state (the stiffness of the preload) and real modes of parts are left out; the returned sentences say so.
+/// state (the stiffness of the preload) and what asks for a part, a region or a scalar that matrices do not have is left out;
+/// the returned sentences say so.
 ///
 /// # Errors
 /// Faults of the case, or a folder that cannot be written.
@@ -66,17 +68,26 @@ pub fn export(case: &Case, out: &Path) -> Result<Vec<String>> {
         dofs: Some("dofs.csv".into()),
         term: BTreeMap::new(),
     };
-    write("case.toml", as_matrices(case, matrices).to_toml())?;
     let mut left_out = Vec::new();
     if case.prestress {
         left_out
             .push("The geometric stiffness of the preload is not part of the exported stiffness".to_string());
     }
-    if case.modes.values().any(|m| !m.parts.is_empty() || !m.clamp.is_empty() || m.free) {
-        left_out.push(
-            "Real modes of single parts are not exported: the matrices are those of the whole".to_string(),
-        );
+    let mut exported = as_matrices(case, matrices);
+    left_out.extend(keep_what_is_there(&mut exported));
+    for (name, data) in &mut exported.measured {
+        let Some(file) = &mut data.file else { continue };
+        let path = case.folder.join(&*file);
+        let kind = path.extension().unwrap_or_default().to_string_lossy();
+        let own = format!("measured_{name}.{kind}");
+        let content = std::fs::read(&path).map_err(|error| {
+            let key = format!("`measured.{name}.file`");
+            Error::input(Fault::new(key, format!("{}: {error}", path.display()), "a file"))
+        })?;
+        write_atomically(out, &own, &content)?;
+        *file = own;
     }
+    write("case.toml", exported.to_toml())?;
     Ok(left_out)
 }
 
@@ -106,16 +117,66 @@ fn as_matrices(case: &Case, matrices: Matrices) -> Case {
         rigid: BTreeMap::new(),
         support: BTreeMap::new(),
         force: BTreeMap::new(),
-        measured: BTreeMap::new(),
         ..case.clone()
     };
-    exported.modes.retain(|_, m| m.parts.is_empty() && m.clamp.is_empty() && !m.free);
     for (name, contact) in &mut exported.contact {
         contact.points = Some(ContactPoints::File(points_file(name)));
         (contact.body, contact.counter) = (String::new(), String::new());
         (contact.into, contact.placement, contact.stroke) = (None, None, 0.0);
     }
     exported
+}
+
+/// Leaves out the analyses of parts and regions, what was measured of those, and the questions about scalars that are no longer
+/// there; gives a sentence for each.
+fn keep_what_is_there(exported: &mut Case) -> Vec<String> {
+    let mut left_out = Vec::new();
+    let out = &mut left_out;
+    keep(&mut exported.modes, out, ("modes", "its parts or supports"), |modes| {
+        modes.parts.is_empty() && modes.clamp.is_empty() && !modes.free
+    });
+    keep(&mut exported.frf, out, ("frf", "its regions"), |frf| {
+        std::iter::once(&frf.excitation).chain(frf.response.values()).all(|place| place.on.is_none())
+    });
+    let (modes, frfs) = (&exported.modes, &exported.frf);
+    keep(&mut exported.measured, out, ("measured", "the analysis that it is of"), |measured| {
+        measured.of.as_ref().is_none_or(|of| modes.contains_key(of))
+            && measured.frf.as_ref().is_none_or(|frf| frfs.contains_key(frf))
+    });
+    let bare = Case { calibrate: None, ..exported.without_sweeps() };
+    let known = |path: &String| bare.parameter(path).is_ok();
+    keep(&mut exported.sweep, out, ("sweep", "its scalar"), |sweep| known(&sweep.parameter));
+    keep(&mut exported.map, out, ("map", "its scalars"), |map| map.parameters.iter().all(known));
+    let names =
+        |name: &String| name == SQUEAL || bare.modes.contains_key(name) || bare.measured.contains_key(name);
+    let calibrates = |calibrate: &CalibrateAnalysis| {
+        calibrate.against.iter().all(names) && calibrate.parameter.values().all(|p| p.path.iter().all(known))
+    };
+    if exported.calibrate.as_ref().is_some_and(|calibrate| !calibrates(calibrate)) {
+        exported.calibrate = None;
+        left_out.push(gone("calibrate", "its scalars, or what it is against"));
+    }
+    left_out
+}
+
+/// Keeps the tables `[kind.NAME]` that hold.
+fn keep<T>(
+    tables: &mut BTreeMap<String, T>,
+    left_out: &mut Vec<String>,
+    (kind, lacks): (&str, &str),
+    holds: impl Fn(&T) -> bool,
+) {
+    tables.retain(|name, table| {
+        let holds = holds(table);
+        if !holds {
+            left_out.push(gone(&format!("{kind}.{name}"), lacks));
+        }
+        holds
+    });
+}
+
+fn gone(table: &str, lacks: &str) -> String {
+    format!("[{table}] is left out: the exported case does not have {lacks}")
 }
 
 /// One line a degree of freedom: its number, its node, its motion, where the node is.

@@ -110,17 +110,25 @@ impl Scalar {
         }
         let other = Prepared::new(&case)?;
         let points = |s: &System| s.pairs.iter().map(|p| p.points.len()).collect::<Vec<_>>();
-        if other.regions.mesh.elements != prepared.regions.mesh.elements {
-            return Err(no_derivative("it changes the elements of the mesh"));
-        }
-        if other.system.n_dofs() != system.n_dofs() {
-            return Err(no_derivative("it changes the number of degrees of freedom"));
-        }
+        same_structure(prepared, &other)?;
         if points(&other.system) != points(system) {
             return Err(no_derivative("it changes the number of contact points"));
         }
         Ok(other.system)
     }
+}
+
+/// That two models have the same elements and degrees of freedom.
+pub(super) fn same_structure(a: &Prepared, b: &Prepared) -> Result<()> {
+    if a.regions.mesh.elements != b.regions.mesh.elements {
+        return Err(no_derivative("it changes the elements of the mesh"));
+    }
+    if a.system.n_dofs() != b.system.n_dofs() {
+        let reason = "it changes the number of degrees of freedom, as a spring that alone acts on a node without mass does \
+                      where its stiffness is zero";
+        return Err(no_derivative(reason));
+    }
+    Ok(())
 }
 
 pub(super) fn no_derivative(reason: &str) -> Error {
@@ -130,6 +138,7 @@ pub(super) fn no_derivative(reason: &str) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::modal::{ModesWanted, compute};
 
     #[test]
     fn questions_are_no_scalars_of_the_machine() {
@@ -138,5 +147,31 @@ mod tests {
         assert_eq!(kind("mesh.rig.bar_length"), Ok(Some(Kind::Structure)));
         assert_eq!(kind("contact.rim.friction.mu0"), Ok(Some(Kind::Law)));
         assert_eq!(kind("damping.modal_ratios.2.1"), Ok(Some(Kind::Ratio)));
+    }
+
+    #[test]
+    fn modes_do_not_notice_that_a_spring_without_stiffness_is_left_out() {
+        let prepare = |stiffness: &str, test: &dyn Fn(&Prepared)| {
+            let text = format!(
+                "[point]\nblock = [0, 0, 0]\neye = [1, 0, 0]\n[mass.block]\non = \"block\"\nmass = 1\n\
+                 [support.line]\non = \"block\"\nheld = [\"uy\", \"uz\", \"rx\", \"ry\", \"rz\"]\n\
+                 [spring.ground]\non = \"block\"\ndirection = [1, 0, 0]\nstiffness = 1\n\
+                 [spring.eye]\non = \"eye\"\nto = \"block\"\ndirection = [1, 0, 0]\nstiffness = {stiffness}\n"
+            );
+            test(&Prepared::new(&Case::parse("case", &text, ".".into()).unwrap()).unwrap());
+        };
+        for (stiffness, n_dofs) in [("0", 1), ("1e-9", 2), ("1", 2)] {
+            prepare(stiffness, &|prepared| {
+                let structure = &prepared.assembled.structure;
+                let (real, _) = compute(structure, ModesWanted::BelowHz(1.0), &()).unwrap();
+                assert_eq!((structure.n_dofs(), real.len()), (n_dofs, 1));
+                assert!((real.eigenvalues[0] - 1.0).abs() < 1e-12, "{}", real.eigenvalues[0]);
+            });
+        }
+        prepare("0", &|prepared| {
+            let scalar = scalar(prepared.case, "spring.eye.stiffness").unwrap().unwrap();
+            let refused = scalar.system_at(prepared, 1.0).unwrap_err().to_string();
+            assert!(refused.contains("degrees of freedom, as a spring"), "{refused}");
+        });
     }
 }

@@ -1,18 +1,16 @@
 //! Frequency responses: magnitude and phase, and which resonances show.
 
-use super::axes::{WIDTH, Words, labelled};
+use super::axes::{Chart, WIDTH};
 use super::chart::{Area, colour, sheet, text};
 use super::colours::{ALARM, INK, MEASURED, MUTED, PARTS, SECOND};
 use super::format::{fixed, given, power};
 use super::html::{escape, figure, titled_table};
+use super::magnitude::{draw_magnitude, draw_phase, magnitude_axes, phase_axes};
 use super::tables::Table;
-use crate::linalg::c64;
 use crate::results::{FrfResult, RunResults, write_atomically};
 use plotters::prelude::*;
 use std::error::Error;
 
-/// Decades below the highest magnitude that are shown.
-const DECADES: f64 = 6.0;
 /// A mode with less than this part of the largest product of shapes does not show.
 const HIDDEN: f64 = 0.01;
 /// A measured resonance stands beside a mode that differs from it by less than this part.
@@ -62,8 +60,7 @@ fn capital(word: &str) -> String {
 }
 
 fn picture(frf: &FrfResult) -> Option<String> {
-    let largest = magnitudes(frf).fold(0.0, f64::max);
-    if largest <= 0.0 {
+    if !magnitudes(frf).any(|size| size > 0.0) {
         return None;
     }
     sheet((WIDTH, 620), |area| {
@@ -74,15 +71,18 @@ fn picture(frf: &FrfResult) -> Option<String> {
             legend.draw(&Rectangle::new([(x, 12), (x + 16, 26)], colour(ink(k)).filled()))?;
             legend.draw_text(&response.name.replace('_', " "), &text(13.0, INK), (x + 22, 11))?;
         }
-        let top = largest.log10() + 0.3;
-        let low = magnitudes(frf).filter(|v| *v > 0.0).fold(largest, f64::min).log10() - 0.3;
-        let range = low.max(top - DECADES)..top;
-        let beside = format!("{} [{}]", frf.quantity.name(), frf.quantity.unit());
-        let exponent = |v: f64| format!("{:.0e}", 10f64.powf(v));
-        curves(&upper, frf, range, (&beside, &exponent, None), |v| v.norm().max(f64::MIN_POSITIVE).log10())?;
-        let degrees = |v: f64| fixed(v, 0);
-        let below = Some("frequency [Hz]");
-        curves(&lower, frf, -185.0..185.0, ("phase [°]", &degrees, below), |v| v.arg().to_degrees())
+        let hz = &frf.frequencies_hz;
+        let mut sizes = magnitude_axes(&upper, hz, frf.quantity, magnitudes(frf), None)?;
+        let mut phases = phase_axes(&lower, hz, Some("frequency [Hz]"))?;
+        marks(&mut sizes, frf)?;
+        marks(&mut phases, frf)?;
+        name_measured(&upper, &sizes, frf)?;
+        for (k, response) in frf.responses.iter().enumerate() {
+            let points = || hz.iter().copied().zip(&response.values);
+            draw_magnitude(&mut sizes, points().map(|(hz, v)| (hz, v.norm())), (ink(k), 1))?;
+            draw_phase(&mut phases, points().map(|(hz, v)| (hz, v.arg())), (ink(k), 1))?;
+        }
+        Ok(())
     })
 }
 
@@ -94,39 +94,36 @@ fn ink(k: usize) -> &'static str {
     [ALARM, SECOND, PARTS[2][0], INK][k % 4]
 }
 
-type Label<'a> = (&'a str, &'a dyn Fn(f64) -> String, Option<&'a str>);
-
-fn curves(
-    area: &Area,
-    frf: &FrfResult,
-    up: std::ops::Range<f64>,
-    (beside, label, below): Label,
-    of: impl Fn(&c64) -> f64,
-) -> Result<(), Box<dyn Error>> {
-    let hz = &frf.frequencies_hz;
-    let ends = hz.first().copied().unwrap_or(0.0)..hz.last().copied().unwrap_or(1.0);
-    let words = Words { below, beside, across: &given, up: label, labels: 10, grid: true };
-    let mut chart = labelled(area, (ends.clone(), up.clone()), &words)?;
+/// Dotted lines at the natural frequencies, blue ones at the measured.
+fn marks(chart: &mut Chart, frf: &FrfResult) -> Result<(), Box<dyn Error>> {
+    let up = chart.y_range();
     for resonance in &frf.resonances {
         let dots = (0..40).map(|k| up.start + (up.end - up.start) * f64::from(k) / 40.0);
         chart.draw_series(
             dots.map(|y| Circle::new((resonance.frequency_hz, y), 1, colour(MUTED).mix(0.35).filled())),
         )?;
     }
-    for measured in frf.measured.iter().filter(|f| ends.contains(f)) {
-        let line = [(*measured, up.start), (*measured, up.end)];
+    for measured in shown(chart, frf) {
+        let line = [(measured, up.start), (measured, up.end)];
         chart.draw_series([PathElement::new(line, colour(MEASURED).mix(0.7).stroke_width(1))])?;
-        if below.is_none() {
-            let (x, y) = chart.backend_coord(&(*measured, up.end));
-            let (left, upper) = area.get_base_pixel();
-            area.draw_text(&given(*measured), &text(11.5, MEASURED), (x - left + 4, y - upper))?;
-        }
-    }
-    for (k, response) in frf.responses.iter().enumerate() {
-        let points = hz.iter().zip(&response.values).map(|(hz, value)| (*hz, of(value).max(up.start)));
-        chart.draw_series([PathElement::new(points.collect::<Vec<_>>(), colour(ink(k)).stroke_width(1))])?;
     }
     Ok(())
+}
+
+/// The measured frequencies in figures, each at the top of its line.
+fn name_measured(area: &Area, chart: &Chart, frf: &FrfResult) -> Result<(), Box<dyn Error>> {
+    for measured in shown(chart, frf) {
+        let (x, y) = chart.backend_coord(&(measured, chart.y_range().end));
+        let (left, upper) = area.get_base_pixel();
+        area.draw_text(&given(measured), &text(11.5, MEASURED), (x - left + 4, y - upper))?;
+    }
+    Ok(())
+}
+
+/// The measured frequencies inside the chart.
+fn shown(chart: &Chart, frf: &FrfResult) -> Vec<f64> {
+    let band = chart.x_range();
+    frf.measured.iter().copied().filter(|hz| band.contains(hz)).collect()
 }
 
 /// The real modes of the band, and how much of each shows at each place.

@@ -25,6 +25,7 @@ mod format;
 mod frf;
 mod growth;
 mod html;
+mod magnitude;
 mod participation;
 mod plate;
 mod reduced_check;

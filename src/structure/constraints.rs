@@ -188,6 +188,8 @@ pub(super) fn active_spaces(model: &Model) -> Vec<Space> {
             }
         }
     }
+    // A spring of no stiffness and no damping would leave a direction without mass a row of zeros. What moves does not notice that it
+    // is left out: a spring that acts alone on such a direction takes no force, however stiff.
     for spring in model.springs.iter().filter(|s| s.stiffness != 0.0 || s.damping != 0.0) {
         if let Some(a) = spring_direction(spring) {
             for node in std::iter::once(spring.node).chain(spring.other) {

@@ -2,7 +2,7 @@
 
 use super::kirchhoff::Edge;
 use crate::case::reader::{Section, read_document};
-use crate::case::units::{FREQUENCY, LENGTH, NUMBER, TIME};
+use crate::case::units::{FREQUENCY, LENGTH, NUMBER, RATE, TIME};
 use crate::case::{Case, read_case};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::results::Checked;
@@ -301,12 +301,16 @@ pub fn read_check(name: &str, s: &Section, case: &str, reason: &str) -> Check {
             "",
         );
     }
+    let unit = match kind {
+        Kind::GrowthNear(_) | Kind::GrowthRate => RATE,
+        _ => FREQUENCY,
+    };
     Check {
         quantity: s.string("quantity").or(name.to_string()),
         case: s.string("case").or(case.to_string()),
         kind,
         set: read_set(s, "set"),
-        reference: s.quantity("reference", FREQUENCY).or(0.0),
+        reference: s.quantity("reference", unit).or(0.0),
         tolerance: relative.or(absolute).unwrap_or(0.0),
         relative: relative.is_some(),
         reason: s.string("reason").or(reason.to_string()),

@@ -13,7 +13,7 @@ unit = "mm"
 youngs_modulus = "210 GPa"
 poissons_ratio = 0.3
 density = 7850
-rayleigh = { alpha = 1.0, beta = "1 us" }
+rayleigh = { alpha = "1 1/s", beta = "1 us" }
 
 [shell.disc]
 material = "steel"
@@ -51,7 +51,7 @@ normal = { per = "length", stiffness = "10 GN/m^2", cubic = 1e18 }
 friction = { law = "exponential", mu0 = 0.3, mu1 = 0.1, alpha = "5 s/m" }
 
 [damping]
-modal_ratio = 0.001
+modal_ratio = "0.1 %"
 
 [modes.disc]
 parts = ["disc"]

@@ -2,7 +2,7 @@
 
 use super::super::modes::{modal_ratios, part_assembled};
 use super::super::prepared::Prepared;
-use super::super::scalars::{Kind, Scalar, no_derivative, scalar};
+use super::super::scalars::{Kind, Scalar, same_structure, scalar};
 use super::super::sensors::Sensors;
 use super::coordinate::Coordinate;
 use super::facts::{Facts, Measurements, Of};
@@ -187,11 +187,7 @@ impl<'a> CaseModel<'a> {
             let build = |value: f64| {
                 let case = with(case, c, value)?;
                 let other = Prepared::new(&case)?;
-                if other.regions.mesh.elements != prepared.regions.mesh.elements
-                    || other.system.n_dofs() != prepared.system.n_dofs()
-                {
-                    return Err(no_derivative("it changes the elements of the mesh"));
-                }
+                same_structure(prepared, &other)?;
                 views.iter().map(|view| view.of(&other)).collect()
             };
             let changes = derivatives(*value, first.step(), &build).map_err(|error| of_number(c, error))?;

@@ -1,7 +1,7 @@
 //! `calibration_errors.svg` and `calibration_numbers.svg`.
 
 use super::super::colours::{ALARM, CALM, INK, MEASURED, MUTED, SECOND};
-use super::super::comparison::{Panel, stacked};
+use super::super::comparison::{Curve, Panel, stacked};
 use super::super::format::{given, signed, significant};
 use super::super::html::Picture;
 use super::super::svg::{Anchor, Ink, Sheet};
@@ -81,14 +81,21 @@ pub(super) fn errors(result: &CalibrationResult) -> Picture {
 
 /// The measured responses over the computed ones before and after; `None` where there are none.
 pub(super) fn responses(result: &CalibrationResult) -> Option<Picture> {
+    // Calibration is against ln |h|.
+    let curve = |words: String, hex: &'static str, sizes: &[f64]| Curve {
+        words,
+        hex,
+        sizes: sizes.to_vec(),
+        phases: Vec::new(),
+    };
     let panel = |r: &CalibratedResponse| Panel {
         frequencies_hz: r.frequencies_hz.clone(),
         quantity: r.quantity,
         curves: [
-            Some(("before".to_string(), CALM, r.before.clone())),
-            r.left_out.clone().map(|sizes| ("from the others".to_string(), SECOND, sizes)),
-            Some(("after".to_string(), ALARM, r.after.clone())),
-            Some((format!("measured at {}", r.place.replace('_', " ")), MEASURED, r.measured.clone())),
+            Some(curve("before".to_string(), CALM, &r.before)),
+            r.left_out.as_ref().map(|sizes| curve("from the others".to_string(), SECOND, sizes)),
+            Some(curve("after".to_string(), ALARM, &r.after)),
+            Some(curve(format!("measured at {}", r.place.replace('_', " ")), MEASURED, &r.measured)),
         ]
         .into_iter()
         .flatten()

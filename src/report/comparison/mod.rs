@@ -5,7 +5,7 @@ mod likeness;
 mod responses;
 mod table;
 
-pub(super) use responses::{Panel, stacked};
+pub(super) use responses::{Curve, Panel, stacked};
 pub(super) use table::{modes_table, responses_table};
 
 use super::html::{escape, figure, titled_table};

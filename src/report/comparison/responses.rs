@@ -1,35 +1,55 @@
 //! `measured_frf_<name>.svg`: measured over computed responses, one panel each.
 
-use super::super::axes::{WIDTH, axes};
+use super::super::axes::WIDTH;
 use super::super::chart::{Area, colour, sheet, text};
 use super::super::colours::{ALARM, INK, MEASURED};
 use super::super::format::fixed;
+use super::super::magnitude::{draw_magnitude, draw_phase, magnitude_axes, phase_axes};
 use super::Drawn;
 use crate::linalg::c64;
 use crate::measured::Quantity;
 use crate::results::{MeasuredResponses, ResponsePair};
-use plotters::prelude::*;
+use plotters::prelude::{Color, Rectangle};
 use std::error::Error;
 
 /// Panels in one picture; the others are in the table.
 const MOST: usize = 6;
-const PANEL: u32 = 260;
-/// Decades below the highest magnitude that are shown.
-const DECADES: f64 = 6.0;
+/// Heights: of the magnitudes with their legend, of the phases, of the words below the last panel, of the legend.
+const SIZES: u32 = 260;
+const PHASES: u32 = 120;
+const WORDS: u32 = 26;
+const LEGEND: u32 = 26;
 
-/// Responses over one another: what stands in the legend, the colour, and the size at each frequency.
+/// Responses over one another.
 pub(in crate::report) struct Panel {
     /// \[Hz\].
     pub frequencies_hz: Vec<f64>,
     /// What of the motion.
     pub quantity: Quantity,
     /// The last is drawn on top.
-    pub curves: Vec<(String, &'static str, Vec<f64>)>,
+    pub curves: Vec<Curve>,
+}
+
+/// One of them.
+pub(in crate::report) struct Curve {
+    /// What stands in the legend.
+    pub words: String,
+    /// Its colour.
+    pub hex: &'static str,
+    /// Its magnitude at each frequency.
+    pub sizes: Vec<f64>,
+    /// Its phase at each frequency \[rad\]; empty where only magnitudes are compared.
+    pub phases: Vec<f64>,
 }
 
 pub(super) fn picture(responses: &MeasuredResponses, name: &str) -> Option<Drawn> {
     let panel = |pair: &ResponsePair| {
-        let sizes = |values: &[c64]| values.iter().map(|v| v.norm()).collect::<Vec<f64>>();
+        let curve = |words: String, hex: &'static str, values: &[c64]| Curve {
+            words,
+            hex,
+            sizes: values.iter().map(|v| v.norm()).collect(),
+            phases: values.iter().map(|v| v.arg()).collect(),
+        };
         let short = pair.name.chars().take(36).collect::<String>();
         let place = pair.place.replace('_', " ");
         let computed = format!("computed: {place}, FRAC {}", fixed(pair.assurance, 3));
@@ -37,8 +57,8 @@ pub(super) fn picture(responses: &MeasuredResponses, name: &str) -> Option<Drawn
             frequencies_hz: pair.frequencies_hz.clone(),
             quantity: pair.quantity,
             curves: vec![
-                (computed, ALARM, sizes(&pair.computed)),
-                (format!("measured: {short}"), MEASURED, sizes(&pair.measured)),
+                curve(computed, ALARM, &pair.computed),
+                curve(format!("measured: {short}"), MEASURED, &pair.measured),
             ],
         }
     };
@@ -58,41 +78,60 @@ pub(in crate::report) fn stacked(panels: &[Panel]) -> Option<String> {
     if shown.is_empty() {
         return None;
     }
-    sheet((WIDTH, PANEL * shown.len() as u32 + 26), |area| {
+    let heights = shown.iter().map(Panel::height).sum::<u32>();
+    sheet((WIDTH, heights + WORDS), |area| {
         let mut rest = area.clone();
         for (k, own) in shown.iter().enumerate() {
             let last = k + 1 == shown.len();
-            let (panel, below) = rest.split_vertically(PANEL + if last { 26 } else { 0 });
-            draw(&panel, own, last)?;
+            let (panel, below) = rest.split_vertically(own.height() + if last { WORDS } else { 0 });
+            own.draw(&panel, last.then_some("frequency [Hz]"))?;
             rest = below;
         }
         Ok(())
     })
 }
 
-fn draw(area: &Area, panel: &Panel, last: bool) -> Result<(), Box<dyn Error>> {
-    let sizes = || panel.curves.iter().flat_map(|(_, _, values)| values).copied().filter(|v| *v > 0.0);
-    let largest = sizes().fold(f64::MIN_POSITIVE, f64::max);
-    let top = largest.log10() + 0.3;
-    let low = (sizes().fold(largest, f64::min).log10() - 0.3).max(top - DECADES);
-    let hz = &panel.frequencies_hz;
-    let ends = hz.first().copied().unwrap_or(0.0)..hz.last().copied().unwrap_or(1.0);
-    let (legend, main) = area.split_vertically(26);
-    let mut x = 120;
-    for (words, hex, _) in panel.curves.iter().rev() {
-        legend.draw(&Rectangle::new([(x, 10), (x + 16, 14)], colour(hex).filled()))?;
-        legend.draw_text(words, &text(13.0, INK), (x + 22, 4))?;
-        x += 60 + 8 * words.chars().count() as i32;
+impl Panel {
+    fn has_phases(&self) -> bool {
+        self.curves.iter().any(|curve| !curve.phases.is_empty())
     }
-    let exponent = |v: f64| format!("{:.0e}", 10f64.powf(v));
-    let beside = format!("{} [{}]", panel.quantity.name(), panel.quantity.unit());
-    let below = last.then_some("frequency [Hz]");
-    let mut chart = axes(&main, (ends, low..top), below, &beside, exponent)?;
-    for (k, (_, hex, values)) in panel.curves.iter().enumerate() {
-        let point = |(hz, v): (&f64, &f64)| (*hz, v.max(f64::MIN_POSITIVE).log10().max(low));
-        let curve: Vec<(f64, f64)> = hz.iter().zip(values).map(point).collect();
-        let width = if k + 1 == panel.curves.len() { 2 } else { 1 };
-        chart.draw_series([PathElement::new(curve, colour(hex).stroke_width(width))])?;
+
+    fn height(&self) -> u32 {
+        SIZES + if self.has_phases() { PHASES } else { 0 }
     }
-    Ok(())
+
+    fn draw(&self, area: &Area, below: Option<&str>) -> Result<(), Box<dyn Error>> {
+        let hz = &self.frequencies_hz;
+        let (legend, main) = area.split_vertically(LEGEND);
+        let mut x = 120;
+        for curve in self.curves.iter().rev() {
+            legend.draw(&Rectangle::new([(x, 10), (x + 16, 14)], colour(curve.hex).filled()))?;
+            legend.draw_text(&curve.words, &text(13.0, INK), (x + 22, 4))?;
+            x += 60 + 8 * curve.words.chars().count() as i32;
+        }
+        let (upper, lower) = match self.has_phases() {
+            true => main.split_vertically(SIZES - LEGEND),
+            false => (main.clone(), main),
+        };
+        let sizes = self.curves.iter().flat_map(|curve| curve.sizes.iter().copied());
+        let under_sizes = below.filter(|_| !self.has_phases());
+        let mut chart = magnitude_axes(&upper, hz, self.quantity, sizes, under_sizes)?;
+        for (k, curve) in self.curves.iter().enumerate() {
+            let points = hz.iter().copied().zip(curve.sizes.iter().copied());
+            draw_magnitude(&mut chart, points, (curve.hex, self.width(k)))?;
+        }
+        if !self.has_phases() {
+            return Ok(());
+        }
+        let mut chart = phase_axes(&lower, hz, below)?;
+        for (k, curve) in self.curves.iter().enumerate() {
+            let points = hz.iter().copied().zip(curve.phases.iter().copied());
+            draw_phase(&mut chart, points, (curve.hex, self.width(k)))?;
+        }
+        Ok(())
+    }
+
+    fn width(&self, curve: usize) -> u32 {
+        if curve + 1 == self.curves.len() { 2 } else { 1 }
+    }
 }
