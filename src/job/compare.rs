@@ -8,9 +8,10 @@ use super::sensors::{Sensors, frame};
 use crate::case::{Case, MeasuredData, ModesAnalysis};
 use crate::error::{Faults, Result};
 use crate::linalg::{c64, dense};
-use crate::measured::compare::{ComputedModes, Measured, levels, likenesses, pair};
+use crate::measured::compare::{ComputedModes, Measured, likenesses, pair};
 use crate::measured::geometry::{Frame, distance, dot};
 use crate::measured::{MeasuredDof, MeasuredFrf, MeasuredMode, MeasuredSet, Quantity};
+use crate::modal::levels;
 use crate::results::{
     FrfResult, MeasuredComparison, MeasuredResponses, MeasuredRow, NamedModes, ResponsePair,
 };
@@ -191,11 +192,7 @@ impl Test {
         let first = named.modes.rigid_bodies;
         let scale = analysis.frequency_scale;
         let hz: Vec<f64> = (first..named.modes.len()).map(|k| scale * named.modes.frequency_hz(k)).collect();
-        let twins = |a: usize, b: usize| {
-            let name = |k: usize| named.names[first + k];
-            name(a).is_some() && name(a) == name(b) && hz[b] - hz[a] < 2e-2 * hz[b]
-        };
-        let levels = levels(&hz, twins);
+        let levels = levels(&hz, &named.names[first..]);
         let motion = |k: usize, sensors: &Sensors| sensors.motions(&self.nodes, &named.shapes[first + k]);
         let motions: Vec<Vec<f64>> = match &self.sensors {
             Some(sensors) => (0..hz.len()).map(|k| motion(k, sensors)).collect(),

@@ -4,8 +4,6 @@ use crate::linalg::assignment::least_cost;
 use crate::linalg::c64;
 use std::ops::Range;
 
-/// Neighbouring computed modes nearer than this share of their frequency are one level.
-const LEVEL: f64 = 1e-3;
 /// |ln f ratio| is counted in units of this.
 const FREQUENCY: f64 = 0.1;
 /// What a pair may cost at most: 20 % of frequency for like shapes, or where no shape is known.
@@ -20,7 +18,7 @@ const RANK: f64 = 1e-6;
 pub struct ComputedModes<'a> {
     /// \[Hz\], ascending.
     pub frequencies_hz: &'a [f64],
-    /// The levels, see [`levels`].
+    /// The levels: a single mode, or the two of a double one.
     pub levels: &'a [Range<usize>],
     /// The motion of each mode at the measured degrees of freedom; may be empty when no shape is compared.
     pub motions: &'a [Vec<f64>],
@@ -42,20 +40,6 @@ pub struct Pair {
     pub mode: usize,
     /// MAC with its level, where the shape is known.
     pub likeness: Option<f64>,
-}
-
-/// Neighbouring modes that are one level, as the pairs of a disc's double modes are: their frequencies differ by less than
-/// 1e-3, or `twins` says so of the two.
-pub fn levels(frequencies_hz: &[f64], twins: impl Fn(usize, usize) -> bool) -> Vec<Range<usize>> {
-    let mut all: Vec<Range<usize>> = Vec::new();
-    for (k, hz) in frequencies_hz.iter().enumerate() {
-        let joins = k > 0 && (hz - frequencies_hz[k - 1] < LEVEL * hz || twins(k - 1, k));
-        match all.last_mut().filter(|_| joins) {
-            Some(level) => level.end = k + 1,
-            None => all.push(k..k + 1),
-        }
-    }
-    all
 }
 
 /// Squared cosine of the angle between a measured shape ψ and the space that computed motions φ span: for one φ it is
@@ -177,7 +161,7 @@ mod tests {
     fn shapes_decide_where_frequencies_mislead() {
         let motions = [vec![1.0, 0.0, 0.0], vec![0.0, 1.0, 0.0], vec![0.0, 0.0, 1.0]];
         let hz = [100.0, 103.0, 200.0];
-        let levels = levels(&hz, |_, _| false);
+        let levels = [0..1, 1..2, 2..3];
         let computed = ComputedModes { frequencies_hz: &hz, levels: &levels, motions: &motions };
         let shapes = [complex(&[0.1, 1.0, 0.0]), complex(&[1.0, 0.1, 0.0]), complex(&[1.0, 1.0, 1.0])];
         let measured: Vec<Measured> = [100.0, 103.0, 190.0]
@@ -200,8 +184,7 @@ mod tests {
     #[test]
     fn a_double_level_takes_two_and_what_is_far_stays_alone() {
         let hz = [100.0, 100.05, 160.0];
-        let levels = levels(&hz, |_, _| false);
-        assert_eq!(levels, [0..2, 2..3]);
+        let levels = [0..2, 2..3];
         let computed = ComputedModes { frequencies_hz: &hz, levels: &levels, motions: &[] };
         let of = |frequency_hz| Measured { frequency_hz, shape: None };
         let measured = [of(99.0), of(101.0), of(105.0), of(240.0)];
@@ -215,7 +198,7 @@ mod tests {
     fn the_pairs_do_not_depend_on_greed() {
         // The nearest first would give 104 to 103 and leave 97 beside 112; the sum is less the other way.
         let hz = [100.0, 104.0];
-        let levels = levels(&hz, |_, _| false);
+        let levels = [0..1, 1..2];
         let computed = ComputedModes { frequencies_hz: &hz, levels: &levels, motions: &[] };
         let of = |frequency_hz| Measured { frequency_hz, shape: None };
         let pairs = pair(&[of(103.0), of(112.0)], &computed, &[Vec::new(), Vec::new()]);

@@ -2,16 +2,19 @@
 //!
 //! * [`compute`]: the modes up to a frequency, with the count that proves that none is missing.
 //! * [`DiscPoints`]: names of disc modes from their transverse displacement.
+//! * [`levels`]: which of them are the two of a double mode.
 //! * [`effective_mass`]: how much of the mass a mode moves along a direction.
 
 mod compute;
 mod effective_mass;
+mod levels;
 mod naming;
 #[cfg(test)]
 pub(crate) mod samples;
 
 pub use compute::{ModesWanted, ShiftedStiffness, compute, compute_from};
 pub use effective_mass::{EffectiveMass, effective_mass};
+pub use levels::levels;
 pub use naming::DiscPoints;
 
 use faer::Mat;

@@ -7,8 +7,9 @@ use super::html::Picture;
 use super::plate::{Plate, colour_bar};
 use super::svg::{Anchor, Ink, Point, Sheet};
 use super::view::{Fit, dot};
-use crate::modal::DiscModeName;
+use crate::modal::{DiscModeName, levels};
 use crate::results::{ComparedRow, Geometry, NamedModes, RunResults};
+use std::ops::Range;
 
 const MOST_COLUMNS: usize = 5;
 const MOST: usize = 30;
@@ -50,27 +51,16 @@ fn chosen_set(results: &RunResults) -> Option<usize> {
     results.measured.iter().map(|m| m.modes).find(named).or((0..results.modes.len()).find(named))
 }
 
-/// Modes of one name at one frequency: a disc's double modes.
+/// A mode that has a name, or the two of a double one.
 struct Group {
     name: DiscModeName,
-    modes: Vec<usize>,
+    modes: Range<usize>,
 }
 
 fn groups(set: &NamedModes) -> Vec<Group> {
-    let mut groups: Vec<Group> = vec![];
-    for (k, name) in set.names.iter().enumerate().take(set.shapes.len()) {
-        let Some(name) = *name else { continue };
-        let hz = set.modes.frequency_hz(k);
-        let same = |group: &&mut Group| {
-            let first = set.modes.frequency_hz(group.modes[0]);
-            group.name == name && group.modes.len() < 2 && (hz - first).abs() <= 2e-3 * first
-        };
-        match groups.iter_mut().rev().find(same) {
-            Some(group) => group.modes.push(k),
-            None => groups.push(Group { name, modes: vec![k] }),
-        }
-    }
-    groups
+    let hz: Vec<f64> = (0..set.shapes.len()).map(|k| set.modes.frequency_hz(k)).collect();
+    let named = |modes: Range<usize>| Some(Group { name: set.names[modes.start]?, modes });
+    levels(&hz, &set.names).into_iter().filter_map(named).collect()
 }
 
 /// The disc seen along its axis.
@@ -153,7 +143,7 @@ fn draw_mode(
         [2.0 * radius, 2.0 * radius],
     );
     let pixels: Vec<Point> = disc.plate.points.iter().map(|p| fit.pixel(*p)).collect();
-    let w = disc.deflection(&set.shapes[group.modes[0]]);
+    let w = disc.deflection(&set.shapes[group.modes.start]);
     disc.plate.paint(sheet, &pixels, &w);
     let nodal = at_least(&pixels, &disc.lively(&w), &w, 0.0).level_lines;
     if !nodal.is_empty() {
@@ -162,7 +152,7 @@ fn draw_mode(
     }
     let DiscModeName { nodal_diameters: n, nodal_circles: s } = group.name;
     let times = if group.modes.len() > 1 { " ×2" } else { "" };
-    let hz = scale.unwrap_or(1.0) * set.modes.frequency_hz(group.modes[0]);
+    let hz = scale.unwrap_or(1.0) * set.modes.frequency_hz(group.modes.start);
     let title = format!("({n}, {s}){times}  {} Hz", fixed(hz, if hz < 1000.0 { 1 } else { 0 }));
     let ink = Ink { size: 15.0, colour: INK, bold: true, anchor: Anchor::Middle };
     let y = corner[1] + 15.0 + 2.0 * radius + 24.0;

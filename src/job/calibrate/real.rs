@@ -10,15 +10,10 @@ use crate::calibration::Level;
 use crate::error::Result;
 use crate::linalg::sparse::times;
 use crate::linalg::tall::gram;
-use crate::modal::{self, DiscModeName, ModesWanted, RealModes};
+use crate::modal::{self, DiscModeName, ModesWanted, RealModes, levels};
 use crate::structure::Assembled;
 use std::f64::consts::TAU;
 use std::sync::Arc;
-
-/// Neighbours of one name whose frequencies differ by less than this part are a double level.
-const DOUBLE: f64 = 2e-3;
-/// The same without a name.
-const DOUBLE_WITHOUT_NAME: f64 = 1e-6;
 
 /// What a mode is called: the part that moves most, and its disc name.
 type Name = (Option<String>, Option<DiscModeName>);
@@ -72,27 +67,12 @@ impl Solved {
         self.names.as_ref().map(|(names, _)| &names[k])
     }
 
-    fn disc_name(&self, k: usize) -> Option<DiscModeName> {
-        self.name(k).and_then(|name| name.1)
-    }
-
-    /// The modes as levels: a single mode, or two that bear one name and differ little.
+    /// The modes as levels, those of rigid bodies left out.
     pub fn levels(&self) -> Picks {
-        let modes = &self.modes;
-        let mut levels = Picks::new();
-        for k in modes.rigid_bodies..modes.len() {
-            let twin = levels.last().filter(|level| level.len() == 1).is_some_and(|level| {
-                let (a, b) = (self.disc_name(level[0]), self.disc_name(k));
-                let near = if a.is_some() { DOUBLE } else { DOUBLE_WITHOUT_NAME };
-                let turns = a.is_none_or(|name| name.nodal_diameters > 0);
-                a == b && turns && (modes.frequency_hz(k) / modes.frequency_hz(level[0]) - 1.0) < near
-            });
-            match levels.last_mut() {
-                Some(last) if twin => last.push(k),
-                _ => levels.push(vec![k]),
-            }
-        }
-        levels
+        let rest = self.modes.rigid_bodies..self.modes.len();
+        let hz: Vec<f64> = rest.clone().map(|k| self.modes.frequency_hz(k)).collect();
+        let names: Vec<_> = rest.clone().map(|k| self.name(k).and_then(|name| name.1)).collect();
+        levels(&hz, &names).into_iter().map(|level| level.map(|k| rest.start + k).collect()).collect()
     }
 
     /// What each of `levels` is called.

@@ -8,7 +8,7 @@ use crate::results::{
 /// Four measured modes, of which the last is like none of the computed ones.
 pub(super) fn modes(disc: &NamedModes, modes: [Option<usize>; 4]) -> MeasuredComparison {
     let hz: Vec<f64> = (0..disc.modes.len()).map(|k| disc.modes.frequency_hz(k)).collect();
-    let levels = crate::measured::compare::levels(&hz, |a, b| disc.names[a] == disc.names[b]);
+    let levels = crate::modal::levels(&hz, &disc.names);
     let level = |k: Option<usize>| k.and_then(|k| levels.iter().position(|level| level.contains(&k)));
     let row = |(frequency_hz, mode): (f64, Option<usize>)| MeasuredRow {
         frequency_hz,
