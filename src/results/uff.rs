@@ -102,6 +102,20 @@ mod tests {
         }
     }
 
+    /// Around a resonance the lines of a response are nearer than six digits tell.
+    #[test]
+    fn lines_too_near_for_the_text_are_written_once() {
+        let mut frf = sample::rig().frfs[0].clone();
+        let count = frf.frequencies_hz.len();
+        frf.frequencies_hz[1] = frf.frequencies_hz[0] * (1.0 + 1e-9);
+        let (set, _) = read("t", &functions(&frf), 1e-3).unwrap().into_set();
+        assert_eq!(set.frfs[0].frequencies_hz.len(), count - 1);
+        let first = frf.responses[0].values[0];
+        assert!((set.frfs[0].values[0] - first).norm() <= 1e-12 * first.norm());
+        let (set, _) = read("b", &functions(&FrfResult { binary: true, ..frf }), 1e-3).unwrap().into_set();
+        assert_eq!(set.frfs[0].frequencies_hz.len(), count);
+    }
+
     #[test]
     fn shapes_come_back_as_they_were_written() {
         let results = sample::rig();

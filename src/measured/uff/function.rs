@@ -271,8 +271,8 @@ pub struct Function<'a> {
     pub values: &'a [c64],
 }
 
-/// The lines of text of dataset 58 before its numbers: complex in double precision, uneven frequencies.
-fn heading(function: &Function<'_>) -> String {
+/// The lines of text of dataset 58 before its rows of numbers: complex in double precision, uneven frequencies.
+fn heading(function: &Function<'_>, rows: usize) -> String {
     let (kind, label, unit) = match function.quantity {
         Quantity::Receptance => (DISPLACEMENT, "Displacement", "m"),
         Quantity::Mobility => (VELOCITY, "Velocity", "m/s"),
@@ -287,7 +287,7 @@ fn heading(function: &Function<'_>) -> String {
         0, 0, 0, "NONE", "NONE"
     );
     let zero = e_format(0.0, 13, 5);
-    text += &format!("{:10}{:10}{:10}{}\n", 6, function.frequencies_hz.len(), 0, zero.repeat(3));
+    text += &format!("{:10}{:10}{:10}{}\n", 6, rows, 0, zero.repeat(3));
     let axis = |kind: i64, label: &str, unit: &str| {
         format!("{kind:10}{:5}{:5}{:5} {label:<20} {unit:<20}\n", 0, 0, 0)
     };
@@ -297,12 +297,16 @@ fn heading(function: &Function<'_>) -> String {
     text + &axis(0, "NONE", "NONE")
 }
 
-/// Dataset 58: complex in double precision, uneven frequencies.
+/// Dataset 58: complex in double precision, uneven frequencies. It has six digits for a frequency: of those that are alike in
+/// them the first is written.
 pub(super) fn write(function: &Function<'_>) -> Vec<u8> {
-    let mut text = String::from("    -1\n    58\n") + &heading(function);
-    for (hz, value) in function.frequencies_hz.iter().zip(function.values) {
-        let [re, im] = [value.re, value.im].map(|v| e_format(v, 20, 12));
-        text += &format!("{}{re}{im}\n", e_format(*hz, 13, 5));
+    let row =
+        |(hz, value): (&f64, &c64)| (e_format(*hz, 13, 5), [value.re, value.im].map(|v| e_format(v, 20, 12)));
+    let mut rows: Vec<_> = function.frequencies_hz.iter().zip(function.values).map(row).collect();
+    rows.dedup_by(|later, earlier| later.0 == earlier.0);
+    let mut text = String::from("    -1\n    58\n") + &heading(function, rows.len());
+    for (hz, [re, im]) in rows {
+        text += &format!("{hz}{re}{im}\n");
     }
     (text + "    -1\n").into_bytes()
 }
@@ -311,7 +315,7 @@ pub(super) fn write(function: &Function<'_>) -> Vec<u8> {
 pub(super) fn write_binary(function: &Function<'_>) -> Vec<u8> {
     const LOWEST_FIRST: u32 = 1;
     const IEEE_754: u32 = 2;
-    let heading = heading(function);
+    let heading = heading(function, function.frequencies_hz.len());
     let (lines, size) = (heading.lines().count(), 3 * size_of::<f64>() * function.values.len());
     let form = format!("{LOWEST_FIRST:6}{IEEE_754:6}{lines:12}{size:12}{:6}{:6}{:12}{:12}", 0, 0, 0, 0);
     let mut bytes = format!("    -1\n    58b{form}\n{heading}").into_bytes();
