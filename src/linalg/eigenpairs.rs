@@ -14,7 +14,7 @@ use super::dense::symmetric_eigen;
 use super::factor::{SymbolicFactor, SymmetricFactor};
 use super::lanczos::{BlockLanczos, Ritz, Window};
 use super::sparse::{add_scaled, diagonal, norm_1, times};
-use super::tall::{gram, rotate};
+use super::tall::{gram, panels, rotate};
 use crate::error::{Error, Result};
 use crate::progress::Observer;
 use faer::{Mat, MatRef};
@@ -68,8 +68,6 @@ const INSIDE: [f64; 3] = [0.4, 0.38, 0.42];
 const EXPLORED: usize = 16;
 /// Ritz values with ‖A x − ν x‖_M below this part of |ν| are taken for eigenvalues in the first look.
 const SETTLED: f64 = 1e-2;
-/// Columns that go through the matrices together where there may be many: few, so that little memory is held.
-const TOGETHER: usize = 32;
 /// Eigenvalues nearer to each other than this, relative to their size, are one cluster.
 const CLUSTER: f64 = 1e-7;
 
@@ -162,8 +160,8 @@ pub fn backward_errors(
 ) -> Vec<f64> {
     let (k_norm, m_norm) = (norm_1(k), norm_1(m));
     let mut errors = Vec::new();
-    for (chunk, values) in values.chunks(TOGETHER).enumerate() {
-        let x = vectors.subcols(chunk * TOGETHER, values.len());
+    for (start, width) in panels(0..values.len()) {
+        let (x, values) = (vectors.subcols(start, width), &values[start..start + width]);
         let (kx, mx) = (times(k, x), times(m, x));
         let error = |(j, theta): (usize, &f64)| {
             let entries = kx.col_as_slice(j).iter().zip(mx.col_as_slice(j));
@@ -454,9 +452,9 @@ impl Found {
 /// X ← X (XᵀMX)^-½, which moves the vectors least.
 fn orthonormalise(m: &SparseMatrix, x: &mut Mat<f64>) -> Result<()> {
     let mut square = Mat::zeros(x.ncols(), x.ncols());
-    for start in (0..x.ncols()).step_by(TOGETHER) {
-        let mx = times(m, x.subcols(start, TOGETHER.min(x.ncols() - start)));
-        square.subcols_mut(start, mx.ncols()).copy_from(gram(x.as_ref(), mx.as_ref()));
+    for (start, width) in panels(0..x.ncols()) {
+        let mx = times(m, x.subcols(start, width));
+        square.subcols_mut(start, width).copy_from(gram(x.as_ref(), mx.as_ref()));
     }
     let (values, u) = symmetric_eigen(square.as_ref())?;
     if values.iter().any(|v| *v <= 0.0 || v.is_nan()) {

@@ -8,6 +8,15 @@ use faer::traits::ComplexField;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
 use rayon::prelude::*;
 
+/// Columns that go through the matrices together where there may be many.
+const PANEL: usize = 32;
+
+/// The columns of a wide matrix a few at a time, as first column and width, so that little memory is held beside them.
+pub fn panels(columns: std::ops::Range<usize>) -> impl Iterator<Item = (usize, usize)> {
+    let end = columns.end;
+    columns.step_by(PANEL).map(move |start| (start, PANEL.min(end - start)))
+}
+
 /// Rows that one task works on.
 pub(super) const ROWS: usize = 8192;
 

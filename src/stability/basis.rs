@@ -5,15 +5,13 @@ use super::operator::{Operator, Products};
 use crate::linalg::SparseMatrix;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::sparse::{add_scaled, times};
-use crate::linalg::tall::{combine, expand, gram};
+use crate::linalg::tall::{combine, expand, gram, panels};
 use faer::{Accum, Mat, MatMut, MatRef};
 
 /// Columns that are orthonormalised together.
 const PANEL: usize = 32;
 /// Of more columns than this the principal directions are taken.
 const WIDE: usize = 48;
-/// Columns that go through the matrices together: few, so that little memory is held.
-const TOGETHER: usize = 32;
 /// Vectors that a basis has room for before it is moved.
 const ROOM: usize = 160;
 
@@ -111,8 +109,7 @@ impl<'a> Basis<'a> {
         const DIGITS_LEFT: f64 = 1e-14;
         let (m, count) = (self.len(), z.ncols());
         let (mut share, mut energy) = (Mat::<f64>::zeros(m, count), Mat::<f64>::zeros(count, count));
-        for start in (0..count).step_by(TOGETHER) {
-            let width = TOGETHER.min(count - start);
+        for (start, width) in panels(0..count) {
             let image = times(&self.energy, z.subcols(start, width));
             share.subcols_mut(start, width).copy_from(gram(self.vectors.as_ref(), image.as_ref()));
             let below = gram(z.subcols(start, count - start), image.as_ref());
@@ -201,8 +198,7 @@ impl<'a> Basis<'a> {
         let border = || Mat::<f64>::zeros(m, m - old);
         let (mut mass, mut stiffness, mut damping) = (border(), border(), border());
         let mut hysteretic = self.hysteretic.as_ref().map(|_| border());
-        for start in (old..m).step_by(TOGETHER) {
-            let width = TOGETHER.min(m - start);
+        for (start, width) in panels(old..m) {
             let products = self.operator.products(self.vectors.subcols(start, width));
             let Products { inertia, elastic, damped, lossy } = products;
             let onto = |border: &mut Mat<f64>, times: &Mat<f64>| {

@@ -23,14 +23,11 @@ use crate::error::Result;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::factor::{SymmetricFactor, compliances, factorize_like};
 use crate::linalg::sparse::{add_scaled, times};
-use crate::linalg::tall::combine;
+use crate::linalg::tall::{combine, panels};
 use crate::linalg::{SparseMatrix, c64};
 use crate::stability::analysis::Analysis;
 use faer::{Accum, Mat};
 use std::f64::consts::TAU;
-
-/// Columns that go through a matrix together: few, so that little memory is held.
-const TOGETHER: usize = 32;
 
 /// Γ(s) in the A-norm of Z, and what q(s) needs.
 #[derive(Debug)]
@@ -101,8 +98,7 @@ impl Remainder {
         let (few, coefficients) = few.spanned();
         let f = beyond + few.values.ncols();
         let mut forces = Mat::zeros(operator.n(), f);
-        for start in (0..beyond).step_by(TOGETHER) {
-            let width = TOGETHER.min(beyond - start);
+        for (start, width) in panels(0..beyond) {
             let inertia = times(operator.mass, basis.vectors.subcols(first + start, width));
             forces.subcols_mut(start, width).copy_from(inertia * faer::Scale(top));
         }
@@ -118,8 +114,7 @@ impl Remainder {
         }
         let a = add_scaled(&[(1.0, &*operator.stiffness), (-shift, operator.mass)]);
         let taken = product(x.as_ref(), taken.as_ref());
-        for start in (0..m).step_by(TOGETHER) {
-            let width = TOGETHER.min(m - start);
+        for (start, width) in panels(0..m) {
             let of_basis = times(&a, basis.vectors.subcols(start, width));
             combine(forces.as_mut(), Accum::Add, of_basis.as_ref(), taken.subrows(start, width), -1.0);
         }
