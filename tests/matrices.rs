@@ -245,6 +245,13 @@ points = 3
 [calibrate]
 against = ["tap"]
 parameter.k = { path = "spring.k1.stiffness", between = [0.5, 2] }
+[sensitivity]
+parameters = ["contact.*", "spring.k1.stiffness"]
+[transient]
+duration = "1 s"
+time_step = "10 ms"
+probe.place = { at = [0, 0, 0], direction = [1, 0, 0] }
+probe.region = { on = "block", direction = [1, 0, 0] }
 "#;
     let case = Case::parse("case.toml", &text, from.path().into()).unwrap();
     let left_out = export(&case, to.path()).unwrap().join("\n");
@@ -257,6 +264,13 @@ parameter.k = { path = "spring.k1.stiffness", between = [0.5, 2] }
     names("frf", "place", "region");
     names("measured", "tap", "listed");
     names("sweep", "mu", "k");
+    names("transient.probe", "place", "region");
+    assert_eq!(exported.sensitivity.as_ref().unwrap().parameters, ["contact.*"]);
+    let pushed = text + "push.knock = { on = \"block\", force = [\"1 N\", 0, 0], duration = \"0.1 s\" }\n";
+    let pushed = Case::parse("case.toml", &pushed, from.path().into()).unwrap();
+    let without = tempfile::tempdir().unwrap();
+    assert!(export(&pushed, without.path()).unwrap().join("\n").contains("[transient] is left out"));
+    assert!(stridor::case::read_case(&without.path().join("case.toml")).unwrap().transient.is_none());
     assert!(left_out.contains("[calibrate] is left out") && exported.calibrate.is_none(), "{left_out}");
     let of = |case: &Case| {
         let selection = Selection::COMPARE;

@@ -1,6 +1,7 @@
 //! What the data determine: singular values of the sensitivity, covariance, intervals.
 
 use super::residuals::Residuals;
+use super::svd::Svd;
 use super::{Computed, Fit, Problem};
 use nalgebra::DMatrix;
 
@@ -45,11 +46,8 @@ impl Knowledge {
     pub(super) fn new(problem: &Problem, assignment: &[usize], fit: &Fit) -> Knowledge {
         let n = problem.unknowns.len();
         let (w, h) = sensitivity(problem, assignment, &fit.computed);
-        let svd = w.svd(false, true);
-        let mut order: Vec<usize> = (0..n).collect();
-        order.sort_by(|a, b| svd.singular_values[*b].total_cmp(&svd.singular_values[*a]));
-        let v = svd.v_t.unwrap_or_else(|| DMatrix::identity(n, n));
-        let directions = order.iter().map(|k| upright(v.row(*k).iter().copied().collect())).collect();
+        let svd = Svd::new(&w);
+        let directions = (0..n).map(|k| upright(svd.v.column(k).iter().copied().collect())).collect();
         let covariance = inverse(&h);
         let deviations: Vec<f64> = (0..n).map(|j| covariance[(j, j)].sqrt()).collect();
         let correlation = |i: usize, j: usize| {
@@ -64,7 +62,7 @@ impl Knowledge {
         let reduced_chi2 = (freedom > 0).then(|| fit.chi2 / freedom as f64);
         Knowledge {
             freedom,
-            singular_values: order.iter().map(|k| svd.singular_values[*k]).collect(),
+            singular_values: svd.s,
             directions,
             correlations: (0..n).map(|i| (0..n).map(|j| correlation(i, j)).collect()).collect(),
             intervals: (0..n).map(|j| around(j, NORMAL * deviations[j])).collect(),

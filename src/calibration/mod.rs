@@ -37,6 +37,7 @@ mod residuals;
 #[cfg(test)]
 mod samples;
 mod span;
+mod svd;
 mod trials;
 
 pub use calibrate::{Calibration, Options, calibrate};

@@ -1,5 +1,6 @@
 //! The space of a level's motions where they were measured, and how it turns with the unknowns.
 
+use super::svd::Svd;
 use nalgebra::{DMatrix, DVector};
 
 /// A motion that is this share of the largest adds nothing to the space.
@@ -31,16 +32,11 @@ struct Factors {
 
 impl Span {
     fn factors(&self) -> Factors {
-        let svd = self.motions.clone().svd(true, true);
-        let largest = svd.singular_values.max();
-        let kept: Vec<usize> = (0..svd.singular_values.len())
-            .filter(|k| largest > 0.0 && svd.singular_values[*k] > RANK * largest)
-            .collect();
-        let (u, v_t) = (svd.u.unwrap_or_default(), svd.v_t.unwrap_or_default());
-        let v = DMatrix::from_fn(v_t.ncols(), kept.len(), |i, k| {
-            v_t[(kept[k], i)] / svd.singular_values[kept[k]]
-        });
-        Factors { u: u.select_columns(&kept), v }
+        let svd = Svd::new(&self.motions);
+        let largest = svd.s.first().copied().unwrap_or(0.0);
+        let kept = svd.s.iter().filter(|s| **s > RANK * largest).count();
+        let v = DMatrix::from_fn(svd.v.nrows(), kept, |i, k| svd.v[(i, k)] / svd.s[k]);
+        Factors { u: svd.u.columns(0, kept).into_owned(), v }
     }
 
     /// How many scale factors a measured shape has in it: the dimension of the space.

@@ -375,15 +375,17 @@ fn read_friction(s: &Section) -> Friction {
 }
 
 fn read_damping(s: &Section) -> StructureDamping {
-    let pairs = s.rows("modal_ratios", NUMBER).check("rows of [frequency in Hz, ratio below 1]", |rows| {
-        rows.iter().all(|r| r.len() == 2 && r[0] >= 0.0 && (0.0..1.0).contains(&r[1]))
-    });
+    let pairs = s
+        .pairs("modal_ratios", [FREQUENCY, NUMBER])
+        .check("rows of a frequency and a ratio from 0 to below 1", |rows| {
+            rows.iter().all(|[hz, ratio]| *hz >= 0.0 && (0.0..1.0).contains(ratio))
+        });
     StructureDamping {
         modal_ratio: s
             .quantity("modal_ratio", NUMBER)
             .check("a ratio from 0 to below 1", |v| (0.0..1.0).contains(v))
             .or(0.0),
-        modal_ratios: pairs.or(Vec::new()).iter().map(|r| [r[0], r[1]]).collect(),
+        modal_ratios: pairs.or(Vec::new()),
     }
 }
 

@@ -198,16 +198,23 @@ impl<'a> Section<'a> {
 
     /// A list of two quantities, each with its own dimension.
     pub fn two_quantities(&'a self, key: &str, dimensions: [Dimension; 2]) -> Found<'a, [f64; 2]> {
-        let found = self.find(key, "a list of two values, one a parameter", |value| match value.as_array() {
-            Some(list) if list.len() == 2 => {
-                let at = |k: usize| quantity_of(list[k].get_ref(), dimensions[k]);
-                Ok([at(0)?, at(1)?])
-            }
-            Some(list) => Err(format!("a list of {}", list.len())),
-            None => Err(describe(value)),
-        });
+        let expected = "a list of two values, one a parameter";
+        let found = self.find(key, expected, |value| pair_of(value, dimensions));
         for k in 0..2 {
             self.remember(&format!("{key}.{k}"), found.value.map(|v| v[k]), dimensions[k]);
+        }
+        found
+    }
+
+    /// A list of lists of two quantities, each with its own dimension.
+    pub fn pairs(&'a self, key: &str, dimensions: [Dimension; 2]) -> Found<'a, Vec<[f64; 2]>> {
+        let found = self.find(key, "a list of lists of two values", |value| {
+            list_of(value, |row| pair_of(row, dimensions))
+        });
+        for (i, row) in found.value.iter().flatten().enumerate() {
+            for k in 0..2 {
+                self.remember(&format!("{key}.{i}.{k}"), [row[k]], dimensions[k]);
+            }
         }
         found
     }
@@ -245,6 +252,11 @@ impl<'a> Section<'a> {
     /// Whether the value of `key` is a string.
     pub fn is_string(&self, key: &str) -> bool {
         self.table.get(key).is_some_and(|value| value.get_ref().as_str().is_some())
+    }
+
+    /// Whether the value of `key` is a table.
+    pub fn is_table(&self, key: &str) -> bool {
+        self.table.get(key).is_some_and(|value| value.get_ref().as_table().is_some())
     }
 
     /// A list of strings; a single string is a list of one.
@@ -454,6 +466,17 @@ fn quantity_of(value: &DeValue, dimension: Dimension) -> std::result::Result<f64
 
 fn string_of(value: &DeValue) -> std::result::Result<String, String> {
     value.as_str().map(str::to_string).ok_or_else(|| describe(value))
+}
+
+fn pair_of(value: &DeValue, dimensions: [Dimension; 2]) -> std::result::Result<[f64; 2], String> {
+    match value.as_array() {
+        Some(list) if list.len() == 2 => {
+            let at = |k: usize| quantity_of(list[k].get_ref(), dimensions[k]);
+            Ok([at(0)?, at(1)?])
+        }
+        Some(list) => Err(format!("a list of {}", list.len())),
+        None => Err(describe(value)),
+    }
 }
 
 fn list_of<T>(

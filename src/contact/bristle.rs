@@ -13,7 +13,8 @@ use crate::system::{ContactMotion, SlipAnswer, SlipStep};
 /// what this force bends: the return mapping of elastoplasticity (J. C. Simo & T. J. R. Hughes, Computational
 /// Inelasticity, 1998). The mean speed of slip v_p in the step follows from κ Δt v_p + μ(w) N = |**F***|; μ is taken at
 /// the speed at the end of the step, w = v_p + (**v** − Δ/Δt)·**F***/|**F***|, which keeps the order of the integrator,
-/// but nowhere beyond 0 … 2 v_p, so that the force runs on into sticking without a jump.
+/// but nowhere beyond 0 … 2 v_p, so that the force runs on into sticking without a jump. Where the slip changes its direction, that
+/// of the force is of first order in Δt.
 ///
 /// μ(0) is the static coefficient. With μ falling steeper than κ Δt the force has a jump where slip begins, as it should.
 /// A contact that pulls (N < 0) does not rub.

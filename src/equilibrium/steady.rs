@@ -261,7 +261,8 @@ fn check_contact(
                 format!("steady sliding, contact `{}`", pair.name),
                 format!(
                     "no point touches: the nearest stays {:.3e} m away at an approach of {approach:.3e} m",
-                    -deepest
+                    // Not the minus of a zero.
+                    0.0 - deepest
                 ),
                 "Close the contact with a load, move the bodies nearer or press harder",
             ));

@@ -2,7 +2,9 @@
 
 use super::imported::direction_text;
 use super::prepared::Prepared;
-use crate::case::{CalibrateAnalysis, Case, ContactPoints, Matrices, SQUEAL};
+use crate::case::{
+    CalibrateAnalysis, Case, ContactPoints, Matrices, SQUEAL, Slide, TransientAnalysis, path_matches,
+};
 use crate::error::{Error, Fault, Result};
 use crate::linalg::SparseMatrix;
 use crate::linalg::matrix_market::to_text;
@@ -74,7 +76,7 @@ pub fn export(case: &Case, out: &Path) -> Result<Vec<String>> {
             .push("The geometric stiffness of the preload is not part of the exported stiffness".to_string());
     }
     let mut exported = as_matrices(case, matrices);
-    left_out.extend(keep_what_is_there(&mut exported));
+    left_out.extend(keep_what_is_there(case, &mut exported));
     for (name, data) in &mut exported.measured {
         let Some(file) = &mut data.file else { continue };
         let path = case.folder.join(&*file);
@@ -127,9 +129,9 @@ fn as_matrices(case: &Case, matrices: Matrices) -> Case {
     exported
 }
 
-/// Leaves out the analyses of parts and regions, what was measured of those, and the questions about scalars that are no longer
-/// there; gives a sentence for each.
-fn keep_what_is_there(exported: &mut Case) -> Vec<String> {
+/// Leaves out the analyses of parts and regions of `case`, what was measured of those, and the questions about scalars that are no
+/// longer there; gives a sentence for each.
+fn keep_what_is_there(case: &Case, exported: &mut Case) -> Vec<String> {
     let mut left_out = Vec::new();
     let out = &mut left_out;
     keep(&mut exported.modes, out, ("modes", "its parts or supports"), |modes| {
@@ -143,10 +145,35 @@ fn keep_what_is_there(exported: &mut Case) -> Vec<String> {
         measured.of.as_ref().is_none_or(|of| modes.contains_key(of))
             && measured.frf.as_ref().is_none_or(|frf| frfs.contains_key(frf))
     });
-    let bare = Case { calibrate: None, ..exported.without_sweeps() };
+    if exported.transient.as_ref().is_some_and(|transient| !moves_alike(case, transient)) {
+        exported.transient = None;
+        out.push(gone("transient", "what pushes, loads or carries it"));
+    }
+    if let Some(transient) = &mut exported.transient {
+        keep(&mut transient.probe, out, ("transient.probe", "its region or spring"), |p| p.at.is_some());
+        if transient.sound.take().is_some() {
+            out.push(gone("transient.sound", "its plates"));
+        }
+        if transient.fields_every.take().is_some() {
+            out.push(gone("transient.fields_every", "its mesh"));
+        }
+    }
+    let bare = Case { calibrate: None, sensitivity: None, ..exported.without_sweeps() };
     let known = |path: &String| bare.parameter(path).is_ok();
     keep(&mut exported.sweep, out, ("sweep", "its scalar"), |sweep| known(&sweep.parameter));
     keep(&mut exported.map, out, ("map", "its scalars"), |map| map.parameters.iter().all(known));
+    if let Some(sensitivity) = &mut exported.sensitivity {
+        let scalars = bare.parameters();
+        sensitivity.parameters.retain(|pattern| {
+            let holds = scalars.iter().any(|scalar| path_matches(pattern, &scalar.path));
+            if !holds {
+                left_out.push(format!(
+                    "`{pattern}` of [sensitivity] is left out: no scalar of the exported case"
+                ));
+            }
+            holds
+        });
+    }
     let names =
         |name: &String| name == SQUEAL || bare.modes.contains_key(name) || bare.measured.contains_key(name);
     let calibrates = |calibrate: &CalibrateAnalysis| {
@@ -157,6 +184,14 @@ fn keep_what_is_there(exported: &mut Case) -> Vec<String> {
         left_out.push(gone("calibrate", "its scalars, or what it is against"));
     }
     left_out
+}
+
+/// Whether the motion in time of `case` is the same where there are no regions, no forces of its own and no mesh to slide over.
+fn moves_alike(case: &Case, transient: &TransientAnalysis) -> bool {
+    let carried = |(name, slide): (&String, &Slide)| slide.travels && case.contact[name].counter != "ground";
+    transient.push.is_empty()
+        && transient.load.keys().all(|name| case.contact.contains_key(name))
+        && !transient.slide.iter().any(carried)
 }
 
 /// Keeps the tables `[kind.NAME]` that hold.

@@ -361,14 +361,27 @@ solution = "direct"
 
     #[test]
     fn places_that_are_not_there_are_told_together() {
-        let wrong = disc(6, 24) + RESPONSES;
-        let wrong = wrong.replace("at = [0, \"40 mm\", 0], direction = [2", "on = \"hub\", direction = [2");
-        let wrong = wrong.replace("excitation = { at = [0, \"40 mm\", 0]", "excitation = { on = \"him\"");
-        let case = Case::parse("disc", &wrong, ".".into()).unwrap();
-        let prepared = Prepared::new(&case).unwrap();
-        let error = frfs(&prepared).err().unwrap().to_string();
+        let with = |excitation: &str, response: &str| {
+            let wrong = disc(6, 24) + RESPONSES;
+            let at = |end: &str| format!("at = [0, \"40 mm\", 0]{end}");
+            let wrong =
+                wrong.replace(&at(", direction = [2"), &format!("on = \"{response}\", direction = [2"));
+            let wrong = wrong.replace(
+                &format!("excitation = {{ {}", at("")),
+                &format!("excitation = {{ on = \"{excitation}\""),
+            );
+            Case::parse("disc", &wrong, ".".into()).unwrap()
+        };
+        let together = |error: &str| {
+            error.contains("frf.back.excitation.on") && error.contains("frf.rim.response.inside")
+        };
+        // Regions that the mesh does not have, then places that do not move.
+        let error = Prepared::new(&with("him", "her")).err().unwrap().to_string();
+        assert!(together(&error), "{error}");
+        let held = with("hub", "hub");
+        let error = frfs(&Prepared::new(&held).unwrap()).err().unwrap().to_string();
         assert!(
-            error.contains("frf.back.excitation.on") && error.contains("frf.rim.response.inside"),
+            error.contains("frf.back.excitation") && error.contains("frf.rim.response.inside"),
             "{error}"
         );
     }

@@ -48,7 +48,8 @@ impl<'a> Prepared<'a> {
             return Self::imported(case, regions, matrices);
         }
         let mut faults = Faults::new();
-        for (name, contact) in &case.contact {
+        let named = faults.take(regions.check_named(case)).is_some();
+        for (name, contact) in case.contact.iter().filter(|_| named) {
             if let Some(placement) = &contact.placement {
                 faults.take(place(&mut regions, case, name, contact, placement));
             }

@@ -1,7 +1,7 @@
 //! The mesh of a case with the case's own points, and its regions by name.
 
 use crate::case::Case;
-use crate::error::{Error, Fault, Result, nearest};
+use crate::error::{Error, Fault, Faults, Result, nearest};
 use crate::mesh::{Element, Mesh, Region};
 
 /// A mesh whose regions are asked for by name, with a fault that lists those there are.
@@ -40,6 +40,39 @@ impl Regions {
                     .with_help(help),
             )
         })
+    }
+
+    /// Looks up the regions that the case names beside those its structure is built of.
+    ///
+    /// # Errors
+    /// Every one that is missing.
+    pub fn check_named(&self, case: &Case) -> Result<()> {
+        let mut asked: Vec<(String, &str)> = Vec::new();
+        asked.extend(case.force.iter().map(|(name, f)| (format!("force.{name}.on"), f.on.as_str())));
+        asked.extend(case.contact.iter().map(|(name, c)| (format!("contact.{name}.body"), c.body.as_str())));
+        for (name, modes) in &case.modes {
+            asked.extend(modes.clamp.iter().map(|on| (format!("modes.{name}.clamp"), on.as_str())));
+        }
+        for (name, frf) in &case.frf {
+            let responses = frf.response.iter().map(|(place, at)| (format!("response.{place}"), at));
+            let places = responses.chain([("excitation".to_string(), &frf.excitation)]);
+            asked.extend(
+                places.filter_map(|(key, at)| Some((format!("frf.{name}.{key}.on"), at.on.as_deref()?))),
+            );
+        }
+        if let Some(transient) = &case.transient {
+            let push = transient.push.iter();
+            asked.extend(push.map(|(name, p)| (format!("transient.push.{name}.on"), p.on.as_str())));
+            let probe = transient.probe.iter();
+            asked.extend(
+                probe.filter_map(|(name, p)| Some((format!("transient.probe.{name}.on"), p.on.as_deref()?))),
+            );
+        }
+        let mut faults = Faults::new();
+        for (place, name) in asked {
+            faults.take(self.region(name, &format!("`{place}`")));
+        }
+        faults.into_result(())
     }
 
     /// The nodes of region `name`, ascending.

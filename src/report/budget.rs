@@ -133,10 +133,8 @@ mod tests {
                 mode.eigenvalue.re *= factor;
                 mode.growth.mode_coupling *= factor;
             }
-            assert!(
-                picture(&results).is_some() && super::super::growth::picture(&results).is_some(),
-                "{factor}"
-            );
+            assert_eq!(picture(&results).is_some(), factor > 1.0, "{factor}: nothing grows by round-off");
+            assert!(super::super::growth::picture(&results).is_some(), "{factor}");
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::explored_hdf5::{encounter_name, kind_name};
 use super::{DampingVerdicts, MapResult, Method, SweepResult};
-use crate::sweep::unstable;
+use crate::stability::unstable;
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 

@@ -58,7 +58,7 @@ pub fn read_search(path: &Path) -> Result<SearchFile> {
     });
     let found = faults.take(read.map(|(found, _)| found)).flatten();
     let Some(mut found) = found else { return Err(Error::Input(faults)) };
-    let files: BTreeSet<&String> = found.checks.iter().map(|check| &check.case).collect();
+    let files: BTreeSet<&String> = found.checks.iter().map(|check| &check.of.case).collect();
     for file in files {
         if !found.cases.contains_key(file) {
             found.cases.extend(faults.take(read_case(&folder.join(file))).map(|case| (file.clone(), case)));
@@ -86,7 +86,12 @@ fn read_root(root: &Section, file: &str, case: Case) -> SearchFile {
     let scalars = case.parameters();
     let parameters: Vec<(String, CalibratedParameter)> =
         root.named("parameter", |name, s| (name.to_string(), read_parameter(s, &case, Some(&scalars))));
-    let checks = root.named("fact", |name, s| read_check(name, s, file, ""));
+    let checks = root.named("fact", |name, s| {
+        if s.is_table("reference") {
+            s.fault("reference", "a table", "a number: what is searched for", "");
+        }
+        read_check(name, s, file, "")
+    });
     for (key, none) in [("parameter", parameters.is_empty()), ("fact", checks.is_empty())] {
         if none {
             root.fault(key, "nothing", format!("at least one table [{key}.NAME]"), "");

@@ -110,8 +110,17 @@ impl ComplexMode {
         self.backward_error <= 1e-10 && self.eigenvalue_error <= 1e-8
     }
 
-    /// Whether the mode grows.
+    /// Whether the mode grows by more than round-off.
     pub fn unstable(&self) -> bool {
-        self.eigenvalue.re > 0.0
+        unstable(self.eigenvalue)
     }
+}
+
+/// A mode counts as unstable when σ exceeds this share of |λ|: the round-off of an undamped mode is below it, and past
+/// a flutter onset, where σ grows like the square root of the distance, it is reached within 1e-18 of the onset.
+pub const ROUND_OFF: f64 = 1e-9;
+
+/// Whether a mode grows by more than round-off.
+pub fn unstable(lambda: c64) -> bool {
+    lambda.re > ROUND_OFF * lambda.norm()
 }

@@ -24,11 +24,8 @@ pub use track::{Branch, Sweep, sweep};
 
 use crate::error::Result;
 use crate::linalg::c64;
+use crate::stability::{ROUND_OFF, unstable};
 use faer::Mat;
-
-/// A mode counts as unstable when σ exceeds this share of |λ|: the round-off of an undamped mode is below it, and past
-/// a flutter onset, where σ grows like the square root of the distance, it is reached within 1e-18 of the onset.
-pub const ROUND_OFF: f64 = 1e-9;
 
 /// What a sweep asks of the mechanics: the complex modes at a place of its parameters.
 pub trait Problem: Sync {
@@ -120,11 +117,6 @@ impl Axis {
     pub(crate) fn between(&self, a: f64, b: f64, t: f64) -> f64 {
         if self.log { a * (b / a).powf(t) } else { a + t * (b - a) }
     }
-}
-
-/// Whether a mode grows by more than round-off.
-pub fn unstable(lambda: c64) -> bool {
-    lambda.re > ROUND_OFF * lambda.norm()
 }
 
 impl Modes {

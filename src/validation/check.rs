@@ -2,14 +2,16 @@
 
 use super::in_time;
 use super::kirchhoff::{PlateMode, ThinPlate, circular_modes};
-use super::reference::{Check, Kind, Measure, Reference};
+use super::reference::{Check, Kind, Measure, Quantity, Reference};
+use super::resumed;
 use super::two_dof::TwoDof;
-use crate::case::{Case, ModelChoice, TransientAnalysis};
+use crate::case::{Case, ModelChoice, TransientAnalysis, read_case};
 use crate::error::{Error, Fault, Result};
-use crate::job::{Histories, Prepared, Selection, Stage, analyse};
+use crate::job::{Histories, Prepared, Selection, Stage, analyse, export};
 use crate::linalg::c64;
 use crate::progress::Observer;
 use crate::results::{CheckedCase, NamedModes, RunResults};
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::time::Instant;
@@ -21,8 +23,15 @@ use std::time::Instant;
 pub fn run(reference: &Reference, observer: &dyn Observer) -> Result<CheckedCase> {
     let started = Instant::now();
     let Reference { name, title, source, cases, checks } = reference;
-    let computed = computed(cases, checks, observer)?;
-    let rows = checks.iter().zip(computed).map(|(check, computed)| check.beside(computed)).collect();
+    let mut runs = BTreeMap::new();
+    let mut rows = Vec::new();
+    for check in checks {
+        let mut row = check.beside(quantity(&mut runs, cases, check, &check.of, observer)?);
+        if let Some(second) = &check.second {
+            row.reference = quantity(&mut runs, cases, check, second, observer)?;
+        }
+        rows.push(row);
+    }
     let seconds = started.elapsed().as_secs_f64();
     Ok(CheckedCase { name: name.clone(), title: title.clone(), source: source.clone(), rows, seconds })
 }
@@ -39,13 +48,20 @@ pub fn computed(
     checks: &[Check],
     observer: &dyn Observer,
 ) -> Result<Vec<f64>> {
-    let mut runs: BTreeMap<&str, Runs> = BTreeMap::new();
-    let mut computed = Vec::new();
-    for check in checks {
-        let new = || Runs { case: &cases[&check.case], done: BTreeMap::new(), observer };
-        computed.push(compute(runs.entry(&check.case).or_insert_with(new), check)?);
-    }
-    Ok(computed)
+    let mut runs = BTreeMap::new();
+    checks.iter().map(|check| quantity(&mut runs, cases, check, &check.of, observer)).collect()
+}
+
+/// A quantity of a check; the `runs` of its case are taken up where they are.
+fn quantity<'a>(
+    runs: &mut BTreeMap<&'a str, Runs<'a>>,
+    cases: &'a BTreeMap<String, Case>,
+    check: &Check,
+    of: &'a Quantity,
+    observer: &'a dyn Observer,
+) -> Result<f64> {
+    let new = || Runs { case: &cases[&of.case], done: BTreeMap::new(), observer };
+    compute(runs.entry(&of.case).or_insert_with(new), of, &check.quantity)
 }
 
 /// The analyses of one case with scalars set to values, each done once.
@@ -105,7 +121,8 @@ fn eigenvalues(results: &RunResults) -> Vec<c64> {
 /// λ of the unstable mode nearest to `hz`; not a number when no mode is unstable.
 fn unstable_near(results: &RunResults, hz: f64) -> c64 {
     let distance = |l: &c64| (l.im / TAU - hz).abs();
-    let unstable = eigenvalues(results).into_iter().filter(|l| l.re > 0.0);
+    let modes = results.complex.iter().flat_map(|c| &c.modes.modes);
+    let unstable = modes.filter(|mode| mode.unstable()).map(|mode| mode.eigenvalue);
     unstable.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(c64::new(f64::NAN, f64::NAN))
 }
 
@@ -118,55 +135,91 @@ fn largest_growth(results: &RunResults) -> f64 {
     eigenvalues(results).iter().map(|l| l.re / l.norm()).fold(f64::NEG_INFINITY, f64::max)
 }
 
-fn compute(runs: &mut Runs, check: &Check) -> Result<f64> {
-    match &check.kind {
-        Kind::Value(pointer) => {
-            let summary = crate::results::summary_json(runs.with(&check.set)?);
-            summary.pointer(pointer).and_then(serde_json::Value::as_f64).ok_or_else(|| {
-                Error::input(Fault::new(
-                    format!("`{}`", check.quantity),
-                    format!("no number at {pointer}"),
-                    "a JSON pointer into summary.json",
-                ))
-            })
+/// The number at a JSON pointer into the summary of a run.
+fn number_at(results: &RunResults, pointer: &str, name: &str) -> Result<f64> {
+    let summary = crate::results::summary_json(results);
+    let number = match summary.pointer(pointer) {
+        Some(Value::Bool(holds)) => Some(f64::from(u8::from(*holds))),
+        Some(Value::Array(list)) => Some(list.len() as f64),
+        other => other.and_then(Value::as_f64),
+    };
+    number.ok_or_else(|| {
+        let found = format!("no number at {pointer}");
+        Error::input(Fault::new(format!("`{name}`"), found, "a JSON pointer into summary.json"))
+    })
+}
+
+/// The largest relative change of any eigenvalue; infinite where their number changes.
+fn change(before: &[c64], after: &[c64]) -> f64 {
+    if before.len() != after.len() || before.is_empty() {
+        return f64::INFINITY;
+    }
+    before.iter().zip(after).map(|(a, b)| (a - b).norm() / a.norm()).fold(0.0, f64::max)
+}
+
+/// A quantity of the check `name`.
+fn compute(runs: &mut Runs, Quantity { kind, set, .. }: &Quantity, name: &str) -> Result<f64> {
+    let missing = |found: &str| {
+        Error::input(Fault::new(format!("`{name}`"), format!("\"{found}\""), "a name of the case"))
+    };
+    match kind {
+        Kind::Value(pointer) => number_at(runs.with(set)?, pointer, name),
+        Kind::Slope { pointer, parameter, step } => {
+            let own = runs.case_with(set)?.parameter(parameter)?.value;
+            let mut at = |steps: f64| {
+                number_at(runs.with(&set_also(set, parameter, own + steps * step))?, pointer, name)
+            };
+            Ok((8.0 * (at(1.0)? - at(-1.0)?) - (at(2.0)? - at(-2.0)?)) / (12.0 * step))
         }
-        Kind::Onset { parameter, between, above } => onset(runs, check, parameter, *between, *above),
+        Kind::Exported => {
+            let folder = super::scratch()?;
+            export(&runs.case_with(set)?, folder.path())?;
+            let again = read_case(&folder.path().join("case.toml"))?;
+            let results = analyse(&Prepared::new(&again)?, Selection::CEA, &mut |_| Ok(()), runs.observer)?;
+            Ok(change(&eigenvalues(runs.with(set)?), &eigenvalues(&results)))
+        }
+        Kind::Resumed => resumed::differences(&runs.case_with(set)?, runs.observer),
+        Kind::Faults(file) => {
+            let run = |case: &Case| {
+                analyse(&Prepared::new(case)?, Selection::ALL, &mut |_| Ok(()), runs.observer).map(|_| ())
+            };
+            match read_case(&runs.case.folder.join(file)).and_then(|case| run(&case)) {
+                Ok(()) => Ok(0.0),
+                Err(Error::Input(faults)) => Ok(faults.0.len() as f64),
+                Err(other) => Err(other),
+            }
+        }
+        Kind::Onset { parameter, between, above } => onset(runs, set, parameter, *between, *above),
         Kind::LargestGrowth { parameter, values } => {
             let mut largest = f64::NEG_INFINITY;
             for value in values {
-                let results = runs.with(&set_also(&check.set, parameter, *value))?;
+                let results = runs.with(&set_also(set, parameter, *value))?;
                 largest = largest.max(largest_growth(results));
             }
             Ok(largest)
         }
         Kind::Change(to) => {
-            let before = eigenvalues(runs.with(&check.set)?);
-            let changed: Vec<_> = check.set.iter().chain(to).cloned().collect();
-            let after = eigenvalues(runs.with(&changed)?);
-            if before.len() != after.len() || before.is_empty() {
-                return Ok(f64::INFINITY);
-            }
-            let change = before.iter().zip(&after).map(|(a, b)| (a - b).norm() / a.norm());
-            Ok(change.fold(0.0, f64::max))
+            let before = eigenvalues(runs.with(set)?);
+            let changed: Vec<_> = set.iter().chain(to).cloned().collect();
+            Ok(change(&before, &eigenvalues(runs.with(&changed)?)))
         }
-        Kind::UnstableNear => Ok(unstable_near(runs.with(&check.set)?, check.reference).im / TAU),
-        Kind::GrowthNear(hz) => Ok(unstable_near(runs.with(&check.set)?, *hz).re),
+        Kind::UnstableNear(hz) => Ok(unstable_near(runs.with(set)?, *hz).im / TAU),
+        Kind::GrowthNear(hz) => Ok(unstable_near(runs.with(set)?, *hz).re),
         Kind::Disturbance { growth } => {
-            let transient = runs.with(&check.set)?.transient.as_ref();
-            let compared = transient
-                .and_then(|t| t.growth.as_ref())
-                .ok_or_else(|| missing(check, "transient.disturbance"))?;
+            let transient = runs.with(set)?.transient.as_ref();
+            let compared =
+                transient.and_then(|t| t.growth.as_ref()).ok_or_else(|| missing("transient.disturbance"))?;
             let (sigma, omega) = (compared.eigenvalue.re, compared.eigenvalue.im);
             Ok(compared.found.map_or(f64::NAN, |found| match growth {
                 true => (found.rate / sigma - 1.0).abs(),
                 false => (TAU * found.frequency_hz / omega - 1.0).abs(),
             }))
         }
-        Kind::GrowthRate => Ok(growth_rate(runs.with(&check.set)?)),
+        Kind::GrowthRate => Ok(growth_rate(runs.with(set)?)),
         Kind::InTime { of: span, measure, over_full } => {
             let mut measured = |model: Option<ModelChoice>| {
-                let found = in_time::measured(runs.run_as(&check.set, model)?, span, measure);
-                found.ok_or_else(|| missing(check, &span.channel))
+                let found = in_time::measured(runs.run_as(set, model)?, span, measure);
+                found.ok_or_else(|| missing(&span.channel))
             };
             let own = measured(None)?;
             Ok(if *over_full { own / measured(Some(ModelChoice::Full))? } else { own })
@@ -174,28 +227,27 @@ fn compute(runs: &mut Runs, check: &Check) -> Result<f64> {
         Kind::Rises { parameter, values, of } => {
             let mut levels = Vec::new();
             for value in values {
-                let run = runs.run(&set_also(&check.set, parameter, *value))?;
+                let run = runs.run(&set_also(set, parameter, *value))?;
                 levels.push(match of {
                     None => growth_rate(&run.results),
                     Some(span) => in_time::measured(run, span, &Measure::Amplitude)
-                        .ok_or_else(|| missing(check, &span.channel))?,
+                        .ok_or_else(|| missing(&span.channel))?,
                 });
             }
             Ok(levels.windows(2).filter(|pair| pair[1] > pair[0]).count() as f64)
         }
         Kind::PaperEquations(span) => {
-            let case = runs.case_with(&check.set)?;
-            let model = TwoDof::of(&case).ok_or_else(|| missing(check, "belt"))?;
-            let found = in_time::deviation(runs.run(&check.set)?, span, &model);
-            found.ok_or_else(|| missing(check, &span.channel))
+            let case = runs.case_with(set)?;
+            let model = TwoDof::of(&case).ok_or_else(|| missing("belt"))?;
+            let found = in_time::deviation(runs.run(set)?, span, &model);
+            found.ok_or_else(|| missing(&span.channel))
         }
         Kind::RoundPlate { modes, part, outer, inner } => {
             let case = runs.case;
-            let shell = case.shell.get(part).ok_or_else(|| missing(check, part))?;
-            let below = case.modes.get(modes).and_then(|m| m.below).ok_or_else(|| missing(check, modes))?;
-            let results = runs.with(&check.set)?;
-            let computed =
-                results.modes.iter().find(|m| &m.name == modes).ok_or_else(|| missing(check, modes))?;
+            let shell = case.shell.get(part).ok_or_else(|| missing(part))?;
+            let below = case.modes.get(modes).and_then(|m| m.below).ok_or_else(|| missing(modes))?;
+            let results = runs.with(set)?;
+            let computed = results.modes.iter().find(|m| &m.name == modes).ok_or_else(|| missing(modes))?;
             let material = &case.material[&shell.material];
             let plate = ThinPlate {
                 youngs_modulus: material.youngs_modulus,
@@ -225,10 +277,6 @@ fn largest_error(computed: &NamedModes, exact: &[PlateMode]) -> f64 {
     exact.iter().enumerate().map(error).fold(0.0, f64::max)
 }
 
-fn missing(check: &Check, name: &str) -> Error {
-    Error::input(Fault::new(format!("`{}`", check.quantity), format!("\"{name}\""), "a name of the case"))
-}
-
 fn set_also(set: &[(String, f64)], parameter: &str, value: f64) -> Vec<(String, f64)> {
     let mut set = set.to_vec();
     set.push((parameter.to_string(), value));
@@ -238,9 +286,15 @@ fn set_also(set: &[(String, f64)], parameter: &str, value: f64) -> Vec<(String, 
 /// Bisects until the bracket is at round-off. A mode counts as unstable when σ > `above` |λ|. Past the onset of flutter
 /// without damping σ grows like the square root of the distance, so that 1e-6 is reached within 1e-12 of it; with damping
 /// it grows like the distance, and the threshold must be as small as the error that is wanted.
-fn onset(runs: &mut Runs, check: &Check, parameter: &str, between: [f64; 2], above: f64) -> Result<f64> {
+fn onset(
+    runs: &mut Runs,
+    set: &[(String, f64)],
+    parameter: &str,
+    between: [f64; 2],
+    above: f64,
+) -> Result<f64> {
     let mut unstable = |value: f64| -> Result<bool> {
-        Ok(largest_growth(runs.with(&set_also(&check.set, parameter, value))?) > above)
+        Ok(largest_growth(runs.with(&set_also(set, parameter, value))?) > above)
     };
     let [mut a, mut b] = between;
     let at_a = unstable(a)?;

@@ -7,6 +7,7 @@ mod in_time;
 pub mod kirchhoff;
 mod record;
 mod reference;
+mod resumed;
 pub mod stick_slip;
 pub mod two_dof;
 
@@ -17,6 +18,7 @@ use crate::error::{Error, Fault, Faults, Result};
 use crate::progress::Observer;
 use crate::results::{CheckedCase, passed};
 use std::path::{Path, PathBuf};
+use tempfile::TempDir;
 
 /// Runs every validation case below `root` whose folder name contains `filter`.
 ///
@@ -57,12 +59,17 @@ fn folders(root: &Path, filter: Option<&str>) -> Result<Vec<PathBuf>> {
     Ok(folders)
 }
 
+/// A folder that is gone with what holds it.
+fn scratch() -> Result<TempDir> {
+    let help = "Point TMPDIR at a folder that can be written";
+    tempfile::tempdir().map_err(|error| Error::io(std::env::temp_dir(), error, help))
+}
+
 /// The rows as a table for people.
 pub fn table(cases: &[CheckedCase]) -> String {
     let mut text = String::new();
-    let rows = cases.iter().flat_map(|case| &case.rows);
-    let width = rows.map(|row| row.quantity.chars().count()).max().unwrap_or(0).max(8);
     for case in cases {
+        let width = case.rows.iter().map(|row| row.quantity.chars().count()).max().unwrap_or(0).max(8);
         text += &format!("\n{} ({})\n", case.title, case.name);
         text += &format!(
             "  {:<width$} {:>12} {:>12} {:>10} {:>9}\n",
@@ -118,4 +125,24 @@ pub fn to_json(cases: &[CheckedCase]) -> String {
         })
         .collect();
     serde_json::json!({ "validation": list }).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_of_the_suite_names_every_case_and_no_other() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("validation");
+        let page = std::fs::read_to_string(root.join("README.md")).unwrap();
+        let name = |folder: &PathBuf| folder.file_name().unwrap().to_string_lossy().into_owned();
+        let cases: Vec<String> = folders(&root, None).unwrap().iter().map(name).collect();
+        for case in &cases {
+            assert!(page.contains(&format!("[{case}]({case})")), "{case} is not in validation/README.md");
+        }
+        for link in page.split("](").skip(1) {
+            let target = link.split(')').next().unwrap_or_default();
+            assert!(cases.iter().any(|case| case == target), "{target} is no validation case");
+        }
+    }
 }

@@ -25,19 +25,17 @@ pub struct Reference {
     pub checks: Vec<Check>,
 }
 
-/// One quantity.
+/// One quantity beside its reference.
 #[derive(Debug)]
 pub struct Check {
     /// What it is, in words.
     pub quantity: String,
-    /// The file of the case.
-    pub case: String,
     /// How it is computed.
-    pub kind: Kind,
-    /// Scalars of the case to set first.
-    pub set: Vec<(String, f64)>,
-    /// The reference value.
+    pub of: Quantity,
+    /// The reference value; not a number where it is computed, too.
     pub reference: f64,
+    /// The reference, computed in another way.
+    pub second: Option<Quantity>,
     /// The largest difference that passes.
     pub tolerance: f64,
     /// The difference is divided by the reference.
@@ -46,11 +44,31 @@ pub struct Check {
     pub reason: String,
 }
 
+/// A quantity of a case.
+#[derive(Debug)]
+pub struct Quantity {
+    /// The file of the case.
+    pub case: String,
+    /// How it is computed.
+    pub kind: Kind,
+    /// Scalars of the case to set first.
+    pub set: Vec<(String, f64)>,
+}
+
 /// The ways to compute a quantity.
 #[derive(Debug)]
 pub enum Kind {
-    /// A number of `summary.json`, by its JSON pointer.
+    /// A number of `summary.json`, by its JSON pointer; of a list its length, of true and false one and zero.
     Value(String),
+    /// The derivative of such a number by a scalar, from differences of four runs.
+    Slope {
+        /// The JSON pointer.
+        pointer: String,
+        /// Path of the scalar.
+        parameter: String,
+        /// The two nearest values are so far from its own.
+        step: f64,
+    },
     /// The value of a scalar at which the first mode becomes unstable, by bisection between two bounds.
     Onset {
         /// Path of the scalar.
@@ -69,8 +87,14 @@ pub enum Kind {
     },
     /// The largest relative change of any eigenvalue when scalars are changed.
     Change(Vec<(String, f64)>),
-    /// The frequency of the unstable mode nearest to the reference.
-    UnstableNear,
+    /// The largest relative change of any eigenvalue when the case is exported as matrices and read again.
+    Exported,
+    /// In how many places the summary of a run that was stopped halfway and taken up again differs from that of a whole run.
+    Resumed,
+    /// How many faults a case file has, which is named from the folder of the case.
+    Faults(String),
+    /// The frequency of the unstable mode nearest to a frequency \[Hz\].
+    UnstableNear(f64),
     /// The growth rate of the unstable mode nearest to a frequency \[Hz\].
     GrowthNear(f64),
     /// |σ̂/σ − 1| (or |f̂/f − 1|) of the growth (or frequency) of a small disturbance in time, against the complex mode that
@@ -198,7 +222,8 @@ pub fn read(folder: &Path) -> Result<Reference> {
         )
     })?;
     let mut faults = Faults::new();
-    let files: BTreeSet<&String> = checks.iter().map(|check| &check.case).collect();
+    let quantities = checks.iter().flat_map(|check| std::iter::once(&check.of).chain(&check.second));
+    let files: BTreeSet<&String> = quantities.map(|quantity| &quantity.case).collect();
     let cases = files
         .into_iter()
         .filter_map(|file| faults.take(read_case(&folder.join(file))).map(|case| (file.clone(), case)));
@@ -210,8 +235,50 @@ pub fn read(folder: &Path) -> Result<Reference> {
 /// A quantity of the case file `case` with its reference, tolerance and the `reason` for it, which the table may state
 /// otherwise.
 pub fn read_check(name: &str, s: &Section, case: &str, reason: &str) -> Check {
-    const KINDS: [&str; 24] = [
+    let relative = s.quantity("tolerance", NUMBER).positive().optional();
+    let absolute = s.quantity("absolute_tolerance", NUMBER).positive().optional();
+    if relative.is_some() == absolute.is_some() {
+        s.fault(
+            "tolerance",
+            "both tolerances or neither",
+            "`tolerance` (relative) or `absolute_tolerance`",
+            "",
+        );
+    }
+    let second =
+        s.is_table("reference").then(|| s.section("reference", |second| read_quantity(second, case, "near")));
+    let of = read_quantity(s, case, if second.is_some() { "near" } else { "reference" });
+    let unit = match of.kind {
+        Kind::GrowthNear(_) | Kind::GrowthRate => RATE,
+        _ => FREQUENCY,
+    };
+    Check {
+        quantity: s.string("quantity").or(name.to_string()),
+        of,
+        reference: if second.is_some() { f64::NAN } else { s.quantity("reference", unit).or(0.0) },
+        second: second.flatten(),
+        tolerance: relative.or(absolute).unwrap_or(0.0),
+        relative: relative.is_some(),
+        reason: s.string("reason").or(reason.to_string()),
+    }
+}
+
+/// How a quantity is computed; a frequency that it is looked for at is the number of the key `about`.
+fn read_quantity(s: &Section, case: &str, about: &str) -> Quantity {
+    Quantity {
+        case: s.string("case").or(case.to_string()),
+        kind: read_kind(s, about),
+        set: read_set(s, "set"),
+    }
+}
+
+fn read_kind(s: &Section, about: &str) -> Kind {
+    const KINDS: [&str; 28] = [
         "value",
+        "slope",
+        "exported",
+        "resumed",
+        "faults",
         "onset",
         "largest_growth",
         "change",
@@ -239,11 +306,20 @@ pub fn read_check(name: &str, s: &Section, case: &str, reason: &str) -> Check {
     let parameter = || s.string("parameter").required("the path of a scalar of the case");
     let earlier = || s.quantities("since", TIME).required("two times");
     let near = || s.quantity_list("near", FREQUENCY).required("a list of frequencies");
+    let at = || s.quantity(about, FREQUENCY).required(FREQUENCY.name);
     let in_time = |measure: Measure| {
         let over_full = s.boolean("over_full").or(false);
         Kind::InTime { of: read_span(s), measure, over_full }
     };
-    let kind = match s.choice("kind", &KINDS).required("how it is computed") {
+    match s.choice("kind", &KINDS).required("how it is computed") {
+        "slope" => Kind::Slope {
+            pointer: s.string("pointer").required("a JSON pointer into summary.json"),
+            parameter: parameter(),
+            step: s.quantity("step", NUMBER).positive().required("a difference of the scalar in SI units"),
+        },
+        "exported" => Kind::Exported,
+        "resumed" => Kind::Resumed,
+        "faults" => Kind::Faults(s.string("file").required("the name of a case file")),
         "onset" => Kind::Onset {
             parameter: parameter(),
             between: s.quantities("between", NUMBER).required("a stable and an unstable value"),
@@ -254,7 +330,7 @@ pub fn read_check(name: &str, s: &Section, case: &str, reason: &str) -> Check {
             values: s.quantity_list("values", NUMBER).required("a list of values"),
         },
         "change" => Kind::Change(read_set(s, "to")),
-        "unstable_near" => Kind::UnstableNear,
+        "unstable_near" => Kind::UnstableNear(at()),
         "growth_near" => Kind::GrowthNear(s.quantity("near", FREQUENCY).required(FREQUENCY.name)),
         "growth_in_time" => Kind::Disturbance { growth: true },
         "frequency_in_time" => Kind::Disturbance { growth: false },
@@ -274,10 +350,7 @@ pub fn read_check(name: &str, s: &Section, case: &str, reason: &str) -> Check {
         "rise_time" => in_time(Measure::Rise),
         "tone" => in_time(Measure::Tone),
         "tone_frequency" => in_time(Measure::ToneFrequency),
-        "peak_near" => {
-            let reference = s.quantity("reference", FREQUENCY).optional();
-            in_time(Measure::PeakNear(read_near(s, reference.into_iter().collect())))
-        }
+        "peak_near" => in_time(Measure::PeakNear(read_near(s, vec![at()]))),
         "level" => in_time(Measure::Level(read_near(s, near()))),
         "other_level" => in_time(Measure::OtherLevel(read_near(s, near()))),
         "round_plate" => Kind::RoundPlate {
@@ -290,30 +363,6 @@ pub fn read_check(name: &str, s: &Section, case: &str, reason: &str) -> Check {
             inner: s.section("inner", read_edge),
         },
         _ => Kind::Value(s.string("pointer").or(String::new())),
-    };
-    let relative = s.quantity("tolerance", NUMBER).positive().optional();
-    let absolute = s.quantity("absolute_tolerance", NUMBER).positive().optional();
-    if relative.is_some() == absolute.is_some() {
-        s.fault(
-            "tolerance",
-            "both tolerances or neither",
-            "`tolerance` (relative) or `absolute_tolerance`",
-            "",
-        );
-    }
-    let unit = match kind {
-        Kind::GrowthNear(_) | Kind::GrowthRate => RATE,
-        _ => FREQUENCY,
-    };
-    Check {
-        quantity: s.string("quantity").or(name.to_string()),
-        case: s.string("case").or(case.to_string()),
-        kind,
-        set: read_set(s, "set"),
-        reference: s.quantity("reference", unit).or(0.0),
-        tolerance: relative.or(absolute).unwrap_or(0.0),
-        relative: relative.is_some(),
-        reason: s.string("reason").or(reason.to_string()),
     }
 }
 

@@ -82,6 +82,11 @@ fn the_resolved_case_reads_back_as_the_same_case() {
     assert_eq!(case.contact["rim"].normal.stiffness, 1e10);
     assert_eq!(case.cea.as_ref().unwrap().basis_below, 9000.0);
     assert_eq!(parse(&case.to_toml()).unwrap(), case);
+    let pairs =
+        RIG.replace("modal_ratio = \"0.1 %\"", "modal_ratios = [[\"0.3 kHz\", \"2 %\"], [936, 0.01]]");
+    let case = parse(&pairs).unwrap();
+    assert_eq!(case.damping.modal_ratios, [[300.0, 0.02], [936.0, 0.01]]);
+    assert_eq!(parse(&case.to_toml()).unwrap(), case);
 }
 
 #[test]

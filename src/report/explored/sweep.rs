@@ -6,7 +6,7 @@ use crate::report::chart::{Area, above, bold, colour, sheet, text, widened};
 use crate::report::colours::{ALARM, CALM, INK, MEASURED, MUTED};
 use crate::report::format::{fixed, given, significant};
 use crate::results::SweepResult;
-use crate::sweep::unstable;
+use crate::stability::unstable;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use std::error::Error;

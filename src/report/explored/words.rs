@@ -3,7 +3,8 @@
 use crate::report::format::{fixed, power, signed, significant};
 use crate::report::tables::Table;
 use crate::results::{DampingVerdicts, MapResult, Method, SweepResult};
-use crate::sweep::{CriticalKind, EncounterKind, unstable};
+use crate::stability::unstable;
+use crate::sweep::{CriticalKind, EncounterKind};
 use std::f64::consts::TAU;
 
 fn with_unit(value: f64, unit: &str) -> String {
