@@ -3,9 +3,8 @@
 use faer::Mat;
 use nalgebra::DMatrix;
 
-/// A = U S Vᵀ with as many columns as the shorter side of A has, the largest value first; of numbers that are not finite neither
-/// are the values. The `svd` of nalgebra 0.35 gives values
-/// that are off by some percent where columns of A depend on one another.
+/// A = U S Vᵀ with as many columns as the shorter side of A has, the largest value first. Where A has numbers that are not finite the
+/// values are none either. The `svd` of nalgebra 0.35 is off by some percent where columns of A depend on one another.
 pub(super) struct Svd {
     pub(super) u: DMatrix<f64>,
     pub(super) s: Vec<f64>,

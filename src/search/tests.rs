@@ -88,12 +88,14 @@ fn every_fault_of_the_file_is_told() {
         "spread = 2\n[parameter.a]\npath = \"spring.k3.stiffness\"\nbetween = [1, 2]\n\
          [parameter.b]\npath = \"spring.k1.stiffness\"\nbetween = [\"50 N/m\", \"60 N/m\"]\n\
          [parameter.c]\npath = [\"spring.k1.stiffness\", \"spring.k2.stiffness\"]\nbetween = [\"5 N/m\", \"60 N/m\"]\n",
-        "[fact.a]\nkind = \"peek\"\nreference = 1\ntolerance = 0.1\n[fact.b]\nkind = \"growth_rate\"\ntolerence = 1\n",
+        "[fact.a]\nkind = \"peek\"\nreference = 1\ntolerance = 0.1\n[fact.b]\nkind = \"growth_rate\"\ntolerence = 1\n\
+         [fact.c]\nkind = \"growth_rate\"\nreference = { kind = \"growth_rate\" }\ntolerance = 0.1\n",
     );
     let error = read_search(&path).unwrap_err();
     assert_eq!(error.exit_code(), 2);
     let error = error.to_string();
-    for words in ["spread", "Did you mean `spring.k", "peek", "tolerence", "neither"] {
+    for words in ["spread", "Did you mean `spring.k", "peek", "tolerence", "neither", "what is searched for"]
+    {
         assert!(error.contains(words), "{words} not in\n{error}");
     }
     let (_dir, path) = folder(
