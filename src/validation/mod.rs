@@ -71,6 +71,7 @@ pub fn table(cases: &[CheckedCase]) -> String {
     for case in cases {
         let width = case.rows.iter().map(|row| row.quantity.chars().count()).max().unwrap_or(0).max(8);
         text += &format!("\n{} ({})\n", case.title, case.name);
+        text += &format!("  source: {}\n", case.source);
         text += &format!(
             "  {:<width$} {:>12} {:>12} {:>10} {:>9}\n",
             "quantity", "computed", "reference", "difference", "tolerance"
