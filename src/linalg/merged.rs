@@ -4,7 +4,8 @@
 //! common, so that three products cost little more than one.
 
 use super::SparseMatrix;
-use super::sparse::{ROWS_A_TASK, pack};
+use super::lanes::spread;
+use super::sparse::{ROWS_A_TASK, columns_mut, pack};
 use faer::{Mat, MatMut, MatRef};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -68,15 +69,24 @@ impl Merged {
     /// # Panics
     /// When the shapes do not agree.
     pub fn times(&self, x: MatRef<'_, f64>) -> Vec<Mat<f64>> {
+        let mut products: Vec<Mat<f64>> = (0..self.count).map(|_| Mat::zeros(x.nrows(), x.ncols())).collect();
+        self.times_into(x, &mut products.iter_mut().map(|y| y.as_mut()).collect::<Vec<_>>());
+        products
+    }
+
+    /// [`Merged::times`] into matrices at hand, whose columns are in one piece.
+    ///
+    /// # Panics
+    /// When the shapes do not agree, or a column is in pieces.
+    pub fn times_into(&self, x: MatRef<'_, f64>, products: &mut [MatMut<'_, f64>]) {
         let n = self.starts.len() - 1;
-        assert!(x.nrows() == n, "shapes of A and x disagree");
-        let mut products: Vec<Mat<f64>> = (0..self.count).map(|_| Mat::zeros(n, x.ncols())).collect();
+        assert!(x.nrows() == n && products.len() == self.count, "shapes of A and x disagree");
         for start in (0..x.ncols()).step_by(PANEL) {
             let width = PANEL.min(x.ncols() - start);
             let packed = pack::<f64, PANEL>(x.subcols(start, width));
             let mut tasks: Vec<Vec<MatMut<'_, f64>>> = Vec::new();
             tasks.resize_with(n.div_ceil(ROWS_A_TASK), Vec::new);
-            for product in &mut products {
+            for product in products.iter_mut() {
                 let columns = product.as_mut().subcols_mut(start, width);
                 let chunks: Vec<_> = columns.par_row_chunks_mut(ROWS_A_TASK).collect();
                 tasks.iter_mut().zip(chunks).for_each(|(task, chunk)| task.push(chunk));
@@ -91,7 +101,6 @@ impl Merged {
                 }
             });
         }
-        products
     }
 
     fn rows_times<const C: usize>(
@@ -101,11 +110,14 @@ impl Merged {
         mut parts: Vec<MatMut<'_, f64>>,
     ) {
         let rows = parts.first().map_or(0, |part| part.nrows());
-        let mut sums = vec![[[0.0; PANEL]; C]; rows];
-        Arch::new().dispatch(Rows { merged: self, first, packed, sums: &mut sums });
-        for (a, part) in parts.iter_mut().enumerate() {
-            for c in 0..part.ncols() {
-                part.as_mut().col_mut(c).iter_mut().zip(&sums).for_each(|(y, sum)| *y = sum[a][c]);
+        let mut sums = [[[0.0; PANEL]; C]; BLOCK];
+        for begin in (0..rows).step_by(BLOCK) {
+            let sums = &mut sums[..BLOCK.min(rows - begin)];
+            Arch::new().dispatch(Rows { merged: self, first: first + begin, packed, sums });
+            for (a, part) in parts.iter_mut().enumerate() {
+                let part = part.as_mut().subrows_mut(begin, sums.len());
+                let mut columns = columns_mut(part).expect("columns in one piece");
+                spread(|i| &sums[i][a], &mut columns);
             }
         }
     }
@@ -180,8 +192,9 @@ impl Merged {
     }
 }
 
-/// The most columns of [`Merged::multiply`], and the rows whose sums it keeps at hand.
+/// The most columns of [`Merged::multiply`].
 const FEW: usize = 4;
+/// Rows whose sums are kept at hand.
 const BLOCK: usize = 128;
 
 /// A column in one piece; nothing where there is none.
@@ -213,7 +226,7 @@ impl<const C: usize, const W: usize> WithSimd for Rows<'_, C, W> {
                 let x = &self.packed[*j as usize];
                 for a in 0..C {
                     for c in 0..W {
-                        own[a][c] += x[c] * v[a];
+                        own[a][c] = x[c].mul_add(v[a], own[a][c]);
                     }
                 }
             }

@@ -18,6 +18,7 @@ pub mod dense;
 pub mod eigenpairs;
 pub mod factor;
 pub mod lanczos;
+mod lanes;
 pub mod matrix_market;
 pub mod merged;
 pub mod random;

@@ -1,5 +1,6 @@
 //! The sparse matrix of the whole program, its products and norms, and sparse vectors for contact directions.
 
+use super::lanes::{lay, spread};
 use faer::sparse::{SparseColMat, SymbolicSparseColMat, Triplet};
 use faer::{Mat, MatMut, MatRef};
 use pulp::{Arch, Simd, WithSimd};
@@ -149,19 +150,35 @@ fn panel<T: Scalar, const W: usize>(a: &SparseMatrix, x: MatRef<'_, T>, y: MatMu
     y.par_row_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, mut y)| {
         let mut sums = vec![[T::default(); W]; y.nrows()];
         Arch::new().dispatch(Rows { a, first: task * ROWS_A_TASK, packed, sums: &mut sums });
-        for c in 0..width {
-            y.as_mut().col_mut(c).iter_mut().zip(&sums).for_each(|(y, sum)| *y = sum[c]);
+        match columns_mut(y.as_mut()) {
+            Some(mut columns) => spread(|i| &sums[i], &mut columns),
+            None => (0..width).for_each(|c| {
+                y.as_mut().col_mut(c).iter_mut().zip(&sums).for_each(|(y, sum)| *y = sum[c]);
+            }),
         }
     });
+}
+
+/// The columns, where each is in one piece.
+pub(super) fn columns<T>(a: MatRef<'_, T>) -> Option<Vec<&[T]>> {
+    a.col_iter().map(|column| column.try_as_col_major().map(|column| column.as_slice())).collect()
+}
+
+/// [`columns`], to be written.
+pub(super) fn columns_mut<T>(a: MatMut<'_, T>) -> Option<Vec<&mut [T]>> {
+    a.col_iter_mut().map(|column| column.try_as_col_major_mut().map(|column| column.as_slice_mut())).collect()
 }
 
 /// Columns side by side, row by row; those that are missing are zero.
 pub(super) fn pack<T: Scalar, const W: usize>(x: MatRef<'_, T>) -> Vec<[T; W]> {
     let mut packed = vec![[T::default(); W]; x.nrows()];
     packed.par_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, packed)| {
-        for c in 0..x.ncols() {
-            let column = x.col(c).subrows(task * ROWS_A_TASK, packed.len());
-            packed.iter_mut().zip(column.iter()).for_each(|(row, v)| row[c] = *v);
+        let x = x.subrows(task * ROWS_A_TASK, packed.len());
+        match columns(x) {
+            Some(columns) => lay(&columns, packed),
+            None => (0..x.ncols()).for_each(|c| {
+                packed.iter_mut().zip(x.col(c).iter()).for_each(|(row, v)| row[c] = *v);
+            }),
         }
     });
     packed

@@ -3,6 +3,9 @@
 //! Work is split over fixed ranges of rows, and sums are added in the order of the ranges: the same bits for any number
 //! of threads.
 
+mod real;
+
+use super::c64;
 use super::dense::product;
 use faer::traits::ComplexField;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
@@ -20,8 +23,60 @@ pub fn panels(columns: std::ops::Range<usize>) -> impl Iterator<Item = (usize, u
 /// Rows that one task works on.
 pub(super) const ROWS: usize = 8192;
 
+/// Numbers of tall matrices, `f64` or [`c64`].
+pub trait Entry: ComplexField {
+    /// AᴴB.
+    fn gram(a: MatRef<'_, Self>, b: MatRef<'_, Self>) -> Mat<Self>;
+
+    /// Y (+)= factor · V C.
+    fn combine(
+        y: MatMut<'_, Self>,
+        accumulate: Accum,
+        v: MatRef<'_, Self>,
+        c: MatRef<'_, Self>,
+        factor: Self,
+    );
+}
+
+impl Entry for f64 {
+    fn gram(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
+        real::gram(a, b).unwrap_or_else(|| gram_by_ranges(a, b))
+    }
+
+    fn combine(
+        mut y: MatMut<'_, f64>,
+        accumulate: Accum,
+        v: MatRef<'_, f64>,
+        c: MatRef<'_, f64>,
+        factor: f64,
+    ) {
+        if !real::combine(y.as_mut(), accumulate, v, c, factor) {
+            combine_by_ranges(y, accumulate, v, c, factor);
+        }
+    }
+}
+
+impl Entry for c64 {
+    fn gram(a: MatRef<'_, c64>, b: MatRef<'_, c64>) -> Mat<c64> {
+        gram_by_ranges(a, b)
+    }
+
+    fn combine(y: MatMut<'_, c64>, accumulate: Accum, v: MatRef<'_, c64>, c: MatRef<'_, c64>, factor: c64) {
+        combine_by_ranges(y, accumulate, v, c, factor);
+    }
+}
+
 /// AᴴB: partial products of fixed ranges of rows, added in their order.
-pub fn gram<T: ComplexField>(a: MatRef<'_, T>, b: MatRef<'_, T>) -> Mat<T> {
+pub fn gram<T: Entry>(a: MatRef<'_, T>, b: MatRef<'_, T>) -> Mat<T> {
+    T::gram(a, b)
+}
+
+/// Y (+)= factor · V C, over fixed ranges of rows.
+pub fn combine<T: Entry>(y: MatMut<'_, T>, accumulate: Accum, v: MatRef<'_, T>, c: MatRef<'_, T>, factor: T) {
+    T::combine(y, accumulate, v, c, factor);
+}
+
+fn gram_by_ranges<T: ComplexField>(a: MatRef<'_, T>, b: MatRef<'_, T>) -> Mat<T> {
     let n = a.nrows();
     let parts: Vec<Mat<T>> = (0..n.div_ceil(ROWS))
         .into_par_iter()
@@ -41,8 +96,7 @@ pub fn gram<T: ComplexField>(a: MatRef<'_, T>, b: MatRef<'_, T>) -> Mat<T> {
     sum
 }
 
-/// Y (+)= factor · V C, over fixed ranges of rows.
-pub fn combine<T: ComplexField>(
+fn combine_by_ranges<T: ComplexField>(
     y: MatMut<'_, T>,
     accumulate: Accum,
     v: MatRef<'_, T>,
@@ -72,7 +126,7 @@ pub fn beside(a: &Mat<f64>, b: &Mat<f64>) -> Mat<f64> {
 }
 
 /// V C as a new matrix, over fixed ranges of rows.
-pub fn expand<T: ComplexField>(v: MatRef<'_, T>, c: MatRef<'_, T>) -> Mat<T> {
+pub fn expand<T: Entry>(v: MatRef<'_, T>, c: MatRef<'_, T>) -> Mat<T> {
     let mut y = Mat::zeros(v.nrows(), c.ncols());
     combine(y.as_mut(), Accum::Replace, v, c, faer::traits::math_utils::one::<T>());
     y

@@ -3,10 +3,10 @@
 use super::basis::Basis;
 use super::block::Block;
 use super::finish::finished;
-use super::operator::Operator;
+use super::operator::{Images, Operator};
 use super::projected::{SmallPair, project_interface, solve};
 use super::responses::{coupled_responses, few_responses};
-use super::round::{Pairs, Scale, TOGETHER, Wanted};
+use super::round::{Measured, Scale, TOGETHER, Wanted};
 use super::{ComplexMode, ComplexModes, Structural};
 use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Fault, Result};
@@ -44,7 +44,7 @@ const ILL_CONDITIONED: f64 = 1e6;
 ///   friction. They enrich the basis until η and the eigenvalue error are small, in six rounds at most; pairs that are
 ///   right are not measured again.
 /// * ψᴴQ(λ)φ vanishes identically after a projection, so the error of λ is estimated with the *correction* of the left
-///   vector: |z_ψᴴ Q(λ)φ| / |ψᴴ(2λM + C + C_c)φ|. As A is symmetric, z_ψᴴ Q(λ)φ = (Q(λ)ᴴψ)ᴴ z, so that only the right
+///   vector: |z_ψᴴ Q(λ)φ| / |ψᴴ(2λM + C + C_c)φ|. As A is symmetric, z_ψᴴ Q(λ)φ = ψᴴQ(λ)z, so that only the right
 ///   corrections are solved for, and the left ones of the pairs that are not yet right.
 ///
 /// Modes with ω = 0 (overdamped, or divergence when σ > 0) are given when the band begins at zero. For them and near
@@ -291,13 +291,14 @@ fn middle_frequency(basis: &Basis<'_>, top: f64) -> f64 {
 }
 
 /// Pairs of the projected problem on the full order.
-fn expanded(basis: &Basis<'_>, pairs: &[&SmallPair]) -> Pairs {
-    let expand = |pick: fn(&SmallPair) -> &Vec<c64>| {
+fn expand(basis: &Basis<'_>, pairs: &[&SmallPair], to: &mut Measured) {
+    let expand = |pick: fn(&SmallPair) -> &Vec<c64>, vectors: &mut Block| {
         let small: Vec<&[c64]> = pairs.iter().map(|pair| pick(pair).as_slice()).collect();
-        basis.expand(&unit_mass(basis, Block::from_columns(basis.len(), &small)))
+        basis.expand_into(&unit_mass(basis, Block::from_columns(basis.len(), &small)), vectors);
     };
-    let lambda = pairs.iter().map(|pair| pair.lambda).collect();
-    Pairs { lambda, right: expand(|p| &p.right), left: expand(|p| &p.left) }
+    to.lambda = pairs.iter().map(|pair| pair.lambda).collect();
+    expand(|p| &p.right, &mut to.right.vectors);
+    expand(|p| &p.left, &mut to.left);
 }
 
 /// Coordinates scaled so that the vectors which they stand for have xᴴMx = 1.
@@ -327,12 +328,14 @@ fn evaluate(
     let settled: Vec<Option<usize>> = pairs.iter().map(|p| settled(&before, &pairs, p.lambda)).collect();
     let fresh: Vec<&SmallPair> =
         pairs.iter().zip(&settled).filter(|(_, place)| place.is_none()).map(|(pair, _)| pair).collect();
-    let (mut wanted, mut new) = (Wanted::default(), Vec::new());
+    let (mut wanted, mut new, mut measured) = (Wanted::default(), Vec::new(), Measured::default());
     for chunk in fresh.chunks(TOGETHER) {
-        let measured = scale.measure(expanded(basis, chunk), |vectors| scale.operator.images(vectors));
-        wanted.add(&measured, scale.top);
+        let images = |images: &mut Images| scale.operator.renew(images);
+        expand(basis, chunk, &mut measured);
+        scale.measure(&mut measured, images);
+        wanted.add(scale, &measured, images);
         let exact: Vec<bool> = (0..chunk.len()).map(|j| measured.exact(j)).collect();
-        let modes = finished(scale.operator, measured, real);
+        let modes = finished(scale.operator, &mut measured, real);
         new.extend(modes.into_iter().zip(exact).map(|(mode, exact)| Found { mode, exact }));
     }
     let (mut before, mut new): (Vec<_>, _) = (before.into_iter().map(Some).collect(), new.into_iter());

@@ -65,6 +65,14 @@ impl<'a> Basis<'a> {
         y.map(|y| self.expand_real(y))
     }
 
+    /// B y of every column of `y`, in the memory of `vectors`.
+    pub(super) fn expand_into(&self, y: &Block, vectors: &mut Block) {
+        vectors.resize(self.vectors.nrows(), y.ncols());
+        for (vectors, y) in [(&mut vectors.re, &y.re), (&mut vectors.im, &y.im)] {
+            combine(vectors.as_mut(), Accum::Replace, self.vectors.as_ref(), y.as_ref(), 1.0);
+        }
+    }
+
     /// B y of real columns.
     pub(super) fn expand_real(&self, y: &Mat<f64>) -> Mat<f64> {
         expand(self.vectors.as_ref(), y.as_ref())

@@ -12,9 +12,27 @@ pub(super) struct Block {
     pub(super) im: Mat<f64>,
 }
 
+impl Default for Block {
+    fn default() -> Self {
+        Block::zeros(0, 0)
+    }
+}
+
 impl Block {
     pub(super) fn zeros(n: usize, columns: usize) -> Self {
         Block { re: Mat::zeros(n, columns), im: Mat::zeros(n, columns) }
+    }
+
+    /// Makes room for `columns` vectors in the memory at hand.
+    pub(super) fn resize(&mut self, n: usize, columns: usize) {
+        [&mut self.re, &mut self.im].into_iter().for_each(|part| part.resize_with(n, columns, |_, _| 0.0));
+    }
+
+    /// The other vectors, as many of them.
+    pub(super) fn copy_from(&mut self, x: &Block) {
+        self.resize(x.re.nrows(), x.ncols());
+        self.re.copy_from(&x.re);
+        self.im.copy_from(&x.im);
     }
 
     /// What is there for both parts or for neither.
@@ -56,13 +74,6 @@ impl Block {
     /// Column `j`.
     pub(super) fn column(&self, j: usize) -> Vec<c64> {
         self.re.col_as_slice(j).iter().zip(self.im.col_as_slice(j)).map(|(a, b)| c64::new(*a, *b)).collect()
-    }
-
-    /// Adds column `k` of `x` to column `j`.
-    pub(super) fn add_column(&mut self, j: usize, x: &Block, k: usize) {
-        let add = |to: &mut [f64], from: &[f64]| to.iter_mut().zip(from).for_each(|(y, x)| *y += x);
-        add(self.re.col_as_slice_mut(j), x.re.col_as_slice(k));
-        add(self.im.col_as_slice_mut(j), x.im.col_as_slice(k));
     }
 
     /// self\[:, j\]ᴴ x\[:, j\].

@@ -7,7 +7,7 @@ use super::interface::{Interface, Term, terms_of_every_point};
 use super::operator::{Images, Operator, damping_times};
 use super::reduced::{Projection, Reduced, ReducedModes};
 use super::responses::interface_responses;
-use super::round::{Pairs, Scale, TOGETHER, Wanted};
+use super::round::{Measured, Scale, TOGETHER, Wanted};
 use crate::equilibrium::{PointState, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::dense::product;
@@ -211,34 +211,39 @@ impl<'f> Family<'f> {
     fn measure(&self, state: &SlidingState, modes: &ReducedModes) -> (FamilyCheck, Wanted) {
         let operator = self.frame.operator.with_terms(self.frame.terms(state));
         let scale = Scale { operator: &operator, factor: &*self.frame.factor, top: self.frame.band[1] };
-        let expand = |y: &Mat<c64>, first: usize, count: usize| {
+        let turned = |y: &Mat<c64>, first: usize, count: usize| {
             let part = |f: fn(&c64) -> f64| {
                 let y = Mat::from_fn(y.nrows(), count, |i, j| f(&y[(i, first + j)]));
                 product(self.reduced.rotation.as_ref(), y.as_ref())
             };
-            self.basis.expand(&Block { re: part(|z| z.re), im: part(|z| z.im) })
+            Block { re: part(|z| z.re), im: part(|z| z.im) }
         };
-        let (mut check, mut wanted) = (FamilyCheck::default(), Wanted::default());
+        let (mut check, mut wanted, mut measured) =
+            (FamilyCheck::default(), Wanted::default(), Measured::default());
         for (chunk, lambda) in modes.eigenvalues.chunks(TOGETHER).enumerate() {
-            let of = |y: &Mat<c64>| expand(y, chunk * TOGETHER, lambda.len());
-            let pairs = Pairs { lambda: lambda.to_vec(), right: of(&modes.right), left: of(&modes.left) };
-            let images = |vectors| self.weigh(operator.images(vectors), &state.damping_weights);
-            let measured = scale.measure(pairs, images);
-            wanted.add(&measured, scale.top);
-            check.eigenvalues.extend(measured.pairs.lambda);
-            check.backward_errors.extend(measured.backward_error);
-            check.eigenvalue_errors.extend(measured.eigenvalue_error);
+            let of = |y: &Mat<c64>| turned(y, chunk * TOGETHER, lambda.len());
+            let images = |images: &mut Images| {
+                operator.renew(images);
+                self.weigh(images, &state.damping_weights);
+            };
+            measured.lambda = lambda.to_vec();
+            self.basis.expand_into(&of(&modes.right), &mut measured.right.vectors);
+            self.basis.expand_into(&of(&modes.left), &mut measured.left);
+            scale.measure(&mut measured, images);
+            wanted.add(&scale, &measured, images);
+            check.eigenvalues.extend(lambda);
+            check.backward_errors.extend(&measured.backward_error);
+            check.eigenvalue_errors.extend(&measured.eigenvalue_error);
         }
         (check, wanted)
     }
 
     /// C x and H x with the weights of the dampings.
-    fn weigh(&self, mut x: Images, weights: &[f64]) -> Images {
-        let scaled = |w: f64| move |v: &Mat<f64>| v * faer::Scale(w);
+    fn weigh(&self, x: &mut Images, weights: &[f64]) {
         let own = weights.first().copied().unwrap_or(1.0);
         if own != 1.0 {
-            x.damped = x.damped.map(|block| block.map(scaled(own)));
-            x.lossy = x.lossy.map(|block| block.map(scaled(own)));
+            let blocks = x.damped.iter_mut().chain(&mut x.lossy);
+            blocks.for_each(|block| block.scale(&vec![own; block.ncols()]));
         }
         for (damping, w) in self.frame.dampings.iter().zip(weights.iter().skip(1)).filter(|(_, w)| **w != 0.0)
         {
@@ -251,7 +256,6 @@ impl<'f> Family<'f> {
                 add(&mut x.lossy, lossy, *w);
             }
         }
-        x
     }
 }
 

@@ -4,15 +4,14 @@ use super::ComplexMode;
 use super::GrowthBudget;
 use super::block::Block;
 use super::budget::growth_budgets;
-use super::operator::{Operator, Side};
+use super::operator::{Images, Operator, Side};
 use super::round::Measured;
 use crate::linalg::c64;
 use crate::linalg::tall::gram;
 use crate::modal::RealModes;
 
-/// Right vectors with unit mass, and what is told of them.
+/// What is told of right vectors.
 struct Told {
-    vectors: Block,
     backward_error: Vec<f64>,
     growth: Vec<GrowthBudget>,
     participation: Vec<Vec<(usize, f64)>>,
@@ -22,24 +21,28 @@ struct Told {
 /// that of λ: φ + z is given where its residual is the smaller one, which leaves a few hundredths of that error. Its contact
 /// motion and its share of the modes are settled by the projection; z meets only the rest of the spectrum, as far as the
 /// basis goes.
-pub(super) fn finished(operator: &Operator<'_>, measured: Measured, real: &RealModes) -> Vec<ComplexMode> {
-    let Measured { pairs, mut correction, backward_error, eigenvalue_error, condition, .. } = measured;
-    let all: Vec<usize> = (0..pairs.lambda.len()).collect();
-    all.iter().for_each(|j| correction.add_column(*j, &pairs.right, *j));
-    let corrected = Told::of(operator, &pairs.lambda, correction, real);
+pub(super) fn finished(
+    operator: &Operator<'_>,
+    measured: &mut Measured,
+    real: &RealModes,
+) -> Vec<ComplexMode> {
+    let Measured { lambda, right, left, correction, backward_error, eigenvalue_error, condition } = measured;
+    correction.add(right);
+    let corrected = Told::of(operator, lambda, correction, real);
     let better = |j: &usize| corrected.backward_error[*j] < backward_error[*j];
-    let plain: Vec<usize> = all.iter().copied().filter(|j| !better(j)).collect();
-    let lambda: Vec<c64> = plain.iter().map(|j| pairs.lambda[*j]).collect();
-    let uncorrected = Told::of(operator, &lambda, Block::gathered(&pairs.right, &plain), real);
+    let plain: Vec<usize> = (0..lambda.len()).filter(|j| !better(j)).collect();
+    let their: Vec<c64> = plain.iter().map(|j| lambda[*j]).collect();
+    let mut as_found = right.gathered(&plain);
+    let uncorrected = Told::of(operator, &their, &mut as_found, real);
     let mode = |j: usize| {
-        let (told, k) = match plain.binary_search(&j) {
-            Ok(k) => (&uncorrected, k),
-            Err(_) => (&corrected, j),
+        let (told, images, k) = match plain.binary_search(&j) {
+            Ok(k) => (&uncorrected, &as_found, k),
+            Err(_) => (&corrected, &*correction, j),
         };
         ComplexMode {
-            eigenvalue: pairs.lambda[j],
-            right: told.vectors.column(k),
-            left: pairs.left.column(j),
+            eigenvalue: lambda[j],
+            right: images.vectors.column(k),
+            left: left.column(j),
             backward_error: told.backward_error[k],
             eigenvalue_error: eigenvalue_error[j],
             condition: condition[j],
@@ -47,23 +50,22 @@ pub(super) fn finished(operator: &Operator<'_>, measured: Measured, real: &RealM
             participation: told.participation[k].clone(),
         }
     };
-    all.into_iter().map(mode).collect()
+    (0..lambda.len()).map(mode).collect()
 }
 
 impl Told {
-    /// Of vectors that are yet to be scaled to unit mass.
-    fn of(operator: &Operator<'_>, lambda: &[c64], vectors: Block, real: &RealModes) -> Self {
-        let images = operator.images(vectors).normalise();
-        let growth = growth_budgets(operator, lambda, &images);
+    /// Of vectors that are scaled to unit mass first.
+    fn of(operator: &Operator<'_>, lambda: &[c64], images: &mut Images, real: &RealModes) -> Self {
+        images.normalise();
+        let growth = growth_budgets(operator, lambda, images);
         let amplitudes = images.inertia.map(|part| gram(real.shapes.as_ref(), part.as_ref()));
-        let residual = operator.value(Side::Right, lambda, &images);
+        let residual = operator.value(Side::Right, lambda, images);
         let error = |j: usize| residual.norm(j) / (operator.size(lambda[j]) * images.vectors.norm(j));
         let columns = 0..lambda.len();
         Told {
             backward_error: columns.clone().map(error).collect(),
             growth,
             participation: columns.map(|j| shares(&amplitudes, j)).collect(),
-            vectors: images.vectors,
         }
     }
 }

@@ -41,6 +41,7 @@ pub(super) struct Products {
 }
 
 /// Complex vectors with what M, K, C and H make of them.
+#[derive(Default)]
 pub(super) struct Images {
     pub(super) vectors: Block,
     pub(super) inertia: Block,
@@ -50,15 +51,36 @@ pub(super) struct Images {
 }
 
 impl Images {
+    /// Some columns.
+    pub(super) fn gathered(&self, columns: &[usize]) -> Self {
+        let some = |block: &Block| Block::gathered(block, columns);
+        Images {
+            vectors: some(&self.vectors),
+            inertia: some(&self.inertia),
+            elastic: some(&self.elastic),
+            damped: self.damped.as_ref().map(some),
+            lossy: self.lossy.as_ref().map(some),
+        }
+    }
+
+    /// Adds those of other vectors to these.
+    pub(super) fn add(&mut self, other: &Images) {
+        let one = vec![c64::new(1.0, 0.0); other.vectors.ncols()];
+        let rest = self.damped.iter_mut().chain(&mut self.lossy);
+        let own = [&mut self.vectors, &mut self.inertia, &mut self.elastic].into_iter().chain(rest);
+        let rest = other.damped.iter().chain(&other.lossy);
+        let others = [&other.vectors, &other.inertia, &other.elastic].into_iter().chain(rest);
+        own.zip(others).for_each(|(own, other)| own.add_scaled(&one, other));
+    }
+
     /// Scales every column so that xᴴMx = 1.
-    pub(super) fn normalise(mut self) -> Self {
+    pub(super) fn normalise(&mut self) {
         let columns = 0..self.vectors.ncols();
         let factors: Vec<f64> =
             columns.into_par_iter().map(|j| 1.0 / self.vectors.dot(j, &self.inertia).re.sqrt()).collect();
         let rest = self.damped.iter_mut().chain(&mut self.lossy);
         let all = [&mut self.vectors, &mut self.inertia, &mut self.elastic].into_iter().chain(rest);
         all.for_each(|block| block.scale(&factors));
-        self
     }
 }
 
@@ -126,13 +148,32 @@ impl<'a> Operator<'a> {
 
     /// What M, K, C and H make of complex vectors.
     pub(super) fn images(&self, vectors: Block) -> Images {
-        let (re, im) = (self.products(vectors.re.as_ref()), self.products(vectors.im.as_ref()));
-        Images {
-            vectors,
-            inertia: Block { re: re.inertia, im: im.inertia },
-            elastic: Block { re: re.elastic, im: im.elastic },
-            damped: Block::both(re.damped, im.damped),
-            lossy: Block::both(re.lossy, im.lossy),
+        let mut images = Images { vectors, ..Images::default() };
+        self.renew(&mut images);
+        images
+    }
+
+    /// What M, K, C and H make of the vectors of `images`, in the memory that it has.
+    pub(super) fn renew(&self, images: &mut Images) {
+        let Images { vectors, inertia, elastic, damped, lossy } = images;
+        let viscous = self.damping.viscous.is_some();
+        let room =
+            |block: &mut Option<Block>, there: bool| *block = there.then(|| block.take().unwrap_or_default());
+        room(damped, viscous);
+        room(lossy, self.damping.hysteretic.is_some());
+        let mut blocks: Vec<&mut Block> = vec![inertia, elastic];
+        blocks.extend(damped.iter_mut().chain(lossy.iter_mut()));
+        blocks.iter_mut().for_each(|block| block.resize(self.n(), vectors.ncols()));
+        let (mut re, mut im): (Vec<_>, Vec<_>) =
+            blocks.into_iter().map(|Block { re, im }| (re.as_mut(), im.as_mut())).unzip();
+        self.merged.times_into(vectors.re.as_ref(), &mut re);
+        self.merged.times_into(vectors.im.as_ref(), &mut im);
+        let modal = |part: &Mat<f64>| modal_times(self.damping, part.as_ref());
+        if let Some(modal) = Block::both(modal(&vectors.re), modal(&vectors.im)) {
+            match damped {
+                Some(damped) => damped.add_scaled(&vec![c64::new(1.0, 0.0); modal.ncols()], &modal),
+                None => *damped = Some(modal),
+            }
         }
     }
 
@@ -170,11 +211,17 @@ impl<'a> Operator<'a> {
 
     /// Q(λⱼ) xⱼ, or Q(λⱼ)ᴴ xⱼ.
     pub(super) fn value(&self, side: Side, lambda: &[c64], x: &Images) -> Block {
-        let s = on_side(side, lambda);
-        let mut value = x.elastic.clone();
-        value.add_scaled(&s.iter().map(|s| s * s).collect::<Vec<_>>(), &x.inertia);
-        self.add_rest(side, &s, x, &mut value);
+        let mut value = Block::default();
+        self.value_into(side, lambda, x, &mut value);
         value
+    }
+
+    /// [`Operator::value`] in the memory of `value`.
+    pub(super) fn value_into(&self, side: Side, lambda: &[c64], x: &Images, value: &mut Block) {
+        let s = on_side(side, lambda);
+        value.copy_from(&x.elastic);
+        value.add_scaled(&s.iter().map(|s| s * s).collect::<Vec<_>>(), &x.inertia);
+        self.add_rest(side, &s, x, value);
     }
 
     /// Q′(λⱼ) xⱼ = (2λⱼM + C + C_c) xⱼ, or Q′(λⱼ)ᴴ xⱼ.
@@ -189,6 +236,22 @@ impl<'a> Operator<'a> {
         slope
     }
 
+    /// ψⱼᴴQ(λⱼ)xⱼ.
+    pub(super) fn form(&self, lambda: &[c64], left: &Block, x: &Images) -> Vec<c64> {
+        let one = |j: usize| {
+            let s = lambda[j];
+            let mut sum = s * s * left.dot(j, &x.inertia) + left.dot(j, &x.elastic);
+            if let Some(damped) = &x.damped {
+                sum += s * left.dot(j, damped);
+            }
+            if let Some(lossy) = &x.lossy {
+                sum += c64::new(0.0, 1.0) * left.dot(j, lossy);
+            }
+            sum + self.between(j, left, &x.vectors, |term| s * term.damping + term.stiffness)
+        };
+        (0..lambda.len()).into_par_iter().map(one).collect()
+    }
+
     /// ψⱼᴴQ′(λⱼ)φⱼ.
     pub(super) fn steepness(&self, lambda: &[c64], left: &Block, right: &Images) -> Vec<c64> {
         let one = |j: usize| {
@@ -196,12 +259,16 @@ impl<'a> Operator<'a> {
             if let Some(damped) = &right.damped {
                 sum += left.dot(j, damped);
             }
-            let motions = |x: &Block| self.interface.motions(x.re.col_as_slice(j), x.im.col_as_slice(j));
-            let (to, from) = (motions(left), motions(&right.vectors));
-            let terms = self.interface.terms.iter();
-            sum + terms.map(|t| to[t.row].conj() * from[t.column] * t.damping).sum::<c64>()
+            sum + self.between(j, left, &right.vectors, |term| c64::new(term.damping, 0.0))
         };
         (0..lambda.len()).into_par_iter().map(one).collect()
+    }
+
+    /// Σ (Wᵀψⱼ)ᴴ_row value (Wᵀxⱼ)_column over the terms of the interface.
+    fn between(&self, j: usize, left: &Block, x: &Block, value: impl Fn(&Term) -> c64) -> c64 {
+        let motions = |x: &Block| self.interface.motions(x.re.col_as_slice(j), x.im.col_as_slice(j));
+        let (to, from) = (motions(left), motions(x));
+        self.interface.terms.iter().map(|t| to[t.row].conj() * from[t.column] * value(t)).sum()
     }
 
     /// |λ|²‖M‖ + |λ|‖C‖ + ‖K‖ in the 1-norm; modal damping and contact left out, so that η is never flattered.

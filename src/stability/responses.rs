@@ -6,8 +6,8 @@ use super::operator::{Operator, Side};
 use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
 use crate::linalg::random::Random;
-use crate::linalg::sparse::times;
-use crate::linalg::tall::{beside, gram};
+use crate::linalg::sparse::{multiply, times};
+use crate::linalg::tall::gram;
 use faer::Mat;
 
 /// Random combinations that stand for many forces.
@@ -49,15 +49,17 @@ fn series(
 ) -> Mat<f64> {
     let (n, r) = (forces.nrows(), forces.ncols());
     let share = gram(basis.vectors.as_ref(), forces.as_ref());
-    let mut response = forces - times(operator.mass, basis.expand_real(&share).as_ref());
     let mut all = Mat::zeros(n, r * terms);
-    for k in 0..terms {
-        if k > 0 {
-            response = times(operator.mass, response.as_ref());
-            response *= faer::Scale(omega * omega);
-        }
-        factor.solve_in_place(response.as_mut());
-        all.subcols_mut(k * r, r).copy_from(&response);
+    if terms > 0 {
+        let known = times(operator.mass, basis.expand_real(&share).as_ref());
+        all.subcols_mut(0, r).copy_from(forces - known);
+        factor.solve_in_place(all.subcols_mut(0, r));
+    }
+    for k in 1..terms {
+        let (before, mut next) = all.subcols_mut((k - 1) * r, 2 * r).split_at_col_mut(r);
+        multiply(operator.mass, before.as_ref(), next.as_mut());
+        next *= faer::Scale(omega * omega);
+        factor.solve_in_place(next);
     }
     all
 }
@@ -98,12 +100,13 @@ pub(super) fn coupled_responses(
         Block { re: part(), im: part() }
     };
     let s = vec![c64::new(0.0, omega); SAMPLES];
-    let mut sampled = Mat::zeros(operator.n(), 0);
-    for side in [Side::Right, Side::Left] {
+    let mut sampled = Mat::zeros(operator.n(), 4 * SAMPLES);
+    for (half, side) in [Side::Right, Side::Left].into_iter().enumerate() {
         let images = operator.images(basis.expand(&mixed()));
         let mut forces = Block::zeros(operator.n(), s.len());
         operator.add_rest(side, &s, &images, &mut forces);
-        sampled = beside(&beside(&sampled, &forces.re), &forces.im);
+        sampled.subcols_mut(2 * half * SAMPLES, SAMPLES).copy_from(&forces.re);
+        sampled.subcols_mut((2 * half + 1) * SAMPLES, SAMPLES).copy_from(&forces.im);
     }
     sampled *= faer::Scale(1.0 / omega);
     series(operator, basis, factor, omega, sampled, TERMS)

@@ -8,7 +8,6 @@ use crate::linalg::c64;
 use crate::linalg::random::Random;
 use crate::linalg::tall::{beside, expand};
 use faer::Mat;
-use rayon::prelude::*;
 
 /// Aims of the refinement, below what [`super::ComplexMode::accepted`] asks.
 const BACKWARD_ERROR: f64 = 5e-11;
@@ -17,20 +16,16 @@ const EIGENVALUE_ERROR: f64 = 1e-10;
 /// Pairs that are measured together: few, so that little memory is held.
 pub(super) const TOGETHER: usize = 16;
 
-/// A few pairs whose vectors have unit mass.
-pub(super) struct Pairs {
-    pub(super) lambda: Vec<c64>,
-    pub(super) right: Block,
-    pub(super) left: Block,
-}
-
-/// A few pairs with their measures on the full order.
+/// A few pairs with their measures on the full order. Its memory serves the next few.
+#[derive(Default)]
 pub(super) struct Measured {
-    pub(super) pairs: Pairs,
+    pub(super) lambda: Vec<c64>,
+    /// φ, with unit mass.
+    pub(super) right: Images,
+    /// ψ, with unit mass.
+    pub(super) left: Block,
     /// z = −A⁻¹Q(λ)φ.
-    pub(super) correction: Block,
-    /// Q(λ)ᴴψ.
-    left_residual: Block,
+    pub(super) correction: Images,
     pub(super) backward_error: Vec<f64>,
     pub(super) eigenvalue_error: Vec<f64>,
     pub(super) condition: Vec<f64>,
@@ -46,36 +41,27 @@ pub(super) struct Scale<'a> {
 }
 
 impl Scale<'_> {
-    /// Measures pairs; `images` tells what the structure makes of vectors. The right corrections, which are solved for,
-    /// tell the errors of λ and φ.
-    pub(super) fn measure(&self, pairs: Pairs, images: impl Fn(Block) -> Images) -> Measured {
+    /// Measures pairs, given λ, φ and ψ; `images` tells what the structure makes of vectors. The right corrections, which are
+    /// solved for, tell the errors of λ and φ.
+    pub(super) fn measure(&self, pairs: &mut Measured, images: impl Fn(&mut Images)) {
         let Scale { operator, factor, top } = *self;
-        let Pairs { lambda, right, left } = pairs;
+        let Measured { lambda, right, left, correction, .. } = pairs;
         let columns = 0..lambda.len();
-
-        let (right, mut correction, backward_error, steepness) = {
-            let right = images(right);
-            let residual = operator.value(Side::Right, &lambda, &right);
-            let error = |j: usize| residual.norm(j) / (operator.size(lambda[j]) * right.vectors.norm(j));
-            let errors = columns.clone().into_par_iter().map(error).collect();
-            let steepness = operator.steepness(&lambda, &left, &right);
-            (right.vectors, residual, errors, steepness)
-        };
-        for part in [&mut correction.re, &mut correction.im] {
+        images(right);
+        let residual = &mut correction.vectors;
+        operator.value_into(Side::Right, lambda, right, residual);
+        let error = |j: usize| residual.norm(j) / (operator.size(lambda[j]) * right.vectors.norm(j));
+        pairs.backward_error = columns.clone().map(error).collect();
+        for part in [&mut residual.re, &mut residual.im] {
             *part *= faer::Scale(-1.0);
             factor.solve_in_place(part.as_mut());
         }
-        let (left, left_residual) = {
-            let left = images(left);
-            let residual = operator.value(Side::Left, &lambda, &left);
-            (left.vectors, residual)
-        };
+        images(correction);
+        let steepness = operator.steepness(lambda, left, right);
+        let rise = operator.form(lambda, left, correction);
         let size = |j: usize| steepness[j].norm() * lambda[j].norm().max(1e-6 * top);
-        let error = |j: usize| left_residual.dot(j, &correction).norm() / size(j);
-        let eigenvalue_error = columns.clone().into_par_iter().map(error).collect();
-        let condition = columns.map(|j| 2.0 * lambda[j].norm() / steepness[j].norm()).collect();
-        let pairs = Pairs { lambda, right, left };
-        Measured { pairs, correction, left_residual, backward_error, eigenvalue_error, condition }
+        pairs.eigenvalue_error = columns.clone().map(|j| rise[j].norm() / size(j)).collect();
+        pairs.condition = columns.map(|j| 2.0 * lambda[j].norm() / steepness[j].norm()).collect();
     }
 }
 
@@ -97,20 +83,23 @@ pub(super) struct Wanted {
 }
 
 impl Wanted {
-    /// Adds those of the pairs that are not exact.
-    pub(super) fn add(&mut self, measured: &Measured, top: f64) {
-        let lambda = &measured.pairs.lambda;
-        let open: Vec<usize> = (0..lambda.len()).filter(|j| !measured.exact(*j)).collect();
-        let scaled = |block: &Block| {
-            Mat::from_fn(block.re.nrows(), 2 * open.len(), |i, c| {
+    /// Adds those of the pairs that are not exact; `images` as in [`Scale::measure`].
+    pub(super) fn add(&mut self, scale: &Scale<'_>, measured: &Measured, images: impl Fn(&mut Images)) {
+        let open: Vec<usize> = (0..measured.lambda.len()).filter(|j| !measured.exact(*j)).collect();
+        if open.is_empty() {
+            return;
+        }
+        let lambda: Vec<c64> = open.iter().map(|j| measured.lambda[*j]).collect();
+        let scaled = |block: Block| {
+            Mat::from_fn(block.re.nrows(), 2 * lambda.len(), |i, c| {
                 let part = if c % 2 == 0 { &block.re } else { &block.im };
-                part[(i, open[c / 2])] / lambda[open[c / 2]].norm().max(1e-3 * top)
+                part[(i, c / 2)] / lambda[c / 2].norm().max(1e-3 * scale.top)
             })
         };
-        if !open.is_empty() {
-            self.right.push(scaled(&measured.correction));
-            self.left.push(scaled(&measured.left_residual));
-        }
+        self.right.push(scaled(Block::gathered(&measured.correction.vectors, &open)));
+        let mut left = Images { vectors: Block::gathered(&measured.left, &open), ..Images::default() };
+        images(&mut left);
+        self.left.push(scaled(scale.operator.value(Side::Left, &lambda, &left)));
     }
 
     pub(super) fn is_empty(&self) -> bool {

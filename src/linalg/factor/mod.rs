@@ -18,6 +18,7 @@
 mod field;
 mod front;
 mod halves;
+mod lower;
 mod numeric;
 mod ordering;
 mod solve;
@@ -352,12 +353,12 @@ impl<T: Field> SymmetricFactor<T> for Multifrontal<T> {
     }
 
     fn growth(&self) -> f64 {
-        self.fronts.iter().map(Front::growth).fold(0.0, f64::max)
+        self.fronts.iter().map(|front| front.lower.growth()).fold(0.0, f64::max)
     }
 
     fn memory_bytes(&self) -> usize {
         let bytes = |front: &Front<T>| {
-            size_of_val(&*front.lower)
+            front.lower.memory_bytes()
                 + size_of_val(&*front.inverse)
                 + 4 * (front.columns.len() + front.above.len())
         };

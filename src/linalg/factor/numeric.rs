@@ -2,6 +2,7 @@
 
 use super::field::Field;
 use super::front::{Panel, subtract_product};
+use super::lower::Lower;
 use super::symbolic::{Plan, Task};
 use faer::sparse::SparseColMatRef;
 use faer::{MatMut, MatRef};
@@ -15,8 +16,8 @@ pub(super) struct Front<T> {
     pub columns: Vec<u32>,
     /// The order of the front; the first rows are those of `columns`.
     pub rows: usize,
-    /// L, `rows` × as many columns as were eliminated, by columns; only what is below the diagonal has a meaning.
-    pub lower: Vec<T>,
+    /// L, `rows` × as many columns as were eliminated.
+    pub lower: Lower<T>,
     /// B⁻¹: for each eliminated column its diagonal entry and the entry below it, nonzero where a 2 × 2 block begins.
     pub inverse: Vec<[T; 2]>,
     /// Where each row that was not eliminated stands in the parent's front.
@@ -27,15 +28,6 @@ impl<T> Front<T> {
     /// How many columns this front eliminated.
     pub fn width(&self) -> usize {
         self.inverse.len()
-    }
-
-    /// The largest |entry| of L.
-    pub fn growth(&self) -> f64
-    where
-        T: Field,
-    {
-        let columns = self.lower.chunks_exact(self.rows.max(1)).enumerate();
-        columns.flat_map(|(j, column)| &column[j + 1..]).map(|l| l.size()).fold(0.0, f64::max)
     }
 }
 
@@ -63,6 +55,8 @@ struct Elimination<'a, T> {
 struct Scratch<T> {
     /// Where a row stands in the present front, for the rows that it has.
     places: Vec<u32>,
+    /// L, by columns.
+    columns: Vec<T>,
     /// W = L B.
     product: Vec<T>,
 }
@@ -104,7 +98,8 @@ impl<T: Field> Elimination<'_, T> {
         let results: Vec<_> = subtasks.into_par_iter().map(|(task, fronts)| self.run(task, fronts)).collect();
         let mut results = task.subtasks.iter().zip(results);
         let mut stack: Vec<Remainder<T>> = Vec::new();
-        let mut scratch = Scratch { places: vec![0; self.plan.order.len()], product: Vec::new() };
+        let mut scratch =
+            Scratch { places: vec![0; self.plan.order.len()], columns: Vec::new(), product: Vec::new() };
         let mut ready = results.next();
         let mut s = task.nodes.start;
         while s < task.nodes.end {
@@ -141,10 +136,11 @@ impl<T: Field> Elimination<'_, T> {
         children.iter().for_each(|child| columns.extend(&child.rows[..child.passed_on]));
         let (width, below) = (columns.len(), names(&node.rows));
         let m = width + below.len();
-        let places = &mut scratch.places;
+        let Scratch { places, columns: lower, product } = scratch;
         columns.iter().chain(&below).enumerate().for_each(|(k, row)| places[*row as usize] = k as u32);
 
-        let mut lower = vec![T::default(); m * width];
+        lower.clear();
+        lower.resize(m * width, T::default());
         for (k, column) in node.columns.clone().enumerate() {
             let j = self.plan.order[column];
             let entries = self.a.row_idx_of_col_raw(j).iter().zip(self.a.val_of_col(j));
@@ -157,16 +153,15 @@ impl<T: Field> Elimination<'_, T> {
         }
         let mut rest = vec![T::default(); below.len() * below.len()];
         for child in children {
-            child.add_to(places, &mut lower, &mut rest, m, width);
+            child.add_to(places, lower, &mut rest, m, width);
         }
 
-        if scratch.product.len() < lower.len() {
-            scratch.product.resize(lower.len(), T::default());
+        if product.len() < lower.len() {
+            product.resize(lower.len(), T::default());
         }
         let before = columns.clone();
         let inverse = Vec::with_capacity(width);
-        let product = &mut scratch.product;
-        let mut panel = Panel { values: &mut lower, product, names: &mut columns, rows: m, inverse };
+        let mut panel = Panel { values: lower, product, names: &mut columns, rows: m, inverse };
         panel.eliminate();
         let inverse = panel.inverse;
         let done = inverse.len();
@@ -174,23 +169,20 @@ impl<T: Field> Elimination<'_, T> {
             return Err(Stuck(columns[done] as usize));
         }
         if columns != before {
-            columns.iter().enumerate().for_each(|(k, row)| scratch.places[*row as usize] = k as u32);
+            columns.iter().enumerate().for_each(|(k, row)| places[*row as usize] = k as u32);
         }
         if !below.is_empty() {
             let part = |values| MatRef::from_column_major_slice(values, m, done).subrows(width, m - width);
             let c = MatMut::from_column_major_slice_mut(&mut rest, m - width, m - width);
-            subtract_product(c, part(&lower[..m * done]), part(&scratch.product[..m * done]));
+            subtract_product(c, part(&lower[..m * done]), part(&product[..m * done]));
         }
         let passed_on = width - done;
         let remainder = Remainder {
             rows: columns[done..].iter().chain(&below).copied().collect(),
             passed_on,
-            values: if passed_on == 0 { rest } else { joined(&lower, &rest, m, width, done) },
+            values: if passed_on == 0 { rest } else { joined(lower, &rest, m, width, done) },
         };
-        lower.truncate(m * done);
-        if passed_on > 0 {
-            lower.shrink_to_fit();
-        }
+        let lower = Lower::new(lower, m, done);
         Ok((Front { columns, rows: m, lower, inverse, above: Vec::new() }, remainder))
     }
 }

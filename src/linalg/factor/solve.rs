@@ -24,14 +24,7 @@ impl<T: Field> Substitution<'_, T> {
 
     /// B⁻¹ x.
     pub fn pivots<L: Lanes<T>>(&self, x: &mut [L]) {
-        let mut v = Vec::new();
-        for front in self.fronts {
-            let columns = &front.columns[..front.width()];
-            v.clear();
-            v.extend(columns.iter().map(|c| x[*c as usize]));
-            front.apply_pivots(&mut v);
-            columns.iter().zip(&v).for_each(|(c, y)| x[*c as usize] = *y);
-        }
+        Arch::new().dispatch(Pivots { fronts: self.fronts, x });
     }
 
     /// L⁻ᵀ B⁻¹ x.
@@ -60,29 +53,7 @@ impl<T: Field> Substitution<'_, T> {
                 ready = results.next();
                 continue;
             }
-            let (front, node) = (&self.fronts[s], &self.plan.nodes[s]);
-            v.clear();
-            v.extend(front.columns.iter().map(|column| {
-                let column = *column as usize;
-                // A column that a child passed on arrives with the child's sums.
-                if node.columns.contains(&column) { x[column - base] } else { L::ZERO }
-            }));
-            v.resize(front.rows, L::ZERO);
-            let arrived: usize = node.children.iter().map(|c| self.fronts[*c].above.len()).sum();
-            let start = stack.len() - arrived;
-            let mut sums = stack[start..].iter();
-            for child in &node.children {
-                for (row, sum) in self.fronts[*child].above.iter().zip(&mut sums) {
-                    v[*row as usize].add(sum);
-                }
-            }
-            stack.truncate(start);
-            // Most of the tree sees nothing of a right-hand side with few entries.
-            if v.iter().any(|row| (0..L::COLUMNS).any(|k| row.get(k) != T::default())) {
-                Arch::new().dispatch(Forward { front, v: &mut v });
-            }
-            front.columns[..front.width()].iter().zip(&v).for_each(|(c, y)| x[*c as usize - base] = *y);
-            stack.extend_from_slice(&v[front.width()..]);
+            Arch::new().dispatch(Rise { tree: self, s, base, x: &mut *x, stack: &mut stack, v: &mut v });
             s += 1;
         }
         stack
@@ -104,16 +75,7 @@ impl<T: Field> Substitution<'_, T> {
                 continue;
             }
             s -= 1;
-            let columns = &front.columns[..front.width()];
-            v.clear();
-            v.extend(columns.iter().map(|column| x[*column as usize - base]));
-            v.extend_from_slice(&stack[known..]);
-            stack.truncate(known);
-            Arch::new().dispatch(Backward { front, v: &mut v });
-            columns.iter().zip(&v).for_each(|(c, y)| x[*c as usize - base] = *y);
-            for child in &self.plan.nodes[s].children {
-                stack.extend(self.fronts[*child].above.iter().map(|row| v[*row as usize]));
-            }
+            Arch::new().dispatch(Descent { tree: self, s, base, x: &mut *x, stack: &mut stack, v: &mut v });
         }
         let parts = task.subtasks.iter().zip(parts(task, x, |s| self.first(s)));
         let parts: Vec<_> = parts.zip(waiting.into_iter().rev()).collect();
@@ -121,16 +83,106 @@ impl<T: Field> Substitution<'_, T> {
     }
 }
 
-/// Columns of L that go through the rows together.
-const TOGETHER: usize = 8;
-/// The same on the way back, where each has a sum in a register.
-const SUMS: usize = 4;
+/// The way up through node s: what its children passed on is taken from the stack, what it passes on is put there.
+struct Rise<'a, T, L> {
+    tree: &'a Substitution<'a, T>,
+    s: usize,
+    /// The column that `x` begins with.
+    base: usize,
+    x: &'a mut [L],
+    stack: &'a mut Vec<L>,
+    v: &'a mut Vec<L>,
+}
+
+impl<T: Field, L: Lanes<T>> WithSimd for Rise<'_, T, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Rise { tree, s, base, x, stack, v } = self;
+        let (front, node) = (&tree.fronts[s], &tree.plan.nodes[s]);
+        v.clear();
+        v.extend(front.columns.iter().map(|column| {
+            let column = *column as usize;
+            // A column that a child passed on arrives with the child's sums.
+            if node.columns.contains(&column) { x[column - base] } else { L::ZERO }
+        }));
+        v.resize(front.rows, L::ZERO);
+        let arrived: usize = node.children.iter().map(|c| tree.fronts[*c].above.len()).sum();
+        let start = stack.len() - arrived;
+        let mut sums = stack[start..].iter();
+        for child in &node.children {
+            for (row, sum) in tree.fronts[*child].above.iter().zip(&mut sums) {
+                v[*row as usize].add(sum);
+            }
+        }
+        stack.truncate(start);
+        // Most of the tree sees nothing of a right-hand side with few entries.
+        if v.iter().any(|row| (0..L::COLUMNS).any(|k| row.get(k) != T::default())) {
+            front.lower.up(v);
+        }
+        front.columns[..front.width()].iter().zip(&*v).for_each(|(c, y)| x[*c as usize - base] = *y);
+        stack.extend_from_slice(&v[front.width()..]);
+    }
+}
+
+/// The way down through node s: the solution of the rows that it passed on is taken from the stack, that of the rows of its
+/// children is put there.
+struct Descent<'a, T, L> {
+    tree: &'a Substitution<'a, T>,
+    s: usize,
+    /// The column that `x` begins with.
+    base: usize,
+    x: &'a mut [L],
+    stack: &'a mut Vec<L>,
+    v: &'a mut Vec<L>,
+}
+
+impl<T: Field, L: Lanes<T>> WithSimd for Descent<'_, T, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Descent { tree, s, base, x, stack, v } = self;
+        let front = &tree.fronts[s];
+        let columns = &front.columns[..front.width()];
+        let known = stack.len() - front.above.len();
+        v.clear();
+        v.extend(columns.iter().map(|column| x[*column as usize - base]));
+        v.extend_from_slice(&stack[known..]);
+        stack.truncate(known);
+        front.apply_pivots(v);
+        front.lower.down::<S, L>(v);
+        columns.iter().zip(&*v).for_each(|(c, y)| x[*c as usize - base] = *y);
+        for child in &tree.plan.nodes[s].children {
+            stack.extend(tree.fronts[*child].above.iter().map(|row| v[*row as usize]));
+        }
+    }
+}
+
+/// v ← B⁻¹ v, front by front.
+struct Pivots<'a, T, L> {
+    fronts: &'a [Front<T>],
+    x: &'a mut [L],
+}
+
+impl<T: Field, L: Lanes<T>> WithSimd for Pivots<'_, T, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let mut v = Vec::new();
+        for front in self.fronts {
+            let columns = &front.columns[..front.width()];
+            v.clear();
+            v.extend(columns.iter().map(|c| self.x[*c as usize]));
+            front.apply_pivots(&mut v);
+            columns.iter().zip(&v).for_each(|(c, y)| self.x[*c as usize] = *y);
+        }
+    }
+}
 
 impl<T: Field> Front<T> {
-    fn column(&self, j: usize) -> &[T] {
-        &self.lower[j * self.rows..(j + 1) * self.rows]
-    }
-
     /// v ← B⁻¹ v for the eliminated columns, which v begins with.
     #[inline(always)]
     fn apply_pivots<L: Lanes<T>>(&self, v: &mut [L]) {
@@ -149,73 +201,6 @@ impl<T: Field> Front<T> {
             }
             v[j] = first;
             j += 1 + usize::from(double);
-        }
-    }
-}
-
-/// v₁ ← L₁₁⁻¹ v₁, v₂ ← v₂ − L₂₁ v₁.
-struct Forward<'a, T, L> {
-    front: &'a Front<T>,
-    v: &'a mut [L],
-}
-
-impl<T: Field, L: Lanes<T>> WithSimd for Forward<'_, T, L> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let (front, v) = (self.front, self.v);
-        let width = front.width();
-        let mut j = 0;
-        while j < width {
-            let count = TOGETHER.min(width - j);
-            for r in 1..count {
-                let mut y = v[j + r];
-                for c in 0..r {
-                    y.subtract(front.column(j + c)[j + r], &v[j + c]);
-                }
-                v[j + r] = y;
-            }
-            let (y, below) = v[j..].split_at_mut(count);
-            L::subtract_products(below, &front.lower[j * front.rows..], front.rows, j + count, y);
-            j += count;
-        }
-    }
-}
-
-/// v₁ ← L₁₁⁻ᵀ (B⁻¹ v₁ − L₂₁ᵀ v₂).
-struct Backward<'a, T, L> {
-    front: &'a Front<T>,
-    v: &'a mut [L],
-}
-
-impl<T: Field, L: Lanes<T>> WithSimd for Backward<'_, T, L> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let (front, v) = (self.front, self.v);
-        front.apply_pivots(v);
-        let mut j = front.width();
-        while j >= SUMS {
-            j -= SUMS;
-            let l: [&[T]; SUMS] = std::array::from_fn(|c| front.column(j + c));
-            let (head, below) = v.split_at_mut(j + SUMS);
-            let mut y: [L; SUMS] = std::array::from_fn(|c| head[j + c]);
-            L::subtract_dots(&mut y, l.map(|column| &column[j + SUMS..]), below);
-            for c in (0..SUMS).rev() {
-                for r in c + 1..SUMS {
-                    let later = y[r];
-                    y[c].subtract(l[c][j + r], &later);
-                }
-                head[j + c] = y[c];
-            }
-        }
-        for j in (0..j).rev() {
-            let (head, below) = v.split_at_mut(j + 1);
-            let mut y = [head[j]];
-            L::subtract_dots(&mut y, [&front.column(j)[j + 1..]], below);
-            head[j] = y[0];
         }
     }
 }

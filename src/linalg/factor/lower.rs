@@ -1,0 +1,191 @@
+//! L of one front: where its entries stand, and the substitutions with it.
+//!
+//! A few columns at a time stand row by row, so that the way up and the way down both read memory from front to back: the
+//! columns of most fronts are too short for the processor to fetch them ahead of their use.
+
+use super::field::{Field, Lanes};
+use pulp::Simd;
+
+/// `rows` × `width`, unit lower trapezoidal. Above the diagonal stands what has no meaning.
+#[derive(Debug)]
+pub(super) struct Lower<T> {
+    rows: usize,
+    width: usize,
+    /// Panel after panel, each from its own diagonal on, row by row.
+    values: Vec<T>,
+}
+
+/// The columns of a panel; of those that are left over, four make one, and then each its own.
+const WIDE: usize = 8;
+const NARROW: usize = 4;
+
+impl<T: Field> Lower<T> {
+    /// Of the first `width` columns of `columns`, each with `rows` entries.
+    pub(super) fn new(columns: &[T], rows: usize, width: usize) -> Self {
+        let mut lower = Lower { rows, width, values: Vec::new() };
+        lower.values.reserve_exact(lower.panels().map(|(first, count)| (rows - first) * count).sum());
+        for (first, count) in lower.panels() {
+            match count {
+                WIDE => lower.lay::<WIDE>(columns, first),
+                NARROW => lower.lay::<NARROW>(columns, first),
+                _ => lower.lay::<1>(columns, first),
+            }
+        }
+        lower
+    }
+
+    fn lay<const C: usize>(&mut self, columns: &[T], first: usize) {
+        let column = |c: usize| &columns[(first + c) * self.rows..][first..self.rows];
+        let columns: [&[T]; C] = std::array::from_fn(column);
+        self.values.extend((0..self.rows - first).flat_map(|i| columns.map(|column| column[i])));
+    }
+
+    /// First column and count of columns of every panel.
+    fn panels(&self) -> impl DoubleEndedIterator<Item = (usize, usize)> + use<T> {
+        let wide = self.width - self.width % WIDE;
+        let narrow = self.width - self.width % NARROW;
+        let part = |from: usize, to: usize, step: usize| (from..to).step_by(step).map(move |j| (j, step));
+        part(0, wide, WIDE).chain(part(wide, narrow, NARROW)).chain(part(narrow, self.width, 1))
+    }
+
+    /// The largest |entry| below the diagonal.
+    pub(super) fn growth(&self) -> f64 {
+        let (mut largest, mut rest) = (0.0f64, &self.values[..]);
+        for (first, count) in self.panels() {
+            let (panel, after) = rest.split_at((self.rows - first) * count);
+            for (i, row) in panel.chunks_exact(count).enumerate() {
+                largest = row[..i.min(count)].iter().map(|l| l.size()).fold(largest, f64::max);
+            }
+            rest = after;
+        }
+        largest
+    }
+
+    pub(super) fn memory_bytes(&self) -> usize {
+        size_of_val(&*self.values)
+    }
+
+    /// v₁ ← L₁₁⁻¹ v₁, v₂ ← v₂ − L₂₁ v₁.
+    #[inline(always)]
+    pub(super) fn up<L: Lanes<T>>(&self, v: &mut [L]) {
+        let mut rest = &self.values[..];
+        for (first, count) in self.panels() {
+            let (panel, after) = rest.split_at((self.rows - first) * count);
+            let v = &mut v[first..];
+            match count {
+                WIDE => up::<T, L, WIDE>(panel, v),
+                NARROW => up::<T, L, NARROW>(panel, v),
+                _ => up::<T, L, 1>(panel, v),
+            }
+            rest = after;
+        }
+    }
+
+    /// v₁ ← L₁₁⁻ᵀ (v₁ − L₂₁ᵀ v₂), with the registers of S.
+    #[inline(always)]
+    pub(super) fn down<S: Simd, L: Lanes<T>>(&self, v: &mut [L]) {
+        let mut rest = &self.values[..];
+        for (first, count) in self.panels().rev() {
+            let (before, panel) = rest.split_at(rest.len() - (self.rows - first) * count);
+            let v = &mut v[first..];
+            match count {
+                // The sums of all columns are to stay in registers.
+                WIDE if S::REGISTER_COUNT >= 32 && size_of::<L>() <= 64 => down::<T, L, WIDE, WIDE>(panel, v),
+                WIDE => down::<T, L, WIDE, NARROW>(panel, v),
+                NARROW => down::<T, L, NARROW, NARROW>(panel, v),
+                _ => down::<T, L, 1, 1>(panel, v),
+            }
+            rest = before;
+        }
+    }
+}
+
+#[inline(always)]
+fn up<T: Field, L: Lanes<T>, const C: usize>(l: &[T], v: &mut [L]) {
+    let (l, _) = l.as_chunks::<C>();
+    let (known, below) = v.split_at_mut(C);
+    for r in 1..C {
+        let mut own = known[r];
+        (0..r).for_each(|c| own.subtract(l[r][c], &known[c]));
+        known[r] = own;
+    }
+    let l = &l[C..];
+    // A few rows at a time stay in registers.
+    const ROWS: usize = 4;
+    let whole = below.len() - below.len() % ROWS;
+    for i in (0..whole).step_by(ROWS) {
+        let l: &[[T; C]; ROWS] = l[i..i + ROWS].try_into().expect("four rows");
+        let mut sums: [L; ROWS] = std::array::from_fn(|r| below[i + r]);
+        for c in 0..C {
+            for r in 0..ROWS {
+                sums[r].subtract(l[r][c], &known[c]);
+            }
+        }
+        below[i..i + ROWS].copy_from_slice(&sums);
+    }
+    for i in whole..below.len() {
+        let mut sum = below[i];
+        for c in 0..C {
+            sum.subtract(l[i][c], &known[c]);
+        }
+        below[i] = sum;
+    }
+}
+
+/// C columns, P sums at a time.
+#[inline(always)]
+fn down<T: Field, L: Lanes<T>, const C: usize, const P: usize>(l: &[T], v: &mut [L]) {
+    let (l, _) = l.as_chunks::<C>();
+    let (own, below) = v.split_at_mut(C);
+    for part in (0..C).step_by(P) {
+        let mut sums: [L; P] = std::array::from_fn(|p| own[part + p]);
+        for (known, l) in below.iter().zip(&l[C..]) {
+            for p in 0..P {
+                sums[p].subtract(l[part + p], known);
+            }
+        }
+        own[part..part + P].copy_from_slice(&sums);
+    }
+    for c in (0..C).rev() {
+        let mut sum = own[c];
+        (c + 1..C).for_each(|r| sum.subtract(l[r][c], &own[r]));
+        own[c] = sum;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn substitutions_equal_sums_over_columns() {
+        // Panels of all three widths, and a front without rows below them.
+        for (rows, width) in [(40, 29), (13, 13), (5, 1), (9, 0)] {
+            let l = |i: usize, j: usize| if i > j { 0.1 * ((3 * i + 5 * j) as f64).sin() } else { 7.0 };
+            let columns: Vec<f64> = (0..width * rows).map(|k| l(k % rows, k / rows)).collect();
+            let lower = Lower::new(&columns, rows, width);
+            let start: Vec<[f64; 2]> = (0..rows).map(|i| [i as f64, (i as f64).cos()]).collect();
+            let (mut up, mut down) = (start.clone(), start.clone());
+            lower.up(&mut up);
+            lower.down::<pulp::Scalar, _>(&mut down);
+            let (mut up_expected, mut down_expected) = (start.clone(), start);
+            for j in 0..width {
+                for i in j + 1..rows {
+                    (0..2).for_each(|k| up_expected[i][k] -= l(i, j) * up_expected[j][k]);
+                }
+            }
+            for j in (0..width).rev() {
+                for i in j + 1..rows {
+                    (0..2).for_each(|k| down_expected[j][k] -= l(i, j) * down_expected[i][k]);
+                }
+            }
+            for (found, expected) in up.iter().chain(&down).zip(up_expected.iter().chain(&down_expected)) {
+                (0..2).for_each(|k| {
+                    assert!((found[k] - expected[k]).abs() < 1e-10 * expected[k].abs().max(1.0))
+                });
+            }
+            let below = (0..width).flat_map(|j| (j + 1..rows).map(move |i| l(i, j).abs()));
+            assert_eq!(lower.growth(), below.fold(0.0, f64::max));
+        }
+    }
+}

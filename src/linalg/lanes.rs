@@ -1,0 +1,110 @@
+//! Columns laid side by side, row by row, as sparse products want them; and back.
+
+use super::sparse::Scalar;
+use pulp::{Arch, Simd, WithSimd};
+
+/// Rows and columns that change places in registers.
+const TILE: usize = 8;
+
+/// rows\[i\]\[c\] = columns\[c\]\[i\]; what a row has beyond the columns is left alone.
+pub(super) fn lay<T: Scalar, const W: usize>(columns: &[&[T]], rows: &mut [[T; W]]) {
+    Arch::new().dispatch(Lay { columns, rows });
+}
+
+/// columns\[c\]\[i\] = row(i)\[c\].
+pub(super) fn spread<'a, T: Scalar + 'a, const W: usize>(
+    row: impl Fn(usize) -> &'a [T; W],
+    columns: &mut [&mut [T]],
+) {
+    Arch::new().dispatch(Spread { row, columns });
+}
+
+struct Lay<'a, T, const W: usize> {
+    columns: &'a [&'a [T]],
+    rows: &'a mut [[T; W]],
+}
+
+impl<T: Scalar, const W: usize> WithSimd for Lay<'_, T, W> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let n = self.rows.len();
+        for (columns, first) in self.columns.chunks(TILE).zip((0..).step_by(TILE)) {
+            let mut done = 0;
+            if let Ok(columns) = <&[&[T]; TILE]>::try_from(columns) {
+                for i in (0..n - n % TILE).step_by(TILE) {
+                    let turned = turned(columns.map(|column| tile(column, i)));
+                    for (row, turned) in self.rows[i..].iter_mut().zip(&turned) {
+                        row[first..first + TILE].copy_from_slice(turned);
+                    }
+                }
+                done = n - n % TILE;
+            }
+            for (column, c) in columns.iter().zip(first..) {
+                (done..n).for_each(|i| self.rows[i][c] = column[i]);
+            }
+        }
+    }
+}
+
+struct Spread<'x, 'c, F, T> {
+    row: F,
+    columns: &'x mut [&'c mut [T]],
+}
+
+impl<'a, T: Scalar + 'a, F: Fn(usize) -> &'a [T; W], const W: usize> WithSimd for Spread<'_, '_, F, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let (row, n) = (self.row, self.columns.first().map_or(0, |column| column.len()));
+        for (columns, first) in self.columns.chunks_mut(TILE).zip((0..).step_by(TILE)) {
+            let mut done = 0;
+            if columns.len() == TILE {
+                for i in (0..n - n % TILE).step_by(TILE) {
+                    let turned = turned(std::array::from_fn(|r| tile(row(i + r), first)));
+                    for (column, turned) in columns.iter_mut().zip(&turned) {
+                        column[i..i + TILE].copy_from_slice(turned);
+                    }
+                }
+                done = n - n % TILE;
+            }
+            for (column, c) in columns.iter_mut().zip(first..) {
+                (done..n).for_each(|i| column[i] = row(i)[c]);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn tile<T: Scalar>(from: &[T], first: usize) -> [T; TILE] {
+    from[first..first + TILE].try_into().expect("as long")
+}
+
+#[inline(always)]
+fn turned<T: Scalar>(rows: [[T; TILE]; TILE]) -> [[T; TILE]; TILE] {
+    std::array::from_fn(|r| std::array::from_fn(|c| rows[c][r]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_laid_spreads_again() {
+        for (n, count) in [(19, 11), (8, 8), (5, 16), (32, 3)] {
+            let columns: Vec<Vec<f64>> =
+                (0..count).map(|c| (0..n).map(|i| (100 * c + i) as f64).collect()).collect();
+            let mut rows = vec![[-1.0; 16]; n];
+            lay(&columns.iter().map(|c| &c[..]).collect::<Vec<_>>(), &mut rows);
+            for (i, row) in rows.iter().enumerate() {
+                let expected = |c: usize| if c < count { columns[c][i] } else { -1.0 };
+                assert_eq!(*row, std::array::from_fn(expected));
+            }
+            let mut back = vec![vec![0.0; n]; count];
+            spread(|i| &rows[i], &mut back.iter_mut().map(|c| &mut c[..]).collect::<Vec<_>>());
+            assert_eq!(back, columns);
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! The kernels of real matrices stored by columns: nothing tall is copied, a few columns stay in registers.
+//!
+//! A general product first copies its operands into an order of its own, which pays when each entry is used often. Here the
+//! other matrix is narrow, so that the copy would cost as much as the product.
+
+use super::super::sparse::{columns, columns_mut};
+use super::ROWS;
+use faer::{Accum, Mat, MatMut, MatRef};
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Rows that stay in the cache while all columns pass.
+const SLAB: usize = 1024;
+
+/// AᵀB; none where a column is not in one piece.
+pub(super) fn gram(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Option<Mat<f64>> {
+    let (n, columns, others) = (a.nrows(), columns(a)?, columns(b)?);
+    assert!(b.nrows() == n, "as many rows");
+    let parts: Vec<Vec<[f64; LANES]>> = (0..n.div_ceil(ROWS))
+        .into_par_iter()
+        .map(|task| {
+            let mut sums = vec![[0.0; LANES]; columns.len() * others.len().div_ceil(LANES)];
+            let rows = task * ROWS..n.min((task + 1) * ROWS);
+            Arch::new().dispatch(Dots { a: &columns, b: &others, rows, sums: &mut sums });
+            sums
+        })
+        .collect();
+    let mut sum = Mat::zeros(columns.len(), others.len());
+    for part in parts {
+        for j in 0..others.len() {
+            let part = &part[j / LANES * columns.len()..];
+            sum.col_as_slice_mut(j).iter_mut().zip(part).for_each(|(sum, part)| *sum += part[j % LANES]);
+        }
+    }
+    Some(sum)
+}
+
+/// Y (+)= factor · V C; false, and nothing done, where a column is not in one piece.
+pub(super) fn combine(
+    mut y: MatMut<'_, f64>,
+    accumulate: Accum,
+    v: MatRef<'_, f64>,
+    c: MatRef<'_, f64>,
+    factor: f64,
+) -> bool {
+    let (Some(v), Some(_)) = (columns(v), columns(y.as_ref())) else { return false };
+    assert!(c.nrows() == v.len() && c.ncols() == y.ncols(), "shapes of Y, V and C disagree");
+    assert!(v.first().is_none_or(|column| column.len() == y.nrows()), "as many rows");
+    let entry = |j: usize, k: usize| if k < c.ncols() { factor * c[(j, k)] } else { 0.0 };
+    let groups = (0..c.ncols()).step_by(TOGETHER);
+    let entries = groups.flat_map(|k| (0..v.len()).map(move |j| (j, k)));
+    let coefficients: Vec<[f64; TOGETHER]> =
+        entries.map(|(j, k)| std::array::from_fn(|t| entry(j, k + t))).collect();
+    if matches!(accumulate, Accum::Replace) {
+        y.fill(0.0);
+    }
+    y.par_row_chunks_mut(ROWS).enumerate().for_each(|(task, y)| {
+        let mut y = columns_mut(y).expect("as seen above");
+        Arch::new().dispatch(Sums { y: &mut y, first: task * ROWS, v: &v, c: &coefficients });
+    });
+    true
+}
+
+/// Columns of B in a row of sums.
+const LANES: usize = 8;
+
+/// AᵀB over some rows.
+struct Dots<'a> {
+    a: &'a [&'a [f64]],
+    b: &'a [&'a [f64]],
+    rows: Range<usize>,
+    /// A row of sums for each column of A, for the first columns of B, then for the next.
+    sums: &'a mut [[f64; LANES]],
+}
+
+impl WithSimd for Dots<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        // As many rows of sums as the registers hold beside what they are made of.
+        if S::REGISTER_COUNT >= 32 { self.run::<8>() } else { self.run::<4>() }
+    }
+}
+
+impl Dots<'_> {
+    #[inline(always)]
+    fn run<const G: usize>(self) {
+        let m = self.a.len();
+        let mut packed = vec![[0.0; LANES]; SLAB.min(self.rows.len())];
+        for start in self.rows.clone().step_by(SLAB) {
+            let rows = start..self.rows.end.min(start + SLAB);
+            let packed = &mut packed[..rows.len()];
+            for (b, sums) in self.b.chunks(LANES).zip(self.sums.chunks_mut(m.max(1))) {
+                for (k, column) in b.iter().enumerate() {
+                    packed.iter_mut().zip(&column[rows.clone()]).for_each(|(row, v)| row[k] = *v);
+                }
+                let whole = m - m % G;
+                for (a, sums) in self.a.chunks_exact(G).zip(sums.chunks_exact_mut(G)) {
+                    add_dots::<G>(std::array::from_fn(|g| &a[g][rows.clone()]), packed, sums);
+                }
+                for (a, sum) in self.a[whole..].iter().zip(&mut sums[whole..]) {
+                    add_dots([&a[rows.clone()]], packed, std::slice::from_mut(sum));
+                }
+            }
+        }
+    }
+}
+
+/// sums_g += Σ_i a_g,i b_i.
+#[inline(always)]
+fn add_dots<const G: usize>(a: [&[f64]; G], b: &[[f64; LANES]], sums: &mut [[f64; LANES]]) {
+    let a = a.map(|a| &a[..b.len()]);
+    let mut own = [[0.0; LANES]; G];
+    for (i, b) in b.iter().enumerate() {
+        for g in 0..G {
+            for k in 0..LANES {
+                own[g][k] = a[g][i].mul_add(b[k], own[g][k]);
+            }
+        }
+    }
+    for (sum, own) in sums.iter_mut().zip(&own) {
+        (0..LANES).for_each(|k| sum[k] += own[k]);
+    }
+}
+
+/// Columns of Y that are summed together.
+const TOGETHER: usize = 4;
+/// Columns of V that are read side by side: as many as the processor fetches ahead of their use.
+const STREAMS: usize = 16;
+
+/// Y += V C over some rows of Y, the `first` of which is that of V.
+struct Sums<'a, 'y> {
+    y: &'a mut [&'y mut [f64]],
+    first: usize,
+    v: &'a [&'a [f64]],
+    /// A row of coefficients for each column of V, for the first columns of Y, then for the next.
+    c: &'a [[f64; TOGETHER]],
+}
+
+impl WithSimd for Sums<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        if S::REGISTER_COUNT >= 32 { self.run::<16>() } else { self.run::<8>() }
+    }
+}
+
+impl Sums<'_, '_> {
+    #[inline(always)]
+    fn run<const R: usize>(self) {
+        let (rows, m) = (self.y.first().map_or(0, |y| y.len()), self.v.len());
+        for start in (0..rows).step_by(SLAB) {
+            let own = start..rows.min(start + SLAB);
+            for begin in (0..m).step_by(STREAMS) {
+                let v = &self.v[begin..m.min(begin + STREAMS)];
+                for (y, c) in self.y.chunks_mut(TOGETHER).zip(self.c.chunks(m)) {
+                    let c = &c[begin..begin + v.len()];
+                    let mut y: Vec<&mut [f64]> = y.iter_mut().map(|y| &mut y[own.clone()]).collect();
+                    match <&mut [&mut [f64]; TOGETHER]>::try_from(&mut y[..]) {
+                        Ok(y) => add_sums::<R>(y, v, self.first + start, c),
+                        Err(_) => y.iter_mut().enumerate().for_each(|(k, y)| {
+                            for (v, c) in v.iter().zip(c) {
+                                let v = &v[self.first + start..];
+                                y.iter_mut().zip(v).for_each(|(y, v)| *y = v.mul_add(c[k], *y));
+                            }
+                        }),
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// y_k += Σ_j v_j c_jk, `first` being the row of V where y begins.
+#[inline(always)]
+fn add_sums<const R: usize>(
+    y: &mut [&mut [f64]; TOGETHER],
+    v: &[&[f64]],
+    first: usize,
+    c: &[[f64; TOGETHER]],
+) {
+    let rows = y[0].len();
+    let whole = rows - rows % R;
+    for i in (0..whole).step_by(R) {
+        let mut own = [[0.0; R]; TOGETHER];
+        for (own, y) in own.iter_mut().zip(&*y) {
+            own.copy_from_slice(&y[i..i + R]);
+        }
+        for (v, c) in v.iter().zip(c) {
+            let v = &v[first + i..][..R];
+            for k in 0..TOGETHER {
+                for r in 0..R {
+                    own[k][r] = v[r].mul_add(c[k], own[k][r]);
+                }
+            }
+        }
+        for (own, y) in own.iter().zip(&mut *y) {
+            y[i..i + R].copy_from_slice(own);
+        }
+    }
+    for i in whole..rows {
+        for (v, c) in v.iter().zip(c) {
+            for (y, c) in y.iter_mut().zip(c) {
+                y[i] = v[first + i].mul_add(*c, y[i]);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{combine_by_ranges, gram_by_ranges};
+    use super::*;
+
+    #[test]
+    fn kernels_equal_general_products() {
+        let wave = |n, m, s: f64| Mat::from_fn(n, m, |i, j| ((i * 7 + j * 3) as f64 * s).sin());
+        // More rows than a task and a slab, and column counts on either side of all groups.
+        for (n, m, w) in [(9000, 21, 11), (1030, 8, 4), (40, 3, 1), (17, 0, 5), (0, 4, 2), (300, 5, 0)] {
+            let (v, x, c) = (wave(n, m, 1.0), wave(n, w, 0.7), wave(m, w, 1.3));
+            let square = gram(v.as_ref(), x.as_ref()).unwrap();
+            assert!((square - gram_by_ranges(v.as_ref(), x.as_ref())).norm_max() <= 1e-11);
+            for accumulate in [Accum::Replace, Accum::Add] {
+                let (mut y, mut expected) = (x.clone(), x.clone());
+                assert!(combine(y.as_mut(), accumulate, v.as_ref(), c.as_ref(), -0.5));
+                combine_by_ranges(expected.as_mut(), accumulate, v.as_ref(), c.as_ref(), -0.5);
+                assert!((y - expected).norm_max() <= 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn columns_in_pieces_are_left_to_the_general_product() {
+        let a = Mat::from_fn(4, 30, |i, j| (i + j) as f64);
+        assert!(gram(a.transpose(), a.transpose()).is_none());
+        assert_eq!(super::super::gram(a.transpose(), a.transpose()), &a * a.transpose());
+    }
+}
