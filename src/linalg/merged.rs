@@ -161,34 +161,20 @@ impl Merged {
         });
     }
 
-    /// The factors with which the last of three matrices is the sum of the first two, but for round-off; none when it is
-    /// not.
-    pub fn proportion(&self) -> Option<[f64; 2]> {
-        /// What is left of an entry after a sum was rounded, and its factors.
-        const ROUND_OFF: f64 = 1e-13;
-        let (entries, []) = self.values.as_chunks::<3>() else { return None };
-        let mut factors = [0.0; 2];
-        // Least squares over all entries, each by its own size: small ones count as well. Long sums round, so what the
-        // first factors leave is fitted once more.
-        for _ in 0..2 {
-            let (mut normal, mut right) = ([[0.0; 2]; 2], [0.0; 2]);
-            for [x, y, z] in entries.iter().filter(|[_, _, z]| *z != 0.0) {
-                let row = [x / z, y / z];
-                let left = (z - factors[0] * x - factors[1] * y) / z;
-                for i in 0..2 {
-                    (0..2).for_each(|j| normal[i][j] += row[i] * row[j]);
-                    right[i] += row[i] * left;
-                }
-            }
-            let determinant = normal[0][0] * normal[1][1] - normal[0][1] * normal[1][0];
-            factors[0] += (right[0] * normal[1][1] - right[1] * normal[0][1]) / determinant;
-            factors[1] += (right[1] * normal[0][0] - right[0] * normal[1][0]) / determinant;
-        }
-        let fits = |[x, y, z]: &[f64; 3]| {
-            let (x, y) = (factors[0] * x, factors[1] * y);
-            (x + y - z).abs() <= ROUND_OFF * (x.abs() + y.abs())
-        };
-        entries.iter().all(fits).then_some(factors)
+    /// The values of all C matrices in every entry of the union.
+    ///
+    /// # Panics
+    /// When there are not C matrices.
+    pub fn entries<const C: usize>(&self) -> &[[f64; C]] {
+        assert!(self.count == C, "{} matrices", self.count);
+        self.values.as_chunks().0
+    }
+
+    /// [`Merged::entries`], each behind its row and column.
+    pub fn places<const C: usize>(&self) -> impl Iterator<Item = (usize, usize, &[f64; C])> {
+        let columns =
+            self.starts.windows(2).enumerate().flat_map(|(j, ends)| (ends[0]..ends[1]).map(move |_| j));
+        columns.zip(&self.rows).zip(self.entries()).map(|((j, i), values)| (*i as usize, j, values))
     }
 }
 
@@ -250,7 +236,7 @@ fn merge_column(matrices: &[&SparseMatrix], j: usize, rows: &mut Vec<u32>, value
 #[cfg(test)]
 mod tests {
     use super::super::samples;
-    use super::super::sparse::{add_scaled, times};
+    use super::super::sparse::times;
     use super::*;
 
     #[test]
@@ -268,13 +254,10 @@ mod tests {
     }
 
     #[test]
-    fn products_with_some_columns_each_and_sums_of_matrices() {
-        let [a, b] = [1, 2].map(|seed| samples::random_symmetric(301, seed));
-        let c = add_scaled(&[(5.0, &a), (3e-7, &b)]);
+    fn products_with_some_columns_each() {
+        let [a, b, c] = [1, 2, 3].map(|seed| samples::random_symmetric(301, seed));
         let merged = Merged::new(&[&a, &b, &c]);
-        let [p, q] = merged.proportion().unwrap();
-        assert!((p / 5.0 - 1.0).abs() < 1e-12 && (q / 3e-7 - 1.0).abs() < 1e-6, "{p} {q}");
-        assert_eq!(Merged::new(&[&a, &b, &samples::random_symmetric(301, 3)]).proportion(), None);
+        assert!(merged.places().all(|(i, j, v)| *v == [&a, &b, &c].map(|a| *a.get(i, j).unwrap_or(&0.0))));
         let x = Mat::from_fn(301, 3, |i, j| ((i * 7 + j * 3) as f64).sin());
         let mut out = [3, 2, 1].map(|k| Mat::zeros(301, k));
         let [first, second, third] = out.each_mut().map(|y| y.as_mut());

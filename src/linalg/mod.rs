@@ -6,8 +6,10 @@
 //!   [`lanczos`].
 //! * [`assignment`]: the pairs of least total cost.
 //! * [`dense`]: small symmetric eigenproblems and the likeness of two vectors.
+//! * [`few_rows`]: symmetric matrices with entries in a few rows.
 //! * [`matrix_market`]: matrices from and to files.
 //! * [`merged`]: products with several sparse matrices at once.
+//! * [`proportional`]: a matrix as α M + β K and a rest.
 //! * [`random`]: start vectors that are the same in every run.
 //! * [`tall`]: products of tall matrices, such as a set of modes.
 //! * [`toar`]: eigenpairs of a quadratic problem nearest a shift, by two-level Arnoldi.
@@ -17,10 +19,12 @@ pub mod assignment;
 pub mod dense;
 pub mod eigenpairs;
 pub mod factor;
+pub mod few_rows;
 pub mod lanczos;
 mod lanes;
 pub mod matrix_market;
 pub mod merged;
+pub mod proportional;
 pub mod random;
 pub mod sparse;
 pub mod tall;

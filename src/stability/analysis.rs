@@ -3,7 +3,7 @@
 use super::basis::Basis;
 use super::block::Block;
 use super::finish::finished;
-use super::operator::{Images, Operator};
+use super::operator::Operator;
 use super::projected::{SmallPair, project_interface, solve};
 use super::responses::{coupled_responses, few_responses};
 use super::round::{Measured, Scale, TOGETHER, Wanted};
@@ -290,15 +290,18 @@ fn middle_frequency(basis: &Basis<'_>, top: f64) -> f64 {
     below.get(below.len() / 2).copied().unwrap_or(top)
 }
 
-/// Pairs of the projected problem on the full order.
-fn expand(basis: &Basis<'_>, pairs: &[&SmallPair], to: &mut Measured) {
-    let expand = |pick: fn(&SmallPair) -> &Vec<c64>, vectors: &mut Block| {
+/// Pairs of the projected problem on the full order, and what the first `n_real` vectors of the basis, the real modes, have
+/// of the right ones: bₖᵀMφ.
+fn expand(basis: &Basis<'_>, n_real: usize, pairs: &[&SmallPair], to: &mut Measured) -> Block {
+    let small = |pick: fn(&SmallPair) -> &Vec<c64>| {
         let small: Vec<&[c64]> = pairs.iter().map(|pair| pick(pair).as_slice()).collect();
-        basis.expand_into(&unit_mass(basis, Block::from_columns(basis.len(), &small)), vectors);
+        unit_mass(basis, Block::from_columns(basis.len(), &small))
     };
+    let (right, left) = (small(|p| &p.right), small(|p| &p.left));
     to.lambda = pairs.iter().map(|pair| pair.lambda).collect();
-    expand(|p| &p.right, &mut to.right.vectors);
-    expand(|p| &p.left, &mut to.left);
+    basis.expand_into(&right, &mut to.right.vectors);
+    basis.expand_into(&left, &mut to.left);
+    right.map(|y| product(basis.mass.as_ref().subrows(0, n_real), y.as_ref()))
 }
 
 /// Coordinates scaled so that the vectors which they stand for have xᴴMx = 1.
@@ -330,12 +333,11 @@ fn evaluate(
         pairs.iter().zip(&settled).filter(|(_, place)| place.is_none()).map(|(pair, _)| pair).collect();
     let (mut wanted, mut new, mut measured) = (Wanted::default(), Vec::new(), Measured::default());
     for chunk in fresh.chunks(TOGETHER) {
-        let images = |images: &mut Images| scale.operator.renew(images);
-        expand(basis, chunk, &mut measured);
-        scale.measure(&mut measured, images);
-        wanted.add(scale, &measured, images);
+        let amplitudes = expand(basis, real.len(), chunk, &mut measured);
+        scale.measure(&mut measured);
+        wanted.add(scale, &measured);
         let exact: Vec<bool> = (0..chunk.len()).map(|j| measured.exact(j)).collect();
-        let modes = finished(scale.operator, &mut measured, real);
+        let modes = finished(scale.operator, &mut measured, &amplitudes);
         new.extend(modes.into_iter().zip(exact).map(|(mode, exact)| Found { mode, exact }));
     }
     let (mut before, mut new): (Vec<_>, _) = (before.into_iter().map(Some).collect(), new.into_iter());

@@ -1,7 +1,7 @@
 //! The subspace that the quadratic problem is projected on, grown by what the full order asks for.
 
 use super::block::Block;
-use super::operator::{Operator, Products};
+use super::operator::Operator;
 use crate::linalg::SparseMatrix;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::sparse::{add_scaled, times};
@@ -203,33 +203,26 @@ impl<'a> Basis<'a> {
     /// Projects what has come to the vectors since the last time.
     fn project(&mut self) {
         let (old, m) = (self.sizes.len(), self.len());
-        let border = || Mat::<f64>::zeros(m, m - old);
-        let (mut mass, mut stiffness, mut damping) = (border(), border(), border());
-        let mut hysteretic = self.hysteretic.as_ref().map(|_| border());
+        // Columns of the four projections, down to their diagonals: the rest follows from symmetry.
+        let mut borders = [(); 4].map(|()| Mat::<f64>::zeros(m, m - old));
         for (start, width) in panels(old..m) {
-            let products = self.operator.products(self.vectors.subcols(start, width));
-            let Products { inertia, elastic, damped, lossy } = products;
-            let onto = |border: &mut Mat<f64>, times: &Mat<f64>| {
-                let part = gram(self.vectors.as_ref(), times.as_ref());
-                border.subcols_mut(start - old, width).copy_from(part);
-            };
-            onto(&mut mass, &inertia);
-            onto(&mut stiffness, &elastic);
-            damped.iter().for_each(|times| onto(&mut damping, times));
-            hysteretic.iter_mut().zip(&lossy).for_each(|(border, times)| onto(border, times));
+            let known = self.vectors.subcols(0, start + width);
+            let forms = self.operator.forms(known, self.vectors.subcols(start, width));
+            for (border, form) in borders.iter_mut().zip(forms) {
+                border.submatrix_mut(0, start - old, start + width, width).copy_from(form);
+            }
         }
         let grow = |small: &Mat<f64>, border: &Mat<f64>| {
-            Mat::from_fn(m, m, |i, j| match (i < old, j < old) {
-                (true, true) => small[(i, j)],
-                (_, false) => border[(i, j - old)],
-                (false, true) => border[(j, i - old)],
+            Mat::from_fn(m, m, |i, j| {
+                let (i, j) = (i.min(j), i.max(j));
+                if j < old { small[(i, j)] } else { border[(i, j - old)] }
             })
         };
-        self.mass = grow(&self.mass, &mass);
-        self.stiffness = grow(&self.stiffness, &stiffness);
-        self.damping = grow(&self.damping, &damping);
-        self.hysteretic =
-            self.hysteretic.as_ref().zip(hysteretic.as_ref()).map(|(small, new)| grow(small, new));
+        let [mass, stiffness, damping, loss] = &borders;
+        self.mass = grow(&self.mass, mass);
+        self.stiffness = grow(&self.stiffness, stiffness);
+        self.damping = grow(&self.damping, damping);
+        self.hysteretic = self.hysteretic.as_ref().map(|small| grow(small, loss));
         let directions = &self.operator.interface.directions;
         self.interface = Mat::from_fn(m, directions.len(), |i, d| {
             if i < old { self.interface[(i, d)] } else { directions[d].dot(self.vectors.col_as_slice(i)) }

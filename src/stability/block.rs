@@ -28,18 +28,6 @@ impl Block {
         [&mut self.re, &mut self.im].into_iter().for_each(|part| part.resize_with(n, columns, |_, _| 0.0));
     }
 
-    /// The other vectors, as many of them.
-    pub(super) fn copy_from(&mut self, x: &Block) {
-        self.resize(x.re.nrows(), x.ncols());
-        self.re.copy_from(&x.re);
-        self.im.copy_from(&x.im);
-    }
-
-    /// What is there for both parts or for neither.
-    pub(super) fn both(re: Option<Mat<f64>>, im: Option<Mat<f64>>) -> Option<Self> {
-        re.zip(im).map(|(re, im)| Block { re, im })
-    }
-
     pub(super) fn from_columns(n: usize, columns: &[&[c64]]) -> Self {
         let part = |f: fn(&c64) -> f64| Mat::from_fn(n, columns.len(), |i, j| f(&columns[j][i]));
         Block { re: part(|z| z.re), im: part(|z| z.im) }
@@ -57,6 +45,21 @@ impl Block {
     /// The same operation on both parts.
     pub(super) fn map(&self, f: impl Fn(&Mat<f64>) -> Mat<f64>) -> Self {
         Block { re: f(&self.re), im: f(&self.im) }
+    }
+
+    /// self\[:, j\] = a\[j\] · x\[:, j\] + b\[j\] · y\[:, j\], in the memory at hand.
+    pub(super) fn set_sum(&mut self, [(a, x), (b, y)]: [(&[c64], &Block); 2]) {
+        self.resize(x.re.nrows(), x.ncols());
+        let own = self.re.par_col_iter_mut().zip(self.im.par_col_iter_mut());
+        let first = x.re.par_col_iter().zip(x.im.par_col_iter()).zip(a);
+        let second = y.re.par_col_iter().zip(y.im.par_col_iter()).zip(b);
+        own.zip(first).zip(second).for_each(|(((u, v), ((p, q), a)), ((r, s), b))| {
+            let terms = p.iter().zip(q.iter()).zip(r.iter().zip(s.iter()));
+            for ((u, v), ((p, q), (r, s))) in u.iter_mut().zip(v.iter_mut()).zip(terms) {
+                *u = a.re * p - a.im * q + (b.re * r - b.im * s);
+                *v = a.re * q + a.im * p + (b.re * s + b.im * r);
+            }
+        });
     }
 
     /// self\[:, j\] += factor\[j\] · x\[:, j\].

@@ -2,7 +2,7 @@
 
 use super::GrowthBudget;
 use super::interface::Origin;
-use super::operator::{Images, Operator};
+use super::operator::{Images, Operator, Sum};
 use crate::linalg::c64;
 
 impl GrowthBudget {
@@ -20,7 +20,8 @@ impl GrowthBudget {
 /// force that follows the normal motion (t, g) couples the modes. A real eigenvalue (ω = 0) has no such balance: all
 /// terms are zero.
 pub(super) fn growth_budgets(operator: &Operator<'_>, lambda: &[c64], images: &Images) -> Vec<GrowthBudget> {
-    let Images { vectors: phi, damped, lossy, .. } = images;
+    let phi = &images.vectors;
+    let one = c64::new(1.0, 0.0);
     let of = |(j, lambda): (usize, &c64)| {
         let mut budget = GrowthBudget::default();
         let omega = lambda.im;
@@ -29,12 +30,9 @@ pub(super) fn growth_budgets(operator: &Operator<'_>, lambda: &[c64], images: &I
         }
         let by_velocity = |gamma: c64| -(omega * gamma.re + lambda.re * gamma.im) / (2.0 * omega);
         let by_displacement = |kappa: c64| -kappa.im / (2.0 * omega);
-        if let Some(damped) = damped {
-            budget.structural_damping += by_velocity(phi.dot(j, damped));
-        }
-        if let Some(lossy) = lossy {
-            budget.structural_damping += by_displacement(c64::new(0.0, 1.0) * phi.dot(j, lossy));
-        }
+        let of_structure = |sum: Sum| operator.structure_form(j, phi, &sum, images);
+        budget.structural_damping += by_velocity(of_structure(Sum { damping: one, ..Sum::default() }))
+            + by_displacement(c64::new(0.0, 1.0) * of_structure(Sum { loss: one, ..Sum::default() }));
         let motion = operator.interface.motions(phi.re.col_as_slice(j), phi.im.col_as_slice(j));
         for term in &operator.interface.terms {
             let product = motion[term.row].conj() * motion[term.column];

@@ -3,8 +3,9 @@
 use super::analysis::{in_band, shifted_factor};
 use super::basis::Basis;
 use super::block::Block;
+use super::damper::Damper;
 use super::interface::{Interface, Term, terms_of_every_point};
-use super::operator::{Images, Operator, damping_times};
+use super::operator::Operator;
 use super::reduced::{Projection, Reduced, ReducedModes};
 use super::responses::interface_responses;
 use super::round::{Measured, Scale, TOGETHER, Wanted};
@@ -12,7 +13,6 @@ use crate::equilibrium::{PointState, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::dense::product;
 use crate::linalg::sparse::times;
-use crate::linalg::tall::gram;
 use crate::linalg::{SymmetricFactor, c64};
 use crate::modal::RealModes;
 use crate::system::{Damping, System};
@@ -94,7 +94,8 @@ impl<'a> Frame<'a> {
         band_hz: [f64; 2],
     ) -> Result<Self> {
         let stiffness = tangent_stiffness(system, displacement)?;
-        let operator = Operator::with_interface(system, stiffness, Interface::of_every_point(system));
+        let operator =
+            Operator::with_interface(system, stiffness, Interface::of_every_point(system), &dampings);
         let band = band_hz.map(|f| TAU * f);
         let (factor, _) = shifted_factor(&operator, real, band)?;
         Ok(Frame { system, operator, factor, real, dampings, band })
@@ -122,7 +123,7 @@ impl<'f> Family<'f> {
             .collect();
         let mut basis = Basis::new(&frame.operator, frame.real.shapes.as_ref(), frame.band[1].powi(2));
         let top = frame.band[1];
-        let first = interface_responses(&frame.operator.with_terms(terms), &*frame.factor, top);
+        let first = interface_responses(&frame.operator.with_terms(terms, &[]), &*frame.factor, top);
         let mut second = times(frame.operator.mass, first.as_ref());
         second *= faer::Scale(top * top);
         frame.factor.solve_in_place(second.as_mut());
@@ -209,7 +210,7 @@ impl<'f> Family<'f> {
 
     /// Some modes of `state` on the full order, and what those ask for that are not exact.
     fn measure(&self, state: &SlidingState, modes: &ReducedModes) -> (FamilyCheck, Wanted) {
-        let operator = self.frame.operator.with_terms(self.frame.terms(state));
+        let operator = self.frame.operator.with_terms(self.frame.terms(state), &state.damping_weights);
         let scale = Scale { operator: &operator, factor: &*self.frame.factor, top: self.frame.band[1] };
         let turned = |y: &Mat<c64>, first: usize, count: usize| {
             let part = |f: fn(&c64) -> f64| {
@@ -222,57 +223,27 @@ impl<'f> Family<'f> {
             (FamilyCheck::default(), Wanted::default(), Measured::default());
         for (chunk, lambda) in modes.eigenvalues.chunks(TOGETHER).enumerate() {
             let of = |y: &Mat<c64>| turned(y, chunk * TOGETHER, lambda.len());
-            let images = |images: &mut Images| {
-                operator.renew(images);
-                self.weigh(images, &state.damping_weights);
-            };
             measured.lambda = lambda.to_vec();
             self.basis.expand_into(&of(&modes.right), &mut measured.right.vectors);
             self.basis.expand_into(&of(&modes.left), &mut measured.left);
-            scale.measure(&mut measured, images);
-            wanted.add(&scale, &measured, images);
+            scale.measure(&mut measured);
+            wanted.add(&scale, &measured);
             check.eigenvalues.extend(lambda);
             check.backward_errors.extend(&measured.backward_error);
             check.eigenvalue_errors.extend(&measured.eigenvalue_error);
         }
         (check, wanted)
     }
-
-    /// C x and H x with the weights of the dampings.
-    fn weigh(&self, x: &mut Images, weights: &[f64]) {
-        let own = weights.first().copied().unwrap_or(1.0);
-        if own != 1.0 {
-            let blocks = x.damped.iter_mut().chain(&mut x.lossy);
-            blocks.for_each(|block| block.scale(&vec![own; block.ncols()]));
-        }
-        for (damping, w) in self.frame.dampings.iter().zip(weights.iter().skip(1)).filter(|(_, w)| **w != 0.0)
-        {
-            let of = |part: &Mat<f64>| damping_times(damping, part.as_ref());
-            if let Some(damped) = Block::both(of(&x.vectors.re), of(&x.vectors.im)) {
-                add(&mut x.damped, damped, *w);
-            }
-            if let Some(h) = &damping.hysteretic {
-                let lossy = x.vectors.map(|v| times(h, v.as_ref()));
-                add(&mut x.lossy, lossy, *w);
-            }
-        }
-    }
-}
-
-fn add(sum: &mut Option<Block>, part: Block, weight: f64) {
-    let columns = part.ncols();
-    let sum = sum.get_or_insert_with(|| Block::zeros(part.re.nrows(), columns));
-    sum.add_scaled(&vec![c64::new(weight, 0.0); columns], &part);
 }
 
 /// Projects every damping on the basis and diagonalises.
 fn reduce(frame: &Frame<'_>, basis: &Basis<'_>, springs: &[(usize, f64)]) -> Result<Reduced> {
-    let v = basis.vectors.as_ref();
-    let project = |d: &&Damping| {
-        let c = damping_times(d, v).map_or(Mat::zeros(basis.len(), basis.len()), |cv| gram(v, cv.as_ref()));
-        (c, d.hysteretic.as_ref().map(|h| gram(v, times(h, v).as_ref())))
+    let (v, mass, stiffness) = (basis.vectors.as_ref(), &basis.mass, &basis.stiffness);
+    let project = |(d, damper): (&&Damping, &Damper<'_>)| {
+        let loss = d.hysteretic.as_ref().map(|_| damper.loss_form(v, v, mass, stiffness));
+        (damper.viscous_form(v, v, mass, stiffness), loss)
     };
-    let variants: Vec<_> = frame.dampings.iter().map(project).collect();
+    let variants: Vec<_> = frame.dampings.iter().zip(&frame.operator.dampers[1..]).map(project).collect();
     let projection = Projection {
         mass: basis.mass.clone(),
         stiffness: basis.stiffness.clone(),

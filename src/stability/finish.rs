@@ -7,33 +7,30 @@ use super::budget::growth_budgets;
 use super::operator::{Images, Operator, Side};
 use super::round::Measured;
 use crate::linalg::c64;
-use crate::linalg::tall::gram;
-use crate::modal::RealModes;
 
 /// What is told of right vectors.
 struct Told {
     backward_error: Vec<f64>,
     growth: Vec<GrowthBudget>,
-    participation: Vec<Vec<(usize, f64)>>,
 }
 
 /// The modes of pairs that were measured. The error of φ is about the correction z = −A⁻¹Q(λ)φ, which was solved for to tell
 /// that of λ: φ + z is given where its residual is the smaller one, which leaves a few hundredths of that error. Its contact
 /// motion and its share of the modes are settled by the projection; z meets only the rest of the spectrum, as far as the
-/// basis goes.
+/// basis goes: so `amplitudes`, what the real modes have of φ, tells their part in φ + z as well.
 pub(super) fn finished(
     operator: &Operator<'_>,
     measured: &mut Measured,
-    real: &RealModes,
+    amplitudes: &Block,
 ) -> Vec<ComplexMode> {
     let Measured { lambda, right, left, correction, backward_error, eigenvalue_error, condition } = measured;
     correction.add(right);
-    let corrected = Told::of(operator, lambda, correction, real);
+    let corrected = Told::of(operator, lambda, correction);
     let better = |j: &usize| corrected.backward_error[*j] < backward_error[*j];
     let plain: Vec<usize> = (0..lambda.len()).filter(|j| !better(j)).collect();
     let their: Vec<c64> = plain.iter().map(|j| lambda[*j]).collect();
     let mut as_found = right.gathered(&plain);
-    let uncorrected = Told::of(operator, &their, &mut as_found, real);
+    let uncorrected = Told::of(operator, &their, &mut as_found);
     let mode = |j: usize| {
         let (told, images, k) = match plain.binary_search(&j) {
             Ok(k) => (&uncorrected, &as_found, k),
@@ -47,7 +44,7 @@ pub(super) fn finished(
             eigenvalue_error: eigenvalue_error[j],
             condition: condition[j],
             growth: told.growth[k],
-            participation: told.participation[k].clone(),
+            participation: shares(amplitudes, j),
         }
     };
     (0..lambda.len()).map(mode).collect()
@@ -55,18 +52,12 @@ pub(super) fn finished(
 
 impl Told {
     /// Of vectors that are scaled to unit mass first.
-    fn of(operator: &Operator<'_>, lambda: &[c64], images: &mut Images, real: &RealModes) -> Self {
+    fn of(operator: &Operator<'_>, lambda: &[c64], images: &mut Images) -> Self {
         images.normalise();
         let growth = growth_budgets(operator, lambda, images);
-        let amplitudes = images.inertia.map(|part| gram(real.shapes.as_ref(), part.as_ref()));
         let residual = operator.value(Side::Right, lambda, images);
         let error = |j: usize| residual.norm(j) / (operator.size(lambda[j]) * images.vectors.norm(j));
-        let columns = 0..lambda.len();
-        Told {
-            backward_error: columns.clone().map(error).collect(),
-            growth,
-            participation: columns.map(|j| shares(&amplitudes, j)).collect(),
-        }
+        Told { backward_error: (0..lambda.len()).map(error).collect(), growth }
     }
 }
 

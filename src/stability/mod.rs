@@ -12,6 +12,7 @@ mod basis;
 mod block;
 mod budget;
 mod certificate;
+mod damper;
 mod family;
 mod filter;
 mod finish;

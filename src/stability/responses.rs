@@ -102,9 +102,7 @@ pub(super) fn coupled_responses(
     let s = vec![c64::new(0.0, omega); SAMPLES];
     let mut sampled = Mat::zeros(operator.n(), 4 * SAMPLES);
     for (half, side) in [Side::Right, Side::Left].into_iter().enumerate() {
-        let images = operator.images(basis.expand(&mixed()));
-        let mut forces = Block::zeros(operator.n(), s.len());
-        operator.add_rest(side, &s, &images, &mut forces);
+        let forces = operator.coupling(side, &s, &basis.expand(&mixed()));
         sampled.subcols_mut(2 * half * SAMPLES, SAMPLES).copy_from(&forces.re);
         sampled.subcols_mut((2 * half + 1) * SAMPLES, SAMPLES).copy_from(&forces.im);
     }

@@ -41,13 +41,12 @@ pub(super) struct Scale<'a> {
 }
 
 impl Scale<'_> {
-    /// Measures pairs, given λ, φ and ψ; `images` tells what the structure makes of vectors. The right corrections, which are
-    /// solved for, tell the errors of λ and φ.
-    pub(super) fn measure(&self, pairs: &mut Measured, images: impl Fn(&mut Images)) {
+    /// Measures pairs, given λ, φ and ψ. The right corrections, which are solved for, tell the errors of λ and φ.
+    pub(super) fn measure(&self, pairs: &mut Measured) {
         let Scale { operator, factor, top } = *self;
         let Measured { lambda, right, left, correction, .. } = pairs;
         let columns = 0..lambda.len();
-        images(right);
+        operator.renew(right);
         let residual = &mut correction.vectors;
         operator.value_into(Side::Right, lambda, right, residual);
         let error = |j: usize| residual.norm(j) / (operator.size(lambda[j]) * right.vectors.norm(j));
@@ -56,7 +55,7 @@ impl Scale<'_> {
             *part *= faer::Scale(-1.0);
             factor.solve_in_place(part.as_mut());
         }
-        images(correction);
+        operator.renew(correction);
         let steepness = operator.steepness(lambda, left, right);
         let rise = operator.form(lambda, left, correction);
         let size = |j: usize| steepness[j].norm() * lambda[j].norm().max(1e-6 * top);
@@ -83,8 +82,8 @@ pub(super) struct Wanted {
 }
 
 impl Wanted {
-    /// Adds those of the pairs that are not exact; `images` as in [`Scale::measure`].
-    pub(super) fn add(&mut self, scale: &Scale<'_>, measured: &Measured, images: impl Fn(&mut Images)) {
+    /// Adds those of the pairs that are not exact.
+    pub(super) fn add(&mut self, scale: &Scale<'_>, measured: &Measured) {
         let open: Vec<usize> = (0..measured.lambda.len()).filter(|j| !measured.exact(*j)).collect();
         if open.is_empty() {
             return;
@@ -97,8 +96,7 @@ impl Wanted {
             })
         };
         self.right.push(scaled(Block::gathered(&measured.correction.vectors, &open)));
-        let mut left = Images { vectors: Block::gathered(&measured.left, &open), ..Images::default() };
-        images(&mut left);
+        let left = scale.operator.images(Block::gathered(&measured.left, &open));
         self.left.push(scaled(scale.operator.value(Side::Left, &lambda, &left)));
     }
 

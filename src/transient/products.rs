@@ -2,7 +2,9 @@
 
 use super::rows::chunks;
 use crate::linalg::SparseMatrix;
+use crate::linalg::few_rows::FewRows;
 use crate::linalg::merged::Merged;
+use crate::linalg::proportional::Proportional;
 use crate::system::Damping;
 use faer::{Mat, MatMut, MatRef};
 
@@ -11,10 +13,18 @@ use faer::{Mat, MatMut, MatRef};
 pub(super) enum Products {
     /// All matrices are diagonal, as those of reduced models: nothing to factorise, a few products a step.
     Diagonal(Diagonal),
-    /// M and K in one pass, C = αM + βK for free.
-    Proportional { matrices: Merged, factors: Option<[f64; 2]> },
+    /// M and K in one pass; C = αM + βK and a few rows nearly for free.
+    Proportional { matrices: Merged, viscous: Option<Viscous> },
     /// M, K and C in one pass.
     General { matrices: Merged },
+}
+
+/// C = αM + βK + rest.
+#[derive(Debug)]
+pub(super) struct Viscous {
+    /// α \[1/s\] and β \[s\].
+    factors: [f64; 2],
+    rest: Option<FewRows>,
 }
 
 /// The diagonals of M, K and C.
@@ -42,16 +52,15 @@ impl Products {
             return Products::Diagonal(diagonal);
         }
         let Some(viscous) = &damping.viscous else {
-            return Products::Proportional { matrices: Merged::new(&[stiffness, mass]), factors: None };
+            return Products::Proportional { matrices: Merged::new(&[stiffness, mass]), viscous: None };
         };
-        let matrices = Merged::new(&[stiffness, mass, viscous]);
-        match matrices.proportion() {
-            Some([by_stiffness, by_mass]) => Products::Proportional {
-                matrices: Merged::new(&[stiffness, mass]),
-                factors: Some([by_mass, by_stiffness]),
-            },
-            None => Products::General { matrices },
+        let split = Proportional::split(viscous, mass, stiffness);
+        let rest = split.rest.as_ref().map(FewRows::new);
+        if rest.as_ref().is_some_and(|rest| !rest.are_few(mass.ncols())) {
+            return Products::General { matrices: Merged::new(&[stiffness, mass, viscous]) };
         }
+        let viscous = Viscous { factors: [split.mass_factor, split.stiffness_factor], rest };
+        Products::Proportional { matrices: Merged::new(&[stiffness, mass]), viscous: Some(viscous) }
     }
 
     /// The diagonals, where there is nothing else.
@@ -74,10 +83,11 @@ impl Products {
                     scale(&diagonal.viscous, rates, viscous.as_mut());
                 }
             }
-            Products::Proportional { matrices, factors } => {
+            Products::Proportional { matrices, viscous } => {
                 matrices.multiply([(0, elastic), (1, inertia)], motion.as_ref());
-                if let (Some(factors), Some(viscous)) = (factors, out.viscous) {
+                if let (Some(Viscous { factors, rest }), Some(viscous)) = (viscous, out.viscous) {
                     combine(*factors, out.inertia, out.elastic, viscous);
+                    rest.iter().for_each(|rest| rest.add_times(rates, viscous));
                 }
             }
             Products::General { matrices } => match out.viscous {
@@ -135,5 +145,43 @@ fn scale(d: &[f64], x: MatRef<'_, f64>, mut y: MatMut<'_, f64>) {
     for k in 0..x.ncols() {
         let column = y.as_mut().col_mut(k).iter_mut().zip(x.col(k).iter());
         column.zip(d).for_each(|((y, x), d)| *y = d * x);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::samples;
+    use crate::linalg::sparse::{add_scaled, times};
+
+    #[test]
+    fn every_way_gives_the_products_of_the_matrices() {
+        let (k, m) = samples::plate(8, true);
+        let n = k.ncols();
+        let rayleigh = add_scaled(&[(3.0, &m), (2e-6, &k)]);
+        let dashpots = |every: usize| {
+            samples::from_dense(
+                Mat::from_fn(n, n, |i, j| if i == j && i % every == 0 { 7.0 } else { 0.0 }).as_ref(),
+            )
+        };
+        let with = |every: usize| Some(add_scaled(&[(1.0, &rayleigh), (1.0, &dashpots(every))]));
+        let motion = Mat::from_fn(n, 3, |i, j| ((i * 7 + j * 3) as f64).sin());
+        let ways = [None, Some(rayleigh.clone()), with(40), with(2), Some(samples::random_definite(n, 3))];
+        for (way, viscous) in ways.into_iter().enumerate() {
+            let damping = Damping { viscous, ..Damping::default() };
+            let products = Products::new(&m, &k, &damping);
+            assert_eq!(matches!(products, Products::General { .. }), way >= 3);
+            let [mut elastic, mut inertia, mut damped] = [3, 2, 2].map(|columns| Mat::zeros(n, columns));
+            let there = damping.viscous.is_some().then_some(&mut damped);
+            products
+                .derive(&motion, Derived { elastic: &mut elastic, inertia: &mut inertia, viscous: there });
+            let near = |found: &Mat<f64>, a: &SparseMatrix, first: usize| {
+                let expected = times(a, motion.subcols(first, 3 - first));
+                assert!((found - &expected).norm_max() <= 1e-11 * expected.norm_max(), "{way}");
+            };
+            near(&elastic, &k, 0);
+            near(&inertia, &m, 1);
+            damping.viscous.iter().for_each(|c| near(&damped, c, 1));
+        }
     }
 }

@@ -24,7 +24,6 @@
 mod beyond;
 mod contour;
 mod pencil;
-mod proportional;
 mod reduced;
 mod remainder;
 mod rows;

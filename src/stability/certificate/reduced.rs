@@ -1,13 +1,15 @@
 //! The system as its interface sees it: oscillators, what couples them, and a bound on what the basis leaves out.
 
-use super::proportional::Proportional;
 use super::remainder::Remainder;
 use super::rows::Rows;
 use crate::error::Result;
 use crate::linalg::dense::{definite_pencil, product};
+use crate::linalg::few_rows::FewRows;
+use crate::linalg::proportional::Proportional;
 use crate::linalg::sparse::times;
 use crate::linalg::tall::{expand, gram};
 use crate::stability::analysis::Analysis;
+use crate::stability::damper::{Damper, Part, modal_times};
 use faer::Mat;
 use std::f64::consts::TAU;
 
@@ -57,26 +59,26 @@ pub(super) struct DampingParts {
 impl DampingParts {
     fn new(analysis: &Analysis<'_>) -> Self {
         let (operator, basis) = (&analysis.operator, &analysis.basis);
-        let none = || Proportional { mass_factor: 0.0, stiffness_factor: 0.0, rest: None };
-        let split = |x| Proportional::split(x, operator.mass, &operator.stiffness);
-        let viscous = operator.damping.viscous.as_ref().map_or_else(none, split);
-        let loss = operator.damping.hysteretic.as_ref().map_or_else(none, split);
-        let modal_inside = modal_inside(analysis);
-        let mut damped = viscous.rest.as_ref().map(|d| Rows::image(d, basis.vectors.as_ref()));
-        if let Some(modal) = operator.damping.modal.as_ref().filter(|_| !modal_inside) {
-            let mut amplitudes = gram(modal.basis.as_ref(), basis.vectors.as_ref());
-            for (i, c) in modal.coefficients.iter().enumerate() {
-                (0..amplitudes.ncols()).for_each(|j| amplitudes[(i, j)] *= c);
-            }
-            let modal = expand(modal.basis.as_ref(), amplitudes.as_ref());
-            let modal = Rows::whole(modal);
+        let Damper { viscous, loss, modal } = &operator.dampers[0];
+        let rest = |part: &Part| {
+            let rest = part.split.rest.as_ref().map(FewRows::new);
+            rest.map(|rest| Rows::image(&rest, basis.vectors.as_ref()))
+        };
+        let (modal_inside, mut damped) = (modal_inside(analysis), rest(viscous));
+        if let Some(modal) = modal.filter(|_| !modal_inside) {
+            let modal = Rows::whole(modal_times(modal, basis.vectors.as_ref()));
             damped = Some(match damped {
                 Some(rest) => modal.plus(&rest),
                 None => modal,
             });
         }
-        let lossy = loss.rest.as_ref().map(|h| Rows::image(h, basis.vectors.as_ref()));
-        DampingParts { viscous, loss, modal_inside, damped, lossy }
+        DampingParts {
+            viscous: viscous.split.clone(),
+            loss: loss.split.clone(),
+            modal_inside,
+            damped,
+            lossy: rest(loss),
+        }
     }
 }
 

@@ -16,12 +16,12 @@
 //! ZᵀF (ZᵀAZ)⁻¹FᵀZ = Fᵀ(A⁻¹ − B(BᵀAB)⁻¹Bᵀ)F of the columns F = \[MB DB H_rB W\] only: half a block solve
 //! ([`compliances`]) of F − AB(BᵀAB)⁻¹BᵀF.
 
-use super::proportional::Proportional;
 use super::reduced::DampingParts;
 use super::rows::Rows;
 use crate::error::Result;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::factor::{SymmetricFactor, compliances, factorize_like};
+use crate::linalg::proportional::Proportional;
 use crate::linalg::sparse::{add_scaled, times};
 use crate::linalg::tall::{combine, panels};
 use crate::linalg::{SparseMatrix, c64};

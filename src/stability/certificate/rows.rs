@@ -1,10 +1,9 @@
 //! Tall vectors that are zero but in some rows, such as the forces of a few dashpots and contacts, and as few directions as
 //! span them.
 
-use crate::linalg::SparseMatrix;
-use crate::linalg::sparse::{dot, times};
+use crate::linalg::few_rows::{FewRows, picked};
+use crate::linalg::sparse::dot;
 use crate::linalg::tall::gram;
-use faer::sparse::Triplet;
 use faer::{Mat, MatMut, MatRef};
 
 /// Columns with entries in the rows `rows` (ascending) only.
@@ -20,19 +19,9 @@ impl Rows {
         Rows { rows: (0..values.nrows()).collect(), values }
     }
 
-    /// D B of a symmetric D.
-    pub(super) fn image(d: &SparseMatrix, b: MatRef<'_, f64>) -> Self {
-        let rows: Vec<usize> = (0..d.ncols()).filter(|j| !d.row_idx_of_col_raw(*j).is_empty()).collect();
-        let place = |row: usize| rows.partition_point(|r| *r < row);
-        let entries = rows.iter().enumerate().flat_map(|(j, column)| {
-            let entries = d.row_idx_of_col_raw(*column).iter().zip(d.val_of_col(*column));
-            entries.map(move |(i, v)| (*i, j, *v))
-        });
-        let triplets: Vec<_> = entries.map(|(i, j, v)| Triplet::new(place(i), j, v)).collect();
-        let size = rows.len();
-        let own = SparseMatrix::try_new_from_triplets(size, size, &triplets).expect("rows of D");
-        let values = times(&own, picked(b, &rows).as_ref());
-        Rows { rows, values }
+    /// D B.
+    pub(super) fn image(d: &FewRows, b: MatRef<'_, f64>) -> Self {
+        Rows { rows: d.rows().to_vec(), values: d.times(b) }
     }
 
     /// The columns of both, one behind the other.
@@ -122,11 +111,6 @@ fn length(x: &[f64]) -> f64 {
     dot(x, x).sqrt()
 }
 
-/// Some rows of a tall matrix.
-fn picked(v: MatRef<'_, f64>, rows: &[usize]) -> Mat<f64> {
-    Mat::from_fn(rows.len(), v.ncols(), |i, j| v[(rows[i], j)])
-}
-
 /// Two ascending lists as one.
 fn union(a: &[usize], b: &[usize]) -> Vec<usize> {
     let mut all = [a, b].concat();
@@ -156,8 +140,7 @@ mod tests {
         });
         let d = samples::from_dense(few.as_ref());
         let b = Mat::from_fn(n, 11, |i, j| ((3 * i + 5 * j) as f64).sin());
-        let image = Rows::image(&d, b.as_ref());
-        assert_eq!(image.rows, (0..n).filter(|i| i % 7 == 3).collect::<Vec<_>>());
+        let image = Rows::image(&FewRows::new(&d), b.as_ref());
         let whole = &few * &b;
         assert!((written(n, &image) - &whole).norm_max() < 1e-13);
         assert!((image.seen_by(b.as_ref()) - b.transpose() * &whole).norm_max() < 1e-12);

@@ -1,0 +1,86 @@
+//! Symmetric matrices with entries in a few rows, such as the dashpots of a structure: products touch those rows only.
+
+use super::SparseMatrix;
+use super::sparse::times;
+use faer::sparse::Triplet;
+use faer::{Mat, MatRef};
+
+/// A symmetric matrix, as its rows that have entries and what stands between them.
+#[derive(Debug, Clone)]
+pub struct FewRows {
+    rows: Vec<usize>,
+    own: SparseMatrix,
+}
+
+impl FewRows {
+    /// Of a symmetric matrix stored whole.
+    pub fn new(d: &SparseMatrix) -> Self {
+        let rows: Vec<usize> = (0..d.ncols()).filter(|j| !d.row_idx_of_col_raw(*j).is_empty()).collect();
+        let place = |row: usize| rows.partition_point(|r| *r < row);
+        let entries = rows.iter().enumerate().flat_map(|(j, column)| {
+            let entries = d.row_idx_of_col_raw(*column).iter().zip(d.val_of_col(*column));
+            entries.map(move |(i, v)| (*i, j, *v))
+        });
+        let triplets: Vec<_> = entries.map(|(i, j, v)| Triplet::new(place(i), j, v)).collect();
+        let own = SparseMatrix::try_new_from_triplets(rows.len(), rows.len(), &triplets);
+        FewRows { own: own.expect("indices of the rows"), rows }
+    }
+
+    /// Whether products with the rows alone cost little beside those with a matrix that has entries in all `n` rows.
+    pub fn are_few(&self, n: usize) -> bool {
+        8 * self.rows.len() <= n
+    }
+
+    /// The rows with entries, ascending.
+    pub fn rows(&self) -> &[usize] {
+        &self.rows
+    }
+
+    /// The rows of D x that are not zero: one for each of [`FewRows::rows`].
+    ///
+    /// # Panics
+    /// When x has fewer rows than D.
+    pub fn times(&self, x: MatRef<'_, f64>) -> Mat<f64> {
+        times(&self.own, picked(x, &self.rows).as_ref())
+    }
+
+    /// y += D x.
+    ///
+    /// # Panics
+    /// When y has fewer rows than D.
+    pub fn add_times(&self, x: MatRef<'_, f64>, y: &mut Mat<f64>) {
+        let image = self.times(x);
+        for j in 0..image.ncols() {
+            let y = y.col_as_slice_mut(j);
+            self.rows.iter().zip(image.col_as_slice(j)).for_each(|(i, v)| y[*i] += v);
+        }
+    }
+}
+
+/// Some rows of a tall matrix.
+pub fn picked(v: MatRef<'_, f64>, rows: &[usize]) -> Mat<f64> {
+    Mat::from_fn(rows.len(), v.ncols(), |i, j| v[(rows[i], j)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::samples;
+    use super::*;
+
+    #[test]
+    fn products_are_those_of_the_whole_matrix() {
+        let n = 60;
+        let whole = Mat::from_fn(n, n, |i, j| {
+            let seldom = i % 7 == 3 && j % 7 == 3;
+            if seldom { ((i * j) as f64).cos() } else { 0.0 }
+        });
+        let few = FewRows::new(&samples::from_dense(whole.as_ref()));
+        assert_eq!(few.rows(), (0..n).filter(|i| i % 7 == 3).collect::<Vec<_>>());
+        let x = Mat::from_fn(n, 11, |i, j| ((3 * i + 5 * j) as f64).sin());
+        let expected = &whole * &x;
+        assert!((few.times(x.as_ref()) - picked(expected.as_ref(), few.rows())).norm_max() < 1e-13);
+        let mut y = x.clone();
+        few.add_times(x.as_ref(), &mut y);
+        assert!((y - &x - expected).norm_max() < 1e-13);
+    }
+}

@@ -1,0 +1,107 @@
+//! What it takes to apply the damping of a structure to vectors whose M x and K x are known.
+
+use crate::linalg::SparseMatrix;
+use crate::linalg::few_rows::{FewRows, picked};
+use crate::linalg::proportional::Proportional;
+use crate::linalg::sparse::times;
+use crate::linalg::tall::{expand, gram};
+use crate::system::{Damping, ModalDamping};
+use faer::{Mat, MatRef};
+
+/// C and H of a structure, each α M + β K, a few rows, and what is wide: seldom all of them.
+#[derive(Debug, Clone)]
+pub(super) struct Damper<'a> {
+    pub(super) viscous: Part,
+    pub(super) loss: Part,
+    pub(super) modal: Option<&'a ModalDamping>,
+}
+
+/// C, but for modal damping, or H.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Part {
+    /// α M + β K + rest.
+    pub(super) split: Proportional,
+    /// The rest, where it has entries in few rows.
+    pub(super) few: Option<FewRows>,
+}
+
+impl Part {
+    fn new(x: Option<&SparseMatrix>, mass: &SparseMatrix, stiffness: &SparseMatrix) -> Self {
+        let Some(x) = x else { return Part::default() };
+        let split = Proportional::split(x, mass, stiffness);
+        let few = split.rest.as_ref().map(FewRows::new).filter(|few| few.are_few(x.ncols()));
+        Part { split, few }
+    }
+
+    /// The rest, where it has entries in many rows.
+    pub(super) fn wide(&self) -> Option<&SparseMatrix> {
+        self.split.rest.as_ref().filter(|_| self.few.is_none())
+    }
+
+    /// BᵀXY beside `mass` and `stiffness`, BᵀMY and BᵀKY.
+    fn form(
+        &self,
+        b: MatRef<'_, f64>,
+        y: MatRef<'_, f64>,
+        mass: &Mat<f64>,
+        stiffness: &Mat<f64>,
+    ) -> Mat<f64> {
+        let Proportional { mass_factor, stiffness_factor, .. } = self.split;
+        let mut form = mass * faer::Scale(mass_factor) + stiffness * faer::Scale(stiffness_factor);
+        if let Some(few) = &self.few {
+            form += gram(picked(b, few.rows()).as_ref(), few.times(y).as_ref());
+        }
+        if let Some(wide) = self.wide() {
+            form += gram(b, times(wide, y).as_ref());
+        }
+        form
+    }
+}
+
+impl<'a> Damper<'a> {
+    pub(super) fn new(damping: &'a Damping, mass: &SparseMatrix, stiffness: &SparseMatrix) -> Self {
+        let part = |x: &Option<SparseMatrix>| Part::new(x.as_ref(), mass, stiffness);
+        let (viscous, loss) = rayon::join(|| part(&damping.viscous), || part(&damping.hysteretic));
+        Damper { viscous, loss, modal: damping.modal.as_ref() }
+    }
+
+    /// BᵀCY beside `mass` and `stiffness`, BᵀMY and BᵀKY.
+    pub(super) fn viscous_form(
+        &self,
+        b: MatRef<'_, f64>,
+        y: MatRef<'_, f64>,
+        mass: &Mat<f64>,
+        stiffness: &Mat<f64>,
+    ) -> Mat<f64> {
+        let mut form = self.viscous.form(b, y, mass, stiffness);
+        if let Some(modal) = self.modal {
+            form += gram(gram(modal.basis.as_ref(), b).as_ref(), amplitudes(modal, y).as_ref());
+        }
+        form
+    }
+
+    /// BᵀHY beside `mass` and `stiffness`, BᵀMY and BᵀKY.
+    pub(super) fn loss_form(
+        &self,
+        b: MatRef<'_, f64>,
+        y: MatRef<'_, f64>,
+        mass: &Mat<f64>,
+        stiffness: &Mat<f64>,
+    ) -> Mat<f64> {
+        self.loss.form(b, y, mass, stiffness)
+    }
+}
+
+/// C x of modal damping.
+pub(super) fn modal_times(modal: &ModalDamping, x: MatRef<'_, f64>) -> Mat<f64> {
+    expand(modal.basis.as_ref(), amplitudes(modal, x).as_ref())
+}
+
+/// diag(c) Bᵀx of C = B diag(c) Bᵀ.
+fn amplitudes(modal: &ModalDamping, x: MatRef<'_, f64>) -> Mat<f64> {
+    let mut amplitudes = gram(modal.basis.as_ref(), x);
+    for (i, c) in modal.coefficients.iter().enumerate() {
+        (0..amplitudes.ncols()).for_each(|j| amplitudes[(i, j)] *= c);
+    }
+    amplitudes
+}
