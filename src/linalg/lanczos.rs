@@ -21,6 +21,8 @@ use faer::{Accum, Mat, MatRef};
 /// Columns of a block: as many right-hand sides as one solve takes at little more than the price of one, and more
 /// than the multiplicity of any eigenvalue but the rigid-body ones of two free parts.
 const BLOCK: usize = 8;
+/// The relative error of M X that is let stand, as a part of the residual that is accepted.
+const LAG: f64 = 0.01;
 /// Rounding of the solves is no excuse for more than this.
 const UNACCEPTABLE: f64 = 1e-5;
 /// The most blocks for one search.
@@ -262,7 +264,9 @@ impl<'a> BlockLanczos<'a> {
         let before = |j: usize| near.col(j).norm_l2().hypot(rest[j]);
         let scale = (0..self.width).map(before).fold(0.0, f64::max);
         let smallest = rest.iter().copied().fold(scale, f64::min);
-        if all.norm_max() > 1e-14 * smallest {
+        // M W lags behind by what was taken out just now, which lies in the span of V: it comes back in the coefficients
+        // of the next block, which may be wrong by as little.
+        if all.norm_max() > LAG * self.accepted * smallest {
             mw = self.mass_times(w.as_ref());
         }
         for j in 0..self.width {

@@ -127,13 +127,13 @@ mod tests {
 
     #[test]
     fn round_off_and_absurd_growth_draw_too() {
-        for factor in [1e-300, 1e-15, 1e12, 1e300] {
+        for factor in [1e-300, 1e-15, 1e-6, 1e12, 1e300] {
             let mut results = sample::rig();
             for mode in &mut results.complex.as_mut().unwrap().modes.modes {
                 mode.eigenvalue.re *= factor;
                 mode.growth.mode_coupling *= factor;
             }
-            assert_eq!(picture(&results).is_some(), factor > 1.0, "{factor}: nothing grows by round-off");
+            assert_eq!(picture(&results).is_some(), factor >= 1e-6, "{factor}: nothing grows by round-off");
             assert!(super::super::growth::picture(&results).is_some(), "{factor}");
         }
     }

@@ -50,11 +50,9 @@ fn series(
     let (n, r) = (forces.nrows(), forces.ncols());
     let share = gram(basis.vectors.as_ref(), forces.as_ref());
     let mut all = Mat::zeros(n, r * terms);
-    if terms > 0 {
-        let known = times(operator.mass, basis.expand_real(&share).as_ref());
-        all.subcols_mut(0, r).copy_from(forces - known);
-        factor.solve_in_place(all.subcols_mut(0, r));
-    }
+    let known = times(operator.mass, basis.expand_real(&share).as_ref());
+    all.subcols_mut(0, r).copy_from(forces - known);
+    factor.solve_in_place(all.subcols_mut(0, r));
     for k in 1..terms {
         let (before, mut next) = all.subcols_mut((k - 1) * r, 2 * r).split_at_col_mut(r);
         multiply(operator.mass, before.as_ref(), next.as_mut());

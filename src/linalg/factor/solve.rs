@@ -53,7 +53,14 @@ impl<T: Field> Substitution<'_, T> {
                 ready = results.next();
                 continue;
             }
-            Arch::new().dispatch(Rise { tree: self, s, base, x: &mut *x, stack: &mut stack, v: &mut v });
+            Arch::new().dispatch(Step::<T, L, true> {
+                tree: self,
+                s,
+                base,
+                x: &mut *x,
+                stack: &mut stack,
+                v: &mut v,
+            });
             s += 1;
         }
         stack
@@ -75,7 +82,14 @@ impl<T: Field> Substitution<'_, T> {
                 continue;
             }
             s -= 1;
-            Arch::new().dispatch(Descent { tree: self, s, base, x: &mut *x, stack: &mut stack, v: &mut v });
+            Arch::new().dispatch(Step::<T, L, false> {
+                tree: self,
+                s,
+                base,
+                x: &mut *x,
+                stack: &mut stack,
+                v: &mut v,
+            });
         }
         let parts = task.subtasks.iter().zip(parts(task, x, |s| self.first(s)));
         let parts: Vec<_> = parts.zip(waiting.into_iter().rev()).collect();
@@ -83,23 +97,32 @@ impl<T: Field> Substitution<'_, T> {
     }
 }
 
-/// The way up through node s: what its children passed on is taken from the stack, what it passes on is put there.
-struct Rise<'a, T, L> {
+/// One node on the way up, or on the way down.
+struct Step<'a, T, L, const UP: bool> {
     tree: &'a Substitution<'a, T>,
     s: usize,
     /// The column that `x` begins with.
     base: usize,
     x: &'a mut [L],
     stack: &'a mut Vec<L>,
+    /// Memory for the rows of the front.
     v: &'a mut Vec<L>,
 }
 
-impl<T: Field, L: Lanes<T>> WithSimd for Rise<'_, T, L> {
+impl<T: Field, L: Lanes<T>, const UP: bool> WithSimd for Step<'_, T, L, UP> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Rise { tree, s, base, x, stack, v } = self;
+        if UP { self.rise() } else { self.descend::<S>() }
+    }
+}
+
+impl<T: Field, L: Lanes<T>, const UP: bool> Step<'_, T, L, UP> {
+    /// What the children passed on is taken from the stack, what the node passes on is put there.
+    #[inline(always)]
+    fn rise(self) {
+        let Step { tree, s, base, x, stack, v } = self;
         let (front, node) = (&tree.fronts[s], &tree.plan.nodes[s]);
         v.clear();
         v.extend(front.columns.iter().map(|column| {
@@ -124,26 +147,12 @@ impl<T: Field, L: Lanes<T>> WithSimd for Rise<'_, T, L> {
         front.columns[..front.width()].iter().zip(&*v).for_each(|(c, y)| x[*c as usize - base] = *y);
         stack.extend_from_slice(&v[front.width()..]);
     }
-}
 
-/// The way down through node s: the solution of the rows that it passed on is taken from the stack, that of the rows of its
-/// children is put there.
-struct Descent<'a, T, L> {
-    tree: &'a Substitution<'a, T>,
-    s: usize,
-    /// The column that `x` begins with.
-    base: usize,
-    x: &'a mut [L],
-    stack: &'a mut Vec<L>,
-    v: &'a mut Vec<L>,
-}
-
-impl<T: Field, L: Lanes<T>> WithSimd for Descent<'_, T, L> {
-    type Output = ();
-
+    /// The solution of the rows that the node passed on is taken from the stack, that of the rows of its children is put
+    /// there.
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let Descent { tree, s, base, x, stack, v } = self;
+    fn descend<S: Simd>(self) {
+        let Step { tree, s, base, x, stack, v } = self;
         let front = &tree.fronts[s];
         let columns = &front.columns[..front.width()];
         let known = stack.len() - front.above.len();

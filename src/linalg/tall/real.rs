@@ -232,6 +232,30 @@ mod tests {
         }
     }
 
+    /// Processors with sixteen registers take fewer rows and columns at a time.
+    #[test]
+    fn kernels_of_few_registers_equal_general_products() {
+        let (n, m) = (1100, 21);
+        let wave = |n, m, s: f64| Mat::from_fn(n, m, |i, j| ((i * 7 + j * 3) as f64 * s).sin());
+        let (v, x, c) = (wave(n, m, 1.0), wave(n, LANES, 0.7), wave(m, TOGETHER, 1.3));
+        let slices = |a: &Mat<f64>| (0..a.ncols()).map(|j| a.col_as_slice(j).to_vec()).collect::<Vec<_>>();
+        let (v_columns, x_columns) = (slices(&v), slices(&x));
+        let a: Vec<&[f64]> = v_columns.iter().map(|column| &column[..]).collect();
+        let b: Vec<&[f64]> = x_columns.iter().map(|column| &column[..]).collect();
+        let mut sums = vec![[0.0; LANES]; m];
+        Dots { a: &a, b: &b, rows: 3..n, sums: &mut sums }.run::<4>();
+        let expected = gram_by_ranges(v.subrows(3, n - 3), x.subrows(3, n - 3));
+        assert!((0..m).all(|i| (0..LANES).all(|j| (sums[i][j] - expected[(i, j)]).abs() < 1e-11)));
+        let mut y = vec![vec![1.0; n - 3]; TOGETHER];
+        let mut columns: Vec<&mut [f64]> = y.iter_mut().map(|column| &mut column[..]).collect();
+        let rows: Vec<[f64; TOGETHER]> = (0..m).map(|i| std::array::from_fn(|k| c[(i, k)])).collect();
+        Sums { y: &mut columns, first: 3, v: &a, c: &rows }.run::<8>();
+        let expected = &v * &c;
+        assert!(
+            (0..n - 3).all(|i| (0..TOGETHER).all(|k| (y[k][i] - 1.0 - expected[(i + 3, k)]).abs() < 1e-12))
+        );
+    }
+
     #[test]
     fn columns_in_pieces_are_left_to_the_general_product() {
         let a = Mat::from_fn(4, 30, |i, j| (i + j) as f64);

@@ -12,6 +12,8 @@ const MARGIN: [f64; 2] = [130.0, 112.0];
 /// Columns beyond the highest paired level are of no interest; and there are at most so many.
 const BEYOND: usize = 2;
 const MOST: usize = 40;
+/// Room for the note below.
+const NARROWEST: f64 = 500.0;
 
 pub(super) fn picture(comparison: &MeasuredComparison, set: &NamedModes, name: &str) -> Option<Drawn> {
     let rows: Vec<usize> =
@@ -27,7 +29,7 @@ pub(super) fn picture(comparison: &MeasuredComparison, set: &NamedModes, name: &
         return None;
     }
     let (width, height) = (columns as f64 * CELL[0], rows.len() as f64 * CELL[1]);
-    let mut sheet = Sheet::new((MARGIN[0] + width + 30.0).max(460.0), MARGIN[1] + height + 34.0);
+    let mut sheet = Sheet::new((MARGIN[0] + width + 30.0).max(NARROWEST), MARGIN[1] + height + 34.0);
     let ink = Ink { size: 12.5, colour: INK, bold: false, anchor: Anchor::Middle };
     for column in 0..columns {
         let x = MARGIN[0] + (column as f64 + 0.5) * CELL[0];
