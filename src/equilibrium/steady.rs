@@ -133,7 +133,8 @@ fn solve_prestressed(
     let mut change = f64::INFINITY;
     for _ in 0..ROUNDS {
         let k = tangent_stiffness(system, &steady.displacement)?;
-        let next = solve_steady_with(system, &k, &Condensed::new(system, &k)?, options)?;
+        let condensed = Condensed::new(system, &k).map_err(buckled)?;
+        let next = solve_steady_with(system, &k, &condensed, options)?;
         observer.advance(1);
         iterations += next.iterations;
         let difference: Vec<f64> =
@@ -154,6 +155,19 @@ fn solve_prestressed(
         format!("after {ROUNDS} rounds the displacement still changes by {change:.1e} of itself"),
         "The preload may be near buckling: lower the load or leave the geometric stiffness out",
     ))
+}
+
+/// K holds the structure, K + K_σ does not.
+fn buckled(error: Error) -> Error {
+    let found = match error {
+        Error::Analysis { found, .. } => found,
+        other => return other,
+    };
+    Error::analysis(
+        "steady sliding, stiffness of the preload",
+        format!("the preload takes away the stiffness that held the structure, as in buckling ({found})"),
+        "Lower the load, or leave the geometric stiffness out",
+    )
 }
 
 /// Newton steps on the full system, by the same condensed tangent, until its residual is at round-off.

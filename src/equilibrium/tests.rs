@@ -171,6 +171,18 @@ fn prestress_is_carried_to_its_fixed_point() {
     assert!((steady.displacement[0] - exact).abs() < 1e-13);
     let tangent = tangent_stiffness(&system, &steady.displacement).unwrap();
     assert!((tangent.val()[0] - (70.0 + 80.0 * exact)).abs() < 1e-10);
+
+    /// Takes away what structure and contact have.
+    #[derive(Debug)]
+    struct Buckling;
+    impl Prestress for Buckling {
+        fn geometric_stiffness(&self, _: &[f64]) -> Result<SparseMatrix> {
+            Ok(sparse(1, |_, _| -100.0))
+        }
+    }
+    let buckled = System { prestress: Some(Arc::new(Buckling)), ..system };
+    let said = analysis_error(&buckled, &SteadyOptions::default());
+    assert!(said.contains("as in buckling") && said.contains("Lower the load"), "{said}");
 }
 
 /// K_c and C_c against differences of r_c in a random direction.

@@ -57,6 +57,21 @@ pub struct SturmCount {
     pub counted: [usize; 2],
 }
 
+/// How exact pairs are to be.
+#[derive(Debug, Clone, Copy)]
+struct Aim {
+    /// The backward error that is aimed at.
+    backward_error: f64,
+    /// The most that ‖A x − ν x‖_M / |ν| may be, however fine the mesh.
+    residual: f64,
+}
+
+/// For pairs as results.
+const RESULT: Aim = Aim { backward_error: 1e-14, residual: 1e-9 };
+/// For vectors that span a larger problem, whose own errors are measured there, and for eigenvalues right to the square of
+/// the residual.
+const BASIS: Aim = Aim { backward_error: 1e-11, residual: 1e-6 };
+
 /// Problems up to this size are solved densely.
 const DENSE: usize = 300;
 /// Half the distance of the two certifying shifts, relative to the bound.
@@ -118,7 +133,8 @@ pub fn lowest_eigenpairs(
 }
 
 /// The eigenpairs below `bound`, or a shade above it, where K − σM is factorised already at a shift σ below the bound: it is
-/// taken for the iteration, and the analysis of its pattern for the count.
+/// taken for the iteration, and the analysis of its pattern for the count. They are to span a larger problem: backward errors
+/// of 1e-11 are aimed at, not of 1e-14.
 ///
 /// # Errors
 /// As [`lowest_eigenpairs`].
@@ -133,7 +149,7 @@ pub fn eigenpairs_below(
     observer: &dyn Observer,
 ) -> Result<Eigenpairs> {
     check_bound(bound)?;
-    let pencil = Pencil { k, m, symbolic: start.1.symbolic() };
+    let pencil = Pencil { k, m, symbolic: start.1.symbolic(), aim: BASIS };
     if k.ncols() <= DENSE {
         return pencil.solve_densely(Wanted::Below(bound));
     }
@@ -178,6 +194,7 @@ struct Pencil<'a> {
     k: &'a SparseMatrix,
     m: &'a SparseMatrix,
     symbolic: SymbolicFactor,
+    aim: Aim,
 }
 
 type Factor = Box<dyn SymmetricFactor>;
@@ -193,7 +210,7 @@ struct Found {
 impl<'a> Pencil<'a> {
     fn new(k: &'a SparseMatrix, m: &'a SparseMatrix) -> Result<Self> {
         let union = add_scaled(&[(1.0, k), (1.0, m)]);
-        Ok(Pencil { k, m, symbolic: SymbolicFactor::new(union.symbolic())? })
+        Ok(Pencil { k, m, symbolic: SymbolicFactor::new(union.symbolic())?, aim: RESULT })
     }
 
     fn factorize(&self, shift: f64) -> Result<Factor> {
@@ -388,10 +405,12 @@ impl<'a> Pencil<'a> {
         Ok((shift, factor, (estimate - shift).abs().max((lowest - shift).abs())))
     }
 
-    /// For pairs with |θ − σ| up to `reach`, the residual ‖A x − ν x‖_M / |ν| at which the backward error ‖K x − θ M x‖ / ‖K‖ ‖x‖ is near 1e-14: residuals
-    /// are made of modes not far above the wanted ones, for which ‖K‖ is the larger the finer the mesh.
+    /// For pairs with |θ − σ| up to `reach`, the residual ‖A x − ν x‖_M / |ν| at which the backward error
+    /// ‖K x − θ M x‖ / ‖K‖ ‖x‖ is near the one aimed at: residuals are made of modes not far above the wanted ones, for
+    /// which ‖K‖ is the larger the finer the mesh.
     fn accepted(&self, reach: f64) -> f64 {
-        (1e-14 * norm_1(self.k) / (reach * norm_1(self.m))).clamp(1e-12, 1e-9)
+        let Aim { backward_error, residual } = self.aim;
+        (backward_error * norm_1(self.k) / (reach * norm_1(self.m))).clamp(1e-12, residual)
     }
 
     /// The median of K_ii / M_ii: how fast single degrees of freedom would vibrate, far above the lowest eigenvalues.
@@ -414,7 +433,7 @@ impl<'a> Pencil<'a> {
         for round in 0..2 {
             orthonormalise(self.m, &mut found.vectors)?;
             errors = backward_errors(self.k, self.m, &found.values, found.vectors.as_ref());
-            if round == 1 || errors.iter().all(|e| *e <= 1e-14) {
+            if round == 1 || errors.iter().all(|e| *e <= self.aim.backward_error) {
                 break;
             }
             let mut y = times(self.m, found.vectors.as_ref());

@@ -54,7 +54,8 @@ pub fn compute(
     pairs.map(|pairs| told(structure, pairs)).map_err(|e| failed(&range, e))
 }
 
-/// Real modes of `structure` below `hz`, or a shade above it, where K − σM is factorised already at a shift σ among them.
+/// Real modes of `structure` below `hz`, or a shade above it, where K − σM is factorised already at a shift σ among them: as
+/// exact as the basis of a complex analysis needs, backward errors of 1e-11.
 ///
 /// # Errors
 /// As [`compute`].

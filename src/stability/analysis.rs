@@ -236,17 +236,22 @@ fn solve_and_refine<'a>(
             mode.backward_error
         ));
     }
-    if real.len() < operator.n() {
-        let highest = real.len().checked_sub(1).map_or(0.0, |last| real.frequency_hz(last));
-        if highest < band_hz[1] {
-            warnings.push(format!(
-                "the real modes end at {highest:.1} Hz, below the band's top of {:.1} Hz: complex modes may be missing",
-                band_hz[1]
-            ));
-        }
-    }
+    warnings.extend(incomplete(operator, real, band_hz[1]));
     let modes = ComplexModes { modes, subspace_dimension: basis.len(), refinements, warnings };
     Ok((modes, basis))
+}
+
+/// What to say where the real modes do not reach the band's top: those known, or the frequency below which a count has shown
+/// that there are no others.
+fn incomplete(operator: &Operator<'_>, real: &RealModes, top_hz: f64) -> Option<String> {
+    let highest = real.len().checked_sub(1).map_or(0.0, |last| real.frequency_hz(last));
+    let counted = if real.certificate.holds() { real.certificate.below_hz } else { 0.0 };
+    let reach = highest.max(counted);
+    (real.len() < operator.n() && reach < top_hz).then(|| {
+        format!(
+            "the real modes are known up to {reach:.1} Hz, the band reaches to {top_hz:.1} Hz: complex modes may be missing"
+        )
+    })
 }
 
 /// A = K + K_σ − s M and s, in the widest gap between the real modes' ω² near the middle of the band.
@@ -362,4 +367,30 @@ pub(super) fn in_band(z: c64, band: [f64; 2]) -> bool {
     let oscillates = z.im > 1e-9 * z.norm();
     let real = z.im.abs() <= 1e-9 * z.norm();
     (oscillates && z.im >= band[0] && z.im <= band[1]) || (real && band[0] == 0.0 && z.norm() <= band[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::steady;
+    use super::*;
+    use crate::equilibrium::samples::random_system;
+    use crate::modal::samples::dense_modes;
+
+    #[test]
+    fn real_modes_reach_as_far_as_they_are_counted() {
+        let system = random_system(40, 2, 20.0, 1);
+        let steady = steady(&system);
+        let operator = Operator::new(&system, &steady).unwrap();
+        let mut real = dense_modes(&system, 9);
+        let (highest, counted) = (real.frequency_hz(8), real.certificate.below_hz);
+        assert!(counted > highest);
+        let between = 0.5 * (highest + counted);
+        assert_eq!(incomplete(&operator, &real, between), None);
+        let said = incomplete(&operator, &real, 2.0 * counted).unwrap();
+        assert!(said.contains(&format!("up to {counted:.1} Hz")), "{said}");
+        real.certificate.found -= 1;
+        let said = incomplete(&operator, &real, between).unwrap();
+        assert!(said.contains(&format!("up to {highest:.1} Hz")), "{said}");
+        assert_eq!(incomplete(&operator, &dense_modes(&system, 40), 1e9), None);
+    }
 }

@@ -39,7 +39,7 @@ impl Part {
     }
 
     /// BᵀXY beside `mass` and `stiffness`, BᵀMY and BᵀKY.
-    fn form(
+    pub(super) fn form(
         &self,
         b: MatRef<'_, f64>,
         y: MatRef<'_, f64>,
@@ -65,7 +65,7 @@ impl<'a> Damper<'a> {
         Damper { viscous, loss, modal: damping.modal.as_ref() }
     }
 
-    /// BᵀCY beside `mass` and `stiffness`, BᵀMY and BᵀKY.
+    /// [`Part::form`] of C, modal damping included.
     pub(super) fn viscous_form(
         &self,
         b: MatRef<'_, f64>,
@@ -78,17 +78,6 @@ impl<'a> Damper<'a> {
             form += gram(gram(modal.basis.as_ref(), b).as_ref(), amplitudes(modal, y).as_ref());
         }
         form
-    }
-
-    /// BᵀHY beside `mass` and `stiffness`, BᵀMY and BᵀKY.
-    pub(super) fn loss_form(
-        &self,
-        b: MatRef<'_, f64>,
-        y: MatRef<'_, f64>,
-        mass: &Mat<f64>,
-        stiffness: &Mat<f64>,
-    ) -> Mat<f64> {
-        self.loss.form(b, y, mass, stiffness)
     }
 }
 

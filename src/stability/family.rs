@@ -240,7 +240,7 @@ impl<'f> Family<'f> {
 fn reduce(frame: &Frame<'_>, basis: &Basis<'_>, springs: &[(usize, f64)]) -> Result<Reduced> {
     let (v, mass, stiffness) = (basis.vectors.as_ref(), &basis.mass, &basis.stiffness);
     let project = |(d, damper): (&&Damping, &Damper<'_>)| {
-        let loss = d.hysteretic.as_ref().map(|_| damper.loss_form(v, v, mass, stiffness));
+        let loss = d.hysteretic.as_ref().map(|_| damper.loss.form(v, v, mass, stiffness));
         (damper.viscous_form(v, v, mass, stiffness), loss)
     };
     let variants: Vec<_> = frame.dampings.iter().zip(&frame.operator.dampers[1..]).map(project).collect();

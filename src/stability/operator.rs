@@ -180,7 +180,7 @@ impl<'a> Operator<'a> {
         let [mass, stiffness] = [0, 1].map(|k| gram(b, images[k].as_ref()));
         let own = &self.dampers[0];
         let [damping, loss] =
-            [own.viscous_form(b, y, &mass, &stiffness), own.loss_form(b, y, &mass, &stiffness)];
+            [own.viscous_form(b, y, &mass, &stiffness), own.loss.form(b, y, &mass, &stiffness)];
         [mass, stiffness, damping, loss]
     }
 

@@ -6,7 +6,7 @@ use super::operator::{Operator, Side};
 use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
 use crate::linalg::random::Random;
-use crate::linalg::sparse::{multiply, times};
+use crate::linalg::sparse::multiply;
 use crate::linalg::tall::gram;
 use faer::Mat;
 
@@ -50,8 +50,12 @@ fn series(
     let (n, r) = (forces.nrows(), forces.ncols());
     let share = gram(basis.vectors.as_ref(), forces.as_ref());
     let mut all = Mat::zeros(n, r * terms);
-    let known = times(operator.mass, basis.expand_real(&share).as_ref());
-    all.subcols_mut(0, r).copy_from(forces - known);
+    multiply(operator.mass, basis.expand_real(&share).as_ref(), all.subcols_mut(0, r));
+    for j in 0..r {
+        let known = all.col_as_slice_mut(j).iter_mut();
+        known.zip(forces.col_as_slice(j)).for_each(|(known, force)| *known = force - *known);
+    }
+    drop(forces);
     factor.solve_in_place(all.subcols_mut(0, r));
     for k in 1..terms {
         let (before, mut next) = all.subcols_mut((k - 1) * r, 2 * r).split_at_col_mut(r);
