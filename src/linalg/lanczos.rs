@@ -22,7 +22,7 @@ use faer::{Accum, Mat, MatRef};
 /// than the multiplicity of any eigenvalue but the rigid-body ones of two free parts.
 const BLOCK: usize = 8;
 /// The relative error of M X that is let stand, as a part of the residual that is accepted.
-const LAG: f64 = 0.01;
+const LAG: f64 = 1e-5;
 /// Rounding of the solves is no excuse for more than this.
 const UNACCEPTABLE: f64 = 1e-5;
 /// The most blocks for one search.
