@@ -6,8 +6,49 @@ use pulp::{Arch, Simd, WithSimd};
 /// Rows and columns that change places in registers.
 const TILE: usize = 8;
 
+/// What begins with a line of the cache: a row that lies in two of them takes twice the time to fetch.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
+pub struct Aligned<L>(pub L);
+
+/// W values side by side.
+pub(super) trait Row<T, const W: usize>: Copy + Send + Sync + 'static {
+    /// A row of zeros.
+    const ZERO: Self;
+    fn values(&self) -> &[T; W];
+    fn values_mut(&mut self) -> &mut [T; W];
+}
+
+impl<T: Scalar, const W: usize> Row<T, W> for [T; W] {
+    const ZERO: Self = [T::ZERO; W];
+
+    #[inline(always)]
+    fn values(&self) -> &[T; W] {
+        self
+    }
+
+    #[inline(always)]
+    fn values_mut(&mut self) -> &mut [T; W] {
+        self
+    }
+}
+
+impl<T: Scalar, const W: usize> Row<T, W> for Aligned<[T; W]> {
+    const ZERO: Self = Aligned([T::ZERO; W]);
+
+    #[inline(always)]
+    fn values(&self) -> &[T; W] {
+        &self.0
+    }
+
+    #[inline(always)]
+    fn values_mut(&mut self) -> &mut [T; W] {
+        &mut self.0
+    }
+}
+
 /// rows\[i\]\[c\] = columns\[c\]\[i\]; what a row has beyond the columns is left alone.
-pub(super) fn lay<T: Scalar, const W: usize>(columns: &[&[T]], rows: &mut [[T; W]]) {
+pub(super) fn lay<T: Scalar, R: Row<T, W>, const W: usize>(columns: &[&[T]], rows: &mut [R]) {
     Arch::new().dispatch(Lay { columns, rows });
 }
 
@@ -19,12 +60,12 @@ pub(super) fn spread<'a, T: Scalar + 'a, const W: usize>(
     Arch::new().dispatch(Spread { row, columns });
 }
 
-struct Lay<'a, T, const W: usize> {
+struct Lay<'a, T, R, const W: usize> {
     columns: &'a [&'a [T]],
-    rows: &'a mut [[T; W]],
+    rows: &'a mut [R],
 }
 
-impl<T: Scalar, const W: usize> WithSimd for Lay<'_, T, W> {
+impl<T: Scalar, R: Row<T, W>, const W: usize> WithSimd for Lay<'_, T, R, W> {
     type Output = ();
 
     #[inline(always)]
@@ -36,13 +77,13 @@ impl<T: Scalar, const W: usize> WithSimd for Lay<'_, T, W> {
                 for i in (0..n - n % TILE).step_by(TILE) {
                     let turned = turned(columns.map(|column| tile(column, i)));
                     for (row, turned) in self.rows[i..].iter_mut().zip(&turned) {
-                        row[first..first + TILE].copy_from_slice(turned);
+                        row.values_mut()[first..first + TILE].copy_from_slice(turned);
                     }
                 }
                 done = n - n % TILE;
             }
             for (column, c) in columns.iter().zip(first..) {
-                (done..n).for_each(|i| self.rows[i][c] = column[i]);
+                (done..n).for_each(|i| self.rows[i].values_mut()[c] = column[i]);
             }
         }
     }
@@ -96,14 +137,14 @@ mod tests {
         for (n, count) in [(19, 11), (8, 8), (5, 16), (32, 3)] {
             let columns: Vec<Vec<f64>> =
                 (0..count).map(|c| (0..n).map(|i| (100 * c + i) as f64).collect()).collect();
-            let mut rows = vec![[-1.0; 16]; n];
+            let mut rows = vec![Aligned([-1.0; 16]); n];
             lay(&columns.iter().map(|c| &c[..]).collect::<Vec<_>>(), &mut rows);
             for (i, row) in rows.iter().enumerate() {
                 let expected = |c: usize| if c < count { columns[c][i] } else { -1.0 };
-                assert_eq!(*row, std::array::from_fn(expected));
+                assert_eq!(row.0, std::array::from_fn(expected));
             }
             let mut back = vec![vec![0.0; n]; count];
-            spread(|i| &rows[i], &mut back.iter_mut().map(|c| &mut c[..]).collect::<Vec<_>>());
+            spread(|i| rows[i].values(), &mut back.iter_mut().map(|c| &mut c[..]).collect::<Vec<_>>());
             assert_eq!(back, columns);
         }
     }

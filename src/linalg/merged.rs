@@ -4,14 +4,15 @@
 //! common, so that three products cost little more than one.
 
 use super::SparseMatrix;
-use super::lanes::spread;
-use super::sparse::{ROWS_A_TASK, columns_mut, pack};
+use super::lanes::{Aligned, Row, spread};
+use super::sparse::{ROWS_A_TASK, columns_mut, with_packed};
 use faer::{Mat, MatMut, MatRef};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 /// Columns that go through the matrices together in [`Merged::times`].
 const PANEL: usize = 16;
+type PackedRow = Aligned<[f64; PANEL]>;
 
 /// Symmetric matrices of one size (one to four), stored whole on the union of their patterns.
 #[derive(Debug, Clone)]
@@ -83,22 +84,23 @@ impl Merged {
         assert!(x.nrows() == n && products.len() == self.count, "shapes of A and x disagree");
         for start in (0..x.ncols()).step_by(PANEL) {
             let width = PANEL.min(x.ncols() - start);
-            let packed = pack::<f64, PANEL>(x.subcols(start, width));
-            let mut tasks: Vec<Vec<MatMut<'_, f64>>> = Vec::new();
-            tasks.resize_with(n.div_ceil(ROWS_A_TASK), Vec::new);
-            for product in products.iter_mut() {
-                let columns = product.as_mut().subcols_mut(start, width);
-                let chunks: Vec<_> = columns.par_row_chunks_mut(ROWS_A_TASK).collect();
-                tasks.iter_mut().zip(chunks).for_each(|(task, chunk)| task.push(chunk));
-            }
-            tasks.into_par_iter().enumerate().for_each(|(task, parts)| {
-                let first = task * ROWS_A_TASK;
-                match self.count {
-                    1 => self.rows_times::<1>(first, &packed, parts),
-                    2 => self.rows_times::<2>(first, &packed, parts),
-                    3 => self.rows_times::<3>(first, &packed, parts),
-                    _ => self.rows_times::<4>(first, &packed, parts),
+            with_packed(x.subcols(start, width), |packed: &[PackedRow]| {
+                let mut tasks: Vec<Vec<MatMut<'_, f64>>> = Vec::new();
+                tasks.resize_with(n.div_ceil(ROWS_A_TASK), Vec::new);
+                for product in products.iter_mut() {
+                    let columns = product.as_mut().subcols_mut(start, width);
+                    let chunks: Vec<_> = columns.par_row_chunks_mut(ROWS_A_TASK).collect();
+                    tasks.iter_mut().zip(chunks).for_each(|(task, chunk)| task.push(chunk));
                 }
+                tasks.into_par_iter().enumerate().for_each(|(task, parts)| {
+                    let first = task * ROWS_A_TASK;
+                    match self.count {
+                        1 => self.rows_times::<1>(first, packed, parts),
+                        2 => self.rows_times::<2>(first, packed, parts),
+                        3 => self.rows_times::<3>(first, packed, parts),
+                        _ => self.rows_times::<4>(first, packed, parts),
+                    }
+                });
             });
         }
     }
@@ -106,7 +108,7 @@ impl Merged {
     fn rows_times<const C: usize>(
         &self,
         first: usize,
-        packed: &[[f64; PANEL]],
+        packed: &[PackedRow],
         mut parts: Vec<MatMut<'_, f64>>,
     ) {
         let rows = parts.first().map_or(0, |part| part.nrows());
@@ -192,14 +194,14 @@ fn slice(x: MatRef<'_, f64>, c: usize) -> &[f64] {
 }
 
 /// The rows of all matrices from `first` on, times packed columns.
-struct Rows<'a, const C: usize, const W: usize> {
+struct Rows<'a, R, const C: usize, const W: usize> {
     merged: &'a Merged,
     first: usize,
-    packed: &'a [[f64; W]],
+    packed: &'a [R],
     sums: &'a mut [[[f64; W]; C]],
 }
 
-impl<const C: usize, const W: usize> WithSimd for Rows<'_, C, W> {
+impl<R: Row<f64, W>, const C: usize, const W: usize> WithSimd for Rows<'_, R, C, W> {
     type Output = ();
 
     #[inline(always)]
@@ -209,7 +211,7 @@ impl<const C: usize, const W: usize> WithSimd for Rows<'_, C, W> {
             let entries = starts[self.first + i]..starts[self.first + i + 1];
             let mut own = [[0.0; W]; C];
             for (j, v) in self.merged.rows[entries.clone()].iter().zip(&values[entries]) {
-                let x = &self.packed[*j as usize];
+                let x = self.packed[*j as usize].values();
                 for a in 0..C {
                     for c in 0..W {
                         own[a][c] = x[c].mul_add(v[a], own[a][c]);

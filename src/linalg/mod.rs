@@ -26,6 +26,7 @@ pub mod matrix_market;
 pub mod merged;
 pub mod proportional;
 pub mod random;
+mod room;
 pub mod sparse;
 pub mod tall;
 pub mod toar;

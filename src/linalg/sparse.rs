@@ -1,6 +1,7 @@
 //! The sparse matrix of the whole program, its products and norms, and sparse vectors for contact directions.
 
-use super::lanes::{lay, spread};
+use super::lanes::{Aligned, Row, lay, spread};
+use super::room::with_room;
 use faer::sparse::{SparseColMat, SymbolicSparseColMat, Triplet};
 use faer::{Mat, MatMut, MatRef};
 use pulp::{Arch, Simd, WithSimd};
@@ -107,9 +108,16 @@ pub fn dot(x: &[f64], y: &[f64]) -> f64 {
 }
 
 /// A number that a real sparse matrix can multiply: `f64` or `c64`.
-pub trait Scalar: Copy + Default + Send + Sync + AddAssign + Mul<f64, Output = Self> {}
-impl Scalar for f64 {}
-impl Scalar for super::c64 {}
+pub trait Scalar: Copy + Default + Send + Sync + AddAssign + Mul<f64, Output = Self> + 'static {
+    /// 0.
+    const ZERO: Self;
+}
+impl Scalar for f64 {
+    const ZERO: Self = 0.0;
+}
+impl Scalar for super::c64 {
+    const ZERO: Self = super::c64::new(0.0, 0.0);
+}
 
 /// Rows that one task works on; fixed, so that the split does not depend on the number of threads.
 pub(super) const ROWS_A_TASK: usize = 4096;
@@ -134,28 +142,29 @@ pub fn multiply<T: Scalar>(a: &SparseMatrix, x: MatRef<'_, T>, mut y: MatMut<'_,
         let x = x.subcols(start, width);
         let y = y.as_mut().subcols_mut(start, width);
         match width {
-            1 => panel::<T, 1>(a, x, y),
-            2 => panel::<T, 2>(a, x, y),
-            3 | 4 => panel::<T, 4>(a, x, y),
-            _ => panel::<T, PANEL>(a, x, y),
+            1 => panel::<T, [T; 1], 1>(a, x, y),
+            2 => panel::<T, [T; 2], 2>(a, x, y),
+            3 | 4 => panel::<T, [T; 4], 4>(a, x, y),
+            _ => panel::<T, Aligned<[T; PANEL]>, PANEL>(a, x, y),
         }
     }
 }
 
 /// y = A x for W columns. They are first laid side by side, row by row, so that an entry of A meets all its
 /// W factors in one place of memory.
-fn panel<T: Scalar, const W: usize>(a: &SparseMatrix, x: MatRef<'_, T>, y: MatMut<'_, T>) {
+fn panel<T: Scalar, R: Row<T, W>, const W: usize>(a: &SparseMatrix, x: MatRef<'_, T>, y: MatMut<'_, T>) {
     let width = x.ncols();
-    let packed = &pack(x);
-    y.par_row_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, mut y)| {
-        let mut sums = vec![[T::default(); W]; y.nrows()];
-        Arch::new().dispatch(Rows { a, first: task * ROWS_A_TASK, packed, sums: &mut sums });
-        match columns_mut(y.as_mut()) {
-            Some(mut columns) => spread(|i| &sums[i], &mut columns),
-            None => (0..width).for_each(|c| {
-                y.as_mut().col_mut(c).iter_mut().zip(&sums).for_each(|(y, sum)| *y = sum[c]);
-            }),
-        }
+    with_packed(x, |packed: &[R]| {
+        y.par_row_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, mut y)| {
+            let mut sums = vec![[T::ZERO; W]; y.nrows()];
+            Arch::new().dispatch(Rows { a, first: task * ROWS_A_TASK, packed, sums: &mut sums });
+            match columns_mut(y.as_mut()) {
+                Some(mut columns) => spread(|i| &sums[i], &mut columns),
+                None => (0..width).for_each(|c| {
+                    y.as_mut().col_mut(c).iter_mut().zip(&sums).for_each(|(y, sum)| *y = sum[c]);
+                }),
+            }
+        });
     });
 }
 
@@ -169,30 +178,34 @@ pub(super) fn columns_mut<T>(a: MatMut<'_, T>) -> Option<Vec<&mut [T]>> {
     a.col_iter_mut().map(|column| column.try_as_col_major_mut().map(|column| column.as_slice_mut())).collect()
 }
 
-/// Columns side by side, row by row; those that are missing are zero.
-pub(super) fn pack<T: Scalar, const W: usize>(x: MatRef<'_, T>) -> Vec<[T; W]> {
-    let mut packed = vec![[T::default(); W]; x.nrows()];
-    packed.par_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, packed)| {
-        let x = x.subrows(task * ROWS_A_TASK, packed.len());
-        match columns(x) {
-            Some(columns) => lay(&columns, packed),
-            None => (0..x.ncols()).for_each(|c| {
-                packed.iter_mut().zip(x.col(c).iter()).for_each(|(row, v)| row[c] = *v);
-            }),
-        }
-    });
-    packed
+/// What `f` makes of columns laid side by side, row by row; those that are missing hold anything.
+pub(super) fn with_packed<T: Scalar, R: Row<T, W>, const W: usize, Y>(
+    x: MatRef<'_, T>,
+    f: impl FnOnce(&[R]) -> Y,
+) -> Y {
+    with_room(x.nrows(), R::ZERO, |packed: &mut [R]| {
+        packed.par_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, packed)| {
+            let x = x.subrows(task * ROWS_A_TASK, packed.len());
+            match columns(x) {
+                Some(columns) => lay(&columns, packed),
+                None => (0..x.ncols()).for_each(|c| {
+                    packed.iter_mut().zip(x.col(c).iter()).for_each(|(row, v)| row.values_mut()[c] = *v);
+                }),
+            }
+        });
+        f(packed)
+    })
 }
 
 /// The rows of A from `first` on, times packed columns.
-struct Rows<'a, T, const W: usize> {
+struct Rows<'a, T, R, const W: usize> {
     a: &'a SparseMatrix,
     first: usize,
-    packed: &'a [[T; W]],
+    packed: &'a [R],
     sums: &'a mut [[T; W]],
 }
 
-impl<T: Scalar, const W: usize> WithSimd for Rows<'_, T, W> {
+impl<T: Scalar, R: Row<T, W>, const W: usize> WithSimd for Rows<'_, T, R, W> {
     type Output = ();
 
     #[inline(always)]
@@ -200,9 +213,9 @@ impl<T: Scalar, const W: usize> WithSimd for Rows<'_, T, W> {
         let (starts, rows_of, values) = (self.a.col_ptr(), self.a.row_idx(), self.a.val());
         for (i, sum) in self.sums.iter_mut().enumerate() {
             let entries = starts[self.first + i]..starts[self.first + i + 1];
-            let mut own = [T::default(); W];
+            let mut own = [T::ZERO; W];
             for (j, v) in rows_of[entries.clone()].iter().zip(&values[entries]) {
-                let x = &self.packed[*j];
+                let x = self.packed[*j].values();
                 for c in 0..W {
                     own[c] += x[c] * *v;
                 }

@@ -1,5 +1,6 @@
 //! The numbers that are factorised, real and complex, and bundles of them that a solve carries side by side.
 
+use super::super::lanes::Aligned;
 use super::super::{c64, sparse};
 use faer::traits::ComplexField;
 use std::ops::{Add, Div, Neg, Sub};
@@ -18,6 +19,8 @@ pub trait Field:
 {
     /// One row of K right-hand sides.
     type Lanes<const K: usize>: Lanes<Self>;
+    /// One row of many, which begins with a line of the cache: a register that is filled from two lines takes twice the time.
+    type Wide<const K: usize>: Lanes<Self>;
 
     /// |x|, or |Re x| + |Im x|, which is within √2 of it and cheaper.
     fn size(self) -> f64;
@@ -30,7 +33,7 @@ pub trait Field:
 }
 
 /// One row of a block of right-hand sides, its columns side by side in memory.
-pub trait Lanes<T>: Copy + Send + Sync {
+pub trait Lanes<T>: Copy + Send + Sync + 'static {
     /// How many columns.
     const COLUMNS: usize;
     /// A row of zeros.
@@ -39,6 +42,8 @@ pub trait Lanes<T>: Copy + Send + Sync {
     fn get(&self, k: usize) -> T;
     /// Sets the value in column k.
     fn set(&mut self, k: usize, value: T);
+    /// Whether all columns are zero.
+    fn is_zero(&self) -> bool;
     /// self += other.
     fn add(&mut self, other: &Self);
     /// self −= l · y.
@@ -47,6 +52,7 @@ pub trait Lanes<T>: Copy + Send + Sync {
 
 impl Field for f64 {
     type Lanes<const K: usize> = [f64; K];
+    type Wide<const K: usize> = Aligned<[f64; K]>;
 
     #[inline(always)]
     fn size(self) -> f64 {
@@ -66,6 +72,7 @@ impl Field for f64 {
 
 impl Field for c64 {
     type Lanes<const K: usize> = Split<K>;
+    type Wide<const K: usize> = Aligned<Split<K>>;
 
     #[inline(always)]
     fn size(self) -> f64 {
@@ -98,6 +105,11 @@ impl<const K: usize> Lanes<f64> for [f64; K] {
     #[inline(always)]
     fn set(&mut self, k: usize, value: f64) {
         self[k] = value;
+    }
+
+    #[inline(always)]
+    fn is_zero(&self) -> bool {
+        *self == Self::ZERO
     }
 
     #[inline(always)]
@@ -137,6 +149,11 @@ impl<const K: usize> Lanes<c64> for Split<K> {
     }
 
     #[inline(always)]
+    fn is_zero(&self) -> bool {
+        self.re == [0.0; K] && self.im == [0.0; K]
+    }
+
+    #[inline(always)]
     fn add(&mut self, other: &Self) {
         for k in 0..K {
             self.re[k] += other.re[k];
@@ -150,5 +167,35 @@ impl<const K: usize> Lanes<c64> for Split<K> {
             self.re[k] = l.im.mul_add(y.im[k], (-l.re).mul_add(y.re[k], self.re[k]));
             self.im[k] = (-l.im).mul_add(y.re[k], (-l.re).mul_add(y.im[k], self.im[k]));
         }
+    }
+}
+
+impl<T, L: Lanes<T>> Lanes<T> for Aligned<L> {
+    const COLUMNS: usize = L::COLUMNS;
+    const ZERO: Self = Aligned(L::ZERO);
+
+    #[inline(always)]
+    fn get(&self, k: usize) -> T {
+        self.0.get(k)
+    }
+
+    #[inline(always)]
+    fn set(&mut self, k: usize, value: T) {
+        self.0.set(k, value);
+    }
+
+    #[inline(always)]
+    fn is_zero(&self) -> bool {
+        self.0.is_zero()
+    }
+
+    #[inline(always)]
+    fn add(&mut self, other: &Self) {
+        self.0.add(&other.0);
+    }
+
+    #[inline(always)]
+    fn subtract(&mut self, l: T, y: &Self) {
+        self.0.subtract(l, &y.0);
     }
 }

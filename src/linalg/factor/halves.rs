@@ -5,6 +5,7 @@
 
 use super::field::{Field, Lanes};
 use super::{COLUMNS_A_TASK, Multifrontal, ROWS_A_TASK, SymmetricFactor};
+use crate::linalg::room::with_room;
 use crate::linalg::tall::gram;
 use faer::{Mat, MatMut};
 use rayon::prelude::*;
@@ -25,33 +26,31 @@ impl<T: Field> Multifrontal<T> {
         rhs.par_col_chunks_mut(COLUMNS_A_TASK).for_each(|columns| match columns.ncols() {
             1 => self.half::<T::Lanes<1>>(columns, half),
             2..=4 => self.half::<T::Lanes<4>>(columns, half),
-            5..=8 => self.half::<T::Lanes<8>>(columns, half),
-            _ => self.half::<T::Lanes<COLUMNS_A_TASK>>(columns, half),
+            5..=8 => self.half::<T::Wide<8>>(columns, half),
+            _ => self.half::<T::Wide<COLUMNS_A_TASK>>(columns, half),
         });
     }
 
     fn half<L: Lanes<T>>(&self, mut rhs: MatMut<'_, T>, half: Half) {
-        let (mut x, columns) = (vec![L::ZERO; self.n()], rhs.ncols());
-        let b = rhs.as_ref();
-        x.par_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, x)| {
-            for (i, x) in x.iter_mut().enumerate() {
-                let place = task * ROWS_A_TASK + i;
-                let (row, scale) = match half {
-                    Half::Forward => (self.plan.order[place], self.scaling[self.plan.order[place]]),
-                    Half::Pivots => (place, 1.0),
-                };
-                (0..columns).for_each(|k| x.set(k, b[(row, k)] * scale));
+        with_room(self.n(), L::ZERO, |x| {
+            match half {
+                Half::Forward => self.lay(rhs.as_ref(), x),
+                Half::Pivots => {
+                    let b = rhs.as_ref();
+                    let rows = x.par_iter_mut().enumerate().with_min_len(ROWS_A_TASK);
+                    rows.for_each(|(i, x)| (0..b.ncols()).for_each(|k| x.set(k, b[(i, k)])));
+                }
             }
-        });
-        match half {
-            Half::Forward => self.substitution().up(&mut x),
-            Half::Pivots => self.substitution().pivots(&mut x),
-        }
-        rhs.as_mut().par_row_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, mut rhs)| {
-            for k in 0..columns {
+            match half {
+                Half::Forward => self.substitution().up(x),
+                Half::Pivots => self.substitution().pivots(x),
+            }
+            rhs.as_mut().par_row_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, mut rhs)| {
                 let x = &x[task * ROWS_A_TASK..];
-                rhs.as_mut().col_mut(k).iter_mut().zip(x).for_each(|(y, x)| *y = x.get(k));
-            }
+                for (k, column) in rhs.as_mut().col_iter_mut().enumerate() {
+                    column.iter_mut().zip(x).for_each(|(y, x)| *y = x.get(k));
+                }
+            });
         });
     }
 }

@@ -65,81 +65,139 @@ impl<T: Field> Lower<T> {
         size_of_val(&*self.values)
     }
 
-    /// v₁ ← L₁₁⁻¹ v₁, v₂ ← v₂ − L₂₁ v₁.
+    /// v₁ ← L₁₁⁻¹ v₁, v₂ ← v₂ − L₂₁ v₁, where row i of v stands at `names[i]` of `v`.
     #[inline(always)]
-    pub(super) fn up<L: Lanes<T>>(&self, v: &mut [L]) {
+    pub(super) fn up<L: Lanes<T>>(&self, names: &[u32], v: &mut Rows<'_, L>) {
         let mut rest = &self.values[..];
         for (first, count) in self.panels() {
             let (panel, after) = rest.split_at((self.rows - first) * count);
-            let v = &mut v[first..];
+            let names = &names[first..];
             match count {
-                WIDE => up::<T, L, WIDE>(panel, v),
-                NARROW => up::<T, L, NARROW>(panel, v),
-                _ => up::<T, L, 1>(panel, v),
+                WIDE => up::<T, L, WIDE>(panel, names, v),
+                NARROW => up::<T, L, NARROW>(panel, names, v),
+                _ => up::<T, L, 1>(panel, names, v),
             }
             rest = after;
         }
     }
 
-    /// v₁ ← L₁₁⁻ᵀ (v₁ − L₂₁ᵀ v₂), with the registers of S.
+    /// v₁ ← L₁₁⁻ᵀ (v₁ − L₂₁ᵀ v₂), with the registers of S; rows as in [`Lower::up`].
     #[inline(always)]
-    pub(super) fn down<S: Simd, L: Lanes<T>>(&self, v: &mut [L]) {
+    pub(super) fn down<S: Simd, L: Lanes<T>>(&self, names: &[u32], v: &mut Rows<'_, L>) {
         let mut rest = &self.values[..];
         for (first, count) in self.panels().rev() {
             let (before, panel) = rest.split_at(rest.len() - (self.rows - first) * count);
-            let v = &mut v[first..];
+            let names = &names[first..];
             match count {
                 // The sums of all columns are to stay in registers.
-                WIDE if S::REGISTER_COUNT >= 32 && size_of::<L>() <= 64 => down::<T, L, WIDE, WIDE>(panel, v),
-                WIDE => down::<T, L, WIDE, NARROW>(panel, v),
-                NARROW => down::<T, L, NARROW, NARROW>(panel, v),
-                _ => down::<T, L, 1, 1>(panel, v),
+                WIDE if S::REGISTER_COUNT >= 32 && size_of::<L>() <= 64 => {
+                    down::<T, L, WIDE, WIDE>(panel, names, v);
+                }
+                WIDE => down::<T, L, WIDE, NARROW>(panel, names, v),
+                NARROW => down::<T, L, NARROW, NARROW>(panel, names, v),
+                _ => down::<T, L, 1, 1>(panel, names, v),
             }
             rest = before;
         }
     }
 }
 
+/// The rows of right-hand sides that the fronts of a task reach, by their names.
+pub(super) struct Rows<'a, L> {
+    /// Those of the columns of the task, named from `base` on.
+    pub own: &'a mut [L],
+    pub base: u32,
+    /// Those that it hands on, named from `n` on.
+    pub beyond: &'a mut [L],
+    pub n: u32,
+}
+
+impl<L> Rows<'_, L> {
+    /// One of them.
+    pub fn at(&mut self, name: u32) -> &mut L {
+        match name.checked_sub(self.n) {
+            Some(k) => &mut self.beyond[k as usize],
+            None => &mut self.own[(name - self.base) as usize],
+        }
+    }
+
+    /// The same for a while.
+    pub fn reborrow(&mut self) -> Rows<'_, L> {
+        Rows { own: self.own, base: self.base, beyond: self.beyond, n: self.n }
+    }
+}
+
 #[inline(always)]
-fn up<T: Field, L: Lanes<T>, const C: usize>(l: &[T], v: &mut [L]) {
+fn up<T: Field, L: Lanes<T>, const C: usize>(l: &[T], names: &[u32], v: &mut Rows<'_, L>) {
     let (l, _) = l.as_chunks::<C>();
-    let (known, below) = v.split_at_mut(C);
+    let mut known: [L; C] = std::array::from_fn(|c| v.own[(names[c] - v.base) as usize]);
+    // Most of the tree sees nothing of a right-hand side with few entries.
+    if known.iter().all(|row| row.is_zero()) {
+        return;
+    }
     for r in 1..C {
         let mut own = known[r];
-        (0..r).for_each(|c| own.subtract(l[r][c], &known[c]));
+        for c in 0..r {
+            own.subtract(l[r][c], &known[c]);
+        }
         known[r] = own;
+        v.own[(names[r] - v.base) as usize] = own;
     }
-    let l = &l[C..];
+    let inside = names.partition_point(|name| *name < v.n);
+    subtract(&l[C..inside], &known, &names[C..inside], v.own, v.base);
+    subtract(&l[inside..], &known, &names[inside..], v.beyond, v.n);
+}
+
+/// v ← v − L y for rows named from `base` on.
+#[inline(always)]
+fn subtract<T: Field, L: Lanes<T>, const C: usize>(
+    l: &[[T; C]],
+    y: &[L; C],
+    names: &[u32],
+    v: &mut [L],
+    base: u32,
+) {
     // A few rows at a time stay in registers.
     const ROWS: usize = 4;
-    let whole = below.len() - below.len() % ROWS;
-    for i in (0..whole).step_by(ROWS) {
-        let l: &[[T; C]; ROWS] = l[i..i + ROWS].try_into().expect("four rows");
-        let mut sums: [L; ROWS] = std::array::from_fn(|r| below[i + r]);
+    let ((groups, rest), (names, names_rest)) = (l.as_chunks::<ROWS>(), names.as_chunks::<ROWS>());
+    for (l, names) in groups.iter().zip(names) {
+        let at = names.map(|name| (name - base) as usize);
+        let mut sums = at.map(|at| v[at]);
         for c in 0..C {
             for r in 0..ROWS {
-                sums[r].subtract(l[r][c], &known[c]);
+                sums[r].subtract(l[r][c], &y[c]);
             }
         }
-        below[i..i + ROWS].copy_from_slice(&sums);
-    }
-    for i in whole..below.len() {
-        let mut sum = below[i];
-        for c in 0..C {
-            sum.subtract(l[i][c], &known[c]);
+        for r in 0..ROWS {
+            v[at[r]] = sums[r];
         }
-        below[i] = sum;
+    }
+    for (l, name) in rest.iter().zip(names_rest) {
+        let at = (name - base) as usize;
+        let mut sum = v[at];
+        for c in 0..C {
+            sum.subtract(l[c], &y[c]);
+        }
+        v[at] = sum;
     }
 }
 
 /// C columns, P sums at a time.
 #[inline(always)]
-fn down<T: Field, L: Lanes<T>, const C: usize, const P: usize>(l: &[T], v: &mut [L]) {
+fn down<T: Field, L: Lanes<T>, const C: usize, const P: usize>(l: &[T], names: &[u32], v: &mut Rows<'_, L>) {
     let (l, _) = l.as_chunks::<C>();
-    let (own, below) = v.split_at_mut(C);
+    let mut own: [L; C] = std::array::from_fn(|c| v.own[(names[c] - v.base) as usize]);
+    let inside = names.partition_point(|name| *name < v.n);
     for part in (0..C).step_by(P) {
         let mut sums: [L; P] = std::array::from_fn(|p| own[part + p]);
-        for (known, l) in below.iter().zip(&l[C..]) {
+        for (name, l) in names[inside..].iter().zip(&l[inside..]).rev() {
+            let known = &v.beyond[(name - v.n) as usize];
+            for p in 0..P {
+                sums[p].subtract(l[part + p], known);
+            }
+        }
+        for (name, l) in names[C..inside].iter().zip(&l[C..inside]).rev() {
+            let known = &v.own[(name - v.base) as usize];
             for p in 0..P {
                 sums[p].subtract(l[part + p], known);
             }
@@ -148,8 +206,11 @@ fn down<T: Field, L: Lanes<T>, const C: usize, const P: usize>(l: &[T], v: &mut 
     }
     for c in (0..C).rev() {
         let mut sum = own[c];
-        (c + 1..C).for_each(|r| sum.subtract(l[r][c], &own[r]));
+        for r in c + 1..C {
+            sum.subtract(l[r][c], &own[r]);
+        }
         own[c] = sum;
+        v.own[(names[c] - v.base) as usize] = sum;
     }
 }
 
@@ -165,9 +226,20 @@ mod tests {
             let columns: Vec<f64> = (0..width * rows).map(|k| l(k % rows, k / rows)).collect();
             let lower = Lower::new(&columns, rows, width);
             let start: Vec<[f64; 2]> = (0..rows).map(|i| [i as f64, (i as f64).cos()]).collect();
-            let (mut up, mut down) = (start.clone(), start.clone());
-            lower.up(&mut up);
-            lower.down::<pulp::Scalar, _>(&mut down);
+            // The last rows lie beyond the columns of the task, the others stand backwards in it.
+            let (beyond, base, n) = ((rows - width).min(7), 100, 1000);
+            let inside = rows - beyond;
+            let names: Vec<u32> = (0..rows)
+                .map(|i| if i < inside { base + inside - 1 - i } else { n + i - inside } as u32)
+                .collect();
+            let through = |step: &dyn Fn(&mut Rows<'_, [f64; 2]>)| {
+                let mut own: Vec<[f64; 2]> = start[..inside].iter().rev().copied().collect();
+                let mut beyond = start[inside..].to_vec();
+                step(&mut Rows { own: &mut own, base: base as u32, beyond: &mut beyond, n: n as u32 });
+                own.into_iter().rev().chain(beyond).collect::<Vec<_>>()
+            };
+            let up = through(&|v| lower.up(&names, v));
+            let down = through(&|v| lower.down::<pulp::Scalar, _>(&names, v));
             let (mut up_expected, mut down_expected) = (start.clone(), start);
             for j in 0..width {
                 for i in j + 1..rows {

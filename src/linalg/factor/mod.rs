@@ -28,10 +28,11 @@ pub use field::Field;
 pub use halves::compliances;
 
 use super::SparseMatrix;
+use super::room::with_room;
 use super::sparse::{multiply, norm_1};
 use crate::error::{Error, Result};
 use faer::sparse::{SparseColMat, SymbolicSparseColMatRef};
-use faer::{Mat, MatMut, MatRef};
+use faer::{ColRef, Mat, MatMut, MatRef};
 use field::Lanes;
 use halves::Half;
 use numeric::Front;
@@ -248,28 +249,33 @@ impl<T: Field> Multifrontal<T> {
     }
 
     /// Solves for up to as many columns as `L` has.
-    fn solve_lanes<L: Lanes<T>>(&self, mut rhs: MatMut<'_, T>) {
-        let mut x = vec![L::ZERO; self.n()];
-        let columns = rhs.ncols();
-        let b = rhs.as_ref();
-        x.par_chunks_mut(ROWS_A_TASK).zip(self.plan.order.par_chunks(ROWS_A_TASK)).for_each(|(x, order)| {
-            for (x, row) in x.iter_mut().zip(order) {
-                for k in 0..columns {
-                    x.set(k, b[(*row, k)] * self.scaling[*row]);
+    fn solve_lanes<L: Lanes<T>>(&self, rhs: MatMut<'_, T>) {
+        with_room(self.n(), L::ZERO, |x| {
+            self.lay(rhs.as_ref(), x);
+            self.substitution().up(x);
+            self.substitution().down(x);
+            rhs.par_row_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, mut rhs)| {
+                for i in 0..rhs.nrows() {
+                    let row = task * ROWS_A_TASK + i;
+                    let x = &x[self.plan.place[row]];
+                    for k in 0..rhs.ncols() {
+                        rhs[(i, k)] = x.get(k) * self.scaling[row];
+                    }
                 }
-            }
+            });
         });
-        self.substitution().up(&mut x);
-        self.substitution().down(&mut x);
-        rhs.as_mut().par_row_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, mut rhs)| {
-            for i in 0..rhs.nrows() {
-                let row = task * ROWS_A_TASK + i;
-                let x = &x[self.plan.place[row]];
-                for k in 0..columns {
-                    rhs[(i, k)] = x.get(k) * self.scaling[row];
-                }
-            }
-        });
+    }
+
+    /// The rows of P S B. They are taken as they come, so that only whole rows of x are met out of order.
+    fn lay<L: Lanes<T>>(&self, b: MatRef<'_, T>, x: &mut [L]) {
+        if b.ncols() < L::COLUMNS {
+            x.fill(L::ZERO);
+        }
+        let columns: Vec<ColRef<'_, T>> = b.col_iter().collect();
+        for (row, (place, scale)) in self.plan.place.iter().zip(&self.scaling).enumerate() {
+            let x = &mut x[*place];
+            columns.iter().enumerate().for_each(|(k, b)| x.set(k, b[row] * *scale));
+        }
     }
 }
 
@@ -283,8 +289,8 @@ impl<T: Field> SymmetricFactor<T> for Multifrontal<T> {
         rhs.par_col_chunks_mut(COLUMNS_A_TASK).for_each(|columns| match columns.ncols() {
             1 => self.solve_lanes::<T::Lanes<1>>(columns),
             2..=4 => self.solve_lanes::<T::Lanes<4>>(columns),
-            5..=8 => self.solve_lanes::<T::Lanes<8>>(columns),
-            _ => self.solve_lanes::<T::Lanes<COLUMNS_A_TASK>>(columns),
+            5..=8 => self.solve_lanes::<T::Wide<8>>(columns),
+            _ => self.solve_lanes::<T::Wide<COLUMNS_A_TASK>>(columns),
         });
     }
 
@@ -360,7 +366,7 @@ impl<T: Field> SymmetricFactor<T> for Multifrontal<T> {
         let bytes = |front: &Front<T>| {
             front.lower.memory_bytes()
                 + size_of_val(&*front.inverse)
-                + 4 * (front.columns.len() + front.above.len())
+                + 4 * (front.rows.len() + front.handed_on.len())
         };
         8 * self.n() + self.fronts.iter().map(bytes).sum::<usize>()
     }

@@ -11,23 +11,27 @@ use rayon::prelude::*;
 /// The columns of L that one front gave.
 #[derive(Debug)]
 pub(super) struct Front<T> {
-    /// The columns that were candidates, by their place in the order of elimination: first those that this front
-    /// eliminated, in the order of its pivots, then those that it passed on.
-    pub columns: Vec<u32>,
-    /// The order of the front; the first rows are those of `columns`.
-    pub rows: usize,
-    /// L, `rows` × as many columns as were eliminated.
+    /// The rows, by their place in the order of elimination: first the columns that this front eliminated, in the order
+    /// of its pivots, then those that it passed on, then the others, ascending. Rows beyond the columns of the task are
+    /// numbered from n on, in the order in which the task hands them on.
+    pub rows: Vec<u32>,
+    /// L, as many rows × as many columns as were eliminated.
     pub lower: Lower<T>,
     /// B⁻¹: for each eliminated column its diagonal entry and the entry below it, nonzero where a 2 × 2 block begins.
     pub inverse: Vec<[T; 2]>,
-    /// Where each row that was not eliminated stands in the parent's front.
-    pub above: Vec<u32>,
+    /// Of the last front of a task, the rows that the task hands on, as the fronts of the task above name them.
+    pub handed_on: Vec<u32>,
 }
 
 impl<T> Front<T> {
     /// How many columns this front eliminated.
     pub fn width(&self) -> usize {
         self.inverse.len()
+    }
+
+    /// The columns that this front eliminated, by their place, in the order of its pivots.
+    pub fn columns(&self) -> &[u32] {
+        &self.rows[..self.width()]
     }
 }
 
@@ -111,15 +115,39 @@ impl<T: Field> Elimination<'_, T> {
             }
             let children = stack.split_off(stack.len() - self.plan.nodes[s].children.len());
             let (front, remainder) = self.front(s, &children, &mut scratch)?;
-            for (child, remainder) in self.plan.nodes[s].children.iter().zip(&children) {
-                let child = fronts[*child - task.nodes.start].as_mut().expect("children come first");
-                child.above = remainder.rows.iter().map(|row| scratch.places[*row as usize]).collect();
-            }
             fronts[s - task.nodes.start] = Some(front);
             stack.push(remainder);
             s += 1;
         }
+        self.name_rows(task, fronts, &mut scratch.places);
         Ok(stack)
+    }
+
+    /// Names the rows of the fronts of a task as they are kept, and those that its last front hands on by their place.
+    fn name_rows(&self, task: &Task, fronts: &mut [Option<Front<T>>], names: &mut [u32]) {
+        let end = self.plan.first_column(task.nodes.end) as u32;
+        let handed_on: Vec<u32> = match fronts.last() {
+            Some(Some(last)) => last.rows.iter().copied().filter(|row| *row >= end).collect(),
+            _ => Vec::new(),
+        };
+        for (row, name) in handed_on.iter().zip(self.plan.order.len() as u32..) {
+            names[*row as usize] = name;
+        }
+        let rename = |rows: &mut [u32]| {
+            rows.iter_mut().filter(|row| **row >= end).for_each(|row| *row = names[*row as usize]);
+        };
+        let mut subtasks = task.subtasks.iter().peekable();
+        let mut s = task.nodes.start;
+        while s < task.nodes.end {
+            let subtask = subtasks.next_if(|subtask| subtask.nodes.start == s);
+            let last = subtask.map_or(s, |subtask| subtask.nodes.end - 1);
+            let front = fronts[last - task.nodes.start].as_mut().expect("all fronts are there");
+            rename(if subtask.is_some() { &mut front.handed_on } else { &mut front.rows });
+            s = last + 1;
+        }
+        if let Some(Some(last)) = fronts.last_mut() {
+            last.handed_on = handed_on;
+        }
     }
 
     /// Assembles node s from A and its children, and eliminates it. `scratch.places` then tells where each of its rows
@@ -183,7 +211,8 @@ impl<T: Field> Elimination<'_, T> {
             values: if passed_on == 0 { rest } else { joined(lower, &rest, m, width, done) },
         };
         let lower = Lower::new(lower, m, done);
-        Ok((Front { columns, rows: m, lower, inverse, above: Vec::new() }, remainder))
+        columns.extend(below);
+        Ok((Front { rows: columns, lower, inverse, handed_on: Vec::new() }, remainder))
     }
 }
 

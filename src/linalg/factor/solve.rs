@@ -1,10 +1,12 @@
 //! Forward and backward substitution along the tree, its tasks side by side, up to sixteen right-hand sides at once.
 //!
-//! Upwards every front takes its rows of the right-hand side, adds what its children pass on, solves L y = b for its
-//! columns and passes the rest on. Downwards it receives the solution of the rows it passed on and solves Lᵀ x = y.
-//! The order of every sum is that of the tree.
+//! Upwards every front solves L y = b for its columns and takes what they bring from the rows below them; downwards it takes
+//! what it knows of those rows and solves Lᵀ x = y. Both happen in place, row by row, in the right-hand sides laid out in the
+//! order of elimination. What a task brings to rows beyond its own columns is kept apart and handed to the task above, so that
+//! tasks may run side by side and the order of every sum is that of the tree.
 
 use super::field::{Field, Lanes};
+use super::lower::Rows;
 use super::numeric::{Front, parts};
 use super::symbolic::{Plan, Task};
 use pulp::{Arch, Simd, WithSimd};
@@ -32,144 +34,98 @@ impl<T: Field> Substitution<'_, T> {
         self.backward(&self.plan.root, x, Vec::new());
     }
 
-    /// The first column of node s.
-    fn first(&self, s: usize) -> usize {
-        self.plan.nodes.get(s).map_or(self.plan.order.len(), |node| node.columns.start)
+    /// The parts of x that belong to the subtasks of a task.
+    fn parts<'x, L>(&self, task: &Task, x: &'x mut [L]) -> Vec<&'x mut [L]> {
+        parts(task, x, |s| self.plan.first_column(s))
     }
 
-    /// L y = b for the columns of a task; gives what its last front passes on.
+    /// The rows that a task hands on.
+    fn handed_on(&self, task: &Task) -> &[u32] {
+        self.fronts[task.nodes.clone()].last().map_or(&[], |front| &front.handed_on)
+    }
+
+    /// The nodes of a task that belong to no subtask.
+    fn own_nodes(&self, task: &Task) -> impl DoubleEndedIterator<Item = usize> {
+        let starts = task.subtasks.iter().map(|subtask| subtask.nodes.start).chain([task.nodes.end]);
+        let ends =
+            [task.nodes.start].into_iter().chain(task.subtasks.iter().map(|subtask| subtask.nodes.end));
+        ends.zip(starts).map(|(end, start)| end..start).collect::<Vec<_>>().into_iter().flatten()
+    }
+
+    /// L y = b for the columns of a task; gives what it brings to the rows that it hands on.
     fn forward<L: Lanes<T>>(&self, task: &Task, x: &mut [L]) -> Vec<L> {
-        let subtasks: Vec<_> = task.subtasks.iter().zip(parts(task, x, |s| self.first(s))).collect();
+        let subtasks: Vec<_> = task.subtasks.iter().zip(self.parts(task, x)).collect();
         let results: Vec<_> = subtasks.into_par_iter().map(|(task, x)| self.forward(task, x)).collect();
-        let mut results = task.subtasks.iter().zip(results);
-        let base = self.first(task.nodes.start);
-        let (mut stack, mut v) = (Vec::new(), Vec::new());
-        let mut ready = results.next();
-        let mut s = task.nodes.start;
-        while s < task.nodes.end {
-            if let Some((subtask, passed_on)) = ready.take_if(|(subtask, _)| subtask.nodes.start == s) {
-                stack.extend(passed_on);
-                s = subtask.nodes.end;
-                ready = results.next();
-                continue;
+        let mut beyond = vec![L::ZERO; self.handed_on(task).len()];
+        let mut rows = self.rows(task, x, &mut beyond);
+        for (subtask, sums) in task.subtasks.iter().zip(&results) {
+            for (row, sum) in self.handed_on(subtask).iter().zip(sums) {
+                rows.at(*row).add(sum);
             }
-            Arch::new().dispatch(Step::<T, L, true> {
-                tree: self,
-                s,
-                base,
-                x: &mut *x,
-                stack: &mut stack,
-                v: &mut v,
-            });
-            s += 1;
         }
-        stack
+        let nodes = self.own_nodes(task);
+        Arch::new().dispatch(Up { fronts: self.fronts, nodes, rows });
+        beyond
     }
 
-    /// B Lᵀ x = y for the columns of a task; `known` is the solution of the rows that its last front passed on.
-    fn backward<L: Lanes<T>>(&self, task: &Task, x: &mut [L], known: Vec<L>) {
-        let base = self.first(task.nodes.start);
-        let (mut stack, mut v) = (known, Vec::new());
-        let mut waiting: Vec<Vec<L>> = Vec::new();
-        let mut subtasks = task.subtasks.iter().rev().peekable();
-        let mut s = task.nodes.end;
-        while s > task.nodes.start {
-            let front = &self.fronts[s - 1];
-            let known = stack.len() - front.above.len();
-            if let Some(subtask) = subtasks.next_if(|subtask| subtask.nodes.end == s) {
-                waiting.push(stack.split_off(known));
-                s = subtask.nodes.start;
-                continue;
-            }
-            s -= 1;
-            Arch::new().dispatch(Step::<T, L, false> {
-                tree: self,
-                s,
-                base,
-                x: &mut *x,
-                stack: &mut stack,
-                v: &mut v,
-            });
-        }
-        let parts = task.subtasks.iter().zip(parts(task, x, |s| self.first(s)));
-        let parts: Vec<_> = parts.zip(waiting.into_iter().rev()).collect();
+    /// B Lᵀ x = y for the columns of a task; `beyond` is the solution of the rows that it hands on.
+    fn backward<L: Lanes<T>>(&self, task: &Task, x: &mut [L], mut beyond: Vec<L>) {
+        let mut rows = self.rows(task, x, &mut beyond);
+        let nodes = self.own_nodes(task).rev();
+        Arch::new().dispatch(Down { fronts: self.fronts, nodes, rows: rows.reborrow() });
+        let handed = |subtask| self.handed_on(subtask).iter().map(|row| *rows.at(*row)).collect();
+        let known: Vec<Vec<L>> = task.subtasks.iter().map(handed).collect();
+        let parts: Vec<_> = task.subtasks.iter().zip(self.parts(task, x)).zip(known).collect();
         parts.into_par_iter().for_each(|((task, x), known)| self.backward(task, x, known));
     }
+
+    /// The rows that the fronts of a task reach.
+    fn rows<'x, L>(&self, task: &Task, x: &'x mut [L], beyond: &'x mut [L]) -> Rows<'x, L> {
+        let (base, n) = (self.plan.first_column(task.nodes.start), self.plan.order.len());
+        Rows { own: x, base: base as u32, beyond, n: n as u32 }
+    }
 }
 
-/// One node on the way up, or on the way down.
-struct Step<'a, T, L, const UP: bool> {
-    tree: &'a Substitution<'a, T>,
-    s: usize,
-    /// The column that `x` begins with.
-    base: usize,
-    x: &'a mut [L],
-    stack: &'a mut Vec<L>,
-    /// Memory for the rows of the front.
-    v: &'a mut Vec<L>,
+/// Up through some nodes.
+struct Up<'a, T, L, I> {
+    fronts: &'a [Front<T>],
+    nodes: I,
+    rows: Rows<'a, L>,
 }
 
-impl<T: Field, L: Lanes<T>, const UP: bool> WithSimd for Step<'_, T, L, UP> {
+impl<T: Field, L: Lanes<T>, I: Iterator<Item = usize>> WithSimd for Up<'_, T, L, I> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        if UP { self.rise() } else { self.descend::<S>() }
-    }
-}
-
-impl<T: Field, L: Lanes<T>, const UP: bool> Step<'_, T, L, UP> {
-    /// What the children passed on is taken from the stack, what the node passes on is put there.
-    #[inline(always)]
-    fn rise(self) {
-        let Step { tree, s, base, x, stack, v } = self;
-        let (front, node) = (&tree.fronts[s], &tree.plan.nodes[s]);
-        v.clear();
-        v.extend(front.columns.iter().map(|column| {
-            let column = *column as usize;
-            // A column that a child passed on arrives with the child's sums.
-            if node.columns.contains(&column) { x[column - base] } else { L::ZERO }
-        }));
-        v.resize(front.rows, L::ZERO);
-        let arrived: usize = node.children.iter().map(|c| tree.fronts[*c].above.len()).sum();
-        let start = stack.len() - arrived;
-        let mut sums = stack[start..].iter();
-        for child in &node.children {
-            for (row, sum) in tree.fronts[*child].above.iter().zip(&mut sums) {
-                v[*row as usize].add(sum);
-            }
-        }
-        stack.truncate(start);
-        // Most of the tree sees nothing of a right-hand side with few entries.
-        if v.iter().any(|row| (0..L::COLUMNS).any(|k| row.get(k) != T::default())) {
-            front.lower.up(v);
-        }
-        front.columns[..front.width()].iter().zip(&*v).for_each(|(c, y)| x[*c as usize - base] = *y);
-        stack.extend_from_slice(&v[front.width()..]);
-    }
-
-    /// The solution of the rows that the node passed on is taken from the stack, that of the rows of its children is put
-    /// there.
-    #[inline(always)]
-    fn descend<S: Simd>(self) {
-        let Step { tree, s, base, x, stack, v } = self;
-        let front = &tree.fronts[s];
-        let columns = &front.columns[..front.width()];
-        let known = stack.len() - front.above.len();
-        v.clear();
-        v.extend(columns.iter().map(|column| x[*column as usize - base]));
-        v.extend_from_slice(&stack[known..]);
-        stack.truncate(known);
-        front.apply_pivots(v);
-        front.lower.down::<S, L>(v);
-        columns.iter().zip(&*v).for_each(|(c, y)| x[*c as usize - base] = *y);
-        for child in &tree.plan.nodes[s].children {
-            stack.extend(tree.fronts[*child].above.iter().map(|row| v[*row as usize]));
+    fn with_simd<S: Simd>(mut self, _: S) {
+        for s in self.nodes {
+            let front = &self.fronts[s];
+            front.lower.up(&front.rows, &mut self.rows);
         }
     }
 }
 
-/// v ← B⁻¹ v, front by front.
+/// Down through some nodes.
+struct Down<'a, T, L, I> {
+    fronts: &'a [Front<T>],
+    nodes: I,
+    rows: Rows<'a, L>,
+}
+
+impl<T: Field, L: Lanes<T>, I: Iterator<Item = usize>> WithSimd for Down<'_, T, L, I> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, _: S) {
+        for s in self.nodes {
+            let front = &self.fronts[s];
+            front.apply_pivots(self.rows.own, self.rows.base);
+            front.lower.down::<S, L>(&front.rows, &mut self.rows);
+        }
+    }
+}
+
+/// x ← B⁻¹ x, front by front.
 struct Pivots<'a, T, L> {
     fronts: &'a [Front<T>],
     x: &'a mut [L],
@@ -180,35 +136,32 @@ impl<T: Field, L: Lanes<T>> WithSimd for Pivots<'_, T, L> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let mut v = Vec::new();
         for front in self.fronts {
-            let columns = &front.columns[..front.width()];
-            v.clear();
-            v.extend(columns.iter().map(|c| self.x[*c as usize]));
-            front.apply_pivots(&mut v);
-            columns.iter().zip(&v).for_each(|(c, y)| self.x[*c as usize] = *y);
+            front.apply_pivots(self.x, 0);
         }
     }
 }
 
 impl<T: Field> Front<T> {
-    /// v ← B⁻¹ v for the eliminated columns, which v begins with.
+    /// x ← B⁻¹ x for the eliminated columns, where x begins with column `base`.
     #[inline(always)]
-    fn apply_pivots<L: Lanes<T>>(&self, v: &mut [L]) {
-        let mut j = 0;
-        while j < self.width() {
+    fn apply_pivots<L: Lanes<T>>(&self, x: &mut [L], base: u32) {
+        let (columns, mut j) = (self.columns(), 0);
+        while j < columns.len() {
             let [a, b] = self.inverse[j];
-            let (x, mut first) = (v[j], L::ZERO);
-            first.subtract(-a, &x);
+            let at = (columns[j] - base) as usize;
+            let (own, mut first) = (x[at], L::ZERO);
+            first.subtract(-a, &own);
             let double = b != T::default();
             if double {
-                let (y, mut second) = (v[j + 1], L::ZERO);
-                first.subtract(-b, &y);
-                second.subtract(-b, &x);
-                second.subtract(-self.inverse[j + 1][0], &y);
-                v[j + 1] = second;
+                let next = (columns[j + 1] - base) as usize;
+                let (other, mut second) = (x[next], L::ZERO);
+                first.subtract(-b, &other);
+                second.subtract(-b, &own);
+                second.subtract(-self.inverse[j + 1][0], &other);
+                x[next] = second;
             }
-            v[j] = first;
+            x[at] = first;
             j += 1 + usize::from(double);
         }
     }

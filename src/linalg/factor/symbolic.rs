@@ -62,6 +62,11 @@ impl Plan {
         Ok(Plan::number(pattern, &quotient, &graph, supernodes))
     }
 
+    /// The first column of node s; of the node after the last one, how many there are.
+    pub fn first_column(&self, s: usize) -> usize {
+        self.nodes.get(s).map_or(self.order.len(), |node| node.columns.start)
+    }
+
     /// Numbers the columns along the tree and writes everything out for the rows of A.
     fn number(
         pattern: SymbolicSparseColMatRef<'_, usize>,

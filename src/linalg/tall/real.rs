@@ -126,7 +126,7 @@ fn add_dots<const G: usize>(a: [&[f64]; G], b: &[[f64; LANES]], sums: &mut [[f64
 }
 
 /// Columns of Y that are summed together.
-const TOGETHER: usize = 4;
+const TOGETHER: usize = 8;
 /// Columns of V that are read side by side: as many as the processor fetches ahead of their use.
 const STREAMS: usize = 16;
 
@@ -144,7 +144,8 @@ impl WithSimd for Sums<'_, '_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        if S::REGISTER_COUNT >= 32 { self.run::<16>() } else { self.run::<8>() }
+        // A register of rows for each column, beside what they are made of.
+        if S::REGISTER_COUNT >= 32 { self.run::<8>() } else { self.run::<4>() }
     }
 }
 
@@ -157,41 +158,53 @@ impl Sums<'_, '_> {
             for begin in (0..m).step_by(STREAMS) {
                 let v = &self.v[begin..m.min(begin + STREAMS)];
                 for (y, c) in self.y.chunks_mut(TOGETHER).zip(self.c.chunks(m)) {
-                    let c = &c[begin..begin + v.len()];
+                    let (c, first) = (&c[begin..begin + v.len()], self.first + start);
                     let mut y: Vec<&mut [f64]> = y.iter_mut().map(|y| &mut y[own.clone()]).collect();
-                    match <&mut [&mut [f64]; TOGETHER]>::try_from(&mut y[..]) {
-                        Ok(y) => add_sums::<R>(y, v, self.first + start, c),
-                        Err(_) => y.iter_mut().enumerate().for_each(|(k, y)| {
-                            for (v, c) in v.iter().zip(c) {
-                                let v = &v[self.first + start..];
-                                y.iter_mut().zip(v).for_each(|(y, v)| *y = v.mul_add(c[k], *y));
-                            }
-                        }),
-                    }
+                    let mut done = 0;
+                    done += add_groups::<R, TOGETHER>(&mut y[done..], v, first, c, done);
+                    done += add_groups::<R, 4>(&mut y[done..], v, first, c, done);
+                    add_groups::<R, 1>(&mut y[done..], v, first, c, done);
                 }
             }
         }
     }
 }
 
-/// y_k += Σ_j v_j c_jk, `first` being the row of V where y begins.
+/// As many groups of K columns of y as there are, and how many columns that makes; `from` is the first one's place in c.
 #[inline(always)]
-fn add_sums<const R: usize>(
-    y: &mut [&mut [f64]; TOGETHER],
+fn add_groups<const R: usize, const K: usize>(
+    y: &mut [&mut [f64]],
     v: &[&[f64]],
     first: usize,
     c: &[[f64; TOGETHER]],
+    from: usize,
+) -> usize {
+    let (groups, _) = y.as_chunks_mut::<K>();
+    for (y, k) in groups.iter_mut().zip((from..).step_by(K)) {
+        add_sums::<R, K>(y, v, first, c, k);
+    }
+    K * groups.len()
+}
+
+/// y_k += Σ_j v_j c_jk for the columns of c from `from` on, `first` being the row of V where y begins.
+#[inline(always)]
+fn add_sums<const R: usize, const K: usize>(
+    y: &mut [&mut [f64]; K],
+    v: &[&[f64]],
+    first: usize,
+    c: &[[f64; TOGETHER]],
+    from: usize,
 ) {
     let rows = y[0].len();
     let whole = rows - rows % R;
     for i in (0..whole).step_by(R) {
-        let mut own = [[0.0; R]; TOGETHER];
+        let mut own = [[0.0; R]; K];
         for (own, y) in own.iter_mut().zip(&*y) {
             own.copy_from_slice(&y[i..i + R]);
         }
         for (v, c) in v.iter().zip(c) {
-            let v = &v[first + i..][..R];
-            for k in 0..TOGETHER {
+            let (v, c) = (&v[first + i..][..R], &c[from..from + K]);
+            for k in 0..K {
                 for r in 0..R {
                     own[k][r] = v[r].mul_add(c[k], own[k][r]);
                 }
@@ -203,7 +216,7 @@ fn add_sums<const R: usize>(
     }
     for i in whole..rows {
         for (v, c) in v.iter().zip(c) {
-            for (y, c) in y.iter_mut().zip(c) {
+            for (y, c) in y.iter_mut().zip(&c[from..]) {
                 y[i] = v[first + i].mul_add(*c, y[i]);
             }
         }
@@ -249,7 +262,7 @@ mod tests {
         let mut y = vec![vec![1.0; n - 3]; TOGETHER];
         let mut columns: Vec<&mut [f64]> = y.iter_mut().map(|column| &mut column[..]).collect();
         let rows: Vec<[f64; TOGETHER]> = (0..m).map(|i| std::array::from_fn(|k| c[(i, k)])).collect();
-        Sums { y: &mut columns, first: 3, v: &a, c: &rows }.run::<8>();
+        Sums { y: &mut columns, first: 3, v: &a, c: &rows }.run::<4>();
         let expected = &v * &c;
         assert!(
             (0..n - 3).all(|i| (0..TOGETHER).all(|k| (y[k][i] - 1.0 - expected[(i + 3, k)]).abs() < 1e-12))

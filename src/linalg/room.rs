@@ -1,0 +1,58 @@
+//! Memory for a while, taken up again by whoever wants as much next.
+//!
+//! A block of a few megabytes that is given back goes to the operating system, which has to clear every page before it hands
+//! it out again: for products and substitutions with tall matrices that would be a tenth of their time.
+
+use std::any::Any;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Blocks at rest.
+static AT_REST: Mutex<Vec<Box<dyn Any + Send>>> = Mutex::new(Vec::new());
+/// The most of them that are kept: two for each of two threads.
+const MOST: usize = 4;
+
+/// What `f` makes with room for `n` values, which hold whatever they held before.
+pub(super) fn with_room<T: Copy + Send + 'static, R>(n: usize, zero: T, f: impl FnOnce(&mut [T]) -> R) -> R {
+    let place = |kept: &[Box<dyn Any + Send>]| kept.iter().position(|block| block.is::<Vec<T>>());
+    let found = {
+        let mut kept = at_rest();
+        place(&kept).map(|k| kept.remove(k))
+    };
+    let mut room = found.and_then(|block| block.downcast::<Vec<T>>().ok()).unwrap_or_default();
+    if room.len() < n {
+        room = Box::new(vec![zero; n]);
+    }
+    let result = f(&mut room[..n]);
+    let mut kept = at_rest();
+    if kept.len() == MOST {
+        kept.remove(0);
+    }
+    kept.push(room);
+    result
+}
+
+/// A panic elsewhere leaves nothing half done here.
+fn at_rest() -> MutexGuard<'static, Vec<Box<dyn Any + Send>>> {
+    AT_REST.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn room_is_as_long_as_asked_for_whatever_was_there_before() {
+        // A type of its own: other tests take room at the same time.
+        #[derive(Clone, Copy, PartialEq, Debug)]
+        struct Own(u8);
+        for n in [5, 0, 9, 3] {
+            let filled = with_room(n, Own(0), |room| {
+                room.fill(Own(7));
+                // Inside, another block.
+                with_room(4, Own(1), |other| other.fill(Own(2)));
+                room.to_vec()
+            });
+            assert_eq!(filled, vec![Own(7); n]);
+        }
+    }
+}
