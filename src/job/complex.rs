@@ -2,7 +2,7 @@
 //! method beside it.
 
 use super::clock::Clock;
-use super::modes::{add_modal_damping, labels, named};
+use super::modes::{labels, modal_damping, named};
 use super::nearest::{band_around, band_expected, keep_nearest};
 use super::prepared::Prepared;
 use crate::case::CeaAnalysis;
@@ -13,6 +13,7 @@ use crate::progress::Observer;
 use crate::results::ComplexResult;
 use crate::stability::{self, Certificate, ComplexModes, Structural};
 use crate::system::{Structure, System};
+use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 /// Floating-point operations of a certificate that nobody asked for: some seconds.
@@ -32,17 +33,23 @@ struct Found {
 
 /// Complex eigenvalues at the steady state, with the system they belong to (its modal damping in it) and the real modes
 /// of the whole, which `basis` gives where they are known already.
-pub fn complex_result(
-    prepared: &Prepared,
+pub fn complex_result<'a>(
+    prepared: &'a Prepared,
     state: &SteadySliding,
     basis: Option<RealModes>,
     clock: &mut Clock,
     observer: &dyn Observer,
-) -> Result<Option<(ComplexResult, System, RealModes)>> {
+) -> Result<Option<(ComplexResult, Cow<'a, System>, RealModes)>> {
     let Some(cea) = &prepared.case.cea else { return Ok(None) };
-    let mut system = prepared.system.clone();
-    let stiffness = equilibrium::tangent_stiffness(&prepared.system, &state.displacement)?.into_owned();
-    let preloaded = Structure { stiffness, ..prepared.system.structure.clone() };
+    let structure = &prepared.system.structure;
+    let preloaded = match equilibrium::tangent_stiffness(&prepared.system, &state.displacement)? {
+        Cow::Borrowed(_) => Cow::Borrowed(structure),
+        Cow::Owned(stiffness) => {
+            let (mass, damping) = (structure.mass.clone(), structure.damping.clone());
+            Cow::Owned(Structure { mass, stiffness, damping })
+        }
+    };
+    let mut system = Cow::Borrowed(&prepared.system);
     let mut problem = Problem { prepared, cea, system: &mut system, state, clock, observer };
     let found = match cea.nearest {
         Some(target) => problem.nearest(target, &preloaded)?,
@@ -89,24 +96,28 @@ pub fn complex_result(
 }
 
 /// What a complex eigenvalue analysis needs.
-struct Problem<'a> {
-    prepared: &'a Prepared<'a>,
+struct Problem<'p, 'a> {
+    prepared: &'a Prepared<'p>,
     cea: &'a CeaAnalysis,
-    system: &'a mut System,
+    /// Its own where it gets modal damping.
+    system: &'a mut Cow<'p, System>,
     state: &'a SteadySliding,
     clock: &'a mut Clock,
     observer: &'a dyn Observer,
 }
 
-impl Problem<'_> {
+impl Problem<'_, '_> {
     /// The complex modes of a band, counted where the case asks for it or where that is cheap.
     fn modes(
         &mut self,
         known: Structural<'_>,
         band: [f64; 2],
     ) -> Result<(ComplexModes, Option<Certificate>)> {
-        add_modal_damping(&mut self.system.structure, known.real, self.prepared)?;
-        let (system, state) = (&*self.system, self.state);
+        let mass = &self.system.structure.mass;
+        if let Some(modal) = modal_damping(mass, known.real, self.prepared.case)? {
+            self.system.to_mut().structure.damping.modal = Some(modal);
+        }
+        let (system, state): (&System, _) = (&*self.system, self.state);
         self.clock.watch(self.observer, |observer| {
             let certified =
                 |most_work| stability::certified_modes(system, state, known, band, most_work, observer);

@@ -3,11 +3,13 @@
 use super::prepared::Prepared;
 use crate::case::{Case, ContactState, ModesAnalysis};
 use crate::error::{Error, Fault, Faults, Result};
+use crate::linalg::SparseMatrix;
 use crate::linalg::sparse::times;
+use crate::linalg::tall::panels;
 use crate::modal::{self, ModesWanted, RealModes};
 use crate::results::{NamedModes, NodalField};
 use crate::structure::{Assembled, assemble};
-use crate::system::{Damping, Structure};
+use crate::system::{Damping, ModalDamping, Structure};
 use faer::{Mat, MatRef};
 use std::sync::Arc;
 
@@ -122,10 +124,14 @@ fn damping_ratios(case: &Case, modes: &RealModes, damping: &Damping) -> Vec<f64>
     }
     for (matrix, power) in [(&damping.viscous, 1), (&damping.hysteretic, 2)] {
         let Some(matrix) = matrix else { continue };
-        let product = times(matrix, modes.shapes.as_ref());
-        for (k, ratio) in ratios.iter_mut().enumerate().skip(modes.rigid_bodies) {
-            let work = modes.shapes.col(k).transpose() * product.col(k);
-            *ratio += work / (2.0 * modes.eigenvalues[k].max(f64::MIN_POSITIVE).sqrt().powi(power));
+        for (start, width) in panels(modes.rigid_bodies..modes.len()) {
+            let shapes = modes.shapes.as_ref().subcols(start, width);
+            let product = times(matrix, shapes);
+            for (k, ratio) in ratios[start..start + width].iter_mut().enumerate() {
+                let work = shapes.col(k).transpose() * product.col(k);
+                let square = modes.eigenvalues[start + k].max(f64::MIN_POSITIVE);
+                *ratio += work / (2.0 * square.sqrt().powi(power));
+            }
         }
     }
     ratios
@@ -189,23 +195,31 @@ pub fn labels(named: &NamedModes) -> Vec<String> {
         .collect()
 }
 
-/// C = M Φ diag(2ζω) Φᵀ M for the modal damping of the case, given the real modes of the whole.
+/// Gives a structure the modal damping of the case, where it has one.
+///
+/// # Errors
+/// Those of [`modal_damping`].
+pub fn add_modal_damping(structure: &mut Structure, modes: &RealModes, prepared: &Prepared) -> Result<()> {
+    if let Some(modal) = modal_damping(&structure.mass, modes, prepared.case)? {
+        structure.damping.modal = Some(modal);
+    }
+    Ok(())
+}
+
+/// C = M Φ diag(2ζω) Φᵀ M for the modal damping of the case, given the real modes of the whole; none where it has none.
 ///
 /// # Errors
 /// A ratio that names a frequency without a mode near it.
-pub fn add_modal_damping(structure: &mut Structure, modes: &RealModes, prepared: &Prepared) -> Result<()> {
-    let damping = &prepared.case.damping;
-    if damping.modal_ratio == 0.0 && damping.modal_ratios.is_empty() {
-        return Ok(());
+pub fn modal_damping(mass: &SparseMatrix, modes: &RealModes, case: &Case) -> Result<Option<ModalDamping>> {
+    if case.damping.modal_ratio == 0.0 && case.damping.modal_ratios.is_empty() {
+        return Ok(None);
     }
-    let ratios = modal_ratios(prepared.case, modes)?;
-    structure.damping.modal = Some(crate::system::ModalDamping {
-        basis: times(&structure.mass, modes.shapes.as_ref()),
-        coefficients: (0..modes.len())
-            .map(|k| 2.0 * ratios[k] * modes.eigenvalues[k].max(0.0).sqrt())
-            .collect(),
-    });
-    Ok(())
+    let ratios = modal_ratios(case, modes)?;
+    let coefficient = |k: usize| 2.0 * ratios[k] * modes.eigenvalues[k].max(0.0).sqrt();
+    Ok(Some(ModalDamping {
+        basis: times(mass, modes.shapes.as_ref()),
+        coefficients: (0..modes.len()).map(coefficient).collect(),
+    }))
 }
 
 /// ζ of every real mode of the whole.

@@ -5,7 +5,7 @@
 
 use super::SparseMatrix;
 use super::lanes::{Aligned, Row, spread};
-use super::sparse::{ROWS_A_TASK, columns_mut, with_packed};
+use super::sparse::{ROWS_A_TASK, columns_mut, union, with_packed};
 use faer::{Mat, MatMut, MatRef};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -33,35 +33,11 @@ impl Merged {
         let (count, n) = (matrices.len(), matrices[0].ncols());
         assert!((1..=4).contains(&count) && u32::try_from(n).is_ok(), "one to four matrices");
         assert!(matrices.iter().all(|a| a.ncols() == n && a.nrows() == n), "matrices of one size");
-        let parts: Vec<(Vec<usize>, Vec<u32>, Vec<f64>)> = (0..n.div_ceil(ROWS_A_TASK))
-            .into_par_iter()
-            .map(|task| {
-                let (mut lengths, mut rows, mut values) = (Vec::new(), Vec::new(), Vec::new());
-                for j in task * ROWS_A_TASK..n.min((task + 1) * ROWS_A_TASK) {
-                    let before = rows.len();
-                    merge_column(matrices, j, &mut rows, &mut values);
-                    lengths.push(rows.len() - before);
-                }
-                (lengths, rows, values)
-            })
-            .collect();
-        let entries = parts.iter().map(|part| part.1.len()).sum();
-        let mut merged = Merged {
-            count,
-            starts: vec![0],
-            rows: Vec::with_capacity(entries),
-            values: Vec::with_capacity(count * entries),
-        };
-        let mut end = 0;
-        for (lengths, rows, values) in parts {
-            for length in lengths {
-                end += length;
-                merged.starts.push(end);
-            }
-            merged.rows.extend(rows);
-            merged.values.extend(values);
-        }
-        merged
+        let (starts, rows, values) = union(matrices, count, |i, entries, row: &mut u32, values| {
+            *row = i as u32;
+            values.copy_from_slice(entries);
+        });
+        Merged { count, starts, rows, values }
     }
 
     /// A x of every matrix A, in their order. Every entry is one sum in a fixed order: the same bits for any number of
@@ -220,18 +196,6 @@ impl<R: Row<f64, W>, const C: usize, const W: usize> WithSimd for Rows<'_, R, C,
             }
             *sums = own;
         }
-    }
-}
-
-/// Appends the rows of column `j` that any of the matrices has, with the values of all.
-fn merge_column(matrices: &[&SparseMatrix], j: usize, rows: &mut Vec<u32>, values: &mut Vec<f64>) {
-    let mut open: Vec<_> = matrices
-        .iter()
-        .map(|a| a.row_idx_of_col_raw(j).iter().copied().zip(a.val_of_col(j).iter().copied()).peekable())
-        .collect();
-    while let Some(row) = open.iter_mut().filter_map(|entries| entries.peek().map(|(i, _)| *i)).min() {
-        rows.push(row as u32);
-        values.extend(open.iter_mut().map(|e| e.next_if(|(i, _)| *i == row).map_or(0.0, |(_, v)| v)));
     }
 }
 

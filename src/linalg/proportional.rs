@@ -32,11 +32,13 @@ impl Proportional {
         let entries = merged.entries::<3>();
         let largest = |k: usize| entries.iter().fold(f64::MIN_POSITIVE, |l, e| l.max(e[k].abs()));
         let [m_size, k_size] = [0, 1].map(largest);
+        let (m_inverse, k_inverse) = (m_size.recip(), k_size.recip());
         // Entries where M or K have one, those of M and K of about the size of one.
         let row = |[m, k, x]: &[f64; 3]| {
-            let (m, k) = (m / m_size, k / k_size);
+            let (m, k) = (m * m_inverse, k * k_inverse);
             let size = m.abs() + k.abs();
-            (size > 0.0).then(|| [m / size, k / size, x / size])
+            let inverse = size.recip();
+            (size >= f64::MIN_POSITIVE).then(|| [m * inverse, k * inverse, x * inverse])
         };
         // An odd step, so that the sample does not fall in with the degrees of freedom of a node.
         let step = (entries.len() / SAMPLE) | 1;

@@ -287,42 +287,111 @@ pub fn add_scaled<T: Scalar>(terms: &[(T, &SparseMatrix)]) -> SparseColMat<usize
         let pattern = first.1.symbolic().to_owned().expect("memory for a pattern");
         return SparseColMat::new(pattern, values);
     }
-    // One task a range of columns; each column merges its sorted rows through a dense accumulator.
-    let parts: Vec<(Vec<usize>, Vec<usize>, Vec<T>)> = (0..ncols.div_ceil(ROWS_A_TASK))
-        .into_par_iter()
-        .map(|task| {
-            let mut accumulator = vec![T::default(); nrows];
-            let mut seen = vec![usize::MAX; nrows];
-            let (mut lengths, mut rows, mut values) = (Vec::new(), Vec::new(), Vec::new());
-            for j in task * ROWS_A_TASK..ncols.min((task + 1) * ROWS_A_TASK) {
-                let begin = rows.len();
-                for (factor, a) in terms {
-                    for (i, v) in a.row_idx_of_col_raw(j).iter().zip(a.val_of_col(j)) {
-                        if seen[*i] != j {
-                            seen[*i] = j;
-                            accumulator[*i] = T::default();
-                            rows.push(*i);
-                        }
-                        accumulator[*i] += *factor * *v;
-                    }
-                }
-                rows[begin..].sort_unstable();
-                values.extend(rows[begin..].iter().map(|i| accumulator[*i]));
-                lengths.push(rows.len() - begin);
-            }
-            (lengths, rows, values)
-        })
-        .collect();
-    let mut starts = vec![0];
-    let (mut rows, mut values) = (Vec::new(), Vec::new());
-    for (lengths, part_rows, part_values) in parts {
-        for length in lengths {
-            starts.push(starts.last().expect("starts with 0") + length);
-        }
-        rows.extend(part_rows);
-        values.extend(part_values);
-    }
+    let matrices: Vec<&SparseMatrix> = terms.iter().map(|(_, a)| *a).collect();
+    let (starts, rows, values) = union(&matrices, 1, |i, entries, row, value| {
+        *row = i;
+        terms.iter().zip(entries).for_each(|((factor, _), v)| value[0] += *factor * *v);
+    });
     SparseColMat::new(SymbolicSparseColMat::new_checked(nrows, ncols, starts, None, rows), values)
+}
+
+/// Where the columns of matrices of one size begin on the union of their patterns, and for each of its entries what `fill`
+/// makes of its row and of the entries that the matrices have there (zero where one has none): a row and `width` values.
+pub(super) fn union<R, V>(
+    matrices: &[&SparseMatrix],
+    width: usize,
+    fill: impl Fn(usize, &[f64], &mut R, &mut [V]) + Sync,
+) -> (Vec<usize>, Vec<R>, Vec<V>)
+where
+    R: Clone + Default + Send,
+    V: Clone + Default + Send,
+{
+    let ncols = matrices[0].ncols();
+    let columns = (0..ncols).into_par_iter().with_min_len(ROWS_A_TASK);
+    let lengths: Vec<usize> =
+        columns.map_init(|| Joined::new(matrices), |joined, j| joined.count(j)).collect();
+    let mut starts = vec![0];
+    starts.extend(lengths.iter().scan(0, |end, length| {
+        *end += length;
+        Some(*end)
+    }));
+    let (mut rows, mut values) =
+        (vec![R::default(); starts[ncols]], vec![V::default(); width * starts[ncols]]);
+    let mut tasks = Vec::new();
+    let (mut rows_left, mut values_left) = (&mut rows[..], &mut values[..]);
+    for first in (0..ncols).step_by(ROWS_A_TASK) {
+        let end = ncols.min(first + ROWS_A_TASK);
+        let entries = starts[end] - starts[first];
+        let (rows, values);
+        (rows, rows_left) = rows_left.split_at_mut(entries);
+        (values, values_left) = values_left.split_at_mut(width * entries);
+        tasks.push((first..end, rows, values));
+    }
+    tasks.into_par_iter().for_each(|(columns, rows, values)| {
+        let (mut joined, mut places) = (Joined::new(matrices), rows.iter_mut().zip(values.chunks_mut(width)));
+        for j in columns {
+            joined.column(j, |i, entries| {
+                let (row, values) = places.next().expect("counted before");
+                fill(i, entries, row, values);
+            });
+        }
+    });
+    (starts, rows, values)
+}
+
+/// Matrices of one size, met column by column on the union of their patterns.
+struct Joined<'a> {
+    matrices: &'a [&'a SparseMatrix],
+    /// What is still to come of a column of each.
+    open: Vec<(&'a [usize], &'a [f64])>,
+    entries: Vec<f64>,
+}
+
+impl<'a> Joined<'a> {
+    fn new(matrices: &'a [&'a SparseMatrix]) -> Self {
+        Joined { matrices, open: Vec::new(), entries: vec![0.0; matrices.len()] }
+    }
+
+    /// The rows of column `j`, where all matrices have the same: most have.
+    fn common(&self, j: usize) -> Option<&'a [usize]> {
+        let rows = self.matrices[0].row_idx_of_col_raw(j);
+        self.matrices[1..].iter().all(|a| a.row_idx_of_col_raw(j) == rows).then_some(rows)
+    }
+
+    /// Hands on every row of column `j`, ascending, with the entry that each matrix has there, or zero.
+    fn column(&mut self, j: usize, mut take: impl FnMut(usize, &[f64])) {
+        self.open.clear();
+        self.open.extend(self.matrices.iter().map(|a| (a.row_idx_of_col_raw(j), a.val_of_col(j))));
+        if let Some(rows) = self.common(j) {
+            for (k, row) in rows.iter().enumerate() {
+                self.entries.iter_mut().zip(&self.open).for_each(|(entry, (_, values))| *entry = values[k]);
+                take(*row, &self.entries);
+            }
+            return;
+        }
+        let next =
+            |open: &[(&[usize], &[f64])]| open.iter().filter_map(|(rows, _)| rows.first()).min().copied();
+        while let Some(row) = next(&self.open) {
+            for ((rows, values), entry) in self.open.iter_mut().zip(&mut self.entries) {
+                let there = rows.first() == Some(&row);
+                *entry = if there { values[0] } else { 0.0 };
+                if there {
+                    (*rows, *values) = (&rows[1..], &values[1..]);
+                }
+            }
+            take(row, &self.entries);
+        }
+    }
+
+    /// How many rows column `j` has.
+    fn count(&mut self, j: usize) -> usize {
+        if let Some(rows) = self.common(j) {
+            return rows.len();
+        }
+        let mut count = 0;
+        self.column(j, |_, _| count += 1);
+        count
+    }
 }
 
 /// ‖A‖₁ = max_j Σ_i |a_ij|, which is also ‖A‖_∞ for a symmetric matrix.

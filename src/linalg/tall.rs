@@ -50,7 +50,7 @@ impl Entry for f64 {
         c: MatRef<'_, f64>,
         factor: f64,
     ) {
-        if !real::combine(y.as_mut(), accumulate, v, c, factor) {
+        if !real::combine(vec![(y.as_mut(), c)], accumulate, v, factor) {
             combine_by_ranges(y, accumulate, v, c, factor);
         }
     }
@@ -74,6 +74,15 @@ pub fn gram<T: Entry>(a: MatRef<'_, T>, b: MatRef<'_, T>) -> Mat<T> {
 /// Y (+)= factor · V C, over fixed ranges of rows.
 pub fn combine<T: Entry>(y: MatMut<'_, T>, accumulate: Accum, v: MatRef<'_, T>, c: MatRef<'_, T>, factor: T) {
     T::combine(y, accumulate, v, c, factor);
+}
+
+/// Yₖ = V Cₖ for several: of a tall V most of the time is that of reading it.
+pub fn expand_into(parts: Vec<(MatMut<'_, f64>, MatRef<'_, f64>)>, v: MatRef<'_, f64>) {
+    let mut parts = parts;
+    let again = parts.iter_mut().map(|(y, c)| (y.as_mut(), *c)).collect();
+    if !real::combine(again, Accum::Replace, v, 1.0) {
+        parts.into_iter().for_each(|(y, c)| combine_by_ranges(y, Accum::Replace, v, c, 1.0));
+    }
 }
 
 fn gram_by_ranges<T: ComplexField>(a: MatRef<'_, T>, b: MatRef<'_, T>) -> Mat<T> {

@@ -304,8 +304,7 @@ fn expand(basis: &Basis<'_>, n_real: usize, pairs: &[&SmallPair], to: &mut Measu
     };
     let (right, left) = (small(|p| &p.right), small(|p| &p.left));
     to.lambda = pairs.iter().map(|pair| pair.lambda).collect();
-    basis.expand_into(&right, &mut to.right.vectors);
-    basis.expand_into(&left, &mut to.left);
+    basis.expand_into([(&right, &mut to.right.vectors), (&left, &mut to.left)]);
     right.map(|y| product(basis.mass.as_ref().subrows(0, n_real), y.as_ref()))
 }
 

@@ -5,7 +5,7 @@ use super::operator::Operator;
 use crate::linalg::SparseMatrix;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::sparse::{add_scaled, times};
-use crate::linalg::tall::{combine, expand, gram, panels};
+use crate::linalg::tall::{combine, expand, expand_into, gram, panels};
 use faer::{Accum, Mat, MatMut, MatRef};
 
 /// Columns that are orthonormalised together.
@@ -65,12 +65,15 @@ impl<'a> Basis<'a> {
         y.map(|y| self.expand_real(y))
     }
 
-    /// B y of every column of `y`, in the memory of `vectors`.
-    pub(super) fn expand_into(&self, y: &Block, vectors: &mut Block) {
-        vectors.resize(self.vectors.nrows(), y.ncols());
-        for (vectors, y) in [(&mut vectors.re, &y.re), (&mut vectors.im, &y.im)] {
-            combine(vectors.as_mut(), Accum::Replace, self.vectors.as_ref(), y.as_ref(), 1.0);
+    /// B y of every column of several `y`, each in the memory of the block beside it.
+    pub(super) fn expand_into(&self, blocks: [(&Block, &mut Block); 2]) {
+        let mut parts = Vec::new();
+        for (y, vectors) in blocks {
+            vectors.resize(self.vectors.nrows(), y.ncols());
+            parts.push((vectors.re.as_mut(), y.re.as_ref()));
+            parts.push((vectors.im.as_mut(), y.im.as_ref()));
         }
+        expand_into(parts, self.vectors.as_ref());
     }
 
     /// B y of real columns.

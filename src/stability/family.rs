@@ -224,8 +224,8 @@ impl<'f> Family<'f> {
         for (chunk, lambda) in modes.eigenvalues.chunks(TOGETHER).enumerate() {
             let of = |y: &Mat<c64>| turned(y, chunk * TOGETHER, lambda.len());
             measured.lambda = lambda.to_vec();
-            self.basis.expand_into(&of(&modes.right), &mut measured.right.vectors);
-            self.basis.expand_into(&of(&modes.left), &mut measured.left);
+            let (right, left) = (of(&modes.right), of(&modes.left));
+            self.basis.expand_into([(&right, &mut measured.right.vectors), (&left, &mut measured.left)]);
             scale.measure(&mut measured);
             wanted.add(&scale, &measured);
             check.eigenvalues.extend(lambda);

@@ -36,7 +36,7 @@ impl Sliding {
         let Some((complex, system, real)) = complex else {
             return Err(Error::analysis("complex eigenvalues", "no [cea] in the case", "Give the case one"));
         };
-        Ok(Sliding { steady, complex, system, real })
+        Ok(Sliding { steady, complex, system: system.into_owned(), real })
     }
 
     fn modes(&self) -> &[ComplexMode] {

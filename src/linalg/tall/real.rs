@@ -5,7 +5,7 @@
 
 use super::super::sparse::{columns, columns_mut};
 use super::ROWS;
-use faer::{Accum, Mat, MatMut, MatRef};
+use faer::{Accum, ColRef, Mat, MatMut, MatRef};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -36,28 +36,40 @@ pub(super) fn gram(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Option<Mat<f64>> {
     Some(sum)
 }
 
-/// Y (+)= factor · V C; false, and nothing done, where a column is not in one piece.
+/// Yₖ (+)= factor · V Cₖ for several, V being read once; false, and nothing done, where a column is not in one piece.
 pub(super) fn combine(
-    mut y: MatMut<'_, f64>,
+    mut parts: Vec<(MatMut<'_, f64>, MatRef<'_, f64>)>,
     accumulate: Accum,
     v: MatRef<'_, f64>,
-    c: MatRef<'_, f64>,
     factor: f64,
 ) -> bool {
-    let (Some(v), Some(_)) = (columns(v), columns(y.as_ref())) else { return false };
-    assert!(c.nrows() == v.len() && c.ncols() == y.ncols(), "shapes of Y, V and C disagree");
-    assert!(v.first().is_none_or(|column| column.len() == y.nrows()), "as many rows");
-    let entry = |j: usize, k: usize| if k < c.ncols() { factor * c[(j, k)] } else { 0.0 };
-    let groups = (0..c.ncols()).step_by(TOGETHER);
-    let entries = groups.flat_map(|k| (0..v.len()).map(move |j| (j, k)));
-    let coefficients: Vec<[f64; TOGETHER]> =
-        entries.map(|(j, k)| std::array::from_fn(|t| entry(j, k + t))).collect();
-    if matches!(accumulate, Accum::Replace) {
-        y.fill(0.0);
+    let n = v.nrows();
+    let Some(v) = columns(v) else { return false };
+    if parts.iter().any(|(y, _)| columns(y.as_ref()).is_none()) {
+        return false;
     }
-    y.par_row_chunks_mut(ROWS).enumerate().for_each(|(task, y)| {
-        let mut y = columns_mut(y).expect("as seen above");
-        Arch::new().dispatch(Sums { y: &mut y, first: task * ROWS, v: &v, c: &coefficients });
+    let fits = |(y, c): &(MatMut<'_, f64>, MatRef<'_, f64>)| {
+        y.nrows() == n && c.nrows() == v.len() && c.ncols() == y.ncols()
+    };
+    assert!(parts.iter().all(fits), "shapes of Y, V and C disagree");
+    // The columns of all C one behind the other, a few side by side.
+    let all: Vec<_> = parts.iter().flat_map(|(_, c)| c.col_iter()).collect();
+    let groups = all.chunks(TOGETHER).flat_map(|group| (0..v.len()).map(move |j| (group, j)));
+    let entry = |group: &[ColRef<'_, f64>], j: usize, t: usize| group.get(t).map_or(0.0, |c| factor * c[j]);
+    let coefficients: Vec<[f64; TOGETHER]> =
+        groups.map(|(group, j)| std::array::from_fn(|t| entry(group, j, t))).collect();
+    let mut tasks: Vec<Vec<&mut [f64]>> = Vec::new();
+    tasks.resize_with(n.div_ceil(ROWS), Vec::new);
+    for (y, _) in &mut parts {
+        for column in columns_mut(y.as_mut()).expect("as seen above") {
+            tasks.iter_mut().zip(column.chunks_mut(ROWS)).for_each(|(task, rows)| task.push(rows));
+        }
+    }
+    tasks.par_iter_mut().enumerate().for_each(|(task, y)| {
+        if matches!(accumulate, Accum::Replace) {
+            y.iter_mut().for_each(|column| column.fill(0.0));
+        }
+        Arch::new().dispatch(Sums { y, first: task * ROWS, v: &v, c: &coefficients });
     });
     true
 }
@@ -238,7 +250,10 @@ mod tests {
             assert!((square - gram_by_ranges(v.as_ref(), x.as_ref())).norm_max() <= 1e-11);
             for accumulate in [Accum::Replace, Accum::Add] {
                 let (mut y, mut expected) = (x.clone(), x.clone());
-                assert!(combine(y.as_mut(), accumulate, v.as_ref(), c.as_ref(), -0.5));
+                // In two pieces, so that a group of columns has some of both.
+                let (first, second) = y.as_mut().split_at_col_mut(w / 3);
+                let (left, right) = c.as_ref().split_at_col(w / 3);
+                assert!(combine(vec![(first, left), (second, right)], accumulate, v.as_ref(), -0.5));
                 combine_by_ranges(expected.as_mut(), accumulate, v.as_ref(), c.as_ref(), -0.5);
                 assert!((y - expected).norm_max() <= 1e-12);
             }
