@@ -13,10 +13,9 @@ const MOST: usize = 4;
 
 /// What `f` makes with room for `n` values, which hold whatever they held before.
 pub(super) fn with_room<T: Copy + Send + 'static, R>(n: usize, zero: T, f: impl FnOnce(&mut [T]) -> R) -> R {
-    let place = |kept: &[Box<dyn Any + Send>]| kept.iter().position(|block| block.is::<Vec<T>>());
     let found = {
         let mut kept = at_rest();
-        place(&kept).map(|k| kept.remove(k))
+        kept.iter().position(|block| block.is::<Vec<T>>()).map(|k| kept.remove(k))
     };
     let mut room = found.and_then(|block| block.downcast::<Vec<T>>().ok()).unwrap_or_default();
     if room.len() < n {

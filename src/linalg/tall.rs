@@ -77,8 +77,7 @@ pub fn combine<T: Entry>(y: MatMut<'_, T>, accumulate: Accum, v: MatRef<'_, T>, 
 }
 
 /// Yₖ = V Cₖ for several: of a tall V most of the time is that of reading it.
-pub fn expand_into(parts: Vec<(MatMut<'_, f64>, MatRef<'_, f64>)>, v: MatRef<'_, f64>) {
-    let mut parts = parts;
+pub fn expand_into(mut parts: Vec<(MatMut<'_, f64>, MatRef<'_, f64>)>, v: MatRef<'_, f64>) {
     let again = parts.iter_mut().map(|(y, c)| (y.as_mut(), *c)).collect();
     if !real::combine(again, Accum::Replace, v, 1.0) {
         parts.into_iter().for_each(|(y, c)| combine_by_ranges(y, Accum::Replace, v, c, 1.0));

@@ -62,11 +62,13 @@ impl<'a> Basis<'a> {
 
     /// B y of every column of `y`.
     pub(super) fn expand(&self, y: &Block) -> Block {
-        y.map(|y| self.expand_real(y))
+        let mut vectors = Block::default();
+        self.expand_into([(y, &mut vectors)]);
+        vectors
     }
 
     /// B y of every column of several `y`, each in the memory of the block beside it.
-    pub(super) fn expand_into(&self, blocks: [(&Block, &mut Block); 2]) {
+    pub(super) fn expand_into<const N: usize>(&self, blocks: [(&Block, &mut Block); N]) {
         let mut parts = Vec::new();
         for (y, vectors) in blocks {
             vectors.resize(self.vectors.nrows(), y.ncols());

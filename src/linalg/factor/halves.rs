@@ -34,16 +34,16 @@ impl<T: Field> Multifrontal<T> {
     fn half<L: Lanes<T>>(&self, mut rhs: MatMut<'_, T>, half: Half) {
         with_room(self.n(), L::ZERO, |x| {
             match half {
-                Half::Forward => self.lay(rhs.as_ref(), x),
+                Half::Forward => {
+                    self.lay(rhs.as_ref(), x);
+                    self.substitution().up(x);
+                }
                 Half::Pivots => {
                     let b = rhs.as_ref();
                     let rows = x.par_iter_mut().enumerate().with_min_len(ROWS_A_TASK);
                     rows.for_each(|(i, x)| (0..b.ncols()).for_each(|k| x.set(k, b[(i, k)])));
+                    self.substitution().pivots(x);
                 }
-            }
-            match half {
-                Half::Forward => self.substitution().up(x),
-                Half::Pivots => self.substitution().pivots(x),
             }
             rhs.as_mut().par_row_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, mut rhs)| {
                 let x = &x[task * ROWS_A_TASK..];

@@ -136,14 +136,12 @@ impl<T: Field> Elimination<'_, T> {
         let rename = |rows: &mut [u32]| {
             rows.iter_mut().filter(|row| **row >= end).for_each(|row| *row = names[*row as usize]);
         };
-        let mut subtasks = task.subtasks.iter().peekable();
-        let mut s = task.nodes.start;
-        while s < task.nodes.end {
-            let subtask = subtasks.next_if(|subtask| subtask.nodes.start == s);
-            let last = subtask.map_or(s, |subtask| subtask.nodes.end - 1);
-            let front = fronts[last - task.nodes.start].as_mut().expect("all fronts are there");
-            rename(if subtask.is_some() { &mut front.handed_on } else { &mut front.rows });
-            s = last + 1;
+        let at = |s: usize| s - task.nodes.start;
+        for s in task.own_nodes() {
+            rename(&mut fronts[at(s)].as_mut().expect("all fronts are there").rows);
+        }
+        for subtask in &task.subtasks {
+            rename(&mut fronts[at(subtask.nodes.end - 1)].as_mut().expect("all fronts are there").handed_on);
         }
         if let Some(Some(last)) = fronts.last_mut() {
             last.handed_on = handed_on;

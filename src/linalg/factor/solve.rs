@@ -44,14 +44,6 @@ impl<T: Field> Substitution<'_, T> {
         self.fronts[task.nodes.clone()].last().map_or(&[], |front| &front.handed_on)
     }
 
-    /// The nodes of a task that belong to no subtask.
-    fn own_nodes(&self, task: &Task) -> impl DoubleEndedIterator<Item = usize> {
-        let starts = task.subtasks.iter().map(|subtask| subtask.nodes.start).chain([task.nodes.end]);
-        let ends =
-            [task.nodes.start].into_iter().chain(task.subtasks.iter().map(|subtask| subtask.nodes.end));
-        ends.zip(starts).map(|(end, start)| end..start).collect::<Vec<_>>().into_iter().flatten()
-    }
-
     /// L y = b for the columns of a task; gives what it brings to the rows that it hands on.
     fn forward<L: Lanes<T>>(&self, task: &Task, x: &mut [L]) -> Vec<L> {
         let subtasks: Vec<_> = task.subtasks.iter().zip(self.parts(task, x)).collect();
@@ -63,16 +55,16 @@ impl<T: Field> Substitution<'_, T> {
                 rows.at(*row).add(sum);
             }
         }
-        let nodes = self.own_nodes(task);
-        Arch::new().dispatch(Up { fronts: self.fronts, nodes, rows });
+        let nodes = task.own_nodes();
+        Arch::new().dispatch(Walk::<T, L, _, true> { fronts: self.fronts, nodes, rows });
         beyond
     }
 
     /// B Lᵀ x = y for the columns of a task; `beyond` is the solution of the rows that it hands on.
     fn backward<L: Lanes<T>>(&self, task: &Task, x: &mut [L], mut beyond: Vec<L>) {
         let mut rows = self.rows(task, x, &mut beyond);
-        let nodes = self.own_nodes(task).rev();
-        Arch::new().dispatch(Down { fronts: self.fronts, nodes, rows: rows.reborrow() });
+        let nodes = task.own_nodes().rev();
+        Arch::new().dispatch(Walk::<T, L, _, false> { fronts: self.fronts, nodes, rows: rows.reborrow() });
         let handed = |subtask| self.handed_on(subtask).iter().map(|row| *rows.at(*row)).collect();
         let known: Vec<Vec<L>> = task.subtasks.iter().map(handed).collect();
         let parts: Vec<_> = task.subtasks.iter().zip(self.parts(task, x)).zip(known).collect();
@@ -86,41 +78,26 @@ impl<T: Field> Substitution<'_, T> {
     }
 }
 
-/// Up through some nodes.
-struct Up<'a, T, L, I> {
+/// Up or down through some nodes.
+struct Walk<'a, T, L, I, const UP: bool> {
     fronts: &'a [Front<T>],
     nodes: I,
     rows: Rows<'a, L>,
 }
 
-impl<T: Field, L: Lanes<T>, I: Iterator<Item = usize>> WithSimd for Up<'_, T, L, I> {
+impl<T: Field, L: Lanes<T>, I: Iterator<Item = usize>, const UP: bool> WithSimd for Walk<'_, T, L, I, UP> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, _: S) {
         for s in self.nodes {
             let front = &self.fronts[s];
-            front.lower.up(&front.rows, &mut self.rows);
-        }
-    }
-}
-
-/// Down through some nodes.
-struct Down<'a, T, L, I> {
-    fronts: &'a [Front<T>],
-    nodes: I,
-    rows: Rows<'a, L>,
-}
-
-impl<T: Field, L: Lanes<T>, I: Iterator<Item = usize>> WithSimd for Down<'_, T, L, I> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(mut self, _: S) {
-        for s in self.nodes {
-            let front = &self.fronts[s];
-            front.apply_pivots(self.rows.own, self.rows.base);
-            front.lower.down::<S, L>(&front.rows, &mut self.rows);
+            if UP {
+                front.lower.up(&front.rows, &mut self.rows);
+            } else {
+                front.apply_pivots(self.rows.own, self.rows.base);
+                front.lower.down::<S, L>(&front.rows, &mut self.rows);
+            }
         }
     }
 }

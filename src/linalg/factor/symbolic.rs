@@ -309,6 +309,14 @@ fn postorder(parent: &[usize]) -> Vec<usize> {
 }
 
 impl Task {
+    /// The nodes that belong to no subtask, ascending.
+    pub fn own_nodes(&self) -> impl DoubleEndedIterator<Item = usize> {
+        let starts = self.subtasks.iter().map(|subtask| subtask.nodes.start).chain([self.nodes.end]);
+        let ends =
+            [self.nodes.start].into_iter().chain(self.subtasks.iter().map(|subtask| subtask.nodes.end));
+        ends.zip(starts).map(|(end, start)| end..start).collect::<Vec<_>>().into_iter().flatten()
+    }
+
     /// Splits the forest where two heavy subtrees meet. The split does not depend on the number of threads, and so
     /// neither does any result.
     fn split(nodes: &[Node]) -> Task {
