@@ -4,8 +4,7 @@ use super::prepared::Prepared;
 use crate::case::{Case, ContactState, ModesAnalysis};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::SparseMatrix;
-use crate::linalg::sparse::times;
-use crate::linalg::tall::panels;
+use crate::linalg::sparse::{quadratic_forms, times};
 use crate::modal::{self, ModesWanted, RealModes};
 use crate::results::{NamedModes, NodalField};
 use crate::structure::{Assembled, assemble};
@@ -124,14 +123,11 @@ fn damping_ratios(case: &Case, modes: &RealModes, damping: &Damping) -> Vec<f64>
     }
     for (matrix, power) in [(&damping.viscous, 1), (&damping.hysteretic, 2)] {
         let Some(matrix) = matrix else { continue };
-        for (start, width) in panels(modes.rigid_bodies..modes.len()) {
-            let shapes = modes.shapes.as_ref().subcols(start, width);
-            let product = times(matrix, shapes);
-            for (k, ratio) in ratios[start..start + width].iter_mut().enumerate() {
-                let work = shapes.col(k).transpose() * product.col(k);
-                let square = modes.eigenvalues[start + k].max(f64::MIN_POSITIVE);
-                *ratio += work / (2.0 * square.sqrt().powi(power));
-            }
+        let elastic = modes.rigid_bodies..modes.len();
+        let works = quadratic_forms(matrix, modes.shapes.subcols(elastic.start, elastic.len()));
+        for (k, work) in elastic.zip(works) {
+            let square = modes.eigenvalues[k].max(f64::MIN_POSITIVE);
+            ratios[k] += work / (2.0 * square.sqrt().powi(power));
         }
     }
     ratios

@@ -48,6 +48,24 @@ pub fn symmetric_eigen(a: MatRef<'_, f64>) -> Result<(Vec<f64>, Mat<f64>)> {
     Ok((values, vectors))
 }
 
+/// A^-½ of the Gram matrix of eigenvectors, of which the lower triangle is read: X A^-½ are orthonormal and as near to X as can
+/// be.
+///
+/// # Errors
+/// [`Error::Analysis`] when A is not positive definite, as two vectors fell together.
+pub fn inverse_root(a: MatRef<'_, f64>) -> Result<Mat<f64>> {
+    let (values, u) = symmetric_eigen(a)?;
+    if values.iter().any(|v| *v <= 0.0 || v.is_nan()) {
+        return Err(Error::analysis(
+            "eigenvalues",
+            "two eigenvectors fell together",
+            "Ask for fewer modes, or move the bound",
+        ));
+    }
+    let scaled = Mat::from_fn(values.len(), values.len(), |i, k| u[(i, k)] / values[k].sqrt());
+    Ok(product(scaled.as_ref(), u.transpose()))
+}
+
 /// A x = ν B x with A symmetric and B symmetric positive definite: ν ascending, XᵀBX = I.
 ///
 /// By B = L Lᵀ and the eigenvalues of L⁻¹ A L⁻ᵀ; the error of each ν is about 1e-16 max|ν|.

@@ -10,7 +10,7 @@ mod small;
 mod tests;
 
 use super::SparseMatrix;
-use super::dense::symmetric_eigen;
+use super::dense::inverse_root;
 use super::factor::{SymbolicFactor, SymmetricFactor};
 use super::lanczos::{BlockLanczos, Ritz, Window};
 use super::sparse::{add_scaled, diagonal, norm_1, times};
@@ -213,17 +213,36 @@ impl<'a> Pencil<'a> {
         Ok(Pencil { k, m, symbolic: SymbolicFactor::new(union.symbolic())?, aim: RESULT })
     }
 
-    fn factorize(&self, shift: f64) -> Result<Factor> {
-        self.symbolic.factorize(&add_scaled(&[(1.0, self.k), (-shift, self.m)]))
+    /// K − σM.
+    fn shifted(&self, shift: f64) -> SparseMatrix {
+        add_scaled(&[(1.0, self.k), (-shift, self.m)])
     }
 
     /// The factors at the first of `shifts` that does not sit on an eigenvalue.
     fn factorize_near(&self, shifts: [f64; 3]) -> Result<(f64, Factor)> {
+        let factorize = |shift| {
+            let factor = self.symbolic.factorize(&self.shifted(shift))?;
+            Ok((factor.inertia().zero == 0).then_some(factor))
+        };
+        self.clear(shifts, factorize)
+    }
+
+    /// How many eigenvalues lie below the first of `shifts` that does not sit on one, and that shift.
+    fn count_near(&self, shifts: [f64; 3]) -> Result<(f64, usize)> {
+        let count = |shift| {
+            let inertia = self.symbolic.inertia(&self.shifted(shift))?;
+            Ok((inertia.zero == 0).then_some(inertia.negative))
+        };
+        self.clear(shifts, count)
+    }
+
+    /// The first of `shifts` for which `f` gives something, and that; nothing stands for a shift on an eigenvalue.
+    fn clear<T>(&self, shifts: [f64; 3], f: impl Fn(f64) -> Result<Option<T>>) -> Result<(f64, T)> {
         let mut refused = None;
         for shift in shifts {
-            match self.factorize(shift) {
-                Ok(factor) if factor.inertia().zero == 0 => return Ok((shift, factor)),
-                Ok(_) => {}
+            match f(shift) {
+                Ok(Some(found)) => return Ok((shift, found)),
+                Ok(None) => {}
                 Err(error) => refused = Some(error),
             }
         }
@@ -240,7 +259,7 @@ impl<'a> Pencil<'a> {
     fn count_at(&self, shifts: [f64; 2]) -> Result<[usize; 2]> {
         // A shift that sits on an eigenvalue is nudged; the pair stays on its side of the bound.
         let nudge = 0.01 * (shifts[1] - shifts[0]);
-        let at = |s: f64| self.factorize_near([s, s - nudge, s + nudge]).map(|(_, f)| f.inertia().negative);
+        let at = |s: f64| self.count_near([s, s - nudge, s + nudge]).map(|(_, count)| count);
         let (low, high) = rayon::join(|| at(shifts[0]), || at(shifts[1]));
         Ok([low?, high?])
     }
@@ -268,18 +287,15 @@ impl<'a> Pencil<'a> {
         mut bound: f64,
         observer: &dyn Observer,
     ) -> Result<Eigenpairs> {
-        let (mut above, counter) =
-            self.factorize_near([bound, bound * (1.0 + 0.1 * APART), bound * (1.0 + 0.2 * APART)])?;
-        let mut counted = counter.inertia().negative;
-        drop(counter);
+        let (mut above, mut counted) =
+            self.count_near([bound, bound * (1.0 + 0.1 * APART), bound * (1.0 + 0.2 * APART)])?;
         let mut found = self.found_below(start, above, counted, observer)?;
         let near = |v: &f64| above - v < 1e-9 * bound;
         if found.values.last().is_some_and(near) {
             let first_above = found.values.partition_point(|v| above - v >= 1e-9 * bound);
             let below = first_above.checked_sub(1).map_or(0.0, |k| found.values[k]);
             bound = 0.5 * (below + found.values[first_above]);
-            let (shift, counter) = self.factorize_near([bound; 3])?;
-            (above, counted) = (shift, counter.inertia().negative);
+            (above, counted) = self.count_near([bound; 3])?;
             found.truncate(first_above);
         }
         self.certify(found, SturmCount { bound: above, shifts: [above; 2], counted: [counted; 2] })
@@ -299,7 +315,7 @@ impl<'a> Pencil<'a> {
         let mut lanczos =
             BlockLanczos::new(self.m, &*factor, capacity(counted), self.accepted(above - shift));
         let ritz = lanczos.converge(window, observer)?.ok_or_else(|| missing(0, counted, above))?;
-        let (values, vectors) = lanczos.pairs(&ritz, window, shift);
+        let (values, vectors) = lanczos.pairs(&ritz, window, shift)?;
         drop(lanczos);
         Ok(Found { values, vectors, shift, factor })
     }
@@ -344,8 +360,7 @@ impl<'a> Pencil<'a> {
                 // In a gap one count says all.
                 _ => {
                     let part = |part: f64| low + part * (high - low);
-                    let (bound, counter) = self.factorize_near([0.5, 0.4, 0.6].map(part))?;
-                    (bound, counter.inertia().negative)
+                    self.count_near([0.5, 0.4, 0.6].map(part))?
                 }
             };
             if counted > cut && !all {
@@ -354,7 +369,7 @@ impl<'a> Pencil<'a> {
                 lanczos.look_again();
                 continue;
             }
-            let (values, vectors) = lanczos.pairs(&ritz, window, shift);
+            let (values, vectors) = lanczos.pairs(&ritz, window, shift)?;
             let mut found = Found { values, vectors, shift, factor };
             found.truncate(cut);
             let sturm = SturmCount { bound, shifts: [bound; 2], counted: [counted; 2] };
@@ -422,7 +437,7 @@ impl<'a> Pencil<'a> {
         ratios.get(ratios.len() / 2).copied().unwrap_or(1.0)
     }
 
-    /// Orthonormalises, measures the errors, refines where they are large, and compares the counts.
+    /// Measures the errors of pairs whose vectors are M-orthonormal, refines where they are large, and compares the counts.
     fn certify(&self, mut found: Found, sturm: SturmCount) -> Result<Eigenpairs> {
         let count = found.values.len();
         if sturm.counted != [count; 2] {
@@ -431,7 +446,6 @@ impl<'a> Pencil<'a> {
         }
         let mut errors = Vec::new();
         for round in 0..2 {
-            orthonormalise(self.m, &mut found.vectors)?;
             errors = backward_errors(self.k, self.m, &found.values, found.vectors.as_ref());
             if round == 1 || errors.iter().all(|e| *e <= self.aim.backward_error) {
                 break;
@@ -442,6 +456,7 @@ impl<'a> Pencil<'a> {
                 y.col_mut(j).iter_mut().for_each(|v| *v *= theta - found.shift);
             }
             found.vectors = y;
+            orthonormalise(self.m, &mut found.vectors)?;
         }
         if let Some(worst) = errors.iter().copied().find(|e| *e > 1e-10 || e.is_nan()) {
             return Err(Error::analysis(
@@ -468,25 +483,14 @@ impl Found {
     }
 }
 
-/// X ← X (XᵀMX)^-½, which moves the vectors least.
+/// X ← X (XᵀMX)^-½.
 fn orthonormalise(m: &SparseMatrix, x: &mut Mat<f64>) -> Result<()> {
     let mut square = Mat::zeros(x.ncols(), x.ncols());
     for (start, width) in panels(0..x.ncols()) {
         let mx = times(m, x.subcols(start, width));
         square.subcols_mut(start, width).copy_from(gram(x.as_ref(), mx.as_ref()));
     }
-    let (values, u) = symmetric_eigen(square.as_ref())?;
-    if values.iter().any(|v| *v <= 0.0 || v.is_nan()) {
-        return Err(Error::analysis(
-            "eigenvalues",
-            "two eigenvectors fell together",
-            "Ask for fewer modes, or move the bound",
-        ));
-    }
-    let n = values.len();
-    let scaled = Mat::from_fn(n, n, |i, k| u[(i, k)] / values[k].sqrt());
-    let root = super::dense::product(scaled.as_ref(), u.transpose());
-    rotate(x.as_mut(), root.as_ref());
+    rotate(x.as_mut(), inverse_root(square.as_ref())?.as_ref());
     Ok(())
 }
 
@@ -544,11 +548,12 @@ fn missing(found: usize, counted: usize, bound: f64) -> Error {
 
 impl BlockLanczos<'_> {
     /// The pairs (θ, x) of a window, θ ascending.
-    fn pairs(&self, ritz: &Ritz, window: Window, shift: f64) -> (Vec<f64>, Mat<f64>) {
+    fn pairs(&self, ritz: &Ritz, window: Window, shift: f64) -> Result<(Vec<f64>, Mat<f64>)> {
         let mut which: Vec<(f64, usize)> =
             window.indices(ritz).into_iter().map(|k| (shift + 1.0 / ritz.values[k], k)).collect();
         which.sort_by(|a, b| a.0.total_cmp(&b.0));
         let columns: Vec<usize> = which.iter().map(|(_, k)| *k).collect();
-        (which.into_iter().map(|(theta, _)| theta).collect(), self.vectors(ritz, &columns))
+        let vectors = self.vectors(ritz, &columns)?;
+        Ok((which.into_iter().map(|(theta, _)| theta).collect(), vectors))
     }
 }

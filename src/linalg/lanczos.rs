@@ -9,11 +9,11 @@
 //! Appl. 22 (2000) 602. The block: Grimes, Lewis & Simon, SIAM J. Matrix Anal. Appl. 15 (1994) 228.
 
 use super::SparseMatrix;
-use super::dense::{product, symmetric_eigen};
+use super::dense::{inverse_root, product, symmetric_eigen};
 use super::factor::SymmetricFactor;
 use super::random::Random;
 use super::sparse::multiply;
-use super::tall::{combine, gram, rotate};
+use super::tall::{combine, expand, gram, rotate};
 use crate::error::{Error, Result};
 use crate::progress::Observer;
 use faer::{Accum, Mat, MatRef};
@@ -217,8 +217,12 @@ impl<'a> BlockLanczos<'a> {
     }
 
     /// The Ritz vectors of the pairs `which`, one a column, after one more application of A:
-    /// A V s / ν = V s + X R s_last / ν, which also clears what M does not see.
-    pub fn vectors(&self, ritz: &Ritz, which: &[usize]) -> Mat<f64> {
+    /// A V s / ν = V s + X R s_last / ν, which also clears what M does not see. They are made M-orthonormal by their
+    /// coefficients, as V and X are.
+    ///
+    /// # Errors
+    /// [`Error::Analysis`] when two of them fall together.
+    pub fn vectors(&self, ritz: &Ritz, which: &[usize]) -> Result<Mat<f64>> {
         let tail = self.coupling.ncols();
         let mut s = Mat::zeros(self.len + self.width, which.len());
         for (column, k) in which.iter().enumerate() {
@@ -230,15 +234,8 @@ impl<'a> BlockLanczos<'a> {
                 s[(self.len + i, column)] = rest[(i, column)] / ritz.values[*k];
             }
         }
-        let mut vectors = Mat::zeros(self.basis.nrows(), which.len());
-        combine(
-            vectors.as_mut(),
-            Accum::Replace,
-            self.basis.subcols(0, self.len + self.width),
-            s.as_ref(),
-            1.0,
-        );
-        vectors
+        let s = product(s.as_ref(), inverse_root(product(s.transpose(), s.as_ref()).as_ref())?.as_ref());
+        Ok(expand(self.basis.subcols(0, self.len + self.width), s.as_ref()))
     }
 
     /// One block: W = A X, orthogonalised; its coefficients go into H, what is left is the next X.
@@ -259,7 +256,8 @@ impl<'a> BlockLanczos<'a> {
         };
         let mut mw = self.mass_times(w.as_ref());
         let all = self.orthogonalise(&mut w, &mw, 0, end);
-        let rest = column_norms(w.as_ref(), mw.as_ref());
+        let square = gram(w.as_ref(), mw.as_ref());
+        let rest = lengths(&square);
         // By Pythagoras: what was taken out is M-orthonormal.
         let before = |j: usize| near.col(j).norm_l2().hypot(rest[j]);
         let scale = (0..self.width).map(before).fold(0.0, f64::max);
@@ -290,7 +288,7 @@ impl<'a> BlockLanczos<'a> {
         }
         self.coupled_from = begin;
         self.len = end;
-        let (x, mx, r) = self.orthonormalise(w, mw, scale)?;
+        let (x, mx, r) = self.orthonormalise(w, mw, square, scale)?;
         self.width = x.ncols();
         self.put(end, &x);
         self.mass_last = std::mem::replace(&mut self.mass_next, mx);
@@ -302,11 +300,17 @@ impl<'a> BlockLanczos<'a> {
     ///
     /// By the eigenvalues of the Gram matrix. Those too small to be trusted are only scaled up in this round and
     /// resolved in the next.
-    /// Takes W and M W; returns X, M X and R.
-    fn orthonormalise(&self, mut w: Mat<f64>, mut mw: Mat<f64>, scale: f64) -> Result<Factored> {
+    /// Takes W, M W and WᵀMW; returns X, M X and R.
+    fn orthonormalise(
+        &self,
+        mut w: Mat<f64>,
+        mut mw: Mat<f64>,
+        mut square: Mat<f64>,
+        scale: f64,
+    ) -> Result<Factored> {
         let mut r = Mat::<f64>::identity(w.ncols(), w.ncols());
         for _ in 0..5 {
-            let (values, u) = symmetric_eigen(gram(w.as_ref(), mw.as_ref()).as_ref())?;
+            let (values, u) = symmetric_eigen(square.as_ref())?;
             let largest = values.last().copied().unwrap_or(0.0);
             if largest <= 0.0 {
                 return Ok((Mat::zeros(w.nrows(), 0), Mat::zeros(w.nrows(), 0), Mat::zeros(0, r.ncols())));
@@ -333,6 +337,7 @@ impl<'a> BlockLanczos<'a> {
                 self.orthogonalise(&mut w, &mw, 0, self.len);
             }
             mw = self.mass_times(w.as_ref());
+            square = gram(w.as_ref(), mw.as_ref());
         }
         Ok((w, mw, r))
     }
@@ -345,7 +350,7 @@ impl<'a> BlockLanczos<'a> {
         let mut w = self.mass_times(start.as_ref());
         self.factor.solve_in_place(w.as_mut());
         let mut mw = self.mass_times(w.as_ref());
-        let scale = column_norms(w.as_ref(), mw.as_ref()).into_iter().fold(0.0, f64::max);
+        let scale = lengths(&gram(w.as_ref(), mw.as_ref())).into_iter().fold(0.0, f64::max);
         let (len, held) = (self.len, self.len + self.width);
         for _ in 0..2 {
             self.orthogonalise(&mut w, &mw, 0, held);
@@ -353,7 +358,8 @@ impl<'a> BlockLanczos<'a> {
         }
         // Against X as well as V: for a moment X counts as part of V.
         self.len = held;
-        let result = self.orthonormalise(w, mw, 1e5 * scale);
+        let square = gram(w.as_ref(), mw.as_ref());
+        let result = self.orthonormalise(w, mw, square, 1e5 * scale);
         self.len = len;
         let Ok((x, mx, _)) = result else { return false };
         if x.ncols() == 0 {
@@ -414,10 +420,9 @@ fn stacked(a: Mat<f64>, b: Mat<f64>) -> Mat<f64> {
     Mat::from_fn(above + b.nrows(), a.ncols(), |i, j| if i < above { a[(i, j)] } else { b[(i - above, j)] })
 }
 
-/// (xᵀ M x)^½ of each column.
-fn column_norms(x: MatRef<'_, f64>, mx: MatRef<'_, f64>) -> Vec<f64> {
-    let g = gram(x, mx);
-    (0..x.ncols()).map(|j| g[(j, j)].max(0.0).sqrt()).collect()
+/// (xᵀ M x)^½ of each column of a Gram matrix.
+fn lengths(square: &Mat<f64>) -> Vec<f64> {
+    (0..square.ncols()).map(|j| square[(j, j)].max(0.0).sqrt()).collect()
 }
 
 /// X, M X and R of W = X R.
@@ -458,7 +463,7 @@ mod tests {
         combine(r.as_mut(), Accum::Add, v.subcols(0, len), h, -1.0);
         let last = r.as_mut().subcols_mut(len - tail, tail);
         combine(last, Accum::Add, v.subcols(len, width), lanczos.coupling.as_ref(), -1.0);
-        let error = column_norms(r.as_ref(), lanczos.mass_times(r.as_ref()).as_ref());
+        let error = lengths(&gram(r.as_ref(), lanczos.mass_times(r.as_ref()).as_ref()));
         assert!(error.iter().all(|e| *e < 1e-12 * h.norm_max()), "AV = VH + XR");
     }
 }

@@ -168,6 +168,36 @@ fn panel<T: Scalar, R: Row<T, W>, const W: usize>(a: &SparseMatrix, x: MatRef<'_
     });
 }
 
+/// xⱼᵀA xⱼ of the columns of x (n × k), for a symmetric `a` stored whole: a product that is not written down.
+///
+/// # Panics
+/// When the shapes do not agree.
+pub fn quadratic_forms(a: &SparseMatrix, x: MatRef<'_, f64>) -> Vec<f64> {
+    assert!(a.nrows() == a.ncols() && x.nrows() == a.ncols(), "shapes of A and x disagree");
+    let of_panel = |start: usize| {
+        let width = PANEL.min(x.ncols() - start);
+        let forms = with_packed(x.subcols(start, width), |packed: &[Aligned<[f64; PANEL]>]| {
+            let of_rows = |first: usize| {
+                let mut sums = [[0.0; PANEL]; FORMED];
+                let sums = &mut sums[..FORMED.min(packed.len() - first)];
+                Arch::new().dispatch(Rows { a, first, packed, sums });
+                let mut forms = [0.0; PANEL];
+                for (x, y) in packed[first..].iter().zip(&*sums) {
+                    (0..PANEL).for_each(|c| forms[c] += x.values()[c] * y[c]);
+                }
+                forms
+            };
+            let parts: Vec<_> = (0..packed.len()).into_par_iter().step_by(FORMED).map(of_rows).collect();
+            parts.into_iter().fold([0.0; PANEL], |sum, part| std::array::from_fn(|c| sum[c] + part[c]))
+        });
+        forms.into_iter().take(width)
+    };
+    (0..x.ncols()).step_by(PANEL).flat_map(of_panel).collect()
+}
+
+/// Rows of a product that are formed before they are used.
+const FORMED: usize = 256;
+
 /// The columns, where each is in one piece.
 pub(super) fn columns<T>(a: MatRef<'_, T>) -> Option<Vec<&[T]>> {
     a.col_iter().map(|column| column.try_as_col_major().map(|column| column.as_slice())).collect()
@@ -457,6 +487,18 @@ mod tests {
         assert!((sum.to_dense() - expected).norm_max() < 1e-14);
         let same = add_scaled(&[(2.0, &a), (-1.0, &a)]);
         assert_eq!(same.val(), a.val());
+    }
+
+    #[test]
+    fn quadratic_forms_equal_products() {
+        // More rows than are formed together, more columns than a panel has.
+        let a = samples::random_symmetric(700, 3);
+        let x = Mat::from_fn(700, 11, |i, j| ((i * 7 + j * 3) as f64).sin());
+        let expected = x.transpose() * times(&a, x.as_ref());
+        let forms = quadratic_forms(&a, x.as_ref());
+        let near = |j: usize| (forms[j] - expected[(j, j)]).abs() < 1e-12 * expected.norm_max();
+        assert!(forms.len() == 11 && (0..11).all(near));
+        assert!(quadratic_forms(&a, x.subcols(0, 0)).is_empty());
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::block::Block;
 use super::finish::finished;
 use super::operator::Operator;
 use super::projected::{SmallPair, project_interface, solve};
-use super::responses::{coupled_responses, few_responses};
+use super::responses::{add_coupled_responses, few_responses};
 use super::round::{Measured, Scale, TOGETHER, Wanted};
 use super::{ComplexMode, ComplexModes, Structural};
 use crate::equilibrium::SteadySliding;
@@ -97,8 +97,7 @@ pub(super) fn analyse<'a, T>(
             .map(|(factor, shift)| Some(ShiftedStiffness { shift, factor })),
     };
     let solved = own.and_then(|own| {
-        let factor = &*at(&own, known).factor;
-        let solved = solve_and_refine(&operator, factor, real, band_hz, observer)?;
+        let solved = solve_and_refine(&operator, at(&own, known), real, band_hz, observer)?;
         Ok((own, solved))
     });
     observer.end();
@@ -168,11 +167,12 @@ fn check(system: &System, steady: &SteadySliding, real: &RealModes, band_hz: [f6
 /// The modes, and the basis they were found in.
 fn solve_and_refine<'a>(
     operator: &'a Operator<'a>,
-    factor: &dyn SymmetricFactor,
+    shifted: &ShiftedStiffness,
     real: &RealModes,
     band_hz: [f64; 2],
     observer: &dyn Observer,
 ) -> Result<(ComplexModes, Basis<'a>)> {
+    let factor = &*shifted.factor;
     let band = band_hz.map(|f| TAU * f);
     let mut basis = Basis::new(operator, real.shapes.as_ref(), band[1] * band[1]);
     // Few directions: all their responses, so that the corrections show no contact motion. Many: what the forces of some
@@ -184,8 +184,7 @@ fn solve_and_refine<'a>(
         let further = responses.subcols(directions, responses.ncols() - directions);
         basis.enrich(&further.to_owned(), FIRST_TOLERANCE, STATIC_RESPONSES);
     } else {
-        let responses = coupled_responses(operator, &basis, factor, band[1]);
-        basis.enrich(&responses, FIRST_TOLERANCE, usize::MAX);
+        add_coupled_responses(operator, &mut basis, shifted, band[1], FIRST_TOLERANCE);
     }
     let mut warnings = Vec::new();
     let mut counts = Vec::new();

@@ -115,11 +115,8 @@ impl<'a> Basis<'a> {
     }
 
     /// Adds the principal directions of the columns of `z` in the E-norm, once the basis is projected out, that are larger
-    /// than `tolerance`: by the eigenvalues of the Gram matrix less what the basis has of it, which is a small matrix. The
-    /// difference is right to 1e-16 of the largest column, and the directions to what that is of their own size: they need
-    /// not be orthogonal, as the projections are those of the vectors as they come out.
+    /// than `tolerance`.
     fn append_principal(&mut self, z: &Mat<f64>, tolerance: f64) {
-        const DIGITS_LEFT: f64 = 1e-14;
         let (m, count) = (self.len(), z.ncols());
         let (mut share, mut energy) = (Mat::<f64>::zeros(m, count), Mat::<f64>::zeros(count, count));
         for (start, width) in panels(0..count) {
@@ -128,21 +125,52 @@ impl<'a> Basis<'a> {
             let below = gram(z.subcols(start, count - start), image.as_ref());
             energy.submatrix_mut(start, start, count - start, width).copy_from(below);
         }
+        self.append_directions(z.as_ref(), &share, energy, tolerance);
+    }
+
+    /// [`Basis::append_principal`] for columns that are E-orthogonal to the first `free` vectors of the basis, given E z. Says
+    /// which combinations of the columns, of length one, were added but for what the basis had of them.
+    pub(super) fn append_new(
+        &mut self,
+        z: MatRef<'_, f64>,
+        image: MatRef<'_, f64>,
+        free: usize,
+        tolerance: f64,
+    ) -> Mat<f64> {
+        let share = gram(self.vectors.subcols(free, self.len() - free), image);
+        self.append_directions(z, &share, gram(z, image), tolerance)
+    }
+
+    /// Adds principal directions of z, given bᵀEz for the last vectors b of the basis and zᵀEz: by the eigenvalues of the latter
+    /// less what the basis has of it, which is a small matrix. The difference is right to 1e-16 of the largest column, and the
+    /// directions to what that is of their own size: they need not be orthogonal, as the projections are those of the
+    /// vectors as they come out.
+    fn append_directions(
+        &mut self,
+        z: MatRef<'_, f64>,
+        share: &Mat<f64>,
+        mut energy: Mat<f64>,
+        tolerance: f64,
+    ) -> Mat<f64> {
+        const DIGITS_LEFT: f64 = 1e-14;
+        let (m, first, count) = (self.len(), self.len() - share.nrows(), z.ncols());
         let largest = (0..count).fold(0.0f64, |l, j| l.max(energy[(j, j)]));
-        let weighted = Mat::from_fn(m, count, |i, j| share[(i, j)] * self.inverse_size(i));
+        let weighted =
+            Mat::from_fn(share.nrows(), count, |i, j| share[(i, j)] * self.inverse_size(first + i));
         energy -= product(share.transpose(), weighted.as_ref());
-        let Ok((sizes, directions)) = symmetric_eigen(energy.as_ref()) else { return };
+        let Ok((sizes, directions)) = symmetric_eigen(energy.as_ref()) else { return Mat::zeros(count, 0) };
         let floor = (tolerance * tolerance).max(DIGITS_LEFT * largest);
         let kept: Vec<usize> = (0..sizes.len()).rev().filter(|j| sizes[*j] > floor).collect();
-        let mix = Mat::from_fn(count, kept.len(), |i, k| {
-            directions[(i, kept[k])] * (self.tau / sizes[kept[k]]).sqrt()
-        });
+        let directions = Mat::from_fn(count, kept.len(), |i, k| directions[(i, kept[k])]);
+        let mix =
+            Mat::from_fn(count, kept.len(), |i, k| directions[(i, k)] * (self.tau / sizes[kept[k]]).sqrt());
         let known = product(weighted.as_ref(), mix.as_ref());
         self.vectors.resize_with(z.nrows(), m + kept.len(), |_, _| 0.0);
         let (basis, mut new) = self.vectors.as_mut().split_at_col_mut(m);
-        combine(new.as_mut(), Accum::Replace, z.as_ref(), mix.as_ref(), 1.0);
-        combine(new, Accum::Add, basis.as_ref(), known.as_ref(), -1.0);
+        combine(new.as_mut(), Accum::Replace, z, mix.as_ref(), 1.0);
+        combine(new, Accum::Add, basis.subcols(first, m - first).as_ref(), known.as_ref(), -1.0);
         self.project();
+        directions
     }
 
     /// 1 / bᵢᵀEbᵢ; zero for a mode on which E vanishes, just as stiff as −τ, which cannot be told apart by E.

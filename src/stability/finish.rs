@@ -23,14 +23,15 @@ pub(super) fn finished(
     measured: &mut Measured,
     amplitudes: &Block,
 ) -> Vec<ComplexMode> {
-    let Measured { lambda, right, left, correction, backward_error, eigenvalue_error, condition } = measured;
+    let Measured { lambda, right, left, correction, room, backward_error, eigenvalue_error, condition } =
+        measured;
     correction.add(right);
-    let corrected = Told::of(operator, lambda, correction);
+    let corrected = Told::of(operator, lambda, correction, room);
     let better = |j: &usize| corrected.backward_error[*j] < backward_error[*j];
     let plain: Vec<usize> = (0..lambda.len()).filter(|j| !better(j)).collect();
     let their: Vec<c64> = plain.iter().map(|j| lambda[*j]).collect();
     let mut as_found = right.gathered(&plain);
-    let uncorrected = Told::of(operator, &their, &mut as_found);
+    let uncorrected = Told::of(operator, &their, &mut as_found, room);
     let mode = |j: usize| {
         let (told, images, k) = match plain.binary_search(&j) {
             Ok(k) => (&uncorrected, &as_found, k),
@@ -52,10 +53,10 @@ pub(super) fn finished(
 
 impl Told {
     /// Of vectors that are scaled to unit mass first.
-    fn of(operator: &Operator<'_>, lambda: &[c64], images: &mut Images) -> Self {
+    fn of(operator: &Operator<'_>, lambda: &[c64], images: &mut Images, residual: &mut Block) -> Self {
         images.normalise();
         let growth = growth_budgets(operator, lambda, images);
-        let residual = operator.value(Side::Right, lambda, images);
+        operator.value_into(Side::Right, lambda, images, residual);
         let error = |j: usize| residual.norm(j) / (operator.size(lambda[j]) * images.vectors.norm(j));
         Told { backward_error: (0..lambda.len()).map(error).collect(), growth }
     }

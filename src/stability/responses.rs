@@ -6,9 +6,10 @@ use super::operator::{Operator, Side};
 use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
 use crate::linalg::random::Random;
-use crate::linalg::sparse::multiply;
-use crate::linalg::tall::gram;
-use faer::Mat;
+use crate::linalg::sparse::{multiply, times};
+use crate::linalg::tall::{combine, gram};
+use crate::modal::ShiftedStiffness;
+use faer::{Accum, Mat};
 
 /// Random combinations that stand for many forces.
 pub(super) const SKETCH: usize = 64;
@@ -36,26 +37,30 @@ fn interface_forces(operator: &Operator<'_>, omega: f64) -> Mat<f64> {
     forces
 }
 
-/// ω²ᵏ(A⁻¹M)ᵏA⁻¹F of `forces` F for k = 0, 1, … `terms` − 1: the series of the response in ω². F is taken without what moves
-/// the real modes, which the basis has: so no digits are lost when they are projected out, and no power of A⁻¹M turns into
-/// the mode nearest to the shift.
+/// F ← F − MΦΦᵀF: forces less what moves the real modes, which are all that the basis has yet. So no digits are lost when
+/// they are projected out of the responses, and no power of A⁻¹M turns into the mode nearest to the shift. Gives the memory
+/// that it took, two matrices of F's size.
+fn leave_out_modes(operator: &Operator<'_>, basis: &Basis<'_>, forces: &mut Mat<f64>) -> [Mat<f64>; 2] {
+    let share = gram(basis.vectors.as_ref(), forces.as_ref());
+    let shapes = basis.expand_real(&share);
+    let known = times(operator.mass, shapes.as_ref());
+    *forces -= &known;
+    [shapes, known]
+}
+
+/// ω²ᵏ(A⁻¹M)ᵏA⁻¹F of `forces` F for k = 0, 1, … `terms` − 1: the series of the response in ω², but for real modes.
 fn series(
     operator: &Operator<'_>,
     basis: &Basis<'_>,
     factor: &dyn SymmetricFactor,
     omega: f64,
-    forces: Mat<f64>,
+    mut forces: Mat<f64>,
     terms: usize,
 ) -> Mat<f64> {
     let (n, r) = (forces.nrows(), forces.ncols());
-    let share = gram(basis.vectors.as_ref(), forces.as_ref());
+    leave_out_modes(operator, basis, &mut forces);
     let mut all = Mat::zeros(n, r * terms);
-    multiply(operator.mass, basis.expand_real(&share).as_ref(), all.subcols_mut(0, r));
-    for j in 0..r {
-        let known = all.col_as_slice_mut(j).iter_mut();
-        known.zip(forces.col_as_slice(j)).for_each(|(known, force)| *known = force - *known);
-    }
-    drop(forces);
+    all.subcols_mut(0, r).copy_from(forces);
     factor.solve_in_place(all.subcols_mut(0, r));
     for k in 1..terms {
         let (before, mut next) = all.subcols_mut((k - 1) * r, 2 * r).split_at_col_mut(r);
@@ -88,14 +93,9 @@ const SAMPLES: usize = 12;
 /// real modes which are left out, here about a third.
 const TERMS: usize = 4;
 
-/// What the forces that do not decouple the real modes bring about: the first terms of the response in ω² to R, the forces
-/// of damping and interface, right and left, in random combinations of the real modes. A few such columns reveal what the responses to all modes have in common.
-pub(super) fn coupled_responses(
-    operator: &Operator<'_>,
-    basis: &Basis<'_>,
-    factor: &dyn SymmetricFactor,
-    omega: f64,
-) -> Mat<f64> {
+/// The forces that do not decouple the real modes, of damping and interface, right and left, in random combinations of the real
+/// modes. A few such columns reveal what the forces on all modes have in common.
+fn coupling_forces(operator: &Operator<'_>, basis: &Basis<'_>, omega: f64) -> Mat<f64> {
     let mut random = Random::new();
     let mut mixed = || {
         let mut part = || Mat::from_fn(basis.len(), SAMPLES, |_, _| random.next());
@@ -109,5 +109,39 @@ pub(super) fn coupled_responses(
         sampled.subcols_mut((2 * half + 1) * SAMPLES, SAMPLES).copy_from(&forces.im);
     }
     sampled *= faer::Scale(1.0 / omega);
-    series(operator, basis, factor, omega, sampled, TERMS)
+    sampled
+}
+
+/// Adds to the real modes what damping and interface make of them: the first terms of the response to their forces in ω², term
+/// after term. Only those directions of a term are followed up which brought something new, larger than `tolerance` in the
+/// E-norm. With A z = f all that the E-norm asks for is at hand: E z = f + (s + τ) M z.
+pub(super) fn add_coupled_responses(
+    operator: &Operator<'_>,
+    basis: &mut Basis<'_>,
+    shifted: &ShiftedStiffness,
+    omega: f64,
+    tolerance: f64,
+) {
+    let n_modes = basis.len();
+    let mut forces = coupling_forces(operator, basis, omega);
+    let [mut response, mut inertia] = leave_out_modes(operator, basis, &mut forces);
+    for term in 1.. {
+        response.copy_from(&forces);
+        shifted.factor.solve_in_place(response.as_mut());
+        multiply(operator.mass, response.as_ref(), inertia.as_mut());
+        let share = shifted.shift + omega * omega;
+        for (force, inertia) in forces.col_iter_mut().zip(inertia.col_iter()) {
+            force.iter_mut().zip(inertia.iter()).for_each(|(force, inertia)| *force += share * inertia);
+        }
+        let image = forces.as_ref();
+        let followed = basis.append_new(response.as_ref(), image, n_modes, tolerance);
+        if term == TERMS || followed.ncols() == 0 {
+            break;
+        }
+        forces.truncate(operator.n(), followed.ncols());
+        combine(forces.as_mut(), Accum::Replace, inertia.as_ref(), followed.as_ref(), omega * omega);
+        [&mut response, &mut inertia]
+            .into_iter()
+            .for_each(|next| next.truncate(operator.n(), followed.ncols()));
+    }
 }

@@ -16,6 +16,8 @@
 
 use super::constraints::{active_spaces, lead, resolve_links};
 use super::model::Model;
+use super::numbering::node_order;
+use super::pieces::pieces;
 use crate::error::{Error, Fault, Result};
 use crate::linalg::{SparseVector, c64};
 use nalgebra::{SMatrix, SVector, Vector3};
@@ -162,16 +164,18 @@ impl DofMap {
                 }
             }
         }
+        let coupled: Vec<Vec<usize>> =
+            pieces(model).iter().map(|piece| piece.nodes().map(|node| masters[node]).collect()).collect();
         let mut free = Vec::new();
-        let mut first = vec![0; model.nodes.len() + 1];
-        for (node, &master) in masters.iter().enumerate() {
-            first[node] = free.len();
-            if master == node {
+        let mut of_node = vec![0..0; model.nodes.len()];
+        for node in node_order(model.nodes.len(), &coupled) {
+            if masters[node] == node {
                 let directions = spaces[node].free_directions(held[node], lengths[node]);
+                let first = free.len();
                 free.extend(directions.into_iter().map(|direction| FreeDof { node, direction }));
+                of_node[node] = first..free.len();
             }
         }
-        first[model.nodes.len()] = free.len();
         if free.is_empty() {
             return Err(Error::input(
                 Fault::new("supports", "every degree of freedom held", "at least one that can move")
@@ -185,7 +189,7 @@ impl DofMap {
         for (node, &master) in masters.iter().enumerate() {
             let arm = Vector3::from(model.nodes[node]) - Vector3::from(model.nodes[master]);
             let motions: Vec<(usize, [f64; 6])> =
-                (first[master]..first[master + 1]).map(|k| (k, moved(&free[k].direction, &arm))).collect();
+                of_node[master].clone().map(|k| (k, moved(&free[k].direction, &arm))).collect();
             for dof in 0..6 {
                 terms.extend(motions.iter().filter(|(_, m)| m[dof] != 0.0).map(|(k, m)| (*k, m[dof])));
                 starts.push(terms.len());

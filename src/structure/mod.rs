@@ -12,6 +12,7 @@ mod dofs;
 pub mod elements;
 mod imported;
 mod model;
+mod numbering;
 mod pieces;
 mod scatter;
 mod warnings;

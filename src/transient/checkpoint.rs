@@ -58,7 +58,7 @@ impl Checkpoint {
         self.put("march_counts", &counts);
         self.put("work", &work.terms());
         // What a state does not follow from otherwise. What a law remembers belongs here too.
-        self.put_columns("motion", &state.motion);
+        self.put_columns("free_motion", &state.motion);
         state.modal.iter().for_each(|modal| self.put_columns("modal", modal));
         self.put("reaction", &state.reaction);
         let bristles = state.bristles.iter();
@@ -78,7 +78,7 @@ impl Checkpoint {
         let mut work = Work::default();
         work.terms_mut().into_iter().zip(terms).for_each(|(term, value)| *term = value);
         let mut state = State::empty(model);
-        self.get_columns("motion", &mut state.motion)?;
+        self.get_columns("free_motion", &mut state.motion)?;
         state.modal.iter_mut().try_for_each(|modal| self.get_columns("modal", modal))?;
         self.get("reaction", &mut state.reaction)?;
         let mut kept = vec![0.0; 3 * state.bristles.len()];

@@ -3,7 +3,7 @@
 use super::super::SparseMatrix;
 use super::super::dense::definite_pencil;
 use super::super::sparse::{add_scaled, diagonal};
-use super::{CLUSTER, Eigenpairs, Found, Pencil, SturmCount, Wanted, gap};
+use super::{CLUSTER, Eigenpairs, Found, Pencil, SturmCount, Wanted, gap, orthonormalise};
 use crate::error::Result;
 use faer::{Mat, MatRef};
 
@@ -74,12 +74,9 @@ impl Pencil<'_> {
         let values = self.sharpen(&inverted, x.as_ref(), shift, largest);
         let mut order: Vec<usize> = (0..values.len()).collect();
         order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
-        Ok(Found {
-            vectors: Mat::from_fn(n, order.len(), |i, k| x[(i, order[k])]),
-            values: order.iter().map(|k| values[*k]).collect(),
-            shift,
-            factor,
-        })
+        let mut vectors = Mat::from_fn(n, order.len(), |i, k| x[(i, order[k])]);
+        orthonormalise(self.m, &mut vectors)?;
+        Ok(Found { vectors, values: order.iter().map(|k| values[*k]).collect(), shift, factor })
     }
 
     /// Takes the Rayleigh quotient xᵀKx of an M-normal x where rounding hurts it less than σ + 1/ν.

@@ -35,7 +35,7 @@ use faer::sparse::{SparseColMat, SymbolicSparseColMatRef};
 use faer::{ColRef, Mat, MatMut, MatRef};
 use field::Lanes;
 use halves::Half;
-use numeric::Front;
+use numeric::{Front, Kept};
 use rayon::prelude::*;
 use solve::Substitution;
 use std::fmt::Debug;
@@ -144,6 +144,27 @@ impl SymbolicFactor {
     /// # Panics
     /// When the pattern is another one.
     pub fn factorize<T: Field>(&self, a: &SparseColMat<usize, T>) -> Result<Box<dyn SymmetricFactor<T>>> {
+        let (fronts, scaling) = self.eliminate(a, Kept::All)?;
+        Ok(Box::new(Multifrontal { plan: Arc::clone(&self.0), fronts, scaling }))
+    }
+
+    /// The inertia of a matrix that has the analysed pattern, by factors that are not kept.
+    ///
+    /// # Errors
+    /// As [`SymbolicFactor::factorize`].
+    ///
+    /// # Panics
+    /// When the pattern is another one.
+    pub fn inertia(&self, a: &SparseMatrix) -> Result<Inertia> {
+        self.eliminate(a, Kept::Pivots).map(|(fronts, _)| inertia(&fronts))
+    }
+
+    /// The fronts of S A S, and S.
+    fn eliminate<T: Field>(
+        &self,
+        a: &SparseColMat<usize, T>,
+        kept: Kept,
+    ) -> Result<(Vec<Front<T>>, Vec<f64>)> {
         let n = a.ncols();
         assert!(
             n == self.0.order.len() && a.compute_nnz() == self.0.entries,
@@ -158,7 +179,7 @@ impl SymbolicFactor {
             ));
         }
         let scaling = equilibrate(a);
-        let fronts = numeric::factorize(&self.0, a.as_ref(), &scaling).map_err(|stuck| {
+        let fronts = numeric::factorize(&self.0, a.as_ref(), &scaling, kept).map_err(|stuck| {
             Error::analysis(
                 "factorisation",
                 format!("the matrix is singular: elimination stops at row {} of {n}", self.0.order[stuck.0]),
@@ -166,7 +187,7 @@ impl SymbolicFactor {
                  eigenvalue does this",
             )
         })?;
-        Ok(Box::new(Multifrontal { plan: Arc::clone(&self.0), fronts, scaling }))
+        Ok((fronts, scaling))
     }
 }
 
@@ -178,16 +199,13 @@ pub fn factorize<T: Field>(a: &SparseColMat<usize, T>) -> Result<Box<dyn Symmetr
     SymbolicFactor::new(a.symbolic())?.factorize(a)
 }
 
-/// Factorises `a` with the analysis of a matrix factorised before, where both have the same pattern.
+/// The analysis of the pattern of `a`: that of a matrix factorised before, where both have the same one.
 ///
 /// # Errors
-/// As [`factorize`].
-pub fn factorize_like<T: Field>(
-    known: &dyn SymmetricFactor<T>,
-    a: &SparseColMat<usize, T>,
-) -> Result<Box<dyn SymmetricFactor<T>>> {
+/// As [`SymbolicFactor::new`].
+pub fn symbolic_like(known: &dyn SymmetricFactor, a: &SparseMatrix) -> Result<SymbolicFactor> {
     let symbolic = known.symbolic();
-    if symbolic.fits(a.symbolic()) { symbolic.factorize(a) } else { factorize(a) }
+    if symbolic.fits(a.symbolic()) { Ok(symbolic) } else { SymbolicFactor::new(a.symbolic()) }
 }
 
 /// Solves A X = B with iterative refinement (at most three rounds), and returns the largest
@@ -330,32 +348,7 @@ impl<T: Field> SymmetricFactor<T> for Multifrontal<T> {
     }
 
     fn inertia(&self) -> Inertia {
-        let mut inertia = Inertia::default();
-        // The eigenvalues of B⁻¹ are at hand.
-        let mut note = |eigenvalue: f64| match eigenvalue {
-            e if e.abs() >= 1e14 => inertia.zero += 1,
-            e if e < 0.0 => inertia.negative += 1,
-            _ => inertia.positive += 1,
-        };
-        for front in &self.fronts {
-            let mut blocks =
-                front.inverse.iter().map(|[a, b]| (a.real_part(), b.real_part(), *b != T::default()));
-            while let Some((p, below, double)) = blocks.next() {
-                let (q, _, _) =
-                    if double { blocks.next().expect("a block has two columns") } else { (p, 0.0, false) };
-                if !double {
-                    note(p);
-                    continue;
-                }
-                // det = product and trace = sum of the two eigenvalues; the larger one first, without cancellation.
-                let (half, det) = (0.5 * (p + q), p * q - below * below);
-                let radius = (0.5 * (p - q)).hypot(below);
-                let larger = if half >= 0.0 { half + radius } else { half - radius };
-                note(larger);
-                note(det / larger);
-            }
-        }
-        inertia
+        inertia(&self.fronts)
     }
 
     fn growth(&self) -> f64 {
@@ -370,6 +363,36 @@ impl<T: Field> SymmetricFactor<T> for Multifrontal<T> {
         };
         8 * self.n() + self.fronts.iter().map(bytes).sum::<usize>()
     }
+}
+
+/// The inertia of B.
+fn inertia<T: Field>(fronts: &[Front<T>]) -> Inertia {
+    let mut inertia = Inertia::default();
+    // The eigenvalues of B⁻¹ are at hand.
+    let mut note = |eigenvalue: f64| match eigenvalue {
+        e if e.abs() >= 1e14 => inertia.zero += 1,
+        e if e < 0.0 => inertia.negative += 1,
+        _ => inertia.positive += 1,
+    };
+    for front in fronts {
+        let mut blocks =
+            front.inverse.iter().map(|[a, b]| (a.real_part(), b.real_part(), *b != T::default()));
+        while let Some((p, below, double)) = blocks.next() {
+            let (q, _, _) =
+                if double { blocks.next().expect("a block has two columns") } else { (p, 0.0, false) };
+            if !double {
+                note(p);
+                continue;
+            }
+            // det = product and trace = sum of the two eigenvalues; the larger one first, without cancellation.
+            let (half, det) = (0.5 * (p + q), p * q - below * below);
+            let radius = (0.5 * (p - q)).hypot(below);
+            let larger = if half >= 0.0 { half + radius } else { half - radius };
+            note(larger);
+            note(det / larger);
+        }
+    }
+    inertia
 }
 
 /// S: s_i = 2^-round(½ log₂ |a_ii|), the largest entry of the row standing in where the diagonal is too small.
@@ -411,6 +434,7 @@ mod tests {
             let negative = values.iter().filter(|v| **v < 0.0).count();
             let factor = factorize(&a).unwrap();
             assert_eq!(factor.inertia(), Inertia { negative, zero: 0, positive: n - negative });
+            assert_eq!(factor.symbolic().inertia(&a).unwrap(), factor.inertia());
             assert!(factor.n() == n && factor.memory_bytes() >= 8 * n);
         }
         // Only 2 × 2 pivots can do this one.

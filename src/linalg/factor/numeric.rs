@@ -53,6 +53,7 @@ struct Elimination<'a, T> {
     plan: &'a Plan,
     a: SparseColMatRef<'a, usize, T>,
     scaling: &'a [f64],
+    kept: Kept,
 }
 
 /// What a task keeps from front to front.
@@ -65,15 +66,24 @@ struct Scratch<T> {
     product: Vec<T>,
 }
 
+/// What of the factors is wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kept {
+    All,
+    /// B alone, which has the inertia.
+    Pivots,
+}
+
 /// Factorises S A S.
 pub(super) fn factorize<T: Field>(
     plan: &Plan,
     a: SparseColMatRef<'_, usize, T>,
     scaling: &[f64],
+    kept: Kept,
 ) -> Result<Vec<Front<T>>, Stuck> {
     let mut fronts: Vec<Option<Front<T>>> = Vec::new();
     fronts.resize_with(plan.nodes.len(), || None);
-    Elimination { plan, a, scaling }.run(&plan.root, &mut fronts)?;
+    Elimination { plan, a, scaling, kept }.run(&plan.root, &mut fronts)?;
     Ok(fronts.into_iter().map(|front| front.expect("every node belongs to a task")).collect())
 }
 
@@ -208,7 +218,7 @@ impl<T: Field> Elimination<'_, T> {
             passed_on,
             values: if passed_on == 0 { rest } else { joined(lower, &rest, m, width, done) },
         };
-        let lower = Lower::new(lower, m, done);
+        let lower = Lower::new(lower, m, if self.kept == Kept::All { done } else { 0 });
         columns.extend(below);
         Ok((Front { rows: columns, lower, inverse, handed_on: Vec::new() }, remainder))
     }

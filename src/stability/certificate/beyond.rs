@@ -15,7 +15,7 @@ use super::reduced::ReducedModel;
 use crate::error::Result;
 use crate::linalg::SparseMatrix;
 use crate::linalg::dense::{product, symmetric_eigen};
-use crate::linalg::factor::factorize;
+use crate::linalg::factor::symbolic_like;
 use crate::linalg::sparse::add_scaled;
 use crate::stability::analysis::Analysis;
 use faer::sparse::Triplet;
@@ -63,7 +63,7 @@ pub(super) fn nothing_faster(model: &ReducedModel, analysis: &Analysis<'_>) -> R
         if held(b)? {
             let matrix =
                 add_scaled(&[(0.5 * b, analysis.operator.mass), (1.0, &symmetric_damping(analysis))]);
-            let inertia = factorize(&matrix).map(|factor| factor.inertia());
+            let inertia = symbolic_like(analysis.factor, &matrix).and_then(|s| s.inertia(&matrix));
             return Ok(inertia.is_ok_and(|i| i.negative == 0 && i.zero == 0));
         }
     }

@@ -20,7 +20,7 @@ use super::reduced::DampingParts;
 use super::rows::Rows;
 use crate::error::Result;
 use crate::linalg::dense::{product, symmetric_eigen};
-use crate::linalg::factor::{SymmetricFactor, compliances, factorize_like};
+use crate::linalg::factor::{SymmetricFactor, compliances, symbolic_like};
 use crate::linalg::proportional::Proportional;
 use crate::linalg::sparse::{add_scaled, times};
 use crate::linalg::tall::{combine, panels};
@@ -227,7 +227,7 @@ fn least_shift(
 ) -> Option<f64> {
     let definite = |g: &&f64| {
         let sum = add_scaled(&[(1.0, a), (**g * unit, energy)]);
-        factorize_like(known, &sum).is_ok_and(|factor| factor.inertia().negative == 0)
+        symbolic_like(known, &sum).and_then(|s| s.inertia(&sum)).is_ok_and(|inertia| inertia.negative == 0)
     };
     SHIFTS.iter().find(definite).map(|g| g * unit)
 }
