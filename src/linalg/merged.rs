@@ -40,15 +40,15 @@ impl Merged {
         Merged { count, starts, rows, values }
     }
 
-    /// A x of every matrix A, in their order. Every entry is one sum in a fixed order: the same bits for any number of
-    /// threads.
+    /// A x of every matrix A, in their order, in the memory of `products`, of whatever size they are. Every entry is one sum
+    /// in a fixed order: the same bits for any number of threads.
     ///
     /// # Panics
     /// When the shapes do not agree.
-    pub fn times(&self, x: MatRef<'_, f64>) -> Vec<Mat<f64>> {
-        let mut products: Vec<Mat<f64>> = (0..self.count).map(|_| Mat::zeros(x.nrows(), x.ncols())).collect();
+    pub fn times(&self, x: MatRef<'_, f64>, products: &mut Vec<Mat<f64>>) {
+        products.resize_with(self.count, Mat::new);
+        products.iter_mut().for_each(|y| y.resize_with(x.nrows(), x.ncols(), |_, _| 0.0));
         self.times_into(x, &mut products.iter_mut().map(|y| y.as_mut()).collect::<Vec<_>>());
-        products
     }
 
     /// [`Merged::times`] into matrices at hand, whose columns are in one piece.
@@ -211,7 +211,8 @@ mod tests {
         let x = Mat::from_fn(61, 11, |i, j| ((i * 7 + j * 3) as f64).sin());
         for count in 1..=4 {
             let given: Vec<_> = matrices[..count].iter().collect();
-            let products = Merged::new(&given).times(x.as_ref());
+            let mut products = vec![Mat::zeros(3, 20); 2];
+            Merged::new(&given).times(x.as_ref(), &mut products);
             assert_eq!(products.len(), count);
             for (product, a) in products.iter().zip(given) {
                 assert!((product - times(a, x.as_ref())).norm_max() < 1e-13);

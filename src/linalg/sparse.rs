@@ -175,28 +175,29 @@ fn panel<T: Scalar, R: Row<T, W>, const W: usize>(a: &SparseMatrix, x: MatRef<'_
 pub fn quadratic_forms(a: &SparseMatrix, x: MatRef<'_, f64>) -> Vec<f64> {
     assert!(a.nrows() == a.ncols() && x.nrows() == a.ncols(), "shapes of A and x disagree");
     let of_panel = |start: usize| {
-        let width = PANEL.min(x.ncols() - start);
-        let forms = with_packed(x.subcols(start, width), |packed: &[Aligned<[f64; PANEL]>]| {
+        let width = FORMED.min(x.ncols() - start);
+        let forms = with_packed(x.subcols(start, width), |packed: &[Aligned<[f64; FORMED]>]| {
             let of_rows = |first: usize| {
-                let mut sums = [[0.0; PANEL]; FORMED];
-                let sums = &mut sums[..FORMED.min(packed.len() - first)];
+                let mut sums = [[0.0; FORMED]; ROWS_FORMED];
+                let sums = &mut sums[..ROWS_FORMED.min(packed.len() - first)];
                 Arch::new().dispatch(Rows { a, first, packed, sums });
-                let mut forms = [0.0; PANEL];
+                let mut forms = [0.0; FORMED];
                 for (x, y) in packed[first..].iter().zip(&*sums) {
-                    (0..PANEL).for_each(|c| forms[c] += x.values()[c] * y[c]);
+                    (0..FORMED).for_each(|c| forms[c] += x.values()[c] * y[c]);
                 }
                 forms
             };
-            let parts: Vec<_> = (0..packed.len()).into_par_iter().step_by(FORMED).map(of_rows).collect();
-            parts.into_iter().fold([0.0; PANEL], |sum, part| std::array::from_fn(|c| sum[c] + part[c]))
+            let parts: Vec<_> = (0..packed.len()).into_par_iter().step_by(ROWS_FORMED).map(of_rows).collect();
+            parts.into_iter().fold([0.0; FORMED], |sum, part| std::array::from_fn(|c| sum[c] + part[c]))
         });
         forms.into_iter().take(width)
     };
-    (0..x.ncols()).step_by(PANEL).flat_map(of_panel).collect()
+    (0..x.ncols()).step_by(FORMED).flat_map(of_panel).collect()
 }
 
-/// Rows of a product that are formed before they are used.
-const FORMED: usize = 256;
+/// Columns and rows of a product that is not written down: as much as stays at hand.
+const FORMED: usize = 16;
+const ROWS_FORMED: usize = 128;
 
 /// The columns, where each is in one piece.
 pub(super) fn columns<T>(a: MatRef<'_, T>) -> Option<Vec<&[T]>> {

@@ -227,6 +227,7 @@ impl<'a> Basis<'a> {
         new.subcols(0, done).to_owned()
     }
 
+    /// Adds vectors and their projections.
     fn append(&mut self, new: MatRef<'_, f64>) {
         let old = self.len();
         self.vectors.resize_with(new.nrows(), old + new.ncols(), |i, j| new[(i, j - old)]);
@@ -238,9 +239,10 @@ impl<'a> Basis<'a> {
         let (old, m) = (self.sizes.len(), self.len());
         // Columns of the four projections, down to their diagonals: the rest follows from symmetry.
         let mut borders = [(); 4].map(|()| Mat::<f64>::zeros(m, m - old));
+        let mut images = Vec::new();
         for (start, width) in panels(old..m) {
             let known = self.vectors.subcols(0, start + width);
-            let forms = self.operator.forms(known, self.vectors.subcols(start, width));
+            let forms = self.operator.forms(known, self.vectors.subcols(start, width), &mut images);
             for (border, form) in borders.iter_mut().zip(forms) {
                 border.submatrix_mut(0, start - old, start + width, width).copy_from(form);
             }

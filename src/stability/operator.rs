@@ -174,9 +174,15 @@ impl<'a> Operator<'a> {
         self.weights.iter().copied().zip(&*self.dampers).filter(|(weight, _)| *weight != 0.0)
     }
 
-    /// BᵀMY, (BᵀKY,) BᵀCY and BᵀHY of the structure's own damping, modal damping included.
-    pub(super) fn forms(&self, b: MatRef<'_, f64>, y: MatRef<'_, f64>) -> [Mat<f64>; 4] {
-        let images = self.merged.times(y);
+    /// BᵀMY, BᵀKY, BᵀCY and BᵀHY of the structure's own damping, modal damping included; `images` is memory for the next
+    /// call.
+    pub(super) fn forms(
+        &self,
+        b: MatRef<'_, f64>,
+        y: MatRef<'_, f64>,
+        images: &mut Vec<Mat<f64>>,
+    ) -> [Mat<f64>; 4] {
+        self.merged.times(y, images);
         let [mass, stiffness] = [0, 1].map(|k| gram(b, images[k].as_ref()));
         let own = &self.dampers[0];
         let [damping, loss] =
