@@ -224,7 +224,7 @@ impl<'a> Pencil<'a> {
             let factor = self.symbolic.factorize(&self.shifted(shift))?;
             Ok((factor.inertia().zero == 0).then_some(factor))
         };
-        self.clear(shifts, factorize)
+        self.off_eigenvalues(shifts, factorize)
     }
 
     /// How many eigenvalues lie below the first of `shifts` that does not sit on one, and that shift.
@@ -233,11 +233,11 @@ impl<'a> Pencil<'a> {
             let inertia = self.symbolic.inertia(&self.shifted(shift))?;
             Ok((inertia.zero == 0).then_some(inertia.negative))
         };
-        self.clear(shifts, count)
+        self.off_eigenvalues(shifts, count)
     }
 
     /// The first of `shifts` for which `f` gives something, and that; nothing stands for a shift on an eigenvalue.
-    fn clear<T>(&self, shifts: [f64; 3], f: impl Fn(f64) -> Result<Option<T>>) -> Result<(f64, T)> {
+    fn off_eigenvalues<T>(&self, shifts: [f64; 3], f: impl Fn(f64) -> Result<Option<T>>) -> Result<(f64, T)> {
         let mut refused = None;
         for shift in shifts {
             match f(shift) {
