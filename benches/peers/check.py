@@ -1,10 +1,10 @@
 """Measures the pairs of several programs in one way, and compares their eigenvalues.
 
-`check.py MODEL JOB NEAREST RUN...` prints for each run (an .npz with `values` and `vectors`)
+`check.py MODEL JOB NEAREST BELOW RUN...` prints for each run (an .npz with `values` and `vectors`)
 
 * backward: ‖r‖ / ((|λ|²‖M‖ + |λ|‖C‖ + ‖K‖) ‖x‖) in the 1-norm of the matrices, r = (λ²M + λC + K) x,
 * ahead: ‖P(σ)⁻¹ r‖ / ‖x‖ at the shift σ, about the error of the vector, which says more on fine meshes,
-* pairs: how many are left when conjugates are counted once,
+* pairs: how many are left when conjugates are counted once, below BELOW Hz where that is not 0,
 * apart: the largest relative difference of an eigenvalue from that of the first run.
 """
 import json
@@ -18,7 +18,7 @@ from common import matrices
 from pardiso import Pardiso
 
 
-def main(model, job, nearest, runs):
+def main(model, job, nearest, below, runs):
     real = job == "real"
     if real:
         m, k = matrices(model, "mk")
@@ -47,6 +47,8 @@ def main(model, job, nearest, runs):
             values = np.where(values.imag < 0, values.conj(), values)
             order = np.argsort(values.imag)
             values = values[order[np.r_[True, abs(np.diff(values[order])) > 1e-7 * abs(values[order][1:])]]]
+            if below:
+                values = values[values.imag < 2 * np.pi * below]
         first = values if first is None else first
         # The farthest pair may differ where two are equally near: all but it must agree.
         apart = sorted(min(abs(first - value)) / abs(value) for value in values)
@@ -56,4 +58,4 @@ def main(model, job, nearest, runs):
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), sys.argv[2], float(sys.argv[3]), sys.argv[4:])
+    main(Path(sys.argv[1]), sys.argv[2], *map(float, sys.argv[3:5]), sys.argv[5:])
