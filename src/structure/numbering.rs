@@ -1,21 +1,13 @@
 //! In which order nodes get their degrees of freedom: neighbours next to each other, so that products with the matrices meet
 //! what they read in the processor's cache, however the mesh was numbered.
 
+use super::scatter::users;
+
 /// The nodes 0 … `count` − 1, each once, in waves that go from one end of what hangs together to the other (Cuthill & McKee,
 /// Proc. 24th National Conference ACM (1969) 157). `pieces` are the nodes that are coupled with each other.
 pub(super) fn node_order(count: usize, pieces: &[Vec<usize>]) -> Vec<usize> {
-    let mut graph =
-        Graph { pieces, starts: vec![0; count + 1], touching: Vec::new(), passed: vec![0; count] };
-    pieces.iter().flatten().for_each(|node| graph.starts[node + 1] += 1);
-    (0..count).for_each(|node| graph.starts[node + 1] += graph.starts[node]);
-    let mut next = graph.starts.clone();
-    graph.touching = vec![0; graph.starts[count]];
-    for (piece, nodes) in pieces.iter().enumerate() {
-        for node in nodes {
-            graph.touching[next[*node]] = piece;
-            next[*node] += 1;
-        }
-    }
+    let (starts, touching) = users(count, pieces.iter().map(Vec::as_slice));
+    let mut graph = Graph { pieces, starts, touching, passed: vec![0; count] };
     let mut order = Vec::with_capacity(count);
     for node in 0..count {
         if graph.passed[node] == 0 {

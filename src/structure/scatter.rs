@@ -27,6 +27,24 @@ pub(super) struct Pattern {
     rows: Vec<usize>,
 }
 
+/// Which of `lists`, ascending, hold each of the numbers below `count`: number k is in those of `users[starts[k]..starts[k + 1]]`.
+pub(super) fn users<'a>(
+    count: usize,
+    lists: impl Iterator<Item = &'a [usize]> + Clone,
+) -> (Vec<usize>, Vec<usize>) {
+    let mut starts = vec![0; count + 1];
+    lists.clone().flatten().for_each(|k| starts[k + 1] += 1);
+    (0..count).for_each(|k| starts[k + 1] += starts[k]);
+    let (mut next, mut users) = (starts.clone(), vec![0; starts[count]]);
+    for (list, numbers) in lists.enumerate() {
+        for k in numbers {
+            users[next[*k]] = list;
+            next[*k] += 1;
+        }
+    }
+    (starts, users)
+}
+
 impl Pattern {
     /// The pattern of pieces on the given nodes; every diagonal entry is part of it.
     pub fn new(dofs: &DofMap, piece_nodes: &[Vec<usize>]) -> Self {
@@ -36,17 +54,8 @@ impl Pattern {
         drop(lists);
 
         // The pieces of every degree of freedom, ascending.
-        let mut starts = vec![0; n + 1];
-        piece_dofs.iter().for_each(|k| starts[k + 1] += 1);
-        (0..n).for_each(|k| starts[k + 1] += starts[k]);
-        let mut next = starts.clone();
-        let mut users = vec![0; piece_dofs.len()];
-        for piece in 0..piece_nodes.len() {
-            for k in &piece_dofs[piece_starts[piece]..piece_starts[piece + 1]] {
-                users[next[*k]] = piece;
-                next[*k] += 1;
-            }
-        }
+        let pieces = piece_starts.windows(2).map(|ends| &piece_dofs[ends[0]..ends[1]]);
+        let (starts, users) = users(n, pieces);
         let users_of = |k: usize| &users[starts[k]..starts[k + 1]];
         let columns: Vec<(Vec<usize>, Vec<usize>)> = (0..n.div_ceil(COLUMNS))
             .into_par_iter()

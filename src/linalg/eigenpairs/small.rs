@@ -2,7 +2,7 @@
 
 use super::super::SparseMatrix;
 use super::super::dense::definite_pencil;
-use super::super::sparse::{add_scaled, diagonal};
+use super::super::sparse::diagonal;
 use super::{CLUSTER, Eigenpairs, Found, Pencil, SturmCount, Wanted, gap, orthonormalise};
 use crate::error::Result;
 use faer::{Mat, MatRef};
@@ -40,6 +40,7 @@ impl Pencil<'_> {
         let counted = self.count_at(shifts)?;
         let mut found = Found { values, vectors, shift, factor };
         found.truncate(cut);
+        orthonormalise(self.m, &mut found.vectors)?;
         self.certify(found, SturmCount { bound, shifts, counted })
     }
 
@@ -60,7 +61,7 @@ impl Pencil<'_> {
             // The lowest θ may sit right above: keep a distance of the size of θ.
             (shift, factor) = near(2.0 * shift)?;
         }
-        let definite = add_scaled(&[(1.0, self.k), (-shift, self.m)]);
+        let definite = self.shifted(shift);
         let s: Vec<f64> = diagonal(&definite).iter().map(|d| 1.0 / d.abs().sqrt()).collect();
         let scaled = |a: &SparseMatrix| {
             let a = a.to_dense();
@@ -74,9 +75,12 @@ impl Pencil<'_> {
         let values = self.sharpen(&inverted, x.as_ref(), shift, largest);
         let mut order: Vec<usize> = (0..values.len()).collect();
         order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
-        let mut vectors = Mat::from_fn(n, order.len(), |i, k| x[(i, order[k])]);
-        orthonormalise(self.m, &mut vectors)?;
-        Ok(Found { vectors, values: order.iter().map(|k| values[*k]).collect(), shift, factor })
+        Ok(Found {
+            vectors: Mat::from_fn(n, order.len(), |i, k| x[(i, order[k])]),
+            values: order.iter().map(|k| values[*k]).collect(),
+            shift,
+            factor,
+        })
     }
 
     /// Takes the Rayleigh quotient xᵀKx of an M-normal x where rounding hurts it less than σ + 1/ν.
