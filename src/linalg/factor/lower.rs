@@ -7,51 +7,52 @@ use super::field::{Field, Lanes};
 use pulp::Simd;
 
 /// `rows` × `width`, unit lower trapezoidal. Above the diagonal stands what has no meaning.
-#[derive(Debug)]
-pub(super) struct Lower<T> {
+pub(super) struct Lower<'a, T> {
     rows: usize,
     width: usize,
     /// Panel after panel, each from its own diagonal on, row by row.
-    values: Vec<T>,
+    values: &'a [T],
 }
 
 /// The columns of a panel; of those that are left over, four make one, and then each its own.
 const WIDE: usize = 8;
 const NARROW: usize = 4;
 
-impl<T: Field> Lower<T> {
-    /// Of the first `width` columns of `columns`, each with `rows` entries.
-    pub(super) fn new(columns: &[T], rows: usize, width: usize) -> Self {
-        let mut lower = Lower { rows, width, values: Vec::new() };
-        lower.values.reserve_exact(lower.panels().map(|(first, count)| (rows - first) * count).sum());
-        for (first, count) in lower.panels() {
+/// First column and count of columns of every panel.
+fn panels(width: usize) -> impl DoubleEndedIterator<Item = (usize, usize)> {
+    let wide = width - width % WIDE;
+    let narrow = width - width % NARROW;
+    let part = |from: usize, to: usize, step: usize| (from..to).step_by(step).map(move |j| (j, step));
+    part(0, wide, WIDE).chain(part(wide, narrow, NARROW)).chain(part(narrow, width, 1))
+}
+
+impl<'a, T: Field> Lower<'a, T> {
+    /// How many values it is made of.
+    pub(super) fn size(rows: usize, width: usize) -> usize {
+        panels(width).map(|(first, count)| (rows - first) * count).sum()
+    }
+
+    /// What [`Lower::lay`] gave.
+    pub(super) fn of(values: &'a [T], rows: usize, width: usize) -> Self {
+        Lower { rows, width, values }
+    }
+
+    /// Puts the first `width` columns of `columns`, each with `rows` entries, behind `values`.
+    pub(super) fn lay(columns: &[T], rows: usize, width: usize, values: &mut Vec<T>) {
+        let columns = |first: usize| &columns[first * rows..];
+        for (first, count) in panels(width) {
             match count {
-                WIDE => lower.lay::<WIDE>(columns, first),
-                NARROW => lower.lay::<NARROW>(columns, first),
-                _ => lower.lay::<1>(columns, first),
+                WIDE => lay::<T, WIDE>(columns(first), rows, first, values),
+                NARROW => lay::<T, NARROW>(columns(first), rows, first, values),
+                _ => lay::<T, 1>(columns(first), rows, first, values),
             }
         }
-        lower
-    }
-
-    fn lay<const C: usize>(&mut self, columns: &[T], first: usize) {
-        let column = |c: usize| &columns[(first + c) * self.rows..][first..self.rows];
-        let columns: [&[T]; C] = std::array::from_fn(column);
-        self.values.extend((0..self.rows - first).flat_map(|i| columns.map(|column| column[i])));
-    }
-
-    /// First column and count of columns of every panel.
-    fn panels(&self) -> impl DoubleEndedIterator<Item = (usize, usize)> + use<T> {
-        let wide = self.width - self.width % WIDE;
-        let narrow = self.width - self.width % NARROW;
-        let part = |from: usize, to: usize, step: usize| (from..to).step_by(step).map(move |j| (j, step));
-        part(0, wide, WIDE).chain(part(wide, narrow, NARROW)).chain(part(narrow, self.width, 1))
     }
 
     /// The largest |entry| below the diagonal.
     pub(super) fn growth(&self) -> f64 {
-        let (mut largest, mut rest) = (0.0f64, &self.values[..]);
-        for (first, count) in self.panels() {
+        let (mut largest, mut rest) = (0.0f64, self.values);
+        for (first, count) in panels(self.width) {
             let (panel, after) = rest.split_at((self.rows - first) * count);
             for (i, row) in panel.chunks_exact(count).enumerate() {
                 largest = row[..i.min(count)].iter().map(|l| l.size()).fold(largest, f64::max);
@@ -61,15 +62,11 @@ impl<T: Field> Lower<T> {
         largest
     }
 
-    pub(super) fn memory_bytes(&self) -> usize {
-        size_of_val(&*self.values)
-    }
-
     /// v₁ ← L₁₁⁻¹ v₁, v₂ ← v₂ − L₂₁ v₁, where row i of v stands at `names[i]` of `v`.
     #[inline(always)]
     pub(super) fn up<L: Lanes<T>>(&self, names: &[u32], v: &mut Rows<'_, L>) {
-        let mut rest = &self.values[..];
-        for (first, count) in self.panels() {
+        let mut rest = self.values;
+        for (first, count) in panels(self.width) {
             let (panel, after) = rest.split_at((self.rows - first) * count);
             let names = &names[first..];
             match count {
@@ -84,8 +81,8 @@ impl<T: Field> Lower<T> {
     /// v₁ ← L₁₁⁻ᵀ (v₁ − L₂₁ᵀ v₂), with the registers of S; rows as in [`Lower::up`].
     #[inline(always)]
     pub(super) fn down<S: Simd, L: Lanes<T>>(&self, names: &[u32], v: &mut Rows<'_, L>) {
-        let mut rest = &self.values[..];
-        for (first, count) in self.panels().rev() {
+        let mut rest = self.values;
+        for (first, count) in panels(self.width).rev() {
             let (before, panel) = rest.split_at(rest.len() - (self.rows - first) * count);
             let names = &names[first..];
             match count {
@@ -100,6 +97,12 @@ impl<T: Field> Lower<T> {
             rest = before;
         }
     }
+}
+
+/// Of C columns, each with `rows` entries, what stands from row `first` on, row by row.
+fn lay<T: Field, const C: usize>(columns: &[T], rows: usize, first: usize, values: &mut Vec<T>) {
+    let columns: [&[T]; C] = std::array::from_fn(|c| &columns[c * rows..][first..rows]);
+    values.extend((0..rows - first).flat_map(|i| columns.map(|column| column[i])));
 }
 
 /// The rows of right-hand sides that the fronts of a task reach, by their names.
@@ -224,7 +227,10 @@ mod tests {
         for (rows, width) in [(40, 29), (13, 13), (5, 1), (9, 0)] {
             let l = |i: usize, j: usize| if i > j { 0.1 * ((3 * i + 5 * j) as f64).sin() } else { 7.0 };
             let columns: Vec<f64> = (0..width * rows).map(|k| l(k % rows, k / rows)).collect();
-            let lower = Lower::new(&columns, rows, width);
+            let mut values = vec![0.5];
+            Lower::lay(&columns, rows, width, &mut values);
+            assert_eq!(values.len(), 1 + Lower::<f64>::size(rows, width));
+            let lower = Lower::of(&values[1..], rows, width);
             let start: Vec<[f64; 2]> = (0..rows).map(|i| [i as f64, (i as f64).cos()]).collect();
             // The last rows lie beyond the columns of the task, the others stand backwards in it.
             let (beyond, base, n) = ((rows - width).min(7), 100, 1000);

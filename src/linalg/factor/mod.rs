@@ -35,7 +35,7 @@ use faer::sparse::{SparseColMat, SymbolicSparseColMatRef};
 use faer::{ColRef, Mat, MatMut, MatRef};
 use field::Lanes;
 use halves::Half;
-use numeric::{Front, Kept};
+use numeric::{Branch, Kept};
 use rayon::prelude::*;
 use solve::Substitution;
 use std::fmt::Debug;
@@ -144,8 +144,8 @@ impl SymbolicFactor {
     /// # Panics
     /// When the pattern is another one.
     pub fn factorize<T: Field>(&self, a: &SparseColMat<usize, T>) -> Result<Box<dyn SymmetricFactor<T>>> {
-        let (fronts, scaling) = self.eliminate(a, Kept::All)?;
-        Ok(Box::new(Multifrontal { plan: Arc::clone(&self.0), fronts, scaling }))
+        let (branch, scaling) = self.eliminate(a, Kept::All)?;
+        Ok(Box::new(Multifrontal { plan: Arc::clone(&self.0), branch, scaling }))
     }
 
     /// The inertia of a matrix that has the analysed pattern, by factors that are not kept.
@@ -156,15 +156,11 @@ impl SymbolicFactor {
     /// # Panics
     /// When the pattern is another one.
     pub fn inertia(&self, a: &SparseMatrix) -> Result<Inertia> {
-        self.eliminate(a, Kept::Pivots).map(|(fronts, _)| inertia(&fronts))
+        self.eliminate(a, Kept::Pivots).map(|(branch, _)| inertia(&branch))
     }
 
     /// The fronts of S A S, and S.
-    fn eliminate<T: Field>(
-        &self,
-        a: &SparseColMat<usize, T>,
-        kept: Kept,
-    ) -> Result<(Vec<Front<T>>, Vec<f64>)> {
+    fn eliminate<T: Field>(&self, a: &SparseColMat<usize, T>, kept: Kept) -> Result<(Branch<T>, Vec<f64>)> {
         let n = a.ncols();
         assert!(
             n == self.0.order.len() && a.compute_nnz() == self.0.entries,
@@ -179,7 +175,7 @@ impl SymbolicFactor {
             ));
         }
         let scaling = equilibrate(a);
-        let fronts = numeric::factorize(&self.0, a.as_ref(), &scaling, kept).map_err(|stuck| {
+        let branch = numeric::factorize(&self.0, a.as_ref(), &scaling, kept).map_err(|stuck| {
             Error::analysis(
                 "factorisation",
                 format!("the matrix is singular: elimination stops at row {} of {n}", self.0.order[stuck.0]),
@@ -187,7 +183,7 @@ impl SymbolicFactor {
                  eigenvalue does this",
             )
         })?;
-        Ok((fronts, scaling))
+        Ok((branch, scaling))
     }
 }
 
@@ -250,7 +246,7 @@ pub fn solve_refined(a: &SparseMatrix, factor: &dyn SymmetricFactor, rhs: MatMut
 #[derive(Debug)]
 struct Multifrontal<T> {
     plan: Arc<Plan>,
-    fronts: Vec<Front<T>>,
+    branch: Branch<T>,
     /// S.
     scaling: Vec<f64>,
 }
@@ -263,7 +259,7 @@ const ROWS_A_TASK: usize = 8192;
 
 impl<T: Field> Multifrontal<T> {
     fn substitution(&self) -> Substitution<'_, T> {
-        Substitution { plan: &self.plan, fronts: &self.fronts }
+        Substitution { plan: &self.plan, branch: &self.branch }
     }
 
     /// Solves for up to as many columns as `L` has.
@@ -348,25 +344,21 @@ impl<T: Field> SymmetricFactor<T> for Multifrontal<T> {
     }
 
     fn inertia(&self) -> Inertia {
-        inertia(&self.fronts)
+        inertia(&self.branch)
     }
 
     fn growth(&self) -> f64 {
-        self.fronts.iter().map(|front| front.lower.growth()).fold(0.0, f64::max)
+        let branches = self.branch.branches().into_iter();
+        branches.flat_map(Branch::fronts).map(|front| front.lower.growth()).fold(0.0, f64::max)
     }
 
     fn memory_bytes(&self) -> usize {
-        let bytes = |front: &Front<T>| {
-            front.lower.memory_bytes()
-                + size_of_val(&*front.inverse)
-                + 4 * (front.rows.len() + front.handed_on.len())
-        };
-        8 * self.n() + self.fronts.iter().map(bytes).sum::<usize>()
+        8 * self.n() + self.branch.branches().into_iter().map(Branch::memory_bytes).sum::<usize>()
     }
 }
 
 /// The inertia of B.
-fn inertia<T: Field>(fronts: &[Front<T>]) -> Inertia {
+fn inertia<T: Field>(branch: &Branch<T>) -> Inertia {
     let mut inertia = Inertia::default();
     // The eigenvalues of B⁻¹ are at hand.
     let mut note = |eigenvalue: f64| match eigenvalue {
@@ -374,9 +366,9 @@ fn inertia<T: Field>(fronts: &[Front<T>]) -> Inertia {
         e if e < 0.0 => inertia.negative += 1,
         _ => inertia.positive += 1,
     };
-    for front in fronts {
+    for branch in branch.branches() {
         let mut blocks =
-            front.inverse.iter().map(|[a, b]| (a.real_part(), b.real_part(), *b != T::default()));
+            branch.inverse().iter().map(|[a, b]| (a.real_part(), b.real_part(), *b != T::default()));
         while let Some((p, below, double)) = blocks.next() {
             let (q, _, _) =
                 if double { blocks.next().expect("a block has two columns") } else { (p, 0.0, false) };

@@ -9,29 +9,91 @@ use faer::{MatMut, MatRef};
 use rayon::prelude::*;
 
 /// The columns of L that one front gave.
-#[derive(Debug)]
-pub(super) struct Front<T> {
+pub(super) struct Front<'a, T> {
     /// The rows, by their place in the order of elimination: first the columns that this front eliminated, in the order
     /// of its pivots, then those that it passed on, then the others, ascending. Rows beyond the columns of the task are
     /// numbered from n on, in the order in which the task hands them on.
-    pub rows: Vec<u32>,
+    pub rows: &'a [u32],
     /// L, as many rows × as many columns as were eliminated.
-    pub lower: Lower<T>,
+    pub lower: Lower<'a, T>,
     /// B⁻¹: for each eliminated column its diagonal entry and the entry below it, nonzero where a 2 × 2 block begins.
-    pub inverse: Vec<[T; 2]>,
-    /// Of the last front of a task, the rows that the task hands on, as the fronts of the task above name them.
-    pub handed_on: Vec<u32>,
+    pub inverse: &'a [[T; 2]],
 }
 
-impl<T> Front<T> {
-    /// How many columns this front eliminated.
-    pub fn width(&self) -> usize {
-        self.inverse.len()
-    }
-
+impl<T> Front<'_, T> {
     /// The columns that this front eliminated, by their place, in the order of its pivots.
     pub fn columns(&self) -> &[u32] {
-        &self.rows[..self.width()]
+        &self.rows[..self.inverse.len()]
+    }
+}
+
+/// What a task gave: its own fronts, and what its subtasks gave.
+///
+/// The fronts stand one behind the other. Most are small: were each a piece of memory of its own, the processor would wait
+/// at the beginning of each, in every substitution.
+#[derive(Debug)]
+pub(super) struct Branch<T> {
+    /// Where the rows, the entries of L and the columns of each front begin, and of a next one.
+    starts: Vec<[usize; 3]>,
+    rows: Vec<u32>,
+    lower: Vec<T>,
+    inverse: Vec<[T; 2]>,
+    /// The rows that the task hands on, as the fronts of the task above name them.
+    pub handed_on: Vec<u32>,
+    pub subtasks: Vec<Branch<T>>,
+}
+
+impl<T: Field> Branch<T> {
+    /// Without fronts, with room for those that the pattern expects.
+    fn new(plan: &Plan, task: &Task, kept: Kept) -> Self {
+        let expected = |size: fn(usize, usize) -> usize| -> usize {
+            let of = |s: usize| {
+                let (width, below) = (plan.nodes[s].columns.len(), plan.nodes[s].rows.len());
+                size(width + below, width)
+            };
+            if kept == Kept::All { task.own_nodes().map(of).sum() } else { 0 }
+        };
+        Branch {
+            starts: vec![[0; 3]],
+            rows: Vec::with_capacity(expected(|rows, _| rows)),
+            lower: Vec::with_capacity(expected(Lower::<T>::size)),
+            inverse: Vec::with_capacity(task.own_nodes().map(|s| plan.nodes[s].columns.len()).sum()),
+            handed_on: Vec::new(),
+            subtasks: Vec::new(),
+        }
+    }
+
+    /// The fronts of the task itself, in the order of elimination.
+    pub fn fronts(&self) -> impl DoubleEndedIterator<Item = Front<'_, T>> {
+        self.starts.windows(2).map(|ends| {
+            let [rows, lower, columns] = [0, 1, 2].map(|k| ends[0][k]..ends[1][k]);
+            let lower = Lower::of(&self.lower[lower], rows.len(), columns.len());
+            Front { rows: &self.rows[rows], lower, inverse: &self.inverse[columns] }
+        })
+    }
+
+    /// This and all that is below.
+    pub fn branches(&self) -> Vec<&Branch<T>> {
+        std::iter::once(self).chain(self.subtasks.iter().flat_map(Branch::branches)).collect()
+    }
+
+    /// B⁻¹ of the fronts of the task itself.
+    pub fn inverse(&self) -> &[[T; 2]] {
+        &self.inverse
+    }
+
+    /// Of the task itself.
+    pub fn memory_bytes(&self) -> usize {
+        let names = size_of_val(&*self.rows) + size_of_val(&*self.handed_on);
+        size_of_val(&*self.lower) + size_of_val(&*self.inverse) + names
+    }
+
+    /// Puts the first rows of L, as many as columns were eliminated, behind the others: `columns` by columns.
+    fn push(&mut self, rows: &[u32], columns: &[T], inverse: &[[T; 2]]) {
+        self.rows.extend_from_slice(rows);
+        Lower::lay(columns, rows.len(), inverse.len(), &mut self.lower);
+        self.inverse.extend_from_slice(inverse);
+        self.starts.push([self.rows.len(), self.lower.len(), self.inverse.len()]);
     }
 }
 
@@ -80,37 +142,16 @@ pub(super) fn factorize<T: Field>(
     a: SparseColMatRef<'_, usize, T>,
     scaling: &[f64],
     kept: Kept,
-) -> Result<Vec<Front<T>>, Stuck> {
-    let mut fronts: Vec<Option<Front<T>>> = Vec::new();
-    fronts.resize_with(plan.nodes.len(), || None);
-    Elimination { plan, a, scaling, kept }.run(&plan.root, &mut fronts)?;
-    Ok(fronts.into_iter().map(|front| front.expect("every node belongs to a task")).collect())
-}
-
-/// The parts of `all` that belong to the subtasks; `all` is what belongs to `task`.
-pub(super) fn parts<'a, X>(
-    task: &Task,
-    all: &'a mut [X],
-    start_of: impl Fn(usize) -> usize,
-) -> Vec<&'a mut [X]> {
-    let mut rest = all;
-    let mut at = start_of(task.nodes.start);
-    let mut parts = Vec::with_capacity(task.subtasks.len());
-    for subtask in &task.subtasks {
-        let (begin, end) = (start_of(subtask.nodes.start), start_of(subtask.nodes.end));
-        let (part, after) = std::mem::take(&mut rest)[begin - at..].split_at_mut(end - begin);
-        parts.push(part);
-        (rest, at) = (after, end);
-    }
-    parts
+) -> Result<Branch<T>, Stuck> {
+    Elimination { plan, a, scaling, kept }.run(&plan.root).map(|(branch, _)| branch)
 }
 
 impl<T: Field> Elimination<'_, T> {
-    /// Runs a task and gives the remainders of its last front (none is left of a whole tree).
-    fn run(&self, task: &Task, fronts: &mut [Option<Front<T>>]) -> Result<Vec<Remainder<T>>, Stuck> {
-        let subtasks: Vec<_> = task.subtasks.iter().zip(parts(task, fronts, |s| s)).collect();
-        let results: Vec<_> = subtasks.into_par_iter().map(|(task, fronts)| self.run(task, fronts)).collect();
+    /// Runs a task; gives its fronts and the remainders of its last one (none is left of a whole tree).
+    fn run(&self, task: &Task) -> Result<(Branch<T>, Vec<Remainder<T>>), Stuck> {
+        let results: Vec<_> = task.subtasks.par_iter().map(|task| self.run(task)).collect();
         let mut results = task.subtasks.iter().zip(results);
+        let mut branch = Branch::new(self.plan, task, self.kept);
         let mut stack: Vec<Remainder<T>> = Vec::new();
         let mut scratch =
             Scratch { places: vec![0; self.plan.order.len()], columns: Vec::new(), product: Vec::new() };
@@ -118,54 +159,44 @@ impl<T: Field> Elimination<'_, T> {
         let mut s = task.nodes.start;
         while s < task.nodes.end {
             if let Some((subtask, result)) = ready.take_if(|(subtask, _)| subtask.nodes.start == s) {
-                stack.extend(result?);
+                let (below, remainders) = result?;
+                branch.subtasks.push(below);
+                stack.extend(remainders);
                 s = subtask.nodes.end;
                 ready = results.next();
                 continue;
             }
             let children = stack.split_off(stack.len() - self.plan.nodes[s].children.len());
-            let (front, remainder) = self.front(s, &children, &mut scratch)?;
-            fronts[s - task.nodes.start] = Some(front);
-            stack.push(remainder);
+            stack.push(self.front(s, &children, &mut scratch, &mut branch)?);
             s += 1;
         }
-        self.name_rows(task, fronts, &mut scratch.places);
-        Ok(stack)
+        self.name_rows(task, &mut branch, &mut scratch.places);
+        Ok((branch, stack))
     }
 
     /// Names the rows of the fronts of a task as they are kept, and those that its last front hands on by their place.
-    fn name_rows(&self, task: &Task, fronts: &mut [Option<Front<T>>], names: &mut [u32]) {
+    fn name_rows(&self, task: &Task, branch: &mut Branch<T>, names: &mut [u32]) {
         let end = self.plan.first_column(task.nodes.end) as u32;
-        let handed_on: Vec<u32> = match fronts.last() {
-            Some(Some(last)) => last.rows.iter().copied().filter(|row| *row >= end).collect(),
-            _ => Vec::new(),
-        };
-        for (row, name) in handed_on.iter().zip(self.plan.order.len() as u32..) {
+        let last = branch.fronts().next_back();
+        branch.handed_on =
+            last.map_or(Vec::new(), |last| last.rows.iter().copied().filter(|row| *row >= end).collect());
+        for (row, name) in branch.handed_on.iter().zip(self.plan.order.len() as u32..) {
             names[*row as usize] = name;
         }
-        let rename = |rows: &mut [u32]| {
-            rows.iter_mut().filter(|row| **row >= end).for_each(|row| *row = names[*row as usize]);
-        };
-        let at = |s: usize| s - task.nodes.start;
-        for s in task.own_nodes() {
-            rename(&mut fronts[at(s)].as_mut().expect("all fronts are there").rows);
-        }
-        for subtask in &task.subtasks {
-            rename(&mut fronts[at(subtask.nodes.end - 1)].as_mut().expect("all fronts are there").handed_on);
-        }
-        if let Some(Some(last)) = fronts.last_mut() {
-            last.handed_on = handed_on;
-        }
+        let below = branch.subtasks.iter_mut().flat_map(|subtask| &mut subtask.handed_on);
+        let beyond = branch.rows.iter_mut().chain(below).filter(|row| **row >= end);
+        beyond.for_each(|row| *row = names[*row as usize]);
     }
 
-    /// Assembles node s from A and its children, and eliminates it. `scratch.places` then tells where each of its rows
-    /// stands.
+    /// Assembles node s from A and its children, eliminates it and puts it into the branch. `scratch.places` then tells where
+    /// each of its rows stands.
     fn front(
         &self,
         s: usize,
         children: &[Remainder<T>],
         scratch: &mut Scratch<T>,
-    ) -> Result<(Front<T>, Remainder<T>), Stuck> {
+        branch: &mut Branch<T>,
+    ) -> Result<Remainder<T>, Stuck> {
         let node = &self.plan.nodes[s];
         let names = |rows: &[usize]| rows.iter().map(|row| *row as u32).collect::<Vec<u32>>();
         let mut columns: Vec<u32> = node.columns.clone().map(|column| column as u32).collect();
@@ -218,9 +249,14 @@ impl<T: Field> Elimination<'_, T> {
             passed_on,
             values: if passed_on == 0 { rest } else { joined(lower, &rest, m, width, done) },
         };
-        let lower = Lower::new(lower, m, if self.kept == Kept::All { done } else { 0 });
-        columns.extend(below);
-        Ok((Front { rows: columns, lower, inverse, handed_on: Vec::new() }, remainder))
+        match self.kept {
+            Kept::All => {
+                columns.extend(below);
+                branch.push(&columns, lower, &inverse);
+            }
+            Kept::Pivots => branch.inverse.extend(inverse),
+        }
+        Ok(remainder)
     }
 }
 

@@ -7,7 +7,7 @@
 
 use super::field::{Field, Lanes};
 use super::lower::Rows;
-use super::numeric::{Front, parts};
+use super::numeric::{Branch, Front};
 use super::symbolic::{Plan, Task};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -15,60 +15,68 @@ use rayon::prelude::*;
 /// Goes up and down the tree, with one row of x for each column in the order of elimination.
 pub(super) struct Substitution<'a, T> {
     pub plan: &'a Plan,
-    pub fronts: &'a [Front<T>],
+    pub branch: &'a Branch<T>,
 }
 
 impl<T: Field> Substitution<'_, T> {
     /// L⁻¹ x.
     pub fn up<L: Lanes<T>>(&self, x: &mut [L]) {
-        self.forward(&self.plan.root, x);
+        self.forward(&self.plan.root, self.branch, x);
     }
 
     /// B⁻¹ x.
     pub fn pivots<L: Lanes<T>>(&self, x: &mut [L]) {
-        Arch::new().dispatch(Pivots { fronts: self.fronts, x });
+        for branch in self.branch.branches() {
+            Arch::new().dispatch(Pivots { fronts: branch.fronts(), x });
+        }
     }
 
     /// L⁻ᵀ B⁻¹ x.
     pub fn down<L: Lanes<T>>(&self, x: &mut [L]) {
-        self.backward(&self.plan.root, x, Vec::new());
+        self.backward(&self.plan.root, self.branch, x, Vec::new());
     }
 
-    /// The parts of x that belong to the subtasks of a task.
-    fn parts<'x, L>(&self, task: &Task, x: &'x mut [L]) -> Vec<&'x mut [L]> {
-        parts(task, x, |s| self.plan.first_column(s))
-    }
-
-    /// The rows that a task hands on.
-    fn handed_on(&self, task: &Task) -> &[u32] {
-        self.fronts[task.nodes.clone()].last().map_or(&[], |front| &front.handed_on)
+    /// The subtasks of a task, what they gave, and the parts of x that belong to them.
+    fn subtasks<'x, L>(
+        &self,
+        task: &'x Task,
+        branch: &'x Branch<T>,
+        x: &'x mut [L],
+    ) -> Vec<(&'x Task, &'x Branch<T>, &'x mut [L])> {
+        let mut at = self.plan.first_column(task.nodes.start);
+        let mut rest = x;
+        let part = |(task, branch): (&'x Task, &'x Branch<T>)| {
+            let [begin, end] = [task.nodes.start, task.nodes.end].map(|s| self.plan.first_column(s));
+            let (part, after) = std::mem::take(&mut rest)[begin - at..].split_at_mut(end - begin);
+            (rest, at) = (after, end);
+            (task, branch, part)
+        };
+        task.subtasks.iter().zip(&branch.subtasks).map(part).collect()
     }
 
     /// L y = b for the columns of a task; gives what it brings to the rows that it hands on.
-    fn forward<L: Lanes<T>>(&self, task: &Task, x: &mut [L]) -> Vec<L> {
-        let subtasks: Vec<_> = task.subtasks.iter().zip(self.parts(task, x)).collect();
-        let results: Vec<_> = subtasks.into_par_iter().map(|(task, x)| self.forward(task, x)).collect();
-        let mut beyond = vec![L::ZERO; self.handed_on(task).len()];
+    fn forward<L: Lanes<T>>(&self, task: &Task, branch: &Branch<T>, x: &mut [L]) -> Vec<L> {
+        let subtasks = self.subtasks(task, branch, x).into_par_iter();
+        let results: Vec<_> = subtasks.map(|(task, branch, x)| self.forward(task, branch, x)).collect();
+        let mut beyond = vec![L::ZERO; branch.handed_on.len()];
         let mut rows = self.rows(task, x, &mut beyond);
-        for (subtask, sums) in task.subtasks.iter().zip(&results) {
-            for (row, sum) in self.handed_on(subtask).iter().zip(sums) {
+        for (subtask, sums) in branch.subtasks.iter().zip(&results) {
+            for (row, sum) in subtask.handed_on.iter().zip(sums) {
                 rows.at(*row).add(sum);
             }
         }
-        let nodes = task.own_nodes();
-        Arch::new().dispatch(Walk::<T, L, _, true> { fronts: self.fronts, nodes, rows });
+        Arch::new().dispatch(Walk::<_, _, true> { fronts: branch.fronts(), rows });
         beyond
     }
 
     /// B Lᵀ x = y for the columns of a task; `beyond` is the solution of the rows that it hands on.
-    fn backward<L: Lanes<T>>(&self, task: &Task, x: &mut [L], mut beyond: Vec<L>) {
+    fn backward<L: Lanes<T>>(&self, task: &Task, branch: &Branch<T>, x: &mut [L], mut beyond: Vec<L>) {
         let mut rows = self.rows(task, x, &mut beyond);
-        let nodes = task.own_nodes().rev();
-        Arch::new().dispatch(Walk::<T, L, _, false> { fronts: self.fronts, nodes, rows: rows.reborrow() });
-        let handed = |subtask| self.handed_on(subtask).iter().map(|row| *rows.at(*row)).collect();
-        let known: Vec<Vec<L>> = task.subtasks.iter().map(handed).collect();
-        let parts: Vec<_> = task.subtasks.iter().zip(self.parts(task, x)).zip(known).collect();
-        parts.into_par_iter().for_each(|((task, x), known)| self.backward(task, x, known));
+        Arch::new().dispatch(Walk::<_, _, false> { fronts: branch.fronts().rev(), rows: rows.reborrow() });
+        let handed = |subtask: &Branch<T>| subtask.handed_on.iter().map(|row| *rows.at(*row)).collect();
+        let known: Vec<Vec<L>> = branch.subtasks.iter().map(handed).collect();
+        let subtasks = self.subtasks(task, branch, x).into_par_iter().zip(known);
+        subtasks.for_each(|((task, branch, x), known)| self.backward(task, branch, x, known));
     }
 
     /// The rows that the fronts of a task reach.
@@ -78,37 +86,37 @@ impl<T: Field> Substitution<'_, T> {
     }
 }
 
-/// Up or down through some nodes.
-struct Walk<'a, T, L, I, const UP: bool> {
-    fronts: &'a [Front<T>],
-    nodes: I,
+/// Up or down through the fronts of a task.
+struct Walk<'a, L, I, const UP: bool> {
+    fronts: I,
     rows: Rows<'a, L>,
 }
 
-impl<T: Field, L: Lanes<T>, I: Iterator<Item = usize>, const UP: bool> WithSimd for Walk<'_, T, L, I, UP> {
+impl<'a, T: Field, L: Lanes<T>, I: Iterator<Item = Front<'a, T>>, const UP: bool> WithSimd
+    for Walk<'_, L, I, UP>
+{
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, _: S) {
-        for s in self.nodes {
-            let front = &self.fronts[s];
+        for front in self.fronts {
             if UP {
-                front.lower.up(&front.rows, &mut self.rows);
+                front.lower.up(front.rows, &mut self.rows);
             } else {
                 front.apply_pivots(self.rows.own, self.rows.base);
-                front.lower.down::<S, L>(&front.rows, &mut self.rows);
+                front.lower.down::<S, L>(front.rows, &mut self.rows);
             }
         }
     }
 }
 
 /// x ← B⁻¹ x, front by front.
-struct Pivots<'a, T, L> {
-    fronts: &'a [Front<T>],
+struct Pivots<'a, L, I> {
+    fronts: I,
     x: &'a mut [L],
 }
 
-impl<T: Field, L: Lanes<T>> WithSimd for Pivots<'_, T, L> {
+impl<'a, T: Field, L: Lanes<T>, I: Iterator<Item = Front<'a, T>>> WithSimd for Pivots<'_, L, I> {
     type Output = ();
 
     #[inline(always)]
@@ -119,7 +127,7 @@ impl<T: Field, L: Lanes<T>> WithSimd for Pivots<'_, T, L> {
     }
 }
 
-impl<T: Field> Front<T> {
+impl<T: Field> Front<'_, T> {
     /// x ← B⁻¹ x for the eliminated columns, where x begins with column `base`.
     #[inline(always)]
     fn apply_pivots<L: Lanes<T>>(&self, x: &mut [L], base: u32) {
