@@ -1,7 +1,8 @@
 //! Symmetric matrices with entries in a few rows, such as the dashpots of a structure: products touch those rows only.
 
 use super::SparseMatrix;
-use super::sparse::times;
+use super::factor::SymbolicFactor;
+use super::sparse::{add_scaled, times};
 use faer::sparse::Triplet;
 use faer::{Mat, MatRef};
 
@@ -36,6 +37,19 @@ impl FewRows {
         &self.rows
     }
 
+    /// Whether D has no negative eigenvalue, but for the rounding of its entries.
+    pub fn is_semidefinite(&self) -> bool {
+        /// A part of the diagonal, which D is stiffened by: dashpots between two points are singular.
+        const ROUNDING: f64 = 1e-12;
+        let n = self.rows.len();
+        let entry = |i: usize| self.own.get(i, i).map_or(0.0, |v| v.abs() * ROUNDING);
+        let diagonal: Vec<_> = (0..n).map(|i| Triplet::new(i, i, entry(i))).collect();
+        let diagonal = SparseMatrix::try_new_from_triplets(n, n, &diagonal).expect("indices of the rows");
+        let stiffened = add_scaled(&[(1.0, &self.own), (1.0, &diagonal)]);
+        let inertia = SymbolicFactor::new(stiffened.symbolic()).and_then(|s| s.inertia(&stiffened));
+        inertia.is_ok_and(|inertia| inertia.negative == 0)
+    }
+
     /// The rows of D x that are not zero: one for each of [`FewRows::rows`].
     ///
     /// # Panics
@@ -66,6 +80,29 @@ pub fn picked(v: MatRef<'_, f64>, rows: &[usize]) -> Mat<f64> {
 mod tests {
     use super::super::samples;
     use super::*;
+
+    #[test]
+    fn dashpots_are_semidefinite_unless_one_is_negative() {
+        // Between pairs of points, each a row of two, and one that gives a little energy.
+        let of = |worst: f64| {
+            let mut triplets = Vec::new();
+            for k in 0..30usize {
+                let (i, j, c) =
+                    (7 * k, 7 * k + 3, if k == 11 { worst } else { 10f64.powi(k as i32 % 9 - 4) });
+                for (a, b, sign) in [(i, i, 1.0), (j, j, 1.0), (i, j, -1.0), (j, i, -1.0)] {
+                    triplets.push(Triplet::new(a, b, sign * c));
+                }
+            }
+            FewRows::new(&SparseMatrix::try_new_from_triplets(300, 300, &triplets).unwrap())
+        };
+        assert!(of(1.0).is_semidefinite());
+        assert!(of(1e-9).is_semidefinite());
+        assert!(!of(-1e-9).is_semidefinite());
+        let swapped = [Triplet::new(2, 5, 1.0), Triplet::new(5, 2, 1.0)];
+        assert!(
+            !FewRows::new(&SparseMatrix::try_new_from_triplets(9, 9, &swapped).unwrap()).is_semidefinite()
+        );
+    }
 
     #[test]
     fn products_are_those_of_the_whole_matrix() {

@@ -38,6 +38,14 @@ impl Part {
         self.split.rest.as_ref().filter(|_| self.few.is_none())
     }
 
+    /// Whether α M + β K + rest is known to have no negative eigenvalue but for rounding, where K − `lowest` M has none
+    /// (`lowest` ≤ 0): told from few rows, without the whole matrix.
+    pub(super) fn dissipates(&self, lowest: f64) -> bool {
+        let Proportional { mass_factor, stiffness_factor, .. } = self.split;
+        let proportional = stiffness_factor == 0.0 || mass_factor + stiffness_factor * lowest >= 0.0;
+        proportional && self.few.as_ref().is_some_and(FewRows::is_semidefinite)
+    }
+
     /// BᵀXY beside `mass` and `stiffness`, BᵀMY and BᵀKY.
     pub(super) fn form(
         &self,

@@ -5,7 +5,6 @@ use super::rows::Rows;
 use crate::error::Result;
 use crate::linalg::dense::{definite_pencil, product};
 use crate::linalg::few_rows::FewRows;
-use crate::linalg::proportional::Proportional;
 use crate::linalg::sparse::times;
 use crate::linalg::tall::{expand, gram};
 use crate::stability::analysis::Analysis;
@@ -47,8 +46,6 @@ pub(super) struct Oscillator {
 
 /// The damping of a structure, what is proportional apart from what couples the real modes.
 pub(super) struct DampingParts {
-    pub(super) viscous: Proportional,
-    pub(super) loss: Proportional,
     /// Whether the modal damping acts on real modes of the basis only.
     pub(super) modal_inside: bool,
     /// D B and H_r B, where D is all of C but its proportional part and the modal damping inside the basis.
@@ -72,13 +69,7 @@ impl DampingParts {
                 None => modal,
             });
         }
-        DampingParts {
-            viscous: viscous.split.clone(),
-            loss: loss.split.clone(),
-            modal_inside,
-            damped,
-            lossy: rest(loss),
-        }
+        DampingParts { modal_inside, damped, lossy: rest(loss) }
     }
 }
 
@@ -111,16 +102,18 @@ impl ReducedModel {
         if let Some(twins) = off_diagonal(&regular, analysis.n_real) {
             coupled = Some(coupled.map_or(twins.clone(), |rest| rest + twins));
         }
+        let loss = &operator.dampers[0].loss.split;
         let oscillators = (0..theta.len())
             .map(|i| Oscillator {
                 damping: regular[(i, i)],
                 stiffness: theta[i],
-                loss: parts.loss.mass_factor + parts.loss.stiffness_factor * theta[i],
+                loss: loss.mass_factor + loss.stiffness_factor * theta[i],
             })
             .collect();
         let active = operator.interface.active(top);
         let w = Mat::from_fn(basis.len(), active.len(), |i, j| basis.interface[(i, active[j])]);
-        let (indefinite, dissipative) = super::remainder::dissipation(analysis, &parts);
+        let lowest = theta.first().copied().unwrap_or(0.0);
+        let (indefinite, dissipative) = super::remainder::dissipation(analysis, &parts, lowest);
         let whole = basis.len() == operator.n() || analysis.complete_below == f64::INFINITY;
         let remainder = if whole {
             None

@@ -21,11 +21,11 @@ use super::rows::Rows;
 use crate::error::Result;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::factor::{SymmetricFactor, compliances, symbolic_like};
-use crate::linalg::proportional::Proportional;
 use crate::linalg::sparse::{add_scaled, times};
 use crate::linalg::tall::{combine, panels};
 use crate::linalg::{SparseMatrix, c64};
 use crate::stability::analysis::Analysis;
+use crate::stability::damper::{Damper, Part};
 use faer::{Accum, Mat};
 use std::f64::consts::TAU;
 
@@ -132,8 +132,9 @@ impl Remainder {
         let f = beyond + behind;
         let missed = Mat::from_fn(active.len(), kept.len(), |i, j| root(f - active.len() + i, j));
         let mut terms = Vec::new();
-        let (alpha, beta) = (parts.viscous.mass_factor, parts.viscous.stiffness_factor);
-        let (alpha_h, beta_h) = (parts.loss.mass_factor, parts.loss.stiffness_factor);
+        let Damper { viscous, loss, .. } = &operator.dampers[0];
+        let [(alpha, beta), (alpha_h, beta_h)] =
+            [viscous, loss].map(|part| (part.split.mass_factor, part.split.stiffness_factor));
         let of_mass = Factor {
             square: 1.0,
             linear: alpha + beta * shift,
@@ -194,19 +195,24 @@ fn directions(analysis: &Analysis<'_>, active: &[usize], scales: &[f64]) -> Rows
 }
 
 /// γ with C ≥ −γ(K + K_σ + τM) outside the basis, τ the square of the band's top, and whether C and H are known to be
-/// positive semidefinite. What is not proportional is settled by the inertia of C + γ(K + K_σ + τM) for growing γ.
-pub(super) fn dissipation(analysis: &Analysis<'_>, parts: &DampingParts) -> (f64, bool) {
+/// positive semidefinite; `lowest` is the least ω² of the basis. What is neither proportional nor semidefinite by itself is
+/// settled by the inertia of C + γ(K + K_σ + τM) for growing γ.
+pub(super) fn dissipation(analysis: &Analysis<'_>, parts: &DampingParts, lowest: f64) -> (f64, bool) {
     let (operator, damping) = (&analysis.operator, analysis.operator.damping);
     let top = TAU * analysis.band_hz[1];
     let worst_modal =
         damping.modal.as_ref().map_or(0.0, |modal| modal.coefficients.iter().fold(0.0f64, |w, c| w.max(-c)));
+    let lowest = if analysis.complete_below > 0.0 { lowest.min(0.0) } else { f64::NEG_INFINITY };
     let energy = || add_scaled(&[(1.0, &*operator.stiffness), (top * top, operator.mass)]);
-    let settle = |whole: &Option<SparseMatrix>, part: &Proportional, unit: f64| match (whole, &part.rest) {
-        (Some(whole), Some(_)) => least_shift(analysis.factor, whole, &energy(), unit),
+    let settle = |whole: &Option<SparseMatrix>, part: &Part, unit: f64| match (whole, &part.split.rest) {
+        (Some(whole), Some(_)) if !part.dissipates(lowest) => {
+            least_shift(analysis.factor, whole, &energy(), unit)
+        }
         _ => Some(0.0),
     };
-    let viscous = settle(&damping.viscous, &parts.viscous, 1.0 / top);
-    let losses = settle(&damping.hysteretic, &parts.loss, 1.0);
+    let Damper { viscous, loss, .. } = &operator.dampers[0];
+    let viscous = settle(&damping.viscous, viscous, 1.0 / top);
+    let losses = settle(&damping.hysteretic, loss, 1.0);
     let modal = if parts.modal_inside { 0.0 } else { worst_modal / (top * top) };
     let dissipative = worst_modal == 0.0
         && viscous.is_some_and(|g| g * top <= 2.0 * SHIFTS[0])
