@@ -61,10 +61,7 @@ pub(super) fn nothing_faster(model: &ReducedModel, analysis: &Analysis<'_>) -> R
     for factor in [1024.0, 256.0, 64.0, 16.0, 4.0, 1.5] {
         let b = factor * radius;
         if held(b)? {
-            let matrix =
-                add_scaled(&[(0.5 * b, analysis.operator.mass), (1.0, &symmetric_damping(analysis))]);
-            let inertia = symbolic_like(analysis.factor, &matrix).and_then(|s| s.inertia(&matrix));
-            return Ok(inertia.is_ok_and(|i| i.negative == 0 && i.zero == 0));
+            return Ok(holds_against_friction(analysis, b));
         }
     }
     Ok(false)
@@ -105,6 +102,33 @@ fn function(a: MatRef<'_, f64>, f: impl Fn(f64) -> f64) -> Result<Mat<f64>> {
     Ok(product(scaled.as_ref(), vectors.transpose()))
 }
 
+/// Whether ½ b M + W c_s Wᵀ is positive definite. First a diagonal below W c_s Wᵀ stands for it, as that is in the pattern
+/// whose analysis is at hand.
+fn holds_against_friction(analysis: &Analysis<'_>, b: f64) -> bool {
+    let (mass, stiffness) = (analysis.operator.mass, &*analysis.operator.stiffness);
+    let definite = |matrix: &SparseMatrix| {
+        let inertia = symbolic_like(analysis.factor, matrix).and_then(|s| s.inertia(matrix));
+        inertia.is_ok_and(|i| i.negative == 0 && i.zero == 0)
+    };
+    let friction = symmetric_damping(analysis);
+    let below = diagonal_below(&friction, mass);
+    definite(&add_scaled(&[(0.5 * b, mass), (0.0, stiffness), (1.0, &below)]))
+        || definite(&add_scaled(&[(0.5 * b, mass), (1.0, &friction)]))
+}
+
+/// A diagonal D with A − D positive semidefinite: by Gershgorin's discs of A in coordinates of unit mass,
+/// dᵢ = mᵢ (aᵢᵢ/mᵢ − Σ_{j≠i} |aᵢⱼ| / √(mᵢmⱼ)), mᵢ the diagonal of M.
+fn diagonal_below(a: &SparseMatrix, mass: &SparseMatrix) -> SparseMatrix {
+    let m = |i: usize| mass.get(i, i).copied().unwrap_or(0.0);
+    let bound = |j: usize| {
+        let entries = a.row_idx_of_col_raw(j).iter().zip(a.val_of_col(j));
+        entries.map(|(i, v)| if *i == j { *v } else { -v.abs() * (m(j) / m(*i)).sqrt() }).sum()
+    };
+    let rows = (0..a.ncols()).filter(|j| !a.row_idx_of_col_raw(*j).is_empty());
+    let triplets: Vec<_> = rows.map(|j| Triplet::new(j, j, bound(j))).collect();
+    SparseMatrix::try_new_from_triplets(a.nrows(), a.ncols(), &triplets).expect("indices of a matrix")
+}
+
 /// W c_s Wᵀ as a sparse matrix.
 fn symmetric_damping(analysis: &Analysis<'_>) -> SparseMatrix {
     let (interface, n) = (&analysis.operator.interface, analysis.operator.n());
@@ -119,4 +143,30 @@ fn symmetric_damping(analysis: &Analysis<'_>) -> SparseMatrix {
         }
     }
     SparseMatrix::try_new_from_triplets(n, n, &triplets).expect("directions of the system")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::samples;
+
+    #[test]
+    fn diagonal_lies_below() {
+        let n = 40;
+        let mass = Mat::from_fn(n, n, |i, j| if i == j { 10f64.powi(i as i32 % 7 - 3) } else { 0.0 });
+        let coupled = |i: usize| i % 3 == 1;
+        let a = Mat::from_fn(n, n, |i, j| match coupled(i) && coupled(j) {
+            true => ((i + j) as f64).cos() * (mass[(i, i)] * mass[(j, j)]).sqrt(),
+            false => 0.0,
+        });
+        let below = diagonal_below(&samples::from_dense(a.as_ref()), &samples::from_dense(mass.as_ref()));
+        assert!(below.compute_nnz() == (0..n).filter(|i| coupled(*i)).count());
+        // In coordinates of unit mass, so that no entry is lost beside others.
+        let rest = Mat::from_fn(n, n, |i, j| {
+            let d = if i == j { below.get(i, i).copied().unwrap_or(0.0) } else { 0.0 };
+            (a[(i, j)] - d) / (mass[(i, i)] * mass[(j, j)]).sqrt()
+        });
+        let (values, _) = symmetric_eigen(rest.as_ref()).unwrap();
+        assert!(values[0] > -1e-12, "{}", values[0]);
+    }
 }
