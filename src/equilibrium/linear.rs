@@ -90,7 +90,7 @@ pub fn closed_structure(system: &System, steady: &SteadySliding) -> Result<Struc
     let springs = closed.map(|((_, point), state)| (state.tangent.by_penetration[0], &point.normal));
     let springs = sum_of_squares(system.n_dofs(), springs);
     let stiffness = add_scaled(&[(1.0, stiffness.as_ref()), (1.0, &springs)]);
-    Ok(Structure { stiffness, ..system.structure.clone() })
+    Ok(Structure { stiffness: stiffness.into(), ..system.structure.clone() })
 }
 
 /// r_c(u, u̇) = Σ \[g N − t₁ F₁ − t₂ F₂\] \[N, N m\], with δ = approach − gap + gᵀu and the pairs' own sliding velocity.

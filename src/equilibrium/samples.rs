@@ -34,7 +34,7 @@ pub(crate) fn structure(
     m: impl Fn(usize, usize) -> f64,
     k: impl Fn(usize, usize) -> f64,
 ) -> Structure {
-    Structure { mass: sparse(n, m), stiffness: sparse(n, k), damping: Damping::default() }
+    Structure { mass: sparse(n, m).into(), stiffness: sparse(n, k).into(), damping: Damping::default() }
 }
 
 pub(crate) fn vector(entries: &[(usize, f64)]) -> SparseVector {

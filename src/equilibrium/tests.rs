@@ -121,7 +121,7 @@ fn what_has_no_steady_state_is_explained() {
     assert!(analysis_error(&floating, &options).contains("nothing holds"));
 
     let mut lifted = free_body(true);
-    lifted.structure.stiffness = sparse(3, |i, j| if i == j { 9.0 } else { 0.0 });
+    lifted.structure.stiffness = sparse(3, |i, j| if i == j { 9.0 } else { 0.0 }).into();
     lifted.pairs[0].points[0].gap = 1.0;
     assert!(analysis_error(&lifted, &options).contains("no point touches"));
 
@@ -157,8 +157,8 @@ fn prestress_is_carried_to_its_fixed_point() {
     let p = point(0.0, 1.0, vector(&[(0, 1.0)]), SparseVector::default(), SparseVector::default());
     let system = System {
         structure: Structure {
-            mass: sparse(1, |_, _| 1.0),
-            stiffness: sparse(1, |_, _| 70.0),
+            mass: sparse(1, |_, _| 1.0).into(),
+            stiffness: sparse(1, |_, _| 70.0).into(),
             damping: Damping::default(),
         },
         pairs: vec![pair(vec![p], SlidingLaw::new(normal, Constant(0.3), 0.0), Closing::Approach(0.0), 1.0)],
@@ -251,7 +251,7 @@ fn a_neighbour_is_found_without_a_new_factorisation() {
     other.pairs[0].sliding_velocity *= 0.98;
     let k = system.structure.stiffness.to_dense();
     other.structure.stiffness =
-        sparse(60, |i, j| if i < 30 && j < 30 { 1.02 * k[(i, j)] } else { k[(i, j)] });
+        sparse(60, |i, j| if i < 30 && j < 30 { 1.02 * k[(i, j)] } else { k[(i, j)] }).into();
     let (found, exact) =
         (nearby.solve(&other).unwrap(), solve_steady(&other, &SteadyOptions::default(), &()).unwrap());
     let scale = exact.displacement.iter().fold(0.0, |m: f64, u| m.max(u.abs()));

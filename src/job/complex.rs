@@ -44,10 +44,7 @@ pub fn complex_result<'a>(
     let structure = &prepared.system.structure;
     let preloaded = match equilibrium::tangent_stiffness(&prepared.system, &state.displacement)? {
         Cow::Borrowed(_) => Cow::Borrowed(structure),
-        Cow::Owned(stiffness) => {
-            let (mass, damping) = (structure.mass.clone(), structure.damping.clone());
-            Cow::Owned(Structure { mass, stiffness, damping })
-        }
+        Cow::Owned(stiffness) => Cow::Owned(Structure { stiffness: stiffness.into(), ..structure.clone() }),
     };
     let mut system = Cow::Borrowed(&prepared.system);
     let mut problem = Problem { prepared, cea, system: &mut system, state, clock, observer };

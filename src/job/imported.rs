@@ -111,6 +111,9 @@ fn read_terms(case: &Case, matrices: &Matrices, rows: usize, faults: &mut Faults
 
 /// The matrix with what is added to it, if there is anything.
 fn with_terms(matrix: Option<MarketMatrix>, terms: Vec<Term>) -> Option<MarketMatrix> {
+    if terms.is_empty() {
+        return matrix;
+    }
     let all: Vec<Term> = matrix.into_iter().map(|matrix| (1.0, matrix)).chain(terms).collect();
     let sum = |parts: Vec<(f64, &SparseMatrix)>| (!parts.is_empty()).then(|| add_scaled(&parts));
     let re = sum(all.iter().map(|(factor, matrix)| (*factor, &matrix.re)).collect())?;

@@ -119,7 +119,8 @@ mod tests {
     #[test]
     fn the_band_holds_enough_modes_and_not_many_more() {
         let (stiffness, mass) = samples::plate(24, false);
-        let structure = Structure { mass, stiffness, damping: Damping::default() };
+        let structure =
+            Structure { mass: mass.into(), stiffness: stiffness.into(), damping: Damping::default() };
         let (modes, _) = compute(&structure, ModesWanted::BelowHz(12e3), &()).unwrap();
         let held = |[low, high]: [f64; 2]| {
             (0..modes.len()).filter(|k| (low..=high).contains(&modes.frequency_hz(*k))).count()

@@ -46,7 +46,7 @@ impl Receptance {
             }
         };
         let stiffness = tangent_stiffness(&system, &steady.displacement)?.into_owned();
-        let structure = Structure { stiffness, ..system.structure.clone() };
+        let structure = Structure { stiffness: stiffness.into(), ..system.structure.clone() };
         let (real, _) = compute(&structure, ModesWanted::BelowHz(MODES * highest_hz), observer)?;
         add_modal_damping(&mut system.structure, &real, prepared)?;
         // Besides the static responses, what their inertia moves: the residual is right to ω², the response to ω⁴.

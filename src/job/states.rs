@@ -125,7 +125,7 @@ impl<'a> Whole<'a> {
         let options = prepared.steady_options();
         let steady = equilibrium::solve_steady(&system, &options, &())?;
         let stiffness = equilibrium::tangent_stiffness(&system, &steady.displacement)?.into_owned();
-        let preloaded = Structure { stiffness, ..system.structure.clone() };
+        let preloaded = Structure { stiffness: stiffness.into(), ..system.structure.clone() };
         let (real, _) = modal::compute(&preloaded, ModesWanted::BelowHz(cea.basis_below), &())?;
         add_modal_damping(&mut system.structure, &real, &prepared)?;
         Ok(complex_modes(&system, &steady, &real, cea.band, &())?.modes)

@@ -41,7 +41,7 @@ pub fn mounted(prepared: &Prepared, mode: &ComplexMode, thing: &Mounted) -> Resu
     let options = prepared.steady_options();
     let steady = solve_steady(&system, &options, &())?;
     let stiffness = tangent_stiffness(&system, &steady.displacement)?.into_owned();
-    let preloaded = Structure { stiffness, ..system.structure.clone() };
+    let preloaded = Structure { stiffness: stiffness.into(), ..system.structure.clone() };
     let (basis, _) = compute(&preloaded, ModesWanted::BelowHz(cea.basis_below), &())?;
     add_modal_damping(&mut system.structure, &basis, prepared)?;
     let found = complex_modes(&system, &steady, &basis, cea.band, &())?;

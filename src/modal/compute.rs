@@ -132,7 +132,7 @@ mod tests {
     use crate::system::Damping;
 
     fn structure((stiffness, mass): (SparseMatrix, SparseMatrix)) -> Structure {
-        Structure { mass, stiffness, damping: Damping::default() }
+        Structure { mass: mass.into(), stiffness: stiffness.into(), damping: Damping::default() }
     }
 
     #[test]

@@ -100,8 +100,8 @@ pub fn reduce(
     let squares: Vec<f64> = real.eigenvalues.iter().chain(&attached.0).copied().collect();
     let inertia = times(mass, basis.as_ref());
     let structure = Structure {
-        mass: diagonal(&vec![1.0; basis.ncols()]),
-        stiffness: diagonal(&squares),
+        mass: diagonal(&vec![1.0; basis.ncols()]).into(),
+        stiffness: diagonal(&squares).into(),
         damping: damping(&system.structure.damping, &basis, modes),
     };
     let pairs = system.pairs.iter().map(|pair| ContactPair {
@@ -186,7 +186,7 @@ fn attachment(
 /// VᵀCV and VᵀHV; modal damping is that of the modes alone, whose VᵀB is diagonal.
 fn damping(full: &Damping, basis: &Mat<f64>, modes: usize) -> Damping {
     let onto = |a: &SparseMatrix| gram(basis.as_ref(), times(a, basis.as_ref()).as_ref());
-    let mut small = full.viscous.as_ref().map_or_else(|| Mat::zeros(basis.ncols(), basis.ncols()), onto);
+    let mut small = full.viscous.as_deref().map_or_else(|| Mat::zeros(basis.ncols(), basis.ncols()), onto);
     if let Some(modal) = &full.modal {
         let share = gram(basis.as_ref(), modal.basis.as_ref());
         for (k, c) in modal.coefficients.iter().enumerate() {
@@ -198,7 +198,8 @@ fn damping(full: &Damping, basis: &Mat<f64>, modes: usize) -> Damping {
         }
     }
     let hysteretic = full.hysteretic.as_ref().and_then(|h| sparse(&onto(h)));
-    Damping { viscous: sparse(&small), modal: None, hysteretic }
+    let [viscous, hysteretic] = [sparse(&small), hysteretic].map(|a| a.map(Into::into));
+    Damping { viscous, modal: None, hysteretic }
 }
 
 /// The symmetric part of a matrix without what is round-off; modal damping is diagonal but for that. `None` of a zero matrix.

@@ -7,6 +7,7 @@ use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::sparse::{add_scaled, times};
 use crate::linalg::tall::{combine, expand, expand_into, gram, panels};
 use faer::{Accum, Mat, MatMut, MatRef};
+use std::sync::OnceLock;
 
 /// Columns that are orthonormalised together.
 const PANEL: usize = 32;
@@ -23,7 +24,8 @@ const ROOM: usize = 160;
 /// orthogonal only as far as the digits of their Gram matrix go.
 pub(super) struct Basis<'a> {
     operator: &'a Operator<'a>,
-    energy: SparseMatrix,
+    /// E, once it is asked for.
+    energy: OnceLock<SparseMatrix>,
     tau: f64,
     /// bᵀEb of every column.
     sizes: Vec<f64>,
@@ -42,7 +44,7 @@ impl<'a> Basis<'a> {
         let n = operator.n();
         let mut basis = Basis {
             operator,
-            energy: add_scaled(&[(1.0, &*operator.stiffness), (tau, operator.mass)]),
+            energy: OnceLock::new(),
             tau,
             sizes: Vec::new(),
             vectors: Mat::with_capacity(n, modes.ncols() + ROOM),
@@ -54,6 +56,11 @@ impl<'a> Basis<'a> {
         };
         basis.append(modes);
         basis
+    }
+
+    fn energy(&self) -> &SparseMatrix {
+        let Operator { stiffness, mass, .. } = self.operator;
+        self.energy.get_or_init(|| add_scaled(&[(1.0, &**stiffness), (self.tau, mass)]))
     }
 
     pub(super) fn len(&self) -> usize {
@@ -101,13 +108,13 @@ impl<'a> Basis<'a> {
     /// The columns of `z` with the largest rest, made E/τ-orthonormal.
     fn largest(&self, mut z: Mat<f64>, tolerance: f64, limit: usize) -> Mat<f64> {
         const ROUND_OFF: f64 = 1e-10;
-        let mut image = times(&self.energy, z.as_ref());
+        let mut image = times(self.energy(), z.as_ref());
         let before = gram_diagonal(&z, &image);
         let floor: Vec<f64> =
             before.iter().map(|b| (tolerance * tolerance).max(ROUND_OFF * ROUND_OFF * b)).collect();
         for _ in 0..2 {
             self.project_out(z.as_mut(), image.as_ref());
-            image = times(&self.energy, z.as_ref());
+            image = times(self.energy(), z.as_ref());
         }
         let mut energy = gram(z.as_ref(), image.as_ref());
         let open = pivoted_choice(&mut energy, &floor, limit);
@@ -120,7 +127,7 @@ impl<'a> Basis<'a> {
         let (m, count) = (self.len(), z.ncols());
         let (mut share, mut energy) = (Mat::<f64>::zeros(m, count), Mat::<f64>::zeros(count, count));
         for (start, width) in panels(0..count) {
-            let image = times(&self.energy, z.subcols(start, width));
+            let image = times(self.energy(), z.subcols(start, width));
             share.subcols_mut(start, width).copy_from(gram(self.vectors.as_ref(), image.as_ref()));
             let below = gram(z.subcols(start, count - start), image.as_ref());
             energy.submatrix_mut(start, start, count - start, width).copy_from(below);
@@ -207,7 +214,7 @@ impl<'a> Basis<'a> {
                 combine(x.as_mut(), Accum::Add, found, share.as_ref(), -1.0);
                 combine(ex.as_mut(), Accum::Add, images, share.as_ref(), -1.0);
                 self.project_out(x.as_mut(), ex.as_ref());
-                ex = times(&self.energy, x.as_ref());
+                ex = times(self.energy(), x.as_ref());
                 let mut square = gram(x.as_ref(), ex.as_ref());
                 square *= faer::Scale(1.0 / self.tau);
                 let (mix, stay, alike) = orthonormalising(&square, &before);

@@ -7,6 +7,7 @@ use crate::linalg::sparse::times;
 use crate::linalg::tall::{expand, gram};
 use crate::system::{Damping, ModalDamping};
 use faer::{Mat, MatRef};
+use std::sync::Arc;
 
 /// C and H of a structure, each α M + β K, a few rows, and what is wide: seldom all of them.
 #[derive(Debug, Clone)]
@@ -68,7 +69,7 @@ impl Part {
 
 impl<'a> Damper<'a> {
     pub(super) fn new(damping: &'a Damping, mass: &SparseMatrix, stiffness: &SparseMatrix) -> Self {
-        let part = |x: &Option<SparseMatrix>| Part::new(x.as_ref(), mass, stiffness);
+        let part = |x: &Option<Arc<SparseMatrix>>| Part::new(x.as_deref(), mass, stiffness);
         let (viscous, loss) = rayon::join(|| part(&damping.viscous), || part(&damping.hysteretic));
         Damper { viscous, loss, modal: damping.modal.as_ref() }
     }

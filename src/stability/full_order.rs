@@ -138,8 +138,8 @@ impl<'a> Shifted<'a> {
         let one = c64::new(1.0, 0.0);
         let mut terms: Vec<(c64, &SparseMatrix)> =
             vec![(one, &operator.stiffness), (shift * shift, operator.mass)];
-        terms.extend(operator.damping.viscous.as_ref().map(|c| (shift, c)));
-        terms.extend(operator.damping.hysteretic.as_ref().map(|h| (c64::new(0.0, 1.0), h)));
+        terms.extend(operator.damping.viscous.as_deref().map(|c| (shift, c)));
+        terms.extend(operator.damping.hysteretic.as_deref().map(|h| (c64::new(0.0, 1.0), h)));
         let factor = factorize(&add_scaled(&terms))?;
         let modal = operator.damping.modal.as_ref();
         let (m, interface) = (modal.map_or(0, |modal| modal.coefficients.len()), &operator.interface);

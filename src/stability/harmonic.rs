@@ -69,7 +69,7 @@ mod tests {
         let mut system = System { load: vec![0.0; 40], pairs: vec![], ..random_system(40, 1, 3.0, 4) };
         let beta = 2e-3;
         system.structure.damping.modal = None;
-        system.structure.damping.viscous = Some(add_scaled(&[(beta, &system.structure.stiffness)]));
+        system.structure.damping.viscous = Some(add_scaled(&[(beta, &system.structure.stiffness)]).into());
         let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
         let modes = dense_modes(&system, 40);
         let harmonic = Harmonic::new(&system, &steady).unwrap();

@@ -138,7 +138,7 @@ impl<'a> Operator<'a> {
         let dampings: Vec<&Damping> = std::iter::once(damping).chain(further.iter().copied()).collect();
         let damper = |damping: &&'a Damping| Damper::new(damping, mass, &stiffness);
         let dampers: Vec<Damper<'a>> = dampings.par_iter().map(damper).collect();
-        let norm = |m: &Option<SparseMatrix>| m.as_ref().map_or(0.0, norm_1);
+        let norm = |m: &Option<Arc<SparseMatrix>>| m.as_ref().map_or(0.0, |m| norm_1(m));
         let mut sparse: Vec<&SparseMatrix> = vec![mass, &stiffness];
         sparse.extend(dampers[0].viscous.wide().into_iter().chain(dampers[0].loss.wide()));
         Operator {

@@ -14,7 +14,7 @@ const BACKWARD_ERROR: f64 = 5e-11;
 const EIGENVALUE_ERROR: f64 = 1e-10;
 
 /// Pairs that are measured together: few, so that little memory is held.
-pub(super) const TOGETHER: usize = 16;
+pub(super) const TOGETHER: usize = 8;
 
 /// A few pairs with their measures on the full order. Its memory serves the next few.
 #[derive(Default)]

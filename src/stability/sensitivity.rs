@@ -133,8 +133,8 @@ impl<'a> Sensitivity<'a> {
         let own = self.operator.damping;
         let dk = difference(Some(&*stiffness), Some(&*self.operator.stiffness));
         let dm = difference(Some(&structure.mass), Some(self.operator.mass));
-        let dc = difference(damping.viscous.as_ref(), own.viscous.as_ref());
-        let dh = difference(damping.hysteretic.as_ref(), own.hysteretic.as_ref());
+        let dc = difference(damping.viscous.as_deref(), own.viscous.as_deref());
+        let dh = difference(damping.hysteretic.as_deref(), own.hysteretic.as_deref());
         let mut rise = self.rise_of_interface(&Interface::new(other, &steady));
         let i = c64::new(0.0, 1.0);
         let one = c64::new(1.0, 0.0);

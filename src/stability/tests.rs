@@ -14,7 +14,8 @@ use std::sync::Arc;
 /// Dense K + iH + K_c and C + C_c of the whole system.
 pub(super) fn dense_matrices(system: &System, steady: &SteadySliding) -> (Mat<c64>, Mat<c64>) {
     let n = system.n_dofs();
-    let real = |m: &Option<SparseMatrix>| m.as_ref().map_or(Mat::zeros(n, n), |m| m.to_dense());
+    let real =
+        |m: &Option<std::sync::Arc<SparseMatrix>>| m.as_ref().map_or(Mat::zeros(n, n), |m| m.to_dense());
     let (s, d) = (&system.structure, &system.structure.damping);
     let (k0, h, mut c0) = (s.stiffness.to_dense(), real(&d.hysteretic), real(&d.viscous));
     if let Some(modal) = &d.modal {
@@ -203,7 +204,7 @@ pub(super) fn belt(c: f64, load: f64, velocity: f64, sense: FrictionSense) -> Sy
     let p = point(0.0, 1.0, vector(&[(1, 1.0)]), vector(&[(0, 1.0)]), SparseVector::default());
     let mut structure =
         structure(2, |i, j| f64::from(i == j), |i, j| if i == j { 9.0 - 4.0 * i as f64 } else { 0.0 });
-    structure.damping.viscous = Some(sparse(2, |i, j| if i == 0 && j == 0 { c } else { 0.0 }));
+    structure.damping.viscous = Some(sparse(2, |i, j| if i == 0 && j == 0 { c } else { 0.0 }).into());
     System {
         structure,
         pairs: vec![pair(vec![p], law, Closing::Load(load), velocity)],
@@ -237,11 +238,11 @@ pub(super) fn damped(mut system: System, kind: u64) -> System {
     let (m, k) = (system.structure.mass.to_dense(), system.structure.stiffness.to_dense());
     let damping = &mut system.structure.damping;
     if kind & 1 != 0 {
-        damping.viscous = Some(sparse(n, |i, j| 0.02 * m[(i, j)] + 4e-4 * k[(i, j)]));
+        damping.viscous = Some(sparse(n, |i, j| 0.02 * m[(i, j)] + 4e-4 * k[(i, j)]).into());
     }
     if kind & 2 != 0 {
         damping.hysteretic =
-            Some(sparse(n, |i, j| if i < n / 2 && j < n / 2 { 0.01 * k[(i, j)] } else { 0.0 }));
+            Some(sparse(n, |i, j| if i < n / 2 && j < n / 2 { 0.01 * k[(i, j)] } else { 0.0 }).into());
     }
     if kind & 4 != 0 {
         let modes = dense_modes(&system, 6);

@@ -58,9 +58,13 @@ pub fn assemble(model: &Model) -> Result<Assembled> {
     }
     let center_of_mass = if total_mass > 0.0 { moment.map(|m| m / total_mass) } else { [0.0; 3] };
     let structure = Structure {
-        mass: mass.unwrap_or_else(|| pattern.zero()),
-        stiffness: stiffness.unwrap_or_else(|| pattern.zero()),
-        damping: Damping { viscous, modal: None, hysteretic },
+        mass: mass.unwrap_or_else(|| pattern.zero()).into(),
+        stiffness: stiffness.unwrap_or_else(|| pattern.zero()).into(),
+        damping: Damping {
+            viscous: viscous.map(Into::into),
+            modal: None,
+            hysteretic: hysteretic.map(Into::into),
+        },
     };
     Ok(Assembled { structure, dofs: Arc::new(dofs), total_mass, center_of_mass, pattern: Arc::new(pattern) })
 }
@@ -193,7 +197,7 @@ mod tests {
             (&one.stiffness, &three.stiffness),
             (one.damping.viscous.as_ref().unwrap(), three.damping.viscous.as_ref().unwrap()),
             (one.damping.hysteretic.as_ref().unwrap(), three.damping.hysteretic.as_ref().unwrap()),
-            (&one_sigma, &three_sigma),
+            (&one_sigma.into(), &three_sigma.into()),
         ] {
             assert_eq!(a.val(), b.val());
             assert_eq!(a.symbolic().row_idx(), b.symbolic().row_idx());

@@ -279,11 +279,11 @@ mod tests {
                 let exact = super::moved(&motion, &arm);
                 assert!(u.iter().zip(exact).all(|(a, b)| (a - b).abs() < 1e-15));
             }
-            let kq = &assembled.structure.stiffness * faer::ColRef::from_slice(q);
+            let kq = &*assembled.structure.stiffness * faer::ColRef::from_slice(q);
             let norm: f64 = assembled.structure.stiffness.val().iter().map(|v| v * v).sum::<f64>().sqrt();
             let size: f64 = q.iter().map(|v| v * v).sum::<f64>().sqrt();
             assert!(kq.norm_l2() <= 1e-12 * norm * size);
-            let mq = &assembled.structure.mass * faer::ColRef::from_slice(q);
+            let mq = &*assembled.structure.mass * faer::ColRef::from_slice(q);
             let kinetic: f64 = q.iter().enumerate().map(|(i, v)| v * mq[i]).sum();
             if k < 3 {
                 assert!((kinetic / assembled.total_mass - 1.0).abs() < 1e-12);

@@ -128,12 +128,12 @@ pub fn split(mass: Given<'_>, damping: Option<Given<'_>>, stiffness: Given<'_>) 
     }
     faults.into_result(())?;
     let structure = Structure {
-        mass: Halves::of(&mass.matrix.re).symmetric,
-        stiffness: halves.symmetric,
+        mass: Halves::of(&mass.matrix.re).symmetric.into(),
+        stiffness: halves.symmetric.into(),
         damping: Damping {
-            viscous: damping_halves.map(|h| h.symmetric).filter(|c| has_entries(Some(c))),
+            viscous: damping_halves.map(|h| h.symmetric).filter(|c| has_entries(Some(c))).map(Into::into),
             modal: None,
-            hysteretic: hysteretic.map(|h| Halves::of(h).symmetric),
+            hysteretic: hysteretic.map(|h| Halves::of(h).symmetric.into()),
         },
     };
     Ok(Imported { structure, coupling: coupling.unwrap_or(None), warnings })

@@ -4,15 +4,16 @@ use crate::error::Result;
 use crate::linalg::{SparseMatrix, SparseVector};
 use faer::Mat;
 use std::fmt::Debug;
+use std::sync::Arc;
 
 /// M ü + C u̇ + K u: mass positive (semi-)definite, stiffness positive semi-definite, all symmetric, both triangles
 /// stored, M and K on the same sparsity pattern or not.
 #[derive(Debug, Clone)]
 pub struct Structure {
     /// M \[kg, kg m²\].
-    pub mass: SparseMatrix,
+    pub mass: Arc<SparseMatrix>,
     /// K \[N/m, N m\].
-    pub stiffness: SparseMatrix,
+    pub stiffness: Arc<SparseMatrix>,
     /// C and the loss factors.
     pub damping: Damping,
 }
@@ -28,11 +29,11 @@ impl Structure {
 #[derive(Debug, Clone, Default)]
 pub struct Damping {
     /// Sparse viscous matrix: Rayleigh damping and dashpots \[N s/m\].
-    pub viscous: Option<SparseMatrix>,
+    pub viscous: Option<Arc<SparseMatrix>>,
     /// Modal damping ratios, of low rank.
     pub modal: Option<ModalDamping>,
     /// Loss factors: the imaginary part of K(1 + iη) \[N/m\]; valid for harmonic motion (eigenvalues, FRF) only.
-    pub hysteretic: Option<SparseMatrix>,
+    pub hysteretic: Option<Arc<SparseMatrix>>,
 }
 
 /// C = B diag(c) Bᵀ with B = M Φ and c = 2 ζ ω: each real mode has its own damping ratio ζ.

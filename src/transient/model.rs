@@ -198,7 +198,7 @@ impl<'a> Model<'a> {
     pub(super) fn effective(&self, weights: &Weights) -> SparseMatrix {
         let [m, c, k] = weights.effective();
         let mut terms = vec![(m, self.mass), (k, &*self.stiffness)];
-        terms.extend(self.damping.viscous.iter().map(|viscous| (c, viscous)));
+        terms.extend(self.damping.viscous.as_deref().map(|viscous| (c, viscous)));
         add_scaled(&terms)
     }
 }

@@ -168,7 +168,7 @@ mod tests {
         let motion = Mat::from_fn(n, 3, |i, j| ((i * 7 + j * 3) as f64).sin());
         let ways = [None, Some(rayleigh.clone()), with(40), with(2), Some(samples::random_definite(n, 3))];
         for (way, viscous) in ways.into_iter().enumerate() {
-            let damping = Damping { viscous, ..Damping::default() };
+            let damping = Damping { viscous: viscous.map(Into::into), ..Damping::default() };
             let products = Products::new(&m, &k, &damping);
             assert_eq!(matches!(products, Products::General { .. }), way >= 3);
             let [mut elastic, mut inertia, mut damped] = [3, 2, 2].map(|columns| Mat::zeros(n, columns));

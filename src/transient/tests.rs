@@ -152,10 +152,13 @@ fn damped(seed: u64) -> System {
     let modes = dense_modes(&system, 5);
     let basis = &crate::linalg::sparse::times(&system.structure.mass, modes.shapes.as_ref());
     system.structure.damping = Damping {
-        viscous: Some(crate::linalg::sparse::add_scaled(&[
-            (1e-3, &system.structure.stiffness),
-            (0.05, &system.structure.mass),
-        ])),
+        viscous: Some(
+            crate::linalg::sparse::add_scaled(&[
+                (1e-3, &system.structure.stiffness),
+                (0.05, &system.structure.mass),
+            ])
+            .into(),
+        ),
         modal: Some(ModalDamping { basis: basis.clone(), coefficients: vec![0.0, 0.2, 0.3, 0.4, 0.5] }),
         hysteretic: None,
     };
@@ -298,7 +301,7 @@ fn small_disturbances_grow_and_turn_as_the_complex_eigenvalues_say() {
 #[test]
 fn a_loss_factor_is_refused_with_what_to_do() {
     let (mut system, steady) = oscillator(1.0);
-    system.structure.damping.hysteretic = Some(sparse(1, |_, _| 0.1));
+    system.structure.damping.hysteretic = Some(sparse(1, |_, _| 0.1).into());
     let text = Model::new(&system, &steady).unwrap_err().to_string();
     assert!(text.contains("loss factor") && text.contains("modal_ratio"), "{text}");
 }

@@ -69,7 +69,7 @@ pub fn generalized_eigenvalues(a: &Mat<f64>, b: &Mat<f64>) -> Vec<f64> {
 pub fn lowest_frequencies(structure: &stridor::system::Structure, count: usize, shift_hz: f64) -> Vec<f64> {
     let tau = std::f64::consts::TAU;
     let s = (tau * shift_hz).powi(2);
-    let (k, m) = (&structure.stiffness, &structure.mass);
+    let (k, m) = (&*structure.stiffness, &*structure.mass);
     let shifted = {
         let mut sum = k.clone();
         for (a, b) in sum.val_mut().iter_mut().zip(m.val()) {

@@ -124,8 +124,8 @@ fn differences(value: f64, step: f64, build: &Build) -> Result<Vec<Change>> {
         Ok(Change {
             stiffness: sum(k, |a| &a.structure.stiffness)?,
             mass: sum(k, |a| &a.structure.mass)?,
-            viscous: damping(k, |a| a.structure.damping.viscous.as_ref()),
-            hysteretic: damping(k, |a| a.structure.damping.hysteretic.as_ref()),
+            viscous: damping(k, |a| a.structure.damping.viscous.as_deref()),
+            hysteretic: damping(k, |a| a.structure.damping.hysteretic.as_deref()),
             seen: (0..systems[0][k].seen.len()).map(|i| form(k, i)).collect(),
         })
     };

@@ -127,7 +127,7 @@ impl InTime<'_> {
             origin: &steady.displacement,
         });
         let listener = ears.map(|ears| Listener::new(ears, self.real, plan.step, steps));
-        let mass = reduced.is_none().then_some(&self.system.structure.mass);
+        let mass = reduced.is_none().then_some(&*self.system.structure.mass);
         let modal = listener.as_ref().map(|_| ModalMotion::new(self.real, mass));
         let mut recorder = Recorder::new(system, steady, &model, (probes, gauges), disturbed, modal);
         if let Some(motion) = recorder.shown.first_mut().filter(|shown| shown.measured.is_empty()) {

@@ -28,6 +28,7 @@ use crate::stability::analysis::Analysis;
 use crate::stability::damper::{Damper, Part};
 use faer::{Accum, Mat};
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// Γ(s) in the A-norm of Z, and what q(s) needs.
 #[derive(Debug)]
@@ -204,7 +205,7 @@ pub(super) fn dissipation(analysis: &Analysis<'_>, parts: &DampingParts, lowest:
         damping.modal.as_ref().map_or(0.0, |modal| modal.coefficients.iter().fold(0.0f64, |w, c| w.max(-c)));
     let lowest = if analysis.complete_below > 0.0 { lowest.min(0.0) } else { f64::NEG_INFINITY };
     let energy = || add_scaled(&[(1.0, &*operator.stiffness), (top * top, operator.mass)]);
-    let settle = |whole: &Option<SparseMatrix>, part: &Part, unit: f64| match (whole, &part.split.rest) {
+    let settle = |whole: &Option<Arc<SparseMatrix>>, part: &Part, unit: f64| match (whole, &part.split.rest) {
         (Some(whole), Some(_)) if !part.dissipates(lowest) => {
             least_shift(analysis.factor, whole, &energy(), unit)
         }

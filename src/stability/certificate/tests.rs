@@ -46,15 +46,18 @@ fn damped_small(mut system: System, kind: u64, random: &mut Random) -> System {
         (0..n).map(|_| if random.next() < 0.3 { random.between(0.0, 2.0) } else { 0.0 }).collect();
     let (rayleigh, dashpots) = (kind & 1 != 0, kind & 8 != 0);
     if rayleigh || dashpots {
-        system.structure.damping.viscous = Some(sparse(n, |i, j| {
-            let proportional = if rayleigh { 0.02 * m[(i, j)] + 4e-4 * k[(i, j)] } else { 0.0 };
-            proportional + if dashpots && i == j { dashpot[i] } else { 0.0 }
-        }));
+        system.structure.damping.viscous = Some(
+            sparse(n, |i, j| {
+                let proportional = if rayleigh { 0.02 * m[(i, j)] + 4e-4 * k[(i, j)] } else { 0.0 };
+                proportional + if dashpots && i == j { dashpot[i] } else { 0.0 }
+            })
+            .into(),
+        );
     }
     if kind & 2 != 0 {
         let part = if kind & 4 != 0 { n } else { n / 2 };
         system.structure.damping.hysteretic =
-            Some(sparse(n, |i, j| if i < part && j < part { 0.01 * k[(i, j)] } else { 0.0 }));
+            Some(sparse(n, |i, j| if i < part && j < part { 0.01 * k[(i, j)] } else { 0.0 }).into());
     }
     if kind & 4 != 0 {
         let modes = dense_modes(&system, (n / 2).max(1));

@@ -70,15 +70,15 @@ fn varied(base: &System, scalar: Scalar, factor: f64) -> System {
                 *load *= factor;
             }
         }
-        Scalar::Elastic => system.structure.stiffness = part(&base.structure.stiffness, &lower),
-        Scalar::Mass => system.structure.mass = part(&base.structure.mass, &lower),
+        Scalar::Elastic => system.structure.stiffness = part(&base.structure.stiffness, &lower).into(),
+        Scalar::Mass => system.structure.mass = part(&base.structure.mass, &lower).into(),
         Scalar::Viscous => {
             system.structure.damping.viscous =
-                base.structure.damping.viscous.as_ref().map(|c| part(c, &|_, _| factor));
+                base.structure.damping.viscous.as_ref().map(|c| part(c, &|_, _| factor).into());
         }
         Scalar::Lossy => {
             let lossy = base.structure.damping.hysteretic.as_ref();
-            system.structure.damping.hysteretic = lossy.map(|h| part(h, &|_, _| factor));
+            system.structure.damping.hysteretic = lossy.map(|h| part(h, &|_, _| factor).into());
         }
         Scalar::Lever => {
             for point in &mut system.pairs[0].points {
@@ -232,9 +232,10 @@ fn advice_agrees_with_a_thing_really_mounted() {
         let add = |a: &SparseMatrix, factor: f64| {
             add_scaled(&[(1.0, a), (factor, &crate::linalg::sparse::sum_of_squares(n, [(1.0, row)]))])
         };
-        system.structure.mass = add(&system.structure.mass, m);
-        system.structure.stiffness = add(&system.structure.stiffness, k);
-        system.structure.damping.viscous = system.structure.damping.viscous.as_ref().map(|v| add(v, c));
+        system.structure.mass = add(&system.structure.mass, m).into();
+        system.structure.stiffness = add(&system.structure.stiffness, k).into();
+        system.structure.damping.viscous =
+            system.structure.damping.viscous.as_ref().map(|v| add(v, c).into());
         // The spring is mounted without tension.
         row.add_to(k * row.dot(&state.displacement), &mut system.load);
         with_modal(&mut system, true);
