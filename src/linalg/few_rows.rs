@@ -2,7 +2,7 @@
 
 use super::SparseMatrix;
 use super::factor::SymbolicFactor;
-use super::sparse::{add_scaled, times};
+use super::sparse::{add_scaled, diagonal, diagonal_matrix, times};
 use faer::sparse::Triplet;
 use faer::{Mat, MatRef};
 
@@ -41,11 +41,8 @@ impl FewRows {
     pub fn is_semidefinite(&self) -> bool {
         /// A part of the diagonal, which D is stiffened by: dashpots between two points are singular.
         const ROUNDING: f64 = 1e-12;
-        let n = self.rows.len();
-        let entry = |i: usize| self.own.get(i, i).map_or(0.0, |v| v.abs() * ROUNDING);
-        let diagonal: Vec<_> = (0..n).map(|i| Triplet::new(i, i, entry(i))).collect();
-        let diagonal = SparseMatrix::try_new_from_triplets(n, n, &diagonal).expect("indices of the rows");
-        let stiffened = add_scaled(&[(1.0, &self.own), (1.0, &diagonal)]);
+        let sizes: Vec<f64> = diagonal(&self.own).iter().map(|v| v.abs()).collect();
+        let stiffened = add_scaled(&[(1.0, &self.own), (ROUNDING, &diagonal_matrix(&sizes))]);
         let inertia = SymbolicFactor::new(stiffened.symbolic()).and_then(|s| s.inertia(&stiffened));
         inertia.is_ok_and(|inertia| inertia.negative == 0)
     }

@@ -87,8 +87,7 @@ pub fn free_chain(n: usize) -> (SparseMatrix, SparseMatrix) {
 }
 
 pub fn identity(n: usize) -> SparseMatrix {
-    let entries: Vec<_> = (0..n).map(|p| Triplet::new(p, p, 1.0)).collect();
-    SparseMatrix::try_new_from_triplets(n, n, &entries).unwrap()
+    super::sparse::diagonal_matrix(&vec![1.0; n])
 }
 
 /// Free square steel plate, 0.15 m × 0.15 m × 1 mm, m × m rectangular bending elements (twelve-term polynomial of

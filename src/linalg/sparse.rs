@@ -437,6 +437,12 @@ pub fn diagonal(a: &SparseMatrix) -> Vec<f64> {
         .collect()
 }
 
+/// diag(`values`).
+pub fn diagonal_matrix(values: &[f64]) -> SparseMatrix {
+    let entries: Vec<_> = values.iter().enumerate().map(|(i, v)| Triplet::new(i, i, *v)).collect();
+    SparseMatrix::try_new_from_triplets(values.len(), values.len(), &entries).expect("indices of the values")
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::c64;

@@ -11,7 +11,7 @@ use crate::equilibrium::{SteadySliding, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::dense::symmetric_eigen;
 use crate::linalg::factor::factorize;
-use crate::linalg::sparse::{add_scaled, dense_columns, times};
+use crate::linalg::sparse::{add_scaled, dense_columns, diagonal_matrix, times};
 use crate::linalg::tall::{beside, combine, expand, gram};
 use crate::linalg::{SparseMatrix, SparseVector};
 use crate::modal::RealModes;
@@ -100,8 +100,8 @@ pub fn reduce(
     let squares: Vec<f64> = real.eigenvalues.iter().chain(&attached.0).copied().collect();
     let inertia = times(mass, basis.as_ref());
     let structure = Structure {
-        mass: diagonal(&vec![1.0; basis.ncols()]).into(),
-        stiffness: diagonal(&squares).into(),
+        mass: diagonal_matrix(&vec![1.0; basis.ncols()]).into(),
+        stiffness: diagonal_matrix(&squares).into(),
         damping: damping(&system.structure.damping, &basis, modes),
     };
     let pairs = system.pairs.iter().map(|pair| ContactPair {
@@ -231,12 +231,6 @@ fn seen(basis: &Mat<f64>, point: &ContactPoint) -> ContactPoint {
 fn form(basis: &Mat<f64>, x: &SparseVector) -> SparseVector {
     let entries = (0..basis.ncols()).map(|j| (j, x.dot(basis.col_as_slice(j)))).filter(|(_, v)| *v != 0.0);
     SparseVector::from_entries(entries)
-}
-
-fn diagonal(values: &[f64]) -> SparseMatrix {
-    let entries: Vec<_> = values.iter().enumerate().map(|(i, v)| Triplet::new(i, i, *v)).collect();
-    SparseMatrix::try_new_from_triplets(values.len(), values.len(), &entries)
-        .expect("indices are below the size")
 }
 
 #[cfg(test)]

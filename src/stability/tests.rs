@@ -14,8 +14,7 @@ use std::sync::Arc;
 /// Dense K + iH + K_c and C + C_c of the whole system.
 pub(super) fn dense_matrices(system: &System, steady: &SteadySliding) -> (Mat<c64>, Mat<c64>) {
     let n = system.n_dofs();
-    let real =
-        |m: &Option<std::sync::Arc<SparseMatrix>>| m.as_ref().map_or(Mat::zeros(n, n), |m| m.to_dense());
+    let real = |m: &Option<Arc<SparseMatrix>>| m.as_ref().map_or(Mat::zeros(n, n), |m| m.to_dense());
     let (s, d) = (&system.structure, &system.structure.damping);
     let (k0, h, mut c0) = (s.stiffness.to_dense(), real(&d.hysteretic), real(&d.viscous));
     if let Some(modal) = &d.modal {

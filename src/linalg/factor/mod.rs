@@ -195,13 +195,17 @@ pub fn factorize<T: Field>(a: &SparseColMat<usize, T>) -> Result<Box<dyn Symmetr
     SymbolicFactor::new(a.symbolic())?.factorize(a)
 }
 
-/// The analysis of the pattern of `a`: that of a matrix factorised before, where both have the same one.
+/// The inertia of `a`, with the analysis of a matrix factorised before where both have the same pattern.
 ///
 /// # Errors
-/// As [`SymbolicFactor::new`].
-pub fn symbolic_like(known: &dyn SymmetricFactor, a: &SparseMatrix) -> Result<SymbolicFactor> {
+/// Those of [`SymbolicFactor::new`] and [`SymbolicFactor::inertia`].
+pub fn inertia_like(known: &dyn SymmetricFactor, a: &SparseMatrix) -> Result<Inertia> {
     let symbolic = known.symbolic();
-    if symbolic.fits(a.symbolic()) { Ok(symbolic) } else { SymbolicFactor::new(a.symbolic()) }
+    if symbolic.fits(a.symbolic()) {
+        symbolic.inertia(a)
+    } else {
+        SymbolicFactor::new(a.symbolic())?.inertia(a)
+    }
 }
 
 /// Solves A X = B with iterative refinement (at most three rounds), and returns the largest
@@ -259,7 +263,7 @@ const ROWS_A_TASK: usize = 8192;
 
 impl<T: Field> Multifrontal<T> {
     fn substitution(&self) -> Substitution<'_, T> {
-        Substitution { plan: &self.plan, branch: &self.branch }
+        Substitution { branch: &self.branch }
     }
 
     /// Solves for up to as many columns as `L` has.
@@ -368,7 +372,7 @@ fn inertia<T: Field>(branch: &Branch<T>) -> Inertia {
     };
     for branch in branch.branches() {
         let mut blocks =
-            branch.inverse().iter().map(|[a, b]| (a.real_part(), b.real_part(), *b != T::default()));
+            branch.inverse.iter().map(|[a, b]| (a.real_part(), b.real_part(), *b != T::default()));
         while let Some((p, below, double)) = blocks.next() {
             let (q, _, _) =
                 if double { blocks.next().expect("a block has two columns") } else { (p, 0.0, false) };

@@ -7,6 +7,7 @@ use super::symbolic::{Plan, Task};
 use faer::sparse::SparseColMatRef;
 use faer::{MatMut, MatRef};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// The columns of L that one front gave.
 pub(super) struct Front<'a, T> {
@@ -33,11 +34,14 @@ impl<T> Front<'_, T> {
 /// at the beginning of each, in every substitution.
 #[derive(Debug)]
 pub(super) struct Branch<T> {
+    /// The columns of the task, those of its subtasks included, by their place in the order of elimination.
+    pub columns: Range<usize>,
     /// Where the rows, the entries of L and the columns of each front begin, and of a next one.
     starts: Vec<[usize; 3]>,
     rows: Vec<u32>,
     lower: Vec<T>,
-    inverse: Vec<[T; 2]>,
+    /// B⁻¹ of the fronts of the task itself.
+    pub inverse: Vec<[T; 2]>,
     /// The rows that the task hands on, as the fronts of the task above name them.
     pub handed_on: Vec<u32>,
     pub subtasks: Vec<Branch<T>>,
@@ -54,6 +58,7 @@ impl<T: Field> Branch<T> {
             if kept == Kept::All { task.own_nodes().map(of).sum() } else { 0 }
         };
         Branch {
+            columns: plan.first_column(task.nodes.start)..plan.first_column(task.nodes.end),
             starts: vec![[0; 3]],
             rows: Vec::with_capacity(expected(|rows, _| rows)),
             lower: Vec::with_capacity(expected(Lower::<T>::size)),
@@ -75,11 +80,6 @@ impl<T: Field> Branch<T> {
     /// This and all that is below.
     pub fn branches(&self) -> Vec<&Branch<T>> {
         std::iter::once(self).chain(self.subtasks.iter().flat_map(Branch::branches)).collect()
-    }
-
-    /// B⁻¹ of the fronts of the task itself.
-    pub fn inverse(&self) -> &[[T; 2]] {
-        &self.inverse
     }
 
     /// Of the task itself.
@@ -170,13 +170,13 @@ impl<T: Field> Elimination<'_, T> {
             stack.push(self.front(s, &children, &mut scratch, &mut branch)?);
             s += 1;
         }
-        self.name_rows(task, &mut branch, &mut scratch.places);
+        self.name_rows(&mut branch, &mut scratch.places);
         Ok((branch, stack))
     }
 
     /// Names the rows of the fronts of a task as they are kept, and those that its last front hands on by their place.
-    fn name_rows(&self, task: &Task, branch: &mut Branch<T>, names: &mut [u32]) {
-        let end = self.plan.first_column(task.nodes.end) as u32;
+    fn name_rows(&self, branch: &mut Branch<T>, names: &mut [u32]) {
+        let end = branch.columns.end as u32;
         let last = branch.fronts().next_back();
         branch.handed_on =
             last.map_or(Vec::new(), |last| last.rows.iter().copied().filter(|row| *row >= end).collect());

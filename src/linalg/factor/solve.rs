@@ -8,20 +8,20 @@
 use super::field::{Field, Lanes};
 use super::lower::Rows;
 use super::numeric::{Branch, Front};
-use super::symbolic::{Plan, Task};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Goes up and down the tree, with one row of x for each column in the order of elimination.
 pub(super) struct Substitution<'a, T> {
-    pub plan: &'a Plan,
+    /// The whole tree.
     pub branch: &'a Branch<T>,
 }
 
 impl<T: Field> Substitution<'_, T> {
     /// L⁻¹ x.
     pub fn up<L: Lanes<T>>(&self, x: &mut [L]) {
-        self.forward(&self.plan.root, self.branch, x);
+        self.forward(self.branch, x);
     }
 
     /// B⁻¹ x.
@@ -33,33 +33,15 @@ impl<T: Field> Substitution<'_, T> {
 
     /// L⁻ᵀ B⁻¹ x.
     pub fn down<L: Lanes<T>>(&self, x: &mut [L]) {
-        self.backward(&self.plan.root, self.branch, x, Vec::new());
-    }
-
-    /// The subtasks of a task, what they gave, and the parts of x that belong to them.
-    fn subtasks<'x, L>(
-        &self,
-        task: &'x Task,
-        branch: &'x Branch<T>,
-        x: &'x mut [L],
-    ) -> Vec<(&'x Task, &'x Branch<T>, &'x mut [L])> {
-        let mut at = self.plan.first_column(task.nodes.start);
-        let mut rest = x;
-        let part = |(task, branch): (&'x Task, &'x Branch<T>)| {
-            let [begin, end] = [task.nodes.start, task.nodes.end].map(|s| self.plan.first_column(s));
-            let (part, after) = std::mem::take(&mut rest)[begin - at..].split_at_mut(end - begin);
-            (rest, at) = (after, end);
-            (task, branch, part)
-        };
-        task.subtasks.iter().zip(&branch.subtasks).map(part).collect()
+        self.backward(self.branch, x, Vec::new());
     }
 
     /// L y = b for the columns of a task; gives what it brings to the rows that it hands on.
-    fn forward<L: Lanes<T>>(&self, task: &Task, branch: &Branch<T>, x: &mut [L]) -> Vec<L> {
-        let subtasks = self.subtasks(task, branch, x).into_par_iter();
-        let results: Vec<_> = subtasks.map(|(task, branch, x)| self.forward(task, branch, x)).collect();
+    fn forward<L: Lanes<T>>(&self, branch: &Branch<T>, x: &mut [L]) -> Vec<L> {
+        let subtasks = subtasks(branch, x).into_par_iter();
+        let results: Vec<_> = subtasks.map(|(branch, x)| self.forward(branch, x)).collect();
         let mut beyond = vec![L::ZERO; branch.handed_on.len()];
-        let mut rows = self.rows(task, x, &mut beyond);
+        let mut rows = self.rows(branch, x, &mut beyond);
         for (subtask, sums) in branch.subtasks.iter().zip(&results) {
             for (row, sum) in subtask.handed_on.iter().zip(sums) {
                 rows.at(*row).add(sum);
@@ -70,20 +52,31 @@ impl<T: Field> Substitution<'_, T> {
     }
 
     /// B Lᵀ x = y for the columns of a task; `beyond` is the solution of the rows that it hands on.
-    fn backward<L: Lanes<T>>(&self, task: &Task, branch: &Branch<T>, x: &mut [L], mut beyond: Vec<L>) {
-        let mut rows = self.rows(task, x, &mut beyond);
+    fn backward<L: Lanes<T>>(&self, branch: &Branch<T>, x: &mut [L], mut beyond: Vec<L>) {
+        let mut rows = self.rows(branch, x, &mut beyond);
         Arch::new().dispatch(Walk::<_, _, false> { fronts: branch.fronts().rev(), rows: rows.reborrow() });
         let handed = |subtask: &Branch<T>| subtask.handed_on.iter().map(|row| *rows.at(*row)).collect();
         let known: Vec<Vec<L>> = branch.subtasks.iter().map(handed).collect();
-        let subtasks = self.subtasks(task, branch, x).into_par_iter().zip(known);
-        subtasks.for_each(|((task, branch, x), known)| self.backward(task, branch, x, known));
+        let subtasks = subtasks(branch, x).into_par_iter().zip(known);
+        subtasks.for_each(|((branch, x), known)| self.backward(branch, x, known));
     }
 
     /// The rows that the fronts of a task reach.
-    fn rows<'x, L>(&self, task: &Task, x: &'x mut [L], beyond: &'x mut [L]) -> Rows<'x, L> {
-        let (base, n) = (self.plan.first_column(task.nodes.start), self.plan.order.len());
-        Rows { own: x, base: base as u32, beyond, n: n as u32 }
+    fn rows<'x, L>(&self, branch: &Branch<T>, x: &'x mut [L], beyond: &'x mut [L]) -> Rows<'x, L> {
+        Rows { own: x, base: branch.columns.start as u32, beyond, n: self.branch.columns.end as u32 }
     }
+}
+
+/// What the subtasks of a task gave, and the parts of x that belong to them.
+fn subtasks<'x, T, L>(branch: &'x Branch<T>, x: &'x mut [L]) -> Vec<(&'x Branch<T>, &'x mut [L])> {
+    let (mut rest, mut at) = (x, branch.columns.start);
+    let part = |subtask: &'x Branch<T>| {
+        let Range { start, end } = subtask.columns;
+        let (part, after) = std::mem::take(&mut rest)[start - at..].split_at_mut(end - start);
+        (rest, at) = (after, end);
+        (subtask, part)
+    };
+    branch.subtasks.iter().map(part).collect()
 }
 
 /// Up or down through the fronts of a task.

@@ -15,7 +15,7 @@ use super::reduced::ReducedModel;
 use crate::error::Result;
 use crate::linalg::SparseMatrix;
 use crate::linalg::dense::{product, symmetric_eigen};
-use crate::linalg::factor::symbolic_like;
+use crate::linalg::factor::inertia_like;
 use crate::linalg::sparse::add_scaled;
 use crate::stability::analysis::Analysis;
 use faer::sparse::Triplet;
@@ -107,8 +107,7 @@ fn function(a: MatRef<'_, f64>, f: impl Fn(f64) -> f64) -> Result<Mat<f64>> {
 fn holds_against_friction(analysis: &Analysis<'_>, b: f64) -> bool {
     let (mass, stiffness) = (analysis.operator.mass, &*analysis.operator.stiffness);
     let definite = |matrix: &SparseMatrix| {
-        let inertia = symbolic_like(analysis.factor, matrix).and_then(|s| s.inertia(matrix));
-        inertia.is_ok_and(|i| i.negative == 0 && i.zero == 0)
+        inertia_like(analysis.factor, matrix).is_ok_and(|i| i.negative == 0 && i.zero == 0)
     };
     let friction = symmetric_damping(analysis);
     let below = diagonal_below(&friction, mass);

@@ -44,7 +44,7 @@ pub(super) struct Oscillator {
     pub(super) loss: f64,
 }
 
-/// The damping of a structure, what is proportional apart from what couples the real modes.
+/// What of the damping of a structure is not proportional.
 pub(super) struct DampingParts {
     /// Whether the modal damping acts on real modes of the basis only.
     pub(super) modal_inside: bool,

@@ -20,7 +20,7 @@ use super::reduced::DampingParts;
 use super::rows::Rows;
 use crate::error::Result;
 use crate::linalg::dense::{product, symmetric_eigen};
-use crate::linalg::factor::{SymmetricFactor, compliances, symbolic_like};
+use crate::linalg::factor::{SymmetricFactor, compliances, inertia_like};
 use crate::linalg::sparse::{add_scaled, times};
 use crate::linalg::tall::{combine, panels};
 use crate::linalg::{SparseMatrix, c64};
@@ -234,7 +234,7 @@ fn least_shift(
 ) -> Option<f64> {
     let definite = |g: &&f64| {
         let sum = add_scaled(&[(1.0, a), (**g * unit, energy)]);
-        symbolic_like(known, &sum).and_then(|s| s.inertia(&sum)).is_ok_and(|inertia| inertia.negative == 0)
+        inertia_like(known, &sum).is_ok_and(|inertia| inertia.negative == 0)
     };
     SHIFTS.iter().find(definite).map(|g| g * unit)
 }
