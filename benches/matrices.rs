@@ -120,12 +120,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let case = read_case(Path::new(path))?;
     let (cpu_0, wall_0) = (cpu(), Instant::now());
-    let prepared = Prepared::new(&case)?;
+    // On a thread of the pool, as the program does it.
+    let prepared = rayon::scope(|_| Prepared::new(&case))?;
     let read = (cpu() - cpu_0, wall_0.elapsed().as_secs_f64());
     let held = memory("VmHWM");
     let stages = Stages::default();
     let (cpu_0, wall_0) = (cpu(), Instant::now());
-    let results = analyse(&prepared, Selection::ALL, &mut |_| Ok(()), &stages)?;
+    let results = rayon::scope(|_| analyse(&prepared, Selection::ALL, &mut |_| Ok(()), &stages))?;
     let total = (cpu() - cpu_0, wall_0.elapsed().as_secs_f64());
     let (eigenvalues, vectors) = pairs(&results);
     if let Some(file) = option("--vectors") {

@@ -91,25 +91,29 @@ pub fn named(prepared: &Prepared, name: &str, modes: RealModes, assembled: &Asse
             disc.name(shape)
         })
         .collect();
-    let rigid = assembled.dofs.rigid_body_vectors([0.0; 3]);
-    let translations = Mat::from_fn(assembled.dofs.n_dofs(), 3, |i, axis| rigid[axis][i]);
-    let mass = &assembled.structure.mass;
-    let effective = modal::effective_mass(mass, modes.shapes.as_ref(), translations.as_ref()).effective;
-    // Without the places of its rows an imported matrix has modes, but no directions.
-    let known = assembled.total_mass.is_finite();
-    let count = if known { modes.len() } else { 0 };
-    let effective_mass = (0..count).map(|k| [0, 1, 2].map(|axis| effective[(k, axis)])).collect();
     NamedModes {
         name: name.to_string(),
         shapes,
         moving_part,
         names,
-        effective_mass,
+        effective_mass: effective_masses(&modes, assembled),
         total_mass: assembled.total_mass,
         damping_ratio: damping_ratios(prepared.case, &modes, &assembled.structure.damping),
         universal: prepared.case.modes.get(name).is_some_and(|analysis| analysis.uff),
         modes,
     }
+}
+
+/// Effective masses along x, y and z; none of an imported matrix without the places of its rows, which has no directions.
+fn effective_masses(modes: &RealModes, assembled: &Assembled) -> Vec<[f64; 3]> {
+    if !assembled.total_mass.is_finite() {
+        return Vec::new();
+    }
+    let rigid = assembled.dofs.rigid_body_vectors([0.0; 3]);
+    let translations = Mat::from_fn(assembled.dofs.n_dofs(), 3, |i, axis| rigid[axis][i]);
+    let mass = &assembled.structure.mass;
+    let effective = modal::effective_mass(mass, modes.shapes.as_ref(), translations.as_ref()).effective;
+    (0..modes.len()).map(|k| [0, 1, 2].map(|axis| effective[(k, axis)])).collect()
 }
 
 /// ζ = ζ_modal + φᵀCφ/(2ω) + φᵀHφ/(2ω²) of mass-normalised real modes: the case's modal damping, C of Rayleigh damping and

@@ -352,7 +352,8 @@ impl<'a> BlockLanczos<'a> {
         let mut mw = self.mass_times(w.as_ref());
         let scale = lengths(&gram(w.as_ref(), mw.as_ref())).into_iter().fold(0.0, f64::max);
         let (len, held) = (self.len, self.len + self.width);
-        for _ in 0..2 {
+        let rounds = if held > 0 { 2 } else { 0 };
+        for _ in 0..rounds {
             self.orthogonalise(&mut w, &mw, 0, held);
             mw = self.mass_times(w.as_ref());
         }

@@ -83,7 +83,7 @@ impl Block {
     pub(super) fn dot(&self, j: usize, x: &Block) -> c64 {
         let (a, b) = (self.re.col_as_slice(j), self.im.col_as_slice(j));
         let (p, q) = (x.re.col_as_slice(j), x.im.col_as_slice(j));
-        c64::new(dot(a, p) + dot(b, q), dot(a, q) - dot(b, p))
+        conjugate_dot([a, b], [p, q])
     }
 
     /// ‖self\[:, j\]‖₂.
@@ -97,6 +97,41 @@ impl Block {
         for part in [&mut self.re, &mut self.im] {
             let columns = part.par_col_iter_mut().zip(factor);
             columns.for_each(|(column, factor)| column.iter_mut().for_each(|v| *v *= factor));
+        }
+    }
+}
+
+/// Σ (a − ib)(p + iq), in sums side by side.
+fn conjugate_dot([a, b]: [&[f64]; 2], [p, q]: [&[f64]; 2]) -> c64 {
+    const SUMS: usize = 4;
+    let parts = [a, b, p, q].map(|part| part.as_chunks::<SUMS>());
+    let [a, b, p, q] = parts.map(|(whole, _)| &whole[..parts[0].0.len()]);
+    let (mut re, mut im) = ([0.0; SUMS], [0.0; SUMS]);
+    for i in 0..a.len() {
+        for k in 0..SUMS {
+            re[k] += a[i][k] * p[i][k] + b[i][k] * q[i][k];
+            im[k] += a[i][k] * q[i][k] - b[i][k] * p[i][k];
+        }
+    }
+    let [a, b, p, q] = parts.map(|(_, rest)| rest);
+    let rest: c64 = (0..a.len()).map(|i| c64::new(a[i], -b[i]) * c64::new(p[i], q[i])).sum();
+    c64::new(re.iter().sum(), im.iter().sum()) + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_dot_conjugates_its_first_vector() {
+        for n in [0, 3, 4, 23] {
+            let vector = |s: f64| -> Vec<c64> {
+                (0..n).map(|i| c64::new((s * i as f64).sin(), (0.3 + s * i as f64).cos())).collect()
+            };
+            let (x, y) = (vector(1.3), vector(0.7));
+            let expected: c64 = x.iter().zip(&y).map(|(x, y)| x.conj() * y).sum();
+            let block = |x: &[c64]| Block::from_columns(n, &[x]);
+            assert!((block(&x).dot(0, &block(&y)) - expected).norm() <= 1e-14 * n as f64, "{n}");
         }
     }
 }

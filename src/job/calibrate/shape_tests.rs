@@ -122,7 +122,8 @@ fn what_a_test_sees_turns_as_differences_do_of_double_modes_too() {
                 worst = worst.max((own - expected).abs());
             }
         }
-        assert!(largest > 1e-3 && worst < 1e-6 * largest, "{name}: {worst:e} of {largest:e}");
+        // The rounding of the modes, another on every processor, comes divided by h.
+        assert!(largest > 1e-3 && worst < 3e-6 * largest, "{name}: {worst:e} of {largest:e}");
     }
 }
 

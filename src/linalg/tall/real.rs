@@ -65,11 +65,9 @@ pub(super) fn combine(
             tasks.iter_mut().zip(column.chunks_mut(ROWS)).for_each(|(task, rows)| task.push(rows));
         }
     }
+    let anew = matches!(accumulate, Accum::Replace);
     tasks.par_iter_mut().enumerate().for_each(|(task, y)| {
-        if matches!(accumulate, Accum::Replace) {
-            y.iter_mut().for_each(|column| column.fill(0.0));
-        }
-        Arch::new().dispatch(Sums { y, first: task * ROWS, v: &v, c: &coefficients });
+        Arch::new().dispatch(Sums { y, anew, first: task * ROWS, v: &v, c: &coefficients });
     });
     true
 }
@@ -105,9 +103,7 @@ impl Dots<'_> {
             let rows = start..self.rows.end.min(start + SLAB);
             let packed = &mut packed[..rows.len()];
             for (b, sums) in self.b.chunks(LANES).zip(self.sums.chunks_mut(m.max(1))) {
-                for (k, column) in b.iter().enumerate() {
-                    packed.iter_mut().zip(&column[rows.clone()]).for_each(|(row, v)| row[k] = *v);
-                }
+                pack(b, rows.clone(), packed);
                 let whole = m - m % G;
                 for (a, sums) in self.a.chunks_exact(G).zip(sums.chunks_exact_mut(G)) {
                     add_dots::<G>(std::array::from_fn(|g| &a[g][rows.clone()]), packed, sums);
@@ -116,6 +112,21 @@ impl Dots<'_> {
                     add_dots([&a[rows.clone()]], packed, std::slice::from_mut(sum));
                 }
             }
+        }
+    }
+}
+
+/// Some rows of columns side by side, row by row; what there is no column for stays as it was.
+#[inline(always)]
+fn pack(columns: &[&[f64]], rows: Range<usize>, packed: &mut [[f64; LANES]]) {
+    if let Ok(columns) = <[&[f64]; LANES]>::try_from(columns) {
+        let columns = columns.map(|column| &column[rows.clone()][..packed.len()]);
+        for (i, row) in packed.iter_mut().enumerate() {
+            *row = columns.map(|column| column[i]);
+        }
+    } else {
+        for (k, column) in columns.iter().enumerate() {
+            packed.iter_mut().zip(&column[rows.clone()]).for_each(|(row, v)| row[k] = *v);
         }
     }
 }
@@ -137,14 +148,16 @@ fn add_dots<const G: usize>(a: [&[f64]; G], b: &[[f64; LANES]], sums: &mut [[f64
     }
 }
 
-/// Columns of Y that are summed together.
+/// Columns of Y that have their coefficients side by side.
 const TOGETHER: usize = 8;
 /// Columns of V that are read side by side: as many as the processor fetches ahead of their use.
 const STREAMS: usize = 16;
 
-/// Y += V C over some rows of Y, the `first` of which is that of V.
+/// Y (+)= V C over some rows of Y, the `first` of which is that of V.
 struct Sums<'a, 'y> {
     y: &'a mut [&'y mut [f64]],
+    /// Whether what Y holds is forgotten.
+    anew: bool,
     first: usize,
     v: &'a [&'a [f64]],
     /// A row of coefficients for each column of V, for the first columns of Y, then for the next.
@@ -156,8 +169,9 @@ impl WithSimd for Sums<'_, '_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        // A register of rows for each column, beside what they are made of.
-        if S::REGISTER_COUNT >= 32 { self.run::<8>() } else { self.run::<4>() }
+        // Two registers of rows for each of four columns, beside what they are made of: so there are more multiplications than
+        // numbers to fetch for them.
+        if S::REGISTER_COUNT >= 32 { self.run::<16>() } else { self.run::<8>() }
     }
 }
 
@@ -167,69 +181,63 @@ impl Sums<'_, '_> {
         let (rows, m) = (self.y.first().map_or(0, |y| y.len()), self.v.len());
         for start in (0..rows).step_by(SLAB) {
             let own = start..rows.min(start + SLAB);
+            if self.anew {
+                self.y.iter_mut().for_each(|y| y[own.clone()].fill(0.0));
+            }
             for begin in (0..m).step_by(STREAMS) {
-                let v = &self.v[begin..m.min(begin + STREAMS)];
+                let rows = self.first + own.start..self.first + own.end;
+                let v = self.v[begin..m.min(begin + STREAMS)].iter().map(|v| &v[rows.clone()]);
+                let v: Vec<&[f64]> = v.collect();
                 for (y, c) in self.y.chunks_mut(TOGETHER).zip(self.c.chunks(m)) {
-                    let (c, first) = (&c[begin..begin + v.len()], self.first + start);
-                    let mut y: Vec<&mut [f64]> = y.iter_mut().map(|y| &mut y[own.clone()]).collect();
-                    let mut done = 0;
-                    done += add_groups::<R, TOGETHER>(&mut y[done..], v, first, c, done);
-                    done += add_groups::<R, 4>(&mut y[done..], v, first, c, done);
-                    add_groups::<R, 1>(&mut y[done..], v, first, c, done);
+                    let c = &c[begin..begin + v.len()];
+                    let (fours, rest) = y.as_chunks_mut::<4>();
+                    let after = 4 * fours.len();
+                    for (y, from) in fours.iter_mut().zip((0..).step_by(4)) {
+                        add_sums::<R, 4>(y.each_mut().map(|y| &mut y[own.clone()]), &v, c, from);
+                    }
+                    for (y, from) in rest.iter_mut().zip(after..) {
+                        add_sums::<R, 1>([&mut y[own.clone()]], &v, c, from);
+                    }
                 }
             }
         }
     }
 }
 
-/// As many groups of K columns of y as there are, and how many columns that makes; `from` is the first one's place in c.
-#[inline(always)]
-fn add_groups<const R: usize, const K: usize>(
-    y: &mut [&mut [f64]],
-    v: &[&[f64]],
-    first: usize,
-    c: &[[f64; TOGETHER]],
-    from: usize,
-) -> usize {
-    let (groups, _) = y.as_chunks_mut::<K>();
-    for (y, k) in groups.iter_mut().zip((from..).step_by(K)) {
-        add_sums::<R, K>(y, v, first, c, k);
-    }
-    K * groups.len()
-}
-
-/// y_k += Σ_j v_j c_jk for the columns of c from `from` on, `first` being the row of V where y begins.
+/// y_k += Σ_j v_j c_jk for the columns of c from `from` on; of v there are [`STREAMS`] at most.
 #[inline(always)]
 fn add_sums<const R: usize, const K: usize>(
-    y: &mut [&mut [f64]; K],
+    mut y: [&mut [f64]; K],
     v: &[&[f64]],
-    first: usize,
     c: &[[f64; TOGETHER]],
     from: usize,
 ) {
     let rows = y[0].len();
-    let whole = rows - rows % R;
-    for i in (0..whole).step_by(R) {
-        let mut own = [[0.0; R]; K];
-        for (own, y) in own.iter_mut().zip(&*y) {
-            own.copy_from_slice(&y[i..i + R]);
-        }
-        for (v, c) in v.iter().zip(c) {
-            let (v, c) = (&v[first + i..][..R], &c[from..from + K]);
+    let blocks = rows / R;
+    let (mut v_blocks, mut factors) = ([&[][..]; STREAMS], [[0.0; K]; STREAMS]);
+    for ((blocks, factors), (v, c)) in v_blocks.iter_mut().zip(&mut factors).zip(v.iter().zip(c)) {
+        (*blocks, *factors) = (v.as_chunks().0, std::array::from_fn(|k| c[from + k]));
+    }
+    let (v_blocks, factors): (&[&[[f64; R]]], _) = (&v_blocks[..v.len()], &factors[..v.len()]);
+    let mut y_blocks = y.each_mut().map(|y| &mut y.as_chunks_mut().0[..blocks]);
+    for i in 0..blocks {
+        let mut own: [[f64; R]; K] = std::array::from_fn(|k| y_blocks[k][i]);
+        for (v, c) in v_blocks.iter().zip(factors) {
+            let v = &v[i];
             for k in 0..K {
                 for r in 0..R {
                     own[k][r] = v[r].mul_add(c[k], own[k][r]);
                 }
             }
         }
-        for (own, y) in own.iter().zip(&mut *y) {
-            y[i..i + R].copy_from_slice(own);
+        for (y, own) in y_blocks.iter_mut().zip(own) {
+            y[i] = own;
         }
     }
-    for i in whole..rows {
-        for (v, c) in v.iter().zip(c) {
-            for (y, c) in y.iter_mut().zip(&c[from..]) {
-                y[i] = v[first + i].mul_add(*c, y[i]);
+    for i in blocks * R..rows {
+        for (v, c) in v.iter().zip(factors) {
+            for (y, c) in y.iter_mut().zip(c) {
+                y[i] = v[i].mul_add(*c, y[i]);
             }
         }
     }
@@ -277,7 +285,7 @@ mod tests {
         let mut y = vec![vec![1.0; n - 3]; TOGETHER];
         let mut columns: Vec<&mut [f64]> = y.iter_mut().map(|column| &mut column[..]).collect();
         let rows: Vec<[f64; TOGETHER]> = (0..m).map(|i| std::array::from_fn(|k| c[(i, k)])).collect();
-        Sums { y: &mut columns, first: 3, v: &a, c: &rows }.run::<4>();
+        Sums { y: &mut columns, anew: false, first: 3, v: &a, c: &rows }.run::<8>();
         let expected = &v * &c;
         assert!(
             (0..n - 3).all(|i| (0..TOGETHER).all(|k| (y[k][i] - 1.0 - expected[(i + 3, k)]).abs() < 1e-12))

@@ -51,25 +51,50 @@ pub(super) struct Spectrum<'a> {
 
 /// The size of a vector p₀ + s p₁ + s² p₂, by the products pᵢᴴpⱼ.
 #[derive(Debug, Clone, Copy)]
-struct Reach([[c64; 3]; 3]);
+struct Reach {
+    /// pᵢᴴpⱼ.
+    products: [[c64; 3]; 3],
+    /// ‖pᵢ‖.
+    sizes: [f64; 3],
+}
+
+/// Factors of p₀, p₁ and p₂, and their magnitudes.
+struct Weights([c64; 3], [f64; 3]);
+
+impl Weights {
+    fn new(weights: [c64; 3]) -> Self {
+        Weights(weights, weights.map(|w| w.norm()))
+    }
+
+    /// Those of the value at `c`, the slope there, and the curvature.
+    fn at(c: c64) -> [Self; 3] {
+        let (zero, one) = (c64::new(0.0, 0.0), c64::new(1.0, 0.0));
+        [[one, c, c * c], [zero, one, c * 2.0], [zero, zero, one]].map(Weights::new)
+    }
+}
 
 impl Reach {
+    fn new(products: [[c64; 3]; 3]) -> Self {
+        Reach { products, sizes: [0, 1, 2].map(|i| products[i][i].re.sqrt()) }
+    }
+
     /// ‖Σ wᵢ pᵢ‖, not less in spite of rounding.
-    fn size(&self, weights: [c64; 3]) -> f64 {
+    fn size(&self, Weights(weights, magnitudes): &Weights) -> f64 {
         let (mut square, mut terms) = (0.0, 0.0);
         for i in 0..3 {
-            for j in 0..3 {
-                square += (weights[i].conj() * self.0[i][j] * weights[j]).re;
+            let term = magnitudes[i] * self.sizes[i];
+            square += term * term;
+            terms += term;
+            for j in 0..i {
+                square += 2.0 * (weights[i].conj() * self.products[i][j] * weights[j]).re;
             }
-            terms += weights[i].norm() * self.0[i][i].re.sqrt();
         }
         (square.max(0.0) + 8.0 * f64::EPSILON * terms * terms).sqrt()
     }
 
-    /// A bound on the size within `h` of `c`.
-    fn within(&self, c: c64, h: f64) -> f64 {
-        let (zero, one) = (c64::new(0.0, 0.0), c64::new(1.0, 0.0));
-        self.size([one, c, c * c]) + h * (self.size([zero, one, c * 2.0]) + h * self.size([zero, zero, one]))
+    /// A bound on the size within `h` of a point, whose weights are given.
+    fn within(&self, [value, slope, curvature]: &[Weights; 3], h: f64) -> f64 {
+        self.size(value) + h * (self.size(slope) + h * self.size(curvature))
     }
 }
 
@@ -191,7 +216,7 @@ impl<'a> Spectrum<'a> {
     }
 
     fn distance(&self, s: c64) -> f64 {
-        self.values.iter().fold(f64::INFINITY, |d, value| d.min((s - value).norm()))
+        self.values.iter().fold(f64::INFINITY, |d, value| d.min((s - value).norm_sqr())).sqrt()
     }
 
     /// A bound on ρ = q ‖E‖ in the disc of radius `h` about `c`, as far as the contour goes; `None` where the rest of the
@@ -204,7 +229,7 @@ impl<'a> Spectrum<'a> {
             .iter()
             .zip(&self.rests)
             .map(|(value, [r, f])| {
-                let d = 1.0 / ((c - value).norm() - h).max(0.0);
+                let d = 1.0 / ((c - value).norm_sqr().sqrt() - h).max(0.0);
                 [d, d * (r + reach * f)]
             })
             .collect();
@@ -215,10 +240,14 @@ impl<'a> Spectrum<'a> {
         let Some(remainder) = self.remainder else { return Some(0.0) };
         let omega = (c.im.abs() + h).min(remainder.tau.sqrt());
         let q = remainder.amplification([(c.re - h).max(0.0), c.re + h], omega);
-        let right: Vec<f64> = (0..near.len()).map(|k| near[k][0] * self.reaches[1][k].within(c, h)).collect();
+        let weights = Weights::at(c);
+        let right: Vec<f64> =
+            (0..near.len()).map(|k| near[k][0] * self.reaches[1][k].within(&weights, h)).collect();
         let largest = right.iter().fold(0.0f64, |l, v| l.max(*v));
         let sum: f64 = (0..near.len())
-            .map(|k| self.reaches[0][k].within(c, h) * (right[k] + near[k][1] * largest / (1.0 - delta)))
+            .map(|k| {
+                self.reaches[0][k].within(&weights, h) * (right[k] + near[k][1] * largest / (1.0 - delta))
+            })
             .sum();
         let bound = q * (sum + self.missed[0] + reach * self.missed[1]);
         // A product of zero and infinity is no bound.
@@ -252,7 +281,7 @@ fn reaches_of(remainder: &Remainder, stiff: &Mat<f64>, damped: &Mat<f64>, x: &Ma
         let (a, b) = (powers[i].col_as_slice(k), powers[j].col_as_slice(k));
         a.iter().zip(b).map(|(a, b)| a.conj() * b).sum()
     };
-    let reach = |k: usize| Reach([0, 1, 2].map(|i| [0, 1, 2].map(|j| dot(k, i, j))));
+    let reach = |k: usize| Reach::new([0, 1, 2].map(|i| [0, 1, 2].map(|j| dot(k, i, j))));
     (0..x.ncols()).map(reach).collect()
 }
 
