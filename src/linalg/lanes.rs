@@ -3,7 +3,7 @@
 use super::sparse::Scalar;
 use pulp::{Arch, Simd, WithSimd};
 
-/// Rows and columns that change places in registers.
+/// Columns that are laid together, and rows and columns that change places in registers when they are spread.
 const TILE: usize = 8;
 
 /// What begins with a line of the cache: a row that lies in two of them takes twice the time to fetch.
@@ -72,18 +72,15 @@ impl<T: Scalar, R: Row<T, W>, const W: usize> WithSimd for Lay<'_, T, R, W> {
     fn with_simd<S: Simd>(self, _: S) {
         let n = self.rows.len();
         for (columns, first) in self.columns.chunks(TILE).zip((0..).step_by(TILE)) {
-            let mut done = 0;
-            if let Ok(columns) = <&[&[T]; TILE]>::try_from(columns) {
-                for i in (0..n - n % TILE).step_by(TILE) {
-                    let turned = turned(columns.map(|column| tile(column, i)));
-                    for (row, turned) in self.rows[i..].iter_mut().zip(&turned) {
-                        row.values_mut()[first..first + TILE].copy_from_slice(turned);
-                    }
+            if let Ok(columns) = <[&[T]; TILE]>::try_from(columns) {
+                let columns = columns.map(|column| &column[..n]);
+                for (i, row) in self.rows.iter_mut().enumerate() {
+                    row.values_mut()[first..first + TILE].copy_from_slice(&columns.map(|column| column[i]));
                 }
-                done = n - n % TILE;
-            }
-            for (column, c) in columns.iter().zip(first..) {
-                (done..n).for_each(|i| self.rows[i].values_mut()[c] = column[i]);
+            } else {
+                for (column, c) in columns.iter().zip(first..) {
+                    self.rows.iter_mut().zip(*column).for_each(|(row, v)| row.values_mut()[c] = *v);
+                }
             }
         }
     }

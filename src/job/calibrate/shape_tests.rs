@@ -104,7 +104,8 @@ fn what_a_test_sees_turns_as_differences_do_of_double_modes_too() {
         .collect();
     assert!(here.len() >= 4 && here.iter().filter(|span| span.dimension() == 2).count() >= 2);
     for (j, name) in ["hub", "poisson", "thickness", "twist"].iter().enumerate() {
-        let h = if j == 3 { 1e-4 } else { 1e-2 };
+        // Far apart: the rounding of the modes, another on every processor, comes divided by h.
+        let h = if j == 3 { 1e-4 } else { 2e-2 };
         let at = |k: f64| {
             let mut x = model.start().to_vec();
             x[j] += k * h;
@@ -122,8 +123,7 @@ fn what_a_test_sees_turns_as_differences_do_of_double_modes_too() {
                 worst = worst.max((own - expected).abs());
             }
         }
-        // The rounding of the modes, another on every processor, comes divided by h.
-        assert!(largest > 1e-3 && worst < 3e-6 * largest, "{name}: {worst:e} of {largest:e}");
+        assert!(largest > 1e-3 && worst < 1e-6 * largest, "{name}: {worst:e} of {largest:e}");
     }
 }
 

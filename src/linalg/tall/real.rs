@@ -3,6 +3,7 @@
 //! A general product first copies its operands into an order of its own, which pays when each entry is used often. Here the
 //! other matrix is narrow, so that the copy would cost as much as the product.
 
+use super::super::lanes::lay;
 use super::super::sparse::{columns, columns_mut};
 use super::ROWS;
 use faer::{Accum, ColRef, Mat, MatMut, MatRef};
@@ -103,7 +104,8 @@ impl Dots<'_> {
             let rows = start..self.rows.end.min(start + SLAB);
             let packed = &mut packed[..rows.len()];
             for (b, sums) in self.b.chunks(LANES).zip(self.sums.chunks_mut(m.max(1))) {
-                pack(b, rows.clone(), packed);
+                let b: Vec<&[f64]> = b.iter().map(|b| &b[rows.clone()]).collect();
+                lay(&b, packed);
                 let whole = m - m % G;
                 for (a, sums) in self.a.chunks_exact(G).zip(sums.chunks_exact_mut(G)) {
                     add_dots::<G>(std::array::from_fn(|g| &a[g][rows.clone()]), packed, sums);
@@ -112,21 +114,6 @@ impl Dots<'_> {
                     add_dots([&a[rows.clone()]], packed, std::slice::from_mut(sum));
                 }
             }
-        }
-    }
-}
-
-/// Some rows of columns side by side, row by row; what there is no column for stays as it was.
-#[inline(always)]
-fn pack(columns: &[&[f64]], rows: Range<usize>, packed: &mut [[f64; LANES]]) {
-    if let Ok(columns) = <[&[f64]; LANES]>::try_from(columns) {
-        let columns = columns.map(|column| &column[rows.clone()][..packed.len()]);
-        for (i, row) in packed.iter_mut().enumerate() {
-            *row = columns.map(|column| column[i]);
-        }
-    } else {
-        for (k, column) in columns.iter().enumerate() {
-            packed.iter_mut().zip(&column[rows.clone()]).for_each(|(row, v)| row[k] = *v);
         }
     }
 }
@@ -185,9 +172,9 @@ impl Sums<'_, '_> {
                 self.y.iter_mut().for_each(|y| y[own.clone()].fill(0.0));
             }
             for begin in (0..m).step_by(STREAMS) {
-                let rows = self.first + own.start..self.first + own.end;
-                let v = self.v[begin..m.min(begin + STREAMS)].iter().map(|v| &v[rows.clone()]);
-                let v: Vec<&[f64]> = v.collect();
+                let of_v = self.first + own.start..self.first + own.end;
+                let v = &self.v[begin..m.min(begin + STREAMS)];
+                let v: Vec<&[f64]> = v.iter().map(|v| &v[of_v.clone()]).collect();
                 for (y, c) in self.y.chunks_mut(TOGETHER).zip(self.c.chunks(m)) {
                     let c = &c[begin..begin + v.len()];
                     let (fours, rest) = y.as_chunks_mut::<4>();

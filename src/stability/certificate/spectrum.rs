@@ -229,6 +229,7 @@ impl<'a> Spectrum<'a> {
             .iter()
             .zip(&self.rests)
             .map(|(value, [r, f])| {
+                // Not `norm`, which is careful of overflow and takes most of the time.
                 let d = 1.0 / ((c - value).norm_sqr().sqrt() - h).max(0.0);
                 [d, d * (r + reach * f)]
             })
