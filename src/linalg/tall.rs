@@ -126,7 +126,7 @@ pub fn rotate(v: MatMut<'_, f64>, c: MatRef<'_, f64>) {
 }
 
 /// \[A B\].
-pub fn beside(a: &Mat<f64>, b: &Mat<f64>) -> Mat<f64> {
+pub fn beside(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
     let mut both = Mat::zeros(b.nrows(), a.ncols() + b.ncols());
     both.subcols_mut(0, a.ncols()).copy_from(a);
     both.subcols_mut(a.ncols(), b.ncols()).copy_from(b);

@@ -91,12 +91,12 @@ pub fn reduce(
     let directions: Vec<&SparseVector> = touched.chain(imported).chain(forces).collect();
     let column = |x: &[f64]| Mat::from_fn(n, 1, |i, _| x[i]);
     let load = column(&system.load);
-    let mut responses = beside(&dense_columns(n, &directions), &load);
+    let mut responses = beside(dense_columns(n, &directions).as_ref(), load.as_ref());
     softened(&stiffness, mass, real)?.solve_in_place(responses.as_mut());
-    let responses = beside(&responses, &column(&steady.displacement));
+    let responses = beside(responses.as_ref(), column(&steady.displacement).as_ref());
     let attached = attachment(&stiffness, mass, real, responses)?;
     let modes = real.len();
-    let basis = beside(&real.shapes, &attached.1);
+    let basis = beside(real.shapes.as_ref(), attached.1.as_ref());
     let squares: Vec<f64> = real.eigenvalues.iter().chain(&attached.0).copied().collect();
     let inertia = times(mass, basis.as_ref());
     let structure = Structure {

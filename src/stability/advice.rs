@@ -30,7 +30,8 @@ impl Sensitivity<'_> {
                 let (s, slope) = (self.lambda[j], self.steepness[j]);
                 let rate = |(r, row): (usize, &SparseVector)| {
                     let moved = |x: &super::block::Block| {
-                        c64::new(row.dot(x.re.col_as_slice(j)), row.dot(x.im.col_as_slice(j)))
+                        let [re, im] = x.vector(j).map(|part| row.dot(part));
+                        c64::new(re, im)
                     };
                     let a = moved(&self.psi).conj() * moved(&self.phi);
                     let zero = c64::new(0.0, 0.0);

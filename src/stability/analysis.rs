@@ -304,12 +304,12 @@ fn expand(basis: &Basis<'_>, n_real: usize, pairs: &[&SmallPair], to: &mut Measu
     let (right, left) = (small(|p| &p.right), small(|p| &p.left));
     to.lambda = pairs.iter().map(|pair| pair.lambda).collect();
     basis.expand_into([(&right, &mut to.right.vectors), (&left, &mut to.left)]);
-    right.map(|y| product(basis.mass.as_ref().subrows(0, n_real), y.as_ref()))
+    right.map(|y| product(basis.mass.as_ref().subrows(0, n_real), y))
 }
 
 /// Coordinates scaled so that the vectors which they stand for have xᴴMx = 1.
 fn unit_mass(basis: &Basis<'_>, mut y: Block) -> Block {
-    let inertia = y.map(|part| product(basis.mass.as_ref(), part.as_ref()));
+    let inertia = y.map(|y| product(basis.mass.as_ref(), y));
     let factors: Vec<f64> = (0..y.ncols()).map(|j| 1.0 / y.dot(j, &inertia).re.sqrt()).collect();
     y.scale(&factors);
     y

@@ -79,8 +79,7 @@ impl<'a> Basis<'a> {
         let mut parts = Vec::new();
         for (y, vectors) in blocks {
             vectors.resize(self.vectors.nrows(), y.ncols());
-            parts.push((vectors.re.as_mut(), y.re.as_ref()));
-            parts.push((vectors.im.as_mut(), y.im.as_ref()));
+            parts.push((vectors.parts_mut(), y.parts()));
         }
         expand_into(parts, self.vectors.as_ref());
     }

@@ -1,15 +1,15 @@
-//! Blocks of complex vectors, real and imaginary parts apart, so that real matrices and factors work on both.
+//! Blocks of complex vectors, real and imaginary parts apart, so that real matrices and factors work on all of them at once.
 
 use crate::linalg::c64;
 use crate::linalg::sparse::dot;
-use faer::Mat;
+use faer::{ColMut, Mat, MatMut, MatRef};
 use rayon::prelude::*;
 
 /// Complex vectors, one a column.
 #[derive(Debug, Clone)]
 pub(super) struct Block {
-    pub(super) re: Mat<f64>,
-    pub(super) im: Mat<f64>,
+    /// Re of every vector, then Im of every one.
+    parts: Mat<f64>,
 }
 
 impl Default for Block {
@@ -20,42 +20,86 @@ impl Default for Block {
 
 impl Block {
     pub(super) fn zeros(n: usize, columns: usize) -> Self {
-        Block { re: Mat::zeros(n, columns), im: Mat::zeros(n, columns) }
+        Block::of_parts(Mat::zeros(n, 2 * columns))
     }
 
-    /// Makes room for `columns` vectors in the memory at hand.
-    pub(super) fn resize(&mut self, n: usize, columns: usize) {
-        [&mut self.re, &mut self.im].into_iter().for_each(|part| part.resize_with(n, columns, |_, _| 0.0));
+    /// Of the real parts of all vectors and then the imaginary ones.
+    pub(super) fn of_parts(parts: Mat<f64>) -> Self {
+        assert!(parts.ncols().is_multiple_of(2), "as many imaginary as real parts");
+        Block { parts }
+    }
+
+    pub(super) fn from_fn(n: usize, columns: usize, f: impl Fn(usize, usize) -> c64) -> Self {
+        let part = |i: usize, j: usize| if j < columns { f(i, j).re } else { f(i, j - columns).im };
+        Block::of_parts(Mat::from_fn(n, 2 * columns, part))
     }
 
     pub(super) fn from_columns(n: usize, columns: &[&[c64]]) -> Self {
-        let part = |f: fn(&c64) -> f64| Mat::from_fn(n, columns.len(), |i, j| f(&columns[j][i]));
-        Block { re: part(|z| z.re), im: part(|z| z.im) }
+        Block::from_fn(n, columns.len(), |i, j| columns[j][i])
     }
 
     /// Some columns of another block.
     pub(super) fn gathered(block: &Block, columns: &[usize]) -> Self {
-        block.map(|part| Mat::from_fn(part.nrows(), columns.len(), |i, k| part[(i, columns[k])]))
+        Block::from_fn(block.nrows(), columns.len(), |i, k| block.get(i, columns[k]))
+    }
+
+    /// Makes room for `columns` vectors in the memory at hand, which is not cleared.
+    pub(super) fn resize(&mut self, n: usize, columns: usize) {
+        self.parts.resize_with(n, 2 * columns, |_, _| 0.0);
+    }
+
+    pub(super) fn nrows(&self) -> usize {
+        self.parts.nrows()
     }
 
     pub(super) fn ncols(&self) -> usize {
-        self.re.ncols()
+        self.parts.ncols() / 2
     }
 
-    /// The same operation on both parts.
-    pub(super) fn map(&self, f: impl Fn(&Mat<f64>) -> Mat<f64>) -> Self {
-        Block { re: f(&self.re), im: f(&self.im) }
+    /// Re of every vector, then Im of every one.
+    pub(super) fn parts(&self) -> MatRef<'_, f64> {
+        self.parts.as_ref()
+    }
+
+    pub(super) fn parts_mut(&mut self) -> MatMut<'_, f64> {
+        self.parts.as_mut()
+    }
+
+    pub(super) fn into_parts(self) -> Mat<f64> {
+        self.parts
+    }
+
+    /// Entry i of vector j.
+    pub(super) fn get(&self, i: usize, j: usize) -> c64 {
+        c64::new(self.parts[(i, j)], self.parts[(i, self.ncols() + j)])
+    }
+
+    /// Re and Im of vector j.
+    pub(super) fn vector(&self, j: usize) -> [&[f64]; 2] {
+        [j, self.ncols() + j].map(|c| self.parts.col_as_slice(c))
+    }
+
+    /// Re and Im of vector j, to be written.
+    pub(super) fn vector_mut(&mut self, j: usize) -> [&mut [f64]; 2] {
+        let columns = self.ncols();
+        let (re, im) = self.parts.as_mut().split_at_col_mut(columns);
+        [re, im].map(|part| whole(part.col_mut(j)))
+    }
+
+    /// What a real operation makes of every vector.
+    pub(super) fn map(&self, f: impl FnOnce(MatRef<'_, f64>) -> Mat<f64>) -> Self {
+        let parts = f(self.parts());
+        assert!(parts.ncols() == self.parts.ncols(), "one column for each");
+        Block { parts }
     }
 
     /// self\[:, j\] = a\[j\] · x\[:, j\] + b\[j\] · y\[:, j\], in the memory at hand.
     pub(super) fn set_sum(&mut self, [(a, x), (b, y)]: [(&[c64], &Block); 2]) {
-        self.resize(x.re.nrows(), x.ncols());
-        let own = self.re.par_col_iter_mut().zip(self.im.par_col_iter_mut());
-        let first = x.re.par_col_iter().zip(x.im.par_col_iter()).zip(a);
-        let second = y.re.par_col_iter().zip(y.im.par_col_iter()).zip(b);
-        own.zip(first).zip(second).for_each(|(((u, v), ((p, q), a)), ((r, s), b))| {
-            let terms = p.iter().zip(q.iter()).zip(r.iter().zip(s.iter()));
-            for ((u, v), ((p, q), (r, s))) in u.iter_mut().zip(v.iter_mut()).zip(terms) {
+        self.resize(x.nrows(), x.ncols());
+        self.each_vector(|j, [u, v]| {
+            let (([p, q], a), ([r, s], b)) = ((x.vector(j), a[j]), (y.vector(j), b[j]));
+            let terms = p.iter().zip(q).zip(r.iter().zip(s));
+            for ((u, v), ((p, q), (r, s))) in u.iter_mut().zip(v).zip(terms) {
                 *u = a.re * p - a.im * q + (b.re * r - b.im * s);
                 *v = a.re * q + a.im * p + (b.re * s + b.im * r);
             }
@@ -64,41 +108,48 @@ impl Block {
 
     /// self\[:, j\] += factor\[j\] · x\[:, j\].
     pub(super) fn add_scaled(&mut self, factor: &[c64], x: &Block) {
-        let own = self.re.par_col_iter_mut().zip(self.im.par_col_iter_mut());
-        let others = x.re.par_col_iter().zip(x.im.par_col_iter());
-        own.zip(others).zip(factor).for_each(|(((u, v), (p, q)), a)| {
-            for (((u, v), p), q) in u.iter_mut().zip(v.iter_mut()).zip(p.iter()).zip(q.iter()) {
+        self.each_vector(|j, [u, v]| {
+            let ([p, q], a) = (x.vector(j), factor[j]);
+            for (((u, v), p), q) in u.iter_mut().zip(v).zip(p).zip(q) {
                 *u += a.re * p - a.im * q;
                 *v += a.re * q + a.im * p;
             }
         });
     }
 
+    /// self\[:, j\] *= factor\[j\].
+    pub(super) fn scale(&mut self, factor: &[f64]) {
+        self.each_vector(|j, parts| parts.into_iter().flatten().for_each(|v| *v *= factor[j]));
+    }
+
+    /// Does something to Re and Im of every vector j.
+    fn each_vector(&mut self, f: impl Fn(usize, [&mut [f64]; 2]) + Sync) {
+        let columns = self.ncols();
+        let (re, im) = self.parts.as_mut().split_at_col_mut(columns);
+        let vectors = re.par_col_iter_mut().zip(im.par_col_iter_mut()).enumerate();
+        vectors.for_each(|(j, (re, im))| f(j, [re, im].map(whole)));
+    }
+
     /// Column `j`.
     pub(super) fn column(&self, j: usize) -> Vec<c64> {
-        self.re.col_as_slice(j).iter().zip(self.im.col_as_slice(j)).map(|(a, b)| c64::new(*a, *b)).collect()
+        let [re, im] = self.vector(j);
+        re.iter().zip(im).map(|(a, b)| c64::new(*a, *b)).collect()
     }
 
     /// self\[:, j\]ᴴ x\[:, j\].
     pub(super) fn dot(&self, j: usize, x: &Block) -> c64 {
-        let (a, b) = (self.re.col_as_slice(j), self.im.col_as_slice(j));
-        let (p, q) = (x.re.col_as_slice(j), x.im.col_as_slice(j));
-        conjugate_dot([a, b], [p, q])
+        conjugate_dot(self.vector(j), x.vector(j))
     }
 
     /// ‖self\[:, j\]‖₂.
     pub(super) fn norm(&self, j: usize) -> f64 {
-        let [re, im] = [&self.re, &self.im].map(|part| dot(part.col_as_slice(j), part.col_as_slice(j)));
-        (re + im).sqrt()
+        self.vector(j).map(|part| dot(part, part)).iter().sum::<f64>().sqrt()
     }
+}
 
-    /// self\[:, j\] *= factor\[j\].
-    pub(super) fn scale(&mut self, factor: &[f64]) {
-        for part in [&mut self.re, &mut self.im] {
-            let columns = part.par_col_iter_mut().zip(factor);
-            columns.for_each(|(column, factor)| column.iter_mut().for_each(|v| *v *= factor));
-        }
-    }
+/// A column of a matrix of its own, which is in one piece.
+fn whole(column: ColMut<'_, f64>) -> &mut [f64] {
+    column.try_as_col_major_mut().expect("in one piece").as_slice_mut()
 }
 
 /// Σ (a − ib)(p + iq), in sums side by side.

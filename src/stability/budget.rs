@@ -33,7 +33,7 @@ pub(super) fn growth_budgets(operator: &Operator<'_>, lambda: &[c64], images: &I
         let of_structure = |sum: Sum| operator.structure_form(j, phi, &sum, images);
         budget.structural_damping += by_velocity(of_structure(Sum { damping: one, ..Sum::default() }))
             + by_displacement(c64::new(0.0, 1.0) * of_structure(Sum { loss: one, ..Sum::default() }));
-        let motion = operator.interface.motions(phi.re.col_as_slice(j), phi.im.col_as_slice(j));
+        let motion = operator.interface.motions(phi.vector(j));
         for term in &operator.interface.terms {
             let product = motion[term.row].conj() * motion[term.column];
             let share = by_velocity(product * term.damping) + by_displacement(product * term.stiffness);

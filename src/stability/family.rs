@@ -213,11 +213,8 @@ impl<'f> Family<'f> {
         let operator = self.frame.operator.with_terms(self.frame.terms(state), &state.damping_weights);
         let scale = Scale { operator: &operator, factor: &*self.frame.factor, top: self.frame.band[1] };
         let turned = |y: &Mat<c64>, first: usize, count: usize| {
-            let part = |f: fn(&c64) -> f64| {
-                let y = Mat::from_fn(y.nrows(), count, |i, j| f(&y[(i, first + j)]));
-                product(self.reduced.rotation.as_ref(), y.as_ref())
-            };
-            Block { re: part(|z| z.re), im: part(|z| z.im) }
+            let y = Block::from_fn(y.nrows(), count, |i, j| y[(i, first + j)]);
+            y.map(|y| product(self.reduced.rotation.as_ref(), y))
         };
         let (mut check, mut wanted, mut measured) =
             (FamilyCheck::default(), Wanted::default(), Measured::default());

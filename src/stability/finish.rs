@@ -64,8 +64,8 @@ impl Told {
 
 /// |φₖᵀMφ|² of every real mode that has at least one part in ten thousand, largest first.
 fn shares(amplitudes: &Block, j: usize) -> Vec<(usize, f64)> {
-    let mut shares: Vec<(usize, f64)> = (0..amplitudes.re.nrows())
-        .map(|k| (k, amplitudes.re[(k, j)].powi(2) + amplitudes.im[(k, j)].powi(2)))
+    let mut shares: Vec<(usize, f64)> = (0..amplitudes.nrows())
+        .map(|k| (k, amplitudes.get(k, j).norm_sqr()))
         .filter(|(_, share)| *share >= 1e-4)
         .collect();
     shares.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));

@@ -79,7 +79,7 @@ impl<'a> Interface<'a> {
     }
 
     /// Wᵀ x.
-    pub(crate) fn motions(&self, re: &[f64], im: &[f64]) -> Vec<c64> {
+    pub(crate) fn motions(&self, [re, im]: [&[f64]; 2]) -> Vec<c64> {
         self.directions.iter().map(|d| c64::new(d.dot(re), d.dot(im))).collect()
     }
 }

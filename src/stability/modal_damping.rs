@@ -18,7 +18,7 @@ use crate::linalg::tall::{beside, expand, gram};
 use crate::linalg::{SparseMatrix, SparseVector, SymmetricFactor, c64};
 use crate::modal::RealModes;
 use crate::system::ModalDamping;
-use faer::Mat;
+use faer::{Mat, MatRef};
 
 /// Krylov blocks for the rest of the spectrum. Each gains about a decade where the modes in C reach well above the band.
 const BLOCKS: usize = 10;
@@ -51,13 +51,12 @@ impl ModalChange {
         psi: &Block,
     ) -> Result<Self> {
         let inside = real.len();
-        let amplitudes = |x: &Block| x.map(|x| gram(damping.basis.as_ref(), x.as_ref()));
+        let amplitudes = |x: &Block| x.map(|x| gram(damping.basis.as_ref(), x));
         let (a, b) = (amplitudes(phi), amplitudes(psi));
         let (rest, ritz) = rest_of_spectrum(operator, real, &damping.basis, factor, [phi, psi])?;
         let momenta = times(operator.mass, rest.as_ref());
-        let extend = |x: &Block, inner: &Block| Block {
-            re: above(&inner.re, &gram(momenta.as_ref(), x.re.as_ref())),
-            im: above(&inner.im, &gram(momenta.as_ref(), x.im.as_ref())),
+        let extend = |x: &Block, inner: &Block| {
+            inner.map(|inner| above(inner, gram(momenta.as_ref(), x.parts()).as_ref()))
         };
         let (all_a, all_b) = (extend(phi, &a), extend(psi, &b));
         let spectrum = Spectrum {
@@ -65,7 +64,7 @@ impl ModalChange {
             f: damping.coefficients.iter().copied().chain(ritz.iter().map(|_| 0.0)).collect(),
         };
         let mut form = ModalChange {
-            shapes: beside(&real.shapes, &rest),
+            shapes: beside(real.shapes.as_ref(), rest.as_ref()),
             inside,
             phi: phi.clone(),
             psi: psi.clone(),
@@ -77,19 +76,10 @@ impl ModalChange {
         for i in 0..phi.ncols() {
             let weigh = |kernel: &dyn Fn(usize, usize) -> f64| {
                 let total = spectrum.omega.len();
-                let mut weights = Block::zeros(total, inside);
-                for (j, k) in (0..total).flat_map(|j| (0..inside).map(move |k| (j, k))) {
-                    let pair = |j: usize, k: usize| {
-                        c64::new(all_b.re[(j, i)], -all_b.im[(j, i)])
-                            * c64::new(all_a.re[(k, i)], all_a.im[(k, i)])
-                    };
-                    // A pair with one mode outside stands for its transpose as well, which is not among (j, k).
-                    let both = if j < inside { pair(j, k) } else { pair(j, k) + pair(k, j) };
-                    let weight = both * kernel(j, k);
-                    weights.re[(j, k)] = weight.re;
-                    weights.im[(j, k)] = weight.im;
-                }
-                weights
+                let pair = |j: usize, k: usize| all_b.get(j, i).conj() * all_a.get(k, i);
+                // A pair with one mode outside stands for its transpose as well, which is not among (j, k).
+                let both = |j, k| if j < inside { pair(j, k) } else { pair(j, k) + pair(k, j) };
+                Block::from_fn(total, inside, |j, k| both(j, k) * kernel(j, k))
             };
             form.by_stiffness.push(weigh(&|j, k| spectrum.difference(j, k)));
             form.by_mass.push(weigh(&|j, k| -spectrum.weighted_difference(j, k)));
@@ -104,7 +94,7 @@ impl ModalChange {
         let mut sums = vec![c64::new(0.0, 0.0); self.phi.ncols()];
         let mut add = |weights: &[Block], small: Mat<f64>| {
             for (sum, w) in sums.iter_mut().zip(weights) {
-                *sum += c64::new(entrywise(&w.re, &small), entrywise(&w.im, &small));
+                *sum += entrywise(w, &small);
             }
         };
         if let Some(dk) = dk {
@@ -112,7 +102,7 @@ impl ModalChange {
         }
         if let Some(dm) = dm {
             add(&self.by_mass, projected(dm));
-            let of = |x: &Block| x.map(|part| times(dm, part.as_ref()));
+            let of = |x: &Block| x.map(|x| times(dm, x));
             let (phi, damped_phi) = (of(&self.phi), of(&self.damped_phi));
             for (i, sum) in sums.iter_mut().enumerate() {
                 *sum += self.psi.dot(i, &damped_phi) + self.damped_psi.dot(i, &phi);
@@ -132,14 +122,12 @@ impl ModalChange {
         }
         let inner = seen.subcols(0, self.inside);
         let quadratic = |weights: &Block| -> Vec<c64> {
-            let part = |w: &Mat<f64>| expand(seen.as_ref(), w.as_ref());
-            let (re, im) = (part(&weights.re), part(&weights.im));
-            let sum =
-                |m: &Mat<f64>, r: usize| (0..self.inside).map(|k| m[(r, k)] * inner[(r, k)]).sum::<f64>();
-            (0..rows.len()).map(|r| c64::new(sum(&re, r), sum(&im, r))).collect()
+            let seen = weights.map(|weights| expand(seen.as_ref(), weights));
+            (0..rows.len()).map(|r| (0..self.inside).map(|k| seen.get(r, k) * inner[(r, k)]).sum()).collect()
         };
         let motion = |x: &Block, i: usize, row: &SparseVector| {
-            c64::new(row.dot(x.re.col_as_slice(i)), row.dot(x.im.col_as_slice(i)))
+            let [re, im] = x.vector(i).map(|part| row.dot(part));
+            c64::new(re, im)
         };
         (0..self.phi.ncols())
             .map(|i| {
@@ -210,7 +198,7 @@ fn rest_of_spectrum(
     [phi, psi]: [&Block; 2],
 ) -> Result<(Mat<f64>, Vec<f64>)> {
     let n = operator.n();
-    let mut block = beside(&beside(&phi.re, &phi.im), &beside(&psi.re, &psi.im));
+    let mut block = beside(phi.parts(), psi.parts());
     let mut found = Mat::<f64>::zeros(n, 0);
     let mut found_momenta = Mat::<f64>::zeros(n, 0);
     for step in 0..=BLOCKS {
@@ -225,8 +213,8 @@ fn rest_of_spectrum(
             break;
         }
         let inertia = times(operator.mass, new.as_ref());
-        found = beside(&found, &new);
-        found_momenta = beside(&found_momenta, &inertia);
+        found = beside(found.as_ref(), new.as_ref());
+        found_momenta = beside(found_momenta.as_ref(), inertia.as_ref());
         if step == BLOCKS {
             break;
         }
@@ -269,15 +257,16 @@ fn orthonormal(operator: &Operator<'_>, block: Mat<f64>, before: &[f64]) -> Resu
     Ok(expand(once.as_ref(), combine.as_ref()))
 }
 
-fn entrywise(a: &Mat<f64>, b: &Mat<f64>) -> f64 {
-    (0..a.ncols()).map(|j| dot(a.col_as_slice(j), b.col_as_slice(j))).sum()
+fn entrywise(a: &Block, b: &Mat<f64>) -> c64 {
+    let column = |j: usize| a.vector(j).map(|part| dot(part, b.col_as_slice(j)));
+    (0..a.ncols()).map(column).map(|[re, im]| c64::new(re, im)).sum()
 }
 
 fn dot(x: &[f64], y: &[f64]) -> f64 {
     x.iter().zip(y).map(|(x, y)| x * y).sum()
 }
 
-fn above(a: &Mat<f64>, b: &Mat<f64>) -> Mat<f64> {
+fn above(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
     let rows = a.nrows();
     Mat::from_fn(rows + b.nrows(), a.ncols(), |i, j| if i < rows { a[(i, j)] } else { b[(i - rows, j)] })
 }

@@ -208,10 +208,8 @@ impl<'a> Operator<'a> {
         let mut blocks: Vec<&mut Block> = vec![inertia, elastic];
         blocks.extend(damped.iter_mut().chain(lossy.iter_mut()));
         blocks.iter_mut().for_each(|block| block.resize(self.n(), vectors.ncols()));
-        let (mut re, mut im): (Vec<_>, Vec<_>) =
-            blocks.into_iter().map(|Block { re, im }| (re.as_mut(), im.as_mut())).unzip();
-        self.merged.times_into(vectors.re.as_ref(), &mut re);
-        self.merged.times_into(vectors.im.as_ref(), &mut im);
+        let mut parts: Vec<_> = blocks.into_iter().map(Block::parts_mut).collect();
+        self.merged.times_into(vectors.parts(), &mut parts);
         if self.weights[0] != 1.0 {
             let weight = vec![self.weights[0]; vectors.ncols()];
             damped.iter_mut().chain(lossy.iter_mut()).for_each(|block| block.scale(&weight));
@@ -232,10 +230,9 @@ impl<'a> Operator<'a> {
             if *weight == 0.0 {
                 continue;
             }
-            let wide = |part: Option<&SparseMatrix>| {
-                part.filter(|_| k >= first).map(|a| x.map(|x| times(a, x.as_ref())))
-            };
-            let modal = damper.modal.map(|modal| x.map(|x| modal_times(modal, x.as_ref())));
+            let wide =
+                |part: Option<&SparseMatrix>| part.filter(|_| k >= first).map(|a| x.map(|x| times(a, x)));
+            let modal = damper.modal.map(|modal| x.map(|x| modal_times(modal, x)));
             for part in [wide(damper.viscous.wide()), modal].into_iter().flatten() {
                 add(damped, part, *weight);
             }
@@ -276,18 +273,18 @@ impl<'a> Operator<'a> {
                 [(factors(|sum| sum.damping), &damper.viscous), (factors(|sum| sum.loss), &damper.loss)];
             for (factors, part) in parts {
                 let Some(few) = &part.few else { continue };
-                let image = x.map(|x| few.times(x.as_ref()));
+                let image = x.map(|x| few.times(x));
                 for (j, factor) in factors.iter().enumerate() {
+                    let [re, im] = y.vector_mut(j);
                     for (k, i) in few.rows().iter().enumerate() {
-                        let value = *factor * weight * c64::new(image.re[(k, j)], image.im[(k, j)]);
-                        y.re[(*i, j)] += value.re;
-                        y.im[(*i, j)] += value.im;
+                        let value = *factor * weight * image.get(k, j);
+                        (re[*i], im[*i]) = (re[*i] + value.re, im[*i] + value.im);
                     }
                 }
             }
         }
         for (j, sum) in sums.iter().enumerate() {
-            let motion = self.interface.motions(x.re.col_as_slice(j), x.im.col_as_slice(j));
+            let motion = self.interface.motions(x.vector(j));
             let mut force = vec![ZERO; motion.len()];
             for term in &self.interface.terms {
                 let (to, from) = match side {
@@ -296,9 +293,10 @@ impl<'a> Operator<'a> {
                 };
                 force[to] += motion[from] * (sum.contact * term.stiffness + sum.damping * term.damping);
             }
+            let [re, im] = y.vector_mut(j);
             for (direction, force) in self.interface.directions.iter().zip(&force) {
-                direction.add_to(force.re, y.re.col_as_slice_mut(j));
-                direction.add_to(force.im, y.im.col_as_slice_mut(j));
+                direction.add_to(force.re, re);
+                direction.add_to(force.im, im);
             }
         }
     }
@@ -349,7 +347,7 @@ impl<'a> Operator<'a> {
 
     /// ψⱼᴴ sum xⱼ.
     fn between(&self, j: usize, left: &Block, sum: &Sum, x: &Images) -> c64 {
-        let motions = |x: &Block| self.interface.motions(x.re.col_as_slice(j), x.im.col_as_slice(j));
+        let motions = |x: &Block| self.interface.motions(x.vector(j));
         let (to, from) = (motions(left), motions(&x.vectors));
         let term = |t: &Term| {
             to[t.row].conj() * from[t.column] * (sum.contact * t.stiffness + sum.damping * t.damping)
@@ -368,11 +366,9 @@ impl<'a> Operator<'a> {
         for (weight, damper) in self.acting() {
             for (factor, part) in [(sum.damping, &damper.viscous), (sum.loss, &damper.loss)] {
                 if let Some(few) = part.few.as_ref().filter(|_| factor != ZERO) {
-                    let column = |x: &Mat<f64>| few.times(x.as_ref().subcols(j, 1));
-                    let (re, im) = (column(&x.vectors.re), column(&x.vectors.im));
+                    let image = Block::gathered(&x.vectors, &[j]).map(|x| few.times(x));
                     for (k, i) in few.rows().iter().enumerate() {
-                        let own = c64::new(left.re[(*i, j)], -left.im[(*i, j)]);
-                        form += factor * weight * own * c64::new(re[(k, 0)], im[(k, 0)]);
+                        form += factor * weight * left.get(*i, j).conj() * image.get(k, 0);
                     }
                 }
             }
@@ -394,6 +390,6 @@ fn only_first(count: usize) -> Vec<f64> {
 
 fn add(sum: &mut Option<Block>, part: Block, weight: f64) {
     let columns = part.ncols();
-    let sum = sum.get_or_insert_with(|| Block::zeros(part.re.nrows(), columns));
+    let sum = sum.get_or_insert_with(|| Block::zeros(part.nrows(), columns));
     sum.add_scaled(&vec![c64::new(weight, 0.0); columns], &part);
 }

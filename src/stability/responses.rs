@@ -97,16 +97,12 @@ const TERMS: usize = 4;
 /// modes. A few such columns reveal what the forces on all modes have in common.
 fn coupling_forces(operator: &Operator<'_>, basis: &Basis<'_>, omega: f64) -> Mat<f64> {
     let mut random = Random::new();
-    let mut mixed = || {
-        let mut part = || Mat::from_fn(basis.len(), SAMPLES, |_, _| random.next());
-        Block { re: part(), im: part() }
-    };
+    let mut mixed = || Block::of_parts(Mat::from_fn(basis.len(), 2 * SAMPLES, |_, _| random.next()));
     let s = vec![c64::new(0.0, omega); SAMPLES];
     let mut sampled = Mat::zeros(operator.n(), 4 * SAMPLES);
     for (half, side) in [Side::Right, Side::Left].into_iter().enumerate() {
         let forces = operator.coupling(side, &s, &basis.expand(&mixed()));
-        sampled.subcols_mut(2 * half * SAMPLES, SAMPLES).copy_from(&forces.re);
-        sampled.subcols_mut((2 * half + 1) * SAMPLES, SAMPLES).copy_from(&forces.im);
+        sampled.subcols_mut(2 * half * SAMPLES, 2 * SAMPLES).copy_from(forces.parts());
     }
     sampled *= faer::Scale(1.0 / omega);
     sampled

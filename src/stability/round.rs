@@ -53,10 +53,8 @@ impl Scale<'_> {
         operator.value_into(Side::Right, lambda, right, residual);
         let error = |j: usize| residual.norm(j) / (operator.size(lambda[j]) * right.vectors.norm(j));
         pairs.backward_error = columns.clone().map(error).collect();
-        for part in [&mut residual.re, &mut residual.im] {
-            *part *= faer::Scale(-1.0);
-            factor.solve_in_place(part.as_mut());
-        }
+        residual.scale(&vec![-1.0; lambda.len()]);
+        factor.solve_in_place(residual.parts_mut());
         operator.renew(correction);
         let steepness = operator.steepness(lambda, left, right);
         let rise = operator.form(lambda, left, correction);
@@ -91,11 +89,10 @@ impl Wanted {
             return;
         }
         let lambda: Vec<c64> = open.iter().map(|j| measured.lambda[*j]).collect();
-        let scaled = |block: Block| {
-            Mat::from_fn(block.re.nrows(), 2 * lambda.len(), |i, c| {
-                let part = if c % 2 == 0 { &block.re } else { &block.im };
-                part[(i, c / 2)] / lambda[c / 2].norm().max(1e-3 * scale.top)
-            })
+        let factors: Vec<f64> = lambda.iter().map(|z| 1.0 / z.norm().max(1e-3 * scale.top)).collect();
+        let scaled = |mut block: Block| {
+            block.scale(&factors);
+            block.into_parts()
         };
         self.right.push(scaled(Block::gathered(&measured.correction.vectors, &open)));
         let left = scale.operator.images(Block::gathered(&measured.left, &open));
@@ -111,7 +108,7 @@ impl Wanted {
     /// The left ones are still to be solved for: of many only as many random combinations as reveal what they have in common
     /// (Halko, Martinsson & Tropp, SIAM Rev. 53 (2011) 217), as the contact forces of many pairs come from few motions.
     pub(super) fn corrections(self, factor: &dyn SymmetricFactor) -> Mat<f64> {
-        let joined = |parts: Vec<Mat<f64>>| parts.into_iter().reduce(|a, b| beside(&a, &b));
+        let joined = |parts: Vec<Mat<f64>>| parts.into_iter().reduce(|a, b| beside(a.as_ref(), b.as_ref()));
         let (Some(right), Some(mut left)) = (joined(self.right), joined(self.left)) else {
             return Mat::zeros(factor.n(), 0);
         };
@@ -120,6 +117,6 @@ impl Wanted {
             left = expand(left.as_ref(), Mat::from_fn(left.ncols(), SKETCH, |_, _| random.next()).as_ref());
         }
         factor.solve_in_place(left.as_mut());
-        beside(&right, &left)
+        beside(right.as_ref(), left.as_ref())
     }
 }

@@ -17,7 +17,6 @@ use crate::linalg::tall::gram;
 use crate::linalg::{SparseMatrix, c64};
 use crate::modal::RealModes;
 use crate::system::System;
-use faer::Mat;
 
 /// Chosen complex modes of a system, ready to be asked how they answer changes of it.
 pub struct Sensitivity<'a> {
@@ -100,15 +99,12 @@ impl<'a> Sensitivity<'a> {
             }
             _ => None,
         };
-        let amplitudes = |x: &Block| {
-            x.map(|part| gram(times(operator.mass, part.as_ref()).as_ref(), real.shapes.as_ref()))
-        };
+        let amplitudes = |x: &Block| x.map(|x| gram(real.shapes.as_ref(), times(operator.mass, x).as_ref()));
         let (a, b) = (amplitudes(&phi), amplitudes(&psi));
         let by_ratio = (0..lambda.len())
             .map(|i| {
-                let at = |x: &Block, k: usize| c64::new(x.re[(i, k)], x.im[(i, k)]);
                 let weight = |k: usize| 2.0 * real.eigenvalues[k].max(0.0).sqrt();
-                (0..real.len()).map(|k| at(&b, k).conj() * at(&a, k) * weight(k)).collect()
+                (0..real.len()).map(|k| b.get(k, i).conj() * a.get(k, i) * weight(k)).collect()
             })
             .collect();
         Ok(Sensitivity { operator, nearby, lambda, phi, psi, steepness, modal, by_ratio })
@@ -249,7 +245,7 @@ impl<'a> Sensitivity<'a> {
     /// ψᴴ W (k + λ c) Wᵀ φ of the `other` interface less that of the own one.
     fn rise_of_interface(&self, other: &Interface<'_>) -> Vec<c64> {
         let of = |interface: &Interface<'_>, j: usize| {
-            let moved = |x: &Block| interface.motions(x.re.col_as_slice(j), x.im.col_as_slice(j));
+            let moved = |x: &Block| interface.motions(x.vector(j));
             let (phi, psi) = (moved(&self.phi), moved(&self.psi));
             let terms = interface.terms.iter().map(|term| {
                 let force = c64::new(term.stiffness, 0.0) + self.lambda[j] * term.damping;
@@ -285,18 +281,17 @@ fn sharpen(
         let residual = operator.value(side, lambda, &operator.images(vectors.clone()));
         let mut better = vectors.clone();
         for (j, factor) in factors.iter().enumerate() {
-            let mut z = Mat::from_fn(residual.re.nrows(), 2, |i, part| {
-                if part == 0 { residual.re[(i, j)] } else { residual.im[(i, j)] }
-            });
-            factor.solve_in_place(z.as_mut());
-            let subtract = |x: &mut [f64], z: &[f64]| x.iter_mut().zip(z).for_each(|(x, z)| *x -= z);
-            subtract(better.re.col_as_slice_mut(j), z.col_as_slice(0));
-            subtract(better.im.col_as_slice_mut(j), z.col_as_slice(1));
+            let mut z = Block::gathered(&residual, &[j]);
+            factor.solve_in_place(z.parts_mut());
+            for (x, z) in better.vector_mut(j).into_iter().zip(z.vector(0)) {
+                x.iter_mut().zip(z).for_each(|(x, z)| *x -= z);
+            }
         }
         let after = operator.value(side, lambda, &operator.images(better.clone()));
         for j in (0..lambda.len()).filter(|j| after.norm(*j) < residual.norm(*j)) {
-            vectors.re.col_as_slice_mut(j).copy_from_slice(better.re.col_as_slice(j));
-            vectors.im.col_as_slice_mut(j).copy_from_slice(better.im.col_as_slice(j));
+            for (x, better) in vectors.vector_mut(j).into_iter().zip(better.vector(j)) {
+                x.copy_from_slice(better);
+            }
         }
     }
     Ok(())

@@ -94,7 +94,7 @@ impl<'a, T: Field, L: Lanes<T>, I: Iterator<Item = Front<'a, T>>, const UP: bool
     fn with_simd<S: Simd>(mut self, _: S) {
         for front in self.fronts {
             if UP {
-                front.lower.up(front.rows, &mut self.rows);
+                front.lower.up::<S, L>(front.rows, &mut self.rows);
             } else {
                 front.apply_pivots(self.rows.own, self.rows.base);
                 front.lower.down::<S, L>(front.rows, &mut self.rows);

@@ -13,8 +13,9 @@
 //!
 //! with D_B the inverse of the structure's part of Q_B and N = I + W_BᵀD_BW_B κ. Where ρ = q ‖E‖ < 1 (‖·‖ relative to A
 //! on both sides) P_ZZ − tE is regular for every t in \[0, 1\], so that det Q and det Q_B wind alike. The norms need
-//! ZᵀF (ZᵀAZ)⁻¹FᵀZ = Fᵀ(A⁻¹ − B(BᵀAB)⁻¹Bᵀ)F of the columns F = \[MB DB H_rB W\] only: half a block solve
-//! ([`compliances`]) of F − AB(BᵀAB)⁻¹BᵀF.
+//! S = ZᵀF (ZᵀAZ)⁻¹FᵀZ = Fᵀ(A⁻¹ − B(BᵀAB)⁻¹Bᵀ)F of the columns F = \[MB DB H_rB W\] only. As A⁻¹ − B(BᵀAB)⁻¹Bᵀ takes AB
+//! to zero, F may first lose what the real modes Φ make of it: with F' = F − AΦ(ΦᵀAΦ)⁻¹ΦᵀF nothing small is lost in what is
+//! resonant, and S = F'ᵀA⁻¹F' − F'ᵀB(BᵀAB)⁻¹BᵀF' is half a block solve ([`compliances`]) less a small matrix.
 
 use super::reduced::DampingParts;
 use super::rows::Rows;
@@ -26,9 +27,13 @@ use crate::linalg::tall::{combine, panels};
 use crate::linalg::{SparseMatrix, c64};
 use crate::stability::analysis::Analysis;
 use crate::stability::damper::{Damper, Part};
+use faer::linalg::solvers::Solve;
 use faer::{Accum, Mat};
 use std::f64::consts::TAU;
 use std::sync::Arc;
+
+/// The rounding of S, relative to the largest entry of F'ᵀA⁻¹F'.
+const ROUNDING: f64 = 1e-14;
 
 /// Γ(s) in the A-norm of Z, and what q(s) needs.
 #[derive(Debug)]
@@ -104,34 +109,39 @@ impl Remainder {
             forces.subcols_mut(start, width).copy_from(inertia * faer::Scale(top));
         }
         few.write(forces.subcols_mut(beyond, f - beyond));
+        // BᵀF' and F': MB has nothing of the real modes, to which the others are orthogonal.
         let mut share = Mat::zeros(m, f);
         share.subcols_mut(0, beyond).copy_from(basis.mass.subcols(first, beyond) * faer::Scale(top));
         share.subcols_mut(beyond, f - beyond).copy_from(few.seen_by(basis.vectors.as_ref()));
-        // F less AB (BᵀAB)⁻¹ BᵀF, what the basis takes of it, with BᵀAB = diag(θ − σ) for the Ritz vectors: before the
-        // solution, so that what is small is not lost in what is resonant.
-        let mut taken = product(x.transpose(), share.as_ref());
-        for i in 0..m {
-            (0..f).for_each(|j| taken[(i, j)] /= theta[i] - shift);
-        }
+        let small = &basis.stiffness - &basis.mass * faer::Scale(shift);
+        let of_modes = small.submatrix(0, 0, first, first).partial_piv_lu();
+        let taken = of_modes.solve(share.submatrix(0, beyond, first, f - beyond));
         let a = add_scaled(&[(1.0, &*operator.stiffness), (-shift, operator.mass)]);
-        let taken = product(x.as_ref(), taken.as_ref());
-        for (start, width) in panels(0..m) {
+        for (start, width) in panels(0..first) {
             let of_basis = times(&a, basis.vectors.subcols(start, width));
-            combine(forces.as_mut(), Accum::Add, of_basis.as_ref(), taken.subrows(start, width), -1.0);
+            let forces = forces.subcols_mut(beyond, f - beyond);
+            combine(forces, Accum::Add, of_basis.as_ref(), taken.subrows(start, width), -1.0);
         }
         drop(a);
-        let square = compliances(analysis.factor, forces.as_mut());
+        let mut rest = share.subcols_mut(beyond, f - beyond);
+        rest -= product(small.subcols(0, first), taken.as_ref());
+        let mut square = compliances(analysis.factor, forces.as_mut());
         drop(forces);
+        // BᵀAB = diag(θ − σ) for the Ritz vectors.
+        let seen = product(x.transpose(), share.as_ref());
+        let weighted = Mat::from_fn(m, f, |i, j| seen[(i, j)] / (theta[i] - shift));
+        let before = (0..f).fold(0.0f64, |largest, j| largest.max(square[(j, j)].abs()));
+        square -= product(seen.transpose(), weighted.as_ref());
         let (values, vectors) = symmetric_eigen(square.as_ref())?;
-        let largest = values.last().copied().unwrap_or(0.0).max(0.0);
-        let kept: Vec<usize> = (0..f).filter(|j| values[*j] > 1e-24 * largest).collect();
-        // A root of it, one row a column of F: those of the few directions stand for all that they span.
-        let of_few = Mat::from_fn(f, kept.len(), |i, j| vectors[(i, kept[j])] * values[kept[j]].sqrt());
+        // A root of it, one row a column of F, made larger by its rounding: those of the few directions stand for all that
+        // they span.
+        let size = |value: f64| (value.max(0.0) + ROUNDING * before).sqrt();
+        let of_few = Mat::from_fn(f, f, |i, j| vectors[(i, j)] * size(values[j]));
         let spanned = product(coefficients.transpose(), of_few.as_ref().subrows(beyond, f - beyond));
         let root =
             |row: usize, j: usize| if row < beyond { of_few[(row, j)] } else { spanned[(row - beyond, j)] };
-        let f = beyond + behind;
-        let missed = Mat::from_fn(active.len(), kept.len(), |i, j| root(f - active.len() + i, j));
+        let all = beyond + behind;
+        let missed = Mat::from_fn(active.len(), f, |i, j| root(all - active.len() + i, j));
         let mut terms = Vec::new();
         let Damper { viscous, loss, .. } = &operator.dampers[0];
         let [(alpha, beta), (alpha_h, beta_h)] =
@@ -145,12 +155,11 @@ impl Remainder {
         let of_loss = Factor { square: 0.0, linear: 0.0, constant: c64::new(0.0, 1.0) };
         // The rows of F that an image of the basis has, and the first vector that has one.
         let mut start = beyond;
-        let inertia =
-            Mat::from_fn(m, kept.len(), |i, j| if i < first { 0.0 } else { root(i - first, j) / top });
+        let inertia = Mat::from_fn(m, f, |i, j| if i < first { 0.0 } else { root(i - first, j) / top });
         let mut images = vec![(of_mass, inertia)];
         for (image, scale, kind) in [(&parts.damped, 1.0, of_damping), (&parts.lossy, top, of_loss)] {
             if let Some(image) = image {
-                let rows = Mat::from_fn(m, kept.len(), |i, j| scale * root(start + i, j));
+                let rows = Mat::from_fn(m, f, |i, j| scale * root(start + i, j));
                 start += image.values.ncols();
                 images.push((kind, rows));
             }
