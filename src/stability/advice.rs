@@ -29,11 +29,7 @@ impl Sensitivity<'_> {
             .map(|j| {
                 let (s, slope) = (self.lambda[j], self.steepness[j]);
                 let rate = |(r, row): (usize, &SparseVector)| {
-                    let moved = |x: &super::block::Block| {
-                        let [re, im] = x.vector(j).map(|part| row.dot(part));
-                        c64::new(re, im)
-                    };
-                    let a = moved(&self.psi).conj() * moved(&self.phi);
+                    let a = self.psi.along(j, row).conj() * self.phi.along(j, row);
                     let zero = c64::new(0.0, 0.0);
                     let [by_k, by_m] = modal.as_ref().map_or([zero; 2], |modal| modal[j][r]);
                     PointRates {

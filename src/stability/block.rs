@@ -1,7 +1,7 @@
 //! Blocks of complex vectors, real and imaginary parts apart, so that real matrices and factors work on all of them at once.
 
-use crate::linalg::c64;
 use crate::linalg::sparse::dot;
+use crate::linalg::{SparseVector, c64};
 use faer::{ColMut, Mat, MatMut, MatRef};
 use rayon::prelude::*;
 
@@ -134,6 +134,12 @@ impl Block {
     pub(super) fn column(&self, j: usize) -> Vec<c64> {
         let [re, im] = self.vector(j);
         re.iter().zip(im).map(|(a, b)| c64::new(*a, *b)).collect()
+    }
+
+    /// dᵀx of vector j.
+    pub(super) fn along(&self, j: usize, d: &SparseVector) -> c64 {
+        let [re, im] = self.vector(j).map(|part| d.dot(part));
+        c64::new(re, im)
     }
 
     /// self\[:, j\]ᴴ x\[:, j\].

@@ -125,15 +125,11 @@ impl ModalChange {
             let seen = weights.map(|weights| expand(seen.as_ref(), weights));
             (0..rows.len()).map(|r| (0..self.inside).map(|k| seen.get(r, k) * inner[(r, k)]).sum()).collect()
         };
-        let motion = |x: &Block, i: usize, row: &SparseVector| {
-            let [re, im] = x.vector(i).map(|part| row.dot(part));
-            c64::new(re, im)
-        };
         (0..self.phi.ncols())
             .map(|i| {
                 let (by_k, by_m) = (quadratic(&self.by_stiffness[i]), quadratic(&self.by_mass[i]));
                 let at = |r: usize| {
-                    let of = |x: &Block| motion(x, i, &rows[r]);
+                    let of = |x: &Block| x.along(i, &rows[r]);
                     let direct = of(&self.psi).conj() * of(&self.damped_phi)
                         + of(&self.damped_psi).conj() * of(&self.phi);
                     [by_k[r], by_m[r] + direct]

@@ -366,9 +366,10 @@ impl<'a> Operator<'a> {
         for (weight, damper) in self.acting() {
             for (factor, part) in [(sum.damping, &damper.viscous), (sum.loss, &damper.loss)] {
                 if let Some(few) = part.few.as_ref().filter(|_| factor != ZERO) {
-                    let image = Block::gathered(&x.vectors, &[j]).map(|x| few.times(x));
+                    let parts = x.vectors.parts();
+                    let [re, im] = [j, left.ncols() + j].map(|part| few.times(parts.subcols(part, 1)));
                     for (k, i) in few.rows().iter().enumerate() {
-                        form += factor * weight * left.get(*i, j).conj() * image.get(k, 0);
+                        form += factor * weight * left.get(*i, j).conj() * c64::new(re[(k, 0)], im[(k, 0)]);
                     }
                 }
             }

@@ -14,8 +14,8 @@
 //! with D_B the inverse of the structure's part of Q_B and N = I + W_BᵀD_BW_B κ. Where ρ = q ‖E‖ < 1 (‖·‖ relative to A
 //! on both sides) P_ZZ − tE is regular for every t in \[0, 1\], so that det Q and det Q_B wind alike. The norms need
 //! S = ZᵀF (ZᵀAZ)⁻¹FᵀZ = Fᵀ(A⁻¹ − B(BᵀAB)⁻¹Bᵀ)F of the columns F = \[MB DB H_rB W\] only. As A⁻¹ − B(BᵀAB)⁻¹Bᵀ takes AB
-//! to zero, F may first lose what the real modes Φ make of it: with F' = F − AΦ(ΦᵀAΦ)⁻¹ΦᵀF nothing small is lost in what is
-//! resonant, and S = F'ᵀA⁻¹F' − F'ᵀB(BᵀAB)⁻¹BᵀF' is half a block solve ([`compliances`]) less a small matrix.
+//! to zero, F may first lose what the real modes Φ make of it: with F' = F − AΦ diag(ΦᵀAΦ)⁻¹ΦᵀF nothing small is lost in what
+//! is resonant, and S = F'ᵀA⁻¹F' − F'ᵀB(BᵀAB)⁻¹BᵀF' is half a block solve ([`compliances`]) less a small matrix.
 
 use super::reduced::DampingParts;
 use super::rows::Rows;
@@ -27,7 +27,6 @@ use crate::linalg::tall::{combine, panels};
 use crate::linalg::{SparseMatrix, c64};
 use crate::stability::analysis::Analysis;
 use crate::stability::damper::{Damper, Part};
-use faer::linalg::solvers::Solve;
 use faer::{Accum, Mat};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -109,13 +108,12 @@ impl Remainder {
             forces.subcols_mut(start, width).copy_from(inertia * faer::Scale(top));
         }
         few.write(forces.subcols_mut(beyond, f - beyond));
-        // BᵀF' and F': MB has nothing of the real modes, to which the others are orthogonal.
+        // BᵀF', and F': MB has nothing of the real modes, to which the others are orthogonal.
         let mut share = Mat::zeros(m, f);
         share.subcols_mut(0, beyond).copy_from(basis.mass.subcols(first, beyond) * faer::Scale(top));
         share.subcols_mut(beyond, f - beyond).copy_from(few.seen_by(basis.vectors.as_ref()));
         let small = &basis.stiffness - &basis.mass * faer::Scale(shift);
-        let of_modes = small.submatrix(0, 0, first, first).partial_piv_lu();
-        let taken = of_modes.solve(share.submatrix(0, beyond, first, f - beyond));
+        let taken = Mat::from_fn(first, f - beyond, |i, j| share[(i, beyond + j)] / small[(i, i)]);
         let a = add_scaled(&[(1.0, &*operator.stiffness), (-shift, operator.mass)]);
         for (start, width) in panels(0..first) {
             let of_basis = times(&a, basis.vectors.subcols(start, width));
