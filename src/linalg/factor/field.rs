@@ -93,6 +93,37 @@ impl Field for c64 {
     }
 }
 
+/// A row of one.
+impl<T: Field> Lanes<T> for T {
+    const COLUMNS: usize = 1;
+    const ZERO: Self = <T as sparse::Scalar>::ZERO;
+
+    #[inline(always)]
+    fn get(&self, _: usize) -> T {
+        *self
+    }
+
+    #[inline(always)]
+    fn set(&mut self, _: usize, value: T) {
+        *self = value;
+    }
+
+    #[inline(always)]
+    fn is_zero(&self) -> bool {
+        *self == <T as sparse::Scalar>::ZERO
+    }
+
+    #[inline(always)]
+    fn add(&mut self, other: &Self) {
+        *self += *other;
+    }
+
+    #[inline(always)]
+    fn subtract(&mut self, l: T, y: &Self) {
+        *self = self.minus(l, *y);
+    }
+}
+
 impl<const K: usize> Lanes<f64> for [f64; K] {
     const COLUMNS: usize = K;
     const ZERO: Self = [0.0; K];

@@ -10,41 +10,21 @@ use crate::linalg::tall::gram;
 use faer::{Mat, MatMut};
 use rayon::prelude::*;
 
-/// Which part of a solution.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Half {
-    /// L⁻¹PS b.
-    Forward,
-    /// B⁻¹ y.
-    Pivots,
-}
-
 impl<T: Field> Multifrontal<T> {
-    /// The half of every column, as many together as there are lanes.
-    pub(super) fn each_half(&self, rhs: MatMut<'_, T>, half: Half) {
-        assert!(rhs.nrows() == self.n(), "right-hand sides of the wrong length");
+    /// L⁻¹PS b of every column, as many together as there are lanes.
+    pub(super) fn halves(&self, rhs: MatMut<'_, T>) {
         rhs.par_col_chunks_mut(COLUMNS_A_TASK).for_each(|columns| match columns.ncols() {
-            1 => self.half::<T::Lanes<1>>(columns, half),
-            2..=4 => self.half::<T::Lanes<4>>(columns, half),
-            5..=8 => self.half::<T::Wide<8>>(columns, half),
-            _ => self.half::<T::Wide<COLUMNS_A_TASK>>(columns, half),
+            1 => self.half::<T::Lanes<1>>(columns),
+            2..=4 => self.half::<T::Lanes<4>>(columns),
+            5..=8 => self.half::<T::Wide<8>>(columns),
+            _ => self.half::<T::Wide<COLUMNS_A_TASK>>(columns),
         });
     }
 
-    fn half<L: Lanes<T>>(&self, mut rhs: MatMut<'_, T>, half: Half) {
+    fn half<L: Lanes<T>>(&self, mut rhs: MatMut<'_, T>) {
         with_room(self.n(), L::ZERO, |x| {
-            match half {
-                Half::Forward => {
-                    self.lay(rhs.as_ref(), x);
-                    self.substitution().up(x);
-                }
-                Half::Pivots => {
-                    let b = rhs.as_ref();
-                    let rows = x.par_iter_mut().enumerate().with_min_len(ROWS_A_TASK);
-                    rows.for_each(|(i, x)| (0..b.ncols()).for_each(|k| x.set(k, b[(i, k)])));
-                    self.substitution().pivots(x);
-                }
-            }
+            self.lay(rhs.as_ref(), x);
+            self.substitution().up(x);
             rhs.as_mut().par_row_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, mut rhs)| {
                 let x = &x[task * ROWS_A_TASK..];
                 for (k, column) in rhs.as_mut().col_iter_mut().enumerate() {

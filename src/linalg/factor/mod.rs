@@ -34,7 +34,6 @@ use crate::error::{Error, Result};
 use faer::sparse::{SparseColMat, SymbolicSparseColMatRef};
 use faer::{ColRef, Mat, MatMut, MatRef};
 use field::Lanes;
-use halves::Half;
 use numeric::{Branch, Kept};
 use rayon::prelude::*;
 use solve::Substitution;
@@ -91,7 +90,7 @@ pub trait SymmetricFactor<T: Field = f64>: Debug + Send + Sync {
     /// The columns y of `rhs` become B⁻¹y.
     ///
     /// # Panics
-    /// When `rhs` has not n rows.
+    /// When `rhs` has not n rows, or a column is in pieces.
     fn pivots_in_place(&self, rhs: MatMut<'_, T>);
 
     /// The analysis of the pattern, which serves other matrices of the same one.
@@ -313,11 +312,16 @@ impl<T: Field> SymmetricFactor<T> for Multifrontal<T> {
     }
 
     fn forward_in_place(&self, rhs: MatMut<'_, T>) {
-        self.each_half(rhs, Half::Forward);
+        assert!(rhs.nrows() == self.n(), "right-hand sides of the wrong length");
+        self.halves(rhs);
     }
 
     fn pivots_in_place(&self, rhs: MatMut<'_, T>) {
-        self.each_half(rhs, Half::Pivots);
+        assert!(rhs.nrows() == self.n(), "right-hand sides of the wrong length");
+        rhs.par_col_iter_mut().for_each(|column| {
+            let column = column.try_as_col_major_mut().expect("columns in one piece");
+            self.substitution().pivots(column.as_slice_mut());
+        });
     }
 
     fn symbolic(&self) -> SymbolicFactor {
