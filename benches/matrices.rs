@@ -115,6 +115,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("matrices CASE [--threads N] [--vectors FILE]: see benches/run");
         return Ok(());
     };
+    // As the program does it, so that the numbers do not depend on the threads.
+    faer::set_global_parallelism(faer::Par::Seq);
     if let Some(threads) = option("--threads") {
         rayon::ThreadPoolBuilder::new().num_threads(threads.parse()?).build_global()?;
     }
