@@ -1,5 +1,6 @@
 //! Singular values of a small matrix.
 
+use crate::linalg::orthogonal::{ThinSvd, thin_svd};
 use faer::Mat;
 use nalgebra::DMatrix;
 
@@ -15,17 +16,15 @@ impl Svd {
     pub(super) fn new(a: &DMatrix<f64>) -> Self {
         let [rows, columns] = [a.nrows(), a.ncols()];
         let shorter = rows.min(columns);
-        let finite = a.iter().all(|x| x.is_finite());
         let a = Mat::from_fn(rows, columns, |i, j| a[(i, j)]);
-        let Some(svd) = finite.then(|| a.thin_svd().ok()).flatten() else {
+        let Some(ThinSvd { left, values, right }) = thin_svd(a.as_ref()) else {
             let (u, v) = (DMatrix::zeros(rows, shorter), DMatrix::zeros(columns, shorter));
             return Svd { u, s: vec![f64::NAN; shorter], v };
         };
-        let (u, v) = (svd.U(), svd.V());
         Svd {
-            u: DMatrix::from_fn(rows, shorter, |i, j| u[(i, j)]),
-            s: svd.S().column_vector().iter().copied().collect(),
-            v: DMatrix::from_fn(columns, shorter, |i, j| v[(i, j)]),
+            u: DMatrix::from_fn(rows, shorter, |i, j| left[(i, j)]),
+            s: values,
+            v: DMatrix::from_fn(columns, shorter, |i, j| right[(i, j)]),
         }
     }
 }

@@ -132,8 +132,6 @@ fn complain(text: impl Display) {
 }
 
 fn set_threads(threads: Option<usize>) -> Result<()> {
-    // Small dense problems on one thread each: how faer shares the larger of them out changes their last digits.
-    faer::set_global_parallelism(faer::Par::Seq);
     let Some(threads) = threads else { return Ok(()) };
     if threads == 0 {
         return Err(Error::input(Fault::new("--threads", "0", "at least 1")));

@@ -8,12 +8,17 @@ use faer::diag::Diag;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_scratch};
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
+use faer::traits::math_utils::one;
+use faer::traits::{ComplexField, Conjugate};
 use faer::{Accum, Mat, MatRef, Par};
 
 /// C = A B on one thread.
-pub fn product(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
+pub fn product<T: ComplexField>(
+    a: MatRef<'_, impl Conjugate<Canonical = T>>,
+    b: MatRef<'_, impl Conjugate<Canonical = T>>,
+) -> Mat<T> {
     let mut c = Mat::zeros(a.nrows(), b.ncols());
-    faer::linalg::matmul::matmul(c.as_mut(), Accum::Replace, a, b, 1.0, Par::Seq);
+    faer::linalg::matmul::matmul(c.as_mut(), Accum::Replace, a, b, one(), Par::Seq);
     c
 }
 
@@ -118,45 +123,6 @@ pub fn cholesky(b: MatRef<'_, f64>) -> Result<Mat<f64>> {
     Ok(l)
 }
 
-/// A⁻¹ and det A / |det A| of a square complex matrix, by LU with partial pivoting; `None` when a pivot is zero or not
-/// finite. The pivots are never multiplied by their size, so that nothing overflows.
-pub fn inverse_and_phase(mut a: Mat<c64>) -> Option<(Mat<c64>, c64)> {
-    use faer::linalg::lu::partial_pivoting::{factor, inverse};
-    let n = a.nrows();
-    let mut result = Mat::zeros(n, n);
-    if n == 0 {
-        return Some((result, c64::new(1.0, 0.0)));
-    }
-    let (mut forward, mut backward) = (vec![0usize; n], vec![0usize; n]);
-    let scratch = factor::lu_in_place_scratch::<usize, c64>(n, n, Par::Seq, Default::default());
-    let (info, permutation) = factor::lu_in_place(
-        a.as_mut(),
-        &mut forward,
-        &mut backward,
-        Par::Seq,
-        MemStack::new(&mut MemBuffer::new(scratch)),
-        Default::default(),
-    );
-    let mut phase = c64::new(if info.transposition_count % 2 == 0 { 1.0 } else { -1.0 }, 0.0);
-    for i in 0..n {
-        let size = a[(i, i)].norm();
-        if !(size > 0.0 && size.is_finite()) {
-            return None;
-        }
-        phase *= a[(i, i)] / size;
-    }
-    let scratch = inverse::inverse_scratch::<usize, c64>(n, Par::Seq);
-    inverse::inverse(
-        result.as_mut(),
-        a.as_ref(),
-        a.as_ref(),
-        permutation,
-        Par::Seq,
-        MemStack::new(&mut MemBuffer::new(scratch)),
-    );
-    Some((result, phase / phase.norm()))
-}
-
 /// MAC = |aᴴb|² / (aᴴa · bᴴb) in [0, 1]: 1 for the same shape, 0 for orthogonal ones (or a zero vector).
 ///
 /// Allemang, Sound and Vibration 37 (2003) 14.
@@ -209,22 +175,6 @@ mod tests {
                 assert!(residual.norm_l2() < 1e-13, "{scale} {k} {}", residual.norm_l2());
             }
         }
-    }
-
-    #[test]
-    fn inverse_and_phase_are_those_of_the_determinant() {
-        let (re, im) =
-            (samples::random_symmetric(9, 3).to_dense(), samples::random_symmetric(9, 4).to_dense());
-        let a =
-            Mat::from_fn(9, 9, |i, j| c64::new(re[(i, j)] + (i * j) as f64, im[(i, j)] - j as f64) * 1e60);
-        let (inverse, phase) = inverse_and_phase(a.clone()).unwrap();
-        let identity = Mat::from_fn(9, 9, |i, j| c64::new(f64::from(i == j), 0.0));
-        assert!((&a * &inverse - identity).norm_max() < 1e-10);
-        let small = a * faer::Scale(c64::new(1e-60, 0.0));
-        let det = small.determinant();
-        assert!((phase - det / det.norm()).norm() < 1e-12, "{phase} {det}");
-        assert!(inverse_and_phase(Mat::zeros(2, 2)).is_none());
-        assert_eq!(inverse_and_phase(Mat::zeros(0, 0)).unwrap().1, c64::new(1.0, 0.0));
     }
 
     #[test]

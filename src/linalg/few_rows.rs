@@ -52,7 +52,12 @@ impl FewRows {
     /// # Panics
     /// When x has fewer rows than D.
     pub fn times(&self, x: MatRef<'_, f64>) -> Mat<f64> {
-        times(&self.own, picked(x, &self.rows).as_ref())
+        self.times_picked(picked(x, &self.rows).as_ref())
+    }
+
+    /// [`FewRows::times`], given those rows of x only.
+    pub fn times_picked(&self, rows_of_x: MatRef<'_, f64>) -> Mat<f64> {
+        times(&self.own, rows_of_x)
     }
 
     /// y += D x.

@@ -7,8 +7,10 @@
 //! * [`assignment`]: the pairs of least total cost.
 //! * [`dense`]: small symmetric eigenproblems and the likeness of two vectors.
 //! * [`few_rows`]: symmetric matrices with entries in a few rows.
+//! * [`lu`]: small dense matrices factorised.
 //! * [`matrix_market`]: matrices from and to files.
 //! * [`merged`]: products with several sparse matrices at once.
+//! * [`orthogonal`]: orthogonal factors of small dense matrices.
 //! * [`proportional`]: a matrix as α M + β K and a rest.
 //! * [`random`]: start vectors that are the same in every run.
 //! * [`tall`]: products of tall matrices, such as a set of modes.
@@ -22,8 +24,10 @@ pub mod factor;
 pub mod few_rows;
 pub mod lanczos;
 mod lanes;
+pub mod lu;
 pub mod matrix_market;
 pub mod merged;
+pub mod orthogonal;
 pub mod proportional;
 pub mod random;
 mod room;

@@ -7,15 +7,17 @@ mod real;
 
 use super::c64;
 use super::dense::product;
+use super::sparse::columns;
 use faer::traits::ComplexField;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Columns that go through the matrices together where there may be many.
 const PANEL: usize = 32;
 
 /// The columns of a wide matrix a few at a time, as first column and width, so that little memory is held beside them.
-pub fn panels(columns: std::ops::Range<usize>) -> impl Iterator<Item = (usize, usize)> {
+pub fn panels(columns: Range<usize>) -> impl Iterator<Item = (usize, usize)> {
     let end = columns.end;
     columns.step_by(PANEL).map(move |start| (start, PANEL.min(end - start)))
 }
@@ -40,7 +42,11 @@ pub trait Entry: ComplexField {
 
 impl Entry for f64 {
     fn gram(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
-        real::gram(a, b).unwrap_or_else(|| gram_by_ranges(a, b))
+        assert!(a.nrows() == b.nrows(), "as many rows");
+        match (columns(a), columns(b)) {
+            (Some(columns), Some(others)) => real::gram(a.nrows(), &columns, &others),
+            _ => gram_by_ranges(a, b),
+        }
     }
 
     fn combine(
@@ -50,7 +56,10 @@ impl Entry for f64 {
         c: MatRef<'_, f64>,
         factor: f64,
     ) {
-        if !real::combine(vec![(y.as_mut(), c)], accumulate, v, factor) {
+        let parts = vec![(y.as_mut(), c)];
+        if !columns(v)
+            .is_some_and(|v_columns| real::combine(parts, accumulate, v.nrows(), &v_columns, factor))
+        {
             combine_by_ranges(y, accumulate, v, c, factor);
         }
     }
@@ -76,11 +85,64 @@ pub fn combine<T: Entry>(y: MatMut<'_, T>, accumulate: Accum, v: MatRef<'_, T>, 
     T::combine(y, accumulate, v, c, factor);
 }
 
-/// Yₖ = V Cₖ for several: of a tall V most of the time is that of reading it.
-pub fn expand_into(mut parts: Vec<(MatMut<'_, f64>, MatRef<'_, f64>)>, v: MatRef<'_, f64>) {
-    let again = parts.iter_mut().map(|(y, c)| (y.as_mut(), *c)).collect();
-    if !real::combine(again, Accum::Replace, v, 1.0) {
-        parts.into_iter().for_each(|(y, c)| combine_by_ranges(y, Accum::Replace, v, c, 1.0));
+/// The columns of a tall real matrix V, which may lie in several places.
+#[derive(Debug, Clone)]
+pub struct Columns<'a> {
+    rows: usize,
+    each: Vec<&'a [f64]>,
+}
+
+impl<'a> Columns<'a> {
+    /// Those of several matrices, one behind the other.
+    ///
+    /// # Panics
+    /// When the matrices have different numbers of rows, or a column is in pieces.
+    pub fn of<const N: usize>(parts: [MatRef<'a, f64>; N]) -> Self {
+        let rows = parts.first().map_or(0, |part| part.nrows());
+        assert!(parts.iter().all(|part| part.nrows() == rows), "as many rows");
+        Columns {
+            rows,
+            each: parts.iter().flat_map(|part| columns(*part).expect("columns in one piece")).collect(),
+        }
+    }
+
+    /// Some of them.
+    pub fn range(&self, columns: Range<usize>) -> Self {
+        Columns { rows: self.rows, each: self.each[columns].to_vec() }
+    }
+
+    /// One of them.
+    pub fn column(&self, j: usize) -> &'a [f64] {
+        self.each[j]
+    }
+
+    /// VᵀB.
+    ///
+    /// # Panics
+    /// When B has another number of rows, or a column in pieces.
+    pub fn gram(&self, b: MatRef<'_, f64>) -> Mat<f64> {
+        assert!(b.nrows() == self.rows, "as many rows");
+        real::gram(self.rows, &self.each, &columns(b).expect("columns in one piece"))
+    }
+
+    /// Yₖ (+)= factor · V Cₖ for several, V being read once: most of the time is that of reading it.
+    ///
+    /// # Panics
+    /// When the shapes disagree, or a column of Yₖ is in pieces.
+    pub fn combine(&self, parts: Vec<(MatMut<'_, f64>, MatRef<'_, f64>)>, accumulate: Accum, factor: f64) {
+        assert!(real::combine(parts, accumulate, self.rows, &self.each, factor), "columns in one piece");
+    }
+
+    /// V C as a new matrix.
+    pub fn expand(&self, c: MatRef<'_, f64>) -> Mat<f64> {
+        let mut y = Mat::zeros(self.rows, c.ncols());
+        self.combine(vec![(y.as_mut(), c)], Accum::Replace, 1.0);
+        y
+    }
+
+    /// Some rows of V.
+    pub fn picked(&self, rows: &[usize]) -> Mat<f64> {
+        Mat::from_fn(rows.len(), self.each.len(), |i, j| self.each[j][rows[i]])
     }
 }
 

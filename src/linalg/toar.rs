@@ -10,7 +10,10 @@
 //! (Krylov–Schur), and shrink U to the rank that is left.
 
 use super::c64;
+use super::dense::product;
+use super::orthogonal::{ThinSvd, thin_svd};
 use super::tall::{combine, expand, gram};
+use super::unsymmetric::complex_eigenpairs;
 use crate::error::{Error, Result};
 use faer::{Accum, Mat, MatRef, Scale};
 
@@ -163,9 +166,9 @@ impl<'a> Krylov<'a> {
             let before = x.norm_l2().hypot(y.norm_l2());
             let mut t = Mat::<c64>::zeros(k + 1, 1);
             for _ in 0..2 {
-                let h = self.s[0].adjoint() * &x + self.s[1].adjoint() * &y;
-                x -= &self.s[0] * &h;
-                y -= &self.s[1] * &h;
+                let h = product(self.s[0].adjoint(), x.as_ref()) + product(self.s[1].adjoint(), y.as_ref());
+                x -= product(self.s[0].as_ref(), h.as_ref());
+                y -= product(self.s[1].as_ref(), h.as_ref());
                 t += h;
             }
             let left = x.norm_l2().hypot(y.norm_l2());
@@ -190,20 +193,13 @@ impl<'a> Krylov<'a> {
 
     /// Ritz pairs, largest |θ| first.
     fn ritz(&self) -> Result<Vec<Ritz>> {
-        let eigen = self.h.eigen().map_err(|_| {
-            Error::analysis(
-                "two-level Arnoldi",
-                format!("the projected problem of size {} did not converge", self.len()),
-                "Check the model for numbers out of any range",
-            )
-        })?;
-        let v = eigen.U();
+        let (values, v) = complex_eigenpairs(self.h.as_ref())?;
         let mut ritz: Vec<Ritz> = (0..self.len())
             .map(|j| {
                 let norm = v.col(j).norm_l2();
                 let y: Vec<c64> = (0..self.len()).map(|i| v[(i, j)] / norm).collect();
                 let residual = y.iter().zip(&self.b).map(|(y, b)| y * b).sum::<c64>().norm();
-                Ritz { theta: eigen.S()[j], y, residual }
+                Ritz { theta: values[j], y, residual }
             })
             .collect();
         ritz.sort_by(|a, b| b.theta.norm().total_cmp(&a.theta.norm()));
@@ -214,15 +210,15 @@ impl<'a> Krylov<'a> {
     fn restart(&mut self, ritz: &[Ritz], keep: usize) {
         let k = self.len();
         let keep = keep.min(k - 1);
-        let z = Mat::from_fn(k, keep, |i, j| ritz[j].y[i]).qr().compute_thin_Q();
-        self.h = z.adjoint() * &self.h * &z;
+        let z = range(Mat::from_fn(k, keep, |i, j| ritz[j].y[i]).as_ref()).0;
+        self.h = product(z.adjoint(), product(self.h.as_ref(), z.as_ref()).as_ref());
         self.b = (0..keep).map(|j| (0..k).map(|i| self.b[i] * z[(i, j)]).sum()).collect();
         let d = self.u.ncols();
         let rotated: Vec<Mat<c64>> = self
             .s
             .iter()
             .map(|s| {
-                let kept = s.subcols(0, k) * &z;
+                let kept = product(s.subcols(0, k), z.as_ref());
                 Mat::from_fn(d, keep + 1, |i, j| if j < keep { kept[(i, j)] } else { s[(i, k)] })
             })
             .collect();
@@ -231,7 +227,7 @@ impl<'a> Krylov<'a> {
         let w = w.subcols(0, rank);
         self.u = expand(self.u.as_ref(), w);
         for (s, rotated) in self.s.iter_mut().zip(&rotated) {
-            *s = w.adjoint() * rotated;
+            *s = product(w.adjoint(), rotated.as_ref());
         }
     }
 
@@ -254,11 +250,9 @@ impl<'a> Krylov<'a> {
 
 /// Left singular vectors of A, and how many singular values are above round-off.
 fn range(a: MatRef<'_, c64>) -> (Mat<c64>, usize) {
-    let svd = a.thin_svd().expect("a matrix of finite numbers has singular values");
-    let s = svd.S();
-    let largest = s[0].re;
-    let rank = (0..s.dim()).take_while(|i| s[*i].re > 1e-15 * largest).count();
-    (svd.U().to_owned(), rank)
+    let ThinSvd { left, values, .. } = thin_svd(a).expect("a matrix of finite numbers has singular values");
+    let rank = values.iter().take_while(|s| **s > 1e-15 * values[0]).count();
+    (left, rank)
 }
 
 #[cfg(test)]

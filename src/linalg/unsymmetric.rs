@@ -5,7 +5,8 @@ use crate::error::{Error, Result};
 use faer::diag::Diag;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::evd::{ComputeEigenvectors, evd_cplx, evd_real, evd_scratch};
-use faer::{Mat, MatRef, Par};
+use faer::traits::ComplexField;
+use faer::{Mat, MatMut, MatRef, Par};
 
 /// A X = X diag(λ) and YᴴA = diag(λ) Yᴴ.
 #[derive(Debug, Clone)]
@@ -30,38 +31,9 @@ pub struct Spectrum {
 /// [`Error::Analysis`] when a number is not finite or the iteration does not converge.
 pub fn spectrum(a: MatRef<'_, f64>) -> Result<Spectrum> {
     let n = a.nrows();
-    check(n, a.is_all_finite())?;
-    let (mut re, mut im) = (Diag::zeros(n), Diag::zeros(n));
     let (mut left, mut right) = (Mat::zeros(n, n), Mat::zeros(n, n));
-    let scratch = evd_scratch::<f64>(
-        n,
-        ComputeEigenvectors::Yes,
-        ComputeEigenvectors::Yes,
-        Par::Seq,
-        Default::default(),
-    );
-    evd_real(
-        a,
-        re.as_mut(),
-        im.as_mut(),
-        Some(left.as_mut()),
-        Some(right.as_mut()),
-        Par::Seq,
-        MemStack::new(&mut MemBuffer::new(scratch)),
-        Default::default(),
-    )
-    .map_err(|_| no_convergence(n))?;
-    let (re, im) = (re.column_vector(), im.column_vector());
-    let values = (0..n).map(|k| c64::new(re[k], im[k])).collect();
-    // A conjugate pair stands in two columns: real part, imaginary part of the one with Im λ > 0.
-    let complex = |u: &Mat<f64>| {
-        Mat::from_fn(n, n, |i, k| match im[k] {
-            w if w > 0.0 => c64::new(u[(i, k)], u[(i, k + 1)]),
-            w if w < 0.0 => c64::new(u[(i, k - 1)], -u[(i, k)]),
-            _ => c64::new(u[(i, k)], 0.0),
-        })
-    };
-    Ok(Spectrum { values, right: complex(&right), left: complex(&left) })
+    let values = real_schur(a, Some(left.as_mut()), Some(right.as_mut()))?;
+    Ok(Spectrum { right: in_pairs(&right, &values), left: in_pairs(&left, &values), values })
 }
 
 /// [`spectrum`] of a complex matrix.
@@ -70,27 +42,30 @@ pub fn spectrum(a: MatRef<'_, f64>) -> Result<Spectrum> {
 /// As [`spectrum`].
 pub fn complex_spectrum(a: MatRef<'_, c64>) -> Result<Spectrum> {
     let n = a.nrows();
-    check(n, a.is_all_finite())?;
-    let mut values = Diag::zeros(n);
     let (mut left, mut right) = (Mat::zeros(n, n), Mat::zeros(n, n));
-    let scratch = evd_scratch::<c64>(
-        n,
-        ComputeEigenvectors::Yes,
-        ComputeEigenvectors::Yes,
-        Par::Seq,
-        Default::default(),
-    );
-    evd_cplx(
-        a,
-        values.as_mut(),
-        Some(left.as_mut()),
-        Some(right.as_mut()),
-        Par::Seq,
-        MemStack::new(&mut MemBuffer::new(scratch)),
-        Default::default(),
-    )
-    .map_err(|_| no_convergence(n))?;
-    Ok(Spectrum { values: values.column_vector().iter().copied().collect(), right, left })
+    let values = complex_schur(a, Some(left.as_mut()), Some(right.as_mut()))?;
+    Ok(Spectrum { values, right, left })
+}
+
+/// The eigenvalues and right vectors of a real matrix.
+///
+/// # Errors
+/// As [`spectrum`].
+pub fn eigenpairs(a: MatRef<'_, f64>) -> Result<(Vec<c64>, Mat<c64>)> {
+    let mut right = Mat::zeros(a.nrows(), a.nrows());
+    let values = real_schur(a, None, Some(right.as_mut()))?;
+    let right = in_pairs(&right, &values);
+    Ok((values, right))
+}
+
+/// The eigenvalues and right vectors of a complex matrix.
+///
+/// # Errors
+/// As [`spectrum`].
+pub fn complex_eigenpairs(a: MatRef<'_, c64>) -> Result<(Vec<c64>, Mat<c64>)> {
+    let mut right = Mat::zeros(a.nrows(), a.nrows());
+    let values = complex_schur(a, None, Some(right.as_mut()))?;
+    Ok((values, right))
 }
 
 /// The eigenvalues of a real matrix alone, at a third of the cost of [`spectrum`].
@@ -98,17 +73,56 @@ pub fn complex_spectrum(a: MatRef<'_, c64>) -> Result<Spectrum> {
 /// # Errors
 /// As [`spectrum`].
 pub fn eigenvalues(a: MatRef<'_, f64>) -> Result<Vec<c64>> {
+    real_schur(a, None, None)
+}
+
+/// Eigenvalues, and those vectors for which there is room: of a conjugate pair Re and then Im of the one with Im λ > 0.
+fn real_schur(
+    a: MatRef<'_, f64>,
+    left: Option<MatMut<'_, f64>>,
+    right: Option<MatMut<'_, f64>>,
+) -> Result<Vec<c64>> {
     let n = a.nrows();
     check(n, a.is_all_finite())?;
     let (mut re, mut im) = (Diag::zeros(n), Diag::zeros(n));
-    let none = ComputeEigenvectors::No;
-    let scratch = evd_scratch::<f64>(n, none, none, Par::Seq, Default::default());
-    let mut memory = MemBuffer::new(scratch);
+    let mut memory = room::<f64>(n, &left, &right);
     let stack = MemStack::new(&mut memory);
-    evd_real(a, re.as_mut(), im.as_mut(), None, None, Par::Seq, stack, Default::default())
+    evd_real(a, re.as_mut(), im.as_mut(), left, right, Par::Seq, stack, Default::default())
         .map_err(|_| no_convergence(n))?;
     let (re, im) = (re.column_vector(), im.column_vector());
     Ok((0..n).map(|k| c64::new(re[k], im[k])).collect())
+}
+
+/// Eigenvalues, and those vectors for which there is room.
+fn complex_schur(
+    a: MatRef<'_, c64>,
+    left: Option<MatMut<'_, c64>>,
+    right: Option<MatMut<'_, c64>>,
+) -> Result<Vec<c64>> {
+    let n = a.nrows();
+    check(n, a.is_all_finite())?;
+    let mut values = Diag::zeros(n);
+    let mut memory = room::<c64>(n, &left, &right);
+    let stack = MemStack::new(&mut memory);
+    evd_cplx(a, values.as_mut(), left, right, Par::Seq, stack, Default::default())
+        .map_err(|_| no_convergence(n))?;
+    Ok(values.column_vector().iter().copied().collect())
+}
+
+/// What the algorithm needs beside its results.
+fn room<T: ComplexField>(n: usize, left: &Option<MatMut<'_, T>>, right: &Option<MatMut<'_, T>>) -> MemBuffer {
+    let wanted = |there: bool| if there { ComputeEigenvectors::Yes } else { ComputeEigenvectors::No };
+    let (left, right) = (wanted(left.is_some()), wanted(right.is_some()));
+    MemBuffer::new(evd_scratch::<T>(n, left, right, Par::Seq, Default::default()))
+}
+
+/// The vectors of a real matrix, whose conjugate pairs stand in two columns: Re and Im of the one with Im λ > 0.
+fn in_pairs(u: &Mat<f64>, values: &[c64]) -> Mat<c64> {
+    Mat::from_fn(u.nrows(), u.ncols(), |i, k| match values[k].im {
+        w if w > 0.0 => c64::new(u[(i, k)], u[(i, k + 1)]),
+        w if w < 0.0 => c64::new(u[(i, k - 1)], -u[(i, k)]),
+        _ => c64::new(u[(i, k)], 0.0),
+    })
 }
 
 fn check(n: usize, finite: bool) -> Result<()> {

@@ -1,6 +1,7 @@
 //! The power that a plate sends out.
 
 use super::{Air, Plate};
+use crate::linalg::dense::product;
 use crate::linalg::tall::{expand, gram};
 use faer::Mat;
 use rayon::prelude::*;
@@ -61,7 +62,7 @@ impl Radiation {
                 parts.iter().enumerate().for_each(|(l, part)| integral[(l, j)] += weight * part);
             }
         }
-        Radiation { top, modes, forms: &sampled * &integral }
+        Radiation { top, modes, forms: product(sampled.as_ref(), integral.as_ref()) }
     }
 
     /// What each mode m adds to the power of both sides at the wavenumber `k`, ρ₀/(πc) Σ_n S_mn R_mn \[W\], for the mean

@@ -69,8 +69,6 @@ pub(super) struct Analysis<'a> {
     /// A = K + K_σ − shift · M.
     pub(super) factor: &'a dyn SymmetricFactor,
     pub(super) shift: f64,
-    /// How many of the first vectors of the basis are real modes.
-    pub(super) n_real: usize,
     /// Ω_b²: every real mode below it is in the basis, as the Sturm count proves; zero when it does not.
     pub(super) complete_below: f64,
     pub(super) band_hz: [f64; 2],
@@ -108,7 +106,6 @@ pub(super) fn analyse<'a, T>(
         basis: &basis,
         factor: &*shifted.factor,
         shift: shifted.shift,
-        n_real: real.len(),
         complete_below: complete_below(system, real),
         band_hz,
     };
@@ -168,7 +165,7 @@ fn check(system: &System, steady: &SteadySliding, real: &RealModes, band_hz: [f6
 fn solve_and_refine<'a>(
     operator: &'a Operator<'a>,
     shifted: &ShiftedStiffness,
-    real: &RealModes,
+    real: &'a RealModes,
     band_hz: [f64; 2],
     observer: &dyn Observer,
 ) -> Result<(ComplexModes, Basis<'a>)> {
@@ -189,7 +186,7 @@ fn solve_and_refine<'a>(
     let mut warnings = Vec::new();
     let mut counts = Vec::new();
     let scale = Scale { operator, factor, top: band[1] };
-    let (mut found, mut wanted) = evaluate(&scale, &basis, real, band, Vec::new())?;
+    let (mut found, mut wanted) = evaluate(&scale, &basis, band, Vec::new())?;
     observer.advance(1);
     let (mut refinements, mut finer) = (0, 0);
     loop {
@@ -209,7 +206,7 @@ fn solve_and_refine<'a>(
             break;
         }
         refinements += 1;
-        (found, wanted) = evaluate(&scale, &basis, real, band, found)?;
+        (found, wanted) = evaluate(&scale, &basis, band, found)?;
         observer.advance(1);
     }
     if let Some(first) = counts.first().filter(|first| counts.iter().any(|c| c != *first)) {
@@ -294,9 +291,8 @@ fn middle_frequency(basis: &Basis<'_>, top: f64) -> f64 {
     below.get(below.len() / 2).copied().unwrap_or(top)
 }
 
-/// Pairs of the projected problem on the full order, and what the first `n_real` vectors of the basis, the real modes, have
-/// of the right ones: bₖᵀMφ.
-fn expand(basis: &Basis<'_>, n_real: usize, pairs: &[&SmallPair], to: &mut Measured) -> Block {
+/// Pairs of the projected problem on the full order, and what the real modes have of the right ones: ΦᵀMφ.
+fn expand(basis: &Basis<'_>, pairs: &[&SmallPair], to: &mut Measured) -> Block {
     let small = |pick: fn(&SmallPair) -> &Vec<c64>| {
         let small: Vec<&[c64]> = pairs.iter().map(|pair| pick(pair).as_slice()).collect();
         unit_mass(basis, Block::from_columns(basis.len(), &small))
@@ -304,7 +300,7 @@ fn expand(basis: &Basis<'_>, n_real: usize, pairs: &[&SmallPair], to: &mut Measu
     let (right, left) = (small(|p| &p.right), small(|p| &p.left));
     to.lambda = pairs.iter().map(|pair| pair.lambda).collect();
     basis.expand_into([(&right, &mut to.right.vectors), (&left, &mut to.left)]);
-    right.map(|y| product(basis.mass.as_ref().subrows(0, n_real), y))
+    right.map(|y| product(basis.mass.as_ref().subrows(0, basis.n_real()), y))
 }
 
 /// Coordinates scaled so that the vectors which they stand for have xᴴMx = 1.
@@ -326,7 +322,6 @@ struct Found {
 fn evaluate(
     scale: &Scale<'_>,
     basis: &Basis<'_>,
-    real: &RealModes,
     band: [f64; 2],
     before: Vec<Found>,
 ) -> Result<(Vec<Found>, Wanted)> {
@@ -336,7 +331,7 @@ fn evaluate(
         pairs.iter().zip(&settled).filter(|(_, place)| place.is_none()).map(|(pair, _)| pair).collect();
     let (mut wanted, mut new, mut measured) = (Wanted::default(), Vec::new(), Measured::default());
     for chunk in fresh.chunks(TOGETHER) {
-        let amplitudes = expand(basis, real.len(), chunk, &mut measured);
+        let amplitudes = expand(basis, chunk, &mut measured);
         scale.measure(&mut measured);
         wanted.add(scale, &measured);
         let exact: Vec<bool> = (0..chunk.len()).map(|j| measured.exact(j)).collect();

@@ -1,19 +1,21 @@
 //! The subspace that the quadratic problem is projected on, grown by what the full order asks for.
 
 use super::block::Block;
+use super::damper::Between;
 use super::operator::Operator;
 use crate::linalg::SparseMatrix;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::sparse::{add_scaled, times};
-use crate::linalg::tall::{combine, expand, expand_into, gram, panels};
-use faer::{Accum, Mat, MatMut, MatRef};
+use crate::linalg::tall::{Columns, combine, expand, gram, panels};
+use faer::linalg::triangular_solve::solve_upper_triangular_in_place;
+use faer::{Accum, Mat, MatMut, MatRef, Par};
 use std::sync::OnceLock;
 
 /// Columns that are orthonormalised together.
 const PANEL: usize = 32;
 /// Of more columns than this the principal directions are taken.
 const WIDE: usize = 48;
-/// Vectors that a basis has room for before it is moved.
+/// Vectors besides the real modes that a basis has room for before they are moved.
 const ROOM: usize = 160;
 
 /// A basis B = \[Φ Z\] and the projections BᵀMB, BᵀCB, BᵀKB, BᵀHB, and BᵀW of the interface.
@@ -29,7 +31,10 @@ pub(super) struct Basis<'a> {
     tau: f64,
     /// bᵀEb of every column.
     sizes: Vec<f64>,
-    pub(super) vectors: Mat<f64>,
+    /// Φ.
+    pub(super) modes: MatRef<'a, f64>,
+    /// Z.
+    pub(super) added: Mat<f64>,
     pub(super) mass: Mat<f64>,
     pub(super) damping: Mat<f64>,
     pub(super) stiffness: Mat<f64>,
@@ -40,21 +45,23 @@ pub(super) struct Basis<'a> {
 
 impl<'a> Basis<'a> {
     /// Starts from M-orthonormal real modes.
-    pub(super) fn new(operator: &'a Operator<'a>, modes: MatRef<'_, f64>, tau: f64) -> Self {
-        let n = operator.n();
+    pub(super) fn new(operator: &'a Operator<'a>, modes: MatRef<'a, f64>, tau: f64) -> Self {
+        let mut added = Mat::with_capacity(operator.n(), ROOM);
+        added.resize_with(operator.n(), 0, |_, _| 0.0);
         let mut basis = Basis {
             operator,
             energy: OnceLock::new(),
             tau,
             sizes: Vec::new(),
-            vectors: Mat::with_capacity(n, modes.ncols() + ROOM),
+            modes,
+            added,
             mass: Mat::zeros(0, 0),
             damping: Mat::zeros(0, 0),
             stiffness: Mat::zeros(0, 0),
             hysteretic: operator.damping.hysteretic.as_ref().map(|_| Mat::zeros(0, 0)),
             interface: Mat::zeros(0, operator.interface.directions.len()),
         };
-        basis.append(modes);
+        basis.project();
         basis
     }
 
@@ -64,7 +71,29 @@ impl<'a> Basis<'a> {
     }
 
     pub(super) fn len(&self) -> usize {
-        self.vectors.ncols()
+        self.n_real() + self.added.ncols()
+    }
+
+    /// How many of the vectors, the first ones, are real modes.
+    pub(super) fn n_real(&self) -> usize {
+        self.modes.ncols()
+    }
+
+    /// B.
+    pub(super) fn columns(&self) -> Columns<'_> {
+        Columns::of([self.modes, self.added.as_ref()])
+    }
+
+    /// All vectors and the real modes, then all vectors and the others.
+    pub(super) fn between(&self) -> [Between<'_>; 2] {
+        let (n_real, added) = (self.n_real(), self.added.ncols());
+        let of = |y, first: usize, count: usize| Between {
+            b: self.columns(),
+            y,
+            mass: self.mass.subcols(first, count),
+            stiffness: self.stiffness.subcols(first, count),
+        };
+        [of(self.modes, 0, n_real), of(self.added.as_ref(), n_real, added)]
     }
 
     /// B y of every column of `y`.
@@ -78,15 +107,10 @@ impl<'a> Basis<'a> {
     pub(super) fn expand_into<const N: usize>(&self, blocks: [(&Block, &mut Block); N]) {
         let mut parts = Vec::new();
         for (y, vectors) in blocks {
-            vectors.resize(self.vectors.nrows(), y.ncols());
+            vectors.resize(self.modes.nrows(), y.ncols());
             parts.push((vectors.parts_mut(), y.parts()));
         }
-        expand_into(parts, self.vectors.as_ref());
-    }
-
-    /// B y of real columns.
-    pub(super) fn expand_real(&self, y: &Mat<f64>) -> Mat<f64> {
-        expand(self.vectors.as_ref(), y.as_ref())
+        self.columns().combine(parts, Accum::Replace, 1.0);
     }
 
     /// Adds the directions of `z` that are new. Of a few columns, after the basis is projected out, those are taken whose
@@ -127,7 +151,7 @@ impl<'a> Basis<'a> {
         let (mut share, mut energy) = (Mat::<f64>::zeros(m, count), Mat::<f64>::zeros(count, count));
         for (start, width) in panels(0..count) {
             let image = times(self.energy(), z.subcols(start, width));
-            share.subcols_mut(start, width).copy_from(gram(self.vectors.as_ref(), image.as_ref()));
+            share.subcols_mut(start, width).copy_from(self.columns().gram(image.as_ref()));
             let below = gram(z.subcols(start, count - start), image.as_ref());
             energy.submatrix_mut(start, start, count - start, width).copy_from(below);
         }
@@ -143,7 +167,7 @@ impl<'a> Basis<'a> {
         free: usize,
         tolerance: f64,
     ) -> Mat<f64> {
-        let share = gram(self.vectors.subcols(free, self.len() - free), image);
+        let share = self.columns().range(free..self.len()).gram(image);
         self.append_directions(z, &share, gram(z, image), tolerance)
     }
 
@@ -159,7 +183,8 @@ impl<'a> Basis<'a> {
         tolerance: f64,
     ) -> Mat<f64> {
         const DIGITS_LEFT: f64 = 1e-14;
-        let (m, first, count) = (self.len(), self.len() - share.nrows(), z.ncols());
+        let (m, first, count, added) =
+            (self.len(), self.len() - share.nrows(), z.ncols(), self.added.ncols());
         let largest = (0..count).fold(0.0f64, |l, j| l.max(energy[(j, j)]));
         let weighted =
             Mat::from_fn(share.nrows(), count, |i, j| share[(i, j)] * self.inverse_size(first + i));
@@ -171,10 +196,11 @@ impl<'a> Basis<'a> {
         let mix =
             Mat::from_fn(count, kept.len(), |i, k| directions[(i, k)] * (self.tau / sizes[kept[k]]).sqrt());
         let known = product(weighted.as_ref(), mix.as_ref());
-        self.vectors.resize_with(z.nrows(), m + kept.len(), |_, _| 0.0);
-        let (basis, mut new) = self.vectors.as_mut().split_at_col_mut(m);
+        self.added.resize_with(z.nrows(), added + kept.len(), |_, _| 0.0);
+        let (before, mut new) = self.added.as_mut().split_at_col_mut(added);
         combine(new.as_mut(), Accum::Replace, z, mix.as_ref(), 1.0);
-        combine(new, Accum::Add, basis.subcols(first, m - first).as_ref(), known.as_ref(), -1.0);
+        let basis = Columns::of([self.modes, before.as_ref()]);
+        basis.range(first..m).combine(vec![(new, known.as_ref())], Accum::Add, -1.0);
         self.project();
         directions
     }
@@ -186,12 +212,12 @@ impl<'a> Basis<'a> {
 
     /// z ← z − B (BᵀEB)⁻¹Bᵀ E z, given E z.
     fn project_out(&self, z: MatMut<'_, f64>, image: MatRef<'_, f64>) {
-        let mut share = gram(self.vectors.as_ref(), image);
+        let mut share = self.columns().gram(image);
         for i in 0..self.len() {
             let factor = self.inverse_size(i);
             (0..share.ncols()).for_each(|j| share[(i, j)] *= factor);
         }
-        combine(z, Accum::Add, self.vectors.as_ref(), share.as_ref(), -1.0);
+        self.columns().combine(vec![(z, share.as_ref())], Accum::Add, -1.0);
     }
 
     /// The columns `open` of `z`, which are E-orthogonal to the basis, made E/τ-orthonormal; `image` is E z. A panel at
@@ -235,20 +261,24 @@ impl<'a> Basis<'a> {
 
     /// Adds vectors and their projections.
     fn append(&mut self, new: MatRef<'_, f64>) {
-        let old = self.len();
-        self.vectors.resize_with(new.nrows(), old + new.ncols(), |i, j| new[(i, j - old)]);
+        let old = self.added.ncols();
+        self.added.resize_with(new.nrows(), old + new.ncols(), |i, j| new[(i, j - old)]);
         self.project();
     }
 
-    /// Projects what has come to the vectors since the last time.
+    /// Projects what has come to the vectors since the last time: the real modes, or some that were added.
     fn project(&mut self) {
-        let (old, m) = (self.sizes.len(), self.len());
+        let (old, m, n_real) = (self.sizes.len(), self.len(), self.n_real());
         // Columns of the four projections, down to their diagonals: the rest follows from symmetry.
         let mut borders = [(); 4].map(|()| Mat::<f64>::zeros(m, m - old));
         let mut images = Vec::new();
         for (start, width) in panels(old..m) {
-            let known = self.vectors.subcols(0, start + width);
-            let forms = self.operator.forms(known, self.vectors.subcols(start, width), &mut images);
+            let known = self.columns().range(0..start + width);
+            let new = match start < n_real {
+                true => self.modes.subcols(start, width),
+                false => self.added.subcols(start - n_real, width),
+            };
+            let forms = self.operator.forms(known, new, &mut images);
             for (border, form) in borders.iter_mut().zip(forms) {
                 border.submatrix_mut(0, start - old, start + width, width).copy_from(form);
             }
@@ -265,8 +295,9 @@ impl<'a> Basis<'a> {
         self.damping = grow(&self.damping, damping);
         self.hysteretic = self.hysteretic.as_ref().map(|small| grow(small, loss));
         let directions = &self.operator.interface.directions;
+        let columns = self.columns();
         self.interface = Mat::from_fn(m, directions.len(), |i, d| {
-            if i < old { self.interface[(i, d)] } else { directions[d].dot(self.vectors.col_as_slice(i)) }
+            if i < old { self.interface[(i, d)] } else { directions[d].dot(columns.column(i)) }
         });
         self.sizes.extend((old..m).map(|j| self.stiffness[(j, j)] + self.tau * self.mass[(j, j)]));
     }
@@ -316,7 +347,7 @@ fn orthonormalising(square: &Mat<f64>, before: &[f64]) -> (Mat<f64>, Vec<usize>,
     let r = stay.len();
     // L⁻ᵀ, which makes the scaled columns orthonormal.
     let mut turned = Mat::<f64>::identity(r, r);
-    factor.as_ref().submatrix(0, 0, r, r).transpose().solve_upper_triangular_in_place(turned.as_mut());
+    solve_upper_triangular_in_place(factor.submatrix(0, 0, r, r).transpose(), turned.as_mut(), Par::Seq);
     let mut mix = Mat::<f64>::zeros(m, r);
     for (c, j) in stay.iter().enumerate() {
         let length = square[(*j, *j)].sqrt();

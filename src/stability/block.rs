@@ -30,8 +30,15 @@ impl Block {
     }
 
     pub(super) fn from_fn(n: usize, columns: usize, f: impl Fn(usize, usize) -> c64) -> Self {
-        let part = |i: usize, j: usize| if j < columns { f(i, j).re } else { f(i, j - columns).im };
-        Block::of_parts(Mat::from_fn(n, 2 * columns, part))
+        let mut block = Block::zeros(n, columns);
+        for j in 0..columns {
+            let [re, im] = block.vector_mut(j);
+            for (i, (re, im)) in re.iter_mut().zip(im).enumerate() {
+                let value = f(i, j);
+                (*re, *im) = (value.re, value.im);
+            }
+        }
+        block
     }
 
     pub(super) fn from_columns(n: usize, columns: &[&[c64]]) -> Self {
@@ -40,7 +47,14 @@ impl Block {
 
     /// Some columns of another block.
     pub(super) fn gathered(block: &Block, columns: &[usize]) -> Self {
-        Block::from_fn(block.nrows(), columns.len(), |i, k| block.get(i, columns[k]))
+        let mut some = Block::zeros(block.nrows(), columns.len());
+        for (k, j) in columns.iter().enumerate() {
+            some.vector_mut(k)
+                .into_iter()
+                .zip(block.vector(*j))
+                .for_each(|(to, from)| to.copy_from_slice(from));
+        }
+        some
     }
 
     /// Makes room for `columns` vectors in the memory at hand, which is not cleared.

@@ -1,10 +1,11 @@
 //! What it takes to apply the damping of a structure to vectors whose M x and K x are known.
 
 use crate::linalg::SparseMatrix;
-use crate::linalg::few_rows::{FewRows, picked};
+use crate::linalg::dense::product;
+use crate::linalg::few_rows::FewRows;
 use crate::linalg::proportional::Proportional;
 use crate::linalg::sparse::times;
-use crate::linalg::tall::{expand, gram};
+use crate::linalg::tall::{Columns, expand, gram};
 use crate::system::{Damping, ModalDamping};
 use faer::{Mat, MatRef};
 use std::sync::Arc;
@@ -24,6 +25,14 @@ pub(super) struct Part {
     pub(super) split: Proportional,
     /// The rest, where it has entries in few rows.
     pub(super) few: Option<FewRows>,
+}
+
+/// Vectors B and Y, with BᵀMY and BᵀKY.
+pub(super) struct Between<'a> {
+    pub(super) b: Columns<'a>,
+    pub(super) y: MatRef<'a, f64>,
+    pub(super) mass: MatRef<'a, f64>,
+    pub(super) stiffness: MatRef<'a, f64>,
 }
 
 impl Part {
@@ -47,21 +56,15 @@ impl Part {
         proportional && self.few.as_ref().is_some_and(FewRows::is_semidefinite)
     }
 
-    /// BᵀXY beside `mass` and `stiffness`, BᵀMY and BᵀKY.
-    pub(super) fn form(
-        &self,
-        b: MatRef<'_, f64>,
-        y: MatRef<'_, f64>,
-        mass: &Mat<f64>,
-        stiffness: &Mat<f64>,
-    ) -> Mat<f64> {
+    /// BᵀXY.
+    pub(super) fn form(&self, Between { b, y, mass, stiffness }: &Between<'_>) -> Mat<f64> {
         let Proportional { mass_factor, stiffness_factor, .. } = self.split;
-        let mut form = mass * faer::Scale(mass_factor) + stiffness * faer::Scale(stiffness_factor);
+        let mut form = *mass * faer::Scale(mass_factor) + *stiffness * faer::Scale(stiffness_factor);
         if let Some(few) = &self.few {
-            form += gram(picked(b, few.rows()).as_ref(), few.times(y).as_ref());
+            form += gram(b.picked(few.rows()).as_ref(), few.times(*y).as_ref());
         }
         if let Some(wide) = self.wide() {
-            form += gram(b, times(wide, y).as_ref());
+            form += b.gram(times(wide, *y).as_ref());
         }
         form
     }
@@ -75,16 +78,10 @@ impl<'a> Damper<'a> {
     }
 
     /// [`Part::form`] of C, modal damping included.
-    pub(super) fn viscous_form(
-        &self,
-        b: MatRef<'_, f64>,
-        y: MatRef<'_, f64>,
-        mass: &Mat<f64>,
-        stiffness: &Mat<f64>,
-    ) -> Mat<f64> {
-        let mut form = self.viscous.form(b, y, mass, stiffness);
+    pub(super) fn viscous_form(&self, of: &Between<'_>) -> Mat<f64> {
+        let mut form = self.viscous.form(of);
         if let Some(modal) = self.modal {
-            form += gram(gram(modal.basis.as_ref(), b).as_ref(), amplitudes(modal, y).as_ref());
+            form += product(of.b.gram(modal.basis.as_ref()).as_ref(), amplitudes(modal, of.y).as_ref());
         }
         form
     }

@@ -3,7 +3,7 @@
 use super::analysis::{in_band, shifted_factor};
 use super::basis::Basis;
 use super::block::Block;
-use super::damper::Damper;
+use super::damper::{Between, Damper};
 use super::interface::{Interface, Term, terms_of_every_point};
 use super::operator::Operator;
 use super::reduced::{Projection, Reduced, ReducedModes};
@@ -13,6 +13,7 @@ use crate::equilibrium::{PointState, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::dense::product;
 use crate::linalg::sparse::times;
+use crate::linalg::tall::beside;
 use crate::linalg::{SymmetricFactor, c64};
 use crate::modal::RealModes;
 use crate::system::{Damping, System};
@@ -235,10 +236,14 @@ impl<'f> Family<'f> {
 
 /// Projects every damping on the basis and diagonalises.
 fn reduce(frame: &Frame<'_>, basis: &Basis<'_>, springs: &[(usize, f64)]) -> Result<Reduced> {
-    let (v, mass, stiffness) = (basis.vectors.as_ref(), &basis.mass, &basis.stiffness);
+    let parts = basis.between();
+    let whole = |form: &dyn Fn(&Between<'_>) -> Mat<f64>| {
+        let [of_modes, of_added] = parts.each_ref().map(form);
+        beside(of_modes.as_ref(), of_added.as_ref())
+    };
     let project = |(d, damper): (&&Damping, &Damper<'_>)| {
-        let loss = d.hysteretic.as_ref().map(|_| damper.loss.form(v, v, mass, stiffness));
-        (damper.viscous_form(v, v, mass, stiffness), loss)
+        let loss = d.hysteretic.as_ref().map(|_| whole(&|of| damper.loss.form(of)));
+        (whole(&|of| damper.viscous_form(of)), loss)
     };
     let variants: Vec<_> = frame.dampings.iter().zip(&frame.operator.dampers[1..]).map(project).collect();
     let projection = Projection {

@@ -23,15 +23,16 @@ pub(super) fn finished(
     measured: &mut Measured,
     amplitudes: &Block,
 ) -> Vec<ComplexMode> {
-    let Measured { lambda, right, left, correction, room, backward_error, eigenvalue_error, condition } =
-        measured;
+    let Measured { lambda, right, left, correction, backward_error, eigenvalue_error, condition } = measured;
+    let mut lefts: Vec<Vec<c64>> = (0..lambda.len()).map(|j| left.column(j)).collect();
+    // Their block is memory for residuals from here on.
     correction.add(right);
-    let corrected = Told::of(operator, lambda, correction, room);
+    let corrected = Told::of(operator, lambda, correction, left);
     let better = |j: &usize| corrected.backward_error[*j] < backward_error[*j];
     let plain: Vec<usize> = (0..lambda.len()).filter(|j| !better(j)).collect();
     let their: Vec<c64> = plain.iter().map(|j| lambda[*j]).collect();
     let mut as_found = right.gathered(&plain);
-    let uncorrected = Told::of(operator, &their, &mut as_found, room);
+    let uncorrected = Told::of(operator, &their, &mut as_found, left);
     let mode = |j: usize| {
         let (told, images, k) = match plain.binary_search(&j) {
             Ok(k) => (&uncorrected, &as_found, k),
@@ -40,7 +41,7 @@ pub(super) fn finished(
         ComplexMode {
             eigenvalue: lambda[j],
             right: images.vectors.column(k),
-            left: left.column(j),
+            left: std::mem::take(&mut lefts[j]),
             backward_error: told.backward_error[k],
             eigenvalue_error: eigenvalue_error[j],
             condition: condition[j],

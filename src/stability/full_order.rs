@@ -4,19 +4,20 @@ use super::ComplexModes;
 use super::operator::Operator;
 use crate::equilibrium::SteadySliding;
 use crate::error::Result;
+use crate::linalg::dense::product;
 use crate::linalg::factor::{SymmetricFactor, factorize};
+use crate::linalg::lu::Lu;
 use crate::linalg::sparse::{add_scaled, multiply};
 use crate::linalg::tall::{expand, gram};
 use crate::linalg::toar::{ShiftedQuadratic, toar};
 use crate::linalg::{SparseMatrix, c64};
 use crate::progress::Observer;
 use crate::system::System;
-use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::{Mat, MatRef};
 use std::f64::consts::TAU;
 
 /// The complex modes of a band beside those that a second, independent method finds there.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Confirmation {
     /// Shifts at which the full-order problem was factorised.
     pub shifts: usize,
@@ -130,7 +131,7 @@ pub(super) struct Shifted<'a> {
     /// G.
     small: Mat<c64>,
     /// I + G FᵀY.
-    lu: PartialPivLu<c64>,
+    lu: Lu<c64>,
 }
 
 impl<'a> Shifted<'a> {
@@ -162,16 +163,11 @@ impl<'a> Shifted<'a> {
             direction.iter().for_each(|(i, v)| responses[(i, m + j)] = c64::new(v, 0.0));
         }
         factor.solve_in_place(responses.as_mut());
-        let mut shifted = Shifted {
-            operator,
-            shift,
-            factor,
-            responses,
-            lu: Mat::<c64>::zeros(0, 0).partial_piv_lu(),
-            small,
-        };
+        let mut shifted =
+            Shifted { operator, shift, factor, responses, lu: Lu::new(Mat::zeros(0, 0)), small };
         let moved = shifted.along(shifted.responses.as_ref());
-        shifted.lu = (Mat::<c64>::identity(size, size) + &shifted.small * moved).partial_piv_lu();
+        shifted.lu =
+            Lu::new(Mat::<c64>::identity(size, size) + product(shifted.small.as_ref(), moved.as_ref()));
         Ok(shifted)
     }
 
@@ -200,7 +196,7 @@ impl<'a> Shifted<'a> {
     /// P⁻¹ r.
     pub(super) fn invert(&self, mut r: Mat<c64>) -> Mat<c64> {
         self.factor.solve_in_place(r.as_mut());
-        let force = self.lu.solve(&self.small * self.along(r.as_ref()));
+        let force = self.lu.solve(product(self.small.as_ref(), self.along(r.as_ref()).as_ref()));
         r - expand(self.responses.as_ref(), force.as_ref())
     }
 }

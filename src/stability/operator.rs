@@ -1,13 +1,13 @@
 //! The full-order quadratic operator Q(λ) = λ² M + λ (C + C_c) + K + K_σ + iH + K_c, applied without forming it.
 
 use super::block::Block;
-use super::damper::{Damper, modal_times};
+use super::damper::{Between, Damper, modal_times};
 use super::interface::{Interface, Term};
 use crate::equilibrium::{SteadySliding, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::merged::Merged;
 use crate::linalg::sparse::{norm_1, times};
-use crate::linalg::tall::gram;
+use crate::linalg::tall::Columns;
 use crate::linalg::{SparseMatrix, c64};
 use crate::system::{Damping, System};
 use faer::{Mat, MatRef};
@@ -178,15 +178,15 @@ impl<'a> Operator<'a> {
     /// call.
     pub(super) fn forms(
         &self,
-        b: MatRef<'_, f64>,
+        b: Columns<'_>,
         y: MatRef<'_, f64>,
         images: &mut Vec<Mat<f64>>,
     ) -> [Mat<f64>; 4] {
         self.merged.times(y, images);
-        let [mass, stiffness] = [0, 1].map(|k| gram(b, images[k].as_ref()));
+        let [mass, stiffness] = [0, 1].map(|k| b.gram(images[k].as_ref()));
         let own = &self.dampers[0];
-        let [damping, loss] =
-            [own.viscous_form(b, y, &mass, &stiffness), own.loss.form(b, y, &mass, &stiffness)];
+        let of = Between { b, y, mass: mass.as_ref(), stiffness: stiffness.as_ref() };
+        let [damping, loss] = [own.viscous_form(&of), own.loss.form(&of)];
         [mass, stiffness, damping, loss]
     }
 

@@ -4,8 +4,10 @@ use super::basis::Basis;
 use super::operator::Operator;
 use crate::error::{Error, Result};
 use crate::linalg::c64;
-use faer::Mat;
-use faer::linalg::solvers::Solve;
+use crate::linalg::dense::product;
+use crate::linalg::lu::Lu;
+use crate::linalg::unsymmetric::{complex_eigenpairs, eigenpairs};
+use faer::{Conj, Mat};
 use rayon::prelude::*;
 
 /// An eigenpair of the projected problem with its left vector, in coordinates of the basis.
@@ -28,7 +30,8 @@ pub(super) fn project_interface(operator: &Operator<'_>, basis: &Basis<'_>) -> (
             by_displacement[(i, term.column)] += w[(i, term.row)] * term.stiffness;
         }
     }
-    (by_velocity * w.transpose(), by_displacement * w.transpose())
+    let to_all = |by: &Mat<f64>| product(by.as_ref(), w.transpose());
+    (to_all(&by_velocity), to_all(&by_displacement))
 }
 
 /// The wanted eigenpairs of Q(λ) y = (λ² M + λ C + K + iH) y = 0, ascending in (Im λ, Re λ).
@@ -60,7 +63,7 @@ pub(super) fn solve(
         let real = s * (s * mass[(i, j)] + damping[(i, j)]) + stiffness[(i, j)];
         c64::new(real, hysteretic.map_or(0.0, |h| h[(i, j)]))
     });
-    let lu = value.partial_piv_lu();
+    let lu = Lu::new(value);
     // −Q(s)⁻¹ \[s² M, s Q′(s)\], the lower half of the companion matrix.
     let lower = lu.solve(Mat::from_fn(m, 2 * m, |i, j| {
         let rest = match j < m {
@@ -77,21 +80,19 @@ pub(super) fn solve(
         false => lower[(i - m, j)],
     });
     // Without losses all numbers are real.
-    let eigen = match hysteretic {
-        None => companion.map(|z| z.re).eigen(),
-        Some(_) => companion.eigen(),
-    }
-    .map_err(|_| failed("its eigenvalues did not converge"))?;
-    let v = eigen.U().to_owned();
+    let (theta, v) = match hysteretic {
+        None => eigenpairs(Mat::from_fn(2 * m, 2 * m, |i, j| companion[(i, j)].re).as_ref())?,
+        Some(_) => complex_eigenpairs(companion.as_ref())?,
+    };
     let mut chosen: Vec<(c64, usize)> =
-        (0..2 * m).map(|i| (s + s / eigen.S()[i], i)).filter(|(z, _)| z.is_finite() && wanted(*z)).collect();
+        (0..2 * m).map(|i| (s + s / theta[i], i)).filter(|(z, _)| z.is_finite() && wanted(*z)).collect();
     chosen.sort_by(|a, b| a.0.im.total_cmp(&b.0.im).then(a.0.re.total_cmp(&b.0.re)));
     // The rows of V⁻¹ are the left vectors wᴴ of the companion matrix; their second half is ψᴴQ(s).
     let mut inverse_rows =
         Mat::from_fn(2 * m, chosen.len(), |i, j| c64::new(f64::from(i == chosen[j].1), 0.0));
-    v.transpose().partial_piv_lu().solve_in_place(inverse_rows.as_mut());
+    Lu::new(v.transpose().to_owned()).solve_in_place(inverse_rows.as_mut());
     let mut left = Mat::from_fn(m, chosen.len(), |i, j| inverse_rows[(m + i, j)].conj());
-    lu.solve_adjoint_in_place(left.as_mut());
+    lu.solve_transpose_in_place(Conj::Yes, left.as_mut());
     let pairs: Vec<SmallPair> = chosen
         .par_iter()
         .enumerate()
@@ -117,19 +118,20 @@ fn polish(mass: &Mat<f64>, c: &Mat<f64>, k: &Mat<f64>, h: Option<&Mat<f64>>, pai
     let column = |y: &[c64]| Mat::from_fn(m, 1, |i, _| y[i]);
     let list = |y: &Mat<c64>| unit((0..m).map(|i| y[(i, 0)]).collect());
     let (here, slope_here) = (q(pair.lambda), slope(pair.lambda));
-    let lu = here.partial_piv_lu();
-    let mut right = &slope_here * column(&pair.right);
-    lu.solve_in_place(right.as_mut());
-    let mut left = slope_here.adjoint() * column(&pair.left);
-    lu.solve_adjoint_in_place(left.as_mut());
+    let lu = Lu::new(here.clone());
+    let right = lu.solve(product(slope_here.as_ref(), column(&pair.right).as_ref()));
+    let mut left = product(slope_here.adjoint(), column(&pair.left).as_ref());
+    lu.solve_transpose_in_place(Conj::Yes, left.as_mut());
     let (right, left) = (list(&right), list(&left));
     let (y, z) = (column(&right), column(&left));
-    let rise = (z.adjoint() * &here * &y)[(0, 0)];
-    let steepness = (z.adjoint() * &slope_here * &y)[(0, 0)];
+    let form = |a: &Mat<c64>| product(z.adjoint(), product(a.as_ref(), y.as_ref()).as_ref())[(0, 0)];
+    let (rise, steepness) = (form(&here), form(&slope_here));
     let lambda = pair.lambda - rise / steepness;
     let there = q(lambda);
-    let residual =
-        |a: &Mat<c64>, y: &Mat<c64>, z: &Mat<c64>| (a * y).norm_l2().max((a.adjoint() * z).norm_l2());
+    let residual = |a: &Mat<c64>, y: &Mat<c64>, z: &Mat<c64>| {
+        let (right, left) = (product(a.as_ref(), y.as_ref()), product(a.adjoint(), z.as_ref()));
+        right.norm_l2().max(left.norm_l2())
+    };
     let before = residual(&here, &column(&pair.right), &column(&pair.left));
     let after = residual(&there, &y, &z);
     if after < before { SmallPair { lambda, right, left } } else { pair }

@@ -7,7 +7,7 @@ use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
 use crate::linalg::random::Random;
 use crate::linalg::sparse::{multiply, times};
-use crate::linalg::tall::{combine, gram};
+use crate::linalg::tall::{combine, expand, gram};
 use crate::modal::ShiftedStiffness;
 use faer::{Accum, Mat};
 
@@ -41,8 +41,8 @@ fn interface_forces(operator: &Operator<'_>, omega: f64) -> Mat<f64> {
 /// they are projected out of the responses, and no power of A⁻¹M turns into the mode nearest to the shift. Gives the memory
 /// that it took, two matrices of F's size.
 fn leave_out_modes(operator: &Operator<'_>, basis: &Basis<'_>, forces: &mut Mat<f64>) -> [Mat<f64>; 2] {
-    let share = gram(basis.vectors.as_ref(), forces.as_ref());
-    let shapes = basis.expand_real(&share);
+    let share = gram(basis.modes, forces.as_ref());
+    let shapes = expand(basis.modes, share.as_ref());
     let known = times(operator.mass, shapes.as_ref());
     *forces -= &known;
     [shapes, known]

@@ -26,8 +26,6 @@ pub(super) struct Measured {
     pub(super) left: Block,
     /// z = −A⁻¹Q(λ)φ.
     pub(super) correction: Images,
-    /// For residuals.
-    pub(super) room: Block,
     pub(super) backward_error: Vec<f64>,
     pub(super) eigenvalue_error: Vec<f64>,
     pub(super) condition: Vec<f64>,

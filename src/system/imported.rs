@@ -13,7 +13,9 @@
 
 use super::{Coupling, Damping, Structure};
 use crate::error::{Error, Fault, Faults, Result};
+use crate::linalg::dense::product;
 use crate::linalg::matrix_market::MarketMatrix;
+use crate::linalg::orthogonal::pivoted_qr;
 use crate::linalg::sparse::{add_scaled, diagonal};
 use crate::linalg::{SparseMatrix, SparseVector};
 use faer::Mat;
@@ -321,8 +323,7 @@ fn factor(group: &Group, sizes: [&[f64]; 2]) -> (Vec<SparseVector>, Mat<f64>, Ma
     let (k, c) = (scaled(&group.stiffness, 1.0), scaled(&group.damping, kappa));
     let both = Mat::from_fn(m, 2 * m, |i, j| if j < m { k[(i, j)] } else { c[(i, j - m)] });
     let unit = |rows: &[usize]| rows.iter().map(|i| SparseVector::from_entries([(*i, 1.0)])).collect();
-    let qr = both.col_piv_qr();
-    let (q, r) = (qr.compute_thin_Q(), qr.thin_R());
+    let [q, r] = pivoted_qr(both);
     let noise = std::f64::consts::SQRT_2 * m as f64 * ENTRY_NOISE;
     // The rows of R from the pivot on are what the directions before it do not span.
     let mut left = 0.0f64;
@@ -338,9 +339,13 @@ fn factor(group: &Group, sizes: [&[f64]; 2]) -> (Vec<SparseVector>, Mat<f64>, Ma
         return (unit(&group.rows), group.stiffness.clone(), group.damping.clone());
     }
     let q = q.subcols(0, rank).to_owned();
-    let (small_k, small_c) = (q.transpose() * &k * &q, q.transpose() * &c * &q);
+    let within = |s: &Mat<f64>| product(q.transpose(), product(s.as_ref(), q.as_ref()).as_ref());
+    let (small_k, small_c) = (within(&k), within(&c));
     // Twice: what the columns lose, the rows lose too.
-    let lost = |s: &Mat<f64>, small: &Mat<f64>| (s - &q * small * q.transpose()).norm_l2() > 2.0 * noise;
+    let lost = |s: &Mat<f64>, small: &Mat<f64>| {
+        let kept = product(product(q.as_ref(), small.as_ref()).as_ref(), q.transpose());
+        (s - kept).norm_l2() > 2.0 * noise
+    };
     if lost(&k, &small_k) || lost(&c, &small_c) {
         return (unit(&group.rows), group.stiffness.clone(), group.damping.clone());
     }

@@ -4,10 +4,11 @@ use super::model::Model;
 use super::products::Diagonal;
 use super::scheme::Weights;
 use crate::error::{Error, Result};
+use crate::linalg::dense::product;
 use crate::linalg::factor::factorize;
+use crate::linalg::lu::Lu;
 use crate::linalg::tall::{combine, gram};
 use crate::linalg::{SparseVector, SymmetricFactor};
-use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::{Accum, Mat, MatMut, MatRef};
 use rayon::prelude::*;
 
@@ -30,7 +31,7 @@ pub(super) struct Effective {
     pub(super) seen: Mat<f64>,
     modal: Option<ModalUpdate>,
     /// y.
-    half: Vec<[f64; 1]>,
+    half: Vec<f64>,
 }
 
 /// A₀⁻¹.
@@ -61,29 +62,29 @@ impl Inverse {
     }
 
     /// y = H⁻¹b.
-    fn forward(&self, b: &[f64], y: &mut [[f64; 1]]) {
+    fn forward(&self, b: &[f64], y: &mut [f64]) {
         match self {
             Inverse::Factor(factor) => factor.forward(b, y),
-            Inverse::Diagonal(_) => y.as_flattened_mut().copy_from_slice(b),
+            Inverse::Diagonal(_) => y.copy_from_slice(b),
         }
     }
 
     /// y ← J⁻¹y.
-    fn pivots(&self, y: &mut [[f64; 1]]) {
+    fn pivots(&self, y: &mut [f64]) {
         match self {
             Inverse::Factor(factor) => factor.pivots(y),
             Inverse::Diagonal(values) => {
-                y.as_flattened_mut().iter_mut().zip(values).for_each(|(y, value)| *y *= value);
+                y.iter_mut().zip(values).for_each(|(y, value)| *y *= value);
             }
         }
     }
 
     /// x = H⁻ᵀJ⁻¹y.
-    fn backward(&self, y: &mut [[f64; 1]], x: &mut [f64]) {
+    fn backward(&self, y: &mut [f64], x: &mut [f64]) {
         match self {
             Inverse::Factor(factor) => factor.backward(y, x),
             Inverse::Diagonal(values) => {
-                let scaled = y.as_flattened().iter().zip(values);
+                let scaled = y.iter().zip(values);
                 x.iter_mut().zip(scaled).for_each(|(x, (y, value))| *x = y * value);
             }
         }
@@ -91,13 +92,12 @@ impl Inverse {
 
     /// Both halves of a column.
     fn halves(&self, n: usize, column: &SparseVector) -> [SparseVector; 2] {
-        let (mut b, mut y) = (vec![0.0; n], vec![[0.0]; n]);
+        let (mut b, mut y) = (vec![0.0; n], vec![0.0; n]);
         column.add_to(1.0, &mut b);
         self.forward(&b, &mut y);
-        let entries = |y: &[[f64; 1]]| SparseVector::from_dense(y.as_flattened());
-        let taken = entries(&y);
+        let taken = SparseVector::from_dense(&y);
         self.pivots(&mut y);
-        [taken, entries(&y)]
+        [taken, SparseVector::from_dense(&y)]
     }
 }
 
@@ -114,13 +114,13 @@ struct ModalUpdate {
     /// The diagonal of E.
     weights: Vec<f64>,
     /// I + E G.
-    small: PartialPivLu<f64>,
+    small: Lu<f64>,
     /// Xᵀh + V φ.
     motion: Mat<f64>,
     /// s, then what B is multiplied by.
     factors: Mat<f64>,
     /// J⁻¹y.
-    measured: Vec<[f64; 1]>,
+    measured: Vec<f64>,
 }
 
 impl ModalUpdate {
@@ -138,19 +138,19 @@ impl ModalUpdate {
         let (n, m) = (basis.nrows(), basis.ncols());
         let mut halves = Mat::zeros(n, m);
         let mut measures = Mat::zeros(n, m);
-        let mut half = vec![[0.0]; n];
+        let mut half = vec![0.0; n];
         for j in 0..m {
             inverse.forward(basis.col_as_slice(j), &mut half);
-            halves.col_as_slice_mut(j).copy_from_slice(half.as_flattened());
+            halves.col_as_slice_mut(j).copy_from_slice(&half);
             inverse.pivots(&mut half);
-            measures.col_as_slice_mut(j).copy_from_slice(half.as_flattened());
+            measures.col_as_slice_mut(j).copy_from_slice(&half);
         }
         let seen = gram(halves.as_ref(), measures.as_ref());
         let small = Mat::from_fn(m, m, |i, j| weights[i] * seen[(i, j)] + if i == j { 1.0 } else { 0.0 });
         let along = Mat::from_fn(m, columns.len(), |i, p| columns[p][1].dot(halves.col_as_slice(i)));
         let (motion, factors) = (Mat::zeros(m, 1), Mat::zeros(m, 1));
         let (answers, measured) = (Mat::zeros(0, 0), half);
-        let small = small.partial_piv_lu();
+        let small = Lu::new(small);
         let mut update =
             ModalUpdate { halves, seen, columns: along, answers, weights, small, motion, factors, measured };
         update.answers = update.answer(&update.columns);
@@ -177,9 +177,9 @@ impl Effective {
             ModalUpdate::new(&modal.basis, weights, &inverse, &columns)
         });
         if let Some(update) = &modal {
-            seen -= update.columns.transpose() * &update.answers;
+            seen -= product(update.columns.transpose(), update.answers.as_ref());
         }
-        Ok(Effective { inverse, columns, seen, modal, half: vec![[0.0]; n] })
+        Ok(Effective { inverse, columns, seen, modal, half: vec![0.0; n] })
     }
 
     /// Goes half of the way from h + B w; `w` is empty without modal damping.
@@ -188,14 +188,14 @@ impl Effective {
         if let Some(update) = &mut self.modal {
             update.measured.copy_from_slice(&self.half);
             self.inverse.pivots(&mut update.measured);
-            update.motion = gram(update.halves.as_ref(), column(update.measured.as_flattened()));
-            update.factors = w - update.answer(&(&update.motion + &update.seen * w));
+            update.motion = gram(update.halves.as_ref(), column(&update.measured));
+            update.factors = w - update.answer(&(&update.motion + product(update.seen.as_ref(), w.as_ref())));
         }
     }
 
     /// An entry of PᵀA⁻¹(h + B w).
     pub(super) fn free(&self, column: usize) -> f64 {
-        let motion = self.columns[column][1].dot(self.half.as_flattened());
+        let motion = self.columns[column][1].dot(&self.half);
         match &self.modal {
             Some(update) => {
                 let share = update.columns.col_as_slice(column).iter().zip(update.factors.col_as_slice(0));
@@ -207,7 +207,7 @@ impl Effective {
 
     /// Adds a force along a column of P.
     pub(super) fn push(&mut self, column: usize, force: f64) {
-        self.columns[column][0].add_to(force, self.half.as_flattened_mut());
+        self.columns[column][0].add_to(force, &mut self.half);
         if let Some(update) = &mut self.modal {
             for i in 0..update.weights.len() {
                 update.motion[(i, 0)] += force * update.columns[(i, column)];
@@ -219,10 +219,9 @@ impl Effective {
     /// Goes the rest of the way: Δ, and BᵀΔ in `w`.
     pub(super) fn finish(&mut self, increment: &mut [f64], w: &mut Mat<f64>) {
         if let Some(update) = &self.modal {
-            let half = self.half.as_flattened_mut();
-            let half = MatMut::from_column_major_slice_mut(half, update.halves.nrows(), 1);
+            let half = MatMut::from_column_major_slice_mut(&mut self.half, update.halves.nrows(), 1);
             combine(half, Accum::Add, update.halves.as_ref(), update.factors.as_ref(), 1.0);
-            *w = &update.motion + &update.seen * &update.factors;
+            *w = &update.motion + product(update.seen.as_ref(), update.factors.as_ref());
         }
         self.inverse.backward(&mut self.half, increment);
     }

@@ -2,8 +2,8 @@
 
 use super::model::Model;
 use super::reaction::Reaction;
-use faer::linalg::solvers::{PartialPivLu, Solve};
-use faer::{Mat, MatRef};
+use crate::linalg::lu::Lu;
+use faer::{Mat, MatMut, MatRef};
 
 /// J = I + b S (∂r/∂q + c₁ ∂r/∂q̇), whose columns differ from those of I only where something acts: those are solved for,
 /// the others follow. Its memory serves every step.
@@ -72,7 +72,7 @@ struct Small {
     /// The row that was exchanged with row k.
     pivots: Vec<usize>,
     /// The factors of a matrix for which a library is faster.
-    large: Option<PartialPivLu<f64>>,
+    large: Option<Lu<f64>>,
 }
 
 /// Up to here elimination in place takes less time than a library's preparations.
@@ -82,7 +82,7 @@ impl Small {
     fn factorise(&mut self, n: usize, entry: impl Fn(usize, usize) -> f64) {
         self.lu.clear();
         self.lu.extend((0..n).flat_map(|j| (0..n).map(move |i| (i, j))).map(|(i, j)| entry(i, j)));
-        self.large = (n > FEW).then(|| MatRef::from_column_major_slice(&self.lu, n, n).partial_piv_lu());
+        self.large = (n > FEW).then(|| Lu::new(MatRef::from_column_major_slice(&self.lu, n, n).to_owned()));
         if self.large.is_some() {
             return;
         }
@@ -109,8 +109,7 @@ impl Small {
     fn solve(&self, x: &mut [f64]) {
         let n = x.len();
         if let Some(large) = &self.large {
-            let solved = large.solve(MatRef::from_column_major_slice(x, n, 1));
-            x.copy_from_slice(solved.col_as_slice(0));
+            large.solve_in_place(MatMut::from_column_major_slice_mut(x, n, 1));
             return;
         }
         self.pivots.iter().enumerate().for_each(|(k, pivot)| x.swap(k, *pivot));

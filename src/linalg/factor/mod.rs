@@ -15,17 +15,17 @@
 //! `field` holds what real and complex numbers have in common. Tasks run on all threads; the order of every sum is
 //! that of the tree, so the bits do not depend on how many there are.
 
+mod compliances;
 mod field;
 mod front;
-mod halves;
 mod lower;
 mod numeric;
 mod ordering;
 mod solve;
 mod symbolic;
 
+pub use compliances::compliances;
 pub use field::Field;
-pub use halves::compliances;
 
 use super::SparseMatrix;
 use super::room::with_room;
@@ -70,16 +70,16 @@ pub trait SymmetricFactor<T: Field = f64>: Debug + Send + Sync {
     ///
     /// # Panics
     /// When a length is not n.
-    fn forward(&self, b: &[T], y: &mut [T::Lanes<1>]);
+    fn forward(&self, b: &[T], y: &mut [T]);
 
     /// y ← B⁻¹ y.
-    fn pivots(&self, y: &mut [T::Lanes<1>]);
+    fn pivots(&self, y: &mut [T]);
 
     /// x = S Pᵀ L⁻ᵀ B⁻¹ y, the second half; y is lost.
     ///
     /// # Panics
     /// When a length is not n.
-    fn backward(&self, y: &mut [T::Lanes<1>], x: &mut [T]);
+    fn backward(&self, y: &mut [T], x: &mut [T]);
 
     /// The columns b of `rhs` (n × k) become L⁻¹PSb, in the order of elimination: [`SymmetricFactor::forward`] of many.
     ///
@@ -265,18 +265,32 @@ impl<T: Field> Multifrontal<T> {
         Substitution { branch: &self.branch }
     }
 
-    /// Solves for up to as many columns as `L` has.
-    fn solve_lanes<L: Lanes<T>>(&self, rhs: MatMut<'_, T>) {
+    /// Goes up the tree with the columns of `rhs`, a few together, and back where `whole` solutions are wanted.
+    fn substitute(&self, rhs: MatMut<'_, T>, whole: bool) {
+        assert!(rhs.nrows() == self.n(), "right-hand sides of the wrong length");
+        rhs.par_col_chunks_mut(COLUMNS_A_TASK).for_each(|columns| match columns.ncols() {
+            1 => self.substitute_lanes::<T>(columns, whole),
+            2..=4 => self.substitute_lanes::<T::Lanes<4>>(columns, whole),
+            5..=8 => self.substitute_lanes::<T::Wide<8>>(columns, whole),
+            _ => self.substitute_lanes::<T::Wide<COLUMNS_A_TASK>>(columns, whole),
+        });
+    }
+
+    /// [`Multifrontal::substitute`] for up to as many columns as `L` has.
+    fn substitute_lanes<L: Lanes<T>>(&self, rhs: MatMut<'_, T>, whole: bool) {
         with_room(self.n(), L::ZERO, |x| {
             self.lay(rhs.as_ref(), x);
             self.substitution().up(x);
-            self.substitution().down(x);
+            if whole {
+                self.substitution().down(x);
+            }
             rhs.par_row_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, mut rhs)| {
                 for i in 0..rhs.nrows() {
                     let row = task * ROWS_A_TASK + i;
-                    let x = &x[self.plan.place[row]];
+                    let (place, scale) =
+                        if whole { (self.plan.place[row], self.scaling[row]) } else { (row, 1.0) };
                     for k in 0..rhs.ncols() {
-                        rhs[(i, k)] = x.get(k) * self.scaling[row];
+                        rhs[(i, k)] = x[place].get(k) * scale;
                     }
                 }
             });
@@ -302,18 +316,11 @@ impl<T: Field> SymmetricFactor<T> for Multifrontal<T> {
     }
 
     fn solve_in_place(&self, rhs: MatMut<'_, T>) {
-        assert!(rhs.nrows() == self.n(), "right-hand sides of the wrong length");
-        rhs.par_col_chunks_mut(COLUMNS_A_TASK).for_each(|columns| match columns.ncols() {
-            1 => self.solve_lanes::<T::Lanes<1>>(columns),
-            2..=4 => self.solve_lanes::<T::Lanes<4>>(columns),
-            5..=8 => self.solve_lanes::<T::Wide<8>>(columns),
-            _ => self.solve_lanes::<T::Wide<COLUMNS_A_TASK>>(columns),
-        });
+        self.substitute(rhs, true);
     }
 
     fn forward_in_place(&self, rhs: MatMut<'_, T>) {
-        assert!(rhs.nrows() == self.n(), "right-hand sides of the wrong length");
-        self.halves(rhs);
+        self.substitute(rhs, false);
     }
 
     fn pivots_in_place(&self, rhs: MatMut<'_, T>) {
@@ -328,26 +335,26 @@ impl<T: Field> SymmetricFactor<T> for Multifrontal<T> {
         SymbolicFactor(Arc::clone(&self.plan))
     }
 
-    fn forward(&self, b: &[T], y: &mut [T::Lanes<1>]) {
+    fn forward(&self, b: &[T], y: &mut [T]) {
         assert!(b.len() == self.n() && y.len() == self.n(), "vectors of the wrong length");
         y.par_chunks_mut(ROWS_A_TASK).zip(self.plan.order.par_chunks(ROWS_A_TASK)).for_each(|(y, order)| {
-            y.iter_mut().zip(order).for_each(|(y, row)| y.set(0, b[*row] * self.scaling[*row]));
+            y.iter_mut().zip(order).for_each(|(y, row)| *y = b[*row] * self.scaling[*row]);
         });
         self.substitution().up(y);
     }
 
-    fn pivots(&self, y: &mut [T::Lanes<1>]) {
+    fn pivots(&self, y: &mut [T]) {
         self.substitution().pivots(y);
     }
 
-    fn backward(&self, y: &mut [T::Lanes<1>], x: &mut [T]) {
+    fn backward(&self, y: &mut [T], x: &mut [T]) {
         assert!(x.len() == self.n() && y.len() == self.n(), "vectors of the wrong length");
         self.substitution().down(y);
         x.par_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, x)| {
             let first = task * ROWS_A_TASK;
             let rows = first..first + x.len();
             let places = self.plan.place[rows.clone()].iter().zip(&self.scaling[rows]);
-            x.iter_mut().zip(places).for_each(|(x, (place, scale))| *x = y[*place].get(0) * *scale);
+            x.iter_mut().zip(places).for_each(|(x, (place, scale))| *x = y[*place] * *scale);
         });
     }
 
@@ -466,17 +473,17 @@ mod tests {
         let mut c = vec![0.0; n];
         c[n / 3] = 1.0;
         let half = |b: &[f64]| {
-            let mut y = vec![[0.0]; n];
+            let mut y = vec![0.0; n];
             factor.forward(b, &mut y);
             y
         };
         let mut whole = Mat::from_fn(n, 1, |i, _| b[i]);
         factor.solve_in_place(whole.as_mut());
         let (mut y, few, mut x) = (half(&b), half(&c), vec![0.0; n]);
-        assert!(few.iter().filter(|row| row[0] != 0.0).count() < n / 2);
+        assert!(few.iter().filter(|value| **value != 0.0).count() < n / 2);
         let mut measured = few.clone();
         factor.pivots(&mut measured);
-        let seen: f64 = measured.iter().zip(&y).map(|(a, b)| a[0] * b[0]).sum();
+        let seen: f64 = measured.iter().zip(&y).map(|(a, b)| a * b).sum();
         assert!((seen - whole[(n / 3, 0)]).abs() < 1e-10 * whole.norm_max());
         factor.backward(&mut y, &mut x);
         assert_eq!(x, whole.col_as_slice(0));

@@ -14,16 +14,14 @@ use std::ops::Range;
 /// Rows that stay in the cache while all columns pass.
 const SLAB: usize = 1024;
 
-/// AᵀB; none where a column is not in one piece.
-pub(super) fn gram(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Option<Mat<f64>> {
-    let (n, columns, others) = (a.nrows(), columns(a)?, columns(b)?);
-    assert!(b.nrows() == n, "as many rows");
+/// AᵀB.
+pub(super) fn gram(n: usize, columns: &[&[f64]], others: &[&[f64]]) -> Mat<f64> {
     let parts: Vec<Vec<[f64; LANES]>> = (0..n.div_ceil(ROWS))
         .into_par_iter()
         .map(|task| {
             let mut sums = vec![[0.0; LANES]; columns.len() * others.len().div_ceil(LANES)];
             let rows = task * ROWS..n.min((task + 1) * ROWS);
-            Arch::new().dispatch(Dots { a: &columns, b: &others, rows, sums: &mut sums });
+            Arch::new().dispatch(Dots { a: columns, b: others, rows, sums: &mut sums });
             sums
         })
         .collect();
@@ -34,18 +32,17 @@ pub(super) fn gram(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Option<Mat<f64>> {
             sum.col_as_slice_mut(j).iter_mut().zip(part).for_each(|(sum, part)| *sum += part[j % LANES]);
         }
     }
-    Some(sum)
+    sum
 }
 
-/// Yₖ (+)= factor · V Cₖ for several, V being read once; false, and nothing done, where a column is not in one piece.
+/// Yₖ (+)= factor · V Cₖ for several, V being read once; false, and nothing done, where a column of Yₖ is not in one piece.
 pub(super) fn combine(
     mut parts: Vec<(MatMut<'_, f64>, MatRef<'_, f64>)>,
     accumulate: Accum,
-    v: MatRef<'_, f64>,
+    n: usize,
+    v: &[&[f64]],
     factor: f64,
 ) -> bool {
-    let n = v.nrows();
-    let Some(v) = columns(v) else { return false };
     if parts.iter().any(|(y, _)| columns(y.as_ref()).is_none()) {
         return false;
     }
@@ -68,7 +65,7 @@ pub(super) fn combine(
     }
     let anew = matches!(accumulate, Accum::Replace);
     tasks.par_iter_mut().enumerate().for_each(|(task, y)| {
-        Arch::new().dispatch(Sums { y, anew, first: task * ROWS, v: &v, c: &coefficients });
+        Arch::new().dispatch(Sums { y, anew, first: task * ROWS, v, c: &coefficients });
     });
     true
 }
@@ -104,8 +101,9 @@ impl Dots<'_> {
             let rows = start..self.rows.end.min(start + SLAB);
             let packed = &mut packed[..rows.len()];
             for (b, sums) in self.b.chunks(LANES).zip(self.sums.chunks_mut(m.max(1))) {
-                let b: Vec<&[f64]> = b.iter().map(|b| &b[rows.clone()]).collect();
-                lay(&b, packed);
+                let mut some = [&[][..]; LANES];
+                some.iter_mut().zip(b).for_each(|(some, b)| *some = &b[rows.clone()]);
+                lay(&some[..b.len()], packed);
                 let whole = m - m % G;
                 for (a, sums) in self.a.chunks_exact(G).zip(sums.chunks_exact_mut(G)) {
                     add_dots::<G>(std::array::from_fn(|g| &a[g][rows.clone()]), packed, sums);
@@ -241,14 +239,16 @@ mod tests {
         // More rows than a task and a slab, and column counts on either side of all groups.
         for (n, m, w) in [(9000, 21, 11), (1030, 8, 4), (40, 3, 1), (17, 0, 5), (0, 4, 2), (300, 5, 0)] {
             let (v, x, c) = (wave(n, m, 1.0), wave(n, w, 0.7), wave(m, w, 1.3));
-            let square = gram(v.as_ref(), x.as_ref()).unwrap();
+            let [v_columns, x_columns] = [&v, &x].map(|a| columns(a.as_ref()).unwrap());
+            let square = gram(n, &v_columns, &x_columns);
             assert!((square - gram_by_ranges(v.as_ref(), x.as_ref())).norm_max() <= 1e-11);
             for accumulate in [Accum::Replace, Accum::Add] {
                 let (mut y, mut expected) = (x.clone(), x.clone());
                 // In two pieces, so that a group of columns has some of both.
                 let (first, second) = y.as_mut().split_at_col_mut(w / 3);
                 let (left, right) = c.as_ref().split_at_col(w / 3);
-                assert!(combine(vec![(first, left), (second, right)], accumulate, v.as_ref(), -0.5));
+                let parts = vec![(first, left), (second, right)];
+                assert!(combine(parts, accumulate, n, &v_columns, -0.5));
                 combine_by_ranges(expected.as_mut(), accumulate, v.as_ref(), c.as_ref(), -0.5);
                 assert!((y - expected).norm_max() <= 1e-12);
             }
@@ -282,7 +282,7 @@ mod tests {
     #[test]
     fn columns_in_pieces_are_left_to_the_general_product() {
         let a = Mat::from_fn(4, 30, |i, j| (i + j) as f64);
-        assert!(gram(a.transpose(), a.transpose()).is_none());
+        assert!(columns(a.transpose()).is_none());
         assert_eq!(super::super::gram(a.transpose(), a.transpose()), &a * a.transpose());
     }
 }

@@ -161,7 +161,7 @@ fn directions(analysis: &Analysis<'_>) -> usize {
 /// the interface (r), and what small ones cost besides.
 fn work_of_a_point(analysis: &Analysis<'_>) -> f64 {
     let (m, r) = (analysis.basis.len() as f64, directions(analysis) as f64);
-    r * r * (16.0 * m + 40.0 * r) + 4.0 * m * r * (m - analysis.n_real as f64) + 3e5
+    r * r * (16.0 * m + 40.0 * r) + 4.0 * m * r * (m - analysis.basis.n_real() as f64) + 3e5
 }
 
 /// What a count is expected to take: about thirty points of the contour a mode.

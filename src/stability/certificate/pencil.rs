@@ -5,9 +5,10 @@ use super::reduced::{Oscillator, ReducedModel};
 use super::remainder::Remainder;
 use crate::error::Result;
 use crate::linalg::c64;
-use crate::linalg::dense::{inverse_and_phase, product, symmetric_eigen};
+use crate::linalg::dense::{product, symmetric_eigen};
+use crate::linalg::lu::inverse_and_phase;
 use crate::stability::interface::Term;
-use faer::{Accum, Mat, Par};
+use faer::Mat;
 
 /// Q_B(s) = diag(p) + V κ(s) Vᵀ with κ = k + s c: det Q_B = Π p · d, d(s) = det(I + H κ), H = Vᵀ diag(1/p) V.
 ///
@@ -202,16 +203,18 @@ impl<'a> Pencil<'a> {
         let rate = |e: &Entry| c64::new(e.damping, 0.0);
         let full = self.as_matrices(c);
         let mut n = match &full {
-            Some([kappa, _]) => complex_product(&h, kappa),
+            Some([kappa, _]) => product(h.as_ref(), kappa.as_ref()),
             None => self.times_entries(&h, kappa),
         };
         (0..r).for_each(|i| n[(i, i)] += 1.0);
         let (inverse, phase) = inverse_and_phase(n)?;
         let (stiff, damped) = match &full {
-            Some([kappa, rate]) => (complex_product(kappa, &inverse), complex_product(rate, &inverse)),
+            Some([kappa, rate]) => {
+                (product(kappa.as_ref(), inverse.as_ref()), product(rate.as_ref(), inverse.as_ref()))
+            }
             None => (self.entries_times(&inverse, kappa), self.entries_times(&inverse, rate)),
         };
-        let mut slope = complex_product(&h_rate, &stiff) + complex_product(&h, &damped);
+        let mut slope = product(h_rate.as_ref(), stiff.as_ref()) + product(h.as_ref(), damped.as_ref());
         let over = |x: &mut Mat<c64>, rows: bool| {
             for (j, b) in self.balance.iter().enumerate() {
                 for i in 0..x.nrows() {
@@ -395,13 +398,6 @@ impl Oscillator {
         let large = if (half + root).norm() >= (half - root).norm() { half + root } else { half - root };
         if large.norm() == 0.0 { [large; 2] } else { [large, constant / large] }
     }
-}
-
-/// A B on one thread.
-fn complex_product(a: &Mat<c64>, b: &Mat<c64>) -> Mat<c64> {
-    let mut c = Mat::zeros(a.nrows(), b.ncols());
-    faer::linalg::matmul::matmul(c.as_mut(), Accum::Replace, a, b, c64::new(1.0, 0.0), Par::Seq);
-    c
 }
 
 /// ‖(V X)ᵢ‖, one a row.

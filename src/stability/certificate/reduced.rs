@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::linalg::dense::{definite_pencil, product};
 use crate::linalg::few_rows::FewRows;
 use crate::linalg::sparse::times;
-use crate::linalg::tall::{expand, gram};
+use crate::linalg::tall::{beside, expand, gram};
 use crate::stability::analysis::Analysis;
 use crate::stability::damper::{Damper, Part, modal_times};
 use faer::Mat;
@@ -59,11 +59,13 @@ impl DampingParts {
         let Damper { viscous, loss, modal } = &operator.dampers[0];
         let rest = |part: &Part| {
             let rest = part.split.rest.as_ref().map(FewRows::new);
-            rest.map(|rest| Rows::image(&rest, basis.vectors.as_ref()))
+            rest.map(|rest| Rows::image(&rest, &basis.columns()))
         };
         let (modal_inside, mut damped) = (modal_inside(analysis), rest(viscous));
         if let Some(modal) = modal.filter(|_| !modal_inside) {
-            let modal = Rows::whole(modal_times(modal, basis.vectors.as_ref()));
+            let [of_modes, of_added] =
+                [basis.modes, basis.added.as_ref()].map(|part| modal_times(modal, part));
+            let modal = Rows::whole(beside(of_modes.as_ref(), of_added.as_ref()));
             damped = Some(match damped {
                 Some(rest) => modal.plus(&rest),
                 None => modal,
@@ -79,7 +81,7 @@ fn modal_inside(analysis: &Analysis<'_>) -> bool {
     let Some(modal) = &analysis.operator.damping.modal else { return true };
     let weights = Mat::from_fn(modal.basis.ncols(), 1, |j, _| 1.0 + (1.7 * (j + 1) as f64).sin());
     let probe = expand(modal.basis.as_ref(), weights.as_ref());
-    let shapes = analysis.basis.vectors.subcols(0, analysis.n_real);
+    let shapes = analysis.basis.modes;
     let inside = expand(shapes, gram(shapes, probe.as_ref()).as_ref());
     let rest = &probe - times(analysis.operator.mass, inside.as_ref());
     rest.norm_l2() <= 1e-8 * probe.norm_l2()
@@ -93,13 +95,13 @@ impl ReducedModel {
         let parts = DampingParts::new(analysis);
         let (theta, x) = definite_pencil(basis.stiffness.as_ref(), basis.mass.as_ref())?;
         let rotate = |a: &Mat<f64>| product(x.transpose(), product(a.as_ref(), x.as_ref()).as_ref());
-        let small = |image: &Rows| rotate(&image.seen_by(basis.vectors.as_ref()));
+        let small = |image: &Rows| rotate(&image.seen_by(&basis.columns()));
         let mut coupled = parts.damped.as_ref().map(small);
         let mut regular = rotate(&basis.damping);
         if let Some(rest) = &coupled {
             regular -= rest;
         }
-        if let Some(twins) = off_diagonal(&regular, analysis.n_real) {
+        if let Some(twins) = off_diagonal(&regular, basis.n_real()) {
             coupled = Some(coupled.map_or(twins.clone(), |rest| rest + twins));
         }
         let loss = &operator.dampers[0].loss.split;

@@ -1,10 +1,10 @@
 //! Tall vectors that are zero but in some rows, such as the forces of a few dashpots and contacts, and as few directions as
 //! span them.
 
-use crate::linalg::few_rows::{FewRows, picked};
+use crate::linalg::few_rows::FewRows;
 use crate::linalg::sparse::dot;
-use crate::linalg::tall::gram;
-use faer::{Mat, MatMut, MatRef};
+use crate::linalg::tall::{Columns, gram};
+use faer::{Mat, MatMut};
 
 /// Columns with entries in the rows `rows` (ascending) only.
 #[derive(Debug, Clone)]
@@ -20,8 +20,8 @@ impl Rows {
     }
 
     /// D B.
-    pub(super) fn image(d: &FewRows, b: MatRef<'_, f64>) -> Self {
-        Rows { rows: d.rows().to_vec(), values: d.times(b) }
+    pub(super) fn image(d: &FewRows, b: &Columns<'_>) -> Self {
+        Rows { rows: d.rows().to_vec(), values: d.times_picked(b.picked(d.rows()).as_ref()) }
     }
 
     /// The columns of both, one behind the other.
@@ -45,8 +45,8 @@ impl Rows {
     }
 
     /// VᵀF.
-    pub(super) fn seen_by(&self, v: MatRef<'_, f64>) -> Mat<f64> {
-        gram(picked(v, &self.rows).as_ref(), self.values.as_ref())
+    pub(super) fn seen_by(&self, v: &Columns<'_>) -> Mat<f64> {
+        gram(v.picked(&self.rows).as_ref(), self.values.as_ref())
     }
 
     /// Writes the columns out.
@@ -140,10 +140,10 @@ mod tests {
         });
         let d = samples::from_dense(few.as_ref());
         let b = Mat::from_fn(n, 11, |i, j| ((3 * i + 5 * j) as f64).sin());
-        let image = Rows::image(&FewRows::new(&d), b.as_ref());
+        let image = Rows::image(&FewRows::new(&d), &Columns::of([b.as_ref()]));
         let whole = &few * &b;
         assert!((written(n, &image) - &whole).norm_max() < 1e-13);
-        assert!((image.seen_by(b.as_ref()) - b.transpose() * &whole).norm_max() < 1e-12);
+        assert!((image.seen_by(&Columns::of([b.as_ref()])) - b.transpose() * &whole).norm_max() < 1e-12);
         let twice = Rows::whole(whole.clone()).plus(&image);
         assert!((written(n, &twice) - &whole - &whole).norm_max() < 1e-12);
     }

@@ -25,10 +25,11 @@ use super::reduced::ReducedModel;
 use super::remainder::Remainder;
 use crate::error::{Error, Result};
 use crate::linalg::c64;
-use crate::linalg::dense::{inverse_and_phase, product};
+use crate::linalg::dense::product;
+use crate::linalg::lu::inverse_and_phase;
 use crate::linalg::unsymmetric::{complex_spectrum, spectrum};
 use crate::stability::interface::Term;
-use faer::{Accum, Mat, Par};
+use faer::Mat;
 
 /// Floating-point operations for a basis of `m` vectors: about 60 (2m)³ for the vectors, their inverse and the check.
 pub(super) fn work(m: usize) -> f64 {
@@ -161,9 +162,9 @@ impl<'a> Spectrum<'a> {
                 "Change a number of the contact a little: two modes coalesce",
             )
         })?;
-        let mut rest = times(&z, &times(&a, &x));
+        let mut rest = product(z.as_ref(), product(a.as_ref(), x.as_ref()).as_ref());
         let values: Vec<c64> = (0..2 * m).map(|i| std::mem::take(&mut rest[(i, i)])).collect();
-        let mut defect = times(&z, &x);
+        let mut defect = product(z.as_ref(), x.as_ref());
         (0..2 * m).for_each(|i| defect[(i, i)] -= c64::new(1.0, 0.0));
         let row = |a: &Mat<c64>, i: usize| (0..2 * m).map(|j| a[(i, j)].norm()).sum::<f64>();
         let rests = (0..2 * m).map(|i| [row(&rest, i), row(&defect, i)]).collect();
@@ -254,13 +255,6 @@ impl<'a> Spectrum<'a> {
         // A product of zero and infinity is no bound.
         Some(if bound.is_nan() { f64::INFINITY } else { bound })
     }
-}
-
-/// A B on one thread.
-fn times(a: &Mat<c64>, b: &Mat<c64>) -> Mat<c64> {
-    let mut c = Mat::zeros(a.nrows(), b.ncols());
-    faer::linalg::matmul::matmul(c.as_mut(), Accum::Replace, a, b, c64::new(1.0, 0.0), Par::Seq);
-    c
 }
 
 /// (Γ + W_Z (k + s c) W_Bᵀ) x of every column x, with `stiff` and `damped` W_B kᵀ W_Zᵀ and W_B cᵀ W_Zᵀ.

@@ -2,6 +2,7 @@ use super::contour::Region;
 use super::*;
 use crate::equilibrium::SteadySliding;
 use crate::equilibrium::samples::*;
+use crate::linalg::tall::beside;
 use crate::linalg::{SparseVector, c64};
 use crate::modal::RealModes;
 use crate::stability::analysis::analyse;
@@ -225,7 +226,7 @@ fn bounds_hold(kind: u64, system: &System, state: &SteadySliding, band: [f64; 2]
     let real_k = system.structure.stiffness.to_dense();
     let a = &real_k - faer::Scale(analysis.shift) * &m;
     // Z: orthogonal to the basis in A, ZᵀAZ = 1.
-    let b = &analysis.basis.vectors;
+    let b = &beside(analysis.basis.modes, analysis.basis.added.as_ref());
     let ab = &a * b;
     let project =
         Mat::<f64>::identity(n, n) - b * (b.transpose() * &ab).partial_piv_lu().solve(ab.transpose());

@@ -1,39 +1,11 @@
-//! Half solutions of many right-hand sides, and the compliances fᵀA⁻¹g that they measure.
+//! The compliances fᵀA⁻¹g of many forces, by half solutions.
 //!
 //! With PSASPᵀ = LBLᵀ, fᵀA⁻¹g = (L⁻¹PSf)ᵀ B⁻¹ (L⁻¹PSg): the way back down the tree is not needed, and of a sparse f the way up
 //! touches only what lies between its entries and the root.
 
-use super::field::{Field, Lanes};
-use super::{COLUMNS_A_TASK, Multifrontal, ROWS_A_TASK, SymmetricFactor};
-use crate::linalg::room::with_room;
+use super::SymmetricFactor;
 use crate::linalg::tall::gram;
 use faer::{Mat, MatMut};
-use rayon::prelude::*;
-
-impl<T: Field> Multifrontal<T> {
-    /// L⁻¹PS b of every column, as many together as there are lanes.
-    pub(super) fn halves(&self, rhs: MatMut<'_, T>) {
-        rhs.par_col_chunks_mut(COLUMNS_A_TASK).for_each(|columns| match columns.ncols() {
-            1 => self.half::<T::Lanes<1>>(columns),
-            2..=4 => self.half::<T::Lanes<4>>(columns),
-            5..=8 => self.half::<T::Wide<8>>(columns),
-            _ => self.half::<T::Wide<COLUMNS_A_TASK>>(columns),
-        });
-    }
-
-    fn half<L: Lanes<T>>(&self, mut rhs: MatMut<'_, T>) {
-        with_room(self.n(), L::ZERO, |x| {
-            self.lay(rhs.as_ref(), x);
-            self.substitution().up(x);
-            rhs.as_mut().par_row_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, mut rhs)| {
-                let x = &x[task * ROWS_A_TASK..];
-                for (k, column) in rhs.as_mut().col_iter_mut().enumerate() {
-                    column.iter_mut().zip(x).for_each(|(y, x)| *y = x.get(k));
-                }
-            });
-        });
-    }
-}
 
 /// FᵀA⁻¹F of the columns of `f`, which are lost; the lower triangle is computed and mirrored.
 ///

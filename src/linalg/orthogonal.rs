@@ -1,0 +1,109 @@
+//! Orthogonal factors of small dense matrices, on one thread: QR with exchanged columns, and singular values.
+
+use faer::diag::Diag;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::householder::{
+    apply_block_householder_sequence_on_the_left_in_place_scratch as apply_scratch,
+    apply_block_householder_sequence_on_the_left_in_place_with_conj as apply,
+};
+use faer::linalg::qr::col_pivoting::factor;
+use faer::linalg::qr::no_pivoting::factor::recommended_block_size;
+use faer::linalg::svd::{ComputeSvdVectors, svd, svd_scratch};
+use faer::traits::ComplexField;
+use faer::{Conj, Mat, MatRef, Par};
+
+/// Q and R of A P = Q R, with as many columns of Q and rows of R as the shorter side of A has: of what is left, each step takes the
+/// largest column.
+pub fn pivoted_qr(mut a: Mat<f64>) -> [Mat<f64>; 2] {
+    let (m, n) = a.shape();
+    let size = m.min(n);
+    let (mut forward, mut backward) = (vec![0usize; n], vec![0usize; n]);
+    let block = recommended_block_size::<f64>(m, n);
+    let mut coefficients = Mat::zeros(block, size);
+    let scratch = factor::qr_in_place_scratch::<usize, f64>(m, n, block, Par::Seq, Default::default());
+    factor::qr_in_place(
+        a.as_mut(),
+        coefficients.as_mut(),
+        &mut forward,
+        &mut backward,
+        Par::Seq,
+        MemStack::new(&mut MemBuffer::new(scratch)),
+        Default::default(),
+    );
+    let mut q = Mat::identity(m, size);
+    let mut memory = MemBuffer::new(apply_scratch::<f64>(m, block, size));
+    let (reflectors, stack) = (a.subcols(0, size), MemStack::new(&mut memory));
+    apply(reflectors, coefficients.as_ref(), Conj::No, q.as_mut(), Par::Seq, stack);
+    let r = Mat::from_fn(size, n, |i, j| if i <= j { a[(i, j)] } else { 0.0 });
+    [q, r]
+}
+
+/// A = U S Vᴴ with as many columns of U and V as the shorter side of A has, the largest singular value first.
+pub struct ThinSvd<T> {
+    /// U.
+    pub left: Mat<T>,
+    /// The diagonal of S.
+    pub values: Vec<f64>,
+    /// V.
+    pub right: Mat<T>,
+}
+
+/// The singular values and vectors of A; `None` where a number is not finite, or they do not converge.
+pub fn thin_svd<T: ComplexField<Real = f64>>(a: MatRef<'_, T>) -> Option<ThinSvd<T>> {
+    let (m, n) = a.shape();
+    let size = m.min(n);
+    if !a.is_all_finite() {
+        return None;
+    }
+    let (mut left, mut right, mut values) = (Mat::zeros(m, size), Mat::zeros(n, size), Diag::zeros(size));
+    let thin = ComputeSvdVectors::Thin;
+    let scratch = svd_scratch::<T>(m, n, thin, thin, Par::Seq, Default::default());
+    let mut memory = MemBuffer::new(scratch);
+    svd(
+        a,
+        values.as_mut(),
+        Some(left.as_mut()),
+        Some(right.as_mut()),
+        Par::Seq,
+        MemStack::new(&mut memory),
+        Default::default(),
+    )
+    .ok()?;
+    let values = values.column_vector().iter().map(faer::traits::math_utils::real).collect();
+    Some(ThinSvd { left, values, right })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::random::Random;
+    use super::*;
+    use faer::c64;
+
+    #[test]
+    fn factors_are_orthogonal_and_multiply_to_the_matrix() {
+        for (m, n) in [(5, 9), (40, 70), (6, 6), (7, 3), (3, 0)] {
+            let size = m.min(n);
+            let mut random = Random::new();
+            let a = Mat::from_fn(m, n, |_, _| random.next());
+            let [q, r] = pivoted_qr(a.clone());
+            let unit =
+                |q: &Mat<f64>| (q.transpose() * q - Mat::<f64>::identity(size, size)).norm_max() < 1e-13;
+            assert!(unit(&q) && (1..size).all(|i| r[(i, i)].abs() <= 1.01 * r[(i - 1, i - 1)].abs()));
+            // The columns of QR are those of A in another order.
+            let lengths = |a: &Mat<f64>| {
+                let mut lengths: Vec<f64> = a.col_iter().map(|c| c.norm_l2()).collect();
+                lengths.sort_by(f64::total_cmp);
+                lengths
+            };
+            let pairs = lengths(&(&q * &r)).into_iter().zip(lengths(&a));
+            pairs.for_each(|(found, given)| assert!((found - given).abs() < 1e-12));
+            let ThinSvd { left, values, right } = thin_svd(a.as_ref()).unwrap();
+            let scaled = Mat::from_fn(m, size, |i, k| left[(i, k)] * values[k]);
+            assert!(unit(&left) && unit(&right) && (scaled * right.transpose() - &a).norm_max() < 1e-12);
+        }
+        let i = c64::new(0.0, 1.0);
+        let of_complex = thin_svd(faer::mat![[i * 3.0, i * 0.0]].as_ref()).unwrap();
+        assert!((of_complex.values[0] - 3.0).abs() < 1e-15);
+        assert!(thin_svd(faer::mat![[f64::NAN]].as_ref()).is_none());
+    }
+}
