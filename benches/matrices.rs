@@ -14,6 +14,10 @@ use stridor::job::{Prepared, Selection, analyse};
 use stridor::progress::Observer;
 use stridor::results::RunResults;
 
+// As the program does it.
+#[global_allocator]
+static MEMORY: stridor::pages::LargePages = stridor::pages::LargePages;
+
 /// CPU seconds of all threads of this process (user and system; clock ticks are 10 ms).
 fn cpu() -> f64 {
     let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
@@ -115,8 +119,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("matrices CASE [--threads N] [--vectors FILE]: see benches/run");
         return Ok(());
     };
-    // As the program does it, so that the numbers do not depend on the threads.
-    faer::set_global_parallelism(faer::Par::Seq);
     if let Some(threads) = option("--threads") {
         rayon::ThreadPoolBuilder::new().num_threads(threads.parse()?).build_global()?;
     }

@@ -12,6 +12,10 @@ use stridor::equilibrium::{SteadyOptions, SteadySliding, solve_steady};
 use stridor::job::Prepared;
 use stridor::transient::{Method, Model, Plan, Scheme, State, march};
 
+// As the program does it.
+#[global_allocator]
+static MEMORY: stridor::pages::LargePages = stridor::pages::LargePages;
+
 /// The part of its steady displacement that the structure starts with.
 const GIVEN_WAY: f64 = 0.97;
 /// Steps before the clock counts.

@@ -6,6 +6,7 @@
 //! | room | what it holds |
 //! |---|---|
 //! | [`error`], [`progress`] | one error type that carries data; how long work reports where it stands |
+//! | [`pages`] | memory in large pages |
 //! | [`linalg`] | sparse symmetric factorisation, eigenvalues; knows no mechanics |
 //! | [`system`] | the seam: M, C, K and the sliding interface, what every analysis takes |
 //! | [`mesh`] | Gmsh files, generated discs and plates, regions, quality |
@@ -42,6 +43,7 @@ pub mod linalg;
 pub mod measured;
 pub mod mesh;
 pub mod modal;
+pub mod pages;
 pub mod progress;
 pub mod reduction;
 pub mod report;
