@@ -15,7 +15,7 @@ use super::{Coupling, Damping, Structure};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::dense::product;
 use crate::linalg::matrix_market::MarketMatrix;
-use crate::linalg::orthogonal::pivoted_qr;
+use crate::linalg::orthogonal::{PivotedQr, pivoted_qr};
 use crate::linalg::sparse::{add_scaled, diagonal};
 use crate::linalg::{SparseMatrix, SparseVector};
 use faer::Mat;
@@ -323,7 +323,7 @@ fn factor(group: &Group, sizes: [&[f64]; 2]) -> (Vec<SparseVector>, Mat<f64>, Ma
     let (k, c) = (scaled(&group.stiffness, 1.0), scaled(&group.damping, kappa));
     let both = Mat::from_fn(m, 2 * m, |i, j| if j < m { k[(i, j)] } else { c[(i, j - m)] });
     let unit = |rows: &[usize]| rows.iter().map(|i| SparseVector::from_entries([(*i, 1.0)])).collect();
-    let [q, r] = pivoted_qr(both);
+    let PivotedQr { q, r, .. } = pivoted_qr(both);
     let noise = std::f64::consts::SQRT_2 * m as f64 * ENTRY_NOISE;
     // The rows of R from the pivot on are what the directions before it do not span.
     let mut left = 0.0f64;

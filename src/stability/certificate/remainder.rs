@@ -24,7 +24,7 @@ use crate::error::Result;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::factor::{SymmetricFactor, compliances, inertia_like};
 use crate::linalg::random::Random;
-use crate::linalg::sparse::{add_scaled, dot, times};
+use crate::linalg::sparse::{add_scaled, dot, multiply, times};
 use crate::linalg::tall::{combine, expand, panels};
 use crate::linalg::{SparseMatrix, c64};
 use crate::stability::analysis::Analysis;
@@ -103,8 +103,9 @@ impl Remainder {
         let f = beyond + few.values.ncols();
         let mut forces = Mat::zeros(operator.n(), f);
         for (start, width) in panels(0..beyond) {
-            let inertia = times(operator.mass, basis.added.subcols(start, width));
-            forces.subcols_mut(start, width).copy_from(inertia * faer::Scale(top));
+            let mut inertia = forces.subcols_mut(start, width);
+            multiply(operator.mass, basis.added.subcols(start, width), inertia.as_mut());
+            inertia *= faer::Scale(top);
         }
         few.write(forces.subcols_mut(beyond, f - beyond));
         // BᵀF', and F': MB has nothing of the real modes, to which the others are orthogonal.

@@ -2,6 +2,7 @@
 //! span them.
 
 use crate::linalg::few_rows::FewRows;
+use crate::linalg::orthogonal::{PivotedQr, pivoted_qr};
 use crate::linalg::sparse::dot;
 use crate::linalg::tall::{Columns, gram};
 use faer::{Mat, MatMut};
@@ -57,8 +58,8 @@ impl Rows {
         }
     }
 
-    /// F = G C with as few columns of G as span those of F to 1e-12 of each, by Gram and Schmidt with the largest rest first
-    /// and each direction cleaned twice. The columns of G are orthogonal, their sizes those of the rests.
+    /// F = G C with as few columns of G as span those of F to 1e-12 of each, the largest rest first. The columns of G are
+    /// orthogonal, their sizes those of the rests.
     ///
     /// Columns with entries nearly everywhere stay as they are: there is nothing to gain.
     pub(super) fn spanned(self) -> (Rows, Mat<f64>) {
@@ -68,41 +69,21 @@ impl Rows {
             return (self, Mat::identity(k, k));
         }
         let lengths: Vec<f64> = (0..k).map(|j| length(self.values.col_as_slice(j))).collect();
-        let mut rest = Mat::from_fn(n, k, |i, j| match lengths[j] > 0.0 {
+        let unit = Mat::from_fn(n, k, |i, j| match lengths[j] > 0.0 {
             true => self.values[(i, j)] / lengths[j],
             false => 0.0,
         });
-        let mut left: Vec<f64> = lengths.iter().map(|l| if *l > 0.0 { 1.0 } else { 0.0 }).collect();
-        let (mut found, mut shares): (Vec<Vec<f64>>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
-        while found.len() < n.min(k) {
-            // The first of equals.
-            let Some(best) = (0..k).reduce(|a, b| if left[b] > left[a] { b } else { a }) else { break };
-            if left[best] <= NOTHING_LEFT {
-                break;
-            }
-            let mut q = rest.col_as_slice(best).to_vec();
-            for known in &found {
-                let share = dot(known, &q);
-                q.iter_mut().zip(known).for_each(|(q, k)| *q -= share * k);
-            }
-            let size = length(&q);
-            q.iter_mut().for_each(|q| *q /= size);
-            let mut row = vec![0.0; k];
-            for j in 0..k {
-                let column = rest.col_as_slice_mut(j);
-                row[j] = dot(&q, column);
-                column.iter_mut().zip(&q).for_each(|(x, q)| *x -= row[j] * q);
-                left[j] = length(column);
-            }
-            found.push(q);
-            shares.push(row);
-        }
+        let PivotedQr { q, r, order } = pivoted_qr(unit);
+        let rank = (0..n.min(k)).take_while(|d| r[(*d, *d)].abs() > NOTHING_LEFT).count();
         // What a direction stands for in the original columns tells its size.
-        let size = |row: &Vec<f64>| row.iter().zip(&lengths).fold(0.0f64, |s, (r, l)| s.max((r * l).abs()));
-        let sizes: Vec<f64> = shares.iter().map(size).collect();
-        let values = Mat::from_fn(n, found.len(), |i, q| found[q][i] * sizes[q]);
-        let coefficients =
-            Mat::from_fn(found.len(), k, |q, j| shares[q][j] * lengths[j] / sizes[q].max(f64::MIN_POSITIVE));
+        let share = |d: usize, j: usize| r[(d, j)] * lengths[order[j]];
+        let size = |d: usize| (0..k).fold(0.0f64, |s, j| s.max(share(d, j).abs())).max(f64::MIN_POSITIVE);
+        let sizes: Vec<f64> = (0..rank).map(size).collect();
+        let values = Mat::from_fn(n, rank, |i, d| q[(i, d)] * sizes[d]);
+        let mut coefficients = Mat::zeros(rank, k);
+        for (j, column) in order.iter().enumerate() {
+            (0..rank).for_each(|d| coefficients[(d, *column)] = share(d, j) / sizes[d]);
+        }
         (Rows { rows: self.rows, values }, coefficients)
     }
 }
