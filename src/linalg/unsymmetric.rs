@@ -32,7 +32,7 @@ pub struct Spectrum {
 pub fn spectrum(a: MatRef<'_, f64>) -> Result<Spectrum> {
     let n = a.nrows();
     let (mut left, mut right) = (Mat::zeros(n, n), Mat::zeros(n, n));
-    let values = real_schur(a, Some(left.as_mut()), Some(right.as_mut()))?;
+    let values = eigen_of_real(a, Some(left.as_mut()), Some(right.as_mut()))?;
     Ok(Spectrum { right: in_pairs(&right, &values), left: in_pairs(&left, &values), values })
 }
 
@@ -43,7 +43,7 @@ pub fn spectrum(a: MatRef<'_, f64>) -> Result<Spectrum> {
 pub fn complex_spectrum(a: MatRef<'_, c64>) -> Result<Spectrum> {
     let n = a.nrows();
     let (mut left, mut right) = (Mat::zeros(n, n), Mat::zeros(n, n));
-    let values = complex_schur(a, Some(left.as_mut()), Some(right.as_mut()))?;
+    let values = eigen_of_complex(a, Some(left.as_mut()), Some(right.as_mut()))?;
     Ok(Spectrum { values, right, left })
 }
 
@@ -53,7 +53,7 @@ pub fn complex_spectrum(a: MatRef<'_, c64>) -> Result<Spectrum> {
 /// As [`spectrum`].
 pub fn eigenpairs(a: MatRef<'_, f64>) -> Result<(Vec<c64>, Mat<c64>)> {
     let mut right = Mat::zeros(a.nrows(), a.nrows());
-    let values = real_schur(a, None, Some(right.as_mut()))?;
+    let values = eigen_of_real(a, None, Some(right.as_mut()))?;
     let right = in_pairs(&right, &values);
     Ok((values, right))
 }
@@ -64,7 +64,7 @@ pub fn eigenpairs(a: MatRef<'_, f64>) -> Result<(Vec<c64>, Mat<c64>)> {
 /// As [`spectrum`].
 pub fn complex_eigenpairs(a: MatRef<'_, c64>) -> Result<(Vec<c64>, Mat<c64>)> {
     let mut right = Mat::zeros(a.nrows(), a.nrows());
-    let values = complex_schur(a, None, Some(right.as_mut()))?;
+    let values = eigen_of_complex(a, None, Some(right.as_mut()))?;
     Ok((values, right))
 }
 
@@ -73,11 +73,11 @@ pub fn complex_eigenpairs(a: MatRef<'_, c64>) -> Result<(Vec<c64>, Mat<c64>)> {
 /// # Errors
 /// As [`spectrum`].
 pub fn eigenvalues(a: MatRef<'_, f64>) -> Result<Vec<c64>> {
-    real_schur(a, None, None)
+    eigen_of_real(a, None, None)
 }
 
 /// Eigenvalues, and those vectors for which there is room: of a conjugate pair Re and then Im of the one with Im λ > 0.
-fn real_schur(
+fn eigen_of_real(
     a: MatRef<'_, f64>,
     left: Option<MatMut<'_, f64>>,
     right: Option<MatMut<'_, f64>>,
@@ -94,7 +94,7 @@ fn real_schur(
 }
 
 /// Eigenvalues, and those vectors for which there is room.
-fn complex_schur(
+fn eigen_of_complex(
     a: MatRef<'_, c64>,
     left: Option<MatMut<'_, c64>>,
     right: Option<MatMut<'_, c64>>,

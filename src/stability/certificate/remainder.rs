@@ -15,8 +15,8 @@
 //! on both sides) P_ZZ − tE is regular for every t in \[0, 1\], so that det Q and det Q_B wind alike. The norms need
 //! S = ZᵀF (ZᵀAZ)⁻¹FᵀZ = Fᵀ(A⁻¹ − B(BᵀAB)⁻¹Bᵀ)F of the columns F = \[MB DB H_rB W\] only. As A⁻¹ − B(BᵀAB)⁻¹Bᵀ takes AB
 //! to zero, F may first lose what the real modes Φ make of it: with F' = F − AΦ diag(ΦᵀAΦ)⁻¹ΦᵀF nothing small is lost in what
-//! is resonant, and S = F'ᵀA⁻¹F' − F'ᵀB(BᵀAB)⁻¹BᵀF' is half a block solve ([`compliances`]) less a small matrix. How much of it is rounding
-//! is measured (`Probes`) and added.
+//! is resonant, and S = F'ᵀA⁻¹F' − F'ᵀB(BᵀAB)⁻¹BᵀF' is half a block solve ([`compliances`]) less a small matrix. What rounding
+//! may hide in it is measured (`Probes`) and added.
 
 use super::reduced::DampingParts;
 use super::rows::Rows;
@@ -191,7 +191,7 @@ impl Remainder {
 }
 
 /// A few random combinations c of forces F, with cᵀFᵀA⁻¹Fc to the square of the rounding: a solution x ≈ A⁻¹f of f = Fc leaves
-/// r = f − Ax, and fᵀA⁻¹f = fᵀx + rᵀx + rᵀA⁻¹r.
+/// r = f − Ax, and fᵀA⁻¹f = fᵀx + rᵀx + rᵀA⁻¹r. What rounding makes of r itself shows as an error, too.
 struct Probes {
     combinations: Mat<f64>,
     compliances: Vec<f64>,
