@@ -4,9 +4,10 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Each room with all the rooms it may use.
-const MAY_USE: [(&str, &[&str]); 24] = [
+const MAY_USE: [(&str, &[&str]); 25] = [
     ("error", &[]),
     ("progress", &[]),
+    ("pages", &[]),
     ("linalg", &["error", "progress"]),
     ("system", &["error", "linalg"]),
     // Mechanics: builds a system, knows no analysis.
