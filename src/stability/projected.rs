@@ -52,6 +52,10 @@ pub(super) fn solve(
     wanted: impl Fn(c64) -> bool + Sync,
 ) -> Result<Vec<SmallPair>> {
     let m = mass.nrows();
+    // A band below all real modes, and nothing that damps or touches.
+    if m == 0 {
+        return Ok(Vec::new());
+    }
     let failed = |what: &str| {
         Error::analysis(
             "complex eigenvalues, projected problem",
@@ -141,4 +145,17 @@ fn unit(mut y: Vec<c64>) -> Vec<c64> {
     let norm = y.iter().map(|z| z.norm_sqr()).sum::<f64>().sqrt();
     y.iter_mut().for_each(|z| *z /= norm);
     y
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_problem_without_directions_has_no_pairs() {
+        let none = Mat::zeros(0, 0);
+        for loss in [None, Some(&none)] {
+            assert!(solve(&none, &none, &none, loss, 1.0, |_| true).unwrap().is_empty());
+        }
+    }
 }
