@@ -3,14 +3,19 @@
 //! A sparse product is bound by reading the indices and gathering the rows of x. K, M and C of a structure have both in
 //! common, so that three products cost little more than one.
 
+mod weighed;
+
+pub use weighed::PerMatrix;
+
 use super::SparseMatrix;
 use super::lanes::{Aligned, Row, spread};
-use super::sparse::{ROWS_A_TASK, columns_mut, union, with_packed};
+use super::sparse::{ROWS_A_TASK, columns_mut, union, with_laid, with_packed};
 use faer::{Mat, MatMut, MatRef};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
+use std::ops::Range;
 
-/// Columns that go through the matrices together in [`Merged::times`].
+/// Columns that go through the matrices together.
 const PANEL: usize = 16;
 type PackedRow = Aligned<[f64; PANEL]>;
 
@@ -46,57 +51,80 @@ impl Merged {
     /// # Panics
     /// When the shapes do not agree.
     pub fn times(&self, x: MatRef<'_, f64>, products: &mut Vec<Mat<f64>>) {
-        products.resize_with(self.count, Mat::new);
-        products.iter_mut().for_each(|y| y.resize_with(x.nrows(), x.ncols(), |_, _| 0.0));
-        self.times_into(x, &mut products.iter_mut().map(|y| y.as_mut()).collect::<Vec<_>>());
-    }
-
-    /// [`Merged::times`] into matrices at hand, whose columns are in one piece.
-    ///
-    /// # Panics
-    /// When the shapes do not agree, or a column is in pieces.
-    pub fn times_into(&self, x: MatRef<'_, f64>, products: &mut [MatMut<'_, f64>]) {
         let n = self.starts.len() - 1;
-        assert!(x.nrows() == n && products.len() == self.count, "shapes of A and x disagree");
+        assert!(x.nrows() == n, "shapes of A and x disagree");
+        products.resize_with(self.count, Mat::new);
+        products.iter_mut().for_each(|y| y.resize_with(n, x.ncols(), |_, _| 0.0));
         for start in (0..x.ncols()).step_by(PANEL) {
             let width = PANEL.min(x.ncols() - start);
             with_packed(x.subcols(start, width), |packed: &[PackedRow]| {
-                let mut tasks: Vec<Vec<MatMut<'_, f64>>> = Vec::new();
+                // The rows of a task of every product.
+                let mut tasks: Vec<Vec<Vec<&mut [f64]>>> = Vec::new();
                 tasks.resize_with(n.div_ceil(ROWS_A_TASK), Vec::new);
                 for product in products.iter_mut() {
-                    let columns = product.as_mut().subcols_mut(start, width);
-                    let chunks: Vec<_> = columns.par_row_chunks_mut(ROWS_A_TASK).collect();
-                    tasks.iter_mut().zip(chunks).for_each(|(task, chunk)| task.push(chunk));
+                    let columns = columns_mut(product.as_mut().subcols_mut(start, width));
+                    split(columns.expect("columns in one piece"), &mut tasks);
                 }
-                tasks.into_par_iter().enumerate().for_each(|(task, parts)| {
-                    let first = task * ROWS_A_TASK;
-                    match self.count {
-                        1 => self.rows_times::<1>(first, packed, parts),
-                        2 => self.rows_times::<2>(first, packed, parts),
-                        3 => self.rows_times::<3>(first, packed, parts),
-                        _ => self.rows_times::<4>(first, packed, parts),
+                self.each_block(packed, tasks, |task, rows, sums| {
+                    for (a, columns) in task.iter_mut().enumerate() {
+                        let mut columns: Vec<_> = columns.iter_mut().map(|y| &mut y[rows.clone()]).collect();
+                        spread(|i| &sums[i * self.count + a], &mut columns);
                     }
                 });
             });
         }
     }
 
-    fn rows_times<const C: usize>(
+    /// Products with sixteen columns that are not written down: `take` is given them a few rows at a time, with the task that
+    /// the rows belong to and their places in it. A task is [`ROWS_A_TASK`] rows. Row i of the product with matrix a stands
+    /// at `count` · i + a.
+    ///
+    /// # Panics
+    /// When the numbers of rows or tasks do not agree.
+    fn visit<T: Send>(
         &self,
-        first: usize,
+        columns: [&[f64]; PANEL],
+        tasks: Vec<T>,
+        take: impl Fn(&mut T, Range<usize>, &[[f64; PANEL]]) + Sync,
+    ) -> Vec<T> {
+        let n = self.starts.len() - 1;
+        assert!(columns.iter().all(|column| column.len() == n), "as many rows");
+        with_laid(&columns, n, |packed: &[PackedRow]| self.each_block(packed, tasks, take))
+    }
+
+    fn each_block<T: Send>(
+        &self,
         packed: &[PackedRow],
-        mut parts: Vec<MatMut<'_, f64>>,
-    ) {
-        let rows = parts.first().map_or(0, |part| part.nrows());
-        let mut sums = [[[0.0; PANEL]; C]; BLOCK];
-        for begin in (0..rows).step_by(BLOCK) {
-            let sums = &mut sums[..BLOCK.min(rows - begin)];
-            Arch::new().dispatch(Rows { merged: self, first: first + begin, packed, sums });
-            for (a, part) in parts.iter_mut().enumerate() {
-                let part = part.as_mut().subrows_mut(begin, sums.len());
-                let mut columns = columns_mut(part).expect("columns in one piece");
-                spread(|i| &sums[i][a], &mut columns);
+        mut tasks: Vec<T>,
+        take: impl Fn(&mut T, Range<usize>, &[[f64; PANEL]]) + Sync,
+    ) -> Vec<T> {
+        assert!(tasks.len() == packed.len().div_ceil(ROWS_A_TASK), "a task for some rows each");
+        tasks.par_iter_mut().enumerate().for_each(|(number, task)| {
+            let first = number * ROWS_A_TASK;
+            let rows = first..packed.len().min(first + ROWS_A_TASK);
+            match self.count {
+                1 => self.rows_times::<1, _>(rows, packed, task, &take),
+                2 => self.rows_times::<2, _>(rows, packed, task, &take),
+                3 => self.rows_times::<3, _>(rows, packed, task, &take),
+                _ => self.rows_times::<4, _>(rows, packed, task, &take),
             }
+        });
+        tasks
+    }
+
+    fn rows_times<const C: usize, T>(
+        &self,
+        rows: Range<usize>,
+        packed: &[PackedRow],
+        task: &mut T,
+        take: &impl Fn(&mut T, Range<usize>, &[[f64; PANEL]]),
+    ) {
+        let mut sums = [[[0.0; PANEL]; C]; BLOCK];
+        for first in rows.clone().step_by(BLOCK) {
+            let sums = &mut sums[..BLOCK.min(rows.end - first)];
+            Arch::new().dispatch(Rows { merged: self, first, packed, sums });
+            let begin = first - rows.start;
+            take(task, begin..begin + sums.len(), sums.as_flattened());
         }
     }
 
@@ -160,6 +188,12 @@ impl Merged {
 const FEW: usize = 4;
 /// Rows whose sums are kept at hand.
 const BLOCK: usize = 128;
+
+/// Gives every task its rows of some columns.
+fn split<'a>(columns: Vec<&'a mut [f64]>, tasks: &mut [Vec<Vec<&'a mut [f64]>>]) {
+    let mut parts: Vec<_> = columns.into_iter().map(|column| column.chunks_mut(ROWS_A_TASK)).collect();
+    tasks.iter_mut().for_each(|task| task.push(parts.iter_mut().filter_map(Iterator::next).collect()));
+}
 
 /// A column in one piece; nothing where there is none.
 fn slice(x: MatRef<'_, f64>, c: usize) -> &[f64] {

@@ -214,15 +214,27 @@ pub(super) fn with_packed<T: Scalar, R: Row<T, W>, const W: usize, Y>(
     x: MatRef<'_, T>,
     f: impl FnOnce(&[R]) -> Y,
 ) -> Y {
+    if let Some(columns) = columns(x) {
+        return with_laid(&columns, x.nrows(), f);
+    }
     with_room(x.nrows(), R::ZERO, |packed: &mut [R]| {
+        for (i, row) in packed.iter_mut().enumerate() {
+            (0..x.ncols()).for_each(|c| row.values_mut()[c] = x[(i, c)]);
+        }
+        f(packed)
+    })
+}
+
+/// [`with_packed`] of columns of `n` rows that are each in one piece.
+pub(super) fn with_laid<T: Scalar, R: Row<T, W>, const W: usize, Y>(
+    columns: &[&[T]],
+    n: usize,
+    f: impl FnOnce(&[R]) -> Y,
+) -> Y {
+    with_room(n, R::ZERO, |packed: &mut [R]| {
         packed.par_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, packed)| {
-            let x = x.subrows(task * ROWS_A_TASK, packed.len());
-            match columns(x) {
-                Some(columns) => lay(&columns, packed),
-                None => (0..x.ncols()).for_each(|c| {
-                    packed.iter_mut().zip(x.col(c).iter()).for_each(|(row, v)| row.values_mut()[c] = *v);
-                }),
-            }
+            let rows = task * ROWS_A_TASK..task * ROWS_A_TASK + packed.len();
+            lay(&columns.iter().map(|column| &column[rows.clone()]).collect::<Vec<_>>(), packed);
         });
         f(packed)
     })

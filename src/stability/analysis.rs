@@ -299,7 +299,7 @@ fn expand(basis: &Basis<'_>, pairs: &[&SmallPair], to: &mut Measured) -> Block {
     };
     let (right, left) = (small(|p| &p.right), small(|p| &p.left));
     to.lambda = pairs.iter().map(|pair| pair.lambda).collect();
-    basis.expand_into([(&right, &mut to.right.vectors), (&left, &mut to.left)]);
+    basis.expand_into([(&right, &mut to.right), (&left, &mut to.left)]);
     right.map(|y| product(basis.mass.as_ref().subrows(0, basis.n_real()), y))
 }
 

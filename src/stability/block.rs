@@ -107,17 +107,20 @@ impl Block {
         Block { parts }
     }
 
-    /// self\[:, j\] = a\[j\] · x\[:, j\] + b\[j\] · y\[:, j\], in the memory at hand.
-    pub(super) fn set_sum(&mut self, [(a, x), (b, y)]: [(&[c64], &Block); 2]) {
+    /// self\[:, j\] = factor · x\[:, j\], in the memory at hand.
+    pub(super) fn set_scaled(&mut self, factor: f64, x: &Block) {
         self.resize(x.nrows(), x.ncols());
-        self.each_vector(|j, [u, v]| {
-            let (([p, q], a), ([r, s], b)) = ((x.vector(j), a[j]), (y.vector(j), b[j]));
-            let terms = p.iter().zip(q).zip(r.iter().zip(s));
-            for ((u, v), ((p, q), (r, s))) in u.iter_mut().zip(v).zip(terms) {
-                *u = a.re * p - a.im * q + (b.re * r - b.im * s);
-                *v = a.re * q + a.im * p + (b.re * s + b.im * r);
+        self.each_vector(|j, parts| {
+            for (own, x) in parts.into_iter().zip(x.vector(j)) {
+                own.iter_mut().zip(x).for_each(|(own, x)| *own = factor * x);
             }
         });
+    }
+
+    /// Zeros in the memory at hand.
+    pub(super) fn clear(&mut self, n: usize, columns: usize) {
+        self.resize(n, columns);
+        self.each_vector(|_, parts| parts.into_iter().for_each(|part| part.fill(0.0)));
     }
 
     /// self\[:, j\] += factor\[j\] · x\[:, j\].
@@ -129,6 +132,17 @@ impl Block {
                 *v += a.re * q + a.im * p;
             }
         });
+    }
+
+    /// self\[rows, j\] += factor\[j\] · x\[:, j\].
+    pub(super) fn add_rows(&mut self, factor: &[c64], rows: &[usize], x: &Block) {
+        for (j, factor) in factor.iter().enumerate() {
+            let [re, im] = self.vector_mut(j);
+            for (k, i) in rows.iter().enumerate() {
+                let value = factor * x.get(k, j);
+                (re[*i], im[*i]) = (re[*i] + value.re, im[*i] + value.im);
+            }
+        }
     }
 
     /// self\[:, j\] *= factor\[j\].
@@ -144,10 +158,15 @@ impl Block {
         vectors.for_each(|(j, (re, im))| f(j, [re, im].map(whole)));
     }
 
+    /// Column `j`, scaled.
+    pub(super) fn scaled_column(&self, j: usize, factor: f64) -> Vec<c64> {
+        let [re, im] = self.vector(j);
+        re.iter().zip(im).map(|(a, b)| c64::new(factor * a, factor * b)).collect()
+    }
+
     /// Column `j`.
     pub(super) fn column(&self, j: usize) -> Vec<c64> {
-        let [re, im] = self.vector(j);
-        re.iter().zip(im).map(|(a, b)| c64::new(*a, *b)).collect()
+        self.scaled_column(j, 1.0)
     }
 
     /// dᵀx of vector j.
@@ -159,6 +178,11 @@ impl Block {
     /// self\[:, j\]ᴴ x\[:, j\].
     pub(super) fn dot(&self, j: usize, x: &Block) -> c64 {
         conjugate_dot(self.vector(j), x.vector(j))
+    }
+
+    /// self\[rows, j\]ᴴ x\[:, j\].
+    pub(super) fn dot_rows(&self, j: usize, rows: &[usize], x: &Block) -> c64 {
+        rows.iter().enumerate().map(|(k, i)| self.get(*i, j).conj() * x.get(k, j)).sum()
     }
 
     /// ‖self\[:, j\]‖₂.

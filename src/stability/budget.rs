@@ -2,7 +2,7 @@
 
 use super::GrowthBudget;
 use super::interface::Origin;
-use super::operator::{Images, Operator, Sum};
+use super::operator::{Forms, Operator};
 use crate::linalg::c64;
 
 impl GrowthBudget {
@@ -12,39 +12,37 @@ impl GrowthBudget {
     }
 }
 
-/// The terms of σ of every pair, for φ scaled to φᴴMφ = 1.
+/// The terms of σ of a pair, for φ scaled to φᴴMφ = 1, given what the matrices are between φ and φ, and the `motion` Wᵀφ of
+/// the interface.
 ///
 /// The imaginary part of φᴴQ(λ)φ = 0 is 2σω + ω Re γ + σ Im γ + Im κ = 0 with γ = φᴴ(C + C_c)φ and κ = φᴴ(K + iH +
 /// K_c)φ. Each entry of a contact block is one summand of γ or κ: (g, g) is damping in the normal direction and goes
 /// with the structure's, (t₁, t₁) is falling friction, what turns with the transverse slip touches t₂, and a friction
 /// force that follows the normal motion (t, g) couples the modes. A real eigenvalue (ω = 0) has no such balance: all
 /// terms are zero.
-pub(super) fn growth_budgets(operator: &Operator<'_>, lambda: &[c64], images: &Images) -> Vec<GrowthBudget> {
-    let phi = &images.vectors;
-    let one = c64::new(1.0, 0.0);
-    let of = |(j, lambda): (usize, &c64)| {
-        let mut budget = GrowthBudget::default();
-        let omega = lambda.im;
-        if omega <= 0.0 {
-            return budget;
+pub(super) fn growth_budget(
+    operator: &Operator<'_>,
+    lambda: c64,
+    forms: &Forms,
+    motion: &[c64],
+) -> GrowthBudget {
+    let mut budget = GrowthBudget::default();
+    let omega = lambda.im;
+    if omega <= 0.0 {
+        return budget;
+    }
+    let by_velocity = |gamma: c64| -(omega * gamma.re + lambda.re * gamma.im) / (2.0 * omega);
+    let by_displacement = |kappa: c64| -kappa.im / (2.0 * omega);
+    budget.structural_damping = by_velocity(forms.damping) + by_displacement(c64::new(0.0, 1.0) * forms.loss);
+    for term in &operator.interface.terms {
+        let product = motion[term.row].conj() * motion[term.column];
+        let share = by_velocity(product * term.damping) + by_displacement(product * term.stiffness);
+        match term.origin {
+            Origin::Normal => budget.structural_damping += share,
+            Origin::Falling => budget.falling_friction += share,
+            Origin::Transverse => budget.transverse_friction += share,
+            Origin::Coupling => budget.mode_coupling += share,
         }
-        let by_velocity = |gamma: c64| -(omega * gamma.re + lambda.re * gamma.im) / (2.0 * omega);
-        let by_displacement = |kappa: c64| -kappa.im / (2.0 * omega);
-        let of_structure = |sum: Sum| operator.structure_form(j, phi, &sum, images);
-        budget.structural_damping += by_velocity(of_structure(Sum { damping: one, ..Sum::default() }))
-            + by_displacement(c64::new(0.0, 1.0) * of_structure(Sum { loss: one, ..Sum::default() }));
-        let motion = operator.interface.motions(phi.vector(j));
-        for term in &operator.interface.terms {
-            let product = motion[term.row].conj() * motion[term.column];
-            let share = by_velocity(product * term.damping) + by_displacement(product * term.stiffness);
-            match term.origin {
-                Origin::Normal => budget.structural_damping += share,
-                Origin::Falling => budget.falling_friction += share,
-                Origin::Transverse => budget.transverse_friction += share,
-                Origin::Coupling => budget.mode_coupling += share,
-            }
-        }
-        budget
-    };
-    lambda.iter().enumerate().map(of).collect()
+    }
+    budget
 }

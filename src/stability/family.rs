@@ -223,7 +223,7 @@ impl<'f> Family<'f> {
             let of = |y: &Mat<c64>| turned(y, chunk * TOGETHER, lambda.len());
             measured.lambda = lambda.to_vec();
             let (right, left) = (of(&modes.right), of(&modes.left));
-            self.basis.expand_into([(&right, &mut measured.right.vectors), (&left, &mut measured.left)]);
+            self.basis.expand_into([(&right, &mut measured.right), (&left, &mut measured.left)]);
             scale.measure(&mut measured);
             wanted.add(&scale, &measured);
             check.eigenvalues.extend(lambda);

@@ -6,6 +6,7 @@ use super::operator::{Operator, Side};
 use crate::equilibrium::SteadySliding;
 use crate::error::Result;
 use crate::linalg::c64;
+use crate::linalg::sparse::times;
 use crate::system::System;
 
 /// The amplitude c of a mode in a motion near steady sliding, u = u₀ + Re(c φ) + other modes:
@@ -37,10 +38,10 @@ impl ModalFilter {
 pub fn modal_filter(system: &System, steady: &SteadySliding, mode: &ComplexMode) -> Result<ModalFilter> {
     let operator = Operator::new(system, steady)?;
     let n = operator.n();
-    let images = operator.images(Block::from_columns(n, &[&mode.left]));
+    let left = Block::from_columns(n, &[&mode.left]);
     // Q′(λ)ᴴψ and Mψ.
-    let slope = operator.slope(Side::Left, &[mode.eigenvalue], &images);
-    let (slope, inertia) = (slope.column(0), images.inertia.column(0));
+    let slope = operator.slope(Side::Left, &[mode.eigenvalue], &left);
+    let (slope, inertia) = (slope.column(0), left.map(|x| times(operator.mass, x)).column(0));
     let steepness = slope.iter().zip(&mode.right).fold(c64::new(0.0, 0.0), |sum, (s, x)| sum + s.conj() * x);
     let lambda = mode.eigenvalue.conj();
     let scale = c64::new(2.0, 0.0) / steepness;

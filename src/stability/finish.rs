@@ -1,18 +1,12 @@
 //! The modes as they are given: right vectors sharpened by the last corrections, and what is told of them.
 
 use super::ComplexMode;
-use super::GrowthBudget;
 use super::block::Block;
-use super::budget::growth_budgets;
-use super::operator::{Images, Operator, Side};
+use super::budget::growth_budget;
+use super::operator::Operator;
 use super::round::Measured;
 use crate::linalg::c64;
-
-/// What is told of right vectors.
-struct Told {
-    backward_error: Vec<f64>,
-    growth: Vec<GrowthBudget>,
-}
+use rayon::prelude::*;
 
 /// The modes of pairs that were measured. The error of φ is about the correction z = −A⁻¹Q(λ)φ, which was solved for to tell
 /// that of λ: φ + z is given where its residual is the smaller one, which leaves a few hundredths of that error. Its contact
@@ -23,44 +17,31 @@ pub(super) fn finished(
     measured: &mut Measured,
     amplitudes: &Block,
 ) -> Vec<ComplexMode> {
-    let Measured { lambda, right, left, correction, backward_error, eigenvalue_error, condition } = measured;
-    let mut lefts: Vec<Vec<c64>> = (0..lambda.len()).map(|j| left.column(j)).collect();
-    // Their block is memory for residuals from here on.
-    correction.add(right);
-    let corrected = Told::of(operator, lambda, correction, left);
-    let better = |j: &usize| corrected.backward_error[*j] < backward_error[*j];
-    let plain: Vec<usize> = (0..lambda.len()).filter(|j| !better(j)).collect();
-    let their: Vec<c64> = plain.iter().map(|j| lambda[*j]).collect();
-    let mut as_found = right.gathered(&plain);
-    let uncorrected = Told::of(operator, &their, &mut as_found, left);
+    let one = vec![c64::new(1.0, 0.0); measured.lambda.len()];
+    measured.correction.add_scaled(&one, &measured.right);
+    let measured = &*measured;
     let mode = |j: usize| {
-        let (told, images, k) = match plain.binary_search(&j) {
-            Ok(k) => (&uncorrected, &as_found, k),
-            Err(_) => (&corrected, &*correction, j),
-        };
+        let corrected = measured.corrected[j] / measured.correction.norm(j);
+        let found = measured.backward_error[j];
+        let better = corrected < found;
+        let vectors = if better { &measured.correction } else { &measured.right };
+        let forms = measured.forms[j][usize::from(better)];
+        let to_unit_mass = 1.0 / forms.mass.re.sqrt();
+        let motion = operator.interface.motions(vectors.vector(j));
+        let motion: Vec<c64> = motion.into_iter().map(|m| m * to_unit_mass).collect();
+        let eigenvalue = measured.lambda[j];
         ComplexMode {
-            eigenvalue: lambda[j],
-            right: images.vectors.column(k),
-            left: std::mem::take(&mut lefts[j]),
-            backward_error: told.backward_error[k],
-            eigenvalue_error: eigenvalue_error[j],
-            condition: condition[j],
-            growth: told.growth[k],
+            eigenvalue,
+            right: vectors.scaled_column(j, to_unit_mass),
+            left: measured.left.column(j),
+            backward_error: if better { corrected } else { found },
+            eigenvalue_error: measured.eigenvalue_error[j],
+            condition: measured.condition[j],
+            growth: growth_budget(operator, eigenvalue, &forms.scaled(to_unit_mass.powi(2)), &motion),
             participation: shares(amplitudes, j),
         }
     };
-    (0..lambda.len()).map(mode).collect()
-}
-
-impl Told {
-    /// Of vectors that are scaled to unit mass first.
-    fn of(operator: &Operator<'_>, lambda: &[c64], images: &mut Images, residual: &mut Block) -> Self {
-        images.normalise();
-        let growth = growth_budgets(operator, lambda, images);
-        operator.value_into(Side::Right, lambda, images, residual);
-        let error = |j: usize| residual.norm(j) / (operator.size(lambda[j]) * images.vectors.norm(j));
-        Told { backward_error: (0..lambda.len()).map(error).collect(), growth }
-    }
+    (0..measured.lambda.len()).into_par_iter().map(mode).collect()
 }
 
 /// |φₖᵀMφ|² of every real mode that has at least one part in ten thousand, largest first.

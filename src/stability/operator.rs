@@ -1,11 +1,12 @@
 //! The full-order quadratic operator Q(λ) = λ² M + λ (C + C_c) + K + K_σ + iH + K_c, applied without forming it.
 
 use super::block::Block;
-use super::damper::{Between, Damper, modal_times};
+use super::damper::{Between, Damper, Part, modal_times};
 use super::interface::{Interface, Term};
 use crate::equilibrium::{SteadySliding, tangent_stiffness};
 use crate::error::Result;
-use crate::linalg::merged::Merged;
+use crate::linalg::merged::{Merged, PerMatrix};
+use crate::linalg::proportional::Proportional;
 use crate::linalg::sparse::{norm_1, times};
 use crate::linalg::tall::Columns;
 use crate::linalg::{SparseMatrix, c64};
@@ -33,16 +34,13 @@ pub(super) struct Operator<'a> {
     stiffness_norm: f64,
 }
 
-/// Complex vectors with what M, K and the wide parts of C and H make of them: the other parts need no more.
-#[derive(Default)]
-pub(super) struct Images {
-    pub(super) vectors: Block,
-    pub(super) inertia: Block,
-    pub(super) elastic: Block,
-    /// Of C, modal damping included.
-    damped: Option<Block>,
-    /// Of H.
-    lossy: Option<Block>,
+/// What the matrices of the structure are between two vectors: yᴴMx, yᴴ(K + K_σ)x, yᴴCx with modal damping, yᴴHx.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Forms {
+    pub(super) mass: c64,
+    pub(super) stiffness: c64,
+    pub(super) damping: c64,
+    pub(super) loss: c64,
 }
 
 /// m M + k (K + K_σ) + c (C + C_c) + h H + w K_c.
@@ -53,6 +51,38 @@ pub(super) struct Sum {
     pub(super) damping: c64,
     pub(super) loss: c64,
     pub(super) contact: c64,
+}
+
+/// What a structure loses energy by: C or H.
+#[derive(Debug, Clone, Copy)]
+enum Loss {
+    Viscous,
+    Hysteretic,
+}
+
+impl Loss {
+    const BOTH: [Loss; 2] = [Loss::Viscous, Loss::Hysteretic];
+
+    fn part<'d>(self, damper: &'d Damper<'_>) -> &'d Part {
+        match self {
+            Loss::Viscous => &damper.viscous,
+            Loss::Hysteretic => &damper.loss,
+        }
+    }
+
+    fn factor(self, sum: &Sum) -> c64 {
+        match self {
+            Loss::Viscous => sum.damping,
+            Loss::Hysteretic => sum.loss,
+        }
+    }
+
+    fn of(self, forms: &mut Forms) -> &mut c64 {
+        match self {
+            Loss::Viscous => &mut forms.damping,
+            Loss::Hysteretic => &mut forms.loss,
+        }
+    }
 }
 
 const ONE: c64 = c64::new(1.0, 0.0);
@@ -71,37 +101,35 @@ impl Sum {
     }
 }
 
-impl Images {
-    /// Some columns.
-    pub(super) fn gathered(&self, columns: &[usize]) -> Self {
-        let some = |block: &Block| Block::gathered(block, columns);
-        Images {
-            vectors: some(&self.vectors),
-            inertia: some(&self.inertia),
-            elastic: some(&self.elastic),
-            damped: self.damped.as_ref().map(some),
-            lossy: self.lossy.as_ref().map(some),
+impl Forms {
+    /// (y + z)ᴴX(y + z) of every matrix, given yᴴXy, yᴴXz and zᴴXz: all matrices are real and symmetric.
+    pub(super) fn of_sum(own: Forms, mixed: Forms, other: Forms) -> Self {
+        let sum = |pick: fn(&Forms) -> c64| pick(&own) + 2.0 * pick(&mixed).re + pick(&other);
+        Forms {
+            mass: sum(|f| f.mass),
+            stiffness: sum(|f| f.stiffness),
+            damping: sum(|f| f.damping),
+            loss: sum(|f| f.loss),
         }
     }
 
-    /// Adds those of other vectors to these.
-    pub(super) fn add(&mut self, other: &Images) {
-        let one = vec![ONE; other.vectors.ncols()];
-        let rest = self.damped.iter_mut().chain(&mut self.lossy);
-        let own = [&mut self.vectors, &mut self.inertia, &mut self.elastic].into_iter().chain(rest);
-        let rest = other.damped.iter().chain(&other.lossy);
-        let others = [&other.vectors, &other.inertia, &other.elastic].into_iter().chain(rest);
-        own.zip(others).for_each(|(own, other)| own.add_scaled(&one, other));
+    /// Those of the vectors scaled by the root of `factor` each.
+    pub(super) fn scaled(&self, factor: f64) -> Self {
+        let Forms { mass, stiffness, damping, loss } = *self;
+        Forms {
+            mass: mass * factor,
+            stiffness: stiffness * factor,
+            damping: damping * factor,
+            loss: loss * factor,
+        }
     }
 
-    /// Scales every column so that xᴴMx = 1.
-    pub(super) fn normalise(&mut self) {
-        let columns = 0..self.vectors.ncols();
-        let factors: Vec<f64> =
-            columns.into_par_iter().map(|j| 1.0 / self.vectors.dot(j, &self.inertia).re.sqrt()).collect();
-        let rest = self.damped.iter_mut().chain(&mut self.lossy);
-        let all = [&mut self.vectors, &mut self.inertia, &mut self.elastic].into_iter().chain(rest);
-        all.for_each(|block| block.scale(&factors));
+    /// yᴴ sum x without the interface.
+    fn weighed(&self, sum: &Sum) -> c64 {
+        sum.mass * self.mass
+            + sum.stiffness * self.stiffness
+            + sum.damping * self.damping
+            + sum.loss * self.loss
     }
 }
 
@@ -190,95 +218,96 @@ impl<'a> Operator<'a> {
         [mass, stiffness, damping, loss]
     }
 
-    /// What M, K, C and H make of complex vectors.
-    pub(super) fn images(&self, vectors: Block) -> Images {
-        let mut images = Images { vectors, ..Images::default() };
-        self.renew(&mut images);
-        images
-    }
-
-    /// What M, K, C and H make of the vectors of `images`, in the memory that it has.
-    pub(super) fn renew(&self, images: &mut Images) {
-        let Images { vectors, inertia, elastic, damped, lossy } = images;
-        let own = &self.dampers[0];
-        let room =
-            |block: &mut Option<Block>, there: bool| *block = there.then(|| block.take().unwrap_or_default());
-        room(damped, own.viscous.wide().is_some());
-        room(lossy, own.loss.wide().is_some());
-        let mut blocks: Vec<&mut Block> = vec![inertia, elastic];
-        blocks.extend(damped.iter_mut().chain(lossy.iter_mut()));
-        blocks.iter_mut().for_each(|block| block.resize(self.n(), vectors.ncols()));
-        let mut parts: Vec<_> = blocks.into_iter().map(Block::parts_mut).collect();
-        self.merged.times_into(vectors.parts(), &mut parts);
-        if self.weights[0] != 1.0 {
-            let weight = vec![self.weights[0]; vectors.ncols()];
-            damped.iter_mut().chain(lossy.iter_mut()).for_each(|block| block.scale(&weight));
+    /// yⱼ += sumⱼ xⱼ for the right side, and for the left with C_c and K_c transposed. Gives what the matrices are between
+    /// each of `tests` and x, pair by pair.
+    pub(super) fn add_products(
+        &self,
+        side: Side,
+        sums: &[Sum],
+        x: &Block,
+        y: &mut Block,
+        tests: &[&Block],
+    ) -> Vec<Vec<Forms>> {
+        let of_images: Vec<[c64; 2]> = sums.iter().map(|sum| self.of_images(sum)).collect();
+        let mut factors: Vec<Vec<c64>> = (0..2).map(|a| of_images.iter().map(|f| f[a]).collect()).collect();
+        for loss in self.merged_losses() {
+            factors.push(sums.iter().map(|sum| loss.factor(sum) * self.weights[0]).collect());
         }
-        self.add_rest(1, vectors, damped, lossy);
+        let parts: Vec<_> = tests.iter().map(|t| t.parts()).collect();
+        let between = self.merged.add_weighed(&factors, x.parts(), y.parts_mut(), &parts);
+        let mut forms: Vec<Vec<Forms>> =
+            between.iter().map(|of| of.iter().map(|entries| self.forms_of(entries)).collect()).collect();
+        self.add_others(1, side, sums, x, y, (tests, &mut forms));
+        forms
     }
 
-    /// What the wide parts of C and H make of vectors.
-    fn wide_images(&self, vectors: &Block) -> [Option<Block>; 2] {
-        let [mut damped, mut lossy] = [None, None];
-        self.add_rest(0, vectors, &mut damped, &mut lossy);
-        [damped, lossy]
+    /// Those whose wide parts are merged with M and K.
+    fn merged_losses(&self) -> impl Iterator<Item = Loss> {
+        Loss::BOTH.into_iter().filter(|loss| loss.part(&self.dampers[0]).wide().is_some())
     }
 
-    /// Adds what the modal dampings make of vectors, and the wide parts of the dampings from number `first` on.
-    fn add_rest(&self, first: usize, x: &Block, damped: &mut Option<Block>, lossy: &mut Option<Block>) {
-        for (k, (weight, damper)) in self.weights.iter().zip(&*self.dampers).enumerate() {
-            if *weight == 0.0 {
-                continue;
-            }
-            let wide =
-                |part: Option<&SparseMatrix>| part.filter(|_| k >= first).map(|a| x.map(|x| times(a, x)));
-            let modal = damper.modal.map(|modal| x.map(|x| modal_times(modal, x)));
-            for part in [wide(damper.viscous.wide()), modal].into_iter().flatten() {
-                add(damped, part, *weight);
-            }
-            if let Some(part) = wide(damper.loss.wide()) {
-                add(lossy, part, *weight);
+    /// The forms as far as the merged matrices tell them.
+    fn forms_of(&self, entries: &PerMatrix) -> Forms {
+        let [mass, stiffness, ref wide @ ..] = *entries;
+        let mut forms = Forms { mass, stiffness, ..Forms::default() };
+        for (loss, entry) in self.merged_losses().zip(wide) {
+            *loss.of(&mut forms) += entry * self.weights[0];
+        }
+        for (weight, damper) in self.acting() {
+            for loss in Loss::BOTH {
+                let Proportional { mass_factor, stiffness_factor, .. } = loss.part(damper).split;
+                *loss.of(&mut forms) += (mass * mass_factor + stiffness * stiffness_factor) * weight;
             }
         }
+        forms
     }
 
     /// The factors of M x and K x in a sum.
     fn of_images(&self, sum: &Sum) -> [c64; 2] {
         let mut factors = [sum.mass, sum.stiffness];
         for (weight, damper) in self.acting() {
-            for (factor, part) in [(sum.damping, &damper.viscous), (sum.loss, &damper.loss)] {
-                factors[0] += factor * weight * part.split.mass_factor;
-                factors[1] += factor * weight * part.split.stiffness_factor;
+            for loss in Loss::BOTH {
+                let Proportional { mass_factor, stiffness_factor, .. } = loss.part(damper).split;
+                factors[0] += loss.factor(sum) * weight * mass_factor;
+                factors[1] += loss.factor(sum) * weight * stiffness_factor;
             }
         }
         factors
     }
 
-    /// Yⱼ = sumⱼ Xⱼ for the right side, and for the left with C_c and K_c transposed.
-    fn apply(&self, side: Side, sums: &[Sum], x: &Images, y: &mut Block) {
-        let (mass, stiffness): (Vec<c64>, Vec<c64>) =
-            sums.iter().map(|sum| self.of_images(sum)).map(|[m, k]| (m, k)).unzip();
-        y.set_sum([(&mass, &x.inertia), (&stiffness, &x.elastic)]);
-        self.add_others(side, sums, &x.vectors, [x.damped.as_ref(), x.lossy.as_ref()], y);
-    }
-
-    /// Adds what is not told from M x and K x.
-    fn add_others(&self, side: Side, sums: &[Sum], x: &Block, wide: [Option<&Block>; 2], y: &mut Block) {
-        let factors = |pick: fn(&Sum) -> c64| sums.iter().map(pick).collect::<Vec<_>>();
-        for (wide, pick) in wide.into_iter().zip([|sum: &Sum| sum.damping, |sum: &Sum| sum.loss]) {
-            wide.iter().for_each(|wide| y.add_scaled(&factors(pick), wide));
-        }
-        for (weight, damper) in self.acting() {
-            let parts =
-                [(factors(|sum| sum.damping), &damper.viscous), (factors(|sum| sum.loss), &damper.loss)];
-            for (factors, part) in parts {
-                let Some(few) = &part.few else { continue };
-                let image = x.map(|x| few.times(x));
-                for (j, factor) in factors.iter().enumerate() {
-                    let [re, im] = y.vector_mut(j);
-                    for (k, i) in few.rows().iter().enumerate() {
-                        let value = *factor * weight * image.get(k, j);
-                        (re[*i], im[*i]) = (re[*i] + value.re, im[*i] + value.im);
+    /// Adds to y and to the forms what is not told from M x and K x: few rows, modal damping, the wide parts of the dampings
+    /// from number `first` on, and to y the interface.
+    fn add_others(
+        &self,
+        first: usize,
+        side: Side,
+        sums: &[Sum],
+        x: &Block,
+        y: &mut Block,
+        (tests, forms): (&[&Block], &mut [Vec<Forms>]),
+    ) {
+        for (k, (weight, damper)) in self.weights.iter().zip(&*self.dampers).enumerate() {
+            if *weight == 0.0 {
+                continue;
+            }
+            for loss in Loss::BOTH {
+                let part = loss.part(damper);
+                let factors: Vec<c64> = sums.iter().map(|sum| loss.factor(sum) * *weight).collect();
+                let wide = part.wide().filter(|_| k >= first).map(|a| x.map(|x| times(a, x)));
+                let modal = damper.modal.filter(|_| matches!(loss, Loss::Viscous));
+                let modal = modal.map(|modal| x.map(|x| modal_times(modal, x)));
+                let few = part.few.as_ref().map(|few| (few.rows(), x.map(|x| few.times(x))));
+                for image in wide.iter().chain(&modal) {
+                    y.add_scaled(&factors, image);
+                }
+                if let Some((rows, image)) = &few {
+                    y.add_rows(&factors, rows, image);
+                }
+                for (test, forms) in tests.iter().zip(forms.iter_mut()) {
+                    for (j, forms) in forms.iter_mut().enumerate() {
+                        let of_all = wide.iter().chain(&modal).map(|image| test.dot(j, image));
+                        let of_few = few.iter().map(|(rows, image)| test.dot_rows(j, rows, image));
+                        *loss.of(forms) += of_all.chain(of_few).sum::<c64>() * *weight;
                     }
                 }
             }
@@ -307,74 +336,54 @@ impl<'a> Operator<'a> {
         let sum = |s: &c64| Sum { mass: ZERO, stiffness: ZERO, ..Sum::value(side, *s) };
         let sums: Vec<Sum> = s.iter().map(sum).collect();
         let mut y = Block::zeros(self.n(), s.len());
-        let [damped, lossy] = self.wide_images(x);
-        self.add_others(side, &sums, x, [damped.as_ref(), lossy.as_ref()], &mut y);
+        self.add_others(0, side, &sums, x, &mut y, (&[], &mut []));
         y
     }
 
     /// Q(λⱼ) xⱼ, or Q(λⱼ)ᴴ xⱼ.
-    pub(super) fn value(&self, side: Side, lambda: &[c64], x: &Images) -> Block {
-        let mut value = Block::default();
-        self.value_into(side, lambda, x, &mut value);
+    pub(super) fn value(&self, side: Side, lambda: &[c64], x: &Block) -> Block {
+        let sums: Vec<Sum> = lambda.iter().map(|s| Sum::value(side, *s)).collect();
+        let mut value = Block::zeros(self.n(), x.ncols());
+        self.add_products(side, &sums, x, &mut value, &[]);
         value
     }
 
-    /// [`Operator::value`] in the memory of `value`.
-    pub(super) fn value_into(&self, side: Side, lambda: &[c64], x: &Images, value: &mut Block) {
-        let sums: Vec<Sum> = lambda.iter().map(|s| Sum::value(side, *s)).collect();
-        self.apply(side, &sums, x, value);
+    /// y += Q(λⱼ) xⱼ, and what the matrices are between each of `tests` and x.
+    pub(super) fn add_value(
+        &self,
+        lambda: &[c64],
+        x: &Block,
+        y: &mut Block,
+        tests: &[&Block],
+    ) -> Vec<Vec<Forms>> {
+        let sums: Vec<Sum> = lambda.iter().map(|s| Sum::value(Side::Right, *s)).collect();
+        self.add_products(Side::Right, &sums, x, y, tests)
     }
 
     /// Q′(λⱼ) xⱼ = (2λⱼM + C + C_c) xⱼ, or Q′(λⱼ)ᴴ xⱼ.
-    pub(super) fn slope(&self, side: Side, lambda: &[c64], x: &Images) -> Block {
+    pub(super) fn slope(&self, side: Side, lambda: &[c64], x: &Block) -> Block {
         let sums: Vec<Sum> = lambda.iter().map(|s| Sum::slope(side, *s)).collect();
-        let mut slope = Block::default();
-        self.apply(side, &sums, x, &mut slope);
+        let mut slope = Block::zeros(self.n(), x.ncols());
+        self.add_products(side, &sums, x, &mut slope, &[]);
         slope
     }
 
-    /// ψⱼᴴQ(λⱼ)xⱼ.
-    pub(super) fn form(&self, lambda: &[c64], left: &Block, x: &Images) -> Vec<c64> {
-        let one = |j: usize| self.between(j, left, &Sum::value(Side::Right, lambda[j]), x);
-        (0..lambda.len()).into_par_iter().map(one).collect()
-    }
-
     /// ψⱼᴴQ′(λⱼ)φⱼ.
-    pub(super) fn steepness(&self, lambda: &[c64], left: &Block, right: &Images) -> Vec<c64> {
-        let one = |j: usize| self.between(j, left, &Sum::slope(Side::Right, lambda[j]), right);
-        (0..lambda.len()).into_par_iter().map(one).collect()
+    pub(super) fn steepness(&self, lambda: &[c64], left: &Block, right: &Block) -> Vec<c64> {
+        let slope = self.slope(Side::Right, lambda, right);
+        (0..lambda.len()).into_par_iter().map(|j| left.dot(j, &slope)).collect()
     }
 
-    /// ψⱼᴴ sum xⱼ.
-    fn between(&self, j: usize, left: &Block, sum: &Sum, x: &Images) -> c64 {
-        let motions = |x: &Block| self.interface.motions(x.vector(j));
-        let (to, from) = (motions(left), motions(&x.vectors));
-        let term = |t: &Term| {
-            to[t.row].conj() * from[t.column] * (sum.contact * t.stiffness + sum.damping * t.damping)
+    /// yⱼᴴ sumⱼ xⱼ, given what the matrices of the structure are between them.
+    pub(super) fn between(&self, sums: &[Sum], forms: &[Forms], y: &Block, x: &Block) -> Vec<c64> {
+        let of = |(j, (sum, forms)): (usize, (&Sum, &Forms))| {
+            let [to, from] = [y, x].map(|x| self.interface.motions(x.vector(j)));
+            let term = |t: &Term| {
+                to[t.row].conj() * from[t.column] * (sum.contact * t.stiffness + sum.damping * t.damping)
+            };
+            forms.weighed(sum) + self.interface.terms.iter().map(term).sum::<c64>()
         };
-        self.structure_form(j, left, sum, x) + self.interface.terms.iter().map(term).sum::<c64>()
-    }
-
-    /// ψⱼᴴ sum xⱼ without the interface.
-    pub(super) fn structure_form(&self, j: usize, left: &Block, sum: &Sum, x: &Images) -> c64 {
-        let [mass, stiffness] = self.of_images(sum);
-        let parts = [(mass, Some(&x.inertia)), (stiffness, Some(&x.elastic))];
-        let wide = [(sum.damping, x.damped.as_ref()), (sum.loss, x.lossy.as_ref())];
-        let there = parts.into_iter().chain(wide).filter(|(factor, _)| *factor != ZERO);
-        let mut form: c64 =
-            there.filter_map(|(factor, part)| part.map(|part| factor * left.dot(j, part))).sum();
-        for (weight, damper) in self.acting() {
-            for (factor, part) in [(sum.damping, &damper.viscous), (sum.loss, &damper.loss)] {
-                if let Some(few) = part.few.as_ref().filter(|_| factor != ZERO) {
-                    let parts = x.vectors.parts();
-                    let [re, im] = [j, left.ncols() + j].map(|part| few.times(parts.subcols(part, 1)));
-                    for (k, i) in few.rows().iter().enumerate() {
-                        form += factor * weight * left.get(*i, j).conj() * c64::new(re[(k, 0)], im[(k, 0)]);
-                    }
-                }
-            }
-        }
-        form
+        sums.iter().zip(forms).enumerate().map(of).collect()
     }
 
     /// |λ|²‖M‖ + |λ|‖C‖ + ‖K‖ in the 1-norm; modal damping and contact left out, so that η is never flattered.
@@ -387,10 +396,4 @@ impl<'a> Operator<'a> {
 /// One for the first, none of the others.
 fn only_first(count: usize) -> Vec<f64> {
     (0..count).map(|k| if k == 0 { 1.0 } else { 0.0 }).collect()
-}
-
-fn add(sum: &mut Option<Block>, part: Block, weight: f64) {
-    let columns = part.ncols();
-    let sum = sum.get_or_insert_with(|| Block::zeros(part.nrows(), columns));
-    sum.add_scaled(&vec![c64::new(weight, 0.0); columns], &part);
 }

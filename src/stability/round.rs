@@ -1,13 +1,14 @@
 //! Pairs measured on the full order: residuals, errors, and the corrections that make them better.
 
 use super::block::Block;
-use super::operator::{Images, Operator, Side};
+use super::operator::{Forms, Operator, Side, Sum};
 use super::responses::SKETCH;
 use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
 use crate::linalg::random::Random;
 use crate::linalg::tall::{beside, expand};
 use faer::Mat;
+use rayon::prelude::*;
 
 /// Aims of the refinement, below what [`super::ComplexMode::accepted`] asks.
 const BACKWARD_ERROR: f64 = 5e-11;
@@ -21,14 +22,20 @@ pub(super) const TOGETHER: usize = 8;
 pub(super) struct Measured {
     pub(super) lambda: Vec<c64>,
     /// φ, with unit mass.
-    pub(super) right: Images,
+    pub(super) right: Block,
     /// ψ, with unit mass.
     pub(super) left: Block,
     /// z = −A⁻¹Q(λ)φ.
-    pub(super) correction: Images,
+    pub(super) correction: Block,
+    /// Q(λ)φ, and then Q(λ)(φ + z).
+    residual: Block,
     pub(super) backward_error: Vec<f64>,
     pub(super) eigenvalue_error: Vec<f64>,
     pub(super) condition: Vec<f64>,
+    /// ‖Q(λ)(φ + z)‖ / (|λ|²‖M‖ + |λ|‖C‖ + ‖K‖).
+    pub(super) corrected: Vec<f64>,
+    /// What the matrices are between φ and φ, and φ + z and φ + z.
+    pub(super) forms: Vec<[Forms; 2]>,
 }
 
 /// What it takes to measure pairs.
@@ -44,21 +51,28 @@ impl Scale<'_> {
     /// Measures pairs, given λ, φ and ψ. The right corrections, which are solved for, tell the errors of λ and φ.
     pub(super) fn measure(&self, pairs: &mut Measured) {
         let Scale { operator, factor, top } = *self;
-        let Measured { lambda, right, left, correction, .. } = pairs;
+        let Measured { lambda, right, left, correction, residual, .. } = pairs;
         let columns = 0..lambda.len();
-        operator.renew(right);
-        let residual = &mut correction.vectors;
-        operator.value_into(Side::Right, lambda, right, residual);
-        let error = |j: usize| residual.norm(j) / (operator.size(lambda[j]) * right.vectors.norm(j));
-        pairs.backward_error = columns.clone().map(error).collect();
-        residual.scale(&vec![-1.0; lambda.len()]);
-        factor.solve_in_place(residual.parts_mut());
-        operator.renew(correction);
-        let steepness = operator.steepness(lambda, left, right);
-        let rise = operator.form(lambda, left, correction);
+        residual.clear(operator.n(), lambda.len());
+        let of_right = operator.add_value(lambda, right, residual, &[left, right]);
+        let sizes: Vec<f64> = lambda.iter().map(|lambda| operator.size(*lambda)).collect();
+        let error = |j: usize| residual.norm(j) / (sizes[j] * right.norm(j));
+        pairs.backward_error = columns.clone().into_par_iter().map(error).collect();
+        correction.set_scaled(-1.0, residual);
+        factor.solve_in_place(correction.parts_mut());
+        let of_correction = operator.add_value(lambda, correction, residual, &[left, right, correction]);
+        pairs.corrected = columns.clone().into_par_iter().map(|j| residual.norm(j) / sizes[j]).collect();
+        let [slopes, values] = [Sum::slope, Sum::value]
+            .map(|sum| lambda.iter().map(|s| sum(Side::Right, *s)).collect::<Vec<_>>());
+        let steepness = operator.between(&slopes, &of_right[0], left, right);
+        let rise = operator.between(&values, &of_correction[0], left, correction);
         let size = |j: usize| steepness[j].norm() * lambda[j].norm().max(1e-6 * top);
         pairs.eigenvalue_error = columns.clone().map(|j| rise[j].norm() / size(j)).collect();
-        pairs.condition = columns.map(|j| 2.0 * lambda[j].norm() / steepness[j].norm()).collect();
+        pairs.condition = columns.clone().map(|j| 2.0 * lambda[j].norm() / steepness[j].norm()).collect();
+        let forms = |j: usize| {
+            [of_right[1][j], Forms::of_sum(of_right[1][j], of_correction[1][j], of_correction[2][j])]
+        };
+        pairs.forms = columns.map(forms).collect();
     }
 }
 
@@ -92,8 +106,8 @@ impl Wanted {
             block.scale(&factors);
             block.into_parts()
         };
-        self.right.push(scaled(Block::gathered(&measured.correction.vectors, &open)));
-        let left = scale.operator.images(Block::gathered(&measured.left, &open));
+        self.right.push(scaled(Block::gathered(&measured.correction, &open)));
+        let left = Block::gathered(&measured.left, &open);
         self.left.push(scaled(scale.operator.value(Side::Left, &lambda, &left)));
     }
 

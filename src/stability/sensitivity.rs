@@ -89,7 +89,7 @@ impl<'a> Sensitivity<'a> {
         let (mut phi, mut psi) = (columns(|m| &m.right), columns(|m| &m.left));
         let lambda: Vec<c64> = modes.iter().map(|m| m.eigenvalue).collect();
         sharpen(&operator, real, &lambda, [(Side::Right, &mut phi), (Side::Left, &mut psi)])?;
-        let steepness = operator.steepness(&lambda, &psi, &operator.images(phi.clone()));
+        let steepness = operator.steepness(&lambda, &psi, &phi);
         let modal = match &system.structure.damping.modal {
             Some(damping) if damping.coefficients.iter().any(|c| *c != 0.0) && !modes.is_empty() => {
                 let sizes = || lambda.iter().map(|l| l.norm());
@@ -278,7 +278,7 @@ fn sharpen(
         factors.push(shifted_factor(operator, real, [l.norm(); 2])?.0);
     }
     for (side, vectors) in sides {
-        let residual = operator.value(side, lambda, &operator.images(vectors.clone()));
+        let residual = operator.value(side, lambda, vectors);
         let mut better = vectors.clone();
         for (j, factor) in factors.iter().enumerate() {
             let mut z = Block::gathered(&residual, &[j]);
@@ -287,7 +287,7 @@ fn sharpen(
                 x.iter_mut().zip(z).for_each(|(x, z)| *x -= z);
             }
         }
-        let after = operator.value(side, lambda, &operator.images(better.clone()));
+        let after = operator.value(side, lambda, &better);
         for j in (0..lambda.len()).filter(|j| after.norm(*j) < residual.norm(*j)) {
             for (x, better) in vectors.vector_mut(j).into_iter().zip(better.vector(j)) {
                 x.copy_from_slice(better);
