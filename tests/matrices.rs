@@ -282,6 +282,23 @@ probe.region = { on = "block", direction = [1, 0, 0] }
 }
 
 #[test]
+fn left_vectors_are_kept_for_what_needs_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let system = random_system(40, 3, 0, false, 5);
+    for (name, a) in [("m", &system.m), ("c", &system.c), ("k", &system.k)] {
+        write_matrix(folder.path(), &format!("{name}.mtx"), a, &[1.0; 40], 1.0);
+    }
+    let left = |cea: &str| -> Vec<usize> {
+        let results = run(folder.path(), &format!("{MATRICES}band = [0, 250]\n{cea}")).unwrap();
+        results.complex.unwrap().modes.modes.iter().map(|mode| mode.left.len()).collect()
+    };
+    let all = left("");
+    assert!(!all.is_empty() && all.iter().all(|n| *n == 40));
+    assert_eq!(left("left_vectors = false\n"), vec![0; all.len()]);
+    assert_eq!(left("left_vectors = false\n[sensitivity]\n"), all);
+}
+
+#[test]
 fn pairs_nearest_to_a_frequency_are_those_of_the_whole_band() {
     let folder = tempfile::tempdir().unwrap();
     let system = random_system(40, 4, 0, false, 3);

@@ -473,6 +473,9 @@ pub struct CeaAnalysis {
     pub certify: Option<bool>,
     /// Looks for the same modes again by a second, independent method on the full order.
     pub confirm: bool,
+    /// Whether the left vectors are among the results, which take as much memory as the right ones. Sensitivities and a run
+    /// in time need them, and keep them all the same.
+    pub left_vectors: bool,
     /// Measured squeal frequencies \[Hz\].
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub measured_squeal: Vec<f64>,

@@ -441,6 +441,7 @@ fn read_cea(s: &Section) -> CeaAnalysis {
             .or(1.5 * band[1]),
         certify: s.boolean("certify").optional(),
         confirm: s.boolean("confirm").or(false),
+        left_vectors: s.boolean("left_vectors").or(true),
         measured_squeal: s.quantity_list("measured_squeal", FREQUENCY).or(Vec::new()),
         measured_source: s.string("measured_source").or(String::new()),
     }

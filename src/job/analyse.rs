@@ -233,8 +233,9 @@ fn analyse_from(
                 results.modes.push(modes);
             }
         }
+        let left_vectors = in_time.is_some() || selection.sensitivities(case).is_some();
         let complex = match selection.cea {
-            true => complex_result(prepared, state, basis, &mut clock, observer)?,
+            true => complex_result(prepared, state, basis, left_vectors, &mut clock, observer)?,
             false => None,
         };
         if let Some((complex, system, real)) = complex {

@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::modal::{self, ModesWanted, RealModes};
 use crate::progress::Observer;
 use crate::results::ComplexResult;
-use crate::stability::{self, Certificate, ComplexModes, Structural};
+use crate::stability::{self, Band, Certificate, ComplexModes, Structural};
 use crate::system::{Structure, System};
 use std::borrow::Cow;
 use std::f64::consts::TAU;
@@ -32,11 +32,13 @@ struct Found {
 }
 
 /// Complex eigenvalues at the steady state, with the system they belong to (its modal damping in it) and the real modes
-/// of the whole, which `basis` gives where they are known already.
+/// of the whole, which `basis` gives where they are known already. Left vectors are kept where `left_vectors` or the case asks
+/// for them.
 pub fn complex_result<'a>(
     prepared: &'a Prepared,
     state: &SteadySliding,
     basis: Option<RealModes>,
+    left_vectors: bool,
     clock: &mut Clock,
     observer: &dyn Observer,
 ) -> Result<Option<(ComplexResult, Cow<'a, System>, RealModes)>> {
@@ -47,7 +49,8 @@ pub fn complex_result<'a>(
         Cow::Owned(stiffness) => Cow::Owned(Structure { stiffness: stiffness.into(), ..structure.clone() }),
     };
     let mut system = Cow::Borrowed(&prepared.system);
-    let mut problem = Problem { prepared, cea, system: &mut system, state, clock, observer };
+    let left_vectors = left_vectors || cea.left_vectors;
+    let mut problem = Problem { prepared, cea, left_vectors, system: &mut system, state, clock, observer };
     let found = match cea.nearest {
         Some(target) => problem.nearest(target, &preloaded)?,
         None => {
@@ -96,6 +99,7 @@ pub fn complex_result<'a>(
 struct Problem<'p, 'a> {
     prepared: &'a Prepared<'p>,
     cea: &'a CeaAnalysis,
+    left_vectors: bool,
     /// Its own where it gets modal damping.
     system: &'a mut Cow<'p, System>,
     state: &'a SteadySliding,
@@ -115,6 +119,7 @@ impl Problem<'_, '_> {
             self.system.to_mut().structure.damping.modal = Some(modal);
         }
         let (system, state): (&System, _) = (&*self.system, self.state);
+        let band = Band { hz: band, left_vectors: self.left_vectors };
         self.clock.watch(self.observer, |observer| {
             let certified =
                 |most_work| stability::certified_modes(system, state, known, band, most_work, observer);

@@ -110,6 +110,7 @@ mod tests {
             count: Some(count),
             certify: None,
             confirm: false,
+            left_vectors: true,
             basis_below: 1e5,
             measured_squeal: Vec::new(),
             measured_source: String::new(),

@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::linalg::c64;
 use crate::linalg::tall::gram;
 use crate::modal::{self, ModesWanted};
-use crate::stability::{ComplexMode, Family, FamilyCheck, SlidingState, complex_modes};
+use crate::stability::{Band, ComplexMode, Family, FamilyCheck, SlidingState, complex_modes};
 use crate::sweep::{Checked, Modes, Problem};
 use crate::system::Structure;
 use faer::Mat;
@@ -128,7 +128,8 @@ impl<'a> Whole<'a> {
         let preloaded = Structure { stiffness: stiffness.into(), ..system.structure.clone() };
         let (real, _) = modal::compute(&preloaded, ModesWanted::BelowHz(cea.basis_below), &())?;
         add_modal_damping(&mut system.structure, &real, &prepared)?;
-        Ok(complex_modes(&system, &steady, &real, cea.band, &())?.modes)
+        let band = Band { hz: cea.band, left_vectors: false };
+        Ok(complex_modes(&system, &steady, &real, band, &())?.modes)
     }
 }
 

@@ -204,14 +204,11 @@ fn write_complex(root: &Group, complex: &ComplexResult) -> hdf5::Result<()> {
     group.list("growth_mode_coupling", &of(|m| m.growth.mode_coupling), "1/s", part)?;
     let story = "φ at every node, φᴴMφ = 1: mode × node × (ux, uy, uz, rx, ry, rz)";
     group.write("right", fields(&complex.shapes).view(), SHAPE_UNITS, story)?;
-    let n_dofs = modes.first().map_or(0, |m| m.left.len());
-    let left = Array2::from_shape_fn((modes.len(), n_dofs), |(m, i)| modes[m].left[i]);
-    group.write(
-        "left",
-        left.view(),
-        SHAPE_UNITS,
-        "ψ on the free degrees of freedom of the solver, ψᴴQ(λ) = 0",
-    )?;
+    if let Some(n_dofs) = modes.first().map(|m| m.left.len()).filter(|n| *n > 0) {
+        let left = Array2::from_shape_fn((modes.len(), n_dofs), |(m, i)| modes[m].left[i]);
+        let story = "ψ on the free degrees of freedom of the solver, ψᴴQ(λ) = 0";
+        group.write("left", left.view(), SHAPE_UNITS, story)?;
+    }
     let n_real = modes.iter().flat_map(|m| &m.participation).map(|(k, _)| k + 1).max().unwrap_or(0);
     let mut share = Array2::<f64>::zeros((modes.len(), n_real));
     for (m, mode) in modes.iter().enumerate() {

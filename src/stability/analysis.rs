@@ -33,7 +33,23 @@ const UNMOVED: f64 = 1e-10;
 /// A condition number of λ above this is told.
 const ILL_CONDITIONED: f64 = 1e6;
 
-/// All complex modes with a frequency in `band_hz` = \[lowest, highest\], of `system` sliding steadily.
+/// Which complex modes are asked for, and what of them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Band {
+    /// Lowest and highest frequency \[Hz\].
+    pub hz: [f64; 2],
+    /// Whether the left vectors are kept, which take as much memory as the right ones.
+    pub left_vectors: bool,
+}
+
+/// With left vectors.
+impl From<[f64; 2]> for Band {
+    fn from(hz: [f64; 2]) -> Self {
+        Band { hz, left_vectors: true }
+    }
+}
+
+/// All complex modes with a frequency in `band`, of `system` sliding steadily.
 ///
 /// * Basis: the real modes (of K + K_σ and M, M-orthonormal, best up to twice the band) and A⁻¹W, A = K + K_σ − s M at
 ///   a shift s inside the band, for every direction in which the contact has a force, with some more terms of their
@@ -56,10 +72,10 @@ pub fn complex_modes<'a>(
     system: &System,
     steady: &SteadySliding,
     known: impl Into<Structural<'a>>,
-    band_hz: [f64; 2],
+    band: impl Into<Band>,
     observer: &dyn Observer,
 ) -> Result<ComplexModes> {
-    analyse(system, steady, known, band_hz, observer, |_, _| ()).map(|(modes, ())| modes)
+    analyse(system, steady, known, band, observer, |_, _| ()).map(|(modes, ())| modes)
 }
 
 /// What an analysis has at hand when its modes are found.
@@ -79,12 +95,12 @@ pub(super) fn analyse<'a, T>(
     system: &System,
     steady: &SteadySliding,
     known: impl Into<Structural<'a>>,
-    band_hz: [f64; 2],
+    band: impl Into<Band>,
     observer: &dyn Observer,
     then: impl FnOnce(&mut ComplexModes, Analysis<'_>) -> T,
 ) -> Result<(ComplexModes, T)> {
-    let known = known.into();
-    let real = known.real;
+    let (known, asked) = (known.into(), band.into());
+    let (real, band_hz) = (known.real, asked.hz);
     check(system, steady, real, band_hz)?;
     let operator = Operator::new(system, steady)?;
     let band = band_hz.map(|f| TAU * f);
@@ -95,7 +111,7 @@ pub(super) fn analyse<'a, T>(
             .map(|(factor, shift)| Some(ShiftedStiffness { shift, factor })),
     };
     let solved = own.and_then(|own| {
-        let solved = solve_and_refine(&operator, at(&own, known), real, band_hz, observer)?;
+        let solved = solve_and_refine(&operator, at(&own, known), real, asked, observer)?;
         Ok((own, solved))
     });
     observer.end();
@@ -166,11 +182,11 @@ fn solve_and_refine<'a>(
     operator: &'a Operator<'a>,
     shifted: &ShiftedStiffness,
     real: &'a RealModes,
-    band_hz: [f64; 2],
+    asked: Band,
     observer: &dyn Observer,
 ) -> Result<(ComplexModes, Basis<'a>)> {
     let factor = &*shifted.factor;
-    let band = band_hz.map(|f| TAU * f);
+    let band = asked.hz.map(|f| TAU * f);
     let mut basis = Basis::new(operator, real.shapes.as_ref(), band[1] * band[1]);
     // Few directions: all their responses, so that the corrections show no contact motion. Many: what the forces of some
     // combinations of the modes have in common; the corrections bring what is missing.
@@ -186,7 +202,7 @@ fn solve_and_refine<'a>(
     let mut warnings = Vec::new();
     let mut counts = Vec::new();
     let scale = Scale { operator, factor, top: band[1] };
-    let (mut found, mut wanted) = evaluate(&scale, &basis, band, Vec::new())?;
+    let (mut found, mut wanted) = evaluate(&scale, &basis, asked, Vec::new())?;
     observer.advance(1);
     let (mut refinements, mut finer) = (0, 0);
     loop {
@@ -206,7 +222,7 @@ fn solve_and_refine<'a>(
             break;
         }
         refinements += 1;
-        (found, wanted) = evaluate(&scale, &basis, band, found)?;
+        (found, wanted) = evaluate(&scale, &basis, asked, found)?;
         observer.advance(1);
     }
     if let Some(first) = counts.first().filter(|first| counts.iter().any(|c| c != *first)) {
@@ -232,7 +248,7 @@ fn solve_and_refine<'a>(
             mode.backward_error
         ));
     }
-    warnings.extend(incomplete(operator, real, band_hz[1]));
+    warnings.extend(incomplete(operator, real, asked.hz[1]));
     let modes = ComplexModes { modes, subspace_dimension: basis.len(), refinements, warnings };
     Ok((modes, basis))
 }
@@ -322,10 +338,10 @@ struct Found {
 fn evaluate(
     scale: &Scale<'_>,
     basis: &Basis<'_>,
-    band: [f64; 2],
+    asked: Band,
     before: Vec<Found>,
 ) -> Result<(Vec<Found>, Wanted)> {
-    let pairs = small_pairs(scale.operator, basis, band)?;
+    let pairs = small_pairs(scale.operator, basis, asked.hz.map(|f| TAU * f))?;
     let settled: Vec<Option<usize>> = pairs.iter().map(|p| settled(&before, &pairs, p.lambda)).collect();
     let fresh: Vec<&SmallPair> =
         pairs.iter().zip(&settled).filter(|(_, place)| place.is_none()).map(|(pair, _)| pair).collect();
@@ -335,7 +351,7 @@ fn evaluate(
         scale.measure(&mut measured);
         wanted.add(scale, &measured);
         let exact: Vec<bool> = (0..chunk.len()).map(|j| measured.exact(j)).collect();
-        let modes = finished(scale.operator, &mut measured, &amplitudes);
+        let modes = finished(scale.operator, &mut measured, &amplitudes, asked.left_vectors);
         new.extend(modes.into_iter().zip(exact).map(|(mode, exact)| Found { mode, exact }));
     }
     let (mut before, mut new): (Vec<_>, _) = (before.into_iter().map(Some).collect(), new.into_iter());

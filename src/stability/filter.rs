@@ -4,7 +4,7 @@ use super::ComplexMode;
 use super::block::Block;
 use super::operator::{Operator, Side};
 use crate::equilibrium::SteadySliding;
-use crate::error::Result;
+use crate::error::{Error, Fault, Result};
 use crate::linalg::c64;
 use crate::linalg::sparse::times;
 use crate::system::System;
@@ -34,10 +34,14 @@ impl ModalFilter {
 /// The filter of `mode`.
 ///
 /// # Errors
-/// What the geometric stiffness of the preload returns.
+/// A mode of another system, or without its left vector; what the geometric stiffness of the preload returns.
 pub fn modal_filter(system: &System, steady: &SteadySliding, mode: &ComplexMode) -> Result<ModalFilter> {
     let operator = Operator::new(system, steady)?;
     let n = operator.n();
+    if !mode.of_size(n) {
+        let found = format!("vectors of {} and {} degrees of freedom", mode.right.len(), mode.left.len());
+        return Err(Error::input(Fault::new("mode of a filter", found, format!("both of {n}"))));
+    }
     let left = Block::from_columns(n, &[&mode.left]);
     // Q′(λ)ᴴψ and Mψ.
     let slope = operator.slope(Side::Left, &[mode.eigenvalue], &left);

@@ -11,11 +11,13 @@ use rayon::prelude::*;
 /// The modes of pairs that were measured. The error of φ is about the correction z = −A⁻¹Q(λ)φ, which was solved for to tell
 /// that of λ: φ + z is given where its residual is the smaller one, which leaves a few hundredths of that error. Its contact
 /// motion and its share of the modes are settled by the projection; z meets only the rest of the spectrum, as far as the
-/// basis goes: so `amplitudes`, what the real modes have of φ, tells their part in φ + z as well.
+/// basis goes: so `amplitudes`, what the real modes have of φ, tells their part in φ + z as well. Left vectors are given where
+/// they are asked for.
 pub(super) fn finished(
     operator: &Operator<'_>,
     measured: &mut Measured,
     amplitudes: &Block,
+    left_vectors: bool,
 ) -> Vec<ComplexMode> {
     let one = vec![c64::new(1.0, 0.0); measured.lambda.len()];
     measured.correction.add_scaled(&one, &measured.right);
@@ -33,7 +35,7 @@ pub(super) fn finished(
         ComplexMode {
             eigenvalue,
             right: vectors.scaled_column(j, to_unit_mass),
-            left: measured.left.column(j),
+            left: if left_vectors { measured.left.column(j) } else { Vec::new() },
             backward_error: if better { corrected } else { found },
             eigenvalue_error: measured.eigenvalue_error[j],
             condition: measured.condition[j],

@@ -31,7 +31,7 @@ mod structural;
 mod tests;
 
 pub use advice::PointRates;
-pub use analysis::complex_modes;
+pub use analysis::{Band, complex_modes};
 pub use certificate::{Certificate, CloseCall, SLOWEST_GROWTH, certified_modes};
 pub use family::{Family, FamilyCheck, FamilyModes, Frame, SlidingState};
 pub use filter::{ModalFilter, modal_filter};
@@ -62,7 +62,7 @@ pub struct ComplexMode {
     pub eigenvalue: c64,
     /// φ on the degrees of freedom, scaled to φᴴMφ = 1.
     pub right: Vec<c64>,
-    /// ψ, ψᴴ Q(λ) = 0, scaled to ‖ψ‖_M = 1.
+    /// ψ, ψᴴ Q(λ) = 0, scaled to ‖ψ‖_M = 1; empty where left vectors were not asked for ([`Band::left_vectors`]).
     pub left: Vec<c64>,
     /// η = ‖Q(λ)φ‖ / ((|λ|²‖M‖ + |λ|‖C‖ + ‖K‖)‖φ‖).
     pub backward_error: f64,
@@ -109,6 +109,11 @@ impl ComplexMode {
     /// Whether η ≤ 1e-10 and the estimated error of λ is within 1e-8 of it.
     pub fn accepted(&self) -> bool {
         self.backward_error <= 1e-10 && self.eigenvalue_error <= 1e-8
+    }
+
+    /// Whether both vectors are there, on `n` degrees of freedom.
+    fn of_size(&self, n: usize) -> bool {
+        self.right.len() == n && self.left.len() == n
     }
 
     /// Whether the mode grows by more than round-off.

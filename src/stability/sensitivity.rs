@@ -58,7 +58,7 @@ impl<'a> Sensitivity<'a> {
     /// were computed with, the basis of modal damping where there is some.
     ///
     /// # Errors
-    /// Vectors of another length; a structure that nothing holds.
+    /// Vectors of another length, or left ones that were not kept; a structure that nothing holds.
     pub fn new(
         system: &'a System,
         steady: &'a SteadySliding,
@@ -66,17 +66,16 @@ impl<'a> Sensitivity<'a> {
         modes: &[&ComplexMode],
     ) -> Result<Self> {
         let n = system.n_dofs();
-        let fits = |mode: &&ComplexMode| mode.right.len() == n && mode.left.len() == n;
         let modal_fits =
             system.structure.damping.modal.as_ref().is_none_or(|d| d.coefficients.len() == real.len());
-        if !modes.iter().all(fits)
+        if !modes.iter().all(|mode| mode.of_size(n))
             || steady.displacement.len() != n
             || real.shapes.nrows() != n
             || !modal_fits
         {
             return Err(Error::input(Fault::new(
                 "sensitivities",
-                "modes or a steady state of another system",
+                "modes or a steady state of another system, or modes without left vectors",
                 format!("those of the system, of {n} degrees of freedom"),
             )));
         }

@@ -428,6 +428,25 @@ fn input_that_cannot_be_analysed_is_refused() {
     assert_eq!(complex_modes(&system, &state, &other, [0.0, 1.0], &()).unwrap_err().exit_code(), 2);
 }
 
+#[test]
+fn left_vectors_are_there_where_they_are_asked_for() {
+    let system = random_system(60, 3, 20.0, 9);
+    let (state, real) = (steady(&system), dense_modes(&system, 45));
+    let hz = [0.01, real.frequency_hz(12)];
+    let whole = complex_modes(&system, &state, &real, hz, &()).unwrap().modes;
+    let right_only = Band { hz, left_vectors: false };
+    let some = complex_modes(&system, &state, &real, right_only, &()).unwrap().modes;
+    assert!(!some.is_empty() && some.len() == whole.len());
+    for (a, b) in some.iter().zip(&whole) {
+        assert!(a.left.is_empty() && b.left.len() == 60);
+        assert!(a.eigenvalue == b.eigenvalue && a.right == b.right && a.condition == b.condition);
+    }
+    modal_filter(&system, &state, &whole[0]).unwrap();
+    assert_eq!(modal_filter(&system, &state, &some[0]).unwrap_err().exit_code(), 2);
+    assert!(Sensitivity::new(&system, &state, &real, &[&whole[0]]).is_ok());
+    assert!(Sensitivity::new(&system, &state, &real, &[&some[0]]).is_err_and(|e| e.exit_code() == 2));
+}
+
 /// A family trained on two ends of a range of friction gives the modes between them.
 #[test]
 fn a_family_gives_what_a_whole_analysis_gives_at_every_member() {

@@ -32,7 +32,7 @@ impl Sliding {
     pub fn new(prepared: &Prepared) -> Result<Sliding> {
         let options = prepared.steady_options();
         let steady = equilibrium::solve_steady(&prepared.system, &options, &())?;
-        let complex = complex_result(prepared, &steady, None, &mut Clock::default(), &())?;
+        let complex = complex_result(prepared, &steady, None, true, &mut Clock::default(), &())?;
         let Some((complex, system, real)) = complex else {
             return Err(Error::analysis("complex eigenvalues", "no [cea] in the case", "Give the case one"));
         };

@@ -33,7 +33,7 @@ mod tests;
 
 use super::ComplexModes;
 use super::Structural;
-use super::analysis::{Analysis, analyse};
+use super::analysis::{Analysis, Band, analyse};
 use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Result};
 use crate::progress::Observer;
@@ -121,11 +121,11 @@ pub fn certified_modes<'a>(
     system: &System,
     steady: &SteadySliding,
     known: impl Into<Structural<'a>>,
-    band_hz: [f64; 2],
+    band: impl Into<Band>,
     most_work: f64,
     observer: &dyn Observer,
 ) -> Result<(ComplexModes, Option<Certificate>)> {
-    analyse(system, steady, known, band_hz, observer, |modes, analysis| {
+    analyse(system, steady, known, band, observer, |modes, analysis| {
         let work = expected_work(&analysis, modes).min(spectrum::work(analysis.basis.len()));
         if work > most_work {
             modes.warnings.push(format!(
