@@ -130,7 +130,9 @@ fn check_held(a: &SparseMatrix, factor: &dyn SymmetricFactor) -> Result<()> {
 fn multiply_absolute(a: &SparseMatrix, x: MatRef<'_, f64>) -> Mat<f64> {
     let (columns, rows, values) = (a.col_ptr(), a.row_idx(), a.val());
     Mat::from_fn(x.nrows(), 1, |i, _| {
-        (columns[i]..columns[i + 1]).map(|s| (values[s] * x[(rows[s], 0)]).abs()).sum()
+        (columns[i] as usize..columns[i + 1] as usize)
+            .map(|s| (values[s] * x[(rows[s] as usize, 0)]).abs())
+            .sum()
     })
 }
 

@@ -1,9 +1,8 @@
 //! Small hand-made systems for the tests of equilibrium and stability.
 
 use crate::contact::{Constant, Exponential, NormalLaw, SlidingLaw};
-use crate::linalg::{SparseMatrix, SparseVector};
+use crate::linalg::{SparseMatrix, SparseVector, sparse};
 use crate::system::{Closing, ContactPair, ContactPoint, Damping, Structure, System};
-use faer::sparse::Triplet;
 use std::sync::Arc;
 
 /// Pseudo-random numbers in [0, 1), the same on every machine.
@@ -24,7 +23,7 @@ impl Random {
 pub(crate) fn sparse(n: usize, entry: impl Fn(usize, usize) -> f64) -> SparseMatrix {
     let all = (0..n).flat_map(|j| (0..n).map(move |i| (i, j)));
     let triplets: Vec<_> =
-        all.map(|(i, j)| Triplet::new(i, j, entry(i, j))).filter(|t| t.val != 0.0).collect();
+        all.map(|(i, j)| sparse::entry(i, j, entry(i, j))).filter(|t| t.val != 0.0).collect();
     SparseMatrix::try_new_from_triplets(n, n, &triplets).unwrap()
 }
 

@@ -8,7 +8,7 @@ use crate::case::{
 use crate::error::{Error, Fault, Result};
 use crate::linalg::SparseMatrix;
 use crate::linalg::matrix_market::to_text;
-use crate::linalg::sparse::add_scaled;
+use crate::linalg::sparse::{add_scaled, entry};
 use crate::results::write_atomically;
 use crate::system::ContactPair;
 use std::collections::BTreeMap;
@@ -96,7 +96,7 @@ pub fn export(case: &Case, out: &Path) -> Result<Vec<String>> {
 /// A vector as a matrix of one column.
 fn column(vector: &[f64]) -> Option<SparseMatrix> {
     let entries: Vec<_> = vector.iter().enumerate().filter(|(_, v)| **v != 0.0).collect();
-    let triplets: Vec<_> = entries.iter().map(|(i, v)| faer::sparse::Triplet::new(*i, 0, **v)).collect();
+    let triplets: Vec<_> = entries.iter().map(|(i, v)| entry(*i, 0, **v)).collect();
     SparseMatrix::try_new_from_triplets(vector.len(), 1, &triplets).ok()
 }
 

@@ -134,7 +134,7 @@ fn read_load(place: &str, f: &MarketMatrix, n: usize) -> Result<Vec<f64>> {
         )));
     }
     let mut load = vec![0.0; n];
-    f.re.row_idx_of_col_raw(0).iter().zip(f.re.val_of_col(0)).for_each(|(i, v)| load[*i] = *v);
+    f.re.row_idx_of_col(0).zip(f.re.val_of_col(0)).for_each(|(i, v)| load[i] = *v);
     Ok(load)
 }
 

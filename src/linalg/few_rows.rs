@@ -2,8 +2,7 @@
 
 use super::SparseMatrix;
 use super::factor::SymbolicFactor;
-use super::sparse::{add_scaled, diagonal, diagonal_matrix, times};
-use faer::sparse::Triplet;
+use super::sparse::{add_scaled, diagonal, diagonal_matrix, entry, times};
 use faer::{Mat, MatRef};
 
 /// A symmetric matrix, as its rows that have entries and what stands between them.
@@ -19,10 +18,10 @@ impl FewRows {
         let rows: Vec<usize> = (0..d.ncols()).filter(|j| !d.row_idx_of_col_raw(*j).is_empty()).collect();
         let place = |row: usize| rows.partition_point(|r| *r < row);
         let entries = rows.iter().enumerate().flat_map(|(j, column)| {
-            let entries = d.row_idx_of_col_raw(*column).iter().zip(d.val_of_col(*column));
-            entries.map(move |(i, v)| (*i, j, *v))
+            let entries = d.row_idx_of_col(*column).zip(d.val_of_col(*column));
+            entries.map(move |(i, v)| (i, j, *v))
         });
-        let triplets: Vec<_> = entries.map(|(i, j, v)| Triplet::new(place(i), j, v)).collect();
+        let triplets: Vec<_> = entries.map(|(i, j, v)| entry(place(i), j, v)).collect();
         let own = SparseMatrix::try_new_from_triplets(rows.len(), rows.len(), &triplets);
         FewRows { own: own.expect("indices of the rows"), rows }
     }
@@ -92,7 +91,7 @@ mod tests {
                 let (i, j, c) =
                     (7 * k, 7 * k + 3, if k == 11 { worst } else { 10f64.powi(k as i32 % 9 - 4) });
                 for (a, b, sign) in [(i, i, 1.0), (j, j, 1.0), (i, j, -1.0), (j, i, -1.0)] {
-                    triplets.push(Triplet::new(a, b, sign * c));
+                    triplets.push(entry(a, b, sign * c));
                 }
             }
             FewRows::new(&SparseMatrix::try_new_from_triplets(300, 300, &triplets).unwrap())
@@ -100,7 +99,7 @@ mod tests {
         assert!(of(1.0).is_semidefinite());
         assert!(of(1e-9).is_semidefinite());
         assert!(!of(-1e-9).is_semidefinite());
-        let swapped = [Triplet::new(2, 5, 1.0), Triplet::new(5, 2, 1.0)];
+        let swapped = [entry(2, 5, 1.0), entry(5, 2, 1.0)];
         assert!(
             !FewRows::new(&SparseMatrix::try_new_from_triplets(9, 9, &swapped).unwrap()).is_semidefinite()
         );

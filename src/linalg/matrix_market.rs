@@ -5,9 +5,9 @@
 //! once add up. Exponents may be written with a Fortran `D`. Every number of a header is bounded by the size of the
 //! file before memory is taken for it, and the first faults of a file are told together, each with its line.
 
+use super::sparse::{Index, compressed};
 use super::{SparseMatrix, c64};
 use crate::error::{Error, Fault, Faults, Result};
-use faer::sparse::SymbolicSparseColMat;
 use rayon::prelude::*;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -379,26 +379,27 @@ fn compress(entries: &[Entry], header: Header, rows: usize, columns: usize) -> M
     }
     let mut whole = Vec::with_capacity(columns + 1);
     whole.push(0);
-    let (mut row_of, mut values): (Vec<usize>, Vec<c64>) =
+    let (mut row_of, mut values): (Vec<Index>, Vec<c64>) =
         (Vec::with_capacity(slots.len()), Vec::with_capacity(slots.len()));
     for j in 0..columns {
         let column = &mut slots[starts[j]..starts[j + 1]];
         column.sort_by_key(|(row, _)| *row);
         let begin = row_of.len();
         for (row, value) in column.iter() {
-            if row_of.len() > begin && row_of.last() == Some(&(*row as usize)) {
+            if row_of.len() > begin && row_of.last() == Some(row) {
                 *values.last_mut().expect("as long as the rows") += *value;
             } else {
-                row_of.push(*row as usize);
+                row_of.push(*row);
                 values.push(*value);
             }
         }
         whole.push(row_of.len());
     }
-    let pattern = SymbolicSparseColMat::new_checked(rows, columns, whole, None, row_of);
-    let im =
-        header.complex.then(|| SparseMatrix::new(pattern.clone(), values.iter().map(|v| v.im).collect()));
-    MarketMatrix { re: SparseMatrix::new(pattern, values.iter().map(|v| v.re).collect()), im }
+    let part = |rows_of: Vec<Index>, part: fn(&c64) -> f64| {
+        compressed(rows, &whole, rows_of, values.iter().map(part).collect())
+    };
+    let im = header.complex.then(|| part(row_of.clone(), |v| v.im));
+    MarketMatrix { re: part(row_of, |v| v.re), im }
 }
 
 /// The text of a MatrixMarket file that reads back as the same numbers, bit for bit; `symmetric` when both parts are,
@@ -418,8 +419,8 @@ pub fn to_text(re: &SparseMatrix, im: Option<&SparseMatrix>, comment: &str) -> S
     let mut body = String::new();
     let mut count = 0;
     for j in 0..re.ncols() {
-        for (slot, i) in re.col_range(j).zip(re.row_idx_of_col_raw(j)) {
-            if wanted(*i, j) {
+        for (slot, i) in re.col_range(j).zip(re.row_idx_of_col(j)) {
+            if wanted(i, j) {
                 count += 1;
                 let _ = write!(body, "{} {} {:e}", i + 1, j + 1, re.val()[slot]);
                 if let Some(im) = im {

@@ -9,7 +9,7 @@ pub use weighed::PerMatrix;
 
 use super::SparseMatrix;
 use super::lanes::{Aligned, Row, spread};
-use super::sparse::{ROWS_A_TASK, columns_mut, union, with_laid, with_packed};
+use super::sparse::{Index, ROWS_A_TASK, columns_mut, union, with_laid, with_packed};
 use faer::{Mat, MatMut, MatRef};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -23,8 +23,8 @@ type PackedRow = Aligned<[f64; PANEL]>;
 #[derive(Debug, Clone)]
 pub struct Merged {
     count: usize,
-    starts: Vec<usize>,
-    rows: Vec<u32>,
+    starts: Vec<Index>,
+    rows: Vec<Index>,
     /// The values of all matrices in an entry, side by side.
     values: Vec<f64>,
 }
@@ -33,15 +33,13 @@ impl Merged {
     /// Lays `matrices` side by side.
     ///
     /// # Panics
-    /// When there are none or more than four, when their sizes differ, or beyond 2³² rows.
+    /// When there are none or more than four, when their sizes differ, or beyond 2³² entries.
     pub fn new(matrices: &[&SparseMatrix]) -> Self {
         let (count, n) = (matrices.len(), matrices[0].ncols());
-        assert!((1..=4).contains(&count) && u32::try_from(n).is_ok(), "one to four matrices");
+        assert!((1..=4).contains(&count), "one to four matrices");
         assert!(matrices.iter().all(|a| a.ncols() == n && a.nrows() == n), "matrices of one size");
-        let (starts, rows, values) = union(matrices, count, |i, entries, row: &mut u32, values| {
-            *row = i as u32;
-            values.copy_from_slice(entries);
-        });
+        let (starts, rows, values) =
+            union(matrices, count, |entries, values| values.copy_from_slice(entries));
         Merged { count, starts, rows, values }
     }
 
@@ -218,7 +216,7 @@ impl<R: Row<f64, W>, const C: usize, const W: usize> WithSimd for Rows<'_, R, C,
     fn with_simd<S: Simd>(self, _: S) {
         let (starts, (values, _)) = (&self.merged.starts, self.merged.values.as_chunks::<C>());
         for (i, sums) in self.sums.iter_mut().enumerate() {
-            let entries = starts[self.first + i]..starts[self.first + i + 1];
+            let entries = starts[self.first + i] as usize..starts[self.first + i + 1] as usize;
             let mut own = [[0.0; W]; C];
             for (j, v) in self.merged.rows[entries.clone()].iter().zip(&values[entries]) {
                 let x = self.packed[*j as usize].values();

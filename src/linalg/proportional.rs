@@ -2,7 +2,7 @@
 
 use super::SparseMatrix;
 use super::merged::Merged;
-use faer::sparse::Triplet;
+use super::sparse::entry;
 
 /// X = α M + β K + rest.
 #[derive(Debug, Clone, Default)]
@@ -61,7 +61,7 @@ impl Proportional {
             let (a, b) = (alpha * m, beta * k);
             let left = x - a - b;
             if left.abs() > ROUND_OFF * (a.abs() + b.abs() + x.abs()) {
-                rest.push(Triplet::new(i, j, left));
+                rest.push(entry(i, j, left));
             }
         }
         if alpha < 0.0 || beta < 0.0 || 2 * rest.len() > x.val().len() {

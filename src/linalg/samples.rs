@@ -1,7 +1,7 @@
 //! Matrices for the tests: membranes and plates with known eigenvalues, random ones.
 
 use super::SparseMatrix;
-use faer::sparse::Triplet;
+use super::sparse::entry;
 use faer::{Mat, MatRef};
 
 /// Numbers in [-1, 1) that are the same everywhere: a linear congruential generator's upper bits.
@@ -22,7 +22,7 @@ pub fn from_dense(a: MatRef<'_, f64>) -> SparseMatrix {
     let entries: Vec<_> = (0..a.ncols())
         .flat_map(|j| (0..a.nrows()).map(move |i| (i, j)))
         .filter(|p| a[*p] != 0.0)
-        .map(|(i, j)| Triplet::new(i, j, a[(i, j)]))
+        .map(|(i, j)| entry(i, j, a[(i, j)]))
         .collect();
     SparseMatrix::try_new_from_triplets(a.nrows(), a.ncols(), &entries).unwrap()
 }
@@ -56,12 +56,12 @@ pub fn membrane(m: usize) -> (SparseMatrix, SparseMatrix) {
     for i in 0..m {
         for j in 0..m {
             let p = i * m + j;
-            k.push(Triplet::new(p, p, 4.0));
+            k.push(entry(p, p, 4.0));
             if i + 1 < m {
-                k.extend([Triplet::new(p, p + m, -1.0), Triplet::new(p + m, p, -1.0)]);
+                k.extend([entry(p, p + m, -1.0), entry(p + m, p, -1.0)]);
             }
             if j + 1 < m {
-                k.extend([Triplet::new(p, p + 1, -1.0), Triplet::new(p + 1, p, -1.0)]);
+                k.extend([entry(p, p + 1, -1.0), entry(p + 1, p, -1.0)]);
             }
         }
     }
@@ -80,8 +80,8 @@ pub fn membrane_eigenvalues(m: usize) -> Vec<f64> {
 pub fn free_chain(n: usize) -> (SparseMatrix, SparseMatrix) {
     let mut k = Vec::new();
     for p in 0..n - 1 {
-        k.extend([Triplet::new(p, p, 1.0), Triplet::new(p + 1, p + 1, 1.0)]);
-        k.extend([Triplet::new(p, p + 1, -1.0), Triplet::new(p + 1, p, -1.0)]);
+        k.extend([entry(p, p, 1.0), entry(p + 1, p + 1, 1.0)]);
+        k.extend([entry(p, p + 1, -1.0), entry(p + 1, p, -1.0)]);
     }
     (SparseMatrix::try_new_from_triplets(n, n, &k).unwrap(), identity(n))
 }
@@ -164,8 +164,8 @@ pub fn plate(m: usize, clamped: bool) -> (SparseMatrix, SparseMatrix) {
                 for q in 0..12 {
                     if let (Some(a), Some(b)) = (nodes[p / 3], nodes[q / 3]) {
                         let (row, col) = (3 * a + p % 3, 3 * b + q % 3);
-                        k.push(Triplet::new(row, col, 0.5 * (ke[(p, q)] + ke[(q, p)])));
-                        mass.push(Triplet::new(row, col, 0.5 * (me[(p, q)] + me[(q, p)])));
+                        k.push(entry(row, col, 0.5 * (ke[(p, q)] + ke[(q, p)])));
+                        mass.push(entry(row, col, 0.5 * (me[(p, q)] + me[(q, p)])));
                     }
                 }
             }

@@ -8,9 +8,22 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use std::ops::{AddAssign, Mul};
 
+/// A row or column of a sparse matrix, or the place of one of its entries: half as long as a machine word, as products are bound
+/// by reading them.
+pub type Index = u32;
+
 /// A sparse matrix in compressed columns. Symmetric matrices are stored whole (both triangles), so that a
 /// column is also a row and products run over rows in parallel.
-pub type SparseMatrix = faer::sparse::SparseColMat<usize, f64>;
+pub type SparseMatrix = faer::sparse::SparseColMat<Index, f64>;
+
+/// An entry for [`SparseMatrix::try_new_from_triplets`], which adds up those with the same place.
+///
+/// # Panics
+/// Beyond 2³² rows or columns.
+pub fn entry(row: usize, column: usize, value: f64) -> Triplet<Index, Index, f64> {
+    let index = |i: usize| Index::try_from(i).expect("less than 2³² rows and columns");
+    Triplet::new(index(row), index(column), value)
+}
 
 /// A sparse vector: `values[k]` stands at `indices[k]`; indices ascend and do not repeat.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -255,10 +268,10 @@ impl<T: Scalar, R: Row<T, W>, const W: usize> WithSimd for Rows<'_, T, R, W> {
     fn with_simd<S: Simd>(self, _: S) {
         let (starts, rows_of, values) = (self.a.col_ptr(), self.a.row_idx(), self.a.val());
         for (i, sum) in self.sums.iter_mut().enumerate() {
-            let entries = starts[self.first + i]..starts[self.first + i + 1];
+            let entries = starts[self.first + i] as usize..starts[self.first + i + 1] as usize;
             let mut own = [T::ZERO; W];
             for (j, v) in rows_of[entries.clone()].iter().zip(&values[entries]) {
-                let x = self.packed[*j].values();
+                let x = self.packed[*j as usize].values();
                 for c in 0..W {
                     own[c] += x[c] * *v;
                 }
@@ -293,7 +306,7 @@ pub fn sum_of_squares<'a>(
     let mut triplets = Vec::new();
     for (d, v) in terms {
         for (i, a) in v.iter() {
-            triplets.extend(v.iter().map(|(j, b)| Triplet::new(i, j, d * (a * b))));
+            triplets.extend(v.iter().map(|(j, b)| entry(i, j, d * (a * b))));
         }
     }
     SparseMatrix::try_new_from_triplets(n, n, &triplets).expect("indices are below n")
@@ -314,7 +327,7 @@ pub fn multiply_vector<T: Scalar>(a: &SparseMatrix, x: &[T]) -> Vec<T> {
 ///
 /// # Panics
 /// When there is no term, or the shapes do not agree.
-pub fn add_scaled<T: Scalar>(terms: &[(T, &SparseMatrix)]) -> SparseColMat<usize, T> {
+pub fn add_scaled<T: Scalar>(terms: &[(T, &SparseMatrix)]) -> SparseColMat<Index, T> {
     let (first, rest) = terms.split_first().expect("a sum has a term");
     let (nrows, ncols) = (first.1.nrows(), first.1.ncols());
     assert!(
@@ -331,22 +344,52 @@ pub fn add_scaled<T: Scalar>(terms: &[(T, &SparseMatrix)]) -> SparseColMat<usize
         return SparseColMat::new(pattern, values);
     }
     let matrices: Vec<&SparseMatrix> = terms.iter().map(|(_, a)| *a).collect();
-    let (starts, rows, values) = union(&matrices, 1, |i, entries, row, value| {
-        *row = i;
+    let (starts, rows, values) = union(&matrices, 1, |entries, value: &mut [T]| {
         terms.iter().zip(entries).for_each(|((factor, _), v)| value[0] += *factor * *v);
     });
     SparseColMat::new(SymbolicSparseColMat::new_checked(nrows, ncols, starts, None, rows), values)
 }
 
-/// Where the columns of matrices of one size begin on the union of their patterns, and for each of its entries what `fill`
-/// makes of its row and of the entries that the matrices have there (zero where one has none): a row and `width` values.
-pub(super) fn union<R, V>(
+/// The same two matrices, each on the union of their patterns with zeros where it has no entry, as long as that adds no more than
+/// a twentieth to either: sums of matrices on one pattern are those of their values.
+///
+/// # Panics
+/// When the shapes do not agree.
+pub fn on_one_pattern(a: SparseMatrix, b: SparseMatrix) -> [SparseMatrix; 2] {
+    let wider = add_scaled(&[(1.0, &a), (0.0, &b)]);
+    if [&a, &b].iter().any(|own| 20 * wider.compute_nnz() > 21 * own.compute_nnz()) {
+        return [a, b];
+    }
+    let other = add_scaled(&[(0.0, &a), (1.0, &b)]);
+    [wider, other]
+}
+
+/// A matrix of compressed columns: column j has the entries `starts[j]..starts[j + 1]`, their `rows` ascending.
+///
+/// # Panics
+/// When the columns are none, or beyond 2³² entries.
+pub fn compressed(nrows: usize, starts: &[usize], rows: Vec<Index>, values: Vec<f64>) -> SparseMatrix {
+    let pattern = SymbolicSparseColMat::new_checked(nrows, starts.len() - 1, places(starts), None, rows);
+    SparseMatrix::new(pattern, values)
+}
+
+/// Places of entries.
+///
+/// # Panics
+/// Beyond 2³².
+fn places(starts: &[usize]) -> Vec<Index> {
+    assert!(starts.last().is_none_or(|end| Index::try_from(*end).is_ok()), "less than 2³² entries");
+    starts.iter().map(|start| *start as Index).collect()
+}
+
+/// Where the columns of matrices of one size begin on the union of their patterns, and for each of its entries the
+/// row and what `fill` makes of the entries that the matrices have there (zero where one has none): `width` values.
+pub(super) fn union<V>(
     matrices: &[&SparseMatrix],
     width: usize,
-    fill: impl Fn(usize, &[f64], &mut R, &mut [V]) + Sync,
-) -> (Vec<usize>, Vec<R>, Vec<V>)
+    fill: impl Fn(&[f64], &mut [V]) + Sync,
+) -> (Vec<Index>, Vec<Index>, Vec<V>)
 where
-    R: Clone + Default + Send,
     V: Clone + Default + Send,
 {
     let ncols = matrices[0].ncols();
@@ -358,8 +401,7 @@ where
         *end += length;
         Some(*end)
     }));
-    let (mut rows, mut values) =
-        (vec![R::default(); starts[ncols]], vec![V::default(); width * starts[ncols]]);
+    let (mut rows, mut values) = (vec![0; starts[ncols]], vec![V::default(); width * starts[ncols]]);
     let mut tasks = Vec::new();
     let (mut rows_left, mut values_left) = (&mut rows[..], &mut values[..]);
     for first in (0..ncols).step_by(ROWS_A_TASK) {
@@ -375,18 +417,19 @@ where
         for j in columns {
             joined.column(j, |i, entries| {
                 let (row, values) = places.next().expect("counted before");
-                fill(i, entries, row, values);
+                *row = i;
+                fill(entries, values);
             });
         }
     });
-    (starts, rows, values)
+    (places(&starts), rows, values)
 }
 
 /// Matrices of one size, met column by column on the union of their patterns.
 struct Joined<'a> {
     matrices: &'a [&'a SparseMatrix],
     /// What is still to come of a column of each.
-    open: Vec<(&'a [usize], &'a [f64])>,
+    open: Vec<(&'a [Index], &'a [f64])>,
     entries: Vec<f64>,
 }
 
@@ -396,13 +439,13 @@ impl<'a> Joined<'a> {
     }
 
     /// The rows of column `j`, where all matrices have the same: most have.
-    fn common(&self, j: usize) -> Option<&'a [usize]> {
+    fn common(&self, j: usize) -> Option<&'a [Index]> {
         let rows = self.matrices[0].row_idx_of_col_raw(j);
         self.matrices[1..].iter().all(|a| a.row_idx_of_col_raw(j) == rows).then_some(rows)
     }
 
     /// Hands on every row of column `j`, ascending, with the entry that each matrix has there, or zero.
-    fn column(&mut self, j: usize, mut take: impl FnMut(usize, &[f64])) {
+    fn column(&mut self, j: usize, mut take: impl FnMut(Index, &[f64])) {
         self.open.clear();
         self.open.extend(self.matrices.iter().map(|a| (a.row_idx_of_col_raw(j), a.val_of_col(j))));
         if let Some(rows) = self.common(j) {
@@ -413,7 +456,7 @@ impl<'a> Joined<'a> {
             return;
         }
         let next =
-            |open: &[(&[usize], &[f64])]| open.iter().filter_map(|(rows, _)| rows.first()).min().copied();
+            |open: &[(&[Index], &[f64])]| open.iter().filter_map(|(rows, _)| rows.first()).min().copied();
         while let Some(row) = next(&self.open) {
             for ((rows, values), entry) in self.open.iter_mut().zip(&mut self.entries) {
                 let there = rows.first() == Some(&row);
@@ -445,13 +488,13 @@ pub fn norm_1(a: &SparseMatrix) -> f64 {
 /// The entries on the diagonal; zero where none is stored.
 pub fn diagonal(a: &SparseMatrix) -> Vec<f64> {
     (0..a.ncols())
-        .map(|j| a.row_idx_of_col_raw(j).iter().position(|i| *i == j).map_or(0.0, |k| a.val_of_col(j)[k]))
+        .map(|j| a.row_idx_of_col(j).position(|i| i == j).map_or(0.0, |k| a.val_of_col(j)[k]))
         .collect()
 }
 
 /// diag(`values`).
 pub fn diagonal_matrix(values: &[f64]) -> SparseMatrix {
-    let entries: Vec<_> = values.iter().enumerate().map(|(i, v)| Triplet::new(i, i, *v)).collect();
+    let entries: Vec<_> = values.iter().enumerate().map(|(i, v)| entry(i, i, *v)).collect();
     SparseMatrix::try_new_from_triplets(values.len(), values.len(), &entries).expect("indices of the values")
 }
 
@@ -506,6 +549,21 @@ mod tests {
         assert!((sum.to_dense() - expected).norm_max() < 1e-14);
         let same = add_scaled(&[(2.0, &a), (-1.0, &a)]);
         assert_eq!(same.val(), a.val());
+    }
+
+    #[test]
+    fn matrices_share_a_pattern_where_that_adds_little() {
+        let (stiffness, mass) = samples::plate(6, false);
+        let n = stiffness.ncols();
+        let spring = sum_of_squares(n, [(3.0, &SparseVector::from_entries([(0, 1.0), (n - 1, -1.0)]))]);
+        let given = [mass, add_scaled(&[(1.0, &stiffness), (1.0, &spring)])];
+        assert!(given[0].compute_nnz() < given[1].compute_nnz());
+        let [first, second] = given.clone();
+        let shared = on_one_pattern(first, second);
+        assert!(shared[0].row_idx() == shared[1].row_idx() && shared[0].col_ptr() == shared[1].col_ptr());
+        assert!(shared.iter().zip(&given).all(|(a, b)| a.to_dense() == b.to_dense()));
+        let lumped = diagonal_matrix(&vec![1.0; n]);
+        assert_eq!(on_one_pattern(lumped, stiffness)[0].compute_nnz(), n);
     }
 
     #[test]

@@ -107,8 +107,8 @@ fn count_rigid_bodies(stiffness: &SparseMatrix, eigenvalues: &[f64], shapes: &Ma
             let shape = shapes.col(*k);
             let (mut energy, mut size) = (0.0, 0.0);
             for j in 0..stiffness.ncols() {
-                for (i, v) in stiffness.row_idx_of_col_raw(j).iter().zip(stiffness.val_of_col(j)) {
-                    let term = shape[*i] * v * shape[j];
+                for (i, v) in stiffness.row_idx_of_col(j).zip(stiffness.val_of_col(j)) {
+                    let term = shape[i] * v * shape[j];
                     energy += term;
                     size += term.abs();
                 }

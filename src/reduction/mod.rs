@@ -11,12 +11,11 @@ use crate::equilibrium::{SteadySliding, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::dense::symmetric_eigen;
 use crate::linalg::factor::factorize;
-use crate::linalg::sparse::{add_scaled, dense_columns, diagonal_matrix, times};
+use crate::linalg::sparse::{add_scaled, dense_columns, diagonal_matrix, entry, times};
 use crate::linalg::tall::{beside, combine, expand, gram};
 use crate::linalg::{SparseMatrix, SparseVector};
 use crate::modal::RealModes;
 use crate::system::{ContactPair, ContactPoint, Damping, Structure, System};
-use faer::sparse::Triplet;
 use faer::{Accum, Mat, MatRef};
 
 /// A reduced system with the basis that leads back.
@@ -210,7 +209,7 @@ fn sparse(small: &Mat<f64>) -> Option<SparseMatrix> {
         for i in 0..small.nrows() {
             let value = 0.5 * (small[(i, j)] + small[(j, i)]);
             if value.abs() > 1e-13 * largest {
-                entries.push(Triplet::new(i, j, value));
+                entries.push(entry(i, j, value));
             }
         }
     }

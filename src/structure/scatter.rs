@@ -6,7 +6,7 @@
 
 use super::dofs::DofMap;
 use crate::linalg::SparseMatrix;
-use faer::sparse::SymbolicSparseColMat;
+use crate::linalg::sparse::{Index, compressed};
 use nalgebra::SMatrix;
 use nalgebra_sparse::CscMatrix;
 use rayon::prelude::*;
@@ -209,11 +209,11 @@ impl Pattern {
     }
 }
 
-/// The same matrix as faer's type; its three arrays change hands without a copy.
+/// The same matrix as faer's type; its values change hands without a copy.
 fn from_nalgebra(csc: CscMatrix<f64>) -> SparseMatrix {
-    let (n_rows, n_columns) = (csc.nrows(), csc.ncols());
+    let n_rows = csc.nrows();
     let (starts, rows, values) = csc.disassemble();
-    SparseMatrix::new(SymbolicSparseColMat::new_checked(n_rows, n_columns, starts, None, rows), values)
+    compressed(n_rows, &starts, rows.iter().map(|row| *row as Index).collect(), values)
 }
 
 /// Free degrees of freedom that the nodes of a piece move with, ascending.

@@ -16,7 +16,7 @@ use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::dense::product;
 use crate::linalg::matrix_market::MarketMatrix;
 use crate::linalg::orthogonal::{PivotedQr, pivoted_qr};
-use crate::linalg::sparse::{add_scaled, diagonal};
+use crate::linalg::sparse::{add_scaled, diagonal, entry, on_one_pattern};
 use crate::linalg::{SparseMatrix, SparseVector};
 use faer::Mat;
 use std::collections::BTreeMap;
@@ -129,9 +129,10 @@ pub fn split(mass: Given<'_>, damping: Option<Given<'_>>, stiffness: Given<'_>) 
         Ok(_) => {}
     }
     faults.into_result(())?;
+    let [mass, stiffness] = on_one_pattern(Halves::of(&mass.matrix.re).symmetric, halves.symmetric);
     let structure = Structure {
-        mass: Halves::of(&mass.matrix.re).symmetric.into(),
-        stiffness: halves.symmetric.into(),
+        mass: mass.into(),
+        stiffness: stiffness.into(),
         damping: Damping {
             viscous: damping_halves.map(|h| h.symmetric).filter(|c| has_entries(Some(c))).map(Into::into),
             modal: None,
@@ -169,8 +170,8 @@ fn check_mass(mass: Given<'_>, faults: &mut Faults) {
 fn row_sizes(a: &SparseMatrix) -> Vec<f64> {
     let mut size = vec![0.0f64; a.nrows()];
     for j in 0..a.ncols() {
-        for (i, v) in a.row_idx_of_col_raw(j).iter().zip(a.val_of_col(j)) {
-            size[*i] = size[*i].max(v.abs());
+        for (i, v) in a.row_idx_of_col(j).zip(a.val_of_col(j)) {
+            size[i] = size[i].max(v.abs());
             size[j] = size[j].max(v.abs());
         }
     }
@@ -196,9 +197,9 @@ impl Halves {
         let half = add_scaled(&[(0.5, a), (-0.5, &t)]);
         let mut skew = Vec::new();
         for j in 0..half.ncols() {
-            for (i, v) in half.row_idx_of_col_raw(j).iter().zip(half.val_of_col(j)) {
-                if *i > j && v.abs() > ROUND_OFF * (size[*i] * size[j]).sqrt() {
-                    skew.push((*i, j, *v));
+            for (i, v) in half.row_idx_of_col(j).zip(half.val_of_col(j)) {
+                if i > j && v.abs() > ROUND_OFF * (size[i] * size[j]).sqrt() {
+                    skew.push((i, j, *v));
                 }
             }
         }
@@ -361,11 +362,7 @@ impl Coupling {
             for (a, left) in self.directions.iter().enumerate() {
                 for (b, right) in self.directions.iter().enumerate().filter(|(b, _)| small[(a, *b)] != 0.0) {
                     for (i, x) in left.iter() {
-                        triplets.extend(
-                            right
-                                .iter()
-                                .map(|(j, y)| faer::sparse::Triplet::new(i, j, x * small[(a, b)] * y)),
-                        );
+                        triplets.extend(right.iter().map(|(j, y)| entry(i, j, x * small[(a, b)] * y)));
                     }
                 }
             }
@@ -397,8 +394,8 @@ mod tests {
         for p in 0..points {
             let [w, t, r] = [3 * p, 3 * p + 1, 3 * p + 2];
             for (row, factor) in [(w, 1e4), (t, 4e3 * unit), (r, -3e3 * unit)] {
-                triplets.push(faer::sparse::Triplet::new(row, w, factor));
-                triplets.push(faer::sparse::Triplet::new(row, n - 3, -factor));
+                triplets.push(entry(row, w, factor));
+                triplets.push(entry(row, n - 3, -factor));
             }
         }
         let contact = SparseMatrix::try_new_from_triplets(n, n, &triplets).unwrap();
@@ -420,8 +417,8 @@ mod tests {
             for (symmetric, rest) in [(&imported.structure.stiffness, &rest), (&viscous, &rest_c)] {
                 let difference = add_scaled(&[(1.0, &k), (-1.0, symmetric), (-1.0, rest)]);
                 for j in 0..k.ncols() {
-                    for (i, v) in difference.row_idx_of_col_raw(j).iter().zip(difference.val_of_col(j)) {
-                        assert!(v.abs() <= 4e-15 * (size[*i] * size[j]).sqrt(), "{i} {j} {v:e}");
+                    for (i, v) in difference.row_idx_of_col(j).zip(difference.val_of_col(j)) {
+                        assert!(v.abs() <= 4e-15 * (size[i] * size[j]).sqrt(), "{i} {j} {v:e}");
                     }
                 }
                 let t = symmetric.transpose().to_col_major().unwrap();
@@ -444,8 +441,8 @@ mod tests {
                 for moment in [upper, lower] {
                     for (row, part) in [(moment + 1, angle.cos()), (moment + 2, angle.sin())] {
                         let scale = size * (k[(row, row)] * k[(upper, upper)]).sqrt() * part;
-                        triplets.push(faer::sparse::Triplet::new(row, upper, scale));
-                        triplets.push(faer::sparse::Triplet::new(row, lower, -scale));
+                        triplets.push(entry(row, upper, scale));
+                        triplets.push(entry(row, lower, -scale));
                     }
                 }
             }
@@ -461,7 +458,7 @@ mod tests {
     #[test]
     fn groups_that_do_not_meet_stay_apart_and_sparse() {
         let (k, m) = samples::plate(8, false);
-        let triplets: Vec<_> = (0..6).map(|p| faer::sparse::Triplet::new(9 * p, 9 * p + 1, 1e3)).collect();
+        let triplets: Vec<_> = (0..6).map(|p| entry(9 * p, 9 * p + 1, 1e3)).collect();
         let friction = SparseMatrix::try_new_from_triplets(k.nrows(), k.nrows(), &triplets).unwrap();
         let k = add_scaled(&[(1.0, &k), (1.0, &friction)]);
         let coupling = split(given(&real(m)), None, given(&real(k))).unwrap().coupling.unwrap();
@@ -501,8 +498,7 @@ mod tests {
         let text = split(given(&small), None, given(&real(k.clone()))).unwrap_err().to_string();
         assert!(text.contains("as the mass has it"), "{text}");
         let n = k.nrows();
-        let hole =
-            SparseMatrix::try_new_from_triplets(n, n, &[faer::sparse::Triplet::new(0, 0, 1.0)]).unwrap();
+        let hole = SparseMatrix::try_new_from_triplets(n, n, &[entry(0, 0, 1.0)]).unwrap();
         let hole = real(hole);
         let text = split(given(&hole), None, given(&hole)).unwrap_err().to_string();
         assert!(text.contains(&format!("{} rows of zeros, row 2", n - 1)), "{text}");
@@ -513,10 +509,10 @@ mod tests {
         let n = 5000;
         let triplets: Vec<_> = (0..n)
             .flat_map(|i| [(i, i, 2.0), (i, (i + 1) % n, 0.5)])
-            .map(|(i, j, v)| faer::sparse::Triplet::new(i, j, v))
+            .map(|(i, j, v)| entry(i, j, v))
             .collect();
         let k = real(SparseMatrix::try_new_from_triplets(n, n, &triplets).unwrap());
-        let ones: Vec<_> = (0..n).map(|i| faer::sparse::Triplet::new(i, i, 1.0)).collect();
+        let ones: Vec<_> = (0..n).map(|i| entry(i, i, 1.0)).collect();
         let m = real(SparseMatrix::try_new_from_triplets(n, n, &ones).unwrap());
         let text = split(given(&m), None, given(&k)).unwrap_err().to_string();
         assert!(text.contains("of rank 5000") && text.contains("2000 at most"), "{text}");

@@ -6,11 +6,10 @@ use super::scheme::Weights;
 use super::state::State;
 use super::stepper::{ITERATIONS, ROUND_OFF, Solver, Stuck};
 use crate::linalg::SparseMatrix;
-use crate::linalg::sparse::{add_scaled, multiply_vector};
+use crate::linalg::sparse::{add_scaled, entry, multiply_vector};
 use crate::linalg::tall::{expand, gram};
 use faer::Mat;
 use faer::linalg::solvers::Solve;
-use faer::sparse::Triplet;
 
 /// A₀Δ + B E BᵀΔ + b D r(u_t + Δ, v_t + c₁Δ) − h − B w = 0 with the tangent A₀ + b D (∂r/∂q + c₁ ∂r/∂q̇) Dᵀ. The modal
 /// part B E Bᵀ, dense but small beside A₀, is left to the iteration.
@@ -74,7 +73,7 @@ impl Solver for FullNewton<'_> {
                 rho.iter_mut().zip(part.col_as_slice(0)).for_each(|(r, p)| *r += p);
             }
             let entries = self.reaction.tangent(model, &to.interface, weights.rate).into_iter();
-            let entries: Vec<_> = entries.map(|(i, j, v)| Triplet::new(i, j, weights.share() * v)).collect();
+            let entries: Vec<_> = entries.map(|(i, j, v)| entry(i, j, weights.share() * v)).collect();
             let contact =
                 SparseMatrix::try_new_from_triplets(n, n, &entries).map_err(|_| Stuck::NotFinite)?;
             let tangent = add_scaled(&[(1.0, &self.linear), (1.0, &contact)]);

@@ -131,10 +131,10 @@ fn diagonal(a: &SparseMatrix) -> Option<Vec<f64>> {
     let mut values = vec![0.0; a.ncols()];
     for (j, value) in values.iter_mut().enumerate() {
         for entry in a.col_ptr()[j]..a.col_ptr()[j + 1] {
-            if a.row_idx()[entry] != j {
+            if a.row_idx()[entry as usize] as usize != j {
                 return None;
             }
-            *value = a.val()[entry];
+            *value = a.val()[entry as usize];
         }
     }
     Some(values)

@@ -89,10 +89,9 @@ impl Pencil<'_> {
             let (mut xkx, mut xmx, mut size) = (0.0, 0.0, 0.0);
             for (a, sum) in [(self.k, &mut xkx), (self.m, &mut xmx)] {
                 for c in 0..a.ncols() {
-                    for (r, v) in a.row_idx_of_col_raw(c).iter().zip(a.val_of_col(c)) {
-                        *sum += x[(*r, j)] * v * x[(c, j)];
-                        size +=
-                            if std::ptr::eq(a, self.k) { (x[(*r, j)] * v * x[(c, j)]).abs() } else { 0.0 };
+                    for (r, v) in a.row_idx_of_col(c).zip(a.val_of_col(c)) {
+                        *sum += x[(r, j)] * v * x[(c, j)];
+                        size += if std::ptr::eq(a, self.k) { (x[(r, j)] * v * x[(c, j)]).abs() } else { 0.0 };
                     }
                 }
             }

@@ -1,6 +1,7 @@
 use super::super::dense::definite_pencil;
 use super::super::factor::factorize;
 use super::super::samples;
+use super::super::sparse::entry;
 use super::*;
 
 fn check(m: &SparseMatrix, pairs: &Eigenpairs) {
@@ -100,7 +101,7 @@ fn massless_degrees_of_freedom_have_no_finite_eigenvalue() {
     // A chain in which only every tenth point has mass: stiffness of ten springs in series between them.
     for n in [100, 1000] {
         let (k, _) = samples::free_chain(n);
-        let entries: Vec<_> = (0..n).step_by(10).map(|p| faer::sparse::Triplet::new(p, p, 1.0)).collect();
+        let entries: Vec<_> = (0..n).step_by(10).map(|p| entry(p, p, 1.0)).collect();
         let m = SparseMatrix::try_new_from_triplets(n, n, &entries).unwrap();
         let masses = n / 10;
         let exact = |j: usize| 0.4 * (j as f64 * std::f64::consts::PI / (2 * masses) as f64).sin().powi(2);
@@ -139,8 +140,8 @@ fn many_copies_are_all_found() {
     let mut entries = Vec::new();
     for c in 0..copies {
         for j in 0..n {
-            for (i, v) in k.row_idx_of_col_raw(j).iter().zip(k.val_of_col(j)) {
-                entries.push(faer::sparse::Triplet::new(c * n + i, c * n + j, *v));
+            for (i, v) in k.row_idx_of_col(j).zip(k.val_of_col(j)) {
+                entries.push(entry(c * n + i, c * n + j, *v));
             }
         }
     }

@@ -29,7 +29,7 @@ pub use field::Field;
 
 use super::SparseMatrix;
 use super::room::with_room;
-use super::sparse::{multiply, norm_1};
+use super::sparse::{Index, multiply, norm_1};
 use crate::error::{Error, Result};
 use faer::sparse::{SparseColMat, SymbolicSparseColMatRef};
 use faer::{ColRef, Mat, MatMut, MatRef};
@@ -120,7 +120,7 @@ impl SymbolicFactor {
     ///
     /// # Panics
     /// When the pattern is not square.
-    pub fn new(pattern: SymbolicSparseColMatRef<'_, usize>) -> Result<Self> {
+    pub fn new(pattern: SymbolicSparseColMatRef<'_, Index>) -> Result<Self> {
         assert!(pattern.nrows() == pattern.ncols(), "a symmetric matrix is square");
         Ok(SymbolicFactor(Arc::new(Plan::new(pattern)?)))
     }
@@ -131,7 +131,7 @@ impl SymbolicFactor {
     }
 
     /// Whether this is the analysis of `pattern`.
-    pub fn fits(&self, pattern: SymbolicSparseColMatRef<'_, usize>) -> bool {
+    pub fn fits(&self, pattern: SymbolicSparseColMatRef<'_, Index>) -> bool {
         self.0.fingerprint == fingerprint(pattern)
     }
 
@@ -142,7 +142,7 @@ impl SymbolicFactor {
     ///
     /// # Panics
     /// When the pattern is another one.
-    pub fn factorize<T: Field>(&self, a: &SparseColMat<usize, T>) -> Result<Box<dyn SymmetricFactor<T>>> {
+    pub fn factorize<T: Field>(&self, a: &SparseColMat<Index, T>) -> Result<Box<dyn SymmetricFactor<T>>> {
         let (branch, scaling) = self.eliminate(a, Kept::All)?;
         Ok(Box::new(Multifrontal { plan: Arc::clone(&self.0), branch, scaling }))
     }
@@ -159,14 +159,15 @@ impl SymbolicFactor {
     }
 
     /// The fronts of S A S, and S.
-    fn eliminate<T: Field>(&self, a: &SparseColMat<usize, T>, kept: Kept) -> Result<(Branch<T>, Vec<f64>)> {
+    fn eliminate<T: Field>(&self, a: &SparseColMat<Index, T>, kept: Kept) -> Result<(Branch<T>, Vec<f64>)> {
         let n = a.ncols();
         assert!(
             n == self.0.order.len() && a.compute_nnz() == self.0.entries,
             "the pattern was not the analysed one"
         );
         if let Some(k) = a.val().iter().position(|v| !v.size().is_finite()) {
-            let (row, column) = (a.row_idx()[k], a.col_ptr().partition_point(|start| *start <= k) - 1);
+            let (row, column) =
+                (a.row_idx()[k], a.col_ptr().partition_point(|start| *start as usize <= k) - 1);
             return Err(Error::analysis(
                 "factorisation",
                 format!("the matrix has {:?} in row {row}, column {column}", a.val()[k]),
@@ -190,7 +191,7 @@ impl SymbolicFactor {
 ///
 /// # Errors
 /// Those of [`SymbolicFactor::new`] and [`SymbolicFactor::factorize`].
-pub fn factorize<T: Field>(a: &SparseColMat<usize, T>) -> Result<Box<dyn SymmetricFactor<T>>> {
+pub fn factorize<T: Field>(a: &SparseColMat<Index, T>) -> Result<Box<dyn SymmetricFactor<T>>> {
     SymbolicFactor::new(a.symbolic())?.factorize(a)
 }
 
@@ -403,13 +404,13 @@ fn inertia<T: Field>(branch: &Branch<T>) -> Inertia {
 }
 
 /// S: s_i = 2^-round(½ log₂ |a_ii|), the largest entry of the row standing in where the diagonal is too small.
-fn equilibrate<T: Field>(a: &SparseColMat<usize, T>) -> Vec<f64> {
+fn equilibrate<T: Field>(a: &SparseColMat<Index, T>) -> Vec<f64> {
     (0..a.ncols())
         .map(|j| {
             let (mut diagonal, mut largest) = (0.0f64, 0.0f64);
-            for (i, v) in a.row_idx_of_col_raw(j).iter().zip(a.val_of_col(j)) {
+            for (i, v) in a.row_idx_of_col(j).zip(a.val_of_col(j)) {
                 largest = largest.max(v.size());
-                if *i == j {
+                if i == j {
                     diagonal = v.size();
                 }
             }

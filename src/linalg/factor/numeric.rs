@@ -1,5 +1,6 @@
 //! The numbers: fronts are assembled and eliminated along the tree, its tasks side by side.
 
+use super::super::sparse::Index;
 use super::field::Field;
 use super::front::{Panel, subtract_product};
 use super::lower::Lower;
@@ -113,7 +114,7 @@ struct Remainder<T> {
 /// A matrix on its way through the tree.
 struct Elimination<'a, T> {
     plan: &'a Plan,
-    a: SparseColMatRef<'a, usize, T>,
+    a: SparseColMatRef<'a, Index, T>,
     scaling: &'a [f64],
     kept: Kept,
 }
@@ -139,7 +140,7 @@ pub(super) enum Kept {
 /// Factorises S A S.
 pub(super) fn factorize<T: Field>(
     plan: &Plan,
-    a: SparseColMatRef<'_, usize, T>,
+    a: SparseColMatRef<'_, Index, T>,
     scaling: &[f64],
     kept: Kept,
 ) -> Result<Branch<T>, Stuck> {
@@ -210,11 +211,11 @@ impl<T: Field> Elimination<'_, T> {
         lower.resize(m * width, T::default());
         for (k, column) in node.columns.clone().enumerate() {
             let j = self.plan.order[column];
-            let entries = self.a.row_idx_of_col_raw(j).iter().zip(self.a.val_of_col(j));
+            let entries = self.a.row_idx_of_col(j).zip(self.a.val_of_col(j));
             for (i, v) in entries {
-                let row = self.plan.place[*i];
+                let row = self.plan.place[i];
                 if row >= column {
-                    lower[k * m + places[row] as usize] = *v * (self.scaling[*i] * self.scaling[j]);
+                    lower[k * m + places[row] as usize] = *v * (self.scaling[i] * self.scaling[j]);
                 }
             }
         }

@@ -4,6 +4,7 @@
 //! On a plate of 199,692 unknowns dissection takes 0.3 s more than minimum degree, but L has 13 % fewer entries, a
 //! factorisation takes 27 % less time and its tree is balanced.
 
+use super::super::sparse::Index;
 use crate::error::Result;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
@@ -26,28 +27,28 @@ pub(super) struct Quotient {
 
 impl Quotient {
     /// Groups the rows of a symmetric pattern.
-    pub fn new(pattern: SymbolicSparseColMatRef<'_, usize>) -> Self {
+    pub fn new(pattern: SymbolicSparseColMatRef<'_, Index>) -> Self {
         let n = pattern.ncols();
-        let rows = |j: usize| pattern.row_idx_of_col_raw(j);
+        let rows = |j: usize| pattern.row_idx_of_col(j);
         // A sum of scrambled indices over the row's neighbours and itself tells most different rows apart at once.
         let scramble = |i: usize| (i as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29);
         let scramble = |i: usize| scramble(i).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         let keys: Vec<(u64, usize)> = (0..n)
             .map(|j| {
-                let others = || rows(j).iter().filter(|i| **i != j);
-                let key = others().fold(scramble(j), |sum, i| sum.wrapping_add(scramble(*i)));
+                let others = || rows(j).filter(|i| *i != j);
+                let key = others().fold(scramble(j), |sum, i| sum.wrapping_add(scramble(i)));
                 (key, others().count())
             })
             .collect();
         let same = |i: usize, j: usize| {
-            let outside = |k: &&usize| **k != i && **k != j;
-            keys[i] == keys[j] && rows(i).iter().filter(outside).eq(rows(j).iter().filter(outside))
+            let outside = |k: &usize| *k != i && *k != j;
+            keys[i] == keys[j] && rows(i).filter(outside).eq(rows(j).filter(outside))
         };
         let mut group = vec![usize::MAX; n];
         let mut members: Vec<Vec<usize>> = Vec::new();
         for j in 0..n {
-            let older = rows(j).iter().filter(|i| **i < j && members[group[**i]][0] == **i);
-            match older.copied().find(|i| same(*i, j)) {
+            let mut older = rows(j).filter(|i| *i < j && members[group[*i]][0] == *i);
+            match older.find(|i| same(*i, j)) {
                 Some(i) => group[j] = group[i],
                 None => {
                     group[j] = members.len();
@@ -61,7 +62,7 @@ impl Quotient {
         for (g, rows_of_group) in members.iter().enumerate() {
             let begin = neighbours.len();
             for i in rows(rows_of_group[0]) {
-                let other = group[*i];
+                let other = group[i];
                 if other != g && seen[other] != g {
                     seen[other] = g;
                     neighbours.push(other);

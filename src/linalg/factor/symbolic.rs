@@ -5,6 +5,7 @@
 //! What is left of it after the elimination is added to the front of its parent (Duff & Reid, ACM TOMS 9 (1983) 302).
 //! Columns of equal structure share a front; a child is merged with its parent when few zeros come in (`may_merge`).
 
+use super::super::sparse::Index;
 use super::ordering::Quotient;
 use crate::error::Result;
 use faer::sparse::SymbolicSparseColMatRef;
@@ -54,7 +55,7 @@ impl Plan {
     ///
     /// # Errors
     /// [`crate::error::Error::Analysis`] when memory does not suffice.
-    pub fn new(pattern: SymbolicSparseColMatRef<'_, usize>) -> Result<Self> {
+    pub fn new(pattern: SymbolicSparseColMatRef<'_, Index>) -> Result<Self> {
         let quotient = Quotient::new(pattern);
         let graph = Graph::new(&quotient, &quotient.order()?);
         let mut supernodes = graph.supernodes();
@@ -69,7 +70,7 @@ impl Plan {
 
     /// Numbers the columns along the tree and writes everything out for the rows of A.
     fn number(
-        pattern: SymbolicSparseColMatRef<'_, usize>,
+        pattern: SymbolicSparseColMatRef<'_, Index>,
         quotient: &Quotient,
         graph: &Graph,
         mut supernodes: Vec<Supernode>,
@@ -128,7 +129,7 @@ impl Plan {
 }
 
 /// A number that two patterns share only when they are the same, but for one chance in 2⁶⁴ (FNV-1a over whole words).
-pub(super) fn fingerprint(pattern: SymbolicSparseColMatRef<'_, usize>) -> u64 {
+pub(super) fn fingerprint(pattern: SymbolicSparseColMatRef<'_, Index>) -> u64 {
     let words = pattern.col_ptr().iter().chain(pattern.row_idx());
     words.fold(0xcbf2_9ce4_8422_2325, |hash, word| (hash ^ *word as u64).wrapping_mul(0x0000_0100_0000_01b3))
 }

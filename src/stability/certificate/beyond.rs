@@ -16,9 +16,8 @@ use crate::error::Result;
 use crate::linalg::SparseMatrix;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::factor::inertia_like;
-use crate::linalg::sparse::add_scaled;
+use crate::linalg::sparse::{add_scaled, entry};
 use crate::stability::analysis::Analysis;
-use faer::sparse::Triplet;
 use faer::{Mat, MatRef};
 use std::f64::consts::TAU;
 
@@ -120,11 +119,11 @@ fn holds_against_friction(analysis: &Analysis<'_>, b: f64) -> bool {
 fn diagonal_below(a: &SparseMatrix, mass: &SparseMatrix) -> SparseMatrix {
     let m = |i: usize| mass.get(i, i).copied().unwrap_or(0.0);
     let bound = |j: usize| {
-        let entries = a.row_idx_of_col_raw(j).iter().zip(a.val_of_col(j));
-        entries.map(|(i, v)| if *i == j { *v } else { -v.abs() * (m(j) / m(*i)).sqrt() }).sum()
+        let entries = a.row_idx_of_col(j).zip(a.val_of_col(j));
+        entries.map(|(i, v)| if i == j { *v } else { -v.abs() * (m(j) / m(i)).sqrt() }).sum()
     };
     let rows = (0..a.ncols()).filter(|j| !a.row_idx_of_col_raw(*j).is_empty());
-    let triplets: Vec<_> = rows.map(|j| Triplet::new(j, j, bound(j))).collect();
+    let triplets: Vec<_> = rows.map(|j| entry(j, j, bound(j))).collect();
     SparseMatrix::try_new_from_triplets(a.nrows(), a.ncols(), &triplets).expect("indices of a matrix")
 }
 
@@ -137,7 +136,7 @@ fn symmetric_damping(analysis: &Analysis<'_>) -> SparseMatrix {
         for (i, a) in row.iter() {
             for (j, b) in column.iter() {
                 let value = 0.5 * term.damping * (a * b);
-                triplets.extend([Triplet::new(i, j, value), Triplet::new(j, i, value)]);
+                triplets.extend([entry(i, j, value), entry(j, i, value)]);
             }
         }
     }
