@@ -13,6 +13,7 @@ use super::sparse::{Index, ROWS_A_TASK, columns_mut, union, with_laid, with_pack
 use faer::{Mat, MatMut, MatRef};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// Columns that go through the matrices together.
@@ -21,26 +22,49 @@ type PackedRow = Aligned<[f64; PANEL]>;
 
 /// Symmetric matrices of one size (one to four), stored whole on the union of their patterns.
 #[derive(Debug, Clone)]
-pub struct Merged {
-    count: usize,
-    starts: Vec<Index>,
-    rows: Vec<Index>,
-    /// The values of all matrices in an entry, side by side.
-    values: Vec<f64>,
+pub struct Merged<'a> {
+    starts: Cow<'a, [Index]>,
+    rows: Cow<'a, [Index]>,
+    /// The values of each matrix.
+    values: Vec<Cow<'a, [f64]>>,
 }
 
-impl Merged {
-    /// Lays `matrices` side by side.
+impl<'a> Merged<'a> {
+    /// Merges `matrices`; where all have one pattern they are borrowed as they are.
     ///
     /// # Panics
     /// When there are none or more than four, when their sizes differ, or beyond 2³² entries.
-    pub fn new(matrices: &[&SparseMatrix]) -> Self {
-        let (count, n) = (matrices.len(), matrices[0].ncols());
+    pub fn new(matrices: &[&'a SparseMatrix]) -> Self {
+        let (count, first) = (matrices.len(), matrices[0]);
+        let n = first.ncols();
         assert!((1..=4).contains(&count), "one to four matrices");
         assert!(matrices.iter().all(|a| a.ncols() == n && a.nrows() == n), "matrices of one size");
-        let (starts, rows, values) =
-            union(matrices, count, |entries, values| values.copy_from_slice(entries));
-        Merged { count, starts, rows, values }
+        if matrices.iter().all(|a| a.col_ptr() == first.col_ptr() && a.row_idx() == first.row_idx()) {
+            let values = matrices.iter().map(|a| Cow::Borrowed(a.val())).collect();
+            return Merged {
+                starts: Cow::Borrowed(first.col_ptr()),
+                rows: Cow::Borrowed(first.row_idx()),
+                values,
+            };
+        }
+        let (starts, rows, all) = union(matrices, count, |entries, values| values.copy_from_slice(entries));
+        let of = |a: usize| Cow::Owned(all.iter().skip(a).step_by(count).copied().collect());
+        Merged { starts: Cow::Owned(starts), rows: Cow::Owned(rows), values: (0..count).map(of).collect() }
+    }
+
+    /// The same, which borrows nothing.
+    pub fn into_owned(self) -> Merged<'static> {
+        Merged {
+            starts: Cow::Owned(self.starts.into_owned()),
+            rows: Cow::Owned(self.rows.into_owned()),
+            values: self.values.into_iter().map(|values| Cow::Owned(values.into_owned())).collect(),
+        }
+    }
+
+    /// The values of C matrices.
+    fn slices<const C: usize>(&self) -> [&[f64]; C] {
+        assert!(self.values.len() == C, "{} matrices", self.values.len());
+        std::array::from_fn(|a| &*self.values[a])
     }
 
     /// A x of every matrix A, in their order, in the memory of `products`, of whatever size they are. Every entry is one sum
@@ -51,7 +75,7 @@ impl Merged {
     pub fn times(&self, x: MatRef<'_, f64>, products: &mut Vec<Mat<f64>>) {
         let n = self.starts.len() - 1;
         assert!(x.nrows() == n, "shapes of A and x disagree");
-        products.resize_with(self.count, Mat::new);
+        products.resize_with(self.values.len(), Mat::new);
         products.iter_mut().for_each(|y| y.resize_with(n, x.ncols(), |_, _| 0.0));
         for start in (0..x.ncols()).step_by(PANEL) {
             let width = PANEL.min(x.ncols() - start);
@@ -66,7 +90,7 @@ impl Merged {
                 self.each_block(packed, tasks, |task, rows, sums| {
                     for (a, columns) in task.iter_mut().enumerate() {
                         let mut columns: Vec<_> = columns.iter_mut().map(|y| &mut y[rows.clone()]).collect();
-                        spread(|i| &sums[i * self.count + a], &mut columns);
+                        spread(|i| &sums[i * self.values.len() + a], &mut columns);
                     }
                 });
             });
@@ -100,7 +124,7 @@ impl Merged {
         tasks.par_iter_mut().enumerate().for_each(|(number, task)| {
             let first = number * ROWS_A_TASK;
             let rows = first..packed.len().min(first + ROWS_A_TASK);
-            match self.count {
+            match self.values.len() {
                 1 => self.rows_times::<1, _>(rows, packed, task, &take),
                 2 => self.rows_times::<2, _>(rows, packed, task, &take),
                 3 => self.rows_times::<3, _>(rows, packed, task, &take),
@@ -120,7 +144,7 @@ impl Merged {
         let mut sums = [[[0.0; PANEL]; C]; BLOCK];
         for first in rows.clone().step_by(BLOCK) {
             let sums = &mut sums[..BLOCK.min(rows.end - first)];
-            Arch::new().dispatch(Rows { merged: self, first, packed, sums });
+            Arch::new().dispatch(Rows { merged: self, values: self.slices(), first, packed, sums });
             let begin = first - rows.start;
             take(task, begin..begin + sums.len(), sums.as_flattened());
         }
@@ -133,7 +157,8 @@ impl Merged {
     /// When the shapes do not agree.
     pub fn multiply<const C: usize>(&self, out: [(usize, MatMut<'_, f64>); C], x: MatRef<'_, f64>) {
         let n = self.starts.len() - 1;
-        assert!(self.count == C && x.nrows() == n && x.ncols() <= FEW, "shapes of A and X disagree");
+        assert!(x.nrows() == n && x.ncols() <= FEW, "shapes of A and X disagree");
+        let values = self.slices::<C>();
         let mut packed = Vec::new();
         let columns: [&[f64]; FEW] = std::array::from_fn(|c| slice(x, c));
         let row = |i: usize| columns.map(|column| column.get(i).copied().unwrap_or(0.0));
@@ -154,7 +179,7 @@ impl Merged {
             let mut sums = [[[0.0; FEW]; C]; BLOCK];
             for begin in rows.clone().step_by(BLOCK) {
                 let sums = &mut sums[..BLOCK.min(rows.end - begin)];
-                Arch::new().dispatch(Rows { merged: self, first: begin, packed: &packed, sums });
+                Arch::new().dispatch(Rows { merged: self, values, first: begin, packed: &packed, sums });
                 for (a, columns) in out.iter_mut().enumerate() {
                     for (c, y) in columns.iter_mut().enumerate() {
                         let y = y[begin - rows.start..].iter_mut().zip(&*sums);
@@ -169,16 +194,16 @@ impl Merged {
     ///
     /// # Panics
     /// When there are not C matrices.
-    pub fn entries<const C: usize>(&self) -> &[[f64; C]] {
-        assert!(self.count == C, "{} matrices", self.count);
-        self.values.as_chunks().0
+    pub fn entries<const C: usize>(&self) -> impl ExactSizeIterator<Item = [f64; C]> + Clone {
+        let values = self.slices::<C>();
+        (0..self.rows.len()).map(move |entry| values.map(|of| of[entry]))
     }
 
     /// [`Merged::entries`], each behind its row and column.
-    pub fn places<const C: usize>(&self) -> impl Iterator<Item = (usize, usize, &[f64; C])> {
+    pub fn places<const C: usize>(&self) -> impl Iterator<Item = (usize, usize, [f64; C])> {
         let columns =
             self.starts.windows(2).enumerate().flat_map(|(j, ends)| (ends[0]..ends[1]).map(move |_| j));
-        columns.zip(&self.rows).zip(self.entries()).map(|((j, i), values)| (*i as usize, j, values))
+        columns.zip(&*self.rows).zip(self.entries()).map(|((j, i), values)| (*i as usize, j, values))
     }
 }
 
@@ -203,7 +228,8 @@ fn slice(x: MatRef<'_, f64>, c: usize) -> &[f64] {
 
 /// The rows of all matrices from `first` on, times packed columns.
 struct Rows<'a, R, const C: usize, const W: usize> {
-    merged: &'a Merged,
+    merged: &'a Merged<'a>,
+    values: [&'a [f64]; C],
     first: usize,
     packed: &'a [R],
     sums: &'a mut [[[f64; W]; C]],
@@ -214,15 +240,17 @@ impl<R: Row<f64, W>, const C: usize, const W: usize> WithSimd for Rows<'_, R, C,
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let (starts, (values, _)) = (&self.merged.starts, self.merged.values.as_chunks::<C>());
+        let (starts, rows) = (&self.merged.starts, &self.merged.rows);
         for (i, sums) in self.sums.iter_mut().enumerate() {
             let entries = starts[self.first + i] as usize..starts[self.first + i + 1] as usize;
             let mut own = [[0.0; W]; C];
-            for (j, v) in self.merged.rows[entries.clone()].iter().zip(&values[entries]) {
+            let values = self.values.map(|values| &values[entries.clone()]);
+            for (k, j) in rows[entries].iter().enumerate() {
                 let x = self.packed[*j as usize].values();
                 for a in 0..C {
+                    let v = values[a][k];
                     for c in 0..W {
-                        own[a][c] = x[c].mul_add(v[a], own[a][c]);
+                        own[a][c] = x[c].mul_add(v, own[a][c]);
                     }
                 }
             }
@@ -253,10 +281,29 @@ mod tests {
     }
 
     #[test]
+    fn matrices_on_one_pattern_are_borrowed_and_multiply_alike() {
+        let (stiffness, mass) = samples::plate(6, false);
+        let shared = Merged::new(&[&mass, &stiffness]);
+        assert!(shared.values.iter().all(|values| matches!(values, Cow::Borrowed(_))));
+        let owned = shared.clone().into_owned();
+        let x = Mat::from_fn(mass.ncols(), 5, |i, j| ((i * 7 + j * 3) as f64).sin());
+        let products = |merged: &Merged<'_>| {
+            let mut products = Vec::new();
+            merged.times(x.as_ref(), &mut products);
+            products
+        };
+        assert_eq!(products(&shared), products(&owned));
+        assert!(
+            (&products(&shared)[1] - times(&stiffness, x.as_ref())).norm_max()
+                < 1e-12 * stiffness.to_dense().norm_max()
+        );
+    }
+
+    #[test]
     fn products_with_some_columns_each() {
         let [a, b, c] = [1, 2, 3].map(|seed| samples::random_symmetric(301, seed));
         let merged = Merged::new(&[&a, &b, &c]);
-        assert!(merged.places().all(|(i, j, v)| *v == [&a, &b, &c].map(|a| *a.get(i, j).unwrap_or(&0.0))));
+        assert!(merged.places().all(|(i, j, v)| v == [&a, &b, &c].map(|a| *a.get(i, j).unwrap_or(&0.0))));
         let x = Mat::from_fn(301, 3, |i, j| ((i * 7 + j * 3) as f64).sin());
         let mut out = [3, 2, 1].map(|k| Mat::zeros(301, k));
         let [first, second, third] = out.each_mut().map(|y| y.as_mut());

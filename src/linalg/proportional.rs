@@ -30,20 +30,20 @@ impl Proportional {
     pub fn split(x: &SparseMatrix, mass: &SparseMatrix, stiffness: &SparseMatrix) -> Self {
         let merged = Merged::new(&[mass, stiffness, x]);
         let entries = merged.entries::<3>();
-        let largest = |k: usize| entries.iter().fold(f64::MIN_POSITIVE, |l, e| l.max(e[k].abs()));
+        let largest = |k: usize| entries.clone().fold(f64::MIN_POSITIVE, |l, e| l.max(e[k].abs()));
         let [m_size, k_size] = [0, 1].map(largest);
         let (m_inverse, k_inverse) = (m_size.recip(), k_size.recip());
         // Entries where M or K have one, those of M and K of about the size of one.
-        let row = |[m, k, x]: &[f64; 3]| {
+        let row = |[m, k, x]: [f64; 3]| {
             let (m, k) = (m * m_inverse, k * k_inverse);
             let size = m.abs() + k.abs();
             let inverse = size.recip();
-            (size >= f64::MIN_POSITIVE).then(|| [m * inverse, k * inverse, x * inverse])
+            (size >= f64::MIN_POSITIVE).then_some([m * inverse, k * inverse, x * inverse])
         };
         // An odd step, so that the sample does not fall in with the degrees of freedom of a node.
         let step = (entries.len() / SAMPLE) | 1;
-        let sample: Vec<[f64; 3]> = entries.iter().step_by(step).filter_map(row).collect();
-        let mut fit = Fit::new(entries.iter().filter_map(row).fold(0.0, |s, row| row[2].abs().max(s)));
+        let sample: Vec<[f64; 3]> = entries.clone().step_by(step).filter_map(row).collect();
+        let mut fit = Fit::new(entries.clone().filter_map(row).fold(0.0, |s, row| row[2].abs().max(s)));
         for round in 0..ROUNDS {
             // The residual's inverse as weight turns squares into magnitudes; what counts as none falls with the rounds.
             let floor = 0.3f64.powi(round).max(1e-12) * fit.size;
@@ -53,7 +53,7 @@ impl Proportional {
         // Then all entries that fit, alike.
         let near = 1e-9 * fit.size;
         let weight = |left: f64| if left.abs() <= near { 1.0 } else { 0.0 };
-        (0..LAST).for_each(|_| fit.improve(entries.iter().filter_map(row), weight));
+        (0..LAST).for_each(|_| fit.improve(entries.clone().filter_map(row), weight));
         let [alpha, beta] = fit.factors();
         let (alpha, beta) = (alpha / m_size, beta / k_size);
         let mut rest = Vec::new();

@@ -7,15 +7,25 @@ use std::any::Any;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Blocks at rest.
-static AT_REST: Mutex<Vec<Box<dyn Any + Send>>> = Mutex::new(Vec::new());
+static AT_REST: Mutex<Rest> = Mutex::new(Rest { calls: 0, blocks: Vec::new() });
 /// The most of them that are kept: two for each of two threads.
 const MOST: usize = 4;
+/// Calls for room after which a block that was of no use to any of them is given back.
+const IDLE: u64 = 12;
+
+/// Blocks, each with the number of calls when it was laid down.
+struct Rest {
+    calls: u64,
+    blocks: Vec<(u64, Box<dyn Any + Send>)>,
+}
 
 /// What `f` makes with room for `n` values, which hold whatever they held before.
 pub(super) fn with_room<T: Copy + Send + 'static, R>(n: usize, zero: T, f: impl FnOnce(&mut [T]) -> R) -> R {
     let found = {
         let mut kept = at_rest();
-        kept.iter().position(|block| block.is::<Vec<T>>()).map(|k| kept.remove(k))
+        kept.calls += 1;
+        let blocks = &mut kept.blocks;
+        blocks.iter().position(|(_, block)| block.is::<Vec<T>>()).map(|k| blocks.remove(k).1)
     };
     let mut room = found.and_then(|block| block.downcast::<Vec<T>>().ok()).unwrap_or_default();
     if room.len() < n {
@@ -23,15 +33,17 @@ pub(super) fn with_room<T: Copy + Send + 'static, R>(n: usize, zero: T, f: impl 
     }
     let result = f(&mut room[..n]);
     let mut kept = at_rest();
-    if kept.len() == MOST {
-        kept.remove(0);
+    let Rest { calls, blocks } = &mut *kept;
+    blocks.retain(|(laid_down, _)| *calls - laid_down <= IDLE);
+    if blocks.len() == MOST {
+        blocks.remove(0);
     }
-    kept.push(room);
+    blocks.push((*calls, room));
     result
 }
 
 /// A panic elsewhere leaves nothing half done here.
-fn at_rest() -> MutexGuard<'static, Vec<Box<dyn Any + Send>>> {
+fn at_rest() -> MutexGuard<'static, Rest> {
     AT_REST.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

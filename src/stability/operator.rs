@@ -28,7 +28,7 @@ pub(super) struct Operator<'a> {
     /// How much of each acts.
     weights: Vec<f64>,
     /// M, K + K_σ, and what is wide of C and H.
-    merged: Arc<Merged>,
+    merged: Arc<Merged<'a>>,
     mass_norm: f64,
     damping_norm: f64,
     stiffness_norm: f64,
@@ -169,8 +169,12 @@ impl<'a> Operator<'a> {
         let norm = |m: &Option<Arc<SparseMatrix>>| m.as_ref().map_or(0.0, |m| norm_1(m));
         let mut sparse: Vec<&SparseMatrix> = vec![mass, &stiffness];
         sparse.extend(dampers[0].viscous.wide().into_iter().chain(dampers[0].loss.wide()));
+        let merged = match &stiffness {
+            Cow::Borrowed(stiffness) if sparse.len() == 2 => Merged::new(&[mass, stiffness]),
+            _ => Merged::new(&sparse).into_owned(),
+        };
         Operator {
-            merged: Arc::new(Merged::new(&sparse)),
+            merged: Arc::new(merged),
             mass,
             mass_norm: norm_1(mass),
             damping_norm: norm(&damping.viscous),

@@ -14,9 +14,9 @@ pub(super) enum Products {
     /// All matrices are diagonal, as those of reduced models: nothing to factorise, a few products a step.
     Diagonal(Diagonal),
     /// M and K in one pass; C = αM + βK and a few rows nearly for free.
-    Proportional { matrices: Merged, viscous: Option<Viscous> },
+    Proportional { matrices: Merged<'static>, viscous: Option<Viscous> },
     /// M, K and C in one pass.
-    General { matrices: Merged },
+    General { matrices: Merged<'static> },
 }
 
 /// C = αM + βK + rest.
@@ -52,15 +52,21 @@ impl Products {
             return Products::Diagonal(diagonal);
         }
         let Some(viscous) = &damping.viscous else {
-            return Products::Proportional { matrices: Merged::new(&[stiffness, mass]), viscous: None };
+            return Products::Proportional {
+                matrices: Merged::new(&[stiffness, mass]).into_owned(),
+                viscous: None,
+            };
         };
         let split = Proportional::split(viscous, mass, stiffness);
         let rest = split.rest.as_ref().map(FewRows::new);
         if rest.as_ref().is_some_and(|rest| !rest.are_few(mass.ncols())) {
-            return Products::General { matrices: Merged::new(&[stiffness, mass, viscous]) };
+            return Products::General { matrices: Merged::new(&[stiffness, mass, viscous]).into_owned() };
         }
         let viscous = Viscous { factors: [split.mass_factor, split.stiffness_factor], rest };
-        Products::Proportional { matrices: Merged::new(&[stiffness, mass]), viscous: Some(viscous) }
+        Products::Proportional {
+            matrices: Merged::new(&[stiffness, mass]).into_owned(),
+            viscous: Some(viscous),
+        }
     }
 
     /// The diagonals, where there is nothing else.

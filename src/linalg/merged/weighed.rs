@@ -28,7 +28,7 @@ struct Task<'y> {
     sums: Vec<Row>,
 }
 
-impl Merged {
+impl Merged<'_> {
     /// yⱼ += Σ_a factors\[a\]\[j\] A_a xⱼ for complex vectors \[Re x, Im x\] of two columns each, and tⱼᴴA_a xⱼ with that many
     /// others of every one of `tests`. The sums are in a fixed order: the same bits for any number of threads.
     ///
@@ -45,7 +45,7 @@ impl Merged {
         let alike = |a: MatRef<'_, f64>| a.nrows() == n && a.ncols() == x.ncols();
         assert!(alike(y.as_ref()) && tests.iter().all(|t| alike(*t)), "shapes of x, y and tests disagree");
         let fits = |f: &Vec<c64>| f.len() == count;
-        assert!(factors.len() == self.count && factors.iter().all(fits), "a factor for each vector");
+        assert!(factors.len() == self.values.len() && factors.iter().all(fits), "a factor for each vector");
         let whole = |a| columns(a).expect("columns in one piece");
         let (x, tests) = (whole(x), tests.iter().map(|t| whole(*t)).collect::<Vec<_>>());
         let mut y = columns_mut(y.as_mut()).expect("columns in one piece");
@@ -66,7 +66,7 @@ impl Merged {
                 y,
                 first: number * ROWS_A_TASK,
                 laid: Vec::new(),
-                sums: vec![[0.0; PANEL]; tests.len() * self.count],
+                sums: vec![[0.0; PANEL]; tests.len() * self.values.len()],
             };
             let tasks = tasks.into_iter().enumerate().map(of).collect();
             let factors: Vec<Row> = factors.iter().map(|f| factor_row(&f[few.clone()])).collect();
@@ -74,7 +74,7 @@ impl Merged {
                 task.take(rows, products, &factors, &tests);
             });
             for sums in tasks.iter().map(|task| &task.sums) {
-                for (forms, sums) in forms.iter_mut().zip(sums.chunks(self.count)) {
+                for (forms, sums) in forms.iter_mut().zip(sums.chunks(self.values.len())) {
                     for (a, sum) in sums.iter().enumerate() {
                         for (c, form) in forms[few.clone()].iter_mut().enumerate() {
                             form[a] += c64::new(sum[c], sum[VECTORS + c]);
