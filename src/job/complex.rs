@@ -119,7 +119,8 @@ impl Problem<'_, '_> {
             self.system.to_mut().structure.damping.modal = Some(modal);
         }
         let (system, state): (&System, _) = (&*self.system, self.state);
-        let band = Band { hz: band, left_vectors: self.left_vectors };
+        let nearest = self.cea.nearest.zip(self.cea.count);
+        let band = Band { hz: band, nearest, left_vectors: self.left_vectors };
         self.clock.watch(self.observer, |observer| {
             let certified =
                 |most_work| stability::certified_modes(system, state, known, band, most_work, observer);

@@ -128,7 +128,7 @@ impl<'a> Whole<'a> {
         let preloaded = Structure { stiffness: stiffness.into(), ..system.structure.clone() };
         let (real, _) = modal::compute(&preloaded, ModesWanted::BelowHz(cea.basis_below), &())?;
         add_modal_damping(&mut system.structure, &real, &prepared)?;
-        let band = Band { hz: cea.band, left_vectors: false };
+        let band = Band { left_vectors: false, ..cea.band.into() };
         Ok(complex_modes(&system, &steady, &real, band, &())?.modes)
     }
 }

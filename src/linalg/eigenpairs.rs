@@ -13,6 +13,7 @@ use super::SparseMatrix;
 use super::dense::inverse_root;
 use super::factor::{SymbolicFactor, SymmetricFactor};
 use super::lanczos::{BlockLanczos, Ritz, Window};
+use super::merged::Merged;
 use super::sparse::{add_scaled, diagonal, norm_1, times};
 use super::tall::{gram, panels, rotate};
 use crate::error::{Error, Result};
@@ -175,13 +176,14 @@ pub fn backward_errors(
     vectors: MatRef<'_, f64>,
 ) -> Vec<f64> {
     let (k_norm, m_norm) = (norm_1(k), norm_1(m));
-    let mut errors = Vec::new();
+    let both = Merged::new(&[k, m]);
+    let (mut errors, mut images) = (Vec::new(), Vec::new());
     for (start, width) in panels(0..values.len()) {
         let (x, values) = (vectors.subcols(start, width), &values[start..start + width]);
-        let (kx, mx) = (times(k, x), times(m, x));
+        both.times(x, &mut images);
         let error = |(j, theta): (usize, &f64)| {
-            let entries = kx.col_as_slice(j).iter().zip(mx.col_as_slice(j));
-            let residual = entries.map(|(k, m)| (k - theta * m).powi(2)).sum::<f64>().sqrt();
+            let [kx, mx] = [0, 1].map(|a: usize| images[a].col_as_slice(j));
+            let residual = kx.iter().zip(mx).map(|(k, m)| (k - theta * m).powi(2)).sum::<f64>().sqrt();
             residual / ((k_norm + theta.abs() * m_norm) * x.col(j).norm_l2()).max(f64::MIN_POSITIVE)
         };
         errors.extend(values.iter().enumerate().map(error));

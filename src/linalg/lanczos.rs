@@ -41,6 +41,8 @@ pub struct BlockLanczos<'a> {
     width: usize,
     /// M X.
     mass_next: Mat<f64>,
+    /// The memory of W.
+    solved: Mat<f64>,
     /// M times the columns of V from `coupled_from` on; empty when they are not just the block before.
     mass_last: Mat<f64>,
     /// R, `width` × (columns of the block before).
@@ -104,6 +106,7 @@ impl<'a> BlockLanczos<'a> {
             width: 0,
             mass_next: Mat::zeros(mass.ncols(), 0),
             mass_last: Mat::zeros(mass.ncols(), 0),
+            solved: Mat::new(),
             coupling: Mat::zeros(0, 0),
             coupled_from: 0,
             accepted,
@@ -127,8 +130,9 @@ impl<'a> BlockLanczos<'a> {
 
     /// Puts X into the basis, from column `first` on.
     fn put(&mut self, first: usize, x: &Mat<f64>) {
+        let columns: Vec<&[f64]> = (0..x.ncols()).map(|j| x.col_as_slice(j)).collect();
         self.basis.truncate(x.nrows(), first.min(self.basis.ncols()));
-        self.basis.resize_with(x.nrows(), first + x.ncols(), |i, j| x[(i, j - first)]);
+        self.basis.resize_with(x.nrows(), first + x.ncols(), |i, j| columns[j - first][i]);
     }
 
     /// Extends the basis, restarting when it is full, until the window is complete and its pairs are accepted.
@@ -241,20 +245,22 @@ impl<'a> BlockLanczos<'a> {
     /// One block: W = A X, orthogonalised; its coefficients go into H, what is left is the next X.
     fn step(&mut self) -> Result<()> {
         let (begin, end) = (self.len, self.len + self.width);
-        let mut w = self.mass_next.clone();
+        let mut w = std::mem::replace(&mut self.solved, Mat::new());
+        resize(&mut w, self.mass_next.nrows(), self.width);
+        w.copy_from(&self.mass_next);
         self.factor.solve_in_place(w.as_mut());
         let from = self.coupled_from;
-        let near = if self.mass_last.ncols() == begin - from {
+        let mut mw = std::mem::replace(&mut self.mass_last, Mat::new());
+        let near = if mw.ncols() == begin - from {
             // VᵀMW = (MV)ᵀW, and the M V of the last two blocks are at hand.
-            let h =
-                stacked(gram(self.mass_last.as_ref(), w.as_ref()), gram(self.mass_next.as_ref(), w.as_ref()));
+            let h = stacked(gram(mw.as_ref(), w.as_ref()), gram(self.mass_next.as_ref(), w.as_ref()));
             combine(w.as_mut(), Accum::Add, self.basis.subcols(from, end - from), h.as_ref(), -1.0);
             h
         } else {
-            let mw = self.mass_times(w.as_ref());
+            self.weigh(&w, &mut mw);
             self.orthogonalise(&mut w, &mw, from, end)
         };
-        let mut mw = self.mass_times(w.as_ref());
+        self.weigh(&w, &mut mw);
         let all = self.orthogonalise(&mut w, &mw, 0, end);
         let square = gram(w.as_ref(), mw.as_ref());
         let rest = lengths(&square);
@@ -265,7 +271,7 @@ impl<'a> BlockLanczos<'a> {
         // M W lags behind by what was taken out just now, which lies in the span of V: it comes back in the coefficients
         // of the next block, which may be wrong by as little.
         if all.norm_max() > LAG * self.accepted * smallest {
-            mw = self.mass_times(w.as_ref());
+            self.weigh(&w, &mut mw);
         }
         for j in 0..self.width {
             for i in 0..end {
@@ -288,32 +294,32 @@ impl<'a> BlockLanczos<'a> {
         }
         self.coupled_from = begin;
         self.len = end;
-        let (x, mx, r) = self.orthonormalise(w, mw, square, scale)?;
-        self.width = x.ncols();
-        self.put(end, &x);
-        self.mass_last = std::mem::replace(&mut self.mass_next, mx);
-        self.coupling = r;
+        self.coupling = self.orthonormalise(&mut w, &mut mw, square, scale)?;
+        self.width = w.ncols();
+        self.put(end, &w);
+        self.mass_last = std::mem::replace(&mut self.mass_next, mw);
+        self.solved = w;
         Ok(())
     }
 
     /// W = X R with XᵀMX = I. Directions below rounding (1e-15 of `scale`) are dropped: there X has fewer columns.
     ///
-    /// By the eigenvalues of the Gram matrix. Those too small to be trusted are only scaled up in this round and
-    /// resolved in the next.
-    /// Takes W, M W and WᵀMW; returns X, M X and R.
+    /// By the eigenvalues of the Gram matrix WᵀMW. Those too small to be trusted are only scaled up in this round and
+    /// resolved in the next. W and M W become X and M X; R is returned.
     fn orthonormalise(
         &self,
-        mut w: Mat<f64>,
-        mut mw: Mat<f64>,
+        w: &mut Mat<f64>,
+        mw: &mut Mat<f64>,
         mut square: Mat<f64>,
         scale: f64,
-    ) -> Result<Factored> {
+    ) -> Result<Mat<f64>> {
         let mut r = Mat::<f64>::identity(w.ncols(), w.ncols());
         for _ in 0..5 {
             let (values, u) = symmetric_eigen(square.as_ref())?;
             let largest = values.last().copied().unwrap_or(0.0);
             if largest <= 0.0 {
-                return Ok((Mat::zeros(w.nrows(), 0), Mat::zeros(w.nrows(), 0), Mat::zeros(0, r.ncols())));
+                [w, mw].into_iter().for_each(|a| a.truncate(a.nrows(), 0));
+                return Ok(Mat::zeros(0, r.ncols()));
             }
             let size: Vec<f64> = values.iter().map(|v| v.max(1e-13 * largest).sqrt()).collect();
             let up = Mat::from_fn(size.len(), size.len(), |k, i| u[(i, k)] * size[k]);
@@ -322,24 +328,22 @@ impl<'a> BlockLanczos<'a> {
                 (0..size.len()).filter(|k| next.row(*k).norm_l2() > 1e-15 * scale).collect();
             let down = Mat::from_fn(size.len(), kept.len(), |i, k| u[(i, kept[k])] / size[kept[k]]);
             r = Mat::from_fn(kept.len(), r.ncols(), |k, j| next[(kept[k], j)]);
-            let through = |a: Mat<f64>| {
-                let mut b = Mat::zeros(a.nrows(), kept.len());
-                combine(b.as_mut(), Accum::Replace, a.as_ref(), down.as_ref(), 1.0);
-                b
-            };
-            (w, mw) = (through(w), through(mw));
+            for a in [&mut *w, &mut *mw] {
+                rotate(a.as_mut(), down.as_ref());
+                a.truncate(a.nrows(), kept.len());
+            }
             // The error left by this round is rounding over the spread of the eigenvalues.
             if kept.first().is_none_or(|first| values[*first] > 1e-2 * largest) {
                 break;
             }
             if (0..r.nrows()).any(|k| r.row(k).norm_l2() < 1e-4 * scale) {
-                mw = self.mass_times(w.as_ref());
-                self.orthogonalise(&mut w, &mw, 0, self.len);
+                self.weigh(w, mw);
+                self.orthogonalise(w, mw, 0, self.len);
             }
-            mw = self.mass_times(w.as_ref());
+            self.weigh(w, mw);
             square = gram(w.as_ref(), mw.as_ref());
         }
-        Ok((w, mw, r))
+        Ok(r)
     }
 
     /// Adds new random directions to X, as A maps them; false when M reaches nothing outside the basis.
@@ -360,16 +364,15 @@ impl<'a> BlockLanczos<'a> {
         // Against X as well as V: for a moment X counts as part of V.
         self.len = held;
         let square = gram(w.as_ref(), mw.as_ref());
-        let result = self.orthonormalise(w, mw, square, 1e5 * scale);
+        let result = self.orthonormalise(&mut w, &mut mw, square, 1e5 * scale);
         self.len = len;
-        let Ok((x, mx, _)) = result else { return false };
-        if x.ncols() == 0 {
+        if result.is_err() || w.ncols() == 0 {
             return false;
         }
-        self.put(held, &x);
+        self.put(held, &w);
         let width = self.width;
-        self.width += x.ncols();
-        self.mass_next.resize_with(n, self.width, |i, j| mx[(i, j - width)]);
+        self.width += w.ncols();
+        self.mass_next.resize_with(n, self.width, |i, j| mw[(i, j - width)]);
         let tail = self.coupling.ncols();
         self.coupling.resize_with(self.width, tail, |_, _| 0.0);
         true
@@ -406,6 +409,12 @@ impl<'a> BlockLanczos<'a> {
         y
     }
 
+    /// M W in the memory at hand.
+    fn weigh(&self, w: &Mat<f64>, mw: &mut Mat<f64>) {
+        resize(mw, w.nrows(), w.ncols());
+        multiply(self.mass, w.as_ref(), mw.as_mut());
+    }
+
     /// W ← W − V Vᵀ(M W) for the columns `from..to` of the basis; returns Vᵀ M W.
     fn orthogonalise(&self, w: &mut Mat<f64>, mw: &Mat<f64>, from: usize, to: usize) -> Mat<f64> {
         let v = self.basis.subcols(from, to - from);
@@ -426,8 +435,10 @@ fn lengths(square: &Mat<f64>) -> Vec<f64> {
     (0..square.ncols()).map(|j| square[(j, j)].max(0.0).sqrt()).collect()
 }
 
-/// X, M X and R of W = X R.
-type Factored = (Mat<f64>, Mat<f64>, Mat<f64>);
+/// Makes room in the memory at hand, which is not cleared.
+fn resize(a: &mut Mat<f64>, n: usize, columns: usize) {
+    a.resize_with(n, columns, |_, _| 0.0);
+}
 
 #[cfg(test)]
 mod tests {

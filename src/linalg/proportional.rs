@@ -18,7 +18,7 @@ pub struct Proportional {
 /// An entry of the rest below this part of its terms is their round-off.
 const ROUND_OFF: f64 = 1e-13;
 /// Entries that are looked at first where there are many more.
-const SAMPLE: usize = 50_000;
+const SAMPLE: usize = 10_000;
 /// Rounds of the fit to the sample, and to all entries.
 const ROUNDS: i32 = 36;
 const LAST: usize = 2;
@@ -30,8 +30,8 @@ impl Proportional {
     pub fn split(x: &SparseMatrix, mass: &SparseMatrix, stiffness: &SparseMatrix) -> Self {
         let merged = Merged::new(&[mass, stiffness, x]);
         let entries = merged.entries::<3>();
-        let largest = |k: usize| entries.clone().fold(f64::MIN_POSITIVE, |l, e| l.max(e[k].abs()));
-        let [m_size, k_size] = [0, 1].map(largest);
+        let largest = |a: &SparseMatrix| a.val().iter().fold(f64::MIN_POSITIVE, |l, v| l.max(v.abs()));
+        let [m_size, k_size] = [mass, stiffness].map(largest);
         let (m_inverse, k_inverse) = (m_size.recip(), k_size.recip());
         // Entries where M or K have one, those of M and K of about the size of one.
         let row = |[m, k, x]: [f64; 3]| {
@@ -43,7 +43,7 @@ impl Proportional {
         // An odd step, so that the sample does not fall in with the degrees of freedom of a node.
         let step = (entries.len() / SAMPLE) | 1;
         let sample: Vec<[f64; 3]> = entries.clone().step_by(step).filter_map(row).collect();
-        let mut fit = Fit::new(entries.clone().filter_map(row).fold(0.0, |s, row| row[2].abs().max(s)));
+        let mut fit = Fit::new(sample.iter().fold(0.0, |s, row| row[2].abs().max(s)));
         for round in 0..ROUNDS {
             // The residual's inverse as weight turns squares into magnitudes; what counts as none falls with the rounds.
             let floor = 0.3f64.powi(round).max(1e-12) * fit.size;
@@ -77,7 +77,7 @@ impl Proportional {
 /// (a, b) with Σ weight (x − a m − b k)² least over the rows (m, k, x), from round to round.
 struct Fit {
     factors: [f64; 2],
-    /// The largest |x|.
+    /// The largest |x| of the sample.
     size: f64,
 }
 

@@ -6,15 +6,14 @@
 mod real;
 
 use super::c64;
-use super::dense::product;
-use super::sparse::columns;
+use super::sparse::{columns, columns_mut};
 use faer::traits::ComplexField;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
 use rayon::prelude::*;
 use std::ops::Range;
 
 /// Columns that go through the matrices together where there may be many.
-const PANEL: usize = 32;
+const PANEL: usize = 16;
 
 /// The columns of a wide matrix a few at a time, as first column and width, so that little memory is held beside them.
 pub fn panels(columns: Range<usize>) -> impl Iterator<Item = (usize, usize)> {
@@ -56,10 +55,8 @@ impl Entry for f64 {
         c: MatRef<'_, f64>,
         factor: f64,
     ) {
-        let parts = vec![(y.as_mut(), c)];
-        if !columns(v)
-            .is_some_and(|v_columns| real::combine(parts, accumulate, v.nrows(), &v_columns, factor))
-        {
+        let own = columns(v).is_some_and(|v| real::combine(y.as_mut(), c, accumulate, &v, factor));
+        if !own {
             combine_by_ranges(y, accumulate, v, c, factor);
         }
     }
@@ -125,18 +122,18 @@ impl<'a> Columns<'a> {
         real::gram(self.rows, &self.each, &columns(b).expect("columns in one piece"))
     }
 
-    /// Yₖ (+)= factor · V Cₖ for several, V being read once: most of the time is that of reading it.
+    /// Y (+)= factor · V C.
     ///
     /// # Panics
-    /// When the shapes disagree, or a column of Yₖ is in pieces.
-    pub fn combine(&self, parts: Vec<(MatMut<'_, f64>, MatRef<'_, f64>)>, accumulate: Accum, factor: f64) {
-        assert!(real::combine(parts, accumulate, self.rows, &self.each, factor), "columns in one piece");
+    /// When the shapes disagree, or a column of Y is in pieces.
+    pub fn combine(&self, y: MatMut<'_, f64>, c: MatRef<'_, f64>, accumulate: Accum, factor: f64) {
+        assert!(real::combine(y, c, accumulate, &self.each, factor), "columns in one piece");
     }
 
     /// V C as a new matrix.
     pub fn expand(&self, c: MatRef<'_, f64>) -> Mat<f64> {
         let mut y = Mat::zeros(self.rows, c.ncols());
-        self.combine(vec![(y.as_mut(), c)], Accum::Replace, 1.0);
+        self.combine(y.as_mut(), c, Accum::Replace, 1.0);
         y
     }
 
@@ -180,11 +177,11 @@ fn combine_by_ranges<T: ComplexField>(
 }
 
 /// The first columns of V become V C, range of rows by range of rows.
-pub fn rotate(v: MatMut<'_, f64>, c: MatRef<'_, f64>) {
-    v.par_row_chunks_mut(ROWS).for_each(|mut v| {
-        let rotated = product(v.as_ref(), c);
-        v.as_mut().subcols_mut(0, c.ncols()).copy_from(&rotated);
-    });
+///
+/// # Panics
+/// When a column of V is in pieces.
+pub fn rotate(mut v: MatMut<'_, f64>, c: MatRef<'_, f64>) {
+    real::rotate(columns_mut(v.as_mut()).expect("columns in one piece"), c);
 }
 
 /// \[A B\].

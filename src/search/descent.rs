@@ -10,7 +10,8 @@ use std::sync::Mutex;
 /// What a sample costs for lying outside the bounds, times the square of how far in units of their width.
 const OUTSIDE: f64 = 100.0;
 
-/// The unknowns of the least cost among at most `evaluations` samples, from `start`. The samples depend on the seed alone.
+/// The unknowns of the least cost among samples from `start`, until `evaluations` different ones were computed: those beyond
+/// the bounds are moved onto them, and the same place costs nothing twice. The samples depend on the seed alone.
 ///
 /// # Errors
 /// What the cost cannot compute.
@@ -40,7 +41,6 @@ pub(super) fn descend(
                 if (facts.cost, &x) < (best.0, &best.1) {
                     *best = (facts.cost, x);
                 }
-                observer.advance(1);
                 facts.cost + OUTSIDE * outside
             }
             Err(error) => {
@@ -54,7 +54,6 @@ pub(super) fn descend(
     let population = (4 + (3.0 * (start.len() as f64).ln()) as usize).next_multiple_of(2);
     let options = CMAESOptions::new(from, file.spread)
         .population_size(population)
-        .max_function_evals(file.evaluations)
         .tol_x(1e-7)
         .tol_fun(1e-6)
         .tol_fun_hist(1e-6)
@@ -62,9 +61,12 @@ pub(super) fn descend(
     let mut samples = options
         .build(&objective)
         .map_err(|error| Error::analysis("search", format!("{error:?}"), "Search for at least one number"))?;
-    loop {
+    let mut computed = 0;
+    while computed < file.evaluations {
         let end = samples.next_parallel();
         cost.log.flush()?;
+        let before = std::mem::replace(&mut computed, cost.log.costs().len());
+        observer.advance((computed - before) as u64);
         if let Some(error) = failure.lock().expect("no thread panics here").take() {
             return Err(error);
         }

@@ -22,7 +22,7 @@ pub struct SearchFile {
     pub case: Case,
     /// The case and those that the facts are of, by their files.
     pub(super) cases: BTreeMap<String, Case>,
-    /// Most evaluations.
+    /// Most different places to compute.
     pub evaluations: usize,
     /// The seed of the random samples.
     pub seed: u64,

@@ -1,6 +1,6 @@
 //! How fast an oscillation grows and turns.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// An exponential e^{(σ + 2πi f) t} fitted to a part of a complex record.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,13 +11,14 @@ pub struct Growth {
     pub frequency_hz: f64,
     /// The first and last time of what was fitted \[s\].
     pub window: [f64; 2],
-    /// R.m.s. deviation of ln|c| from its line: the smaller the more it is one exponential.
+    /// Weighted r.m.s. deviation of ln|c| from its line: the smaller the more it is one exponential.
     pub deviation: f64,
 }
 
 /// Fits growth (or decay) of c = re + i im, sampled every `step` seconds, between two times: straight lines through
-/// ln|c| and through its phase, which must turn by less than half a turn a step. `None` with fewer than ten samples, or
-/// where c vanishes.
+/// ln|c| and through its phase, which must turn by less than half a turn a step. The weights sin²(πt/T) keep out what
+/// else there is at the beginning, such as a scheme's other roots, and what ripples along the line, such as a trace of the
+/// conjugate motion, at whichever phase it begins and ends. `None` with fewer than ten samples, or where c vanishes.
 pub fn growth(re: &[f64], im: &[f64], step: f64, window: [f64; 2]) -> Option<Growth> {
     let [first, last] = window.map(|t| ((t / step).round().max(0.0) as usize).min(re.len().min(im.len())));
     if last < first + 10 {
@@ -45,24 +46,29 @@ fn wrapped(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }
 
-/// The slope of the straight line through equally spaced values, and the r.m.s. deviation from it.
+/// The slope of the weighted straight line through equally spaced values, and the r.m.s. deviation from it.
 fn line(values: &[f64]) -> Option<(f64, f64)> {
     let n = values.len() as f64;
-    let (middle, mean) = (0.5 * (n - 1.0), values.iter().sum::<f64>() / n);
+    let weight = |k: usize| (PI * (k as f64 + 0.5) / n).sin().powi(2);
+    let all: f64 = (0..values.len()).map(weight).sum();
+    // The weights are symmetric, so that their middle is that of the record.
+    let middle = 0.5 * (n - 1.0);
+    let mean = values.iter().enumerate().map(|(k, y)| weight(k) * y).sum::<f64>() / all;
     let (mut xx, mut xy) = (0.0, 0.0);
     for (k, y) in values.iter().enumerate() {
-        xx += (k as f64 - middle).powi(2);
-        xy += (k as f64 - middle) * (y - mean);
+        xx += weight(k) * (k as f64 - middle).powi(2);
+        xy += weight(k) * (k as f64 - middle) * (y - mean);
     }
     let slope = xy / xx;
-    let off = |(k, y): (usize, &f64)| (y - mean - slope * (k as f64 - middle)).powi(2);
-    let deviation = (values.iter().enumerate().map(off).sum::<f64>() / n).sqrt();
+    let off = |(k, y): (usize, &f64)| weight(k) * (y - mean - slope * (k as f64 - middle)).powi(2);
+    let deviation = (values.iter().enumerate().map(off).sum::<f64>() / all).sqrt();
     (slope.is_finite() && deviation.is_finite()).then_some((slope, deviation))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linalg::c64;
 
     #[test]
     fn a_growing_turn_is_measured_and_nothing_is_not() {
@@ -76,5 +82,26 @@ mod tests {
         assert!(found.deviation < 1e-12);
         assert!(growth(&re, &im, step, [0.0, 5e-4]).is_none());
         assert!(growth(&[0.0; 50], &[0.0; 50], step, [0.0, 5e-3]).is_none());
+    }
+
+    /// A thousandth of the conjugate and a beginning that dies away in a hundredth of the record, at every phase: without
+    /// weights σ is off by up to 1.3e-4 1/s, and f by 2e-5 Hz.
+    #[test]
+    fn a_ripple_and_a_beginning_are_kept_out() {
+        let step = 1e-3;
+        for k in 0..12 {
+            let phase = TAU * f64::from(k) / 12.0;
+            let at = |k: usize| {
+                let t = k as f64 * step;
+                let turn = TAU * 15.37 * t + phase;
+                let c = c64::from_polar((0.25 * t).exp(), turn);
+                c + 1e-3 * c.conj() + c64::from_polar(0.02 * (-t / 0.03).exp(), 3.0 * phase)
+            };
+            let record: Vec<c64> = (0..3000).map(at).collect();
+            let (re, im): (Vec<f64>, Vec<f64>) = record.iter().map(|c| (c.re, c.im)).unzip();
+            let found = growth(&re, &im, step, [0.0, 3.0]).unwrap();
+            assert!((found.rate - 0.25).abs() < 5e-7, "{phase}: {found:?}");
+            assert!((found.frequency_hz - 15.37).abs() < 1e-7, "{phase}: {found:?}");
+        }
     }
 }

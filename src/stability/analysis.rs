@@ -38,18 +38,20 @@ const ILL_CONDITIONED: f64 = 1e6;
 pub struct Band {
     /// Lowest and highest frequency \[Hz\].
     pub hz: [f64; 2],
+    /// A frequency \[Hz\] and how many modes are asked for, those whose λ is nearest to iω; `None` for all in the band.
+    pub nearest: Option<(f64, usize)>,
     /// Whether the left vectors are kept, which take as much memory as the right ones.
     pub left_vectors: bool,
 }
 
-/// With left vectors.
+/// All modes, with left vectors.
 impl From<[f64; 2]> for Band {
     fn from(hz: [f64; 2]) -> Self {
-        Band { hz, left_vectors: true }
+        Band { hz, nearest: None, left_vectors: true }
     }
 }
 
-/// All complex modes with a frequency in `band`, of `system` sliding steadily.
+/// All complex modes with a frequency in `band`, or those of them that it asks for, of `system` sliding steadily.
 ///
 /// * Basis: the real modes (of K + K_σ and M, M-orthonormal, best up to twice the band) and A⁻¹W, A = K + K_σ − s M at
 ///   a shift s inside the band, for every direction in which the contact has a force, with some more terms of their
@@ -61,7 +63,8 @@ impl From<[f64; 2]> for Band {
 ///   right are not measured again.
 /// * ψᴴQ(λ)φ vanishes identically after a projection, so the error of λ is estimated with the *correction* of the left
 ///   vector: |z_ψᴴ Q(λ)φ| / |ψᴴ(2λM + C + C_c)φ|. As A is symmetric, z_ψᴴ Q(λ)φ = ψᴴQ(λ)z, so that only the right
-///   corrections are solved for, and the left ones of the pairs that are not yet right.
+///   corrections are solved for, and the left ones of the pairs that are not yet right; others need no left vector on the
+///   full order.
 ///
 /// Modes with ω = 0 (overdamped, or divergence when σ > 0) are given when the band begins at zero. For them and near
 /// λ = 0 the eigenvalue error is relative to 1e-6 of the band's top rather than to |λ|.
@@ -201,11 +204,12 @@ fn solve_and_refine<'a>(
     }
     let mut warnings = Vec::new();
     let mut counts = Vec::new();
-    let scale = Scale { operator, factor, top: band[1] };
-    let (mut found, mut wanted) = evaluate(&scale, &basis, asked, Vec::new())?;
-    observer.advance(1);
-    let (mut refinements, mut finer) = (0, 0);
+    let (mut found, mut refinements, mut finer) = (Vec::new(), 0, 0);
     loop {
+        let scale = Scale { operator, basis: &basis, factor, top: band[1] };
+        let wanted;
+        (found, wanted) = evaluate(&scale, asked, found)?;
+        observer.advance(1);
         counts.push(found.len());
         if wanted.is_empty() || refinements == ROUNDS {
             break;
@@ -222,8 +226,6 @@ fn solve_and_refine<'a>(
             break;
         }
         refinements += 1;
-        (found, wanted) = evaluate(&scale, &basis, asked, found)?;
-        observer.advance(1);
     }
     if let Some(first) = counts.first().filter(|first| counts.iter().any(|c| c != *first)) {
         let last = counts.last().unwrap_or(first);
@@ -298,6 +300,20 @@ fn small_pairs(operator: &Operator<'_>, basis: &Basis<'_>, band: [f64; 2]) -> Re
     )
 }
 
+/// Keeps the `count` pairs nearest to iω of `hz`, and those that cannot be told from the last.
+fn keep_nearest(pairs: &mut Vec<SmallPair>, (hz, count): (f64, usize)) {
+    let distance = |pair: &SmallPair| (pair.lambda - c64::new(0.0, TAU * hz)).norm();
+    let mut sorted: Vec<f64> = pairs.iter().map(distance).collect();
+    sorted.sort_by(f64::total_cmp);
+    match count.checked_sub(1) {
+        Some(last) => {
+            let reach = sorted.get(last).copied().unwrap_or(f64::INFINITY);
+            pairs.retain(|pair| distance(pair) <= reach + ALONE * pair.lambda.norm());
+        }
+        None => pairs.clear(),
+    }
+}
+
 /// The median of the frequencies √(bᵀKb/bᵀMb) of the basis that are below `top` \[rad/s\]; `top` when there is none.
 fn middle_frequency(basis: &Basis<'_>, top: f64) -> f64 {
     let square = |i: usize| basis.stiffness[(i, i)] / basis.mass[(i, i)];
@@ -307,24 +323,27 @@ fn middle_frequency(basis: &Basis<'_>, top: f64) -> f64 {
     below.get(below.len() / 2).copied().unwrap_or(top)
 }
 
-/// Pairs of the projected problem on the full order, and what the real modes have of the right ones: ΦᵀMφ.
+/// Pairs of the projected problem, the right vectors on the full order, and what the real modes have of those: ΦᵀMφ.
 fn expand(basis: &Basis<'_>, pairs: &[&SmallPair], to: &mut Measured) -> Block {
     let small = |pick: fn(&SmallPair) -> &Vec<c64>| {
         let small: Vec<&[c64]> = pairs.iter().map(|pair| pick(pair).as_slice()).collect();
         unit_mass(basis, Block::from_columns(basis.len(), &small))
     };
-    let (right, left) = (small(|p| &p.right), small(|p| &p.left));
+    let ((right, to_right), (left, to_left)) = (small(|p| &p.right), small(|p| &p.left));
     to.lambda = pairs.iter().map(|pair| pair.lambda).collect();
-    basis.expand_into([(&right, &mut to.right), (&left, &mut to.left)]);
+    let factors = to_right.iter().zip(&to_left).map(|(right, left)| right * left);
+    to.steepness = pairs.iter().zip(factors).map(|(pair, factor)| pair.steepness * factor).collect();
+    to.left = left;
+    basis.expand_into(&right, &mut to.right);
     right.map(|y| product(basis.mass.as_ref().subrows(0, basis.n_real()), y))
 }
 
-/// Coordinates scaled so that the vectors which they stand for have xᴴMx = 1.
-fn unit_mass(basis: &Basis<'_>, mut y: Block) -> Block {
+/// Coordinates scaled so that the vectors which they stand for have xᴴMx = 1, and by what.
+fn unit_mass(basis: &Basis<'_>, mut y: Block) -> (Block, Vec<f64>) {
     let inertia = y.map(|y| product(basis.mass.as_ref(), y));
     let factors: Vec<f64> = (0..y.ncols()).map(|j| 1.0 / y.dot(j, &inertia).re.sqrt()).collect();
     y.scale(&factors);
-    y
+    (y, factors)
 }
 
 /// A mode, and whether it is as exact as the refinement aims at.
@@ -335,23 +354,22 @@ struct Found {
 
 /// The modes of the projected problem, measured on the full order, and what those ask for that are not exact. Of those found
 /// before, the exact ones are kept.
-fn evaluate(
-    scale: &Scale<'_>,
-    basis: &Basis<'_>,
-    asked: Band,
-    before: Vec<Found>,
-) -> Result<(Vec<Found>, Wanted)> {
-    let pairs = small_pairs(scale.operator, basis, asked.hz.map(|f| TAU * f))?;
+fn evaluate(scale: &Scale<'_>, asked: Band, before: Vec<Found>) -> Result<(Vec<Found>, Wanted)> {
+    let mut pairs = small_pairs(scale.operator, scale.basis, asked.hz.map(|f| TAU * f))?;
+    if let Some(nearest) = asked.nearest {
+        keep_nearest(&mut pairs, nearest);
+    }
     let settled: Vec<Option<usize>> = pairs.iter().map(|p| settled(&before, &pairs, p.lambda)).collect();
     let fresh: Vec<&SmallPair> =
         pairs.iter().zip(&settled).filter(|(_, place)| place.is_none()).map(|(pair, _)| pair).collect();
     let (mut wanted, mut new, mut measured) = (Wanted::default(), Vec::new(), Measured::default());
     for chunk in fresh.chunks(TOGETHER) {
-        let amplitudes = expand(basis, chunk, &mut measured);
+        let amplitudes = expand(scale.basis, chunk, &mut measured);
         scale.measure(&mut measured);
         wanted.add(scale, &measured);
         let exact: Vec<bool> = (0..chunk.len()).map(|j| measured.exact(j)).collect();
-        let modes = finished(scale.operator, &mut measured, &amplitudes, asked.left_vectors);
+        let left = asked.left_vectors.then(|| scale.basis.expand(&measured.left));
+        let modes = finished(scale.operator, &mut measured, &amplitudes, left.as_ref());
         new.extend(modes.into_iter().zip(exact).map(|(mode, exact)| Found { mode, exact }));
     }
     let (mut before, mut new): (Vec<_>, _) = (before.into_iter().map(Some).collect(), new.into_iter());

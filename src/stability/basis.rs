@@ -99,18 +99,14 @@ impl<'a> Basis<'a> {
     /// B y of every column of `y`.
     pub(super) fn expand(&self, y: &Block) -> Block {
         let mut vectors = Block::default();
-        self.expand_into([(y, &mut vectors)]);
+        self.expand_into(y, &mut vectors);
         vectors
     }
 
-    /// B y of every column of several `y`, each in the memory of the block beside it.
-    pub(super) fn expand_into<const N: usize>(&self, blocks: [(&Block, &mut Block); N]) {
-        let mut parts = Vec::new();
-        for (y, vectors) in blocks {
-            vectors.resize(self.modes.nrows(), y.ncols());
-            parts.push((vectors.parts_mut(), y.parts()));
-        }
-        self.columns().combine(parts, Accum::Replace, 1.0);
+    /// B y of every column of `y`, in the memory of `vectors`.
+    pub(super) fn expand_into(&self, y: &Block, vectors: &mut Block) {
+        vectors.resize(self.modes.nrows(), y.ncols());
+        self.columns().combine(vectors.parts_mut(), y.parts(), Accum::Replace, 1.0);
     }
 
     /// Adds the directions of `z` that are new. Of a few columns, after the basis is projected out, those are taken whose
@@ -200,7 +196,7 @@ impl<'a> Basis<'a> {
         let (before, mut new) = self.added.as_mut().split_at_col_mut(added);
         combine(new.as_mut(), Accum::Replace, z, mix.as_ref(), 1.0);
         let basis = Columns::of([self.modes, before.as_ref()]);
-        basis.range(first..m).combine(vec![(new, known.as_ref())], Accum::Add, -1.0);
+        basis.range(first..m).combine(new, known.as_ref(), Accum::Add, -1.0);
         self.project();
         directions
     }
@@ -217,7 +213,7 @@ impl<'a> Basis<'a> {
             let factor = self.inverse_size(i);
             (0..share.ncols()).for_each(|j| share[(i, j)] *= factor);
         }
-        self.columns().combine(vec![(z, share.as_ref())], Accum::Add, -1.0);
+        self.columns().combine(z, share.as_ref(), Accum::Add, -1.0);
     }
 
     /// The columns `open` of `z`, which are E-orthogonal to the basis, made E/τ-orthonormal; `image` is E z. A panel at

@@ -117,12 +117,6 @@ impl Block {
         });
     }
 
-    /// Zeros in the memory at hand.
-    pub(super) fn clear(&mut self, n: usize, columns: usize) {
-        self.resize(n, columns);
-        self.each_vector(|_, parts| parts.into_iter().for_each(|part| part.fill(0.0)));
-    }
-
     /// self\[:, j\] += factor\[j\] · x\[:, j\].
     pub(super) fn add_scaled(&mut self, factor: &[c64], x: &Block) {
         self.each_vector(|j, [u, v]| {
@@ -188,6 +182,12 @@ impl Block {
     /// ‖self\[:, j\]‖₂.
     pub(super) fn norm(&self, j: usize) -> f64 {
         self.vector(j).map(|part| dot(part, part)).iter().sum::<f64>().sqrt()
+    }
+
+    /// ‖self\[:, j\] + x\[:, j\]‖₂.
+    pub(super) fn norm_of_sum(&self, j: usize, x: &Block) -> f64 {
+        let parts = self.vector(j).into_iter().zip(x.vector(j));
+        parts.map(|(own, x)| own.iter().zip(x).map(|(a, b)| (a + b).powi(2)).sum::<f64>()).sum::<f64>().sqrt()
     }
 }
 

@@ -178,6 +178,7 @@ impl<'f> Family<'f> {
             eigenvalues: vec![modes.eigenvalues[k]],
             right: of(k, &modes.right),
             left: of(k, &modes.left),
+            steepness: vec![modes.steepness[k]],
         };
         Ok(nearest.map_or(FamilyCheck::default(), |k| self.measure(state, &one(k)).0))
     }
@@ -212,7 +213,8 @@ impl<'f> Family<'f> {
     /// Some modes of `state` on the full order, and what those ask for that are not exact.
     fn measure(&self, state: &SlidingState, modes: &ReducedModes) -> (FamilyCheck, Wanted) {
         let operator = self.frame.operator.with_terms(self.frame.terms(state), &state.damping_weights);
-        let scale = Scale { operator: &operator, factor: &*self.frame.factor, top: self.frame.band[1] };
+        let (basis, factor) = (&self.basis, &*self.frame.factor);
+        let scale = Scale { operator: &operator, basis, factor, top: self.frame.band[1] };
         let turned = |y: &Mat<c64>, first: usize, count: usize| {
             let y = Block::from_fn(y.nrows(), count, |i, j| y[(i, first + j)]);
             y.map(|y| product(self.reduced.rotation.as_ref(), y))
@@ -222,8 +224,9 @@ impl<'f> Family<'f> {
         for (chunk, lambda) in modes.eigenvalues.chunks(TOGETHER).enumerate() {
             let of = |y: &Mat<c64>| turned(y, chunk * TOGETHER, lambda.len());
             measured.lambda = lambda.to_vec();
-            let (right, left) = (of(&modes.right), of(&modes.left));
-            self.basis.expand_into([(&right, &mut measured.right), (&left, &mut measured.left)]);
+            measured.steepness = modes.steepness[chunk * TOGETHER..][..lambda.len()].to_vec();
+            measured.left = of(&modes.left);
+            basis.expand_into(&of(&modes.right), &mut measured.right);
             scale.measure(&mut measured);
             wanted.add(&scale, &measured);
             check.eigenvalues.extend(lambda);

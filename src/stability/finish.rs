@@ -17,7 +17,7 @@ pub(super) fn finished(
     operator: &Operator<'_>,
     measured: &mut Measured,
     amplitudes: &Block,
-    left_vectors: bool,
+    left: Option<&Block>,
 ) -> Vec<ComplexMode> {
     let one = vec![c64::new(1.0, 0.0); measured.lambda.len()];
     measured.correction.add_scaled(&one, &measured.right);
@@ -35,7 +35,7 @@ pub(super) fn finished(
         ComplexMode {
             eigenvalue,
             right: vectors.scaled_column(j, to_unit_mass),
-            left: if left_vectors { measured.left.column(j) } else { Vec::new() },
+            left: left.map_or_else(Vec::new, |left| left.column(j)),
             backward_error: if better { corrected } else { found },
             eigenvalue_error: measured.eigenvalue_error[j],
             condition: measured.condition[j],

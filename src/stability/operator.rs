@@ -123,14 +123,6 @@ impl Forms {
             loss: loss * factor,
         }
     }
-
-    /// yᴴ sum x without the interface.
-    fn weighed(&self, sum: &Sum) -> c64 {
-        sum.mass * self.mass
-            + sum.stiffness * self.stiffness
-            + sum.damping * self.damping
-            + sum.loss * self.loss
-    }
 }
 
 /// Which vectors an operator acts on.
@@ -376,18 +368,6 @@ impl<'a> Operator<'a> {
     pub(super) fn steepness(&self, lambda: &[c64], left: &Block, right: &Block) -> Vec<c64> {
         let slope = self.slope(Side::Right, lambda, right);
         (0..lambda.len()).into_par_iter().map(|j| left.dot(j, &slope)).collect()
-    }
-
-    /// yⱼᴴ sumⱼ xⱼ, given what the matrices of the structure are between them.
-    pub(super) fn between(&self, sums: &[Sum], forms: &[Forms], y: &Block, x: &Block) -> Vec<c64> {
-        let of = |(j, (sum, forms)): (usize, (&Sum, &Forms))| {
-            let [to, from] = [y, x].map(|x| self.interface.motions(x.vector(j)));
-            let term = |t: &Term| {
-                to[t.row].conj() * from[t.column] * (sum.contact * t.stiffness + sum.damping * t.damping)
-            };
-            forms.weighed(sum) + self.interface.terms.iter().map(term).sum::<c64>()
-        };
-        sums.iter().zip(forms).enumerate().map(of).collect()
     }
 
     /// |λ|²‖M‖ + |λ|‖C‖ + ‖K‖ in the 1-norm; modal damping and contact left out, so that η is never flattered.

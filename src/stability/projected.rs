@@ -8,7 +8,6 @@ use crate::linalg::dense::product;
 use crate::linalg::lu::Lu;
 use crate::linalg::unsymmetric::{complex_eigenpairs, eigenpairs};
 use faer::{Conj, Mat};
-use rayon::prelude::*;
 
 /// An eigenpair of the projected problem with its left vector, in coordinates of the basis.
 #[derive(Debug, Clone)]
@@ -16,6 +15,8 @@ pub(super) struct SmallPair {
     pub(super) lambda: c64,
     pub(super) right: Vec<c64>,
     pub(super) left: Vec<c64>,
+    /// zᴴQ′(λ)y of the left vector z and the right one y.
+    pub(super) steepness: c64,
 }
 
 /// BᵀC_cB, BᵀK_cB, by which the interface enters a projected problem of any size.
@@ -38,8 +39,8 @@ pub(super) fn project_interface(operator: &Operator<'_>, basis: &Basis<'_>) -> (
 ///
 /// With λ = s + s/θ for a real s > 0 of the size of the wanted eigenvalues, θ are the eigenvalues of
 /// θ² Q(s) + θ s Q′(s) + s² M. Its companion matrix needs Q(s)⁻¹, not M⁻¹: directions (next to) without mass are at
-/// θ = 0 and nothing of them is large, so that a singular M costs no digits. One step of inverse iteration on Q(λ)
-/// itself then takes back what the linearisation lost.
+/// θ = 0 and nothing of them is large, so that a singular M costs no digits. One Newton step on Q(λ) itself then takes
+/// back what the linearisation lost.
 ///
 /// # Errors
 /// Q(s) is singular, or the eigenvalues do not converge.
@@ -91,60 +92,156 @@ pub(super) fn solve(
     let mut chosen: Vec<(c64, usize)> =
         (0..2 * m).map(|i| (s + s / theta[i], i)).filter(|(z, _)| z.is_finite() && wanted(*z)).collect();
     chosen.sort_by(|a, b| a.0.im.total_cmp(&b.0.im).then(a.0.re.total_cmp(&b.0.re)));
-    // The rows of V⁻¹ are the left vectors wᴴ of the companion matrix; their second half is ψᴴQ(s).
-    let mut inverse_rows =
-        Mat::from_fn(2 * m, chosen.len(), |i, j| c64::new(f64::from(i == chosen[j].1), 0.0));
-    Lu::new(v.transpose().to_owned()).solve_in_place(inverse_rows.as_mut());
-    let mut left = Mat::from_fn(m, chosen.len(), |i, j| inverse_rows[(m + i, j)].conj());
-    lu.solve_transpose_in_place(Conj::Yes, left.as_mut());
-    let pairs: Vec<SmallPair> = chosen
-        .par_iter()
-        .enumerate()
-        .map(|(j, (lambda, column))| {
-            let right = unit((0..m).map(|i| v[(i, *column)]).collect());
-            let left = unit((0..m).map(|i| left[(i, j)]).collect());
-            polish(mass, damping, stiffness, hysteretic, SmallPair { lambda: *lambda, right, left })
-        })
-        .collect();
-    Ok(pairs)
+    let (lambda, own) = chosen.into_iter().unzip();
+    let inverse = Lu::new(v.transpose().to_owned());
+    let companion = Companion { theta, v, inverse, at_s: lu, own };
+    let (right, left) = companion.vectors();
+    let complex = |a: &Mat<f64>, h: Option<&Mat<f64>>| {
+        Mat::from_fn(m, m, |i, j| c64::new(a[(i, j)], h.map_or(0.0, |h| h[(i, j)])))
+    };
+    let quadratic = Quadratic {
+        mass: complex(mass, None),
+        damping: complex(damping, None),
+        stiffness: complex(stiffness, hysteretic),
+    };
+    Ok(polished(&quadratic, &companion, Vectors { lambda, right, left }))
 }
 
-/// One step of two-sided inverse iteration, kept when it brings both residuals down.
-fn polish(mass: &Mat<f64>, c: &Mat<f64>, k: &Mat<f64>, h: Option<&Mat<f64>>, pair: SmallPair) -> SmallPair {
-    let m = mass.nrows();
-    let q = |s: c64| {
-        Mat::from_fn(m, m, |i, j| {
-            let lossy = h.map_or(0.0, |h| h[(i, j)]);
-            s * s * mass[(i, j)] + s * c[(i, j)] + c64::new(k[(i, j)], lossy)
-        })
-    };
-    let slope = |s: c64| Mat::from_fn(m, m, |i, j| s * 2.0 * mass[(i, j)] + c64::new(c[(i, j)], 0.0));
-    let column = |y: &[c64]| Mat::from_fn(m, 1, |i, _| y[i]);
-    let list = |y: &Mat<c64>| unit((0..m).map(|i| y[(i, 0)]).collect());
-    let (here, slope_here) = (q(pair.lambda), slope(pair.lambda));
-    let lu = Lu::new(here.clone());
-    let right = lu.solve(product(slope_here.as_ref(), column(&pair.right).as_ref()));
-    let mut left = product(slope_here.adjoint(), column(&pair.left).as_ref());
-    lu.solve_transpose_in_place(Conj::Yes, left.as_mut());
-    let (right, left) = (list(&right), list(&left));
-    let (y, z) = (column(&right), column(&left));
-    let form = |a: &Mat<c64>| product(z.adjoint(), product(a.as_ref(), y.as_ref()).as_ref())[(0, 0)];
-    let (rise, steepness) = (form(&here), form(&slope_here));
-    let lambda = pair.lambda - rise / steepness;
-    let there = q(lambda);
-    let residual = |a: &Mat<c64>, y: &Mat<c64>, z: &Mat<c64>| {
-        let (right, left) = (product(a.as_ref(), y.as_ref()), product(a.adjoint(), z.as_ref()));
-        right.norm_l2().max(left.norm_l2())
-    };
-    let before = residual(&here, &column(&pair.right), &column(&pair.left));
-    let after = residual(&there, &y, &z);
-    if after < before { SmallPair { lambda, right, left } } else { pair }
+/// Pairs in coordinates of the basis, one a column.
+struct Vectors {
+    lambda: Vec<c64>,
+    right: Mat<c64>,
+    left: Mat<c64>,
 }
 
-fn unit(mut y: Vec<c64>) -> Vec<c64> {
-    let norm = y.iter().map(|z| z.norm_sqr()).sum::<f64>().sqrt();
-    y.iter_mut().for_each(|z| *z /= norm);
-    y
+impl Vectors {
+    /// zⱼᴴxⱼ with the left vector z.
+    fn form(&self, j: usize, x: &Mat<c64>) -> c64 {
+        self.left.col(j).adjoint() * x.col(j)
+    }
+}
+
+/// M, C and K + iH of Q(λ).
+struct Quadratic {
+    mass: Mat<c64>,
+    damping: Mat<c64>,
+    stiffness: Mat<c64>,
+}
+
+impl Quadratic {
+    /// Q(λⱼ) yⱼ and Q(λⱼ)ᴴ zⱼ.
+    fn values(&self, Vectors { lambda, right, left }: &Vectors) -> [Mat<c64>; 2] {
+        let times = |x: &Mat<c64>| {
+            [&self.stiffness, &self.damping, &self.mass].map(|a| product(a.as_ref(), x.as_ref()))
+        };
+        let adjoint = |x: &Mat<c64>| {
+            [&self.stiffness, &self.damping, &self.mass].map(|a| product(a.adjoint(), x.as_ref()))
+        };
+        let sum = |[k, c, m]: [Mat<c64>; 3], s: &dyn Fn(usize) -> c64| {
+            Mat::from_fn(k.nrows(), k.ncols(), |i, j| k[(i, j)] + s(j) * (c[(i, j)] + s(j) * m[(i, j)]))
+        };
+        [sum(times(right), &|j| lambda[j]), sum(adjoint(left), &|j| lambda[j].conj())]
+    }
+
+    /// Q′(λⱼ) yⱼ.
+    fn slopes(&self, Vectors { lambda, right, .. }: &Vectors) -> Mat<c64> {
+        let [c, m] = [&self.damping, &self.mass].map(|a| product(a.as_ref(), right.as_ref()));
+        Mat::from_fn(c.nrows(), c.ncols(), |i, j| c[(i, j)] + 2.0 * lambda[j] * m[(i, j)])
+    }
+}
+
+/// The companion matrix T of θ² Q(s) + θ s Q′(s) + s² M by its eigenpairs, and which of them are wanted.
+struct Companion {
+    theta: Vec<c64>,
+    v: Mat<c64>,
+    /// The factors of Vᵀ.
+    inverse: Lu<c64>,
+    /// Those of Q(s).
+    at_s: Lu<c64>,
+    /// The column of V for each wanted pair.
+    own: Vec<usize>,
+}
+
+impl Companion {
+    fn m(&self) -> usize {
+        self.v.nrows() / 2
+    }
+
+    /// Right and left vectors of the wanted pairs. The rows of V⁻¹ are the left vectors wᴴ of T; their second half is
+    /// ψᴴQ(s).
+    fn vectors(&self) -> (Mat<c64>, Mat<c64>) {
+        let (m, count) = (self.m(), self.own.len());
+        let mut rows = Mat::from_fn(2 * m, count, |i, j| c64::new(f64::from(i == self.own[j]), 0.0));
+        self.inverse.solve_in_place(rows.as_mut());
+        let mut left = Mat::from_fn(m, count, |i, j| rows[(m + i, j)].conj());
+        self.at_s.solve_transpose_in_place(Conj::Yes, left.as_mut());
+        (unit(Mat::from_fn(m, count, |i, j| self.v[(i, self.own[j])])), unit(left))
+    }
+
+    /// θ²/(θ − θᵢ) for the wanted pair j; nothing for its own θᵢ.
+    fn weight(&self, i: usize, j: usize) -> c64 {
+        let theta = self.theta[self.own[j]];
+        if i == self.own[j] { c64::new(0.0, 0.0) } else { theta * theta / (theta - self.theta[i]) }
+    }
+
+    /// Q(λⱼ)⁻¹ bⱼ but for the pole at λⱼ: θ² \[I 0\] (θ − T)⁻¹ \[0; Q(s)⁻¹ b\].
+    fn solve(&self, b: Mat<c64>) -> Mat<c64> {
+        let m = self.m();
+        let b = self.at_s.solve(b);
+        let zero = c64::new(0.0, 0.0);
+        let mut x = Mat::from_fn(2 * m, b.ncols(), |i, j| if i < m { zero } else { b[(i - m, j)] });
+        self.inverse.solve_transpose_in_place(Conj::No, x.as_mut());
+        let x = Mat::from_fn(2 * m, b.ncols(), |i, j| self.weight(i, j) * x[(i, j)]);
+        product(self.v.subrows(0, m), x.as_ref())
+    }
+
+    /// Q(λⱼ)⁻ᴴ bⱼ likewise.
+    fn solve_adjoint(&self, b: &Mat<c64>) -> Mat<c64> {
+        let m = self.m();
+        let x = product(self.v.subrows(0, m).adjoint(), b.as_ref());
+        let mut x = Mat::from_fn(2 * m, b.ncols(), |i, j| self.weight(i, j) * x[(i, j)].conj());
+        self.inverse.solve_in_place(x.as_mut());
+        let mut x = Mat::from_fn(m, b.ncols(), |i, j| x[(m + i, j)].conj());
+        self.at_s.solve_transpose_in_place(Conj::Yes, x.as_mut());
+        x
+    }
+}
+
+/// One Newton step for all pairs, which takes back what the linearisation lost: y − Q(λ)⁻¹Q(λ)y with the inverse that the
+/// companion matrix tells but for the pole at λ, and λ − zᴴQ(λ)y / zᴴQ′(λ)y. It is kept where it brings both residuals down.
+fn polished(quadratic: &Quadratic, companion: &Companion, pairs: Vectors) -> Vec<SmallPair> {
+    let [right, left] = quadratic.values(&pairs);
+    let size = |[right, left]: [&Mat<c64>; 2], j: usize| right.col(j).norm_l2().max(left.col(j).norm_l2());
+    let before: Vec<f64> = (0..pairs.lambda.len()).map(|j| size([&right, &left], j)).collect();
+    let left = unit(&pairs.left - companion.solve_adjoint(&left));
+    let right = unit(&pairs.right - companion.solve(right));
+    let mut next = Vectors { lambda: pairs.lambda.clone(), right, left };
+    let ([rises, _], slopes) = (quadratic.values(&next), quadratic.slopes(&next));
+    let step = |j: usize| next.form(j, &rises) / next.form(j, &slopes);
+    next.lambda = (0..before.len()).map(|j| next.lambda[j] - step(j)).collect();
+    let after = quadratic.values(&next);
+    let slopes = [&pairs, &next].map(|pairs| quadratic.slopes(pairs));
+    let pair = |j: usize| {
+        let better = usize::from(size(after.each_ref(), j) < before[j]);
+        let (vectors, slopes) = ([&pairs, &next][better], &slopes[better]);
+        let list = |x: &Mat<c64>| x.col(j).iter().copied().collect();
+        SmallPair {
+            lambda: vectors.lambda[j],
+            right: list(&vectors.right),
+            left: list(&vectors.left),
+            steepness: vectors.form(j, slopes),
+        }
+    };
+    (0..before.len()).map(pair).collect()
+}
+
+/// Columns of unit length.
+fn unit(mut x: Mat<c64>) -> Mat<c64> {
+    for column in x.col_iter_mut() {
+        let norm = column.norm_l2();
+        column.iter_mut().for_each(|z| *z /= norm);
+    }
+    x
 }
 
 #[cfg(test)]

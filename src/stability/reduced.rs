@@ -37,6 +37,8 @@ pub(super) struct ReducedModes {
     pub(super) right: Mat<c64>,
     /// Unit left vectors.
     pub(super) left: Mat<c64>,
+    /// ψᴴQ′(λ)φ.
+    pub(super) steepness: Vec<c64>,
 }
 
 impl Reduced {
@@ -106,10 +108,10 @@ impl Reduced {
             }
             let step = rise / slope;
             // At a coalescence the quotient says nothing.
-            if step.norm() <= 1e-8 * lambda.norm() { lambda - step } else { lambda }
+            (if step.norm() <= 1e-8 * lambda.norm() { lambda - step } else { lambda }, slope)
         };
-        let eigenvalues = (0..chosen.len()).map(corrected).collect();
-        Ok(ReducedModes { eigenvalues, right, left })
+        let (eigenvalues, steepness) = (0..chosen.len()).map(corrected).unzip();
+        Ok(ReducedModes { eigenvalues, right, left, steepness })
     }
 
     /// The eigenvalues that are `wanted`, in no order and without the correction of [`Reduced::solve`], at a third of its

@@ -7,9 +7,9 @@ use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
 use crate::linalg::random::Random;
 use crate::linalg::sparse::{multiply, times};
-use crate::linalg::tall::{combine, expand, gram};
+use crate::linalg::tall::{Columns, combine, expand, gram};
 use crate::modal::ShiftedStiffness;
-use faer::{Accum, Mat};
+use faer::{Accum, Mat, MatRef};
 
 /// Random combinations that stand for many forces.
 pub(super) const SKETCH: usize = 64;
@@ -38,14 +38,26 @@ fn interface_forces(operator: &Operator<'_>, omega: f64) -> Mat<f64> {
 }
 
 /// F ← F − MΦΦᵀF: forces less what moves the real modes, which are all that the basis has yet. So no digits are lost when
-/// they are projected out of the responses, and no power of A⁻¹M turns into the mode nearest to the shift. Gives the memory
-/// that it took, two matrices of F's size.
-fn leave_out_modes(operator: &Operator<'_>, basis: &Basis<'_>, forces: &mut Mat<f64>) -> [Mat<f64>; 2] {
-    let share = gram(basis.modes, forces.as_ref());
+/// they are projected out of the responses, and no power of A⁻¹M turns into the mode nearest to the shift.
+fn leave_out_modes(operator: &Operator<'_>, basis: &Basis<'_>, forces: &mut Mat<f64>) {
+    let share = seen_by_modes(basis, forces.as_ref());
     let shapes = expand(basis.modes, share.as_ref());
-    let known = times(operator.mass, shapes.as_ref());
-    *forces -= &known;
-    [shapes, known]
+    *forces -= times(operator.mass, shapes.as_ref());
+}
+
+/// ΦᵀF, from the rows in which forces act where those are few, as with contact and dashpots.
+fn seen_by_modes(basis: &Basis<'_>, forces: MatRef<'_, f64>) -> Mat<f64> {
+    const FEW: usize = 8;
+    let mut acts = vec![false; forces.nrows()];
+    for force in forces.col_iter() {
+        acts.iter_mut().zip(force.iter()).for_each(|(acts, force)| *acts |= *force != 0.0);
+    }
+    let rows: Vec<usize> = (0..acts.len()).filter(|i| acts[*i]).collect();
+    if FEW * rows.len() > forces.nrows() {
+        return gram(basis.modes, forces);
+    }
+    let picked = |a| Columns::of([a]).picked(&rows);
+    gram(picked(basis.modes).as_ref(), picked(forces).as_ref())
 }
 
 /// ω²ᵏ(A⁻¹M)ᵏA⁻¹F of `forces` F for k = 0, 1, … `terms` − 1: the series of the response in ω², but for real modes.
@@ -120,24 +132,21 @@ pub(super) fn add_coupled_responses(
 ) {
     let n_modes = basis.len();
     let mut forces = coupling_forces(operator, basis, omega);
-    let [mut response, mut inertia] = leave_out_modes(operator, basis, &mut forces);
+    leave_out_modes(operator, basis, &mut forces);
+    // The basis grows from term to term: nothing is held longer than it is of use.
     for term in 1.. {
-        response.copy_from(&forces);
+        let mut response = forces.clone();
         shifted.factor.solve_in_place(response.as_mut());
-        multiply(operator.mass, response.as_ref(), inertia.as_mut());
+        let inertia = times(operator.mass, response.as_ref());
         let share = shifted.shift + omega * omega;
         for (force, inertia) in forces.col_iter_mut().zip(inertia.col_iter()) {
             force.iter_mut().zip(inertia.iter()).for_each(|(force, inertia)| *force += share * inertia);
         }
-        let image = forces.as_ref();
-        let followed = basis.append_new(response.as_ref(), image, n_modes, tolerance);
-        if term == TERMS || followed.ncols() == 0 {
-            break;
-        }
-        forces.truncate(operator.n(), followed.ncols());
+        let inertia = (term < TERMS).then_some(inertia);
+        let followed = basis.append_new(response.as_ref(), forces.as_ref(), n_modes, tolerance);
+        drop(response);
+        let Some(inertia) = inertia.filter(|_| followed.ncols() > 0) else { break };
+        forces = Mat::zeros(operator.n(), followed.ncols());
         combine(forces.as_mut(), Accum::Replace, inertia.as_ref(), followed.as_ref(), omega * omega);
-        [&mut response, &mut inertia]
-            .into_iter()
-            .for_each(|next| next.truncate(operator.n(), followed.ncols()));
     }
 }

@@ -1,7 +1,8 @@
 //! Pairs measured on the full order: residuals, errors, and the corrections that make them better.
 
+use super::basis::Basis;
 use super::block::Block;
-use super::operator::{Forms, Operator, Side, Sum};
+use super::operator::{Forms, Operator, Side};
 use super::responses::SKETCH;
 use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
@@ -23,12 +24,12 @@ pub(super) struct Measured {
     pub(super) lambda: Vec<c64>,
     /// φ, with unit mass.
     pub(super) right: Block,
-    /// ψ, with unit mass.
+    /// ψ in coordinates of the basis, with unit mass.
     pub(super) left: Block,
+    /// ψᴴQ′(λ)φ.
+    pub(super) steepness: Vec<c64>,
     /// z = −A⁻¹Q(λ)φ.
     pub(super) correction: Block,
-    /// Q(λ)φ, and then Q(λ)(φ + z).
-    residual: Block,
     pub(super) backward_error: Vec<f64>,
     pub(super) eigenvalue_error: Vec<f64>,
     pub(super) condition: Vec<f64>,
@@ -41,6 +42,7 @@ pub(super) struct Measured {
 /// What it takes to measure pairs.
 pub(super) struct Scale<'a> {
     pub(super) operator: &'a Operator<'a>,
+    pub(super) basis: &'a Basis<'a>,
     /// A.
     pub(super) factor: &'a dyn SymmetricFactor,
     /// The top of the band \[rad/s\].
@@ -48,29 +50,30 @@ pub(super) struct Scale<'a> {
 }
 
 impl Scale<'_> {
-    /// Measures pairs, given λ, φ and ψ. The right corrections, which are solved for, tell the errors of λ and φ.
+    /// Measures pairs, given λ, φ and what is told of ψ. The right corrections, which are solved for, tell the errors of λ
+    /// and φ.
     pub(super) fn measure(&self, pairs: &mut Measured) {
-        let Scale { operator, factor, top } = *self;
-        let Measured { lambda, right, left, correction, residual, .. } = pairs;
+        let Scale { operator, basis, factor, top } = *self;
+        let Measured { lambda, right, left, steepness, correction, .. } = pairs;
         let columns = 0..lambda.len();
-        residual.clear(operator.n(), lambda.len());
-        let of_right = operator.add_value(lambda, right, residual, &[left, right]);
+        // Q(λ)φ and Q(λ)z are not held longer than this, as the vectors that are given add up.
+        let [mut residual, mut image] = [(); 2].map(|()| Block::zeros(operator.n(), lambda.len()));
+        let of_right = operator.add_value(lambda, right, &mut residual, &[right]);
         let sizes: Vec<f64> = lambda.iter().map(|lambda| operator.size(*lambda)).collect();
         let error = |j: usize| residual.norm(j) / (sizes[j] * right.norm(j));
         pairs.backward_error = columns.clone().into_par_iter().map(error).collect();
-        correction.set_scaled(-1.0, residual);
+        correction.set_scaled(-1.0, &residual);
         factor.solve_in_place(correction.parts_mut());
-        let of_correction = operator.add_value(lambda, correction, residual, &[left, right, correction]);
-        pairs.corrected = columns.clone().into_par_iter().map(|j| residual.norm(j) / sizes[j]).collect();
-        let [slopes, values] = [Sum::slope, Sum::value]
-            .map(|sum| lambda.iter().map(|s| sum(Side::Right, *s)).collect::<Vec<_>>());
-        let steepness = operator.between(&slopes, &of_right[0], left, right);
-        let rise = operator.between(&values, &of_correction[0], left, correction);
+        let of_correction = operator.add_value(lambda, correction, &mut image, &[right, correction]);
+        // ψᴴQ(λ)z in coordinates of the basis. Without Q(λ)φ, which is nothing but rounding to ψ, and that of a large K.
+        let rise = image.map(|image| basis.columns().gram(image));
+        let corrected = |j: usize| residual.norm_of_sum(j, &image) / sizes[j];
+        pairs.corrected = columns.clone().into_par_iter().map(corrected).collect();
         let size = |j: usize| steepness[j].norm() * lambda[j].norm().max(1e-6 * top);
-        pairs.eigenvalue_error = columns.clone().map(|j| rise[j].norm() / size(j)).collect();
+        pairs.eigenvalue_error = columns.clone().map(|j| left.dot(j, &rise).norm() / size(j)).collect();
         pairs.condition = columns.clone().map(|j| 2.0 * lambda[j].norm() / steepness[j].norm()).collect();
         let forms = |j: usize| {
-            [of_right[1][j], Forms::of_sum(of_right[1][j], of_correction[1][j], of_correction[2][j])]
+            [of_right[0][j], Forms::of_sum(of_right[0][j], of_correction[0][j], of_correction[1][j])]
         };
         pairs.forms = columns.map(forms).collect();
     }
@@ -107,7 +110,7 @@ impl Wanted {
             block.into_parts()
         };
         self.right.push(scaled(Block::gathered(&measured.correction, &open)));
-        let left = Block::gathered(&measured.left, &open);
+        let left = scale.basis.expand(&Block::gathered(&measured.left, &open));
         self.left.push(scaled(scale.operator.value(Side::Left, &lambda, &left)));
     }
 

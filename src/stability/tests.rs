@@ -434,7 +434,7 @@ fn left_vectors_are_there_where_they_are_asked_for() {
     let (state, real) = (steady(&system), dense_modes(&system, 45));
     let hz = [0.01, real.frequency_hz(12)];
     let whole = complex_modes(&system, &state, &real, hz, &()).unwrap().modes;
-    let right_only = Band { hz, left_vectors: false };
+    let right_only = Band { left_vectors: false, ..hz.into() };
     let some = complex_modes(&system, &state, &real, right_only, &()).unwrap().modes;
     assert!(!some.is_empty() && some.len() == whole.len());
     for (a, b) in some.iter().zip(&whole) {
@@ -445,6 +445,28 @@ fn left_vectors_are_there_where_they_are_asked_for() {
     assert_eq!(modal_filter(&system, &state, &some[0]).unwrap_err().exit_code(), 2);
     assert!(Sensitivity::new(&system, &state, &real, &[&whole[0]]).is_ok());
     assert!(Sensitivity::new(&system, &state, &real, &[&some[0]]).is_err_and(|e| e.exit_code() == 2));
+}
+
+#[test]
+fn the_nearest_of_a_band_are_those_of_all_modes() {
+    let system = random_system(60, 3, 20.0, 9);
+    let (state, real) = (steady(&system), dense_modes(&system, 45));
+    let hz = [0.01, real.frequency_hz(20)];
+    let all = complex_modes(&system, &state, &real, hz, &()).unwrap().modes;
+    let target = real.frequency_hz(8);
+    let distance = |mode: &ComplexMode| (mode.eigenvalue - c64::new(0.0, TAU * target)).norm();
+    let mut sorted: Vec<&ComplexMode> = all.iter().collect();
+    sorted.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+    for count in [0, 1, 6, all.len(), all.len() + 1] {
+        let band = Band { nearest: Some((target, count)), ..hz.into() };
+        let some = complex_modes(&system, &state, &real, band, &()).unwrap().modes;
+        let mut expected: Vec<c64> = sorted.iter().take(count).map(|mode| mode.eigenvalue).collect();
+        expected.sort_by(|a, b| a.im.total_cmp(&b.im));
+        assert_eq!(some.len(), expected.len());
+        for (found, expected) in some.iter().zip(&expected) {
+            assert!((found.eigenvalue - expected).norm() <= 1e-9 * expected.norm());
+        }
+    }
 }
 
 /// A family trained on two ends of a range of friction gives the modes between them.

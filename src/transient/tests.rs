@@ -256,14 +256,18 @@ fn momentum_and_energy_pass_through_an_impact() {
 
 /// λ of a march that starts along a mode: the complex amplitude c from u = Re(c φ), v = Re(c λ φ) at one degree of
 /// freedom, at the start and at the end.
+///
+/// A march along a mode that dies away ends in what rounding has put into the growing one at the start, some 1e-16 / `SMALL`
+/// of it; what is not linear turns the mode by `SMALL`² only, as its part in `SMALL` changes sign with the motion.
 fn measured(system: &System, scheme: Scheme, step: f64, mode: usize) -> (c64, c64) {
+    const SMALL: f64 = 1e-6;
     let steady = solve_steady(system, &SteadyOptions::default(), &()).unwrap();
     let n = system.n_dofs();
     let modes = complex_modes(system, &steady, &dense_modes(system, n), [0.0, 1e3], &()).unwrap().modes;
     let mode = &modes[mode % modes.len()];
     let (lambda, shape) = (mode.eigenvalue, &mode.right);
     let model = Model::new(system, &steady).unwrap();
-    let from = State::steady(&model, &steady).disturbed(&model, lambda, shape, 1e-7);
+    let from = State::steady(&model, &steady).disturbed(&model, lambda, shape, SMALL);
     let steps = (8.0 * TAU / lambda.im / step).round() as usize;
     let dof = (0..n).max_by(|a, b| shape[*a].norm().total_cmp(&shape[*b].norm())).unwrap();
     let end = run(&model, from, plan(scheme, step, steps));
@@ -272,7 +276,7 @@ fn measured(system: &System, scheme: Scheme, step: f64, mode: usize) -> (c64, c6
     // u = p' x − p'' y, v = q' x − q'' y.
     let determinant = -p.re * q.im + p.im * q.re;
     let (x, y) = ((-q.im * u + p.im * v) / determinant, (p.re * v - q.re * u) / determinant);
-    let turned = c64::new(x, y) / 1e-7;
+    let turned = c64::new(x, y) / SMALL;
     let time = steps as f64 * step;
     let growth = turned.norm().ln() / time;
     let angle = turned.im.atan2(turned.re);

@@ -4,9 +4,9 @@
 //! other matrix is narrow, so that the copy would cost as much as the product.
 
 use super::super::lanes::lay;
-use super::super::sparse::{columns, columns_mut};
+use super::super::sparse::columns_mut;
 use super::ROWS;
-use faer::{Accum, ColRef, Mat, MatMut, MatRef};
+use faer::{Accum, Mat, MatMut, MatRef};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -35,39 +35,55 @@ pub(super) fn gram(n: usize, columns: &[&[f64]], others: &[&[f64]]) -> Mat<f64> 
     sum
 }
 
-/// Yₖ (+)= factor · V Cₖ for several, V being read once; false, and nothing done, where a column of Yₖ is not in one piece.
+/// Y (+)= factor · V C; false, and nothing done, where a column of Y is not in one piece.
 pub(super) fn combine(
-    mut parts: Vec<(MatMut<'_, f64>, MatRef<'_, f64>)>,
+    mut y: MatMut<'_, f64>,
+    c: MatRef<'_, f64>,
     accumulate: Accum,
-    n: usize,
     v: &[&[f64]],
     factor: f64,
 ) -> bool {
-    if parts.iter().any(|(y, _)| columns(y.as_ref()).is_none()) {
-        return false;
-    }
-    let fits = |(y, c): &(MatMut<'_, f64>, MatRef<'_, f64>)| {
-        y.nrows() == n && c.nrows() == v.len() && c.ncols() == y.ncols()
-    };
-    assert!(parts.iter().all(fits), "shapes of Y, V and C disagree");
-    // The columns of all C one behind the other, a few side by side.
-    let all: Vec<_> = parts.iter().flat_map(|(_, c)| c.col_iter()).collect();
-    let groups = all.chunks(TOGETHER).flat_map(|group| (0..v.len()).map(move |j| (group, j)));
-    let entry = |group: &[ColRef<'_, f64>], j: usize, t: usize| group.get(t).map_or(0.0, |c| factor * c[j]);
-    let coefficients: Vec<[f64; TOGETHER]> =
-        groups.map(|(group, j)| std::array::from_fn(|t| entry(group, j, t))).collect();
+    let n = y.nrows();
+    let Some(y_columns) = columns_mut(y.as_mut()) else { return false };
+    let fits = c.nrows() == v.len() && c.ncols() == y_columns.len() && v.iter().all(|v| v.len() == n);
+    assert!(fits, "shapes of Y, V and C disagree");
+    let coefficients = side_by_side(c, factor);
     let mut tasks: Vec<Vec<&mut [f64]>> = Vec::new();
     tasks.resize_with(n.div_ceil(ROWS), Vec::new);
-    for (y, _) in &mut parts {
-        for column in columns_mut(y.as_mut()).expect("as seen above") {
-            tasks.iter_mut().zip(column.chunks_mut(ROWS)).for_each(|(task, rows)| task.push(rows));
-        }
+    for column in y_columns {
+        tasks.iter_mut().zip(column.chunks_mut(ROWS)).for_each(|(task, rows)| task.push(rows));
     }
     let anew = matches!(accumulate, Accum::Replace);
     tasks.par_iter_mut().enumerate().for_each(|(task, y)| {
         Arch::new().dispatch(Sums { y, anew, first: task * ROWS, v, c: &coefficients });
     });
     true
+}
+
+/// The first columns of V become V C, a slab at a time: what it was is copied to where it stays in the cache.
+pub(super) fn rotate(mut v: Vec<&mut [f64]>, c: MatRef<'_, f64>) {
+    let (n, m) = (v.first().map_or(0, |v| v.len()), v.len());
+    assert!(c.nrows() == m && c.ncols() <= m, "shapes of V and C disagree");
+    let coefficients = side_by_side(c, 1.0);
+    let mut slabs: Vec<Vec<&mut [f64]>> = Vec::new();
+    slabs.resize_with(n.div_ceil(SLAB), Vec::new);
+    for column in &mut v {
+        slabs.iter_mut().zip(column.chunks_mut(SLAB)).for_each(|(slab, rows)| slab.push(rows));
+    }
+    slabs.par_iter_mut().for_each_init(Vec::new, |before: &mut Vec<f64>, slab| {
+        before.clear();
+        slab.iter().for_each(|column| before.extend_from_slice(column));
+        let before: Vec<&[f64]> = before.chunks(slab[0].len()).collect();
+        let y = &mut slab[..c.ncols()];
+        Arch::new().dispatch(Sums { y, anew: true, first: 0, v: &before, c: &coefficients });
+    });
+}
+
+/// The entries of C, a few columns side by side.
+fn side_by_side(c: MatRef<'_, f64>, factor: f64) -> Vec<[f64; TOGETHER]> {
+    let groups = (0..c.ncols()).step_by(TOGETHER).flat_map(|first| (0..c.nrows()).map(move |j| (first, j)));
+    let entry = |j: usize, k: usize| if k < c.ncols() { factor * c[(j, k)] } else { 0.0 };
+    groups.map(|(first, j)| std::array::from_fn(|t| entry(j, first + t))).collect()
 }
 
 /// Columns of B in a row of sums.
@@ -166,10 +182,11 @@ impl Sums<'_, '_> {
         let (rows, m) = (self.y.first().map_or(0, |y| y.len()), self.v.len());
         for start in (0..rows).step_by(SLAB) {
             let own = start..rows.min(start + SLAB);
-            if self.anew {
+            if self.anew && m == 0 {
                 self.y.iter_mut().for_each(|y| y[own.clone()].fill(0.0));
             }
             for begin in (0..m).step_by(STREAMS) {
+                let anew = self.anew && begin == 0;
                 let of_v = self.first + own.start..self.first + own.end;
                 let v = &self.v[begin..m.min(begin + STREAMS)];
                 let v: Vec<&[f64]> = v.iter().map(|v| &v[of_v.clone()]).collect();
@@ -178,10 +195,10 @@ impl Sums<'_, '_> {
                     let (fours, rest) = y.as_chunks_mut::<4>();
                     let after = 4 * fours.len();
                     for (y, from) in fours.iter_mut().zip((0..).step_by(4)) {
-                        add_sums::<R, 4>(y.each_mut().map(|y| &mut y[own.clone()]), &v, c, from);
+                        add_sums::<R, 4>(y.each_mut().map(|y| &mut y[own.clone()]), anew, &v, c, from);
                     }
                     for (y, from) in rest.iter_mut().zip(after..) {
-                        add_sums::<R, 1>([&mut y[own.clone()]], &v, c, from);
+                        add_sums::<R, 1>([&mut y[own.clone()]], anew, &v, c, from);
                     }
                 }
             }
@@ -189,10 +206,11 @@ impl Sums<'_, '_> {
     }
 }
 
-/// y_k += Σ_j v_j c_jk for the columns of c from `from` on; of v there are [`STREAMS`] at most.
+/// y_k += Σ_j v_j c_jk for the columns of c from `from` on, y_k forgotten where it is `anew`; of v there are [`STREAMS`] at most.
 #[inline(always)]
 fn add_sums<const R: usize, const K: usize>(
     mut y: [&mut [f64]; K],
+    anew: bool,
     v: &[&[f64]],
     c: &[[f64; TOGETHER]],
     from: usize,
@@ -206,7 +224,8 @@ fn add_sums<const R: usize, const K: usize>(
     let (v_blocks, factors): (&[&[[f64; R]]], _) = (&v_blocks[..v.len()], &factors[..v.len()]);
     let mut y_blocks = y.each_mut().map(|y| &mut y.as_chunks_mut().0[..blocks]);
     for i in 0..blocks {
-        let mut own: [[f64; R]; K] = std::array::from_fn(|k| y_blocks[k][i]);
+        let mut own: [[f64; R]; K] =
+            if anew { [[0.0; R]; K] } else { std::array::from_fn(|k| y_blocks[k][i]) };
         for (v, c) in v_blocks.iter().zip(factors) {
             let v = &v[i];
             for k in 0..K {
@@ -220,6 +239,9 @@ fn add_sums<const R: usize, const K: usize>(
         }
     }
     for i in blocks * R..rows {
+        if anew {
+            y.iter_mut().for_each(|y| y[i] = 0.0);
+        }
         for (v, c) in v.iter().zip(factors) {
             for (y, c) in y.iter_mut().zip(c) {
                 y[i] = v[i].mul_add(*c, y[i]);
@@ -230,6 +252,7 @@ fn add_sums<const R: usize, const K: usize>(
 
 #[cfg(test)]
 mod tests {
+    use super::super::super::sparse::columns;
     use super::super::{combine_by_ranges, gram_by_ranges};
     use super::*;
 
@@ -244,13 +267,14 @@ mod tests {
             assert!((square - gram_by_ranges(v.as_ref(), x.as_ref())).norm_max() <= 1e-11);
             for accumulate in [Accum::Replace, Accum::Add] {
                 let (mut y, mut expected) = (x.clone(), x.clone());
-                // In two pieces, so that a group of columns has some of both.
-                let (first, second) = y.as_mut().split_at_col_mut(w / 3);
-                let (left, right) = c.as_ref().split_at_col(w / 3);
-                let parts = vec![(first, left), (second, right)];
-                assert!(combine(parts, accumulate, n, &v_columns, -0.5));
+                assert!(combine(y.as_mut(), c.as_ref(), accumulate, &v_columns, -0.5));
                 combine_by_ranges(expected.as_mut(), accumulate, v.as_ref(), c.as_ref(), -0.5);
                 assert!((y - expected).norm_max() <= 1e-12);
+            }
+            for c in [wave(m, m, 1.3), wave(m, m / 2, 0.3)] {
+                let (mut turned, expected) = (v.clone(), &v * &c);
+                rotate(columns_mut(turned.as_mut()).unwrap(), c.as_ref());
+                assert!((turned.subcols(0, c.ncols()) - expected).norm_max() <= 1e-12);
             }
         }
     }

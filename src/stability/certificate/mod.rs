@@ -109,7 +109,7 @@ const ATTEMPTS: usize = 3;
 /// Operations of a walk round the region, some seconds, beyond which a cheaper way to count is taken.
 const LONG_WALK: f64 = 5e9;
 
-/// [`complex_modes`](super::complex_modes) of the band, and the count of those that grow.
+/// [`complex_modes`](super::complex_modes) of the band, all of them as they are counted, and the count of those that grow.
 ///
 /// The caller compares: [`Certificate::agrees`] tells whether a mode was missed. Where the modes cannot be counted, such
 /// as with an eigenvalue on the contour wherever it is drawn, or where that is expected to take more than `most_work`
@@ -125,6 +125,7 @@ pub fn certified_modes<'a>(
     most_work: f64,
     observer: &dyn Observer,
 ) -> Result<(ComplexModes, Option<Certificate>)> {
+    let band = Band { nearest: None, ..band.into() };
     analyse(system, steady, known, band, observer, |modes, analysis| {
         let work = expected_work(&analysis, modes).min(spectrum::work(analysis.basis.len()));
         if work > most_work {
