@@ -267,3 +267,29 @@ fn results_of_another_case_or_another_start_are_not_taken_up() {
     drop((penetration, file));
     refused(&["penetration", "without --resume"]);
 }
+
+#[test]
+fn a_second_process_in_the_folder_is_refused_and_a_kill_frees_it() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let at = folder.path();
+    std::fs::write(at.join("case.toml"), BLOCK).expect("a case");
+    run(at, "case.toml", "whole", false);
+    let mut first = start(at, "case.toml", "out", false);
+    let began = Instant::now();
+    while !at.join("out/transient.csv").exists() && began.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    for command in ["modes", "transient", "export"] {
+        let mut second = Command::new(env!("CARGO_BIN_EXE_stridor"));
+        let output = second.args([command, "case.toml", "--out", "out"]).current_dir(at).output();
+        let output = output.expect("the binary runs");
+        let message = String::from_utf8_lossy(&output.stderr);
+        let holder = format!("process {} (`", first.id());
+        assert!(output.status.code() == Some(1) && message.contains(&holder), "{command}: {message}");
+        assert!(message.contains("transient case.toml --quiet"), "{message}");
+    }
+    first.kill().expect("it can be killed");
+    first.wait().expect("it ends");
+    run(at, "case.toml", "out", true);
+    assert!(said(&at.join("out")) == said(&at.join("whole")), "the first was harmed");
+}

@@ -4,6 +4,7 @@ use super::progress::Bars;
 use super::{Common, say};
 use crate::error::Result;
 use crate::report::{search_text, write_search};
+use crate::results::FolderLock;
 use crate::search::{read_search, search};
 use clap::Args;
 use std::path::PathBuf;
@@ -24,6 +25,7 @@ pub struct Options {
 pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
     let file = read_search(&options.file)?;
     let out = options.out.clone().unwrap_or_else(|| PathBuf::from("results").join(&file.name));
+    let _lock = FolderLock::take(&out)?;
     let result = search(&file, &out, options.resume, &Bars::new(common.quiet))?;
     result.write(&out)?;
     write_search(&out, &result)?;

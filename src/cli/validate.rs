@@ -4,7 +4,7 @@ use super::progress::Bars;
 use super::{Common, complain, say};
 use crate::error::Result;
 use crate::report::write_validation;
-use crate::results::passed;
+use crate::results::{FolderLock, passed};
 use crate::validation;
 use clap::Args;
 use std::path::PathBuf;
@@ -23,6 +23,7 @@ pub struct Options {
 }
 
 pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
+    let _lock = options.report.as_deref().map(FolderLock::take).transpose()?;
     let cases = validation::run(&options.from, options.filter.as_deref(), &Bars::new(common.quiet))?;
     if common.json {
         say(validation::to_json(&cases))?;

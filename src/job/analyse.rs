@@ -17,7 +17,7 @@ use crate::equilibrium::{self, SteadySliding};
 use crate::error::{Error, Fault, Result};
 use crate::modal;
 use crate::progress::Observer;
-use crate::results::{self, ResultsFile, RunResults, SteadyResult};
+use crate::results::{self, FolderLock, ResultsFile, RunResults, SteadyResult};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
@@ -112,7 +112,7 @@ impl Selection {
 /// stopped; the result is the same, bit for bit. Results of another case are refused.
 ///
 /// # Errors
-/// Faults of the input, an analysis without an answer, or a folder that cannot be written.
+/// Faults of the input, an analysis without an answer, a folder that cannot be written or that another process uses.
 pub fn run_case(
     case: &Case,
     selection: Selection,
@@ -121,12 +121,13 @@ pub fn run_case(
     observer: &dyn Observer,
 ) -> Result<RunResults> {
     let started = Instant::now();
-    let known = if resume { results::read_maps(out, &case.to_toml())? } else { BTreeMap::new() };
-    let known: KnownMaps =
-        known.into_iter().map(|(name, (points, trained))| (name, KnownMap { points, trained })).collect();
     let prepared = Prepared::new(case)?;
     // Its faults are told before anything is written.
     let asked = Asked::new(&prepared, selection)?;
+    let _lock = FolderLock::take(out)?;
+    let known = if resume { results::read_maps(out, &case.to_toml())? } else { BTreeMap::new() };
+    let known: KnownMaps =
+        known.into_iter().map(|(name, (points, trained))| (name, KnownMap { points, trained })).collect();
     let preparation = started.elapsed().as_secs_f64();
     let file = if resume { ResultsFile::resume(out)? } else { ResultsFile::create(out)? };
     let mut folder = Folder::new(out, file);

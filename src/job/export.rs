@@ -9,7 +9,7 @@ use crate::error::{Error, Fault, Result};
 use crate::linalg::SparseMatrix;
 use crate::linalg::matrix_market::to_text;
 use crate::linalg::sparse::{add_scaled, entry};
-use crate::results::write_atomically;
+use crate::results::{FolderLock, write_atomically};
 use crate::system::ContactPair;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -27,6 +27,7 @@ use std::path::Path;
 /// Faults of the case, or a folder that cannot be written.
 pub fn export(case: &Case, out: &Path) -> Result<Vec<String>> {
     let prepared = Prepared::new(case)?;
+    let _lock = FolderLock::take(out)?;
     let (system, structure) = (&prepared.system, &prepared.system.structure);
     let rest = system.coupling.as_ref().map(|c| c.assembled(system.n_dofs())).transpose()?;
     let whole = |symmetric: &SparseMatrix, which: usize| match &rest {

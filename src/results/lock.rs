@@ -1,0 +1,104 @@
+//! One process at a time in a results folder.
+
+use super::folder::{prepare_folder, refusal};
+use crate::error::{Error, Result};
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{ErrorKind, Read, Write};
+use std::path::Path;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// The file that is locked; it says who holds the lock and stays when the process ends.
+const NAME: &str = ".lock";
+/// Characters of a command that are shown.
+const SHOWN: usize = 80;
+
+/// The lock of a results folder. The operating system releases it when the process ends, however it ends.
+#[derive(Debug)]
+pub struct FolderLock {
+    // The lock lives as long as the open file.
+    _file: Option<File>,
+}
+
+impl FolderLock {
+    /// Locks the folder `dir`, which is made when missing.
+    ///
+    /// # Errors
+    /// [`Error::Io`]: another process holds the lock, or the machine refuses.
+    pub fn take(dir: &Path) -> Result<Self> {
+        prepare_folder(dir)?;
+        let path = dir.join(NAME);
+        let refused = |source: std::io::Error| refusal(&path, source);
+        let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
+        let mut file = file.map_err(refused)?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Err(in_use(dir, &holder(&mut file))),
+            // Some network file systems have no locks.
+            Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {
+                return Ok(FolderLock { _file: None });
+            }
+            Err(TryLockError::Error(error)) => return Err(refused(error)),
+        }
+        let command: Vec<String> =
+            std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
+        let said = format!("{}\n{}\n{}\n", std::process::id(), seconds_now(), command.join(" "));
+        file.set_len(0).and_then(|()| file.write_all(said.as_bytes())).map_err(refused)?;
+        Ok(FolderLock { _file: Some(file) })
+    }
+}
+
+fn in_use(dir: &Path, holder: &str) -> Error {
+    let help = "Wait until it ends, or name another folder for the results";
+    Error::io(dir, format!("the folder is in use by {holder}"), help)
+}
+
+/// Who holds the lock, from what it wrote: process, command and how long it runs.
+fn holder(file: &mut File) -> String {
+    let mut said = Vec::new();
+    // Without an answer the lock is held all the same.
+    let _ = file.take(4096).read_to_end(&mut said);
+    describe(&String::from_utf8_lossy(&said), seconds_now())
+}
+
+fn describe(said: &str, now: u64) -> String {
+    let mut lines = said.lines();
+    let [pid, since] = [(); 2].map(|()| lines.next().and_then(|line| line.parse::<u64>().ok()));
+    let (Some(pid), Some(since)) = (pid, since) else { return "another process".into() };
+    let command = lines.next().unwrap_or_default().chars().filter(|c| !c.is_control());
+    let command: String = command.take(SHOWN).collect();
+    format!("process {pid} (`{command}`, started {} s ago)", now.saturating_sub(since))
+}
+
+/// Seconds since 1970; 0 with a clock before that.
+fn seconds_now() -> u64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_locked_folder_says_who_holds_it_and_is_free_afterwards() {
+        let dir = tempfile::tempdir().unwrap();
+        let folder = dir.path().join("new");
+        let lock = FolderLock::take(&folder).unwrap();
+        let error = FolderLock::take(&folder).unwrap_err();
+        let holder = format!("in use by process {}", std::process::id());
+        assert!(error.exit_code() == 1 && error.to_string().contains(&holder), "{error}");
+        drop(lock);
+        FolderLock::take(&folder).unwrap();
+    }
+
+    #[test]
+    fn what_a_lock_file_says_is_cut_and_clean() {
+        let long = format!("12\n100\nstridor \u{1b}[31mrun {}\n", "x".repeat(500));
+        let text = describe(&long, 160);
+        assert!(text.starts_with("process 12 (`stridor [31mrun xxx") && text.ends_with("started 60 s ago)"));
+        assert!(text.len() < 150 && !text.contains('\u{1b}'), "{text}");
+        // A clock that was set back.
+        assert!(describe("12\n100\nstridor\n", 50).contains("started 0 s ago"));
+        assert_eq!(describe("", 0), "another process");
+        assert_eq!(describe("-1\nx\n", 0), "another process");
+    }
+}
