@@ -12,15 +12,19 @@ pub mod stick_slip;
 pub mod two_dof;
 
 pub(crate) use check::computed;
-pub(crate) use reference::{Check, read_check};
+pub(crate) use reference::read_check;
+pub use reference::{Check, Kind, Measure, Near, Quantity, Reference, Span};
 
 use crate::error::{Error, Fault, Faults, Result};
 use crate::progress::Observer;
 use crate::results::{CheckedCase, passed};
+use rayon::ThreadPool;
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use tempfile::TempDir;
 
-/// Runs every validation case below `root` whose folder name contains `filter`.
+/// Runs every validation case below `root` whose folder name contains `filter`; several at a time, each on one thread.
 ///
 /// # Errors
 /// A folder without cases, a reference file with faults, or a case that cannot be analysed.
@@ -30,7 +34,39 @@ pub fn run(root: &Path, filter: Option<&str>, observer: &dyn Observer) -> Result
     let references: Vec<_> =
         folders.iter().filter_map(|folder| faults.take(reference::read(folder))).collect();
     faults.into_result(())?;
-    references.iter().map(|reference| check::run(reference, observer)).collect()
+    match references.as_slice() {
+        [one] => Ok(vec![check::run(one, observer)?]),
+        several => side_by_side(several, observer),
+    }
+}
+
+/// Every case on one thread, as many at a time as there are threads.
+fn side_by_side(references: &[Reference], observer: &dyn Observer) -> Result<Vec<CheckedCase>> {
+    let threads = rayon::current_num_threads().min(references.len());
+    let alone = || rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    let pools: Vec<ThreadPool> = (0..threads)
+        .map(|_| alone())
+        .collect::<std::result::Result<_, _>>()
+        .map_err(|error| Error::analysis("starting threads", error.to_string(), "Try fewer --threads"))?;
+    observer.begin("validation cases", Some(references.len() as u64));
+    let next = AtomicUsize::new(0);
+    let take_turns = || {
+        let mut found = Vec::new();
+        loop {
+            let k = next.fetch_add(1, Relaxed);
+            let Some(reference) = references.get(k) else { return found };
+            found.push((k, check::run(reference, &())));
+            observer.advance(1);
+        }
+    };
+    let mut found = std::thread::scope(|scope| {
+        let workers: Vec<_> = pools.iter().map(|pool| scope.spawn(|| pool.install(take_turns))).collect();
+        let found = workers.into_iter().map(|worker| worker.join());
+        found.flat_map(|found| found.unwrap_or_else(|panic| resume_unwind(panic))).collect::<Vec<_>>()
+    });
+    observer.end();
+    found.sort_by_key(|(k, _)| *k);
+    found.into_iter().map(|(_, case)| case).collect()
 }
 
 fn folders(root: &Path, filter: Option<&str>) -> Result<Vec<PathBuf>> {
