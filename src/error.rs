@@ -54,6 +54,18 @@ impl Error {
         Error::Io { path: path.into(), source: source.into(), help: help.into() }
     }
 
+    /// The same error once computing has begun: what is only found then counts as an analysis without an answer.
+    pub fn while_computing(self) -> Self {
+        let Error::Input(faults) = self else { return self };
+        let found: Vec<String> = faults.0.iter().map(ToString::to_string).collect();
+        let found = found.join(" ");
+        Error::analysis(
+            "found while computing",
+            found.trim_end_matches('.'),
+            "Change the case and run it again",
+        )
+    }
+
     /// The process exit code: 2 when the input is wrong, 1 otherwise.
     pub fn exit_code(&self) -> u8 {
         match self {

@@ -124,6 +124,79 @@ fn sensitivities_and_advice_are_printed_and_stored() {
 }
 
 #[test]
+fn a_command_refuses_a_case_without_its_table() {
+    let folder = folder_with(RIG);
+    for (command, example) in [
+        ("sweep", "[sweep.mu]"),
+        ("transient", "[transient]"),
+        ("frf", "[frf.tap]"),
+        ("calibrate", "[calibrate]"),
+    ] {
+        let output = stridor(folder.path(), &[command, "rig.toml", "--out", "out"]);
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{command}: {message}");
+        assert!(message.contains(&format!("`{command}`: found no such table")), "{message}");
+        assert!(message.contains(example), "{message}");
+        assert!(!folder.path().join("out").exists());
+    }
+}
+
+#[test]
+fn check_finds_what_run_refuses() {
+    const THICKNESS: &str = "[calibrate.parameter.t]\npath = \"shell.disc.thickness\"\n";
+    for (more, word) in [
+        (
+            "[transient]\nduration = 1e-3\ntime_step = 1e-4\n[transient.probe.cell]\nspring = \"none\"\n"
+                .to_string(),
+            "one of the case's springs",
+        ),
+        (
+            format!("[calibrate]\nagainst = \"disc\"\n{THICKNESS}between = [\"2 mm\", \"3 mm\"]\n"),
+            "bounds that hold the value of the case",
+        ),
+        (
+            format!(
+                "[measured.tap]\nof = \"disc\"\nfrequencies = [330]\nshape_deviation = 0.1\n\
+                 [calibrate]\nagainst = \"tap\"\n{THICKNESS}between = [\"0.5 mm\", \"2 mm\"]\n"
+            ),
+            "shape_deviation",
+        ),
+        (
+            "[frf.tap]\nband = [10, 1e3]\nexcitation = { at = [70, 0, 0], direction = [1, 0, 0] }\n"
+                .to_string(),
+            "a place on the model",
+        ),
+        (
+            "[contact.again]\n".to_string()
+                + RIG
+                    .split("[contact.rim]\n")
+                    .nth(1)
+                    .expect("a contact")
+                    .split("placement")
+                    .next()
+                    .expect("its keys")
+                + "normal = { per = \"length\", stiffness = \"10 GN/m^2\" }\nfriction = { law = \"coulomb\", mu0 = 0.4 }\n",
+            "contact points that are there once",
+        ),
+    ] {
+        let folder = folder_with(&format!("{RIG}\n{more}"));
+        refused(&folder, 2, &[word]);
+        let output = stridor(folder.path(), &["check", "rig.toml"]);
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains(word), "{message}");
+    }
+}
+
+#[test]
+fn what_is_only_found_while_computing_is_no_fault_of_the_input() {
+    let folder = folder_with(&format!("{RIG}\n[damping]\nmodal_ratios = [[\"90 kHz\", 0.01]]\n"));
+    refused(&folder, 1, &["found while computing", "damping.modal_ratios"]);
+    let output = stridor(folder.path(), &["check", "rig.toml"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+}
+
+#[test]
 fn the_main_job_prints_its_tables_and_leaves_a_results_folder() {
     let folder = folder_with(RIG);
     let output = stridor(folder.path(), &["run", "rig.toml", "--out", "out"]);

@@ -1,5 +1,6 @@
 //! `[calibrate]`: scalars of the case to be found from measured modes and frequency responses.
 
+use super::keys::keys_of;
 use super::reader::Section;
 use super::units::{NUMBER, dimension_of};
 use super::{Case, ContactPoints, ContactState, Invalidates, Matrices, MatrixTerm, MeshSource, Parameter};
@@ -59,7 +60,7 @@ pub(super) fn read(root: &Section, case: Case) -> Case {
     if !root.has("calibrate") {
         return case;
     }
-    let scalars = root.sound_so_far().then(|| case.parameters());
+    let scalars = root.sound_so_far().then(|| root.take(case.parameters())).flatten();
     let calibrate = root.section("calibrate", |s| {
         let analysis = CalibrateAnalysis {
             against: s.strings("against").required(
@@ -157,7 +158,7 @@ fn find<'a>(s: &Section, all: &'a [Parameter], path: &str) -> Option<&'a Paramet
 
 /// Whether `path` is the `frequency_scale` of a set of real modes.
 fn is_scale(path: &str) -> bool {
-    matches!(path.split('.').collect::<Vec<_>>()[..], ["modes", _, "frequency_scale"])
+    matches!(&keys_of(path)[..], [modes, _, scale] if modes == "modes" && scale == "frequency_scale")
 }
 
 fn check_against(s: &Section, case: &Case, analysis: &CalibrateAnalysis) {

@@ -18,7 +18,7 @@ pub(super) fn read(root: &Section, case: Case) -> Case {
             ..case
         };
     }
-    let scalars = root.sound_so_far().then(|| case.parameters());
+    let scalars = root.sound_so_far().then(|| root.take(case.parameters())).flatten();
     let scalars = scalars.as_deref().map(|all| Scalars { case: &case, all });
     let sweep = collect(root, "sweep", |s| read_sweep(s, scalars.as_ref()));
     let map = collect(root, "map", |s| read_map(s, scalars.as_ref()));
@@ -177,6 +177,20 @@ mod tests {
         assert_eq!(again, case);
         assert!(case.parameter("sweep.mu.from").unwrap().invalidates == Invalidates::Question);
         assert!(case.without_sweeps().with_parameter("contact.belt.friction.mu0", 0.3).is_ok());
+    }
+
+    #[test]
+    fn a_scalar_is_found_below_a_name_with_dots() {
+        let sweep = "[sweep.mu]\nparameter = 'contact.\"belt.1\".friction.mu0'\nfrom = 0.1\nto = 0.9\n";
+        let text = format!("{CASE}\n{sweep}").replace("[contact.belt]", "[contact.\"belt.1\"]");
+        let case = Case::parse("case.toml", &text, ".".into()).unwrap();
+        let path = &case.sweep["mu"].parameter;
+        assert_eq!(case.parameter(path).unwrap().invalidates, Invalidates::Law);
+        let other = case.with_parameter(path, 0.7).unwrap();
+        assert_eq!(other.parameter(path).unwrap().value, 0.7);
+        let wrong = text.replace("mu0 = 0.4", "mu0 = -1");
+        let error = Case::parse("case.toml", &wrong, ".".into()).unwrap_err().to_string();
+        assert!(error.contains("`contact.\"belt.1\".friction.mu0`"), "{error}");
     }
 
     #[test]

@@ -106,7 +106,7 @@ pub(super) fn read(s: &Section) -> MeasuredData {
             .check("two frequencies above zero, the lower one first", |[low, high]| 0.0 < *low && low < high)
             .optional(),
         response_lines: s.whole("response_lines").check("at least 2", |n| *n >= 2).optional(),
-        source: s.string("source").or(String::new()),
+        source: s.text("source").or(String::new()),
         point: s.section("point", read_points).unwrap_or_default(),
         transform: s.section("transform", read_transform).unwrap_or_default(),
         reach: s.quantity("reach", LENGTH).positive().or(5e-3),

@@ -7,6 +7,7 @@
 mod calibrate;
 mod explore;
 mod frf;
+mod keys;
 mod matrices;
 mod measured;
 mod mesh;
@@ -21,6 +22,7 @@ pub(crate) mod units;
 pub(crate) use calibrate::read_parameter;
 pub use calibrate::{CalibrateAnalysis, CalibratedParameter, SQUEAL};
 pub use frf::{FrfAnalysis, FrfContact, FrfQuantity, FrfSolution, MotionAt};
+pub(crate) use keys::keys_of;
 pub use matrices::{Matrices, MatrixTerm};
 pub use measured::{MeasuredData, Transform};
 pub use mesh::{GeneratedMesh, MeshSource, RigMesh};
@@ -552,6 +554,7 @@ impl Case {
 
     /// The case as TOML in SI units with every default written out.
     pub fn to_toml(&self) -> String {
-        toml::to_string(self).expect("a case is made of tables, lists, strings and finite numbers")
+        toml::to_string(self)
+            .expect("a case is made of tables, lists, strings and numbers that TOML can hold")
     }
 }

@@ -1,6 +1,7 @@
 //! Every scalar of a case has a path, such as `contact.rim.friction.mu0`, a unit, bounds, and can be set to another value.
 
 use super::Case;
+use super::keys::keys_of;
 use crate::error::{Error, Fault, Result, nearest};
 use std::ops::{Bound, RangeBounds};
 use toml::Value;
@@ -46,9 +47,12 @@ impl Parameter {
 
 impl Case {
     /// Every scalar of the case, in the order of the file's sections.
-    pub fn parameters(&self) -> Vec<Parameter> {
-        let quantities = self.quantities().into_iter();
-        quantities
+    ///
+    /// # Errors
+    /// A case that is made in code and has what no file may say.
+    pub fn parameters(&self) -> Result<Vec<Parameter>> {
+        let quantities = self.quantities()?.into_iter();
+        Ok(quantities
             .map(|q| Parameter {
                 invalidates: self.invalidated_by(&q.path),
                 path: q.path,
@@ -56,7 +60,7 @@ impl Case {
                 unit: q.unit,
                 bounds: q.bounds,
             })
-            .collect()
+            .collect())
     }
 
     /// The scalar at `path`.
@@ -64,7 +68,7 @@ impl Case {
     /// # Errors
     /// A path that is not a number of the case, with the nearest one that is.
     pub fn parameter(&self, path: &str) -> Result<Parameter> {
-        let all = self.parameters();
+        let all = self.parameters()?;
         if let Some(found) = all.iter().find(|p| p.path == path) {
             return Ok(found.clone());
         }
@@ -83,13 +87,17 @@ impl Case {
     /// A path that is not a number of the case (with the nearest one that is), or a value that the case refuses.
     pub fn with_parameter(&self, path: &str, value: f64) -> Result<Case> {
         self.parameter(path)?;
-        let mut table = Value::try_from(self).expect("a case can be written as TOML");
-        let slot = path.split('.').try_fold(&mut table, |node, key| match node {
+        let mut table = Value::Table(self.to_toml().parse().unwrap_or_default());
+        let slot = keys_of(path).iter().try_fold(&mut table, |node, key| match node {
             Value::Array(list) => list.get_mut(key.parse::<usize>().ok()?),
             _ => node.get_mut(key),
         });
-        *slot.expect("a parameter's path leads to its number") = Value::Float(value);
-        let text = toml::to_string(&table).expect("a case can be written as TOML");
+        let Some(slot) = slot else {
+            let fault = Fault::new(format!("parameter `{path}`"), "no number there", "the path of a scalar");
+            return Err(Error::input(fault));
+        };
+        *slot = Value::Float(value);
+        let text = toml::to_string(&table).unwrap_or_default();
         Case::parse(&format!("{path} = {value}"), &text, self.folder.clone())
     }
 
@@ -102,7 +110,8 @@ impl Case {
     }
 
     fn invalidated_by(&self, path: &str) -> Invalidates {
-        let keys: Vec<&str> = path.split('.').collect();
+        let keys = keys_of(path);
+        let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
         let own = match keys[..] {
             [
                 "modes" | "cea" | "sensitivity" | "transient" | "frf" | "measured" | "calibrate" | "sweep"

@@ -6,7 +6,7 @@ mod tests;
 
 pub(super) use self::check::unknown_name;
 use self::check::{check_names, check_sensitivity};
-use super::reader::{Quantity, Section, read_document};
+use super::reader::{LARGEST, Quantity, Section, read_document};
 use super::units::*;
 use super::*;
 use crate::error::{Error, Fault, Result};
@@ -42,17 +42,19 @@ impl Case {
     }
 
     /// The quantities of the resolved case, each with its path, value, unit and bounds.
-    pub(super) fn quantities(&self) -> Vec<Quantity> {
-        let read =
-            read_document("the resolved case", &self.to_toml(), |root| read_root(root, PathBuf::new()));
-        read.expect("a resolved case reads back").1
+    ///
+    /// # Errors
+    /// A case that is made in code and has what no file may say.
+    pub(super) fn quantities(&self) -> Result<Vec<Quantity>> {
+        read_document("the resolved case", &self.to_toml(), |root| read_root(root, PathBuf::new()))
+            .map(|(_, quantities)| quantities)
     }
 }
 
 fn read_root(root: &Section, folder: PathBuf) -> Case {
     let case = Case {
-        title: root.string("title").or("untitled".into()),
-        assumptions: root.strings("assumptions").or(Vec::new()),
+        title: root.text("title").or("untitled".into()),
+        assumptions: root.texts("assumptions").or(Vec::new()),
         prestress: root.boolean("prestress").or(false),
         folder,
         mesh: root.section("mesh", super::mesh::read),
@@ -60,7 +62,7 @@ fn read_root(root: &Section, folder: PathBuf) -> Case {
         point: root
             .section("point", |s| {
                 let position = |name: &String| (name.clone(), s.quantities(name, LENGTH).or([0.0; 3]));
-                s.names().iter().map(position).collect()
+                s.sound_names().iter().map(position).collect()
             })
             .unwrap_or_default(),
         material: collect(root, "material", read_material),
@@ -79,7 +81,7 @@ fn read_root(root: &Section, folder: PathBuf) -> Case {
         spring: collect(root, "spring", read_spring),
         rigid: collect(root, "rigid", |s| Rigid {
             master: s.string("master").required("a region of one point"),
-            follow: s.strings("follow").required("regions that move with the master"),
+            follow: s.strings("follow").not_empty().required("regions that move with the master"),
         }),
         support: collect(root, "support", read_support),
         force: collect(root, "force", |s| Force {
@@ -176,7 +178,7 @@ fn read_support(s: &Section) -> Held {
         })
         .or(all());
     Held {
-        on: s.strings("on").required("a region, or a list of them"),
+        on: s.strings("on").not_empty().required("a region, or a list of them"),
         held: if held.iter().any(|name| name == "all") { all() } else { held },
     }
 }
@@ -325,11 +327,18 @@ fn read_friction(s: &Section) -> Friction {
     let coefficient = |key: &str| s.quantity(key, NUMBER).non_negative();
     const LAWS: [&str; 5] = ["coulomb", "exponential", "stribeck", "hyperbolic", "table"];
     let law = match s.choice("law", &LAWS).required("coulomb, exponential, stribeck, hyperbolic or table") {
-        "exponential" => FrictionCurve::Exponential {
-            mu0: coefficient("mu0").required("a friction coefficient"),
-            mu1: s.quantity("mu1", NUMBER).required("a friction coefficient"),
-            alpha: s.quantity("alpha", INVERSE_VELOCITY).non_negative().required(INVERSE_VELOCITY.name),
-        },
+        "exponential" => {
+            let mu0 = coefficient("mu0").required("a friction coefficient");
+            let at_rest = |mu1: &f64| mu0 + mu1 >= 0.0;
+            FrictionCurve::Exponential {
+                mu0,
+                mu1: s
+                    .quantity("mu1", NUMBER)
+                    .check("a value with which μ at rest, mu0 + mu1, is zero or more", at_rest)
+                    .required("a friction coefficient"),
+                alpha: s.quantity("alpha", INVERSE_VELOCITY).non_negative().required(INVERSE_VELOCITY.name),
+            }
+        }
         "stribeck" => FrictionCurve::Stribeck {
             mu_static: coefficient("mu_static").required("a friction coefficient"),
             mu_kinetic: coefficient("mu_kinetic").required("a friction coefficient"),
@@ -411,7 +420,7 @@ fn read_modes(s: &Section) -> ModesAnalysis {
         },
         frequency_scale: s.quantity("frequency_scale", NUMBER).positive().or(1.0),
         measured: s.quantity_list("measured", FREQUENCY).or(Vec::new()),
-        measured_source: s.string("measured_source").or(String::new()),
+        measured_source: s.text("measured_source").or(String::new()),
         uff: s.boolean("uff").or(false),
     }
 }
@@ -428,7 +437,7 @@ fn read_cea(s: &Section) -> CeaAnalysis {
     let band = match nearest {
         Some(hz) => band
             .check("a band that holds the frequency of `nearest`", |[a, b]| *a <= hz && hz <= *b)
-            .or([0.0, 4.0 * hz]),
+            .or([0.0, (4.0 * hz).min(LARGEST)]),
         None => band.required("a band such as [0, \"6 kHz\"]"),
     };
     CeaAnalysis {
@@ -438,12 +447,12 @@ fn read_cea(s: &Section) -> CeaAnalysis {
         basis_below: s
             .quantity("basis_below", FREQUENCY)
             .within(Bound::Included(band[1]), Bound::Unbounded)
-            .or(1.5 * band[1]),
+            .or((1.5 * band[1]).min(LARGEST)),
         certify: s.boolean("certify").optional(),
         confirm: s.boolean("confirm").or(false),
         left_vectors: s.boolean("left_vectors").or(true),
         measured_squeal: s.quantity_list("measured_squeal", FREQUENCY).or(Vec::new()),
-        measured_source: s.string("measured_source").or(String::new()),
+        measured_source: s.text("measured_source").or(String::new()),
     }
 }
 

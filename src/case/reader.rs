@@ -1,11 +1,17 @@
 //! Reads TOML section by section, remembering every fault with its line: unknown keys, wrong types, wrong units.
 
+use super::keys::dotted;
 use super::units::{Dimension, NUMBER, parse_quantity};
 use crate::error::{Error, Fault, Faults, Result, nearest};
 use std::cell::RefCell;
 use std::ops::{Bound, RangeBounds};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
+
+/// The largest size of a quantity in SI units; the least that is not zero is one over it. Products of several stay finite.
+pub const LARGEST: f64 = 1e60;
+/// The largest whole number.
+const MOST: usize = 1_000_000_000;
 
 /// A parsed TOML text and the faults found in it so far.
 pub struct Reader<'a> {
@@ -85,15 +91,39 @@ impl<'a> Section<'a> {
         self.table.keys().map(|key| key.get_ref().to_string()).collect()
     }
 
+    /// The same; names that are empty or have control characters are faults, and left out.
+    pub fn sound_names(&self) -> Vec<String> {
+        let (sound, others): (Vec<_>, Vec<_>) = self.names().into_iter().partition(|name| is_name(name));
+        for name in others {
+            self.fault(
+                &name,
+                format!("the name {name:?}"),
+                "a name of at least one character, on one line",
+                "",
+            );
+            self.skip(&[&name]);
+        }
+        sound
+    }
+
     /// Notes a fault of `key` in this table; `key` may be a dotted path below it.
     pub fn fault(&self, key: &str, found: impl Into<String>, expected: impl Into<String>, help: &str) {
-        let (mut offset, mut table) = (self.start, Some(self.table));
-        for part in key.split('.') {
-            let Some((name, value)) = table.and_then(|t| t.get_key_value(part)) else { break };
+        let (mut offset, mut table, mut rest) = (self.start, self.table, key);
+        loop {
+            // A name may have dots itself.
+            let mut ends = (0..=rest.len()).rev().filter(|k| *k == rest.len() || rest.as_bytes()[*k] == b'.');
+            let found = ends.find_map(|end| Some((end, table.get_key_value(&rest[..end])?)));
+            let Some((end, (name, value))) = found else { break };
             offset = name.span().start;
-            table = value.get_ref().as_table();
+            let (Some(inner), true) = (value.get_ref().as_table(), end < rest.len()) else { break };
+            (table, rest) = (inner, &rest[end + 1..]);
         }
         self.note(offset, &self.path_of(key), found, expected, help);
+    }
+
+    /// The value of `result`; its faults are noted.
+    pub fn take<T>(&self, result: Result<T>) -> Option<T> {
+        self.reader.faults.borrow_mut().take(result)
     }
 
     fn note(
@@ -175,7 +205,7 @@ impl<'a> Section<'a> {
     /// A quantity: a number in SI units, or a string with its unit.
     pub fn quantity(&'a self, key: &str, dimension: Dimension) -> Found<'a, f64> {
         let found = self.find(key, dimension.name, |value| quantity_of(value, dimension));
-        self.remember(key, found.value, dimension);
+        self.remember(&dotted(key), found.value, dimension);
         found
     }
 
@@ -192,7 +222,7 @@ impl<'a> Section<'a> {
             let count = list.len();
             list.try_into().map_err(|_| format!("a list of {count}"))
         });
-        self.remember_list(key, found.value.iter().flatten(), dimension);
+        self.remember_list(&dotted(key), found.value.iter().flatten(), dimension);
         found
     }
 
@@ -201,7 +231,7 @@ impl<'a> Section<'a> {
         let expected = "a list of two values, one a parameter";
         let found = self.find(key, expected, |value| pair_of(value, dimensions));
         for k in 0..2 {
-            self.remember(&format!("{key}.{k}"), found.value.map(|v| v[k]), dimensions[k]);
+            self.remember(&format!("{}.{k}", dotted(key)), found.value.map(|v| v[k]), dimensions[k]);
         }
         found
     }
@@ -213,7 +243,7 @@ impl<'a> Section<'a> {
         });
         for (i, row) in found.value.iter().flatten().enumerate() {
             for k in 0..2 {
-                self.remember(&format!("{key}.{i}.{k}"), [row[k]], dimensions[k]);
+                self.remember(&format!("{}.{i}.{k}", dotted(key)), [row[k]], dimensions[k]);
             }
         }
         found
@@ -224,7 +254,7 @@ impl<'a> Section<'a> {
         let found = self.find(key, &format!("a list, each {}", dimension.name), |value| {
             list_of(value, |item| quantity_of(item, dimension))
         });
-        self.remember_list(key, found.value.iter().flatten(), dimension);
+        self.remember_list(&dotted(key), found.value.iter().flatten(), dimension);
         found
     }
 
@@ -234,14 +264,24 @@ impl<'a> Section<'a> {
             list_of(value, |row| list_of(row, |item| quantity_of(item, dimension)))
         });
         for (i, row) in found.value.iter().flatten().enumerate() {
-            self.remember_list(&format!("{key}.{i}"), row, dimension);
+            self.remember_list(&format!("{}.{i}", dotted(key)), row, dimension);
         }
         found
     }
 
-    /// A string.
-    pub fn string(&'a self, key: &str) -> Found<'a, String> {
+    /// A string for people to read, of any length.
+    pub fn text(&'a self, key: &str) -> Found<'a, String> {
         self.find(key, "a string", string_of)
+    }
+
+    /// A list of such strings; a single one is a list of one.
+    pub fn texts(&'a self, key: &str) -> Found<'a, Vec<String>> {
+        self.find(key, "a list of strings", |value| strings_of(value, string_of))
+    }
+
+    /// The name of something, or the path of a file.
+    pub fn string(&'a self, key: &str) -> Found<'a, String> {
+        self.find(key, "a string of at least one character, on one line", name_of)
     }
 
     /// A list of rows of strings.
@@ -259,12 +299,10 @@ impl<'a> Section<'a> {
         self.table.get(key).is_some_and(|value| value.get_ref().as_table().is_some())
     }
 
-    /// A list of strings; a single string is a list of one.
+    /// A list of names; a single string is a list of one.
     pub fn strings(&'a self, key: &str) -> Found<'a, Vec<String>> {
-        self.find(key, "a list of strings", |value| match value {
-            DeValue::String(one) => Ok(vec![one.to_string()]),
-            _ => list_of(value, string_of),
-        })
+        let expected = "a list of strings, each of at least one character, on one line";
+        self.find(key, expected, |value| strings_of(value, name_of))
     }
 
     /// `true` or `false`.
@@ -272,34 +310,20 @@ impl<'a> Section<'a> {
         self.find(key, "true or false", |value| value.as_bool().ok_or_else(|| describe(value)))
     }
 
-    /// A whole number of at least one.
+    /// A whole number from one to a billion.
     pub fn count(&'a self, key: &str) -> Found<'a, usize> {
-        self.find(key, "a whole number of at least 1", |value| {
-            value
-                .as_integer()
-                .and_then(|i| usize::from_str_radix(i.as_str(), i.radix()).ok())
-                .filter(|n| *n >= 1)
-                .ok_or_else(|| describe(value))
-        })
+        self.find(key, "a whole number from 1 to a billion", |value| whole_of(value, 1))
     }
 
-    /// A whole number of zero or more.
+    /// A whole number from zero to a billion.
     pub fn whole(&'a self, key: &str) -> Found<'a, usize> {
-        self.find(key, "a whole number of zero or more", |value| {
-            let integer = value.as_integer();
-            let whole = integer.and_then(|i| usize::from_str_radix(i.as_str(), i.radix()).ok());
-            whole.ok_or_else(|| describe(value))
-        })
+        self.find(key, "a whole number from 0 to a billion", |value| whole_of(value, 0))
     }
 
-    /// A list of two whole numbers of at least one.
+    /// A list of two whole numbers from one to a billion.
     pub fn two_counts(&'a self, key: &str) -> Found<'a, [usize; 2]> {
-        self.find(key, "a list of two whole numbers of at least 1", |value| {
-            let list = list_of(value, |item| {
-                let number =
-                    item.as_integer().and_then(|i| usize::from_str_radix(i.as_str(), i.radix()).ok());
-                number.filter(|n| *n >= 1).ok_or_else(|| describe(item))
-            })?;
+        self.find(key, "a list of two whole numbers from 1 to a billion", |value| {
+            let list = list_of(value, |item| whole_of(item, 1))?;
             let count = list.len();
             list.try_into().map_err(|_| format!("a list of {count}"))
         })
@@ -330,8 +354,13 @@ impl<'a> Section<'a> {
             return None;
         };
         let start = self.table.get_key_value(key).map_or(self.start, |(k, _)| k.span().start);
-        let section =
-            Section { reader: self.reader, table, path: self.path_of(key), start, known: RefCell::default() };
+        let section = Section {
+            reader: self.reader,
+            table,
+            path: self.path_of(&dotted(key)),
+            start,
+            known: RefCell::default(),
+        };
         let result = read(&section);
         section.finish();
         Some(result)
@@ -340,7 +369,7 @@ impl<'a> Section<'a> {
     /// A table of named tables `[key.NAME]`, in the order of their names.
     pub fn named<T>(&self, key: &str, mut read: impl FnMut(&str, &Section) -> T) -> Vec<T> {
         self.section(key, |all| {
-            all.names().iter().filter_map(|name| all.section(name, |one| read(name, one))).collect()
+            all.sound_names().iter().filter_map(|name| all.section(name, |one| read(name, one))).collect()
         })
         .unwrap_or_default()
     }
@@ -410,6 +439,13 @@ impl<T: Default> Found<'_, T> {
     }
 }
 
+impl<T: std::fmt::Debug> Found<'_, Vec<T>> {
+    /// Refuses a list of nothing.
+    pub fn not_empty(self) -> Self {
+        self.check("at least one", |list| !list.is_empty())
+    }
+}
+
 impl Found<'_, f64> {
     /// Refuses zero and below.
     pub fn positive(self) -> Self {
@@ -423,7 +459,7 @@ impl Found<'_, f64> {
 
     /// Refuses values outside these bounds.
     pub fn within(self, lower: Bound<f64>, upper: Bound<f64>) -> Self {
-        let path = self.section.path_of(&self.key);
+        let path = self.section.path_of(&dotted(&self.key));
         let mut quantities = self.section.reader.quantities.borrow_mut();
         quantities.iter_mut().filter(|q| q.path == path).for_each(|q| q.bounds = (lower, upper));
         drop(quantities);
@@ -458,7 +494,8 @@ fn quantity_of(value: &DeValue, dimension: Dimension) -> std::result::Result<f64
         _ => None,
     };
     match number {
-        Some(v) if v.is_finite() => Ok(v),
+        Some(v) if v == 0.0 || (1.0 / LARGEST..=LARGEST).contains(&v.abs()) => Ok(v),
+        Some(v) if v.is_finite() => Err(format!("{v:e}, which is not from 1e-60 to 1e60 in size")),
         Some(v) => Err(format!("{v}, which is not finite")),
         None => Err(describe(value)),
     }
@@ -466,6 +503,29 @@ fn quantity_of(value: &DeValue, dimension: Dimension) -> std::result::Result<f64
 
 fn string_of(value: &DeValue) -> std::result::Result<String, String> {
     value.as_str().map(str::to_string).ok_or_else(|| describe(value))
+}
+
+/// A name: not empty, without control characters.
+fn name_of(value: &DeValue) -> std::result::Result<String, String> {
+    let name = string_of(value)?;
+    if is_name(&name) { Ok(name) } else { Err(format!("the string {name:?}")) }
+}
+
+fn is_name(name: &str) -> bool {
+    !name.is_empty() && !name.contains(char::is_control)
+}
+
+/// A list of strings; a single string is a list of one.
+fn strings_of(
+    value: &DeValue,
+    item: fn(&DeValue) -> std::result::Result<String, String>,
+) -> std::result::Result<Vec<String>, String> {
+    if value.is_str() { Ok(vec![item(value)?]) } else { list_of(value, item) }
+}
+
+fn whole_of(value: &DeValue, least: usize) -> std::result::Result<usize, String> {
+    let number = value.as_integer().and_then(|i| usize::from_str_radix(i.as_str(), i.radix()).ok());
+    number.filter(|n| (least..=MOST).contains(n)).ok_or_else(|| describe(value))
 }
 
 fn pair_of(value: &DeValue, dimensions: [Dimension; 2]) -> std::result::Result<[f64; 2], String> {

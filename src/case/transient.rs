@@ -230,7 +230,8 @@ pub(super) fn read(s: &Section) -> TransientAnalysis {
         },
         model: if reduced { ModelChoice::Reduced } else { ModelChoice::Full },
         compare_steps: reduced.then(|| {
-            let steps = s.quantity("compare_steps", NUMBER).non_negative();
+            let steps =
+                s.quantity("compare_steps", NUMBER).within(Bound::Included(0.0), Bound::Included(1e9));
             steps.check("a whole number", |n| n.fract() == 0.0).or(COMPARED) as usize
         }),
         full_newton: s.boolean("full_newton").or(false),

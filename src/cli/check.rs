@@ -3,7 +3,7 @@
 use super::{Common, say};
 use crate::case::{Parameter, read_case};
 use crate::error::Result;
-use crate::job::{Prepared, check_tests};
+use crate::job::{Prepared, check_case};
 use clap::Args;
 use std::ops::Bound;
 use std::path::PathBuf;
@@ -24,19 +24,19 @@ pub struct Options {
 pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
     let case = read_case(&options.case)?;
     let prepared = Prepared::new(&case)?;
-    let tests = check_tests(&prepared)?;
+    let warnings = check_case(&prepared)?;
     if options.resolved {
         say(case.to_toml().trim_end())?;
     }
     if options.parameters {
-        for p in case.parameters() {
+        for p in case.parameters()? {
             let redo = format!("{:?}", p.invalidates).to_lowercase();
             let value = number(p.value);
             say(format!("{:<44} {value:>22} {:<8} {:<16} {redo}", p.path, p.unit, range(&p)))?;
         }
     }
     if !common.quiet && !options.resolved && !options.parameters {
-        for warning in prepared.warnings.iter().chain(&tests) {
+        for warning in prepared.warnings.iter().chain(&warnings) {
             say(format!("warning: {warning}"))?;
         }
         let size = prepared.size();

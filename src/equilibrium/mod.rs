@@ -19,7 +19,7 @@ pub use linear::{
     tangent_stiffness,
 };
 pub use nearby::Nearby;
-pub use steady::{SteadyOptions, solve_points, solve_steady, solve_steady_with};
+pub use steady::{SteadyOptions, check, solve_points, solve_steady, solve_steady_with};
 
 use crate::system::{ContactForces, ContactTangent};
 

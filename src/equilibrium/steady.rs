@@ -40,9 +40,9 @@ pub fn solve_steady(
     options: &SteadyOptions,
     observer: &dyn Observer,
 ) -> Result<SteadySliding> {
-    check_input(&system.pairs, &system.load, system.n_dofs())?;
-    if system.pairs.is_empty() && system.load.iter().all(|f| *f == 0.0) {
-        // Nothing pushes: u₀ = 0 is exact, also where K is singular.
+    check(system)?;
+    if nothing_pushes(system) {
+        // u₀ = 0 is exact, also where K is singular.
         return Ok(SteadySliding {
             displacement: vec![0.0; system.n_dofs()],
             approach: Vec::new(),
@@ -51,7 +51,24 @@ pub fn solve_steady(
             residual: 0.0,
         });
     }
-    if let Some(rest) = &system.coupling
+    observer.begin("steady sliding", None);
+    let result = solve_prestressed(system, options, observer);
+    observer.end();
+    result
+}
+
+fn nothing_pushes(system: &System) -> bool {
+    system.pairs.is_empty() && system.load.iter().all(|f| *f == 0.0)
+}
+
+/// Whether `system` is one that can slide steadily.
+///
+/// # Errors
+/// No sliding velocity, no or a negative load, an unsymmetric stiffness beside contacts or loads.
+pub fn check(system: &System) -> Result<()> {
+    check_input(&system.pairs, &system.load, system.n_dofs())?;
+    if !nothing_pushes(system)
+        && let Some(rest) = &system.coupling
         && rest.stiffness.norm_max() > 0.0
     {
         return Err(Error::input(
@@ -65,10 +82,7 @@ pub fn solve_steady(
             ),
         ));
     }
-    observer.begin("steady sliding", None);
-    let result = solve_prestressed(system, options, observer);
-    observer.end();
-    result
+    Ok(())
 }
 
 /// One steady state for a stiffness that does not change, with a compliance that is already there: for sweeps over

@@ -8,13 +8,13 @@ use super::explore::{KnownMap, KnownMaps, Nominal, explore};
 use super::frf::{Frf, frfs};
 use super::keeper::{Folder, Keeper, Memory, Stage};
 use super::missed::nothing_is_missed;
-use super::modes::{named, of_the_whole, part_modes, wanted};
+use super::modes::{check_part, named, of_the_whole, part_modes, wanted};
 use super::prepared::Prepared;
 use super::sensitivity::Analysed;
 use super::transient::{InTime, Places, places};
-use crate::case::{Case, ContactState, SensitivityAnalysis, TransientAnalysis};
+use crate::case::{Case, CeaAnalysis, ContactState, SensitivityAnalysis, TransientAnalysis};
 use crate::equilibrium::{self, SteadySliding};
-use crate::error::{Error, Fault, Result};
+use crate::error::{Error, Fault, Faults, Result};
 use crate::modal;
 use crate::progress::Observer;
 use crate::results::{self, FolderLock, ResultsFile, RunResults, SteadyResult};
@@ -96,6 +96,48 @@ impl Selection {
     /// Steady sliding, complex eigenvalues and motion in time.
     pub const TRANSIENT: Selection = Selection { transient: true, ..Selection::CEA };
 
+    /// Refuses a case that lacks a table of what is selected; not where all that the case lists is.
+    fn check(&self, case: &Case) -> Result<()> {
+        if *self == Selection::ALL || self.measured_only {
+            return Ok(());
+        }
+        let explored = !(case.sweep.is_empty() && case.map.is_empty());
+        let needed = [
+            ("modes", self.modes, !case.modes.is_empty(), "[modes.all] with `count = 10`"),
+            ("cea", self.cea, case.cea.is_some(), "[cea] with `band = [0, \"6 kHz\"]`"),
+            (
+                "sweep",
+                self.sweeps,
+                explored,
+                "[sweep.mu] with `parameter = \"contact.NAME.friction.mu0\"`, `from = 0.1` and `to = 0.7`, or a [map.NAME]",
+            ),
+            (
+                "transient",
+                self.transient,
+                case.transient.is_some(),
+                "[transient] with `duration = \"10 ms\"` and `time_step = \"5 us\"`",
+            ),
+            (
+                "frf",
+                self.frf,
+                !case.frf.is_empty(),
+                "[frf.tap] with `band = [\"10 Hz\", \"3 kHz\"]` and `excitation = { at = [0, 0, 0], direction = [0, 0, 1] }`",
+            ),
+            (
+                "calibrate",
+                self.calibrate,
+                case.calibrate.is_some(),
+                "[calibrate] with `against = \"disc\"`, and [calibrate.parameter.NAME] with `path` and `between`",
+            ),
+        ];
+        let mut faults = Faults::new();
+        for (key, _, _, example) in needed.into_iter().filter(|(_, selected, there, _)| *selected && !there) {
+            let expected = format!("a table such as {example}");
+            faults.push(Fault::new(format!("`{key}`"), "no such table in the case", expected));
+        }
+        faults.into_result(())
+    }
+
     /// The sensitivities to compute, if any.
     fn sensitivities(&self, case: &Case) -> Option<SensitivityAnalysis> {
         match self.sensitivity {
@@ -131,7 +173,9 @@ pub fn run_case(
     let preparation = started.elapsed().as_secs_f64();
     let file = if resume { ResultsFile::resume(out)? } else { ResultsFile::create(out)? };
     let mut folder = Folder::new(out, file);
-    let mut results = analyse_from(&prepared, asked, &known, &mut folder, observer)?;
+    let mut results = analyse_from(&prepared, asked, &known, &mut folder, observer)
+        // What another run left, and does not fit, is input.
+        .map_err(|error| if resume { error } else { error.while_computing() })?;
     // The time of a phase is that of computing.
     let in_time = results.timings.iter_mut().find(|(phase, _)| phase == IN_TIME);
     in_time.into_iter().for_each(|(_, seconds)| *seconds -= folder.seconds_in_time);
@@ -160,12 +204,21 @@ pub fn analyse(
 ) -> Result<RunResults> {
     let asked = Asked::new(prepared, selection)?;
     analyse_from(prepared, asked, &KnownMaps::new(), &mut Memory::new(record), observer)
+        .map_err(Error::while_computing)
+}
+
+/// Finds every fault that [`run_case`] finds before it computes; gives what the user should know.
+///
+/// # Errors
+/// All of them.
+pub fn check_case(prepared: &Prepared) -> Result<Vec<String>> {
+    Ok(Asked::new(prepared, Selection::ALL)?.warnings)
 }
 
 /// [`analyse`] with the maps of an earlier run.
 fn analyse_from(
     prepared: &Prepared,
-    Asked { selection, mut in_time, frfs, tests, calibrate }: Asked<'_>,
+    Asked { selection, sliding, mut in_time, frfs, tests, calibrate, warnings }: Asked<'_>,
     known: &KnownMaps,
     keeper: &mut dyn Keeper,
     observer: &dyn Observer,
@@ -175,7 +228,7 @@ fn analyse_from(
         title: case.title.clone(),
         resolved_case: case.to_toml(),
         assumptions: case.assumptions.clone(),
-        warnings: prepared.warnings.iter().chain(&tests.warnings).cloned().collect(),
+        warnings: prepared.warnings.iter().cloned().chain(warnings).collect(),
         geometry: prepared.geometry(),
         size: prepared.size(),
         ..RunResults::default()
@@ -185,9 +238,6 @@ fn analyse_from(
     let asked = |name: &str| !selection.measured_only || has_measured_modes(case, name);
     let all_modes = case.modes.iter().filter(|(name, _)| asked(name));
     let contact_modes = all_modes.clone().filter(|(_, m)| m.contact == ContactState::Closed);
-    let sliding =
-        (selection.cea && case.cea.is_some()) || (selection.modes && contact_modes.clone().count() > 0);
-    let sliding = sliding || frfs.iter().any(Frf::slides);
 
     // The modes that span the complex analysis; without prestress they do not wait for the steady state, and lists of
     // the whole's modes take their share.
@@ -290,31 +340,74 @@ fn analyse_from(
 /// The analyses that are selected, with the places that they need.
 struct Asked<'a> {
     selection: Selection,
+    /// Whether something is asked about steady sliding.
+    sliding: bool,
     in_time: Option<(&'a TransientAnalysis, Places)>,
     frfs: Vec<Frf<'a>>,
     tests: Tests,
     calibrate: Option<Calibrate<'a>>,
+    /// What the user should know.
+    warnings: Vec<String>,
 }
 
 impl<'a> Asked<'a> {
-    /// Tells the faults of the places and of the calibration before anything is computed or written.
+    /// Finds the faults of all that is selected before anything is computed or written.
     fn new(prepared: &'a Prepared<'a>, selection: Selection) -> Result<Self> {
-        let wanted = prepared.case.transient.as_ref().filter(|_| selection.transient && selection.cea);
-        let in_time = wanted.map(|wanted| Ok((wanted, places(prepared, wanted)?))).transpose()?;
-        let mut frfs = if selection.frf { frfs(prepared)? } else { Vec::new() };
-        frfs.retain(|frf| !selection.measured_only || has_measured_frf(prepared.case, frf.name()));
+        let case = prepared.case;
+        let mut faults = Faults::new();
+        faults.take(selection.check(case));
+        let wanted = case.transient.as_ref().filter(|_| selection.transient && selection.cea);
+        let in_time = wanted.and_then(|wanted| Some((wanted, faults.take(places(prepared, wanted))?)));
+        let mut frfs =
+            if selection.frf { faults.take(frfs(prepared)).unwrap_or_default() } else { Vec::new() };
+        frfs.retain(|frf| !selection.measured_only || has_measured_frf(case, frf.name()));
         let tests = match selection.modes || selection.frf {
-            true => Tests::new(prepared, &mut frfs)?,
-            false => Tests::default(),
+            true => faults.take(Tests::new(prepared, &mut frfs)),
+            false => None,
         };
-        if selection.measured_only && tests.is_empty() {
-            let fault = Fault::new("`measured`", "no measured data in the case", "a table [measured.NAME]");
-            return Err(Error::input(fault));
+        if selection.measured_only && tests.as_ref().is_some_and(Tests::is_empty) {
+            faults.push(Fault::new("`measured`", "no measured data in the case", "a table [measured.NAME]"));
         }
-        let wanted = prepared.case.calibrate.as_ref().filter(|_| selection.calibrate);
-        let calibrate = wanted.map(|wanted| Calibrate::new(prepared, wanted)).transpose()?;
-        Ok(Asked { selection, in_time, frfs, tests, calibrate })
+        let tests = tests.unwrap_or_default();
+        for name in case.modes.keys().filter(|_| selection.modes) {
+            faults.take(check_part(prepared, name));
+        }
+        let wanted = case.calibrate.as_ref().filter(|_| selection.calibrate);
+        let calibrate = wanted.and_then(|wanted| faults.take(Calibrate::new(prepared, wanted)));
+        let closed = case.modes.values().any(|modes| modes.contact == ContactState::Closed);
+        let cea = case.cea.as_ref().filter(|_| selection.cea);
+        let sliding = cea.is_some() || (selection.modes && closed) || frfs.iter().any(Frf::slides);
+        if sliding {
+            faults.take(equilibrium::check(&prepared.system));
+        }
+        let moves = sliding || (selection.modes && !case.modes.is_empty()) || !frfs.is_empty();
+        if moves && prepared.system.structure.mass.val().iter().all(|m| *m == 0.0) {
+            let expected = "a part with mass: nothing vibrates without";
+            faults.push(Fault::new("the case", "no mass", expected));
+        }
+        // A file that two analyses read has its faults once.
+        let mut all = Vec::new();
+        faults.0.into_iter().for_each(|fault| {
+            if !all.contains(&fault) {
+                all.push(fault)
+            }
+        });
+        let warnings = tests.warnings.iter().cloned().chain(cea.and_then(not_all_of_the_band)).collect();
+        Faults(all).into_result(Asked { selection, sliding, in_time, frfs, tests, calibrate, warnings })
     }
+}
+
+/// Says that `nearest` leaves modes of a band that the case gives beside it.
+fn not_all_of_the_band(cea: &CeaAnalysis) -> Option<String> {
+    let (hz, count) = cea.nearest.zip(cea.count)?;
+    let [low, high] = cea.band;
+    let given = low != 0.0 || high != 4.0 * hz;
+    given.then(|| {
+        format!(
+            "[cea] looks for the {count} complex modes nearest to {hz} Hz alone, not for all from {low} to {high} Hz; \
+             without `nearest` and `count` it looks for all"
+        )
+    })
 }
 
 fn steady_result(prepared: &Prepared, state: SteadySliding) -> SteadyResult {

@@ -1,6 +1,6 @@
 //! What tests found beside what is computed.
 
-use super::frf::{Frf, frfs};
+use super::frf::Frf;
 use super::measured::measured_set;
 use super::motion::Motion;
 use super::prepared::Prepared;
@@ -74,14 +74,6 @@ pub fn has_measured_modes(case: &Case, name: &str) -> bool {
 /// Whether a frequency response has a measured side.
 pub fn has_measured_frf(case: &Case, name: &str) -> bool {
     case.measured.values().any(|data| data.frf.as_deref() == Some(name))
-}
-
-/// Reads the tests of a case and places them on its mesh; gives what the user should know about them.
-///
-/// # Errors
-/// Every file that cannot be read, and every point of a shape that lies off the mesh.
-pub fn check_tests(prepared: &Prepared<'_>) -> Result<Vec<String>> {
-    Ok(Tests::new(prepared, &mut frfs(prepared)?)?.warnings)
 }
 
 impl Tests {

@@ -23,6 +23,7 @@ mod missed;
 mod model;
 mod modes;
 mod motion;
+mod near;
 mod nearest;
 mod place;
 mod prepared;
@@ -40,9 +41,8 @@ mod transient;
 mod travel;
 mod verify;
 
-pub use analyse::{Selection, Sensitivities, analyse, run_case};
+pub use analyse::{Selection, Sensitivities, analyse, check_case, run_case};
 pub use calibrate::Coordinate;
-pub use compare::check_tests;
 pub use explore::{KnownMap, KnownMaps};
 pub use export::export;
 pub use keeper::{Histories, Keeper, Stage};

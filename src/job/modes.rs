@@ -1,5 +1,6 @@
 //! Real modes of one part or of the whole, with names and effective masses.
 
+use super::near::near;
 use super::prepared::Prepared;
 use crate::case::{Case, ContactState, ModesAnalysis};
 use crate::error::{Error, Fault, Faults, Result};
@@ -7,7 +8,7 @@ use crate::linalg::SparseMatrix;
 use crate::linalg::sparse::{quadratic_forms, times};
 use crate::modal::{self, ModesWanted, RealModes};
 use crate::results::{NamedModes, NodalField};
-use crate::structure::{Assembled, assemble};
+use crate::structure::{self, Assembled, assemble};
 use crate::system::{Damping, ModalDamping, Structure};
 use faer::{Mat, MatRef};
 use std::sync::Arc;
@@ -53,6 +54,24 @@ pub fn part_assembled(prepared: &Prepared, name: &str) -> Result<Arc<Assembled>>
         )));
     }
     Ok(assembled)
+}
+
+/// Whether the structure that one real-mode analysis looks at can be built.
+///
+/// # Errors
+/// Regions that are missing, or nothing that can move.
+pub fn check_part(prepared: &Prepared, name: &str) -> Result<()> {
+    let analysis = &prepared.case.modes[name];
+    if prepared.case.matrices.is_some() || of_the_whole(prepared, analysis) {
+        return Ok(());
+    }
+    structure::check(&super::model::part_model(
+        prepared.case,
+        &prepared.regions,
+        &prepared.model,
+        name,
+        analysis,
+    )?)
 }
 
 /// Which modes an analysis of a structure with `n_dofs` degrees of freedom asks for.
@@ -121,9 +140,8 @@ fn effective_masses(modes: &RealModes, assembled: &Assembled) -> Vec<[f64; 3]> {
 fn damping_ratios(case: &Case, modes: &RealModes, damping: &Damping) -> Vec<f64> {
     let mut ratios = vec![case.damping.modal_ratio; modes.len()];
     for [frequency, ratio] in &case.damping.modal_ratios {
-        let near = |k: &usize| (modes.frequency_hz(*k) - frequency).abs();
-        let nearest = (0..modes.len()).min_by(|a, b| near(a).total_cmp(&near(b)));
-        nearest.filter(|k| near(k) <= 0.1 * frequency).into_iter().for_each(|k| ratios[k] = *ratio);
+        let found = near((0..modes.len()).map(|k| modes.frequency_hz(k)), *frequency);
+        found.into_iter().for_each(|k| ratios[k] = *ratio);
     }
     for (matrix, power) in [(&damping.viscous, 1), (&damping.hysteretic, 2)] {
         let Some(matrix) = matrix else { continue };
@@ -231,10 +249,9 @@ pub fn modal_ratios(case: &Case, modes: &RealModes) -> Result<Vec<f64>> {
     let mut ratios = vec![damping.modal_ratio; modes.len()];
     let mut faults = Faults::new();
     for [frequency, ratio] in &damping.modal_ratios {
-        let near = |k: &usize| (modes.frequency_hz(*k) - frequency).abs();
-        match (0..modes.len()).min_by(|a, b| near(a).total_cmp(&near(b))) {
-            Some(k) if near(&k) <= 0.1 * frequency => ratios[k] = *ratio,
-            _ => faults.push(Fault::new(
+        match near((0..modes.len()).map(|k| modes.frequency_hz(k)), *frequency) {
+            Some(k) => ratios[k] = *ratio,
+            None => faults.push(Fault::new(
                 "`damping.modal_ratios`",
                 format!("{frequency} Hz, with no mode of the rig within 10 %"),
                 "frequencies near modes of the rig",

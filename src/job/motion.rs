@@ -41,7 +41,12 @@ pub fn motion(
             return Err(Error::input(fault.with_help("`matrices.dofs` may give them")));
         }
         None => {
-            let (words, node) = nearest(prepared, at.unwrap_or_default());
+            let at = at.unwrap_or_default();
+            let (words, node) = nearest(prepared, at);
+            if let Some(expected) = beyond(&prepared.model.nodes, at) {
+                let fault = Fault::new(format!("`{key}.at`"), format!("{at:?} m, {words}"), expected);
+                return Err(Error::input(fault.with_help("Is it in another unit?")));
+            }
             (words, vec![node])
         }
     };
@@ -63,6 +68,19 @@ pub fn spread(prepared: &Prepared<'_>, nodes: &[usize], vector: [f64; 3]) -> Spa
     let share = vector.map(|v| v / nodes.len().max(1) as f64);
     let of = |node: &usize| share.iter().enumerate().map(|(axis, v)| (*node, axis, *v)).collect::<Vec<_>>();
     prepared.assembled.dofs.reduce(&nodes.iter().flat_map(of).collect::<Vec<_>>())
+}
+
+/// What is expected of a place that lies farther from the box round all nodes than a tenth of the box's diagonal.
+fn beyond(nodes: &[[f64; 3]], place: [f64; 3]) -> Option<String> {
+    let bound = |pick: fn(f64, f64) -> f64, start: f64| {
+        [0, 1, 2].map(|axis| nodes.iter().map(|node| node[axis]).fold(start, pick))
+    };
+    let (low, high) = (bound(f64::min, f64::INFINITY), bound(f64::max, f64::NEG_INFINITY));
+    let length = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let outside = length([0, 1, 2].map(|k| (low[k] - place[k]).max(place[k] - high[k]).max(0.0)));
+    let diagonal = length([0, 1, 2].map(|k| high[k] - low[k]));
+    (outside > 0.1 * diagonal)
+        .then(|| format!("a place on the model, which reaches from {low:?} to {high:?} m"))
 }
 
 /// The node nearest to a place, and where it is in words.

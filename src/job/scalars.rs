@@ -2,7 +2,7 @@
 
 use super::contacts::with_laws;
 use super::prepared::{Prepared, external_load};
-use crate::case::{Case, Parameter, path_matches};
+use crate::case::{Case, Parameter, keys_of, path_matches};
 use crate::error::{Error, Result};
 use crate::system::System;
 
@@ -34,9 +34,12 @@ pub enum Kind {
 pub type LeftOut = (String, String);
 
 /// The scalars that `patterns` name, in the order of the case, and those of them that have no derivative.
-pub fn chosen(case: &Case, patterns: &[String]) -> (Vec<Scalar>, Vec<LeftOut>) {
+///
+/// # Errors
+/// A case that has what no file may say.
+pub fn chosen(case: &Case, patterns: &[String]) -> Result<(Vec<Scalar>, Vec<LeftOut>)> {
     let (mut scalars, mut left_out) = (Vec::new(), Vec::new());
-    for Parameter { path, value, unit, .. } in case.parameters() {
+    for Parameter { path, value, unit, .. } in case.parameters()? {
         if path.starts_with("sensitivity.") || !patterns.iter().any(|pattern| path_matches(pattern, &path)) {
             continue;
         }
@@ -46,12 +49,13 @@ pub fn chosen(case: &Case, patterns: &[String]) -> (Vec<Scalar>, Vec<LeftOut>) {
             Err(reason) => left_out.push((path, reason.to_string())),
         }
     }
-    (scalars, left_out)
+    Ok((scalars, left_out))
 }
 
 /// What a scalar belongs to; `None` when no eigenvalue depends on it; the reason when λ has no derivative by it.
 fn kind(path: &str) -> std::result::Result<Option<Kind>, &'static str> {
-    let keys: Vec<&str> = path.split('.').collect();
+    let keys = keys_of(path);
+    let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
     match keys[..] {
         ["modes" | "cea" | "frf" | "measured" | "calibrate", ..] | ["contact", _, "bristle", _] => Ok(None),
         ["mesh", .., "contact_size" | "contact_radius" | "disc_size" | "slider_size"] => {

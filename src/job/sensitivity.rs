@@ -1,6 +1,7 @@
 //! What the unstable modes of a case answer to: its scalars, and small things mounted on its nodes.
 
 use super::modes::modal_ratios;
+use super::near::near;
 use super::prepared::Prepared;
 use super::scalars::{Kind, Scalar, chosen};
 use super::verify;
@@ -46,8 +47,8 @@ impl Analysed<'_> {
         wanted: &SensitivityAnalysis,
         observer: &dyn Observer,
     ) -> Result<SensitivityResult> {
-        let (scalars, mut left_out) = chosen(self.prepared.case, &wanted.parameters);
-        let picked = self.chosen_modes(&wanted.modes);
+        let (scalars, mut left_out) = chosen(self.prepared.case, &wanted.parameters)?;
+        let picked = self.chosen_modes(&wanted.modes)?;
         let modes: Vec<&ComplexMode> = picked.iter().map(|k| &self.modes.modes[*k]).collect();
         if modes.is_empty() {
             return Ok(SensitivityResult { modes: Vec::new(), left_out });
@@ -125,7 +126,10 @@ impl Analysed<'_> {
 
     /// Indices of the modes nearest to `frequencies`, or of the unstable ones, or of the one nearest to instability;
     /// ascending.
-    fn chosen_modes(&self, frequencies: &[f64]) -> Vec<usize> {
+    ///
+    /// # Errors
+    /// A frequency that no mode is near.
+    fn chosen_modes(&self, frequencies: &[f64]) -> Result<Vec<usize>> {
         let modes = &self.modes.modes;
         let by_growth = |a: &usize, b: &usize| modes[*b].growth_rate().total_cmp(&modes[*a].growth_rate());
         let mut picked: Vec<usize> = if frequencies.is_empty() {
@@ -135,15 +139,22 @@ impl Analysed<'_> {
             all.truncate(unstable.clamp(1, MOST_MODES));
             all
         } else {
-            let near = |f: &f64| {
-                let distance = |k: &usize| (modes[*k].frequency_hz() - f).abs();
-                (0..modes.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))
+            let nearest = |hz: &f64| {
+                near(modes.iter().map(ComplexMode::frequency_hz), *hz).ok_or_else(|| {
+                    let found =
+                        format!("no complex mode within 10 % of {hz} Hz, which `sensitivity.modes` names");
+                    Error::analysis(
+                        "sensitivities",
+                        found,
+                        "Name frequencies near complex modes, or none for those that grow",
+                    )
+                })
             };
-            frequencies.iter().filter_map(near).collect()
+            frequencies.iter().map(nearest).collect::<Result<_>>()?
         };
         picked.sort_unstable();
         picked.dedup();
-        picked
+        Ok(picked)
     }
 
     /// dλ/dp of every chosen mode.

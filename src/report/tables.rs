@@ -192,7 +192,11 @@ pub(super) fn complex(result: &ComplexResult) -> Table {
             fixed(mode.frequency_hz(), 1),
             signed(mode.growth_rate(), 2),
             signed(100.0 * mode.damping_ratio(), 3),
-            if mode.unstable() { "UNSTABLE".into() } else { String::new() },
+            match (mode.unstable(), mode.undecided()) {
+                (true, _) => "UNSTABLE".into(),
+                (false, true) => "undecided".into(),
+                _ => String::new(),
+            },
             power(mode.backward_error),
             power(mode.eigenvalue_error),
             significant(mode.condition, 2),
@@ -396,10 +400,19 @@ pub(super) fn verdict(results: &RunResults) -> String {
     let modes = &complex.modes.modes;
     let unstable = modes.iter().filter(|m| m.unstable()).count();
     let between = format!("between {} and {} Hz", band[0], band[1]);
+    let undecided = modes.iter().filter(|m| m.undecided()).count();
+    let doubt = match undecided {
+        0 => String::new(),
+        n => format!(" The growth rates of {n} are within their errors."),
+    };
     match (modes.len(), unstable) {
+        (0, _) => format!("No complex mode was found {between}: this run says nothing about squeal there."),
+        (all, 0) if undecided > 0 => {
+            format!("Undecided: none of the {all} complex modes {between} grows for certain.{doubt}")
+        }
         (all, 0) => format!("Stable: none of the {all} complex modes {between} grows."),
-        (all, 1) => format!("Unstable: 1 of {all} complex modes {between} grows."),
-        (all, n) => format!("Unstable: {n} of {all} complex modes {between} grow."),
+        (all, 1) => format!("Unstable: 1 of {all} complex modes {between} grows.{doubt}"),
+        (all, n) => format!("Unstable: {n} of {all} complex modes {between} grow.{doubt}"),
     }
 }
 

@@ -126,6 +126,7 @@ struct Pair<'a> {
 struct Cea<'a> {
     band_hz: [f64; 2],
     unstable: usize,
+    undecided: usize,
     subspace_dimension: usize,
     refinements: usize,
     eigenvalues: Vec<Eigenvalue<'a>>,
@@ -181,6 +182,7 @@ struct Eigenvalue<'a> {
     growth_rate: f64,
     damping_ratio: f64,
     unstable: bool,
+    undecided: bool,
     backward_error: f64,
     eigenvalue_error: f64,
     condition: f64,
@@ -387,6 +389,7 @@ fn cea(result: &ComplexResult) -> Cea<'_> {
         growth_rate: mode.growth_rate(),
         damping_ratio: mode.damping_ratio(),
         unstable: mode.unstable(),
+        undecided: mode.undecided(),
         backward_error: mode.backward_error,
         eigenvalue_error: mode.eigenvalue_error,
         condition: mode.condition,
@@ -402,6 +405,7 @@ fn cea(result: &ComplexResult) -> Cea<'_> {
     Cea {
         band_hz: result.band_hz,
         unstable: result.modes.modes.iter().filter(|m| m.unstable()).count(),
+        undecided: result.modes.modes.iter().filter(|m| m.undecided()).count(),
         subspace_dimension: result.modes.subspace_dimension,
         refinements: result.modes.refinements,
         eigenvalues: eigenvalues.collect(),

@@ -83,7 +83,7 @@ pub fn read_search(path: &Path) -> Result<SearchFile> {
 }
 
 fn read_root(root: &Section, file: &str, case: Case) -> SearchFile {
-    let scalars = case.parameters();
+    let scalars = root.take(case.parameters()).unwrap_or_default();
     let parameters: Vec<(String, CalibratedParameter)> =
         root.named("parameter", |name, s| (name.to_string(), read_parameter(s, &case, Some(&scalars))));
     let checks = root.named("fact", |name, s| {
@@ -99,8 +99,8 @@ fn read_root(root: &Section, file: &str, case: Case) -> SearchFile {
     }
     SearchFile {
         name: String::new(),
-        title: root.string("title").required("one line"),
-        source: root.string("source").required("where the facts come from"),
+        title: root.text("title").required("one line"),
+        source: root.text("source").required("where the facts come from"),
         cases: BTreeMap::from([(file.to_string(), case.clone())]),
         case,
         evaluations: root.count("evaluations").or(1000),

@@ -116,15 +116,25 @@ impl ComplexMode {
         self.right.len() == n && self.left.len() == n
     }
 
-    /// Whether the mode grows by more than round-off.
+    /// Whether the mode grows by more than round-off and the error of λ.
     pub fn unstable(&self) -> bool {
-        unstable(self.eigenvalue)
+        unstable(self.eigenvalue) && !self.undecided()
+    }
+
+    /// Whether |σ| is within the error of λ, and that error beyond round-off: so it is where flutter sets in and two modes have
+    /// become one, λ being as exact there as the root of round-off.
+    pub fn undecided(&self) -> bool {
+        let error = self.eigenvalue_error.max(ROUNDING * self.condition);
+        error > ROUND_OFF && self.eigenvalue.re.abs() <= error * self.eigenvalue.norm()
     }
 }
 
 /// A mode counts as unstable when σ exceeds this share of |λ|: the round-off of an undamped mode is below it, and past
 /// a flutter onset, where σ grows like the square root of the distance, it is reached within 1e-18 of the onset.
 pub const ROUND_OFF: f64 = 1e-9;
+
+/// The error of λ over |λ| that rounding leaves, by the condition number of λ.
+const ROUNDING: f64 = 10.0 * f64::EPSILON;
 
 /// Whether a mode grows by more than round-off.
 pub fn unstable(lambda: c64) -> bool {

@@ -123,6 +123,16 @@ fn two_dof_critical_friction_and_stiffness_are_those_of_the_closed_form() {
 }
 
 #[test]
+fn at_the_onset_of_flutter_growth_is_undecided() {
+    let of = |mu: f64| {
+        let modes = modes_of(&two_dof(0.5, 1.0, mu), 2, [0.0, 500.0]).modes;
+        let count = |is: fn(&ComplexMode) -> bool| modes.iter().filter(|mode| is(mode)).count();
+        [count(ComplexMode::unstable), count(ComplexMode::undecided)]
+    };
+    assert_eq!((of(0.62), of(0.625), of(0.63)), ([0, 0], [0, 2], [1, 0]));
+}
+
+#[test]
 fn two_dof_without_tangential_spring_never_flutters_at_moderate_friction() {
     for k in 1..200 {
         let found = modes_of(&two_dof(0.0, 0.05 * k as f64, 0.4), 2, [0.0, 10.0]);

@@ -1,9 +1,20 @@
 //! Whether a model can be assembled: every fault at once, before any matrix.
 
+use super::dofs::DofMap;
 use super::elements::{Beam, FlatShell, split_face, spring_direction};
 use super::model::{Material, Model};
 use crate::error::{Fault, Faults, Result};
 use crate::mesh::Element;
+use std::collections::{BTreeMap, HashMap};
+
+/// Whether `model` can be assembled, without assembling it.
+///
+/// # Errors
+/// Those of [`assemble`](super::assemble).
+pub fn check(model: &Model) -> Result<()> {
+    check_model(model)?;
+    DofMap::new(model).map(|_| ())
+}
 
 /// The faults of `model`, all of them; of like faults in one part the first, with their number.
 pub(super) fn check_model(model: &Model) -> Result<()> {
@@ -73,6 +84,7 @@ pub(super) fn check_model(model: &Model) -> Result<()> {
             ));
         }
     }
+    shared_elements(model, &mut faults);
     for (k, point) in model.masses.iter().enumerate() {
         let place = format!("point mass {}", k + 1);
         missing_nodes(
@@ -133,6 +145,30 @@ fn shape(nodes: &[[f64; 3]], face: &Element) -> Shape {
     if normals.iter().any(turned) { Shape::Folded } else { Shape::Sound }
 }
 
+/// Elements that two parts have: their stiffness and mass would count twice.
+fn shared_elements(model: &Model, faults: &mut Faults) {
+    if model.shells.len() + model.bars.len() < 2 {
+        return;
+    }
+    let shells = model.shells.iter().flat_map(|part| part.faces.iter().map(|f| (&part.name, f.nodes())));
+    let bars = model.bars.iter().flat_map(|part| part.elements.iter().map(|e| (&part.name, &e[..])));
+    let mut owners: HashMap<Vec<usize>, &String> = HashMap::new();
+    let mut shared: BTreeMap<[&String; 2], usize> = BTreeMap::new();
+    for (name, nodes) in shells.chain(bars) {
+        let mut nodes = nodes.to_vec();
+        nodes.sort_unstable();
+        let owner = *owners.entry(nodes).or_insert(name);
+        if owner != name {
+            *shared.entry([owner, name]).or_default() += 1;
+        }
+    }
+    for ([owner, name], count) in shared {
+        let found = format!("{count} elements that `{owner}` has, too");
+        let fault = Fault::new(format!("part `{name}`"), found, "elements of its own");
+        faults.push(fault.with_help("Stiffness and mass would count twice: give each element to one part"));
+    }
+}
+
 fn check_material(place: &str, material: &Material, faults: &mut Faults) {
     positive(place, "Young's modulus", material.youngs_modulus, "Pa", faults);
     let nu = material.poissons_ratio;
@@ -181,5 +217,37 @@ fn missing_nodes<'a>(
             ),
             format!("nodes 1 to {n_nodes}"),
         ));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::structure::{RayleighDamping, ShellPart};
+
+    #[test]
+    fn an_element_belongs_to_one_part() {
+        let material = Material {
+            youngs_modulus: 210e9,
+            poissons_ratio: 0.3,
+            density: 7850.0,
+            loss_factor: 0.0,
+            rayleigh: RayleighDamping::default(),
+        };
+        let plate = |name: &str, faces: &[[usize; 3]]| ShellPart {
+            name: name.into(),
+            faces: faces.iter().map(|nodes| Element::Triangle(*nodes)).collect(),
+            material,
+            thickness: 1e-3,
+            bending_only: false,
+            rotary_inertia: true,
+        };
+        let nodes = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+        let apart = [plate("a", &[[0, 1, 2]]), plate("b", &[[1, 3, 2]])];
+        let model = Model { nodes, shells: apart.to_vec(), ..Model::default() };
+        assert!(check(&model).is_ok());
+        let shared = [plate("a", &[[0, 1, 2]]), plate("b", &[[1, 3, 2], [2, 0, 1]])];
+        let error = check(&Model { shells: shared.to_vec(), ..model }).unwrap_err().to_string();
+        assert!(error.contains("part `b`: found 1 elements that `a` has, too"), "{error}");
     }
 }

@@ -18,6 +18,7 @@ mod scatter;
 mod warnings;
 
 pub use assembly::{Assembled, GeometricStiffness, assemble};
+pub use check::check;
 pub use dofs::{DofMap, FreeDof};
 pub use model::{
     BarPart, Material, Model, PointMass, RayleighDamping, RigidLink, Section, ShellPart, Spring, Support,

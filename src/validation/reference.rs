@@ -214,10 +214,10 @@ pub fn read(folder: &Path) -> Result<Reference> {
     })?;
     let ((title, source, checks), _) = read_document(&path.display().to_string(), &text, |root| {
         let case = root.string("case").or("case.toml".into());
-        let reason = root.string("reason").or(String::new());
+        let reason = root.text("reason").or(String::new());
         (
-            root.string("title").required("one line"),
-            root.string("source").required("where the reference values come from"),
+            root.text("title").required("one line"),
+            root.text("source").required("where the reference values come from"),
             root.named("check", |name, s| read_check(name, s, &case, &reason)),
         )
     })?;
@@ -259,7 +259,7 @@ pub fn read_check(name: &str, s: &Section, case: &str, reason: &str) -> Check {
         second: second.flatten(),
         tolerance: relative.or(absolute).unwrap_or(0.0),
         relative: relative.is_some(),
-        reason: s.string("reason").or(reason.to_string()),
+        reason: s.text("reason").or(reason.to_string()),
     }
 }
 

@@ -142,7 +142,7 @@ pub(super) fn check_sensitivity(root: &Section, case: &Case) {
         return;
     };
     // The scalars of the model: what is asked about them is none.
-    let parameters = Case { sensitivity: None, ..case.clone() }.parameters();
+    let Some(parameters) = root.take(Case { sensitivity: None, ..case.clone() }.parameters()) else { return };
     let paths = || parameters.iter().map(|p| p.path.as_str());
     for pattern in
         analysis.parameters.iter().filter(|pattern| !paths().any(|path| path_matches(pattern, path)))

@@ -114,7 +114,7 @@ fn every_number_of_a_case_is_a_parameter_with_unit_and_bounds() {
         }
     }
     let case = parse(RIG).unwrap();
-    let parameters = case.parameters();
+    let parameters = case.parameters().unwrap();
     assert_eq!(parameters.len(), count(&toml::Value::try_from(&case).unwrap()));
     for p in &parameters {
         assert!(p.accepts(p.value), "{p:?}");
@@ -160,6 +160,34 @@ fn every_fault_is_found_at_once_with_its_line() {
     ] {
         assert!(error.contains(expected), "{expected} not in\n{error}");
     }
+}
+
+#[test]
+fn what_is_empty_or_beyond_all_measure_is_refused() {
+    for (from, to, expected) in [
+        ("material = \"steel\"\nthickness", "material = \"\"\nthickness", "at least one character"),
+        ("body = \"rim\"", "body = \"\"", "contact.rim.body"),
+        ("counter = \"slider\"", "counter = \"\"", "contact.rim.counter"),
+        ("follow = \"hub\"", "follow = []", "at least one"),
+        ("on = \"bar_clamp\"", "on = \"a\\nb\"", "support.clamp.on"),
+        ("[support.clamp]", "[support.\"\"]", "a name of at least one character"),
+        ("density = 7850", "density = 1e-100", "1e-60 to 1e60"),
+        ("below = \"3 kHz\"", "count = 9223372036854775807", "to a billion"),
+        ("mu1 = 0.1", "mu1 = -0.4", "mu0 + mu1, is zero or more"),
+        ("band = [0, \"6 kHz\"]", "nearest = 1e308\ncount = 1", "1e-60 to 1e60"),
+        (
+            "[sensitivity]",
+            "[transient]\nduration = 1\ntime_step = 0.1\nmodel = \"reduced\"\n\
+             compare_steps = 1e20\n[sensitivity]",
+            "transient.compare_steps",
+        ),
+    ] {
+        assert!(RIG.contains(from), "{from}");
+        let error = parse(&RIG.replacen(from, to, 1)).unwrap_err().to_string();
+        assert!(error.contains(expected), "{to}: {expected} not in\n{error}");
+    }
+    let case = parse(&RIG.replace("band = [0, \"6 kHz\"]", "nearest = 1e60\ncount = 1")).unwrap();
+    assert_eq!(Case::parse("again", &case.to_toml(), ".".into()).unwrap(), case);
 }
 
 #[test]

@@ -1,4 +1,5 @@
 use super::*;
+use crate::job::frf::frfs;
 use crate::job::modes::part_modes;
 use crate::job::samples::disc;
 use crate::linalg::random::Random;

@@ -2,10 +2,14 @@
 
 use super::InTime;
 use crate::case::Disturbance;
-use crate::error::{Error, Fault, Result};
+use crate::error::{Error, Result};
+use crate::job::near::near;
 use crate::linalg::c64;
 use crate::reduction::Reduced;
-use crate::stability::{ModalFilter, modal_filter};
+use crate::stability::{ComplexMode, ModalFilter, modal_filter};
+
+/// What cannot go on without a mode.
+const PLACE: &str = "the disturbance of the motion in time";
 
 /// A complex mode, and what measures its amplitude.
 pub(super) struct Along {
@@ -45,25 +49,26 @@ impl InTime<'_> {
         Ok(Along { mode, eigenvalue: own.eigenvalue, shape: own.right.clone(), filter, largest })
     }
 
-    /// The mode nearest to a frequency, one that grows if any does, or the one that grows fastest.
-    fn mode(&self, near: Option<f64>) -> Result<usize> {
+    /// The mode nearest to a frequency, one that grows if any near it does, or the one that grows fastest.
+    fn mode(&self, near_hz: Option<f64>) -> Result<usize> {
         let modes = &self.complex.modes.modes;
-        let all = 0..modes.len();
-        let grows = modes.iter().any(|mode| mode.unstable());
-        let chosen = match near {
-            // Of a pair that coupled it is the one that grows that is meant.
-            Some(hz) => all.filter(|k| modes[*k].unstable() || !grows).min_by(|a, b| {
-                let distance = |k: usize| (modes[k].frequency_hz() - hz).abs();
-                distance(*a).total_cmp(&distance(*b))
-            }),
-            None => all.max_by(|a, b| modes[*a].growth_rate().total_cmp(&modes[*b].growth_rate())),
+        let by_growth = |a: &usize, b: &usize| modes[*a].growth_rate().total_cmp(&modes[*b].growth_rate());
+        let Some(hz) = near_hz else {
+            return (0..modes.len()).max_by(by_growth).ok_or_else(|| {
+                let help = "Widen `cea.band`, or start without a [transient.disturbance]";
+                Error::analysis(PLACE, "no complex mode in the band of [cea]", help)
+            });
         };
-        chosen.ok_or_else(|| {
-            Error::input(Fault::new(
-                "`transient.disturbance`",
-                "no complex mode in the band of [cea]",
-                "a band with modes",
-            ))
+        // Of a pair that coupled it is the one that grows that is meant.
+        let far = |mode: &ComplexMode| if mode.unstable() { mode.frequency_hz() } else { f64::INFINITY };
+        let found = near(modes.iter().map(far), hz);
+        found.or_else(|| near(modes.iter().map(ComplexMode::frequency_hz), hz)).ok_or_else(|| {
+            let found = format!("no complex mode within 10 % of {hz} Hz, where `mode_near` looks for one");
+            Error::analysis(
+                PLACE,
+                found,
+                "Name a frequency near one of the modes, or none for the one that grows fastest",
+            )
         })
     }
 }
