@@ -1,7 +1,11 @@
 //! One error type that carries data: what was wrong, where, what was expected and what to do about it.
 
+pub mod text;
+
+use std::collections::HashMap;
 use std::fmt;
 use std::path::PathBuf;
+use text::phrase;
 
 /// The result of everything in stridor that can fail.
 pub type Result<T> = std::result::Result<T, Error>;
@@ -13,7 +17,7 @@ pub enum Error {
     #[error("{0}")]
     Input(Faults),
     /// The input is well formed, but the analysis cannot give an answer. Exit code 1.
-    #[error("{what}: {found}. {help}")]
+    #[error("{}: {}. {}", phrase(what), phrase(found), sentence(help))]
     Analysis {
         /// The analysis and the step in it, such as `steady sliding, Newton iteration 25`.
         what: String,
@@ -23,7 +27,7 @@ pub enum Error {
         help: String,
     },
     /// The machine refused: a full disk, a folder that is not writable. Exit code 1.
-    #[error("{}: {source}. {help}", path.display())]
+    #[error("{}: {}. {}", text::printable(&path.display().to_string()), phrase(&source.to_string()), sentence(help))]
     Io {
         /// The file or folder concerned.
         path: PathBuf,
@@ -101,12 +105,19 @@ impl Fault {
     }
 }
 
+/// Advice with its full stop.
+fn sentence(help: &str) -> String {
+    let stop = if help.is_empty() || help.ends_with(['.', '?']) { "" } else { "." };
+    format!("{}{stop}", phrase(help))
+}
+
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: found {}; expected {}.", self.place, self.found, self.expected)?;
+        let (place, found, expected) =
+            (text::place(&self.place), phrase(&self.found), phrase(&self.expected));
+        write!(f, "{place}: found {found}; expected {expected}.")?;
         if !self.help.is_empty() {
-            let stop = if self.help.ends_with(['.', '?']) { "" } else { "." };
-            write!(f, " {}{stop}", self.help)?;
+            write!(f, " {}", sentence(&self.help))?;
         }
         Ok(())
     }
@@ -148,18 +159,54 @@ impl Faults {
     }
 }
 
+/// How many places a message lists for one fault, and how many faults of one kind.
+const LISTED: usize = 12;
+
+impl Faults {
+    /// Faults that differ in nothing but their place as one, which lists the places.
+    fn joined(&self) -> Vec<Fault> {
+        let mut joined: Vec<(&Fault, Vec<&str>)> = Vec::new();
+        let mut known = HashMap::new();
+        for fault in &self.0 {
+            let at = *known.entry((&fault.found, &fault.expected, &fault.help)).or_insert_with(|| {
+                joined.push((fault, Vec::new()));
+                joined.len() - 1
+            });
+            joined[at].1.push(&fault.place);
+        }
+        let one = |(fault, mut places): (&Fault, Vec<&str>)| {
+            places.dedup();
+            let more = places.len().saturating_sub(LISTED);
+            let mut place = places[..places.len() - more].join(", ");
+            if more > 0 {
+                place += &format!(" and {more} more places");
+            }
+            Fault { place, ..fault.clone() }
+        };
+        joined.into_iter().map(one).collect()
+    }
+}
+
 impl fmt::Display for Faults {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.0.as_slice() {
-            [one] => write!(f, "{one}"),
-            many => {
-                write!(f, "{} faults in the input:", many.len())?;
-                for fault in many {
-                    write!(f, "\n  - {fault}")?;
-                }
-                Ok(())
+        let faults = self.joined();
+        if let [one] = faults.as_slice() {
+            return write!(f, "{one}");
+        }
+        write!(f, "{} faults in the input:", faults.len())?;
+        let mut of_kind: HashMap<(&str, &str), usize> = HashMap::new();
+        for fault in &faults {
+            let count = of_kind.entry((&fault.expected, &fault.help)).or_default();
+            *count += 1;
+            if *count <= LISTED {
+                write!(f, "\n  - {fault}")?;
             }
         }
+        let hidden: usize = of_kind.values().map(|count| count.saturating_sub(LISTED)).sum();
+        if hidden > 0 {
+            write!(f, "\n  … and {hidden} more of the same kind.")?;
+        }
+        Ok(())
     }
 }
 
@@ -186,6 +233,45 @@ mod tests {
         let text = error.to_string();
         assert!(text.contains("2 faults") && text.contains("disc.thickness") && text.contains("Steel"));
         assert_eq!(error.exit_code(), 2);
+    }
+
+    #[test]
+    fn one_cause_is_one_fault_and_long_lists_end() {
+        let missing = |key: &str| Fault::new(key, "\"stel\"", "the name of a material (steel)");
+        let two = Faults(vec![missing("`shell.disc.material`"), missing("`bar.bar.material`")]);
+        let expected = "`shell.disc.material`, `bar.bar.material`: found \"stel\"; expected the name of a material (steel).";
+        assert_eq!(two.to_string(), expected);
+        let many = Faults((0..40).map(|k| missing(&format!("`shell.{k}.material`"))).collect());
+        assert!(
+            many.to_string().contains("`shell.11.material` and 28 more places: found \"stel\""),
+            "{many}"
+        );
+        let cell = |k: usize| Fault::new(format!("a.csv:{k}"), format!("\"x{k}\""), "a finite number");
+        let mut cells = Faults((0..40).map(cell).collect());
+        cells.push(Fault::new("a.csv:50", "2 cells", "3, as in the heading"));
+        let text = cells.to_string();
+        assert_eq!(text.lines().count(), 1 + LISTED + 1 + 1, "{text}");
+        assert!(
+            text.contains("41 faults")
+                && text.contains("3, as in")
+                && text.ends_with("28 more of the same kind.")
+        );
+    }
+
+    #[test]
+    fn what_is_echoed_is_short_and_steers_no_terminal() {
+        let fault =
+            Fault::new("a.toml:1 `a\u{1b}[2J`", format!("\"{}\u{202e}\"", "x".repeat(300)), "a length");
+        let errors = [
+            Error::input(fault),
+            Error::analysis("a\u{7}", "b\u{1b}", "c\r"),
+            Error::io("/tmp/\u{1b}[31m", "no\u{9b}", "Try \u{2066}"),
+        ];
+        for error in errors {
+            let text = error.to_string();
+            assert!(!text.contains(|c: char| c.is_control() || "\u{202e}\u{2066}".contains(c)), "{text}");
+            assert!(text.chars().count() < 160, "{text}");
+        }
     }
 
     #[test]

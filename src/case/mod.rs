@@ -30,6 +30,7 @@ pub(crate) use parameter::path_matches;
 pub use parameter::{Invalidates, Parameter};
 pub(crate) use read::DOF_NAMES;
 pub use read::read_case;
+pub use reader::Places;
 pub use sound::{AirChoice, Microphone, ON_AXIS, SoundAnalysis};
 pub use test_file::read_test;
 pub use transient::{
@@ -54,6 +55,9 @@ pub struct Case {
     /// The folder that relative paths start from.
     #[serde(skip)]
     pub folder: PathBuf,
+    /// Where its keys stand in the file.
+    #[serde(skip)]
+    pub places: Places,
     /// The mesh, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh: Option<MeshSource>,

@@ -98,7 +98,8 @@ impl Case {
         };
         *slot = Value::Float(value);
         let text = toml::to_string(&table).unwrap_or_default();
-        Case::parse(&format!("{path} = {value}"), &text, self.folder.clone())
+        let case = Case::parse(&format!("{path} = {value}"), &text, self.folder.clone())?;
+        Ok(Case { places: self.places.clone(), ..case })
     }
 
     /// The same case with the scalars at some paths set to values \[SI\], one after the other.

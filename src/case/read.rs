@@ -9,7 +9,8 @@ use self::check::{check_names, check_sensitivity};
 use super::reader::{LARGEST, Quantity, Section, read_document};
 use super::units::*;
 use super::*;
-use crate::error::{Error, Fault, Result};
+use crate::error::Result;
+use crate::error::text::read_text;
 use crate::structure;
 use std::f64::consts::FRAC_PI_4;
 use std::ops::Bound;
@@ -20,17 +21,7 @@ use std::path::Path;
 /// # Errors
 /// Every fault of the file, each with its line and key.
 pub fn read_case(path: &Path) -> Result<Case> {
-    let text = std::fs::read_to_string(path).map_err(|error| {
-        let found = match error.kind() {
-            std::io::ErrorKind::NotFound => "no file there".to_string(),
-            std::io::ErrorKind::InvalidData => "bytes that are not UTF-8 text".to_string(),
-            _ => error.to_string(),
-        };
-        Error::input(
-            Fault::new(path.display().to_string(), found, "a case file in TOML")
-                .with_help("`stridor new NAME` writes one to start from"),
-        )
-    })?;
+    let text = read_text(path, "a case file in TOML, such as `stridor new NAME` writes")?;
     let folder = path.parent().unwrap_or(Path::new(".")).to_path_buf();
     Case::parse(&path.display().to_string(), &text, folder)
 }
@@ -57,6 +48,7 @@ fn read_root(root: &Section, folder: PathBuf) -> Case {
         assumptions: root.texts("assumptions").or(Vec::new()),
         prestress: root.boolean("prestress").or(false),
         folder,
+        places: root.places(),
         mesh: root.section("mesh", super::mesh::read),
         matrices: root.section("matrices", super::matrices::read),
         point: root

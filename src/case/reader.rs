@@ -3,7 +3,8 @@
 use super::keys::dotted;
 use super::units::{Dimension, NUMBER, parse_quantity};
 use crate::error::{Error, Fault, Faults, Result, nearest};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
 use std::ops::{Bound, RangeBounds};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -16,9 +17,55 @@ const MOST: usize = 1_000_000_000;
 /// A parsed TOML text and the faults found in it so far.
 pub struct Reader<'a> {
     file: &'a str,
-    text: &'a str,
-    faults: RefCell<Faults>,
+    /// Where each line begins.
+    lines: Vec<usize>,
+    /// Faults with the byte they are at.
+    faults: RefCell<Vec<(usize, Fault)>>,
+    /// Whether a table of named tables is none, so that names are unknown that the text may have meant to define.
+    nameless: Cell<bool>,
     quantities: RefCell<Vec<Quantity>>,
+}
+
+/// Where the keys of a case stand in its file. Two of them are always equal: a case is what it says, not where.
+#[derive(Debug, Clone, Default)]
+pub struct Places {
+    file: String,
+    /// The line of each key, by its path.
+    lines: BTreeMap<String, usize>,
+}
+
+impl PartialEq for Places {
+    fn eq(&self, _: &Places) -> bool {
+        true
+    }
+}
+
+impl Places {
+    /// The same error; faults whose place begins with a key in back-ticks get file and line before it, in the order of
+    /// the lines.
+    pub(crate) fn locate(&self, error: Error) -> Error {
+        let Error::Input(Faults(faults)) = error else { return error };
+        let mut located: Vec<(usize, Fault)> =
+            faults.into_iter().map(|fault| self.with_line(fault)).collect();
+        located.sort_by_key(|(line, _)| *line);
+        Error::Input(Faults(located.into_iter().map(|(_, fault)| fault).collect()))
+    }
+
+    fn with_line(&self, fault: Fault) -> (usize, Fault) {
+        let key = fault.place.strip_prefix('`').and_then(|rest| rest.split('`').next());
+        let Some(key) = key.filter(|_| !self.file.is_empty()) else { return (0, fault) };
+        let mut path = key;
+        let line = loop {
+            match (self.lines.get(path), path.rsplit_once('.')) {
+                (Some(line), _) => break Some(*line),
+                (None, Some((parent, _))) => path = parent,
+                (None, None) => break None,
+            }
+        };
+        let line_of = line.map_or(String::new(), |line| format!(":{line}"));
+        let place = format!("{}{line_of} {}", self.file, fault.place);
+        (line.unwrap_or(0), Fault { place, ..fault })
+    }
 }
 
 /// A number that the text gives, with what its reader knows about it.
@@ -57,7 +104,13 @@ pub fn read_document<T>(
     text: &str,
     read: impl FnOnce(&Section) -> T,
 ) -> Result<(T, Vec<Quantity>)> {
-    let reader = Reader { file, text, faults: RefCell::default(), quantities: RefCell::default() };
+    let reader = Reader {
+        file,
+        lines: std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect(),
+        faults: RefCell::default(),
+        nameless: Cell::new(false),
+        quantities: RefCell::default(),
+    };
     let root = DeTable::parse(text).map_err(|error| {
         let line = error.span().map_or(1, |span| reader.line(span.start));
         let found = format!("`{}`", text.lines().nth(line - 1).unwrap_or("").trim());
@@ -76,12 +129,15 @@ pub fn read_document<T>(
     let value = read(&section);
     section.finish();
     drop(section);
-    reader.faults.into_inner().into_result((value, reader.quantities.into_inner()))
+    let mut faults = reader.faults.into_inner();
+    faults.sort_by_key(|(offset, _)| *offset);
+    let faults = Faults(faults.into_iter().map(|(_, fault)| fault).collect());
+    faults.into_result((value, reader.quantities.into_inner()))
 }
 
 impl Reader<'_> {
     fn line(&self, offset: usize) -> usize {
-        1 + self.text.as_bytes()[..offset.min(self.text.len())].iter().filter(|b| **b == b'\n').count()
+        self.lines.partition_point(|start| *start <= offset)
     }
 }
 
@@ -123,7 +179,10 @@ impl<'a> Section<'a> {
 
     /// The value of `result`; its faults are noted.
     pub fn take<T>(&self, result: Result<T>) -> Option<T> {
-        self.reader.faults.borrow_mut().take(result)
+        let mut faults = Faults::new();
+        let value = faults.take(result);
+        self.reader.faults.borrow_mut().extend(faults.0.into_iter().map(|fault| (self.start, fault)));
+        value
     }
 
     fn note(
@@ -135,7 +194,8 @@ impl<'a> Section<'a> {
         help: &str,
     ) {
         let place = format!("{}:{} `{path}`", self.reader.file, self.reader.line(offset));
-        self.reader.faults.borrow_mut().push(Fault::new(place, found, expected).with_help(help));
+        let fault = Fault::new(place, found, expected).with_help(help);
+        self.reader.faults.borrow_mut().push((offset, fault));
     }
 
     fn path_of(&self, key: &str) -> String {
@@ -194,7 +254,29 @@ impl<'a> Section<'a> {
 
     /// Whether the text has no fault so far.
     pub fn sound_so_far(&self) -> bool {
-        self.reader.faults.borrow().0.is_empty()
+        self.reader.faults.borrow().is_empty()
+    }
+
+    /// Whether every table of named tables is one, so that a name that is not there was not meant to be.
+    pub fn all_named(&self) -> bool {
+        !self.reader.nameless.get()
+    }
+
+    /// Where the keys of this table stand, and those of the tables in it.
+    pub fn places(&self) -> Places {
+        let mut places = Places { file: self.reader.file.to_string(), lines: BTreeMap::new() };
+        let mut tables = vec![(self.path.clone(), self.table)];
+        while let Some((path, table)) = tables.pop() {
+            for (key, value) in table {
+                let name = key.get_ref();
+                let path = if path.is_empty() { name.to_string() } else { format!("{path}.{name}") };
+                if let Some(table) = value.get_ref().as_table() {
+                    tables.push((path.clone(), table));
+                }
+                places.lines.insert(path, self.reader.line(key.span().start));
+            }
+        }
+        places
     }
 
     /// Whether the table has `key`.
@@ -342,7 +424,9 @@ impl<'a> Section<'a> {
     pub fn choice(&'a self, key: &str, choices: &[&'static str]) -> Found<'a, &'static str> {
         self.find(key, &format!("one of {}", choices.join(", ")), |value| {
             let text = string_of(value)?;
-            choices.iter().find(|c| **c == text).copied().ok_or(format!("\"{text}\""))
+            let near = nearest(&text, choices.iter().copied());
+            let meant = near.map_or(String::new(), |near| format!(" (did you mean \"{near}\"?)"));
+            choices.iter().find(|c| **c == text).copied().ok_or(format!("\"{text}\"{meant}"))
         })
     }
 
@@ -366,9 +450,22 @@ impl<'a> Section<'a> {
         Some(result)
     }
 
-    /// A table of named tables `[key.NAME]`, in the order of their names.
+    /// A table of named tables `[key.NAME]`, in the order of their names. What stands right under `[key]` is one fault,
+    /// as the name was left out.
     pub fn named<T>(&self, key: &str, mut read: impl FnMut(&str, &Section) -> T) -> Vec<T> {
+        if self.has(key) && !self.is_table(key) {
+            self.reader.nameless.set(true);
+        }
         self.section(key, |all| {
+            let stray: Vec<String> = all.names().into_iter().filter(|name| !all.is_table(name)).collect();
+            if let Some(first) = stray.first() {
+                let path = all.path_of("");
+                let found = format!("`{}` right under [{path}]", stray.join("`, `"));
+                all.fault(first, found, format!("a table with a name of its own, [{path}.NAME]"), "");
+                all.skip(&all.names().iter().map(String::as_str).collect::<Vec<_>>());
+                all.reader.nameless.set(true);
+                return Vec::new();
+            }
             all.sound_names().iter().filter_map(|name| all.section(name, |one| read(name, one))).collect()
         })
         .unwrap_or_default()

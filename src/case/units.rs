@@ -90,7 +90,13 @@ pub fn parse_quantity(text: &str, expected: Dimension) -> Result<f64, String> {
     let (factor, powers) = parse_unit(text[split..].trim())
         .ok_or_else(|| format!("\"{text}\", whose unit \"{}\" is not known", text[split..].trim()))?;
     if powers != expected.powers {
-        return Err(format!("\"{text}\", a unit of another dimension"));
+        let unit = text[split..].trim();
+        return Err(match unit {
+            "" => {
+                format!("\"{text}\", a number without a unit (in SI, write {number} without quotation marks)")
+            }
+            _ => format!("\"{text}\", whose unit \"{unit}\" is of another dimension"),
+        });
     }
     Ok(number * factor)
 }

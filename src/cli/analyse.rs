@@ -1,7 +1,7 @@
 //! `stridor run`, `modes`, `cea` and `sweep`.
 
 use super::progress::Bars;
-use super::{Common, say};
+use super::{Common, give, say};
 use crate::case::read_case;
 use crate::error::Result;
 use crate::job::{Selection, run_case};
@@ -27,9 +27,10 @@ pub struct Options {
 pub fn run(options: &Options, common: &Common, selection: Selection) -> Result<ExitCode> {
     let case = read_case(&options.case)?;
     let out = options.out.clone().unwrap_or_else(|| PathBuf::from("results").join(case_name(&options.case)));
-    let results = run_case(&case, selection, &out, options.resume, &Bars::new(common.quiet))?;
+    let results = run_case(&case, selection, &out, options.resume, &Bars::new(common.quiet));
+    let results = results.map_err(|error| case.places.locate(error))?;
     if common.json {
-        say(crate::results::summary_json(&results))?;
+        give(crate::results::summary_json(&results))?;
     } else if !common.quiet {
         say(report::text::summary(&results))?;
         say(format!("Results are in {}: open report.html, or *.vtu in ParaView.", out.display()))?;

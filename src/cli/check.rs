@@ -1,6 +1,6 @@
 //! `stridor check`: the case and its mesh, without an analysis.
 
-use super::{Common, say};
+use super::{Common, give, say};
 use crate::case::{Parameter, read_case};
 use crate::error::Result;
 use crate::job::{Prepared, check_case};
@@ -24,9 +24,9 @@ pub struct Options {
 pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
     let case = read_case(&options.case)?;
     let prepared = Prepared::new(&case)?;
-    let warnings = check_case(&prepared)?;
+    let warnings = check_case(&prepared).map_err(|error| case.places.locate(error))?;
     if options.resolved {
-        say(case.to_toml().trim_end())?;
+        give(case.to_toml().trim_end())?;
     }
     if options.parameters {
         for p in case.parameters()? {

@@ -36,10 +36,10 @@ pub struct Output {
 #[derive(Args)]
 pub struct Fine {
     /// Element size at the contact
-    #[arg(long, default_value = "0.4 mm", value_parser = length)]
+    #[arg(long, default_value = "0.4 mm", value_parser = length, allow_hyphen_values = true)]
     contact_size: f64,
     /// Distance from the contact within which elements stay fine
-    #[arg(long, default_value = "2 mm", value_parser = length)]
+    #[arg(long, default_value = "2 mm", value_parser = length, allow_hyphen_values = true)]
     contact_radius: f64,
 }
 
@@ -55,13 +55,13 @@ pub struct DiscOptions {
     #[command(flatten)]
     output: Output,
     /// Outer radius
-    #[arg(long, default_value = "75 mm", value_parser = length)]
+    #[arg(long, default_value = "75 mm", value_parser = length, allow_hyphen_values = true)]
     outer_radius: f64,
     /// Radius of the hub; 0 for a full disc
-    #[arg(long, default_value = "20 mm", value_parser = length)]
+    #[arg(long, default_value = "20 mm", value_parser = length, allow_hyphen_values = true)]
     hub_radius: f64,
     /// Element size away from the contact
-    #[arg(long, default_value = "3 mm", value_parser = length)]
+    #[arg(long, default_value = "3 mm", value_parser = length, allow_hyphen_values = true)]
     size: f64,
     #[command(flatten)]
     fine: Fine,
@@ -72,10 +72,10 @@ pub struct PlateOptions {
     #[command(flatten)]
     output: Output,
     /// Length along x
-    #[arg(long, default_value = "200 mm", value_parser = length)]
+    #[arg(long, default_value = "200 mm", value_parser = length, allow_hyphen_values = true)]
     length: f64,
     /// Width along y
-    #[arg(long, default_value = "120 mm", value_parser = length)]
+    #[arg(long, default_value = "120 mm", value_parser = length, allow_hyphen_values = true)]
     width: f64,
     /// Position of the contact along x, from the middle
     #[arg(long, default_value = "0", value_parser = length, allow_hyphen_values = true)]
@@ -84,7 +84,7 @@ pub struct PlateOptions {
     #[arg(long, default_value = "0", value_parser = length, allow_hyphen_values = true)]
     contact_y: f64,
     /// Element size away from the contact
-    #[arg(long, default_value = "8 mm", value_parser = length)]
+    #[arg(long, default_value = "8 mm", value_parser = length, allow_hyphen_values = true)]
     size: f64,
     #[command(flatten)]
     fine: Fine,
@@ -95,10 +95,10 @@ pub struct RigOptions {
     #[command(flatten)]
     output: Output,
     /// Outer radius of the disc
-    #[arg(long, default_value = "75 mm", value_parser = length)]
+    #[arg(long, default_value = "75 mm", value_parser = length, allow_hyphen_values = true)]
     outer_radius: f64,
     /// Radius of the hub
-    #[arg(long, default_value = "20.75 mm", value_parser = length)]
+    #[arg(long, default_value = "20.75 mm", value_parser = length, allow_hyphen_values = true)]
     hub_radius: f64,
     /// Length of the bar from the hub to the clamp; negative for a bar along +x
     #[arg(long, default_value = "75 mm", value_parser = length, allow_hyphen_values = true)]
@@ -107,19 +107,19 @@ pub struct RigOptions {
     #[arg(long, default_value_t = 10)]
     bar_elements: usize,
     /// Length of the slider along x
-    #[arg(long, default_value = "200 mm", value_parser = length)]
+    #[arg(long, default_value = "200 mm", value_parser = length, allow_hyphen_values = true)]
     slider_length: f64,
     /// Width of the slider along y
-    #[arg(long, default_value = "120 mm", value_parser = length)]
+    #[arg(long, default_value = "120 mm", value_parser = length, allow_hyphen_values = true)]
     slider_width: f64,
     /// Thickness of the slider
-    #[arg(long, default_value = "10 mm", value_parser = length)]
+    #[arg(long, default_value = "10 mm", value_parser = length, allow_hyphen_values = true)]
     slider_thickness: f64,
     /// Element size of the disc away from the contact
-    #[arg(long, default_value = "3 mm", value_parser = length)]
+    #[arg(long, default_value = "3 mm", value_parser = length, allow_hyphen_values = true)]
     disc_size: f64,
     /// Element size of the slider away from the contact
-    #[arg(long, default_value = "8 mm", value_parser = length)]
+    #[arg(long, default_value = "8 mm", value_parser = length, allow_hyphen_values = true)]
     slider_size: f64,
     #[command(flatten)]
     fine: Fine,
@@ -188,7 +188,9 @@ fn rig_spec(o: &RigOptions) -> RigSpec {
 }
 
 fn write(mesh: &Mesh, output: &Output, common: &Common) -> Result<()> {
-    refuse_existing(&output.out, output.force)?;
+    if !output.force {
+        refuse_existing(&output.out, "`--force` overwrites it")?;
+    }
     mesh::write(&output.out, mesh, 1e-3)?;
     if !common.quiet {
         say(format!("{}\nwritten to {} in millimetres", Info::of(mesh), output.out.display()))?;
@@ -196,13 +198,11 @@ fn write(mesh: &Mesh, output: &Output, common: &Common) -> Result<()> {
     Ok(())
 }
 
-/// Refuses to overwrite what is there.
-pub(super) fn refuse_existing(path: &Path, force: bool) -> Result<()> {
-    if path.exists() && !force {
-        return Err(Error::input(
-            Fault::new(path.display().to_string(), "something there already", "a new name")
-                .with_help("--force overwrites it"),
-        ));
+/// Refuses to overwrite what is there; `help` says what else to do.
+pub(super) fn refuse_existing(path: &Path, help: &str) -> Result<()> {
+    if path.exists() {
+        let fault = Fault::new(path.display().to_string(), "something there already", "a new name");
+        return Err(Error::input(fault.with_help(help)));
     }
     Ok(())
 }

@@ -12,6 +12,7 @@ mod progress;
 mod search;
 mod validate;
 
+use crate::error::text::printable_lines;
 use crate::error::{Error, Fault, Result};
 use clap::{Args, Parser, Subcommand};
 use std::fmt::Display;
@@ -116,8 +117,13 @@ fn act(command: &Command) -> Result<ExitCode> {
     }
 }
 
-/// Prints a line on stdout. A reader that has gone away, such as `head`, has seen what it wanted.
+/// Prints lines for people on stdout, without characters that steer the terminal.
 fn say(text: impl Display) -> Result<()> {
+    give(printable_lines(&text.to_string()))
+}
+
+/// Prints data on stdout as it is. A reader that has gone away, such as `head`, has seen what it wanted.
+fn give(text: impl Display) -> Result<()> {
     match writeln!(std::io::stdout(), "{text}") {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             Err(Error::io("standard output", error, "The results folder, if any, is complete"))
@@ -140,4 +146,52 @@ fn set_threads(threads: Option<usize>) -> Result<()> {
         .num_threads(threads)
         .build_global()
         .map_err(|error| Error::analysis("starting threads", error.to_string(), "Try fewer --threads"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Command;
+    use clap::CommandFactory;
+    use std::collections::BTreeSet;
+    use std::path::Path;
+
+    /// What the sources below `folder` say, their unit tests and comments left out.
+    fn words(folder: &Path, text: &mut String) {
+        for entry in std::fs::read_dir(folder).unwrap().flatten() {
+            let path = entry.path();
+            if path.is_dir() {
+                words(&path, text);
+            } else if !path.ends_with("tests.rs") {
+                let file = std::fs::read_to_string(&path).unwrap();
+                let code = file.split("#[cfg(test)]\nmod tests {").next().unwrap();
+                text.extend(code.lines().filter(|line| !line.trim_start().starts_with("//")));
+            }
+        }
+    }
+
+    /// The words that follow `mark` in `text`.
+    fn after(text: &str, mark: &str) -> BTreeSet<String> {
+        let word = |(at, _): (usize, &str)| -> String {
+            text[at + mark.len()..].chars().take_while(|c| c.is_ascii_lowercase() || *c == '-').collect()
+        };
+        text.match_indices(mark).map(word).filter(|word| !word.is_empty()).collect()
+    }
+
+    #[test]
+    fn every_flag_and_command_that_a_message_names_exists() {
+        let mut text = String::new();
+        words(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut text);
+        let mut flags = BTreeSet::from(["help".to_string(), "version".to_string()]);
+        let mut commands = BTreeSet::new();
+        let mut left = vec![Command::command()];
+        while let Some(command) = left.pop() {
+            flags.extend(command.get_arguments().filter_map(|a| Some(a.get_long()?.to_string())));
+            commands.insert(command.get_name().to_string());
+            left.extend(command.get_subcommands().cloned());
+        }
+        let (named, called) = (after(&text, "--"), after(&text, "`stridor "));
+        assert!(named.len() >= 5 && called.len() >= 2, "{named:?} {called:?}");
+        assert!(named.is_subset(&flags), "no such flag: {:?}", named.difference(&flags));
+        assert!(called.is_subset(&commands), "no such command: {:?}", called.difference(&commands));
+    }
 }

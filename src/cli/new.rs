@@ -20,7 +20,7 @@ pub struct Options {
 
 pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
     let folder = &options.name;
-    refuse_existing(folder, false)?;
+    refuse_existing(folder, "Choose another name, or move it away")?;
     std::fs::create_dir_all(folder)
         .map_err(|error| Error::io(folder, error, "Choose a folder that can be written"))?;
     crate::mesh::write(&folder.join("rig.msh"), &generate::rig(&RigSpec::medium())?, 1e-3)?;

@@ -1,5 +1,6 @@
 //! Progress bars on stderr; silent when stderr is not a terminal or the user asked for quiet.
 
+use crate::error::text::printable;
 use crate::progress::Observer;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::Mutex;
@@ -41,7 +42,7 @@ impl Observer for Bars {
             if let Ok(style) = ProgressStyle::with_template(template) {
                 bar.set_style(style.progress_chars("=> "));
             }
-            bar.set_message(stage.to_string());
+            bar.set_message(printable(stage));
             bar.enable_steady_tick(Duration::from_millis(100));
         });
     }

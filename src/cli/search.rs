@@ -1,7 +1,7 @@
 //! `stridor search`: numbers of a case, so that it meets facts of any kind.
 
 use super::progress::Bars;
-use super::{Common, say};
+use super::{Common, give, say};
 use crate::error::Result;
 use crate::report::{search_text, write_search};
 use crate::results::FolderLock;
@@ -30,7 +30,7 @@ pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
     result.write(&out)?;
     write_search(&out, &result)?;
     if common.json {
-        say(serde_json::to_string_pretty(&result.to_json()).expect("numbers and strings are JSON"))?;
+        give(serde_json::to_string_pretty(&result.to_json()).expect("numbers and strings are JSON"))?;
     } else if !common.quiet {
         say(search_text(&result))?;
         say(format!("Results are in {}: open search.html; the case is found.toml.", out.display()))?;

@@ -1,7 +1,7 @@
 //! `stridor validate`: computed beside reference, one row a quantity.
 
 use super::progress::Bars;
-use super::{Common, complain, say};
+use super::{Common, complain, give, say};
 use crate::error::Result;
 use crate::report::write_validation;
 use crate::results::{FolderLock, passed};
@@ -26,7 +26,7 @@ pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
     let _lock = options.report.as_deref().map(FolderLock::take).transpose()?;
     let cases = validation::run(&options.from, options.filter.as_deref(), &Bars::new(common.quiet))?;
     if common.json {
-        say(validation::to_json(&cases))?;
+        give(validation::to_json(&cases))?;
     } else if !common.quiet {
         say(validation::table(&cases).trim_end())?;
     }

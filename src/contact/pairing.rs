@@ -74,20 +74,20 @@ pub type Reduce<'a> = dyn Fn(&[(usize, usize, f64)]) -> SparseVector + 'a;
 /// Contact nodes that are not on the body, a counter-body out of reach (with the distance), beside it, through it, or
 /// left by the stroke.
 pub fn pair_surfaces(surfaces: &Surfaces<'_>, reduce: &Reduce<'_>) -> Result<Vec<ContactPoint>> {
-    let place = format!("contact `{}`", surfaces.name);
-    let touching = touching_nodes(surfaces, &place)?;
+    let place = |key: &str| format!("`contact.{}.{key}`", surfaces.name);
+    let touching = touching_nodes(surfaces, &place("body"))?;
     let mean = touching.iter().fold([0.0; 3], |sum, t| add(sum, surfaces.nodes[t.node]));
     let mean = scale(1.0 / touching.len() as f64, mean);
     let plate = Plate::new(surfaces.nodes, &surfaces.counter.faces, mean).ok_or_else(|| {
         let found = "faces without area or turned against each other";
         Error::input(Fault::new(
-            format!("part `{}`", surfaces.counter.name),
-            found,
+            place("counter"),
+            format!("`{}`, a part with {found}", surfaces.counter.name),
             "faces that look one way",
         ))
     })?;
     let candidates: Vec<Candidate> = candidates(surfaces, &plate, &touching);
-    check_nearest(surfaces, &plate, &candidates, &place)?;
+    check_nearest(surfaces, &plate, &candidates)?;
     let kept = keep(surfaces.patch, candidates);
     let mut faults = Faults::new();
     let mut points = Vec::with_capacity(kept.len());
@@ -102,7 +102,7 @@ pub fn pair_surfaces(surfaces: &Surfaces<'_>, reduce: &Reduce<'_>) -> Result<Vec
         if length.is_nan() || length <= 0.1 * whole.sqrt() {
             let found = format!("{:?}, along the counter-body's normal", surfaces.sliding_direction);
             return Err(Error::input(Fault::new(
-                format!("{place}, sliding direction"),
+                place("sliding_direction"),
                 found,
                 "a direction along its face",
             )));
@@ -118,11 +118,7 @@ pub fn pair_surfaces(surfaces: &Surfaces<'_>, reduce: &Reduce<'_>) -> Result<Vec
                 "{} m, which leaves `{}` at {:?}",
                 surfaces.stroke, surfaces.counter.name, candidate.position
             );
-            faults.push(Fault::new(
-                format!("{place}, stroke"),
-                found,
-                "a stroke that stays on the counter-body",
-            ));
+            faults.push(Fault::new(place("stroke"), found, "a stroke that stays on the counter-body"));
         }
         let direction = |w: Vector, sign: f64| {
             let mut terms = Vec::with_capacity(24);
@@ -243,32 +239,61 @@ fn candidates(surfaces: &Surfaces<'_>, plate: &Plate, touching: &[Touching]) -> 
     all
 }
 
-fn check_nearest(surfaces: &Surfaces<'_>, plate: &Plate, all: &[Candidate], place: &str) -> Result<()> {
-    let Some(nearest) = all.iter().min_by(|a, b| a.gap.total_cmp(&b.gap)) else { return Ok(()) };
-    let (ContactPatch::Reach(reach) | ContactPatch::Nearest(reach)) = surfaces.patch;
-    let counter = &surfaces.counter.name;
+/// Refuses bodies out of reach, beside or inside each other, so that at least one point is kept.
+fn check_nearest(surfaces: &Surfaces<'_>, plate: &Plate, all: &[Candidate]) -> Result<()> {
+    let lowest = |a: &&Candidate, b: &&Candidate| a.gap.total_cmp(&b.gap);
+    let Some(nearest) = all.iter().min_by(lowest) else { return Ok(()) };
+    let (counter, body) = (&surfaces.counter.name, &surfaces.body);
+    let the_nearest = format!("the nearest of {} points of `{}`", all.len(), body.name);
+    let faces = surfaces.counter.faces.len();
     let mut faults = Faults::new();
-    if nearest.gap > reach {
-        let found = format!("`{counter}` {:.4e} m away from the nearest contact point", nearest.gap);
-        let expected = format!("a distance within the reach of {reach:.4e} m");
-        faults.push(
-            Fault::new(place, found, expected).with_help("Move the bodies together or check the mesh's unit"),
-        );
-    }
+    let mut beside = |what: &str, help: &str| {
+        let found = format!("{the_nearest} at {:?}, {what} ({faces} faces)", nearest.position);
+        let expected = format!("a contact position on `{counter}`");
+        faults.push(Fault::new(format!("`contact.{}`", surfaces.name), found, expected).with_help(help));
+    };
+    let over = all.iter().filter(|c| c.foot.is_some()).min_by(lowest);
     // A point of a curved edge may overhang the plate; the nearest one must stand on it.
     if nearest.foot.is_none() && plate.foot(surfaces.nodes[nearest.node]).is_none() {
-        let found = format!("the nearest contact point at {:?}, beside `{counter}`", nearest.position);
-        faults.push(Fault::new(place, found, format!("a contact position on `{counter}`")));
+        let help = "Move the bodies over each other, or choose another `body` or `counter`";
+        beside(&format!("beside `{counter}`"), help);
+    } else if over.is_none() {
+        let help = format!(
+            "Its node is over `{counter}`: look at the thickness of `{}`, {} m",
+            body.name, body.thickness
+        );
+        beside(&format!("which stands over none of the faces of `{counter}`"), &help);
+    }
+    check_gap(surfaces, nearest, over, &the_nearest, &mut faults);
+    faults.into_result(())
+}
+
+/// Refuses a nearest point that is out of reach or inside the counter-body; `over` is the nearest of those over it.
+fn check_gap(
+    surfaces: &Surfaces<'_>,
+    nearest: &Candidate,
+    over: Option<&Candidate>,
+    the_nearest: &str,
+    faults: &mut Faults,
+) {
+    let (ContactPatch::Reach(reach) | ContactPatch::Nearest(reach)) = surfaces.patch;
+    let place = |key: &str| format!("`contact.{}{key}`", surfaces.name);
+    let gap = over.map_or(nearest.gap, |over| over.gap);
+    if gap > reach {
+        let found = format!("{the_nearest} {gap:.4e} m away from `{}`", surfaces.counter.name);
+        let expected = format!("a distance within the reach of {reach:.4e} m");
+        let help = format!(
+            "Move the bodies together or check the mesh's unit; `reach = \"{:.3} mm\"` would take this point in",
+            1.01e3 * gap
+        );
+        faults.push(Fault::new(place(".reach"), found, expected).with_help(help));
     }
     let thickness = 0.5 * (surfaces.body.thickness + surfaces.counter.thickness);
     if nearest.foot.is_some() && nearest.gap < -thickness {
         let found = format!("the bodies {:.4e} m inside each other", -nearest.gap);
-        faults.push(
-            Fault::new(place, found, "bodies that just touch")
-                .with_help("Check the contact position and the thicknesses"),
-        );
+        let fault = Fault::new(place(""), found, "bodies that just touch");
+        faults.push(fault.with_help("Check the contact position and the thicknesses"));
     }
-    faults.into_result(())
 }
 
 fn keep(patch: ContactPatch, all: Vec<Candidate>) -> Vec<Candidate> {

@@ -5,7 +5,8 @@ use super::prepared::Prepared;
 use crate::case::{
     CalibrateAnalysis, Case, ContactPoints, Matrices, SQUEAL, Slide, TransientAnalysis, path_matches,
 };
-use crate::error::{Error, Fault, Result};
+use crate::error::Result;
+use crate::error::text::read_bytes;
 use crate::linalg::SparseMatrix;
 use crate::linalg::matrix_market::to_text;
 use crate::linalg::sparse::{add_scaled, entry};
@@ -83,11 +84,7 @@ pub fn export(case: &Case, out: &Path) -> Result<Vec<String>> {
         let path = case.folder.join(&*file);
         let kind = path.extension().unwrap_or_default().to_string_lossy();
         let own = format!("measured_{name}.{kind}");
-        let content = std::fs::read(&path).map_err(|error| {
-            let key = format!("`measured.{name}.file`");
-            Error::input(Fault::new(key, format!("{}: {error}", path.display()), "a file"))
-        })?;
-        write_atomically(out, &own, &content)?;
+        write_atomically(out, &own, &read_bytes(&path, "a file of measured data")?)?;
         *file = own;
     }
     write("case.toml", exported.to_toml())?;

@@ -2,6 +2,7 @@
 
 use super::table::Table;
 use crate::case::{Case, MeasuredData, read_test};
+use crate::error::text::{read_bytes, read_text};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::measured::{MeasuredSet, ModeRecord, Records, uff};
 use crate::mesh::unit_in_metres;
@@ -54,12 +55,10 @@ fn read_file(case: &Case, name: &str, file: &str, unit: f64) -> Result<Records> 
     let shown = path.display().to_string();
     let kind = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     let key = format!("`measured.{name}.file`");
-    let unreadable =
-        |error: std::io::Error| Error::input(Fault::new(&*key, format!("{shown}: {error}"), "a file"));
     match kind.as_str() {
         "csv" => table(&Table::read(&path, &COLUMNS[..1], &COLUMNS)?),
-        "toml" => read_test(&shown, &std::fs::read_to_string(&path).map_err(unreadable)?),
-        "uff" | "unv" | "uf" | "ufb" => uff::read(&shown, &std::fs::read(&path).map_err(unreadable)?, unit),
+        "toml" => read_test(&shown, &read_text(&path, "a test in TOML")?),
+        "uff" | "unv" | "uf" | "ufb" => uff::read(&shown, &read_bytes(&path, "a universal file")?, unit),
         _ => Err(Error::input(Fault::new(key, format!("\"{file}\""), "a file .uff, .unv, .csv or .toml"))),
     }
 }

@@ -18,6 +18,7 @@ mod export;
 mod frf;
 mod imported;
 mod keeper;
+mod links;
 mod measured;
 mod missed;
 mod model;

@@ -1,10 +1,11 @@
 //! Case and mesh → the plain description of the structure, for the whole or for some of its parts.
 
+use super::links::{rigid_links, supports};
 use super::regions::Regions;
-use crate::case::{Case, DOF_NAMES, ModesAnalysis};
-use crate::error::{Faults, Result};
+use crate::case::{Case, ModesAnalysis};
+use crate::error::{Fault, Faults, Result};
 use crate::mesh::Element;
-use crate::structure::{BarPart, Model, PointMass, RigidLink, ShellPart, Spring, Support};
+use crate::structure::{BarPart, Model, PointMass, ShellPart, Spring, Support};
 
 /// The structure of the whole case.
 ///
@@ -48,6 +49,11 @@ pub fn whole_model(case: &Case, regions: &Regions) -> Result<Model> {
             faults.take(regions.nodes(&spring.on, &format!("`spring.{name}.on`"))).unwrap_or_default();
         let other =
             spring.to.as_ref().and_then(|to| faults.take(regions.node(to, &format!("`spring.{name}.to`"))));
+        if let Some(node) = other.filter(|other| nodes.contains(other)) {
+            let found = format!("{}, which is in region \"{}\", too", regions.name_of_node(node), spring.on);
+            let expected = "a point that is not among those of `on`, or no `to` for a spring to the ground";
+            faults.push(Fault::new(format!("`spring.{name}.to`"), found, expected));
+        }
         for node in &nodes {
             model.springs.push(Spring {
                 node: *node,
@@ -59,19 +65,8 @@ pub fn whole_model(case: &Case, regions: &Regions) -> Result<Model> {
             });
         }
     }
-    for (name, rigid) in &case.rigid {
-        let master = faults.take(regions.node(&rigid.master, &format!("`rigid.{name}.master`")));
-        let mut slaves = nodes_of(regions, &rigid.follow, &format!("`rigid.{name}.follow`"), &mut faults);
-        slaves.retain(|slave| Some(*slave) != master);
-        if let Some(master) = master {
-            model.links.push(RigidLink { master, slaves });
-        }
-    }
-    for (name, support) in &case.support {
-        let nodes = nodes_of(regions, &support.on, &format!("`support.{name}.on`"), &mut faults);
-        let held = DOF_NAMES.map(|dof| support.held.iter().any(|name| name == dof));
-        model.supports.push(Support { nodes, held });
-    }
+    model.links = rigid_links(case, regions, &mut faults);
+    model.supports = supports(case, regions, &model.links, &mut faults);
     faults.into_result(model)
 }
 
@@ -100,7 +95,7 @@ pub fn part_model(
         model.links = whole.links.clone();
         model.supports = whole.supports.clone();
     }
-    let clamp = nodes_of(regions, &analysis.clamp, &format!("`modes.{name}.clamp`"), &mut faults);
+    let clamp = regions.nodes_of(&analysis.clamp, &format!("`modes.{name}.clamp`"), &mut faults);
     let mut used = vec![!case.point.is_empty() && analysis.parts.is_empty(); model.nodes.len()];
     for part in &model.shells {
         part.faces.iter().flat_map(Element::nodes).for_each(|n| used[*n] = true);
@@ -121,13 +116,4 @@ pub fn part_model(
     model.supports.push(Support { nodes: clamp, held: [true; 6] });
     model.supports.retain(|support| !support.nodes.is_empty());
     faults.into_result(model)
-}
-
-/// The nodes of several regions, ascending, each once.
-fn nodes_of(regions: &Regions, names: &[String], place: &str, faults: &mut Faults) -> Vec<usize> {
-    let mut nodes: Vec<usize> =
-        names.iter().filter_map(|name| faults.take(regions.nodes(name, place))).flatten().collect();
-    nodes.sort_unstable();
-    nodes.dedup();
-    nodes
 }

@@ -39,6 +39,10 @@ impl<'a> Prepared<'a> {
     /// # Errors
     /// Every fault of the mesh and of the names that tie the case to it.
     pub fn new(case: &'a Case) -> Result<Self> {
+        Self::build(case).map_err(|error| case.places.locate(error))
+    }
+
+    fn build(case: &'a Case) -> Result<Self> {
         let (mesh, warnings) = match &case.mesh {
             Some(source) => read_mesh(case, source)?,
             None => (Mesh::default(), Vec::new()),

@@ -1,6 +1,6 @@
 //! The mesh of a case with the case's own points, and its regions by name.
 
-use crate::case::Case;
+use crate::case::{Case, MeshSource};
 use crate::error::{Error, Fault, Faults, Result, nearest};
 use crate::mesh::{Element, Mesh, Region};
 
@@ -9,6 +9,8 @@ use crate::mesh::{Element, Mesh, Region};
 pub struct Regions {
     /// The mesh, in metres.
     pub mesh: Mesh,
+    /// The file of the mesh, in back-ticks, or `the mesh`.
+    name: String,
 }
 
 impl Regions {
@@ -23,7 +25,11 @@ impl Regions {
                 elements: vec![mesh.elements.len() - 1],
             });
         }
-        Regions { mesh }
+        let name = match &case.mesh {
+            Some(MeshSource::File { file, .. }) => format!("`{file}`"),
+            _ => "the mesh".to_string(),
+        };
+        Regions { mesh, name }
     }
 
     /// The region `name`, that `place` asks for.
@@ -36,7 +42,7 @@ impl Regions {
             let known = if names.is_empty() { "it has none".to_string() } else { names.join(", ") };
             let help = nearest(name, names).map_or(String::new(), |near| format!("Did you mean \"{near}\"?"));
             Error::input(
-                Fault::new(place, format!("\"{name}\""), format!("a region of the mesh ({known})"))
+                Fault::new(place, format!("\"{name}\""), format!("a region of {} ({known})", self.name))
                     .with_help(help),
             )
         })
@@ -78,6 +84,33 @@ impl Regions {
     /// The nodes of region `name`, ascending.
     pub fn nodes(&self, name: &str, place: &str) -> Result<Vec<usize>> {
         Ok(self.mesh.region_nodes(self.region(name, place)?))
+    }
+
+    /// The nodes of several regions, ascending, each once; regions that are missing are noted in `faults`.
+    pub fn nodes_of(&self, names: &[String], place: &str, faults: &mut Faults) -> Vec<usize> {
+        let mut nodes: Vec<usize> =
+            names.iter().filter_map(|name| faults.take(self.nodes(name, place))).flatten().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+
+    /// A node for a message: its number in the mesh file, and its region if that has only this node.
+    pub fn name_of_node(&self, node: usize) -> String {
+        let own = self.mesh.regions.iter().find(|region| {
+            region.dimension == 0
+                && matches!(region.elements[..], [e] if self.mesh.elements[e].nodes() == [node])
+        });
+        let own = own.map_or(String::new(), |region| format!(" (`{}`)", region.name));
+        format!("node {}{own}", self.mesh.node_tag(node))
+    }
+
+    /// Nodes for a message: `24 nodes, the first node 32,`, or the name of the only one.
+    pub fn count_of_nodes(&self, nodes: &[usize]) -> String {
+        match nodes {
+            [node] => self.name_of_node(*node),
+            _ => format!("{} nodes, the first {},", nodes.len(), self.name_of_node(nodes[0])),
+        }
     }
 
     /// The only node of region `name`.

@@ -1,6 +1,7 @@
 //! Small tables in text files: a heading that names the columns, then one row a line (CSV without quotes).
 
-use crate::error::{Error, Fault, Faults, Result};
+use crate::error::text::read_text;
+use crate::error::{Fault, Faults, Result};
 use std::path::Path;
 
 /// A table with the file it comes from.
@@ -26,9 +27,8 @@ impl Table {
     /// No such file, columns that are not known, missing or named twice, rows of another length.
     pub fn read(path: &Path, required: &[&str], known: &[&str]) -> Result<Table> {
         let name = path.display().to_string();
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| Error::input(Fault::new(name.clone(), error.to_string(), "a table (CSV)")))?;
-        let heading = text.lines().next().unwrap_or("").trim_start_matches('\u{feff}');
+        let text = read_text(path, "a table (CSV)")?;
+        let heading = text.lines().next().unwrap_or("");
         let separator = if heading.contains(';') { ';' } else { ',' };
         let columns: Vec<String> = heading.split(separator).map(|c| c.trim().to_lowercase()).collect();
         let mut faults = Faults::new();

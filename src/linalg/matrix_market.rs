@@ -7,6 +7,7 @@
 
 use super::sparse::{Index, compressed};
 use super::{SparseMatrix, c64};
+use crate::error::text::read_bytes;
 use crate::error::{Error, Fault, Faults, Result};
 use rayon::prelude::*;
 use std::fmt::Write as _;
@@ -58,14 +59,7 @@ struct Entry {
 /// beyond the file, entries outside the matrix or the triangle, numbers that are none or not finite, entries missing.
 pub fn read(path: &Path) -> Result<MarketMatrix> {
     let name = path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|error| {
-        let found = match error.kind() {
-            std::io::ErrorKind::NotFound => "no file there".to_string(),
-            _ => error.to_string(),
-        };
-        Error::input(Fault::new(name.clone(), found, "a MatrixMarket file"))
-    })?;
-    parse(&name, &bytes)
+    parse(&name, &read_bytes(path, "a MatrixMarket file")?)
 }
 
 /// Reads the bytes of a file that faults call `name`.

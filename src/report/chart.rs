@@ -1,5 +1,6 @@
 //! What the charts share: a sheet of plotters' SVG backend, its text styles, axes that end on round numbers.
 
+use super::html::allowed;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -23,7 +24,8 @@ pub(super) fn sheet(
         draw(&area).ok()?;
         area.present().ok()?;
     }
-    Some(svg)
+    // plotters writes control characters as they are.
+    Some(allowed(&svg))
 }
 
 /// A colour of [`super::colours`], written `#rrggbb`.
@@ -77,10 +79,10 @@ mod tests {
     #[test]
     fn colours_and_user_text_reach_the_sheet() {
         let svg = sheet((200, 100), |area| {
-            area.draw_text("a < b", &text(14.0, "#d55e00"), (10, 10))?;
+            area.draw_text("a < b\u{1b}\u{ffff}", &text(14.0, "#d55e00"), (10, 10))?;
             Ok(())
         })
         .unwrap();
-        assert!(svg.contains("a &lt; b") && svg.to_lowercase().contains("#d55e00"));
+        assert!(svg.contains("a &lt; b\\u{1b}\n") && svg.to_lowercase().contains("#d55e00"));
     }
 }

@@ -1,6 +1,7 @@
 //! The page: one plain HTML file with its style and its pictures inside, no script.
 
 use super::tables::{self, Table};
+use crate::error::text::printable_lines;
 use crate::results::RunResults;
 
 /// A picture with its file name and its caption.
@@ -193,17 +194,21 @@ fn notes(content: &Table) -> String {
     content.notes.iter().map(|note| format!("<p class=\"note\">{}</p>\n", escape(note))).collect()
 }
 
-/// User text made harmless in HTML and XML; control characters that XML forbids are left out.
+/// `text` without characters that XML 1.0 forbids; they, and those that turn the direction of writing, become `\u{…}`.
+pub(super) fn allowed(text: &str) -> String {
+    printable_lines(text).replace(['\u{fffe}', '\u{ffff}'], "")
+}
+
+/// User text made harmless in HTML and XML.
 pub(super) fn escape(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
-    for c in text.chars() {
+    for c in allowed(text).chars() {
         match c {
             '&' => safe.push_str("&amp;"),
             '<' => safe.push_str("&lt;"),
             '>' => safe.push_str("&gt;"),
             '"' => safe.push_str("&quot;"),
             '\'' => safe.push_str("&#39;"),
-            c if c.is_control() && !matches!(c, '\n' | '\t') => {}
             c => safe.push(c),
         }
     }
@@ -239,11 +244,15 @@ mod tests {
     #[test]
     fn user_text_cannot_break_the_page() {
         let mut results = sample::rig();
-        results.warnings = vec!["</div><script>alert('x')</script>\u{1}".into()];
+        results.warnings = vec!["</div><script>alert('x')</script>\u{1}\u{ffff}\u{202e}".into()];
         results.resolved_case = "a = \"</pre><script>\"".into();
         results.modes[0].name = "<b>disc</b>".into();
         let page = page(&results, &[]);
-        assert!(!page.contains("<script") && !page.contains("<b>") && !page.contains('\u{1}'));
+        assert!(
+            !page.contains("<script")
+                && !page.contains("<b>")
+                && !page.contains(['\u{1}', '\u{ffff}', '\u{202e}'])
+        );
         assert!(page.contains("Disc on slider &lt;reference &amp; &quot;first&quot; case&gt;"));
         assert_eq!(page.matches("<div").count(), page.matches("</div>").count());
     }

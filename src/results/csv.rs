@@ -165,30 +165,36 @@ fn sensitivities(result: &SensitivityResult) -> String {
 }
 
 /// Lines of comma-separated fields.
-pub(super) struct Table {
-    pub(super) text: String,
+#[derive(Debug, Default)]
+pub(crate) struct Table {
+    /// The lines so far, each with its end.
+    pub(crate) text: String,
 }
 
 impl Table {
     pub(super) fn new(header: &[&str]) -> Self {
-        let mut table = Table { text: String::new() };
+        let mut table = Table::default();
         table.row(header);
         table
     }
 
-    pub(super) fn row(&mut self, fields: &[impl AsRef<str>]) {
+    /// Adds a line of fields.
+    pub(crate) fn row(&mut self, fields: &[impl AsRef<str>]) {
         let quoted: Vec<String> = fields.iter().map(|field| quote(field.as_ref())).collect();
         self.text.push_str(&quoted.join(","));
         self.text.push('\n');
     }
 }
 
-/// A field in quotes where it needs them (RFC 4180).
+/// A field in quotes where it needs them (RFC 4180). Text that a spreadsheet would take for a formula begins with an
+/// apostrophe, which makes it text there.
 fn quote(field: &str) -> String {
-    if field.contains([',', '"', '\n', '\r']) {
+    let formula = field.starts_with(['=', '+', '-', '@', '\t', '\r']) && field.parse::<f64>().is_err();
+    let field = if formula { format!("'{field}") } else { field.to_string() };
+    if field.contains([',', ';', '"', '\n', '\r', '\t']) {
         format!("\"{}\"", field.replace('"', "\"\""))
     } else {
-        field.to_string()
+        field
     }
 }
 
@@ -228,6 +234,14 @@ mod tests {
             let budget: f64 = fields[5..9].iter().map(|f| f.parse::<f64>().unwrap()).sum();
             assert!((budget - mode.growth_rate()).abs() < 1e-9 * (1.0 + mode.growth_rate().abs()));
         }
+    }
+
+    #[test]
+    fn names_are_no_formulas() {
+        let mut table = Table::new(&["=1+1", "@sum(a)", "\tx", "\rx", "+3 N", "-a", "a=b"]);
+        table.row(&["-2.5e-13", "+1", "-", "1 \n2", "=\"a\"", "a;=b", "'=1"]);
+        let fields = "'=1+1,'@sum(a),\"'\tx\",\"'\rx\",'+3 N,'-a,a=b\n-2.5e-13,+1,'-,\"1 \n2\",\"'=\"\"a\"\"\",\"a;=b\",'=1\n";
+        assert_eq!(table.text, fields);
     }
 
     #[test]

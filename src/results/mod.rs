@@ -56,6 +56,7 @@ pub use calibration::{
     CalibratedDatum, CalibratedNumber, CalibratedResponse, CalibratedShape, CalibrationResult,
 };
 pub use comparison::{MeasuredComparison, MeasuredResponses, MeasuredRow, Placed, ResponsePair};
+pub(crate) use csv::Table as CsvTable;
 pub use csv::write_csv;
 pub use derived::{ComparedRow, PairTotals};
 pub use explored::{DampingRow, DampingVerdicts, MapResult, Method, SweepResult};

@@ -71,7 +71,7 @@ impl EventTable {
     /// # Errors
     /// The machine refuses.
     pub fn append(&mut self, events: &[Event]) -> Result<()> {
-        let mut table = Table { text: String::new() };
+        let mut table = Table::default();
         for Event { time, point, kind } in events {
             let pair = self.pairs.get(*point).cloned().unwrap_or_default();
             table.row(&[number(*time), (point + 1).to_string(), pair, kind.name().to_string()]);

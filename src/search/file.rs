@@ -3,6 +3,7 @@
 use crate::case::reader::{Section, read_document};
 use crate::case::units::NUMBER;
 use crate::case::{CalibratedParameter, Case, read_case, read_parameter};
+use crate::error::text::read_text;
 use crate::error::{Error, Fault, Faults, Result};
 use crate::validation::{Check, read_check};
 use std::collections::{BTreeMap, BTreeSet};
@@ -42,8 +43,7 @@ pub struct SearchFile {
 /// Every fault of any of the files.
 pub fn read_search(path: &Path) -> Result<SearchFile> {
     let place = path.display().to_string();
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| Error::input(Fault::new(&place, error.to_string(), "a text file")))?;
+    let text = read_text(path, "the file of a search, in TOML")?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut faults = Faults::new();
     let read = read_document(&place, &text, |root| {

@@ -2,8 +2,9 @@
 
 use super::cost::Facts;
 use super::file::SearchFile;
+use crate::error::text::printable;
 use crate::error::{Error, Fault, Result};
-use crate::results::write_atomically;
+use crate::results::{CsvTable, write_atomically};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -43,13 +44,14 @@ impl Log {
     /// # Errors
     /// A log of another search, or one that cannot be read.
     pub(super) fn open(dir: &Path, file: &SearchFile, resume: bool) -> Result<Log> {
-        let name = |name: &str| name.replace(',', ";");
-        let numbers = file.parameters.keys().map(|n| name(n));
-        let facts = file.checks.iter().map(|check| name(&check.quantity));
+        let numbers = file.parameters.keys().map(|name| printable(name));
+        let facts = file.checks.iter().map(|check| printable(&check.quantity));
         let heading: Vec<String> = ["cost".to_string()].into_iter().chain(numbers).chain(facts).collect();
+        let mut table = CsvTable::default();
+        table.row(&heading);
         let log = Log {
             dir: dir.to_path_buf(),
-            heading: heading.join(","),
+            heading: table.text.trim_end_matches('\n').to_string(),
             facts: file.checks.len(),
             kept: Mutex::default(),
         };

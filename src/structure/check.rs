@@ -32,7 +32,7 @@ pub(super) fn check_model(model: &Model) -> Result<()> {
     let sound = |node: &usize| known(node) && model.nodes[*node].iter().all(|x| x.is_finite());
 
     for part in &model.shells {
-        let place = format!("plate `{}`", part.name);
+        let place = format!("`shell.{}`", part.name);
         check_material(&place, &part.material, &mut faults);
         positive(&place, "thickness", part.thickness, "m", &mut faults);
         let not_faces = part.faces.iter().filter(|f| f.dimension() != 2).count();
@@ -65,7 +65,7 @@ pub(super) fn check_model(model: &Model) -> Result<()> {
         }
     }
     for part in &model.bars {
-        let place = format!("bar `{}`", part.name);
+        let place = format!("`bar.{}`", part.name);
         check_material(&place, &part.material, &mut faults);
         positive(&place, "area", part.section.area, "m²", &mut faults);
         positive(&place, "first second moment", part.section.inertia_1, "m⁴", &mut faults);

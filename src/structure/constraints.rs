@@ -16,6 +16,7 @@ pub(super) fn resolve_links(model: &Model) -> Result<Vec<usize>> {
     let mut leader: Vec<usize> = (0..model.nodes.len()).collect();
     for (k, link) in model.links.iter().enumerate() {
         let place = format!("rigid link {}", k + 1);
+        let mut twice: Vec<[usize; 2]> = Vec::new();
         for slave in &link.slaves {
             if *slave == link.master {
                 faults.push(Fault::new(
@@ -24,17 +25,20 @@ pub(super) fn resolve_links(model: &Model) -> Result<Vec<usize>> {
                     "slaves other than the master",
                 ));
             } else if leader[*slave] != *slave && leader[*slave] != link.master {
-                faults.push(
-                    Fault::new(
-                        &place,
-                        format!("node {} that already follows node {}", slave + 1, leader[*slave] + 1),
-                        "one master for each slave",
-                    )
-                    .with_help("Link the two masters instead"),
-                );
+                twice.push([*slave, leader[*slave]]);
             } else {
                 leader[*slave] = link.master;
             }
+        }
+        if let Some([slave, other]) = twice.first() {
+            let found = format!(
+                "node {} that already follows node {}, one of {} such nodes",
+                slave + 1,
+                other + 1,
+                twice.len()
+            );
+            let fault = Fault::new(&place, found, "one master for each slave");
+            faults.push(fault.with_help("Link the two masters instead"));
         }
     }
     let mut masters = leader.clone();

@@ -4,7 +4,8 @@ use super::kirchhoff::Edge;
 use crate::case::reader::{Section, read_document};
 use crate::case::units::{FREQUENCY, LENGTH, NUMBER, RATE, TIME};
 use crate::case::{Case, read_case};
-use crate::error::{Error, Fault, Faults, Result};
+use crate::error::text::read_text;
+use crate::error::{Faults, Result};
 use crate::results::Checked;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Bound;
@@ -209,9 +210,7 @@ impl Check {
 /// Every fault of either file.
 pub fn read(folder: &Path) -> Result<Reference> {
     let path = folder.join("reference.toml");
-    let text = std::fs::read_to_string(&path).map_err(|error| {
-        Error::input(Fault::new(path.display().to_string(), error.to_string(), "a text file"))
-    })?;
+    let text = read_text(&path, "the reference values of a validation case, in TOML")?;
     let ((title, source, checks), _) = read_document(&path.display().to_string(), &text, |root| {
         let case = root.string("case").or("case.toml".into());
         let reason = root.text("reason").or(String::new());

@@ -5,6 +5,9 @@ use super::super::{Case, ContactState, Pressing, Sense, path_matches};
 
 /// Names that must stand elsewhere in the file: materials, parts, contacts.
 pub(super) fn check_names(root: &Section, case: &Case) {
+    if !root.all_named() {
+        return;
+    }
     let materials: Vec<&str> = case.material.keys().map(String::as_str).collect();
     let used = case
         .shell

@@ -171,10 +171,23 @@ fn misplaced_bodies_are_explained() {
     assert!(fault(&rig(0.0, 0.0, -0.02), |_| {}).contains("inside each other"));
     let centred = rig(0.0, 0.0, 0.0);
     assert!(fault(&centred, |s| s.stroke = 0.25).contains("leaves `slider`"));
-    assert!(fault(&centred, |s| s.sliding_direction = [0.0, 0.0, 1.0]).contains("sliding direction"));
+    assert!(fault(&centred, |s| s.sliding_direction = [0.0, 0.0, 1.0]).contains("sliding_direction"));
     const OFF: &[[usize; 2]] = &[[190, 191]];
     assert!(fault(&centred, |s| s.side = ContactSide::Edge(OFF)).contains("off part `disc`"));
     assert!(fault(&centred, |s| s.side = ContactSide::Edge(&[])).contains("no line or face"));
+    // The node stands over the slider, but not the points at half the thickness of a thick disc.
+    let mut thick = rig(0.0, 0.0, 0.0);
+    thick.disc.thickness = 3.0;
+    let text = fault(&thick, |_| {});
+    assert!(
+        text.contains("stands over none of the") && text.contains("the thickness of `disc`, 3 m"),
+        "{text}"
+    );
+    // The reach that is offered is enough.
+    let away = rig(0.0, 0.0, 0.02);
+    let text = fault(&away, |_| {});
+    assert!(text.contains("`contact.") && text.contains("`reach = \"20.200 mm\"` would take"), "{text}");
+    assert!(pair_surfaces(&surfaces(&away, ContactPatch::Reach(20.2e-3)), &reduce).is_ok());
     let mut s = surfaces(&centred, ContactPatch::Reach(1e-3));
     s.stroke = 0.15;
     assert!(pair_surfaces(&s, &reduce).is_ok());

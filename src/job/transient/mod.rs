@@ -12,6 +12,7 @@ mod recorder;
 mod reduced_check;
 mod snapshots;
 mod start;
+mod step;
 mod tape;
 mod watched;
 

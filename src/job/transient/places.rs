@@ -1,5 +1,6 @@
 //! What acts on the structure in time, and where its motion is recorded.
 
+use super::step::check_step;
 use crate::case::{Course, FrictionCurve, TransientAnalysis};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::job::contacts::with_laws;
@@ -34,6 +35,7 @@ pub struct Places {
 pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Places> {
     transient::refuse_hysteretic(&prepared.system)?;
     let mut faults = Faults::new();
+    faults.take(check_step(&prepared.system.structure, wanted.time_step));
     let mut reduced = |on: &str, place: String, vector: [f64; 3]| {
         let nodes = faults.take(prepared.regions.nodes(on, &place)).unwrap_or_default();
         spread(prepared, &nodes, vector)

@@ -59,7 +59,7 @@ impl<'a> Reader<'a> {
         let rest = &self.bytes[self.at..];
         let length = rest.iter().position(|b| b.is_ascii_whitespace()).unwrap_or(rest.len());
         self.at += length;
-        std::str::from_utf8(&rest[..length]).unwrap_or("(not text)")
+        std::str::from_utf8(&rest[..length]).unwrap_or("(bytes that are not UTF-8)")
     }
 
     /// Leaves the line: binary numbers begin after its end.

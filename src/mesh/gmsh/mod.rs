@@ -15,6 +15,7 @@ mod names;
 mod raw;
 
 use super::{Mesh, check};
+use crate::error::text::read_bytes;
 use crate::error::{Error, Fault, Faults, Result};
 use bytes::{Encoding, Reader};
 use raw::RawMesh;
@@ -31,11 +32,8 @@ use std::path::Path;
 /// second-order or solid elements, and the faults of [`super::diagnose`].
 pub fn read(path: &Path, unit_in_metres: f64) -> Result<Mesh> {
     let place = path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|e| {
-        let fault = Fault::new(&place, format!("a file that cannot be read ({e})"), "a Gmsh mesh (.msh)");
-        Error::input(fault.with_help("Without Gmsh, `stridor mesh rig` writes one"))
-    })?;
-    parse(&bytes, &place, unit_in_metres)
+    let expected = "a Gmsh mesh (.msh), such as `stridor mesh rig` writes";
+    parse(&read_bytes(path, expected)?, &place, unit_in_metres)
 }
 
 /// Like [`read`], from bytes in memory; messages call them `place`.

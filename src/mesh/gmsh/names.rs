@@ -1,5 +1,6 @@
 //! The section `$PhysicalNames`, text also in binary files.
 
+use crate::error::text::not_text;
 use crate::error::{Error, Fault, Result};
 
 /// Names of physical groups with their dimension and number, in the order of the file.
@@ -17,7 +18,8 @@ pub(super) fn parse(bytes: &[u8], place: &str) -> Result<Names> {
     let Some(end) = find(section, b"\n$EndPhysicalNames") else {
         return Err(wrong("no end of the section".into(), "`$EndPhysicalNames`"));
     };
-    let text = String::from_utf8_lossy(&section[1..end]);
+    let text = std::str::from_utf8(&section[1..end])
+        .map_err(|error| Error::input(not_text(bytes, start + 1 + error.valid_up_to(), place)))?;
     let mut lines = text.lines().skip(1).map(str::trim).filter(|l| !l.is_empty());
     let count: usize = match lines.next().map(str::parse) {
         Some(Ok(count)) => count,
