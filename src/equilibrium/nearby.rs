@@ -3,7 +3,7 @@
 use super::SteadySliding;
 use super::condensed::Condensed;
 use super::linear::tangent_stiffness;
-use super::newton::Contact;
+use super::newton::{Contact, norm};
 use super::steady::{SteadyOptions, residual, solve_steady, states};
 use crate::error::{Error, Fault, Result};
 use crate::system::System;
@@ -59,33 +59,29 @@ impl<'a> Nearby<'a> {
         let contact = Contact::new(&other.pairs, &other.load, &self.condensed);
         let mut u = self.steady.displacement.clone();
         let mut approach = self.steady.approach.clone();
+        let mut penetration: Vec<f64> = self.steady.points.iter().map(|point| point.penetration).collect();
         let mut last = f64::INFINITY;
         for iterations in 1..=STEPS {
             let k = tangent_stiffness(other, &u)?;
-            let (r, _) = residual(other, &k, &u, &approach);
-            let Some((du, da)) = contact.full_correction(&u, &approach, &r) else { return Ok(None) };
-            let size = largest(&u).max(largest(&approach)).max(f64::MIN_POSITIVE);
-            let step = largest(&du).max(largest(&da)) / size;
+            let (r, _) = residual(other, &k, &u, &states(&other.pairs, &penetration));
+            let correction = contact.full_correction(&u, &approach, &penetration, &r);
+            let Some(correction) = correction else { return Ok(None) };
+            let size = norm(&u).max(norm(&approach)).max(f64::MIN_POSITIVE);
+            let step = norm(&correction.displacement).max(norm(&correction.approach)) / size;
             // Round-off: the steps are small and shrink no more. The smaller step is the better state.
             let shrinks = step < 0.5 * last;
             if step.is_nan() || (!shrinks && last > ACCEPTED && iterations > 4) {
                 return Ok(None);
             }
-            u.iter_mut().zip(&du).for_each(|(u, d)| *u += d);
-            approach.iter_mut().zip(&da).for_each(|(a, d)| *a += d);
+            correction.add_to(&mut u, &mut approach, &mut penetration);
             if step <= SETTLED || (step <= ACCEPTED && !shrinks) {
                 let k = tangent_stiffness(other, &u)?;
-                let residual = residual(other, &k, &u, &approach).1;
-                let motions: Vec<f64> = other.points().map(|(_, point)| point.normal.dot(&u)).collect();
-                let points = states(&other.pairs, &approach, &motions);
+                let points = states(&other.pairs, &penetration);
+                let residual = residual(other, &k, &u, &points).1;
                 return Ok(Some(SteadySliding { displacement: u, approach, points, iterations, residual }));
             }
             last = step;
         }
         Ok(None)
     }
-}
-
-fn largest(x: &[f64]) -> f64 {
-    x.iter().fold(0.0, |m: f64, v| if v.is_nan() { f64::NAN } else { m.max(v.abs()) })
 }

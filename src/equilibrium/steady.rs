@@ -1,14 +1,14 @@
 //! Steady sliding: K u₀ + Σ \[g N − t₁ F₁ − t₂ F₂\] = f with ΣN = load of each pair.
 
 use super::condensed::Condensed;
-use super::linear::{contact_force, tangent_stiffness};
-use super::newton::{Contact, Stage};
+use super::linear::{directions, tangent_stiffness};
+use super::newton::{Contact, Stage, norm, respond};
 use super::{PointState, SteadySliding};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::SparseMatrix;
 use crate::linalg::sparse::multiply_vector;
 use crate::progress::Observer;
-use crate::system::{Closing, ContactPair, System};
+use crate::system::{Closing, ContactPair, ContactPoint, System};
 
 /// What is asked of a steady state.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,17 +95,22 @@ pub fn solve_steady_with(
 ) -> Result<SteadySliding> {
     let contact = Contact::new(&system.pairs, &system.load, condensed);
     let mut stage = contact.solve(options)?;
-    let displacement = refine(system, k, &contact, &mut stage);
-    let displacement_residual = residual(system, k, &displacement, &stage.approach);
-    let motions: Vec<f64> = system.points().map(|(_, point)| point.normal.dot(&displacement)).collect();
-    let points = states(&system.pairs, &stage.approach, &motions);
+    let (displacement, error) = refine(system, k, &contact, &mut stage);
+    let points = states(&system.pairs, &stage.penetration);
     let steady = SteadySliding {
-        residual: displacement_residual.1,
+        residual: residual(system, k, &displacement, &points).1,
         displacement,
         approach: stage.approach,
         points,
         iterations: stage.iterations,
     };
+    if error > ACCEPTED || error.is_nan() {
+        return Err(Error::analysis(
+            "steady sliding",
+            format!("the equations are met to {error:.1e} of the forces only; {ACCEPTED:.0e} is needed"),
+            "Stiffnesses span too many orders of magnitude: check those of the contacts, springs and supports",
+        ));
+    }
     check_contact(&system.pairs, &steady.approach, &steady.points, options)?;
     Ok(steady)
 }
@@ -126,7 +131,7 @@ pub fn solve_points(
 ) -> Result<Vec<PointState>> {
     check_input(pairs, load, condensed.responses.nrows())?;
     let stage = Contact::new(pairs, load, condensed).solve(options)?;
-    let points = states(pairs, &stage.approach, &stage.normal);
+    let points = states(pairs, &stage.penetration);
     check_contact(pairs, &stage.approach, &points, options)?;
     Ok(points)
 }
@@ -159,7 +164,7 @@ fn solve_prestressed(
         // On fine plates the round-off of the two solutions is above 1e-12: then a change that no longer shrinks is it.
         if change <= 1e-12 || (change <= 1e-9 && change > 0.5 * before) {
             let k = tangent_stiffness(system, &steady.displacement)?;
-            steady.residual = residual(system, &k, &steady.displacement, &steady.approach).1;
+            steady.residual = residual(system, &k, &steady.displacement, &steady.points).1;
             steady.iterations = iterations;
             return Ok(steady);
         }
@@ -184,31 +189,50 @@ fn buckled(error: Error) -> Error {
     )
 }
 
-/// Newton steps on the full system, by the same condensed tangent, until its residual is at round-off.
-fn refine(system: &System, k: &SparseMatrix, contact: &Contact<'_>, stage: &mut Stage) -> Vec<f64> {
+/// The largest error, relative to the forces and lengths, with which a steady state is an answer.
+const ACCEPTED: f64 = 1e-6;
+
+/// Newton steps on the full system, by the same condensed tangent, until its residual is at round-off. Gives the
+/// displacement and the error that is left.
+fn refine(system: &System, k: &SparseMatrix, contact: &Contact<'_>, stage: &mut Stage) -> (Vec<f64>, f64) {
+    let measure = |u: &[f64], approach: &[f64], penetration: &[f64]| {
+        let (r, size) = residual(system, k, u, &states(&system.pairs, penetration));
+        (r, norm(&[size, contact.mismatch(u, approach, penetration)]))
+    };
     let mut u = contact.displacement(stage);
-    let mut approach = stage.approach.clone();
-    let (mut r, mut size) = residual(system, k, &u, &approach);
+    let (mut r, mut size) = measure(&u, &stage.approach, &stage.penetration);
     for _ in 0..5 {
         if size <= 1e-15 {
             break;
         }
-        let Some((du, da)) = contact.full_correction(&u, &approach, &r) else { break };
-        let next: Vec<f64> = u.iter().zip(&du).map(|(a, b)| a + b).collect();
-        let next_approach: Vec<f64> = approach.iter().zip(&da).map(|(a, b)| a + b).collect();
-        let (next_r, next_size) = residual(system, k, &next, &next_approach);
+        let correction = contact.full_correction(&u, &stage.approach, &stage.penetration, &r);
+        let Some(correction) = correction else { break };
+        let (mut next, mut approach, mut penetration) =
+            (u.clone(), stage.approach.clone(), stage.penetration.clone());
+        correction.add_to(&mut next, &mut approach, &mut penetration);
+        let (next_r, next_size) = measure(&next, &approach, &penetration);
         if next_size >= size || next_size.is_nan() {
             break;
         }
-        (u, approach, r, size) = (next, next_approach, next_r, next_size);
+        (u, stage.approach, stage.penetration, r, size) = (next, approach, penetration, next_r, next_size);
     }
-    stage.approach = approach;
-    u
+    (u, size)
 }
 
 /// f − K u − r_c, and its size relative to ‖f‖ + ‖r_c‖.
-pub(super) fn residual(system: &System, k: &SparseMatrix, u: &[f64], approach: &[f64]) -> (Vec<f64>, f64) {
-    let contact = contact_force(system, approach, u, &vec![0.0; u.len()]);
+pub(super) fn residual(
+    system: &System,
+    k: &SparseMatrix,
+    u: &[f64],
+    states: &[PointState],
+) -> (Vec<f64>, f64) {
+    let mut contact = vec![0.0; u.len()];
+    for ((_, point), state) in system.points().zip(states) {
+        let [g, t1, t2] = directions(point);
+        g.add_to(state.forces.normal, &mut contact);
+        t1.add_to(-state.forces.friction[0], &mut contact);
+        t2.add_to(-state.forces.friction[1], &mut contact);
+    }
     let elastic = multiply_vector(k, u);
     let r: Vec<f64> = (0..u.len()).map(|i| system.load[i] - elastic[i] - contact[i]).collect();
     let scale = norm_2(&system.load) + norm_2(&contact);
@@ -216,23 +240,14 @@ pub(super) fn residual(system: &System, k: &SparseMatrix, u: &[f64], approach: &
     (r, size)
 }
 
-/// The law of every point at its normal displacement `motions` = gᵀu.
-pub(super) fn states(pairs: &[ContactPair], approach: &[f64], motions: &[f64]) -> Vec<PointState> {
-    let points =
-        pairs.iter().zip(approach).flat_map(|(pair, a)| pair.points.iter().map(move |p| (pair, a, p)));
-    points
-        .zip(motions)
-        .map(|((pair, approach, point), motion)| {
-            let penetration = approach - point.gap + motion;
-            let motion = crate::system::ContactMotion {
-                penetration,
-                penetration_rate: 0.0,
-                slip_velocity: [pair.sliding_velocity, 0.0],
-            };
-            let (forces, tangent) = pair.law.respond(&motion, point.weight);
-            PointState { penetration, forces, tangent }
-        })
-        .collect()
+/// The law of every point at its penetration.
+pub(super) fn states(pairs: &[ContactPair], penetrations: &[f64]) -> Vec<PointState> {
+    let points = pairs.iter().flat_map(|pair| pair.points.iter().map(move |p| (pair, p)));
+    let at = |((pair, point), penetration): ((&ContactPair, &ContactPoint), &f64)| {
+        let (forces, tangent) = respond(pair, point, *penetration);
+        PointState { penetration: *penetration, forces, tangent }
+    };
+    points.zip(penetrations).map(at).collect()
 }
 
 fn check_input(pairs: &[ContactPair], load: &[f64], n: usize) -> Result<()> {

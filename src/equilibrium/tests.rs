@@ -259,3 +259,47 @@ fn a_neighbour_is_found_without_a_new_factorisation() {
     assert!((found.approach[0] - exact.approach[0]).abs() < 1e-12 * scale && found.residual < 1e-14);
     assert!(nearby.solve(&random_system(61, 5, 20.0, 11)).is_err());
 }
+
+/// A penalty is the limit of a rigid contact: above a certain stiffness nothing changes any more, and every digit of the
+/// forces stays, although δ is 1e-20 m beside motions of 1e-2 m.
+#[test]
+fn a_penalty_however_stiff_carries_the_load() {
+    let with = |stiffness: f64, closing: Closing| {
+        let mut system = random_system(60, 6, 8.0, 4);
+        let law = SlidingLaw::new(NormalLaw::linear(stiffness), Constant(0.3), 0.0);
+        (system.pairs[0].law, system.pairs[0].closing) = (Arc::new(law), closing);
+        solve(&system).unwrap()
+    };
+    let reference = with(1e13, Closing::Load(8.0));
+    for closing in [Closing::Load(8.0), Closing::Approach(reference.approach[0])] {
+        for stiffness in [1e15, 1e18, 1e22] {
+            let stiff = with(stiffness, closing);
+            assert!(stiff.residual < 1e-13, "{stiffness:e}: {:.1e}", stiff.residual);
+            for (a, b) in stiff.points.iter().zip(&reference.points) {
+                let off = (a.forces.normal - b.forces.normal).abs();
+                assert!(off < 1e-8, "{stiffness:e}: {} N, {} N", a.forces.normal, b.forces.normal);
+                assert_eq!(a.closed(), b.closed());
+            }
+            let apart = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-10;
+            assert!(stiff.displacement.iter().zip(&reference.displacement).all(apart));
+        }
+    }
+}
+
+#[test]
+fn a_state_that_does_not_meet_its_equations_is_refused() {
+    // Two masses tied by a spring that is so stiff that K u has no digit left.
+    let mut system = free_body(true);
+    let k = [[1.0 + 1e25, -1e25, 0.0], [-1e25, 3.0 + 1e25, 0.0], [0.0, 0.0, 7.0]];
+    system.structure.stiffness = sparse(3, |i, j| k[i][j]).into();
+    let said = analysis_error(&system, &SteadyOptions::default());
+    assert!(said.contains("steady sliding"), "{said}");
+
+    // Laws beyond the largest number.
+    let mut system = free_body(true);
+    let normal = NormalLaw { cubic_stiffness: 1e300, ..NormalLaw::linear(1e300) };
+    system.pairs[0].law = Arc::new(SlidingLaw::new(normal, Constant(0.5), 0.0));
+    system.pairs[0].closing = Closing::Approach(1e10);
+    let said = analysis_error(&system, &SteadyOptions::default());
+    assert!(said.contains("no steady state"), "{said}");
+}
