@@ -211,6 +211,10 @@ struct Found {
 
 impl<'a> Pencil<'a> {
     fn new(k: &'a SparseMatrix, m: &'a SparseMatrix) -> Result<Self> {
+        if norm_1(m) == 0.0 {
+            let help = "Give a part a density, or put a mass on a node";
+            return Err(Error::analysis("eigenvalues", "the mass matrix is zero", help));
+        }
         let union = add_scaled(&[(1.0, k), (1.0, m)]);
         Ok(Pencil { k, m, symbolic: SymbolicFactor::new(union.symbolic())?, aim: RESULT })
     }
@@ -296,7 +300,8 @@ impl<'a> Pencil<'a> {
         if found.values.last().is_some_and(near) {
             let first_above = found.values.partition_point(|v| above - v >= 1e-9 * bound);
             let below = first_above.checked_sub(1).map_or(0.0, |k| found.values[k]);
-            bound = 0.5 * (below + found.values[first_above]);
+            let next = found.values.get(first_above).copied().unwrap_or(above);
+            bound = 0.5 * (below + next);
             (above, counted) = self.count_near([bound; 3])?;
             found.truncate(first_above);
         }
@@ -339,13 +344,15 @@ impl<'a> Pencil<'a> {
             let window = if all { lanczos.everything(&ritz) } else { window };
             let mut values: Vec<f64> = ritz_values(&ritz, window, shift);
             values.sort_by(f64::total_cmp);
-            let last = values[values.len() - 1];
+            let Some(last) = values.last().copied() else { return Err(none_found(self.local_scale())) };
             let cut = if values.len() <= count {
                 values.len()
             } else {
-                match (count..values.len())
-                    .find(|c| values[*c] - values[*c - 1] > CLUSTER * (values[*c] - shift).abs())
-                {
+                let apart = |c: &usize| {
+                    values[*c] - values[*c - 1]
+                        > (CLUSTER * (values[*c] - shift).abs()).max(self.rigid_below())
+                };
+                match (count..values.len()).find(apart) {
                     Some(cut) => cut,
                     None => {
                         total += 2;
@@ -402,7 +409,7 @@ impl<'a> Pencil<'a> {
         let mut estimate = extrapolated(&settled, count)
             .or(values.get(count - 1).or(values.last()).copied())
             .unwrap_or(scale);
-        if estimate <= 0.0 {
+        if estimate <= self.rigid_below() {
             // All are negative or rigid-body motions: go below the negative ones, where the shift meets none.
             let reach = (estimate - shift).abs().max((lowest - shift).abs());
             if lowest < 1e3 * shift {
@@ -437,6 +444,11 @@ impl<'a> Pencil<'a> {
             k.iter().zip(m).filter(|(k, m)| **k > 0.0 && *m > 0.0).map(|(k, m)| k / m).collect();
         ratios.sort_by(f64::total_cmp);
         ratios.get(ratios.len() / 2).copied().unwrap_or(1.0)
+    }
+
+    /// Eigenvalues up to this size are rigid-body motions, zero but for rounding.
+    fn rigid_below(&self) -> f64 {
+        1e-12 * self.local_scale()
     }
 
     /// Measures the errors of pairs whose vectors are M-orthonormal, refines where they are large, and compares the counts.
@@ -538,6 +550,14 @@ fn capacity(count: usize) -> usize {
 
 fn ritz_values(ritz: &Ritz, window: Window, shift: f64) -> Vec<f64> {
     window.indices(ritz).into_iter().map(|k| shift + 1.0 / ritz.values[k]).collect()
+}
+
+fn none_found(scale: f64) -> Error {
+    Error::analysis(
+        "eigenvalues",
+        format!("no finite eigenvalue was found; typical of K and M is θ = {scale:.1e}"),
+        "Check the densities, masses and stiffnesses: the mass may be nothing beside the stiffness",
+    )
 }
 
 fn missing(found: usize, counted: usize, bound: f64) -> Error {

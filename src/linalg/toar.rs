@@ -62,7 +62,7 @@ pub fn toar(
         if converged >= count || closed {
             return Ok(krylov.pairs(shift, &ritz[..converged.min(count)]));
         }
-        krylov.restart(&ritz, count + (room - count) / 2);
+        krylov.restart(&ritz, count + (room - count) / 2)?;
     }
     Err(Error::analysis(
         "two-level Arnoldi",
@@ -207,10 +207,10 @@ impl<'a> Krylov<'a> {
     }
 
     /// Keeps the span of the first `keep` Ritz vectors, and of U what they need.
-    fn restart(&mut self, ritz: &[Ritz], keep: usize) {
+    fn restart(&mut self, ritz: &[Ritz], keep: usize) -> Result<()> {
         let k = self.len();
         let keep = keep.min(k - 1);
-        let z = range(Mat::from_fn(k, keep, |i, j| ritz[j].y[i]).as_ref()).0;
+        let z = range(Mat::from_fn(k, keep, |i, j| ritz[j].y[i]).as_ref())?.0;
         self.h = product(z.adjoint(), product(self.h.as_ref(), z.as_ref()).as_ref());
         self.b = (0..keep).map(|j| (0..k).map(|i| self.b[i] * z[(i, j)]).sum()).collect();
         let d = self.u.ncols();
@@ -223,12 +223,13 @@ impl<'a> Krylov<'a> {
             })
             .collect();
         let both = Mat::from_fn(d, 2 * keep + 2, |i, j| rotated[j / (keep + 1)][(i, j % (keep + 1))]);
-        let (w, rank) = range(both.as_ref());
+        let (w, rank) = range(both.as_ref())?;
         let w = w.subcols(0, rank);
         self.u = expand(self.u.as_ref(), w);
         for (s, rotated) in self.s.iter_mut().zip(&rotated) {
             *s = product(w.adjoint(), rotated.as_ref());
         }
+        Ok(())
     }
 
     fn pairs(&self, shift: c64, ritz: &[Ritz]) -> ToarPairs {
@@ -249,10 +250,16 @@ impl<'a> Krylov<'a> {
 }
 
 /// Left singular vectors of A, and how many singular values are above round-off.
-fn range(a: MatRef<'_, c64>) -> (Mat<c64>, usize) {
-    let ThinSvd { left, values, .. } = thin_svd(a).expect("a matrix of finite numbers has singular values");
+fn range(a: MatRef<'_, c64>) -> Result<(Mat<c64>, usize)> {
+    let Some(ThinSvd { left, values, .. }) = thin_svd(a) else {
+        return Err(Error::analysis(
+            "two-level Arnoldi",
+            "numbers that are infinite or none came up",
+            "Check stiffnesses, masses and damping for values that are zero or huge",
+        ));
+    };
     let rank = values.iter().take_while(|s| **s > 1e-15 * values[0]).count();
-    (left, rank)
+    Ok((left, rank))
 }
 
 #[cfg(test)]

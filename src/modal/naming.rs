@@ -184,7 +184,8 @@ fn chebyshev(rho: f64) -> [f64; MOST_DEGREE + 1] {
 fn largest_gap(points: &[(f64, f64)]) -> f64 {
     let mut angles: Vec<f64> = points.iter().map(|p| p.1.rem_euclid(TAU)).collect();
     angles.sort_by(f64::total_cmp);
-    let around = angles[0] + TAU - angles[angles.len() - 1];
+    let (Some(first), Some(last)) = (angles.first(), angles.last()) else { return TAU };
+    let around = first + TAU - last;
     angles.windows(2).map(|w| w[1] - w[0]).fold(around, f64::max)
 }
 

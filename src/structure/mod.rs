@@ -10,6 +10,7 @@ mod check;
 mod constraints;
 mod dofs;
 pub mod elements;
+mod free;
 mod imported;
 mod model;
 mod numbering;
@@ -20,6 +21,7 @@ mod warnings;
 pub use assembly::{Assembled, GeometricStiffness, assemble};
 pub use check::check;
 pub use dofs::{DofMap, FreeDof};
+pub use free::{FreePart, free_parts};
 pub use model::{
     BarPart, Material, Model, PointMass, RayleighDamping, RigidLink, Section, ShellPart, Spring, Support,
 };

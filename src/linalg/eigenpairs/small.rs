@@ -15,7 +15,7 @@ impl Pencil<'_> {
             Wanted::Count(count) => {
                 let first = self.dense_pairs(-1e-4 * self.local_scale())?;
                 let highest = first.values.get(count - 1).or(first.values.last()).copied().unwrap_or(0.0);
-                if highest > 0.0 { self.dense_pairs(-0.01 * highest)? } else { first }
+                if highest > self.rigid_below() { self.dense_pairs(-0.01 * highest)? } else { first }
             }
         };
         let Found { values, vectors, shift, factor } = all;
@@ -28,8 +28,9 @@ impl Pencil<'_> {
                 (values.partition_point(|v| *v < bound), bound, shifts)
             }
             Wanted::Count(count) => {
+                let least = |v: f64| (CLUSTER * size(v)).max(self.rigid_below());
                 let cut = (count.min(values.len())..values.len())
-                    .find(|c| *c > 0 && values[*c] - values[*c - 1] > CLUSTER * size(values[*c]))
+                    .find(|c| *c > 0 && values[*c] - values[*c - 1] > least(values[*c]))
                     .unwrap_or(values.len());
                 let low = if cut > 0 { values[cut - 1] } else { 0.0 };
                 let high = values.get(cut).copied().unwrap_or(low + 0.2 * size(low));

@@ -52,6 +52,36 @@ fn free_chain_has_its_rigid_body_mode() {
     }
 }
 
+/// Fewer than the rigid-body motions: they are one cluster, and come whole.
+#[test]
+fn a_free_body_gives_its_rigid_motions_however_few_are_wanted() {
+    for (size, count) in [(4, 1), (4, 2), (4, 3), (20, 1), (20, 2), (20, 3)] {
+        let (k, m) = samples::plate(size, false);
+        let pairs = lowest_eigenpairs(&k, &m, Wanted::Count(count), &()).unwrap();
+        assert_eq!(pairs.values.len(), 3, "{size} {count}");
+        assert_eq!(pairs.sturm.counted, [3; 2]);
+        let elastic = lowest_eigenpairs(&k, &m, Wanted::Count(4), &()).unwrap().values[3];
+        assert!(pairs.values.iter().all(|v| v.abs() < 1e-6 * elastic), "{:?}", pairs.values);
+    }
+}
+
+/// Masses that are nothing beside the stiffness, or zero, end in an error, not in a panic.
+#[test]
+fn matrices_without_eigenvalues_are_refused() {
+    for (size, scales) in [(4, [1e-300, 1e-200, 1e200].as_slice()), (20, [1e-104].as_slice())] {
+        let (k, m) = samples::plate(size, true);
+        for scale in scales {
+            let m = add_scaled(&[(*scale, &m)]);
+            for wanted in [Wanted::Count(3), Wanted::Below(1e6)] {
+                if let Err(error) = lowest_eigenpairs(&k, &m, wanted, &()) {
+                    assert_eq!(error.exit_code(), 1, "{error}");
+                }
+            }
+        }
+        assert!(lowest_eigenpairs(&k, &add_scaled(&[(0.0, &m)]), Wanted::Count(3), &()).is_err());
+    }
+}
+
 #[test]
 fn a_bound_on_an_eigenvalue_moves_up() {
     let (k, m) = samples::membrane(20);

@@ -378,7 +378,8 @@ fn inertia<T: Field>(branch: &Branch<T>) -> Inertia {
     let mut inertia = Inertia::default();
     // The eigenvalues of B⁻¹ are at hand.
     let mut note = |eigenvalue: f64| match eigenvalue {
-        e if e.abs() >= 1e14 => inertia.zero += 1,
+        // Neither is a number that overflowed.
+        e if e.is_nan() || e.abs() >= 1e14 => inertia.zero += 1,
         e if e < 0.0 => inertia.negative += 1,
         _ => inertia.positive += 1,
     };

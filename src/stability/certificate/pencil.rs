@@ -3,7 +3,7 @@
 use super::contour::Region;
 use super::reduced::{Oscillator, ReducedModel};
 use super::remainder::Remainder;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::linalg::c64;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::lu::inverse_and_phase;
@@ -113,7 +113,16 @@ impl<'a> Pencil<'a> {
             let size = entry.stiffness.norm() + top * entry.damping.abs();
             sizes[entry.column] = sizes[entry.column].max(size);
         }
+        if let Some(entry) = entries.iter().find(|e| !(e.stiffness.norm() + e.damping.abs()).is_finite()) {
+            let (stiffness, damping) = (entry.stiffness, entry.damping);
+            return Err(Error::analysis(
+                "certificate of the complex modes",
+                format!("an entry of the scaled interface is {stiffness:.3e} + s {damping:.3e}"),
+                "Check the stiffness, damping and friction of the contacts",
+            ));
+        }
         let columns: Vec<usize> = (0..sizes.len()).filter(|j| sizes[*j] > 0.0).collect();
+        entries.retain(|entry| sizes[entry.column] > 0.0);
         let place: Vec<usize> = (0..sizes.len()).map(|j| columns.partition_point(|c| *c < j)).collect();
         entries.iter_mut().for_each(|entry| entry.place = place[entry.column]);
         let balance: Vec<f64> = columns.iter().map(|j| sizes[*j].sqrt()).collect();
