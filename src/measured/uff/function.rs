@@ -214,14 +214,28 @@ fn direction(code: i64) -> Option<[f64; 3]> {
     }
 }
 
+/// Numbers in lines that are all of one length, but for the last.
 fn text_numbers(dataset: &Dataset<'_>, form: &Form) -> Result<Vec<f64>> {
     const FIRST: usize = 11;
-    let mut numbers = Vec::new();
-    for index in FIRST..dataset.lines.len() {
-        numbers.extend(dataset.numbers(index, form.widths())?);
-    }
     let wanted = form.count.saturating_mul(form.parts() + usize::from(!form.even));
-    // The last line may be filled up.
+    let (mut numbers, mut length) = (Vec::new(), None);
+    for index in FIRST..dataset.lines.len() {
+        let line = dataset.numbers(index, form.widths())?;
+        if line.is_empty() {
+            continue;
+        }
+        if numbers.len() >= wanted {
+            let found = format!("{} numbers beyond the {wanted} of the header", line.len());
+            return Err(dataset.fault(index, found, "the end of the dataset"));
+        }
+        let length = *length.get_or_insert(line.len());
+        // The last line may be filled up.
+        if line.len() > length || (line.len() < length && numbers.len() + line.len() < wanted) {
+            let found = format!("{} numbers in a line", line.len());
+            return Err(dataset.fault(index, found, format!("{length}, as in the first line of numbers")));
+        }
+        numbers.extend(line);
+    }
     if numbers.len() < wanted || numbers.len() > wanted.saturating_add(5) {
         let last = dataset.lines.len().saturating_sub(1);
         return Err(dataset.fault(last, format!("{} numbers", numbers.len()), format!("{wanted}")));

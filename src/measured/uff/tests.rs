@@ -112,6 +112,21 @@ fn faults_name_the_line_and_what_is_wrong() {
     assert!(said(SIX.replace("  3.00000E+00  9.0", "  9.0").as_bytes()).contains("dataset 55"));
     let short = said(text_58(5, 3, true, "  1.00000E+00\n").as_bytes());
     assert!(short.contains("found 1 numbers; expected 6"), "{short}");
+    // A surplus line, anywhere, would shift every value behind it.
+    let lines = ["  1.0 2.0 3.0 4.0 5.0 6.0", "  7.0 8.0 9.0 1.0 2.0 3.0", "  4.0 5.0 0.0 0.0 0.0 0.0"];
+    let of = |lines: &[&str]| text_58(5, 7, true, &(lines.join("\n") + "\n"));
+    assert!(read("t.uff", of(&lines).as_bytes(), 1.0).is_ok());
+    for k in 0..3 {
+        let mut more = lines.to_vec();
+        more.insert(k, lines[k]);
+        let text = said(of(&more).as_bytes());
+        assert!(text.contains("t.uff:17") && text.contains("6 numbers beyond the 14"), "{text}");
+    }
+    let uneven = said(of(&[lines[0], " 1.0 2.0", lines[1], lines[2]]).as_bytes());
+    assert!(uneven.contains("t.uff:15") && uneven.contains("2 numbers in a line"), "{uneven}");
+    let node = "         3\n  1.00000E+00  2.00000E+00  0.00000E+00  0.00000E+00 -3.00000E+00  4.00000E+00\n";
+    let again = COMPLEX.replace(node, &node.repeat(2));
+    assert!(said(again.as_bytes()).contains("node 3 again"), "{again}");
     let falling = said(text_58(4, 2, false, " 6.0 1.0 5.0 1.0\n").as_bytes());
     assert!(falling.contains("do not rise"), "{falling}");
     let cut = said(&binary_58(6, 2, false, false, &[0; 9]));

@@ -22,7 +22,7 @@ pub(super) struct Reader<'a> {
 }
 
 /// `line 12` of a text file or `byte 345` of a binary one.
-pub(super) fn position(bytes: &[u8], at: usize, encoding: Encoding) -> String {
+fn position(bytes: &[u8], at: usize, encoding: Encoding) -> String {
     match encoding {
         Encoding::Ascii => {
             let before = &bytes[..at.min(bytes.len())];
@@ -42,10 +42,14 @@ impl<'a> Reader<'a> {
         self.bytes.len() - self.at
     }
 
+    /// The file and the current position in it.
+    pub fn place(&self) -> String {
+        format!("{}, {}", self.place, position(self.bytes, self.at, self.encoding))
+    }
+
     /// A fault at the current position.
     pub fn wrong(&self, found: impl Into<String>, expected: impl Into<String>) -> Error {
-        let place = format!("{}, {}", self.place, position(self.bytes, self.at, self.encoding));
-        Error::input(Fault::new(place, found, expected))
+        Error::input(Fault::new(self.place(), found, expected))
     }
 
     fn skip_space(&mut self) {
@@ -66,6 +70,19 @@ impl<'a> Reader<'a> {
     pub fn end_line(&mut self) {
         let rest = &self.bytes[self.at..];
         self.at += rest.iter().position(|b| *b == b'\n').map_or(rest.len(), |n| n + 1);
+    }
+
+    /// Expects the line of a text to be over: each thing has lines of its own.
+    pub fn line_is_over(&mut self, what: &str) -> Result<()> {
+        if self.encoding != Encoding::Ascii {
+            return Ok(());
+        }
+        let rest = &self.bytes[self.at..];
+        let blank = rest.iter().take_while(|b| b.is_ascii_whitespace() && **b != b'\n').count();
+        match rest.get(blank) {
+            None | Some(b'\n') => Ok(()),
+            Some(_) => Err(self.wrong(format!("more in the line of {what}"), "the end of the line")),
+        }
     }
 
     /// Leaves the section `name`, whose content is of no interest.
@@ -98,6 +115,15 @@ impl<'a> Reader<'a> {
             Encoding::Ascii => self.text_number(what),
             Encoding::LittleEndian => Ok(i64::from(i32::from_le_bytes(self.take(what)?))),
             Encoding::BigEndian => Ok(i64::from(i32::from_be_bytes(self.take(what)?))),
+        }
+    }
+
+    /// A count or a tag of MSH 4.1, eight bytes where it is binary.
+    pub fn size(&mut self, what: &str) -> Result<u64> {
+        match self.encoding {
+            Encoding::Ascii => self.text_number(what),
+            Encoding::LittleEndian => Ok(u64::from_le_bytes(self.take(what)?)),
+            Encoding::BigEndian => Ok(u64::from_be_bytes(self.take(what)?)),
         }
     }
 

@@ -51,6 +51,7 @@ fn read_nodes(file: &mut Reader<'_>, raw: &mut RawMesh) -> Result<()> {
     for _ in 0..count(file, "number of nodes")? {
         let tag = tag(file, "node number")?;
         let place = [file.float("node's x")?, file.float("node's y")?, file.float("node's z")?];
+        file.line_is_over("a node")?;
         raw.nodes.push((tag, place));
     }
     Ok(())
@@ -66,6 +67,7 @@ fn read_elements(file: &mut Reader<'_>, raw: &mut RawMesh) -> Result<()> {
             let kind = file.int("element type")?;
             let n_tags = file.int("number of tags")?;
             read_element(file, raw, tag, kind, n_tags)?;
+            file.line_is_over("an element")?;
             read += 1;
         } else {
             let (kind, follow) = (file.int("element type")?, file.int("number of elements in the block")?);

@@ -71,7 +71,58 @@ fn a_file_cut_off_anywhere_is_refused() {
     let text = fault(&FILES[0].1[..900]);
     assert!(text.contains("a.msh, line") && text.contains("cut off"), "{text}");
     let text = fault(&FILES[2].1[..900]);
-    assert!(text.contains("end of the file at line"), "{text}");
+    assert!(text.contains("a.msh, line") && text.contains("the end of the file"), "{text}");
+}
+
+/// Every line of a text file matters: none can be left out or be there twice, and no white space between numbers can go.
+#[test]
+fn a_line_or_a_space_too_few_or_too_many_is_refused() {
+    let files = [0, 2].map(|k| String::from_utf8(FILES[k].1.to_vec()).unwrap());
+    for text in [BAR, BAR_4].map(String::from).into_iter().chain(files) {
+        let lines: Vec<&str> = text.lines().collect();
+        // A second line with the version is passed over.
+        for k in 2..lines.len() {
+            let [mut fewer, mut more] = [lines.clone(), lines.clone()];
+            fewer.remove(k);
+            more.insert(k, lines[k]);
+            for changed in [fewer, more] {
+                assert!(parse(changed.join("\n").as_bytes(), "a.msh", 1.0).is_err(), "line {}", k + 1);
+            }
+        }
+        let numbers = text.find("$Nodes").unwrap();
+        let space = |at: usize| text.as_bytes()[at].is_ascii_whitespace();
+        for at in (numbers..text.len() - 1).filter(|at| space(*at) && !space(at - 1) && !space(at + 1)) {
+            let mut joined = text.clone();
+            joined.remove(at);
+            assert!(parse(joined.as_bytes(), "a.msh", 1.0).is_err(), "white space at byte {at}");
+        }
+    }
+}
+
+#[test]
+fn entities_must_be_there_once_and_finite() {
+    for (old, new, expected) in [
+        (
+            "$Elements\n1 1 1 1\n1 1 1 1",
+            "$Elements\n1 1 1 1\n1 7 1 1",
+            "entity 7 of dimension 1, which $Entities lacks",
+        ),
+        ("0 1 0 0\n1 0 0 0", "0 1 0 0\n1 0 0 inf", "line 10: found inf"),
+        ("0 1 0 0\n", "0 2 0 0\n1 0 0 0 1 1 1 0 0\n", "line 11: found entity 1 of dimension 1 again"),
+        ("1 1 0 2\n2\n1", "1 1 2 2\n2\n1", "mark 2"),
+        ("$Nodes\n1 2", "$Nodes\n1 3", "found 2 nodes; expected 3"),
+        ("$Elements\n1 1 1", "$Elements\n1 2 1", "found 1 elements; expected 2"),
+        ("$EndNodes\n", "$EndNodes\n$Nodes\n0 0 0 0\n$EndNodes\n", "`$Nodes` again"),
+        ("$Nodes", "$PartitionedEntities\n$EndPartitionedEntities\n$Nodes", "mesh in partitions"),
+        ("2\n1\n100", "2\n0\n100", "node number 0"),
+    ] {
+        assert!(BAR_4.contains(old), "{old}");
+        let text = fault(BAR_4.replacen(old, new, 1));
+        assert!(text.contains(expected), "{text}");
+    }
+    // Parametric coordinates are read over.
+    let text = BAR_4.replace("1 1 0 2\n2\n1\n100 0 0\n0 0 0", "1 1 1 2\n2\n1\n100 0 0 0.5\n0 0 0 0.1");
+    assert_eq!(parse(text.as_bytes(), "a.msh", 1.0).unwrap().nodes[1], [100.0, 0.0, 0.0]);
 }
 
 #[test]
