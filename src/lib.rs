@@ -7,6 +7,8 @@
 //! |---|---|
 //! | [`error`], [`progress`] | one error type that carries data; how long work reports where it stands |
 //! | [`pages`] | memory in large pages |
+//! | [`memory`] | how much memory there is |
+//! | [`input`] | input files: regular, of a bounded size |
 //! | [`linalg`] | sparse symmetric factorisation, eigenvalues; knows no mechanics |
 //! | [`system`] | the seam: M, C, K and the sliding interface, what every analysis takes |
 //! | [`mesh`] | Gmsh files, generated discs and plates, regions, quality |
@@ -38,9 +40,11 @@ pub mod cli;
 pub mod contact;
 pub mod equilibrium;
 pub mod error;
+pub mod input;
 pub mod job;
 pub mod linalg;
 pub mod measured;
+pub mod memory;
 pub mod mesh;
 pub mod modal;
 pub mod pages;

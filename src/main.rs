@@ -1,8 +1,83 @@
-//! The binary: parse, run, exit code.
+//! The binary: parse, run, exit code; and what it says when the machine gives no more memory.
+
+use std::alloc::{GlobalAlloc, Layout};
+use stridor::pages::LargePages;
 
 #[global_allocator]
-static MEMORY: stridor::pages::LargePages = stridor::pages::LargePages;
+static MEMORY: OrExit = OrExit;
 
 fn main() -> std::process::ExitCode {
+    on_abort();
     stridor::cli::main()
 }
+
+/// Memory in large pages. Where there is none left the program says so and ends with exit code 1: a library cannot know
+/// that this is wanted, so that only the binary does it.
+struct OrExit;
+
+// SAFETY: every call is handed on as it came; a null pointer never comes back.
+unsafe impl GlobalAlloc for OrExit {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        // SAFETY: the caller's promises are those that LargePages asks for, here and below.
+        or_exit(unsafe { LargePages.alloc(layout) }, layout.size())
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        // SAFETY: as above.
+        or_exit(unsafe { LargePages.alloc_zeroed(layout) }, layout.size())
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        // SAFETY: as above.
+        unsafe { LargePages.dealloc(memory, layout) }
+    }
+
+    unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        // SAFETY: as above.
+        or_exit(unsafe { LargePages.realloc(memory, layout, size) }, size)
+    }
+}
+
+fn or_exit(memory: *mut u8, size: usize) -> *mut u8 {
+    if memory.is_null() {
+        let mut digits = [b'0'; 20];
+        let mut first = digits.len();
+        let mut mebibytes = size.div_ceil(1 << 20);
+        while mebibytes > 0 || first == digits.len() {
+            first -= 1;
+            digits[first] = b'0' + (mebibytes % 10) as u8;
+            mebibytes /= 10;
+        }
+        end(&[
+            b"error: memory: the machine gives no more, and another ",
+            &digits[first..],
+            b" MiB were asked for. Take a coarser mesh, fewer modes or `--threads 1`, raise the limit (`ulimit -v`), or \
+              take a machine with more memory. Results that were written before are whole.\n",
+        ]);
+    }
+    memory
+}
+
+/// Writes a text to stderr without any memory, and ends the process with exit code 1, whatever other threads do.
+fn end(text: &[&[u8]]) -> ! {
+    for part in text {
+        // SAFETY: the part is as long as it says. Where nobody listens there is nothing else to do.
+        unsafe { libc::write(2, part.as_ptr().cast(), part.len() as _) };
+    }
+    // SAFETY: no memory is touched.
+    unsafe { libc::_exit(1) }
+}
+
+/// A stack that overflows, and C libraries without memory, abort: then, too, the program ends with a sentence and exit code 1.
+#[cfg(unix)]
+fn on_abort() {
+    extern "C" fn said(_: libc::c_int) {
+        end(&[b"error: the program had to end: a stack or a library ran out of memory. Raise the limits (`ulimit -s`, \
+                `ulimit -v`), or take a coarser mesh or `--threads 1`.\n"]);
+    }
+    // SAFETY: the handler only writes and ends the process, which is allowed in one.
+    unsafe { libc::signal(libc::SIGABRT, said as extern "C" fn(libc::c_int) as libc::sighandler_t) };
+}
+
+#[cfg(not(unix))]
+fn on_abort() {}

@@ -4,10 +4,12 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Each room with all the rooms it may use.
-const MAY_USE: [(&str, &[&str]); 25] = [
-    ("error", &[]),
+const MAY_USE: [(&str, &[&str]); 27] = [
+    ("input", &[]),
+    ("error", &["input"]),
     ("progress", &[]),
     ("pages", &[]),
+    ("memory", &[]),
     ("linalg", &["error", "progress"]),
     ("system", &["error", "linalg"]),
     // Mechanics: builds a system, knows no analysis.
@@ -63,6 +65,7 @@ const MAY_USE: [(&str, &[&str]); 25] = [
         "job",
         &[
             "error",
+            "memory",
             "progress",
             "linalg",
             "system",

@@ -3,7 +3,7 @@
 use super::{Common, give, say};
 use crate::case::{Parameter, read_case};
 use crate::error::Result;
-use crate::job::{Prepared, check_case};
+use crate::job::{Prepared, Selection, check_case, expected_memory};
 use clap::Args;
 use std::ops::Bound;
 use std::path::PathBuf;
@@ -48,6 +48,14 @@ pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
             size.dofs,
             size.contact_points
         ))?;
+        if let Some(expected) = expected_memory(&prepared, Selection::ALL)? {
+            say(format!(
+                "A run is expected to take about {} of memory: {:.2e} entries of a factor, about {:.0} real modes.",
+                expected.words(),
+                expected.fill as f64,
+                expected.modes
+            ))?;
+        }
     }
     Ok(ExitCode::SUCCESS)
 }

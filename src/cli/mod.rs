@@ -137,15 +137,26 @@ fn complain(text: impl Display) {
     let _ = writeln!(std::io::stderr(), "error: {text}");
 }
 
+/// The most threads that may be asked for, unless there are more cores.
+const MOST_THREADS: usize = 1024;
+
+/// Starts the threads: as many as there are cores where no number is given.
 fn set_threads(threads: Option<usize>) -> Result<()> {
-    let Some(threads) = threads else { return Ok(()) };
-    if threads == 0 {
-        return Err(Error::input(Fault::new("--threads", "0", "at least 1")));
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let (threads, most) = (threads.unwrap_or(cores), MOST_THREADS.max(cores));
+    if !(1..=most).contains(&threads) {
+        let help = format!("More threads than cores ({cores} here) make nothing faster");
+        return Err(Error::input(
+            Fault::new("--threads", threads.to_string(), format!("1 to {most}")).with_help(help),
+        ));
     }
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build_global()
-        .map_err(|error| Error::analysis("starting threads", error.to_string(), "Try fewer --threads"))
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().map_err(|error| {
+        Error::analysis(
+            format!("starting {threads} threads"),
+            error.to_string(),
+            "Ask for fewer: `--threads 1`",
+        )
+    })
 }
 
 #[cfg(test)]

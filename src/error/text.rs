@@ -24,7 +24,7 @@ pub fn read_text(path: &Path, expected: &str) -> Result<String> {
 /// # Errors
 /// A file that is not there or cannot be read.
 pub fn read_bytes(path: &Path, expected: &str) -> Result<Vec<u8>> {
-    std::fs::read(path).map_err(|error| {
+    crate::input::read(path).map_err(|error| {
         let missing = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.exists());
         let found = match (error.kind(), missing) {
             (ErrorKind::NotFound, Some(folder)) => {

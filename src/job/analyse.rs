@@ -7,10 +7,12 @@ use super::complex::{complex_result, whole_modes};
 use super::explore::{KnownMap, KnownMaps, Nominal, explore};
 use super::frf::{Frf, frfs};
 use super::keeper::{Folder, Keeper, Memory, Stage};
+use super::memory::check_memory;
 use super::missed::nothing_is_missed;
 use super::modes::{check_part, named, of_the_whole, part_modes, wanted};
 use super::prepared::Prepared;
 use super::sensitivity::Analysed;
+use super::singular::explained;
 use super::transient::{InTime, Places, places};
 use crate::case::{Case, CeaAnalysis, ContactState, SensitivityAnalysis, TransientAnalysis};
 use crate::equilibrium::{self, SteadySliding};
@@ -166,6 +168,10 @@ pub fn run_case(
     let prepared = Prepared::new(case)?;
     // Its faults are told before anything is written.
     let asked = Asked::new(&prepared, selection)?;
+    if let Some(expected) = check_memory(&prepared, selection)? {
+        observer.begin(&format!("memory: about {}", expected.words()), None);
+        observer.end();
+    }
     let _lock = FolderLock::take(out)?;
     let known = if resume { results::read_maps(out, &case.to_toml())? } else { BTreeMap::new() };
     let known: KnownMaps =
@@ -175,7 +181,8 @@ pub fn run_case(
     let mut folder = Folder::new(out, file);
     let mut results = analyse_from(&prepared, asked, &known, &mut folder, observer)
         // What another run left, and does not fit, is input.
-        .map_err(|error| if resume { error } else { error.while_computing() })?;
+        .map_err(|error| if resume { error } else { error.while_computing() })
+        .map_err(|error| explained(&prepared, error))?;
     // The time of a phase is that of computing.
     let in_time = results.timings.iter_mut().find(|(phase, _)| phase == IN_TIME);
     in_time.into_iter().for_each(|(_, seconds)| *seconds -= folder.seconds_in_time);
@@ -204,7 +211,7 @@ pub fn analyse(
 ) -> Result<RunResults> {
     let asked = Asked::new(prepared, selection)?;
     analyse_from(prepared, asked, &KnownMaps::new(), &mut Memory::new(record), observer)
-        .map_err(Error::while_computing)
+        .map_err(|error| explained(prepared, error.while_computing()))
 }
 
 /// Finds every fault that [`run_case`] finds before it computes; gives what the user should know.

@@ -1,5 +1,6 @@
 //! What a structure is made of, before any matrix: plain data that the case fills in.
 
+use super::elements::{FlatShell, split_face};
 use crate::mesh::Element;
 use serde::Serialize;
 
@@ -61,6 +62,15 @@ pub struct ShellPart {
     pub bending_only: bool,
     /// Counts the rotary inertia ρh³/12 of the cross-section.
     pub rotary_inertia: bool,
+}
+
+impl ShellPart {
+    /// A \[m²\] of all faces.
+    pub fn area(&self, nodes: &[[f64; 3]]) -> f64 {
+        let triangles = self.faces.iter().flat_map(split_face);
+        let area = |nodes: [[f64; 3]; 3]| FlatShell::new(&nodes).map_or(0.0, |shell| shell.triangle().area);
+        triangles.map(|t| t.weight * area(t.nodes.map(|n| nodes[n]))).sum()
+    }
 }
 
 /// A bar of constant section.

@@ -1,0 +1,194 @@
+//! How much memory a run takes at its peak, worked out before it begins.
+
+use super::analyse::Selection;
+use super::prepared::Prepared;
+use crate::error::{Error, Result};
+use crate::linalg::factor::SymbolicFactor;
+use crate::linalg::sparse::{add_scaled, sum_of_squares};
+use crate::memory::{Available, available};
+use crate::structure::Model;
+use std::f64::consts::{PI, TAU};
+
+/// Runs of fewer degrees of freedom fit any machine.
+const LARGE: usize = 15_000;
+
+/// The peak of memory that is expected of a run, and what it is made of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExpectedMemory {
+    /// The peak \[bytes\].
+    pub bytes: f64,
+    /// Degrees of freedom.
+    pub dofs: usize,
+    /// Entries of the factors of K.
+    pub fill: usize,
+    /// About how many real modes are computed at once.
+    pub modes: f64,
+}
+
+impl ExpectedMemory {
+    /// The peak in words: `1.3 GiB`.
+    pub fn words(&self) -> String {
+        words(self.bytes)
+    }
+
+    /// Fails where `available` is less than the peak.
+    ///
+    /// # Errors
+    /// What is needed, what is there, and what makes it less.
+    pub fn check(&self, available: &Available) -> Result<()> {
+        if self.bytes <= available.bytes as f64 {
+            return Ok(());
+        }
+        let ExpectedMemory { dofs, fill, modes, .. } = self;
+        Err(Error::analysis(
+            "memory",
+            format!(
+                "the run is expected to take {} at its peak ({dofs} degrees of freedom, {fill:.2e} entries of a factor, about \
+                 {modes:.0} real modes), and {} leaves {}",
+                self.words(),
+                available.by,
+                words(available.bytes as f64),
+                fill = *fill as f64,
+            ),
+            "Take a coarser mesh, a lower `cea.basis_below`, `below` or `count`, or a machine with more memory",
+        ))
+    }
+}
+
+/// Fails where a large run of `selection` cannot fit into the memory that is left; gives what it is expected to take.
+///
+/// # Errors
+/// Those of [`ExpectedMemory::check`].
+pub fn check_memory(prepared: &Prepared, selection: Selection) -> Result<Option<ExpectedMemory>> {
+    let Some(expected) = expected_memory(prepared, selection)? else { return Ok(None) };
+    if let Some(available) = available() {
+        expected.check(&available)?;
+    }
+    Ok(Some(expected))
+}
+
+/// The expected peak of a large run, `None` for a small one.
+///
+/// # Errors
+/// When the pattern of K cannot be analysed.
+pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Option<ExpectedMemory>> {
+    let dofs = prepared.system.n_dofs();
+    if dofs < LARGE {
+        return Ok(None);
+    }
+    let structure = &prepared.system.structure;
+    let springs = prepared.system.points().map(|(_, point)| (1.0, &point.normal));
+    let pattern = add_scaled(&[
+        (1.0, &structure.stiffness),
+        (1.0, &structure.mass),
+        (1.0, &sum_of_squares(dofs, springs)),
+    ]);
+    let fill = SymbolicFactor::new(pattern.symbolic())?.fill();
+    let case = prepared.case;
+    let below = |hz: f64| modes_below(&prepared.model, hz);
+    let listed = case.modes.values().filter(|_| selection.modes);
+    let listed = listed.map(|wanted| wanted.below.map_or(wanted.count.unwrap_or(1) as f64, below));
+    let complex = case.cea.as_ref().filter(|_| selection.cea);
+    let modes = listed.chain(complex.map(|cea| below(cea.basis_below))).fold(0.0, f64::max);
+    let run = Run { dofs, entries: pattern.compute_nnz(), fill, modes: modes.min(dofs as f64) };
+    let bytes = run.peak(complex.is_some());
+    Ok(Some(ExpectedMemory { bytes, dofs, fill, modes: run.modes }))
+}
+
+/// What the peak follows from.
+struct Run {
+    dofs: usize,
+    entries: usize,
+    fill: usize,
+    modes: f64,
+}
+
+impl Run {
+    /// The peak of real modes, or of complex eigenvalues \[bytes\]: as many matrices, factors and vectors as were counted in
+    /// runs of 20 000 to 150 000 degrees of freedom.
+    ///
+    /// Matrices stand for what is proportional to the mesh, too. Of each mode there are two vectors in the basis of Lanczos,
+    /// the vector itself, and its motion of the nodes; of a complex one also the parts and the left vector.
+    fn peak(&self, complex: bool) -> f64 {
+        const PROGRAM: f64 = 4e7;
+        let vector = 8.0 * self.dofs as f64;
+        let (matrix, factor) = (12.0 * self.entries as f64, 8.0 * self.fill as f64);
+        let (factors, vectors) = if complex { (2.0, 8.0) } else { (0.5, 3.6) };
+        PROGRAM + 6.6 * matrix + factors * factor + (vectors * self.modes + 72.0) * vector
+    }
+}
+
+/// About how many modes the plates of a model have below a frequency: Weyl's N = ω A/(4π) √(ρh/D) for bending.
+fn modes_below(model: &Model, hz: f64) -> f64 {
+    let part = |part: &crate::structure::ShellPart| {
+        let (m, h) = (&part.material, part.thickness);
+        let rigidity = m.youngs_modulus * h.powi(3) / (12.0 * (1.0 - m.poissons_ratio.powi(2)));
+        TAU * hz * part.area(&model.nodes) / (4.0 * PI) * (m.density * h / rigidity).sqrt()
+    };
+    model.shells.iter().map(part).sum()
+}
+
+fn words(bytes: f64) -> String {
+    let mebibytes = bytes / f64::from(1 << 20);
+    if mebibytes < 1024.0 { format!("{mebibytes:.0} MiB") } else { format!("{:.1} GiB", mebibytes / 1024.0) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Peaks of runs as the system counted them (VmHWM, two threads): square plates and rigs.
+    #[test]
+    fn peaks_are_those_of_runs_within_thirty_percent() {
+        for (dofs, entries, fill, modes, complex, mebibytes) in [
+            (21_960, 904_968, 2_230_000, 9.0, false, 135.0),
+            (21_960, 904_968, 2_230_000, 48.0, false, 154.0),
+            (21_960, 904_968, 2_230_000, 377.0, false, 417.0),
+            (102_180, 4_254_048, 14_100_000, 9.0, false, 490.0),
+            (102_180, 4_254_048, 14_100_000, 48.0, false, 563.0),
+            (33_736, 1_388_192, 4_220_000, 54.0, true, 380.0),
+        ] {
+            let expected = Run { dofs, entries, fill, modes }.peak(complex) / f64::from(1 << 20);
+            assert!(
+                (expected / mebibytes - 1.0).abs() < 0.3,
+                "{dofs}: {expected} MiB, measured {mebibytes} MiB"
+            );
+        }
+    }
+
+    #[test]
+    fn a_run_that_cannot_fit_is_refused_with_both_figures() {
+        let expected = ExpectedMemory { bytes: 3e9, dofs: 100_000, fill: 20_000_000, modes: 40.0 };
+        let by = "the machine's free memory";
+        assert!(expected.check(&Available { bytes: 4_000_000_000, by }).is_ok());
+        let error = expected.check(&Available { bytes: 1 << 30, by }).unwrap_err();
+        let text = error.to_string();
+        assert!(
+            text.contains("2.8 GiB") && text.contains("leaves 1.0 GiB") && text.contains("coarser"),
+            "{text}"
+        );
+        assert_eq!(error.exit_code(), 1);
+    }
+
+    #[test]
+    fn the_number_of_modes_of_a_plate_is_weyls() {
+        // 300 mm × 300 mm × 1 mm of steel: 48 modes below 1500 Hz, clamped at one edge.
+        let plate = crate::structure::ShellPart {
+            name: "plate".into(),
+            faces: vec![crate::mesh::Element::Quadrilateral([0, 1, 2, 3])],
+            material: crate::structure::Material {
+                youngs_modulus: 210e9,
+                poissons_ratio: 0.3,
+                density: 7850.0,
+                loss_factor: 0.0,
+                rayleigh: crate::structure::RayleighDamping::default(),
+            },
+            thickness: 1e-3,
+            bending_only: false,
+            rotary_inertia: false,
+        };
+        let nodes = vec![[0.0; 3], [0.3, 0.0, 0.0], [0.3, 0.3, 0.0], [0.0, 0.3, 0.0]];
+        let model = Model { nodes, shells: vec![plate], ..Model::default() };
+        assert!((modes_below(&model, 1500.0) - 43.0).abs() < 1.0);
+    }
+}

@@ -1,0 +1,268 @@
+//! Numbers and machines at their limits: the binary answers with a result or with a sentence and an exit code.
+
+use std::path::Path;
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+fn stridor(folder: &Path, arguments: &[&str]) -> Output {
+    run(&mut command(folder, arguments))
+}
+
+fn command(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stridor"));
+    command.args(arguments).current_dir(folder).env("RUST_BACKTRACE", "0");
+    command
+}
+
+/// Whatever it says, it does not panic.
+fn run(command: &mut Command) -> Output {
+    let output = command.output().expect("the binary runs");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(!said.contains("panicked"), "{said}");
+    assert!(matches!(output.status.code(), Some(0..=2)), "{:?}: {said}", output.status);
+    output
+}
+
+fn folder_with(case: &str) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("case.toml"), case).unwrap();
+    folder
+}
+
+/// What is said where the exit code is `code`.
+#[track_caller]
+fn said(output: &Output, code: i32) -> String {
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{text}");
+    text
+}
+
+/// Two masses that a contact presses together while they slide; the belt drives the lower one.
+const BLOCK: &str = r#"
+[point]
+block = [0, 0, 0]
+
+[mass.block]
+on = "block"
+mass = "2 kg"
+
+[support.plane]
+on = "block"
+held = ["uz", "rx", "ry", "rz"]
+
+[spring.along]
+on = "block"
+direction = [1, 0, 0]
+stiffness = "2 kN/m"
+
+[force.press]
+on = "block"
+force = [0, "-10 N", 0]
+
+[contact.belt]
+body = "block"
+counter = "ground"
+into = [0, -1, 0]
+approach = 0
+sliding_velocity = "0.3 m/s"
+sliding_direction = [1, 0, 0]
+normal = { per = "point", stiffness = "100 kN/m" }
+friction = { law = "coulomb", mu0 = 0.4 }
+
+[cea]
+band = [0, "10 Hz"]
+"#;
+
+/// A plate, free in space.
+const PLATE: &str = r#"
+[mesh.plate]
+length = "200 mm"
+width = "100 mm"
+cells_along = 10
+cells_across = 6
+
+[material.steel]
+youngs_modulus = "210 GPa"
+poissons_ratio = 0.3
+density = "7850 kg/m^3"
+
+[shell.plate]
+material = "steel"
+thickness = "2 mm"
+
+[modes.plate]
+"#;
+
+#[test]
+fn contacts_of_extreme_numbers_are_analysed_or_refused() {
+    let inclined = BLOCK.replace("into = [0, -1, 0]", "into = [0, -1, 0.2]");
+    said(&stridor(folder_with(&inclined).path(), &["cea", "case.toml", "-q"]), 0);
+    for (old, new) in [
+        ("stiffness = \"100 kN/m\"", "stiffness = \"100 kN/m\", cubic = 1e300"),
+        ("\"-10 N\"", "-1e300"),
+        ("\"100 kN/m\"", "1e300"),
+        ("\"100 kN/m\"", "1e-300"),
+        ("\"2 kg\"", "1e-300"),
+        ("\"2 kg\"", "1e300"),
+    ] {
+        assert!(BLOCK.contains(old));
+        stridor(folder_with(&BLOCK.replace(old, new)).path(), &["run", "case.toml", "-q"]);
+    }
+}
+
+/// A penalty is the limit of a rigid contact: above a certain stiffness neither the load nor the complex modes move.
+#[test]
+fn a_stiffer_penalty_moves_no_squeal_mode() {
+    let rig = include_str!("../validation/rig-coarse/plain.toml").replace("\"6 kHz\"", "\"2 kHz\"");
+    let with = |stiffness: &str| {
+        let folder = folder_with(&rig.replace("\"10 MN/m\"", stiffness));
+        let output = stridor(folder.path(), &["cea", "case.toml", "--json", "-q"]);
+        said(&output, 0);
+        let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let load = summary["steady_sliding"]["pairs"][0]["normal_force_n"].as_f64().unwrap();
+        assert!((load - 10.0).abs() < 1e-8, "{stiffness}: {load} N");
+        let modes = summary["cea"]["eigenvalues"].as_array().unwrap().clone();
+        let number = |mode: &serde_json::Value, key: &str| mode[key].as_f64().unwrap();
+        modes.iter().map(|m| [number(m, "frequency_hz"), number(m, "growth_rate")]).collect::<Vec<_>>()
+    };
+    let reference = with("1e13");
+    assert!(reference.len() > 4);
+    for stiffness in ["1e15", "1e18", "1e21"] {
+        let stiffer = with(stiffness);
+        assert_eq!(stiffer.len(), reference.len());
+        for ([hz, growth], [hz_before, growth_before]) in stiffer.iter().zip(&reference) {
+            assert!((hz / hz_before - 1.0).abs() < 1e-6, "{stiffness}: {hz} Hz, {hz_before} Hz");
+            assert!(
+                (growth - growth_before).abs() < 1e-5 * growth_before.abs().max(1.0),
+                "{stiffness}: {growth}, {growth_before} 1/s"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_free_body_gives_as_many_rigid_motions_as_it_has() {
+    for count in [1, 3, 6] {
+        let folder = folder_with(&format!("{PLATE}count = {count}\n"));
+        let output = stridor(folder.path(), &["modes", "case.toml", "--json"]);
+        said(&output, 0);
+        let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(summary["mode_sets"][0]["rigid_bodies"], 6, "{}", summary["mode_sets"][0]);
+    }
+    let light = PLATE.replace("\"7850 kg/m^3\"", "1e-100");
+    stridor(folder_with(&format!("{light}count = 3\n")).path(), &["modes", "case.toml"]);
+}
+
+#[test]
+fn a_part_that_nothing_holds_is_named() {
+    let spring = "[spring.along]\non = \"block\"\ndirection = [1, 0, 0]\nstiffness = \"2 kN/m\"\n";
+    assert!(BLOCK.contains(spring));
+    let text = said(&stridor(folder_with(&BLOCK.replace(spring, "")).path(), &["run", "case.toml"]), 1);
+    assert!(text.contains("a point mass is free in 2 rigid-body motions (node 1)"), "{text}");
+}
+
+#[test]
+fn numbers_of_threads_are_bounded() {
+    let folder = folder_with(&format!("{PLATE}count = 1\n"));
+    for threads in ["0", "8000"] {
+        let text = said(&stridor(folder.path(), &["check", "case.toml", "--threads", threads]), 2);
+        assert!(text.contains("--threads") && text.contains("1 to 1024"), "{text}");
+    }
+    said(&stridor(folder.path(), &["check", "case.toml", "--threads", "3"]), 0);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn only_regular_files_are_read() {
+    let mesh = PLATE.replace(
+        "[mesh.plate]\nlength = \"200 mm\"\nwidth = \"100 mm\"\ncells_along = 10\ncells_across = 6\n",
+        "[mesh]\nfile = \"MESH\"\nunit = \"mm\"\n",
+    );
+    assert!(mesh.contains("MESH"));
+    let folder = folder_with("");
+    let pipe = folder.path().join("pipe");
+    let name = std::ffi::CString::new(pipe.to_str().unwrap()).unwrap();
+    // SAFETY: a call to the system with the name of a file, which ends in a zero.
+    assert_eq!(unsafe { libc::mkfifo(name.as_ptr(), 0o600) }, 0);
+    std::fs::File::create(folder.path().join("huge")).unwrap().set_len(100 << 30).unwrap();
+    for (file, words) in
+        [("/dev/zero", "a device"), ("pipe", "a pipe"), (".", "a folder"), ("huge", "100.000 GiB")]
+    {
+        std::fs::write(folder.path().join("case.toml"), format!("{}count = 1\n", mesh.replace("MESH", file)))
+            .unwrap();
+        let text = said(&stridor(folder.path(), &["check", "case.toml"]), 2);
+        assert!(text.contains(words), "{text}");
+        let text = said(&stridor(folder.path(), &["check", file]), 2);
+        assert!(text.contains(words), "{text}");
+    }
+}
+
+/// With a bound on the memory a run ends with its results or with one paragraph.
+#[cfg(target_os = "linux")]
+#[test]
+fn too_little_memory_is_one_paragraph() {
+    use std::os::unix::process::CommandExt;
+    let fine = PLATE.replace("= 10\n", "= 130\n").replace("= 6\n", "= 70\n");
+    let folder = folder_with(&format!("{fine}count = 40\n"));
+    let mut refused = 0;
+    for megabytes in [60u64, 90, 130, 200, 300] {
+        let mut command = command(folder.path(), &["modes", "case.toml", "-q", "--threads", "2"]);
+        let limit = libc::rlimit { rlim_cur: megabytes << 20, rlim_max: megabytes << 20 };
+        // SAFETY: the closure calls nothing but the system, in the child before it becomes the program.
+        unsafe {
+            command.pre_exec(move || match libc::setrlimit(libc::RLIMIT_AS, &limit) {
+                0 => Ok(()),
+                _ => Err(std::io::Error::last_os_error()),
+            });
+        }
+        let output = command.output().expect("the binary runs");
+        // The loader of the system needs some, too.
+        if !output.status.success() && output.status.code() != Some(127) {
+            let text = said(&output, 1);
+            assert!(text.contains("memory") || text.contains("threads"), "{text}");
+            assert!(text.trim_end().lines().count() <= 2, "{text}");
+            refused += 1;
+        }
+    }
+    assert!(refused > 0, "limits that do not bind");
+}
+
+/// A run that is large enough to be estimated takes what was expected within thirty percent, and is not begun where that is not
+/// there.
+#[cfg(target_os = "linux")]
+#[test]
+fn the_peak_of_memory_is_predicted() {
+    use std::os::unix::process::CommandExt;
+    let fine = PLATE.replace("= 10\n", "= 60\n").replace("= 6\n", "= 60\n");
+    let folder = folder_with(&format!("{fine}count = 30\n"));
+    let checked = stridor(folder.path(), &["check", "case.toml"]);
+    let text = String::from_utf8(checked.stdout).unwrap();
+    let words = text.split("about ").nth(1).expect("an estimate").split(' ').collect::<Vec<_>>();
+    assert_eq!(words[1], "MiB", "{text}");
+    let expected: f64 = words[0].parse().unwrap();
+
+    let mut child = command(folder.path(), &["modes", "case.toml", "-q", "--threads", "2"]).spawn().unwrap();
+    let mut status = 0;
+    // SAFETY: the system writes into two values of its own kinds; the child is waited for here only.
+    let usage = unsafe {
+        let mut usage: libc::rusage = std::mem::zeroed();
+        assert!(libc::wait4(child.id() as libc::pid_t, &mut status, 0, &mut usage) > 0);
+        usage
+    };
+    let _ = child.try_wait();
+    assert_eq!(status, 0);
+    let measured = usage.ru_maxrss as f64 / 1024.0;
+    assert!((expected / measured - 1.0).abs() < 0.3, "expected {expected} MiB, measured {measured} MiB");
+
+    let mut small = command(folder.path(), &["modes", "case.toml", "-q", "--threads", "1"]);
+    let limit = libc::rlimit { rlim_cur: 220 << 20, rlim_max: 220 << 20 };
+    // SAFETY: the closure calls nothing but the system, in the child before it becomes the program.
+    unsafe {
+        small.pre_exec(move || match libc::setrlimit(libc::RLIMIT_AS, &limit) {
+            0 => Ok(()),
+            _ => Err(std::io::Error::last_os_error()),
+        });
+    }
+    let text = said(&small.output().unwrap(), 1);
+    assert!(text.contains("memory"), "{text}");
+}
