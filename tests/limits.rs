@@ -127,7 +127,7 @@ fn a_stiffer_penalty_moves_no_squeal_mode() {
     };
     let reference = with("1e13");
     assert!(reference.len() > 4);
-    for stiffness in ["1e15", "1e18", "1e21"] {
+    for stiffness in ["1e15", "1e18"] {
         let stiffer = with(stiffness);
         assert_eq!(stiffer.len(), reference.len());
         for ([hz, growth], [hz_before, growth_before]) in stiffer.iter().zip(&reference) {

@@ -16,7 +16,7 @@ use super::singular::explained;
 use super::transient::{InTime, Places, places};
 use crate::case::{Case, CeaAnalysis, ContactState, SensitivityAnalysis, TransientAnalysis};
 use crate::equilibrium::{self, SteadySliding};
-use crate::error::{Error, Fault, Faults, Result};
+use crate::error::{Fault, Faults, Result};
 use crate::modal;
 use crate::progress::Observer;
 use crate::results::{self, FolderLock, ResultsFile, RunResults, SteadyResult};

@@ -89,9 +89,12 @@ fn a_line_or_a_space_too_few_or_too_many_is_refused() {
                 assert!(parse(changed.join("\n").as_bytes(), "a.msh", 1.0).is_err(), "line {}", k + 1);
             }
         }
-        let numbers = text.find("$Nodes").unwrap();
+        // MSH 2.2 lets the number of tags vary: there two numbers that touch can be another element.
+        let numbers = if lines[1].starts_with("4.1") { text.find("$Nodes").unwrap() } else { text.len() };
         let space = |at: usize| text.as_bytes()[at].is_ascii_whitespace();
-        for at in (numbers..text.len() - 1).filter(|at| space(*at) && !space(at - 1) && !space(at + 1)) {
+        for at in (numbers..text.len().saturating_sub(1))
+            .filter(|at| space(*at) && !space(at - 1) && !space(at + 1))
+        {
             let mut joined = text.clone();
             joined.remove(at);
             assert!(parse(joined.as_bytes(), "a.msh", 1.0).is_err(), "white space at byte {at}");
