@@ -6,10 +6,8 @@ use std::fs::{File, metadata};
 use std::io::{Error, ErrorKind, Read, Result};
 use std::path::Path;
 
-/// The largest file of numbers (meshes, matrices, measured functions) \[bytes\].
+/// The largest file \[bytes\].
 const LARGEST: u64 = 16 << 30;
-/// The largest file of text (cases, tables, references) \[bytes\].
-const LARGEST_TEXT: u64 = 1 << 30;
 
 /// The bytes of the file at `path`.
 ///
@@ -22,18 +20,6 @@ const LARGEST_TEXT: u64 = 1 << 30;
 /// What the system says; a folder, a pipe, a device or a socket; more than 16 GiB.
 pub fn read(path: &Path) -> Result<Vec<u8>> {
     read_up_to(path, LARGEST)
-}
-
-/// The text of the file at `path`.
-///
-/// # Errors
-/// Those of [`read`], with 1 GiB; [`ErrorKind::InvalidData`] with the line of the first byte that is not UTF-8.
-pub fn read_text(path: &Path) -> Result<String> {
-    String::from_utf8(read_up_to(path, LARGEST_TEXT)?).map_err(|error| {
-        let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-        let line = 1 + before.iter().filter(|b| **b == b'\n').count();
-        Error::new(ErrorKind::InvalidData, format!("bytes that are not UTF-8 text in line {line}"))
-    })
 }
 
 fn read_up_to(path: &Path, largest: u64) -> Result<Vec<u8>> {
@@ -71,19 +57,13 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("case.toml");
         std::fs::write(&path, "a = 1\n").unwrap();
-        assert_eq!(
-            (read(&path).unwrap(), read_text(&path).unwrap().as_str()),
-            (b"a = 1\n".to_vec(), "a = 1\n")
-        );
+        assert_eq!(read(&path).unwrap(), b"a = 1\n");
         let said = |path: &Path| read(path).unwrap_err().to_string();
         assert!(said(dir.path()).contains("a folder"));
         assert_eq!(read(&dir.path().join("none")).unwrap_err().kind(), ErrorKind::NotFound);
-        std::fs::write(&path, b"a = 1\n\xff\n").unwrap();
-        assert!(read_text(&path).unwrap_err().to_string().contains("not UTF-8 text in line 2"));
         // A file with a hole takes no room on the disk.
         File::create(&path).unwrap().set_len(100 << 30).unwrap();
         assert_eq!(said(&path), "100.000 GiB; 16 GiB at most");
-        assert!(read_text(&path).unwrap_err().to_string().contains("1 GiB at most"));
     }
 
     #[cfg(unix)]
