@@ -1,7 +1,7 @@
 //! What the unstable modes of a case answer to: its scalars, and small things mounted on its nodes.
 
 use super::modes::modal_ratios;
-use super::near::near;
+use super::near::near_mode;
 use super::prepared::Prepared;
 use super::scalars::{Kind, Scalar, chosen};
 use super::verify;
@@ -140,7 +140,7 @@ impl Analysed<'_> {
             all
         } else {
             let nearest = |hz: &f64| {
-                near(modes.iter().map(ComplexMode::frequency_hz), *hz).ok_or_else(|| {
+                near_mode(modes, *hz, |_| true).ok_or_else(|| {
                     let found =
                         format!("no complex mode within 10 % of {hz} Hz, which `sensitivity.modes` names");
                     Error::analysis(

@@ -3,7 +3,7 @@
 use super::InTime;
 use crate::case::Disturbance;
 use crate::error::{Error, Result};
-use crate::job::near::near;
+use crate::job::near::near_mode;
 use crate::linalg::c64;
 use crate::reduction::Reduced;
 use crate::stability::{ComplexMode, ModalFilter, modal_filter};
@@ -60,9 +60,8 @@ impl InTime<'_> {
             });
         };
         // Of a pair that coupled it is the one that grows that is meant.
-        let far = |mode: &ComplexMode| if mode.unstable() { mode.frequency_hz() } else { f64::INFINITY };
-        let found = near(modes.iter().map(far), hz);
-        found.or_else(|| near(modes.iter().map(ComplexMode::frequency_hz), hz)).ok_or_else(|| {
+        let found = near_mode(modes, hz, ComplexMode::unstable).or_else(|| near_mode(modes, hz, |_| true));
+        found.ok_or_else(|| {
             let found = format!("no complex mode within 10 % of {hz} Hz, where `mode_near` looks for one");
             Error::analysis(
                 PLACE,
