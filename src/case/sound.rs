@@ -42,19 +42,26 @@ pub struct Microphone {
     pub at: [f64; 3],
 }
 
+/// How far a microphone may be \[m\].
+const FARTHEST: f64 = 1e3;
+
 /// The name of the microphone that `distance` places.
 pub const ON_AXIS: &str = "axis";
 
 pub(super) fn read(s: &Section) -> SoundAnalysis {
     let microphone: BTreeMap<String, Microphone> = collect(s, "microphone", |m| Microphone {
-        at: m.quantities("at", LENGTH).required("a place as three lengths"),
+        at: m
+            .quantities("at", LENGTH)
+            .check("a place within 1 km of the origin", |at| at.iter().all(|x| x.abs() <= FARTHEST))
+            .required("a place as three lengths"),
     });
     let plain = |name: &str| name.chars().all(|c| c.is_alphanumeric() || c == '-' || c == '_');
     for name in microphone.keys().filter(|name| !plain(name) || *name == ON_AXIS) {
         let expected = format!("letters, digits, `-` and `_`, and not `{ON_AXIS}`, which `distance` places");
         s.fault(&format!("microphone.{name}"), format!("the name \"{name}\""), expected, "");
     }
-    let distance = s.quantity("distance", LENGTH).positive().optional();
+    let distance = s.quantity("distance", LENGTH).positive();
+    let distance = distance.check("1 km at most", |d| *d <= FARTHEST).optional();
     SoundAnalysis {
         distance: distance.or_else(|| microphone.is_empty().then_some(1.0)),
         direction: s.direction("direction").optional(),
@@ -62,7 +69,10 @@ pub(super) fn read(s: &Section) -> SoundAnalysis {
         air: s
             .section("air", |a| AirChoice {
                 density: a.quantity("density", DENSITY).positive().or(AirChoice::default().density),
-                speed: a.quantity("speed", VELOCITY).positive().or(AirChoice::default().speed),
+                speed: a
+                    .quantity("speed", VELOCITY)
+                    .check("a velocity between 10 m/s and 10 km/s", |c| (10.0..=1e4).contains(c))
+                    .or(AirChoice::default().speed),
             })
             .unwrap_or_default(),
         microphone,

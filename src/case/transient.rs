@@ -8,6 +8,11 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::ops::Bound;
 
+/// Steps of a run.
+const MOST_STEPS: f64 = 1e8;
+/// The shortest time step with sound \[s\]: one of 200 to a period of 50 kHz, far beyond what is heard.
+const SHORTEST_HEARD: f64 = 1e-7;
+
 /// Steps of a reduced model that are compared with the full one, when the case does not say.
 const COMPARED: f64 = 100.0;
 
@@ -191,27 +196,21 @@ impl Course {
             }
         }
     }
-
-    /// Whether it reaches zero, or turns round.
-    pub fn stops(&self) -> bool {
-        match self {
-            Course::Constant => false,
-            Course::Ramp { from, .. } => *from <= 0.0,
-            Course::Reciprocating { .. } => true,
-            Course::Table { factor, .. } => {
-                factor.iter().any(|f| *f <= 0.0) && factor.iter().any(|f| *f >= 0.0)
-            }
-        }
-    }
 }
 
 pub(super) fn read(s: &Section) -> TransientAnalysis {
     let duration = s.quantity("duration", TIME).positive().required(TIME.name);
+    let fewest = format!("{:e} s or more, as a run has {MOST_STEPS:e} steps at most", duration / MOST_STEPS);
     let time_step = s
         .quantity("time_step", TIME)
         .positive()
         .check("a time step that is shorter than the duration", |step| *step <= duration)
+        .check(&fewest, |step| duration <= MOST_STEPS * step)
         .required(TIME.name);
+    if s.has("sound") && time_step > 0.0 && time_step < SHORTEST_HEARD {
+        let expected = format!("{SHORTEST_HEARD:e} s or more beside [transient.sound]");
+        s.fault("time_step", format!("{time_step:e} s"), expected, "");
+    }
     let reduced = s.choice("model", &["full", "reduced"]).or("full") == "reduced";
     let unit = |key: &str, low: f64, high: f64, default: f64| {
         s.quantity(key, NUMBER).within(Bound::Included(low), Bound::Included(high)).or(default)
@@ -308,5 +307,26 @@ fn read_course(s: &Section) -> Course {
             from: s.quantity("from", NUMBER).or(0.0),
             duration: s.quantity("duration", TIME).positive().required(TIME.name),
         },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::case::Case;
+
+    fn faults(transient: &str) -> String {
+        let text = format!("[cea]\nband = [0, 1]\n[transient]\n{transient}");
+        Case::parse("case.toml", &text, ".".into()).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn steps_without_number_are_refused() {
+        let text = faults("duration = 1e3\ntime_step = 1e-6");
+        assert!(text.contains("1e-5 s or more, as a run has 1e8 steps at most"), "{text}");
+        let text = faults("duration = 1e-9\ntime_step = \"1e-10 us\"\n[transient.sound]\ndistance = 2000");
+        assert!(text.contains("found 1e-16 s; expected 1e-7 s or more beside [transient.sound]"), "{text}");
+        assert!(text.contains("transient.sound.distance") && text.contains("1 km at most"), "{text}");
+        let text = faults("duration = 1e-9\ntime_step = \"1e-10 us\"");
+        assert!(!text.contains("time_step"), "{text}");
     }
 }

@@ -1,7 +1,8 @@
 //! Friction that sticks: elastic bristles that bend before they slip, with return mapping.
 
-use super::friction::{Coefficient, FrictionCoefficient};
+use super::friction::FrictionCoefficient;
 use super::normal::NormalLaw;
+use super::slip::Slip;
 use crate::system::{ContactMotion, SlipAnswer, SlipStep};
 
 /// Bristles between the bodies, bent by **s** along the face, with stiffness k_t and damping c_t:
@@ -65,7 +66,7 @@ impl Bristle {
             resistance: bend * since.duration,
             late: towards[0] * excess[0] + towards[1] * excess[1],
         };
-        let at = slip.solve(size);
+        let at = slip.solve(size, size / slip.resistance);
         let force = at.mu.value * load;
         // |F| by |F*|, by `late`, by N.
         let share = load * at.mu.by_speed * at.by_speed / slip.resistance;
@@ -88,64 +89,6 @@ impl Bristle {
             }
         }
         answer
-    }
-}
-
-/// The equation for the speed of slip v ≥ 0: κ Δt v + μ(w(v)) N = |**F***|.
-struct Slip<'a> {
-    friction: &'a dyn FrictionCoefficient,
-    pressure: f64,
-    /// N.
-    load: f64,
-    /// κ Δt \[N s/m\].
-    resistance: f64,
-    /// By how much the speed at the end of the step is above its mean.
-    late: f64,
-}
-
-/// A speed with μ there.
-struct Slipping {
-    mu: Coefficient,
-    /// ∂w/∂v.
-    by_speed: f64,
-    /// ∂w/∂late.
-    by_late: f64,
-}
-
-impl Slip<'_> {
-    fn at(&self, speed: f64) -> Slipping {
-        let (w, by_speed, by_late) = if self.late >= speed {
-            (2.0 * speed, 2.0, 0.0)
-        } else if self.late <= -speed {
-            (0.0, 0.0, 0.0)
-        } else {
-            (speed + self.late, 1.0, 1.0)
-        };
-        Slipping { mu: self.friction.mu(w, self.pressure), by_speed, by_late }
-    }
-
-    /// The solution with the highest speed that Newton's method, kept inside a bracket, comes to from above; there is
-    /// one because the left-hand side is below `size` at v = 0 and not below it at size/(κ Δt).
-    fn solve(&self, size: f64) -> Slipping {
-        let (mut low, mut high) = (0.0, size / self.resistance);
-        let mut speed = high;
-        let mut at = self.at(speed);
-        for _ in 0..100 {
-            let over = self.resistance * speed + self.load * at.mu.value - size;
-            if over.abs() <= 4.0 * f64::EPSILON * size || high - low <= f64::EPSILON * high {
-                break;
-            }
-            if over > 0.0 {
-                high = speed;
-            } else {
-                low = speed;
-            }
-            let slope = self.resistance + self.load * at.mu.by_speed * at.by_speed;
-            let newton = speed - over / slope;
-            speed = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-            at = self.at(speed);
-        }
-        at
     }
 }
 
@@ -177,7 +120,7 @@ mod tests {
         let at = |slid: f64, v: f64| {
             law.advance(
                 &motion([v, 0.0]),
-                &SlipStep { bristle: [0.0; 2], slid: [slid, 0.0], duration },
+                &SlipStep { slid: [slid, 0.0], duration, ..SlipStep::default() },
                 weight,
             )
         };
@@ -194,7 +137,7 @@ mod tests {
         assert!((far.forces.friction[0] / far.forces.normal - 0.4).abs() < 1e-6);
         // An open contact forgets.
         let open = ContactMotion { penetration: -1e-6, ..motion([0.1, 0.0]) };
-        let since = SlipStep { bristle: [1e-6, 0.0], slid: [1e-6, 0.0], duration };
+        let since = SlipStep { bristle: [1e-6, 0.0], slid: [1e-6, 0.0], duration, ..SlipStep::default() };
         assert_eq!(law.advance(&open, &since, weight), SlipAnswer::default());
     }
 
@@ -206,11 +149,16 @@ mod tests {
             let steady = law.respond(&motion(v), 1.0).0;
             let mut bristle = [0.0; 2];
             for _ in 0..400 {
-                let answer = law.advance(&motion(v), &SlipStep { bristle, slid, duration }, 1.0);
+                let answer = law.advance(
+                    &motion(v),
+                    &SlipStep { bristle, slid, duration, ..SlipStep::default() },
+                    1.0,
+                );
                 bristle = answer.bristle;
                 assert!(answer.forces.friction[0].hypot(answer.forces.friction[1]) <= 0.7 * steady.normal);
             }
-            let answer = law.advance(&motion(v), &SlipStep { bristle, slid, duration }, 1.0);
+            let answer =
+                law.advance(&motion(v), &SlipStep { bristle, slid, duration, ..SlipStep::default() }, 1.0);
             let same = |found: [f64; 2], expected: [f64; 2]| {
                 let pairs = found.iter().zip(expected);
                 assert!(
@@ -246,7 +194,11 @@ mod tests {
                         penetration_rate: x[1],
                         slip_velocity: [x[2], x[3]],
                     };
-                    law.advance(&m, &SlipStep { bristle, slid: [x[4], x[5]], duration }, weight)
+                    law.advance(
+                        &m,
+                        &SlipStep { bristle, slid: [x[4], x[5]], duration, ..SlipStep::default() },
+                        weight,
+                    )
                 };
                 let at = [1e-5, 0.01, v[0], v[1], slid[0], slid[1]];
                 let answer = of(at);

@@ -1,6 +1,7 @@
 //! The sliding contact: a normal law and a friction coefficient make a [`ContactLaw`].
 
 use super::bristle::Bristle;
+use super::coulomb;
 use super::friction::FrictionCoefficient;
 use super::normal::NormalLaw;
 use crate::system::{ContactForces, ContactLaw, ContactMotion, ContactTangent, SlipAnswer, SlipStep};
@@ -10,7 +11,8 @@ use std::sync::Arc;
 ///
 /// The regularised sign is φ(v) = v/√(v² + v_ε²): only the direction is smoothed, μ is taken at the true speed.
 /// So for V ≫ v_ε the force is μ(V) N, the slope along the slip is N(μ′|φ| + μφ′) and the slope across it is
-/// N μ|φ|/|V|. With v_ε = 0 the force is exact and zero at rest.
+/// N μ|φ|/|V|. With v_ε = 0 the force is exact and zero at rest, and in time, without bristles, it is any force up to
+/// μ(0) N there: what keeps the point at rest, as far as that reaches.
 #[derive(Debug, Clone)]
 pub struct SlidingLaw {
     /// N(δ, δ̇).
@@ -86,7 +88,14 @@ impl ContactLaw for SlidingLaw {
             return bristle.advance(&self.normal, &*self.friction, motion, since, weight);
         }
         let (forces, tangent) = self.respond(motion, weight);
+        if self.is_set_valued() && forces.normal > 0.0 {
+            return coulomb::advance(&self.normal, &*self.friction, motion, since, weight);
+        }
         SlipAnswer { forces, tangent, ..SlipAnswer::default() }
+    }
+
+    fn is_set_valued(&self) -> bool {
+        self.bristle.is_none() && self.regularisation == 0.0 && self.sense == FrictionSense::WithSlip
     }
 
     fn bent(&self, friction: [f64; 2], weight: f64) -> [f64; 2] {

@@ -5,11 +5,13 @@
 //! load they make a [`crate::system::ContactPair`].
 
 mod bristle;
+mod coulomb;
 pub mod friction;
 pub mod law;
 pub mod normal;
 pub mod pairing;
 mod projection;
+mod slip;
 mod table;
 
 pub use bristle::Bristle;

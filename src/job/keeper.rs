@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::results::{
     CalibrationResult, Channel, ComplexResult, EventTable, Field, FieldsFile, FrfResult, HistoryTable,
     MapResult, NamedModes, Piece, Recording, ResultsFile, RunResults, SensitivityResult, SteadyResult,
-    SweepResult, TransientResult, modal_channel,
+    SweepResult, TransientResult, modal_channel, room_in_memory, room_on_disk,
 };
 use crate::sweep::MapPoint;
 use crate::transient::Checkpoint;
@@ -122,6 +122,9 @@ impl<'a> Memory<'a> {
 
 impl Keeper for Memory<'_> {
     fn record(&mut self, stage: Stage<'_>) -> Result<()> {
+        if let Stage::TransientBegins(recording) = &stage {
+            room_in_memory(recording)?;
+        }
         self.histories.keep(&stage);
         (self.record)(stage)
     }
@@ -168,6 +171,7 @@ impl<'a> Folder<'a> {
             Stage::MapPoints(name, first, points) => file.write_map_points(name, *first, points),
             Stage::Map(map) => file.finish_map(map),
             Stage::TransientBegins(recording) => {
+                room_on_disk(self.dir, recording)?;
                 let fields = recording.fields.as_ref();
                 self.fields = fields.map(|fields| FieldsFile::begin(self.dir, fields)).transpose()?;
                 file.begin_transient(recording)?;

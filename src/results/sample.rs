@@ -446,6 +446,7 @@ fn transient() -> TransientResult {
         time_step: step,
         rows: steps + 1,
         scheme: "HHT, α = -0.05".into(),
+        set_valued: vec![],
         reduced: Some([88, 13]),
         reduced_check: Some(reduced_check()),
         channels,

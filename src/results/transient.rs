@@ -176,6 +176,8 @@ pub struct TransientResult {
     pub rows: usize,
     /// The integrator, in words.
     pub scheme: String,
+    /// The contacts whose friction at rest is any force up to μ(0) N, without bristles and without regularisation.
+    pub set_valued: Vec<String>,
     /// Real modes and attachment shapes of a reduced model; `None` for the full one.
     pub reduced: Option<[usize; 2]>,
     /// A reduced model beside the full one.
@@ -216,6 +218,11 @@ impl TransientResult {
     /// Steps recorded, the start included.
     pub fn len(&self) -> usize {
         self.rows
+    }
+
+    /// The contacts of [`TransientResult::set_valued`], if any contact point came to rest.
+    pub fn stuck_without_give(&self) -> &[String] {
+        if self.events[EventKind::Sticks as usize] > 0 { &self.set_valued } else { &[] }
     }
 
     /// Whether nothing was recorded.

@@ -65,6 +65,7 @@ pub(super) fn transient(result: &TransientResult) -> Value {
         "steps": result.len().saturating_sub(1),
         "duration_s": result.len().saturating_sub(1) as f64 * result.time_step,
         "scheme": result.scheme,
+        "set_valued_friction": result.set_valued,
         "reduced": result.reduced.map(|[modes, attached]| json!({ "modes": modes, "attachment": attached })),
         "reduced_check": result.reduced_check.as_ref().map(reduced_check),
         "channels": channels,

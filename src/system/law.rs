@@ -34,7 +34,7 @@ pub struct ContactTangent {
 }
 
 /// How far a point slid in a time step, and what it remembers of the steps before.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SlipStep {
     /// s \[m\] along t₁ and t₂: by how much the bristles of the point were bent when the step began.
     pub bristle: [f64; 2],
@@ -42,6 +42,10 @@ pub struct SlipStep {
     pub slid: [f64; 2],
     /// Δt \[s\].
     pub duration: f64,
+    /// **F** \[N\]: the last iterate of friction at the end of the step; for a law that is set-valued at rest.
+    pub friction: [f64; 2],
+    /// ρ > 0 \[N s/m\]: what scales the slip velocity beside **F**, see [`SlipAnswer::by_friction`].
+    pub resistance: f64,
 }
 
 /// What a law answers at the end of a time step.
@@ -53,6 +57,9 @@ pub struct SlipAnswer {
     pub tangent: ContactTangent,
     /// ∂(F₁, F₂)/∂Δ \[N/m\].
     pub by_slid: [[f64; 2]; 2],
+    /// ∂(F₁, F₂)/∂**F** of the last iterate: that of the resolvent where the law is set-valued at rest, whose answer is a
+    /// function of **F** + ρ **v** and right where it equals **F**. Zero for other laws.
+    pub by_friction: [[f64; 2]; 2],
     /// s \[m\] at the end of the step.
     pub bristle: [f64; 2],
     /// Whether the point did not slip.
@@ -71,6 +78,11 @@ pub trait ContactLaw: Debug + Send + Sync {
     fn advance(&self, motion: &ContactMotion, _since: &SlipStep, weight: f64) -> SlipAnswer {
         let (forces, tangent) = self.respond(motion, weight);
         SlipAnswer { forces, tangent, ..SlipAnswer::default() }
+    }
+
+    /// Whether friction at rest is any force up to μ(0) N, so that it follows from the motion of the whole only.
+    fn is_set_valued(&self) -> bool {
+        false
     }
 
     /// How far steady friction **F** \[N\] has bent the bristles of a point: s \[m\].

@@ -12,7 +12,7 @@ pub enum EventKind {
     Closes,
     /// Closed and slipping before and after, its slip velocity along the sliding direction changes sign.
     Turns,
-    /// It stops to slip; only a law with bristles can say so.
+    /// It stops to slip; a law with regularised friction never says so.
     Sticks,
     /// It slips again.
     Slips,

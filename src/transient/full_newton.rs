@@ -1,44 +1,92 @@
 //! One implicit step by Newton's method on the whole system: slow and plain, to compare with.
 
+use super::along::moved_most;
 use super::model::Model;
-use super::reaction::Reaction;
+use super::reaction::{Reaction, Since, resistance};
 use super::scheme::Weights;
 use super::state::State;
-use super::stepper::{ITERATIONS, ROUND_OFF, Solver, Stuck};
-use crate::linalg::SparseMatrix;
-use crate::linalg::sparse::{add_scaled, entry, multiply_vector};
+use super::stepper::{ITERATIONS, ROUND_OFF, Solver, Stuck, UNMATCHED};
+use crate::linalg::sparse::{entry, multiply_vector};
 use crate::linalg::tall::{expand, gram};
+use crate::linalg::{SparseMatrix, SparseVector};
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 
-/// A₀Δ + B E BᵀΔ + b D r(u_t + Δ, v_t + c₁Δ) − h − B w = 0 with the tangent A₀ + b D (∂r/∂q + c₁ ∂r/∂q̇) Dᵀ. The modal
-/// part B E Bᵀ, dense but small beside A₀, is left to the iteration.
+/// A₀Δ + B E BᵀΔ + b D r − h − B w = 0 and r − R(r, u_t + Δ, v_t + c₁Δ) = 0 for Δ and r together, with the tangent
+///
+/// A₀  b D;  −(∂R/∂q + c₁ ∂R/∂q̇) Dᵀ  I − ∂R/∂r.
+///
+/// The modal part B E Bᵀ, dense but small beside A₀, is left to the iteration.
 #[derive(Debug)]
 pub(super) struct FullNewton<'a> {
     model: &'a Model<'a>,
     weights: Weights,
     linear: SparseMatrix,
+    /// The diagonal of A₀.
+    diagonal: Vec<f64>,
     reaction: Reaction,
 }
 
 impl<'a> FullNewton<'a> {
     pub(super) fn new(model: &'a Model<'a>, weights: Weights) -> Self {
-        FullNewton { model, weights, linear: model.effective(&weights), reaction: Reaction::new(model) }
+        let linear = model.effective(&weights);
+        let diagonal = diagonal(&linear);
+        FullNewton { model, weights, linear, diagonal, reaction: Reaction::new(model) }
     }
 
-    /// The residual at Δ, without B w.
-    fn residual(&mut self, delta: &[f64], h: &[f64], at: &[Vec<f64>; 2], ends: [&State; 2]) -> Vec<f64> {
+    /// ρ of each point, as if every degree of freedom moved by itself.
+    fn resistances(&self, directions: &[SparseVector]) -> Vec<f64> {
+        let compliance =
+            |t: &SparseVector| t.iter().map(|(i, t)| t * t / self.diagonal[i].abs()).sum::<f64>();
+        let factor = self.weights.share() * self.weights.rate;
+        let points = 0..self.model.points.len();
+        points.map(|p| resistance([1, 2].map(|k| compliance(&directions[3 * p + k])), factor)).collect()
+    }
+
+    /// What is left of both equations at Δ and r, without B w.
+    fn residual(
+        &mut self,
+        [delta, force]: [&[f64]; 2],
+        h: &[f64],
+        at: &[Vec<f64>; 2],
+        [from, to]: [&State; 2],
+        resistance: &[f64],
+    ) -> Vec<f64> {
         let model = self.model;
-        let [from, to] = ends;
         let mut along = vec![0.0; model.n_directions()];
         to.interface.motions(model, delta, &mut along);
         let q: Vec<f64> = along.iter().zip(&at[0]).map(|(x, p)| p + x).collect();
         let rate: Vec<f64> = along.iter().zip(&at[1]).map(|(x, v)| v + self.weights.rate * x).collect();
-        self.reaction.evaluate(model, [&q, &rate], to, Some((from, self.weights.step)));
+        let duration = self.weights.step;
+        self.reaction.evaluate(model, [&q, &rate], to, Some(Since { from, duration, force, resistance }));
         let mut rho = multiply_vector(&self.linear, delta);
         rho.iter_mut().zip(h).for_each(|(rho, h)| *rho -= h);
-        to.interface.add_reactions(model, self.weights.share(), &self.reaction.force, &mut rho);
+        to.interface.add_reactions(model, self.weights.share(), force, &mut rho);
+        rho.extend(force.iter().zip(&self.reaction.force).map(|(r, answer)| r - answer));
         rho
+    }
+
+    /// The tangent of both equations.
+    fn tangent(&self, directions: &[SparseVector]) -> Result<SparseMatrix, Stuck> {
+        let (n, r) = (self.model.n(), directions.len());
+        let mut entries = Vec::new();
+        for j in 0..n {
+            for place in self.linear.col_ptr()[j]..self.linear.col_ptr()[j + 1] {
+                let place = place as usize;
+                entries.push(entry(self.linear.row_idx()[place] as usize, j, self.linear.val()[place]));
+            }
+        }
+        for (k, direction) in directions.iter().enumerate() {
+            entries.extend(direction.iter().map(|(i, d)| entry(i, n + k, self.weights.share() * d)));
+            entries.push(entry(n + k, n + k, 1.0));
+        }
+        self.reaction.rows(self.model, self.weights.rate, &mut |row| {
+            for (k, slope) in row.slopes.iter().filter(|(_, slope)| *slope != 0.0) {
+                entries.extend(directions[*k].iter().map(|(j, d)| entry(n + row.place, j, -slope * d)));
+            }
+            entries.extend(row.held.iter().map(|(k, held)| entry(n + row.place, n + k, -held)));
+        });
+        SparseMatrix::try_new_from_triplets(n + r, n + r, &entries).map_err(|_| Stuck::NotFinite)
     }
 }
 
@@ -54,17 +102,23 @@ impl Solver for FullNewton<'_> {
         let n = model.n();
         let mut at = [0, 1].map(|_| vec![0.0; model.n_directions()]);
         to.predict_along(&weights, &mut at);
-        let mut force = h.col_as_slice(0).to_vec();
+        let directions: Vec<_> =
+            (0..model.n_directions()).map(|k| to.interface.direction(model, k)).collect();
+        let resistance = self.resistances(&directions);
+        let mut given = h.col_as_slice(0).to_vec();
         if let Some(own) = &model.damping.modal {
             let part = expand(own.basis.as_ref(), modal.as_ref());
-            force.iter_mut().zip(part.col_as_slice(0)).for_each(|(h, p)| *h += p);
+            given.iter_mut().zip(part.col_as_slice(0)).for_each(|(h, p)| *h += p);
         }
         let [_, c, _] = weights.effective();
-        // From where the last acceleration would lead.
+        // From where the last acceleration would lead, and the last forces.
         let mut delta: Vec<f64> = from.motion.col_as_slice(2).iter().map(|a| a / weights.inertia).collect();
+        let mut force = from.reaction.clone();
         let mut length = 0.0;
-        for _ in 0..ITERATIONS {
-            let mut rho = self.residual(&delta, &force, &at, [from, to]);
+        let mut moved = vec![0.0; model.n_directions()];
+        for iteration in 1..=ITERATIONS {
+            to.iterations = iteration;
+            let mut rho = self.residual([&delta, &force], &given, &at, [from, to], &resistance);
             let column = Mat::from_fn(n, 1, |i, _| delta[i]);
             if let Some(own) = &model.damping.modal {
                 let mut share = gram(own.basis.as_ref(), column.as_ref());
@@ -72,21 +126,21 @@ impl Solver for FullNewton<'_> {
                 let part = expand(own.basis.as_ref(), share.as_ref());
                 rho.iter_mut().zip(part.col_as_slice(0)).for_each(|(r, p)| *r += p);
             }
-            let entries = self.reaction.tangent(model, &to.interface, weights.rate).into_iter();
-            let entries: Vec<_> = entries.map(|(i, j, v)| entry(i, j, weights.share() * v)).collect();
-            let contact =
-                SparseMatrix::try_new_from_triplets(n, n, &entries).map_err(|_| Stuck::NotFinite)?;
-            let tangent = add_scaled(&[(1.0, &self.linear), (1.0, &contact)]);
-            let lu = tangent.sp_lu().map_err(|_| Stuck::NotFinite)?;
-            let step = lu.solve(Mat::from_fn(n, 1, |i, _| rho[i]));
-            length = step.norm_max();
-            if !length.is_finite() {
+            let lu = self.tangent(&directions)?.sp_lu().map_err(|_| Stuck::NotFinite)?;
+            let step = lu.solve(Mat::from_fn(rho.len(), 1, |i, _| rho[i]));
+            length = step.subrows(0, n).norm_max();
+            if !step.norm_max().is_finite() {
                 return Err(Stuck::NotFinite);
             }
-            (0..n).for_each(|i| delta[i] -= step[(i, 0)]);
+            to.interface.motions(model, &step.col_as_slice(0)[..n], &mut moved);
+            delta.iter_mut().enumerate().for_each(|(i, delta)| *delta -= step[(i, 0)]);
+            force.iter_mut().enumerate().for_each(|(k, r)| *r -= step[(n + k, 0)]);
             let scale = from.motion.col(0).norm_max().max(column.norm_max());
             if length <= ROUND_OFF * scale {
-                self.residual(&delta, &force, &at, [from, to]);
+                self.residual([&delta, &force], &given, &at, [from, to], &resistance);
+                if self.reaction.mismatch(&force) > UNMATCHED {
+                    continue;
+                }
                 to.reaction.copy_from_slice(&self.reaction.force);
                 to.bristles.copy_from_slice(&self.reaction.bristles);
                 h.col_as_slice_mut(0).copy_from_slice(&delta);
@@ -96,6 +150,15 @@ impl Solver for FullNewton<'_> {
                 return Ok(());
             }
         }
-        Err(Stuck::Newton(length))
+        Err(Stuck::Newton { length, point: moved_most(&moved, model) })
     }
+}
+
+/// The diagonal of a matrix.
+fn diagonal(a: &SparseMatrix) -> Vec<f64> {
+    let own = |j: usize| {
+        let column = a.col_ptr()[j] as usize..a.col_ptr()[j + 1] as usize;
+        column.filter(|place| a.row_idx()[*place] as usize == j).map(|place| a.val()[place]).sum()
+    };
+    (0..a.ncols()).map(own).collect()
 }

@@ -166,18 +166,25 @@ impl Steppers<'_> {
             }
         }
         let why = match stuck {
-            Stuck::Newton(length) => format!("Newton's method for the contact still steps by {length:.1e} m"),
+            Stuck::Newton { length, .. } => {
+                format!("Newton's method for the contact still moves it by {length:.1e} m")
+            }
             Stuck::NotFinite => "the motion is no longer finite".to_string(),
         };
-        Err(Error::analysis(
-            "transient",
-            format!(
-                "at t = {:.6e} s, in steps of {:.1e} s, {why}",
-                ends[0],
-                self.plan.step / (1 << SPLITS) as f64
-            ),
-            "Make the time step smaller or the friction law smoother (`friction.regularisation`)",
-        ))
+        let (place, name) = match stuck {
+            Stuck::Newton { point: Some(point), .. } => self.model.place(point),
+            _ => (String::new(), "NAME"),
+        };
+        let found = format!(
+            "at t = {:.6e} s, in steps of {:.1e} s, {why}{place}",
+            ends[0],
+            self.plan.step / (1 << SPLITS) as f64
+        );
+        let help = format!(
+            "Let the contact give before it slips, `[contact.{name}] bristle` with a `stiffness` as large as the normal \
+             one; or make its friction law smoother, `friction.regularisation`, or `transient.time_step` smaller"
+        );
+        Err(Error::analysis("transient", found, help))
     }
 
     /// The work of 2^level parts, and the largest error of one.

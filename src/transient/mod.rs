@@ -3,9 +3,11 @@
 //! [`Scheme`] is the generalised-α family, [`Model`] what it needs of a system, [`march`] the run. The structure is
 //! factorised once for a time step; contact is condensed exactly onto the few directions in which it acts, so that a
 //! step costs one solution with sparse factors and Newton's method on a small dense system (`condensed`). Newton's method
-//! on the whole is kept beside it to compare with (`full_newton`). [`Work`] is the balance of energy. A [`Checkpoint`] holds
+//! on the whole is kept beside it to compare with (`full_newton`). Friction that is set-valued at rest is an unknown of both, so
+//! that points stick, turn round and slip again without regularisation. [`Work`] is the balance of energy. A [`Checkpoint`] holds
 //! what a march needs to go on later as if it had never stopped; a [`Watch`] tells when contact points open, close and turn.
 
+mod along;
 mod checkpoint;
 mod condensed;
 mod drive;
@@ -22,6 +24,8 @@ mod rows;
 mod scheme;
 mod state;
 mod stepper;
+#[cfg(test)]
+mod sticking_tests;
 mod tangent;
 #[cfg(test)]
 mod tests;

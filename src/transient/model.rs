@@ -48,6 +48,10 @@ pub struct Model<'a> {
 pub(super) struct Touch<'a> {
     /// Index of its pair.
     pub(super) pair: usize,
+    /// The name of its pair.
+    pub(super) name: &'a str,
+    /// Where it is \[m\].
+    pub(super) position: [f64; 3],
     pub(super) law: &'a dyn ContactLaw,
     pub(super) weight: f64,
     /// The approach of its pair \[m\].
@@ -69,6 +73,8 @@ impl<'a> Model<'a> {
             .flat_map(|(k, (pair, approach))| {
                 pair.points.iter().map(move |point| Touch {
                     pair: k,
+                    name: &pair.name,
+                    position: point.position,
                     law: &*pair.law,
                     weight: point.weight,
                     approach: *approach,
@@ -137,6 +143,14 @@ impl<'a> Model<'a> {
     pub fn loaded(self, loadings: Vec<Option<Loading>>) -> Self {
         assert!(loadings.len() == self.velocities.len(), "one entry a pair");
         Model { loadings, ..self }
+    }
+
+    /// Where a contact point is, in words, and the name of its pair.
+    pub(super) fn place(&self, point: usize) -> (String, &'a str) {
+        let Touch { pair, name, position, .. } = &self.points[point];
+        let number = self.points[..=point].iter().filter(|other| other.pair == *pair).count();
+        let [x, y, z] = position.map(|x| 1e3 * x);
+        (format!(", at point {number} of the contact `{name}`, at ({x:.3}, {y:.3}, {z:.3}) mm"), name)
     }
 
     /// Whether a direction changes in time.

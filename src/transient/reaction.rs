@@ -1,6 +1,5 @@
 //! The forces along the directions D, as functions of the motion along them.
 
-use super::interface::Interface;
 use super::model::Model;
 use super::state::State;
 use crate::equilibrium::ContactBlock;
@@ -17,6 +16,8 @@ pub(super) struct Reaction {
     pub(super) bristles: Vec<Bristles>,
     /// ∂r/∂q \[N/m\] and ∂r/∂q̇ \[N s/m\] of each point.
     blocks: Vec<ContactBlock>,
+    /// ∂(F₁, F₂)/∂**F** of the iterate of each point.
+    by_friction: Vec<[[f64; 2]; 2]>,
 }
 
 /// What a contact point remembers from step to step.
@@ -28,11 +29,40 @@ pub(super) struct Bristles {
     pub(super) stick: bool,
 }
 
-/// Takes a column and its entries, each with its row.
-pub(super) type TellColumn<'a> = dyn FnMut(usize, &[(usize, f64)]) + 'a;
+/// The part of the friction iterate in a linearised row that its law answers with, of 1 at rest. Below 1 it keeps the tangent
+/// regular where the friction of several points at rest is not unique.
+const HELD: f64 = 1.0 - 1e-8;
 
-/// The step that a reaction ends: where it began, and how long it is \[s\].
-pub(super) type Since<'a> = (&'a State, f64);
+/// The step that a reaction ends.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Since<'a> {
+    /// Where it began.
+    pub(super) from: &'a State,
+    /// Δt \[s\].
+    pub(super) duration: f64,
+    /// The iterate of r \[N\].
+    pub(super) force: &'a [f64],
+    /// ρ \[N s/m\] of each point.
+    pub(super) resistance: &'a [f64],
+}
+
+/// A row of the linearised equation r − R(r, q, q̇) = 0, with R the answer of the laws.
+#[derive(Debug)]
+pub(super) struct Row<'a> {
+    /// Which one.
+    pub(super) place: usize,
+    /// ∂R/∂q + c₁ ∂R/∂q̇ by direction.
+    pub(super) slopes: &'a [(usize, f64)],
+    /// ∂R/∂r by direction.
+    pub(super) held: &'a [(usize, f64)],
+}
+
+/// ρ of a point \[N s/m\]: about the force that changes the velocity in a time step by 1 m/s, from the compliances of its
+/// tangents \[m/N\] and b c₁; any where it cannot move.
+pub(super) fn resistance(compliance: [f64; 2], factor: f64) -> f64 {
+    let most = factor * compliance[0].max(compliance[1]);
+    if most > 0.0 { 1.0 / most } else { 1.0 }
+}
 
 impl Reaction {
     pub(super) fn new(model: &Model<'_>) -> Self {
@@ -41,6 +71,7 @@ impl Reaction {
             force: vec![0.0; model.n_directions()],
             bristles: vec![Bristles::default(); model.points.len()],
             blocks: (0..model.points.len()).map(silent).collect(),
+            by_friction: vec![[[0.0; 2]; 2]; model.points.len()],
         }
     }
 
@@ -61,13 +92,15 @@ impl Reaction {
                 slip_velocity: [to.speeds[point.pair] - rate[at + 1], -rate[at + 2]],
             };
             let answer = match since {
-                Some((from, duration)) => {
+                Some(Since { from, duration, force, resistance }) => {
                     let travel = to.interface.travel[point.pair] - from.interface.travel[point.pair];
                     let moved = [1, 2].map(|c| q[at + c] - to.before[(at + c, 0)]);
                     let since = SlipStep {
                         bristle: from.bristles[p].bent,
                         slid: [travel - moved[0], -moved[1]],
                         duration,
+                        friction: [-force[at + 1], -force[at + 2]],
+                        resistance: resistance[p],
                     };
                     point.law.advance(&motion, &since, point.weight)
                 }
@@ -77,7 +110,7 @@ impl Reaction {
                     SlipAnswer { forces, tangent, bristle, ..SlipAnswer::default() }
                 }
             };
-            let SlipAnswer { forces, tangent, by_slid, .. } = answer;
+            let SlipAnswer { forces, tangent, by_slid, by_friction, .. } = answer;
             let values = [forces.normal, -forces.friction[0], -forces.friction[1]];
             self.force[at..at + 3].copy_from_slice(&values);
             self.bristles[p] = Bristles { bent: answer.bristle, stick: answer.sticks };
@@ -87,6 +120,7 @@ impl Reaction {
                 (0..2).for_each(|j| block.stiffness[1 + i][1 + j] += row[j]);
             }
             self.blocks[p] = block;
+            self.by_friction[p] = by_friction;
         }
         let first = 3 * model.points.len();
         if let Some([k, c]) = model.coupling {
@@ -98,48 +132,41 @@ impl Reaction {
         }
     }
 
-    /// Tells of every direction on whose motion r depends, with the entries of ∂r/∂q + c₁ ∂r/∂q̇ in its column.
-    pub(super) fn slopes(&self, model: &Model<'_>, rate: f64, tell: &mut TellColumn<'_>) {
-        for block in self.blocks.iter().filter(|block| block.acts()) {
+    /// The largest part of r by which friction that is set-valued at rest differs from its iterate.
+    pub(super) fn mismatch(&self, force: &[f64]) -> f64 {
+        let off = (0..self.blocks.len()).filter(|p| self.holds(*p)).flat_map(|p| [3 * p + 1, 3 * p + 2]);
+        let largest = self.force.iter().fold(f64::MIN_POSITIVE, |m, r| m.max(r.abs()));
+        off.map(|k| (self.force[k] - force[k]).abs()).fold(0.0, f64::max) / largest
+    }
+
+    /// Tells every row of the linearised equation in which something acts.
+    pub(super) fn rows(&self, model: &Model<'_>, rate: f64, tell: &mut dyn FnMut(Row<'_>)) {
+        let acting = self.blocks.iter().filter(|block| block.acts() || self.holds(block.point));
+        for block in acting {
             let first = 3 * block.point;
+            let held = self.by_friction[block.point];
             for own in 0..3 {
-                let slope = |row: usize| block.stiffness[row][own] + rate * block.damping[row][own];
-                tell(first + own, &[0, 1, 2].map(|row| (first + row, slope(row))));
+                let slope = |other: usize| block.stiffness[own][other] + rate * block.damping[own][other];
+                let slopes = [0, 1, 2].map(|other| (first + other, slope(other)));
+                let held = match own {
+                    0 => [0.0; 2],
+                    _ => held[own - 1].map(|h| HELD * h),
+                };
+                let held = [(first + 1, held[0]), (first + 2, held[1])];
+                tell(Row { place: first + own, slopes: &slopes, held: &held });
             }
         }
         if let Some([k, c]) = model.coupling {
             let first = 3 * model.points.len();
-            for j in 0..k.ncols() {
-                let column = (0..k.nrows()).map(|i| (first + i, k[(i, j)] + rate * c[(i, j)]));
-                tell(first + j, &column.collect::<Vec<_>>());
+            for i in 0..k.nrows() {
+                let slopes: Vec<(usize, f64)> =
+                    (0..k.ncols()).map(|j| (first + j, k[(i, j)] + rate * c[(i, j)])).collect();
+                tell(Row { place: first + i, slopes: &slopes, held: &[] });
             }
         }
     }
 
-    /// D (∂r/∂q + c₁ ∂r/∂q̇) Dᵀ as triplets, for the tangent of the whole.
-    pub(super) fn tangent(&self, model: &Model<'_>, at: &Interface, rate: f64) -> Vec<(usize, usize, f64)> {
-        let mut triplets = Vec::new();
-        let directions: Vec<_> = (0..model.n_directions()).map(|k| at.direction(model, k)).collect();
-        let mut add = |row: usize, column: usize, slope: f64| {
-            if slope != 0.0 {
-                for (i, a) in directions[row].iter() {
-                    triplets.extend(directions[column].iter().map(|(j, b)| (i, j, a * slope * b)));
-                }
-            }
-        };
-        for p in 0..model.points.len() {
-            for (row, column) in (0..3).flat_map(|row| (0..3).map(move |column| (row, column))) {
-                let slope =
-                    self.blocks[p].stiffness[row][column] + rate * self.blocks[p].damping[row][column];
-                add(3 * p + row, 3 * p + column, slope);
-            }
-        }
-        let first = 3 * model.points.len();
-        if let Some([k, c]) = model.coupling {
-            for (row, column) in (0..k.nrows()).flat_map(|row| (0..k.ncols()).map(move |c| (row, c))) {
-                add(first + row, first + column, k[(row, column)] + rate * c[(row, column)]);
-            }
-        }
-        triplets
+    fn holds(&self, point: usize) -> bool {
+        self.by_friction[point] != [[0.0; 2]; 2]
     }
 }

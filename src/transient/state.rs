@@ -144,7 +144,7 @@ impl State {
         [self.reaction[at], -self.reaction[at + 1], -self.reaction[at + 2]]
     }
 
-    /// Whether a contact point did not slip in the last step; only a law with bristles can say so.
+    /// Whether a contact point did not slip in the last step; a law with regularised friction never says so.
     pub fn sticks(&self, point: usize) -> bool {
         self.bristles[point].stick
     }

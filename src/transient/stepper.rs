@@ -15,6 +15,8 @@ use std::fmt::Debug;
 pub(super) const ITERATIONS: usize = 40;
 /// Steps of Newton's method below this part of the motion are round-off.
 pub(super) const ROUND_OFF: f64 = 1e-14;
+/// The part of the largest contact force by which friction may differ from what its law answers to it.
+pub(super) const UNMATCHED: f64 = 1e-10;
 
 /// How a step is solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -29,8 +31,13 @@ pub enum Method {
 /// Why a step has no solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Stuck {
-    /// Newton's method did not converge: the length of its last step \[m\].
-    Newton(f64),
+    /// Newton's method did not converge.
+    Newton {
+        /// The length of its last step \[m\].
+        length: f64,
+        /// The contact point that it moved most, if any.
+        point: Option<usize>,
+    },
     /// A number that is not finite.
     NotFinite,
 }

@@ -5,14 +5,14 @@ use super::reaction::Reaction;
 use crate::linalg::lu::Lu;
 use faer::{Mat, MatMut, MatRef};
 
-/// J = I + b S (∂r/∂q + c₁ ∂r/∂q̇), whose columns differ from those of I only where something acts: those are solved for,
-/// the others follow. Its memory serves every step.
+/// J = I − ∂R/∂r + b (∂R/∂q + c₁ ∂R/∂q̇) S, whose rows differ from those of I only where something acts: those are solved
+/// for, the others are what they are. Its memory serves every step.
 #[derive(Debug)]
 pub(super) struct Tangent {
     /// Where something acts.
     active: Vec<usize>,
-    /// The columns of J − I there, one after the other.
-    columns: Vec<f64>,
+    /// The rows of J − I there, one after the other.
+    rows: Vec<f64>,
     /// The active part of J.
     small: Small,
     /// The solution there.
@@ -22,7 +22,7 @@ pub(super) struct Tangent {
 impl Tangent {
     pub(super) fn new() -> Self {
         let small = Small { lu: Vec::new(), pivots: Vec::new(), large: None };
-        Tangent { active: Vec::new(), columns: Vec::new(), small, some: Vec::new() }
+        Tangent { active: Vec::new(), rows: Vec::new(), small, some: Vec::new() }
     }
 
     /// J at the place where the reaction was evaluated last.
@@ -35,31 +35,34 @@ impl Tangent {
     ) {
         let r = compliance.nrows();
         self.active.clear();
-        self.columns.clear();
-        let (active, columns) = (&mut self.active, &mut self.columns);
-        reaction.slopes(model, rate, &mut |place, slopes| {
-            active.push(place);
-            let first = columns.len();
-            columns.resize(first + r, 0.0);
-            for (row, slope) in slopes.iter().filter(|(_, slope)| *slope != 0.0) {
-                let seen = compliance.col_as_slice(*row).iter();
-                columns[first..].iter_mut().zip(seen).for_each(|(out, s)| *out += share * slope * s);
+        self.rows.clear();
+        let (active, rows) = (&mut self.active, &mut self.rows);
+        reaction.rows(model, rate, &mut |row| {
+            active.push(row.place);
+            let first = rows.len();
+            rows.resize(first + r, 0.0);
+            for (column, slope) in row.slopes.iter().filter(|(_, slope)| *slope != 0.0) {
+                // S is symmetric.
+                let seen = compliance.col_as_slice(*column).iter();
+                rows[first..].iter_mut().zip(seen).for_each(|(out, s)| *out += share * slope * s);
             }
+            row.held.iter().for_each(|(column, held)| rows[first + column] -= held);
         });
-        let own = |j: usize, place: usize| self.columns[j * r + place];
+        let own = |i: usize, place: usize| self.rows[i * r + place];
         self.small
-            .factorise(self.active.len(), |i, j| own(j, self.active[i]) + if i == j { 1.0 } else { 0.0 });
+            .factorise(self.active.len(), |i, j| own(i, self.active[j]) + if i == j { 1.0 } else { 0.0 });
     }
 
     /// J⁻¹ρ.
     pub(super) fn solve(&mut self, rho: &[f64], step: &mut [f64]) {
-        self.some.clear();
-        self.some.extend(self.active.iter().map(|place| rho[*place]));
-        self.small.solve(&mut self.some);
         step.copy_from_slice(rho);
-        for (factor, column) in self.some.iter().zip(self.columns.chunks(rho.len().max(1))) {
-            step.iter_mut().zip(column).for_each(|(s, c)| *s -= factor * c);
+        self.active.iter().for_each(|place| step[*place] = 0.0);
+        self.some.clear();
+        for (place, row) in self.active.iter().zip(self.rows.chunks(rho.len().max(1))) {
+            let known: f64 = row.iter().zip(&*step).map(|(j, x)| j * x).sum();
+            self.some.push(rho[*place] - known);
         }
+        self.small.solve(&mut self.some);
         self.active.iter().zip(&self.some).for_each(|(place, value)| step[*place] = *value);
     }
 }

@@ -51,7 +51,7 @@ fn run(model: &Model<'_>, from: State, plan: Plan) -> Marched {
     march(model, from, &plan, &(), &mut |_| Ok(())).unwrap()
 }
 
-fn plan(scheme: Scheme, step: f64, steps: usize) -> Plan {
+pub(super) fn plan(scheme: Scheme, step: f64, steps: usize) -> Plan {
     Plan { scheme, step, steps, method: Method::Condensed, tolerance: None }
 }
 
@@ -174,7 +174,12 @@ fn blow() -> Push {
 }
 
 /// Holds the `states` of a condensed march against Newton's method on the whole.
-fn full_newton_agrees(model: &Model<'_>, steady: &SteadySliding, condensed: Plan, states: &[Mat<f64>]) {
+pub(super) fn full_newton_agrees(
+    model: &Model<'_>,
+    steady: &SteadySliding,
+    condensed: Plan,
+    states: &[Mat<f64>],
+) {
     let full = Plan { method: Method::FullNewton, ..condensed };
     let largest = states.iter().map(|m| m.col(0).norm_max()).fold(0.0, f64::max);
     march(model, State::steady(model, steady), &full, &(), &mut |moment| {

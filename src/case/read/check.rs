@@ -87,20 +87,6 @@ pub(super) fn check_names(root: &Section, case: &Case) {
         for name in transient.slide.keys().filter(|name| !contacts.contains(&name.as_str())) {
             unknown_name(root, &format!("transient.slide.{name}"), name, "contact", &contacts);
         }
-        for (name, contact) in &case.contact {
-            let stops = transient.slide.get(name).is_some_and(|slide| slide.course.stops());
-            if stops && contact.friction.regularisation == 0.0 && contact.bristle.is_none() {
-                let help = "Friction jumps where the slip turns round: give the contact a `bristle` of the stiffness \
-                            of its normal law, or the friction a `regularisation` of a thousandth of the velocity";
-                let key = format!("contact.{name}.bristle");
-                root.fault(
-                    &key,
-                    "nothing",
-                    "what makes the contact stick, as the sliding stops on its way",
-                    help,
-                );
-            }
-        }
         let pressed = case.contact.iter().filter(|(_, c)| matches!(c.pressing, Pressing::Load(_)));
         let loads: Vec<&str> =
             pressed.map(|(name, _)| name.as_str()).chain(case.force.keys().map(String::as_str)).collect();

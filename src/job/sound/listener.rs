@@ -12,6 +12,10 @@ const AUDIBLE: f64 = 20_000.0;
 /// Lines of the spectra are this far apart, if the run is long enough and they fit in memory \[Hz, bytes\].
 const RESOLUTION: f64 = 10.0;
 const MEMORY: f64 = 64e6;
+/// Accelerations of all modes that wait for their spectra, at most.
+const PENDING: f64 = 64e6;
+/// Steps of silence that are resampled at once.
+const SILENCE: usize = 1 << 16;
 /// Tones named, and how far below the highest they may be.
 const TONES: usize = 8;
 const FLOOR: f64 = 1e-2;
@@ -53,7 +57,8 @@ impl Listener {
         let top = AUDIBLE.min(0.4 / step).min(highest.max(RESOLUTION));
         let most = (MEMORY / (4 * modes * (modes + 1)).max(1) as f64).max(16.0);
         let seconds = (1.0 / RESOLUTION).min(0.5 * (steps + 1 - counted) as f64 * step).min(most / top);
-        let length = (seconds / step) as usize;
+        let pending = (PENDING / modes.max(1) as f64).max(16.0);
+        let length = (seconds / step).min(pending) as usize;
         let microphone = |(name, at): (String, [f64; 3])| {
             let receiver = Receiver::new(&plates, at, ears.air, step);
             (name, at, receiver, Welch::new(length, step))
@@ -61,8 +66,9 @@ impl Listener {
         let microphones: Vec<_> = ears.microphones.into_iter().map(microphone).collect();
         let mut resampler = Resampler::new(step, f64::from(RATE));
         let mut recording = Vec::new();
-        if let Some((_, _, receiver, _)) = microphones.first() {
-            resampler.take(&vec![0.0; receiver.delay()], &mut recording);
+        let silence = microphones.first().map_or(0, |(_, _, receiver, _)| receiver.delay());
+        for first in (0..silence).step_by(SILENCE) {
+            resampler.take(&vec![0.0; SILENCE.min(silence - first)], &mut recording);
         }
         Listener {
             modes,

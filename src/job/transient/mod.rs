@@ -153,6 +153,7 @@ impl InTime<'_> {
             time_step: plan.step,
             rows: steps + 1,
             scheme: words,
+            set_valued: set_valued(self.system),
             reduced: reduced.as_ref().map(|r| [r.modes, r.basis.ncols() - r.modes]),
             reduced_check,
             shown: recorder.shown.into_iter().map(|shown| shown.channel).collect(),
@@ -169,6 +170,12 @@ impl InTime<'_> {
             sound,
         })
     }
+}
+
+/// The contacts whose friction at rest follows from the motion of the whole.
+fn set_valued(system: &System) -> Vec<String> {
+    let pairs = system.pairs.iter().filter(|pair| pair.law.is_set_valued());
+    pairs.map(|pair| pair.name.clone()).collect()
 }
 
 fn scheme(choice: SchemeChoice) -> (Scheme, String) {

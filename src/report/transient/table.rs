@@ -82,6 +82,14 @@ pub(in crate::report) fn table(run: &TransientResult) -> Table {
     table.notes.push(format!(
         "The point that carries most was open {open} %, stuck {stuck} % and slid backwards {backwards} % of the time."
     ));
+    let stuck = run.stuck_without_give();
+    if !stuck.is_empty() {
+        table.notes.push(format!(
+            "Assumed: friction of {} at rest is any force up to μ(0) N, so that its points stick without give; a `bristle` \
+             gives before it slips.",
+            stuck.join(", ")
+        ));
+    }
     let work = &run.work;
     table.notes.push(format!(
         "Energy: drives spent {} J, friction heat {} J, structural damping took {} J, the integrator {} J; the balance of each step closes to {}.",
