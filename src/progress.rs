@@ -12,6 +12,10 @@ pub trait Observer: Sync {
     }
     /// The current stage is over.
     fn end(&self) {}
+    /// A sentence that the user should see now.
+    fn note(&self, sentence: &str) {
+        let _ = sentence;
+    }
 }
 
 impl Observer for () {}

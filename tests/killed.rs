@@ -1,4 +1,5 @@
-//! A run in time that is killed with SIGKILL: its file opens, the run is taken up, the result is that of a whole run.
+//! Results folders under kills, refused writes, reruns and changed inputs: nothing is lost, nothing is mixed. A run in time
+//! that is killed with SIGKILL is taken up, and the result is that of a whole run.
 
 use ndarray::Array1;
 use std::path::Path;
@@ -114,6 +115,7 @@ band = [0, "1 kHz"]
 [transient]
 duration = "0.4 s"
 time_step = "20 us"
+fields_every = "10 ms"
 push.blow = { on = "rim", force = ["-50 N", 0, 0], duration = "1 ms" }
 probe.rim = { at = [0, 0, "75 mm"], direction = [1, 0, 0] }
 sound.distance = "1 m"
@@ -164,7 +166,9 @@ fn said(out: &Path) -> (Record, serde_json::Value, [Vec<u8>; 2]) {
     assert!(file.attr("complete").and_then(|a| a.read_scalar::<bool>()).expect("a root attribute"));
     let mut record = Vec::new();
     numbers(&file.group("transient").expect("a run in time"), &mut record);
-    record.retain(|(name, _)| !name.contains("/checkpoint/"));
+    if let Ok(fields) = hdf5::File::open(out.join("transient.vtkhdf")) {
+        numbers(&fields, &mut record);
+    }
     let summary = std::fs::read_to_string(out.join("summary.json")).expect("a summary");
     let mut summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
     summary["timings"].take();
@@ -175,9 +179,9 @@ fn said(out: &Path) -> (Record, serde_json::Value, [Vec<u8>; 2]) {
     )
 }
 
-/// Whether a name is one of what the whole record says, which a killed run does not have.
+/// Whether a name is one of what the whole record says, which a killed run does not have, or of another file.
 fn found(name: &str) -> bool {
-    ["spectrum", "spectrogram", "contact_state", "sound"].iter().any(|word| name.contains(word))
+    ["spectrum", "spectrogram", "contact_state", "sound", "VTKHDF"].iter().any(|word| name.contains(word))
 }
 
 /// How many rows a killed run left, all of which are those of the whole run; `None` when its march had not begun.
@@ -260,12 +264,228 @@ fn results_of_another_case_or_another_start_are_not_taken_up() {
         .expect("a case");
     refused(&["case.toml:", "fields_every", "no [mesh]"]);
     std::fs::write(at.join("case.toml"), &short).expect("a case");
-    // What a changed mesh would do to the same case: the run no longer begins as the earlier one did.
-    let file = hdf5::File::open_rw(at.join("out/results.h5")).expect("results");
-    let penetration = file.dataset("transient/penetration").expect("a channel");
-    penetration.write_slice(&[0.5], ndarray::s![0..1]).expect("it is written");
-    drop((penetration, file));
-    refused(&["penetration", "without --resume"]);
+    // A record that was written by another version of the program, say, or that a disk has damaged.
+    let record = at.join("out/record.bin");
+    let whole = std::fs::read(&record).expect("a record");
+    let mut damaged = whole.clone();
+    damaged[whole.len() / 2] ^= 1;
+    std::fs::write(&record, damaged).expect("it is written");
+    refused(&["record.bin", "checksum", "without --resume"]);
+    std::fs::write(&record, whole).expect("it is written");
+    // `results.h5` is not read: whatever is in it, the result is the same.
+    std::fs::write(at.join("out/results.h5"), &before[..before.len() / 2]).expect("it is written");
+    run(at, "case.toml", "again", false);
+    run(at, "case.toml", "out", true);
+    assert!(said(&at.join("out")) == said(&at.join("again")));
+}
+
+/// The program with arguments, on one thread.
+fn stridor(folder: &Path, arguments: &[&str]) -> std::process::Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stridor"));
+    command.args(arguments).args(["--threads", "1"]).current_dir(folder).output().expect("the binary runs")
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).expect("a folder").flatten();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    names.retain(|name| !name.starts_with('.'));
+    names.sort();
+    names
+}
+
+/// Waits until a run under way has saved rows.
+fn wait_for_rows(out: &Path) {
+    let began = Instant::now();
+    while !out.join("checkpoint.bin").exists() && began.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+#[test]
+fn a_rerun_keeps_an_interrupted_record_and_leaves_nothing_else_of_the_earlier_run() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let (at, out) = (folder.path(), folder.path().join("out"));
+    std::fs::write(at.join("case.toml"), BLOCK).expect("a case");
+    run(at, "case.toml", "whole", false);
+    run(at, "case.toml", "out", false);
+    std::fs::write(out.join("modes_notes.csv"), "mine").expect("a file of the user");
+    // A finished run is replaced, with all its files.
+    for name in ["out", "alone"] {
+        let output = stridor(at, &["cea", "case.toml", "--out", name]);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+    let mut alone = names(&at.join("alone"));
+    assert!(alone.contains(&"report.html".to_string()) && !alone.contains(&"transient.csv".to_string()));
+    alone.push("modes_notes.csv".into());
+    alone.sort();
+    assert_eq!(names(&out), alone);
+    let mut child = start(at, "case.toml", "out", false);
+    wait_for_rows(&out);
+    child.kill().expect("it can be killed");
+    child.wait().expect("it ends");
+    let interrupted =
+        ["checkpoint.bin", "events.csv", "modes_notes.csv", "record.bin", "results.h5", "transient.csv"];
+    assert_eq!(names(&out), interrupted, "the files of the earlier run are beside the new ones");
+    // Another analysis does not go on with it.
+    let output = stridor(at, &["cea", "case.toml", "--out", "out", "--resume"]);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(2) && message.contains("stridor transient"), "{message}");
+    assert_eq!(names(&out), interrupted);
+    let output = stridor(at, &["transient", "case.toml", "--out", "out"]);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(0) && message.contains("interrupted-1"), "{message}");
+    let whole = said(&at.join("whole"));
+    let anew = said(&out);
+    assert!(anew.0 == whole.0 && anew.2 == whole.2);
+    assert!(anew.1["warnings"].to_string().contains("interrupted-1"), "{}", anew.1["warnings"]);
+    // The record that was moved is a results folder of its own.
+    run(at, "case.toml", "out/interrupted-1", true);
+    assert!(said(&out.join("interrupted-1")) == whole);
+    assert!(out.join("modes_notes.csv").exists() && !out.join("interrupted-2").exists());
+}
+
+#[test]
+fn a_sweep_is_not_taken_up_after_its_mesh_has_changed() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let at = folder.path();
+    let mesh = |size: &str| {
+        let output = stridor(
+            at,
+            &["mesh", "disc", "--out", "disc.msh", "--force", "--size", size, "--contact-size", "10 mm"],
+        );
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    };
+    let (head, tail) = DISC.split_once("[mesh.annulus]").expect("a mesh");
+    let (_, tail) = tail.split_once("[material.steel]").expect("a material");
+    let (tail, _) = tail.split_once("[transient]").expect("a run in time");
+    let map = "[map.m]\nparameters = [\"contact.pin.friction.mu0\", \"damping.modal_ratio\"]\n\
+               from = [0.1, 0.001]\nto = [0.5, 0.01]\npoints = [3, 2]\n";
+    let case = format!("{head}[mesh]\nfile = \"disc.msh\"\nunit = \"mm\"\n[material.steel]{tail}{map}");
+    std::fs::write(at.join("case.toml"), case).expect("a case");
+    mesh("30 mm");
+    let sweep = |arguments: &[&str]| {
+        stridor(at, &[&["sweep", "case.toml", "--out", "out", "--quiet"], arguments].concat())
+    };
+    let output = sweep(&[]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let map = std::fs::read(at.join("out/map_m.csv")).expect("a map");
+    assert!(sweep(&["--resume"]).status.success());
+    assert_eq!(std::fs::read(at.join("out/map_m.csv")).expect("a map"), map);
+    let summary = std::fs::read(at.join("out/summary.json")).expect("a summary");
+    let said: serde_json::Value = serde_json::from_slice(&summary).expect("JSON");
+    assert!(said["inputs"][0]["path"] == "disc.msh" && said["complete"] == true, "{}", said["inputs"]);
+    assert_eq!(said["inputs"][0]["sha256"].as_str().map(str::len), Some(64));
+    mesh("12 mm");
+    let output = sweep(&["--resume"]);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(2) && message.contains("`disc.msh` has changed"), "{message}");
+    assert_eq!(std::fs::read(at.join("out/summary.json")).expect("a summary"), summary);
+}
+
+#[test]
+fn what_was_found_before_an_analysis_failed_is_written() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let at = folder.path();
+    let (head, _) = DISC.split_once("[damping]").expect("a damping");
+    let case = format!(
+        "{head}[modes.disc]\nbelow = \"3 kHz\"\nmeasured = [10, 330]\nmeasured_source = \"none\"\n\
+         [calibrate]\nagainst = [\"disc\"]\n[calibrate.parameter.hub]\n\
+         path = \"shell.disc.thickness\"\nbetween = [\"0.9 mm\", \"1.1 mm\"]\n"
+    );
+    std::fs::write(at.join("case.toml"), case).expect("a case");
+    let output = stridor(at, &["run", "case.toml", "--out", "out"]);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(1) && message.contains("10 Hz"), "{message}");
+    let out = at.join("out");
+    let summary = std::fs::read(out.join("summary.json")).expect("a summary");
+    let summary: serde_json::Value = serde_json::from_slice(&summary).expect("JSON");
+    assert!(summary["complete"] == false && summary["modes"][0]["frequency_hz"].is_number());
+    assert!(summary["failed"].as_str().is_some_and(|said| said.contains("10 Hz")));
+    let report = std::fs::read_to_string(out.join("report.html")).expect("a report");
+    assert!(report.contains("not complete") && report.contains("10 Hz"));
+    assert!(out.join("modes_disc.csv").exists());
+    let file = hdf5::File::open(out.join("results.h5")).expect("results.h5 opens");
+    assert!(!file.attr("complete").and_then(|a| a.read_scalar::<bool>()).expect("a root attribute"));
+    assert!(file.attr("failed").is_ok() && file.dataset("modes/disc/frequency_hz").is_ok());
+}
+
+/// The titles of what is in a results folder.
+fn titles(out: &Path) -> Vec<&'static str> {
+    let file = hdf5::File::open(out.join("results.h5"));
+    let hdf5 =
+        file.and_then(|file| file.group("case")?.attr("title")?.read_scalar::<hdf5::types::VarLenUnicode>());
+    let texts = ["summary.json", "report.html"].map(|name| std::fs::read_to_string(out.join(name)));
+    let mut all: Vec<String> = texts.into_iter().flatten().collect();
+    all.extend(hdf5.map(|title| title.to_string()));
+    let known = ["The first case", "The second case"];
+    all.iter().flat_map(|text| known.into_iter().filter(|title| text.contains(title))).collect()
+}
+
+#[test]
+fn what_is_in_the_folder_is_always_of_one_run() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let (at, out) = (folder.path(), folder.path().join("out"));
+    let short = BLOCK.replace("200 s", "10 s").replace("50 s", "5 s");
+    for (name, title) in [("first.toml", "The first case"), ("second.toml", "The second case")] {
+        let case = short.replace("A block on a belt that turns round", title);
+        std::fs::write(at.join(name), case).expect("a case");
+    }
+    run(at, "first.toml", "out", false);
+    let files = names(&out);
+    let began = Instant::now();
+    run(at, "first.toml", "out", false);
+    let time = began.elapsed();
+    let mut of_one = [0, 0];
+    for k in 0..40 {
+        kill_after(time.mul_f64(f64::from(k) / 36.0), at, "second.toml", "out", false);
+        let titles = titles(&out);
+        assert!(titles.windows(2).all(|pair| pair[0] == pair[1]), "kill {k}: {titles:?}");
+        let second = titles.contains(&"The second case");
+        of_one[usize::from(second)] += 1;
+        if !second {
+            let others =
+                names(&out).into_iter().filter(|name| name != "results.new.h5" && !files.contains(name));
+            assert_eq!(others.count(), 0, "kill {k}: {:?}", names(&out));
+        }
+        if second || titles.len() < 3 {
+            std::fs::remove_dir_all(&out).expect("it is there");
+            run(at, "first.toml", "out", false);
+        }
+    }
+    assert!(of_one.iter().all(|count| *count > 3), "{of_one:?}");
+}
+
+/// Every write fails that makes a file larger than a limit, for many limits: a message, exit code 1, and nothing is lost.
+#[test]
+#[cfg(target_os = "linux")]
+fn writes_that_fail_anywhere_are_told_and_lose_nothing() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let at = folder.path();
+    std::fs::write(at.join("case.toml"), BLOCK.replace("200 s", "60 s")).expect("a case");
+    run(at, "case.toml", "whole", false);
+    let whole = said(&at.join("whole"));
+    let mut failed = 0;
+    // In blocks of 512 bytes, to beyond the largest file.
+    for limit in [0, 1, 2, 4, 8, 16, 40, 100, 200, 400, 800, 1200, 1600, 2000, 2500, 3000, 4000, 20000] {
+        let mut command = Command::new("sh");
+        let words =
+            format!("ulimit -f {limit}; exec \"$0\" transient case.toml --quiet --threads 1 --out out");
+        command.args(["-c", &words, env!("CARGO_BIN_EXE_stridor")]).current_dir(at);
+        let output = command.output().expect("a shell");
+        let message = String::from_utf8_lossy(&output.stderr);
+        if output.status.code() != Some(0) {
+            failed += 1;
+            assert_eq!(output.status.code(), Some(1), "{limit}: {message}");
+            assert!(message.contains("error: out/") && message.lines().count() == 1, "{limit}: {message}");
+            let told = ["File too large", "cannot be written"].iter().any(|words| message.contains(words));
+            assert!(told, "{limit}: {message}");
+        }
+        run(at, "case.toml", "out", true);
+        assert!(said(&at.join("out")) == whole, "{limit}");
+        std::fs::remove_dir_all(at.join("out")).expect("it is there");
+    }
+    assert!((8..18).contains(&failed), "{failed}");
 }
 
 #[test]
@@ -279,7 +499,7 @@ fn a_second_process_in_the_folder_is_refused_and_a_kill_frees_it() {
     while !at.join("out/transient.csv").exists() && began.elapsed() < Duration::from_secs(60) {
         std::thread::sleep(Duration::from_millis(1));
     }
-    for command in ["modes", "transient", "export"] {
+    for command in ["cea", "transient", "export"] {
         let mut second = Command::new(env!("CARGO_BIN_EXE_stridor"));
         let output = second.args([command, "case.toml", "--out", "out"]).current_dir(at).output();
         let output = output.expect("the binary runs");

@@ -6,7 +6,7 @@ use super::units::{NUMBER, dimension_of};
 use super::{Case, ContactPoints, ContactState, Invalidates, Matrices, MatrixTerm, MeshSource, Parameter};
 use crate::error::{Error, Fault, Result, nearest};
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Bound;
 
 /// The name in `against` that stands for `cea.measured_squeal`.
@@ -282,29 +282,38 @@ impl Case {
     /// The same case with the whole path of every file it names, so that it loads from any folder.
     pub fn with_absolute_paths(&self) -> Case {
         let mut case = self.clone();
-        let whole = |file: &mut String| {
+        for file in case.files_mut() {
             // Without a current folder, which is all that can be missing, the path stays as it is.
             if let Ok(path) = std::path::absolute(self.folder.join(&*file)) {
                 *file = path.to_string_lossy().into_owned();
             }
-        };
-        if let Some(MeshSource::File { file, .. }) = &mut case.mesh {
-            whole(file);
-        }
-        if let Some(Matrices { mass, stiffness, damping, load, dofs, term }) = &mut case.matrices {
-            [mass, stiffness].into_iter().for_each(whole);
-            [damping, load, dofs].into_iter().flatten().for_each(whole);
-            for MatrixTerm { factor: _, mass, damping, stiffness } in term.values_mut() {
-                [mass, damping, stiffness].into_iter().flatten().for_each(whole);
-            }
-        }
-        case.measured.values_mut().filter_map(|measured| measured.file.as_mut()).for_each(whole);
-        for contact in case.contact.values_mut() {
-            if let Some(ContactPoints::File(file)) = &mut contact.points {
-                whole(file);
-            }
         }
         case
+    }
+
+    /// The path of every file that the case reads, as the case names it; each once.
+    pub fn files(&self) -> BTreeSet<String> {
+        self.clone().files_mut().into_iter().map(std::mem::take).collect()
+    }
+
+    fn files_mut(&mut self) -> Vec<&mut String> {
+        let mut files = Vec::new();
+        if let Some(MeshSource::File { file, .. }) = &mut self.mesh {
+            files.push(file);
+        }
+        if let Some(Matrices { mass, stiffness, damping, load, dofs, term }) = &mut self.matrices {
+            files.extend([mass, stiffness]);
+            files.extend([damping, load, dofs].into_iter().flatten());
+            for MatrixTerm { factor: _, mass, damping, stiffness } in term.values_mut() {
+                files.extend([mass, damping, stiffness].into_iter().flatten());
+            }
+        }
+        files.extend(self.measured.values_mut().filter_map(|measured| measured.file.as_mut()));
+        files.extend(self.contact.values_mut().filter_map(|contact| match &mut contact.points {
+            Some(ContactPoints::File(file)) => Some(file),
+            _ => None,
+        }));
+        files
     }
 }
 

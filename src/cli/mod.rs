@@ -79,6 +79,7 @@ enum Action {
 
 /// Runs the program on the process's arguments.
 pub fn main() -> ExitCode {
+    too_large_is_an_error();
     let command = match Command::try_parse() {
         Ok(command) => command,
         Err(error) => {
@@ -93,6 +94,16 @@ pub fn main() -> ExitCode {
             complain(&error);
             ExitCode::from(error.exit_code())
         }
+    }
+}
+
+/// A file beyond the limit of its size (`ulimit -f`) is refused by the write, with a message, instead of a signal that
+/// ends the process.
+fn too_large_is_an_error() {
+    #[cfg(unix)]
+    // SAFETY: no handler is installed; the signal is ignored from here on.
+    unsafe {
+        libc::signal(libc::SIGXFSZ, libc::SIG_IGN);
     }
 }
 
@@ -135,6 +146,11 @@ fn give(text: impl Display) -> Result<()> {
 /// Prints a line on stderr, where nobody may listen.
 fn complain(text: impl Display) {
     let _ = writeln!(std::io::stderr(), "error: {text}");
+}
+
+/// Prints a note on stderr, where nobody may listen.
+fn note(text: impl Display) {
+    let _ = writeln!(std::io::stderr(), "note: {text}");
 }
 
 /// The most threads that may be asked for, unless there are more cores.

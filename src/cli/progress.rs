@@ -1,5 +1,6 @@
 //! Progress bars on stderr; silent when stderr is not a terminal or the user asked for quiet.
 
+use super::note;
 use crate::error::text::printable;
 use crate::progress::Observer;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -53,5 +54,11 @@ impl Observer for Bars {
 
     fn end(&self) {
         self.with_bar(|bar| bar.finish_and_clear());
+    }
+
+    fn note(&self, sentence: &str) {
+        if !self.quiet {
+            self.with_bar(|bar| bar.suspend(|| note(sentence)));
+        }
     }
 }

@@ -14,13 +14,14 @@ use super::prepared::Prepared;
 use super::sensitivity::Analysed;
 use super::singular::explained;
 use super::transient::{InTime, Places, places};
-use crate::case::{Case, CeaAnalysis, ContactState, SensitivityAnalysis, TransientAnalysis};
+use crate::case::{Case, CeaAnalysis, ContactState, ModesAnalysis, SensitivityAnalysis, TransientAnalysis};
 use crate::equilibrium::{self, SteadySliding};
-use crate::error::{Fault, Faults, Result};
-use crate::modal;
+use crate::error::{Error, Fault, Faults, Result};
+use crate::modal::{self, RealModes};
 use crate::progress::Observer;
-use crate::results::{self, FolderLock, ResultsFile, RunResults, SteadyResult};
-use std::collections::BTreeMap;
+use crate::results::record::{Earlier, InputFile, Origin, Record};
+use crate::results::{self, ComplexResult, FolderLock, NamedModes, ResultsFile, RunResults, SteadyResult};
+use crate::system::System;
 use std::path::Path;
 use std::time::Instant;
 
@@ -153,7 +154,10 @@ impl Selection {
 /// Runs the analyses of a case and writes the results folder `out`; nothing is written when the input is wrong.
 ///
 /// With `resume` the maps and the run in time that an earlier run of the same case left in `out` are taken up where it
-/// stopped; the result is the same, bit for bit. Results of another case are refused.
+/// stopped; the result is the same, bit for bit. Results of another case or of other files are refused. Without it an
+/// interrupted record is moved to a folder of its own in `out`; the files of a run that had ended are replaced.
+///
+/// When an analysis has no answer, the results of those before are written and the failure is named in them.
 ///
 /// # Errors
 /// Faults of the input, an analysis without an answer, a folder that cannot be written or that another process uses.
@@ -172,31 +176,103 @@ pub fn run_case(
         observer.begin(&format!("memory: about {}", expected.words()), None);
         observer.end();
     }
+    let inputs =
+        case.files().iter().map(|file| InputFile::read(&case.folder, file)).collect::<Result<_>>()?;
+    let origin = Origin { case: case.to_toml(), inputs };
     let _lock = FolderLock::take(out)?;
-    let known = if resume { results::read_maps(out, &case.to_toml())? } else { BTreeMap::new() };
-    let known: KnownMaps =
-        known.into_iter().map(|(name, (points, trained))| (name, KnownMap { points, trained })).collect();
+    let mut results = RunResults { inputs: origin.inputs.clone(), ..RunResults::default() };
+    let (record, earlier) = match resume {
+        true => taken_up(out, origin, &asked)?,
+        false => {
+            results.warnings.extend(moved_aside(out, observer)?);
+            (Record::new(out, origin), Earlier::default())
+        }
+    };
+    let known = earlier.maps.iter().map(|(name, (points, trained))| {
+        (name.clone(), KnownMap { points: points.clone(), trained: trained.clone() })
+    });
+    let known: KnownMaps = known.collect();
+    let mut file = ResultsFile::create(out)?;
+    let read = case.files().into_iter().chain(["calibrated.toml".into()]).map(|name| case.folder.join(name));
+    file.spare(read.filter_map(|path| std::path::absolute(path).ok()));
+    if resume {
+        file.spare(record.files());
+    }
     let preparation = started.elapsed().as_secs_f64();
-    let file = if resume { ResultsFile::resume(out)? } else { ResultsFile::create(out)? };
-    let mut folder = Folder::new(out, file);
-    let mut results = analyse_from(&prepared, asked, &known, &mut folder, observer)
+    let mut folder = Folder::new(out, file, record, earlier);
+    let done = analyse_from(&prepared, asked, &known, &mut folder, &mut results, observer)
         // What another run left, and does not fit, is input.
         .map_err(|error| if resume { error } else { error.while_computing() })
-        .map_err(|error| explained(&prepared, error))?;
+        .map_err(|error| explained(&prepared, error));
+    let failure = match done {
+        Ok(()) => None,
+        Err(failure @ Error::Analysis { .. }) => Some(failure),
+        Err(Error::Input(faults)) => {
+            folder.file.discard();
+            return Err(Error::Input(faults));
+        }
+        Err(refused) => return Err(refused),
+    };
+    results.failed = failure.as_ref().map(Error::to_string);
+    results.timings.insert(0, ("read mesh and assemble".into(), preparation));
+    write_results(out, folder, &mut results)?;
+    if let Some(failure) = failure {
+        return Err(failure);
+    }
+    nothing_is_missed(&results)?;
+    Ok(results)
+}
+
+/// What an earlier run has left to go on with.
+fn taken_up(out: &Path, origin: Origin, asked: &Asked) -> Result<(Record, Earlier)> {
+    let Some((record, earlier)) = Record::resume(out, &origin)? else {
+        return Ok((Record::new(out, origin), Earlier::default()));
+    };
+    let left_out = [
+        (
+            earlier.rows > 0 && asked.in_time.is_none(),
+            "a run in time",
+            "`stridor transient` or `stridor run`",
+        ),
+        (!earlier.maps.is_empty() && !asked.selection.sweeps, "maps", "`stridor sweep` or `stridor run`"),
+    ];
+    let lost = left_out.into_iter().find(|(lost, ..)| *lost && !record.ended());
+    if let Some((_, what, command)) = lost {
+        let found = format!("an interrupted record of {what}");
+        let fault = Fault::new(out.display().to_string(), found, format!("{command} to go on with it"));
+        let help = "Use that command, or run without --resume (the record is kept aside)";
+        return Err(Error::input(fault.with_help(help)));
+    }
+    Ok((record, earlier))
+}
+
+/// Keeps an interrupted record aside and says so.
+fn moved_aside(out: &Path, observer: &dyn Observer) -> Result<Option<String>> {
+    let sentence = results::set_aside(out)?.map(|aside| {
+        format!(
+            "The folder had the record of an interrupted run. It was moved to {}; --resume with --out of that folder goes on with it",
+            aside.display()
+        )
+    });
+    sentence.iter().for_each(|sentence| observer.note(sentence));
+    Ok(sentence)
+}
+
+/// Writes all that is written at the end.
+fn write_results(out: &Path, folder: Folder, results: &mut RunResults) -> Result<()> {
     // The time of a phase is that of computing.
     let in_time = results.timings.iter_mut().find(|(phase, _)| phase == IN_TIME);
     in_time.into_iter().for_each(|(_, seconds)| *seconds -= folder.seconds_in_time);
-    let Folder { mut file, seconds: recording, .. } = folder;
-    results.timings.insert(0, ("read mesh and assemble".into(), preparation));
+    let Folder { mut file, mut record, seconds: recording, .. } = folder;
     let writing = Instant::now();
-    results::write_files(out, &results)?;
-    crate::report::write_report(out, &results)?;
+    file.stand_alone()?;
+    results::write_files(out, results)?;
+    crate::report::write_report(out, results)?;
     file.write_measured(&results.measured)?;
     file.write_measured_frfs(&results.measured_frfs)?;
     results.timings.push(("write results".into(), recording + writing.elapsed().as_secs_f64()));
-    file.finish(&results)?;
-    nothing_is_missed(&results)?;
-    Ok(results)
+    file.finish(results)?;
+    record.end()
 }
 
 /// Runs the analyses of a prepared case; `record` is called with each result as soon as it is there.
@@ -210,8 +286,11 @@ pub fn analyse(
     observer: &dyn Observer,
 ) -> Result<RunResults> {
     let asked = Asked::new(prepared, selection)?;
-    analyse_from(prepared, asked, &KnownMaps::new(), &mut Memory::new(record), observer)
-        .map_err(|error| explained(prepared, error.while_computing()))
+    let mut results = RunResults::default();
+    let keeper = &mut Memory::new(record);
+    analyse_from(prepared, asked, &KnownMaps::new(), keeper, &mut results, observer)
+        .map_err(|error| explained(prepared, error.while_computing()))?;
+    Ok(results)
 }
 
 /// Finds every fault that [`run_case`] finds before it computes; gives what the user should know.
@@ -222,126 +301,185 @@ pub fn check_case(prepared: &Prepared) -> Result<Vec<String>> {
     Ok(Asked::new(prepared, Selection::ALL)?.warnings)
 }
 
-/// [`analyse`] with the maps of an earlier run.
+/// [`analyse`] with the maps of an earlier run. What was found before a failure is in `results`.
 fn analyse_from(
     prepared: &Prepared,
-    Asked { selection, sliding, mut in_time, frfs, tests, calibrate, warnings }: Asked<'_>,
+    asked: Asked<'_>,
     known: &KnownMaps,
     keeper: &mut dyn Keeper,
+    results: &mut RunResults,
     observer: &dyn Observer,
-) -> Result<RunResults> {
+) -> Result<()> {
     let case = prepared.case;
-    let mut results = RunResults {
-        title: case.title.clone(),
-        resolved_case: case.to_toml(),
-        assumptions: case.assumptions.clone(),
-        warnings: prepared.warnings.iter().cloned().chain(warnings).collect(),
-        geometry: prepared.geometry(),
-        size: prepared.size(),
-        ..RunResults::default()
-    };
-    keeper.record(Stage::Model(&results))?;
-    let mut clock = Clock::default();
-    let asked = |name: &str| !selection.measured_only || has_measured_modes(case, name);
-    let all_modes = case.modes.iter().filter(|(name, _)| asked(name));
-    let contact_modes = all_modes.clone().filter(|(_, m)| m.contact == ContactState::Closed);
-
-    // The modes that span the complex analysis; without prestress they do not wait for the steady state, and lists of
-    // the whole's modes take their share.
-    let basis = match &case.cea {
-        Some(cea) if selection.cea && !case.prestress && cea.nearest.is_none() => {
-            Some(whole_modes(&prepared.system.structure, cea.basis_below, &mut clock, observer)?)
-        }
-        _ => None,
-    };
-    if selection.modes {
-        for (name, analysis) in all_modes.filter(|(_, m)| m.contact == ContactState::Open) {
-            let known = basis.as_ref().filter(|_| of_the_whole(prepared, analysis));
-            let modes = match known.and_then(|b| b.lowest(wanted(analysis, prepared.system.n_dofs()))) {
-                Some(modes) => named(prepared, name, modes, &prepared.assembled),
-                None => {
-                    clock.time(&format!("real modes, {name}"), || part_modes(prepared, name, observer))?
-                }
-            };
-            results.measured.extend(tests.modes(results.modes.len(), analysis, &modes));
-            keeper.record(Stage::Modes(&modes))?;
-            results.modes.push(modes);
-        }
-    }
-    if sliding {
-        let options = prepared.steady_options();
-        let state = clock
-            .time("steady sliding", || equilibrium::solve_steady(&prepared.system, &options, observer))?;
-        let steady = steady_result(prepared, state);
-        let slides = !prepared.system.pairs.is_empty();
-        if slides {
-            keeper.record(Stage::Steady(&steady))?;
-        }
-        results.steady = Some(steady);
-        let state = &results.steady.as_ref().expect("set above").state;
-        if selection.modes {
-            for (name, analysis) in contact_modes {
-                let wanted = wanted(analysis, prepared.system.n_dofs());
-                let closed = equilibrium::closed_structure(&prepared.system, state)?;
-                let (modes, _) = clock
-                    .time(&format!("real modes, {name}"), || modal::compute(&closed, wanted, observer))?;
-                let modes = named(prepared, name, modes, &prepared.assembled);
-                results.measured.extend(tests.modes(results.modes.len(), analysis, &modes));
-                keeper.record(Stage::Modes(&modes))?;
-                results.modes.push(modes);
-            }
-        }
-        let left_vectors = in_time.is_some() || selection.sensitivities(case).is_some();
-        let complex = match selection.cea {
-            true => complex_result(prepared, state, basis, left_vectors, &mut clock, observer)?,
-            false => None,
-        };
-        if let Some((complex, system, real)) = complex {
-            keeper.record(Stage::Complex(&complex))?;
-            results.warnings.extend(complex.modes.warnings.iter().cloned());
-            let steady = &state.clone();
-            if let Some(wanted) = selection.sensitivities(case) {
-                let analysed =
-                    Analysed { prepared, system: &system, steady, real: &real, modes: &complex.modes };
-                let sensitivity =
-                    clock.time("sensitivities", || analysed.sensitivities(&wanted, observer))?;
-                keeper.record(Stage::Sensitivity(&sensitivity))?;
-                results.sensitivity = Some(sensitivity);
-            }
-            if let Some((wanted, places)) = in_time.take() {
-                let (dofs, geometry) = (&prepared.assembled.dofs, &results.geometry);
-                let run = InTime { system: &system, steady, complex: &complex, real: &real, dofs, geometry };
-                let transient = clock.time(IN_TIME, || run.run(wanted, places, keeper, observer))?;
-                keeper.record(Stage::Transient(&transient))?;
-                results.transient = Some(transient);
-            }
-            results.complex = Some(complex);
-            if selection.sweeps && !(case.sweep.is_empty() && case.map.is_empty()) {
-                let nominal = Nominal { prepared, system: &system, steady, real: &real };
-                let mut record = |stage: Stage| keeper.record(stage);
-                clock.time("sweeps and maps", || {
-                    explore(&nominal, known, &mut results, &mut record, observer)
-                })?;
-            }
-        }
-        results.steady = results.steady.filter(|_| slides);
-    }
-    for frf in &frfs {
-        let steady = results.steady.as_ref().map(|steady| &steady.state);
-        let (response, beside) = clock
-            .time(&format!("frequency response {}", frf.name()), || frf.run(prepared, steady, observer))?;
-        results.measured_frfs.extend(tests.responses(&response, &beside));
-        keeper.record(Stage::Frf(&response))?;
-        results.frfs.push(response);
-    }
-    if let Some(calibrate) = calibrate {
-        let found = clock.time("calibration", || calibrate.run(observer))?;
-        keeper.record(Stage::Calibration(&found))?;
-        results.calibration = Some(found);
-    }
+    results.title = case.title.clone();
+    results.resolved_case = case.to_toml();
+    results.assumptions = case.assumptions.clone();
+    results.warnings.extend(prepared.warnings.iter().chain(&asked.warnings).cloned());
+    results.geometry = prepared.geometry();
+    results.size = prepared.size();
+    keeper.record(Stage::Model(results))?;
+    let mut run = Run { prepared, observer, keeper, clock: Clock::default(), results };
+    let done = run.analyses(asked, known);
+    let Run { clock, results, .. } = run;
     results.warnings.extend(thickness_warnings(prepared));
     results.timings = clock.phases;
-    Ok(results)
+    done
+}
+
+/// The analyses of a case under way.
+struct Run<'a, 'k> {
+    prepared: &'a Prepared<'a>,
+    observer: &'a dyn Observer,
+    keeper: &'k mut dyn Keeper,
+    clock: Clock,
+    results: &'k mut RunResults,
+}
+
+impl Run<'_, '_> {
+    fn analyses(&mut self, asked: Asked<'_>, known: &KnownMaps) -> Result<()> {
+        let Asked { selection, sliding, mut in_time, frfs, tests, calibrate, .. } = asked;
+        let (prepared, observer, case) = (self.prepared, self.observer, self.prepared.case);
+        let wanted_set = |name: &str| !selection.measured_only || has_measured_modes(case, name);
+        let all_modes = case.modes.iter().filter(|(name, _)| wanted_set(name));
+        let contact_modes = all_modes.clone().filter(|(_, m)| m.contact == ContactState::Closed);
+
+        // The modes that span the complex analysis; without prestress they do not wait for the steady state, and lists
+        // of the whole's modes take their share.
+        let basis = match &case.cea {
+            Some(cea) if selection.cea && !case.prestress && cea.nearest.is_none() => {
+                let structure = &prepared.system.structure;
+                Some(whole_modes(structure, cea.basis_below, &mut self.clock, observer)?)
+            }
+            _ => None,
+        };
+        if selection.modes {
+            for (name, analysis) in all_modes.filter(|(_, m)| m.contact == ContactState::Open) {
+                let known = basis.as_ref().filter(|_| of_the_whole(prepared, analysis));
+                let modes = match known.and_then(|b| b.lowest(wanted(analysis, prepared.system.n_dofs()))) {
+                    Some(modes) => named(prepared, name, modes, &prepared.assembled),
+                    None => self
+                        .clock
+                        .time(&format!("real modes, {name}"), || part_modes(prepared, name, observer))?,
+                };
+                self.keep_modes(modes, analysis, &tests)?;
+            }
+        }
+        if sliding {
+            let options = prepared.steady_options();
+            let state = self
+                .clock
+                .time("steady sliding", || equilibrium::solve_steady(&prepared.system, &options, observer))?;
+            let steady = steady_result(prepared, state);
+            if !prepared.system.pairs.is_empty() {
+                self.keeper.record(Stage::Steady(&steady))?;
+            }
+            let state = steady.state.clone();
+            self.results.steady = Some(steady);
+            let closed = contact_modes.filter(|_| selection.modes);
+            let done = closed
+                .map(|(name, analysis)| self.closed_modes(name, analysis, &state, &tests))
+                .collect::<Result<()>>()
+                .and_then(|()| self.complex(selection, &state, basis, in_time.take(), known));
+            self.results.steady.take_if(|_| prepared.system.pairs.is_empty());
+            done?;
+        }
+        for frf in &frfs {
+            let steady = self.results.steady.as_ref().map(|steady| &steady.state);
+            let (response, beside) =
+                self.clock.time(&format!("frequency response {}", frf.name()), || {
+                    frf.run(prepared, steady, observer)
+                })?;
+            self.results.measured_frfs.extend(tests.responses(&response, &beside));
+            self.keeper.record(Stage::Frf(&response))?;
+            self.results.frfs.push(response);
+        }
+        if let Some(calibrate) = calibrate {
+            let found = self.clock.time("calibration", || calibrate.run(observer))?;
+            self.keeper.record(Stage::Calibration(&found))?;
+            self.results.calibration = Some(found);
+        }
+        Ok(())
+    }
+
+    fn keep_modes(&mut self, modes: NamedModes, analysis: &ModesAnalysis, tests: &Tests) -> Result<()> {
+        self.results.measured.extend(tests.modes(self.results.modes.len(), analysis, &modes));
+        self.keeper.record(Stage::Modes(&modes))?;
+        self.results.modes.push(modes);
+        Ok(())
+    }
+
+    /// Real modes with the contact as it is in steady sliding.
+    fn closed_modes(
+        &mut self,
+        name: &str,
+        analysis: &ModesAnalysis,
+        state: &SteadySliding,
+        tests: &Tests,
+    ) -> Result<()> {
+        let prepared = self.prepared;
+        let wanted = wanted(analysis, prepared.system.n_dofs());
+        let closed = equilibrium::closed_structure(&prepared.system, state)?;
+        let (modes, _) = self
+            .clock
+            .time(&format!("real modes, {name}"), || modal::compute(&closed, wanted, self.observer))?;
+        self.keep_modes(named(prepared, name, modes, &prepared.assembled), analysis, tests)
+    }
+
+    /// Complex modes, and the analyses that begin with them.
+    fn complex(
+        &mut self,
+        selection: Selection,
+        steady: &SteadySliding,
+        basis: Option<RealModes>,
+        in_time: Option<(&TransientAnalysis, Places)>,
+        known: &KnownMaps,
+    ) -> Result<()> {
+        let (prepared, observer, case) = (self.prepared, self.observer, self.prepared.case);
+        if !selection.cea {
+            return Ok(());
+        }
+        let left_vectors = in_time.is_some() || selection.sensitivities(case).is_some();
+        let complex = complex_result(prepared, steady, basis, left_vectors, &mut self.clock, observer)?;
+        let Some((complex, system, real)) = complex else { return Ok(()) };
+        self.keeper.record(Stage::Complex(&complex))?;
+        self.results.warnings.extend(complex.modes.warnings.iter().cloned());
+        let done = self.from_complex(selection, (&system, steady), (&complex, &real), in_time);
+        self.results.complex = Some(complex);
+        done?;
+        if selection.sweeps && !(case.sweep.is_empty() && case.map.is_empty()) {
+            let nominal = Nominal { prepared, system: &system, steady, real: &real };
+            let Run { keeper, results, clock, .. } = self;
+            let mut record = |stage: Stage| keeper.record(stage);
+            clock.time("sweeps and maps", || explore(&nominal, known, results, &mut record, observer))?;
+        }
+        Ok(())
+    }
+
+    /// Sensitivities and motion in time.
+    fn from_complex(
+        &mut self,
+        selection: Selection,
+        (system, steady): (&System, &SteadySliding),
+        (complex, real): (&ComplexResult, &RealModes),
+        in_time: Option<(&TransientAnalysis, Places)>,
+    ) -> Result<()> {
+        let (prepared, observer) = (self.prepared, self.observer);
+        if let Some(wanted) = selection.sensitivities(prepared.case) {
+            let analysed = Analysed { prepared, system, steady, real, modes: &complex.modes };
+            let sensitivity =
+                self.clock.time("sensitivities", || analysed.sensitivities(&wanted, observer))?;
+            self.keeper.record(Stage::Sensitivity(&sensitivity))?;
+            self.results.sensitivity = Some(sensitivity);
+        }
+        if let Some((wanted, places)) = in_time {
+            let (dofs, geometry) = (&prepared.assembled.dofs, &self.results.geometry);
+            let run = InTime { system, steady, complex, real, dofs, geometry };
+            let transient = self.clock.time(IN_TIME, || run.run(wanted, places, self.keeper, observer))?;
+            self.keeper.record(Stage::Transient(&transient))?;
+            self.results.transient = Some(transient);
+        }
+        Ok(())
+    }
 }
 
 /// The analyses that are selected, with the places that they need.

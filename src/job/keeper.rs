@@ -1,20 +1,18 @@
 //! Where results go as they come.
 
 use super::explore::KnownMap;
-use crate::error::Result;
+use crate::error::{Error, Fault, Result};
+use crate::results::record::{Block, Earlier, Record};
 use crate::results::{
-    CalibrationResult, Channel, ComplexResult, EventTable, Field, FieldsFile, FrfResult, HistoryTable,
-    MapResult, NamedModes, Piece, Recording, ResultsFile, RunResults, SensitivityResult, SteadyResult,
-    SweepResult, TransientResult, modal_channel, room_in_memory, room_on_disk,
+    CalibrationResult, ComplexResult, EventTable, Field, FieldsFile, FrfResult, HistoryTable, MapResult,
+    NamedModes, Piece, Recording, ResultsFile, RunResults, SensitivityResult, SteadyResult, SweepResult,
+    TransientResult, modal_channel, room_in_memory, room_on_disk,
 };
 use crate::sweep::MapPoint;
 use crate::transient::Checkpoint;
 use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
-
-/// Lines that an earlier run recorded are written to a new table so many at once.
-const AT_ONCE: usize = 4096;
 
 /// A result that is ready to be written.
 pub enum Stage<'a> {
@@ -143,6 +141,10 @@ impl Keeper for Memory<'_> {
 pub(super) struct Folder<'a> {
     dir: &'a Path,
     pub(super) file: ResultsFile,
+    /// What a run that is killed is taken up from.
+    pub(super) record: Record,
+    /// What an earlier run has recorded.
+    earlier: Earlier,
     /// `transient.csv` and `events.csv`.
     tables: Option<(HistoryTable, EventTable)>,
     /// `transient.vtkhdf`.
@@ -154,8 +156,8 @@ pub(super) struct Folder<'a> {
 }
 
 impl<'a> Folder<'a> {
-    pub(super) fn new(dir: &'a Path, file: ResultsFile) -> Self {
-        Folder { dir, file, tables: None, fields: None, seconds: 0.0, seconds_in_time: 0.0 }
+    pub(super) fn new(dir: &'a Path, file: ResultsFile, record: Record, earlier: Earlier) -> Self {
+        Folder { dir, file, record, earlier, tables: None, fields: None, seconds: 0.0, seconds_in_time: 0.0 }
     }
 
     fn write(&mut self, stage: &Stage<'_>) -> Result<()> {
@@ -167,41 +169,78 @@ impl<'a> Folder<'a> {
             Stage::Complex(complex) => file.write_complex(complex),
             Stage::Sensitivity(sensitivity) => file.write_sensitivity(sensitivity),
             Stage::Sweep(sweep) => file.write_sweep(sweep),
-            Stage::MapBegins(map, known) => file.begin_map(map, &known.points, &known.trained),
-            Stage::MapPoints(name, first, points) => file.write_map_points(name, *first, points),
-            Stage::Map(map) => file.finish_map(map),
-            Stage::TransientBegins(recording) => {
-                room_on_disk(self.dir, recording)?;
-                let fields = recording.fields.as_ref();
-                self.fields = fields.map(|fields| FieldsFile::begin(self.dir, fields)).transpose()?;
-                file.begin_transient(recording)?;
-                let mut history = HistoryTable::create(self.dir, recording)?;
-                let mut events = EventTable::create(self.dir, recording)?;
-                for first in (0..recording.done).step_by(AT_ONCE) {
-                    let rows = first..recording.done.min(first + AT_ONCE);
-                    let read = |c: &Channel| self.file.read_transient(&c.name, rows.clone());
-                    let values: Vec<Vec<f64>> = recording.channels.iter().map(read).collect::<Result<_>>()?;
-                    history.append(first, &values)?;
-                }
-                for first in (0..recording.happened).step_by(AT_ONCE) {
-                    let part = first..recording.happened.min(first + AT_ONCE);
-                    events.append(&self.file.read_events(part)?)?;
-                }
-                self.tables = Some((history, events));
-                Ok(())
+            Stage::MapBegins(map, known) => {
+                file.begin_map(map, &known.points, &known.trained)?;
+                self.record.begin_map(&map.name, &known.points, &known.trained)
             }
+            Stage::MapPoints(name, first, points) => {
+                file.write_map_points(name, *first, points)?;
+                self.record.add_map_points(name, *first, points)
+            }
+            Stage::Map(map) => file.finish_map(map),
+            Stage::TransientBegins(recording) => self.begin_transient(recording),
             Stage::TransientPiece(piece) => {
                 file.write_transient_piece(piece)?;
                 self.tables.iter_mut().try_for_each(|(history, events)| {
                     history.append(piece.first, piece.values)?;
                     events.append(piece.events)
-                })
+                })?;
+                self.record.add_piece(piece)
             }
-            Stage::TransientField(field) => self.fields.iter_mut().try_for_each(|file| file.write(field)),
+            Stage::TransientField(field) => {
+                self.fields.iter_mut().try_for_each(|file| file.write(field))?;
+                self.record.add_field(field)
+            }
             Stage::Frf(frf) => file.write_frf(frf),
             Stage::Calibration(calibration) => file.write_calibration(calibration),
             Stage::Transient(transient) => file.finish_transient(transient),
         }
+    }
+
+    /// Begins a run in time, with what an earlier run has recorded of it.
+    fn begin_transient(&mut self, recording: &Recording) -> Result<()> {
+        let earlier = &self.earlier;
+        let done = [recording.done, recording.happened, recording.fields.map_or(0, |fields| fields.done)];
+        if done != [earlier.rows, earlier.events, earlier.fields] {
+            let found =
+                format!("{} rows, {} events, {} fields", earlier.rows, earlier.events, earlier.fields);
+            let expected =
+                format!("{} rows, {} events, {} fields, as its checkpoint has", done[0], done[1], done[2]);
+            let fault = Fault::new("the record of the interrupted run", found, expected);
+            return Err(Error::input(fault.with_help("It is damaged: run without --resume")));
+        }
+        room_on_disk(self.dir, recording)?;
+        let checkpoint = earlier.march.clone();
+        let Folder { file, record, tables, fields, .. } = self;
+        file.begin_transient(recording)?;
+        if let Some(checkpoint) = &checkpoint {
+            // Before it takes the place of the earlier file, which has these rows.
+            record.replay(&mut |block| match block {
+                Block::Rows { first, values, modal, events } => {
+                    let (values, modal, events) = (&values, &modal, &events);
+                    file.write_transient_piece(&Piece { first, values, modal, events, checkpoint })
+                }
+                _ => Ok(()),
+            })?;
+        }
+        file.take_place()?;
+        *fields = recording.fields.as_ref().map(|begun| FieldsFile::begin(self.dir, begun)).transpose()?;
+        let (history, events) = tables
+            .insert((HistoryTable::create(self.dir, recording)?, EventTable::create(self.dir, recording)?));
+        if checkpoint.is_none() {
+            return record.begin_transient(recording);
+        }
+        record.replay(&mut |block| match block {
+            Block::Rows { first, values, modal: _, events: happened } => {
+                history.append(first, &values)?;
+                events.append(&happened)
+            }
+            Block::Field { number, motion: [displacement, velocity] } => {
+                let field = Field { number, displacement: &displacement, velocity: &velocity };
+                fields.iter_mut().try_for_each(|file| file.write(&field))
+            }
+            Block::Map { .. } | Block::MapPoints { .. } | Block::Transient { .. } => Ok(()),
+        })
     }
 }
 
@@ -218,10 +257,15 @@ impl Keeper for Folder<'_> {
     }
 
     fn recorded(&self, channel: &str, rows: Range<usize>) -> Result<Vec<f64>> {
-        self.file.read_transient(channel, rows)
+        if self.tables.is_some() {
+            return self.file.read_transient(channel, rows);
+        }
+        // Before the run in time begins only the start is at hand.
+        let start = self.earlier.channels.iter().filter(|(name, _)| name == channel && rows == (0..1));
+        Ok(start.map(|(_, value)| *value).collect())
     }
 
     fn stopped(&self) -> Result<Option<Checkpoint>> {
-        self.file.stopped()
+        Ok(self.earlier.march.clone())
     }
 }

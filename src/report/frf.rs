@@ -7,7 +7,7 @@ use super::format::{fixed, given, power};
 use super::html::{escape, figure, titled_table};
 use super::magnitude::{draw_magnitude, draw_phase, magnitude_axes, phase_axes};
 use super::tables::Table;
-use crate::results::{FrfResult, RunResults, write_atomically};
+use crate::results::{FrfResult, RunResults, write_result};
 use plotters::prelude::*;
 use std::error::Error;
 
@@ -19,7 +19,7 @@ const NEAR: f64 = 0.05;
 /// Writes the picture of every response into the folder.
 pub(super) fn write(dir: &std::path::Path, results: &RunResults) -> crate::error::Result<()> {
     for (name, svg) in pictures(results) {
-        write_atomically(dir, &name, svg.as_bytes())?;
+        write_result(dir, &name, svg.as_bytes())?;
     }
     Ok(())
 }

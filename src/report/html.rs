@@ -37,8 +37,9 @@ pub(super) fn page(results: &RunResults, pictures: &[Picture]) -> String {
     let mut body =
         format!("<h1>{}</h1>\n<p class=\"sub\">{}</p>\n", escape(title), escape(&subtitle(results)));
     body += &verdict(results);
-    for warning in &results.warnings {
-        body += &format!("<div class=\"warn\">{}</div>\n", escape(warning));
+    let failed = results.failed.iter().map(|error| format!("This run is not complete. {error}"));
+    for warning in failed.chain(results.warnings.iter().cloned()) {
+        body += &format!("<div class=\"warn\">{}</div>\n", escape(&warning));
     }
     if !results.assumptions.is_empty() {
         let items: String = results.assumptions.iter().map(|a| format!("<li>{}</li>", escape(a))).collect();

@@ -43,7 +43,7 @@ pub use search::{search_text, write_search};
 pub use validation::write_validation;
 
 use crate::error::Result;
-use crate::results::{RunResults, write_atomically};
+use crate::results::{RunResults, write_result};
 use html::Picture;
 use std::path::Path;
 
@@ -54,12 +54,12 @@ use std::path::Path;
 pub fn write_report(dir: &Path, results: &RunResults) -> Result<()> {
     let pictures = pictures(results);
     for picture in &pictures {
-        write_atomically(dir, picture.file, picture.svg.as_bytes())?;
+        write_result(dir, picture.file, picture.svg.as_bytes())?;
     }
     explored::write(dir, results)?;
     frf::write(dir, results)?;
     comparison::write(dir, results)?;
-    write_atomically(dir, "report.html", html::page(results, &pictures).as_bytes())
+    write_result(dir, "report.html", html::page(results, &pictures).as_bytes())
 }
 
 /// Every picture that the run has something for.

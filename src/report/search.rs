@@ -8,7 +8,7 @@ use super::svg::{Anchor, Ink, Sheet};
 use super::tables::Table;
 use super::text::render;
 use crate::error::Result;
-use crate::results::{SearchResult, SearchedNumber, passed, write_atomically};
+use crate::results::{SearchResult, SearchedNumber, passed, write_result};
 use std::path::Path;
 
 const WIDTH: f64 = 980.0;
@@ -23,8 +23,8 @@ const ROW: f64 = 24.0;
 /// [`crate::error::Error::Io`] when the folder cannot be made or a file not be written.
 pub fn write_search(dir: &Path, result: &SearchResult) -> Result<()> {
     let (cost, weights) = (cost_picture(result), weight_picture(result));
-    write_atomically(dir, "search_cost.svg", cost.as_bytes())?;
-    write_atomically(dir, "search_weights.svg", weights.as_bytes())?;
+    write_result(dir, "search_cost.svg", cost.as_bytes())?;
+    write_result(dir, "search_weights.svg", weights.as_bytes())?;
     let (title, facts) = (&result.title, std::slice::from_ref(&result.facts));
     let [all, met] = passed(facts);
     let class = if met == all { "verdict" } else { "verdict bad" };
@@ -42,7 +42,7 @@ pub fn write_search(dir: &Path, result: &SearchResult) -> Result<()> {
             "How much the cost rises when one number is moved by a twentieth of its bounds, the others as found.",
         )
         + &html::figure(&cost, "The cost of every evaluation, and the least so far.");
-    write_atomically(dir, "search.html", html::document(title, &body).as_bytes())
+    write_result(dir, "search.html", html::document(title, &body).as_bytes())
 }
 
 /// What the command line prints.

@@ -1,7 +1,7 @@
 //! Numbers of a case that were found from measured modes and responses, as plain data, and their files.
 
 use super::csv::{Table, number};
-use super::write_atomically;
+use super::write_result;
 use crate::calibration::Calibration;
 use crate::error::Result;
 use crate::measured::Quantity;
@@ -166,11 +166,11 @@ impl CalibrationResult {
 
 /// Writes `calibrated.toml` and `calibration.csv` into the folder `dir`.
 pub(super) fn write(dir: &Path, result: &CalibrationResult) -> Result<()> {
-    write_atomically(dir, "calibrated.toml", result.calibrated_case.as_bytes())?;
+    write_result(dir, "calibrated.toml", result.calibrated_case.as_bytes())?;
     if !result.responses.is_empty() {
-        write_atomically(dir, "calibration_responses.csv", responses(result).as_bytes())?;
+        write_result(dir, "calibration_responses.csv", responses(result).as_bytes())?;
     }
-    write_atomically(dir, "calibration.csv", table(result).as_bytes())
+    write_result(dir, "calibration.csv", table(result).as_bytes())
 }
 
 fn responses(result: &CalibrationResult) -> String {

@@ -2,7 +2,7 @@
 
 use super::csv::{Table, number};
 use super::hdf5::{Datasets, attribute, text_attribute};
-use super::{FileNames, NamedModes, ResultsFile, RunResults, write_atomically};
+use super::{FileNames, NamedModes, ResultsFile, RunResults, write_result};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::measured::Quantity;
@@ -129,12 +129,12 @@ pub(super) fn write(dir: &Path, results: &RunResults) -> Result<()> {
     for comparison in &results.measured {
         let name = names.next(&comparison.name);
         let text = modes_table(comparison, results.modes.get(comparison.modes));
-        write_atomically(dir, &format!("comparison_{name}.csv"), text.as_bytes())?;
+        write_result(dir, &format!("comparison_{name}.csv"), text.as_bytes())?;
     }
     let mut names = FileNames::default();
     for responses in &results.measured_frfs {
         let name = names.next(&responses.name);
-        write_atomically(dir, &format!("comparison_{name}_frf.csv"), responses_table(responses).as_bytes())?;
+        write_result(dir, &format!("comparison_{name}_frf.csv"), responses_table(responses).as_bytes())?;
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use super::folder::FileNames;
 use super::{
-    ComplexResult, NamedModes, RunResults, SensitivityResult, SteadyResult, TransientResult, write_atomically,
+    ComplexResult, NamedModes, RunResults, SensitivityResult, SteadyResult, TransientResult, write_result,
 };
 use crate::error::Result;
 use std::path::Path;
@@ -15,19 +15,19 @@ use std::path::Path;
 pub fn write_csv(dir: &Path, results: &RunResults) -> Result<()> {
     let mut names = FileNames::default();
     for set in &results.modes {
-        write_atomically(dir, &format!("modes_{}.csv", names.next(&set.name)), modes(set).as_bytes())?;
+        write_result(dir, &format!("modes_{}.csv", names.next(&set.name)), modes(set).as_bytes())?;
     }
     if let Some(steady) = &results.steady {
-        write_atomically(dir, "contact_points.csv", contact_points(steady).as_bytes())?;
+        write_result(dir, "contact_points.csv", contact_points(steady).as_bytes())?;
     }
     if let Some(complex) = &results.complex {
-        write_atomically(dir, "complex_modes.csv", complex_modes(complex).as_bytes())?;
+        write_result(dir, "complex_modes.csv", complex_modes(complex).as_bytes())?;
     }
     if let Some(sensitivity) = &results.sensitivity {
-        write_atomically(dir, "sensitivities.csv", sensitivities(sensitivity).as_bytes())?;
+        write_result(dir, "sensitivities.csv", sensitivities(sensitivity).as_bytes())?;
     }
     if let Some(transient) = &results.transient {
-        write_atomically(dir, "transient_spectrum.csv", spectra(transient).as_bytes())?;
+        write_result(dir, "transient_spectrum.csv", spectra(transient).as_bytes())?;
     }
     Ok(())
 }

@@ -24,8 +24,9 @@ impl ResultsFile {
         if events + more <= room {
             return Ok(());
         }
+        let in_place = self.in_place();
         self.stage(|root| resize(&root.group("transient")?, (events + more).max(2 * room)))?;
-        self.take_place()
+        if in_place { self.take_place() } else { Ok(()) }
     }
 
     /// Events of the run in time.

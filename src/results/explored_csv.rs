@@ -2,7 +2,7 @@
 
 use super::csv::{Table, number};
 use super::explored_hdf5::kind_name;
-use super::{MapResult, RunResults, SweepResult, write_atomically};
+use super::{MapResult, RunResults, SweepResult, write_result};
 use crate::error::Result;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -10,13 +10,13 @@ use std::path::Path;
 /// Writes the tables that the run has.
 pub(super) fn write(dir: &Path, results: &RunResults) -> Result<()> {
     for result in &results.sweeps {
-        write_atomically(dir, &format!("sweep_{}.csv", result.name), sweep(result).as_bytes())?;
+        write_result(dir, &format!("sweep_{}.csv", result.name), sweep(result).as_bytes())?;
     }
     for result in &results.maps {
-        write_atomically(dir, &format!("map_{}.csv", result.name), map(result).as_bytes())?;
+        write_result(dir, &format!("map_{}.csv", result.name), map(result).as_bytes())?;
     }
     if !results.sweeps.is_empty() {
-        write_atomically(dir, "critical_values.csv", critical(&results.sweeps).as_bytes())?;
+        write_result(dir, "critical_values.csv", critical(&results.sweeps).as_bytes())?;
     }
     Ok(())
 }

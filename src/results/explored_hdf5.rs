@@ -1,21 +1,18 @@
 //! `/sweep/<name>` and `/map/<name>` of `results.h5`. A map is written in chunks, each flushed, so that a killed run
-//! leaves its first points; [`read_maps`] finds them again.
+//! leaves its first points.
 //!
 //! | group | datasets |
 //! |---|---|
 //! | `/sweep/<name>` | `value`, `eigenvalue` (branch × value), `lowest_mac`, `critical_…`, `encounter_…`, `sample_…` |
 //! | `/map/<name>` | `value_1`, `value_2`, `growth_rate`, `frequency_hz`, `unstable` (2 × 1), `boundary_…`, `sample_…` |
 
-use super::hdf5::{Datasets, attribute, plain, rows, text_attribute, texts};
+use super::hdf5::{Datasets, attribute, rows, text_attribute, texts};
 use super::{MapResult, Method, ResultsFile, SweepResult};
-use crate::error::{Error, Fault, Result};
+use crate::error::Result;
 use crate::linalg::c64;
 use crate::sweep::{Checked, Critical, CriticalKind, Encounter, EncounterKind, MapPoint};
 use hdf5::Group;
-use hdf5::types::VarLenUnicode;
 use ndarray::{Array2, s};
-use std::collections::BTreeMap;
-use std::path::Path;
 
 /// What a critical value is called in files.
 pub(super) fn kind_name(kind: CriticalKind) -> &'static str {
@@ -186,56 +183,4 @@ fn begin_map(root: &Group, map: &MapResult, trained: &[[f64; 2]]) -> hdf5::Resul
 
 fn unit(unit: &str) -> &str {
     if unit.is_empty() { "1" } else { unit }
-}
-
-/// The points of a map, and the places it was trained on.
-pub type EarlierMap = (Vec<MapPoint>, Vec<[f64; 2]>);
-
-/// The points of every map, and the places it was trained on, that an earlier run of the case with this resolved TOML
-/// left in the folder; nothing when the folder has no results.
-///
-/// # Errors
-/// Results of another case, or a file that cannot be read.
-pub fn read_maps(dir: &Path, resolved_case: &str) -> Result<BTreeMap<String, EarlierMap>> {
-    let path = dir.join("results.h5");
-    if !path.exists() {
-        return Ok(BTreeMap::new());
-    }
-    let refused = |error: hdf5::Error| super::folder::refusal(&path, plain(&error));
-    let file = hdf5::File::open(&path).map_err(refused)?;
-    let earlier = file.dataset("case/resolved_toml").and_then(|d| d.read_scalar::<VarLenUnicode>());
-    if earlier.map_err(refused)?.as_str() != resolved_case {
-        return Err(Error::input(
-            Fault::new(path.display().to_string(), "results of another case", "those of this case")
-                .with_help("Run without --resume, or name another folder with --out"),
-        ));
-    }
-    let mut maps = BTreeMap::new();
-    if file.link_exists("map") {
-        for group in file.group("map").and_then(|maps| maps.groups()).map_err(refused)? {
-            let name = group.name().rsplit('/').next().unwrap_or_default().to_string();
-            maps.insert(name, read_map(&group).map_err(refused)?);
-        }
-    }
-    Ok(maps)
-}
-
-fn read_map(group: &Group) -> hdf5::Result<EarlierMap> {
-    let done = group.attr("points_done")?.read_scalar::<u64>()? as usize;
-    let growth = group.dataset("growth_rate")?.read_1d::<f64>()?;
-    let hz = group.dataset("frequency_hz")?.read_1d::<f64>()?;
-    let unstable = group.dataset("unstable")?.read_1d::<u32>()?;
-    let points = growth
-        .iter()
-        .zip(&hz)
-        .zip(&unstable)
-        .take(done)
-        .map(|((growth_rate, frequency_hz), unstable)| MapPoint {
-            growth_rate: *growth_rate,
-            frequency_hz: *frequency_hz,
-            unstable: *unstable,
-        })
-        .collect();
-    let trained = group.dataset("trained_place")?.read_2d::<f64>()?;
-    Ok((points, trained.rows().into_iter().map(|row| [row[0], row[1]]).collect()))
 }

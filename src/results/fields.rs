@@ -6,15 +6,17 @@
 //! start; `NSteps` says how many are there, so that a run under way can be looked at.
 
 use super::file::room;
-use super::folder::refusal;
+use super::folder::{own, refusal};
 use super::hdf5::{attribute, plain, rows};
 use super::{Field, Fields, NodalField};
-use crate::error::{Error, Fault, Result};
+use crate::error::{Error, Result};
 use hdf5::Group;
 use hdf5::types::FixedAscii;
 use ndarray::{Array2, s};
 use std::path::{Path, PathBuf};
 
+/// What the file is called.
+const NAME: &str = "transient.vtkhdf";
 /// The arrays of the motion.
 const ARRAYS: [&str; 2] = ["displacement", "velocity"];
 
@@ -27,36 +29,21 @@ pub struct FieldsFile {
 }
 
 impl FieldsFile {
-    /// Begins the file in the folder `dir`, or goes on with the one that an earlier run left.
+    /// Begins the file in the folder `dir`.
     ///
     /// # Errors
-    /// Input: the earlier one is gone. [`Error::Io`], here and later: the machine refuses.
+    /// [`Error::Io`], here and later: the machine refuses.
     pub fn begin(dir: &Path, fields: &Fields) -> Result<Self> {
-        let path = dir.join("transient.vtkhdf");
+        let path = dir.join(NAME);
         let nodes = fields.geometry.nodes.len();
         let refused = |source: hdf5::Error| refusal(&path, plain(&source));
-        if fields.done == 0 {
-            let aside = dir.join("transient.new.vtkhdf");
-            std::fs::File::create(&aside).map_err(|source| refusal(&aside, source))?;
-            let file = hdf5::File::create(&aside).map_err(refused)?;
-            create(&file, fields).and_then(|()| file.flush()).map_err(refused)?;
-            std::fs::rename(&aside, &path).map_err(|source| refusal(&path, source))?;
-            return Ok(FieldsFile { file, path, nodes });
-        }
-        let found = hdf5::File::open_rw(&path).and_then(|file| {
-            let shape = file.dataset("VTKHDF/PointData/velocity")?.shape();
-            Ok((shape == [fields.count * nodes, 3]).then_some(file))
-        });
-        let file = found.ok().flatten().ok_or_else(|| {
-            let expected = "the file that the interrupted run has left";
-            Error::input(
-                Fault::new(path.display().to_string(), "none, or another", expected)
-                    .with_help("Put it back, or run without --resume"),
-            )
-        })?;
-        let mut this = FieldsFile { file, path, nodes };
-        this.count(fields.done)?;
-        Ok(this)
+        let aside = dir.join("transient.new.vtkhdf");
+        std::fs::File::create(&aside).map_err(|source| refusal(&aside, source))?;
+        let file = hdf5::File::create(&aside).map_err(refused)?;
+        create(&file, fields).and_then(|()| file.flush()).map_err(refused)?;
+        own(dir, NAME)?;
+        std::fs::rename(&aside, &path).map_err(|source| refusal(&path, source))?;
+        Ok(FieldsFile { file, path, nodes })
     }
 
     /// Writes the motion at the next of the times.
@@ -159,21 +146,17 @@ mod tests {
     }
 
     #[test]
-    fn fields_are_there_as_they_were_written_and_an_interrupted_file_goes_on() {
+    fn fields_are_there_as_they_were_written() {
         let dir = tempfile::tempdir().unwrap();
         let geometry = sample::rig().geometry;
         let nodes = geometry.nodes.len();
         let fields = Fields { geometry: &geometry, every: 1e-3, count: 5, done: 0 };
-        let gone = FieldsFile::begin(dir.path(), &Fields { done: 3, ..fields }).unwrap_err();
-        assert!(gone.exit_code() == 2 && gone.to_string().contains("--resume"), "{gone}");
         let write = |file: &mut FieldsFile, number: usize| {
             let (displacement, velocity) = (&motion(number, nodes), &motion(number + 100, nodes));
             file.write(&Field { number, displacement, velocity }).unwrap();
         };
         let mut file = FieldsFile::begin(dir.path(), &fields).unwrap();
-        (0..4).for_each(|number| write(&mut file, number));
-        drop(file);
-        let mut file = FieldsFile::begin(dir.path(), &Fields { done: 2, ..fields }).unwrap();
+        (0..2).for_each(|number| write(&mut file, number));
         let steps = |file: &FieldsFile| {
             file.file.group("VTKHDF/Steps").unwrap().attr("NSteps").unwrap().read_scalar::<i64>().unwrap()
         };

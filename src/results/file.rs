@@ -9,11 +9,14 @@
 //!   they have, and each time a flush and a count say how many; this changes no structure.
 //! - What comes after that is written to a copy, again `results.new.h5`, which takes the place when it is whole.
 //!
-//! The root attribute `complete` turns true at the end. A run that is killed in its first stages leaves its
-//! `results.new.h5`, which the next one overwrites.
+//! Before the file takes its place for the first time, the files of the earlier run are deleted, so that what is in the
+//! folder is always of one run. The root attribute `complete` turns true at the end; a run that fails says why in `failed`.
+//! A run that is killed in its first stages leaves its `results.new.h5`, which the next one overwrites.
+//!
+//! An interrupted run is taken up from `record.bin` and `checkpoint.bin` (see `record`); `results.h5` is only written.
 
 use super::RunResults;
-use super::folder::{FileNames, prepare_folder, refusal};
+use super::folder::{FileNames, own, prepare_folder, refusal, retire};
 use super::hdf5::{Datasets, attribute, plain, text_attribute, texts};
 use crate::error::Result;
 use hdf5::plist::dataset_create::{AllocTime, FillTime};
@@ -21,8 +24,8 @@ use hdf5::types::OwnedDynValue;
 use hdf5::{Extents, Group, H5Type};
 use std::path::{Path, PathBuf};
 
-/// What an interrupted run leaves to be taken up.
-const TAKEN_UP: [&str; 2] = ["map", "transient"];
+/// What the file is called.
+const NAME: &str = "results.h5";
 
 /// The results file of a run under way.
 #[derive(Debug)]
@@ -33,6 +36,10 @@ pub struct ResultsFile {
     /// Where it belongs.
     home: PathBuf,
     pub(super) names: FileNames,
+    /// Files of the folder that are not deleted with those of the earlier run.
+    spared: Vec<PathBuf>,
+    /// Whether those are deleted.
+    alone: bool,
     /// Whether it has a result, so that it takes the place of an earlier file when the run fails.
     kept: bool,
     /// Whether a write was refused, so that it is not to be trusted.
@@ -49,7 +56,7 @@ impl ResultsFile {
     /// folder's place, a folder that is not writable, a full disk.
     pub fn create(dir: &Path) -> Result<Self> {
         prepare_folder(dir)?;
-        let (home, path) = (dir.join("results.h5"), dir.join("results.new.h5"));
+        let (home, path) = (dir.join(NAME), dir.join("results.new.h5"));
         // The operating system tells why a file cannot be made more plainly than the library.
         std::fs::File::create(&path).map_err(|source| refusal(&path, source))?;
         let file = hdf5::File::create(&path).map_err(|source| refusal(&path, plain(&source)))?;
@@ -58,6 +65,8 @@ impl ResultsFile {
             path,
             home,
             names: FileNames::default(),
+            spared: Vec::new(),
+            alone: false,
             kept: false,
             broken: false,
             channels: Vec::new(),
@@ -70,24 +79,29 @@ impl ResultsFile {
         Ok(this)
     }
 
-    /// Begins a results file with the maps and the run in time that an earlier run left in the folder.
+    /// Leaves these files where they are when those of the earlier run are deleted.
+    pub fn spare(&mut self, files: impl IntoIterator<Item = PathBuf>) {
+        self.spared.extend(files);
+    }
+
+    /// Deletes the files of the earlier run, so that those of this one can be written.
     ///
     /// # Errors
     /// The machine refuses.
-    pub fn resume(dir: &Path) -> Result<Self> {
-        let mut this = ResultsFile::create(dir)?;
-        if this.home.exists() {
-            let earlier = hdf5::File::open(&this.home);
-            let earlier = earlier.map_err(|source| refusal(&this.home, plain(&source)))?;
-            this.stage(|root| {
-                let mut left = TAKEN_UP.into_iter().filter(|name| earlier.link_exists(name));
-                left.try_for_each(|name| earlier.group(name)?.copy_to(root, name))
-            })?;
+    pub fn stand_alone(&mut self) -> Result<()> {
+        if !self.alone {
+            retire(self.home.parent().unwrap_or(Path::new("")), &self.spared)?;
+            self.alone = true;
         }
-        Ok(this)
+        Ok(())
     }
 
-    /// Writes warnings and timings, marks the file complete and closes it.
+    /// Lets go of what was written, unless it is in its place already; the earlier file stays.
+    pub fn discard(mut self) {
+        self.kept = false;
+    }
+
+    /// Writes warnings and timings, marks the file complete or says why the run has failed, and closes it.
     ///
     /// # Errors
     /// The machine refuses.
@@ -98,7 +112,8 @@ impl ResultsFile {
             let (phases, seconds): (Vec<String>, Vec<f64>) = results.timings.iter().cloned().unzip();
             texts(&group.0, "phase", &phases, "phases of the run")?;
             group.list("wall_time", &seconds, "s", "wall time of each phase")?;
-            root.attr("complete")?.write_scalar(&true)
+            results.failed.iter().try_for_each(|error| text_attribute(root, "failed", error))?;
+            root.attr("complete")?.write_scalar(&results.failed.is_none())
         })?;
         self.take_place()
     }
@@ -129,9 +144,21 @@ impl ResultsFile {
         found.map_err(|source| refusal(&self.path, plain(&source)))
     }
 
+    /// Whether the file is where it belongs.
+    pub(super) fn in_place(&self) -> bool {
+        self.path == self.home
+    }
+
     /// Takes the place of an earlier run's file, or of what this run had there.
-    pub(super) fn take_place(&mut self) -> Result<()> {
-        if self.path != self.home {
+    ///
+    /// # Errors
+    /// The machine refuses.
+    pub fn take_place(&mut self) -> Result<()> {
+        if !self.in_place() {
+            // The earlier file stays until this one replaces it.
+            self.spared.push(NAME.into());
+            self.stand_alone()?;
+            own(self.home.parent().unwrap_or(Path::new("")), NAME)?;
             std::fs::rename(&self.path, &self.home).map_err(|source| refusal(&self.home, source))?;
             self.path.clone_from(&self.home);
         }
@@ -140,7 +167,7 @@ impl ResultsFile {
 
     /// Goes on in a copy when the file is in its place.
     fn step_aside(&mut self) -> Result<()> {
-        if self.path == self.home {
+        if self.in_place() {
             let aside = self.home.with_file_name("results.new.h5");
             std::fs::copy(&self.home, &aside).map_err(|source| {
                 let _ = std::fs::remove_file(&aside);
@@ -201,7 +228,10 @@ mod tests {
         file.write_steady(results.steady.as_ref().unwrap()).unwrap();
         file.finish(&results).unwrap();
         assert!(hdf5::File::open(&home).unwrap().group("steady").is_ok());
-        assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 1);
+        let mut names: Vec<_> =
+            std::fs::read_dir(dir.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
+        names.sort();
+        assert_eq!(names, [".files", "results.h5"]);
     }
 
     #[test]

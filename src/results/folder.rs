@@ -1,7 +1,18 @@
-//! The results folder: made when missing, never emptied, each file replaced whole.
+//! The results folder: what is in it belongs together.
+//!
+//! The folder is made when missing; each file is replaced whole. The names of the files that a run writes are kept in
+//! `.files`, so that a later run can delete them, before it puts its own first one there, and nothing else ([`retire`]).
+//! An interrupted record is not deleted: with all the files of its run it is moved to `interrupted-1`, `interrupted-2` …,
+//! each a results folder by itself ([`set_aside`]).
 
+use super::record::{CHECKPOINT, RECORD, read_saved};
 use crate::error::{Error, Result};
-use std::path::Path;
+use std::collections::BTreeSet;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// The names of the files of a run, a line each.
+const FILES: &str = ".files";
 
 /// Makes the folder `dir` and its parents when they are missing.
 pub(super) fn prepare_folder(dir: &Path) -> Result<()> {
@@ -22,6 +33,79 @@ pub(crate) fn write_atomically(dir: &Path, name: &str, bytes: &[u8]) -> Result<(
         let _ = std::fs::remove_file(&partial);
         refusal(&path, source)
     })
+}
+
+/// The same of a file that is one of a run's results.
+pub(crate) fn write_result(dir: &Path, name: &str, bytes: &[u8]) -> Result<()> {
+    own(dir, name)?;
+    write_atomically(dir, name, bytes)
+}
+
+/// Notes that the run writes a file of this name in the folder `dir`.
+pub(super) fn own(dir: &Path, name: &str) -> Result<()> {
+    prepare_folder(dir)?;
+    if owned(dir).contains(name) {
+        return Ok(());
+    }
+    let path = dir.join(FILES);
+    let file = std::fs::OpenOptions::new().append(true).create(true).open(&path);
+    let noted = file.and_then(|mut file| file.write_all(format!("{name}\n").as_bytes()));
+    noted.map_err(|source| refusal(&path, source))
+}
+
+/// The files of the run in the folder. A name that leads elsewhere is none.
+fn owned(dir: &Path) -> BTreeSet<String> {
+    let text = std::fs::read(dir.join(FILES)).unwrap_or_default();
+    let text = String::from_utf8_lossy(&text);
+    let names =
+        text.lines().filter(|name| !name.is_empty() && Path::new(name).file_name() == Some(name.as_ref()));
+    names.map(str::to_string).collect()
+}
+
+/// Deletes the files of an earlier run in the folder `dir`, but those in `spared`: names, or whole paths of files that the
+/// run reads.
+pub(crate) fn retire(dir: &Path, spared: &[PathBuf]) -> Result<()> {
+    let names = owned(dir);
+    if names.is_empty() {
+        return Ok(());
+    }
+    let spared: Vec<PathBuf> = spared.iter().filter_map(|path| dir.join(path).canonicalize().ok()).collect();
+    let (mut kept, mut refused) = (String::new(), None);
+    for name in names {
+        let path = dir.join(&name);
+        if path.canonicalize().is_ok_and(|path| spared.contains(&path)) {
+            kept += &format!("{name}\n");
+        } else if let Err(source) = std::fs::remove_file(&path)
+            && source.kind() != std::io::ErrorKind::NotFound
+        {
+            refused.get_or_insert(refusal(&path, source));
+        }
+    }
+    refused.map_or_else(|| write_atomically(dir, FILES, kept.as_bytes()), Err)
+}
+
+/// Moves an interrupted record with all the files of its run to a folder of its own, whose path is returned.
+pub(crate) fn set_aside(dir: &Path) -> Result<Option<PathBuf>> {
+    if !dir.join(CHECKPOINT).exists() || matches!(read_saved(dir), Ok(Some(saved)) if saved.ended) {
+        return Ok(None);
+    }
+    // One without a checkpoint is of a move that was killed on its way: the checkpoint goes last.
+    let aside =
+        (1..).map(|k| dir.join(format!("interrupted-{k}"))).find(|path| !path.join(CHECKPOINT).exists());
+    let aside = aside.expect("some number is free");
+    prepare_folder(&aside)?;
+    let mut names = owned(dir);
+    names.insert(RECORD.into());
+    names.remove(CHECKPOINT);
+    for name in names.iter().map(String::as_str).chain([CHECKPOINT, FILES]) {
+        let path = dir.join(name);
+        if let Err(source) = std::fs::rename(&path, aside.join(name))
+            && source.kind() != std::io::ErrorKind::NotFound
+        {
+            return Err(refusal(&path, source));
+        }
+    }
+    Ok(Some(aside))
 }
 
 /// The machine's refusal of `path`, with the advice that fits every such case.
@@ -74,6 +158,55 @@ mod tests {
         assert!(error.to_string().contains("a file stands where"), "{error}");
         assert_eq!(std::fs::read_to_string(&file).unwrap(), "keep");
         assert!(matches!(prepare_folder(Path::new("/proc/no_such_place")), Err(Error::Io { .. })));
+    }
+
+    fn names(dir: &Path) -> Vec<String> {
+        let entries = std::fs::read_dir(dir).unwrap().flatten();
+        let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+        names.collect::<BTreeSet<String>>().into_iter().collect()
+    }
+
+    #[test]
+    fn files_of_an_earlier_run_are_deleted_and_no_others() {
+        let parent = tempfile::tempdir().unwrap();
+        let dir = &parent.path().join("out");
+        write_result(dir, "modes_disc.csv", b"1").unwrap();
+        write_result(dir, "modes_disc.csv", b"2").unwrap();
+        write_result(dir, "calibrated.toml", b"title = 1").unwrap();
+        write_atomically(dir, "mass.mtx", b"exported").unwrap();
+        std::fs::write(dir.join("notes.txt"), "mine").unwrap();
+        std::fs::write(parent.path().join("outside"), "mine").unwrap();
+        let listed = std::fs::read_to_string(dir.join(FILES)).unwrap();
+        assert_eq!(listed, "modes_disc.csv\ncalibrated.toml\n");
+        // Names that lead out of the folder delete nothing.
+        std::fs::write(dir.join(FILES), listed + "../outside\n..\n/etc/hostname\n\n").unwrap();
+        retire(dir, &[dir.join("calibrated.toml")]).unwrap();
+        assert_eq!(names(dir), [FILES, "calibrated.toml", "mass.mtx", "notes.txt"]);
+        assert_eq!(names(parent.path()), ["out", "outside"]);
+        retire(dir, &[]).unwrap();
+        assert_eq!(names(dir), [FILES, "mass.mtx", "notes.txt"]);
+    }
+
+    #[test]
+    fn an_interrupted_record_is_moved_with_its_files_even_when_the_move_was_killed() {
+        let dir = tempfile::tempdir().unwrap();
+        let dir = dir.path();
+        write_result(dir, "transient.csv", b"rows").unwrap();
+        std::fs::write(dir.join("notes.txt"), "mine").unwrap();
+        assert_eq!(set_aside(dir).unwrap(), None);
+        for k in ["interrupted-1", "interrupted-2"] {
+            write_result(dir, "transient.csv", b"rows").unwrap();
+            write_result(dir, RECORD, b"points").unwrap();
+            // Nobody can tell whether a damaged one had ended.
+            write_result(dir, CHECKPOINT, b"state").unwrap();
+            if k == "interrupted-2" {
+                std::fs::create_dir(dir.join(k)).unwrap();
+                std::fs::rename(dir.join(RECORD), dir.join(k).join(RECORD)).unwrap();
+            }
+            assert_eq!(set_aside(dir).unwrap(), Some(dir.join(k)));
+            assert_eq!(names(&dir.join(k)), [FILES, CHECKPOINT, RECORD, "transient.csv"]);
+        }
+        assert_eq!(names(dir), ["interrupted-1", "interrupted-2", "notes.txt"]);
     }
 
     #[test]

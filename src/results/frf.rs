@@ -3,7 +3,7 @@
 use super::csv::{Table, number};
 use super::folder::FileNames;
 use super::hdf5::{Datasets, attribute, text_attribute};
-use super::{ResultsFile, uff, write_atomically};
+use super::{ResultsFile, uff, write_result};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::measured::Quantity;
@@ -95,8 +95,8 @@ pub(super) fn write(dir: &Path, frfs: &[FrfResult]) -> Result<()> {
     let mut names = FileNames::default();
     for frf in frfs {
         let name = names.next(&frf.name);
-        write_atomically(dir, &format!("frf_{name}.csv"), table(frf).as_bytes())?;
-        write_atomically(dir, &format!("frf_{name}.uff"), &uff::functions(frf))?;
+        write_result(dir, &format!("frf_{name}.csv"), table(frf).as_bytes())?;
+        write_result(dir, &format!("frf_{name}.uff"), &uff::functions(frf))?;
     }
     Ok(())
 }

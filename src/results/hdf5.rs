@@ -4,7 +4,7 @@
 //!
 //! | group | datasets |
 //! |---|---|
-//! | `/case` | `resolved_toml`, `assumptions` |
+//! | `/case` | `resolved_toml`, `assumptions`; `input_path`, `input_bytes`, `input_sha256` of the files it reads |
 //! | `/geometry` | `nodes`, `element_nodes`, `element_offsets`, `element_part`, `part_names` |
 //! | `/modes/<set>` | `frequency_hz`, `shapes`, `nodal_diameters`, `nodal_circles`, `backward_error`, `effective_mass` |
 //! | `/measured/<k>` | `frequency_hz`, `deviation`, `damping_ratio`, `mode`, `level`, `mac` |
@@ -12,7 +12,7 @@
 //! | `/steady` | `displacement`, `approach`, contact points with forces and tangents, pairs |
 //! | `/complex` | `eigenvalue`, `right`, `left`, errors, `growth_…`, `participation` |
 //! | `/sensitivity/mode_<k>` | `parameter`, `value`, `rate`, errors; `point_mass`, `point_spring`, `point_damper`, best places |
-//! | `/transient` | a dataset for each channel; spectra with their peaks; checkpoints; see `transient_hdf5.rs` |
+//! | `/transient` | a dataset for each channel; spectra with their peaks; see `transient_hdf5.rs` |
 //! | `/sweep/<name>`, `/map/<name>` | branches, critical values; grids, boundary; see `explored_hdf5.rs` |
 //! | `/timings`, `/warnings` | `phase`, `wall_time`; sentences |
 
@@ -42,6 +42,13 @@ impl ResultsFile {
             let toml = group.new_dataset::<VarLenUnicode>().create("resolved_toml")?;
             toml.write_scalar(&unicode(&results.resolved_case))?;
             describe(&toml, "text", "the case with every default written out, as TOML")?;
+            let inputs = &results.inputs;
+            let paths: Vec<String> = inputs.iter().map(|file| file.path.clone()).collect();
+            texts(&group, "input_path", &paths, "the files that the case reads")?;
+            let digests: Vec<String> = inputs.iter().map(|file| file.sha256.clone()).collect();
+            texts(&group, "input_sha256", &digests, "SHA-256 of each")?;
+            let bytes: Vec<u64> = inputs.iter().map(|file| file.bytes).collect();
+            Datasets(group.clone()).list("input_bytes", &bytes, "byte", "the length of each")?;
             texts(
                 &group,
                 "assumptions",
@@ -342,7 +349,9 @@ pub(super) fn plain(error: &hdf5::Error) -> String {
         return "another program has the file open".into();
     }
     let cause = text.split_once("error message = '").and_then(|(_, rest)| rest.split_once('\''));
-    cause.map(|(words, _)| words).or(text.lines().next()).unwrap_or_default().to_string()
+    let words = cause.map(|(words, _)| words).or(text.lines().next()).unwrap_or_default();
+    // So the library says when it has lost the cause, as it does where room cannot be made.
+    if words == "unknown library error" { "the file cannot be written".into() } else { words.into() }
 }
 
 /// HDF5's strings end at a NUL, so one in the text cannot be kept.

@@ -4,9 +4,10 @@
 //! structs below *are* the contract, field by field; a change that could break a reader raises [`SCHEMA_VERSION`].
 //! A number that is not finite is written as `null`, so that the file is valid JSON whatever the run produced.
 
+use super::record::InputFile;
 use super::{
     ComplexResult, MeasuredComparison, ModelSize, NamedModes, RunResults, SensitivityResult, SteadyResult,
-    explored_json, transient_json, write_atomically,
+    explored_json, transient_json, write_result,
 };
 use crate::error::Result;
 use crate::linalg::c64;
@@ -23,9 +24,15 @@ struct Summary<'a> {
     schema_version: u32,
     program: &'static str,
     program_version: &'static str,
+    /// Whether every analysis that was asked for is there.
+    complete: bool,
+    /// Why not: what the analysis that failed says.
+    failed: Option<&'a str>,
     title: &'a str,
     assumptions: &'a [String],
     warnings: &'a [String],
+    /// The files that the case reads.
+    inputs: &'a [InputFile],
     model: Model,
     mode_sets: Vec<ModeSet<'a>>,
     modes: Vec<Mode<'a>>,
@@ -276,7 +283,7 @@ struct Timing<'a> {
 /// [`crate::error::Error::Io`] when the folder cannot be made or the file not be written.
 pub fn write_summary(dir: &Path, results: &RunResults) -> Result<()> {
     let text = format!("{:#}\n", summary_json(results));
-    write_atomically(dir, "summary.json", text.as_bytes())
+    write_result(dir, "summary.json", text.as_bytes())
 }
 
 /// What `summary.json` holds.
@@ -290,9 +297,12 @@ fn summary(results: &RunResults) -> Summary<'_> {
         schema_version: SCHEMA_VERSION,
         program: env!("CARGO_PKG_NAME"),
         program_version: env!("CARGO_PKG_VERSION"),
+        complete: results.failed.is_none(),
+        failed: results.failed.as_deref(),
         title: &results.title,
         assumptions: &results.assumptions,
         warnings: &results.warnings,
+        inputs: &results.inputs,
         model: Model { nodes, elements, dofs, stiffness_nonzeros: nonzeros, contact_points },
         mode_sets: results.modes.iter().map(mode_set).collect(),
         modes: results.modes.iter().flat_map(modes).collect(),

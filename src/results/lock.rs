@@ -48,7 +48,7 @@ impl FolderLock {
 }
 
 fn in_use(dir: &Path, holder: &str) -> Error {
-    let help = "Wait until it ends, or name another folder for the results";
+    let help = "Wait until it ends, or name another folder for the results.";
     Error::io(dir, format!("the folder is in use by {holder}"), help)
 }
 

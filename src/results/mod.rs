@@ -14,6 +14,7 @@
 //! | `critical_values.csv`, `sweep_<name>.csv`, `map_<name>.csv` | sweeps and maps | spreadsheets |
 //! | `transient.vtkhdf` | the motion of all nodes at regular times | ParaView |
 //! | `modes_<set>.vtu`, `steady.vtu`, `complex_modes.vtu`, `advice.vtu` | the shapes on the mesh | ParaView, pyvista |
+//! | `record.bin`, `checkpoint.bin` | what an interrupted run is taken up from: [`record`] | `--resume` |
 //!
 //! [`ResultsFile`] is used while the run goes on, [`write_files`] once at its end.
 
@@ -35,6 +36,7 @@ mod frf;
 mod hdf5;
 mod json;
 mod lock;
+pub mod record;
 mod reduced_check;
 mod room;
 mod search;
@@ -61,10 +63,9 @@ pub(crate) use csv::Table as CsvTable;
 pub use csv::write_csv;
 pub use derived::{ComparedRow, PairTotals};
 pub use explored::{DampingRow, DampingVerdicts, MapResult, Method, SweepResult};
-pub use explored_hdf5::{EarlierMap, read_maps};
 pub use fields::FieldsFile;
 pub use file::ResultsFile;
-pub(crate) use folder::{FileNames, write_atomically};
+pub(crate) use folder::{FileNames, retire, set_aside, write_atomically, write_result};
 pub use frf::{FrfResponse, FrfResult, PlaceAndDirection, Resonance};
 pub use json::{SCHEMA_VERSION, summary_json, write_summary};
 pub use lock::FolderLock;
@@ -148,6 +149,10 @@ pub struct RunResults {
     pub damping: Option<DampingVerdicts>,
     /// Wall time of each phase \[s\].
     pub timings: Vec<(String, f64)>,
+    /// The files that the case reads.
+    pub inputs: Vec<record::InputFile>,
+    /// Why the run has ended before its end, if it has: an analysis without an answer.
+    pub failed: Option<String>,
 }
 
 /// The size of a model.

@@ -4,8 +4,8 @@ use super::Recording;
 use crate::error::{Error, Result};
 use std::path::Path;
 
-/// Bytes of a number in `results.h5`, of a modal acceleration there, in `transient.csv`, and of the motion of a node in
-/// `transient.vtkhdf`: three displacements and three velocities.
+/// Bytes of a number in `results.h5` and `record.bin`, of a modal acceleration there, in `transient.csv`, and of the motion of
+/// a node in `transient.vtkhdf` and `record.bin`: three displacements and three velocities.
 const NUMBER: f64 = 8.0;
 const MODAL: f64 = 4.0;
 const TEXT: f64 = 10.0;
@@ -41,12 +41,14 @@ pub fn room_in_memory(recording: &Recording) -> Result<()> {
 /// What is still to be written.
 fn bytes_on_disk(recording: &Recording) -> f64 {
     let channels = recording.channels.len() as f64;
-    // A record that goes on has its place in results.h5 already; the tables are written anew.
-    let numbers = if recording.done == 0 { NUMBER * channels + MODAL * recording.modes as f64 } else { 0.0 };
+    let numbers = NUMBER * channels + MODAL * recording.modes as f64;
+    let (rows, new) = (recording.rows as f64, recording.rows.saturating_sub(recording.done) as f64);
     let fields = recording.fields.as_ref().map_or(0.0, |fields| {
-        NODE * fields.geometry.nodes.len() as f64 * fields.count.saturating_sub(fields.done) as f64
+        let new = fields.count.saturating_sub(fields.done);
+        NODE * fields.geometry.nodes.len() as f64 * (fields.count + new) as f64
     });
-    recording.rows as f64 * (numbers + TEXT * (channels + 1.0)) + fields
+    // A run that goes on writes results.h5 and the tables anew, and adds to record.bin.
+    rows * (numbers + TEXT * (channels + 1.0)) + new * numbers + fields
 }
 
 /// What is wrong where `bytes` are more than the `free` ones.
@@ -109,45 +111,28 @@ fn free_in_memory() -> Option<f64> {
 mod tests {
     use super::*;
     use crate::results::Channel;
-    use crate::transient::Checkpoint;
 
-    fn recording<'a>(
-        rows: usize,
-        done: usize,
-        channels: &'a [Channel],
-        checkpoint: &'a Checkpoint,
-    ) -> Recording<'a> {
-        Recording {
-            time_step: 1e-6,
-            rows,
-            done,
-            happened: 0,
-            channels,
-            modes: 3,
-            pairs: &[],
-            checkpoint,
-            fields: None,
-        }
+    fn recording(rows: usize, done: usize, channels: &[Channel]) -> Recording<'_> {
+        Recording { time_step: 1e-6, rows, done, happened: 0, channels, modes: 3, pairs: &[], fields: None }
     }
 
     #[test]
     fn a_record_that_has_no_room_is_refused_with_its_size() {
         let channels: Vec<Channel> =
             (0..15).map(|k| Channel::new(format!("c{k}"), "m", String::new())).collect();
-        let checkpoint = Checkpoint::default();
         let dir = tempfile::tempdir().unwrap();
-        let endless = recording(1_000_000_000_000_001, 0, &channels, &checkpoint);
+        let endless = recording(1_000_000_000_000_001, 0, &channels);
         let text = room_on_disk(dir.path(), &endless).unwrap_err().to_string();
         for part in ["1000000000000000 steps of 15 channels and 3 modes", "GB", "time_step", "larger disk"] {
             assert!(text.contains(part), "{text}");
         }
         assert_eq!(room_on_disk(dir.path(), &endless).unwrap_err().exit_code(), 1);
         assert!(room_in_memory(&endless).unwrap_err().to_string().contains("memory has"));
-        let short = recording(11, 0, &channels, &checkpoint);
+        let short = recording(11, 0, &channels);
         room_on_disk(dir.path(), &short).unwrap();
         room_in_memory(&short).unwrap();
-        // 15 numbers and 3 short ones in results.h5; 16 numbers as text.
-        assert_eq!(bytes_on_disk(&short), 11.0 * (15.0 * 8.0 + 3.0 * 4.0 + 160.0));
-        assert_eq!(bytes_on_disk(&recording(11, 5, &channels, &checkpoint)), 11.0 * 160.0);
+        // 15 numbers and 3 short ones in results.h5 and in record.bin; 16 numbers as text.
+        assert_eq!(bytes_on_disk(&short), 11.0 * (2.0 * (15.0 * 8.0 + 3.0 * 4.0) + 160.0));
+        assert_eq!(bytes_on_disk(&recording(11, 5, &channels)), 11.0 * (132.0 + 160.0) + 6.0 * 132.0);
     }
 }

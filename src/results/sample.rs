@@ -6,6 +6,7 @@ mod calibration;
 mod measured;
 pub use calibration::calibration;
 
+use super::record::InputFile;
 use super::*;
 use crate::equilibrium::PointState;
 use crate::linalg::c64;
@@ -76,6 +77,8 @@ pub(crate) fn rig() -> RunResults {
         .map(|(phase, s)| (phase.to_string(), s))
         .to_vec(),
         geometry,
+        inputs: vec![InputFile { path: "rig.msh".into(), bytes: 1234, sha256: "0".repeat(64) }],
+        failed: None,
         transient: Some(transient()),
         frfs: vec![frf()],
         calibration: Some(calibration::calibration()),

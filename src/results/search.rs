@@ -1,6 +1,6 @@
 //! Numbers of a case that were searched for, beside the facts that the case then meets or misses.
 
-use super::{CheckedCase, write_atomically};
+use super::{CheckedCase, write_result};
 use crate::error::Result;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -79,8 +79,8 @@ impl SearchResult {
     /// [`crate::error::Error::Io`] when a file cannot be written.
     pub fn write(&self, dir: &Path) -> Result<()> {
         let text = serde_json::to_string_pretty(&self.to_json()).expect("numbers and strings are JSON");
-        write_atomically(dir, "search.json", text.as_bytes())?;
-        write_atomically(dir, "found.toml", self.found_case.as_bytes())
+        write_result(dir, "search.json", text.as_bytes())?;
+        write_result(dir, "found.toml", self.found_case.as_bytes())
     }
 
     /// The result as `search.json` has it.

@@ -123,8 +123,8 @@ pub(super) fn write(dir: &Path, sound: &Sound) -> crate::error::Result<()> {
         first.name, sound.recording.begin
     );
     let bytes = wav(&sound.recording.pressure, sound.recording.rate, scale, &comment);
-    super::write_atomically(dir, &format!("sound_{}.wav", first.name), &bytes)?;
-    super::write_atomically(dir, "sound_spectrum.csv", table(sound).as_bytes())
+    super::write_result(dir, &format!("sound_{}.wav", first.name), &bytes)?;
+    super::write_result(dir, "sound_spectrum.csv", table(sound).as_bytes())
 }
 
 fn table(sound: &Sound) -> String {

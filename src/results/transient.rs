@@ -94,8 +94,6 @@ pub struct Recording<'a> {
     pub modes: usize,
     /// The name of the pair of every contact point.
     pub pairs: &'a [String],
-    /// A checkpoint, for the room that it takes.
-    pub checkpoint: &'a Checkpoint,
     /// Whether fields are written, too.
     pub fields: Option<Fields<'a>>,
 }

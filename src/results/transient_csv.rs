@@ -1,7 +1,7 @@
 //! `transient.csv` and `events.csv`, which grow while the run goes on.
 
 use super::csv::{Table, number};
-use super::folder::refusal;
+use super::folder::{own, refusal};
 use super::{Channel, Recording};
 use crate::error::Result;
 use crate::transient::Event;
@@ -26,7 +26,7 @@ impl HistoryTable {
         let named: Vec<String> = recording.channels.iter().map(Channel::heading).collect();
         let headings: Vec<&str> =
             std::iter::once("time [s]").chain(named.iter().map(String::as_str)).collect();
-        let lines = Lines::create(dir.join("transient.csv"), &headings)?;
+        let lines = Lines::create(dir, "transient.csv", &headings)?;
         Ok(HistoryTable { lines, time_step: recording.time_step })
     }
 
@@ -62,7 +62,7 @@ impl EventTable {
     /// # Errors
     /// [`crate::error::Error::Io`], here and later, when the machine refuses.
     pub fn create(dir: &Path, recording: &Recording) -> Result<Self> {
-        let lines = Lines::create(dir.join("events.csv"), &["time [s]", "point", "pair", "event"])?;
+        let lines = Lines::create(dir, "events.csv", &["time [s]", "point", "pair", "event"])?;
         Ok(EventTable { lines, pairs: recording.pairs.to_vec() })
     }
 
@@ -88,7 +88,9 @@ struct Lines {
 }
 
 impl Lines {
-    fn create(path: PathBuf, headings: &[&str]) -> Result<Self> {
+    fn create(dir: &Path, name: &str, headings: &[&str]) -> Result<Self> {
+        own(dir, name)?;
+        let path = dir.join(name);
         let file = File::create(&path).map_err(|source| refusal(&path, source))?;
         let mut lines = Lines { file, path };
         lines.write(&Table::new(headings).text)?;

@@ -1,6 +1,6 @@
 //! What goes to test-data programs, as universal files: frequency responses and mode shapes.
 
-use super::{FileNames, FrfResult, NamedModes, PlaceAndDirection, RunResults, write_atomically};
+use super::{FileNames, FrfResult, NamedModes, PlaceAndDirection, RunResults, write_result};
 use crate::error::Result;
 use crate::measured::uff::{Function, RealShape, functions_file, modes_text};
 use std::path::Path;
@@ -40,7 +40,7 @@ pub(super) fn write_modes(dir: &Path, results: &RunResults) -> Result<()> {
         let name = names.next(&set.name);
         if set.universal {
             let text = modes(&results.geometry.nodes, set);
-            write_atomically(dir, &format!("modes_{name}.uff"), text.as_bytes())?;
+            write_result(dir, &format!("modes_{name}.uff"), text.as_bytes())?;
         }
     }
     Ok(())

@@ -5,7 +5,7 @@
 //! counts the parts from 0 in the order of the case.
 
 use super::folder::{FileNames, refusal};
-use super::{Geometry, ModeSensitivity, NodalField, RunResults, write_atomically};
+use super::{Geometry, ModeSensitivity, NodalField, RunResults, write_result};
 use crate::error::Result;
 use crate::linalg::c64;
 use std::path::Path;
@@ -128,7 +128,7 @@ fn write_arrays(dir: &Path, name: &str, geometry: &Geometry, point: Vec<Attribut
     };
     let mut bytes = Vec::new();
     grid.write_xml(&mut bytes).map_err(|source| refusal(&dir.join(name), source))?;
-    write_atomically(dir, name, &bytes)
+    write_result(dir, name, &bytes)
 }
 
 fn flatten(values: &[[f64; 3]]) -> Vec<f64> {

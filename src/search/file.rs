@@ -5,10 +5,11 @@ use crate::case::units::NUMBER;
 use crate::case::{CalibratedParameter, Case, read_case, read_parameter};
 use crate::error::text::read_text;
 use crate::error::{Error, Fault, Faults, Result};
+use crate::results::record::{InputFile, Origin};
 use crate::validation::{Check, read_check};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Bound;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A search.
 #[derive(Debug)]
@@ -35,6 +36,8 @@ pub struct SearchFile {
     pub(super) start: Vec<f64>,
     /// The facts.
     pub(super) checks: Vec<Check>,
+    /// The file itself.
+    text: String,
 }
 
 /// Reads the file of a search, and its cases.
@@ -79,6 +82,7 @@ pub fn read_search(path: &Path) -> Result<SearchFile> {
     let stem = path.file_stem().unwrap_or_default();
     let name = folder.file_name().filter(|_| stem == "search").unwrap_or(stem);
     found.name = name.to_string_lossy().into_owned();
+    found.text = text;
     faults.into_result(found)
 }
 
@@ -109,6 +113,7 @@ fn read_root(root: &Section, file: &str, case: Case) -> SearchFile {
         parameters: parameters.into_iter().collect(),
         start: Vec::new(),
         checks,
+        text: String::new(),
     }
 }
 
@@ -116,5 +121,41 @@ impl SearchFile {
     /// `case` with the numbers at `values` \[SI\].
     pub(super) fn with(&self, case: &Case, values: &[f64]) -> Result<Case> {
         case.with_numbers(self.parameters.values(), values)
+    }
+
+    /// What the facts are computed from: the cases, the files they read, and the facts without their references.
+    ///
+    /// # Errors
+    /// A file that cannot be read.
+    pub(super) fn origin(&self) -> Result<Origin> {
+        let table = |text: &str| text.parse::<toml::Table>().unwrap_or_default();
+        let mut all = table(&self.text);
+        all.retain(|key, _| key == "fact");
+        let facts = all.get_mut("fact").and_then(toml::Value::as_table_mut);
+        for fact in facts.into_iter().flatten().filter_map(|(_, fact)| fact.as_table_mut()) {
+            fact.retain(|key, _| !["reference", "tolerance", "absolute_tolerance", "reason"].contains(&key));
+        }
+        let mut inputs = Vec::new();
+        for (name, case) in &self.cases {
+            all.insert(name.clone(), table(&case.to_toml()).into());
+            for file in case.files() {
+                let input = InputFile::read(&case.folder, &file)?;
+                inputs.push(InputFile { path: format!("{file} of {name}"), ..input });
+            }
+        }
+        Ok(Origin { case: all.to_string(), inputs })
+    }
+
+    /// The paths of the cases and of the files that they read.
+    pub(super) fn files(&self) -> Vec<PathBuf> {
+        let case_file = |(name, case): (&String, &Case)| {
+            let own = Path::new(name).file_name().map(PathBuf::from);
+            own.into_iter()
+                .chain(case.files().into_iter().map(PathBuf::from))
+                .map(|file| case.folder.join(file))
+                .collect::<Vec<_>>()
+        };
+        let all = self.cases.iter().flat_map(case_file);
+        all.filter_map(|path| std::path::absolute(path).ok()).collect()
     }
 }

@@ -4,7 +4,8 @@ use super::cost::Facts;
 use super::file::SearchFile;
 use crate::error::text::printable;
 use crate::error::{Error, Fault, Result};
-use crate::results::{CsvTable, write_atomically};
+use crate::results::record::{self, Origin};
+use crate::results::{CsvTable, retire, write_result};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -16,6 +17,10 @@ pub(super) struct Log {
     dir: PathBuf,
     heading: String,
     facts: usize,
+    /// What the evaluations are of.
+    origin: Origin,
+    /// Files that the search reads, which may be in its folder.
+    read: Vec<PathBuf>,
     kept: Mutex<Kept>,
 }
 
@@ -29,6 +34,8 @@ struct Kept {
     rows: Vec<Row>,
     /// Rows of this generation, in the order in which the threads came.
     fresh: Vec<Row>,
+    /// Whether the files of an earlier search are gone.
+    alone: bool,
 }
 
 #[derive(Clone)]
@@ -42,7 +49,7 @@ impl Log {
     /// An empty log, or that of an earlier run of the same search in `dir`.
     ///
     /// # Errors
-    /// A log of another search, or one that cannot be read.
+    /// A log of another search or of other files, or one that cannot be read.
     pub(super) fn open(dir: &Path, file: &SearchFile, resume: bool) -> Result<Log> {
         let numbers = file.parameters.keys().map(|name| printable(name));
         let facts = file.checks.iter().map(|check| printable(&check.quantity));
@@ -53,10 +60,13 @@ impl Log {
             dir: dir.to_path_buf(),
             heading: table.text.trim_end_matches('\n').to_string(),
             facts: file.checks.len(),
+            origin: file.origin()?,
+            read: file.files(),
             kept: Mutex::default(),
         };
         let path = dir.join(NAME);
         if resume && path.exists() {
+            record::check_origin(dir, &log.origin)?;
             let text = std::fs::read_to_string(&path)
                 .map_err(|error| Error::io(&path, error, "Search without --resume"))?;
             log.read(&text, &path, file.parameters.len())?;
@@ -118,6 +128,11 @@ impl Log {
     /// A file that cannot be written.
     pub(super) fn flush(&self) -> Result<()> {
         let mut kept = self.kept.lock().expect("no thread panics here");
+        if !kept.alone {
+            retire(&self.dir, &[&self.read[..], &[NAME.into()]].concat())?;
+            record::keep_origin(&self.dir, &self.origin, false)?;
+            kept.alone = true;
+        }
         let mut fresh = std::mem::take(&mut kept.fresh);
         fresh.sort_by(|a, b| a.cost.total_cmp(&b.cost).then_with(|| key(&a.values).cmp(&key(&b.values))));
         kept.rows.extend(fresh);
@@ -128,7 +143,15 @@ impl Log {
                 std::iter::once(&row.cost).chain(&row.values).chain(&row.computed).map(f64::to_string);
             text += &(cells.collect::<Vec<_>>().join(",") + "\n");
         }
-        write_atomically(&self.dir, NAME, text.as_bytes())
+        write_result(&self.dir, NAME, text.as_bytes())
+    }
+
+    /// Says that the search has ended, so that a later one may take its place.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub(super) fn end(&self) -> Result<()> {
+        record::keep_origin(&self.dir, &self.origin, true)
     }
 
     /// The cost of every evaluation, in their order.

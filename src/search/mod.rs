@@ -13,7 +13,8 @@
 //!
 //! Such facts come and go with the numbers: there is no slope to follow. The cost is brought down by the adaptation of the
 //! covariance matrix of samples (N. Hansen and A. Ostermeier, Evolutionary Computation 9 (2001) 159), a generation at a time, all
-//! cores at work. Every evaluation is kept in `search.csv`; a search that was killed goes on where it was.
+//! cores at work. Every evaluation is kept in `search.csv`; a search that was killed goes on where it was, unless the case or a
+//! file it reads has changed.
 //!
 //! In the end each number alone is moved by a twentieth of its bounds to either side: what the cost then rises by says which
 //! assumption matters most.
@@ -30,7 +31,7 @@ use self::log::Log;
 use crate::error::{Error, Result};
 use crate::job::Coordinate;
 use crate::progress::Observer;
-use crate::results::{CheckedCase, Moved, SearchResult, SearchedNumber};
+use crate::results::{CheckedCase, Moved, SearchResult, SearchedNumber, set_aside};
 use rayon::prelude::*;
 use std::path::Path;
 use std::time::Instant;
@@ -46,6 +47,9 @@ pub fn search(file: &SearchFile, out: &Path, resume: bool, observer: &dyn Observ
     let started = Instant::now();
     let coordinates: Vec<Coordinate> = file.parameters.values().map(Coordinate::new).collect();
     let start: Vec<f64> = coordinates.iter().zip(&file.start).map(|(c, value)| c.x(*value)).collect();
+    if !resume && let Some(aside) = set_aside(out)? {
+        observer.note(&format!("The evaluations of an interrupted search were moved to {}", aside.display()));
+    }
     let log = Log::open(out, file, resume)?;
     let cost = Cost { file, coordinates: &coordinates, log: &log };
     let first = cost.facts(&start)?;
@@ -82,6 +86,7 @@ pub fn search(file: &SearchFile, out: &Path, resume: bool, observer: &dyn Observ
     let moved: Vec<Option<Moved>> = sides.into_par_iter().map(moved).collect::<Result<_>>()?;
     observer.end();
     log.flush()?;
+    log.end()?;
 
     let number = |(j, (name, parameter)): (usize, (&String, &crate::case::CalibratedParameter))| {
         let scalar = file.case.parameter(&parameter.path[0])?;

@@ -48,6 +48,19 @@ fn springs_are_found_whatever_the_threads_and_after_an_interruption() {
     assert!(whole.numbers.iter().all(|n| n.weight(whole.costs[1]) > 1.0 && !n.at_bound()));
     assert_eq!(values(&run("three", 3, false)), values(&whole));
 
+    // Evaluations of an interrupted search are kept aside, and not taken up when a file has changed.
+    let interrupted = dir.path().join("three");
+    let origin = file.origin().unwrap();
+    crate::results::record::keep_origin(&interrupted, &origin, false).unwrap();
+    run("three", 3, false);
+    assert!(interrupted.join("interrupted-1/search.csv").exists() && interrupted.join("search.csv").exists());
+    let case = std::fs::read_to_string(dir.path().join("case.toml")).unwrap();
+    std::fs::write(dir.path().join("case.toml"), case.replace("mu0 = 0.3", "mu0 = 0.31")).unwrap();
+    let changed = read_search(&path).unwrap();
+    let error = search(&changed, &interrupted, true, &()).unwrap_err();
+    assert!(error.exit_code() == 2 && error.to_string().contains("mu0` was"), "{error}");
+    std::fs::write(dir.path().join("case.toml"), case).unwrap();
+
     let log = |name: &str| dir.path().join(name).join("search.csv");
     let rows = std::fs::read_to_string(log("whole")).unwrap();
     std::fs::create_dir(dir.path().join("killed")).unwrap();

@@ -47,7 +47,6 @@ impl<'a, 'k> Tape<'a, 'k> {
             self.recorder.restore(checkpoint, &marched)?;
             self.first = marched.step + 1;
         }
-        let checkpoint = self.checkpoint(&marched);
         self.keeper.record(Stage::TransientBegins(&Recording {
             time_step: plan.step,
             rows: plan.steps + 1,
@@ -56,7 +55,6 @@ impl<'a, 'k> Tape<'a, 'k> {
             channels: &self.recorder.channels,
             modes: self.recorder.modal.as_ref().map_or(0, |modal| modal.rows.len()),
             pairs: &self.recorder.named,
-            checkpoint: &checkpoint,
             fields: self.snapshots.as_ref().map(|s| s.fields(plan.steps, self.first, plan.step)),
         }))?;
         if earlier.is_none() {
@@ -66,7 +64,7 @@ impl<'a, 'k> Tape<'a, 'k> {
         Ok(marched)
     }
 
-    /// A mesh, a program or a machine that is another gives another first row.
+    /// A program or a machine that is another may give another first row.
     fn begins_alike(&self) -> Result<()> {
         for (channel, own) in self.recorder.channels.iter().zip(&self.recorder.values) {
             let earlier = self.keeper.recorded(&channel.name, 0..1)?;
@@ -75,7 +73,7 @@ impl<'a, 'k> Tape<'a, 'k> {
                     (format!("{earlier:?} at the start"), format!("{own:?} as in this run"));
                 let place = format!("the earlier run's `{}`", channel.name);
                 return Err(Error::input(Fault::new(place, found, expected).with_help(
-                    "The mesh or the program has changed since: run without --resume, or name another folder with --out",
+                    "The case and its files are the same, the program or the machine is not: run without --resume, or name another folder with --out",
                 )));
             }
         }

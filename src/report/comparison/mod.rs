@@ -9,7 +9,7 @@ pub(super) use responses::{Curve, Panel, stacked};
 pub(super) use table::{modes_table, responses_table};
 
 use super::html::{escape, figure, titled_table};
-use crate::results::{FileNames, MeasuredComparison, NamedModes, RunResults, write_atomically};
+use crate::results::{FileNames, MeasuredComparison, NamedModes, RunResults, write_result};
 use std::ops::Range;
 use std::path::Path;
 
@@ -25,11 +25,11 @@ pub(super) fn write(dir: &Path, results: &RunResults) -> crate::error::Result<()
     let (mut names, mut frf_names) = (FileNames::default(), FileNames::default());
     let modes = results.measured.iter().flat_map(|c| mode_pictures(c, results, &names.next(&c.name)));
     for drawn in modes.collect::<Vec<_>>() {
-        write_atomically(dir, &drawn.file, drawn.svg.as_bytes())?;
+        write_result(dir, &drawn.file, drawn.svg.as_bytes())?;
     }
     for responses in &results.measured_frfs {
         let drawn = responses::picture(responses, &frf_names.next(&responses.name));
-        drawn.into_iter().try_for_each(|d| write_atomically(dir, &d.file, d.svg.as_bytes()))?;
+        drawn.into_iter().try_for_each(|d| write_result(dir, &d.file, d.svg.as_bytes()))?;
     }
     Ok(())
 }

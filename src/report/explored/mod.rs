@@ -7,7 +7,7 @@ mod words;
 pub(super) use words::{critical_table, damping_table, map_words, sweep_words};
 
 use super::html::{escape, figure, titled_table};
-use crate::results::{RunResults, write_atomically};
+use crate::results::{RunResults, write_result};
 use crate::sweep::Axis;
 use std::path::Path;
 
@@ -22,7 +22,7 @@ pub(super) struct Drawn {
 pub(super) fn write(dir: &Path, results: &RunResults) -> crate::error::Result<()> {
     let sweeps = results.sweeps.iter().flat_map(sweep::pictures);
     for drawn in sweeps.chain(results.maps.iter().filter_map(map::picture)) {
-        write_atomically(dir, &drawn.file, drawn.svg.as_bytes())?;
+        write_result(dir, &drawn.file, drawn.svg.as_bytes())?;
     }
     Ok(())
 }
