@@ -2,12 +2,14 @@
 //!
 //! Format: Gmsh reference manual, "MSH file format" and "MSH file format version 2".
 //!
-//! A file passes through four steps: its header says which reader takes it (`msh4` or `msh2`), the reader lists what the file holds (`RawMesh`), `names` reads the physical names, and `raw` turns
-//! named groups into regions. Then the mesh is checked ([`check`]). Whatever the bytes, the answer is a mesh
+//! A file passes through four steps: its header says which reader takes it (`msh4`, through the crate mshio after
+//! `layout` has checked the file, or `msh2`), the reader lists what the file holds (`RawMesh`), `names` reads the physical
+//! names, and `raw` turns named groups into regions. Then the mesh is checked ([`check`]). Whatever the bytes, the answer is a mesh
 //! or a fault that says where and what; no count in the file makes the reader allocate more than the file's size
 //! warrants.
 
 mod bytes;
+mod layout;
 mod msh2;
 mod msh4;
 mod names;
@@ -50,10 +52,9 @@ pub fn parse(bytes: &[u8], place: &str, unit_in_metres: f64) -> Result<Mesh> {
         return Err(Error::input(Fault::new(format!("{place} unit"), found, "a positive number of metres")));
     }
     let header = header(bytes, place)?;
-    let reader = Reader::new(bytes, header.body, header.encoding, place);
     let raw: RawMesh = match header.version {
-        Version::Four => msh4::parse(reader)?,
-        Version::Two => msh2::parse(reader)?,
+        Version::Four => msh4::parse(bytes, header.body, header.encoding, place)?,
+        Version::Two => msh2::parse(Reader::new(bytes, header.body, header.encoding, place))?,
     };
     let names = names::parse(bytes, place)?;
     let mesh = raw.into_mesh(&names, place, unit_in_metres)?;
