@@ -171,7 +171,7 @@ fn cases(filter: &str) -> Vec<PathBuf> {
 fn sample(case: &Path, variant: &Variant, of: u64) -> bool {
     let mut hasher = DefaultHasher::new();
     (case.file_stem(), &variant.what).hash(&mut hasher);
-    hasher.finish() % of == 0
+    hasher.finish().is_multiple_of(of)
 }
 
 /// The exit code of the program and what it says on stderr; CPU time and memory are limited.

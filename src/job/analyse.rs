@@ -375,10 +375,9 @@ impl Run<'_, '_> {
             }
             let state = steady.state.clone();
             self.results.steady = Some(steady);
-            let closed = contact_modes.filter(|_| selection.modes);
+            let mut closed = contact_modes.filter(|_| selection.modes);
             let done = closed
-                .map(|(name, analysis)| self.closed_modes(name, analysis, &state, &tests))
-                .collect::<Result<()>>()
+                .try_for_each(|(name, analysis)| self.closed_modes(name, analysis, &state, &tests))
                 .and_then(|()| self.complex(selection, &state, basis, in_time.take(), known));
             self.results.steady.take_if(|_| prepared.system.pairs.is_empty());
             done?;
@@ -443,7 +442,7 @@ impl Run<'_, '_> {
         let Some((complex, system, real)) = complex else { return Ok(()) };
         self.keeper.record(Stage::Complex(&complex))?;
         self.results.warnings.extend(complex.modes.warnings.iter().cloned());
-        let done = self.from_complex(selection, (&system, steady), (&complex, &real), in_time);
+        let done = self.with_complex_modes(selection, (&system, steady), (&complex, &real), in_time);
         self.results.complex = Some(complex);
         done?;
         if selection.sweeps && !(case.sweep.is_empty() && case.map.is_empty()) {
@@ -456,7 +455,7 @@ impl Run<'_, '_> {
     }
 
     /// Sensitivities and motion in time.
-    fn from_complex(
+    fn with_complex_modes(
         &mut self,
         selection: Selection,
         (system, steady): (&System, &SteadySliding),
