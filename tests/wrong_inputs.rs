@@ -308,7 +308,7 @@ fn wrong_commands_are_refused_with_advice() {
         (&["run", "case.toml", "--rezume"], &["--rezume", "--resume"]),
         (&["run", "."], &["found a folder", "stridor new"]),
         (&["run", "none.toml"], &["none.toml: found no file there", "stridor new"]),
-        (&["check", "case.toml", "--threads", "0"], &["--threads", "at least 1"]),
+        (&["check", "case.toml", "--threads", "0"], &["--threads", "1 to 1024"]),
         (&["mesh", "info", "case.toml"], &["case.toml", "a Gmsh mesh"]),
         (&["mesh", "info", "none.msh"], &["none.msh", "no file there"]),
         (&["mesh", "disc", "--out", "strip.msh"], &["something there already", "`--force` overwrites it"]),

@@ -24,8 +24,6 @@ mod rows;
 mod scheme;
 mod state;
 mod stepper;
-#[cfg(test)]
-mod sticking_tests;
 mod tangent;
 #[cfg(test)]
 mod tests;

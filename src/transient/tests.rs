@@ -1,3 +1,5 @@
+mod sticking;
+
 use super::*;
 use crate::contact::{Bristle, Constant, Hyperbolic, NormalLaw, SlidingLaw, Stribeck};
 use crate::equilibrium::samples::{pair, point, random_system, sparse, structure, two_dof, vector};

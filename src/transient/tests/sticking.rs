@@ -1,7 +1,7 @@
 //! Friction without bristles and without regularisation, through rest.
 
-use super::tests::{full_newton_agrees, plan};
-use super::*;
+use super::super::*;
+use super::{full_newton_agrees, plan};
 use crate::contact::{Bristle, Constant, NormalLaw, SlidingLaw, Stribeck};
 use crate::equilibrium::samples::{pair, point, structure, vector};
 use crate::equilibrium::{SteadyOptions, SteadySliding, solve_steady};
