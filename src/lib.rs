@@ -6,6 +6,7 @@
 //! | room | what it holds |
 //! |---|---|
 //! | [`error`], [`progress`] | one error type that carries data; how long work reports where it stands |
+//! | [`numbers`] | numbers as text |
 //! | [`pages`] | memory in large pages |
 //! | [`memory`] | how much memory there is |
 //! | [`input`] | input files: regular, of a bounded size |
@@ -47,6 +48,7 @@ pub mod measured;
 pub mod memory;
 pub mod mesh;
 pub mod modal;
+pub mod numbers;
 pub mod pages;
 pub mod progress;
 pub mod reduction;

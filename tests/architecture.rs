@@ -4,10 +4,11 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Each room with all the rooms it may use.
-const MAY_USE: [(&str, &[&str]); 27] = [
+const MAY_USE: [(&str, &[&str]); 28] = [
     ("input", &[]),
     ("error", &["input"]),
     ("progress", &[]),
+    ("numbers", &[]),
     ("pages", &[]),
     ("memory", &[]),
     ("linalg", &["error", "progress"]),
@@ -20,7 +21,7 @@ const MAY_USE: [(&str, &[&str]); 27] = [
     ("equilibrium", &["error", "progress", "linalg", "system"]),
     ("modal", &["error", "progress", "linalg", "system"]),
     ("reduction", &["error", "linalg", "system", "equilibrium", "modal"]),
-    ("stability", &["error", "progress", "linalg", "system", "equilibrium", "modal"]),
+    ("stability", &["error", "progress", "numbers", "linalg", "system", "equilibrium", "modal"]),
     ("sweep", &["error", "progress", "linalg", "stability"]),
     ("transient", &["error", "progress", "linalg", "system", "equilibrium"]),
     ("signal", &[]),
@@ -48,6 +49,7 @@ const MAY_USE: [(&str, &[&str]); 27] = [
         "report",
         &[
             "error",
+            "numbers",
             "linalg",
             "equilibrium",
             "modal",
@@ -67,6 +69,7 @@ const MAY_USE: [(&str, &[&str]); 27] = [
             "error",
             "memory",
             "progress",
+            "numbers",
             "linalg",
             "system",
             "mesh",

@@ -301,7 +301,7 @@ impl Case {
         if let Some(MeshSource::File { file, .. }) = &mut self.mesh {
             files.push(file);
         }
-        if let Some(Matrices { mass, stiffness, damping, load, dofs, term }) = &mut self.matrices {
+        if let Some(Matrices { mass, stiffness, damping, load, dofs, scalar: _, term }) = &mut self.matrices {
             files.extend([mass, stiffness]);
             files.extend([damping, load, dofs].into_iter().flatten());
             for MatrixTerm { factor: _, mass, damping, stiffness } in term.values_mut() {

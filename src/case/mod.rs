@@ -6,6 +6,7 @@
 
 mod calibrate;
 mod explore;
+mod expression;
 mod frf;
 mod keys;
 mod matrices;
@@ -21,9 +22,10 @@ pub(crate) mod units;
 
 pub(crate) use calibrate::read_parameter;
 pub use calibrate::{CalibrateAnalysis, CalibratedParameter, SQUEAL};
+pub use expression::{Dual, evaluate};
 pub use frf::{FrfAnalysis, FrfContact, FrfQuantity, FrfSolution, MotionAt};
 pub(crate) use keys::keys_of;
-pub use matrices::{Matrices, MatrixTerm};
+pub use matrices::{Factor, Matrices, MatrixTerm};
 pub use measured::{MeasuredData, Transform};
 pub use mesh::{GeneratedMesh, MeshSource, RigMesh};
 pub(crate) use parameter::path_matches;

@@ -69,7 +69,8 @@ pub fn check(system: &System) -> Result<()> {
     check_input(&system.pairs, &system.load, system.n_dofs())?;
     if !nothing_pushes(system)
         && let Some(rest) = &system.coupling
-        && rest.stiffness.norm_max() > 0.0
+        && (rest.stiffness.norm_max() > 0.0
+            || rest.skew.as_ref().is_some_and(|skew| skew.stiffness.val().iter().any(|v| *v != 0.0)))
     {
         return Err(Error::input(
             Fault::new(

@@ -501,6 +501,12 @@ impl<'a> Asked<'a> {
         let mut faults = Faults::new();
         faults.take(selection.check(case));
         let wanted = case.transient.as_ref().filter(|_| selection.transient && selection.cea);
+        if wanted.is_some() && prepared.system.skew().is_some() {
+            let found = "matrices whose part that is not symmetric has no low rank, such as gyroscopic terms";
+            let expected = "matrices that are symmetric but for contact with friction, for motion in time";
+            let help = "Remove [transient]; complex modes and frequency responses are there";
+            faults.push(Fault::new("`transient`", found, expected).with_help(help));
+        }
         let in_time = wanted.and_then(|wanted| Some((wanted, faults.take(places(prepared, wanted))?)));
         let mut frfs =
             if selection.frf { faults.take(frfs(prepared)).unwrap_or_default() } else { Vec::new() };

@@ -137,6 +137,10 @@ impl Explorer<'_> {
     }
 
     fn keeps_the_structure(&self, paths: &[String]) -> Result<bool> {
+        // Sparse skew parts are known at full order only.
+        if self.nominal.system.skew().is_some() {
+            return Ok(false);
+        }
         let each =
             paths.iter().map(|path| keeps_the_structure(self.case, path)).collect::<Result<Vec<bool>>>()?;
         Ok(each.iter().all(|keeps| *keeps))
@@ -303,7 +307,7 @@ impl Explorer<'_> {
     /// ζ from half to twice its value.
     fn damping(&self) -> Result<Option<DampingVerdicts>> {
         let ratio = self.case.damping.modal_ratio;
-        if ratio <= 0.0 {
+        if ratio <= 0.0 || self.nominal.system.skew().is_some() {
             return Ok(None);
         }
         let range = [0.5 * ratio, (2.0 * ratio).min(0.999)];

@@ -70,6 +70,7 @@ pub fn export(case: &Case, out: &Path) -> Result<Vec<String>> {
         damping: damping.map(|_| "damping.mtx".into()),
         load: load.map(|_| "load.mtx".into()),
         dofs: Some("dofs.csv".into()),
+        scalar: BTreeMap::new(),
         term: BTreeMap::new(),
     };
     let mut left_out = Vec::new();

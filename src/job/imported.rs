@@ -103,7 +103,7 @@ fn read_terms(case: &Case, matrices: &Matrices, rows: usize, faults: &mut Faults
                     format!("{rows} × {rows}, as M has"),
                 ));
             }
-            terms.push((term.factor, matrix));
+            terms.push((matrices.value(&term.factor), matrix));
         }
     }
     (faults.0.len() == earlier).then_some(terms)

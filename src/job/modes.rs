@@ -7,6 +7,7 @@ use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::SparseMatrix;
 use crate::linalg::sparse::{quadratic_forms, times};
 use crate::modal::{self, ModesWanted, RealModes};
+use crate::numbers::hertz;
 use crate::results::{NamedModes, NodalField};
 use crate::structure::{self, Assembled, assemble};
 use crate::system::{Damping, ModalDamping, Structure};
@@ -207,7 +208,7 @@ pub fn labels(named: &NamedModes) -> Vec<String> {
             let part = part.as_deref().unwrap_or("mode");
             match name {
                 Some(n) => format!("{part} ({}, {})", n.nodal_diameters, n.nodal_circles),
-                None => format!("{part} {:.0} Hz", named.modes.frequency_hz(k)),
+                None => format!("{part} {} Hz", hertz(named.modes.frequency_hz(k), 0)),
             }
         })
         .collect()

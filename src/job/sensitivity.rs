@@ -3,9 +3,9 @@
 use super::modes::modal_ratios;
 use super::near::near_mode;
 use super::prepared::Prepared;
-use super::scalars::{Kind, Scalar, chosen};
+use super::scalars::{Kind, Scalar, chosen, same_structure};
 use super::verify;
-use crate::case::SensitivityAnalysis;
+use crate::case::{Factor, SensitivityAnalysis};
 use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Result};
 use crate::linalg::{SparseVector, c64};
@@ -15,6 +15,7 @@ use crate::results::{AdviceField, ModeSensitivity, Mounted, ParameterRate, Sensi
 use crate::stability::{ComplexMode, ComplexModes, Domain, PointRates, Rate, Sensitivity};
 use crate::system::System;
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// The most modes that are looked into, the strongest first.
 const MOST_MODES: usize = 12;
@@ -170,6 +171,9 @@ impl Analysed<'_> {
             let exact = |value: c64| Rate { value, error: 0.0, kink: false };
             return Ok(sensitivity.change_by_ratios(&change).into_iter().map(exact).collect());
         }
+        if let Some(slopes) = case.matrices.as_ref().and_then(|m| m.slopes(&scalar.path)) {
+            return self.rates_of_factors(sensitivity, &slopes);
+        }
         let build = |value: f64| scalar.system_at(self.prepared, value);
         let mut step = scalar.step();
         if value == 0.0 {
@@ -185,6 +189,34 @@ impl Analysed<'_> {
             return Err(Error::analysis("derivative", found, "Leave the scalar out"));
         }
         Ok(rates)
+    }
+
+    /// dλ/dp where p moves the factors of added matrices at the rates `slopes`: Q is linear in the factors, so that a step of any
+    /// size gives the derivative; it is as long as the largest factor.
+    fn rates_of_factors(&self, sensitivity: &Sensitivity, slopes: &BTreeMap<&str, f64>) -> Result<Vec<Rate>> {
+        let mut case = self.prepared.case.clone();
+        let mut step = 0.0f64;
+        if let Some(matrices) = &mut case.matrices {
+            let values: BTreeMap<String, f64> = matrices
+                .term
+                .iter()
+                .map(|(name, term)| (name.clone(), matrices.value(&term.factor)))
+                .collect();
+            let sizes = slopes.iter().map(|(name, slope)| values[*name].abs().max(1e-3) / slope.abs());
+            step = sizes.fold(f64::INFINITY, f64::min);
+            for (name, term) in &mut matrices.term {
+                let slope = slopes.get(name.as_str()).copied().unwrap_or(0.0);
+                let change = if slope == 0.0 { 0.0 } else { step * slope };
+                term.factor = Factor::Number(values[name] + change);
+            }
+        }
+        let exact = |value: c64| Rate { value, error: 0.0, kink: false };
+        if !step.is_finite() {
+            return Ok(sensitivity.eigenvalues().iter().map(|_| exact(c64::new(0.0, 0.0))).collect());
+        }
+        let other = Prepared::new(&case)?;
+        same_structure(self.prepared, &other)?;
+        Ok(sensitivity.change(&other.system)?.into_iter().map(|change| exact(change / step)).collect())
     }
 
     /// A step from zero that changes some λ by about 1e-5 of itself, found from a guess.

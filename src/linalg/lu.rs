@@ -2,9 +2,11 @@
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::{factor, inverse, solve};
+use faer::linalg::triangular_solve;
 use faer::perm::PermRef;
+use faer::prelude::*;
 use faer::traits::ComplexField;
-use faer::{Conj, Mat, MatMut, Par, c64};
+use faer::{Conj, Mat, MatMut, MatRef, Par, c64};
 
 /// The factors of a square matrix, with partial pivoting. Those of a singular one give infinities and NaN.
 #[derive(Debug)]
@@ -71,6 +73,45 @@ impl<T: ComplexField> Lu<T> {
         });
     }
 
+    /// U, and below its diagonal L but for the ones on its own.
+    pub(super) fn factors(&self) -> MatRef<'_, T> {
+        self.factors.as_ref()
+    }
+
+    /// L⁻¹P b of every column, in the place of b.
+    pub(super) fn solve_lower(&self, mut b: MatMut<'_, T>) {
+        let unordered = b.rb().to_owned();
+        for j in 0..b.ncols() {
+            let target = b.rb_mut().col_mut(j);
+            target.iter_mut().zip(&self.rows[0]).for_each(|(v, row)| *v = unordered[(*row, j)].clone());
+        }
+        triangular_solve::solve_unit_lower_triangular_in_place(self.factors(), b, Par::Seq);
+    }
+
+    /// U⁻¹b of every column, in the place of b.
+    pub(super) fn solve_upper(&self, b: MatMut<'_, T>) {
+        triangular_solve::solve_upper_triangular_in_place(self.factors(), b, Par::Seq);
+    }
+
+    /// U⁻ᴴb of every column, in the place of b.
+    pub(super) fn solve_upper_adjoint(&self, b: MatMut<'_, T>) {
+        triangular_solve::solve_lower_triangular_in_place(self.factors().adjoint(), b, Par::Seq);
+    }
+
+    /// PᵀL⁻ᴴb of every column, in the place of b.
+    pub(super) fn solve_lower_adjoint(&self, mut b: MatMut<'_, T>) {
+        triangular_solve::solve_unit_upper_triangular_in_place(
+            self.factors().adjoint(),
+            b.rb_mut(),
+            Par::Seq,
+        );
+        let ordered = b.rb().to_owned();
+        for j in 0..b.ncols() {
+            let mut target = b.rb_mut().col_mut(j);
+            self.rows[0].iter().enumerate().for_each(|(i, row)| target[*row] = ordered[(i, j)].clone());
+        }
+    }
+
     fn with_stack(&self, columns: usize, solve: impl FnOnce(&mut MemStack)) {
         let n = self.factors.nrows();
         let scratch = solve::solve_in_place_scratch::<usize, T>(n, columns, Par::Seq)
@@ -79,25 +120,33 @@ impl<T: ComplexField> Lu<T> {
     }
 }
 
-/// A⁻¹ and det A / |det A| of a square complex matrix; `None` when a pivot is zero or not finite. The pivots are never
-/// multiplied by their size, so that nothing overflows.
+impl Lu<c64> {
+    /// det A / |det A|; `None` when a pivot is zero or not finite. The pivots are never multiplied by their size, so that
+    /// nothing overflows.
+    pub fn phase(&self) -> Option<c64> {
+        let mut phase = c64::new(if self.exchanges.is_multiple_of(2) { 1.0 } else { -1.0 }, 0.0);
+        for i in 0..self.factors.nrows() {
+            let pivot = self.factors[(i, i)];
+            let size = pivot.norm();
+            if !(size > 0.0 && size.is_finite()) {
+                return None;
+            }
+            phase *= pivot / size;
+        }
+        Some(phase / phase.norm())
+    }
+}
+
+/// A⁻¹ and det A / |det A| of a square complex matrix; `None` when a pivot is zero or not finite.
 pub fn inverse_and_phase(a: Mat<c64>) -> Option<(Mat<c64>, c64)> {
     let n = a.nrows();
     let lu = Lu::new(a);
-    let mut phase = c64::new(if lu.exchanges.is_multiple_of(2) { 1.0 } else { -1.0 }, 0.0);
-    for i in 0..n {
-        let pivot = lu.factors[(i, i)];
-        let size = pivot.norm();
-        if !(size > 0.0 && size.is_finite()) {
-            return None;
-        }
-        phase *= pivot / size;
-    }
+    let phase = lu.phase()?;
     let (mut result, factors) = (Mat::zeros(n, n), lu.factors.as_ref());
     let scratch = inverse::inverse_scratch::<usize, c64>(n, Par::Seq);
     let mut memory = MemBuffer::new(scratch);
     inverse::inverse(result.as_mut(), factors, factors, lu.order(), Par::Seq, MemStack::new(&mut memory));
-    Some((result, phase / phase.norm()))
+    Some((result, phase))
 }
 
 #[cfg(test)]

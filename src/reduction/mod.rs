@@ -15,7 +15,7 @@ use crate::linalg::sparse::{add_scaled, dense_columns, diagonal_matrix, entry, t
 use crate::linalg::tall::{beside, combine, expand, gram};
 use crate::linalg::{SparseMatrix, SparseVector};
 use crate::modal::RealModes;
-use crate::system::{ContactPair, ContactPoint, Damping, Structure, System};
+use crate::system::{ContactPair, ContactPoint, Coupling, Damping, Structure, System};
 use faer::{Accum, Mat, MatRef};
 
 /// A reduced system with the basis that leads back.
@@ -108,10 +108,7 @@ pub fn reduce(
         ..pair.clone()
     });
     let load = gram(basis.as_ref(), load.as_ref());
-    let coupling = system.coupling.as_ref().map(|rest| crate::system::Coupling {
-        directions: rest.directions.iter().map(|d| form(&basis, d)).collect(),
-        ..rest.clone()
-    });
+    let coupling = system.coupling.as_ref().map(|rest| seen_coupling(&basis, rest));
     let system = System {
         structure,
         pairs: pairs.collect(),
@@ -120,6 +117,25 @@ pub fn reduce(
         coupling,
     };
     Ok(Reduced { system, basis, inertia, modes })
+}
+
+/// A coupling seen through V; sparse skew parts act between its coordinates.
+fn seen_coupling(basis: &Mat<f64>, rest: &Coupling) -> Coupling {
+    match &rest.skew {
+        None => {
+            Coupling { directions: rest.directions.iter().map(|d| form(basis, d)).collect(), ..rest.clone() }
+        }
+        Some(skew) => {
+            // A product with a matrix stored by columns is that with its transpose.
+            let within = |a: &SparseMatrix| -gram(basis.as_ref(), times(a, basis.as_ref()).as_ref());
+            Coupling {
+                directions: (0..basis.ncols()).map(|k| SparseVector::from_entries([(k, 1.0)])).collect(),
+                stiffness: within(&skew.stiffness),
+                damping: within(&skew.damping),
+                skew: None,
+            }
+        }
+    }
 }
 
 /// K, or K with as much mass on it as a tenth of the first elastic mode has stiffness where K alone is singular.

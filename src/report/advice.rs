@@ -1,7 +1,7 @@
 //! `advice.svg`: where on the plates a gram of mass or a damper calms each chosen mode, and where it does harm.
 
 use super::colours::{INK, MUTED};
-use super::format::{fixed, signed, significant};
+use super::format::{hertz, signed, significant};
 use super::html::Picture;
 use super::plate::{Plate, colour_bar};
 use super::svg::{Anchor, Ink, Point, Sheet};
@@ -59,7 +59,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     for (m, mode) in modes.iter().enumerate() {
         let top = HEAD + CELL[1] * m as f64;
         let name = Ink { size: 15.0, anchor: Anchor::Start, ..ink };
-        sheet.text([14.0, top + 0.42 * CELL[1]], &format!("{} Hz", fixed(mode.eigenvalue.im / TAU, 0)), name);
+        sheet.text([14.0, top + 0.42 * CELL[1]], &format!("{} Hz", hertz(mode.eigenvalue.im / TAU, 0)), name);
         let small = Ink { size: 13.0, colour: MUTED, bold: false, ..name };
         sheet.text(
             [14.0, top + 0.42 * CELL[1] + 20.0],

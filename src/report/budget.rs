@@ -2,7 +2,7 @@
 
 use super::chart::{Area, above, below, bold, colour, sheet, text, widened};
 use super::colours::{INK, MUTED};
-use super::format::{fixed, given, signed};
+use super::format::{given, hertz, signed};
 use super::html::Picture;
 use crate::results::RunResults;
 use crate::stability::{ComplexMode, GrowthBudget};
@@ -90,7 +90,7 @@ fn draw(area: &Area, modes: &[&ComplexMode]) -> Result<(), Box<dyn Error>> {
         plot.draw_text(&format!("σ {}", signed(sigma, 1)), &label, (px, py - 6))?;
         let (px, py) = chart.backend_coord(&(x, up.start));
         plot.draw_text(
-            &format!("{} Hz", fixed(mode.frequency_hz(), 0)),
+            &format!("{} Hz", hertz(mode.frequency_hz(), 0)),
             &below(bold(13.5, INK)),
             (px, py + 8),
         )?;

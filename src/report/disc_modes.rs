@@ -2,7 +2,7 @@
 
 use super::colours::{INK, MEASURED, MUTED};
 use super::contours::at_least;
-use super::format::{fixed, given, signed};
+use super::format::{given, hertz, signed};
 use super::html::Picture;
 use super::plate::{Plate, colour_bar};
 use super::svg::{Anchor, Ink, Point, Sheet};
@@ -153,7 +153,7 @@ fn draw_mode(
     let DiscModeName { nodal_diameters: n, nodal_circles: s } = group.name;
     let times = if group.modes.len() > 1 { " ×2" } else { "" };
     let hz = scale.unwrap_or(1.0) * set.modes.frequency_hz(group.modes.start);
-    let title = format!("({n}, {s}){times}  {} Hz", fixed(hz, if hz < 1000.0 { 1 } else { 0 }));
+    let title = format!("({n}, {s}){times}  {} Hz", hertz(hz, if hz < 1000.0 { 1 } else { 0 }));
     let ink = Ink { size: 15.0, colour: INK, bold: true, anchor: Anchor::Middle };
     let y = corner[1] + 15.0 + 2.0 * radius + 24.0;
     sheet.text([centre_x, y], &title, ink);

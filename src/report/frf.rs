@@ -3,7 +3,7 @@
 use super::axes::{Chart, WIDTH};
 use super::chart::{Area, colour, sheet, text};
 use super::colours::{ALARM, INK, MEASURED, MUTED, PARTS, SECOND};
-use super::format::{fixed, given, power};
+use super::format::{fixed, given, hertz, power};
 use super::html::{escape, figure, titled_table};
 use super::magnitude::{draw_magnitude, draw_phase, magnitude_axes, phase_axes};
 use super::tables::Table;
@@ -141,7 +141,7 @@ pub(super) fn table(frf: &FrfResult) -> Table {
             let first = place == 0;
             let cells = vec![
                 if first { resonance.name.clone() } else { String::new() },
-                if first { fixed(resonance.frequency_hz, 1) } else { String::new() },
+                if first { hertz(resonance.frequency_hz, 1) } else { String::new() },
                 if first { beside[k].clone() } else { String::new() },
                 response.name.replace('_', " "),
                 fixed(100.0 * seen, 1),

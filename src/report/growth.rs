@@ -2,7 +2,7 @@
 
 use super::chart::{above, below, bold, colour, sheet, text, widened};
 use super::colours::{ALARM, CALM, INK, MEASURED, MUTED};
-use super::format::{fixed, given, signed};
+use super::format::{fixed, given, hertz, signed};
 use super::html::Picture;
 use super::tables::SQUEAL_TOLERANCE;
 use crate::results::{ComplexResult, RunResults};
@@ -123,7 +123,7 @@ fn draw(area: &super::chart::Area, complex: &ComplexResult) -> Result<(), Box<dy
         let rates =
             format!("σ {}/s, ζ {} %", signed(mode.growth_rate(), 1), signed(100.0 * mode.damping_ratio(), 2));
         area.draw_text(
-            &format!("{} Hz", fixed(mode.frequency_hz(), 0)),
+            &format!("{} Hz", hertz(mode.frequency_hz(), 0)),
             &above(bold(13.5, ALARM)),
             local(area, x, y - 15),
         )?;

@@ -1,7 +1,7 @@
 //! `participation.svg`: the real modes that take part in each unstable mode, as stacked bars.
 
 use super::colours::{ALARM, INK, MUTED};
-use super::format::{fixed, signed};
+use super::format::{fixed, hertz, signed};
 use super::html::Picture;
 use super::svg::{Anchor, Ink, Sheet};
 use crate::results::{ComplexResult, RunResults};
@@ -64,7 +64,7 @@ fn chosen(all: &[ComplexMode]) -> Vec<&ComplexMode> {
 fn draw(sheet: &mut Sheet, top: f64, mode: &ComplexMode, complex: &ComplexResult, coloured: &mut Vec<usize>) {
     let colour = if mode.unstable() { ALARM } else { INK };
     let name = Ink { size: 14.0, colour, bold: true, anchor: Anchor::End };
-    sheet.text([LEFT - 12.0, top + 13.0], &format!("{} Hz", fixed(mode.frequency_hz(), 0)), name);
+    sheet.text([LEFT - 12.0, top + 13.0], &format!("{} Hz", hertz(mode.frequency_hz(), 0)), name);
     let rate = Ink { size: 12.0, colour: MUTED, bold: false, ..name };
     sheet.text([LEFT - 12.0, top + 29.0], &format!("σ {} 1/s", signed(mode.growth_rate(), 2)), rate);
     let shown = mode.participation.iter().filter(|(_, share)| *share >= SMALLEST);

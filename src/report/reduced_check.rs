@@ -1,6 +1,6 @@
 //! The table that sets a reduced model beside the full one.
 
-use super::format::{fixed, power};
+use super::format::{hertz, power};
 use super::tables::Table;
 use crate::results::{ComplexResult, Deviation, ReducedCheck};
 
@@ -11,7 +11,7 @@ pub(super) fn table(check: &ReducedCheck, complex: Option<&ComplexResult>) -> Ta
     let mode = |of: &Deviation| {
         let modes = complex.and_then(|c| c.modes.modes.get(of.mode));
         modes.map_or(String::new(), |mode| {
-            format!("mode {}, {} Hz", of.mode + 1, fixed(mode.frequency_hz(), 1))
+            format!("mode {}, {} Hz", of.mode + 1, hertz(mode.frequency_hz(), 1))
         })
     };
     let mut row = |what: String, value: f64, place: String| table.row(vec![what, power(value), place], false);

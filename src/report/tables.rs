@@ -1,6 +1,6 @@
 //! The content of the tables, once for the terminal and the page.
 
-use super::format::{fixed, given, power, signed, significant};
+use super::format::{fixed, given, hertz, power, rate, signed, significant};
 use crate::linalg::c64;
 use crate::results::{
     ComplexResult, ModeSensitivity, NamedModes, RunResults, SensitivityResult, SteadyResult,
@@ -83,7 +83,9 @@ pub(super) fn modes(results: &RunResults, index: usize) -> Table {
     let mut table = Table::new(format!("Real modes: {}", set.name), &headings);
     let rows: Vec<_> = comparisons.iter().flat_map(|m| m.compare(&results.modes)).collect();
     for k in 0..set.modes.len() {
-        let mut cells = vec![(k + 1).to_string(), fixed(set.modes.frequency_hz(k), 1)];
+        // The frequency of a rigid-body motion is round-off.
+        let show = if k < set.modes.rigid_bodies { fixed } else { hertz };
+        let mut cells = vec![(k + 1).to_string(), show(set.modes.frequency_hz(k), 1)];
         if parted {
             cells.insert(0, set.moving_part[k].clone().unwrap_or("–".into()));
         }
@@ -97,7 +99,7 @@ pub(super) fn modes(results: &RunResults, index: usize) -> Table {
         }
         let paired = rows.iter().find(|row| row.mode == Some(k));
         if scaled {
-            cells.push(fixed(scale * set.modes.frequency_hz(k), 1));
+            cells.push(show(scale * set.modes.frequency_hz(k), 1));
         }
         if !comparisons.is_empty() {
             cells.push(paired.map_or(String::new(), |row| given(row.measured_hz)));
@@ -189,8 +191,8 @@ pub(super) fn complex(result: &ComplexResult) -> Table {
     for (k, mode) in result.modes.modes.iter().enumerate() {
         let cells = vec![
             (k + 1).to_string(),
-            fixed(mode.frequency_hz(), 1),
-            signed(mode.growth_rate(), 2),
+            hertz(mode.frequency_hz(), 1),
+            rate(mode.eigenvalue),
             signed(100.0 * mode.damping_ratio(), 3),
             match (mode.unstable(), mode.undecided()) {
                 (true, _) => "UNSTABLE".into(),
@@ -229,8 +231,8 @@ pub(super) fn unstable(result: &ComplexResult) -> Table {
             None => format!("none within {} %", fixed(100.0 * SQUEAL_TOLERANCE, 0)),
         };
         let cells = vec![
-            fixed(hz, 1),
-            signed(mode.growth_rate(), 2),
+            hertz(hz, 1),
+            rate(mode.eigenvalue),
             signed(100.0 * mode.damping_ratio(), 3),
             significant(1e3 * 10_f64.ln() / mode.growth_rate(), 3),
             squeal,
@@ -252,12 +254,21 @@ pub(super) fn unstable(result: &ComplexResult) -> Table {
 
 /// What the count of the unstable eigenvalues says, in words.
 fn counted(certificate: &Certificate) -> String {
-    let ([low, high], [slow, _]) = (certificate.band_hz, certificate.growth);
-    let region =
-        format!("between {} and {} Hz with σ > {} 1/s", given(low), fixed(high, 0), significant(slow, 2));
+    let ([low, high], [slow, fast]) = (certificate.band_hz, certificate.growth);
+    let faster = match certificate.proven {
+        true => format!("σ > {} 1/s", significant(slow, 2)),
+        false => format!("σ from {} to {} 1/s", significant(slow, 2), significant(fast, 2)),
+    };
+    let region = format!("between {} and {} Hz with {faster}", given(low), hertz(high, 0));
     let with_conjugates = if low == 0.0 { ", conjugates included," } else { "" };
     let count = format!("{} eigenvalues {region}{with_conjugates}", certificate.counted);
-    let mut words = if certificate.holds() {
+    let mut words = if certificate.agrees() && !certificate.proven {
+        let step = significant(180.0 / certificate.margin, 2);
+        format!(
+            "Counted: {count}, as many as were found, by the phase of the determinant at full order ({} points, steps up to {step}°).",
+            certificate.points
+        )
+    } else if certificate.holds() {
         let margin = significant(certificate.margin, 2);
         format!(
             "Certified: {count} were counted, as many as were found; proven at full order, margin {margin}."
@@ -268,7 +279,7 @@ fn counted(certificate: &Certificate) -> String {
         format!("A MODE WAS MISSED: {count} were counted, {} found.", certificate.found)
     };
     for call in &certificate.close_calls {
-        let hz = fixed(call.frequency_hz, 1);
+        let hz = hertz(call.frequency_hz, 1);
         words += &format!(" Close call: the mode at {hz} Hz, σ = {} 1/s.", significant(call.growth_rate, 2));
     }
     words
@@ -286,7 +297,7 @@ fn second_method(confirmation: &Confirmation) -> String {
         );
     }
     let list = |all: &[c64]| -> String {
-        let hz: Vec<String> = all.iter().map(|z| fixed(z.im / std::f64::consts::TAU, 2)).collect();
+        let hz: Vec<String> = all.iter().map(|z| hertz(z.im / std::f64::consts::TAU, 2)).collect();
         if hz.is_empty() { "none".into() } else { hz.join(", ") }
     };
     format!(
@@ -299,8 +310,8 @@ fn second_method(confirmation: &Confirmation) -> String {
 /// What a mode answers to, the scalar that moves its growth rate most first. The derivatives proper are the last two
 /// columns.
 pub(super) fn sensitivity(mode: &ModeSensitivity) -> Table {
-    let hz = fixed(mode.eigenvalue.im / TAU, 1);
-    let caption = format!("What the mode at {hz} Hz, σ = {} 1/s, answers to", signed(mode.eigenvalue.re, 2));
+    let hz = hertz(mode.eigenvalue.im / TAU, 1);
+    let caption = format!("What the mode at {hz} Hz, σ = {} 1/s, answers to", rate(mode.eigenvalue));
     let headings =
         ["<scalar", "value", "<unit", "σ per 1 % [1/s]", "f per 1 % [Hz]", "error", "dσ/dp", "df/dp"];
     let mut table = Table::new(caption, &headings);
@@ -340,10 +351,10 @@ pub(super) fn advice(result: &SensitivityResult) -> Table {
             } else {
                 format!("{} {} {}", thing.kind, given(thing.amount), thing.unit)
             };
-            let sigma = |d: c64| signed(mode.eigenvalue.re + d.re, 2);
+            let sigma = |d: c64| rate(mode.eigenvalue + d);
             let cells = vec![
-                fixed(mode.eigenvalue.im / TAU, 1),
-                signed(mode.eigenvalue.re, 2),
+                hertz(mode.eigenvalue.im / TAU, 1),
+                rate(mode.eigenvalue),
                 amount,
                 thing.position.map(|c| fixed(1e3 * c, 1)).join(", "),
                 thing.direction.map_or(String::new(), axis),

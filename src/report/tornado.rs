@@ -1,7 +1,7 @@
 //! `sensitivity.svg`: the scalars that move the growth rate of each chosen mode most, by 1 % of themselves.
 
 use super::colours::{ALARM, INK, MEASURED, MUTED};
-use super::format::{fixed, signed, significant};
+use super::format::{hertz, signed, significant};
 use super::html::Picture;
 use super::svg::{Anchor, Ink, Sheet};
 use crate::results::{ModeSensitivity, ParameterRate, RunResults};
@@ -54,7 +54,7 @@ fn strongest(mode: &ModeSensitivity) -> Vec<&ParameterRate> {
 fn draw(sheet: &mut Sheet, top: f64, mode: &ModeSensitivity) {
     let title = format!(
         "{} Hz, growth rate {} 1/s",
-        fixed(mode.eigenvalue.im / TAU, 0),
+        hertz(mode.eigenvalue.im / TAU, 0),
         signed(mode.eigenvalue.re, 2)
     );
     let ink = Ink { size: 15.0, colour: INK, bold: true, anchor: Anchor::Start };

@@ -185,6 +185,7 @@ fn write_complex(root: &Group, complex: &ComplexResult) -> hdf5::Result<()> {
         attribute(&group.0, "certificate_unstable_counted", &certificate.counted)?;
         attribute(&group.0, "certificate_unstable_found", &certificate.found)?;
         attribute(&group.0, "certificate_margin", &certificate.margin)?;
+        attribute(&group.0, "certificate_proven", &certificate.proven)?;
         let growth = "growth rates between which eigenvalues were counted";
         group.list("certificate_growth_rate", &certificate.growth, "1/s", growth)?;
         let band = "frequencies between which eigenvalues were counted; from zero on with their conjugates";

@@ -158,6 +158,7 @@ struct Count {
     structure_poles: usize,
     dissipative: bool,
     nothing_faster: bool,
+    proven: bool,
     close_calls: Vec<NearContour>,
 }
 
@@ -444,6 +445,7 @@ fn count(certificate: &Certificate) -> Count {
         structure_poles: certificate.structure_poles,
         dissipative: certificate.dissipative,
         nothing_faster: certificate.nothing_faster,
+        proven: certificate.proven,
         close_calls: near.collect(),
     }
 }

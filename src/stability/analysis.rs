@@ -3,6 +3,7 @@
 use super::basis::Basis;
 use super::block::Block;
 use super::finish::finished;
+use super::general::general_modes;
 use super::operator::Operator;
 use super::projected::{SmallPair, project_interface, solve};
 use super::responses::{add_coupled_responses, few_responses};
@@ -16,6 +17,7 @@ use crate::linalg::dense::product;
 use crate::linalg::factor::factorize;
 use crate::linalg::sparse::add_scaled;
 use crate::modal::{RealModes, ShiftedStiffness};
+use crate::numbers::hertz;
 use crate::progress::Observer;
 use crate::system::System;
 use std::f64::consts::TAU;
@@ -66,6 +68,8 @@ impl From<[f64; 2]> for Band {
 ///   corrections are solved for, and the left ones of the pairs that are not yet right; others need no left vector on the
 ///   full order.
 ///
+/// Where the system has sparse skew parts ([`System::skew`]) the modes come from two-level Arnoldi at full order instead.
+///
 /// Modes with ω = 0 (overdamped, or divergence when σ > 0) are given when the band begins at zero. For them and near
 /// λ = 0 the eigenvalue error is relative to 1e-6 of the band's top rather than to |λ|.
 ///
@@ -78,6 +82,12 @@ pub fn complex_modes<'a>(
     band: impl Into<Band>,
     observer: &dyn Observer,
 ) -> Result<ComplexModes> {
+    let (known, band) = (known.into(), band.into());
+    if system.skew().is_some() {
+        check(system, steady, known.real, band.hz)?;
+        return general_modes(&Operator::new(system, steady)?, known.real, band, observer)
+            .map(|found| found.modes);
+    }
     analyse(system, steady, known, band, observer, |_, _| ()).map(|(modes, ())| modes)
 }
 
@@ -159,7 +169,12 @@ fn complete_below(system: &System, real: &RealModes) -> f64 {
     }
 }
 
-fn check(system: &System, steady: &SteadySliding, real: &RealModes, band_hz: [f64; 2]) -> Result<()> {
+pub(super) fn check(
+    system: &System,
+    steady: &SteadySliding,
+    real: &RealModes,
+    band_hz: [f64; 2],
+) -> Result<()> {
     let [low, high] = band_hz;
     if !(low >= 0.0 && high > low && high.is_finite()) {
         let found = format!("{low} to {high} Hz");
@@ -236,16 +251,16 @@ fn solve_and_refine<'a>(
     let modes: Vec<ComplexMode> = found.into_iter().map(|found| found.mode).collect();
     for mode in modes.iter().filter(|mode| mode.accepted() && mode.condition > ILL_CONDITIONED) {
         warnings.push(format!(
-            "the mode at {:.2} Hz is ill-conditioned: a relative change of the matrices moves it by {:.0e} times as much",
-            mode.frequency_hz(),
+            "the mode at {} Hz is ill-conditioned: a relative change of the matrices moves it by {:.0e} times as much",
+            hertz(mode.frequency_hz(), 2),
             mode.condition
         ));
     }
     for mode in modes.iter().filter(|mode| !mode.accepted()) {
         let cause = if mode.condition > 1e4 { ", near the coalescence of two modes" } else { "" };
         warnings.push(format!(
-            "the mode at {:.2} Hz is not accurate: relative eigenvalue error {:.1e}, backward error {:.1e}{cause}",
-            mode.frequency_hz(),
+            "the mode at {} Hz is not accurate: relative eigenvalue error {:.1e}, backward error {:.1e}{cause}",
+            hertz(mode.frequency_hz(), 2),
             mode.eigenvalue_error,
             mode.backward_error
         ));
@@ -263,7 +278,9 @@ fn incomplete(operator: &Operator<'_>, real: &RealModes, top_hz: f64) -> Option<
     let reach = highest.max(counted);
     (real.len() < operator.n() && reach < top_hz).then(|| {
         format!(
-            "the real modes are known up to {reach:.1} Hz, the band reaches to {top_hz:.1} Hz: complex modes may be missing"
+            "the real modes are known up to {} Hz, the band reaches to {} Hz: complex modes may be missing",
+            hertz(reach, 1),
+            hertz(top_hz, 1)
         )
     })
 }
@@ -414,10 +431,10 @@ mod tests {
         let between = 0.5 * (highest + counted);
         assert_eq!(incomplete(&operator, &real, between), None);
         let said = incomplete(&operator, &real, 2.0 * counted).unwrap();
-        assert!(said.contains(&format!("up to {counted:.1} Hz")), "{said}");
+        assert!(said.contains(&format!("up to {} Hz", hertz(counted, 1))), "{said}");
         real.certificate.found -= 1;
         let said = incomplete(&operator, &real, between).unwrap();
-        assert!(said.contains(&format!("up to {highest:.1} Hz")), "{said}");
+        assert!(said.contains(&format!("up to {} Hz", hertz(highest, 1))), "{said}");
         assert_eq!(incomplete(&operator, &dense_modes(&system, 40), 1e9), None);
     }
 }

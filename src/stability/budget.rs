@@ -19,20 +19,24 @@ impl GrowthBudget {
 /// K_c)φ. Each entry of a contact block is one summand of γ or κ: (g, g) is damping in the normal direction and goes
 /// with the structure's, (t₁, t₁) is falling friction, what turns with the transverse slip touches t₂, and a friction
 /// force that follows the normal motion (t, g) couples the modes. A real eigenvalue (ω = 0) has no such balance: all
-/// terms are zero.
+/// terms are zero. Sparse skew parts, φᴴK_kφ = i `circulatory` and φᴴC_kφ = i `gyroscopic`, make it (2ω + gyroscopic) σ + … +
+/// circulatory = 0: gyroscopic forces do no work, and have no term of their own.
 pub(super) fn growth_budget(
     operator: &Operator<'_>,
     lambda: c64,
     forms: &Forms,
     motion: &[c64],
+    [circulatory, gyroscopic]: [f64; 2],
 ) -> GrowthBudget {
     let mut budget = GrowthBudget::default();
     let omega = lambda.im;
     if omega <= 0.0 {
         return budget;
     }
-    let by_velocity = |gamma: c64| -(omega * gamma.re + lambda.re * gamma.im) / (2.0 * omega);
-    let by_displacement = |kappa: c64| -kappa.im / (2.0 * omega);
+    let inertia = 2.0 * omega + gyroscopic;
+    let by_velocity = |gamma: c64| -(omega * gamma.re + lambda.re * gamma.im) / inertia;
+    let by_displacement = |kappa: c64| -kappa.im / inertia;
+    budget.mode_coupling = -circulatory / inertia;
     budget.structural_damping = by_velocity(forms.damping) + by_displacement(c64::new(0.0, 1.0) * forms.loss);
     for term in &operator.interface.terms {
         let product = motion[term.row].conj() * motion[term.column];

@@ -39,7 +39,13 @@ pub(super) fn finished(
             backward_error: if better { corrected } else { found },
             eigenvalue_error: measured.eigenvalue_error[j],
             condition: measured.condition[j],
-            growth: growth_budget(operator, eigenvalue, &forms.scaled(to_unit_mass.powi(2)), &motion),
+            growth: growth_budget(
+                operator,
+                eigenvalue,
+                &forms.scaled(to_unit_mass.powi(2)),
+                &motion,
+                [0.0; 2],
+            ),
             participation: shares(amplitudes, j),
         }
     };
@@ -47,7 +53,7 @@ pub(super) fn finished(
 }
 
 /// |φₖᵀMφ|² of every real mode that has at least one part in ten thousand, largest first.
-fn shares(amplitudes: &Block, j: usize) -> Vec<(usize, f64)> {
+pub(super) fn shares(amplitudes: &Block, j: usize) -> Vec<(usize, f64)> {
     let mut shares: Vec<(usize, f64)> = (0..amplitudes.nrows())
         .map(|k| (k, amplitudes.get(k, j).norm_sqr()))
         .filter(|(_, share)| *share >= 1e-4)

@@ -1,7 +1,7 @@
 //! What a harmonic force moves, at full order.
 
-use super::full_order::Shifted;
 use super::operator::Operator;
+use super::shifted::Shifted;
 use crate::equilibrium::SteadySliding;
 use crate::error::Result;
 use crate::linalg::{SparseVector, c64};

@@ -4,7 +4,8 @@
 //! small one, and lets the residuals on the full order enrich the basis until every pair is right there; the last
 //! corrections then sharpen the right vectors.
 //! [`certified_modes`] also counts the unstable eigenvalues, without looking for them. [`confirm`] looks for the same
-//! pairs by two-level Arnoldi on the full order, which shares nothing with the projection.
+//! pairs by two-level Arnoldi on the full order, which shares nothing with the projection. Where what is not symmetric has no
+//! low rank, the modes themselves come from there.
 
 mod advice;
 mod analysis;
@@ -17,6 +18,7 @@ mod family;
 mod filter;
 mod finish;
 mod full_order;
+mod general;
 mod harmonic;
 mod interface;
 mod modal_damping;
@@ -26,6 +28,7 @@ mod reduced;
 mod responses;
 mod round;
 mod sensitivity;
+mod shifted;
 mod structural;
 #[cfg(test)]
 mod tests;

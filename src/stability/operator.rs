@@ -10,7 +10,7 @@ use crate::linalg::proportional::Proportional;
 use crate::linalg::sparse::{norm_1, times};
 use crate::linalg::tall::Columns;
 use crate::linalg::{SparseMatrix, c64};
-use crate::system::{Damping, System};
+use crate::system::{Damping, Skew, System};
 use faer::{Mat, MatRef};
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -23,6 +23,8 @@ pub(super) struct Operator<'a> {
     pub(super) stiffness: Cow<'a, SparseMatrix>,
     pub(super) damping: &'a Damping,
     pub(super) interface: Interface<'a>,
+    /// The sparse skew parts of K and C, for which no other method than that at full order is.
+    pub(super) skew: Option<&'a Skew>,
     /// The damping of the structure and others that may take part, taken apart.
     pub(super) dampers: Arc<Vec<Damper<'a>>>,
     /// How much of each acts.
@@ -176,6 +178,7 @@ impl<'a> Operator<'a> {
             stiffness,
             damping,
             interface,
+            skew: system.skew(),
         }
     }
 
@@ -308,6 +311,12 @@ impl<'a> Operator<'a> {
                 }
             }
         }
+        for (matrix, factor) in self.skew_parts() {
+            // A product with a matrix stored by columns is that with its transpose.
+            let sign = if side == Side::Right { -1.0 } else { 1.0 };
+            let factors: Vec<c64> = sums.iter().map(|sum| factor(sum) * sign).collect();
+            y.add_scaled(&factors, &x.map(|x| times(matrix, x)));
+        }
         for (j, sum) in sums.iter().enumerate() {
             let motion = self.interface.motions(x.vector(j));
             let mut force = vec![ZERO; motion.len()];
@@ -324,6 +333,24 @@ impl<'a> Operator<'a> {
                 direction.add_to(force.im, im);
             }
         }
+    }
+
+    /// The sparse skew parts of K and C, and what multiplies them in a sum.
+    fn skew_parts(&self) -> impl Iterator<Item = (&'a SparseMatrix, fn(&Sum) -> c64)> {
+        let parts = |skew: &'a Skew| -> [(&'a SparseMatrix, fn(&Sum) -> c64); 2] {
+            [(&skew.stiffness, |sum| sum.contact), (&skew.damping, |sum| sum.damping)]
+        };
+        self.skew.map(parts).into_iter().flatten()
+    }
+
+    /// xⱼᴴK_k xⱼ / i and xⱼᴴC_k xⱼ / i of the sparse skew parts, which are real.
+    pub(super) fn skew_forms(&self, x: &Block) -> Vec<[f64; 2]> {
+        let mut forms = vec![[0.0; 2]; x.ncols()];
+        for (which, (matrix, _)) in self.skew_parts().enumerate() {
+            let image = x.map(|x| times(matrix, x));
+            (0..x.ncols()).for_each(|j| forms[j][which] = -x.dot(j, &image).im);
+        }
+        forms
     }
 
     /// What couples the real modes, (sⱼ (C_r + C_c) + iH_r + K_c) xⱼ, where C_r and H_r are C and H but for what is

@@ -37,6 +37,14 @@ pub(super) fn dense_matrices(system: &System, steady: &SteadySliding) -> (Mat<c6
             }
         }
     }
+    if let Some(skew) = system.skew() {
+        let add = |to: &mut Mat<c64>, a: &SparseMatrix| {
+            let a = a.to_dense();
+            *to += Mat::from_fn(n, n, |i, j| c64::new(a[(i, j)], 0.0));
+        };
+        add(&mut k, &skew.stiffness);
+        add(&mut c, &skew.damping);
+    }
     if let Some(rest) = &system.coupling {
         for (a, u) in rest.directions.iter().enumerate() {
             for (b, v) in rest.directions.iter().enumerate() {

@@ -1,4 +1,5 @@
-//! Matrices from elsewhere as a [`Structure`] that is symmetric and a [`Coupling`] of low rank for the rest.
+//! Matrices from elsewhere as a [`Structure`] that is symmetric and a [`Coupling`] for the rest: of low rank, or as sparse
+//! skew-symmetric matrices where the rank is high, as that of gyroscopic terms is.
 //!
 //! K = ½(K + Kᵀ) + W k Wᵀ and C = ½(C + Cᵀ) + W c Wᵀ with k and c skew. Friction and other unsymmetric terms act
 //! between the few degrees of freedom of a contact, so the rows that the skew parts touch fall apart into many small
@@ -11,7 +12,7 @@
 //! row i. With every row scaled by 1/√r the m × 2m matrix [K C] of a group carries a noise of ‖ν‖ ≤ √2 m p u (Frobenius),
 //! and what is left after the pivots of the true rank is that noise alone: no rank is seen in what is smaller.
 
-use super::{Coupling, Damping, Structure};
+use super::{Coupling, Damping, Skew, Structure};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::dense::product;
 use crate::linalg::matrix_market::MarketMatrix;
@@ -21,14 +22,21 @@ use crate::linalg::{SparseMatrix, SparseVector};
 use faer::Mat;
 use std::collections::BTreeMap;
 
-/// The largest rank of the coupling: beyond, it is no small part of the problem any more.
+/// The largest rank of a coupling of low rank, and the part of the order n above which even a smaller one costs more than sparse
+/// skew parts do; a rank up to [`SMALL_RANK`] is always low.
 const LARGEST_RANK: usize = 2000;
+const RANK_PART: usize = 10;
+const SMALL_RANK: usize = 200;
 /// |a_ij − a_ji| / 2 up to this part of √(r_i r_j), r the largest entry of a row, is rounding of the exporting program.
 const ROUND_OFF: f64 = 1e-14;
 /// p u: an entry that friction was added to has been rounded a few times at its own size.
 const ENTRY_NOISE: f64 = 4.0 * 0.5 * f64::EPSILON;
 /// The same as [`ROUND_OFF`] for M, which must be symmetric: what is larger is told.
 const MASS_ROUND_OFF: f64 = 1e-12;
+
+/// A row of M up to this part of the largest mass, without a positive diagonal entry, is zero: u ‖M‖, the change of M that
+/// a backward error of rounding stands for.
+const MASS_ZERO: f64 = 0.5 * f64::EPSILON;
 
 /// Imported matrices, split.
 #[derive(Debug, Clone)]
@@ -56,8 +64,7 @@ pub struct Given<'a> {
 /// imaginary part of K \[N/m, N m\] must be symmetric: it is taken as that of K(1 + iη), for λ = σ + iω with ω > 0.
 ///
 /// # Errors
-/// Every fault at once: other sizes, parts that have no meaning here, a degree of freedom on which nothing acts, a
-/// skew part of high rank.
+/// Every fault at once: other sizes, parts that have no meaning here, a degree of freedom on which nothing acts.
 pub fn split(mass: Given<'_>, damping: Option<Given<'_>>, stiffness: Given<'_>) -> Result<Imported> {
     let mut faults = Faults::new();
     let n = mass.matrix.re.nrows();
@@ -74,7 +81,8 @@ pub fn split(mass: Given<'_>, damping: Option<Given<'_>>, stiffness: Given<'_>) 
     }
     faults.into_result(())?;
     let mut faults = Faults::new();
-    check_mass(mass, &mut faults);
+    let exact_mass = with_exact_zeros(&mass.matrix.re);
+    check_mass(mass, &exact_mass, &mut faults);
     if let Some(damping) = damping
         && has_entries(damping.matrix.im.as_ref())
     {
@@ -95,7 +103,7 @@ pub fn split(mass: Given<'_>, damping: Option<Given<'_>>, stiffness: Given<'_>) 
     let halves = Halves::of(&stiffness.matrix.re);
     let damping_halves = damping.map(|given| Halves::of(&given.matrix.re));
     let size: Vec<f64> = row_sizes(&stiffness.matrix.re);
-    let inertia = row_sizes(&mass.matrix.re);
+    let inertia = row_sizes(&exact_mass);
     let untouched: Vec<usize> = (0..n).filter(|i| size[*i] == 0.0 && inertia[*i] == 0.0).collect();
     if let Some(first) = untouched.first() {
         let found = format!("{} rows of zeros, row {} the first", untouched.len(), first + 1);
@@ -113,23 +121,14 @@ pub fn split(mass: Given<'_>, damping: Option<Given<'_>>, stiffness: Given<'_>) 
     let damping_size = damping.map_or(vec![0.0; n], |given| row_sizes(&given.matrix.re));
     let coupling = couple(n, &halves.skew, skew_damping, [&size, &damping_size]);
     let mut warnings = Vec::new();
-    match &coupling {
-        Err(rank) => faults.push(
-            Fault::new(
-                damping.map_or(stiffness.place.to_string(), |c| format!("{} and {}", stiffness.place, c.place)),
-                format!("a part that is not symmetric, of rank {rank}"),
-                format!("rank {LARGEST_RANK} at most"),
-            )
-            .with_help("Contact with friction is of low rank; check that the matrices are not permuted or transposed in part"),
-        ),
-        Ok(Some(c)) if 4 * c.directions.len() > n && n > 400 => warnings.push(format!(
-            "The part of the matrices that is not symmetric has rank {}, more than a quarter of their order {n}: this is slow",
-            c.directions.len()
-        )),
-        Ok(_) => {}
+    if let Some(skew) = coupling.as_ref().and_then(|c| c.skew.as_ref()) {
+        warnings.push(format!(
+            "The matrices have a part that is not symmetric in {} of {n} rows, which is not of low rank: the complex modes are found by two-level Arnoldi with sparse unsymmetric factors, at several frequencies of the band",
+            skew.rows()
+        ));
     }
     faults.into_result(())?;
-    let [mass, stiffness] = on_one_pattern(Halves::of(&mass.matrix.re).symmetric, halves.symmetric);
+    let [mass, stiffness] = on_one_pattern(Halves::of(&exact_mass).symmetric, halves.symmetric);
     let structure = Structure {
         mass: mass.into(),
         stiffness: stiffness.into(),
@@ -139,14 +138,31 @@ pub fn split(mass: Given<'_>, damping: Option<Given<'_>>, stiffness: Given<'_>) 
             hysteretic: hysteretic.map(|h| Halves::of(h).symmetric.into()),
         },
     };
-    Ok(Imported { structure, coupling: coupling.unwrap_or(None), warnings })
+    Ok(Imported { structure, coupling, warnings })
 }
 
 fn has_entries(a: Option<&SparseMatrix>) -> bool {
     a.is_some_and(|a| a.val().iter().any(|v| *v != 0.0))
 }
 
-fn check_mass(mass: Given<'_>, faults: &mut Faults) {
+/// M whose rows and columns that are zero but for rounding ([`MASS_ZERO`]) have exact zeros.
+fn with_exact_zeros(mass: &SparseMatrix) -> SparseMatrix {
+    let (diagonal, size) = (diagonal(mass), row_sizes(mass));
+    let largest = diagonal.iter().fold(0.0f64, |l, m| l.max(*m));
+    let zero: Vec<bool> = (0..size.len())
+        .map(|i| size[i] > 0.0 && diagonal[i] <= 0.0 && size[i] <= MASS_ZERO * largest)
+        .collect();
+    let mut exact = mass.clone();
+    for j in (0..exact.ncols()).filter(|_| zero.contains(&true)) {
+        let rows: Vec<usize> = exact.row_idx_of_col(j).collect();
+        let entries = rows.iter().zip(exact.val_of_col_mut(j));
+        entries.filter(|(i, _)| zero[**i] || zero[j]).for_each(|(_, v)| *v = 0.0);
+    }
+    exact
+}
+
+/// `exact` is M with exact zeros.
+fn check_mass(mass: Given<'_>, exact: &SparseMatrix, faults: &mut Faults) {
     if has_entries(mass.matrix.im.as_ref()) {
         faults.push(Fault::new(mass.place, "an imaginary part", "a real mass matrix"));
     }
@@ -157,7 +173,7 @@ fn check_mass(mass: Given<'_>, faults: &mut Faults) {
         faults.push(Fault::new(mass.place, found, "a symmetric mass matrix"));
     }
     let negative: Vec<(usize, f64)> =
-        diagonal(&mass.matrix.re).into_iter().enumerate().filter(|(_, m)| *m < 0.0).collect();
+        diagonal(exact).into_iter().enumerate().filter(|(_, m)| *m < 0.0).collect();
     if let Some((row, value)) = negative.first() {
         let found = format!("{value:e} in row and column {}", row + 1);
         let found =
@@ -228,29 +244,32 @@ struct Group {
     damping: Mat<f64>,
 }
 
-/// W, k and c of the skew parts; `Err` with the rank when that is too high.
+/// W, k and c of the skew parts, or these themselves where their rank is high.
 fn couple(
     n: usize,
     stiffness: &[(usize, usize, f64)],
     damping: &[(usize, usize, f64)],
     sizes: [&[f64]; 2],
-) -> std::result::Result<Option<Coupling>, usize> {
-    let groups = groups(n, stiffness, damping);
+) -> Option<Coupling> {
+    if stiffness.is_empty() && damping.is_empty() {
+        return None;
+    }
+    let highest = (n / RANK_PART).clamp(SMALL_RANK, LARGEST_RANK);
+    // A dense group of more rows than this is not worth looking for its rank.
+    let Some(groups) = groups(n, stiffness, damping, 2 * highest) else {
+        return Some(Coupling::sparse(Skew::new(n, stiffness, damping)));
+    };
     let mut parts: Vec<(Vec<SparseVector>, Mat<f64>, Mat<f64>)> = Vec::new();
     let mut rank = 0;
     for group in &groups {
-        // The range of a larger group is not worth looking for: it would be refused all the same.
-        if group.rows.len() > 2 * LARGEST_RANK {
-            return Err(rank + group.rows.len());
-        }
         parts.push(factor(group, sizes));
         rank += parts[parts.len() - 1].0.len();
     }
-    if rank > LARGEST_RANK {
-        return Err(rank);
+    if rank > highest {
+        return Some(Coupling::sparse(Skew::new(n, stiffness, damping)));
     }
     if rank == 0 {
-        return Ok(None);
+        return None;
     }
     let (mut k, mut c) = (Mat::zeros(rank, rank), Mat::zeros(rank, rank));
     let mut directions = Vec::new();
@@ -260,11 +279,37 @@ fn couple(
         c.as_mut().submatrix_mut(first, first, m, m).copy_from(&damping);
         directions.extend(part);
     }
-    Ok(Some(Coupling { directions, stiffness: k, damping: c }))
+    Some(Coupling { directions, stiffness: k, damping: c, skew: None })
 }
 
-/// The rows that the skew parts connect, group by group, in the order of their first row.
-fn groups(n: usize, stiffness: &[(usize, usize, f64)], damping: &[(usize, usize, f64)]) -> Vec<Group> {
+impl Skew {
+    /// From the entries below the diagonal of both.
+    fn new(n: usize, stiffness: &[(usize, usize, f64)], damping: &[(usize, usize, f64)]) -> Self {
+        let whole = |list: &[(usize, usize, f64)]| {
+            let both: Vec<_> =
+                list.iter().flat_map(|(i, j, v)| [entry(*i, *j, *v), entry(*j, *i, -v)]).collect();
+            SparseMatrix::try_new_from_triplets(n, n, &both).expect("indices of a matrix")
+        };
+        Skew { stiffness: whole(stiffness).into(), damping: whole(damping).into() }
+    }
+
+    /// How many rows have an entry.
+    fn rows(&self) -> usize {
+        let [k, c] = [&self.stiffness, &self.damping];
+        (0..k.ncols())
+            .filter(|j| !k.row_idx_of_col_raw(*j).is_empty() || !c.row_idx_of_col_raw(*j).is_empty())
+            .count()
+    }
+}
+
+/// The rows that the skew parts connect, group by group, in the order of their first row; none where a group has more than
+/// `most` rows.
+fn groups(
+    n: usize,
+    stiffness: &[(usize, usize, f64)],
+    damping: &[(usize, usize, f64)],
+    most: usize,
+) -> Option<Vec<Group>> {
     let mut parent: Vec<usize> = (0..n).collect();
     fn root(parent: &mut [usize], mut i: usize) -> usize {
         while parent[i] != i {
@@ -288,11 +333,13 @@ fn groups(n: usize, stiffness: &[(usize, usize, f64)], damping: &[(usize, usize,
         place[i] = (first, list.len());
         list.push(i);
     }
+    if rows.values().any(|rows| rows.len() > most) {
+        return None;
+    }
     let mut groups: BTreeMap<usize, Group> = rows
         .into_iter()
         .map(|(first, rows)| {
-            // A group that is refused for its size needs no matrices.
-            let m = if rows.len() > 2 * LARGEST_RANK { 0 } else { rows.len() };
+            let m = rows.len();
             (first, Group { rows, stiffness: Mat::zeros(m, m), damping: Mat::zeros(m, m) })
         })
         .collect();
@@ -301,13 +348,11 @@ fn groups(n: usize, stiffness: &[(usize, usize, f64)], damping: &[(usize, usize,
             let ((first, a), (_, b)) = (place[*i], place[*j]);
             let group = groups.get_mut(&first).expect("made from the same entries");
             let matrix = if which == 0 { &mut group.stiffness } else { &mut group.damping };
-            if matrix.nrows() > 0 {
-                matrix[(a, b)] = *v;
-                matrix[(b, a)] = -*v;
-            }
+            matrix[(a, b)] = *v;
+            matrix[(b, a)] = -*v;
         }
     }
-    groups.into_values().collect()
+    Some(groups.into_values().collect())
 }
 
 /// The columns of W of one group with k and c on them; `sizes` are the largest entries of the rows of all K and all C.
@@ -355,7 +400,13 @@ fn factor(group: &Group, sizes: [&[f64]; 2]) -> (Vec<SparseVector>, Mat<f64>, Ma
 }
 
 impl Coupling {
-    /// W k Wᵀ and W c Wᵀ as sparse matrices, for writing.
+    /// Of sparse skew parts alone.
+    pub fn sparse(skew: Skew) -> Self {
+        let none = || Mat::zeros(0, 0);
+        Coupling { directions: Vec::new(), stiffness: none(), damping: none(), skew: Some(skew) }
+    }
+
+    /// W k Wᵀ and W c Wᵀ with the sparse skew parts, as sparse matrices, for writing.
     pub fn assembled(&self, n: usize) -> Result<[SparseMatrix; 2]> {
         let whole = |small: &Mat<f64>| {
             let mut triplets = Vec::new();
@@ -370,7 +421,12 @@ impl Coupling {
                 Error::analysis("coupling", format!("{e:?}"), "Its directions lie outside the system")
             })
         };
-        Ok([whole(&self.stiffness)?, whole(&self.damping)?])
+        let [k, c] = [whole(&self.stiffness)?, whole(&self.damping)?];
+        Ok(match &self.skew {
+            Some(skew) => [(&k, &skew.stiffness), (&c, &skew.damping)]
+                .map(|(low, skew)| add_scaled(&[(1.0, low), (1.0, skew)])),
+            None => [k, c],
+        })
     }
 }
 
@@ -505,7 +561,21 @@ mod tests {
     }
 
     #[test]
-    fn a_skew_part_of_high_rank_is_refused() {
+    fn masses_that_are_zero_but_for_rounding_are_zero() {
+        let diagonal = |m: &[f64]| {
+            let entries: Vec<_> = m.iter().enumerate().map(|(i, m)| entry(i, i, *m)).collect();
+            real(SparseMatrix::try_new_from_triplets(m.len(), m.len(), &entries).unwrap())
+        };
+        let k = diagonal(&[1.0; 4]);
+        let mass = split(given(&diagonal(&[1e-6, -1e-27, 3e-18, 2e-7])), None, given(&k)).unwrap();
+        let mass = mass.structure.mass;
+        assert_eq!([0, 1, 2, 3].map(|i| mass[(i, i)]), [1e-6, 0.0, 3e-18, 2e-7]);
+        let error = split(given(&diagonal(&[1e-6, -1e-20, 1e-7, 2e-7])), None, given(&k)).unwrap_err();
+        assert!(error.to_string().contains("masses of zero or more"), "{error}");
+    }
+
+    #[test]
+    fn a_skew_part_of_high_rank_stays_sparse() {
         let n = 5000;
         let triplets: Vec<_> = (0..n)
             .flat_map(|i| [(i, i, 2.0), (i, (i + 1) % n, 0.5)])
@@ -514,7 +584,17 @@ mod tests {
         let k = real(SparseMatrix::try_new_from_triplets(n, n, &triplets).unwrap());
         let ones: Vec<_> = (0..n).map(|i| entry(i, i, 1.0)).collect();
         let m = real(SparseMatrix::try_new_from_triplets(n, n, &ones).unwrap());
-        let text = split(given(&m), None, given(&k)).unwrap_err().to_string();
-        assert!(text.contains("of rank 5000") && text.contains("2000 at most"), "{text}");
+        let imported = split(given(&m), Some(given(&k)), given(&k)).unwrap();
+        assert!(imported.warnings[0].contains("5000 of 5000 rows"), "{:?}", imported.warnings);
+        let coupling = imported.coupling.unwrap();
+        assert!(coupling.directions.is_empty());
+        let [rest, rest_c] = coupling.assembled(n).unwrap();
+        for (symmetric, rest) in
+            [(imported.structure.stiffness, rest), (imported.structure.damping.viscous.unwrap(), rest_c)]
+        {
+            assert_eq!((rest.get(0, 1), rest.get(1, 0)), (Some(&0.25), Some(&-0.25)));
+            let difference = add_scaled(&[(1.0, &k.re), (-1.0, &symmetric), (-1.0, &rest)]);
+            assert!(difference.val().iter().all(|v| *v == 0.0));
+        }
     }
 }

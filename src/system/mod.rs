@@ -17,7 +17,7 @@ mod structure;
 pub use imported::{Given, Imported, split};
 pub use interface::{Closing, ContactPair, ContactPoint};
 pub use law::{ContactForces, ContactLaw, ContactMotion, ContactTangent, SlipAnswer, SlipStep};
-pub use structure::{Coupling, Damping, ModalDamping, Prestress, Structure};
+pub use structure::{Coupling, Damping, ModalDamping, Prestress, Skew, Structure};
 
 use std::sync::Arc;
 
@@ -40,6 +40,11 @@ impl System {
     /// The number of degrees of freedom.
     pub fn n_dofs(&self) -> usize {
         self.structure.n_dofs()
+    }
+
+    /// The sparse skew parts of K and C, where it has them.
+    pub fn skew(&self) -> Option<&Skew> {
+        self.coupling.as_ref()?.skew.as_ref()
     }
 
     /// Every contact point with its pair, in the fixed order that results use.

@@ -53,7 +53,8 @@ pub trait Prestress: Debug + Send + Sync {
     fn geometric_stiffness(&self, displacement: &[f64]) -> Result<SparseMatrix>;
 }
 
-/// The part of imported matrices that is not symmetric, constant and of low rank r: K gains W k Wᵀ, C gains W c Wᵀ.
+/// The part of imported matrices that is not symmetric, constant: K gains W k Wᵀ, C gains W c Wᵀ, of low rank r, and where the
+/// rank is high both gain sparse skew-symmetric matrices.
 #[derive(Debug, Clone)]
 pub struct Coupling {
     /// The columns of W, r of them.
@@ -62,4 +63,15 @@ pub struct Coupling {
     pub stiffness: Mat<f64>,
     /// c \[N s/m\], r × r.
     pub damping: Mat<f64>,
+    /// What is of high rank.
+    pub skew: Option<Skew>,
+}
+
+/// Sparse skew-symmetric parts of K and C, both triangles stored: gyroscopic terms (C), circulatory ones (K).
+#[derive(Debug, Clone)]
+pub struct Skew {
+    /// Of K \[N/m\].
+    pub stiffness: Arc<SparseMatrix>,
+    /// Of C \[N s/m\].
+    pub damping: Arc<SparseMatrix>,
 }

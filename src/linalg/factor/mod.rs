@@ -12,6 +12,8 @@
 //!    what cannot be eliminated yet is passed on to the parent;
 //! 4. `solve` goes up and down the tree with up to sixteen right-hand sides at once.
 //!
+//! `unsymmetric` factorises a complex matrix of a symmetric pattern that is not symmetric, on the same fronts.
+//!
 //! `field` holds what real and complex numbers have in common. Tasks run on all threads; the order of every sum is
 //! that of the tree, so the bits do not depend on how many there are.
 
@@ -23,9 +25,11 @@ mod numeric;
 mod ordering;
 mod solve;
 mod symbolic;
+mod unsymmetric;
 
 pub use compliances::compliances;
 pub use field::Field;
+pub use unsymmetric::{System, UnsymmetricFactor};
 
 use super::SparseMatrix;
 use super::room::with_room;
@@ -130,6 +134,12 @@ impl SymbolicFactor {
         self.0.fill
     }
 
+    /// The multiplications of an unsymmetric factorisation, about.
+    pub fn multiplications(&self) -> f64 {
+        let of = |width: f64, below: f64| width * (width + below) * (width + below);
+        self.0.nodes.iter().map(|node| of(node.columns.len() as f64, node.rows.len() as f64)).sum()
+    }
+
     /// Whether this is the analysis of `pattern`.
     pub fn fits(&self, pattern: SymbolicSparseColMatRef<'_, Index>) -> bool {
         self.0.fingerprint == fingerprint(pattern)
@@ -165,15 +175,7 @@ impl SymbolicFactor {
             n == self.0.order.len() && a.compute_nnz() == self.0.entries,
             "the pattern was not the analysed one"
         );
-        if let Some(k) = a.val().iter().position(|v| !v.size().is_finite()) {
-            let (row, column) =
-                (a.row_idx()[k], a.col_ptr().partition_point(|start| *start as usize <= k) - 1);
-            return Err(Error::analysis(
-                "factorisation",
-                format!("the matrix has {:?} in row {row}, column {column}", a.val()[k]),
-                "Look for a length, stiffness or density of zero or beyond 1e150 in the model",
-            ));
-        }
+        finite(a)?;
         let scaling = equilibrate(a);
         let branch = numeric::factorize(&self.0, a.as_ref(), &scaling, kept).map_err(|stuck| {
             Error::analysis(
@@ -402,6 +404,19 @@ fn inertia<T: Field>(branch: &Branch<T>) -> Inertia {
         }
     }
     inertia
+}
+
+/// That every entry is a number.
+fn finite<T: Field>(a: &SparseColMat<Index, T>) -> Result<()> {
+    if let Some(k) = a.val().iter().position(|v| !v.size().is_finite()) {
+        let (row, column) = (a.row_idx()[k], a.col_ptr().partition_point(|start| *start as usize <= k) - 1);
+        return Err(Error::analysis(
+            "factorisation",
+            format!("the matrix has {:?} in row {row}, column {column}", a.val()[k]),
+            "Look for a length, stiffness or density of zero or beyond 1e150 in the model",
+        ));
+    }
+    Ok(())
 }
 
 /// S: s_i = 2^-round(½ log₂ |a_ii|), the largest entry of the row standing in where the diagonal is too small.

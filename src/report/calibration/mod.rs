@@ -3,7 +3,7 @@
 mod picture;
 mod words;
 
-use super::format::{fixed, given, power, signed, significant};
+use super::format::{fixed, given, hertz, power, signed, significant};
 use super::html::{Picture, figure, titled_table};
 use super::tables::Table;
 use crate::results::{CalibratedNumber, CalibrationResult, RunResults};
@@ -99,7 +99,7 @@ fn response_table(result: &CalibrationResult) -> Table {
         let left_out = |apart: &dyn Fn(&[f64]) -> f64| {
             r.left_out.as_ref().map_or("–".into(), |sizes| fixed(apart(sizes), 2))
         };
-        let end = |hz: Option<&f64>| hz.map_or("–".into(), |hz| fixed(*hz, 1));
+        let end = |hz: Option<&f64>| hz.map_or("–".into(), |hz| hertz(*hz, 1));
         let cells = vec![
             r.place.clone(),
             r.frequencies_hz.len().to_string(),
@@ -148,7 +148,7 @@ fn fit_table(result: &CalibrationResult) -> Table {
     for d in &result.data {
         let mut cells = vec![d.level.clone(), given(d.measured_hz)];
         for hz in [d.before_hz, d.after_hz, d.left_out_hz] {
-            cells.push(hz.map_or("–".into(), |hz| fixed(hz, 1)));
+            cells.push(hz.map_or("–".into(), |hz| hertz(hz, 1)));
             cells.push(d.error_percent(hz).map_or("–".into(), |e| signed(e, 2)));
         }
         if sets {

@@ -1,7 +1,7 @@
 //! `mac_<name>.svg`: how like each measured shape is to each level of computed modes.
 
 use super::super::colours::{INK, MEASURED, MUTED, sequential};
-use super::super::format::{fixed, given};
+use super::super::format::{fixed, given, hertz};
 use super::super::svg::{Anchor, Ink, Sheet};
 use super::{Drawn, level_name};
 use crate::results::{MeasuredComparison, NamedModes};
@@ -40,7 +40,7 @@ pub(super) fn picture(comparison: &MeasuredComparison, set: &NamedModes, name: &
         for (k, line) in lines.iter().enumerate() {
             sheet.text([x, MARGIN[1] - 40.0 + 15.0 * k as f64], line, ink);
         }
-        sheet.text([x, MARGIN[1] - 10.0], &fixed(hz(column), 0), Ink { colour: MUTED, ..ink });
+        sheet.text([x, MARGIN[1] - 10.0], &hertz(hz(column), 0), Ink { colour: MUTED, ..ink });
     }
     let left = Ink { anchor: Anchor::Start, ..ink };
     sheet.text(

@@ -1,6 +1,6 @@
 //! The tables: measured modes and responses, each beside the computed one.
 
-use super::super::format::{fixed, given, signed, significant};
+use super::super::format::{fixed, given, hertz, signed, significant};
 use super::super::tables::Table;
 use super::level_name;
 use crate::results::{MeasuredComparison, MeasuredResponses, RunResults};
@@ -21,7 +21,7 @@ pub(in crate::report) fn modes_table(results: &RunResults, comparison: &Measured
             row.deviation.map_or(none(), |d| significant(100.0 * d, 2)),
             row.damping_ratio.map_or(none(), |z| significant(100.0 * z, 3)),
             level.map_or("none".into(), |level| level_name(set, level)),
-            row.mode.map_or(none(), |mode| fixed(hz(mode), 1)),
+            row.mode.map_or(none(), |mode| hertz(hz(mode), 1)),
             damping.map_or(none(), |z| significant(100.0 * z, 3)),
             row.mode.map_or(none(), |mode| signed(100.0 * (hz(mode) / row.frequency_hz - 1.0), 2)),
             row.likeness.map_or(none(), |like| fixed(like, 2)),
@@ -30,7 +30,7 @@ pub(in crate::report) fn modes_table(results: &RunResults, comparison: &Measured
     }
     let alone = comparison.computed_alone(set);
     let told = |level: &std::ops::Range<usize>| {
-        format!("{} {} Hz", level_name(set, level), fixed(hz(level.start), 1))
+        format!("{} {} Hz", level_name(set, level), hertz(hz(level.start), 1))
     };
     let list: Vec<String> = alone.iter().map(told).collect();
     table.notes.push(match list.len() {

@@ -4,7 +4,7 @@ use super::{Drawn, axis_name, place, value_at};
 use crate::linalg::c64;
 use crate::report::chart::{Area, above, bold, colour, sheet, text, widened};
 use crate::report::colours::{ALARM, CALM, INK, MEASURED, MUTED};
-use crate::report::format::{fixed, given, significant};
+use crate::report::format::{given, hertz, significant};
 use crate::results::SweepResult;
 use crate::stability::unstable;
 use plotters::coord::types::RangedCoordf64;
@@ -118,7 +118,7 @@ fn draw_branches(area: &Area, result: &SweepResult) -> Drawing {
             py -= 18;
         }
         taken.push((px, py));
-        let words = format!("{} · {} Hz", significant(c.value, 4), fixed(frequency(c.eigenvalue), 0));
+        let words = format!("{} · {} Hz", significant(c.value, 4), hertz(frequency(c.eigenvalue), 0));
         let (base_x, base_y) = lower.get_base_pixel();
         lower.draw_text(&words, &above(bold(12.0, INK)), (px - base_x, py - base_y))?;
     }

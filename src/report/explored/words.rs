@@ -1,6 +1,6 @@
 //! What a sweep or a map found, in words and tables.
 
-use crate::report::format::{fixed, power, signed, significant};
+use crate::report::format::{fixed, hertz, power, signed, significant};
 use crate::report::tables::Table;
 use crate::results::{DampingVerdicts, MapResult, Method, SweepResult};
 use crate::stability::unstable;
@@ -52,7 +52,7 @@ pub(in crate::report) fn sweep_words(result: &SweepResult) -> Vec<String> {
         .iter()
         .filter(|b| b.first == 0 && b.eigenvalues.len() == sweep.values.len())
         .filter(|b| b.eigenvalues.iter().all(|z| unstable(*z)))
-        .map(|b| format!("{} Hz", fixed(b.eigenvalues[0].im / TAU, 0)))
+        .map(|b| format!("{} Hz", hertz(b.eigenvalues[0].im / TAU, 0)))
         .collect();
     if !all.is_empty() {
         first += &format!(" At every value: {}.", list(&all));
@@ -67,7 +67,7 @@ pub(in crate::report) fn sweep_words(result: &SweepResult) -> Vec<String> {
                     CriticalKind::Growth => "",
                     CriticalKind::Divergence => ", without oscillation",
                 };
-                let hz = fixed(c.eigenvalue.im / TAU, 0);
+                let hz = hertz(c.eigenvalue.im / TAU, 0);
                 format!("{hz} Hz at {}{what}", with_unit(c.value, unit))
             })
             .collect()
@@ -81,7 +81,7 @@ pub(in crate::report) fn sweep_words(result: &SweepResult) -> Vec<String> {
     let meet = |kind: EncounterKind| -> Vec<String> {
         let those = sweep.encounters.iter().filter(|e| e.kind == kind);
         those
-            .map(|e| format!("near {} Hz at {}", fixed(e.frequency_hz, 0), with_unit(e.value, unit)))
+            .map(|e| format!("near {} Hz at {}", hertz(e.frequency_hz, 0), with_unit(e.value, unit)))
             .collect()
     };
     for (kind, begin) in
@@ -118,7 +118,7 @@ pub(in crate::report) fn critical_table(result: &SweepResult) -> Table {
         let cells = vec![
             significant(c.value, 8),
             power(result.value_error(k)),
-            fixed(c.eigenvalue.im / TAU, 1),
+            hertz(c.eigenvalue.im / TAU, 1),
             if c.rises { "unstable".into() } else { "stable".into() },
             match c.kind {
                 CriticalKind::Merging => "two frequencies merge".into(),
@@ -156,7 +156,7 @@ pub(in crate::report) fn map_words(result: &MapResult) -> Vec<String> {
         words.push(format!(
             "The largest growth rate, {} 1/s at {} Hz, is at {} and {}.",
             signed(p.growth_rate, 2),
-            fixed(p.frequency_hz, 0),
+            hertz(p.frequency_hz, 0),
             with_unit(result.axes[0].value(k % n), &result.units[0]),
             with_unit(result.axes[1].value(k / n), &result.units[1])
         ));
@@ -193,7 +193,7 @@ pub(in crate::report) fn damping_table(verdicts: &DampingVerdicts) -> Table {
         let grows = unstable(row.eigenvalue);
         let Some(critical) = row.critical_ratio else { continue };
         let cells = vec![
-            fixed(row.eigenvalue.im / TAU, 1),
+            hertz(row.eigenvalue.im / TAU, 1),
             signed(row.eigenvalue.re, 2),
             if grows { "unstable, stable above".into() } else { "stable, unstable below".into() },
             significant(100.0 * critical, 5),
@@ -202,7 +202,7 @@ pub(in crate::report) fn damping_table(verdicts: &DampingVerdicts) -> Table {
         table.row(cells, grows);
     }
     let firm = verdicts.rows.iter().filter(|r| r.critical_ratio.is_none() && unstable(r.eigenvalue));
-    let firm: Vec<String> = firm.map(|r| format!("{} Hz", fixed(r.eigenvalue.im / TAU, 0))).collect();
+    let firm: Vec<String> = firm.map(|r| format!("{} Hz", hertz(r.eigenvalue.im / TAU, 0))).collect();
     if table.rows.is_empty() {
         table.notes.push("No verdict flips in this range.".into());
     }

@@ -3,7 +3,7 @@
 use crate::report::axes::{Words, labelled};
 use crate::report::chart::{Area, colour, sheet, widened};
 use crate::report::colours::{ALARM, MUTED, SECOND};
-use crate::report::format::{fixed, significant};
+use crate::report::format::{fixed, hertz, significant};
 use crate::report::html::Picture;
 use crate::results::{Curve, RunResults};
 use plotters::prelude::*;
@@ -34,7 +34,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let caption = format!(
         "The last {} periods of {} Hz: velocity over displacement.{second}",
         fixed(orbit.periods[0], 0),
-        fixed(orbit.periods[1], 0)
+        hertz(orbit.periods[1], 0)
     );
     Some(Picture { file: "transient_phase.svg", caption, svg })
 }

@@ -4,7 +4,7 @@ use super::spectra::highest_frequency;
 use crate::report::axes::{WIDTH, axes};
 use crate::report::chart::{Area, above, bold, colour, sheet, text};
 use crate::report::colours::{ALARM, INK, SECOND};
-use crate::report::format::{fixed, given, significant};
+use crate::report::format::{fixed, given, hertz, significant};
 use crate::report::html::Picture;
 use crate::report::tables::Table;
 use crate::results::{RunResults, Sound, TransientResult};
@@ -96,7 +96,7 @@ fn label(
         let (x, y) = chart.backend_coord(&(tone.peak.frequency_hz, levels[line.min(levels.len() - 1)]));
         if taken.iter().all(|u| (u - x).abs() >= 60) {
             taken.push(x);
-            let words = format!("{} Hz", fixed(tone.peak.frequency_hz, 0));
+            let words = format!("{} Hz", hertz(tone.peak.frequency_hz, 0));
             area.draw_text(&words, &above(text(12.0, INK)), (x - left, y - upper - 4))?;
         }
     }
@@ -118,7 +118,7 @@ pub(in crate::report) fn table(run: &TransientResult, real_modes: &[String]) -> 
     let mut table = Table::new(caption, &headings);
     for tone in &sound.tones {
         let cells = vec![
-            fixed(tone.peak.frequency_hz, 1),
+            hertz(tone.peak.frequency_hz, 1),
             fixed(power_level(tone.power), 1),
             fixed(100.0 * tone.share, 1),
             tone.peak.relation.clone(),

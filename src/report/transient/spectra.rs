@@ -3,7 +3,7 @@
 use crate::report::axes::{Chart, WIDTH, axes};
 use crate::report::chart::{Area, above, bold, colour, sheet, text};
 use crate::report::colours::{ALARM, INK, MEASURED, SECOND};
-use crate::report::format::{fixed, given, significant};
+use crate::report::format::{given, hertz, significant};
 use crate::report::html::Picture;
 use crate::results::{Channel, RunResults, SpectrumOf, TransientResult};
 use plotters::prelude::*;
@@ -69,7 +69,7 @@ fn lines(
             continue;
         }
         taken.push(x);
-        let label = format!("{} Hz", fixed(peak.frequency_hz, 0));
+        let label = format!("{} Hz", hertz(peak.frequency_hz, 0));
         area.draw_text(&label, &above(bold(12.0, INK)), (x - left, y - upper - 4))?;
     }
     Ok(())

@@ -1,6 +1,6 @@
 //! The figures of a run in time.
 
-use crate::report::format::{fixed, given, power, signed, significant};
+use crate::report::format::{fixed, given, hertz, power, signed, significant};
 use crate::report::tables::Table;
 use crate::results::TransientResult;
 use std::f64::consts::TAU;
@@ -24,7 +24,7 @@ pub(in crate::report) fn table(run: &TransientResult) -> Table {
         for peak in &of.peaks {
             let cells = vec![
                 channel.name.replace('_', " "),
-                fixed(peak.frequency_hz, 1),
+                hertz(peak.frequency_hz, 1),
                 significant(peak.amplitude, 3),
                 channel.unit.to_string(),
                 near(&of.measured, peak.frequency_hz),
@@ -38,7 +38,7 @@ pub(in crate::report) fn table(run: &TransientResult) -> Table {
         table.notes.extend(of.beyond.map(|hz| {
             format!(
                 "The strongest line of {name} is at {} Hz, beyond the modes of the case, where a ratio given for them damps nothing: give [cea] a wider band or the materials `rayleigh` damping.",
-                fixed(hz, 0)
+                hertz(hz, 0)
             )
         }));
     }
@@ -53,10 +53,10 @@ pub(in crate::report) fn table(run: &TransientResult) -> Table {
             Some(found) => format!(
                 "Small disturbance: σ = {}/s at {} Hz, measured over {} s; the complex mode says {}/s at {} Hz.",
                 signed(found.rate, 2),
-                fixed(found.frequency_hz, 2),
+                hertz(found.frequency_hz, 2),
                 significant(found.window[1] - found.window[0], 3),
                 signed(sigma, 2),
-                fixed(hz, 2)
+                hertz(hz, 2)
             ),
             None => "The disturbance was too large, or the run too short, to measure how a small one grows.".into(),
         });

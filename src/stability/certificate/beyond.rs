@@ -7,7 +7,7 @@
 //! with k_s, c_s the symmetric and k_k the skew part of k and c. As ω ≤ σ, |s|² ≥ R² and σ ≤ |s|²/σ ≤ 2σ, it is positive
 //! definite, and s no eigenvalue, when C and H dissipate and
 //! * K + K_σ + R²M + W(k_s − |k_k| − 2b c₋)Wᵀ is positive definite, c₋ the negative part of c_s (σ ≤ b), and
-//! * ½ b M + W c_s Wᵀ is (σ > b).
+//! * ½ b M + W c_s Wᵀ is semidefinite (σ > b).
 //!
 //! The first is a matter of the receptance at s = R, the second of an inertia count, where friction falls.
 
@@ -16,7 +16,7 @@ use crate::error::Result;
 use crate::linalg::SparseMatrix;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::factor::inertia_like;
-use crate::linalg::sparse::{add_scaled, entry};
+use crate::linalg::sparse::{add_scaled, diagonal, entry};
 use crate::stability::analysis::Analysis;
 use faer::{Mat, MatRef};
 use std::f64::consts::TAU;
@@ -101,23 +101,36 @@ fn function(a: MatRef<'_, f64>, f: impl Fn(f64) -> f64) -> Result<Mat<f64>> {
     Ok(product(scaled.as_ref(), vectors.transpose()))
 }
 
-/// Whether ½ b M + W c_s Wᵀ is positive definite. First a diagonal below W c_s Wᵀ stands for it, as that is in the pattern
-/// whose analysis is at hand.
+/// Whether ½ b M + W c_s Wᵀ is positive semidefinite, M taken with the rounding of its entries ([`rounding`]). First a diagonal
+/// below W c_s Wᵀ stands for it, as that is in the pattern whose analysis is at hand.
 fn holds_against_friction(analysis: &Analysis<'_>, b: f64) -> bool {
     let (mass, stiffness) = (analysis.operator.mass, &*analysis.operator.stiffness);
     let definite = |matrix: &SparseMatrix| {
         inertia_like(analysis.factor, matrix).is_ok_and(|i| i.negative == 0 && i.zero == 0)
     };
     let friction = symmetric_damping(analysis);
-    let below = diagonal_below(&friction, mass);
-    definite(&add_scaled(&[(0.5 * b, mass), (0.0, stiffness), (1.0, &below)]))
-        || definite(&add_scaled(&[(0.5 * b, mass), (1.0, &friction)]))
+    let (rounding, below) = (rounding(mass), diagonal_below(&friction, mass));
+    let inertia = [(0.5 * b, mass), (0.5 * b, &rounding)];
+    definite(&add_scaled(&[inertia[0], inertia[1], (0.0, stiffness), (1.0, &below)]))
+        || definite(&add_scaled(&[inertia[0], inertia[1], (1.0, &friction)]))
+}
+
+/// A diagonal that bounds the rounding of M, d_i = 1e-14 |m_ii| + u max m: massless degrees of freedom have pivots of either
+/// sign of that size, whatever the units, and M + D is a mass matrix that the given one cannot be told from.
+fn rounding(mass: &SparseMatrix) -> SparseMatrix {
+    let own = diagonal(mass);
+    let largest = own.iter().fold(0.0f64, |l, m| l.max(*m));
+    let entries: Vec<_> =
+        own.iter().enumerate().map(|(i, m)| entry(i, i, 1e-14 * m.abs() + f64::EPSILON * largest)).collect();
+    SparseMatrix::try_new_from_triplets(own.len(), own.len(), &entries).expect("a diagonal")
 }
 
 /// A diagonal D with A − D positive semidefinite: by Gershgorin's discs of A in coordinates of unit mass,
-/// dᵢ = mᵢ (aᵢᵢ/mᵢ − Σ_{j≠i} |aᵢⱼ| / √(mᵢmⱼ)), mᵢ the diagonal of M.
+/// dᵢ = mᵢ (aᵢᵢ/mᵢ − Σ_{j≠i} |aᵢⱼ| / √(mᵢmⱼ)), mᵢ the diagonal of M, where it is no mass its rounding.
 fn diagonal_below(a: &SparseMatrix, mass: &SparseMatrix) -> SparseMatrix {
-    let m = |i: usize| mass.get(i, i).copied().unwrap_or(0.0);
+    let own = diagonal(mass);
+    let least = f64::EPSILON * own.iter().fold(0.0f64, |l, m| l.max(*m));
+    let m = |i: usize| own[i].max(least);
     let bound = |j: usize| {
         let entries = a.row_idx_of_col(j).zip(a.val_of_col(j));
         entries.map(|(i, v)| if i == j { *v } else { -v.abs() * (m(j) / m(i)).sqrt() }).sum()

@@ -18,11 +18,14 @@
 //!    bound ρ ([`spectrum`]).
 //! 3. *Beyond the region.* Nothing in the band grows faster than R ([`beyond`]); said where it could be shown.
 //!
+//! Where the part that is not symmetric has no low rank the determinant is followed at full order ([`determinant`]).
+//!
 //! What is assumed: the real modes are exact (their residuals enter squared), rounding errors are not bounded, and modal
 //! damping counts as acting on real modes when one random combination of its modes does.
 
 mod beyond;
 mod contour;
+mod determinant;
 mod pencil;
 mod reduced;
 mod remainder;
@@ -33,12 +36,17 @@ mod tests;
 
 use super::ComplexModes;
 use super::Structural;
-use super::analysis::{Analysis, Band, analyse};
+use super::analysis::{Analysis, Band, analyse, check};
+use super::general::general_modes;
+use super::operator::Operator;
 use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Result};
+use crate::numbers::hertz;
 use crate::progress::Observer;
 use crate::system::System;
 use contour::{Region, Stopped, Winding, wind};
+#[cfg(test)]
+pub(in crate::stability) use determinant::count as count_determinant;
 use pencil::Pencil;
 use reduced::ReducedModel;
 use spectrum::Spectrum;
@@ -74,6 +82,9 @@ pub struct Certificate {
     pub dissipative: bool,
     /// Whether it was shown that no eigenvalue of the band grows faster than the region reaches.
     pub nothing_faster: bool,
+    /// Whether the count is a proof, up to rounding, where `margin` is above 1. Otherwise it is that of a phase followed from point to
+    /// point at full order, `margin` half a turn by the largest step.
+    pub proven: bool,
     /// What came near to the contour or is not inside it though unstable.
     pub close_calls: Vec<CloseCall>,
 }
@@ -125,6 +136,9 @@ pub fn certified_modes<'a>(
     most_work: f64,
     observer: &dyn Observer,
 ) -> Result<(ComplexModes, Option<Certificate>)> {
+    if system.skew().is_some() {
+        return counted_at_full_order(system, steady, known.into(), band.into(), most_work, observer);
+    }
     let band = Band { nearest: None, ..band.into() };
     analyse(system, steady, known, band, observer, |modes, analysis| {
         let work = expected_work(&analysis, modes).min(spectrum::work(analysis.basis.len()));
@@ -153,6 +167,43 @@ pub fn certified_modes<'a>(
     })
 }
 
+/// [`certified_modes`] of a system with sparse skew parts; where only those nearest to a frequency are asked for there is nothing
+/// to compare a count with.
+fn counted_at_full_order(
+    system: &System,
+    steady: &SteadySliding,
+    known: Structural<'_>,
+    band: Band,
+    most_work: f64,
+    observer: &dyn Observer,
+) -> Result<(ComplexModes, Option<Certificate>)> {
+    check(system, steady, known.real, band.hz)?;
+    let operator = Operator::new(system, steady)?;
+    let mut general = general_modes(&operator, known.real, band, observer)?;
+    if band.nearest.is_some() {
+        general.modes.warnings.push(
+            "the unstable modes were not counted: those nearest to a frequency are asked for, not all of a band"
+                .to_string(),
+        );
+        return Ok((general.modes, None));
+    }
+    let work = determinant::work(&general);
+    if work > most_work {
+        determinant::not_counted(&mut general.modes, work);
+        return Ok((general.modes, None));
+    }
+    observer.begin("certificate", None);
+    let certificate = determinant::count(&operator, &general, band.hz);
+    observer.end();
+    match certificate {
+        Ok(certificate) => Ok((general.modes, Some(certificate))),
+        Err(error) => {
+            general.modes.warnings.push(format!("the unstable modes could not be counted: {error}"));
+            Ok((general.modes, None))
+        }
+    }
+}
+
 /// The directions in which the interface acts.
 fn directions(analysis: &Analysis<'_>) -> usize {
     analysis.operator.interface.active(TAU * analysis.band_hz[1]).len()
@@ -173,8 +224,8 @@ fn expected_work(analysis: &Analysis<'_>, modes: &ComplexModes) -> f64 {
 /// The count agrees, and yet is no proof.
 fn weak(certificate: &Certificate) -> String {
     format!(
-        "the count of the unstable modes is no proof at full order: near {:.1} Hz what the basis leaves out may be {:.1e} times what would change it; take more real modes (`cea.basis_below`)",
-        certificate.tightest[0],
+        "the count of the unstable modes is no proof at full order: near {} Hz what the basis leaves out may be {:.1e} times what would change it; take more real modes (`cea.basis_below`)",
+        hertz(certificate.tightest[0], 1),
         1.0 / certificate.margin
     )
 }
@@ -242,8 +293,8 @@ fn count_by(way: Way, analysis: &Analysis<'_>, modes: &ComplexModes, most_work: 
         let (found, help) = match stopped {
             Stopped::At(place) => (
                 format!(
-                    "an eigenvalue lies on the contour near {:.6} Hz, growth {:.3e} 1/s",
-                    place.im / TAU,
+                    "an eigenvalue lies on the contour near {} Hz, growth {:.3e} 1/s",
+                    hertz(place.im / TAU, 6),
                     place.re
                 ),
                 "Move the ends of the band by a few hertz",
@@ -269,6 +320,7 @@ fn count_by(way: Way, analysis: &Analysis<'_>, modes: &ComplexModes, most_work: 
         structure_poles,
         dissipative: model.dissipative,
         nothing_faster: beyond::nothing_faster(&model, analysis)?,
+        proven: true,
         close_calls: close_calls(modes, &region),
     })
 }

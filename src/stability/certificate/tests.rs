@@ -35,7 +35,7 @@ fn small_system(seed: u64) -> System {
     let stiffness = Mat::from_fn(r, r, |_, _| size * random.between(-1.0, 1.0));
     let push = if seed.is_multiple_of(3) { 0.0 } else { random.between(0.0, 4.0) };
     let damping = Mat::from_fn(r, r, |_, _| push * random.between(-1.0, 1.0));
-    system.coupling = Some(Coupling { directions, stiffness, damping });
+    system.coupling = Some(Coupling { directions, stiffness, damping, skew: None });
     damped_small(system, seed % 16, &mut random)
 }
 
@@ -128,8 +128,66 @@ fn large(seed: u64, kind: u64) -> (System, SteadySliding, RealModes, [f64; 2]) {
         || vector(&[0, 1, 2].map(|_| ((random.next() * n as f64) as usize, random.between(-1.0, 1.0))));
     let directions = vec![direction(), direction()];
     let (stiffness, damping) = (faer::mat![[0.0, 900.0], [-900.0, 0.0]], faer::mat![[-8.0, 0.0], [0.0, 0.0]]);
-    system.coupling = Some(Coupling { directions, stiffness, damping });
+    system.coupling = Some(Coupling { directions, stiffness, damping, skew: None });
     (system, state, real, [0.0, top])
+}
+
+/// Falling friction, and degrees of freedom with stiffness alone, whose masses are exact zeros or the rounding of one.
+#[test]
+fn the_rounding_of_a_mass_of_zero_costs_no_proof() {
+    let certified = |noise: f64| {
+        let (system, ..) = large(1003, 3);
+        let n = system.n_dofs();
+        let (m, k) = (system.structure.mass.to_dense(), system.structure.stiffness.to_dense());
+        let massless = |i: usize| i >= n;
+        let mut system = system.clone();
+        system.structure.mass = sparse(n + 3, |i, j| match (massless(i), massless(j)) {
+            (false, false) => 1e-6 * m[(i, j)],
+            (true, true) if i == j => noise,
+            _ => 0.0,
+        })
+        .into();
+        system.structure.stiffness = sparse(n + 3, |i, j| match (massless(i), massless(j)) {
+            (false, false) => 1e-6 * k[(i, j)] + if i == j && i < 3 { 1e-4 } else { 0.0 },
+            (true, true) => {
+                if i == j {
+                    3e-4
+                } else {
+                    0.0
+                }
+            }
+            _ => {
+                if i.abs_diff(j) == n {
+                    -1e-4
+                } else {
+                    0.0
+                }
+            }
+        })
+        .into();
+        system.structure.damping = Default::default();
+        system.load = vec![0.0; n + 3];
+        system.pairs.clear();
+        let coupling = system.coupling.as_mut().unwrap();
+        let micro = |a: &Mat<f64>| a * faer::Scale(1e-6);
+        (coupling.stiffness, coupling.damping) = (micro(&coupling.stiffness), micro(&coupling.damping));
+        let state = steady(&system);
+        let (real, _) =
+            crate::modal::compute(&system.structure, crate::modal::ModesWanted::BelowHz(12.0), &()).unwrap();
+        let band = [0.0, 0.5 * (real.frequency_hz(4) + real.frequency_hz(5))];
+        let (_, certificate) = certified_modes(&system, &state, &real, band, f64::INFINITY, &()).unwrap();
+        certificate.unwrap()
+    };
+    let exact = certified(0.0);
+    for noise in [1e-27, -1e-27] {
+        let certificate = certified(noise);
+        assert!(certificate.holds() && certificate.proven, "{noise:e}: {certificate:?}");
+        assert_eq!(
+            (certificate.counted, certificate.nothing_faster),
+            (exact.counted, exact.nothing_faster),
+            "{noise:e}: {certificate:?}"
+        );
+    }
 }
 
 #[test]
