@@ -1,6 +1,6 @@
 //! Reads what tests found: the tables `[measured.NAME]` and their files.
 
-use super::table::Table;
+use super::table::{MOST_FAULTS, Table};
 use crate::case::{Case, MeasuredData, read_test};
 use crate::error::text::{read_bytes, read_text};
 use crate::error::{Error, Fault, Faults, Result};
@@ -56,17 +56,28 @@ fn read_file(case: &Case, name: &str, file: &str, unit: f64) -> Result<Records> 
     let kind = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     let key = format!("`measured.{name}.file`");
     match kind.as_str() {
-        "csv" => table(&Table::read(&path, &COLUMNS[..1], &COLUMNS)?),
+        "csv" => modes_of(&Table::read(&path, &COLUMNS[..1], &COLUMNS)?),
         "toml" => read_test(&shown, &read_text(&path, "a test in TOML")?),
         "uff" | "unv" | "uf" | "ufb" => uff::read(&shown, &read_bytes(&path, "a universal file")?, unit),
         _ => Err(Error::input(Fault::new(key, format!("\"{file}\""), "a file .uff, .unv, .csv or .toml"))),
     }
 }
 
-fn table(table: &Table) -> Result<Records> {
+/// The modes in the CSV `text` of the file `name`: a heading that names the columns, then one mode a line.
+///
+/// # Errors
+/// Every fault of the heading, and the first faults of the lines.
+pub fn read_modes(name: &str, text: &str) -> Result<Records> {
+    modes_of(&Table::parse(name.to_string(), text.to_string(), &COLUMNS[..1], &COLUMNS)?)
+}
+
+fn modes_of(table: &Table) -> Result<Records> {
     let mut faults = Faults::new();
     let mut modes = Vec::new();
     for row in table.rows() {
+        if faults.0.len() >= MOST_FAULTS {
+            break;
+        }
         let mut share = |column: &str, low: f64| {
             if row.cell(column).is_empty() {
                 return None;
@@ -86,7 +97,7 @@ fn table(table: &Table) -> Result<Records> {
         }
         modes.push(ModeRecord { frequency_hz, damping_ratio, deviation, shape: BTreeMap::new() });
     }
-    faults.0.truncate(20);
+    faults.0.truncate(MOST_FAULTS);
     faults.into_result(Records { modes, ..Records::default() })
 }
 

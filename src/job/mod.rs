@@ -49,7 +49,7 @@ pub use calibrate::Coordinate;
 pub use explore::{KnownMap, KnownMaps};
 pub use export::export;
 pub use keeper::{Histories, Keeper, Stage};
-pub use measured::measured_set;
+pub use measured::{measured_set, read_modes};
 pub use memory::{ExpectedMemory, expected_memory};
 pub use prepared::Prepared;
 pub use states::Whole;

@@ -4,6 +4,9 @@ use crate::error::text::read_text;
 use crate::error::{Fault, Faults, Result};
 use std::path::Path;
 
+/// The most faults that are told of one file.
+pub(super) const MOST_FAULTS: usize = 20;
+
 /// A table with the file it comes from.
 pub struct Table {
     name: String,
@@ -21,16 +24,28 @@ pub struct Row<'a> {
 }
 
 impl Table {
-    /// Reads the file at `path`; its heading may only name columns among `known` and must name all of `required`.
+    /// Reads the file at `path`; see [`Table::parse`].
     ///
     /// # Errors
-    /// No such file, columns that are not known, missing or named twice, rows of another length.
+    /// No such file, and those of [`Table::parse`].
     pub fn read(path: &Path, required: &[&str], known: &[&str]) -> Result<Table> {
         let name = path.display().to_string();
         let text = read_text(path, "a table (CSV)")?;
+        Table::parse(name, text, required, known)
+    }
+
+    /// The table of the `text` of the file `name`; its heading may only name columns among `known` and must name all of
+    /// `required`.
+    ///
+    /// # Errors
+    /// Columns that are not known, missing or named twice, rows of another length.
+    pub fn parse(name: String, text: String, required: &[&str], known: &[&str]) -> Result<Table> {
         let heading = text.lines().next().unwrap_or("");
         let separator = if heading.contains(';') { ';' } else { ',' };
-        let columns: Vec<String> = heading.split(separator).map(|c| c.trim().to_lowercase()).collect();
+        // Beyond these, every further column is not known or there twice.
+        let most = known.len() + MOST_FAULTS;
+        let columns: Vec<String> =
+            heading.split(separator).take(most).map(|c| c.trim().to_lowercase()).collect();
         let mut faults = Faults::new();
         let all = format!("columns among {}", known.join(", "));
         for (k, column) in columns.iter().enumerate() {
@@ -44,6 +59,9 @@ impl Table {
         let table = Table { name, separator, columns, text };
         let width = table.columns.len();
         for row in table.rows() {
+            if faults.0.len() >= MOST_FAULTS {
+                break;
+            }
             let cells = row.text.split(separator).count();
             if cells != width {
                 faults.push(Fault::new(
@@ -53,7 +71,7 @@ impl Table {
                 ));
             }
         }
-        faults.0.truncate(20);
+        faults.0.truncate(MOST_FAULTS);
         faults.into_result(table)
     }
 

@@ -48,42 +48,10 @@ pub fn read_search(path: &Path) -> Result<SearchFile> {
     let place = path.display().to_string();
     let text = read_text(path, "the file of a search, in TOML")?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let mut faults = Faults::new();
-    let read = read_document(&place, &text, |root| {
-        let file = root.string("case").or("case.toml".into());
-        match faults.take(read_case(&folder.join(&file))) {
-            Some(case) => Some(read_root(root, &file, case)),
-            None => {
-                root.skip(&["title", "source", "evaluations", "seed", "spread", "parameter", "fact"]);
-                None
-            }
-        }
-    });
-    let found = faults.take(read.map(|(found, _)| found)).flatten();
-    let Some(mut found) = found else { return Err(Error::Input(faults)) };
-    let files: BTreeSet<&String> = found.checks.iter().map(|check| &check.of.case).collect();
-    for file in files {
-        if !found.cases.contains_key(file) {
-            found.cases.extend(faults.take(read_case(&folder.join(file))).map(|case| (file.clone(), case)));
-        }
-    }
-    let mut start = Vec::new();
-    for (name, parameter) in &found.parameters {
-        let key = |key: &str| format!("{place}: `parameter.{name}.{key}`");
-        start.extend(faults.take(parameter.start(&found.case, key)));
-        for (file, case) in &found.cases {
-            for path in parameter.path.iter().filter(|path| case.parameter(path).is_err()) {
-                let found = format!("`{path}`, no number of {file}");
-                faults.push(Fault::new(key("path"), found, "scalars that every case of the facts has"));
-            }
-        }
-    }
-    found.start = start;
+    let found = SearchFile::parse(&place, &text, |file| read_case(&folder.join(file)))?;
     let stem = path.file_stem().unwrap_or_default();
     let name = folder.file_name().filter(|_| stem == "search").unwrap_or(stem);
-    found.name = name.to_string_lossy().into_owned();
-    found.text = text;
-    faults.into_result(found)
+    Ok(SearchFile { name: name.to_string_lossy().into_owned(), text, ..found })
 }
 
 fn read_root(root: &Section, file: &str, case: Case) -> SearchFile {
@@ -118,6 +86,45 @@ fn read_root(root: &Section, file: &str, case: Case) -> SearchFile {
 }
 
 impl SearchFile {
+    /// The search of the `text` of the file `place`, without a name; `read` gives the case of a file.
+    ///
+    /// # Errors
+    /// Every fault of the text, and of its cases.
+    pub fn parse(place: &str, text: &str, read: impl Fn(&str) -> Result<Case>) -> Result<SearchFile> {
+        let mut faults = Faults::new();
+        let found = read_document(place, text, |root| {
+            let file = root.string("case").or("case.toml".into());
+            match faults.take(read(&file)) {
+                Some(case) => Some(read_root(root, &file, case)),
+                None => {
+                    root.skip(&["title", "source", "evaluations", "seed", "spread", "parameter", "fact"]);
+                    None
+                }
+            }
+        });
+        let found = faults.take(found.map(|(found, _)| found)).flatten();
+        let Some(mut found) = found else { return Err(Error::Input(faults)) };
+        let files: BTreeSet<&String> = found.checks.iter().map(|check| &check.of.case).collect();
+        for file in files {
+            if !found.cases.contains_key(file) {
+                found.cases.extend(faults.take(read(file)).map(|case| (file.clone(), case)));
+            }
+        }
+        let mut start = Vec::new();
+        for (name, parameter) in &found.parameters {
+            let key = |key: &str| format!("{place}: `parameter.{name}.{key}`");
+            start.extend(faults.take(parameter.start(&found.case, key)));
+            for (file, case) in &found.cases {
+                for path in parameter.path.iter().filter(|path| case.parameter(path).is_err()) {
+                    let found = format!("`{path}`, no number of {file}");
+                    faults.push(Fault::new(key("path"), found, "scalars that every case of the facts has"));
+                }
+            }
+        }
+        found.start = start;
+        faults.into_result(found)
+    }
+
     /// `case` with the numbers at `values` \[SI\].
     pub(super) fn with(&self, case: &Case, values: &[f64]) -> Result<Case> {
         case.with_numbers(self.parameters.values(), values)

@@ -211,24 +211,37 @@ impl Check {
 pub fn read(folder: &Path) -> Result<Reference> {
     let path = folder.join("reference.toml");
     let text = read_text(&path, "the reference values of a validation case, in TOML")?;
-    let ((title, source, checks), _) = read_document(&path.display().to_string(), &text, |root| {
-        let case = root.string("case").or("case.toml".into());
-        let reason = root.text("reason").or(String::new());
-        (
-            root.text("title").required("one line"),
-            root.text("source").required("where the reference values come from"),
-            root.named("check", |name, s| read_check(name, s, &case, &reason)),
-        )
-    })?;
-    let mut faults = Faults::new();
-    let quantities = checks.iter().flat_map(|check| std::iter::once(&check.of).chain(&check.second));
-    let files: BTreeSet<&String> = quantities.map(|quantity| &quantity.case).collect();
-    let cases = files
-        .into_iter()
-        .filter_map(|file| faults.take(read_case(&folder.join(file))).map(|case| (file.clone(), case)));
-    let cases: BTreeMap<String, Case> = cases.collect();
-    let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    faults.into_result(Reference { name, title, source, cases, checks })
+    let reference =
+        Reference::parse(&path.display().to_string(), &text, |file| read_case(&folder.join(file)))?;
+    Ok(Reference { name: folder.file_name().unwrap_or_default().to_string_lossy().into_owned(), ..reference })
+}
+
+impl Reference {
+    /// The validation case of the `text` of the file `place`, without a name; `read` gives the case of a file.
+    ///
+    /// # Errors
+    /// Every fault of the text, or of its cases.
+    pub fn parse(place: &str, text: &str, read: impl Fn(&str) -> Result<Case>) -> Result<Reference> {
+        let (mut reference, _) = read_document(place, text, |root| {
+            let case = root.string("case").or("case.toml".into());
+            let reason = root.text("reason").or(String::new());
+            Reference {
+                name: String::new(),
+                title: root.text("title").required("one line"),
+                source: root.text("source").required("where the reference values come from"),
+                cases: BTreeMap::new(),
+                checks: root.named("check", |name, s| read_check(name, s, &case, &reason)),
+            }
+        })?;
+        let mut faults = Faults::new();
+        let quantities =
+            reference.checks.iter().flat_map(|check| std::iter::once(&check.of).chain(&check.second));
+        let files: BTreeSet<&String> = quantities.map(|quantity| &quantity.case).collect();
+        let cases =
+            files.into_iter().filter_map(|file| faults.take(read(file)).map(|case| (file.clone(), case)));
+        reference.cases = cases.collect();
+        faults.into_result(reference)
+    }
 }
 
 /// A quantity of the case file `case` with its reference, tolerance and the `reason` for it, which the table may state

@@ -1,0 +1,130 @@
+//! The readers, each from bytes in memory.
+
+use std::path::PathBuf;
+use stridor::case::{Case, read_test};
+use stridor::error::Result;
+use stridor::search::SearchFile;
+use stridor::validation::Reference;
+use stridor::{job, linalg::matrix_market, measured::uff, mesh::gmsh};
+
+/// A reader and what it may need.
+pub struct Reader {
+    pub name: &'static str,
+    /// Reads the bytes; what it found in few words, so that inputs of another kind are told apart.
+    pub read: fn(&[u8]) -> Result<String>,
+    /// Files of the repository to begin with, by their folder and the end of their name, beside those of the corpus.
+    pub samples: &'static [(&'static str, &'static str)],
+    /// Memory: at most so many times the input …
+    pub times: usize,
+    /// … and so many bytes.
+    pub constant: usize,
+}
+
+const KIB: usize = 1 << 10;
+
+/// `times` is what an input of the densest kind takes, a list just after it has been doubled and copied: `1,1,1` in a list of
+/// TOML makes some 110 bytes of two, a line of one digit a mode of 64, an empty line of a universal file 32.
+pub const READERS: [Reader; 8] = [
+    Reader {
+        name: "mesh",
+        read: mesh,
+        samples: &[("tests/data", ".msh"), ("validation", ".msh")],
+        times: 16,
+        constant: 64 * KIB,
+    },
+    Reader {
+        name: "matrix",
+        read: matrix,
+        samples: &[("validation", ".mtx")],
+        times: 24,
+        constant: 64 * KIB,
+    },
+    Reader {
+        name: "universal",
+        read: universal,
+        samples: &[("validation", ".uff")],
+        times: 128,
+        constant: 64 * KIB,
+    },
+    Reader { name: "table", read: table, samples: &[("validation", ".csv")], times: 128, constant: 64 * KIB },
+    Reader {
+        name: "test",
+        read: test,
+        samples: &[("validation", "list.toml"), ("validation", "tap.toml")],
+        times: 192,
+        constant: 512 * KIB,
+    },
+    Reader {
+        name: "case",
+        read: case,
+        samples: &[("validation", "case.toml")],
+        times: 224,
+        constant: 512 * KIB,
+    },
+    Reader {
+        name: "reference",
+        read: reference,
+        samples: &[("validation", "reference.toml")],
+        times: 192,
+        constant: 512 * KIB,
+    },
+    Reader {
+        name: "search",
+        read: search,
+        samples: &[("validation", "search.toml")],
+        times: 192,
+        constant: 512 * KIB,
+    },
+];
+
+/// log₂: counts of about the same size are the same kind.
+fn about(count: usize) -> u32 {
+    count.checked_ilog2().map_or(0, |log| log + 1)
+}
+
+fn mesh(bytes: &[u8]) -> Result<String> {
+    let mesh = gmsh::parse(bytes, "mesh", 1e-3)?;
+    Ok(format!("{} nodes, {} regions", about(mesh.nodes.len()), about(mesh.regions.len())))
+}
+
+fn matrix(bytes: &[u8]) -> Result<String> {
+    let matrix = matrix_market::parse("matrix", bytes)?;
+    Ok(format!("{} rows, {}", about(matrix.re.nrows()), about(matrix.re.compute_nnz())))
+}
+
+fn universal(bytes: &[u8]) -> Result<String> {
+    let records = uff::read("universal", bytes, 1e-3)?;
+    let counts = [records.points.len(), records.modes.len(), records.functions.len()];
+    let (_, warnings) = records.into_set();
+    Ok(format!("{:?} {}", counts.map(about), about(warnings.len())))
+}
+
+fn table(bytes: &[u8]) -> Result<String> {
+    Ok(about(job::read_modes("table", &String::from_utf8_lossy(bytes))?.modes.len()).to_string())
+}
+
+fn test(bytes: &[u8]) -> Result<String> {
+    let records = read_test("test", &String::from_utf8_lossy(bytes))?;
+    Ok(format!("{} {}", about(records.points.len()), about(records.modes.len())))
+}
+
+/// A case must also give its scalars, for which it is written and read again.
+fn case(bytes: &[u8]) -> Result<String> {
+    let case = Case::parse("case", &String::from_utf8_lossy(bytes), PathBuf::new())?;
+    Ok(about(case.parameters()?.len()).to_string())
+}
+
+/// The case of every reference and search.
+fn sample_case(_: &str) -> Result<Case> {
+    Case::parse("case", include_str!("../validation/two-dof/case.toml"), PathBuf::new())
+}
+
+fn reference(bytes: &[u8]) -> Result<String> {
+    let text = String::from_utf8_lossy(bytes);
+    Ok(about(Reference::parse("reference", &text, sample_case)?.checks.len()).to_string())
+}
+
+fn search(bytes: &[u8]) -> Result<String> {
+    let text = String::from_utf8_lossy(bytes);
+    Ok(about(SearchFile::parse("search", &text, sample_case)?.parameters.len()).to_string())
+}
