@@ -121,7 +121,7 @@ fn holds(reader: &Reader, options: &Options) -> bool {
         Instant::now() + Duration::from_secs(if options.seconds == 0 { 1 << 30 } else { options.seconds });
     let mut new = Vec::new();
     while run.executions < options.executions && run.wrong.len() < 10 {
-        if run.executions % 64 == 0 && Instant::now() > until {
+        if run.executions.is_multiple_of(64) && Instant::now() > until {
             break;
         }
         let input = mutated(&mut random, &inputs, &words);

@@ -143,6 +143,9 @@ impl Side {
     }
 }
 
+/// A sparse skew part, and what multiplies it in a sum.
+type SkewPart<'a> = (&'a SparseMatrix, fn(&Sum) -> c64);
+
 impl<'a> Operator<'a> {
     pub(super) fn new(system: &'a System, steady: &SteadySliding) -> Result<Self> {
         let stiffness = tangent_stiffness(system, &steady.displacement)?;
@@ -336,8 +339,8 @@ impl<'a> Operator<'a> {
     }
 
     /// The sparse skew parts of K and C, and what multiplies them in a sum.
-    fn skew_parts(&self) -> impl Iterator<Item = (&'a SparseMatrix, fn(&Sum) -> c64)> {
-        let parts = |skew: &'a Skew| -> [(&'a SparseMatrix, fn(&Sum) -> c64); 2] {
+    fn skew_parts(&self) -> impl Iterator<Item = SkewPart<'a>> {
+        let parts = |skew: &'a Skew| -> [SkewPart<'a>; 2] {
             [(&skew.stiffness, |sum| sum.contact), (&skew.damping, |sum| sum.damping)]
         };
         self.skew.map(parts).into_iter().flatten()

@@ -113,9 +113,9 @@ impl UnsymmetricFactor {
         let factor = UnsymmetricFactor { plan, fronts, scaling, matrix, norms, phase: phase / phase.norm() };
         let probe =
             |i: usize, j: usize| c64::new(((i + 1) as f64 * (0.7 + j as f64)).sin(), (1.3 * i as f64).cos());
-        let mut probe = Mat::from_fn(factor.n(), 1, |i, j| probe(i, j));
+        let mut probe = Mat::from_fn(factor.n(), 1, probe);
         let error = factor.solve(System::Plain, probe.as_mut());
-        if !(error <= ACCEPTED) {
+        if error.is_nan() || error > ACCEPTED {
             return Err(Error::analysis(
                 "factorisation",
                 format!("the factors solve with a backward error of {error:.1e}, more than {ACCEPTED:.0e}"),
@@ -158,7 +158,7 @@ impl UnsymmetricFactor {
             let residual = &b - self.times(system, rhs.rb());
             let new = self.backward_error(system, b.as_ref(), rhs.rb(), residual.as_ref());
             // Where it does not fall any more, rounding is all that is left.
-            if new <= REFINED || refinement == REFINEMENTS || !(new <= 0.5 * error) {
+            if new <= REFINED || refinement == REFINEMENTS || new.is_nan() || new > 0.5 * error {
                 return new.min(error);
             }
             error = new;
@@ -259,9 +259,12 @@ fn singular(plan: &Plan, fronts: &[Front], front: &Front) -> Error {
     )
 }
 
+/// The fronts of a task with their nodes, and the remainders of its last ones.
+type Eliminated = (Vec<(usize, Front)>, Vec<Remainder>);
+
 impl Elimination<'_> {
-    /// Runs a task; gives its fronts with their nodes, and the remainders of its last ones.
-    fn run(&self, task: &Task) -> Result<(Vec<(usize, Front)>, Vec<Remainder>)> {
+    /// Runs a task.
+    fn run(&self, task: &Task) -> Result<Eliminated> {
         let results: Vec<_> = task.subtasks.par_iter().map(|task| self.run(task)).collect();
         let mut results = task.subtasks.iter().zip(results);
         let (mut fronts, mut stack) = (Vec::new(), Vec::<(usize, Remainder)>::new());
