@@ -13,6 +13,7 @@ mod matrices;
 mod measured;
 mod mesh;
 mod parameter;
+mod places;
 mod read;
 pub(crate) mod reader;
 mod sound;
@@ -30,9 +31,9 @@ pub use measured::{MeasuredData, Transform};
 pub use mesh::{GeneratedMesh, MeshSource, RigMesh};
 pub(crate) use parameter::path_matches;
 pub use parameter::{Invalidates, Parameter};
+pub use places::Places;
 pub(crate) use read::DOF_NAMES;
 pub use read::read_case;
-pub use reader::Places;
 pub use sound::{AirChoice, Microphone, ON_AXIS, SoundAnalysis};
 pub use test_file::read_test;
 pub use transient::{

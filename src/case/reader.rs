@@ -1,6 +1,7 @@
 //! Reads TOML section by section, remembering every fault with its line: unknown keys, wrong types, wrong units.
 
 use super::keys::dotted;
+use super::places::Places;
 use super::units::{Dimension, NUMBER, parse_quantity};
 use crate::error::{Error, Fault, Faults, Result, nearest};
 use std::cell::{Cell, RefCell};
@@ -24,48 +25,6 @@ pub struct Reader<'a> {
     /// Whether a table of named tables is none, so that names are unknown that the text may have meant to define.
     nameless: Cell<bool>,
     quantities: RefCell<Vec<Quantity>>,
-}
-
-/// Where the keys of a case stand in its file. Two of them are always equal: a case is what it says, not where.
-#[derive(Debug, Clone, Default)]
-pub struct Places {
-    file: String,
-    /// The line of each key, by its path.
-    lines: BTreeMap<String, usize>,
-}
-
-impl PartialEq for Places {
-    fn eq(&self, _: &Places) -> bool {
-        true
-    }
-}
-
-impl Places {
-    /// The same error; faults whose place begins with a key in back-ticks get file and line before it, in the order of
-    /// the lines.
-    pub(crate) fn locate(&self, error: Error) -> Error {
-        let Error::Input(Faults(faults)) = error else { return error };
-        let mut located: Vec<(usize, Fault)> =
-            faults.into_iter().map(|fault| self.with_line(fault)).collect();
-        located.sort_by_key(|(line, _)| *line);
-        Error::Input(Faults(located.into_iter().map(|(_, fault)| fault).collect()))
-    }
-
-    fn with_line(&self, fault: Fault) -> (usize, Fault) {
-        let key = fault.place.strip_prefix('`').and_then(|rest| rest.split('`').next());
-        let Some(key) = key.filter(|_| !self.file.is_empty()) else { return (0, fault) };
-        let mut path = key;
-        let line = loop {
-            match (self.lines.get(path), path.rsplit_once('.')) {
-                (Some(line), _) => break Some(*line),
-                (None, Some((parent, _))) => path = parent,
-                (None, None) => break None,
-            }
-        };
-        let line_of = line.map_or(String::new(), |line| format!(":{line}"));
-        let place = format!("{}{line_of} {}", self.file, fault.place);
-        (line.unwrap_or(0), Fault { place, ..fault })
-    }
 }
 
 /// A number that the text gives, with what its reader knows about it.
@@ -264,7 +223,7 @@ impl<'a> Section<'a> {
 
     /// Where the keys of this table stand, and those of the tables in it.
     pub fn places(&self) -> Places {
-        let mut places = Places { file: self.reader.file.to_string(), lines: BTreeMap::new() };
+        let mut lines = BTreeMap::new();
         let mut tables = vec![(self.path.clone(), self.table)];
         while let Some((path, table)) = tables.pop() {
             for (key, value) in table {
@@ -273,10 +232,10 @@ impl<'a> Section<'a> {
                 if let Some(table) = value.get_ref().as_table() {
                     tables.push((path.clone(), table));
                 }
-                places.lines.insert(path, self.reader.line(key.span().start));
+                lines.insert(path, self.reader.line(key.span().start));
             }
         }
-        places
+        Places { file: self.reader.file.to_string(), lines }
     }
 
     /// Whether the table has `key`.
