@@ -265,7 +265,7 @@ mod tests {
         let errors = [
             Error::input(fault),
             Error::analysis("a\u{7}", "b\u{1b}", "c\r"),
-            Error::io("/tmp/\u{1b}[31m", "no\u{9b}", "Try \u{2066}"),
+            Error::io("/data/\u{1b}[31m", "no\u{9b}", "Try \u{2066}"),
         ];
         for error in errors {
             let text = error.to_string();

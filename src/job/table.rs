@@ -4,7 +4,7 @@ use crate::error::text::read_text;
 use crate::error::{Fault, Faults, Result};
 use std::path::Path;
 
-/// The most faults that are told of one file.
+/// The most faults that are reported of one file.
 pub(super) const MOST_FAULTS: usize = 20;
 
 /// A table with the file it comes from.

@@ -57,7 +57,7 @@ struct Piece {
     whole: bool,
 }
 
-/// Looks for the modes that `asked` names; `real` are the modes of the symmetric part, of which their shapes are told.
+/// Looks for the modes that `asked` names; `real` are the modes of the symmetric part, in which their shapes are expressed.
 ///
 /// # Errors
 /// A shift that cannot be factorised, or an iteration that does not converge.
@@ -248,7 +248,7 @@ impl<'a> Search<'a> {
             let left_values: Vec<c64> = left.values.iter().map(|z| z.conj()).collect();
             let partners = partners(&right.values, &left_values);
             // A pair at the rim of the circle may have its partner just beyond. One that has none keeps the nearest, and an error
-            // that tells.
+            // that shows it.
             let enough = left.values.len() < count + further || further > count;
             if enough && left_values.is_empty() && !right.values.is_empty() {
                 let found = format!("no left eigenvector near {} Hz", hertz(middle / TAU, 2));
@@ -274,7 +274,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Modes with all that is told of them.
+    /// Modes with their errors, condition numbers and growth budgets.
     fn measured(&self, piece: Piece, real: &RealModes, left_vectors: bool) -> Vec<ComplexMode> {
         let piece = self.biorthogonal(piece);
         let operator = self.operator;

@@ -38,7 +38,7 @@ pub(super) struct Contact {
     motion: [Vec<f64>; 2],
     /// ρ = r − R.
     rho: Vec<f64>,
-    /// J⁻¹ρ, and what it makes of x: b S J⁻¹ρ.
+    /// J⁻¹ρ, and the motion b S J⁻¹ρ that it causes.
     newton: Vec<f64>,
     moved: Vec<f64>,
     /// J⁻¹ρ with the same J after the step.
@@ -87,7 +87,7 @@ impl Contact {
     }
 
     /// Newton's method from the last reaction, with steps halved while they do not bring the next one down (Deuflhard's natural
-    /// monotonicity test, of what they make of x). Leaves r in `reaction`.
+    /// monotonicity test, in the motion x). Leaves r in `reaction`.
     pub(super) fn solve(
         &mut self,
         model: &Model<'_>,
