@@ -10,7 +10,7 @@ use stridor::{job, linalg::matrix_market, measured::uff, mesh::gmsh};
 /// A reader and what it may need.
 pub struct Reader {
     pub name: &'static str,
-    /// Reads the bytes; what it found in few words, so that inputs of another kind are told apart.
+    /// Reads the bytes; what it found in few words, which distinguishes kinds of inputs.
     pub read: fn(&[u8]) -> Result<String>,
     /// Files of the repository to begin with, by their folder and the end of their name, beside those of the corpus.
     pub samples: &'static [(&'static str, &'static str)],

@@ -10,7 +10,7 @@ pub struct Available {
 }
 
 /// The least of what Linux calls available, what the control groups of the process leave, and what its limit of addresses
-/// (`ulimit -v`) leaves; `None` where the system does not tell.
+/// (`ulimit -v`) leaves; `None` where the system does not say.
 pub fn available() -> Option<Available> {
     let machine = || field(&read("/proc/meminfo")?, "MemAvailable:");
     let own = || field(&read("/proc/self/status")?, "VmSize:");

@@ -317,7 +317,7 @@ fn small_pairs(operator: &Operator<'_>, basis: &Basis<'_>, band: [f64; 2]) -> Re
     )
 }
 
-/// Keeps the `count` pairs nearest to iω of `hz`, and those that cannot be told from the last.
+/// Keeps the `count` pairs nearest to iω of `hz`, and those as near as the last.
 fn keep_nearest(pairs: &mut Vec<SmallPair>, (hz, count): (f64, usize)) {
     let distance = |pair: &SmallPair| (pair.lambda - c64::new(0.0, TAU * hz)).norm();
     let mut sorted: Vec<f64> = pairs.iter().map(distance).collect();

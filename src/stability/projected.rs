@@ -208,7 +208,7 @@ impl Companion {
 }
 
 /// One Newton step for all pairs, which takes back what the linearisation lost: y − Q(λ)⁻¹Q(λ)y with the inverse that the
-/// companion matrix tells but for the pole at λ, and λ − zᴴQ(λ)y / zᴴQ′(λ)y. It is kept where it brings both residuals down.
+/// companion matrix gives but for the pole at λ, and λ − zᴴQ(λ)y / zᴴQ′(λ)y. It is kept where it brings both residuals down.
 fn polished(quadratic: &Quadratic, companion: &Companion, pairs: Vectors) -> Vec<SmallPair> {
     let [right, left] = quadratic.values(&pairs);
     let size = |[right, left]: [&Mat<c64>; 2], j: usize| right.col(j).norm_l2().max(left.col(j).norm_l2());

@@ -50,7 +50,7 @@ pub(super) struct Scale<'a> {
 }
 
 impl Scale<'_> {
-    /// Measures pairs, given λ, φ and what is told of ψ. The right corrections, which are solved for, tell the errors of λ
+    /// Measures pairs, given λ, φ and what is known of ψ. The right corrections, which are solved for, give the errors of λ
     /// and φ.
     pub(super) fn measure(&self, pairs: &mut Measured) {
         let Scale { operator, basis, factor, top } = *self;

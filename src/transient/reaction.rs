@@ -139,7 +139,7 @@ impl Reaction {
         off.map(|k| (self.force[k] - force[k]).abs()).fold(0.0, f64::max) / largest
     }
 
-    /// Tells every row of the linearised equation in which something acts.
+    /// Calls `tell` with every row of the linearised equation in which something acts.
     pub(super) fn rows(&self, model: &Model<'_>, rate: f64, tell: &mut dyn FnMut(Row<'_>)) {
         let acting = self.blocks.iter().filter(|block| block.acts() || self.holds(block.point));
         for block in acting {

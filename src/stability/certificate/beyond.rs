@@ -116,7 +116,7 @@ fn holds_against_friction(analysis: &Analysis<'_>, b: f64) -> bool {
 }
 
 /// A diagonal that bounds the rounding of M, d_i = 1e-14 |m_ii| + u max m: massless degrees of freedom have pivots of either
-/// sign of that size, whatever the units, and M + D is a mass matrix that the given one cannot be told from.
+/// sign of that size, whatever the units, and M + D is a mass matrix equal to the given one within rounding.
 fn rounding(mass: &SparseMatrix) -> SparseMatrix {
     let own = diagonal(mass);
     let largest = own.iter().fold(0.0f64, |l, m| l.max(*m));
