@@ -1,14 +1,21 @@
 //! The binary: parse, run, exit code; and what it says when the machine gives no more memory.
 
 use std::alloc::{GlobalAlloc, Layout};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use stridor::pages::LargePages;
 
 #[global_allocator]
 static MEMORY: OrExit = OrExit;
 
+/// Whether the program has come to its own end.
+static ENDED: AtomicBool = AtomicBool::new(false);
+
 fn main() -> std::process::ExitCode {
     on_abort();
-    stridor::cli::main()
+    on_exit();
+    let code = stridor::cli::main();
+    ENDED.store(true, Relaxed);
+    code
 }
 
 /// Memory in large pages. Where there is none left the program says so and ends with exit code 1: a library cannot know
@@ -68,12 +75,26 @@ fn end(text: &[&[u8]]) -> ! {
     unsafe { libc::_exit(1) }
 }
 
+const NO_MEMORY: &[u8] =
+    b"error: the program had to end: a stack or a library ran out of memory. Raise the limits (`ulimit -s`, \
+    `ulimit -v`), or take a coarser mesh or `--threads 1`.\n";
+
+/// C libraries without memory may call exit(3), HDF5 for one: that is an error with a sentence, too.
+fn on_exit() {
+    extern "C" fn said() {
+        if !ENDED.load(Relaxed) {
+            end(&[NO_MEMORY]);
+        }
+    }
+    // SAFETY: the handler only reads a flag, writes and ends the process. Without it the exit code is the library's.
+    unsafe { libc::atexit(said) };
+}
+
 /// A stack that overflows, and C libraries without memory, abort: then, too, the program ends with a sentence and exit code 1.
 #[cfg(unix)]
 fn on_abort() {
     extern "C" fn said(_: libc::c_int) {
-        end(&[b"error: the program had to end: a stack or a library ran out of memory. Raise the limits (`ulimit -s`, \
-                `ulimit -v`), or take a coarser mesh or `--threads 1`.\n"]);
+        end(&[NO_MEMORY]);
     }
     // SAFETY: the handler only writes and ends the process, which is allowed in one.
     unsafe { libc::signal(libc::SIGABRT, said as extern "C" fn(libc::c_int) as libc::sighandler_t) };

@@ -33,6 +33,7 @@ const MAY_USE: [(&str, &[&str]); 28] = [
         "results",
         &[
             "error",
+            "memory",
             "linalg",
             "equilibrium",
             "modal",

@@ -1,7 +1,11 @@
 //! Results folders under kills, refused writes, reruns and changed inputs: nothing is lost, nothing is mixed. A run in time
 //! that is killed with SIGKILL is taken up, and the result is that of a whole run.
 
+#[path = "common/program.rs"]
+mod program;
+
 use ndarray::Array1;
+use program::{Record, names, numbers, titles};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -148,19 +152,6 @@ fn kill_after(time: Duration, folder: &Path, case: &str, out: &str, resume: bool
     child.wait().expect("it ends");
 }
 
-/// Arrays of numbers by name, as bits.
-type Record = Vec<(String, Vec<u64>)>;
-
-/// Every array of numbers in a group and below.
-fn numbers(group: &hdf5::Group, found: &mut Record) {
-    for dataset in group.datasets().expect("datasets") {
-        if let Ok(values) = dataset.read_raw::<f64>() {
-            found.push((dataset.name(), values.iter().map(|v| v.to_bits()).collect()));
-        }
-    }
-    group.groups().expect("groups").iter().for_each(|inner| numbers(inner, found));
-}
-
 /// What a finished run says: the numbers of its record, its summary without wall times, its tables.
 fn said(out: &Path) -> (Record, serde_json::Value, [Vec<u8>; 2]) {
     let file = hdf5::File::open(out.join("results.h5")).expect("results.h5 opens");
@@ -212,6 +203,18 @@ fn taken_up_from(out: &Path) -> Option<u64> {
 
 #[test]
 fn a_killed_run_opens_and_goes_on_bit_for_bit() {
+    killed_runs_go_on(&MOMENTS);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn two_hundred_killed_runs_open_and_go_on_bit_for_bit() {
+    let moments: Vec<f64> = (1..=200).map(|k| (f64::from(k) * 0.618_033_988_749_895).fract()).collect();
+    killed_runs_go_on(&moments);
+}
+
+/// Kills runs at these parts of the time that a whole one takes.
+fn killed_runs_go_on(moments: &[f64]) {
     let folder = TempDir::new().expect("a temporary folder");
     let at = folder.path();
     let reduced = BLOCK.replace("[transient]\n", "[transient]\nmodel = \"reduced\"\ntolerance = 1e-5\n");
@@ -225,7 +228,7 @@ fn a_killed_run_opens_and_goes_on_bit_for_bit() {
         (started.elapsed(), said(&at.join(format!("whole-{case}"))))
     });
     let mut on_the_way = 0;
-    for (k, moment) in MOMENTS.into_iter().enumerate() {
+    for (k, moment) in moments.iter().copied().enumerate() {
         let case = cases[k % 3];
         let (time, whole) = &wholes[k % 3];
         let out = format!("killed-{k}");
@@ -246,6 +249,7 @@ fn a_killed_run_opens_and_goes_on_bit_for_bit() {
     assert!(wholes[2].1.1["transient"]["sound"]["power_level_db"].as_f64() > Some(40.0));
     let events = wholes[0].1.1["transient"]["events"].clone();
     assert!(["opens", "closes", "turns"].iter().all(|kind| events[kind].as_u64() > Some(0)), "{events}");
+    println!("{} runs killed, {on_the_way} of them on their way", moments.len());
     assert!(on_the_way >= 6, "only {on_the_way} runs were killed on their way");
 }
 
@@ -292,15 +296,6 @@ fn results_of_another_case_or_another_start_are_not_taken_up() {
 fn stridor(folder: &Path, arguments: &[&str]) -> std::process::Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_stridor"));
     command.args(arguments).args(["--threads", "1"]).current_dir(folder).output().expect("the binary runs")
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let entries = std::fs::read_dir(folder).expect("a folder").flatten();
-    let mut names: Vec<String> =
-        entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
-    names.retain(|name| !name.starts_with('.'));
-    names.sort();
-    names
 }
 
 /// Waits until a run under way has saved rows.
@@ -419,18 +414,6 @@ fn what_was_found_before_an_analysis_failed_is_written() {
     assert!(file.attr("failed").is_ok() && file.dataset("modes/disc/frequency_hz").is_ok());
 }
 
-/// The titles of what is in a results folder.
-fn titles(out: &Path) -> Vec<&'static str> {
-    let file = hdf5::File::open(out.join("results.h5"));
-    let hdf5 =
-        file.and_then(|file| file.group("case")?.attr("title")?.read_scalar::<hdf5::types::VarLenUnicode>());
-    let texts = ["summary.json", "report.html"].map(|name| std::fs::read_to_string(out.join(name)));
-    let mut all: Vec<String> = texts.into_iter().flatten().collect();
-    all.extend(hdf5.map(|title| title.to_string()));
-    let known = ["The first case", "The second case"];
-    all.iter().flat_map(|text| known.into_iter().filter(|title| text.contains(title))).collect()
-}
-
 #[test]
 fn what_is_in_the_folder_is_always_of_one_run() {
     let folder = TempDir::new().expect("a temporary folder");
@@ -448,7 +431,7 @@ fn what_is_in_the_folder_is_always_of_one_run() {
     let mut of_one = [0, 0];
     for k in 0..40 {
         kill_after(time.mul_f64(f64::from(k) / 36.0), at, "second.toml", "out", false);
-        let titles = titles(&out);
+        let titles = titles(&out, ["The first case", "The second case"]);
         assert!(titles.windows(2).all(|pair| pair[0] == pair[1]), "kill {k}: {titles:?}");
         let second = titles.contains(&"The second case");
         of_one[usize::from(second)] += 1;

@@ -1,40 +1,16 @@
 //! Numbers and machines at their limits: the binary answers with a result or with a sentence and an exit code.
 
+#[path = "common/program.rs"]
+mod program;
+
+#[cfg(target_os = "linux")]
+use program::limit_memory;
+use program::{command, folder_with, run, said};
 use std::path::Path;
-use std::process::{Command, Output};
-use tempfile::TempDir;
+use std::process::Output;
 
 fn stridor(folder: &Path, arguments: &[&str]) -> Output {
     run(&mut command(folder, arguments))
-}
-
-fn command(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_stridor"));
-    command.args(arguments).current_dir(folder).env("RUST_BACKTRACE", "0");
-    command
-}
-
-/// Whatever it says, it does not panic.
-fn run(command: &mut Command) -> Output {
-    let output = command.output().expect("the binary runs");
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(!said.contains("panicked"), "{said}");
-    assert!(matches!(output.status.code(), Some(0..=2)), "{:?}: {said}", output.status);
-    output
-}
-
-fn folder_with(case: &str) -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("case.toml"), case).unwrap();
-    folder
-}
-
-/// What is said where the exit code is `code`.
-#[track_caller]
-fn said(output: &Output, code: i32) -> String {
-    let text = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(code), "{text}");
-    text
 }
 
 /// Two masses that a contact presses together while they slide; the belt drives the lower one.
@@ -201,20 +177,12 @@ fn only_regular_files_are_read() {
 #[cfg(target_os = "linux")]
 #[test]
 fn too_little_memory_is_one_paragraph() {
-    use std::os::unix::process::CommandExt;
     let fine = PLATE.replace("= 10\n", "= 130\n").replace("= 6\n", "= 70\n");
     let folder = folder_with(&format!("{fine}count = 40\n"));
     let mut refused = 0;
     for megabytes in [60u64, 90, 130, 200, 300] {
         let mut command = command(folder.path(), &["modes", "case.toml", "-q", "--threads", "2"]);
-        let limit = libc::rlimit { rlim_cur: megabytes << 20, rlim_max: megabytes << 20 };
-        // SAFETY: the closure calls nothing but the system, in the child before it becomes the program.
-        unsafe {
-            command.pre_exec(move || match libc::setrlimit(libc::RLIMIT_AS, &limit) {
-                0 => Ok(()),
-                _ => Err(std::io::Error::last_os_error()),
-            });
-        }
+        limit_memory(&mut command, megabytes);
         let output = command.output().expect("the binary runs");
         // The loader of the system needs some, too.
         if !output.status.success() && output.status.code() != Some(127) {
@@ -232,7 +200,6 @@ fn too_little_memory_is_one_paragraph() {
 #[cfg(target_os = "linux")]
 #[test]
 fn the_peak_of_memory_is_predicted() {
-    use std::os::unix::process::CommandExt;
     let fine = PLATE.replace("= 10\n", "= 60\n").replace("= 6\n", "= 60\n");
     let folder = folder_with(&format!("{fine}count = 30\n"));
     let checked = stridor(folder.path(), &["check", "case.toml"]);
@@ -255,14 +222,7 @@ fn the_peak_of_memory_is_predicted() {
     assert!((expected / measured - 1.0).abs() < 0.3, "expected {expected} MiB, measured {measured} MiB");
 
     let mut small = command(folder.path(), &["modes", "case.toml", "-q", "--threads", "1"]);
-    let limit = libc::rlimit { rlim_cur: 220 << 20, rlim_max: 220 << 20 };
-    // SAFETY: the closure calls nothing but the system, in the child before it becomes the program.
-    unsafe {
-        small.pre_exec(move || match libc::setrlimit(libc::RLIMIT_AS, &limit) {
-            0 => Ok(()),
-            _ => Err(std::io::Error::last_os_error()),
-        });
-    }
+    limit_memory(&mut small, 220);
     let text = said(&small.output().unwrap(), 1);
     assert!(text.contains("memory"), "{text}");
 }

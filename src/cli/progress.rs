@@ -4,19 +4,27 @@ use super::note;
 use crate::error::text::printable;
 use crate::progress::Observer;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::sync::Mutex;
+use std::io::IsTerminal;
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
+
+/// How often a bar is drawn anew, so that its time goes on.
+const TICK: Duration = Duration::from_millis(100);
 
 /// Draws each stage as a bar, or as a spinner when its length is not known.
 pub struct Bars {
-    current: Mutex<ProgressBar>,
+    current: Arc<Mutex<ProgressBar>>,
     quiet: bool,
 }
 
 impl Bars {
     /// Bars on stderr; none when `quiet`.
     pub fn new(quiet: bool) -> Self {
-        Bars { current: Mutex::new(ProgressBar::hidden()), quiet }
+        let current = Arc::new(Mutex::new(ProgressBar::hidden()));
+        if !quiet && std::io::stderr().is_terminal() {
+            keep_ticking(&current);
+        }
+        Bars { current, quiet }
     }
 
     fn with_bar(&self, act: impl FnOnce(&mut ProgressBar)) {
@@ -25,6 +33,21 @@ impl Bars {
             act(&mut bar);
         }
     }
+}
+
+/// Draws the bar again and again, on a thread that ends with it. Where no thread can be had, steps alone draw it.
+fn keep_ticking(current: &Arc<Mutex<ProgressBar>>) {
+    let bar = Arc::downgrade(current);
+    let tick = move || {
+        while let Some(bar) = bar.upgrade() {
+            if let Ok(bar) = bar.lock() {
+                bar.tick();
+            }
+            drop(bar);
+            std::thread::sleep(TICK);
+        }
+    };
+    let _ = std::thread::Builder::new().name("progress".into()).spawn(tick);
 }
 
 impl Observer for Bars {
@@ -44,7 +67,6 @@ impl Observer for Bars {
                 bar.set_style(style.progress_chars("=> "));
             }
             bar.set_message(printable(stage));
-            bar.enable_steady_tick(Duration::from_millis(100));
         });
     }
 

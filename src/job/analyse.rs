@@ -20,7 +20,9 @@ use crate::error::{Error, Fault, Faults, Result};
 use crate::modal::{self, RealModes};
 use crate::progress::Observer;
 use crate::results::record::{Earlier, InputFile, Origin, Record};
-use crate::results::{self, ComplexResult, FolderLock, NamedModes, ResultsFile, RunResults, SteadyResult};
+use crate::results::{
+    self, ComplexResult, FieldsFile, FolderLock, NamedModes, ResultsFile, RunResults, SteadyResult,
+};
 use crate::system::System;
 use std::path::Path;
 use std::time::Instant;
@@ -263,8 +265,9 @@ fn write_results(out: &Path, folder: Folder, results: &mut RunResults) -> Result
     // The time of a phase is that of computing.
     let in_time = results.timings.iter_mut().find(|(phase, _)| phase == IN_TIME);
     in_time.into_iter().for_each(|(_, seconds)| *seconds -= folder.seconds_in_time);
-    let Folder { mut file, mut record, seconds: recording, .. } = folder;
+    let Folder { mut file, mut record, fields, seconds: recording, .. } = folder;
     let writing = Instant::now();
+    fields.map_or(Ok(()), FieldsFile::finish)?;
     file.stand_alone()?;
     results::write_files(out, results)?;
     crate::report::write_report(out, results)?;

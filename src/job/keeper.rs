@@ -148,7 +148,7 @@ pub(super) struct Folder<'a> {
     /// `transient.csv` and `events.csv`.
     tables: Option<(HistoryTable, EventTable)>,
     /// `transient.vtkhdf`.
-    fields: Option<FieldsFile>,
+    pub(super) fields: Option<FieldsFile>,
     /// How long it took \[s\].
     pub(super) seconds: f64,
     /// The part of it that was taken from a run in time.

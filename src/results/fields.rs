@@ -5,7 +5,7 @@
 //! the other; the cell array `part` counts the parts from 0 in the order of the case. There is room for all steps from the
 //! start; `NSteps` says how many are there, so that a run under way can be looked at.
 
-use super::file::room;
+use super::file::{options, room};
 use super::folder::{own, refusal};
 use super::hdf5::{attribute, plain, rows};
 use super::{Field, Fields, NodalField};
@@ -39,7 +39,7 @@ impl FieldsFile {
         let refused = |source: hdf5::Error| refusal(&path, plain(&source));
         let aside = dir.join("transient.new.vtkhdf");
         std::fs::File::create(&aside).map_err(|source| refusal(&aside, source))?;
-        let file = hdf5::File::create(&aside).map_err(refused)?;
+        let file = options().create(&aside).map_err(refused)?;
         create(&file, fields).and_then(|()| file.flush()).map_err(refused)?;
         own(dir, NAME)?;
         std::fs::rename(&aside, &path).map_err(|source| refusal(&path, source))?;
@@ -60,6 +60,14 @@ impl FieldsFile {
         let written = put(ARRAYS[0], field.displacement).and_then(|()| put(ARRAYS[1], field.velocity));
         written.and_then(|()| self.file.flush()).map_err(|source| self.refused(&source))?;
         self.count(field.number + 1)
+    }
+
+    /// Closes the file.
+    ///
+    /// # Errors
+    /// The machine refuses.
+    pub fn finish(self) -> Result<()> {
+        self.file.close().map_err(|source| refusal(&self.path, plain(&source)))
     }
 
     /// Says how many are there.

@@ -16,9 +16,10 @@
 //! An interrupted run is taken up from `record.bin` and `checkpoint.bin` (see `record`); `results.h5` is only written.
 
 use super::RunResults;
-use super::folder::{FileNames, own, prepare_folder, refusal, retire};
+use super::folder::{FileNames, make_durable, own, prepare_folder, refusal, retire, synchronise};
 use super::hdf5::{Datasets, attribute, plain, text_attribute, texts};
 use crate::error::Result;
+use hdf5::file::FileBuilder;
 use hdf5::plist::dataset_create::{AllocTime, FillTime};
 use hdf5::types::OwnedDynValue;
 use hdf5::{Extents, Group, H5Type};
@@ -30,7 +31,8 @@ const NAME: &str = "results.h5";
 /// The results file of a run under way.
 #[derive(Debug)]
 pub struct ResultsFile {
-    file: hdf5::File,
+    /// Open until it is finished.
+    file: Option<hdf5::File>,
     /// Where the file is now.
     path: PathBuf,
     /// Where it belongs.
@@ -59,9 +61,9 @@ impl ResultsFile {
         let (home, path) = (dir.join(NAME), dir.join("results.new.h5"));
         // The operating system tells why a file cannot be made more plainly than the library.
         std::fs::File::create(&path).map_err(|source| refusal(&path, source))?;
-        let file = hdf5::File::create(&path).map_err(|source| refusal(&path, plain(&source)))?;
+        let file = options().create(&path).map_err(|source| refusal(&path, plain(&source)))?;
         let mut this = ResultsFile {
-            file,
+            file: Some(file),
             path,
             home,
             names: FileNames::default(),
@@ -90,7 +92,7 @@ impl ResultsFile {
     /// The machine refuses.
     pub fn stand_alone(&mut self) -> Result<()> {
         if !self.alone {
-            retire(self.home.parent().unwrap_or(Path::new("")), &self.spared)?;
+            retire(self.folder(), &self.spared)?;
             self.alone = true;
         }
         Ok(())
@@ -115,7 +117,30 @@ impl ResultsFile {
             results.failed.iter().try_for_each(|error| text_attribute(root, "failed", error))?;
             root.attr("complete")?.write_scalar(&results.failed.is_none())
         })?;
-        self.take_place()
+        // The library writes when a file is closed, too.
+        if let Some(file) = self.file.take() {
+            let closed = file.close();
+            self.broken |= closed.is_err();
+            closed.map_err(|source| refusal(&self.path, plain(&source)))?;
+        }
+        // A file that says that the run is complete is there when all others are on the disk.
+        make_durable(self.folder(), &self.path)?;
+        self.take_place()?;
+        synchronise(self.folder()).map_err(|source| refusal(&self.home, source))
+    }
+
+    fn folder(&self) -> &Path {
+        self.home.parent().unwrap_or(Path::new(""))
+    }
+
+    /// The root group.
+    fn root(&self) -> hdf5::Result<Group> {
+        self.file.as_ref().ok_or("it is closed")?.as_group()
+    }
+
+    /// Hands all that was written to the operating system.
+    fn flush(&self) -> hdf5::Result<()> {
+        self.file.as_ref().map_or(Ok(()), hdf5::File::flush)
     }
 
     /// Writes one stage and flushes it; what is in its place already is copied first.
@@ -133,14 +158,14 @@ impl ResultsFile {
 
     /// Puts numbers into room that is there, in the file's place too, and flushes them.
     pub(super) fn fill(&mut self, write: impl FnOnce(&Group) -> hdf5::Result<()>) -> Result<()> {
-        let written = self.file.as_group().and_then(|root| write(&root)).and_then(|()| self.file.flush());
+        let written = self.root().and_then(|root| write(&root)).and_then(|()| self.flush());
         self.broken |= written.is_err();
         written.map_err(|source| refusal(&self.path, plain(&source)))
     }
 
     /// Reads what was written.
     pub(super) fn read<T>(&self, read: impl FnOnce(&Group) -> hdf5::Result<T>) -> Result<T> {
-        let found = self.file.as_group().and_then(|root| read(&root));
+        let found = self.root().and_then(|root| read(&root));
         found.map_err(|source| refusal(&self.path, plain(&source)))
     }
 
@@ -158,7 +183,7 @@ impl ResultsFile {
             // The earlier file stays until this one replaces it.
             self.spared.push(NAME.into());
             self.stand_alone()?;
-            own(self.home.parent().unwrap_or(Path::new("")), NAME)?;
+            own(self.folder(), NAME)?;
             std::fs::rename(&self.path, &self.home).map_err(|source| refusal(&self.home, source))?;
             self.path.clone_from(&self.home);
         }
@@ -173,7 +198,8 @@ impl ResultsFile {
                 let _ = std::fs::remove_file(&aside);
                 refusal(&aside, source)
             })?;
-            self.file = hdf5::File::open_rw(&aside).map_err(|source| refusal(&aside, plain(&source)))?;
+            let file = options().open_rw(&aside).map_err(|source| refusal(&aside, plain(&source)))?;
+            self.file = Some(file);
             self.path = aside;
         }
         Ok(())
@@ -187,6 +213,14 @@ impl Drop for ResultsFile {
             let _ = std::fs::remove_file(&self.path);
         }
     }
+}
+
+/// How a file is opened to write to it: without the buffer for raw data, which is written when a dataset is closed, where
+/// nobody hears of an error and the numbers are lost.
+pub(super) fn options() -> FileBuilder {
+    let mut options = hdf5::File::with_options();
+    options.with_fapl(|access| access.sieve_buf_size(0));
+    options
 }
 
 /// Room for `count` numbers, all of it on the disk, to be filled later; `empty` until then.

@@ -4,11 +4,14 @@
 //! `.files`, so that a later run can delete them, before it puts its own first one there, and nothing else ([`retire`]).
 //! An interrupted record is not deleted: with all the files of its run it is moved to `interrupted-1`, `interrupted-2` …,
 //! each a results folder by itself ([`set_aside`]).
+//!
+//! A process that is killed loses nothing that it has written, but a machine that loses power does until the disk has it.
+//! [`write_durably`] waits for the disk, and so does the end of a run, once for all its files ([`make_durable`]).
 
 use super::record::{CHECKPOINT, RECORD, read_saved};
 use crate::error::{Error, Result};
 use std::collections::BTreeSet;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// The names of the files of a run, a line each.
@@ -25,14 +28,51 @@ pub(super) fn prepare_folder(dir: &Path) -> Result<()> {
 /// Writes `dir/name` whole or not at all: a reader sees the old file or the new one, and a refused or interrupted
 /// write leaves the old one as it was.
 pub(crate) fn write_atomically(dir: &Path, name: &str, bytes: &[u8]) -> Result<()> {
+    replace(dir, name, bytes, false)
+}
+
+/// The same of a file of the run that must outlive a loss of power.
+pub(super) fn write_durably(dir: &Path, name: &str, bytes: &[u8]) -> Result<()> {
+    own(dir, name)?;
+    replace(dir, name, bytes, true)
+}
+
+fn replace(dir: &Path, name: &str, bytes: &[u8], durable: bool) -> Result<()> {
     prepare_folder(dir)?;
     let path = dir.join(name);
     let partial = dir.join(format!(".{name}.part"));
-    std::fs::write(&partial, bytes).and_then(|()| std::fs::rename(&partial, &path)).map_err(|source| {
+    let written = std::fs::write(&partial, bytes)
+        .and_then(|()| if durable { synchronise(&partial) } else { Ok(()) })
+        .and_then(|()| std::fs::rename(&partial, &path))
+        .and_then(|()| if durable { synchronise(dir) } else { Ok(()) });
+    written.map_err(|source| {
         // What was written of it is of no use; the first error is the one to tell.
         let _ = std::fs::remove_file(&partial);
         refusal(&path, source)
     })
+}
+
+/// Waits until the files of the run in the folder `dir`, and `more`, are on the disk.
+pub(super) fn make_durable(dir: &Path, more: &Path) -> Result<()> {
+    let names = owned(dir).into_iter().chain([FILES.into()]);
+    let files = names.map(|name| dir.join(name)).filter(|path| path.is_file());
+    for path in files.chain([more.to_path_buf(), dir.to_path_buf()]) {
+        synchronise(&path).map_err(|source| refusal(&path, source))?;
+    }
+    Ok(())
+}
+
+/// Waits until a file or the names in a folder are on the disk.
+pub(super) fn synchronise(path: &Path) -> std::io::Result<()> {
+    // Elsewhere folders cannot be opened.
+    if cfg!(not(unix)) && path.is_dir() {
+        return Ok(());
+    }
+    match std::fs::File::open(path)?.sync_all() {
+        // Some network file systems do not offer it.
+        Err(error) if matches!(error.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => Ok(()),
+        done => done,
+    }
 }
 
 /// The same of a file that is one of a run's results.
@@ -76,7 +116,7 @@ pub(crate) fn retire(dir: &Path, spared: &[PathBuf]) -> Result<()> {
         if path.canonicalize().is_ok_and(|path| spared.contains(&path)) {
             kept += &format!("{name}\n");
         } else if let Err(source) = std::fs::remove_file(&path)
-            && source.kind() != std::io::ErrorKind::NotFound
+            && source.kind() != ErrorKind::NotFound
         {
             refused.get_or_insert(refusal(&path, source));
         }
@@ -100,7 +140,7 @@ pub(crate) fn set_aside(dir: &Path) -> Result<Option<PathBuf>> {
     for name in names.iter().map(String::as_str).chain([CHECKPOINT, FILES]) {
         let path = dir.join(name);
         if let Err(source) = std::fs::rename(&path, aside.join(name))
-            && source.kind() != std::io::ErrorKind::NotFound
+            && source.kind() != ErrorKind::NotFound
         {
             return Err(refusal(&path, source));
         }

@@ -2,6 +2,7 @@
 
 use super::Recording;
 use crate::error::{Error, Result};
+use crate::memory::{Available, available};
 use std::path::Path;
 
 /// Bytes of a number in `results.h5` and `record.bin`, of a modal acceleration there, in `transient.csv`, and of the motion of
@@ -31,9 +32,16 @@ pub fn room_on_disk(dir: &Path, recording: &Recording) -> Result<()> {
 /// [`Error::Analysis`]: there is none.
 pub fn room_in_memory(recording: &Recording) -> Result<()> {
     let bytes = recording.rows as f64 * NUMBER * (recording.channels.len() + recording.modes) as f64;
-    match free_in_memory() {
-        Some(free) => fits(recording, bytes, free, "memory")
-            .map_err(|found| Error::analysis("transient", found, format!("{HELP}, or record to a folder"))),
+    match available() {
+        Some(Available { bytes: free, by }) => {
+            fits(recording, bytes, free as f64, "memory").map_err(|found| {
+                Error::analysis(
+                    "transient",
+                    format!("{found} ({by})"),
+                    format!("{HELP}, or record to a folder"),
+                )
+            })
+        }
         None => Ok(()),
     }
 }
@@ -98,13 +106,6 @@ fn free_on_disk(dir: &Path) -> Option<f64> {
 #[cfg(not(unix))]
 fn free_on_disk(_: &Path) -> Option<f64> {
     None
-}
-
-/// Bytes of memory that can be had without swapping; `None` where the system does not say.
-fn free_in_memory() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text.lines().find(|line| line.starts_with("MemAvailable:"))?;
-    Some(1024.0 * line.split_whitespace().nth(1)?.parse::<f64>().ok()?)
 }
 
 #[cfg(test)]

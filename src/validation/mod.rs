@@ -60,8 +60,14 @@ fn side_by_side(references: &[Reference], observer: &dyn Observer) -> Result<Vec
         }
     };
     let mut found = std::thread::scope(|scope| {
-        let workers: Vec<_> = pools.iter().map(|pool| scope.spawn(|| pool.install(take_turns))).collect();
-        let found = workers.into_iter().map(|worker| worker.join());
+        // Where the machine gives fewer threads, fewer cases run at a time.
+        let workers = pools[1..].iter().filter_map(|pool| {
+            let builder = std::thread::Builder::new();
+            builder.spawn_scoped(scope, move || pool.install(take_turns)).ok()
+        });
+        let workers: Vec<_> = workers.collect();
+        let own = Ok(pools[0].install(take_turns));
+        let found = workers.into_iter().map(|worker| worker.join()).chain([own]);
         found.flat_map(|found| found.unwrap_or_else(|panic| resume_unwind(panic))).collect::<Vec<_>>()
     });
     observer.end();

@@ -2,8 +2,9 @@
 //!
 //! - `record.bin` grows while a map or a run in time goes on: every point and row as soon as it is computed ([`Block`]).
 //! - `checkpoint.bin` says how many bytes of it count, their SHA-256, what the case and its files were, and the state that
-//!   the march goes on from ([`Saved`]). It has a checksum of its own and is replaced in one step after each block, so a
-//!   process that is killed at any moment leaves one that fits; what `record.bin` has beyond it does not count.
+//!   the march goes on from ([`Saved`]). It has a checksum of its own and is replaced in one step, after what it counts is on the
+//!   disk. A process that is killed and a machine that loses power at any moment leave one that fits; what `record.bin` has
+//!   beyond it does not count.
 //!
 //! Both are read as bytes with every length checked before memory is taken. `results.h5`, `transient.csv`, `events.csv` and
 //! `transient.vtkhdf` are written again from them; none of these is read.
@@ -17,7 +18,7 @@ pub use block::Block;
 pub use origin::{InputFile, Origin};
 pub use saved::Saved;
 
-use super::folder::{own, refusal, write_result};
+use super::folder::{own, refusal, synchronise, write_durably};
 use super::{Field, Piece, Recording};
 use crate::error::{Error, Fault, Result};
 use crate::sweep::MapPoint;
@@ -27,11 +28,15 @@ use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
 use std::io::{BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 /// The points computed so far.
 pub(super) const RECORD: &str = "record.bin";
 /// How far they count.
 pub(super) const CHECKPOINT: &str = "checkpoint.bin";
+
+/// A disk may take long for a checkpoint: the next is written after so many times that time, which costs at most a percent.
+const PAUSE: u32 = 100;
 
 /// The points of a map, and the places that its reduced model was trained on.
 pub type EarlierMap = (Vec<MapPoint>, Vec<[f64; 2]>);
@@ -167,7 +172,7 @@ pub fn check_origin(dir: &Path, origin: &Origin) -> Result<()> {
 /// The machine refuses.
 pub fn keep_origin(dir: &Path, origin: &Origin, ended: bool) -> Result<()> {
     let saved = Saved { ended, ..Saved::new(origin.clone()) };
-    write_result(dir, CHECKPOINT, &saved.to_bytes())
+    write_durably(dir, CHECKPOINT, &saved.to_bytes())
 }
 
 /// The record of a run under way.
@@ -178,12 +183,23 @@ pub struct Record {
     /// SHA-256 of the bytes that count.
     hasher: Sha256,
     file: Option<File>,
+    /// Whether something counts that the checkpoint in the folder does not have.
+    waiting: bool,
+    /// Before this moment the next checkpoint is not written.
+    due: Option<Instant>,
 }
 
 impl Record {
     /// Begins a record in the folder `dir`; its files are made with the first block.
     pub fn new(dir: &Path, origin: Origin) -> Self {
-        Record { dir: dir.to_path_buf(), saved: Saved::new(origin), hasher: Sha256::new(), file: None }
+        Record {
+            dir: dir.to_path_buf(),
+            saved: Saved::new(origin),
+            hasher: Sha256::new(),
+            file: None,
+            waiting: false,
+            due: None,
+        }
     }
 
     /// Goes on with the record that an earlier run of the same case has left in the folder `dir`, if there is one.
@@ -217,7 +233,7 @@ impl Record {
         }
         let mut earlier = read_record(&path, open(&path)?, saved.length, &mut |_| Ok(()))?;
         earlier.march.clone_from(&saved.march);
-        let record = Record { dir: dir.to_path_buf(), saved, hasher, file: None };
+        let record = Record { dir: dir.to_path_buf(), saved, hasher, file: None, waiting: false, due: None };
         Ok(Some((record, earlier)))
     }
 
@@ -327,11 +343,31 @@ impl Record {
         }
         self.saved.digest = self.hasher.clone().finalize().into();
         self.saved.ended = false;
-        self.write()
+        self.waiting = true;
+        if self.due.is_some_and(|due| Instant::now() < due) { Ok(()) } else { self.write() }
     }
 
-    fn write(&self) -> Result<()> {
-        write_result(&self.dir, CHECKPOINT, &self.saved.to_bytes())
+    /// Writes the checkpoint, after what it counts is on the disk.
+    fn write(&mut self) -> Result<()> {
+        let begun = Instant::now();
+        self.waiting = false;
+        if self.file.is_some() {
+            let path = self.dir.join(RECORD);
+            synchronise(&path).map_err(|source| refusal(&path, source))?;
+        }
+        write_durably(&self.dir, CHECKPOINT, &self.saved.to_bytes())?;
+        self.due = Some(Instant::now() + PAUSE * begun.elapsed());
+        Ok(())
+    }
+}
+
+impl Drop for Record {
+    /// A run that fails leaves all that it has.
+    fn drop(&mut self) {
+        if self.waiting {
+            // The failure is told; the checkpoint before this one stays.
+            let _ = self.write();
+        }
     }
 }
 
