@@ -1,12 +1,13 @@
 //! The same model described in another way has the same complex eigenvalues: turned and moved in space, mirrored, with nodes
-//! in another order, in other units.
+//! and elements in another order, in other units.
 
 use std::fmt::Write;
 use std::path::Path;
 use stridor::case::Case;
 use stridor::job::{Prepared, Selection, analyse};
 use stridor::linalg::c64;
-use stridor::mesh::{Mesh, gmsh};
+use stridor::mesh::generate::{Faces, structured_plate};
+use stridor::mesh::{Element, Mesh, gmsh};
 use stridor::stability::ComplexMode;
 
 /// A pad on the face of a disc. What has a direction is written as x, y and z of the model.
@@ -85,6 +86,43 @@ fn mesh() -> Mesh {
     gmsh::read(&path, 1e-3).expect("a sound mesh")
 }
 
+/// A pad of quadrilaterals on a square plate of quadrilaterals in place of the disc: most nodes of the pad are over
+/// nodes, sides and diagonals of the plate.
+fn quadrilaterals() -> Mesh {
+    let plate = |length: f64, width: f64, nx, ny, name: &str, x: f64| {
+        let made = structured_plate(length, width, nx, ny, Faces::Quadrilaterals);
+        let mut mesh = made.expect("a sound mesh");
+        mesh.nodes.iter_mut().for_each(|[y, z, at]| [*y, *z, *at] = [x, *y, *z]);
+        mesh.regions.iter_mut().for_each(|region| region.name = region.name.replace("plate", name));
+        mesh
+    };
+    let mut mesh = plate(0.12, 0.12, 8, 8, "disc", 0.0);
+    mesh.regions.iter_mut().filter(|r| r.name == "disc_edge_x_min").for_each(|r| r.name = "hub".into());
+    mesh.append(plate(0.03, 0.02, 6, 4, "pad", 3e-3));
+    mesh
+}
+
+/// The elements in another order, each beginning at another corner.
+fn with_elements_shuffled(mesh: &Mesh) -> Mesh {
+    let (order, mut next) = (shuffled(mesh.elements.len()), random(4));
+    let mut other = mesh.clone();
+    other.elements = order.iter().map(|k| mesh.elements[*k].clone()).collect();
+    for element in &mut other.elements {
+        let first = next();
+        match element {
+            Element::Point(_) => {}
+            Element::Line(nodes) => nodes.rotate_left(first % 2),
+            Element::Triangle(nodes) => nodes.rotate_left(first % 3),
+            Element::Quadrilateral(nodes) => nodes.rotate_left(first),
+        }
+    }
+    for region in &mut other.regions {
+        let of = |k: &usize| region.elements.binary_search(&order[*k]).is_ok();
+        region.elements = (0..order.len()).filter(of).collect();
+    }
+    other
+}
+
 /// Pseudo-random numbers below `count`.
 fn random(count: usize) -> impl FnMut() -> usize {
     let mut seed = 5_u64;
@@ -151,8 +189,8 @@ fn as_it_is(mesh: &Mesh) -> String {
     written(mesh, &(0..mesh.nodes.len()).collect::<Vec<_>>())
 }
 
-fn of_the_model() -> Vec<Value> {
-    eigenvalues(&in_frame(&ITSELF, CASE), &as_it_is(&mesh()))
+fn of_the_model(mesh: &Mesh) -> Vec<Value> {
+    eigenvalues(&in_frame(&ITSELF, CASE), &as_it_is(mesh))
 }
 
 /// Round-off of the coordinates, 10⁻¹⁶, through the conditioning of a thin plate's bending, 10⁷ at most here.
@@ -171,30 +209,41 @@ fn assert_same(what: &str, a: &[Value], b: &[Value]) {
     }
 }
 
+/// The model in a frame and moved by (0.3, −0.1, 0.2) m has the same eigenvalues.
+fn assert_same_in(frame: &Frame, mesh: &Mesh) {
+    let mut other = mesh.clone();
+    for x in &mut other.nodes {
+        let at = turned(frame, *x);
+        *x = [at[0] + 0.3, at[1] - 0.1, at[2] + 0.2];
+    }
+    let found = eigenvalues(&in_frame(frame, CASE), &as_it_is(&other));
+    assert_same("the other", &of_the_model(mesh), &found);
+}
+
 #[test]
 fn turned_and_moved_in_space() {
     let frame = rotation([2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0], 1.1);
-    let mut mesh = mesh();
-    for x in &mut mesh.nodes {
-        let at = turned(&frame, *x);
-        *x = [at[0] + 0.3, at[1] - 0.1, at[2] + 0.2];
-    }
-    assert_same("the other", &of_the_model(), &eigenvalues(&in_frame(&frame, CASE), &as_it_is(&mesh)));
+    [mesh(), quadrilaterals()].iter().for_each(|mesh| assert_same_in(&frame, mesh));
 }
 
 #[test]
 fn mirrored() {
     let frame = [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]];
-    let mut mesh = mesh();
-    mesh.nodes.iter_mut().for_each(|x| *x = turned(&frame, *x));
-    assert_same("the other", &of_the_model(), &eigenvalues(&in_frame(&frame, CASE), &as_it_is(&mesh)));
+    assert_same_in(&frame, &mesh());
 }
 
 #[test]
 fn with_nodes_in_another_order() {
     let mesh = mesh();
     let other = written(&mesh, &shuffled(mesh.nodes.len()));
-    assert_same("the other", &of_the_model(), &eigenvalues(&in_frame(&ITSELF, CASE), &other));
+    assert_same("the other", &of_the_model(&mesh), &eigenvalues(&in_frame(&ITSELF, CASE), &other));
+}
+
+#[test]
+fn with_elements_in_another_order_and_from_another_corner() {
+    for mesh in [mesh(), quadrilaterals()] {
+        assert_same("the other", &of_the_model(&mesh), &of_the_model(&with_elements_shuffled(&mesh)));
+    }
 }
 
 #[test]
@@ -215,11 +264,12 @@ fn in_other_units() {
         assert!(case.contains(from), "{from}");
         case = case.replace(from, to);
     }
-    let mesh = as_it_is(&mesh());
-    assert_same("the other", &of_the_model(), &eigenvalues(&case, &mesh));
+    let mesh = mesh();
+    let one = of_the_model(&mesh);
+    assert_same("the other", &one, &eigenvalues(&case, &as_it_is(&mesh)));
     // In millimetres, the mesh is read with another unit.
-    let mut in_millimetres = self::mesh();
+    let mut in_millimetres = mesh;
     in_millimetres.nodes.iter_mut().flatten().for_each(|x| *x *= 1000.0);
     let case = case.replace("unit = \"m\"", "unit = \"mm\"");
-    assert_same("the other", &of_the_model(), &eigenvalues(&case, &as_it_is(&in_millimetres)));
+    assert_same("the other", &one, &eigenvalues(&case, &as_it_is(&in_millimetres)));
 }

@@ -1,12 +1,13 @@
 //! Contact points from the geometry of two plates.
 
-use super::projection::{Foot, Plate, Vector, add, area_vector, cross, dot, scale, split, subtract};
+use super::projection::{Foot, Plate, Vector, add, area_vector, cross, dot, scale, subtract};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::SparseVector;
 use crate::mesh::Element;
 use crate::structure::ShellPart;
-use crate::structure::elements::FlatShell;
+use crate::structure::elements::{WeightedTriangle, split_face};
 use crate::system::ContactPoint;
+use std::collections::BTreeSet;
 
 /// Two plates that may touch.
 ///
@@ -51,8 +52,8 @@ pub enum ContactSide<'a> {
 pub enum ContactPatch {
     /// Those whose gap is at most this \[m\].
     Reach(f64),
-    /// The node nearest to the counter-body only, of weight 1 (shared by its two points on an edge), for a contact
-    /// stiffness in N/m; an error when it is farther than this \[m\].
+    /// The node nearest to the counter-body only, or several that are equally near, of weight 1 in all (shared equally by
+    /// their points), for a contact stiffness in N/m; an error when it is farther than this \[m\].
     Nearest(f64),
 }
 
@@ -88,7 +89,7 @@ pub fn pair_surfaces(surfaces: &Surfaces<'_>, reduce: &Reduce<'_>) -> Result<Vec
     })?;
     let candidates: Vec<Candidate> = candidates(surfaces, &plate, &touching);
     check_nearest(surfaces, &plate, &candidates)?;
-    let kept = keep(surfaces.patch, candidates);
+    let kept = keep(surfaces.patch, candidates, plate.tolerance());
     let mut faults = Faults::new();
     let mut points = Vec::with_capacity(kept.len());
     for candidate in &kept {
@@ -160,7 +161,8 @@ fn touching_nodes(surfaces: &Surfaces<'_>, place: &str) -> Result<Vec<Touching>>
     let n = surfaces.nodes.len();
     let mut weights = vec![0.0; n];
     let mut named = vec![false; n];
-    let corners = |t: [usize; 3]| t.map(|node| surfaces.nodes[node]);
+    let area_of =
+        |t: &WeightedTriangle| scale(t.weight, area_vector(&t.nodes.map(|node| surfaces.nodes[node])));
     match surfaces.side {
         ContactSide::Edge(lines) | ContactSide::Middle(lines) => {
             for [a, b] in lines {
@@ -172,9 +174,9 @@ fn touching_nodes(surfaces: &Surfaces<'_>, place: &str) -> Result<Vec<Touching>>
             }
         }
         ContactSide::Face(faces) => {
-            for triangle in split(faces) {
-                let area = area_vector(&corners(triangle));
-                for node in triangle {
+            for triangle in faces.iter().flat_map(split_face) {
+                let area = area_of(&triangle);
+                for node in triangle.nodes {
                     weights[node] += dot(area, area).sqrt() / 3.0;
                     named[node] = true;
                 }
@@ -183,9 +185,9 @@ fn touching_nodes(surfaces: &Surfaces<'_>, place: &str) -> Result<Vec<Touching>>
     }
     let mut normals = vec![[0.0; 3]; n];
     let mut on_part = vec![false; n];
-    for triangle in split(&surfaces.body.faces) {
-        let area = area_vector(&corners(triangle));
-        for node in triangle {
+    for triangle in surfaces.body.faces.iter().flat_map(split_face) {
+        let area = area_of(&triangle);
+        for node in triangle.nodes {
             normals[node] = add(normals[node], area);
             on_part[node] = true;
         }
@@ -242,7 +244,10 @@ fn candidates(surfaces: &Surfaces<'_>, plate: &Plate, touching: &[Touching]) -> 
 /// Refuses bodies out of reach, beside or inside each other, so that at least one point is kept.
 fn check_nearest(surfaces: &Surfaces<'_>, plate: &Plate, all: &[Candidate]) -> Result<()> {
     let lowest = |a: &&Candidate, b: &&Candidate| a.gap.total_cmp(&b.gap);
+    let over = all.iter().filter(|c| c.foot.is_some()).min_by(lowest);
     let Some(nearest) = all.iter().min_by(lowest) else { return Ok(()) };
+    // Of points that are equally near, one over the plate.
+    let nearest = over.filter(|over| over.gap <= nearest.gap + plate.tolerance()).unwrap_or(nearest);
     let (counter, body) = (&surfaces.counter.name, &surfaces.body);
     let the_nearest = format!("the nearest of {} points of `{}`", all.len(), body.name);
     let faces = surfaces.counter.faces.len();
@@ -252,7 +257,6 @@ fn check_nearest(surfaces: &Surfaces<'_>, plate: &Plate, all: &[Candidate]) -> R
         let expected = format!("a contact position on `{counter}`");
         faults.push(Fault::new(format!("`contact.{}`", surfaces.name), found, expected).with_help(help));
     };
-    let over = all.iter().filter(|c| c.foot.is_some()).min_by(lowest);
     // A point of a curved edge may overhang the plate; the nearest one must stand on it.
     if nearest.foot.is_none() && plate.foot(surfaces.nodes[nearest.node]).is_none() {
         let help = "Move the bodies over each other, or choose another `body` or `counter`";
@@ -296,14 +300,17 @@ fn check_gap(
     }
 }
 
-fn keep(patch: ContactPatch, all: Vec<Candidate>) -> Vec<Candidate> {
+fn keep(patch: ContactPatch, all: Vec<Candidate>, tolerance: f64) -> Vec<Candidate> {
     let on_plate = all.into_iter().filter(|c| c.foot.is_some());
     match patch {
-        ContactPatch::Reach(reach) => on_plate.filter(|c| c.gap <= reach).collect(),
+        ContactPatch::Reach(reach) => on_plate.filter(|c| c.gap <= reach + tolerance).collect(),
         ContactPatch::Nearest(_) => {
             let on_plate: Vec<Candidate> = on_plate.collect();
-            let nearest = on_plate.iter().min_by(|a, b| a.gap.total_cmp(&b.gap)).map(|c| c.node);
-            let mut kept: Vec<Candidate> = on_plate.into_iter().filter(|c| Some(c.node) == nearest).collect();
+            let least = on_plate.iter().map(|c| c.gap).fold(f64::INFINITY, f64::min);
+            let near = on_plate.iter().filter(|c| c.gap <= least + tolerance);
+            let nearest: BTreeSet<usize> = near.map(|c| c.node).collect();
+            let mut kept: Vec<Candidate> =
+                on_plate.into_iter().filter(|c| nearest.contains(&c.node)).collect();
             let share = 1.0 / kept.len().max(1) as f64;
             kept.iter_mut().for_each(|c| c.weight = share);
             kept
@@ -320,16 +327,18 @@ fn on_body(candidate: &Candidate, w: Vector, terms: &mut Vec<(usize, usize, f64)
     }
 }
 
-/// The same at the foot on the counter-face, `half` off the mid-surface, interpolated from the triangle's nodes.
+/// The same at the foot on the counter-face, `half` off the mid-surface, interpolated from the faces' nodes.
 fn on_counter(foot: &Foot, half: f64, w: Vector, terms: &mut Vec<(usize, usize, f64)>) {
     let moment = cross(scale(half, foot.normal), w);
     let force = [w[0], w[1], w[2], moment[0], moment[1], moment[2]];
-    let Some(shell) = FlatShell::new(&foot.corners) else { return };
-    let rows = shell.displacement_at(foot.barycentric);
-    for (node, component) in (0..3).flat_map(|n| (0..6).map(move |c| (n, c))) {
-        let coefficient: f64 = force.iter().zip(&rows).map(|(f, row)| f * row[6 * node + component]).sum();
-        if coefficient != 0.0 {
-            terms.push((foot.nodes[node], component, coefficient));
+    for part in &foot.parts {
+        let rows = part.shell.displacement_at(part.barycentric);
+        for (node, component) in (0..3).flat_map(|n| (0..6).map(move |c| (n, c))) {
+            let coefficient: f64 =
+                force.iter().zip(&rows).map(|(f, row)| f * row[6 * node + component]).sum();
+            if coefficient != 0.0 {
+                terms.push((part.nodes[node], component, part.share * coefficient));
+            }
         }
     }
 }

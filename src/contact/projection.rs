@@ -1,14 +1,17 @@
-//! Where a point stands over a plate: the triangle under it, the coordinates on it, the height.
+//! Where a point stands over a plate: the faces under it, the coordinates on them, the height.
 
 use crate::mesh::Element;
+use crate::structure::elements::{FlatShell, WeightedTriangle, split_face};
 use std::collections::HashMap;
 
 pub(super) type Vector = [f64; 3];
 
-/// The faces of a plate as triangles (a quadrilateral gives two), sorted into a grid on its mean plane.
+/// What counts as equal, as a part of the size of a triangle: far above round-off, far below what a mesh resolves.
+const TOLERANCE: f64 = 1e-9;
+
+/// The faces of a plate, sorted into a grid on its mean plane.
 pub(super) struct Plate {
-    triangles: Vec<[usize; 3]>,
-    corners: Vec<[Vector; 3]>,
+    faces: Vec<Face>,
     /// Mean unit normal, towards the other body.
     pub(super) normal: Vector,
     axes: [Vector; 2],
@@ -17,52 +20,84 @@ pub(super) struct Plate {
     grid: HashMap<[i64; 2], Vec<usize>>,
 }
 
+/// Triangles of one face with the coordinates of their corners: itself, or two for each diagonal of a quadrilateral.
+type Face = Vec<(WeightedTriangle, [Vector; 3])>;
+
 /// The foot of a point on the mid-surface.
+///
+/// The interpolation of a plate has no single slope across a side between two faces. A point over such a side
+/// therefore stands on both: the foot is their mean, which depends on no order of faces or corners. A quadrilateral
+/// is the mean of its two splittings, as its stiffness is.
 pub(super) struct Foot {
-    pub(super) nodes: [usize; 3],
-    pub(super) corners: [Vector; 3],
-    pub(super) barycentric: [f64; 3],
-    /// Unit normal of the triangle, towards the other body.
+    pub(super) parts: Vec<Part>,
+    /// Unit normal, towards the other body.
     pub(super) normal: Vector,
     /// Height over the mid-surface \[m\].
     pub(super) height: f64,
 }
 
+/// The part of a foot that is on one triangle.
+pub(super) struct Part {
+    /// Its share of the displacement; the shares of a foot add up to 1.
+    pub(super) share: f64,
+    pub(super) nodes: [usize; 3],
+    pub(super) shell: FlatShell,
+    pub(super) barycentric: [f64; 3],
+}
+
 impl Plate {
     /// `None` when the faces have no common side (no area, or normals that cancel).
     pub(super) fn new(nodes: &[Vector], faces: &[Element], towards: Vector) -> Option<Self> {
-        let triangles = split(faces);
-        let corners: Vec<[Vector; 3]> = triangles.iter().map(|t| t.map(|n| nodes[n])).collect();
-        let areas: Vec<Vector> = corners.iter().map(area_vector).collect();
+        let placed = |t: WeightedTriangle| (t, t.nodes.map(|n| nodes[n]));
+        let faces: Vec<Face> =
+            faces.iter().map(|f| split_face(f).into_iter().map(placed).collect()).collect();
+        let triangles = || faces.iter().flatten();
+        let areas: Vec<Vector> = triangles().map(|(t, c)| scale(t.weight, area_vector(c))).collect();
         let total = areas.iter().fold([0.0; 3], |sum, a| add(sum, *a));
         let area: f64 = areas.iter().map(|a| dot(*a, *a).sqrt()).sum();
         let length = dot(total, total).sqrt();
         if length.is_nan() || length <= 0.5 * area {
             return None;
         }
-        let count = 3.0 * corners.len() as f64;
-        let origin = scale(1.0 / count, corners.iter().flatten().fold([0.0; 3], |sum, c| add(sum, *c)));
+        let count = 3.0 * areas.len() as f64;
+        let origin = triangles().flat_map(|(_, c)| c).fold([0.0; 3], |sum, c| add(sum, *c));
+        let origin = scale(1.0 / count, origin);
         let side = if dot(subtract(towards, origin), total) < 0.0 { -1.0 } else { 1.0 };
         let normal = scale(side / length, total);
         let first = axis_across(normal);
         let axes = [first, cross(normal, first)];
-        let cell = 2.0 * (area / corners.len() as f64).sqrt();
-        let mut plate = Plate { triangles, corners, normal, axes, origin, cell, grid: HashMap::new() };
-        for t in 0..plate.corners.len() {
-            let cells = plate.corners[t].map(|c| plate.cell_of(c));
-            let bound =
-                |a: usize, pick: fn(i64, i64) -> i64| pick(pick(cells[0][a], cells[1][a]), cells[2][a]);
-            for i in bound(0, i64::min)..=bound(0, i64::max) {
-                for j in bound(1, i64::min)..=bound(1, i64::max) {
-                    plate.grid.entry([i, j]).or_default().push(t);
+        let cell = 2.0 * (area / faces.len() as f64).sqrt();
+        let mut plate = Plate { faces, normal, axes, origin, cell, grid: HashMap::new() };
+        for f in 0..plate.faces.len() {
+            let [i, j] = plate.cells_of(&plate.faces[f]);
+            for i in i[0]..=i[1] {
+                for j in j[0]..=j[1] {
+                    plate.grid.entry([i, j]).or_default().push(f);
                 }
             }
         }
         Some(plate)
     }
 
-    fn cell_of(&self, x: Vector) -> [i64; 2] {
-        self.axes.map(|axis| (dot(subtract(x, self.origin), axis) / self.cell).floor() as i64)
+    /// Lengths that differ by less are equal \[m\].
+    pub(super) fn tolerance(&self) -> f64 {
+        TOLERANCE * self.cell
+    }
+
+    /// Place along the two axes of the mean plane, in cells of the grid.
+    fn place(&self, x: Vector) -> [f64; 2] {
+        self.axes.map(|axis| dot(subtract(x, self.origin), axis) / self.cell)
+    }
+
+    /// The first and the last cell along either axis that a face reaches, with a margin for round-off.
+    fn cells_of(&self, face: &Face) -> [[i64; 2]; 2] {
+        const MARGIN: f64 = 1e-6;
+        let places: Vec<[f64; 2]> = face.iter().flat_map(|(_, c)| c).map(|c| self.place(*c)).collect();
+        [0, 1].map(|axis| {
+            let low = places.iter().map(|p| p[axis]).fold(f64::INFINITY, f64::min);
+            let high = places.iter().map(|p| p[axis]).fold(f64::NEG_INFINITY, f64::max);
+            [low - MARGIN, high + MARGIN].map(|p| p.floor() as i64)
+        })
     }
 
     /// Height over the mean plane, for points that stand beside the plate.
@@ -70,46 +105,51 @@ impl Plate {
         dot(subtract(x, self.origin), self.normal)
     }
 
-    /// The nearest triangle that `x` projects onto along its normal; `None` beside the plate.
+    /// The mean over the nearest faces that `x` projects onto along their normals; `None` beside the plate.
     pub(super) fn foot(&self, x: Vector) -> Option<Foot> {
-        let candidates = self.grid.get(&self.cell_of(x))?;
-        let feet = candidates.iter().filter_map(|t| self.foot_on(*t, x));
-        feet.min_by(|a, b| a.height.abs().total_cmp(&b.height.abs()))
+        let faces = self.grid.get(&self.place(x).map(|p| p.floor() as i64))?;
+        let feet: Vec<Foot> = faces.iter().filter_map(|f| self.foot_on_face(&self.faces[*f], x)).collect();
+        let nearest = feet.iter().map(|f| f.height.abs()).fold(f64::INFINITY, f64::min);
+        mean(feet.into_iter().filter(|f| f.height.abs() <= nearest + self.tolerance()))
     }
 
-    fn foot_on(&self, t: usize, x: Vector) -> Option<Foot> {
-        const ON_EDGE: f64 = 1e-9;
-        let corners = self.corners[t];
-        let area = area_vector(&corners);
+    /// The mean over the splittings of a face, and over the triangles of each that hold the projection.
+    fn foot_on_face(&self, face: &Face, x: Vector) -> Option<Foot> {
+        let on = |(t, corners): &(WeightedTriangle, _)| self.foot_on(t.nodes, corners, x);
+        mean(face.chunks(2).filter_map(|splitting| mean(splitting.iter().filter_map(on))))
+    }
+
+    fn foot_on(&self, nodes: [usize; 3], corners: &[Vector; 3], x: Vector) -> Option<Foot> {
+        let area = area_vector(corners);
         let square = dot(area, area);
-        if square == 0.0 {
-            return None;
-        }
         // Twice the area of the triangle that the projection makes with each opposite side.
         let part = |a: Vector, b: Vector| dot(cross(subtract(a, x), subtract(b, x)), area) / (2.0 * square);
         let barycentric =
             [part(corners[1], corners[2]), part(corners[2], corners[0]), part(corners[0], corners[1])];
-        if barycentric.iter().any(|b| *b < -ON_EDGE) {
+        // Written so that NaN is refused too.
+        if !barycentric.iter().all(|b| *b >= -TOLERANCE) {
             return None;
         }
+        let shell = FlatShell::new(corners)?;
         let side = if dot(area, self.normal) < 0.0 { -1.0 } else { 1.0 };
         let normal = scale(side / square.sqrt(), area);
         let height = dot(subtract(x, corners[0]), normal);
-        Some(Foot { nodes: self.triangles[t], corners, barycentric, normal, height })
+        Some(Foot { parts: vec![Part { share: 1.0, nodes, shell, barycentric }], normal, height })
     }
 }
 
-/// Triangles of faces; a quadrilateral is cut along its first diagonal.
-pub(super) fn split(faces: &[Element]) -> Vec<[usize; 3]> {
-    let mut triangles = Vec::new();
-    for face in faces {
-        match face {
-            Element::Triangle(n) => triangles.push(*n),
-            Element::Quadrilateral([a, b, c, d]) => triangles.extend([[*a, *b, *c], [*a, *c, *d]]),
-            Element::Point(_) | Element::Line(_) => {}
-        }
-    }
-    triangles
+/// The mean of feet; `None` of none.
+fn mean(feet: impl Iterator<Item = Foot>) -> Option<Foot> {
+    let feet: Vec<Foot> = feet.collect();
+    let share = 1.0 / feet.len() as f64;
+    let sum = feet.into_iter().reduce(|mut sum, foot| {
+        sum.parts.extend(foot.parts);
+        let (normal, height) = (add(sum.normal, foot.normal), sum.height + foot.height);
+        Foot { normal, height, ..sum }
+    })?;
+    let parts = sum.parts.into_iter().map(|part| Part { share: share * part.share, ..part }).collect();
+    let normal = scale(1.0 / dot(sum.normal, sum.normal).sqrt(), sum.normal);
+    Some(Foot { parts, normal, height: share * sum.height })
 }
 
 /// Half the cross product of two sides: the area, along the normal.

@@ -156,6 +156,84 @@ fn a_pad_on_a_face_has_its_area_and_its_thickness() {
     }
 }
 
+/// A pad of one quadrilateral, `x` \[m\] from the middle of the slider, 10 µm above it.
+fn add_pad(rig: &mut Rig, x: f64) -> Vec<Element> {
+    let first = rig.nodes.len();
+    for [i, j] in [[0.0, 0.0], [0.01, 0.0], [0.01, 0.01], [0.0, 0.01]] {
+        rig.nodes.push([x + i, 0.003 + j, 2e-3 + 1e-5]);
+    }
+    vec![Element::Quadrilateral([first, first + 1, first + 2, first + 3])]
+}
+
+/// The least gap decides; of nodes that are equally near but for round-off, none is preferred.
+#[test]
+fn equally_near_nodes_share_the_weight() {
+    let mut rig = rig(0.0, 0.0, 0.0);
+    let faces = add_pad(&mut rig, 0.003);
+    for k in 0..4 {
+        let at = rig.nodes.len() - 1 - k;
+        rig.nodes[at][2] += 1e-16 * k as f64;
+    }
+    let pad = part("pad", 4e-3, faces.clone());
+    let mut s = surfaces(&rig, ContactPatch::Nearest(1e-3));
+    (s.body, s.side) = (&pad, ContactSide::Face(&faces));
+    let points = pair_surfaces(&s, &reduce).unwrap();
+    assert_eq!(points.iter().map(|p| p.weight).collect::<Vec<f64>>(), [0.25; 4]);
+}
+
+/// A pad that overhangs the slider is taken, whichever of its nodes is the nearest by round-off.
+#[test]
+fn a_pad_may_overhang() {
+    for lift in [1e-16, -1e-16] {
+        let mut rig = rig(0.0, 0.0, 0.0);
+        let faces = add_pad(&mut rig, 0.095);
+        let last = rig.nodes.len() - 2;
+        rig.nodes[last][2] += lift;
+        let pad = part("pad", 4e-3, faces.clone());
+        let mut s = surfaces(&rig, ContactPatch::Reach(1e-3));
+        (s.body, s.side) = (&pad, ContactSide::Face(&faces));
+        assert_eq!(pair_surfaces(&s, &reduce).unwrap().len(), 2);
+    }
+}
+
+/// Points over nodes, sides and diagonals of the faces move the same, whatever the order of faces and of their corners,
+/// also on a plate that is not flat.
+#[test]
+fn points_do_not_depend_on_the_order_of_faces() {
+    for bend in [0.0, 1.0] {
+        let mut rig = rig(0.0, 0.0, 0.0);
+        rig.nodes[181..].iter_mut().for_each(|x| x[2] += bend * x[0] * (0.1 * x[0] - 0.3 * x[1]));
+        let faces = add_pad(&mut rig, 0.0);
+        let pad = part("pad", 4e-3, faces.clone());
+        let mut s = surfaces(&rig, ContactPatch::Reach(5e-3));
+        (s.body, s.side) = (&pad, ContactSide::Face(&faces));
+        let one = pair_surfaces(&s, &reduce).unwrap();
+        let mut other = rig.slider.clone();
+        other.faces.reverse();
+        for (k, face) in other.faces.iter_mut().enumerate() {
+            if let Element::Quadrilateral(corners) = face {
+                corners.rotate_left(k % 4);
+            }
+        }
+        s.counter = &other;
+        let other = pair_surfaces(&s, &reduce).unwrap();
+        let n = 6 * rig.nodes.len();
+        assert_eq!((one.len(), other.len()), (4, 4));
+        for (a, b) in one.iter().zip(&other) {
+            assert!((a.gap - b.gap).abs() < 1e-16);
+            for (a, b) in
+                [(&a.normal, &b.normal), (&a.tangents[0], &b.tangents[0]), (&a.tangents[1], &b.tangents[1])]
+            {
+                let difference = |k: usize| {
+                    let unit: Vec<f64> = (0..n).map(|i| f64::from(u8::from(i == k))).collect();
+                    (a.dot(&unit) - b.dot(&unit)).abs()
+                };
+                assert!((0..n).all(|k| difference(k) < 1e-14));
+            }
+        }
+    }
+}
+
 fn fault(rig: &Rig, change: impl FnOnce(&mut Surfaces<'_>)) -> String {
     let mut s = surfaces(rig, ContactPatch::Reach(1e-3));
     change(&mut s);

@@ -9,7 +9,7 @@
 //! | [`mass`] | consistent masses of bending and membrane | `mass` |
 //! | [`geometric`] | string effect of membrane and axial forces | `geometric` |
 //! | [`FlatShell`] | DKT + OPT in space, 18 degrees of freedom | `shell` |
-//! | [`split_face`], [`face_displacement_at`] | quadrilaterals as the mean of their two splittings into triangles | `face` |
+//! | [`split_face`] | quadrilaterals as the mean of their two splittings into triangles | `face` |
 //! | [`Beam`] | Euler–Bernoulli bar in space, 12 degrees of freedom | `beam` |
 //! | [`spring_direction`] | springs, dashpots and point masses | `point` |
 //!
@@ -28,7 +28,7 @@ mod shell;
 mod triangle;
 
 pub use beam::Beam;
-pub use face::{WeightedTriangle, face_displacement_at, split_face};
+pub use face::{WeightedTriangle, split_face};
 pub use point::{mass_diagonal, spring_direction};
 pub use shell::FlatShell;
 pub use triangle::FlatTriangle;
