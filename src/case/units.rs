@@ -71,7 +71,7 @@ impl Dimension {
 
 /// The dimension of a quantity whose SI unit is `symbol`; a pure number when the symbol is none.
 pub fn dimension_of(symbol: &'static str) -> Dimension {
-    let powers = parse_unit(symbol).map_or([0; 4], |(_, powers)| powers);
+    let powers = parse_unit(symbol).map_or([0; 4], |unit| unit.powers);
     Dimension { powers, symbol, name: "a value in the unit of the parameter" }
 }
 
@@ -85,39 +85,66 @@ pub fn parse_quantity(text: &str, expected: Dimension) -> Result<f64, String> {
     };
     let of_number = |i: usize| bytes[i].is_ascii_digit() || b".+-".contains(&bytes[i]) || exponent(i);
     let split = (0..bytes.len()).find(|i| !of_number(*i)).unwrap_or(bytes.len());
-    let number: f64 =
-        text[..split].parse().map_err(|_| format!("\"{text}\", which does not begin with a number"))?;
-    let (factor, powers) = parse_unit(text[split..].trim())
+    let number = &text[..split];
+    let plain: f64 = number.parse().map_err(|_| format!("\"{text}\", which does not begin with a number"))?;
+    let unit = parse_unit(text[split..].trim())
         .ok_or_else(|| format!("\"{text}\", whose unit \"{}\" is not known", text[split..].trim()))?;
-    if powers != expected.powers {
+    if unit.powers != expected.powers {
         let unit = text[split..].trim();
         return Err(match unit {
             "" => {
-                format!("\"{text}\", a number without a unit (in SI, write {number} without quotation marks)")
+                format!("\"{text}\", a number without a unit (in SI, write {plain} without quotation marks)")
             }
             _ => format!("\"{text}\", whose unit \"{unit}\" is of another dimension"),
         });
     }
-    Ok(number * factor)
+    Ok(unit.in_si(number).unwrap_or(plain))
 }
 
-/// The SI factor and the powers of a unit such as `MN/m^2` or `1/s`; what follows each `/` divides.
-fn parse_unit(unit: &str) -> Option<(f64, Powers)> {
-    let mut factor = 1.0;
-    let mut powers = [0; 4];
-    let one_over = unit.strip_prefix('1').filter(|rest| rest.trim_start().starts_with('/'));
-    for (k, side) in one_over.unwrap_or(unit).split('/').enumerate() {
+/// A unit in SI: 10^tens · times / over.
+#[derive(Debug, Clone, Copy)]
+struct Unit {
+    /// Power of ten.
+    tens: i32,
+    /// What no power of ten is: π/180.
+    times: f64,
+    /// What divides: 60.
+    over: f64,
+    powers: Powers,
+}
+
+impl Unit {
+    /// The decimal `number` of the unit. The power of ten goes into the exponent of its text, so that the value of a unit that
+    /// is nothing else is the double nearest to it: 10 µs are 1e-5 s, which 10 · 1e-6 is not.
+    fn in_si(&self, number: &str) -> Option<f64> {
+        let (digits, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
+        let exponent = exponent.parse::<i64>().ok()?.saturating_add(i64::from(self.tens));
+        let value: f64 = format!("{digits}e{exponent}").parse().ok()?;
+        Some(value * self.times / self.over)
+    }
+}
+
+/// A unit such as `MN/m^2` or `1/s`; what follows each `/` divides.
+fn parse_unit(text: &str) -> Option<Unit> {
+    let mut unit = Unit { tens: 0, times: 1.0, over: 1.0, powers: [0; 4] };
+    let one_over = text.strip_prefix('1').filter(|rest| rest.trim_start().starts_with('/'));
+    for (k, side) in one_over.unwrap_or(text).split('/').enumerate() {
         for token in side.split(['*', '·', ' ']).map(str::trim).filter(|t| !t.is_empty()) {
-            let sign = if k == 0 { 1 } else { -1 };
             let (symbol, power) = split_power(token)?;
-            let (f, p) = symbol_in_si(symbol)?;
-            factor *= f.powi(sign * power);
-            for (sum, exponent) in powers.iter_mut().zip(p) {
+            let symbol = symbol_in_si(symbol)?;
+            let (sign, [times, over]) = match k {
+                0 => (1, [symbol.times, symbol.over]),
+                _ => (-1, [symbol.over, symbol.times]),
+            };
+            unit.tens += sign * power * symbol.tens;
+            unit.times *= times.powi(power);
+            unit.over *= over.powi(power);
+            for (sum, exponent) in unit.powers.iter_mut().zip(symbol.powers) {
                 *sum += sign * power * exponent;
             }
         }
     }
-    Some((factor, powers))
+    Some(unit)
 }
 
 /// `mm^3`, `mm3` or `mm³` → (`mm`, 3).
@@ -133,29 +160,33 @@ fn split_power(token: &str) -> Option<(&str, i32)> {
     Some((symbol.strip_suffix('^').unwrap_or(symbol), power))
 }
 
-/// The SI factor and the powers of one symbol with its prefix.
-fn symbol_in_si(symbol: &str) -> Option<(f64, Powers)> {
-    const UNITS: [(&str, f64, Powers); 12] = [
-        ("kg", 1.0, [1, 0, 0, 0]),
-        ("deg", std::f64::consts::PI / 180.0, [0; 4]),
-        ("°", std::f64::consts::PI / 180.0, [0; 4]),
-        ("rad", 1.0, [0; 4]),
-        ("rpm", 1.0 / 60.0, [0, 0, -1, 1]),
-        ("Hz", 1.0, [0, 0, -1, 1]),
-        ("Pa", 1.0, [1, -1, -2, 0]),
-        ("N", 1.0, [1, 1, -2, 0]),
-        ("m", 1.0, [0, 1, 0, 0]),
-        ("s", 1.0, [0, 0, 1, 0]),
-        ("g", 1e-3, [1, 0, 0, 0]),
-        ("%", 1e-2, [0; 4]),
+/// One symbol with its prefix in SI.
+fn symbol_in_si(symbol: &str) -> Option<Unit> {
+    const DEGREE: f64 = std::f64::consts::PI / 180.0;
+    const UNITS: [(&str, i32, f64, f64, Powers); 12] = [
+        ("kg", 0, 1.0, 1.0, [1, 0, 0, 0]),
+        ("deg", 0, DEGREE, 1.0, [0; 4]),
+        ("°", 0, DEGREE, 1.0, [0; 4]),
+        ("rad", 0, 1.0, 1.0, [0; 4]),
+        ("rpm", 0, 1.0, 60.0, [0, 0, -1, 1]),
+        ("Hz", 0, 1.0, 1.0, [0, 0, -1, 1]),
+        ("Pa", 0, 1.0, 1.0, [1, -1, -2, 0]),
+        ("N", 0, 1.0, 1.0, [1, 1, -2, 0]),
+        ("m", 0, 1.0, 1.0, [0, 1, 0, 0]),
+        ("s", 0, 1.0, 1.0, [0, 0, 1, 0]),
+        ("g", -3, 1.0, 1.0, [1, 0, 0, 0]),
+        ("%", -2, 1.0, 1.0, [0; 4]),
     ];
-    const PREFIXES: [(&str, f64); 8] =
-        [("G", 1e9), ("M", 1e6), ("k", 1e3), ("c", 1e-2), ("m", 1e-3), ("u", 1e-6), ("µ", 1e-6), ("n", 1e-9)];
-    let plain = |s: &str| UNITS.iter().find(|(name, ..)| *name == s).map(|(_, f, p)| (*f, *p));
+    const PREFIXES: [(&str, i32); 8] =
+        [("G", 9), ("M", 6), ("k", 3), ("c", -2), ("m", -3), ("u", -6), ("µ", -6), ("n", -9)];
+    let plain = |s: &str| {
+        let (_, tens, times, over, powers) = *UNITS.iter().find(|(name, ..)| *name == s)?;
+        Some(Unit { tens, times, over, powers })
+    };
     plain(symbol).or_else(|| {
-        PREFIXES.iter().find_map(|(prefix, scale)| {
-            let (factor, powers) = plain(symbol.strip_prefix(prefix)?)?;
-            Some((scale * factor, powers))
+        PREFIXES.iter().find_map(|(prefix, tens)| {
+            let unit = plain(symbol.strip_prefix(prefix)?)?;
+            Some(Unit { tens: unit.tens + tens, ..unit })
         })
     })
 }
@@ -189,6 +220,52 @@ mod tests {
         close("1200 rpm", FREQUENCY, 20.0);
         close("5 s/m", INVERSE_VELOCITY, 5.0);
         close("1 GN/m^2", STIFFNESS.per_metre(1, "N/m^2", "a stiffness per length"), 1e9);
+    }
+
+    #[test]
+    fn a_value_in_any_unit_is_the_nearest_double() {
+        let exact = |text: &str, dimension, expected: f64| {
+            let got = parse_quantity(text, dimension).unwrap();
+            assert!(got.to_bits() == expected.to_bits(), "{text}: {got:e}, not {expected:e}");
+        };
+        let numbers = ["10", "3", "1.1", "7e-1", "0.3", "-2.5E+3", "+4", ".6", "5."];
+        let lengths = [
+            ("nm", -9),
+            ("um", -6),
+            ("µm", -6),
+            ("mm", -3),
+            ("cm", -2),
+            ("m", 0),
+            ("km", 3),
+            ("Mm", 6),
+            ("Gm", 9),
+        ];
+        for number in numbers {
+            let shifted = |tens: i32| -> f64 {
+                let (digits, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
+                format!("{digits}e{}", exponent.parse::<i32>().unwrap() + tens).parse().unwrap()
+            };
+            for (unit, tens) in lengths {
+                exact(&format!("{number} {unit}"), LENGTH, shifted(tens));
+                exact(&format!("{number} {unit}^2"), AREA, shifted(2 * tens));
+                exact(&format!("{number} s/{unit}"), INVERSE_VELOCITY, shifted(-tens));
+                let prefix = unit.strip_suffix('m').unwrap();
+                exact(&format!("{number} {prefix}s"), TIME, shifted(tens));
+            }
+            exact(&format!("{number} g/cm^3"), DENSITY, shifted(3));
+            exact(&format!("{number} GPa"), PRESSURE, shifted(9));
+            exact(&format!("{number} MN/m"), STIFFNESS, shifted(6));
+            exact(&format!("{number} kN/mm"), STIFFNESS, shifted(6));
+            exact(&format!("{number} g"), MASS, shifted(-3));
+            exact(&format!("{number} kg*mm^2"), INERTIA, shifted(-6));
+            exact(&format!("{number} %"), NUMBER, shifted(-2));
+        }
+        exact("10 us", TIME, 1e-5);
+        exact("1200 rpm", FREQUENCY, 20.0);
+        exact("1 rpm", FREQUENCY, 1.0 / 60.0);
+        exact("180 deg", ANGLE, std::f64::consts::PI);
+        exact("1e-400 m", LENGTH, 0.0);
+        exact("1e320 nm", LENGTH, f64::INFINITY);
     }
 
     #[test]
