@@ -44,6 +44,11 @@ pub fn growth(value: f64, lambda: f64, round_off: f64) -> String {
     if value > 0.0 { format!("+{text}") } else { text }
 }
 
+/// Coordinates or components with at most six significant digits: `[0.1, -0.0333333, 0.0]`.
+pub fn components(values: [f64; 3]) -> String {
+    format!("{:?}", values.map(|v| format!("{v:.5e}").parse::<f64>().unwrap_or(v)))
+}
+
 /// The minus sign of print, and none before a number that rounds to zero.
 pub(crate) fn minus(text: &str) -> String {
     match text.strip_prefix('-') {
@@ -72,6 +77,12 @@ mod tests {
         assert_eq!([hertz(0.15918, 1), hertz(9.87654, 2), hertz(3.2e-7, 0)], ["0.1592", "9.8765", "3.20e−7"]);
         assert_eq!([hertz(12_345_678_901.0, 1), hertz(9_999_999.0, 1)], ["1.2346e10", "9999999.0"]);
         assert_eq!(hertz(f64::NAN, 1), "–");
+    }
+
+    #[test]
+    fn components_have_six_digits() {
+        assert_eq!(components([0.1, -1.0 / 30.0, 0.0]), "[0.1, -0.0333333, 0.0]");
+        assert_eq!(components([1e-12 / 3.0, f64::NAN, 1234567.0]), "[3.33333e-13, NaN, 1234570.0]");
     }
 
     #[test]

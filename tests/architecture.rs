@@ -14,9 +14,9 @@ const MAY_USE: [(&str, &[&str]); 28] = [
     ("linalg", &["error", "progress"]),
     ("system", &["error", "linalg"]),
     // Mechanics: builds a system, knows no analysis.
-    ("mesh", &["error"]),
-    ("structure", &["error", "linalg", "system", "mesh"]),
-    ("contact", &["error", "linalg", "system", "mesh", "structure"]),
+    ("mesh", &["error", "numbers"]),
+    ("structure", &["error", "numbers", "linalg", "system", "mesh"]),
+    ("contact", &["error", "numbers", "linalg", "system", "mesh", "structure"]),
     // Analyses: take a system, know no mesh and no law.
     ("equilibrium", &["error", "progress", "linalg", "system"]),
     ("modal", &["error", "progress", "linalg", "system"]),

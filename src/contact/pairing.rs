@@ -4,6 +4,7 @@ use super::projection::{Foot, Plate, Vector, add, area_vector, cross, dot, scale
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::SparseVector;
 use crate::mesh::Element;
+use crate::numbers::components;
 use crate::structure::ShellPart;
 use crate::structure::elements::{WeightedTriangle, split_face};
 use crate::system::ContactPoint;
@@ -101,7 +102,8 @@ pub fn pair_surfaces(surfaces: &Surfaces<'_>, reduce: &Reduce<'_>) -> Result<Vec
         let (length, whole) =
             (dot(along, along).sqrt(), dot(surfaces.sliding_direction, surfaces.sliding_direction));
         if length.is_nan() || length <= 0.1 * whole.sqrt() {
-            let found = format!("{:?}, along the counter-body's normal", surfaces.sliding_direction);
+            let found =
+                format!("{}, along the counter-body's normal", components(surfaces.sliding_direction));
             return Err(Error::input(Fault::new(
                 place("sliding_direction"),
                 found,
@@ -116,8 +118,10 @@ pub fn pair_surfaces(surfaces: &Surfaces<'_>, reduce: &Reduce<'_>) -> Result<Vec
         });
         if leaves && faults.0.is_empty() {
             let found = format!(
-                "{} m, which leaves `{}` at {:?}",
-                surfaces.stroke, surfaces.counter.name, candidate.position
+                "{} m, which leaves `{}` at {} m",
+                surfaces.stroke,
+                surfaces.counter.name,
+                components(candidate.position)
             );
             faults.push(Fault::new(place("stroke"), found, "a stroke that stays on the counter-body"));
         }
@@ -195,10 +199,10 @@ fn touching_nodes(surfaces: &Surfaces<'_>, place: &str) -> Result<Vec<Touching>>
     let (touching, off): (Vec<usize>, Vec<usize>) = (0..n).filter(|k| named[*k]).partition(|k| on_part[*k]);
     if let Some(node) = off.first() {
         let found = format!(
-            "{} of its nodes off part `{}`, one at {:?}",
+            "{} of its nodes off part `{}`, one at {} m",
             off.len(),
             surfaces.body.name,
-            surfaces.nodes[*node]
+            components(surfaces.nodes[*node])
         );
         return Err(Error::input(Fault::new(
             place,
@@ -253,7 +257,7 @@ fn check_nearest(surfaces: &Surfaces<'_>, plate: &Plate, all: &[Candidate]) -> R
     let faces = surfaces.counter.faces.len();
     let mut faults = Faults::new();
     let mut beside = |what: &str, help: &str| {
-        let found = format!("{the_nearest} at {:?}, {what} ({faces} faces)", nearest.position);
+        let found = format!("{the_nearest} at {} m, {what} ({faces} faces)", components(nearest.position));
         let expected = format!("a contact position on `{counter}`");
         faults.push(Fault::new(format!("`contact.{}`", surfaces.name), found, expected).with_help(help));
     };

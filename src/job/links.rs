@@ -2,7 +2,7 @@
 
 use super::regions::Regions;
 use crate::case::{Case, Rigid};
-use crate::error::{Fault, Faults};
+use crate::error::{Error, Fault, Faults};
 use crate::structure::{RigidLink, Support};
 use std::collections::BTreeMap;
 
@@ -87,13 +87,25 @@ pub fn supports(case: &Case, regions: &Regions, links: &[RigidLink], faults: &mu
         let moved: Vec<usize> = nodes.iter().filter(|node| followers.contains_key(node)).copied().collect();
         if let Some(first) = moved.first().filter(|_| held.contains(&true)) {
             let master = regions.name_of_node(followers[first]);
-            let found = format!("{} that follow {master} rigidly", regions.count_of_nodes(&moved));
+            let follow = if moved.len() == 1 { "follows" } else { "follow" };
+            let found = format!("{} that {follow} {master} rigidly", regions.count_of_nodes(&moved));
             let fault = Fault::new(place, found, "regions of masters, or of nodes that follow none");
             faults.push(fault.with_help(format!("Hold the master, {master}")));
         }
         supports.push(Support { nodes, held });
     }
     supports
+}
+
+/// An error of the structure in terms of the case: the keys of all that holds something, `clamp` among them, stand for its supports.
+pub fn in_terms_of_the_case(error: Error, case: &Case, clamp: Option<String>) -> Error {
+    let Error::Input(mut faults) = error else { return error };
+    let supports = case.support.keys().map(|name| format!("`support.{name}`"));
+    let keys: Vec<String> = clamp.into_iter().chain(supports).collect();
+    for fault in faults.0.iter_mut().filter(|fault| fault.place == "supports" && !keys.is_empty()) {
+        fault.place = keys.join(", ");
+    }
+    Error::Input(faults)
 }
 
 #[cfg(test)]
@@ -140,6 +152,16 @@ mod tests {
             "2 nodes, the first node 2 (`b`),",
             "Hold the master, node 1 (`a`)",
         ] {
+            assert!(text.contains(part), "{part}: {text}");
+        }
+        let text = said(&held.replace("\"b\", \"c\", \"d\"]", "\"c\", \"d\"]"));
+        assert!(text.contains("node 3 (`c`) that follows node 1 (`a`) rigidly"), "{text}");
+    }
+
+    #[test]
+    fn supports_that_hold_everything_are_named() {
+        let text = said("[support.wall]\non = [\"a\", \"b\"]\n[support.floor]\non = [\"c\", \"d\"]\n");
+        for part in ["links.toml:11 `support.floor`", "`support.wall`", "every degree of freedom held"] {
             assert!(text.contains(part), "{part}: {text}");
         }
     }

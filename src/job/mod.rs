@@ -21,6 +21,7 @@ mod keeper;
 mod links;
 mod measured;
 mod memory;
+mod mesh;
 mod missed;
 mod model;
 mod modes;

@@ -1,5 +1,6 @@
 //! Real modes of one part or of the whole, with names and effective masses.
 
+use super::links::in_terms_of_the_case;
 use super::near::near;
 use super::prepared::Prepared;
 use crate::case::{Case, ContactState, ModesAnalysis};
@@ -45,7 +46,8 @@ pub fn part_assembled(prepared: &Prepared, name: &str) -> Result<Arc<Assembled>>
     } else {
         let model =
             super::model::part_model(prepared.case, &prepared.regions, &prepared.model, name, analysis)?;
-        Arc::new(assemble(&model)?)
+        let clamp = (!analysis.clamp.is_empty()).then(|| format!("`modes.{name}.clamp`"));
+        Arc::new(assemble(&model).map_err(|error| in_terms_of_the_case(error, prepared.case, clamp))?)
     };
     if assembled.dofs.n_dofs() == 0 {
         return Err(Error::input(Fault::new(

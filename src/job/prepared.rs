@@ -3,14 +3,15 @@
 use super::contacts::{arrows, contact_pairs};
 use super::disc::Disc;
 use super::imported::read_model;
+use super::links::in_terms_of_the_case;
+use super::mesh::read_mesh;
 use super::model::whole_model;
 use super::place::place;
 use super::regions::Regions;
-use crate::case::{Case, GeneratedMesh, Matrices, MeshSource, RigMesh};
+use crate::case::{Case, Matrices};
 use crate::equilibrium::SteadyOptions;
 use crate::error::{Faults, Result};
-use crate::mesh::generate::{self, BarSide, BarSpec, DiscSpec, Faces, Grading, PlateSpec, RigSpec};
-use crate::mesh::{self, Mesh};
+use crate::mesh::Mesh;
 use crate::results::{Geometry, ModelSize};
 use crate::structure::{Assembled, Model, assemble};
 use crate::system::System;
@@ -60,7 +61,7 @@ impl<'a> Prepared<'a> {
         }
         let model = faults.take(whole_model(case, &regions));
         let model = faults.into_result(model)?.unwrap_or_default();
-        let assembled = Arc::new(assemble(&model)?);
+        let assembled = Arc::new(assemble(&model).map_err(|error| in_terms_of_the_case(error, case, None))?);
         let pairs = contact_pairs(case, &regions, &model, &assembled.dofs)?;
         let system = System {
             structure: assembled.structure.clone(),
@@ -149,46 +150,6 @@ impl<'a> Prepared<'a> {
     pub fn discs(&self) -> Vec<(&str, Disc)> {
         let disc = |part| Disc::recognise(part, &self.model.nodes);
         self.model.shells.iter().filter_map(|part| Some((part.name.as_str(), disc(part)?))).collect()
-    }
-}
-
-/// The mesh of the case, checked.
-fn read_mesh(case: &Case, source: &MeshSource) -> Result<(Mesh, Vec<String>)> {
-    let mesh = match source {
-        MeshSource::File { file, unit } => mesh::read(&case.folder.join(file), mesh::unit_in_metres(unit))?,
-        MeshSource::Generated(GeneratedMesh::Rig(rig)) => generate::rig(&rig_spec(case, rig))?,
-        MeshSource::Generated(GeneratedMesh::Annulus { outer_radius, hub_radius, radial, around }) => {
-            generate::structured_annulus(*hub_radius, *outer_radius, *radial, *around)?
-        }
-        MeshSource::Generated(GeneratedMesh::Plate { length, width, cells_along, cells_across }) => {
-            generate::structured_plate(*length, *width, *cells_along, *cells_across, Faces::Triangles)?
-        }
-    };
-    let diagnosis = mesh::diagnose(&mesh);
-    diagnosis.faults.into_result(())?;
-    Ok((mesh, diagnosis.warnings.iter().map(ToString::to_string).collect()))
-}
-
-fn rig_spec(case: &Case, rig: &RigMesh) -> RigSpec {
-    let grading = |coarse: f64| Grading::graded(rig.contact_size, rig.contact_radius, coarse);
-    RigSpec {
-        disc: DiscSpec {
-            outer_radius: rig.outer_radius,
-            hub_radius: rig.hub_radius,
-            grading: grading(rig.disc_size),
-        },
-        bar: BarSpec {
-            length: rig.bar_length.abs(),
-            elements: 10,
-            side: if rig.bar_length < 0.0 { BarSide::Plus } else { BarSide::Minus },
-        },
-        slider: PlateSpec {
-            length: rig.slider[0],
-            width: rig.slider[1],
-            contact: rig.contact,
-            grading: grading(rig.slider_size),
-        },
-        slider_thickness: case.shell.get("slider").map_or(0.01, |shell| shell.thickness),
     }
 }
 

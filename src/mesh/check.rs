@@ -55,22 +55,22 @@ pub fn diagnose(mesh: &Mesh) -> Diagnosis {
     diagnosis
 }
 
-/// `3, 5, 8 and 312 more`.
-fn list(numbers: impl IntoIterator<Item = u64>) -> String {
-    let all: Vec<u64> = numbers.into_iter().collect();
-    let mut text = all.iter().take(LISTED).map(u64::to_string).collect::<Vec<_>>().join(", ");
-    if all.len() > LISTED {
-        text += &format!(" and {} more", all.len() - LISTED);
+/// `3 (line 12), 5 (line 14) and 312 more`.
+fn list(places: impl ExactSizeIterator<Item = String>) -> String {
+    let count = places.len();
+    let mut text = places.take(LISTED).collect::<Vec<_>>().join(", ");
+    if count > LISTED {
+        text += &format!(" and {} more", count - LISTED);
     }
     text
 }
 
 fn elements(mesh: &Mesh, which: &[usize]) -> String {
-    format!("element {}", list(which.iter().map(|e| mesh.element_tag(*e))))
+    format!("element {}", list(which.iter().map(|e| mesh.element_place(*e))))
 }
 
 fn nodes(mesh: &Mesh, which: &[usize]) -> String {
-    format!("node {}", list(which.iter().map(|n| mesh.node_tag(*n))))
+    format!("node {}", list(which.iter().map(|n| mesh.node_place(*n))))
 }
 
 fn check_coordinates(mesh: &Mesh, faults: &mut Faults) {
@@ -103,7 +103,7 @@ fn check_unreferenced(mesh: &Mesh, diagnosis: &mut Diagnosis) {
     if !unused.is_empty() {
         diagnosis.warnings.push(
             Fault::new(
-                format!("node {}", list(unused.iter().copied())),
+                format!("node {}", list(unused.iter().map(u64::to_string))),
                 format!("{} nodes of the file that no element of a named physical group uses", unused.len()),
                 "none",
             )
@@ -149,7 +149,7 @@ fn check_coincident(mesh: &Mesh, diagnosis: &mut Diagnosis) {
     let (within, between): (Vec<_>, Vec<_>) =
         pairs.iter().partition(|[i, j]| regions_of[i].iter().any(|r| regions_of[j].contains(r)));
     let text = |pairs: &[[usize; 2]]| {
-        let tags = |p: &[usize; 2]| format!("{} and {}", mesh.node_tag(p[0]), mesh.node_tag(p[1]));
+        let tags = |p: &[usize; 2]| format!("{} and {}", mesh.node_place(p[0]), mesh.node_place(p[1]));
         let more = pairs.len().saturating_sub(LISTED);
         let first = pairs.iter().take(LISTED).map(tags).collect::<Vec<_>>().join("; ");
         format!("nodes {first}{}", if more > 0 { format!("; and {more} more pairs") } else { String::new() })
@@ -279,7 +279,7 @@ fn check_orientation(mesh: &Mesh, region: &Region, faults: &mut Faults) {
         .collect();
     clashing.sort_unstable();
     if let Some([e, f]) = clashing.first() {
-        let place = format!("elements {} and {}", mesh.element_tag(*e), mesh.element_tag(*f));
+        let place = format!("elements {} and {}", mesh.element_place(*e), mesh.element_place(*f));
         let found = format!(
             "neighbours turned opposite ways in region `{}` ({} edges like this)",
             region.name,
@@ -344,7 +344,7 @@ mod tests {
         mesh.origin = Origin {
             node_tags: (101..101 + mesh.nodes.len() as u64).collect(),
             element_tags: (501..501 + mesh.elements.len() as u64).collect(),
-            unused_nodes: vec![],
+            ..Origin::default()
         };
         mesh
     }
@@ -429,6 +429,7 @@ mod tests {
 
     #[test]
     fn long_lists_are_cut() {
-        assert_eq!(list(1..=9), "1, 2, 3, 4, 5 and 4 more");
+        let numbers: Vec<String> = (1..=9).map(|k| k.to_string()).collect();
+        assert_eq!(list(numbers.into_iter()), "1, 2, 3, 4, 5 and 4 more");
     }
 }

@@ -53,6 +53,10 @@ pub struct Origin {
     pub node_tags: Vec<u64>,
     /// Tag of each element, or empty: numbered from 1.
     pub element_tags: Vec<u64>,
+    /// Line of each node in a text file, or empty.
+    pub node_lines: Vec<usize>,
+    /// Line of each element in a text file, or empty.
+    pub element_lines: Vec<usize>,
     /// Tags of nodes in the file that were left out because no element of a physical group uses them.
     pub unused_nodes: Vec<u64>,
 }
@@ -169,6 +173,16 @@ impl Mesh {
         self.origin.element_tags.get(element).copied().unwrap_or(element as u64 + 1)
     }
 
+    /// The number of a node and its line in the file, if it has one: `12 (line 34)`.
+    pub(crate) fn node_place(&self, node: usize) -> String {
+        with_line(self.node_tag(node), self.origin.node_lines.get(node))
+    }
+
+    /// The number of an element and its line in the file, if it has one.
+    pub(crate) fn element_place(&self, element: usize) -> String {
+        with_line(self.element_tag(element), self.origin.element_lines.get(element))
+    }
+
     /// Adds `elements` as a new region.
     pub fn add_region(&mut self, name: &str, dimension: usize, elements: impl IntoIterator<Item = Element>) {
         let first = self.elements.len();
@@ -193,6 +207,10 @@ impl Mesh {
         }));
         self.origin = Origin::default();
     }
+}
+
+fn with_line(tag: u64, line: Option<&usize>) -> String {
+    line.map_or(tag.to_string(), |line| format!("{tag} (line {line})"))
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::{Element, Mesh};
 use crate::error::{Error, Fault, Result};
+use crate::numbers::components;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
@@ -13,7 +14,13 @@ use std::path::Path;
 /// See [`to_msh`]; a file that cannot be written.
 pub fn write(path: &Path, mesh: &Mesh, unit_in_metres: f64) -> Result<()> {
     let text = to_msh(mesh, unit_in_metres)?;
-    std::fs::write(path, text).map_err(|e| Error::io(path, e, "Choose a folder that can be written to"))
+    std::fs::write(path, text).map_err(|error| match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() && !folder.exists() => {
+            let help = "Make it with `mkdir -p`, or name a file in another folder";
+            Error::io(folder, "there is no such folder", help)
+        }
+        _ => Error::io(path, error, "Choose a folder that can be written to"),
+    })
 }
 
 /// The text of an MSH 4.1 file. Elements of the same regions form one entity; elements of no region are kept in
@@ -111,7 +118,7 @@ fn refuse(mesh: &Mesh, unit_in_metres: f64) -> Result<()> {
     if let Some(n) = mesh.nodes.iter().position(|p| p.iter().any(|c| !c.is_finite())) {
         return fault(
             "mesh to be written",
-            format!("node {} at {:?}", n + 1, mesh.nodes[n]),
+            format!("node {} at {}", n + 1, components(mesh.nodes[n])),
             "finite coordinates",
         );
     }

@@ -5,6 +5,7 @@ use super::elements::{Beam, FlatShell, split_face, spring_direction};
 use super::model::{Material, Model};
 use crate::error::{Fault, Faults, Result};
 use crate::mesh::Element;
+use crate::numbers::components;
 use std::collections::{BTreeMap, HashMap};
 
 /// Whether `model` can be assembled, without assembling it.
@@ -105,7 +106,7 @@ pub(super) fn check_model(model: &Model) -> Result<()> {
         not_negative(&place, "stiffness", spring.stiffness, "N/m or N m/rad", &mut faults);
         not_negative(&place, "damping", spring.damping, "N s/m or N m s/rad", &mut faults);
         if spring_direction(spring).is_none() {
-            let found = format!("direction {:?}", spring.direction);
+            let found = format!("direction {}", components(spring.direction));
             faults.push(Fault::new(&place, found, "a direction with a length"));
         }
         if spring.other == Some(spring.node) {
@@ -223,21 +224,15 @@ fn missing_nodes<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::structure::{RayleighDamping, ShellPart};
+    use crate::structure::ShellPart;
+    use crate::structure::samples::STEEL;
 
     #[test]
     fn an_element_belongs_to_one_part() {
-        let material = Material {
-            youngs_modulus: 210e9,
-            poissons_ratio: 0.3,
-            density: 7850.0,
-            loss_factor: 0.0,
-            rayleigh: RayleighDamping::default(),
-        };
         let plate = |name: &str, faces: &[[usize; 3]]| ShellPart {
             name: name.into(),
             faces: faces.iter().map(|nodes| Element::Triangle(*nodes)).collect(),
-            material,
+            material: STEEL,
             thickness: 1e-3,
             bending_only: false,
             rotary_inertia: true,

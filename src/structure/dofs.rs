@@ -212,18 +212,9 @@ fn dot(a: &[f64; 6], b: &[f64; 6]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::samples::STEEL;
     use super::super::*;
     use crate::mesh::Element;
-
-    fn steel() -> Material {
-        Material {
-            youngs_modulus: 210e9,
-            poissons_ratio: 0.3,
-            density: 7850.0,
-            loss_factor: 0.0,
-            rayleigh: RayleighDamping::default(),
-        }
-    }
 
     /// A square of two triangles tilted by `angle` about y, bending only or not, and a master below it.
     fn tilted(angle: f64, bending_only: bool) -> Model {
@@ -233,7 +224,7 @@ mod tests {
         let part = ShellPart {
             name: "plate".into(),
             faces: vec![Element::Triangle([0, 1, 2]), Element::Triangle([0, 2, 3])],
-            material: steel(),
+            material: STEEL,
             thickness: 1e-3,
             bending_only,
             rotary_inertia: false,

@@ -108,21 +108,15 @@ fn join(parent: &mut [usize], a: usize, b: usize) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{BarPart, Material, Model, RayleighDamping, Section, Spring, Support, assemble};
+    use super::super::samples::STEEL;
+    use super::super::{BarPart, Model, Section, Spring, Support, assemble};
     use super::*;
 
     fn bar(name: &str, nodes: [usize; 2]) -> BarPart {
-        let material = Material {
-            youngs_modulus: 210e9,
-            poissons_ratio: 0.3,
-            density: 7850.0,
-            loss_factor: 0.0,
-            rayleigh: RayleighDamping::default(),
-        };
         BarPart {
             name: name.into(),
             elements: vec![nodes],
-            material,
+            material: STEEL,
             section: Section::round(0.02),
             orientation: [0.0, 0.0, 1.0],
         }

@@ -15,6 +15,8 @@ mod imported;
 mod model;
 mod numbering;
 mod pieces;
+#[cfg(test)]
+mod samples;
 mod scatter;
 mod warnings;
 

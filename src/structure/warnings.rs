@@ -87,15 +87,7 @@ fn rigidity(material: &Material, h: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::structure::RayleighDamping;
-
-    const STEEL: Material = Material {
-        youngs_modulus: 210e9,
-        poissons_ratio: 0.3,
-        density: 7850.0,
-        loss_factor: 0.0,
-        rayleigh: RayleighDamping { alpha: 0.0, beta: 0.0 },
-    };
+    use crate::structure::samples::STEEL;
 
     /// ω of the lowest antisymmetric Lamb wave: three-dimensional elasticity, no plate theory.
     /// 4k²pq tanh(qh/2) = (q² + k²)² tanh(ph/2), p² = k² − ω²/c_l², q² = k² − ω²/c_t².

@@ -42,6 +42,11 @@ impl<'a> Reader<'a> {
         self.bytes.len() - self.at
     }
 
+    /// How many bytes lie behind.
+    pub fn offset(&self) -> usize {
+        self.at
+    }
+
     /// The file and the current position in it.
     pub fn place(&self) -> String {
         format!("{}, {}", self.place, position(self.bytes, self.at, self.encoding))

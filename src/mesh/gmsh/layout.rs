@@ -17,14 +17,22 @@ struct Block {
     position: String,
 }
 
-/// Goes through what follows the header's line.
+/// Where the lines of nodes and elements are, in the order of the file \[bytes\].
+#[derive(Default)]
+pub(super) struct Offsets {
+    pub nodes: Vec<usize>,
+    pub elements: Vec<usize>,
+}
+
+/// Goes through what follows the header's line; gives where nodes and elements are.
 ///
 /// # Errors
 /// Input: a number too few or too many, a count that the file does not hold, an entity that is missing or there twice.
-pub(super) fn check(mut file: Reader<'_>) -> Result<()> {
+pub(super) fn check(mut file: Reader<'_>) -> Result<Offsets> {
     file.skip_section("MeshFormat")?;
     let (mut entities, mut blocks) = (None, None);
     let mut nodes = false;
+    let mut offsets = Offsets::default();
     loop {
         let section = file.word();
         let again = match section {
@@ -40,10 +48,10 @@ pub(super) fn check(mut file: Reader<'_>) -> Result<()> {
             "" => break,
             "$Entities" => entities = Some(check_entities(&mut file)?),
             "$Nodes" => {
-                check_nodes(&mut file)?;
+                offsets.nodes = check_nodes(&mut file)?;
                 nodes = true;
             }
-            "$Elements" => blocks = Some(check_elements(&mut file)?),
+            "$Elements" => blocks = Some(check_elements(&mut file, &mut offsets.elements)?),
             "$PartitionedEntities" => {
                 return Err(file.wrong("a mesh in partitions", "a whole mesh: `gmsh -part 0`"));
             }
@@ -63,7 +71,7 @@ pub(super) fn check(mut file: Reader<'_>) -> Result<()> {
     };
     let known = |block: &Block| entities.as_ref().is_none_or(|all: &Entities| all.contains(&block.entity));
     match blocks.into_iter().find(|block| !known(block)) {
-        None => Ok(()),
+        None => Ok(offsets),
         Some(Block { entity: (dimension, tag), position }) => {
             let found = format!("elements of entity {tag} of dimension {dimension}, which $Entities lacks");
             Err(Error::input(Fault::new(position, found, "entities of the file")))
@@ -139,9 +147,9 @@ fn check_total(file: &Reader<'_>, what: &str, found: usize, said: usize) -> Resu
     Err(file.wrong(format!("{found} {what}"), format!("{said}, as the head of the section says")))
 }
 
-fn check_nodes(file: &mut Reader<'_>) -> Result<()> {
+fn check_nodes(file: &mut Reader<'_>) -> Result<Vec<usize>> {
     let [blocks, total] = head(file, "nodes")?;
-    let mut all = 0;
+    let mut offsets = Vec::new();
     for _ in 0..blocks {
         let dimension = file.int("entity's dimension")?;
         file.int("entity's tag")?;
@@ -156,6 +164,7 @@ fn check_nodes(file: &mut Reader<'_>) -> Result<()> {
         let count = count(file, "number of nodes in the block")?;
         for _ in 0..count {
             tag(file, "node number")?;
+            offsets.push(file.offset());
             file.line_is_over("a node's number")?;
         }
         for _ in 0..count {
@@ -167,15 +176,16 @@ fn check_nodes(file: &mut Reader<'_>) -> Result<()> {
             }
             file.line_is_over("a node")?;
         }
-        all += count;
     }
-    check_total(file, "nodes", all, total)?;
-    file.expect("$EndNodes")
+    check_total(file, "nodes", offsets.len(), total)?;
+    file.expect("$EndNodes")?;
+    Ok(offsets)
 }
 
-fn check_elements(file: &mut Reader<'_>) -> Result<Vec<Block>> {
+/// Adds where each element is to `offsets`.
+fn check_elements(file: &mut Reader<'_>, offsets: &mut Vec<usize>) -> Result<Vec<Block>> {
     let [n_blocks, total] = head(file, "elements")?;
-    let (mut blocks, mut all) = (Vec::new(), 0);
+    let mut blocks = Vec::new();
     for _ in 0..n_blocks {
         let entity = (file.int("entity's dimension")?, file.int("entity's tag")?);
         let kind = file.int("element type")?;
@@ -186,15 +196,15 @@ fn check_elements(file: &mut Reader<'_>) -> Result<Vec<Block>> {
         let count = count(file, "number of elements in the block")?;
         for _ in 0..count {
             tag(file, "element number")?;
+            offsets.push(file.offset());
             for _ in 0..n_nodes {
                 tag(file, "node number")?;
             }
             file.line_is_over("an element")?;
         }
-        all += count;
         blocks.push(Block { entity, position });
     }
-    check_total(file, "elements", all, total)?;
+    check_total(file, "elements", offsets.len(), total)?;
     file.expect("$EndElements")?;
     Ok(blocks)
 }

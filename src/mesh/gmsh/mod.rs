@@ -19,7 +19,7 @@ use super::{Mesh, check};
 use crate::error::text::read_bytes;
 use crate::error::{Error, Fault, Faults, Result};
 use bytes::{Encoding, Reader};
-use raw::RawMesh;
+use raw::{Lines, RawMesh};
 use std::path::Path;
 
 /// Reads the mesh file `path`, whose coordinates are in units of `unit_in_metres` (0.001: millimetres).
@@ -57,7 +57,7 @@ pub fn parse(bytes: &[u8], place: &str, unit_in_metres: f64) -> Result<Mesh> {
         Version::Two => msh2::parse(Reader::new(bytes, header.body, header.encoding, place))?,
     };
     let names = names::parse(bytes, place)?;
-    let mesh = raw.into_mesh(&names, place, unit_in_metres)?;
+    let mesh = raw.into_mesh(&names, (place, &Lines::new(bytes, header.encoding)), unit_in_metres)?;
     let faults = check::diagnose(&mesh).faults.0;
     let placed = faults.into_iter().map(|f| Fault { place: format!("{place}: {}", f.place), ..f }).collect();
     Faults(placed).into_result(mesh)

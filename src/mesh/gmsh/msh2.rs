@@ -1,7 +1,7 @@
 //! MSH 2.2: nodes, then elements that each carry their physical group.
 
 use super::bytes::{Encoding, Reader};
-use super::raw::{RawElement, RawMesh, n_nodes};
+use super::raw::{RawElement, RawMesh, RawNode, n_nodes};
 use crate::error::Result;
 
 /// Reads what follows the header's line.
@@ -50,9 +50,10 @@ fn count(file: &mut Reader<'_>, what: &str) -> Result<usize> {
 fn read_nodes(file: &mut Reader<'_>, raw: &mut RawMesh) -> Result<()> {
     for _ in 0..count(file, "number of nodes")? {
         let tag = tag(file, "node number")?;
+        let offset = file.offset();
         let place = [file.float("node's x")?, file.float("node's y")?, file.float("node's z")?];
         file.line_is_over("a node")?;
-        raw.nodes.push((tag, place));
+        raw.nodes.push(RawNode { tag, place, offset });
     }
     Ok(())
 }
@@ -95,6 +96,7 @@ fn read_element(file: &mut Reader<'_>, raw: &mut RawMesh, tag: u64, kind: i64, n
     if n_tags < 0 || n_tags > file.left() as i64 {
         return Err(file.wrong(format!("{n_tags} tags"), "a few"));
     }
+    let offset = file.offset();
     let mut group = 0;
     for k in 0..n_tags {
         let number = file.int("element tag")?;
@@ -105,7 +107,7 @@ fn read_element(file: &mut Reader<'_>, raw: &mut RawMesh, tag: u64, kind: i64, n
     let nodes = (0..n_nodes).map(|_| self::tag(file, "node number")).collect::<Result<Vec<u64>>>()?;
     // A negative group stands for the reversed side of a surface.
     let groups = if group == 0 { vec![] } else { vec![group.saturating_abs()] };
-    raw.elements.push(RawElement { tag, kind, nodes, groups });
+    raw.elements.push(RawElement { tag, kind, nodes, groups, offset });
     Ok(())
 }
 

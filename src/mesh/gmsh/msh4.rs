@@ -7,7 +7,7 @@
 use super::bytes::{Encoding, Reader};
 use super::layout;
 use super::names::find;
-use super::raw::{RawElement, RawMesh};
+use super::raw::{RawElement, RawMesh, RawNode};
 use crate::error::{Error, Fault, Result};
 use mshio::MshFile;
 use std::collections::HashMap;
@@ -15,7 +15,7 @@ use std::panic::catch_unwind;
 
 /// Reads the whole file, whose numbers after the header begin at `body`.
 pub(super) fn parse(bytes: &[u8], body: usize, encoding: Encoding, place: &str) -> Result<RawMesh> {
-    layout::check(Reader::new(bytes, body, encoding, place))?;
+    let offsets = layout::check(Reader::new(bytes, body, encoding, place))?;
     let wrong = |found: String, expected: &str| Error::input(Fault::new(place, found, expected));
     let bytes = with_gaps(bytes, encoding);
     let parsed = catch_unwind(|| mshio::parse_msh_bytes(&bytes).map_err(|error| explain(&error)));
@@ -30,6 +30,7 @@ pub(super) fn parse(bytes: &[u8], body: usize, encoding: Encoding, place: &str) 
     };
 
     let mut raw = RawMesh::default();
+    let [mut node_offsets, mut element_offsets] = [offsets.nodes, offsets.elements].map(Vec::into_iter);
     for block in nodes.node_blocks {
         let mut tags = vec![0; block.nodes.len()];
         for (tag, index) in block.node_tags.into_iter().flatten() {
@@ -41,7 +42,11 @@ pub(super) fn parse(bytes: &[u8], body: usize, encoding: Encoding, place: &str) 
                 "each node number once",
             ));
         }
-        raw.nodes.extend(tags.into_iter().zip(block.nodes).map(|(tag, n)| (tag, [n.x, n.y, n.z])));
+        raw.nodes.extend(tags.into_iter().zip(block.nodes).map(|(tag, n)| RawNode {
+            tag,
+            place: [n.x, n.y, n.z],
+            offset: node_offsets.next().unwrap_or_default(),
+        }));
     }
     if raw.nodes.len() as u64 != nodes.num_nodes {
         return Err(wrong(
@@ -69,6 +74,7 @@ pub(super) fn parse(bytes: &[u8], body: usize, encoding: Encoding, place: &str) 
             kind,
             nodes: e.nodes,
             groups: groups.clone(),
+            offset: element_offsets.next().unwrap_or_default(),
         }));
     }
     if raw.elements.len() as u64 != elements.num_elements {

@@ -1,16 +1,26 @@
 //! What a file lists, before groups have names and nodes have places.
 
+use super::bytes::Encoding;
 use super::names::Names;
 use crate::error::{Error, Fault, Faults, Result};
-use crate::mesh::{Element, Mesh, Region};
+use crate::mesh::{Element, Mesh, Region, with_line};
 use std::collections::{BTreeMap, HashMap};
 
 /// Nodes and elements of a file.
 #[derive(Debug, Default)]
 pub(super) struct RawMesh {
-    /// Tag and coordinates, in the unit of the file.
-    pub nodes: Vec<(u64, [f64; 3])>,
+    pub nodes: Vec<RawNode>,
     pub elements: Vec<RawElement>,
+}
+
+/// One node of a file.
+#[derive(Debug)]
+pub(super) struct RawNode {
+    pub tag: u64,
+    /// Coordinates, in the unit of the file.
+    pub place: [f64; 3],
+    /// Where it is in the file \[bytes\].
+    pub offset: usize,
 }
 
 /// One element of a file.
@@ -23,6 +33,24 @@ pub(super) struct RawElement {
     pub nodes: Vec<u64>,
     /// Physical groups of the element's own dimension.
     pub groups: Vec<i64>,
+    /// Where it is in the file \[bytes\].
+    pub offset: usize,
+}
+
+/// The lines of a text file, so that what is there can be found; none of a binary one.
+pub(super) struct Lines(Option<Vec<usize>>);
+
+impl Lines {
+    /// The lines of `bytes`.
+    pub fn new(bytes: &[u8], encoding: Encoding) -> Self {
+        let ends = || (0..bytes.len()).filter(|at| bytes[*at] == b'\n').collect();
+        Lines((encoding == Encoding::Ascii).then(ends))
+    }
+
+    /// The line, from 1, of what is at a byte.
+    fn of(&self, offset: usize) -> Option<usize> {
+        self.0.as_ref().map(|ends| 1 + ends.partition_point(|end| *end < offset))
+    }
 }
 
 /// The number of nodes of Gmsh's element types 1 to 31.
@@ -46,7 +74,12 @@ fn dimension(kind: i64) -> Option<usize> {
 
 impl RawMesh {
     /// Names the groups, drops what belongs to none, finds the nodes, and turns to metres.
-    pub fn into_mesh(mut self, names: &Names, place: &str, unit_in_metres: f64) -> Result<Mesh> {
+    pub fn into_mesh(
+        mut self,
+        names: &Names,
+        (place, lines): (&str, &Lines),
+        unit_in_metres: f64,
+    ) -> Result<Mesh> {
         if names.is_empty() {
             let fault =
                 Fault::new(place, "no named physical group", "parts marked by physical groups with names");
@@ -58,21 +91,21 @@ impl RawMesh {
         self.elements.retain(|e| !e.groups.is_empty());
         self.refuse_kinds(place, &mut faults);
         self.elements.sort_by_key(|e| e.tag);
-        self.nodes.sort_by_key(|n| n.0);
+        self.nodes.sort_by_key(|n| n.tag);
         for (what, twice) in [
-            ("node", self.nodes.windows(2).find(|w| w[0].0 == w[1].0).map(|w| w[0].0)),
+            ("node", self.nodes.windows(2).find(|w| w[0].tag == w[1].tag).map(|w| (w[0].tag, w[1].offset))),
             // MSH 2.2 may list an element once for each of its groups, with a tag of its own or the same one.
             (
                 "element",
                 self.elements
                     .windows(2)
                     .find(|w| w[0].tag == w[1].tag && w[0].nodes != w[1].nodes)
-                    .map(|w| w[0].tag),
+                    .map(|w| (w[0].tag, w[1].offset)),
             ),
         ] {
-            if let Some(tag) = twice {
+            if let Some((tag, offset)) = twice {
                 faults.push(Fault::new(
-                    format!("{place}: {what} {tag}"),
+                    format!("{place}: {what} {}", with_line(tag, lines.of(offset).as_ref())),
                     "its number twice",
                     "each number once",
                 ));
@@ -86,7 +119,7 @@ impl RawMesh {
             ));
         }
         faults.into_result(())?;
-        self.assemble(names, place, unit_in_metres)
+        self.assemble(names, (place, lines), unit_in_metres)
     }
 
     /// One fault for higher orders, one for solids.
@@ -124,32 +157,33 @@ impl RawMesh {
         }
     }
 
-    fn assemble(self, names: &Names, place: &str, unit_in_metres: f64) -> Result<Mesh> {
+    fn assemble(self, names: &Names, (place, lines): (&str, &Lines), unit_in_metres: f64) -> Result<Mesh> {
         let mut mesh = Mesh::default();
-        let known: HashMap<u64, usize> = self.nodes.iter().enumerate().map(|(i, n)| (n.0, i)).collect();
+        let known: HashMap<u64, usize> = self.nodes.iter().enumerate().map(|(i, n)| (n.tag, i)).collect();
         let mut used = vec![false; self.nodes.len()];
         let mut lost = Vec::new();
         for e in &self.elements {
             for tag in &e.nodes {
                 match known.get(tag) {
                     Some(i) => used[*i] = true,
-                    None => lost.push((e.tag, *tag)),
+                    None => lost.push((e, *tag)),
                 }
             }
         }
         if let Some((element, node)) = lost.first() {
             let found = format!("node {node}, which the file does not hold ({} cases)", lost.len());
             return Err(Error::input(Fault::new(
-                format!("{place}: element {element}"),
+                format!("{place}: element {}", with_line(element.tag, lines.of(element.offset).as_ref())),
                 found,
                 "nodes of the file",
             )));
         }
         let mut place_of = vec![0; self.nodes.len()];
-        for (i, (tag, p)) in self.nodes.iter().enumerate() {
+        for (i, RawNode { tag, place, offset }) in self.nodes.iter().enumerate() {
             if used[i] {
                 place_of[i] = mesh.nodes.len();
-                mesh.nodes.push(p.map(|c| c * unit_in_metres));
+                mesh.nodes.push(place.map(|c| c * unit_in_metres));
+                mesh.origin.node_lines.extend(lines.of(*offset));
                 mesh.origin.node_tags.push(*tag);
             } else {
                 mesh.origin.unused_nodes.push(*tag);
@@ -168,7 +202,7 @@ impl RawMesh {
         }
         // Element and regions by nodes.
         let mut listed: HashMap<(i64, Vec<usize>), (usize, Vec<usize>)> = HashMap::new();
-        for RawElement { tag, kind, nodes, groups } in self.elements {
+        for RawElement { tag, kind, nodes, groups, offset } in self.elements {
             let n: Vec<usize> = nodes.iter().map(|tag| place_of[known[tag]]).collect();
             let element = match (kind, n.as_slice()) {
                 (15, [a]) => Element::Point([*a]),
@@ -194,6 +228,7 @@ impl RawMesh {
                 *listed = (mesh.elements.len(), vec![]);
                 mesh.elements.push(element);
                 mesh.origin.element_tags.push(tag);
+                mesh.origin.element_lines.extend(lines.of(offset));
             }
             for region in of {
                 if !listed.1.contains(&region) {

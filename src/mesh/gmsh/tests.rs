@@ -1,5 +1,7 @@
 use super::*;
+use crate::mesh::generate::{Faces, structured_plate};
 use crate::mesh::quality::face_shape;
+use crate::mesh::to_msh;
 
 /// The same small model in four formats, written by Gmsh 4.15 (tests/data/gmsh.geo).
 const FILES: [(&str, &[u8]); 4] = [
@@ -202,19 +204,22 @@ fn each_wrong_file_is_told_what_is_wrong_with_it() {
         (BAR.replace("1\n1 1 \"bar\"", "2\n1 1 \"bar\""), "found 1 names; expected 2"),
         (
             BAR.replace("2 100 0 0", "2 nan 0 0"),
-            "node 2: found coordinates that are infinite or not a number",
+            "node 2 (line 11): found coordinates that are infinite or not a number",
         ),
         (BAR.replace("2 100 0 0", "2 1e999 0 0"), "infinite"),
-        (BAR_4.replace("\n100 0 0", "\n1e999 0 0"), "node 2: found coordinates"),
+        (BAR_4.replace("\n100 0 0", "\n1e999 0 0"), "node 2 (line 15): found coordinates"),
         (BAR_4.replace("\n100 0 0", "\nnan 0 0"), "not a number"),
         (BAR.replace("2 100 0 0", "2 x 0 0"), "line 11: found `x`; expected a number, the node's x"),
         (BAR.replace("2 100 0 0", "1 100 0 0"), "node 1: found its number twice"),
-        (BAR.replace("1 1 1 2\n", "1 1 1 7\n"), "element 1: found node 7, which the file does not hold"),
+        (
+            BAR.replace("1 1 1 2\n", "1 1 1 7\n"),
+            "element 1 (line 15): found node 7, which the file does not hold",
+        ),
         (BAR.replace("1 1 2 1 1 1 2", "1 4 2 1 1 1 2 1 2"), "solid elements (1 of type 4)"),
         (BAR.replace("1 1 2 1 1 1 2", "1 8 2 1 1 1 2 1"), "-order 1"),
         (BAR.replace("1 1 2 1 1 1 2", "1 99 2 1 1 1 2"), "element type 99"),
         (BAR.replace("1 1 2 1 1 1 2", "1 1 2 0 1 1 2"), "no element in any physical group"),
-        (BAR.replace("2 100 0 0", "2 0 0 0"), "element 1: found 1 elements without length"),
+        (BAR.replace("2 100 0 0", "2 0 0 0"), "element 1 (line 15): found 1 elements without length"),
     ] {
         let text = fault(&bytes);
         assert!(text.contains(expected), "{bytes}\n{text}");
@@ -254,4 +259,31 @@ fn big_endian_and_carriage_returns_are_read() {
     bytes.extend(b"\n$EndElements\n");
     let mesh = parse(&bytes, "a.msh", 1.0).unwrap();
     assert_eq!(mesh.nodes[1], [0.25, 0.0, 0.0]);
+}
+
+/// Faults of single nodes and elements name their lines, in both versions of the format.
+#[test]
+fn nodes_and_elements_have_their_lines() {
+    let torn = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 1 \"plate\"\n$EndPhysicalNames\n\
+                $Nodes\n4\n4 0 1 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n\
+                $Elements\n3\n1 2 2 1 1 1 2 3\n8 2 2 1 1 1 2 4\n9 2 2 1 1 1 2 4\n$EndElements\n";
+    let text = parse(torn.as_bytes(), "a.msh", 1.0).unwrap_err().to_string();
+    for part in [
+        "a.msh: nodes 3 (line 13) and 4 (line 10): found two nodes",
+        "element 9 (line 19): found 1 elements on",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    let mesh = structured_plate(1.0, 1.0, 2, 2, Faces::Triangles).unwrap();
+    let lines: Vec<String> = to_msh(&mesh, 1.0).unwrap().lines().map(str::to_string).collect();
+    let read = parse(lines.join("\n").as_bytes(), "a.msh", 1.0).unwrap();
+    let first = |k: usize| lines[k - 1].split(' ').next().unwrap().parse::<u64>().unwrap();
+    assert_eq!(read.origin.node_lines.len(), mesh.nodes.len());
+    assert_eq!(read.origin.element_lines.len(), read.elements.len());
+    for (tag, line) in read.origin.node_tags.iter().zip(&read.origin.node_lines) {
+        assert!(first(*line) == *tag && !lines[line - 1].contains(' '), "{tag} {line}");
+    }
+    for (tag, line) in read.origin.element_tags.iter().zip(&read.origin.element_lines) {
+        assert_eq!(first(*line), *tag);
+    }
 }

@@ -1,0 +1,126 @@
+//! The mesh of a case: read from a file, or generated.
+
+use crate::case::{Case, GeneratedMesh, MeshSource, RigMesh};
+use crate::error::{Error, Result};
+use crate::mesh::generate::{self, BarSide, BarSpec, DiscSpec, Faces, Grading, PlateSpec, RigSpec};
+use crate::mesh::{self, Mesh};
+
+/// The mesh of the case, checked.
+pub(super) fn read_mesh(case: &Case, source: &MeshSource) -> Result<(Mesh, Vec<String>)> {
+    let mesh = match source {
+        MeshSource::File { file, unit } => mesh::read(&case.folder.join(file), mesh::unit_in_metres(unit))?,
+        MeshSource::Generated(mesh) => generated(case, mesh).map_err(|error| by_keys(error, mesh))?,
+    };
+    let diagnosis = mesh::diagnose(&mesh);
+    diagnosis.faults.into_result(())?;
+    Ok((mesh, diagnosis.warnings.iter().map(ToString::to_string).collect()))
+}
+
+fn generated(case: &Case, mesh: &GeneratedMesh) -> Result<Mesh> {
+    match mesh {
+        GeneratedMesh::Rig(rig) => generate::rig(&rig_spec(case, rig)),
+        GeneratedMesh::Annulus { outer_radius, hub_radius, radial, around } => {
+            generate::structured_annulus(*hub_radius, *outer_radius, *radial, *around)
+        }
+        GeneratedMesh::Plate { length, width, cells_along, cells_across } => {
+            generate::structured_plate(*length, *width, *cells_along, *cells_across, Faces::Triangles)
+        }
+    }
+}
+
+/// Faults of a generator at the keys of the case that give its sizes.
+fn by_keys(error: Error, mesh: &GeneratedMesh) -> Error {
+    let Error::Input(mut faults) = error else { return error };
+    let keys: &[(&str, &str)] = match mesh {
+        GeneratedMesh::Rig(_) => &[
+            ("disc `outer_radius`", "mesh.rig.outer_radius"),
+            ("disc `hub_radius`", "mesh.rig.hub_radius"),
+            ("rig `disc.hub_radius`", "mesh.rig.hub_radius"),
+            ("disc `fine`", "mesh.rig.contact_size"),
+            ("plate `fine`", "mesh.rig.contact_size"),
+            ("disc `fine_radius`", "mesh.rig.contact_radius"),
+            ("plate `fine_radius`", "mesh.rig.contact_radius"),
+            ("disc `coarse`", "mesh.rig.disc_size"),
+            ("plate `coarse`", "mesh.rig.slider_size"),
+            ("disc element sizes", "mesh.rig.disc_size"),
+            ("plate element sizes", "mesh.rig.slider_size"),
+            ("plate `length`", "mesh.rig.slider"),
+            ("plate `width`", "mesh.rig.slider"),
+            ("plate contact x", "mesh.rig.contact"),
+            ("plate contact y", "mesh.rig.contact"),
+            ("rig `bar.length`", "mesh.rig.bar_length"),
+            ("rig `slider_thickness`", "shell.slider.thickness"),
+        ],
+        GeneratedMesh::Annulus { .. } => &[
+            ("annulus `outer radius`", "mesh.annulus.outer_radius"),
+            ("annulus `hub radius`", "mesh.annulus.hub_radius"),
+            ("annulus hub radius", "mesh.annulus.hub_radius"),
+            ("annulus cells", "mesh.annulus.radial"),
+            ("annulus `n_angular`", "mesh.annulus.around"),
+        ],
+        GeneratedMesh::Plate { .. } => &[
+            ("plate `length`", "mesh.plate.length"),
+            ("plate `width`", "mesh.plate.width"),
+            ("plate cells", "mesh.plate.cells_along"),
+        ],
+    };
+    for fault in &mut faults.0 {
+        let Some((place, key)) = keys.iter().find(|(place, _)| *place == fault.place) else { continue };
+        let coarse = if place.starts_with("disc") { "`disc_size`" } else { "`slider_size`" };
+        fault.found = fault.found.replace("`coarse`", coarse);
+        fault.expected = fault.expected.replace("`coarse`", coarse);
+        fault.place = format!("`{key}`");
+    }
+    Error::Input(faults)
+}
+
+fn rig_spec(case: &Case, rig: &RigMesh) -> RigSpec {
+    let grading = |coarse: f64| Grading::graded(rig.contact_size, rig.contact_radius, coarse);
+    RigSpec {
+        disc: DiscSpec {
+            outer_radius: rig.outer_radius,
+            hub_radius: rig.hub_radius,
+            grading: grading(rig.disc_size),
+        },
+        bar: BarSpec {
+            length: rig.bar_length.abs(),
+            elements: 10,
+            side: if rig.bar_length < 0.0 { BarSide::Plus } else { BarSide::Minus },
+        },
+        slider: PlateSpec {
+            length: rig.slider[0],
+            width: rig.slider[1],
+            contact: rig.contact,
+            grading: grading(rig.slider_size),
+        },
+        slider_thickness: case.shell.get("slider").map_or(0.01, |shell| shell.thickness),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::case::Case;
+    use crate::job::Prepared;
+
+    #[test]
+    fn faults_of_generated_meshes_are_at_keys_of_the_case() {
+        let said = |mesh: &str| {
+            let case = Case::parse("made.toml", mesh, "".into()).unwrap();
+            Prepared::new(&case).unwrap_err().to_string()
+        };
+        let rig = "[mesh.rig]\ncontact_size = \"5 mm\"\ncontact = [\"1 m\", 0]\nhub_radius = \"90 mm\"\n";
+        let text = said(rig);
+        for part in [
+            "made.toml:2 `mesh.rig.contact_size`",
+            "larger than `disc_size`, 0.003 m",
+            "made.toml:3 `mesh.rig.contact`",
+            "made.toml:4 `mesh.rig.hub_radius`",
+        ] {
+            assert!(text.contains(part), "{part}: {text}");
+        }
+        assert!(!text.contains("coarse") && !text.contains("plate"), "{text}");
+        let text = said("[mesh.annulus]\nouter_radius = 0.1\nhub_radius = 0.2\naround = 7\n");
+        assert!(text.contains("made.toml:3 `mesh.annulus.hub_radius`"), "{text}");
+        assert!(text.contains("made.toml:4 `mesh.annulus.around`"), "{text}");
+    }
+}
