@@ -116,6 +116,69 @@ fn a_stiffer_penalty_moves_no_squeal_mode() {
     }
 }
 
+/// A record that the disk has no room for is refused before a folder is made.
+#[test]
+fn a_run_in_time_without_room_writes_nothing() {
+    let probe = |k: usize| format!("[transient.probe.p{k}]\non = \"block\"\ndirection = [1, 0, 0]\n");
+    let probes: String = (0..2000).map(probe).collect();
+    let endless = format!("{BLOCK}[transient]\nduration = \"100 s\"\ntime_step = \"1 us\"\n{probes}");
+    let folder = folder_with(&endless);
+    let text = said(&stridor(folder.path(), &["run", "case.toml", "--out", "out"]), 1);
+    assert!(text.contains("100000000 steps of 6013 channels") && text.contains("the disk has"), "{text}");
+    assert!(!folder.path().join("out").exists(), "{text}");
+}
+
+#[test]
+fn a_mesh_goes_to_a_folder_that_is_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = said(&stridor(folder.path(), &["mesh", "disc", "--out", "missing/folder/x.msh"]), 1);
+    assert!(text.contains("missing/folder: there is no such folder") && text.contains("mkdir -p"), "{text}");
+}
+
+#[test]
+fn what_a_case_asks_of_no_mode_is_said() {
+    let with = |old: &str, new: &str| {
+        assert!(BLOCK.contains(old));
+        folder_with(&BLOCK.replace(old, new))
+    };
+    let band = "band = [0, \"10 Hz\"]";
+    let nearest = with(band, "band = [0, \"10 Hz\"]\nnearest = \"5 Hz\"\ncount = 1");
+    let output = stridor(nearest.path(), &["check", "case.toml"]);
+    let text = said(&output, 0) + &String::from_utf8_lossy(&output.stdout);
+    assert!(
+        text.contains("the 1 complex modes nearest to 5 Hz alone, not for all from 0 to 10 Hz"),
+        "{text}"
+    );
+
+    let massless = with("mass = \"2 kg\"", "mass = 0");
+    let text = said(&stridor(massless.path(), &["check", "case.toml"]), 2);
+    assert!(text.contains("no mass") && text.contains("nothing vibrates without"), "{text}");
+
+    let empty = with(band, "band = [\"10 Hz\", \"20 Hz\"]");
+    let output = stridor(empty.path(), &["cea", "case.toml"]);
+    let text = said(&output, 0) + &String::from_utf8_lossy(&output.stdout);
+    assert!(text.contains("No complex mode was found between 10 and 20 Hz"), "{text}");
+}
+
+/// Where the penalty leaves λ no digits, the modes are marked in every output and the run fails.
+#[test]
+fn modes_without_digits_have_no_verdict() {
+    let rig = include_str!("../validation/rig-coarse/plain.toml").replace("\"6 kHz\"", "\"2 kHz\"");
+    let folder = folder_with(&rig.replace("\"10 MN/m\"", "1e23"));
+    let text = said(&stridor(folder.path(), &["cea", "case.toml", "--out", "out"]), 1);
+    assert!(text.contains("complex modes: the refinement did not settle"), "{text}");
+    let written = |name: &str| std::fs::read_to_string(folder.path().join("out").join(name)).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&written("summary.json")).unwrap();
+    assert!(summary["complete"] == false && summary["failed"].as_str().unwrap().contains("did not settle"));
+    let modes = summary["cea"]["eigenvalues"].as_array().unwrap();
+    let lost = modes.iter().filter(|mode| mode["verdict"] == "not accurate").count();
+    assert!(lost > 0 && summary["cea"]["not_accurate"] == lost);
+    assert!(modes.iter().all(|mode| mode["verdict"] != "not accurate" || mode["unstable"] == false));
+    assert_eq!(written("complex_modes.csv").matches(",not accurate,").count(), lost);
+    let page = written("report.html");
+    assert!(page.contains("NOT ACCURATE") && page.contains("neither stable nor unstable"));
+}
+
 #[test]
 fn a_free_body_gives_as_many_rigid_motions_as_it_has() {
     for count in [1, 3, 6] {

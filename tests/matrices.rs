@@ -210,6 +210,19 @@ fn an_exported_case_has_the_same_modes() {
 }
 
 #[test]
+fn names_of_contacts_need_not_be_names_of_files() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("validation/two-dof/case.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let named = text.replace("[contact.belt]", "[contact.\"pad/left\"]");
+    let case = stridor::case::Case::parse("case.toml", &named, ".".into()).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    export(&case, folder.path()).unwrap();
+    assert!(folder.path().join("contact_pad_left.csv").exists());
+    let exported = stridor::case::read_case(&folder.path().join("case.toml")).unwrap();
+    assert!(exported.contact.contains_key("pad/left"));
+}
+
+#[test]
 fn an_exported_case_keeps_what_was_measured_of_what_it_has() {
     let (from, to) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     std::fs::write(from.path().join("tap.csv"), "frequency_hz,damping_ratio\n0.2,0.01\n").unwrap();

@@ -8,7 +8,7 @@ use super::explore::{KnownMap, KnownMaps, Nominal, explore};
 use super::frf::{Frf, frfs};
 use super::keeper::{Folder, Keeper, Memory, Stage};
 use super::memory::check_memory;
-use super::missed::nothing_is_missed;
+use super::missed::results_hold;
 use super::modes::{check_part, named, of_the_whole, part_modes, wanted};
 use super::prepared::Prepared;
 use super::sensitivity::Analysed;
@@ -22,6 +22,7 @@ use crate::progress::Observer;
 use crate::results::record::{Earlier, InputFile, Origin, Record};
 use crate::results::{
     self, ComplexResult, FieldsFile, FolderLock, NamedModes, ResultsFile, RunResults, SteadyResult,
+    room_on_disk,
 };
 use crate::system::System;
 use std::path::Path;
@@ -178,6 +179,9 @@ pub fn run_case(
         observer.begin(&format!("memory: about {}", expected.words()), None);
         observer.end();
     }
+    if let Some((wanted, places)) = &asked.in_time {
+        room_on_disk(out, &places.least_record(&prepared, wanted))?;
+    }
     let inputs =
         case.files().iter().map(|file| InputFile::read(&case.folder, file)).collect::<Result<_>>()?;
     let origin = Origin { case: case.to_toml(), inputs };
@@ -207,7 +211,7 @@ pub fn run_case(
         .map_err(|error| if resume { error } else { error.while_computing() })
         .map_err(|error| explained(&prepared, error));
     let failure = match done {
-        Ok(()) => None,
+        Ok(()) => results_hold(&results).err(),
         Err(failure @ Error::Analysis { .. }) => Some(failure),
         Err(Error::Input(faults)) => {
             folder.file.discard();
@@ -218,11 +222,10 @@ pub fn run_case(
     results.failed = failure.as_ref().map(Error::to_string);
     results.timings.insert(0, ("read mesh and assemble".into(), preparation));
     write_results(out, folder, &mut results)?;
-    if let Some(failure) = failure {
-        return Err(failure);
+    match failure {
+        Some(failure) => Err(failure),
+        None => Ok(results),
     }
-    nothing_is_missed(&results)?;
-    Ok(results)
 }
 
 /// What an earlier run has left to go on with.

@@ -10,7 +10,7 @@ use crate::error::text::read_bytes;
 use crate::linalg::SparseMatrix;
 use crate::linalg::matrix_market::to_text;
 use crate::linalg::sparse::{add_scaled, entry};
-use crate::results::{FolderLock, write_atomically};
+use crate::results::{FileNames, FolderLock, write_atomically};
 use crate::system::ContactPair;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -61,8 +61,9 @@ pub fn export(case: &Case, out: &Path) -> Result<Vec<String>> {
         write("load.mtx", to_text(load, None, &format!("{title}: external force [N, N m]")))?;
     }
     write("dofs.csv", dofs(&prepared))?;
+    let points_files = points_files(&prepared);
     for pair in &system.pairs {
-        write(&points_file(&pair.name), points(pair))?;
+        write(&points_files[&pair.name], points(pair))?;
     }
     let matrices = Matrices {
         mass: "mass.mtx".into(),
@@ -78,13 +79,14 @@ pub fn export(case: &Case, out: &Path) -> Result<Vec<String>> {
         left_out
             .push("The geometric stiffness of the preload is not part of the exported stiffness".to_string());
     }
-    let mut exported = as_matrices(case, matrices);
+    let mut exported = as_matrices(case, matrices, &points_files);
     left_out.extend(keep_what_is_there(case, &mut exported));
+    let mut names = FileNames::default();
     for (name, data) in &mut exported.measured {
         let Some(file) = &mut data.file else { continue };
         let path = case.folder.join(&*file);
         let kind = path.extension().unwrap_or_default().to_string_lossy();
-        let own = format!("measured_{name}.{kind}");
+        let own = format!("measured_{}.{kind}", names.next(name));
         write_atomically(out, &own, &read_bytes(&path, "a file of measured data")?)?;
         *file = own;
     }
@@ -99,12 +101,15 @@ fn column(vector: &[f64]) -> Option<SparseMatrix> {
     SparseMatrix::try_new_from_triplets(vector.len(), 1, &triplets).ok()
 }
 
-fn points_file(pair: &str) -> String {
-    format!("contact_{pair}.csv")
+/// The file of the points of each pair, by its name.
+fn points_files(prepared: &Prepared) -> BTreeMap<String, String> {
+    let mut names = FileNames::default();
+    let file = |pair: &ContactPair| (pair.name.clone(), format!("contact_{}.csv", names.next(&pair.name)));
+    prepared.system.pairs.iter().map(file).collect()
 }
 
 /// The same analyses of the matrices.
-fn as_matrices(case: &Case, matrices: Matrices) -> Case {
+fn as_matrices(case: &Case, matrices: Matrices, points_files: &BTreeMap<String, String>) -> Case {
     let mut exported = Case {
         matrices: Some(matrices),
         mesh: None,
@@ -121,7 +126,7 @@ fn as_matrices(case: &Case, matrices: Matrices) -> Case {
         ..case.clone()
     };
     for (name, contact) in &mut exported.contact {
-        contact.points = Some(ContactPoints::File(points_file(name)));
+        contact.points = points_files.get(name).cloned().map(ContactPoints::File);
         (contact.body, contact.counter) = (String::new(), String::new());
         (contact.into, contact.placement, contact.stroke) = (None, None, 0.0);
     }

@@ -5,8 +5,8 @@ use crate::error::{Error, Fault, Result};
 use crate::results::record::{Block, Earlier, Record};
 use crate::results::{
     CalibrationResult, ComplexResult, EventTable, Field, FieldsFile, FrfResult, HistoryTable, MapResult,
-    NamedModes, Piece, Recording, ResultsFile, RunResults, SensitivityResult, SteadyResult, SweepResult,
-    TransientResult, modal_channel, room_in_memory, room_on_disk,
+    NamedModes, Piece, RecordSize, Recording, ResultsFile, RunResults, SensitivityResult, SteadyResult,
+    SweepResult, TransientResult, modal_channel, room_in_memory, room_on_disk,
 };
 use crate::sweep::MapPoint;
 use crate::transient::Checkpoint;
@@ -121,7 +121,7 @@ impl<'a> Memory<'a> {
 impl Keeper for Memory<'_> {
     fn record(&mut self, stage: Stage<'_>) -> Result<()> {
         if let Stage::TransientBegins(recording) = &stage {
-            room_in_memory(recording)?;
+            room_in_memory(&RecordSize::from(*recording))?;
         }
         self.histories.keep(&stage);
         (self.record)(stage)
@@ -209,7 +209,7 @@ impl<'a> Folder<'a> {
             let fault = Fault::new("the record of the interrupted run", found, expected);
             return Err(Error::input(fault.with_help("It is damaged: run without --resume")));
         }
-        room_on_disk(self.dir, recording)?;
+        room_on_disk(self.dir, &RecordSize::from(recording))?;
         let checkpoint = earlier.march.clone();
         let Folder { file, record, tables, fields, .. } = self;
         file.begin_transient(recording)?;

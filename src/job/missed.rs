@@ -1,16 +1,68 @@
-//! What the certificate and the second method say against the modes found.
+//! What speaks against the results of a run that came to its end: modes that are not accurate or were missed, a fit that did not
+//! converge.
 
 use crate::error::{Error, Result};
 use crate::linalg::c64;
 use crate::numbers::hertz;
 use crate::results::RunResults;
-use crate::stability::CloseCall;
+use crate::stability::{CloseCall, ComplexMode, LARGEST_BACKWARD_ERROR, LARGEST_EIGENVALUE_ERROR};
 use std::f64::consts::TAU;
 
+/// Fails where a result does not hold. The results are written all the same.
+///
+/// # Errors
+/// Complex modes that are not accurate, an unstable mode that was missed, two methods that disagree, a calibration that has not
+/// converged; the first of them.
+pub(super) fn results_hold(results: &RunResults) -> Result<()> {
+    modes_are_accurate(results)?;
+    nothing_is_missed(results)?;
+    two_methods_agree(results)?;
+    calibration_converged(results)
+}
+
+/// Complex modes whose errors are above the bounds are neither stable nor unstable.
+fn modes_are_accurate(results: &RunResults) -> Result<()> {
+    const LISTED: usize = 5;
+    let modes = results.complex.iter().flat_map(|c| &c.modes.modes);
+    let wrong: Vec<&ComplexMode> = modes.filter(|mode| !mode.accurate()).collect();
+    if wrong.is_empty() {
+        return Ok(());
+    }
+    let mut list: Vec<String> = wrong.iter().take(LISTED).map(|mode| mode.errors()).collect();
+    if wrong.len() > LISTED {
+        list.push(format!("and {} more", wrong.len() - LISTED));
+    }
+    Err(Error::analysis(
+        "complex modes",
+        format!(
+            "the refinement did not settle for {} of them (bounds: backward error {LARGEST_BACKWARD_ERROR:e}, eigenvalue error \
+             {LARGEST_EIGENVALUE_ERROR:e}): {}",
+            wrong.len(),
+            list.join("; ")
+        ),
+        "The results are written, with these modes marked. Raise `cea.basis_below`, or look for stiffnesses or masses many orders \
+         of magnitude above the others",
+    ))
+}
+
+/// The values of a fit that has not converged are not the best ones.
+fn calibration_converged(results: &RunResults) -> Result<()> {
+    let fit = results.calibration.as_ref().map(|found| &found.calibration.best().fit);
+    let Some(fit) = fit.filter(|fit| !fit.converged) else { return Ok(()) };
+    Err(Error::analysis(
+        "calibration",
+        format!(
+            "the fit has not converged after {} iterations (χ² {:.3e}, projected gradient {:.1e})",
+            fit.iterations, fit.chi2, fit.gradient
+        ),
+        "The results are written; their values are not the best ones. Start nearer, with tighter bounds, or calibrate fewer parameters",
+    ))
+}
+
 /// A mode that was missed is an error, but only once the results are there to look at.
-pub(super) fn nothing_is_missed(results: &RunResults) -> Result<()> {
+fn nothing_is_missed(results: &RunResults) -> Result<()> {
     let certificate = results.complex.as_ref().and_then(|c| c.certificate.as_ref());
-    let Some(wrong) = certificate.filter(|c| !c.agrees()) else { return two_methods_agree(results) };
+    let Some(wrong) = certificate.filter(|c| !c.agrees()) else { return Ok(()) };
     let ([low, high], [slow, fast]) = (wrong.band_hz, wrong.growth);
     let near = |call: &CloseCall| {
         let hz = hertz(call.frequency_hz, 3);
@@ -48,4 +100,35 @@ fn two_methods_agree(results: &RunResults) -> Result<()> {
         ),
         "The results are written. Raise `basis_below`, and look at the condition numbers of the modes near these",
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::sample;
+
+    #[test]
+    fn what_has_not_converged_fails_the_run() {
+        let mut results = sample::rig();
+        results_hold(&results).unwrap();
+        let modes = &mut results.complex.as_mut().unwrap().modes.modes;
+        modes.iter_mut().for_each(|mode| mode.backward_error = 1e-9);
+        let error = results_hold(&results).unwrap_err();
+        let text = error.to_string();
+        assert!(
+            text.contains("backward error 1.0e-9") && text.contains("more") && text.contains("marked"),
+            "{text}"
+        );
+        assert_eq!(error.exit_code(), 1);
+
+        let mut results = RunResults { calibration: Some(sample::calibration()), ..RunResults::default() };
+        let fit = |results: &mut RunResults, converged: bool| {
+            results.calibration.as_mut().unwrap().calibration.ranked[0].fit.converged = converged
+        };
+        fit(&mut results, true);
+        results_hold(&results).unwrap();
+        fit(&mut results, false);
+        let text = results_hold(&results).unwrap_err().to_string();
+        assert!(text.contains("not converged") && text.contains("4 iterations"), "{text}");
+    }
 }

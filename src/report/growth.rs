@@ -95,7 +95,10 @@ fn draw(area: &super::chart::Area, complex: &ComplexResult) -> Result<(), Box<dy
     )])?;
     for mode in modes.iter().filter(|m| !m.unstable()) {
         let place = (mode.frequency_hz(), mode.growth_rate());
-        if place.1 < up.start {
+        if !mode.accurate() {
+            let place = (place.0, place.1.max(up.start));
+            chart.draw_series([Circle::new(place, 5, colour(MUTED).stroke_width(1))])?;
+        } else if place.1 < up.start {
             chart.draw_series([TriangleMarker::new((place.0, up.start), -6, colour(CALM).filled())])?;
         } else {
             chart.draw_series([Circle::new(place, 4, colour(CALM).filled())])?;

@@ -37,7 +37,7 @@ pub(super) fn page(results: &RunResults, pictures: &[Picture]) -> String {
     let mut body =
         format!("<h1>{}</h1>\n<p class=\"sub\">{}</p>\n", escape(title), escape(&subtitle(results)));
     body += &verdict(results);
-    let failed = results.failed.iter().map(|error| format!("This run is not complete. {error}"));
+    let failed = results.failed.iter().map(|error| format!("This run failed. {error}"));
     for warning in failed.chain(results.warnings.iter().cloned()) {
         body += &format!("<div class=\"warn\">{}</div>\n", escape(&warning));
     }

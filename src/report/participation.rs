@@ -5,7 +5,7 @@ use super::format::{fixed, hertz, signed};
 use super::html::Picture;
 use super::svg::{Anchor, Ink, Sheet};
 use crate::results::{ComplexResult, RunResults};
-use crate::stability::ComplexMode;
+use crate::stability::{ComplexMode, Verdict};
 
 /// The strongest modes get a bar.
 const MOST: usize = 12;
@@ -40,8 +40,10 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     }
     let which = if unstable {
         "each unstable mode"
-    } else {
+    } else if complex.modes.modes.iter().all(|m| m.verdict() == Verdict::Stable) {
         "the modes that die away most slowly (none is unstable)"
+    } else {
+        "the modes that die away most slowly (none grows for certain)"
     };
     let percent = fixed(100.0 * SMALLEST, 0);
     let caption = format!(

@@ -5,7 +5,7 @@ use crate::linalg::c64;
 use crate::results::{
     ComplexResult, ModeSensitivity, NamedModes, RunResults, SensitivityResult, SteadyResult,
 };
-use crate::stability::{Certificate, Confirmation};
+use crate::stability::{Certificate, Confirmation, Verdict};
 use std::f64::consts::TAU;
 
 /// A measured squeal frequency and an unstable mode nearer than this share of it are taken for the same.
@@ -194,17 +194,17 @@ pub(super) fn complex(result: &ComplexResult) -> Table {
             hertz(mode.frequency_hz(), 1),
             rate(mode.eigenvalue),
             signed(100.0 * mode.damping_ratio(), 3),
-            match (mode.unstable(), mode.undecided()) {
-                (true, _) => "UNSTABLE".into(),
-                (false, true) => "undecided".into(),
-                _ => String::new(),
+            match mode.verdict() {
+                Verdict::Stable => String::new(),
+                Verdict::Undecided => Verdict::Undecided.word().into(),
+                alarming => alarming.word().to_uppercase(),
             },
             power(mode.backward_error),
             power(mode.eigenvalue_error),
             significant(mode.condition, 2),
             result.participation.get(k).cloned().unwrap_or_default(),
         ];
-        table.row(cells, mode.unstable());
+        table.row(cells, matches!(mode.verdict(), Verdict::Unstable | Verdict::Inaccurate));
     }
     table.notes.push("σ: growth rate; ζ = −σ/|λ|: damping ratio, negative when unstable.".into());
     table.notes.push("η: backward error; |Δλ|/|λ|: estimated eigenvalue error; κ: condition number.".into());
@@ -409,16 +409,24 @@ pub(super) fn verdict(results: &RunResults) -> String {
     };
     let band = complex.band_hz.map(given);
     let modes = &complex.modes.modes;
-    let unstable = modes.iter().filter(|m| m.unstable()).count();
+    let count = |verdict| modes.iter().filter(|m| m.verdict() == verdict).count();
+    let (unstable, undecided, inaccurate) =
+        (count(Verdict::Unstable), count(Verdict::Undecided), count(Verdict::Inaccurate));
     let between = format!("between {} and {} Hz", band[0], band[1]);
-    let undecided = modes.iter().filter(|m| m.undecided()).count();
-    let doubt = match undecided {
+    let mut doubt = match undecided {
         0 => String::new(),
+        1 => " The growth rate of 1 is within its error.".into(),
         n => format!(" The growth rates of {n} are within their errors."),
     };
+    if inaccurate > 0 {
+        doubt += &format!(
+            " {inaccurate} {} not accurate: neither stable nor unstable.",
+            if inaccurate == 1 { "is" } else { "are" }
+        );
+    }
     match (modes.len(), unstable) {
         (0, _) => format!("No complex mode was found {between}: this run says nothing about squeal there."),
-        (all, 0) if undecided > 0 => {
+        (all, 0) if undecided + inaccurate > 0 => {
             format!("Undecided: none of the {all} complex modes {between} grows for certain.{doubt}")
         }
         (all, 0) => format!("Stable: none of the {all} complex modes {between} grows."),

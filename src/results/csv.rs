@@ -106,7 +106,7 @@ fn complex_modes(complex: &ComplexResult) -> String {
         "frequency [Hz]",
         "growth rate [1/s]",
         "damping ratio",
-        "unstable",
+        "verdict",
         "growth by structural damping [1/s]",
         "growth by falling friction [1/s]",
         "growth by transverse friction [1/s]",
@@ -119,7 +119,7 @@ fn complex_modes(complex: &ComplexResult) -> String {
     for (k, mode) in complex.modes.modes.iter().enumerate() {
         let mut row = vec![(k + 1).to_string()];
         row.extend([mode.frequency_hz(), mode.growth_rate(), mode.damping_ratio()].map(number));
-        row.push(u8::from(mode.unstable()).to_string());
+        row.push(mode.verdict().word().to_string());
         let budget = &mode.growth;
         let terms = [
             budget.structural_damping,

@@ -10,7 +10,7 @@
 //! | `/measured/<k>` | `frequency_hz`, `deviation`, `damping_ratio`, `mode`, `level`, `mac` |
 //! | `/measured_frf/<name>/<k>` | `frequency_hz`, `measured`, `computed` |
 //! | `/steady` | `displacement`, `approach`, contact points with forces and tangents, pairs |
-//! | `/complex` | `eigenvalue`, `right`, `left`, errors, `growth_…`, `participation` |
+//! | `/complex` | `eigenvalue`, `right`, `left`, errors, `verdict`, `growth_…`, `participation` |
 //! | `/sensitivity/mode_<k>` | `parameter`, `value`, `rate`, errors; `point_mass`, `point_spring`, `point_damper`, best places |
 //! | `/transient` | a dataset for each channel; spectra with their peaks; see `transient_hdf5.rs` |
 //! | `/sweep/<name>`, `/map/<name>` | branches, critical values; grids, boundary; see `explored_hdf5.rs` |
@@ -223,6 +223,13 @@ fn write_complex(root: &Group, complex: &ComplexResult) -> hdf5::Result<()> {
         mode.participation.iter().for_each(|(k, value)| share[(m, *k)] = *value);
     }
     group.write("participation", share.view(), "1", "share of each real mode: complex mode × real mode")?;
+    let verdicts: Vec<String> = modes.iter().map(|m| m.verdict().word().to_string()).collect();
+    texts(
+        &group.0,
+        "verdict",
+        &verdicts,
+        "what the growth rate says: stable, unstable, undecided, not accurate",
+    )?;
     texts(&group.0, "participation_text", &complex.participation, "the real modes that take part, in words")
 }
 

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::error::Result;
 use crate::linalg::c64;
-use crate::stability::{Certificate, Confirmation};
+use crate::stability::{Certificate, Confirmation, Verdict};
 use serde::Serialize;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -134,6 +134,7 @@ struct Cea<'a> {
     band_hz: [f64; 2],
     unstable: usize,
     undecided: usize,
+    not_accurate: usize,
     subspace_dimension: usize,
     refinements: usize,
     eigenvalues: Vec<Eigenvalue<'a>>,
@@ -189,6 +190,7 @@ struct Eigenvalue<'a> {
     frequency_hz: f64,
     growth_rate: f64,
     damping_ratio: f64,
+    verdict: &'static str,
     unstable: bool,
     undecided: bool,
     backward_error: f64,
@@ -399,8 +401,9 @@ fn cea(result: &ComplexResult) -> Cea<'_> {
         frequency_hz: mode.frequency_hz(),
         growth_rate: mode.growth_rate(),
         damping_ratio: mode.damping_ratio(),
+        verdict: mode.verdict().word(),
         unstable: mode.unstable(),
-        undecided: mode.undecided(),
+        undecided: mode.verdict() == Verdict::Undecided,
         backward_error: mode.backward_error,
         eigenvalue_error: mode.eigenvalue_error,
         condition: mode.condition,
@@ -413,10 +416,12 @@ fn cea(result: &ComplexResult) -> Cea<'_> {
         participation: result.participation.get(k).map(String::as_str),
     });
     let squeal = result.measured_squeal_hz.iter();
+    let count_of = |verdict| result.modes.modes.iter().filter(|m| m.verdict() == verdict).count();
     Cea {
         band_hz: result.band_hz,
-        unstable: result.modes.modes.iter().filter(|m| m.unstable()).count(),
-        undecided: result.modes.modes.iter().filter(|m| m.undecided()).count(),
+        unstable: count_of(Verdict::Unstable),
+        undecided: count_of(Verdict::Undecided),
+        not_accurate: count_of(Verdict::Inaccurate),
         subspace_dimension: result.modes.subspace_dimension,
         refinements: result.modes.refinements,
         eigenvalues: eigenvalues.collect(),

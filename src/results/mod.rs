@@ -70,7 +70,7 @@ pub use frf::{FrfResponse, FrfResult, PlaceAndDirection, Resonance};
 pub use json::{SCHEMA_VERSION, summary_json, write_summary};
 pub use lock::FolderLock;
 pub use reduced_check::{Deviation, MotionCompared, ReducedCheck};
-pub use room::{room_in_memory, room_on_disk};
+pub use room::{RecordSize, room_in_memory, room_on_disk};
 pub use search::{Moved, SearchResult, SearchedNumber};
 pub use sensitivity::{AdviceField, ModeSensitivity, Mounted, ParameterRate, SensitivityResult};
 pub use sound::{Heard, Sound, Sounding, Tone};

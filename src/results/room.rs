@@ -14,13 +14,48 @@ const NODE: f64 = 24.0;
 const HELP: &str =
     "Make `transient.duration` shorter or `transient.time_step` longer, or `transient.fields_every` longer";
 
-/// Refuses a record that the disk of the folder `dir` has no room for.
+/// What decides how large the record of a run in time becomes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RecordSize {
+    /// Steps, the start included.
+    pub rows: usize,
+    /// How many of them an earlier run has recorded.
+    pub done: usize,
+    /// Numbers of a step.
+    pub channels: usize,
+    /// Modal accelerations of a step.
+    pub modes: usize,
+    /// Nodes whose motion is recorded.
+    pub nodes: usize,
+    /// At how many times.
+    pub fields: usize,
+    /// At how many of them an earlier run has.
+    pub fields_done: usize,
+}
+
+impl From<&Recording<'_>> for RecordSize {
+    fn from(recording: &Recording<'_>) -> Self {
+        let fields = recording.fields.as_ref();
+        RecordSize {
+            rows: recording.rows,
+            done: recording.done,
+            channels: recording.channels.len(),
+            modes: recording.modes,
+            nodes: fields.map_or(0, |fields| fields.geometry.nodes.len()),
+            fields: fields.map_or(0, |fields| fields.count),
+            fields_done: fields.map_or(0, |fields| fields.done),
+        }
+    }
+}
+
+/// Refuses a record that the disk of the folder `dir` has no room for; the folder may be one that is still to be made.
 ///
 /// # Errors
 /// [`Error::Io`]: there is none.
-pub fn room_on_disk(dir: &Path, recording: &Recording) -> Result<()> {
-    match free_on_disk(dir) {
-        Some(free) => fits(recording, bytes_on_disk(recording), free, "the disk")
+pub fn room_on_disk(dir: &Path, record: &RecordSize) -> Result<()> {
+    let place = std::path::absolute(dir).unwrap_or_else(|_| dir.to_path_buf());
+    match place.ancestors().find_map(free_on_disk) {
+        Some(free) => fits(record, record.bytes_on_disk(), free, "the disk")
             .map_err(|source| Error::io(dir, source, format!("{HELP}, or name a folder on a larger disk."))),
         None => Ok(()),
     }
@@ -30,51 +65,46 @@ pub fn room_on_disk(dir: &Path, recording: &Recording) -> Result<()> {
 ///
 /// # Errors
 /// [`Error::Analysis`]: there is none.
-pub fn room_in_memory(recording: &Recording) -> Result<()> {
-    let bytes = recording.rows as f64 * NUMBER * (recording.channels.len() + recording.modes) as f64;
+pub fn room_in_memory(record: &RecordSize) -> Result<()> {
+    let bytes = record.rows as f64 * NUMBER * (record.channels + record.modes) as f64;
     match available() {
-        Some(Available { bytes: free, by }) => {
-            fits(recording, bytes, free as f64, "memory").map_err(|found| {
-                Error::analysis(
-                    "transient",
-                    format!("{found} ({by})"),
-                    format!("{HELP}, or record to a folder"),
-                )
-            })
-        }
+        Some(Available { bytes: free, by }) => fits(record, bytes, free as f64, "memory").map_err(|found| {
+            Error::analysis("transient", format!("{found} ({by})"), format!("{HELP}, or record to a folder"))
+        }),
         None => Ok(()),
     }
 }
 
-/// What is still to be written.
-fn bytes_on_disk(recording: &Recording) -> f64 {
-    let channels = recording.channels.len() as f64;
-    let numbers = NUMBER * channels + MODAL * recording.modes as f64;
-    let (rows, new) = (recording.rows as f64, recording.rows.saturating_sub(recording.done) as f64);
-    let fields = recording.fields.as_ref().map_or(0.0, |fields| {
-        let new = fields.count.saturating_sub(fields.done);
-        NODE * fields.geometry.nodes.len() as f64 * (fields.count + new) as f64
-    });
-    // A run that goes on writes results.h5 and the tables anew, and adds to record.bin.
-    rows * (numbers + TEXT * (channels + 1.0)) + new * numbers + fields
+impl RecordSize {
+    /// What is still to be written \[bytes\].
+    fn bytes_on_disk(&self) -> f64 {
+        let channels = self.channels as f64;
+        let numbers = NUMBER * channels + MODAL * self.modes as f64;
+        let (rows, new) = (self.rows as f64, self.rows.saturating_sub(self.done) as f64);
+        let new_fields = self.fields.saturating_sub(self.fields_done);
+        let fields = NODE * self.nodes as f64 * (self.fields + new_fields) as f64;
+        // A run that goes on writes results.h5 and the tables anew, and adds to record.bin.
+        rows * (numbers + TEXT * (channels + 1.0)) + new * numbers + fields
+    }
 }
 
 /// What is wrong where `bytes` are more than the `free` ones.
-fn fits(recording: &Recording, bytes: f64, free: f64, place: &str) -> std::result::Result<(), String> {
+fn fits(record: &RecordSize, bytes: f64, free: f64, place: &str) -> std::result::Result<(), String> {
     if bytes <= free {
         return Ok(());
     }
-    let modes = match recording.modes {
+    let modes = match record.modes {
         0 => String::new(),
         modes => format!(" and {modes} modes"),
     };
-    let fields = recording.fields.as_ref().map_or(String::new(), |fields| {
-        format!(", the motion of {} nodes at {} times", fields.geometry.nodes.len(), fields.count)
-    });
+    let fields = match record.fields {
+        0 => String::new(),
+        fields => format!(", the motion of {} nodes at {fields} times", record.nodes),
+    };
     Err(format!(
         "the record of {} steps of {} channels{modes}{fields} takes {}, and {place} has {} free",
-        recording.rows - 1,
-        recording.channels.len(),
+        record.rows - 1,
+        record.channels,
         size(bytes),
         size(free)
     ))
@@ -111,29 +141,32 @@ fn free_on_disk(_: &Path) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::Channel;
 
-    fn recording(rows: usize, done: usize, channels: &[Channel]) -> Recording<'_> {
-        Recording { time_step: 1e-6, rows, done, happened: 0, channels, modes: 3, pairs: &[], fields: None }
+    fn record(rows: usize, done: usize) -> RecordSize {
+        RecordSize { rows, done, channels: 15, modes: 3, nodes: 0, fields: 0, fields_done: 0 }
     }
 
     #[test]
     fn a_record_that_has_no_room_is_refused_with_its_size() {
-        let channels: Vec<Channel> =
-            (0..15).map(|k| Channel::new(format!("c{k}"), "m", String::new())).collect();
         let dir = tempfile::tempdir().unwrap();
-        let endless = recording(1_000_000_000_000_001, 0, &channels);
-        let text = room_on_disk(dir.path(), &endless).unwrap_err().to_string();
-        for part in ["1000000000000000 steps of 15 channels and 3 modes", "GB", "time_step", "larger disk"] {
-            assert!(text.contains(part), "{text}");
+        let endless = record(1_000_000_000_000_001, 0);
+        for place in [dir.path().to_path_buf(), dir.path().join("still/to be made")] {
+            let text = room_on_disk(&place, &endless).unwrap_err().to_string();
+            for part in
+                ["1000000000000000 steps of 15 channels and 3 modes", "GB", "time_step", "larger disk"]
+            {
+                assert!(text.contains(part), "{text}");
+            }
         }
         assert_eq!(room_on_disk(dir.path(), &endless).unwrap_err().exit_code(), 1);
         assert!(room_in_memory(&endless).unwrap_err().to_string().contains("memory has"));
-        let short = recording(11, 0, &channels);
+        let short = record(11, 0);
         room_on_disk(dir.path(), &short).unwrap();
         room_in_memory(&short).unwrap();
         // 15 numbers and 3 short ones in results.h5 and in record.bin; 16 numbers as text.
-        assert_eq!(bytes_on_disk(&short), 11.0 * (2.0 * (15.0 * 8.0 + 3.0 * 4.0) + 160.0));
-        assert_eq!(bytes_on_disk(&recording(11, 5, &channels)), 11.0 * (132.0 + 160.0) + 6.0 * 132.0);
+        assert_eq!(short.bytes_on_disk(), 11.0 * (2.0 * (15.0 * 8.0 + 3.0 * 4.0) + 160.0));
+        assert_eq!(record(11, 5).bytes_on_disk(), 11.0 * (132.0 + 160.0) + 6.0 * 132.0);
+        let fields = RecordSize { nodes: 10, fields: 4, fields_done: 1, ..short };
+        assert_eq!(fields.bytes_on_disk() - short.bytes_on_disk(), 240.0 * (4.0 + 3.0));
     }
 }

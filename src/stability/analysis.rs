@@ -8,7 +8,7 @@ use super::operator::Operator;
 use super::projected::{SmallPair, project_interface, solve};
 use super::responses::{add_coupled_responses, few_responses};
 use super::round::{Measured, Scale, TOGETHER, Wanted};
-use super::{ComplexMode, ComplexModes, Structural};
+use super::{ComplexMode, ComplexModes, Structural, accuracy_warnings};
 use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Fault, Result};
 use crate::linalg::SymmetricFactor;
@@ -256,15 +256,7 @@ fn solve_and_refine<'a>(
             mode.condition
         ));
     }
-    for mode in modes.iter().filter(|mode| !mode.accepted()) {
-        let cause = if mode.condition > 1e4 { ", near the coalescence of two modes" } else { "" };
-        warnings.push(format!(
-            "the mode at {} Hz is not accurate: relative eigenvalue error {:.1e}, backward error {:.1e}{cause}",
-            hertz(mode.frequency_hz(), 2),
-            mode.eigenvalue_error,
-            mode.backward_error
-        ));
-    }
+    warnings.extend(accuracy_warnings(&modes));
     warnings.extend(incomplete(operator, real, asked.hz[1]));
     let modes = ComplexModes { modes, subspace_dimension: basis.len(), refinements, warnings };
     Ok((modes, basis))

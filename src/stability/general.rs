@@ -13,7 +13,7 @@ use super::finish::shares;
 use super::operator::{Operator, Side};
 use super::round::TOGETHER;
 use super::shifted::{Adjoint, Shifted};
-use super::{ComplexMode, ComplexModes};
+use super::{ComplexMode, ComplexModes, accuracy_warnings};
 use crate::error::{Error, Result};
 use crate::linalg::c64;
 use crate::linalg::factor::SymbolicFactor;
@@ -100,14 +100,7 @@ pub(super) fn general_modes(
             search.depth
         ));
     }
-    for mode in modes.iter().filter(|mode| !mode.accepted()) {
-        warnings.push(format!(
-            "the mode at {} Hz is not accurate: relative eigenvalue error {:.1e}, backward error {:.1e}",
-            hertz(mode.frequency_hz(), 2),
-            mode.eigenvalue_error,
-            mode.backward_error
-        ));
-    }
+    warnings.extend(accuracy_warnings(&modes));
     let modes = ComplexModes { modes, subspace_dimension: operator.n(), refinements: 0, warnings };
     Ok(General { modes, seen: search.seen, symbolic: search.symbolic })
 }

@@ -44,6 +44,7 @@ pub use sensitivity::{Domain, Rate, Sensitivity};
 pub use structural::Structural;
 
 use crate::linalg::c64;
+use crate::numbers::hertz;
 
 /// The complex modes of a system at steady sliding, ascending in frequency; one of each conjugate pair (ω ≥ 0).
 #[derive(Debug, Clone)]
@@ -109,6 +110,36 @@ impl ComplexMode {
         -self.eigenvalue.re / self.eigenvalue.norm()
     }
 
+    /// What its growth rate says about it.
+    pub fn verdict(&self) -> Verdict {
+        if !self.accurate() {
+            Verdict::Inaccurate
+        } else if self.within_error() {
+            Verdict::Undecided
+        } else if unstable(self.eigenvalue) {
+            Verdict::Unstable
+        } else {
+            Verdict::Stable
+        }
+    }
+
+    /// Whether η is at most [`LARGEST_BACKWARD_ERROR`] and the estimated |Δλ|/|λ| at most [`LARGEST_EIGENVALUE_ERROR`]; another
+    /// mode is neither stable nor unstable.
+    pub fn accurate(&self) -> bool {
+        self.backward_error <= LARGEST_BACKWARD_ERROR && self.eigenvalue_error <= LARGEST_EIGENVALUE_ERROR
+    }
+
+    /// The frequency and both errors in words.
+    pub fn errors(&self) -> String {
+        let cause = if self.condition > 1e4 { ", near the coalescence of two modes" } else { "" };
+        format!(
+            "the mode at {} Hz: relative eigenvalue error {:.1e}, backward error {:.1e}{cause}",
+            hertz(self.frequency_hz(), 2),
+            self.eigenvalue_error,
+            self.backward_error
+        )
+    }
+
     /// Whether η ≤ 1e-10 and the estimated error of λ is within 1e-8 of it.
     pub fn accepted(&self) -> bool {
         self.backward_error <= 1e-10 && self.eigenvalue_error <= 1e-8
@@ -121,16 +152,55 @@ impl ComplexMode {
 
     /// Whether the mode grows by more than round-off and the error of λ.
     pub fn unstable(&self) -> bool {
-        unstable(self.eigenvalue) && !self.undecided()
+        self.verdict() == Verdict::Unstable
     }
 
     /// Whether |σ| is within the error of λ, and that error beyond round-off: so it is where flutter sets in and two modes have
     /// become one, λ being as exact there as the root of round-off.
-    pub fn undecided(&self) -> bool {
+    fn within_error(&self) -> bool {
         let error = self.eigenvalue_error.max(ROUNDING * self.condition);
         error > ROUND_OFF && self.eigenvalue.re.abs() <= error * self.eigenvalue.norm()
     }
 }
+
+/// A sentence for each mode that is not as accurate as it should be.
+fn accuracy_warnings(modes: &[ComplexMode]) -> impl Iterator<Item = String> {
+    modes.iter().filter(|mode| !mode.accepted()).map(|mode| {
+        let degree = if mode.accurate() { "less accurate than aimed at" } else { "not accurate" };
+        format!("a mode is {degree}: {}", mode.errors())
+    })
+}
+
+/// What the growth rate of a complex mode says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// The mode does not grow.
+    Stable,
+    /// σ exceeds round-off and the error of λ.
+    Unstable,
+    /// |σ| is within the error of λ.
+    Undecided,
+    /// λ itself is not accurate ([`ComplexMode::accurate`]).
+    Inaccurate,
+}
+
+impl Verdict {
+    /// The word for it in all outputs.
+    pub fn word(self) -> &'static str {
+        match self {
+            Verdict::Stable => "stable",
+            Verdict::Unstable => "unstable",
+            Verdict::Undecided => "undecided",
+            Verdict::Inaccurate => "not accurate",
+        }
+    }
+}
+
+/// The largest η of a mode that is accurate.
+pub const LARGEST_BACKWARD_ERROR: f64 = 1e-10;
+
+/// The largest |Δλ|/|λ| of a mode that is accurate: its frequency has four digits.
+pub const LARGEST_EIGENVALUE_ERROR: f64 = 1e-4;
 
 /// A mode counts as unstable when σ exceeds this share of |λ|: the round-off of an undamped mode is below it, and past
 /// a flutter onset, where σ grows like the square root of the distance, it is reached within 1e-18 of the onset.

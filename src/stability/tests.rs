@@ -134,10 +134,25 @@ fn two_dof_critical_friction_and_stiffness_are_those_of_the_closed_form() {
 fn at_the_onset_of_flutter_growth_is_undecided() {
     let of = |mu: f64| {
         let modes = modes_of(&two_dof(0.5, 1.0, mu), 2, [0.0, 500.0]).modes;
-        let count = |is: fn(&ComplexMode) -> bool| modes.iter().filter(|mode| is(mode)).count();
-        [count(ComplexMode::unstable), count(ComplexMode::undecided)]
+        let count = |verdict| modes.iter().filter(|mode| mode.verdict() == verdict).count();
+        [count(Verdict::Unstable), count(Verdict::Undecided)]
     };
     assert_eq!((of(0.62), of(0.625), of(0.63)), ([0, 0], [0, 2], [1, 0]));
+}
+
+#[test]
+fn a_mode_that_is_not_accurate_is_neither_stable_nor_unstable() {
+    let modes = modes_of(&two_dof(0.5, 1.0, 0.63), 2, [0.0, 500.0]).modes;
+    assert!(modes.iter().any(ComplexMode::unstable));
+    for mode in modes {
+        assert!(mode.accurate() && mode.verdict() != Verdict::Inaccurate);
+        let coarse = ComplexMode { backward_error: 2e-10, ..mode.clone() };
+        let wrong = ComplexMode { eigenvalue_error: 2e-4, ..mode.clone() };
+        let lost = ComplexMode { eigenvalue_error: f64::NAN, ..mode };
+        for mode in [coarse, wrong, lost] {
+            assert!(mode.verdict() == Verdict::Inaccurate && !mode.unstable(), "{mode:?}");
+        }
+    }
 }
 
 #[test]

@@ -117,11 +117,11 @@ impl InTime<'_> {
             start = start.disturbed(&model, along.eigenvalue, &along.shape, wanted.amplitude / along.largest);
         }
         let (scheme, words) = scheme(wanted.scheme);
-        let steps = (wanted.duration / wanted.time_step).round().max(1.0) as usize;
+        let steps = places::steps(wanted.duration, wanted.time_step);
         let method = if wanted.full_newton { Method::FullNewton } else { Method::Condensed };
         let plan = Plan { scheme, step: wanted.time_step, steps, method, tolerance: wanted.tolerance };
         let snapshots = wanted.fields_every.map(|every| Snapshots {
-            every: (every / wanted.time_step).round().max(1.0) as usize,
+            every: places::steps(every, wanted.time_step),
             geometry: self.geometry,
             dofs: self.dofs,
             reduced: reduced.as_ref(),

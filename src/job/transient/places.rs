@@ -9,6 +9,7 @@ use crate::job::prepared::Prepared;
 use crate::job::sound::{Ears, ears};
 use crate::job::travel::tracks;
 use crate::linalg::SparseVector;
+use crate::results::RecordSize;
 use crate::system::ContactPair;
 use crate::transient::{self, Profile, Pulse, Push, Track};
 
@@ -26,6 +27,42 @@ pub struct Places {
     pub(super) still: Vec<ContactPair>,
     /// What listens, if anything does.
     pub(super) ears: Option<Ears>,
+}
+
+impl Places {
+    /// What a run to a folder is certain to record, sound and what an earlier run recorded left out.
+    pub(in crate::job) fn least_record(
+        &self,
+        prepared: &Prepared<'_>,
+        wanted: &TransientAnalysis,
+    ) -> RecordSize {
+        let points = prepared.system.points().next().is_some();
+        let probes = self.probes.len().max(usize::from(points));
+        let disturbed = if wanted.disturbance.is_some() { 2 } else { 0 };
+        let states = if points { 3 } else { 0 };
+        let rows = steps(wanted.duration, wanted.time_step) + 1;
+        let fields = wanted.fields_every.map_or(0, |every| 1 + (rows - 1) / steps(every, wanted.time_step));
+        RecordSize {
+            rows,
+            done: rows,
+            channels: 3 * probes
+                + self.gauges.len()
+                + 3 * prepared.system.pairs.len()
+                + 2
+                + states
+                + 5
+                + disturbed,
+            modes: 0,
+            nodes: prepared.model.nodes.len(),
+            fields,
+            fields_done: fields,
+        }
+    }
+}
+
+/// Whole steps in a time, at least one.
+pub(super) fn steps(time: f64, step: f64) -> usize {
+    (time / step).round().max(1.0) as usize
 }
 
 /// The places of a run in time; asked for before anything is computed or written.

@@ -210,7 +210,7 @@ fn each_wrong_file_is_told_what_is_wrong_with_it() {
         (BAR_4.replace("\n100 0 0", "\n1e999 0 0"), "node 2 (line 15): found coordinates"),
         (BAR_4.replace("\n100 0 0", "\nnan 0 0"), "not a number"),
         (BAR.replace("2 100 0 0", "2 x 0 0"), "line 11: found `x`; expected a number, the node's x"),
-        (BAR.replace("2 100 0 0", "1 100 0 0"), "node 1: found its number twice"),
+        (BAR.replace("2 100 0 0", "1 100 0 0"), "node 1 (line 11): found its number twice"),
         (
             BAR.replace("1 1 1 2\n", "1 1 1 7\n"),
             "element 1 (line 15): found node 7, which the file does not hold",
