@@ -15,16 +15,21 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
+use stridor::error::Error;
 
 #[global_allocator]
 static ALLOCATOR: memory::Counting = memory::Counting;
 
 /// Inputs that are kept in memory for further changes.
-const KEPT: usize = 4096;
+const KEPT: usize = 2048;
+/// Kinds of outcomes that are told apart.
+const KINDS: usize = 1 << 16;
+/// Inputs of a run that go to the corpus.
+const MOST_KEPT: usize = 32;
 /// The longest file of the repository to begin with \[byte\].
 const LONGEST_SAMPLE: usize = 16 << 10;
 /// The longest input that goes to the corpus \[byte\].
-const LONGEST_KEPT: usize = 1 << 10;
+const LONGEST_KEPT: usize = 512;
 
 /// The options of the command line; those of `cargo test` for other tests are passed over.
 #[derive(Clone)]
@@ -108,17 +113,26 @@ fn holds(reader: &Reader, options: &Options) -> bool {
     let out = found_in();
     std::fs::create_dir_all(&out).expect("a folder for what is found");
     watch::begin(&out.join(format!("{}-ended-the-process", reader.name)));
-    let mut run = Run { reader, kinds: BTreeSet::new(), wrong: BTreeMap::new(), executions: 0, most: 0 };
+    let mut run = Run {
+        reader,
+        kinds: BTreeSet::new(),
+        wrong: BTreeMap::new(),
+        executions: 0,
+        sound: 0,
+        most: 0,
+        times: 0.0,
+    };
     let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus").join(reader.name);
     let mut inputs = Vec::new();
     for input in samples(reader, &corpus) {
         run.try_input(&input);
         inputs.push(input);
     }
+    assert!(run.sound > 0, "{}: no input to begin with is sound", reader.name);
     let words = words(&inputs);
     let mut random = Random(options.seed);
-    let until =
-        Instant::now() + Duration::from_secs(if options.seconds == 0 { 1 << 30 } else { options.seconds });
+    let begun = Instant::now();
+    let until = begun + Duration::from_secs(if options.seconds == 0 { 1 << 30 } else { options.seconds });
     let mut new = Vec::new();
     while run.executions < options.executions && run.wrong.len() < 10 {
         if run.executions.is_multiple_of(64) && Instant::now() > until {
@@ -126,7 +140,7 @@ fn holds(reader: &Reader, options: &Options) -> bool {
         }
         let input = mutated(&mut random, &inputs, &words);
         if run.try_input(&input) && input.len() <= LONGEST_SAMPLE {
-            if input.len() <= LONGEST_KEPT {
+            if options.keep && new.len() < MOST_KEPT && input.len() <= LONGEST_KEPT {
                 new.push(input.clone());
             }
             if inputs.len() < KEPT {
@@ -137,14 +151,14 @@ fn holds(reader: &Reader, options: &Options) -> bool {
             }
         }
     }
-    if options.keep {
+    if !new.is_empty() {
         std::fs::create_dir_all(&corpus).expect("a folder for the corpus");
         for input in &new {
             std::fs::write(corpus.join(format!("{:016x}", hash(input))), input)
                 .expect("a file of the corpus");
         }
     }
-    run.report(&out);
+    run.report(&out, begun.elapsed().as_secs_f64());
     run.wrong.is_empty()
 }
 
@@ -180,7 +194,17 @@ fn hash(of: impl Hash) -> u64 {
     hasher.finish()
 }
 
-/// A message without what it quotes and without numbers.
+/// The kinds of the faults of an error, each by itself: their combinations are without number.
+fn kinds(error: &Error) -> Vec<u64> {
+    match error {
+        Error::Input(faults) => {
+            faults.0.iter().map(|f| kind(&format!("{}; {}", f.found, f.expected))).collect()
+        }
+        other => vec![kind(&other.to_string())],
+    }
+}
+
+/// The letters of a message, without what it quotes.
 fn kind(message: &str) -> u64 {
     let mut quoted = None;
     let kept = message.chars().filter(|c| match (quoted, *c) {
@@ -194,7 +218,7 @@ fn kind(message: &str) -> u64 {
             quoted = Some(c);
             true
         }
-        (None, c) => !c.is_ascii_digit() && !"+-.eE".contains(c),
+        (None, c) => c.is_ascii_alphabetic() && !"eE".contains(c),
     });
     hash(kept.collect::<String>())
 }
@@ -206,8 +230,12 @@ struct Run<'a> {
     /// What went wrong, each once, with its input.
     wrong: BTreeMap<String, Vec<u8>>,
     executions: u64,
+    /// How many inputs were sound.
+    sound: u64,
     /// The most memory \[byte\].
     most: usize,
+    /// The most memory beyond the constant, as a multiple of the input.
+    times: f64,
 }
 
 impl Run<'_> {
@@ -221,6 +249,8 @@ impl Run<'_> {
         let read = || catch_unwind(AssertUnwindSafe(|| (self.reader.read)(input)));
         let (outcome, bytes) = watch::during(input, || memory::peak_of(read));
         self.most = self.most.max(bytes);
+        let beyond = bytes.saturating_sub(self.reader.constant) as f64;
+        self.times = self.times.max(beyond / input.len().max(1) as f64);
         let limit = self.reader.times * input.len() + self.reader.constant;
         if bytes > limit {
             let what = format!("memory above {} × input + {} bytes", self.reader.times, self.reader.constant);
@@ -230,8 +260,11 @@ impl Run<'_> {
             }
         }
         match outcome {
-            Ok(Ok(found)) => self.kinds.insert(hash(found)),
-            Ok(Err(error)) => self.kinds.insert(kind(&error.to_string())),
+            Ok(Ok(found)) => {
+                self.sound += 1;
+                self.is_new(&[hash(found)])
+            }
+            Ok(Err(error)) => self.is_new(&kinds(&error)),
             Err(_) => {
                 let place = PLACE.lock().expect("no panic").clone();
                 self.wrong.entry(place).or_insert_with(|| input.to_vec());
@@ -240,13 +273,24 @@ impl Run<'_> {
         }
     }
 
-    fn report(&self, out: &Path) {
+    /// Adds kinds of outcomes: whether one of them is new.
+    fn is_new(&mut self, kinds: &[u64]) -> bool {
+        let before = self.kinds.len();
+        self.kinds.extend(kinds.iter().take(KINDS.saturating_sub(before)));
+        self.kinds.len() > before
+    }
+
+    fn report(&self, out: &Path, seconds: f64) {
         println!(
-            "{}: {} executions, {} kinds of outcomes, {} KiB of memory at most",
+            "{}: {} executions ({} of sound inputs) in {seconds:.0} s, {} kinds of outcomes, {} KiB of memory at most, \
+             at most {:.1} × input beyond the first {} KiB",
             self.reader.name,
             self.executions,
+            self.sound,
             self.kinds.len(),
-            self.most >> 10
+            self.most >> 10,
+            self.times,
+            self.reader.constant >> 10
         );
         for (what, input) in &self.wrong {
             let file = out.join(format!("{}-{:016x}", self.reader.name, hash(input)));

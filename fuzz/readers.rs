@@ -1,8 +1,10 @@
 //! The readers, each from bytes in memory.
 
-use std::path::PathBuf;
+use sha2::{Digest, Sha256};
+use std::path::{Path, PathBuf};
 use stridor::case::{Case, read_test};
-use stridor::error::Result;
+use stridor::error::{Error, Fault, Result};
+use stridor::results::record::{Saved, read_record};
 use stridor::search::SearchFile;
 use stridor::validation::Reference;
 use stridor::{job, linalg::matrix_market, measured::uff, mesh::gmsh};
@@ -24,7 +26,7 @@ const KIB: usize = 1 << 10;
 
 /// `times` is what an input of the densest kind takes, a list just after it has been doubled and copied: `1,1,1` in a list of
 /// TOML makes some 110 bytes of two, a line of one digit a mode of 64, an empty line of a universal file 32.
-pub const READERS: [Reader; 8] = [
+pub const READERS: [Reader; 12] = [
     Reader {
         name: "mesh",
         read: mesh,
@@ -47,6 +49,10 @@ pub const READERS: [Reader; 8] = [
         constant: 64 * KIB,
     },
     Reader { name: "table", read: table, samples: &[("validation", ".csv")], times: 128, constant: 64 * KIB },
+    Reader { name: "rows", read: rows, samples: &[], times: 64, constant: 64 * KIB },
+    Reader { name: "points", read: points, samples: &[], times: 128, constant: 64 * KIB },
+    Reader { name: "checkpoint", read: checkpoint, samples: &[], times: 16, constant: 64 * KIB },
+    Reader { name: "record", read: record, samples: &[], times: 16, constant: 64 * KIB },
     Reader {
         name: "test",
         read: test,
@@ -101,6 +107,39 @@ fn universal(bytes: &[u8]) -> Result<String> {
 
 fn table(bytes: &[u8]) -> Result<String> {
     Ok(about(job::read_modes("table", &String::from_utf8_lossy(bytes))?.modes.len()).to_string())
+}
+
+/// Rows of the matrices, as many as the table has lines.
+fn rows(bytes: &[u8]) -> Result<String> {
+    let text = String::from_utf8_lossy(bytes);
+    let lines = text.lines().skip(1).filter(|line| !line.trim().is_empty()).count();
+    let (nodes, free) = job::read_rows("rows", &text, lines)?;
+    Ok(format!("{} {}", about(nodes.len()), about(free.len())))
+}
+
+fn points(bytes: &[u8]) -> Result<String> {
+    Ok(about(job::read_points("points", &String::from_utf8_lossy(bytes), 9)?.len()).to_string())
+}
+
+/// As it is, and with the checksum that belongs to it.
+fn checkpoint(bytes: &[u8]) -> Result<String> {
+    let said = &bytes[..bytes.len().saturating_sub(32)];
+    let read = Saved::from_bytes(bytes).or_else(|_| {
+        let mended = [said, &Sha256::digest(said)[..]].concat();
+        Saved::from_bytes(&mended)
+    });
+    let saved = read.map_err(|what| Error::input(Fault::new("checkpoint", what, "a checkpoint")))?;
+    let arrays = saved.march.map_or(0, |march| march.arrays.len());
+    Ok(format!("{} {}", about(saved.origin.inputs.len()), about(arrays)))
+}
+
+fn record(bytes: &[u8]) -> Result<String> {
+    let earlier = read_record(Path::new("record"), bytes, bytes.len() as u64, &mut |_| Ok(()))?;
+    let points = earlier.maps.values().map(|(points, _)| points.len()).sum();
+    Ok(format!(
+        "{:?}",
+        [points, earlier.rows, earlier.events, earlier.fields, earlier.channels.len()].map(about)
+    ))
 }
 
 fn test(bytes: &[u8]) -> Result<String> {

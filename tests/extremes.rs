@@ -6,8 +6,9 @@
 
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash, Hasher};
+use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, ExitStatus};
 use stridor::case::{Case, read_case};
 use tempfile::TempDir;
 use toml::{Table, Value};
@@ -174,16 +175,16 @@ fn sample(case: &Path, variant: &Variant, of: u64) -> bool {
     hasher.finish().is_multiple_of(of)
 }
 
-/// The exit code of the program and what it says on stderr; CPU time and memory are limited.
-fn stridor(folder: &Path, command: &str) -> (Option<i32>, String) {
-    let limits = "ulimit -t 20; ulimit -v 3000000; ulimit -f 200000; ulimit -c 0";
+/// How the program ended and what it says on stderr; CPU time (by the signal SIGXCPU) and memory are limited.
+fn stridor(folder: &Path, command: &str) -> (ExitStatus, String) {
+    let limits = "ulimit -S -t 20; ulimit -v 3000000; ulimit -f 200000; ulimit -c 0";
     let program = env!("CARGO_BIN_EXE_stridor");
     let output = Command::new("sh")
         .args(["-c", &format!("{limits}; exec {program} {command} --quiet --threads 1")])
         .current_dir(folder)
         .output()
         .expect("a shell");
-    (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    (output.status, String::from_utf8_lossy(&output.stderr).into_owned())
 }
 
 /// What is wrong with the way that the program takes a variant, if anything is.
@@ -192,26 +193,41 @@ fn complaint(folder: &Path, variant: &Variant) -> Option<String> {
     let out = folder.join("out");
     let _ = std::fs::remove_dir_all(&out);
     let what = &variant.what;
-    let (code, said) = stridor(folder, "check case.toml --parameters");
-    match code {
+    let (status, said) = stridor(folder, "check case.toml --parameters");
+    match status.code() {
         Some(0) => {}
         Some(1 | 2) if said.starts_with("error: ") => return None,
-        code => return Some(format!("{what}: `check` ends with {code:?}: {said}")),
+        _ => return Some(format!("{what}: `check` ends with {status}: {said}")),
     }
-    let (code, said) = stridor(folder, "run case.toml --out out");
-    match code {
+    let (status, said) = stridor(folder, "run case.toml --out out");
+    if out_of_time(status) {
+        // No hang by itself.
+        eprintln!("{what}: out of time");
+        return None;
+    }
+    match status.code() {
         Some(0) => None,
         Some(1) if said.starts_with("error: ") => None,
         Some(2) => Some(format!(
             "{what}: `check` says sound, `run` ends with 2{}: {said}",
             if out.exists() { " and writes" } else { "" }
         )),
-        // Out of time, which is no hang by itself.
-        None | Some(152 | 137) if said.is_empty() => {
-            eprintln!("{what}: out of time");
-            None
-        }
-        code => Some(format!("{what}: `run` ends with {code:?}: {said}")),
+        _ => Some(format!("{what}: `run` ends with {status}: {said}")),
+    }
+}
+
+/// Whether the limit of CPU time ended a process; any other signal is a crash.
+fn out_of_time(status: ExitStatus) -> bool {
+    status.signal() == Some(libc::SIGXCPU)
+}
+
+#[test]
+fn a_crash_without_a_word_is_not_taken_for_a_lack_of_time() {
+    let ended = |command: &str| Command::new("sh").args(["-c", command]).status().expect("a shell");
+    assert!(out_of_time(ended("ulimit -c 0; kill -XCPU $$")));
+    assert!(out_of_time(ended("ulimit -S -t 1; ulimit -c 0; while :; do :; done")));
+    for signal in ["SEGV", "ABRT", "BUS", "KILL", "XFSZ"] {
+        assert!(!out_of_time(ended(&format!("ulimit -c 0; kill -{signal} $$"))), "{signal}");
     }
 }
 

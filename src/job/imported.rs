@@ -1,6 +1,6 @@
 //! A case made of matrices: files → a system, with the contact points and the places of rows that the case gives.
 
-use super::table::Table;
+use super::table::{MOST_FAULTS, Table};
 use crate::case::{Case, Contact, ContactPoints, Matrices};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::matrix_market::{self, MarketMatrix};
@@ -13,6 +13,12 @@ use std::path::Path;
 
 /// The names of the six motions in the table of rows.
 const MOTIONS: [&str; 6] = ["ux", "uy", "uz", "rx", "ry", "rz"];
+/// The columns that the table of rows must have, and those that it may have.
+const ROW_COLUMNS: [&[&str]; 2] =
+    [&["node"], &["dof", "node", "ux", "uy", "uz", "rx", "ry", "rz", "x", "y", "z"]];
+/// The same of the table of contact points.
+const POINT_COLUMNS: [&[&str]; 2] =
+    [&["normal", "t1"], &["normal", "t1", "t2", "weight", "gap", "x", "y", "z"]];
 
 /// The structure of a case that gives matrices.
 pub struct ImportedModel {
@@ -45,7 +51,7 @@ pub fn read_model(case: &Case, matrices: &Matrices) -> Result<ImportedModel> {
         .dofs
         .as_ref()
         .filter(|_| known)
-        .and_then(|file| faults.take(read_places(&case.folder.join(file), rows)));
+        .and_then(|file| faults.take(rows_in(&case.folder.join(file), rows)));
     let load = match load.flatten() {
         None => vec![0.0; rows],
         Some((file, f)) => faults.take(read_load(&place("load", file), &f, rows)).unwrap_or_default(),
@@ -138,15 +144,28 @@ fn read_load(place: &str, f: &MarketMatrix, n: usize) -> Result<Vec<f64>> {
     Ok(load)
 }
 
-/// The nodes and what each of the `n` rows is, from a table with one line a row, in the order of the rows.
-fn read_places(path: &Path, n: usize) -> Result<(Vec<[f64; 3]>, Vec<FreeDof>)> {
-    let known = ["dof", "node", "ux", "uy", "uz", "rx", "ry", "rz", "x", "y", "z"];
-    let table = Table::read(path, &["node"], &known)?;
+/// The nodes \[m\] and what each of the `n` rows of the matrices is, from the CSV `text` of the file `name`: one line a row,
+/// in the order of the rows.
+///
+/// # Errors
+/// Every fault of the heading, and the first faults of the lines.
+pub fn read_rows(name: &str, text: &str, n: usize) -> Result<(Vec<[f64; 3]>, Vec<FreeDof>)> {
+    let [required, known] = ROW_COLUMNS;
+    rows_of(&Table::parse(name.to_string(), text.to_string(), required, known)?, n)
+}
+
+fn rows_in(path: &Path, n: usize) -> Result<(Vec<[f64; 3]>, Vec<FreeDof>)> {
+    let [required, known] = ROW_COLUMNS;
+    rows_of(&Table::read(path, required, known)?, n)
+}
+
+fn rows_of(table: &Table, n: usize) -> Result<(Vec<[f64; 3]>, Vec<FreeDof>)> {
     let mut faults = Faults::new();
-    let (mut nodes, mut free): (Vec<[f64; 3]>, Vec<FreeDof>) = (Vec::new(), Vec::new());
+    let mut nodes: Vec<[f64; 3]> = Vec::new();
+    let mut free = Vec::with_capacity(table.rows().count());
     let mut index: BTreeMap<&str, usize> = BTreeMap::new();
     for (k, row) in table.rows().enumerate() {
-        if faults.0.len() >= 20 {
+        if faults.0.len() >= MOST_FAULTS {
             break;
         }
         let position = ["x", "y", "z"].map(|c| row.number(c, 0.0, &mut faults));
@@ -213,34 +232,45 @@ pub fn given_points(
             }
         }
         ContactPoints::File(file) => {
-            let known = ["normal", "t1", "t2", "weight", "gap", "x", "y", "z"];
-            let table = Table::read(&case.folder.join(file), &["normal", "t1"], &known)?;
-            for row in table.rows() {
-                if faults.0.len() >= 20 {
-                    break;
-                }
-                let place = row.place();
-                let cells = [row.cell("normal"), row.cell("t1"), row.cell("t2")];
-                let weight = row.number("weight", 1.0, &mut faults);
-                if weight <= 0.0 {
-                    faults.push(Fault::new(
-                        format!("{place} `weight`"),
-                        weight.to_string(),
-                        "a weight above zero",
-                    ));
-                }
-                let gap = row.number("gap", 0.0, &mut faults);
-                let position = ["x", "y", "z"].map(|c| row.number(c, 0.0, &mut faults));
-                if let Some([normal, t1, t2]) = directions(&place, cells, n, &mut faults) {
-                    found.push(ContactPoint { position, gap, weight, normal, tangents: [t1, t2] });
-                }
-            }
-            if found.is_empty() && faults.0.is_empty() {
-                faults.push(Fault::new(table.name(), "no row", "at least one contact point"));
-            }
+            let [required, known] = POINT_COLUMNS;
+            return points_of(&Table::read(&case.folder.join(file), required, known)?, n);
         }
     }
     debug_assert!(contact.points.is_some());
+    faults.into_result(found)
+}
+
+/// The contact points on `n` degrees of freedom, from the CSV `text` of the file `name`: one line a point.
+///
+/// # Errors
+/// Every fault of the heading, and the first faults of the lines.
+pub fn read_points(name: &str, text: &str, n: usize) -> Result<Vec<ContactPoint>> {
+    let [required, known] = POINT_COLUMNS;
+    points_of(&Table::parse(name.to_string(), text.to_string(), required, known)?, n)
+}
+
+fn points_of(table: &Table, n: usize) -> Result<Vec<ContactPoint>> {
+    let mut faults = Faults::new();
+    let mut found = Vec::with_capacity(table.rows().count());
+    for row in table.rows() {
+        if faults.0.len() >= MOST_FAULTS {
+            break;
+        }
+        let place = row.place();
+        let cells = [row.cell("normal"), row.cell("t1"), row.cell("t2")];
+        let weight = row.number("weight", 1.0, &mut faults);
+        if weight <= 0.0 {
+            faults.push(Fault::new(format!("{place} `weight`"), weight.to_string(), "a weight above zero"));
+        }
+        let gap = row.number("gap", 0.0, &mut faults);
+        let position = ["x", "y", "z"].map(|c| row.number(c, 0.0, &mut faults));
+        if let Some([normal, t1, t2]) = directions(&place, cells, n, &mut faults) {
+            found.push(ContactPoint { position, gap, weight, normal, tangents: [t1, t2] });
+        }
+    }
+    if found.is_empty() && faults.0.is_empty() {
+        faults.push(Fault::new(table.name(), "no row", "at least one contact point"));
+    }
     faults.into_result(found)
 }
 

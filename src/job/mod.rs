@@ -49,6 +49,7 @@ pub use analyse::{Selection, Sensitivities, analyse, check_case, run_case};
 pub use calibrate::Coordinate;
 pub use explore::{KnownMap, KnownMaps};
 pub use export::export;
+pub use imported::{read_points, read_rows};
 pub use keeper::{Histories, Keeper, Stage};
 pub use measured::{measured_set, read_modes};
 pub use memory::{ExpectedMemory, expected_memory};
