@@ -128,7 +128,10 @@ fn holds(reader: &Reader, options: &Options) -> bool {
         run.try_input(&input);
         inputs.push(input);
     }
-    assert!(run.sound > 0, "{}: no input to begin with is sound", reader.name);
+    if run.sound == 0 {
+        eprintln!("{}: none of the files to begin with is sound", reader.name);
+        return false;
+    }
     let words = words(&inputs);
     let mut random = Random(options.seed);
     let begun = Instant::now();
@@ -194,14 +197,23 @@ fn hash(of: impl Hash) -> u64 {
     hasher.finish()
 }
 
-/// The kinds of the faults of an error, each by itself: their combinations are without number.
+/// The kinds of the faults of an error, each by itself: what is found word by word, and combinations of faults, are without
+/// number.
 fn kinds(error: &Error) -> Vec<u64> {
     match error {
-        Error::Input(faults) => {
-            faults.0.iter().map(|f| kind(&format!("{}; {}", f.found, f.expected))).collect()
-        }
+        Error::Input(faults) => faults
+            .0
+            .iter()
+            .map(|fault| kind(&format!("{}; {}", begin(&fault.found), fault.expected)))
+            .collect(),
         other => vec![kind(&other.to_string())],
     }
+}
+
+/// The first three words of a message, up to one that has more than small letters.
+fn begin(message: &str) -> String {
+    let plain = |word: &&str| word.bytes().all(|b| b.is_ascii_lowercase());
+    message.split_whitespace().take(3).take_while(plain).collect::<Vec<_>>().join(" ")
 }
 
 /// The letters of a message, without what it quotes.
@@ -218,7 +230,7 @@ fn kind(message: &str) -> u64 {
             quoted = Some(c);
             true
         }
-        (None, c) => c.is_ascii_alphabetic() && !"eE".contains(c),
+        (None, c) => c.is_ascii_alphabetic(),
     });
     hash(kept.collect::<String>())
 }

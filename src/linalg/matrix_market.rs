@@ -15,6 +15,8 @@ use std::path::Path;
 
 /// The most rows or columns.
 const LARGEST: usize = 1 << 26;
+/// The most columns beyond the number of entries: a column takes memory even when it is empty.
+const EMPTY: usize = 1 << 22;
 /// Faults that are told of one file; a broken file has as many as lines.
 const TOLD: usize = 8;
 /// Bytes that one task parses.
@@ -113,6 +115,12 @@ pub fn parse(name: &str, bytes: &[u8]) -> Result<MarketMatrix> {
         return refused(
             format!("{entries} entries in the {left} bytes that follow"),
             "as many entries as the file holds",
+        );
+    }
+    if columns > entries + EMPTY {
+        return refused(
+            format!("{columns} columns for {entries} entries"),
+            &format!("at most {EMPTY} columns more than entries"),
         );
     }
     let entries = read_entries(name, &lines, header, [rows, columns], entries)?;
@@ -504,6 +512,7 @@ mod tests {
         for (header, rest, part) in [
             ("coordinate real general", "9 9 100000000000\n1 1 1\n", "100000000000 entries"),
             ("coordinate real general", "99999999999999999 1 1\n1 1 1\n", "99999999999999999 rows"),
+            ("coordinate real general", "3 10034222 1\n1 1 1\n", "10034222 columns for 1 entries"),
             ("coordinate real general", "99999999999999999999999 1 1\n1 1 1\n", "rows, columns and"),
             ("array real general", "60000000 60000000\n1\n", "entries in the"),
             ("coordinate real general", "2 2 3\n1 1 1\n2 2 1   \n1 2      0      \n1 2 0\n", "goes on to 4"),
