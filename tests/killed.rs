@@ -407,7 +407,7 @@ fn what_was_found_before_an_analysis_failed_is_written() {
     assert!(summary["complete"] == false && summary["modes"][0]["frequency_hz"].is_number());
     assert!(summary["failed"].as_str().is_some_and(|said| said.contains("10 Hz")));
     let report = std::fs::read_to_string(out.join("report.html")).expect("a report");
-    assert!(report.contains("not complete") && report.contains("10 Hz"));
+    assert!(report.contains("This run failed.") && report.contains("10 Hz"));
     assert!(out.join("modes_disc.csv").exists());
     let file = hdf5::File::open(out.join("results.h5")).expect("results.h5 opens");
     assert!(!file.attr("complete").and_then(|a| a.read_scalar::<bool>()).expect("a root attribute"));
