@@ -148,10 +148,11 @@ fn test(bytes: &[u8]) -> Result<String> {
     Ok(format!("{} {}", about(records.points.len()), about(records.modes.len())))
 }
 
-/// A case must also give its scalars, for which it is written and read again.
+/// A case must also give its scalars, and what is written of it must read as the same case.
 fn case(bytes: &[u8]) -> Result<String> {
     let case = Case::parse("case", &String::from_utf8_lossy(bytes), PathBuf::new())?;
-    Ok(about(case.parameters()?.len()).to_string())
+    assert_eq!(Case::parse("again", &case.to_toml(), PathBuf::new())?, case);
+    Ok(about(case.parameters().len()).to_string())
 }
 
 /// The case of every reference and search.

@@ -7,6 +7,7 @@
 //! |---|---|
 //! | [`error`], [`progress`] | one error type that carries data; how long work reports where it stands |
 //! | [`numbers`] | numbers as text |
+//! | [`schema`] | tables of a TOML file, each key declared once |
 //! | [`pages`] | memory in large pages |
 //! | [`memory`] | how much memory there is |
 //! | [`input`] | input files: regular, of a bounded size |
@@ -54,6 +55,7 @@ pub mod progress;
 pub mod reduction;
 pub mod report;
 pub mod results;
+pub mod schema;
 pub mod search;
 pub mod signal;
 pub mod sound;

@@ -4,19 +4,20 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Each room with all the rooms it may use.
-const MAY_USE: [(&str, &[&str]); 28] = [
+const MAY_USE: [(&str, &[&str]); 29] = [
     ("input", &[]),
     ("error", &["input"]),
     ("progress", &[]),
     ("numbers", &[]),
+    ("schema", &["error"]),
     ("pages", &[]),
     ("memory", &[]),
     ("linalg", &["error", "progress"]),
     ("system", &["error", "linalg"]),
     // Mechanics: builds a system, knows no analysis.
     ("mesh", &["error", "numbers"]),
-    ("structure", &["error", "numbers", "linalg", "system", "mesh"]),
-    ("contact", &["error", "numbers", "linalg", "system", "mesh", "structure"]),
+    ("structure", &["error", "numbers", "schema", "linalg", "system", "mesh"]),
+    ("contact", &["error", "numbers", "schema", "linalg", "system", "mesh", "structure"]),
     // Analyses: take a system, know no mesh and no law.
     ("equilibrium", &["error", "progress", "linalg", "system"]),
     ("modal", &["error", "progress", "linalg", "system"]),
@@ -27,7 +28,7 @@ const MAY_USE: [(&str, &[&str]); 28] = [
     ("signal", &[]),
     ("calibration", &["error", "progress", "linalg"]),
     ("sound", &["linalg", "signal"]),
-    ("measured", &["error", "linalg"]),
+    ("measured", &["error", "schema", "linalg"]),
     // What both wings leave behind.
     (
         "results",
@@ -63,7 +64,7 @@ const MAY_USE: [(&str, &[&str]); 28] = [
         ],
     ),
     // From a file to results.
-    ("case", &["error", "linalg", "structure", "measured"]),
+    ("case", &["error", "schema", "linalg", "structure", "contact", "measured"]),
     (
         "job",
         &[
@@ -88,15 +89,19 @@ const MAY_USE: [(&str, &[&str]); 28] = [
             "calibration",
             "results",
             "report",
+            "schema",
             "case",
         ],
     ),
     (
         "validation",
-        &["error", "progress", "linalg", "structure", "sweep", "signal", "results", "case", "job"],
+        &["error", "progress", "schema", "linalg", "structure", "sweep", "signal", "results", "case", "job"],
     ),
-    ("search", &["error", "progress", "results", "case", "job", "validation"]),
-    ("cli", &["error", "progress", "mesh", "report", "results", "case", "job", "validation", "search"]),
+    ("search", &["error", "progress", "schema", "results", "case", "job", "validation"]),
+    (
+        "cli",
+        &["error", "progress", "schema", "mesh", "report", "results", "case", "job", "validation", "search"],
+    ),
 ];
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {

@@ -1,128 +1,134 @@
 //! `[calibrate]`: scalars of the case to be found from measured modes and frequency responses.
 
-use super::keys::keys_of;
-use super::reader::Section;
-use super::units::{NUMBER, dimension_of};
 use super::{Case, ContactPoints, ContactState, Invalidates, Matrices, MatrixTerm, MeshSource, Parameter};
 use crate::error::{Error, Fault, Result, nearest};
-use serde::Serialize;
+use crate::schema::units::{NUMBER, dimension_of, parse_quantity};
+use crate::schema::{Report, declare, dotted, key, keys_of};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Bound;
 
 /// The name in `against` that stands for `cea.measured_squeal`.
 pub const SQUEAL: &str = "squeal";
 
-/// Relative standard deviation of a measured frequency that the case does not state.
-const DEVIATION: f64 = 0.005;
-
-/// Scalars to be found from measured modes and frequency responses.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct CalibrateAnalysis {
-    /// Names of `[modes.NAME]` with measured frequencies, of `[measured.NAME]`, and `squeal` for those of `[cea]`.
-    pub against: Vec<String>,
-    /// Relative standard deviation of a measured frequency.
-    pub deviation: f64,
-    /// Takes the measured shapes of `[measured.NAME]` in, not its frequencies alone.
-    pub shapes: bool,
-    /// Takes the measured frequency responses of `[measured.NAME]` with `frf` in.
-    pub responses: bool,
-    /// A computed mode may be what was measured when, linearised, it comes as near as a factor 1 + this inside the bounds.
-    pub mode_reach: f64,
-    /// Predicts each measured mode and each response from all others.
-    pub leave_one_out: bool,
-    /// Draws of measured sets that mean nothing, for the probability that frequencies match by chance; 0 for none.
-    pub chance_draws: usize,
-    /// Fits of synthetic data, for the coverage of the intervals; 0 for none.
-    pub trials: usize,
-    /// What is to be found, by name.
-    pub parameter: BTreeMap<String, CalibratedParameter>,
-}
-
-/// A number to be found.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct CalibratedParameter {
-    /// The paths of the scalars that have this value.
-    pub path: Vec<String>,
-    /// The least and the largest value \[SI\].
-    pub between: [f64; 2],
-    /// What is expected \[SI\]; the value of the case where the file does not say.
-    pub expected: f64,
-    /// Standard deviation of what is expected \[SI\]; its share of the value where `log`. Without it every value inside the
-    /// bounds is as good.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub deviation: Option<f64>,
-    /// Takes equal ratios, not equal differences, as equal steps.
-    pub log: bool,
-}
-
-/// Reads `[calibrate]` of a case that is read but for it. Its scalars are looked up when the rest of the file is sound.
-pub(super) fn read(root: &Section, case: Case) -> Case {
-    if !root.has("calibrate") {
-        return case;
+declare! {
+    /// Scalars to be found from measured modes and frequency responses.
+    pub struct CalibrateAnalysis {
+        /// Names of `[modes.NAME]` with measured frequencies, of `[measured.NAME]`, and `squeal` for those of `[cea]`.
+        pub against: Vec<String> = key::names(
+            "names of [modes.NAME] with measured frequencies, of [measured.NAME], or \"squeal\"",
+        ).check("at least one name", |list| !list.is_empty()),
+        /// Relative standard deviation of a measured frequency.
+        pub deviation: f64 = key::quantity(NUMBER).positive().or(0.005),
+        /// Takes the measured shapes of `[measured.NAME]` in, not its frequencies alone.
+        pub shapes: bool = key::flag(true),
+        /// Takes the measured frequency responses of `[measured.NAME]` with `frf` in.
+        pub responses: bool = key::flag(true),
+        /// A computed mode may be what was measured when, linearised, it comes as near as a factor 1 + this inside the bounds.
+        pub mode_reach: f64 =
+            key::quantity(NUMBER).within(Bound::Included(0.0), Bound::Excluded(1.0)).or(0.2),
+        /// Predicts each measured mode and each response from all others.
+        pub leave_one_out: bool = key::flag(true),
+        /// Draws of measured sets that mean nothing, for the probability that frequencies match by chance; 0 for none.
+        pub chance_draws: usize = key::whole().check("at most a million", |n| *n <= 1_000_000).or(1000),
+        /// Fits of synthetic data, for the coverage of the intervals; 0 for none.
+        pub trials: usize = key::whole().check("at most a million", |n| *n <= 1_000_000).or(0),
+        /// What is to be found, by name.
+        pub parameter: BTreeMap<String, CalibratedParameter> = key::named(),
     }
-    let scalars = root.sound_so_far().then(|| root.take(case.parameters())).flatten();
-    let calibrate = root.section("calibrate", |s| {
-        let analysis = CalibrateAnalysis {
-            against: s.strings("against").required(
-                "names of [modes.NAME] with measured frequencies, of [measured.NAME], or \"squeal\"",
-            ),
-            deviation: s.quantity("deviation", NUMBER).positive().or(DEVIATION),
-            shapes: s.boolean("shapes").or(true),
-            responses: s.boolean("responses").or(true),
-            mode_reach: s
-                .quantity("mode_reach", NUMBER)
-                .within(Bound::Included(0.0), Bound::Excluded(1.0))
-                .or(0.2),
-            leave_one_out: s.boolean("leave_one_out").or(true),
-            chance_draws: s.whole("chance_draws").check("at most a million", |n| *n <= 1_000_000).or(1000),
-            trials: s.whole("trials").check("at most a million", |n| *n <= 1_000_000).or(0),
-            parameter: super::read::collect(s, "parameter", |p| read_parameter(p, &case, scalars.as_deref())),
-        };
-        check_against(s, &case, &analysis);
-        check_paths(s, &analysis.parameter);
-        analysis
-    });
-    Case { calibrate, ..case }
 }
 
-/// A number of `case` to be found: `path`, `between`, `expected`, `deviation`, `log`; `scalars` are those of the case, where they
-/// are known.
-pub(crate) fn read_parameter(s: &Section, case: &Case, scalars: Option<&[Parameter]>) -> CalibratedParameter {
-    let path = s
-        .strings("path")
-        .check("at least one path", |paths| !paths.is_empty())
-        .required("the path of a scalar of the case, or of several that are the same");
-    let log = s.boolean("log").or(false);
+declare! {
+    /// A number to be found.
+    pub struct CalibratedParameter {
+        /// The paths of the scalars that have this value.
+        pub path: Vec<String> = key::names("the path of a scalar of the case, or of several that are the same")
+            .check("at least one path", |paths| !paths.is_empty()),
+        /// Takes equal ratios, not equal differences, as equal steps.
+        pub log: bool = key::flag(false),
+        /// The least and the largest value \[SI\].
+        pub between: [f64; 2] = {
+            let log = *log;
+            key::quantities_of_scalars()
+                .expecting("two bounds")
+                .check("the lower bound before the upper one", |[low, high]| low < high)
+                .check("bounds above zero with `log`", move |[low, _]| !log || *low > 0.0)
+        },
+        /// What is expected \[SI\]; the value of the case where the file does not say.
+        pub expected: Option<f64> = {
+            let [low, high] = *between;
+            key::quantity_of_scalar()
+                .check("a value inside the bounds", move |v| low >= high || (low..=high).contains(v))
+                .optional()
+        },
+        /// Standard deviation of what is expected \[SI\]; its share of the value where `log`. Without it every value inside the
+        /// bounds is as good.
+        pub deviation: Option<f64> = key::quantity_of_scalar().positive().optional(),
+    }
+}
+
+/// Checks `[calibrate]` against the case; `scalars` are those of the case, where they are known.
+pub(super) fn check(case: &Case, scalars: Option<&[Parameter]>, report: &mut Report) {
+    let Some(analysis) = &case.calibrate else { return };
+    if !report.unread("calibrate.against") {
+        check_against(case, analysis, report);
+    }
+    let parameters = &analysis.parameter;
+    if parameters.is_empty() && !report.unread("calibrate.parameter") {
+        report.fault("calibrate.parameter", "nothing", "at least one table [calibrate.parameter.NAME]", "");
+    }
+    let without = case.without_studies();
+    for (name, parameter) in parameters {
+        check_parameter(
+            parameter,
+            &format!("calibrate.parameter.{}", dotted(name)),
+            &without,
+            scalars,
+            report,
+        );
+    }
+    let all: Vec<(&String, &String)> =
+        parameters.iter().flat_map(|(name, p)| p.path.iter().map(move |path| (name, path))).collect();
+    for (k, (name, path)) in all.iter().enumerate() {
+        if all[..k].iter().any(|(_, other)| other == path) {
+            let key = format!("calibrate.parameter.{}.path", dotted(name));
+            report.fault(&key, format!("`{path}` twice"), "each scalar once", "");
+        }
+    }
+}
+
+/// Checks a number of `case` to be found, whose table is at `place`; `scalars` are those of the case, where they are known.
+pub(crate) fn check_parameter(
+    parameter: &CalibratedParameter,
+    place: &str,
+    case: &Case,
+    scalars: Option<&[Parameter]>,
+    report: &mut Report,
+) {
+    let key = |key: &str| if place.is_empty() { key.to_string() } else { format!("{place}.{key}") };
+    let CalibratedParameter { path, between, log, .. } = parameter;
+    let Some(all) = scalars.filter(|_| !report.unread(&key("path"))) else { return };
     let found: Option<Vec<&Parameter>> =
-        scalars.and_then(|all| path.iter().map(|path| find(s, all, path)).collect());
-    let Some(first) = found.as_ref().and_then(|found| found.first()) else {
-        s.skip(&["between", "expected", "deviation"]);
-        return CalibratedParameter { path, between: [0.0, 1.0], expected: 0.5, deviation: None, log };
-    };
+        path.iter().map(|path| find(report, &key("path"), all, path)).collect();
+    let Some(first) = found.as_ref().and_then(|found| found.first()) else { return };
     let dimension = dimension_of(first.unit);
     for other in found.iter().flatten().filter(|p| p.unit != first.unit) {
         let found = format!("`{}` in {} beside {}", other.path, other.unit, first.unit);
-        s.fault("path", found, "scalars of one unit", "");
+        report.fault(&key("path"), found, "scalars of one unit", "");
     }
-    let between = s
-        .quantities("between", dimension)
-        .check("the lower bound before the upper one", |[low, high]| low < high)
-        .check("bounds above zero with `log`", |[low, _]| !log || *low > 0.0)
-        .required("two bounds");
-    let [low, high] = between;
-    let sound = low < high;
-    for value in between.into_iter().filter(|_| sound) {
-        if let Some(expected) = path.iter().find_map(|path| refused(case, path, value)) {
-            s.fault("between", format!("{value}"), expected, "");
+    let share = if *log { NUMBER } else { dimension };
+    for (name, dimension) in [("between", dimension), ("expected", dimension), ("deviation", share)] {
+        for (_, text) in report.given(&key(name)) {
+            if let Err(found) = parse_quantity(&text, dimension) {
+                report.fault(&key(name), found, dimension.name, "");
+            }
         }
     }
-    let expected = s
-        .quantity("expected", dimension)
-        .check("a value inside the bounds", |v| !sound || (low..=high).contains(v))
-        .or(if sound { first.value.clamp(low, high) } else { first.value });
-    let share = if log { NUMBER } else { dimension };
-    let deviation = s.quantity("deviation", share).positive().optional();
-    CalibratedParameter { path, between, expected, deviation, log }
+    let sound = between[0] < between[1] && !report.unread(&key("between"));
+    for value in between.iter().filter(|_| sound) {
+        if let Some(expected) = path.iter().find_map(|path| refused(case, path, *value)) {
+            report.fault(&key("between"), format!("{value}"), expected, "");
+        }
+    }
 }
 
 /// Why the case does not take `value` at `path`, if it does not.
@@ -136,24 +142,28 @@ fn refused(case: &Case, path: &str, value: f64) -> Option<String> {
     }
 }
 
-fn find<'a>(s: &Section, all: &'a [Parameter], path: &str) -> Option<&'a Parameter> {
-    let found = all.iter().find(|p| p.path == path);
-    match found {
+fn find<'a>(report: &mut Report, key: &str, all: &'a [Parameter], path: &str) -> Option<&'a Parameter> {
+    match all.iter().find(|p| p.path == path) {
         Some(p) if p.invalidates == Invalidates::Question && !is_scale(path) => {
             let expected = "a scalar of the model, or the `frequency_scale` of real modes";
-            s.fault("path", format!("`{path}`, which only says what is asked"), expected, "");
+            report.fault(key, format!("`{path}`, which only says what is asked"), expected, "");
             None
         }
         Some(p) => Some(p),
         None => {
-            let help = nearest(path, all.iter().map(|p| p.path.as_str()))
-                .map_or("`stridor check CASE --parameters` lists them".to_string(), |near| {
-                    format!("Did you mean `{near}`?")
-                });
-            s.fault("path", format!("`{path}`, no number of the case"), "the path of a scalar", &help);
+            no_number(report, key, path, all);
             None
         }
     }
+}
+
+/// Notes that `path` is no number of a case, with the nearest one that is.
+pub(super) fn no_number(report: &mut Report, key: &str, path: &str, all: &[Parameter]) {
+    let help = nearest(path, all.iter().map(|p| p.path.as_str()))
+        .map_or("`stridor check CASE --parameters` lists them".to_string(), |near| {
+            format!("Did you mean `{near}`?")
+        });
+    report.fault(key, format!("`{path}`, no number of the case"), "the path of a scalar", &help);
 }
 
 /// Whether `path` is the `frequency_scale` of a set of real modes.
@@ -161,12 +171,13 @@ fn is_scale(path: &str) -> bool {
     matches!(&keys_of(path)[..], [modes, _, scale] if modes == "modes" && scale == "frequency_scale")
 }
 
-fn check_against(s: &Section, case: &Case, analysis: &CalibrateAnalysis) {
+fn check_against(case: &Case, analysis: &CalibrateAnalysis, report: &mut Report) {
     let against = &analysis.against;
     let positive = |all: &[f64]| all.iter().all(|hz| *hz > 0.0);
     for (k, name) in against.iter().enumerate() {
-        let fault =
-            |found: &str, expected: &str| s.fault("against", format!("\"{name}\"{found}"), expected, "");
+        let mut fault = |found: &str, expected: &str| {
+            report.fault("calibrate.against", format!("\"{name}\"{found}"), expected, "");
+        };
         if against[..k].contains(name) {
             fault(" twice", "each name once");
         }
@@ -215,25 +226,14 @@ fn check_against(s: &Section, case: &Case, analysis: &CalibrateAnalysis) {
             Some(_) => {}
         }
     }
-    if s.has("against") && against.is_empty() {
-        s.fault("against", "nothing", "at least one name", "");
-    }
-}
-
-fn check_paths(s: &Section, parameters: &BTreeMap<String, CalibratedParameter>) {
-    if parameters.is_empty() && !s.has("parameter") {
-        s.fault("parameter", "nothing", "at least one table [calibrate.parameter.NAME]", "");
-    }
-    let all: Vec<(&String, &String)> =
-        parameters.iter().flat_map(|(name, p)| p.path.iter().map(move |path| (name, path))).collect();
-    for (k, (name, path)) in all.iter().enumerate() {
-        if all[..k].iter().any(|(_, other)| other == path) {
-            s.fault(&format!("parameter.{name}.path"), format!("`{path}` twice"), "each scalar once", "");
-        }
-    }
 }
 
 impl CalibratedParameter {
+    /// What is expected \[SI\]: of the case, or the middle of the bounds where it is not known.
+    pub fn expectation(&self) -> f64 {
+        self.expected.unwrap_or(0.5 * (self.between[0] + self.between[1]))
+    }
+
     /// The value that its scalars have in `case`, where a search starts; `place` says where a key of it stands.
     ///
     /// # Errors
@@ -256,6 +256,16 @@ impl CalibratedParameter {
 }
 
 impl Case {
+    /// Every number to be found expects the value that it has, within its bounds, unless the case says otherwise.
+    pub(super) fn expect_own_values(&mut self) {
+        let all = if self.calibrate.is_some() { self.parameters() } else { return };
+        for number in self.calibrate.iter_mut().flat_map(|calibrate| calibrate.parameter.values_mut()) {
+            let first = number.path.first().and_then(|path| all.iter().find(|p| p.path == *path));
+            let [low, high] = number.between;
+            number.expected = number.expected.or(first.map(|p| p.value.clamp(low, high)));
+        }
+    }
+
     /// The same case with the scalars of some numbers at values \[SI\], one a number.
     ///
     /// # Errors
@@ -338,7 +348,7 @@ mod tests {
         .unwrap();
         let calibrate = case.calibrate.as_ref().unwrap();
         let hub = &calibrate.parameter["hub"];
-        assert_eq!((hub.between, hub.expected, hub.deviation), ([0.01, 0.02], 0.015, Some(0.002)));
+        assert_eq!((hub.between, hub.expected, hub.deviation), ([0.01, 0.02], Some(0.015), Some(0.002)));
         assert_eq!((calibrate.deviation, calibrate.chance_draws, calibrate.trials), (0.005, 1000, 0));
         assert_eq!(Case::parse("again", &case.to_toml(), ".".into()).unwrap(), case);
         let moved = case.with_calibrated(&[0.018, 0.97]).unwrap();

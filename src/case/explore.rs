@@ -1,155 +1,143 @@
-//! `[sweep.NAME]` and `[map.NAME]`: read last, because they name scalars of the rest of the case.
+//! `[sweep.NAME]` and `[map.NAME]`: complex eigenvalues over scalars of the rest of the case.
 
-use super::read::collect;
-use super::reader::Section;
-use super::units::{Dimension, NUMBER, dimension_of};
-use super::{Case, Invalidates, MapAnalysis, Parameter, SweepAnalysis};
-use crate::error::nearest;
+use super::calibrate::no_number;
+use super::{Case, Invalidates, Parameter};
+use crate::schema::units::{dimension_of, parse_quantity};
+use crate::schema::{Report, declare, dotted, key};
 
 /// The most points of one sweep or map.
 const POINTS: usize = 1_000_000;
 
-/// Reads the sweeps and maps of `case`. Their scalars are looked up when the rest of the file is sound.
-pub(super) fn read(root: &Section, case: Case) -> Case {
-    if !root.has("sweep") && !root.has("map") {
-        return Case {
-            sweep: collect(root, "sweep", |s| read_sweep(s, None)),
-            map: collect(root, "map", |s| read_map(s, None)),
-            ..case
-        };
-    }
-    let scalars = root.sound_so_far().then(|| root.take(case.parameters())).flatten();
-    let scalars = scalars.as_deref().map(|all| Scalars { case: &case, all });
-    let sweep = collect(root, "sweep", |s| read_sweep(s, scalars.as_ref()));
-    let map = collect(root, "map", |s| read_map(s, scalars.as_ref()));
-    check_names(root, "sweep", &sweep);
-    check_names(root, "map", &map);
-    if case.cea.is_none() {
-        let key = if sweep.is_empty() { "map" } else { "sweep" };
-        root.fault(key, "no [cea] in the case", "a [cea] with the band to look at", "");
-    }
-    Case { sweep, map, ..case }
-}
-
-/// Refuses names that cannot be part of a file name.
-fn check_names<T>(root: &Section, key: &str, all: &std::collections::BTreeMap<String, T>) {
-    let plain = |name: &String| name.chars().all(|c| c.is_alphanumeric() || c == '-' || c == '_');
-    for name in all.keys().filter(|name| !plain(name) || name.is_empty()) {
-        root.fault(key, format!("the name \"{name}\""), "letters, digits, `-` and `_`", "");
+declare! {
+    /// Complex eigenvalues along one scalar of the case.
+    pub struct SweepAnalysis {
+        /// The path of the scalar.
+        pub parameter: String = key::name("the path of a scalar of the case"),
+        /// Its first value.
+        pub from: f64 = key::quantity_of_scalar().expecting("the first value"),
+        /// Its last value.
+        pub to: f64 = key::quantity_of_scalar().expecting("the last value"),
+        /// How many values.
+        pub points: usize = key::count().check("from 2 to a million", |n| (2..=POINTS).contains(n)).or(41),
+        /// Equal ratios instead of equal steps.
+        pub log: bool = key::flag(false),
     }
 }
 
-/// The scalars that a sound case has.
-struct Scalars<'a> {
-    case: &'a Case,
-    all: &'a [Parameter],
+declare! {
+    /// Complex eigenvalues over a grid of two scalars of the case.
+    pub struct MapAnalysis {
+        /// The paths of the scalars.
+        pub parameters: [String; 2] = key::value::<[String; 2]>("the paths of two scalars")
+            .check("two different scalars", |[a, b]| a != b && [a, b].iter().all(|path| key::is_name(path))),
+        /// Their first values.
+        pub from: [f64; 2] = key::quantities_of_scalars().expecting("the first value of each"),
+        /// Their last values.
+        pub to: [f64; 2] = key::quantities_of_scalars().expecting("the last value of each"),
+        /// How many values of each.
+        pub points: [usize; 2] = key::value::<[usize; 2]>("a list of two whole numbers")
+            .check("from 2 of each to a million in all", |[a, b]| {
+                *a >= 2 && *b >= 2 && a.checked_mul(*b).is_some_and(|n| n <= POINTS)
+            })
+            .or([40, 25]),
+        /// Equal ratios instead of equal steps.
+        pub log: [bool; 2] = key::value::<[bool; 2]>("a list of two of true and false").or([false; 2]),
+    }
 }
 
-impl Scalars<'_> {
-    /// The scalar at `path`, which `key` names; a fault when there is none, or when it changes nothing.
-    fn find(&self, s: &Section, key: &str, path: &str) -> Option<&Parameter> {
-        let found = self.all.iter().find(|p| p.path == path);
-        match found {
-            Some(p) if p.invalidates == Invalidates::Question => {
-                let expected = "a scalar of the model, one that eigenvalues depend on";
-                s.fault(key, format!("`{path}`, which only says what is asked"), expected, "");
-                None
-            }
-            Some(p) => Some(p),
-            None => {
-                let help = nearest(path, self.all.iter().map(|p| p.path.as_str()))
-                    .map_or("`stridor check CASE --parameters` lists them".to_string(), |near| {
-                        format!("Did you mean `{near}`?")
-                    });
-                s.fault(key, format!("`{path}`, no number of the case"), "the path of a scalar", &help);
-                None
-            }
+/// Checks sweeps and maps against the case; `scalars` are those of the case, where they are known.
+pub(super) fn check(case: &Case, scalars: Option<&[Parameter]>, report: &mut Report) {
+    let all = case.sweep.keys().map(|name| ("sweep", name)).chain(case.map.keys().map(|name| ("map", name)));
+    for (key, name) in all.filter(|(_, name)| !key::is_file_name(name)) {
+        report.fault(key, format!("the name \"{name}\""), "letters, digits, `-` and `_`", "");
+    }
+    if case.cea.is_none() && !report.unread("cea") && !(case.sweep.is_empty() && case.map.is_empty()) {
+        let key = if case.sweep.is_empty() { "map" } else { "sweep" };
+        report.fault(key, "no [cea] in the case", "a [cea] with the band to look at", "");
+    }
+    let Some(scalars) = scalars else { return };
+    let bare = case.without_studies();
+    for (name, sweep) in &case.sweep {
+        let SweepAnalysis { parameter, from, to, log, .. } = sweep;
+        let place = format!("sweep.{}", dotted(name));
+        let axis = Axis { path: parameter, key: "parameter", entry: None, ends: [*from, *to], log: *log };
+        axis.check(&place, &bare, scalars, report);
+    }
+    for (name, map) in &case.map {
+        let place = format!("map.{}", dotted(name));
+        for k in 0..2 {
+            let axis = Axis {
+                path: &map.parameters[k],
+                key: "parameters",
+                entry: Some(k),
+                ends: [map.from[k], map.to[k]],
+                log: map.log[k],
+            };
+            axis.check(&place, &bare, scalars, report);
         }
     }
+}
 
-    /// Refuses ends that the case would refuse.
-    fn check(&self, s: &Section, parameter: &Parameter, ends: [(&str, f64); 2]) {
-        for (key, value) in ends {
-            if let Err(error) = self.case.with_parameter(&parameter.path, value) {
+/// A scalar with the ends between which it is varied.
+struct Axis<'a> {
+    path: &'a str,
+    /// The key that names the scalar.
+    key: &'static str,
+    /// Its entry in lists of two.
+    entry: Option<usize>,
+    ends: [f64; 2],
+    log: bool,
+}
+
+impl Axis<'_> {
+    fn check(&self, place: &str, case: &Case, scalars: &[Parameter], report: &mut Report) {
+        let key = |key: &str| format!("{place}.{key}");
+        if report.unread(&key(self.key)) || self.path.is_empty() {
+            return;
+        }
+        let parameter = match scalars.iter().find(|p| p.path == self.path) {
+            None => return no_number(report, &key(self.key), self.path, scalars),
+            Some(p) if p.invalidates == Invalidates::Question => {
+                let found = format!("`{}`, which only says what is asked", self.path);
+                let expected = "a scalar of the model, one that eigenvalues depend on";
+                return report.fault(&key(self.key), found, expected, "");
+            }
+            Some(p) => p,
+        };
+        let dimension = dimension_of(parameter.unit);
+        let [from, to] = self.ends;
+        let mut sound = true;
+        for (name, value) in [("from", from), ("to", to)] {
+            let given = report.given(&key(name));
+            let mine = |k: usize| self.entry.is_none_or(|entry| entry == k);
+            let wrong = given.iter().filter(|(k, _)| mine(*k));
+            let wrong: Vec<String> =
+                wrong.filter_map(|(_, text)| parse_quantity(text, dimension).err()).collect();
+            sound &= wrong.is_empty() && !report.unread(&key(name));
+            for found in wrong {
+                report.fault(&key(name), found, dimension.name, "");
+            }
+            if !sound {
+                continue;
+            }
+            if let Err(error) = case.with_parameter(self.path, value) {
                 let reason = match &error {
                     crate::error::Error::Input(faults) => {
                         faults.0.first().map_or(String::new(), |f| f.expected.clone())
                     }
                     other => other.to_string(),
                 };
-                s.fault(key, format!("{value} for `{}`", parameter.path), reason, "");
+                report.fault(&key(name), format!("{value} for `{}`", self.path), reason, "");
             }
         }
-    }
-}
-
-fn read_sweep(s: &Section, scalars: Option<&Scalars>) -> SweepAnalysis {
-    let path = s.string("parameter").required("the path of a scalar of the case");
-    let parameter = scalars.filter(|_| !path.is_empty()).and_then(|all| all.find(s, "parameter", &path));
-    let dimension = parameter.map_or(NUMBER, |p| dimension_of(p.unit));
-    let (from, to) = match parameter {
-        Some(_) => (
-            s.quantity("from", dimension).required("the first value"),
-            s.quantity("to", dimension).required("the last value"),
-        ),
-        None => {
-            s.skip(&["from", "to"]);
-            (0.0, 1.0)
+        if sound && from == to {
+            report.fault(&key("to"), format!("{to}, as `from`"), "another value than `from`", "");
         }
-    };
-    let points = s.count("points").check("from 2 to a million", |n| (2..=POINTS).contains(n)).or(41);
-    let log = s.boolean("log").or(false);
-    if let (Some(parameter), Some(all)) = (parameter, scalars)
-        && s.has("from")
-        && s.has("to")
-    {
-        check_ends(s, "to", from, to, log);
-        all.check(s, parameter, [("from", from), ("to", to)]);
-    }
-    SweepAnalysis { parameter: path, from, to, points, log }
-}
-
-fn read_map(s: &Section, scalars: Option<&Scalars>) -> MapAnalysis {
-    let paths = s
-        .strings("parameters")
-        .check("two different scalars", |list| list.len() == 2 && list[0] != list[1])
-        .required("the paths of two scalars");
-    let paths: [String; 2] = paths.try_into().unwrap_or_default();
-    let parameters = match scalars.filter(|_| paths.iter().all(|p| !p.is_empty())) {
-        Some(all) => [0, 1].map(|k| all.find(s, "parameters", &paths[k])),
-        None => [None, None],
-    };
-    let points = s
-        .two_counts("points")
-        .check("from 2 of each to a million in all", |[a, b]| {
-            *a >= 2 && *b >= 2 && a.checked_mul(*b).is_some_and(|n| n <= POINTS)
-        })
-        .or([40, 25]);
-    let log = s.two_booleans("log").or([false; 2]);
-    let (mut from, mut to) = ([0.0; 2], [1.0; 2]);
-    if let ([Some(a), Some(b)], Some(all)) = (parameters, scalars) {
-        let dimensions: [Dimension; 2] = [dimension_of(a.unit), dimension_of(b.unit)];
-        from = s.two_quantities("from", dimensions).required("the first value of each");
-        to = s.two_quantities("to", dimensions).required("the last value of each");
-        if s.has("from") && s.has("to") {
-            for (k, parameter) in [a, b].into_iter().enumerate() {
-                check_ends(s, "to", from[k], to[k], log[k]);
-                all.check(s, parameter, [("from", from[k]), ("to", to[k])]);
-            }
+        if sound && self.log && from * to <= 0.0 {
+            let found = format!("{from} to {to} in equal ratios");
+            let expected = "two values of one sign, neither zero, or `log = false`";
+            report.fault(&key("log"), found, expected, "");
         }
-    } else {
-        s.skip(&["from", "to"]);
-    }
-    MapAnalysis { parameters: paths, from, to, points, log }
-}
-
-fn check_ends(s: &Section, key: &str, from: f64, to: f64, log: bool) {
-    if from == to {
-        s.fault(key, format!("{to}, as `from`"), "another value than `from`", "");
-    }
-    if log && from * to <= 0.0 {
-        let found = format!("{from} to {to} in equal ratios");
-        s.fault("log", found, "two values of one sign, neither zero, or `log = false`", "");
     }
 }
 
@@ -176,7 +164,7 @@ mod tests {
         let again = Case::parse("again", &case.to_toml(), ".".into()).unwrap();
         assert_eq!(again, case);
         assert!(case.parameter("sweep.mu.from").unwrap().invalidates == Invalidates::Question);
-        assert!(case.without_sweeps().with_parameter("contact.belt.friction.mu0", 0.3).is_ok());
+        assert!(case.without_studies().with_parameter("contact.belt.friction.mu0", 0.3).is_ok());
     }
 
     #[test]

@@ -1,45 +1,106 @@
 //! `[matrices]`: M, C and K from another program.
 
 use super::expression::{Dual, evaluate, is_name};
-use super::keys::keys_of;
-use super::read::collect;
-use super::reader::Section;
-use super::units::{NUMBER, parse_quantity};
-use serde::Serialize;
+use crate::schema::units::{NUMBER, parse_quantity};
+use crate::schema::{Blank, Form, Report, Units, Value, declare, dotted, key, keys_of};
 use std::collections::BTreeMap;
+use toml::de::DeValue;
 
-/// M, C and K from MatrixMarket files (paths relative to the case file).
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Matrices {
-    /// M \[kg, kg m²\].
-    pub mass: String,
-    /// K \[N/m, N m\]; an imaginary part is hysteretic damping.
-    pub stiffness: String,
-    /// C \[N s/m, N m s\]; none when absent.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub damping: Option<String>,
-    /// External force f \[N, N m\], a matrix of one column; none when absent.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub load: Option<String>,
-    /// A table (CSV) of what each row is: `node`, its motion `ux` … `rz`, and the node's coordinates `x`, `y`, `z`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub dofs: Option<String>,
-    /// Scalars that the factors are expressions of, such as a speed, by name.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub scalar: BTreeMap<String, f64>,
-    /// What is added to them, by name.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub term: BTreeMap<String, MatrixTerm>,
+/// What is expected of a file of a matrix.
+const FILE: &str = "the path of a MatrixMarket file";
+
+declare! {
+    /// M, C and K from MatrixMarket files (paths relative to the case file).
+    pub struct Matrices, checked by check {
+        /// M \[kg, kg m²\].
+        pub mass: String = key::name(FILE),
+        /// K \[N/m, N m\]; an imaginary part is hysteretic damping.
+        pub stiffness: String = key::name(FILE),
+        /// C \[N s/m, N m s\]; none when absent.
+        pub damping: Option<String> = key::name(FILE).optional(),
+        /// External force f \[N, N m\], a matrix of one column; none when absent.
+        pub load: Option<String> = key::name(FILE).optional(),
+        /// A table (CSV) of what each row is: `node`, its motion `ux` … `rz`, and the node's coordinates `x`, `y`, `z`.
+        pub dofs: Option<String> = key::name("the path of a table (CSV)").optional(),
+        /// Scalars that the factors are expressions of, such as a speed, by name.
+        pub scalar: BTreeMap<String, f64> =
+            key::values(|| key::quantity(NUMBER), "letters, digits and _, not a digit first", is_name),
+        /// What is added to them, by name.
+        pub term: BTreeMap<String, MatrixTerm> = key::named(),
+    }
+}
+
+declare! {
+    /// Matrices that are added with a common factor, a scalar of the case: M + a M₁, C + a C₁, K + a K₁. So a friction
+    /// coefficient or a speed can be varied in a model that another program exported.
+    pub struct MatrixTerm, checked by check_term {
+        /// a.
+        pub factor: Factor = key::value("a number, or an expression such as \"omega^2 - 1\""),
+        /// M₁.
+        pub mass: Option<String> = key::name(FILE).optional(),
+        /// C₁.
+        pub damping: Option<String> = key::name(FILE).optional(),
+        /// K₁.
+        pub stiffness: Option<String> = key::name(FILE).optional(),
+    }
+}
+
+fn check_term(term: &MatrixTerm, report: &mut Report) {
+    if [&term.mass, &term.damping, &term.stiffness].iter().all(|file| file.is_none()) {
+        report.fault("stiffness", "no matrix", "`mass`, `damping` or `stiffness`", "");
+    }
+}
+
+fn check(matrices: &Matrices, report: &mut Report) {
+    for (name, term) in &matrices.term {
+        let Factor::Expression(text) = &term.factor else { continue };
+        if let Err((found, expected)) = evaluate(text, &matrices.scalar, "") {
+            report.fault(&format!("term.{}.factor", dotted(name)), found, expected, "");
+        }
+    }
 }
 
 /// The factor a of a term.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(untagged)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Factor {
     /// A scalar of the case.
     Number(f64),
     /// An expression of the scalars of `[matrices.scalar]`, such as `omega^2 - 1` ([`evaluate`]).
     Expression(String),
+}
+
+impl Blank for Factor {
+    fn blank() -> Self {
+        Factor::Number(0.0)
+    }
+}
+
+impl Value for Factor {
+    /// A number, or a text that is no number: an expression.
+    fn read(value: &DeValue, units: &Units, k: usize) -> Result<Self, String> {
+        match value.as_str().filter(|text| parse_quantity(text, NUMBER).is_err()) {
+            None => f64::read(value, units, k).map(Factor::Number),
+            Some("") => Err("the string \"\"".into()),
+            Some(text) => Ok(Factor::Expression(text.into())),
+        }
+    }
+
+    fn to_toml(&self) -> Option<toml::Value> {
+        match self {
+            Factor::Number(value) => value.to_toml(),
+            Factor::Expression(text) => text.to_toml(),
+        }
+    }
+
+    fn form() -> Form {
+        Form::Either(Box::new(Form::Quantity), Box::new(Form::Text))
+    }
+
+    fn numbers(&mut self, at: &mut Vec<usize>, each: &mut dyn FnMut(&[usize], &mut f64)) {
+        if let Factor::Number(value) = self {
+            value.numbers(at, each);
+        }
+    }
 }
 
 impl Matrices {
@@ -70,74 +131,6 @@ impl Matrices {
                 Some(all.filter(|(_, slope)| *slope != 0.0).collect())
             }
             _ => None,
-        }
-    }
-}
-
-/// Matrices that are added with a common factor, a scalar of the case: M + a M₁, C + a C₁, K + a K₁. So a friction
-/// coefficient or a speed can be varied in a model that another program exported.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct MatrixTerm {
-    /// a.
-    pub factor: Factor,
-    /// M₁.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub mass: Option<String>,
-    /// C₁.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub damping: Option<String>,
-    /// K₁.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub stiffness: Option<String>,
-}
-
-pub(super) fn read(s: &Section) -> Matrices {
-    const FILE: &str = "the path of a MatrixMarket file";
-    let scalar = s.section("scalar", |all| {
-        let mut scalars = BTreeMap::new();
-        for name in all.names() {
-            if !is_name(&name) {
-                all.fault(&name, "a name", "letters, digits and _, not a digit first", "");
-            }
-            scalars.insert(name.clone(), all.quantity(&name, NUMBER).required("a number"));
-        }
-        scalars
-    });
-    let scalar = scalar.unwrap_or_default();
-    let term = |t: &Section| {
-        let term = MatrixTerm {
-            factor: read_factor(t, &scalar),
-            mass: t.string("mass").optional(),
-            damping: t.string("damping").optional(),
-            stiffness: t.string("stiffness").optional(),
-        };
-        if [&term.mass, &term.damping, &term.stiffness].iter().all(|file| file.is_none()) {
-            t.fault("stiffness", "no matrix", "`mass`, `damping` or `stiffness`", "");
-        }
-        term
-    };
-    Matrices {
-        mass: s.string("mass").required(FILE),
-        stiffness: s.string("stiffness").required(FILE),
-        damping: s.string("damping").optional(),
-        load: s.string("load").optional(),
-        dofs: s.string("dofs").optional(),
-        term: collect(s, "term", term),
-        scalar,
-    }
-}
-
-/// A number, or a text that is no number: an expression.
-fn read_factor(t: &Section, scalar: &BTreeMap<String, f64>) -> Factor {
-    const EXPECTED: &str = "a number, or an expression such as \"omega^2 - 1\"";
-    let expression = t.is_string("factor").then(|| t.string("factor").optional()).flatten();
-    match expression.filter(|text| parse_quantity(text, NUMBER).is_err()) {
-        None => Factor::Number(t.quantity("factor", NUMBER).required(EXPECTED)),
-        Some(text) => {
-            if let Err((found, expected)) = evaluate(&text, scalar, "") {
-                t.fault("factor", found, expected, "");
-            }
-            Factor::Expression(text)
         }
     }
 }

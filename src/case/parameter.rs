@@ -1,66 +1,18 @@
 //! Every scalar of a case has a path, such as `contact.rim.friction.mu0`, a unit, bounds, and can be set to another value.
 
-use super::Case;
-use super::keys::keys_of;
-use crate::error::{Error, Fault, Result, nearest};
-use std::ops::{Bound, RangeBounds};
-use toml::Value;
-
-/// A scalar of a case.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Parameter {
-    /// Keys joined by dots; entries of lists by their index from 0.
-    pub path: String,
-    /// Its value in SI units.
-    pub value: f64,
-    /// The SI unit; empty for a pure number.
-    pub unit: &'static str,
-    /// The values that the case accepts.
-    pub bounds: (Bound<f64>, Bound<f64>),
-    /// What must be computed again when it changes.
-    pub invalidates: Invalidates,
-}
-
-/// What a change of a scalar makes worthless, the cheapest first; each includes those before it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Invalidates {
-    /// What is asked or compared: bands, measured values. The system stays.
-    Question,
-    /// C of the structure. The steady state and the real modes stay.
-    Damping,
-    /// The contact law. The compliance that the steady state is condensed on stays.
-    Law,
-    /// The steady state: loads and velocities.
-    Equilibrium,
-    /// Which points may touch, and their directions.
-    Interface,
-    /// M or K: mesh, materials, sections, springs, where the bodies stand.
-    Structure,
-}
-
-impl Parameter {
-    /// Whether the case accepts `value`.
-    pub fn accepts(&self, value: f64) -> bool {
-        value.is_finite() && self.bounds.contains(&value)
-    }
-}
+use super::{Case, Invalidates, Parameter};
+use crate::error::{Error, Fault, Faults, Result, nearest};
+use crate::schema::{Report, check, scalars, set_scalar};
 
 impl Case {
-    /// Every scalar of the case, in the order of the file's sections.
-    ///
-    /// # Errors
-    /// A case that is made in code and has what no file may say.
-    pub fn parameters(&self) -> Result<Vec<Parameter>> {
-        let quantities = self.quantities()?.into_iter();
-        Ok(quantities
-            .map(|q| Parameter {
-                invalidates: self.invalidated_by(&q.path),
-                path: q.path,
-                value: q.value,
-                unit: q.unit,
-                bounds: q.bounds,
-            })
-            .collect())
+    /// Every scalar of the case, in the order of the declarations.
+    pub fn parameters(&self) -> Vec<Parameter> {
+        let mut all = scalars(self);
+        // The preload's geometric stiffness follows the steady state.
+        for parameter in all.iter_mut().filter(|p| self.prestress && p.invalidates >= Invalidates::Law) {
+            parameter.invalidates = Invalidates::Structure;
+        }
+        all
     }
 
     /// The scalar at `path`.
@@ -68,7 +20,7 @@ impl Case {
     /// # Errors
     /// A path that is not a number of the case, with the nearest one that is.
     pub fn parameter(&self, path: &str) -> Result<Parameter> {
-        let all = self.parameters()?;
+        let all = self.parameters();
         if let Some(found) = all.iter().find(|p| p.path == path) {
             return Ok(found.clone());
         }
@@ -86,20 +38,14 @@ impl Case {
     /// # Errors
     /// A path that is not a number of the case (with the nearest one that is), or a value that the case refuses.
     pub fn with_parameter(&self, path: &str, value: f64) -> Result<Case> {
-        self.parameter(path)?;
-        let mut table = Value::Table(self.to_toml().parse().unwrap_or_default());
-        let slot = keys_of(path).iter().try_fold(&mut table, |node, key| match node {
-            Value::Array(list) => list.get_mut(key.parse::<usize>().ok()?),
-            _ => node.get_mut(key),
-        });
-        let Some(slot) = slot else {
-            let fault = Fault::new(format!("parameter `{path}`"), "no number there", "the path of a scalar");
-            return Err(Error::input(fault));
-        };
-        *slot = Value::Float(value);
-        let text = toml::to_string(&table).unwrap_or_default();
-        let case = Case::parse(&format!("{path} = {value}"), &text, self.folder.clone())?;
-        Ok(Case { places: self.places.clone(), ..case })
+        let mut case = self.clone();
+        if !set_scalar(&mut case, path, value) {
+            self.parameter(path)?;
+        }
+        let mut report = Report::default();
+        check(&mut case, &mut report);
+        let named = |fault: Fault| Fault { place: format!("{path} = {value} {}", fault.place), ..fault };
+        Faults(report.into_faults().into_iter().map(named).collect()).into_result(case)
     }
 
     /// The same case with the scalars at some paths set to values \[SI\], one after the other.
@@ -108,31 +54,6 @@ impl Case {
     /// As [`Case::with_parameter`].
     pub fn with_parameters<'a>(&self, values: impl IntoIterator<Item = (&'a String, f64)>) -> Result<Case> {
         values.into_iter().try_fold(self.clone(), |case, (path, value)| case.with_parameter(path, value))
-    }
-
-    fn invalidated_by(&self, path: &str) -> Invalidates {
-        let keys = keys_of(path);
-        let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
-        let own = match keys[..] {
-            [
-                "modes" | "cea" | "sensitivity" | "transient" | "frf" | "measured" | "calibrate" | "sweep"
-                | "map",
-                ..,
-            ] => Invalidates::Question,
-            ["damping", ..] => Invalidates::Damping,
-            // Loss factors and Rayleigh damping do not touch M and K.
-            ["material", _, "loss_factor" | "rayleigh", ..] | ["spring", _, "damping"] => {
-                Invalidates::Damping
-            }
-            ["contact", _, "normal" | "friction" | "bristle", ..] => Invalidates::Law,
-            ["contact", _, "load" | "approach" | "sliding_velocity"] | ["force", ..] => {
-                Invalidates::Equilibrium
-            }
-            ["contact", _, "reach" | "stroke" | "sliding_direction" | "into", ..] => Invalidates::Interface,
-            _ => Invalidates::Structure,
-        };
-        // The preload's geometric stiffness follows the steady state.
-        if self.prestress && own >= Invalidates::Law { Invalidates::Structure } else { own }
     }
 }
 

@@ -9,57 +9,67 @@
 //! shape.12 = [0, 0, 1.0]       # motion of point 12 along x, y, z, in whatever scale
 //! ```
 
-use super::measured::read_points;
-use super::reader::{Section, read_document};
-use super::units::{FREQUENCY, NUMBER};
+use super::measured::is_number;
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::measured::{ModeRecord, Records};
+use crate::schema::units::{FREQUENCY, LENGTH, NUMBER};
+use crate::schema::{Report, declare, key, read_table};
 use std::collections::BTreeMap;
+
+declare! {
+    /// A test: points and modes.
+    pub struct TestFile, checked by check {
+        /// Points by number \[m\].
+        pub point: BTreeMap<String, [f64; 3]> =
+            key::values(|| key::quantities(LENGTH), "the number of a point of the test", is_number),
+        /// Modes by name.
+        pub mode: BTreeMap<String, TestMode> = key::named(),
+    }
+}
+
+declare! {
+    /// A mode of a test.
+    pub struct TestMode {
+        /// f \[Hz\].
+        pub frequency: f64 = key::quantity(FREQUENCY).positive(),
+        /// ζ.
+        pub damping_ratio: Option<f64> = key::quantity(NUMBER)
+            .check("a ratio from 0 to below 1", |z| (0.0..1.0).contains(z))
+            .optional(),
+        /// Standard deviation of the frequency over the frequency.
+        pub deviation: Option<f64> = key::quantity(NUMBER)
+            .check("a share above 0 and below 1", |v| *v > 0.0 && *v < 1.0)
+            .optional(),
+        /// Motion of points by number along x, y, z, in whatever scale.
+        pub shape: BTreeMap<String, [f64; 3]> =
+            key::values(|| key::quantities(NUMBER), "the number of a point", is_number),
+    }
+}
+
+fn check(test: &TestFile, report: &mut Report) {
+    if test.mode.is_empty() && !report.unread("mode") {
+        report.fault("mode", "nothing", "tables such as [mode.1] with a `frequency`", "");
+    }
+}
 
 /// Reads a test from TOML text; `file` names it in faults.
 ///
 /// # Errors
 /// Every fault of the file, each with its line and key.
 pub fn read_test(file: &str, text: &str) -> Result<Records> {
-    let read = |root: &Section| {
-        let points = root.section("point", read_points).unwrap_or_default();
-        let modes = root.named("mode", |_, s| read_mode(s));
-        if modes.is_empty() {
-            root.fault("mode", "nothing", "tables such as [mode.1] with a `frequency`", "");
-        }
-        let number = |(name, x): (String, [f64; 3])| Some((name.parse().ok()?, x));
-        Records { points: points.into_iter().filter_map(number).collect(), modes, ..Records::default() }
+    let TestFile { point, mode } = read_table(file, text)?.table;
+    let numbered = |all: BTreeMap<String, [f64; 3]>| {
+        all.into_iter().filter_map(|(name, x)| Some((name.parse::<u64>().ok()?, x)))
     };
-    read_document(file, text, read).map(|(records, _)| records)
-}
-
-fn read_mode(s: &Section) -> ModeRecord {
-    let shape = s.section("shape", |s| {
-        let mut shape = BTreeMap::new();
-        for name in s.names() {
-            let motion = s.quantities::<3>(&name, NUMBER).or([0.0; 3]);
-            match name.parse::<u64>() {
-                Ok(number) => {
-                    shape.insert(number, motion.map(|u| c64::new(u, 0.0)));
-                }
-                Err(_) => s.fault(&name, format!("the name \"{name}\""), "the number of a point", ""),
-            }
-        }
-        shape
-    });
-    ModeRecord {
-        frequency_hz: s.quantity("frequency", FREQUENCY).positive().required(FREQUENCY.name),
-        damping_ratio: s
-            .quantity("damping_ratio", NUMBER)
-            .check("a ratio from 0 to below 1", |z| (0.0..1.0).contains(z))
-            .optional(),
-        deviation: s
-            .quantity("deviation", NUMBER)
-            .check("a share above 0 and below 1", |v| *v > 0.0 && *v < 1.0)
-            .optional(),
-        shape: shape.unwrap_or_default(),
-    }
+    let record = |mode: TestMode| ModeRecord {
+        frequency_hz: mode.frequency,
+        damping_ratio: mode.damping_ratio,
+        deviation: mode.deviation,
+        shape: numbered(mode.shape).map(|(point, u)| (point, u.map(|u| c64::new(u, 0.0)))).collect(),
+    };
+    let modes = mode.into_values().map(record).collect();
+    Ok(Records { points: numbered(point).collect(), modes, ..Records::default() })
 }
 
 #[cfg(test)]

@@ -29,7 +29,7 @@ pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
         give(case.to_toml().trim_end())?;
     }
     if options.parameters {
-        for p in case.parameters()? {
+        for p in case.parameters() {
             let redo = format!("{:?}", p.invalidates).to_lowercase();
             let value = number(p.value);
             say(format!("{:<44} {value:>22} {:<8} {:<16} {redo}", p.path, p.unit, range(&p)))?;

@@ -1,10 +1,10 @@
 //! `stridor mesh`: generators and a look inside a mesh file.
 
 use super::{Common, say};
-use crate::case::units::{LENGTH, parse_quantity};
 use crate::error::{Error, Fault, Result};
 use crate::mesh::generate::{self, BarSide, BarSpec, DiscSpec, Grading, PlateSpec, RigSpec};
 use crate::mesh::{self, Info, Mesh};
+use crate::schema::units::{LENGTH, parse_quantity};
 use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

@@ -9,6 +9,7 @@ mod export;
 mod mesh;
 mod new;
 mod progress;
+mod schema;
 mod search;
 mod validate;
 
@@ -66,6 +67,8 @@ enum Action {
     Search(search::Options),
     /// Check a case and its mesh without running it, and list its parameters
     Check(check::Options),
+    /// Print the JSON Schema of case files, for editors, or the reference of their keys
+    Schema(schema::Options),
     /// Write M, C, K, the degrees of freedom and the contact points of a case, for other programs
     Export(export::Options),
     /// Write a case and a mesh to start from
@@ -121,6 +124,7 @@ fn act(command: &Command) -> Result<ExitCode> {
         Action::Calibrate(options) => analyse::run(options, common, crate::job::Selection::CALIBRATE),
         Action::Search(options) => search::run(options, common),
         Action::Check(options) => check::run(options, common),
+        Action::Schema(options) => schema::run(options, common),
         Action::Export(options) => export::run(options, common),
         Action::New(options) => new::run(options, common),
         Action::Mesh(action) => mesh::run(action, common),

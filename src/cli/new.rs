@@ -11,6 +11,8 @@ use std::process::ExitCode;
 /// The reference case of the validation suite is what users start from: one text, checked by every run of the suite.
 const TEMPLATE: &str = include_str!("../../validation/rig/case.toml");
 const TEMPLATE_MESH: &str = "../../meshes/rig-medium.msh";
+/// The JSON Schema beside it, which editors find by the first line of the case.
+const SCHEMA: &str = "case.schema.json";
 
 #[derive(Args)]
 pub struct Options {
@@ -25,8 +27,11 @@ pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
         .map_err(|error| Error::io(folder, error, "Choose a folder that can be written"))?;
     crate::mesh::write(&folder.join("rig.msh"), &generate::rig(&RigSpec::medium())?, 1e-3)?;
     let case = folder.join("case.toml");
-    std::fs::write(&case, TEMPLATE.replace(TEMPLATE_MESH, "rig.msh"))
-        .map_err(|error| Error::io(&case, error, "Choose a folder that can be written"))?;
+    let text = format!("#:schema {SCHEMA}\n{}", TEMPLATE.replace(TEMPLATE_MESH, "rig.msh"));
+    for (file, text) in [(&case, text), (&folder.join(SCHEMA), super::schema::of_cases())] {
+        std::fs::write(file, text)
+            .map_err(|error| Error::io(file, error, "Choose a folder that can be written"))?;
+    }
     if !common.quiet {
         say(format!("{} and its mesh are ready. Next: stridor run {}", case.display(), case.display()))?;
     }

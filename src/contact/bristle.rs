@@ -95,7 +95,7 @@ impl Bristle {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Constant, Exponential, Hyperbolic, SlidingLaw, Stribeck};
+    use crate::contact::{Coulomb, Exponential, Hyperbolic, SlidingLaw, Stribeck};
     use crate::system::ContactLaw;
 
     const BRISTLE: Bristle = Bristle { stiffness: 5e5, damping: 20.0 };
@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn the_point_sticks_elastically_up_to_static_friction_and_slips_beyond() {
-        let law = law(Stribeck { at_rest: 0.6, kinetic: 0.4, velocity: 0.01, exponent: 1.0 });
+        let law = law(Stribeck { mu_static: 0.6, mu_kinetic: 0.4, stribeck_velocity: 0.01, exponent: 1.0 });
         let (weight, duration) = (2.0, 1e-5);
         let at = |slid: f64, v: f64| {
             law.advance(
@@ -143,7 +143,7 @@ mod tests {
 
     #[test]
     fn steady_slip_has_the_friction_of_the_law_without_bristles() {
-        for law in [law(Hyperbolic { at_rest: 0.7, decline: 3.0 }), law(Constant(0.4))] {
+        for law in [law(Hyperbolic { mu_static: 0.7, decline: 3.0 }), law(Coulomb { mu0: 0.4 })] {
             let (v, duration) = ([0.3, 0.4], 1e-4);
             let slid = v.map(|v| v * duration);
             let steady = law.respond(&motion(v), 1.0).0;
@@ -175,9 +175,9 @@ mod tests {
     fn jacobian_agrees_with_differences_while_it_sticks_and_slips() {
         let (weight, duration) = (0.7, 1e-5);
         let laws = [
-            law(Constant(0.4)),
-            law(Exponential { mu_0: 0.3, mu_1: 0.25, alpha: 3.0 }),
-            law(Stribeck { at_rest: 0.6, kinetic: 0.4, velocity: 0.05, exponent: 2.0 }),
+            law(Coulomb { mu0: 0.4 }),
+            law(Exponential { mu0: 0.3, mu1: 0.25, alpha: 3.0 }),
+            law(Stribeck { mu_static: 0.6, mu_kinetic: 0.4, stribeck_velocity: 0.05, exponent: 2.0 }),
         ];
         let steps = [
             ([0.0, 0.0], [1e-6, 5e-7], [0.1, 0.05]),

@@ -63,18 +63,18 @@ pub(super) fn advance(
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Constant, Exponential, SlidingLaw, Stribeck};
+    use super::super::{Coulomb, Exponential, SlidingLaw, Stribeck};
     use super::*;
     use crate::system::ContactLaw;
 
     fn laws() -> [SlidingLaw; 3] {
         let normal = NormalLaw { stiffness: 2e6, cubic_stiffness: 4e16, damping: 30.0, bilateral: false };
         [
-            SlidingLaw::new(normal, Constant(0.4), 0.0),
-            SlidingLaw::new(normal, Exponential { mu_0: 0.3, mu_1: 0.25, alpha: 3.0 }, 0.0),
+            SlidingLaw::new(normal, Coulomb { mu0: 0.4 }, 0.0),
+            SlidingLaw::new(normal, Exponential { mu0: 0.3, mu1: 0.25, alpha: 3.0 }, 0.0),
             SlidingLaw::new(
                 normal,
-                Stribeck { at_rest: 0.6, kinetic: 0.4, velocity: 0.05, exponent: 2.0 },
+                Stribeck { mu_static: 0.6, mu_kinetic: 0.4, stribeck_velocity: 0.05, exponent: 2.0 },
                 0.0,
             ),
         ]

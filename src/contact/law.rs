@@ -4,6 +4,7 @@ use super::bristle::Bristle;
 use super::coulomb;
 use super::friction::FrictionCoefficient;
 use super::normal::NormalLaw;
+use crate::schema::choices;
 use crate::system::{ContactForces, ContactLaw, ContactMotion, ContactTangent, SlipAnswer, SlipStep};
 use std::sync::Arc;
 
@@ -27,16 +28,16 @@ pub struct SlidingLaw {
     pub bristle: Option<Bristle>,
 }
 
-/// Which way friction pulls the body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum FrictionSense {
-    /// Along the velocity of the counter-body relative to the body: physics. Falling friction feeds energy in.
-    #[default]
-    WithSlip,
-    /// Against the sliding direction t₁ whatever the slip, F₁ = −μ(|v|) N, as two-degree-of-freedom models are sometimes
-    /// written (a belt that pulls towards −x while the slip is taken as V − ẋ). Falling friction then damps, and
-    /// nothing turns round where the slip does. For the comparison with such equations only.
-    AgainstSliding,
+choices! {
+    /// Which way friction pulls the body.
+    pub enum FrictionSense {
+        /// Along the velocity of the counter-body relative to the body: physics. Falling friction feeds energy in.
+        WithSlip = "with_slip",
+        /// Against the sliding direction t₁ whatever the slip, F₁ = −μ(|v|) N, as two-degree-of-freedom models are sometimes
+        /// written (a belt that pulls towards −x while the slip is taken as V − ẋ). Falling friction then damps, and
+        /// nothing turns round where the slip does. For the comparison with such equations only.
+        AgainstSliding = "against_sliding",
+    }
 }
 
 impl SlidingLaw {
@@ -106,7 +107,7 @@ impl ContactLaw for SlidingLaw {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Constant, Exponential, Table};
+    use crate::contact::{Coulomb, Exponential, Table};
 
     fn motion(penetration: f64, penetration_rate: f64, v1: f64, v2: f64) -> ContactMotion {
         ContactMotion { penetration, penetration_rate, slip_velocity: [v1, v2] }
@@ -159,9 +160,9 @@ mod tests {
             vec![vec![0.6, 0.55, 0.4, 0.35], vec![0.5, 0.45, 0.35, 0.3], vec![0.4, 0.3, 0.3, 0.25]],
         )
         .unwrap();
-        let exponential = Exponential { mu_0: 0.3, mu_1: 0.25, alpha: 3.0 };
+        let exponential = Exponential { mu0: 0.3, mu1: 0.25, alpha: 3.0 };
         let mut laws = vec![
-            SlidingLaw::new(normal, Constant(0.4), 1e-2),
+            SlidingLaw::new(normal, Coulomb { mu0: 0.4 }, 1e-2),
             SlidingLaw::new(normal, exponential, 1e-2),
             SlidingLaw::new(normal, table, 1e-2),
             SlidingLaw::new(NormalLaw { bilateral: true, ..normal }, exponential, 1e-2),
@@ -181,7 +182,7 @@ mod tests {
     #[test]
     fn friction_is_mu_n_along_the_slip_and_smooth_through_rest() {
         let normal = NormalLaw::linear(1e6);
-        let law = SlidingLaw::new(normal, Constant(0.5), 0.0);
+        let law = SlidingLaw::new(normal, Coulomb { mu0: 0.5 }, 0.0);
         let (forces, tangent) = law.respond(&motion(1e-5, 0.0, 0.3, 0.4), 2.0);
         assert!((forces.normal - 20.0).abs() < 1e-12);
         assert!((forces.friction[0] - 6.0).abs() < 1e-12 && (forces.friction[1] - 8.0).abs() < 1e-12);
@@ -196,7 +197,7 @@ mod tests {
 
     #[test]
     fn friction_against_the_sliding_direction_does_not_turn_with_the_slip() {
-        let falling = Exponential { mu_0: 0.3, mu_1: 0.2, alpha: 2.0 };
+        let falling = Exponential { mu0: 0.3, mu1: 0.2, alpha: 2.0 };
         let law = SlidingLaw {
             sense: FrictionSense::AgainstSliding,
             ..SlidingLaw::new(NormalLaw::linear(1e6), falling, 0.0)
@@ -214,11 +215,12 @@ mod tests {
     #[test]
     fn bilateral_contact_pulls_and_open_contact_is_silent() {
         let mut normal = NormalLaw::linear(1e6);
-        let open = SlidingLaw::new(normal, Constant(0.5), 0.0).respond(&motion(-1e-6, 0.0, 1.0, 0.0), 1.0);
+        let open =
+            SlidingLaw::new(normal, Coulomb { mu0: 0.5 }, 0.0).respond(&motion(-1e-6, 0.0, 1.0, 0.0), 1.0);
         assert_eq!(open, (ContactForces::default(), ContactTangent::default()));
         normal.bilateral = true;
         let (forces, tangent) =
-            SlidingLaw::new(normal, Constant(0.5), 0.0).respond(&motion(-1e-6, 0.0, 1.0, 0.0), 1.0);
+            SlidingLaw::new(normal, Coulomb { mu0: 0.5 }, 0.0).respond(&motion(-1e-6, 0.0, 1.0, 0.0), 1.0);
         assert_eq!(as_array(forces), [-1.0, -0.5, 0.0]);
         assert_eq!(tangent.by_penetration, [1e6, 0.5e6, 0.0]);
     }

@@ -15,7 +15,9 @@ mod slip;
 mod table;
 
 pub use bristle::Bristle;
-pub use friction::{Coefficient, Constant, Exponential, FrictionCoefficient, Hyperbolic, Stribeck};
+pub use friction::{
+    Coefficient, Coulomb, Exponential, FrictionCoefficient, FrictionCurve, Hyperbolic, Stribeck,
+};
 pub use law::{FrictionSense, SlidingLaw};
 pub use normal::{NormalForce, NormalLaw};
 pub use pairing::{ContactPatch, ContactSide, Reduce, Surfaces, pair_surfaces};

@@ -1,6 +1,6 @@
 //! Small hand-made systems for the tests of equilibrium and stability.
 
-use crate::contact::{Constant, Exponential, NormalLaw, SlidingLaw};
+use crate::contact::{Coulomb, Exponential, NormalLaw, SlidingLaw};
 use crate::linalg::{SparseMatrix, SparseVector, sparse};
 use crate::system::{Closing, ContactPair, ContactPoint, Damping, Structure, System};
 use std::sync::Arc;
@@ -69,7 +69,7 @@ pub(crate) fn two_dof(k_t: f64, k_n: f64, mu: f64) -> System {
         structure: structure(2, |i, j| if i == j { 1.0 } else { 0.0 }, |i, j| k[i][j]),
         pairs: vec![pair(
             vec![point],
-            SlidingLaw::new(normal, Constant(mu), 0.0),
+            SlidingLaw::new(normal, Coulomb { mu0: mu }, 0.0),
             Closing::Approach(0.0),
             1.0,
         )],
@@ -123,7 +123,7 @@ pub(crate) fn random_system(n: usize, points: usize, load: f64, seed: u64) -> Sy
         })
         .collect();
     let normal = NormalLaw { stiffness: 300.0, cubic_stiffness: 2e4, damping: 0.0, bilateral: false };
-    let law = SlidingLaw::new(normal, Exponential { mu_0: 0.35, mu_1: 0.25, alpha: 0.8 }, 1e-3);
+    let law = SlidingLaw::new(normal, Exponential { mu0: 0.35, mu1: 0.25, alpha: 0.8 }, 1e-3);
     System {
         structure,
         pairs: vec![pair(points, law, Closing::Load(load), 1.2)],

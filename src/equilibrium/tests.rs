@@ -1,6 +1,6 @@
 use super::samples::*;
 use super::*;
-use crate::contact::{Constant, NormalLaw, SlidingLaw};
+use crate::contact::{Coulomb, NormalLaw, SlidingLaw};
 use crate::error::{Error, Result};
 use crate::linalg::{SparseMatrix, SparseVector};
 use crate::system::{Closing, Damping, Prestress, Structure, System};
@@ -49,7 +49,12 @@ fn cubic_penalty_on_rigid_ground_has_its_closed_form() {
     let p = point(0.3, 1.0, vector(&[(0, 1.0)]), SparseVector::default(), SparseVector::default());
     let system = System {
         structure: structure(1, |_, _| 1.0, |_, _| 40.0),
-        pairs: vec![pair(vec![p], SlidingLaw::new(normal, Constant(0.3), 0.0), Closing::Load(9.0), 1.0)],
+        pairs: vec![pair(
+            vec![p],
+            SlidingLaw::new(normal, Coulomb { mu0: 0.3 }, 0.0),
+            Closing::Load(9.0),
+            1.0,
+        )],
         load: vec![0.0],
         prestress: None,
         coupling: None,
@@ -69,7 +74,7 @@ fn free_body(held_in_x: bool) -> System {
         structure: structure(3, |i, j| if i == j { 1.0 } else { 0.0 }, |i, j| k[i][j]),
         pairs: vec![pair(
             vec![p],
-            SlidingLaw::new(NormalLaw::linear(100.0), Constant(0.5), 0.0),
+            SlidingLaw::new(NormalLaw::linear(100.0), Coulomb { mu0: 0.5 }, 0.0),
             Closing::Approach(0.0),
             1.0,
         )],
@@ -161,7 +166,12 @@ fn prestress_is_carried_to_its_fixed_point() {
             stiffness: sparse(1, |_, _| 70.0).into(),
             damping: Damping::default(),
         },
-        pairs: vec![pair(vec![p], SlidingLaw::new(normal, Constant(0.3), 0.0), Closing::Approach(0.0), 1.0)],
+        pairs: vec![pair(
+            vec![p],
+            SlidingLaw::new(normal, Coulomb { mu0: 0.3 }, 0.0),
+            Closing::Approach(0.0),
+            1.0,
+        )],
         load: vec![12.0],
         prestress: Some(Arc::new(Stiffening(80.0))),
         coupling: None,
@@ -266,7 +276,7 @@ fn a_neighbour_is_found_without_a_new_factorisation() {
 fn a_penalty_however_stiff_carries_the_load() {
     let with = |stiffness: f64, closing: Closing| {
         let mut system = random_system(60, 6, 8.0, 4);
-        let law = SlidingLaw::new(NormalLaw::linear(stiffness), Constant(0.3), 0.0);
+        let law = SlidingLaw::new(NormalLaw::linear(stiffness), Coulomb { mu0: 0.3 }, 0.0);
         (system.pairs[0].law, system.pairs[0].closing) = (Arc::new(law), closing);
         solve(&system).unwrap()
     };
@@ -298,7 +308,7 @@ fn a_state_that_does_not_meet_its_equations_is_refused() {
     // Laws beyond the largest number.
     let mut system = free_body(true);
     let normal = NormalLaw { cubic_stiffness: 1e300, ..NormalLaw::linear(1e300) };
-    system.pairs[0].law = Arc::new(SlidingLaw::new(normal, Constant(0.5), 0.0));
+    system.pairs[0].law = Arc::new(SlidingLaw::new(normal, Coulomb { mu0: 0.5 }, 0.0));
     system.pairs[0].closing = Closing::Approach(1e10);
     let said = analysis_error(&system, &SteadyOptions::default());
     assert!(said.contains("no steady state"), "{said}");

@@ -2,11 +2,8 @@
 
 use super::imported::given_points;
 use super::regions::Regions;
-use crate::case::{Case, Contact, FrictionCurve, Pressing, Sense, StiffnessPer};
-use crate::contact::{
-    Bristle, Constant, ContactPatch, ContactSide, Exponential, FrictionCoefficient, FrictionSense,
-    Hyperbolic, NormalLaw, SlidingLaw, Stribeck, Surfaces, Table, pair_surfaces,
-};
+use crate::case::{Case, Contact, Pressing, StiffnessPer};
+use crate::contact::{Bristle, ContactPatch, ContactSide, NormalLaw, SlidingLaw, Surfaces, pair_surfaces};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::mesh::Element;
 use crate::structure::{DofMap, Model, ShellPart};
@@ -94,8 +91,8 @@ pub fn with_laws(pairs: &[ContactPair], case: &Case) -> Result<Vec<ContactPair>>
 
 fn closing(contact: &Contact) -> Closing {
     match contact.pressing {
-        Pressing::Load(load) => Closing::Load(load),
-        Pressing::Approach(approach) => Closing::Approach(approach),
+        Pressing::Load { load } => Closing::Load(load),
+        Pressing::Approach { approach } => Closing::Approach(approach),
     }
 }
 
@@ -106,35 +103,12 @@ fn law(name: &str, contact: &Contact) -> Result<SlidingLaw> {
         damping: contact.normal.damping,
         bilateral: !contact.normal.unilateral,
     };
-    let friction: Arc<dyn FrictionCoefficient> = match &contact.friction.law {
-        FrictionCurve::Coulomb { mu0 } => Arc::new(Constant(*mu0)),
-        FrictionCurve::Exponential { mu0, mu1, alpha } => {
-            Arc::new(Exponential { mu_0: *mu0, mu_1: *mu1, alpha: *alpha })
-        }
-        FrictionCurve::Stribeck { mu_static, mu_kinetic, stribeck_velocity, exponent } => {
-            Arc::new(Stribeck {
-                at_rest: *mu_static,
-                kinetic: *mu_kinetic,
-                velocity: *stribeck_velocity,
-                exponent: *exponent,
-            })
-        }
-        FrictionCurve::Hyperbolic { mu_static, decline } => {
-            Arc::new(Hyperbolic { at_rest: *mu_static, decline: *decline })
-        }
-        FrictionCurve::Table { velocity, pressure, mu } => {
-            let place = format!("`contact.{name}.friction`");
-            Arc::new(Table::new(&place, velocity.clone(), pressure.clone(), mu.clone())?)
-        }
-    };
+    let friction = contact.friction.law.coefficient(&format!("`contact.{name}.friction`"))?;
     Ok(SlidingLaw {
         normal,
         friction,
         regularisation: contact.friction.regularisation,
-        sense: match contact.friction.sense {
-            Sense::WithSlip => FrictionSense::WithSlip,
-            Sense::AgainstSliding => FrictionSense::AgainstSliding,
-        },
+        sense: contact.friction.sense,
         bristle: contact.bristle.as_ref().map(|b| Bristle { stiffness: b.stiffness, damping: b.damping }),
     })
 }

@@ -167,7 +167,7 @@ fn keep_what_is_there(case: &Case, exported: &mut Case) -> Vec<String> {
     keep(&mut exported.sweep, out, ("sweep", "its scalar"), |sweep| known(&sweep.parameter));
     keep(&mut exported.map, out, ("map", "its scalars"), |map| map.parameters.iter().all(known));
     if let Some(sensitivity) = &mut exported.sensitivity {
-        let scalars = bare.parameters().unwrap_or_default();
+        let scalars = bare.parameters();
         sensitivity.parameters.retain(|pattern| {
             let holds = scalars.iter().any(|scalar| path_matches(pattern, &scalar.path));
             if !holds {

@@ -4,7 +4,7 @@ use super::modes::{labels, named};
 use super::motion::{Motion, motion};
 use super::prepared::Prepared;
 use super::receptance::Receptance;
-use crate::case::{FrfAnalysis, FrfContact, FrfSolution};
+use crate::case::{FrfAnalysis, FrfContact, FrfSolution, UniversalForm};
 use crate::equilibrium::SteadySliding;
 use crate::error::{Faults, Result};
 use crate::linalg::{SparseVector, c64};
@@ -191,7 +191,7 @@ impl Frf<'_> {
             deviation,
             compared: COMPARED,
             frequencies_hz: frequencies,
-            binary: self.wanted.binary,
+            binary: self.wanted.uff == UniversalForm::Binary,
         };
         Ok((result, beside))
     }

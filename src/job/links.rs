@@ -83,7 +83,7 @@ pub fn supports(case: &Case, regions: &Regions, links: &[RigidLink], faults: &mu
     for (name, support) in &case.support {
         let place = format!("`support.{name}.on`");
         let nodes = regions.nodes_of(&support.on, &place, faults);
-        let held = crate::case::DOF_NAMES.map(|dof| support.held.iter().any(|name| name == dof));
+        let held = support.holds();
         let moved: Vec<usize> = nodes.iter().filter(|node| followers.contains_key(node)).copied().collect();
         if let Some(first) = moved.first().filter(|_| held.contains(&true)) {
             let master = regions.name_of_node(followers[first]);

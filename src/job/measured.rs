@@ -20,7 +20,7 @@ pub fn measured_set(case: &Case, name: &str) -> Result<(MeasuredSet, Vec<String>
     let data = &case.measured[name];
     let mut records = match &data.file {
         None => listed(data),
-        Some(file) => read_file(case, name, file, unit_in_metres(&data.transform.unit))?,
+        Some(file) => read_file(case, name, file, unit_in_metres(data.transform.unit.word()))?,
     };
     let given = data.point.iter().filter_map(|(number, x)| Some((number.parse().ok()?, *x)));
     records.points.extend(given);

@@ -1,6 +1,6 @@
 //! The mesh of a case: read from a file, or generated.
 
-use crate::case::{Case, GeneratedMesh, MeshSource, RigMesh};
+use crate::case::{AnnulusMesh, Case, MeshSource, PlateMesh, RigMesh};
 use crate::error::{Error, Result};
 use crate::mesh::generate::{self, BarSide, BarSpec, DiscSpec, Faces, Grading, PlateSpec, RigSpec};
 use crate::mesh::{self, Mesh};
@@ -8,31 +8,29 @@ use crate::mesh::{self, Mesh};
 /// The mesh of the case, checked.
 pub(super) fn read_mesh(case: &Case, source: &MeshSource) -> Result<(Mesh, Vec<String>)> {
     let mesh = match source {
-        MeshSource::File { file, unit } => mesh::read(&case.folder.join(file), mesh::unit_in_metres(unit))?,
-        MeshSource::Generated(mesh) => generated(case, mesh).map_err(|error| by_keys(error, mesh))?,
+        MeshSource::File { file, unit } => {
+            mesh::read(&case.folder.join(file), mesh::unit_in_metres(unit.word()))
+        }
+        MeshSource::Rig { rig } => generate::rig(&rig_spec(case, rig)),
+        MeshSource::Annulus { annulus: AnnulusMesh { outer_radius, hub_radius, radial, around } } => {
+            generate::structured_annulus(*hub_radius, *outer_radius, *radial, *around)
+        }
+        MeshSource::Plate { plate: PlateMesh { length, width, cells_along, cells_across } } => {
+            generate::structured_plate(*length, *width, *cells_along, *cells_across, Faces::Triangles)
+        }
     };
+    let mesh = mesh.map_err(|error| by_keys(error, source))?;
     let diagnosis = mesh::diagnose(&mesh);
     diagnosis.faults.into_result(())?;
     Ok((mesh, diagnosis.warnings.iter().map(ToString::to_string).collect()))
 }
 
-fn generated(case: &Case, mesh: &GeneratedMesh) -> Result<Mesh> {
-    match mesh {
-        GeneratedMesh::Rig(rig) => generate::rig(&rig_spec(case, rig)),
-        GeneratedMesh::Annulus { outer_radius, hub_radius, radial, around } => {
-            generate::structured_annulus(*hub_radius, *outer_radius, *radial, *around)
-        }
-        GeneratedMesh::Plate { length, width, cells_along, cells_across } => {
-            generate::structured_plate(*length, *width, *cells_along, *cells_across, Faces::Triangles)
-        }
-    }
-}
-
 /// Faults of a generator at the keys of the case that give its sizes.
-fn by_keys(error: Error, mesh: &GeneratedMesh) -> Error {
+fn by_keys(error: Error, source: &MeshSource) -> Error {
     let Error::Input(mut faults) = error else { return error };
-    let keys: &[(&str, &str)] = match mesh {
-        GeneratedMesh::Rig(_) => &[
+    let keys: &[(&str, &str)] = match source {
+        MeshSource::File { .. } => &[],
+        MeshSource::Rig { .. } => &[
             ("disc `outer_radius`", "mesh.rig.outer_radius"),
             ("disc `hub_radius`", "mesh.rig.hub_radius"),
             ("rig `disc.hub_radius`", "mesh.rig.hub_radius"),
@@ -51,14 +49,14 @@ fn by_keys(error: Error, mesh: &GeneratedMesh) -> Error {
             ("rig `bar.length`", "mesh.rig.bar_length"),
             ("rig `slider_thickness`", "shell.slider.thickness"),
         ],
-        GeneratedMesh::Annulus { .. } => &[
+        MeshSource::Annulus { .. } => &[
             ("annulus `outer radius`", "mesh.annulus.outer_radius"),
             ("annulus `hub radius`", "mesh.annulus.hub_radius"),
             ("annulus hub radius", "mesh.annulus.hub_radius"),
             ("annulus cells", "mesh.annulus.radial"),
             ("annulus `n_angular`", "mesh.annulus.around"),
         ],
-        GeneratedMesh::Plate { .. } => &[
+        MeshSource::Plate { .. } => &[
             ("plate `length`", "mesh.plate.length"),
             ("plate `width`", "mesh.plate.width"),
             ("plate cells", "mesh.plate.cells_along"),

@@ -2,8 +2,9 @@
 
 use super::contacts::with_laws;
 use super::prepared::{Prepared, external_load};
-use crate::case::{Case, Parameter, keys_of, path_matches};
+use crate::case::{Case, Invalidates, Parameter, path_matches};
 use crate::error::{Error, Result};
+use crate::schema::Derivative;
 use crate::system::System;
 
 /// A scalar of the case that the complex eigenvalues may depend on.
@@ -34,40 +35,31 @@ pub enum Kind {
 pub type LeftOut = (String, String);
 
 /// The scalars that `patterns` name, in the order of the case, and those of them that have no derivative.
-///
-/// # Errors
-/// A case that has what no file may say.
-pub fn chosen(case: &Case, patterns: &[String]) -> Result<(Vec<Scalar>, Vec<LeftOut>)> {
+pub fn chosen(case: &Case, patterns: &[String]) -> (Vec<Scalar>, Vec<LeftOut>) {
     let (mut scalars, mut left_out) = (Vec::new(), Vec::new());
-    for Parameter { path, value, unit, .. } in case.parameters()? {
-        if path.starts_with("sensitivity.") || !patterns.iter().any(|pattern| path_matches(pattern, &path)) {
+    for parameter in case.parameters() {
+        if !patterns.iter().any(|pattern| path_matches(pattern, &parameter.path)) {
             continue;
         }
-        match kind(&path) {
-            Ok(Some(kind)) => scalars.push(Scalar { path, value, unit, kind }),
+        match kind(&parameter) {
+            Ok(Some(kind)) => scalars.push(Scalar::new(parameter, kind)),
             Ok(None) => {}
-            Err(reason) => left_out.push((path, reason.to_string())),
+            Err(reason) => left_out.push((parameter.path, reason.to_string())),
         }
     }
-    Ok((scalars, left_out))
+    (scalars, left_out)
 }
 
 /// What a scalar belongs to; `None` when no eigenvalue depends on it; the reason when λ has no derivative by it.
-fn kind(path: &str) -> std::result::Result<Option<Kind>, &'static str> {
-    let keys = keys_of(path);
-    let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
-    match keys[..] {
-        ["modes" | "cea" | "frf" | "measured" | "calibrate", ..] | ["contact", _, "bristle", _] => Ok(None),
-        ["mesh", .., "contact_size" | "contact_radius" | "disc_size" | "slider_size"] => {
-            Err("an element size, which is no property of the machine")
-        }
-        ["contact", _, "reach" | "stroke"] => Err("it only decides which contact points are considered"),
-        ["damping", "modal_ratios", _, "0"] => Err("it names a mode"),
-        ["damping", "modal_ratio"] | ["damping", "modal_ratios", _, "1"] => Ok(Some(Kind::Ratio)),
-        ["contact", _, "normal" | "friction", ..]
-        | ["contact", _, "load" | "approach" | "sliding_velocity"]
-        | ["force", ..] => Ok(Some(Kind::Law)),
-        _ => Ok(Some(Kind::Structure)),
+fn kind(parameter: &Parameter) -> std::result::Result<Option<Kind>, &'static str> {
+    match parameter.derivative {
+        Derivative::Zero => Ok(None),
+        Derivative::None(reason) => Err(reason),
+        Derivative::Exists => Ok(Some(match parameter.invalidates {
+            Invalidates::Damping if parameter.path.starts_with("damping.") => Kind::Ratio,
+            Invalidates::Law | Invalidates::Equilibrium => Kind::Law,
+            _ => Kind::Structure,
+        })),
     }
 }
 
@@ -76,14 +68,16 @@ fn kind(path: &str) -> std::result::Result<Option<Kind>, &'static str> {
 /// # Errors
 /// A path that is not a number of the case, or one that nothing has a derivative by.
 pub fn scalar(case: &Case, path: &str) -> Result<Option<Scalar>> {
-    let Parameter { path, value, unit, .. } = case.parameter(path)?;
-    match kind(&path) {
-        Ok(kind) => Ok(kind.map(|kind| Scalar { path, value, unit, kind })),
-        Err(reason) => Err(no_derivative(reason)),
-    }
+    let parameter = case.parameter(path)?;
+    let kind = kind(&parameter).map_err(no_derivative)?;
+    Ok(kind.map(|kind| Scalar::new(parameter, kind)))
 }
 
 impl Scalar {
+    fn new(parameter: Parameter, kind: Kind) -> Scalar {
+        Scalar { path: parameter.path, value: parameter.value, unit: parameter.unit, kind }
+    }
+
     /// A step that is small against what the scalar stands for, and a guess where it is zero.
     pub fn step(&self) -> f64 {
         const SHARE: f64 = 1e-3;
@@ -146,11 +140,16 @@ mod tests {
 
     #[test]
     fn questions_are_no_scalars_of_the_machine() {
-        assert_eq!(kind("cea.band.1"), Ok(None));
+        let text = include_str!("../../validation/rig-coarse/case.toml");
+        let more = "[transient]\nduration = 1\ntime_step = 0.1\n";
+        let case = Case::parse("case", &format!("{text}\n{more}"), ".".into()).unwrap();
+        let kind = |path: &str| kind(&case.parameter(path).unwrap());
+        assert_eq!((kind("cea.band.1"), kind("transient.time_step")), (Ok(None), Ok(None)));
         assert!(kind("mesh.rig.disc_size").is_err() && kind("contact.rim.reach").is_err());
         assert_eq!(kind("mesh.rig.bar_length"), Ok(Some(Kind::Structure)));
         assert_eq!(kind("contact.rim.friction.mu0"), Ok(Some(Kind::Law)));
-        assert_eq!(kind("damping.modal_ratios.2.1"), Ok(Some(Kind::Ratio)));
+        assert_eq!(kind("contact.rim.load"), Ok(Some(Kind::Law)));
+        assert_eq!(kind("damping.modal_ratio"), Ok(Some(Kind::Ratio)));
     }
 
     #[test]

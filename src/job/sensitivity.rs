@@ -48,7 +48,7 @@ impl Analysed<'_> {
         wanted: &SensitivityAnalysis,
         observer: &dyn Observer,
     ) -> Result<SensitivityResult> {
-        let (scalars, mut left_out) = chosen(self.prepared.case, &wanted.parameters)?;
+        let (scalars, mut left_out) = chosen(self.prepared.case, &wanted.parameters);
         let picked = self.chosen_modes(&wanted.modes)?;
         let modes: Vec<&ComplexMode> = picked.iter().map(|k| &self.modes.modes[*k]).collect();
         if modes.is_empty() {

@@ -1,7 +1,7 @@
 //! What was measured, as plain data in SI units.
 
 use crate::linalg::c64;
-use serde::Serialize;
+use crate::schema::choices;
 
 /// Everything of one test: where, which modes, which frequency responses.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -76,30 +76,21 @@ pub struct MeasuredFrf {
     pub values: Vec<c64>,
 }
 
-/// What of the motion is set over the force.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Quantity {
-    /// Displacement: u/F \[m/N\].
-    Receptance,
-    /// Velocity: iω u/F \[m/(N s)\].
-    Mobility,
-    /// Acceleration: −ω² u/F \[1/kg\].
-    Accelerance,
+choices! {
+    /// What of the motion is set over the force.
+    pub enum Quantity {
+        /// Displacement: u/F \[m/N\].
+        Receptance = "receptance",
+        /// Velocity: iω u/F \[m/(N s)\].
+        Mobility = "mobility",
+        /// Acceleration: −ω² u/F \[1/kg\].
+        Accelerance = "accelerance",
+    }
 }
 
 impl Quantity {
     /// All of them, in the order of differentiation.
     pub const ALL: [Quantity; 3] = [Quantity::Receptance, Quantity::Mobility, Quantity::Accelerance];
-
-    /// `receptance`, `mobility` or `accelerance`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Quantity::Receptance => "receptance",
-            Quantity::Mobility => "mobility",
-            Quantity::Accelerance => "accelerance",
-        }
-    }
 
     /// The SI unit.
     pub fn unit(self) -> &'static str {

@@ -48,7 +48,7 @@ fn caption(frf: &FrfResult) -> String {
     let measured = if frf.measured.is_empty() { "" } else { " Blue: measured resonances." };
     format!(
         "{} for a force at {}; {}. Dotted: natural frequencies.{measured}",
-        capital(frf.quantity.name()),
+        capital(frf.quantity.word()),
         frf.excitation,
         frf.about
     )
@@ -130,7 +130,7 @@ fn shown(chart: &Chart, frf: &FrfResult) -> Vec<f64> {
 pub(super) fn table(frf: &FrfResult) -> Table {
     let headings = ["<mode", "f [Hz]", "measured [Hz]", "<place", "seen [%]", "<why"];
     let mut table = Table::new(
-        format!("Frequency response {}: {} for a force at {}", frf.name, frf.quantity.name(), frf.excitation),
+        format!("Frequency response {}: {} for a force at {}", frf.name, frf.quantity.word(), frf.excitation),
         &headings,
     );
     let beside = beside(frf);

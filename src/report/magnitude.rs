@@ -26,7 +26,7 @@ pub(super) fn magnitude_axes<'a>(
     let largest = sizes.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
     let top = largest.log10() + 0.3;
     let low = (sizes.iter().copied().fold(largest, f64::min).log10() - 0.3).max(top - DECADES);
-    let beside = format!("{} [{}]", quantity.name(), quantity.unit());
+    let beside = format!("{} [{}]", quantity.word(), quantity.unit());
     axes(area, (band(hz), low..top), below, &beside, |v| format!("{:.0e}", 10f64.powf(v)))
 }
 

@@ -184,7 +184,7 @@ fn responses_table(responses: &MeasuredResponses) -> String {
     for pair in &responses.pairs {
         for (k, hz) in pair.frequencies_hz.iter().enumerate() {
             let (measured, computed) = (pair.measured[k], pair.computed[k]);
-            let mut row = vec![pair.name.clone(), pair.quantity.name().to_string()];
+            let mut row = vec![pair.name.clone(), pair.quantity.word().to_string()];
             row.extend([*hz, measured.re, measured.im, computed.re, computed.im].map(number));
             table.row(&row);
         }
@@ -206,7 +206,7 @@ pub(super) fn summary(results: &RunResults) -> Value {
                 "computed": pair.place,
                 "swapped": pair.swapped,
                 "away_m": pair.away,
-                "quantity": pair.quantity.name(),
+                "quantity": pair.quantity.word(),
                 "frequencies": pair.frequencies_hz.len(),
                 "frac": pair.assurance,
             })
@@ -315,7 +315,7 @@ impl ResultsFile {
                     let path = format!("measured_frf/{}/{}", responses.name.replace('/', "_"), k + 1);
                     let group = Datasets(root.create_group(&path)?);
                     text_attribute(&group.0, "name", &pair.name)?;
-                    text_attribute(&group.0, "quantity", pair.quantity.name())?;
+                    text_attribute(&group.0, "quantity", pair.quantity.word())?;
                     attribute(&group.0, "frac", &pair.assurance)?;
                     group.list("frequency_hz", &pair.frequencies_hz, "Hz", "where it was measured")?;
                     let unit = pair.quantity.unit();

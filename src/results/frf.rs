@@ -102,7 +102,7 @@ pub(super) fn write(dir: &Path, frfs: &[FrfResult]) -> Result<()> {
 }
 
 fn table(frf: &FrfResult) -> String {
-    let (quantity, unit) = (frf.quantity.name(), frf.quantity.unit());
+    let (quantity, unit) = (frf.quantity.word(), frf.quantity.unit());
     let parts = |of: &FrfResponse| {
         let name = of.name.replace('_', " ");
         [format!("re {quantity} {name} [{unit}]"), format!("im {quantity} {name} [{unit}]")]
@@ -129,7 +129,7 @@ impl ResultsFile {
                 false => root.create_group("frf")?,
             };
             let group = Datasets(all.create_group(&frf.name.replace('/', "_"))?);
-            text_attribute(&group.0, "quantity", frf.quantity.name())?;
+            text_attribute(&group.0, "quantity", frf.quantity.word())?;
             text_attribute(&group.0, "about", &frf.about)?;
             text_attribute(&group.0, "excitation", &frf.excitation)?;
             attribute(&group.0, "superposition_deviation", &frf.deviation)?;
@@ -139,7 +139,7 @@ impl ResultsFile {
                     0 => of.values[k].re,
                     _ => of.values[k].im,
                 });
-                let story = format!("{} at {}: real and imaginary part", frf.quantity.name(), of.place);
+                let story = format!("{} at {}: real and imaginary part", frf.quantity.word(), of.place);
                 group.write(&of.name, cells.view(), frf.quantity.unit(), &story)?;
             }
             Ok(())
@@ -166,7 +166,7 @@ pub(super) fn summary(frf: &FrfResult) -> Value {
     };
     json!({
         "name": frf.name,
-        "quantity": frf.quantity.name(),
+        "quantity": frf.quantity.word(),
         "unit": frf.quantity.unit(),
         "about": frf.about,
         "excitation": frf.excitation,

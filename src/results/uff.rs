@@ -13,7 +13,7 @@ pub(super) fn functions(frf: &FrfResult) -> Vec<u8> {
     let titles: Vec<String> = frf
         .responses
         .iter()
-        .map(|of| format!("{} of {} for a force at {}", frf.quantity.name(), of.name, frf.name))
+        .map(|of| format!("{} of {} for a force at {}", frf.quantity.word(), of.name, frf.name))
         .collect();
     let function = |k: usize| Function {
         title: [&titles[k], &frf.about],

@@ -1,11 +1,11 @@
 //! The file of a search: the case, its numbers that are searched for, and the facts.
 
-use crate::case::reader::{Section, read_document};
-use crate::case::units::NUMBER;
-use crate::case::{CalibratedParameter, Case, read_case, read_parameter};
+use crate::case::{CalibratedParameter, Case, check_parameter, read_case};
 use crate::error::text::read_text;
 use crate::error::{Error, Fault, Faults, Result};
 use crate::results::record::{InputFile, Origin};
+use crate::schema::reader::{Section, read_document};
+use crate::schema::units::NUMBER;
 use crate::validation::{Check, read_check};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Bound;
@@ -55,15 +55,20 @@ pub fn read_search(path: &Path) -> Result<SearchFile> {
 }
 
 fn read_root(root: &Section, file: &str, case: Case) -> SearchFile {
-    let scalars = root.take(case.parameters()).unwrap_or_default();
-    let parameters: Vec<(String, CalibratedParameter)> =
-        root.named("parameter", |name, s| (name.to_string(), read_parameter(s, &case, Some(&scalars))));
+    let scalars = case.parameters();
+    let parameters = root.named("parameter", |name, s| {
+        let parameter: CalibratedParameter =
+            s.declared(|parameter, report| check_parameter(parameter, "", &case, Some(&scalars), report));
+        (name.to_string(), parameter)
+    });
+    let parameters = parameters.unwrap_or_default();
     let checks = root.named("fact", |name, s| {
         if s.is_table("reference") {
             s.fault("reference", "a table", "a number: what is searched for", "");
         }
         read_check(name, s, file, "")
     });
+    let checks = checks.unwrap_or_default();
     for (key, none) in [("parameter", parameters.is_empty()), ("fact", checks.is_empty())] {
         if none {
             root.fault(key, "nothing", format!("at least one table [{key}.NAME]"), "");
@@ -102,7 +107,7 @@ impl SearchFile {
                 }
             }
         });
-        let found = faults.take(found.map(|(found, _)| found)).flatten();
+        let found = faults.take(found).flatten();
         let Some(mut found) = found else { return Err(Error::Input(faults)) };
         let files: BTreeSet<&String> = found.checks.iter().map(|check| &check.of.case).collect();
         for file in files {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::contact::{Constant, Exponential, FrictionSense, NormalLaw, SlidingLaw};
+use crate::contact::{Coulomb, Exponential, FrictionSense, NormalLaw, SlidingLaw};
 use crate::equilibrium::samples::*;
 use crate::equilibrium::{
     Condensed, SteadyOptions, SteadySliding, directions, linearize, solve_points, solve_steady,
@@ -174,7 +174,7 @@ fn hoffmann_two_dof_flutter() {
             structure: structure(2, |i, j| f64::from(i == j), |i, j| k[i][j]),
             pairs: vec![pair(
                 vec![p],
-                SlidingLaw::new(normal, Constant(mu), 0.0),
+                SlidingLaw::new(normal, Coulomb { mu0: mu }, 0.0),
                 Closing::Approach(1.0),
                 1.0,
             )],
@@ -201,7 +201,7 @@ fn sinou(eta: [f64; 2], mu: f64) -> System {
             };
             let tangent = if d == 0 { vector(&[(1, -1.0)]) } else { vector(&[(0, 1.0)]) };
             let p = point(0.0, 1.0, vector(&[(d, 1.0)]), tangent, SparseVector::default());
-            pair(vec![p], SlidingLaw::new(normal, Constant(mu), 0.0), Closing::Approach(0.0), 1.0)
+            pair(vec![p], SlidingLaw::new(normal, Coulomb { mu0: mu }, 0.0), Closing::Approach(0.0), 1.0)
         })
         .collect();
     let structure = structure(2, |i, j| f64::from(i == j), |_, _| 0.0);
@@ -231,7 +231,7 @@ fn sinou_jezequel_damping_shifts_the_onset() {
 /// A mass on a belt, its normal motion apart: s² + (c + Nμ′)s + k along x.
 pub(super) fn belt(c: f64, load: f64, velocity: f64, sense: FrictionSense) -> System {
     let normal = NormalLaw { bilateral: true, ..NormalLaw::linear(50.0) };
-    let mut law = SlidingLaw::new(normal, Exponential { mu_0: 0.3, mu_1: 0.2, alpha: 1.5 }, 0.0);
+    let mut law = SlidingLaw::new(normal, Exponential { mu0: 0.3, mu1: 0.2, alpha: 1.5 }, 0.0);
     law.sense = sense;
     let p = point(0.0, 1.0, vector(&[(1, 1.0)]), vector(&[(0, 1.0)]), SparseVector::default());
     let mut structure =
@@ -414,7 +414,7 @@ fn transposed_contact_swaps_left_and_right_vectors() {
     let build = |transposed: bool| {
         let mut system = random_system(50, 4, 1.0, 5);
         let normal = NormalLaw { bilateral: true, ..NormalLaw::linear(400.0) };
-        system.pairs[0].law = Arc::new(SlidingLaw::new(normal, Constant(mu), 0.0));
+        system.pairs[0].law = Arc::new(SlidingLaw::new(normal, Coulomb { mu0: mu }, 0.0));
         for p in &mut system.pairs[0].points {
             p.tangents[1] = SparseVector::default();
             if transposed {
@@ -513,7 +513,7 @@ fn a_family_gives_what_a_whole_analysis_gives_at_every_member() {
         let at = |mu_0: f64, velocity: f64| {
             let mut system = base.clone();
             let normal = NormalLaw { stiffness: 300.0, cubic_stiffness: 2e4, damping: 0.0, bilateral: false };
-            let law = Exponential { mu_0, mu_1: 0.25, alpha: 0.8 };
+            let law = Exponential { mu0: mu_0, mu1: 0.25, alpha: 0.8 };
             system.pairs[0].law = Arc::new(SlidingLaw::new(normal, law, 1e-3));
             system.pairs[0].sliding_velocity = velocity;
             system

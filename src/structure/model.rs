@@ -2,7 +2,9 @@
 
 use super::elements::{FlatShell, split_face};
 use crate::mesh::Element;
-use serde::Serialize;
+use crate::schema::units::{AREA, AREA_MOMENT, DENSITY, NUMBER, PRESSURE, RATE, TIME};
+use crate::schema::{Invalidates, declare, key};
+use std::ops::Bound;
 
 /// A structure: nodes and all that hangs on them. Degrees of freedom are (ux, uy, uz, rx, ry, rz) at every node.
 #[derive(Debug, Clone, Default)]
@@ -23,28 +25,35 @@ pub struct Model {
     pub supports: Vec<Support>,
 }
 
-/// Isotropic linear elastic material.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Material {
-    /// E \[Pa\].
-    pub youngs_modulus: f64,
-    /// ν.
-    pub poissons_ratio: f64,
-    /// ρ \[kg/m³\].
-    pub density: f64,
-    /// η of K(1 + iη); zero for none.
-    pub loss_factor: f64,
-    /// C = α M + β K of the parts made of it.
-    pub rayleigh: RayleighDamping,
+declare! {
+    /// Isotropic linear elastic material.
+    #[derive(Copy)]
+    pub struct Material {
+        /// E \[Pa\].
+        pub youngs_modulus: f64 = key::quantity(PRESSURE).positive(),
+        /// ν.
+        pub poissons_ratio: f64 = key::quantity(NUMBER)
+            .within(Bound::Excluded(-1.0), Bound::Excluded(0.5))
+            .expecting("a number such as 0.3"),
+        /// ρ \[kg/m³\].
+        pub density: f64 = key::quantity(DENSITY).positive(),
+        /// η of K(1 + iη); zero for none.
+        pub loss_factor: f64 =
+            key::quantity(NUMBER).non_negative().or(0.0).invalidates(Invalidates::Damping),
+        /// C = α M + β K of the parts made of it.
+        pub rayleigh: RayleighDamping = key::table().invalidates(Invalidates::Damping),
+    }
 }
 
-/// C = α M + β K.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
-pub struct RayleighDamping {
-    /// α \[1/s\].
-    pub alpha: f64,
-    /// β \[s\].
-    pub beta: f64,
+declare! {
+    /// C = α M + β K.
+    #[derive(Copy)]
+    pub struct RayleighDamping {
+        /// α \[1/s\].
+        pub alpha: f64 = key::quantity(RATE).non_negative().or(0.0),
+        /// β \[s\].
+        pub beta: f64 = key::quantity(TIME).non_negative().or(0.0),
+    }
 }
 
 /// A plate of constant thickness.
@@ -88,17 +97,19 @@ pub struct BarPart {
     pub orientation: [f64; 3],
 }
 
-/// Section of a bar.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Section {
-    /// A \[m²\].
-    pub area: f64,
-    /// Second moment about the section's first axis \[m⁴\].
-    pub inertia_1: f64,
-    /// Second moment about the section's second axis \[m⁴\].
-    pub inertia_2: f64,
-    /// Torsion constant \[m⁴\].
-    pub torsion: f64,
+declare! {
+    /// Section of a bar.
+    #[derive(Copy)]
+    pub struct Section {
+        /// A \[m²\].
+        pub area: f64 = key::quantity(AREA).positive(),
+        /// Second moment about the section's first axis \[m⁴\].
+        pub inertia_1: f64 = key::quantity(AREA_MOMENT).positive(),
+        /// Second moment about the section's second axis \[m⁴\].
+        pub inertia_2: f64 = key::quantity(AREA_MOMENT).positive(),
+        /// Torsion constant \[m⁴\].
+        pub torsion: f64 = key::quantity(AREA_MOMENT).positive(),
+    }
 }
 
 impl Section {

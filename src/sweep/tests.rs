@@ -1,5 +1,5 @@
 use super::*;
-use crate::contact::{Constant, NormalLaw, SlidingLaw};
+use crate::contact::{Coulomb, NormalLaw, SlidingLaw};
 use crate::equilibrium::samples::*;
 use crate::equilibrium::{SteadyOptions, solve_steady};
 use crate::modal::{ModesWanted, RealModes, compute};
@@ -68,8 +68,11 @@ fn onsets_of_the_literature() {
     // Hoffmann et al. (2002): k₁₁ = 23.25, k₁₂ = 3.8971, k₂₂ = 18.75, k₃ = 11.
     let hoffmann = |p: &[f64]| {
         let k = [[23.25, 3.8971], [3.8971, 7.75]];
-        let law =
-            SlidingLaw::new(NormalLaw { bilateral: true, ..NormalLaw::linear(11.0) }, Constant(p[0]), 0.0);
+        let law = SlidingLaw::new(
+            NormalLaw { bilateral: true, ..NormalLaw::linear(11.0) },
+            Coulomb { mu0: p[0] },
+            0.0,
+        );
         let touch = point(0.0, 1.0, vector(&[(1, 1.0)]), vector(&[(0, 1.0)]), Default::default());
         System {
             structure: structure(2, |i, j| f64::from(i == j), |i, j| k[i][j]),
@@ -95,7 +98,12 @@ fn onsets_of_the_literature() {
             };
             let tangent = if d == 0 { vector(&[(1, -1.0)]) } else { vector(&[(0, 1.0)]) };
             let touch = point(0.0, 1.0, vector(&[(d, 1.0)]), tangent, Default::default());
-            pair(vec![touch], SlidingLaw::new(normal, Constant(p[0]), 0.0), Closing::Approach(0.0), 1.0)
+            pair(
+                vec![touch],
+                SlidingLaw::new(normal, Coulomb { mu0: p[0] }, 0.0),
+                Closing::Approach(0.0),
+                1.0,
+            )
         };
         System {
             structure: structure(2, |i, j| f64::from(i == j), |i, j| if i == j { 1e-9 } else { 0.0 }),

@@ -107,7 +107,7 @@ fn seen(model: &Model<'_>, state: &State) -> impl Iterator<Item = Seen> {
 mod tests {
     use super::super::{Method, Plan, Profile, Scheme, march};
     use super::*;
-    use crate::contact::{Constant, NormalLaw, SlidingLaw};
+    use crate::contact::{Coulomb, NormalLaw, SlidingLaw};
     use crate::equilibrium::SteadySliding;
     use crate::equilibrium::samples::{pair, point, structure, vector};
     use crate::linalg::SparseVector;
@@ -121,7 +121,7 @@ mod tests {
         // Gravity 10 m/s², bed 1 kN/m without damping, from rest 0.1 m above it.
         let structure = structure(2, |i, j| if i == j { 1.0 } else { 0.0 }, |_, _| 0.0);
         let touch = point(0.1, 1.0, vector(&[(0, 1.0)]), vector(&[(1, 1.0)]), SparseVector::default());
-        let law = SlidingLaw::new(NormalLaw::linear(1e3), Constant(0.0), 1e-3);
+        let law = SlidingLaw::new(NormalLaw::linear(1e3), Coulomb { mu0: 0.0 }, 1e-3);
         let system = System {
             structure,
             pairs: vec![pair(vec![touch], law, Closing::Approach(0.0), 1.0)],

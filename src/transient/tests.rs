@@ -1,7 +1,7 @@
 mod sticking;
 
 use super::*;
-use crate::contact::{Bristle, Constant, Hyperbolic, NormalLaw, SlidingLaw, Stribeck};
+use crate::contact::{Bristle, Coulomb, Hyperbolic, NormalLaw, SlidingLaw, Stribeck};
 use crate::equilibrium::samples::{pair, point, random_system, sparse, structure, two_dof, vector};
 use crate::equilibrium::{SteadyOptions, SteadySliding, solve_steady};
 use crate::linalg::{SparseVector, c64};
@@ -231,7 +231,7 @@ fn momentum_and_energy_pass_through_an_impact() {
     let free = structure(2, |i, j| if i == j { masses[i] } else { 0.0 }, |_, _| 0.0);
     let touch =
         point(0.1, 1.0, vector(&[(0, 1.0), (1, -1.0)]), SparseVector::default(), SparseVector::default());
-    let law = SlidingLaw::new(NormalLaw::linear(1e4), Constant(0.0), 0.0);
+    let law = SlidingLaw::new(NormalLaw::linear(1e4), Coulomb { mu0: 0.0 }, 0.0);
     let system = System {
         structure: free,
         pairs: vec![pair(vec![touch], law, Closing::Approach(0.0), 1.0)],
@@ -365,7 +365,7 @@ fn a_travelling_contact_that_sticks_is_condensed_exactly_too() {
     for (seed, scheme) in [Scheme::TRAPEZOIDAL, Scheme::hht(-0.1)].into_iter().enumerate() {
         let mut system = damped(seed as u64 + 2);
         let normal = NormalLaw { stiffness: 60.0, cubic_stiffness: 5.0, damping: 0.5, bilateral: false };
-        let friction = Stribeck { at_rest: 0.5, kinetic: 0.3, velocity: 0.2, exponent: 2.0 };
+        let friction = Stribeck { mu_static: 0.5, mu_kinetic: 0.3, stribeck_velocity: 0.2, exponent: 2.0 };
         let bristle = Some(Bristle { stiffness: 40.0, damping: 0.4 });
         let law = SlidingLaw { bristle, ..SlidingLaw::new(normal, friction, 0.0) };
         system.pairs[0].law = std::sync::Arc::new(law);
@@ -429,7 +429,7 @@ fn a_mass_on_a_belt_sticks_and_slips_with_the_period_of_the_exact_solution() {
     let free = structure(2, |i, j| f64::from(i == j), |i, j| if (i, j) == (0, 0) { 1.0 } else { 0.0 });
     let touch = point(0.0, 1.0, vector(&[(1, 1.0)]), vector(&[(0, 1.0)]), SparseVector::default());
     let bristle = Some(Bristle { stiffness: 1e5, damping: 600.0 });
-    let friction = Hyperbolic { at_rest: 1.0, decline: 3.0 };
+    let friction = Hyperbolic { mu_static: 1.0, decline: 3.0 };
     let law = SlidingLaw { bristle, ..SlidingLaw::new(NormalLaw::linear(1e3), friction, 0.0) };
     let system = System {
         structure: free,

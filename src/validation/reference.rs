@@ -1,12 +1,12 @@
 //! `reference.toml`: what a validation case must show.
 
 use super::kirchhoff::Edge;
-use crate::case::reader::{Section, read_document};
-use crate::case::units::{FREQUENCY, LENGTH, NUMBER, RATE, TIME};
 use crate::case::{Case, read_case};
 use crate::error::text::read_text;
 use crate::error::{Faults, Result};
 use crate::results::Checked;
+use crate::schema::reader::{Section, read_document};
+use crate::schema::units::{FREQUENCY, LENGTH, NUMBER, RATE, TIME};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Bound;
 use std::path::Path;
@@ -222,7 +222,7 @@ impl Reference {
     /// # Errors
     /// Every fault of the text, or of its cases.
     pub fn parse(place: &str, text: &str, read: impl Fn(&str) -> Result<Case>) -> Result<Reference> {
-        let (mut reference, _) = read_document(place, text, |root| {
+        let mut reference = read_document(place, text, |root| {
             let case = root.string("case").or("case.toml".into());
             let reason = root.text("reason").or(String::new());
             Reference {
@@ -230,7 +230,9 @@ impl Reference {
                 title: root.text("title").required("one line"),
                 source: root.text("source").required("where the reference values come from"),
                 cases: BTreeMap::new(),
-                checks: root.named("check", |name, s| read_check(name, s, &case, &reason)),
+                checks: root
+                    .named("check", |name, s| read_check(name, s, &case, &reason))
+                    .unwrap_or_default(),
             }
         })?;
         let mut faults = Faults::new();

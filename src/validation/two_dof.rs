@@ -43,8 +43,8 @@ impl TwoDof {
         let [Some(k1), Some(k2), Some(kt)] = springs else { return None };
         let contact = case.contact.get("belt")?;
         let friction = match contact.friction.law {
-            FrictionCurve::Coulomb { mu0 } => [mu0, 0.0, 0.0],
-            FrictionCurve::Exponential { mu0, mu1, alpha } => [mu0, mu1, alpha],
+            FrictionCurve::Coulomb { law } => [law.mu0, 0.0, 0.0],
+            FrictionCurve::Exponential { law } => [law.mu0, law.mu1, law.alpha],
             _ => return None,
         };
         let push = case.transient.as_ref()?.push.get("knock")?;

@@ -27,12 +27,12 @@ impl<'a> Coordinate<'a> {
 
     /// x of a value.
     pub fn x(&self, value: f64) -> f64 {
-        (self.z(value) - self.z(self.parameter.expected)) / self.scale
+        (self.z(value) - self.z(self.parameter.expectation())) / self.scale
     }
 
     /// The value at x, inside the bounds.
     pub fn value(&self, x: f64) -> f64 {
-        let z = self.z(self.parameter.expected) + self.scale * x;
+        let z = self.z(self.parameter.expectation()) + self.scale * x;
         let value = if self.parameter.log { z.exp() } else { z };
         value.clamp(self.parameter.between[0], self.parameter.between[1])
     }
@@ -58,8 +58,13 @@ mod tests {
     #[test]
     fn there_and_back() {
         for (log, deviation) in [(false, None), (false, Some(0.3)), (true, None), (true, Some(0.3))] {
-            let parameter =
-                CalibratedParameter { path: vec![], between: [2.0, 8.0], expected: 3.0, deviation, log };
+            let parameter = CalibratedParameter {
+                path: vec![],
+                between: [2.0, 8.0],
+                expected: Some(3.0),
+                deviation,
+                log,
+            };
             let c = Coordinate::new(&parameter);
             for p in [2.0, 3.0, 5.0, 8.0] {
                 assert!((c.value(c.x(p)) - p).abs() < 1e-14, "{log} {deviation:?} {p}");

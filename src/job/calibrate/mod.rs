@@ -108,7 +108,7 @@ impl<'a> Calibrate<'a> {
                 paths: parameter.path.clone(),
                 unit: scalar.unit.to_string(),
                 between: parameter.between,
-                expected: parameter.expected,
+                expected: parameter.expectation(),
                 deviation: parameter.deviation,
                 log: parameter.log,
                 before: scalar.value,

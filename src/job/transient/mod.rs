@@ -184,7 +184,7 @@ fn set_valued(system: &System) -> Vec<String> {
 
 fn scheme(choice: SchemeChoice) -> (Scheme, String) {
     match choice {
-        SchemeChoice::Newmark => (Scheme::TRAPEZOIDAL, "Newmark, β = 1/4, γ = 1/2".into()),
+        SchemeChoice::Newmark {} => (Scheme::TRAPEZOIDAL, "Newmark, β = 1/4, γ = 1/2".into()),
         SchemeChoice::Hht { alpha } => (Scheme::hht(alpha), format!("HHT, α = {alpha}")),
         SchemeChoice::GeneralisedAlpha { rho } => {
             (Scheme::generalised_alpha(rho), format!("generalised α, ρ∞ = {rho}"))

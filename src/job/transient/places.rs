@@ -2,6 +2,7 @@
 
 use super::step::check_step;
 use crate::case::{Course, FrictionCurve, TransientAnalysis};
+use crate::contact::Coulomb;
 use crate::error::{Error, Fault, Faults, Result};
 use crate::job::contacts::with_laws;
 use crate::job::motion::{Motion, motion, spread};
@@ -107,7 +108,7 @@ pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Pla
     smooth
         .contact
         .values_mut()
-        .for_each(|contact| contact.friction.law = FrictionCurve::Coulomb { mu0: 0.0 });
+        .for_each(|contact| contact.friction.law = FrictionCurve::Coulomb { law: Coulomb { mu0: 0.0 } });
     let still = faults.take(with_laws(&prepared.system.pairs, &smooth)).unwrap_or_default();
     let ears = wanted.sound.as_ref().and_then(|sound| faults.take(ears(prepared, sound)));
     faults.into_result(Places { pushes, probes, gauges, tracks, still, ears })
@@ -116,7 +117,7 @@ pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Pla
 /// How something runs in time.
 pub fn profile(course: Option<&Course>) -> Profile {
     match course {
-        None | Some(Course::Constant) => Profile::Constant,
+        None | Some(Course::Constant {}) => Profile::Constant,
         Some(Course::Ramp { from, duration }) => Profile::Ramp { from: *from, duration: *duration },
         Some(Course::Reciprocating { frequency, phase }) => {
             Profile::Reciprocating { frequency_hz: *frequency, phase: *phase }

@@ -45,7 +45,7 @@ const ALL: [Scalar; 13] = [
 ];
 
 fn law(normal: NormalLaw, mu_0: f64, alpha: f64, regularisation: f64) -> Arc<SlidingLaw> {
-    Arc::new(SlidingLaw::new(normal, Exponential { mu_0, mu_1: 0.25, alpha }, regularisation))
+    Arc::new(SlidingLaw::new(normal, Exponential { mu0: mu_0, mu1: 0.25, alpha }, regularisation))
 }
 
 /// The sample with one scalar times `factor`; modal damping follows the new real modes at the ratios it had.

@@ -2,7 +2,7 @@
 
 use super::super::*;
 use super::{full_newton_agrees, plan};
-use crate::contact::{Bristle, Constant, NormalLaw, SlidingLaw, Stribeck};
+use crate::contact::{Bristle, Coulomb, NormalLaw, SlidingLaw, Stribeck};
 use crate::equilibrium::samples::{pair, point, structure, vector};
 use crate::equilibrium::{SteadyOptions, SteadySliding, solve_steady};
 use crate::linalg::SparseVector;
@@ -99,7 +99,8 @@ fn a_block_on_a_reciprocating_belt_moves_from_event_to_event_as_it_must() {
     for ([v, omega, f], most) in
         [([1.0, 0.7, 0.6], 5e-6), ([0.5, 0.4, 0.9], 2e-6), ([1.0, 0.7, 0.9], 2e-6), ([1.5, 1.7, 0.5], 1e-3)]
     {
-        let system = block(SlidingLaw::new(NormalLaw::linear(1e3), Constant(f), 0.0), vec![touch(1.0)], v);
+        let system =
+            block(SlidingLaw::new(NormalLaw::linear(1e3), Coulomb { mu0: f }, 0.0), vec![touch(1.0)], v);
         let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
         let model = reciprocating(&system, &steady, omega);
         for scheme in [Scheme::TRAPEZOIDAL, Scheme::hht(-0.05)] {
@@ -132,7 +133,7 @@ fn a_block_on_a_reciprocating_belt_moves_from_event_to_event_as_it_must() {
 
 #[test]
 fn two_points_at_one_place_carry_what_one_would() {
-    let law = || SlidingLaw::new(NormalLaw::linear(1e3), Constant(0.6), 0.0);
+    let law = || SlidingLaw::new(NormalLaw::linear(1e3), Coulomb { mu0: 0.6 }, 0.0);
     let ends = [vec![touch(1.0)], vec![touch(0.5), touch(0.5)]].map(|points| {
         let system = block(law(), points, 1.0);
         let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
@@ -162,8 +163,8 @@ fn turned(law: SlidingLaw) -> (System, SteadySliding) {
 #[test]
 fn a_contact_that_is_set_valued_at_rest_is_condensed_exactly_too() {
     let normal = NormalLaw::linear(1e3);
-    let falling = Stribeck { at_rest: 0.6, kinetic: 0.5, velocity: 0.2, exponent: 2.0 };
-    for law in [SlidingLaw::new(normal, Constant(0.6), 0.0), SlidingLaw::new(normal, falling, 0.0)] {
+    let falling = Stribeck { mu_static: 0.6, mu_kinetic: 0.5, stribeck_velocity: 0.2, exponent: 2.0 };
+    for law in [SlidingLaw::new(normal, Coulomb { mu0: 0.6 }, 0.0), SlidingLaw::new(normal, falling, 0.0)] {
         for scheme in [Scheme::TRAPEZOIDAL, Scheme::hht(-0.1)] {
             let (system, steady) = turned(law.clone());
             let model = reciprocating(&system, &steady, 0.7);
@@ -185,7 +186,8 @@ fn a_contact_that_is_set_valued_at_rest_is_condensed_exactly_too() {
 #[test]
 fn it_is_the_limit_of_stiff_bristles() {
     let path = |bristle: Option<Bristle>| {
-        let law = SlidingLaw { bristle, ..SlidingLaw::new(NormalLaw::linear(1e3), Constant(0.6), 0.0) };
+        let law =
+            SlidingLaw { bristle, ..SlidingLaw::new(NormalLaw::linear(1e3), Coulomb { mu0: 0.6 }, 0.0) };
         let (system, steady) = turned(law);
         let model = reciprocating(&system, &steady, 0.7);
         let mut path = Vec::new();
@@ -209,7 +211,7 @@ fn it_is_the_limit_of_stiff_bristles() {
 #[test]
 fn a_march_that_stops_says_where_and_what_cures_it() {
     // As good as without regularisation, but without the set of forces at rest.
-    let law = SlidingLaw::new(NormalLaw::linear(1e3), Constant(0.6), f64::MIN_POSITIVE);
+    let law = SlidingLaw::new(NormalLaw::linear(1e3), Coulomb { mu0: 0.6 }, f64::MIN_POSITIVE);
     let system = block(law, vec![touch(1.0)], 1.0);
     let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
     let model = reciprocating(&system, &steady, 0.7);
@@ -227,7 +229,7 @@ fn a_march_that_stops_says_where_and_what_cures_it() {
 #[test]
 fn what_was_stuck_goes_on_bit_for_bit() {
     for method in [Method::Condensed, Method::FullNewton] {
-        let (system, steady) = turned(SlidingLaw::new(NormalLaw::linear(1e3), Constant(0.6), 0.0));
+        let (system, steady) = turned(SlidingLaw::new(NormalLaw::linear(1e3), Coulomb { mu0: 0.6 }, 0.0));
         let model = reciprocating(&system, &steady, 0.7);
         let plan = Plan { method, tolerance: Some(1e-4), ..plan(Scheme::hht(-0.1), 2e-2, 500) };
         let (mut middle, mut kept) = (Checkpoint::default(), 0);

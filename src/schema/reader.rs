@@ -1,10 +1,11 @@
 //! Reads TOML section by section, remembering every fault with its line: unknown keys, wrong types, wrong units.
 
+use super::key::{describe_bounds, is_name};
 use super::keys::dotted;
 use super::places::Places;
-use super::units::{Dimension, NUMBER, parse_quantity};
+use super::units::{Dimension, parse_any, parse_quantity};
 use crate::error::{Error, Fault, Faults, Result, nearest};
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::{Bound, RangeBounds};
 use toml::Spanned;
@@ -13,7 +14,7 @@ use toml::de::{DeTable, DeValue};
 /// The largest size of a quantity in SI units; the least that is not zero is one over it. Products of several stay finite.
 pub const LARGEST: f64 = 1e60;
 /// The largest whole number.
-const MOST: usize = 1_000_000_000;
+pub(super) const MOST: usize = 1_000_000_000;
 
 /// A parsed TOML text and the faults found in it so far.
 pub struct Reader<'a> {
@@ -22,22 +23,6 @@ pub struct Reader<'a> {
     lines: Vec<usize>,
     /// Faults with the byte they are at.
     faults: RefCell<Vec<(usize, Fault)>>,
-    /// Whether a table of named tables is none, so that names are unknown that the text may have meant to define.
-    nameless: Cell<bool>,
-    quantities: RefCell<Vec<Quantity>>,
-}
-
-/// A number that the text gives, with what its reader knows about it.
-#[derive(Debug, Clone)]
-pub struct Quantity {
-    /// Keys joined by dots; entries of lists by their index from 0.
-    pub path: String,
-    /// The value in SI units.
-    pub value: f64,
-    /// The SI unit; empty for a pure number.
-    pub unit: &'static str,
-    /// The values that the case accepts.
-    pub bounds: (Bound<f64>, Bound<f64>),
 }
 
 /// One table of the text. Each key is asked for by name; [`Section::finish`] then refuses those nobody asked for.
@@ -57,18 +42,22 @@ pub struct Found<'a, T> {
     faulty: bool,
 }
 
-/// Parses `text` and hands its root to `read`, then gives the value and the quantities it read, or every fault.
-pub fn read_document<T>(
+/// Parses `text` and hands its root to `read`, then gives its value, or every fault.
+pub fn read_document<T>(file: &str, text: &str, read: impl FnOnce(&Section) -> T) -> Result<T> {
+    let (value, faults) = read_parts(file, text, read)?;
+    Faults(faults.into_iter().map(|(_, fault)| fault).collect()).into_result(value)
+}
+
+/// The same, with the value and the faults, each with its line, when the text is TOML.
+pub(super) fn read_parts<T>(
     file: &str,
     text: &str,
     read: impl FnOnce(&Section) -> T,
-) -> Result<(T, Vec<Quantity>)> {
+) -> Result<(T, Vec<(usize, Fault)>)> {
     let reader = Reader {
         file,
         lines: std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect(),
         faults: RefCell::default(),
-        nameless: Cell::new(false),
-        quantities: RefCell::default(),
     };
     let root = DeTable::parse(text).map_err(|error| {
         let line = error.span().map_or(1, |span| reader.line(span.start));
@@ -88,10 +77,10 @@ pub fn read_document<T>(
     let value = read(&section);
     section.finish();
     drop(section);
-    let mut faults = reader.faults.into_inner();
+    let mut faults = reader.faults.take();
     faults.sort_by_key(|(offset, _)| *offset);
-    let faults = Faults(faults.into_iter().map(|(_, fault)| fault).collect());
-    faults.into_result((value, reader.quantities.into_inner()))
+    let with_line = |(offset, fault): (usize, Fault)| (reader.line(offset), fault);
+    Ok((value, faults.into_iter().map(with_line).collect()))
 }
 
 impl Reader<'_> {
@@ -123,6 +112,11 @@ impl<'a> Section<'a> {
 
     /// Notes a fault of `key` in this table; `key` may be a dotted path below it.
     pub fn fault(&self, key: &str, found: impl Into<String>, expected: impl Into<String>, help: &str) {
+        self.note(self.offset_of(key), &self.path_of(key), found, expected, help);
+    }
+
+    /// Where `key` begins, which may be a dotted path below this table; the table itself where there is none.
+    fn offset_of(&self, key: &str) -> usize {
         let (mut offset, mut table, mut rest) = (self.start, self.table, key);
         loop {
             // A name may have dots itself.
@@ -133,15 +127,7 @@ impl<'a> Section<'a> {
             let (Some(inner), true) = (value.get_ref().as_table(), end < rest.len()) else { break };
             (table, rest) = (inner, &rest[end + 1..]);
         }
-        self.note(offset, &self.path_of(key), found, expected, help);
-    }
-
-    /// The value of `result`; its faults are noted.
-    pub fn take<T>(&self, result: Result<T>) -> Option<T> {
-        let mut faults = Faults::new();
-        let value = faults.take(result);
-        self.reader.faults.borrow_mut().extend(faults.0.into_iter().map(|fault| (self.start, fault)));
-        value
+        offset
     }
 
     fn note(
@@ -157,7 +143,7 @@ impl<'a> Section<'a> {
         self.reader.faults.borrow_mut().push((offset, fault));
     }
 
-    fn path_of(&self, key: &str) -> String {
+    pub(super) fn path_of(&self, key: &str) -> String {
         match (self.path.as_str(), key) {
             ("", _) => key.to_string(),
             (path, "") => path.to_string(),
@@ -165,7 +151,8 @@ impl<'a> Section<'a> {
         }
     }
 
-    fn get(&self, key: &str) -> Option<&'a Spanned<DeValue<'a>>> {
+    /// The value of `key`, which is known from now on.
+    pub(super) fn get(&self, key: &str) -> Option<&'a Spanned<DeValue<'a>>> {
         self.known.borrow_mut().push(key.to_string());
         self.table.get(key)
     }
@@ -189,36 +176,9 @@ impl<'a> Section<'a> {
         Found { section: self, key: key.to_string(), value, faulty }
     }
 
-    fn remember(&self, key: &str, value: impl IntoIterator<Item = f64>, dimension: Dimension) {
-        let bounds = (Bound::Unbounded, Bound::Unbounded);
-        let path = self.path_of(key);
-        self.reader.quantities.borrow_mut().extend(value.into_iter().map(|value| Quantity {
-            path: path.clone(),
-            value,
-            unit: dimension.symbol,
-            bounds,
-        }));
-    }
-
-    fn remember_list<'v>(&self, key: &str, values: impl IntoIterator<Item = &'v f64>, dimension: Dimension) {
-        for (i, value) in values.into_iter().enumerate() {
-            self.remember(&format!("{key}.{i}"), [*value], dimension);
-        }
-    }
-
     /// Leaves `keys` unread without calling them unknown: what they mean cannot be told.
     pub fn skip(&self, keys: &[&str]) {
         self.known.borrow_mut().extend(keys.iter().map(|key| key.to_string()));
-    }
-
-    /// Whether the text has no fault so far.
-    pub fn sound_so_far(&self) -> bool {
-        self.reader.faults.borrow().is_empty()
-    }
-
-    /// Whether every table of named tables is one, so that a name that is not there was not meant to be.
-    pub fn all_named(&self) -> bool {
-        !self.reader.nameless.get()
     }
 
     /// Where the keys of this table stand, and those of the tables in it.
@@ -228,7 +188,8 @@ impl<'a> Section<'a> {
         while let Some((path, table)) = tables.pop() {
             for (key, value) in table {
                 let name = key.get_ref();
-                let path = if path.is_empty() { name.to_string() } else { format!("{path}.{name}") };
+                let name = dotted(name);
+                let path = if path.is_empty() { name.into_owned() } else { format!("{path}.{name}") };
                 if let Some(table) = value.get_ref().as_table() {
                     tables.push((path.clone(), table));
                 }
@@ -245,68 +206,26 @@ impl<'a> Section<'a> {
 
     /// A quantity: a number in SI units, or a string with its unit.
     pub fn quantity(&'a self, key: &str, dimension: Dimension) -> Found<'a, f64> {
-        let found = self.find(key, dimension.name, |value| quantity_of(value, dimension));
-        self.remember(&dotted(key), found.value, dimension);
+        let found = self.find(key, dimension.name, |value| quantity_of(value, Some(dimension)));
         found
-    }
-
-    /// A vector that is not zero, of whatever length.
-    pub fn direction(&'a self, key: &str) -> Found<'a, [f64; 3]> {
-        self.quantities(key, NUMBER).check("a vector that is not zero", |v| v.iter().any(|x| *x != 0.0))
     }
 
     /// A list of `N` quantities.
     pub fn quantities<const N: usize>(&'a self, key: &str, dimension: Dimension) -> Found<'a, [f64; N]> {
         let expected = format!("a list of {N} values, each {}", dimension.name);
         let found: Found<'a, [f64; N]> = self.find(key, &expected, |value| {
-            let list = list_of(value, |item| quantity_of(item, dimension))?;
+            let list = list_of(value, |item| quantity_of(item, Some(dimension)))?;
             let count = list.len();
             list.try_into().map_err(|_| format!("a list of {count}"))
         });
-        self.remember_list(&dotted(key), found.value.iter().flatten(), dimension);
-        found
-    }
-
-    /// A list of two quantities, each with its own dimension.
-    pub fn two_quantities(&'a self, key: &str, dimensions: [Dimension; 2]) -> Found<'a, [f64; 2]> {
-        let expected = "a list of two values, one a parameter";
-        let found = self.find(key, expected, |value| pair_of(value, dimensions));
-        for k in 0..2 {
-            self.remember(&format!("{}.{k}", dotted(key)), found.value.map(|v| v[k]), dimensions[k]);
-        }
-        found
-    }
-
-    /// A list of lists of two quantities, each with its own dimension.
-    pub fn pairs(&'a self, key: &str, dimensions: [Dimension; 2]) -> Found<'a, Vec<[f64; 2]>> {
-        let found = self.find(key, "a list of lists of two values", |value| {
-            list_of(value, |row| pair_of(row, dimensions))
-        });
-        for (i, row) in found.value.iter().flatten().enumerate() {
-            for k in 0..2 {
-                self.remember(&format!("{}.{i}.{k}", dotted(key)), [row[k]], dimensions[k]);
-            }
-        }
         found
     }
 
     /// A list of quantities of any length.
     pub fn quantity_list(&'a self, key: &str, dimension: Dimension) -> Found<'a, Vec<f64>> {
         let found = self.find(key, &format!("a list, each {}", dimension.name), |value| {
-            list_of(value, |item| quantity_of(item, dimension))
+            list_of(value, |item| quantity_of(item, Some(dimension)))
         });
-        self.remember_list(&dotted(key), found.value.iter().flatten(), dimension);
-        found
-    }
-
-    /// A list of rows of numbers.
-    pub fn rows(&'a self, key: &str, dimension: Dimension) -> Found<'a, Vec<Vec<f64>>> {
-        let found = self.find(key, "a list of rows of numbers", |value| {
-            list_of(value, |row| list_of(row, |item| quantity_of(item, dimension)))
-        });
-        for (i, row) in found.value.iter().flatten().enumerate() {
-            self.remember_list(&format!("{}.{i}", dotted(key)), row, dimension);
-        }
         found
     }
 
@@ -315,35 +234,14 @@ impl<'a> Section<'a> {
         self.find(key, "a string", string_of)
     }
 
-    /// A list of such strings; a single one is a list of one.
-    pub fn texts(&'a self, key: &str) -> Found<'a, Vec<String>> {
-        self.find(key, "a list of strings", |value| strings_of(value, string_of))
-    }
-
     /// The name of something, or the path of a file.
     pub fn string(&'a self, key: &str) -> Found<'a, String> {
         self.find(key, "a string of at least one character, on one line", name_of)
     }
 
-    /// A list of rows of strings.
-    pub fn string_rows(&'a self, key: &str) -> Found<'a, Vec<Vec<String>>> {
-        self.find(key, "a list of rows of strings", |value| list_of(value, |row| list_of(row, string_of)))
-    }
-
-    /// Whether the value of `key` is a string.
-    pub fn is_string(&self, key: &str) -> bool {
-        self.table.get(key).is_some_and(|value| value.get_ref().as_str().is_some())
-    }
-
     /// Whether the value of `key` is a table.
     pub fn is_table(&self, key: &str) -> bool {
         self.table.get(key).is_some_and(|value| value.get_ref().as_table().is_some())
-    }
-
-    /// A list of names; a single string is a list of one.
-    pub fn strings(&'a self, key: &str) -> Found<'a, Vec<String>> {
-        let expected = "a list of strings, each of at least one character, on one line";
-        self.find(key, expected, |value| strings_of(value, name_of))
     }
 
     /// `true` or `false`.
@@ -356,37 +254,10 @@ impl<'a> Section<'a> {
         self.find(key, "a whole number from 1 to a billion", |value| whole_of(value, 1))
     }
 
-    /// A whole number from zero to a billion.
-    pub fn whole(&'a self, key: &str) -> Found<'a, usize> {
-        self.find(key, "a whole number from 0 to a billion", |value| whole_of(value, 0))
-    }
-
-    /// A list of two whole numbers from one to a billion.
-    pub fn two_counts(&'a self, key: &str) -> Found<'a, [usize; 2]> {
-        self.find(key, "a list of two whole numbers from 1 to a billion", |value| {
-            let list = list_of(value, |item| whole_of(item, 1))?;
-            let count = list.len();
-            list.try_into().map_err(|_| format!("a list of {count}"))
-        })
-    }
-
-    /// A list of two truth values.
-    pub fn two_booleans(&'a self, key: &str) -> Found<'a, [bool; 2]> {
-        self.find(key, "a list of two of true and false", |value| {
-            let list = list_of(value, |item| item.as_bool().ok_or_else(|| describe(item)))?;
-            let count = list.len();
-            list.try_into().map_err(|_| format!("a list of {count}"))
-        })
-    }
-
     /// One of `choices`.
     pub fn choice(&'a self, key: &str, choices: &[&'static str]) -> Found<'a, &'static str> {
-        self.find(key, &format!("one of {}", choices.join(", ")), |value| {
-            let text = string_of(value)?;
-            let near = nearest(&text, choices.iter().copied());
-            let meant = near.map_or(String::new(), |near| format!(" (did you mean \"{near}\"?)"));
-            choices.iter().find(|c| **c == text).copied().ok_or(format!("\"{text}\"{meant}"))
-        })
+        let words: Vec<(&'static str, &'static str)> = choices.iter().map(|word| (*word, *word)).collect();
+        self.find(key, &format!("one of {}", choices.join(", ")), |value| word_of(value, &words))
     }
 
     /// A sub-table, read by `read` and then refused if it has unknown keys.
@@ -409,11 +280,12 @@ impl<'a> Section<'a> {
         Some(result)
     }
 
-    /// A table of named tables `[key.NAME]`, in the order of their names. What stands right under `[key]` is one fault,
-    /// as the name was left out.
-    pub fn named<T>(&self, key: &str, mut read: impl FnMut(&str, &Section) -> T) -> Vec<T> {
-        if self.has(key) && !self.is_table(key) {
-            self.reader.nameless.set(true);
+    /// Named tables `[key.NAME]`, in the order of their names; none when they have no names. What stands right under `[key]` is
+    /// one fault, as the name was left out.
+    pub fn named<T>(&self, key: &str, mut read: impl FnMut(&str, &Section) -> T) -> Option<Vec<T>> {
+        if !self.has(key) {
+            self.skip(&[key]);
+            return Some(Vec::new());
         }
         self.section(key, |all| {
             let stray: Vec<String> = all.names().into_iter().filter(|name| !all.is_table(name)).collect();
@@ -422,12 +294,27 @@ impl<'a> Section<'a> {
                 let found = format!("`{}` right under [{path}]", stray.join("`, `"));
                 all.fault(first, found, format!("a table with a name of its own, [{path}.NAME]"), "");
                 all.skip(&all.names().iter().map(String::as_str).collect::<Vec<_>>());
-                all.reader.nameless.set(true);
-                return Vec::new();
+                return None;
             }
-            all.sound_names().iter().filter_map(|name| all.section(name, |one| read(name, one))).collect()
+            Some(
+                all.sound_names()
+                    .iter()
+                    .filter_map(|name| all.section(name, |one| read(name, one)))
+                    .collect(),
+            )
         })
-        .unwrap_or_default()
+        .flatten()
+    }
+
+    /// A declared table that stands here, checked; `more` checks what its declaration does not know.
+    pub fn declared<T: super::Table + super::Blank>(&self, more: impl FnOnce(&T, &mut super::Report)) -> T {
+        let (table, faults) = super::read::read_section(self, more);
+        let path = format!("`{}.", self.path);
+        for fault in faults {
+            let key = fault.place.strip_prefix(&path).unwrap_or("").trim_end_matches('`');
+            self.fault(key, fault.found.as_str(), fault.expected.as_str(), &fault.help);
+        }
+        table
     }
 
     /// Refuses keys that nobody asked for, offering the nearest known one.
@@ -495,58 +382,29 @@ impl<T: Default> Found<'_, T> {
     }
 }
 
-impl<T: std::fmt::Debug> Found<'_, Vec<T>> {
-    /// Refuses a list of nothing.
-    pub fn not_empty(self) -> Self {
-        self.check("at least one", |list| !list.is_empty())
-    }
-}
-
 impl Found<'_, f64> {
     /// Refuses zero and below.
     pub fn positive(self) -> Self {
         self.within(Bound::Excluded(0.0), Bound::Unbounded)
     }
 
-    /// Refuses values below zero.
-    pub fn non_negative(self) -> Self {
-        self.within(Bound::Included(0.0), Bound::Unbounded)
-    }
-
     /// Refuses values outside these bounds.
     pub fn within(self, lower: Bound<f64>, upper: Bound<f64>) -> Self {
-        let path = self.section.path_of(&dotted(&self.key));
-        let mut quantities = self.section.reader.quantities.borrow_mut();
-        quantities.iter_mut().filter(|q| q.path == path).for_each(|q| q.bounds = (lower, upper));
-        drop(quantities);
         self.check(&describe_bounds(lower, upper), |v| (lower, upper).contains(v))
     }
 }
 
-/// Bounds in words: "a value above 0", "a value from 0 to 1".
-fn describe_bounds(lower: Bound<f64>, upper: Bound<f64>) -> String {
-    let zero_or = |v: f64| if v == 0.0 { "zero".to_string() } else { v.to_string() };
-    let low = match lower {
-        Bound::Included(v) => format!(" of {} or more", zero_or(v)),
-        Bound::Excluded(v) => format!(" above {}", zero_or(v)),
-        Bound::Unbounded => String::new(),
-    };
-    let high = match upper {
-        Bound::Included(v) => format!(" of {} or less", zero_or(v)),
-        Bound::Excluded(v) => format!(" below {}", zero_or(v)),
-        Bound::Unbounded => String::new(),
-    };
-    let and = if low.is_empty() || high.is_empty() { "" } else { " and" };
-    format!("a value{low}{and}{high}")
-}
-
-fn quantity_of(value: &DeValue, dimension: Dimension) -> std::result::Result<f64, String> {
+/// A number, or a string with a unit of the dimension; of any dimension where none is given.
+pub(super) fn quantity_of(value: &DeValue, dimension: Option<Dimension>) -> std::result::Result<f64, String> {
     let number = match value {
         DeValue::Integer(i) => {
             i64::from_str_radix(&i.as_str().replace('_', ""), i.radix()).ok().map(|v| v as f64)
         }
         DeValue::Float(f) => f.as_str().replace('_', "").parse().ok(),
-        DeValue::String(text) => Some(parse_quantity(text, dimension)?),
+        DeValue::String(text) => Some(match dimension {
+            Some(dimension) => parse_quantity(text, dimension)?,
+            None => parse_any(text)?.0,
+        }),
         _ => None,
     };
     match number {
@@ -555,6 +413,14 @@ fn quantity_of(value: &DeValue, dimension: Dimension) -> std::result::Result<f64
         Some(v) => Err(format!("{v}, which is not finite")),
         None => Err(describe(value)),
     }
+}
+
+/// The value that belongs to one of some words.
+pub(crate) fn word_of<T: Copy>(value: &DeValue, words: &[(&str, T)]) -> std::result::Result<T, String> {
+    let text = string_of(value)?;
+    let near = nearest(&text, words.iter().map(|(word, _)| *word));
+    let meant = near.map_or(String::new(), |near| format!(" (did you mean \"{near}\"?)"));
+    words.iter().find(|(word, _)| *word == text).map(|(_, value)| *value).ok_or(format!("\"{text}\"{meant}"))
 }
 
 fn string_of(value: &DeValue) -> std::result::Result<String, String> {
@@ -567,32 +433,9 @@ fn name_of(value: &DeValue) -> std::result::Result<String, String> {
     if is_name(&name) { Ok(name) } else { Err(format!("the string {name:?}")) }
 }
 
-fn is_name(name: &str) -> bool {
-    !name.is_empty() && !name.contains(char::is_control)
-}
-
-/// A list of strings; a single string is a list of one.
-fn strings_of(
-    value: &DeValue,
-    item: fn(&DeValue) -> std::result::Result<String, String>,
-) -> std::result::Result<Vec<String>, String> {
-    if value.is_str() { Ok(vec![item(value)?]) } else { list_of(value, item) }
-}
-
 fn whole_of(value: &DeValue, least: usize) -> std::result::Result<usize, String> {
     let number = value.as_integer().and_then(|i| usize::from_str_radix(i.as_str(), i.radix()).ok());
     number.filter(|n| (least..=MOST).contains(n)).ok_or_else(|| describe(value))
-}
-
-fn pair_of(value: &DeValue, dimensions: [Dimension; 2]) -> std::result::Result<[f64; 2], String> {
-    match value.as_array() {
-        Some(list) if list.len() == 2 => {
-            let at = |k: usize| quantity_of(list[k].get_ref(), dimensions[k]);
-            Ok([at(0)?, at(1)?])
-        }
-        Some(list) => Err(format!("a list of {}", list.len())),
-        None => Err(describe(value)),
-    }
 }
 
 fn list_of<T>(
@@ -603,7 +446,7 @@ fn list_of<T>(
     array.iter().map(|v| item(v.get_ref())).collect()
 }
 
-fn describe(value: &DeValue) -> String {
+pub(super) fn describe(value: &DeValue) -> String {
     match value {
         DeValue::String(s) => format!("the string \"{s}\""),
         DeValue::Integer(i) => format!("the whole number {}", i.as_str()),

@@ -1,19 +1,31 @@
 //! What sections say of each other: names that must stand elsewhere, and what does not go together.
 
-use super::super::reader::Section;
-use super::super::{Case, ContactState, Pressing, Sense, path_matches};
+use super::{Case, ContactState, Parameter, Pressing, path_matches};
+use crate::schema::{Report, dotted, key};
+
+/// Refuses what does not go together in a case.
+pub(super) fn check(case: &Case, report: &mut Report) {
+    // Tables of named tables without names may have meant to define any name.
+    let sections = ["material", "shell", "bar", "spring", "force", "contact", "modes", "frf", "measured"];
+    if !sections.iter().any(|section| report.unread_itself(section)) {
+        check_names(report, case);
+    }
+    super::measured::check(report, case);
+    let sound = report.is_sound(&["sensitivity", "sweep", "map", "calibrate"]);
+    let scalars = sound.then(|| case.without_studies().parameters());
+    check_sensitivity(report, case, scalars.as_deref());
+    super::explore::check(case, scalars.as_deref(), report);
+    super::calibrate::check(case, scalars.as_deref(), report);
+}
 
 /// Names that must stand elsewhere in the file: materials, parts, contacts.
-pub(super) fn check_names(root: &Section, case: &Case) {
-    if !root.all_named() {
-        return;
-    }
+fn check_names(root: &mut Report, case: &Case) {
     let materials: Vec<&str> = case.material.keys().map(String::as_str).collect();
     let used = case
         .shell
         .iter()
-        .map(|(name, s)| (format!("shell.{name}.material"), &s.material))
-        .chain(case.bar.iter().map(|(name, b)| (format!("bar.{name}.material"), &b.material)));
+        .map(|(name, s)| (format!("shell.{}.material", dotted(name)), &s.material))
+        .chain(case.bar.iter().map(|(name, b)| (format!("bar.{}.material", dotted(name)), &b.material)));
     for (key, material) in used {
         if !material.is_empty() && !materials.contains(&material.as_str()) {
             unknown_name(root, &key, material, "material", &materials);
@@ -22,7 +34,7 @@ pub(super) fn check_names(root: &Section, case: &Case) {
     for (name, contact) in case.contact.iter().filter(|_| case.matrices.is_none()) {
         if contact.points.is_some() {
             root.fault(
-                &format!("contact.{name}.points"),
+                &format!("contact.{}.points", dotted(name)),
                 "contact points",
                 "`body` and `counter`, on a mesh",
                 "",
@@ -32,14 +44,19 @@ pub(super) fn check_names(root: &Section, case: &Case) {
     let parts: Vec<&str> = case.shell.keys().chain(case.bar.keys()).map(String::as_str).collect();
     for (name, analysis) in &case.modes {
         for part in analysis.parts.iter().filter(|p| !parts.contains(&p.as_str())) {
-            unknown_name(root, &format!("modes.{name}.parts"), part, "shell or bar", &parts);
+            unknown_name(root, &format!("modes.{}.parts", dotted(name)), part, "shell or bar", &parts);
         }
         if analysis.contact == ContactState::Closed && case.contact.is_empty() {
-            root.fault(&format!("modes.{name}.contact"), "closed", "open, as the case has no [contact]", "");
+            root.fault(
+                &format!("modes.{}.contact", dotted(name)),
+                "closed",
+                "open, as the case has no [contact]",
+                "",
+            );
         }
         if analysis.contact == ContactState::Closed && !analysis.parts.is_empty() {
             root.fault(
-                &format!("modes.{name}.contact"),
+                &format!("modes.{}.contact", dotted(name)),
                 "closed",
                 "open, when only some parts are analysed",
                 "",
@@ -52,28 +69,6 @@ pub(super) fn check_names(root: &Section, case: &Case) {
     if case.sensitivity.is_some() && case.cea.is_none() {
         root.fault("sensitivity", "no [cea] in the case", "a [cea], whose eigenvalues are looked into", "");
     }
-    for (name, contact) in case.contact.iter().filter(|(_, contact)| contact.bristle.is_some()) {
-        let refuse = |key: &str, found: &str, expected: &str| {
-            root.fault(&format!("contact.{name}.{key}"), found, expected, "");
-        };
-        if contact.friction.regularisation > 0.0 {
-            refuse(
-                "friction.regularisation",
-                "a velocity",
-                "none beside a `bristle`, which sticks by itself",
-            );
-        }
-        if contact.friction.sense != Sense::WithSlip {
-            refuse("friction.sense", "against_sliding", "with_slip beside a `bristle`");
-        }
-        if !contact.normal.unilateral {
-            refuse(
-                "normal.unilateral",
-                "false",
-                "true beside a `bristle`: a contact that pulls does not stick",
-            );
-        }
-    }
     if let Some(transient) = &case.transient {
         if case.cea.is_none() {
             let expected = "a [cea], whose modes the motion starts along and is compared with";
@@ -85,15 +80,15 @@ pub(super) fn check_names(root: &Section, case: &Case) {
         }
         let contacts: Vec<&str> = case.contact.keys().map(String::as_str).collect();
         for name in transient.slide.keys().filter(|name| !contacts.contains(&name.as_str())) {
-            unknown_name(root, &format!("transient.slide.{name}"), name, "contact", &contacts);
+            unknown_name(root, &format!("transient.slide.{}", dotted(name)), name, "contact", &contacts);
         }
-        let pressed = case.contact.iter().filter(|(_, c)| matches!(c.pressing, Pressing::Load(_)));
+        let pressed = case.contact.iter().filter(|(_, c)| matches!(c.pressing, Pressing::Load { .. }));
         let loads: Vec<&str> =
             pressed.map(|(name, _)| name.as_str()).chain(case.force.keys().map(String::as_str)).collect();
         for name in transient.load.keys().filter(|name| !loads.contains(&name.as_str())) {
             unknown_name(
                 root,
-                &format!("transient.load.{name}"),
+                &format!("transient.load.{}", dotted(name)),
                 name,
                 "force or contact with a load",
                 &loads,
@@ -105,12 +100,11 @@ pub(super) fn check_names(root: &Section, case: &Case) {
             .filter(|(name, course)| course.range()[0] < 0.0 && case.contact.contains_key(name.as_str()))
         {
             let expected = "factors of zero or more: a load presses";
-            root.fault(&format!("transient.load.{name}"), "a factor below zero", expected, "");
+            root.fault(&format!("transient.load.{}", dotted(name)), "a factor below zero", expected, "");
         }
-        let plain = |name: &str| name.chars().all(|c| c.is_alphanumeric() || c == '-' || c == '_');
-        for name in transient.probe.keys().filter(|name| !plain(name)) {
-            let key = format!("transient.probe.{name}");
-            root.fault(&key, format!("the name \"{name}\""), "letters, digits, `-` and `_`", "");
+        for name in transient.probe.keys().filter(|name| !key::is_file_name(name)) {
+            let place = format!("transient.probe.{}", dotted(name));
+            root.fault(&place, format!("the name \"{name}\""), "letters, digits, `-` and `_`", "");
         }
         let plates: Vec<&str> = case.shell.keys().map(String::as_str).collect();
         let heard = transient.sound.iter().flat_map(|sound| &sound.plates);
@@ -126,13 +120,11 @@ pub(super) fn check_names(root: &Section, case: &Case) {
 }
 
 /// Refuses patterns that name no scalar of a case that is sound but for them.
-pub(super) fn check_sensitivity(root: &Section, case: &Case) {
-    let Some(analysis) = case.sensitivity.as_ref().filter(|_| root.sound_so_far()) else {
-        return;
-    };
-    // The scalars of the model: what is asked about them is none.
-    let Some(parameters) = root.take(Case { sensitivity: None, ..case.clone() }.parameters()) else { return };
-    let paths = || parameters.iter().map(|p| p.path.as_str());
+fn check_sensitivity(root: &mut Report, case: &Case, scalars: Option<&[Parameter]>) {
+    let (Some(analysis), Some(parameters)) = (&case.sensitivity, scalars) else { return };
+    // What is asked about the scalars is none of them.
+    let paths =
+        || parameters.iter().map(|p| p.path.as_str()).filter(|path| !path.starts_with("sensitivity."));
     for pattern in
         analysis.parameters.iter().filter(|pattern| !paths().any(|path| path_matches(pattern, path)))
     {
@@ -146,9 +138,20 @@ pub(super) fn check_sensitivity(root: &Section, case: &Case) {
 }
 
 /// What a case with matrices may not say besides, and what only such a case may say.
-fn check_matrices(root: &Section, case: &Case) {
-    let built = ["mesh", "point", "material", "shell", "bar", "mass", "spring", "rigid", "support", "force"];
-    for key in built.into_iter().filter(|key| root.has(key)) {
+fn check_matrices(root: &mut Report, case: &Case) {
+    let built = [
+        ("mesh", case.mesh.is_some()),
+        ("point", !case.point.is_empty()),
+        ("material", !case.material.is_empty()),
+        ("shell", !case.shell.is_empty()),
+        ("bar", !case.bar.is_empty()),
+        ("mass", !case.mass.is_empty()),
+        ("spring", !case.spring.is_empty()),
+        ("rigid", !case.rigid.is_empty()),
+        ("support", !case.support.is_empty()),
+        ("force", !case.force.is_empty()),
+    ];
+    for (key, _) in built.into_iter().filter(|(_, there)| *there) {
         root.fault(
             key,
             "a part of a model",
@@ -168,7 +171,7 @@ fn check_matrices(root: &Section, case: &Case) {
         if contact.points.is_none() {
             let help = "Each point gives its normal and tangential degrees of freedom";
             root.fault(
-                &format!("contact.{name}.points"),
+                &format!("contact.{}.points", dotted(name)),
                 "nothing",
                 "contact points, beside [matrices]",
                 help,
@@ -180,7 +183,7 @@ fn check_matrices(root: &Section, case: &Case) {
             [("parts", !modes.parts.is_empty()), ("clamp", !modes.clamp.is_empty()), ("free", modes.free)];
         for (key, _) in parts.into_iter().filter(|(_, there)| *there) {
             root.fault(
-                &format!("modes.{name}.{key}"),
+                &format!("modes.{}.{key}", dotted(name)),
                 "a part of a model",
                 "no such key beside [matrices]",
                 "Remove it",
@@ -189,7 +192,7 @@ fn check_matrices(root: &Section, case: &Case) {
     }
 }
 
-pub(in crate::case) fn unknown_name(root: &Section, key: &str, name: &str, kind: &str, known: &[&str]) {
+pub(super) fn unknown_name(root: &mut Report, key: &str, name: &str, kind: &str, known: &[&str]) {
     let help = crate::error::nearest(name, known.iter().copied())
         .map_or(String::new(), |near| format!("Did you mean \"{near}\"?"));
     let list = if known.is_empty() { "none is defined".to_string() } else { known.join(", ") };

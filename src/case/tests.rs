@@ -1,4 +1,5 @@
 use super::*;
+use crate::contact::Exponential;
 
 const RIG: &str = r#"
 title = "A small rig"
@@ -78,7 +79,7 @@ fn parse(text: &str) -> Result<Case> {
 fn the_resolved_case_reads_back_as_the_same_case() {
     let case = parse(RIG).unwrap();
     assert_eq!(case.shell["disc"].thickness, 1e-3);
-    assert_eq!(case.contact["rim"].pressing, Pressing::Load(20.0));
+    assert_eq!(case.contact["rim"].pressing, Pressing::Load { load: 20.0 });
     assert_eq!(case.contact["rim"].normal.stiffness, 1e10);
     assert_eq!(case.cea.as_ref().unwrap().basis_below, 9000.0);
     assert_eq!(parse(&case.to_toml()).unwrap(), case);
@@ -95,7 +96,7 @@ fn a_parameter_is_set_by_its_path() {
     let other = case.with_parameter("contact.rim.friction.mu0", 0.5).unwrap();
     assert_eq!(
         other.contact["rim"].friction.law,
-        FrictionCurve::Exponential { mu0: 0.5, mu1: 0.1, alpha: 5.0 }
+        FrictionCurve::Exponential { law: Exponential { mu0: 0.5, mu1: 0.1, alpha: 5.0 } }
     );
     let error = case.with_parameter("contact.rim.friction.mu", 0.5).unwrap_err().to_string();
     assert!(error.contains("contact.rim.friction.mu0"), "{error}");
@@ -114,8 +115,8 @@ fn every_number_of_a_case_is_a_parameter_with_unit_and_bounds() {
         }
     }
     let case = parse(RIG).unwrap();
-    let parameters = case.parameters().unwrap();
-    assert_eq!(parameters.len(), count(&toml::Value::try_from(&case).unwrap()));
+    let parameters = case.parameters();
+    assert_eq!(parameters.len(), count(&toml::Value::Table(to_toml(&case))));
     for p in &parameters {
         assert!(p.accepts(p.value), "{p:?}");
         assert_eq!(case.with_parameter(&p.path, p.value).unwrap(), case, "{}", p.path);

@@ -28,7 +28,7 @@ impl Places {
         Error::Input(Faults(located.into_iter().map(|(_, fault)| fault).collect()))
     }
 
-    fn with_line(&self, fault: Fault) -> (usize, Fault) {
+    pub(super) fn with_line(&self, fault: Fault) -> (usize, Fault) {
         let key = fault.place.strip_prefix('`').and_then(|rest| rest.split('`').next());
         let Some(key) = key.filter(|_| !self.file.is_empty()) else { return (0, fault) };
         let mut path = key;

@@ -77,6 +77,19 @@ pub fn dimension_of(symbol: &'static str) -> Dimension {
 
 /// Reads `"1.5 mm"` as SI in the dimension asked for; the error says what was found instead.
 pub fn parse_quantity(text: &str, expected: Dimension) -> Result<f64, String> {
+    let (value, unit, powers) = parse_any(text)?;
+    if powers == expected.powers {
+        return Ok(value);
+    }
+    let text = text.trim();
+    Err(match unit {
+        "" => format!("\"{text}\", a number without a unit (in SI, write {text} without quotation marks)"),
+        _ => format!("\"{text}\", whose unit \"{unit}\" is of another dimension"),
+    })
+}
+
+/// Reads `"1.5 mm"` as SI, with its unit and the powers of that.
+pub(super) fn parse_any(text: &str) -> Result<(f64, &str, Powers), String> {
     let text = text.trim();
     let bytes = text.as_bytes();
     let exponent = |i: usize| {
@@ -87,18 +100,9 @@ pub fn parse_quantity(text: &str, expected: Dimension) -> Result<f64, String> {
     let split = (0..bytes.len()).find(|i| !of_number(*i)).unwrap_or(bytes.len());
     let number = &text[..split];
     let plain: f64 = number.parse().map_err(|_| format!("\"{text}\", which does not begin with a number"))?;
-    let unit = parse_unit(text[split..].trim())
-        .ok_or_else(|| format!("\"{text}\", whose unit \"{}\" is not known", text[split..].trim()))?;
-    if unit.powers != expected.powers {
-        let unit = text[split..].trim();
-        return Err(match unit {
-            "" => {
-                format!("\"{text}\", a number without a unit (in SI, write {plain} without quotation marks)")
-            }
-            _ => format!("\"{text}\", whose unit \"{unit}\" is of another dimension"),
-        });
-    }
-    Ok(unit.in_si(number).unwrap_or(plain))
+    let unit = text[split..].trim();
+    let found = parse_unit(unit).ok_or_else(|| format!("\"{text}\", whose unit \"{unit}\" is not known"))?;
+    Ok((found.in_si(number).unwrap_or(plain), unit, found.powers))
 }
 
 /// A unit in SI: 10^tens · times / over.

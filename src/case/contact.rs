@@ -1,0 +1,266 @@
+//! `[contact.NAME]`: what presses and slides, and its laws.
+
+pub use crate::contact::{FrictionCurve, FrictionSense as Sense};
+use crate::schema::units::*;
+use crate::schema::{Derivative, Form, Invalidates, Report, Units, Value, choices, declare, key, variants};
+use std::f64::consts::FRAC_PI_4;
+use std::ops::Bound;
+use toml::de::DeValue;
+
+declare! {
+    /// A contact pair.
+    pub struct Contact, checked by check {
+        /// The contact points themselves; only with matrices, where they stand for the regions.
+        pub points: Option<ContactPoints> =
+            key::value("the path of a table (CSV), or rows of normal, t1 and perhaps t2").optional(),
+        /// Region of the body: rim lines, a face, or a point.
+        pub body: String = region(points.is_some(), "a region of rim lines, of faces, or of a point"),
+        /// Region of the counter-body, or `ground`.
+        pub counter: String = region(points.is_some(), "a region, or \"ground\""),
+        /// Direction in which the body moves into the ground; only for a contact with the ground.
+        pub into: Option<[f64; 3]> = key::direction().optional().invalidates(Invalidates::Interface),
+        /// Contact points across the thickness of a rim: 2, one at each edge, or 1, in the middle.
+        pub points_across: usize = key::count().check("1 or 2", |n| *n <= 2).or(2),
+        /// Points with a larger initial gap are left out \[m\].
+        pub reach: f64 = key::quantity(LENGTH)
+            .positive()
+            .or(1e-3)
+            .invalidates(Invalidates::Interface)
+            .derivative(|_| Derivative::None("it only decides which contact points are considered")),
+        /// What presses the pair together.
+        pub pressing: Pressing = key::flat(),
+        /// V \[m/s\] of the counter-body relative to the body along the sliding direction.
+        pub sliding_velocity: f64 = key::quantity(VELOCITY)
+            .check("a velocity that is not zero (steady sliding has no state at rest)", |v| *v != 0.0)
+            .invalidates(Invalidates::Equilibrium),
+        /// How far the counter-body travels in all along the sliding direction \[m\]; it must stay under the body.
+        pub stroke: f64 = {
+            let given = points.is_some();
+            key::quantity(LENGTH)
+                .non_negative()
+                .check("0 beside `points`, which do not travel", move |v| !given || *v == 0.0)
+                .or(0.0)
+                .invalidates(Invalidates::Interface)
+                .derivative(|_| Derivative::None("it only decides which contact points are considered"))
+        },
+        /// Direction in which the counter-body slides.
+        pub sliding_direction: [f64; 3] =
+            key::direction().or([1.0, 0.0, 0.0]).invalidates(Invalidates::Interface),
+        /// Tilts and moves everything connected to the body; as meshed when absent.
+        pub placement: Option<Placement> = key::table().optional(),
+        /// Normal law.
+        pub normal: Normal = key::table()
+            .required("a table with `per` and a `stiffness` above zero")
+            .invalidates(Invalidates::Law),
+        /// Friction law.
+        pub friction: Friction = key::table()
+            .required("a table such as { law = \"coulomb\", mu0 = 0.4 }")
+            .invalidates(Invalidates::Law),
+        /// What bends before a point slips.
+        pub bristle: Option<BristleChoice> = {
+            let per = normal.per;
+            key::table().invalidates(Invalidates::Law).optional().beforehand(move |b: &mut BristleChoice| b.per = per)
+        },
+    }
+}
+
+/// A region of a mesh, which is not there where the contact points are given.
+fn region(given: bool, expected: &'static str) -> crate::schema::Field<String> {
+    if given { key::text() } else { key::name(expected).required_sometimes("required without `points`") }
+}
+
+fn check(contact: &Contact, report: &mut Report) {
+    let given = contact.points.is_some();
+    let on_mesh = [
+        ("body", !contact.body.is_empty()),
+        ("counter", !contact.counter.is_empty()),
+        ("into", contact.into.is_some()),
+        ("placement", contact.placement.is_some()),
+    ];
+    for (key, _) in on_mesh.into_iter().filter(|(_, there)| given && *there) {
+        report.fault(key, "a place on a mesh", "no such key beside `points`", "Remove it");
+    }
+    let ground = contact.counter == "ground";
+    if ground && contact.into.is_none() {
+        let expected = "the direction in which the body moves into the ground, such as [0, 0, -1]";
+        report.fault("into", "nothing", expected, "");
+    }
+    if !ground && !given && contact.into.is_some() {
+        report.fault("into", "a direction", "no such key for a contact between two parts", "Remove it");
+    }
+    let Some(_) = &contact.bristle else { return };
+    if contact.friction.regularisation > 0.0 {
+        let expected = "none beside a `bristle`, which sticks by itself";
+        report.fault("friction.regularisation", "a velocity", expected, "");
+    }
+    if contact.friction.sense != Sense::WithSlip {
+        report.fault("friction.sense", "against_sliding", "with_slip beside a `bristle`", "");
+    }
+    if !contact.normal.unilateral {
+        let expected = "true beside a `bristle`: a contact that pulls does not stick";
+        report.fault("normal.unilateral", "false", expected, "");
+    }
+}
+
+/// Contact points that are given, not found on a mesh.
+///
+/// A direction is a sum of degrees of freedom counted from 1, each with an optional factor before it:
+/// `12 -45` is u₁₂ − u₄₅, `-3 +0.5*7` is −u₃ + ½ u₇. The normal closes the contact when u moves along it; the tangents
+/// are the displacement of the body relative to the counter-body along and across the sliding direction.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ContactPoints {
+    /// A table (CSV) with the columns `normal`, `t1` and, when there are any, `t2`, `weight` (1), `gap` (0) \[m\],
+    /// `x`, `y`, `z` \[m\].
+    File(String),
+    /// Rows of `normal`, `t1` and, when there is one, `t2`.
+    Rows(Vec<Vec<String>>),
+}
+
+impl crate::schema::Blank for ContactPoints {
+    fn blank() -> Self {
+        ContactPoints::Rows(Vec::new())
+    }
+}
+
+impl Value for ContactPoints {
+    fn read(value: &DeValue, units: &Units, k: usize) -> Result<Self, String> {
+        if let Some(file) = value.as_str() {
+            let sound = key::is_name(file);
+            return if sound {
+                Ok(ContactPoints::File(file.into()))
+            } else {
+                Err(format!("the string {file:?}"))
+            };
+        }
+        let rows: Vec<Vec<String>> = Value::read(value, units, k)?;
+        match rows.iter().position(|row| !matches!(row.len(), 2 | 3)) {
+            None if !rows.is_empty() => Ok(ContactPoints::Rows(rows)),
+            None => Err("no rows".into()),
+            Some(k) => Err(format!("a row of {}, row {}", rows[k].len(), k + 1)),
+        }
+    }
+
+    fn to_toml(&self) -> Option<toml::Value> {
+        match self {
+            ContactPoints::File(file) => file.to_toml(),
+            ContactPoints::Rows(rows) => rows.to_toml(),
+        }
+    }
+
+    fn form() -> Form {
+        let rows = Form::List(Box::new(Form::List(Box::new(Form::Text), None)), None);
+        Form::Either(Box::new(Form::Text), Box::new(rows))
+    }
+}
+
+variants! {
+    /// What presses a contact pair together.
+    #[derive(Copy)]
+    pub enum Pressing by presence {
+        /// A normal load.
+        Load "load" {
+            /// ΣN \[N\].
+            load: f64 = key::quantity(FORCE).positive().invalidates(Invalidates::Equilibrium),
+        }
+        /// A prescribed approach of the bodies.
+        Approach "approach" {
+            /// Approach \[m\].
+            approach: f64 = key::quantity(LENGTH).invalidates(Invalidates::Equilibrium),
+        }
+    }
+}
+
+declare! {
+    /// Elastic bristles between the bodies, for sticking in time; in the unit of the normal stiffness.
+    pub struct BristleChoice {
+        /// k_t.
+        pub stiffness: f64 = key::quantity(per.dimensions()[0]).positive().derivative(|_| Derivative::Zero),
+        /// c_t.
+        pub damping: f64 =
+            key::quantity(per.dimensions()[2]).non_negative().or(0.0).derivative(|_| Derivative::Zero),
+    }
+    also {
+        /// What the normal stiffness belongs to.
+        pub per: StiffnessPer,
+    }
+}
+
+declare! {
+    /// Where the body stands on the counter-body.
+    pub struct Placement {
+        /// θ \[rad\]: body and all that hangs on it rotated about the lateral axis y through the body's centre; the
+        /// lowest point moves towards −x when θ > 0.
+        pub lead_angle: f64 = key::quantity(ANGLE)
+            .within(Bound::Included(-FRAC_PI_4), Bound::Included(FRAC_PI_4))
+            .or(0.0),
+        /// x, y of the lowest point, from the middle of the counter-body's region \[m\].
+        pub position: [f64; 2] = key::quantities(LENGTH).or([0.0; 2]),
+    }
+}
+
+choices! {
+    /// What a contact stiffness belongs to.
+    pub enum StiffnessPer {
+        /// The one point nearest to the counter-body \[N/m\].
+        Point = "point",
+        /// Length of a line contact \[N/m²\].
+        Length = "length",
+        /// Area of a face contact \[N/m³\].
+        Area = "area",
+    }
+}
+
+impl StiffnessPer {
+    /// The dimensions of stiffness, cubic stiffness and damping.
+    fn dimensions(self) -> [Dimension; 3] {
+        let (power, [plain, cubic, dashpot], example) = match self {
+            StiffnessPer::Point => (0, ["N/m", "N/m^3", "N s/m"], "a stiffness such as \"10 MN/m\""),
+            StiffnessPer::Length => {
+                (1, ["N/m^2", "N/m^4", "N s/m^2"], "a stiffness per length such as \"10 GN/m^2\"")
+            }
+            StiffnessPer::Area => {
+                (2, ["N/m^3", "N/m^5", "N s/m^3"], "a stiffness per area such as \"10 GN/m^3\"")
+            }
+        };
+        [
+            STIFFNESS.per_metre(power, plain, example),
+            STIFFNESS.per_metre(power + 2, cubic, "a cubic stiffness: the unit of `stiffness` per m^2"),
+            DASHPOT.per_metre(power, dashpot, "a damping constant: the unit of `stiffness` times s"),
+        ]
+    }
+}
+
+declare! {
+    /// N = k_n δ + k_nl δ³ + c_n δ̇.
+    pub struct Normal, checked by check_normal {
+        /// What the coefficients belong to.
+        pub per: StiffnessPer =
+            key::choice().expecting("what the stiffness belongs to: point, length or area"),
+        /// k_n.
+        pub stiffness: f64 = key::quantity(per.dimensions()[0]).non_negative(),
+        /// k_nl.
+        pub cubic: f64 = key::quantity(per.dimensions()[1]).non_negative().or(0.0),
+        /// c_n.
+        pub damping: f64 = key::quantity(per.dimensions()[2]).non_negative().or(0.0),
+        /// Never pulls.
+        pub unilateral: bool = key::flag(true),
+    }
+}
+
+fn check_normal(normal: &Normal, report: &mut Report) {
+    if normal.stiffness == 0.0 && normal.cubic == 0.0 {
+        report.fault("stiffness", "no contact stiffness", "a `stiffness` or a `cubic` above zero", "");
+    }
+}
+
+declare! {
+    /// μ(v, p).
+    pub struct Friction {
+        /// The friction coefficient.
+        pub law: FrictionCurve = key::flat(),
+        /// v_ε \[m/s\] of the regularised slip direction.
+        pub regularisation: f64 = key::quantity(VELOCITY).non_negative().or(0.0),
+        /// Which way friction pulls the body.
+        pub sense: Sense = key::choice().or(Sense::WithSlip),
+    }
+}

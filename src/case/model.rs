@@ -1,0 +1,157 @@
+//! `[shell]`, `[bar]`, `[mass]`, `[spring]`, `[rigid]`, `[support]`, `[force]`, `[damping]`: the structure.
+
+use crate::schema::units::*;
+use crate::schema::{Derivative, Invalidates, declare, key, variants};
+use crate::structure::Section;
+use std::ops::Bound;
+
+declare! {
+    /// A plate.
+    pub struct Shell {
+        /// Material by name.
+        pub material: String = key::name("the name of a material"),
+        /// h \[m\].
+        pub thickness: f64 = key::quantity(LENGTH).positive(),
+        /// Holds the membrane.
+        pub bending_only: bool = key::flag(false),
+        /// Counts rotary inertia.
+        pub rotary_inertia: bool = key::flag(true),
+    }
+}
+
+declare! {
+    /// A bar.
+    pub struct Bar {
+        /// Material by name.
+        pub material: String = key::name("the name of a material"),
+        /// A vector in the plane of the section's first axis.
+        pub orientation: [f64; 3] = key::direction().or([0.0, 0.0, 1.0]),
+        /// Its section.
+        pub profile: Profile = key::flat(),
+    }
+}
+
+variants! {
+    /// The section of a bar: a diameter that is a scalar of the case, or its properties in full.
+    #[derive(Copy)]
+    pub enum Profile by presence {
+        /// A full round bar.
+        Round "diameter" {
+            /// d \[m\].
+            diameter: f64 = key::quantity(LENGTH).positive(),
+        }
+        /// Any section.
+        Full "section" {
+            /// Its properties.
+            section: Section = key::table(),
+        }
+    }
+}
+
+impl Profile {
+    /// The properties of the section.
+    pub fn section(&self) -> Section {
+        match *self {
+            Profile::Round { diameter } => Section::round(diameter),
+            Profile::Full { section } => section,
+        }
+    }
+}
+
+declare! {
+    /// A concentrated mass at every point of a region.
+    pub struct Mass {
+        /// The region.
+        pub on: String = key::name("a region of points"),
+        /// m \[kg\] at each node.
+        pub mass: f64 = key::quantity(MASS).non_negative(),
+        /// Moments of inertia about x, y, z \[kg m²\].
+        pub inertia: [f64; 3] = key::quantities(INERTIA).or([0.0; 3]),
+    }
+}
+
+declare! {
+    /// Springs from the nodes of a region to the ground, or from one point to another.
+    pub struct SpringSet {
+        /// The region whose nodes are sprung; the stiffness is shared equally among them.
+        pub on: String = key::name("a region"),
+        /// A region of one point at the other end; the ground when absent.
+        pub to: Option<String> = key::name("a region of one point").optional(),
+        /// Direction.
+        pub direction: [f64; 3] = key::direction().expecting("a direction such as [1, 0, 0]"),
+        /// Acts on rotations.
+        pub rotational: bool = key::flag(false),
+        /// Total k \[N/m or N m\].
+        pub stiffness: f64 =
+            key::quantity(if *rotational { ROTATIONAL_STIFFNESS } else { STIFFNESS }).non_negative(),
+        /// Total c \[N s/m or N m s\].
+        pub damping: f64 = key::quantity(if *rotational { ROTATIONAL_DASHPOT } else { DASHPOT })
+            .non_negative()
+            .or(0.0)
+            .invalidates(Invalidates::Damping),
+    }
+}
+
+declare! {
+    /// Regions that move as one rigid body with a point.
+    pub struct Rigid {
+        /// A region of one point.
+        pub master: String = key::name("a region of one point"),
+        /// The regions that follow.
+        pub follow: Vec<String> = key::names("regions that move with the master").not_empty(),
+    }
+}
+
+/// The names of the six degrees of freedom of a node, in order.
+pub(crate) const DOF_NAMES: [&str; 6] = ["ux", "uy", "uz", "rx", "ry", "rz"];
+
+declare! {
+    /// Held degrees of freedom of regions.
+    pub struct Held {
+        /// The regions.
+        pub on: Vec<String> = key::names("a region, or a list of them").not_empty(),
+        /// Names of held degrees of freedom among ux, uy, uz, rx, ry, rz, or `all`.
+        pub held: Vec<String> = key::names("\"all\", or some of ux, uy, uz, rx, ry, rz")
+            .check("\"all\", or some of ux, uy, uz, rx, ry, rz", |list| {
+                list.iter().all(|name| name == "all" || DOF_NAMES.contains(&name.as_str()))
+            })
+            .or(vec!["all".into()]),
+    }
+}
+
+impl Held {
+    /// Whether each of the six degrees of freedom is held.
+    pub fn holds(&self) -> [bool; 6] {
+        DOF_NAMES.map(|dof| self.held.iter().any(|name| name == dof || name == "all"))
+    }
+}
+
+declare! {
+    /// A force shared equally by the nodes of a region.
+    pub struct Force {
+        /// The region.
+        pub on: String = key::name("a region"),
+        /// Total force \[N\].
+        pub force: [f64; 3] = key::quantities(FORCE).expecting("three forces such as [0, \"1 N\", 0]"),
+    }
+}
+
+declare! {
+    /// Damping of the whole structure beyond its materials'.
+    pub struct StructureDamping {
+        /// ζ of every real mode up to the highest one in use.
+        pub modal_ratio: f64 = key::quantity(NUMBER)
+            .within(Bound::Included(0.0), Bound::Excluded(1.0))
+            .or(0.0),
+        /// ζ of single modes instead: (frequency near the mode \[Hz\], ζ).
+        pub modal_ratios: Vec<[f64; 2]> = key::pairs([FREQUENCY, NUMBER])
+            .check("rows of a frequency and a ratio from 0 to below 1", |rows| {
+                rows.iter().all(|[hz, ratio]| *hz >= 0.0 && (0.0..1.0).contains(ratio))
+            })
+            .or(Vec::new())
+            .derivative(|at| match at {
+                [_, 0] => Derivative::None("it names a mode"),
+                _ => Derivative::Exists,
+            }),
+    }
+}

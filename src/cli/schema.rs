@@ -1,0 +1,29 @@
+//! `stridor schema`: what a case file may say, for editors and for people.
+
+use super::{Common, give};
+use crate::case::Case;
+use crate::error::Result;
+use crate::schema::{describe, json_schema, key_reference};
+use clap::Args;
+use std::process::ExitCode;
+
+#[derive(Args)]
+pub struct Options {
+    /// Print the reference of all keys in Markdown instead
+    #[arg(long)]
+    markdown: bool,
+}
+
+pub fn run(options: &Options, _: &Common) -> Result<ExitCode> {
+    let case = describe::<Case>();
+    match options.markdown {
+        true => give(format!("# Keys of a case file\n\n{}", key_reference(&case).trim_end()))?,
+        false => give(of_cases())?,
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The JSON Schema of case files.
+pub(super) fn of_cases() -> String {
+    format!("{:#}", json_schema("A case of stridor", &describe::<Case>()))
+}

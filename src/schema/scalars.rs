@@ -1,0 +1,129 @@
+//! The numbers of tables: each has a path, a value, a unit and bounds, and can be set.
+
+use super::keys::dotted;
+use super::{Key, Slot, Table, TableSlot, Variants, Visitor};
+use std::ops::{Bound, RangeBounds};
+
+/// A number of a table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scalar {
+    /// Keys joined by dots; entries of lists by their index from 0.
+    pub path: String,
+    /// Its value in SI units.
+    pub value: f64,
+    /// The SI unit; empty for a pure number.
+    pub unit: &'static str,
+    /// The values that it may have.
+    pub bounds: (Bound<f64>, Bound<f64>),
+    /// What must be computed again when it changes.
+    pub invalidates: Invalidates,
+    /// Whether eigenvalues have a derivative by it.
+    pub derivative: Derivative,
+}
+
+impl Scalar {
+    /// Whether it may have `value`.
+    pub fn accepts(&self, value: f64) -> bool {
+        value.is_finite() && self.bounds.contains(&value)
+    }
+}
+
+/// What a change of a scalar invalidates, the cheapest first; each includes those before it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Invalidates {
+    /// What is asked or compared: bands, measured values. The system stays.
+    Question,
+    /// C of the structure. The steady state and the real modes stay.
+    Damping,
+    /// The contact law. The compliance that the steady state is condensed on stays.
+    Law,
+    /// The steady state: loads and velocities.
+    Equilibrium,
+    /// Which points may touch, and their directions.
+    Interface,
+    /// M or K: mesh, materials, sections, springs, where the bodies stand.
+    Structure,
+}
+
+/// Whether eigenvalues have a derivative by a scalar.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Derivative {
+    /// They have.
+    Exists,
+    /// They do not depend on it.
+    Zero,
+    /// They have none, for this reason.
+    None(&'static str),
+}
+
+/// A walk over the numbers of a table.
+struct Walk<'a> {
+    path: String,
+    invalidates: Invalidates,
+    each: &'a mut dyn FnMut(Scalar, &mut f64),
+}
+
+/// Every number of `table`, in the order of declaration. A key whose table says nothing invalidates the structure.
+pub fn scalars<T: Table + Clone>(table: &T) -> Vec<Scalar> {
+    let mut all = Vec::new();
+    walk(&mut table.clone(), &mut |scalar, _| all.push(scalar));
+    all
+}
+
+/// Sets the number at `path`; `false` when there is none.
+pub fn set_scalar(table: &mut dyn Table, path: &str, value: f64) -> bool {
+    let mut found = false;
+    walk(table, &mut |scalar, slot| {
+        if scalar.path == path {
+            *slot = value;
+            found = true;
+        }
+    });
+    found
+}
+
+fn walk(table: &mut dyn Table, each: &mut dyn FnMut(Scalar, &mut f64)) {
+    table.visit(&mut Walk { path: String::new(), invalidates: Invalidates::Structure, each });
+}
+
+impl Walk<'_> {
+    fn path_of(&self, key: &str) -> String {
+        let key = dotted(key);
+        if self.path.is_empty() { key.into_owned() } else { format!("{}.{key}", self.path) }
+    }
+}
+
+impl Visitor for Walk<'_> {
+    fn value(&mut self, key: Key, slot: &mut dyn Slot) {
+        let path = self.path_of(key.name);
+        let about = slot.about();
+        let (bounds, derivative) = (about.bounds, about.derivative);
+        let invalidates = about.invalidates.unwrap_or(self.invalidates);
+        let units: [&'static str; 2] = [0, 1].map(|k| about.units.at(k).map_or("", |d| d.symbol));
+        slot.numbers(&mut |at, value| {
+            let path = at.iter().fold(path.clone(), |path, k| format!("{path}.{k}"));
+            let unit = units[at.last().map_or(0, |k| (*k).min(1))];
+            let derivative =
+                if invalidates == Invalidates::Question { Derivative::Zero } else { derivative(at) };
+            let scalar = Scalar { path, value: *value, unit, bounds, invalidates, derivative };
+            (self.each)(scalar, value);
+        });
+    }
+
+    fn table(&mut self, key: Key, slot: &mut dyn TableSlot) {
+        let path = self.path_of(key.name);
+        let invalidates = slot.invalidates().unwrap_or(self.invalidates);
+        slot.each(&mut |name, table| {
+            let path = name.map_or(path.clone(), |name| format!("{path}.{}", dotted(name)));
+            table.visit(&mut Walk { path, invalidates, each: &mut *self.each });
+        });
+    }
+
+    fn variants(&mut self, _: &Variants, current: usize, visit: &mut dyn FnMut(usize, &mut dyn Visitor)) {
+        visit(current, self);
+    }
+
+    fn flat(&mut self, table: &mut dyn Table) {
+        table.visit(self);
+    }
+}
