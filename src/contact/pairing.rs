@@ -34,6 +34,20 @@ pub struct Surfaces<'a> {
     pub stroke: f64,
 }
 
+impl<'a> Surfaces<'a> {
+    /// The pair `name` of two plates, of whose contact points those within 1 mm are kept, without travel.
+    pub fn new(
+        name: &'a str,
+        nodes: &'a [[f64; 3]],
+        [body, counter]: [&'a ShellPart; 2],
+        side: ContactSide<'a>,
+        sliding_direction: [f64; 3],
+    ) -> Self {
+        let patch = ContactPatch::Reach(1e-3);
+        Surfaces { name, nodes, body, side, counter, sliding_direction, patch, stroke: 0.0 }
+    }
+}
+
 /// The part of the body that touches.
 #[derive(Debug, Clone, Copy)]
 pub enum ContactSide<'a> {

@@ -154,6 +154,14 @@ impl Mesh {
         Err(Error::input(fault))
     }
 
+    /// The faces of the region called `name`.
+    ///
+    /// # Errors
+    /// Those of [`Mesh::require`].
+    pub fn faces(&self, name: &str) -> Result<Vec<Element>> {
+        Ok(self.require(name, 2)?.elements.iter().map(|k| self.elements[*k].clone()).collect())
+    }
+
     /// The nodes that the elements of `region` use, ascending, each once.
     pub fn region_nodes(&self, region: &Region) -> Vec<usize> {
         let mut nodes: Vec<usize> =

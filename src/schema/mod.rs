@@ -2,8 +2,8 @@
 //! change of it invalidates. Reading, checking, writing, the list of scalars, the JSON Schema and the reference of the keys are
 //! visitors of these declarations.
 //!
-//! [`declare!`](crate::schema::declare) makes a struct of a table, [`variants!`](crate::schema::variants) an enum of tables that a
-//! key tells apart, [`choices!`](crate::schema::choices) an enum of words.
+//! `declare!` makes a struct of a table, `variants!` an enum of tables that a
+//! key tells apart, `choices!` an enum of words.
 
 mod check;
 mod defaults;

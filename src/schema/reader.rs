@@ -206,27 +206,24 @@ impl<'a> Section<'a> {
 
     /// A quantity: a number in SI units, or a string with its unit.
     pub fn quantity(&'a self, key: &str, dimension: Dimension) -> Found<'a, f64> {
-        let found = self.find(key, dimension.name, |value| quantity_of(value, Some(dimension)));
-        found
+        self.find(key, dimension.name, |value| quantity_of(value, Some(dimension)))
     }
 
     /// A list of `N` quantities.
     pub fn quantities<const N: usize>(&'a self, key: &str, dimension: Dimension) -> Found<'a, [f64; N]> {
         let expected = format!("a list of {N} values, each {}", dimension.name);
-        let found: Found<'a, [f64; N]> = self.find(key, &expected, |value| {
+        self.find(key, &expected, |value| {
             let list = list_of(value, |item| quantity_of(item, Some(dimension)))?;
             let count = list.len();
             list.try_into().map_err(|_| format!("a list of {count}"))
-        });
-        found
+        })
     }
 
     /// A list of quantities of any length.
     pub fn quantity_list(&'a self, key: &str, dimension: Dimension) -> Found<'a, Vec<f64>> {
-        let found = self.find(key, &format!("a list, each {}", dimension.name), |value| {
+        self.find(key, &format!("a list, each {}", dimension.name), |value| {
             list_of(value, |item| quantity_of(item, Some(dimension)))
-        });
-        found
+        })
     }
 
     /// A string for people to read, of any length.

@@ -31,7 +31,7 @@ pub trait TableSlot {
     fn each(&mut self, each: &mut dyn FnMut(Option<&str>, &mut dyn Table));
 }
 
-/// Declares a table that is there always: [`OneTable`].
+/// Declares a table that is there always.
 pub fn table() -> OneTable {
     OneTable { presence: Presence::Always, invalidates: None }
 }
@@ -74,10 +74,13 @@ impl OneTable {
     }
 }
 
+/// What is done with a table before its keys are visited.
+type Preparation<T> = Box<dyn Fn(&mut T)>;
+
 /// A table that may be absent.
 pub struct MaybeOne<T> {
     invalidates: Option<Invalidates>,
-    beforehand: Option<Box<dyn Fn(&mut T)>>,
+    beforehand: Option<Preparation<T>>,
 }
 
 impl<T> MaybeOne<T> {

@@ -74,6 +74,11 @@ pub struct ShellPart {
 }
 
 impl ShellPart {
+    /// A plate of `faces`, its membrane free, its rotary inertia counted; `thickness` h \[m\].
+    pub fn new(name: &str, faces: Vec<Element>, material: Material, thickness: f64) -> Self {
+        ShellPart { name: name.into(), faces, material, thickness, bending_only: false, rotary_inertia: true }
+    }
+
     /// A \[m²\] of all faces.
     pub fn area(&self, nodes: &[[f64; 3]]) -> f64 {
         let triangles = self.faces.iter().flat_map(split_face);

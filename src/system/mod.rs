@@ -37,6 +37,12 @@ pub struct System {
 }
 
 impl System {
+    /// A structure with sliding contacts; no external force, no prestress, nothing imported.
+    pub fn new(structure: Structure, pairs: Vec<ContactPair>) -> System {
+        let load = vec![0.0; structure.n_dofs()];
+        System { structure, pairs, load, prestress: None, coupling: None }
+    }
+
     /// The number of degrees of freedom.
     pub fn n_dofs(&self) -> usize {
         self.structure.n_dofs()
