@@ -95,7 +95,7 @@ fn mesh(bytes: &[u8]) -> Result<String> {
 }
 
 fn matrix(bytes: &[u8]) -> Result<String> {
-    let matrix = matrix_market::parse("matrix", bytes)?;
+    let matrix = matrix_market::parse("matrix", bytes, 0)?;
     Ok(format!("{} rows, {}", about(matrix.re.nrows()), about(matrix.re.compute_nnz())))
 }
 

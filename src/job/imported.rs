@@ -41,10 +41,13 @@ pub struct ImportedModel {
 pub fn read_model(case: &Case, matrices: &Matrices) -> Result<ImportedModel> {
     let mut faults = Faults::new();
     let place = |key: &str, file: &str| format!("`matrices.{key}` {}", case.folder.join(file).display());
-    let mut read = |file: &str| faults.take(matrix_market::read(&case.folder.join(file)));
-    let (mass, stiffness) = (read(&matrices.mass), read(&matrices.stiffness));
-    let damping: Option<Option<MarketMatrix>> = matrices.damping.as_ref().map(|file| read(file));
-    let load = matrices.load.as_ref().map(|file| read(file).map(|f| (file, f)));
+    let mut read = |file: &str, columns| faults.take(matrix_market::read(&case.folder.join(file), columns));
+    // K has entries in every column; the other matrices may be nearly empty.
+    let stiffness = read(&matrices.stiffness, 0);
+    let columns = stiffness.as_ref().map_or(0, |k| k.re.ncols());
+    let mass = read(&matrices.mass, columns);
+    let damping: Option<Option<MarketMatrix>> = matrices.damping.as_ref().map(|file| read(file, columns));
+    let load = matrices.load.as_ref().map(|file| read(file, columns).map(|f| (file, f)));
     let rows = mass.as_ref().or(stiffness.as_ref()).map_or(0, |m| m.re.nrows());
     let known = rows > 0;
     let places = matrices
@@ -100,7 +103,7 @@ fn read_terms(case: &Case, matrices: &Matrices, rows: usize, faults: &mut Faults
         for ((key, file), terms) in files.into_iter().zip(&mut terms) {
             let path = file.as_ref().map(|file| case.folder.join(file));
             let Some(path) = path else { continue };
-            let Some(matrix) = faults.take(matrix_market::read(&path)) else { continue };
+            let Some(matrix) = faults.take(matrix_market::read(&path, rows)) else { continue };
             let (m, n) = (matrix.re.nrows(), matrix.re.ncols());
             if rows > 0 && (m, n) != (rows, rows) {
                 faults.push(Fault::new(

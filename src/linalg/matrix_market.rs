@@ -15,7 +15,8 @@ use std::path::Path;
 
 /// The most rows or columns.
 const LARGEST: usize = 1 << 26;
-/// The most columns beyond the number of entries: a column takes memory even when it is empty.
+/// The most columns beyond the number of entries, in a matrix whose size is not known beforehand: a column takes memory
+/// even when it is empty.
 const EMPTY: usize = 1 << 22;
 /// Faults that are told of one file; a broken file has as many as lines.
 const TOLD: usize = 8;
@@ -54,27 +55,28 @@ struct Entry {
     value: c64,
 }
 
-/// Reads the file at `path`.
+/// Reads the file at `path`. A matrix of `known` columns, the number that another file of the same system confirms (else 0),
+/// may have as many empty ones as it likes.
 ///
 /// # Errors
 /// [`Error::Input`] with every fault found: no such file, a header that is none, a `pattern` without values, sizes
 /// beyond the file, entries outside the matrix or the triangle, numbers that are none or not finite, entries missing.
-pub fn read(path: &Path) -> Result<MarketMatrix> {
+pub fn read(path: &Path, known: usize) -> Result<MarketMatrix> {
     let name = path.display().to_string();
-    parse(&name, &read_bytes(path, "a MatrixMarket file")?)
+    parse(&name, &read_bytes(path, "a MatrixMarket file")?, known)
 }
 
-/// Reads the bytes of a file that faults call `name`.
+/// Reads the bytes of a file that faults call `name`; `known` is that of [`read`].
 ///
 /// # Errors
 /// Those of [`read`].
 ///
 /// ```
 /// let file = b"%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 3.0\n2 1 -1.5\n";
-/// let a = stridor::linalg::matrix_market::parse("k.mtx", file).unwrap();
+/// let a = stridor::linalg::matrix_market::parse("k.mtx", file, 0).unwrap();
 /// assert_eq!((a.re[(0, 0)], a.re[(0, 1)], a.re[(1, 0)]), (3.0, -1.5, -1.5));
 /// ```
-pub fn parse(name: &str, bytes: &[u8]) -> Result<MarketMatrix> {
+pub fn parse(name: &str, bytes: &[u8], known: usize) -> Result<MarketMatrix> {
     let mut lines = Lines { bytes, at: 0, number: 0 };
     let header = read_header(name, &mut lines)?;
     let (line, sizes) = loop {
@@ -117,7 +119,7 @@ pub fn parse(name: &str, bytes: &[u8]) -> Result<MarketMatrix> {
             "as many entries as the file holds",
         );
     }
-    if columns > entries + EMPTY {
+    if columns != known && columns > entries + EMPTY {
         return refused(
             format!("{columns} columns for {entries} entries"),
             &format!("at most {EMPTY} columns more than entries"),
@@ -457,7 +459,7 @@ mod tests {
     use super::*;
 
     fn text(header: &str, rest: &str) -> Result<MarketMatrix> {
-        parse("a.mtx", format!("%%MatrixMarket matrix {header}\n% a comment\n\n{rest}").as_bytes())
+        parse("a.mtx", format!("%%MatrixMarket matrix {header}\n% a comment\n\n{rest}").as_bytes(), 0)
     }
 
     #[test]
@@ -526,8 +528,17 @@ mod tests {
             let error = text(header, rest).unwrap_err();
             assert!(error.exit_code() == 2 && error.to_string().contains(part), "{header} {rest}: {error}");
         }
-        assert!(parse("empty", b"").is_err() && parse("bytes", &[0xff, 0xfe, b'\n', 0x80]).is_err());
-        assert!(read(Path::new("nowhere.mtx")).unwrap_err().to_string().contains("no file there"));
+        assert!(parse("empty", b"", 0).is_err() && parse("bytes", &[0xff, 0xfe, b'\n', 0x80], 0).is_err());
+        assert!(read(Path::new("nowhere.mtx"), 0).unwrap_err().to_string().contains("no file there"));
+    }
+
+    #[test]
+    fn a_matrix_of_known_size_may_be_nearly_empty() {
+        let n = EMPTY + 5;
+        let file = format!("%%MatrixMarket matrix coordinate real symmetric\n{n} {n} 1\n{n} {n} 2\n");
+        let damper = parse("c", file.as_bytes(), n).unwrap();
+        assert_eq!((damper.re.ncols(), damper.re.compute_nnz(), damper.re[(n - 1, n - 1)]), (n, 1, 2.0));
+        assert!(parse("c", file.as_bytes(), n - 1).is_err() && parse("c", file.as_bytes(), 0).is_err());
     }
 
     #[test]
@@ -536,12 +547,12 @@ mod tests {
         for a in [&k, &m] {
             let text = to_text(a, None, "a plate");
             assert!(text.starts_with("%%MatrixMarket matrix coordinate real symmetric\n% a plate\n"));
-            let back = parse("k", text.as_bytes()).unwrap();
+            let back = parse("k", text.as_bytes(), 0).unwrap();
             assert_eq!((back.re.val(), back.re.row_idx()), (a.val(), a.row_idx()));
         }
         let mut one_sided = k.clone();
         one_sided.val_of_col_mut(3)[0] *= 1.0 + f64::EPSILON;
-        let back = parse("k", to_text(&one_sided, Some(&k), "general").as_bytes()).unwrap();
+        let back = parse("k", to_text(&one_sided, Some(&k), "general").as_bytes(), 0).unwrap();
         assert_eq!((back.re.val(), back.im.unwrap().val()), (one_sided.val(), k.val()));
     }
 }
