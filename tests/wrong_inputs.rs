@@ -236,7 +236,7 @@ fn one_mistake_is_one_fault() {
     once(&POINTS.replace("[contact.belt]", "[contact]"), &["case.toml:40 `contact.body`", "[contact.NAME]"]);
     once(
         &CASE.replace("[material.steel]", "[material]"),
-        &["case.toml:10 `material.density`", "[material.NAME]"],
+        &["case.toml:8 `material.youngs_modulus`", "[material.NAME]"],
     );
     // A name that many ask for.
     let more: String = (0..30).map(|k| format!("[force.f{k}]\non = \"tip\"\nforce = [1, 0, 0]\n")).collect();

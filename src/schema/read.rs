@@ -28,7 +28,14 @@ pub fn read_table<T: Table + Blank>(file: &str, text: &str) -> Result<ReadTable<
         root.places()
     })?;
     check(&mut table, &mut report);
-    faults.extend(report.faults.into_iter().map(|fault| places.with_line(fault)));
+    faults.extend(report.faults.into_iter().map(|fault| match places.with_line(fault) {
+        // What the outermost table lacks is missed from its first line on.
+        (0, fault) => {
+            let place = fault.place.replacen(&format!("{file} "), &format!("{file}:1 "), 1);
+            (1, Fault { place, ..fault })
+        }
+        located => located,
+    }));
     faults.sort_by_key(|(line, _)| *line);
     let faults: Vec<_> = faults.into_iter().map(|(_, fault)| fault).collect();
     if faults.is_empty() { Ok(ReadTable { table, places }) } else { Err(Error::Input(Faults(faults))) }
