@@ -236,7 +236,7 @@ impl<'a> CaseModel<'a> {
                             false => 0.0,
                         })
                         .collect();
-                    let mut spans = spans(&here, set, &picks, &changes).into_iter();
+                    let mut spans = spans(&here, set, &picks, &changes)?.into_iter();
                     levels.extend(picks.iter().map(|pick| {
                         let span = spans.next().flatten();
                         let mut level = (!pick.is_empty()).then(|| here.level(pick, &changes))?;
@@ -325,14 +325,17 @@ fn like(solved: &Solved, level: &[usize], facts: &Facts) -> bool {
 }
 
 /// What the test sees of those levels that a measured shape is like.
-fn spans(here: &Solved, set: &Set, picks: &Picks, changes: &[Option<Change>]) -> Vec<Option<Span>> {
-    let Some(seen) = here.seen() else { return vec![None; picks.len()] };
+///
+/// # Errors
+/// Slopes of shapes that do not converge.
+fn spans(here: &Solved, set: &Set, picks: &Picks, changes: &[Option<Change>]) -> Result<Vec<Option<Span>>> {
+    let Some(seen) = here.seen() else { return Ok(vec![None; picks.len()]) };
     let wanted: Vec<bool> =
         picks.iter().zip(&set.like).map(|(pick, like)| *like && !pick.is_empty()).collect();
     let chosen: Vec<&Vec<usize>> =
         picks.iter().zip(&wanted).filter(|(_, w)| **w).map(|(pick, _)| pick).collect();
-    let mut found = seen.spans(&chosen, changes).into_iter();
-    wanted.iter().map(|wanted| if *wanted { found.next() } else { None }).collect()
+    let mut found = seen.spans(&chosen, changes)?.into_iter();
+    Ok(wanted.iter().map(|wanted| if *wanted { found.next() } else { None }).collect())
 }
 
 /// The case with one number at another value.

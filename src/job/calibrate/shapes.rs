@@ -2,6 +2,7 @@
 
 use super::neighbours::Change;
 use crate::calibration::Span;
+use crate::error::{Error, Result};
 use crate::linalg::SparseVector;
 use crate::linalg::sparse::times;
 use crate::linalg::tall::{combine, expand, gram};
@@ -9,12 +10,11 @@ use crate::modal::{RealModes, ShiftedStiffness};
 use crate::system::Structure;
 use faer::{Accum, Mat};
 use nalgebra::DMatrix;
-use std::f64::consts::TAU;
 
 /// The iteration ends when it changes nothing by more than this part.
 const CONVERGED: f64 = 1e-12;
-/// It gains a factor of four or more at each step.
-const MOST_STEPS: usize = 40;
+/// The most steps of the iteration.
+const MOST_STEPS: usize = 200;
 /// Modes whose eigenvalues differ by less than this part are as good as one level.
 const SAME: f64 = 1e-9;
 
@@ -53,17 +53,20 @@ impl Seen<'_> {
     }
 
     /// The motions of each of `levels` and their slopes by the `changes`; an unknown without one moves nothing.
-    pub fn spans(&self, levels: &[&Vec<usize>], changes: &[Option<Change>]) -> Vec<Span> {
+    ///
+    /// # Errors
+    /// Slopes that do not converge.
+    pub fn spans(&self, levels: &[&Vec<usize>], changes: &[Option<Change>]) -> Result<Vec<Span>> {
         let all: Vec<(usize, &[usize])> =
             levels.iter().flat_map(|level| level.iter().map(|k| (*k, &level[..]))).collect();
         let by = |change: &Change| {
-            let turned = self.turned(&all, change);
+            let turned = self.turned(&all, change)?;
             let moved = self.look(&self.eyes.forms, (0..all.len()).map(|c| turned.col_as_slice(c)));
             let shapes = all.iter().map(|(k, _)| self.modes.shapes.col_as_slice(*k));
-            moved + self.look(&change.seen, shapes)
+            Ok(moved + self.look(&change.seen, shapes))
         };
         let slopes: Vec<Option<DMatrix<f64>>> =
-            changes.iter().map(|change| change.as_ref().map(by)).collect();
+            changes.iter().map(|change| change.as_ref().map(by).transpose()).collect::<Result<_>>()?;
         let mut first = 0;
         let span = |level: &&Vec<usize>| {
             let (from, count) = (first, level.len());
@@ -74,7 +77,7 @@ impl Seen<'_> {
             };
             Span { motions: self.motions(level), slopes: slopes.iter().map(own).collect() }
         };
-        levels.iter().map(span).collect()
+        Ok(levels.iter().map(span).collect())
     }
 
     /// ∂φ_i of each mode i by an unknown, less what of it lies in its level: v with ΦᵀMv = 0 on the level's modes Φ and
@@ -83,10 +86,13 @@ impl Seen<'_> {
     ///
     /// On the other computed modes it is φ_k φ_kᵀ(…)/(λ_i − λ_k) (Fox and Kapoor, AIAA J. 6 (1968) 2426); the modes of a
     /// double level need none of each other, so that their span turns by v although they themselves may jump (Ojalvo, AIAA J.
-    /// 26 (1988) 361). What lies beyond the computed modes is solved for by v ← v + ω (K − σM)⁻¹ r with the residual r and the
-    /// factors that found the modes: there the eigenvalues of (K − σM)⁻¹(K − λ_i M) lie between b = (λ̄ − λ_i)/(λ̄ − σ) and 1,
-    /// λ̄ being where the computed modes end, and ω = 2/(1 + b).
-    fn turned(&self, wanted: &[(usize, &[usize])], change: &Change) -> Mat<f64> {
+    /// 26 (1988) 361). What lies beyond the computed modes is solved for by conjugate gradients, M-orthogonal to the computed
+    /// modes, with the factors of K − σM that found them as preconditioner: there both are positive definite, and the eigenvalues
+    /// of (K − σM)⁻¹(K − λ_i M), (λ − λ_i)/(λ − σ), gather at 1.
+    ///
+    /// # Errors
+    /// An iteration that does not converge.
+    fn turned(&self, wanted: &[(usize, &[usize])], change: &Change) -> Result<Mat<f64>> {
         let Seen { structure, modes, eyes } = self;
         let (n, shapes) = (modes.shapes.nrows(), modes.shapes.as_ref());
         let lambda: Vec<f64> = wanted.iter().map(|(k, _)| modes.eigenvalues[*k]).collect();
@@ -106,27 +112,49 @@ impl Seen<'_> {
         };
         let near = expand(shapes, Mat::from_fn(modes.len(), wanted.len(), part).as_ref());
         combine(force.as_mut(), Accum::Add, inertia.as_ref(), share.as_ref(), -1.0);
-        let end = (TAU * modes.certificate.below_hz).powi(2);
-        let pace = |c: usize| 2.0 / (1.0 + (end - lambda[c]) / (end - eyes.factor.shift));
         let mut far = Mat::<f64>::zeros(n, wanted.len());
-        for _ in 0..MOST_STEPS {
-            let applied =
-                less(times(&structure.stiffness, far.as_ref()), times(&structure.mass, far.as_ref()));
-            let mut step = &force - applied;
+        let dots = |a: &Mat<f64>, b: &Mat<f64>| -> Vec<f64> {
+            (0..lambda.len()).map(|c| a.col(c).transpose() * b.col(c)).collect()
+        };
+        let precondition = |residual: &Mat<f64>| {
+            let mut step = residual.clone();
             eyes.factor.factor.solve_in_place(step.as_mut());
-            // What round-off brings back of the computed modes.
             let share = gram(inertia.as_ref(), step.as_ref());
             combine(step.as_mut(), Accum::Add, shapes, share.as_ref(), -1.0);
-            let mut largest: f64 = 0.0;
+            step
+        };
+        let mut residual = force;
+        let mut step = precondition(&residual);
+        let mut direction = step.clone();
+        let mut energy = dots(&residual, &step);
+        for _ in 0..MOST_STEPS {
+            let size = |c: usize| far.col(c).norm_l2() + near.col(c).norm_l2();
+            let left = |c: usize| step.col(c).norm_l2() > CONVERGED * size(c).max(f64::MIN_POSITIVE);
+            if !(0..lambda.len()).any(left) {
+                return Ok(near + far);
+            }
+            let applied = less(
+                times(&structure.stiffness, direction.as_ref()),
+                times(&structure.mass, direction.as_ref()),
+            );
+            let curvature = dots(&direction, &applied);
             for c in 0..lambda.len() {
-                (0..n).for_each(|i| far[(i, c)] += pace(c) * step[(i, c)]);
-                let size = far.col(c).norm_l2() + near.col(c).norm_l2();
-                largest = largest.max(step.col(c).norm_l2() / size.max(f64::MIN_POSITIVE));
+                let length = if curvature[c] > 0.0 { energy[c] / curvature[c] } else { 0.0 };
+                for i in 0..n {
+                    far[(i, c)] += length * direction[(i, c)];
+                    residual[(i, c)] -= length * applied[(i, c)];
+                }
             }
-            if largest <= CONVERGED {
-                break;
+            step = precondition(&residual);
+            let next = dots(&residual, &step);
+            for c in 0..lambda.len() {
+                let turn = if energy[c] > 0.0 { next[c] / energy[c] } else { 0.0 };
+                (0..n).for_each(|i| direction[(i, c)] = step[(i, c)] + turn * direction[(i, c)]);
             }
+            energy = next;
         }
-        near + far
+        let found = format!("conjugate gradients have not converged in {MOST_STEPS} steps");
+        let help = "Compute more modes than are measured: raise `below` or `count` of the real modes";
+        Err(Error::analysis("derivatives of mode shapes", found, help))
     }
 }
