@@ -164,6 +164,14 @@ fn every_fault_is_found_at_once_with_its_line() {
 }
 
 #[test]
+fn a_table_that_is_missing_is_one_fault() {
+    let without = RIG.replace("normal = { per = \"length\", stiffness = \"10 GN/m^2\", cubic = 1e18 }", "");
+    assert!(without != RIG);
+    let error = parse(&without).unwrap_err().to_string();
+    assert!(error.contains("`contact.rim.normal`: found nothing") && !error.contains("faults"), "{error}");
+}
+
+#[test]
 fn what_is_empty_or_beyond_all_measure_is_refused() {
     for (from, to, expected) in [
         ("material = \"steel\"\nthickness", "material = \"\"\nthickness", "at least one character"),

@@ -100,6 +100,10 @@ impl Visitor for Checking<'_> {
     fn table(&mut self, key: Key, slot: &mut dyn TableSlot) {
         let outer = self.report.path.clone();
         let path = self.report.path_of(&dotted(key.name));
+        // A table that is missing is one fault.
+        if self.report.unread.contains(&path) {
+            return;
+        }
         slot.each(&mut |name, table| {
             self.report.path = name.map_or(path.clone(), |name| format!("{path}.{}", dotted(name)));
             check(table, self.report);
