@@ -22,7 +22,7 @@ static ALLOCATOR: memory::Counting = memory::Counting;
 
 /// Inputs that are kept in memory for further changes.
 const KEPT: usize = 2048;
-/// Kinds of outcomes that are told apart.
+/// Most kinds of outcomes that are kept.
 const KINDS: usize = 1 << 16;
 /// Inputs of a run that go to the corpus.
 const MOST_KEPT: usize = 32;

@@ -99,12 +99,12 @@ struct Fault {
 }
 
 /// What a run says, and what the library reports of it, a line each.
-struct Told {
+struct Outcome {
     output: Output,
     report: Vec<String>,
 }
 
-impl Told {
+impl Outcome {
     /// How many calls there were of those that could fail.
     fn calls(&self) -> usize {
         let line = self.report.iter().find_map(|line| line.strip_prefix("calls "));
@@ -112,7 +112,7 @@ impl Told {
     }
 }
 
-impl Told {
+impl Outcome {
     /// Whether the call was one of the HDF5 library for memory, which it does not always survive: while it starts it calls
     /// itself without end or follows a null pointer (H5open, H5E__get_stack), and prints its own list of errors.
     fn in_hdf5(&self) -> bool {
@@ -133,7 +133,7 @@ fn arguments<'a>(case: &'a str, out: &'a str, more: &[&'a str]) -> Vec<&'a str> 
 }
 
 /// The program with a fault: exit code 0, or 1 with one line; neither panic nor signal, and it comes to an end.
-fn faulty(folder: &Path, arguments: &[&str], out: &str, fault: Fault) -> Told {
+fn faulty(folder: &Path, arguments: &[&str], out: &str, fault: Fault) -> Outcome {
     let report = folder.join(format!("{out}.report"));
     let _ = std::fs::remove_file(&report);
     let below = folder.canonicalize().expect("a folder").join(out);
@@ -155,18 +155,20 @@ fn faulty(folder: &Path, arguments: &[&str], out: &str, fault: Fault) -> Told {
     }
     let output = child.wait_with_output().expect("it has ended");
     let report = std::fs::read_to_string(&report).unwrap_or_default();
-    let told = Told { output, report: report.lines().map(str::to_string).collect() };
-    if told.in_hdf5() {
-        return told;
+    let outcome = Outcome { output, report: report.lines().map(str::to_string).collect() };
+    if outcome.in_hdf5() {
+        return outcome;
     }
-    let said = String::from_utf8_lossy(&told.output.stderr);
+    let said = String::from_utf8_lossy(&outcome.output.stderr);
     let lines = said.lines().count();
-    match told.output.status.code() {
-        Some(0) => assert!(lines == 0, "{fault:?} {:?}: {said}", told.report),
-        Some(1) => assert!(lines == 1 && said.starts_with("error: "), "{fault:?} {:?}: {said}", told.report),
-        _ => panic!("{fault:?} {:?}: {:?} {said}", told.report, told.output.status),
+    match outcome.output.status.code() {
+        Some(0) => assert!(lines == 0, "{fault:?} {:?}: {said}", outcome.report),
+        Some(1) => {
+            assert!(lines == 1 && said.starts_with("error: "), "{fault:?} {:?}: {said}", outcome.report)
+        }
+        _ => panic!("{fault:?} {:?}: {:?} {said}", outcome.report, outcome.output.status),
     }
-    told
+    outcome
 }
 
 /// The numbers of a run, its summary without times and title, its tables.
@@ -240,22 +242,22 @@ fn writes_fail(choose: impl Fn(usize) -> Vec<usize>) -> usize {
         let dir = at.join(out);
         for (lasts, error) in [(false, libc::EIO), (true, libc::ENOSPC)] {
             let fault = Fault { calls: "writes", at: n, lasts, error };
-            let ended = |told: &Told, whole: &Results| {
-                if told.output.status.success() {
+            let ended = |outcome: &Outcome, whole: &Results| {
+                if outcome.output.status.success() {
                     harmless.fetch_add(1, Relaxed);
-                    assert!(results(&dir) == *whole, "{fault:?} {:?}: silently wrong", told.report);
+                    assert!(results(&dir) == *whole, "{fault:?} {:?}: silently wrong", outcome.report);
                 }
             };
             ended(&faulty(at, &arguments("case.toml", out, &["--threads", "1"]), out, fault), &wholes[0]);
             well(at, &arguments("case.toml", out, &["--threads", "1", "--resume"]));
             assert!(results(&dir) == wholes[0], "{fault:?}: not taken up");
-            let told = faulty(at, &arguments("second.toml", out, &["--threads", "1"]), out, fault);
-            ended(&told, &wholes[1]);
+            let outcome = faulty(at, &arguments("second.toml", out, &["--threads", "1"]), out, fault);
+            ended(&outcome, &wholes[1]);
             let titles = titles(&dir, TITLES);
             assert!(
                 titles.windows(2).all(|pair| pair[0] == pair[1]),
                 "{fault:?} {:?}: {titles:?}",
-                told.report
+                outcome.report
             );
             well(at, &arguments("second.toml", out, &["--threads", "1"]));
             assert!(results(&dir) == wholes[1], "{fault:?}: not run again");
@@ -290,15 +292,15 @@ fn allocations_fail(choose: impl Fn(usize) -> Vec<usize>) {
     side_by_side(&choose(most), |n, thread| {
         let out = &format!("out-{thread}");
         let fault = Fault { at: n, lasts: n % 2 == 0, ..none };
-        let told = faulty(at, &arguments("case.toml", out, &["--threads", "1"]), out, fault);
-        if told.output.status.success() {
+        let outcome = faulty(at, &arguments("case.toml", out, &["--threads", "1"]), out, fault);
+        if outcome.output.status.success() {
             harmless.fetch_add(1, Relaxed);
-            assert!(results(&at.join(out)) == whole, "{fault:?} {:?}: silently wrong", told.report);
+            assert!(results(&at.join(out)) == whole, "{fault:?} {:?}: silently wrong", outcome.report);
         }
         ended.fetch_add(1, Relaxed);
-        of_hdf5.fetch_add(usize::from(told.in_hdf5()), Relaxed);
-        let plain = told.output.status.code().is_some()
-            && told.output.stderr.iter().filter(|b| **b == b'\n').count() < 2;
+        of_hdf5.fetch_add(usize::from(outcome.in_hdf5()), Relaxed);
+        let plain = outcome.output.status.code().is_some()
+            && outcome.output.stderr.iter().filter(|b| **b == b'\n').count() < 2;
         died.fetch_add(usize::from(!plain), Relaxed);
         let _ = std::fs::remove_dir_all(at.join(out));
     });
@@ -337,8 +339,8 @@ fn a_thread_that_cannot_be_had_is_told_or_not_needed() {
     let at = folder.path();
     for n in 1..=4 {
         let fault = Fault { calls: "threads", at: n, lasts: true, error: libc::EAGAIN };
-        let told = faulty(at, &arguments("case.toml", "out", &["--threads", "3"]), "out", fault);
-        assert_eq!(told.output.status.code(), Some(i32::from(n < 4)), "{n}: {:?}", told.report);
+        let outcome = faulty(at, &arguments("case.toml", "out", &["--threads", "3"]), "out", fault);
+        assert_eq!(outcome.output.status.code(), Some(i32::from(n < 4)), "{n}: {:?}", outcome.report);
     }
     // The thread that draws the progress, which is there on a terminal only.
     let mut command = command(at, &["run", "case.toml", "--out", "drawn", "--threads", "1"]);
@@ -362,9 +364,9 @@ fn a_clock_that_jumps_changes_nothing() {
     well(at, &arguments("case.toml", "first", &["--threads", "1"]));
     let fault = Fault { calls: "clock", at: 0, lasts: false, error: 0 };
     let begun = Instant::now();
-    let told = faulty(at, &arguments("case.toml", "out", &["--threads", "1"]), "out", fault);
+    let outcome = faulty(at, &arguments("case.toml", "out", &["--threads", "1"]), "out", fault);
     let took = begun.elapsed().as_secs_f64();
-    assert!(told.output.status.success() && told.calls() > 0);
+    assert!(outcome.output.status.success() && outcome.calls() > 0);
     assert!(results(&at.join("out")) == results(&at.join("first")));
     let summary = std::fs::read(at.join("out/summary.json")).expect("a summary");
     let summary: serde_json::Value = serde_json::from_slice(&summary).expect("JSON");
@@ -384,11 +386,11 @@ fn checkpoints_and_results_wait_for_the_disk() {
     let folder = cases();
     let at = folder.path();
     let none = Fault { calls: "writes", at: 0, lasts: false, error: 0 };
-    let told = faulty(at, &arguments("case.toml", "out", &["--threads", "1"]), "out", none);
+    let outcome = faulty(at, &arguments("case.toml", "out", &["--threads", "1"]), "out", none);
     let out = at.canonicalize().expect("a folder").join("out");
     let mut waiting: BTreeSet<String> = BTreeSet::new();
     let (mut checkpoints, mut at_the_end) = (0, None);
-    for line in &told.report {
+    for line in &outcome.report {
         let (call, path) = line.split_once(' ').expect("a call and a path");
         let Ok(name) = Path::new(path).strip_prefix(&out) else { continue };
         let name = name.to_str().expect("a plain name").to_string();

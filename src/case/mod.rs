@@ -148,7 +148,7 @@ impl Case {
 
     /// The same case without what names scalars of it: sweeps, maps, calibration.
     pub fn without_studies(&self) -> Case {
-        Case { sweep: BTreeMap::new(), map: BTreeMap::new(), calibrate: None, ..self.clone() }
+        Case { calibrate: None, ..self.without_sweeps() }
     }
 
     /// The same case without its sweeps and maps, as each of their points is.

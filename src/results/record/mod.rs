@@ -365,7 +365,7 @@ impl Drop for Record {
     /// A run that fails leaves all that it has.
     fn drop(&mut self) {
         if self.waiting {
-            // The failure is told; the checkpoint before this one stays.
+            // The failure is reported; the checkpoint before this one stays.
             let _ = self.write();
         }
     }
