@@ -79,6 +79,11 @@ const NO_MEMORY: &[u8] =
     b"error: the program had to end: a stack or a library ran out of memory. Raise the limits (`ulimit -s`, \
     `ulimit -v`), or take a coarser mesh or `--threads 1`.\n";
 
+const INVALID_ADDRESS: &[u8] =
+    b"error: the program had to end at an invalid address: a stack or a library ran out of memory, or the program is at \
+    fault. Raise the limits (`ulimit -s`, `ulimit -v`), or take a coarser mesh or `--threads 1`; where memory is not short, \
+    report it.\n";
+
 /// C libraries without memory may call exit(3), HDF5 for one: that is an error with a sentence, too.
 fn on_exit() {
     extern "C" fn said() {
@@ -90,14 +95,30 @@ fn on_exit() {
     unsafe { libc::atexit(said) };
 }
 
-/// A stack that overflows, and C libraries without memory, abort: then, too, the program ends with a sentence and exit code 1.
+/// Signals that end a program which is out of memory: a stack that overflows touches its guard page, C libraries abort or follow
+/// a null pointer, as HDF5 does while it makes an attribute. Then, too, the program ends with one sentence and exit code 1.
 #[cfg(unix)]
 fn on_abort() {
-    extern "C" fn said(_: libc::c_int) {
+    extern "C" fn aborted(_: libc::c_int) {
         end(&[NO_MEMORY]);
     }
-    // SAFETY: the handler only writes and ends the process, which is allowed in one.
-    unsafe { libc::signal(libc::SIGABRT, said as extern "C" fn(libc::c_int) as libc::sighandler_t) };
+    extern "C" fn astray(_: libc::c_int) {
+        end(&[INVALID_ADDRESS]);
+    }
+    for (signal, handler) in [
+        (libc::SIGABRT, aborted as extern "C" fn(libc::c_int)),
+        (libc::SIGSEGV, astray),
+        (libc::SIGBUS, astray),
+    ] {
+        // SAFETY: the handlers only write and end the process, which is allowed in one. They run on the stack that the standard
+        // library keeps for signals in each of its threads, so that an overflowing stack does no harm.
+        unsafe {
+            let mut action: libc::sigaction = std::mem::zeroed();
+            action.sa_sigaction = handler as libc::sighandler_t;
+            action.sa_flags = libc::SA_ONSTACK;
+            libc::sigaction(signal, &action, std::ptr::null_mut());
+        }
+    }
 }
 
 #[cfg(not(unix))]

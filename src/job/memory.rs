@@ -2,6 +2,7 @@
 
 use super::analyse::Selection;
 use super::prepared::Prepared;
+use super::states::keeps_the_structure;
 use crate::error::{Error, Result};
 use crate::linalg::factor::SymbolicFactor;
 use crate::linalg::sparse::{add_scaled, sum_of_squares};
@@ -76,23 +77,54 @@ pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Opti
     if dofs < LARGE {
         return Ok(None);
     }
-    let structure = &prepared.system.structure;
-    let springs = prepared.system.points().map(|(_, point)| (1.0, &point.normal));
-    let pattern = add_scaled(&[
-        (1.0, &structure.stiffness),
-        (1.0, &structure.mass),
-        (1.0, &sum_of_squares(dofs, springs)),
-    ]);
-    let fill = SymbolicFactor::new(pattern.symbolic())?.fill();
+    let pencil = |square: f64| {
+        let structure = &prepared.system.structure;
+        let springs = prepared.system.points().map(|(_, point)| (1.0, &point.normal));
+        add_scaled(&[
+            (1.0, &structure.stiffness),
+            (-square, &structure.mass),
+            (1.0, &sum_of_squares(dofs, springs)),
+        ])
+    };
+    let pattern = pencil(1.0);
+    let symbolic = SymbolicFactor::new(pattern.symbolic())?;
+    let fill = symbolic.fill();
     let case = prepared.case;
-    let below = |hz: f64| modes_below(&prepared.model, hz);
-    let listed = case.modes.values().filter(|_| selection.modes);
-    let listed = listed.map(|wanted| wanted.below.map_or(wanted.count.unwrap_or(1) as f64, below));
+    let below = |hz: f64| match &case.matrices {
+        None => Ok(modes_below(&prepared.model, hz)),
+        Some(_) => symbolic.inertia(&pencil((TAU * hz).powi(2))).map(|inertia| inertia.negative as f64),
+    };
+    let mut modes = 0.0_f64;
+    for wanted in case.modes.values().filter(|_| selection.modes) {
+        modes = modes.max(wanted.below.map_or(Ok(wanted.count.unwrap_or(1) as f64), below)?);
+    }
     let complex = case.cea.as_ref().filter(|_| selection.cea);
-    let modes = listed.chain(complex.map(|cea| below(cea.basis_below))).fold(0.0, f64::max);
+    if let Some(cea) = complex {
+        modes = modes.max(below(cea.basis_below)?);
+    }
     let run = Run { dofs, entries: pattern.compute_nnz(), fill, modes: modes.min(dofs as f64) };
-    let bytes = run.peak(complex.is_some());
+    let swept = case.sweep.values().map(|sweep| &sweep.parameter);
+    let mut studies = None;
+    for path in swept.chain(case.map.values().flat_map(|map| &map.parameters)).filter(|_| selection.sweeps) {
+        let kind = if keeps_the_structure(case, path)? { Kind::Study } else { Kind::StudyOfStructures };
+        studies = studies.max(Some(kind));
+    }
+    let kind = if complex.is_some() { studies.unwrap_or(Kind::Complex) } else { Kind::Real };
+    let bytes = run.peak(kind);
     Ok(Some(ExpectedMemory { bytes, dofs, fill, modes: run.modes }))
+}
+
+/// The analysis that takes the most memory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    /// Real modes.
+    Real,
+    /// Complex eigenvalues.
+    Complex,
+    /// A sweep or a map of friction, load or contact.
+    Study,
+    /// A sweep or a map that changes M or K.
+    StudyOfStructures,
 }
 
 /// What the peak follows from.
@@ -104,21 +136,26 @@ struct Run {
 }
 
 impl Run {
-    /// The peak of real modes, or of complex eigenvalues \[bytes\]: as many matrices, factors and vectors as were counted in
-    /// runs of 20 000 to 150 000 degrees of freedom.
+    /// The peak \[bytes\]: as many matrices, factors and vectors as were counted in runs of 20 000 to 150 000 degrees of freedom.
     ///
     /// Matrices stand for what is proportional to the mesh, too. Of each mode there are two vectors in the basis of Lanczos,
-    /// the vector itself, and its motion of the nodes; of a complex one also the parts and the left vector.
-    fn peak(&self, complex: bool) -> f64 {
+    /// the vector itself, and its motion of the nodes; of a complex one also the parts and the left vector; of a study the
+    /// vectors at other values.
+    fn peak(&self, kind: Kind) -> f64 {
         const PROGRAM: f64 = 4e7;
         let vector = 8.0 * self.dofs as f64;
         let (matrix, factor) = (12.0 * self.entries as f64, 8.0 * self.fill as f64);
-        let (factors, vectors) = if complex { (2.0, 8.0) } else { (0.5, 3.6) };
-        PROGRAM + 6.6 * matrix + factors * factor + (vectors * self.modes + 72.0) * vector
+        let (factors, vectors) = match kind {
+            Kind::Real => (0.5, 3.6),
+            Kind::Complex => (2.0, 8.0),
+            Kind::Study | Kind::StudyOfStructures => (2.0, 17.0),
+        };
+        let structures = if kind == Kind::StudyOfStructures { 1.7 } else { 1.0 };
+        PROGRAM + structures * (6.6 * matrix + factors * factor + (vectors * self.modes + 72.0) * vector)
     }
 }
 
-/// About how many modes the plates of a model have below a frequency: Weyl's N = ω A/(4π) √(ρh/D) for bending.
+/// About how many modes the plates of a model have below a frequency, Weyl's N = ω A/(4π) √(ρh/D) for bending.
 fn modes_below(model: &Model, hz: f64) -> f64 {
     let part = |part: &crate::structure::ShellPart| {
         let (m, h) = (&part.material, part.thickness);
@@ -140,15 +177,19 @@ mod tests {
     /// Peaks of runs as the system counted them (VmHWM, two threads): square plates and rigs.
     #[test]
     fn peaks_are_those_of_runs_within_thirty_percent() {
-        for (dofs, entries, fill, modes, complex, mebibytes) in [
-            (21_960, 904_968, 2_230_000, 9.0, false, 135.0),
-            (21_960, 904_968, 2_230_000, 48.0, false, 154.0),
-            (21_960, 904_968, 2_230_000, 377.0, false, 417.0),
-            (102_180, 4_254_048, 14_100_000, 9.0, false, 490.0),
-            (102_180, 4_254_048, 14_100_000, 48.0, false, 563.0),
-            (33_736, 1_388_192, 4_220_000, 54.0, true, 380.0),
+        use Kind::{Complex, Real, Study, StudyOfStructures};
+        for (dofs, entries, fill, modes, kind, mebibytes) in [
+            (21_960, 904_968, 2_230_000, 9.0, Real, 135.0),
+            (21_960, 904_968, 2_230_000, 48.0, Real, 154.0),
+            (21_960, 904_968, 2_230_000, 377.0, Real, 417.0),
+            (102_180, 4_254_048, 14_100_000, 9.0, Real, 490.0),
+            (102_180, 4_254_048, 14_100_000, 48.0, Real, 563.0),
+            (33_736, 1_388_192, 4_220_000, 54.0, Complex, 380.0),
+            (24_532, 1_010_000, 2_810_000, 55.0, Complex, 268.0),
+            (24_532, 1_010_000, 2_810_000, 55.0, Study, 365.0),
+            (24_532, 1_010_000, 2_810_000, 55.0, StudyOfStructures, 538.0),
         ] {
-            let expected = Run { dofs, entries, fill, modes }.peak(complex) / f64::from(1 << 20);
+            let expected = Run { dofs, entries, fill, modes }.peak(kind) / f64::from(1 << 20);
             assert!(
                 (expected / mebibytes - 1.0).abs() < 0.3,
                 "{dofs}: {expected} MiB, measured {mebibytes} MiB"
