@@ -26,6 +26,7 @@
 //! | [`sweep`] | how complex modes change with scalars: branches, critical values, maps |
 //! | [`measured`] | what a test found, and how like it the computed is |
 //! | [`calibration`] | scalars found from measured frequencies, and what the agreement is worth |
+//! | [`dataset`] | named quantities with units and dimensions, and how JSON, HDF5, CSV and tables hold them |
 //! | [`results`] | HDF5, VTK, JSON, CSV |
 //! | [`report`] | pictures and the HTML page |
 //! | [`case`] | TOML → validated case → system |
@@ -40,6 +41,7 @@ pub mod calibration;
 pub mod case;
 pub mod cli;
 pub mod contact;
+pub mod dataset;
 pub mod equilibrium;
 pub mod error;
 pub mod input;

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Each room with all the rooms it may use.
-const MAY_USE: [(&str, &[&str]); 29] = [
+const MAY_USE: [(&str, &[&str]); 30] = [
     ("input", &[]),
     ("error", &["input"]),
     ("progress", &[]),
@@ -13,6 +13,7 @@ const MAY_USE: [(&str, &[&str]); 29] = [
     ("pages", &[]),
     ("memory", &[]),
     ("linalg", &["error", "progress"]),
+    ("dataset", &["linalg"]),
     ("system", &["error", "linalg"]),
     // Mechanics: builds a system, knows no analysis.
     ("mesh", &["error", "numbers"]),
@@ -35,6 +36,8 @@ const MAY_USE: [(&str, &[&str]); 29] = [
         &[
             "error",
             "memory",
+            "numbers",
+            "dataset",
             "linalg",
             "equilibrium",
             "modal",
@@ -52,6 +55,7 @@ const MAY_USE: [(&str, &[&str]); 29] = [
         &[
             "error",
             "numbers",
+            "dataset",
             "linalg",
             "equilibrium",
             "modal",
@@ -97,7 +101,7 @@ const MAY_USE: [(&str, &[&str]); 29] = [
         "validation",
         &["error", "progress", "schema", "linalg", "structure", "sweep", "signal", "results", "case", "job"],
     ),
-    ("search", &["error", "progress", "schema", "results", "case", "job", "validation"]),
+    ("search", &["error", "progress", "schema", "dataset", "results", "case", "job", "validation"]),
     (
         "cli",
         &["error", "progress", "schema", "mesh", "report", "results", "case", "job", "validation", "search"],

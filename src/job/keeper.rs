@@ -163,11 +163,11 @@ impl<'a> Folder<'a> {
     fn write(&mut self, stage: &Stage<'_>) -> Result<()> {
         let file = &mut self.file;
         match stage {
-            Stage::Model(model) => file.write_case(model).and_then(|()| file.write_geometry(&model.geometry)),
+            Stage::Model(model) => file.write_head(model),
             Stage::Modes(modes) => file.write_modes(modes),
-            Stage::Steady(steady) => file.write_steady(steady),
-            Stage::Complex(complex) => file.write_complex(complex),
-            Stage::Sensitivity(sensitivity) => file.write_sensitivity(sensitivity),
+            Stage::Steady(steady) => file.write(&steady.group()),
+            Stage::Complex(complex) => file.write(&complex.group()),
+            Stage::Sensitivity(sensitivity) => file.write(&sensitivity.group()),
             Stage::Sweep(sweep) => file.write_sweep(sweep),
             Stage::MapBegins(map, known) => {
                 file.begin_map(map, &known.points, &known.trained)?;

@@ -1,6 +1,7 @@
 //! The content of the tables, once for the terminal and the page.
 
 use super::format::{fixed, given, hertz, power, rate, signed, significant};
+use crate::dataset;
 use crate::linalg::c64;
 use crate::results::{
     ComplexResult, ModeSensitivity, NamedModes, RunResults, SensitivityResult, SteadyResult,
@@ -50,6 +51,22 @@ impl Table {
             notes: vec![],
             alarming: false,
         }
+    }
+
+    /// The columns of a table that are shown to people, after the number of the row where `numbered`.
+    pub(super) fn of(caption: impl Into<String>, data: &dataset::Table, numbered: bool) -> Self {
+        let mut table = Table::new(caption, if numbered { &["no."] } else { &[] });
+        let shown: Vec<_> = data.columns.iter().filter_map(|column| column.shown.as_ref()).collect();
+        let column = |shown: &&dataset::Shown| Column { heading: shown.heading, words: shown.words };
+        table.columns.extend(shown.iter().map(column));
+        for k in 0..data.rows.length {
+            let number = numbered.then(|| (k + 1).to_string());
+            table.row(
+                number.into_iter().chain(shown.iter().map(|shown| shown.cells[k].clone())).collect(),
+                false,
+            );
+        }
+        table
     }
 
     pub(super) fn row(&mut self, cells: Vec<String>, marked: bool) {
@@ -148,35 +165,7 @@ fn certificate(set: &NamedModes) -> String {
 
 /// Steady sliding, one row a pair.
 pub(super) fn steady(result: &SteadyResult) -> Table {
-    let headings = [
-        "<pair",
-        "load [N]",
-        "V [m/s]",
-        "ΣN [N]",
-        "ΣF₁ [N]",
-        "ΣF₂ [N]",
-        "closed",
-        "open",
-        "deepest [µm]",
-        "approach [µm]",
-    ];
-    let mut table = Table::new("Steady sliding", &headings);
-    for t in result.totals() {
-        let micrometres = |length: Option<f64>| length.map_or("–".into(), |d| significant(1e6 * d, 3));
-        let cells = vec![
-            t.name.to_string(),
-            given(t.load),
-            given(t.sliding_velocity),
-            significant(t.normal_force, 4),
-            significant(t.friction_force[0], 4),
-            significant(t.friction_force[1], 4),
-            t.closed.to_string(),
-            t.open.to_string(),
-            micrometres(t.largest_penetration),
-            micrometres(t.approach),
-        ];
-        table.row(cells, false);
-    }
+    let mut table = Table::of("Steady sliding", &result.pair_table(), false);
     let residual = power(result.state.residual);
     table.notes.push(format!("{} Newton iterations, relative residual {residual}.", result.state.iterations));
     table
@@ -184,27 +173,10 @@ pub(super) fn steady(result: &SteadyResult) -> Table {
 
 /// The complex eigenvalues, unstable ones marked.
 pub(super) fn complex(result: &ComplexResult) -> Table {
-    let headings =
-        ["no.", "f [Hz]", "σ [1/s]", "ζ [%]", "<", "η", "|Δλ|/|λ|", "κ", "<real modes that take part"];
-    let mut table = Table::new("Complex eigenvalues at steady sliding", &headings);
+    let mut table = Table::of("Complex eigenvalues at steady sliding", &result.mode_table(), true);
     table.alarming = true;
-    for (k, mode) in result.modes.modes.iter().enumerate() {
-        let cells = vec![
-            (k + 1).to_string(),
-            hertz(mode.frequency_hz(), 1),
-            rate(mode.eigenvalue),
-            signed(100.0 * mode.damping_ratio(), 3),
-            match mode.verdict() {
-                Verdict::Stable => String::new(),
-                Verdict::Undecided => Verdict::Undecided.word().into(),
-                alarming => alarming.word().to_uppercase(),
-            },
-            power(mode.backward_error),
-            power(mode.eigenvalue_error),
-            significant(mode.condition, 2),
-            result.participation.get(k).cloned().unwrap_or_default(),
-        ];
-        table.row(cells, matches!(mode.verdict(), Verdict::Unstable | Verdict::Inaccurate));
+    for (row, mode) in table.rows.iter_mut().zip(&result.modes.modes) {
+        row.marked = matches!(mode.verdict(), Verdict::Unstable | Verdict::Inaccurate);
     }
     table.notes.push("σ: growth rate; ζ = −σ/|λ|: damping ratio, negative when unstable.".into());
     table.notes.push("η: backward error; |Δλ|/|λ|: estimated eigenvalue error; κ: condition number.".into());
@@ -312,23 +284,7 @@ fn second_method(confirmation: &Confirmation) -> String {
 pub(super) fn sensitivity(mode: &ModeSensitivity) -> Table {
     let hz = hertz(mode.eigenvalue.im / TAU, 1);
     let caption = format!("What the mode at {hz} Hz, σ = {} 1/s, answers to", rate(mode.eigenvalue));
-    let headings =
-        ["<scalar", "value", "<unit", "σ per 1 % [1/s]", "f per 1 % [Hz]", "error", "dσ/dp", "df/dp"];
-    let mut table = Table::new(caption, &headings);
-    for p in &mode.parameters {
-        let relative = if p.rate.norm() > 0.0 { p.error / p.rate.norm() } else { 0.0 };
-        let cells = vec![
-            p.path.clone(),
-            given(p.value),
-            p.unit.clone(),
-            significant(p.growth_per_percent(), 3),
-            significant(p.frequency_per_percent(), 3),
-            if p.kink { format!("{} †", power(relative)) } else { power(relative) },
-            significant(p.rate.re, 4),
-            significant(p.frequency_rate(), 4),
-        ];
-        table.row(cells, false);
-    }
+    let mut table = Table::of(caption, &mode.rates(), false);
     table.notes.push(
         "The steady state follows every scalar. Error: of dλ/dp, relative; dσ/dp, df/dp: per SI unit.".into(),
     );

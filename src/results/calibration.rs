@@ -1,8 +1,8 @@
 //! Numbers of a case that were found from measured modes and responses, as plain data, and their files.
 
-use super::csv::{Table, number};
 use super::write_result;
 use crate::calibration::Calibration;
+use crate::dataset::{CsvTable as Table, number};
 use crate::error::Result;
 use crate::measured::Quantity;
 use std::f64::consts::LN_10;

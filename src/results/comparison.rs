@@ -1,8 +1,8 @@
 //! What was measured beside what was computed: modes and frequency responses.
 
-use super::csv::{Table, number};
 use super::hdf5::{Datasets, attribute, text_attribute};
 use super::{FileNames, NamedModes, ResultsFile, RunResults, write_result};
+use crate::dataset::{CsvTable as Table, number};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::measured::Quantity;

@@ -1,8 +1,8 @@
 //! `critical_values.csv`, `sweep_<name>.csv` and `map_<name>.csv`.
 
-use super::csv::{Table, number};
 use super::explored_hdf5::kind_name;
 use super::{MapResult, RunResults, SweepResult, write_result};
+use crate::dataset::{CsvTable as Table, number};
 use crate::error::Result;
 use std::f64::consts::TAU;
 use std::path::Path;

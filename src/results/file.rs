@@ -16,8 +16,8 @@
 //! An interrupted run is taken up from `record.bin` and `checkpoint.bin` (see `record`); `results.h5` is only written.
 
 use super::RunResults;
-use super::folder::{FileNames, make_durable, own, prepare_folder, refusal, retire, synchronise};
-use super::hdf5::{Datasets, attribute, plain, text_attribute, texts};
+use super::folder::{make_durable, own, prepare_folder, refusal, retire, synchronise};
+use super::hdf5::{attribute, plain, text_attribute};
 use crate::error::Result;
 use hdf5::file::FileBuilder;
 use hdf5::plist::dataset_create::{AllocTime, FillTime};
@@ -37,7 +37,6 @@ pub struct ResultsFile {
     path: PathBuf,
     /// Where it belongs.
     home: PathBuf,
-    pub(super) names: FileNames,
     /// Files of the folder that are not deleted with those of the earlier run.
     spared: Vec<PathBuf>,
     /// Whether those are deleted.
@@ -66,7 +65,6 @@ impl ResultsFile {
             file: Some(file),
             path,
             home,
-            names: FileNames::default(),
             spared: Vec::new(),
             alone: false,
             kept: false,
@@ -76,6 +74,7 @@ impl ResultsFile {
         this.stage(|root| {
             text_attribute(root, "program", env!("CARGO_PKG_NAME"))?;
             text_attribute(root, "program_version", env!("CARGO_PKG_VERSION"))?;
+            attribute(root, "schema_version", &super::SCHEMA_VERSION)?;
             attribute(root, "complete", &false)
         })?;
         Ok(this)
@@ -109,11 +108,7 @@ impl ResultsFile {
     /// The machine refuses.
     pub fn finish(mut self, results: &RunResults) -> Result<()> {
         self.stage(|root| {
-            texts(root, "warnings", &results.warnings, "what the user should know, one sentence each")?;
-            let group = Datasets(root.create_group("timings")?);
-            let (phases, seconds): (Vec<String>, Vec<f64>) = results.timings.iter().cloned().unzip();
-            texts(&group.0, "phase", &phases, "phases of the run")?;
-            group.list("wall_time", &seconds, "s", "wall time of each phase")?;
+            super::summary::tail(results).write_hdf5(root)?;
             results.failed.iter().try_for_each(|error| text_attribute(root, "failed", error))?;
             root.attr("complete")?.write_scalar(&results.failed.is_none())
         })?;
@@ -247,7 +242,7 @@ mod tests {
         std::fs::write(&home, "earlier").unwrap();
         {
             let mut file = ResultsFile::create(dir.path()).unwrap();
-            file.write_case(&results).unwrap();
+            file.write_head(&results).unwrap();
             assert_eq!(std::fs::read(&home).unwrap(), b"earlier");
         }
         assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 1, "a run without results leaves nothing");
@@ -259,9 +254,9 @@ mod tests {
         assert!(failed.dataset("modes/disc/frequency_hz").is_ok());
         assert!(!failed.attr("complete").unwrap().read_scalar::<bool>().unwrap());
         let mut file = ResultsFile::create(dir.path()).unwrap();
-        file.write_steady(results.steady.as_ref().unwrap()).unwrap();
+        file.write(&results.steady.as_ref().unwrap().group()).unwrap();
         file.finish(&results).unwrap();
-        assert!(hdf5::File::open(&home).unwrap().group("steady").is_ok());
+        assert!(hdf5::File::open(&home).unwrap().group("steady_sliding").is_ok());
         let mut names: Vec<_> =
             std::fs::read_dir(dir.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
         names.sort();

@@ -1,9 +1,9 @@
 //! Frequency responses, as plain data, and their files.
 
-use super::csv::{Table, number};
 use super::folder::FileNames;
 use super::hdf5::{Datasets, attribute, text_attribute};
 use super::{ResultsFile, uff, write_result};
+use crate::dataset::{CsvTable as Table, number};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::measured::Quantity;

@@ -22,6 +22,7 @@ mod calibration;
 mod calibration_hdf5;
 mod calibration_json;
 mod comparison;
+mod complex;
 mod csv;
 mod derived;
 mod events_hdf5;
@@ -34,8 +35,8 @@ mod file;
 mod folder;
 mod frf;
 mod hdf5;
-mod json;
 mod lock;
+mod real_modes;
 pub mod record;
 mod reduced_check;
 mod room;
@@ -43,6 +44,8 @@ mod search;
 mod sensitivity;
 mod sound;
 mod sound_hdf5;
+mod steady;
+mod summary;
 mod transient;
 mod transient_csv;
 mod transient_hdf5;
@@ -54,26 +57,30 @@ mod watched;
 
 #[cfg(test)]
 pub(crate) mod sample;
+#[cfg(test)]
+mod tests;
 
 pub use calibration::{
     CalibratedDatum, CalibratedNumber, CalibratedResponse, CalibratedShape, CalibrationResult,
 };
 pub use comparison::{MeasuredComparison, MeasuredResponses, MeasuredRow, Placed, ResponsePair};
-pub(crate) use csv::Table as CsvTable;
-pub use csv::write_csv;
+pub use complex::ComplexResult;
+pub(crate) use csv::write_csv;
 pub use derived::{ComparedRow, PairTotals};
 pub use explored::{DampingRow, DampingVerdicts, MapResult, Method, SweepResult};
 pub use fields::FieldsFile;
 pub use file::ResultsFile;
 pub(crate) use folder::{FileNames, retire, set_aside, write_atomically, write_result};
 pub use frf::{FrfResponse, FrfResult, PlaceAndDirection, Resonance};
-pub use json::{SCHEMA_VERSION, summary_json, write_summary};
 pub use lock::FolderLock;
+pub use real_modes::NamedModes;
 pub use reduced_check::{Deviation, MotionCompared, ReducedCheck};
 pub use room::{RecordSize, room_in_memory, room_on_disk};
 pub use search::{Moved, SearchResult, SearchedNumber};
 pub use sensitivity::{AdviceField, ModeSensitivity, Mounted, ParameterRate, SensitivityResult};
 pub use sound::{Heard, Sound, Sounding, Tone};
+pub use steady::SteadyResult;
+pub use summary::{SCHEMA_VERSION, summary_json, write_summary};
 pub use transient::{
     Channel, Field, Fields, GrowthCompared, Piece, Recording, SpectrumOf, TransientResult, modal_channel,
 };
@@ -83,9 +90,6 @@ pub use vtk::write_vtk;
 pub(crate) use watched::ContactWatch;
 pub use watched::{ContactHistory, Curve, Orbit, TouchState, Watched};
 
-use crate::equilibrium::SteadySliding;
-use crate::modal::{DiscModeName, RealModes};
-use crate::stability::{Certificate, ComplexModes, Confirmation};
 use std::path::Path;
 
 /// Writes `summary.json`, the tables and the ParaView files of `results` into the folder `dir`.
@@ -185,64 +189,3 @@ pub struct Geometry {
 
 /// A displacement of every node: (ux, uy, uz, rx, ry, rz) \[m, rad\] in the order of [`Geometry::nodes`].
 pub type NodalField<T> = Vec<[T; 6]>;
-
-/// The real modes of one part or of the whole.
-#[derive(Debug)]
-pub struct NamedModes {
-    /// `disc`, `rig`, `rig with closed contact` …
-    pub name: String,
-    /// Eigenvalues, errors and certificate.
-    pub modes: RealModes,
-    /// The shape of each mode at every node; zero outside the part.
-    pub shapes: Vec<NodalField<f64>>,
-    /// The part with the largest share of each mode's kinetic energy; `None` where only points move.
-    pub moving_part: Vec<Option<String>>,
-    /// The name of each mode, where the part is a disc and the mode bends it.
-    pub names: Vec<Option<DiscModeName>>,
-    /// Effective mass of each mode for translations along x, y, z \[kg\].
-    pub effective_mass: Vec<[f64; 3]>,
-    /// Total mass \[kg\].
-    pub total_mass: f64,
-    /// ζ of each mode by the damping of the case.
-    pub damping_ratio: Vec<f64>,
-    /// Whether `modes_<set>.uff` is wanted.
-    pub universal: bool,
-}
-
-/// Steady sliding, for people.
-#[derive(Debug)]
-pub struct SteadyResult {
-    /// The solution.
-    pub state: SteadySliding,
-    /// Displacement of every node.
-    pub displacement: NodalField<f64>,
-    /// Pair name and position \[m\] of every contact point.
-    pub points: Vec<(String, [f64; 3])>,
-    /// Load \[N\] and sliding velocity \[m/s\] of each pair, with its name.
-    pub pairs: Vec<(String, f64, f64)>,
-    /// For each pair two unit vectors: where the load presses the body (the disc) and where the counter-body (the
-    /// slider) moves. Pictures draw them as arrows; empty where the case has no geometry.
-    pub directions: Vec<[[f64; 3]; 2]>,
-}
-
-/// Complex modes, for people.
-#[derive(Debug)]
-pub struct ComplexResult {
-    /// Eigenvalues, vectors, errors, budgets.
-    pub modes: ComplexModes,
-    /// The shape of each mode at every node.
-    pub shapes: Vec<NodalField<crate::linalg::c64>>,
-    /// A few words on the real modes that take part in each mode: `61 % disc (0,1), 22 % (3,0)`.
-    pub participation: Vec<String>,
-    /// What the real modes are called, in the order that [`ComplexMode::participation`](crate::stability::ComplexMode)
-    /// counts them: `disc (0, 1)`, `mode 1718 Hz`.
-    pub real_modes: Vec<String>,
-    /// Frequencies that measurements show squealing \[Hz\], with their source; may be empty.
-    pub measured_squeal_hz: Vec<(f64, String)>,
-    /// Frequency band of the analysis \[Hz\].
-    pub band_hz: [f64; 2],
-    /// The count of the unstable eigenvalues, where there is one.
-    pub certificate: Option<Certificate>,
-    /// The second method beside it, if the case asked for one.
-    pub confirmation: Option<Confirmation>,
-}

@@ -8,10 +8,10 @@ pub use calibration::calibration;
 
 use super::record::InputFile;
 use super::*;
-use crate::equilibrium::PointState;
+use crate::equilibrium::{PointState, SteadySliding};
 use crate::linalg::c64;
-use crate::modal::SturmCertificate;
-use crate::stability::{ComplexMode, GrowthBudget};
+use crate::modal::{DiscModeName, RealModes, SturmCertificate};
+use crate::stability::{ComplexMode, ComplexModes, GrowthBudget};
 use crate::system::{ContactForces, ContactTangent};
 use std::f64::consts::{PI, TAU};
 

@@ -1,6 +1,8 @@
 //! How complex eigenvalues answer the scalars of the case and small things mounted on its nodes, as plain data.
 
+use crate::dataset::{Column, Dimension, Group, Table, Values, Variable, column};
 use crate::linalg::c64;
+use crate::numbers::{given, power, significant};
 use std::f64::consts::TAU;
 
 /// The sensitivities of the chosen complex modes.
@@ -94,4 +96,128 @@ pub struct Mounted {
     pub done: Option<c64>,
     /// How far the change by a thousandth of it, really mounted, is from the slope, relative to it.
     pub slope_error: Option<f64>,
+}
+
+fn rate_columns() -> Vec<Column<ParameterRate>> {
+    type Rate = ParameterRate;
+    let error = |rate: &Rate| {
+        let relative = if rate.rate.norm() > 0.0 { rate.error / rate.rate.norm() } else { 0.0 };
+        if rate.kink { format!("{} †", power(relative)) } else { power(relative) }
+    };
+    vec![
+        column("parameter", "text", "path of the scalar p in the case", |p: &Rate| p.path.clone())
+            .shown("scalar", |p| p.path.clone()),
+        column("value", "unit", "its value", |p: &Rate| p.value).shown("value", |p| given(p.value)),
+        column("unit", "text", "its SI unit", |p: &Rate| p.unit.clone()).shown("unit", |p| p.unit.clone()),
+        column("growth_per_percent", "1/s", "change of σ when p grows by 1 %", Rate::growth_per_percent)
+            .shown("σ per 1 % [1/s]", |p| significant(p.growth_per_percent(), 3)),
+        column(
+            "frequency_per_percent",
+            "Hz",
+            "change of the frequency when p grows by 1 %",
+            Rate::frequency_per_percent,
+        )
+        .shown("f per 1 % [Hz]", |p| significant(p.frequency_per_percent(), 3)),
+        column("error", "1/s per unit", "estimated |error| of dλ/dp", |p: &Rate| p.error)
+            .shown("error", error),
+        column("dsigma_dp", "1/s per unit", "dσ/dp", |p: &Rate| p.rate.re)
+            .shown("dσ/dp", |p| significant(p.rate.re, 4)),
+        column("dfrequency_dp", "Hz per unit", "df/dp", Rate::frequency_rate)
+            .shown("df/dp", |p| significant(p.frequency_rate(), 4)),
+        column(
+            "kink",
+            "1",
+            "whether the slopes to the two sides differ; the rate is their mean",
+            |p: &Rate| p.kink,
+        ),
+    ]
+}
+
+fn mounted_columns() -> Vec<Column<Mounted>> {
+    vec![
+        column("kind", "text", "mass or damper", |m: &Mounted| m.kind),
+        column("amount", "unit", "how much of it", |m: &Mounted| m.amount),
+        column("unit", "text", "unit of the amount", |m: &Mounted| m.unit),
+        column("node", "1", "index of the node, from 0", |m: &Mounted| m.node),
+        column("position_m", "m", "position", |m: &Mounted| m.position).along(Dimension::axes()),
+        column("direction", "1", "along which a damper acts", |m: &Mounted| m.direction)
+            .along(Dimension::axes()),
+        column("predicted_growth_rate", "1/s", "change of σ by the slope", |m: &Mounted| m.predicted.re),
+        column("predicted_frequency_hz", "Hz", "change of the frequency by the slope", |m: &Mounted| {
+            m.predicted.im / TAU
+        }),
+        column("done_growth_rate", "1/s", "change of σ, mounted and computed anew", |m: &Mounted| {
+            m.done.map(|change| change.re)
+        }),
+        column(
+            "done_frequency_hz",
+            "Hz",
+            "change of the frequency, mounted and computed anew",
+            |m: &Mounted| m.done.map(|change| change.im / TAU),
+        ),
+        column(
+            "slope_error",
+            "1",
+            "relative error of the slope, by a thousandth of the amount",
+            |m: &Mounted| m.slope_error,
+        ),
+    ]
+}
+
+impl ModeSensitivity {
+    /// The scalars, one a row.
+    pub(crate) fn rates(&self) -> Table<'static> {
+        let file = format!("sensitivities_mode_{}.csv", self.mode + 1);
+        Table::of("parameters", "parameter_number", &rate_columns(), &self.parameters).file(file)
+    }
+
+    fn group(&self) -> Group<'_> {
+        let group = Group::new(format!("mode {}", self.mode + 1), "derivatives of a complex eigenvalue λ")
+            .value("mode", "1", "number of the complex mode, from 1", self.mode + 1)
+            .value("frequency_hz", "Hz", "ω/2π", self.eigenvalue.im / TAU)
+            .value("growth_rate", "1/s", "σ", self.eigenvalue.re)
+            .table(self.rates())
+            .table(Table::of("best", "thing", &mounted_columns(), &self.best));
+        let Some(advice) = &self.advice else { return group };
+        let nodes = Dimension::indexed("node", advice.mass.len());
+        let along = Dimension::named("along", &["x", "y", "z", "normal"]);
+        let mass = Values::ComplexRows(Box::new(|node| vec![advice.mass[node]]));
+        let spring = Values::ComplexRows(Box::new(|node| advice.stiffness[node].to_vec()));
+        let damper = Values::ComplexRows(Box::new(|node| advice.damping[node].to_vec()));
+        let both = vec![nodes.clone(), along];
+        group
+            .with(Variable::new("point_mass", "1/(s kg)", "dλ/dm of a point mass", vec![nodes], mass))
+            .with(Variable::new(
+                "point_spring",
+                "1/s per N/m",
+                "dλ/dk of a spring to the ground",
+                both.clone(),
+                spring,
+            ))
+            .with(Variable::new(
+                "point_damper",
+                "1/s per N s/m",
+                "dλ/dc of a damper to the ground",
+                both,
+                damper,
+            ))
+    }
+}
+
+impl SensitivityResult {
+    /// Derivatives of the chosen modes, and scalars without one.
+    pub(crate) fn group(&self) -> Group<'_> {
+        let left_out = [
+            column("parameter", "text", "path of the scalar", |(path, _): &(String, String)| path.clone()),
+            column("reason", "text", "why it has no derivative", |(_, reason): &(String, String)| {
+                reason.clone()
+            }),
+        ];
+        Group::new(
+            "sensitivity",
+            "how complex eigenvalues answer scalars of the case and things mounted on its nodes",
+        )
+        .list("modes", self.modes.iter().map(ModeSensitivity::group).collect())
+        .table(Table::of("left_out", "scalar", &left_out, &self.left_out))
+    }
 }

@@ -128,7 +128,7 @@ pub(super) fn write(dir: &Path, sound: &Sound) -> crate::error::Result<()> {
 }
 
 fn table(sound: &Sound) -> String {
-    use super::csv::{Table, number};
+    use crate::dataset::{CsvTable as Table, number};
     let plates = sound.plates.iter().map(|(name, _)| format!("sound power of {name} [W]"));
     let heard = sound.microphones.iter().map(|m| format!("mean square pressure at {} [Pa^2]", m.name));
     let headings: Vec<String> = std::iter::once("frequency [Hz]".into()).chain(plates).chain(heard).collect();

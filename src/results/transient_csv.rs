@@ -1,8 +1,8 @@
 //! `transient.csv` and `events.csv`, which grow while the run goes on.
 
-use super::csv::{Table, number};
 use super::folder::{own, refusal};
 use super::{Channel, Recording};
+use crate::dataset::{CsvTable as Table, number};
 use crate::error::Result;
 use crate::transient::Event;
 use std::fs::File;

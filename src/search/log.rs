@@ -2,10 +2,11 @@
 
 use super::cost::Facts;
 use super::file::SearchFile;
+use crate::dataset::CsvTable;
 use crate::error::text::printable;
 use crate::error::{Error, Fault, Result};
 use crate::results::record::{self, Origin};
-use crate::results::{CsvTable, retire, write_result};
+use crate::results::{retire, write_result};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;

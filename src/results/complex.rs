@@ -1,0 +1,243 @@
+//! Complex modes, the count of the unstable ones, and the second method beside them.
+
+use super::NodalField;
+use super::real_modes::SHAPE_UNITS;
+use crate::dataset::{Column, Dimension, Group, Table, Values, Variable, column};
+use crate::linalg::c64;
+use crate::numbers::{growth, hertz, power, signed, significant};
+use crate::stability::{Certificate, CloseCall, ComplexMode, ComplexModes, Confirmation, ROUND_OFF, Verdict};
+use std::f64::consts::TAU;
+
+/// Complex modes, for people.
+#[derive(Debug)]
+pub struct ComplexResult {
+    /// Eigenvalues, vectors, errors, budgets.
+    pub modes: ComplexModes,
+    /// The shape of each mode at every node.
+    pub shapes: Vec<NodalField<c64>>,
+    /// A few words on the real modes that take part in each mode: `61 % disc (0,1), 22 % (3,0)`.
+    pub participation: Vec<String>,
+    /// What the real modes are called, in the order that [`ComplexMode::participation`](crate::stability::ComplexMode)
+    /// counts them: `disc (0, 1)`, `mode 1718 Hz`.
+    pub real_modes: Vec<String>,
+    /// Frequencies that measurements show squealing \[Hz\], with their source; may be empty.
+    pub measured_squeal_hz: Vec<(f64, String)>,
+    /// Frequency band of the analysis \[Hz\].
+    pub band_hz: [f64; 2],
+    /// The count of the unstable eigenvalues, where there is one.
+    pub certificate: Option<Certificate>,
+    /// The second method beside it, if the case asked for one.
+    pub confirmation: Option<Confirmation>,
+}
+
+/// A complex mode with the words on its real modes.
+type Mode<'a> = (&'a ComplexMode, &'a str);
+
+fn columns<'a>() -> Vec<Column<Mode<'a>>> {
+    vec![
+        column("frequency_hz", "Hz", "ω/2π", |(m, _): &Mode| m.frequency_hz())
+            .shown("f [Hz]", |(m, _)| hertz(m.frequency_hz(), 1)),
+        column("growth_rate", "1/s", "σ; the mode is unstable when it is positive", |(m, _): &Mode| {
+            m.growth_rate()
+        })
+        .shown("σ [1/s]", |(m, _)| growth(m.growth_rate(), m.eigenvalue.norm(), ROUND_OFF)),
+        column("damping_ratio", "1", "ζ = −σ/|λ|", |(m, _): &Mode| m.damping_ratio())
+            .shown("ζ [%]", |(m, _)| signed(100.0 * m.damping_ratio(), 3)),
+        column("verdict", "text", "stable, unstable, undecided or not accurate", |(m, _): &Mode| {
+            m.verdict().word()
+        })
+        .shown("", |(m, _)| match m.verdict() {
+            Verdict::Stable => String::new(),
+            Verdict::Undecided => Verdict::Undecided.word().into(),
+            alarming => alarming.word().to_uppercase(),
+        }),
+        column("unstable", "1", "whether the mode is unstable", |(m, _): &Mode| m.unstable()),
+        column("undecided", "1", "whether σ is within its error", |(m, _): &Mode| {
+            m.verdict() == Verdict::Undecided
+        }),
+        column("growth_structural_damping", "1/s", "part of σ by structural damping", |(m, _): &Mode| {
+            m.growth.structural_damping
+        }),
+        column(
+            "growth_falling_friction",
+            "1/s",
+            "part of σ by friction that falls with speed",
+            |(m, _): &Mode| m.growth.falling_friction,
+        ),
+        column(
+            "growth_transverse_friction",
+            "1/s",
+            "part of σ by friction across the sliding",
+            |(m, _): &Mode| m.growth.transverse_friction,
+        ),
+        column("growth_mode_coupling", "1/s", "part of σ by the unsymmetric stiffness", |(m, _): &Mode| {
+            m.growth.mode_coupling
+        }),
+        column(
+            "backward_error",
+            "1",
+            "η = ‖Q(λ)φ‖ / ((|λ|²‖M‖ + |λ|‖C‖ + ‖K‖)‖φ‖)",
+            |(m, _): &Mode| m.backward_error,
+        )
+        .shown("η", |(m, _)| power(m.backward_error)),
+        column("eigenvalue_error", "1", "estimated |Δλ|/|λ|", |(m, _): &Mode| m.eigenvalue_error)
+            .shown("|Δλ|/|λ|", |(m, _)| power(m.eigenvalue_error)),
+        column("condition", "1", "condition number κ of λ", |(m, _): &Mode| m.condition)
+            .shown("κ", |(m, _)| significant(m.condition, 2)),
+        column("participation", "text", "the real modes that take part", |(_, words): &Mode| {
+            (*words).to_string()
+        })
+        .shown("real modes that take part", |(_, words)| (*words).to_string()),
+    ]
+}
+
+fn close_call_columns() -> Vec<Column<CloseCall>> {
+    vec![
+        column("frequency_hz", "Hz", "ω/2π of the mode", |call: &CloseCall| call.frequency_hz),
+        column("growth_rate", "1/s", "σ of the mode", |call: &CloseCall| call.growth_rate),
+        column("distance", "1/s", "distance from the contour", |call: &CloseCall| call.distance),
+        column("inside", "1", "whether it counts as inside", |call: &CloseCall| call.inside),
+    ]
+}
+
+fn certificate_columns() -> Vec<Column<Certificate>> {
+    type Count = Certificate;
+    vec![
+        column("holds", "1", "whether as many were found as were counted, at full order", |c: &Count| {
+            c.holds()
+        }),
+        column(
+            "band_hz",
+            "Hz",
+            "frequencies of the region; from zero on with the conjugates",
+            |c: &Count| c.band_hz,
+        )
+        .along(Dimension::limits()),
+        column("growth_rate", "1/s", "growth rates of the region", |c: &Count| c.growth)
+            .along(Dimension::limits()),
+        column("unstable_counted", "1", "eigenvalues counted in the region", |c: &Count| c.counted),
+        column("unstable_found", "1", "eigenvalues found in the region", |c: &Count| c.found),
+        column(
+            "margin",
+            "1",
+            "least margin on the contour; the count holds at full order above 1",
+            |c: &Count| c.margin,
+        ),
+        column("tightest_hz", "Hz", "frequency on the contour where the margin is least", |c: &Count| {
+            c.tightest[0]
+        }),
+        column("points", "1", "points of the contour", |c: &Count| c.points),
+        column("structure_poles", "1", "zeros of the oscillators in the region", |c: &Count| {
+            c.structure_poles
+        }),
+        column("dissipative", "1", "whether the damping is known to dissipate", |c: &Count| c.dissipative),
+        column("nothing_faster", "1", "whether no eigenvalue of the band grows faster", |c: &Count| {
+            c.nothing_faster
+        }),
+        column(
+            "proven",
+            "1",
+            "whether it is a proof but for rounding, the real modes taken as exact",
+            |c: &Count| c.proven,
+        ),
+    ]
+}
+
+fn second_method_columns() -> Vec<Column<Confirmation>> {
+    vec![
+        column("holds", "1", "whether both methods found the same modes", |c: &Confirmation| c.holds()),
+        column("shifts", "1", "shifts at which the full order was factorised", |c: &Confirmation| c.shifts),
+        column("confirmed", "1", "modes that both found", |c: &Confirmation| c.confirmed),
+        column("largest_difference", "1", "largest |Δλ|/|λ| of those", |c: &Confirmation| {
+            c.largest_difference
+        }),
+        column("condition", "1", "condition number of that eigenvalue", |c: &Confirmation| c.condition),
+    ]
+}
+
+impl ComplexResult {
+    /// The modes, one a row.
+    pub(crate) fn mode_table(&self) -> Table<'static> {
+        let words = |k: usize| self.participation.get(k).map_or("", String::as_str);
+        let modes: Vec<Mode> =
+            self.modes.modes.iter().enumerate().map(|(k, mode)| (mode, words(k))).collect();
+        Table::of("eigenvalues", "mode", &columns(), &modes).file("complex_modes.csv")
+    }
+
+    /// The modes with their vectors, the count and the second method.
+    pub(crate) fn group(&self) -> Group<'_> {
+        let count = |verdict| self.modes.modes.iter().filter(|m| m.verdict() == verdict).count();
+        let band = self.band_hz.to_vec();
+        let squeal: Vec<(f64, String)> = self.measured_squeal_hz.clone();
+        let squeal_columns = [
+            column("frequency_hz", "Hz", "frequency", |(hz, _): &(f64, String)| *hz),
+            column("source", "text", "source", |(_, source): &(f64, String)| source.clone()),
+        ];
+        Group::new("cea", "complex eigenvalues at steady sliding")
+            .with(Variable::reals("band_hz", "Hz", "band of the analysis", vec![Dimension::limits()], band))
+            .value("unstable", "1", "unstable modes", count(Verdict::Unstable))
+            .value("undecided", "1", "modes with σ within its error", count(Verdict::Undecided))
+            .value("not_accurate", "1", "modes that are not accurate", count(Verdict::Inaccurate))
+            .value("subspace_dimension", "1", "dimension of the subspace", self.modes.subspace_dimension)
+            .value("refinements", "1", "steps of refinement", self.modes.refinements)
+            .table(self.with_vectors())
+            .optional("certificate", self.certificate.as_ref().map(certificate))
+            .optional("second_method", self.confirmation.as_ref().map(second_method))
+            .table(Table::of("measured_squeal", "measurement", &squeal_columns, &squeal))
+    }
+
+    fn with_vectors(&self) -> Table<'_> {
+        let modes = &self.modes.modes;
+        let table = self.mode_table();
+        let rows = table.rows.clone();
+        let along = |more: &[Dimension]| std::iter::once(&rows).chain(more).cloned().collect::<Vec<_>>();
+        let eigenvalues = Values::Complexes(modes.iter().map(|m| m.eigenvalue).collect());
+        let mut table =
+            table.field(Variable::new("eigenvalue", "1/s", "λ = σ + iω", vec![rows.clone()], eigenvalues));
+        let n_nodes = self.shapes.first().map_or(0, Vec::len);
+        let right = Values::ComplexRows(Box::new(|k| self.shapes[k].as_flattened().to_vec()));
+        let dimensions = along(&[Dimension::indexed("node", n_nodes), Dimension::freedoms()]);
+        table =
+            table.field(Variable::new("right", SHAPE_UNITS, "φ at every node, φᴴMφ = 1", dimensions, right));
+        if let Some(n_dofs) = modes.first().map(|m| m.left.len()).filter(|n| *n > 0) {
+            let left = Values::ComplexRows(Box::new(|k| modes[k].left.clone()));
+            let story = "ψ on the free degrees of freedom of the solver, ψᴴQ(λ) = 0";
+            let dimensions = along(&[Dimension::indexed("dof", n_dofs)]);
+            table = table.field(Variable::new("left", SHAPE_UNITS, story, dimensions, left));
+        }
+        let n_real = modes.iter().flat_map(|m| &m.participation).map(|(k, _)| k + 1).max().unwrap_or(0);
+        let real = Dimension::numbered("real_mode", n_real);
+        let shares = move |k: usize| {
+            let mut row = vec![0.0; n_real];
+            modes[k].participation.iter().for_each(|(k, share)| row[*k] = *share);
+            row
+        };
+        let story = "share of each real mode of the system";
+        let shares = Values::RealRows(Box::new(shares));
+        table = table.field(Variable::new("real_mode_share", "1", story, along(&[real.clone()]), shares));
+        let names = (0..n_real).map(|k| self.real_modes.get(k).cloned().unwrap_or_default()).collect();
+        table.field(Variable::texts("real_mode_name", "names of the real modes", real, names))
+    }
+}
+
+/// The count of the unstable eigenvalues.
+fn certificate(count: &Certificate) -> Group<'static> {
+    Group::of(
+        "certificate",
+        "eigenvalues that grow, counted without looking for them",
+        &certificate_columns(),
+        count,
+    )
+    .table(Table::of("close_calls", "call", &close_call_columns(), &count.close_calls))
+}
+
+/// What two-level Arnoldi on the full order says.
+fn second_method(confirmation: &Confirmation) -> Group<'static> {
+    let hz = |key: &'static str, description: &'static str, all: &[c64]| {
+        let dimension = Dimension::of_variable(key, all.len());
+        Variable::reals(key, "Hz", description, vec![dimension], all.iter().map(|z| z.im / TAU).collect())
+    };
+    Group::of("second_method", "two-level Arnoldi on the full order", &second_method_columns(), confirmation)
+        .with(hz("missed_hz", "modes that only the second method found", &confirmation.missed))
+        .with(hz("unconfirmed_hz", "modes that only the analysis found", &confirmation.unconfirmed))
+}

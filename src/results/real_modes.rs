@@ -1,0 +1,121 @@
+//! Real modes of one part or of the whole.
+
+use super::{FileNames, NodalField, RunResults};
+use crate::dataset::{Column, Dimension, Group, Table, Values, Variable, column};
+use crate::modal::{DiscModeName, RealModes};
+
+/// Units of a mass-normalised displacement and rotation: φᵀMφ = 1.
+pub(super) const SHAPE_UNITS: &str = "1/√kg, 1/(m √kg)";
+
+/// The real modes of one part or of the whole.
+#[derive(Debug)]
+pub struct NamedModes {
+    /// `disc`, `rig`, `rig with closed contact` …
+    pub name: String,
+    /// Eigenvalues, errors and certificate.
+    pub modes: RealModes,
+    /// The shape of each mode at every node; zero outside the part.
+    pub shapes: Vec<NodalField<f64>>,
+    /// The part with the largest share of each mode's kinetic energy; `None` where only points move.
+    pub moving_part: Vec<Option<String>>,
+    /// The name of each mode, where the part is a disc and the mode bends it.
+    pub names: Vec<Option<DiscModeName>>,
+    /// Effective mass of each mode for translations along x, y, z \[kg\].
+    pub effective_mass: Vec<[f64; 3]>,
+    /// Total mass \[kg\].
+    pub total_mass: f64,
+    /// ζ of each mode by the damping of the case.
+    pub damping_ratio: Vec<f64>,
+    /// Whether `modes_<set>.uff` is wanted.
+    pub universal: bool,
+}
+
+/// A mode of a set by its index.
+type Mode<'a> = (&'a NamedModes, usize);
+
+fn columns<'a>() -> Vec<Column<Mode<'a>>> {
+    let name = |(set, k): &Mode| set.names.get(*k).copied().flatten();
+    vec![
+        column("frequency_hz", "Hz", "natural frequency ω/2π", |(set, k): &Mode| {
+            set.modes.frequency_hz(*k)
+        }),
+        column("eigenvalue", "rad^2/s^2", "ω² as computed", |(set, k): &Mode| set.modes.eigenvalues[*k]),
+        column("moving_part", "text", "the part with the most kinetic energy", |(set, k): &Mode| {
+            set.moving_part.get(*k).cloned().flatten()
+        }),
+        column("nodal_diameters", "1", "nodal diameters of a disc's mode", move |mode: &Mode| {
+            name(mode).map(|name| name.nodal_diameters)
+        }),
+        column("nodal_circles", "1", "nodal circles of a disc's mode", move |mode: &Mode| {
+            name(mode).map(|name| name.nodal_circles)
+        }),
+        column("effective_mass_kg", "kg", "modal effective mass along x, y, z", |(set, k): &Mode| {
+            set.effective_mass.get(*k).copied()
+        })
+        .along(Dimension::axes()),
+        column("damping_ratio", "1", "ζ by the damping of the case", |(set, k): &Mode| {
+            set.damping_ratio.get(*k).copied()
+        }),
+        column(
+            "backward_error",
+            "1",
+            "η = ‖Kφ − ω²Mφ‖ / ((‖K‖ + |ω²| ‖M‖) ‖φ‖)",
+            |(set, k): &Mode| set.modes.backward_errors[*k],
+        ),
+    ]
+}
+
+impl NamedModes {
+    /// The modes, one a row, with their shapes; `file` is the part of the CSV file's name that is the set's.
+    pub(super) fn table(&self, file: &str) -> Table<'_> {
+        let modes: Vec<Mode> = (0..self.modes.len()).map(|k| (self, k)).collect();
+        let table = Table::of(&*self.name, "mode", &columns(), &modes).file(format!("modes_{file}.csv"));
+        let Some(nodes) = self.shapes.first().map(Vec::len) else { return table };
+        let dimensions = vec![table.rows.clone(), Dimension::indexed("node", nodes), Dimension::freedoms()];
+        let rows = Values::RealRows(Box::new(|k| self.shapes[k].as_flattened().to_vec()));
+        table.field(Variable::new(
+            "shapes",
+            SHAPE_UNITS,
+            "shapes φ at every node, φᵀMφ = 1",
+            dimensions,
+            rows,
+        ))
+    }
+
+    /// How many modes there are, and the Sturm count beside them.
+    pub(super) fn summary(&self) -> Group<'_> {
+        let count = &self.modes.certificate;
+        let shifts = Dimension::numbered("shift", 2);
+        let counted = Values::Integers(count.counted.iter().map(|n| *n as i64).collect());
+        let certificate = Group::new("certificate", "Sturm count: eigenvalues below two shifts, by inertia")
+            .value("below_hz", "Hz", "the frequency below which the modes are complete", count.below_hz)
+            .with(Variable::reals(
+                "shifts_hz",
+                "Hz",
+                "shifts of the count",
+                vec![shifts.clone()],
+                count.shifts_hz.to_vec(),
+            ))
+            .with(Variable::new("counted", "1", "eigenvalues below each shift", vec![shifts], counted))
+            .value("found", "1", "modes that were found", count.found)
+            .value("holds", "1", "whether no mode is missing", count.holds());
+        Group::new(&*self.name, "a set of real modes")
+            .value("modes", "1", "number of modes", self.modes.len())
+            .value(
+                "rigid_bodies",
+                "1",
+                "how many of them move the body as a rigid one",
+                self.modes.rigid_bodies,
+            )
+            .value("total_mass_kg", "kg", "total mass", self.total_mass)
+            .group(certificate)
+    }
+}
+
+impl RunResults {
+    /// The tables of all sets of real modes.
+    pub(super) fn mode_tables(&self) -> Vec<Table<'_>> {
+        let mut names = FileNames::default();
+        self.modes.iter().map(|set| set.table(&names.next(&set.name))).collect()
+    }
+}

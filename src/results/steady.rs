@@ -1,0 +1,134 @@
+//! Steady sliding.
+
+use super::{NodalField, PairTotals};
+use crate::dataset::{Column, Dimension, Group, Table, Values, Variable, column};
+use crate::equilibrium::{PointState, SteadySliding};
+use crate::numbers::{given, significant};
+
+/// Steady sliding, for people.
+#[derive(Debug)]
+pub struct SteadyResult {
+    /// The solution.
+    pub state: SteadySliding,
+    /// Displacement of every node.
+    pub displacement: NodalField<f64>,
+    /// Pair name and position \[m\] of every contact point.
+    pub points: Vec<(String, [f64; 3])>,
+    /// Load \[N\] and sliding velocity \[m/s\] of each pair, with its name.
+    pub pairs: Vec<(String, f64, f64)>,
+    /// For each pair two unit vectors: where the load presses the body (the disc) and where the counter-body (the
+    /// slider) moves. Pictures draw them as arrows; empty where the case has no geometry.
+    pub directions: Vec<[[f64; 3]; 2]>,
+}
+
+/// A contact pair.
+fn pair_columns<'a>() -> Vec<Column<PairTotals<'a>>> {
+    type Pair<'a> = PairTotals<'a>;
+    let micrometres = |length: Option<f64>| length.map_or("–".into(), |d| significant(1e6 * d, 3));
+    let sum = "ΣF₁, ΣF₂, friction on the body";
+    vec![
+        column("name", "text", "name of the pair", |p: &Pair| p.name.to_string())
+            .shown("pair", |p| p.name.to_string()),
+        column("load_n", "N", "load", |p: &Pair| p.load).shown("load [N]", |p| given(p.load)),
+        column("sliding_velocity_m_per_s", "m/s", "sliding velocity V", |p: &Pair| p.sliding_velocity)
+            .shown("V [m/s]", |p| given(p.sliding_velocity)),
+        column("normal_force_n", "N", "ΣN, positive in compression", |p: &Pair| p.normal_force)
+            .shown("ΣN [N]", |p| significant(p.normal_force, 4)),
+        column("friction_force_n", "N", sum, |p: &Pair| p.friction_force)
+            .along(directions())
+            .shown("ΣF₁, ΣF₂ [N]", |p| p.friction_force.map(|force| significant(force, 4)).join(", ")),
+        column("points_closed", "1", "points that carry load", |p: &Pair| p.closed)
+            .shown("closed", |p| p.closed.to_string()),
+        column("points_open", "1", "points that do not", |p: &Pair| p.open)
+            .shown("open", |p| p.open.to_string()),
+        column("largest_penetration_m", "m", "largest δ", |p: &Pair| p.largest_penetration)
+            .shown("deepest [µm]", move |p| micrometres(p.largest_penetration)),
+        column("approach_m", "m", "approach of body and counter-body", |p: &Pair| p.approach)
+            .shown("approach [µm]", move |p| micrometres(p.approach)),
+    ]
+}
+
+/// The pair, the position and the state of a contact point.
+type Point<'a> = (&'a str, [f64; 3], &'a PointState);
+
+fn point_columns<'a>() -> Vec<Column<Point<'a>>> {
+    vec![
+        column("pair", "text", "name of the pair", |(pair, ..): &Point| (*pair).to_string()),
+        column("position_m", "m", "position", |(_, position, _): &Point| *position).along(Dimension::axes()),
+        column("penetration_m", "m", "δ, negative when open", |(.., state): &Point| state.penetration),
+        column("normal_force_n", "N", "N, positive in compression", |(.., state): &Point| {
+            state.forces.normal
+        }),
+        column(
+            "friction_force_n",
+            "N",
+            "F₁, F₂ on the body, along t₁ and t₂",
+            |(.., state): &Point| state.forces.friction,
+        )
+        .along(directions()),
+        column("closed", "1", "whether the point carries load", |(.., state): &Point| state.closed()),
+    ]
+}
+
+/// t₁ and t₂.
+fn directions() -> Dimension {
+    Dimension::numbered("direction", 2)
+}
+
+impl SteadyResult {
+    /// The pairs, one a row.
+    pub(crate) fn pair_table(&self) -> Table<'static> {
+        Table::of("pairs", "pair", &pair_columns(), &self.totals())
+    }
+
+    /// The pairs, the contact points with their tangents, the displacement of the nodes.
+    pub(crate) fn group(&self) -> Group<'_> {
+        let places = self.points.iter().zip(&self.state.points);
+        let points: Vec<Point> =
+            places.map(|((pair, position), state)| (&**pair, *position, state)).collect();
+        let mut points =
+            Table::of("points", "point", &point_columns(), &points).file("contact_points.csv").long();
+        let rows = points.rows.clone();
+        let forces = Dimension::named("force", &["N", "F1", "F2"]);
+        let tangent = |key: &'static str,
+                       unit: &'static str,
+                       description: &'static str,
+                       of: fn(&PointState) -> Vec<f64>,
+                       more: Option<Dimension>| {
+            let dimensions = [rows.clone(), forces.clone()].into_iter().chain(more).collect();
+            let values = self.state.points.iter().flat_map(of).collect();
+            Variable::reals(key, unit, description, dimensions, values)
+        };
+        points.fields = vec![
+            tangent(
+                "force_by_penetration",
+                "N/m",
+                "∂(N, F₁, F₂)/∂δ",
+                |p| p.tangent.by_penetration.to_vec(),
+                None,
+            ),
+            tangent(
+                "force_by_penetration_rate",
+                "N s/m",
+                "∂(N, F₁, F₂)/∂δ̇",
+                |p| p.tangent.by_penetration_rate.to_vec(),
+                None,
+            ),
+            tangent(
+                "force_by_slip_velocity",
+                "N s/m",
+                "∂(N, F₁, F₂)/∂(v₁, v₂)",
+                |p| p.tangent.by_slip_velocity.as_flattened().to_vec(),
+                Some(directions()),
+            ),
+        ];
+        let nodes = vec![Dimension::indexed("node", self.displacement.len()), Dimension::freedoms()];
+        let displacement = Values::RealRows(Box::new(|node| self.displacement[node].to_vec()));
+        Group::new("steady_sliding", "the state of steady sliding")
+            .value("iterations", "1", "Newton iterations", self.state.iterations)
+            .value("residual", "1", "relative residual of equilibrium", self.state.residual)
+            .with(Variable::new("displacement", "m, rad", "displacement of every node", nodes, displacement))
+            .table(self.pair_table())
+            .table(points)
+    }
+}

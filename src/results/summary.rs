@@ -1,0 +1,217 @@
+//! Everything of a run as one group: `summary.json`, `results.h5` and the tables come from it.
+//!
+//! `summary.json` is a contract that scripts may rely on: a change of a key that could break a reader raises
+//! [`SCHEMA_VERSION`]. Keys are snake_case and name the unit where it is not plain SI or obvious (`growth_rate` σ is in 1/s).
+//! A number that is not finite is `null`.
+
+use super::record::InputFile;
+use super::{Geometry, ModelSize, RunResults, comparison, write_result};
+use crate::dataset::{Dimension, Group, Table, Values, Variable, column};
+use crate::error::Result;
+use serde_json::Value;
+use std::path::Path;
+
+/// The version of the layout of `summary.json` and `results.h5`.
+pub const SCHEMA_VERSION: u32 = 2;
+
+/// Writes `summary.json` into the folder `dir`, whole or not at all.
+///
+/// # Errors
+/// [`crate::error::Error::Io`] when the folder cannot be made or the file not be written.
+pub fn write_summary(dir: &Path, results: &RunResults) -> Result<()> {
+    let text = format!("{:#}\n", summary_json(results));
+    write_result(dir, "summary.json", text.as_bytes())
+}
+
+/// What `summary.json` holds.
+pub fn summary_json(results: &RunResults) -> Value {
+    let mut json = Group::new("", "")
+        .value("schema_version", "1", "version of the layout", SCHEMA_VERSION)
+        .value("program", "text", "name of the program", env!("CARGO_PKG_NAME"))
+        .value("program_version", "text", "its version", env!("CARGO_PKG_VERSION"))
+        .value(
+            "complete",
+            "1",
+            "whether every analysis that was asked for is there",
+            results.failed.is_none(),
+        )
+        .value("failed", "text", "why not: what the analysis that failed says", results.failed.clone())
+        .to_json();
+    let parts = [head(results), tail(results), analyses(results)].map(|group| group.to_json());
+    if let Some(object) = json.as_object_mut() {
+        for part in parts {
+            object.extend(part.as_object().cloned().unwrap_or_default());
+        }
+        for (key, value) in described_elsewhere(results) {
+            object.insert(key.into(), value);
+        }
+        object.insert("case".into(), case_object(&results.resolved_case));
+    }
+    json
+}
+
+/// The resolved case as a JSON object; `null` where it is not TOML (its text is in `results.h5` all the same).
+fn case_object(toml_text: &str) -> Value {
+    let table: Option<toml::Table> = toml_text.parse().ok();
+    table.and_then(|table| serde_json::to_value(table).ok()).unwrap_or_default()
+}
+
+/// What is known before the first analysis.
+pub(super) fn head(results: &RunResults) -> Group<'_> {
+    let ModelSize { nodes, elements, dofs, nonzeros, contact_points } = results.size;
+    let model = Group::new("model", "size of the model")
+        .value("nodes", "1", "nodes of the mesh in use", nodes)
+        .value("elements", "1", "elements in use", elements)
+        .value("dofs", "1", "free degrees of freedom", dofs)
+        .value("stiffness_nonzeros", "1", "stored entries of K, both triangles", nonzeros)
+        .value("contact_points", "1", "contact points that may touch", contact_points);
+    let inputs = [
+        column("path", "text", "as the case names it", |file: &InputFile| file.path.clone()),
+        column("bytes", "1", "length in bytes", |file: &InputFile| file.bytes),
+        column("sha256", "text", "SHA-256 of its content", |file: &InputFile| file.sha256.clone()),
+    ];
+    Group::new("", "")
+        .value("title", "text", "title of the case", results.title.clone())
+        .with(sentences(
+            "assumptions",
+            "what the case assumes and its source does not state",
+            &results.assumptions,
+        ))
+        .table(Table::of("inputs", "file", &inputs, &results.inputs))
+        .group(model)
+}
+
+/// What is known at the end.
+pub(super) fn tail(results: &RunResults) -> Group<'_> {
+    let timings = [
+        column("phase", "text", "phase of the run", |(phase, _): &(String, f64)| phase.clone()),
+        column("wall_s", "s", "its wall time", |(_, seconds): &(String, f64)| *seconds),
+    ];
+    Group::new("", "")
+        .with(sentences("warnings", "what the user should know", &results.warnings))
+        .table(Table::of("timings", "phase_number", &timings, &results.timings))
+}
+
+fn sentences<'a>(key: &'static str, description: &'static str, sentences: &[String]) -> Variable<'a> {
+    Variable::texts(key, description, Dimension::of_variable(key, sentences.len()), sentences.to_vec())
+}
+
+/// What the analyses have found.
+pub(super) fn analyses(results: &RunResults) -> Group<'_> {
+    Group::new("", "")
+        .list("mode_sets", results.modes.iter().map(|set| set.summary()).collect())
+        .parts("modes", "set", results.mode_tables())
+        .optional("steady_sliding", results.steady.as_ref().map(|steady| steady.group()))
+        .optional("cea", results.complex.as_ref().map(|complex| complex.group()))
+        .optional("sensitivity", results.sensitivity.as_ref().map(|sensitivity| sensitivity.group()))
+}
+
+impl Geometry {
+    /// Nodes, elements and parts.
+    pub(super) fn group(&self) -> Group<'_> {
+        let whole = |numbers: Vec<usize>| Values::Integers(numbers.into_iter().map(|n| n as i64).collect());
+        let nodes = vec![Dimension::indexed("node", self.nodes.len()), Dimension::axes()];
+        let flat: Vec<usize> = self.elements.iter().flatten().copied().collect();
+        let mut offsets = vec![0];
+        offsets.extend(self.elements.iter().scan(0, |end, element| {
+            *end += element.len();
+            Some(*end)
+        }));
+        let entries = vec![Dimension::indexed("entry", flat.len())];
+        let ends = vec![Dimension::indexed("offset", offsets.len())];
+        let elements = vec![Dimension::indexed("element", self.elements.len())];
+        let parts = Dimension::indexed("part", self.parts.len());
+        let story = "element e has the entries offsets[e] to offsets[e + 1] of element_nodes";
+        let coordinates = Values::RealRows(Box::new(|node| self.nodes[node].to_vec()));
+        Group::new("geometry", "nodes and elements as the analyses saw them")
+            .with(Variable::new("nodes", "m", "coordinates of every node", nodes, coordinates))
+            .with(Variable::new(
+                "element_nodes",
+                "1",
+                "node indices, element after element",
+                entries,
+                whole(flat),
+            ))
+            .with(Variable::new("element_offsets", "1", story, ends, whole(offsets)))
+            .with(Variable::new(
+                "element_part",
+                "1",
+                "part of every element",
+                elements,
+                whole(self.part_of.clone()),
+            ))
+            .with(Variable::texts("part_names", "names of the parts", parts, self.parts.clone()))
+    }
+}
+
+fn described_elsewhere(results: &RunResults) -> Vec<(&'static str, Value)> {
+    vec![
+        ("comparison", comparison::summary(results)),
+        ("transient", results.transient.as_ref().map(super::transient_json::transient).into()),
+        ("frf", results.frfs.iter().map(super::frf::summary).collect()),
+        ("calibration", results.calibration.as_ref().map(super::calibration_json::summary).into()),
+        ("sweeps", results.sweeps.iter().map(super::explored_json::sweep).collect()),
+        ("maps", results.maps.iter().map(super::explored_json::map).collect()),
+        ("damping_verdicts", results.damping.as_ref().map(super::explored_json::damping).into()),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample;
+    use super::*;
+    use serde_json::Value;
+
+    fn written(results: &RunResults) -> Value {
+        let dir = tempfile::tempdir().unwrap();
+        write_summary(dir.path(), results).unwrap();
+        serde_json::from_slice(&std::fs::read(dir.path().join("summary.json")).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn the_contract_holds() {
+        let results = sample::rig();
+        let json = written(&results);
+        assert_eq!(json["schema_version"], SCHEMA_VERSION);
+        assert_eq!(json["program_version"], env!("CARGO_PKG_VERSION"));
+        assert_eq!(json["modes"][0]["frequency_hz"], results.modes[0].modes.frequency_hz(0));
+        assert_eq!(json["modes"][0]["nodal_diameters"], 1);
+        assert_eq!(json["mode_sets"][0]["certificate"]["holds"], true);
+        let complex = results.complex.as_ref().unwrap();
+        let last = complex.modes.modes.len() - 1;
+        assert_eq!(json["cea"]["eigenvalues"][last]["growth_rate"], complex.modes.modes[last].growth_rate());
+        let unstable =
+            json["cea"]["eigenvalues"].as_array().unwrap().iter().filter(|e| e["unstable"] == true);
+        assert_eq!(unstable.count(), json["cea"]["unstable"].as_u64().unwrap() as usize);
+        // The pairs' forces are the sums over their points: the sample is made to carry 20 N at μ = 0.4.
+        let pair = &json["steady_sliding"]["pairs"][0];
+        assert!((pair["normal_force_n"].as_f64().unwrap() - 20.0).abs() < 1e-12);
+        assert!((pair["friction_force_n"][0].as_f64().unwrap() - 8.0).abs() < 1e-12);
+        assert_eq!(json["case"]["contact"]["mu"], 0.4);
+        assert_eq!(json["timings"][1]["phase"], results.timings[1].0.as_str());
+    }
+
+    #[test]
+    fn scaled_frequencies_are_compared_with_the_measured_ones() {
+        let results = sample::rig();
+        let row = &written(&results)["measured"][0]["rows"][1];
+        let k = row["mode"].as_u64().unwrap() as usize - 1;
+        let computed = results.modes[0].modes.frequency_hz(k) * results.measured[0].frequency_scale;
+        assert_eq!(row["computed_hz"], computed);
+        let percent = row["difference_percent"].as_f64().unwrap();
+        assert!((percent - 100.0 * (computed / 936.0 - 1.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn numbers_that_are_not_finite_and_empty_runs_give_valid_json() {
+        let mut results = sample::rig();
+        results.modes[0].modes.backward_errors[0] = f64::NAN;
+        results.timings[0].1 = f64::INFINITY;
+        results.resolved_case = "a = nan\nb = inf".into();
+        let json = written(&results);
+        assert!(json["modes"][0]["backward_error"].is_null() && json["timings"][0]["wall_s"].is_null());
+        assert!(json["case"]["a"].is_null() && json["case"]["b"].is_null());
+        let empty = written(&RunResults::default());
+        assert!(empty["cea"].is_null() && empty["modes"].as_array().unwrap().is_empty());
+    }
+}
