@@ -2,7 +2,7 @@
 //! method beside it.
 
 use super::clock::Clock;
-use super::modes::{labels, modal_damping, named};
+use super::modes::{identify, labels, modal_damping};
 use super::nearest::{band_around, band_expected, keep_nearest};
 use super::prepared::Prepared;
 use crate::case::CeaAnalysis;
@@ -69,8 +69,7 @@ pub fn complex_result<'a>(
         }
         false => None,
     };
-    let real = named(prepared, "whole", basis, &prepared.assembled);
-    let labels = labels(&real);
+    let labels = labels(&identify(prepared, &basis, &prepared.assembled), &basis);
     let participation = modes
         .modes
         .iter()
@@ -92,7 +91,7 @@ pub fn complex_result<'a>(
         confirmation,
         modes,
     };
-    Ok(Some((complex, system, real.modes)))
+    Ok(Some((complex, system, basis)))
 }
 
 /// What a complex eigenvalue analysis needs.

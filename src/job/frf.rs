@@ -1,6 +1,6 @@
 //! Frequency responses of a case.
 
-use super::modes::{labels, named};
+use super::modes::{identify, labels};
 use super::motion::{Motion, motion};
 use super::prepared::Prepared;
 use super::receptance::Receptance;
@@ -121,7 +121,7 @@ impl Frf<'_> {
         let seen: Vec<SparseVector> = seen.collect();
         let superposed = |hz: f64| few.at(TAU * hz, &force, &seen);
         let direct = |hz: f64| full.at(TAU * hz, &self.force.direction, &places);
-        let resonances = self.resonances(prepared, real)?;
+        let resonances = self.resonances(prepared, &real)?;
         let near: Vec<f64> = resonances.iter().map(|r| r.frequency_hz).collect();
         let (frequencies, mut lines) = grid(band, &near, &superposed)?;
         let compared: Vec<usize> =
@@ -197,9 +197,8 @@ impl Frf<'_> {
     }
 
     /// The real modes in the band, and how much of them shows.
-    fn resonances(&self, prepared: &Prepared<'_>, real: RealModes) -> Result<Vec<Resonance>> {
-        let named = named(prepared, "frf", real, &prepared.assembled);
-        let (names, real) = (labels(&named), &named.modes);
+    fn resonances(&self, prepared: &Prepared<'_>, real: &RealModes) -> Result<Vec<Resonance>> {
+        let names = labels(&identify(prepared, real, &prepared.assembled), real);
         let [low, high] = self.wanted.band;
         let inside: Vec<usize> =
             (0..real.len()).filter(|k| (low..=high).contains(&real.frequency_hz(*k))).collect();

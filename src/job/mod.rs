@@ -12,7 +12,6 @@ mod clock;
 mod compare;
 mod complex;
 mod contacts;
-mod disc;
 mod explore;
 mod export;
 mod frf;

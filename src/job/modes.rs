@@ -6,8 +6,8 @@ use super::prepared::Prepared;
 use crate::case::{Case, ContactState, ModesAnalysis};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::SparseMatrix;
-use crate::linalg::sparse::{quadratic_forms, times};
-use crate::modal::{self, ModesWanted, RealModes};
+use crate::linalg::sparse::times;
+use crate::modal::{self, DiscModeName, ModesWanted, RealModes};
 use crate::numbers::hertz;
 use crate::results::{NamedModes, NodalField};
 use crate::structure::{self, Assembled, assemble};
@@ -95,35 +95,40 @@ pub fn of_the_whole(prepared: &Prepared, analysis: &ModesAnalysis) -> bool {
         && (analysis.parts.is_empty() || parts.all(|part| analysis.parts.contains(part)))
 }
 
-/// Dresses real modes with nodal shapes, disc names and effective masses.
+/// Real modes with nodal shapes, names and effective masses.
 pub fn named(prepared: &Prepared, name: &str, modes: RealModes, assembled: &Assembled) -> NamedModes {
     let shapes: Vec<NodalField<f64>> =
         (0..modes.len()).map(|k| assembled.dofs.expand(&column(modes.shapes.as_ref(), k))).collect();
-    let discs = prepared.discs();
-    let moving_part = moving_parts(prepared, &modes, assembled);
-    let names = shapes
-        .iter()
-        .zip(&moving_part)
-        .enumerate()
-        .map(|(k, (shape, part))| {
-            if k < modes.rigid_bodies {
-                return None;
-            }
-            let (_, disc) = discs.iter().find(|(name, _)| part.as_deref() == Some(*name))?;
-            disc.name(shape)
-        })
-        .collect();
+    let (moving_part, names) = identify(prepared, &modes, assembled).into_iter().unzip();
     NamedModes {
         name: name.to_string(),
         shapes,
-        moving_part,
         names,
+        moving_part,
         effective_mass: effective_masses(&modes, assembled),
         total_mass: assembled.total_mass,
         damping_ratio: damping_ratios(prepared.case, &modes, &assembled.structure.damping),
         universal: prepared.case.modes.get(name).is_some_and(|analysis| analysis.uff),
         modes,
     }
+}
+
+/// The name of each mode that bends a disc, where that is the part that moves most.
+fn disc_names(
+    prepared: &Prepared,
+    modes: &RealModes,
+    moving_part: &[Option<String>],
+    assembled: &Assembled,
+) -> Vec<Option<DiscModeName>> {
+    let discs = prepared.discs();
+    let name = |k: usize| {
+        let (_, disc) = discs.iter().find(|(name, _)| moving_part[k].as_deref() == Some(*name))?;
+        let along = |node: usize, dof: usize| -> f64 {
+            assembled.dofs.terms(node, dof).iter().map(|(free, factor)| factor * modes.shapes[(*free, k)]).sum()
+        };
+        disc.name(|node| [0, 1, 2].map(|dof| along(node, dof)))
+    };
+    (0..modes.len()).map(|k| if k < modes.rigid_bodies { None } else { name(k) }).collect()
 }
 
 /// Effective masses along x, y and z; none of an imported matrix without the places of its rows, which has no directions.
@@ -138,24 +143,14 @@ fn effective_masses(modes: &RealModes, assembled: &Assembled) -> Vec<[f64; 3]> {
     (0..modes.len()).map(|k| [0, 1, 2].map(|axis| effective[(k, axis)])).collect()
 }
 
-/// ζ = ζ_modal + φᵀCφ/(2ω) + φᵀHφ/(2ω²) of mass-normalised real modes: the case's modal damping, C of Rayleigh damping and
-/// dashpots, H of loss factors. A ratio that the case gives for one mode goes to the nearest within 10 %.
+/// ζ of each mode by all damping of the case. A ratio that the case gives for one mode goes to the nearest within 10 %.
 fn damping_ratios(case: &Case, modes: &RealModes, damping: &Damping) -> Vec<f64> {
     let mut ratios = vec![case.damping.modal_ratio; modes.len()];
     for [frequency, ratio] in &case.damping.modal_ratios {
         let found = near((0..modes.len()).map(|k| modes.frequency_hz(k)), *frequency);
         found.into_iter().for_each(|k| ratios[k] = *ratio);
     }
-    for (matrix, power) in [(&damping.viscous, 1), (&damping.hysteretic, 2)] {
-        let Some(matrix) = matrix else { continue };
-        let elastic = modes.rigid_bodies..modes.len();
-        let works = quadratic_forms(matrix, modes.shapes.subcols(elastic.start, elastic.len()));
-        for (k, work) in elastic.zip(works) {
-            let square = modes.eigenvalues[k].max(f64::MIN_POSITIVE);
-            ratios[k] += work / (2.0 * square.sqrt().powi(power));
-        }
-    }
-    ratios
+    modal::damping_ratios(modes, ratios, damping)
 }
 
 /// The part with the largest share of the kinetic energy of each mode.
@@ -199,21 +194,26 @@ fn moving_parts(prepared: &Prepared, modes: &RealModes, assembled: &Assembled) -
         .collect()
 }
 
+/// The part that moves most in a mode, and the mode's name where that is a disc.
+pub type Identity = (Option<String>, Option<DiscModeName>);
+
+/// The identity of each mode of a structure.
+pub fn identify(prepared: &Prepared, modes: &RealModes, assembled: &Assembled) -> Vec<Identity> {
+    let moving_part = moving_parts(prepared, modes, assembled);
+    let names = disc_names(prepared, modes, &moving_part, assembled);
+    moving_part.into_iter().zip(names).collect()
+}
+
 /// A few words on each real mode: the part that moves most and, for a disc, (nodal diameters, circles).
-pub fn labels(named: &NamedModes) -> Vec<String> {
-    named
-        .moving_part
-        .iter()
-        .zip(&named.names)
-        .enumerate()
-        .map(|(k, (part, name))| {
-            let part = part.as_deref().unwrap_or("mode");
-            match name {
-                Some(n) => format!("{part} ({}, {})", n.nodal_diameters, n.nodal_circles),
-                None => format!("{part} {} Hz", hertz(named.modes.frequency_hz(k), 0)),
-            }
-        })
-        .collect()
+pub fn labels(identities: &[Identity], modes: &RealModes) -> Vec<String> {
+    let label = |(k, (part, name)): (usize, &Identity)| {
+        let part = part.as_deref().unwrap_or("mode");
+        match name {
+            Some(n) => format!("{part} ({}, {})", n.nodal_diameters, n.nodal_circles),
+            None => format!("{part} {} Hz", hertz(modes.frequency_hz(k), 0)),
+        }
+    };
+    identities.iter().enumerate().map(label).collect()
 }
 
 /// Gives a structure the modal damping of the case, where it has one.
@@ -236,11 +236,7 @@ pub fn modal_damping(mass: &SparseMatrix, modes: &RealModes, case: &Case) -> Res
         return Ok(None);
     }
     let ratios = modal_ratios(case, modes)?;
-    let coefficient = |k: usize| 2.0 * ratios[k] * modes.eigenvalues[k].max(0.0).sqrt();
-    Ok(Some(ModalDamping {
-        basis: times(mass, modes.shapes.as_ref()),
-        coefficients: (0..modes.len()).map(coefficient).collect(),
-    }))
+    Ok(Some(modal::modal_damping(mass, modes, &ratios)))
 }
 
 /// ζ of every real mode of the whole.

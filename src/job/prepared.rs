@@ -1,7 +1,6 @@
 //! A case made ready: mesh read and placed, structure assembled, contact pairs built.
 
 use super::contacts::{arrows, contact_pairs};
-use super::disc::Disc;
 use super::imported::read_model;
 use super::links::in_terms_of_the_case;
 use super::mesh::read_mesh;
@@ -13,7 +12,8 @@ use crate::equilibrium::SteadyOptions;
 use crate::error::{Faults, Result};
 use crate::mesh::Mesh;
 use crate::results::{Geometry, ModelSize};
-use crate::structure::{Assembled, Model, assemble};
+use crate::modal::Disc;
+use crate::structure::{Assembled, Model, ShellPart, assemble};
 use crate::system::System;
 use std::sync::Arc;
 
@@ -148,7 +148,10 @@ impl<'a> Prepared<'a> {
 
     /// The shell parts that are discs, with their names.
     pub fn discs(&self) -> Vec<(&str, Disc)> {
-        let disc = |part| Disc::recognise(part, &self.model.nodes);
+        let disc = |part: &ShellPart| {
+            let faces: Vec<&[usize]> = part.faces.iter().map(|face| face.nodes()).collect();
+            Disc::recognise(&faces, &self.model.nodes)
+        };
         self.model.shells.iter().filter_map(|part| Some((part.name.as_str(), disc(part)?))).collect()
     }
 }

@@ -1,17 +1,22 @@
 //! Real modes of the structure, without friction: K φ = ω² M φ.
 //!
 //! * [`compute`]: the modes up to a frequency, with the count that proves that none is missing.
-//! * [`DiscPoints`]: names of disc modes from their transverse displacement.
+//! * [`Disc`]: a plate that is a disc, whose modes have names; [`DiscPoints`]: the names, from the transverse displacement.
+//! * [`modal_damping`]: C = M Φ diag(2ζω) Φᵀ M; [`damping_ratios`]: ζ of every mode by all damping.
 //! * [`levels`]: which of them are the two of a double mode.
 //! * [`effective_mass`]: how much of the mass a mode moves along a direction.
 
 mod compute;
+mod damping;
+mod disc;
 mod effective_mass;
 mod levels;
 mod naming;
 #[cfg(test)]
 pub(crate) mod samples;
 
+pub use damping::{damping_ratios, modal_damping};
+pub use disc::Disc;
 pub use compute::{ModesWanted, ShiftedStiffness, compute, compute_from};
 pub use effective_mass::{EffectiveMass, effective_mass};
 pub use levels::levels;

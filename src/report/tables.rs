@@ -243,10 +243,11 @@ fn counted(certificate: &Certificate) -> String {
     } else if certificate.holds() {
         let margin = significant(certificate.margin, 2);
         format!(
-            "Certified: {count} were counted, as many as were found; proven at full order, margin {margin}."
+            "Certified: {count} were counted, as many as were found. The count holds at full order (margin {margin}) if the real \
+             modes are exact; rounding is not bounded."
         )
     } else if certificate.agrees() {
-        format!("{count} were counted, as many as were found; not proven at full order.")
+        format!("{count} were counted, as many as were found; that the count holds at full order is not shown.")
     } else {
         format!("A MODE WAS MISSED: {count} were counted, {} found.", certificate.found)
     };

@@ -1,6 +1,6 @@
 //! Levels of real modes: the same ones at every value of the parameters, and their slopes.
 
-use super::super::modes::{labels, named, part_assembled};
+use super::super::modes::{identify, labels, part_assembled};
 use super::super::prepared::Prepared;
 use super::super::sensors::Sensors;
 use super::follow::{Picks, most_alike};
@@ -45,10 +45,9 @@ impl Solved {
             .map(|sensors| Eyes { forms: sensors.forms(&prepared.model.nodes, &assembled.dofs), factor });
         let mut solved = Solved { assembled, modes, scale, names: None, eyes };
         if like.is_none_or(|like| like.n_dofs() != solved.n_dofs()) {
-            let named = named(prepared, name, solved.modes, &solved.assembled);
-            let labels = labels(&named);
-            solved.names = Some((named.moving_part.into_iter().zip(named.names).collect(), labels));
-            solved.modes = named.modes;
+            let identities = identify(prepared, &solved.modes, &solved.assembled);
+            let labels = labels(&identities, &solved.modes);
+            solved.names = Some((identities, labels));
         }
         Ok(solved)
     }

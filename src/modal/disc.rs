@@ -1,8 +1,6 @@
 //! Recognises a plate that is a disc, and gives its nodes polar coordinates so that its modes can be named.
 
-use crate::modal::{DiscModeName, DiscPoints};
-use crate::results::NodalField;
-use crate::structure::ShellPart;
+use super::{DiscModeName, DiscPoints};
 use nalgebra::{Matrix4, Vector3, Vector4};
 use std::collections::BTreeMap;
 
@@ -19,15 +17,16 @@ pub struct Disc {
 }
 
 impl Disc {
-    /// The disc that `part` is, if it is one: flat, with an outer edge of one radius (to 2 %) and at most one hole.
-    pub fn recognise(part: &ShellPart, positions: &[[f64; 3]]) -> Option<Disc> {
+    /// The disc that the `faces` are, each given by its corners, if they are one: flat, with an outer edge of one radius (to 2 %) and
+    /// at most one hole.
+    pub fn recognise(faces: &[&[usize]], positions: &[[f64; 3]]) -> Option<Disc> {
         let at = |node: usize| Vector3::from(positions[node]);
-        let first = part.faces.first()?.nodes();
+        let first = faces.first()?;
         let normal =
             (at(first[1]) - at(first[0])).cross(&(at(first[2]) - at(first[0]))).try_normalize(0.0)?;
-        let edge: Vec<Vector3<f64>> = boundary_nodes(part).into_iter().map(at).collect();
+        let edge: Vec<Vector3<f64>> = boundary_nodes(faces).into_iter().map(at).collect();
         let centre = centre_of_rim(&edge)?;
-        let mut nodes: Vec<usize> = part.faces.iter().flat_map(|f| f.nodes()).copied().collect();
+        let mut nodes: Vec<usize> = faces.concat();
         nodes.sort_unstable();
         nodes.dedup();
         let outer = edge.iter().map(|x| (x - centre).norm()).fold(0.0, f64::max);
@@ -53,22 +52,21 @@ impl Disc {
         Some(Disc { normal, nodes, polar, points })
     }
 
-    /// Nodal diameters and circles of the bending in `shape`; `None` when the disc moves more in its plane than across
-    /// it, or when no number of diameters dominates.
-    pub fn name(&self, shape: &NodalField<f64>) -> Option<DiscModeName> {
-        let moved = |n: &usize| Vector3::from_row_slice(&shape[*n][..3]);
-        let transverse: Vec<f64> = self.nodes.iter().map(|n| moved(n).dot(&self.normal)).collect();
+    /// Nodal diameters and circles of the bending in a shape, given by the displacement of each node \[m\]; `None` when the disc
+    /// moves more in its plane than across it, or when no number of diameters dominates.
+    pub fn name(&self, displacement: impl Fn(usize) -> [f64; 3]) -> Option<DiscModeName> {
+        let moved: Vec<Vector3<f64>> = self.nodes.iter().map(|node| displacement(*node).into()).collect();
+        let transverse: Vec<f64> = moved.iter().map(|u| u.dot(&self.normal)).collect();
         let across: f64 = transverse.iter().map(|w| w * w).sum();
-        let whole: f64 = self.nodes.iter().map(|n| moved(n).norm_squared()).sum();
+        let whole: f64 = moved.iter().map(Vector3::norm_squared).sum();
         if across > 0.5 * whole { self.points.name(&transverse) } else { None }
     }
 }
 
 /// Nodes on edges that belong to one face only.
-fn boundary_nodes(part: &ShellPart) -> Vec<usize> {
+fn boundary_nodes(faces: &[&[usize]]) -> Vec<usize> {
     let mut faces_at: BTreeMap<(usize, usize), usize> = BTreeMap::new();
-    for face in &part.faces {
-        let n = face.nodes();
+    for n in faces {
         for i in 0..n.len() {
             let (a, b) = (n[i], n[(i + 1) % n.len()]);
             *faces_at.entry((a.min(b), a.max(b))).or_default() += 1;
@@ -103,26 +101,6 @@ fn centre_of_rim(edge: &[Vector3<f64>]) -> Option<Vector3<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Element;
-    use crate::structure::{Material, RayleighDamping};
-
-    fn part(faces: Vec<Element>) -> ShellPart {
-        let material = Material {
-            youngs_modulus: 1.0,
-            poissons_ratio: 0.3,
-            density: 1.0,
-            loss_factor: 0.0,
-            rayleigh: RayleighDamping::default(),
-        };
-        ShellPart {
-            name: "p".into(),
-            faces,
-            material,
-            thickness: 1.0,
-            bending_only: false,
-            rotary_inertia: false,
-        }
-    }
 
     /// A ring of quadrilaterals in a tilted plane, its nodes crowded on one side.
     #[test]
@@ -139,10 +117,11 @@ mod tests {
         }
         let quad = |ring: usize, i: usize| {
             let j = (i + 1) % n;
-            Element::Quadrilateral([ring * n + i, ring * n + n + i, ring * n + n + j, ring * n + j])
+            [ring * n + i, ring * n + n + i, ring * n + n + j, ring * n + j]
         };
-        let faces = (0..2).flat_map(|ring| (0..n).map(move |i| quad(ring, i))).collect();
-        let disc = Disc::recognise(&part(faces), &nodes).expect("it is a disc");
+        let faces: Vec<[usize; 4]> = (0..2).flat_map(|ring| (0..n).map(move |i| quad(ring, i))).collect();
+        let faces: Vec<&[usize]> = faces.iter().map(|face| &face[..]).collect();
+        let disc = Disc::recognise(&faces, &nodes).expect("it is a disc");
         for (k, node) in disc.nodes.iter().enumerate() {
             let expected = [0.3, 0.7, 1.0][node / n];
             assert!((disc.polar[k].0 - expected).abs() < 1e-9, "{} {expected}", disc.polar[k].0);
@@ -154,12 +133,9 @@ mod tests {
     fn a_rectangle_is_no_disc() {
         let (n, m) = (9, 6);
         let nodes: Vec<[f64; 3]> = (0..n * m).map(|k| [(k % n) as f64, (k / n) as f64, 0.0]).collect();
-        let faces = (0..m - 1)
-            .flat_map(|j| {
-                (0..n - 1).map(move |i| [j * n + i, j * n + i + 1, j * n + i + n + 1, j * n + i + n])
-            })
-            .map(Element::Quadrilateral)
-            .collect();
-        assert!(Disc::recognise(&part(faces), &nodes).is_none());
+        let face = |i: usize, j: usize| [j * n + i, j * n + i + 1, j * n + i + n + 1, j * n + i + n];
+        let faces: Vec<[usize; 4]> = (0..m - 1).flat_map(|j| (0..n - 1).map(move |i| face(i, j))).collect();
+        let faces: Vec<&[usize]> = faces.iter().map(|face| &face[..]).collect();
+        assert!(Disc::recognise(&faces, &nodes).is_none());
     }
 }
