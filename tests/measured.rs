@@ -2,9 +2,11 @@
 //! target folder.
 
 mod common;
+#[path = "common/python.rs"]
+mod python;
 
 use common::samples;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 use stridor::linalg::c64;
 use stridor::measured::Quantity;
@@ -70,37 +72,6 @@ theirs(sys.argv[1] + '/theirs.uff')
 print(json.dumps(ours(sys.argv[1])))
 "#;
 
-/// A Python with pyuff, in an environment of its own.
-fn python() -> PathBuf {
-    let home = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("pyuff-{PYUFF}"));
-    let own = home.join("bin/python");
-    let knows = |python: &Path| {
-        let version = format!("import pyuff; assert pyuff.__version__ == '{PYUFF}'");
-        Command::new(python).args(["-c", &version]).output().is_ok_and(|done| done.status.success())
-    };
-    if knows(&own) {
-        return own;
-    }
-    let run = |program: &Path, arguments: &[&str], what: &str| {
-        let done = Command::new(program).args(arguments).output();
-        let said = match &done {
-            Ok(done) if done.status.success() => return,
-            Ok(done) => String::from_utf8_lossy(&done.stderr).into_owned(),
-            Err(error) => error.to_string(),
-        };
-        panic!(
-            "{what} failed; it needs Python 3.11 or newer with venv (Debian: python3-venv) and a network: {said}"
-        );
-    };
-    let folder = home.to_string_lossy();
-    run(Path::new("python3"), &["-m", "venv", "--clear", &folder], "making a Python environment");
-    let pyuff = format!("pyuff=={PYUFF}");
-    let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", &pyuff];
-    run(&own, &pip, "installing pyuff");
-    assert!(knows(&own), "pyuff {PYUFF} is not there after its installation");
-    own
-}
-
 /// The numbers of the script.
 fn points() -> Vec<[f64; 3]> {
     (0..5).map(f64::from).map(|k| [0.25 * k, -0.5 * k, 3.0 + k]).collect()
@@ -117,7 +88,7 @@ fn response() -> (Vec<f64>, Vec<c64>) {
 
 #[test]
 fn universal_files_go_both_ways_with_pyuff() {
-    let python = python();
+    let python = python::with(&[("pyuff", PYUFF)]);
     let dir = tempfile::tempdir().unwrap();
     let label = |k: usize| k as u64 + 1;
     let labelled = || points().into_iter().enumerate().map(move |(k, x)| (label(k), x));

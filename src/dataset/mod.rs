@@ -10,7 +10,7 @@
 //! | [`Entry::List`] | a list of objects, each with its `name` | a group of groups | | |
 //! | [`Entry::Parts`] | one list of objects | a group of groups | a file each | |
 //!
-//! Rows are counted from 1, by the coordinate of their dimension (`mode` of a table of modes). What is not there is `null` in JSON, an
+//! Rows are counted from 1, by the coordinate of their dimension (`mode` of a table of modes), or have a name. What is not there is `null` in JSON, an
 //! empty field in CSV, and in HDF5 not a number, the `_FillValue` of a whole number, or an empty text. Complex numbers are compounds
 //! `{r, i}` in HDF5, objects `{re, im}` in JSON and two columns in CSV.
 
@@ -168,7 +168,20 @@ impl<'a> Table<'a> {
         columns: &[Column<R>],
         records: &[R],
     ) -> Self {
-        let rows = Dimension::numbered(rows, records.len());
+        Self::over(key, Dimension::numbered(rows, records.len()), columns, records)
+    }
+
+    /// The columns of `records`, named by the column `by`.
+    pub fn by<R>(
+        key: impl Into<Cow<'a, str>>,
+        by: &'static str,
+        columns: &[Column<R>],
+        records: &[R],
+    ) -> Self {
+        Self::over(key, Dimension::of_variable(by, records.len()), columns, records)
+    }
+
+    fn over<R>(key: impl Into<Cow<'a, str>>, rows: Dimension, columns: &[Column<R>], records: &[R]) -> Self {
         let columns = columns.iter().map(|column| column.over(&rows, records)).collect();
         Table { key: key.into(), rows, columns, fields: Vec::new(), file: None, json: true }
     }

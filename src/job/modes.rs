@@ -124,7 +124,12 @@ fn disc_names(
     let name = |k: usize| {
         let (_, disc) = discs.iter().find(|(name, _)| moving_part[k].as_deref() == Some(*name))?;
         let along = |node: usize, dof: usize| -> f64 {
-            assembled.dofs.terms(node, dof).iter().map(|(free, factor)| factor * modes.shapes[(*free, k)]).sum()
+            assembled
+                .dofs
+                .terms(node, dof)
+                .iter()
+                .map(|(free, factor)| factor * modes.shapes[(*free, k)])
+                .sum()
         };
         disc.name(|node| [0, 1, 2].map(|dof| along(node, dof)))
     };

@@ -15,9 +15,9 @@ mod naming;
 #[cfg(test)]
 pub(crate) mod samples;
 
+pub use compute::{ModesWanted, ShiftedStiffness, compute, compute_from};
 pub use damping::{damping_ratios, modal_damping};
 pub use disc::Disc;
-pub use compute::{ModesWanted, ShiftedStiffness, compute, compute_from};
 pub use effective_mass::{EffectiveMass, effective_mass};
 pub use levels::levels;
 pub use naming::DiscPoints;

@@ -247,7 +247,9 @@ fn counted(certificate: &Certificate) -> String {
              modes are exact; rounding is not bounded."
         )
     } else if certificate.agrees() {
-        format!("{count} were counted, as many as were found; that the count holds at full order is not shown.")
+        format!(
+            "{count} were counted, as many as were found; that the count holds at full order is not shown."
+        )
     } else {
         format!("A MODE WAS MISSED: {count} were counted, {} found.", certificate.found)
     };

@@ -168,7 +168,7 @@ impl ModeSensitivity {
     /// The scalars, one a row.
     pub(crate) fn rates(&self) -> Table<'static> {
         let file = format!("sensitivities_mode_{}.csv", self.mode + 1);
-        Table::of("parameters", "parameter_number", &rate_columns(), &self.parameters).file(file)
+        Table::by("parameters", "parameter", &rate_columns(), &self.parameters).file(file)
     }
 
     fn group(&self) -> Group<'_> {
@@ -218,6 +218,6 @@ impl SensitivityResult {
             "how complex eigenvalues answer scalars of the case and things mounted on its nodes",
         )
         .list("modes", self.modes.iter().map(ModeSensitivity::group).collect())
-        .table(Table::of("left_out", "scalar", &left_out, &self.left_out))
+        .table(Table::by("left_out", "parameter", &left_out, &self.left_out))
     }
 }

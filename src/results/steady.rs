@@ -78,7 +78,7 @@ fn directions() -> Dimension {
 impl SteadyResult {
     /// The pairs, one a row.
     pub(crate) fn pair_table(&self) -> Table<'static> {
-        Table::of("pairs", "pair", &pair_columns(), &self.totals())
+        Table::by("pairs", "name", &pair_columns(), &self.totals())
     }
 
     /// The pairs, the contact points with their tangents, the displacement of the nodes.

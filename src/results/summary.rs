@@ -77,7 +77,7 @@ pub(super) fn head(results: &RunResults) -> Group<'_> {
             "what the case assumes and its source does not state",
             &results.assumptions,
         ))
-        .table(Table::of("inputs", "file", &inputs, &results.inputs))
+        .table(Table::by("inputs", "path", &inputs, &results.inputs))
         .group(model)
 }
 
@@ -89,7 +89,7 @@ pub(super) fn tail(results: &RunResults) -> Group<'_> {
     ];
     Group::new("", "")
         .with(sentences("warnings", "what the user should know", &results.warnings))
-        .table(Table::of("timings", "phase_number", &timings, &results.timings))
+        .table(Table::by("timings", "phase", &timings, &results.timings))
 }
 
 fn sentences<'a>(key: &'static str, description: &'static str, sentences: &[String]) -> Variable<'a> {

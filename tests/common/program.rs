@@ -5,6 +5,62 @@ use std::path::Path;
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
+/// All kinds of results in a tenth of a second: modes, complex modes, a map, motion in time with fields.
+pub const CASE: &str = r#"
+title = "The first case"
+assumptions = ["Everything here is made up."]
+
+[mesh.annulus]
+outer_radius = "75 mm"
+hub_radius = "15 mm"
+radial = 2
+around = 8
+
+[material.steel]
+youngs_modulus = "210 GPa"
+poissons_ratio = 0.3
+density = "7850 kg/m^3"
+
+[shell.disc]
+material = "steel"
+thickness = "1 mm"
+
+[support.hub]
+on = "hub"
+
+[damping]
+modal_ratio = 0.002
+
+[modes.disc]
+count = 4
+
+[contact.pin]
+body = "rim"
+counter = "ground"
+into = [1, 0, 0]
+approach = "1 um"
+sliding_velocity = "0.1 m/s"
+sliding_direction = [0, 1, 0]
+normal = { per = "point", stiffness = "10 kN/m" }
+friction = { law = "coulomb", mu0 = 0.3, regularisation = "10 mm/s" }
+
+[cea]
+band = [0, "1 kHz"]
+
+[map.m]
+parameters = ["contact.pin.friction.mu0", "damping.modal_ratio"]
+from = [0.1, 0.001]
+to = [0.5, 0.01]
+points = [3, 2]
+
+[transient]
+duration = "2 ms"
+time_step = "20 us"
+fields_every = "1 ms"
+push.blow = { on = "rim", force = ["-50 N", 0, 0], duration = "1 ms" }
+probe.rim = { at = [0, 0, "75 mm"], direction = [1, 0, 0] }
+"#;
+
 /// The program with arguments, in a folder.
 pub fn command(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_stridor"));
