@@ -1,9 +1,9 @@
-//! The rooms of the house and which of them each may use. `lib.rs` tells the same story in words.
+//! The modules of the library and which of them each may use, as `lib.rs` says in words; and that the glossary is right.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Each room with all the rooms it may use.
+/// Each module with all modules that it may use.
 const MAY_USE: [(&str, &[&str]); 30] = [
     ("input", &[]),
     ("error", &["input"]),
@@ -119,8 +119,8 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The rooms that `text` names as `crate::room`, its unit tests and comments left out.
-fn rooms_used(text: &str) -> BTreeSet<String> {
+/// The modules that `text` names as `crate::module`, its unit tests and comments left out.
+fn modules_used(text: &str) -> BTreeSet<String> {
     let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or(text);
     let mut used = BTreeSet::new();
     for line in code.lines().filter(|line| !line.trim_start().starts_with("//")) {
@@ -134,7 +134,7 @@ fn rooms_used(text: &str) -> BTreeSet<String> {
 }
 
 #[test]
-fn rooms_use_only_rooms_above_them() {
+fn modules_use_only_modules_above_them() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut files = Vec::new();
     sources(&root, &mut files);
@@ -142,35 +142,54 @@ fn rooms_use_only_rooms_above_them() {
     let mut seen = BTreeSet::new();
     for file in files {
         let inside = file.strip_prefix(&root).expect("below src").with_extension("");
-        let room = inside.iter().next().expect("a file has a name").to_string_lossy().into_owned();
-        if room == "lib"
-            || room == "main"
+        let module = inside.iter().next().expect("a file has a name").to_string_lossy().into_owned();
+        if module == "lib"
+            || module == "main"
             || inside.iter().any(|part| ["tests", "sample", "samples"].iter().any(|t| part == *t))
         {
             continue;
         }
-        let Some((_, allowed)) = MAY_USE.iter().find(|(name, _)| *name == room) else {
-            wrong.push(format!("{}: a room that this test does not know", inside.display()));
+        let Some((_, allowed)) = MAY_USE.iter().find(|(name, _)| *name == module) else {
+            wrong.push(format!("{}: a module that this test does not know", inside.display()));
             continue;
         };
-        seen.insert(room.clone());
+        seen.insert(module.clone());
         let text = std::fs::read_to_string(&file).expect("source is text");
-        for used in rooms_used(&text) {
+        for used in modules_used(&text) {
             let known = MAY_USE.iter().any(|(name, _)| *name == used);
-            if known && used != room && !allowed.contains(&used.as_str()) {
+            if known && used != module && !allowed.contains(&used.as_str()) {
                 wrong.push(format!("{} uses {used}", inside.display()));
             }
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert_eq!(seen.len(), MAY_USE.len(), "every room of the list exists");
+    assert_eq!(seen.len(), MAY_USE.len(), "every module of the list exists");
 }
 
 #[test]
-fn the_index_of_the_library_names_every_room() {
+fn the_index_of_the_library_names_every_module() {
     let index = include_str!("../src/lib.rs");
-    for (room, _) in MAY_USE {
-        assert!(index.contains(&format!("pub mod {room};")), "{room} is not public");
-        assert!(index.contains(&format!("[`{room}`]")), "{room} is not in the index");
+    for (module, _) in MAY_USE {
+        assert!(index.contains(&format!("pub mod {module};")), "{module} is not public");
+        assert!(index.contains(&format!("[`{module}`]")), "{module} is not in the index");
     }
+}
+
+/// Every file of GLOSSARY.md is there, and has the names that it is to define.
+#[test]
+fn the_glossary_names_what_is_there() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut names = 0;
+    for line in include_str!("../GLOSSARY.md").lines().filter(|line| line.contains("`src/")) {
+        let (row, file) = line.trim_end_matches(['|', ' ']).rsplit_once('|').expect("a row");
+        let file = file.trim().trim_matches('`');
+        let text = std::fs::read_to_string(root.join(file));
+        let text = text.unwrap_or_else(|_| panic!("{file} of the glossary is not there"));
+        let last = row.rsplit_once('|').expect("a row").1;
+        for name in last.split('`').skip(1).step_by(2).filter(|name| !name.contains('.')) {
+            assert!(text.contains(name), "{name} is not in {file}");
+            names += 1;
+        }
+    }
+    assert!(names > 50, "{names}");
 }
