@@ -19,8 +19,6 @@
 //! [`ResultsFile`] is used while the run goes on, [`write_files`] once at its end.
 
 mod calibration;
-mod calibration_hdf5;
-mod calibration_json;
 mod comparison;
 mod complex;
 mod csv;
