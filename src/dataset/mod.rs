@@ -170,6 +170,11 @@ impl<'a> Table<'a> {
     ) -> Self {
         let rows = Dimension::numbered(rows, records.len());
         let columns = columns.iter().map(|column| column.over(&rows, records)).collect();
+        Self::along(key, rows, columns)
+    }
+
+    /// Columns over a dimension, which is their first.
+    pub fn along(key: impl Into<Cow<'a, str>>, rows: Dimension, columns: Vec<Variable<'a>>) -> Self {
         Table { key: key.into(), rows, columns, fields: Vec::new(), file: None, json: true }
     }
 

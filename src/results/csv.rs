@@ -16,6 +16,9 @@ pub(crate) fn write_csv(dir: &Path, results: &RunResults) -> Result<()> {
         }
     }
     if let Some(transient) = &results.transient {
+        for table in transient.sound.iter().map(super::Sound::spectrum) {
+            write_result(dir, "sound_spectrum.csv", table.to_csv().as_bytes())?;
+        }
         write_result(dir, "transient_spectrum.csv", spectra(transient).as_bytes())?;
     }
     Ok(())

@@ -1,6 +1,7 @@
 //! A run in time, as plain data.
 
 use super::{Geometry, NodalField, ReducedCheck, Sound, TouchState, Watched};
+use crate::dataset::{Dimension, Variable};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::signal::{Growth, Peak, Spectrum};
@@ -210,6 +211,11 @@ pub struct TransientResult {
 /// The name under which the acceleration of a real mode, counted from 0, is recorded.
 pub fn modal_channel(mode: usize) -> String {
     format!("modal_acceleration/{mode}")
+}
+
+/// The first and the last time of what was analysed.
+pub(super) fn window(times: [f64; 2], description: &'static str) -> Variable<'static> {
+    Variable::reals("window_s", "s", description, vec![Dimension::limits()], times.to_vec())
 }
 
 impl TransientResult {

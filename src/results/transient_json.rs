@@ -91,7 +91,7 @@ pub(super) fn transient(result: &TransientResult) -> Value {
         },
         "worst_energy_residual": result.worst_residual,
         "limit_cycle": result.watched.cycles.iter().map(cycle).collect::<Vec<_>>(),
-        "sound": result.sound.as_ref().map(super::sound::summary),
+        "sound": result.sound.as_ref().map(|sound| sound.group().to_json()),
     })
 }
 
