@@ -197,7 +197,7 @@ impl Sound {
     }
 
     /// Power and mean square pressure over frequency.
-    pub(super) fn spectrum(&self) -> Table<'static> {
+    fn spectrum(&self) -> Table<'static> {
         let rows = Dimension::of_variable("frequency_hz", self.lines());
         let over_lines =
             |key: String, unit: &'static str, description: &'static str, of: &dyn Fn(usize) -> f64| {
