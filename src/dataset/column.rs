@@ -39,7 +39,7 @@ pub enum Cell {
     /// A complex number.
     Complex(c64),
     /// Words.
-    Text(Option<String>),
+    Texts(Vec<Option<String>>),
 }
 
 /// What can be a value of a quantity.
@@ -96,7 +96,7 @@ impl<R> Column<R> {
                 (Values::Sparse(all), Cell::Sparse(value)) => all.push(value),
                 (Values::Reals(all), Cell::Reals(value)) => all.extend(value),
                 (Values::Complexes(all), Cell::Complex(value)) => all.push(value),
-                (Values::Texts(all), Cell::Text(value)) => all.push(value),
+                (Values::Texts(all), Cell::Texts(value)) => all.extend(value),
                 _ => unreachable!("the kind is that of the values"),
             }
         }
@@ -134,9 +134,10 @@ cells! {
     Vec<f64>: Real, v => Cell::Reals(v);
     c64: Complex, v => Cell::Complex(v);
     Option<c64>: Complex, v => Cell::Complex(v.unwrap_or(c64::new(f64::NAN, f64::NAN)));
-    &'static str: Text, v => Cell::Text(Some(v.into()));
-    String: Text, v => Cell::Text(Some(v));
-    Option<String>: Text, v => Cell::Text(v);
+    &'static str: Text, v => Cell::Texts(vec![Some(v.into())]);
+    String: Text, v => Cell::Texts(vec![Some(v)]);
+    Option<String>: Text, v => Cell::Texts(vec![v]);
+    Vec<String>: Text, v => Cell::Texts(v.into_iter().map(Some).collect());
 }
 
 impl<const N: usize> IntoCell for [f64; N] {

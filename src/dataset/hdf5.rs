@@ -92,12 +92,31 @@ fn write_variables(group: &hdf5::Group, variables: &[&Variable]) -> hdf5::Result
             scale.of.push(Attached { dataset: reference, dimension: k as u32 });
             along.push(VarLenArray::from_slice(&[scale.reference]));
         }
-        if !along.is_empty() {
-            let list = dataset.new_attr::<VarLenArray<ObjectReference1>>().shape(along.len());
-            list.create("DIMENSION_LIST")?.write(&Array1::from(along))?;
-        }
+        list_dimensions(&dataset, along)?;
     }
     scales.into_values().try_for_each(Scale::finish)
+}
+
+/// The scales of the dimensions of a dataset, one each.
+fn list_dimensions(dataset: &Dataset, scales: Vec<VarLenArray<ObjectReference1>>) -> hdf5::Result<()> {
+    if scales.is_empty() {
+        return Ok(());
+    }
+    let list = dataset.new_attr::<VarLenArray<ObjectReference1>>().shape(scales.len());
+    list.create("DIMENSION_LIST")?.write(&Array1::from(scales))
+}
+
+/// Makes the dataset `name` of a group the coordinate of the first dimension of others, which are given by their paths.
+///
+/// # Errors
+/// What the library says.
+pub fn attach_scale(group: &hdf5::Group, name: &str, others: &[String]) -> hdf5::Result<()> {
+    let mut scale = Scale::new(group, &group.dataset(name)?, name)?;
+    for path in others {
+        scale.of.push(Attached { dataset: group.reference(path)?, dimension: 0 });
+        list_dimensions(&group.dataset(path)?, vec![VarLenArray::from_slice(&[scale.reference])])?;
+    }
+    scale.finish()
 }
 
 /// A dataset that is the coordinate of a dimension.

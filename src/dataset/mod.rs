@@ -22,7 +22,7 @@ mod variable;
 
 pub use column::{Cell, Column, IntoCell, column};
 pub use csv::{CsvTable, number};
-pub use hdf5::{attribute, describe, text_attribute};
+pub use hdf5::{attach_scale, attribute, describe, text_attribute};
 pub use variable::{Dimension, Kind, Labels, Shown, Values, Variable};
 
 use std::borrow::Cow;
@@ -183,6 +183,11 @@ impl<'a> Table<'a> {
 
     fn over<R>(key: impl Into<Cow<'a, str>>, rows: Dimension, columns: &[Column<R>], records: &[R]) -> Self {
         let columns = columns.iter().map(|column| column.over(&rows, records)).collect();
+        Self::along(key, rows, columns)
+    }
+
+    /// Columns over a dimension, which is their first.
+    pub fn along(key: impl Into<Cow<'a, str>>, rows: Dimension, columns: Vec<Variable<'a>>) -> Self {
         Table { key: key.into(), rows, columns, fields: Vec::new(), file: None, json: true }
     }
 

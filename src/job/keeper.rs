@@ -192,7 +192,7 @@ impl<'a> Folder<'a> {
                 self.record.add_field(field)
             }
             Stage::Frf(frf) => file.write_frf(frf),
-            Stage::Calibration(calibration) => file.write_calibration(calibration),
+            Stage::Calibration(calibration) => file.write(&calibration.group()),
             Stage::Transient(transient) => file.finish_transient(transient),
         }
     }

@@ -1,8 +1,8 @@
 //! Numbers of a case that were found from measured modes and responses, as plain data, and their files.
 
 use super::write_result;
-use crate::calibration::Calibration;
-use crate::dataset::{CsvTable as Table, number};
+use crate::calibration::{Calibration, Chance, Ranked, Trials};
+use crate::dataset::{Column, Dimension, Group, Table, Variable, column};
 use crate::error::Result;
 use crate::measured::Quantity;
 use std::f64::consts::LN_10;
@@ -164,76 +164,332 @@ impl CalibrationResult {
     }
 }
 
-/// Writes `calibrated.toml` and `calibration.csv` into the folder `dir`.
-pub(super) fn write(dir: &Path, result: &CalibrationResult) -> Result<()> {
-    write_result(dir, "calibrated.toml", result.calibrated_case.as_bytes())?;
-    if !result.responses.is_empty() {
-        write_result(dir, "calibration_responses.csv", responses(result).as_bytes())?;
-    }
-    write_result(dir, "calibration.csv", table(result).as_bytes())
+fn parameter_columns() -> Vec<Column<CalibratedNumber>> {
+    type Number = CalibratedNumber;
+    vec![
+        column("unit", "text", "its SI unit", |n: &Number| n.unit.clone()),
+        column("between", "unit", "its bounds", |n: &Number| n.between).along(Dimension::limits()),
+        column("expected", "unit", "what was expected", |n: &Number| n.expected),
+        column(
+            "prior_deviation",
+            "unit",
+            "standard deviation of that; its share of the value where `log`",
+            |n: &Number| n.deviation,
+        ),
+        column("log", "1", "whether equal ratios are equal steps", |n: &Number| n.log),
+        column("before", "unit", "the value of the case", |n: &Number| n.before),
+        column("after", "unit", "the value that was found", |n: &Number| n.after),
+        column("deviation", "unit", "its standard deviation", |n: &Number| n.deviation_after),
+        column("interval_95", "unit", "95 %, the stated deviations trusted", |n: &Number| n.interval)
+            .along(Dimension::limits()),
+        column(
+            "scaled_interval_95",
+            "unit",
+            "95 %, the deviations scaled by what the fit leaves",
+            |n: &Number| n.scaled_interval,
+        )
+        .along(Dimension::limits()),
+        column("at_bound", "1", "whether it ended at a bound", |n: &Number| n.at_bound),
+    ]
 }
 
-fn responses(result: &CalibrationResult) -> String {
-    let mut table = Table::new(&[
-        "set",
-        "response",
-        "place",
-        "frequency [Hz]",
-        "measured",
-        "before",
-        "after",
-        "from the others",
-        "unit",
-    ]);
-    for r in &result.responses {
-        for (k, hz) in r.frequencies_hz.iter().enumerate() {
-            let words = [&r.set, &r.name, &r.place].map(String::clone);
-            let numbers = [*hz, r.measured[k], r.before[k], r.after[k]].map(number);
-            let left_out = r.left_out.as_ref().map(|sizes| number(sizes[k])).unwrap_or_default();
-            let last = [left_out, r.quantity.unit().to_string()];
-            table.row(&words.into_iter().chain(numbers).chain(last).collect::<Vec<_>>());
+impl CalibratedNumber {
+    fn group(&self) -> Group<'_> {
+        let group = Group::of(&*self.name, "a number that was found", &parameter_columns(), self);
+        let paths = Dimension::numbered("path", self.paths.len());
+        group.with(Variable::texts("paths", "the scalars that have this value", paths, self.paths.clone()))
+    }
+}
+
+/// A measured frequency, and ∂ ln f by each number.
+type Datum<'a> = (&'a CalibratedDatum, Vec<f64>);
+
+fn data_columns<'a>(numbers: usize) -> Vec<Column<Datum<'a>>> {
+    vec![
+        column("set", "text", "name of real modes, or `squeal`", |(d, _): &Datum| d.set.clone()),
+        column("mode", "text", "the mode it was taken for", |(d, _): &Datum| d.level.clone()),
+        column("measured_hz", "Hz", "measured frequency", |(d, _): &Datum| d.measured_hz),
+        column("relative_deviation", "1", "its relative standard deviation", |(d, _): &Datum| d.deviation),
+        column("before_hz", "Hz", "computed with the values of the case", |(d, _): &Datum| d.before_hz),
+        column("after_hz", "Hz", "computed with the values that were found", |(d, _): &Datum| d.after_hz),
+        column("before_percent", "%", "100 (before − measured)/measured", |(d, _): &Datum| {
+            d.error_percent(d.before_hz)
+        }),
+        column("error_percent", "%", "100 (after − measured)/measured", |(d, _): &Datum| {
+            d.error_percent(d.after_hz)
+        }),
+        column("left_out_hz", "Hz", "predicted from all other data", |(d, _): &Datum| d.left_out_hz),
+        column("left_out_percent", "%", "100 (predicted − measured)/measured", |(d, _): &Datum| {
+            d.error_percent(d.left_out_hz)
+        }),
+        column("growth_rate", "1/s", "σ with the values that were found", |(d, _): &Datum| d.growth),
+        column("shape_components", "1", "measured components of its shape", |(d, _): &Datum| {
+            d.shape.map(|shape| shape.components)
+        }),
+        column("mac_before", "1", "MAC of its shape with the values of the case", |(d, _): &Datum| {
+            d.mac(|shape| shape.before)
+        }),
+        column("mac_after", "1", "MAC of its shape with the values that were found", |(d, _): &Datum| {
+            d.mac(|shape| shape.after)
+        }),
+        column("mac_left_out", "1", "MAC of its shape, predicted from all other data", |(d, _): &Datum| {
+            d.mac(|shape| shape.left_out)
+        }),
+        column(
+            "sensitivity",
+            "1",
+            "∂ ln f by each number, in units of its deviation or half the width of its bounds",
+            |(_, slopes): &Datum| slopes.clone(),
+        )
+        .along(Dimension::numbered("parameter", numbers)),
+    ]
+}
+
+fn response_columns() -> Vec<Column<CalibratedResponse>> {
+    type Response = CalibratedResponse;
+    let band = |r: &Response| {
+        [r.frequencies_hz.first(), r.frequencies_hz.last()].map(|hz| hz.copied().unwrap_or(f64::NAN))
+    };
+    vec![
+        column("set", "text", "name of the measured set", |r: &Response| r.set.clone()),
+        column("name", "text", "what the test calls it", |r: &Response| r.name.clone()),
+        column("place", "text", "what the case calls its place", |r: &Response| r.place.clone()),
+        column("lines", "1", "lines that were compared", |r: &Response| r.frequencies_hz.len()),
+        column("band_hz", "Hz", "the first and the last of them", band).along(Dimension::limits()),
+        column("deviation", "1", "standard deviation of ln |h|", |r: &Response| r.deviation),
+        column("before_db", "dB", "r.m.s. of 20 log₁₀(before/measured)", |r: &Response| {
+            r.apart_db(&r.before)
+        }),
+        column("after_db", "dB", "r.m.s. of 20 log₁₀(after/measured)", |r: &Response| {
+            r.apart_db(&r.after)
+        }),
+        column("left_out_db", "dB", "r.m.s. of 20 log₁₀(predicted/measured)", |r: &Response| {
+            r.left_out.as_ref().map(|sizes| r.apart_db(sizes))
+        }),
+        column(
+            "after_deviations",
+            "1",
+            "r.m.s. of ln(after/measured) over its standard deviation",
+            |r: &Response| r.apart(&r.after),
+        ),
+        column(
+            "left_out_deviations",
+            "1",
+            "r.m.s. of ln(predicted/measured) over its standard deviation",
+            |r: &Response| r.left_out.as_ref().map(|sizes| r.apart(sizes)),
+        ),
+    ]
+}
+
+/// A line of a response: the number of the response, the response, and the line.
+type Line<'a> = (usize, &'a CalibratedResponse, usize);
+
+fn line_columns<'a>() -> Vec<Column<Line<'a>>> {
+    vec![
+        column("response", "1", "number of the response, from 1", |(number, ..): &Line| *number),
+        column("set", "text", "name of the measured set", |(_, r, _): &Line| r.set.clone()),
+        column("name", "text", "what the test calls it", |(_, r, _): &Line| r.name.clone()),
+        column("place", "text", "what the case calls its place", |(_, r, _): &Line| r.place.clone()),
+        column("frequency_hz", "Hz", "frequency", |(_, r, k): &Line| r.frequencies_hz[*k]),
+        column("measured", "unit", "√(|h|² + n²) with the floor n, measured", |(_, r, k): &Line| {
+            r.measured[*k]
+        }),
+        column("before", "unit", "with the values of the case", |(_, r, k): &Line| r.before[*k]),
+        column("after", "unit", "with the values that were found", |(_, r, k): &Line| r.after[*k]),
+        column("left_out", "unit", "predicted from all other data", |(_, r, k): &Line| {
+            r.left_out.as_ref().map(|sizes| sizes[*k])
+        }),
+        column("unit", "text", "SI unit of the quantity", |(_, r, _): &Line| r.quantity.unit()),
+    ]
+}
+
+/// An assignment with the names of all levels.
+type Assigned<'a> = (&'a Ranked, &'a [String]);
+
+fn assignment_columns<'a>(data: usize) -> Vec<Column<Assigned<'a>>> {
+    vec![
+        column("modes", "text", "the mode that each datum was taken for", |(r, levels): &Assigned| {
+            r.assignment.iter().map(|k| levels[*k].clone()).collect::<Vec<String>>()
+        })
+        .along(Dimension::numbered("datum", data)),
+        column("chi2", "1", "χ² of the fit", |(r, _): &Assigned| r.fit.chi2),
+        column("linear_chi2", "1", "χ² by the linearised model", |(r, _): &Assigned| r.linear_chi2),
+        column("largest_error_percent", "%", "largest |error| of a frequency", |(r, _): &Assigned| {
+            100.0 * r.largest_error
+        }),
+        column("least_mac", "1", "least MAC of a shape", |(r, _): &Assigned| r.least_likeness),
+        column("weight", "1", "exp(−Δχ²/2) beside the best", |(r, _): &Assigned| r.weight),
+        column("converged", "1", "whether the fit has converged", |(r, _): &Assigned| r.fit.converged),
+        column("iterations", "1", "iterations of the fit", |(r, _): &Assigned| r.fit.iterations),
+        column("evaluations", "1", "evaluations of the model", |(r, _): &Assigned| r.fit.evaluations),
+        column("gradient", "1", "size of the projected gradient at the end", |(r, _): &Assigned| {
+            r.fit.gradient
+        }),
+    ]
+}
+
+impl CalibrationResult {
+    /// Numbers, data, responses, assignments and what they are worth.
+    pub(crate) fn group(&self) -> Group<'_> {
+        let best = self.calibration.best();
+        let slopes = |k: &usize| match &best.fit.computed.levels[*k] {
+            Some(level) => level.slope.clone(),
+            None => vec![f64::NAN; self.numbers.len()],
+        };
+        let data: Vec<Datum> = self.data.iter().zip(best.assignment.iter().map(slopes)).collect();
+        let assigned: Vec<Assigned> =
+            self.calibration.ranked.iter().map(|ranked| (ranked, &*self.levels)).collect();
+        let mut group =
+            Group::new("calibration", "numbers of the case found from measured modes and responses")
+                .list("parameters", self.numbers.iter().map(CalibratedNumber::group).collect())
+                .table(
+                    Table::of("data", "datum", &data_columns(self.numbers.len()), &data)
+                        .file("calibration.csv"),
+                )
+                .table(Table::of("responses", "response", &response_columns(), &self.responses));
+        if !self.responses.is_empty() {
+            let each = self.responses.iter().enumerate();
+            let lines: Vec<Line> =
+                each.flat_map(|(k, r)| (0..r.frequencies_hz.len()).map(move |i| (k + 1, r, i))).collect();
+            let lines = Table::of("response_lines", "line", &line_columns(), &lines);
+            group = group.table(lines.file("calibration_responses.csv").long());
         }
+        self.worth(group.table(Table::of(
+            "assignments",
+            "assignment",
+            &assignment_columns(self.data.len()),
+            &assigned,
+        )))
+        .with(Variable::text(
+            "calibrated_case",
+            "the case with the values that were found, as TOML",
+            &self.calibrated_case,
+        ))
     }
-    table.text
+
+    /// `group` with the figures of the whole.
+    fn worth<'a>(&self, group: Group<'a>) -> Group<'a> {
+        let found = &self.calibration;
+        let (fit, known) = (&found.best().fit, &found.knowledge);
+        let group = group
+            .value(
+                "largest_error_percent",
+                "%",
+                "largest |error| of a frequency",
+                self.largest_percent(|d| d.after_hz),
+            )
+            .value("least_mac", "1", "least MAC of a shape", self.least_mac(|s| s.after))
+            .value(
+                "least_left_out_mac",
+                "1",
+                "the same, predicted from all other data",
+                self.least_mac(|s| s.left_out),
+            )
+            .value(
+                "largest_left_out_percent",
+                "%",
+                "largest |error| of a frequency, predicted from all other data",
+                self.largest_percent(|d| d.left_out_hz),
+            )
+            .value("chi2", "1", "χ² of the best fit", fit.chi2)
+            .value("degrees_of_freedom", "1", "facts beyond the numbers", known.freedom)
+            .value("reduced_chi2", "1", "χ² over the degrees of freedom", known.reduced_chi2)
+            .value("chi2_probability", "1", "probability of a larger χ²", known.chi2_probability)
+            .value("converged", "1", "whether the best fit has converged", fit.converged)
+            .value("plausible_assignments", "1", "assignments that are plausible", found.plausible)
+            .value("tried_assignments", "1", "assignments that were fitted", found.tried)
+            .value("all_assignments_counted", "1", "whether all were counted", found.all_counted)
+            .value("all_assignments_searched", "1", "whether all were searched", found.all_searched)
+            .value("levels", "1", "computed levels", self.levels.len());
+        let parameter = || Dimension::numbered("parameter", self.numbers.len());
+        let direction = || Dimension::numbered("direction", known.singular_values.len());
+        let square = |rows: &[Vec<f64>]| rows.concat();
+        group
+            .with(Variable::reals(
+                "singular_values",
+                "1",
+                "singular values of the data's sensitivities to the numbers",
+                vec![direction()],
+                known.singular_values.clone(),
+            ))
+            .with(Variable::reals(
+                "directions",
+                "1",
+                "the combination of numbers that belongs to each",
+                vec![direction(), parameter()],
+                square(&known.directions),
+            ))
+            .value("condition", "1", "largest over least singular value", known.condition())
+            .value(
+                "determined_combinations",
+                "1",
+                "combinations of numbers that the data determine",
+                known.determined(),
+            )
+            .with(Variable::reals(
+                "correlations",
+                "1",
+                "correlation of the numbers",
+                vec![parameter(), Dimension::numbered("other_parameter", self.numbers.len())],
+                square(&known.correlations),
+            ))
+            .optional("chance", found.chance.as_ref().map(chance))
+            .optional("trials", found.trials.as_ref().map(trials))
+    }
 }
 
-fn table(result: &CalibrationResult) -> String {
-    let mut table = Table::new(&[
-        "set",
-        "mode",
-        "measured [Hz]",
-        "relative deviation",
-        "before [Hz]",
-        "after [Hz]",
-        "error [%]",
-        "from the others [Hz]",
-        "MAC before",
-        "MAC after",
-        "MAC from the others",
-    ]);
-    let cell = |value: Option<f64>| value.map(number).unwrap_or_default();
-    for datum in &result.data {
-        table.row(&[
-            datum.set.clone(),
-            datum.level.clone(),
-            number(datum.measured_hz),
-            number(datum.deviation),
-            cell(datum.before_hz),
-            cell(datum.after_hz),
-            cell(datum.error_percent(datum.after_hz)),
-            cell(datum.left_out_hz),
-            cell(datum.mac(|shape| shape.before)),
-            cell(datum.mac(|shape| shape.after)),
-            cell(datum.mac(|shape| shape.left_out)),
-        ]);
+/// How often frequencies match as well by chance.
+fn chance(chance: &Chance) -> Group<'static> {
+    Group::new("chance", "how often drawn frequencies match as well")
+        .value("draws", "1", "draws", chance.draws)
+        .value("as_good_by_largest_error", "1", "as good by the largest error", chance.by_error)
+        .value("as_good_by_chi2", "1", "as good by χ²", chance.by_chi2)
+        .value(
+            "probability_by_largest_error",
+            "1",
+            "probability of that by the largest error",
+            chance.probability(chance.by_error),
+        )
+        .value("probability_by_chi2", "1", "probability of that by χ²", chance.probability(chance.by_chi2))
+}
+
+/// Whether the intervals hold the truth of data that are made up.
+fn trials(trials: &Trials) -> Group<'static> {
+    let share =
+        |covered: &[usize]| -> Vec<f64> { covered.iter().map(|c| *c as f64 / trials.count as f64).collect() };
+    let coverage = |key: &'static str, description: &'static str, shares: Vec<f64>| {
+        Variable::reals(key, "1", description, vec![Dimension::numbered("parameter", shares.len())], shares)
+    };
+    let covered = share(&trials.covered);
+    let least = covered.iter().fold(1.0, |least: f64, share| least.min(*share));
+    let group = Group::new("trials", "calibrations to data made up from known numbers")
+        .value("count", "1", "trials", trials.count)
+        .value("converged", "1", "trials that have converged", trials.converged)
+        .value(
+            "model_error",
+            "1",
+            "largest error of a residual by the linearised model, in standard deviations",
+            trials.model_error,
+        )
+        .with(coverage("coverage", "share of trials whose interval holds the number", covered))
+        .value("least_coverage", "1", "the least of these shares", least);
+    match &trials.scaled_covered {
+        Some(covered) => {
+            group.with(coverage("scaled_coverage", "the same of the scaled intervals", share(covered)))
+        }
+        None => group.optional("scaled_coverage", None),
     }
-    table.text
+}
+
+/// Writes `calibrated.toml` into the folder `dir`.
+pub(super) fn write(dir: &Path, result: &CalibrationResult) -> Result<()> {
+    write_result(dir, "calibrated.toml", result.calibrated_case.as_bytes())
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::sample::calibration as sample;
-    use super::super::{ResultsFile, RunResults, summary_json, write_files};
+    use super::super::{RunResults, summary_json, write_files};
     use serde_json::json;
 
     #[test]
@@ -244,11 +500,9 @@ mod tests {
         assert!((json["data"][0]["left_out_percent"].as_f64().unwrap() + 3.0).abs() < 1e-9);
         assert!((json["chance"]["probability_by_largest_error"].as_f64().unwrap() - 0.05).abs() < 1e-12);
         assert_eq!(json["trials"]["least_coverage"], 0.95);
-        assert_eq!(
-            (&json["data"][0]["shape"]["mac_after"], &json["least_mac"]),
-            (&json!(0.97), &json!(0.97))
-        );
-        assert!(json["data"][2]["shape"].is_null());
+        assert_eq!((&json["data"][0]["mac_after"], &json["least_mac"]), (&json!(0.97), &json!(0.97)));
+        assert_eq!(json["data"][0]["shape_components"], 24);
+        assert!(["shape_components", "mac_after"].iter().all(|key| json["data"][2][key].is_null()));
         assert_eq!(json["assignments"][0]["modes"][2], "disc (0, 1)");
         // 8 beside 10 at one line of three, with a deviation of 0.1.
         let response = &json["responses"][0];
@@ -258,11 +512,9 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         write_files(dir.path(), &results).unwrap();
         let table = std::fs::read_to_string(dir.path().join("calibration.csv")).unwrap();
-        assert!(table.lines().count() == 4 && table.contains("disc,\"disc (2, 0)\""), "{table}");
+        assert!(table.lines().count() == 4 && table.contains("1,disc,\"disc (2, 0)\",330,"), "{table}");
         assert!(dir.path().join("calibrated.toml").is_file());
         let lines = std::fs::read_to_string(dir.path().join("calibration_responses.csv")).unwrap();
-        assert!(lines.lines().nth(2).unwrap().contains(",10,5,9,8,"), "{lines}");
-        let mut file = ResultsFile::create(dir.path()).unwrap();
-        file.write_calibration(&sample()).unwrap();
+        assert!(lines.lines().nth(2).unwrap().ends_with(",330,10,5,9,8,m/(N s^2)"), "{lines}");
     }
 }

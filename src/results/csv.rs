@@ -1,7 +1,6 @@
 //! The tables of a run as CSV files.
 
-use super::{RunResults, TransientResult, summary, write_result};
-use crate::dataset::{CsvTable, number};
+use super::{RunResults, summary, write_result};
 use crate::error::Result;
 use std::path::Path;
 
@@ -15,26 +14,7 @@ pub(crate) fn write_csv(dir: &Path, results: &RunResults) -> Result<()> {
             write_result(dir, file, table.to_csv().as_bytes())?;
         }
     }
-    if let Some(transient) = &results.transient {
-        write_result(dir, "transient_spectrum.csv", spectra(transient).as_bytes())?;
-    }
     Ok(())
-}
-
-fn spectra(transient: &TransientResult) -> String {
-    let named: Vec<String> =
-        transient.spectra.iter().map(|of| transient.channels[of.channel].heading()).collect();
-    let headings: Vec<&str> =
-        std::iter::once("frequency [Hz]").chain(named.iter().map(String::as_str)).collect();
-    let mut table = CsvTable::new(&headings);
-    let Some(first) = transient.spectra.first() else { return table.text };
-    for k in 0..first.spectrum.amplitude.len() {
-        let values = transient.spectra.iter().map(|of| number(of.spectrum.amplitude[k]));
-        let row: Vec<String> =
-            std::iter::once(number(first.spectrum.frequency_hz(k))).chain(values).collect();
-        table.row(&row);
-    }
-    table.text
 }
 
 #[cfg(test)]

@@ -2,13 +2,16 @@
 
 use super::ResultsFile;
 use super::file::room;
-use super::hdf5::describe;
+use super::transient_hdf5::TIME;
+use crate::dataset::{attach_scale, describe, text_attribute};
 use crate::error::Result;
 use crate::transient::{Event, EventKind};
 use hdf5::Group;
 use ndarray::s;
 use std::ops::Range;
 
+const POINT: &str = "point";
+const KIND: &str = "kind";
 /// The room at the start.
 pub(super) const FIRST: usize = 1 << 14;
 /// Events that are copied at once.
@@ -19,7 +22,7 @@ impl ResultsFile {
     pub(super) fn room_for_events(&mut self, more: usize) -> Result<()> {
         let (events, room) = self.read(|root| {
             let group = root.group("transient")?;
-            Ok((count(&group)?, group.dataset("events/time")?.size()))
+            Ok((count(&group)?, group.group("events")?.dataset(TIME)?.size()))
         })?;
         if events + more <= room {
             return Ok(());
@@ -55,11 +58,14 @@ pub(super) fn fit(group: &Group) -> hdf5::Result<()> {
 
 pub(super) fn make_room(group: &Group, events: usize) -> hdf5::Result<()> {
     let group = group.create_group("events")?;
-    describe(&room(&group, "time", events, f64::NAN)?, "s", "when it happened")?;
-    describe(&room(&group, "point", events, 0_u32)?, "1", "the contact point, counted from 0")?;
-    let kinds = EventKind::ALL.iter().enumerate().map(|(k, kind)| format!("{k} {}", kind.name()));
-    let story = format!("what it did: {}", kinds.collect::<Vec<String>>().join(", "));
-    describe(&room(&group, "kind", events, 0_u8)?, "1", &story)
+    describe(&room(&group, TIME, events, f64::NAN)?, "s", "when it happened")?;
+    describe(&room(&group, POINT, events, 0_u32)?, "1", "number of the contact point, from 1")?;
+    let kind = room(&group, KIND, events, 0_u8)?;
+    describe(&kind, "1", "what it did: one of `flag_values`, which `flag_meanings` names")?;
+    let values: Vec<u8> = EventKind::ALL.iter().map(|kind| *kind as u8).collect();
+    kind.new_attr::<u8>().shape(values.len()).create("flag_values")?.write_raw(&values)?;
+    text_attribute(&kind, "flag_meanings", &EventKind::ALL.map(EventKind::name).join(" "))?;
+    attach_scale(&group, TIME, &[POINT, KIND].map(String::from))
 }
 
 fn resize(group: &Group, events: usize) -> hdf5::Result<()> {
@@ -76,21 +82,22 @@ fn resize(group: &Group, events: usize) -> hdf5::Result<()> {
 fn put(group: &Group, first: usize, events: &[Event]) -> hdf5::Result<()> {
     let part = s![first..first + events.len()];
     let time: Vec<f64> = events.iter().map(|e| e.time).collect();
-    group.dataset("time")?.write_slice(&time, part)?;
-    let point: Vec<u32> = events.iter().map(|e| e.point as u32).collect();
-    group.dataset("point")?.write_slice(&point, part)?;
+    group.dataset(TIME)?.write_slice(&time, part)?;
+    let point: Vec<u32> = events.iter().map(|e| e.point as u32 + 1).collect();
+    group.dataset(POINT)?.write_slice(&point, part)?;
     let kind: Vec<u8> = events.iter().map(|e| e.kind as u8).collect();
-    group.dataset("kind")?.write_slice(&kind, part)
+    group.dataset(KIND)?.write_slice(&kind, part)
 }
 
 fn read(group: &Group, part: Range<usize>) -> hdf5::Result<Vec<Event>> {
     let part = s![part];
-    let time = group.dataset("time")?.read_slice_1d::<f64, _>(part)?;
-    let point = group.dataset("point")?.read_slice_1d::<u32, _>(part)?;
-    let kind = group.dataset("kind")?.read_slice_1d::<u8, _>(part)?;
+    let time = group.dataset(TIME)?.read_slice_1d::<f64, _>(part)?;
+    let point = group.dataset(POINT)?.read_slice_1d::<u32, _>(part)?;
+    let kind = group.dataset(KIND)?.read_slice_1d::<u8, _>(part)?;
     let events = time.iter().zip(&point).zip(&kind).map(|((time, point), kind)| {
         let kind = EventKind::ALL.get(usize::from(*kind)).copied();
-        Ok(Event { time: *time, point: *point as usize, kind: kind.ok_or("an event of an unknown kind")? })
+        let point = (*point as usize).checked_sub(1).ok_or("an event at no contact point")?;
+        Ok(Event { time: *time, point, kind: kind.ok_or("an event of an unknown kind")? })
     });
     events.collect()
 }

@@ -19,8 +19,6 @@
 //! [`ResultsFile`] is used while the run goes on, [`write_files`] once at its end.
 
 mod calibration;
-mod calibration_hdf5;
-mod calibration_json;
 mod comparison;
 mod complex;
 mod csv;
@@ -43,13 +41,11 @@ mod room;
 mod search;
 mod sensitivity;
 mod sound;
-mod sound_hdf5;
 mod steady;
 mod summary;
 mod transient;
 mod transient_csv;
 mod transient_hdf5;
-mod transient_json;
 mod uff;
 mod validation;
 mod vtk;

@@ -83,8 +83,8 @@ impl RecordSize {
         let (rows, new) = (self.rows as f64, self.rows.saturating_sub(self.done) as f64);
         let new_fields = self.fields.saturating_sub(self.fields_done);
         let fields = NODE * self.nodes as f64 * (self.fields + new_fields) as f64;
-        // A run that goes on writes results.h5 and the tables anew, and adds to record.bin.
-        rows * (numbers + TEXT * (channels + 1.0)) + new * numbers + fields
+        // A run that goes on writes results.h5, with the times, and the tables anew, and adds to record.bin.
+        rows * (NUMBER + numbers + TEXT * (channels + 1.0)) + new * numbers + fields
     }
 }
 
@@ -163,9 +163,9 @@ mod tests {
         let short = record(11, 0);
         room_on_disk(dir.path(), &short).unwrap();
         room_in_memory(&short).unwrap();
-        // 15 numbers and 3 short ones in results.h5 and in record.bin; 16 numbers as text.
-        assert_eq!(short.bytes_on_disk(), 11.0 * (2.0 * (15.0 * 8.0 + 3.0 * 4.0) + 160.0));
-        assert_eq!(record(11, 5).bytes_on_disk(), 11.0 * (132.0 + 160.0) + 6.0 * 132.0);
+        // 15 numbers and 3 short ones in results.h5 and in record.bin, the times in results.h5; 16 numbers as text.
+        assert_eq!(short.bytes_on_disk(), 11.0 * (8.0 + 2.0 * (15.0 * 8.0 + 3.0 * 4.0) + 160.0));
+        assert_eq!(record(11, 5).bytes_on_disk(), 11.0 * (8.0 + 132.0 + 160.0) + 6.0 * 132.0);
         let fields = RecordSize { nodes: 10, fields: 4, fields_done: 1, ..short };
         assert_eq!(fields.bytes_on_disk() - short.bytes_on_disk(), 240.0 * (4.0 + 3.0));
     }

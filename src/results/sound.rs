@@ -1,8 +1,9 @@
 //! How loud a run in time is, as plain data.
 
+use super::transient::window;
+use crate::dataset::{Column, Dimension, Group, Table, Values, Variable, column};
 use crate::signal::{Peak, Spectrum};
 use crate::sound::{Air, a_weighting, power_level, pressure_level, wav};
-use serde_json::{Value, json};
 use std::path::Path;
 
 /// Sound of the plates over the steady part of a run.
@@ -95,6 +96,11 @@ impl Sound {
 }
 
 impl Heard {
+    /// The name of the WAV file, if it is the first.
+    fn file(&self) -> String {
+        format!("sound_{}.wav", self.name)
+    }
+
     /// The sound pressure level in dB re 20 µPa and, A-weighted, in dB(A).
     pub fn levels(&self) -> [f64; 2] {
         let sum = |weight: &dyn Fn(f64) -> f64| -> f64 {
@@ -113,7 +119,126 @@ impl Sounding {
     }
 }
 
-/// Writes `sound_<microphone>.wav` and `sound_spectrum.csv` into the folder `dir`.
+/// A plate's name and the power that it sends out \[W\].
+type Plate<'a> = (&'a str, f64);
+
+fn plate_columns<'a>(whole: f64) -> Vec<Column<Plate<'a>>> {
+    vec![
+        column("name", "text", "name of the plate", |(name, _): &Plate| (*name).to_string()),
+        column("power_w", "W", "sound power of both sides", |(_, power): &Plate| *power),
+        column("share", "1", "its part of the whole", move |(_, power): &Plate| power / whole),
+    ]
+}
+
+fn tone_columns() -> Vec<Column<Tone>> {
+    vec![
+        column("frequency_hz", "Hz", "frequency of the peak", |tone: &Tone| tone.peak.frequency_hz),
+        column("power_level_db", "dB", "sound power level of the five lines about it", |tone: &Tone| {
+            power_level(tone.power)
+        }),
+        column("share", "1", "its part of the whole", |tone: &Tone| tone.share),
+        column("relation", "text", "what it is of stronger ones", |tone: &Tone| tone.peak.relation.clone()),
+    ]
+}
+
+fn microphone_columns() -> Vec<Column<Heard>> {
+    vec![
+        column("name", "text", "name of the microphone", |heard: &Heard| heard.name.clone()),
+        column("at_m", "m", "where it stands", |heard: &Heard| heard.at).along(Dimension::axes()),
+        column("pressure_level_db", "dB", "sound pressure level re 20 µPa", |heard: &Heard| {
+            heard.levels()[0]
+        }),
+        column("pressure_level_db_a", "dB", "the same, A-weighted", |heard: &Heard| heard.levels()[1]),
+    ]
+}
+
+impl Sound {
+    /// Levels, plates, tones, microphones, spectra and the recording; the level of nothing is −∞.
+    pub(super) fn group(&self) -> Group<'_> {
+        let [level, weighted] = self.power_levels();
+        let [mean, mean_weighted] = self.mean_levels(1.0);
+        let plates: Vec<Plate> =
+            self.plates.iter().map(|(name, lines)| (&**name, lines.iter().sum())).collect();
+        let whole: f64 = (0..self.lines()).map(|k| self.power(k)).sum();
+        let air = Group::new("air", "what carries the sound")
+            .value("density_kg_per_m3", "kg/m^3", "density ρ₀", self.air.density)
+            .value("speed_m_per_s", "m/s", "speed of sound c", self.air.speed);
+        let modes = vec![Dimension::numbered("mode", self.mode_shares.len())];
+        let limits =
+            "each plate in an infinite rigid baffle, free field: an upper estimate below coincidence";
+        Group::new("sound", "sound of the plates over the steady part of the run")
+            .with(window(self.window, "the first and the last time of what the levels are taken from"))
+            .value("up_to_hz", "Hz", "the highest line", self.frequency_hz(self.lines().saturating_sub(1)))
+            .value("resolution_hz", "Hz", "Δf, from line to line", self.resolution_hz)
+            .group(air)
+            .value("power_w", "W", "sound power of all plates", whole)
+            .value("power_level_db", "dB", "sound power level re 1 pW", level)
+            .value("power_level_db_a", "dB", "the same, A-weighted", weighted)
+            .value(
+                "mean_pressure_level_at_1_m_db",
+                "dB",
+                "sound pressure level re 20 µPa of the mean square over all directions at 1 m",
+                mean,
+            )
+            .value("mean_pressure_level_at_1_m_db_a", "dB", "the same, A-weighted", mean_weighted)
+            .table(Table::of("plates", "plate", &plate_columns(whole), &plates))
+            .with(Variable::reals(
+                "mode_shares",
+                "1",
+                "share of each real mode in the sound power",
+                modes,
+                self.mode_shares.clone(),
+            ))
+            .table(Table::of("tones", "tone", &tone_columns(), &self.tones))
+            .table(Table::of("microphones", "microphone", &microphone_columns(), &self.microphones))
+            .table(self.spectrum())
+            .optional("wav", self.microphones.first().map(|first| self.recording.group(first)))
+            .with(Variable::text("limits", "what the levels suppose", limits))
+    }
+
+    /// Power and mean square pressure over frequency.
+    fn spectrum(&self) -> Table<'static> {
+        let rows = Dimension::of_variable("frequency_hz", self.lines());
+        let over_lines =
+            |key: String, unit: &'static str, description: &'static str, of: &dyn Fn(usize) -> f64| {
+                let values = (0..self.lines()).map(of).collect();
+                Variable::reals(key, unit, description, vec![rows.clone()], values)
+            };
+        let frequency = over_lines(rows.name.into(), "Hz", "frequency", &|k| self.frequency_hz(k));
+        let plates = self.plates.iter().map(|(name, lines)| {
+            over_lines(format!("power_{name}"), "W", "sound power of both sides, what each line adds", &|k| {
+                lines[k]
+            })
+        });
+        let heard = self.microphones.iter().map(|heard| {
+            let spectrum = &heard.spectrum;
+            let square = |k: usize| spectrum.amplitude.get(k).map_or(0.0, |_| spectrum.mean_square(k));
+            let key = format!("mean_square_pressure_{}", heard.name);
+            over_lines(key, "Pa^2", "mean square sound pressure, what each line adds", &square)
+        });
+        let columns = std::iter::once(frequency).chain(plates).chain(heard).collect();
+        Table::along("spectrum", rows.clone(), columns).file("sound_spectrum.csv").long()
+    }
+}
+
+impl Sounding {
+    /// The pressure at a microphone, and the file that it can be heard from.
+    fn group(&self, at: &Heard) -> Group<'_> {
+        let time = Dimension::of_variable("time_s", self.pressure.len());
+        let times = Values::RealRows(Box::new(|k| vec![self.begin + k as f64 / f64::from(self.rate)]));
+        let pressures = Values::RealRows(Box::new(|k| vec![self.pressure[k]]));
+        Group::new("wav", "sound pressure at the first microphone")
+            .value("file", "text", "name of the WAV file", at.file())
+            .value("microphone", "text", "name of the microphone", at.name.clone())
+            .value("begin_s", "s", "time of the first sample", self.begin)
+            .value("samples_per_second", "Hz", "samples a second", self.rate)
+            .value("full_scale_pa", "Pa", "the largest number of the WAV file", self.full_scale())
+            .with(Variable::new("time_s", "s", "time", vec![time.clone()], times))
+            .with(Variable::new("pressure_pa", "Pa", "sound pressure p", vec![time], pressures))
+    }
+}
+
+/// Writes `sound_<microphone>.wav` into the folder `dir`.
 pub(super) fn write(dir: &Path, sound: &Sound) -> crate::error::Result<()> {
     let Some(first) = sound.microphones.first() else { return Ok(()) };
     let scale = sound.recording.full_scale();
@@ -123,73 +248,7 @@ pub(super) fn write(dir: &Path, sound: &Sound) -> crate::error::Result<()> {
         first.name, sound.recording.begin
     );
     let bytes = wav(&sound.recording.pressure, sound.recording.rate, scale, &comment);
-    super::write_result(dir, &format!("sound_{}.wav", first.name), &bytes)?;
-    super::write_result(dir, "sound_spectrum.csv", table(sound).as_bytes())
-}
-
-fn table(sound: &Sound) -> String {
-    use crate::dataset::{CsvTable as Table, number};
-    let plates = sound.plates.iter().map(|(name, _)| format!("sound power of {name} [W]"));
-    let heard = sound.microphones.iter().map(|m| format!("mean square pressure at {} [Pa^2]", m.name));
-    let headings: Vec<String> = std::iter::once("frequency [Hz]".into()).chain(plates).chain(heard).collect();
-    let mut table = Table::new(&headings.iter().map(String::as_str).collect::<Vec<_>>());
-    for k in 0..sound.lines() {
-        let plates = sound.plates.iter().map(|(_, lines)| lines[k]);
-        let heard = sound.microphones.iter().map(|m| match m.spectrum.amplitude.get(k) {
-            Some(_) => m.spectrum.mean_square(k),
-            None => 0.0,
-        });
-        let row: Vec<String> =
-            std::iter::once(sound.frequency_hz(k)).chain(plates).chain(heard).map(number).collect();
-        table.row(&row);
-    }
-    table.text
-}
-
-/// The part of `summary.json` on sound; a level of nothing is `null`.
-pub(super) fn summary(sound: &Sound) -> Value {
-    let [level, weighted] = sound.power_levels();
-    let whole: f64 = (0..sound.lines()).map(|k| sound.power(k)).sum();
-    let plate = |(name, lines): &(String, Vec<f64>)| {
-        let power: f64 = lines.iter().sum();
-        json!({ "name": name, "power_w": power, "share": power / whole })
-    };
-    let tone = |tone: &Tone| {
-        json!({
-            "frequency_hz": tone.peak.frequency_hz,
-            "power_level_db": power_level(tone.power),
-            "share": tone.share,
-            "relation": tone.peak.relation,
-        })
-    };
-    let heard = |m: &Heard| {
-        let [level, weighted] = m.levels();
-        json!({ "name": m.name, "at_m": m.at, "pressure_level_db": level, "pressure_level_db_a": weighted })
-    };
-    let wav = sound.microphones.first().map(|first| {
-        json!({
-            "file": format!("sound_{}.wav", first.name),
-            "begin_s": sound.recording.begin,
-            "full_scale_pa": sound.recording.full_scale(),
-        })
-    });
-    json!({
-        "window_s": sound.window,
-        "up_to_hz": sound.frequency_hz(sound.lines().saturating_sub(1)),
-        "resolution_hz": sound.resolution_hz,
-        "air": { "density_kg_per_m3": sound.air.density, "speed_m_per_s": sound.air.speed },
-        "power_w": whole,
-        "power_level_db": level,
-        "power_level_db_a": weighted,
-        "mean_pressure_level_at_1_m_db": sound.mean_levels(1.0)[0],
-        "mean_pressure_level_at_1_m_db_a": sound.mean_levels(1.0)[1],
-        "plates": sound.plates.iter().map(plate).collect::<Vec<_>>(),
-        "mode_shares": sound.mode_shares,
-        "tones": sound.tones.iter().map(tone).collect::<Vec<_>>(),
-        "microphones": sound.microphones.iter().map(heard).collect::<Vec<_>>(),
-        "wav": wav,
-        "limits": "each plate in an infinite rigid baffle, free field: an upper estimate below coincidence",
-    })
+    super::write_result(dir, &first.file(), &bytes)
 }
 
 #[cfg(test)]
@@ -212,9 +271,10 @@ mod tests {
         super::write(dir.path(), sound).unwrap();
         let wav = std::fs::read(dir.path().join("sound_axis.wav")).unwrap();
         assert!(wav.windows(22).any(|w| w == b"full scale is 3.333333"), "0.3 Pa is 0.9 of it");
-        let table = std::fs::read_to_string(dir.path().join("sound_spectrum.csv")).unwrap();
-        assert!(table.lines().count() == 501 && table.starts_with("frequency [Hz],sound power of disc [W]"));
-        let summary = super::summary(sound);
+        let table = sound.spectrum().to_csv();
+        let header = "frequency_hz,power_disc [W],power_slider [W],mean_square_pressure_axis [Pa^2]\n";
+        assert!(table.lines().count() == 501 && table.starts_with(header), "{table}");
+        let summary = sound.group().to_json();
         assert_eq!(summary["wav"]["file"], "sound_axis.wav");
         assert!((summary["plates"][0]["share"].as_f64().unwrap() - 1.0 / 1.02).abs() < 1e-9);
     }

@@ -104,6 +104,8 @@ pub(super) fn analyses(results: &RunResults) -> Group<'_> {
         .optional("steady_sliding", results.steady.as_ref().map(|steady| steady.group()))
         .optional("cea", results.complex.as_ref().map(|complex| complex.group()))
         .optional("sensitivity", results.sensitivity.as_ref().map(|sensitivity| sensitivity.group()))
+        .optional("transient", results.transient.as_ref().map(|transient| transient.group()))
+        .optional("calibration", results.calibration.as_ref().map(|calibration| calibration.group()))
 }
 
 impl Geometry {
@@ -147,9 +149,7 @@ impl Geometry {
 fn described_elsewhere(results: &RunResults) -> Vec<(&'static str, Value)> {
     vec![
         ("comparison", comparison::summary(results)),
-        ("transient", results.transient.as_ref().map(super::transient_json::transient).into()),
         ("frf", results.frfs.iter().map(super::frf::summary).collect()),
-        ("calibration", results.calibration.as_ref().map(super::calibration_json::summary).into()),
         ("sweeps", results.sweeps.iter().map(super::explored_json::sweep).collect()),
         ("maps", results.maps.iter().map(super::explored_json::map).collect()),
         ("damping_verdicts", results.damping.as_ref().map(super::explored_json::damping).into()),

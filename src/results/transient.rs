@@ -1,10 +1,12 @@
 //! A run in time, as plain data.
 
 use super::{Geometry, NodalField, ReducedCheck, Sound, TouchState, Watched};
+use crate::dataset::{Column, Dimension, Group, Table, Variable, column};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::signal::{Growth, Peak, Spectrum};
 use crate::transient::{Checkpoint, Event, EventKind, Work};
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 /// Columns that a long record is drawn in, so that no spike is lost.
@@ -69,6 +71,11 @@ impl Channel {
             self.last = values.last().copied();
         }
         Ok(())
+    }
+
+    /// `rim_velocity [m/s]`: the head of its column in tables.
+    pub(super) fn title(&self) -> String {
+        Variable::reals(&*self.name, self.unit, "", Vec::new(), Vec::new()).title()
     }
 
     /// `rim velocity [m/s]`.
@@ -207,9 +214,14 @@ pub struct TransientResult {
     pub sound: Option<Sound>,
 }
 
-/// The name under which the acceleration of a real mode, counted from 0, is recorded.
+/// The name under which the acceleration of real mode `mode`, an index, is recorded: it has the number from 1.
 pub fn modal_channel(mode: usize) -> String {
-    format!("modal_acceleration/{mode}")
+    format!("modal_acceleration/{}", mode + 1)
+}
+
+/// The first and the last time of what was analysed.
+pub(super) fn window(times: [f64; 2], description: &'static str) -> Variable<'static> {
+    Variable::reals("window_s", "s", description, vec![Dimension::limits()], times.to_vec())
 }
 
 impl TransientResult {
@@ -226,6 +238,160 @@ impl TransientResult {
     /// Whether nothing was recorded.
     pub fn is_empty(&self) -> bool {
         self.rows == 0
+    }
+
+    /// What the whole record says.
+    pub(super) fn group(&self) -> Group<'_> {
+        let steps = self.len().saturating_sub(1);
+        let [open, sticking, backwards, _] = self.spent;
+        let (split, most) = self.split;
+        let reduced =
+            self.reduced.map(|[modes, attached]| {
+                Group::new("reduced", "size of the reduced model")
+                    .value("modes", "1", "real modes", modes)
+                    .value("attachment", "1", "attachment shapes", attached)
+            });
+        let set_valued = Variable::texts(
+            "set_valued_friction",
+            "contacts whose friction at rest is any force up to μ(0) N",
+            Dimension::of_variable("set_valued_friction", self.set_valued.len()),
+            self.set_valued.clone(),
+        );
+        let spectra = self.spectra.iter().map(|of| of.group(&self.channels[of.channel])).collect();
+        let cycles = self.watched.cycle_table(&self.channels);
+        Group::new("transient", "motion in time from steady sliding")
+            .value("time_step_s", "s", "Δt", self.time_step)
+            .value("steps", "1", "steps, the start not counted", steps)
+            .value("duration_s", "s", "time from the first to the last step", steps as f64 * self.time_step)
+            .value("scheme", "text", "the integrator", self.scheme.clone())
+            .with(set_valued)
+            .optional("reduced", reduced)
+            .optional("reduced_check", self.reduced_check.as_ref().map(ReducedCheck::group))
+            .table(Table::of("channels", "channel", &channel_columns(), &self.channels))
+            .list("spectrum", spectra)
+            .table(self.spectrum_lines())
+            .optional("growth", self.growth.as_ref().map(GrowthCompared::group))
+            .group(self.event_counts())
+            .value("open_fraction", "1", "share of time in which the most loaded point was open", open)
+            .value("backwards_fraction", "1", "share of time in which it slipped backwards", backwards)
+            .value("sticking_fraction", "1", "share of time in which it stuck", sticking)
+            .value("steps_split", "1", "steps that had to be split", split)
+            .value("parts", "1", "steps and parts of steps in all", self.parts)
+            .value("most_parts", "1", "most parts of a step", most)
+            .group(Group::of("energy_j", "work since the start", &work_columns(), &self.work))
+            .value(
+                "worst_energy_residual",
+                "1",
+                "largest |residual| of a step's energy balance over its turnover of energy",
+                self.worst_residual,
+            )
+            .table(cycles)
+            .list("spectrogram", self.watched.spectrogram_groups(&self.channels))
+            .optional("contact_state", self.watched.contact.group())
+            .optional("sound", self.sound.as_ref().map(Sound::group))
+    }
+
+    /// The amplitudes of all spectra, a column each.
+    fn spectrum_lines(&self) -> Table<'static> {
+        let first = self.spectra.first().map(|of| &of.spectrum);
+        let rows = Dimension::of_variable("frequency_hz", first.map_or(0, |first| first.amplitude.len()));
+        let frequencies =
+            first.map_or(Vec::new(), |first| (0..rows.length).map(|k| first.frequency_hz(k)).collect());
+        let frequency = Variable::reals(rows.name, "Hz", "frequency", vec![rows.clone()], frequencies);
+        let amplitude = |of: &SpectrumOf| {
+            let channel = &self.channels[of.channel];
+            let story = "amplitude of the sine that gives each line";
+            let amplitudes = of.spectrum.amplitude.clone();
+            Variable::reals(channel.name.clone(), channel.unit, story, vec![rows.clone()], amplitudes)
+        };
+        let columns = std::iter::once(frequency).chain(self.spectra.iter().map(amplitude)).collect();
+        Table::along("spectrum_lines", rows.clone(), columns).file("transient_spectrum.csv").long()
+    }
+
+    fn event_counts(&self) -> Group<'static> {
+        let group = Group::new("events", "what happened at the contact points");
+        EventKind::ALL.iter().zip(self.events).fold(group, |group, (kind, count)| {
+            group.value(kind.name(), "1", "how often it happened, at all contact points together", count)
+        })
+    }
+}
+
+fn channel_columns() -> Vec<Column<Channel>> {
+    vec![
+        column("name", "text", "name of the channel", |c: &Channel| c.name.clone()),
+        column("unit", "text", "its unit", |c: &Channel| c.unit),
+        column("description", "text", "what it is", |c: &Channel| c.about.clone()),
+        column("range", "unit", "the least and the greatest value", |c: &Channel| c.range)
+            .along(Dimension::limits()),
+        column("last", "unit", "the last value", |c: &Channel| c.last),
+    ]
+}
+
+fn work_columns() -> Vec<Column<Work>> {
+    vec![
+        column("stored", "J", "½vᵀMv + ½uᵀKu gained", |w: &Work| w.kinetic + w.strain),
+        column("external", "J", "work of constant load and excitations", |w: &Work| w.external),
+        column("normal", "J", "work of the normal forces of the contacts", |w: &Work| w.normal),
+        column("drive", "J", "spent by the drives of the counter-bodies against friction", |w: &Work| {
+            w.drive
+        }),
+        column("heat", "J", "turned into heat by friction", |w: &Work| w.heat),
+        column("damping", "J", "taken by structural damping (negative)", |w: &Work| w.damping),
+        column("coupling", "J", "work of imported unsymmetric terms", |w: &Work| w.coupling),
+        column("algorithm", "J", "added by the integrator (mostly negative)", |w: &Work| w.algorithm),
+        column("residual", "J", "what the balance leaves", Work::residual),
+    ]
+}
+
+impl SpectrumOf {
+    /// The peaks of the spectrum of a channel.
+    fn group<'a>(&self, channel: &'a Channel) -> Group<'a> {
+        let peaks = [
+            column("frequency_hz", "Hz", "frequency, between the lines", |peak: &Peak| peak.frequency_hz),
+            column("amplitude", channel.unit, "amplitude", |peak: &Peak| peak.amplitude),
+            column("relation", "text", "what it is of stronger ones", |peak: &Peak| peak.relation.clone()),
+        ];
+        let measured = Dimension::of_variable("measured_hz", self.measured.len());
+        Group::new(&*channel.name, "a channel over frequency")
+            .value("channel", "text", "name of the channel", channel.name.clone())
+            .value("unit", "text", "its unit", channel.unit)
+            .with(window(self.window, "the first and the last time of what was analysed"))
+            .value("resolution_hz", "Hz", "Δf, from line to line", self.spectrum.resolution_hz)
+            .table(Table::of("peaks", "peak", &peaks, &self.peaks))
+            .with(Variable::reals(
+                "measured_hz",
+                "Hz",
+                "peaks that were measured",
+                vec![measured],
+                self.measured.clone(),
+            ))
+            .value(
+                "strongest_beyond_hz",
+                "Hz",
+                "the highest line, where that is beyond the modes of the case",
+                self.beyond,
+            )
+    }
+}
+
+impl GrowthCompared {
+    fn group(&self) -> Group<'static> {
+        type Compared = GrowthCompared;
+        let columns = [
+            column("mode", "1", "complex mode, from 1", |g: &Compared| g.mode + 1),
+            column("cea_growth_rate", "1/s", "σ of the complex mode", |g: &Compared| g.eigenvalue.re),
+            column("cea_frequency_hz", "Hz", "its frequency", |g: &Compared| g.eigenvalue.im / TAU),
+            column("growth_rate", "1/s", "σ in time", |g: &Compared| g.found.map(|f| f.rate)),
+            column("frequency_hz", "Hz", "frequency in time", |g: &Compared| g.found.map(|f| f.frequency_hz)),
+            column("window_s", "s", "the first and the last time of what was fitted", |g: &Compared| {
+                g.found.map(|f| f.window)
+            })
+            .along(Dimension::limits()),
+            column("deviation", "1", "r.m.s. deviation of ln|c| from its line", |g: &Compared| {
+                g.found.map(|f| f.deviation)
+            }),
+        ];
+        Group::of("growth", "growth in time beside a complex eigenvalue", &columns, self)
     }
 }
 

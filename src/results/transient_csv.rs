@@ -1,6 +1,7 @@
 //! `transient.csv` and `events.csv`, which grow while the run goes on.
 
 use super::folder::{own, refusal};
+use super::transient_hdf5::TIME;
 use super::{Channel, Recording};
 use crate::dataset::{CsvTable as Table, number};
 use crate::error::Result;
@@ -23,10 +24,9 @@ impl HistoryTable {
     /// # Errors
     /// [`crate::error::Error::Io`], here and later, when the machine refuses.
     pub fn create(dir: &Path, recording: &Recording) -> Result<Self> {
-        let named: Vec<String> = recording.channels.iter().map(Channel::heading).collect();
-        let headings: Vec<&str> =
-            std::iter::once("time [s]").chain(named.iter().map(String::as_str)).collect();
-        let lines = Lines::create(dir, "transient.csv", &headings)?;
+        let channels = recording.channels.iter().map(Channel::title);
+        let titles: Vec<String> = std::iter::once(TIME.into()).chain(channels).collect();
+        let lines = Lines::create(dir, "transient.csv", &titles)?;
         Ok(HistoryTable { lines, time_step: recording.time_step })
     }
 
@@ -62,7 +62,7 @@ impl EventTable {
     /// # Errors
     /// [`crate::error::Error::Io`], here and later, when the machine refuses.
     pub fn create(dir: &Path, recording: &Recording) -> Result<Self> {
-        let lines = Lines::create(dir, "events.csv", &["time [s]", "point", "pair", "event"])?;
+        let lines = Lines::create(dir, "events.csv", &[TIME, "point", "pair", "kind"])?;
         Ok(EventTable { lines, pairs: recording.pairs.to_vec() })
     }
 
@@ -88,12 +88,12 @@ struct Lines {
 }
 
 impl Lines {
-    fn create(dir: &Path, name: &str, headings: &[&str]) -> Result<Self> {
+    fn create(dir: &Path, name: &str, titles: &[impl AsRef<str>]) -> Result<Self> {
         own(dir, name)?;
         let path = dir.join(name);
         let file = File::create(&path).map_err(|source| refusal(&path, source))?;
         let mut lines = Lines { file, path };
-        lines.write(&Table::new(headings).text)?;
+        lines.write(&Table::new(titles).text)?;
         Ok(lines)
     }
 

@@ -4,22 +4,27 @@
 //! | in `/transient` | |
 //! |---|---|
 //! | attribute `rows` | how many values of every channel are there; the others are not a number |
-//! | `<channel>` | a value for every step, the start included |
-//! | `modal_acceleration/<k>` | the same of real mode k, counted from 0, where sound is asked for |
-//! | `events/time`, `events/point`, `events/kind` | what happened at the contact points; attribute `events` says how many |
-//! | `spectrum_<channel>`, `spectrogram_<channel>`, `limit_cycle_<channel>` | lines and peaks; over time, too; the size in the end |
-//! | `contact_state`, `sound` | what the contact points did; how loud it is |
+//! | `time_s` | the time of every step, the start included: the coordinate of the following |
+//! | `<channel>` | a value for every step |
+//! | `modal_acceleration/<k>` | the same of real mode k, from 1, where sound is asked for |
+//! | `events/time_s`, `events/point`, `events/kind` | what happened at the contact points; attribute `events` says how many |
+//! | the rest | what [`TransientResult`] says in the end, under the names that it has in `summary.json` |
 //!
 //! Nobody knows how many events there will be: when their room is full the file is copied with twice the room.
 
 use super::events_hdf5 as events;
 use super::file::room;
-use super::hdf5::{Datasets, attribute, describe, text_attribute};
 use super::{Piece, Recording, ResultsFile, TransientResult, modal_channel};
+use crate::dataset::{attach_scale, attribute, describe};
 use crate::error::Result;
 use hdf5::Group;
 use ndarray::s;
 use std::ops::Range;
+
+/// The time of each row, and when each event happened.
+pub(super) const TIME: &str = "time_s";
+/// Times that are written at once.
+const AT_ONCE: usize = 1 << 16;
 
 impl ResultsFile {
     /// Begins a run in time with room for all it is going to record. The file can take its place then.
@@ -78,33 +83,25 @@ impl ResultsFile {
     pub fn finish_transient(&mut self, result: &TransientResult) -> Result<()> {
         self.stage(|root| {
             let group = root.group("transient")?;
-            text_attribute(&group, "scheme", &result.scheme)?;
-            attribute(&group, "worst_energy_residual", &result.worst_residual)?;
-            for of in &result.spectra {
-                let channel = &result.channels[of.channel];
-                let spectrum = Datasets(group.create_group(&format!("spectrum_{}", channel.name))?);
-                attribute(&spectrum.0, "resolution_hz", &of.spectrum.resolution_hz)?;
-                let story = "amplitude of the sine that gives each line; line k stands at k · resolution_hz";
-                spectrum.list("amplitude", &of.spectrum.amplitude, channel.unit, story)?;
-                let hz: Vec<f64> = of.peaks.iter().map(|p| p.frequency_hz).collect();
-                spectrum.list("peak_frequency_hz", &hz, "Hz", "its peaks")?;
-                let height: Vec<f64> = of.peaks.iter().map(|p| p.amplitude).collect();
-                spectrum.list("peak_amplitude", &height, channel.unit, "their amplitudes")?;
-                spectrum.list("measured_hz", &of.measured, "Hz", "peaks that were measured")?;
-            }
             events::fit(&group)?;
-            super::sound_hdf5::write(&group, result)?;
+            result.group().write_hdf5(root)?;
             group.attr("complete")?.write_scalar(&true)
         })
     }
 }
 
 fn make_room(group: &Group, recording: &Recording) -> hdf5::Result<()> {
-    attribute(group, "time_step", &recording.time_step)?;
     attribute(group, "complete", &false)?;
     attribute(group, "rows", &0_u64)?;
     attribute(group, "events", &0_u64)?;
     events::make_room(group, events::FIRST)?;
+    let time = room(group, TIME, recording.rows, f64::NAN)?;
+    describe(&time, "s", "time of each step, from the start")?;
+    for first in (0..recording.rows).step_by(AT_ONCE) {
+        let part = first..recording.rows.min(first + AT_ONCE);
+        let times: Vec<f64> = part.clone().map(|row| row as f64 * recording.time_step).collect();
+        time.write_slice(&times, s![part])?;
+    }
     for channel in recording.channels {
         describe(&room(group, &channel.name, recording.rows, f64::NAN)?, channel.unit, &channel.about)?;
     }
@@ -115,7 +112,9 @@ fn make_room(group: &Group, recording: &Recording) -> hdf5::Result<()> {
         let room = room(group, &modal_channel(mode), recording.rows, f32::NAN)?;
         describe(&room, "sqrt(kg) m/s^2", "acceleration of a mass-normalised real mode")?;
     }
-    Ok(())
+    let channels = recording.channels.iter().map(|channel| channel.name.clone());
+    let all: Vec<String> = channels.chain((0..recording.modes).map(modal_channel)).collect();
+    attach_scale(group, TIME, &all)
 }
 
 #[cfg(test)]
@@ -204,7 +203,7 @@ mod tests {
         let changed: Vec<usize> =
             (0..before.len()).filter(|k| before[*k] != after[*k]).filter(elsewhere).collect();
         // The two counts, 8 bytes each.
-        assert!(changed.len() <= 16 && numbers.len() == 5 + MODES, "{changed:?}");
+        assert!(changed.len() <= 16 && numbers.len() == 6 + MODES, "{changed:?}");
     }
 
     #[test]
@@ -222,6 +221,26 @@ mod tests {
             assert!(all.iter().enumerate().all(|(row, v)| *v == f64::from(modal(mode, row))));
         }
         assert_eq!(file.read_events(0..happened(&file)).unwrap(), events(0..ROWS, 2));
+        let times = file.read_transient(TIME, 0..ROWS).unwrap();
+        assert!(times.iter().enumerate().all(|(row, time)| *time == row as f64 * 1e-5));
+    }
+
+    #[test]
+    fn times_are_the_coordinate_of_what_is_recorded_from_the_beginning() {
+        let dir = tempfile::tempdir().unwrap();
+        let mut file = ResultsFile::create(dir.path()).unwrap();
+        begin(&mut file);
+        let home = hdf5::File::open(dir.path().join("results.h5")).unwrap();
+        let transient = home.group("transient").unwrap();
+        let of = |path: &str, attribute: &str| transient.dataset(path).unwrap().attr(attribute);
+        for scale in [TIME, "events/time_s"] {
+            assert!(of(scale, "CLASS").is_ok() && of(scale, "REFERENCE_LIST").is_ok(), "{scale}");
+        }
+        for path in ["a", "b", "modal_acceleration/1", "modal_acceleration/2", "events/point", "events/kind"]
+        {
+            assert_eq!(of(path, "DIMENSION_LIST").unwrap().shape(), [1], "{path}");
+        }
+        assert_eq!(transient.dataset(TIME).unwrap().read_1d::<f64>().unwrap()[ROWS - 1], 4999.0 * 1e-5);
     }
 
     #[test]
@@ -229,8 +248,9 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let mut file = ResultsFile::create(dir.path()).unwrap();
         begin(&mut file);
-        let room =
-            |file: &ResultsFile| file.read(|root| Ok(root.dataset("transient/events/time")?.size())).unwrap();
+        let room = |file: &ResultsFile| {
+            file.read(|root| Ok(root.dataset("transient/events/time_s")?.size())).unwrap()
+        };
         assert_eq!(room(&file), events::FIRST);
         add(&mut file, 0..1500, 20);
         add(&mut file, 1500..ROWS, 20);

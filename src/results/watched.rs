@@ -1,5 +1,7 @@
 //! What a run in time looks like: the data of its pictures, of bounded size however long it is.
 
+use super::Channel;
+use crate::dataset::{Column, Dimension, Group, Table, Values, Variable, column};
 use crate::signal::{LimitCycle, Spectrogram};
 
 /// Data that was gathered while the run went on.
@@ -53,14 +55,12 @@ impl TouchState {
     pub const ALL: [TouchState; 4] =
         [TouchState::Open, TouchState::Stick, TouchState::Backwards, TouchState::Forwards];
 
-    /// `open`, `stick` …
+    /// Their names, in the same order.
+    const NAMES: [&'static str; 4] = ["open", "sticking", "slipping backwards", "slipping forwards"];
+
+    /// `open`, `sticking` …
     pub fn name(self) -> &'static str {
-        match self {
-            TouchState::Open => "open",
-            TouchState::Stick => "sticking",
-            TouchState::Backwards => "slipping backwards",
-            TouchState::Forwards => "slipping forwards",
-        }
+        Self::NAMES[self as usize]
     }
 }
 
@@ -74,6 +74,91 @@ pub struct ContactHistory {
     pub points: usize,
     /// Counts in the order of [`TouchState::ALL`].
     pub counts: Vec<[u64; 4]>,
+}
+
+impl Watched {
+    /// How large the oscillation of the channels shown is at the end.
+    pub(super) fn cycle_table(&self, channels: &[Channel]) -> Table<'static> {
+        let cycles: Vec<Cycle> =
+            self.cycles.iter().map(|(channel, cycle)| (&channels[*channel], self.window, cycle)).collect();
+        Table::of("limit_cycle", "cycle", &cycle_columns(), &cycles)
+    }
+
+    /// The channels shown over time and frequency.
+    pub(super) fn spectrogram_groups<'a>(&'a self, channels: &'a [Channel]) -> Vec<Group<'a>> {
+        let of =
+            |(channel, spectrogram): &'a (usize, Spectrogram)| over_time(&channels[*channel], spectrogram);
+        self.spectrograms.iter().map(of).collect()
+    }
+}
+
+/// A channel, the window, and the size of the oscillation.
+type Cycle<'a> = (&'a Channel, [f64; 2], &'a LimitCycle);
+
+fn cycle_columns<'a>() -> Vec<Column<Cycle<'a>>> {
+    vec![
+        column("channel", "text", "name of the channel", |(channel, ..): &Cycle| channel.name.clone()),
+        column("unit", "text", "its unit", |(channel, ..): &Cycle| channel.unit),
+        column(
+            "window_s",
+            "s",
+            "the first and the last time of what was analysed",
+            |(_, window, _): &Cycle| *window,
+        )
+        .along(Dimension::limits()),
+        column("amplitude", "unit", "half the range of the oscillation", |(.., c): &Cycle| c.amplitude),
+        column("rms", "unit", "root of the mean square about the mean", |(.., c): &Cycle| c.rms),
+        column("mean", "unit", "mean", |(.., c): &Cycle| c.mean),
+        column("drift", "1", "relative change of the r.m.s. over the window", |(.., c): &Cycle| c.drift),
+        column("steady", "1", "whether the oscillation neither grew nor died away", |(.., c): &Cycle| {
+            c.steady()
+        }),
+    ]
+}
+
+fn over_time<'a>(channel: &'a Channel, spectrogram: &'a Spectrogram) -> Group<'a> {
+    let time = Dimension::of_variable("time_s", spectrogram.columns());
+    let frequency = Dimension::of_variable("frequency_hz", spectrogram.rows);
+    let times = Values::RealRows(Box::new(|k| vec![spectrogram.time(k)]));
+    let frequencies = Values::RealRows(Box::new(|k| vec![k as f64 * spectrogram.resolution_hz]));
+    let amplitudes = Values::RealRows(Box::new(|k| spectrogram.column(k).to_vec()));
+    Group::new(&*channel.name, "a channel over time and frequency")
+        .value("begin_s", "s", "time of the middle of the first segment", spectrogram.begin)
+        .value("hop_s", "s", "from one segment to the next", spectrogram.hop)
+        .value("segment_s", "s", "length of a segment", spectrogram.segment)
+        .value("resolution_hz", "Hz", "Δf, from line to line", spectrogram.resolution_hz)
+        .with(Variable::new("time_s", "s", "time of the middle of each segment", vec![time.clone()], times))
+        .with(Variable::new("frequency_hz", "Hz", "frequency", vec![frequency.clone()], frequencies))
+        .with(Variable::new(
+            "amplitude",
+            channel.unit,
+            "amplitude of the sine that gives each line",
+            vec![time, frequency],
+            amplitudes,
+        ))
+}
+
+impl ContactHistory {
+    /// States over time; none where no point touched.
+    pub(super) fn group(&self) -> Option<Group<'_>> {
+        let time = Dimension::of_variable("time_s", self.counts.len());
+        let states = Dimension::named("state", &TouchState::NAMES);
+        let times = Values::RealRows(Box::new(|k| vec![k as f64 * self.column]));
+        let counts = Values::RealRows(Box::new(|k| self.counts[k].map(|count| count as f64).to_vec()));
+        (self.points > 0).then(|| {
+            Group::new("contact_state", "what the contact points did over time")
+                .value("column_s", "s", "how long a column lasts", self.column)
+                .value("points", "1", "points that touched at some time", self.points)
+                .with(Variable::new("time_s", "s", "begin of each column", vec![time.clone()], times))
+                .with(Variable::new(
+                    "counts",
+                    "1",
+                    "points times steps of each column in each state",
+                    vec![time, states],
+                    counts,
+                ))
+        })
+    }
 }
 
 /// Columns of a [`ContactHistory`].
