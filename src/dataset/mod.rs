@@ -22,7 +22,7 @@ mod variable;
 
 pub use column::{Cell, Column, IntoCell, column};
 pub use csv::{CsvTable, number};
-pub use hdf5::{attribute, describe, text_attribute};
+pub use hdf5::{attribute, describe, link, opened, text_attribute};
 pub use variable::{Dimension, Kind, Labels, Shown, Values, Variable};
 
 use std::borrow::Cow;

@@ -80,7 +80,7 @@ pub(super) fn explore(
         results.maps.push(result);
     }
     results.damping = explorer.damping()?;
-    Ok(())
+    results.damping.iter().try_for_each(|damping| record(Stage::Damping(damping)))
 }
 
 /// Every damping scalar that a sweep, a map or the verdicts vary: path, its value, another value that the case accepts.

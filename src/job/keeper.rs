@@ -4,9 +4,10 @@ use super::explore::KnownMap;
 use crate::error::{Error, Fault, Result};
 use crate::results::record::{Block, Earlier, Record};
 use crate::results::{
-    CalibrationResult, ComplexResult, EventTable, Field, FieldsFile, FrfResult, HistoryTable, MapResult,
-    NamedModes, Piece, RecordSize, Recording, ResultsFile, RunResults, SensitivityResult, SteadyResult,
-    SweepResult, TransientResult, modal_channel, room_in_memory, room_on_disk,
+    CalibrationResult, ComplexResult, DampingVerdicts, EventTable, Field, FieldsFile, FrfResult,
+    HistoryTable, MapResult, NamedModes, Piece, RecordSize, Recording, ResultsFile, RunResults,
+    SensitivityResult, SteadyResult, SweepResult, TransientResult, modal_channel, room_in_memory,
+    room_on_disk,
 };
 use crate::sweep::MapPoint;
 use crate::transient::Checkpoint;
@@ -34,6 +35,8 @@ pub enum Stage<'a> {
     MapPoints(&'a str, usize, &'a [MapPoint]),
     /// A whole map.
     Map(&'a MapResult),
+    /// Verdicts that the modal damping decides.
+    Damping(&'a DampingVerdicts),
     /// A run in time that begins or, after [`Keeper::stopped`] had an answer, goes on.
     TransientBegins(&'a Recording<'a>),
     /// New rows of it.
@@ -168,7 +171,8 @@ impl<'a> Folder<'a> {
             Stage::Steady(steady) => file.write(&steady.group()),
             Stage::Complex(complex) => file.write(&complex.group()),
             Stage::Sensitivity(sensitivity) => file.write(&sensitivity.group()),
-            Stage::Sweep(sweep) => file.write_sweep(sweep),
+            Stage::Sweep(sweep) => file.write_member("sweeps", sweep.group(Default::default())),
+            Stage::Damping(damping) => file.write(&damping.group()),
             Stage::MapBegins(map, known) => {
                 file.begin_map(map, &known.points, &known.trained)?;
                 self.record.begin_map(&map.name, &known.points, &known.trained)

@@ -4,9 +4,8 @@ use super::{NamedModes, ResultsFile, RunResults, summary};
 use crate::dataset::{Group as Described, Variable};
 pub(super) use crate::dataset::{attribute, describe, text_attribute};
 use crate::error::Result;
-use hdf5::types::VarLenUnicode;
 use hdf5::{Group, H5Type};
-use ndarray::{Array1, Array2, ArrayView, ArrayViewD, Dimension};
+use ndarray::{Array2, ArrayView, ArrayViewD, Dimension};
 
 impl ResultsFile {
     /// Writes what is known before the first analysis: title, resolved case, inputs, size, nodes and elements.
@@ -29,6 +28,14 @@ impl ResultsFile {
     /// As every method of the file: the machine refuses.
     pub fn write(&mut self, group: &Described) -> Result<()> {
         self.keep(|root| group.write_hdf5(root))
+    }
+
+    /// Writes a member of a list of groups.
+    ///
+    /// # Errors
+    /// As every method of the file: the machine refuses.
+    pub fn write_member(&mut self, list: &'static str, group: Described) -> Result<()> {
+        self.write(&Described::new("", "").list(list, vec![group]))
     }
 
     /// Writes one set of real modes.
@@ -71,14 +78,6 @@ impl Datasets {
     }
 }
 
-/// A list of strings as a dataset.
-pub(super) fn texts(group: &Group, name: &str, texts: &[String], description: &str) -> hdf5::Result<()> {
-    let values: Array1<VarLenUnicode> = texts.iter().map(|text| unicode(text)).collect();
-    let dataset = group.new_dataset::<VarLenUnicode>().shape(values.len()).create(name)?;
-    dataset.write(values.view())?;
-    describe(&dataset, "text", description)
-}
-
 /// The operating system's words inside an error of the library, which runs over several lines, or its first line.
 pub(super) fn plain(error: &hdf5::Error) -> String {
     let text = error.to_string();
@@ -89,11 +88,6 @@ pub(super) fn plain(error: &hdf5::Error) -> String {
     let words = cause.map(|(words, _)| words).or(text.lines().next()).unwrap_or_default();
     // So the library says when it has lost the cause, as it does where room cannot be made.
     if words == "unknown library error" { "the file cannot be written".into() } else { words.into() }
-}
-
-/// HDF5's strings end at a NUL, so one in the text cannot be kept.
-fn unicode(text: &str) -> VarLenUnicode {
-    text.replace('\0', "").parse().expect("holds no NUL")
 }
 
 pub(super) fn rows<const N: usize>(values: &[[f64; N]]) -> Array2<f64> {

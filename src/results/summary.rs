@@ -104,6 +104,9 @@ pub(super) fn analyses(results: &RunResults) -> Group<'_> {
         .optional("steady_sliding", results.steady.as_ref().map(|steady| steady.group()))
         .optional("cea", results.complex.as_ref().map(|complex| complex.group()))
         .optional("sensitivity", results.sensitivity.as_ref().map(|sensitivity| sensitivity.group()))
+        .list("sweeps", results.sweep_groups())
+        .list("maps", results.map_groups())
+        .optional("damping_verdicts", results.damping.as_ref().map(|damping| damping.group()))
 }
 
 impl Geometry {
@@ -150,9 +153,6 @@ fn described_elsewhere(results: &RunResults) -> Vec<(&'static str, Value)> {
         ("transient", results.transient.as_ref().map(super::transient_json::transient).into()),
         ("frf", results.frfs.iter().map(super::frf::summary).collect()),
         ("calibration", results.calibration.as_ref().map(super::calibration_json::summary).into()),
-        ("sweeps", results.sweeps.iter().map(super::explored_json::sweep).collect()),
-        ("maps", results.maps.iter().map(super::explored_json::map).collect()),
-        ("damping_verdicts", results.damping.as_ref().map(super::explored_json::damping).into()),
     ]
 }
 
