@@ -274,8 +274,7 @@ fn write_results(out: &Path, folder: Folder, results: &mut RunResults) -> Result
     file.stand_alone()?;
     results::write_files(out, results)?;
     crate::report::write_report(out, results)?;
-    file.write_measured(&results.measured)?;
-    file.write_measured_frfs(&results.measured_frfs)?;
+    file.write(&results.compared())?;
     results.timings.push(("write results".into(), recording + writing.elapsed().as_secs_f64()));
     file.finish(results)?;
     record.end()

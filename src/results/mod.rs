@@ -108,7 +108,6 @@ pub fn write_files(dir: &Path, results: &RunResults) -> crate::error::Result<()>
         sound::write(dir, sound)?;
     }
     frf::write(dir, &results.frfs)?;
-    comparison::write(dir, results)?;
     uff::write_modes(dir, results)?;
     if let Some(calibration) = &results.calibration {
         calibration::write(dir, calibration)?;
