@@ -195,7 +195,7 @@ impl<'a> Folder<'a> {
                 self.fields.iter_mut().try_for_each(|file| file.write(field))?;
                 self.record.add_field(field)
             }
-            Stage::Frf(frf) => file.write_frf(frf),
+            Stage::Frf(frf) => file.write_member("frf", frf.group("")),
             Stage::Calibration(calibration) => file.write_calibration(calibration),
             Stage::Transient(transient) => file.finish_transient(transient),
         }

@@ -107,7 +107,7 @@ pub fn write_files(dir: &Path, results: &RunResults) -> crate::error::Result<()>
     if let Some(sound) = results.transient.as_ref().and_then(|run| run.sound.as_ref()) {
         sound::write(dir, sound)?;
     }
-    frf::write(dir, &results.frfs)?;
+    frf::write_universal(dir, &results.frfs)?;
     uff::write_modes(dir, results)?;
     if let Some(calibration) = &results.calibration {
         calibration::write(dir, calibration)?;

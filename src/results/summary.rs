@@ -108,6 +108,7 @@ pub(super) fn analyses(results: &RunResults) -> Group<'_> {
         .optional("steady_sliding", results.steady.as_ref().map(|steady| steady.group()))
         .optional("cea", results.complex.as_ref().map(|complex| complex.group()))
         .optional("sensitivity", results.sensitivity.as_ref().map(|sensitivity| sensitivity.group()))
+        .list("frf", results.frf_groups())
         .list("sweeps", results.sweep_groups())
         .list("maps", results.map_groups())
         .optional("damping_verdicts", results.damping.as_ref().map(|damping| damping.group()));
@@ -156,7 +157,6 @@ impl Geometry {
 fn described_elsewhere(results: &RunResults) -> Vec<(&'static str, Value)> {
     vec![
         ("transient", results.transient.as_ref().map(super::transient_json::transient).into()),
-        ("frf", results.frfs.iter().map(super::frf::summary).collect()),
         ("calibration", results.calibration.as_ref().map(super::calibration_json::summary).into()),
     ]
 }
