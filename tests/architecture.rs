@@ -73,6 +73,7 @@ const MAY_USE: [(&str, &[&str]); 30] = [
         "job",
         &[
             "error",
+            "dataset",
             "memory",
             "progress",
             "numbers",

@@ -2,12 +2,13 @@
 
 use super::variable::{Dimension, Kind, Shown, Values, Variable};
 use crate::linalg::c64;
+use std::borrow::Cow;
 use std::fmt;
 
 /// A quantity that every record of a kind has.
 pub struct Column<R> {
     key: &'static str,
-    unit: &'static str,
+    unit: Cow<'static, str>,
     description: &'static str,
     kind: Kind,
     /// Dimensions beyond the rows.
@@ -53,12 +54,12 @@ pub trait IntoCell: Clone {
 /// `key`, `unit` and a sentence of a quantity, and how a record has it.
 pub fn column<R, V: IntoCell>(
     key: &'static str,
-    unit: &'static str,
+    unit: impl Into<Cow<'static, str>>,
     description: &'static str,
     value: impl Fn(&R) -> V + 'static,
 ) -> Column<R> {
     let value = Box::new(move |record: &R| value(record).cell());
-    Column { key, unit, description, kind: V::KIND, dimensions: Vec::new(), shown: None, value }
+    Column { key, unit: unit.into(), description, kind: V::KIND, dimensions: Vec::new(), shown: None, value }
 }
 
 impl<R> Column<R> {
@@ -100,7 +101,7 @@ impl<R> Column<R> {
                 _ => unreachable!("the kind is that of the values"),
             }
         }
-        let mut variable = Variable::new(self.key, self.unit, self.description, dimensions, values);
+        let mut variable = Variable::new(self.key, self.unit.clone(), self.description, dimensions, values);
         variable.shown = self.shown.as_ref().map(|(heading, text)| Shown {
             heading,
             cells: records.iter().map(text).collect(),

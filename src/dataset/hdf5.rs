@@ -34,15 +34,15 @@ impl Group<'_> {
             match entry {
                 Entry::Group(inner) => inner.write_hdf5(&group)?,
                 Entry::Table(table) => table.write_hdf5(&group)?,
-                Entry::List(key, groups) => {
+                Entry::List(key, groups) if !groups.is_empty() => {
                     let list = opened(&group, key)?;
                     groups.iter().try_for_each(|inner| inner.write_hdf5(&list))?;
                 }
-                Entry::Parts(key, _, tables) => {
+                Entry::Parts(key, _, tables) if !tables.is_empty() => {
                     let list = opened(&group, key)?;
                     tables.iter().try_for_each(|table| table.write_hdf5(&list))?;
                 }
-                Entry::Variable(_) | Entry::Absent(_) => {}
+                Entry::List(..) | Entry::Parts(..) | Entry::Variable(_) | Entry::Absent(_) => {}
             }
         }
         Ok(())
@@ -58,11 +58,36 @@ impl Table<'_> {
         let variables: Vec<&Variable> = self.columns.iter().chain(&self.fields).collect();
         write_variables(&opened(parent, &self.key)?, &variables)
     }
+
+    /// Puts numbers of the columns into the datasets that are there for more rows, from row `first` on.
+    ///
+    /// # Errors
+    /// What the library says.
+    pub fn fill_hdf5(&self, parent: &hdf5::Group, first: usize) -> hdf5::Result<()> {
+        let group = parent.group(&link(&self.key))?;
+        let rows = first..first + self.rows.length;
+        self.columns.iter().try_for_each(|column| {
+            let dataset = group.dataset(&link(&column.key))?;
+            match &column.values {
+                Values::Integers(all) => dataset.write_slice(all, s![rows.clone()]),
+                Values::Reals(all) => dataset.write_slice(all, s![rows.clone()]),
+                _ => Err(format!("{} does not come row by row", column.key).into()),
+            }
+        })
+    }
 }
 
-/// The group `name`, made where it is not there. What separates groups in a path is replaced in a name.
-fn opened(parent: &hdf5::Group, name: &str) -> hdf5::Result<hdf5::Group> {
-    let name = if name == "." { "．".to_string() } else { name.replace('/', "∕") };
+/// What a group or dataset is called in HDF5: what separates groups in a path is replaced in a name.
+pub fn link(name: &str) -> String {
+    if name == "." { "．".to_string() } else { name.replace('/', "∕") }
+}
+
+/// The group `name`, made where it is not there.
+///
+/// # Errors
+/// What the library says.
+pub fn opened(parent: &hdf5::Group, name: &str) -> hdf5::Result<hdf5::Group> {
+    let name = link(name);
     if parent.link_exists(&name) { parent.group(&name) } else { parent.create_group(&name) }
 }
 
@@ -85,7 +110,7 @@ fn write_variables(group: &hdf5::Group, variables: &[&Variable]) -> hdf5::Result
             continue;
         }
         let dataset = write_variable(group, variable)?;
-        let reference = group.reference::<ObjectReference1>(&variable.key)?;
+        let reference = group.reference::<ObjectReference1>(&link(&variable.key))?;
         let mut along = Vec::new();
         for (k, dimension) in variable.dimensions.iter().enumerate() {
             let scale = scales.get_mut(dimension.name).ok_or("every dimension has a scale")?;
@@ -187,12 +212,12 @@ fn write_variable(group: &hdf5::Group, variable: &Variable) -> hdf5::Result<Data
             put(group, variable, &all)?
         }
         Values::RealRows(row) => {
-            let dataset = group.new_dataset::<f64>().shape(shape.clone()).create(&*variable.key)?;
+            let dataset = group.new_dataset::<f64>().shape(shape.clone()).create(&*link(&variable.key))?;
             put_rows(&dataset, &shape, row)?;
             dataset
         }
         Values::ComplexRows(row) => {
-            let dataset = group.new_dataset::<c64>().shape(shape.clone()).create(&*variable.key)?;
+            let dataset = group.new_dataset::<c64>().shape(shape.clone()).create(&*link(&variable.key))?;
             put_rows(&dataset, &shape, row)?;
             dataset
         }
@@ -203,7 +228,7 @@ fn write_variable(group: &hdf5::Group, variable: &Variable) -> hdf5::Result<Data
 
 fn put<T: H5Type>(group: &hdf5::Group, variable: &Variable, values: &[T]) -> hdf5::Result<Dataset> {
     let shape = variable.shape();
-    let dataset = group.new_dataset::<T>().shape(shape.clone()).create(&*variable.key)?;
+    let dataset = group.new_dataset::<T>().shape(shape.clone()).create(&*link(&variable.key))?;
     let values = ArrayViewD::from_shape(shape, values).map_err(|error| error.to_string())?;
     dataset.write(values)?;
     Ok(dataset)

@@ -22,10 +22,16 @@ mod variable;
 
 pub use column::{Cell, Column, IntoCell, column};
 pub use csv::{CsvTable, number};
-pub use hdf5::{attach_scale, attribute, describe, text_attribute};
+pub use hdf5::{attach_scale, attribute, describe, link, opened, text_attribute};
 pub use variable::{Dimension, Kind, Labels, Shown, Values, Variable};
 
 use std::borrow::Cow;
+
+/// A result that is described by named quantities.
+pub trait Describe {
+    /// Its quantities, in the group in which they stand in files.
+    fn describe(&self) -> Group<'_>;
+}
 
 /// Quantities and groups of quantities, with a name.
 #[derive(Debug)]

@@ -274,8 +274,7 @@ fn write_results(out: &Path, folder: Folder, results: &mut RunResults) -> Result
     file.stand_alone()?;
     results::write_files(out, results)?;
     crate::report::write_report(out, results)?;
-    file.write_measured(&results.measured)?;
-    file.write_measured_frfs(&results.measured_frfs)?;
+    file.write(&results.compared())?;
     results.timings.push(("write results".into(), recording + writing.elapsed().as_secs_f64()));
     file.finish(results)?;
     record.end()
@@ -377,7 +376,7 @@ impl Run<'_, '_> {
                 .time("steady sliding", || equilibrium::solve_steady(&prepared.system, &options, observer))?;
             let steady = steady_result(prepared, state);
             if !prepared.system.pairs.is_empty() {
-                self.keeper.record(Stage::Steady(&steady))?;
+                self.keeper.record(Stage::Found(&steady))?;
             }
             let state = steady.state.clone();
             self.results.steady = Some(steady);
@@ -395,12 +394,12 @@ impl Run<'_, '_> {
                     frf.run(prepared, steady, observer)
                 })?;
             self.results.measured_frfs.extend(tests.responses(&response, &beside));
-            self.keeper.record(Stage::Frf(&response))?;
+            self.keeper.record(Stage::Found(&response))?;
             self.results.frfs.push(response);
         }
         if let Some(calibrate) = calibrate {
             let found = self.clock.time("calibration", || calibrate.run(observer))?;
-            self.keeper.record(Stage::Calibration(&found))?;
+            self.keeper.record(Stage::Found(&found))?;
             self.results.calibration = Some(found);
         }
         Ok(())
@@ -408,7 +407,7 @@ impl Run<'_, '_> {
 
     fn keep_modes(&mut self, modes: NamedModes, analysis: &ModesAnalysis, tests: &Tests) -> Result<()> {
         self.results.measured.extend(tests.modes(self.results.modes.len(), analysis, &modes));
-        self.keeper.record(Stage::Modes(&modes))?;
+        self.keeper.record(Stage::Found(&modes))?;
         self.results.modes.push(modes);
         Ok(())
     }
@@ -446,7 +445,7 @@ impl Run<'_, '_> {
         let left_vectors = in_time.is_some() || selection.sensitivities(case).is_some();
         let complex = complex_result(prepared, steady, basis, left_vectors, &mut self.clock, observer)?;
         let Some((complex, system, real)) = complex else { return Ok(()) };
-        self.keeper.record(Stage::Complex(&complex))?;
+        self.keeper.record(Stage::Found(&complex))?;
         self.results.warnings.extend(complex.modes.warnings.iter().cloned());
         let done = self.with_complex_modes(selection, (&system, steady), (&complex, &real), in_time);
         self.results.complex = Some(complex);
@@ -473,7 +472,7 @@ impl Run<'_, '_> {
             let analysed = Analysed { prepared, system, steady, real, modes: &complex.modes };
             let sensitivity =
                 self.clock.time("sensitivities", || analysed.sensitivities(&wanted, observer))?;
-            self.keeper.record(Stage::Sensitivity(&sensitivity))?;
+            self.keeper.record(Stage::Found(&sensitivity))?;
             self.results.sensitivity = Some(sensitivity);
         }
         if let Some((wanted, places)) = in_time {

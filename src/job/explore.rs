@@ -70,7 +70,7 @@ pub(super) fn explore(
     let explorer = Explorer { nominal, case: &case, condensed, frame, dampings, reference, observer };
     for (name, analysis) in &prepared.case.sweep {
         let result = explorer.sweep(name, analysis)?;
-        record(Stage::Sweep(&result))?;
+        record(Stage::Found(&result))?;
         results.sweeps.push(result);
     }
     for (name, analysis) in &prepared.case.map {
@@ -80,7 +80,7 @@ pub(super) fn explore(
         results.maps.push(result);
     }
     results.damping = explorer.damping()?;
-    Ok(())
+    results.damping.iter().try_for_each(|damping| record(Stage::Found(damping)))
 }
 
 /// Every damping scalar that a sweep, a map or the verdicts vary: path, its value, another value that the case accepts.

@@ -1,12 +1,12 @@
 //! Where results go as they come.
 
 use super::explore::KnownMap;
+use crate::dataset::Describe;
 use crate::error::{Error, Fault, Result};
 use crate::results::record::{Block, Earlier, Record};
 use crate::results::{
-    CalibrationResult, ComplexResult, EventTable, Field, FieldsFile, FrfResult, HistoryTable, MapResult,
-    NamedModes, Piece, RecordSize, Recording, ResultsFile, RunResults, SensitivityResult, SteadyResult,
-    SweepResult, TransientResult, modal_channel, room_in_memory, room_on_disk,
+    EventTable, Field, FieldsFile, HistoryTable, MapResult, Piece, RecordSize, Recording, ResultsFile,
+    RunResults, TransientResult, modal_channel, room_in_memory, room_on_disk,
 };
 use crate::sweep::MapPoint;
 use crate::transient::Checkpoint;
@@ -18,16 +18,8 @@ use std::time::Instant;
 pub enum Stage<'a> {
     /// The case, its size and its geometry.
     Model(&'a RunResults),
-    /// Real modes.
-    Modes(&'a NamedModes),
-    /// Steady sliding.
-    Steady(&'a SteadyResult),
-    /// Complex eigenvalues.
-    Complex(&'a ComplexResult),
-    /// Their sensitivities.
-    Sensitivity(&'a SensitivityResult),
-    /// A sweep.
-    Sweep(&'a SweepResult),
+    /// What an analysis has found, as a whole.
+    Found(&'a dyn Describe),
     /// A map of which no new point is there yet, and what is known of it.
     MapBegins(&'a MapResult, &'a KnownMap),
     /// New points of the map of this name, from this one on.
@@ -40,10 +32,6 @@ pub enum Stage<'a> {
     TransientPiece(&'a Piece<'a>),
     /// The motion of all nodes at one of its times.
     TransientField(&'a Field<'a>),
-    /// A frequency response.
-    Frf(&'a FrfResult),
-    /// Numbers that were found from measured frequencies.
-    Calibration(&'a CalibrationResult),
     /// A whole run in time.
     Transient(&'a TransientResult),
 }
@@ -164,11 +152,7 @@ impl<'a> Folder<'a> {
         let file = &mut self.file;
         match stage {
             Stage::Model(model) => file.write_head(model),
-            Stage::Modes(modes) => file.write_modes(modes),
-            Stage::Steady(steady) => file.write(&steady.group()),
-            Stage::Complex(complex) => file.write(&complex.group()),
-            Stage::Sensitivity(sensitivity) => file.write(&sensitivity.group()),
-            Stage::Sweep(sweep) => file.write_sweep(sweep),
+            Stage::Found(result) => file.write(&result.describe()),
             Stage::MapBegins(map, known) => {
                 file.begin_map(map, &known.points, &known.trained)?;
                 self.record.begin_map(&map.name, &known.points, &known.trained)
@@ -191,8 +175,6 @@ impl<'a> Folder<'a> {
                 self.fields.iter_mut().try_for_each(|file| file.write(field))?;
                 self.record.add_field(field)
             }
-            Stage::Frf(frf) => file.write_frf(frf),
-            Stage::Calibration(calibration) => file.write(&calibration.group()),
             Stage::Transient(transient) => file.finish_transient(transient),
         }
     }

@@ -1,15 +1,12 @@
 //! What was measured beside what was computed: modes and frequency responses.
 
-use super::hdf5::{Datasets, attribute, text_attribute};
-use super::{FileNames, NamedModes, ResultsFile, RunResults, write_result};
-use crate::dataset::{CsvTable as Table, number};
-use crate::error::Result;
+use super::explored::ends;
+use super::summary::sentences;
+use super::{FileNames, NamedModes, RunResults};
+use crate::dataset::{Column, Dimension, Group, Table, Variable, column};
 use crate::linalg::c64;
 use crate::measured::Quantity;
-use ndarray::Array2;
-use serde_json::{Value, json};
 use std::ops::Range;
-use std::path::Path;
 
 /// Computed modes without a measured one are told within this share beyond the measured frequencies.
 const BEYOND: f64 = 0.1;
@@ -123,207 +120,167 @@ impl MeasuredComparison {
     }
 }
 
-/// Writes `comparison_<name>.csv` and `comparison_<name>_frf.csv`.
-pub(super) fn write(dir: &Path, results: &RunResults) -> Result<()> {
-    let mut names = FileNames::default();
-    for comparison in &results.measured {
-        let name = names.next(&comparison.name);
-        let text = modes_table(comparison, results.modes.get(comparison.modes));
-        write_result(dir, &format!("comparison_{name}.csv"), text.as_bytes())?;
-    }
-    let mut names = FileNames::default();
-    for responses in &results.measured_frfs {
-        let name = names.next(&responses.name);
-        write_result(dir, &format!("comparison_{name}_frf.csv"), responses_table(responses).as_bytes())?;
-    }
-    Ok(())
+/// A measured mode with its test and the computed modes.
+type Row<'a> = (&'a MeasuredComparison, &'a NamedModes, MeasuredRow);
+
+fn mode_columns<'a>() -> Vec<Column<Row<'a>>> {
+    let computed = |(test, set, row): &Row| row.mode.map(|mode| test.computed_hz(set, mode));
+    vec![
+        column("measured_hz", "Hz", "measured frequency", |(.., row): &Row| row.frequency_hz),
+        column(
+            "deviation",
+            "1",
+            "standard deviation of the frequency over the frequency",
+            |(.., row): &Row| row.deviation,
+        ),
+        column("measured_damping_ratio", "1", "measured ζ", |(.., row): &Row| row.damping_ratio),
+        column("mode", "1", "number of the computed mode beside it", |(.., row): &Row| {
+            row.mode.map(|mode| mode + 1)
+        }),
+        column("computed_hz", "Hz", "its frequency times the scale", move |row: &Row| computed(row)),
+        column("computed_damping_ratio", "1", "its ζ", |(_, set, row): &Row| {
+            row.mode.and_then(|mode| set.damping_ratio.get(mode)).copied()
+        }),
+        column("difference_percent", "%", "(computed − measured)/measured", move |row: &Row| {
+            computed(row).map(|hz| 100.0 * (hz / row.2.frequency_hz - 1.0))
+        }),
+        column("mac", "1", "MAC with the level of that mode", |(.., row): &Row| row.likeness),
+    ]
 }
 
-fn modes_table(comparison: &MeasuredComparison, set: Option<&NamedModes>) -> String {
-    let mut table = Table::new(&[
-        "measured mode",
-        "measured frequency [Hz]",
-        "relative standard deviation",
-        "measured damping ratio",
-        "computed mode",
-        "computed frequency [Hz]",
-        "computed damping ratio",
-        "difference [%]",
-        "MAC",
-    ]);
-    let cell = |value: Option<f64>| value.map_or(String::new(), number);
-    for (k, row) in comparison.rows.iter().enumerate() {
-        let found = set.zip(row.mode);
-        let computed = found.map(|(set, mode)| comparison.frequency_scale * set.modes.frequency_hz(mode));
-        let damping = found.and_then(|(set, mode)| set.damping_ratio.get(mode).copied());
-        table.row(&[
-            (k + 1).to_string(),
-            number(row.frequency_hz),
-            cell(row.deviation),
-            cell(row.damping_ratio),
-            row.mode.map_or(String::new(), |mode| (mode + 1).to_string()),
-            cell(computed),
-            cell(damping),
-            cell(computed.map(|hz| 100.0 * (hz / row.frequency_hz - 1.0))),
-            cell(row.likeness),
-        ]);
-    }
-    table.text
+/// A level of computed modes: its number, its modes and its frequency.
+type Level = (usize, Range<usize>, f64);
+
+fn level_columns() -> Vec<Column<Level>> {
+    vec![
+        column("modes", "1", "numbers of its first and its last mode", |(_, modes, _): &Level| {
+            [modes.start + 1, modes.end]
+        })
+        .along(ends()),
+        column("frequency_hz", "Hz", "frequency of the first times the scale", |(.., hz): &Level| *hz),
+    ]
 }
 
-fn responses_table(responses: &MeasuredResponses) -> String {
-    let mut table = Table::new(&[
-        "response",
-        "quantity",
-        "frequency [Hz]",
-        "re measured [SI]",
-        "im measured [SI]",
-        "re computed [SI]",
-        "im computed [SI]",
-    ]);
-    for pair in &responses.pairs {
-        for (k, hz) in pair.frequencies_hz.iter().enumerate() {
-            let (measured, computed) = (pair.measured[k], pair.computed[k]);
-            let mut row = vec![pair.name.clone(), pair.quantity.word().to_string()];
-            row.extend([*hz, measured.re, measured.im, computed.re, computed.im].map(number));
-            table.row(&row);
+impl MeasuredComparison {
+    /// The frequency of a computed mode times the scale \[Hz\].
+    fn computed_hz(&self, set: &NamedModes, mode: usize) -> f64 {
+        self.frequency_scale * set.modes.frequency_hz(mode)
+    }
+
+    /// Both sides; `file` is the part of the CSV file's name that is the test's.
+    fn group<'a>(&'a self, name: String, set: &'a NamedModes, file: &str) -> Group<'a> {
+        let rows: Vec<Row> = self.rows.iter().map(|row| (self, set, *row)).collect();
+        let modes = Table::of("modes", "measured_mode", &mode_columns(), &rows)
+            .file(format!("comparison_{file}.csv"));
+        let rows = Dimension::numbered("measured_mode", self.rows.len());
+        let columns = Dimension::numbered("level", self.levels.len());
+        let mut mac = vec![f64::NAN; rows.length * columns.length];
+        for (shape, likeness) in mac.chunks_mut(columns.length.max(1)).zip(&self.likeness) {
+            shape.iter_mut().zip(likeness).for_each(|(mac, like)| *mac = *like);
         }
+        let story = "MAC of each measured shape with each level of computed modes";
+        let mac = Variable::reals("mac", "1", story, vec![rows, columns], mac);
+        let levels = self.levels.iter().enumerate();
+        let levels: Vec<Level> =
+            levels.map(|(k, level)| (k + 1, level.clone(), self.computed_hz(set, level.start))).collect();
+        let missed = self.computed_alone(set);
+        let missed: Vec<Level> =
+            levels.iter().filter(|(_, modes, _)| missed.contains(modes)).cloned().collect();
+        let mut missed_columns = level_columns();
+        missed_columns.insert(0, column("level", "1", "number of the level", |(k, ..): &Level| *k));
+        let alone = self.rows.iter().filter(|row| row.mode.is_none()).map(|row| row.frequency_hz);
+        let alone: Vec<f64> = alone.collect();
+        let numbers = Dimension::of_variable("measured_alone_hz", alone.len());
+        Group::new(name, "measured modes beside computed ones")
+            .value("set", "text", "name of the computed modes", set.name.clone())
+            .value("source", "text", "where the measured figures come from", self.source.clone())
+            .value("frequency_scale", "1", "computed frequencies are multiplied by it", self.frequency_scale)
+            .table(modes)
+            .with(Variable::reals(
+                "measured_alone_hz",
+                "Hz",
+                "measured frequencies without a computed mode",
+                vec![numbers],
+                alone,
+            ))
+            .table(Table::of("computed_alone", "missed_level", &missed_columns, &missed))
+            .table(Table::of("levels", "level", &level_columns(), &levels))
+            .with(mac)
+            .optional("geometry", self.placed.as_ref().map(Placed::group))
     }
-    table.text
 }
 
-/// The object `comparison` of `summary.json`: a key a name.
-pub(super) fn summary(results: &RunResults) -> Value {
-    let mut all = serde_json::Map::new();
-    for comparison in &results.measured {
-        let Some(set) = results.modes.get(comparison.modes) else { continue };
-        all.insert(comparison.name.clone(), modes_summary(comparison, set));
+impl Placed {
+    fn group(&self) -> Group<'static> {
+        Group::new("geometry", "how the geometry of the test fits the mesh")
+            .value("points", "1", "points with a shape", self.points)
+            .value("directions", "1", "directions at them in all", self.dofs)
+            .value("largest_distance_m", "m", "largest distance of a point from its node", self.largest)
+            .value("mean_distance_m", "m", "mean distance", self.mean)
     }
-    for responses in &results.measured_frfs {
-        let pair = |pair: &ResponsePair| {
-            json!({
-                "measured": pair.name,
-                "computed": pair.place,
-                "swapped": pair.swapped,
-                "away_m": pair.away,
-                "quantity": pair.quantity.word(),
-                "frequencies": pair.frequencies_hz.len(),
-                "frac": pair.assurance,
-            })
-        };
-        let value = json!({
-            "name": responses.frf,
-            "source": responses.source,
-            "responses": responses.pairs.iter().map(pair).collect::<Vec<_>>(),
-            "measured_alone": responses.measured_alone,
-            "computed_alone": responses.computed_alone,
-        });
-        let entry = all.entry(responses.name.clone()).or_insert_with(|| json!({}));
-        entry["frf"] = value;
-    }
-    Value::Object(all)
 }
 
-fn modes_summary(comparison: &MeasuredComparison, set: &NamedModes) -> Value {
-    let hz = |mode: usize| comparison.frequency_scale * set.modes.frequency_hz(mode);
-    let row = |row: &MeasuredRow| {
-        json!({
-            "measured_hz": row.frequency_hz,
-            "deviation": row.deviation,
-            "measured_damping_ratio": row.damping_ratio,
-            "mode": row.mode.map(|mode| mode + 1),
-            "computed_hz": row.mode.map(hz),
-            "computed_damping_ratio": row.mode.and_then(|mode| set.damping_ratio.get(mode)),
-            "difference_percent": row.mode.map(|mode| 100.0 * (hz(mode) / row.frequency_hz - 1.0)),
-            "mac": row.likeness,
-        })
-    };
-    let alone = comparison.rows.iter().filter(|row| row.mode.is_none()).map(|row| row.frequency_hz);
-    let level = |level: &Range<usize>| json!({ "modes": [level.start + 1, level.end], "frequency_hz": hz(level.start) });
-    json!({
-        "set": set.name,
-        "source": comparison.source,
-        "frequency_scale": comparison.frequency_scale,
-        "modes": comparison.rows.iter().map(row).collect::<Vec<_>>(),
-        "measured_alone_hz": alone.collect::<Vec<_>>(),
-        "computed_alone": comparison.computed_alone(set).iter().map(level).collect::<Vec<_>>(),
-        "levels": comparison.levels.iter().map(level).collect::<Vec<_>>(),
-        "mac": comparison.likeness,
-        "geometry": comparison.placed.map(|placed| json!({
-            "points": placed.points,
-            "directions": placed.dofs,
-            "largest_distance_m": placed.largest,
-            "mean_distance_m": placed.mean,
-        })),
-    })
+fn pair_columns() -> Vec<Column<ResponsePair>> {
+    type Pair = ResponsePair;
+    vec![
+        column("measured", "text", "what the test calls it", |p: &Pair| p.name.clone()),
+        column("computed", "text", "the place of the computed response", |p: &Pair| p.place.clone()),
+        column("swapped", "1", "whether force and motion changed places", |p: &Pair| p.swapped),
+        column("away_m", "m", "distance of the places of the test from those of the case", |p: &Pair| p.away)
+            .along(Dimension::named("place", &["force", "motion"])),
+        column("quantity", "text", "what of the motion was measured", |p: &Pair| p.quantity.word()),
+        column("frequencies", "1", "number of frequencies", |p: &Pair| p.frequencies_hz.len()),
+        column("frac", "1", "|Σ H_m H_c*|²/(Σ|H_m|² Σ|H_c|²)", |p: &Pair| p.assurance),
+    ]
 }
 
-impl ResultsFile {
-    /// Writes the measured modes with the computed ones paired with them to `/measured/<k>`.
-    pub fn write_measured(&mut self, measured: &[MeasuredComparison]) -> Result<()> {
-        self.stage(|root| {
-            for (k, comparison) in measured.iter().enumerate() {
-                let group = Datasets(root.create_group(&format!("measured/{}", k + 1))?);
-                text_attribute(&group.0, "name", &comparison.name)?;
-                text_attribute(&group.0, "source", &comparison.source)?;
-                attribute(&group.0, "mode_set", &(comparison.modes as u64))?;
-                attribute(&group.0, "frequency_scale", &comparison.frequency_scale)?;
-                if let Some(placed) = &comparison.placed {
-                    attribute(&group.0, "points", &(placed.points as u64))?;
-                    attribute(&group.0, "largest_distance_m", &placed.largest)?;
-                    attribute(&group.0, "mean_distance_m", &placed.mean)?;
-                }
-                let of = |value: fn(&MeasuredRow) -> Option<f64>| -> Vec<f64> {
-                    comparison.rows.iter().map(|row| value(row).unwrap_or(f64::NAN)).collect()
-                };
-                group.list(
-                    "frequency_hz",
-                    &of(|row| Some(row.frequency_hz)),
-                    "Hz",
-                    "measured frequencies",
-                )?;
-                let story = "standard deviation of the frequency over the frequency; NaN where not known";
-                group.list("deviation", &of(|row| row.deviation), "1", story)?;
-                let story = "measured damping ratio; NaN where not known";
-                group.list("damping_ratio", &of(|row| row.damping_ratio), "1", story)?;
-                let mode: Vec<i64> =
-                    comparison.rows.iter().map(|row| row.mode.map_or(-1, |m| m as i64)).collect();
-                group.list("mode", &mode, "1", "index of the paired mode, -1 for none")?;
-                let first: Vec<u64> = comparison.levels.iter().map(|level| level.start as u64).collect();
-                group.list(
-                    "level",
-                    &first,
-                    "1",
-                    "index of the first mode of each level of computed modes",
-                )?;
-                let at = |(i, j): (usize, usize)| {
-                    comparison.likeness.get(i).and_then(|row| row.get(j)).copied().unwrap_or(f64::NAN)
-                };
-                let mac = Array2::from_shape_fn((comparison.rows.len(), comparison.levels.len()), at);
-                let story = "squared cosine of each measured shape with each level; NaN without a shape";
-                group.write("mac", mac.view(), "1", story)?;
-            }
-            Ok(())
-        })
-    }
+/// A pair at one of its frequencies.
+type Line<'a> = (&'a ResponsePair, usize);
 
-    /// Writes the measured frequency responses with the computed ones to `/measured_frf/<name>/<k>`.
-    pub fn write_measured_frfs(&mut self, all: &[MeasuredResponses]) -> Result<()> {
-        self.stage(|root| {
-            for responses in all {
-                for (k, pair) in responses.pairs.iter().enumerate() {
-                    let path = format!("measured_frf/{}/{}", responses.name.replace('/', "_"), k + 1);
-                    let group = Datasets(root.create_group(&path)?);
-                    text_attribute(&group.0, "name", &pair.name)?;
-                    text_attribute(&group.0, "quantity", pair.quantity.word())?;
-                    attribute(&group.0, "frac", &pair.assurance)?;
-                    group.list("frequency_hz", &pair.frequencies_hz, "Hz", "where it was measured")?;
-                    let unit = pair.quantity.unit();
-                    group.list("measured", &pair.measured, unit, "measured response")?;
-                    group.list("computed", &pair.computed, unit, "computed response")?;
-                }
-            }
-            Ok(())
-        })
+fn line_columns<'a>() -> Vec<Column<Line<'a>>> {
+    vec![
+        column("response", "text", "what the test calls it", |(p, _): &Line| p.name.clone()),
+        column("quantity", "text", "what of the motion was measured", |(p, _): &Line| p.quantity.word()),
+        column("unit", "text", "its unit", |(p, _): &Line| p.quantity.unit()),
+        column("frequency_hz", "Hz", "frequency", |(p, k): &Line| p.frequencies_hz[*k]),
+        column("measured", "unit", "measured response", |(p, k): &Line| p.measured[*k]),
+        column("computed", "unit", "computed response", |(p, k): &Line| p.computed[*k]),
+    ]
+}
+
+impl MeasuredResponses {
+    /// Both sides; `file` is the part of the CSV file's name that is the test's.
+    fn group(&self, file: &str) -> Group<'_> {
+        let lines = self.pairs.iter().flat_map(|pair| (0..pair.frequencies_hz.len()).map(move |k| (pair, k)));
+        let lines = Table::of("lines", "line", &line_columns(), &lines.collect::<Vec<Line>>());
+        Group::new(&*self.name, "measured frequency responses beside computed ones")
+            .value("frf", "text", "name of the computed response", self.frf.clone())
+            .value("source", "text", "where the measured figures come from", self.source.clone())
+            .table(Table::of("responses", "response", &pair_columns(), &self.pairs))
+            .with(sentences("measured_alone", "what was measured alone, and why", &self.measured_alone))
+            .with(sentences("computed_alone", "places that were computed alone", &self.computed_alone))
+            .table(lines.file(format!("comparison_{file}.csv")).long())
+    }
+}
+
+impl RunResults {
+    /// What was measured beside what was computed.
+    pub(crate) fn compared(&self) -> Group<'_> {
+        let mut files = FileNames::default();
+        let mut names: Vec<String> = Vec::new();
+        let mut modes = Vec::new();
+        for test in &self.measured {
+            let file = files.next(&test.name);
+            // Frequencies of an analysis and a test may have the same name.
+            let numbered = (2..).map(|k| format!("{} {k}", test.name));
+            let name = std::iter::once(test.name.clone()).chain(numbered).find(|name| !names.contains(name));
+            names.extend(name.clone());
+            let sides = name.zip(self.modes.get(test.modes));
+            modes.extend(sides.map(|(name, set)| test.group(name, set, &file)));
+        }
+        let responses = self.measured_frfs.iter();
+        let responses =
+            responses.map(|test| test.group(&files.next(&format!("{}_frf", test.name)))).collect();
+        Group::new("", "").list("comparison", modes).list("comparison_frf", responses)
     }
 }

@@ -233,6 +233,7 @@ pub(super) fn room<T: H5Type + Into<OwnedDynValue>>(
 mod tests {
     use super::super::sample;
     use super::*;
+    use crate::dataset::Describe;
 
     #[test]
     fn an_earlier_file_stays_until_there_is_a_result() {
@@ -248,7 +249,7 @@ mod tests {
         assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 1, "a run without results leaves nothing");
         // One that fails later leaves what it has.
         let mut file = ResultsFile::create(dir.path()).unwrap();
-        file.write_modes(&results.modes[0]).unwrap();
+        file.write(&results.modes[0].describe()).unwrap();
         drop(file);
         let failed = hdf5::File::open(&home).unwrap();
         assert!(failed.dataset("modes/disc/frequency_hz").is_ok());

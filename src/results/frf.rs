@@ -1,14 +1,10 @@
 //! Frequency responses, as plain data, and their files.
 
-use super::folder::FileNames;
-use super::hdf5::{Datasets, attribute, text_attribute};
-use super::{ResultsFile, uff, write_result};
-use crate::dataset::{CsvTable as Table, number};
+use super::{FileNames, RunResults, uff, write_result};
+use crate::dataset::{Dimension, Group, Table, Values, Variable, column};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::measured::Quantity;
-use ndarray::Array2;
-use serde_json::{Value, json};
 use std::path::Path;
 
 /// A peak stands beside a measured one that differs from it by less than this part.
@@ -90,91 +86,85 @@ impl FrfResult {
     }
 }
 
-/// Writes `frf_<name>.csv` and `frf_<name>.uff` into the folder `dir`.
-pub(super) fn write(dir: &Path, frfs: &[FrfResult]) -> Result<()> {
+impl FrfResponse {
+    /// The response of place number `place` of `frf`.
+    fn group<'a>(&'a self, place: usize, frf: &'a FrfResult) -> Group<'a> {
+        let mut seen: Vec<&Resonance> = frf.resonances.iter().collect();
+        seen.sort_by(|a, b| b.seen[place].total_cmp(&a.seen[place]));
+        let seen_columns = [
+            column("frequency_hz", "Hz", "frequency of the real mode", |r: &&Resonance| r.frequency_hz),
+            column("share", "1", "|φ(place) φ(excitation)| over that of the mode with most in the band", {
+                move |r: &&Resonance| r.seen[place]
+            }),
+        ];
+        let beside: Vec<(f64, Option<f64>)> =
+            frf.measured.iter().map(|hz| (*hz, frf.peak(place, *hz))).collect();
+        let measured_columns = [
+            column("frequency_hz", "Hz", "measured resonance", |(hz, _): &(f64, Option<f64>)| *hz),
+            column("peak_hz", "Hz", "the highest peak near it", |(_, peak): &(f64, Option<f64>)| *peak),
+        ];
+        let largest = self.values.iter().map(|v| v.norm()).fold(0.0, f64::max);
+        Group::new(&*self.name, "motion at a place over the force")
+            .value("place", "text", "where it is", self.place.clone())
+            .value("largest", frf.quantity.unit(), "largest magnitude", largest)
+            .table(Table::of("measured", "resonance", &measured_columns, &beside))
+            .table(Table::of("seen", "rank", &seen_columns, &seen))
+    }
+}
+
+impl FrfResult {
+    /// The responses over the frequency; a column a place.
+    fn lines(&self) -> Table<'_> {
+        let rows = Dimension::of_variable("frequency_hz", self.frequencies_hz.len());
+        let along = || vec![rows.clone()];
+        let hz = Variable::reals("frequency_hz", "Hz", "frequency", along(), self.frequencies_hz.clone());
+        let response = |of: &FrfResponse| {
+            let key = format!("{}_{}", self.quantity.word(), of.name);
+            let story = format!("{} at {}; positive phase leads", self.quantity.word(), of.place);
+            Variable::new(key, self.quantity.unit(), story, along(), Values::Complexes(of.values.clone()))
+        };
+        let columns = std::iter::once(hz).chain(self.responses.iter().map(response)).collect();
+        let (key, fields, file) = ("lines".into(), Vec::new(), None);
+        Table { key, rows: rows.clone(), columns, fields, file, json: false }
+    }
+
+    /// The responses; `file` is the part of the CSV file's name that is theirs.
+    pub(crate) fn group(&self, file: &str) -> Group<'_> {
+        let ends = [self.frequencies_hz.first(), self.frequencies_hz.last()];
+        let band = ends.map(|hz| hz.copied().unwrap_or(f64::NAN)).to_vec();
+        let responses = self.responses.iter().enumerate();
+        Group::new(&*self.name, "motion at some places for a harmonic force at another")
+            .value("quantity", "text", "what of the motion", self.quantity.word())
+            .value("unit", "text", "its unit", self.quantity.unit())
+            .value("about", "text", "what the contacts do, and how it was computed", self.about.clone())
+            .value("excitation", "text", "where the force acts", self.excitation.clone())
+            .value("frequencies", "1", "number of frequencies", self.frequencies_hz.len())
+            .with(Variable::reals("band_hz", "Hz", "first and last of them", vec![Dimension::limits()], band))
+            .value(
+                "superposition_deviation",
+                "1",
+                "largest relative difference of superposition and direct solution",
+                self.deviation,
+            )
+            .value("compared", "1", "frequencies at which both were compared", self.compared)
+            .list("responses", responses.map(|(place, of)| of.group(place, self)).collect())
+            .table(self.lines().file(format!("frf_{file}.csv")))
+    }
+}
+
+impl RunResults {
+    /// All frequency responses.
+    pub(super) fn frf_groups(&self) -> Vec<Group<'_>> {
+        let mut names = FileNames::default();
+        self.frfs.iter().map(|frf| frf.group(&names.next(&frf.name))).collect()
+    }
+}
+
+/// Writes `frf_<name>.uff` into the folder `dir`.
+pub(super) fn write_universal(dir: &Path, frfs: &[FrfResult]) -> Result<()> {
     let mut names = FileNames::default();
-    for frf in frfs {
-        let name = names.next(&frf.name);
-        write_result(dir, &format!("frf_{name}.csv"), table(frf).as_bytes())?;
-        write_result(dir, &format!("frf_{name}.uff"), &uff::functions(frf))?;
-    }
-    Ok(())
-}
-
-fn table(frf: &FrfResult) -> String {
-    let (quantity, unit) = (frf.quantity.word(), frf.quantity.unit());
-    let parts = |of: &FrfResponse| {
-        let name = of.name.replace('_', " ");
-        [format!("re {quantity} {name} [{unit}]"), format!("im {quantity} {name} [{unit}]")]
-    };
-    let headings: Vec<String> =
-        std::iter::once("frequency [Hz]".into()).chain(frf.responses.iter().flat_map(parts)).collect();
-    let mut table = Table::new(&headings.iter().map(String::as_str).collect::<Vec<_>>());
-    for (k, hz) in frf.frequencies_hz.iter().enumerate() {
-        let values = frf.responses.iter().flat_map(|of| [of.values[k].re, of.values[k].im]);
-        table.row(&std::iter::once(*hz).chain(values).map(number).collect::<Vec<_>>());
-    }
-    table.text
-}
-
-impl ResultsFile {
-    /// Writes a frequency response to `/frf/<name>`.
-    ///
-    /// # Errors
-    /// The machine refuses.
-    pub fn write_frf(&mut self, frf: &FrfResult) -> Result<()> {
-        self.stage(|root| {
-            let all = match root.link_exists("frf") {
-                true => root.group("frf")?,
-                false => root.create_group("frf")?,
-            };
-            let group = Datasets(all.create_group(&frf.name.replace('/', "_"))?);
-            text_attribute(&group.0, "quantity", frf.quantity.word())?;
-            text_attribute(&group.0, "about", &frf.about)?;
-            text_attribute(&group.0, "excitation", &frf.excitation)?;
-            attribute(&group.0, "superposition_deviation", &frf.deviation)?;
-            group.list("frequency_hz", &frf.frequencies_hz, "Hz", "where the response is known")?;
-            for of in &frf.responses {
-                let cells = Array2::from_shape_fn((of.values.len(), 2), |(k, part)| match part {
-                    0 => of.values[k].re,
-                    _ => of.values[k].im,
-                });
-                let story = format!("{} at {}: real and imaginary part", frf.quantity.word(), of.place);
-                group.write(&of.name, cells.view(), frf.quantity.unit(), &story)?;
-            }
-            Ok(())
-        })
-    }
-}
-
-/// The part of `summary.json` on a frequency response.
-pub(super) fn summary(frf: &FrfResult) -> Value {
-    let response = |(place, of): (usize, &FrfResponse)| {
-        let mut seen: Vec<(f64, f64)> =
-            frf.resonances.iter().map(|r| (r.seen[place], r.frequency_hz)).collect();
-        seen.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let largest = of.values.iter().map(|v| v.norm()).fold(0.0, f64::max);
-        let measured =
-            frf.measured.iter().map(|hz| json!({ "frequency_hz": hz, "peak_hz": frf.peak(place, *hz) }));
-        json!({
-            "name": of.name,
-            "place": of.place,
-            "largest": largest,
-            "measured": measured.collect::<Vec<_>>(),
-            "seen": seen.iter().map(|(seen, hz)| json!({ "frequency_hz": hz, "share": seen })).collect::<Vec<_>>(),
-        })
-    };
-    json!({
-        "name": frf.name,
-        "quantity": frf.quantity.word(),
-        "unit": frf.quantity.unit(),
-        "about": frf.about,
-        "excitation": frf.excitation,
-        "frequencies": frf.frequencies_hz.len(),
-        "band_hz": [frf.frequencies_hz.first(), frf.frequencies_hz.last()],
-        "superposition_deviation": frf.deviation,
-        "compared": frf.compared,
-        "responses": frf.responses.iter().enumerate().map(response).collect::<Vec<_>>(),
+    frfs.iter().try_for_each(|frf| {
+        write_result(dir, &format!("frf_{}.uff", names.next(&frf.name)), &uff::functions(frf))
     })
 }
 
@@ -189,11 +179,14 @@ mod tests {
         assert!((frf.peak(0, 330.0).unwrap() - 338.0).abs() < 5.0 && frf.peak(0, 1697.0).unwrap() == 1745.0);
         assert!(frf.peak(0, 936.0).is_none());
         let dir = tempfile::tempdir().unwrap();
-        super::write(dir.path(), &results.frfs).unwrap();
+        super::write_universal(dir.path(), &results.frfs).unwrap();
+        super::super::write_csv(dir.path(), &results).unwrap();
         let table = std::fs::read_to_string(dir.path().join("frf_hammer.csv")).unwrap();
         assert!(
             table.lines().count() == 401
-                && table.starts_with("frequency [Hz],re accelerance rim [m/(N s^2)]")
+                && table.starts_with(
+                    "frequency_hz,re_accelerance_rim [m/(N s^2)],im_accelerance_rim [m/(N s^2)],"
+                )
         );
         assert!(dir.path().join("frf_hammer.uff").is_file());
     }

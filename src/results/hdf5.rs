@@ -1,12 +1,10 @@
 //! How stages of a run are written to `results.h5`; how it is written safely: `file.rs`.
 
-use super::{NamedModes, ResultsFile, RunResults, summary};
-use crate::dataset::{Group as Described, Variable};
-pub(super) use crate::dataset::{attribute, describe, text_attribute};
+use super::{ResultsFile, RunResults, summary};
+use crate::dataset::{Group, Variable};
+pub(super) use crate::dataset::{attribute, text_attribute};
 use crate::error::Result;
-use hdf5::types::VarLenUnicode;
-use hdf5::{Group, H5Type};
-use ndarray::{Array1, Array2, ArrayView, ArrayViewD, Dimension};
+use ndarray::Array2;
 
 impl ResultsFile {
     /// Writes what is known before the first analysis: title, resolved case, inputs, size, nodes and elements.
@@ -27,56 +25,9 @@ impl ResultsFile {
     ///
     /// # Errors
     /// As every method of the file: the machine refuses.
-    pub fn write(&mut self, group: &Described) -> Result<()> {
+    pub fn write(&mut self, group: &Group) -> Result<()> {
         self.keep(|root| group.write_hdf5(root))
     }
-
-    /// Writes one set of real modes.
-    ///
-    /// # Errors
-    /// As every method of the file: the machine refuses.
-    pub fn write_modes(&mut self, set: &NamedModes) -> Result<()> {
-        let group = Described::new("", "").list("mode_sets", vec![set.summary()]);
-        self.write(&group.parts("modes", "set", vec![set.table("")]))
-    }
-}
-
-/// A group whose datasets all carry units and a description.
-pub(super) struct Datasets(pub(super) Group);
-
-impl Datasets {
-    pub(super) fn list<T: H5Type>(
-        &self,
-        name: &str,
-        data: &[T],
-        units: &str,
-        description: &str,
-    ) -> hdf5::Result<()> {
-        self.write(name, ArrayView::from(data), units, description)
-    }
-
-    /// Stored whole and uncompressed: mode shapes in full precision hardly shrink, and deflating them took longer than
-    /// computing them.
-    pub(super) fn write<T: H5Type, D: Dimension>(
-        &self,
-        name: &str,
-        data: ArrayView<'_, T, D>,
-        units: &str,
-        description: &str,
-    ) -> hdf5::Result<()> {
-        let data: ArrayViewD<'_, T> = data.into_dyn();
-        let dataset = self.0.new_dataset::<T>().shape(data.shape().to_vec()).create(name)?;
-        dataset.write(data)?;
-        describe(&dataset, units, description)
-    }
-}
-
-/// A list of strings as a dataset.
-pub(super) fn texts(group: &Group, name: &str, texts: &[String], description: &str) -> hdf5::Result<()> {
-    let values: Array1<VarLenUnicode> = texts.iter().map(|text| unicode(text)).collect();
-    let dataset = group.new_dataset::<VarLenUnicode>().shape(values.len()).create(name)?;
-    dataset.write(values.view())?;
-    describe(&dataset, "text", description)
 }
 
 /// The operating system's words inside an error of the library, which runs over several lines, or its first line.
@@ -89,11 +40,6 @@ pub(super) fn plain(error: &hdf5::Error) -> String {
     let words = cause.map(|(words, _)| words).or(text.lines().next()).unwrap_or_default();
     // So the library says when it has lost the cause, as it does where room cannot be made.
     if words == "unknown library error" { "the file cannot be written".into() } else { words.into() }
-}
-
-/// HDF5's strings end at a NUL, so one in the text cannot be kept.
-fn unicode(text: &str) -> VarLenUnicode {
-    text.replace('\0', "").parse().expect("holds no NUL")
 }
 
 pub(super) fn rows<const N: usize>(values: &[[f64; N]]) -> Array2<f64> {

@@ -11,7 +11,9 @@
 //! | `comparison_<name>.csv`, `comparison_<name>_frf.csv` | measured modes and responses beside the computed ones | spreadsheets |
 //! | `modes_<set>.uff` | the shapes, for test-data programs | test-data programs |
 //! | `calibrated.toml`, `calibration.csv` | the case with the numbers that were found, and measured beside computed frequencies; `calibration_responses.csv`: responses | stridor, spreadsheets |
-//! | `critical_values.csv`, `sweep_<name>.csv`, `map_<name>.csv` | sweeps and maps | spreadsheets |
+//! | `sweep_<name>.csv`, `sweep_<name>_critical.csv` | the modes along a scalar, its critical values | spreadsheets |
+//! | `map_<name>.csv`, `map_<name>_boundary.csv` | growth over two scalars, the boundary of stability | spreadsheets |
+//! | `damping_verdicts.csv` | verdicts that the modal damping decides | spreadsheets |
 //! | `transient.vtkhdf` | the motion of all nodes at regular times | ParaView |
 //! | `modes_<set>.vtu`, `steady.vtu`, `complex_modes.vtu`, `advice.vtu` | the shapes on the mesh | ParaView, pyvista |
 //! | `record.bin`, `checkpoint.bin` | what an interrupted run is taken up from: [`record`] | `--resume` |
@@ -22,18 +24,18 @@ mod calibration;
 mod comparison;
 mod complex;
 mod csv;
+mod damping;
 mod derived;
 mod events_hdf5;
 mod explored;
-mod explored_csv;
-mod explored_hdf5;
-mod explored_json;
 mod fields;
 mod file;
 mod folder;
+mod found;
 mod frf;
 mod hdf5;
 mod lock;
+mod maps;
 mod real_modes;
 pub mod record;
 mod reduced_check;
@@ -43,6 +45,7 @@ mod sensitivity;
 mod sound;
 mod steady;
 mod summary;
+mod sweeps;
 mod transient;
 mod transient_csv;
 mod transient_hdf5;
@@ -62,13 +65,15 @@ pub use calibration::{
 pub use comparison::{MeasuredComparison, MeasuredResponses, MeasuredRow, Placed, ResponsePair};
 pub use complex::ComplexResult;
 pub(crate) use csv::write_csv;
+pub use damping::{DampingRow, DampingVerdicts};
 pub use derived::{ComparedRow, PairTotals};
-pub use explored::{DampingRow, DampingVerdicts, MapResult, Method, SweepResult};
+pub use explored::Method;
 pub use fields::FieldsFile;
 pub use file::ResultsFile;
 pub(crate) use folder::{FileNames, retire, set_aside, write_atomically, write_result};
 pub use frf::{FrfResponse, FrfResult, PlaceAndDirection, Resonance};
 pub use lock::FolderLock;
+pub use maps::MapResult;
 pub use real_modes::NamedModes;
 pub use reduced_check::{Deviation, MotionCompared, ReducedCheck};
 pub use room::{RecordSize, room_in_memory, room_on_disk};
@@ -77,6 +82,7 @@ pub use sensitivity::{AdviceField, ModeSensitivity, Mounted, ParameterRate, Sens
 pub use sound::{Heard, Sound, Sounding, Tone};
 pub use steady::SteadyResult;
 pub use summary::{SCHEMA_VERSION, summary_json, write_summary};
+pub use sweeps::SweepResult;
 pub use transient::{
     Channel, Field, Fields, GrowthCompared, Piece, Recording, SpectrumOf, TransientResult, modal_channel,
 };
@@ -95,12 +101,10 @@ use std::path::Path;
 pub fn write_files(dir: &Path, results: &RunResults) -> crate::error::Result<()> {
     write_summary(dir, results)?;
     write_csv(dir, results)?;
-    explored_csv::write(dir, results)?;
     if let Some(sound) = results.transient.as_ref().and_then(|run| run.sound.as_ref()) {
         sound::write(dir, sound)?;
     }
-    frf::write(dir, &results.frfs)?;
-    comparison::write(dir, results)?;
+    frf::write_universal(dir, &results.frfs)?;
     uff::write_modes(dir, results)?;
     if let Some(calibration) = &results.calibration {
         calibration::write(dir, calibration)?;

@@ -3,6 +3,7 @@
 //! Its figures look like the rig's and are not computed from anything.
 
 mod calibration;
+mod explored;
 mod measured;
 pub use calibration::calibration;
 
@@ -64,9 +65,9 @@ pub(crate) fn rig() -> RunResults {
         measured: vec![measured],
         measured_frfs: vec![measured::responses(frf())],
         complex: Some(complex),
-        sweeps: Vec::new(),
-        maps: Vec::new(),
-        damping: None,
+        sweeps: vec![explored::sweep()],
+        maps: vec![explored::map()],
+        damping: Some(explored::damping()),
         sensitivity: Some(sensitivity),
         timings: [
             ("mesh and assembly", 0.21),

@@ -5,7 +5,7 @@
 //! A number that is not finite is `null`.
 
 use super::record::InputFile;
-use super::{Geometry, ModelSize, RunResults, comparison, write_result};
+use super::{Geometry, ModelSize, RunResults, write_result};
 use crate::dataset::{Dimension, Group, Table, Values, Variable, column};
 use crate::error::Result;
 use serde_json::Value;
@@ -41,9 +41,6 @@ pub fn summary_json(results: &RunResults) -> Value {
     if let Some(object) = json.as_object_mut() {
         for part in parts {
             object.extend(part.as_object().cloned().unwrap_or_default());
-        }
-        for (key, value) in described_elsewhere(results) {
-            object.insert(key.into(), value);
         }
         object.insert("case".into(), case_object(&results.resolved_case));
     }
@@ -92,13 +89,17 @@ pub(super) fn tail(results: &RunResults) -> Group<'_> {
         .table(Table::by("timings", "phase", &timings, &results.timings))
 }
 
-fn sentences<'a>(key: &'static str, description: &'static str, sentences: &[String]) -> Variable<'a> {
+pub(super) fn sentences<'a>(
+    key: &'static str,
+    description: &'static str,
+    sentences: &[String],
+) -> Variable<'a> {
     Variable::texts(key, description, Dimension::of_variable(key, sentences.len()), sentences.to_vec())
 }
 
 /// What the analyses have found.
 pub(super) fn analyses(results: &RunResults) -> Group<'_> {
-    Group::new("", "")
+    let mut all = Group::new("", "")
         .list("mode_sets", results.modes.iter().map(|set| set.summary()).collect())
         .parts("modes", "set", results.mode_tables())
         .optional("steady_sliding", results.steady.as_ref().map(|steady| steady.group()))
@@ -106,6 +107,12 @@ pub(super) fn analyses(results: &RunResults) -> Group<'_> {
         .optional("sensitivity", results.sensitivity.as_ref().map(|sensitivity| sensitivity.group()))
         .optional("transient", results.transient.as_ref().map(|transient| transient.group()))
         .optional("calibration", results.calibration.as_ref().map(|calibration| calibration.group()))
+        .list("frf", results.frf_groups())
+        .list("sweeps", results.sweep_groups())
+        .list("maps", results.map_groups())
+        .optional("damping_verdicts", results.damping.as_ref().map(|damping| damping.group()));
+    all.entries.extend(results.compared().entries);
+    all
 }
 
 impl Geometry {
@@ -146,16 +153,6 @@ impl Geometry {
     }
 }
 
-fn described_elsewhere(results: &RunResults) -> Vec<(&'static str, Value)> {
-    vec![
-        ("comparison", comparison::summary(results)),
-        ("frf", results.frfs.iter().map(super::frf::summary).collect()),
-        ("sweeps", results.sweeps.iter().map(super::explored_json::sweep).collect()),
-        ("maps", results.maps.iter().map(super::explored_json::map).collect()),
-        ("damping_verdicts", results.damping.as_ref().map(super::explored_json::damping).into()),
-    ]
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::sample;
@@ -194,7 +191,7 @@ mod tests {
     #[test]
     fn scaled_frequencies_are_compared_with_the_measured_ones() {
         let results = sample::rig();
-        let row = &written(&results)["measured"][0]["rows"][1];
+        let row = &written(&results)["comparison"][0]["modes"][1];
         let k = row["mode"].as_u64().unwrap() as usize - 1;
         let computed = results.modes[0].modes.frequency_hz(k) * results.measured[0].frequency_scale;
         assert_eq!(row["computed_hz"], computed);

@@ -1,7 +1,7 @@
 //! Every quantity of a run is in HDF5, in JSON and in CSV under the same name, and equal.
 
 use super::{ResultsFile, RunResults, sample, summary, summary_json, write_files};
-use crate::dataset::{Entry, Group, Table, Values, Variable};
+use crate::dataset::{Entry, Group, Table, Values, Variable, link};
 use crate::linalg::c64;
 use hdf5::types::VarLenUnicode;
 use serde_json::Value;
@@ -88,7 +88,7 @@ struct Walk<'a> {
 impl Walk<'_> {
     fn variable(&mut self, variable: &Variable, json: &Value, group: &hdf5::Group) {
         let name = format!("{}/{}", group.name(), variable.key);
-        let dataset = group.dataset(&variable.key).unwrap_or_else(|_| panic!("{name} is not in HDF5"));
+        let dataset = group.dataset(&link(&variable.key)).unwrap_or_else(|_| panic!("{name} is not in HDF5"));
         assert_eq!(dataset.shape(), variable.shape(), "{name}");
         for attribute in ["units", "description"] {
             assert!(dataset.attr(attribute).is_ok(), "{name} has no {attribute}");
@@ -113,7 +113,7 @@ impl Walk<'_> {
         assert_eq!(group.dataset(table.rows.name).unwrap().shape(), [table.rows.length]);
         assert!(table.json == json.is_some(), "{}", table.key);
         for column in &table.columns {
-            let whole = in_hdf5(&group.dataset(&column.key).unwrap());
+            let whole = in_hdf5(&group.dataset(&link(&column.key)).unwrap());
             if let Some(rows) = json {
                 let values: Value = rows.iter().map(|row| row[&*column.key].clone()).collect();
                 self.variable(column, &values, &group);
@@ -142,7 +142,7 @@ impl Walk<'_> {
                 }
                 Entry::List(key, groups) => {
                     for (k, inner) in groups.iter().enumerate() {
-                        let place = group.group(key).and_then(|list| list.group(&inner.key)).unwrap();
+                        let place = group.group(key).and_then(|list| list.group(&link(&inner.key))).unwrap();
                         assert_eq!(json[*key][k]["name"], *inner.key);
                         self.group(inner, &json[*key][k], &place);
                     }

@@ -38,7 +38,7 @@ pub struct Branch {
     /// The least likeness (MAC) of its shapes at two neighbouring values; 1 for a single value.
     pub lowest_mac: f64,
     /// Its place among the modes of each of its values.
-    pub(super) places: Vec<usize>,
+    pub(crate) places: Vec<usize>,
 }
 
 impl Branch {

@@ -106,30 +106,12 @@ pub(in crate::report) fn sweep_words(result: &SweepResult) -> Vec<String> {
 
 /// The critical values of a sweep.
 pub(in crate::report) fn critical_table(result: &SweepResult) -> Table {
-    let headings = ["value", "rel. error", "f [Hz]", "<becomes", "<what happens", "η", "|Δλ|/|λ|"];
     let unit = if result.unit.is_empty() { String::new() } else { format!(" [{}]", result.unit) };
-    let mut table = Table::new(
-        format!("Sweep {}: critical values of {}{unit}", result.name, result.parameter),
-        &headings,
-    );
+    let caption = format!("Sweep {}: critical values of {}{unit}", result.name, result.parameter);
+    let mut table = Table::of(caption, &result.critical_table(), false);
     table.alarming = true;
-    for (k, c) in result.sweep.critical.iter().enumerate() {
-        let full = result.verified.get(k).copied().flatten();
-        let cells = vec![
-            significant(c.value, 8),
-            power(result.value_error(k)),
-            hertz(c.eigenvalue.im / TAU, 1),
-            if c.rises { "unstable".into() } else { "stable".into() },
-            match c.kind {
-                CriticalKind::Merging => "two frequencies merge".into(),
-                CriticalKind::Growth => "growth rate passes zero".into(),
-                CriticalKind::Divergence => "divergence".into(),
-            },
-            full.map_or("–".into(), |f| power(f.backward_error)),
-            full.map_or("–".into(), |f| power(f.eigenvalue_error)),
-        ];
-        table.row(cells, c.rises);
-    }
+    let rows = table.rows.iter_mut().zip(&result.sweep.critical);
+    rows.for_each(|(row, critical)| row.marked = critical.rises);
     if result.sweep.critical.is_empty() {
         table.notes.push("No mode becomes unstable or stable in this range.".into());
     } else {
