@@ -12,6 +12,8 @@ use hdf5::{Dataset, H5Type, Location, ObjectReference1};
 use ndarray::{Array1, ArrayViewD, s};
 use std::collections::BTreeMap;
 
+/// Datasets that a scale can list: an attribute holds 64 KiB.
+const LISTED: usize = 4000;
 /// A whole number that is not there.
 const NO_NUMBER: i64 = -1;
 
@@ -131,13 +133,14 @@ fn list_dimensions(dataset: &Dataset, scales: Vec<VarLenArray<ObjectReference1>>
     list.create("DIMENSION_LIST")?.write(&Array1::from(scales))
 }
 
-/// Makes the dataset `name` of a group the coordinate of the first dimension of others, which are given by their paths.
+/// Makes the dataset `name` of a group the coordinate of the first dimension of others, which are given by their paths; of more
+/// than 4000 the others have none.
 ///
 /// # Errors
 /// What the library says.
 pub fn attach_scale(group: &hdf5::Group, name: &str, others: &[String]) -> hdf5::Result<()> {
     let mut scale = Scale::new(group, &group.dataset(name)?, name)?;
-    for path in others {
+    for path in others.iter().take(LISTED) {
         scale.of.push(Attached { dataset: group.reference(path)?, dimension: 0 });
         list_dimensions(&group.dataset(path)?, vec![VarLenArray::from_slice(&[scale.reference])])?;
     }
