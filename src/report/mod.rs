@@ -97,6 +97,9 @@ mod tests {
             "participation.svg",
             "sensitivity.svg",
             "advice.svg",
+            "sweep_over_friction.svg",
+            "root_locus_over_friction.svg",
+            "map_load_and_speed.svg",
         ]
         .into_iter()
         .chain(transient::FILES)

@@ -13,7 +13,7 @@ use std::error::Error;
 /// At most this many cells along an axis; a finer grid is thinned out in the picture.
 const CELLS: usize = 160;
 
-pub(super) fn picture(result: &MapResult) -> Option<Drawn> {
+pub(super) fn picture(result: &MapResult, name: &str) -> Option<Drawn> {
     if result.points.is_empty() {
         return None;
     }
@@ -22,7 +22,7 @@ pub(super) fn picture(result: &MapResult) -> Option<Drawn> {
         "Largest growth rate of any mode over {} and {}: red where a mode grows, blue where all decay, grey where there is no answer. Line: the boundary of stability. Ring: the case itself.",
         result.parameters[0], result.parameters[1]
     );
-    Some(Drawn { file: format!("map_{}.svg", result.name), caption, svg })
+    Some(Drawn { file: format!("map_{name}.svg"), caption, svg })
 }
 
 /// Edges of the cells about the values, and the index of the value of each cell.

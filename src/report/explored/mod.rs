@@ -7,7 +7,7 @@ mod words;
 pub(super) use words::{critical_table, damping_table, map_words, sweep_words};
 
 use super::html::{escape, figure, titled_table};
-use crate::results::{RunResults, write_result};
+use crate::results::{FileNames, RunResults, write_result};
 use crate::sweep::Axis;
 use std::path::Path;
 
@@ -20,8 +20,10 @@ pub(super) struct Drawn {
 
 /// Writes the pictures of every sweep and map into the folder.
 pub(super) fn write(dir: &Path, results: &RunResults) -> crate::error::Result<()> {
-    let sweeps = results.sweeps.iter().flat_map(sweep::pictures);
-    for drawn in sweeps.chain(results.maps.iter().filter_map(map::picture)) {
+    let (mut names, mut map_names) = (FileNames::default(), FileNames::default());
+    let sweeps = results.sweeps.iter().flat_map(|of| sweep::pictures(of, &names.next(&of.name)));
+    let maps = results.maps.iter().filter_map(|of| map::picture(of, &map_names.next(&of.name)));
+    for drawn in sweeps.chain(maps) {
         write_result(dir, &drawn.file, drawn.svg.as_bytes())?;
     }
     Ok(())
@@ -34,14 +36,14 @@ pub(super) fn section(results: &RunResults) -> String {
         |words: Vec<String>| -> String { words.iter().map(|w| format!("<p>{}</p>\n", escape(w))).collect() };
     for result in &results.sweeps {
         body += &format!("<h2>Sweep: {}</h2>\n{}", escape(&result.name), say(sweep_words(result)));
-        for drawn in sweep::pictures(result) {
+        for drawn in sweep::pictures(result, "") {
             body += &figure(&drawn.svg, &drawn.caption);
         }
         body += &titled_table(&critical_table(result));
     }
     for result in &results.maps {
         body += &format!("<h2>Map: {}</h2>\n{}", escape(&result.name), say(map_words(result)));
-        if let Some(drawn) = map::picture(result) {
+        if let Some(drawn) = map::picture(result, "") {
             body += &figure(&drawn.svg, &drawn.caption);
         }
     }

@@ -21,17 +21,18 @@ const DEEPEST: f64 = 1.5;
 /// Critical values with a label.
 const LABELS: usize = 8;
 
-pub(super) fn pictures(result: &SweepResult) -> Vec<Drawn> {
+/// `name` is the part of the file names that is the sweep's.
+pub(super) fn pictures(result: &SweepResult, name: &str) -> Vec<Drawn> {
     let parameter = axis_name(&result.parameter, &result.unit);
     let branches = sheet((980, 820), |area| draw_branches(area, result)).map(|svg| Drawn {
-        file: format!("sweep_{}.svg", result.name),
+        file: format!("sweep_{name}.svg"),
         caption: format!(
             "Frequency and growth rate of every mode over {parameter}: orange where it grows. Dots: critical values. Dashed: the case itself."
         ),
         svg,
     });
     let locus = sheet((980, 560), |area| draw_locus(area, result)).map(|svg| Drawn {
-        file: format!("root_locus_{}.svg", result.name),
+        file: format!("root_locus_{name}.svg"),
         caption: format!(
             "Eigenvalues in the complex plane as {parameter} goes from {} (circles) to {} (dots); to the right of the line a mode grows.",
             given(result.axis.from),
