@@ -132,8 +132,7 @@ pub fn names(folder: &Path) -> Vec<String> {
 /// Those of `known` that are in the results of a folder, once for each file.
 pub fn titles(out: &Path, known: [&'static str; 2]) -> Vec<&'static str> {
     let file = hdf5::File::open(out.join("results.h5"));
-    let hdf5 =
-        file.and_then(|file| file.group("case")?.attr("title")?.read_scalar::<hdf5::types::VarLenUnicode>());
+    let hdf5 = file.and_then(|file| file.dataset("title")?.read_scalar::<hdf5::types::VarLenUnicode>());
     let texts = ["summary.json", "report.html"].map(|name| std::fs::read_to_string(out.join(name)));
     let mut all: Vec<String> = texts.into_iter().flatten().collect();
     all.extend(hdf5.map(|title| title.to_string()));
