@@ -345,8 +345,10 @@ fn fields_in_time_are_those_of_the_probe_in_full_and_reduced_and_go_on() {
         |row: usize| nodes[(row, 0)].powi(2) + nodes[(row, 1)].powi(2) + (nodes[(row, 2)] - 0.02).powi(2);
     let probe = (0..nodes.nrows()).min_by(|a, b| away(*a).total_cmp(&away(*b))).expect("a node");
     for (array, name) in full.iter().zip(["disc_displacement", "disc_velocity"]) {
-        let record =
-            file.dataset(&format!("transient/{name}")).and_then(|d| d.read_1d::<f64>()).expect("a record");
+        let record = file
+            .dataset(&format!("transient/history/{name}"))
+            .and_then(|d| d.read_1d::<f64>())
+            .expect("a record");
         let agree = |k: &usize| array[3 * (k * nodes.nrows() + probe)] == record[25 * k] as f32;
         assert!((0..17).all(|k| agree(&k)), "{name}");
     }

@@ -172,12 +172,12 @@ fn said(out: &Path) -> (Record, serde_json::Value, [Vec<u8>; 2]) {
 }
 
 /// Whether an array of `results.h5` is filled while a run goes on; the others are written at its end, or are of another file.
-fn filled(name: &str, values: &[u64]) -> bool {
+fn filled(name: &str) -> bool {
     let Some(path) = name.strip_prefix("/transient/") else { return false };
     match path.split_once('/') {
-        None => values.len() > 1,
         Some(("events", of)) => ["time_s", "point", "kind"].contains(&of),
-        Some((group, _)) => group == "modal_acceleration",
+        Some((group, _)) => group == "history",
+        None => false,
     }
 }
 
@@ -191,7 +191,7 @@ fn left(out: &Path, whole: &[(String, Vec<u64>)]) -> Option<usize> {
     let group = file.group("transient").expect("a run in time");
     let count = |name: &str| group.attr(name).and_then(|a| a.read_scalar::<u64>()).expect("a count") as usize;
     let [rows, events] = ["rows", "events"].map(count);
-    let filled: Vec<_> = whole.iter().filter(|(name, values)| filled(name, values)).collect();
+    let filled: Vec<_> = whole.iter().filter(|(name, _)| filled(name)).collect();
     assert!(filled.len() > 15, "{} arrays", filled.len());
     for (name, values) in filled {
         let kept: Array1<f64> = file.dataset(name).and_then(|d| d.read_1d()).expect("a channel");
@@ -247,7 +247,7 @@ fn killed_runs_go_on(moments: &[f64]) {
             left(&at.join(&out), &whole.0);
             assert!(taken_up_from(&at.join(&out)) >= kept, "{out}");
         }
-        let (_, times) = whole.0.iter().find(|(name, _)| name == "/transient/time_s").expect("times");
+        let (_, times) = whole.0.iter().find(|(name, _)| name == "/transient/history/time_s").expect("times");
         on_the_way += usize::from(rows.is_some_and(|rows| rows > 0 && rows < times.len()));
         run(at, case, &out, true);
         assert!(said(&at.join(&out)) == *whole, "killed at {moment} of the time: {rows:?} rows were left");

@@ -42,6 +42,8 @@ fn results_open_in_xarray_with_named_axes() {
         "/modes/disc/effective_mass_kg": ["mode", "axis"],
         "/steady_sliding/points/friction_force_n": ["point", "direction"],
         "/steady_sliding/displacement": ["node", "freedom"],
+        "/transient/history/rim_velocity": ["time_s"],
+        "/transient/events/kind": ["time_s"],
     });
     let out = folder.path().join("out");
     let done = Command::new(python).args(["-c", SCRIPT]).arg(out).arg(axes.to_string()).output().unwrap();

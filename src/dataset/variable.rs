@@ -214,8 +214,19 @@ impl<'a> Variable<'a> {
 
     /// The name of a column: the key with the unit, where that says more.
     pub fn title(&self) -> String {
-        const NAMED: [&str; 10] = ["_hz", "_percent", "_n", "_m", "_kg", "_s", "_w", "_pa", "_j", "_db"];
-        let named = NAMED.iter().any(|unit| self.key.ends_with(unit));
+        const SUFFIXES: [(&str, &str); 10] = [
+            ("_hz", "Hz"),
+            ("_percent", "%"),
+            ("_n", "N"),
+            ("_m", "m"),
+            ("_kg", "kg"),
+            ("_s", "s"),
+            ("_w", "W"),
+            ("_pa", "Pa"),
+            ("_j", "J"),
+            ("_db", "dB"),
+        ];
+        let named = SUFFIXES.iter().any(|(suffix, unit)| self.key.ends_with(suffix) && self.unit == *unit);
         if named || ["1", "text", "unit"].contains(&&*self.unit) {
             self.key.to_string()
         } else {

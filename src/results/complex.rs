@@ -214,7 +214,13 @@ impl ComplexResult {
         };
         let story = "share of each real mode of the system";
         let shares = Values::RealRows(Box::new(shares));
-        table = table.field(Variable::new("real_mode_share", "1", story, along(&[real.clone()]), shares));
+        table = table.field(Variable::new(
+            "real_mode_share",
+            "1",
+            story,
+            along(std::slice::from_ref(&real)),
+            shares,
+        ));
         let names = (0..n_real).map(|k| self.real_modes.get(k).cloned().unwrap_or_default()).collect();
         table.field(Variable::texts("real_mode_name", "names of the real modes", real, names))
     }

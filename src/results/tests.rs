@@ -5,6 +5,7 @@ use crate::dataset::{Entry, Group, Table, Values, Variable, link};
 use crate::linalg::c64;
 use hdf5::types::VarLenUnicode;
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// A value as a file has it.
@@ -85,6 +86,35 @@ struct Walk<'a> {
     in_csv: usize,
 }
 
+/// Within a group and all groups in it a dimension has one length, as a tree of datasets in xarray asks for.
+fn lengths(group: &Group, above: &BTreeMap<&'static str, usize>) {
+    let mut all = above.clone();
+    let add = |variables: &[&Variable], all: &mut BTreeMap<&'static str, usize>| {
+        for dimension in variables.iter().flat_map(|variable| &variable.dimensions) {
+            let length = *all.entry(dimension.name).or_insert(dimension.length);
+            assert_eq!(length, dimension.length, "{} of {}", dimension.name, group.key);
+        }
+    };
+    let own = group.entries.iter().filter_map(|entry| match entry {
+        Entry::Variable(variable) => Some(variable),
+        _ => None,
+    });
+    add(&own.collect::<Vec<_>>(), &mut all);
+    let mut table = |table: &Table| {
+        let variables: Vec<&Variable> = table.columns.iter().chain(&table.fields).collect();
+        add(&variables, &mut all.clone());
+    };
+    for entry in &group.entries {
+        match entry {
+            Entry::Table(inner) => table(inner),
+            Entry::Parts(_, _, tables) => tables.iter().for_each(&mut table),
+            Entry::Group(inner) => lengths(inner, &all),
+            Entry::List(_, groups) => groups.iter().for_each(|inner| lengths(inner, &all)),
+            Entry::Variable(_) | Entry::Absent(_) => {}
+        }
+    }
+}
+
 impl Walk<'_> {
     fn variable(&mut self, variable: &Variable, json: &Value, group: &hdf5::Group) {
         let name = format!("{}/{}", group.name(), variable.key);
@@ -130,6 +160,7 @@ impl Walk<'_> {
     }
 
     fn group(&mut self, of: &Group, json: &Value, group: &hdf5::Group) {
+        lengths(of, &BTreeMap::new());
         for entry in &of.entries {
             match entry {
                 Entry::Variable(variable) => self.variable(variable, &json[&*variable.key], group),

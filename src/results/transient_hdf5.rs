@@ -4,9 +4,9 @@
 //! | in `/transient` | |
 //! |---|---|
 //! | attribute `rows` | how many values of every channel are there; the others are not a number |
-//! | `time_s` | the time of every step, the start included: the coordinate of the following |
-//! | `<channel>` | a value for every step |
-//! | `modal_acceleration/<k>` | the same of real mode k, from 1, where sound is asked for |
+//! | `history/time_s` | the time of every step, the start included: the coordinate of the following |
+//! | `history/<channel>` | a value for every step |
+//! | `history/modal_acceleration/<k>` | the same of real mode k, from 1, where sound is asked for |
 //! | `events/time_s`, `events/point`, `events/kind` | what happened at the contact points; attribute `events` says how many |
 //! | the rest | what [`TransientResult`] says in the end, under the names that it has in `summary.json` |
 //!
@@ -15,12 +15,14 @@
 use super::events_hdf5 as events;
 use super::file::room;
 use super::{Piece, Recording, ResultsFile, TransientResult, modal_channel};
-use crate::dataset::{attach_scale, attribute, describe};
+use crate::dataset::{attach_scale, attribute, describe, text_attribute};
 use crate::error::Result;
 use hdf5::Group;
 use ndarray::s;
 use std::ops::Range;
 
+/// The group of the channels.
+const HISTORY: &str = "history";
 /// The time of each row, and when each event happened.
 pub(super) const TIME: &str = "time_s";
 /// Times that are written at once.
@@ -47,11 +49,12 @@ impl ResultsFile {
         let channels = std::mem::take(&mut self.channels);
         let filled = self.fill(|root| {
             let group = root.group("transient")?;
+            let history = group.group(HISTORY)?;
             for (name, values) in channels.iter().zip(piece.values) {
-                group.dataset(name)?.write_slice(values, s![piece.first..end])?;
+                history.dataset(name)?.write_slice(values, s![piece.first..end])?;
             }
             for (mode, values) in piece.modal.iter().enumerate() {
-                group.dataset(&modal_channel(mode))?.write_slice(values, s![piece.first..end])?;
+                history.dataset(&modal_channel(mode))?.write_slice(values, s![piece.first..end])?;
             }
             events::write(&group, piece.events)
         });
@@ -71,7 +74,7 @@ impl ResultsFile {
     /// The machine refuses.
     pub fn read_transient(&self, channel: &str, rows: Range<usize>) -> Result<Vec<f64>> {
         self.read(|root| {
-            let dataset = root.group("transient")?.dataset(channel)?;
+            let dataset = root.group("transient")?.group(HISTORY)?.dataset(channel)?;
             Ok(dataset.read_slice_1d::<f64, _>(s![rows])?.to_vec())
         })
     }
@@ -95,7 +98,9 @@ fn make_room(group: &Group, recording: &Recording) -> hdf5::Result<()> {
     attribute(group, "rows", &0_u64)?;
     attribute(group, "events", &0_u64)?;
     events::make_room(group, events::FIRST)?;
-    let time = room(group, TIME, recording.rows, f64::NAN)?;
+    let history = &group.create_group(HISTORY)?;
+    text_attribute(history, "description", "motion and forces at every step")?;
+    let time = room(history, TIME, recording.rows, f64::NAN)?;
     describe(&time, "s", "time of each step, from the start")?;
     for first in (0..recording.rows).step_by(AT_ONCE) {
         let part = first..recording.rows.min(first + AT_ONCE);
@@ -103,18 +108,18 @@ fn make_room(group: &Group, recording: &Recording) -> hdf5::Result<()> {
         time.write_slice(&times, s![part])?;
     }
     for channel in recording.channels {
-        describe(&room(group, &channel.name, recording.rows, f64::NAN)?, channel.unit, &channel.about)?;
+        describe(&room(history, &channel.name, recording.rows, f64::NAN)?, channel.unit, &channel.about)?;
     }
     if recording.modes > 0 {
-        group.create_group("modal_acceleration")?;
+        history.create_group("modal_acceleration")?;
     }
     for mode in 0..recording.modes {
-        let room = room(group, &modal_channel(mode), recording.rows, f32::NAN)?;
+        let room = room(history, &modal_channel(mode), recording.rows, f32::NAN)?;
         describe(&room, "sqrt(kg) m/s^2", "acceleration of a mass-normalised real mode")?;
     }
     let channels = recording.channels.iter().map(|channel| channel.name.clone());
     let all: Vec<String> = channels.chain((0..recording.modes).map(modal_channel)).collect();
-    attach_scale(group, TIME, &all)
+    attach_scale(history, TIME, &all)
 }
 
 #[cfg(test)]
@@ -233,14 +238,18 @@ mod tests {
         let home = hdf5::File::open(dir.path().join("results.h5")).unwrap();
         let transient = home.group("transient").unwrap();
         let of = |path: &str, attribute: &str| transient.dataset(path).unwrap().attr(attribute);
-        for scale in [TIME, "events/time_s"] {
+        for scale in ["history/time_s", "events/time_s"] {
             assert!(of(scale, "CLASS").is_ok() && of(scale, "REFERENCE_LIST").is_ok(), "{scale}");
         }
-        for path in ["a", "b", "modal_acceleration/1", "modal_acceleration/2", "events/point", "events/kind"]
-        {
+        let history =
+            ["a", "b", "modal_acceleration/1", "modal_acceleration/2"].map(|name| format!("history/{name}"));
+        for path in history.iter().map(String::as_str).chain(["events/point", "events/kind"]) {
             assert_eq!(of(path, "DIMENSION_LIST").unwrap().shape(), [1], "{path}");
         }
-        assert_eq!(transient.dataset(TIME).unwrap().read_1d::<f64>().unwrap()[ROWS - 1], 4999.0 * 1e-5);
+        assert_eq!(
+            transient.dataset("history/time_s").unwrap().read_1d::<f64>().unwrap()[ROWS - 1],
+            4999.0 * 1e-5
+        );
     }
 
     #[test]
