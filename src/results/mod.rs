@@ -2,9 +2,9 @@
 //!
 //! | file | what it holds | who reads it |
 //! |---|---|---|
-//! | `results.h5` | everything, in full precision, written stage by stage | h5py, MATLAB, Julia |
+//! | `results.h5` | everything, in full precision, written stage by stage; groups and names as in `summary.json` | xarray, h5py, MATLAB, Julia |
 //! | `summary.json` | the figures of each analysis: a contract for scripts | any script |
-//! | `modes_<set>.csv`, `contact_points.csv`, `complex_modes.csv`, `sensitivities.csv` | the tables | spreadsheets |
+//! | `modes_<set>.csv`, `contact_points.csv`, `complex_modes.csv`, `sensitivities_mode_<k>.csv` | the tables | spreadsheets |
 //! | `transient.csv`, `transient_spectrum.csv`, `events.csv` | motion in time, step by step, its spectra, what happened at the contacts | spreadsheets |
 //! | `sound_<microphone>.wav`, `sound_spectrum.csv` | what is heard, and sound power and pressure over frequency | ears, spreadsheets |
 //! | `frf_<name>.csv`, `frf_<name>.uff` | frequency responses | spreadsheets, test-data programs |
