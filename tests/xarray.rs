@@ -54,6 +54,12 @@ fn results_open_in_xarray_with_named_axes() {
         "/transient/events/kind": ["time_s"],
     });
     let out = folder.path().join("out");
-    let done = Command::new(python).args(["-c", SCRIPT]).arg(out).arg(axes.to_string()).output().unwrap();
+    let done = Command::new(&python).args(["-c", SCRIPT]).arg(&out).arg(axes.to_string()).output().unwrap();
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    // What the guide shows.
+    let guide = include_str!("../guide/results.md");
+    let shown = guide.split("```python\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a program");
+    let done = Command::new(&python).args(["-c", shown]).current_dir(&out).output().unwrap();
+    let said = String::from_utf8_lossy(&done.stdout);
+    assert!(done.status.success() && said.contains("frequency_hz"), "{}", String::from_utf8_lossy(&done.stderr));
 }
