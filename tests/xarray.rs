@@ -58,8 +58,13 @@ fn results_open_in_xarray_with_named_axes() {
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     // What the guide shows.
     let guide = include_str!("../guide/results.md");
-    let shown = guide.split("```python\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a program");
+    let shown =
+        guide.split("```python\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a program");
     let done = Command::new(&python).args(["-c", shown]).current_dir(&out).output().unwrap();
     let said = String::from_utf8_lossy(&done.stdout);
-    assert!(done.status.success() && said.contains("frequency_hz"), "{}", String::from_utf8_lossy(&done.stderr));
+    assert!(
+        done.status.success() && said.contains("frequency_hz"),
+        "{}",
+        String::from_utf8_lossy(&done.stderr)
+    );
 }

@@ -26,7 +26,7 @@ pub struct LeftOutDatum {
     /// more than the deviation of the datum.
     pub predicted_hz: Option<f64>,
     /// MAC of its shape, if it has one, with the one that they predict; likewise `None`.
-    pub likeness: Option<f64>,
+    pub mac: Option<f64>,
     /// Whether the fit converged.
     pub converged: bool,
 }
@@ -74,10 +74,10 @@ pub(super) fn leave_one_out(
             |level: &Level| left_open(&others, &assignment, &found.computed, &Residuals::of(&datum, level));
         let open = level.map_or(Vec::new(), open);
         let told = |moved: &[f64]| mean_square(moved) <= 1.0;
-        let likeness = |level: &Level| Some(level.span.as_ref()?.likeness(datum.shape.as_ref()?));
+        let mac = |level: &Level| Some(level.span.as_ref()?.mac(datum.shape.as_ref()?));
         Ok(LeftOutDatum {
             predicted_hz: level.filter(|_| told(&open[..1])).map(|level| level.frequency_hz),
-            likeness: level.filter(|_| told(&open[1..])).and_then(likeness),
+            mac: level.filter(|_| told(&open[1..])).and_then(mac),
             converged: found.converged,
             x: found.x,
         })

@@ -41,7 +41,7 @@ impl<'a> Linear<'a> {
         let apart = |datum: &Datum, level: &Option<Level>| match (&datum.shape, level.as_ref()) {
             (Some(shape), Some(Level { span: Some(span), .. })) => {
                 let size: f64 = shape.iter().map(|v| v * v).sum();
-                (1.0 - span.likeness(shape)) * size
+                (1.0 - span.mac(shape)) * size
             }
             _ => 0.0,
         };
@@ -63,7 +63,7 @@ impl<'a> Linear<'a> {
             low - reach.ln_1p() <= y && y <= high + reach.ln_1p()
         };
         let like = |level: &Level| match (&datum.shape, &level.span) {
-            (Some(shape), Some(span)) => span.likeness(shape) >= LIKE,
+            (Some(shape), Some(span)) => span.mac(shape) >= LIKE,
             (Some(_), None) => false,
             (None, _) => true,
         };

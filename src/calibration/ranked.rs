@@ -25,7 +25,7 @@ pub struct Ranked {
     /// max |f/y − 1|.
     pub largest_error: f64,
     /// The least MAC of a measured shape with its level; none without shapes.
-    pub least_likeness: Option<f64>,
+    pub least_mac: Option<f64>,
     /// exp(−Δχ²/2) beside the best.
     pub weight: f64,
 }
@@ -91,7 +91,7 @@ pub(super) fn ranked(
         observer.advance(1);
         Ok(Ranked {
             largest_error: largest_error(problem, &begin.assignment, &fit.computed),
-            least_likeness: least_likeness(problem, &begin.assignment, &fit.computed),
+            least_mac: least_mac(problem, &begin.assignment, &fit.computed),
             assignment: begin.assignment,
             linear_chi2: begin.linear_chi2,
             weight: 0.0,
@@ -117,10 +117,10 @@ fn largest_error(problem: &Problem, assignment: &[usize], computed: &Computed) -
 }
 
 /// The least MAC of a measured shape with its level; none without shapes.
-fn least_likeness(problem: &Problem, assignment: &[usize], computed: &Computed) -> Option<f64> {
+fn least_mac(problem: &Problem, assignment: &[usize], computed: &Computed) -> Option<f64> {
     let each = problem.data.iter().zip(assignment).filter_map(|(datum, k)| {
         let (shape, level) = (datum.shape.as_ref()?, computed.levels[*k].as_ref());
-        Some(level.and_then(|level| level.span.as_ref()).map_or(0.0, |span| span.likeness(shape)))
+        Some(level.and_then(|level| level.span.as_ref()).map_or(0.0, |span| span.mac(shape)))
     });
     each.reduce(f64::min)
 }

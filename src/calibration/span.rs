@@ -67,7 +67,7 @@ impl Span {
     }
 
     /// MAC of a measured shape with the space; zero when either side is.
-    pub fn likeness(&self, shape: &[f64]) -> f64 {
+    pub fn mac(&self, shape: &[f64]) -> f64 {
         let size: f64 = shape.iter().map(|v| v * v).sum();
         let inside = self.factors().u.tr_mul(&DVector::from_column_slice(shape)).norm_squared();
         if size > 0.0 { (inside / size).min(1.0) } else { 0.0 }
@@ -102,9 +102,9 @@ mod tests {
             let shape: Vec<f64> = (0..9).map(|k| (1.0 + 1.7 * f64::from(k)).sin()).collect();
             let at = |x: &[f64]| turning(9, modes, x).apart(&shape);
             let here = at(&x);
-            let likeness = turning(9, modes, &x).likeness(&shape);
+            let mac = turning(9, modes, &x).mac(&shape);
             let size: f64 = shape.iter().map(|v| v * v).sum();
-            assert!((here.rest.norm_squared() - (1.0 - likeness) * size).abs() < 1e-12 * size);
+            assert!((here.rest.norm_squared() - (1.0 - mac) * size).abs() < 1e-12 * size);
             for j in 0..2 {
                 let h = 1e-3;
                 let moved = |k: f64| {
@@ -134,8 +134,8 @@ mod tests {
         let one = Span { motions: twice, slopes: vec![] };
         assert!(one.dimension() == 1 && span.dimension() == 2);
         let near = one.nearest(&shape);
-        assert!((one.likeness(&near) - 1.0).abs() < 1e-14);
+        assert!((one.mac(&near) - 1.0).abs() < 1e-14);
         let none = Span { motions: DMatrix::zeros(7, 1), slopes: vec![] };
-        assert_eq!((none.dimension(), none.likeness(&shape)), (0, 0.0));
+        assert_eq!((none.dimension(), none.mac(&shape)), (0, 0.0));
     }
 }

@@ -6,13 +6,13 @@ use super::compare::{Tests, has_measured_frf, has_measured_modes};
 use super::complex::{complex_result, whole_modes};
 use super::explore::{KnownMap, KnownMaps, Nominal, explore};
 use super::frf::{Frf, frfs};
-use super::keeper::{Folder, Keeper, Memory, Stage};
 use super::memory::check_memory;
 use super::missed::results_hold;
 use super::modes::{check_part, named, of_the_whole, part_modes, wanted};
 use super::prepared::Prepared;
 use super::sensitivity::Analysed;
 use super::singular::explained;
+use super::sink::{Folder, Memory, ResultSink, Stage};
 use super::transient::{InTime, Places, places};
 use crate::case::{Case, CeaAnalysis, ContactState, ModesAnalysis, SensitivityAnalysis, TransientAnalysis};
 use crate::equilibrium::{self, SteadySliding};
@@ -22,7 +22,7 @@ use crate::progress::Observer;
 use crate::results::record::{Earlier, InputFile, Origin, Record};
 use crate::results::{
     self, ComplexResult, FieldsFile, FolderLock, NamedModes, ResultsFile, RunResults, SteadyResult,
-    room_on_disk,
+    fits_on_disk,
 };
 use crate::system::System;
 use std::path::Path;
@@ -180,7 +180,7 @@ pub fn run_case(
         observer.end();
     }
     if let Some((wanted, places)) = &asked.in_time {
-        room_on_disk(out, &places.least_record(&prepared, wanted))?;
+        fits_on_disk(out, &places.least_record(&prepared, wanted))?;
     }
     let inputs =
         case.files().iter().map(|file| InputFile::read(&case.folder, file)).collect::<Result<_>>()?;
@@ -292,8 +292,8 @@ pub fn analyse(
 ) -> Result<RunResults> {
     let asked = Asked::new(prepared, selection)?;
     let mut results = RunResults::default();
-    let keeper = &mut Memory::new(record);
-    analyse_from(prepared, asked, &KnownMaps::new(), keeper, &mut results, observer)
+    let sink = &mut Memory::new(record);
+    analyse_from(prepared, asked, &KnownMaps::new(), sink, &mut results, observer)
         .map_err(|error| explained(prepared, error.while_computing()))?;
     Ok(results)
 }
@@ -311,7 +311,7 @@ fn analyse_from(
     prepared: &Prepared,
     asked: Asked<'_>,
     known: &KnownMaps,
-    keeper: &mut dyn Keeper,
+    sink: &mut dyn ResultSink,
     results: &mut RunResults,
     observer: &dyn Observer,
 ) -> Result<()> {
@@ -322,8 +322,8 @@ fn analyse_from(
     results.warnings.extend(prepared.warnings.iter().chain(&asked.warnings).cloned());
     results.geometry = prepared.geometry();
     results.size = prepared.size();
-    keeper.record(Stage::Model(results))?;
-    let mut run = Run { prepared, observer, keeper, clock: Clock::default(), results };
+    sink.record(Stage::Model(results))?;
+    let mut run = Run { prepared, observer, sink, clock: Clock::default(), results };
     let done = run.analyses(asked, known);
     let Run { clock, results, .. } = run;
     results.warnings.extend(thickness_warnings(prepared));
@@ -335,7 +335,7 @@ fn analyse_from(
 struct Run<'a, 'k> {
     prepared: &'a Prepared<'a>,
     observer: &'a dyn Observer,
-    keeper: &'k mut dyn Keeper,
+    sink: &'k mut dyn ResultSink,
     clock: Clock,
     results: &'k mut RunResults,
 }
@@ -376,7 +376,7 @@ impl Run<'_, '_> {
                 .time("steady sliding", || equilibrium::solve_steady(&prepared.system, &options, observer))?;
             let steady = steady_result(prepared, state);
             if !prepared.system.pairs.is_empty() {
-                self.keeper.record(Stage::Found(&steady))?;
+                self.sink.record(Stage::Found(&steady))?;
             }
             let state = steady.state.clone();
             self.results.steady = Some(steady);
@@ -394,12 +394,12 @@ impl Run<'_, '_> {
                     frf.run(prepared, steady, observer)
                 })?;
             self.results.measured_frfs.extend(tests.responses(&response, &beside));
-            self.keeper.record(Stage::Found(&response))?;
+            self.sink.record(Stage::Found(&response))?;
             self.results.frfs.push(response);
         }
         if let Some(calibrate) = calibrate {
             let found = self.clock.time("calibration", || calibrate.run(observer))?;
-            self.keeper.record(Stage::Found(&found))?;
+            self.sink.record(Stage::Found(&found))?;
             self.results.calibration = Some(found);
         }
         Ok(())
@@ -407,7 +407,7 @@ impl Run<'_, '_> {
 
     fn keep_modes(&mut self, modes: NamedModes, analysis: &ModesAnalysis, tests: &Tests) -> Result<()> {
         self.results.measured.extend(tests.modes(self.results.modes.len(), analysis, &modes));
-        self.keeper.record(Stage::Found(&modes))?;
+        self.sink.record(Stage::Found(&modes))?;
         self.results.modes.push(modes);
         Ok(())
     }
@@ -445,15 +445,15 @@ impl Run<'_, '_> {
         let left_vectors = in_time.is_some() || selection.sensitivities(case).is_some();
         let complex = complex_result(prepared, steady, basis, left_vectors, &mut self.clock, observer)?;
         let Some((complex, system, real)) = complex else { return Ok(()) };
-        self.keeper.record(Stage::Found(&complex))?;
+        self.sink.record(Stage::Found(&complex))?;
         self.results.warnings.extend(complex.modes.warnings.iter().cloned());
         let done = self.with_complex_modes(selection, (&system, steady), (&complex, &real), in_time);
         self.results.complex = Some(complex);
         done?;
         if selection.sweeps && !(case.sweep.is_empty() && case.map.is_empty()) {
             let nominal = Nominal { prepared, system: &system, steady, real: &real };
-            let Run { keeper, results, clock, .. } = self;
-            let mut record = |stage: Stage| keeper.record(stage);
+            let Run { sink, results, clock, .. } = self;
+            let mut record = |stage: Stage| sink.record(stage);
             clock.time("sweeps and maps", || explore(&nominal, known, results, &mut record, observer))?;
         }
         Ok(())
@@ -472,14 +472,14 @@ impl Run<'_, '_> {
             let analysed = Analysed { prepared, system, steady, real, modes: &complex.modes };
             let sensitivity =
                 self.clock.time("sensitivities", || analysed.sensitivities(&wanted, observer))?;
-            self.keeper.record(Stage::Found(&sensitivity))?;
+            self.sink.record(Stage::Found(&sensitivity))?;
             self.results.sensitivity = Some(sensitivity);
         }
         if let Some((wanted, places)) = in_time {
             let (dofs, geometry) = (&prepared.assembled.dofs, &self.results.geometry);
             let run = InTime { system, steady, complex, real, dofs, geometry };
-            let transient = self.clock.time(IN_TIME, || run.run(wanted, places, self.keeper, observer))?;
-            self.keeper.record(Stage::Transient(&transient))?;
+            let transient = self.clock.time(IN_TIME, || run.run(wanted, places, self.sink, observer))?;
+            self.sink.record(Stage::Transient(&transient))?;
             self.results.transient = Some(transient);
         }
         Ok(())

@@ -8,7 +8,7 @@ use super::sensors::{Sensors, frame};
 use crate::case::{Case, MeasuredData, ModesAnalysis};
 use crate::error::{Faults, Result};
 use crate::linalg::{c64, dense};
-use crate::measured::compare::{ComputedModes, Measured, likenesses, pair};
+use crate::measured::compare::{ComputedModes, Measured, mac_table, pair};
 use crate::measured::geometry::{Frame, distance, dot};
 use crate::measured::{MeasuredDof, MeasuredFrf, MeasuredMode, MeasuredSet, Quantity};
 use crate::modal::levels;
@@ -195,14 +195,14 @@ impl Test {
         let measured: Vec<Measured> = own
             .map(|mode| Measured { frequency_hz: mode.frequency_hz, shape: mode.shape.as_deref() })
             .collect();
-        let likeness = likenesses(&measured, &computed);
-        let pairs = pair(&measured, &computed, &likeness);
+        let mac = mac_table(&measured, &computed);
+        let pairs = pair(&measured, &computed, &mac);
         let rows = self.set.modes.iter().zip(&pairs).map(|(mode, pair)| MeasuredRow {
             frequency_hz: mode.frequency_hz,
             deviation: mode.deviation,
             damping_ratio: mode.damping_ratio,
             mode: pair.map(|pair| first + pair.mode),
-            likeness: pair.and_then(|pair| pair.likeness),
+            mac: pair.and_then(|pair| pair.mac),
         });
         MeasuredComparison {
             name: self.name.clone(),
@@ -211,7 +211,7 @@ impl Test {
             rows: rows.collect(),
             frequency_scale: scale,
             levels: levels.iter().map(|level| first + level.start..first + level.end).collect(),
-            likeness,
+            mac,
             placed: self.sensors.as_ref().map(|sensors| sensors.placed),
         }
     }

@@ -1,8 +1,8 @@
 //! The sweeps and maps of a case, and what its damping decides.
 
-use super::keeper::Stage;
 use super::modes::add_modal_damping;
 use super::prepared::Prepared;
+use super::sink::Stage;
 use super::states::{OnFamily, States, Whole, keeps_the_structure};
 use crate::case::{Case, Invalidates, MapAnalysis, SweepAnalysis};
 use crate::equilibrium::{Condensed, SteadySliding, tangent_stiffness};

@@ -7,7 +7,7 @@ use crate::case::{Case, Invalidates};
 use crate::equilibrium::{self, Condensed, PointState, solve_points};
 use crate::error::Result;
 use crate::linalg::c64;
-use crate::linalg::tall::gram;
+use crate::linalg::multivector::gram;
 use crate::modal::{self, ModesWanted};
 use crate::stability::{Band, ComplexMode, Family, FamilyCheck, SlidingState, complex_modes};
 use crate::sweep::{Checked, Modes, Problem};

@@ -1,4 +1,4 @@
-//! Small dense symmetric eigenproblems, and the likeness of two vectors.
+//! Small dense symmetric eigenproblems, and the MAC of two vectors.
 //!
 //! Everything here runs on one thread, so that results do not depend on the number of threads.
 

@@ -13,9 +13,9 @@ use super::SparseMatrix;
 use super::dense::inverse_root;
 use super::factor::{SymbolicFactor, SymmetricFactor};
 use super::lanczos::{BlockLanczos, Ritz, Window};
-use super::merged::Merged;
+use super::multivector::{gram, panels, rotate};
+use super::shared_pattern::SharedPattern;
 use super::sparse::{add_scaled, diagonal, norm_1, times};
-use super::tall::{gram, panels, rotate};
 use crate::error::{Error, Result};
 use crate::progress::Observer;
 use faer::{Mat, MatRef};
@@ -176,7 +176,7 @@ pub fn backward_errors(
     vectors: MatRef<'_, f64>,
 ) -> Vec<f64> {
     let (k_norm, m_norm) = (norm_1(k), norm_1(m));
-    let both = Merged::new(&[k, m]);
+    let both = SharedPattern::new(&[k, m]);
     let (mut errors, mut images) = (Vec::new(), Vec::new());
     for (start, width) in panels(0..values.len()) {
         let (x, values) = (vectors.subcols(start, width), &values[start..start + width]);

@@ -11,9 +11,9 @@
 use super::SparseMatrix;
 use super::dense::{inverse_root, product, symmetric_eigen};
 use super::factor::SymmetricFactor;
+use super::multivector::{combine, expand, gram, rotate};
 use super::random::Random;
 use super::sparse::multiply;
-use super::tall::{combine, expand, gram, rotate};
 use crate::error::{Error, Result};
 use crate::progress::Observer;
 use faer::{Accum, Mat, MatRef};

@@ -5,15 +5,15 @@
 //! * [`eigenpairs`]: the lowest eigenpairs of K x = θ M x with the count that proves none is missing, by
 //!   [`lanczos`].
 //! * [`assignment`]: the pairs of least total cost.
-//! * [`dense`]: small symmetric eigenproblems and the likeness of two vectors.
-//! * [`few_rows`]: symmetric matrices with entries in a few rows.
+//! * [`dense`]: small symmetric eigenproblems and the MAC of two vectors.
+//! * [`row_sparse`]: symmetric matrices with entries in a few rows.
 //! * [`lu`]: small dense matrices factorised.
 //! * [`matrix_market`]: matrices from and to files.
-//! * [`merged`]: products with several sparse matrices at once.
+//! * [`shared_pattern`]: products with several sparse matrices at once.
 //! * [`orthogonal`]: orthogonal factors of small dense matrices.
 //! * [`proportional`]: a matrix as α M + β K and a rest.
 //! * [`random`]: start vectors that are the same in every run.
-//! * [`tall`]: products of tall matrices, such as a set of modes.
+//! * [`multivector`]: products of tall matrices, such as a set of modes.
 //! * [`toar`]: eigenpairs of a quadratic problem nearest a shift, by two-level Arnoldi.
 //! * [`unsymmetric`]: small dense eigenproblems that are not symmetric.
 
@@ -21,20 +21,20 @@ pub mod assignment;
 pub mod dense;
 pub mod eigenpairs;
 pub mod factor;
-pub mod few_rows;
 pub mod lanczos;
 mod lanes;
 pub mod lu;
 pub mod matrix_market;
-pub mod merged;
+pub mod multivector;
 pub mod orthogonal;
 pub mod proportional;
 pub mod random;
-mod room;
+pub mod row_sparse;
+pub mod shared_pattern;
 pub mod sparse;
-pub mod tall;
 pub mod toar;
 pub mod unsymmetric;
+mod workspace;
 
 #[cfg(test)]
 pub(crate) mod samples;

@@ -1,7 +1,7 @@
 //! Damping matrices taken apart: α M + β K, which leaves the real modes uncoupled, and the rest.
 
 use super::SparseMatrix;
-use super::merged::Merged;
+use super::shared_pattern::SharedPattern;
 use super::sparse::entry;
 
 /// X = α M + β K + rest.
@@ -28,7 +28,7 @@ impl Proportional {
     /// reweighted least squares), so that a few dashpots on top of Rayleigh damping are told apart from it. Where no
     /// factors fit at least half of the entries, all of `x` is rest.
     pub fn split(x: &SparseMatrix, mass: &SparseMatrix, stiffness: &SparseMatrix) -> Self {
-        let merged = Merged::new(&[mass, stiffness, x]);
+        let merged = SharedPattern::new(&[mass, stiffness, x]);
         let entries = merged.entries::<3>();
         let largest = |a: &SparseMatrix| a.val().iter().fold(f64::MIN_POSITIVE, |l, v| l.max(v.abs()));
         let [m_size, k_size] = [mass, stiffness].map(largest);

@@ -1,7 +1,7 @@
 //! The sparse matrix of the whole program, its products and norms, and sparse vectors for contact directions.
 
 use super::lanes::{Aligned, Row, lay, spread};
-use super::room::with_room;
+use super::workspace::with_workspace;
 use faer::sparse::{SparseColMat, SymbolicSparseColMat, Triplet};
 use faer::{Mat, MatMut, MatRef};
 use pulp::{Arch, Simd, WithSimd};
@@ -230,7 +230,7 @@ pub(super) fn with_packed<T: Scalar, R: Row<T, W>, const W: usize, Y>(
     if let Some(columns) = columns(x) {
         return with_laid(&columns, x.nrows(), f);
     }
-    with_room(x.nrows(), R::ZERO, |packed: &mut [R]| {
+    with_workspace(x.nrows(), R::ZERO, |packed: &mut [R]| {
         for (i, row) in packed.iter_mut().enumerate() {
             (0..x.ncols()).for_each(|c| row.values_mut()[c] = x[(i, c)]);
         }
@@ -244,7 +244,7 @@ pub(super) fn with_laid<T: Scalar, R: Row<T, W>, const W: usize, Y>(
     n: usize,
     f: impl FnOnce(&[R]) -> Y,
 ) -> Y {
-    with_room(n, R::ZERO, |packed: &mut [R]| {
+    with_workspace(n, R::ZERO, |packed: &mut [R]| {
         packed.par_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, packed)| {
             let rows = task * ROWS_A_TASK..task * ROWS_A_TASK + packed.len();
             lay(&columns.iter().map(|column| &column[rows.clone()]).collect::<Vec<_>>(), packed);

@@ -11,8 +11,8 @@
 
 use super::c64;
 use super::dense::product;
+use super::multivector::{combine, expand, gram};
 use super::orthogonal::{ThinSvd, thin_svd};
-use super::tall::{combine, expand, gram};
 use super::unsymmetric::complex_eigenpairs;
 use crate::error::{Error, Result};
 use faer::{Accum, Mat, MatRef, Scale};

@@ -76,7 +76,7 @@ pub fn eigenvalues(a: MatRef<'_, f64>) -> Result<Vec<c64>> {
     eigen_of_real(a, None, None)
 }
 
-/// Eigenvalues, and those vectors for which there is room: of a conjugate pair Re and then Im of the one with Im λ > 0.
+/// Eigenvalues, and those vectors for which there is scratch: of a conjugate pair Re and then Im of the one with Im λ > 0.
 fn eigen_of_real(
     a: MatRef<'_, f64>,
     left: Option<MatMut<'_, f64>>,
@@ -85,7 +85,7 @@ fn eigen_of_real(
     let n = a.nrows();
     check(n, a.is_all_finite())?;
     let (mut re, mut im) = (Diag::zeros(n), Diag::zeros(n));
-    let mut memory = room::<f64>(n, &left, &right);
+    let mut memory = scratch::<f64>(n, &left, &right);
     let stack = MemStack::new(&mut memory);
     evd_real(a, re.as_mut(), im.as_mut(), left, right, Par::Seq, stack, Default::default())
         .map_err(|_| no_convergence(n))?;
@@ -93,7 +93,7 @@ fn eigen_of_real(
     Ok((0..n).map(|k| c64::new(re[k], im[k])).collect())
 }
 
-/// Eigenvalues, and those vectors for which there is room.
+/// Eigenvalues, and those vectors for which there is scratch.
 fn eigen_of_complex(
     a: MatRef<'_, c64>,
     left: Option<MatMut<'_, c64>>,
@@ -102,7 +102,7 @@ fn eigen_of_complex(
     let n = a.nrows();
     check(n, a.is_all_finite())?;
     let mut values = Diag::zeros(n);
-    let mut memory = room::<c64>(n, &left, &right);
+    let mut memory = scratch::<c64>(n, &left, &right);
     let stack = MemStack::new(&mut memory);
     evd_cplx(a, values.as_mut(), left, right, Par::Seq, stack, Default::default())
         .map_err(|_| no_convergence(n))?;
@@ -110,7 +110,11 @@ fn eigen_of_complex(
 }
 
 /// What the algorithm needs beside its results.
-fn room<T: ComplexField>(n: usize, left: &Option<MatMut<'_, T>>, right: &Option<MatMut<'_, T>>) -> MemBuffer {
+fn scratch<T: ComplexField>(
+    n: usize,
+    left: &Option<MatMut<'_, T>>,
+    right: &Option<MatMut<'_, T>>,
+) -> MemBuffer {
     let wanted = |there: bool| if there { ComputeEigenvectors::Yes } else { ComputeEigenvectors::No };
     let (left, right) = (wanted(left.is_some()), wanted(right.is_some()));
     MemBuffer::new(evd_scratch::<T>(n, left, right, Par::Seq, Default::default()))

@@ -39,7 +39,7 @@ pub struct Pair {
     /// Index of the computed mode.
     pub mode: usize,
     /// MAC with its level, where the shape is known.
-    pub likeness: Option<f64>,
+    pub mac: Option<f64>,
 }
 
 /// Squared cosine of the angle between a measured shape ψ and the space that computed motions φ span: for one φ it is
@@ -51,7 +51,7 @@ pub struct Pair {
 ///
 /// # Panics
 /// When the lengths differ.
-pub fn likeness(shape: &[c64], motions: &[Vec<f64>]) -> f64 {
+pub fn subspace_mac(shape: &[c64], motions: &[Vec<f64>]) -> f64 {
     let size: f64 = shape.iter().map(|v| v.norm_sqr()).sum();
     let mut basis: Vec<Vec<f64>> = Vec::new();
     for motion in motions {
@@ -79,10 +79,10 @@ fn norm(vector: &[f64]) -> f64 {
     vector.iter().map(|v| v * v).sum::<f64>().sqrt()
 }
 
-/// The likeness of every measured mode (a row) with every level; a row without a shape is empty.
-pub fn likenesses(measured: &[Measured<'_>], computed: &ComputedModes<'_>) -> Vec<Vec<f64>> {
+/// The MAC of every measured mode (a row) with every level; a row without a shape is empty.
+pub fn mac_table(measured: &[Measured<'_>], computed: &ComputedModes<'_>) -> Vec<Vec<f64>> {
     let row = |shape: &[c64]| -> Vec<f64> {
-        computed.levels.iter().map(|level| likeness(shape, &computed.motions[level.clone()])).collect()
+        computed.levels.iter().map(|level| subspace_mac(shape, &computed.motions[level.clone()])).collect()
     };
     measured.iter().map(|mode| mode.shape.map_or(Vec::new(), row)).collect()
 }
@@ -96,14 +96,14 @@ pub fn likenesses(measured: &[Measured<'_>], computed: &ComputedModes<'_>) -> Ve
 pub fn pair(
     measured: &[Measured<'_>],
     computed: &ComputedModes<'_>,
-    likenesses: &[Vec<f64>],
+    mac_table: &[Vec<f64>],
 ) -> Vec<Option<Pair>> {
     let modes = computed.frequencies_hz.len();
     let mut level_of = vec![0; modes];
     for (index, level) in computed.levels.iter().enumerate() {
         level.clone().for_each(|k| level_of[k] = index);
     }
-    let alike = |row: usize, k: usize| likenesses[row].get(level_of[k]).copied();
+    let alike = |row: usize, k: usize| mac_table[row].get(level_of[k]).copied();
     let cost = |row: usize, k: usize| -> f64 {
         let away = (measured[row].frequency_hz / computed.frequencies_hz[k]).ln().abs() / FREQUENCY;
         let cost = match alike(row, k) {
@@ -118,7 +118,7 @@ pub fn pair(
     let mut pairs = vec![None; measured.len()];
     for (row, k) in least_cost(&costs, modes + measured.len()) {
         if k < modes && costs[row][k] < ALONE {
-            pairs[row] = Some(Pair { mode: k, likeness: alike(row, k) });
+            pairs[row] = Some(Pair { mode: k, mac: alike(row, k) });
         }
     }
     pairs
@@ -135,26 +135,26 @@ mod tests {
     }
 
     #[test]
-    fn likeness_is_mac_and_does_not_feel_scale_phase_or_the_turn_of_a_double_mode() {
+    fn mac_does_not_feel_scale_phase_or_the_turn_of_a_double_mode() {
         let mut random = Random::new();
         let mut vector = |n: usize| (0..n).map(|_| random.next()).collect::<Vec<f64>>();
         let (a, b) = (vector(9), vector(9));
         let shape: Vec<c64> = vector(9).iter().zip(vector(9)).map(|(re, im)| c64::new(*re, im)).collect();
-        let one = likeness(&shape, std::slice::from_ref(&a));
+        let one = subspace_mac(&shape, std::slice::from_ref(&a));
         assert!((one - mac(&complex(&a), &shape)).abs() < 1e-15);
         let turned: Vec<c64> = shape.iter().map(|v| v * c64::from_polar(3.0, 1.1)).collect();
-        assert!((likeness(&turned, &[a.iter().map(|v| -7.0 * v).collect()]) - one).abs() < 1e-14);
-        let double = likeness(&shape, &[a.clone(), b.clone()]);
+        assert!((subspace_mac(&turned, &[a.iter().map(|v| -7.0 * v).collect()]) - one).abs() < 1e-14);
+        let double = subspace_mac(&shape, &[a.clone(), b.clone()]);
         for angle in [0.3f64, 1.0, 2.5] {
             let (sin, cos) = angle.sin_cos();
             let mix = |p: f64, q: f64| a.iter().zip(&b).map(|(a, b)| p * a + q * b).collect::<Vec<f64>>();
-            assert!((likeness(&shape, &[mix(cos, sin), mix(-sin, cos)]) - double).abs() < 1e-13);
+            assert!((subspace_mac(&shape, &[mix(cos, sin), mix(-sin, cos)]) - double).abs() < 1e-13);
         }
         // Any mix of the two, with phases, lies in their span; a copy of one of them adds nothing.
         let inside: Vec<c64> = a.iter().zip(&b).map(|(a, b)| c64::new(*a, 2.0 * b)).collect();
-        assert!((likeness(&inside, &[a.clone(), b.clone()]) - 1.0).abs() < 1e-14);
-        assert!((likeness(&shape, &[a.clone(), a.clone()]) - one).abs() < 1e-12);
-        assert_eq!(likeness(&complex(&[0.0; 9]), &[a]), 0.0);
+        assert!((subspace_mac(&inside, &[a.clone(), b.clone()]) - 1.0).abs() < 1e-14);
+        assert!((subspace_mac(&shape, &[a.clone(), a.clone()]) - one).abs() < 1e-12);
+        assert_eq!(subspace_mac(&complex(&[0.0; 9]), &[a]), 0.0);
     }
 
     #[test]
@@ -169,14 +169,14 @@ mod tests {
             .zip(&shapes)
             .map(|(hz, shape)| Measured { frequency_hz: *hz, shape: Some(shape) })
             .collect();
-        let like = likenesses(&measured, &computed);
+        let like = mac_table(&measured, &computed);
         let pairs = pair(&measured, &computed, &like);
         let modes: Vec<Option<usize>> = pairs.iter().map(|p| p.map(|p| p.mode)).collect();
         assert_eq!(modes, [Some(1), Some(0), None]);
-        assert!(pairs[0].unwrap().likeness.unwrap() > 0.98);
+        assert!(pairs[0].unwrap().mac.unwrap() > 0.98);
         // Without shapes the nearest ones.
         let bare: Vec<Measured> = measured.iter().map(|m| Measured { shape: None, ..*m }).collect();
-        let pairs = pair(&bare, &computed, &likenesses(&bare, &computed));
+        let pairs = pair(&bare, &computed, &mac_table(&bare, &computed));
         let modes: Vec<Option<usize>> = pairs.iter().map(|p| p.map(|p| p.mode)).collect();
         assert_eq!(modes, [Some(0), Some(1), Some(2)]);
     }

@@ -2,8 +2,8 @@
 
 use crate::linalg::SparseMatrix;
 use crate::linalg::dense::product;
+use crate::linalg::multivector::gram;
 use crate::linalg::sparse::multiply;
-use crate::linalg::tall::gram;
 use faer::{Mat, MatRef};
 
 /// Participation and effective mass of each mode for each direction.

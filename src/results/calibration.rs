@@ -317,7 +317,7 @@ fn assignment_columns<'a>(data: usize) -> Vec<Column<Assigned<'a>>> {
         column("largest_error_percent", "%", "largest |error| of a frequency", |(r, _): &Assigned| {
             100.0 * r.largest_error
         }),
-        column("least_mac", "1", "least MAC of a shape", |(r, _): &Assigned| r.least_likeness),
+        column("least_mac", "1", "least MAC of a shape", |(r, _): &Assigned| r.least_mac),
         column("weight", "1", "exp(−Δχ²/2) beside the best", |(r, _): &Assigned| r.weight),
         column("converged", "1", "whether the fit has converged", |(r, _): &Assigned| r.fit.converged),
         column("iterations", "1", "iterations of the fit", |(r, _): &Assigned| r.fit.iterations),

@@ -27,7 +27,7 @@ pub struct MeasuredComparison {
     /// Computed modes that are one level; rigid-body modes are in none.
     pub levels: Vec<Range<usize>>,
     /// MAC of each measured mode with each level; empty for a mode without a shape.
-    pub likeness: Vec<Vec<f64>>,
+    pub mac: Vec<Vec<f64>>,
     /// How its geometry fits the mesh, where shapes are compared.
     pub placed: Option<Placed>,
 }
@@ -44,7 +44,7 @@ pub struct MeasuredRow {
     /// The index of the mode that it is paired with, if any.
     pub mode: Option<usize>,
     /// MAC with the level of that mode.
-    pub likeness: Option<f64>,
+    pub mac: Option<f64>,
 }
 
 /// How the geometry of a test fits the mesh.
@@ -144,7 +144,7 @@ fn mode_columns<'a>() -> Vec<Column<Row<'a>>> {
         column("difference_percent", "%", "(computed − measured)/measured", move |row: &Row| {
             computed(row).map(|hz| 100.0 * (hz / row.2.frequency_hz - 1.0))
         }),
-        column("mac", "1", "MAC with the level of that mode", |(.., row): &Row| row.likeness),
+        column("mac", "1", "MAC with the level of that mode", |(.., row): &Row| row.mac),
     ]
 }
 
@@ -175,8 +175,8 @@ impl MeasuredComparison {
         let rows = Dimension::numbered("measured_mode", self.rows.len());
         let columns = Dimension::numbered("level", self.levels.len());
         let mut mac = vec![f64::NAN; rows.length * columns.length];
-        for (shape, likeness) in mac.chunks_mut(columns.length.max(1)).zip(&self.likeness) {
-            shape.iter_mut().zip(likeness).for_each(|(mac, like)| *mac = *like);
+        for (shape, known) in mac.chunks_mut(columns.length.max(1)).zip(&self.mac) {
+            shape.iter_mut().zip(known).for_each(|(mac, known)| *mac = *known);
         }
         let story = "MAC of each measured shape with each level of computed modes";
         let mac = Variable::reals("mac", "1", story, vec![rows, columns], mac);

@@ -1,7 +1,7 @@
 //! `/transient/events` of `results.h5`: what happened at the contact points, in room that is doubled when it is full.
 
 use super::ResultsFile;
-use super::file::room;
+use super::file::preallocated;
 use super::transient_hdf5::TIME;
 use crate::dataset::{attach_scale, describe, text_attribute};
 use crate::error::Result;
@@ -19,7 +19,7 @@ const AT_ONCE: usize = 1 << 16;
 
 impl ResultsFile {
     /// Makes sure that there is room for some more events.
-    pub(super) fn room_for_events(&mut self, more: usize) -> Result<()> {
+    pub(super) fn reserve_events(&mut self, more: usize) -> Result<()> {
         let (events, room) = self.read(|root| {
             let group = root.group("transient")?;
             Ok((count(&group)?, group.group("events")?.dataset(TIME)?.size()))
@@ -56,11 +56,11 @@ pub(super) fn fit(group: &Group) -> hdf5::Result<()> {
     resize(group, count(group)?)
 }
 
-pub(super) fn make_room(group: &Group, events: usize) -> hdf5::Result<()> {
+pub(super) fn preallocate(group: &Group, events: usize) -> hdf5::Result<()> {
     let group = group.create_group("events")?;
-    describe(&room(&group, TIME, events, f64::NAN)?, "s", "when it happened")?;
-    describe(&room(&group, POINT, events, 0_u32)?, "1", "number of the contact point, from 1")?;
-    let kind = room(&group, KIND, events, 0_u8)?;
+    describe(&preallocated(&group, TIME, events, f64::NAN)?, "s", "when it happened")?;
+    describe(&preallocated(&group, POINT, events, 0_u32)?, "1", "number of the contact point, from 1")?;
+    let kind = preallocated(&group, KIND, events, 0_u8)?;
     describe(&kind, "1", "what it did: one of `flag_values`, which `flag_meanings` names")?;
     let values: Vec<u8> = EventKind::ALL.iter().map(|kind| *kind as u8).collect();
     kind.new_attr::<u8>().shape(values.len()).create("flag_values")?.write_raw(&values)?;
@@ -70,7 +70,7 @@ pub(super) fn make_room(group: &Group, events: usize) -> hdf5::Result<()> {
 
 fn resize(group: &Group, events: usize) -> hdf5::Result<()> {
     group.relink("events", "events_before")?;
-    make_room(group, events)?;
+    preallocate(group, events)?;
     let (from, to) = (group.group("events_before")?, group.group("events")?);
     let all = count(group)?;
     for first in (0..all).step_by(AT_ONCE) {

@@ -5,7 +5,7 @@
 //! the other; the cell array `part` counts the parts from 0 in the order of the case. There is room for all steps from the
 //! start; `NSteps` says how many are there, so that a run under way can be looked at.
 
-use super::file::{options, room};
+use super::file::{options, preallocated};
 use super::folder::{own, refusal};
 use super::hdf5::{attribute, plain, rows};
 use super::{Field, Fields, NodalField};
@@ -112,7 +112,7 @@ fn create(file: &hdf5::File, fields: &Fields) -> hdf5::Result<()> {
     root.create_group("CellData")?.new_dataset_builder().with_data(&part).create("part")?;
     let motion = root.create_group("PointData")?;
     for name in ARRAYS {
-        room(&motion, name, (fields.count * geometry.nodes.len(), 3), f32::NAN)?;
+        preallocated(&motion, name, (fields.count * geometry.nodes.len(), 3), f32::NAN)?;
     }
     let steps = root.create_group("Steps")?;
     attribute(&steps, "NSteps", &0_i64)?;

@@ -219,7 +219,7 @@ pub(super) fn options() -> FileBuilder {
 }
 
 /// Room for `count` numbers, all of it on the disk, to be filled later; `empty` until then.
-pub(super) fn room<T: H5Type + Into<OwnedDynValue>>(
+pub(super) fn preallocated<T: H5Type + Into<OwnedDynValue>>(
     group: &Group,
     name: &str,
     count: impl Into<Extents>,

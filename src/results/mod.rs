@@ -6,7 +6,7 @@
 //! | `summary.json` | the figures of each analysis: a contract for scripts | any script |
 //! | `modes_<set>.csv`, `contact_points.csv`, `complex_modes.csv`, `sensitivities_mode_<k>.csv` | the tables | spreadsheets |
 //! | `transient.csv`, `transient_spectrum.csv`, `events.csv` | motion in time, step by step, its spectra, what happened at the contacts | spreadsheets |
-//! | `sound_<microphone>.wav`, `sound_spectrum.csv` | what is heard, and sound power and pressure over frequency | ears, spreadsheets |
+//! | `sound_<microphone>.wav`, `sound_spectrum.csv` | what is heard, and sound power and pressure over frequency | acoustics, spreadsheets |
 //! | `frf_<name>.csv`, `frf_<name>.uff` | frequency responses | spreadsheets, test-data programs |
 //! | `comparison_<name>.csv`, `comparison_<name>_frf.csv` | measured modes and responses beside the computed ones | spreadsheets |
 //! | `modes_<set>.uff` | the shapes, for test-data programs | test-data programs |
@@ -38,8 +38,8 @@ mod lock;
 mod maps;
 mod real_modes;
 pub mod record;
+mod record_size;
 mod reduced_check;
-mod room;
 mod search;
 mod sensitivity;
 mod sound;
@@ -75,8 +75,8 @@ pub use frf::{FrfResponse, FrfResult, PlaceAndDirection, Resonance};
 pub use lock::FolderLock;
 pub use maps::MapResult;
 pub use real_modes::NamedModes;
+pub use record_size::{RecordSize, fits_in_memory, fits_on_disk};
 pub use reduced_check::{Deviation, MotionCompared, ReducedCheck};
-pub use room::{RecordSize, room_in_memory, room_on_disk};
 pub use search::{Moved, SearchResult, SearchedNumber};
 pub use sensitivity::{AdviceField, ModeSensitivity, Mounted, ParameterRate, SensitivityResult};
 pub use sound::{Heard, Sound, Sounding, Tone};

@@ -13,7 +13,7 @@
 //! Nobody knows how many events there will be: when their room is full the file is copied with twice the room.
 
 use super::events_hdf5 as events;
-use super::file::room;
+use super::file::preallocated;
 use super::{Piece, Recording, ResultsFile, TransientResult, modal_channel};
 use crate::dataset::{attach_scale, attribute, describe, text_attribute};
 use crate::error::Result;
@@ -34,7 +34,7 @@ impl ResultsFile {
     /// # Errors
     /// The machine refuses.
     pub fn begin_transient(&mut self, recording: &Recording) -> Result<()> {
-        self.keep(|root| make_room(&root.create_group("transient")?, recording))?;
+        self.keep(|root| preallocate(&root.create_group("transient")?, recording))?;
         self.channels = recording.channels.iter().map(|channel| channel.name.clone()).collect();
         Ok(())
     }
@@ -44,7 +44,7 @@ impl ResultsFile {
     /// # Errors
     /// The machine refuses.
     pub fn write_transient_piece(&mut self, piece: &Piece) -> Result<()> {
-        self.room_for_events(piece.events.len())?;
+        self.reserve_events(piece.events.len())?;
         let end = piece.first + piece.values.first().map_or(0, Vec::len);
         let channels = std::mem::take(&mut self.channels);
         let filled = self.fill(|root| {
@@ -93,14 +93,14 @@ impl ResultsFile {
     }
 }
 
-fn make_room(group: &Group, recording: &Recording) -> hdf5::Result<()> {
+fn preallocate(group: &Group, recording: &Recording) -> hdf5::Result<()> {
     attribute(group, "complete", &false)?;
     attribute(group, "rows", &0_u64)?;
     attribute(group, "events", &0_u64)?;
-    events::make_room(group, events::FIRST)?;
+    events::preallocate(group, events::FIRST)?;
     let history = &group.create_group(HISTORY)?;
     text_attribute(history, "description", "motion and forces at every step")?;
-    let time = room(history, TIME, recording.rows, f64::NAN)?;
+    let time = preallocated(history, TIME, recording.rows, f64::NAN)?;
     describe(&time, "s", "time of each step, from the start")?;
     for first in (0..recording.rows).step_by(AT_ONCE) {
         let part = first..recording.rows.min(first + AT_ONCE);
@@ -108,13 +108,17 @@ fn make_room(group: &Group, recording: &Recording) -> hdf5::Result<()> {
         time.write_slice(&times, s![part])?;
     }
     for channel in recording.channels {
-        describe(&room(history, &channel.name, recording.rows, f64::NAN)?, channel.unit, &channel.about)?;
+        describe(
+            &preallocated(history, &channel.name, recording.rows, f64::NAN)?,
+            channel.unit,
+            &channel.about,
+        )?;
     }
     if recording.modes > 0 {
         history.create_group("modal_acceleration")?;
     }
     for mode in 0..recording.modes {
-        let room = room(history, &modal_channel(mode), recording.rows, f32::NAN)?;
+        let room = preallocated(history, &modal_channel(mode), recording.rows, f32::NAN)?;
         describe(&room, "sqrt(kg) m/s^2", "acceleration of a mass-normalised real mode")?;
     }
     let channels = recording.channels.iter().map(|channel| channel.name.clone());

@@ -2,7 +2,7 @@
 
 use super::{Air, Plate};
 use crate::linalg::dense::product;
-use crate::linalg::tall::{expand, gram};
+use crate::linalg::multivector::{expand, gram};
 use faer::Mat;
 use rayon::prelude::*;
 use std::f64::consts::PI;

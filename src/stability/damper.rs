@@ -2,10 +2,10 @@
 
 use crate::linalg::SparseMatrix;
 use crate::linalg::dense::product;
-use crate::linalg::few_rows::FewRows;
+use crate::linalg::multivector::{Columns, expand, gram};
 use crate::linalg::proportional::Proportional;
+use crate::linalg::row_sparse::RowSparse;
 use crate::linalg::sparse::times;
-use crate::linalg::tall::{Columns, expand, gram};
 use crate::system::{Damping, ModalDamping};
 use faer::{Mat, MatRef};
 use std::sync::Arc;
@@ -24,7 +24,7 @@ pub(super) struct Part {
     /// α M + β K + rest.
     pub(super) split: Proportional,
     /// The rest, where it has entries in few rows.
-    pub(super) few: Option<FewRows>,
+    pub(super) few: Option<RowSparse>,
 }
 
 /// Vectors B and Y, with BᵀMY and BᵀKY.
@@ -39,7 +39,7 @@ impl Part {
     fn new(x: Option<&SparseMatrix>, mass: &SparseMatrix, stiffness: &SparseMatrix) -> Self {
         let Some(x) = x else { return Part::default() };
         let split = Proportional::split(x, mass, stiffness);
-        let few = split.rest.as_ref().map(FewRows::new).filter(|few| few.are_few(x.ncols()));
+        let few = split.rest.as_ref().map(RowSparse::new).filter(|few| few.are_few(x.ncols()));
         Part { split, few }
     }
 
@@ -53,7 +53,7 @@ impl Part {
     pub(super) fn dissipates(&self, lowest: f64) -> bool {
         let Proportional { mass_factor, stiffness_factor, .. } = self.split;
         let proportional = stiffness_factor == 0.0 || mass_factor + stiffness_factor * lowest >= 0.0;
-        proportional && self.few.as_ref().is_some_and(FewRows::is_semidefinite)
+        proportional && self.few.as_ref().is_some_and(RowSparse::is_semidefinite)
     }
 
     /// BᵀXY.

@@ -5,10 +5,10 @@ use super::damper::{Between, Damper, Part, modal_times};
 use super::interface::{Interface, Term};
 use crate::equilibrium::{SteadySliding, tangent_stiffness};
 use crate::error::Result;
-use crate::linalg::merged::{Merged, PerMatrix};
+use crate::linalg::multivector::Columns;
 use crate::linalg::proportional::Proportional;
+use crate::linalg::shared_pattern::{PerMatrix, SharedPattern};
 use crate::linalg::sparse::{norm_1, times};
-use crate::linalg::tall::Columns;
 use crate::linalg::{SparseMatrix, c64};
 use crate::system::{Damping, Skew, System};
 use faer::{Mat, MatRef};
@@ -30,7 +30,7 @@ pub(super) struct Operator<'a> {
     /// How much of each acts.
     weights: Vec<f64>,
     /// M, K + K_σ, and what is wide of C and H.
-    merged: Arc<Merged<'a>>,
+    merged: Arc<SharedPattern<'a>>,
     mass_norm: f64,
     damping_norm: f64,
     stiffness_norm: f64,
@@ -167,8 +167,8 @@ impl<'a> Operator<'a> {
         let mut sparse: Vec<&SparseMatrix> = vec![mass, &stiffness];
         sparse.extend(dampers[0].viscous.wide().into_iter().chain(dampers[0].loss.wide()));
         let merged = match &stiffness {
-            Cow::Borrowed(stiffness) if sparse.len() == 2 => Merged::new(&[mass, stiffness]),
-            _ => Merged::new(&sparse).into_owned(),
+            Cow::Borrowed(stiffness) if sparse.len() == 2 => SharedPattern::new(&[mass, stiffness]),
+            _ => SharedPattern::new(&sparse).into_owned(),
         };
         Operator {
             merged: Arc::new(merged),

@@ -5,9 +5,9 @@ use super::block::Block;
 use super::operator::{Operator, Side};
 use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
+use crate::linalg::multivector::{Columns, combine, expand, gram};
 use crate::linalg::random::Random;
 use crate::linalg::sparse::{multiply, times};
-use crate::linalg::tall::{Columns, combine, expand, gram};
 use crate::modal::ShiftedStiffness;
 use faer::{Accum, Mat, MatRef};
 

@@ -6,8 +6,8 @@ use super::operator::{Forms, Operator, Side};
 use super::responses::SKETCH;
 use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
+use crate::linalg::multivector::{beside, expand};
 use crate::linalg::random::Random;
-use crate::linalg::tall::{beside, expand};
 use faer::Mat;
 use rayon::prelude::*;
 

@@ -1,4 +1,4 @@
-//! Which mode here is which mode there: the assignment with the greatest likeness in all.
+//! Which mode here is which mode there: the assignment with the greatest MAC in all.
 
 use super::Modes;
 use crate::linalg::assignment::least_cost;
@@ -32,17 +32,17 @@ pub(super) struct Link {
 
 /// How much two modes differ: 1 − MAC of their shapes, and half of their distance in units of 2 % of |λ|, at most ½.
 /// Shapes decide where modes cross; where two merge their shapes become one, and the distance decides.
-pub(super) fn difference(a: c64, b: c64, likeness: f64) -> f64 {
+pub(super) fn difference(a: c64, b: c64, mac: f64) -> f64 {
     let size = a.norm().max(b.norm()).max(f64::MIN_POSITIVE);
     let distance = (a - b).norm() / size;
-    if likeness < 0.2 || distance > 0.3 {
+    if mac < 0.2 || distance > 0.3 {
         return NONE;
     }
-    1.0 - likeness + 0.5 * (distance / 0.02).min(1.0)
+    1.0 - mac + 0.5 * (distance / 0.02).min(1.0)
 }
 
 /// The MAC of every mode of `a` (a row each) with every mode of `b`; 1 when there are no shapes to compare.
-fn likenesses(a: &Modes, b: &Modes) -> Mat<f64> {
+fn mac_table(a: &Modes, b: &Modes) -> Mat<f64> {
     let (rows, columns) = (a.eigenvalues.len(), b.eigenvalues.len());
     if a.vectors.nrows() != b.vectors.nrows() || a.vectors.nrows() == 0 {
         return Mat::from_fn(rows, columns, |_, _| 1.0);
@@ -64,14 +64,14 @@ fn likenesses(a: &Modes, b: &Modes) -> Mat<f64> {
 pub(super) fn assign(a: &Modes, b: &Modes) -> Link {
     let (rows, columns) = (a.eigenvalues.len(), b.eigenvalues.len());
     let comparable = a.vectors.nrows() == b.vectors.nrows() && a.vectors.nrows() > 0;
-    let likeness = likenesses(a, b);
-    let of = |i: usize, j: usize| difference(a.eigenvalues[i], b.eigenvalues[j], likeness[(i, j)]);
+    let table = mac_table(a, b);
+    let of = |i: usize, j: usize| difference(a.eigenvalues[i], b.eigenvalues[j], table[(i, j)]);
     let cost: Vec<Vec<f64>> = (0..rows).map(|i| (0..columns).map(|j| of(i, j)).collect()).collect();
     let chosen = least_cost(&cost, columns);
     let mut to = vec![None; rows];
     let mut taken = vec![false; columns];
     for (i, j) in chosen.into_iter().filter(|(i, j)| cost[*i][*j] < NONE) {
-        to[i] = Some((j, likeness[(i, j)]));
+        to[i] = Some((j, table[(i, j)]));
         taken[j] = true;
     }
     let lost = |i: usize| {
@@ -82,7 +82,7 @@ pub(super) fn assign(a: &Modes, b: &Modes) -> Link {
         None => lost(i),
         Some((j, mac)) => {
             let rival = |k: usize| {
-                let other = likeness[(i, k)];
+                let other = table[(i, k)];
                 k != *j && cost[i][k] < NONE && other > RIVAL && other > mac - 0.2
             };
             *mac < SURE || (comparable && (0..columns).any(rival))
@@ -95,7 +95,7 @@ pub(super) fn assign(a: &Modes, b: &Modes) -> Link {
             let here_order = order(a.eigenvalues[i], a.eigenvalues[k]);
             let there_order = order(b.eigenvalues[j], b.eigenvalues[l]);
             let swapped = here_order.zip(there_order).is_some_and(|(p, q)| p != q);
-            swapped && comparable && likeness[(i, l)] > EXCHANGE
+            swapped && comparable && table[(i, l)] > EXCHANGE
         }
         _ => false,
     };

@@ -116,8 +116,8 @@ fn locate(
         let near = near.unwrap_or(above);
         let cost = |k: &usize| {
             let comparable = modes.vectors.nrows() == near.vector.len() && !near.vector.is_empty();
-            let likeness = if comparable { mac(&near.vector, modes.vector(*k)) } else { 1.0 };
-            difference(near.lambda, modes.eigenvalues[*k], likeness)
+            let mac = if comparable { mac(&near.vector, modes.vector(*k)) } else { 1.0 };
+            difference(near.lambda, modes.eigenvalues[*k], mac)
                 + 0.5 * (modes.eigenvalues[*k] - near.lambda).norm()
                     / near.lambda.norm().max(f64::MIN_POSITIVE)
         };

@@ -69,7 +69,7 @@ pub trait Problem: Sync {
 pub struct Modes {
     /// λ = σ + iω \[1/s\].
     pub eigenvalues: Vec<c64>,
-    /// Their shapes, one a column, in coordinates in which likeness is the plain scalar product (the mass matrix is
+    /// Their shapes, one a column, in coordinates in which MAC is the plain scalar product (the mass matrix is
     /// one); without rows when shapes at two places cannot be compared.
     pub vectors: Mat<c64>,
 }

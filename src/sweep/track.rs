@@ -9,7 +9,7 @@ use crate::linalg::c64;
 use crate::progress::Observer;
 use rayon::prelude::*;
 
-/// Halvings of a step at most where the likeness of shapes leaves a doubt.
+/// Halvings of a step at most where the MAC of shapes leaves a doubt.
 const HALVINGS: usize = 7;
 /// A halving that raises the MAC of what is in doubt by less than this does not help.
 const SURER: f64 = 0.02;
@@ -35,7 +35,7 @@ pub struct Branch {
     pub first: usize,
     /// λ at that value and those after it.
     pub eigenvalues: Vec<c64>,
-    /// The least likeness (MAC) of its shapes at two neighbouring values; 1 for a single value.
+    /// The least MAC of its shapes at two neighbouring values; 1 for a single value.
     pub lowest_mac: f64,
     /// Its place among the modes of each of its values.
     pub(crate) places: Vec<usize>,

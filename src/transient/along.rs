@@ -48,25 +48,25 @@ pub(super) struct Contact {
 impl Contact {
     pub(super) fn new(model: &Model<'_>, weights: &Weights) -> Self {
         let r = model.n_directions();
-        let room = || vec![0.0; r];
+        let zeros = || vec![0.0; r];
         Contact {
             compliance: Mat::zeros(r, r),
             share: weights.share(),
             rate: weights.rate,
             step: weights.step,
             resistance: vec![1.0; model.points.len()],
-            free: room(),
-            predicted: [room(), room()],
+            free: zeros(),
+            predicted: [zeros(), zeros()],
             reaction: Reaction::new(model),
             tangent: Tangent::new(),
-            force: room(),
-            last: room(),
-            x: room(),
-            motion: [room(), room()],
-            rho: room(),
-            newton: room(),
-            moved: room(),
-            again: room(),
+            force: zeros(),
+            last: zeros(),
+            x: zeros(),
+            motion: [zeros(), zeros()],
+            rho: zeros(),
+            newton: zeros(),
+            moved: zeros(),
+            again: zeros(),
         }
     }
 

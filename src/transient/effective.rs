@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::linalg::dense::product;
 use crate::linalg::factor::factorize;
 use crate::linalg::lu::Lu;
-use crate::linalg::tall::{combine, gram};
+use crate::linalg::multivector::{combine, gram};
 use crate::linalg::{SparseVector, SymmetricFactor};
 use faer::{Accum, Mat, MatMut, MatRef};
 use rayon::prelude::*;

@@ -2,9 +2,9 @@
 
 use super::rows::chunks;
 use crate::linalg::SparseMatrix;
-use crate::linalg::few_rows::FewRows;
-use crate::linalg::merged::Merged;
 use crate::linalg::proportional::Proportional;
+use crate::linalg::row_sparse::RowSparse;
+use crate::linalg::shared_pattern::SharedPattern;
 use crate::system::Damping;
 use faer::{Mat, MatMut, MatRef};
 
@@ -14,9 +14,9 @@ pub(super) enum Products {
     /// All matrices are diagonal, as those of reduced models: nothing to factorise, a few products a step.
     Diagonal(Diagonal),
     /// M and K in one pass; C = αM + βK and a few rows nearly for free.
-    Proportional { matrices: Merged<'static>, viscous: Option<Viscous> },
+    Proportional { matrices: SharedPattern<'static>, viscous: Option<Viscous> },
     /// M, K and C in one pass.
-    General { matrices: Merged<'static> },
+    General { matrices: SharedPattern<'static> },
 }
 
 /// C = αM + βK + rest.
@@ -24,7 +24,7 @@ pub(super) enum Products {
 pub(super) struct Viscous {
     /// α \[1/s\] and β \[s\].
     factors: [f64; 2],
-    rest: Option<FewRows>,
+    rest: Option<RowSparse>,
 }
 
 /// The diagonals of M, K and C.
@@ -53,18 +53,20 @@ impl Products {
         }
         let Some(viscous) = &damping.viscous else {
             return Products::Proportional {
-                matrices: Merged::new(&[stiffness, mass]).into_owned(),
+                matrices: SharedPattern::new(&[stiffness, mass]).into_owned(),
                 viscous: None,
             };
         };
         let split = Proportional::split(viscous, mass, stiffness);
-        let rest = split.rest.as_ref().map(FewRows::new);
+        let rest = split.rest.as_ref().map(RowSparse::new);
         if rest.as_ref().is_some_and(|rest| !rest.are_few(mass.ncols())) {
-            return Products::General { matrices: Merged::new(&[stiffness, mass, viscous]).into_owned() };
+            return Products::General {
+                matrices: SharedPattern::new(&[stiffness, mass, viscous]).into_owned(),
+            };
         }
         let viscous = Viscous { factors: [split.mass_factor, split.stiffness_factor], rest };
         Products::Proportional {
-            matrices: Merged::new(&[stiffness, mass]).into_owned(),
+            matrices: SharedPattern::new(&[stiffness, mass]).into_owned(),
             viscous: Some(viscous),
         }
     }

@@ -8,7 +8,7 @@ use super::scheme::Weights;
 use super::stepper::combine;
 use crate::equilibrium::SteadySliding;
 use crate::linalg::c64;
-use crate::linalg::tall::gram;
+use crate::linalg::multivector::gram;
 use faer::Mat;
 
 /// u, v and a are the columns 0, 1, 2 of `motion` and of what is derived from it.

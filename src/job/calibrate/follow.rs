@@ -3,7 +3,7 @@
 use crate::error::Result;
 use std::ops::Range;
 
-/// A mode with less likeness than this to the level that it is taken for leaves a doubt.
+/// A mode with less MAC than this to the level that it is taken for leaves a doubt.
 const SURE: f64 = 0.6;
 /// So often at most a way is halved.
 const HALVINGS: usize = 3;
@@ -11,24 +11,19 @@ const HALVINGS: usize = 3;
 /// The modes of each level; none where it was not found.
 pub type Picks = Vec<Vec<usize>>;
 
-/// Gives each level as many of the `modes` as it has, the greatest likeness first, and tells whether that is sure.
-pub fn most_alike(
-    levels: &Picks,
-    modes: Range<usize>,
-    likeness: impl Fn(usize, usize) -> f64,
-) -> (Picks, bool) {
+/// Gives each level as many of the `modes` as it has, the greatest MAC first, and tells whether that is sure.
+pub fn most_alike(levels: &Picks, modes: Range<usize>, mac: impl Fn(usize, usize) -> f64) -> (Picks, bool) {
     let wanted = (0..levels.len()).filter(|l| !levels[*l].is_empty());
     let pair = |l: usize| modes.clone().map(move |k| (l, k));
-    let mut pairs: Vec<(f64, usize, usize)> =
-        wanted.flat_map(pair).map(|(l, k)| (likeness(l, k), l, k)).collect();
+    let mut pairs: Vec<(f64, usize, usize)> = wanted.flat_map(pair).map(|(l, k)| (mac(l, k), l, k)).collect();
     pairs.sort_by(|a, b| b.0.total_cmp(&a.0));
     let (mut found, mut taken) = (vec![Vec::new(); levels.len()], vec![false; modes.end]);
     let mut sure = true;
-    for (likeness, l, k) in pairs {
+    for (mac, l, k) in pairs {
         if !taken[k] && found[l].len() < levels[l].len() {
             taken[k] = true;
             found[l].push(k);
-            sure &= likeness > SURE;
+            sure &= mac > SURE;
         }
     }
     for (found, level) in found.iter_mut().zip(levels) {

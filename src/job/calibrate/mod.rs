@@ -142,14 +142,14 @@ impl<'a> Calibrate<'a> {
                 left_out_hz: found.left_out.data.get(i).and_then(|left| left.predicted_hz),
                 growth: growth[k],
                 shape: datum.shape.as_ref().map(|shape| {
-                    let likeness = |there: &Computed| {
-                        there.levels[k].as_ref()?.span.as_ref().map(|span| span.likeness(shape))
+                    let mac = |there: &Computed| {
+                        there.levels[k].as_ref()?.span.as_ref().map(|span| span.mac(shape))
                     };
                     CalibratedShape {
                         components: shape.len(),
-                        before: likeness(&found.before),
-                        after: likeness(&best.fit.computed),
-                        left_out: found.left_out.data.get(i).and_then(|left| left.likeness),
+                        before: mac(&found.before),
+                        after: mac(&best.fit.computed),
+                        left_out: found.left_out.data.get(i).and_then(|left| left.mac),
                     }
                 }),
             }

@@ -321,7 +321,7 @@ fn ratio_rates(case: &Case, c: &Coordinate, value: f64, real: &RealModes) -> Res
 fn like(solved: &Solved, level: &[usize], facts: &Facts) -> bool {
     let Some(seen) = solved.seen() else { return false };
     let span = Span { motions: seen.motions(level), slopes: Vec::new() };
-    facts.modes.iter().filter_map(|mode| mode.shape.as_ref()).any(|shape| span.likeness(shape) >= LIKE)
+    facts.modes.iter().filter_map(|mode| mode.shape.as_ref()).any(|shape| span.mac(shape) >= LIKE)
 }
 
 /// What the test sees of those levels that a measured shape is like.

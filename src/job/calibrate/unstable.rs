@@ -64,13 +64,13 @@ impl Sliding {
     /// have merged their shapes are one, and λ tells which of them grows. With another mesh λ alone decides.
     pub fn follow(&self, levels: &Picks, other: &Sliding) -> (Picks, bool) {
         let same_size = self.system.n_dofs() == other.system.n_dofs();
-        let likeness = |l: usize, k: usize| {
+        let mac = |l: usize, k: usize| {
             let (a, b) = (&self.modes()[levels[l][0]], &other.modes()[k]);
             let moved = (a.eigenvalue - b.eigenvalue).norm() / a.eigenvalue.norm();
             let alike = if same_size { mac(&a.right, &b.right) } else { 1.0 };
             alike - 0.5 * (moved / FAR).min(1.0)
         };
-        most_alike(levels, 0..other.modes().len(), likeness)
+        most_alike(levels, 0..other.modes().len(), mac)
     }
 
     /// Frequencies ω/2π of `levels` and their slopes ∂ ln ω/∂x = Im(∂λ/∂p) (dp/dx)/ω by the scalars of each unknown, which

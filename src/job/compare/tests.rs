@@ -89,14 +89,14 @@ fn a_test_made_of_the_models_own_modes_is_found_again() {
     for (k, row) in comparison.rows.iter().enumerate() {
         let mode = row.mode.unwrap();
         assert_eq!(comparison.level_of(mode), comparison.level_of(k));
-        assert!(row.likeness.unwrap() > 0.99, "{k}: {row:?}");
+        assert!(row.mac.unwrap() > 0.99, "{k}: {row:?}");
         // Written with six digits.
         assert!((named.modes.frequency_hz(mode) / row.frequency_hz - 1.0).abs() < 1e-5);
         assert_eq!((row.damping_ratio, row.deviation), (Some(0.004), Some(0.005)));
     }
     assert!(comparison.computed_alone(&named).is_empty());
     // Shapes of other levels are far from alike.
-    let alike = &comparison.likeness[0];
+    let alike = &comparison.mac[0];
     assert!(alike[1..].iter().all(|like| *like < 0.2), "{alike:?}");
     // In metres the points lie off the mesh: each is told, up to ten, and how many more.
     let far = case(&measured.replace("unit = \"mm\"", "unit = \"m\""), dir.path());
@@ -114,7 +114,7 @@ fn frequencies_of_the_case_are_paired_and_what_is_left_is_told() {
     let named = part_modes(&prepared, "disc", &()).unwrap();
     let all = tests.modes(3, &case.modes["disc"], &named);
     assert!(all.len() == 1 && all[0].modes == 3 && all[0].placed.is_none());
-    assert!(all[0].rows.iter().all(|row| row.mode.is_some() && row.likeness.is_none()));
+    assert!(all[0].rows.iter().all(|row| row.mode.is_some() && row.mac.is_none()));
     let alone = all[0].computed_alone(&named);
     assert!(
         !alone.is_empty()

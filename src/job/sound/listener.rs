@@ -1,6 +1,6 @@
 //! What is heard of a run while it goes on.
 
-use super::Ears;
+use super::Acoustics;
 use crate::modal::RealModes;
 use crate::results::{Heard, Sound, Sounding, Tone};
 use crate::signal::{Resampler, Spectrum, Welch, name_peaks, peaks};
@@ -48,9 +48,9 @@ pub struct Listener {
 impl Listener {
     /// For a run of `steps` steps of `step` seconds of a model whose real modes are `real`. Levels are taken over its
     /// second half.
-    pub fn new(ears: Ears, real: &RealModes, step: f64, steps: usize) -> Self {
+    pub fn new(acoustics: Acoustics, real: &RealModes, step: f64, steps: usize) -> Self {
         let modes = real.len();
-        let plates: Vec<Plate> = ears.plates.iter().map(|plate| plate.moving(&real.shapes)).collect();
+        let plates: Vec<Plate> = acoustics.plates.iter().map(|plate| plate.moving(&real.shapes)).collect();
         let counted = steps / 2;
         // Modes are complete up to their highest; a time step carries what it samples well.
         let highest = (0..modes).map(|k| real.frequency_hz(k)).fold(0.0, f64::max);
@@ -60,10 +60,10 @@ impl Listener {
         let pending = (PENDING / modes.max(1) as f64).max(16.0);
         let length = (seconds / step).min(pending) as usize;
         let microphone = |(name, at): (String, [f64; 3])| {
-            let receiver = Receiver::new(&plates, at, ears.air, step);
+            let receiver = Receiver::new(&plates, at, acoustics.air, step);
             (name, at, receiver, Welch::new(length, step))
         };
-        let microphones: Vec<_> = ears.microphones.into_iter().map(microphone).collect();
+        let microphones: Vec<_> = acoustics.microphones.into_iter().map(microphone).collect();
         let mut resampler = Resampler::new(step, f64::from(RATE));
         let mut recording = Vec::new();
         let silence = microphones.first().map_or(0, |(_, _, receiver, _)| receiver.delay());
@@ -74,7 +74,7 @@ impl Listener {
             modes,
             cross: CrossSpectra::new(modes, length, step, top),
             plates,
-            air: ears.air,
+            air: acoustics.air,
             step,
             heard: 0,
             counted,

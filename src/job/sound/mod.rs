@@ -1,12 +1,12 @@
 //! How loud a run in time is.
 //!
-//! [`ears`] looks at the case before anything is computed: which plates are heard, from where. A [`Listener`] takes the
+//! [`acoustics`] looks at the case before anything is computed: which plates are heard, from where. A [`Listener`] takes the
 //! accelerations of the modes, as they are read back from the record, and gives the [`crate::results::Sound`] in the end.
 
-mod ears;
+mod acoustics;
 mod listener;
 #[cfg(test)]
 mod tests;
 
-pub use ears::{Ears, ears};
+pub use acoustics::{Acoustics, acoustics};
 pub use listener::{BLOCK, Listener};

@@ -1,4 +1,4 @@
-use super::ears::ears;
+use super::acoustics::acoustics;
 use super::{BLOCK, Listener};
 use crate::case::Case;
 use crate::case::{ON_AXIS, SoundAnalysis};
@@ -27,13 +27,13 @@ fn one_mode_sounds_as_loud_as_its_closed_form() {
     let structure = &prepared.system.structure;
     let (real, _) = compute(structure, ModesWanted::Count(3), &()).unwrap();
     // The mode without nodal diameters: the one that displaces the most volume.
-    let ears = ears(&prepared, &wanted(Some(0.5), &[("far", [-4.0, 0.3, 0.0])])).unwrap();
-    let plate = ears.plates[0].moving(&real.shapes);
+    let acoustics = acoustics(&prepared, &wanted(Some(0.5), &[("far", [-4.0, 0.3, 0.0])])).unwrap();
+    let plate = acoustics.plates[0].moving(&real.shapes);
     let volume = |m: usize| plate.strength.col_as_slice(m).iter().sum::<f64>();
     let mode = (0..3).max_by(|a, b| volume(*a).abs().total_cmp(&volume(*b).abs())).unwrap();
     let (step, steps, hz) = (2e-5, 20_000, 180.0);
     let q = |k: usize| 3.0 * (TAU * hz * step * k as f64).sin();
-    let mut listener = Listener::new(ears, &real, step, steps);
+    let mut listener = Listener::new(acoustics, &real, step, steps);
     for first in (0..=steps).step_by(BLOCK) {
         let moments = first..(first + BLOCK).min(steps + 1);
         let motion = |m: usize| moments.clone().map(|k| if m == mode { q(k) } else { 0.0 }).collect();
@@ -63,10 +63,10 @@ fn one_mode_sounds_as_loud_as_its_closed_form() {
 fn places_where_nothing_can_be_said_are_refused() {
     let case = Case::parse("disc", &disc(8, 48), ".".into()).unwrap();
     let prepared = Prepared::new(&case).unwrap();
-    let faults = |at: [f64; 3]| ears(&prepared, &wanted(None, &[("here", at)])).unwrap_err().to_string();
+    let faults = |at: [f64; 3]| acoustics(&prepared, &wanted(None, &[("here", at)])).unwrap_err().to_string();
     assert!(faults([0.001, 0.05, 0.0]).contains("a place on `disc`"));
     assert!(faults([0.0, 0.5, 0.2]).contains("in the plane of the plates"));
-    let ears = ears(&prepared, &wanted(Some(1.0), &[])).unwrap();
-    let [(name, at)] = &ears.microphones[..] else { panic!("one microphone") };
+    let acoustics = acoustics(&prepared, &wanted(Some(1.0), &[])).unwrap();
+    let [(name, at)] = &acoustics.microphones[..] else { panic!("one microphone") };
     assert!(name == ON_AXIS && (at[0] - 1.0).abs() < 1e-12 && at[1].abs() < 1e-12 && at[2].abs() < 1e-12);
 }

@@ -1,7 +1,7 @@
-//! What a whole record says, read back from its keeper in parts.
+//! What a whole record says, read back from its sink in parts.
 
+use super::history_writer::HistoryWriter;
 use super::recorder::Shown;
-use super::tape::Tape;
 use crate::error::Result;
 use crate::results::{GrowthCompared, SpectrumOf};
 use crate::signal::{self, Welch};
@@ -25,13 +25,13 @@ pub(super) struct Findings {
     pub(super) growth: Option<GrowthCompared>,
 }
 
-impl Tape<'_, '_> {
+impl HistoryWriter<'_, '_> {
     /// Looks through the record of `rows` rows, `step` seconds apart; peaks are named up to `top_hz`.
     pub(super) fn findings(&mut self, rows: usize, step: f64, top_hz: f64) -> Result<Findings> {
         let mut channels = std::mem::take(&mut self.recorder.channels);
         for channel in &mut channels {
             let name = channel.name.clone();
-            channel.look(rows, step, |part| self.keeper.recorded(&name, part))?;
+            channel.look(rows, step, |part| self.sink.recorded(&name, part))?;
         }
         self.recorder.channels = channels;
         let shown = self.recorder.shown.iter();
@@ -41,7 +41,7 @@ impl Tape<'_, '_> {
     }
 
     pub(super) fn read(&self, channel: usize, part: Range<usize>) -> Result<Vec<f64>> {
-        self.keeper.recorded(&self.recorder.channels[channel].name, part)
+        self.sink.recorded(&self.recorder.channels[channel].name, part)
     }
 
     /// The spectrum of the second half of a channel, and its peaks up to `top_hz`.

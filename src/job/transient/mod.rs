@@ -1,11 +1,12 @@
 //! A case in time: what is recorded, step after step, and what the record says.
 //!
 //! [`places`] says what acts and where motion is recorded, `along` finds the complex mode to start along, `recorder`
-//! makes a row of every step, `snapshots` take the motion of all nodes now and then, `tape` hands the rows on a piece at a time, so that memory does not grow with the run, and
+//! makes a row of every step, `snapshots` take the motion of all nodes now and then, `history_writer` hands the rows on a piece at a time, so that memory does not grow with the run, and
 //! `findings`, `watched` and `modal` read them back in parts: spectra and growth, what the pictures show, what is heard.
 
 mod along;
 mod findings;
+mod history_writer;
 mod modal;
 mod places;
 mod recorder;
@@ -13,12 +14,11 @@ mod reduced_check;
 mod snapshots;
 mod start;
 mod step;
-mod tape;
 mod watched;
 
 pub use places::{Places, places, profile};
 
-use super::keeper::Keeper;
+use super::sink::ResultSink;
 use super::sound::Listener;
 use crate::case::{ModelChoice, SchemeChoice, TransientAnalysis};
 use crate::equilibrium::SteadySliding;
@@ -31,12 +31,12 @@ use crate::results::{ComplexResult, Geometry, TransientResult};
 use crate::structure::DofMap;
 use crate::system::System;
 use crate::transient::{Method, Model, Plan, Profile, Scheme, State, go_on};
+use history_writer::HistoryWriter;
 use modal::ModalMotion;
 use recorder::Recorder;
 use reduced_check::{first_steps, reduced_check};
 use snapshots::Snapshots;
 use start::Start;
-use tape::Tape;
 
 /// Peaks and spectrograms reach this many times as high as the band of the complex eigenvalues: modes above it are neither
 /// damped nor resolved as those in it are.
@@ -59,7 +59,7 @@ pub struct InTime<'a> {
 }
 
 impl InTime<'_> {
-    /// Marches; `keeper` gets what is recorded a piece at a time.
+    /// Marches; `sink` gets what is recorded a piece at a time.
     ///
     /// # Errors
     /// A mode to disturb that is not there, a step without a solution; what was recorded until then is kept.
@@ -67,13 +67,13 @@ impl InTime<'_> {
         &self,
         wanted: &TransientAnalysis,
         places: Places,
-        keeper: &mut dyn Keeper,
+        sink: &mut dyn ResultSink,
         observer: &dyn Observer,
     ) -> Result<TransientResult> {
         let beside = first_steps(self, wanted, &places, observer)?;
         let start = self.start(wanted, &places)?;
         let loadings = self.loadings(wanted)?;
-        let Places { mut pushes, mut probes, mut gauges, mut tracks, ears, .. } = places;
+        let Places { mut pushes, mut probes, mut gauges, mut tracks, acoustics, .. } = places;
         let mut disturbed = wanted.disturbance.as_ref().map(|d| self.along(d)).transpose()?;
         let reduced = match wanted.model {
             ModelChoice::Full => None,
@@ -127,32 +127,33 @@ impl InTime<'_> {
             reduced: reduced.as_ref(),
             origin: &steady.displacement,
         });
-        let listener = ears.map(|ears| Listener::new(ears, self.real, plan.step, steps));
+        let listener = acoustics.map(|acoustics| Listener::new(acoustics, self.real, plan.step, steps));
         let mass = reduced.is_none().then_some(&*self.system.structure.mass);
         let modal = listener.as_ref().map(|_| ModalMotion::new(self.real, mass));
         let mut recorder = Recorder::new(system, steady, &model, (probes, gauges), disturbed, modal);
         if let Some(motion) = recorder.shown.first_mut().filter(|shown| shown.measured.is_empty()) {
             motion.measured = self.complex.measured_squeal_hz.iter().map(|(hz, _)| *hz).collect();
         }
-        let mut tape = Tape::new(recorder, snapshots, keeper);
-        let mut marched = tape.begin(start, &model, &plan)?;
-        let reached = go_on(&model, &mut marched, &plan, observer, &mut |marched| tape.take(marched));
+        let mut history_writer = HistoryWriter::new(recorder, snapshots, sink);
+        let mut marched = history_writer.begin(start, &model, &plan)?;
+        let reached =
+            go_on(&model, &mut marched, &plan, observer, &mut |marched| history_writer.take(marched));
         let kept = match &reached {
             // A field of the last row may be missing, and the next attempt to write would not be the first.
             Err(Error::Io { .. }) => Ok(()),
-            _ => tape.flush(&marched),
+            _ => history_writer.flush(&marched),
         };
         reached.and(kept)?;
         let share = |count: usize| count as f64 / (steps + 1) as f64;
         let top = WATCHED * self.complex.band_hz[1];
-        let found = tape.findings(steps + 1, plan.step, top)?;
-        let watched = tape.watched(steps + 1, plan.step, &found.spectra, top)?;
-        let sound = listener.map(|listener| tape.heard(listener, steps + 1)).transpose()?;
-        let first = |name: &str, count: usize| tape.keeper.recorded(name, 0..count);
+        let found = history_writer.findings(steps + 1, plan.step, top)?;
+        let watched = history_writer.watched(steps + 1, plan.step, &found.spectra, top)?;
+        let sound = listener.map(|listener| history_writer.heard(listener, steps + 1)).transpose()?;
+        let first = |name: &str, count: usize| history_writer.sink.recorded(name, 0..count);
         let own = (self.steady, self.complex);
         let check = |reduced| reduced_check(reduced, own, beside.as_ref(), &first, observer);
         let reduced_check = reduced.as_ref().map(check).transpose()?;
-        let recorder = tape.recorder;
+        let recorder = history_writer.recorder;
         Ok(TransientResult {
             time_step: plan.step,
             rows: steps + 1,

@@ -1,6 +1,6 @@
 //! Accelerations of the real modes, and the sound that follows from them.
 
-use super::tape::Tape;
+use super::history_writer::HistoryWriter;
 use crate::error::Result;
 use crate::job::sound::{BLOCK, Listener};
 use crate::linalg::SparseMatrix;
@@ -42,13 +42,13 @@ impl ModalMotion {
     }
 }
 
-impl Tape<'_, '_> {
+impl HistoryWriter<'_, '_> {
     /// What is heard of the record of `rows` rows.
     pub(super) fn heard(&self, mut listener: Listener, rows: usize) -> Result<Sound> {
         let modes = self.recorder.modal.as_ref().map_or(0, |modal| modal.rows.len());
         for first in (0..rows).step_by(BLOCK) {
             let part = first..rows.min(first + BLOCK);
-            let read = |mode: usize| self.keeper.recorded(&modal_channel(mode), part.clone());
+            let read = |mode: usize| self.sink.recorded(&modal_channel(mode), part.clone());
             listener.hear((0..modes).map(read).collect::<Result<Vec<Vec<f64>>>>()?);
         }
         Ok(listener.finish())

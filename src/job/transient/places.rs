@@ -7,7 +7,7 @@ use crate::error::{Error, Fault, Faults, Result};
 use crate::job::contacts::with_laws;
 use crate::job::motion::{Motion, motion, spread};
 use crate::job::prepared::Prepared;
-use crate::job::sound::{Ears, ears};
+use crate::job::sound::{Acoustics, acoustics};
 use crate::job::travel::tracks;
 use crate::linalg::SparseVector;
 use crate::results::RecordSize;
@@ -27,7 +27,7 @@ pub struct Places {
     /// The pairs without friction, as they stand still.
     pub(super) still: Vec<ContactPair>,
     /// What listens, if anything does.
-    pub(super) ears: Option<Ears>,
+    pub(super) acoustics: Option<Acoustics>,
 }
 
 impl Places {
@@ -110,8 +110,8 @@ pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Pla
         .values_mut()
         .for_each(|contact| contact.friction.law = FrictionCurve::Coulomb { law: Coulomb { mu0: 0.0 } });
     let still = faults.take(with_laws(&prepared.system.pairs, &smooth)).unwrap_or_default();
-    let ears = wanted.sound.as_ref().and_then(|sound| faults.take(ears(prepared, sound)));
-    faults.into_result(Places { pushes, probes, gauges, tracks, still, ears })
+    let acoustics = wanted.sound.as_ref().and_then(|sound| faults.take(acoustics(prepared, sound)));
+    faults.into_result(Places { pushes, probes, gauges, tracks, still, acoustics })
 }
 
 /// How something runs in time.

@@ -4,7 +4,7 @@ use super::{InTime, Places};
 use crate::case::{ModelChoice, TransientAnalysis};
 use crate::equilibrium::SteadySliding;
 use crate::error::Result;
-use crate::job::keeper::{Histories, Memory, Stage};
+use crate::job::sink::{Histories, Memory, Stage};
 use crate::linalg::c64;
 use crate::modal::{RealModes, SturmCertificate};
 use crate::progress::Observer;
@@ -39,7 +39,7 @@ pub(super) fn first_steps(
         duration: wanted.duration.min(steps as f64 * wanted.time_step),
         ..wanted.clone()
     };
-    let places = Places { ears: None, ..places.clone() };
+    let places = Places { acoustics: None, ..places.clone() };
     let mut nowhere = |_: Stage<'_>| Ok(());
     let mut memory = Memory::new(&mut nowhere);
     run.run(&full, places, &mut memory, observer)?;

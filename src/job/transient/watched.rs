@@ -1,6 +1,6 @@
 //! What the pictures of a run show, read back from its record in parts.
 
-use super::tape::Tape;
+use super::history_writer::HistoryWriter;
 use crate::error::Result;
 use crate::results::{ContactHistory, ContactWatch, Curve, Orbit, SpectrumOf, Watched};
 use crate::signal::{LimitCycle, ShortTime, Spectrogram, limit_cycle};
@@ -14,7 +14,7 @@ const POINTS: usize = 4000;
 /// Rows that are read at once.
 const AT_ONCE: usize = 1 << 16;
 
-impl Tape<'_, '_> {
+impl HistoryWriter<'_, '_> {
     /// Looks through the record of `rows` rows, `step` seconds apart, whose `spectra` are known; spectrograms reach up to
     /// `top_hz`.
     pub(super) fn watched(

@@ -4,7 +4,7 @@
 //! touches only what lies between its entries and the root.
 
 use super::SymmetricFactor;
-use crate::linalg::tall::gram;
+use crate::linalg::multivector::gram;
 use faer::{Mat, MatMut};
 
 /// FᵀA⁻¹F of the columns of `f`, which are lost; the lower triangle is computed and mirrored.

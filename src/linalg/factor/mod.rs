@@ -32,8 +32,8 @@ pub use field::Field;
 pub use unsymmetric::{System, UnsymmetricFactor};
 
 use super::SparseMatrix;
-use super::room::with_room;
 use super::sparse::{Index, multiply, norm_1};
+use super::workspace::with_workspace;
 use crate::error::{Error, Result};
 use faer::sparse::{SparseColMat, SymbolicSparseColMatRef};
 use faer::{ColRef, Mat, MatMut, MatRef};
@@ -281,7 +281,7 @@ impl<T: Field> Multifrontal<T> {
 
     /// [`Multifrontal::substitute`] for up to as many columns as `L` has.
     fn substitute_lanes<L: Lanes<T>>(&self, rhs: MatMut<'_, T>, whole: bool) {
-        with_room(self.n(), L::ZERO, |x| {
+        with_workspace(self.n(), L::ZERO, |x| {
             self.lay(rhs.as_ref(), x);
             self.substitution().up(x);
             if whole {

@@ -242,7 +242,7 @@ fn assignment_table(result: &CalibrationResult) -> Table {
             if r.fit.converged { String::new() } else { "not converged".into() },
         ];
         if shapes {
-            cells.insert(3, r.least_likeness.map_or("–".into(), |mac| fixed(mac, 3)));
+            cells.insert(3, r.least_mac.map_or("–".into(), |mac| fixed(mac, 3)));
         }
         table.row(cells, false);
     }

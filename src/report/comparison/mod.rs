@@ -1,7 +1,7 @@
-//! What was measured beside what was computed: tables, the likeness of shapes, frequencies with their scatter, responses.
+//! What was measured beside what was computed: tables, the MAC of shapes, frequencies with their scatter, responses.
 
 mod frequencies;
-mod likeness;
+mod mac;
 mod responses;
 mod table;
 
@@ -36,7 +36,7 @@ pub(super) fn write(dir: &Path, results: &RunResults) -> crate::error::Result<()
 
 fn mode_pictures(comparison: &MeasuredComparison, results: &RunResults, name: &str) -> Vec<Drawn> {
     let Some(set) = results.modes.get(comparison.modes) else { return Vec::new() };
-    [likeness::picture(comparison, set, name), frequencies::picture(comparison, set, name)]
+    [mac::picture(comparison, set, name), frequencies::picture(comparison, set, name)]
         .into_iter()
         .flatten()
         .collect()
@@ -107,7 +107,7 @@ mod tests {
             assert!(svg.starts_with("<svg") && section.contains(&svg) && !svg.contains("NaN"), "{file}");
         }
         let mut bare = results;
-        bare.measured[0].likeness = vec![Vec::new(); 4];
-        assert_eq!(mode_pictures(&bare.measured[0], &bare, "x").len(), 1, "no shapes, no likeness");
+        bare.measured[0].mac = vec![Vec::new(); 4];
+        assert_eq!(mode_pictures(&bare.measured[0], &bare, "x").len(), 1, "no shapes, no mac");
     }
 }

@@ -24,7 +24,7 @@ pub(in crate::report) fn modes_table(results: &RunResults, comparison: &Measured
             row.mode.map_or(none(), |mode| hertz(hz(mode), 1)),
             damping.map_or(none(), |z| significant(100.0 * z, 3)),
             row.mode.map_or(none(), |mode| signed(100.0 * (hz(mode) / row.frequency_hz - 1.0), 2)),
-            row.likeness.map_or(none(), |like| fixed(like, 2)),
+            row.mac.map_or(none(), |like| fixed(like, 2)),
         ];
         table.row(cells, row.mode.is_none());
     }

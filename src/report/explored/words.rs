@@ -95,7 +95,7 @@ pub(in crate::report) fn sweep_words(result: &SweepResult) -> Vec<String> {
     let worst = result.sample.iter().map(|(_, e)| *e).fold(0.0, f64::max);
     let lowest = sweep.branches.iter().map(|b| b.lowest_mac).fold(1.0, f64::min);
     words.push(format!(
-        "{} The largest error of an eigenvalue, measured on the full order at {} values, is {}; the least likeness (MAC) of neighbouring shapes along a branch is {}.",
+        "{} The largest error of an eigenvalue, measured on the full order at {} values, is {}; the least MAC of neighbouring shapes along a branch is {}.",
         method(result.method),
         result.sample.len(),
         power(worst),

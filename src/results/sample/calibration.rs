@@ -27,7 +27,7 @@ pub fn calibration() -> CalibrationResult {
         fit: fit(weight == 1.0),
         linear_chi2: 5.3,
         largest_error: 0.01,
-        least_likeness: Some(0.97),
+        least_mac: Some(0.97),
         weight,
     };
     let number = |name: &str, unit: &str, after: f64, at_bound: bool| CalibratedNumber {
@@ -105,7 +105,7 @@ pub fn calibration() -> CalibrationResult {
                     LeftOutDatum {
                         x: vec![0.1, 1.0],
                         predicted_hz: Some(320.0),
-                        likeness: Some(0.96),
+                        mac: Some(0.96),
                         converged: true
                     };
                     3

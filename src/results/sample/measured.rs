@@ -15,7 +15,7 @@ pub(super) fn modes(disc: &NamedModes, modes: [Option<usize>; 4]) -> MeasuredCom
         deviation: Some(0.005),
         damping_ratio: Some(0.002),
         mode,
-        likeness: mode.map(|_| 0.97),
+        mac: mode.map(|_| 0.97),
     };
     let alike = |k: Option<usize>| {
         let of = |j: usize| if level(k) == Some(j) { 0.97 } else { 0.3 / (1.0 + j as f64) };
@@ -27,7 +27,7 @@ pub(super) fn modes(disc: &NamedModes, modes: [Option<usize>; 4]) -> MeasuredCom
         source: "hammer test, free rim".into(),
         rows: [330.0, 936.0, 1697.0, 2050.0].into_iter().zip(modes).map(row).collect(),
         frequency_scale: 0.972,
-        likeness: modes.map(alike).into(),
+        mac: modes.map(alike).into(),
         levels,
         placed: Some(Placed { points: 24, dofs: 24, largest: 1.2e-3, mean: 0.6e-3 }),
     }

@@ -4,9 +4,9 @@ use super::remainder::Remainder;
 use super::rows::Rows;
 use crate::error::Result;
 use crate::linalg::dense::{definite_pencil, product};
-use crate::linalg::few_rows::FewRows;
+use crate::linalg::multivector::{beside, expand, gram};
+use crate::linalg::row_sparse::RowSparse;
 use crate::linalg::sparse::times;
-use crate::linalg::tall::{beside, expand, gram};
 use crate::stability::analysis::Analysis;
 use crate::stability::damper::{Damper, Part, modal_times};
 use faer::Mat;
@@ -58,7 +58,7 @@ impl DampingParts {
         let (operator, basis) = (&analysis.operator, &analysis.basis);
         let Damper { viscous, loss, modal } = &operator.dampers[0];
         let rest = |part: &Part| {
-            let rest = part.split.rest.as_ref().map(FewRows::new);
+            let rest = part.split.rest.as_ref().map(RowSparse::new);
             rest.map(|rest| Rows::image(&rest, &basis.columns()))
         };
         let (modal_inside, mut damped) = (modal_inside(analysis), rest(viscous));

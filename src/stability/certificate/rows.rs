@@ -1,10 +1,10 @@
 //! Tall vectors that are zero but in some rows, such as the forces of a few dashpots and contacts, and as few directions as
 //! span them.
 
-use crate::linalg::few_rows::FewRows;
+use crate::linalg::multivector::{Columns, gram};
 use crate::linalg::orthogonal::{PivotedQr, pivoted_qr};
+use crate::linalg::row_sparse::RowSparse;
 use crate::linalg::sparse::dot;
-use crate::linalg::tall::{Columns, gram};
 use faer::{Mat, MatMut};
 
 /// Columns with entries in the rows `rows` (ascending) only.
@@ -21,7 +21,7 @@ impl Rows {
     }
 
     /// D B.
-    pub(super) fn image(d: &FewRows, b: &Columns<'_>) -> Self {
+    pub(super) fn image(d: &RowSparse, b: &Columns<'_>) -> Self {
         Rows { rows: d.rows().to_vec(), values: d.times_picked(b.picked(d.rows()).as_ref()) }
     }
 
@@ -121,7 +121,7 @@ mod tests {
         });
         let d = samples::from_dense(few.as_ref());
         let b = Mat::from_fn(n, 11, |i, j| ((3 * i + 5 * j) as f64).sin());
-        let image = Rows::image(&FewRows::new(&d), &Columns::of([b.as_ref()]));
+        let image = Rows::image(&RowSparse::new(&d), &Columns::of([b.as_ref()]));
         let whole = &few * &b;
         assert!((written(n, &image) - &whole).norm_max() < 1e-13);
         assert!((image.seen_by(&Columns::of([b.as_ref()])) - b.transpose() * &whole).norm_max() < 1e-12);

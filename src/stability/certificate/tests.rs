@@ -2,7 +2,7 @@ use super::contour::Region;
 use super::*;
 use crate::equilibrium::SteadySliding;
 use crate::equilibrium::samples::*;
-use crate::linalg::tall::beside;
+use crate::linalg::multivector::beside;
 use crate::linalg::{SparseVector, c64};
 use crate::modal::RealModes;
 use crate::stability::analysis::analyse;

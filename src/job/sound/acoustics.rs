@@ -15,7 +15,7 @@ const FLAT: f64 = 1e-3;
 
 /// The plates of a case as the air sees them, and where one listens.
 #[derive(Debug, Clone)]
-pub struct Ears {
+pub struct Acoustics {
     pub(super) plates: Vec<Seen>,
     pub(super) microphones: Vec<(String, [f64; 3])>,
     pub(super) air: Air,
@@ -39,7 +39,7 @@ pub(super) struct Seen {
 ///
 /// # Errors
 /// Plates that are not flat, none at all, a microphone on a plate or in the plane of every one.
-pub fn ears(prepared: &Prepared<'_>, wanted: &SoundAnalysis) -> Result<Ears> {
+pub fn acoustics(prepared: &Prepared<'_>, wanted: &SoundAnalysis) -> Result<Acoustics> {
     let mut faults = Faults::new();
     let chosen = |part: &&ShellPart| wanted.plates.is_empty() || wanted.plates.contains(&part.name);
     let mut plates = Vec::new();
@@ -87,7 +87,7 @@ pub fn ears(prepared: &Prepared<'_>, wanted: &SoundAnalysis) -> Result<Ears> {
         }
     }
     let air = Air { density: wanted.air.density, speed: wanted.air.speed };
-    faults.into_result(Ears { plates, microphones, air })
+    faults.into_result(Acoustics { plates, microphones, air })
 }
 
 impl Seen {

@@ -52,7 +52,7 @@ impl From<&Recording<'_>> for RecordSize {
 ///
 /// # Errors
 /// [`Error::Io`]: there is none.
-pub fn room_on_disk(dir: &Path, record: &RecordSize) -> Result<()> {
+pub fn fits_on_disk(dir: &Path, record: &RecordSize) -> Result<()> {
     let place = std::path::absolute(dir).unwrap_or_else(|_| dir.to_path_buf());
     match place.ancestors().find_map(free_on_disk) {
         Some(free) => fits(record, record.bytes_on_disk(), free, "the disk")
@@ -65,7 +65,7 @@ pub fn room_on_disk(dir: &Path, record: &RecordSize) -> Result<()> {
 ///
 /// # Errors
 /// [`Error::Analysis`]: there is none.
-pub fn room_in_memory(record: &RecordSize) -> Result<()> {
+pub fn fits_in_memory(record: &RecordSize) -> Result<()> {
     let bytes = record.rows as f64 * NUMBER * (record.channels + record.modes) as f64;
     match available() {
         Some(Available { bytes: free, by }) => fits(record, bytes, free as f64, "memory").map_err(|found| {
@@ -151,18 +151,18 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let endless = record(1_000_000_000_000_001, 0);
         for place in [dir.path().to_path_buf(), dir.path().join("still/to be made")] {
-            let text = room_on_disk(&place, &endless).unwrap_err().to_string();
+            let text = fits_on_disk(&place, &endless).unwrap_err().to_string();
             for part in
                 ["1000000000000000 steps of 15 channels and 3 modes", "GB", "time_step", "larger disk"]
             {
                 assert!(text.contains(part), "{text}");
             }
         }
-        assert_eq!(room_on_disk(dir.path(), &endless).unwrap_err().exit_code(), 1);
-        assert!(room_in_memory(&endless).unwrap_err().to_string().contains("memory has"));
+        assert_eq!(fits_on_disk(dir.path(), &endless).unwrap_err().exit_code(), 1);
+        assert!(fits_in_memory(&endless).unwrap_err().to_string().contains("memory has"));
         let short = record(11, 0);
-        room_on_disk(dir.path(), &short).unwrap();
-        room_in_memory(&short).unwrap();
+        fits_on_disk(dir.path(), &short).unwrap();
+        fits_in_memory(&short).unwrap();
         // 15 numbers and 3 short ones in results.h5 and in record.bin, the times in results.h5; 16 numbers as text.
         assert_eq!(short.bytes_on_disk(), 11.0 * (8.0 + 2.0 * (15.0 * 8.0 + 3.0 * 4.0) + 160.0));
         assert_eq!(record(11, 5).bytes_on_disk(), 11.0 * (8.0 + 132.0 + 160.0) + 6.0 * 132.0);

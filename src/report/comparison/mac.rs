@@ -16,8 +16,7 @@ const MOST: usize = 40;
 const NARROWEST: f64 = 500.0;
 
 pub(super) fn picture(comparison: &MeasuredComparison, set: &NamedModes, name: &str) -> Option<Drawn> {
-    let rows: Vec<usize> =
-        (0..comparison.rows.len()).filter(|k| !comparison.likeness[*k].is_empty()).collect();
+    let rows: Vec<usize> = (0..comparison.rows.len()).filter(|k| !comparison.mac[*k].is_empty()).collect();
     let hz =
         |level: usize| comparison.frequency_scale * set.modes.frequency_hz(comparison.levels[level].start);
     let highest = rows.iter().map(|k| comparison.rows[*k].frequency_hz).fold(0.0, f64::max);
@@ -56,7 +55,7 @@ pub(super) fn picture(comparison: &MeasuredComparison, set: &NamedModes, name: &
         let y = MARGIN[1] + place as f64 * CELL[1];
         let label = Ink { colour: MEASURED, anchor: Anchor::End, ..ink };
         sheet.text([MARGIN[0] - 10.0, y + 20.0], &given(row.frequency_hz), label);
-        for (column, like) in comparison.likeness[*k][..columns].iter().enumerate() {
+        for (column, like) in comparison.mac[*k][..columns].iter().enumerate() {
             let corner = [MARGIN[0] + column as f64 * CELL[0], y];
             sheet.rectangle(corner, CELL, &format!("fill=\"{}\" stroke=\"#ffffff\"", sequential(*like)));
             let colour = if *like > 0.55 { "#ffffff" } else { INK };
@@ -72,7 +71,6 @@ pub(super) fn picture(comparison: &MeasuredComparison, set: &NamedModes, name: &
     }
     let note = "Framed: paired. A level of several modes counts as the space they span.";
     sheet.text([12.0, MARGIN[1] + height + 22.0], note, Ink { colour: MUTED, ..left });
-    let caption =
-        format!("Likeness (MAC) of the measured shapes ({}) with the computed ones.", comparison.name);
+    let caption = format!("MAC of the measured shapes ({}) with the computed ones.", comparison.name);
     Some(Drawn { file: format!("mac_{name}.svg"), caption, svg: sheet.finish() })
 }

@@ -4,7 +4,7 @@
 use super::super::c64;
 use super::super::lanes::{lay, spread};
 use super::super::sparse::{ROWS_A_TASK, columns, columns_mut};
-use super::{Merged, PANEL, split};
+use super::{PANEL, SharedPattern, split};
 use faer::{MatMut, MatRef};
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
@@ -28,7 +28,7 @@ struct Task<'y> {
     sums: Vec<Row>,
 }
 
-impl Merged<'_> {
+impl SharedPattern<'_> {
     /// yⱼ += Σ_a factors\[a\]\[j\] A_a xⱼ for complex vectors \[Re x, Im x\] of two columns each, and tⱼᴴA_a xⱼ with that many
     /// others of every one of `tests`. The sums are in a fixed order: the same bits for any number of threads.
     ///
@@ -192,7 +192,7 @@ mod tests {
             let n = mass.ncols();
             let matrices = [mass, stiffness, samples::random_symmetric(n.min(50), 1)];
             let matrices = &matrices[..if n <= 50 { 3 } else { 2 }];
-            let merged = Merged::new(&matrices.iter().collect::<Vec<_>>());
+            let merged = SharedPattern::new(&matrices.iter().collect::<Vec<_>>());
             let wave = |s: f64| Mat::from_fn(n, 2 * count, |i, j| ((i * 7 + j * 3) as f64 * s).sin());
             let at = |a: &Mat<f64>, i: usize, j: usize| c64::new(a[(i, j)], a[(i, count + j)]);
             let (x, before, tests) = (wave(1.0), wave(0.3), [wave(0.7), wave(1.0)]);

@@ -10,7 +10,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 static AT_REST: Mutex<Rest> = Mutex::new(Rest { calls: 0, blocks: Vec::new() });
 /// The most of them that are kept: two for each of two threads.
 const MOST: usize = 4;
-/// Calls for room after which a block that was of no use to any of them is given back.
+/// Calls for block after which a block that was of no use to any of them is given back.
 const IDLE: u64 = 12;
 
 /// Blocks, each with the number of calls when it was laid down.
@@ -19,26 +19,30 @@ struct Rest {
     blocks: Vec<(u64, Box<dyn Any + Send>)>,
 }
 
-/// What `f` makes with room for `n` values, which hold whatever they held before.
-pub(super) fn with_room<T: Copy + Send + 'static, R>(n: usize, zero: T, f: impl FnOnce(&mut [T]) -> R) -> R {
+/// What `f` makes with block for `n` values, which hold whatever they held before.
+pub(super) fn with_workspace<T: Copy + Send + 'static, R>(
+    n: usize,
+    zero: T,
+    f: impl FnOnce(&mut [T]) -> R,
+) -> R {
     let found = {
         let mut kept = at_rest();
         kept.calls += 1;
         let blocks = &mut kept.blocks;
         blocks.iter().position(|(_, block)| block.is::<Vec<T>>()).map(|k| blocks.remove(k).1)
     };
-    let mut room = found.and_then(|block| block.downcast::<Vec<T>>().ok()).unwrap_or_default();
-    if room.len() < n {
-        room = Box::new(vec![zero; n]);
+    let mut block = found.and_then(|block| block.downcast::<Vec<T>>().ok()).unwrap_or_default();
+    if block.len() < n {
+        block = Box::new(vec![zero; n]);
     }
-    let result = f(&mut room[..n]);
+    let result = f(&mut block[..n]);
     let mut kept = at_rest();
     let Rest { calls, blocks } = &mut *kept;
     blocks.retain(|(laid_down, _)| *calls - laid_down <= IDLE);
     if blocks.len() == MOST {
         blocks.remove(0);
     }
-    blocks.push((*calls, room));
+    blocks.push((*calls, block));
     result
 }
 
@@ -53,15 +57,15 @@ mod tests {
 
     #[test]
     fn room_is_as_long_as_asked_for_whatever_was_there_before() {
-        // A type of its own: other tests take room at the same time.
+        // A type of its own: other tests take block at the same time.
         #[derive(Clone, Copy, PartialEq, Debug)]
         struct Own(u8);
         for n in [5, 0, 9, 3] {
-            let filled = with_room(n, Own(0), |room| {
-                room.fill(Own(7));
+            let filled = with_workspace(n, Own(0), |block| {
+                block.fill(Own(7));
                 // Inside, another block.
-                with_room(4, Own(1), |other| other.fill(Own(2)));
-                room.to_vec()
+                with_workspace(4, Own(1), |other| other.fill(Own(2)));
+                block.to_vec()
             });
             assert_eq!(filled, vec![Own(7); n]);
         }

@@ -3,7 +3,7 @@
 use super::recorder::Recorder;
 use super::snapshots::Snapshots;
 use crate::error::{Error, Fault, Result};
-use crate::job::keeper::{Keeper, Stage};
+use crate::job::sink::{ResultSink, Stage};
 use crate::results::{Field, Piece, Recording};
 use crate::transient::{Checkpoint, Marched, Model, Plan, State};
 use std::time::{Duration, Instant};
@@ -13,24 +13,24 @@ const ROWS: usize = 4096;
 /// A piece is handed on at the latest after this time.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// What the recorder makes, on its way to its keeper. Each piece comes with a checkpoint; memory does not grow with the
+/// What the recorder makes, on its way to its sink. Each piece comes with a checkpoint; memory does not grow with the
 /// run. How the rows are cut into pieces has no influence on them.
-pub(super) struct Tape<'a, 'k> {
+pub(super) struct HistoryWriter<'a, 'k> {
     pub(super) recorder: Recorder<'a>,
-    pub(super) keeper: &'k mut dyn Keeper,
+    pub(super) sink: &'k mut dyn ResultSink,
     snapshots: Option<Snapshots<'a>>,
     /// The first row that is at hand.
     first: usize,
     last_piece: Instant,
 }
 
-impl<'a, 'k> Tape<'a, 'k> {
+impl<'a, 'k> HistoryWriter<'a, 'k> {
     pub(super) fn new(
         recorder: Recorder<'a>,
         snapshots: Option<Snapshots<'a>>,
-        keeper: &'k mut dyn Keeper,
+        sink: &'k mut dyn ResultSink,
     ) -> Self {
-        Tape { recorder, keeper, snapshots, first: 0, last_piece: Instant::now() }
+        HistoryWriter { recorder, sink, snapshots, first: 0, last_piece: Instant::now() }
     }
 
     /// Begins with the first row or, where an earlier run stopped, goes on from there.
@@ -40,14 +40,14 @@ impl<'a, 'k> Tape<'a, 'k> {
     pub(super) fn begin(&mut self, start: State, model: &Model<'_>, plan: &Plan) -> Result<Marched> {
         let mut marched = Marched::from(start);
         self.recorder.take(&marched);
-        let earlier = self.keeper.stopped()?;
+        let earlier = self.sink.stopped()?;
         if let Some(checkpoint) = &earlier {
             self.begins_alike()?;
             marched = checkpoint.march(model)?;
             self.recorder.restore(checkpoint, &marched)?;
             self.first = marched.step + 1;
         }
-        self.keeper.record(Stage::TransientBegins(&Recording {
+        self.sink.record(Stage::TransientBegins(&Recording {
             time_step: plan.step,
             rows: plan.steps + 1,
             done: self.first,
@@ -67,7 +67,7 @@ impl<'a, 'k> Tape<'a, 'k> {
     /// A program or a machine that is another may give another first row.
     fn begins_alike(&self) -> Result<()> {
         for (channel, own) in self.recorder.channels.iter().zip(&self.recorder.values) {
-            let earlier = self.keeper.recorded(&channel.name, 0..1)?;
+            let earlier = self.sink.recorded(&channel.name, 0..1)?;
             if earlier.iter().map(|v| v.to_bits()).ne(own.iter().map(|v| v.to_bits())) {
                 let (found, expected) =
                     (format!("{earlier:?} at the start"), format!("{own:?} as in this run"));
@@ -97,7 +97,7 @@ impl<'a, 'k> Tape<'a, 'k> {
             let Recorder { values, events, modal, .. } = &self.recorder;
             let modal = modal.as_ref().map_or(&[][..], |modal| &modal.rows);
             let piece = Piece { first: self.first, values, modal, events, checkpoint: &checkpoint };
-            self.keeper.record(Stage::TransientPiece(&piece))?;
+            self.sink.record(Stage::TransientPiece(&piece))?;
             self.first += self.recorder.rows();
             self.recorder.forget();
         }
@@ -111,7 +111,7 @@ impl<'a, 'k> Tape<'a, 'k> {
         let Some(snapshots) = self.snapshots.as_ref().filter(due) else { return Ok(()) };
         let number = marched.step / snapshots.every;
         let [displacement, velocity] = &snapshots.take(&marched.state);
-        self.keeper.record(Stage::TransientField(&Field { number, displacement, velocity }))
+        self.sink.record(Stage::TransientField(&Field { number, displacement, velocity }))
     }
 
     fn checkpoint(&self, marched: &Marched) -> Checkpoint {

@@ -7,12 +7,12 @@ use faer::{Mat, MatRef};
 
 /// A symmetric matrix, as its rows that have entries and what stands between them.
 #[derive(Debug, Clone)]
-pub struct FewRows {
+pub struct RowSparse {
     rows: Vec<usize>,
     own: SparseMatrix,
 }
 
-impl FewRows {
+impl RowSparse {
     /// Of a symmetric matrix stored whole.
     pub fn new(d: &SparseMatrix) -> Self {
         let rows: Vec<usize> = (0..d.ncols()).filter(|j| !d.row_idx_of_col_raw(*j).is_empty()).collect();
@@ -23,7 +23,7 @@ impl FewRows {
         });
         let triplets: Vec<_> = entries.map(|(i, j, v)| entry(place(i), j, v)).collect();
         let own = SparseMatrix::try_new_from_triplets(rows.len(), rows.len(), &triplets);
-        FewRows { own: own.expect("indices of the rows"), rows }
+        RowSparse { own: own.expect("indices of the rows"), rows }
     }
 
     /// Whether products with the rows alone cost little beside those with a matrix that has entries in all `n` rows.
@@ -46,7 +46,7 @@ impl FewRows {
         inertia.is_ok_and(|inertia| inertia.negative == 0)
     }
 
-    /// The rows of D x that are not zero: one for each of [`FewRows::rows`].
+    /// The rows of D x that are not zero: one for each of [`RowSparse::rows`].
     ///
     /// # Panics
     /// When x has fewer rows than D.
@@ -54,7 +54,7 @@ impl FewRows {
         self.times_picked(picked(x, &self.rows).as_ref())
     }
 
-    /// [`FewRows::times`], given those rows of x only.
+    /// [`RowSparse::times`], given those rows of x only.
     pub fn times_picked(&self, rows_of_x: MatRef<'_, f64>) -> Mat<f64> {
         times(&self.own, rows_of_x)
     }
@@ -94,14 +94,14 @@ mod tests {
                     triplets.push(entry(a, b, sign * c));
                 }
             }
-            FewRows::new(&SparseMatrix::try_new_from_triplets(300, 300, &triplets).unwrap())
+            RowSparse::new(&SparseMatrix::try_new_from_triplets(300, 300, &triplets).unwrap())
         };
         assert!(of(1.0).is_semidefinite());
         assert!(of(1e-9).is_semidefinite());
         assert!(!of(-1e-9).is_semidefinite());
         let swapped = [entry(2, 5, 1.0), entry(5, 2, 1.0)];
         assert!(
-            !FewRows::new(&SparseMatrix::try_new_from_triplets(9, 9, &swapped).unwrap()).is_semidefinite()
+            !RowSparse::new(&SparseMatrix::try_new_from_triplets(9, 9, &swapped).unwrap()).is_semidefinite()
         );
     }
 
@@ -112,7 +112,7 @@ mod tests {
             let seldom = i % 7 == 3 && j % 7 == 3;
             if seldom { ((i * j) as f64).cos() } else { 0.0 }
         });
-        let few = FewRows::new(&samples::from_dense(whole.as_ref()));
+        let few = RowSparse::new(&samples::from_dense(whole.as_ref()));
         assert_eq!(few.rows(), (0..n).filter(|i| i % 7 == 3).collect::<Vec<_>>());
         let x = Mat::from_fn(n, 11, |i, j| ((3 * i + 5 * j) as f64).sin());
         let expected = &whole * &x;

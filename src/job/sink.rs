@@ -6,7 +6,7 @@ use crate::error::{Error, Fault, Result};
 use crate::results::record::{Block, Earlier, Record};
 use crate::results::{
     EventTable, Field, FieldsFile, HistoryTable, MapResult, Piece, RecordSize, Recording, ResultsFile,
-    RunResults, TransientResult, modal_channel, room_in_memory, room_on_disk,
+    RunResults, TransientResult, fits_in_memory, fits_on_disk, modal_channel,
 };
 use crate::sweep::MapPoint;
 use crate::transient::Checkpoint;
@@ -26,7 +26,7 @@ pub enum Stage<'a> {
     MapPoints(&'a str, usize, &'a [MapPoint]),
     /// A whole map.
     Map(&'a MapResult),
-    /// A run in time that begins or, after [`Keeper::stopped`] had an answer, goes on.
+    /// A run in time that begins or, after [`ResultSink::stopped`] had an answer, goes on.
     TransientBegins(&'a Recording<'a>),
     /// New rows of it.
     TransientPiece(&'a Piece<'a>),
@@ -37,7 +37,7 @@ pub enum Stage<'a> {
 }
 
 /// Takes results as they come, and has the record of a run in time at hand, which is too long for memory.
-pub trait Keeper {
+pub trait ResultSink {
     /// Takes a result.
     ///
     /// # Errors
@@ -106,10 +106,10 @@ impl<'a> Memory<'a> {
     }
 }
 
-impl Keeper for Memory<'_> {
+impl ResultSink for Memory<'_> {
     fn record(&mut self, stage: Stage<'_>) -> Result<()> {
         if let Stage::TransientBegins(recording) = &stage {
-            room_in_memory(&RecordSize::from(*recording))?;
+            fits_in_memory(&RecordSize::from(*recording))?;
         }
         self.histories.keep(&stage);
         (self.record)(stage)
@@ -191,7 +191,7 @@ impl<'a> Folder<'a> {
             let fault = Fault::new("the record of the interrupted run", found, expected);
             return Err(Error::input(fault.with_help("It is damaged: run without --resume")));
         }
-        room_on_disk(self.dir, &RecordSize::from(recording))?;
+        fits_on_disk(self.dir, &RecordSize::from(recording))?;
         let checkpoint = earlier.march.clone();
         let Folder { file, record, tables, fields, .. } = self;
         file.begin_transient(recording)?;
@@ -226,7 +226,7 @@ impl<'a> Folder<'a> {
     }
 }
 
-impl Keeper for Folder<'_> {
+impl ResultSink for Folder<'_> {
     fn record(&mut self, stage: Stage<'_>) -> Result<()> {
         let started = Instant::now();
         let written = self.write(&stage);

@@ -22,14 +22,14 @@ type PackedRow = Aligned<[f64; PANEL]>;
 
 /// Symmetric matrices of one size (one to four), stored whole on the union of their patterns.
 #[derive(Debug, Clone)]
-pub struct Merged<'a> {
+pub struct SharedPattern<'a> {
     starts: Cow<'a, [Index]>,
     rows: Cow<'a, [Index]>,
     /// The values of each matrix.
     values: Vec<Cow<'a, [f64]>>,
 }
 
-impl<'a> Merged<'a> {
+impl<'a> SharedPattern<'a> {
     /// Merges `matrices`; where all have one pattern they are borrowed as they are.
     ///
     /// # Panics
@@ -41,7 +41,7 @@ impl<'a> Merged<'a> {
         assert!(matrices.iter().all(|a| a.ncols() == n && a.nrows() == n), "matrices of one size");
         if matrices.iter().all(|a| a.col_ptr() == first.col_ptr() && a.row_idx() == first.row_idx()) {
             let values = matrices.iter().map(|a| Cow::Borrowed(a.val())).collect();
-            return Merged {
+            return SharedPattern {
                 starts: Cow::Borrowed(first.col_ptr()),
                 rows: Cow::Borrowed(first.row_idx()),
                 values,
@@ -49,12 +49,16 @@ impl<'a> Merged<'a> {
         }
         let (starts, rows, all) = union(matrices, count, |entries, values| values.copy_from_slice(entries));
         let of = |a: usize| Cow::Owned(all.iter().skip(a).step_by(count).copied().collect());
-        Merged { starts: Cow::Owned(starts), rows: Cow::Owned(rows), values: (0..count).map(of).collect() }
+        SharedPattern {
+            starts: Cow::Owned(starts),
+            rows: Cow::Owned(rows),
+            values: (0..count).map(of).collect(),
+        }
     }
 
     /// The same, which borrows nothing.
-    pub fn into_owned(self) -> Merged<'static> {
-        Merged {
+    pub fn into_owned(self) -> SharedPattern<'static> {
+        SharedPattern {
             starts: Cow::Owned(self.starts.into_owned()),
             rows: Cow::Owned(self.rows.into_owned()),
             values: self.values.into_iter().map(|values| Cow::Owned(values.into_owned())).collect(),
@@ -151,7 +155,7 @@ impl<'a> Merged<'a> {
     }
 
     /// Y = A X for every matrix A with the columns of X that it wants: all from the one that stands beside Y on. X has four
-    /// columns at most. As [`Merged::times`], without its memory: made for a few columns again and again.
+    /// columns at most. As [`SharedPattern::times`], without its memory: made for a few columns again and again.
     ///
     /// # Panics
     /// When the shapes do not agree.
@@ -199,7 +203,7 @@ impl<'a> Merged<'a> {
         (0..self.rows.len()).map(move |entry| values.map(|of| of[entry]))
     }
 
-    /// [`Merged::entries`], each behind its row and column.
+    /// [`SharedPattern::entries`], each behind its row and column.
     pub fn places<const C: usize>(&self) -> impl Iterator<Item = (usize, usize, [f64; C])> {
         let columns =
             self.starts.windows(2).enumerate().flat_map(|(j, ends)| (ends[0]..ends[1]).map(move |_| j));
@@ -207,7 +211,7 @@ impl<'a> Merged<'a> {
     }
 }
 
-/// The most columns of [`Merged::multiply`].
+/// The most columns of [`SharedPattern::multiply`].
 const FEW: usize = 4;
 /// Rows whose sums are kept at hand.
 const BLOCK: usize = 128;
@@ -228,7 +232,7 @@ fn slice(x: MatRef<'_, f64>, c: usize) -> &[f64] {
 
 /// The rows of all matrices from `first` on, times packed columns.
 struct Rows<'a, R, const C: usize, const W: usize> {
-    merged: &'a Merged<'a>,
+    merged: &'a SharedPattern<'a>,
     values: [&'a [f64]; C],
     first: usize,
     packed: &'a [R],
@@ -272,7 +276,7 @@ mod tests {
         for count in 1..=4 {
             let given: Vec<_> = matrices[..count].iter().collect();
             let mut products = vec![Mat::zeros(3, 20); 2];
-            Merged::new(&given).times(x.as_ref(), &mut products);
+            SharedPattern::new(&given).times(x.as_ref(), &mut products);
             assert_eq!(products.len(), count);
             for (product, a) in products.iter().zip(given) {
                 assert!((product - times(a, x.as_ref())).norm_max() < 1e-13);
@@ -283,11 +287,11 @@ mod tests {
     #[test]
     fn matrices_on_one_pattern_are_borrowed_and_multiply_alike() {
         let (stiffness, mass) = samples::plate(6, false);
-        let shared = Merged::new(&[&mass, &stiffness]);
+        let shared = SharedPattern::new(&[&mass, &stiffness]);
         assert!(shared.values.iter().all(|values| matches!(values, Cow::Borrowed(_))));
         let owned = shared.clone().into_owned();
         let x = Mat::from_fn(mass.ncols(), 5, |i, j| ((i * 7 + j * 3) as f64).sin());
-        let products = |merged: &Merged<'_>| {
+        let products = |merged: &SharedPattern<'_>| {
             let mut products = Vec::new();
             merged.times(x.as_ref(), &mut products);
             products
@@ -302,7 +306,7 @@ mod tests {
     #[test]
     fn products_with_some_columns_each() {
         let [a, b, c] = [1, 2, 3].map(|seed| samples::random_symmetric(301, seed));
-        let merged = Merged::new(&[&a, &b, &c]);
+        let merged = SharedPattern::new(&[&a, &b, &c]);
         assert!(merged.places().all(|(i, j, v)| v == [&a, &b, &c].map(|a| *a.get(i, j).unwrap_or(&0.0))));
         let x = Mat::from_fn(301, 3, |i, j| ((i * 7 + j * 3) as f64).sin());
         let mut out = [3, 2, 1].map(|k| Mat::zeros(301, k));
