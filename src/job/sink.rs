@@ -1,4 +1,4 @@
-//! Where results go as they come.
+//! Result sinks: memory, or a folder, that take results as soon as they are there.
 
 use super::explore::KnownMap;
 use crate::dataset::Describe;

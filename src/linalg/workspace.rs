@@ -1,4 +1,4 @@
-//! Memory for a while, taken up again by whoever wants as much next.
+//! Workspace: blocks of memory that are used again by the next call that needs as much.
 //!
 //! A block of a few megabytes that is given back goes to the operating system, which has to clear every page before it hands
 //! it out again: for products and substitutions with tall matrices that would be a tenth of their time.
@@ -10,7 +10,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 static AT_REST: Mutex<Rest> = Mutex::new(Rest { calls: 0, blocks: Vec::new() });
 /// The most of them that are kept: two for each of two threads.
 const MOST: usize = 4;
-/// Calls for block after which a block that was of no use to any of them is given back.
+/// Calls for workspace after which a block that was of no use to any of them is given back.
 const IDLE: u64 = 12;
 
 /// Blocks, each with the number of calls when it was laid down.
@@ -19,7 +19,7 @@ struct Rest {
     blocks: Vec<(u64, Box<dyn Any + Send>)>,
 }
 
-/// What `f` makes with block for `n` values, which hold whatever they held before.
+/// The result of `f` on workspace for `n` values, which hold whatever they held before.
 pub(super) fn with_workspace<T: Copy + Send + 'static, R>(
     n: usize,
     zero: T,
@@ -57,7 +57,7 @@ mod tests {
 
     #[test]
     fn room_is_as_long_as_asked_for_whatever_was_there_before() {
-        // A type of its own: other tests take block at the same time.
+        // A type of its own: other tests take workspace at the same time.
         #[derive(Clone, Copy, PartialEq, Debug)]
         struct Own(u8);
         for n in [5, 0, 9, 3] {

@@ -6,7 +6,7 @@
 //! | `summary.json` | the figures of each analysis: a contract for scripts | any script |
 //! | `modes_<set>.csv`, `contact_points.csv`, `complex_modes.csv`, `sensitivities_mode_<k>.csv` | the tables | spreadsheets |
 //! | `transient.csv`, `transient_spectrum.csv`, `events.csv` | motion in time, step by step, its spectra, what happened at the contacts | spreadsheets |
-//! | `sound_<microphone>.wav`, `sound_spectrum.csv` | what is heard, and sound power and pressure over frequency | acoustics, spreadsheets |
+//! | `sound_<microphone>.wav`, `sound_spectrum.csv` | what is heard, and sound power and pressure over frequency | listeners, spreadsheets |
 //! | `frf_<name>.csv`, `frf_<name>.uff` | frequency responses | spreadsheets, test-data programs |
 //! | `comparison_<name>.csv`, `comparison_<name>_frf.csv` | measured modes and responses beside the computed ones | spreadsheets |
 //! | `modes_<set>.uff` | the shapes, for test-data programs | test-data programs |

@@ -3,7 +3,7 @@
 use crate::error::Result;
 use std::ops::Range;
 
-/// A mode with less MAC than this to the level that it is taken for leaves a doubt.
+/// A mode with a smaller MAC than this with the level that it is taken for leaves a doubt.
 const SURE: f64 = 0.6;
 /// So often at most a way is halved.
 const HALVINGS: usize = 3;

@@ -1,4 +1,4 @@
-//! What a whole record says, read back from its sink in parts.
+//! Results of a whole record, read back from its sink in parts.
 
 use super::history_writer::HistoryWriter;
 use super::recorder::Shown;

@@ -1,4 +1,4 @@
-//! Hands on what is recorded, a piece at a time.
+//! Hands the record on, a piece at a time.
 
 use super::recorder::Recorder;
 use super::snapshots::Snapshots;
