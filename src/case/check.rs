@@ -1,5 +1,6 @@
 //! What sections say of each other: names that must stand elsewhere, and what does not go together.
 
+use super::names::unknown_name;
 use super::{Case, ContactState, Parameter, Pressing, path_matches};
 use crate::schema::{Report, dotted, key};
 
@@ -190,11 +191,4 @@ fn check_matrices(root: &mut Report, case: &Case) {
             );
         }
     }
-}
-
-pub(super) fn unknown_name(root: &mut Report, key: &str, name: &str, kind: &str, known: &[&str]) {
-    let help = crate::error::nearest(name, known.iter().copied())
-        .map_or(String::new(), |near| format!("Did you mean \"{near}\"?"));
-    let list = if known.is_empty() { "none is defined".to_string() } else { known.join(", ") };
-    root.fault(key, format!("\"{name}\""), format!("the name of a {kind} ({list})"), &help);
 }

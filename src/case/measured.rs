@@ -102,7 +102,7 @@ pub(super) fn check(root: &mut Report, case: &super::Case) {
             [("of", &data.of, "[modes] analysis", &modes), ("frf", &data.frf, "[frf] analysis", &frfs)];
         for (key, wanted, kind, known) in named {
             if let Some(wanted) = wanted.as_deref().filter(|wanted| !known.contains(wanted)) {
-                super::check::unknown_name(
+                super::names::unknown_name(
                     root,
                     &format!("measured.{}.{key}", dotted(name)),
                     wanted,

@@ -15,6 +15,7 @@ mod matrices;
 mod measured;
 mod mesh;
 mod model;
+mod names;
 mod parameter;
 mod sound;
 mod test_file;

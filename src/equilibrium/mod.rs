@@ -19,9 +19,24 @@ pub use linear::{
     tangent_stiffness,
 };
 pub use nearby::Nearby;
-pub use steady::{SteadyOptions, check, solve_points, solve_steady, solve_steady_with};
+pub use steady::{check, solve_points, solve_steady, solve_steady_with};
 
 use crate::system::{ContactForces, ContactTangent};
+
+/// Options of the steady-state solver.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SteadyOptions {
+    /// The deepest penetration that still makes sense \[m\]: about half the thinner body. Infinite by default.
+    pub penetration_limit: f64,
+    /// Newton iterations of one load step.
+    pub max_iterations: usize,
+}
+
+impl Default for SteadyOptions {
+    fn default() -> Self {
+        SteadyOptions { penetration_limit: f64::INFINITY, max_iterations: 60 }
+    }
+}
 
 /// Steady sliding of a system.
 #[derive(Debug, Clone)]

@@ -1,10 +1,11 @@
 //! Steady states of systems that differ little from one whose steady state is known: no new factorisation.
 
+use super::SteadyOptions;
 use super::SteadySliding;
 use super::condensed::Condensed;
 use super::linear::tangent_stiffness;
 use super::newton::{Contact, norm};
-use super::steady::{SteadyOptions, residual, solve_steady, states};
+use super::steady::{residual, solve_steady, states};
 use crate::error::{Error, Fault, Result};
 use crate::system::System;
 

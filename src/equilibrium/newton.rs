@@ -1,8 +1,8 @@
 //! Newton's method on the condensed contact problem.
 
+use super::SteadyOptions;
 use super::condensed::Condensed;
 use super::linear::directions;
-use super::steady::SteadyOptions;
 use crate::error::{Error, Result};
 use crate::system::{Closing, ContactForces, ContactMotion, ContactPair, ContactPoint, ContactTangent};
 use faer::Mat;

@@ -3,27 +3,12 @@
 use super::condensed::Condensed;
 use super::linear::{directions, tangent_stiffness};
 use super::newton::{Contact, Stage, norm, respond};
-use super::{PointState, SteadySliding};
+use super::{PointState, SteadyOptions, SteadySliding};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::SparseMatrix;
 use crate::linalg::sparse::multiply_vector;
 use crate::progress::Observer;
 use crate::system::{Closing, ContactPair, ContactPoint, System};
-
-/// What is asked of a steady state.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SteadyOptions {
-    /// The deepest penetration that still makes sense \[m\]: about half the thinner body. Infinite by default.
-    pub penetration_limit: f64,
-    /// Newton iterations of one load step.
-    pub max_iterations: usize,
-}
-
-impl Default for SteadyOptions {
-    fn default() -> Self {
-        SteadyOptions { penetration_limit: f64::INFINITY, max_iterations: 60 }
-    }
-}
 
 /// The steady sliding state under the system's load, its closing loads and sliding velocities.
 ///

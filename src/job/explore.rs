@@ -2,7 +2,7 @@
 
 use super::modes::add_modal_damping;
 use super::prepared::Prepared;
-use super::sink::Stage;
+use super::sink::{KnownMap, KnownMaps, Stage};
 use super::states::{OnFamily, States, Whole, keeps_the_structure};
 use crate::case::{Case, Invalidates, MapAnalysis, SweepAnalysis};
 use crate::equilibrium::{Condensed, SteadySliding, tangent_stiffness};
@@ -16,7 +16,6 @@ use crate::stability::{Family, Frame, SlidingState};
 use crate::sweep::{self, Axis, Boundary, Checked, CriticalKind, MapPoint, Problem};
 use crate::system::{Damping, System};
 use faer::Mat;
-use std::collections::BTreeMap;
 
 /// The largest |Δλ|/|λ| at full order that is accepted.
 const ACCURACY: f64 = 1e-8;
@@ -26,18 +25,6 @@ const LOCATED: [f64; 2] = [1e-10, 1e-7];
 const ROUNDS: usize = 3;
 /// The path of ζ.
 const RATIO: &str = "damping.modal_ratio";
-
-/// What an earlier, interrupted run knows of one map.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct KnownMap {
-    /// Its first points.
-    pub points: Vec<MapPoint>,
-    /// Places on which the family was trained beyond those that every run begins with, in their order.
-    pub trained: Vec<[f64; 2]>,
-}
-
-/// The maps of an earlier run by name.
-pub type KnownMaps = BTreeMap<String, KnownMap>;
 
 /// The case at its own values: what every sweep starts from.
 pub(super) struct Nominal<'a> {

@@ -1,7 +1,7 @@
 //! How much memory a run takes at its peak, worked out before it begins.
 
-use super::analyse::Selection;
 use super::prepared::Prepared;
+use super::selection::Selection;
 use super::states::keeps_the_structure;
 use crate::error::{Error, Result};
 use crate::linalg::factor::SymbolicFactor;

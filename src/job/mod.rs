@@ -33,6 +33,7 @@ mod regions;
 #[cfg(test)]
 mod samples;
 mod scalars;
+mod selection;
 mod sensitivity;
 mod sensors;
 mod singular;
@@ -44,13 +45,13 @@ mod transient;
 mod travel;
 mod verify;
 
-pub use analyse::{Selection, Sensitivities, analyse, check_case, run_case};
+pub use analyse::{analyse, check_case, run_case};
 pub use calibrate::Coordinate;
-pub use explore::{KnownMap, KnownMaps};
 pub use export::export;
 pub use imported::{read_points, read_rows};
 pub use measured::{measured_set, read_modes};
 pub use memory::{ExpectedMemory, expected_memory};
 pub use prepared::Prepared;
-pub use sink::{Histories, ResultSink, Stage};
+pub use selection::{Selection, Sensitivities};
+pub use sink::{Histories, KnownMap, KnownMaps, ResultSink, Stage};
 pub use states::Whole;

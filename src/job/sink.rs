@@ -1,6 +1,5 @@
 //! Result sinks: memory, or a folder, that take results as soon as they are there.
 
-use super::explore::KnownMap;
 use crate::dataset::Describe;
 use crate::error::{Error, Fault, Result};
 use crate::results::record::{Block, Earlier, Record};
@@ -10,9 +9,22 @@ use crate::results::{
 };
 use crate::sweep::MapPoint;
 use crate::transient::Checkpoint;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
+
+/// What an earlier, interrupted run knows of one map.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct KnownMap {
+    /// Its first points.
+    pub points: Vec<MapPoint>,
+    /// Places on which the family was trained beyond those that every run begins with, in their order.
+    pub trained: Vec<[f64; 2]>,
+}
+
+/// The maps of an earlier run by name.
+pub type KnownMaps = BTreeMap<String, KnownMap>;
 
 /// A result that is ready to be written.
 pub enum Stage<'a> {
