@@ -143,7 +143,7 @@ impl<'a> Group<'a> {
         self
     }
 
-    /// With tables that are alike, told apart by the column `by`.
+    /// With tables that are alike, distinguished by the column `by`.
     #[must_use]
     pub fn parts(mut self, key: &'static str, by: &'static str, tables: Vec<Table<'a>>) -> Self {
         self.entries.push(Entry::Parts(key, by, tables));

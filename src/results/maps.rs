@@ -174,7 +174,7 @@ fn of(root: &hdf5::Group, name: &str) -> hdf5::Result<hdf5::Group> {
 }
 
 impl ResultsFile {
-    /// Begins a map, or begins it again: its axes, room for its points, and those that are `known`.
+    /// Begins a map, or begins it again: its axes, space for its points, and those that are `known`.
     ///
     /// # Errors
     /// The machine refuses.
