@@ -12,7 +12,7 @@ use std::time::Instant;
 use stridor::case::read_case;
 use stridor::job::{Prepared, Selection, analyse};
 use stridor::progress::Observer;
-use stridor::results::RunResults;
+use stridor::results::{ComplexResult, NamedModes, RunResults};
 
 // As the program does it.
 #[global_allocator]
@@ -100,12 +100,12 @@ impl Observer for Stages {
 /// λ of every mode (ω² as `[ω², 0]` for real modes), and the vectors.
 fn pairs(results: &RunResults) -> (Vec<[f64; 2]>, Vec<f64>) {
     let mut vectors = Vec::new();
-    if let Some(complex) = &results.complex {
+    if let Some(complex) = results.get::<ComplexResult>() {
         let modes = &complex.modes.modes;
         modes.iter().for_each(|m| vectors.extend(m.right.iter().flat_map(|z| [z.re, z.im])));
         return (modes.iter().map(|m| [m.eigenvalue.re, m.eigenvalue.im]).collect(), vectors);
     }
-    let Some(set) = results.modes.first() else { return (Vec::new(), vectors) };
+    let Some(set) = results.get::<NamedModes>() else { return (Vec::new(), vectors) };
     for shape in set.modes.shapes.col_iter() {
         vectors.extend(shape.iter().flat_map(|v| [*v, 0.0]));
     }
@@ -130,7 +130,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let held = memory("VmHWM");
     let stages = Stages::default();
     let (cpu_0, wall_0) = (cpu(), Instant::now());
-    let results = rayon::scope(|_| analyse(&prepared, Selection::ALL, &mut |_| Ok(()), &stages))?;
+    let results = rayon::scope(|_| analyse(&prepared, Selection::Listed, &mut |_| Ok(()), &stages))?;
     let total = (cpu() - cpu_0, wall_0.elapsed().as_secs_f64());
     let (eigenvalues, vectors) = pairs(&results);
     if let Some(file) = option("--vectors") {
@@ -141,7 +141,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let stages = stages.0.into_inner().expect("no panic while timing").0;
     let phases: Vec<_> =
         stages.iter().map(|s| serde_json::json!({ "name": s.name, "cpu": s.cpu, "wall": s.wall })).collect();
-    let complex = results.complex.as_ref().map(|c| &c.modes);
+    let complex = results.get::<ComplexResult>().map(|c| &c.modes);
     let size = results.size;
     let line = serde_json::json!({
         "program": "stridor", "dofs": size.dofs, "nonzeros": size.nonzeros,

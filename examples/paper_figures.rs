@@ -5,6 +5,7 @@ use std::error::Error;
 use std::path::Path;
 use stridor::case::read_case;
 use stridor::job::{Histories, Prepared, Selection, Stage, analyse};
+use stridor::results::{ComplexResult, TransientResult};
 
 /// Room for the words below the lowest panel, beyond the numbers [px].
 const WORDS: u32 = 26;
@@ -114,15 +115,17 @@ fn respond(folder: &Path, part: &Part, value: f64) -> Result<Response, stridor::
         histories.keep(&stage);
         Ok(())
     };
-    let results = analyse(&Prepared::new(&case)?, Selection::TRANSIENT, &mut keep, &())?;
-    let run = results.transient.expect("the case has a [transient]");
+    let results = analyse(&Prepared::new(&case)?, Selection::Only("transient"), &mut keep, &())?;
+    let run = results.get::<TransientResult>().expect("the case has a [transient]");
     let history = histories.of("block_displacement");
     let [symbol, unit] = part.symbol;
     Ok(Response {
         label: format!("{symbol} = {value}{unit}"),
         step: run.time_step,
         x: history.expect("the case has a probe `block`").to_vec(),
-        grows: results.complex.is_some_and(|c| c.modes.modes.iter().any(|m| m.growth_rate() > 1e-6)),
+        grows: results
+            .get::<ComplexResult>()
+            .is_some_and(|c| c.modes.modes.iter().any(|m| m.growth_rate() > 1e-6)),
     })
 }
 

@@ -8,7 +8,7 @@ use std::path::Path;
 use stridor::case::Case;
 use stridor::error::Result;
 use stridor::job::{Prepared, Selection, analyse, export};
-use stridor::results::RunResults;
+use stridor::results::{ComplexResult, MeasuredComparison, NamedModes, RunResults, SteadyResult};
 
 /// Marsaglia's xorshift: numbers in [-1, 1), the same in every run.
 struct Random(u64);
@@ -135,11 +135,11 @@ fn write_matrix(folder: &Path, name: &str, a: &Mat<f64>, scale: &[f64], factor: 
 fn run(folder: &Path, text: &str) -> Result<RunResults> {
     let case = Case::parse("case.toml", text, folder.to_path_buf())?;
     let prepared = Prepared::new(&case)?;
-    analyse(&prepared, Selection::ALL, &mut |_| Ok(()), &())
+    analyse(&prepared, Selection::Listed, &mut |_| Ok(()), &())
 }
 
 fn eigenvalues(results: &RunResults) -> Vec<c64> {
-    results.complex.as_ref().unwrap().modes.modes.iter().map(|m| m.eigenvalue).collect()
+    results.get::<ComplexResult>().unwrap().modes.modes.iter().map(|m| m.eigenvalue).collect()
 }
 
 const MATRICES: &str = "[matrices]\nmass = \"m.mtx\"\nstiffness = \"k.mtx\"\ndamping = \"c.mtx\"\n[cea]\n";
@@ -193,10 +193,10 @@ fn an_exported_case_has_the_same_modes() {
         let exported = stridor::case::read_case(&folder.path().join("case.toml")).unwrap();
         let of = |case: &Case| {
             let prepared = Prepared::new(case).unwrap();
-            analyse(&prepared, Selection::CEA, &mut |_| Ok(()), &()).unwrap()
+            analyse(&prepared, Selection::Only("cea"), &mut |_| Ok(()), &()).unwrap()
         };
         let (direct, back) = (of(&case), of(&exported));
-        let (a, b) = (direct.steady.as_ref().unwrap(), back.steady.as_ref().unwrap());
+        let (a, b) = (direct.get::<SteadyResult>().unwrap(), back.get::<SteadyResult>().unwrap());
         for (p, q) in a.state.points.iter().zip(&b.state.points) {
             let scale = a.state.points.iter().map(|p| p.penetration.abs()).fold(0.0, f64::max);
             assert!((p.penetration - q.penetration).abs() <= 1e-9 * scale, "{name}");
@@ -286,10 +286,11 @@ probe.region = { on = "block", direction = [1, 0, 0] }
     assert!(stridor::case::read_case(&without.path().join("case.toml")).unwrap().transient.is_none());
     assert!(left_out.contains("[calibrate] is left out") && exported.calibrate.is_none(), "{left_out}");
     let of = |case: &Case| {
-        let selection = Selection::COMPARE;
+        let selection = Selection::Measured;
         analyse(&Prepared::new(case).unwrap(), selection, &mut |_| Ok(()), &()).unwrap()
     };
-    let row = |case: &Case| of(case).measured.iter().find(|m| m.name == "tap").unwrap().rows[0];
+    let row =
+        |case: &Case| of(case).all::<MeasuredComparison>().iter().find(|m| m.name == "tap").unwrap().rows[0];
     assert_eq!(exported.measured["tap"].file.as_deref(), Some("measured_tap.csv"));
     assert_eq!((row(&exported).mode, row(&exported).damping_ratio), (row(&case).mode, Some(0.01)));
 }
@@ -303,7 +304,7 @@ fn left_vectors_are_kept_for_what_needs_them() {
     }
     let left = |cea: &str| -> Vec<usize> {
         let results = run(folder.path(), &format!("{MATRICES}band = [0, 250]\n{cea}")).unwrap();
-        results.complex.unwrap().modes.modes.iter().map(|mode| mode.left.len()).collect()
+        results.get::<ComplexResult>().unwrap().modes.modes.iter().map(|mode| mode.left.len()).collect()
     };
     let all = left("");
     assert!(!all.is_empty() && all.iter().all(|n| *n == 40));
@@ -384,7 +385,7 @@ fn an_exported_and_reread_file_of_rows_names_its_faults() {
         MATRICES.replace("[cea]", "dofs = \"dofs.csv\"\n[modes.all]\ncount = 2\n[cea]") + "band = [0, 100]";
     write("dofs.csv", "dof,node,uz,rx,x,y,z\n1,7,1,0,0.1,0.2,0.3\n2,7,0,1,0.1,0.2,0.3\n");
     let results = run(folder.path(), &text).unwrap();
-    let modes = &results.modes[0];
+    let modes = results.all::<NamedModes>()[0];
     assert_eq!(results.geometry.nodes, [[0.1, 0.2, 0.3]]);
     assert!(modes.shapes[0][0].iter().filter(|u| **u != 0.0).count() == 1 && modes.modes.len() == 2);
     write("dofs.csv", "dof,node,uz,q\n1,7,1,0\n");

@@ -8,6 +8,7 @@ use stridor::job::{Prepared, Selection, analyse};
 use stridor::linalg::c64;
 use stridor::mesh::generate::{Faces, structured_plate};
 use stridor::mesh::{Element, Mesh, gmsh};
+use stridor::results::ComplexResult;
 use stridor::stability::ComplexMode;
 
 /// A pad on the face of a disc. What has a direction is written as x, y and z of the model.
@@ -172,8 +173,8 @@ fn eigenvalues(case: &str, mesh: &str) -> Vec<Value> {
     std::fs::write(folder.path().join("mesh.msh"), mesh).expect("a file");
     let case = Case::parse("the case", case, folder.path().to_path_buf()).expect("a sound case");
     let prepared = Prepared::new(&case).expect("a sound model");
-    let results = analyse(&prepared, Selection::ALL, &mut |_| Ok(()), &()).expect("results");
-    let modes = results.complex.expect("complex modes").modes.modes;
+    let mut results = analyse(&prepared, Selection::Listed, &mut |_| Ok(()), &()).expect("results");
+    let modes = results.take::<ComplexResult>().expect("complex modes").modes.modes;
     let error = |mode: &ComplexMode| 10.0 * mode.eigenvalue_error + ROUND_OFF * mode.condition;
     modes.iter().map(|mode| (mode.eigenvalue, error(mode))).collect()
 }

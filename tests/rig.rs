@@ -9,6 +9,7 @@ use stridor::equilibrium::{SteadyOptions, directions, linearize, solve_steady};
 use stridor::job::{Prepared, Selection, analyse};
 use stridor::linalg::c64;
 use stridor::modal::{ModesWanted, compute};
+use stridor::results::{ComplexResult, SensitivityResult};
 use stridor::stability::{ComplexMode, complex_modes};
 
 /// The reference case with a large hub and on a mesh so coarse that dense algebra can follow.
@@ -116,8 +117,9 @@ fn by_rerun(case: &Case, path: &str, value: f64, step: f64, lambda: &[c64]) -> V
     let at = |p: f64| -> Vec<c64> {
         let case = case.with_parameter(path, p).expect("the case accepts it");
         let prepared = Prepared::new(&case).expect("a sound rig");
-        let results = analyse(&prepared, Selection::CEA, &mut |_| Ok(()), &()).expect("an analysis");
-        let modes = results.complex.expect("complex modes").modes.modes;
+        let mut results =
+            analyse(&prepared, Selection::Only("cea"), &mut |_| Ok(()), &()).expect("an analysis");
+        let modes = results.take::<ComplexResult>().expect("complex modes").modes.modes;
         let distance = |m: &ComplexMode, l: &c64| (m.eigenvalue - l).norm();
         let nearest = |l: &c64| modes.iter().min_by(|a, b| distance(a, l).total_cmp(&distance(b, l)));
         lambda.iter().map(|l| nearest(l).expect("a mode").eigenvalue).collect()
@@ -134,8 +136,8 @@ fn sensitivities_of_the_rig_equal_differences_of_runs_anew() {
     for prestress in [false, true] {
         let case = sensitive_rig(prestress);
         let prepared = Prepared::new(&case).expect("a sound rig");
-        let results = analyse(&prepared, Selection::ALL, &mut |_| Ok(()), &()).expect("an analysis");
-        let found = results.sensitivity.expect("sensitivities");
+        let mut results = analyse(&prepared, Selection::Listed, &mut |_| Ok(()), &()).expect("an analysis");
+        let found = results.take::<SensitivityResult>().expect("sensitivities");
         assert!(found.left_out.is_empty(), "{:?}", found.left_out);
         let lambda: Vec<c64> = found.modes.iter().map(|m| m.eigenvalue).collect();
         assert!(lambda.iter().all(|l| l.re > 0.0));

@@ -1,19 +1,25 @@
-//! `stridor run`, `modes`, `cea` and `sweep`.
+//! `stridor run`, `compare`, and a subcommand for every analysis.
 
 use super::progress::Bars;
 use super::{Common, give, say};
 use crate::case::read_case;
 use crate::error::Result;
-use crate::job::{Selection, run_case};
+use crate::job::{ANALYSES, Selection, run_case};
 use crate::report;
-use clap::Args;
+use clap::{ArgMatches, Args, FromArgMatches, Subcommand};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// What the analysis commands take.
+/// A subcommand that runs analyses.
+pub struct Analyse {
+    selection: Selection,
+    options: Options,
+}
+
+/// The options of these subcommands.
 #[derive(Args)]
-pub struct Options {
+struct Options {
     /// The case file (TOML)
     case: PathBuf,
     /// The folder for the results; `results/NAME` by default, NAME being the case file's, or its folder's for case.toml
@@ -24,10 +30,51 @@ pub struct Options {
     resume: bool,
 }
 
-pub fn run(options: &Options, common: &Common, selection: Selection) -> Result<ExitCode> {
+/// Name, help and analyses of every subcommand.
+fn commands() -> impl Iterator<Item = (&'static str, &'static str, Selection)> {
+    let run = ("run", "Run every analysis of a case and write a results folder", Selection::Listed);
+    let each = ANALYSES.map(|analysis| (analysis.name(), analysis.about(), Selection::Only(analysis.name())));
+    let about = "What tests measured beside the real modes and frequency responses that they are of";
+    std::iter::once(run).chain(each).chain([("compare", about, Selection::Measured)])
+}
+
+impl Subcommand for Analyse {
+    fn augment_subcommands(command: clap::Command) -> clap::Command {
+        commands().fold(command, |command, (name, about, _)| {
+            command.subcommand(Options::augment_args(clap::Command::new(name)).about(about))
+        })
+    }
+
+    fn augment_subcommands_for_update(command: clap::Command) -> clap::Command {
+        Self::augment_subcommands(command)
+    }
+
+    fn has_subcommand(name: &str) -> bool {
+        commands().any(|(own, ..)| own == name)
+    }
+}
+
+impl FromArgMatches for Analyse {
+    fn from_arg_matches(matches: &ArgMatches) -> std::result::Result<Self, clap::Error> {
+        let chosen = matches.subcommand().and_then(|(name, inner)| {
+            commands().find(|(own, ..)| *own == name).map(|found| (found.2, inner))
+        });
+        let (selection, inner) =
+            chosen.ok_or_else(|| clap::Error::new(clap::error::ErrorKind::InvalidSubcommand))?;
+        Ok(Analyse { selection, options: Options::from_arg_matches(inner)? })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> std::result::Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+pub fn run(analyse: &Analyse, common: &Common) -> Result<ExitCode> {
+    let Analyse { selection, options } = analyse;
     let case = read_case(&options.case)?;
     let out = options.out.clone().unwrap_or_else(|| PathBuf::from("results").join(case_name(&options.case)));
-    let results = run_case(&case, selection, &out, options.resume, &Bars::new(common.quiet));
+    let results = run_case(&case, *selection, &out, options.resume, &Bars::new(common.quiet));
     let results = results.map_err(|error| case.places.locate(error))?;
     if common.json {
         give(crate::results::summary_json(&results))?;

@@ -48,7 +48,7 @@ pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
             size.dofs,
             size.contact_points
         ))?;
-        if let Some(expected) = expected_memory(&prepared, Selection::ALL)? {
+        if let Some(expected) = expected_memory(&prepared, Selection::Listed)? {
             say(format!(
                 "A run is expected to take about {} of memory: {:.2e} entries of a factor, about {:.0} real modes.",
                 expected.words(),

@@ -45,24 +45,8 @@ struct Common {
 
 #[derive(Subcommand)]
 enum Action {
-    /// Run every analysis of a case and write a results folder
-    Run(analyse::Options),
-    /// Real modes only
-    Modes(analyse::Options),
-    /// Steady sliding and complex eigenvalues only
-    Cea(analyse::Options),
-    /// Complex eigenvalues, what they answer to most, and where a mass or a damper helps
-    Sensitivity(analyse::Options),
-    /// Complex eigenvalues, and the sweeps and maps of the case
-    Sweep(analyse::Options),
-    /// Complex eigenvalues, and motion in time from steady sliding
-    Transient(analyse::Options),
-    /// Frequency responses: motion at some places for a harmonic force at another
-    Frf(analyse::Options),
-    /// What tests measured beside the real modes and frequency responses that they are of
-    Compare(analyse::Options),
-    /// Find numbers of the case from measured frequencies, and what the agreement is worth
-    Calibrate(analyse::Options),
+    #[command(flatten)]
+    Analyse(analyse::Analyse),
     /// Search for numbers of a case inside bounds, so that it meets facts of any kind
     Search(search::Options),
     /// Check a case and its mesh without running it, and list its parameters
@@ -113,15 +97,7 @@ fn too_large_is_an_error() {
 fn act(command: &Command) -> Result<ExitCode> {
     let common = &command.common;
     match &command.action {
-        Action::Run(options) => analyse::run(options, common, crate::job::Selection::ALL),
-        Action::Modes(options) => analyse::run(options, common, crate::job::Selection::MODES),
-        Action::Cea(options) => analyse::run(options, common, crate::job::Selection::CEA),
-        Action::Sensitivity(options) => analyse::run(options, common, crate::job::Selection::SENSITIVITY),
-        Action::Sweep(options) => analyse::run(options, common, crate::job::Selection::SWEEPS),
-        Action::Transient(options) => analyse::run(options, common, crate::job::Selection::TRANSIENT),
-        Action::Frf(options) => analyse::run(options, common, crate::job::Selection::FRF),
-        Action::Compare(options) => analyse::run(options, common, crate::job::Selection::COMPARE),
-        Action::Calibrate(options) => analyse::run(options, common, crate::job::Selection::CALIBRATE),
+        Action::Analyse(options) => analyse::run(options, common),
         Action::Search(options) => search::run(options, common),
         Action::Check(options) => check::run(options, common),
         Action::Schema(options) => schema::run(options, common),

@@ -72,7 +72,7 @@ pub struct Table<'a> {
     pub columns: Vec<Variable<'a>>,
     /// Fields over the rows that are too large for JSON and CSV.
     pub fields: Vec<Variable<'a>>,
-    /// The CSV file, if it gets one.
+    /// The name of its CSV file without the extension, if it gets one.
     pub file: Option<String>,
     /// Whether it is in JSON; long tables are not.
     pub json: bool,
@@ -150,6 +150,28 @@ impl<'a> Group<'a> {
         self
     }
 
+    /// With what another group holds at the top of a file: its entries where it has no name, the group itself where it has
+    /// one. Lists of one key become one.
+    #[must_use]
+    pub fn merged(mut self, other: Group<'a>) -> Self {
+        if !other.key.is_empty() {
+            return self.group(other);
+        }
+        for entry in other.entries {
+            let same = self.entries.iter_mut().find_map(|own| match (own, &entry) {
+                (Entry::List(own, groups), Entry::List(key, _)) if own == key => Some(Ok(groups)),
+                (Entry::Parts(own, _, tables), Entry::Parts(key, ..)) if own == key => Some(Err(tables)),
+                _ => None,
+            });
+            match (same, entry) {
+                (Some(Ok(groups)), Entry::List(_, more)) => groups.extend(more),
+                (Some(Err(tables)), Entry::Parts(_, _, more)) => tables.extend(more),
+                (_, entry) => self.entries.push(entry),
+            }
+        }
+        self
+    }
+
     /// All tables of the group and its groups, in order.
     pub fn tables(&self) -> Vec<&Table<'a>> {
         let mut found = Vec::new();
@@ -204,7 +226,7 @@ impl<'a> Table<'a> {
         self
     }
 
-    /// With a CSV file.
+    /// With a CSV file of this name, which gets its extension when it is written.
     #[must_use]
     pub fn file(mut self, name: impl Into<String>) -> Self {
         self.file = Some(name.into());

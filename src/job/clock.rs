@@ -6,7 +6,7 @@ use std::time::Instant;
 
 /// Collects the wall times of phases.
 #[derive(Default)]
-pub(super) struct Clock {
+pub struct Clock {
     pub(super) phases: Vec<(String, f64)>,
 }
 

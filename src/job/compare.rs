@@ -77,54 +77,65 @@ pub fn has_measured_frf(case: &Case, name: &str) -> bool {
 }
 
 impl Tests {
-    /// Reads the tests of the case and finds their places; asks `frfs` for the responses that were measured.
+    /// The frequencies that sets of real modes list themselves, and the tests of their modes; those of nothing at all, too,
+    /// for their warnings. Each has a name of its own.
     ///
     /// # Errors
     /// Every file that cannot be read, and every point of a shape that lies off the mesh.
-    pub fn new(prepared: &Prepared<'_>, frfs: &mut [Frf<'_>]) -> Result<Tests> {
+    pub fn of_modes(prepared: &Prepared<'_>) -> Result<Tests> {
         let case = prepared.case;
-        let (mut faults, mut tests, mut warnings) = (Faults::new(), Vec::new(), Vec::new());
-        for (name, analysis) in case.modes.iter().filter(|(_, analysis)| !analysis.measured.is_empty()) {
-            tests.push(Test::listed(name, analysis));
+        let mut faults = Faults::new();
+        let listed = case.modes.iter().filter(|(_, analysis)| !analysis.measured.is_empty());
+        let tests = listed.map(|(name, analysis)| Test::listed(name, analysis)).collect();
+        let mut all = Tests { tests, warnings: Vec::new() };
+        for (name, data) in case.measured.iter().filter(|(_, data)| data.of.is_some() || data.frf.is_none()) {
+            let Some(set) = faults.take(all.read(case, name, data)) else { continue };
+            let taken = |tests: &[Test], name: &String| tests.iter().any(|test| test.name == *name);
+            let numbered = (2..).map(|k| format!("{name} {k}"));
+            let own = std::iter::once(name.clone()).chain(numbered).find(|name| !taken(&all.tests, name));
+            let test = faults.take(Test::placed(prepared, name, data, set));
+            all.tests.extend(test.zip(own).map(|(test, name)| Test { name, ..test }));
         }
+        faults.into_result(all)
+    }
+
+    /// The tests of frequency responses; asks `frfs` for the responses that were measured.
+    ///
+    /// # Errors
+    /// Every file that cannot be read.
+    pub fn of_responses(prepared: &Prepared<'_>, frfs: &mut [Frf<'_>]) -> Result<Tests> {
+        let case = prepared.case;
+        let (mut faults, mut all) = (Faults::new(), Tests::default());
         for (name, data) in &case.measured {
-            let Some((set, told)) = faults.take(measured_set(case, name)) else { continue };
-            warnings.extend(told);
-            let Some(test) = faults.take(Test::placed(prepared, name, data, set)) else { continue };
-            let test = match data.frf.as_deref().and_then(|of| frfs.iter_mut().find(|frf| frf.name() == of)) {
-                Some(frf) => Test { responses: Some(Responses::new(data, &test.set, frf)), ..test },
-                None => test,
-            };
-            let left_out = |count: usize, what: &str, key: &str| {
-                format!("Measured {name}: {count} {what} were not compared, as it has no `{key}`")
-            };
-            if data.of.is_none() && !test.set.modes.is_empty() {
-                warnings.push(left_out(test.set.modes.len(), "modes", "of"));
-            }
-            if data.frf.is_none() && !test.set.frfs.is_empty() {
-                warnings.push(left_out(test.set.frfs.len(), "frequency responses", "frf"));
-            }
-            tests.push(test);
+            let Some(of) = data.frf.as_deref() else { continue };
+            let Some(set) = faults.take(all.read(case, name, data)) else { continue };
+            let frf = frfs.iter_mut().find(|frf| frf.name() == of);
+            let responses = frf.map(|frf| Responses::new(data, &set, frf));
+            all.tests.push(Test { responses, ..Test::unplaced(name, data, set) });
         }
-        faults.into_result(Tests { tests, warnings })
+        faults.into_result(all)
     }
 
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.tests.is_empty()
+    /// The measured data called `name`; warns of what is not compared.
+    fn read(&mut self, case: &Case, name: &str, data: &MeasuredData) -> Result<MeasuredSet> {
+        let (set, mut warnings) = measured_set(case, name)?;
+        let left_out = |count: usize, what: &str, key: &str| {
+            format!("Measured {name}: {count} {what} were not compared, as it has no `{key}`")
+        };
+        if data.of.is_none() && !set.modes.is_empty() {
+            warnings.push(left_out(set.modes.len(), "modes", "of"));
+        }
+        if data.frf.is_none() && !set.frfs.is_empty() {
+            warnings.push(left_out(set.frfs.len(), "frequency responses", "frf"));
+        }
+        self.warnings.extend(warnings);
+        Ok(set)
     }
 
-    /// The tests of an analysis beside its modes, which are set `index`.
-    pub fn modes(
-        &self,
-        index: usize,
-        analysis: &ModesAnalysis,
-        named: &NamedModes,
-    ) -> Vec<MeasuredComparison> {
+    /// The tests of a set of real modes beside it.
+    pub fn modes(&self, analysis: &ModesAnalysis, named: &NamedModes) -> Vec<MeasuredComparison> {
         let own = self.tests.iter().filter(|test| test.of.as_deref() == Some(&named.name));
-        own.filter(|test| !test.set.modes.is_empty())
-            .map(|test| test.compare(index, analysis, named))
-            .collect()
+        own.filter(|test| !test.set.modes.is_empty()).map(|test| test.compare(analysis, named)).collect()
     }
 
     /// The tests of a frequency response beside the receptances that they asked for \[m/N\].
@@ -168,18 +179,24 @@ impl Test {
     fn placed(prepared: &Prepared<'_>, name: &str, data: &MeasuredData, set: MeasuredSet) -> Result<Test> {
         let of = data.of.as_ref().filter(|_| set.modes.iter().any(|mode| mode.shape.is_some()));
         let place = |of: &String| Sensors::new(prepared, name, data, &set, &prepared.case.modes[of]);
-        Ok(Test {
+        let (sensors, nodes) = (of.map(place).transpose()?, prepared.model.nodes.clone());
+        Ok(Test { sensors, nodes, ..Test::unplaced(name, data, set) })
+    }
+
+    /// A test without the places of its shapes.
+    fn unplaced(name: &str, data: &MeasuredData, set: MeasuredSet) -> Test {
+        Test {
             name: name.to_string(),
             of: data.of.clone(),
             source: data.source.clone(),
-            sensors: of.map(place).transpose()?,
-            nodes: prepared.model.nodes.clone(),
+            sensors: None,
+            nodes: Vec::new(),
             set,
             responses: None,
-        })
+        }
     }
 
-    fn compare(&self, index: usize, analysis: &ModesAnalysis, named: &NamedModes) -> MeasuredComparison {
+    fn compare(&self, analysis: &ModesAnalysis, named: &NamedModes) -> MeasuredComparison {
         // Rigid bodies have no frequency to compare.
         let first = named.modes.rigid_bodies;
         let scale = analysis.frequency_scale;
@@ -202,14 +219,17 @@ impl Test {
             deviation: mode.deviation,
             damping_ratio: mode.damping_ratio,
             mode: pair.map(|pair| first + pair.mode),
+            computed_hz: pair.map(|pair| hz[pair.mode]),
+            computed_damping_ratio: pair.and_then(|pair| named.damping_ratio.get(first + pair.mode)).copied(),
             mac: pair.and_then(|pair| pair.mac),
         });
         MeasuredComparison {
             name: self.name.clone(),
-            modes: index,
+            set: named.name.clone(),
             source: self.source.clone(),
             rows: rows.collect(),
             frequency_scale: scale,
+            levels_hz: levels.iter().map(|level| hz[level.start]).collect(),
             levels: levels.iter().map(|level| first + level.start..first + level.end).collect(),
             mac,
             placed: self.sensors.as_ref().map(|sensors| sensors.placed),

@@ -35,14 +35,13 @@ struct Found {
 /// of the whole, which `basis` gives where they are known already. Left vectors are kept where `left_vectors` or the case asks
 /// for them.
 pub fn complex_result<'a>(
-    prepared: &'a Prepared,
-    state: &SteadySliding,
+    (prepared, state): (&'a Prepared, &SteadySliding),
+    cea: &CeaAnalysis,
     basis: Option<RealModes>,
     left_vectors: bool,
     clock: &mut Clock,
     observer: &dyn Observer,
-) -> Result<Option<(ComplexResult, Cow<'a, System>, RealModes)>> {
-    let Some(cea) = &prepared.case.cea else { return Ok(None) };
+) -> Result<(ComplexResult, Cow<'a, System>, RealModes)> {
     let structure = &prepared.system.structure;
     let preloaded = match equilibrium::tangent_stiffness(&prepared.system, &state.displacement)? {
         Cow::Borrowed(_) => Cow::Borrowed(structure),
@@ -91,7 +90,7 @@ pub fn complex_result<'a>(
         confirmation,
         modes,
     };
-    Ok(Some((complex, system, basis)))
+    Ok((complex, system, basis))
 }
 
 /// What a complex eigenvalue analysis needs.

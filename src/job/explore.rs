@@ -58,16 +58,19 @@ pub(super) fn explore(
     for (name, analysis) in &prepared.case.sweep {
         let result = explorer.sweep(name, analysis)?;
         record(Stage::Found(&result))?;
-        results.sweeps.push(result);
+        results.records.push(result);
     }
     for (name, analysis) in &prepared.case.map {
         let start = known.get(name).cloned().unwrap_or_default();
         let (result, failure) = explorer.map(name, analysis, start, record)?;
         results.warnings.extend(failure);
-        results.maps.push(result);
+        results.records.push(result);
     }
-    results.damping = explorer.damping()?;
-    results.damping.iter().try_for_each(|damping| record(Stage::Found(damping)))
+    if let Some(verdicts) = explorer.damping()? {
+        record(Stage::Found(&verdicts))?;
+        results.records.push(verdicts);
+    }
+    Ok(())
 }
 
 /// Every damping scalar that a sweep, a map or the verdicts vary: path, its value, another value that the case accepts.

@@ -1,7 +1,7 @@
 //! How much memory a run takes at its peak, worked out before it begins.
 
+use super::analyses::Selection;
 use super::prepared::Prepared;
-use super::selection::Selection;
 use super::states::keeps_the_structure;
 use crate::error::{Error, Result};
 use crate::linalg::factor::SymbolicFactor;
@@ -95,17 +95,18 @@ pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Opti
         Some(_) => symbolic.inertia(&pencil((TAU * hz).powi(2))).map(|inertia| inertia.negative as f64),
     };
     let mut modes = 0.0_f64;
-    for wanted in case.modes.values().filter(|_| selection.modes) {
+    for wanted in case.modes.values().filter(|_| selection.includes("modes", case)) {
         modes = modes.max(wanted.below.map_or(Ok(wanted.count.unwrap_or(1) as f64), below)?);
     }
-    let complex = case.cea.as_ref().filter(|_| selection.cea);
+    let complex = case.cea.as_ref().filter(|_| selection.includes("cea", case));
     if let Some(cea) = complex {
         modes = modes.max(below(cea.basis_below)?);
     }
     let run = Run { dofs, entries: pattern.compute_nnz(), fill, modes: modes.min(dofs as f64) };
     let swept = case.sweep.values().map(|sweep| &sweep.parameter);
     let mut studies = None;
-    for path in swept.chain(case.map.values().flat_map(|map| &map.parameters)).filter(|_| selection.sweeps) {
+    let swept = swept.chain(case.map.values().flat_map(|map| &map.parameters));
+    for path in swept.filter(|_| selection.includes("sweep", case)) {
         let kind = if keeps_the_structure(case, path)? { Kind::Study } else { Kind::StudyOfStructures };
         studies = studies.max(Some(kind));
     }

@@ -4,7 +4,7 @@
 use crate::error::{Error, Result};
 use crate::linalg::c64;
 use crate::numbers::hertz;
-use crate::results::RunResults;
+use crate::results::{CalibrationResult, ComplexResult, RunResults};
 use crate::stability::{CloseCall, ComplexMode, LARGEST_BACKWARD_ERROR, LARGEST_EIGENVALUE_ERROR};
 use std::f64::consts::TAU;
 
@@ -23,7 +23,7 @@ pub(super) fn results_hold(results: &RunResults) -> Result<()> {
 /// Complex modes whose errors are above the bounds are neither stable nor unstable.
 fn modes_are_accurate(results: &RunResults) -> Result<()> {
     const LISTED: usize = 5;
-    let modes = results.complex.iter().flat_map(|c| &c.modes.modes);
+    let modes = results.get::<ComplexResult>().into_iter().flat_map(|c| &c.modes.modes);
     let wrong: Vec<&ComplexMode> = modes.filter(|mode| !mode.accurate()).collect();
     if wrong.is_empty() {
         return Ok(());
@@ -47,7 +47,7 @@ fn modes_are_accurate(results: &RunResults) -> Result<()> {
 
 /// The values of a fit that has not converged are not the best ones.
 fn calibration_converged(results: &RunResults) -> Result<()> {
-    let fit = results.calibration.as_ref().map(|found| &found.calibration.best().fit);
+    let fit = results.get::<CalibrationResult>().map(|found| &found.calibration.best().fit);
     let Some(fit) = fit.filter(|fit| !fit.converged) else { return Ok(()) };
     Err(Error::analysis(
         "calibration",
@@ -61,7 +61,7 @@ fn calibration_converged(results: &RunResults) -> Result<()> {
 
 /// A mode that was missed is an error, but only once the results are there to look at.
 fn nothing_is_missed(results: &RunResults) -> Result<()> {
-    let certificate = results.complex.as_ref().and_then(|c| c.certificate.as_ref());
+    let certificate = results.get::<ComplexResult>().and_then(|c| c.certificate.as_ref());
     let Some(wrong) = certificate.filter(|c| !c.agrees()) else { return Ok(()) };
     let ([low, high], [slow, fast]) = (wrong.band_hz, wrong.growth);
     let near = |call: &CloseCall| {
@@ -85,7 +85,7 @@ fn nothing_is_missed(results: &RunResults) -> Result<()> {
 
 /// So is a disagreement between the two methods.
 fn two_methods_agree(results: &RunResults) -> Result<()> {
-    let confirmation = results.complex.as_ref().and_then(|c| c.confirmation.as_ref());
+    let confirmation = results.get::<ComplexResult>().and_then(|c| c.confirmation.as_ref());
     let Some(wrong) = confirmation.filter(|c| !c.holds()) else { return Ok(()) };
     let list = |all: &[c64]| {
         let hz: Vec<String> = all.iter().map(|z| hertz(z.im / TAU, 2)).collect();
@@ -111,7 +111,7 @@ mod tests {
     fn what_has_not_converged_fails_the_run() {
         let mut results = sample::rig();
         results_hold(&results).unwrap();
-        let modes = &mut results.complex.as_mut().unwrap().modes.modes;
+        let modes = &mut results.get_mut::<ComplexResult>().unwrap().modes.modes;
         modes.iter_mut().for_each(|mode| mode.backward_error = 1e-9);
         let error = results_hold(&results).unwrap_err();
         let text = error.to_string();
@@ -121,9 +121,10 @@ mod tests {
         );
         assert_eq!(error.exit_code(), 1);
 
-        let mut results = RunResults { calibration: Some(sample::calibration()), ..RunResults::default() };
+        let mut results = RunResults::default();
+        results.records.push(sample::calibration());
         let fit = |results: &mut RunResults, converged: bool| {
-            results.calibration.as_mut().unwrap().calibration.ranked[0].fit.converged = converged
+            results.get_mut::<CalibrationResult>().unwrap().calibration.ranked[0].fit.converged = converged
         };
         fit(&mut results, true);
         results_hold(&results).unwrap();

@@ -7,6 +7,7 @@
 //! A case may give M, C and K themselves instead of a mesh; [`export()`] writes any case in that form.
 
 mod analyse;
+mod analyses;
 mod calibrate;
 mod clock;
 mod compare;
@@ -30,10 +31,11 @@ mod place;
 mod prepared;
 mod receptance;
 mod regions;
+mod run;
+mod run_case;
 #[cfg(test)]
 mod samples;
 mod scalars;
-mod selection;
 mod sensitivity;
 mod sensors;
 mod singular;
@@ -45,13 +47,14 @@ mod transient;
 mod travel;
 mod verify;
 
-pub use analyse::{analyse, check_case, run_case};
+pub use analyse::{analyse, check_case};
+pub use analyses::{ANALYSES, Analysis, Selection};
 pub use calibrate::Coordinate;
 pub use export::export;
 pub use imported::{read_points, read_rows};
 pub use measured::{measured_set, read_modes};
 pub use memory::{ExpectedMemory, expected_memory};
 pub use prepared::Prepared;
-pub use selection::{Selection, Sensitivities};
+pub use run_case::run_case;
 pub use sink::{Histories, KnownMap, KnownMaps, ResultSink, Stage};
 pub use states::Whole;

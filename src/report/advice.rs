@@ -2,11 +2,11 @@
 
 use super::colours::{INK, MUTED};
 use super::format::{hertz, signed, significant};
-use super::html::Picture;
 use super::plate::{Plate, colour_bar};
+use super::section::Picture;
 use super::svg::{Anchor, Ink, Point, Sheet};
 use super::view::Fit;
-use crate::results::{ModeSensitivity, RunResults};
+use crate::results::{ModeSensitivity, RunResults, SensitivityResult};
 use std::f64::consts::TAU;
 
 /// Modes at most, the strongest growth first.
@@ -31,7 +31,7 @@ const THINGS: [Thing; 2] = [
 /// The picture, when there is advice and a plate to show it on.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let mut modes: Vec<&ModeSensitivity> =
-        results.sensitivity.as_ref()?.modes.iter().filter(|mode| mode.advice.is_some()).collect();
+        results.get::<SensitivityResult>()?.modes.iter().filter(|mode| mode.advice.is_some()).collect();
     modes.sort_by(|a, b| b.eigenvalue.re.total_cmp(&a.eigenvalue.re));
     modes.truncate(MOST_MODES);
     modes.sort_by(|a, b| a.eigenvalue.im.total_cmp(&b.eigenvalue.im));
@@ -79,7 +79,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let caption = "Where a small thing mounted on the structure changes the growth rate, to first order. Each plate has its \
                    own colour scale; cross: the best place on the whole structure."
         .to_string();
-    Some(Picture { file: "advice.svg", caption, svg: sheet.finish() })
+    Some(Picture { file: "advice".into(), caption, svg: sheet.finish() })
 }
 
 fn draw_cell(sheet: &mut Sheet, [x, y]: Point, plate: &Plate, values: &[f64], best: Option<usize>) {
@@ -138,7 +138,7 @@ mod tests {
         results.geometry = Geometry::default();
         assert!(picture(&results).is_none());
         let mut results = sample::rig();
-        results.sensitivity.as_mut().unwrap().modes.iter_mut().for_each(|mode| mode.advice = None);
+        results.get_mut::<SensitivityResult>().unwrap().modes.iter_mut().for_each(|mode| mode.advice = None);
         assert!(picture(&results).is_none());
     }
 }

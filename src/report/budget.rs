@@ -3,8 +3,8 @@
 use super::chart::{Area, above, below, bold, colour, sheet, text, widened};
 use super::colours::{INK, MUTED};
 use super::format::{given, hertz, signed};
-use super::html::Picture;
-use crate::results::RunResults;
+use super::section::Picture;
+use crate::results::{ComplexResult, RunResults};
 use crate::stability::{ComplexMode, GrowthBudget};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -27,7 +27,7 @@ const TERMS: [Term; 4] = [
 
 /// The picture, when a mode is unstable.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
-    let all = &results.complex.as_ref()?.modes.modes;
+    let all = &results.get::<ComplexResult>()?.modes.modes;
     let mut modes: Vec<&ComplexMode> =
         all.iter().filter(|m| m.unstable() && m.growth_rate().is_finite()).collect();
     modes.sort_by(|a, b| b.growth_rate().total_cmp(&a.growth_rate()));
@@ -39,7 +39,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let svg = sheet(SIZE, |area| draw(area, &modes))?;
     let caption =
         "Where the growth of each unstable mode comes from; the terms add up to σ (black line).".to_string();
-    Some(Picture { file: "growth_budget.svg", caption, svg })
+    Some(Picture { file: "growth_budget".into(), caption, svg })
 }
 
 /// The ends of the stack: what feeds the mode and what takes from it.
@@ -116,7 +116,7 @@ mod tests {
     #[test]
     fn the_stack_ends_where_the_terms_do_and_adds_up() {
         let results = sample::rig();
-        for mode in results.complex.as_ref().unwrap().modes.modes.iter() {
+        for mode in results.get::<ComplexResult>().unwrap().modes.modes.iter() {
             let (low, high) = ends(&mode.growth);
             assert!(low <= 0.0 && high >= 0.0 && (low + high - mode.growth_rate()).abs() < 1e-9);
         }
@@ -129,7 +129,7 @@ mod tests {
     fn round_off_and_absurd_growth_draw_too() {
         for factor in [1e-300, 1e-15, 1e-6, 1e12, 1e300] {
             let mut results = sample::rig();
-            for mode in &mut results.complex.as_mut().unwrap().modes.modes {
+            for mode in &mut results.get_mut::<ComplexResult>().unwrap().modes.modes {
                 mode.eigenvalue.re *= factor;
                 mode.growth.mode_coupling *= factor;
             }

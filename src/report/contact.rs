@@ -3,7 +3,7 @@
 use super::chart::{Area, bold, colour, sheet, text, widened};
 use super::colours::{ALARM, CALM, INK, MEASURED, MUTED};
 use super::format::{given, significant};
-use super::html::Picture;
+use super::section::Picture;
 use super::view::{Vector, cross, dot, unit};
 use crate::results::{RunResults, SteadyResult};
 use plotters::prelude::*;
@@ -28,7 +28,7 @@ struct Mark {
 
 /// The picture, when the first pair has a closed point.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
-    let steady = results.steady.as_ref()?;
+    let steady = results.get::<SteadyResult>()?;
     let (marks, axis) = marks(steady)?;
     let svg = sheet(SIZE, |area| draw(area, &marks, axis))?;
     let (name, ..) = steady.pairs.first()?;
@@ -39,7 +39,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     };
     let caption =
         format!("Contact “{name}” at steady sliding, near the closed points. Hollow marks are open.{edges}");
-    Some(Picture { file: "contact.svg", caption, svg })
+    Some(Picture { file: "contact".into(), caption, svg })
 }
 
 /// The points of the first pair near its closed ones, and the name of the axis they are drawn over.
@@ -177,7 +177,7 @@ mod tests {
     #[test]
     fn the_marks_carry_the_load_and_know_their_edge() {
         let mut results = sample::rig();
-        let steady = results.steady.as_mut().unwrap();
+        let steady = results.get_mut::<SteadyResult>().unwrap();
         // The far side of the rim is part of the pair and not of the picture.
         steady.points.push(("rim".into(), [0.0, 0.0, 0.15]));
         let mut far = steady.state.points[0];
@@ -195,7 +195,13 @@ mod tests {
     #[test]
     fn an_open_contact_has_no_picture() {
         let mut results = sample::rig();
-        results.steady.as_mut().unwrap().state.points.iter_mut().for_each(|p| p.forces.normal = 0.0);
+        results
+            .get_mut::<SteadyResult>()
+            .unwrap()
+            .state
+            .points
+            .iter_mut()
+            .for_each(|p| p.forces.normal = 0.0);
         assert!(picture(&results).is_none());
     }
 }

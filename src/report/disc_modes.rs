@@ -3,12 +3,12 @@
 use super::colours::{INK, MEASURED, MUTED};
 use super::contours::at_least;
 use super::format::{given, hertz, signed};
-use super::html::Picture;
 use super::plate::{Plate, colour_bar};
+use super::section::Picture;
 use super::svg::{Anchor, Ink, Point, Sheet};
 use super::view::{Fit, dot};
 use crate::modal::{DiscModeName, levels};
-use crate::results::{ComparedRow, Geometry, NamedModes, RunResults};
+use crate::results::{Geometry, MeasuredComparison, MeasuredRow, NamedModes, RunResults};
 use std::ops::Range;
 
 const MOST_COLUMNS: usize = 5;
@@ -19,12 +19,11 @@ const FOOT: f64 = 62.0;
 
 /// The picture, when a set of modes has named ones.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
-    let index = chosen_set(results)?;
-    let set = &results.modes[index];
+    let set = chosen_set(results)?;
     let disc = Disc::new(&results.geometry, set)?;
     let groups = groups(set);
-    let comparisons = results.measured.iter().filter(|m| m.modes == index);
-    let rows: Vec<ComparedRow> = comparisons.clone().flat_map(|m| m.compare(&results.modes)).collect();
+    let comparisons = results.all::<MeasuredComparison>().into_iter().filter(|m| m.is_of(set));
+    let rows: Vec<&MeasuredRow> = comparisons.clone().flat_map(|m| &m.rows).collect();
     let scale = comparisons.map(|m| m.frequency_scale).next();
     let shown = &groups[..groups.len().min(MOST)];
     let lines = shown.len().div_ceil(MOST_COLUMNS);
@@ -33,7 +32,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let mut sheet = Sheet::new(columns.max(4) as f64 * CELL[0] + 2.0 * MARGIN, foot + FOOT);
     for (k, group) in shown.iter().enumerate() {
         let corner = [MARGIN + (k % columns) as f64 * CELL[0], 0.5 * MARGIN + (k / columns) as f64 * CELL[1]];
-        let row = rows.iter().find(|row| row.mode.is_some_and(|mode| group.modes.contains(&mode)));
+        let row = rows.iter().copied().find(|row| row.mode.is_some_and(|mode| group.modes.contains(&mode)));
         draw_mode(&mut sheet, corner, &disc, set, group, (row, scale));
     }
     draw_legend(&mut sheet, foot, scale);
@@ -42,13 +41,16 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
         "Bending modes ({}) by (nodal diameters, nodal circles); ×2: two modes at one frequency{more}.",
         set.name
     );
-    Some(Picture { file: "modes_disc.svg", caption, svg: sheet.finish() })
+    Some(Picture { file: "modes_disc".into(), caption, svg: sheet.finish() })
 }
 
 /// The set with measured frequencies, or the first, among those whose modes have names.
-fn chosen_set(results: &RunResults) -> Option<usize> {
-    let named = |k: &usize| results.modes.get(*k).is_some_and(|set| set.names.iter().any(Option::is_some));
-    results.measured.iter().map(|m| m.modes).find(named).or((0..results.modes.len()).find(named))
+fn chosen_set(results: &RunResults) -> Option<&NamedModes> {
+    let sets = results.all::<NamedModes>();
+    let mut named = sets.into_iter().filter(|set| set.names.iter().any(Option::is_some));
+    let tests = results.all::<MeasuredComparison>();
+    let measured = named.clone().find(|set| tests.iter().any(|test| test.is_of(set)));
+    measured.or_else(|| named.next())
 }
 
 /// A mode that has a name, or the two of a double one.
@@ -129,7 +131,7 @@ fn draw_mode(
     disc: &Disc,
     set: &NamedModes,
     group: &Group,
-    (row, scale): (Option<&ComparedRow>, Option<f64>),
+    (row, scale): (Option<&MeasuredRow>, Option<f64>),
 ) {
     let radius = 74.0;
     let centre_x = corner[0] + 0.5 * CELL[0];
@@ -162,7 +164,7 @@ fn draw_mode(
         Some(row) => {
             let difference =
                 row.difference_percent().map_or(String::new(), |d| format!(" ({} %)", signed(d, 1)));
-            let text = format!("measured {} Hz{difference}", given(row.measured_hz));
+            let text = format!("measured {} Hz{difference}", given(row.frequency_hz));
             sheet.text([centre_x, y + 18.0], &text, Ink { colour: MEASURED, ..small });
         }
         None if scale.is_some() => sheet.text([centre_x, y + 18.0], "no measured peak paired", small),
@@ -200,9 +202,12 @@ mod tests {
     #[test]
     fn double_modes_share_a_disc_and_measured_ones_are_framed() {
         let results = sample::rig();
-        let groups = groups(&results.modes[0]);
+        let groups = groups(results.all::<NamedModes>()[0]);
         assert_eq!(groups.len(), 11);
-        assert_eq!(groups.iter().map(|g| g.modes.len()).sum::<usize>(), results.modes[0].modes.len());
+        assert_eq!(
+            groups.iter().map(|g| g.modes.len()).sum::<usize>(),
+            results.all::<NamedModes>()[0].modes.len()
+        );
         let svg = picture(&results).unwrap().svg;
         assert!(svg.contains("(4, 0) ×2  947.5 Hz") && svg.contains("measured 936 Hz (+1.2 %)"));
         assert_eq!(svg.matches("no measured peak paired").count(), 8);
@@ -212,7 +217,7 @@ mod tests {
     #[test]
     fn the_nodal_lines_are_where_the_shape_vanishes() {
         let results = sample::rig();
-        let set = &results.modes[0];
+        let set = results.all::<NamedModes>()[0];
         let disc = Disc::new(&results.geometry, set).unwrap();
         let k = set.names.iter().position(|n| n.is_some_and(|n| n.nodal_circles == 1)).unwrap();
         let w = disc.deflection(&set.shapes[k]);

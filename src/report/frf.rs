@@ -4,10 +4,10 @@ use super::axes::{Chart, WIDTH};
 use super::chart::{Area, colour, sheet, text};
 use super::colours::{ALARM, INK, MEASURED, MUTED, PARTS, SECOND};
 use super::format::{fixed, given, hertz, power};
-use super::html::{escape, figure, titled_table};
 use super::magnitude::{draw_magnitude, draw_phase, magnitude_axes, phase_axes};
-use super::tables::Table;
-use crate::results::{FrfResult, RunResults, write_result};
+use super::section::{Display, Picture, Section};
+use super::table::Table;
+use crate::results::{FrfResult, RunResults, file_name};
 use plotters::prelude::*;
 use std::error::Error;
 
@@ -16,32 +16,14 @@ const HIDDEN: f64 = 0.01;
 /// A measured resonance stands beside a mode that differs from it by less than this part.
 const NEAR: f64 = 0.05;
 
-/// Writes the picture of every response into the folder.
-pub(super) fn write(dir: &std::path::Path, results: &RunResults) -> crate::error::Result<()> {
-    for (name, svg) in pictures(results) {
-        write_result(dir, &name, svg.as_bytes())?;
-    }
-    Ok(())
-}
-
-/// Names of files and pictures, in the order of the responses.
-fn pictures(results: &RunResults) -> Vec<(String, String)> {
-    let mut names = crate::results::FileNames::default();
-    let drawn = |frf: &FrfResult| Some((format!("frf_{}.svg", names.next(&frf.name)), picture(frf)?));
-    results.frfs.iter().filter_map(drawn).collect()
-}
-
-/// The part of the page on frequency responses; empty when the run has none.
-pub(super) fn section(results: &RunResults) -> String {
-    let mut body = String::new();
-    for frf in &results.frfs {
-        body += &format!("<h2>Frequency response: {}</h2>\n", escape(&frf.name));
-        if let Some(svg) = picture(frf) {
-            body += &figure(&svg, &caption(frf));
-        }
-        body += &titled_table(&table(frf));
-    }
-    body
+/// Every frequency response.
+pub(super) fn sections(results: &RunResults) -> Vec<Section> {
+    let section = |frf: &FrfResult| {
+        Section::new(format!("Frequency response: {}", frf.name))
+            .pictures(picture(frf))
+            .tables(Display::Titled, [table(frf)])
+    };
+    results.all::<FrfResult>().into_iter().map(section).collect()
 }
 
 fn caption(frf: &FrfResult) -> String {
@@ -59,11 +41,11 @@ fn capital(word: &str) -> String {
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
-fn picture(frf: &FrfResult) -> Option<String> {
+fn picture(frf: &FrfResult) -> Option<Picture> {
     if !magnitudes(frf).any(|size| size > 0.0) {
         return None;
     }
-    sheet((WIDTH, 620), |area| {
+    let svg = sheet((WIDTH, 620), |area| {
         let (legend, main) = area.split_vertically(34);
         let (upper, lower) = main.split_vertically(390);
         for (k, response) in frf.responses.iter().enumerate() {
@@ -83,7 +65,8 @@ fn picture(frf: &FrfResult) -> Option<String> {
             draw_phase(&mut phases, points().map(|(hz, v)| (hz, v.arg())), (ink(k), 1))?;
         }
         Ok(())
-    })
+    })?;
+    Some(Picture { file: file_name("frf", &frf.name), caption: caption(frf), svg })
 }
 
 fn magnitudes(frf: &FrfResult) -> impl Iterator<Item = f64> + '_ {
@@ -127,7 +110,7 @@ fn shown(chart: &Chart, frf: &FrfResult) -> Vec<f64> {
 }
 
 /// The real modes of the band, and how much of each shows at each place.
-pub(super) fn table(frf: &FrfResult) -> Table {
+fn table(frf: &FrfResult) -> Table {
     let headings = ["<mode", "f [Hz]", "measured [Hz]", "<place", "seen [%]", "<why"];
     let mut table = Table::new(
         format!("Frequency response {}: {} for a force at {}", frf.name, frf.quantity.word(), frf.excitation),
@@ -183,11 +166,12 @@ mod tests {
     #[test]
     fn every_response_has_a_picture_and_hidden_modes_are_named() {
         let results = sample::rig();
-        let all = pictures(&results);
-        assert!(all.len() == 1 && all[0].0 == "frf_hammer.svg" && all[0].1.contains("1697"));
-        let table = table(&results.frfs[0]);
+        let [section] = &sections(&results)[..] else { panic!("one section") };
+        let picture = section.drawn().next().unwrap();
+        assert!(picture.file == "frf_hammer" && picture.svg.contains("1697"));
+        let table = table(results.all::<FrfResult>()[0]);
         assert_eq!(table.rows.len(), 4);
         assert!(table.rows[3].cells[5].starts_with("hidden") && table.rows[2].cells[2] == "1697");
-        assert!(section(&results).contains("Superposition differs"));
+        assert!(crate::report::html::section(section).contains("Superposition differs"));
     }
 }

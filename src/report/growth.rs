@@ -2,9 +2,9 @@
 
 use super::chart::{above, below, bold, colour, sheet, text, widened};
 use super::colours::{ALARM, CALM, INK, MEASURED, MUTED};
+use super::complex::SQUEAL_TOLERANCE;
 use super::format::{fixed, given, hertz, signed};
-use super::html::Picture;
-use super::tables::SQUEAL_TOLERANCE;
+use super::section::Picture;
 use crate::results::{ComplexResult, RunResults};
 use plotters::prelude::*;
 use std::error::Error;
@@ -17,7 +17,7 @@ const LABELS: usize = 10;
 
 /// The picture, when the run has complex modes.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
-    let complex = results.complex.as_ref().filter(|c| !c.modes.modes.is_empty())?;
+    let complex = results.get::<ComplexResult>().filter(|c| !c.modes.modes.is_empty())?;
     let svg = sheet(SIZE, |area| draw(area, complex))?;
     let squeal = match complex.measured_squeal_hz.is_empty() {
         true => String::new(),
@@ -28,7 +28,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let caption = format!(
         "Growth rate of the complex modes: above zero a mode grows (orange), below it dies away (grey; a triangle where it lies below the axis).{squeal}"
     );
-    Some(Picture { file: "growth.svg", caption, svg })
+    Some(Picture { file: "growth".into(), caption, svg })
 }
 
 /// What the axis of the growth rate spans.
@@ -155,19 +155,19 @@ mod tests {
             assert!(svg.contains(label), "{label}");
         }
         // The strongest growth is 111.8 1/s; the mode at −642 1/s is off the axis.
-        assert!(growth_range(results.complex.as_ref().unwrap()).start > -260.0);
+        assert!(growth_range(results.get::<ComplexResult>().unwrap()).start > -260.0);
         assert!(!svg.contains("NaN"));
     }
 
     #[test]
     fn undamped_and_single_modes_draw_too() {
         let mut results = sample::rig();
-        let complex = results.complex.as_mut().unwrap();
+        let complex = results.get_mut::<ComplexResult>().unwrap();
         complex.modes.modes.truncate(1);
         complex.modes.modes[0].eigenvalue = c64::new(0.0, 1000.0);
         complex.measured_squeal_hz.clear();
         assert!(picture(&results).unwrap().svg.contains("growth rate"));
-        results.complex.as_mut().unwrap().modes.modes.clear();
+        results.get_mut::<ComplexResult>().unwrap().modes.modes.clear();
         assert!(picture(&results).is_none());
     }
 }

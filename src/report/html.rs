@@ -1,16 +1,8 @@
-//! The page: one plain HTML file with its style and its pictures inside, no script.
+//! Parts of a page: plain HTML with its style and its pictures inside, no script.
 
-use super::tables::{self, Table};
+use super::section::{Display, Item, Section};
+use super::table::{Column, Table};
 use crate::error::text::printable_lines;
-use crate::results::RunResults;
-
-/// A picture with its file name and its caption.
-#[derive(Debug, Clone)]
-pub(super) struct Picture {
-    pub file: &'static str,
-    pub caption: String,
-    pub svg: String,
-}
 
 const STYLE: &str = "\
 body{font:16px/1.5 system-ui,'Segoe UI',Helvetica,Arial,sans-serif;color:#1b1f24;background:#fff;\
@@ -31,72 +23,6 @@ figcaption{color:#5b6570;font-size:.9rem;margin-top:.3rem}\
 pre{background:#f5f6f8;padding:.8rem 1rem;overflow-x:auto;font-size:.84rem}summary{cursor:pointer;font-weight:600}\
 @media print{body{margin:0;max-width:none;font-size:11pt}details{display:none}}";
 
-/// The whole page.
-pub(super) fn page(results: &RunResults, pictures: &[Picture]) -> String {
-    let title = if results.title.is_empty() { "Results" } else { &results.title };
-    let mut body =
-        format!("<h1>{}</h1>\n<p class=\"sub\">{}</p>\n", escape(title), escape(&subtitle(results)));
-    body += &verdict(results);
-    let failed = results.failed.iter().map(|error| format!("This run failed. {error}"));
-    for warning in failed.chain(results.warnings.iter().cloned()) {
-        body += &format!("<div class=\"warn\">{}</div>\n", escape(&warning));
-    }
-    if !results.assumptions.is_empty() {
-        let items: String = results.assumptions.iter().map(|a| format!("<li>{}</li>", escape(a))).collect();
-        body += &format!("<h2>Assumptions</h2>\n<ul>{items}</ul>\n");
-    }
-    body += &figures(pictures, &["rig.svg"]);
-    if let Some(steady) = &results.steady {
-        body += &format!("<h2>Steady sliding</h2>\n{}", untitled(tables::steady(steady)));
-        body += &figures(pictures, &["contact.svg"]);
-    }
-    if !results.modes.is_empty() {
-        body += "<h2>Real modes beside the measured frequencies</h2>\n";
-        body += &figures(pictures, &["modes_disc.svg"]);
-        for k in 0..results.modes.len() {
-            body += &folded(&tables::modes(results, k));
-        }
-    }
-    body += &super::comparison::section(results);
-    body += &super::frf::section(results);
-    if let Some(complex) = &results.complex {
-        body += "<h2>Complex eigenvalues</h2>\n";
-        body += &figures(pictures, &["growth.svg", "growth_budget.svg", "participation.svg"]);
-        body += &untitled(tables::complex(complex));
-    }
-    if let Some(sensitivity) = &results.sensitivity {
-        body += "<h2>What the modes answer to, and what would calm them</h2>\n";
-        body += &figures(pictures, &["sensitivity.svg", "advice.svg"]);
-        body += &untitled(tables::advice(sensitivity));
-        for mode in &sensitivity.modes {
-            body += &opened(&tables::sensitivity(mode));
-        }
-        body += &notes(&tables::left_out(sensitivity));
-    }
-    if let Some(transient) = &results.transient {
-        body += "<h2>Motion in time</h2>\n";
-        body += &figures(pictures, &super::transient::FILES);
-        body += &untitled(super::transient::table(transient));
-        let modes = results.complex.as_ref().map_or(&[][..], |complex| &complex.real_modes);
-        body += &super::transient::sound_table(transient, modes).map_or(String::new(), |t| table(&t));
-        if let Some(check) = &transient.reduced_check {
-            body += &table(&super::reduced_check::table(check, results.complex.as_ref()));
-        }
-    }
-    body += &super::explored::section(results);
-    body += &super::calibration::section(results);
-    if !results.timings.is_empty() {
-        body += &format!("<h2>Wall time</h2>\n{}", untitled(tables::timings(results)));
-    }
-    if !results.resolved_case.is_empty() {
-        let case = escape(&results.resolved_case);
-        body += &format!(
-            "<h2>The case</h2>\n<details><summary>Every value as the run used it</summary><pre>{case}</pre></details>\n"
-        );
-    }
-    document(title, &body)
-}
-
 /// A page with its style.
 pub(super) fn document(title: &str, body: &str) -> String {
     format!(
@@ -105,37 +31,6 @@ pub(super) fn document(title: &str, body: &str) -> String {
          <title>{}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n{body}</body>\n</html>\n",
         escape(title)
     )
-}
-
-fn subtitle(results: &RunResults) -> String {
-    let size = &results.size;
-    format!(
-        "{} {} · {} nodes, {} elements, {} degrees of freedom, {} contact points",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        size.nodes,
-        size.elements,
-        size.dofs,
-        size.contact_points
-    )
-}
-
-fn verdict(results: &RunResults) -> String {
-    let unstable = results.complex.as_ref().map(tables::unstable);
-    let bad = unstable.as_ref().is_some_and(|t| !t.rows.is_empty());
-    let class = if bad { "verdict bad" } else { "verdict" };
-    let shown = match &unstable {
-        Some(t) if bad => untitled(t.clone()),
-        Some(t) => notes(t),
-        None => String::new(),
-    };
-    format!("<div class=\"{class}\"><p>{}</p>\n{shown}</div>\n", escape(&tables::verdict(results)))
-}
-
-/// The pictures called `files`, in that order, those there are.
-fn figures(pictures: &[Picture], files: &[&str]) -> String {
-    let chosen = files.iter().filter_map(|file| pictures.iter().find(|p| p.file == *file));
-    chosen.map(|p| figure(&p.svg, &p.caption)).collect()
 }
 
 /// A picture with its caption.
@@ -148,29 +43,44 @@ pub(super) fn titled_table(content: &Table) -> String {
     table(content)
 }
 
-/// A table that the reader opens when it is long.
-fn folded(content: &Table) -> String {
-    if content.rows.len() <= 25 {
-        return table(content);
-    }
-    let caption = escape(&content.caption);
-    let inner = untitled(content.clone());
-    format!("<details><summary>{caption} ({} modes)</summary>\n{inner}</details>\n", content.rows.len())
+/// A section with its heading.
+pub(super) fn section(section: &Section) -> String {
+    let heading = match section.heading.as_str() {
+        "" => String::new(),
+        heading => format!("<h2>{}</h2>\n", escape(heading)),
+    };
+    let item = |item: &Item| match item {
+        Item::Picture(picture) => figure(&picture.svg, &picture.caption),
+        Item::Table(content, display) => shown(content, *display),
+        Item::Words(words) => format!("<p>{}</p>\n", escape(words)),
+    };
+    heading + &section.items.iter().map(item).collect::<String>()
 }
 
-/// A table that the reader opens.
-fn opened(content: &Table) -> String {
-    let inner = untitled(content.clone());
-    format!("<details><summary>{}</summary>\n{inner}</details>\n", escape(&content.caption))
+/// A table with this many rows is long.
+const LONG: usize = 25;
+
+fn shown(content: &Table, display: Display) -> String {
+    let closed = match display {
+        Display::Closed => true,
+        Display::Folded => content.rows.len() > LONG,
+        Display::Titled | Display::Untitled => false,
+    };
+    if closed {
+        let (caption, inner) = (escape(&content.caption), untitled(content));
+        let rows = content.rows.len();
+        return format!("<details><summary>{caption} ({rows} rows)</summary>\n{inner}</details>\n");
+    }
+    if display == Display::Untitled { untitled(content) } else { table(content) }
 }
 
 /// A table whose caption a heading above it gives already.
-fn untitled(content: Table) -> String {
-    table(&Table { caption: String::new(), ..content })
+pub(super) fn untitled(content: &Table) -> String {
+    table(&Table { caption: String::new(), ..content.clone() })
 }
 
 fn table(content: &Table) -> String {
-    let class = |column: &tables::Column| if column.words { " class=\"w\"" } else { "" };
+    let class = |column: &Column| if column.words { " class=\"w\"" } else { "" };
     let alarm = if content.alarming { " bad" } else { "" };
     let mut text = format!("<div class=\"scroll{alarm}\"><table>\n");
     if !content.caption.is_empty() {
@@ -191,7 +101,7 @@ fn table(content: &Table) -> String {
     text + "</tbody></table></div>\n" + &notes(content)
 }
 
-fn notes(content: &Table) -> String {
+pub(super) fn notes(content: &Table) -> String {
     content.notes.iter().map(|note| format!("<p class=\"note\">{}</p>\n", escape(note))).collect()
 }
 
@@ -214,53 +124,4 @@ pub(super) fn escape(text: &str) -> String {
         }
     }
     safe
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::results::sample;
-
-    #[test]
-    fn the_page_opens_with_the_verdict_and_needs_nothing_else() {
-        let results = sample::rig();
-        let pictures = [Picture { file: "rig.svg", caption: "a & b".into(), svg: "<svg></svg>".into() }];
-        let page = page(&results, &pictures);
-        let at = |text: &str| page.find(text).unwrap_or_else(|| panic!("no {text}"));
-        let order = [
-            "Unstable: 3 of 14",
-            "1668.3",
-            "is thick for Kirchhoff",
-            "Assumptions",
-            "<svg",
-            "Steady sliding",
-        ];
-        assert!(order.windows(2).all(|pair| at(pair[0]) < at(pair[1])));
-        assert!(
-            at("2050 Hz") > at("Real modes beside") && at("Every value as the run used it") > at("Wall time")
-        );
-        assert!(!page.contains("<script") && !page.contains("<link") && !page.contains("src="));
-    }
-
-    #[test]
-    fn user_text_cannot_break_the_page() {
-        let mut results = sample::rig();
-        results.warnings = vec!["</div><script>alert('x')</script>\u{1}\u{ffff}\u{202e}".into()];
-        results.resolved_case = "a = \"</pre><script>\"".into();
-        results.modes[0].name = "<b>disc</b>".into();
-        let page = page(&results, &[]);
-        assert!(
-            !page.contains("<script")
-                && !page.contains("<b>")
-                && !page.contains(['\u{1}', '\u{ffff}', '\u{202e}'])
-        );
-        assert!(page.contains("Disc on slider &lt;reference &amp; &quot;first&quot; case&gt;"));
-        assert_eq!(page.matches("<div").count(), page.matches("</div>").count());
-    }
-
-    #[test]
-    fn a_run_without_results_still_has_a_page() {
-        let page = page(&RunResults::default(), &[]);
-        assert!(page.contains("says nothing about squeal") && page.ends_with("</html>\n"));
-    }
 }

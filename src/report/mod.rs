@@ -8,7 +8,8 @@
 //!   `mac_<name>.svg`, `frequencies_<name>.svg` and `measured_frf_<name>.svg` of measured data;
 //!   `sweep_<name>.svg`, `root_locus_<name>.svg` and `map_<name>.svg` of every sweep and map.
 //!
-//! A table is made once and shown in either form; a picture is a pure function from the results to SVG.
+//! Each analysis has a function that gives its [`Section`]s from the results; tables and words are shown in either form, a picture
+//! is a pure function from the results to SVG. [`SECTIONS`] lists them.
 
 mod advice;
 mod axes;
@@ -17,6 +18,7 @@ mod calibration;
 mod chart;
 mod colours;
 mod comparison;
+mod complex;
 mod contact;
 mod contours;
 mod disc_modes;
@@ -26,13 +28,18 @@ mod frf;
 mod growth;
 mod html;
 mod magnitude;
+mod page;
 mod participation;
 mod plate;
+mod real_modes;
 mod reduced_check;
 mod rig;
 mod search;
+mod section;
+mod sensitivity;
+mod steady;
 mod svg;
-mod tables;
+mod table;
 pub mod text;
 mod tornado;
 mod transient;
@@ -43,39 +50,41 @@ pub use search::{search_text, write_search};
 pub use validation::write_validation;
 
 use crate::error::Result;
-use crate::results::{RunResults, write_result};
-use html::Picture;
+use crate::results::{FileNames, RunResults, write_result};
+use section::Section;
 use std::path::Path;
+
+/// What each analysis has to show, in the order of the report: one line an analysis.
+const SECTIONS: [fn(&RunResults) -> Vec<Section>; 10] = [
+    rig::sections,
+    real_modes::sections,
+    comparison::sections,
+    frf::sections,
+    steady::sections,
+    complex::sections,
+    sensitivity::sections,
+    transient::sections,
+    explored::sections,
+    calibration::sections,
+];
+
+/// The sections that a run has something for.
+fn sections(results: &RunResults) -> Vec<Section> {
+    SECTIONS.iter().flat_map(|section| section(results)).collect()
+}
 
 /// Writes `report.html` and its pictures into the folder `dir`.
 ///
 /// # Errors
 /// [`crate::error::Error::Io`] when the folder cannot be made or a file not be written.
 pub fn write_report(dir: &Path, results: &RunResults) -> Result<()> {
-    let pictures = pictures(results);
-    for picture in &pictures {
-        write_result(dir, picture.file, picture.svg.as_bytes())?;
+    let sections = sections(results);
+    let mut names = FileNames::default();
+    for picture in sections.iter().flat_map(Section::drawn) {
+        let file = format!("{}.svg", names.once(picture.file.clone()));
+        write_result(dir, &file, picture.svg.as_bytes())?;
     }
-    explored::write(dir, results)?;
-    frf::write(dir, results)?;
-    comparison::write(dir, results)?;
-    write_result(dir, "report.html", html::page(results, &pictures).as_bytes())
-}
-
-/// Every picture that the run has something for.
-fn pictures(results: &RunResults) -> Vec<Picture> {
-    let all = [
-        rig::picture(results),
-        disc_modes::picture(results),
-        contact::picture(results),
-        growth::picture(results),
-        budget::picture(results),
-        participation::picture(results),
-        tornado::picture(results),
-        advice::picture(results),
-    ];
-    let more = transient::pictures(results).into_iter().chain(calibration::pictures(results));
-    all.into_iter().flatten().chain(more).collect()
+    write_result(dir, "report.html", page::page(results, &sections).as_bytes())
 }
 
 #[cfg(test)]
@@ -88,23 +97,12 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         write_report(dir.path(), &sample::rig()).unwrap();
         let page = std::fs::read_to_string(dir.path().join("report.html")).unwrap();
-        for file in [
-            "rig.svg",
-            "modes_disc.svg",
-            "contact.svg",
-            "growth.svg",
-            "growth_budget.svg",
-            "participation.svg",
-            "sensitivity.svg",
-            "advice.svg",
-            "sweep_over_friction.svg",
-            "root_locus_over_friction.svg",
-            "map_load_and_speed.svg",
-        ]
-        .into_iter()
-        .chain(transient::FILES)
-        {
-            let svg = std::fs::read_to_string(dir.path().join(file)).unwrap();
+        let files = "rig modes_disc mac_impact frequencies_impact measured_frf_impact frf_hammer contact growth growth_budget \
+                     participation sensitivity advice transient transient_spectrum transient_spectrogram transient_phase \
+                     transient_contact sound sweep_over_friction root_locus_over_friction map_load_and_speed \
+                     calibration_errors calibration_responses calibration_numbers";
+        for file in files.split(' ').map(|stem| format!("{stem}.svg")) {
+            let svg = std::fs::read_to_string(dir.path().join(&file)).unwrap();
             assert!(svg.starts_with("<svg") && page.contains(&svg), "{file}");
         }
     }

@@ -2,7 +2,7 @@
 
 use super::colours::{ALARM, INK, MUTED};
 use super::format::{fixed, hertz, signed};
-use super::html::Picture;
+use super::section::Picture;
 use super::svg::{Anchor, Ink, Sheet};
 use crate::results::{ComplexResult, RunResults};
 use crate::stability::{ComplexMode, Verdict};
@@ -30,7 +30,7 @@ const OTHERS: &str = "#e2e5e9";
 
 /// The picture, when the run has complex modes.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
-    let complex = results.complex.as_ref()?;
+    let complex = results.get::<ComplexResult>()?;
     let modes = chosen(&complex.modes.modes);
     let unstable = modes.first()?.unstable();
     let mut sheet = Sheet::new(WIDTH, HEAD + ROW * modes.len() as f64);
@@ -49,7 +49,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let caption = format!(
         "The real modes that take part in {which}, by their share in its shape; those below {percent} % are the others."
     );
-    Some(Picture { file: "participation.svg", caption, svg: sheet.finish() })
+    Some(Picture { file: "participation".into(), caption, svg: sheet.finish() })
 }
 
 /// The unstable modes or, where there is none, those nearest to it; ascending in frequency.
@@ -130,13 +130,13 @@ mod tests {
     #[test]
     fn without_an_unstable_mode_the_nearest_have_bars() {
         let mut results = sample::rig();
-        let modes = &mut results.complex.as_mut().unwrap().modes.modes;
+        let modes = &mut results.get_mut::<ComplexResult>().unwrap().modes.modes;
         modes.iter_mut().for_each(|m| m.eigenvalue.re -= 1000.0);
         modes[0].participation.clear();
         let picture = picture(&results).unwrap();
         assert!(picture.caption.contains("none is unstable"));
         assert_eq!(picture.svg.matches(" Hz<").count(), NEAREST);
-        results.complex.as_mut().unwrap().modes.modes.clear();
+        results.get_mut::<ComplexResult>().unwrap().modes.modes.clear();
         assert!(super::picture(&results).is_none());
     }
 }

@@ -1,7 +1,7 @@
 //! The table that sets a reduced model beside the full one.
 
 use super::format::{hertz, power};
-use super::tables::Table;
+use super::table::Table;
 use crate::results::{ComplexResult, Deviation, ReducedCheck};
 
 /// The largest deviations, one a row.
@@ -45,13 +45,14 @@ pub(super) fn table(check: &ReducedCheck, complex: Option<&ComplexResult>) -> Ta
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::results::TransientResult;
     use crate::results::sample;
 
     #[test]
     fn deviations_stand_beside_their_modes_and_what_is_missing_is_said() {
         let results = sample::rig();
-        let mut check = results.transient.unwrap().reduced_check.unwrap();
-        let rows = table(&check, results.complex.as_ref()).rows;
+        let mut check = results.get::<TransientResult>().unwrap().reduced_check.clone().unwrap();
+        let rows = table(&check, results.get::<ComplexResult>()).rows;
         assert_eq!(rows.len(), 3);
         assert!(rows[1].cells[2].starts_with("mode 4, ") && rows[2].cells[0] == "displacement at rim");
         check.modes = [14, 12];

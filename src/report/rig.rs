@@ -2,7 +2,7 @@
 
 use super::colours::{ALARM, INK, MEASURED, MUTED, PARTS};
 use super::format::given;
-use super::html::Picture;
+use super::section::{Picture, Section};
 use super::svg::{Anchor, Ink, Point, Sheet};
 use super::view::{Fit, Vector, View, along, dot};
 use crate::results::{Geometry, RunResults, SteadyResult};
@@ -12,8 +12,13 @@ const SIZE: [f64; 2] = [860.0, 560.0];
 /// Element edges closer than this [px] would make a grey patch: only outlines are drawn then.
 const FINEST_EDGE: f64 = 2.5;
 
+/// The model, before the analyses.
+pub(super) fn sections(results: &RunResults) -> Vec<Section> {
+    picture(results).map(|picture| Section::new("").pictures([picture])).into_iter().collect()
+}
+
 /// The picture, when the model has a mesh.
-pub(super) fn picture(results: &RunResults) -> Option<Picture> {
+fn picture(results: &RunResults) -> Option<Picture> {
     let geometry = &results.geometry;
     // Points alone are a picture only while they are few: masses on springs, not the nodes of imported matrices.
     let cloud = geometry.elements.len() > 500 && geometry.elements.iter().all(|e| e.len() == 1);
@@ -21,7 +26,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
         return None;
     }
     let view = View::facing([0.68, -0.85, 0.55])?;
-    let arrows = results.steady.as_ref().map(|steady| arrows(geometry, steady)).unwrap_or_default();
+    let arrows = results.get::<SteadyResult>().map(|steady| arrows(geometry, steady)).unwrap_or_default();
     let used = geometry.elements.iter().flatten().map(|k| geometry.nodes[*k]);
     let ends = arrows.iter().flat_map(|arrow| [arrow.tail, arrow.head]);
     let places = used.chain(ends).map(|place| view.project(place));
@@ -29,16 +34,16 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let pixel = |place: Vector| fit.pixel(view.project(place));
     let mut sheet = Sheet::new(SIZE[0], SIZE[1]);
     draw_elements(&mut sheet, geometry, &view, &fit);
-    if let Some(steady) = &results.steady {
+    if let Some(steady) = results.get::<SteadyResult>() {
         draw_points(&mut sheet, steady, pixel);
     }
     for arrow in &arrows {
         draw_arrow(&mut sheet, arrow, pixel);
     }
-    draw_legend(&mut sheet, geometry, results.steady.is_some());
+    draw_legend(&mut sheet, geometry, results.get::<SteadyResult>().is_some());
     draw_axes(&mut sheet, &view, &fit);
     let caption = "The model at rest, as the analyses saw it.".to_string();
-    Some(Picture { file: "rig.svg", caption, svg: sheet.finish() })
+    Some(Picture { file: "rig".into(), caption, svg: sheet.finish() })
 }
 
 /// Elements from the farthest to the nearest (the painter's algorithm); stretches of one part share a path.
@@ -240,7 +245,8 @@ mod tests {
         for label in ["disc", "slider", "bar", "load 20 N", "sliding 0.5 m/s", "50 mm"] {
             assert!(svg.contains(&format!(">{label}<")), "{label}");
         }
-        let steady = sample::rig().steady.unwrap();
+        let results = sample::rig();
+        let steady = results.get::<SteadyResult>().unwrap();
         let closed = steady.state.points.iter().filter(|p| p.closed()).count();
         assert_eq!(svg.matches("r=\"3.2\"").count(), closed);
         assert!(!svg.contains("NaN") && !svg.contains("inf"));

@@ -5,7 +5,7 @@ use super::colours::{ALARM, CALM, INK, MEASURED, MUTED};
 use super::format::{fixed, given, significant};
 use super::html::{self, escape};
 use super::svg::{Anchor, Ink, Sheet};
-use super::tables::Table;
+use super::table::Table;
 use super::text::render;
 use crate::error::Result;
 use crate::results::{SearchResult, SearchedNumber, passed, write_result};

@@ -1,103 +1,64 @@
 //! The tables for the terminal: aligned, at most 100 columns wide.
 
-use super::explored::{critical_table, damping_table, map_words, sweep_words};
-use super::tables::{self, Table};
-use crate::results::RunResults;
+use super::complex;
+use super::section::{Display, Item, Section};
+use super::table::Table;
+use crate::results::{ComplexResult, RunResults};
 
 const WIDTH: usize = 100;
 /// More rows than this go to the CSV file only.
 const ROWS: usize = 60;
 
-/// Everything the command line prints after a run: modes, steady sliding, complex eigenvalues, the verdict.
+/// Rows and columns of a table that the page keeps closed.
+const CLOSED: [usize; 2] = [8, 6];
+
+/// Everything the command line prints after a run: the tables of all sections, warnings, the verdict.
 pub fn summary(results: &RunResults) -> String {
-    let mut parts: Vec<String> = (0..results.modes.len()).map(|k| modes(results, k)).collect();
-    let compared = results.measured.iter().filter_map(|c| super::comparison::modes_table(results, c));
-    parts.extend(compared.map(|table| render(&table)));
-    let responses = results.measured_frfs.iter().map(super::comparison::responses_table);
-    parts.extend(responses.map(|table| render(&table)));
-    parts.extend(results.frfs.iter().map(|frf| render(&super::frf::table(frf))));
-    parts.extend([steady(results), complex(results)].into_iter().flatten());
-    parts.extend(sensitivity(results));
-    parts.extend(results.transient.iter().map(|run| render(&super::transient::table(run))));
-    parts.extend(sound(results));
-    let check = results.transient.iter().filter_map(|run| run.reduced_check.as_ref());
-    parts.extend(check.map(|check| render(&super::reduced_check::table(check, results.complex.as_ref()))));
-    parts.extend(explored(results));
-    parts.extend(calibration(results));
+    let mut parts: Vec<String> = super::sections(results).iter().map(section).collect();
+    parts.retain(|part| !part.is_empty());
     parts.extend(results.warnings.iter().map(|warning| wrap(&format!("Warning: {warning}"))));
     parts.push(verdict(results));
     parts.join("\n")
 }
 
-/// What the sweeps and maps found, and what damping decides.
-fn explored(results: &RunResults) -> Vec<String> {
-    let say = |words: Vec<String>| words.iter().map(|w| wrap(w)).collect::<String>();
-    let mut parts = Vec::new();
-    for result in &results.sweeps {
-        parts.push(format!("{}{}", render(&critical_table(result)), say(sweep_words(result))));
+/// The tables and words of a section; its heading where no table has a caption.
+fn section(section: &Section) -> String {
+    let titled = section.items.iter().any(|item| matches!(item, Item::Table(..)));
+    let worded = section.items.iter().any(|item| matches!(item, Item::Words(_)));
+    let heading = if worded && !titled { wrap(&section.heading) } else { String::new() };
+    let mut parts: Vec<String> = Vec::new();
+    for item in &section.items {
+        match item {
+            Item::Picture(_) => {}
+            Item::Table(table, Display::Closed) => parts.push(render(&shortened(table))),
+            Item::Table(table, _) => parts.push(render(table)),
+            Item::Words(words) => match parts.last_mut() {
+                Some(last) => last.push_str(&wrap(words)),
+                None => parts.push(wrap(words)),
+            },
+        }
     }
-    parts.extend(results.maps.iter().map(|m| format!("Map {}\n{}", m.name, say(map_words(m)))));
-    parts.extend(results.damping.iter().map(|d| render(&damping_table(d))));
-    parts
+    heading + &parts.join("\n")
 }
 
-/// What was found from measured frequencies, and what it is worth.
-fn calibration(results: &RunResults) -> Vec<String> {
-    use super::calibration::{tables, words};
-    let Some(result) = &results.calibration else { return Vec::new() };
-    let worth: String = words(result).iter().map(|w| wrap(w)).collect();
-    tables(result).iter().map(render).chain([worth]).collect()
-}
-
-/// The modes of set `index` of [`RunResults::modes`] beside the measured frequencies.
-pub fn modes(results: &RunResults, index: usize) -> String {
-    render(&tables::modes(results, index))
-}
-
-/// Steady sliding, when the run has it.
-pub fn steady(results: &RunResults) -> Option<String> {
-    results.steady.as_ref().map(|steady| render(&tables::steady(steady)))
-}
-
-/// The complex eigenvalues, when the run has them.
-pub fn complex(results: &RunResults) -> Option<String> {
-    results.complex.as_ref().map(|complex| render(&tables::complex(complex)))
-}
-
-/// What the modes answer to most and what would calm them, when the run has it.
-pub fn sensitivity(results: &RunResults) -> Option<String> {
-    const SHOWN: usize = 8;
-    const COLUMNS: usize = 6;
-    let result = results.sensitivity.as_ref()?;
-    let mode = |mode| {
-        let mut table = tables::sensitivity(mode);
-        table.rows.truncate(SHOWN);
-        table.columns.truncate(COLUMNS);
-        table.rows.iter_mut().for_each(|row| row.cells.truncate(COLUMNS));
-        render(&table)
-    };
-    let mut parts: Vec<String> = result.modes.iter().map(mode).collect();
-    if result.modes.iter().any(|mode| !mode.best.is_empty()) {
-        parts.push(render(&tables::advice(result)));
-    }
-    Some(parts.join("\n") + &notes(&tables::left_out(result)))
-}
-
-/// How loud it is, when the run has it.
-pub fn sound(results: &RunResults) -> Option<String> {
-    let modes = results.complex.as_ref().map_or(&[][..], |complex| &complex.real_modes);
-    Some(render(&super::transient::sound_table(results.transient.as_ref()?, modes)?))
+/// The first rows and columns of a table.
+fn shortened(table: &Table) -> Table {
+    let [rows, columns] = CLOSED;
+    let mut table = table.clone();
+    table.rows.truncate(rows);
+    table.columns.truncate(columns);
+    table.rows.iter_mut().for_each(|row| row.cells.truncate(columns));
+    table
 }
 
 /// The verdict and the unstable modes.
-pub fn verdict(results: &RunResults) -> String {
-    let unstable = results.complex.as_ref().map(tables::unstable);
+fn verdict(results: &RunResults) -> String {
+    let unstable = results.get::<ComplexResult>().map(complex::unstable);
+    let sentence = wrap(&complex::verdict(results));
     match unstable.filter(|table| !table.rows.is_empty() || !table.notes.is_empty()) {
-        Some(table) if table.rows.is_empty() => {
-            format!("{}\n{}", wrap(&tables::verdict(results)), notes(&table))
-        }
-        Some(table) => format!("{}\n{}", wrap(&tables::verdict(results)), render(&table)),
-        None => wrap(&tables::verdict(results)),
+        Some(table) if table.rows.is_empty() => format!("{sentence}\n{}", notes(&table)),
+        Some(table) => format!("{sentence}\n{}", render(&table)),
+        None => sentence,
     }
 }
 
@@ -164,15 +125,16 @@ pub(super) fn wrap(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::results::NamedModes;
     use crate::results::sample;
 
     #[test]
     fn tables_are_aligned_and_fit_the_terminal() {
         let mut results = sample::rig();
-        results.complex.as_mut().unwrap().participation[0] = "a very long story ".repeat(20);
+        results.get_mut::<ComplexResult>().unwrap().participation[0] = "a very long story ".repeat(20);
         let text = summary(&results);
         assert!(text.lines().all(|line| length(line) <= WIDTH), "{text}");
-        let table = complex(&results).unwrap();
+        let table = summary(&results);
         let ends: Vec<usize> =
             table.lines().filter_map(|l| l.find("UNSTABLE").map(|at| length(&l[..at]))).collect();
         assert_eq!(ends.len(), 3);
@@ -181,7 +143,7 @@ mod tests {
 
     #[test]
     fn measured_frequencies_stand_beside_their_modes() {
-        let text = modes(&sample::rig(), 0);
+        let text = summary(&sample::rig());
         let row = text.lines().find(|line| line.contains("(4, 0)") && line.starts_with('*')).unwrap();
         // 974.8 Hz × 0.972 = 947.5 Hz, 1.23 % above 936 Hz.
         assert!(["974.8", "947.5", "936", "+1.23"].iter().all(|figure| row.contains(figure)), "{row}");
@@ -192,9 +154,9 @@ mod tests {
     #[test]
     fn a_broken_certificate_and_a_stable_run_are_said() {
         let mut results = sample::rig();
-        results.modes[0].modes.certificate.counted = [21, 22];
-        assert!(modes(&results, 0).contains("NOT CERTIFIED"));
-        results.complex.as_mut().unwrap().modes.modes.retain(|mode| !mode.unstable());
+        results.get_mut::<NamedModes>().unwrap().modes.certificate.counted = [21, 22];
+        assert!(summary(&results).contains("NOT CERTIFIED"));
+        results.get_mut::<ComplexResult>().unwrap().modes.modes.retain(|mode| !mode.unstable());
         let text = verdict(&results);
         assert!(text.contains("Stable: none of the 11") && text.contains("936 Hz"), "{text}");
         assert!(verdict(&RunResults::default()).contains("says nothing about squeal"));

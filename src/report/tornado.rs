@@ -2,9 +2,9 @@
 
 use super::colours::{ALARM, INK, MEASURED, MUTED};
 use super::format::{hertz, signed, significant};
-use super::html::Picture;
+use super::section::Picture;
 use super::svg::{Anchor, Ink, Sheet};
-use crate::results::{ModeSensitivity, ParameterRate, RunResults};
+use crate::results::{ModeSensitivity, ParameterRate, RunResults, SensitivityResult};
 use std::f64::consts::TAU;
 
 /// Modes at most, the strongest growth first.
@@ -19,7 +19,7 @@ const GAP: f64 = 14.0;
 
 /// The picture, when some scalar moves some mode.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
-    let all = &results.sensitivity.as_ref()?.modes;
+    let all = &results.get::<SensitivityResult>()?.modes;
     let mut modes: Vec<&ModeSensitivity> = all.iter().filter(|mode| !strongest(mode).is_empty()).collect();
     modes.sort_by(|a, b| b.eigenvalue.re.total_cmp(&a.eigenvalue.re));
     modes.truncate(MOST_MODES);
@@ -40,7 +40,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     sheet.text([0.5 * WIDTH, top + 12.0], foot, ink);
     let caption = "What each mode answers to most: sensitivities of the growth rate, the steady state following every scalar."
         .to_string();
-    Some(Picture { file: "sensitivity.svg", caption, svg: sheet.finish() })
+    Some(Picture { file: "sensitivity".into(), caption, svg: sheet.finish() })
 }
 
 /// The scalars with the largest effect, those that matter at all.

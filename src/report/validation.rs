@@ -5,7 +5,7 @@ use super::colours::{ALARM, INK, MEASURED, MUTED};
 use super::format::{fixed, given, power, significant};
 use super::html::{self, escape};
 use super::svg::{Anchor, Ink, Sheet};
-use super::tables::Table;
+use super::table::Table;
 use crate::error::Result;
 use crate::results::{CheckedCase, passed, write_atomically};
 use std::path::Path;

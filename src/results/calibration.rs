@@ -2,7 +2,7 @@
 
 use super::write_result;
 use crate::calibration::{Calibration, Chance, Ranked, Trials};
-use crate::dataset::{Column, Dimension, Group, Table, Variable, column};
+use crate::dataset::{Column, Describe, Dimension, Group, Table, Variable, column};
 use crate::error::Result;
 use crate::measured::Quantity;
 use std::f64::consts::LN_10;
@@ -328,9 +328,8 @@ fn assignment_columns<'a>(data: usize) -> Vec<Column<Assigned<'a>>> {
     ]
 }
 
-impl CalibrationResult {
-    /// Numbers, data, responses, assignments and what they are worth.
-    pub(crate) fn group(&self) -> Group<'_> {
+impl Describe for CalibrationResult {
+    fn describe(&self) -> Group<'_> {
         let best = self.calibration.best();
         let slopes = |k: &usize| match &best.fit.computed.levels[*k] {
             Some(level) => level.slope.clone(),
@@ -343,8 +342,7 @@ impl CalibrationResult {
             Group::new("calibration", "numbers of the case found from measured modes and responses")
                 .list("parameters", self.numbers.iter().map(CalibratedNumber::group).collect())
                 .table(
-                    Table::of("data", "datum", &data_columns(self.numbers.len()), &data)
-                        .file("calibration.csv"),
+                    Table::of("data", "datum", &data_columns(self.numbers.len()), &data).file("calibration"),
                 )
                 .table(Table::of("responses", "response", &response_columns(), &self.responses));
         if !self.responses.is_empty() {
@@ -352,7 +350,7 @@ impl CalibrationResult {
             let lines: Vec<Line> =
                 each.flat_map(|(k, r)| (0..r.frequencies_hz.len()).map(move |i| (k + 1, r, i))).collect();
             let lines = Table::of("response_lines", "line", &line_columns(), &lines);
-            group = group.table(lines.file("calibration_responses.csv").long());
+            group = group.table(lines.file("calibration_responses").long());
         }
         self.worth(group.table(Table::of(
             "assignments",
@@ -366,7 +364,9 @@ impl CalibrationResult {
             &self.calibrated_case,
         ))
     }
+}
 
+impl CalibrationResult {
     /// `group` with the figures of the whole.
     fn worth<'a>(&self, group: Group<'a>) -> Group<'a> {
         let found = &self.calibration;
@@ -494,7 +494,8 @@ mod tests {
 
     #[test]
     fn the_files_say_what_was_found() {
-        let results = RunResults { calibration: Some(sample()), ..RunResults::default() };
+        let mut results = RunResults::default();
+        results.records.push(sample());
         let json = &summary_json(&results)["calibration"];
         assert!((json["largest_error_percent"].as_f64().unwrap() - 1.0).abs() < 1e-9);
         assert!((json["data"][0]["left_out_percent"].as_f64().unwrap() + 3.0).abs() < 1e-9);

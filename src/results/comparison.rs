@@ -2,8 +2,8 @@
 
 use super::explored::ends;
 use super::summary::sentences;
-use super::{FileNames, NamedModes, RunResults};
-use crate::dataset::{Column, Dimension, Group, Table, Variable, column};
+use super::{NamedModes, file_name};
+use crate::dataset::{Column, Describe, Dimension, Group, Table, Variable, column};
 use crate::linalg::c64;
 use crate::measured::Quantity;
 use std::ops::Range;
@@ -14,10 +14,10 @@ const BEYOND: f64 = 0.1;
 /// Measured modes and the computed modes set beside them.
 #[derive(Debug, Clone, Default)]
 pub struct MeasuredComparison {
-    /// Its name in the case; that of the analysis, where the case gives frequencies there.
+    /// Its name in the case; that of the analysis, where the case gives frequencies there. Each is there once.
     pub name: String,
-    /// Index into [`RunResults::modes`].
-    pub modes: usize,
+    /// The name of the computed modes.
+    pub set: String,
     /// Where the figures come from.
     pub source: String,
     /// One row a measured mode.
@@ -26,6 +26,8 @@ pub struct MeasuredComparison {
     pub frequency_scale: f64,
     /// Computed modes that are one level; rigid-body modes are in none.
     pub levels: Vec<Range<usize>>,
+    /// Frequency of the first mode of each level, times the scale \[Hz\].
+    pub levels_hz: Vec<f64>,
     /// MAC of each measured mode with each level; empty for a mode without a shape.
     pub mac: Vec<Vec<f64>>,
     /// How its geometry fits the mesh, where shapes are compared.
@@ -43,8 +45,19 @@ pub struct MeasuredRow {
     pub damping_ratio: Option<f64>,
     /// The index of the mode that it is paired with, if any.
     pub mode: Option<usize>,
+    /// Frequency of that mode times the frequency scale \[Hz\].
+    pub computed_hz: Option<f64>,
+    /// ζ of that mode.
+    pub computed_damping_ratio: Option<f64>,
     /// MAC with the level of that mode.
     pub mac: Option<f64>,
+}
+
+impl MeasuredRow {
+    /// 100 (computed − measured)/measured \[%\]: positive where the computed frequency is too high.
+    pub fn difference_percent(&self) -> Option<f64> {
+        self.computed_hz.map(|computed| 100.0 * (computed / self.frequency_hz - 1.0))
+    }
 }
 
 /// How the geometry of a test fits the mesh.
@@ -101,17 +114,21 @@ pub struct ResponsePair {
 }
 
 impl MeasuredComparison {
+    /// Whether the test is of the computed modes `set`.
+    pub fn is_of(&self, set: &NamedModes) -> bool {
+        self.set == set.name
+    }
+
     /// The levels between the measured frequencies, and a tenth beyond, of which no mode is paired.
-    pub fn computed_alone(&self, set: &NamedModes) -> Vec<Range<usize>> {
+    pub fn computed_alone(&self) -> Vec<Range<usize>> {
         let measured = || self.rows.iter().map(|row| row.frequency_hz);
         let low = (1.0 - BEYOND) * measured().fold(f64::INFINITY, f64::min);
         let high = (1.0 + BEYOND) * measured().fold(0.0, f64::max);
-        let inside = |level: &&Range<usize>| {
-            let hz = self.frequency_scale * set.modes.frequency_hz(level.start);
-            (low..=high).contains(&hz)
-                && !self.rows.iter().any(|row| row.mode.is_some_and(|k| level.contains(&k)))
-        };
-        self.levels.iter().filter(inside).cloned().collect()
+        let paired =
+            |level: &Range<usize>| self.rows.iter().any(|row| row.mode.is_some_and(|k| level.contains(&k)));
+        let levels = self.levels.iter().zip(&self.levels_hz);
+        let alone = levels.filter(|(level, hz)| (low..=high).contains(*hz) && !paired(level));
+        alone.map(|(level, _)| level.clone()).collect()
     }
 
     /// The level that a mode belongs to.
@@ -120,31 +137,23 @@ impl MeasuredComparison {
     }
 }
 
-/// A measured mode with its test and the computed modes.
-type Row<'a> = (&'a MeasuredComparison, &'a NamedModes, MeasuredRow);
-
-fn mode_columns<'a>() -> Vec<Column<Row<'a>>> {
-    let computed = |(test, set, row): &Row| row.mode.map(|mode| test.computed_hz(set, mode));
+fn mode_columns() -> Vec<Column<MeasuredRow>> {
+    type Row = MeasuredRow;
     vec![
-        column("measured_hz", "Hz", "measured frequency", |(.., row): &Row| row.frequency_hz),
-        column(
-            "deviation",
-            "1",
-            "standard deviation of the frequency over the frequency",
-            |(.., row): &Row| row.deviation,
-        ),
-        column("measured_damping_ratio", "1", "measured ζ", |(.., row): &Row| row.damping_ratio),
-        column("mode", "1", "number of the computed mode beside it", |(.., row): &Row| {
+        column("measured_hz", "Hz", "measured frequency", |row: &Row| row.frequency_hz),
+        column("deviation", "1", "standard deviation of the frequency over the frequency", |row: &Row| {
+            row.deviation
+        }),
+        column("measured_damping_ratio", "1", "measured ζ", |row: &Row| row.damping_ratio),
+        column("mode", "1", "number of the computed mode beside it", |row: &Row| {
             row.mode.map(|mode| mode + 1)
         }),
-        column("computed_hz", "Hz", "its frequency times the scale", move |row: &Row| computed(row)),
-        column("computed_damping_ratio", "1", "its ζ", |(_, set, row): &Row| {
-            row.mode.and_then(|mode| set.damping_ratio.get(mode)).copied()
+        column("computed_hz", "Hz", "its frequency times the scale", |row: &Row| row.computed_hz),
+        column("computed_damping_ratio", "1", "its ζ", |row: &Row| row.computed_damping_ratio),
+        column("difference_percent", "%", "(computed − measured)/measured", |row: &Row| {
+            row.difference_percent()
         }),
-        column("difference_percent", "%", "(computed − measured)/measured", move |row: &Row| {
-            computed(row).map(|hz| 100.0 * (hz / row.2.frequency_hz - 1.0))
-        }),
-        column("mac", "1", "MAC with the level of that mode", |(.., row): &Row| row.mac),
+        column("mac", "1", "MAC with the level of that mode", |row: &Row| row.mac),
     ]
 }
 
@@ -161,17 +170,17 @@ fn level_columns() -> Vec<Column<Level>> {
     ]
 }
 
-impl MeasuredComparison {
-    /// The frequency of a computed mode times the scale \[Hz\].
-    fn computed_hz(&self, set: &NamedModes, mode: usize) -> f64 {
-        self.frequency_scale * set.modes.frequency_hz(mode)
+impl Describe for MeasuredComparison {
+    fn describe(&self) -> Group<'_> {
+        Group::new("", "").list("comparison", vec![self.group()])
     }
+}
 
-    /// Both sides; `file` is the part of the CSV file's name that is the test's.
-    fn group<'a>(&'a self, name: String, set: &'a NamedModes, file: &str) -> Group<'a> {
-        let rows: Vec<Row> = self.rows.iter().map(|row| (self, set, *row)).collect();
-        let modes = Table::of("modes", "measured_mode", &mode_columns(), &rows)
-            .file(format!("comparison_{file}.csv"));
+impl MeasuredComparison {
+    /// Both sides.
+    fn group(&self) -> Group<'_> {
+        let modes = Table::of("modes", "measured_mode", &mode_columns(), &self.rows)
+            .file(file_name("comparison", &self.name));
         let rows = Dimension::numbered("measured_mode", self.rows.len());
         let columns = Dimension::numbered("level", self.levels.len());
         let mut mac = vec![f64::NAN; rows.length * columns.length];
@@ -180,10 +189,9 @@ impl MeasuredComparison {
         }
         let story = "MAC of each measured shape with each level of computed modes";
         let mac = Variable::reals("mac", "1", story, vec![rows, columns], mac);
-        let levels = self.levels.iter().enumerate();
-        let levels: Vec<Level> =
-            levels.map(|(k, level)| (k + 1, level.clone(), self.computed_hz(set, level.start))).collect();
-        let missed = self.computed_alone(set);
+        let levels = self.levels.iter().zip(&self.levels_hz).enumerate();
+        let levels: Vec<Level> = levels.map(|(k, (level, hz))| (k + 1, level.clone(), *hz)).collect();
+        let missed = self.computed_alone();
         let missed: Vec<Level> =
             levels.iter().filter(|(_, modes, _)| missed.contains(modes)).cloned().collect();
         let mut missed_columns = level_columns();
@@ -191,8 +199,8 @@ impl MeasuredComparison {
         let alone = self.rows.iter().filter(|row| row.mode.is_none()).map(|row| row.frequency_hz);
         let alone: Vec<f64> = alone.collect();
         let numbers = Dimension::of_variable("measured_alone_hz", alone.len());
-        Group::new(name, "measured modes beside computed ones")
-            .value("set", "text", "name of the computed modes", set.name.clone())
+        Group::new(&*self.name, "measured modes beside computed ones")
+            .value("set", "text", "name of the computed modes", self.set.clone())
             .value("source", "text", "where the measured figures come from", self.source.clone())
             .value("frequency_scale", "1", "computed frequencies are multiplied by it", self.frequency_scale)
             .table(modes)
@@ -248,9 +256,15 @@ fn line_columns<'a>() -> Vec<Column<Line<'a>>> {
     ]
 }
 
+impl Describe for MeasuredResponses {
+    fn describe(&self) -> Group<'_> {
+        Group::new("", "").list("comparison_frf", vec![self.group()])
+    }
+}
+
 impl MeasuredResponses {
-    /// Both sides; `file` is the part of the CSV file's name that is the test's.
-    fn group(&self, file: &str) -> Group<'_> {
+    /// Both sides.
+    fn group(&self) -> Group<'_> {
         let lines = self.pairs.iter().flat_map(|pair| (0..pair.frequencies_hz.len()).map(move |k| (pair, k)));
         let lines = Table::of("lines", "line", &line_columns(), &lines.collect::<Vec<Line>>());
         Group::new(&*self.name, "measured frequency responses beside computed ones")
@@ -259,28 +273,6 @@ impl MeasuredResponses {
             .table(Table::of("responses", "response", &pair_columns(), &self.pairs))
             .with(sentences("measured_alone", "what was measured alone, and why", &self.measured_alone))
             .with(sentences("computed_alone", "places that were computed alone", &self.computed_alone))
-            .table(lines.file(format!("comparison_{file}.csv")).long())
-    }
-}
-
-impl RunResults {
-    /// What was measured beside what was computed.
-    pub(crate) fn compared(&self) -> Group<'_> {
-        let mut files = FileNames::default();
-        let mut names: Vec<String> = Vec::new();
-        let mut modes = Vec::new();
-        for test in &self.measured {
-            let file = files.next(&test.name);
-            // Frequencies of an analysis and a test may have the same name.
-            let numbered = (2..).map(|k| format!("{} {k}", test.name));
-            let name = std::iter::once(test.name.clone()).chain(numbered).find(|name| !names.contains(name));
-            names.extend(name.clone());
-            let sides = name.zip(self.modes.get(test.modes));
-            modes.extend(sides.map(|(name, set)| test.group(name, set, &file)));
-        }
-        let responses = self.measured_frfs.iter();
-        let responses =
-            responses.map(|test| test.group(&files.next(&format!("{}_frf", test.name)))).collect();
-        Group::new("", "").list("comparison", modes).list("comparison_frf", responses)
+            .table(lines.file(file_name("comparison", &self.name) + "_frf").long())
     }
 }

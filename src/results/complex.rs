@@ -2,7 +2,7 @@
 
 use super::NodalField;
 use super::real_modes::SHAPE_UNITS;
-use crate::dataset::{Column, Dimension, Group, Table, Values, Variable, column};
+use crate::dataset::{Column, Describe, Dimension, Group, Table, Values, Variable, column};
 use crate::linalg::c64;
 use crate::numbers::{growth, hertz, power, signed, significant};
 use crate::stability::{Certificate, CloseCall, ComplexMode, ComplexModes, Confirmation, ROUND_OFF, Verdict};
@@ -155,17 +155,8 @@ fn second_method_columns() -> Vec<Column<Confirmation>> {
     ]
 }
 
-impl ComplexResult {
-    /// The modes, one a row.
-    pub(crate) fn mode_table(&self) -> Table<'static> {
-        let words = |k: usize| self.participation.get(k).map_or("", String::as_str);
-        let modes: Vec<Mode> =
-            self.modes.modes.iter().enumerate().map(|(k, mode)| (mode, words(k))).collect();
-        Table::of("eigenvalues", "mode", &columns(), &modes).file("complex_modes.csv")
-    }
-
-    /// The modes with their vectors, the count and the second method.
-    pub(crate) fn group(&self) -> Group<'_> {
+impl Describe for ComplexResult {
+    fn describe(&self) -> Group<'_> {
         let count = |verdict| self.modes.modes.iter().filter(|m| m.verdict() == verdict).count();
         let band = self.band_hz.to_vec();
         let squeal: Vec<(f64, String)> = self.measured_squeal_hz.clone();
@@ -184,6 +175,16 @@ impl ComplexResult {
             .optional("certificate", self.certificate.as_ref().map(certificate))
             .optional("second_method", self.confirmation.as_ref().map(second_method))
             .table(Table::of("measured_squeal", "measurement", &squeal_columns, &squeal))
+    }
+}
+
+impl ComplexResult {
+    /// The modes, one a row.
+    pub(crate) fn mode_table(&self) -> Table<'static> {
+        let words = |k: usize| self.participation.get(k).map_or("", String::as_str);
+        let modes: Vec<Mode> =
+            self.modes.modes.iter().enumerate().map(|(k, mode)| (mode, words(k))).collect();
+        Table::of("eigenvalues", "mode", &columns(), &modes).file("complex_modes")
     }
 
     fn with_vectors(&self) -> Table<'_> {

@@ -1,6 +1,6 @@
 //! The tables of a run as CSV files.
 
-use super::{RunResults, summary, write_result};
+use super::{FileNames, RunResults, summary, write_result};
 use crate::error::Result;
 use std::path::Path;
 
@@ -9,9 +9,11 @@ use std::path::Path;
 /// # Errors
 /// [`crate::error::Error::Io`] when the folder cannot be made or a file not be written.
 pub(crate) fn write_csv(dir: &Path, results: &RunResults) -> Result<()> {
+    let mut names = FileNames::default();
     for table in summary::analyses(results).tables() {
         if let Some(file) = &table.file {
-            write_result(dir, file, table.to_csv().as_bytes())?;
+            let file = format!("{}.csv", names.once(file.clone()));
+            write_result(dir, &file, table.to_csv().as_bytes())?;
         }
     }
     Ok(())
@@ -21,6 +23,7 @@ pub(crate) fn write_csv(dir: &Path, results: &RunResults) -> Result<()> {
 mod tests {
     use super::super::sample;
     use super::*;
+    use crate::results::ComplexResult;
 
     #[test]
     fn every_row_has_the_fields_of_its_header_and_reads_back_exactly() {
@@ -38,7 +41,7 @@ mod tests {
         let text = std::fs::read_to_string(dir.path().join("complex_modes.csv")).unwrap();
         let header: Vec<&str> = text.lines().next().unwrap().split(',').collect();
         assert_eq!(header[..4], ["mode", "frequency_hz", "growth_rate [1/s]", "damping_ratio"]);
-        for (line, mode) in text.lines().skip(1).zip(&results.complex.as_ref().unwrap().modes.modes) {
+        for (line, mode) in text.lines().skip(1).zip(&results.get::<ComplexResult>().unwrap().modes.modes) {
             let fields: Vec<&str> = line.split(',').collect();
             assert_eq!(fields[1].parse::<f64>().unwrap(), mode.frequency_hz());
             assert_eq!(fields[2].parse::<f64>().unwrap(), mode.growth_rate());

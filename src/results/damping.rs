@@ -1,6 +1,6 @@
 //! Which verdicts the modal damping decides.
 
-use crate::dataset::{Column, Dimension, Group, Table, Variable, column};
+use crate::dataset::{Column, Describe, Dimension, Group, Table, Variable, column};
 use crate::linalg::c64;
 use crate::stability::unstable;
 use std::f64::consts::TAU;
@@ -37,19 +37,20 @@ fn columns() -> Vec<Column<DampingRow>> {
     ]
 }
 
-impl DampingVerdicts {
-    /// The modes whose verdict the damping decides within the range.
-    pub fn decided(&self) -> impl Iterator<Item = &DampingRow> {
-        self.rows.iter().filter(|row| row.critical_ratio.is_some())
-    }
-
-    /// The range and the modes, one a row.
-    pub(crate) fn group(&self) -> Group<'static> {
+impl Describe for DampingVerdicts {
+    fn describe(&self) -> Group<'_> {
         let range = self.range.to_vec();
         Group::new("damping_verdicts", "verdicts that the modal damping ratio decides")
             .value("modal_ratio", "1", "ζ of the case", self.ratio)
             .with(Variable::reals("range", "1", "ζ that were looked at", vec![Dimension::limits()], range))
             .value("decided_by_damping", "1", "modes whose verdict changes in it", self.decided().count())
-            .table(Table::of("modes", "mode", &columns(), &self.rows).file("damping_verdicts.csv"))
+            .table(Table::of("modes", "mode", &columns(), &self.rows).file("damping_verdicts"))
+    }
+}
+
+impl DampingVerdicts {
+    /// The modes whose verdict the damping decides within the range.
+    pub fn decided(&self) -> impl Iterator<Item = &DampingRow> {
+        self.rows.iter().filter(|row| row.critical_ratio.is_some())
     }
 }

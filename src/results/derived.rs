@@ -1,41 +1,6 @@
-//! What several writers and the report work out from the plain data: comparisons, sums over a contact pair.
+//! Sums over the points of a contact pair.
 
-use super::{MeasuredComparison, MeasuredRow, NamedModes, SteadyResult};
-
-/// A measured frequency with the computed mode set beside it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ComparedRow {
-    /// The measured frequency \[Hz\].
-    pub measured_hz: f64,
-    /// The paired mode's index in its set.
-    pub mode: Option<usize>,
-    /// Its computed frequency times the frequency scale \[Hz\].
-    pub computed_hz: Option<f64>,
-}
-
-impl ComparedRow {
-    /// 100 (computed − measured) / measured \[%\]: positive when the computed frequency is too high.
-    pub fn difference_percent(&self) -> Option<f64> {
-        self.computed_hz.map(|computed| 100.0 * (computed / self.measured_hz - 1.0))
-    }
-}
-
-impl MeasuredComparison {
-    /// The rows with their computed frequencies; `sets` are [`super::RunResults::modes`].
-    pub fn compare(&self, sets: &[NamedModes]) -> Vec<ComparedRow> {
-        let set = sets.get(self.modes);
-        let computed = |mode: Option<usize>| {
-            let (set, k) = (set?, mode?);
-            (k < set.modes.len()).then(|| self.frequency_scale * set.modes.frequency_hz(k))
-        };
-        let row = |row: &MeasuredRow| ComparedRow {
-            measured_hz: row.frequency_hz,
-            mode: row.mode,
-            computed_hz: computed(row.mode),
-        };
-        self.rows.iter().map(row).collect()
-    }
-}
+use super::SteadyResult;
 
 /// The sums over the points of one contact pair.
 #[derive(Debug, Clone, PartialEq)]

@@ -234,6 +234,8 @@ mod tests {
     use super::super::sample;
     use super::*;
     use crate::dataset::Describe;
+    use crate::results::NamedModes;
+    use crate::results::SteadyResult;
 
     #[test]
     fn an_earlier_file_stays_until_there_is_a_result() {
@@ -249,13 +251,13 @@ mod tests {
         assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 1, "a run without results leaves nothing");
         // One that fails later leaves what it has.
         let mut file = ResultsFile::create(dir.path()).unwrap();
-        file.write(&results.modes[0].describe()).unwrap();
+        file.write(&results.get::<NamedModes>().unwrap().describe()).unwrap();
         drop(file);
         let failed = hdf5::File::open(&home).unwrap();
         assert!(failed.dataset("modes/disc/frequency_hz").is_ok());
         assert!(!failed.attr("complete").unwrap().read_scalar::<bool>().unwrap());
         let mut file = ResultsFile::create(dir.path()).unwrap();
-        file.write(&results.steady.as_ref().unwrap().group()).unwrap();
+        file.write(&results.get::<SteadyResult>().unwrap().describe()).unwrap();
         file.finish(&results).unwrap();
         assert!(hdf5::File::open(&home).unwrap().group("steady_sliding").is_ok());
         let mut names: Vec<_> =

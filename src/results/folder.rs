@@ -159,13 +159,13 @@ pub(super) fn refusal(path: &Path, source: impl Into<Box<dyn std::error::Error +
 pub(crate) struct FileNames(Vec<String>);
 
 impl FileNames {
-    /// The next name's form; letters, digits, `-` and `_` stay, a run of anything else becomes one `_`.
+    /// The next name's form.
     pub(crate) fn next(&mut self, name: &str) -> String {
-        let words: Vec<&str> = name
-            .split(|c: char| !(c.is_alphanumeric() || c == '-' || c == '_'))
-            .filter(|w| !w.is_empty())
-            .collect();
-        let plain = if words.is_empty() { "unnamed".to_string() } else { words.join("_") };
+        self.once(plain_name(name))
+    }
+
+    /// `plain`, or with the next free number where it was given before.
+    pub(crate) fn once(&mut self, plain: String) -> String {
         let unique = (1..)
             .map(|k| if k == 1 { plain.clone() } else { format!("{plain}_{k}") })
             .find(|candidate| !self.0.contains(candidate))
@@ -173,6 +173,18 @@ impl FileNames {
         self.0.push(unique.clone());
         unique
     }
+}
+
+/// A name fit for a file: letters, digits, `-` and `_` stay, a run of anything else becomes one `_`.
+fn plain_name(name: &str) -> String {
+    let kept = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
+    let words: Vec<&str> = name.split(|c: char| !kept(c)).filter(|w| !w.is_empty()).collect();
+    if words.is_empty() { "unnamed".to_string() } else { words.join("_") }
+}
+
+/// The name of the file of one of several results of a kind, without its extension: `frf_hammer`.
+pub(crate) fn file_name(kind: &str, name: &str) -> String {
+    format!("{kind}_{}", plain_name(name))
 }
 
 #[cfg(test)]

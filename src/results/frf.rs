@@ -1,7 +1,7 @@
 //! Frequency responses, as plain data, and their files.
 
-use super::{FileNames, RunResults, uff, write_result};
-use crate::dataset::{Dimension, Group, Table, Values, Variable, column};
+use super::{FileNames, file_name, uff, write_result};
+use crate::dataset::{Describe, Dimension, Group, Table, Values, Variable, column};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::measured::Quantity;
@@ -128,8 +128,8 @@ impl FrfResult {
         Table { key, rows: rows.clone(), columns, fields, file, json: false }
     }
 
-    /// The responses; `file` is the part of the CSV file's name that is theirs.
-    pub(crate) fn group(&self, file: &str) -> Group<'_> {
+    /// The responses.
+    fn group(&self) -> Group<'_> {
         let ends = [self.frequencies_hz.first(), self.frequencies_hz.last()];
         let band = ends.map(|hz| hz.copied().unwrap_or(f64::NAN)).to_vec();
         let responses = self.responses.iter().enumerate();
@@ -148,20 +148,18 @@ impl FrfResult {
             )
             .value("compared", "1", "frequencies at which both were compared", self.compared)
             .list("responses", responses.map(|(place, of)| of.group(place, self)).collect())
-            .table(self.lines().file(format!("frf_{file}.csv")))
+            .table(self.lines().file(file_name("frf", &self.name)))
     }
 }
 
-impl RunResults {
-    /// All frequency responses.
-    pub(super) fn frf_groups(&self) -> Vec<Group<'_>> {
-        let mut names = FileNames::default();
-        self.frfs.iter().map(|frf| frf.group(&names.next(&frf.name))).collect()
+impl Describe for FrfResult {
+    fn describe(&self) -> Group<'_> {
+        Group::new("", "").list("frf", vec![self.group()])
     }
 }
 
 /// Writes `frf_<name>.uff` into the folder `dir`.
-pub(super) fn write_universal(dir: &Path, frfs: &[FrfResult]) -> Result<()> {
+pub(super) fn write_universal(dir: &Path, frfs: &[&FrfResult]) -> Result<()> {
     let mut names = FileNames::default();
     frfs.iter().try_for_each(|frf| {
         write_result(dir, &format!("frf_{}.uff", names.next(&frf.name)), &uff::functions(frf))
@@ -171,15 +169,16 @@ pub(super) fn write_universal(dir: &Path, frfs: &[FrfResult]) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::super::sample;
+    use super::FrfResult;
 
     #[test]
     fn measured_resonances_stand_beside_the_peaks_that_show() {
         let results = sample::rig();
-        let frf = &results.frfs[0];
+        let frf = results.all::<FrfResult>()[0];
         assert!((frf.peak(0, 330.0).unwrap() - 338.0).abs() < 5.0 && frf.peak(0, 1697.0).unwrap() == 1745.0);
         assert!(frf.peak(0, 936.0).is_none());
         let dir = tempfile::tempdir().unwrap();
-        super::write_universal(dir.path(), &results.frfs).unwrap();
+        super::write_universal(dir.path(), &results.all::<FrfResult>()).unwrap();
         super::super::write_csv(dir.path(), &results).unwrap();
         let table = std::fs::read_to_string(dir.path().join("frf_hammer.csv")).unwrap();
         assert!(

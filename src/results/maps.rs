@@ -2,8 +2,10 @@
 //! its first ones.
 
 use super::explored::Method;
-use super::{FileNames, ResultsFile, RunResults};
-use crate::dataset::{Column, Dimension, Group, Table, Values, Variable, attribute, column, link, opened};
+use super::{ResultsFile, file_name};
+use crate::dataset::{
+    Column, Describe, Dimension, Group, Table, Values, Variable, attribute, column, link, opened,
+};
 use crate::error::Result;
 use crate::sweep::{Axis, Boundary, MapPoint};
 
@@ -65,9 +67,8 @@ impl MapResult {
         [self.axes[0].value(k % n), self.axes[1].value(k / n)]
     }
 
-    /// The parameters and the points, those that are not computed without growth rate; `file` is the part of the CSV file's
-    /// name that is the map's.
-    fn begun(&self, file: &str) -> Group<'_> {
+    /// The parameters and the points, those that are not computed without growth rate.
+    fn begun(&self) -> Group<'_> {
         let parameters = Dimension::of_variable("parameters", 2);
         let reals = |key: &'static str, story: &'static str, values: [f64; 2]| {
             Variable::reals(key, "unit", story, vec![parameters.clone()], values.to_vec())
@@ -78,7 +79,7 @@ impl MapResult {
         let steps = Values::Integers(self.axes.iter().map(|axis| axis.points as i64).collect());
         let all: Vec<MapPoint> =
             (0..self.total()).map(|k| self.points.get(k).copied().unwrap_or(MapPoint::NONE)).collect();
-        let mut grid = grid(&all).file(format!("map_{file}.csv"));
+        let mut grid = grid(&all).file(file_name("map", &self.name));
         for k in [1, 0] {
             let values = (0..self.total()).map(|point| self.at(point)[k]).collect();
             let (path, unit) = (self.parameters[k].clone(), self.units[k].clone());
@@ -96,7 +97,7 @@ impl MapResult {
     }
 
     /// What is known when all points are there.
-    fn found(&self, file: &str) -> Group<'_> {
+    fn found(&self) -> Group<'_> {
         let answered = || self.points.iter().enumerate().filter(|(_, point)| point.growth_rate.is_finite());
         let largest =
             answered().max_by(|a, b| a.1.growth_rate.total_cmp(&b.1.growth_rate)).map(|(k, point)| {
@@ -127,7 +128,7 @@ impl MapResult {
             .value("boundary_lines", "1", "lines of the boundary of stability", self.boundary.lines.len())
             .group(self.method.group())
             .optional("largest", largest)
-            .table(self.boundary_table().file(format!("map_{file}.csv")))
+            .table(self.boundary_table().file(file_name("map", &self.name) + "_boundary"))
             .table(Table::of("full_order_sample", "sample", &sample, &self.sample))
     }
 
@@ -146,25 +147,19 @@ impl MapResult {
         ];
         Table::of("boundary", "boundary_point", &columns, &all)
     }
+}
 
-    /// All of the map; `files` are the parts of the names of the CSV files of the points and of the boundary.
-    fn group(&self, [points, boundary]: [String; 2]) -> Group<'_> {
-        let mut group = self.begun(&points);
-        group.entries.extend(self.found(&boundary).entries);
+impl MapResult {
+    fn group(&self) -> Group<'_> {
+        let mut group = self.begun();
+        group.entries.extend(self.found().entries);
         group
     }
 }
 
-impl RunResults {
-    /// All maps.
-    pub(super) fn map_groups(&self) -> Vec<Group<'_>> {
-        let mut names = FileNames::default();
-        let points: Vec<String> = self.maps.iter().map(|map| names.next(&map.name)).collect();
-        let files = points.into_iter().map(|name| {
-            let boundary = names.next(&format!("{name}_boundary"));
-            [name, boundary]
-        });
-        self.maps.iter().zip(files).map(|(map, files)| map.group(files)).collect()
+impl Describe for MapResult {
+    fn describe(&self) -> Group<'_> {
+        Group::new("", "").list("maps", vec![self.group()])
     }
 }
 
@@ -190,7 +185,7 @@ impl ResultsFile {
             if maps.link_exists(&link(&map.name)) {
                 maps.unlink(&link(&map.name))?;
             }
-            map.begun("").with(places).write_hdf5(&maps)?;
+            map.begun().with(places).write_hdf5(&maps)?;
             let map = of(root, &map.name)?;
             attribute(&map, "points_done", &0_u64)
         })?;
@@ -215,7 +210,7 @@ impl ResultsFile {
     /// The machine refuses.
     pub fn finish_map(&mut self, map: &MapResult) -> Result<()> {
         self.stage(|root| {
-            map.found("").write_hdf5(&root.group("maps")?)?;
+            map.found().write_hdf5(&root.group("maps")?)?;
             let map = of(root, &map.name)?;
             attribute(&map, "complete", &true)
         })
@@ -239,7 +234,7 @@ mod tests {
     fn a_map_that_is_written_as_it_comes_is_that_which_is_written_whole() {
         let dir = tempfile::tempdir().unwrap();
         let results = sample::rig();
-        let map = &results.maps[0];
+        let map = results.all::<MapResult>()[0];
         let mut file = ResultsFile::create(dir.path()).unwrap();
         let begun = MapResult { points: Vec::new(), ..map.clone() };
         for known in [&map.points[..5], &map.points[..2]] {
@@ -263,7 +258,7 @@ mod tests {
             .unwrap();
         drop(file);
         let mut file = ResultsFile::create(dir.path()).unwrap();
-        file.write(&Group::new("", "").list("maps", results.map_groups())).unwrap();
+        file.write(&map.describe()).unwrap();
         let whole = file.read(|root| Ok(datasets(&of(root, &map.name)?))).unwrap();
         streamed.retain(|(name, ..)| !name.contains("trained"));
         assert_eq!(streamed, whole);

@@ -31,7 +31,6 @@ mod explored;
 mod fields;
 mod file;
 mod folder;
-mod found;
 mod frf;
 mod hdf5;
 mod lock;
@@ -39,6 +38,7 @@ mod maps;
 mod real_modes;
 pub mod record;
 mod record_size;
+mod records;
 mod reduced_check;
 mod search;
 mod sensitivity;
@@ -66,16 +66,18 @@ pub use comparison::{MeasuredComparison, MeasuredResponses, MeasuredRow, Placed,
 pub use complex::ComplexResult;
 pub(crate) use csv::write_csv;
 pub use damping::{DampingRow, DampingVerdicts};
-pub use derived::{ComparedRow, PairTotals};
+pub use derived::PairTotals;
 pub use explored::Method;
 pub use fields::FieldsFile;
 pub use file::ResultsFile;
-pub(crate) use folder::{FileNames, retire, set_aside, write_atomically, write_result};
+
+pub(crate) use folder::{FileNames, file_name, retire, set_aside, write_atomically, write_result};
 pub use frf::{FrfResponse, FrfResult, PlaceAndDirection, Resonance};
 pub use lock::FolderLock;
 pub use maps::MapResult;
 pub use real_modes::NamedModes;
 pub use record_size::{RecordSize, fits_in_memory, fits_on_disk};
+pub use records::{Record, Records};
 pub use reduced_check::{Deviation, MotionCompared, ReducedCheck};
 pub use search::{Moved, SearchResult, SearchedNumber};
 pub use sensitivity::{AdviceField, ModeSensitivity, Mounted, ParameterRate, SensitivityResult};
@@ -101,12 +103,12 @@ use std::path::Path;
 pub fn write_files(dir: &Path, results: &RunResults) -> crate::error::Result<()> {
     write_summary(dir, results)?;
     write_csv(dir, results)?;
-    if let Some(sound) = results.transient.as_ref().and_then(|run| run.sound.as_ref()) {
+    if let Some(sound) = results.get::<TransientResult>().and_then(|run| run.sound.as_ref()) {
         sound::write(dir, sound)?;
     }
-    frf::write_universal(dir, &results.frfs)?;
+    frf::write_universal(dir, &results.all::<FrfResult>())?;
     uff::write_modes(dir, results)?;
-    if let Some(calibration) = &results.calibration {
+    if let Some(calibration) = results.get::<CalibrationResult>() {
         calibration::write(dir, calibration)?;
     }
     write_vtk(dir, results)
@@ -127,30 +129,8 @@ pub struct RunResults {
     pub geometry: Geometry,
     /// Degrees of freedom and nonzeros of K.
     pub size: ModelSize,
-    /// Real modes of parts and of the whole, in the order the case lists them.
-    pub modes: Vec<NamedModes>,
-    /// Measured modes set beside the computed ones.
-    pub measured: Vec<MeasuredComparison>,
-    /// Measured frequency responses set beside the computed ones.
-    pub measured_frfs: Vec<MeasuredResponses>,
-    /// Steady sliding.
-    pub steady: Option<SteadyResult>,
-    /// Complex eigenvalues.
-    pub complex: Option<ComplexResult>,
-    /// How complex eigenvalues answer scalars of the case and things mounted on its nodes.
-    pub sensitivity: Option<SensitivityResult>,
-    /// Complex modes along one scalar.
-    pub sweeps: Vec<SweepResult>,
-    /// Complex modes over two scalars.
-    pub maps: Vec<MapResult>,
-    /// Motion in time.
-    pub transient: Option<TransientResult>,
-    /// Frequency responses, in the order of their names.
-    pub frfs: Vec<FrfResult>,
-    /// Numbers of the case that were found from measured frequencies.
-    pub calibration: Option<CalibrationResult>,
-    /// Which verdicts the modal damping decides.
-    pub damping: Option<DampingVerdicts>,
+    /// What the analyses have found.
+    pub records: Records,
     /// Wall time of each phase \[s\].
     pub timings: Vec<(String, f64)>,
     /// The files that the case reads.

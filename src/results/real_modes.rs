@@ -1,7 +1,7 @@
 //! Real modes of one part or of the whole.
 
-use super::{FileNames, NodalField, RunResults};
-use crate::dataset::{Column, Dimension, Group, Table, Values, Variable, column};
+use super::{NodalField, file_name};
+use crate::dataset::{Column, Describe, Dimension, Group, Table, Values, Variable, column};
 use crate::modal::{DiscModeName, RealModes};
 
 /// Units of a mass-normalised displacement and rotation: φᵀMφ = 1.
@@ -65,11 +65,17 @@ fn columns<'a>() -> Vec<Column<Mode<'a>>> {
     ]
 }
 
+impl Describe for NamedModes {
+    fn describe(&self) -> Group<'_> {
+        Group::new("", "").list("mode_sets", vec![self.summary()]).parts("modes", "set", vec![self.table()])
+    }
+}
+
 impl NamedModes {
-    /// The modes, one a row, with their shapes; `file` is the part of the CSV file's name that is the set's.
-    pub(super) fn table(&self, file: &str) -> Table<'_> {
+    /// The modes, one a row, with their shapes.
+    fn table(&self) -> Table<'_> {
         let modes: Vec<Mode> = (0..self.modes.len()).map(|k| (self, k)).collect();
-        let table = Table::of(&*self.name, "mode", &columns(), &modes).file(format!("modes_{file}.csv"));
+        let table = Table::of(&*self.name, "mode", &columns(), &modes).file(file_name("modes", &self.name));
         let Some(nodes) = self.shapes.first().map(Vec::len) else { return table };
         let dimensions = vec![table.rows.clone(), Dimension::indexed("node", nodes), Dimension::freedoms()];
         let rows = Values::RealRows(Box::new(|k| self.shapes[k].as_flattened().to_vec()));
@@ -83,7 +89,7 @@ impl NamedModes {
     }
 
     /// How many modes there are, and the Sturm count beside them.
-    pub(super) fn summary(&self) -> Group<'_> {
+    fn summary(&self) -> Group<'_> {
         let count = &self.modes.certificate;
         let shifts = Dimension::numbered("shift", 2);
         let counted = Values::Integers(count.counted.iter().map(|n| *n as i64).collect());
@@ -109,13 +115,5 @@ impl NamedModes {
             )
             .value("total_mass_kg", "kg", "total mass", self.total_mass)
             .group(certificate)
-    }
-}
-
-impl RunResults {
-    /// The tables of all sets of real modes.
-    pub(super) fn mode_tables(&self) -> Vec<Table<'_>> {
-        let mut names = FileNames::default();
-        self.modes.iter().map(|set| set.table(&names.next(&set.name))).collect()
     }
 }

@@ -1,6 +1,6 @@
 //! How complex eigenvalues answer the scalars of the case and small things mounted on its nodes, as plain data.
 
-use crate::dataset::{Column, Dimension, Group, Table, Values, Variable, column};
+use crate::dataset::{Column, Describe, Dimension, Group, Table, Values, Variable, column};
 use crate::linalg::c64;
 use crate::numbers::{given, power, significant};
 use std::f64::consts::TAU;
@@ -167,7 +167,7 @@ fn mounted_columns() -> Vec<Column<Mounted>> {
 impl ModeSensitivity {
     /// The scalars, one a row.
     pub(crate) fn rates(&self) -> Table<'static> {
-        let file = format!("sensitivities_mode_{}.csv", self.mode + 1);
+        let file = format!("sensitivities_mode_{}", self.mode + 1);
         Table::by("parameters", "parameter", &rate_columns(), &self.parameters).file(file)
     }
 
@@ -204,9 +204,8 @@ impl ModeSensitivity {
     }
 }
 
-impl SensitivityResult {
-    /// Derivatives of the chosen modes, and scalars without one.
-    pub(crate) fn group(&self) -> Group<'_> {
+impl Describe for SensitivityResult {
+    fn describe(&self) -> Group<'_> {
         let left_out = [
             column("parameter", "text", "path of the scalar", |(path, _): &(String, String)| path.clone()),
             column("reason", "text", "why it has no derivative", |(_, reason): &(String, String)| {
@@ -221,3 +220,5 @@ impl SensitivityResult {
         .table(Table::by("left_out", "parameter", &left_out, &self.left_out))
     }
 }
+
+impl SensitivityResult {}

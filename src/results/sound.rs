@@ -217,7 +217,7 @@ impl Sound {
             over_lines(key, "Pa^2", "mean square sound pressure, what each line adds", &square)
         });
         let columns = std::iter::once(frequency).chain(plates).chain(heard).collect();
-        Table::along("spectrum", rows.clone(), columns).file("sound_spectrum.csv").long()
+        Table::along("spectrum", rows.clone(), columns).file("sound_spectrum").long()
     }
 }
 
@@ -254,11 +254,12 @@ pub(super) fn write(dir: &Path, sound: &Sound) -> crate::error::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::super::sample;
+    use crate::results::TransientResult;
 
     #[test]
     fn levels_follow_from_power_and_files_say_their_scale() {
         let results = sample::rig();
-        let sound = results.transient.as_ref().unwrap().sound.as_ref().unwrap();
+        let sound = results.get::<TransientResult>().unwrap().sound.as_ref().unwrap();
         let whole: f64 = (0..sound.lines()).map(|k| sound.power(k)).sum();
         let [level, weighted] = sound.power_levels();
         assert!((level - 10.0 * (whole / 1e-12).log10()).abs() < 1e-9);

@@ -1,7 +1,7 @@
 //! Steady sliding.
 
 use super::{NodalField, PairTotals};
-use crate::dataset::{Column, Dimension, Group, Table, Values, Variable, column};
+use crate::dataset::{Column, Describe, Dimension, Group, Table, Values, Variable, column};
 use crate::equilibrium::{PointState, SteadySliding};
 use crate::numbers::{given, significant};
 
@@ -75,19 +75,13 @@ fn directions() -> Dimension {
     Dimension::numbered("direction", 2)
 }
 
-impl SteadyResult {
-    /// The pairs, one a row.
-    pub(crate) fn pair_table(&self) -> Table<'static> {
-        Table::by("pairs", "name", &pair_columns(), &self.totals())
-    }
-
-    /// The pairs, the contact points with their tangents, the displacement of the nodes.
-    pub(crate) fn group(&self) -> Group<'_> {
+impl Describe for SteadyResult {
+    fn describe(&self) -> Group<'_> {
         let places = self.points.iter().zip(&self.state.points);
         let points: Vec<Point> =
             places.map(|((pair, position), state)| (&**pair, *position, state)).collect();
         let mut points =
-            Table::of("points", "point", &point_columns(), &points).file("contact_points.csv").long();
+            Table::of("points", "point", &point_columns(), &points).file("contact_points").long();
         let rows = points.rows.clone();
         let forces = Dimension::named("force", &["N", "F1", "F2"]);
         let tangent = |key: &'static str,
@@ -130,5 +124,12 @@ impl SteadyResult {
             .with(Variable::new("displacement", "m, rad", "displacement of every node", nodes, displacement))
             .table(self.pair_table())
             .table(points)
+    }
+}
+
+impl SteadyResult {
+    /// The pairs, one a row.
+    pub(crate) fn pair_table(&self) -> Table<'static> {
+        Table::by("pairs", "name", &pair_columns(), &self.totals())
     }
 }

@@ -37,7 +37,7 @@ pub fn summary_json(results: &RunResults) -> Value {
         )
         .value("failed", "text", "why not: what the analysis that failed says", results.failed.clone())
         .to_json();
-    let parts = [head(results), tail(results), analyses(results)].map(|group| group.to_json());
+    let parts = [head(results), tail(results), expected(), analyses(results)].map(|group| group.to_json());
     if let Some(object) = json.as_object_mut() {
         for part in parts {
             object.extend(part.as_object().cloned().unwrap_or_default());
@@ -99,20 +99,15 @@ pub(super) fn sentences<'a>(
 
 /// What the analyses have found.
 pub(super) fn analyses(results: &RunResults) -> Group<'_> {
-    let mut all = Group::new("", "")
-        .list("mode_sets", results.modes.iter().map(|set| set.summary()).collect())
-        .parts("modes", "set", results.mode_tables())
-        .optional("steady_sliding", results.steady.as_ref().map(|steady| steady.group()))
-        .optional("cea", results.complex.as_ref().map(|complex| complex.group()))
-        .optional("sensitivity", results.sensitivity.as_ref().map(|sensitivity| sensitivity.group()))
-        .optional("transient", results.transient.as_ref().map(|transient| transient.group()))
-        .optional("calibration", results.calibration.as_ref().map(|calibration| calibration.group()))
-        .list("frf", results.frf_groups())
-        .list("sweeps", results.sweep_groups())
-        .list("maps", results.map_groups())
-        .optional("damping_verdicts", results.damping.as_ref().map(|damping| damping.group()));
-    all.entries.extend(results.compared().entries);
-    all
+    results.records.iter().fold(Group::new("", ""), |all, record| all.merged(record.describe()))
+}
+
+/// Keys of `summary.json` that are there whatever was run: empty lists, and `null` for single results.
+fn expected<'a>() -> Group<'a> {
+    let lists = ["mode_sets", "modes", "frf", "sweeps", "maps", "comparison", "comparison_frf"];
+    let single = ["steady_sliding", "cea", "sensitivity", "transient", "calibration", "damping_verdicts"];
+    let group = lists.into_iter().fold(Group::new("", ""), |group, key| group.list(key, Vec::new()));
+    single.into_iter().fold(group, |group, key| group.optional(key, None))
 }
 
 impl Geometry {
@@ -157,6 +152,9 @@ impl Geometry {
 mod tests {
     use super::super::sample;
     use super::*;
+    use crate::results::ComplexResult;
+    use crate::results::MeasuredComparison;
+    use crate::results::NamedModes;
     use serde_json::Value;
 
     fn written(results: &RunResults) -> Value {
@@ -171,10 +169,10 @@ mod tests {
         let json = written(&results);
         assert_eq!(json["schema_version"], SCHEMA_VERSION);
         assert_eq!(json["program_version"], env!("CARGO_PKG_VERSION"));
-        assert_eq!(json["modes"][0]["frequency_hz"], results.modes[0].modes.frequency_hz(0));
+        assert_eq!(json["modes"][0]["frequency_hz"], results.all::<NamedModes>()[0].modes.frequency_hz(0));
         assert_eq!(json["modes"][0]["nodal_diameters"], 1);
         assert_eq!(json["mode_sets"][0]["certificate"]["holds"], true);
-        let complex = results.complex.as_ref().unwrap();
+        let complex = results.get::<ComplexResult>().unwrap();
         let last = complex.modes.modes.len() - 1;
         assert_eq!(json["cea"]["eigenvalues"][last]["growth_rate"], complex.modes.modes[last].growth_rate());
         let unstable =
@@ -193,7 +191,8 @@ mod tests {
         let results = sample::rig();
         let row = &written(&results)["comparison"][0]["modes"][1];
         let k = row["mode"].as_u64().unwrap() as usize - 1;
-        let computed = results.modes[0].modes.frequency_hz(k) * results.measured[0].frequency_scale;
+        let computed = results.all::<NamedModes>()[0].modes.frequency_hz(k)
+            * results.all::<MeasuredComparison>()[0].frequency_scale;
         assert_eq!(row["computed_hz"], computed);
         let percent = row["difference_percent"].as_f64().unwrap();
         assert!((percent - 100.0 * (computed / 936.0 - 1.0)).abs() < 1e-12);
@@ -202,7 +201,7 @@ mod tests {
     #[test]
     fn numbers_that_are_not_finite_and_empty_runs_give_valid_json() {
         let mut results = sample::rig();
-        results.modes[0].modes.backward_errors[0] = f64::NAN;
+        results.get_mut::<NamedModes>().unwrap().modes.backward_errors[0] = f64::NAN;
         results.timings[0].1 = f64::INFINITY;
         results.resolved_case = "a = nan\nb = inf".into();
         let json = written(&results);

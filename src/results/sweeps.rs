@@ -1,8 +1,8 @@
 //! Sweeps: complex modes along one scalar of the case.
 
 use super::explored::{Method, ends};
-use super::{FileNames, RunResults};
-use crate::dataset::{Column, Dimension, Group, Table, Values, Variable, column};
+use super::file_name;
+use crate::dataset::{Column, Describe, Dimension, Group, Table, Values, Variable, column};
 use crate::linalg::c64;
 use crate::numbers::{hertz, power, significant};
 use crate::stability::unstable;
@@ -179,13 +179,12 @@ impl SweepResult {
         table.field(Variable::new("eigenvalue", "1/s", "λ = σ + iω", rows, eigenvalues))
     }
 
-    /// Branches, critical values and where branches meet; `files` are the names of the CSV files of the points and of the
-    /// critical values.
-    pub(crate) fn group(&self, files: [String; 2]) -> Group<'_> {
+    /// Branches, critical values and where branches meet.
+    fn group(&self) -> Group<'_> {
         let (sweep, unit) = (&self.sweep, &self.unit);
         let branches: Vec<Followed> = sweep.branches.iter().map(|b| (&*sweep.values, b)).collect();
-        let [points, critical] = files.map(|file| format!("sweep_{file}.csv"));
-        let critical = self.critical_table().file(critical);
+        let file = file_name("sweep", &self.name);
+        let critical = self.critical_table().file(format!("{file}_critical"));
         let eigenvalues = Values::Complexes(sweep.critical.iter().map(|c| c.eigenvalue).collect());
         let eigenvalues =
             Variable::new("eigenvalue", "1/s", "λ there", vec![critical.rows.clone()], eigenvalues);
@@ -210,7 +209,7 @@ impl SweepResult {
             .table(critical.field(eigenvalues))
             .table(Table::of("encounters", "encounter", &encounter_columns(unit), &sweep.encounters))
             .table(Table::of("full_order_sample", "sample", &sample, &self.sample))
-            .table(self.points().file(points))
+            .table(self.points().file(file))
     }
 
     /// A value of the parameter.
@@ -219,15 +218,8 @@ impl SweepResult {
     }
 }
 
-impl RunResults {
-    /// All sweeps.
-    pub(super) fn sweep_groups(&self) -> Vec<Group<'_>> {
-        let mut names = FileNames::default();
-        let points: Vec<String> = self.sweeps.iter().map(|sweep| names.next(&sweep.name)).collect();
-        let files = points.into_iter().map(|name| {
-            let critical = names.next(&format!("{name}_critical"));
-            [name, critical]
-        });
-        self.sweeps.iter().zip(files).map(|(sweep, files)| sweep.group(files)).collect()
+impl Describe for SweepResult {
+    fn describe(&self) -> Group<'_> {
+        Group::new("", "").list("sweeps", vec![self.group()])
     }
 }

@@ -1,6 +1,6 @@
 //! Every quantity of a run is in HDF5, in JSON and in CSV under the same name, and equal.
 
-use super::{ResultsFile, RunResults, sample, summary, summary_json, write_files};
+use super::{ComplexResult, NamedModes, ResultsFile, RunResults, sample, summary, summary_json, write_files};
 use crate::dataset::{Entry, Group, Table, Values, Variable, link};
 use crate::linalg::c64;
 use hdf5::types::VarLenUnicode;
@@ -149,7 +149,8 @@ impl Walk<'_> {
                 self.variable(column, &values, &group);
             }
             if let Some(file) = &table.file {
-                assert_eq!(in_csv(&self.folder.join(file), column), whole, "{file} {}", column.key);
+                let path = self.folder.join(format!("{file}.csv"));
+                assert_eq!(in_csv(&path, column), whole, "{file} {}", column.key);
                 self.in_csv += 1;
             }
         }
@@ -225,8 +226,8 @@ fn fields_read_back_bit_for_bit() {
     let results = sample::rig();
     let file = write_all(dir.path(), &results);
     let shapes = file.dataset("modes/disc/shapes").unwrap().read_raw::<f64>().unwrap();
-    assert!(shapes.iter().eq(results.modes[0].shapes.iter().flatten().flatten()));
-    let complex = results.complex.as_ref().unwrap();
+    assert!(shapes.iter().eq(results.all::<NamedModes>()[0].shapes.iter().flatten().flatten()));
+    let complex = results.get::<ComplexResult>().unwrap();
     let right = file.dataset("cea/eigenvalues/right").unwrap().read_raw::<c64>().unwrap();
     assert!(right.iter().eq(complex.shapes.iter().flatten().flatten()));
     let case = file.dataset("case").unwrap().read_scalar::<VarLenUnicode>().unwrap();

@@ -1,7 +1,7 @@
 //! A run in time, as plain data.
 
 use super::{Geometry, NodalField, ReducedCheck, Sound, TouchState, Watched};
-use crate::dataset::{Column, Dimension, Group, Table, Variable, column};
+use crate::dataset::{Column, Describe, Dimension, Group, Table, Variable, column};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::signal::{Growth, Peak, Spectrum};
@@ -224,24 +224,8 @@ pub(super) fn window(times: [f64; 2], description: &'static str) -> Variable<'st
     Variable::reals("window_s", "s", description, vec![Dimension::limits()], times.to_vec())
 }
 
-impl TransientResult {
-    /// Steps recorded, the start included.
-    pub fn len(&self) -> usize {
-        self.rows
-    }
-
-    /// The contacts of [`TransientResult::set_valued`], if any contact point came to rest.
-    pub fn stuck_without_give(&self) -> &[String] {
-        if self.events[EventKind::Sticks as usize] > 0 { &self.set_valued } else { &[] }
-    }
-
-    /// Whether nothing was recorded.
-    pub fn is_empty(&self) -> bool {
-        self.rows == 0
-    }
-
-    /// What the whole record says.
-    pub(super) fn group(&self) -> Group<'_> {
+impl Describe for TransientResult {
+    fn describe(&self) -> Group<'_> {
         let steps = self.len().saturating_sub(1);
         let [open, sticking, backwards, _] = self.spent;
         let (split, most) = self.split;
@@ -290,6 +274,23 @@ impl TransientResult {
             .optional("contact_state", self.watched.contact.group())
             .optional("sound", self.sound.as_ref().map(Sound::group))
     }
+}
+
+impl TransientResult {
+    /// Steps recorded, the start included.
+    pub fn len(&self) -> usize {
+        self.rows
+    }
+
+    /// The contacts of [`TransientResult::set_valued`], if any contact point came to rest.
+    pub fn stuck_without_give(&self) -> &[String] {
+        if self.events[EventKind::Sticks as usize] > 0 { &self.set_valued } else { &[] }
+    }
+
+    /// Whether nothing was recorded.
+    pub fn is_empty(&self) -> bool {
+        self.rows == 0
+    }
 
     /// The amplitudes of all spectra, a column each.
     fn spectrum_lines(&self) -> Table<'static> {
@@ -305,7 +306,7 @@ impl TransientResult {
             Variable::reals(channel.name.clone(), channel.unit, story, vec![rows.clone()], amplitudes)
         };
         let columns = std::iter::once(frequency).chain(self.spectra.iter().map(amplitude)).collect();
-        Table::along("spectrum_lines", rows.clone(), columns).file("transient_spectrum.csv").long()
+        Table::along("spectrum_lines", rows.clone(), columns).file("transient_spectrum").long()
     }
 
     fn event_counts(&self) -> Group<'static> {

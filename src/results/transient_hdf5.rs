@@ -15,6 +15,7 @@
 use super::events_hdf5 as events;
 use super::file::preallocated;
 use super::{Piece, Recording, ResultsFile, TransientResult, modal_channel};
+use crate::dataset::Describe;
 use crate::dataset::{attach_scale, attribute, describe, text_attribute};
 use crate::error::Result;
 use hdf5::Group;
@@ -87,7 +88,7 @@ impl ResultsFile {
         self.stage(|root| {
             let group = root.group("transient")?;
             events::fit(&group)?;
-            result.group().write_hdf5(root)?;
+            result.describe().write_hdf5(root)?;
             group.attr("complete")?.write_scalar(&true)
         })
     }

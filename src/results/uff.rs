@@ -35,7 +35,7 @@ fn code(place: &PlaceAndDirection) -> i64 {
 /// Writes `modes_<set>.uff` of the sets that ask for it.
 pub(super) fn write_modes(dir: &Path, results: &RunResults) -> Result<()> {
     let mut names = FileNames::default();
-    for set in &results.modes {
+    for set in results.all::<NamedModes>() {
         // A name for every set, so that the files of a set bear one name.
         let name = names.next(&set.name);
         if set.universal {
@@ -76,7 +76,7 @@ mod tests {
     #[test]
     fn responses_come_back_as_they_were_written() {
         let results = sample::rig();
-        let frf = &results.frfs[0];
+        let frf = results.all::<FrfResult>()[0];
         let text = String::from_utf8(functions(frf)).unwrap();
         let lines: Vec<&str> = text.lines().collect();
         // Columns of the format: degrees of freedom and form of the data.
@@ -105,7 +105,7 @@ mod tests {
     /// Around a resonance the lines of a response are nearer than six digits tell.
     #[test]
     fn lines_too_near_for_the_text_are_written_once() {
-        let mut frf = sample::rig().frfs[0].clone();
+        let mut frf = sample::rig().take::<FrfResult>().unwrap();
         let count = frf.frequencies_hz.len();
         frf.frequencies_hz[1] = frf.frequencies_hz[0] * (1.0 + 1e-9);
         let (set, _) = read("t", &functions(&frf), 1e-3).unwrap().into_set();
@@ -119,7 +119,7 @@ mod tests {
     #[test]
     fn shapes_come_back_as_they_were_written() {
         let results = sample::rig();
-        let set = &results.modes[0];
+        let set = results.all::<NamedModes>()[0];
         let text = modes(&results.geometry.nodes, set);
         let (back, warnings) = read("t", text.as_bytes(), 1.0).unwrap().into_set();
         assert!(warnings.is_empty() && back.modes.len() == set.modes.len(), "{warnings:?}");

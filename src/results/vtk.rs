@@ -5,7 +5,10 @@
 //! counts the parts from 0 in the order of the case.
 
 use super::folder::{FileNames, refusal};
-use super::{Geometry, ModeSensitivity, NodalField, RunResults, write_result};
+use super::{
+    ComplexResult, Geometry, ModeSensitivity, NamedModes, NodalField, RunResults, SensitivityResult,
+    SteadyResult, write_result,
+};
 use crate::error::Result;
 use crate::linalg::c64;
 use std::path::Path;
@@ -31,22 +34,22 @@ pub fn write_vtk(dir: &Path, results: &RunResults) -> Result<()> {
         return Ok(());
     }
     let mut names = FileNames::default();
-    for set in &results.modes {
+    for set in results.all::<NamedModes>() {
         let vectors = numbered(&set.shapes, |number, shape| vec![(number, displacement(shape))]);
         write_grid(dir, &format!("modes_{}.vtu", names.next(&set.name)), geometry, vectors)?;
     }
-    if let Some(steady) = &results.steady {
+    if let Some(steady) = results.get::<SteadyResult>() {
         let vectors = vec![("displacement".to_string(), displacement(&steady.displacement))];
         write_grid(dir, "steady.vtu", geometry, vectors)?;
     }
-    if let Some(complex) = &results.complex {
+    if let Some(complex) = results.get::<ComplexResult>() {
         let vectors = numbered(&complex.shapes, |number, shape| {
             let [re, im] = real_and_imaginary(shape);
             vec![(format!("{number}_re"), re), (format!("{number}_im"), im)]
         });
         write_grid(dir, "complex_modes.vtu", geometry, vectors)?;
     }
-    if let Some(sensitivity) = &results.sensitivity {
+    if let Some(sensitivity) = results.get::<SensitivityResult>() {
         let fields: Vec<PointScalar> = sensitivity.modes.iter().flat_map(advice).collect();
         if !fields.is_empty() {
             write_arrays(dir, "advice.vtu", geometry, scalars(fields))?;
@@ -186,10 +189,10 @@ mod tests {
         assert!(part.iter().zip(&results.geometry.part_of).all(|(a, b)| *a as usize == *b));
         let IOBuffer::F64(u) = array(&disc.data.point, "mode_03") else { panic!("modes are f64") };
         assert_eq!(u.len(), 3 * results.geometry.nodes.len());
-        assert!(u.chunks(3).zip(&results.modes[0].shapes[2]).all(|(a, b)| a == &b[..3]));
+        assert!(u.chunks(3).zip(&results.all::<NamedModes>()[0].shapes[2]).all(|(a, b)| a == &b[..3]));
         let complex = read(&dir.path().join("complex_modes.vtu"));
         let IOBuffer::F64(im) = array(&complex.data.point, "mode_01_im") else { panic!("modes are f64") };
-        let shape = &results.complex.as_ref().unwrap().shapes[0];
+        let shape = &results.get::<ComplexResult>().unwrap().shapes[0];
         assert!(im.chunks(3).zip(shape).all(|(a, b)| a[0] == b[0].im && a[2] == b[2].im));
         assert!(im.iter().any(|v| *v != 0.0));
     }

@@ -10,7 +10,7 @@ use crate::error::{Error, Fault, Result};
 use crate::job::{Histories, Prepared, Selection, Stage, analyse, export};
 use crate::linalg::c64;
 use crate::progress::Observer;
-use crate::results::{CheckedCase, NamedModes, RunResults};
+use crate::results::{CheckedCase, ComplexResult, NamedModes, RunResults, TransientResult};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -105,7 +105,7 @@ impl Runs<'_> {
                 histories.keep(&stage);
                 Ok(())
             };
-            let results = analyse(&prepared, Selection::ALL, &mut keep, self.observer)?;
+            let results = analyse(&prepared, Selection::Listed, &mut keep, self.observer)?;
             self.done.insert(key.clone(), Run { results, histories });
         }
         Ok(&self.done[&key])
@@ -114,14 +114,14 @@ impl Runs<'_> {
 
 /// λ of every complex mode of the run.
 fn eigenvalues(results: &RunResults) -> Vec<c64> {
-    let complex = results.complex.iter();
+    let complex = results.get::<ComplexResult>().into_iter();
     complex.flat_map(|c| c.modes.modes.iter().map(|m| m.eigenvalue)).collect()
 }
 
 /// λ of the unstable mode nearest to `hz`; not a number when no mode is unstable.
 fn unstable_near(results: &RunResults, hz: f64) -> c64 {
     let distance = |l: &c64| (l.im / TAU - hz).abs();
-    let modes = results.complex.iter().flat_map(|c| &c.modes.modes);
+    let modes = results.get::<ComplexResult>().into_iter().flat_map(|c| &c.modes.modes);
     let unstable = modes.filter(|mode| mode.unstable()).map(|mode| mode.eigenvalue);
     unstable.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(c64::new(f64::NAN, f64::NAN))
 }
@@ -175,13 +175,14 @@ fn compute(runs: &mut Runs, Quantity { kind, set, .. }: &Quantity, name: &str) -
             let folder = super::scratch()?;
             export(&runs.case_with(set)?, folder.path())?;
             let again = read_case(&folder.path().join("case.toml"))?;
-            let results = analyse(&Prepared::new(&again)?, Selection::CEA, &mut |_| Ok(()), runs.observer)?;
+            let results =
+                analyse(&Prepared::new(&again)?, Selection::Only("cea"), &mut |_| Ok(()), runs.observer)?;
             Ok(change(&eigenvalues(runs.with(set)?), &eigenvalues(&results)))
         }
         Kind::Resumed => resumed::differences(&runs.case_with(set)?, runs.observer),
         Kind::Faults(file) => {
             let run = |case: &Case| {
-                analyse(&Prepared::new(case)?, Selection::ALL, &mut |_| Ok(()), runs.observer).map(|_| ())
+                analyse(&Prepared::new(case)?, Selection::Listed, &mut |_| Ok(()), runs.observer).map(|_| ())
             };
             match read_case(&runs.case.folder.join(file)).and_then(|case| run(&case)) {
                 Ok(()) => Ok(0.0),
@@ -206,7 +207,7 @@ fn compute(runs: &mut Runs, Quantity { kind, set, .. }: &Quantity, name: &str) -
         Kind::UnstableNear(hz) => Ok(unstable_near(runs.with(set)?, *hz).im / TAU),
         Kind::GrowthNear(hz) => Ok(unstable_near(runs.with(set)?, *hz).re),
         Kind::Disturbance { growth } => {
-            let transient = runs.with(set)?.transient.as_ref();
+            let transient = runs.with(set)?.get::<TransientResult>();
             let compared =
                 transient.and_then(|t| t.growth.as_ref()).ok_or_else(|| missing("transient.disturbance"))?;
             let (sigma, omega) = (compared.eigenvalue.re, compared.eigenvalue.im);
@@ -247,7 +248,11 @@ fn compute(runs: &mut Runs, Quantity { kind, set, .. }: &Quantity, name: &str) -
             let shell = case.shell.get(part).ok_or_else(|| missing(part))?;
             let below = case.modes.get(modes).and_then(|m| m.below).ok_or_else(|| missing(modes))?;
             let results = runs.with(set)?;
-            let computed = results.modes.iter().find(|m| &m.name == modes).ok_or_else(|| missing(modes))?;
+            let computed = results
+                .all::<NamedModes>()
+                .into_iter()
+                .find(|m| &m.name == modes)
+                .ok_or_else(|| missing(modes))?;
             let material = &case.material[&shell.material];
             let plate = ThinPlate {
                 youngs_modulus: material.youngs_modulus,

@@ -4,6 +4,7 @@ use super::check::Run;
 use super::record::Record;
 use super::reference::{Measure, Span};
 use super::two_dof::TwoDof;
+use crate::results::TransientResult;
 
 /// What `measure` says of a channel; `None` when the run does not have it.
 pub(super) fn measured(run: &Run, span: &Span, measure: &Measure) -> Option<f64> {
@@ -30,7 +31,7 @@ pub(super) fn measured(run: &Run, span: &Span, measure: &Measure) -> Option<f64>
 /// The largest deviation of a channel from the displacement x of `model`, as a part of its amplitude in the window.
 pub(super) fn deviation(run: &Run, span: &Span, model: &TwoDof) -> Option<f64> {
     let found = record(run, span)?;
-    let step = run.results.transient.as_ref()?.time_step;
+    let step = run.results.get::<TransientResult>()?.time_step;
     let exact = model.displacement(step, (span.window[1] / step).round() as usize);
     let exact = Record::new(&exact, step, span.window);
     (found.values.len() == exact.values.len()).then(|| {
@@ -40,6 +41,6 @@ pub(super) fn deviation(run: &Run, span: &Span, model: &TwoDof) -> Option<f64> {
 }
 
 fn record<'a>(run: &'a Run, span: &Span) -> Option<Record<'a>> {
-    let step = run.results.transient.as_ref()?.time_step;
+    let step = run.results.get::<TransientResult>()?.time_step;
     Some(Record::new(run.histories.of(&span.channel)?, step, span.window))
 }

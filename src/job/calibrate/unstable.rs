@@ -32,10 +32,10 @@ impl Sliding {
     pub fn new(prepared: &Prepared) -> Result<Sliding> {
         let options = prepared.steady_options();
         let steady = equilibrium::solve_steady(&prepared.system, &options, &())?;
-        let complex = complex_result(prepared, &steady, None, true, &mut Clock::default(), &())?;
-        let Some((complex, system, real)) = complex else {
-            return Err(Error::analysis("complex eigenvalues", "no [cea] in the case", "Give the case one"));
-        };
+        let missing = || Error::analysis("complex eigenvalues", "no [cea] in the case", "Give the case one");
+        let cea = prepared.case.cea.as_ref().ok_or_else(missing)?;
+        let at = (prepared, &steady);
+        let (complex, system, real) = complex_result(at, cea, None, true, &mut Clock::default(), &())?;
         Ok(Sliding { steady, complex, system: system.into_owned(), real })
     }
 

@@ -78,9 +78,9 @@ fn a_test_made_of_the_models_own_modes_is_found_again() {
         format!("[measured.own]\nof = \"disc\"\nfile = \"test.uff\"\nreach = \"1 mm\"\n{}", transform("mm"));
     let with = case(&measured, dir.path());
     let prepared = Prepared::new(&with).unwrap();
-    let tests = Tests::new(&prepared, &mut []).unwrap();
+    let tests = Tests::of_modes(&prepared).unwrap();
     assert!(tests.warnings.is_empty(), "{:?}", tests.warnings);
-    let all = tests.modes(0, &with.modes["disc"], &named);
+    let all = tests.modes(&with.modes["disc"], &named);
     let comparison = &all[0];
     let placed = comparison.placed.unwrap();
     assert!((placed.largest - 4e-4).abs() < 1e-6 && (placed.mean - 4e-4).abs() < 1e-6, "{placed:?}");
@@ -94,14 +94,14 @@ fn a_test_made_of_the_models_own_modes_is_found_again() {
         assert!((named.modes.frequency_hz(mode) / row.frequency_hz - 1.0).abs() < 1e-5);
         assert_eq!((row.damping_ratio, row.deviation), (Some(0.004), Some(0.005)));
     }
-    assert!(comparison.computed_alone(&named).is_empty());
+    assert!(comparison.computed_alone().is_empty());
     // Shapes of other levels are far from alike.
     let alike = &comparison.mac[0];
     assert!(alike[1..].iter().all(|like| *like < 0.2), "{alike:?}");
     // In metres the points lie off the mesh: each is told, up to ten, and how many more.
     let far = case(&measured.replace("unit = \"mm\"", "unit = \"m\""), dir.path());
     let far_prepared = Prepared::new(&far).unwrap();
-    let said = Tests::new(&far_prepared, &mut []).err().unwrap().to_string();
+    let said = Tests::of_modes(&far_prepared).err().unwrap().to_string();
     assert!(said.contains("point 100 at") && said.contains("points more beyond"), "{said}");
 }
 
@@ -110,18 +110,18 @@ fn frequencies_of_the_case_are_paired_and_what_is_left_is_told() {
     let text = "[modes.plain]\ncount = 4\nmeasured = [200, 5000]\n[measured.list]\nof = \"disc\"\nfrequencies = [250, 560]\ndamping_ratios = [0.001, 0.002]\n";
     let case = case(text, Path::new("."));
     let prepared = Prepared::new(&case).unwrap();
-    let tests = Tests::new(&prepared, &mut []).unwrap();
+    let tests = Tests::of_modes(&prepared).unwrap();
     let named = part_modes(&prepared, "disc", &()).unwrap();
-    let all = tests.modes(3, &case.modes["disc"], &named);
-    assert!(all.len() == 1 && all[0].modes == 3 && all[0].placed.is_none());
+    let all = tests.modes(&case.modes["disc"], &named);
+    assert!(all.len() == 1 && all[0].set == "disc" && all[0].placed.is_none());
     assert!(all[0].rows.iter().all(|row| row.mode.is_some() && row.mac.is_none()));
-    let alone = all[0].computed_alone(&named);
+    let alone = all[0].computed_alone();
     assert!(
         !alone.is_empty()
             && alone.iter().all(|level| !all[0].rows.iter().any(|r| level.contains(&r.mode.unwrap())))
     );
     let plain = part_modes(&prepared, "plain", &()).unwrap();
-    let short = tests.modes(0, &case.modes["plain"], &plain);
+    let short = tests.modes(&case.modes["plain"], &plain);
     assert!(short[0].rows[0].mode.is_some() && short[0].rows[1].mode.is_none());
 }
 
@@ -160,7 +160,7 @@ fn measured_responses_stand_beside_computed_ones_at_their_own_frequencies() {
     let with = case(&(frf.to_string() + &measured), dir.path());
     let prepared = Prepared::new(&with).unwrap();
     let mut responses = frfs(&prepared).unwrap();
-    let tests = Tests::new(&prepared, &mut responses).unwrap();
+    let tests = Tests::of_responses(&prepared, &mut responses).unwrap();
     let (computed, beside) = responses[0].run(&prepared, None, &()).unwrap();
     let all = tests.responses(&computed, &beside);
     let [pair] = &all[0].pairs[..] else { panic!("one pair: {:?}", all[0].measured_alone) };

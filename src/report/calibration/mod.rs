@@ -4,60 +4,29 @@ mod picture;
 mod words;
 
 use super::format::{fixed, given, hertz, power, signed, significant};
-use super::html::{Picture, figure, titled_table};
-use super::tables::Table;
+use super::section::{Display, Section};
+use super::table::Table;
 use crate::results::{CalibratedNumber, CalibrationResult, RunResults};
-pub(super) use words::words;
+use words::words;
 
-/// The pictures, when the run has a calibration.
-pub(super) fn pictures(results: &RunResults) -> Vec<Picture> {
-    results
-        .calibration
-        .iter()
-        .flat_map(|result| {
-            let errors = (!result.data.is_empty()).then(|| picture::errors(result));
-            errors.into_iter().chain([picture::numbers(result)]).chain(picture::responses(result))
-        })
-        .collect()
-}
-
-/// The part of the page on a calibration; empty when the run has none.
-pub(super) fn section(results: &RunResults) -> String {
-    let Some(result) = &results.calibration else { return String::new() };
-    let mut body = "<h2>Calibration</h2>\n".to_string();
-    let numbers = picture::numbers(result);
-    if !result.data.is_empty() {
-        let errors = picture::errors(result);
-        body += &figure(&errors.svg, &errors.caption);
-        body += &titled_table(&fit_table(result));
-    }
-    if result.shapes().next().is_some() {
-        body += &titled_table(&shape_table(result));
-    }
-    if let Some(responses) = picture::responses(result) {
-        body += &figure(&responses.svg, &responses.caption);
-        body += &titled_table(&response_table(result));
-    }
-    body += &figure(&numbers.svg, &numbers.caption);
-    let mut table = number_table(result);
-    table.notes.extend(words(result));
-    body += &titled_table(&table);
-    if !result.data.is_empty() {
-        body += &titled_table(&assignment_table(result));
-    }
-    body
-}
-
-/// What a terminal shows: the tables that the calibration has.
-pub(super) fn tables(result: &CalibrationResult) -> Vec<Table> {
-    let (modes, responses) = (!result.data.is_empty(), !result.responses.is_empty());
-    let mut all = Vec::new();
-    all.extend(modes.then(|| fit_table(result)));
-    all.extend(result.shapes().next().map(|_| shape_table(result)));
-    all.extend(responses.then(|| response_table(result)));
-    all.push(number_table(result));
-    all.extend(modes.then(|| assignment_table(result)));
-    all
+/// A calibration, where the run has one.
+pub(super) fn sections(results: &RunResults) -> Vec<Section> {
+    let Some(result) = results.get::<CalibrationResult>() else { return Vec::new() };
+    let modes = !result.data.is_empty();
+    let shapes = result.shapes().next().is_some();
+    let responses = picture::responses(result);
+    let response_table = responses.as_ref().map(|_| response_table(result));
+    let section = Section::new("Calibration")
+        .pictures(modes.then(|| picture::errors(result)))
+        .tables(Display::Titled, modes.then(|| fit_table(result)))
+        .tables(Display::Titled, shapes.then(|| shape_table(result)))
+        .pictures(responses)
+        .tables(Display::Titled, response_table)
+        .pictures([picture::numbers(result)])
+        .tables(Display::Titled, [number_table(result)])
+        .words(words(result))
+        .tables(Display::Titled, modes.then(|| assignment_table(result)));
+    vec![section]
 }
 
 /// How like the computed shapes are to the measured ones, before and after.
@@ -262,7 +231,7 @@ mod tests {
     #[test]
     fn tables_words_and_pictures_tell_the_same() {
         let results = sample::rig();
-        let result = results.calibration.as_ref().unwrap();
+        let result = results.get::<CalibrationResult>().unwrap();
         let table = fit_table(result);
         assert_eq!((table.rows.len(), table.columns.len()), (3, 8));
         let shapes = shape_table(result);
@@ -270,11 +239,12 @@ mod tests {
         assert!(table.rows[0].cells.contains(&"+1.00".to_string()), "{:?}", table.rows[0]);
         let numbers = number_table(result);
         assert!(numbers.rows[1].marked && numbers.rows[1].cells.last().unwrap() == "at its bound");
-        let page = section(&results);
-        assert_eq!(page.matches("<svg").count(), 3);
+        let [section] = &sections(&results)[..] else { panic!("one section") };
+        assert_eq!(section.drawn().count(), 3);
         // 20 log₁₀ of 2, of 2 and of 1; of 10/9 and of 10/8 at one of three lines; a deviation is 0.87 dB.
         let cells = &response_table(result).rows[0].cells;
         assert_eq!(cells[4..9], ["4.92", "0.53", "0.61", "1.12", "1.29"]);
+        let page = crate::report::html::section(section);
         assert!(page.contains("not converged") && page.contains("stiffness"));
         let words = words(result).join(" ");
         for expected in [
@@ -290,6 +260,6 @@ mod tests {
         ] {
             assert!(words.contains(expected), "{expected} not in {words}");
         }
-        assert!(section(&RunResults::default()).is_empty());
+        assert!(sections(&RunResults::default()).is_empty());
     }
 }

@@ -3,7 +3,7 @@
 use super::super::colours::{ALARM, CALM, INK, MEASURED, MUTED, SECOND};
 use super::super::comparison::{Curve, Panel, stacked};
 use super::super::format::{given, signed, significant};
-use super::super::html::Picture;
+use super::super::section::Picture;
 use super::super::svg::{Anchor, Ink, Sheet};
 use crate::results::{CalibratedNumber, CalibratedResponse, CalibrationResult};
 
@@ -76,7 +76,7 @@ pub(super) fn errors(result: &CalibrationResult) -> Picture {
     sheet.text([zero, top + 24.0], foot, ink(MUTED, Anchor::Middle));
     let caption =
         "Errors of the computed frequencies with the values of the case and with those found.".to_string();
-    Picture { file: "calibration_errors.svg", caption, svg: sheet.finish() }
+    Picture { file: "calibration_errors".into(), caption, svg: sheet.finish() }
 }
 
 /// The measured responses over the computed ones before and after; `None` where there are none.
@@ -110,7 +110,7 @@ pub(super) fn responses(result: &CalibrationResult) -> Option<Picture> {
     let caption = format!(
         "Measured responses, and the computed ones with the values of the case, with those found{others}."
     );
-    Some(Picture { file: "calibration_responses.svg", caption, svg })
+    Some(Picture { file: "calibration_responses".into(), caption, svg })
 }
 
 /// Each number inside its bounds: what was expected, what was found, and its intervals.
@@ -133,7 +133,7 @@ pub(super) fn numbers(result: &CalibrationResult) -> Picture {
         draw(&mut sheet, 44.0 + ROW * k as f64, n);
     }
     let caption = "The numbers found, between their bounds, with their 95 % intervals.".to_string();
-    Picture { file: "calibration_numbers.svg", caption, svg: sheet.finish() }
+    Picture { file: "calibration_numbers".into(), caption, svg: sheet.finish() }
 }
 
 fn draw(sheet: &mut Sheet, top: f64, n: &CalibratedNumber) {

@@ -3,15 +3,16 @@
 use super::super::colours::{ALARM, INK, MEASURED, MUTED};
 use super::super::format::{fixed, given, signed};
 use super::super::svg::{Anchor, Ink, Sheet};
-use super::{Drawn, level_name};
-use crate::results::{MeasuredComparison, NamedModes};
+use super::level_name;
+use crate::report::section::Picture;
+use crate::results::{MeasuredComparison, NamedModes, file_name};
 
 const LINE: f64 = 30.0;
 const LEFT: f64 = 210.0;
 const WIDTH: f64 = 560.0;
 const TOP: f64 = 44.0;
 
-pub(super) fn picture(comparison: &MeasuredComparison, set: &NamedModes, name: &str) -> Option<Drawn> {
+pub(super) fn picture(comparison: &MeasuredComparison, set: &NamedModes) -> Option<Picture> {
     if comparison.rows.is_empty() {
         return None;
     }
@@ -72,7 +73,7 @@ pub(super) fn picture(comparison: &MeasuredComparison, set: &NamedModes, name: &
     };
     sheet.text([12.0, foot], &format!("{band}Dot: computed."), note);
     let caption = format!("Computed over measured frequencies ({}).", comparison.name);
-    Some(Drawn { file: format!("frequencies_{name}.svg"), caption, svg: sheet.finish() })
+    Some(Picture { file: file_name("frequencies", &comparison.name), caption, svg: sheet.finish() })
 }
 
 /// The next of 1, 2, 5 times a power of ten.

@@ -3,8 +3,9 @@
 use super::super::colours::{INK, MEASURED, MUTED, sequential};
 use super::super::format::{fixed, given, hertz};
 use super::super::svg::{Anchor, Ink, Sheet};
-use super::{Drawn, level_name};
-use crate::results::{MeasuredComparison, NamedModes};
+use super::level_name;
+use crate::report::section::Picture;
+use crate::results::{MeasuredComparison, NamedModes, file_name};
 
 const CELL: [f64; 2] = [46.0, 30.0];
 /// Room for the labels of the rows, and of the columns.
@@ -15,7 +16,7 @@ const MOST: usize = 40;
 /// Room for the note below.
 const NARROWEST: f64 = 500.0;
 
-pub(super) fn picture(comparison: &MeasuredComparison, set: &NamedModes, name: &str) -> Option<Drawn> {
+pub(super) fn picture(comparison: &MeasuredComparison, set: &NamedModes) -> Option<Picture> {
     let rows: Vec<usize> = (0..comparison.rows.len()).filter(|k| !comparison.mac[*k].is_empty()).collect();
     let hz =
         |level: usize| comparison.frequency_scale * set.modes.frequency_hz(comparison.levels[level].start);
@@ -72,5 +73,5 @@ pub(super) fn picture(comparison: &MeasuredComparison, set: &NamedModes, name: &
     let note = "Framed: paired. A level of several modes counts as the space they span.";
     sheet.text([12.0, MARGIN[1] + height + 22.0], note, Ink { colour: MUTED, ..left });
     let caption = format!("MAC of the measured shapes ({}) with the computed ones.", comparison.name);
-    Some(Drawn { file: format!("mac_{name}.svg"), caption, svg: sheet.finish() })
+    Some(Picture { file: file_name("mac", &comparison.name), caption, svg: sheet.finish() })
 }

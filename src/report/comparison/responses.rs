@@ -5,10 +5,10 @@ use super::super::chart::{Area, colour, sheet, text};
 use super::super::colours::{ALARM, INK, MEASURED};
 use super::super::format::fixed;
 use super::super::magnitude::{draw_magnitude, draw_phase, magnitude_axes, phase_axes};
-use super::Drawn;
 use crate::linalg::c64;
 use crate::measured::Quantity;
-use crate::results::{MeasuredResponses, ResponsePair};
+use crate::report::section::Picture;
+use crate::results::{MeasuredResponses, ResponsePair, file_name};
 use plotters::prelude::{Color, Rectangle};
 use std::error::Error;
 
@@ -42,7 +42,7 @@ pub(in crate::report) struct Curve {
     pub phases: Vec<f64>,
 }
 
-pub(super) fn picture(responses: &MeasuredResponses, name: &str) -> Option<Drawn> {
+pub(super) fn picture(responses: &MeasuredResponses) -> Option<Picture> {
     let panel = |pair: &ResponsePair| {
         let curve = |words: String, hex: &'static str, values: &[c64]| Curve {
             words,
@@ -69,7 +69,7 @@ pub(super) fn picture(responses: &MeasuredResponses, name: &str) -> Option<Drawn
         "Measured responses ({}) over the computed ones ({}){more}. FRAC is 1 where they are alike over the band.",
         responses.name, responses.frf
     );
-    Some(Drawn { file: format!("measured_frf_{name}.svg"), caption, svg })
+    Some(Picture { file: file_name("measured_frf", &responses.name), caption, svg })
 }
 
 /// The first panels, one below the other; `None` where there are none.

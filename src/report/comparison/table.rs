@@ -1,38 +1,35 @@
 //! The tables: measured modes and responses, each beside the computed one.
 
 use super::super::format::{fixed, given, hertz, signed, significant};
-use super::super::tables::Table;
+use super::super::table::Table;
 use super::level_name;
-use crate::results::{MeasuredComparison, MeasuredResponses, RunResults};
+use crate::results::{MeasuredComparison, MeasuredResponses, NamedModes};
 
 /// The measured modes of a comparison, one row each.
-pub(in crate::report) fn modes_table(results: &RunResults, comparison: &MeasuredComparison) -> Option<Table> {
-    let set = results.modes.get(comparison.modes)?;
+pub(super) fn modes_table(comparison: &MeasuredComparison, set: &NamedModes) -> Table {
     let headings = ["measured [Hz]", "± [%]", "ζ [%]", "<computed", "f [Hz]", "ζ [%]", "diff. [%]", "MAC"];
     let caption = format!("Measured beside computed modes: {} ({})", comparison.name, set.name);
     let mut table = Table::new(caption, &headings);
-    let hz = |mode: usize| comparison.frequency_scale * set.modes.frequency_hz(mode);
     let none = String::new;
     for row in &comparison.rows {
         let level = row.mode.and_then(|mode| comparison.level_of(mode)).map(|at| &comparison.levels[at]);
-        let damping = row.mode.and_then(|mode| set.damping_ratio.get(mode));
         let cells = vec![
             given(row.frequency_hz),
             row.deviation.map_or(none(), |d| significant(100.0 * d, 2)),
             row.damping_ratio.map_or(none(), |z| significant(100.0 * z, 3)),
             level.map_or("none".into(), |level| level_name(set, level)),
-            row.mode.map_or(none(), |mode| hertz(hz(mode), 1)),
-            damping.map_or(none(), |z| significant(100.0 * z, 3)),
-            row.mode.map_or(none(), |mode| signed(100.0 * (hz(mode) / row.frequency_hz - 1.0), 2)),
+            row.computed_hz.map_or(none(), |hz| hertz(hz, 1)),
+            row.computed_damping_ratio.map_or(none(), |z| significant(100.0 * z, 3)),
+            row.difference_percent().map_or(none(), |d| signed(d, 2)),
             row.mac.map_or(none(), |like| fixed(like, 2)),
         ];
         table.row(cells, row.mode.is_none());
     }
-    let alone = comparison.computed_alone(set);
-    let told = |level: &std::ops::Range<usize>| {
-        format!("{} {} Hz", level_name(set, level), hertz(hz(level.start), 1))
-    };
-    let list: Vec<String> = alone.iter().map(told).collect();
+    let alone = comparison.computed_alone();
+    let levels = comparison.levels.iter().zip(&comparison.levels_hz);
+    let named = levels.filter(|(level, _)| alone.contains(level));
+    let list: Vec<String> =
+        named.map(|(level, hz)| format!("{} {} Hz", level_name(set, level), hertz(*hz, 1))).collect();
     table.notes.push(match list.len() {
         0 => "Every computed level between the measured frequencies has a measured mode.".into(),
         n => format!("Computed without a measured mode beside it ({n}): {}.", list.join(", ")),
@@ -56,11 +53,11 @@ pub(in crate::report) fn modes_table(results: &RunResults, comparison: &Measured
     if !comparison.source.is_empty() {
         table.notes.push(format!("Measured: {}.", comparison.source));
     }
-    Some(table)
+    table
 }
 
 /// The measured responses beside a computed one.
-pub(in crate::report) fn responses_table(responses: &MeasuredResponses) -> Table {
+pub(super) fn responses_table(responses: &MeasuredResponses) -> Table {
     let headings = ["<measured", "<place", "<", "off [mm]", "lines", "from [Hz]", "to [Hz]", "FRAC"];
     let caption = format!("Measured beside computed responses: {} ({})", responses.name, responses.frf);
     let mut table = Table::new(caption, &headings);

@@ -1,11 +1,12 @@
 //! `map_<name>.svg`: the largest growth rate over two parameters, with the boundary of stability.
 
 use super::sweep::round;
-use super::{Drawn, axis_name, place, value_at};
+use super::{axis_name, place, value_at};
 use crate::report::chart::{Area, colour, sheet, text};
 use crate::report::colours::{INK, MUTED, diverging};
 use crate::report::format::{given, signed};
-use crate::results::MapResult;
+use crate::report::section::Picture;
+use crate::results::{MapResult, file_name};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::error::Error;
@@ -13,7 +14,7 @@ use std::error::Error;
 /// At most this many cells along an axis; a finer grid is thinned out in the picture.
 const CELLS: usize = 160;
 
-pub(super) fn picture(result: &MapResult, name: &str) -> Option<Drawn> {
+pub(super) fn picture(result: &MapResult) -> Option<Picture> {
     if result.points.is_empty() {
         return None;
     }
@@ -22,7 +23,7 @@ pub(super) fn picture(result: &MapResult, name: &str) -> Option<Drawn> {
         "Largest growth rate of any mode over {} and {}: red where a mode grows, blue where all decay, grey where there is no answer. Line: the boundary of stability. Ring: the case itself.",
         result.parameters[0], result.parameters[1]
     );
-    Some(Drawn { file: format!("map_{name}.svg"), caption, svg })
+    Some(Picture { file: file_name("map", &result.name), caption, svg })
 }
 
 /// Edges of the cells about the values, and the index of the value of each cell.

@@ -4,53 +4,27 @@ mod map;
 mod sweep;
 mod words;
 
-pub(super) use words::{critical_table, damping_table, map_words, sweep_words};
+use words::{critical_table, damping_table, map_words, sweep_words};
 
-use super::html::{escape, figure, titled_table};
-use crate::results::{FileNames, RunResults, write_result};
+use super::section::{Display, Section};
+use crate::results::{DampingVerdicts, MapResult, RunResults, SweepResult};
 use crate::sweep::Axis;
-use std::path::Path;
 
-/// A picture with its file name and its caption.
-pub(super) struct Drawn {
-    file: String,
-    caption: String,
-    svg: String,
-}
-
-/// Writes the pictures of every sweep and map into the folder.
-pub(super) fn write(dir: &Path, results: &RunResults) -> crate::error::Result<()> {
-    let (mut names, mut map_names) = (FileNames::default(), FileNames::default());
-    let sweeps = results.sweeps.iter().flat_map(|of| sweep::pictures(of, &names.next(&of.name)));
-    let maps = results.maps.iter().filter_map(|of| map::picture(of, &map_names.next(&of.name)));
-    for drawn in sweeps.chain(maps) {
-        write_result(dir, &drawn.file, drawn.svg.as_bytes())?;
-    }
-    Ok(())
-}
-
-/// The part of the page on sweeps, maps and damping; empty when the run has none.
-pub(super) fn section(results: &RunResults) -> String {
-    let mut body = String::new();
-    let say =
-        |words: Vec<String>| -> String { words.iter().map(|w| format!("<p>{}</p>\n", escape(w))).collect() };
-    for result in &results.sweeps {
-        body += &format!("<h2>Sweep: {}</h2>\n{}", escape(&result.name), say(sweep_words(result)));
-        for drawn in sweep::pictures(result, "") {
-            body += &figure(&drawn.svg, &drawn.caption);
-        }
-        body += &titled_table(&critical_table(result));
-    }
-    for result in &results.maps {
-        body += &format!("<h2>Map: {}</h2>\n{}", escape(&result.name), say(map_words(result)));
-        if let Some(drawn) = map::picture(result, "") {
-            body += &figure(&drawn.svg, &drawn.caption);
-        }
-    }
-    if let Some(verdicts) = &results.damping {
-        body += &format!("<h2>What damping decides</h2>\n{}", titled_table(&damping_table(verdicts)));
-    }
-    body
+/// Sweeps, maps, and what damping decides.
+pub(super) fn sections(results: &RunResults) -> Vec<Section> {
+    let sweeps = results.all::<SweepResult>().into_iter().map(|sweep| {
+        Section::new(format!("Sweep: {}", sweep.name))
+            .pictures(sweep::pictures(sweep))
+            .tables(Display::Titled, [critical_table(sweep)])
+            .words(sweep_words(sweep))
+    });
+    let maps = results.all::<MapResult>().into_iter().map(|map| {
+        Section::new(format!("Map: {}", map.name)).words(map_words(map)).pictures(map::picture(map))
+    });
+    let damping = results.get::<DampingVerdicts>().map(|verdicts| {
+        Section::new("What damping decides").tables(Display::Titled, [damping_table(verdicts)])
+    });
+    sweeps.chain(maps).chain(damping).collect()
 }
 
 /// A parameter's path with its unit, for axes.

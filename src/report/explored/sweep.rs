@@ -1,11 +1,12 @@
 //! `sweep_<name>.svg` and `root_locus_<name>.svg`: the branches over the parameter and in the complex plane.
 
-use super::{Drawn, axis_name, place, value_at};
+use super::{axis_name, place, value_at};
 use crate::linalg::c64;
 use crate::report::chart::{Area, above, bold, colour, sheet, text, widened};
 use crate::report::colours::{ALARM, CALM, INK, MEASURED, MUTED};
 use crate::report::format::{given, hertz, significant};
-use crate::results::SweepResult;
+use crate::report::section::Picture;
+use crate::results::{SweepResult, file_name};
 use crate::stability::unstable;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
@@ -22,17 +23,17 @@ const DEEPEST: f64 = 1.5;
 const LABELS: usize = 8;
 
 /// `name` is the part of the file names that is the sweep's.
-pub(super) fn pictures(result: &SweepResult, name: &str) -> Vec<Drawn> {
+pub(super) fn pictures(result: &SweepResult) -> Vec<Picture> {
     let parameter = axis_name(&result.parameter, &result.unit);
-    let branches = sheet((980, 820), |area| draw_branches(area, result)).map(|svg| Drawn {
-        file: format!("sweep_{name}.svg"),
+    let branches = sheet((980, 820), |area| draw_branches(area, result)).map(|svg| Picture {
+        file: file_name("sweep", &result.name),
         caption: format!(
             "Frequency and growth rate of every mode over {parameter}: orange where it grows. Dots: critical values. Dashed: the case itself."
         ),
         svg,
     });
-    let locus = sheet((980, 560), |area| draw_locus(area, result)).map(|svg| Drawn {
-        file: format!("root_locus_{name}.svg"),
+    let locus = sheet((980, 560), |area| draw_locus(area, result)).map(|svg| Picture {
+        file: file_name("root_locus", &result.name),
         caption: format!(
             "Eigenvalues in the complex plane as {parameter} goes from {} (circles) to {} (dots); to the right of the line a mode grows.",
             given(result.axis.from),

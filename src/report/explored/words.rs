@@ -1,7 +1,7 @@
 //! What a sweep or a map found, in words and tables.
 
 use crate::report::format::{fixed, hertz, power, signed, significant};
-use crate::report::tables::Table;
+use crate::report::table::Table;
 use crate::results::{DampingVerdicts, MapResult, Method, SweepResult};
 use crate::stability::unstable;
 use crate::sweep::{CriticalKind, EncounterKind};

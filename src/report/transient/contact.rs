@@ -4,8 +4,8 @@ use crate::report::axes::axes;
 use crate::report::chart::{Area, colour, sheet, text};
 use crate::report::colours::{ALARM, INK, PARTS};
 use crate::report::format::fixed;
-use crate::report::html::Picture;
-use crate::results::{ContactHistory, RunResults, TouchState};
+use crate::report::section::Picture;
+use crate::results::{ContactHistory, RunResults, TouchState, TransientResult};
 use plotters::prelude::*;
 use std::error::Error;
 
@@ -26,7 +26,7 @@ const ORDER: [TouchState; 4] =
 
 /// Shares of the states, one upon the other.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
-    let run = results.transient.as_ref()?;
+    let run = results.get::<TransientResult>()?;
     let history = Some(&run.watched.contact).filter(|history| history.points > 0)?;
     let whole: u64 = history.counts.iter().flatten().sum();
     let part = |state: TouchState| {
@@ -40,7 +40,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     };
     let caption =
         format!("What {points} did over time; a column lasts {} ms.", fixed(1e3 * history.column, 2));
-    Some(Picture { file: "transient_contact.svg", caption, svg })
+    Some(Picture { file: "transient_contact".into(), caption, svg })
 }
 
 fn draw(

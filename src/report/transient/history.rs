@@ -4,14 +4,14 @@ use crate::report::axes::{WIDTH, axes};
 use crate::report::chart::{Area, colour, sheet, widened};
 use crate::report::colours::{ALARM, SECOND};
 use crate::report::format::significant;
-use crate::report::html::Picture;
+use crate::report::section::Picture;
 use crate::results::{Channel, RunResults, TransientResult};
 use plotters::prelude::*;
 use std::error::Error;
 
 /// Motion and forces over time.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
-    let run = results.transient.as_ref().filter(|run| run.len() > 1)?;
+    let run = results.get::<TransientResult>().filter(|run| run.len() > 1)?;
     let shown = panels(run);
     let svg = sheet((WIDTH, 180 * shown.len() as u32), |area| {
         let parts = area.split_evenly((shown.len(), 1));
@@ -23,7 +23,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     })?;
     let abouts: Vec<&str> = shown.iter().map(|channel| channel.about.as_str()).collect();
     let caption = format!("Motion in time ({}): {}.", run.scheme, abouts.join("; "));
-    Some(Picture { file: "transient.svg", caption, svg })
+    Some(Picture { file: "transient".into(), caption, svg })
 }
 
 /// The channels of the picture.

@@ -10,25 +10,15 @@ mod spectra;
 mod spectrogram;
 mod table;
 
-use super::html::Picture;
-use crate::results::RunResults;
+use super::reduced_check;
+use super::section::{Display, Section};
+use crate::results::{ComplexResult, RunResults, TransientResult};
 
-pub(super) use sound::table as sound_table;
-pub(super) use table::table;
-
-/// Files of the pictures, in the order of the page.
-pub(super) const FILES: [&str; 6] = [
-    "transient.svg",
-    "transient_spectrum.svg",
-    "transient_spectrogram.svg",
-    "transient_phase.svg",
-    "transient_contact.svg",
-    "sound.svg",
-];
-
-/// The pictures that the run has something for.
-pub(super) fn pictures(results: &RunResults) -> Vec<Picture> {
-    let all = [
+/// Motion in time, where the run has it.
+pub(super) fn sections(results: &RunResults) -> Vec<Section> {
+    let Some(run) = results.get::<TransientResult>() else { return Vec::new() };
+    let complex = results.get::<ComplexResult>();
+    let pictures = [
         history::picture(results),
         spectra::picture(results),
         spectrogram::picture(results),
@@ -36,5 +26,12 @@ pub(super) fn pictures(results: &RunResults) -> Vec<Picture> {
         contact::picture(results),
         sound::picture(results),
     ];
-    all.into_iter().flatten().collect()
+    let modes = complex.map_or(&[][..], |complex| &complex.real_modes);
+    let check = run.reduced_check.as_ref().map(|check| reduced_check::table(check, complex));
+    let section = Section::new("Motion in time")
+        .pictures(pictures.into_iter().flatten())
+        .tables(Display::Untitled, [table::table(run)])
+        .tables(Display::Titled, sound::table(run, modes))
+        .tables(Display::Titled, check);
+    vec![section]
 }

@@ -4,8 +4,8 @@ use crate::report::axes::{Words, labelled};
 use crate::report::chart::{Area, colour, sheet, widened};
 use crate::report::colours::{ALARM, MUTED, SECOND};
 use crate::report::format::{fixed, hertz, significant};
-use crate::report::html::Picture;
-use crate::results::{Curve, RunResults};
+use crate::report::section::Picture;
+use crate::results::{Curve, RunResults, TransientResult};
 use plotters::prelude::*;
 use std::error::Error;
 
@@ -13,7 +13,7 @@ const SIZE: (u32, u32) = (980, 440);
 
 /// The orbit of the motion and the one of the friction.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
-    let run = results.transient.as_ref()?;
+    let run = results.get::<TransientResult>()?;
     let orbit = &run.watched.orbit;
     let varies = |curve: &&Curve| curve.points.iter().any(|p| *p != curve.points[0]);
     let shown: Vec<&Curve> = orbit.curves.iter().filter(varies).collect();
@@ -36,7 +36,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
         fixed(orbit.periods[0], 0),
         hertz(orbit.periods[1], 0)
     );
-    Some(Picture { file: "transient_phase.svg", caption, svg })
+    Some(Picture { file: "transient_phase".into(), caption, svg })
 }
 
 fn curve(

@@ -5,8 +5,8 @@ use crate::report::axes::{WIDTH, axes};
 use crate::report::chart::{Area, above, bold, colour, sheet, text};
 use crate::report::colours::{ALARM, INK, SECOND};
 use crate::report::format::{fixed, given, hertz, significant};
-use crate::report::html::Picture;
-use crate::report::tables::Table;
+use crate::report::section::Picture;
+use crate::report::table::Table;
 use crate::results::{RunResults, Sound, TransientResult};
 use crate::sound::{power_level, pressure_level};
 use plotters::prelude::*;
@@ -20,7 +20,7 @@ const MODES: usize = 4;
 
 /// Sound power, and the pressure at the first microphone, over frequency.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
-    let run = results.transient.as_ref()?;
+    let run = results.get::<TransientResult>()?;
     let sound = run.sound.as_ref()?;
     let power: Vec<f64> = (0..sound.lines()).map(|k| power_level(sound.power(k))).collect();
     if !power.iter().any(|level| level.is_finite()) {
@@ -54,7 +54,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
         significant(sound.resolution_hz, 3),
         heard.map_or(String::new(), |h| format!("; pressure at microphone {}", h.name))
     );
-    Some(Picture { file: "sound.svg", caption, svg })
+    Some(Picture { file: "sound".into(), caption, svg })
 }
 
 fn lines<'a>(

@@ -4,7 +4,7 @@ use crate::report::axes::{Chart, WIDTH, axes};
 use crate::report::chart::{Area, above, bold, colour, sheet, text};
 use crate::report::colours::{ALARM, INK, MEASURED, SECOND};
 use crate::report::format::{given, hertz, significant};
-use crate::report::html::Picture;
+use crate::report::section::Picture;
 use crate::results::{Channel, RunResults, SpectrumOf, TransientResult};
 use plotters::prelude::*;
 use std::error::Error;
@@ -15,7 +15,7 @@ const DECADES: f64 = 5.0;
 
 /// Motion and friction over frequency.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
-    let run = results.transient.as_ref()?;
+    let run = results.get::<TransientResult>()?;
     let known = |of: &&SpectrumOf| of.spectrum.amplitude.iter().any(|a| *a > 0.0);
     let shown: Vec<&SpectrumOf> = run.spectra.iter().filter(known).collect();
     let first = shown.first()?;
@@ -36,7 +36,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
         given(stop),
         significant(first.spectrum.resolution_hz, 3)
     ) + if measured { " Blue: measured." } else { "" };
-    Some(Picture { file: "transient_spectrum.svg", caption, svg })
+    Some(Picture { file: "transient_spectrum".into(), caption, svg })
 }
 
 fn lines(

@@ -6,8 +6,8 @@ use crate::report::axes::{WIDTH, Words, labelled};
 use crate::report::chart::{Area, colour, sheet, text};
 use crate::report::colours::{INK, MEASURED, sequential};
 use crate::report::format::{given, significant};
-use crate::report::html::Picture;
-use crate::results::{Channel, RunResults};
+use crate::report::section::Picture;
+use crate::results::{Channel, RunResults, TransientResult};
 use crate::signal::Spectrogram;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -20,7 +20,7 @@ const BAR: u32 = 140;
 
 /// Motion and friction over time and frequency.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
-    let run = results.transient.as_ref()?;
+    let run = results.get::<TransientResult>()?;
     let shown: Vec<&(usize, Spectrogram)> =
         run.watched.spectrograms.iter().filter(|(_, s)| alive(s)).collect();
     let (_, first) = shown.first()?;
@@ -44,7 +44,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
         "Spectrograms (Hann window of {} s, amplitude of a sine, three decades below the highest).{blue}",
         significant(first.segment, 2)
     );
-    Some(Picture { file: "transient_spectrogram.svg", caption, svg })
+    Some(Picture { file: "transient_spectrogram".into(), caption, svg })
 }
 
 fn highest(of: &Spectrogram) -> f64 {

@@ -1,7 +1,7 @@
 //! The figures of a run in time.
 
 use crate::report::format::{fixed, given, hertz, power, signed, significant};
-use crate::report::tables::Table;
+use crate::report::table::Table;
 use crate::results::TransientResult;
 use std::f64::consts::TAU;
 

@@ -5,6 +5,9 @@ use crate::results::{
     FrfResult, MeasuredComparison, MeasuredResponses, MeasuredRow, NamedModes, Placed, ResponsePair,
 };
 
+/// The factor of the computed frequencies.
+const SCALE: f64 = 0.972;
+
 /// Four measured modes, of which the last is like none of the computed ones.
 pub(super) fn modes(disc: &NamedModes, modes: [Option<usize>; 4]) -> MeasuredComparison {
     let hz: Vec<f64> = (0..disc.modes.len()).map(|k| disc.modes.frequency_hz(k)).collect();
@@ -15,6 +18,8 @@ pub(super) fn modes(disc: &NamedModes, modes: [Option<usize>; 4]) -> MeasuredCom
         deviation: Some(0.005),
         damping_ratio: Some(0.002),
         mode,
+        computed_hz: mode.map(|k| SCALE * disc.modes.frequency_hz(k)),
+        computed_damping_ratio: mode.map(|k| disc.damping_ratio[k]),
         mac: mode.map(|_| 0.97),
     };
     let alike = |k: Option<usize>| {
@@ -23,10 +28,11 @@ pub(super) fn modes(disc: &NamedModes, modes: [Option<usize>; 4]) -> MeasuredCom
     };
     MeasuredComparison {
         name: "impact".into(),
-        modes: 0,
+        set: disc.name.clone(),
         source: "hammer test, free rim".into(),
         rows: [330.0, 936.0, 1697.0, 2050.0].into_iter().zip(modes).map(row).collect(),
-        frequency_scale: 0.972,
+        frequency_scale: SCALE,
+        levels_hz: levels.iter().map(|level| SCALE * hz[level.start]).collect(),
         mac: modes.map(alike).into(),
         levels,
         placed: Some(Placed { points: 24, dofs: 24, largest: 1.2e-3, mean: 0.6e-3 }),

@@ -1,0 +1,43 @@
+//! Numbers of the case from measured frequencies.
+
+use super::{Analysis, Planned, Selection};
+use crate::case::Case;
+use crate::error::Result;
+use crate::job::calibrate;
+use crate::job::prepared::Prepared;
+use crate::job::run::Run;
+
+/// Calibration.
+pub struct Calibrate;
+
+impl Analysis for Calibrate {
+    fn name(&self) -> &'static str {
+        "calibrate"
+    }
+
+    fn about(&self) -> &'static str {
+        "Find numbers of the case from measured frequencies, and what the agreement is worth"
+    }
+
+    fn example(&self) -> Option<&'static str> {
+        Some(
+            "[calibrate] with `against = \"disc\"`, and [calibrate.parameter.NAME] with `path` and `between`",
+        )
+    }
+
+    fn listed(&self, case: &Case) -> bool {
+        case.calibrate.is_some()
+    }
+
+    fn plan<'a>(&self, prepared: &'a Prepared<'a>, _: Selection) -> Result<Box<dyn Planned<'a> + 'a>> {
+        let wanted = prepared.case.calibrate.as_ref().ok_or_else(|| self.no_table())?;
+        Ok(Box::new(calibrate::Calibrate::new(prepared, wanted)?))
+    }
+}
+
+impl<'a> Planned<'a> for calibrate::Calibrate<'a> {
+    fn run(self: Box<Self>, run: &mut Run<'a, '_>) -> Result<()> {
+        let found = run.timed("calibration", |observer| calibrate::Calibrate::run(&self, observer))?;
+        run.found(found)
+    }
+}

@@ -1,0 +1,73 @@
+//! Frequency responses, each beside what a test measured.
+
+use super::{Analysis, Planned, Selection};
+use crate::case::Case;
+use crate::error::{Faults, Result};
+use crate::job::compare::{Tests, has_measured_frf};
+use crate::job::frf::{self, frfs};
+use crate::job::prepared::Prepared;
+use crate::job::run::Run;
+
+/// Frequency responses.
+pub struct Frf;
+
+impl Analysis for Frf {
+    fn name(&self) -> &'static str {
+        "frf"
+    }
+
+    fn about(&self) -> &'static str {
+        "Frequency responses: motion at some places for a harmonic force at another"
+    }
+
+    fn example(&self) -> Option<&'static str> {
+        Some(
+            "[frf.tap] with `band = [\"10 Hz\", \"3 kHz\"]` and `excitation = { at = [0, 0, 0], direction = [0, 0, 1] }`",
+        )
+    }
+
+    fn listed(&self, case: &Case) -> bool {
+        !case.frf.is_empty()
+    }
+
+    fn plan<'a>(
+        &self,
+        prepared: &'a Prepared<'a>,
+        selection: Selection,
+    ) -> Result<Box<dyn Planned<'a> + 'a>> {
+        let mut faults = Faults::new();
+        let mut frfs = faults.take(frfs(prepared)).unwrap_or_default();
+        frfs.retain(|frf| selection != Selection::Measured || has_measured_frf(prepared.case, frf.name()));
+        let tests = faults.take(Tests::of_responses(prepared, &mut frfs)).unwrap_or_default();
+        faults.into_result(Box::new(Responses { frfs, tests }))
+    }
+}
+
+struct Responses<'a> {
+    frfs: Vec<frf::Frf<'a>>,
+    tests: Tests,
+}
+
+impl<'a> Planned<'a> for Responses<'a> {
+    fn slides(&self) -> bool {
+        self.frfs.iter().any(frf::Frf::slides)
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.tests.warnings.clone()
+    }
+
+    fn run(self: Box<Self>, run: &mut Run<'a, '_>) -> Result<()> {
+        let prepared = run.prepared;
+        for frf in &self.frfs {
+            let steady = if frf.slides() { Some(run.steady()?) } else { None };
+            let phase = format!("frequency response {}", frf.name());
+            let (response, beside) =
+                run.timed(&phase, |observer| frf.run(prepared, steady.as_deref(), observer))?;
+            let compared = self.tests.responses(&response, &beside);
+            run.found(response)?;
+            compared.into_iter().try_for_each(|comparison| run.found(comparison))?;
+        }
+        Ok(())
+    }
+}

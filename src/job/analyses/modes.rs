@@ -1,0 +1,103 @@
+//! Real modes of parts and of the whole, each set beside the modes that a test found.
+
+use super::{Analysis, Planned, Selection};
+use crate::case::{Case, ContactState, ModesAnalysis};
+use crate::equilibrium;
+use crate::error::{Faults, Result};
+use crate::job::compare::{Tests, has_measured_modes};
+use crate::job::modes::{check_part, named, of_the_whole, part_modes, wanted};
+use crate::job::prepared::Prepared;
+use crate::job::run::Run;
+use crate::modal;
+
+/// Real modes.
+pub struct Modes;
+
+impl Analysis for Modes {
+    fn name(&self) -> &'static str {
+        "modes"
+    }
+
+    fn about(&self) -> &'static str {
+        "Real modes only"
+    }
+
+    fn example(&self) -> Option<&'static str> {
+        Some("[modes.all] with `count = 10`")
+    }
+
+    fn listed(&self, case: &Case) -> bool {
+        !case.modes.is_empty()
+    }
+
+    fn plan<'a>(
+        &self,
+        prepared: &'a Prepared<'a>,
+        selection: Selection,
+    ) -> Result<Box<dyn Planned<'a> + 'a>> {
+        let case = prepared.case;
+        let mut faults = Faults::new();
+        let tests = faults.take(Tests::of_modes(prepared)).unwrap_or_default();
+        let taken = |name: &str| selection != Selection::Measured || has_measured_modes(case, name);
+        let sets = case.modes.iter().filter(|(name, _)| taken(name));
+        let sets: Vec<_> = sets.map(|(name, wanted)| (name.as_str(), wanted)).collect();
+        for (name, _) in &sets {
+            faults.take(check_part(prepared, name));
+        }
+        faults.into_result(Box::new(Sets { sets, tests }))
+    }
+}
+
+struct Sets<'a> {
+    sets: Vec<(&'a str, &'a ModesAnalysis)>,
+    tests: Tests,
+}
+
+impl<'a> Planned<'a> for Sets<'a> {
+    fn slides(&self) -> bool {
+        self.sets.iter().any(|(_, set)| set.contact == ContactState::Closed)
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.tests.warnings.clone()
+    }
+
+    fn run(self: Box<Self>, run: &mut Run<'a, '_>) -> Result<()> {
+        // Those with closed contact wait for steady sliding.
+        for state in [ContactState::Open, ContactState::Closed] {
+            for (name, set) in self.sets.iter().filter(|(_, set)| set.contact == state) {
+                let modes = match state {
+                    ContactState::Open => open(run, name, set),
+                    ContactState::Closed => closed(run, name, set),
+                }?;
+                let compared = self.tests.modes(set, &modes);
+                run.found(modes)?;
+                compared.into_iter().try_for_each(|comparison| run.found(comparison))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Real modes without contact. Lists of the whole's modes take their share of those that span the complex analysis.
+fn open(run: &mut Run, name: &str, set: &ModesAnalysis) -> Result<crate::results::NamedModes> {
+    let prepared = run.prepared;
+    if of_the_whole(prepared, set)
+        && let Some(basis) = run.basis()?
+        && let Some(modes) = basis.lowest(wanted(set, prepared.system.n_dofs()))
+    {
+        return Ok(named(prepared, name, modes, &prepared.assembled));
+    }
+    run.timed(&format!("real modes, {name}"), |observer| part_modes(prepared, name, observer))
+}
+
+/// Real modes with the contact as it is in steady sliding.
+fn closed(run: &mut Run, name: &str, set: &ModesAnalysis) -> Result<crate::results::NamedModes> {
+    let prepared = run.prepared;
+    let steady = run.steady()?;
+    let structure = equilibrium::closed_structure(&prepared.system, &steady)?;
+    let wanted = wanted(set, prepared.system.n_dofs());
+    let phase = format!("real modes, {name}");
+    let (modes, _) = run.timed(&phase, |observer| modal::compute(&structure, wanted, observer))?;
+    Ok(named(prepared, name, modes, &prepared.assembled))
+}

@@ -1,0 +1,64 @@
+//! How complex eigenvalues answer scalars of the case and things mounted on its nodes.
+
+use super::{Analysis, Planned, Selection};
+use crate::case::{Case, SensitivityAnalysis};
+use crate::error::Result;
+use crate::job::prepared::Prepared;
+use crate::job::run::Run;
+use crate::job::sensitivity::Analysed;
+use crate::results::ComplexResult;
+
+/// Sensitivities of complex eigenvalues.
+pub struct Sensitivity;
+
+impl Analysis for Sensitivity {
+    fn name(&self) -> &'static str {
+        "sensitivity"
+    }
+
+    fn about(&self) -> &'static str {
+        "Complex eigenvalues, what they answer to most, and where a mass or a damper helps"
+    }
+
+    fn example(&self) -> Option<&'static str> {
+        // Every key of its table has a default.
+        None
+    }
+
+    fn listed(&self, case: &Case) -> bool {
+        case.sensitivity.is_some()
+    }
+
+    fn needs(&self) -> &'static [&'static str] {
+        &["cea"]
+    }
+
+    fn takes_left_vectors(&self) -> bool {
+        true
+    }
+
+    fn plan<'a>(&self, prepared: &'a Prepared<'a>, _: Selection) -> Result<Box<dyn Planned<'a> + 'a>> {
+        Ok(Box::new(Wanted(prepared.case.sensitivity.clone().unwrap_or_default())))
+    }
+}
+
+struct Wanted(SensitivityAnalysis);
+
+impl<'a> Planned<'a> for Wanted {
+    fn run(self: Box<Self>, run: &mut Run<'a, '_>) -> Result<()> {
+        let Some((point, complex)) = run.operating_point.clone().zip(run.results.get::<ComplexResult>())
+        else {
+            return Ok(());
+        };
+        let analysed = Analysed {
+            prepared: run.prepared,
+            system: &point.system,
+            steady: &point.steady,
+            real: &point.real,
+            modes: &complex.modes,
+        };
+        let observer = run.observer;
+        let found = run.clock.time("sensitivities", || analysed.sensitivities(&self.0, observer))?;
+        run.found(found)
+    }
+}

@@ -1,0 +1,57 @@
+//! Complex modes along one scalar of the case, or over two.
+
+use super::{Analysis, Planned, Selection};
+use crate::case::Case;
+use crate::error::Result;
+use crate::job::explore::{Nominal, explore};
+use crate::job::prepared::Prepared;
+use crate::job::run::Run;
+
+/// Sweeps and maps.
+pub struct Sweep;
+
+impl Analysis for Sweep {
+    fn name(&self) -> &'static str {
+        "sweep"
+    }
+
+    fn about(&self) -> &'static str {
+        "Complex eigenvalues, and the sweeps and maps of the case"
+    }
+
+    fn example(&self) -> Option<&'static str> {
+        Some(
+            "[sweep.mu] with `parameter = \"contact.NAME.friction.mu0\"`, `from = 0.1` and `to = 0.7`, or a [map.NAME]",
+        )
+    }
+
+    fn listed(&self, case: &Case) -> bool {
+        !(case.sweep.is_empty() && case.map.is_empty())
+    }
+
+    fn needs(&self) -> &'static [&'static str] {
+        &["cea"]
+    }
+
+    fn plan<'a>(&self, _: &'a Prepared<'a>, _: Selection) -> Result<Box<dyn Planned<'a> + 'a>> {
+        Ok(Box::new(All))
+    }
+}
+
+struct All;
+
+impl<'a> Planned<'a> for All {
+    fn run(self: Box<Self>, run: &mut Run<'a, '_>) -> Result<()> {
+        let Some(point) = run.operating_point.clone() else { return Ok(()) };
+        let nominal = Nominal {
+            prepared: run.prepared,
+            system: &point.system,
+            steady: &point.steady,
+            real: &point.real,
+        };
+        let Run { sink, results, clock, known, observer, .. } = run;
+        clock.time("sweeps and maps", || {
+            explore(&nominal, known, results, &mut |stage| sink.record(stage), *observer)
+        })
+    }
+}

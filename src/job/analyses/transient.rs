@@ -1,0 +1,89 @@
+//! Motion in time from steady sliding.
+
+use super::{Analysis, Planned, Selection};
+use crate::case::{Case, TransientAnalysis};
+use crate::error::{Fault, Faults, Result};
+use crate::job::prepared::Prepared;
+use crate::job::run::Run;
+use crate::job::sink::Stage;
+use crate::job::transient::{InTime, Places, places};
+use crate::results::{ComplexResult, RecordSize};
+
+/// The phase of motion in time.
+pub const PHASE: &str = "transient";
+
+/// Motion in time.
+pub struct Transient;
+
+impl Analysis for Transient {
+    fn name(&self) -> &'static str {
+        "transient"
+    }
+
+    fn about(&self) -> &'static str {
+        "Complex eigenvalues, and motion in time from steady sliding"
+    }
+
+    fn example(&self) -> Option<&'static str> {
+        Some("[transient] with `duration = \"10 ms\"` and `time_step = \"5 us\"`")
+    }
+
+    fn listed(&self, case: &Case) -> bool {
+        case.transient.is_some()
+    }
+
+    fn needs(&self) -> &'static [&'static str] {
+        &["cea"]
+    }
+
+    fn takes_left_vectors(&self) -> bool {
+        true
+    }
+
+    fn plan<'a>(&self, prepared: &'a Prepared<'a>, _: Selection) -> Result<Box<dyn Planned<'a> + 'a>> {
+        let wanted = prepared.case.transient.as_ref().ok_or_else(|| self.no_table())?;
+        let mut faults = Faults::new();
+        if prepared.system.skew().is_some() {
+            let found = "matrices whose part that is not symmetric has no low rank, such as gyroscopic terms";
+            let expected = "matrices that are symmetric but for contact with friction, for motion in time";
+            let help = "Remove [transient]; complex modes and frequency responses are there";
+            faults.push(Fault::new("`transient`", found, expected).with_help(help));
+        }
+        let planned = faults.take(places(prepared, wanted)).map(|places| -> Box<dyn Planned<'a> + 'a> {
+            let least = places.least_record(prepared, wanted);
+            Box::new(Wanted { wanted, places, least })
+        });
+        faults.into_result(planned)?.ok_or_else(|| self.no_table())
+    }
+}
+
+struct Wanted<'a> {
+    wanted: &'a TransientAnalysis,
+    places: Places,
+    least: RecordSize,
+}
+
+impl<'a> Planned<'a> for Wanted<'a> {
+    fn record_size(&self) -> Option<RecordSize> {
+        Some(self.least)
+    }
+
+    fn run(self: Box<Self>, run: &mut Run<'a, '_>) -> Result<()> {
+        let Run { prepared, results, clock, sink, observer, .. } = run;
+        let Some((point, complex)) = run.operating_point.clone().zip(results.get::<ComplexResult>()) else {
+            return Ok(());
+        };
+        let in_time = InTime {
+            system: &point.system,
+            steady: &point.steady,
+            complex,
+            real: &point.real,
+            dofs: &prepared.assembled.dofs,
+            geometry: &results.geometry,
+        };
+        let found = clock.time(PHASE, || in_time.run(self.wanted, self.places, *sink, *observer))?;
+        sink.record(Stage::Transient(&found))?;
+        results.records.push(found);
+        Ok(())
+    }
+}

@@ -1,0 +1,149 @@
+//! A run under way: what its analyses share, and where their results go.
+
+use super::analyses::Selection;
+use super::clock::Clock;
+use super::complex::whole_modes;
+use super::prepared::Prepared;
+use super::sink::{KnownMaps, ResultSink, Stage};
+use crate::equilibrium::{self, SteadySliding};
+use crate::error::Result;
+use crate::modal::RealModes;
+use crate::progress::Observer;
+use crate::results::{Record, RunResults, SteadyResult};
+use crate::system::System;
+use std::borrow::Cow;
+use std::rc::Rc;
+
+/// The analyses of a case under way.
+pub struct Run<'a, 'k> {
+    /// The case.
+    pub prepared: &'a Prepared<'a>,
+    /// Watches the run.
+    pub observer: &'k dyn Observer,
+    /// Takes results as soon as they are there.
+    pub sink: &'k mut dyn ResultSink,
+    /// Times the phases.
+    pub clock: Clock,
+    /// What was found.
+    pub results: &'k mut RunResults,
+    /// What an earlier run knows of the maps.
+    pub known: &'k KnownMaps,
+    /// Whether an analysis takes the left vectors of the complex modes.
+    pub left_vectors: bool,
+    /// The real modes of the whole that span the complex analysis, until that takes them: see [`Run::basis`].
+    pub basis: Option<RealModes>,
+    /// The state about which complex modes were computed.
+    pub operating_point: Option<Rc<OperatingPoint<'a>>>,
+    selection: Selection,
+    steady: Option<Rc<SteadySliding>>,
+}
+
+/// Steady sliding and the linear system about it.
+pub struct OperatingPoint<'a> {
+    /// Steady sliding.
+    pub steady: Rc<SteadySliding>,
+    /// The system with its modal damping.
+    pub system: Cow<'a, System>,
+    /// The real modes that span the complex ones.
+    pub real: RealModes,
+}
+
+impl<'a, 'k> Run<'a, 'k> {
+    /// A run of `selection`, of which nothing is known but the maps that an earlier run left.
+    pub fn new(
+        (prepared, selection): (&'a Prepared<'a>, Selection),
+        known: &'k KnownMaps,
+        sink: &'k mut dyn ResultSink,
+        results: &'k mut RunResults,
+        observer: &'k dyn Observer,
+    ) -> Self {
+        let left_vectors = selection.analyses(prepared.case).any(|analysis| analysis.takes_left_vectors());
+        Run {
+            prepared,
+            observer,
+            sink,
+            clock: Clock::default(),
+            results,
+            known,
+            left_vectors,
+            basis: None,
+            operating_point: None,
+            selection,
+            steady: None,
+        }
+    }
+
+    /// Hands a result on and keeps it.
+    ///
+    /// # Errors
+    /// The machine refuses.
+    pub fn found(&mut self, record: impl Record) -> Result<()> {
+        self.sink.record(Stage::Found(&record))?;
+        self.results.records.push(record);
+        Ok(())
+    }
+
+    /// Times `work` as one phase.
+    pub fn timed<T>(&mut self, phase: &str, work: impl FnOnce(&dyn Observer) -> T) -> T {
+        let observer = self.observer;
+        self.clock.time(phase, || work(observer))
+    }
+
+    /// Steady sliding, which is computed when it is first asked for.
+    ///
+    /// # Errors
+    /// No steady state; the machine refuses.
+    pub fn steady(&mut self) -> Result<Rc<SteadySliding>> {
+        if let Some(steady) = &self.steady {
+            return Ok(steady.clone());
+        }
+        let prepared = self.prepared;
+        let options = prepared.steady_options();
+        let state = self.timed("steady sliding", |observer| {
+            equilibrium::solve_steady(&prepared.system, &options, observer)
+        })?;
+        let steady = Rc::new(state.clone());
+        self.steady = Some(steady.clone());
+        if !prepared.system.pairs.is_empty() {
+            self.found(steady_result(prepared, state))?;
+        }
+        Ok(steady)
+    }
+
+    /// The real modes of the whole that span the complex analysis, where that is run, looks for a whole band and does not wait
+    /// for the preload of steady sliding. Other analyses may take their share.
+    ///
+    /// # Errors
+    /// Modes that cannot be computed.
+    pub fn basis(&mut self) -> Result<Option<&RealModes>> {
+        let case = self.prepared.case;
+        if self.basis.is_none()
+            && let Some(cea) = case.cea.as_ref().filter(|cea| !case.prestress && cea.nearest.is_none())
+            && self.selection.includes("cea", case)
+        {
+            let structure = &self.prepared.system.structure;
+            self.basis = Some(whole_modes(structure, cea.basis_below, &mut self.clock, self.observer)?);
+        }
+        Ok(self.basis.as_ref())
+    }
+}
+
+fn steady_result(prepared: &Prepared, state: SteadySliding) -> SteadyResult {
+    let system = &prepared.system;
+    let mut point = state.points.iter();
+    let pairs = system
+        .pairs
+        .iter()
+        .map(|pair| {
+            let load = point.by_ref().take(pair.points.len()).map(|p| p.forces.normal).sum();
+            (pair.name.clone(), load, pair.sliding_velocity)
+        })
+        .collect();
+    SteadyResult {
+        displacement: prepared.assembled.dofs.expand(&state.displacement),
+        points: system.points().map(|(pair, point)| (pair.name.clone(), point.position)).collect(),
+        pairs,
+        directions: prepared.arrows(),
+        state,
+    }
+}

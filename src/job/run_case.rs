@@ -1,0 +1,134 @@
+//! A case run into a results folder, which can be taken up again when it was interrupted.
+
+use super::analyse::{Asked, analyse_from};
+use super::analyses::{PHASE, Selection};
+use super::memory::check_memory;
+use super::missed::results_hold;
+use super::prepared::Prepared;
+use super::singular::explained;
+use super::sink::{Folder, KnownMap, KnownMaps};
+use crate::case::Case;
+use crate::error::{Error, Fault, Result};
+use crate::progress::Observer;
+use crate::results::record::{Earlier, InputFile, Origin, Record};
+use crate::results::{self, FieldsFile, FolderLock, ResultsFile, RunResults, fits_on_disk};
+use std::path::Path;
+use std::time::Instant;
+
+/// Runs the analyses of a case and writes the results folder `out`; nothing is written when the input is wrong.
+///
+/// With `resume` the maps and the run in time that an earlier run of the same case left in `out` are taken up where it
+/// stopped; the result is the same, bit for bit. Results of another case or of other files are refused. Without it an
+/// interrupted record is moved to a folder of its own in `out`; the files of a run that had ended are replaced.
+///
+/// When an analysis has no answer, the results of those before are written and the failure is named in them.
+///
+/// # Errors
+/// Faults of the input, an analysis without an answer, a folder that cannot be written or that another process uses.
+pub fn run_case(
+    case: &Case,
+    selection: Selection,
+    out: &Path,
+    resume: bool,
+    observer: &dyn Observer,
+) -> Result<RunResults> {
+    let started = Instant::now();
+    let prepared = Prepared::new(case)?;
+    // Its faults are told before anything is written.
+    let asked = Asked::new(&prepared, selection)?;
+    if let Some(expected) = check_memory(&prepared, selection)? {
+        observer.begin(&format!("memory: about {}", expected.words()), None);
+        observer.end();
+    }
+    asked.record_sizes().try_for_each(|size| fits_on_disk(out, &size))?;
+    let inputs =
+        case.files().iter().map(|file| InputFile::read(&case.folder, file)).collect::<Result<_>>()?;
+    let origin = Origin { case: case.to_toml(), inputs };
+    let _lock = FolderLock::take(out)?;
+    let mut results = RunResults { inputs: origin.inputs.clone(), ..RunResults::default() };
+    let (record, earlier) = match resume {
+        true => taken_up(out, origin, &asked)?,
+        false => {
+            results.warnings.extend(moved_aside(out, observer)?);
+            (Record::new(out, origin), Earlier::default())
+        }
+    };
+    let known = earlier.maps.iter().map(|(name, (points, trained))| {
+        (name.clone(), KnownMap { points: points.clone(), trained: trained.clone() })
+    });
+    let known: KnownMaps = known.collect();
+    let mut file = ResultsFile::create(out)?;
+    let read = case.files().into_iter().chain(["calibrated.toml".into()]).map(|name| case.folder.join(name));
+    file.spare(read.filter_map(|path| std::path::absolute(path).ok()));
+    if resume {
+        file.spare(record.files());
+    }
+    let preparation = started.elapsed().as_secs_f64();
+    let mut folder = Folder::new(out, file, record, earlier);
+    let done = analyse_from(&prepared, asked, &known, &mut folder, &mut results, observer)
+        // What another run left, and does not fit, is input.
+        .map_err(|error| if resume { error } else { error.while_computing() })
+        .map_err(|error| explained(&prepared, error));
+    let failure = match done {
+        Ok(()) => results_hold(&results).err(),
+        Err(failure @ Error::Analysis { .. }) => Some(failure),
+        Err(Error::Input(faults)) => {
+            folder.file.discard();
+            return Err(Error::Input(faults));
+        }
+        Err(refused) => return Err(refused),
+    };
+    results.failed = failure.as_ref().map(Error::to_string);
+    results.timings.insert(0, ("read mesh and assemble".into(), preparation));
+    write_results(out, folder, &mut results)?;
+    match failure {
+        Some(failure) => Err(failure),
+        None => Ok(results),
+    }
+}
+
+/// What an earlier run has left to go on with.
+fn taken_up(out: &Path, origin: Origin, asked: &Asked) -> Result<(Record, Earlier)> {
+    let Some((record, earlier)) = Record::resume(out, &origin)? else {
+        return Ok((Record::new(out, origin), Earlier::default()));
+    };
+    let left_out =
+        [(earlier.rows > 0, "a run in time", "transient"), (!earlier.maps.is_empty(), "maps", "sweep")];
+    let lost = left_out.into_iter().find(|(there, _, analysis)| *there && !asked.includes(analysis));
+    if let Some((_, what, analysis)) = lost.filter(|_| !record.ended()) {
+        let found = format!("an interrupted record of {what}");
+        let expected = format!("`stridor {analysis}` or `stridor run` to go on with it");
+        let fault = Fault::new(out.display().to_string(), found, expected);
+        let help = "Use that command, or run without --resume (the record is kept aside)";
+        return Err(Error::input(fault.with_help(help)));
+    }
+    Ok((record, earlier))
+}
+
+/// Keeps an interrupted record aside and says so.
+fn moved_aside(out: &Path, observer: &dyn Observer) -> Result<Option<String>> {
+    let sentence = results::set_aside(out)?.map(|aside| {
+        format!(
+            "The folder had the record of an interrupted run. It was moved to {}; --resume with --out of that folder goes on with it",
+            aside.display()
+        )
+    });
+    sentence.iter().for_each(|sentence| observer.note(sentence));
+    Ok(sentence)
+}
+
+/// Writes all that is written at the end.
+fn write_results(out: &Path, folder: Folder, results: &mut RunResults) -> Result<()> {
+    // The time of a phase is that of computing.
+    let in_time = results.timings.iter_mut().find(|(phase, _)| phase == PHASE);
+    in_time.into_iter().for_each(|(_, seconds)| *seconds -= folder.seconds_in_time);
+    let Folder { mut file, mut record, fields, seconds: recording, .. } = folder;
+    let writing = Instant::now();
+    fields.map_or(Ok(()), FieldsFile::finish)?;
+    file.stand_alone()?;
+    results::write_files(out, results)?;
+    crate::report::write_report(out, results)?;
+    results.timings.push(("write results".into(), recording + writing.elapsed().as_secs_f64()));
+    file.finish(results)?;
+    record.end()
+}

@@ -1,0 +1,179 @@
+//! Complex eigenvalues, what the count and the second method say of them, and the verdict.
+
+use super::format::{fixed, given, hertz, power, rate, signed, significant};
+use super::section::{Display, Section};
+use super::table::Table;
+use super::{budget, growth, participation};
+use crate::linalg::c64;
+use crate::results::{ComplexResult, RunResults};
+use crate::stability::{Certificate, Confirmation, Verdict};
+
+/// A measured squeal frequency and an unstable mode nearer than this share of it are taken for the same.
+pub(super) const SQUEAL_TOLERANCE: f64 = 0.03;
+
+/// Complex eigenvalues, where the run has them.
+pub(super) fn sections(results: &RunResults) -> Vec<Section> {
+    let Some(complex) = results.get::<ComplexResult>() else { return Vec::new() };
+    let pictures = [growth::picture(results), budget::picture(results), participation::picture(results)];
+    let section = Section::new("Complex eigenvalues").pictures(pictures.into_iter().flatten());
+    vec![section.tables(Display::Untitled, [table(complex)])]
+}
+
+/// The complex eigenvalues, unstable ones marked.
+fn table(result: &ComplexResult) -> Table {
+    let mut table = Table::of("Complex eigenvalues at steady sliding", &result.mode_table(), true);
+    table.alarming = true;
+    for (row, mode) in table.rows.iter_mut().zip(&result.modes.modes) {
+        row.marked = matches!(mode.verdict(), Verdict::Unstable | Verdict::Inaccurate);
+    }
+    table.notes.push("σ: growth rate; ζ = −σ/|λ|: damping ratio, negative when unstable.".into());
+    table.notes.push("η: backward error; |Δλ|/|λ|: estimated eigenvalue error; κ: condition number.".into());
+    table.notes.extend(result.confirmation.as_ref().map(second_method));
+    table
+}
+
+/// The unstable modes, the strongest growth first, with the nearest measured squeal.
+pub(super) fn unstable(result: &ComplexResult) -> Table {
+    let headings =
+        ["f [Hz]", "growth rate σ [1/s]", "damping ratio [%]", "grows tenfold in [ms]", "<measured squeal"];
+    let mut table = Table::new("Unstable modes", &headings);
+    table.alarming = true;
+    let mut modes: Vec<_> = result.modes.modes.iter().filter(|m| m.unstable()).collect();
+    modes.sort_by(|a, b| b.growth_rate().total_cmp(&a.growth_rate()));
+    for mode in modes {
+        let hz = mode.frequency_hz();
+        let squeal = match nearest_squeal(result, hz) {
+            Some(measured) => {
+                let difference = signed(100.0 * (hz / measured - 1.0), 1);
+                format!("{} Hz ({difference} %)", given(measured))
+            }
+            None if result.measured_squeal_hz.is_empty() => "no measurement given".into(),
+            None => format!("none within {} %", fixed(100.0 * SQUEAL_TOLERANCE, 0)),
+        };
+        let cells = vec![
+            hertz(hz, 1),
+            rate(mode.eigenvalue),
+            signed(100.0 * mode.damping_ratio(), 3),
+            significant(1e3 * 10_f64.ln() / mode.growth_rate(), 3),
+            squeal,
+        ];
+        table.row(cells, true);
+    }
+    let unmatched: Vec<String> = result
+        .measured_squeal_hz
+        .iter()
+        .filter(|(hz, _)| !result.modes.modes.iter().any(|m| m.unstable() && near(m.frequency_hz(), *hz)))
+        .map(|(hz, source)| format!("{} Hz ({source})", given(*hz)))
+        .collect();
+    if !unmatched.is_empty() {
+        table.notes.push(format!("Measured squeal without an unstable mode: {}.", unmatched.join(", ")));
+    }
+    table.notes.extend(result.certificate.as_ref().map(counted));
+    table
+}
+
+/// What the count of the unstable eigenvalues says, in words.
+fn counted(certificate: &Certificate) -> String {
+    let ([low, high], [slow, fast]) = (certificate.band_hz, certificate.growth);
+    let faster = match certificate.proven {
+        true => format!("σ > {} 1/s", significant(slow, 2)),
+        false => format!("σ from {} to {} 1/s", significant(slow, 2), significant(fast, 2)),
+    };
+    let region = format!("between {} and {} Hz with {faster}", given(low), hertz(high, 0));
+    let with_conjugates = if low == 0.0 { ", conjugates included," } else { "" };
+    let count = format!("{} eigenvalues {region}{with_conjugates}", certificate.counted);
+    let mut words = if certificate.agrees() && !certificate.proven {
+        let step = significant(180.0 / certificate.margin, 2);
+        format!(
+            "Counted: {count}, as many as were found, by the phase of the determinant at full order ({} points, steps up to {step}°).",
+            certificate.points
+        )
+    } else if certificate.holds() {
+        let margin = significant(certificate.margin, 2);
+        format!(
+            "Certified: {count} were counted, as many as were found. The count holds at full order (margin {margin}) if the real \
+             modes are exact; rounding is not bounded."
+        )
+    } else if certificate.agrees() {
+        format!(
+            "{count} were counted, as many as were found; that the count holds at full order is not shown."
+        )
+    } else {
+        format!("A MODE WAS MISSED: {count} were counted, {} found.", certificate.found)
+    };
+    for call in &certificate.close_calls {
+        let hz = hertz(call.frequency_hz, 1);
+        words += &format!(" Close call: the mode at {hz} Hz, σ = {} 1/s.", significant(call.growth_rate, 2));
+    }
+    words
+}
+
+/// What the second method says, in words.
+fn second_method(confirmation: &Confirmation) -> String {
+    if confirmation.holds() {
+        return format!(
+            "Two-level Arnoldi on the full order, at {} shifts, finds the same {} modes; largest relative difference {} (condition number {}).",
+            confirmation.shifts,
+            confirmation.confirmed,
+            power(confirmation.largest_difference),
+            significant(confirmation.condition, 3)
+        );
+    }
+    let list = |all: &[c64]| -> String {
+        let hz: Vec<String> = all.iter().map(|z| hertz(z.im / std::f64::consts::TAU, 2)).collect();
+        if hz.is_empty() { "none".into() } else { hz.join(", ") }
+    };
+    format!(
+        "THE TWO METHODS DISAGREE. Found only by two-level Arnoldi [Hz]: {}; only by the projection [Hz]: {}.",
+        list(&confirmation.missed),
+        list(&confirmation.unconfirmed)
+    )
+}
+
+/// Whether a computed frequency is that of a measured squeal.
+fn near(computed: f64, measured: f64) -> bool {
+    (computed / measured - 1.0).abs() <= SQUEAL_TOLERANCE
+}
+
+/// The measured squeal frequency that `hz` is taken for.
+pub(super) fn nearest_squeal(result: &ComplexResult, hz: f64) -> Option<f64> {
+    let all = result
+        .measured_squeal_hz
+        .iter()
+        .map(|(measured, _)| *measured)
+        .filter(|measured| near(hz, *measured));
+    all.min_by(|a, b| (hz / a - 1.0).abs().total_cmp(&(hz / b - 1.0).abs()))
+}
+
+/// The verdict in one sentence.
+pub(super) fn verdict(results: &RunResults) -> String {
+    let Some(complex) = results.get::<ComplexResult>() else {
+        return "No complex eigenvalues were asked for: this run says nothing about squeal.".into();
+    };
+    let band = complex.band_hz.map(given);
+    let modes = &complex.modes.modes;
+    let count = |verdict| modes.iter().filter(|m| m.verdict() == verdict).count();
+    let (unstable, undecided, inaccurate) =
+        (count(Verdict::Unstable), count(Verdict::Undecided), count(Verdict::Inaccurate));
+    let between = format!("between {} and {} Hz", band[0], band[1]);
+    let mut doubt = match undecided {
+        0 => String::new(),
+        1 => " The growth rate of 1 is within its error.".into(),
+        n => format!(" The growth rates of {n} are within their errors."),
+    };
+    if inaccurate > 0 {
+        doubt += &format!(
+            " {inaccurate} {} not accurate: neither stable nor unstable.",
+            if inaccurate == 1 { "is" } else { "are" }
+        );
+    }
+    match (modes.len(), unstable) {
+        (0, _) => format!("No complex mode was found {between}: this run says nothing about squeal there."),
+        (all, 0) if undecided + inaccurate > 0 => {
+            format!("Undecided: none of the {all} complex modes {between} grows for certain.{doubt}")
+        }
+        (all, 0) => format!("Stable: none of the {all} complex modes {between} grows."),
+        (all, 1) => format!("Unstable: 1 of {all} complex modes {between} grows.{doubt}"),
+        (all, n) => format!("Unstable: {n} of {all} complex modes {between} grow.{doubt}"),
+    }
+}

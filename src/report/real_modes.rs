@@ -1,0 +1,107 @@
+//! Real modes beside the measured frequencies.
+
+use super::disc_modes;
+use super::format::{fixed, given, hertz, power, signed};
+use super::section::{Display, Section};
+use super::table::Table;
+use crate::results::{MeasuredComparison, NamedModes, RunResults};
+
+/// The sets of real modes.
+pub(super) fn sections(results: &RunResults) -> Vec<Section> {
+    let sets = results.all::<NamedModes>();
+    if sets.is_empty() {
+        return Vec::new();
+    }
+    let section = Section::new("Real modes beside the measured frequencies");
+    let tables = sets.into_iter().map(|set| table(results, set));
+    vec![section.pictures(disc_modes::picture(results)).tables(Display::Folded, tables)]
+}
+
+/// The modes of a set beside the measured frequencies that were compared with it.
+fn table(results: &RunResults, set: &NamedModes) -> Table {
+    let comparisons: Vec<_> =
+        results.all::<MeasuredComparison>().into_iter().filter(|m| m.is_of(set)).collect();
+    let mut headings = vec!["no.", "f [Hz]"];
+    // Where several parts move, which one moves most tells a disc's mode from a slider's.
+    let parted = set.moving_part.iter().any(|part| *part != set.moving_part[0]);
+    if parted {
+        headings.insert(0, "<part");
+    }
+    let named = set.names.iter().any(Option::is_some) || set.modes.rigid_bodies > 0;
+    if named {
+        headings.push("(n, s)");
+    }
+    let scale = comparisons.first().map_or(1.0, |m| m.frequency_scale);
+    let scaled = scale != 1.0;
+    if scaled {
+        headings.push("scaled [Hz]");
+    }
+    if !comparisons.is_empty() {
+        headings.extend(["measured", "diff. [%]"]);
+    }
+    headings.extend(["m_x [%]", "m_y [%]", "m_z [%]", "η"]);
+    let mut table = Table::new(format!("Real modes: {}", set.name), &headings);
+    let rows: Vec<_> = comparisons.iter().flat_map(|m| &m.rows).collect();
+    for k in 0..set.modes.len() {
+        // The frequency of a rigid-body motion is round-off.
+        let show = if k < set.modes.rigid_bodies { fixed } else { hertz };
+        let mut cells = vec![(k + 1).to_string(), show(set.modes.frequency_hz(k), 1)];
+        if parted {
+            cells.insert(0, set.moving_part[k].clone().unwrap_or("–".into()));
+        }
+        if named {
+            let name = set.names.get(k).copied().flatten();
+            cells.push(match name {
+                _ if k < set.modes.rigid_bodies => "rigid".into(),
+                Some(n) => format!("({}, {})", n.nodal_diameters, n.nodal_circles),
+                None => "–".into(),
+            });
+        }
+        let paired = rows.iter().find(|row| row.mode == Some(k));
+        if scaled {
+            cells.push(show(scale * set.modes.frequency_hz(k), 1));
+        }
+        if !comparisons.is_empty() {
+            cells.push(paired.map_or(String::new(), |row| given(row.frequency_hz)));
+            cells.push(
+                paired.and_then(|row| row.difference_percent()).map_or(String::new(), |d| signed(d, 2)),
+            );
+        }
+        let mass = |axis: usize| set.effective_mass.get(k).map(|m| 100.0 * m[axis] / set.total_mass);
+        cells.extend((0..3).map(|axis| mass(axis).map_or("–".into(), |share| fixed(share, 1))));
+        cells.push(set.modes.backward_errors.get(k).map_or("–".into(), |e| power(*e)));
+        table.row(cells, paired.is_some());
+    }
+    table.notes.push(certificate(set));
+    for comparison in comparisons {
+        table.notes.push(format!("Measured: {}.", comparison.source));
+        if comparison.frequency_scale != 1.0 {
+            let scale = given(comparison.frequency_scale);
+            table
+                .notes
+                .push(format!("Scaled: computed frequencies times {scale}, an assumption of the case."));
+        }
+        let alone = comparison.rows.iter().filter(|row| row.computed_hz.is_none());
+        let alone: Vec<String> = alone.map(|row| format!("{} Hz", given(row.frequency_hz))).collect();
+        if !alone.is_empty() {
+            table.notes.push(format!("Measured without a computed mode beside it: {}.", alone.join(", ")));
+        }
+    }
+    if named {
+        table.notes.push("(n, s): nodal diameters and circles.".into());
+    }
+    table.notes.push("m: effective mass, share of the total; η: backward error.".into());
+    table
+}
+
+/// The Sturm count in words.
+fn certificate(set: &NamedModes) -> String {
+    let c = &set.modes.certificate;
+    let below = given(c.below_hz);
+    if c.holds() {
+        format!("Counted below {below} Hz: {}, found: {}. None is missing.", c.counted[0], c.found)
+    } else {
+        let [a, b] = c.counted;
+        format!("NOT CERTIFIED: counted below {below} Hz: {a} and {b}, found: {}.", c.found)
+    }
+}
