@@ -1,5 +1,6 @@
 //! One error type that carries data: what was wrong, where, what was expected and what to do about it.
 
+pub mod read;
 pub mod text;
 
 use std::collections::HashMap;

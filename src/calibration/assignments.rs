@@ -4,7 +4,7 @@
 //! last of the best needs no further look (Land and Doig, Econometrica 28 (1960) 497).
 
 use super::linear::{Linear, Misfit};
-use super::{Datum, Problem};
+use super::problem::{Datum, Problem};
 
 /// More fits than this are not tried.
 const MOST_FITS: usize = 2_000_000;

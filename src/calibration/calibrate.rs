@@ -2,8 +2,9 @@
 
 use super::left_out::leave_one_out;
 use super::linear::Linear;
+use super::problem::{Computed, Model, Problem};
 use super::ranked::{ranked, tried};
-use super::{Chance, Computed, Knowledge, LeftOut, Model, Problem, Ranked, Trials, assignments};
+use super::{Chance, Knowledge, LeftOut, Ranked, Trials, assignments};
 use crate::error::{Error, Result};
 use crate::progress::Observer;
 

@@ -1,8 +1,8 @@
 //! How often as good a match arises by chance.
 
-use super::Datum;
 use super::assignments;
 use super::linear::Linear;
+use super::problem::Datum;
 use crate::linalg::random::Random;
 use rayon::prelude::*;
 

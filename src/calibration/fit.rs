@@ -1,8 +1,8 @@
 //! Bounded nonlinear least squares: Levenberg and Marquardt's method with the bounds in the subproblem.
 
+use super::problem::{Computed, Model, Problem};
 use super::quadratic::least_in_box;
 use super::residuals::Residuals;
-use super::{Computed, Model, Problem};
 use crate::error::Result;
 use nalgebra::{DMatrix, DVector};
 

@@ -1,8 +1,9 @@
 //! What the data determine: singular values of the sensitivity, covariance, intervals.
 
+use super::Fit;
+use super::problem::{Computed, Problem};
 use super::residuals::Residuals;
 use super::svd::Svd;
-use super::{Computed, Fit, Problem};
 use nalgebra::DMatrix;
 
 /// Standard deviations either side of the mean that hold 95 % of a normal distribution.

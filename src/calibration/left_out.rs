@@ -1,9 +1,10 @@
 //! Each measured mode and each response predicted from all the others.
 
 use super::knowledge::left_open;
+use super::problem::{Level, Model, Problem};
 use super::ranked::Ranked;
 use super::residuals::{Residuals, misfit};
-use super::{Fit, Level, Model, Problem, fit};
+use super::{Fit, fit};
 use crate::error::Result;
 use crate::progress::Observer;
 use rayon::prelude::*;

@@ -1,7 +1,7 @@
 //! The model linearised at one place: what a fit would find there, in microseconds.
 
+use super::problem::{Datum, Level, Problem};
 use super::quadratic::least_in_box;
-use super::{Datum, Level, Problem};
 use nalgebra::{DMatrix, DVector};
 
 /// A mode whose shape is less like the measured one than this is not what was measured, however near its frequency.

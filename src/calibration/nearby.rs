@@ -1,6 +1,6 @@
 //! A model near one place: quadratic in ln f and in the lines, linear in the shapes, so that thousands of fits cost nothing.
 
-use super::{Computed, Level, Line, Model, Problem};
+use super::problem::{Computed, Level, Line, Model, Problem};
 use crate::error::Result;
 use rayon::prelude::*;
 

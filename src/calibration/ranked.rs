@@ -1,7 +1,8 @@
 //! The best assignments fitted to the model itself, and ranked by the whole χ².
 
+use super::problem::{Computed, Datum, Model, Problem};
 use super::residuals::misfit;
-use super::{Computed, Datum, Fit, Model, Problem, fit};
+use super::{Fit, fit};
 use crate::error::Result;
 use crate::progress::Observer;
 use rayon::prelude::*;

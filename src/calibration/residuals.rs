@@ -1,6 +1,6 @@
 //! What is left between measured and computed, and its derivatives.
 
-use super::{Computed, Curve, Datum, Level, Line, Problem};
+use super::problem::{Computed, Curve, Datum, Level, Line, Problem};
 use nalgebra::{DMatrix, DVector};
 
 /// Residuals r_i with their rows ∂r_i/∂x_j, in standard deviations.
@@ -102,4 +102,13 @@ impl Residuals {
 pub(super) fn misfit(problem: &Problem, assignment: &[usize], x: &[f64], computed: &Computed) -> f64 {
     Residuals::all(problem, assignment, x, computed)
         .map_or(f64::INFINITY, |all| all.values.iter().map(|r| r * r).sum())
+}
+impl Problem {
+    /// Facts beyond the number of unknowns; none when there are no more. Facts are measured frequencies, lines, expectations,
+    /// and the components of measured shapes less the scale factors that fit them to their levels.
+    pub fn degrees_of_freedom(&self, assignment: &[usize], computed: &Computed) -> usize {
+        let measured = Residuals::measured(self, assignment, computed).facts();
+        let expected = self.unknowns.iter().filter(|u| u.expected.is_some()).count();
+        (measured + expected).saturating_sub(self.unknowns.len())
+    }
 }

@@ -1,6 +1,7 @@
 //! Models with a closed form for the tests.
 
-use super::{Computed, Curve, Datum, Level, Line, Model, Problem, Span, Unknown};
+use super::Span;
+use super::problem::{Computed, Curve, Datum, Level, Line, Model, Problem, Unknown};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::linalg::random::Random;

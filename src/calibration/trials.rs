@@ -2,8 +2,9 @@
 
 use super::knowledge::{Interval, Knowledge};
 use super::nearby::Nearby;
+use super::problem::{Computed, Curve, Datum, Model, Problem, Unknown};
 use super::residuals::Residuals;
-use super::{Computed, Curve, Datum, Fit, Model, Problem, Span, Unknown, fit};
+use super::{Fit, Span, fit};
 use crate::error::Result;
 use crate::linalg::random::Random;
 use rayon::prelude::*;

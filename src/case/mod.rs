@@ -48,7 +48,7 @@ pub use transient::{
 pub use crate::schema::{Invalidates, Places, Scalar as Parameter};
 
 use crate::error::Result;
-use crate::error::text::read_text;
+use crate::error::read::read_text;
 use crate::schema::units::LENGTH;
 use crate::schema::{Report, declare, key, read_table, to_toml};
 use crate::structure::Material;

@@ -1,7 +1,7 @@
 //! `stridor run`, `compare`, and a subcommand for every analysis.
 
+use super::output::{Common, give, say};
 use super::progress::Bars;
-use super::{Common, give, say};
 use crate::case::read_case;
 use crate::error::Result;
 use crate::job::{ANALYSES, Selection, run_case};

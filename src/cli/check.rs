@@ -1,6 +1,6 @@
 //! `stridor check`: the case and its mesh, without an analysis.
 
-use super::{Common, give, say};
+use super::output::{Common, give, say};
 use crate::case::{Parameter, read_case};
 use crate::error::Result;
 use crate::job::{Prepared, Selection, check_case, expected_memory};

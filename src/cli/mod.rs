@@ -8,16 +8,15 @@ mod check;
 mod export;
 mod mesh;
 mod new;
+mod output;
 mod progress;
 mod schema;
 mod search;
 mod validate;
 
-use crate::error::text::printable_lines;
 use crate::error::{Error, Fault, Result};
-use clap::{Args, Parser, Subcommand};
-use std::fmt::Display;
-use std::io::{ErrorKind, Write};
+use clap::{Parser, Subcommand};
+use output::{Common, complain};
 use std::process::ExitCode;
 
 #[derive(Parser)]
@@ -27,20 +26,6 @@ struct Command {
     action: Action,
     #[command(flatten)]
     common: Common,
-}
-
-/// Options of every subcommand.
-#[derive(Args)]
-struct Common {
-    /// No progress and no tables, only errors
-    #[arg(long, short, global = true)]
-    quiet: bool,
-    /// Print the summary as JSON instead of tables
-    #[arg(long, global = true)]
-    json: bool,
-    /// Number of threads; all cores by default. The numbers do not depend on it
-    #[arg(long, global = true, value_name = "N")]
-    threads: Option<usize>,
 }
 
 #[derive(Subcommand)]
@@ -106,31 +91,6 @@ fn act(command: &Command) -> Result<ExitCode> {
         Action::Mesh(action) => mesh::run(action, common),
         Action::Validate(options) => validate::run(options, common),
     }
-}
-
-/// Prints lines for people on stdout, without characters that steer the terminal.
-fn say(text: impl Display) -> Result<()> {
-    give(printable_lines(&text.to_string()))
-}
-
-/// Prints data on stdout as it is. A reader that has gone away, such as `head`, has seen what it wanted.
-fn give(text: impl Display) -> Result<()> {
-    match writeln!(std::io::stdout(), "{text}") {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Error::io("standard output", error, "The results folder, if any, is complete"))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Prints a line on stderr, where nobody may listen.
-fn complain(text: impl Display) {
-    let _ = writeln!(std::io::stderr(), "error: {text}");
-}
-
-/// Prints a note on stderr, where nobody may listen.
-fn note(text: impl Display) {
-    let _ = writeln!(std::io::stderr(), "note: {text}");
 }
 
 /// The most threads that may be asked for, unless there are more cores.

@@ -1,7 +1,7 @@
 //! `stridor new`: a folder with the reference case and a small mesh to start from.
 
 use super::mesh::refuse_existing;
-use super::{Common, say};
+use super::output::{Common, say};
 use crate::error::{Error, Result};
 use crate::mesh::generate::{self, RigSpec};
 use clap::Args;

@@ -1,6 +1,6 @@
 //! Progress bars on stderr; silent when stderr is not a terminal or the user asked for quiet.
 
-use super::note;
+use super::output::note;
 use crate::error::text::printable;
 use crate::progress::Observer;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};

@@ -1,7 +1,7 @@
 //! `stridor search`: numbers of a case, so that it meets facts of any kind.
 
+use super::output::{Common, give, say};
 use super::progress::Bars;
-use super::{Common, give, say};
 use crate::error::Result;
 use crate::report::{search_text, write_search};
 use crate::results::FolderLock;

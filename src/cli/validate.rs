@@ -1,7 +1,7 @@
 //! `stridor validate`: computed beside reference, one row a quantity.
 
+use super::output::{Common, complain, give, say};
 use super::progress::Bars;
-use super::{Common, complain, give, say};
 use crate::error::Result;
 use crate::report::write_validation;
 use crate::results::{FolderLock, passed};

@@ -53,7 +53,8 @@ pub(super) fn analyse_from<'a>(
     results.geometry = prepared.geometry();
     results.size = prepared.size();
     sink.record(Stage::Model(results))?;
-    let mut run = Run::new((prepared, asked.selection), known, sink, results, observer);
+    let mut run =
+        Run::new(prepared, [asked.includes("cea"), asked.left_vectors()], known, sink, results, observer);
     let done = asked.planned.into_iter().try_for_each(|planned| planned.run(&mut run));
     let Run { clock, results, .. } = run;
     results.warnings.extend(thickness_warnings(prepared));
@@ -77,7 +78,7 @@ impl<'a> Asked<'a> {
         let mut faults = Faults::new();
         faults.take(selection.check(case));
         let ready = selection.analyses(case).filter(|analysis| analysis.ready(case));
-        let planned = ready.filter_map(|analysis| faults.take(analysis.plan(prepared, selection)));
+        let planned = ready.filter_map(|analysis| faults.take(analysis.plan(prepared, selection.scope())));
         let planned: Vec<_> = planned.collect();
         if planned.iter().any(|planned| planned.slides()) {
             faults.take(equilibrium::check(&prepared.system));
@@ -95,6 +96,11 @@ impl<'a> Asked<'a> {
     /// Whether the analysis called `name` is run.
     pub(super) fn includes(&self, name: &str) -> bool {
         self.selection.includes(name, self.prepared.case)
+    }
+
+    /// Whether an analysis takes the left vectors of the complex modes.
+    fn left_vectors(&self) -> bool {
+        self.selection.analyses(self.prepared.case).any(|analysis| analysis.takes_left_vectors())
     }
 
     /// The sizes of the records that are kept on the disk.

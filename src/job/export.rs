@@ -6,7 +6,7 @@ use crate::case::{
     CalibrateAnalysis, Case, ContactPoints, Matrices, SQUEAL, Slide, TransientAnalysis, path_matches,
 };
 use crate::error::Result;
-use crate::error::text::read_bytes;
+use crate::error::read::read_bytes;
 use crate::linalg::SparseMatrix;
 use crate::linalg::matrix_market::to_text;
 use crate::linalg::sparse::{add_scaled, entry};

@@ -2,7 +2,7 @@
 
 use super::table::{MOST_FAULTS, Table};
 use crate::case::{Case, MeasuredData, read_test};
-use crate::error::text::{read_bytes, read_text};
+use crate::error::read::{read_bytes, read_text};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::measured::{MeasuredSet, ModeRecord, Records, uff};
 use crate::mesh::unit_in_metres;

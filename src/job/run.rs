@@ -1,6 +1,5 @@
 //! A run under way: what its analyses share, and where their results go.
 
-use super::analyses::Selection;
 use super::clock::Clock;
 use super::complex::whole_modes;
 use super::prepared::Prepared;
@@ -34,7 +33,7 @@ pub struct Run<'a, 'k> {
     pub basis: Option<RealModes>,
     /// The state about which complex modes were computed.
     pub operating_point: Option<Rc<OperatingPoint<'a>>>,
-    selection: Selection,
+    complex: bool,
     steady: Option<Rc<SteadySliding>>,
 }
 
@@ -49,15 +48,16 @@ pub struct OperatingPoint<'a> {
 }
 
 impl<'a, 'k> Run<'a, 'k> {
-    /// A run of `selection`, of which nothing is known but the maps that an earlier run left.
+    /// A run of which nothing is known but the maps that an earlier run left; `complex` when it comes to complex modes,
+    /// `left_vectors` when these get left vectors.
     pub fn new(
-        (prepared, selection): (&'a Prepared<'a>, Selection),
+        prepared: &'a Prepared<'a>,
+        [complex, left_vectors]: [bool; 2],
         known: &'k KnownMaps,
         sink: &'k mut dyn ResultSink,
         results: &'k mut RunResults,
         observer: &'k dyn Observer,
     ) -> Self {
-        let left_vectors = selection.analyses(prepared.case).any(|analysis| analysis.takes_left_vectors());
         Run {
             prepared,
             observer,
@@ -68,7 +68,7 @@ impl<'a, 'k> Run<'a, 'k> {
             left_vectors,
             basis: None,
             operating_point: None,
-            selection,
+            complex,
             steady: None,
         }
     }
@@ -119,7 +119,7 @@ impl<'a, 'k> Run<'a, 'k> {
         let case = self.prepared.case;
         if self.basis.is_none()
             && let Some(cea) = case.cea.as_ref().filter(|cea| !case.prestress && cea.nearest.is_none())
-            && self.selection.includes("cea", case)
+            && self.complex
         {
             let structure = &self.prepared.system.structure;
             self.basis = Some(whole_modes(structure, cea.basis_below, &mut self.clock, self.observer)?);

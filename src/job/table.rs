@@ -1,6 +1,6 @@
 //! Small tables in text files: a heading that names the columns, then one row a line (CSV without quotes).
 
-use crate::error::text::read_text;
+use crate::error::read::read_text;
 use crate::error::{Fault, Faults, Result};
 use std::path::Path;
 

@@ -7,7 +7,7 @@
 
 use super::sparse::{Index, compressed};
 use super::{SparseMatrix, c64};
-use crate::error::text::read_bytes;
+use crate::error::read::read_bytes;
 use crate::error::{Error, Fault, Faults, Result};
 use rayon::prelude::*;
 use std::fmt::Write as _;

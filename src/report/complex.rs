@@ -2,14 +2,12 @@
 
 use super::format::{fixed, given, hertz, power, rate, signed, significant};
 use super::section::{Display, Section};
+use super::squeal::{SQUEAL_TOLERANCE, near, nearest_squeal};
 use super::table::Table;
 use super::{budget, growth, participation};
 use crate::linalg::c64;
 use crate::results::{ComplexResult, RunResults};
 use crate::stability::{Certificate, Confirmation, Verdict};
-
-/// A measured squeal frequency and an unstable mode nearer than this share of it are taken for the same.
-pub(super) const SQUEAL_TOLERANCE: f64 = 0.03;
 
 /// Complex eigenvalues, where the run has them.
 pub(super) fn sections(results: &RunResults) -> Vec<Section> {
@@ -131,20 +129,6 @@ fn second_method(confirmation: &Confirmation) -> String {
 }
 
 /// Whether a computed frequency is that of a measured squeal.
-fn near(computed: f64, measured: f64) -> bool {
-    (computed / measured - 1.0).abs() <= SQUEAL_TOLERANCE
-}
-
-/// The measured squeal frequency that `hz` is taken for.
-pub(super) fn nearest_squeal(result: &ComplexResult, hz: f64) -> Option<f64> {
-    let all = result
-        .measured_squeal_hz
-        .iter()
-        .map(|(measured, _)| *measured)
-        .filter(|measured| near(hz, *measured));
-    all.min_by(|a, b| (hz / a - 1.0).abs().total_cmp(&(hz / b - 1.0).abs()))
-}
-
 /// The verdict in one sentence.
 pub(super) fn verdict(results: &RunResults) -> String {
     let Some(complex) = results.get::<ComplexResult>() else {

@@ -9,3 +9,9 @@ use crate::stability::ROUND_OFF;
 pub(super) fn rate(lambda: c64) -> String {
     growth(lambda.re, lambda.norm(), ROUND_OFF)
 }
+
+/// A value that a person gave; with two digits where it takes a power of ten.
+pub(super) fn short(value: f64) -> String {
+    let text = given(value);
+    if text.contains('e') { significant(value, 2) } else { text }
+}

@@ -2,9 +2,9 @@
 
 use super::chart::{above, below, bold, colour, sheet, text, widened};
 use super::colours::{ALARM, CALM, INK, MEASURED, MUTED};
-use super::complex::SQUEAL_TOLERANCE;
 use super::format::{fixed, given, hertz, signed};
 use super::section::Picture;
+use super::squeal::SQUEAL_TOLERANCE;
 use crate::results::{ComplexResult, RunResults};
 use plotters::prelude::*;
 use std::error::Error;

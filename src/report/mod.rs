@@ -37,6 +37,7 @@ mod rig;
 mod search;
 mod section;
 mod sensitivity;
+mod squeal;
 mod steady;
 mod svg;
 mod table;

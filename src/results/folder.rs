@@ -3,19 +3,18 @@
 //! The folder is made when missing; each file is replaced whole. The names of the files that a run writes are kept in
 //! `.files`, so that a later run can delete them, before it puts its own first one there, and nothing else ([`retire`]).
 //! An interrupted record is not deleted: with all the files of its run it is moved to `interrupted-1`, `interrupted-2` …,
-//! each a results folder by itself ([`set_aside`]).
+//! each a results folder by itself ([`super::set_aside()`]).
 //!
 //! A process that is killed loses nothing that it has written, but a machine that loses power does until the disk has it.
 //! [`write_durably`] waits for the disk, and so does the end of a run, once for all its files ([`make_durable`]).
 
-use super::record::{CHECKPOINT, RECORD, read_saved};
 use crate::error::{Error, Result};
 use std::collections::BTreeSet;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-/// The names of the files of a run, a line each.
-const FILES: &str = ".files";
+/// The file with the names of the files of a run, a line each.
+pub(super) const FILES: &str = ".files";
 
 /// Makes the folder `dir` and its parents when they are missing.
 pub(super) fn prepare_folder(dir: &Path) -> Result<()> {
@@ -94,7 +93,7 @@ pub(super) fn own(dir: &Path, name: &str) -> Result<()> {
 }
 
 /// The files of the run in the folder. A name that leads elsewhere is none.
-fn owned(dir: &Path) -> BTreeSet<String> {
+pub(super) fn owned(dir: &Path) -> BTreeSet<String> {
     let text = std::fs::read(dir.join(FILES)).unwrap_or_default();
     let text = String::from_utf8_lossy(&text);
     let names =
@@ -122,30 +121,6 @@ pub(crate) fn retire(dir: &Path, spared: &[PathBuf]) -> Result<()> {
         }
     }
     refused.map_or_else(|| write_atomically(dir, FILES, kept.as_bytes()), Err)
-}
-
-/// Moves an interrupted record with all the files of its run to a folder of its own, whose path is returned.
-pub(crate) fn set_aside(dir: &Path) -> Result<Option<PathBuf>> {
-    if !dir.join(CHECKPOINT).exists() || matches!(read_saved(dir), Ok(Some(saved)) if saved.ended) {
-        return Ok(None);
-    }
-    // One without a checkpoint is of a move that was killed on its way: the checkpoint goes last.
-    let aside =
-        (1..).map(|k| dir.join(format!("interrupted-{k}"))).find(|path| !path.join(CHECKPOINT).exists());
-    let aside = aside.expect("some number is free");
-    prepare_folder(&aside)?;
-    let mut names = owned(dir);
-    names.insert(RECORD.into());
-    names.remove(CHECKPOINT);
-    for name in names.iter().map(String::as_str).chain([CHECKPOINT, FILES]) {
-        let path = dir.join(name);
-        if let Err(source) = std::fs::rename(&path, aside.join(name))
-            && source.kind() != ErrorKind::NotFound
-        {
-            return Err(refusal(&path, source));
-        }
-    }
-    Ok(Some(aside))
 }
 
 /// The machine's refusal of `path`, with the advice that fits every such case.
@@ -237,28 +212,6 @@ mod tests {
         assert_eq!(names(parent.path()), ["out", "outside"]);
         retire(dir, &[]).unwrap();
         assert_eq!(names(dir), [FILES, "mass.mtx", "notes.txt"]);
-    }
-
-    #[test]
-    fn an_interrupted_record_is_moved_with_its_files_even_when_the_move_was_killed() {
-        let dir = tempfile::tempdir().unwrap();
-        let dir = dir.path();
-        write_result(dir, "transient.csv", b"rows").unwrap();
-        std::fs::write(dir.join("notes.txt"), "mine").unwrap();
-        assert_eq!(set_aside(dir).unwrap(), None);
-        for k in ["interrupted-1", "interrupted-2"] {
-            write_result(dir, "transient.csv", b"rows").unwrap();
-            write_result(dir, RECORD, b"points").unwrap();
-            // Nobody can tell whether a damaged one had ended.
-            write_result(dir, CHECKPOINT, b"state").unwrap();
-            if k == "interrupted-2" {
-                std::fs::create_dir(dir.join(k)).unwrap();
-                std::fs::rename(dir.join(RECORD), dir.join(k).join(RECORD)).unwrap();
-            }
-            assert_eq!(set_aside(dir).unwrap(), Some(dir.join(k)));
-            assert_eq!(names(&dir.join(k)), [FILES, CHECKPOINT, RECORD, "transient.csv"]);
-        }
-        assert_eq!(names(dir), ["interrupted-1", "interrupted-2", "notes.txt"]);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! `transient.csv` and `events.csv`, which grow while the run goes on.
 
+use super::events_hdf5::TIME;
 use super::folder::{own, refusal};
-use super::transient_hdf5::TIME;
 use super::{Channel, Recording};
 use crate::dataset::{CsvTable as Table, number};
 use crate::error::Result;

@@ -12,7 +12,7 @@
 //!
 //! Nobody knows how many events there will be: when their room is full the file is copied with twice the room.
 
-use super::events_hdf5 as events;
+use super::events_hdf5::{self as events, TIME};
 use super::file::preallocated;
 use super::{Piece, Recording, ResultsFile, TransientResult, modal_channel};
 use crate::dataset::Describe;
@@ -24,8 +24,6 @@ use std::ops::Range;
 
 /// The group of the channels.
 const HISTORY: &str = "history";
-/// The time of each row, and when each event happened.
-pub(super) const TIME: &str = "time_s";
 /// Times that are written at once.
 const AT_ONCE: usize = 1 << 16;
 

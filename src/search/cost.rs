@@ -1,5 +1,6 @@
 //! What the facts cost at some values of the numbers.
 
+use super::facts::Facts;
 use super::file::SearchFile;
 use super::log::Log;
 use crate::error::{Error, Result};
@@ -17,16 +18,6 @@ pub(super) struct Cost<'a> {
     pub(super) file: &'a SearchFile,
     pub(super) coordinates: &'a [Coordinate<'a>],
     pub(super) log: &'a Log,
-}
-
-/// What was computed at one place.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Facts {
-    pub(super) cost: f64,
-    /// The cost of each fact.
-    pub(super) parts: Vec<f64>,
-    /// What was computed for each fact; nothing where the case has no answer.
-    pub(super) computed: Vec<f64>,
 }
 
 impl Cost<'_> {

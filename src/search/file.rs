@@ -1,7 +1,7 @@
 //! The file of a search: the case, its numbers that are searched for, and the facts.
 
 use crate::case::{CalibratedParameter, Case, check_parameter, read_case};
-use crate::error::text::read_text;
+use crate::error::read::read_text;
 use crate::error::{Error, Fault, Faults, Result};
 use crate::results::record::{InputFile, Origin};
 use crate::schema::reader::{Section, read_document};

@@ -1,6 +1,6 @@
 //! `search.csv`: every evaluation, so that a search that was killed goes on where it was.
 
-use super::cost::Facts;
+use super::facts::Facts;
 use super::file::SearchFile;
 use crate::dataset::CsvTable;
 use crate::error::text::printable;

@@ -21,6 +21,7 @@
 
 mod cost;
 mod descent;
+mod facts;
 mod file;
 mod log;
 

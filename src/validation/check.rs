@@ -4,6 +4,7 @@ use super::in_time;
 use super::kirchhoff::{PlateMode, ThinPlate, circular_modes};
 use super::reference::{Check, Kind, Measure, Quantity, Reference};
 use super::resumed;
+use super::run::Run;
 use super::two_dof::TwoDof;
 use crate::case::{Case, ModelChoice, TransientAnalysis, read_case};
 use crate::error::{Error, Fault, Result};
@@ -69,12 +70,6 @@ struct Runs<'a> {
     case: &'a Case,
     done: BTreeMap<String, Run>,
     observer: &'a dyn Observer,
-}
-
-/// What the analyses of a case brought.
-pub(super) struct Run {
-    pub(super) results: RunResults,
-    pub(super) histories: Histories,
 }
 
 impl Runs<'_> {
@@ -172,7 +167,7 @@ fn compute(runs: &mut Runs, Quantity { kind, set, .. }: &Quantity, name: &str) -
             Ok((8.0 * (at(1.0)? - at(-1.0)?) - (at(2.0)? - at(-2.0)?)) / (12.0 * step))
         }
         Kind::Exported => {
-            let folder = super::scratch()?;
+            let folder = super::scratch::scratch()?;
             export(&runs.case_with(set)?, folder.path())?;
             let again = read_case(&folder.path().join("case.toml"))?;
             let results =

@@ -1,8 +1,8 @@
 //! Quantities of a run in time.
 
-use super::check::Run;
 use super::record::Record;
 use super::reference::{Measure, Span};
+use super::run::Run;
 use super::two_dof::TwoDof;
 use crate::results::TransientResult;
 

@@ -8,6 +8,8 @@ pub mod kirchhoff;
 mod record;
 mod reference;
 mod resumed;
+mod run;
+mod scratch;
 pub mod stick_slip;
 pub mod two_dof;
 
@@ -22,7 +24,6 @@ use rayon::ThreadPool;
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use tempfile::TempDir;
 
 /// Runs every validation case below `root` whose folder name contains `filter`; several at a time, each on one thread.
 ///
@@ -99,12 +100,6 @@ fn folders(root: &Path, filter: Option<&str>) -> Result<Vec<PathBuf>> {
         return Err(Error::input(Fault::new(root.display().to_string(), "no validation case", expected)));
     }
     Ok(folders)
-}
-
-/// A folder that is gone with what holds it.
-fn scratch() -> Result<TempDir> {
-    let help = "Point TMPDIR at a folder that can be written";
-    tempfile::tempdir().map_err(|error| Error::io(std::env::temp_dir(), error, help))
 }
 
 /// The rows as a table for people.

@@ -2,7 +2,7 @@
 
 use super::kirchhoff::Edge;
 use crate::case::{Case, read_case};
-use crate::error::text::read_text;
+use crate::error::read::read_text;
 use crate::error::{Faults, Result};
 use crate::results::Checked;
 use crate::schema::reader::{Section, read_document};

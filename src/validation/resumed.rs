@@ -15,7 +15,7 @@ use std::sync::Mutex;
 /// # Errors
 /// As [`run_case`].
 pub(super) fn differences(case: &Case, observer: &dyn Observer) -> Result<f64> {
-    let folder = super::scratch()?;
+    let folder = super::scratch::scratch()?;
     let (whole, stopped) = (folder.path().join("whole"), folder.path().join("stopped"));
     let halfway = Halfway { observer, from: &whole, to: &stopped, stage: Mutex::default() };
     let expected = run_case(case, Selection::Listed, &whole, false, &halfway)?;

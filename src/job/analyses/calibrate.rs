@@ -1,6 +1,6 @@
 //! Numbers of the case from measured frequencies.
 
-use super::{Analysis, Planned, Selection};
+use super::analysis::{Analysis, Planned, Scope};
 use crate::case::Case;
 use crate::error::Result;
 use crate::job::calibrate;
@@ -29,7 +29,7 @@ impl Analysis for Calibrate {
         case.calibrate.is_some()
     }
 
-    fn plan<'a>(&self, prepared: &'a Prepared<'a>, _: Selection) -> Result<Box<dyn Planned<'a> + 'a>> {
+    fn plan<'a>(&self, prepared: &'a Prepared<'a>, _: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
         let wanted = prepared.case.calibrate.as_ref().ok_or_else(|| self.no_table())?;
         Ok(Box::new(calibrate::Calibrate::new(prepared, wanted)?))
     }

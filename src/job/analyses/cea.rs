@@ -1,6 +1,6 @@
 //! Complex eigenvalues at steady sliding.
 
-use super::{Analysis, Planned, Selection};
+use super::analysis::{Analysis, Planned, Scope};
 use crate::case::{Case, CeaAnalysis};
 use crate::error::Result;
 use crate::job::complex::complex_result;
@@ -27,7 +27,7 @@ impl Analysis for Cea {
         case.cea.is_some()
     }
 
-    fn plan<'a>(&self, prepared: &'a Prepared<'a>, _: Selection) -> Result<Box<dyn Planned<'a> + 'a>> {
+    fn plan<'a>(&self, prepared: &'a Prepared<'a>, _: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
         let wanted = prepared.case.cea.as_ref().ok_or_else(|| self.no_table())?;
         Ok(Box::new(Wanted(wanted)))
     }

@@ -1,6 +1,6 @@
 //! Frequency responses, each beside what a test measured.
 
-use super::{Analysis, Planned, Selection};
+use super::analysis::{Analysis, Planned, Scope};
 use crate::case::Case;
 use crate::error::{Faults, Result};
 use crate::job::compare::{Tests, has_measured_frf};
@@ -30,14 +30,10 @@ impl Analysis for Frf {
         !case.frf.is_empty()
     }
 
-    fn plan<'a>(
-        &self,
-        prepared: &'a Prepared<'a>,
-        selection: Selection,
-    ) -> Result<Box<dyn Planned<'a> + 'a>> {
+    fn plan<'a>(&self, prepared: &'a Prepared<'a>, scope: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
         let mut faults = Faults::new();
         let mut frfs = faults.take(frfs(prepared)).unwrap_or_default();
-        frfs.retain(|frf| selection != Selection::Measured || has_measured_frf(prepared.case, frf.name()));
+        frfs.retain(|frf| scope == Scope::All || has_measured_frf(prepared.case, frf.name()));
         let tests = faults.take(Tests::of_responses(prepared, &mut frfs)).unwrap_or_default();
         faults.into_result(Box::new(Responses { frfs, tests }))
     }

@@ -1,6 +1,6 @@
 //! Real modes of parts and of the whole, each set beside the modes that a test found.
 
-use super::{Analysis, Planned, Selection};
+use super::analysis::{Analysis, Planned, Scope};
 use crate::case::{Case, ContactState, ModesAnalysis};
 use crate::equilibrium;
 use crate::error::{Faults, Result};
@@ -30,15 +30,11 @@ impl Analysis for Modes {
         !case.modes.is_empty()
     }
 
-    fn plan<'a>(
-        &self,
-        prepared: &'a Prepared<'a>,
-        selection: Selection,
-    ) -> Result<Box<dyn Planned<'a> + 'a>> {
+    fn plan<'a>(&self, prepared: &'a Prepared<'a>, scope: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
         let case = prepared.case;
         let mut faults = Faults::new();
         let tests = faults.take(Tests::of_modes(prepared)).unwrap_or_default();
-        let taken = |name: &str| selection != Selection::Measured || has_measured_modes(case, name);
+        let taken = |name: &str| scope == Scope::All || has_measured_modes(case, name);
         let sets = case.modes.iter().filter(|(name, _)| taken(name));
         let sets: Vec<_> = sets.map(|(name, wanted)| (name.as_str(), wanted)).collect();
         for (name, _) in &sets {

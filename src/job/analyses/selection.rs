@@ -1,8 +1,20 @@
-//! Which analyses of a case to run.
+//! The list of the analyses, and which of them to run.
 
-use super::{ANALYSES, Analysis};
+use super::analysis::{Analysis, Scope};
+use super::{calibrate, cea, frf, modes, sensitivity, sweep, transient};
 use crate::case::Case;
 use crate::error::{Fault, Faults, Result};
+
+/// All analyses, in the order in which they run.
+pub const ANALYSES: [&dyn Analysis; 7] = [
+    &modes::Modes,
+    &cea::Cea,
+    &sensitivity::Sensitivity,
+    &transient::Transient,
+    &sweep::Sweep,
+    &frf::Frf,
+    &calibrate::Calibrate,
+];
 
 /// Which analyses to run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,6 +38,11 @@ impl Selection {
             }
             Selection::Measured => ["modes", "frf"].contains(&analysis.name()),
         }
+    }
+
+    /// Which of their items they take.
+    pub(in crate::job) fn scope(self) -> Scope {
+        if self == Selection::Measured { Scope::Measured } else { Scope::All }
     }
 
     /// The analyses that are run for `case`, in their order.

@@ -1,6 +1,6 @@
 //! How complex eigenvalues answer scalars of the case and things mounted on its nodes.
 
-use super::{Analysis, Planned, Selection};
+use super::analysis::{Analysis, Planned, Scope};
 use crate::case::{Case, SensitivityAnalysis};
 use crate::error::Result;
 use crate::job::prepared::Prepared;
@@ -37,7 +37,7 @@ impl Analysis for Sensitivity {
         true
     }
 
-    fn plan<'a>(&self, prepared: &'a Prepared<'a>, _: Selection) -> Result<Box<dyn Planned<'a> + 'a>> {
+    fn plan<'a>(&self, prepared: &'a Prepared<'a>, _: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
         Ok(Box::new(Wanted(prepared.case.sensitivity.clone().unwrap_or_default())))
     }
 }

@@ -1,6 +1,6 @@
 //! Complex modes along one scalar of the case, or over two.
 
-use super::{Analysis, Planned, Selection};
+use super::analysis::{Analysis, Planned, Scope};
 use crate::case::Case;
 use crate::error::Result;
 use crate::job::explore::{Nominal, explore};
@@ -33,7 +33,7 @@ impl Analysis for Sweep {
         &["cea"]
     }
 
-    fn plan<'a>(&self, _: &'a Prepared<'a>, _: Selection) -> Result<Box<dyn Planned<'a> + 'a>> {
+    fn plan<'a>(&self, _: &'a Prepared<'a>, _: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
         Ok(Box::new(All))
     }
 }

@@ -1,6 +1,6 @@
 //! Motion in time from steady sliding.
 
-use super::{Analysis, Planned, Selection};
+use super::analysis::{Analysis, Planned, Scope};
 use crate::case::{Case, TransientAnalysis};
 use crate::error::{Fault, Faults, Result};
 use crate::job::prepared::Prepared;
@@ -40,7 +40,7 @@ impl Analysis for Transient {
         true
     }
 
-    fn plan<'a>(&self, prepared: &'a Prepared<'a>, _: Selection) -> Result<Box<dyn Planned<'a> + 'a>> {
+    fn plan<'a>(&self, prepared: &'a Prepared<'a>, _: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
         let wanted = prepared.case.transient.as_ref().ok_or_else(|| self.no_table())?;
         let mut faults = Faults::new();
         if prepared.system.skew().is_some() {

@@ -1,6 +1,6 @@
 //! The complex mode that the motion starts along.
 
-use super::InTime;
+use super::in_time::InTime;
 use crate::case::Disturbance;
 use crate::error::{Error, Result};
 use crate::job::near::near_mode;

@@ -6,7 +6,9 @@
 
 mod along;
 mod findings;
+mod heard;
 mod history_writer;
+mod in_time;
 mod modal;
 mod places;
 mod recorder;
@@ -16,19 +18,17 @@ mod start;
 mod step;
 mod watched;
 
+pub use in_time::InTime;
 pub use places::{Places, places, profile};
 
 use super::sink::ResultSink;
 use super::sound::Listener;
 use crate::case::{ModelChoice, SchemeChoice, TransientAnalysis};
-use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Result};
 use crate::linalg::SparseVector;
-use crate::modal::RealModes;
 use crate::progress::Observer;
 use crate::reduction::reduce;
-use crate::results::{ComplexResult, Geometry, TransientResult};
-use crate::structure::DofMap;
+use crate::results::TransientResult;
 use crate::system::System;
 use crate::transient::{Method, Model, Plan, Profile, Scheme, State, go_on};
 use history_writer::HistoryWriter;
@@ -41,22 +41,6 @@ use start::Start;
 /// Peaks and spectrograms reach this many times as high as the band of the complex eigenvalues: modes above it are neither
 /// damped nor resolved as those in it are.
 const WATCHED: f64 = 1.25;
-
-/// A run in time of `system`, whose modal damping is in it, from its steady state.
-pub struct InTime<'a> {
-    /// The system with its modal damping.
-    pub system: &'a System,
-    /// Where it starts.
-    pub steady: &'a SteadySliding,
-    /// Its complex modes.
-    pub complex: &'a ComplexResult,
-    /// The real modes that span them.
-    pub real: &'a RealModes,
-    /// The way to the motion of every node.
-    pub dofs: &'a DofMap,
-    /// The mesh that moves.
-    pub geometry: &'a Geometry,
-}
 
 impl InTime<'_> {
     /// Marches; `sink` gets what is recorded a piece at a time.

@@ -1,12 +1,8 @@
-//! Accelerations of the real modes, and the sound that follows from them.
+//! Accelerations of the real modes.
 
-use super::history_writer::HistoryWriter;
-use crate::error::Result;
-use crate::job::sound::{BLOCK, Listener};
 use crate::linalg::SparseMatrix;
 use crate::linalg::sparse::times;
 use crate::modal::RealModes;
-use crate::results::{Sound, modal_channel};
 use faer::Mat;
 use rayon::prelude::*;
 
@@ -39,18 +35,5 @@ impl ModalMotion {
     /// Lets go of the rows at hand.
     pub(super) fn forget(&mut self) {
         self.rows.iter_mut().for_each(Vec::clear);
-    }
-}
-
-impl HistoryWriter<'_, '_> {
-    /// What is heard of the record of `rows` rows.
-    pub(super) fn heard(&self, mut listener: Listener, rows: usize) -> Result<Sound> {
-        let modes = self.recorder.modal.as_ref().map_or(0, |modal| modal.rows.len());
-        for first in (0..rows).step_by(BLOCK) {
-            let part = first..rows.min(first + BLOCK);
-            let read = |mode: usize| self.sink.recorded(&modal_channel(mode), part.clone());
-            listener.hear((0..modes).map(read).collect::<Result<Vec<Vec<f64>>>>()?);
-        }
-        Ok(listener.finish())
     }
 }

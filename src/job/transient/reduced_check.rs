@@ -1,6 +1,7 @@
 //! A reduced model beside the full one: its complex eigenvalues, and the first steps of the motion.
 
-use super::{InTime, Places};
+use super::in_time::InTime;
+use super::places::Places;
 use crate::case::{ModelChoice, TransientAnalysis};
 use crate::equilibrium::SteadySliding;
 use crate::error::Result;

@@ -1,6 +1,6 @@
 //! Where a run in time begins, and how the approach of a pair follows a load that runs in time.
 
-use super::InTime;
+use super::in_time::InTime;
 use super::places::{Places, profile};
 use crate::case::{StartChoice, TransientAnalysis};
 use crate::equilibrium::{SteadyOptions, SteadySliding, solve_steady};

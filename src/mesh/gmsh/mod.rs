@@ -16,7 +16,7 @@ mod names;
 mod raw;
 
 use super::{Mesh, check};
-use crate::error::text::read_bytes;
+use crate::error::read::read_bytes;
 use crate::error::{Error, Fault, Faults, Result};
 use bytes::{Encoding, Reader};
 use raw::{Lines, RawMesh};

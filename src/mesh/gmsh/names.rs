@@ -1,6 +1,6 @@
 //! The section `$PhysicalNames`, text also in binary files.
 
-use crate::error::text::not_text;
+use crate::error::read::not_text;
 use crate::error::{Error, Fault, Result};
 
 /// Names of physical groups with their dimension and number, in the order of the file.

@@ -3,7 +3,7 @@
 mod picture;
 mod words;
 
-use super::format::{fixed, given, hertz, power, signed, significant};
+use super::format::{fixed, given, hertz, power, short, signed, significant};
 use super::section::{Display, Section};
 use super::table::Table;
 use crate::results::{CalibratedNumber, CalibrationResult, RunResults};
@@ -176,12 +176,6 @@ fn number_table(result: &CalibrationResult) -> Table {
             .into(),
     );
     table
-}
-
-/// A value that a person gave; with two digits where it takes a power of ten.
-fn short(value: f64) -> String {
-    let text = given(value);
-    if text.contains('e') { significant(value, 2) } else { text }
 }
 
 fn expected(n: &CalibratedNumber) -> String {

@@ -2,7 +2,7 @@
 
 use super::super::colours::{ALARM, CALM, INK, MEASURED, MUTED, SECOND};
 use super::super::comparison::{Curve, Panel, stacked};
-use super::super::format::{given, signed, significant};
+use super::super::format::{given, short, signed, significant};
 use super::super::section::Picture;
 use super::super::svg::{Anchor, Ink, Sheet};
 use crate::results::{CalibratedNumber, CalibratedResponse, CalibrationResult};
@@ -174,7 +174,7 @@ fn draw(sheet: &mut Sheet, top: f64, n: &CalibratedNumber) {
         &format!("fill=\"{ALARM}\" stroke=\"#ffffff\" stroke-width=\"1.5\""),
     );
     for (v, anchor) in [(n.between[0], Anchor::Start), (n.between[1], Anchor::End)] {
-        let words = format!("{} {}", super::short(v), n.unit);
+        let words = format!("{} {}", short(v), n.unit);
         sheet.text([place(v), y + 28.0], words.trim_end(), ink(MUTED, anchor));
     }
 }

@@ -3,7 +3,7 @@
 use super::super::colours::{ALARM, INK, MEASURED, MUTED};
 use super::super::format::{fixed, given, signed};
 use super::super::svg::{Anchor, Ink, Sheet};
-use super::level_name;
+use super::level::level_name;
 use crate::report::section::Picture;
 use crate::results::{MeasuredComparison, NamedModes, file_name};
 

@@ -3,7 +3,7 @@
 use super::super::colours::{INK, MEASURED, MUTED, sequential};
 use super::super::format::{fixed, given, hertz};
 use super::super::svg::{Anchor, Ink, Sheet};
-use super::level_name;
+use super::level::level_name;
 use crate::report::section::Picture;
 use crate::results::{MeasuredComparison, NamedModes, file_name};
 

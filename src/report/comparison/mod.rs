@@ -1,6 +1,7 @@
 //! What was measured beside what was computed: tables, the MAC of shapes, frequencies with their scatter, responses.
 
 mod frequencies;
+mod level;
 mod mac;
 mod responses;
 mod table;
@@ -10,7 +11,6 @@ use table::{modes_table, responses_table};
 
 use super::section::{Display, Picture, Section};
 use crate::results::{MeasuredComparison, MeasuredResponses, NamedModes, RunResults};
-use std::ops::Range;
 
 /// Every test beside what was computed.
 pub(super) fn sections(results: &RunResults) -> Vec<Section> {
@@ -29,15 +29,6 @@ pub(super) fn sections(results: &RunResults) -> Vec<Section> {
 
 fn pictures(test: &MeasuredComparison, set: &NamedModes) -> impl Iterator<Item = Picture> {
     [mac::picture(test, set), frequencies::picture(test, set)].into_iter().flatten()
-}
-
-/// What a level is called: `(2, 0) ×2`, `mode 7`.
-fn level_name(set: &NamedModes, level: &Range<usize>) -> String {
-    let name = match set.names.get(level.start).copied().flatten() {
-        Some(name) => format!("({}, {})", name.nodal_diameters, name.nodal_circles),
-        None => format!("mode {}", level.start + 1),
-    };
-    if level.len() > 1 { format!("{name} ×{}", level.len()) } else { name }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::super::format::{fixed, given, hertz, signed, significant};
 use super::super::table::Table;
-use super::level_name;
+use super::level::level_name;
 use crate::results::{MeasuredComparison, MeasuredResponses, NamedModes};
 
 /// The measured modes of a comparison, one row each.

@@ -1,7 +1,6 @@
 //! `map_<name>.svg`: the largest growth rate over two parameters, with the boundary of stability.
 
-use super::sweep::round;
-use super::{axis_name, place, value_at};
+use super::axis::{axis_name, place, round, value_at};
 use crate::report::chart::{Area, colour, sheet, text};
 use crate::report::colours::{INK, MUTED, diverging};
 use crate::report::format::{given, signed};

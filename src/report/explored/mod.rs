@@ -1,5 +1,6 @@
 //! Sweeps, maps and what damping decides: sections of the page, pictures, tables, and what was found in words.
 
+mod axis;
 mod map;
 mod sweep;
 mod words;
@@ -8,7 +9,6 @@ use words::{critical_table, damping_table, map_words, sweep_words};
 
 use super::section::{Display, Section};
 use crate::results::{DampingVerdicts, MapResult, RunResults, SweepResult};
-use crate::sweep::Axis;
 
 /// Sweeps, maps, and what damping decides.
 pub(super) fn sections(results: &RunResults) -> Vec<Section> {
@@ -25,19 +25,4 @@ pub(super) fn sections(results: &RunResults) -> Vec<Section> {
         Section::new("What damping decides").tables(Display::Titled, [damping_table(verdicts)])
     });
     sweeps.chain(maps).chain(damping).collect()
-}
-
-/// A parameter's path with its unit, for axes.
-fn axis_name(path: &str, unit: &str) -> String {
-    if unit.is_empty() { path.to_string() } else { format!("{path} [{unit}]") }
-}
-
-/// A value's place on an axis: itself, or its logarithm.
-fn place(axis: &Axis, value: f64) -> f64 {
-    if axis.log { value.abs().log10() } else { value }
-}
-
-/// The value at a place.
-fn value_at(axis: &Axis, place: f64) -> f64 {
-    if axis.log { axis.from.signum() * 10f64.powf(place) } else { place }
 }

@@ -1,6 +1,6 @@
 //! `sweep_<name>.svg` and `root_locus_<name>.svg`: the branches over the parameter and in the complex plane.
 
-use super::{axis_name, place, value_at};
+use super::axis::{axis_name, place, round, value_at};
 use crate::linalg::c64;
 use crate::report::chart::{Area, above, bold, colour, sheet, text, widened};
 use crate::report::colours::{ALARM, CALM, INK, MEASURED, MUTED};
@@ -189,11 +189,6 @@ fn label_axes(chart: &mut Plot, result: &SweepResult, x: &str, y: &str) -> Drawi
         .y_label_formatter(&|v| given(*v))
         .draw()?;
     Ok(())
-}
-
-/// Three digits, for labels of a logarithmic axis.
-pub(super) fn round(value: f64) -> f64 {
-    format!("{value:.2e}").parse().unwrap_or(value)
 }
 
 /// Every branch: calm lines first, those that grow on top.

@@ -1,0 +1,19 @@
+//! The sound of a run in time, from the recorded accelerations of the real modes.
+
+use super::history_writer::HistoryWriter;
+use crate::error::Result;
+use crate::job::sound::{BLOCK, Listener};
+use crate::results::{Sound, modal_channel};
+
+impl HistoryWriter<'_, '_> {
+    /// What is heard of the record of `rows` rows.
+    pub(super) fn heard(&self, mut listener: Listener, rows: usize) -> Result<Sound> {
+        let modes = self.recorder.modal.as_ref().map_or(0, |modal| modal.rows.len());
+        for first in (0..rows).step_by(BLOCK) {
+            let part = first..rows.min(first + BLOCK);
+            let read = |mode: usize| self.sink.recorded(&modal_channel(mode), part.clone());
+            listener.hear((0..modes).map(read).collect::<Result<Vec<Vec<f64>>>>()?);
+        }
+        Ok(listener.finish())
+    }
+}
