@@ -5,9 +5,9 @@ use std::sync::Arc;
 use stridor::contact::{
     Coefficient, ContactSide, FrictionCoefficient, NormalLaw, SlidingLaw, Surfaces, pair_surfaces,
 };
-use stridor::equilibrium::{SteadyOptions, solve_steady};
-use stridor::modal::{ModesWanted, compute};
-use stridor::stability::complex_modes;
+use stridor::equilibrium::steady_sliding;
+use stridor::modal::{ModesWanted, real_modes};
+use stridor::stability::complex_eigenvalues;
 use stridor::structure::{Material, Model, RayleighDamping, ShellPart, Spring, Support, assemble};
 use stridor::system::{Closing, ContactPair, System};
 
@@ -67,9 +67,9 @@ fn main() -> stridor::error::Result<()> {
         sliding_velocity: 0.2,
     };
     let system = System::new(assembled.structure, vec![pair]);
-    let steady = solve_steady(&system, &SteadyOptions::default(), &())?;
-    let (real, _) = compute(&system.structure, ModesWanted::BelowHz(9e3), &())?;
-    let found = complex_modes(&system, &steady, &real, [0.0, 6e3], &())?;
+    let steady = steady_sliding(&system)?;
+    let real = real_modes(&system.structure, ModesWanted::BelowHz(9e3))?;
+    let found = complex_eigenvalues(&system, &steady, &real, [0.0, 6e3])?;
     for mode in found.modes.iter().filter(|mode| mode.unstable()) {
         println!("unstable: {:.1} Hz, growth rate {:.1} 1/s", mode.frequency_hz(), mode.growth_rate());
     }

@@ -1,9 +1,11 @@
 #![warn(missing_docs)]
+// Without these features some helpers have no user.
+#![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
 //! **stridor** tells when a disc will squeal, at which frequency, how loud, and what to change.
 //!
-//! The story on one page, in the order of the imports (a room only uses rooms above it):
+//! The modules, in the order of the imports (a module only uses modules above it):
 //!
-//! | room | what it holds |
+//! | module | what it holds |
 //! |---|---|
 //! | [`error`], [`progress`] | one error type that carries data; how long work reports where it stands |
 //! | [`numbers`] | numbers as text |
@@ -35,10 +37,14 @@
 //! | [`search`] | numbers of a case searched for, so that it meets facts of any kind |
 //! | [`cli`] | the command line |
 //!
+//! Cargo features: `cli` (default) is the program with its results folders, search and validation suite; `hdf5` and `report`,
+//! which it needs, are `results.h5` and the page with its pictures. Meshes, models, analyses and their results need none.
+//!
 //! M ü + C u̇ + K u + Σ [g N − t₁ F₁ − t₂ F₂] = f. SI units (m, kg, s, N, rad) everywhere inside.
 
 pub mod calibration;
 pub mod case;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod contact;
 pub mod dataset;
@@ -55,9 +61,11 @@ pub mod numbers;
 pub mod pages;
 pub mod progress;
 pub mod reduction;
+#[cfg(feature = "report")]
 pub mod report;
 pub mod results;
 pub mod schema;
+#[cfg(feature = "cli")]
 pub mod search;
 pub mod signal;
 pub mod sound;
@@ -66,4 +74,5 @@ pub mod structure;
 pub mod sweep;
 pub mod system;
 pub mod transient;
+#[cfg(feature = "cli")]
 pub mod validation;

@@ -16,12 +16,14 @@
 
 mod column;
 mod csv;
+#[cfg(feature = "hdf5")]
 mod hdf5;
 mod json;
 mod variable;
 
 pub use column::{Cell, Column, IntoCell, column};
 pub use csv::{CsvTable, number};
+#[cfg(feature = "hdf5")]
 pub use hdf5::{attach_scale, attribute, describe, link, opened, text_attribute};
 pub use variable::{Dimension, Kind, Labels, Shown, Values, Variable};
 

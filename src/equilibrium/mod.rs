@@ -19,7 +19,7 @@ pub use linear::{
     tangent_stiffness,
 };
 pub use nearby::Nearby;
-pub use steady::{check, solve_points, solve_steady, solve_steady_with};
+pub use steady::{check, solve_points, solve_steady, solve_steady_with, steady_sliding};
 
 use crate::system::{ContactForces, ContactTangent};
 

@@ -10,6 +10,14 @@ use crate::linalg::sparse::multiply_vector;
 use crate::progress::Observer;
 use crate::system::{Closing, ContactPair, ContactPoint, System};
 
+/// The steady sliding state of `system` with the default options: see [`solve_steady`].
+///
+/// # Errors
+/// As [`solve_steady`].
+pub fn steady_sliding(system: &System) -> Result<SteadySliding> {
+    solve_steady(system, &SteadyOptions::default(), &())
+}
+
 /// The steady sliding state under the system's load, its closing loads and sliding velocities.
 ///
 /// Newton's method with the unsymmetric tangent on the problem condensed to the contact ([`Condensed`]): unknown are

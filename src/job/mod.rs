@@ -15,12 +15,15 @@ mod complex;
 mod contacts;
 mod explore;
 mod export;
+#[cfg(feature = "cli")]
+mod folder;
 mod frf;
 mod imported;
 mod links;
 mod measured;
 mod memory;
 mod mesh;
+#[cfg(feature = "cli")]
 mod missed;
 mod model;
 mod modes;
@@ -32,6 +35,7 @@ mod prepared;
 mod receptance;
 mod regions;
 mod run;
+#[cfg(feature = "cli")]
 mod run_case;
 #[cfg(test)]
 mod samples;
@@ -55,6 +59,7 @@ pub use imported::{read_points, read_rows};
 pub use measured::{measured_set, read_modes};
 pub use memory::{ExpectedMemory, expected_memory};
 pub use prepared::Prepared;
+#[cfg(feature = "cli")]
 pub use run_case::run_case;
 pub use sink::{Histories, KnownMap, KnownMaps, ResultSink, Stage};
 pub use states::Whole;

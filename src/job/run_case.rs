@@ -2,11 +2,12 @@
 
 use super::analyse::{Asked, analyse_from};
 use super::analyses::{PHASE, Selection};
+use super::folder::Folder;
 use super::memory::check_memory;
 use super::missed::results_hold;
 use super::prepared::Prepared;
 use super::singular::explained;
-use super::sink::{Folder, KnownMap, KnownMaps};
+use super::sink::{KnownMap, KnownMaps};
 use crate::case::Case;
 use crate::error::{Error, Fault, Result};
 use crate::progress::Observer;

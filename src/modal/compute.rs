@@ -26,6 +26,14 @@ pub struct ShiftedStiffness {
     pub factor: Box<dyn SymmetricFactor>,
 }
 
+/// Real modes (ω², φ) of `structure`, undamped: K φ = ω² M φ, φᵀMφ = 1, complete by a Sturm count.
+///
+/// # Errors
+/// As [`compute`].
+pub fn real_modes(structure: &Structure, wanted: ModesWanted) -> Result<RealModes> {
+    compute(structure, wanted, &()).map(|(modes, _)| modes)
+}
+
 /// Real modes of `structure`, undamped, with the factorisation that found them.
 ///
 /// # Errors

@@ -15,7 +15,7 @@ mod naming;
 #[cfg(test)]
 pub(crate) mod samples;
 
-pub use compute::{ModesWanted, ShiftedStiffness, compute, compute_from};
+pub use compute::{ModesWanted, ShiftedStiffness, compute, compute_from, real_modes};
 pub use damping::{damping_ratios, modal_damping};
 pub use disc::Disc;
 pub use effective_mass::{EffectiveMass, effective_mass};

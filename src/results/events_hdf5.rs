@@ -2,6 +2,7 @@
 
 use super::ResultsFile;
 use super::file::preallocated;
+use super::transient_csv::TIME;
 use crate::dataset::{attach_scale, describe, text_attribute};
 use crate::error::Result;
 use crate::transient::{Event, EventKind};
@@ -9,8 +10,6 @@ use hdf5::Group;
 use ndarray::s;
 use std::ops::Range;
 
-/// The time of each row, and when each event happened.
-pub(super) const TIME: &str = "time_s";
 const POINT: &str = "point";
 const KIND: &str = "kind";
 /// The room at the start.

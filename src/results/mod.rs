@@ -26,15 +26,21 @@ mod complex;
 mod csv;
 mod damping;
 mod derived;
+#[cfg(feature = "hdf5")]
 mod events_hdf5;
 mod explored;
+#[cfg(feature = "hdf5")]
 mod fields;
+#[cfg(feature = "hdf5")]
 mod file;
 mod folder;
 mod frf;
+#[cfg(feature = "hdf5")]
 mod hdf5;
 mod lock;
 mod maps;
+#[cfg(feature = "hdf5")]
+mod maps_hdf5;
 mod real_modes;
 pub mod record;
 mod record_size;
@@ -49,6 +55,7 @@ mod summary;
 mod sweeps;
 mod transient;
 mod transient_csv;
+#[cfg(feature = "hdf5")]
 mod transient_hdf5;
 mod uff;
 mod validation;
@@ -57,7 +64,7 @@ mod watched;
 
 #[cfg(test)]
 pub(crate) mod sample;
-#[cfg(test)]
+#[cfg(all(test, feature = "hdf5"))]
 mod tests;
 
 pub use calibration::{
@@ -69,7 +76,9 @@ pub(crate) use csv::write_csv;
 pub use damping::{DampingRow, DampingVerdicts};
 pub use derived::PairTotals;
 pub use explored::Method;
+#[cfg(feature = "hdf5")]
 pub use fields::FieldsFile;
+#[cfg(feature = "hdf5")]
 pub use file::ResultsFile;
 
 pub(crate) use folder::{FileNames, file_name, retire, write_atomically, write_result};

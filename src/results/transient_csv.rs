@@ -1,6 +1,5 @@
 //! `transient.csv` and `events.csv`, which grow while the run goes on.
 
-use super::events_hdf5::TIME;
 use super::folder::{own, refusal};
 use super::{Channel, Recording};
 use crate::dataset::{CsvTable as Table, number};
@@ -9,6 +8,9 @@ use crate::transient::Event;
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+
+/// The time of each row, and when each event happened.
+pub(super) const TIME: &str = "time_s";
 
 /// A table with a line for every step. Whole lines are added, so that it can be watched.
 #[derive(Debug)]

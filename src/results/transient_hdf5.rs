@@ -12,8 +12,9 @@
 //!
 //! Nobody knows how many events there will be: when their room is full the file is copied with twice the room.
 
-use super::events_hdf5::{self as events, TIME};
+use super::events_hdf5 as events;
 use super::file::preallocated;
+use super::transient_csv::TIME;
 use super::{Piece, Recording, ResultsFile, TransientResult, modal_channel};
 use crate::dataset::Describe;
 use crate::dataset::{attach_scale, attribute, describe, text_attribute};

@@ -53,6 +53,19 @@ impl From<[f64; 2]> for Band {
     }
 }
 
+/// The complex eigenvalues λ = σ + iω \[1/s\] with ω/2π in `band_hz` and their modes: see [`complex_modes`].
+///
+/// # Errors
+/// As [`complex_modes`].
+pub fn complex_eigenvalues(
+    system: &System,
+    steady: &SteadySliding,
+    real: &RealModes,
+    band_hz: [f64; 2],
+) -> Result<ComplexModes> {
+    complex_modes(system, steady, real, band_hz, &())
+}
+
 /// All complex modes with a frequency in `band`, or those of them that it asks for, of `system` sliding steadily.
 ///
 /// * Basis: the real modes (of K + K_σ and M, M-orthonormal, best up to twice the band) and A⁻¹W, A = K + K_σ − s M at

@@ -34,7 +34,7 @@ mod structural;
 mod tests;
 
 pub use advice::PointRates;
-pub use analysis::{Band, complex_modes};
+pub use analysis::{Band, complex_eigenvalues, complex_modes};
 pub use certificate::{Certificate, CloseCall, SLOWEST_GROWTH, certified_modes};
 pub use family::{Family, FamilyCheck, FamilyModes, Frame, SlidingState};
 pub use filter::{ModalFilter, modal_filter};
