@@ -82,7 +82,7 @@ pub fn complex_result<'a>(
         })
         .collect();
     let complex = ComplexResult {
-        shapes: modes.modes.iter().map(|m| prepared.assembled.dofs.expand_complex(&m.right)).collect(),
+        dofs: prepared.assembled.dofs.clone(),
         participation,
         real_modes: labels,
         measured_squeal_hz: cea.measured_squeal.iter().map(|f| (*f, cea.measured_source.clone())).collect(),
