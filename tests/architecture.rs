@@ -39,6 +39,7 @@ const MAY_USE: [(&str, &[&str]); 30] = [
             "numbers",
             "dataset",
             "linalg",
+            "structure",
             "equilibrium",
             "modal",
             "stability",

@@ -92,13 +92,13 @@ fn universal_files_go_both_ways_with_pyuff() {
     let dir = tempfile::tempdir().unwrap();
     let label = |k: usize| k as u64 + 1;
     let labelled = || points().into_iter().enumerate().map(move |(k, x)| (label(k), x));
-    let mut motion = shape().into_iter().enumerate().map(|(k, u)| (label(k), u));
+    let motion = shape().into_iter().enumerate().map(|(k, u)| (label(k), u));
     let mode = RealShape {
         number: 1,
         frequency_hz: 123.5,
         modal_mass: 1.0,
         damping_ratio: 0.0125,
-        motion: &mut motion,
+        motion: Box::new(motion),
     };
     let modes = modes_text("test", labelled(), std::iter::once(mode));
     std::fs::write(dir.path().join("modes.uff"), modes).unwrap();

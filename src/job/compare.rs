@@ -202,7 +202,7 @@ impl Test {
         let scale = analysis.frequency_scale;
         let hz: Vec<f64> = (first..named.modes.len()).map(|k| scale * named.modes.frequency_hz(k)).collect();
         let levels = levels(&hz, &named.names[first..]);
-        let motion = |k: usize, sensors: &Sensors| sensors.motions(&self.nodes, &named.shapes[first + k]);
+        let motion = |k: usize, sensors: &Sensors| sensors.motions(&self.nodes, &named.shape(first + k));
         let motions: Vec<Vec<f64>> = match &self.sensors {
             Some(sensors) => (0..hz.len()).map(|k| motion(k, sensors)).collect(),
             None => Vec::new(),

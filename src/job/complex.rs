@@ -81,7 +81,7 @@ pub fn complex_result<'a>(
         })
         .collect();
     let complex = ComplexResult {
-        shapes: modes.modes.iter().map(|m| prepared.assembled.dofs.expand_complex(&m.right)).collect(),
+        dofs: prepared.assembled.dofs.clone(),
         participation,
         real_modes: labels,
         measured_squeal_hz: cea.measured_squeal.iter().map(|f| (*f, cea.measured_source.clone())).collect(),
@@ -154,10 +154,13 @@ impl Problem<'_, '_> {
                 (expected, start) = (band, Some(shifted));
                 continue;
             }
+            // Factors that do not serve are as large as those that the analysis makes in their place.
+            let serve = Structural { real: &basis, shifted: Some(&shifted) }.serves(band);
+            let shifted = Some(shifted).filter(|_| serve);
             let (mut modes, certificate) =
-                self.modes(Structural { real: &basis, shifted: Some(&shifted) }, band)?;
+                self.modes(Structural { real: &basis, shifted: shifted.as_ref() }, band)?;
             match keep_nearest(&mut modes, self.cea, band) {
-                Some(wider) => (expected, least, start) = (wider, wider, Some(shifted)),
+                Some(wider) => (expected, least, start) = (wider, wider, shifted),
                 None => return Ok(Found { band, basis, modes, certificate }),
             }
         }

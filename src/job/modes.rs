@@ -9,16 +9,11 @@ use crate::linalg::SparseMatrix;
 use crate::linalg::sparse::times;
 use crate::modal::{self, DiscModeName, ModesWanted, RealModes};
 use crate::numbers::hertz;
-use crate::results::{NamedModes, NodalField};
+use crate::results::NamedModes;
 use crate::structure::{self, Assembled, assemble};
 use crate::system::{Damping, ModalDamping, Structure};
-use faer::{Mat, MatRef};
+use faer::Mat;
 use std::sync::Arc;
-
-/// A column of `shapes` as a slice.
-pub fn column(shapes: MatRef<'_, f64>, k: usize) -> Vec<f64> {
-    shapes.col(k).iter().copied().collect()
-}
 
 /// Runs one real-mode analysis of the case on a part alone.
 ///
@@ -95,14 +90,12 @@ pub fn of_the_whole(prepared: &Prepared, analysis: &ModesAnalysis) -> bool {
         && (analysis.parts.is_empty() || parts.all(|part| analysis.parts.contains(part)))
 }
 
-/// Real modes with nodal shapes, names and effective masses.
+/// Real modes with names and effective masses.
 pub fn named(prepared: &Prepared, name: &str, modes: RealModes, assembled: &Assembled) -> NamedModes {
-    let shapes: Vec<NodalField<f64>> =
-        (0..modes.len()).map(|k| assembled.dofs.expand(&column(modes.shapes.as_ref(), k))).collect();
     let (moving_part, names) = identify(prepared, &modes, assembled).into_iter().unzip();
     NamedModes {
         name: name.to_string(),
-        shapes,
+        dofs: assembled.dofs.clone(),
         names,
         moving_part,
         effective_mass: effective_masses(&modes, assembled),

@@ -9,6 +9,7 @@
 //! * [`row_sparse`]: symmetric matrices with entries in a few rows.
 //! * [`lu`]: small dense matrices factorised.
 //! * [`matrix_market`]: matrices from and to files.
+//! * [`nalgebra`]: matrices from and to nalgebra-sparse.
 //! * [`shared_pattern`]: products with several sparse matrices at once.
 //! * [`orthogonal`]: orthogonal factors of small dense matrices.
 //! * [`proportional`]: a matrix as α M + β K and a rest.
@@ -26,6 +27,7 @@ mod lanes;
 pub mod lu;
 pub mod matrix_market;
 pub mod multivector;
+pub mod nalgebra;
 pub mod orthogonal;
 pub mod proportional;
 pub mod random;

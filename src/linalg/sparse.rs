@@ -369,8 +369,15 @@ pub fn on_one_pattern(a: SparseMatrix, b: SparseMatrix) -> [SparseMatrix; 2] {
 /// # Panics
 /// When the columns are none, or beyond 2³² entries.
 pub fn compressed(nrows: usize, starts: &[usize], rows: Vec<Index>, values: Vec<f64>) -> SparseMatrix {
-    let pattern = SymbolicSparseColMat::new_checked(nrows, starts.len() - 1, places(starts), None, rows);
-    SparseMatrix::new(pattern, values)
+    SparseMatrix::new(compressed_pattern(nrows, starts, rows), values)
+}
+
+/// The pattern of a matrix of compressed columns.
+///
+/// # Panics
+/// Those of [`compressed`].
+pub fn compressed_pattern(nrows: usize, starts: &[usize], rows: Vec<Index>) -> SymbolicSparseColMat<Index> {
+    SymbolicSparseColMat::new_checked(nrows, starts.len() - 1, places(starts), None, rows)
 }
 
 /// Places of entries.

@@ -60,7 +60,7 @@ struct Group {
 }
 
 fn groups(set: &NamedModes) -> Vec<Group> {
-    let hz: Vec<f64> = (0..set.shapes.len()).map(|k| set.modes.frequency_hz(k)).collect();
+    let hz: Vec<f64> = (0..set.modes.len()).map(|k| set.modes.frequency_hz(k)).collect();
     let named = |modes: Range<usize>| Some(Group { name: set.names[modes.start]?, modes });
     levels(&hz, &set.names).into_iter().filter_map(named).collect()
 }
@@ -77,8 +77,8 @@ impl Disc {
         let part = disc_part(geometry, set)?;
         let plate = Plate::new(geometry, part)?;
         let mut disc = Disc { held: vec![true; plate.nodes.len()], plate };
-        for shape in &set.shapes {
-            let w = disc.deflection(shape);
+        for k in 0..set.modes.len() {
+            let w = disc.deflection(&set.shape(k));
             disc.held.iter_mut().zip(&w).for_each(|(held, w)| *held &= w.abs() < 1e-6);
         }
         Some(disc)
@@ -108,21 +108,30 @@ impl Disc {
 
 /// The part that bears the set's name, or the plate that moves most in its modes.
 fn disc_part(geometry: &Geometry, set: &NamedModes) -> Option<usize> {
-    let motion = |part: usize| -> f64 {
-        let faces =
-            geometry.elements.iter().zip(&geometry.part_of).filter(|(e, p)| **p == part && e.len() >= 3);
-        let nodes: Vec<usize> = faces.flat_map(|(e, _)| e.iter().copied()).collect();
-        let shape = |shape: &Vec<[f64; 6]>| -> f64 {
-            nodes.iter().map(|k| shape[*k][..3].iter().map(|u| u * u).sum::<f64>()).sum()
-        };
-        let named = set.shapes.iter().zip(&set.names).filter(|(_, name)| name.is_some());
-        named.map(|(s, _)| shape(s)).sum::<f64>() / nodes.len().max(1) as f64
-    };
-    let by_name = geometry.parts.iter().position(|part| *part == set.name).filter(|part| motion(*part) > 0.0);
+    let motions = plate_motions(geometry, set);
+    let by_name =
+        geometry.parts.iter().position(|part| *part == set.name).filter(|part| motions[*part] > 0.0);
     by_name.or_else(|| {
-        let parts = (0..geometry.parts.len()).map(|part| (part, motion(part))).filter(|(_, m)| *m > 0.0);
+        let parts = motions.into_iter().enumerate().filter(|(_, motion)| *motion > 0.0);
         parts.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(part, _)| part)
     })
+}
+
+/// For each part the mean over the nodes of its faces of |u|², summed over the modes that have a name \[1/kg\].
+fn plate_motions(geometry: &Geometry, set: &NamedModes) -> Vec<f64> {
+    let mut nodes = vec![Vec::new(); geometry.parts.len()];
+    let elements = geometry.elements.iter().zip(&geometry.part_of);
+    elements.filter(|(e, _)| e.len() >= 3).for_each(|(e, part)| nodes[*part].extend(e));
+    let mut motions = vec![0.0; nodes.len()];
+    for k in (0..set.modes.len()).filter(|k| set.names[*k].is_some()) {
+        let shape = set.shape(k);
+        let squared = |node: &usize| shape[*node][..3].iter().map(|u| u * u).sum::<f64>();
+        motions
+            .iter_mut()
+            .zip(&nodes)
+            .for_each(|(sum, nodes)| *sum += nodes.iter().map(squared).sum::<f64>());
+    }
+    motions.iter().zip(&nodes).map(|(sum, nodes)| sum / nodes.len().max(1) as f64).collect()
 }
 
 fn draw_mode(
@@ -145,7 +154,7 @@ fn draw_mode(
         [2.0 * radius, 2.0 * radius],
     );
     let pixels: Vec<Point> = disc.plate.points.iter().map(|p| fit.pixel(*p)).collect();
-    let w = disc.deflection(&set.shapes[group.modes.start]);
+    let w = disc.deflection(&set.shape(group.modes.start));
     disc.plate.paint(sheet, &pixels, &w);
     let nodal = at_least(&pixels, &disc.lively(&w), &w, 0.0).level_lines;
     if !nodal.is_empty() {
@@ -220,7 +229,7 @@ mod tests {
         let set = results.all::<NamedModes>()[0];
         let disc = Disc::new(&results.geometry, set).unwrap();
         let k = set.names.iter().position(|n| n.is_some_and(|n| n.nodal_circles == 1)).unwrap();
-        let w = disc.deflection(&set.shapes[k]);
+        let w = disc.deflection(&set.shape(k));
         let lines = at_least(&disc.plate.points, &disc.lively(&w), &w, 0.0).level_lines;
         assert!(lines.len() > 100);
         // The sample's (0, 1) shape vanishes at ξ = 0.8 of the way from hub (21 mm) to rim (75 mm): r = 64.2 mm.

@@ -6,15 +6,17 @@ use crate::dataset::{Column, Describe, Dimension, Group, Table, Values, Variable
 use crate::linalg::c64;
 use crate::numbers::{growth, hertz, power, signed, significant};
 use crate::stability::{Certificate, CloseCall, ComplexMode, ComplexModes, Confirmation, ROUND_OFF, Verdict};
+use crate::structure::DofMap;
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// Complex modes, for people.
 #[derive(Debug)]
 pub struct ComplexResult {
     /// Eigenvalues, vectors, errors, budgets.
     pub modes: ComplexModes,
-    /// The shape of each mode at every node.
-    pub shapes: Vec<NodalField<c64>>,
+    /// From the free degrees of freedom, on which the vectors of the modes stand, to the nodes.
+    pub dofs: Arc<DofMap>,
     /// A few words on the real modes that take part in each mode: `61 % disc (0,1), 22 % (3,0)`.
     pub participation: Vec<String>,
     /// What the real modes are called, in the order that [`ComplexMode::participation`](crate::stability::ComplexMode)
@@ -179,6 +181,12 @@ impl Describe for ComplexResult {
 }
 
 impl ComplexResult {
+    /// Shape φ of mode `k`, counted from 0, at every node: (ux, uy, uz, rx, ry, rz), n_nodes × 6
+    /// \[1/√kg, 1/(m √kg)\]. It is worked out at each call from the vector on the free degrees of freedom.
+    pub fn shape(&self, k: usize) -> NodalField<c64> {
+        self.dofs.expand_complex(&self.modes.modes[k].right)
+    }
+
     /// The modes, one a row.
     pub(crate) fn mode_table(&self) -> Table<'static> {
         let words = |k: usize| self.participation.get(k).map_or("", String::as_str);
@@ -195,8 +203,8 @@ impl ComplexResult {
         let eigenvalues = Values::Complexes(modes.iter().map(|m| m.eigenvalue).collect());
         let mut table =
             table.field(Variable::new("eigenvalue", "1/s", "λ = σ + iω", vec![rows.clone()], eigenvalues));
-        let n_nodes = self.shapes.first().map_or(0, Vec::len);
-        let right = Values::ComplexRows(Box::new(|k| self.shapes[k].as_flattened().to_vec()));
+        let n_nodes = if modes.is_empty() { 0 } else { self.dofs.n_nodes() };
+        let right = Values::ComplexRows(Box::new(|k| self.shape(k).into_flattened()));
         let dimensions = along(&[Dimension::indexed("node", n_nodes), Dimension::freedoms()]);
         table =
             table.field(Variable::new("right", SHAPE_UNITS, "φ at every node, φᴴMφ = 1", dimensions, right));

@@ -3,6 +3,8 @@
 use super::{NodalField, file_name};
 use crate::dataset::{Column, Describe, Dimension, Group, Table, Values, Variable, column};
 use crate::modal::{DiscModeName, RealModes};
+use crate::structure::DofMap;
+use std::sync::Arc;
 
 /// Units of a mass-normalised displacement and rotation: φᵀMφ = 1.
 pub(super) const SHAPE_UNITS: &str = "1/√kg, 1/(m √kg)";
@@ -12,10 +14,10 @@ pub(super) const SHAPE_UNITS: &str = "1/√kg, 1/(m √kg)";
 pub struct NamedModes {
     /// `disc`, `rig`, `rig with closed contact` …
     pub name: String,
-    /// Eigenvalues, errors and certificate.
+    /// Eigenvalues, shapes on the free degrees of freedom, errors and certificate.
     pub modes: RealModes,
-    /// The shape of each mode at every node; zero outside the part.
-    pub shapes: Vec<NodalField<f64>>,
+    /// From those degrees of freedom to the nodes.
+    pub dofs: Arc<DofMap>,
     /// The part with the largest share of each mode's kinetic energy; `None` where only points move.
     pub moving_part: Vec<Option<String>>,
     /// The name of each mode, where the part is a disc and the mode bends it.
@@ -72,13 +74,23 @@ impl Describe for NamedModes {
 }
 
 impl NamedModes {
+    /// Shape φ of mode `k`, counted from 0, at every node: (ux, uy, uz, rx, ry, rz), n_nodes × 6
+    /// \[1/√kg, 1/(m √kg)\]; zero outside the part. It is worked out at each call from the vector on the free degrees of
+    /// freedom.
+    pub fn shape(&self, k: usize) -> NodalField<f64> {
+        self.dofs.expand(self.modes.shapes.col_as_slice(k))
+    }
+
     /// The modes, one a row, with their shapes.
     fn table(&self) -> Table<'_> {
         let modes: Vec<Mode> = (0..self.modes.len()).map(|k| (self, k)).collect();
         let table = Table::of(&*self.name, "mode", &columns(), &modes).file(file_name("modes", &self.name));
-        let Some(nodes) = self.shapes.first().map(Vec::len) else { return table };
-        let dimensions = vec![table.rows.clone(), Dimension::indexed("node", nodes), Dimension::freedoms()];
-        let rows = Values::RealRows(Box::new(|k| self.shapes[k].as_flattened().to_vec()));
+        if self.modes.is_empty() {
+            return table;
+        }
+        let nodes = Dimension::indexed("node", self.dofs.n_nodes());
+        let dimensions = vec![table.rows.clone(), nodes, Dimension::freedoms()];
+        let rows = Values::RealRows(Box::new(|k| self.shape(k).into_flattened()));
         table.field(Variable::new(
             "shapes",
             SHAPE_UNITS,

@@ -13,8 +13,10 @@ use crate::equilibrium::{PointState, SteadySliding};
 use crate::linalg::c64;
 use crate::modal::{DiscModeName, RealModes, SturmCertificate};
 use crate::stability::{ComplexMode, ComplexModes, GrowthBudget};
+use crate::structure::{DofMap, FreeDof};
 use crate::system::{ContactForces, ContactTangent};
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 const HUB: f64 = 0.021;
 const RIM: f64 = 0.075;
@@ -161,6 +163,13 @@ fn disc_shape(geometry: &Geometry, n_disc: usize, n: usize, s: usize, phase: f64
     (0..geometry.nodes.len()).map(node).collect()
 }
 
+/// Every node moves in all six ways.
+fn every_freedom(geometry: &Geometry) -> Arc<DofMap> {
+    let free = (0..6 * geometry.nodes.len())
+        .map(|k| FreeDof { node: k / 6, direction: std::array::from_fn(|axis| f64::from(axis == k % 6)) });
+    Arc::new(DofMap::given(geometry.nodes.clone(), free.collect()))
+}
+
 fn disc_modes(geometry: &Geometry, n_disc: usize) -> NamedModes {
     let (mut eigenvalues, mut shapes, mut names) = (vec![], vec![], vec![]);
     for (n, s, hz, double) in DISC_MODES {
@@ -185,7 +194,7 @@ fn disc_modes(geometry: &Geometry, n_disc: usize) -> NamedModes {
                 found: count,
             },
         },
-        shapes,
+        dofs: every_freedom(geometry),
         moving_part: vec![Some("disc".into()); count],
         names,
         effective_mass: (0..count).map(|k| [0.08 / (k + 1) as f64, 0.0, 1e-4]).collect(),
@@ -272,12 +281,10 @@ fn complex_result(disc: &NamedModes) -> ComplexResult {
         }
     };
     let modes: Vec<ComplexMode> = terms.iter().enumerate().map(mode).collect();
-    let shape =
-        |mode: &ComplexMode| mode.right.chunks(6).map(|u| [u[0], u[1], u[2], u[3], u[4], u[5]]).collect();
     let name = |k: usize| disc.names[k].map(|n| format!("({},{})", n.nodal_diameters, n.nodal_circles));
     let words = |k: usize| format!("61 % disc {}; 22 % disc {}", name(k).unwrap(), name(k + 1).unwrap());
     ComplexResult {
-        shapes: modes.iter().map(shape).collect(),
+        dofs: Arc::clone(&disc.dofs),
         participation: (0..modes.len()).map(words).collect(),
         real_modes: (0..disc.names.len())
             .map(|k| {

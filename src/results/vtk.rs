@@ -35,7 +35,7 @@ pub fn write_vtk(dir: &Path, results: &RunResults) -> Result<()> {
     }
     let mut names = FileNames::default();
     for set in results.all::<NamedModes>() {
-        let vectors = numbered(&set.shapes, |number, shape| vec![(number, displacement(shape))]);
+        let vectors = numbered(set.modes.len(), |k, number| vec![(number, displacement(&set.shape(k)))]);
         write_grid(dir, &format!("modes_{}.vtu", names.next(&set.name)), geometry, vectors)?;
     }
     if let Some(steady) = results.get::<SteadyResult>() {
@@ -43,8 +43,8 @@ pub fn write_vtk(dir: &Path, results: &RunResults) -> Result<()> {
         write_grid(dir, "steady.vtu", geometry, vectors)?;
     }
     if let Some(complex) = results.get::<ComplexResult>() {
-        let vectors = numbered(&complex.shapes, |number, shape| {
-            let [re, im] = real_and_imaginary(shape);
+        let vectors = numbered(complex.modes.modes.len(), |k, number| {
+            let [re, im] = real_and_imaginary(&complex.shape(k));
             vec![(format!("{number}_re"), re), (format!("{number}_im"), im)]
         });
         write_grid(dir, "complex_modes.vtu", geometry, vectors)?;
@@ -58,17 +58,10 @@ pub fn write_vtk(dir: &Path, results: &RunResults) -> Result<()> {
     Ok(())
 }
 
-/// The vectors of all modes, named `mode_01`, `mode_02` … (more digits when there are more than 99).
-fn numbered<T>(
-    shapes: &[NodalField<T>],
-    vectors: impl Fn(String, &NodalField<T>) -> Vec<PointVector>,
-) -> Vec<PointVector> {
-    let width = shapes.len().to_string().len().max(2);
-    shapes
-        .iter()
-        .enumerate()
-        .flat_map(|(k, shape)| vectors(format!("mode_{:0width$}", k + 1), shape))
-        .collect()
+/// The vectors of `modes` modes, named `mode_01`, `mode_02` … (more digits when there are more than 99).
+fn numbered(modes: usize, vectors: impl Fn(usize, String) -> Vec<PointVector>) -> Vec<PointVector> {
+    let width = modes.to_string().len().max(2);
+    (0..modes).flat_map(|k| vectors(k, format!("mode_{:0width$}", k + 1))).collect()
 }
 
 fn displacement(shape: &NodalField<f64>) -> Vec<[f64; 3]> {
@@ -189,11 +182,11 @@ mod tests {
         assert!(part.iter().zip(&results.geometry.part_of).all(|(a, b)| *a as usize == *b));
         let IOBuffer::F64(u) = array(&disc.data.point, "mode_03") else { panic!("modes are f64") };
         assert_eq!(u.len(), 3 * results.geometry.nodes.len());
-        assert!(u.chunks(3).zip(&results.all::<NamedModes>()[0].shapes[2]).all(|(a, b)| a == &b[..3]));
+        assert!(u.chunks(3).zip(&results.all::<NamedModes>()[0].shape(2)).all(|(a, b)| a == &b[..3]));
         let complex = read(&dir.path().join("complex_modes.vtu"));
         let IOBuffer::F64(im) = array(&complex.data.point, "mode_01_im") else { panic!("modes are f64") };
-        let shape = &results.get::<ComplexResult>().unwrap().shapes[0];
-        assert!(im.chunks(3).zip(shape).all(|(a, b)| a[0] == b[0].im && a[2] == b[2].im));
+        let shape = results.get::<ComplexResult>().unwrap().shape(0);
+        assert!(im.chunks(3).zip(&shape).all(|(a, b)| a[0] == b[0].im && a[2] == b[2].im));
         assert!(im.iter().any(|v| *v != 0.0));
     }
 

@@ -131,7 +131,7 @@ pub(super) fn analyse<'a, T>(
     let operator = Operator::new(system, steady)?;
     let band = band_hz.map(|f| TAU * f);
     observer.begin("complex eigenvalues", None);
-    let own = match serves(known, band) {
+    let own = match known.serves(band_hz) {
         true => Ok(None),
         false => shifted_factor(&operator, real, band)
             .map(|(factor, shift)| Some(ShiftedStiffness { shift, factor })),
@@ -153,17 +153,6 @@ pub(super) fn analyse<'a, T>(
     };
     let rest = then(&mut modes, analysis);
     Ok((modes, rest))
-}
-
-/// Whether the factors at hand lie inside the band, and clear of the modes: then they cost no digits.
-fn serves(known: Structural<'_>, band: [f64; 2]) -> bool {
-    /// The distance of a shift from the modes, relative to it.
-    const CLEAR: f64 = 1e-3;
-    let middle = 0.5 * (band[0] * band[0] + band[1] * band[1]);
-    known.shifted.is_some_and(|s| {
-        (s.shift - middle).abs() <= 0.5 * middle
-            && known.real.eigenvalues.iter().all(|w| (w - s.shift).abs() > CLEAR * s.shift)
-    })
 }
 
 /// The factors made here, or those at hand where none were.
@@ -382,6 +371,10 @@ fn evaluate(scale: &Scale<'_>, asked: Band, before: Vec<Found>) -> Result<(Vec<F
         keep_nearest(&mut pairs, nearest);
     }
     let settled: Vec<Option<usize>> = pairs.iter().map(|p| settled(&before, &pairs, p.lambda)).collect();
+    // Those that are measured anew are not held beside what replaces them.
+    let stays = |k: usize| settled.contains(&Some(k));
+    let mut before: Vec<Option<Found>> =
+        before.into_iter().enumerate().map(|(k, found)| stays(k).then_some(found)).collect();
     let fresh: Vec<&SmallPair> =
         pairs.iter().zip(&settled).filter(|(_, place)| place.is_none()).map(|(pair, _)| pair).collect();
     let (mut wanted, mut new, mut measured) = (Wanted::default(), Vec::new(), Measured::default());
@@ -394,7 +387,7 @@ fn evaluate(scale: &Scale<'_>, asked: Band, before: Vec<Found>) -> Result<(Vec<F
         let modes = finished(scale.operator, &mut measured, &amplitudes, left.as_ref());
         new.extend(modes.into_iter().zip(exact).map(|(mode, exact)| Found { mode, exact }));
     }
-    let (mut before, mut new): (Vec<_>, _) = (before.into_iter().map(Some).collect(), new.into_iter());
+    let mut new = new.into_iter();
     let of = |place: Option<usize>| match place {
         Some(k) => before[k].take().expect("one pair settles on it"),
         None => new.next().expect("one for each pair that did not settle"),

@@ -6,7 +6,7 @@ use super::operator::{Forms, Operator, Side};
 use super::responses::SKETCH;
 use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
-use crate::linalg::multivector::{beside, expand};
+use crate::linalg::multivector::expand;
 use crate::linalg::random::Random;
 use faer::Mat;
 use rayon::prelude::*;
@@ -123,15 +123,25 @@ impl Wanted {
     /// The left ones are still to be solved for: of many only as many random combinations as reveal what they have in common
     /// (Halko, Martinsson & Tropp, SIAM Rev. 53 (2011) 217), as the contact forces of many pairs come from few motions.
     pub(super) fn corrections(self, factor: &dyn SymmetricFactor) -> Mat<f64> {
-        let joined = |parts: Vec<Mat<f64>>| parts.into_iter().reduce(|a, b| beside(a.as_ref(), b.as_ref()));
-        let (Some(right), Some(mut left)) = (joined(self.right), joined(self.left)) else {
-            return Mat::zeros(factor.n(), 0);
-        };
+        let n = factor.n();
+        let count = |parts: &[Mat<f64>]| parts.iter().map(Mat::ncols).sum::<usize>();
+        let [right, left] = [&self.right, &self.left].map(|parts| count(parts));
+        let mut left = joined(Mat::with_capacity(n, left), n, self.left);
         if left.ncols() > SKETCH {
             let mut random = Random::new();
             left = expand(left.as_ref(), Mat::from_fn(left.ncols(), SKETCH, |_, _| random.next()).as_ref());
         }
         factor.solve_in_place(left.as_mut());
-        beside(right.as_ref(), left.as_ref())
+        joined(Mat::with_capacity(n, right + left.ncols()), n, self.right.into_iter().chain([left]))
     }
+}
+
+/// The columns of `parts`, of `n` rows each, after one another in the memory of `all`; each part is given back as soon as it
+/// is copied.
+fn joined(mut all: Mat<f64>, n: usize, parts: impl IntoIterator<Item = Mat<f64>>) -> Mat<f64> {
+    for part in parts {
+        let first = all.ncols();
+        all.resize_with(n, first + part.ncols(), |i, j| part[(i, j - first)]);
+    }
+    all
 }

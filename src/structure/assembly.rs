@@ -3,8 +3,8 @@
 use super::check::check_model;
 use super::dofs::DofMap;
 use super::model::Model;
-use super::pieces::{PieceMatrices, pieces};
-use super::scatter::{Pattern, Reduction};
+use super::pieces::{Piece, PieceMatrices, pieces};
+use super::scatter::{Couplings, Pattern, Reduction};
 use crate::error::{Error, Fault, Result};
 use crate::linalg::SparseMatrix;
 use crate::system::{Damping, Prestress, Structure};
@@ -21,7 +21,8 @@ pub struct Assembled {
     pub total_mass: f64,
     /// Its centre \[m\]; the origin when there is no mass.
     pub center_of_mass: [f64; 3],
-    pub(super) pattern: Arc<Pattern>,
+    /// K as it was assembled, whose pattern geometric stiffness takes.
+    pub(super) stiffness: Arc<SparseMatrix>,
 }
 
 /// Assembles M, C and K of `model`.
@@ -35,8 +36,9 @@ pub fn assemble(model: &Model) -> Result<Assembled> {
     check_model(model)?;
     let dofs = DofMap::new(model)?;
     let pieces = pieces(model);
-    let piece_nodes: Vec<Vec<usize>> = pieces.iter().map(|piece| piece.nodes().collect()).collect();
-    let pattern = Pattern::new(&dofs, &piece_nodes);
+    let couplings = couplings(&dofs, &pieces);
+    let symbolic = couplings.pattern();
+    let pattern = Pattern { couplings: &couplings, symbolic: symbolic.as_ref() };
     let [mass, stiffness, viscous, hysteretic] = pattern.sum(|p, coupled| {
         let PieceMatrices { mass, stiffness, viscous, hysteretic } = pieces[p].matrices(&model.nodes);
         let reduction = Reduction::new(&dofs, pieces[p].nodes(), coupled);
@@ -66,13 +68,19 @@ pub fn assemble(model: &Model) -> Result<Assembled> {
             hysteretic: hysteretic.map(Into::into),
         },
     };
-    Ok(Assembled { structure, dofs: Arc::new(dofs), total_mass, center_of_mass, pattern: Arc::new(pattern) })
+    let stiffness = Arc::clone(&structure.stiffness);
+    Ok(Assembled { structure, dofs: Arc::new(dofs), total_mass, center_of_mass, stiffness })
+}
+
+fn couplings(dofs: &DofMap, pieces: &[Piece<'_>]) -> Couplings {
+    let nodes: Vec<Vec<usize>> = pieces.iter().map(|piece| piece.nodes().collect()).collect();
+    Couplings::new(dofs, &nodes)
 }
 
 impl Assembled {
     /// The geometric stiffness of `model`, the one that was assembled, under a static displacement.
     pub fn prestress(&self, model: Model) -> GeometricStiffness {
-        GeometricStiffness { model, dofs: Arc::clone(&self.dofs), pattern: Arc::clone(&self.pattern) }
+        GeometricStiffness { model, dofs: Arc::clone(&self.dofs), stiffness: Arc::clone(&self.stiffness) }
     }
 }
 
@@ -84,7 +92,8 @@ impl Assembled {
 pub struct GeometricStiffness {
     model: Model,
     dofs: Arc<DofMap>,
-    pattern: Arc<Pattern>,
+    /// K, for its pattern.
+    stiffness: Arc<SparseMatrix>,
 }
 
 impl Prestress for GeometricStiffness {
@@ -98,12 +107,14 @@ impl Prestress for GeometricStiffness {
         }
         let u = self.dofs.expand(displacement);
         let pieces = pieces(&self.model);
-        let [sum] = self.pattern.sum(|p, coupled| {
+        let couplings = couplings(&self.dofs, &pieces);
+        let pattern = Pattern { couplings: &couplings, symbolic: self.stiffness.symbolic() };
+        let [sum] = pattern.sum(|p, coupled| {
             let full = pieces[p].geometric_stiffness(&self.model.nodes, &u);
             let reduction = Reduction::new(&self.dofs, pieces[p].nodes(), coupled);
             [full.map(|k| reduction.apply(&k)).unwrap_or_default()]
         });
-        Ok(sum.unwrap_or_else(|| self.pattern.zero()))
+        Ok(sum.unwrap_or_else(|| pattern.zero()))
     }
 }
 

@@ -136,7 +136,7 @@ impl DofMap {
     }
 
     /// The map of degrees of freedom that are given, in their order; every node lies in `nodes`.
-    pub(super) fn given(nodes: Vec<[f64; 3]>, free: Vec<FreeDof>) -> Self {
+    pub(crate) fn given(nodes: Vec<[f64; 3]>, free: Vec<FreeDof>) -> Self {
         let mut of_node = vec![Vec::new(); nodes.len()];
         free.iter().enumerate().for_each(|(k, dof)| of_node[dof.node].push(k));
         let (mut starts, mut terms) = (vec![0], Vec::with_capacity(free.len()));

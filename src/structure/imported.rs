@@ -2,7 +2,6 @@
 
 use super::assembly::Assembled;
 use super::dofs::{DofMap, FreeDof};
-use super::scatter::Pattern;
 use crate::system::Structure;
 use std::sync::Arc;
 
@@ -19,13 +18,12 @@ impl Assembled {
         let free = places.unwrap_or_else(|| (0..n).map(sixth).collect());
         let dofs = DofMap::given(nodes, free);
         let total_mass = if known { largest_translation(&structure, &dofs) } else { f64::NAN };
-        let pattern = Pattern::new(&dofs, &[]);
         Assembled {
+            stiffness: Arc::clone(&structure.stiffness),
             structure,
             dofs: Arc::new(dofs),
             total_mass,
             center_of_mass: [f64::NAN; 3],
-            pattern: Arc::new(pattern),
         }
     }
 }

@@ -6,9 +6,9 @@
 
 use super::dofs::DofMap;
 use crate::linalg::SparseMatrix;
-use crate::linalg::sparse::{Index, compressed};
+use crate::linalg::sparse::{Index, compressed_pattern};
+use faer::sparse::{SymbolicSparseColMat, SymbolicSparseColMatRef};
 use nalgebra::SMatrix;
-use nalgebra_sparse::CscMatrix;
 use rayon::prelude::*;
 
 /// Pieces whose matrices are held at once.
@@ -16,15 +16,12 @@ const BATCH: usize = 8192;
 /// Columns whose pattern is made by one task.
 const COLUMNS: usize = 1024;
 
-/// Which free degrees of freedom each piece couples, and the pattern of their sum.
+/// The free degrees of freedom that each piece couples, ascending: those of piece p are `dofs[starts[p]..starts[p + 1]]`.
 #[derive(Debug)]
-pub(super) struct Pattern {
+pub(super) struct Couplings {
     n: usize,
-    /// Piece p couples `piece_dofs[piece_starts[p]..piece_starts[p + 1]]`, ascending.
-    piece_starts: Vec<usize>,
-    piece_dofs: Vec<usize>,
-    column_starts: Vec<usize>,
-    rows: Vec<usize>,
+    starts: Vec<usize>,
+    dofs: Vec<usize>,
 }
 
 /// Which of `lists`, ascending, hold each of the numbers below `count`: number k is in those of `users[starts[k]..starts[k + 1]]`.
@@ -45,31 +42,42 @@ pub(super) fn users<'a>(
     (starts, users)
 }
 
-impl Pattern {
-    /// The pattern of pieces on the given nodes; every diagonal entry is part of it.
+impl Couplings {
+    /// The couplings of pieces on the given nodes.
     pub fn new(dofs: &DofMap, piece_nodes: &[Vec<usize>]) -> Self {
-        let n = dofs.n_dofs();
         let lists: Vec<Vec<usize>> = piece_nodes.par_iter().map(|nodes| coupled_dofs(dofs, nodes)).collect();
-        let (piece_starts, piece_dofs) = flattened(&lists);
-        drop(lists);
+        let (starts, all) = flattened(&lists);
+        Couplings { n: dofs.n_dofs(), starts, dofs: all }
+    }
 
+    fn n_pieces(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    fn dofs_of(&self, piece: usize) -> &[usize] {
+        &self.dofs[self.starts[piece]..self.starts[piece + 1]]
+    }
+
+    /// The sparsity pattern of the sum of the pieces' matrices, n × n; every diagonal entry is part of it.
+    pub fn pattern(&self) -> SymbolicSparseColMat<Index> {
+        let n = self.n;
         // The pieces of every degree of freedom, ascending.
-        let pieces = piece_starts.windows(2).map(|ends| &piece_dofs[ends[0]..ends[1]]);
+        let pieces = (0..self.n_pieces()).map(|piece| self.dofs_of(piece));
         let (starts, users) = users(n, pieces);
         let users_of = |k: usize| &users[starts[k]..starts[k + 1]];
-        let columns: Vec<(Vec<usize>, Vec<usize>)> = (0..n.div_ceil(COLUMNS))
+        let columns: Vec<(Vec<usize>, Vec<Index>)> = (0..n.div_ceil(COLUMNS))
             .into_par_iter()
             .map(|task| {
                 let (mut counts, mut rows) = (Vec::new(), Vec::new());
-                let mut column: Vec<usize> = Vec::new();
+                let mut column: Vec<Index> = Vec::new();
                 let first = task * COLUMNS;
                 for k in first..n.min(first + COLUMNS) {
                     // Degrees of freedom of one node mostly have the same pieces, hence the same column.
                     if k == first || users_of(k) != users_of(k - 1) || users_of(k).is_empty() {
                         column.clear();
-                        column.push(k);
+                        column.push(k as Index);
                         for piece in users_of(k) {
-                            column.extend(&piece_dofs[piece_starts[*piece]..piece_starts[*piece + 1]]);
+                            column.extend(self.dofs_of(*piece).iter().map(|dof| *dof as Index));
                         }
                         column.sort_unstable();
                         column.dedup();
@@ -89,15 +97,24 @@ impl Pattern {
             }
             rows.extend(part);
         }
-        Pattern { n, piece_starts, piece_dofs, column_starts, rows }
+        compressed_pattern(n, &column_starts, rows)
+    }
+}
+
+/// The pattern of a sum of pieces' matrices, which stands on it; it may have more entries than they.
+pub(super) struct Pattern<'a> {
+    pub couplings: &'a Couplings,
+    pub symbolic: SymbolicSparseColMatRef<'a, Index>,
+}
+
+impl Pattern<'_> {
+    fn n_entries(&self) -> usize {
+        self.symbolic.row_idx().len()
     }
 
-    fn n_pieces(&self) -> usize {
-        self.piece_starts.len() - 1
-    }
-
-    fn dofs_of(&self, piece: usize) -> &[usize] {
-        &self.piece_dofs[self.piece_starts[piece]..self.piece_starts[piece + 1]]
+    /// Where column `k` begins.
+    fn start(&self, k: usize) -> usize {
+        self.symbolic.col_ptr()[k] as usize
     }
 
     /// Adds up K matrices at once: `matrices(p)` gives those of piece p on its coupled degrees of freedom
@@ -108,16 +125,16 @@ impl Pattern {
     ) -> [Option<SparseMatrix>; K] {
         let mut values: [Vec<f64>; K] = std::array::from_fn(|_| Vec::new());
         // Strided batches spread each batch over all columns, so that every owner has work.
-        let batches = self.n_pieces().div_ceil(BATCH).max(1);
+        let batches = self.couplings.n_pieces().div_ceil(BATCH).max(1);
         for batch in 0..batches {
-            let computed: Vec<(usize, [Vec<f64>; K])> = (batch..self.n_pieces())
+            let computed: Vec<(usize, [Vec<f64>; K])> = (batch..self.couplings.n_pieces())
                 .into_par_iter()
                 .step_by(batches)
-                .map(|piece| (piece, matrices(piece, self.dofs_of(piece))))
+                .map(|piece| (piece, matrices(piece, self.couplings.dofs_of(piece))))
                 .collect();
             for (kind, sum) in values.iter_mut().enumerate() {
                 if sum.is_empty() && computed.iter().any(|(_, m)| !m[kind].is_empty()) {
-                    sum.resize(self.rows.len(), 0.0);
+                    sum.resize(self.n_entries(), 0.0);
                 }
             }
             self.owners(&mut values).into_par_iter().for_each(|(first, last, mut slices)| {
@@ -139,13 +156,14 @@ impl Pattern {
         let mut owners = Vec::with_capacity(count);
         let mut first = 0;
         for owner in 1..=count {
-            let goal = self.rows.len() * owner / count;
+            let goal = self.n_entries() * owner / count;
             let last = if owner == count {
-                self.n
+                self.couplings.n
             } else {
-                self.column_starts.partition_point(|s| *s < goal).clamp(first, self.n)
+                let columns = self.symbolic.col_ptr();
+                columns.partition_point(|s| (*s as usize) < goal).clamp(first, self.couplings.n)
             };
-            let length = self.column_starts[last] - self.column_starts[first];
+            let length = self.start(last) - self.start(first);
             let mine = rest.each_mut().map(|slice| {
                 let whole = std::mem::take(slice);
                 let at = length.min(whole.len());
@@ -168,17 +186,18 @@ impl Pattern {
         last: usize,
         sums: &mut [&mut [f64]; K],
     ) {
-        let dofs = self.dofs_of(piece);
+        let dofs = self.couplings.dofs_of(piece);
         let m = dofs.len();
-        let base = self.column_starts[first];
+        let base = self.start(first);
         let from = dofs.partition_point(|k| *k < first);
         for (j, column) in dofs.iter().enumerate().skip(from).take_while(|(_, k)| **k < last) {
-            let start = self.column_starts[*column];
-            let rows = &self.rows[start..self.column_starts[*column + 1]];
+            let start = self.start(*column);
+            let rows = &self.symbolic.row_idx()[start..self.start(*column + 1)];
             let mut at = 0;
             for (i, row) in dofs.iter().enumerate() {
-                if rows.get(at) != Some(row) {
-                    at += rows[at..].partition_point(|r| r < row);
+                let row = *row as Index;
+                if rows.get(at) != Some(&row) {
+                    at += rows[at..].partition_point(|r| *r < row);
                 }
                 for (sum, matrix) in sums.iter_mut().zip(small) {
                     if !matrix.is_empty() {
@@ -192,28 +211,13 @@ impl Pattern {
 
     /// A matrix with this pattern.
     fn with_values(&self, values: Vec<f64>) -> SparseMatrix {
-        let csc = CscMatrix::try_from_csc_data(
-            self.n,
-            self.n,
-            self.column_starts.clone(),
-            self.rows.clone(),
-            values,
-        )
-        .expect("columns ascend and rows are sorted");
-        from_nalgebra(csc)
+        SparseMatrix::new(self.symbolic.to_owned().expect("memory for a pattern"), values)
     }
 
     /// The zero matrix on this pattern.
     pub fn zero(&self) -> SparseMatrix {
-        self.with_values(vec![0.0; self.rows.len()])
+        self.with_values(vec![0.0; self.n_entries()])
     }
-}
-
-/// The same matrix as faer's type; its values change hands without a copy.
-fn from_nalgebra(csc: CscMatrix<f64>) -> SparseMatrix {
-    let n_rows = csc.nrows();
-    let (starts, rows, values) = csc.disassemble();
-    compressed(n_rows, &starts, rows.iter().map(|row| *row as Index).collect(), values)
 }
 
 /// Free degrees of freedom that the nodes of a piece move with, ascending.

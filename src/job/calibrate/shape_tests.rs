@@ -22,6 +22,7 @@ fn test_file(modes: &[(usize, usize, f64)], noise: f64, away: f64) -> String {
     let case = Case::parse("made.toml", &text, ".".into()).unwrap();
     let prepared = Prepared::new(&case).unwrap();
     let named = part_modes(&prepared, "disc", &()).unwrap();
+    let shapes: Vec<_> = (0..named.modes.len()).map(|k| named.shape(k)).collect();
     let nodes: Vec<usize> = (0..prepared.model.nodes.len()).step_by(7).collect();
     let mut random = Random::new();
     // A sum of twelve: normal to three standard deviations.
@@ -37,7 +38,7 @@ fn test_file(modes: &[(usize, usize, f64)], noise: f64, away: f64) -> String {
         let level: Vec<usize> = (0..named.modes.len()).filter(own).collect();
         let part = |node: usize| -> f64 {
             let of = |i: usize| {
-                let [ux, _, _, _, _, rz] = named.shapes[i][node];
+                let [ux, _, _, _, _, rz] = shapes[i][node];
                 // The point moves along x with the node and its rotation about z.
                 ux - rz * away
             };

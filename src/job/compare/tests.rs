@@ -49,12 +49,13 @@ fn a_test_made_of_the_models_own_modes_is_found_again() {
         // Of double modes one that lies between them, as a test may find it.
         let twin = if k % 2 == 0 { k } else { k - 1 };
         let double = named.names[k] == named.names[twin];
-        let largest = named.shapes[k].iter().map(|u| u[0].abs()).fold(0.0, f64::max);
+        let (shape, second) = (named.shape(k), named.shape(twin));
+        let largest = shape.iter().map(|u| u[0].abs()).fold(0.0, f64::max);
         let motion: Vec<(u64, [f64; 3])> = labels
             .iter()
             .map(|n| {
-                let own = named.shapes[k][*n];
-                let other = if double { named.shapes[twin][*n] } else { own };
+                let own = shape[*n];
+                let other = if double { second[*n] } else { own };
                 let sum = [0, 1, 2].map(|axis| 0.8 * own[axis] + 0.6 * other[axis]);
                 let noisy = [sum[0] + 0.03 * largest * random.next(), sum[1], sum[2]];
                 (*n as u64 + 100, seen(noisy, false))
@@ -62,13 +63,12 @@ fn a_test_made_of_the_models_own_modes_is_found_again() {
             .collect();
         motions.push(motion);
     }
-    let mut motions: Vec<_> = motions.into_iter().map(Vec::into_iter).collect();
-    let modes = motions.iter_mut().enumerate().map(|(k, motion)| RealShape {
+    let modes = motions.into_iter().enumerate().map(|(k, motion)| RealShape {
         number: k + 1,
         frequency_hz: named.modes.frequency_hz(k),
         modal_mass: 1.0,
         damping_ratio: 0.004,
-        motion,
+        motion: Box::new(motion.into_iter()),
     });
     let text = modes_text("synthetic", points, modes);
     // Without its units: the case says mm.

@@ -166,6 +166,8 @@ mod tests {
     use crate::modal::samples::dense_modes;
     use crate::reduction::reduce;
     use crate::stability::complex_modes;
+    use crate::structure::DofMap;
+    use std::sync::Arc;
 
     /// The deviations of a model reduced to some of the modes of a system of forty degrees of freedom.
     fn deviations(kept: usize) -> ReducedCheck {
@@ -175,7 +177,7 @@ mod tests {
         let top = real.frequency_hz(8);
         let modes = complex_modes(&system, &steady, &real, [0.0, top], &()).unwrap();
         let complex = ComplexResult {
-            shapes: vec![],
+            dofs: Arc::new(DofMap::given(vec![], vec![])),
             participation: vec![],
             real_modes: vec![],
             measured_squeal_hz: vec![],

@@ -107,7 +107,7 @@ pub struct RealShape<'a> {
     /// ζ; zero where it is not known.
     pub damping_ratio: f64,
     /// Label and ux, uy, uz of each node.
-    pub motion: &'a mut dyn Iterator<Item = (u64, [f64; 3])>,
+    pub motion: Box<dyn Iterator<Item = (u64, [f64; 3])> + 'a>,
 }
 
 /// Dataset 55 of a real mode: normal mode, displacement, three motions a node.
