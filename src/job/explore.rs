@@ -195,23 +195,17 @@ impl Explorer<'_> {
         }
     }
 
-    fn map(
-        &self,
-        name: &str,
-        analysis: &MapAnalysis,
-        mut known: KnownMap,
-        record: &mut dyn FnMut(Stage) -> Result<()>,
-    ) -> Result<(MapResult, Option<String>)> {
+    /// A map without points.
+    fn empty_map(&self, name: &str, analysis: &MapAnalysis) -> Result<MapResult> {
         let axes = [0, 1].map(|k| Axis {
             from: analysis.from[k],
             to: analysis.to[k],
             points: analysis.points[k],
             log: analysis.log[k],
         });
-        let scalars = [0, 1].map(|k| self.case.parameter(&analysis.parameters[k]));
-        let [a, b] = scalars;
+        let [a, b] = [0, 1].map(|k| self.case.parameter(&analysis.parameters[k]));
         let (a, b) = (a?, b?);
-        let mut result = MapResult {
+        Ok(MapResult {
             name: name.to_string(),
             parameters: analysis.parameters.clone(),
             units: [a.unit.to_string(), b.unit.to_string()],
@@ -221,7 +215,41 @@ impl Explorer<'_> {
             boundary: Boundary::default(),
             sample: Vec::new(),
             method: Method::Whole,
-        };
+        })
+    }
+
+    /// Measures all modes at the places `inside` and at some of the boundary on the full order; gives the places at which the
+    /// reduced model is not good enough.
+    fn check_map(&self, on: &OnFamily, result: &mut MapResult, inside: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let mut places = inside.to_vec();
+        let line = &result.boundary.points;
+        places.extend((0..line.len().min(4)).map(|k| line[k * line.len() / line.len().min(4)]));
+        self.observer.begin("full-order check", Some(places.len() as u64));
+        result.sample.clear();
+        let mut poor = Vec::new();
+        for at in places {
+            // A place without an answer has nothing to measure.
+            let Ok(checks) = on.check(&at) else { continue };
+            let worst = worst_alone(&checks);
+            result.sample.push((at, worst));
+            if worst > ACCURACY {
+                poor.push(at);
+            }
+            self.observer.advance(1);
+        }
+        self.observer.end();
+        poor
+    }
+
+    fn map(
+        &self,
+        name: &str,
+        analysis: &MapAnalysis,
+        mut known: KnownMap,
+        record: &mut dyn FnMut(Stage) -> Result<()>,
+    ) -> Result<(MapResult, Option<String>)> {
+        let mut result = self.empty_map(name, analysis)?;
+        let axes = result.axes;
         let failed = |failure: Option<String>| {
             failure.map(|f| format!("Map `{name}`: points without an answer are left blank; the first: {f}"))
         };
@@ -247,23 +275,7 @@ impl Explorer<'_> {
             let failure = self.fill(&on, &mut result, &known, record)?;
             result.boundary = sweep::boundary(&on, &axes, &result.points, 1e-7, self.observer)?;
             result.method = Method::Reduced(on.family.dimension());
-            let mut places = inside.to_vec();
-            let line = &result.boundary.points;
-            places.extend((0..line.len().min(4)).map(|k| line[k * line.len() / line.len().min(4)]));
-            self.observer.begin("full-order check", Some(places.len() as u64));
-            result.sample.clear();
-            let mut poor = Vec::new();
-            for at in places {
-                // A place without an answer has nothing to measure.
-                let Ok(checks) = on.check(&at) else { continue };
-                let worst = worst_alone(&checks);
-                result.sample.push((at, worst));
-                if worst > ACCURACY {
-                    poor.push(at);
-                }
-                self.observer.advance(1);
-            }
-            self.observer.end();
+            let poor = self.check_map(&on, &mut result, &inside);
             round += 1;
             if poor.is_empty() || round == ROUNDS {
                 record(Stage::Map(&result))?;

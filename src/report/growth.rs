@@ -1,11 +1,13 @@
 //! `growth.svg`: growth rate over frequency, unstable modes marked, measured squeal as bands.
 
-use super::chart::{above, below, bold, colour, sheet, text, widened};
+use super::axes::Chart;
+use super::chart::{Area, above, below, bold, colour, sheet, text, widened};
 use super::colours::{ALARM, CALM, INK, MEASURED, MUTED};
 use super::format::{fixed, given, hertz, signed};
 use super::section::Picture;
 use super::squeal::SQUEAL_TOLERANCE;
 use crate::results::{ComplexResult, RunResults};
+use crate::stability::ComplexMode;
 use plotters::prelude::*;
 use std::error::Error;
 
@@ -43,7 +45,7 @@ fn growth_range(complex: &ComplexResult) -> std::ops::Range<f64> {
     if range.end - range.start < 1e-9 { -1.0..1.0 } else { range }
 }
 
-fn draw(area: &super::chart::Area, complex: &ComplexResult) -> Result<(), Box<dyn Error>> {
+fn draw(area: &Area, complex: &ComplexResult) -> Result<(), Box<dyn Error>> {
     let modes = &complex.modes.modes;
     let frequencies =
         modes.iter().map(|m| m.frequency_hz()).chain(complex.measured_squeal_hz.iter().map(|s| s.0));
@@ -70,6 +72,18 @@ fn draw(area: &super::chart::Area, complex: &ComplexResult) -> Result<(), Box<dy
         .x_label_formatter(&|hz| given(*hz))
         .y_label_formatter(&|sigma| given(*sigma))
         .draw()?;
+    draw_squeal(area, &mut chart, complex)?;
+    chart.draw_series([PathElement::new(
+        [(across.start, 0.0), (across.end, 0.0)],
+        colour(INK).stroke_width(2),
+    )])?;
+    draw_stable(&mut chart, modes)?;
+    draw_unstable(area, &mut chart, modes)
+}
+
+/// A band about each measured squeal frequency.
+fn draw_squeal(area: &Area, chart: &mut Chart, complex: &ComplexResult) -> Result<(), Box<dyn Error>> {
+    let (across, up) = (chart.x_range(), chart.y_range());
     let band = colour(MEASURED);
     for (k, (hz, _)) in complex.measured_squeal_hz.iter().enumerate() {
         let (left, right) = (hz * (1.0 - SQUEAL_TOLERANCE), hz * (1.0 + SQUEAL_TOLERANCE));
@@ -89,10 +103,12 @@ fn draw(area: &super::chart::Area, complex: &ComplexResult) -> Result<(), Box<dy
             local(area, x, y + drop),
         )?;
     }
-    chart.draw_series([PathElement::new(
-        [(across.start, 0.0), (across.end, 0.0)],
-        colour(INK).stroke_width(2),
-    )])?;
+    Ok(())
+}
+
+/// Modes that die away or are not accurate.
+fn draw_stable(chart: &mut Chart, modes: &[ComplexMode]) -> Result<(), Box<dyn Error>> {
+    let up = chart.y_range();
     for mode in modes.iter().filter(|m| !m.unstable()) {
         let place = (mode.frequency_hz(), mode.growth_rate());
         if !mode.accurate() {
@@ -104,6 +120,11 @@ fn draw(area: &super::chart::Area, complex: &ComplexResult) -> Result<(), Box<dy
             chart.draw_series([Circle::new(place, 4, colour(CALM).filled())])?;
         }
     }
+    Ok(())
+}
+
+/// Modes that grow, the strongest with their figures.
+fn draw_unstable(area: &Area, chart: &mut Chart, modes: &[ComplexMode]) -> Result<(), Box<dyn Error>> {
     let mut unstable: Vec<_> = modes.iter().filter(|m| m.unstable()).collect();
     unstable.sort_by(|a, b| b.growth_rate().total_cmp(&a.growth_rate()));
     let mut taken: Vec<(i32, i32)> = vec![];
@@ -136,7 +157,7 @@ fn draw(area: &super::chart::Area, complex: &ComplexResult) -> Result<(), Box<dy
 }
 
 /// A pixel of the whole sheet as a pixel of `area`.
-fn local(area: &super::chart::Area, x: i32, y: i32) -> (i32, i32) {
+fn local(area: &Area, x: i32, y: i32) -> (i32, i32) {
     let (left, top) = area.get_base_pixel();
     (x - left, y - top)
 }

@@ -1,7 +1,7 @@
 //! Results of a whole record, read back from its sink in parts.
 
+use super::channels::Shown;
 use super::history_writer::HistoryWriter;
-use super::recorder::Shown;
 use crate::error::Result;
 use crate::results::{GrowthCompared, SpectrumOf};
 use crate::signal::{self, Welch};
@@ -28,12 +28,12 @@ pub(super) struct Findings {
 impl HistoryWriter<'_, '_> {
     /// Looks through the record of `rows` rows, `step` seconds apart; peaks are named up to `top_hz`.
     pub(super) fn findings(&mut self, rows: usize, step: f64, top_hz: f64) -> Result<Findings> {
-        let mut channels = std::mem::take(&mut self.recorder.channels);
+        let mut channels = std::mem::take(&mut self.recorder.described);
         for channel in &mut channels {
             let name = channel.name.clone();
             channel.look(rows, step, |part| self.sink.recorded(&name, part))?;
         }
-        self.recorder.channels = channels;
+        self.recorder.described = channels;
         let shown = self.recorder.shown.iter();
         let spectra =
             shown.map(|shown| self.spectrum_of(shown, rows, step, top_hz)).collect::<Result<_>>()?;
@@ -41,7 +41,7 @@ impl HistoryWriter<'_, '_> {
     }
 
     pub(super) fn read(&self, channel: usize, part: Range<usize>) -> Result<Vec<f64>> {
-        self.sink.recorded(&self.recorder.channels[channel].name, part)
+        self.sink.recorded(&self.recorder.described[channel].name, part)
     }
 
     /// The spectrum of the second half of a channel, and its peaks up to `top_hz`.
@@ -66,10 +66,10 @@ impl HistoryWriter<'_, '_> {
     /// How a disturbance grew while it was small.
     fn growth(&self, rows: usize, step: f64) -> Result<Option<GrowthCompared>> {
         let Some(along) = &self.recorder.along else { return Ok(None) };
-        let penetration = self.read(self.recorder.penetration, 0..rows.min(AT_ONCE))?;
+        let penetration = self.read(self.recorder.channels.penetration, 0..rows.min(AT_ONCE))?;
         let large = |d: &f64| (d - penetration[0]).abs() > SMALL * penetration[0].abs();
         let end = penetration.iter().position(large).unwrap_or(penetration.len());
-        let [re, im] = self.recorder.amplitude.map(|channel| self.read(channel, 0..end));
+        let [re, im] = self.recorder.channels.amplitude.map(|channel| self.read(channel, 0..end));
         let found = signal::growth(&re?, &im?, step, [0.0, end as f64 * step]);
         Ok(Some(GrowthCompared { mode: along.mode, eigenvalue: along.eigenvalue, found }))
     }

@@ -52,7 +52,7 @@ impl<'a, 'k> HistoryWriter<'a, 'k> {
             rows: plan.steps + 1,
             done: self.first,
             happened: if earlier.is_some() { self.recorder.happened.iter().sum() } else { 0 },
-            channels: &self.recorder.channels,
+            channels: &self.recorder.described,
             modes: self.recorder.modal.as_ref().map_or(0, |modal| modal.rows.len()),
             pairs: &self.recorder.named,
             fields: self.snapshots.as_ref().map(|s| s.fields(plan.steps, self.first, plan.step)),
@@ -66,7 +66,7 @@ impl<'a, 'k> HistoryWriter<'a, 'k> {
 
     /// A program or a machine that is another may give another first row.
     fn begins_alike(&self) -> Result<()> {
-        for (channel, own) in self.recorder.channels.iter().zip(&self.recorder.values) {
+        for (channel, own) in self.recorder.described.iter().zip(&self.recorder.values) {
             let earlier = self.sink.recorded(&channel.name, 0..1)?;
             if earlier.iter().map(|v| v.to_bits()).ne(own.iter().map(|v| v.to_bits())) {
                 let (found, expected) =

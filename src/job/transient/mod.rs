@@ -5,6 +5,7 @@
 //! a time, so that memory does not grow with the run, and `findings`, `watched` and `modal` read them back in parts: spectra and growth, what the pictures show, what is heard.
 
 mod along;
+mod channels;
 mod findings;
 mod heard;
 mod history_writer;
@@ -27,10 +28,11 @@ use crate::case::{ModelChoice, SchemeChoice, TransientAnalysis};
 use crate::error::{Error, Result};
 use crate::linalg::SparseVector;
 use crate::progress::Observer;
-use crate::reduction::reduce;
+use crate::reduction::{Reduced, reduce};
 use crate::results::TransientResult;
 use crate::system::System;
-use crate::transient::{Method, Model, Plan, Profile, Scheme, State, go_on};
+use crate::transient::{Marched, Method, Model, Plan, Profile, Scheme, State, go_on};
+use along::Along;
 use history_writer::HistoryWriter;
 use modal::ModalMotion;
 use recorder::Recorder;
@@ -57,30 +59,13 @@ impl InTime<'_> {
         let beside = first_steps(self, wanted, &places, observer)?;
         let start = self.start(wanted, &places)?;
         let loadings = self.loadings(wanted)?;
-        let Places { mut pushes, mut probes, mut gauges, mut tracks, acoustics, .. } = places;
+        let mut places = places;
         let mut disturbed = wanted.disturbance.as_ref().map(|d| self.along(d)).transpose()?;
         let reduced = match wanted.model {
             ModelChoice::Full => None,
-            ModelChoice::Reduced => {
-                let stations = tracks.iter().flatten().flat_map(|track| track.stations.iter().flatten());
-                let stations =
-                    stations.flat_map(|point| [&point.normal, &point.tangents[0], &point.tangents[1]]);
-                let pushed = pushes.iter().map(|push| &push.direction);
-                let forces: Vec<SparseVector> = pushed.chain(stations).cloned().collect();
-                let reduced = reduce(self.system, self.steady, self.real, &forces)?;
-                pushes.iter_mut().for_each(|push| push.direction = reduced.form(&push.direction));
-                probes.iter_mut().for_each(|probe| probe.direction = reduced.form(&probe.direction));
-                for gauge in &mut gauges {
-                    gauge.stiffness = reduced.form(&gauge.stiffness);
-                    gauge.damping = reduced.form(&gauge.damping);
-                }
-                let points =
-                    tracks.iter_mut().flatten().flat_map(|track| track.stations.iter_mut().flatten());
-                points.for_each(|point| *point = reduced.point(point));
-                disturbed = disturbed.map(|along| along.reduced(&reduced));
-                Some(reduced)
-            }
+            ModelChoice::Reduced => Some(self.on_reduced(&mut places, &mut disturbed)?),
         };
+        let Places { pushes, probes, gauges, tracks, acoustics, .. } = places;
         let Start { state: origin, at_rest } = start;
         let small = reduced.as_ref().map(|reduced| reduced.steady(&origin));
         let steady = small.as_ref().unwrap_or(&origin);
@@ -100,10 +85,8 @@ impl InTime<'_> {
         if let (Some(along), Some(wanted)) = (&disturbed, &wanted.disturbance) {
             start = start.disturbed(&model, along.eigenvalue, &along.shape, wanted.amplitude / along.largest);
         }
-        let (scheme, words) = scheme(wanted.scheme);
-        let steps = places::steps(wanted.duration, wanted.time_step);
-        let method = if wanted.full_newton { Method::FullNewton } else { Method::Condensed };
-        let plan = Plan { scheme, step: wanted.time_step, steps, method, tolerance: wanted.tolerance };
+        let plan = plan(wanted);
+        let steps = plan.steps;
         let snapshots = wanted.fields_every.map(|every| Snapshots {
             every: places::steps(every, wanted.time_step),
             geometry: self.geometry,
@@ -120,14 +103,7 @@ impl InTime<'_> {
         }
         let mut history_writer = HistoryWriter::new(recorder, snapshots, sink);
         let mut marched = history_writer.begin(start, &model, &plan)?;
-        let reached =
-            go_on(&model, &mut marched, &plan, observer, &mut |marched| history_writer.take(marched));
-        let kept = match &reached {
-            // A field of the last row may be missing, and the next attempt to write would not be the first.
-            Err(Error::Io { .. }) => Ok(()),
-            _ => history_writer.flush(&marched),
-        };
-        reached.and(kept)?;
+        march_on(&mut history_writer, (&model, &plan), &mut marched, observer)?;
         let share = |count: usize| count as f64 / (steps + 1) as f64;
         let top = WATCHED * self.complex.band_hz[1];
         let found = history_writer.findings(steps + 1, plan.step, top)?;
@@ -141,14 +117,14 @@ impl InTime<'_> {
         Ok(TransientResult {
             time_step: plan.step,
             rows: steps + 1,
-            scheme: words,
+            scheme: scheme(wanted.scheme).1,
             set_valued: set_valued(self.system),
             reduced: reduced.as_ref().map(|r| [r.modes, r.basis.ncols() - r.modes]),
             reduced_check,
             shown: recorder.shown.into_iter().map(|shown| shown.channel).collect(),
             spent: recorder.spent.map(share),
             events: recorder.happened,
-            channels: recorder.channels,
+            channels: recorder.described,
             spectra: found.spectra,
             growth: found.growth,
             work: marched.work,
@@ -158,6 +134,52 @@ impl InTime<'_> {
             watched,
             sound,
         })
+    }
+
+    /// The reduced model, on which all places and the disturbed mode stand from then on.
+    fn on_reduced(&self, places: &mut Places, disturbed: &mut Option<Along>) -> Result<Reduced> {
+        let Places { pushes, probes, gauges, tracks, .. } = places;
+        let stations = tracks.iter().flatten().flat_map(|track| track.stations.iter().flatten());
+        let stations = stations.flat_map(|point| [&point.normal, &point.tangents[0], &point.tangents[1]]);
+        let pushed = pushes.iter().map(|push| &push.direction);
+        let forces: Vec<SparseVector> = pushed.chain(stations).cloned().collect();
+        let reduced = reduce(self.system, self.steady, self.real, &forces)?;
+        pushes.iter_mut().for_each(|push| push.direction = reduced.form(&push.direction));
+        probes.iter_mut().for_each(|probe| probe.direction = reduced.form(&probe.direction));
+        for gauge in gauges {
+            gauge.stiffness = reduced.form(&gauge.stiffness);
+            gauge.damping = reduced.form(&gauge.damping);
+        }
+        let points = tracks.iter_mut().flatten().flat_map(|track| track.stations.iter_mut().flatten());
+        points.for_each(|point| *point = reduced.point(point));
+        *disturbed = disturbed.take().map(|along| along.reduced(&reduced));
+        Ok(reduced)
+    }
+}
+
+/// Marches to the end; what was recorded is written, whatever comes.
+fn march_on(
+    writer: &mut HistoryWriter,
+    (model, plan): (&Model, &Plan),
+    marched: &mut Marched,
+    observer: &dyn Observer,
+) -> Result<()> {
+    let reached = go_on(model, marched, plan, observer, &mut |marched| writer.take(marched));
+    let kept = match &reached {
+        // A field of the last row may be missing, and the next attempt to write would not be the first.
+        Err(Error::Io { .. }) => Ok(()),
+        _ => writer.flush(marched),
+    };
+    reached.and(kept)
+}
+
+fn plan(wanted: &TransientAnalysis) -> Plan {
+    Plan {
+        scheme: scheme(wanted.scheme).0,
+        step: wanted.time_step,
+        steps: places::steps(wanted.duration, wanted.time_step),
+        method: if wanted.full_newton { Method::FullNewton } else { Method::Condensed },
+        tolerance: wanted.tolerance,
     }
 }
 

@@ -1,11 +1,12 @@
 //! What is recorded of every step.
 
 use super::along::Along;
+use super::channels::{Channels, Sample, Shown};
 use super::modal::ModalMotion;
 use super::places::{Gauge, Probe};
 use crate::equilibrium::SteadySliding;
 use crate::error::Result;
-use crate::linalg::SparseVector;
+use crate::linalg::c64;
 use crate::results::{Channel, TouchState};
 use crate::system::System;
 use crate::transient::{Checkpoint, Event, EventKind, Marched, Model, State, Watch};
@@ -13,30 +14,25 @@ use crate::transient::{Checkpoint, Event, EventKind, Marched, Model, State, Watc
 /// Makes a row of every step: a value for each channel. Holds the rows that are not yet written.
 pub(super) struct Recorder<'a> {
     model: &'a Model<'a>,
-    /// Directions, and where they stand in steady sliding.
-    probes: Vec<(SparseVector, f64)>,
-    /// k and c of the springs whose force is recorded.
-    gauges: Vec<[SparseVector; 2]>,
     /// The name of the pair of every contact point.
     pub(super) named: Vec<String>,
     /// The points of each pair.
     pairs: Vec<std::ops::Range<usize>>,
     /// The point that carries most at the start.
     point: usize,
-    pub(super) channels: Vec<Channel>,
+    /// Whether motion is recorded anywhere.
+    probed: bool,
+    /// How a row is made of a step.
+    pub(super) channels: Channels,
+    /// Name, unit and story of each channel.
+    pub(super) described: Vec<Channel>,
     /// The channels to show: acceleration, friction, and the force in the first load cell, those of them that there are.
     pub(super) shown: Vec<Shown>,
-    /// The channel of the penetration of the most loaded point.
-    pub(super) penetration: usize,
     pub(super) along: Option<Along>,
-    /// The channels of its amplitude, re and im.
-    pub(super) amplitude: [usize; 2],
     /// The rows at hand, by channel.
     pub(super) values: Vec<Vec<f64>>,
     /// What happened at the contact points during these rows.
     pub(super) events: Vec<Event>,
-    /// The channels that count the points that stick, slip backwards and slip forwards begin here.
-    pub(super) states: Option<usize>,
     /// Whether each contact point has touched.
     pub(super) touched: Vec<bool>,
     /// What the sound is made of, if it is asked for.
@@ -52,14 +48,8 @@ pub(super) struct Recorder<'a> {
     pub(super) spent: [usize; TouchState::ALL.len()],
 }
 
-/// A channel to show, and the peaks that were measured in its place \[Hz\].
-#[derive(Debug, Clone)]
-pub(super) struct Shown {
-    pub(super) channel: usize,
-    pub(super) measured: Vec<f64>,
-}
-
 impl<'a> Recorder<'a> {
+    /// A recorder of a run of `model` from its steady state; without a probe it looks at the point that carries most.
     pub(super) fn new(
         system: &System,
         steady: &'a SteadySliding,
@@ -78,140 +68,40 @@ impl<'a> Recorder<'a> {
             let place = "the point that carries most".into();
             probes.push(Probe { name: "contact".into(), place, direction, measured: Vec::new() });
         }
-        let mut channels = Vec::new();
-        let mut add = |name: String, unit: &'static str, about: String| {
-            channels.push(Channel::new(name, unit, about));
-            channels.len() - 1
-        };
-        let (mut shown, mut cell) = (Vec::new(), None);
-        for Probe { name, place, measured, .. } in &probes {
-            add(
-                format!("{name}_displacement"),
-                "m",
-                format!("displacement at {name} ({place}), from steady sliding"),
-            );
-            add(format!("{name}_velocity"), "m/s", format!("velocity at {name} ({place})"));
-            let channel =
-                add(format!("{name}_acceleration"), "m/s^2", format!("acceleration at {name} ({place})"));
-            if shown.is_empty() {
-                shown.push(Shown { channel, measured: measured.clone() });
-            }
-        }
-        for gauge in &gauges {
-            let about = format!("force in the spring {}", gauge.spring);
-            let channel = add(format!("{}_force", gauge.name), "N", about);
-            cell.get_or_insert(Shown { channel, measured: gauge.measured.clone() });
-        }
-        let gauges = gauges.into_iter().map(|gauge| [gauge.stiffness, gauge.damping]).collect();
+        let mut channels = Channels::new(system, steady, (&probes, gauges), point, along.is_some());
         let mut first = 0;
-        let mut pairs = Vec::new();
-        for (k, pair) in system.pairs.iter().enumerate() {
-            pairs.push(first..first + pair.points.len());
+        let pairs = system.pairs.iter().map(|pair| {
             first += pair.points.len();
-            let name = &pair.name;
-            add(format!("{name}_normal_force"), "N", format!("sum of the normal forces of {name}"));
-            let friction = add(
-                format!("{name}_friction_force"),
-                "N",
-                format!("sum of friction of {name} on the body along the sliding direction"),
-            );
-            add(format!("{name}_sliding_velocity"), "m/s", format!("velocity of the counter-body of {name}"));
-            if k == 0 {
-                shown.push(Shown { channel: friction, measured: Vec::new() });
-            }
-        }
-        shown.extend(cell);
-        let penetration =
-            add("penetration".into(), "m", "of the point that carries most in steady sliding".into());
-        add("slip_velocity".into(), "m/s", "of the same point along the sliding direction".into());
-        let states = (!points.is_empty()).then(|| {
-            let of = |words: &str| format!("contact points that {words}");
-            add("points_sticking".into(), "1", of("stick"));
-            add("points_backwards".into(), "1", of("slip against the motion of the counter-body"));
-            add("points_forwards".into(), "1", of("slip as the counter-body moves")) - 2
+            first - pair.points.len()..first
         });
-        let story = "½vᵀMv + ½uᵀKu gained since the start";
-        add("energy_stored".into(), "J", story.into());
-        for (name, about) in [
-            ("energy_drive", "spent by the drives of the counter-bodies against friction"),
-            ("energy_heat", "turned into heat by friction"),
-            ("energy_damping", "taken by structural damping (negative)"),
-            ("energy_algorithm", "added by the integrator (mostly negative)"),
-        ] {
-            add(name.into(), "J", format!("{about}, since the start"));
-        }
-        let amplitude = [("mode_re", "real"), ("mode_im", "imaginary")].map(|(name, part)| {
-            let about =
-                format!("{part} part of the amplitude of the disturbed mode, its largest translation");
-            if along.is_some() { add(name.into(), "m", about) } else { 0 }
-        });
-        let placed = |probe: Probe| {
-            let origin = probe.direction.dot(&steady.displacement);
-            (probe.direction, origin)
-        };
-        let probes = probes.into_iter().map(placed).collect();
-        let (origin, moved) = (&steady.displacement, Vec::new());
-        let values = vec![Vec::new(); channels.len()];
         Recorder {
             model,
-            probes,
-            gauges,
             named: system.points().map(|(pair, _)| pair.name.clone()).collect(),
-            pairs,
+            pairs: pairs.collect(),
             point,
+            probed: !probes.is_empty(),
+            values: vec![Vec::new(); channels.described.len()],
+            described: std::mem::take(&mut channels.described),
+            shown: std::mem::take(&mut channels.shown),
             channels,
-            shown,
-            penetration,
             along,
-            amplitude,
-            values,
             events: Vec::new(),
-            states,
             touched: vec![false; points.len()],
             modal,
             happened: Default::default(),
             watch: None,
-            origin,
-            moved,
+            origin: &steady.displacement,
+            moved: Vec::new(),
             spent: [0; TouchState::ALL.len()],
         }
     }
 
     /// Adds the row of a step.
     pub(super) fn take(&mut self, marched: &Marched) {
-        let Marched { state, work, .. } = marched;
-        let mut row = Vec::with_capacity(self.channels.len());
-        for (direction, origin) in &self.probes {
-            row.push(direction.dot(state.motion.col_as_slice(0)) - origin);
-            row.extend([1, 2].map(|k| direction.dot(state.motion.col_as_slice(k))));
-        }
-        for [stiffness, damping] in &self.gauges {
-            let [u, v] = [0, 1].map(|k| state.motion.col_as_slice(k));
-            row.push(stiffness.dot(u) + damping.dot(v));
-        }
-        for (k, points) in self.pairs.iter().enumerate() {
-            let sum = |component: usize| -> f64 {
-                points.clone().map(|p| state.contact_forces(p)[component]).sum()
-            };
-            row.extend([sum(0), sum(1), state.speeds()[k]]);
-        }
-        let slip = if self.pairs.is_empty() { 0.0 } else { state.slip_velocity(self.model, self.point)[0] };
-        let deep = if self.pairs.is_empty() { 0.0 } else { state.penetration(self.point) };
-        row.extend([deep, slip]);
-        if self.states.is_some() {
-            let [_, counts @ ..] = self.look(state);
-            row.extend(counts.map(|count| count as f64));
-        }
-        row.extend([work.kinetic + work.strain, work.drive, work.heat, work.damping]);
-        row.push(work.algorithm);
-        if let Some(along) = &self.along {
-            let (u, v) = (state.motion.col_as_slice(0), state.motion.col_as_slice(1));
-            self.moved.clear();
-            self.moved.extend(u.iter().zip(self.origin).map(|(u, origin)| u - origin));
-            let amplitude = along.filter.amplitude(&self.moved, v) * along.largest;
-            row.extend([amplitude.re, amplitude.im]);
-        }
-        self.values.iter_mut().zip(row).for_each(|(values, value)| values.push(value));
+        let state = &marched.state;
+        let (counts, amplitude) = (self.look(state), self.amplitude(state));
+        let sample = Sample { model: self.model, marched, counts, amplitude };
+        self.values.iter_mut().zip(self.channels.row(&sample)).for_each(|(all, value)| all.push(value));
         if let Some(modal) = &mut self.modal {
             modal.take(state.motion.col_as_slice(2));
         }
@@ -221,12 +111,21 @@ impl<'a> Recorder<'a> {
         self.events[earlier..].iter().for_each(|event| self.happened[event.kind as usize] += 1);
     }
 
+    /// The amplitude of the disturbed mode; zero without one.
+    fn amplitude(&mut self, state: &State) -> c64 {
+        let Some(along) = &self.along else { return c64::new(0.0, 0.0) };
+        let (u, v) = (state.motion.col_as_slice(0), state.motion.col_as_slice(1));
+        self.moved.clear();
+        self.moved.extend(u.iter().zip(self.origin).map(|(u, origin)| u - origin));
+        along.filter.amplitude(&self.moved, v) * along.largest
+    }
+
     /// The channels that are drawn over each other: velocity over displacement, friction over slip.
     pub(super) fn orbits(&self) -> Vec<[usize; 2]> {
         // The first probe comes first; the slip follows the penetration.
-        let motion = (!self.probes.is_empty()).then_some([0, 1]);
+        let motion = self.probed.then_some([0, 1]);
         let friction = self.shown.get(1).filter(|_| !self.pairs.is_empty());
-        let friction = friction.map(|friction| [self.penetration + 1, friction.channel]);
+        let friction = friction.map(|friction| [self.channels.penetration + 1, friction.channel]);
         motion.into_iter().chain(friction).collect()
     }
 

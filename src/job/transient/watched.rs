@@ -67,7 +67,7 @@ impl HistoryWriter<'_, '_> {
         };
         let curve = |[across, up]: [usize; 2]| -> Result<Curve> {
             let points = read(across)?.into_iter().zip(read(up)?).map(|(x, y)| [x, y]).collect();
-            Ok(Curve { axes: [across, up].map(|channel| self.recorder.channels[channel].heading()), points })
+            Ok(Curve { axes: [across, up].map(|channel| self.recorder.described[channel].heading()), points })
         };
         let curves = self.recorder.orbits().into_iter().map(curve).collect::<Result<_>>()?;
         Ok(Orbit { periods: [wanted as f64 * step * hz, hz], curves })
@@ -77,7 +77,7 @@ impl HistoryWriter<'_, '_> {
     fn contact(&self, rows: usize, step: f64) -> Result<ContactHistory> {
         let points = self.recorder.touched.iter().filter(|touched| **touched).count();
         let mut watch = ContactWatch::new(rows, step, points);
-        let Some(first_channel) = self.recorder.states.filter(|_| points > 0) else {
+        let Some(first_channel) = self.recorder.channels.states.filter(|_| points > 0) else {
             return Ok(watch.finish());
         };
         for first in (0..rows).step_by(AT_ONCE) {

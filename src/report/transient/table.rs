@@ -2,7 +2,8 @@
 
 use crate::report::format::{fixed, given, hertz, power, signed, significant};
 use crate::report::table::Table;
-use crate::results::TransientResult;
+use crate::results::{GrowthCompared, TransientResult};
+use crate::signal::LimitCycle;
 use std::f64::consts::TAU;
 
 /// A measured peak stands beside one that differs from it by less than this part.
@@ -33,72 +34,16 @@ pub(in crate::report) fn table(run: &TransientResult) -> Table {
             table.row(cells, false);
         }
     }
-    for of in &run.spectra {
-        let name = run.channels[of.channel].name.replace('_', " ");
-        table.notes.extend(of.beyond.map(|hz| {
-            format!(
-                "The strongest line of {name} is at {} Hz, beyond the modes of the case, where a ratio given for them damps nothing: give [cea] a wider band or the materials `rayleigh` damping.",
-                hertz(hz, 0)
-            )
-        }));
-    }
-    if let Some([modes, attached]) = run.reduced {
-        table.notes.push(format!(
+    table.notes.extend(beyond(run));
+    table.notes.extend(run.reduced.map(|[modes, attached]| {
+        format!(
             "Reduced model: {modes} real modes and {attached} shapes for the static response to contacts and forces."
-        ));
-    }
-    if let Some(growth) = &run.growth {
-        let (hz, sigma) = (growth.eigenvalue.im / TAU, growth.eigenvalue.re);
-        table.notes.push(match growth.found {
-            Some(found) => format!(
-                "Small disturbance: σ = {}/s at {} Hz, measured over {} s; the complex mode says {}/s at {} Hz.",
-                signed(found.rate, 2),
-                hertz(found.frequency_hz, 2),
-                significant(found.window[1] - found.window[0], 3),
-                signed(sigma, 2),
-                hertz(hz, 2)
-            ),
-            None => "The disturbance was too large, or the run too short, to measure how a small one grows.".into(),
-        });
-    }
-    for (channel, cycle) in &run.watched.cycles {
-        let channel = &run.channels[*channel];
-        let verdict = if cycle.steady() {
-            "steady".to_string()
-        } else {
-            format!("not steady: {} % from the first to the second half", signed(100.0 * cycle.drift, 0))
-        };
-        table.notes.push(format!(
-            "From {} s on {} swings by ± {} {} about {} (r.m.s. {}), {verdict}.",
-            significant(run.watched.window[0], 3),
-            channel.name.replace('_', " "),
-            significant(cycle.amplitude, 3),
-            channel.unit,
-            significant(cycle.mean, 3),
-            significant(cycle.rms, 3)
-        ));
-    }
-    let [open, stuck, backwards, _] = run.spent.map(|share| fixed(100.0 * share, 1));
-    table.notes.push(format!(
-        "The point that carries most was open {open} %, stuck {stuck} % and slid backwards {backwards} % of the time."
-    ));
-    let stuck = run.stuck_without_give();
-    if !stuck.is_empty() {
-        table.notes.push(format!(
-            "Assumed: friction of {} at rest is any force up to μ(0) N, so that its points stick without give; a `bristle` \
-             gives before it slips.",
-            stuck.join(", ")
-        ));
-    }
-    let work = &run.work;
-    table.notes.push(format!(
-        "Energy: drives spent {} J, friction heat {} J, structural damping took {} J, the integrator {} J; the balance of each step closes to {}.",
-        significant(work.drive, 4),
-        significant(work.heat, 4),
-        significant(-work.damping, 3),
-        significant(-work.algorithm, 3),
-        power(run.worst_residual)
-    ));
+        )
+    }));
+    table.notes.extend(run.growth.as_ref().map(disturbance));
+    table.notes.extend(run.watched.cycles.iter().map(|(channel, cycle)| swing(run, *channel, cycle)));
+    table.notes.extend(contact(run));
+    table.notes.push(energy(run));
     if run.split.0 > 0 {
         table.notes.push(format!(
             "{} steps were split, into up to {} parts: {} in all.",
@@ -106,6 +51,83 @@ pub(in crate::report) fn table(run: &TransientResult) -> Table {
         ));
     }
     table
+}
+
+/// Lines that stand above all modes of the case.
+fn beyond(run: &TransientResult) -> impl Iterator<Item = String> {
+    run.spectra.iter().filter_map(|of| {
+        let (name, hz) = (run.channels[of.channel].name.replace('_', " "), hertz(of.beyond?, 0));
+        Some(format!(
+            "The strongest line of {name} is at {hz} Hz, beyond the modes of the case, where a ratio given for them damps nothing: give [cea] a wider band or the materials `rayleigh` damping."
+        ))
+    })
+}
+
+/// How a small disturbance grows, beside the complex mode.
+fn disturbance(growth: &GrowthCompared) -> String {
+    let (hz, sigma) = (growth.eigenvalue.im / TAU, growth.eigenvalue.re);
+    match growth.found {
+        Some(found) => format!(
+            "Small disturbance: σ = {}/s at {} Hz, measured over {} s; the complex mode says {}/s at {} Hz.",
+            signed(found.rate, 2),
+            hertz(found.frequency_hz, 2),
+            significant(found.window[1] - found.window[0], 3),
+            signed(sigma, 2),
+            hertz(hz, 2)
+        ),
+        None => {
+            "The disturbance was too large, or the run too short, to measure how a small one grows.".into()
+        }
+    }
+}
+
+/// The limit cycle of a channel.
+fn swing(run: &TransientResult, channel: usize, cycle: &LimitCycle) -> String {
+    let channel = &run.channels[channel];
+    let verdict = if cycle.steady() {
+        "steady".to_string()
+    } else {
+        format!("not steady: {} % from the first to the second half", signed(100.0 * cycle.drift, 0))
+    };
+    format!(
+        "From {} s on {} swings by ± {} {} about {} (r.m.s. {}), {verdict}.",
+        significant(run.watched.window[0], 3),
+        channel.name.replace('_', " "),
+        significant(cycle.amplitude, 3),
+        channel.unit,
+        significant(cycle.mean, 3),
+        significant(cycle.rms, 3)
+    )
+}
+
+/// What the most loaded contact point did.
+fn contact(run: &TransientResult) -> Vec<String> {
+    let [open, stuck, backwards, _] = run.spent.map(|share| fixed(100.0 * share, 1));
+    let mut notes = vec![format!(
+        "The point that carries most was open {open} %, stuck {stuck} % and slid backwards {backwards} % of the time."
+    )];
+    let stuck = run.stuck_without_give();
+    if !stuck.is_empty() {
+        notes.push(format!(
+            "Assumed: friction of {} at rest is any force up to μ(0) N, so that its points stick without give; a `bristle` \
+             gives before it slips.",
+            stuck.join(", ")
+        ));
+    }
+    notes
+}
+
+/// Where the energy went.
+fn energy(run: &TransientResult) -> String {
+    let work = &run.work;
+    format!(
+        "Energy: drives spent {} J, friction heat {} J, structural damping took {} J, the integrator {} J; the balance of each step closes to {}.",
+        significant(work.drive, 4),
+        significant(work.heat, 4),
+        significant(-work.damping, 3),
+        significant(-work.algorithm, 3),
+        power(run.worst_residual)
+    )
 }
 
 /// The measured peak that is nearest to a frequency, if it is near.
