@@ -10,6 +10,7 @@ use crate::error::{Faults, Result};
 use crate::linalg::{SparseVector, c64};
 use crate::modal::RealModes;
 use crate::progress::Observer;
+use crate::reduction::Reduced;
 use crate::results::{FrfResponse, FrfResult, PlaceAndDirection, Resonance};
 use crate::stability::Harmonic;
 use rayon::prelude::*;
@@ -168,22 +169,11 @@ impl Frf<'_> {
             at: place_of(motion),
             values: frequencies.iter().zip(&lines).map(|(hz, line)| quantity.factor(*hz) * line[k]).collect(),
         });
-        let contacts = match contact {
-            FrfContact::Open => "contacts open",
-            FrfContact::Sliding => "contacts in steady sliding",
-        };
-        let way = match solution {
-            FrfSolution::Modes => {
-                let attached = reduced.basis.ncols() - reduced.modes;
-                format!("superposition of {} real modes and {attached} residuals", reduced.modes)
-            }
-            FrfSolution::Direct => "solved at full order at every frequency".into(),
-        };
         let result = FrfResult {
             name: self.name.to_string(),
             quantity,
             force: place_of(&self.force),
-            about: format!("{contacts}; {way}"),
+            about: self.about(&reduced),
             excitation: self.force.place.clone(),
             responses: responses.collect(),
             resonances,
@@ -194,6 +184,22 @@ impl Frf<'_> {
             binary: self.wanted.uff == UniversalForm::Binary,
         };
         Ok((result, beside))
+    }
+
+    /// What the contacts do, and how it is computed.
+    fn about(&self, reduced: &Reduced) -> String {
+        let contacts = match self.wanted.contact {
+            FrfContact::Open => "contacts open",
+            FrfContact::Sliding => "contacts in steady sliding",
+        };
+        let way = match self.wanted.solution {
+            FrfSolution::Modes => {
+                let attached = reduced.basis.ncols() - reduced.modes;
+                format!("superposition of {} real modes and {attached} residuals", reduced.modes)
+            }
+            FrfSolution::Direct => "solved at full order at every frequency".into(),
+        };
+        format!("{contacts}; {way}")
     }
 
     /// The real modes in the band, and how much of them shows.

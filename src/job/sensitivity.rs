@@ -104,25 +104,30 @@ impl Analysed<'_> {
             self.advise(wanted, &sensitivity, &mut results);
         }
         if wanted.verify {
-            let all = results.iter().map(|r| r.best.len() as u64).sum();
-            observer.begin("mounting what helps", Some(all));
-            for result in &mut results {
-                let mode = &self.modes.modes[result.mode];
-                for mounted in &mut result.best {
-                    let change = |share: f64| -> Result<c64> {
-                        let thing = Mounted { amount: share * mounted.amount, ..mounted.clone() };
-                        Ok(verify::mounted(self.prepared, mode, &thing)? - mode.eigenvalue)
-                    };
-                    let (done, little) = (change(1.0)?, change(SMALL)? / SMALL);
-                    mounted.done = Some(done);
-                    mounted.slope_error =
-                        Some((little - mounted.predicted).norm() / mounted.predicted.norm());
-                    observer.advance(1);
-                }
-            }
-            observer.end();
+            self.verify(&mut results, observer)?;
         }
         Ok(SensitivityResult { modes: results, left_out })
+    }
+
+    /// Mounts the best things really, and small parts of them.
+    fn verify(&self, results: &mut [ModeSensitivity], observer: &dyn Observer) -> Result<()> {
+        let all = results.iter().map(|r| r.best.len() as u64).sum();
+        observer.begin("mounting what helps", Some(all));
+        for result in results {
+            let mode = &self.modes.modes[result.mode];
+            for mounted in &mut result.best {
+                let change = |share: f64| -> Result<c64> {
+                    let thing = Mounted { amount: share * mounted.amount, ..mounted.clone() };
+                    Ok(verify::mounted(self.prepared, mode, &thing)? - mode.eigenvalue)
+                };
+                let (done, little) = (change(1.0)?, change(SMALL)? / SMALL);
+                mounted.done = Some(done);
+                mounted.slope_error = Some((little - mounted.predicted).norm() / mounted.predicted.norm());
+                observer.advance(1);
+            }
+        }
+        observer.end();
+        Ok(())
     }
 
     /// Indices of the modes nearest to `frequencies`, or of the unstable ones, or of the one nearest to instability;

@@ -1,7 +1,7 @@
 //! Computes the quantities of a validation case and sets them beside their references.
 
 use super::in_time;
-use super::kirchhoff::{PlateMode, ThinPlate, circular_modes};
+use super::kirchhoff::{Edge, PlateMode, ThinPlate, circular_modes};
 use super::reference::{Check, Kind, Measure, Quantity, Reference};
 use super::resumed;
 use super::run::Run;
@@ -166,25 +166,9 @@ fn compute(runs: &mut Runs, Quantity { kind, set, .. }: &Quantity, name: &str) -
             };
             Ok((8.0 * (at(1.0)? - at(-1.0)?) - (at(2.0)? - at(-2.0)?)) / (12.0 * step))
         }
-        Kind::Exported => {
-            let folder = super::scratch::scratch()?;
-            export(&runs.case_with(set)?, folder.path())?;
-            let again = read_case(&folder.path().join("case.toml"))?;
-            let results =
-                analyse(&Prepared::new(&again)?, Selection::Only("cea"), &mut |_| Ok(()), runs.observer)?;
-            Ok(change(&eigenvalues(runs.with(set)?), &eigenvalues(&results)))
-        }
+        Kind::Exported => exported(runs, set),
         Kind::Resumed => resumed::differences(&runs.case_with(set)?, runs.observer),
-        Kind::Faults(file) => {
-            let run = |case: &Case| {
-                analyse(&Prepared::new(case)?, Selection::Listed, &mut |_| Ok(()), runs.observer).map(|_| ())
-            };
-            match read_case(&runs.case.folder.join(file)).and_then(|case| run(&case)) {
-                Ok(()) => Ok(0.0),
-                Err(Error::Input(faults)) => Ok(faults.0.len() as f64),
-                Err(other) => Err(other),
-            }
-        }
+        Kind::Faults(file) => count_faults(runs, file),
         Kind::Onset { parameter, between, above } => onset(runs, set, parameter, *between, *above),
         Kind::LargestGrowth { parameter, values } => {
             let mut largest = f64::NEG_INFINITY;
@@ -239,26 +223,52 @@ fn compute(runs: &mut Runs, Quantity { kind, set, .. }: &Quantity, name: &str) -
             found.ok_or_else(|| missing(&span.channel))
         }
         Kind::RoundPlate { modes, part, outer, inner } => {
-            let case = runs.case;
-            let shell = case.shell.get(part).ok_or_else(|| missing(part))?;
-            let below = case.modes.get(modes).and_then(|m| m.below).ok_or_else(|| missing(modes))?;
-            let results = runs.with(set)?;
-            let computed = results
-                .all::<NamedModes>()
-                .into_iter()
-                .find(|m| &m.name == modes)
-                .ok_or_else(|| missing(modes))?;
-            let material = &case.material[&shell.material];
-            let plate = ThinPlate {
-                youngs_modulus: material.youngs_modulus,
-                poissons_ratio: material.poissons_ratio,
-                density: material.density,
-                thickness: shell.thickness,
-            };
-            let exact = circular_modes(&plate, outer.0, outer.1, *inner, below);
+            let exact =
+                plate_modes(runs.case, (modes, part), (*outer, *inner)).ok_or_else(|| missing(part))?;
+            let sets = runs.with(set)?.all::<NamedModes>();
+            let computed = sets.into_iter().find(|set| &set.name == modes).ok_or_else(|| missing(modes))?;
             Ok(largest_error(computed, &exact))
         }
     }
+}
+
+/// The largest change of an eigenvalue when the case is exported as matrices and read again.
+fn exported(runs: &mut Runs, set: &[(String, f64)]) -> Result<f64> {
+    let folder = super::scratch::scratch()?;
+    export(&runs.case_with(set)?, folder.path())?;
+    let again = read_case(&folder.path().join("case.toml"))?;
+    let results = analyse(&Prepared::new(&again)?, Selection::Only("cea"), &mut |_| Ok(()), runs.observer)?;
+    Ok(change(&eigenvalues(runs.with(set)?), &eigenvalues(&results)))
+}
+
+/// How many faults the case in `file` has.
+fn count_faults(runs: &Runs, file: &str) -> Result<f64> {
+    let run = |case: &Case| {
+        analyse(&Prepared::new(case)?, Selection::Listed, &mut |_| Ok(()), runs.observer).map(|_| ())
+    };
+    match read_case(&runs.case.folder.join(file)).and_then(|case| run(&case)) {
+        Ok(()) => Ok(0.0),
+        Err(Error::Input(faults)) => Ok(faults.0.len() as f64),
+        Err(other) => Err(other),
+    }
+}
+
+/// The exact modes of a round plate below the highest frequency of a set of real modes.
+fn plate_modes(
+    case: &Case,
+    (modes, part): (&str, &str),
+    (outer, inner): ((f64, Edge), Option<(f64, Edge)>),
+) -> Option<Vec<PlateMode>> {
+    let shell = case.shell.get(part)?;
+    let below = case.modes.get(modes)?.below?;
+    let material = &case.material[&shell.material];
+    let plate = ThinPlate {
+        youngs_modulus: material.youngs_modulus,
+        poissons_ratio: material.poissons_ratio,
+        density: material.density,
+        thickness: shell.thickness,
+    };
+    Some(circular_modes(&plate, outer.0, outer.1, inner, below))
 }
 
 /// The largest relative error of the computed modes that are no motions of a rigid body; infinite when their number is

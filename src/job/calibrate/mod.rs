@@ -73,22 +73,7 @@ impl<'a> Calibrate<'a> {
     pub fn run(&self, observer: &dyn Observer) -> Result<CalibrationResult> {
         let case = self.prepared.case;
         let model = CaseModel::new(self.prepared, &self.coordinates, &self.measured)?;
-        let data = |(set, facts): (usize, &Facts)| {
-            let datum = move |fact: &Fact| Datum {
-                set,
-                frequency_hz: fact.frequency_hz,
-                deviation: fact.deviation,
-                shape: fact.shape.clone(),
-            };
-            facts.modes.iter().map(datum).collect::<Vec<_>>()
-        };
-        let problem = Problem {
-            unknowns: self.coordinates.iter().map(Coordinate::unknown).collect(),
-            data: self.measured.modes.iter().enumerate().flat_map(data).collect(),
-            level_sets: model.level_sets(),
-            level_modes: model.level_modes(),
-            curves: self.curves(),
-        };
+        let problem = self.problem(&model);
         let options = Options {
             reach: self.wanted.mode_reach,
             leave_one_out: self.wanted.leave_one_out,
@@ -98,35 +83,7 @@ impl<'a> Calibrate<'a> {
         let found = calibration::calibrate(&model, &problem, model.start(), &options, observer)?;
         let best = found.best();
         let values = model.values(&best.fit.x);
-        let known = &found.knowledge;
-        let both = |j: usize, ends: [f64; 2]| ends.map(|x| self.coordinates[j].value(x));
-        let number = |(j, (name, c)): (usize, (&String, &Coordinate))| -> Result<CalibratedNumber> {
-            let parameter = c.parameter;
-            let scalar = case.parameter(&parameter.path[0])?;
-            Ok(CalibratedNumber {
-                name: name.clone(),
-                paths: parameter.path.clone(),
-                unit: scalar.unit.to_string(),
-                between: parameter.between,
-                expected: parameter.expectation(),
-                deviation: parameter.deviation,
-                log: parameter.log,
-                before: scalar.value,
-                after: values[j],
-                deviation_after: known.deviations[j] * c.rate(values[j]),
-                interval: both(j, known.intervals[j]),
-                scaled_interval: known.scaled_intervals.as_ref().map(|all| both(j, all[j])),
-                at_bound: problem.unknowns[j].bounds.contains(&best.fit.x[j]),
-            })
-        };
-        let numbers = self
-            .wanted
-            .parameter
-            .keys()
-            .zip(&self.coordinates)
-            .enumerate()
-            .map(number)
-            .collect::<Result<Vec<_>>>()?;
+        let numbers = self.numbers(&problem, &found, &values)?;
         let names = model.level_names();
         let growth = model.growth(&best.fit.x)?;
         let datum = |(i, datum): (usize, &Datum)| {
@@ -171,6 +128,58 @@ impl<'a> Calibrate<'a> {
 }
 
 impl Calibrate<'_> {
+    /// Unknowns and what was measured.
+    fn problem(&self, model: &CaseModel) -> Problem {
+        let data = |(set, facts): (usize, &Facts)| {
+            let datum = move |fact: &Fact| Datum {
+                set,
+                frequency_hz: fact.frequency_hz,
+                deviation: fact.deviation,
+                shape: fact.shape.clone(),
+            };
+            facts.modes.iter().map(datum).collect::<Vec<_>>()
+        };
+        Problem {
+            unknowns: self.coordinates.iter().map(Coordinate::unknown).collect(),
+            data: self.measured.modes.iter().enumerate().flat_map(data).collect(),
+            level_sets: model.level_sets(),
+            level_modes: model.level_modes(),
+            curves: self.curves(),
+        }
+    }
+
+    /// The numbers that were found, one an unknown.
+    fn numbers(
+        &self,
+        problem: &Problem,
+        found: &Calibration,
+        values: &[f64],
+    ) -> Result<Vec<CalibratedNumber>> {
+        let best = found.best();
+        let known = &found.knowledge;
+        let both = |j: usize, ends: [f64; 2]| ends.map(|x| self.coordinates[j].value(x));
+        let number = |(j, (name, c)): (usize, (&String, &Coordinate))| -> Result<CalibratedNumber> {
+            let parameter = c.parameter;
+            let scalar = self.prepared.case.parameter(&parameter.path[0])?;
+            Ok(CalibratedNumber {
+                name: name.clone(),
+                paths: parameter.path.clone(),
+                unit: scalar.unit.to_string(),
+                between: parameter.between,
+                expected: parameter.expectation(),
+                deviation: parameter.deviation,
+                log: parameter.log,
+                before: scalar.value,
+                after: values[j],
+                deviation_after: known.deviations[j] * c.rate(values[j]),
+                interval: both(j, known.intervals[j]),
+                scaled_interval: known.scaled_intervals.as_ref().map(|all| both(j, all[j])),
+                at_bound: problem.unknowns[j].bounds.contains(&best.fit.x[j]),
+            })
+        };
+        self.wanted.parameter.keys().zip(&self.coordinates).enumerate().map(number).collect()
+    }
+
     fn responses(&self) -> impl Iterator<Item = &Response> {
         self.measured.responses.iter().flat_map(|measured| &measured.responses)
     }

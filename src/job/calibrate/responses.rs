@@ -296,6 +296,11 @@ pub fn lines(
             slopes: small.iter().zip(changes).map(slope).collect(),
         })
     };
+    beside_measured(measured, &at)
+}
+
+/// Lines at the measured frequencies, each frequency computed once by `at`.
+fn beside_measured(measured: &Measured, at: &(dyn Fn(f64) -> Result<At> + Sync)) -> Result<Vec<Line>> {
     let mut all: Vec<f64> =
         measured.responses.iter().flat_map(|r| r.frequencies_hz.iter().copied()).collect();
     all.sort_by(f64::total_cmp);
