@@ -24,11 +24,8 @@ mod missed;
 mod model;
 mod modes;
 mod motion;
-mod near;
-mod nearest;
 mod place;
 mod prepared;
-mod receptance;
 mod regions;
 #[cfg(test)]
 mod samples;

@@ -22,6 +22,8 @@ mod general;
 mod harmonic;
 mod interface;
 mod modal_damping;
+mod near;
+mod nearest;
 mod operator;
 mod projected;
 mod reduced;
@@ -40,6 +42,8 @@ pub use family::{Family, FamilyCheck, FamilyModes, Frame, SlidingState};
 pub use filter::{ModalFilter, modal_filter};
 pub use full_order::{Confirmation, confirm};
 pub use harmonic::Harmonic;
+pub use near::near_mode;
+pub use nearest::{Nearest, band_around, band_expected, keep_nearest};
 pub use sensitivity::{Domain, Rate, Sensitivity};
 pub use structural::Structural;
 
