@@ -6,6 +6,7 @@
 //! body on its counter-body, [`Stations`] are the points of a pair whose counter-body travels.
 
 mod bristle;
+mod coefficient;
 mod coulomb;
 pub mod friction;
 mod ground;
@@ -19,9 +20,8 @@ mod table;
 mod travel;
 
 pub use bristle::Bristle;
-pub use friction::{
-    Coefficient, Coulomb, Exponential, FrictionCoefficient, FrictionCurve, Hyperbolic, Stribeck,
-};
+pub use coefficient::{Coefficient, FrictionCoefficient};
+pub use friction::{Coulomb, Exponential, FrictionCurve, Hyperbolic, Stribeck};
 pub use ground::{GroundFault, ground_points};
 pub use law::{FrictionSense, SlidingLaw};
 pub use normal::{NormalForce, NormalLaw};

@@ -137,7 +137,11 @@ mod tests {
         assert!((volume - 2.5e-3).abs() < 1e-17);
         // Centroid of a rectangle of 2 m² at x = 1 and a triangle of half a square metre at x = 7/3.
         let exact = (2.0 + 0.5 * 7.0 / 3.0) / 2.5;
-        assert!((surface.middle[0] - exact).abs() < 1e-14 && surface.middle[2] == 1.0, "{:?}", surface.middle);
+        assert!(
+            (surface.middle[0] - exact).abs() < 1e-14 && surface.middle[2] == 1.0,
+            "{:?}",
+            surface.middle
+        );
         assert!(surface.touches([2.0, 0.5, 1.1]) && !surface.touches([2.0, 0.5, 3.0]));
         assert_eq!((surface.side([0.0, 0.0, 2.0]), surface.side([0.0, 0.0, 0.0])), (1.0, -1.0));
         nodes[4][2] = 1.1;

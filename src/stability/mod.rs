@@ -9,6 +9,7 @@
 
 mod advice;
 mod analysis;
+mod band;
 mod basis;
 mod block;
 mod budget;
@@ -36,7 +37,8 @@ mod structural;
 mod tests;
 
 pub use advice::PointRates;
-pub use analysis::{Band, complex_modes};
+pub use analysis::complex_modes;
+pub use band::Band;
 pub use certificate::{Certificate, CloseCall, SLOWEST_GROWTH, certified_modes};
 pub use family::{Family, FamilyCheck, FamilyModes, Frame, SlidingState};
 pub use filter::{ModalFilter, modal_filter};
