@@ -22,7 +22,7 @@ const MAY_USE: [(&str, &[&str]); 30] = [
     // Analyses: take a system, know no mesh and no law.
     ("equilibrium", &["error", "progress", "linalg", "system"]),
     ("modal", &["error", "progress", "linalg", "system"]),
-    ("reduction", &["error", "linalg", "system", "equilibrium", "modal"]),
+    ("reduction", &["error", "progress", "linalg", "system", "equilibrium", "modal"]),
     ("stability", &["error", "progress", "numbers", "linalg", "system", "equilibrium", "modal"]),
     ("sweep", &["error", "progress", "linalg", "stability"]),
     ("transient", &["error", "progress", "linalg", "system", "equilibrium"]),

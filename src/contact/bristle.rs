@@ -1,6 +1,6 @@
 //! Friction that sticks: elastic bristles that bend before they slip, with return mapping.
 
-use super::friction::FrictionCoefficient;
+use super::coefficient::FrictionCoefficient;
 use super::normal::NormalLaw;
 use super::slip::Slip;
 use crate::system::{ContactMotion, SlipAnswer, SlipStep};

@@ -1,6 +1,6 @@
 //! Friction that is set-valued at rest: true sticking, without a parameter.
 
-use super::friction::FrictionCoefficient;
+use super::coefficient::FrictionCoefficient;
 use super::normal::NormalLaw;
 use super::slip::Slip;
 use crate::system::{ContactMotion, SlipAnswer, SlipStep};

@@ -1,8 +1,8 @@
 //! The sliding contact: a normal law and a friction coefficient make a [`ContactLaw`].
 
 use super::bristle::Bristle;
+use super::coefficient::FrictionCoefficient;
 use super::coulomb;
-use super::friction::FrictionCoefficient;
 use super::normal::NormalLaw;
 use crate::schema::choices;
 use crate::system::{ContactForces, ContactLaw, ContactMotion, ContactTangent, SlipAnswer, SlipStep};

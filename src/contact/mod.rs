@@ -2,23 +2,30 @@
 //!
 //! A [`SlidingLaw`] is a pure function (penetration, slip velocity) → (N, F₁, F₂) with its Jacobian;
 //! [`pair_surfaces`] builds the contact points of a pair from the meshes of its bodies. Together with a closing
-//! load they make a [`crate::system::ContactPair`].
+//! load they make a [`crate::system::ContactPair`]. [`ground_points`] are those of nodes on rigid ground, [`place`] sets a
+//! body on its counter-body, [`Stations`] are the points of a pair whose counter-body travels.
 
 mod bristle;
+mod coefficient;
 mod coulomb;
 pub mod friction;
+mod ground;
 pub mod law;
 pub mod normal;
 pub mod pairing;
+mod placement;
 mod projection;
 mod slip;
 mod table;
+mod travel;
 
 pub use bristle::Bristle;
-pub use friction::{
-    Coefficient, Coulomb, Exponential, FrictionCoefficient, FrictionCurve, Hyperbolic, Stribeck,
-};
+pub use coefficient::{Coefficient, FrictionCoefficient};
+pub use friction::{Coulomb, Exponential, FrictionCurve, Hyperbolic, Stribeck};
+pub use ground::{GroundFault, ground_points};
 pub use law::{FrictionSense, SlidingLaw};
 pub use normal::{NormalForce, NormalLaw};
 pub use pairing::{ContactPatch, ContactSide, Reduce, Surfaces, pair_surfaces};
+pub use placement::{OffCounter, Placement, place};
 pub use table::Table;
+pub use travel::{Stations, mean_edge, travelled};

@@ -1,6 +1,6 @@
 //! The speed of slip from the force that a point would need to stick.
 
-use super::friction::{Coefficient, FrictionCoefficient};
+use super::coefficient::{Coefficient, FrictionCoefficient};
 
 /// The equation for the speed of slip v ≥ 0: κ Δt v + μ(w(v)) N = |**F***|.
 pub(super) struct Slip<'a> {

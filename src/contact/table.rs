@@ -1,6 +1,6 @@
 //! A friction coefficient from measured values μ(v, p).
 
-use super::friction::{Coefficient, FrictionCoefficient};
+use super::coefficient::{Coefficient, FrictionCoefficient};
 use crate::error::{Error, Fault, Faults, Result};
 
 /// μ(v, p) through given values: monotone cubic in the speed (Fritsch & Carlson, SIAM J. Numer. Anal. 17 (1980)

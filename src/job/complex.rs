@@ -3,7 +3,6 @@
 
 use super::clock::Clock;
 use super::modes::{identify, labels, modal_damping};
-use super::nearest::{band_around, band_expected, keep_nearest};
 use super::prepared::Prepared;
 use crate::case::CeaAnalysis;
 use crate::equilibrium::{self, SteadySliding};
@@ -11,7 +10,8 @@ use crate::error::Result;
 use crate::modal::{self, ModesWanted, RealModes};
 use crate::progress::Observer;
 use crate::results::ComplexResult;
-use crate::stability::{self, Band, Certificate, ComplexModes, Structural};
+use crate::stability::{self, Band, Certificate, ComplexModes, Nearest, Structural};
+use crate::stability::{band_around, band_expected, keep_nearest};
 use crate::system::{Structure, System};
 use std::borrow::Cow;
 use std::f64::consts::TAU;
@@ -50,8 +50,9 @@ pub fn complex_result<'a>(
     let mut system = Cow::Borrowed(&prepared.system);
     let left_vectors = left_vectors || cea.left_vectors;
     let mut problem = Problem { prepared, cea, left_vectors, system: &mut system, state, clock, observer };
-    let found = match cea.nearest {
-        Some(target) => problem.nearest(target, &preloaded)?,
+    let nearest = cea.nearest.zip(cea.count).map(|(hz, count)| Nearest { hz, count, within: cea.band });
+    let found = match nearest {
+        Some(asked) => problem.nearest(&asked, &preloaded)?,
         None => {
             let basis = match basis {
                 Some(basis) => basis,
@@ -134,11 +135,11 @@ impl Problem<'_, '_> {
 
     /// The complex modes nearest to a frequency: the factors that count the modes below it find the real ones, those tell
     /// the band, and all three serve the complex ones.
-    fn nearest(&mut self, target: f64, structure: &Structure) -> Result<Found> {
+    fn nearest(&mut self, asked: &Nearest, structure: &Structure) -> Result<Found> {
         let (mut expected, shifted) =
-            self.clock.time("counting modes", || band_expected(structure, self.cea))?;
+            self.clock.time("counting modes", || band_expected(structure, asked))?;
         let mut start = Some(shifted);
-        let mut least = [target; 2];
+        let mut least = [asked.hz; 2];
         loop {
             let below = self.cea.basis_below.min(SPANNED * expected[1]);
             let inside = |shift: f64| shift < 0.9 * (TAU * below).powi(2);
@@ -148,7 +149,7 @@ impl Problem<'_, '_> {
                     None => modal::compute(structure, ModesWanted::BelowHz(below), self.observer),
                 }
             })?;
-            let around = band_around(&basis, self.cea);
+            let around = band_around(&basis, asked);
             let band = [around[0].min(least[0]), around[1].max(least[1])];
             if below < self.cea.basis_below.min(SPANNED_AT_LEAST * band[1]) {
                 (expected, start) = (band, Some(shifted));
@@ -159,7 +160,7 @@ impl Problem<'_, '_> {
             let shifted = Some(shifted).filter(|_| serve);
             let (mut modes, certificate) =
                 self.modes(Structural { real: &basis, shifted: shifted.as_ref() }, band)?;
-            match keep_nearest(&mut modes, self.cea, band) {
+            match keep_nearest(&mut modes, asked, band) {
                 Some(wider) => (expected, least, start) = (wider, wider, shifted),
                 None => return Ok(Found { band, basis, modes, certificate }),
             }

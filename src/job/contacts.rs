@@ -3,7 +3,9 @@
 use super::imported::given_points;
 use super::regions::Regions;
 use crate::case::{Case, Contact, Pressing, StiffnessPer};
-use crate::contact::{Bristle, ContactPatch, ContactSide, NormalLaw, SlidingLaw, Surfaces, pair_surfaces};
+use crate::contact::{
+    Bristle, ContactPatch, ContactSide, GroundFault, NormalLaw, SlidingLaw, Surfaces, pair_surfaces,
+};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::mesh::Element;
 use crate::structure::{DofMap, Model, ShellPart};
@@ -113,7 +115,7 @@ fn law(name: &str, contact: &Contact) -> Result<SlidingLaw> {
     })
 }
 
-/// Points of a region against rigid ground: g along `into`, t₁ along the sliding direction, t₂ across both.
+/// Points of a region against rigid ground.
 fn ground_points(
     name: &str,
     contact: &Contact,
@@ -121,28 +123,17 @@ fn ground_points(
     dofs: &DofMap,
 ) -> Result<Vec<ContactPoint>> {
     let nodes = regions.nodes(&contact.body, &format!("`contact.{name}.body`"))?;
-    let into = Vector3::from(contact.into.unwrap_or_default());
-    let place = |key: &str| format!("`contact.{name}.{key}`");
-    let fault =
-        |key: &str, found: &str, expected: &str| Error::input(Fault::new(place(key), found, expected));
-    let g = into.try_normalize(0.0).ok_or_else(|| fault("into", "no direction", "a direction"))?;
-    let sliding = Vector3::from(contact.sliding_direction);
-    let t1 = (sliding - sliding.dot(&g) * g).try_normalize(1e-6 * sliding.norm()).ok_or_else(|| {
-        fault("sliding_direction", "the direction into the ground", "a direction along the ground")
-    })?;
-    let t2 = g.cross(&t1);
-    let direction =
-        |node: usize, d: &Vector3<f64>| dofs.reduce(&[(node, 0, d.x), (node, 1, d.y), (node, 2, d.z)]);
-    Ok(nodes
-        .iter()
-        .map(|node| ContactPoint {
-            position: regions.mesh.nodes[*node],
-            gap: 0.0,
-            weight: 1.0 / nodes.len() as f64,
-            normal: direction(*node, &g),
-            tangents: [direction(*node, &t1), direction(*node, &t2)],
+    let directions = [contact.into.unwrap_or_default(), contact.sliding_direction];
+    crate::contact::ground_points(&nodes, &regions.mesh.nodes, directions, &|terms| dofs.reduce(terms))
+        .map_err(|fault| {
+            let (key, found, expected) = match fault {
+                GroundFault::NoDirection => ("into", "no direction", "a direction"),
+                GroundFault::SlidesIntoTheGround => {
+                    ("sliding_direction", "the direction into the ground", "a direction along the ground")
+                }
+            };
+            Error::input(Fault::new(format!("`contact.{name}.{key}`"), found, expected))
         })
-        .collect())
 }
 
 /// How the bodies of a pair stand to each other.
@@ -220,7 +211,9 @@ pub fn surface_points(
             )));
         }
     };
-    let moved = (stand.travel != 0.0).then(|| travelled(&model.nodes, counter, contact, stand.travel));
+    let moved = (stand.travel != 0.0).then(|| {
+        crate::contact::travelled(&model.nodes, &counter.faces, contact.sliding_direction, stand.travel)
+    });
     let surfaces = Surfaces {
         name,
         nodes: moved.as_ref().unwrap_or(&model.nodes),
@@ -235,17 +228,6 @@ pub fn surface_points(
     let touch = stand.touch.unwrap_or_else(|| points.iter().map(|p| p.gap).fold(f64::INFINITY, f64::min));
     points.iter_mut().for_each(|p| p.gap -= touch);
     Ok(points)
-}
-
-/// The nodes with those of the counter-body moved along the sliding direction.
-fn travelled(nodes: &[[f64; 3]], counter: &ShellPart, contact: &Contact, travel: f64) -> Vec<[f64; 3]> {
-    let way = Vector3::from(contact.sliding_direction).normalize() * travel;
-    let mut nodes = nodes.to_vec();
-    let mut own: Vec<usize> = counter.faces.iter().flat_map(Element::nodes).copied().collect();
-    own.sort_unstable();
-    own.dedup();
-    own.into_iter().for_each(|node| nodes[node] = (Vector3::from(nodes[node]) + way).into());
-    nodes
 }
 
 /// The shell that has all of `nodes`.

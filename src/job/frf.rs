@@ -1,16 +1,15 @@
 //! Frequency responses of a case.
 
-use super::modes::{identify, labels};
+use super::modes::{identify, labels, modal_damping};
 use super::motion::{Motion, motion};
 use super::prepared::Prepared;
-use super::receptance::Receptance;
 use crate::case::{FrfAnalysis, FrfContact, FrfSolution, UniversalForm};
 use crate::equilibrium::SteadySliding;
 use crate::error::{Faults, Result};
-use crate::linalg::{SparseVector, c64};
+use crate::linalg::{SparseMatrix, SparseVector, c64};
 use crate::modal::RealModes;
 use crate::progress::Observer;
-use crate::reduction::Reduced;
+use crate::reduction::{Receptance, Reduced};
 use crate::results::{FrfResponse, FrfResult, PlaceAndDirection, Resonance};
 use crate::stability::Harmonic;
 use rayon::prelude::*;
@@ -113,8 +112,10 @@ impl Frf<'_> {
         let forms: Vec<SparseVector> =
             std::iter::once(&self.force.direction).chain(&places).cloned().collect();
         let steady = steady.filter(|_| contact == FrfContact::Sliding);
-        let Receptance { system, steady, real, reduced } =
-            Receptance::new(prepared, steady, band[1], &forms, observer)?;
+        let Receptance { system, steady, real, reduced } = {
+            let damping = |mass: &SparseMatrix, real: &RealModes| modal_damping(mass, real, prepared.case);
+            Receptance::new(&prepared.system, steady, (band[1], &forms), &damping, observer)?
+        };
         let small = reduced.steady(&steady);
         let few = Harmonic::new(&reduced.system, &small)?;
         let full = Harmonic::new(&system, &steady)?;

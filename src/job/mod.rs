@@ -28,11 +28,8 @@ mod missed;
 mod model;
 mod modes;
 mod motion;
-mod near;
-mod nearest;
 mod place;
 mod prepared;
-mod receptance;
 mod regions;
 mod run;
 #[cfg(feature = "cli")]

@@ -1,7 +1,6 @@
 //! Real modes of one part or of the whole, with names and effective masses.
 
 use super::links::in_terms_of_the_case;
-use super::near::near;
 use super::prepared::Prepared;
 use crate::case::{Case, ContactState, ModesAnalysis};
 use crate::error::{Error, Fault, Faults, Result};
@@ -141,14 +140,14 @@ fn effective_masses(modes: &RealModes, assembled: &Assembled) -> Vec<[f64; 3]> {
     (0..modes.len()).map(|k| [0, 1, 2].map(|axis| effective[(k, axis)])).collect()
 }
 
-/// ζ of each mode by all damping of the case. A ratio that the case gives for one mode goes to the nearest within 10 %.
+/// ζ of each mode of a part or of the whole by all damping of the case. Ratios that the case gives are of modes of the whole: a
+/// part need not have one near each.
 fn damping_ratios(case: &Case, modes: &RealModes, damping: &Damping) -> Vec<f64> {
-    let mut ratios = vec![case.damping.modal_ratio; modes.len()];
-    for [frequency, ratio] in &case.damping.modal_ratios {
-        let found = near((0..modes.len()).map(|k| modes.frequency_hz(k)), *frequency);
-        found.into_iter().for_each(|k| ratios[k] = *ratio);
-    }
-    modal::damping_ratios(modes, ratios, damping)
+    modal::damping_ratios(modes, given_ratios(case, modes).ratios, damping)
+}
+
+fn given_ratios(case: &Case, modes: &RealModes) -> modal::GivenRatios {
+    modal::given_ratios(modes, case.damping.modal_ratio, &case.damping.modal_ratios)
 }
 
 /// The part with the largest share of the kinetic energy of each mode.
@@ -242,18 +241,13 @@ pub fn modal_damping(mass: &SparseMatrix, modes: &RealModes, case: &Case) -> Res
 /// # Errors
 /// A ratio that names a frequency without a mode near it.
 pub fn modal_ratios(case: &Case, modes: &RealModes) -> Result<Vec<f64>> {
-    let damping = &case.damping;
-    let mut ratios = vec![damping.modal_ratio; modes.len()];
-    let mut faults = Faults::new();
-    for [frequency, ratio] in &damping.modal_ratios {
-        match near((0..modes.len()).map(|k| modes.frequency_hz(k)), *frequency) {
-            Some(k) => ratios[k] = *ratio,
-            None => faults.push(Fault::new(
-                "`damping.modal_ratios`",
-                format!("{frequency} Hz, with no mode of the rig within 10 %"),
-                "frequencies near modes of the rig",
-            )),
-        }
-    }
-    faults.into_result(ratios)
+    let modal::GivenRatios { ratios, without_mode } = given_ratios(case, modes);
+    let fault = |hz: &f64| {
+        Fault::new(
+            "`damping.modal_ratios`",
+            format!("{hz} Hz, with no mode of the rig within 10 %"),
+            "frequencies near modes of the rig",
+        )
+    };
+    Faults(without_mode.iter().map(fault).collect()).into_result(ratios)
 }

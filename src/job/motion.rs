@@ -54,20 +54,13 @@ pub fn motion(
         nodes.iter().map(|n| prepared.model.nodes[*n][axis]).sum::<f64>() / nodes.len().max(1) as f64
     };
     let at = [0, 1, 2].map(mean);
-    let direction = spread(prepared, &nodes, along);
+    let direction = prepared.assembled.dofs.mean_motion(&nodes, along);
     if direction.indices().is_empty() {
         let fault =
             Fault::new(format!("`{key}`"), "a place that is held in this direction", "one that can move");
         return Err(Error::input(fault));
     }
     Ok(Motion { place, at, along, nodes, direction })
-}
-
-/// The mean over `nodes` of their motion along a vector.
-pub fn spread(prepared: &Prepared<'_>, nodes: &[usize], vector: [f64; 3]) -> SparseVector {
-    let share = vector.map(|v| v / nodes.len().max(1) as f64);
-    let of = |node: &usize| share.iter().enumerate().map(|(axis, v)| (*node, axis, *v)).collect::<Vec<_>>();
-    prepared.assembled.dofs.reduce(&nodes.iter().flat_map(of).collect::<Vec<_>>())
 }
 
 /// What is expected of a place that lies farther from the box round all nodes than a tenth of the box's diagonal.

@@ -1,7 +1,6 @@
 //! What the unstable modes of a case answer to: its scalars, and small things mounted on its nodes.
 
 use super::modes::modal_ratios;
-use super::near::near_mode;
 use super::prepared::Prepared;
 use super::scalars::{Kind, Scalar, chosen, same_structure};
 use super::verify;
@@ -12,7 +11,7 @@ use crate::linalg::{SparseVector, c64};
 use crate::modal::RealModes;
 use crate::progress::Observer;
 use crate::results::{AdviceField, ModeSensitivity, Mounted, ParameterRate, SensitivityResult};
-use crate::stability::{ComplexMode, ComplexModes, Domain, PointRates, Rate, Sensitivity};
+use crate::stability::{ComplexMode, ComplexModes, Domain, PointRates, Rate, Sensitivity, near_mode};
 use crate::system::System;
 use rayon::prelude::*;
 use std::collections::BTreeMap;

@@ -4,12 +4,10 @@ use super::contacts::{Stand, surface_points};
 use super::prepared::Prepared;
 use super::transient::profile;
 use crate::case::{Contact, TransientAnalysis};
+use crate::contact::{Stations, mean_edge};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::system::ContactPoint;
 use crate::transient::Track;
-
-/// Stations on each element of the counter-body.
-const STATIONS: f64 = 2.0;
 
 /// The track of each pair of the case; none where the points stay.
 ///
@@ -34,7 +32,7 @@ pub fn tracks(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Vec
     faults.into_result(tracks)
 }
 
-/// Stations from the least to the greatest travel \[m\]; one of them is where the pair stands.
+/// The track of a pair from the least to the greatest travel \[m\].
 fn track(
     prepared: &Prepared<'_>,
     name: &str,
@@ -42,9 +40,6 @@ fn track(
     points: &[ContactPoint],
     [low, high]: [f64; 2],
 ) -> Result<Track> {
-    let spacing = element_size(prepared, &contact.counter) / STATIONS;
-    let first = (low / spacing).floor() as i64;
-    let last = ((high / spacing).ceil() as i64).max(first + 1);
     let model = (&prepared.regions, &prepared.model, &*prepared.assembled.dofs);
     // The same gaps as where the pair stands, whatever was taken off them there.
     let touch = match contact.placement {
@@ -55,33 +50,18 @@ fn track(
         }
         None => 0.0,
     };
-    let stations = (first..=last).map(|k| {
-        let stand = Stand { travel: k as f64 * spacing, touch: Some(touch) };
+    let at = |travel: f64| {
+        let stand = Stand { travel, touch: Some(touch) };
         surface_points(name, contact, model, &stand).ok().filter(|there| there.len() == points.len())
-    });
-    let stations: Option<Vec<_>> = stations.collect();
-    let stations = stations.ok_or_else(|| {
+    };
+    let counter = prepared.model.shells.iter().filter(|s| s.name == contact.counter);
+    let edge = mean_edge(&prepared.model.nodes, counter.flat_map(|s| &s.faces));
+    let Stations { first, spacing, points } = Stations::new([low, high], edge, at).ok_or_else(|| {
         let found = format!("a way from {low:.4} m to {high:.4} m, which leaves `{}`", contact.counter);
         Error::input(
             Fault::new(format!("`transient.slide.{name}`"), found, "a way that stays on the counter-body")
                 .with_help("Shorten the stroke or the run, or set `travels = false` to keep the contact in its place"),
         )
     })?;
-    Ok(Track { first: first as f64 * spacing, spacing, stations })
-}
-
-/// The mean length of the edges of a plate's elements \[m\].
-fn element_size(prepared: &Prepared<'_>, shell: &str) -> f64 {
-    let nodes = &prepared.model.nodes;
-    let faces = prepared.model.shells.iter().filter(|s| s.name == shell).flat_map(|s| &s.faces);
-    let (mut sum, mut count) = (0.0, 0);
-    for face in faces {
-        let corners = face.nodes();
-        for (k, a) in corners.iter().enumerate() {
-            let b = corners[(k + 1) % corners.len()];
-            sum += (0..3).map(|i| (nodes[*a][i] - nodes[b][i]).powi(2)).sum::<f64>().sqrt();
-            count += 1;
-        }
-    }
-    sum / f64::from(count.max(1))
+    Ok(Track { first, spacing, stations: points })
 }

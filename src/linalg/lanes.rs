@@ -1,6 +1,6 @@
 //! Columns laid side by side, row by row, as sparse products want them; and back.
 
-use super::sparse::Scalar;
+use super::scalar::Scalar;
 use pulp::{Arch, Simd, WithSimd};
 
 /// Columns that are laid together, and rows and columns that change places in registers when they are spread.

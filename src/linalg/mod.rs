@@ -32,6 +32,7 @@ pub mod orthogonal;
 pub mod proportional;
 pub mod random;
 pub mod row_sparse;
+mod scalar;
 pub mod shared_pattern;
 pub mod sparse;
 pub mod toar;

@@ -1,12 +1,13 @@
 //! The sparse matrix of the whole program, its products and norms, and sparse vectors for contact directions.
 
+pub use super::scalar::Scalar;
+
 use super::lanes::{Aligned, Row, lay, spread};
 use super::workspace::with_workspace;
 use faer::sparse::{SparseColMat, SymbolicSparseColMat, Triplet};
 use faer::{Mat, MatMut, MatRef};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
-use std::ops::{AddAssign, Mul};
 
 /// A row or column of a sparse matrix, or the place of one of its entries: half as long as a machine word, as products are bound
 /// by reading them.
@@ -118,18 +119,6 @@ pub fn dot(x: &[f64], y: &[f64]) -> f64 {
     }
     let rest: f64 = x_rest.iter().zip(y_rest).map(|(x, y)| x * y).sum();
     sums.iter().sum::<f64>() + rest
-}
-
-/// A number that a real sparse matrix can multiply: `f64` or `c64`.
-pub trait Scalar: Copy + Default + Send + Sync + AddAssign + Mul<f64, Output = Self> + 'static {
-    /// 0.
-    const ZERO: Self;
-}
-impl Scalar for f64 {
-    const ZERO: Self = 0.0;
-}
-impl Scalar for super::c64 {
-    const ZERO: Self = super::c64::new(0.0, 0.0);
 }
 
 /// Rows that one task works on; fixed, so that the split does not depend on the number of threads.

@@ -2,6 +2,7 @@
 //!
 //! Faults make an analysis wrong or impossible; warnings say that a result may be poor.
 
+use super::connected::lowest_connected;
 use super::quality::{dot, face_shape, minus, norm};
 use super::{Element, Mesh, Region};
 use crate::error::{Fault, Faults};
@@ -306,22 +307,9 @@ fn check_pieces(mesh: &Mesh, region: &Region, warnings: &mut Vec<Fault>) {
 
 /// The number of pieces of a region that share no node.
 pub(super) fn count_pieces(mesh: &Mesh, region: &Region) -> usize {
-    let mut parent: Vec<usize> = (0..mesh.nodes.len()).collect();
-    fn root(parent: &mut [usize], mut i: usize) -> usize {
-        while parent[i] != i {
-            parent[i] = parent[parent[i]];
-            i = parent[i];
-        }
-        i
-    }
-    for e in &region.elements {
-        let n = mesh.elements[*e].nodes();
-        for other in &n[1..] {
-            let (a, b) = (root(&mut parent, n[0]), root(&mut parent, *other));
-            parent[a.max(b)] = a.min(b);
-        }
-    }
-    mesh.region_nodes(region).into_iter().filter(|n| parent[*n] == *n).count()
+    let elements = region.elements.iter().map(|e| mesh.elements[*e].nodes());
+    let lowest = lowest_connected(mesh.nodes.len(), elements);
+    mesh.region_nodes(region).into_iter().filter(|n| lowest[*n] == *n).count()
 }
 
 /// The corners of the bounding box; `None` for a mesh without nodes.

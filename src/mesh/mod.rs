@@ -20,6 +20,7 @@
 //! ```
 
 pub mod check;
+mod connected;
 pub mod generate;
 pub mod gmsh;
 pub mod info;
@@ -27,6 +28,7 @@ pub mod quality;
 mod write;
 
 pub use check::{Diagnosis, diagnose};
+pub use connected::lowest_connected;
 pub use gmsh::read;
 pub use info::Info;
 pub use write::{to_msh, write};

@@ -3,6 +3,7 @@
 //! * [`compute`]: the modes up to a frequency, with the count that proves that none is missing.
 //! * [`Disc`]: a plate that is a disc, whose modes have names; [`DiscPoints`]: the names, from the transverse displacement.
 //! * [`modal_damping`]: C = M Φ diag(2ζω) Φᵀ M; [`damping_ratios`]: ζ of every mode by all damping.
+//! * [`near`]: the mode that a frequency means; [`given_ratios`]: damping ratios that are given by frequency.
 //! * [`levels`]: which of them are the two of a double mode.
 //! * [`effective_mass`]: how much of the mass a mode moves along a direction.
 
@@ -12,6 +13,7 @@ mod disc;
 mod effective_mass;
 mod levels;
 mod naming;
+mod near;
 #[cfg(test)]
 pub(crate) mod samples;
 
@@ -21,6 +23,7 @@ pub use disc::Disc;
 pub use effective_mass::{EffectiveMass, effective_mass};
 pub use levels::levels;
 pub use naming::DiscPoints;
+pub use near::{GivenRatios, given_ratios, near};
 
 use faer::Mat;
 

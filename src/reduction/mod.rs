@@ -7,6 +7,10 @@
 //! takes it like the large one. Its static compliance at the contact is that of the large one; steady sliding is the
 //! same.
 
+mod receptance;
+
+pub use receptance::{DampingOfModes, Receptance};
+
 use crate::equilibrium::{SteadySliding, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::dense::symmetric_eigen;

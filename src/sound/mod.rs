@@ -22,6 +22,7 @@ mod cross;
 mod plate;
 mod radiation;
 mod receiver;
+mod surface;
 mod wav;
 mod weighting;
 
@@ -29,6 +30,7 @@ pub use cross::CrossSpectra;
 pub use plate::Plate;
 pub use radiation::Radiation;
 pub use receiver::Receiver;
+pub use surface::Surface;
 pub use wav::wav;
 pub use weighting::{a_weighting, power_level, pressure_level};
 

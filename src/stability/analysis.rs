@@ -1,5 +1,6 @@
 //! The analysis: project, solve, measure on the full order, enrich, repeat.
 
+use super::band::{Band, in_band};
 use super::basis::Basis;
 use super::block::Block;
 use super::finish::finished;
@@ -34,24 +35,6 @@ const ALONE: f64 = 1e-6;
 const UNMOVED: f64 = 1e-10;
 /// A condition number of λ above this is told.
 const ILL_CONDITIONED: f64 = 1e6;
-
-/// Which complex modes are asked for, and what of them.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Band {
-    /// Lowest and highest frequency \[Hz\].
-    pub hz: [f64; 2],
-    /// A frequency \[Hz\] and how many modes are asked for, those whose λ is nearest to iω; `None` for all in the band.
-    pub nearest: Option<(f64, usize)>,
-    /// Whether the left vectors are kept, which take as much memory as the right ones.
-    pub left_vectors: bool,
-}
-
-/// All modes, with left vectors.
-impl From<[f64; 2]> for Band {
-    fn from(hz: [f64; 2]) -> Self {
-        Band { hz, nearest: None, left_vectors: true }
-    }
-}
 
 /// The complex eigenvalues λ = σ + iω \[1/s\] with ω/2π in `band_hz` and their modes: see [`complex_modes`].
 ///
@@ -402,13 +385,6 @@ fn settled(before: &[Found], all: &[SmallPair], lambda: c64) -> Option<usize> {
     let alone = all.iter().filter(|pair| apart(pair.lambda) <= ALONE).count() == 1;
     let j = own.next().filter(|j| alone && own.next().is_none() && before[*j].exact)?;
     (apart(before[j].mode.eigenvalue) <= UNMOVED).then_some(j)
-}
-
-/// Whether λ is one to give: one of each conjugate pair, its frequency in the band.
-pub(super) fn in_band(z: c64, band: [f64; 2]) -> bool {
-    let oscillates = z.im > 1e-9 * z.norm();
-    let real = z.im.abs() <= 1e-9 * z.norm();
-    (oscillates && z.im >= band[0] && z.im <= band[1]) || (real && band[0] == 0.0 && z.norm() <= band[1])
 }
 
 #[cfg(test)]

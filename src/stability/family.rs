@@ -1,6 +1,7 @@
 //! One structure, many sliding states: everything large is done once, a state costs a small dense problem.
 
-use super::analysis::{in_band, shifted_factor};
+use super::analysis::shifted_factor;
+use super::band::in_band;
 use super::basis::Basis;
 use super::block::Block;
 use super::damper::{Between, Damper};

@@ -6,7 +6,7 @@
 //! left vectors come from Krylov spaces of their own, so that their eigenvalues confirm each other, and the two-sided
 //! Rayleigh quotient λ − ψᴴQ(λ)φ / ψᴴQ′(λ)φ has an error quadratic in those of the vectors.
 
-use super::analysis::{Band, in_band};
+use super::band::{Band, in_band};
 use super::block::Block;
 use super::budget::growth_budget;
 use super::finish::shares;

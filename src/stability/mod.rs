@@ -9,6 +9,7 @@
 
 mod advice;
 mod analysis;
+mod band;
 mod basis;
 mod block;
 mod budget;
@@ -22,6 +23,8 @@ mod general;
 mod harmonic;
 mod interface;
 mod modal_damping;
+mod near;
+mod nearest;
 mod operator;
 mod projected;
 mod reduced;
@@ -34,12 +37,15 @@ mod structural;
 mod tests;
 
 pub use advice::PointRates;
-pub use analysis::{Band, complex_eigenvalues, complex_modes};
+pub use analysis::{complex_eigenvalues, complex_modes};
+pub use band::Band;
 pub use certificate::{Certificate, CloseCall, SLOWEST_GROWTH, certified_modes};
 pub use family::{Family, FamilyCheck, FamilyModes, Frame, SlidingState};
 pub use filter::{ModalFilter, modal_filter};
 pub use full_order::{Confirmation, confirm};
 pub use harmonic::Harmonic;
+pub use near::near_mode;
+pub use nearest::{Nearest, band_around, band_expected, keep_nearest};
 pub use sensitivity::{Domain, Rate, Sensitivity};
 pub use structural::Structural;
 

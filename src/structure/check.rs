@@ -2,7 +2,8 @@
 
 use super::dofs::DofMap;
 use super::elements::{Beam, FlatShell, split_face, spring_direction};
-use super::model::{Material, Model};
+use super::material::Material;
+use super::model::Model;
 use crate::error::{Fault, Faults, Result};
 use crate::mesh::Element;
 use crate::numbers::components;

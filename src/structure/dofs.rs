@@ -80,6 +80,14 @@ impl DofMap {
         }))
     }
 
+    /// The mean over `nodes` of their translations along a vector, as a linear form of the free degrees of freedom; a force
+    /// that is that vector, spread evenly over the nodes, is the same form.
+    pub fn mean_motion(&self, nodes: &[usize], vector: [f64; 3]) -> SparseVector {
+        let share = vector.map(|v| v / nodes.len().max(1) as f64);
+        let of = |node: &usize| [0, 1, 2].map(|axis| (*node, axis, share[axis]));
+        self.reduce(&nodes.iter().flat_map(of).collect::<Vec<_>>())
+    }
+
     /// u = T q at every node.
     pub fn expand(&self, q: &[f64]) -> Vec<[f64; 6]> {
         (0..self.n_nodes())

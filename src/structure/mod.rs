@@ -12,19 +12,22 @@ mod dofs;
 pub mod elements;
 mod free;
 mod imported;
+mod material;
 mod model;
 mod numbering;
 mod pieces;
 #[cfg(test)]
 mod samples;
 mod scatter;
+mod section;
+mod users;
 mod warnings;
 
 pub use assembly::{Assembled, GeometricStiffness, assemble};
 pub use check::check;
 pub use dofs::{DofMap, FreeDof};
 pub use free::{FreePart, free_parts};
-pub use model::{
-    BarPart, Material, Model, PointMass, RayleighDamping, RigidLink, Section, ShellPart, Spring, Support,
-};
+pub use material::{Material, RayleighDamping};
+pub use model::{BarPart, Model, PointMass, RigidLink, ShellPart, Spring, Support};
+pub use section::Section;
 pub use warnings::{ThicknessError, thickness_error, thickness_errors};

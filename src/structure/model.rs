@@ -1,10 +1,9 @@
 //! What a structure is made of, before any matrix: plain data that the case fills in.
 
 use super::elements::{FlatShell, split_face};
+use super::material::Material;
+use super::section::Section;
 use crate::mesh::Element;
-use crate::schema::units::{AREA, AREA_MOMENT, DENSITY, NUMBER, PRESSURE, RATE, TIME};
-use crate::schema::{Invalidates, declare, key};
-use std::ops::Bound;
 
 /// A structure: nodes and all that hangs on them. Degrees of freedom are (ux, uy, uz, rx, ry, rz) at every node.
 #[derive(Debug, Clone, Default)]
@@ -23,37 +22,6 @@ pub struct Model {
     pub links: Vec<RigidLink>,
     /// Held degrees of freedom.
     pub supports: Vec<Support>,
-}
-
-declare! {
-    /// Isotropic linear elastic material.
-    #[derive(Copy)]
-    pub struct Material {
-        /// E \[Pa\].
-        pub youngs_modulus: f64 = key::quantity(PRESSURE).positive(),
-        /// ν.
-        pub poissons_ratio: f64 = key::quantity(NUMBER)
-            .within(Bound::Excluded(-1.0), Bound::Excluded(0.5))
-            .expecting("a number such as 0.3"),
-        /// ρ \[kg/m³\].
-        pub density: f64 = key::quantity(DENSITY).positive(),
-        /// η of K(1 + iη); zero for none.
-        pub loss_factor: f64 =
-            key::quantity(NUMBER).non_negative().or(0.0).invalidates(Invalidates::Damping),
-        /// C = α M + β K of the parts made of it.
-        pub rayleigh: RayleighDamping = key::table().invalidates(Invalidates::Damping),
-    }
-}
-
-declare! {
-    /// C = α M + β K.
-    #[derive(Copy)]
-    pub struct RayleighDamping {
-        /// α \[1/s\].
-        pub alpha: f64 = key::quantity(RATE).non_negative().or(0.0),
-        /// β \[s\].
-        pub beta: f64 = key::quantity(TIME).non_negative().or(0.0),
-    }
 }
 
 /// A plate of constant thickness.
@@ -100,34 +68,6 @@ pub struct BarPart {
     pub section: Section,
     /// A vector in the plane of the section's first axis; any that is not along the bar.
     pub orientation: [f64; 3],
-}
-
-declare! {
-    /// Section of a bar.
-    #[derive(Copy)]
-    pub struct Section {
-        /// A \[m²\].
-        pub area: f64 = key::quantity(AREA).positive(),
-        /// Second moment about the section's first axis \[m⁴\].
-        pub inertia_1: f64 = key::quantity(AREA_MOMENT).positive(),
-        /// Second moment about the section's second axis \[m⁴\].
-        pub inertia_2: f64 = key::quantity(AREA_MOMENT).positive(),
-        /// Torsion constant \[m⁴\].
-        pub torsion: f64 = key::quantity(AREA_MOMENT).positive(),
-    }
-}
-
-impl Section {
-    /// A round bar of diameter `d` \[m\].
-    pub fn round(d: f64) -> Self {
-        let inertia = std::f64::consts::PI * d.powi(4) / 64.0;
-        Section {
-            area: std::f64::consts::PI * d * d / 4.0,
-            inertia_1: inertia,
-            inertia_2: inertia,
-            torsion: 2.0 * inertia,
-        }
-    }
 }
 
 /// A mass at a node.

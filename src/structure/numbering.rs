@@ -1,7 +1,7 @@
 //! In which order nodes get their degrees of freedom: neighbours next to each other, so that products with the matrices meet
 //! what they read in the processor's cache, however the mesh was numbered.
 
-use super::scatter::users;
+use super::users::users;
 
 /// The nodes 0 … `count` − 1, each once, in waves that go from one end of what hangs together to the other (Cuthill & McKee,
 /// Proc. 24th National Conference ACM (1969) 157). `pieces` are the nodes that are coupled with each other.

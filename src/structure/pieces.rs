@@ -1,7 +1,8 @@
 //! Everything of a model that gives matrices, one after the other in a fixed order.
 
 use super::elements::{Beam, FlatShell, mass_diagonal, split_face, spring_direction};
-use super::model::{BarPart, Model, PointMass, RayleighDamping, ShellPart, Spring};
+use super::material::RayleighDamping;
+use super::model::{BarPart, Model, PointMass, ShellPart, Spring};
 use nalgebra::{SMatrix, SVector};
 
 /// One contributor to the matrices.

@@ -12,7 +12,8 @@
 //! three-dimensional elasticity: 0.177 (kh)² for ν = 0.3. Edges make it differ from mode to mode: it is an estimate,
 //! not a correction.
 
-use super::model::{Material, Model};
+use super::material::Material;
+use super::model::Model;
 
 /// A plate of the model and by how much its frequencies are expected to be too high.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,8 +1,8 @@
 //! Critical values: where a branch becomes unstable or stable, located between two values of the sweep.
 
 use super::assign::difference;
+use super::branch::{Branch, Sample};
 use super::root::{Bracket, narrow};
-use super::track::{Branch, Sample};
 use super::{Axis, Modes, Problem, ROUND_OFF, unstable};
 use crate::error::Result;
 use crate::linalg::c64;

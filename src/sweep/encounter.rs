@@ -1,7 +1,7 @@
 //! Encounters: where two branches come nearest to each other.
 
 use super::assign::assign;
-use super::track::{Branch, Sample};
+use super::branch::{Branch, Sample};
 use super::{Axis, Modes, Problem};
 use crate::error::Result;
 use rayon::prelude::*;

@@ -8,6 +8,7 @@
 
 mod assign;
 mod boundary;
+mod branch;
 mod critical;
 mod encounter;
 mod map;
@@ -17,10 +18,11 @@ mod tests;
 mod track;
 
 pub use boundary::{Boundary, boundary};
+pub use branch::Branch;
 pub use critical::{Critical, CriticalKind};
 pub use encounter::{Encounter, EncounterKind};
 pub use map::{MapPoint, map};
-pub use track::{Branch, Sweep, sweep};
+pub use track::{Sweep, sweep};
 
 use crate::error::Result;
 use crate::linalg::c64;

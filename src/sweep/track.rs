@@ -1,11 +1,11 @@
 //! Branches: every mode followed along one parameter.
 
 use super::assign::{Link, assign};
+use super::branch::{Branch, Sample};
 use super::critical::{Critical, critical_values};
 use super::encounter::{Encounter, encounters};
-use super::{Axis, Modes, Problem};
+use super::{Axis, Problem};
 use crate::error::Result;
-use crate::linalg::c64;
 use crate::progress::Observer;
 use rayon::prelude::*;
 
@@ -26,37 +26,6 @@ pub struct Sweep {
     pub critical: Vec<Critical>,
     /// Where two branches come near each other.
     pub encounters: Vec<Encounter>,
-}
-
-/// One mode followed along the parameter.
-#[derive(Debug, Clone)]
-pub struct Branch {
-    /// Index of its first value in [`Sweep::values`].
-    pub first: usize,
-    /// λ at that value and those after it.
-    pub eigenvalues: Vec<c64>,
-    /// The least MAC of its shapes at two neighbouring values; 1 for a single value.
-    pub lowest_mac: f64,
-    /// Its place among the modes of each of its values.
-    pub(crate) places: Vec<usize>,
-}
-
-impl Branch {
-    /// λ at value `k` of [`Sweep::values`], where the branch exists.
-    pub fn at(&self, k: usize) -> Option<c64> {
-        k.checked_sub(self.first).and_then(|k| self.eigenvalues.get(k)).copied()
-    }
-
-    /// The place of the branch among the modes at value `k`.
-    pub(super) fn place(&self, k: usize) -> Option<usize> {
-        k.checked_sub(self.first).and_then(|k| self.places.get(k)).copied()
-    }
-}
-
-/// The modes at one value.
-pub(super) struct Sample {
-    pub(super) value: f64,
-    pub(super) modes: Modes,
 }
 
 /// Follows every mode of `problem` along `axis`; critical values are located to `tolerance`, relative to the value.

@@ -4,8 +4,8 @@ use super::interface::{Interface, parts};
 use super::model::Model;
 use super::reaction::{Reaction, Since, resistance};
 use super::scheme::Weights;
+use super::solver::{ITERATIONS, ROUND_OFF, Stuck, UNMATCHED};
 use super::state::State;
-use super::stepper::{ITERATIONS, ROUND_OFF, Stuck, UNMATCHED};
 use super::tangent::Tangent;
 use faer::Mat;
 
@@ -150,7 +150,13 @@ impl Contact {
             rate[i] = velocity[i] + self.rate * x;
         }
         let (duration, force, resistance) = (self.step, &self.force, &self.resistance);
-        self.reaction.evaluate(model, [q, rate], to, Some(Since { from, duration, force, resistance }));
+        let (travel, bristles) = (&from.interface.travel, &from.bristles);
+        self.reaction.evaluate(
+            model,
+            [q, rate],
+            to.moment(),
+            Some(Since { travel, bristles, duration, force, resistance }),
+        );
         let terms = self.force.iter().zip(&self.reaction.force);
         self.rho.iter_mut().zip(terms).for_each(|(rho, (r, answer))| *rho = r - answer);
     }

@@ -5,8 +5,8 @@ use super::effective::Effective;
 use super::interface::{Interface, parts};
 use super::model::Model;
 use super::scheme::Weights;
+use super::solver::{Solver, Stuck};
 use super::state::State;
-use super::stepper::{Solver, Stuck};
 use crate::error::Result;
 use faer::Mat;
 

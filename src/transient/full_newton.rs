@@ -4,8 +4,8 @@ use super::along::moved_most;
 use super::model::Model;
 use super::reaction::{Reaction, Since, resistance};
 use super::scheme::Weights;
+use super::solver::{ITERATIONS, ROUND_OFF, Solver, Stuck, UNMATCHED};
 use super::state::State;
-use super::stepper::{ITERATIONS, ROUND_OFF, Solver, Stuck, UNMATCHED};
 use crate::linalg::multivector::{expand, gram};
 use crate::linalg::sparse::{entry, multiply_vector};
 use crate::linalg::{SparseMatrix, SparseVector};
@@ -58,7 +58,13 @@ impl<'a> FullNewton<'a> {
         let q: Vec<f64> = along.iter().zip(&at[0]).map(|(x, p)| p + x).collect();
         let rate: Vec<f64> = along.iter().zip(&at[1]).map(|(x, v)| v + self.weights.rate * x).collect();
         let duration = self.weights.step;
-        self.reaction.evaluate(model, [&q, &rate], to, Some(Since { from, duration, force, resistance }));
+        let (travel, bristles) = (&from.interface.travel, &from.bristles);
+        self.reaction.evaluate(
+            model,
+            [&q, &rate],
+            to.moment(),
+            Some(Since { travel, bristles, duration, force, resistance }),
+        );
         let mut rho = multiply_vector(&self.linear, delta);
         rho.iter_mut().zip(h).for_each(|(rho, h)| *rho -= h);
         to.interface.add_reactions(model, self.weights.share(), force, &mut rho);

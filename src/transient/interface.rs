@@ -24,8 +24,43 @@ impl Interface {
             closeness: vec![0.0; model.points.len()],
             travel: vec![0.0; model.velocities.len()],
         };
-        model.locate(0.0, &mut at);
+        at.locate(model, 0.0);
         at
+    }
+
+    /// Where the contacts act at a time \[s\].
+    pub(super) fn locate(&mut self, model: &Model<'_>, time: f64) {
+        let travelled =
+            model.velocities.iter().zip(&model.profiles).map(|(v, profile)| v * profile.integral(time));
+        self.travel.iter_mut().zip(travelled).for_each(|(at, travel)| *at = travel);
+        // The first column of the pair, and the first of its points.
+        let (mut column, mut first) = (0, 0);
+        for (pair, track) in model.tracks.iter().enumerate() {
+            let count = model.points[first..].iter().take_while(|point| point.pair == pair).count();
+            let shares = track.map(|track| track.shares(self.travel[pair]));
+            let approach = model.loadings[pair].as_ref().map(|loading| loading.approach(time));
+            for p in 0..count {
+                let point = &model.points[first + p];
+                let mut gap = point.gap;
+                if let (Some(track), Some(shares)) = (track, &shares) {
+                    gap = shares.iter().map(|(station, share)| share * track.stations[*station][p].gap).sum();
+                }
+                self.closeness[first + p] = approach.unwrap_or(point.approach) - gap;
+                for c in 0..3 {
+                    self.mixes[3 * (first + p) + c] = match &shares {
+                        Some(shares) => {
+                            shares.map(|(station, share)| (column + 3 * (station * count + p) + c, share))
+                        }
+                        None => alone(column + 3 * p + c),
+                    };
+                }
+            }
+            first += count;
+            column += 3 * count * track.map_or(1, |track| track.stations.len());
+        }
+        for (k, mix) in self.mixes[3 * first..].iter_mut().enumerate() {
+            *mix = alone(column + k);
+        }
     }
 
     /// Dᵀx.
@@ -51,6 +86,11 @@ impl Interface {
             .flat_map(|(column, share)| model.columns[column].iter().map(move |(i, v)| (i, share * v)));
         SparseVector::from_entries(entries)
     }
+}
+
+/// One column as it is.
+fn alone(column: usize) -> [(usize, f64); 4] {
+    [(column, 1.0), (column, 0.0), (column, 0.0), (column, 0.0)]
 }
 
 /// The columns of a mix that have a share.

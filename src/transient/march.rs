@@ -3,8 +3,9 @@
 use super::ledger::Work;
 use super::model::Model;
 use super::scheme::Scheme;
+use super::solver::Stuck;
 use super::state::State;
-use super::stepper::{Method, Stepper, Stuck};
+use super::stepper::{Method, Stepper};
 use crate::error::{Error, Result};
 use crate::progress::Observer;
 

@@ -22,6 +22,7 @@ mod products;
 mod reaction;
 mod rows;
 mod scheme;
+mod solver;
 mod state;
 mod stepper;
 mod tangent;

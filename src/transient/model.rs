@@ -1,7 +1,6 @@
 //! What time integration needs of a system.
 
 use super::drive::{Loading, Profile, Push};
-use super::interface::Interface;
 use super::products::Products;
 use super::scheme::Weights;
 use super::track::Track;
@@ -163,41 +162,6 @@ impl<'a> Model<'a> {
         3 * self.points.len() + self.coupling.map_or(0, |[k, _]| k.nrows())
     }
 
-    /// Where the contacts act at a time \[s\].
-    pub(super) fn locate(&self, time: f64, at: &mut Interface) {
-        let travelled =
-            self.velocities.iter().zip(&self.profiles).map(|(v, profile)| v * profile.integral(time));
-        at.travel.iter_mut().zip(travelled).for_each(|(at, travel)| *at = travel);
-        // The first column of the pair, and the first of its points.
-        let (mut column, mut first) = (0, 0);
-        for (pair, track) in self.tracks.iter().enumerate() {
-            let count = self.points[first..].iter().take_while(|point| point.pair == pair).count();
-            let shares = track.map(|track| track.shares(at.travel[pair]));
-            let approach = self.loadings[pair].as_ref().map(|loading| loading.approach(time));
-            for p in 0..count {
-                let point = &self.points[first + p];
-                let mut gap = point.gap;
-                if let (Some(track), Some(shares)) = (track, &shares) {
-                    gap = shares.iter().map(|(station, share)| share * track.stations[*station][p].gap).sum();
-                }
-                at.closeness[first + p] = approach.unwrap_or(point.approach) - gap;
-                for c in 0..3 {
-                    at.mixes[3 * (first + p) + c] = match &shares {
-                        Some(shares) => {
-                            shares.map(|(station, share)| (column + 3 * (station * count + p) + c, share))
-                        }
-                        None => alone(column + 3 * p + c),
-                    };
-                }
-            }
-            first += count;
-            column += 3 * count * track.map_or(1, |track| track.stations.len());
-        }
-        for (k, mix) in at.mixes[3 * first..].iter_mut().enumerate() {
-            *mix = alone(column + k);
-        }
-    }
-
     /// V of each pair at a time \[m/s\].
     pub fn speeds(&self, time: f64) -> impl Iterator<Item = f64> + '_ {
         self.velocities.iter().zip(&self.profiles).map(move |(v, profile)| v * profile.factor(time))
@@ -215,11 +179,6 @@ impl<'a> Model<'a> {
         terms.extend(self.damping.viscous.as_deref().map(|viscous| (c, viscous)));
         add_scaled(&terms)
     }
-}
-
-/// One column as it is.
-fn alone(column: usize) -> [(usize, f64); 4] {
-    [(column, 1.0), (column, 0.0), (column, 0.0), (column, 0.0)]
 }
 
 /// Loss factors are defined for harmonic motion only.

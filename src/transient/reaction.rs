@@ -1,7 +1,7 @@
 //! The forces along the directions D, as functions of the motion along them.
 
+use super::interface::Interface;
 use super::model::Model;
-use super::state::State;
 use crate::equilibrium::ContactBlock;
 use crate::system::{ContactMotion, ContactTangent, SlipAnswer, SlipStep};
 use faer::Mat;
@@ -33,11 +33,24 @@ pub(super) struct Bristles {
 /// regular where the friction of several points at rest is not unique.
 const HELD: f64 = 1.0 - 1e-8;
 
+/// What reactions depend on besides the motion along the directions.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Moment<'a> {
+    /// Where the contacts act.
+    pub(super) interface: &'a Interface,
+    /// V of each pair \[m/s\].
+    pub(super) speeds: &'a [f64],
+    /// Dᵀu, Dᵀv, Dᵀa of the motion at the beginning of the step that ends here, r × 3.
+    pub(super) before: &'a Mat<f64>,
+}
+
 /// The step that a reaction ends.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Since<'a> {
-    /// Where it began.
-    pub(super) from: &'a State,
+    /// ∫V dt of each pair where it began \[m\].
+    pub(super) travel: &'a [f64],
+    /// What each point remembered there.
+    pub(super) bristles: &'a [Bristles],
     /// Δt \[s\].
     pub(super) duration: f64,
     /// The iterate of r \[N\].
@@ -81,7 +94,7 @@ impl Reaction {
         &mut self,
         model: &Model<'_>,
         [q, rate]: [&[f64]; 2],
-        to: &State,
+        to: Moment<'_>,
         since: Option<Since<'_>>,
     ) {
         for (p, point) in model.points.iter().enumerate() {
@@ -92,11 +105,11 @@ impl Reaction {
                 slip_velocity: [to.speeds[point.pair] - rate[at + 1], -rate[at + 2]],
             };
             let answer = match since {
-                Some(Since { from, duration, force, resistance }) => {
-                    let travel = to.interface.travel[point.pair] - from.interface.travel[point.pair];
+                Some(Since { travel: before, bristles, duration, force, resistance }) => {
+                    let travel = to.interface.travel[point.pair] - before[point.pair];
                     let moved = [1, 2].map(|c| q[at + c] - to.before[(at + c, 0)]);
                     let since = SlipStep {
-                        bristle: from.bristles[p].bent,
+                        bristle: bristles[p].bent,
                         slid: [travel - moved[0], -moved[1]],
                         duration,
                         friction: [-force[at + 1], -force[at + 2]],

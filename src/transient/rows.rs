@@ -41,3 +41,11 @@ pub(super) fn sums<const N: usize>(n: usize, of: impl Fn(Range<usize>) -> [f64; 
     }
     total
 }
+
+/// out = Σ factor · x.
+pub(super) fn combine(factors: [f64; 3], x: [&[f64]; 3], out: &mut [f64]) {
+    let [x, y, z] = x.map(|x| &x[..out.len()]);
+    for i in 0..out.len() {
+        out[i] = factors[0] * x[i] + factors[1] * y[i] + factors[2] * z[i];
+    }
+}

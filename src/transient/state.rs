@@ -3,9 +3,9 @@
 use super::interface::Interface;
 use super::model::Model;
 use super::products::Derived;
-use super::reaction::{Bristles, Reaction};
+use super::reaction::{Bristles, Moment, Reaction};
+use super::rows::combine;
 use super::scheme::Weights;
-use super::stepper::combine;
 use crate::equilibrium::SteadySliding;
 use crate::linalg::c64;
 use crate::linalg::multivector::gram;
@@ -97,9 +97,14 @@ impl State {
     fn react(&mut self, model: &Model<'_>) {
         let mut reaction = Reaction::new(model);
         let along = [0, 1].map(|k| self.along.col_as_slice(k));
-        reaction.evaluate(model, along, self, None);
+        reaction.evaluate(model, along, self.moment(), None);
         self.reaction = reaction.force;
         self.bristles = reaction.bristles;
+    }
+
+    /// What reactions depend on besides the motion.
+    pub(super) fn moment(&self) -> Moment<'_> {
+        Moment { interface: &self.interface, speeds: &self.speeds, before: &self.before }
     }
 
     /// What acts at a time.
@@ -107,7 +112,7 @@ impl State {
         self.time = time;
         self.speeds.iter_mut().zip(model.speeds(time)).for_each(|(now, v)| *now = v);
         self.pushes.iter_mut().zip(&model.pushes).for_each(|(now, push)| *now = push.factor(time));
-        model.locate(time, &mut self.interface);
+        self.interface.locate(model, time);
     }
 
     /// The motion that a step to here begins with, along the directions at its end.

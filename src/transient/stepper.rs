@@ -4,19 +4,12 @@ use super::condensed::Condensed;
 use super::full_newton::FullNewton;
 use super::ledger::Work;
 use super::model::Model;
-use super::rows::chunks;
+use super::rows::{chunks, combine};
 use super::scheme::{Scheme, Weights};
+use super::solver::{Solver, Stuck};
 use super::state::State;
 use crate::error::Result;
 use faer::Mat;
-use std::fmt::Debug;
-
-/// Newton's iterations of one step.
-pub(super) const ITERATIONS: usize = 40;
-/// Steps of Newton's method below this part of the motion are round-off.
-pub(super) const ROUND_OFF: f64 = 1e-14;
-/// The part of the largest contact force by which friction may differ from what its law answers to it.
-pub(super) const UNMATCHED: f64 = 1e-10;
 
 /// How a step is solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -26,32 +19,6 @@ pub enum Method {
     Condensed,
     /// Newton's method on the whole, a new factorisation each iteration: the reference, for comparison.
     FullNewton,
-}
-
-/// Why a step has no solution.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Stuck {
-    /// Newton's method did not converge.
-    Newton {
-        /// The length of its last step \[m\].
-        length: f64,
-        /// The contact point that it moved most, if any.
-        point: Option<usize>,
-    },
-    /// A number that is not finite.
-    NotFinite,
-}
-
-/// Solves A Δ + b D r_{n+1} = h.
-pub(super) trait Solver: Debug {
-    /// Replaces `h` + B `modal` by Δ and `modal` by BᵀΔ; leaves r_{n+1} in `to`.
-    fn increment(
-        &mut self,
-        h: &mut Mat<f64>,
-        modal: &mut Mat<f64>,
-        from: &State,
-        to: &mut State,
-    ) -> std::result::Result<(), Stuck>;
 }
 
 /// A step of fixed length Δt: what is factorised and solved for once.
@@ -131,14 +98,6 @@ impl<'a> Stepper<'a> {
             }),
             _ => Mat::zeros(0, 1),
         }
-    }
-}
-
-/// out = Σ factor · x.
-pub(super) fn combine(factors: [f64; 3], x: [&[f64]; 3], out: &mut [f64]) {
-    let [x, y, z] = x.map(|x| &x[..out.len()]);
-    for i in 0..out.len() {
-        out[i] = factors[0] * x[i] + factors[1] * y[i] + factors[2] * z[i];
     }
 }
 

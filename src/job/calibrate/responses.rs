@@ -3,9 +3,9 @@
 use super::super::compare::matches;
 use super::super::frf::{Frf, frfs};
 use super::super::measured::measured_set;
-use super::super::motion::{Motion, spread};
+use super::super::modes::modal_damping;
+use super::super::motion::Motion;
 use super::super::prepared::Prepared;
-use super::super::receptance::Receptance;
 use super::neighbours::Change;
 use crate::calibration::Line;
 use crate::case::{FrfSolution, MeasuredData};
@@ -15,6 +15,7 @@ use crate::linalg::sparse::{multiply, times};
 use crate::linalg::{SparseMatrix, SparseVector, c64};
 use crate::measured::{MeasuredFrf, Quantity};
 use crate::modal::RealModes;
+use crate::reduction::Receptance;
 use crate::stability::Harmonic;
 use faer::Mat;
 use rayon::prelude::*;
@@ -192,7 +193,8 @@ impl<'a> Places<'a> {
 
     /// The same nodes on a neighbouring mesh.
     pub fn forms(&self, prepared: &Prepared) -> Vec<SparseVector> {
-        self.motions().map(|motion| spread(prepared, &motion.nodes, motion.along)).collect()
+        let dofs = &prepared.assembled.dofs;
+        self.motions().map(|motion| dofs.mean_motion(&motion.nodes, motion.along)).collect()
     }
 }
 
@@ -238,7 +240,8 @@ pub fn lines(
         .iter()
         .filter_map(|r| r.frequencies_hz.last())
         .fold(wanted.band[1], |a, b| a.max(*b));
-    let whole = Receptance::new(prepared, None, highest, &forms, &())?;
+    let damping = |mass: &SparseMatrix, real: &RealModes| modal_damping(mass, real, prepared.case);
+    let whole = Receptance::new(&prepared.system, None, (highest, &forms), &damping, &())?;
     let rates = ratios(&whole.real)?;
     let small: Vec<Small> = changes
         .iter()

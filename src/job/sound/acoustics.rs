@@ -3,36 +3,15 @@
 use super::super::prepared::Prepared;
 use crate::case::{ON_AXIS, SoundAnalysis};
 use crate::error::{Fault, Faults, Result};
-use crate::linalg::SparseVector;
-use crate::sound::{Air, Plate};
+use crate::sound::{Air, Surface};
 use crate::structure::ShellPart;
-use faer::Mat;
-use nalgebra::Vector3;
-use std::collections::BTreeMap;
-
-/// A plate is flat when its nodes are within this part of its extent of its plane.
-const FLAT: f64 = 1e-3;
 
 /// The plates of a case as the air sees them, and where one listens.
 #[derive(Debug, Clone)]
 pub struct Acoustics {
-    pub(super) plates: Vec<Seen>,
+    pub(super) plates: Vec<Surface>,
     pub(super) microphones: Vec<(String, [f64; 3])>,
     pub(super) air: Air,
-}
-
-/// A plate as pistons at its nodes, each with its share of the area.
-#[derive(Debug, Clone)]
-pub(super) struct Seen {
-    name: String,
-    normal: [f64; 3],
-    middle: [f64; 3],
-    area: f64,
-    /// The largest piston \[m²\].
-    largest: f64,
-    points: Vec<[f64; 3]>,
-    /// The volume that each displaces as a linear form of the degrees of freedom \[m²\].
-    forms: Vec<SparseVector>,
 }
 
 /// What listens to a case; asked for before anything is computed or written.
@@ -44,7 +23,7 @@ pub fn acoustics(prepared: &Prepared<'_>, wanted: &SoundAnalysis) -> Result<Acou
     let chosen = |part: &&ShellPart| wanted.plates.is_empty() || wanted.plates.contains(&part.name);
     let mut plates = Vec::new();
     for part in prepared.model.shells.iter().filter(chosen) {
-        match Seen::new(prepared, part) {
+        match surface(prepared, part) {
             Some(plate) => plates.push(plate),
             None => faults.push(
                 Fault::new(
@@ -90,75 +69,9 @@ pub fn acoustics(prepared: &Prepared<'_>, wanted: &SoundAnalysis) -> Result<Acou
     faults.into_result(Acoustics { plates, microphones, air })
 }
 
-impl Seen {
-    /// A shell part; `None` when it is not flat.
-    fn new(prepared: &Prepared<'_>, part: &ShellPart) -> Option<Seen> {
-        let nodes = &prepared.model.nodes;
-        // The vector area of each node: a third of its triangles; a quadrilateral is four of half weight.
-        let mut areas = BTreeMap::<usize, Vector3<f64>>::new();
-        let at = |node: usize| Vector3::from(nodes[node]);
-        let mut add = |[a, b, c]: [usize; 3], weight: f64| {
-            let area = (at(b) - at(a)).cross(&(at(c) - at(a))) * (0.5 * weight / 3.0);
-            for node in [a, b, c] {
-                *areas.entry(node).or_default() += area;
-            }
-        };
-        for face in &part.faces {
-            match *face.nodes() {
-                [a, b, c] => add([a, b, c], 1.0),
-                [a, b, c, d] => {
-                    [[a, b, c], [a, c, d], [a, b, d], [b, c, d]].into_iter().for_each(|t| add(t, 0.5));
-                }
-                _ => {}
-            }
-        }
-        let whole: Vector3<f64> = areas.values().sum();
-        let area = whole.norm();
-        // The front is where the largest component of the normal is positive.
-        let turn = whole[whole.iamax()].signum();
-        let normal = whole * (turn / area);
-        let share = |a: &Vector3<f64>| turn * a.dot(&normal);
-        let middle: Vector3<f64> = areas.iter().map(|(node, a)| at(*node) * (share(a) / area)).sum();
-        let from_middle = |node: &usize| at(*node) - middle;
-        let extent = areas.keys().map(|n| from_middle(n).norm()).fold(0.0, f64::max);
-        let flat = areas.keys().all(|n| from_middle(n).dot(&normal).abs() <= FLAT * extent);
-        let form = |(node, a): (&usize, &Vector3<f64>)| {
-            let entries: Vec<_> = (0..3).map(|c| (*node, c, turn * a[c])).collect();
-            prepared.assembled.dofs.reduce(&entries)
-        };
-        (flat && area > 0.0).then(|| Seen {
-            name: part.name.clone(),
-            normal: normal.into(),
-            middle: middle.into(),
-            area,
-            largest: areas.values().map(share).fold(0.0, f64::max),
-            points: areas.keys().map(|n| nodes[*n]).collect(),
-            forms: areas.iter().map(form).collect(),
-        })
-    }
-
-    /// Whether a place is nearer than a piston is wide.
-    fn touches(&self, at: [f64; 3]) -> bool {
-        let square = |x: &[f64; 3]| (0..3).map(|c| (x[c] - at[c]).powi(2)).sum::<f64>();
-        self.points.iter().any(|x| square(x) < self.largest)
-    }
-
-    fn side(&self, at: [f64; 3]) -> f64 {
-        self.moving(&Mat::zeros(0, 0)).side(at)
-    }
-
-    /// The plate in its modes.
-    pub(super) fn moving(&self, shapes: &Mat<f64>) -> Plate {
-        let modes = shapes.ncols();
-        let strength = Mat::from_fn(if modes > 0 { self.forms.len() } else { 0 }, modes, |i, m| {
-            self.forms[i].dot(shapes.col_as_slice(m))
-        });
-        Plate {
-            name: self.name.clone(),
-            normal: self.normal,
-            middle: self.middle,
-            points: self.points.clone(),
-            strength,
-        }
-    }
+/// A shell part; `None` when it is not flat.
+fn surface(prepared: &Prepared<'_>, part: &ShellPart) -> Option<Surface> {
+    let faces = part.faces.iter().map(|face| face.nodes());
+    let dofs = &prepared.assembled.dofs;
+    Surface::new(&part.name, &prepared.model.nodes, faces, &|terms| dofs.reduce(terms))
 }

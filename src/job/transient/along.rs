@@ -3,10 +3,9 @@
 use super::in_time::InTime;
 use crate::case::Disturbance;
 use crate::error::{Error, Result};
-use crate::job::near::near_mode;
 use crate::linalg::c64;
 use crate::reduction::Reduced;
-use crate::stability::{ComplexMode, ModalFilter, modal_filter};
+use crate::stability::{ComplexMode, ModalFilter, modal_filter, near_mode};
 
 /// What cannot go on without a mode.
 const PLACE: &str = "the disturbance of the motion in time";

@@ -5,7 +5,7 @@ use crate::case::{Course, FrictionCurve, TransientAnalysis};
 use crate::contact::Coulomb;
 use crate::error::{Error, Fault, Faults, Result};
 use crate::job::contacts::with_laws;
-use crate::job::motion::{Motion, motion, spread};
+use crate::job::motion::{Motion, motion};
 use crate::job::prepared::Prepared;
 use crate::job::sound::{Acoustics, acoustics};
 use crate::job::travel::tracks;
@@ -76,7 +76,7 @@ pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Pla
     faults.take(check_step(&prepared.system.structure, wanted.time_step));
     let mut reduced = |on: &str, place: String, vector: [f64; 3]| {
         let nodes = faults.take(prepared.regions.nodes(on, &place)).unwrap_or_default();
-        spread(prepared, &nodes, vector)
+        prepared.assembled.dofs.mean_motion(&nodes, vector)
     };
     let pushes = wanted.push.iter().map(|(name, push)| Push {
         direction: reduced(&push.on, format!("`transient.push.{name}.on`"), push.force),

@@ -23,6 +23,7 @@ mod front;
 mod lower;
 mod numeric;
 mod ordering;
+mod refused;
 mod solve;
 mod symbolic;
 mod unsymmetric;
@@ -434,14 +435,6 @@ fn equilibrate<T: Field>(a: &SparseColMat<Index, T>) -> Vec<f64> {
             if size > 0.0 { (-(0.5 * size.log2()).round()).exp2() } else { 1.0 }
         })
         .collect()
-}
-
-fn out_of_memory(n: usize, said: &str) -> Error {
-    Error::analysis(
-        format!("factorisation of {n} unknowns"),
-        format!("memory does not suffice ({said})"),
-        "Take a coarser mesh, or a machine with more memory",
-    )
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@
 //! factorisation takes 27 % less time and its tree is balanced.
 
 use super::super::sparse::Index;
+use super::refused::out_of_memory;
 use crate::error::Result;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
@@ -134,7 +135,7 @@ impl Quotient {
     fn minimum_degree(&self) -> Result<Vec<usize>> {
         let q = self.len();
         let (mut order, mut place) = (vec![0; q], vec![0; q]);
-        let failed = |said: String| super::out_of_memory(q, &said);
+        let failed = |said: String| out_of_memory(q, &said);
         let graph = SymbolicSparseColMatRef::new_checked(q, q, &self.starts, None, &self.neighbours);
         let mut memory = MemBuffer::try_new(amd::order_scratch::<usize>(q, self.neighbours.len()))
             .map_err(|e| failed(format!("{e:?}")))?;

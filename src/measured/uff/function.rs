@@ -2,7 +2,8 @@
 
 use super::super::records::FunctionRecord;
 use super::super::set::Quantity;
-use super::file::{Binary, Dataset, shown};
+use super::dataset::{Binary, Dataset, shown};
+use super::form::Form;
 use super::record::{columns, e_format, text_line, whole};
 use super::units::{Units, labelled};
 use crate::error::Result;
@@ -21,77 +22,6 @@ const FREQUENCY: i64 = 18;
 const WHO: [usize; 12] = [5, 10, 5, 10, 1, 10, 10, 4, 1, 10, 10, 4];
 /// Columns of an axis: type, three exponents, label, unit.
 const AXIS: [usize; 8] = [10, 5, 5, 5, 1, 20, 1, 20];
-
-/// How the numbers of a function are stored.
-pub(super) struct Form {
-    /// 2, 4: real; 5, 6: complex; single and double precision.
-    pub kind: i64,
-    /// How many values.
-    pub count: usize,
-    /// Whether abscissas follow from the first and the step.
-    pub even: bool,
-    first: f64,
-    step: f64,
-}
-
-impl Form {
-    /// Reads record 7.
-    pub fn read(dataset: &Dataset<'_>) -> Result<Form> {
-        const FORM: usize = 6;
-        let cells = columns(dataset.line(FORM)?, &[10, 10, 10, 13, 13, 13]);
-        let words: Vec<String> = dataset.line(FORM)?.split_whitespace().map(str::to_string).collect();
-        let cells = if words.len() == 6 { words } else { cells };
-        let whole = |k: usize| {
-            whole(&cells[k]).ok_or_else(|| dataset.fault(FORM, shown(&cells[k]), "a whole number"))
-        };
-        let real = |k: usize| {
-            let number = if cells[k].is_empty() { Some(0.0) } else { super::record::float(&cells[k]) };
-            number.ok_or_else(|| dataset.fault(FORM, shown(&cells[k]), "a finite number"))
-        };
-        let (kind, count, spacing) = (whole(0)?, whole(1)?, whole(2)?);
-        if !matches!(kind, 2 | 4 | 5 | 6) {
-            let expected = "2 or 4 (real), 5 or 6 (complex)";
-            return Err(dataset.fault(FORM, format!("ordinates of type {kind}"), expected));
-        }
-        let count = usize::try_from(count)
-            .map_err(|_| dataset.fault(FORM, format!("{count} values"), "a count of zero or more"))?;
-        if !matches!(spacing, 0 | 1) {
-            let expected = "0 (uneven) or 1 (even)";
-            return Err(dataset.fault(FORM, format!("abscissa spacing {spacing}"), expected));
-        }
-        Ok(Form { kind, count, even: spacing == 1, first: real(3)?, step: real(4)? })
-    }
-
-    fn complex(&self) -> bool {
-        self.kind > 4
-    }
-
-    fn double(&self) -> bool {
-        matches!(self.kind, 4 | 6)
-    }
-
-    /// Numbers of a value: one, or a real and an imaginary part.
-    pub fn parts(&self) -> usize {
-        if self.complex() { 2 } else { 1 }
-    }
-
-    /// Sizes in bytes of an abscissa and of a number of a value, as the type says first; then as other writers have it.
-    pub fn sizes(&self) -> Vec<[usize; 2]> {
-        let all = if self.double() { [[8, 8], [4, 8], [4, 4]] } else { [[4, 4], [8, 8], [4, 8]] };
-        let even = |[abscissa, value]: [usize; 2]| [if self.even { 0 } else { abscissa }, value];
-        all.map(even).to_vec()
-    }
-
-    /// Widths of the columns of a line of numbers.
-    fn widths(&self) -> &'static [usize] {
-        match (self.double(), self.even, self.complex()) {
-            (false, ..) => &[13],
-            (true, true, _) => &[20],
-            (true, false, false) => &[13, 20],
-            (true, false, true) => &[13, 20, 20],
-        }
-    }
-}
 
 /// Reads dataset 58; what it is, in words, where it is no frequency response of motion over force.
 ///

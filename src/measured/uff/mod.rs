@@ -12,7 +12,9 @@
 //!
 //! Anything else is skipped with a warning.
 
+mod dataset;
 mod file;
+mod form;
 mod function;
 mod nodes;
 mod record;

@@ -1,6 +1,6 @@
 //! Points: dataset 15 (single precision) and 2411 (double precision).
 
-use super::file::{Dataset, shown};
+use super::dataset::{Dataset, shown};
 use super::record::e_format;
 use crate::error::Result;
 use std::collections::BTreeMap;

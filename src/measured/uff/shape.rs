@@ -1,7 +1,7 @@
 //! Mode shapes: dataset 55, data at nodes.
 
 use super::super::records::ModeRecord;
-use super::file::Dataset;
+use super::dataset::Dataset;
 use super::record::{e_format, text_line};
 use crate::error::Result;
 use crate::linalg::c64;

@@ -1,6 +1,6 @@
 //! Units: dataset 164, and the labels of axes.
 
-use super::file::Dataset;
+use super::dataset::Dataset;
 use crate::error::Result;
 
 /// What one unit of the file is in SI.

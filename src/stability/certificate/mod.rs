@@ -25,9 +25,11 @@
 
 mod beyond;
 mod contour;
+mod damping;
 mod determinant;
 mod pencil;
 mod reduced;
+mod region;
 mod remainder;
 mod rows;
 mod spectrum;
@@ -36,7 +38,8 @@ mod tests;
 
 use super::ComplexModes;
 use super::Structural;
-use super::analysis::{Analysis, Band, analyse, check};
+use super::analysis::{Analysis, analyse, check};
+use super::band::Band;
 use super::general::general_modes;
 use super::operator::Operator;
 use crate::equilibrium::SteadySliding;
@@ -44,11 +47,12 @@ use crate::error::{Error, Result};
 use crate::numbers::hertz;
 use crate::progress::Observer;
 use crate::system::System;
-use contour::{Region, Stopped, Winding, wind};
+use contour::{Stopped, Winding, wind};
 #[cfg(test)]
 pub(in crate::stability) use determinant::count as count_determinant;
 use pencil::Pencil;
 use reduced::ReducedModel;
+use region::Region;
 use spectrum::Spectrum;
 use std::f64::consts::TAU;
 

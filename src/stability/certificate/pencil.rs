@@ -1,7 +1,7 @@
 //! The contact-size determinant d(s) = det(I + H(s) κ(s)) at a point, with a disc around it in which it is understood.
 
-use super::contour::Region;
 use super::reduced::{Oscillator, ReducedModel};
+use super::region::Region;
 use super::remainder::Remainder;
 use crate::error::{Error, Result};
 use crate::linalg::c64;

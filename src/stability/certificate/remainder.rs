@@ -18,7 +18,7 @@
 //! is resonant, and S = F'ᵀA⁻¹F' − F'ᵀB(BᵀAB)⁻¹BᵀF' is half a block solve ([`compliances`]) less a small matrix. What rounding
 //! may hide in it is measured (`Probes`) and added.
 
-use super::reduced::DampingParts;
+use super::damping::DampingParts;
 use super::rows::Rows;
 use crate::error::Result;
 use crate::linalg::dense::{product, symmetric_eigen};

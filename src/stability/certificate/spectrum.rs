@@ -20,8 +20,9 @@
 //! Q_ZB(s) x_k is a polynomial in s that all but vanishes at λ_k, as the basis was refined until it did: what is left out
 //! does not resonate with the modes that were found.
 
-use super::contour::{Region, Stopped, Winding};
+use super::contour::{Stopped, Winding};
 use super::reduced::ReducedModel;
+use super::region::Region;
 use super::remainder::Remainder;
 use crate::error::{Error, Result};
 use crate::linalg::c64;

@@ -1,4 +1,4 @@
-use super::contour::Region;
+use super::region::Region;
 use super::*;
 use crate::equilibrium::SteadySliding;
 use crate::equilibrium::samples::*;

@@ -1,21 +1,23 @@
 //! A structure as harmonic forces see it: at full order, and by its modes with static residuals.
 
-use super::modes::add_modal_damping;
-use super::prepared::Prepared;
+use super::{Reduced, reduce};
 use crate::equilibrium::{SteadyOptions, SteadySliding, solve_steady, tangent_stiffness};
 use crate::error::Result;
-use crate::linalg::SparseVector;
+use crate::linalg::{SparseMatrix, SparseVector};
 use crate::modal::{ModesWanted, RealModes, compute};
 use crate::progress::Observer;
-use crate::reduction::{Reduced, reduce};
-use crate::system::{Structure, System};
+use crate::system::{ModalDamping, Structure, System};
 
 /// Real modes are taken up to this many times the highest frequency.
 const MODES: f64 = 2.0;
 
-/// A structure about its rest or its steady sliding.
+/// Modal damping of a structure, given M and its real modes; none where it has none.
+pub type DampingOfModes<'a> = &'a dyn Fn(&SparseMatrix, &RealModes) -> Result<Option<ModalDamping>>;
+
+/// A structure about its rest or its steady sliding, for receptances u = H(ω) f.
+#[derive(Debug)]
 pub struct Receptance {
-    /// At full order.
+    /// At full order, n degrees of freedom, with its modal damping.
     pub system: System,
     /// What it moves about.
     pub steady: SteadySliding,
@@ -26,21 +28,25 @@ pub struct Receptance {
 }
 
 impl Receptance {
-    /// For forces along `forms` up to `highest_hz`; `steady` is steady sliding, where the contacts slide.
+    /// Of `system` about `steady` sliding, or without its contacts and its load where there is none, for forces along `forms`
+    /// up to `highest_hz` \[Hz\].
+    ///
+    /// The small system holds the static responses to the forces and those to the inertia of what is left of them: its
+    /// residual is right to ω², the response to ω⁴.
     ///
     /// # Errors
-    /// Modes that cannot be computed.
+    /// Modes that cannot be computed; those of `damping`.
     pub fn new(
-        prepared: &Prepared<'_>,
+        system: &System,
         steady: Option<&SteadySliding>,
-        highest_hz: f64,
-        forms: &[SparseVector],
+        (highest_hz, forms): (f64, &[SparseVector]),
+        damping: DampingOfModes<'_>,
         observer: &dyn Observer,
     ) -> Result<Receptance> {
         let (mut system, steady) = match steady {
-            Some(steady) => (prepared.system.clone(), steady.clone()),
+            Some(steady) => (system.clone(), steady.clone()),
             None => {
-                let free = alone(&prepared.system);
+                let free = alone(system);
                 let still = solve_steady(&free, &SteadyOptions::default(), &())?;
                 (free, still)
             }
@@ -48,8 +54,9 @@ impl Receptance {
         let stiffness = tangent_stiffness(&system, &steady.displacement)?.into_owned();
         let structure = Structure { stiffness: stiffness.into(), ..system.structure.clone() };
         let (real, _) = compute(&structure, ModesWanted::BelowHz(MODES * highest_hz), observer)?;
-        add_modal_damping(&mut system.structure, &real, prepared)?;
-        // Besides the static responses, what their inertia moves: the residual is right to ω², the response to ω⁴.
+        if let Some(modal) = damping(&system.structure.mass, &real)? {
+            system.structure.damping.modal = Some(modal);
+        }
         let first = reduce(&system, &steady, &real, forms)?;
         let inertia = (first.modes..first.inertia.ncols())
             .map(|k| SparseVector::from_dense(first.inertia.col_as_slice(k)));

@@ -1,19 +1,10 @@
-//! Which of some frequencies is meant by one that is given.
+//! Which complex mode is meant by a frequency that is given.
 
-use crate::stability::ComplexMode;
+use super::ComplexMode;
+use crate::modal::near;
 use std::f64::consts::TAU;
 
-/// How far a frequency may lie from the one that is given, as a part of that.
-const REACH: f64 = 0.1;
-
-/// Index of the frequency nearest to `hz` \[Hz\]; none where none is within 10 % of it.
-pub fn near(frequencies_hz: impl IntoIterator<Item = f64>, hz: f64) -> Option<usize> {
-    let away = frequencies_hz.into_iter().map(|f| (f - hz).abs()).enumerate();
-    let (nearest, away) = away.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    (away <= REACH * hz).then_some(nearest)
-}
-
-/// The same for the complex modes that are `wanted`. A mode is at all frequencies from ω/2π to |λ|/2π, which are apart where
+/// Index of the complex mode nearest to `hz` \[Hz\] among those that are `wanted`; none where none is within 10 % of it. A mode is at all frequencies from ω/2π to |λ|/2π, which are apart where
 /// it grows or decays fast.
 pub fn near_mode(modes: &[ComplexMode], hz: f64, wanted: impl Fn(&ComplexMode) -> bool) -> Option<usize> {
     let at = |mode: &ComplexMode| hz.max(mode.frequency_hz()).min(mode.eigenvalue.norm() / TAU);
@@ -25,13 +16,6 @@ mod tests {
     use super::*;
     use crate::linalg::c64;
     use crate::stability::GrowthBudget;
-
-    #[test]
-    fn the_nearest_is_meant_where_one_is_near() {
-        let all = [0.0, 100.0, 200.0];
-        assert_eq!((near(all, 104.0), near(all, 0.0), near(all, 186.0)), (Some(1), Some(0), Some(2)));
-        assert_eq!((near(all, 150.0), near(all, 1e5), near([], 100.0)), (None, None, None));
-    }
 
     #[test]
     fn a_mode_that_grows_fast_is_near_both_of_its_frequencies() {

@@ -1,14 +1,24 @@
 //! The complex pairs nearest to a frequency: a band that holds enough of them, found by counting.
 
-use crate::case::CeaAnalysis;
+use super::ComplexModes;
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::linalg::factor::factorize;
 use crate::linalg::sparse::add_scaled;
 use crate::modal::{RealModes, ShiftedStiffness};
-use crate::stability::ComplexModes;
 use crate::system::Structure;
 use std::f64::consts::TAU;
+
+/// The complex pairs that are asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nearest {
+    /// The frequency to which their λ is nearest \[Hz\].
+    pub hz: f64,
+    /// How many.
+    pub count: usize,
+    /// The widest band in which they are sought \[Hz\].
+    pub within: [f64; 2],
+}
 
 /// Real modes that the band needs so that `count` complex ones are among them: complex frequencies lie near the real
 /// ones.
@@ -20,15 +30,14 @@ fn enough(count: usize) -> usize {
 /// ω², which lies above it.
 const ABOVE: f64 = 1.2;
 
-/// A band around `cea.nearest`, inside `cea.band`, that is expected to hold enough modes of `structure`, and K − ω²M
+/// A band \[Hz\] around the frequency asked for, inside the widest, that is expected to hold enough modes of `structure`, and K − ω²M
 /// factorised a little above the frequency asked for: its inertia counts the modes below (Sylvester's law), and modes of plates lie
 /// evenly over frequency.
 ///
 /// # Errors
 /// A pencil that is singular there.
-pub fn band_expected(structure: &Structure, cea: &CeaAnalysis) -> Result<([f64; 2], ShiftedStiffness)> {
-    let [lowest, highest] = cea.band;
-    let target = cea.nearest.unwrap_or(highest);
+pub fn band_expected(structure: &Structure, asked: &Nearest) -> Result<([f64; 2], ShiftedStiffness)> {
+    let Nearest { hz: target, count, within: [lowest, highest] } = *asked;
     let at = |hz: f64| -> Result<ShiftedStiffness> {
         let shift = (TAU * hz).powi(2);
         let factor = factorize(&add_scaled(&[(1.0, &structure.stiffness), (-shift, &structure.mass)]))?;
@@ -45,16 +54,15 @@ pub fn band_expected(structure: &Structure, cea: &CeaAnalysis) -> Result<([f64; 
     let shifted = shifted?;
     let density = shifted.factor.inertia().negative.max(1) as f64 / (ABOVE * target);
     // A tenth more, so that a second look is seldom needed.
-    let wide = 1.1 * enough(cea.count.unwrap_or(1)) as f64 / density;
+    let wide = 1.1 * enough(count) as f64 / density;
     let below = target - lowest;
     let reach = if wide <= 2.0 * below { 0.5 * wide } else { wide - below };
     Ok(([(target - reach).max(lowest), (target + reach).min(highest)], shifted))
 }
 
-/// The band around `cea.nearest`, inside `cea.band`, that holds just enough of the real modes, or where they end.
-pub fn band_around(real: &RealModes, cea: &CeaAnalysis) -> [f64; 2] {
-    let (Some(target), Some(count)) = (cea.nearest, cea.count) else { return cea.band };
-    let [lowest, highest] = cea.band;
+/// The band \[Hz\] around the frequency asked for, inside the widest, that holds just enough of the real modes, or where they end.
+pub fn band_around(real: &RealModes, asked: &Nearest) -> [f64; 2] {
+    let Nearest { hz: target, count, within: [lowest, highest] } = *asked;
     let inside = (0..real.len()).map(|k| real.frequency_hz(k)).filter(|f| (lowest..=highest).contains(f));
     let mut distances: Vec<f64> = inside.map(|f| (f - target).abs()).collect();
     distances.sort_by(f64::total_cmp);
@@ -70,21 +78,21 @@ pub fn band_around(real: &RealModes, cea: &CeaAnalysis) -> [f64; 2] {
     [(target - reach).max(lowest), (target + reach).min(highest)]
 }
 
-/// Keeps the `cea.count` modes whose λ is nearest to iω of `cea.nearest`, when they are all inside `band`; otherwise
-/// gives a wider band to look in. A band as wide as the case allows keeps what there is, and says so.
-pub fn keep_nearest(modes: &mut ComplexModes, cea: &CeaAnalysis, band: [f64; 2]) -> Option<[f64; 2]> {
-    let (target, count) = (cea.nearest?, cea.count?);
+/// Keeps the modes that are asked for, when they are all inside `band` \[Hz\]; otherwise gives a wider band to look in. The
+/// widest band keeps what there is, and says so.
+pub fn keep_nearest(modes: &mut ComplexModes, asked: &Nearest, band: [f64; 2]) -> Option<[f64; 2]> {
+    let Nearest { hz: target, count, within } = *asked;
     let distance = |z: c64| (z - c64::new(0.0, TAU * target)).norm();
     // Whatever is nearer than the edges of the band was found: |Im λ − ω| ≤ |λ − iω|.
-    let side = |k: usize| if band[k] == cea.band[k] { f64::INFINITY } else { TAU * (band[k] - target).abs() };
+    let side = |k: usize| if band[k] == within[k] { f64::INFINITY } else { TAU * (band[k] - target).abs() };
     let reach = side(0).min(side(1));
     let mut sorted: Vec<f64> = modes.modes.iter().map(|m| distance(m.eigenvalue)).collect();
     sorted.sort_by(f64::total_cmp);
-    match sorted.get(count - 1) {
+    match sorted.get(count.saturating_sub(1)) {
         Some(last) if *last <= reach => modes.modes.retain(|m| distance(m.eigenvalue) <= *last),
-        _ if band != cea.band => {
+        _ if band != within => {
             let wider = 1.25 * (band[1] - target).max(target - band[0]);
-            return Some([(target - wider).max(cea.band[0]), (target + wider).min(cea.band[1])]);
+            return Some([(target - wider).max(within[0]), (target + wider).min(within[1])]);
         }
         _ => modes.warnings.push(format!(
             "only {} of the {count} complex modes nearest to {target} Hz lie between {} and {} Hz",
@@ -103,18 +111,8 @@ mod tests {
     use crate::modal::{ModesWanted, compute};
     use crate::system::Damping;
 
-    fn analysis(nearest: f64, count: usize, band: [f64; 2]) -> CeaAnalysis {
-        CeaAnalysis {
-            band,
-            nearest: Some(nearest),
-            count: Some(count),
-            certify: None,
-            confirm: false,
-            left_vectors: true,
-            basis_below: 1e5,
-            measured_squeal: Vec::new(),
-            measured_source: String::new(),
-        }
+    fn analysis(hz: f64, count: usize, within: [f64; 2]) -> Nearest {
+        Nearest { hz, count, within }
     }
 
     #[test]
@@ -140,6 +138,6 @@ mod tests {
             );
         }
         let narrow = analysis(3e3, 500, [2.5e3, 3.5e3]);
-        assert_eq!(band_around(&modes, &narrow), narrow.band);
+        assert_eq!(band_around(&modes, &narrow), narrow.within);
     }
 }

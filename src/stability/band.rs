@@ -1,0 +1,28 @@
+//! Which complex modes are asked for.
+
+use crate::linalg::c64;
+
+/// Which complex modes are asked for, and what of them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Band {
+    /// Lowest and highest frequency \[Hz\].
+    pub hz: [f64; 2],
+    /// A frequency \[Hz\] and how many modes are asked for, those whose λ is nearest to iω; `None` for all in the band.
+    pub nearest: Option<(f64, usize)>,
+    /// Whether the left vectors are kept, which take as much memory as the right ones.
+    pub left_vectors: bool,
+}
+
+/// All modes, with left vectors.
+impl From<[f64; 2]> for Band {
+    fn from(hz: [f64; 2]) -> Self {
+        Band { hz, nearest: None, left_vectors: true }
+    }
+}
+
+/// Whether λ is one to give: one of each conjugate pair, its frequency in the band.
+pub(super) fn in_band(z: c64, band: [f64; 2]) -> bool {
+    let oscillates = z.im > 1e-9 * z.norm();
+    let real = z.im.abs() <= 1e-9 * z.norm();
+    (oscillates && z.im >= band[0] && z.im <= band[1]) || (real && band[0] == 0.0 && z.norm() <= band[1])
+}

@@ -1,0 +1,36 @@
+//! What parts are made of.
+
+use crate::schema::units::{DENSITY, NUMBER, PRESSURE, RATE, TIME};
+use crate::schema::{Invalidates, declare, key};
+use std::ops::Bound;
+
+declare! {
+    /// Isotropic linear elastic material.
+    #[derive(Copy)]
+    pub struct Material {
+        /// E \[Pa\].
+        pub youngs_modulus: f64 = key::quantity(PRESSURE).positive(),
+        /// ν.
+        pub poissons_ratio: f64 = key::quantity(NUMBER)
+            .within(Bound::Excluded(-1.0), Bound::Excluded(0.5))
+            .expecting("a number such as 0.3"),
+        /// ρ \[kg/m³\].
+        pub density: f64 = key::quantity(DENSITY).positive(),
+        /// η of K(1 + iη); zero for none.
+        pub loss_factor: f64 =
+            key::quantity(NUMBER).non_negative().or(0.0).invalidates(Invalidates::Damping),
+        /// C = α M + β K of the parts made of it.
+        pub rayleigh: RayleighDamping = key::table().invalidates(Invalidates::Damping),
+    }
+}
+
+declare! {
+    /// C = α M + β K.
+    #[derive(Copy)]
+    pub struct RayleighDamping {
+        /// α \[1/s\].
+        pub alpha: f64 = key::quantity(RATE).non_negative().or(0.0),
+        /// β \[s\].
+        pub beta: f64 = key::quantity(TIME).non_negative().or(0.0),
+    }
+}

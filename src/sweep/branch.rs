@@ -1,0 +1,35 @@
+//! A mode along one parameter.
+
+use super::Modes;
+use crate::linalg::c64;
+
+/// One mode followed along the parameter.
+#[derive(Debug, Clone)]
+pub struct Branch {
+    /// Index of its first value in [`super::Sweep::values`].
+    pub first: usize,
+    /// λ at that value and those after it.
+    pub eigenvalues: Vec<c64>,
+    /// The least MAC of its shapes at two neighbouring values; 1 for a single value.
+    pub lowest_mac: f64,
+    /// Its place among the modes of each of its values.
+    pub(crate) places: Vec<usize>,
+}
+
+impl Branch {
+    /// λ at value `k` of [`super::Sweep::values`], where the branch exists.
+    pub fn at(&self, k: usize) -> Option<c64> {
+        k.checked_sub(self.first).and_then(|k| self.eigenvalues.get(k)).copied()
+    }
+
+    /// The place of the branch among the modes at value `k`.
+    pub(super) fn place(&self, k: usize) -> Option<usize> {
+        k.checked_sub(self.first).and_then(|k| self.places.get(k)).copied()
+    }
+}
+
+/// The modes at one value.
+pub(super) struct Sample {
+    pub(super) value: f64,
+    pub(super) modes: Modes,
+}
