@@ -13,6 +13,7 @@ mod clock;
 mod compare;
 mod complex;
 mod contacts;
+mod course;
 mod explore;
 mod export;
 #[cfg(feature = "cli")]

@@ -482,7 +482,7 @@ fn trials(trials: &Trials) -> Group<'static> {
 }
 
 /// Writes `calibrated.toml` into the folder `dir`.
-pub(super) fn write(dir: &Path, result: &CalibrationResult) -> Result<()> {
+pub(super) fn write_calibrated(dir: &Path, result: &CalibrationResult) -> Result<()> {
     write_result(dir, "calibrated.toml", result.calibrated_case.as_bytes())
 }
 

@@ -1,6 +1,6 @@
 //! How sweeps and maps were solved.
 
-use crate::dataset::{Dimension, Group};
+use crate::dataset::{Dimension, Group, Variable};
 
 /// How the points of a sweep or map were solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,4 +26,9 @@ impl Method {
 /// Two of the same, one after the other.
 pub(super) fn ends() -> Dimension {
     Dimension::named("end", &["first", "last"])
+}
+
+/// The first and the last time of what was analysed.
+pub(super) fn window(times: [f64; 2], description: &'static str) -> Variable<'static> {
+    Variable::reals("window_s", "s", description, vec![Dimension::limits()], times.to_vec())
 }

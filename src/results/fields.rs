@@ -5,9 +5,10 @@
 //! the other; the cell array `part` counts the parts from 0 in the order of the case. There is room for all steps from the
 //! start; `NSteps` says how many are there, so that a run under way can be looked at.
 
+use super::file::plain;
 use super::file::{options, preallocated};
 use super::folder::{own, refusal};
-use super::hdf5::{attribute, plain, rows};
+use super::hdf5::{attribute, rows};
 use super::{Field, Fields, NodalField};
 use crate::error::{Error, Result};
 use hdf5::Group;

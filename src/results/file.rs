@@ -17,7 +17,7 @@
 
 use super::RunResults;
 use super::folder::{make_durable, own, prepare_folder, refusal, retire, synchronise};
-use super::hdf5::{attribute, plain, text_attribute};
+use crate::dataset::{attribute, text_attribute};
 use crate::error::Result;
 use hdf5::file::FileBuilder;
 use hdf5::plist::dataset_create::{AllocTime, FillTime};
@@ -227,6 +227,18 @@ pub(super) fn preallocated<T: H5Type + Into<OwnedDynValue>>(
 ) -> hdf5::Result<hdf5::Dataset> {
     let room = group.new_dataset::<T>().shape(count).alloc_time(Some(AllocTime::Early));
     room.fill_time(FillTime::Alloc).fill_value(empty).create(name)
+}
+
+/// The operating system's words inside an error of the library, which runs over several lines, or its first line.
+pub(super) fn plain(error: &hdf5::Error) -> String {
+    let text = error.to_string();
+    if text.contains("Resource temporarily unavailable") {
+        return "another program has the file open".into();
+    }
+    let cause = text.split_once("error message = '").and_then(|(_, rest)| rest.split_once('\''));
+    let words = cause.map(|(words, _)| words).or(text.lines().next()).unwrap_or_default();
+    // So the library says when it has lost the cause, as it does where room cannot be made.
+    if words == "unknown library error" { "the file cannot be written".into() } else { words.into() }
 }
 
 #[cfg(test)]

@@ -1,11 +1,9 @@
 //! Frequency responses, as plain data, and their files.
 
-use super::{FileNames, file_name, uff, write_result};
+use super::file_name;
 use crate::dataset::{Describe, Dimension, Group, Table, Values, Variable, column};
-use crate::error::Result;
 use crate::linalg::c64;
 use crate::measured::Quantity;
-use std::path::Path;
 
 /// A peak stands beside a measured one that differs from it by less than this part.
 const NEAR: f64 = 0.05;
@@ -158,14 +156,6 @@ impl Describe for FrfResult {
     }
 }
 
-/// Writes `frf_<name>.uff` into the folder `dir`.
-pub(super) fn write_universal(dir: &Path, frfs: &[&FrfResult]) -> Result<()> {
-    let mut names = FileNames::default();
-    frfs.iter().try_for_each(|frf| {
-        write_result(dir, &format!("frf_{}.uff", names.next(&frf.name)), &uff::functions(frf))
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::sample;
@@ -178,8 +168,8 @@ mod tests {
         assert!((frf.peak(0, 330.0).unwrap() - 338.0).abs() < 5.0 && frf.peak(0, 1697.0).unwrap() == 1745.0);
         assert!(frf.peak(0, 936.0).is_none());
         let dir = tempfile::tempdir().unwrap();
-        super::write_universal(dir.path(), &results.all::<FrfResult>()).unwrap();
-        super::super::write_csv(dir.path(), &results).unwrap();
+        super::super::uff::write_functions(dir.path(), &results.all::<FrfResult>()).unwrap();
+        super::super::csv::write_csv(dir.path(), &results).unwrap();
         let table = std::fs::read_to_string(dir.path().join("frf_hammer.csv")).unwrap();
         assert!(
             table.lines().count() == 401

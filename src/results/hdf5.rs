@@ -1,8 +1,8 @@
 //! How stages of a run are written to `results.h5`; how it is written safely: `file.rs`.
 
 use super::{ResultsFile, RunResults, summary};
+pub(super) use crate::dataset::attribute;
 use crate::dataset::{Group, Variable};
-pub(super) use crate::dataset::{attribute, text_attribute};
 use crate::error::Result;
 use ndarray::Array2;
 
@@ -28,18 +28,6 @@ impl ResultsFile {
     pub fn write(&mut self, group: &Group) -> Result<()> {
         self.keep(|root| group.write_hdf5(root))
     }
-}
-
-/// The operating system's words inside an error of the library, which runs over several lines, or its first line.
-pub(super) fn plain(error: &hdf5::Error) -> String {
-    let text = error.to_string();
-    if text.contains("Resource temporarily unavailable") {
-        return "another program has the file open".into();
-    }
-    let cause = text.split_once("error message = '").and_then(|(_, rest)| rest.split_once('\''));
-    let words = cause.map(|(words, _)| words).or(text.lines().next()).unwrap_or_default();
-    // So the library says when it has lost the cause, as it does where room cannot be made.
-    if words == "unknown library error" { "the file cannot be written".into() } else { words.into() }
 }
 
 pub(super) fn rows<const N: usize>(values: &[[f64; N]]) -> Array2<f64> {

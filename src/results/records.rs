@@ -1,6 +1,5 @@
 //! The results of the analyses of a run: records of any type, in the order in which they were found.
 
-use super::RunResults;
 use crate::dataset::Describe;
 use std::any::Any;
 use std::fmt::Debug;
@@ -24,28 +23,26 @@ impl Records {
     pub fn iter(&self) -> impl Iterator<Item = &dyn Record> {
         self.0.iter().map(|record| &**record)
     }
-}
 
-impl RunResults {
-    /// The first record of type `T`: `results.get::<ComplexResult>()`.
+    /// The first record of type `T`.
     pub fn get<T: Record>(&self) -> Option<&T> {
-        self.records.iter().find_map(|record| (record as &dyn Any).downcast_ref())
+        self.iter().find_map(|record| (record as &dyn Any).downcast_ref())
     }
 
     /// The same, to be changed.
     pub fn get_mut<T: Record>(&mut self) -> Option<&mut T> {
-        self.records.0.iter_mut().find_map(|record| (&mut **record as &mut dyn Any).downcast_mut())
+        self.0.iter_mut().find_map(|record| (&mut **record as &mut dyn Any).downcast_mut())
     }
 
     /// The first record of type `T`, taken out.
     pub fn take<T: Record>(&mut self) -> Option<T> {
-        let place = self.records.iter().position(|record| (record as &dyn Any).is::<T>())?;
-        let record: Box<dyn Any> = self.records.0.remove(place);
+        let place = self.iter().position(|record| (record as &dyn Any).is::<T>())?;
+        let record: Box<dyn Any> = self.0.remove(place);
         record.downcast().ok().map(|record| *record)
     }
 
     /// The records of type `T`, in the order in which they were found.
     pub fn all<T: Record>(&self) -> Vec<&T> {
-        self.records.iter().filter_map(|record| (record as &dyn Any).downcast_ref()).collect()
+        self.iter().filter_map(|record| (record as &dyn Any).downcast_ref()).collect()
     }
 }

@@ -1,6 +1,6 @@
 //! How loud a run in time is, as plain data.
 
-use super::transient::window;
+use super::explored::window;
 use crate::dataset::{Column, Dimension, Group, Table, Values, Variable, column};
 use crate::signal::{Peak, Spectrum};
 use crate::sound::{Air, a_weighting, power_level, pressure_level, wav};
@@ -239,7 +239,7 @@ impl Sounding {
 }
 
 /// Writes `sound_<microphone>.wav` into the folder `dir`.
-pub(super) fn write(dir: &Path, sound: &Sound) -> crate::error::Result<()> {
+pub(super) fn write_sound(dir: &Path, sound: &Sound) -> crate::error::Result<()> {
     let Some(first) = sound.microphones.first() else { return Ok(()) };
     let scale = sound.recording.full_scale();
     let [x, y, z] = first.at;
@@ -269,7 +269,7 @@ mod tests {
         assert!((sound.mean_levels(1.0)[0] - level + 10.85).abs() < 0.01);
         assert!((sound.mean_levels(2.0)[1] - sound.mean_levels(1.0)[1] + 6.02).abs() < 0.01);
         let dir = tempfile::tempdir().unwrap();
-        super::write(dir.path(), sound).unwrap();
+        super::write_sound(dir.path(), sound).unwrap();
         let wav = std::fs::read(dir.path().join("sound_axis.wav")).unwrap();
         assert!(wav.windows(22).any(|w| w == b"full scale is 3.333333"), "0.3 Pa is 0.9 of it");
         let table = sound.spectrum().to_csv();

@@ -5,8 +5,15 @@ use crate::error::Result;
 use crate::measured::uff::{Function, RealShape, functions_file, modes_text};
 use std::path::Path;
 
+/// Writes `frf_<name>.uff` into the folder `dir`.
+pub(super) fn write_functions(dir: &Path, frfs: &[&FrfResult]) -> Result<()> {
+    let mut names = FileNames::default();
+    frfs.iter()
+        .try_for_each(|frf| write_result(dir, &format!("frf_{}.uff", names.next(&frf.name)), &functions(frf)))
+}
+
 /// All places of a response: the force acts at point 1, the places are points 2, 3 …
-pub(super) fn functions(frf: &FrfResult) -> Vec<u8> {
+fn functions(frf: &FrfResult) -> Vec<u8> {
     let label = |k: usize| k as u64 + 2;
     let points = std::iter::once((1, frf.force.position))
         .chain(frf.responses.iter().enumerate().map(|(k, of)| (label(k), of.at.position)));

@@ -20,8 +20,9 @@ mod step;
 mod watched;
 
 pub use in_time::InTime;
-pub use places::{Places, places, profile};
+pub use places::{Places, places};
 
+use super::course::profile;
 use super::sink::ResultSink;
 use super::sound::Listener;
 use crate::case::{ModelChoice, SchemeChoice, TransientAnalysis};

@@ -1,10 +1,11 @@
 //! What acts on the structure in time, and where its motion is recorded.
 
 use super::step::check_step;
-use crate::case::{Course, FrictionCurve, TransientAnalysis};
+use crate::case::{FrictionCurve, TransientAnalysis};
 use crate::contact::Coulomb;
 use crate::error::{Error, Fault, Faults, Result};
 use crate::job::contacts::with_laws;
+use crate::job::course::profile;
 use crate::job::motion::{Motion, motion};
 use crate::job::prepared::Prepared;
 use crate::job::sound::{Acoustics, acoustics};
@@ -12,7 +13,7 @@ use crate::job::travel::tracks;
 use crate::linalg::SparseVector;
 use crate::results::RecordSize;
 use crate::system::ContactPair;
-use crate::transient::{self, Profile, Pulse, Push, Track};
+use crate::transient::{self, Pulse, Push, Track};
 
 /// What acts on the structure in time, and where its motion is recorded.
 #[derive(Debug, Clone)]
@@ -112,20 +113,6 @@ pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Pla
     let still = faults.take(with_laws(&prepared.system.pairs, &smooth)).unwrap_or_default();
     let acoustics = wanted.sound.as_ref().and_then(|sound| faults.take(acoustics(prepared, sound)));
     faults.into_result(Places { pushes, probes, gauges, tracks, still, acoustics })
-}
-
-/// How something runs in time.
-pub fn profile(course: Option<&Course>) -> Profile {
-    match course {
-        None | Some(Course::Constant {}) => Profile::Constant,
-        Some(Course::Ramp { from, duration }) => Profile::Ramp { from: *from, duration: *duration },
-        Some(Course::Reciprocating { frequency, phase }) => {
-            Profile::Reciprocating { frequency_hz: *frequency, phase: *phase }
-        }
-        Some(Course::Table { time, factor }) => {
-            Profile::Table { times: time.clone(), factors: factor.clone() }
-        }
-    }
 }
 
 /// A place whose motion is recorded.

@@ -1,10 +1,11 @@
 //! Where a run in time begins, and how the approach of a pair follows a load that runs in time.
 
 use super::in_time::InTime;
-use super::places::{Places, profile};
+use super::places::Places;
 use crate::case::{StartChoice, TransientAnalysis};
 use crate::equilibrium::{SteadyOptions, SteadySliding, solve_steady};
 use crate::error::Result;
+use crate::job::course::profile;
 use crate::system::{Closing, System};
 use crate::transient::Loading;
 

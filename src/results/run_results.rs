@@ -1,0 +1,82 @@
+//! Everything that a run produced.
+
+use super::record::InputFile;
+use super::records::{Record, Records};
+
+/// Everything a run produced, as plain data for the writers and the report.
+#[derive(Debug, Default)]
+pub struct RunResults {
+    /// The case's title.
+    pub title: String,
+    /// The resolved case as TOML, every default written out.
+    pub resolved_case: String,
+    /// Assumptions of the case: what the source does not state, in the user's words.
+    pub assumptions: Vec<String>,
+    /// Things the user should know (a plate too thick for its theory, a guessed value that decides), one sentence each.
+    pub warnings: Vec<String>,
+    /// Nodes and elements for pictures and ParaView.
+    pub geometry: Geometry,
+    /// Degrees of freedom and nonzeros of K.
+    pub size: ModelSize,
+    /// What the analyses have found.
+    pub records: Records,
+    /// Wall time of each phase \[s\].
+    pub timings: Vec<(String, f64)>,
+    /// The files that the case reads.
+    pub inputs: Vec<InputFile>,
+    /// Why the run has ended before its end, if it has: an analysis without an answer.
+    pub failed: Option<String>,
+}
+
+impl RunResults {
+    /// The first record of type `T`: `results.get::<ComplexResult>()`.
+    pub fn get<T: Record>(&self) -> Option<&T> {
+        self.records.get()
+    }
+
+    /// The same, to be changed.
+    pub fn get_mut<T: Record>(&mut self) -> Option<&mut T> {
+        self.records.get_mut()
+    }
+
+    /// The first record of type `T`, taken out.
+    pub fn take<T: Record>(&mut self) -> Option<T> {
+        self.records.take()
+    }
+
+    /// The records of type `T`, in the order in which they were found.
+    pub fn all<T: Record>(&self) -> Vec<&T> {
+        self.records.all()
+    }
+}
+
+/// The size of a model.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ModelSize {
+    /// Nodes of the mesh in use.
+    pub nodes: usize,
+    /// Elements in use.
+    pub elements: usize,
+    /// Free degrees of freedom.
+    pub dofs: usize,
+    /// Stored entries of K, both triangles.
+    pub nonzeros: usize,
+    /// Contact points that may touch.
+    pub contact_points: usize,
+}
+
+/// Nodes and elements as the analyses saw them (after the disc was tilted and set on the slider).
+#[derive(Debug, Clone, Default)]
+pub struct Geometry {
+    /// Coordinates \[m\].
+    pub nodes: Vec<[f64; 3]>,
+    /// Node indices of every element: 1 (point), 2 (bar), 3 or 4 (shell).
+    pub elements: Vec<Vec<usize>>,
+    /// The part each element belongs to, an index into `parts`.
+    pub part_of: Vec<usize>,
+    /// The parts' names.
+    pub parts: Vec<String>,
+}
+
+/// A displacement of every node: (ux, uy, uz, rx, ry, rz) \[m, rad\] in the order of [`Geometry::nodes`].
+pub type NodalField<T> = Vec<[T; 6]>;
