@@ -2,11 +2,11 @@
 
 use super::history_writer::HistoryWriter;
 use crate::error::Result;
-use crate::job::sound::{BLOCK, Listener};
 use crate::linalg::SparseMatrix;
 use crate::linalg::sparse::times;
 use crate::modal::RealModes;
 use crate::results::{Sound, modal_channel};
+use crate::sound::{BLOCK, Listener};
 use faer::Mat;
 use rayon::prelude::*;
 
