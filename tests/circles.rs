@@ -153,7 +153,8 @@ impl Sources {
     fn imports(&self, module: &Module) -> BTreeSet<Module> {
         let code = &self.text[module];
         let used = uses(code).into_iter().filter(|(exports, _)| !exports).map(|(_, path)| path);
-        let body: String = code.lines().filter(|line| !line.contains("pub(in ")).collect::<Vec<_>>().join("\n");
+        let body: String =
+            code.lines().filter(|line| !line.contains("pub(in ")).collect::<Vec<_>>().join("\n");
         let paths = used.chain(inline(&body).into_iter().filter(|path| !path[0].is_empty()));
         let found = paths.filter_map(|path| self.file_of(&self.absolute(module, &path)?, 0));
         found.filter(|other| other != module).collect()

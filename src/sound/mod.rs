@@ -16,9 +16,12 @@
 //!
 //! Plates move in modes, so that everything is linear in the modal accelerations q̈: [`Receiver`] gives the pressure at
 //! a point, step by step, [`Radiation`] the resistance that tells the power of [`CrossSpectra`]. [`a_weighting`] and
-//! the levels are those of IEC 61672-1. [`wav`] makes the pressure audible.
+//! the levels are those of IEC 61672-1. [`wav`] makes the pressure audible. A [`Listener`] does all of it while a run goes on and
+//! gives the [`Sound`] in the end.
 
 mod cross;
+mod heard;
+mod listener;
 mod plate;
 mod radiation;
 mod receiver;
@@ -27,6 +30,8 @@ mod wav;
 mod weighting;
 
 pub use cross::CrossSpectra;
+pub use heard::{Heard, Sound, Sounding, Tone};
+pub use listener::{Acoustics, BLOCK, Listener};
 pub use plate::Plate;
 pub use radiation::Radiation;
 pub use receiver::Receiver;

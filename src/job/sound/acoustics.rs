@@ -3,16 +3,8 @@
 use super::super::prepared::Prepared;
 use crate::case::{ON_AXIS, SoundAnalysis};
 use crate::error::{Fault, Faults, Result};
-use crate::sound::{Air, Surface};
+use crate::sound::{Acoustics, Air, Surface};
 use crate::structure::ShellPart;
-
-/// The plates of a case as the air sees them, and where one listens.
-#[derive(Debug, Clone)]
-pub struct Acoustics {
-    pub(super) plates: Vec<Surface>,
-    pub(super) microphones: Vec<(String, [f64; 3])>,
-    pub(super) air: Air,
-}
 
 /// What listens to a case; asked for before anything is computed or written.
 ///

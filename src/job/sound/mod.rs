@@ -1,12 +1,7 @@
-//! How loud a run in time is.
-//!
-//! [`acoustics`] looks at the case before anything is computed: which plates are heard, from where. A [`Listener`] takes the
-//! accelerations of the modes, as they are read back from the record, and gives the [`crate::results::Sound`] in the end.
+//! Which plates of a case are heard, and from where; asked for before anything is computed.
 
 mod acoustics;
-mod listener;
 #[cfg(test)]
 mod tests;
 
-pub use acoustics::{Acoustics, acoustics};
-pub use listener::{BLOCK, Listener};
+pub use acoustics::acoustics;

@@ -2,8 +2,8 @@
 
 use super::history_writer::HistoryWriter;
 use crate::error::Result;
-use crate::job::sound::{BLOCK, Listener};
 use crate::results::{Sound, modal_channel};
+use crate::sound::{BLOCK, Listener};
 
 impl HistoryWriter<'_, '_> {
     /// What is heard of the record of `rows` rows.

@@ -24,13 +24,13 @@ pub use places::{Places, places};
 
 use super::course::profile;
 use super::sink::ResultSink;
-use super::sound::Listener;
 use crate::case::{ModelChoice, SchemeChoice, TransientAnalysis};
 use crate::error::{Error, Result};
 use crate::linalg::SparseVector;
 use crate::progress::Observer;
 use crate::reduction::{Reduced, reduce};
 use crate::results::TransientResult;
+use crate::sound::Listener;
 use crate::system::System;
 use crate::transient::{Marched, Method, Model, Plan, Profile, Scheme, State, go_on};
 use along::Along;
@@ -95,7 +95,10 @@ impl InTime<'_> {
             reduced: reduced.as_ref(),
             origin: &steady.displacement,
         });
-        let listener = acoustics.map(|acoustics| Listener::new(acoustics, self.real, plan.step, steps));
+        // Real modes are complete up to their highest.
+        let highest = (0..self.real.len()).map(|k| self.real.frequency_hz(k)).fold(0.0, f64::max);
+        let modes = (&self.real.shapes, highest);
+        let listener = acoustics.map(|acoustics| Listener::new(acoustics, modes, (plan.step, steps)));
         let mass = reduced.is_none().then_some(&*self.system.structure.mass);
         let modal = listener.as_ref().map(|_| ModalMotion::new(self.real, mass));
         let mut recorder = Recorder::new(system, steady, &model, (probes, gauges), disturbed, modal);
