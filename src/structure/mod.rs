@@ -14,7 +14,7 @@ mod free;
 mod imported;
 mod model;
 mod numbering;
-mod pieces;
+mod registry;
 #[cfg(test)]
 mod samples;
 mod scatter;
@@ -23,8 +23,9 @@ mod warnings;
 pub use assembly::{Assembled, GeometricStiffness, assemble};
 pub use check::check;
 pub use dofs::{DofMap, FreeDof};
+pub use elements::waves::thickness_error;
 pub use free::{FreePart, free_parts};
 pub use model::{
-    BarPart, Material, Model, PointMass, RayleighDamping, RigidLink, Section, ShellPart, Spring, Support,
+    BarPart, Material, Model, PlateTheory, PointMass, RayleighDamping, RigidLink, Section, ShellPart, Spring, Support,
 };
-pub use warnings::{ThicknessError, thickness_error, thickness_errors};
+pub use warnings::{ThicknessError, thickness_errors};
