@@ -8,7 +8,7 @@ use super::{Chance, Knowledge, LeftOut, Ranked, Trials, assignments};
 use crate::error::{Error, Result};
 use crate::progress::Observer;
 
-/// What is asked besides the fit.
+/// Options besides the fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// A level may be what was measured when, linearised, it comes as near as a factor 1 + this inside the bounds.
@@ -24,7 +24,7 @@ pub struct Options {
 /// A calibrated model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Calibration {
-    /// What the model gives at the start.
+    /// Computed values at the start.
     pub before: Computed,
     /// The fitted assignments, the least χ² first.
     pub ranked: Vec<Ranked>,
@@ -37,7 +37,7 @@ pub struct Calibration {
     pub tried: usize,
     /// Whether no other assignment can match the modes better on the linearised model than those tried, short of the hopeless.
     pub all_searched: bool,
-    /// What the data determine.
+    /// Covariance and resolution of the unknowns by the data.
     pub knowledge: Knowledge,
     /// Each datum and each response predicted from all others; empty when it was not asked for, or the others determine too
     /// little.

@@ -21,7 +21,7 @@ const SMALLEST_STEP: f64 = 1e-10;
 pub struct Fit {
     /// The unknowns.
     pub x: Vec<f64>,
-    /// What the model gives there.
+    /// Computed values there.
     pub computed: Computed,
     /// χ².
     pub chi2: f64,
@@ -60,7 +60,7 @@ impl Here {
 /// follows the ratio of the gain of χ² to the expected one (Nielsen 1999).
 ///
 /// # Errors
-/// What the model cannot compute.
+/// Those of the model.
 pub fn fit(
     model: &dyn Model,
     problem: &Problem,

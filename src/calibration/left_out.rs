@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::progress::Observer;
 use rayon::prelude::*;
 
-/// What was left out, each in turn, the modes and all responses but it kept in.
+/// Leave-one-out predictions: each datum left out in turn, the modes and all responses but it kept in.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LeftOut {
     /// The measured modes.
@@ -23,7 +23,7 @@ pub struct LeftOut {
 pub struct LeftOutDatum {
     /// The unknowns without it.
     pub x: Vec<f64>,
-    /// What they predict for it \[Hz\]; `None` where the level is not found, or where what the others leave open moves it by
+    /// Predicted frequency \[Hz\]; `None` where the level is not found, or where the uncertainty that the others leave moves it by
     /// more than the deviation of the datum.
     pub predicted_hz: Option<f64>,
     /// MAC of its shape, if it has one, with the one that they predict; likewise `None`.
@@ -37,7 +37,7 @@ pub struct LeftOutDatum {
 pub struct LeftOutCurve {
     /// The unknowns without it.
     pub x: Vec<f64>,
-    /// What they predict for its lines; `None` where a level of the others is not found, or where what the others leave open
+    /// Prediction of its lines; `None` where a level of the others is not found, or where the uncertainty that the others leave
     /// moves the lines by more than their deviation, as a root mean square.
     pub predicted: Option<Vec<f64>>,
     /// Whether the fit converged.

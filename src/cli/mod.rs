@@ -122,7 +122,7 @@ mod tests {
     use std::collections::BTreeSet;
     use std::path::Path;
 
-    /// What the sources below `folder` say, their unit tests and comments left out.
+    /// Words of the sources below `folder`, their unit tests and comments left out.
     fn words(folder: &Path, text: &mut String) {
         for entry in std::fs::read_dir(folder).unwrap().flatten() {
             let path = entry.path();

@@ -1,4 +1,4 @@
-//! What tests found beside what is computed.
+//! Comparison of measured with computed modes and responses.
 
 use super::frf::Frf;
 use super::measured::measured_set;
@@ -23,7 +23,7 @@ const ALONG: f64 = 0.966;
 #[derive(Default)]
 pub struct Tests {
     tests: Vec<Test>,
-    /// What the user should know about them.
+    /// Warnings about them.
     pub warnings: Vec<String>,
 }
 

@@ -23,7 +23,7 @@ const CHEAP: f64 = 5e9;
 const SPANNED: f64 = 1.5;
 const SPANNED_AT_LEAST: f64 = 1.4;
 
-/// What an analysis found, and in which band, spanned by which real modes.
+/// Modes of an analysis, with the band and the real modes that span it.
 struct Found {
     band: [f64; 2],
     basis: RealModes,
@@ -94,7 +94,7 @@ pub fn complex_result<'a>(
     Ok((complex, system, basis))
 }
 
-/// What a complex eigenvalue analysis needs.
+/// Input of a complex eigenvalue analysis.
 struct Problem<'p, 'a> {
     prepared: &'a Prepared<'p>,
     cea: &'a CeaAnalysis,

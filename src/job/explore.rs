@@ -331,7 +331,7 @@ impl Explorer<'_> {
     }
 }
 
-/// What the full order says of a sweep.
+/// Errors of a sweep at full order.
 struct Measured {
     critical: Vec<Option<Checked>>,
     sample: Vec<(f64, f64)>,

@@ -187,7 +187,7 @@ impl Frf<'_> {
         Ok((result, beside))
     }
 
-    /// What the contacts do, and how it is computed.
+    /// State of the contacts and method of the response, in words.
     fn about(&self, reduced: &Reduced) -> String {
         let contacts = match self.wanted.contact {
             FrfContact::Open => "contacts open",

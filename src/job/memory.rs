@@ -35,7 +35,7 @@ impl ExpectedMemory {
     /// Fails where `available` is less than the peak.
     ///
     /// # Errors
-    /// What is needed, what is there, and what makes it less.
+    /// Error when more memory is needed than is available, with the changes that reduce it.
     pub fn check(&self, available: &Available) -> Result<()> {
         if self.bytes <= available.bytes as f64 {
             return Ok(());
@@ -128,7 +128,7 @@ enum Kind {
     StudyOfStructures,
 }
 
-/// What the peak follows from.
+/// Sizes that determine the peak.
 struct Run {
     dofs: usize,
     entries: usize,

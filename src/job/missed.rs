@@ -1,5 +1,4 @@
-//! What speaks against the results of a run that came to its end: modes that are not accurate or were missed, a fit that did not
-//! converge.
+//! Consistency checks of the results of a completed run: modes that are inaccurate or missing, a fit that did not converge.
 
 use crate::error::{Error, Result};
 use crate::linalg::c64;

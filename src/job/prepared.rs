@@ -28,7 +28,7 @@ pub struct Prepared<'a> {
     pub model: Model,
     /// Its matrices and degrees of freedom.
     pub assembled: Arc<Assembled>,
-    /// What the analyses take.
+    /// System that is analysed.
     pub system: System,
     /// Things the user should know.
     pub warnings: Vec<String>,

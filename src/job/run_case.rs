@@ -88,7 +88,7 @@ pub fn run_case(
     }
 }
 
-/// What an earlier run has left to go on with.
+/// Record of an earlier run to resume from.
 fn taken_up(out: &Path, origin: Origin, asked: &Asked) -> Result<(Record, Earlier)> {
     let Some((record, earlier)) = Record::resume(out, &origin)? else {
         return Ok((Record::new(out, origin), Earlier::default()));

@@ -1,4 +1,4 @@
-//! What the unstable modes of a case answer to: its scalars, and small things mounted on its nodes.
+//! Sensitivities of the unstable modes of a case to its scalars and to small masses, springs and dampers at its nodes.
 
 use super::modes::modal_ratios;
 use super::prepared::Prepared;

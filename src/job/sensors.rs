@@ -99,8 +99,8 @@ impl Sensors {
         })
     }
 
-    /// What each degree of freedom measures of a nodal field (u, θ) on the `nodes`: d·(u + θ × a) with the way a from the
-    /// node to the point, right to a² for a plate or a bar.
+    /// Displacement measured at each degree of freedom, d·(u + θ × a), of a nodal field (u, θ) on the `nodes`, with the vector
+    /// a from the node to the point; exact to a² for a plate or a bar.
     pub fn motions(&self, nodes: &[[f64; 3]], field: &[[f64; 6]]) -> Vec<f64> {
         let motion = |(node, direction, arm): (usize, Vector3<f64>, Vector3<f64>)| {
             let [x, y, z, a, b, c] = field[node];

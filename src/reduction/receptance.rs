@@ -19,7 +19,7 @@ pub type DampingOfModes<'a> = &'a dyn Fn(&SparseMatrix, &RealModes) -> Result<Op
 pub struct Receptance {
     /// At full order, n degrees of freedom, with its modal damping.
     pub system: System,
-    /// What it moves about.
+    /// State about which it vibrates.
     pub steady: SteadySliding,
     /// Its real modes up to twice the highest frequency.
     pub real: RealModes,

@@ -1,4 +1,4 @@
-//! What the charts share: a sheet of plotters' SVG backend, its text styles, axes that end on round numbers.
+//! Common parts of the charts: a sheet of plotters' SVG backend, its text styles, axes that end on round numbers.
 
 use super::html::allowed;
 use plotters::coord::Shift;

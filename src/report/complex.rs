@@ -70,7 +70,7 @@ pub(super) fn unstable(result: &ComplexResult) -> Table {
     table
 }
 
-/// What the count of the unstable eigenvalues says, in words.
+/// Count of the unstable eigenvalues, in words.
 fn counted(certificate: &Certificate) -> String {
     let ([low, high], [slow, fast]) = (certificate.band_hz, certificate.growth);
     let faster = match certificate.proven {
@@ -106,7 +106,7 @@ fn counted(certificate: &Certificate) -> String {
     words
 }
 
-/// What the second method says, in words.
+/// Results of the second method, in words.
 fn second_method(confirmation: &Confirmation) -> String {
     if confirmation.holds() {
         return format!(

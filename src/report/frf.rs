@@ -144,7 +144,7 @@ fn table(frf: &FrfResult) -> Table {
     table
 }
 
-/// What was measured beside each mode: of the modes that show somewhere the nearest, if it is near.
+/// Measured frequency beside each mode: that of the nearest mode that shows somewhere, if it is near.
 fn beside(frf: &FrfResult) -> Vec<String> {
     let mut beside = vec![String::new(); frf.resonances.len()];
     for measured in &frf.measured {

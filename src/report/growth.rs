@@ -33,7 +33,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     Some(Picture { file: "growth".into(), caption, svg })
 }
 
-/// What the axis of the growth rate spans.
+/// Range of the axis of the growth rate.
 fn growth_range(complex: &ComplexResult) -> std::ops::Range<f64> {
     let rates = || complex.modes.modes.iter().map(|m| m.growth_rate()).filter(|s| s.is_finite());
     let highest = rates().fold(0.0, f64::max);

@@ -19,7 +19,7 @@ const LENGTH: f64 = WIDTH - LEFT - 24.0;
 const HEAD: f64 = 12.0;
 const ROW: f64 = 62.0;
 const BAR: f64 = 26.0;
-/// What a letter of a label is wide, at most on average \[px\].
+/// Width of a letter of a label, at most on average \[px\].
 const LETTER: f64 = 6.8;
 /// Light enough for dark letters; the same real mode has one colour in every bar.
 const FILLS: [&str; 12] = [

@@ -45,7 +45,7 @@ pub fn write_search(dir: &Path, result: &SearchResult) -> Result<()> {
     write_result(dir, "search.html", html::document(title, &body).as_bytes())
 }
 
-/// What the command line prints.
+/// Text printed on the command line.
 pub fn search_text(result: &SearchResult) -> String {
     let tables = [fact_table(result), number_table(result)];
     let words = words(result).into_iter().map(|w| super::text::wrap(&w));

@@ -17,7 +17,7 @@ pub struct CalibrationResult {
     pub data: Vec<CalibratedDatum>,
     /// The measured frequency responses beside the computed ones.
     pub responses: Vec<CalibratedResponse>,
-    /// What each computed level is called.
+    /// Name of each computed level.
     pub levels: Vec<String>,
     /// The set that each level belongs to.
     pub level_sets: Vec<String>,
@@ -38,7 +38,7 @@ pub struct CalibratedNumber {
     pub unit: String,
     /// Its bounds.
     pub between: [f64; 2],
-    /// What was expected.
+    /// Expected value.
     pub expected: f64,
     /// Standard deviation of that; its share of the value where `log`. Without it every value inside the bounds was as good.
     pub deviation: Option<f64>,
@@ -63,11 +63,11 @@ pub struct CalibratedNumber {
 pub struct CalibratedDatum {
     /// The set it belongs to: the name of real modes, or `squeal`.
     pub set: String,
-    /// What was measured \[Hz\].
+    /// Measured frequency \[Hz\].
     pub measured_hz: f64,
     /// Its relative standard deviation.
     pub deviation: f64,
-    /// What the mode is called.
+    /// Name of the mode.
     pub level: String,
     /// Computed with the values of the case \[Hz\].
     pub before_hz: Option<f64>,
@@ -87,11 +87,11 @@ pub struct CalibratedDatum {
 pub struct CalibratedResponse {
     /// The name of the measured set.
     pub set: String,
-    /// What the test calls it.
+    /// Name in the test.
     pub name: String,
-    /// What the case calls its place.
+    /// Name of its place in the case.
     pub place: String,
-    /// What of the motion.
+    /// Receptance, mobility or accelerance.
     pub quantity: Quantity,
     /// Standard deviation of ln |h|.
     pub deviation: f64,

@@ -9,14 +9,14 @@ const COLUMNS: usize = 840;
 /// Values of a channel that are looked at together.
 const BLOCK: usize = 1 << 16;
 
-/// What is recorded at every step, the start included. The values themselves are in `results.h5`.
+/// Quantity recorded at every step, the start included. The values themselves are in `results.h5`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Channel {
     /// `rim_velocity`, `pad_friction_force`, `heat` …
     pub name: String,
     /// The SI unit.
     pub unit: &'static str,
-    /// What it is.
+    /// Description.
     pub about: String,
     /// The least and the greatest value.
     pub range: [f64; 2],
@@ -37,7 +37,7 @@ impl Channel {
     /// Looks at all `rows` values, `step` seconds apart, which `read` gives a part at a time.
     ///
     /// # Errors
-    /// What `read` returns.
+    /// Those of `read`.
     pub fn look(
         &mut self,
         rows: usize,

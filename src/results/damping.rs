@@ -5,7 +5,7 @@ use crate::linalg::c64;
 use crate::stability::unstable;
 use std::f64::consts::TAU;
 
-/// What the modal damping ratio, the most guessed of all inputs, decides.
+/// Verdicts that depend on the modal damping ratio, the least certain of all inputs.
 #[derive(Debug, Clone)]
 pub struct DampingVerdicts {
     /// ζ of the case.

@@ -16,7 +16,7 @@ use hdf5::types::FixedAscii;
 use ndarray::{Array2, s};
 use std::path::{Path, PathBuf};
 
-/// What the file is called.
+/// File name.
 const NAME: &str = "transient.vtkhdf";
 /// The arrays of the motion.
 const ARRAYS: [&str; 2] = ["displacement", "velocity"];

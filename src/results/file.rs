@@ -25,7 +25,7 @@ use hdf5::types::OwnedDynValue;
 use hdf5::{Extents, Group, H5Type};
 use std::path::{Path, PathBuf};
 
-/// What the file is called.
+/// File name.
 const NAME: &str = "results.h5";
 
 /// The results file of a run under way.

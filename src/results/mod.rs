@@ -1,4 +1,4 @@
-//! What a run leaves behind: plain data first ([`RunResults`]), then the writers that take it.
+//! Results of a run: plain data first ([`RunResults`]), then the writers that take it.
 //!
 //! | file | what it holds | who reads it |
 //! |---|---|---|

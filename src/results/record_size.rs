@@ -14,7 +14,7 @@ const NODE: f64 = 24.0;
 const HELP: &str =
     "Make `transient.duration` shorter or `transient.time_step` longer, or `transient.fields_every` longer";
 
-/// What decides how large the record of a run in time becomes.
+/// Dimensions that determine the size of the record of a run in time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RecordSize {
     /// Steps, the start included.
@@ -76,7 +76,7 @@ pub fn fits_in_memory(record: &RecordSize) -> Result<()> {
 }
 
 impl RecordSize {
-    /// What is still to be written \[bytes\].
+    /// Size still to be written \[bytes\].
     fn bytes_on_disk(&self) -> f64 {
         let channels = self.channels as f64;
         let numbers = NUMBER * channels + MODAL * self.modes as f64;
@@ -88,7 +88,7 @@ impl RecordSize {
     }
 }
 
-/// What is wrong where `bytes` are more than the `free` ones.
+/// Error when `bytes` are more than the `free` ones.
 fn fits(record: &RecordSize, bytes: f64, free: f64, place: &str) -> std::result::Result<(), String> {
     if bytes <= free {
         return Ok(());

@@ -5,7 +5,7 @@ use crate::error::Result;
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// What a search found.
+/// Results of a search.
 #[derive(Debug, Clone)]
 pub struct SearchResult {
     /// One line.
@@ -14,7 +14,7 @@ pub struct SearchResult {
     pub numbers: Vec<SearchedNumber>,
     /// The facts with the numbers that were found.
     pub facts: CheckedCase,
-    /// What was computed for the facts at the start.
+    /// Values of the facts computed at the start.
     pub before: Vec<f64>,
     /// The cost at the start and of what was found.
     pub costs: [f64; 2],
@@ -41,7 +41,7 @@ pub struct SearchedNumber {
     pub before: f64,
     /// The value that was found \[SI\].
     pub after: f64,
-    /// What happens with a smaller and a larger value, all others as found; none where a bound is.
+    /// Cost at a smaller and a larger value, all others as found; none beyond a bound.
     pub moved: [Option<Moved>; 2],
 }
 

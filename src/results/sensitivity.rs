@@ -23,7 +23,7 @@ pub struct ModeSensitivity {
     pub eigenvalue: c64,
     /// Every scalar, that which moves the growth rate most by a hundredth of itself first.
     pub parameters: Vec<ParameterRate>,
-    /// What a thing mounted at each node does.
+    /// Effect of small additions at each node.
     pub advice: Option<AdviceField>,
     /// The best place for a mass, and for a damper.
     pub best: Vec<Mounted>,

@@ -11,7 +11,7 @@ use std::path::Path;
 pub struct Sound {
     /// The first and last time of what the levels are taken from \[s\].
     pub window: [f64; 2],
-    /// What carries it.
+    /// Air around the plates.
     pub air: Air,
     /// Δf \[Hz\]: line k stands at k Δf. The last line is the highest frequency that counts.
     pub resolution_hz: f64,
@@ -21,7 +21,7 @@ pub struct Sound {
     pub mode_shares: Vec<f64>,
     /// The peaks of the power, strongest lines of it: amplitude² is their height in W.
     pub tones: Vec<Tone>,
-    /// What is heard where.
+    /// Pressure at each microphone.
     pub microphones: Vec<Heard>,
     /// The pressure at the first microphone.
     pub recording: Sounding,
@@ -38,7 +38,7 @@ pub struct Tone {
     pub share: f64,
 }
 
-/// What a microphone hears.
+/// Sound pressure at a microphone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Heard {
     /// Its name.

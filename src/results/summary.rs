@@ -23,7 +23,7 @@ pub fn write_summary(dir: &Path, results: &RunResults) -> Result<()> {
     write_result(dir, "summary.json", text.as_bytes())
 }
 
-/// What `summary.json` holds.
+/// Contents of `summary.json`.
 pub fn summary_json(results: &RunResults) -> Value {
     let mut json = Group::new("", "")
         .value("schema_version", "1", "version of the layout", SCHEMA_VERSION)
@@ -53,7 +53,7 @@ fn case_object(toml_text: &str) -> Value {
     table.and_then(|table| serde_json::to_value(table).ok()).unwrap_or_default()
 }
 
-/// What is known before the first analysis.
+/// Group of the data that are known before the first analysis.
 pub(super) fn head(results: &RunResults) -> Group<'_> {
     let ModelSize { nodes, elements, dofs, nonzeros, contact_points } = results.size;
     let model = Group::new("model", "size of the model")
@@ -78,7 +78,7 @@ pub(super) fn head(results: &RunResults) -> Group<'_> {
         .group(model)
 }
 
-/// What is known at the end.
+/// Group of the data that are known at the end.
 pub(super) fn tail(results: &RunResults) -> Group<'_> {
     let timings = [
         column("phase", "text", "phase of the run", |(phase, _): &(String, f64)| phase.clone()),
@@ -97,7 +97,7 @@ pub(super) fn sentences<'a>(
     Variable::texts(key, description, Dimension::of_variable(key, sentences.len()), sentences.to_vec())
 }
 
-/// What the analyses have found.
+/// Groups of the analyses.
 pub(super) fn analyses(results: &RunResults) -> Group<'_> {
     results.records.iter().fold(Group::new("", ""), |all, record| all.merged(record.describe()))
 }

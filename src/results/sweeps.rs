@@ -64,7 +64,7 @@ fn passed((result, k): &Passed) -> Critical {
     result.sweep.critical[*k]
 }
 
-/// What the full order says of the mode there.
+/// Error of the mode there at full order.
 fn full((result, k): &Passed, part: fn(Checked) -> f64) -> Option<f64> {
     result.verified.get(*k).copied().flatten().map(part)
 }

@@ -1,4 +1,4 @@
-//! What goes to test-data programs, as universal files: frequency responses and mode shapes.
+//! Universal files for test-data programs: frequency responses and mode shapes.
 
 use super::{FileNames, FrfResult, NamedModes, PlaceAndDirection, RunResults, write_result};
 use crate::error::Result;

@@ -34,7 +34,7 @@ pub use surface::Surface;
 pub use wav::wav;
 pub use weighting::{a_weighting, power_level, pressure_level};
 
-/// What carries the sound.
+/// Properties of the air.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Air {
     /// ρ₀ \[kg/m³\].

@@ -87,7 +87,7 @@ pub fn complex_modes<'a>(
     analyse(system, steady, known, band, observer, |_, _| ()).map(|(modes, ())| modes)
 }
 
-/// What an analysis has at hand when its modes are found.
+/// Data of an analysis with its modes found.
 pub(super) struct Analysis<'a> {
     pub(super) operator: &'a Operator<'a>,
     pub(super) basis: &'a Basis<'a>,
@@ -247,7 +247,7 @@ fn solve_and_refine<'a>(
     Ok((modes, basis))
 }
 
-/// What to say where the real modes do not reach the band's top: those known, or the frequency below which a count has shown
+/// Warning where the real modes do not reach the band's top: those known, or the frequency below which a count has shown
 /// that there are no others.
 fn incomplete(operator: &Operator<'_>, real: &RealModes, top_hz: f64) -> Option<String> {
     let highest = real.len().checked_sub(1).map_or(0.0, |last| real.frequency_hz(last));

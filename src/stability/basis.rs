@@ -312,8 +312,8 @@ fn gram_diagonal(x: &Mat<f64>, y: &Mat<f64>) -> Vec<f64> {
     (0..x.ncols()).map(dot).collect()
 }
 
-/// What makes columns with this Gram matrix orthonormal, one column for each that stays; the columns that stay; and those
-/// that are too much like them. `before` are the squares of their lengths before what was known was taken from them.
+/// Matrix that makes columns with this Gram matrix orthonormal, one column for each that stays; the columns that stay; and those
+/// that depend on them. `before` are the squares of their lengths before projection against the known columns.
 fn orthonormalising(square: &Mat<f64>, before: &[f64]) -> (Mat<f64>, Vec<usize>, Vec<usize>) {
     const LOST: f64 = 1e-12;
     const ALIKE: f64 = 1e-3;

@@ -100,7 +100,7 @@ impl Block {
         [re, im].map(|part| whole(part.col_mut(j)))
     }
 
-    /// What a real operation makes of every vector.
+    /// Image of every vector by a real operation.
     pub(super) fn map(&self, f: impl FnOnce(MatRef<'_, f64>) -> Mat<f64>) -> Self {
         let parts = f(self.parts());
         assert!(parts.ncols() == self.parts.ncols(), "one column for each");

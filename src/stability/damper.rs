@@ -1,4 +1,4 @@
-//! What it takes to apply the damping of a structure to vectors whose M x and K x are known.
+//! Damping of a structure, applied to vectors whose M x and K x are known.
 
 use crate::linalg::SparseMatrix;
 use crate::linalg::dense::product;

@@ -21,7 +21,7 @@ use crate::system::{Damping, System};
 use faer::Mat;
 use std::f64::consts::TAU;
 
-/// What all states of a family share on the full order: the structure, every direction in which a contact point may
+/// Data on the full order common to all states of a family: the structure, every direction in which a contact point may
 /// act, and the factor of A = K + K_σ − s M.
 pub struct Frame<'a> {
     system: &'a System,
@@ -62,7 +62,7 @@ pub struct FamilyModes {
     pub vectors: Mat<c64>,
 }
 
-/// What the full order says of the modes of one state.
+/// Modes of one state and their errors at full order.
 #[derive(Debug, Clone, Default)]
 pub struct FamilyCheck {
     /// λ of the modes \[1/s\].

@@ -61,7 +61,7 @@ pub struct ComplexModes {
     pub subspace_dimension: usize,
     /// Rounds of full-order refinement.
     pub refinements: usize,
-    /// What the reader of the modes should know: a count that changed, a mode not accepted, too few real modes.
+    /// Warnings: a count that changed, a mode not accepted, too few real modes.
     pub warnings: Vec<String>,
 }
 
@@ -116,7 +116,7 @@ impl ComplexMode {
         -self.eigenvalue.re / self.eigenvalue.norm()
     }
 
-    /// What its growth rate says about it.
+    /// Verdict by its growth rate.
     pub fn verdict(&self) -> Verdict {
         if !self.accurate() {
             Verdict::Inaccurate
@@ -177,7 +177,7 @@ fn accuracy_warnings(modes: &[ComplexMode]) -> impl Iterator<Item = String> {
     })
 }
 
-/// What the growth rate of a complex mode says.
+/// Stability of a complex mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
     /// The mode does not grow.

@@ -1,4 +1,4 @@
-//! What interface and damping make of the structure: the first directions besides the real modes.
+//! Responses of the structure to interface and damping: the first directions besides the real modes.
 
 use super::basis::Basis;
 use super::block::Block;

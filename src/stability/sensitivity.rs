@@ -183,7 +183,7 @@ impl<'a> Sensitivity<'a> {
     /// bends), ten and a hundred times smaller ones are tried and the steps that agree best are kept.
     ///
     /// # Errors
-    /// What `build` returns, and what [`Sensitivity::change`] finds wrong.
+    /// Those of `build`, and those of [`Sensitivity::change`].
     pub fn differentiate(
         &self,
         value: f64,

@@ -24,11 +24,11 @@ pub struct Encounter {
     pub distance: f64,
     /// ω/2π between them \[Hz\].
     pub frequency_hz: f64,
-    /// What they do.
+    /// Kind of interaction.
     pub kind: EncounterKind,
 }
 
-/// What two branches do that meet.
+/// Kind of interaction of two branches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EncounterKind {
     /// Their frequencies pass through each other, each keeps its shape.

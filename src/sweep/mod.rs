@@ -29,7 +29,7 @@ use crate::linalg::c64;
 use crate::stability::{ROUND_OFF, unstable};
 use faer::Mat;
 
-/// What a sweep asks of the mechanics: the complex modes at a place of its parameters.
+/// Parametric eigenvalue problem of a sweep: the complex modes at a place of its parameters.
 pub trait Problem: Sync {
     /// The modes at `at`, one value a parameter.
     ///

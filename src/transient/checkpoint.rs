@@ -1,4 +1,4 @@
-//! What a march needs to go on, as named arrays that any file can hold.
+//! State needed to resume a run in time, as named arrays that any file can hold.
 
 use super::ledger::Work;
 use super::march::{Control, Marched};

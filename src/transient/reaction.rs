@@ -12,7 +12,7 @@ use faer::Mat;
 pub(super) struct Reaction {
     /// r \[N\].
     pub(super) force: Vec<f64>,
-    /// What each point remembers.
+    /// Bristle deflections of each point.
     pub(super) bristles: Vec<Bristles>,
     /// ∂r/∂q \[N/m\] and ∂r/∂q̇ \[N s/m\] of each point.
     blocks: Vec<ContactBlock>,
@@ -20,7 +20,7 @@ pub(super) struct Reaction {
     by_friction: Vec<[[f64; 2]; 2]>,
 }
 
-/// What a contact point remembers from step to step.
+/// Internal friction state of a contact point.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Bristles {
     /// How far they are bent along t₁ and t₂ \[m\].
@@ -33,7 +33,7 @@ pub(super) struct Bristles {
 /// regular where the friction of several points at rest is not unique.
 const HELD: f64 = 1.0 - 1e-8;
 
-/// What reactions depend on besides the motion along the directions.
+/// Arguments of the reactions besides the motion along the directions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Moment<'a> {
     /// Where the contacts act.
@@ -49,7 +49,7 @@ pub(super) struct Moment<'a> {
 pub(super) struct Since<'a> {
     /// ∫V dt of each pair where it began \[m\].
     pub(super) travel: &'a [f64],
-    /// What each point remembered there.
+    /// Bristle deflections of each point there.
     pub(super) bristles: &'a [Bristles],
     /// Δt \[s\].
     pub(super) duration: f64,

@@ -1,4 +1,4 @@
-//! What a channel of a run in time does between two times.
+//! A channel of a run in time between two times.
 
 use super::reference::Near;
 use crate::signal::{self, Peak};

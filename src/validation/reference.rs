@@ -22,14 +22,14 @@ pub struct Reference {
     pub source: String,
     /// The cases to run, by their files.
     pub cases: BTreeMap<String, Case>,
-    /// What to check.
+    /// Checks.
     pub checks: Vec<Check>,
 }
 
 /// One quantity beside its reference.
 #[derive(Debug)]
 pub struct Check {
-    /// What it is, in words.
+    /// Description of the quantity.
     pub quantity: String,
     /// How it is computed.
     pub of: Quantity,
@@ -106,11 +106,11 @@ pub enum Kind {
     },
     /// The largest growth rate of any mode \[1/s\].
     GrowthRate,
-    /// What a channel of the run in time does between two times.
+    /// Measure of a channel of the run in time between two times.
     InTime {
         /// Which and when.
         of: Span,
-        /// What of it.
+        /// Its measure.
         measure: Measure,
         /// As a part of what the full model says, for a case whose model is reduced.
         over_full: bool,
@@ -150,7 +150,7 @@ pub struct Span {
     pub window: [f64; 2],
 }
 
-/// What is measured of a channel.
+/// Measure of a channel.
 #[derive(Debug, Clone)]
 pub enum Measure {
     /// Half of what it spans.
@@ -186,7 +186,7 @@ pub struct Near {
     pub frequencies_hz: Vec<f64>,
     /// … as far as this share of them to either side.
     pub within: f64,
-    /// What is above does not count \[Hz\].
+    /// Frequency above which nothing counts \[Hz\].
     pub below_hz: f64,
 }
 

@@ -15,7 +15,7 @@ use crate::structure::Assembled;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// What a mode is called: the part that moves most, and its disc name.
+/// Name of a mode: the part that moves most, and its disc name.
 type Name = (Option<String>, Option<DiscModeName>);
 
 /// The real modes of one analysis of the case at some values of the parameters.
@@ -74,7 +74,7 @@ impl Solved {
         levels(&hz, &names).into_iter().map(|level| level.map(|k| rest.start + k).collect()).collect()
     }
 
-    /// What each of `levels` is called.
+    /// Name of each of `levels`.
     pub fn labels(&self, levels: &Picks) -> Vec<String> {
         let label = |k: usize| match &self.names {
             Some((_, labels)) => labels[k].clone(),

@@ -18,7 +18,7 @@ const MOST_STEPS: usize = 200;
 /// Modes whose eigenvalues differ by less than this part are as good as one level.
 const SAME: f64 = 1e-9;
 
-/// What a test sees of a structure.
+/// Sensors of a test on a structure.
 pub struct Eyes {
     /// Each measured degree of freedom as a form of the structure's own.
     pub forms: Vec<SparseVector>,
@@ -32,12 +32,12 @@ pub struct Seen<'a> {
     pub structure: &'a Structure,
     /// All modes up to a frequency.
     pub modes: &'a RealModes,
-    /// What sees them.
+    /// Their sensors.
     pub eyes: &'a Eyes,
 }
 
 impl Seen<'_> {
-    /// What the test sees of the modes `level`: one column each.
+    /// Shapes of the modes `level` at the sensors, n_sensors × n_modes.
     pub fn motions(&self, level: &[usize]) -> DMatrix<f64> {
         self.look(&self.eyes.forms, level.iter().map(|k| self.modes.shapes.col_as_slice(*k)))
     }

@@ -48,7 +48,7 @@ impl Sliding {
         (0..self.modes().len()).filter(|k| self.modes()[*k].unstable()).map(|k| vec![k]).collect()
     }
 
-    /// What each of `levels` is called.
+    /// Name of each of `levels`.
     pub fn names(&self, levels: &Picks) -> Vec<String> {
         let name =
             |level: &Vec<usize>| format!("unstable, {}", first_part(&self.complex.participation[level[0]]));

@@ -20,7 +20,7 @@ fn transform(unit: &str) -> String {
     format!("transform = {{ origin = {ORIGIN:?}, x_axis = {X:?}, y_axis = {Y:?}, unit = \"{unit}\" }}\n")
 }
 
-/// What is `x` of the mesh in the test.
+/// `x` of the mesh in the frame of the test.
 fn seen(x: [f64; 3], point: bool) -> [f64; 3] {
     let frame = Frame::new(ORIGIN, X, Y);
     let origin = if point { frame.point([0.0; 3]) } else { [0.0; 3] };

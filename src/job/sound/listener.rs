@@ -1,4 +1,4 @@
-//! What is heard of a run while it goes on.
+//! Sound of a run, computed while the run proceeds.
 
 use super::Acoustics;
 use crate::modal::RealModes;
@@ -113,7 +113,7 @@ impl Listener {
         }
     }
 
-    /// What was heard.
+    /// Sound of the whole run.
     pub fn finish(mut self) -> Sound {
         let Listener { cross, air, plates, step, .. } = &self;
         let (lines, resolution_hz) = (cross.lines(), cross.resolution_hz());

@@ -13,7 +13,7 @@ const ROWS: usize = 4096;
 /// A piece is handed on at the latest after this time.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// What the recorder makes, on its way to its sink. Each piece comes with a checkpoint; memory does not grow with the
+/// Rows of the recorder, written to its sink. Each piece comes with a checkpoint; memory does not grow with the
 /// run. How the rows are cut into pieces has no influence on them.
 pub(super) struct HistoryWriter<'a, 'k> {
     pub(super) recorder: Recorder<'a>,

@@ -110,7 +110,7 @@ fn with_gaps(bytes: &[u8], encoding: Encoding) -> Vec<u8> {
     file
 }
 
-/// What mshio could not read.
+/// Explanation of an error of mshio.
 fn explain(error: &mshio::MshParserError<&[u8]>) -> String {
     let mut parts: Vec<String> =
         error.filter_msh_errors().filter_map(|(_, kind)| kind.context().map(String::from)).collect();

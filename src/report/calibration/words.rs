@@ -1,4 +1,4 @@
-//! What a calibration is worth, in sentences.
+//! Quality of a calibration, in sentences.
 
 use super::super::format::{fixed, given, power, significant};
 use crate::results::CalibrationResult;

@@ -1,4 +1,4 @@
-//! What a sweep or a map found, in words and tables.
+//! Results of a sweep or a map, in words and tables.
 
 use crate::report::format::{fixed, hertz, power, signed, significant};
 use crate::report::table::Table;
@@ -32,7 +32,7 @@ fn list(words: &[String]) -> String {
     }
 }
 
-/// What the sweep found.
+/// Results of the sweep.
 pub(in crate::report) fn sweep_words(result: &SweepResult) -> Vec<String> {
     let (sweep, unit) = (&result.sweep, result.unit.as_str());
     let grows = |b: &&crate::sweep::Branch| b.eigenvalues.iter().any(|z| unstable(*z));
@@ -120,7 +120,7 @@ pub(in crate::report) fn critical_table(result: &SweepResult) -> Table {
     table
 }
 
-/// What the map found.
+/// Results of the map.
 pub(in crate::report) fn map_words(result: &MapResult) -> Vec<String> {
     let n = result.axes[0].points;
     let answered: Vec<_> =

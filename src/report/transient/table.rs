@@ -100,7 +100,7 @@ fn swing(run: &TransientResult, channel: usize, cycle: &LimitCycle) -> String {
     )
 }
 
-/// What the most loaded contact point did.
+/// States of the most loaded contact point.
 fn contact(run: &TransientResult) -> Vec<String> {
     let [open, stuck, backwards, _] = run.spent.map(|share| fixed(100.0 * share, 1));
     let mut notes = vec![format!(

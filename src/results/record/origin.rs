@@ -1,4 +1,4 @@
-//! What results were made of: the case and the files it reads.
+//! Origin of results: the case and the files it reads.
 
 use crate::error::{Error, Fault, Result};
 use sha2::{Digest, Sha256};

@@ -8,7 +8,7 @@ use crate::stability::analysis::Analysis;
 use crate::stability::damper::{Damper, Part, modal_times};
 use faer::Mat;
 
-/// What of the damping of a structure is not proportional.
+/// Damping of a structure that is not proportional.
 pub(super) struct DampingParts {
     /// Whether the modal damping acts on real modes of the basis only.
     pub(super) modal_inside: bool,

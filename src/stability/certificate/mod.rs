@@ -20,7 +20,7 @@
 //!
 //! Where the part that is not symmetric has no low rank the determinant is followed at full order ([`determinant`]).
 //!
-//! What is assumed: the real modes are exact (their residuals enter squared), rounding errors are not bounded, and modal
+//! Assumptions: the real modes are exact (their residuals enter squared), rounding errors are not bounded, and modal
 //! damping counts as acting on real modes when one random combination of its modes does.
 
 mod beyond;
@@ -89,7 +89,7 @@ pub struct Certificate {
     /// Whether the count is a proof, up to rounding, where `margin` is above 1. Otherwise it is that of a phase followed from point to
     /// point at full order, `margin` half a turn by the largest step.
     pub proven: bool,
-    /// What came near to the contour or is not inside it though unstable.
+    /// Eigenvalues near the contour, or unstable outside it.
     pub close_calls: Vec<CloseCall>,
 }
 
@@ -220,7 +220,7 @@ fn work_of_a_point(analysis: &Analysis<'_>) -> f64 {
     r * r * (16.0 * m + 40.0 * r) + 4.0 * m * r * (m - analysis.basis.n_real() as f64) + 3e5
 }
 
-/// What a count is expected to take: about thirty points of the contour a mode.
+/// Expected work of a count \[operations\]: about thirty points of the contour a mode.
 fn expected_work(analysis: &Analysis<'_>, modes: &ComplexModes) -> f64 {
     30.0 * (modes.modes.len() + 10) as f64 * work_of_a_point(analysis)
 }
@@ -257,7 +257,7 @@ enum Way {
     Spectrum,
 }
 
-/// What counts the zeros of Q_B in a region.
+/// Function that counts the zeros of Q_B in a region.
 type Count<'a> = dyn Fn(&Region) -> std::result::Result<Winding, Stopped> + 'a;
 
 fn count_by(way: Way, analysis: &Analysis<'_>, modes: &ComplexModes, most_work: f64) -> Result<Certificate> {

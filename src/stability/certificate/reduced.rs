@@ -24,7 +24,7 @@ pub(crate) struct ReducedModel {
     pub(super) active: Vec<usize>,
     /// W_B of the active directions, m × r.
     pub(super) interface: Mat<f64>,
-    /// What the full order has beyond the basis; `None` when the basis is the whole space.
+    /// Coupling to the complement of the basis; `None` when the basis is the whole space.
     pub(super) remainder: Option<Remainder>,
     /// Whether C and H are known to dissipate.
     pub(super) dissipative: bool,

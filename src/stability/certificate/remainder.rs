@@ -1,4 +1,4 @@
-//! What the full order has beyond the basis, bounded.
+//! Bound of the coupling to the complement of the basis.
 //!
 //! Z is the complement of the basis B that is orthogonal to it in A = K + K_σ − σ_A M, the matrix that the analysis has
 //! factorised. Every real mode below Ω_b is in B, so that A is positive on Z, and with P(s) = s²M + sC + K + K_σ + iH
@@ -200,7 +200,7 @@ struct Probes {
 impl Probes {
     /// How many there are.
     const COUNT: usize = 4;
-    /// What the largest error seen is multiplied by. A symmetric error of norm e with the numbers c between −1 and 1 shows as
+    /// Factor on the largest error seen. A symmetric error of norm e with the numbers c between −1 and 1 shows as
     /// e/100 at least in one of four, but for once in three thousand times when it has rank one, and seldomer with more.
     const MARGIN: f64 = 100.0;
 
