@@ -39,7 +39,7 @@ pub struct Calibration {
     pub all_searched: bool,
     /// Covariance and resolution of the unknowns by the data.
     pub knowledge: Knowledge,
-    /// Each datum and each response predicted from all others; empty when it was not asked for, or the others determine too
+    /// Each datum and each response predicted from all others; empty when it was not requested, or the others determine too
     /// little.
     pub left_out: LeftOut,
     /// How often chance does as well.
@@ -179,8 +179,9 @@ mod tests {
         let options = Options { reach: 0.02, chance_draws: 0, trials: 0, ..ALL };
         let found = calibrate(&model, &problem, &[0.0; 2], &options, &()).unwrap();
         assert_eq!(found.best().assignment, [0, 1, 2, 3]);
-        let told: Vec<bool> = found.left_out.data.iter().map(|left| left.predicted_hz.is_some()).collect();
-        assert_eq!(told, [true, true, true, false]);
+        let predicted: Vec<bool> =
+            found.left_out.data.iter().map(|left| left.predicted_hz.is_some()).collect();
+        assert_eq!(predicted, [true, true, true, false]);
     }
 
     #[test]

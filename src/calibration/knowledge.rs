@@ -183,7 +183,7 @@ mod tests {
         // P(χ² > 6) with two degrees of freedom is e⁻³.
         assert!((known.chi2_probability.unwrap() - (-3.0f64).exp()).abs() < 1e-9);
         assert!(known.determined() == 2 && known.condition() < 10.0);
-        // A third unknown without effect is told.
+        // A third unknown without effect is reported.
         problem.unknowns.push(Unknown { bounds: [-1.0, 1.0], expected: None });
         let mut fit = fit;
         fit.x.push(0.3);

@@ -93,7 +93,7 @@ fn act(command: &Command) -> Result<ExitCode> {
     }
 }
 
-/// The most threads that may be asked for, unless there are more cores.
+/// The most threads that may be requested, unless there are more cores.
 const MOST_THREADS: usize = 1024;
 
 /// Starts the threads: as many as there are cores where no number is given.

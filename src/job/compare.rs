@@ -138,7 +138,7 @@ impl Tests {
         own.filter(|test| !test.set.modes.is_empty()).map(|test| test.compare(analysis, named)).collect()
     }
 
-    /// The tests of a frequency response beside the receptances that they asked for \[m/N\].
+    /// The tests of a frequency response beside the receptances that they requested \[m/N\].
     pub fn responses(&self, computed: &FrfResult, receptances: &[Vec<c64>]) -> Vec<MeasuredResponses> {
         let of = |test: &Test| {
             let responses = test.responses.as_ref().filter(|responses| responses.frf == computed.name)?;

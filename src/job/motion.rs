@@ -5,7 +5,7 @@ use crate::error::{Error, Fault, Result};
 use crate::linalg::SparseVector;
 use crate::structure::ShellPart;
 
-/// A place whose motion is looked at, or that is pushed.
+/// A place whose motion is recorded, or on which a load acts.
 #[derive(Debug, Clone)]
 pub struct Motion {
     /// Where it is, in words.

@@ -140,7 +140,7 @@ impl<'a> Prepared<'a> {
         pairs.map(|pair| arrows(&self.case.contact[&pair.name], &self.model, &pair.points)).collect()
     }
 
-    /// How steady sliding is looked for. A contact pressed deeper than half of the thinnest plate makes no sense.
+    /// Settings of the solution of steady sliding. A contact pressed deeper than half of the thinnest plate makes no sense.
     pub fn steady_options(&self) -> SteadyOptions {
         let thinnest = self.model.shells.iter().map(|s| s.thickness).fold(f64::INFINITY, f64::min);
         SteadyOptions { penetration_limit: 0.5 * thinnest, ..SteadyOptions::default() }

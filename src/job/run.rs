@@ -89,7 +89,7 @@ impl<'a, 'k> Run<'a, 'k> {
         self.clock.time(phase, || work(observer))
     }
 
-    /// Steady sliding, which is computed when it is first asked for.
+    /// Steady sliding, which is computed on first use.
     ///
     /// # Errors
     /// No steady state; the machine refuses.

@@ -27,7 +27,7 @@ pub enum Kind {
     Law,
     /// Ratios of modal damping: C is linear in them.
     Ratio,
-    /// Everything else: the model is built anew.
+    /// Everything else: the model is rebuilt.
     Structure,
 }
 
@@ -78,7 +78,7 @@ impl Scalar {
         Scalar { path: parameter.path, value: parameter.value, unit: parameter.unit, kind }
     }
 
-    /// A step that is small against what the scalar stands for, and a guess where it is zero.
+    /// A step that is small against the magnitude of the scalar, and a guess where it is zero.
     pub fn step(&self) -> f64 {
         const SHARE: f64 = 1e-3;
         let least = match (self.unit, self.path.rsplit('.').next()) {

@@ -35,7 +35,7 @@ pub enum Stage<'a> {
     MapPoints(&'a str, usize, &'a [MapPoint]),
     /// A whole map.
     Map(&'a MapResult),
-    /// A run in time that begins or, after [`ResultSink::stopped`] had an answer, goes on.
+    /// A run in time that begins or, after [`ResultSink::stopped`] had an answer, resumes.
     TransientBegins(&'a Recording<'a>),
     /// New rows of it.
     TransientPiece(&'a Piece<'a>),
@@ -59,7 +59,7 @@ pub trait ResultSink {
     /// The machine refuses.
     fn recorded(&self, channel: &str, rows: Range<usize>) -> Result<Vec<f64>>;
 
-    /// Where an earlier run in time stopped that is to be taken up.
+    /// State at which an earlier run in time stopped that is to be resumed.
     ///
     /// # Errors
     /// The machine refuses.

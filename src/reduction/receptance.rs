@@ -8,7 +8,7 @@ use crate::modal::{ModesWanted, RealModes, compute};
 use crate::progress::Observer;
 use crate::system::{ModalDamping, Structure, System};
 
-/// Real modes are taken up to this many times the highest frequency.
+/// Real modes are computed up to this many times the highest frequency.
 const MODES: f64 = 2.0;
 
 /// Modal damping of a structure, given M and its real modes; none where it has none.

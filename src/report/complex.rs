@@ -132,7 +132,7 @@ fn second_method(confirmation: &Confirmation) -> String {
 /// The verdict in one sentence.
 pub(super) fn verdict(results: &RunResults) -> String {
     let Some(complex) = results.get::<ComplexResult>() else {
-        return "No complex eigenvalues were asked for: this run says nothing about squeal.".into();
+        return "No complex eigenvalues were requested: this run does not assess squeal.".into();
     };
     let band = complex.band_hz.map(given);
     let modes = &complex.modes.modes;

@@ -13,7 +13,7 @@ use std::error::Error;
 
 /// A mode with less than this part of the largest product of shapes does not show.
 const HIDDEN: f64 = 0.01;
-/// A measured resonance stands beside a mode that differs from it by less than this part.
+/// A measured resonance is paired with a mode that differs from it by less than this part.
 const NEAR: f64 = 0.05;
 
 /// Every frequency response.

@@ -40,7 +40,7 @@ fn growth_range(complex: &ComplexResult) -> std::ops::Range<f64> {
     let lowest = rates().fold(0.0, f64::min);
     let floor = if highest > 0.0 { lowest.max(-DEEPEST * highest) } else { lowest };
     let length = (highest - floor).max(f64::MIN_POSITIVE);
-    // Room above for the labels of modes and bands.
+    // Space above for the labels of modes and bands.
     let range = widened(floor, highest + 0.3 * length, 0.06);
     if range.end - range.start < 1e-9 { -1.0..1.0 } else { range }
 }

@@ -123,7 +123,7 @@ fn fact_table(result: &SearchResult) -> Table {
     table
 }
 
-/// The first words of a long name, so that the figures beside it have room.
+/// The first words of a long name, so that the figures beside it fit.
 fn shortened(words: &str) -> String {
     const MOST: usize = 42;
     match words.char_indices().nth(MOST) {

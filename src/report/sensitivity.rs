@@ -65,7 +65,7 @@ fn advice_table(result: &SensitivityResult) -> Table {
     }
     table
         .notes
-        .push("By slope: to first order; done: mounted on the model and everything computed anew.".into());
+        .push("By slope: to first order; done: mounted on the model and everything recomputed.".into());
     table.notes.push(
         "Slope error: how far a thousandth of the thing, really mounted, is from the slope, relative.".into(),
     );

@@ -73,7 +73,7 @@ pub struct CalibratedDatum {
     pub before_hz: Option<f64>,
     /// Computed with the values that were found \[Hz\].
     pub after_hz: Option<f64>,
-    /// Computed with the values that the other data lead to \[Hz\]; none where they do not tell.
+    /// Computed with the values that the other data lead to \[Hz\]; none where they do not determine it.
     pub left_out_hz: Option<f64>,
     /// Growth rate of the mode with the values that were found \[1/s\]; none of a real mode.
     pub growth: Option<f64>,
@@ -103,7 +103,7 @@ pub struct CalibratedResponse {
     pub before: Vec<f64>,
     /// Computed with the values that were found.
     pub after: Vec<f64>,
-    /// Computed with the values that all other data lead to; none where they do not tell.
+    /// Computed with the values that all other data lead to; none where they do not determine it.
     pub left_out: Option<Vec<f64>>,
 }
 
@@ -129,7 +129,7 @@ pub struct CalibratedShape {
     pub before: Option<f64>,
     /// With the values that were found.
     pub after: Option<f64>,
-    /// With the values that the other data lead to; none where they do not tell.
+    /// With the values that the other data lead to; none where they do not determine it.
     pub left_out: Option<f64>,
 }
 

@@ -8,7 +8,7 @@ use crate::linalg::c64;
 use crate::measured::Quantity;
 use std::ops::Range;
 
-/// Computed modes without a measured one are told within this share beyond the measured frequencies.
+/// Computed modes without a measured one are reported within this share beyond the measured frequencies.
 const BEYOND: f64 = 0.1;
 
 /// Measured modes and the computed modes set beside them.

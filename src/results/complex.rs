@@ -28,7 +28,7 @@ pub struct ComplexResult {
     pub band_hz: [f64; 2],
     /// The count of the unstable eigenvalues, where there is one.
     pub certificate: Option<Certificate>,
-    /// The second method beside it, if the case asked for one.
+    /// The second method beside it, if the case requests one.
     pub confirmation: Option<Confirmation>,
 }
 

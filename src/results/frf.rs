@@ -5,7 +5,7 @@ use crate::dataset::{Describe, Dimension, Group, Table, Values, Variable, column
 use crate::linalg::c64;
 use crate::measured::Quantity;
 
-/// A peak stands beside a measured one that differs from it by less than this part.
+/// A peak is paired with a measured one that differs from it by less than this part.
 const NEAR: f64 = 0.05;
 
 /// Motion at some places for a harmonic force at another.

@@ -1,4 +1,4 @@
-//! Whether the record of a run in time finds room, before the run begins.
+//! Check of the memory and disk space for the record of a run in time, before the run begins.
 
 use super::Recording;
 use crate::error::{Error, Result};
@@ -48,7 +48,7 @@ impl From<&Recording<'_>> for RecordSize {
     }
 }
 
-/// Refuses a record that the disk of the folder `dir` has no room for; the folder may be one that is still to be made.
+/// Refuses a record for which the disk of the folder `dir` has no space; the folder may be one that is still to be made.
 ///
 /// # Errors
 /// [`Error::Io`]: there is none.
@@ -61,7 +61,7 @@ pub fn fits_on_disk(dir: &Path, record: &RecordSize) -> Result<()> {
     }
 }
 
-/// Refuses a record that is kept in memory and that memory has no room for.
+/// Refuses a record that does not fit in memory.
 ///
 /// # Errors
 /// [`Error::Analysis`]: there is none.
@@ -83,7 +83,7 @@ impl RecordSize {
         let (rows, new) = (self.rows as f64, self.rows.saturating_sub(self.done) as f64);
         let new_fields = self.fields.saturating_sub(self.fields_done);
         let fields = NODE * self.nodes as f64 * (self.fields + new_fields) as f64;
-        // A run that goes on writes results.h5, with the times, and the tables anew, and adds to record.bin.
+        // A resumed run rewrites results.h5, with the times, and the tables, and appends to record.bin.
         rows * (NUMBER + numbers + TEXT * (channels + 1.0)) + new * numbers + fields
     }
 }
@@ -123,7 +123,7 @@ fn free_on_disk(dir: &Path) -> Option<f64> {
     use std::os::unix::ffi::OsStrExt;
     let path = std::ffi::CString::new(dir.as_os_str().as_bytes()).ok()?;
     let mut found = std::mem::MaybeUninit::<libc::statvfs>::uninit();
-    // SAFETY: the path ends in a zero and `found` has room for the answer, which is read only where the call succeeded.
+    // SAFETY: the path ends in a zero and `found` is large enough for the answer, which is read only where the call succeeded.
     let found = unsafe {
         if libc::statvfs(path.as_ptr(), found.as_mut_ptr()) != 0 {
             return None;

@@ -60,8 +60,8 @@ impl SearchedNumber {
     /// Whether it was found at one of its bounds.
     pub fn at_bound(&self) -> bool {
         let [low, high] = self.between;
-        let room = 1e-6 * (high - low);
-        self.after <= low + room || self.after >= high - room
+        let tolerance = 1e-6 * (high - low);
+        self.after <= low + tolerance || self.after >= high - tolerance
     }
 
     /// How much the cost rises when the number is moved, at most; nothing where no cost is finite.

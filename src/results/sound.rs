@@ -17,7 +17,7 @@ pub struct Sound {
     pub resolution_hz: f64,
     /// Each plate's name, and the power \[W\] that it sends out in each line, both sides.
     pub plates: Vec<(String, Vec<f64>)>,
-    /// The share of each real mode in the power; a mode that takes up what others send counts below zero.
+    /// The share of each real mode in the power; negative for a mode that absorbs power radiated by others.
     pub mode_shares: Vec<f64>,
     /// The peaks of the power, strongest lines of it: amplitude² is their height in W.
     pub tones: Vec<Tone>,

@@ -54,7 +54,7 @@ pub struct Field<'a> {
     pub velocity: &'a NodalField<f64>,
 }
 
-/// A piece of the record, and what the run needs to go on after it.
+/// A piece of the record, and the state from which the run resumes after it.
 #[derive(Debug, Clone, Copy)]
 pub struct Piece<'a> {
     /// The first of its rows.
@@ -114,7 +114,7 @@ pub struct TransientResult {
     pub reduced_check: Option<ReducedCheck>,
     /// Recorded channels.
     pub channels: Vec<Channel>,
-    /// The channels that stand for the run in pictures: acceleration, friction, and the force in a load cell, those of them
+    /// The channels shown in the pictures: acceleration, friction, and the force in a load cell, those of them
     /// that there are.
     pub shown: Vec<usize>,
     /// Spectra of the second half of the run.

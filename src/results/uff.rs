@@ -105,7 +105,7 @@ mod tests {
         }
     }
 
-    /// Around a resonance the lines of a response are nearer than six digits tell.
+    /// Around a resonance the lines of a response are nearer than six digits resolve.
     #[test]
     fn lines_too_near_for_the_text_are_written_once() {
         let mut frf = sample::rig().take::<FrfResult>().unwrap();

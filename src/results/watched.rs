@@ -4,7 +4,7 @@ use super::Channel;
 use crate::dataset::{Column, Dimension, Group, Table, Values, Variable, column};
 use crate::signal::{LimitCycle, Spectrogram};
 
-/// Data that was gathered while the run went on.
+/// Data gathered during the run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Watched {
     /// Spectrograms of the channels shown, each with the index of its channel.

@@ -1,4 +1,4 @@
-//! `search.csv`: every evaluation, so that a search that was killed goes on where it was.
+//! `search.csv`: every evaluation, so that an interrupted search resumes where it stopped.
 
 use super::facts::Facts;
 use super::file::SearchFile;

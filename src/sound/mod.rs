@@ -15,7 +15,7 @@
 //! * bars and edges are silent.
 //!
 //! Plates move in modes, so that everything is linear in the modal accelerations q̈: [`Receiver`] gives the pressure at
-//! a point, step by step, [`Radiation`] the resistance that tells the power of [`CrossSpectra`]. [`a_weighting`] and
+//! a point, step by step, [`Radiation`] the resistance that gives the power of [`CrossSpectra`]. [`a_weighting`] and
 //! the levels are those of IEC 61672-1. [`wav`] makes the pressure audible.
 
 mod cross;

@@ -68,6 +68,7 @@ impl Radiation {
     /// Contribution of each mode m to the power of both sides at the wavenumber `k`, ρ₀/(πc) Σ_n S_mn R_mn \[W\], for the mean
     /// products S_mn \[m²/s⁴ in modal units\] of the modal accelerations: entries m ≥ n row by row. The sum over the modes
     /// is W; it is negative for a mode that absorbs power radiated by others.
+    ///
     /// # Panics
     /// When the entries are not those of as many modes as the plate has.
     pub fn power(&self, air: Air, k: f64, products: &[f64]) -> Vec<f64> {

@@ -57,7 +57,7 @@ impl Block {
         some
     }
 
-    /// Makes room for `columns` vectors in the memory at hand, which is not cleared.
+    /// Resizes to `columns` vectors, whose entries are not cleared.
     pub(super) fn resize(&mut self, n: usize, columns: usize) {
         self.parts.resize_with(n, 2 * columns, |_, _| 0.0);
     }

@@ -8,8 +8,8 @@ use super::damper::{Between, Damper};
 use super::interface::{Interface, Term, terms_of_every_point};
 use super::operator::Operator;
 use super::reduced::{Projection, Reduced, ReducedModes};
+use super::refinement::{Measured, Scale, TOGETHER, Wanted};
 use super::responses::interface_responses;
-use super::round::{Measured, Scale, TOGETHER, Wanted};
 use crate::equilibrium::{PointState, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::dense::product;
@@ -190,9 +190,9 @@ impl<'f> Family<'f> {
     /// # Errors
     /// As [`Family::new`].
     pub fn train(&mut self, state: &SlidingState) -> Result<FamilyCheck> {
-        const ROUNDS: i32 = 6;
+        const REFINEMENTS: i32 = 6;
         let (mut check, mut wanted) = self.measure(state, &self.solve(state)?);
-        for k in 0..ROUNDS {
+        for k in 0..REFINEMENTS {
             if wanted.is_empty() {
                 break;
             }

@@ -248,7 +248,7 @@ impl<'a> Operator<'a> {
         Loss::BOTH.into_iter().filter(|loss| loss.part(&self.dampers[0]).wide().is_some())
     }
 
-    /// The forms as far as the merged matrices tell them.
+    /// The part of the forms that the matrices with shared pattern give.
     fn forms_of(&self, entries: &PerMatrix) -> Forms {
         let [mass, stiffness, ref wide @ ..] = *entries;
         let mut forms = Forms { mass, stiffness, ..Forms::default() };
@@ -277,7 +277,7 @@ impl<'a> Operator<'a> {
         factors
     }
 
-    /// Adds to y and to the forms what is not told from M x and K x: few rows, modal damping, the wide parts of the dampings
+    /// Adds to y and to the forms what does not follow from M x and K x: few rows, modal damping, the wide parts of the dampings
     /// from number `first` on, and to y the interface.
     fn add_others(
         &self,

@@ -7,7 +7,7 @@ use crate::progress::Observer;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Points that are computed, and handed on, together.
+/// Points that are computed and recorded together.
 const CHUNK: usize = 32;
 
 /// Values of a map at one point; not numbers where the point has no modes.

@@ -10,7 +10,7 @@ mod assign;
 mod boundary;
 mod branch;
 mod critical;
-mod encounter;
+mod interaction;
 mod map;
 mod root;
 #[cfg(test)]
@@ -20,7 +20,7 @@ mod track;
 pub use boundary::{Boundary, boundary};
 pub use branch::Branch;
 pub use critical::{Critical, CriticalKind};
-pub use encounter::{Encounter, EncounterKind};
+pub use interaction::{Interaction, InteractionKind};
 pub use map::{MapPoint, map};
 pub use track::{Sweep, sweep};
 

@@ -152,8 +152,8 @@ impl Reaction {
         off.map(|k| (self.force[k] - force[k]).abs()).fold(0.0, f64::max) / largest
     }
 
-    /// Calls `tell` with every row of the linearised equation in which something acts.
-    pub(super) fn rows(&self, model: &Model<'_>, rate: f64, tell: &mut dyn FnMut(Row<'_>)) {
+    /// Calls `visit` with every row of the linearised equation in which something acts.
+    pub(super) fn rows(&self, model: &Model<'_>, rate: f64, visit: &mut dyn FnMut(Row<'_>)) {
         let acting = self.blocks.iter().filter(|block| block.acts() || self.holds(block.point));
         for block in acting {
             let first = 3 * block.point;
@@ -166,7 +166,7 @@ impl Reaction {
                     _ => held[own - 1].map(|h| HELD * h),
                 };
                 let held = [(first + 1, held[0]), (first + 2, held[1])];
-                tell(Row { place: first + own, slopes: &slopes, held: &held });
+                visit(Row { place: first + own, slopes: &slopes, held: &held });
             }
         }
         if let Some([k, c]) = model.coupling {
@@ -174,7 +174,7 @@ impl Reaction {
             for i in 0..k.nrows() {
                 let slopes: Vec<(usize, f64)> =
                     (0..k.ncols()).map(|j| (first + j, k[(i, j)] + rate * c[(i, j)])).collect();
-                tell(Row { place: first + i, slopes: &slopes, held: &[] });
+                visit(Row { place: first + i, slopes: &slopes, held: &[] });
             }
         }
     }

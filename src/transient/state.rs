@@ -172,7 +172,7 @@ impl State {
             + 0.5 * dot(self.motion.col_as_slice(0), self.elastic.col_as_slice(0))
     }
 
-    /// Room for a state of `model`.
+    /// Allocated, zero state of `model`.
     pub(super) fn empty(model: &Model<'_>) -> Self {
         let (n, r) = (model.n(), model.n_directions());
         State {

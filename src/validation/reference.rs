@@ -90,7 +90,7 @@ pub enum Kind {
     Change(Vec<(String, f64)>),
     /// The largest relative change of any eigenvalue when the case is exported as matrices and read again.
     Exported,
-    /// In how many places the summary of a run that was stopped halfway and taken up again differs from that of a whole run.
+    /// In how many places the summary of a run that was stopped halfway and resumed differs from that of a whole run.
     Resumed,
     /// How many faults a case file has, which is named from the folder of the case.
     Faults(String),
@@ -277,7 +277,7 @@ pub fn read_check(name: &str, s: &Section, case: &str, reason: &str) -> Check {
     }
 }
 
-/// How a quantity is computed; a frequency that it is looked for at is the number of the key `about`.
+/// How a quantity is computed; a frequency near which it is sought is the number of the key `about`.
 fn read_quantity(s: &Section, case: &str, about: &str) -> Quantity {
     Quantity {
         case: s.string("case").or(case.to_string()),

@@ -65,7 +65,7 @@ impl Of {
 /// Measured data of a calibration, shapes and responses placed on the mesh.
 ///
 /// # Errors
-/// Every file of measured data that cannot be read, or has nothing of what it is asked for; points of shapes that lie off the
+/// Every file of measured data that cannot be read, or has none of the data requested; points of shapes that lie off the
 /// mesh, responses of no place of the case.
 pub fn measurements(prepared: &Prepared) -> Result<Measurements> {
     let case = prepared.case;

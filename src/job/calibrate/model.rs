@@ -343,7 +343,7 @@ fn with(case: &Case, c: &Coordinate, value: f64) -> Result<Case> {
     case.with_parameters(c.parameter.path.iter().map(|path| (path, value)))
 }
 
-/// The scalars that a number stands for, those of them that modes depend on.
+/// The scalars that a number sets, those of them that modes depend on.
 pub fn scalars(case: &Case, c: &Coordinate) -> Result<Vec<Scalar>> {
     let all = c.parameter.path.iter().map(|path| scalar(case, path)).collect::<Result<Vec<_>>>()?;
     Ok(all.into_iter().flatten().collect())

@@ -1,4 +1,4 @@
-//! ∂K/∂p, ∂M/∂p and how what a test measures follows p, between systems that are assembled anew at neighbouring values.
+//! ∂K/∂p, ∂M/∂p and the derivative of the sensor motions by p, between systems reassembled at neighbouring values.
 
 use super::super::scalars::no_derivative;
 use crate::error::{Error, Result};

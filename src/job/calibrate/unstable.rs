@@ -61,7 +61,7 @@ impl Sliding {
     }
 
     /// `levels` of `self` among the modes of `other`, and whether that is sure: by shape, less what λ moved. Where two modes
-    /// have merged their shapes are one, and λ tells which of them grows. With another mesh λ alone decides.
+    /// have merged their shapes are one, and λ decides which of them grows. With another mesh λ alone decides.
     pub fn follow(&self, levels: &Picks, other: &Sliding) -> (Picks, bool) {
         let same_size = self.system.n_dofs() == other.system.n_dofs();
         let mac = |l: usize, k: usize| {

@@ -1,6 +1,6 @@
 //! How loud a run in time is.
 //!
-//! [`acoustics`] looks at the case before anything is computed: which plates are heard, from where. A [`Listener`] takes the
+//! [`acoustics`] checks the case before anything is computed: which plates radiate, where the microphones are. A [`Listener`] takes the
 //! accelerations of the modes, as they are read back from the record, and gives the [`crate::results::Sound`] in the end.
 
 mod acoustics;

@@ -67,7 +67,7 @@ pub(super) fn steps(time: f64, step: f64) -> usize {
     (time / step).round().max(1.0) as usize
 }
 
-/// The places of a run in time; asked for before anything is computed or written.
+/// The places of a run in time; checked before anything is computed or written.
 ///
 /// # Errors
 /// Every name that the mesh does not have, and damping that time does not know.

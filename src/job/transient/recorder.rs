@@ -49,7 +49,7 @@ pub(super) struct Recorder<'a> {
 }
 
 impl<'a> Recorder<'a> {
-    /// A recorder of a run of `model` from its steady state; without a probe it looks at the point that carries most.
+    /// A recorder of a run of `model` from its steady state; without a probe it records the point that carries most.
     pub(super) fn new(
         system: &System,
         steady: &'a SteadySliding,

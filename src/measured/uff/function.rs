@@ -26,7 +26,7 @@ const AXIS: [usize; 8] = [10, 5, 5, 5, 1, 20, 1, 20];
 /// Reads dataset 58; what it is, in words, where it is no frequency response of motion over force.
 ///
 /// A unit in the label of an axis says what its numbers are; else they are in `units`, or SI where there are none. Whether
-/// the file states the units is told beside the response.
+/// the file states the units is returned with the response.
 pub(super) fn read(
     dataset: &Dataset<'_>,
     units: Option<Units>,

@@ -1,4 +1,4 @@
-//! `checkpoint.bin`: how far `record.bin` counts and what a run in time goes on from, replaced whole.
+//! `checkpoint.bin`: the valid length of `record.bin` and the state from which a run in time resumes, replaced whole.
 //!
 //! Sixteen bytes that name the format, the payload, and the SHA-256 of all before it (32 bytes).
 

@@ -39,7 +39,7 @@ impl DampingParts {
     }
 }
 
-/// Whether every column of M Ψ of the modal damping is M times a combination of the real modes, told from one
+/// Whether every column of M Ψ of the modal damping is M times a combination of the real modes, decided by one
 /// combination of the columns with fixed, unrelated weights.
 fn modal_inside(analysis: &Analysis<'_>) -> bool {
     let Some(modal) = &analysis.operator.damping.modal else { return true };

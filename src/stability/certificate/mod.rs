@@ -126,7 +126,7 @@ const LONG_WALK: f64 = 5e9;
 
 /// [`complex_modes`](super::complex_modes) of the band, all of them as they are counted, and the count of those that grow.
 ///
-/// The caller compares: [`Certificate::agrees`] tells whether a mode was missed. Where the modes cannot be counted, such
+/// The caller compares: [`Certificate::agrees`] is false when a mode was missed. Where the modes cannot be counted, such
 /// as with an eigenvalue on the contour wherever it is drawn, or where that is expected to take more than `most_work`
 /// floating-point operations (infinity for no limit), there is no certificate but a warning.
 ///
@@ -171,7 +171,7 @@ pub fn certified_modes<'a>(
     })
 }
 
-/// [`certified_modes`] of a system with sparse skew parts; where only those nearest to a frequency are asked for there is nothing
+/// [`certified_modes`] of a system with sparse skew parts; where only those nearest to a frequency are requested there is nothing
 /// to compare a count with.
 fn counted_at_full_order(
     system: &System,
@@ -186,7 +186,7 @@ fn counted_at_full_order(
     let mut general = general_modes(&operator, known.real, band, observer)?;
     if band.nearest.is_some() {
         general.modes.warnings.push(
-            "the unstable modes were not counted: those nearest to a frequency are asked for, not all of a band"
+            "the unstable modes were not counted: those nearest to a frequency are requested, not all of a band"
                 .to_string(),
         );
         return Ok((general.modes, None));

@@ -55,8 +55,8 @@ impl ReducedModel {
         if let Some(rest) = &coupled {
             regular -= rest;
         }
-        if let Some(twins) = off_diagonal(&regular, basis.n_real()) {
-            coupled = Some(coupled.map_or(twins.clone(), |rest| rest + twins));
+        if let Some(doublets) = off_diagonal(&regular, basis.n_real()) {
+            coupled = Some(coupled.map_or(doublets.clone(), |rest| rest + doublets));
         }
         let loss = &operator.dampers[0].loss.split;
         let oscillators = (0..theta.len())
@@ -88,7 +88,7 @@ impl ReducedModel {
     }
 }
 
-/// The entries off the diagonal, when they are more than the round-off of a diagonal matrix: twin modes with different
+/// The entries off the diagonal, when they are more than the round-off of a diagonal matrix: doublets with different
 /// damping ratios.
 fn off_diagonal(a: &Mat<f64>, n_real: usize) -> Option<Mat<f64>> {
     let m = a.nrows();

@@ -132,7 +132,7 @@ impl Remainder {
         let weighted = Mat::from_fn(m, f, |i, j| seen[(i, j)] / (theta[i] - shift));
         square -= product(seen.transpose(), weighted.as_ref());
         let (values, vectors) = symmetric_eigen(square.as_ref())?;
-        // A root of it, one row a column of F, made larger by its rounding: those of the few directions stand for all that
+        // A root of it, one row a column of F, made larger by its rounding: those of the few directions represent all that
         // they span.
         let size = |value: f64| (value.max(0.0) + rounding).sqrt();
         let of_few = Mat::from_fn(f, f, |i, j| vectors[(i, j)] * size(values[j]));

@@ -87,7 +87,7 @@ impl Measured {
 }
 
 /// The corrections that pairs ask for, right and left, each divided by |λ|: their squared E-norm is then about the relative
-/// error of λ that they stand for.
+/// error of λ that they represent.
 #[derive(Default)]
 pub(super) struct Wanted {
     /// Re and Im of z.
