@@ -11,7 +11,7 @@ use text::phrase;
 /// The result of everything in stridor that can fail.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// What can go wrong, by who can mend it.
+/// Errors, by who can correct them.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The input is wrong; all faults that were found, at once. Exit code 2.
@@ -22,9 +22,9 @@ pub enum Error {
     Analysis {
         /// The analysis and the step in it, such as `steady sliding, Newton iteration 25`.
         what: String,
-        /// What happened, with its figures.
+        /// Description of the failure, with its figures.
         found: String,
-        /// What the user can do next.
+        /// Next action of the user.
         help: String,
     },
     /// The machine refused: a full disk, a folder that is not writable. Exit code 1.
@@ -32,9 +32,9 @@ pub enum Error {
     Io {
         /// The file or folder concerned.
         path: PathBuf,
-        /// What the operating system or a file library said.
+        /// Error of the operating system or a file library.
         source: Box<dyn std::error::Error + Send + Sync>,
-        /// What the user can do next.
+        /// Next action of the user.
         help: String,
     },
 }
@@ -85,11 +85,11 @@ impl Error {
 pub struct Fault {
     /// File with line, key or element: ``rig.toml:12 `contact.rim.stiffness` ``.
     pub place: String,
-    /// What was found there.
+    /// Value found there.
     pub found: String,
-    /// What is accepted there.
+    /// Values accepted there.
     pub expected: String,
-    /// What to do; may be empty when `expected` says it all.
+    /// Corrective action; may be empty when `expected` says it all.
     pub help: String,
 }
 

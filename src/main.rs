@@ -58,7 +58,7 @@ fn or_exit(memory: *mut u8, size: usize) -> *mut u8 {
         end(&[
             b"error: memory: the machine gives no more, and another ",
             &digits[first..],
-            b" MiB were asked for. Take a coarser mesh, fewer modes or `--threads 1`, raise the limit (`ulimit -v`), or \
+            b" MiB were requested. Take a coarser mesh, fewer modes or `--threads 1`, raise the limit (`ulimit -v`), or \
               take a machine with more memory. Results that were written before are whole.\n",
         ]);
     }

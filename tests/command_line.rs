@@ -316,7 +316,7 @@ fn fields(out: &Path) -> ([Vec<f32>; 2], i64) {
 }
 
 #[test]
-fn fields_in_time_are_those_of_the_probe_in_full_and_reduced_and_go_on() {
+fn fields_in_time_are_those_of_the_probe_in_full_and_reduced_and_resume() {
     let folder = folder_with("");
     let at = folder.path();
     let run = |name: &str, extra: &str, resume: bool| {
@@ -353,7 +353,7 @@ fn fields_in_time_are_those_of_the_probe_in_full_and_reduced_and_go_on() {
         assert!((0..17).all(|k| agree(&k)), "{name}");
     }
     drop(file);
-    // The file of an earlier run is not read: that of a run taken up is written anew.
+    // The file of an earlier run is not read: that of a resumed run is rewritten.
     let file = hdf5::File::open_rw(at.join("full/transient.vtkhdf")).expect("fields");
     let velocity = file.dataset("VTKHDF/PointData/velocity").expect("an array");
     velocity.write_raw(&vec![1.0_f32; velocity.size()]).expect("it is written");

@@ -188,7 +188,7 @@ fn writes_fail(choose: impl Fn(usize) -> Vec<usize>) -> usize {
             };
             ended(&faulty(at, &arguments("case.toml", out, &["--threads", "1"]), out, fault), &wholes[0]);
             well(at, &arguments("case.toml", out, &["--threads", "1", "--resume"]));
-            assert!(results(&dir) == wholes[0], "{fault:?}: not taken up");
+            assert!(results(&dir) == wholes[0], "{fault:?}: not resumed");
             let outcome = faulty(at, &arguments("second.toml", out, &["--threads", "1"]), out, fault);
             ended(&outcome, &wholes[1]);
             let titles = titles(&dir, TITLES);

@@ -1,5 +1,5 @@
 //! Results folders under kills, refused writes, reruns and changed inputs: nothing is lost, nothing is mixed. A run in time
-//! that is killed with SIGKILL is taken up, and the result is that of a whole run.
+//! that is killed with SIGKILL is resumed, and the result is that of a whole run.
 
 #[path = "common/program.rs"]
 mod program;
@@ -171,7 +171,7 @@ fn said(out: &Path) -> (Record, serde_json::Value, [Vec<u8>; 2]) {
     )
 }
 
-/// Whether an array of `results.h5` is filled while a run goes on; the others are written at its end, or are of another file.
+/// Whether an array of `results.h5` is filled during a run; the others are written at its end, or are of another file.
 fn filled(name: &str) -> bool {
     let Some(path) = name.strip_prefix("/transient/") else { return false };
     match path.split_once('/') {
@@ -202,26 +202,26 @@ fn left(out: &Path, whole: &[(String, Vec<u64>)]) -> Option<usize> {
     Some(rows)
 }
 
-/// The bytes of `record.bin` that a killed run is taken up from; `None` before its first checkpoint.
-fn taken_up_from(out: &Path) -> Option<u64> {
+/// The bytes of `record.bin` from which a killed run is resumed; `None` before its first checkpoint.
+fn resumed_from(out: &Path) -> Option<u64> {
     let checkpoint = std::fs::read(out.join("checkpoint.bin")).ok()?;
     Some(Saved::from_bytes(&checkpoint).expect("a whole checkpoint").length)
 }
 
 #[test]
 fn a_killed_run_opens_and_goes_on_bit_for_bit() {
-    killed_runs_go_on(&MOMENTS);
+    killed_runs_resume(&MOMENTS);
 }
 
 #[test]
 #[ignore = "takes minutes"]
-fn two_hundred_killed_runs_open_and_go_on_bit_for_bit() {
+fn two_hundred_killed_runs_open_and_resume_bit_for_bit() {
     let moments: Vec<f64> = (1..=200).map(|k| (f64::from(k) * 0.618_033_988_749_895).fract()).collect();
-    killed_runs_go_on(&moments);
+    killed_runs_resume(&moments);
 }
 
 /// Kills runs at these parts of the time that a whole one takes.
-fn killed_runs_go_on(moments: &[f64]) {
+fn killed_runs_resume(moments: &[f64]) {
     let folder = TempDir::new().expect("a temporary folder");
     let at = folder.path();
     let reduced = BLOCK.replace("[transient]\n", "[transient]\nmodel = \"reduced\"\ntolerance = 1e-5\n");
@@ -242,10 +242,10 @@ fn killed_runs_go_on(moments: &[f64]) {
         kill_after(time.mul_f64(moment), at, case, &out, false);
         let rows = left(&at.join(&out), &whole.0);
         if k % 4 == 0 {
-            let kept = taken_up_from(&at.join(&out));
+            let kept = resumed_from(&at.join(&out));
             kill_after(time.mul_f64(0.5 * moment), at, case, &out, true);
             left(&at.join(&out), &whole.0);
-            assert!(taken_up_from(&at.join(&out)) >= kept, "{out}");
+            assert!(resumed_from(&at.join(&out)) >= kept, "{out}");
         }
         let (_, times) = whole.0.iter().find(|(name, _)| name == "/transient/history/time_s").expect("times");
         on_the_way += usize::from(rows.is_some_and(|rows| rows > 0 && rows < times.len()));
@@ -262,7 +262,7 @@ fn killed_runs_go_on(moments: &[f64]) {
 }
 
 #[test]
-fn results_of_another_case_or_another_start_are_not_taken_up() {
+fn results_of_another_case_or_another_start_are_not_resumed() {
     let folder = TempDir::new().expect("a temporary folder");
     let at = folder.path();
     let short = BLOCK.replace("200 s", "20 s");
@@ -339,7 +339,7 @@ fn a_rerun_keeps_an_interrupted_record_and_leaves_nothing_else_of_the_earlier_ru
     let interrupted =
         ["checkpoint.bin", "events.csv", "modes_notes.csv", "record.bin", "results.h5", "transient.csv"];
     assert_eq!(names(&out), interrupted, "the files of the earlier run are beside the new ones");
-    // Another analysis does not go on with it.
+    // Another analysis does not resume it.
     let output = stridor(at, &["cea", "case.toml", "--out", "out", "--resume"]);
     let message = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.code() == Some(2) && message.contains("stridor transient"), "{message}");
@@ -348,9 +348,9 @@ fn a_rerun_keeps_an_interrupted_record_and_leaves_nothing_else_of_the_earlier_ru
     let message = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.code() == Some(0) && message.contains("interrupted-1"), "{message}");
     let whole = said(&at.join("whole"));
-    let anew = said(&out);
-    assert!(anew.0 == whole.0 && anew.2 == whole.2);
-    assert!(anew.1["warnings"].to_string().contains("interrupted-1"), "{}", anew.1["warnings"]);
+    let restarted = said(&out);
+    assert!(restarted.0 == whole.0 && restarted.2 == whole.2);
+    assert!(restarted.1["warnings"].to_string().contains("interrupted-1"), "{}", restarted.1["warnings"]);
     // The record that was moved is a results folder of its own.
     run(at, "case.toml", "out/interrupted-1", true);
     assert!(said(&out.join("interrupted-1")) == whole);
@@ -358,7 +358,7 @@ fn a_rerun_keeps_an_interrupted_record_and_leaves_nothing_else_of_the_earlier_ru
 }
 
 #[test]
-fn a_sweep_is_not_taken_up_after_its_mesh_has_changed() {
+fn a_sweep_is_not_resumed_after_its_mesh_has_changed() {
     let folder = TempDir::new().expect("a temporary folder");
     let at = folder.path();
     let mesh = |size: &str| {
@@ -478,8 +478,9 @@ fn writes_that_fail_anywhere_are_told_and_lose_nothing() {
             failed += 1;
             assert_eq!(output.status.code(), Some(1), "{limit}: {message}");
             assert!(message.contains("error: out/") && message.lines().count() == 1, "{limit}: {message}");
-            let told = ["File too large", "cannot be written"].iter().any(|words| message.contains(words));
-            assert!(told, "{limit}: {message}");
+            let reported =
+                ["File too large", "cannot be written"].iter().any(|words| message.contains(words));
+            assert!(reported, "{limit}: {message}");
         }
         run(at, "case.toml", "out", true);
         assert!(said(&at.join("out")) == whole, "{limit}");

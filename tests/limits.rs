@@ -116,7 +116,7 @@ fn a_stiffer_penalty_moves_no_squeal_mode() {
     }
 }
 
-/// A record that the disk has no room for is refused before a folder is made.
+/// A record for which the disk has no space is refused before a folder is made.
 #[test]
 fn a_run_in_time_without_room_writes_nothing() {
     let probe = |k: usize| format!("[transient.probe.p{k}]\non = \"block\"\ndirection = [1, 0, 0]\n");

@@ -85,7 +85,7 @@ fn full_order_eigenvalues_of_the_rig_agree_with_a_dense_solver() {
     }
 }
 
-/// The same rig with modal damping, its sensitivities asked for by scalars of every kind.
+/// The same rig with modal damping, its sensitivities requested by scalars of every kind.
 fn sensitive_rig(prestress: bool) -> Case {
     let scalars = [
         "contact.rim.friction.mu0",
@@ -132,7 +132,7 @@ fn by_rerun(case: &Case, path: &str, value: f64, step: f64, lambda: &[c64]) -> V
 }
 
 #[test]
-fn sensitivities_of_the_rig_equal_differences_of_runs_anew() {
+fn sensitivities_of_the_rig_equal_differences_of_reruns() {
     for prestress in [false, true] {
         let case = sensitive_rig(prestress);
         let prepared = Prepared::new(&case).expect("a sound rig");
@@ -166,8 +166,8 @@ fn sensitivities_of_the_rig_equal_differences_of_runs_anew() {
             }
         }
         for thing in found.modes.iter().flat_map(|m| &m.best) {
-            let done = thing.done.expect("asked for");
-            let slope_error = thing.slope_error.expect("asked for");
+            let done = thing.done.expect("requested");
+            let slope_error = thing.slope_error.expect("requested");
             println!(
                 "{} {:.1e}: predicted {:.4} done {:.4}, slope error {slope_error:.1e}",
                 thing.kind, thing.amount, thing.predicted, done

@@ -136,6 +136,6 @@ fn the_guide_has_the_schema_and_the_keys() {
         ("keys.md", "stridor schema --markdown", keys),
     ] {
         let found = std::fs::read_to_string(guide.join(file)).unwrap_or_default();
-        assert!(found == expected, "guide/{file} is not what `{command}` prints: write it anew");
+        assert!(found == expected, "guide/{file} is not what `{command}` prints: regenerate it");
     }
 }

@@ -8,7 +8,7 @@ use super::{Chance, Knowledge, LeftOut, Ranked, Trials, assignments};
 use crate::error::{Error, Result};
 use crate::progress::Observer;
 
-/// What is asked besides the fit.
+/// Options besides the fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// A level may be what was measured when, linearised, it comes as near as a factor 1 + this inside the bounds.
@@ -24,7 +24,7 @@ pub struct Options {
 /// A calibrated model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Calibration {
-    /// What the model gives at the start.
+    /// Computed values at the start.
     pub before: Computed,
     /// The fitted assignments, the least χ² first.
     pub ranked: Vec<Ranked>,
@@ -37,9 +37,9 @@ pub struct Calibration {
     pub tried: usize,
     /// Whether no other assignment can match the modes better on the linearised model than those tried, short of the hopeless.
     pub all_searched: bool,
-    /// What the data determine.
+    /// Covariance and resolution of the unknowns by the data.
     pub knowledge: Knowledge,
-    /// Each datum and each response predicted from all others; empty when it was not asked for, or the others determine too
+    /// Each datum and each response predicted from all others; empty when it was not requested, or the others determine too
     /// little.
     pub left_out: LeftOut,
     /// How often chance does as well.
@@ -179,8 +179,9 @@ mod tests {
         let options = Options { reach: 0.02, chance_draws: 0, trials: 0, ..ALL };
         let found = calibrate(&model, &problem, &[0.0; 2], &options, &()).unwrap();
         assert_eq!(found.best().assignment, [0, 1, 2, 3]);
-        let told: Vec<bool> = found.left_out.data.iter().map(|left| left.predicted_hz.is_some()).collect();
-        assert_eq!(told, [true, true, true, false]);
+        let predicted: Vec<bool> =
+            found.left_out.data.iter().map(|left| left.predicted_hz.is_some()).collect();
+        assert_eq!(predicted, [true, true, true, false]);
     }
 
     #[test]

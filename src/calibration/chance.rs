@@ -14,7 +14,7 @@ use rayon::prelude::*;
 ///
 /// It is about the frequencies alone: shapes and responses take no part in it, on either side. A response is compared line by
 /// line and not matched with one of many, so that there is nothing that chance could hit. The assignment of the data is the one
-/// that all of them chose, which has no smaller χ² of its frequencies than their own best one: the share by χ² is not told too
+/// that all of them chose, which has no smaller χ² of its frequencies than their own best one: the share by χ² is not stated too
 /// small for that.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Chance {
@@ -27,7 +27,7 @@ pub struct Chance {
 }
 
 impl Chance {
-    /// (k + 1)/(n + 1): the data count as one draw, so that the probability is never told too small (Davison and Hinkley,
+    /// (k + 1)/(n + 1): the data count as one draw, so that the probability is never underestimated (Davison and Hinkley,
     /// Bootstrap Methods, 1997, eq. 4.11).
     pub fn probability(&self, as_good: usize) -> f64 {
         (as_good + 1) as f64 / (self.draws + 1) as f64

@@ -21,7 +21,7 @@ const SMALLEST_STEP: f64 = 1e-10;
 pub struct Fit {
     /// The unknowns.
     pub x: Vec<f64>,
-    /// What the model gives there.
+    /// Computed values there.
     pub computed: Computed,
     /// χ².
     pub chi2: f64,
@@ -60,7 +60,7 @@ impl Here {
 /// follows the ratio of the gain of χ² to the expected one (Nielsen 1999).
 ///
 /// # Errors
-/// What the model cannot compute.
+/// Those of the model.
 pub fn fit(
     model: &dyn Model,
     problem: &Problem,
@@ -90,10 +90,10 @@ pub fn fit(
         let mut damped = h.clone();
         let least = 1e-9 * h.diagonal().max();
         (0..g.len()).for_each(|j| damped[(j, j)] += damping * h[(j, j)].max(least));
-        let room = |end: usize| -> Vec<f64> {
+        let distance = |end: usize| -> Vec<f64> {
             problem.unknowns.iter().zip(&fit.x).map(|(unknown, x)| unknown.bounds[end] - x).collect()
         };
-        let d = least_in_box(&damped, &g, &room(0), &room(1));
+        let d = least_in_box(&damped, &g, &distance(0), &distance(1));
         if d.amax() < SMALLEST_STEP {
             return Ok(fit);
         }

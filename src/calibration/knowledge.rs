@@ -1,4 +1,4 @@
-//! What the data determine: singular values of the sensitivity, covariance, intervals.
+//! Resolution of the unknowns by the data: singular values of the sensitivity, covariance, intervals.
 
 use super::Fit;
 use super::problem::{Computed, Problem};
@@ -16,7 +16,7 @@ const NOTHING: f64 = 1e-9;
 /// An interval.
 pub type Interval = [f64; 2];
 
-/// What is known of the unknowns after the fit, the model taken as linear near it.
+/// Covariance of the unknowns after the fit, the model taken as linear near it.
 ///
 /// W_ij = ∂r_i/∂x_j is the sensitivity in standard deviations of the data, (∂ ln f_i/∂x_j)/s_i of a frequency. With P = 1 for each unknown that was
 /// expected, and 0 for the others, the covariance is (WᵀW + P)⁻¹ (Mottershead and Friswell, J. Sound Vib. 167 (1993) 347).
@@ -43,7 +43,7 @@ pub struct Knowledge {
 }
 
 impl Knowledge {
-    /// What the fit of `assignment` leaves known.
+    /// Covariance after the fit of `assignment`.
     pub(super) fn new(problem: &Problem, assignment: &[usize], fit: &Fit) -> Knowledge {
         let n = problem.unknowns.len();
         let (w, h) = sensitivity(problem, assignment, &fit.computed);
@@ -183,7 +183,7 @@ mod tests {
         // P(χ² > 6) with two degrees of freedom is e⁻³.
         assert!((known.chi2_probability.unwrap() - (-3.0f64).exp()).abs() < 1e-9);
         assert!(known.determined() == 2 && known.condition() < 10.0);
-        // A third unknown without effect is told.
+        // A third unknown without effect is reported.
         problem.unknowns.push(Unknown { bounds: [-1.0, 1.0], expected: None });
         let mut fit = fit;
         fit.x.push(0.3);

@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::progress::Observer;
 use rayon::prelude::*;
 
-/// What was left out, each in turn, the modes and all responses but it kept in.
+/// Leave-one-out predictions: each datum left out in turn, the modes and all responses but it kept in.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LeftOut {
     /// The measured modes.
@@ -23,7 +23,7 @@ pub struct LeftOut {
 pub struct LeftOutDatum {
     /// The unknowns without it.
     pub x: Vec<f64>,
-    /// What they predict for it \[Hz\]; `None` where the level is not found, or where what the others leave open moves it by
+    /// Predicted frequency \[Hz\]; `None` where the level is not found, or where the uncertainty that the others leave moves it by
     /// more than the deviation of the datum.
     pub predicted_hz: Option<f64>,
     /// MAC of its shape, if it has one, with the one that they predict; likewise `None`.
@@ -37,7 +37,7 @@ pub struct LeftOutDatum {
 pub struct LeftOutCurve {
     /// The unknowns without it.
     pub x: Vec<f64>,
-    /// What they predict for its lines; `None` where a level of the others is not found, or where what the others leave open
+    /// Prediction of its lines; `None` where a level of the others is not found, or where the uncertainty that the others leave
     /// moves the lines by more than their deviation, as a root mean square.
     pub predicted: Option<Vec<f64>>,
     /// Whether the fit converged.
@@ -74,11 +74,11 @@ pub(super) fn leave_one_out(
         let open =
             |level: &Level| left_open(&others, &assignment, &found.computed, &Residuals::of(&datum, level));
         let open = level.map_or(Vec::new(), open);
-        let told = |moved: &[f64]| mean_square(moved) <= 1.0;
+        let determined = |moved: &[f64]| mean_square(moved) <= 1.0;
         let mac = |level: &Level| Some(level.span.as_ref()?.mac(datum.shape.as_ref()?));
         Ok(LeftOutDatum {
-            predicted_hz: level.filter(|_| told(&open[..1])).map(|level| level.frequency_hz),
-            mac: level.filter(|_| told(&open[1..])).and_then(mac),
+            predicted_hz: level.filter(|_| determined(&open[..1])).map(|level| level.frequency_hz),
+            mac: level.filter(|_| determined(&open[1..])).and_then(mac),
             converged: found.converged,
             x: found.x,
         })
@@ -91,12 +91,12 @@ pub(super) fn leave_one_out(
             found.computed = model.compute(&found.x)?;
         }
         let lines = &found.computed.lines;
-        let told = known(&others, &best.assignment, &found) && {
+        let determined = known(&others, &best.assignment, &found) && {
             let own = Residuals::along(&curve, lines);
             mean_square(&left_open(&others, &best.assignment, &found.computed, &own)) <= 1.0
         };
         Ok(LeftOutCurve {
-            predicted: told.then(|| lines[curve.lines()].iter().map(|line| line.value).collect()),
+            predicted: determined.then(|| lines[curve.lines()].iter().map(|line| line.value).collect()),
             converged: found.converged,
             x: found.x,
         })
@@ -162,7 +162,7 @@ mod tests {
             curve.values.iter_mut().enumerate().for_each(|(k, v)| *v += 0.1 * (7.0 * k as f64).sin());
         }
         let found = |model: &Powers| calibrate(model, &problem, &[0.0; 2], &ALONE, &()).unwrap();
-        let told = |model: &Powers| -> Vec<[f64; 2]> {
+        let determined = |model: &Powers| -> Vec<[f64; 2]> {
             let found = found(model);
             let each = problem.curves.iter().zip(&found.left_out.curves);
             each.map(|(curve, left)| {
@@ -170,14 +170,14 @@ mod tests {
             })
             .collect()
         };
-        for [fitted, predicted] in told(&right) {
+        for [fitted, predicted] in determined(&right) {
             // The noise is a sine of one deviation.
             assert!(
                 (0.6..0.8).contains(&fitted) && predicted >= fitted && predicted < 1.0,
                 "{fitted} {predicted}"
             );
         }
-        let [_, [fitted, predicted]] = told(&wrong)[..] else { unreachable!() };
+        let [_, [fitted, predicted]] = determined(&wrong)[..] else { unreachable!() };
         assert!(predicted > 5.0 && predicted > fitted && fitted > 2.0, "{fitted} {predicted}");
         // A mode that is left out is predicted with the responses kept in.
         problem.data.truncate(1);
@@ -197,9 +197,10 @@ mod tests {
         let mut problem = problem(&model, &[level.frequency_hz], 0.002);
         problem.curves = curves(&model, &truth, 0.1);
         let found = calibrate(&model, &problem, &[0.0; 2], &ALONE, &()).unwrap();
-        let told: Vec<bool> = found.left_out.curves.iter().map(|left| left.predicted.is_some()).collect();
+        let determined: Vec<bool> =
+            found.left_out.curves.iter().map(|left| left.predicted.is_some()).collect();
         assert!(found.left_out.data[0].predicted_hz.is_some());
-        assert_eq!(told, [true, false]);
+        assert_eq!(determined, [true, false]);
         // Without another response nothing needs its lines to fit, but its prediction does.
         problem.curves.truncate(1);
         let found = calibrate(&model, &problem, &[0.0; 2], &ALONE, &()).unwrap();

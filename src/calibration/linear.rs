@@ -106,11 +106,11 @@ impl<'a> Linear<'a> {
 
     /// The least χ² inside the bounds, and where it is.
     pub(super) fn least(&self, misfit: &Misfit) -> (f64, Vec<f64>) {
-        let room = |k: usize| {
+        let distance = |k: usize| {
             let each = self.problem.unknowns.iter().zip(&self.x);
             each.map(|(unknown, x)| unknown.bounds[k] - x).collect::<Vec<f64>>()
         };
-        let d = least_in_box(&misfit.h, &misfit.g, &room(0), &room(1));
+        let d = least_in_box(&misfit.h, &misfit.g, &distance(0), &distance(1));
         let chi2 = misfit.constant + (&misfit.h * &d + 2.0 * &misfit.g).dot(&d);
         (chi2.max(0.0), self.x.iter().zip(&d).map(|(x, d)| x + d).collect())
     }

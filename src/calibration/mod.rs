@@ -21,7 +21,7 @@
 //! 3. asks what the data determine ([`Knowledge`]), predicts each datum and each response from all others ([`LeftOut`]), counts
 //!    how often frequencies match as well by chance ([`Chance`]) and whether its own intervals hold the truth ([`Trials`]).
 //!
-//! The room knows no mechanics: a [`Model`] gives levels with their slopes.
+//! This module is independent of mechanics: a [`Model`] gives levels with their derivatives.
 
 mod assignments;
 mod calibrate;

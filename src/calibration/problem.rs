@@ -5,7 +5,7 @@ use crate::error::Result;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// What is computed, as a function of the unknowns.
+/// Computed levels and lines as a function of the unknowns.
 pub trait Model: Sync {
     /// Every level and line at `x`, in the same order for every `x`.
     ///
@@ -22,7 +22,7 @@ pub trait Model: Sync {
     }
 }
 
-/// What a model gives at one place.
+/// Levels and lines of a model at one place.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Computed {
     /// The levels; `None` where one is not found.
@@ -98,7 +98,7 @@ pub struct Unknown {
 pub struct Problem {
     /// The unknowns.
     pub unknowns: Vec<Unknown>,
-    /// What was measured.
+    /// Measured modes.
     pub data: Vec<Datum>,
     /// The set that each level of the model belongs to.
     pub level_sets: Vec<usize>,
@@ -109,7 +109,7 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// What of `model` at `x` stands against what was measured.
+    /// Levels and, where responses were measured, lines of `model` at `x`.
     pub(super) fn compute(&self, model: &dyn Model, x: &[f64]) -> Result<Computed> {
         if self.curves.is_empty() { model.levels(x) } else { model.compute(x) }
     }

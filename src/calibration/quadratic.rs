@@ -36,9 +36,9 @@ pub(super) fn least_in_box(h: &DMatrix<f64>, g: &DVector<f64>, lower: &[f64], up
             let Some(factor) = inner.cholesky() else { return x };
             let step = factor.solve(&-slope.select_rows(&free));
             for (k, j) in free.iter().enumerate() {
-                let room = if step[k] < 0.0 { lower[*j] - x[*j] } else { upper[*j] - x[*j] };
-                if step[k] != 0.0 && room / step[k] < part {
-                    part = (room / step[k]).max(0.0);
+                let distance = if step[k] < 0.0 { lower[*j] - x[*j] } else { upper[*j] - x[*j] };
+                if step[k] != 0.0 && distance / step[k] < part {
+                    part = (distance / step[k]).max(0.0);
                     blocking = Some((*j, if step[k] < 0.0 { At::Lower } else { At::Upper }));
                 }
             }

@@ -1,4 +1,4 @@
-//! What is left between measured and computed, and its derivatives.
+//! Residuals of measured and computed, and their derivatives.
 
 use super::problem::{Computed, Curve, Datum, Level, Line, Problem};
 use nalgebra::{DMatrix, DVector};

@@ -99,7 +99,7 @@ impl Model for Powers {
     }
 }
 
-/// What the responses of a model at `x` are measured as, without noise.
+/// Responses of a model at `x` as if measured without noise.
 pub(super) fn curves(model: &Powers, x: &[f64], deviation: f64) -> Vec<Curve> {
     let lines = model.compute(x).unwrap().lines;
     let mut first = 0;

@@ -11,13 +11,13 @@ use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// The model is looked at no nearer to the truth than this, in units of the unknowns.
+/// The model is evaluated no nearer to the truth than this, in units of the unknowns.
 const LEAST_STEP: f64 = 1e-2;
 
 /// Trials with synthetic data (parametric bootstrap): the calibrated values are the truth, each frequency is the computed
 /// one with the stated relative deviation, normally distributed, each shape the computed one nearest to the measured one, its
 /// components with their deviation, responses line by line with theirs, and what was expected scatters about the truth likewise.
-/// The fits are made to the model near the truth, quadratic in ln f and linear in the shapes; how far that is from the model itself is told.
+/// The fits are made to the model near the truth, quadratic in ln f and linear in the shapes; its deviation from the model itself is reported.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trials {
     /// How many.

@@ -85,7 +85,7 @@ pub fn run(analyse: &Analyse, common: &Common) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What the results of a case file are called: `disc.toml` → `disc`, `rig/case.toml` → `rig`.
+/// Name of the results folder of a case file: `disc.toml` → `disc`, `rig/case.toml` → `rig`.
 fn case_name(case: &Path) -> OsString {
     let stem = case.file_stem().unwrap_or_default();
     let folder = case.parent().and_then(Path::file_name);

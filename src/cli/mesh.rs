@@ -17,7 +17,7 @@ pub enum Action {
     Plate(PlateOptions),
     /// Disc, bar and slider in one mesh
     Rig(RigOptions),
-    /// What a mesh file holds, and what is wrong with it
+    /// Contents of a mesh file, and its faults
     Info(InfoOptions),
 }
 

@@ -93,7 +93,7 @@ fn act(command: &Command) -> Result<ExitCode> {
     }
 }
 
-/// The most threads that may be asked for, unless there are more cores.
+/// The most threads that may be requested, unless there are more cores.
 const MOST_THREADS: usize = 1024;
 
 /// Starts the threads: as many as there are cores where no number is given.
@@ -122,7 +122,7 @@ mod tests {
     use std::collections::BTreeSet;
     use std::path::Path;
 
-    /// What the sources below `folder` say, their unit tests and comments left out.
+    /// Words of the sources below `folder`, their unit tests and comments left out.
     fn words(folder: &Path, text: &mut String) {
         for entry in std::fs::read_dir(folder).unwrap().flatten() {
             let path = entry.path();

@@ -1,4 +1,4 @@
-//! Progress bars on stderr; silent when stderr is not a terminal or the user asked for quiet.
+//! Progress bars on stderr; silent when stderr is not a terminal or with `--quiet`.
 
 use super::output::note;
 use crate::error::text::printable;
@@ -8,7 +8,7 @@ use std::io::IsTerminal;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-/// How often a bar is drawn anew, so that its time goes on.
+/// Interval at which a bar is redrawn, so that its time advances.
 const TICK: Duration = Duration::from_millis(100);
 
 /// Draws each stage as a bar, or as a spinner when its length is not known.

@@ -26,7 +26,7 @@ impl<R> fmt::Debug for Column<R> {
     }
 }
 
-/// What a record has of a quantity.
+/// Values of a quantity in a record.
 #[derive(Debug, Clone)]
 pub enum Cell {
     /// Yes or no.
@@ -43,7 +43,7 @@ pub enum Cell {
     Texts(Vec<Option<String>>),
 }
 
-/// What can be a value of a quantity.
+/// Type that can be a value of a quantity.
 pub trait IntoCell: Clone {
     /// The type of the values.
     const KIND: Kind;

@@ -21,7 +21,7 @@ impl Group<'_> {
     /// Writes the group into `parent`, in which it may be there already.
     ///
     /// # Errors
-    /// What the library says.
+    /// Those of the HDF5 library.
     pub fn write_hdf5(&self, parent: &hdf5::Group) -> hdf5::Result<()> {
         let group = if self.key.is_empty() { parent.clone() } else { opened(parent, &self.key)? };
         if !self.description.is_empty() && group.attr("description").is_err() {
@@ -55,7 +55,7 @@ impl Table<'_> {
     /// Writes the columns and fields as datasets of a group of `parent`.
     ///
     /// # Errors
-    /// What the library says.
+    /// Those of the HDF5 library.
     pub fn write_hdf5(&self, parent: &hdf5::Group) -> hdf5::Result<()> {
         let variables: Vec<&Variable> = self.columns.iter().chain(&self.fields).collect();
         write_variables(&opened(parent, &self.key)?, &variables)
@@ -64,7 +64,7 @@ impl Table<'_> {
     /// Puts numbers of the columns into the datasets that are there for more rows, from row `first` on.
     ///
     /// # Errors
-    /// What the library says.
+    /// Those of the HDF5 library.
     pub fn fill_hdf5(&self, parent: &hdf5::Group, first: usize) -> hdf5::Result<()> {
         let group = parent.group(&link(&self.key))?;
         let rows = first..first + self.rows.length;
@@ -79,7 +79,7 @@ impl Table<'_> {
     }
 }
 
-/// What a group or dataset is called in HDF5: what separates groups in a path is replaced in a name.
+/// Name of a group or dataset in HDF5: the separator of groups in a path is replaced in a name.
 pub fn link(name: &str) -> String {
     if name == "." { "．".to_string() } else { name.replace('/', "∕") }
 }
@@ -87,7 +87,7 @@ pub fn link(name: &str) -> String {
 /// The group `name`, made where it is not there.
 ///
 /// # Errors
-/// What the library says.
+/// Those of the HDF5 library.
 pub fn opened(parent: &hdf5::Group, name: &str) -> hdf5::Result<hdf5::Group> {
     let name = link(name);
     if parent.link_exists(&name) { parent.group(&name) } else { parent.create_group(&name) }
@@ -137,7 +137,7 @@ fn list_dimensions(dataset: &Dataset, scales: Vec<VarLenArray<ObjectReference1>>
 /// than 4000 the others have none.
 ///
 /// # Errors
-/// What the library says.
+/// Those of the HDF5 library.
 pub fn attach_scale(group: &hdf5::Group, name: &str, others: &[String]) -> hdf5::Result<()> {
     let mut scale = Scale::new(group, &group.dataset(name)?, name)?;
     for path in others.iter().take(LISTED) {
@@ -289,7 +289,7 @@ fn terminated_text(location: &Location, name: &str, text: &str) -> hdf5::Result<
 /// The attributes of every dataset.
 ///
 /// # Errors
-/// What the library says, here and below.
+/// Those of the HDF5 library, here and below.
 pub fn describe(dataset: &Dataset, units: &str, description: &str) -> hdf5::Result<()> {
     text_attribute(dataset, "units", units)?;
     text_attribute(dataset, "description", description)
@@ -298,7 +298,7 @@ pub fn describe(dataset: &Dataset, units: &str, description: &str) -> hdf5::Resu
 /// An attribute with a single value.
 ///
 /// # Errors
-/// What the library says.
+/// Those of the HDF5 library.
 pub fn attribute<T: H5Type>(location: &Location, name: &str, value: &T) -> hdf5::Result<()> {
     location.new_attr::<T>().create(name)?.write_scalar(value)
 }
@@ -306,7 +306,7 @@ pub fn attribute<T: H5Type>(location: &Location, name: &str, value: &T) -> hdf5:
 /// An attribute with a text.
 ///
 /// # Errors
-/// What the library says.
+/// Those of the HDF5 library.
 pub fn text_attribute(location: &Location, name: &str, text: &str) -> hdf5::Result<()> {
     location.new_attr::<VarLenUnicode>().create(name)?.write_scalar(&unicode(text))
 }

@@ -42,7 +42,7 @@ pub struct Group<'a> {
     pub key: Cow<'a, str>,
     /// One sentence.
     pub description: &'static str,
-    /// What is in it, in order.
+    /// Contents, in order.
     pub entries: Vec<Entry<'a>>,
 }
 

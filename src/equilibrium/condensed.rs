@@ -76,7 +76,7 @@ fn answers(responses: &Mat<f64>, load: &[f64]) -> Vec<f64> {
     (0..responses.ncols()).map(dot).collect()
 }
 
-/// The stiffness that stands for a closed point: that of its law at first touch, but no stiffer than the structure
+/// The stiffness that represents a closed point: that of its law at first touch, but no stiffer than the structure
 /// it acts on (A would lose digits), and not nothing (a purely cubic law).
 fn spring(pair: &crate::system::ContactPair, point: &ContactPoint, k: &SparseMatrix) -> f64 {
     let norm: f64 = point.normal.values().iter().map(|v| v * v).sum();

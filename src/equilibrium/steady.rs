@@ -135,7 +135,7 @@ fn solve_prestressed(
     options: &SteadyOptions,
     observer: &dyn Observer,
 ) -> Result<SteadySliding> {
-    const ROUNDS: usize = 40;
+    const ITERATIONS: usize = 40;
     let k = &system.structure.stiffness;
     let mut steady = solve_steady_with(system, k, &Condensed::new(system, k)?, options)?;
     observer.advance(1);
@@ -144,7 +144,7 @@ fn solve_prestressed(
     }
     let mut iterations = steady.iterations;
     let mut change = f64::INFINITY;
-    for _ in 0..ROUNDS {
+    for _ in 0..ITERATIONS {
         let k = tangent_stiffness(system, &steady.displacement)?;
         let condensed = Condensed::new(system, &k).map_err(buckled)?;
         let next = solve_steady_with(system, &k, &condensed, options)?;
@@ -165,7 +165,7 @@ fn solve_prestressed(
     }
     Err(Error::analysis(
         "steady sliding, stiffness of the preload",
-        format!("after {ROUNDS} rounds the displacement still changes by {change:.1e} of itself"),
+        format!("after {ITERATIONS} iterations the displacement still changes by {change:.1e} of itself"),
         "The preload may be near buckling: lower the load or leave the geometric stiffness out",
     ))
 }

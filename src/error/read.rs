@@ -4,7 +4,7 @@ use super::{Error, Fault, Result};
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// What [`decode`] expects.
+/// Content expected by [`decode`].
 const EXPECTED: &str = "text in UTF-8";
 
 /// Reads the text file at `path`, UTF-8 with or without a byte order mark; `expected` says in faults what it should be.

@@ -1,4 +1,4 @@
-//! The analyses of a case in their order, each result handed on as soon as it is there.
+//! The analyses of a case in their order, each result written as soon as it is there.
 
 use super::analyses::{Planned, Selection};
 use super::prepared::Prepared;
@@ -121,7 +121,7 @@ fn once<T: PartialEq>(items: Vec<T>) -> Vec<T> {
     all
 }
 
-/// Where Kirchhoff's theory is off by more than a percent at the highest frequency asked for.
+/// Where Kirchhoff's theory is off by more than a percent at the highest requested frequency.
 fn thickness_warnings(prepared: &Prepared) -> Vec<String> {
     let case = prepared.case;
     let asked = case.modes.values().filter_map(|m| m.below).chain(case.cea.iter().map(|c| c.band[1]));

@@ -1,4 +1,4 @@
-//! What tests found beside what is computed.
+//! Comparison of measured with computed modes and responses.
 
 use super::frf::Frf;
 use super::measured::measured_set;
@@ -23,7 +23,7 @@ const ALONG: f64 = 0.966;
 #[derive(Default)]
 pub struct Tests {
     tests: Vec<Test>,
-    /// What the user should know about them.
+    /// Warnings about them.
     pub warnings: Vec<String>,
 }
 
@@ -138,7 +138,7 @@ impl Tests {
         own.filter(|test| !test.set.modes.is_empty()).map(|test| test.compare(analysis, named)).collect()
     }
 
-    /// The tests of a frequency response beside the receptances that they asked for \[m/N\].
+    /// The tests of a frequency response beside the receptances that they requested \[m/N\].
     pub fn responses(&self, computed: &FrfResult, receptances: &[Vec<c64>]) -> Vec<MeasuredResponses> {
         let of = |test: &Test| {
             let responses = test.responses.as_ref().filter(|responses| responses.frf == computed.name)?;

@@ -16,14 +16,14 @@ use crate::system::{Structure, System};
 use std::borrow::Cow;
 use std::f64::consts::TAU;
 
-/// Floating-point operations of a certificate that nobody asked for: some seconds.
+/// Floating-point operations of a certificate that is not requested explicitly: some seconds.
 const CHEAP: f64 = 5e9;
 /// How far real modes reach beyond the band that they span where the case leaves it open, by the band's top; and how far
 /// at least, where the band turned out wider than expected.
 const SPANNED: f64 = 1.5;
 const SPANNED_AT_LEAST: f64 = 1.4;
 
-/// What an analysis found, and in which band, spanned by which real modes.
+/// Modes of an analysis, with the band and the real modes that span it.
 struct Found {
     band: [f64; 2],
     basis: RealModes,
@@ -94,7 +94,7 @@ pub fn complex_result<'a>(
     Ok((complex, system, basis))
 }
 
-/// What a complex eigenvalue analysis needs.
+/// Input of a complex eigenvalue analysis.
 struct Problem<'p, 'a> {
     prepared: &'a Prepared<'p>,
     cea: &'a CeaAnalysis,
@@ -133,7 +133,7 @@ impl Problem<'_, '_> {
         })
     }
 
-    /// The complex modes nearest to a frequency: the factors that count the modes below it find the real ones, those tell
+    /// The complex modes nearest to a frequency: the factors that count the modes below it find the real ones, those give
     /// the band, and all three serve the complex ones.
     fn nearest(&mut self, asked: &Nearest, structure: &Structure) -> Result<Found> {
         let (mut expected, shifted) =

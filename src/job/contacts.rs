@@ -141,7 +141,7 @@ fn ground_points(
 pub struct Stand {
     /// How far the counter-body has come along the sliding direction \[m\].
     pub travel: f64,
-    /// What is taken off the gaps \[m\]; the least of them when absent.
+    /// Distance subtracted from the gaps \[m\]; the smallest gap when absent.
     pub touch: Option<f64>,
 }
 

@@ -22,7 +22,7 @@ const ACCURACY: f64 = 1e-8;
 /// Relative length of the bracket of a critical value on a reduced model, and by whole analyses.
 const LOCATED: [f64; 2] = [1e-10, 1e-7];
 /// Full-order measures that were not good enough lead to a richer family, so often at most.
-const ROUNDS: usize = 3;
+const REFINEMENTS: usize = 3;
 /// The path of ζ.
 const RATIO: &str = "damping.modal_ratio";
 
@@ -179,13 +179,13 @@ impl Explorer<'_> {
         let places: Vec<Vec<f64>> = [0.0, 1.0, 0.5].map(|t| vec![at(t)]).to_vec();
         let mut on = self.family(&states, &places)?;
         let sample = [0.25, 0.75].map(at);
-        let mut round = 0;
+        let mut refinement = 0;
         loop {
             let sweep = sweep::sweep(&on, &axis, LOCATED[0], self.observer)?;
             let measured = measure(&on, &sweep, &sample)?;
-            round += 1;
+            refinement += 1;
             let poor = measured.poor(&sweep);
-            if poor.is_empty() || round == ROUNDS {
+            if poor.is_empty() || refinement == REFINEMENTS {
                 let dimension = on.family.dimension();
                 return Ok(result(sweep, measured, Method::Reduced(dimension)));
             }
@@ -270,14 +270,14 @@ impl Explorer<'_> {
         for at in &known.trained {
             on.family.train(&states.at(at)?)?;
         }
-        let mut round = 0;
+        let mut refinement = 0;
         loop {
             let failure = self.fill(&on, &mut result, &known, record)?;
             result.boundary = sweep::boundary(&on, &axes, &result.points, 1e-7, self.observer)?;
             result.method = Method::Reduced(on.family.dimension());
             let poor = self.check_map(&on, &mut result, &inside);
-            round += 1;
-            if poor.is_empty() || round == ROUNDS {
+            refinement += 1;
+            if poor.is_empty() || refinement == REFINEMENTS {
                 record(Stage::Map(&result))?;
                 return Ok((result, failed(failure)));
             }
@@ -289,7 +289,7 @@ impl Explorer<'_> {
         }
     }
 
-    /// The points of the grid that are not known, handed on chunk by chunk.
+    /// The points of the grid that are not known, passed on chunk by chunk.
     fn fill(
         &self,
         problem: &dyn Problem,
@@ -331,7 +331,7 @@ impl Explorer<'_> {
     }
 }
 
-/// What the full order says of a sweep.
+/// Errors of a sweep at full order.
 struct Measured {
     critical: Vec<Option<Checked>>,
     sample: Vec<(f64, f64)>,

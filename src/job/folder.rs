@@ -15,9 +15,9 @@ use std::time::Instant;
 pub(super) struct Folder<'a> {
     dir: &'a Path,
     pub(super) file: ResultsFile,
-    /// What a run that is killed is taken up from.
+    /// Record from which an interrupted run is resumed.
     pub(super) record: Record,
-    /// What an earlier run has recorded.
+    /// Record of an earlier run.
     earlier: Earlier,
     /// `transient.csv` and `events.csv`.
     tables: Option<(HistoryTable, EventTable)>,

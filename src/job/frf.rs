@@ -32,7 +32,7 @@ pub struct Frf<'a> {
     beside: Vec<(usize, Vec<f64>)>,
 }
 
-/// The frequency responses of the case; asked for before anything is computed or written.
+/// The frequency responses of the case, checked before anything is computed or written.
 ///
 /// # Errors
 /// Every place that the mesh does not have.
@@ -74,7 +74,7 @@ impl Frf<'_> {
         &self.force
     }
 
-    /// The names of the places whose motion is looked at, and where they are.
+    /// The names of the places whose motion is computed, and where they are.
     pub fn seen(&self) -> &[(String, Motion)] {
         &self.seen
     }
@@ -84,7 +84,7 @@ impl Frf<'_> {
         !self.slides()
     }
 
-    /// The frequencies \[Hz\] that it is asked for.
+    /// The requested frequencies \[Hz\].
     pub fn band(&self) -> [f64; 2] {
         self.wanted.band
     }
@@ -96,7 +96,7 @@ impl Frf<'_> {
         self.beside.len() - 1
     }
 
-    /// The response, and the receptances that were asked for besides \[m/N\]; `steady` is steady sliding, where the
+    /// The response, and the receptances that were requested besides \[m/N\]; `steady` is steady sliding, where the
     /// contacts slide.
     ///
     /// # Errors
@@ -187,7 +187,7 @@ impl Frf<'_> {
         Ok((result, beside))
     }
 
-    /// What the contacts do, and how it is computed.
+    /// State of the contacts and method of the response, in words.
     fn about(&self, reduced: &Reduced) -> String {
         let contacts = match self.wanted.contact {
             FrfContact::Open => "contacts open",

@@ -30,7 +30,7 @@ pub struct ImportedModel {
     pub load: Vec<f64>,
     /// Coordinates of the nodes \[m\]; empty when the case does not give them.
     pub nodes: Vec<[f64; 3]>,
-    /// What the user should know.
+    /// Warnings.
     pub warnings: Vec<String>,
 }
 
@@ -94,7 +94,7 @@ pub fn read_model(case: &Case, matrices: &Matrices) -> Result<ImportedModel> {
 /// A factor and the matrix it multiplies.
 type Term = (f64, MarketMatrix);
 
-/// What is added to M, C and K, each matrix of `rows` rows and columns; none when there is a fault.
+/// Terms added to M, C and K, each of `rows` rows and columns; none when there is a fault.
 fn read_terms(case: &Case, matrices: &Matrices, rows: usize, faults: &mut Faults) -> Option<[Vec<Term>; 3]> {
     let mut terms = [Vec::new(), Vec::new(), Vec::new()];
     let earlier = faults.0.len();

@@ -97,7 +97,7 @@ pub fn supports(case: &Case, regions: &Regions, links: &[RigidLink], faults: &mu
     supports
 }
 
-/// An error of the structure in terms of the case: the keys of all that holds something, `clamp` among them, stand for its supports.
+/// An error of the structure in terms of the case: the keys of all that holds something, `clamp` among them, replace its supports.
 pub fn in_terms_of_the_case(error: Error, case: &Case, clamp: Option<String>) -> Error {
     let Error::Input(mut faults) = error else { return error };
     let supports = case.support.keys().map(|name| format!("`support.{name}`"));

@@ -35,7 +35,7 @@ impl ExpectedMemory {
     /// Fails where `available` is less than the peak.
     ///
     /// # Errors
-    /// What is needed, what is there, and what makes it less.
+    /// Error when more memory is needed than is available, with the changes that reduce it.
     pub fn check(&self, available: &Available) -> Result<()> {
         if self.bytes <= available.bytes as f64 {
             return Ok(());
@@ -128,7 +128,7 @@ enum Kind {
     StudyOfStructures,
 }
 
-/// What the peak follows from.
+/// Sizes that determine the peak.
 struct Run {
     dofs: usize,
     entries: usize,
@@ -139,7 +139,7 @@ struct Run {
 impl Run {
     /// The peak \[bytes\]: as many matrices, factors and vectors as were counted in runs of 20 000 to 415 000 degrees of freedom.
     ///
-    /// Matrices stand for what is proportional to the mesh, too. Of each mode there are two vectors in the basis of Lanczos
+    /// The size of the matrices also represents what is proportional to the mesh. Of each mode there are two vectors in the basis of Lanczos
     /// and the vector itself; of a complex one also its parts, the left vector and the corrections; of a study the vectors at
     /// other values.
     fn peak(&self, kind: Kind) -> f64 {

@@ -9,6 +9,8 @@
 mod analyse;
 mod analyses;
 mod calibrate;
+#[cfg(feature = "cli")]
+mod checks;
 mod clock;
 mod compare;
 mod complex;
@@ -24,8 +26,6 @@ mod links;
 mod measured;
 mod memory;
 mod mesh;
-#[cfg(feature = "cli")]
-mod missed;
 mod model;
 mod modes;
 mod motion;

@@ -29,7 +29,7 @@ pub fn part_modes(
     Ok(named(prepared, name, modes, &assembled))
 }
 
-/// The structure that one real-mode analysis of the case looks at: parts alone, or the whole, held as it says.
+/// The structure of one real-mode analysis of the case: parts alone, or the whole, held as it says.
 ///
 /// # Errors
 /// Regions that are missing, or nothing that can move.
@@ -53,7 +53,7 @@ pub fn part_assembled(prepared: &Prepared, name: &str) -> Result<Arc<Assembled>>
     Ok(assembled)
 }
 
-/// Whether the structure that one real-mode analysis looks at can be built.
+/// Whether the structure of one real-mode analysis can be built.
 ///
 /// # Errors
 /// Regions that are missing, or nothing that can move.

@@ -5,7 +5,7 @@ use crate::error::{Error, Fault, Result};
 use crate::linalg::SparseVector;
 use crate::structure::ShellPart;
 
-/// A place whose motion is looked at, or that is pushed.
+/// A place whose motion is recorded, or on which a load acts.
 #[derive(Debug, Clone)]
 pub struct Motion {
     /// Where it is, in words.
@@ -63,7 +63,7 @@ pub fn motion(
     Ok(Motion { place, at, along, nodes, direction })
 }
 
-/// What is expected of a place that lies farther from the box round all nodes than a tenth of the box's diagonal.
+/// Expected range of a place that lies farther from the bounding box of all nodes than a tenth of its diagonal.
 fn beyond(nodes: &[[f64; 3]], place: [f64; 3]) -> Option<String> {
     let bound = |pick: fn(f64, f64) -> f64, start: f64| {
         [0, 1, 2].map(|axis| nodes.iter().map(|node| node[axis]).fold(start, pick))

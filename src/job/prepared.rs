@@ -28,7 +28,7 @@ pub struct Prepared<'a> {
     pub model: Model,
     /// Its matrices and degrees of freedom.
     pub assembled: Arc<Assembled>,
-    /// What the analyses take.
+    /// System that is analysed.
     pub system: System,
     /// Things the user should know.
     pub warnings: Vec<String>,
@@ -140,7 +140,7 @@ impl<'a> Prepared<'a> {
         pairs.map(|pair| arrows(&self.case.contact[&pair.name], &self.model, &pair.points)).collect()
     }
 
-    /// How steady sliding is looked for. A contact pressed deeper than half of the thinnest plate makes no sense.
+    /// Settings of the solution of steady sliding. A contact pressed deeper than half of the thinnest plate makes no sense.
     pub fn steady_options(&self) -> SteadyOptions {
         let thinnest = self.model.shells.iter().map(|s| s.thickness).fold(f64::INFINITY, f64::min);
         SteadyOptions { penetration_limit: 0.5 * thinnest, ..SteadyOptions::default() }

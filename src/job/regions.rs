@@ -4,7 +4,7 @@ use crate::case::{Case, MeshSource};
 use crate::error::{Error, Fault, Faults, Result, nearest};
 use crate::mesh::{Element, Mesh, Region};
 
-/// A mesh whose regions are asked for by name, with a fault that lists those there are.
+/// A mesh whose regions are looked up by name, with a fault that lists the existing ones.
 #[derive(Debug, Clone)]
 pub struct Regions {
     /// The mesh, in metres.

@@ -23,9 +23,9 @@ pub struct Run<'a, 'k> {
     pub sink: &'k mut dyn ResultSink,
     /// Times the phases.
     pub clock: Clock,
-    /// What was found.
+    /// Results so far.
     pub results: &'k mut RunResults,
-    /// What an earlier run knows of the maps.
+    /// Points of the maps that an earlier run has computed.
     pub known: &'k KnownMaps,
     /// Whether an analysis takes the left vectors of the complex modes.
     pub left_vectors: bool,
@@ -89,7 +89,7 @@ impl<'a, 'k> Run<'a, 'k> {
         self.clock.time(phase, || work(observer))
     }
 
-    /// Steady sliding, which is computed when it is first asked for.
+    /// Steady sliding, which is computed on first use.
     ///
     /// # Errors
     /// No steady state; the machine refuses.

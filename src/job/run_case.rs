@@ -1,10 +1,10 @@
-//! A case run into a results folder, which can be taken up again when it was interrupted.
+//! A case run into a results folder, which can be resumed when it was interrupted.
 
 use super::analyse::{Asked, analyse_from};
 use super::analyses::{PHASE, Selection};
+use super::checks::results_hold;
 use super::folder::Folder;
 use super::memory::check_memory;
-use super::missed::results_hold;
 use super::prepared::Prepared;
 use super::singular::explained;
 use super::sink::{KnownMap, KnownMaps};
@@ -18,7 +18,7 @@ use std::time::Instant;
 
 /// Runs the analyses of a case and writes the results folder `out`; nothing is written when the input is wrong.
 ///
-/// With `resume` the maps and the run in time that an earlier run of the same case left in `out` are taken up where it
+/// With `resume` the maps and the run in time that an earlier run of the same case left in `out` are resumed where it
 /// stopped; the result is the same, bit for bit. Results of another case or of other files are refused. Without it an
 /// interrupted record is moved to a folder of its own in `out`; the files of a run that had ended are replaced.
 ///
@@ -35,7 +35,7 @@ pub fn run_case(
 ) -> Result<RunResults> {
     let started = Instant::now();
     let prepared = Prepared::new(case)?;
-    // Its faults are told before anything is written.
+    // Its faults are reported before anything is written.
     let asked = Asked::new(&prepared, selection)?;
     if let Some(expected) = check_memory(&prepared, selection)? {
         observer.begin(&format!("memory: about {}", expected.words()), None);
@@ -48,7 +48,7 @@ pub fn run_case(
     let _lock = FolderLock::take(out)?;
     let mut results = RunResults { inputs: origin.inputs.clone(), ..RunResults::default() };
     let (record, earlier) = match resume {
-        true => taken_up(out, origin, &asked)?,
+        true => resumed(out, origin, &asked)?,
         false => {
             results.warnings.extend(moved_aside(out, observer)?);
             (Record::new(out, origin), Earlier::default())
@@ -88,8 +88,8 @@ pub fn run_case(
     }
 }
 
-/// What an earlier run has left to go on with.
-fn taken_up(out: &Path, origin: Origin, asked: &Asked) -> Result<(Record, Earlier)> {
+/// Record of an earlier run to resume from.
+fn resumed(out: &Path, origin: Origin, asked: &Asked) -> Result<(Record, Earlier)> {
     let Some((record, earlier)) = Record::resume(out, &origin)? else {
         return Ok((Record::new(out, origin), Earlier::default()));
     };
@@ -98,7 +98,7 @@ fn taken_up(out: &Path, origin: Origin, asked: &Asked) -> Result<(Record, Earlie
     let lost = left_out.into_iter().find(|(there, _, analysis)| *there && !asked.includes(analysis));
     if let Some((_, what, analysis)) = lost.filter(|_| !record.ended()) {
         let found = format!("an interrupted record of {what}");
-        let expected = format!("`stridor {analysis}` or `stridor run` to go on with it");
+        let expected = format!("`stridor {analysis}` or `stridor run` to resume it");
         let fault = Fault::new(out.display().to_string(), found, expected);
         let help = "Use that command, or run without --resume (the record is kept aside)";
         return Err(Error::input(fault.with_help(help)));
@@ -110,7 +110,7 @@ fn taken_up(out: &Path, origin: Origin, asked: &Asked) -> Result<(Record, Earlie
 fn moved_aside(out: &Path, observer: &dyn Observer) -> Result<Option<String>> {
     let sentence = results::set_aside(out)?.map(|aside| {
         format!(
-            "The folder had the record of an interrupted run. It was moved to {}; --resume with --out of that folder goes on with it",
+            "The folder had the record of an interrupted run. It was moved to {}; --resume with --out of that folder resumes it",
             aside.display()
         )
     });

@@ -1,4 +1,4 @@
-//! What several tests start from, those in `tests` too.
+//! Sample cases of several tests, those in `tests` included.
 
 /// A steel disc of 1 mm, held at its hub: `radial` and `around` cells.
 pub(crate) fn disc(radial: usize, around: usize) -> String {

@@ -16,18 +16,18 @@ pub struct Scalar {
     pub value: f64,
     /// Its SI unit; empty for a pure number.
     pub unit: &'static str,
-    /// What it belongs to.
+    /// Part of the problem that depends on it.
     pub kind: Kind,
 }
 
-/// What a scalar belongs to, which says how a neighbouring system is made.
+/// Part of the problem that depends on a scalar, which decides how a neighbouring system is built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Contact laws, loads, velocities: the structure and the contact points stay.
     Law,
     /// Ratios of modal damping: C is linear in them.
     Ratio,
-    /// Everything else: the model is built anew.
+    /// Everything else: the model is rebuilt.
     Structure,
 }
 
@@ -50,7 +50,7 @@ pub fn chosen(case: &Case, patterns: &[String]) -> (Vec<Scalar>, Vec<LeftOut>) {
     (scalars, left_out)
 }
 
-/// What a scalar belongs to; `None` when no eigenvalue depends on it; the reason when λ has no derivative by it.
+/// Kind of a scalar; `None` when no eigenvalue depends on it; the reason when λ has no derivative by it.
 fn kind(parameter: &Parameter) -> std::result::Result<Option<Kind>, &'static str> {
     match parameter.derivative {
         Derivative::Zero => Ok(None),
@@ -78,7 +78,7 @@ impl Scalar {
         Scalar { path: parameter.path, value: parameter.value, unit: parameter.unit, kind }
     }
 
-    /// A step that is small against what the scalar stands for, and a guess where it is zero.
+    /// A step that is small against the magnitude of the scalar, and a guess where it is zero.
     pub fn step(&self) -> f64 {
         const SHARE: f64 = 1e-3;
         let least = match (self.unit, self.path.rsplit('.').next()) {

@@ -1,4 +1,4 @@
-//! What the unstable modes of a case answer to: its scalars, and small things mounted on its nodes.
+//! Sensitivities of the unstable modes of a case to its scalars and to small masses, springs and dampers at its nodes.
 
 use super::modes::modal_ratios;
 use super::prepared::Prepared;
@@ -16,7 +16,7 @@ use crate::system::System;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// The most modes that are looked into, the strongest first.
+/// The most modes that are analysed, the strongest first.
 const MOST_MODES: usize = 12;
 /// Larger systems are built one at a time, so that memory holds one of them.
 const ONE_AT_A_TIME: usize = 150_000;

@@ -10,8 +10,8 @@ use crate::results::Placed;
 use crate::structure::DofMap;
 use nalgebra::Vector3;
 
-/// More points than this that lie off the mesh are not told one by one.
-const TOLD: usize = 10;
+/// Most points off the mesh that are reported one by one.
+const LISTED: usize = 10;
 
 /// The degrees of freedom of a test's shapes, in the mesh.
 #[derive(Debug, Clone)]
@@ -53,7 +53,7 @@ impl Sensors {
         let found = nearest(&points, &prepared.model.nodes, &among);
         let mut faults = Faults::new();
         let far = || used.iter().zip(&points).zip(&found).filter(|(_, (_, away))| *away > data.reach);
-        for ((point, at), (_, away)) in far().take(TOLD) {
+        for ((point, at), (_, away)) in far().take(LISTED) {
             let [x, y, z] = at.map(|c| 1e3 * c);
             let words = format!(
                 "point {} at ({x:.1}, {y:.1}, {z:.1}) mm of the mesh, {:.1} mm from the nearest node",
@@ -64,7 +64,7 @@ impl Sensors {
             let help = "Look at `transform`: origin, axes and the unit of the test";
             faults.push(Fault::new(&*place, words, expected).with_help(help));
         }
-        let more = far().count().saturating_sub(TOLD);
+        let more = far().count().saturating_sub(LISTED);
         if more > 0 {
             faults.push(Fault::new(
                 &*place,
@@ -99,8 +99,8 @@ impl Sensors {
         })
     }
 
-    /// What each degree of freedom measures of a nodal field (u, θ) on the `nodes`: d·(u + θ × a) with the way a from the
-    /// node to the point, right to a² for a plate or a bar.
+    /// Displacement measured at each degree of freedom, d·(u + θ × a), of a nodal field (u, θ) on the `nodes`, with the vector
+    /// a from the node to the point; exact to a² for a plate or a bar.
     pub fn motions(&self, nodes: &[[f64; 3]], field: &[[f64; 6]]) -> Vec<f64> {
         let motion = |(node, direction, arm): (usize, Vector3<f64>, Vector3<f64>)| {
             let [x, y, z, a, b, c] = field[node];

@@ -1,4 +1,4 @@
-//! What to say where equations are singular: which parts are free.
+//! Explanation of singular equations: the parts that are not supported.
 
 use super::prepared::Prepared;
 use crate::error::Error;

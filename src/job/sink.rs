@@ -11,7 +11,7 @@ use crate::transient::Checkpoint;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// What an earlier, interrupted run knows of one map.
+/// Points of one map that an earlier, interrupted run has computed.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct KnownMap {
     /// Its first points.
@@ -27,7 +27,7 @@ pub type KnownMaps = BTreeMap<String, KnownMap>;
 pub enum Stage<'a> {
     /// The case, its size and its geometry.
     Model(&'a RunResults),
-    /// What an analysis has found, as a whole.
+    /// Complete results of an analysis.
     Found(&'a dyn Describe),
     /// A map of which no new point is there yet, and what is known of it.
     MapBegins(&'a MapResult, &'a KnownMap),
@@ -35,7 +35,7 @@ pub enum Stage<'a> {
     MapPoints(&'a str, usize, &'a [MapPoint]),
     /// A whole map.
     Map(&'a MapResult),
-    /// A run in time that begins or, after [`ResultSink::stopped`] had an answer, goes on.
+    /// A run in time that begins or, after [`ResultSink::stopped`] had an answer, resumes.
     TransientBegins(&'a Recording<'a>),
     /// New rows of it.
     TransientPiece(&'a Piece<'a>),
@@ -59,7 +59,7 @@ pub trait ResultSink {
     /// The machine refuses.
     fn recorded(&self, channel: &str, rows: Range<usize>) -> Result<Vec<f64>>;
 
-    /// Where an earlier run in time stopped that is to be taken up.
+    /// State at which an earlier run in time stopped that is to be resumed.
     ///
     /// # Errors
     /// The machine refuses.

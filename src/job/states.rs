@@ -26,7 +26,7 @@ pub(super) fn varied(case: &Case, paths: &[String], at: &[f64]) -> Result<Case> 
     case.with_parameters(paths.iter().zip(at.iter().copied()))
 }
 
-/// What the sliding states of a sweep share.
+/// Data common to the sliding states of a sweep.
 pub(super) struct States<'a> {
     pub(super) prepared: &'a Prepared<'a>,
     /// The case without its sweeps.

@@ -1,4 +1,4 @@
-//! Advice proved by doing it: the thing is mounted on the model and everything is computed anew.
+//! Verification of the advice: the addition is mounted on the model and everything is recomputed.
 
 use super::modes::add_modal_damping;
 use super::prepared::Prepared;
@@ -36,7 +36,7 @@ pub fn mounted(prepared: &Prepared, mode: &ComplexMode, thing: &Mounted) -> Resu
     if assembled.structure.n_dofs() != prepared.system.n_dofs() {
         return Err(refused("the thing gives the model degrees of freedom that it did not have"));
     }
-    let Some(cea) = &prepared.case.cea else { return Err(refused("no complex eigenvalues were asked for")) };
+    let Some(cea) = &prepared.case.cea else { return Err(refused("no complex eigenvalues were requested")) };
     let mut system = System { structure: assembled.structure.clone(), ..prepared.system.clone() };
     let options = prepared.steady_options();
     let steady = solve_steady(&system, &options, &())?;

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 /// |ln f ratio| is counted in units of this.
 const FREQUENCY: f64 = 0.1;
-/// What a pair may cost at most: 20 % of frequency for like shapes, or where no shape is known.
+/// Largest cost of a pair: 20 % of frequency for like shapes, or where no shape is known.
 const ALONE: f64 = 2.0;
 /// Shapes less alike than this are not of the same mode.
 const LIKE: f64 = 0.5;

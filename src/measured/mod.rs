@@ -1,4 +1,4 @@
-//! What was measured, and how like it the computed is.
+//! Measured data, and their comparison with computed modes.
 //!
 //! * [`MeasuredSet`]: points, modes and frequency responses of a test, plain data in SI units.
 //! * [`Records`]: what a file of a test holds, by the numbers of its points.

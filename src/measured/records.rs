@@ -1,4 +1,4 @@
-//! What a file of a test holds, by the numbers of its points; and how it becomes a [`MeasuredSet`].
+//! Contents of a file of a test, by the numbers of its points; and their conversion to a [`MeasuredSet`].
 
 use super::set::{MeasuredDof, MeasuredFrf, MeasuredMode, MeasuredPoint, MeasuredSet, Quantity};
 use crate::linalg::c64;
@@ -13,7 +13,7 @@ pub struct Records {
     pub modes: Vec<ModeRecord>,
     /// Frequency responses.
     pub functions: Vec<FunctionRecord>,
-    /// What the user should know, one sentence each without its full stop.
+    /// Warnings, one sentence each without its full stop.
     pub warnings: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! What was measured, as plain data in SI units.
+//! Measured data, as plain data in SI units.
 
 use crate::linalg::c64;
 use crate::schema::choices;
@@ -62,9 +62,9 @@ impl MeasuredMode {
 /// A frequency response that was measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredFrf {
-    /// What the test calls it.
+    /// Name in the test.
     pub name: String,
-    /// What of the motion.
+    /// Receptance, mobility or accelerance.
     pub quantity: Quantity,
     /// Where the force acts.
     pub excitation: MeasuredDof,
@@ -77,7 +77,7 @@ pub struct MeasuredFrf {
 }
 
 choices! {
-    /// What of the motion is set over the force.
+    /// Motion that is divided by the force.
     pub enum Quantity {
         /// Displacement: u/F \[m/N\].
         Receptance = "receptance",

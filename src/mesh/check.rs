@@ -1,4 +1,4 @@
-//! What is wrong with a mesh: all faults at once, in the numbers of its file.
+//! Check of a mesh: all faults at once, in the numbers of its file.
 //!
 //! Faults make an analysis wrong or impossible; warnings say that a result may be poor.
 
@@ -19,7 +19,7 @@ const COINCIDENT: f64 = 1e-8;
 /// How many numbers a message lists before it says how many more there are.
 const LISTED: usize = 5;
 
-/// What is wrong with a mesh, and what may be.
+/// Faults and warnings of a mesh.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Diagnosis {
     /// Faults: no analysis should take this mesh.

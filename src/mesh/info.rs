@@ -1,11 +1,11 @@
-//! What a mesh holds, in a few lines.
+//! Summary of a mesh in a few lines.
 
 use super::check::{Diagnosis, bounds, count_pieces, diagnose};
 use super::quality::{face_shape, minus, norm};
 use super::{Element, Mesh};
 use std::fmt;
 
-/// What a mesh holds.
+/// Summary of a mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Info {
     /// Number of nodes.
@@ -14,7 +14,7 @@ pub struct Info {
     pub n_elements: [usize; 4],
     /// Corners of the bounding box \[m\]; zero without nodes.
     pub bounds: [[f64; 3]; 2],
-    /// What each region holds.
+    /// Summary of each region.
     pub regions: Vec<RegionInfo>,
     /// Smallest corner angle of all faces \[degrees\]; `None` without faces.
     pub smallest_angle_deg: Option<f64>,
@@ -22,7 +22,7 @@ pub struct Info {
     pub diagnosis: Diagnosis,
 }
 
-/// What a region holds.
+/// Summary of a region.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RegionInfo {
     /// Its name.

@@ -48,7 +48,7 @@ pub struct Mesh {
     pub origin: Origin,
 }
 
-/// The numbers a mesh file gives to nodes and elements, so that messages speak of them as the file does.
+/// The numbers a mesh file gives to nodes and elements, so that messages use them.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Origin {
     /// Tag of each node, or empty: numbered from 1.

@@ -59,7 +59,7 @@ pub fn compute(
         ModesWanted::Count(count) => (format!("the lowest {count}"), Wanted::Count(count)),
     };
     let pairs = lowest_eigenpairs(&structure.stiffness, &structure.mass, below, observer);
-    pairs.map(|pairs| told(structure, pairs)).map_err(|e| failed(&range, e))
+    pairs.map(|pairs| modes_and_factor(structure, pairs)).map_err(|e| failed(&range, e))
 }
 
 /// Real modes of `structure` below `hz`, or a shade above it, where K − σM is factorised already at a shift σ among them: as
@@ -75,7 +75,7 @@ pub fn compute_from(
 ) -> Result<(RealModes, ShiftedStiffness)> {
     let (start, bound) = ((start.shift, start.factor), (TAU * hz).powi(2));
     let pairs = eigenpairs_below(&structure.stiffness, &structure.mass, bound, start, observer);
-    pairs.map(|pairs| told(structure, pairs)).map_err(|e| failed(&format!("below {hz} Hz"), e))
+    pairs.map(|pairs| modes_and_factor(structure, pairs)).map_err(|e| failed(&format!("below {hz} Hz"), e))
 }
 
 /// An error of the eigenvalues as one of the modes in a range.
@@ -88,8 +88,8 @@ fn failed(range: &str, error: Error) -> Error {
     }
 }
 
-/// Eigenpairs as modes.
-fn told(structure: &Structure, pairs: Eigenpairs) -> (RealModes, ShiftedStiffness) {
+/// Modes with their Sturm certificate, and the factorised K − σM, of eigenpairs.
+fn modes_and_factor(structure: &Structure, pairs: Eigenpairs) -> (RealModes, ShiftedStiffness) {
     let hz = |theta: f64| theta.max(0.0).sqrt() / TAU;
     let certificate = SturmCertificate {
         below_hz: hz(pairs.sturm.bound),

@@ -4,7 +4,7 @@ use super::DiscModeName;
 use std::ops::Range;
 
 /// Two neighbours of one name are a level where their frequencies differ by less than this part. What is round has them
-/// equal; a mesh that is not parts them, that of `meshes/rig-medium.msh` by 6e-4 at most, and a test tells frequencies to about
+/// equal; a mesh that is not parts them, that of `meshes/rig-medium.msh` by 6e-4 at most, and a test resolves frequencies to about
 /// 5e-3.
 const OF_ONE_NAME: f64 = 2e-3;
 /// The same without names, where the two may be neighbours by chance: as near as this one pair in a thousand is, where modes lie
@@ -13,7 +13,7 @@ const WITHOUT_NAMES: f64 = 1e-4;
 
 /// The levels of modes that ascend in frequency. Modes that a whole disc has once, without nodal diameters, are single.
 pub fn levels(frequencies_hz: &[f64], names: &[Option<DiscModeName>]) -> Vec<Range<usize>> {
-    let twins = |a: usize, b: usize| {
+    let doublet = |a: usize, b: usize| {
         let near = match names[a] {
             Some(name) if name.nodal_diameters == 0 => 0.0,
             Some(_) => OF_ONE_NAME,
@@ -23,7 +23,7 @@ pub fn levels(frequencies_hz: &[f64], names: &[Option<DiscModeName>]) -> Vec<Ran
     };
     let mut all: Vec<Range<usize>> = Vec::new();
     for k in 0..frequencies_hz.len() {
-        match all.last_mut().filter(|level| level.len() == 1 && twins(level.start, k)) {
+        match all.last_mut().filter(|level| level.len() == 1 && doublet(level.start, k)) {
             Some(level) => level.end = k + 1,
             None => all.push(k..k + 1),
         }

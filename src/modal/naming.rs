@@ -14,7 +14,7 @@ use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_uppe
 use faer::{Mat, Par};
 use std::f64::consts::{PI, TAU};
 
-/// The most nodal diameters that are told apart.
+/// The most nodal diameters that are distinguished.
 const MOST_DIAMETERS: usize = 24;
 /// The highest degree of the polynomials in ρ.
 const MOST_DEGREE: usize = 8;
@@ -28,7 +28,7 @@ const SMOOTHING: f64 = 1e-4;
 const DOMINANT: f64 = 0.7;
 /// Lobes along the radius smaller than this share of the largest are not counted.
 const SMALLEST_LOBE: f64 = 0.05;
-/// Radii at which the fitted field is looked at.
+/// Radii at which the fitted field is evaluated.
 const RADII: usize = 129;
 
 /// The points of a disc, ready to name any number of its modes.
@@ -67,8 +67,8 @@ impl DiscPoints {
         let most = chosen.len() / POINTS_A_COEFFICIENT;
         let degree =
             MOST_DEGREE.min(rings(points, inner, outer) - 1).min(if most < 200 { 4 } else { MOST_DEGREE });
-        let room = (most / (degree + 1)).saturating_sub(1) / 2;
-        let diameters = MOST_DIAMETERS.min((0.9 * PI / gap) as usize).min(room);
+        let by_points = (most / (degree + 1)).saturating_sub(1) / 2;
+        let diameters = MOST_DIAMETERS.min((0.9 * PI / gap) as usize).min(by_points);
         if diameters == 0 {
             return None;
         }
@@ -135,7 +135,7 @@ impl DiscPoints {
         Some(DiscModeName { nodal_diameters: n, nodal_circles: sign_changes(&self.principal(&along[n])) })
     }
 
-    /// r of the i-th of the radii looked at.
+    /// r of the i-th of the radii evaluated.
     fn radius(&self, i: usize) -> f64 {
         self.inner + (self.outer - self.inner) * i as f64 / (RADII - 1) as f64
     }
@@ -180,7 +180,7 @@ fn chebyshev(rho: f64) -> [f64; MOST_DEGREE + 1] {
     t
 }
 
-/// The largest angle without a point: it limits the n that can be told apart (n < π / gap).
+/// The largest angle without a point: it limits the n that can be distinguished (n < π / gap).
 fn largest_gap(points: &[(f64, f64)]) -> f64 {
     let mut angles: Vec<f64> = points.iter().map(|p| p.1.rem_euclid(TAU)).collect();
     angles.sort_by(f64::total_cmp);

@@ -282,7 +282,7 @@ mod tests {
             assert!(off(&reduced.inertia, &|_| 1.0) < 1e-9);
             let elastic = times(&system.structure.stiffness, reduced.basis.as_ref());
             assert!(off(&elastic, &|i| squares[i]) < 1e-9);
-            // Its steady sliding, solved for anew.
+            // Its steady sliding, solved again.
             let small = solve_steady(&reduced.system, &SteadyOptions::default(), &()).unwrap();
             for (a, b) in small.points.iter().zip(&steady.points) {
                 let (a, b) = (a.forces.normal, b.forces.normal);

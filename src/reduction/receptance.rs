@@ -8,7 +8,7 @@ use crate::modal::{ModesWanted, RealModes, compute};
 use crate::progress::Observer;
 use crate::system::{ModalDamping, Structure, System};
 
-/// Real modes are taken up to this many times the highest frequency.
+/// Real modes are computed up to this many times the highest frequency.
 const MODES: f64 = 2.0;
 
 /// Modal damping of a structure, given M and its real modes; none where it has none.
@@ -19,7 +19,7 @@ pub type DampingOfModes<'a> = &'a dyn Fn(&SparseMatrix, &RealModes) -> Result<Op
 pub struct Receptance {
     /// At full order, n degrees of freedom, with its modal damping.
     pub system: System,
-    /// What it moves about.
+    /// State about which it vibrates.
     pub steady: SteadySliding,
     /// Its real modes up to twice the highest frequency.
     pub real: RealModes,

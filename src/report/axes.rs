@@ -24,7 +24,7 @@ pub(super) fn axes<'a>(
     labelled(area, ranges, &words)
 }
 
-/// What stands at the axes.
+/// Labels of the axes.
 pub(super) struct Words<'a> {
     /// Under the axis across; the labels only when absent.
     pub below: Option<&'a str>,

@@ -1,4 +1,4 @@
-//! What the charts share: a sheet of plotters' SVG backend, its text styles, axes that end on round numbers.
+//! Common parts of the charts: a sheet of plotters' SVG backend, its text styles, axes that end on round numbers.
 
 use super::html::allowed;
 use plotters::coord::Shift;
@@ -34,7 +34,7 @@ pub(super) fn colour(hex: &str) -> RGBColor {
     RGBColor(channel(1), channel(3), channel(5))
 }
 
-/// Text of `pixels` height; plotters draws a font at 1/1.24 of the size it is told.
+/// Text of `pixels` height; plotters draws a font at 1/1.24 of the size it is given.
 pub(super) fn text(pixels: f64, hex: &str) -> TextStyle<'static> {
     (FONT, pixels * 1.24).into_font().color(&colour(hex))
 }

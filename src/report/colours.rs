@@ -1,10 +1,10 @@
 //! Colours that stay apart in print and for the colour-blind.
 
-/// What stands out: unstable, closed (vermilion of Okabe and Ito's set).
+/// Colour of emphasis: unstable, closed (vermilion of Okabe and Ito's set).
 pub(super) const ALARM: &str = "#d55e00";
-/// What is calm: stable, open.
+/// Neutral colour: stable, open.
 pub(super) const CALM: &str = "#8a949e";
-/// What was measured (their blue).
+/// Colour of measured data (their blue).
 pub(super) const MEASURED: &str = "#0072b2";
 /// A second line beside one that stands out (their bluish green).
 pub(super) const SECOND: &str = "#009e73";

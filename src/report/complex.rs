@@ -70,7 +70,7 @@ pub(super) fn unstable(result: &ComplexResult) -> Table {
     table
 }
 
-/// What the count of the unstable eigenvalues says, in words.
+/// Count of the unstable eigenvalues, in words.
 fn counted(certificate: &Certificate) -> String {
     let ([low, high], [slow, fast]) = (certificate.band_hz, certificate.growth);
     let faster = match certificate.proven {
@@ -106,7 +106,7 @@ fn counted(certificate: &Certificate) -> String {
     words
 }
 
-/// What the second method says, in words.
+/// Results of the second method, in words.
 fn second_method(confirmation: &Confirmation) -> String {
     if confirmation.holds() {
         return format!(
@@ -132,7 +132,7 @@ fn second_method(confirmation: &Confirmation) -> String {
 /// The verdict in one sentence.
 pub(super) fn verdict(results: &RunResults) -> String {
     let Some(complex) = results.get::<ComplexResult>() else {
-        return "No complex eigenvalues were asked for: this run says nothing about squeal.".into();
+        return "No complex eigenvalues were requested: this run does not assess squeal.".into();
     };
     let band = complex.band_hz.map(given);
     let modes = &complex.modes.modes;

@@ -13,7 +13,7 @@ use std::error::Error;
 
 /// A mode with less than this part of the largest product of shapes does not show.
 const HIDDEN: f64 = 0.01;
-/// A measured resonance stands beside a mode that differs from it by less than this part.
+/// A measured resonance is paired with a mode that differs from it by less than this part.
 const NEAR: f64 = 0.05;
 
 /// Every frequency response.
@@ -144,7 +144,7 @@ fn table(frf: &FrfResult) -> Table {
     table
 }
 
-/// What was measured beside each mode: of the modes that show somewhere the nearest, if it is near.
+/// Measured frequency beside each mode: that of the nearest mode that shows somewhere, if it is near.
 fn beside(frf: &FrfResult) -> Vec<String> {
     let mut beside = vec![String::new(); frf.resonances.len()];
     for measured in &frf.measured {

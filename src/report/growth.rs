@@ -33,14 +33,14 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     Some(Picture { file: "growth".into(), caption, svg })
 }
 
-/// What the axis of the growth rate spans.
+/// Range of the axis of the growth rate.
 fn growth_range(complex: &ComplexResult) -> std::ops::Range<f64> {
     let rates = || complex.modes.modes.iter().map(|m| m.growth_rate()).filter(|s| s.is_finite());
     let highest = rates().fold(0.0, f64::max);
     let lowest = rates().fold(0.0, f64::min);
     let floor = if highest > 0.0 { lowest.max(-DEEPEST * highest) } else { lowest };
     let length = (highest - floor).max(f64::MIN_POSITIVE);
-    // Room above for the labels of modes and bands.
+    // Space above for the labels of modes and bands.
     let range = widened(floor, highest + 0.3 * length, 0.06);
     if range.end - range.start < 1e-9 { -1.0..1.0 } else { range }
 }

@@ -12,7 +12,7 @@ use std::ops::Range;
 const DECADES: f64 = 6.0;
 /// Half a turn \[°\]: where the phase leaves the chart on one side it comes in on the other.
 const HALF: f64 = 180.0;
-const ROOM: f64 = 5.0;
+const MARGIN: f64 = 5.0;
 
 /// Axes for the sizes of a quantity over the frequencies.
 pub(super) fn magnitude_axes<'a>(
@@ -38,7 +38,7 @@ pub(super) fn phase_axes<'a>(
 ) -> Result<Chart<'a>, Box<dyn Error>> {
     let degrees = |v: f64| fixed(v, 0);
     let words = Words { below, beside: "phase [°]", across: &given, up: &degrees, labels: 10, grid: true };
-    labelled(area, (band(hz), -HALF - ROOM..HALF + ROOM), &words)
+    labelled(area, (band(hz), -HALF - MARGIN..HALF + MARGIN), &words)
 }
 
 fn band(hz: &[f64]) -> Range<f64> {
@@ -68,7 +68,7 @@ pub(super) fn draw_phase(
     Ok(())
 }
 
-/// Phases from −180° to 180° as lines that end at ±180° where the next one lies beyond, and go on at ∓180°.
+/// Phases from −180° to 180° as lines that end at ±180° where the next one lies beyond, and continue at ∓180°.
 fn unbroken(points: impl Iterator<Item = (f64, f64)>) -> Vec<Vec<(f64, f64)>> {
     let mut pieces: Vec<Vec<(f64, f64)>> = vec![Vec::new()];
     let mut last: Option<(f64, f64)> = None;

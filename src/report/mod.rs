@@ -55,7 +55,7 @@ use crate::results::{FileNames, RunResults, write_result};
 use section::Section;
 use std::path::Path;
 
-/// What each analysis has to show, in the order of the report: one line an analysis.
+/// Sections of each analysis, in the order of the report: one line an analysis.
 const SECTIONS: [fn(&RunResults) -> Vec<Section>; 10] = [
     rig::sections,
     real_modes::sections,

@@ -19,7 +19,7 @@ const LENGTH: f64 = WIDTH - LEFT - 24.0;
 const HEAD: f64 = 12.0;
 const ROW: f64 = 62.0;
 const BAR: f64 = 26.0;
-/// What a letter of a label is wide, at most on average \[px\].
+/// Width of a letter of a label, at most on average \[px\].
 const LETTER: f64 = 6.8;
 /// Light enough for dark letters; the same real mode has one colour in every bar.
 const FILLS: [&str; 12] = [
@@ -102,14 +102,14 @@ fn draw(sheet: &mut Sheet, top: f64, mode: &ComplexMode, complex: &ComplexResult
         start += length;
     }
     // What does not fit stands below, from the right end on: the narrow parts are the last ones.
-    let mut room = LEFT + LENGTH;
+    let mut limit = LEFT + LENGTH;
     for (text, middle, width) in narrow.into_iter().rev() {
-        let end = room.min(middle + 0.5 * width);
+        let end = limit.min(middle + 0.5 * width);
         let below = [end - 0.5 * width, top + BAR + 16.0];
         let line = [[middle, top + BAR], [below[0], below[1] - 11.0]];
         sheet.lines([&line[..]], &format!("stroke=\"{MUTED}\" stroke-width=\"0.8\""));
         sheet.text(below, text, label);
-        room = end - width - 8.0;
+        limit = end - width - 8.0;
     }
 }
 

@@ -17,7 +17,7 @@ pub(super) struct Plate {
     pub points: Vec<[f64; 2]>,
     /// Triangles of indices into `nodes`.
     pub triangles: Vec<[usize; 3]>,
-    /// Towards the eye.
+    /// Towards the viewer.
     pub normal: Vector,
 }
 
@@ -43,8 +43,8 @@ impl Plate {
         let sum = corners.iter().map(area).fold([0.0; 3], |sum, n| along(sum, dot(n, first).signum(), n));
         // Seen from +x, or from above when the plate lies flat.
         let toward_eye = if sum[0].abs() > 1e-6 * dot(sum, sum).sqrt() { sum[0] } else { sum[2] };
-        let eye = if toward_eye < 0.0 { sum.map(|c| -c) } else { sum };
-        let view = View::facing(eye)?;
+        let viewer = if toward_eye < 0.0 { sum.map(|c| -c) } else { sum };
+        let view = View::facing(viewer)?;
         let points = nodes.iter().map(|k| view.project(geometry.nodes[*k])).collect();
         Some(Plate { nodes, points, triangles, normal: view.towards })
     }

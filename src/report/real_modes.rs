@@ -22,7 +22,7 @@ fn table(results: &RunResults, set: &NamedModes) -> Table {
     let comparisons: Vec<_> =
         results.all::<MeasuredComparison>().into_iter().filter(|m| m.is_of(set)).collect();
     let mut headings = vec!["no.", "f [Hz]"];
-    // Where several parts move, which one moves most tells a disc's mode from a slider's.
+    // Where several parts move, the one that moves most distinguishes a disc's mode from a slider's.
     let parted = set.moving_part.iter().any(|part| *part != set.moving_part[0]);
     if parted {
         headings.insert(0, "<part");

@@ -45,7 +45,7 @@ pub fn write_search(dir: &Path, result: &SearchResult) -> Result<()> {
     write_result(dir, "search.html", html::document(title, &body).as_bytes())
 }
 
-/// What the command line prints.
+/// Text printed on the command line.
 pub fn search_text(result: &SearchResult) -> String {
     let tables = [fact_table(result), number_table(result)];
     let words = words(result).into_iter().map(|w| super::text::wrap(&w));
@@ -123,7 +123,7 @@ fn fact_table(result: &SearchResult) -> Table {
     table
 }
 
-/// The first words of a long name, so that the figures beside it have room.
+/// The first words of a long name, so that the figures beside it fit.
 fn shortened(words: &str) -> String {
     const MOST: usize = 42;
     match words.char_indices().nth(MOST) {

@@ -10,7 +10,7 @@ pub(super) struct Picture {
     pub svg: String,
 }
 
-/// What one analysis found.
+/// Section of one analysis.
 #[derive(Debug, Clone)]
 pub(super) struct Section {
     /// Its heading on the page; empty for none.

@@ -1,4 +1,4 @@
-//! What complex modes answer to, and what would calm them.
+//! Sensitivities of complex modes, and the additions that stabilise them.
 
 use super::format::{fixed, given, hertz, power, rate};
 use super::section::{Display, Section};
@@ -21,7 +21,7 @@ pub(super) fn sections(results: &RunResults) -> Vec<Section> {
     vec![section]
 }
 
-/// What a mode answers to, the scalar that moves its growth rate most first. The derivatives proper are the last two
+/// Derivatives of a mode, the scalar that moves its growth rate most first. The derivatives proper are the last two
 /// columns.
 fn rates(mode: &ModeSensitivity) -> Table {
     let hz = hertz(mode.eigenvalue.im / TAU, 1);
@@ -65,7 +65,7 @@ fn advice_table(result: &SensitivityResult) -> Table {
     }
     table
         .notes
-        .push("By slope: to first order; done: mounted on the model and everything computed anew.".into());
+        .push("By slope: to first order; done: mounted on the model and everything recomputed.".into());
     table.notes.push(
         "Slope error: how far a thousandth of the thing, really mounted, is from the slope, relative.".into(),
     );

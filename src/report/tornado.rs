@@ -61,7 +61,7 @@ fn draw(sheet: &mut Sheet, top: f64, mode: &ModeSensitivity) {
     sheet.text([18.0, top + 22.0], &title, ink);
     let shown = strongest(mode);
     let largest = shown.iter().map(|p| p.growth_per_percent().abs()).fold(f64::MIN_POSITIVE, f64::max);
-    // Room for the figures at both ends.
+    // Space for the figures at both ends.
     let zero = LABELS + 0.5 * (WIDTH - LABELS);
     let reach = 0.5 * (WIDTH - LABELS) - 96.0;
     for (k, p) in shown.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Small vectors, and the directions from which pictures look at a model.
+//! Small vectors, and the directions from which pictures show a model.
 
 /// A vector or a place in space.
 pub(super) type Vector = [f64; 3];
@@ -22,7 +22,7 @@ pub(super) fn unit(a: Vector) -> Option<Vector> {
     (length > 0.0 && length.is_finite()).then(|| a.map(|c| c / length))
 }
 
-/// A parallel projection: what is to the right, what is up, and what faces the eye.
+/// A parallel projection: what is to the right, what is up, and towards the viewer.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct View {
     pub right: Vector,
@@ -44,7 +44,7 @@ impl View {
         [dot(self.right, place), dot(self.up, place)]
     }
 
-    /// Larger is nearer to the eye.
+    /// Larger is nearer to the viewer.
     pub(super) fn nearness(&self, place: Vector) -> f64 {
         dot(self.towards, place)
     }

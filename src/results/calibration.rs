@@ -17,7 +17,7 @@ pub struct CalibrationResult {
     pub data: Vec<CalibratedDatum>,
     /// The measured frequency responses beside the computed ones.
     pub responses: Vec<CalibratedResponse>,
-    /// What each computed level is called.
+    /// Name of each computed level.
     pub levels: Vec<String>,
     /// The set that each level belongs to.
     pub level_sets: Vec<String>,
@@ -38,7 +38,7 @@ pub struct CalibratedNumber {
     pub unit: String,
     /// Its bounds.
     pub between: [f64; 2],
-    /// What was expected.
+    /// Expected value.
     pub expected: f64,
     /// Standard deviation of that; its share of the value where `log`. Without it every value inside the bounds was as good.
     pub deviation: Option<f64>,
@@ -63,17 +63,17 @@ pub struct CalibratedNumber {
 pub struct CalibratedDatum {
     /// The set it belongs to: the name of real modes, or `squeal`.
     pub set: String,
-    /// What was measured \[Hz\].
+    /// Measured frequency \[Hz\].
     pub measured_hz: f64,
     /// Its relative standard deviation.
     pub deviation: f64,
-    /// What the mode is called.
+    /// Name of the mode.
     pub level: String,
     /// Computed with the values of the case \[Hz\].
     pub before_hz: Option<f64>,
     /// Computed with the values that were found \[Hz\].
     pub after_hz: Option<f64>,
-    /// Computed with the values that the other data lead to \[Hz\]; none where they do not tell.
+    /// Computed with the values that the other data lead to \[Hz\]; none where they do not determine it.
     pub left_out_hz: Option<f64>,
     /// Growth rate of the mode with the values that were found \[1/s\]; none of a real mode.
     pub growth: Option<f64>,
@@ -87,11 +87,11 @@ pub struct CalibratedDatum {
 pub struct CalibratedResponse {
     /// The name of the measured set.
     pub set: String,
-    /// What the test calls it.
+    /// Name in the test.
     pub name: String,
-    /// What the case calls its place.
+    /// Name of its place in the case.
     pub place: String,
-    /// What of the motion.
+    /// Receptance, mobility or accelerance.
     pub quantity: Quantity,
     /// Standard deviation of ln |h|.
     pub deviation: f64,
@@ -103,7 +103,7 @@ pub struct CalibratedResponse {
     pub before: Vec<f64>,
     /// Computed with the values that were found.
     pub after: Vec<f64>,
-    /// Computed with the values that all other data lead to; none where they do not tell.
+    /// Computed with the values that all other data lead to; none where they do not determine it.
     pub left_out: Option<Vec<f64>>,
 }
 
@@ -129,7 +129,7 @@ pub struct CalibratedShape {
     pub before: Option<f64>,
     /// With the values that were found.
     pub after: Option<f64>,
-    /// With the values that the other data lead to; none where they do not tell.
+    /// With the values that the other data lead to; none where they do not determine it.
     pub left_out: Option<f64>,
 }
 

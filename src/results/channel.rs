@@ -6,17 +6,17 @@ use std::ops::Range;
 
 /// Columns that a long record is drawn in, so that no spike is lost.
 const COLUMNS: usize = 840;
-/// Values of a channel that are looked at together.
+/// Values of a channel that are processed together.
 const BLOCK: usize = 1 << 16;
 
-/// What is recorded at every step, the start included. The values themselves are in `results.h5`.
+/// Quantity recorded at every step, the start included. The values themselves are in `results.h5`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Channel {
     /// `rim_velocity`, `pad_friction_force`, `heat` …
     pub name: String,
     /// The SI unit.
     pub unit: &'static str,
-    /// What it is.
+    /// Description.
     pub about: String,
     /// The least and the greatest value.
     pub range: [f64; 2],
@@ -37,7 +37,7 @@ impl Channel {
     /// Looks at all `rows` values, `step` seconds apart, which `read` gives a part at a time.
     ///
     /// # Errors
-    /// What `read` returns.
+    /// Those of `read`.
     pub fn look(
         &mut self,
         rows: usize,
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn a_record_looked_at_in_blocks_is_the_record() {
+    fn a_record_processed_in_blocks_is_the_record() {
         let values: Vec<f64> =
             (0..300_001).map(|k| (0.37 * k as f64).sin() * (1.0 + 1e-5 * k as f64)).collect();
         let mut channel = Channel::new("v".into(), "m/s", String::new());

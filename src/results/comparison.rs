@@ -1,4 +1,4 @@
-//! What was measured beside what was computed: modes and frequency responses.
+//! Measured beside computed: modes and frequency responses.
 
 use super::explored::ends;
 use super::summary::sentences;
@@ -8,7 +8,7 @@ use crate::linalg::c64;
 use crate::measured::Quantity;
 use std::ops::Range;
 
-/// Computed modes without a measured one are told within this share beyond the measured frequencies.
+/// Computed modes without a measured one are reported within this share beyond the measured frequencies.
 const BEYOND: f64 = 0.1;
 
 /// Measured modes and the computed modes set beside them.
@@ -84,7 +84,7 @@ pub struct MeasuredResponses {
     pub frf: String,
     /// Responses of both sides.
     pub pairs: Vec<ResponsePair>,
-    /// What was measured and has no computed response beside it, with the reason.
+    /// Measured responses that have no computed response beside them, with the reason.
     pub measured_alone: Vec<String>,
     /// Names of computed places without a measured response.
     pub computed_alone: Vec<String>,
@@ -93,7 +93,7 @@ pub struct MeasuredResponses {
 /// A measured frequency response and the computed one at the same frequencies.
 #[derive(Debug, Clone)]
 pub struct ResponsePair {
-    /// What the test calls it.
+    /// Name in the test.
     pub name: String,
     /// The place of the computed response.
     pub place: String,
@@ -101,7 +101,7 @@ pub struct ResponsePair {
     pub swapped: bool,
     /// How far the places of the test are from those of the case: force, motion \[m\].
     pub away: [f64; 2],
-    /// What of the motion was measured.
+    /// Receptance, mobility or accelerance.
     pub quantity: Quantity,
     /// \[Hz\].
     pub frequencies_hz: Vec<f64>,

@@ -19,7 +19,7 @@ pub struct ComplexResult {
     pub dofs: Arc<DofMap>,
     /// A few words on the real modes that take part in each mode: `61 % disc (0,1), 22 % (3,0)`.
     pub participation: Vec<String>,
-    /// What the real modes are called, in the order that [`ComplexMode::participation`](crate::stability::ComplexMode)
+    /// Names of the real modes, in the order that [`ComplexMode::participation`](crate::stability::ComplexMode)
     /// counts them: `disc (0, 1)`, `mode 1718 Hz`.
     pub real_modes: Vec<String>,
     /// Frequencies that measurements show squealing \[Hz\], with their source; may be empty.
@@ -28,7 +28,7 @@ pub struct ComplexResult {
     pub band_hz: [f64; 2],
     /// The count of the unstable eigenvalues, where there is one.
     pub certificate: Option<Certificate>,
-    /// The second method beside it, if the case asked for one.
+    /// The second method beside it, if the case requests one.
     pub confirmation: Option<Confirmation>,
 }
 
@@ -246,7 +246,7 @@ fn certificate(count: &Certificate) -> Group<'static> {
     .table(Table::of("close_calls", "call", &close_call_columns(), &count.close_calls))
 }
 
-/// What two-level Arnoldi on the full order says.
+/// Results of two-level Arnoldi on the full order.
 fn second_method(confirmation: &Confirmation) -> Group<'static> {
     let hz = |key: &'static str, description: &'static str, all: &[c64]| {
         let dimension = Dimension::of_variable(key, all.len());

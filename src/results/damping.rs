@@ -5,12 +5,12 @@ use crate::linalg::c64;
 use crate::stability::unstable;
 use std::f64::consts::TAU;
 
-/// What the modal damping ratio, the most guessed of all inputs, decides.
+/// Verdicts that depend on the modal damping ratio, the least certain of all inputs.
 #[derive(Debug, Clone)]
 pub struct DampingVerdicts {
     /// ζ of the case.
     pub ratio: f64,
-    /// The range that was looked at.
+    /// The range that was examined.
     pub range: [f64; 2],
     /// One a mode.
     pub rows: Vec<DampingRow>,
@@ -42,7 +42,13 @@ impl Describe for DampingVerdicts {
         let range = self.range.to_vec();
         Group::new("damping_verdicts", "verdicts that the modal damping ratio decides")
             .value("modal_ratio", "1", "ζ of the case", self.ratio)
-            .with(Variable::reals("range", "1", "ζ that were looked at", vec![Dimension::limits()], range))
+            .with(Variable::reals(
+                "range",
+                "1",
+                "range of ζ that was examined",
+                vec![Dimension::limits()],
+                range,
+            ))
             .value("decided_by_damping", "1", "modes whose verdict changes in it", self.decided().count())
             .table(Table::of("modes", "mode", &columns(), &self.rows).file("damping_verdicts"))
     }

@@ -1,4 +1,4 @@
-//! `/transient/events` of `results.h5`: what happened at the contact points, in room that is doubled when it is full.
+//! `/transient/events` of `results.h5`: the events at the contact points, in datasets that are doubled when they are full.
 
 use super::ResultsFile;
 use super::file::preallocated;
@@ -12,23 +12,23 @@ use std::ops::Range;
 
 const POINT: &str = "point";
 const KIND: &str = "kind";
-/// The room at the start.
+/// Number of events allocated at the start.
 pub(super) const FIRST: usize = 1 << 14;
 /// Events that are copied at once.
 const AT_ONCE: usize = 1 << 16;
 
 impl ResultsFile {
-    /// Makes sure that there is room for some more events.
+    /// Makes sure that some more events fit.
     pub(super) fn reserve_events(&mut self, more: usize) -> Result<()> {
-        let (events, room) = self.read(|root| {
+        let (events, capacity) = self.read(|root| {
             let group = root.group("transient")?;
             Ok((count(&group)?, group.group("events")?.dataset(TIME)?.size()))
         })?;
-        if events + more <= room {
+        if events + more <= capacity {
             return Ok(());
         }
         let in_place = self.in_place();
-        self.stage(|root| resize(&root.group("transient")?, (events + more).max(2 * room)))?;
+        self.stage(|root| resize(&root.group("transient")?, (events + more).max(2 * capacity)))?;
         if in_place { self.take_place() } else { Ok(()) }
     }
 
@@ -51,7 +51,7 @@ pub(super) fn write(group: &Group, events: &[Event]) -> hdf5::Result<()> {
     put(&group.group("events")?, count(group)?, events)
 }
 
-/// Cuts the room to what is there.
+/// Truncates the datasets to the events recorded.
 pub(super) fn fit(group: &Group) -> hdf5::Result<()> {
     resize(group, count(group)?)
 }

@@ -2,8 +2,8 @@
 //!
 //! VTKHDF 2 (docs.vtk.org, VTKHDF file format): an unstructured grid with `Steps`; the mesh is written once, in its rest
 //! position. Point arrays `displacement` \[m\], from steady sliding, and `velocity` \[m/s\], single precision, one step after
-//! the other; the cell array `part` counts the parts from 0 in the order of the case. There is room for all steps from the
-//! start; `NSteps` says how many are there, so that a run under way can be looked at.
+//! the other; the cell array `part` counts the parts from 0 in the order of the case. All steps are allocated from the
+//! start; `NSteps` says how many are there, so that a run in progress can be viewed.
 
 use super::file::plain;
 use super::file::{options, preallocated};
@@ -16,7 +16,7 @@ use hdf5::types::FixedAscii;
 use ndarray::{Array2, s};
 use std::path::{Path, PathBuf};
 
-/// What the file is called.
+/// File name.
 const NAME: &str = "transient.vtkhdf";
 /// The arrays of the motion.
 const ARRAYS: [&str; 2] = ["displacement", "velocity"];

@@ -5,7 +5,7 @@
 //!
 //! - A run writes its stages to `results.new.h5`. When it begins what takes long, a run in time or a map, and at its
 //!   end, this file takes the place of `results.h5` in one step; an earlier run's file is not touched before.
-//! - A run in time and a map make room for all their numbers before that. From then on numbers are put into the room
+//! - A run in time and a map allocate all their numbers before that. From then on numbers are written into the space
 //!   they have, and each time a flush and a count say how many; this changes no structure.
 //! - What comes after that is written to a copy, again `results.new.h5`, which takes the place when it is whole.
 //!
@@ -13,7 +13,7 @@
 //! folder is always of one run. The root attribute `complete` turns true at the end; a run that fails says why in `failed`.
 //! A run that is killed in its first stages leaves its `results.new.h5`, which the next one overwrites.
 //!
-//! An interrupted run is taken up from `record.bin` and `checkpoint.bin` (see `record`); `results.h5` is only written.
+//! An interrupted run is resumed from `record.bin` and `checkpoint.bin` (see `record`); `results.h5` is only written.
 
 use super::RunResults;
 use super::folder::{make_durable, own, prepare_folder, refusal, retire, synchronise};
@@ -25,7 +25,7 @@ use hdf5::types::OwnedDynValue;
 use hdf5::{Extents, Group, H5Type};
 use std::path::{Path, PathBuf};
 
-/// What the file is called.
+/// File name.
 const NAME: &str = "results.h5";
 
 /// The results file of a run under way.
@@ -58,7 +58,7 @@ impl ResultsFile {
     pub fn create(dir: &Path) -> Result<Self> {
         prepare_folder(dir)?;
         let (home, path) = (dir.join(NAME), dir.join("results.new.h5"));
-        // The operating system tells why a file cannot be made more plainly than the library.
+        // The operating system explains better than the library why a file cannot be created.
         std::fs::File::create(&path).map_err(|source| refusal(&path, source))?;
         let file = options().create(&path).map_err(|source| refusal(&path, plain(&source)))?;
         let mut this = ResultsFile {
@@ -151,7 +151,7 @@ impl ResultsFile {
         Ok(())
     }
 
-    /// Puts numbers into room that is there, in the file's place too, and flushes them.
+    /// Writes numbers into allocated datasets, in the file's place too, and flushes them.
     pub(super) fn fill(&mut self, write: impl FnOnce(&Group) -> hdf5::Result<()>) -> Result<()> {
         let written = self.root().and_then(|root| write(&root)).and_then(|()| self.flush());
         self.broken |= written.is_err();
@@ -218,15 +218,15 @@ pub(super) fn options() -> FileBuilder {
     options
 }
 
-/// Room for `count` numbers, all of it on the disk, to be filled later; `empty` until then.
+/// Dataset of `count` numbers, allocated on the disk, to be filled later; `empty` until then.
 pub(super) fn preallocated<T: H5Type + Into<OwnedDynValue>>(
     group: &Group,
     name: &str,
     count: impl Into<Extents>,
     empty: T,
 ) -> hdf5::Result<hdf5::Dataset> {
-    let room = group.new_dataset::<T>().shape(count).alloc_time(Some(AllocTime::Early));
-    room.fill_time(FillTime::Alloc).fill_value(empty).create(name)
+    let dataset = group.new_dataset::<T>().shape(count).alloc_time(Some(AllocTime::Early));
+    dataset.fill_time(FillTime::Alloc).fill_value(empty).create(name)
 }
 
 /// The operating system's words inside an error of the library, which runs over several lines, or its first line.
@@ -237,7 +237,7 @@ pub(super) fn plain(error: &hdf5::Error) -> String {
     }
     let cause = text.split_once("error message = '").and_then(|(_, rest)| rest.split_once('\''));
     let words = cause.map(|(words, _)| words).or(text.lines().next()).unwrap_or_default();
-    // So the library says when it has lost the cause, as it does where room cannot be made.
+    // So the library says when it has lost the cause, as it does where space cannot be allocated.
     if words == "unknown library error" { "the file cannot be written".into() } else { words.into() }
 }
 

@@ -45,7 +45,7 @@ fn replace(dir: &Path, name: &str, bytes: &[u8], durable: bool) -> Result<()> {
         .and_then(|()| std::fs::rename(&partial, &path))
         .and_then(|()| if durable { synchronise(dir) } else { Ok(()) });
     written.map_err(|source| {
-        // What was written of it is of no use; the first error is the one to tell.
+        // What was written of it is of no use; the first error is the one to report.
         let _ = std::fs::remove_file(&partial);
         refusal(&path, source)
     })
@@ -125,7 +125,7 @@ pub(crate) fn retire(dir: &Path, spared: &[PathBuf]) -> Result<()> {
 
 /// The machine's refusal of `path`, with the advice that fits every such case.
 pub(super) fn refusal(path: &Path, source: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Error {
-    let help = "Make room on the disk or make the folder writable, or name another folder for the results.";
+    let help = "Free disk space or make the folder writable, or name another folder for the results.";
     Error::io(path, source, help)
 }
 

@@ -5,7 +5,7 @@ use crate::dataset::{Describe, Dimension, Group, Table, Values, Variable, column
 use crate::linalg::c64;
 use crate::measured::Quantity;
 
-/// A peak stands beside a measured one that differs from it by less than this part.
+/// A peak is paired with a measured one that differs from it by less than this part.
 const NEAR: f64 = 0.05;
 
 /// Motion at some places for a harmonic force at another.
@@ -13,9 +13,9 @@ const NEAR: f64 = 0.05;
 pub struct FrfResult {
     /// Its name.
     pub name: String,
-    /// What of the motion.
+    /// Receptance, mobility or accelerance.
     pub quantity: Quantity,
-    /// What the contacts do, and how it was computed, in words.
+    /// State of the contacts and method of the response, in words.
     pub about: String,
     /// Where the force acts, in words.
     pub excitation: String,
@@ -64,7 +64,7 @@ pub struct FrfResponse {
 pub struct Resonance {
     /// f \[Hz\].
     pub frequency_hz: f64,
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// For each place |φ(place) φ(excitation)| over the largest of that product of any mode in the band: near zero where
     /// either of them stands on a node of the mode.

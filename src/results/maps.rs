@@ -92,7 +92,7 @@ impl MapResult {
             .table(grid)
     }
 
-    /// What is known when all points are there.
+    /// Results of a map with all points computed.
     pub(super) fn found(&self) -> Group<'_> {
         let answered = || self.points.iter().enumerate().filter(|(_, point)| point.growth_rate.is_finite());
         let largest =

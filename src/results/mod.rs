@@ -1,4 +1,4 @@
-//! What a run leaves behind: plain data first ([`RunResults`]), then the writers that take it.
+//! Results of a run: plain data first ([`RunResults`]), then the writers that take it.
 //!
 //! | file | what it holds | who reads it |
 //! |---|---|---|
@@ -16,9 +16,9 @@
 //! | `damping_verdicts.csv` | verdicts that the modal damping decides | spreadsheets |
 //! | `transient.vtkhdf` | the motion of all nodes at regular times | ParaView |
 //! | `modes_<set>.vtu`, `steady.vtu`, `complex_modes.vtu`, `advice.vtu` | the shapes on the mesh | ParaView, pyvista |
-//! | `record.bin`, `checkpoint.bin` | what an interrupted run is taken up from: [`record`] | `--resume` |
+//! | `record.bin`, `checkpoint.bin` | record from which an interrupted run is resumed: [`record`] | `--resume` |
 //!
-//! [`ResultsFile`] is used while the run goes on, [`write_files`] once at its end.
+//! [`ResultsFile`] is used during the run, [`write_files`] once at its end.
 
 mod calibration;
 mod channel;

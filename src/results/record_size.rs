@@ -1,4 +1,4 @@
-//! Whether the record of a run in time finds room, before the run begins.
+//! Check of the memory and disk space for the record of a run in time, before the run begins.
 
 use super::Recording;
 use crate::error::{Error, Result};
@@ -14,7 +14,7 @@ const NODE: f64 = 24.0;
 const HELP: &str =
     "Make `transient.duration` shorter or `transient.time_step` longer, or `transient.fields_every` longer";
 
-/// What decides how large the record of a run in time becomes.
+/// Dimensions that determine the size of the record of a run in time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RecordSize {
     /// Steps, the start included.
@@ -48,7 +48,7 @@ impl From<&Recording<'_>> for RecordSize {
     }
 }
 
-/// Refuses a record that the disk of the folder `dir` has no room for; the folder may be one that is still to be made.
+/// Refuses a record for which the disk of the folder `dir` has no space; the folder may be one that is still to be made.
 ///
 /// # Errors
 /// [`Error::Io`]: there is none.
@@ -61,7 +61,7 @@ pub fn fits_on_disk(dir: &Path, record: &RecordSize) -> Result<()> {
     }
 }
 
-/// Refuses a record that is kept in memory and that memory has no room for.
+/// Refuses a record that does not fit in memory.
 ///
 /// # Errors
 /// [`Error::Analysis`]: there is none.
@@ -76,19 +76,19 @@ pub fn fits_in_memory(record: &RecordSize) -> Result<()> {
 }
 
 impl RecordSize {
-    /// What is still to be written \[bytes\].
+    /// Size still to be written \[bytes\].
     fn bytes_on_disk(&self) -> f64 {
         let channels = self.channels as f64;
         let numbers = NUMBER * channels + MODAL * self.modes as f64;
         let (rows, new) = (self.rows as f64, self.rows.saturating_sub(self.done) as f64);
         let new_fields = self.fields.saturating_sub(self.fields_done);
         let fields = NODE * self.nodes as f64 * (self.fields + new_fields) as f64;
-        // A run that goes on writes results.h5, with the times, and the tables anew, and adds to record.bin.
+        // A resumed run rewrites results.h5, with the times, and the tables, and appends to record.bin.
         rows * (NUMBER + numbers + TEXT * (channels + 1.0)) + new * numbers + fields
     }
 }
 
-/// What is wrong where `bytes` are more than the `free` ones.
+/// Error when `bytes` are more than the `free` ones.
 fn fits(record: &RecordSize, bytes: f64, free: f64, place: &str) -> std::result::Result<(), String> {
     if bytes <= free {
         return Ok(());
@@ -123,7 +123,7 @@ fn free_on_disk(dir: &Path) -> Option<f64> {
     use std::os::unix::ffi::OsStrExt;
     let path = std::ffi::CString::new(dir.as_os_str().as_bytes()).ok()?;
     let mut found = std::mem::MaybeUninit::<libc::statvfs>::uninit();
-    // SAFETY: the path ends in a zero and `found` has room for the answer, which is read only where the call succeeded.
+    // SAFETY: the path ends in a zero and `found` is large enough for the answer, which is read only where the call succeeded.
     let found = unsafe {
         if libc::statvfs(path.as_ptr(), found.as_mut_ptr()) != 0 {
             return None;

@@ -12,7 +12,7 @@ pub struct ReducedCheck {
     /// The largest |Δσ|/|σ| of the modes that grow; of the mode nearest to growth when none does. `None` where σ is zero
     /// but for round-off.
     pub growth: Option<Deviation>,
-    /// The same motion of both; `None` when it was not asked for.
+    /// The same motion of both; `None` when it was not requested.
     pub motion: Option<MotionCompared>,
 }
 

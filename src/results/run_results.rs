@@ -18,7 +18,7 @@ pub struct RunResults {
     pub geometry: Geometry,
     /// Degrees of freedom and nonzeros of K.
     pub size: ModelSize,
-    /// What the analyses have found.
+    /// Results of the analyses.
     pub records: Records,
     /// Wall time of each phase \[s\].
     pub timings: Vec<(String, f64)>,

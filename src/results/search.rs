@@ -5,7 +5,7 @@ use crate::dataset::{Column, Describe, Dimension, Group, Table, Variable, column
 use crate::error::Result;
 use std::path::Path;
 
-/// What a search found.
+/// Results of a search.
 #[derive(Debug, Clone)]
 pub struct SearchResult {
     /// One line.
@@ -14,7 +14,7 @@ pub struct SearchResult {
     pub numbers: Vec<SearchedNumber>,
     /// The facts with the numbers that were found.
     pub facts: CheckedCase,
-    /// What was computed for the facts at the start.
+    /// Values of the facts computed at the start.
     pub before: Vec<f64>,
     /// The cost at the start and of what was found.
     pub costs: [f64; 2],
@@ -41,7 +41,7 @@ pub struct SearchedNumber {
     pub before: f64,
     /// The value that was found \[SI\].
     pub after: f64,
-    /// What happens with a smaller and a larger value, all others as found; none where a bound is.
+    /// Cost at a smaller and a larger value, all others as found; none beyond a bound.
     pub moved: [Option<Moved>; 2],
 }
 
@@ -60,8 +60,8 @@ impl SearchedNumber {
     /// Whether it was found at one of its bounds.
     pub fn at_bound(&self) -> bool {
         let [low, high] = self.between;
-        let room = 1e-6 * (high - low);
-        self.after <= low + room || self.after >= high - room
+        let tolerance = 1e-6 * (high - low);
+        self.after <= low + tolerance || self.after >= high - tolerance
     }
 
     /// How much the cost rises when the number is moved, at most; nothing where no cost is finite.

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 pub struct SensitivityResult {
     /// The chosen modes, ascending in frequency.
     pub modes: Vec<ModeSensitivity>,
-    /// Scalars that were asked for and have no derivative, with the reason.
+    /// Requested scalars that have no derivative, with the reason.
     pub left_out: Vec<(String, String)>,
 }
 
@@ -23,7 +23,7 @@ pub struct ModeSensitivity {
     pub eigenvalue: c64,
     /// Every scalar, that which moves the growth rate most by a hundredth of itself first.
     pub parameters: Vec<ParameterRate>,
-    /// What a thing mounted at each node does.
+    /// Effect of small additions at each node.
     pub advice: Option<AdviceField>,
     /// The best place for a mass, and for a damper.
     pub best: Vec<Mounted>,
@@ -91,7 +91,7 @@ pub struct Mounted {
     pub direction: Option<[f64; 3]>,
     /// Change of λ by the slope \[1/s\].
     pub predicted: c64,
-    /// Change of λ when it is really mounted and everything is computed anew; where it differs from `predicted` the
+    /// Change of λ when it is mounted on the model and everything is recomputed; where it differs from `predicted` the
     /// thing is too large for a slope.
     pub done: Option<c64>,
     /// How far the change by a thousandth of it, really mounted, is from the slope, relative to it.
@@ -146,13 +146,13 @@ fn mounted_columns() -> Vec<Column<Mounted>> {
         column("predicted_frequency_hz", "Hz", "change of the frequency by the slope", |m: &Mounted| {
             m.predicted.im / TAU
         }),
-        column("done_growth_rate", "1/s", "change of σ, mounted and computed anew", |m: &Mounted| {
+        column("done_growth_rate", "1/s", "change of σ, mounted and recomputed", |m: &Mounted| {
             m.done.map(|change| change.re)
         }),
         column(
             "done_frequency_hz",
             "Hz",
-            "change of the frequency, mounted and computed anew",
+            "change of the frequency, mounted and recomputed",
             |m: &Mounted| m.done.map(|change| change.im / TAU),
         ),
         column(

@@ -52,7 +52,7 @@ mod tests {
         for k in ["interrupted-1", "interrupted-2"] {
             write_result(dir, "transient.csv", b"rows").unwrap();
             write_result(dir, RECORD, b"points").unwrap();
-            // Nobody can tell whether a damaged one had ended.
+            // It is unknown whether a damaged one had ended.
             write_result(dir, CHECKPOINT, b"state").unwrap();
             if k == "interrupted-2" {
                 std::fs::create_dir(dir.join(k)).unwrap();

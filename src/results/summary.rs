@@ -23,18 +23,13 @@ pub fn write_summary(dir: &Path, results: &RunResults) -> Result<()> {
     write_result(dir, "summary.json", text.as_bytes())
 }
 
-/// What `summary.json` holds.
+/// Contents of `summary.json`.
 pub fn summary_json(results: &RunResults) -> Value {
     let mut json = Group::new("", "")
         .value("schema_version", "1", "version of the layout", SCHEMA_VERSION)
         .value("program", "text", "name of the program", env!("CARGO_PKG_NAME"))
         .value("program_version", "text", "its version", env!("CARGO_PKG_VERSION"))
-        .value(
-            "complete",
-            "1",
-            "whether every analysis that was asked for is there",
-            results.failed.is_none(),
-        )
+        .value("complete", "1", "whether every requested analysis is present", results.failed.is_none())
         .value("failed", "text", "why not: what the analysis that failed says", results.failed.clone())
         .to_json();
     let parts = [head(results), tail(results), expected(), analyses(results)].map(|group| group.to_json());
@@ -53,7 +48,7 @@ fn case_object(toml_text: &str) -> Value {
     table.and_then(|table| serde_json::to_value(table).ok()).unwrap_or_default()
 }
 
-/// What is known before the first analysis.
+/// Group of the data that are known before the first analysis.
 pub(super) fn head(results: &RunResults) -> Group<'_> {
     let ModelSize { nodes, elements, dofs, nonzeros, contact_points } = results.size;
     let model = Group::new("model", "size of the model")
@@ -78,7 +73,7 @@ pub(super) fn head(results: &RunResults) -> Group<'_> {
         .group(model)
 }
 
-/// What is known at the end.
+/// Group of the data that are known at the end.
 pub(super) fn tail(results: &RunResults) -> Group<'_> {
     let timings = [
         column("phase", "text", "phase of the run", |(phase, _): &(String, f64)| phase.clone()),
@@ -97,7 +92,7 @@ pub(super) fn sentences<'a>(
     Variable::texts(key, description, Dimension::of_variable(key, sentences.len()), sentences.to_vec())
 }
 
-/// What the analyses have found.
+/// Groups of the analyses.
 pub(super) fn analyses(results: &RunResults) -> Group<'_> {
     results.records.iter().fold(Group::new("", ""), |all, record| all.merged(record.describe()))
 }

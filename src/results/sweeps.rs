@@ -6,7 +6,7 @@ use crate::dataset::{Column, Describe, Dimension, Group, Table, Values, Variable
 use crate::linalg::c64;
 use crate::numbers::{hertz, power, significant};
 use crate::stability::unstable;
-use crate::sweep::{Axis, Branch, Checked, Critical, CriticalKind, Encounter, EncounterKind, Sweep};
+use crate::sweep::{Axis, Branch, Checked, Critical, CriticalKind, Interaction, InteractionKind, Sweep};
 use std::f64::consts::TAU;
 
 /// Complex modes along one scalar of the case.
@@ -18,7 +18,7 @@ pub struct SweepResult {
     pub parameter: String,
     /// Its SI unit; empty for a pure number.
     pub unit: String,
-    /// The values asked for.
+    /// The requested values.
     pub axis: Axis,
     /// The value of the case itself.
     pub nominal: f64,
@@ -64,7 +64,7 @@ fn passed((result, k): &Passed) -> Critical {
     result.sweep.critical[*k]
 }
 
-/// What the full order says of the mode there.
+/// Error of the mode there at full order.
 fn full((result, k): &Passed, part: fn(Checked) -> f64) -> Option<f64> {
     result.verified.get(*k).copied().flatten().map(part)
 }
@@ -111,17 +111,17 @@ fn critical_columns<'a>(unit: &str) -> Vec<Column<Passed<'a>>> {
     ]
 }
 
-fn encounter_columns(unit: &str) -> Vec<Column<Encounter>> {
+fn interaction_columns(unit: &str) -> Vec<Column<Interaction>> {
     vec![
-        column("value", unit.to_string(), "where two branches are nearest", |e: &Encounter| e.value),
-        column("kind", "text", "crossing, veering or merging", |e: &Encounter| match e.kind {
-            EncounterKind::Crossing => "crossing",
-            EncounterKind::Veering => "veering",
-            EncounterKind::Merging => "merging",
+        column("value", unit.to_string(), "where two branches are nearest", |e: &Interaction| e.value),
+        column("kind", "text", "crossing, veering or merging", |e: &Interaction| match e.kind {
+            InteractionKind::Crossing => "crossing",
+            InteractionKind::Veering => "veering",
+            InteractionKind::Merging => "merging",
         }),
-        column("frequency_hz", "Hz", "ω/2π there", |e: &Encounter| e.frequency_hz),
-        column("distance", "1", "|λ₁ − λ₂|/|λ| there", |e: &Encounter| e.distance),
-        column("branches", "1", "numbers of the two branches", |e: &Encounter| e.branches.map(|b| b + 1))
+        column("frequency_hz", "Hz", "ω/2π there", |e: &Interaction| e.frequency_hz),
+        column("distance", "1", "|λ₁ − λ₂|/|λ| there", |e: &Interaction| e.distance),
+        column("branches", "1", "numbers of the two branches", |e: &Interaction| e.branches.map(|b| b + 1))
             .along(Dimension::numbered("of_two", 2)),
     ]
 }
@@ -207,7 +207,7 @@ impl SweepResult {
             .group(self.method.group())
             .table(Table::of("branches", "branch", &branch_columns(unit), &branches))
             .table(critical.field(eigenvalues))
-            .table(Table::of("encounters", "encounter", &encounter_columns(unit), &sweep.encounters))
+            .table(Table::of("encounters", "encounter", &interaction_columns(unit), &sweep.interactions))
             .table(Table::of("full_order_sample", "sample", &sample, &self.sample))
             .table(self.points().file(file))
     }

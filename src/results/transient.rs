@@ -9,7 +9,7 @@ use crate::signal::{Growth, Peak, Spectrum};
 use crate::transient::{Checkpoint, Event, EventKind, Work};
 use std::f64::consts::TAU;
 
-/// What a run in time is going to record.
+/// Extent of the record of a run in time.
 #[derive(Debug, Clone, Copy)]
 pub struct Recording<'a> {
     /// Δt \[s\].
@@ -20,7 +20,7 @@ pub struct Recording<'a> {
     pub done: usize,
     /// How many events it has recorded with them.
     pub happened: usize,
-    /// What is recorded at each.
+    /// Channels recorded at each step.
     pub channels: &'a [Channel],
     /// How many real modes there are whose accelerations are recorded, too.
     pub modes: usize,
@@ -54,7 +54,7 @@ pub struct Field<'a> {
     pub velocity: &'a NodalField<f64>,
 }
 
-/// A piece of the record, and what the run needs to go on after it.
+/// A piece of the record, and the state from which the run resumes after it.
 #[derive(Debug, Clone, Copy)]
 pub struct Piece<'a> {
     /// The first of its rows.
@@ -63,7 +63,7 @@ pub struct Piece<'a> {
     pub values: &'a [Vec<f64>],
     /// Accelerations of the real modes \[√kg m/s²\], if they are recorded.
     pub modal: &'a [Vec<f32>],
-    /// What happened at the contact points during these rows.
+    /// Events at the contact points during these rows.
     pub events: &'a [Event],
     /// Where the run stands after its last row.
     pub checkpoint: &'a Checkpoint,
@@ -93,7 +93,7 @@ pub struct GrowthCompared {
     pub mode: usize,
     /// Its λ.
     pub eigenvalue: c64,
-    /// What the transient shows while the penetration changes by less than 1 %; `None` when that time is too short.
+    /// Growth in the transient while the penetration changes by less than 1 %; `None` when that time is too short.
     pub found: Option<Growth>,
 }
 
@@ -112,9 +112,9 @@ pub struct TransientResult {
     pub reduced: Option<[usize; 2]>,
     /// A reduced model beside the full one.
     pub reduced_check: Option<ReducedCheck>,
-    /// What was recorded.
+    /// Recorded channels.
     pub channels: Vec<Channel>,
-    /// The channels that stand for the run in pictures: acceleration, friction, and the force in a load cell, those of them
+    /// The channels shown in the pictures: acceleration, friction, and the force in a load cell, those of them
     /// that there are.
     pub shown: Vec<usize>,
     /// Spectra of the second half of the run.
@@ -133,7 +133,7 @@ pub struct TransientResult {
     pub spent: [f64; TouchState::ALL.len()],
     /// How often each [`EventKind`] happened, at all contact points together.
     pub events: [usize; EventKind::ALL.len()],
-    /// What it looks like.
+    /// Data of its pictures.
     pub watched: Watched,
     /// How loud it is, if the case asks for it.
     pub sound: Option<Sound>,

@@ -1,4 +1,4 @@
-//! `transient.csv` and `events.csv`, which grow while the run goes on.
+//! `transient.csv` and `events.csv`, which grow during the run.
 
 use super::folder::{own, refusal};
 use super::{Channel, Recording};

@@ -1,4 +1,4 @@
-//! `/transient` of `results.h5`: room for every channel, filled as the run goes on, so that a killed run leaves what it had
+//! `/transient` of `results.h5`: every channel preallocated and filled during the run, so that a killed run leaves what it had
 //! reached.
 //!
 //! | in `/transient` | |
@@ -6,11 +6,11 @@
 //! | attribute `rows` | how many values of every channel are there; the others are not a number |
 //! | `history/time_s` | the time of every step, the start included: the coordinate of the following |
 //! | `history/<channel>` | a value for every step |
-//! | `history/modal_acceleration/<k>` | the same of real mode k, from 1, where sound is asked for |
+//! | `history/modal_acceleration/<k>` | the same of real mode k, from 1, where sound is requested |
 //! | `events/time_s`, `events/point`, `events/kind` | what happened at the contact points; attribute `events` says how many |
 //! | the rest | what [`TransientResult`] says in the end, under the names that it has in `summary.json` |
 //!
-//! Nobody knows how many events there will be: when their room is full the file is copied with twice the room.
+//! The number of events is not known in advance: when their datasets are full the file is copied with twice the capacity.
 
 use super::events_hdf5 as events;
 use super::file::preallocated;
@@ -29,7 +29,7 @@ const HISTORY: &str = "history";
 const AT_ONCE: usize = 1 << 16;
 
 impl ResultsFile {
-    /// Begins a run in time with room for all it is going to record. The file can take its place then.
+    /// Begins a run in time with space allocated for the whole record. The file can take its place then.
     ///
     /// # Errors
     /// The machine refuses.
@@ -118,8 +118,8 @@ fn preallocate(group: &Group, recording: &Recording) -> hdf5::Result<()> {
         history.create_group("modal_acceleration")?;
     }
     for mode in 0..recording.modes {
-        let room = preallocated(history, &modal_channel(mode), recording.rows, f32::NAN)?;
-        describe(&room, "sqrt(kg) m/s^2", "acceleration of a mass-normalised real mode")?;
+        let dataset = preallocated(history, &modal_channel(mode), recording.rows, f32::NAN)?;
+        describe(&dataset, "sqrt(kg) m/s^2", "acceleration of a mass-normalised real mode")?;
     }
     let channels = recording.channels.iter().map(|channel| channel.name.clone());
     let all: Vec<String> = channels.chain((0..recording.modes).map(modal_channel)).collect();
@@ -185,13 +185,13 @@ mod tests {
     }
 
     /// Where the numbers of the datasets of a group stand in the file.
-    fn rooms(group: &Group, found: &mut Vec<Range<usize>>) {
+    fn ranges(group: &Group, found: &mut Vec<Range<usize>>) {
         for dataset in group.datasets().unwrap() {
             let begin = dataset.offset().unwrap_or(0) as usize;
             let each = dataset.dtype().unwrap().size();
             found.push(begin..begin + each * dataset.size());
         }
-        group.groups().unwrap().iter().for_each(|inner| rooms(inner, found));
+        group.groups().unwrap().iter().for_each(|inner| ranges(inner, found));
     }
 
     #[test]
@@ -202,13 +202,13 @@ mod tests {
         begin(&mut file);
         let before = std::fs::read(&home).unwrap();
         let mut numbers = Vec::new();
-        rooms(&file.read(|root| root.group("transient")).unwrap(), &mut numbers);
+        ranges(&file.read(|root| root.group("transient")).unwrap(), &mut numbers);
         for first in (0..4500).step_by(900) {
             add(&mut file, first..first + 900, 1);
         }
         let after = std::fs::read(&home).unwrap();
         assert_eq!(before.len(), after.len());
-        let elsewhere = |at: &usize| !numbers.iter().any(|room| room.contains(at));
+        let elsewhere = |at: &usize| !numbers.iter().any(|range| range.contains(at));
         let changed: Vec<usize> =
             (0..before.len()).filter(|k| before[*k] != after[*k]).filter(elsewhere).collect();
         // The two counts, 8 bytes each.
@@ -261,13 +261,13 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let mut file = ResultsFile::create(dir.path()).unwrap();
         begin(&mut file);
-        let room = |file: &ResultsFile| {
+        let capacity = |file: &ResultsFile| {
             file.read(|root| Ok(root.dataset("transient/events/time_s")?.size())).unwrap()
         };
-        assert_eq!(room(&file), events::FIRST);
+        assert_eq!(capacity(&file), events::FIRST);
         add(&mut file, 0..1500, 20);
         add(&mut file, 1500..ROWS, 20);
-        assert!(room(&file) >= 20 * ROWS);
+        assert!(capacity(&file) >= 20 * ROWS);
         // A copy has taken the place, and is the one that is written.
         let home = hdf5::File::open(dir.path().join("results.h5")).unwrap();
         let written = home.group("transient").unwrap().attr("events").unwrap().read_scalar::<u64>().unwrap();
@@ -277,7 +277,8 @@ mod tests {
         let fit = |file: &mut ResultsFile| file.stage(|root| events::fit(&root.group("transient")?));
         fit(&mut file).unwrap();
         assert!(
-            room(&file) == 20 * ROWS && file.read_events(0..20 * ROWS).unwrap() == self::events(0..ROWS, 20)
+            capacity(&file) == 20 * ROWS
+                && file.read_events(0..20 * ROWS).unwrap() == self::events(0..ROWS, 20)
         );
     }
 }

@@ -1,4 +1,4 @@
-//! What goes to test-data programs, as universal files: frequency responses and mode shapes.
+//! Universal files for test-data programs: frequency responses and mode shapes.
 
 use super::{FileNames, FrfResult, NamedModes, PlaceAndDirection, RunResults, write_result};
 use crate::error::Result;
@@ -105,7 +105,7 @@ mod tests {
         }
     }
 
-    /// Around a resonance the lines of a response are nearer than six digits tell.
+    /// Around a resonance the lines of a response are nearer than six digits resolve.
     #[test]
     fn lines_too_near_for_the_text_are_written_once() {
         let mut frf = sample::rig().take::<FrfResult>().unwrap();

@@ -11,14 +11,14 @@ pub struct CheckedCase {
     pub source: String,
     /// The quantities.
     pub rows: Vec<Checked>,
-    /// What it took \[s\].
+    /// Time taken \[s\].
     pub seconds: f64,
 }
 
 /// One quantity, computed beside its reference.
 #[derive(Debug, Clone)]
 pub struct Checked {
-    /// What was computed.
+    /// Computed quantity.
     pub quantity: String,
     /// The computed value.
     pub computed: f64,

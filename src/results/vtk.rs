@@ -75,7 +75,7 @@ fn real_and_imaginary(shape: &NodalField<c64>) -> [Vec<[f64; 3]>; 2] {
     ]
 }
 
-/// What one gram of mass and one N s/m of damping at each node do to σ \[1/s\] and to the frequency \[Hz\].
+/// Change of σ \[1/s\] and of the frequency \[Hz\] for one gram of mass and for one N s/m of damping at each node.
 fn advice(mode: &ModeSensitivity) -> Vec<PointScalar> {
     let Some(field) = &mode.advice else { return Vec::new() };
     let name = |what: &str| format!("mode_{:02}_{what}", mode.mode + 1);

@@ -1,10 +1,10 @@
-//! What a run in time looks like: the data of its pictures, of bounded size however long it is.
+//! Data of the pictures of a run in time, of bounded size however long it is.
 
 use super::Channel;
 use crate::dataset::{Column, Dimension, Group, Table, Values, Variable, column};
 use crate::signal::{LimitCycle, Spectrogram};
 
-/// Data that was gathered while the run went on.
+/// Data gathered during the run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Watched {
     /// Spectrograms of the channels shown, each with the index of its channel.
@@ -15,7 +15,7 @@ pub struct Watched {
     pub window: [f64; 2],
     /// The last periods.
     pub orbit: Orbit,
-    /// What the contact points did.
+    /// States of the contact points.
     pub contact: ContactHistory,
 }
 
@@ -31,13 +31,13 @@ pub struct Orbit {
 /// One record over another.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Curve {
-    /// What is across and what is up, with units.
+    /// Quantities across and up, with units.
     pub axes: [String; 2],
     /// Their values.
     pub points: Vec<[f64; 2]>,
 }
 
-/// What a contact point does.
+/// State of a contact point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TouchState {
     /// It does not touch.
@@ -64,7 +64,7 @@ impl TouchState {
     }
 }
 
-/// What the contact points did over time: how many of them, times steps, were in which state in each column. Points that
+/// States of the contact points over time: number of points, times steps, in each state in each column. Points that
 /// never touched are left out.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ContactHistory {

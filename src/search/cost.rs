@@ -1,4 +1,4 @@
-//! What the facts cost at some values of the numbers.
+//! Cost of the facts at some values of the numbers.
 
 use super::facts::Facts;
 use super::file::SearchFile;

@@ -7,14 +7,14 @@ use crate::progress::Observer;
 use cmaes::{CMAESOptions, DVector};
 use std::sync::Mutex;
 
-/// What a sample costs for lying outside the bounds, times the square of how far in units of their width.
+/// Penalty of a sample outside the bounds, times the square of its distance in units of their width.
 const OUTSIDE: f64 = 100.0;
 
 /// The unknowns of the least cost among samples from `start`, until `evaluations` different ones were computed: those beyond
 /// the bounds are moved onto them, and the same place costs nothing twice. The samples depend on the seed alone.
 ///
 /// # Errors
-/// What the cost cannot compute.
+/// Those of the cost.
 pub(super) fn descend(
     file: &SearchFile,
     cost: &Cost,

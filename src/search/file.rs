@@ -30,7 +30,7 @@ pub struct SearchFile {
     pub seed: u64,
     /// The standard deviation of the first samples, as a share of the bounds.
     pub spread: f64,
-    /// What is searched for, by name.
+    /// Parameters of the search by name.
     pub parameters: BTreeMap<String, CalibratedParameter>,
     /// The values of the case \[SI\].
     pub(super) start: Vec<f64>,
@@ -135,7 +135,7 @@ impl SearchFile {
         case.with_numbers(self.parameters.values(), values)
     }
 
-    /// What the facts are computed from: the cases, the files they read, and the facts without their references.
+    /// Origin of the facts: the cases, the files they read, and the facts without their references.
     ///
     /// # Errors
     /// A file that cannot be read.

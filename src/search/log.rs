@@ -1,4 +1,4 @@
-//! `search.csv`: every evaluation, so that a search that was killed goes on where it was.
+//! `search.csv`: every evaluation, so that an interrupted search resumes where it stopped.
 
 use super::facts::Facts;
 use super::file::SearchFile;
@@ -18,7 +18,7 @@ pub(super) struct Log {
     dir: PathBuf,
     heading: String,
     facts: usize,
-    /// What the evaluations are of.
+    /// Origin of the evaluations.
     origin: Origin,
     /// Files that the search reads, which may be in its folder.
     read: Vec<PathBuf>,
@@ -103,7 +103,7 @@ impl Log {
         Ok(())
     }
 
-    /// What was computed at these values.
+    /// Values computed at these parameters.
     pub(super) fn find(&self, values: &[f64]) -> Option<Vec<f64>> {
         self.kept
             .lock()

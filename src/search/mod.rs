@@ -13,7 +13,7 @@
 //!
 //! Such facts come and go with the numbers: there is no slope to follow. The cost is brought down by the adaptation of the
 //! covariance matrix of samples (N. Hansen and A. Ostermeier, Evolutionary Computation 9 (2001) 159), a generation at a time, all
-//! cores at work. Every evaluation is kept in `search.csv`; a search that was killed goes on where it was, unless the case or a
+//! cores at work. Every evaluation is kept in `search.csv`; an interrupted search resumes where it stopped, unless the case or a
 //! file it reads has changed.
 //!
 //! In the end each number alone is moved by a twentieth of its bounds to either side: what the cost then rises by says which

@@ -32,8 +32,8 @@ impl LimitCycle {
 
 /// The size of the oscillation in `record`, which is sampled every `step` seconds and whose strongest frequency is
 /// `frequency_hz`. The record is cut into equal pieces, at most 32, each at least two periods long; the maxima and
-/// minima are those of the pieces, so that a beat or a slow sway counts by its largest swing. `None` where there is
-/// no room for four pieces, or a value that is not finite.
+/// minima are those of the pieces, so that a beat or a slow sway counts by its largest swing. `None` for a record
+/// shorter than four pieces, or with a value that is not finite.
 ///
 /// ```
 /// let record: Vec<f64> = (0..20_000).map(|k| 1.0 + 2.0 * (0.05 * k as f64).sin()).collect();

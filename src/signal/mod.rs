@@ -1,5 +1,5 @@
-//! What a record of motion says: its spectrum, its peaks and what they are of each other, how it grows, when which
-//! frequency sounds, how large it is in the end.
+//! Analysis of a record of motion: its spectrum, its peaks and their relations, its growth, its spectrogram, its final
+//! amplitude.
 
 mod growth;
 mod hann;

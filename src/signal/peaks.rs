@@ -10,7 +10,7 @@ pub struct Peak {
     pub frequency_hz: f64,
     /// How high it is, in the unit of the spectrum.
     pub amplitude: f64,
-    /// What it is of the stronger ones: `2 × 1661 Hz`, `936 + 1661 Hz`; empty for one of its own.
+    /// Relation to the stronger peaks: `2 × 1661 Hz`, `936 + 1661 Hz`; empty for an independent one.
     pub relation: String,
 }
 

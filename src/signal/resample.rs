@@ -60,7 +60,7 @@ impl Resampler {
         self.first += done;
     }
 
-    /// What is left of the output, up to the last sample.
+    /// Remaining output, up to the last sample.
     pub fn finish(mut self, out: &mut Vec<f64>) {
         let end = (self.first + self.samples.len()) as f64 * self.step;
         while (self.next as f64 + 0.5) / self.rate < end {

@@ -51,8 +51,8 @@ pub fn spectrogram(record: &[f64], step: f64, top_hz: f64) -> Spectrogram {
 
 /// Spectra of short segments with a Hann window, one after the other, of a record that comes sample by sample.
 ///
-/// With T the length of the record and F the highest frequency shown, a segment lasts 2.5 √(T/1.5F), so that what is
-/// told apart along and up the picture is in balance, and at most 400/F. Segments begin evenly spaced, at most half a
+/// With T the length of the record and F the highest frequency shown, a segment lasts 2.5 √(T/1.5F), so that
+/// the resolutions in time and frequency are balanced in the picture, and at most 400/F. Segments begin evenly spaced, at most half a
 /// segment apart; of a long record a column is the root mean square of several. There are at most 600 columns and 400
 /// rows.
 #[derive(Debug)]
@@ -78,10 +78,10 @@ impl ShortTime {
         let longest = ((CELLS[1] - 1) as f64 / top).min(0.25 * samples as f64 * step);
         let hann = Hann::new((balanced.min(longest) / step) as usize);
         let length = hann.length();
-        let room = samples.saturating_sub(length);
-        let hop = room.div_ceil(CELLS[0] - 1).clamp(1, length / 2);
+        let span = samples.saturating_sub(length);
+        let hop = span.div_ceil(CELLS[0] - 1).clamp(1, length / 2);
         let rows = ((top * length as f64 * step) as usize + 1).min(length / 2 + 1).min(CELLS[1]);
-        let together = (1 + room / hop).div_ceil(CELLS[0]);
+        let together = (1 + span / hop).div_ceil(CELLS[0]);
         ShortTime {
             hann,
             step,

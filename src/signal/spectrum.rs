@@ -24,7 +24,7 @@ impl Spectrum {
         lines.max_by(|a, b| a.1.total_cmp(b.1)).map(|(k, _)| k)
     }
 
-    /// What line k adds to the mean square of the record, ½a²/1.5 under a Hann window: a sine spreads over three or four
+    /// Contribution of line k to the mean square of the record, ½a²/1.5 under a Hann window: a sine spreads over three or four
     /// lines, whose sum is its mean square.
     pub fn mean_square(&self, k: usize) -> f64 {
         0.5 * self.amplitude[k].powi(2) / NOISE_BANDWIDTH

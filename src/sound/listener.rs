@@ -1,4 +1,4 @@
-//! What is heard of a run while it goes on.
+//! Sound of a run, computed while the run proceeds.
 
 use super::{Air, CrossSpectra, Heard, Plate, Radiation, Receiver, Sound, Sounding, Surface, Tone};
 use crate::signal::{Resampler, Spectrum, Welch, name_peaks, peaks};
@@ -125,7 +125,7 @@ impl Listener {
         }
     }
 
-    /// What was heard.
+    /// Sound of the whole run.
     pub fn finish(mut self) -> Sound {
         let Listener { cross, air, plates, step, .. } = &self;
         let (lines, resolution_hz) = (cross.lines(), cross.resolution_hz());

@@ -15,8 +15,8 @@
 //! * bars and edges are silent.
 //!
 //! Plates move in modes, so that everything is linear in the modal accelerations q̈: [`Receiver`] gives the pressure at
-//! a point, step by step, [`Radiation`] the resistance that tells the power of [`CrossSpectra`]. [`a_weighting`] and
-//! the levels are those of IEC 61672-1. [`wav`] makes the pressure audible. A [`Listener`] does all of it while a run goes on and
+//! a point, step by step, [`Radiation`] the resistance that gives the power of [`CrossSpectra`]. [`a_weighting`] and
+//! the levels are those of IEC 61672-1. [`wav`] makes the pressure audible. A [`Listener`] does all of it during a run and
 //! gives the [`Sound`] in the end.
 
 mod cross;
@@ -39,7 +39,7 @@ pub use surface::Surface;
 pub use wav::wav;
 pub use weighting::{a_weighting, power_level, pressure_level};
 
-/// What carries the sound.
+/// Properties of the air.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Air {
     /// ρ₀ \[kg/m³\].

@@ -65,9 +65,9 @@ impl Radiation {
         Radiation { top, modes, forms: product(sampled.as_ref(), integral.as_ref()) }
     }
 
-    /// What each mode m adds to the power of both sides at the wavenumber `k`, ρ₀/(πc) Σ_n S_mn R_mn \[W\], for the mean
+    /// Contribution of each mode m to the power of both sides at the wavenumber `k`, ρ₀/(πc) Σ_n S_mn R_mn \[W\], for the mean
     /// products S_mn \[m²/s⁴ in modal units\] of the modal accelerations: entries m ≥ n row by row. The sum over the modes
-    /// is W; a mode that takes up what others send counts below zero.
+    /// is W; it is negative for a mode that absorbs power radiated by others.
     ///
     /// # Panics
     /// When the entries are not those of as many modes as the plate has.

@@ -17,7 +17,7 @@ pub struct Receiver {
     first: usize,
     /// One impulse response a mode \[Pa s²\], all of one length.
     taps: Vec<Vec<f64>>,
-    /// What the past still adds to samples to come.
+    /// Contribution of past samples to those to come.
     tail: Vec<f64>,
 }
 

@@ -7,8 +7,8 @@ use super::finish::finished;
 use super::general::general_modes;
 use super::operator::Operator;
 use super::projected::{SmallPair, project_interface, solve};
+use super::refinement::{Measured, Scale, TOGETHER, Wanted};
 use super::responses::{add_coupled_responses, few_responses};
-use super::round::{Measured, Scale, TOGETHER, Wanted};
 use super::{ComplexMode, ComplexModes, Structural, accuracy_warnings};
 use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Fault, Result};
@@ -23,8 +23,8 @@ use crate::progress::Observer;
 use crate::system::System;
 use std::f64::consts::TAU;
 
-/// Rounds of enrichment at most.
-const ROUNDS: usize = 6;
+/// Most refinement steps.
+const MOST_REFINEMENTS: usize = 6;
 /// The most static contact responses that enter the first basis; of more directions the residuals ask for what matters.
 const STATIC_RESPONSES: usize = 240;
 /// The E-norm below which a first correction is left out.
@@ -33,7 +33,7 @@ const FIRST_TOLERANCE: f64 = 1e-6;
 const ALONE: f64 = 1e-6;
 /// An eigenvalue that moved by less than this part of |λ| is the same.
 const UNMOVED: f64 = 1e-10;
-/// A condition number of λ above this is told.
+/// A condition number of λ above this is reported.
 const ILL_CONDITIONED: f64 = 1e6;
 
 /// The complex eigenvalues λ = σ + iω \[1/s\] with ω/2π in `band_hz` and their modes: see [`complex_modes`].
@@ -54,10 +54,10 @@ pub fn complex_eigenvalues(
 /// * Basis: the real modes (of K + K_σ and M, M-orthonormal, best up to twice the band) and A⁻¹W, A = K + K_σ − s M at
 ///   a shift s inside the band, for every direction in which the contact has a force, with some more terms of their
 ///   series in ω². When there are more directions than real modes, a sketch of the responses to damping and interface
-///   stands for them.
+///   represents them.
 /// * Every pair is measured on the full order. Its corrections z = −A⁻¹Q(λ)φ and, for the left vector, −A⁻¹Q(λ)ᴴψ show
 ///   no contact motion where A⁻¹W is in the basis: so the same real symmetric factor serves every pair, whatever the
-///   friction. They enrich the basis until η and the eigenvalue error are small, in six rounds at most; pairs that are
+///   friction. They enrich the basis until η and the eigenvalue error are small, in six refinement steps at most; pairs that are
 ///   right are not measured again.
 /// * ψᴴQ(λ)φ vanishes identically after a projection, so the error of λ is estimated with the *correction* of the left
 ///   vector: |z_ψᴴ Q(λ)φ| / |ψᴴ(2λM + C + C_c)φ|. As A is symmetric, z_ψᴴ Q(λ)φ = ψᴴQ(λ)z, so that only the right
@@ -87,7 +87,7 @@ pub fn complex_modes<'a>(
     analyse(system, steady, known, band, observer, |_, _| ()).map(|(modes, ())| modes)
 }
 
-/// What an analysis has at hand when its modes are found.
+/// Data of an analysis with its modes found.
 pub(super) struct Analysis<'a> {
     pub(super) operator: &'a Operator<'a>,
     pub(super) basis: &'a Basis<'a>,
@@ -211,13 +211,13 @@ fn solve_and_refine<'a>(
         (found, wanted) = evaluate(&scale, asked, found)?;
         observer.advance(1);
         counts.push(found.len());
-        if wanted.is_empty() || refinements == ROUNDS {
+        if wanted.is_empty() || refinements == MOST_REFINEMENTS {
             break;
         }
         // The error of λ is quadratic in that of the vectors: coarse first, so that the basis stays small.
         let corrections = wanted.corrections(factor);
         let mut added = 0;
-        while added == 0 && finer < ROUNDS {
+        while added == 0 && finer < MOST_REFINEMENTS {
             let tolerance = FIRST_TOLERANCE * 0.01f64.powi(finer as i32);
             added = basis.enrich(&corrections, tolerance, usize::MAX);
             finer += 1;
@@ -247,7 +247,7 @@ fn solve_and_refine<'a>(
     Ok((modes, basis))
 }
 
-/// What to say where the real modes do not reach the band's top: those known, or the frequency below which a count has shown
+/// Warning where the real modes do not reach the band's top: those known, or the frequency below which a count has shown
 /// that there are no others.
 fn incomplete(operator: &Operator<'_>, real: &RealModes, top_hz: f64) -> Option<String> {
     let highest = real.len().checked_sub(1).map_or(0.0, |last| real.frequency_hz(last));
@@ -332,7 +332,7 @@ fn expand(basis: &Basis<'_>, pairs: &[&SmallPair], to: &mut Measured) -> Block {
     right.map(|y| product(basis.mass.as_ref().subrows(0, basis.n_real()), y))
 }
 
-/// Coordinates scaled so that the vectors which they stand for have xᴴMx = 1, and by what.
+/// Coordinates scaled so that the vectors which they represent have xᴴMx = 1, and by what.
 fn unit_mass(basis: &Basis<'_>, mut y: Block) -> (Block, Vec<f64>) {
     let inertia = y.map(|y| product(basis.mass.as_ref(), y));
     let factors: Vec<f64> = (0..y.ncols()).map(|j| 1.0 / y.dot(j, &inertia).re.sqrt()).collect();
@@ -354,7 +354,7 @@ fn evaluate(scale: &Scale<'_>, asked: Band, before: Vec<Found>) -> Result<(Vec<F
         keep_nearest(&mut pairs, nearest);
     }
     let settled: Vec<Option<usize>> = pairs.iter().map(|p| settled(&before, &pairs, p.lambda)).collect();
-    // Those that are measured anew are not held beside what replaces them.
+    // Those that are measured again are not held beside what replaces them.
     let stays = |k: usize| settled.contains(&Some(k));
     let mut before: Vec<Option<Found>> =
         before.into_iter().enumerate().map(|(k, found)| stays(k).then_some(found)).collect();

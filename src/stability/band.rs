@@ -1,13 +1,13 @@
-//! Which complex modes are asked for.
+//! Selection of complex modes.
 
 use crate::linalg::c64;
 
-/// Which complex modes are asked for, and what of them.
+/// Selection of complex modes, and options of their output.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Band {
     /// Lowest and highest frequency \[Hz\].
     pub hz: [f64; 2],
-    /// A frequency \[Hz\] and how many modes are asked for, those whose λ is nearest to iω; `None` for all in the band.
+    /// A frequency \[Hz\] and how many modes are requested, those whose λ is nearest to iω; `None` for all in the band.
     pub nearest: Option<(f64, usize)>,
     /// Whether the left vectors are kept, which take as much memory as the right ones.
     pub left_vectors: bool,

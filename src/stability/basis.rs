@@ -15,8 +15,8 @@ use std::sync::OnceLock;
 const PANEL: usize = 32;
 /// Of more columns than this the principal directions are taken.
 const WIDE: usize = 48;
-/// Vectors besides the real modes that a basis has room for before they are moved.
-const ROOM: usize = 160;
+/// Vectors besides the real modes for which a basis has memory before it is reallocated.
+const CAPACITY: usize = 160;
 
 /// A basis B = \[Φ Z\] and the projections BᵀMB, BᵀCB, BᵀKB, BᵀHB, and BᵀW of the interface.
 ///
@@ -26,7 +26,7 @@ const ROOM: usize = 160;
 /// orthogonal only as far as the digits of their Gram matrix go.
 pub(super) struct Basis<'a> {
     operator: &'a Operator<'a>,
-    /// E, once it is asked for.
+    /// E, once it is requested.
     energy: OnceLock<SparseMatrix>,
     tau: f64,
     /// bᵀEb of every column.
@@ -46,7 +46,7 @@ pub(super) struct Basis<'a> {
 impl<'a> Basis<'a> {
     /// Starts from M-orthonormal real modes.
     pub(super) fn new(operator: &'a Operator<'a>, modes: MatRef<'a, f64>, tau: f64) -> Self {
-        let mut added = Mat::with_capacity(operator.n(), ROOM);
+        let mut added = Mat::with_capacity(operator.n(), CAPACITY);
         added.resize_with(operator.n(), 0, |_, _| 0.0);
         let mut basis = Basis {
             operator,
@@ -201,7 +201,7 @@ impl<'a> Basis<'a> {
         directions
     }
 
-    /// 1 / bᵢᵀEbᵢ; zero for a mode on which E vanishes, just as stiff as −τ, which cannot be told apart by E.
+    /// 1 / bᵢᵀEbᵢ; zero for a mode on which E vanishes, just as stiff as −τ, which E cannot distinguish.
     fn inverse_size(&self, i: usize) -> f64 {
         if self.sizes[i].abs() > 1e-9 * self.tau { 1.0 / self.sizes[i] } else { 0.0 }
     }
@@ -312,8 +312,8 @@ fn gram_diagonal(x: &Mat<f64>, y: &Mat<f64>) -> Vec<f64> {
     (0..x.ncols()).map(dot).collect()
 }
 
-/// What makes columns with this Gram matrix orthonormal, one column for each that stays; the columns that stay; and those
-/// that are too much like them. `before` are the squares of their lengths before what was known was taken from them.
+/// Matrix that makes columns with this Gram matrix orthonormal, one column for each that stays; the columns that stay; and those
+/// that depend on them. `before` are the squares of their lengths before projection against the known columns.
 fn orthonormalising(square: &Mat<f64>, before: &[f64]) -> (Mat<f64>, Vec<usize>, Vec<usize>) {
     const LOST: f64 = 1e-12;
     const ALIKE: f64 = 1e-3;

@@ -57,7 +57,7 @@ impl Block {
         some
     }
 
-    /// Makes room for `columns` vectors in the memory at hand, which is not cleared.
+    /// Resizes to `columns` vectors, whose entries are not cleared.
     pub(super) fn resize(&mut self, n: usize, columns: usize) {
         self.parts.resize_with(n, 2 * columns, |_, _| 0.0);
     }
@@ -100,7 +100,7 @@ impl Block {
         [re, im].map(|part| whole(part.col_mut(j)))
     }
 
-    /// What a real operation makes of every vector.
+    /// Image of every vector by a real operation.
     pub(super) fn map(&self, f: impl FnOnce(MatRef<'_, f64>) -> Mat<f64>) -> Self {
         let parts = f(self.parts());
         assert!(parts.ncols() == self.parts.ncols(), "one column for each");

@@ -1,4 +1,4 @@
-//! What it takes to apply the damping of a structure to vectors whose M x and K x are known.
+//! Damping of a structure, applied to vectors whose M x and K x are known.
 
 use crate::linalg::SparseMatrix;
 use crate::linalg::dense::product;
@@ -49,7 +49,7 @@ impl Part {
     }
 
     /// Whether α M + β K + rest is known to have no negative eigenvalue but for rounding, where K − `lowest` M has none
-    /// (`lowest` ≤ 0): told from few rows, without the whole matrix.
+    /// (`lowest` ≤ 0): known from few rows, without the whole matrix.
     pub(super) fn dissipates(&self, lowest: f64) -> bool {
         let Proportional { mass_factor, stiffness_factor, .. } = self.split;
         let proportional = stiffness_factor == 0.0 || mass_factor + stiffness_factor * lowest >= 0.0;

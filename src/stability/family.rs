@@ -8,8 +8,8 @@ use super::damper::{Between, Damper};
 use super::interface::{Interface, Term, terms_of_every_point};
 use super::operator::Operator;
 use super::reduced::{Projection, Reduced, ReducedModes};
+use super::refinement::{Measured, Scale, TOGETHER, Wanted};
 use super::responses::interface_responses;
-use super::round::{Measured, Scale, TOGETHER, Wanted};
 use crate::equilibrium::{PointState, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::dense::product;
@@ -21,7 +21,7 @@ use crate::system::{Damping, System};
 use faer::Mat;
 use std::f64::consts::TAU;
 
-/// What all states of a family share on the full order: the structure, every direction in which a contact point may
+/// Data on the full order common to all states of a family: the structure, every direction in which a contact point may
 /// act, and the factor of A = K + K_σ − s M.
 pub struct Frame<'a> {
     system: &'a System,
@@ -62,7 +62,7 @@ pub struct FamilyModes {
     pub vectors: Mat<c64>,
 }
 
-/// What the full order says of the modes of one state.
+/// Modes of one state and their errors at full order.
 #[derive(Debug, Clone, Default)]
 pub struct FamilyCheck {
     /// λ of the modes \[1/s\].
@@ -190,9 +190,9 @@ impl<'f> Family<'f> {
     /// # Errors
     /// As [`Family::new`].
     pub fn train(&mut self, state: &SlidingState) -> Result<FamilyCheck> {
-        const ROUNDS: i32 = 6;
+        const REFINEMENTS: i32 = 6;
         let (mut check, mut wanted) = self.measure(state, &self.solve(state)?);
-        for k in 0..ROUNDS {
+        for k in 0..REFINEMENTS {
             if wanted.is_empty() {
                 break;
             }

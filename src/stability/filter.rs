@@ -17,9 +17,9 @@ use crate::system::System;
 /// is small c turns and grows like e^{λt}.
 #[derive(Debug, Clone)]
 pub struct ModalFilter {
-    /// What weighs δu, entry by entry.
+    /// Weights of δu, entry by entry.
     pub displacement: Vec<c64>,
-    /// What weighs δu̇.
+    /// Weights of δu̇.
     pub velocity: Vec<c64>,
 }
 

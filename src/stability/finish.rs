@@ -1,18 +1,18 @@
-//! The modes as they are given: right vectors sharpened by the last corrections, and what is told of them.
+//! The modes as they are given: right vectors sharpened by the last corrections, and their errors.
 
 use super::ComplexMode;
 use super::block::Block;
 use super::budget::growth_budget;
 use super::operator::Operator;
-use super::round::Measured;
+use super::refinement::Measured;
 use crate::linalg::c64;
 use rayon::prelude::*;
 
-/// The modes of pairs that were measured. The error of φ is about the correction z = −A⁻¹Q(λ)φ, which was solved for to tell
+/// The modes of pairs that were measured. The error of φ is about the correction z = −A⁻¹Q(λ)φ, which was solved for to give
 /// that of λ: φ + z is given where its residual is the smaller one, which leaves a few hundredths of that error. Its contact
 /// motion and its share of the modes are settled by the projection; z meets only the rest of the spectrum, as far as the
-/// basis goes: so `amplitudes`, what the real modes have of φ, tells their part in φ + z as well. Left vectors are given where
-/// they are asked for.
+/// basis goes: so `amplitudes`, what the real modes have of φ, gives their part in φ + z as well. Left vectors are given where
+/// they are requested.
 pub(super) fn finished(
     operator: &Operator<'_>,
     measured: &mut Measured,

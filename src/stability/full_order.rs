@@ -35,13 +35,13 @@ impl Confirmation {
     }
 }
 
-/// Modes looked for at one shift.
+/// Modes sought at one shift.
 const GROUP: usize = 16;
 /// Two eigenvalues are the same when they differ by less than this part of |λ|, times the condition number.
 const SAME: f64 = 1e-7;
 
 /// Looks for the oscillating modes of `found` (ω > 0, in `band_hz`) again, by two-level Arnoldi on the full order at shifts
-/// along the band, each near a group of modes and with room for modes that `found` does not have.
+/// along the band, each near a group of modes and with a margin for modes that `found` does not have.
 ///
 /// Within the distance of the farthest eigenvalue that a shift gave, the method finds all that its Krylov space holds; it
 /// is no proof that there are no others, but it shares nothing with the projection: neither real modes, nor basis, nor

@@ -11,7 +11,7 @@ use super::block::Block;
 use super::budget::growth_budget;
 use super::finish::shares;
 use super::operator::{Operator, Side};
-use super::round::TOGETHER;
+use super::refinement::TOGETHER;
 use super::shifted::{Adjoint, Shifted};
 use super::{ComplexMode, ComplexModes, accuracy_warnings};
 use crate::error::{Error, Result};
@@ -146,7 +146,7 @@ impl<'a> Search<'a> {
             let mut inside: Vec<c64> =
                 piece.values.iter().copied().filter(|z| in_band(*z, self.band)).collect();
             inside.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-            // The shift is off the axis: one more than asked for shows that none nearer is missing.
+            // The shift is off the axis: one more than requested shows that none nearer is missing.
             let far = piece.values.iter().map(distance).fold(0.0, f64::max);
             let enough = inside.get(count.max(1) - 1).is_some_and(|last| distance(last) < 0.99 * far);
             if enough || wanted >= n || piece.whole {

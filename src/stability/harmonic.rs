@@ -1,4 +1,4 @@
-//! What a harmonic force moves, at full order.
+//! Response to a harmonic force, at full order.
 
 use super::operator::Operator;
 use super::shifted::Shifted;

@@ -1,4 +1,4 @@
-//! What is not symmetric, as a few numbers between a few directions: K_c = W k Wᵀ and C_c = W c Wᵀ.
+//! Unsymmetric terms as a low-rank interface: K_c = W k Wᵀ and C_c = W c Wᵀ.
 
 use crate::equilibrium::{ContactBlock, PointState, SteadySliding, directions, linearize, linearize_points};
 use crate::linalg::{SparseVector, c64};
@@ -23,14 +23,14 @@ pub(crate) struct Term {
     pub(crate) origin: Origin,
 }
 
-/// What an entry does, by which the growth budget sorts it.
+/// Origin of an entry, by which the growth budget sorts it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Origin {
     /// (g, g): stiffness and damping of the normal motion.
     Normal,
     /// (t₁, t₁): friction that falls, or rises, with the slip velocity.
     Falling,
-    /// What turns with the transverse slip.
+    /// Friction that turns with the transverse slip.
     Transverse,
     /// Friction that follows the normal motion, and whatever else of imported matrices is not symmetric.
     Coupling,

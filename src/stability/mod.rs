@@ -28,8 +28,8 @@ mod nearest;
 mod operator;
 mod projected;
 mod reduced;
+mod refinement;
 mod responses;
-mod round;
 mod sensitivity;
 mod shifted;
 mod structural;
@@ -59,9 +59,9 @@ pub struct ComplexModes {
     pub modes: Vec<ComplexMode>,
     /// Size of the projected problem.
     pub subspace_dimension: usize,
-    /// Rounds of full-order refinement.
+    /// Refinement steps at full order.
     pub refinements: usize,
-    /// What the reader of the modes should know: a count that changed, a mode not accepted, too few real modes.
+    /// Warnings: a count that changed, a mode not accepted, too few real modes.
     pub warnings: Vec<String>,
 }
 
@@ -72,7 +72,7 @@ pub struct ComplexMode {
     pub eigenvalue: c64,
     /// φ on the degrees of freedom, scaled to φᴴMφ = 1.
     pub right: Vec<c64>,
-    /// ψ, ψᴴ Q(λ) = 0, scaled to ‖ψ‖_M = 1; empty where left vectors were not asked for ([`Band::left_vectors`]).
+    /// ψ, ψᴴ Q(λ) = 0, scaled to ‖ψ‖_M = 1; empty where left vectors were not requested ([`Band::left_vectors`]).
     pub left: Vec<c64>,
     /// η = ‖Q(λ)φ‖ / ((|λ|²‖M‖ + |λ|‖C‖ + ‖K‖)‖φ‖).
     pub backward_error: f64,
@@ -116,7 +116,7 @@ impl ComplexMode {
         -self.eigenvalue.re / self.eigenvalue.norm()
     }
 
-    /// What its growth rate says about it.
+    /// Verdict by its growth rate.
     pub fn verdict(&self) -> Verdict {
         if !self.accurate() {
             Verdict::Inaccurate
@@ -177,7 +177,7 @@ fn accuracy_warnings(modes: &[ComplexMode]) -> impl Iterator<Item = String> {
     })
 }
 
-/// What the growth rate of a complex mode says.
+/// Stability of a complex mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
     /// The mode does not grow.

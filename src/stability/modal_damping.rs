@@ -6,7 +6,7 @@
 //! φⱼᵀ M δF M φₖ = f\[θⱼ,θₖ\] φⱼᵀδKφₖ − (θf)\[θⱼ,θₖ\] φⱼᵀδMφₖ,   f\[x,y\] = (f(x) − f(y))/(x − y),
 //!
 //! and f′ where x = y. Double modes need no care: between modes of one ζ, f\[x,y\] = 2ζ/(ωⱼ + ωₖ). The rest of the modes
-//! enters only by what φ and ψ have of them; a few block Krylov steps on those parts give Ritz vectors that stand for
+//! enters only by what φ and ψ have of them; a few block Krylov steps on those parts give Ritz vectors that represent
 //! them, and nothing else of the spectrum is needed.
 
 use super::block::Block;
@@ -77,7 +77,7 @@ impl ModalChange {
             let weigh = |kernel: &dyn Fn(usize, usize) -> f64| {
                 let total = spectrum.omega.len();
                 let pair = |j: usize, k: usize| all_b.get(j, i).conj() * all_a.get(k, i);
-                // A pair with one mode outside stands for its transpose as well, which is not among (j, k).
+                // A pair with one mode outside also represents its transpose, which is not among (j, k).
                 let both = |j, k| if j < inside { pair(j, k) } else { pair(j, k) + pair(k, j) };
                 Block::from_fn(total, inside, |j, k| both(j, k) * kernel(j, k))
             };

@@ -9,7 +9,7 @@ use crate::modal::{RealModes, ShiftedStiffness};
 use crate::system::Structure;
 use std::f64::consts::TAU;
 
-/// The complex pairs that are asked for.
+/// The requested complex pairs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nearest {
     /// The frequency to which their λ is nearest \[Hz\].
@@ -26,12 +26,12 @@ fn enough(count: usize) -> usize {
     count + 2 + count / 16
 }
 
-/// Where the modes are counted, by the frequency asked for: the factors serve the analysis best in the middle of the band in
+/// Where the modes are counted, by the requested frequency: the factors serve the analysis best in the middle of the band in
 /// ω², which lies above it.
 const ABOVE: f64 = 1.2;
 
-/// A band \[Hz\] around the frequency asked for, inside the widest, that is expected to hold enough modes of `structure`, and K − ω²M
-/// factorised a little above the frequency asked for: its inertia counts the modes below (Sylvester's law), and modes of plates lie
+/// A band \[Hz\] around the requested frequency, inside the widest, that is expected to hold enough modes of `structure`, and K − ω²M
+/// factorised a little above the requested frequency: its inertia counts the modes below (Sylvester's law), and modes of plates lie
 /// evenly over frequency.
 ///
 /// # Errors
@@ -60,7 +60,7 @@ pub fn band_expected(structure: &Structure, asked: &Nearest) -> Result<([f64; 2]
     Ok(([(target - reach).max(lowest), (target + reach).min(highest)], shifted))
 }
 
-/// The band \[Hz\] around the frequency asked for, inside the widest, that holds just enough of the real modes, or where they end.
+/// The band \[Hz\] around the requested frequency, inside the widest, that holds just enough of the real modes, or where they end.
 pub fn band_around(real: &RealModes, asked: &Nearest) -> [f64; 2] {
     let Nearest { hz: target, count, within: [lowest, highest] } = *asked;
     let inside = (0..real.len()).map(|k| real.frequency_hz(k)).filter(|f| (lowest..=highest).contains(f));
@@ -78,7 +78,7 @@ pub fn band_around(real: &RealModes, asked: &Nearest) -> [f64; 2] {
     [(target - reach).max(lowest), (target + reach).min(highest)]
 }
 
-/// Keeps the modes that are asked for, when they are all inside `band` \[Hz\]; otherwise gives a wider band to look in. The
+/// Keeps the requested modes, when they are all inside `band` \[Hz\]; otherwise gives a wider band to look in. The
 /// widest band keeps what there is, and says so.
 pub fn keep_nearest(modes: &mut ComplexModes, asked: &Nearest, band: [f64; 2]) -> Option<[f64; 2]> {
     let Nearest { hz: target, count, within } = *asked;

@@ -36,7 +36,7 @@ pub(super) struct Operator<'a> {
     stiffness_norm: f64,
 }
 
-/// What the matrices of the structure are between two vectors: yᴴMx, yᴴ(K + K_σ)x, yᴴCx with modal damping, yᴴHx.
+/// Bilinear forms of the matrices of the structure with two vectors: yᴴMx, yᴴ(K + K_σ)x, yᴴCx with modal damping, yᴴHx.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Forms {
     pub(super) mass: c64,
@@ -55,7 +55,7 @@ pub(super) struct Sum {
     pub(super) contact: c64,
 }
 
-/// What a structure loses energy by: C or H.
+/// Dissipative matrix: C or H.
 #[derive(Debug, Clone, Copy)]
 enum Loss {
     Viscous,
@@ -248,7 +248,7 @@ impl<'a> Operator<'a> {
         Loss::BOTH.into_iter().filter(|loss| loss.part(&self.dampers[0]).wide().is_some())
     }
 
-    /// The forms as far as the merged matrices tell them.
+    /// The part of the forms that the matrices with shared pattern give.
     fn forms_of(&self, entries: &PerMatrix) -> Forms {
         let [mass, stiffness, ref wide @ ..] = *entries;
         let mut forms = Forms { mass, stiffness, ..Forms::default() };
@@ -277,7 +277,7 @@ impl<'a> Operator<'a> {
         factors
     }
 
-    /// Adds to y and to the forms what is not told from M x and K x: few rows, modal damping, the wide parts of the dampings
+    /// Adds to y and to the forms what does not follow from M x and K x: few rows, modal damping, the wide parts of the dampings
     /// from number `first` on, and to y the interface.
     fn add_others(
         &self,
@@ -356,7 +356,7 @@ impl<'a> Operator<'a> {
         forms
     }
 
-    /// What couples the real modes, (sⱼ (C_r + C_c) + iH_r + K_c) xⱼ, where C_r and H_r are C and H but for what is
+    /// Coupling of the real modes, (sⱼ (C_r + C_c) + iH_r + K_c) xⱼ, where C_r and H_r are C and H but for what is
     /// proportional in them; for the left side iH is conjugated, C_c and K_c are transposed.
     pub(super) fn coupling(&self, side: Side, s: &[c64], x: &Block) -> Block {
         let sum = |s: &c64| Sum { mass: ZERO, stiffness: ZERO, ..Sum::value(side, *s) };

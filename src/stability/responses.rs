@@ -1,4 +1,4 @@
-//! What interface and damping make of the structure: the first directions besides the real modes.
+//! Responses of the structure to interface and damping: the first directions besides the real modes.
 
 use super::basis::Basis;
 use super::block::Block;
@@ -11,11 +11,11 @@ use crate::linalg::sparse::{multiply, times};
 use crate::modal::ShiftedStiffness;
 use faer::{Accum, Mat, MatRef};
 
-/// Random combinations that stand for many forces.
+/// Number of random combinations that represent many forces.
 pub(super) const SKETCH: usize = 64;
 
 /// A⁻¹W for the directions in which the interface moves or is moved, each weighed by √(its stiffness) so that its
-/// E-norm tells how much the interface makes of it.
+/// E-norm measures the influence of the interface on it.
 pub(super) fn interface_responses(
     operator: &Operator<'_>,
     factor: &dyn SymmetricFactor,

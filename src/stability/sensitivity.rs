@@ -117,7 +117,7 @@ impl<'a> Sensitivity<'a> {
     /// −ψᴴ \[Q_other(λ) − Q(λ)\] φ / ψᴴ Q′(λ) φ of every mode: the change of λ to first order when the system becomes
     /// `other`, which has the same degrees of freedom and contact points, and slides steadily in its own way.
     ///
-    /// Modal damping keeps its ratios ζ, on the real modes that `other` has; its own C is not looked at.
+    /// Modal damping keeps its ratios ζ, on the real modes that `other` has; its own C is not used.
     ///
     /// # Errors
     /// A system of another size; one without a steady state.
@@ -183,7 +183,7 @@ impl<'a> Sensitivity<'a> {
     /// bends), ten and a hundred times smaller ones are tried and the steps that agree best are kept.
     ///
     /// # Errors
-    /// What `build` returns, and what [`Sensitivity::change`] finds wrong.
+    /// Those of `build`, and those of [`Sensitivity::change`].
     pub fn differentiate(
         &self,
         value: f64,
@@ -280,7 +280,7 @@ impl<'a> Sensitivity<'a> {
 /// One correction z = −A⁻¹Q(λ)φ of each vector, A = K + K_σ − s M with s near |λ|², where it makes the residual smaller.
 ///
 /// The error of λ is quadratic in that of the vectors, the error of dλ/dp linear: the vectors of an accurate λ leave
-/// room for this step. Their residual is orthogonal to the real modes and shows no contact motion, so that z meets only
+/// margin for this step. Their residual is orthogonal to the real modes and shows no contact motion, so that z meets only
 /// the rest of the spectrum, θⱼ ≫ |λ|², where A⁻¹ is Q(λ)⁻¹ but for (s − |λ|²)/θⱼ.
 fn sharpen(
     operator: &Operator<'_>,

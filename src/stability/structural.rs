@@ -1,9 +1,9 @@
-//! What a complex eigenvalue analysis is given of the structure.
+//! Structural input of a complex eigenvalue analysis.
 
 use crate::modal::{RealModes, ShiftedStiffness};
 use std::f64::consts::TAU;
 
-/// What is known of the structure alone, without contact: its real modes and, where they are at hand, factors of
+/// Known data of the structure alone, without contact: its real modes and, where they are at hand, factors of
 /// K + K_σ − σM at a shift among them.
 #[derive(Debug, Clone, Copy)]
 pub struct Structural<'a> {

@@ -319,11 +319,11 @@ fn random_systems_agree_with_the_dense_full_order_solution() {
     }
     assert!(
         unstable > 0 && refined > 0 && partial > 4,
-        "{unstable} unstable, {refined} rounds, {partial} partial"
+        "{unstable} unstable, {refined} refinement steps, {partial} partial"
     );
 }
 
-/// More contact directions than real modes: a sketch of the responses stands for them.
+/// More contact directions than real modes: a sketch of the responses represents them.
 #[test]
 fn many_contact_directions_agree_with_the_dense_full_order_solution() {
     for seed in [1, 3, 6] {
@@ -462,7 +462,7 @@ fn input_that_cannot_be_analysed_is_refused() {
 }
 
 #[test]
-fn left_vectors_are_there_where_they_are_asked_for() {
+fn left_vectors_are_there_where_they_are_requested() {
     let system = random_system(60, 3, 20.0, 9);
     let (state, real) = (steady(&system), dense_modes(&system, 45));
     let hz = [0.01, real.frequency_hz(12)];

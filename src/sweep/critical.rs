@@ -22,13 +22,13 @@ pub struct Critical {
     pub eigenvalue: c64,
     /// Whether the mode is unstable beyond the value, going along the sweep.
     pub rises: bool,
-    /// What happens there.
+    /// Type of instability.
     pub kind: CriticalKind,
     /// |dσ/dp| about the value \[1/s per unit of the parameter\], from the ends of the last wide bracket.
     pub slope: f64,
 }
 
-/// What happens at a critical value.
+/// Type of instability at a critical value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CriticalKind {
     /// The frequencies of two modes merge: flutter.

@@ -7,10 +7,10 @@ use crate::progress::Observer;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Points that are computed, and handed on, together.
+/// Points that are computed and recorded together.
 const CHUNK: usize = 32;
 
-/// What a map keeps of one point; not numbers where the point has no modes.
+/// Values of a map at one point; not numbers where the point has no modes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapPoint {
     /// The largest σ \[1/s\].
@@ -41,7 +41,7 @@ impl MapPoint {
 /// and the index of its first point, in order. The numbers depend on neither the chunks nor the number of threads.
 ///
 /// # Errors
-/// What `record` returns.
+/// Those of `record`.
 pub fn map(
     problem: &dyn Problem,
     axes: &[Axis; 2],

@@ -10,7 +10,7 @@ mod assign;
 mod boundary;
 mod branch;
 mod critical;
-mod encounter;
+mod interaction;
 mod map;
 mod root;
 #[cfg(test)]
@@ -20,7 +20,7 @@ mod track;
 pub use boundary::{Boundary, boundary};
 pub use branch::Branch;
 pub use critical::{Critical, CriticalKind};
-pub use encounter::{Encounter, EncounterKind};
+pub use interaction::{Interaction, InteractionKind};
 pub use map::{MapPoint, map};
 pub use track::{Sweep, sweep};
 
@@ -29,7 +29,7 @@ use crate::linalg::c64;
 use crate::stability::{ROUND_OFF, unstable};
 use faer::Mat;
 
-/// What a sweep asks of the mechanics: the complex modes at a place of its parameters.
+/// Parametric eigenvalue problem of a sweep: the complex modes at a place of its parameters.
 pub trait Problem: Sync {
     /// The modes at `at`, one value a parameter.
     ///

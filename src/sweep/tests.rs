@@ -150,21 +150,21 @@ fn branches_pass_through_a_crossing_and_turn_away_at_an_avoided_one() {
     let last = through.values.len() - 1;
     assert!(a.at(0).unwrap().im < b.at(0).unwrap().im && a.at(last).unwrap().im > b.at(last).unwrap().im);
     assert!(a.lowest_mac > 0.999);
-    assert_eq!(through.encounters.len(), 1);
-    let meeting = through.encounters[0];
-    assert!((meeting.value - 0.5).abs() < 1e-6 && meeting.distance < 1e-6);
-    assert_eq!(meeting.kind, EncounterKind::Crossing);
+    assert_eq!(through.interactions.len(), 1);
+    let interaction = through.interactions[0];
+    assert!((interaction.value - 0.5).abs() < 1e-6 && interaction.distance < 1e-6);
+    assert_eq!(interaction.kind, InteractionKind::Crossing);
     let away = follow(0.005);
     let [a, b] = &away.branches[..] else { panic!("two branches") };
     let last = away.values.len() - 1;
     assert!((0..=last).all(|k| a.at(k).unwrap().im < b.at(k).unwrap().im));
     assert!(last > 11, "the step is refined where the shapes turn");
     assert!(a.lowest_mac > 0.8);
-    let meeting = away.encounters[0];
-    assert_eq!(meeting.kind, EncounterKind::Veering);
+    let interaction = away.interactions[0];
+    assert_eq!(interaction.kind, InteractionKind::Veering);
     // |ω₂ − ω₁|/ω₂ with ω² = 1.5 ± 0.005.
     let exact = 1.0 - (1.495f64 / 1.505).sqrt();
-    assert!((meeting.value - 0.5).abs() < 1e-3 && (meeting.distance / exact - 1.0).abs() < 1e-6);
+    assert!((interaction.value - 0.5).abs() < 1e-3 && (interaction.distance / exact - 1.0).abs() < 1e-6);
 }
 
 #[test]
@@ -196,7 +196,7 @@ fn the_boundary_of_a_map_lies_on_the_closed_form() {
 }
 
 #[test]
-fn a_map_taken_up_again_and_another_number_of_threads_give_the_same_bits() {
+fn a_resumed_map_and_another_number_of_threads_give_the_same_bits() {
     let problem = Members { system: |p: &[f64]| two_dof(0.5, p[1], p[0]), band: [0.0, 1.0] };
     let axes = [axis(0.2, 0.8, 8), Axis { from: 0.8, to: 3.0, points: 8, log: true }];
     let run = |threads: usize, known: &[MapPoint]| {

@@ -3,7 +3,7 @@
 use super::assign::{Link, assign};
 use super::branch::{Branch, Sample};
 use super::critical::{Critical, critical_values};
-use super::encounter::{Encounter, encounters};
+use super::interaction::{Interaction, interactions};
 use super::{Axis, Problem};
 use crate::error::Result;
 use crate::progress::Observer;
@@ -17,7 +17,7 @@ const SURER: f64 = 0.02;
 /// The modes along one parameter.
 #[derive(Debug, Clone)]
 pub struct Sweep {
-    /// Every value at which modes were computed, in the order of the sweep: those asked for, and more between them
+    /// Every value at which modes were computed, in the order of the sweep: those requested, and more between them
     /// where shapes change quickly.
     pub values: Vec<f64>,
     /// One a mode, those that begin at the first value first.
@@ -25,13 +25,13 @@ pub struct Sweep {
     /// Where branches become unstable or stable, in the order of the sweep.
     pub critical: Vec<Critical>,
     /// Where two branches come near each other.
-    pub encounters: Vec<Encounter>,
+    pub interactions: Vec<Interaction>,
 }
 
 /// Follows every mode of `problem` along `axis`; critical values are located to `tolerance`, relative to the value.
 ///
 /// The values of the axis are solved at once, then linked in their order by their shapes; a step is halved where another
-/// link would be about as good. At a coalescence no step is small enough: there the nearest eigenvalue goes on.
+/// link would be about as good. At a coalescence no step is small enough: there the nearest eigenvalue continues the branch.
 ///
 /// # Errors
 /// A value without modes, such as one at which the contact opens.
@@ -55,9 +55,9 @@ pub fn sweep(problem: &dyn Problem, axis: &Axis, tolerance: f64, observer: &dyn 
     }
     let branches = branches(&chain.samples, &chain.links);
     let critical = critical_values(problem, axis, tolerance, &chain.samples, &branches, observer)?;
-    let encounters = encounters(problem, axis, tolerance.max(1e-7), &chain.samples, &branches)?;
+    let interactions = interactions(problem, axis, tolerance.max(1e-7), &chain.samples, &branches)?;
     let values = chain.samples.iter().map(|s| s.value).collect();
-    Ok(Sweep { values, branches, critical, encounters })
+    Ok(Sweep { values, branches, critical, interactions })
 }
 
 /// The samples so far and the links between neighbours.

@@ -26,7 +26,7 @@ pub(super) struct Contact {
     pub(super) free: Vec<f64>,
     /// q_t, q̇_t: what the motion along the directions would be without Δ.
     pub(super) predicted: [Vec<f64>; 2],
-    /// R at the last place looked at.
+    /// R at the last place evaluated.
     pub(super) reaction: Reaction,
     tangent: Tangent,
     /// r, and r before the step of Newton's method.

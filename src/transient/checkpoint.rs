@@ -1,4 +1,4 @@
-//! What a march needs to go on, as named arrays that any file can hold.
+//! State needed to resume a run in time, as named arrays that any file can hold.
 
 use super::ledger::Work;
 use super::march::{Control, Marched};
@@ -50,7 +50,7 @@ impl Checkpoint {
         Ok(values)
     }
 
-    /// Adds all that a march goes on from.
+    /// Adds all that a run needs to resume.
     pub fn put_march(&mut self, marched: &Marched) {
         let Marched { begin, step, state, work, worst_residual, split, control } = marched;
         let counts = [*step, split.0, split.1, control.level, control.parts].map(|count| count as f64);
@@ -111,7 +111,7 @@ impl Checkpoint {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Method, Plan, Profile, Scheme, go_on, march};
+    use super::super::{Method, Plan, Profile, Scheme, march, resume};
     use super::*;
     use crate::equilibrium::samples::random_system;
     use crate::equilibrium::{SteadyOptions, solve_steady};
@@ -140,7 +140,7 @@ mod tests {
             });
             let mut again = middle.march(&model).unwrap();
             let mut seen = 0;
-            go_on(&model, &mut again, &plan, &(), &mut |_| {
+            resume(&model, &mut again, &plan, &(), &mut |_| {
                 seen += 1;
                 Ok(())
             })

@@ -1,4 +1,4 @@
-//! What acts in time: how the counter-bodies slide, how loads run, and pushes.
+//! Time-dependent input: velocities of the counter-bodies, load histories, and pulse loads.
 
 use crate::linalg::SparseVector;
 use std::f64::consts::{PI, TAU};

@@ -1,9 +1,9 @@
-//! What happens at the contact points: they open and close, stick and slip, and their slip turns round.
+//! Events at the contact points: opening, closing, sticking, slipping, reversal of slip.
 
 use super::model::Model;
 use super::state::State;
 
-/// What a contact point does.
+/// Event at a contact point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EventKind {
     /// It loses touch.
@@ -43,7 +43,7 @@ pub struct Event {
     pub time: f64,
     /// The contact point, counted from 0.
     pub point: usize,
-    /// What it does.
+    /// Kind of event.
     pub kind: EventKind,
 }
 

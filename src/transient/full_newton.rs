@@ -43,7 +43,7 @@ impl<'a> FullNewton<'a> {
         points.map(|p| resistance([1, 2].map(|k| compliance(&directions[3 * p + k])), factor)).collect()
     }
 
-    /// What is left of both equations at Δ and r, without B w.
+    /// Residual of both equations at Δ and r, without B w.
     fn residual(
         &mut self,
         [delta, force]: [&[f64]; 2],

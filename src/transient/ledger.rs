@@ -25,10 +25,10 @@ pub struct Work {
     pub normal: f64,
     /// Σ ∫V dt F̄₁: what the drives of the counter-bodies spend against friction.
     pub drive: f64,
-    /// What friction turns into heat, or bends bristles with: Σ F̄₁(∫V dt − t₁ᵀΔu) − F̄₂ t₂ᵀΔu. The structure gains
+    /// Work of friction, which becomes heat or strain of bristles: Σ F̄₁(∫V dt − t₁ᵀΔu) − F̄₂ t₂ᵀΔu. The structure gains
     /// drive − heat.
     pub heat: f64,
-    /// What imported unsymmetric terms do to the structure.
+    /// Work of imported unsymmetric terms on the structure.
     pub coupling: f64,
     /// W_alg.
     pub algorithm: f64,
@@ -120,7 +120,7 @@ impl Work {
         work
     }
 
-    /// What the balance lacks: kinetic + strain − everything that feeds them.
+    /// Residual of the balance: kinetic + strain − all work supplied.
     pub fn residual(&self) -> f64 {
         let fed = self.external + self.damping + self.normal + self.drive - self.heat + self.coupling;
         self.kinetic + self.strain - fed - self.algorithm

@@ -46,7 +46,7 @@ pub struct Control {
     pub parts: usize,
 }
 
-/// How far a march has come: what is seen of it after a step, what it leaves behind, and what it can go on from.
+/// State of an integration after a step: the motion, its work and statistics, and all that is needed to resume.
 #[derive(Debug, Clone)]
 pub struct Marched {
     /// When it began \[s\].
@@ -87,15 +87,15 @@ pub fn march(
 ) -> Result<Marched> {
     let mut marched = Marched::from(start);
     record(&marched)?;
-    go_on(model, &mut marched, plan, observer, record)?;
+    resume(model, &mut marched, plan, observer, record)?;
     Ok(marched)
 }
 
-/// Marches on to the end of the plan; `record` sees the end of every step. The motion is that of one march, bit for bit.
+/// Resumes to the end of the plan; `record` sees the end of every step. The motion is that of one march, bit for bit.
 ///
 /// # Errors
 /// As [`march`]; `marched` is then where the last good step ended.
-pub fn go_on(
+pub fn resume(
     model: &Model<'_>,
     marched: &mut Marched,
     plan: &Plan,

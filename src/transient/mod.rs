@@ -5,7 +5,7 @@
 //! step costs one solution with sparse factors and Newton's method on a small dense system (`condensed`). Newton's method
 //! on the whole is kept beside it to compare with (`full_newton`). Friction that is set-valued at rest is an unknown of both, so
 //! that points stick, turn round and slip again without regularisation. [`Work`] is the balance of energy. A [`Checkpoint`] holds
-//! what a march needs to go on later as if it had never stopped; a [`Watch`] tells when contact points open, close and turn.
+//! the state from which a run resumes as if it had never stopped; a [`Watch`] detects when contact points open, close and turn.
 
 mod along;
 mod checkpoint;
@@ -34,7 +34,7 @@ pub use checkpoint::Checkpoint;
 pub use drive::{Loading, Profile, Pulse, Push};
 pub use events::{Event, EventKind, Watch};
 pub use ledger::Work;
-pub use march::{Control, Marched, Plan, go_on, march};
+pub use march::{Control, Marched, Plan, march, resume};
 pub use model::{Model, refuse_hysteretic};
 pub use scheme::Scheme;
 pub use state::State;

@@ -1,4 +1,4 @@
-//! What time integration needs of a system.
+//! Model of a system for time integration.
 
 use super::drive::{Loading, Profile, Push};
 use super::products::Products;
@@ -20,7 +20,7 @@ pub struct Model<'a> {
     pub(super) damping: &'a Damping,
     /// K + K_σ(u₀).
     pub(super) stiffness: Cow<'a, SparseMatrix>,
-    /// What M, K and C make of a motion.
+    /// Products with M, K and C.
     pub(super) products: Products,
     /// f \[N, N m\].
     pub(super) load: &'a [f64],

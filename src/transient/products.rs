@@ -1,4 +1,4 @@
-//! What the matrices make of a motion, once a step.
+//! Products of the matrices with the motion, once a step.
 
 use super::rows::chunks;
 use crate::linalg::SparseMatrix;

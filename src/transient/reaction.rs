@@ -12,7 +12,7 @@ use faer::Mat;
 pub(super) struct Reaction {
     /// r \[N\].
     pub(super) force: Vec<f64>,
-    /// What each point remembers.
+    /// Bristle deflections of each point.
     pub(super) bristles: Vec<Bristles>,
     /// ∂r/∂q \[N/m\] and ∂r/∂q̇ \[N s/m\] of each point.
     blocks: Vec<ContactBlock>,
@@ -20,7 +20,7 @@ pub(super) struct Reaction {
     by_friction: Vec<[[f64; 2]; 2]>,
 }
 
-/// What a contact point remembers from step to step.
+/// Internal friction state of a contact point.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Bristles {
     /// How far they are bent along t₁ and t₂ \[m\].
@@ -33,7 +33,7 @@ pub(super) struct Bristles {
 /// regular where the friction of several points at rest is not unique.
 const HELD: f64 = 1.0 - 1e-8;
 
-/// What reactions depend on besides the motion along the directions.
+/// Arguments of the reactions besides the motion along the directions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Moment<'a> {
     /// Where the contacts act.
@@ -49,7 +49,7 @@ pub(super) struct Moment<'a> {
 pub(super) struct Since<'a> {
     /// ∫V dt of each pair where it began \[m\].
     pub(super) travel: &'a [f64],
-    /// What each point remembered there.
+    /// Bristle deflections of each point there.
     pub(super) bristles: &'a [Bristles],
     /// Δt \[s\].
     pub(super) duration: f64,
@@ -152,8 +152,8 @@ impl Reaction {
         off.map(|k| (self.force[k] - force[k]).abs()).fold(0.0, f64::max) / largest
     }
 
-    /// Calls `tell` with every row of the linearised equation in which something acts.
-    pub(super) fn rows(&self, model: &Model<'_>, rate: f64, tell: &mut dyn FnMut(Row<'_>)) {
+    /// Calls `visit` with every row of the linearised equation in which something acts.
+    pub(super) fn rows(&self, model: &Model<'_>, rate: f64, visit: &mut dyn FnMut(Row<'_>)) {
         let acting = self.blocks.iter().filter(|block| block.acts() || self.holds(block.point));
         for block in acting {
             let first = 3 * block.point;
@@ -166,7 +166,7 @@ impl Reaction {
                     _ => held[own - 1].map(|h| HELD * h),
                 };
                 let held = [(first + 1, held[0]), (first + 2, held[1])];
-                tell(Row { place: first + own, slopes: &slopes, held: &held });
+                visit(Row { place: first + own, slopes: &slopes, held: &held });
             }
         }
         if let Some([k, c]) = model.coupling {
@@ -174,7 +174,7 @@ impl Reaction {
             for i in 0..k.nrows() {
                 let slopes: Vec<(usize, f64)> =
                     (0..k.ncols()).map(|j| (first + j, k[(i, j)] + rate * c[(i, j)])).collect();
-                tell(Row { place: first + i, slopes: &slopes, held: &[] });
+                visit(Row { place: first + i, slopes: &slopes, held: &[] });
             }
         }
     }

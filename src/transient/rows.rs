@@ -6,7 +6,7 @@ use std::ops::Range;
 /// Rows of a range; what has fewer never leaves its thread.
 const ROWS: usize = 8192;
 
-/// Lets `work` write ranges of vectors of one length, side by side; it is told the first row.
+/// Lets `work` write ranges of vectors of one length, side by side; it is passed the first row.
 pub(super) fn chunks<const N: usize>(out: [&mut [f64]; N], work: impl Fn(usize, [&mut [f64]; N]) + Sync) {
     let n = out.first().map_or(0, |x| x.len());
     if n <= ROWS {

@@ -1,4 +1,4 @@
-//! What solves the equations of a step.
+//! Solver of the equations of a step.
 
 use super::state::State;
 use faer::Mat;

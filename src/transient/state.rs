@@ -30,7 +30,7 @@ pub struct State {
     pub(super) along: Mat<f64>,
     /// r along the directions \[N\].
     pub(super) reaction: Vec<f64>,
-    /// What each contact point remembers.
+    /// Bristle deflections of each contact point.
     pub(super) bristles: Vec<Bristles>,
     /// p(t) of each push.
     pub(super) pushes: Vec<f64>,
@@ -78,7 +78,7 @@ impl State {
         self
     }
 
-    /// What follows from time and motion.
+    /// Computes all that depends on time and motion.
     pub(super) fn settle(&mut self, model: &Model<'_>) {
         self.act(model, self.time);
         self.derive(model);
@@ -102,12 +102,12 @@ impl State {
         self.bristles = reaction.bristles;
     }
 
-    /// What reactions depend on besides the motion.
+    /// Arguments of the reactions besides the motion.
     pub(super) fn moment(&self) -> Moment<'_> {
         Moment { interface: &self.interface, speeds: &self.speeds, before: &self.before }
     }
 
-    /// What acts at a time.
+    /// Sets velocities, pulse loads and contact places at a time.
     pub(super) fn act(&mut self, model: &Model<'_>, time: f64) {
         self.time = time;
         self.speeds.iter_mut().zip(model.speeds(time)).for_each(|(now, v)| *now = v);
@@ -172,7 +172,7 @@ impl State {
             + 0.5 * dot(self.motion.col_as_slice(0), self.elastic.col_as_slice(0))
     }
 
-    /// Room for a state of `model`.
+    /// Allocated, zero state of `model`.
     pub(super) fn empty(model: &Model<'_>) -> Self {
         let (n, r) = (model.n(), model.n_directions());
         State {
@@ -193,7 +193,7 @@ impl State {
         }
     }
 
-    /// What the sparse matrices make of the motion, and the motion along the directions.
+    /// Products of the sparse matrices with the motion, and the motion along the directions.
     pub(super) fn derive(&mut self, model: &Model<'_>) {
         let (elastic, inertia) = (&mut self.elastic, &mut self.inertia);
         model.products.derive(&self.motion, Derived { elastic, inertia, viscous: self.viscous.as_mut() });

@@ -53,7 +53,7 @@ pub fn computed(
     checks.iter().map(|check| quantity(&mut runs, cases, check, &check.of, observer)).collect()
 }
 
-/// A quantity of a check; the `runs` of its case are taken up where they are.
+/// A quantity of a check; the `runs` of its case are used where they are.
 fn quantity<'a>(
     runs: &mut BTreeMap<&'a str, Runs<'a>>,
     cases: &'a BTreeMap<String, Case>,
@@ -272,11 +272,11 @@ fn plate_modes(
 }
 
 /// The largest relative error of the computed modes that are no motions of a rigid body; infinite when their number is
-/// another. Every exact mode with nodal diameters stands for two.
+/// another. Every exact mode with nodal diameters counts twice.
 fn largest_error(computed: &NamedModes, exact: &[PlateMode]) -> f64 {
     let exact = exact.iter().flat_map(|mode| {
-        let twins = if mode.nodal_diameters > 0 { 2 } else { 1 };
-        std::iter::repeat_n(mode.frequency_hz, twins)
+        let multiplicity = if mode.nodal_diameters > 0 { 2 } else { 1 };
+        std::iter::repeat_n(mode.frequency_hz, multiplicity)
     });
     let exact: Vec<f64> = exact.collect();
     let rigid = computed.modes.rigid_bodies;

@@ -6,7 +6,7 @@ use super::run::Run;
 use super::two_dof::TwoDof;
 use crate::results::TransientResult;
 
-/// What `measure` says of a channel; `None` when the run does not have it.
+/// `measure` of a channel; `None` when the run does not have the channel.
 pub(super) fn measured(run: &Run, span: &Span, measure: &Measure) -> Option<f64> {
     let record = record(run, span)?;
     let earlier = |window: &[f64; 2]| self::record(run, &Span { window: *window, ..span.clone() });

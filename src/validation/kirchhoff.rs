@@ -59,7 +59,7 @@ pub struct PlateMode {
     pub lambda: f64,
 }
 
-/// Every mode below `below_hz` of a plate of outer radius `a`, ascending in frequency; each with n > 0 stands for two.
+/// Every mode below `below_hz` of a plate of outer radius `a`, ascending in frequency; each with n > 0 counts twice.
 ///
 /// `inner` is the radius and the condition of the inner edge, `None` for a full disc. Rigid motions are left out.
 /// The Bessel functions stay finite up to about λ = 300.

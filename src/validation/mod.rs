@@ -1,4 +1,4 @@
-//! What the program is checked against. Each folder below `validation/` holds a case, and a `reference.toml` with
+//! Validation of the program. Each folder below `validation/` holds a case, and a `reference.toml` with
 //! quantities, reference values, tolerances, and the reason for each.
 
 mod check;

@@ -1,12 +1,12 @@
-//! What a channel of a run in time does between two times.
+//! A channel of a run in time between two times.
 
 use super::reference::Near;
 use crate::signal::{self, Peak};
 
-/// Lines among which the strongest is looked for.
+/// Lines among which the strongest is sought.
 const LINES: usize = 8;
 
-/// The part of a channel that is looked at.
+/// The part of a channel that is evaluated.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Record<'a> {
     pub(super) values: &'a [f64],
@@ -124,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn peaks_are_found_where_they_are_looked_for_and_measured_against_the_highest() {
+    fn peaks_are_found_where_they_are_sought_and_measured_against_the_highest() {
         let parts = [(936.4, 0.1), (1661.0, 1.0), (2000.0, 0.03), (2600.0, 0.3)];
         let at = |t: f64| parts.iter().map(|(f, a)| a * (std::f64::consts::TAU * f * t).sin()).sum::<f64>();
         let values: Vec<f64> = (0..20_000).map(|k| at(2e-5 * k as f64)).collect();

@@ -22,14 +22,14 @@ pub struct Reference {
     pub source: String,
     /// The cases to run, by their files.
     pub cases: BTreeMap<String, Case>,
-    /// What to check.
+    /// Checks.
     pub checks: Vec<Check>,
 }
 
 /// One quantity beside its reference.
 #[derive(Debug)]
 pub struct Check {
-    /// What it is, in words.
+    /// Description of the quantity.
     pub quantity: String,
     /// How it is computed.
     pub of: Quantity,
@@ -90,7 +90,7 @@ pub enum Kind {
     Change(Vec<(String, f64)>),
     /// The largest relative change of any eigenvalue when the case is exported as matrices and read again.
     Exported,
-    /// In how many places the summary of a run that was stopped halfway and taken up again differs from that of a whole run.
+    /// In how many places the summary of a run that was stopped halfway and resumed differs from that of a whole run.
     Resumed,
     /// How many faults a case file has, which is named from the folder of the case.
     Faults(String),
@@ -106,11 +106,11 @@ pub enum Kind {
     },
     /// The largest growth rate of any mode \[1/s\].
     GrowthRate,
-    /// What a channel of the run in time does between two times.
+    /// Measure of a channel of the run in time between two times.
     InTime {
         /// Which and when.
         of: Span,
-        /// What of it.
+        /// Its measure.
         measure: Measure,
         /// As a part of what the full model says, for a case whose model is reduced.
         over_full: bool,
@@ -150,7 +150,7 @@ pub struct Span {
     pub window: [f64; 2],
 }
 
-/// What is measured of a channel.
+/// Measure of a channel.
 #[derive(Debug, Clone)]
 pub enum Measure {
     /// Half of what it spans.
@@ -186,7 +186,7 @@ pub struct Near {
     pub frequencies_hz: Vec<f64>,
     /// … as far as this share of them to either side.
     pub within: f64,
-    /// What is above does not count \[Hz\].
+    /// Frequency above which nothing counts \[Hz\].
     pub below_hz: f64,
 }
 
@@ -277,7 +277,7 @@ pub fn read_check(name: &str, s: &Section, case: &str, reason: &str) -> Check {
     }
 }
 
-/// How a quantity is computed; a frequency that it is looked for at is the number of the key `about`.
+/// How a quantity is computed; a frequency near which it is sought is the number of the key `about`.
 fn read_quantity(s: &Section, case: &str, about: &str) -> Quantity {
     Quantity {
         case: s.string("case").or(case.to_string()),

@@ -1,4 +1,4 @@
-//! A run that was stopped and taken up again, beside one that was not.
+//! A resumed run compared with an uninterrupted one.
 
 use crate::case::Case;
 use crate::error::Result;
@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 /// In how many places the summary of a run of `case` that was stopped differs from that of a whole run: what the whole run left
-/// in its folder halfway through its longest work is taken up with `resume`. Times that a phase took do not count.
+/// in its folder halfway through its longest work is resumed with `resume`. Times that a phase took do not count.
 ///
 /// # Errors
 /// As [`run_case`].
@@ -79,7 +79,7 @@ impl Observer for Halfway<'_> {
     }
 }
 
-/// Copies the files of a folder; a file that cannot be copied is missing there, which the run that takes it up tells.
+/// Copies the files of a folder; a file that cannot be copied is missing there, which the resumed run reports.
 fn copy(from: &Path, to: &Path) {
     let files = std::fs::read_dir(from).into_iter().flatten().flatten().map(|entry| entry.path());
     let files: Vec<PathBuf> = files.filter(|path| path.is_file()).collect();

@@ -3,7 +3,7 @@
 use crate::job::Histories;
 use crate::results::RunResults;
 
-/// What the analyses of a case brought.
+/// Results and histories of the analyses of a case.
 pub(super) struct Run {
     pub(super) results: RunResults,
     pub(super) histories: Histories,

@@ -1,4 +1,4 @@
-//! What an analysis of a case is.
+//! Interface of an analysis of a case.
 
 use crate::case::Case;
 use crate::error::{Error, Fault, Result};

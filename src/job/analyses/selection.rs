@@ -55,7 +55,7 @@ impl Selection {
         self.analyses(case).any(|analysis| analysis.name() == name)
     }
 
-    /// Refuses a case that lacks a table of an analysis that is asked for by name.
+    /// Refuses a case that lacks a table of an analysis that is requested by name.
     pub(in crate::job) fn check(self, case: &Case) -> Result<()> {
         let mut faults = Faults::new();
         if let Selection::Only(_) = self {

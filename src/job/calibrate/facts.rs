@@ -1,4 +1,4 @@
-//! What was measured, and of what: the one place where measured data enter a calibration.
+//! Measured modes and responses of a calibration: the one place where measured data enter it.
 
 use super::super::prepared::Prepared;
 use super::super::sensors::Sensors;
@@ -24,7 +24,7 @@ pub struct Measurements {
 /// Measured modes of one kind.
 #[derive(Debug, Clone)]
 pub struct Facts {
-    /// What they are modes of.
+    /// Structure or state whose modes they are.
     pub of: Of,
     /// The modes.
     pub modes: Vec<Fact>,
@@ -43,7 +43,7 @@ pub struct Fact {
     pub shape: Option<Arc<[f64]>>,
 }
 
-/// What has a frequency.
+/// Kind of computed modes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Of {
     /// Real modes of this name.
@@ -53,7 +53,7 @@ pub enum Of {
 }
 
 impl Of {
-    /// What the case calls it.
+    /// Name in the case.
     pub fn name(&self) -> &str {
         match self {
             Of::RealModes(name) => name,
@@ -62,10 +62,10 @@ impl Of {
     }
 }
 
-/// What a case is calibrated against, its shapes and responses placed on the mesh.
+/// Measured data of a calibration, shapes and responses placed on the mesh.
 ///
 /// # Errors
-/// Every file of measured data that cannot be read, or has nothing of what it is asked for; points of shapes that lie off the
+/// Every file of measured data that cannot be read, or has none of the data requested; points of shapes that lie off the
 /// mesh, responses of no place of the case.
 pub fn measurements(prepared: &Prepared) -> Result<Measurements> {
     let case = prepared.case;

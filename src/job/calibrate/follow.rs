@@ -11,7 +11,7 @@ const HALVINGS: usize = 3;
 /// The modes of each level; none where it was not found.
 pub type Picks = Vec<Vec<usize>>;
 
-/// Gives each level as many of the `modes` as it has, the greatest MAC first, and tells whether that is sure.
+/// Gives each level as many of the `modes` as it has, the greatest MAC first, and returns whether that is certain.
 pub fn most_alike(levels: &Picks, modes: Range<usize>, mac: impl Fn(usize, usize) -> f64) -> (Picks, bool) {
     let wanted = (0..levels.len()).filter(|l| !levels[*l].is_empty());
     let pair = |l: usize| modes.clone().map(move |k| (l, k));

@@ -32,7 +32,7 @@ use crate::results::{
     CalibratedDatum, CalibratedNumber, CalibratedResponse, CalibratedShape, CalibrationResult,
 };
 
-/// A calibration whose faults are told.
+/// A calibration whose faults have been reported.
 pub struct Calibrate<'a> {
     prepared: &'a Prepared<'a>,
     wanted: &'a CalibrateAnalysis,

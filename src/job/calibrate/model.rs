@@ -33,7 +33,7 @@ pub struct Set {
     start: Start,
     /// The modes of each level at the start.
     pub levels: Picks,
-    /// What each level is called.
+    /// Name of each level.
     pub names: Vec<String>,
     /// Whether a measured shape is at all like each level.
     pub like: Vec<bool>,
@@ -117,7 +117,7 @@ impl<'a> CaseModel<'a> {
         self.sets.iter().flat_map(|set| set.levels.iter().map(Vec::len)).collect()
     }
 
-    /// What every level is called.
+    /// Name of each level.
     pub fn level_names(&self) -> Vec<String> {
         self.sets.iter().flat_map(|set| set.names.iter().cloned()).collect()
     }
@@ -156,7 +156,7 @@ impl<'a> CaseModel<'a> {
         Path { solve: &solve, follow: &follow }.along((&self.start, start, levels), to)
     }
 
-    /// What is looked at of a case: every set of real modes, then every frequency response.
+    /// Structures to solve for a case: every set of real modes, then every frequency response.
     fn views<'c>(&'c self, prepared: &Prepared<'c>, responses: &[Measured]) -> Result<Vec<View<'c>>> {
         let real = self.sets.iter().filter_map(|set| match &set.start {
             Start::Real { name, sensors, .. } => Some((name, sensors)),
@@ -282,7 +282,7 @@ impl Model for CaseModel<'_> {
     }
 }
 
-/// What is looked at of a case.
+/// Structure to solve for a case.
 enum View<'c> {
     /// The structure of `[modes.NAME]`, and where its shapes were measured.
     Part(&'c String, Option<Sensors>),
@@ -324,7 +324,7 @@ fn like(solved: &Solved, level: &[usize], facts: &Facts) -> bool {
     facts.modes.iter().filter_map(|mode| mode.shape.as_ref()).any(|shape| span.mac(shape) >= LIKE)
 }
 
-/// What the test sees of those levels that a measured shape is like.
+/// Motion at the sensors of those levels that resemble a measured shape, with its derivatives.
 ///
 /// # Errors
 /// Slopes of shapes that do not converge.
@@ -343,7 +343,7 @@ fn with(case: &Case, c: &Coordinate, value: f64) -> Result<Case> {
     case.with_parameters(c.parameter.path.iter().map(|path| (path, value)))
 }
 
-/// The scalars that a number stands for, those of them that modes depend on.
+/// The scalars that a number sets, those of them that modes depend on.
 pub fn scalars(case: &Case, c: &Coordinate) -> Result<Vec<Scalar>> {
     let all = c.parameter.path.iter().map(|path| scalar(case, path)).collect::<Result<Vec<_>>>()?;
     Ok(all.into_iter().flatten().collect())

@@ -1,4 +1,4 @@
-//! ∂K/∂p, ∂M/∂p and how what a test measures follows p, between systems that are assembled anew at neighbouring values.
+//! ∂K/∂p, ∂M/∂p and the derivative of the sensor motions by p, between systems reassembled at neighbouring values.
 
 use super::super::scalars::no_derivative;
 use crate::error::{Error, Result};
@@ -55,7 +55,7 @@ impl Change {
 /// Steps ten and a hundred times smaller are tried where the larger ones change the mesh.
 ///
 /// # Errors
-/// What `build` returns, and matrices that do not follow the value smoothly.
+/// Those of `build`, and matrices that do not follow the value smoothly.
 pub fn derivatives(value: f64, step: f64, build: &Build) -> Result<Vec<Change>> {
     let mut tried = differences(value, step, build);
     for smaller in [0.1, 0.01] {

@@ -5,7 +5,7 @@ use super::super::prepared::Prepared;
 use super::super::sensors::Sensors;
 use super::follow::{Picks, most_alike};
 use super::neighbours::Change;
-use super::shapes::{Eyes, Seen};
+use super::shapes::{Observation, Seen};
 use crate::calibration::Level;
 use crate::error::Result;
 use crate::linalg::multivector::gram;
@@ -15,23 +15,23 @@ use crate::structure::Assembled;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// What a mode is called: the part that moves most, and its disc name.
+/// Name of a mode: the part that moves most, and its disc name.
 type Name = (Option<String>, Option<DiscModeName>);
 
 /// The real modes of one analysis of the case at some values of the parameters.
 pub struct Solved {
     assembled: Arc<Assembled>,
     modes: RealModes,
-    /// Measured frequencies stand beside computed ones times this.
+    /// Factor on computed frequencies before they are compared with measured ones.
     pub scale: f64,
-    /// Name and label of every mode; none where shapes tell which is which.
+    /// Name and label of every mode; none where shapes identify the modes.
     names: Option<(Vec<Name>, Vec<String>)>,
-    eyes: Option<Eyes>,
+    observation: Option<Observation>,
 }
 
 impl Solved {
     /// Computes all modes of the analysis `name` below a frequency, without their names where they have the degrees of
-    /// freedom of `like`; the `sensors`, if there are any, will look at them.
+    /// freedom of `like`; the `sensors`, if there are any, will measure them.
     pub fn new(
         prepared: &Prepared,
         (name, below_hz): (&str, f64),
@@ -41,9 +41,11 @@ impl Solved {
         let assembled = part_assembled(prepared, name)?;
         let (modes, factor) = modal::compute(&assembled.structure, ModesWanted::BelowHz(below_hz), &())?;
         let scale = prepared.case.modes[name].frequency_scale;
-        let eyes = sensors
-            .map(|sensors| Eyes { forms: sensors.forms(&prepared.model.nodes, &assembled.dofs), factor });
-        let mut solved = Solved { assembled, modes, scale, names: None, eyes };
+        let observation = sensors.map(|sensors| Observation {
+            forms: sensors.forms(&prepared.model.nodes, &assembled.dofs),
+            factor,
+        });
+        let mut solved = Solved { assembled, modes, scale, names: None, observation };
         if like.is_none_or(|like| like.n_dofs() != solved.n_dofs()) {
             let identities = identify(prepared, &solved.modes, &solved.assembled);
             let labels = labels(&identities, &solved.modes);
@@ -54,8 +56,8 @@ impl Solved {
 
     /// The modes as the test sees them, if it measured shapes.
     pub fn seen(&self) -> Option<Seen<'_>> {
-        let eyes = self.eyes.as_ref()?;
-        Some(Seen { structure: &self.assembled.structure, modes: &self.modes, eyes })
+        let observation = self.observation.as_ref()?;
+        Some(Seen { structure: &self.assembled.structure, modes: &self.modes, observation })
     }
 
     fn n_dofs(&self) -> usize {
@@ -74,7 +76,7 @@ impl Solved {
         levels(&hz, &names).into_iter().map(|level| level.map(|k| rest.start + k).collect()).collect()
     }
 
-    /// What each of `levels` is called.
+    /// Name of each of `levels`.
     pub fn labels(&self, levels: &Picks) -> Vec<String> {
         let label = |k: usize| match &self.names {
             Some((_, labels)) => labels[k].clone(),
@@ -120,7 +122,7 @@ impl Solved {
     }
 
     /// The frequency of a level, √(mean ω²)/2π times the scale of the analysis, and its slopes by the `changes` of K and M
-    /// with each unknown; `None` stands for an unknown that K and M do not depend on.
+    /// with each unknown; `None` for an unknown that K and M do not depend on.
     ///
     /// On the modes Φ of the level, ΦᵀMΦ = 1, the matrix Φᵀ(∂K − ω²∂M)Φ has the derivatives of ω² of its modes as its
     /// eigenvalues (Fox and Kapoor, AIAA J. 6 (1968) 2426; for double modes Ojalvo, AIAA J. 26 (1988) 361). Their mean is what

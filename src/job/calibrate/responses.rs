@@ -28,7 +28,7 @@ const LINES: usize = 200;
 /// Below this share of its median a response counts as if it were no smaller: what is left at an antiresonance.
 const FLOOR: f64 = 0.05;
 
-/// What a test measured of one `[frf.NAME]`.
+/// Responses of one `[frf.NAME]` measured in a test.
 #[derive(Debug, Clone)]
 pub struct Measured {
     /// The name of `[measured.NAME]`.
@@ -42,13 +42,13 @@ pub struct Measured {
 /// A measured response.
 #[derive(Debug, Clone)]
 pub struct Response {
-    /// What the test calls it.
+    /// Name in the test.
     pub name: String,
-    /// What the case calls its place.
+    /// Name of its place in the case.
     pub place: String,
     /// Index of the place.
     seen: usize,
-    /// What of the motion was measured.
+    /// Receptance, mobility or accelerance.
     pub quantity: Quantity,
     /// The lines that are compared \[Hz\].
     pub frequencies_hz: Vec<f64>,
@@ -66,7 +66,7 @@ fn level(size: f64, floor: f64) -> f64 {
 }
 
 impl Response {
-    /// What each line was measured at: ½ ln(|h|² + n²).
+    /// Measured level at each line, ½ ln(|h|² + n²).
     pub fn levels(&self) -> impl Iterator<Item = f64> + '_ {
         self.sizes.iter().map(|size| level(*size, self.floor))
     }

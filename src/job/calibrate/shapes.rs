@@ -18,8 +18,8 @@ const MOST_STEPS: usize = 200;
 /// Modes whose eigenvalues differ by less than this part are as good as one level.
 const SAME: f64 = 1e-9;
 
-/// What a test sees of a structure.
-pub struct Eyes {
+/// Sensors of a test on a structure.
+pub struct Observation {
     /// Each measured degree of freedom as a form of the structure's own.
     pub forms: Vec<SparseVector>,
     /// K − σM, factorised.
@@ -32,17 +32,17 @@ pub struct Seen<'a> {
     pub structure: &'a Structure,
     /// All modes up to a frequency.
     pub modes: &'a RealModes,
-    /// What sees them.
-    pub eyes: &'a Eyes,
+    /// Their sensors.
+    pub observation: &'a Observation,
 }
 
 impl Seen<'_> {
-    /// What the test sees of the modes `level`: one column each.
+    /// Shapes of the modes `level` at the sensors, n_sensors × n_modes.
     pub fn motions(&self, level: &[usize]) -> DMatrix<f64> {
-        self.look(&self.eyes.forms, level.iter().map(|k| self.modes.shapes.col_as_slice(*k)))
+        self.observe(&self.observation.forms, level.iter().map(|k| self.modes.shapes.col_as_slice(*k)))
     }
 
-    fn look<'b>(
+    fn observe<'b>(
         &self,
         forms: &[SparseVector],
         columns: impl ExactSizeIterator<Item = &'b [f64]>,
@@ -61,9 +61,9 @@ impl Seen<'_> {
             levels.iter().flat_map(|level| level.iter().map(|k| (*k, &level[..]))).collect();
         let by = |change: &Change| {
             let turned = self.turned(&all, change)?;
-            let moved = self.look(&self.eyes.forms, (0..all.len()).map(|c| turned.col_as_slice(c)));
+            let moved = self.observe(&self.observation.forms, (0..all.len()).map(|c| turned.col_as_slice(c)));
             let shapes = all.iter().map(|(k, _)| self.modes.shapes.col_as_slice(*k));
-            Ok(moved + self.look(&change.seen, shapes))
+            Ok(moved + self.observe(&change.seen, shapes))
         };
         let slopes: Vec<Option<DMatrix<f64>>> =
             changes.iter().map(|change| change.as_ref().map(by).transpose()).collect::<Result<_>>()?;
@@ -73,7 +73,7 @@ impl Seen<'_> {
             first += count;
             let own = |slope: &Option<DMatrix<f64>>| match slope {
                 Some(slope) => slope.columns(from, count).into_owned(),
-                None => DMatrix::zeros(self.eyes.forms.len(), count),
+                None => DMatrix::zeros(self.observation.forms.len(), count),
             };
             Span { motions: self.motions(level), slopes: slopes.iter().map(own).collect() }
         };
@@ -93,7 +93,7 @@ impl Seen<'_> {
     /// # Errors
     /// An iteration that does not converge.
     fn turned(&self, wanted: &[(usize, &[usize])], change: &Change) -> Result<Mat<f64>> {
-        let Seen { structure, modes, eyes } = self;
+        let Seen { structure, modes, observation } = self;
         let (n, shapes) = (modes.shapes.nrows(), modes.shapes.as_ref());
         let lambda: Vec<f64> = wanted.iter().map(|(k, _)| modes.eigenvalues[*k]).collect();
         let own = Mat::from_fn(n, wanted.len(), |i, c| modes.shapes[(i, wanted[c].0)]);
@@ -118,7 +118,7 @@ impl Seen<'_> {
         };
         let precondition = |residual: &Mat<f64>| {
             let mut step = residual.clone();
-            eyes.factor.factor.solve_in_place(step.as_mut());
+            observation.factor.factor.solve_in_place(step.as_mut());
             let share = gram(inertia.as_ref(), step.as_ref());
             combine(step.as_mut(), Accum::Add, shapes, share.as_ref(), -1.0);
             step

@@ -48,7 +48,7 @@ impl Sliding {
         (0..self.modes().len()).filter(|k| self.modes()[*k].unstable()).map(|k| vec![k]).collect()
     }
 
-    /// What each of `levels` is called.
+    /// Name of each of `levels`.
     pub fn names(&self, levels: &Picks) -> Vec<String> {
         let name =
             |level: &Vec<usize>| format!("unstable, {}", first_part(&self.complex.participation[level[0]]));
@@ -61,7 +61,7 @@ impl Sliding {
     }
 
     /// `levels` of `self` among the modes of `other`, and whether that is sure: by shape, less what λ moved. Where two modes
-    /// have merged their shapes are one, and λ tells which of them grows. With another mesh λ alone decides.
+    /// have merged their shapes are one, and λ decides which of them grows. With another mesh λ alone decides.
     pub fn follow(&self, levels: &Picks, other: &Sliding) -> (Picks, bool) {
         let same_size = self.system.n_dofs() == other.system.n_dofs();
         let mac = |l: usize, k: usize| {

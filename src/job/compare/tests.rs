@@ -20,7 +20,7 @@ fn transform(unit: &str) -> String {
     format!("transform = {{ origin = {ORIGIN:?}, x_axis = {X:?}, y_axis = {Y:?}, unit = \"{unit}\" }}\n")
 }
 
-/// What is `x` of the mesh in the test.
+/// `x` of the mesh in the frame of the test.
 fn seen(x: [f64; 3], point: bool) -> [f64; 3] {
     let frame = Frame::new(ORIGIN, X, Y);
     let origin = if point { frame.point([0.0; 3]) } else { [0.0; 3] };
@@ -47,9 +47,9 @@ fn a_test_made_of_the_models_own_modes_is_found_again() {
     let mut motions = Vec::new();
     for k in 0..named.modes.len() {
         // Of double modes one that lies between them, as a test may find it.
-        let twin = if k % 2 == 0 { k } else { k - 1 };
-        let double = named.names[k] == named.names[twin];
-        let (shape, second) = (named.shape(k), named.shape(twin));
+        let partner = if k % 2 == 0 { k } else { k - 1 };
+        let double = named.names[k] == named.names[partner];
+        let (shape, second) = (named.shape(k), named.shape(partner));
         let largest = shape.iter().map(|u| u[0].abs()).fold(0.0, f64::max);
         let motion: Vec<(u64, [f64; 3])> = labels
             .iter()
@@ -98,7 +98,7 @@ fn a_test_made_of_the_models_own_modes_is_found_again() {
     // Shapes of other levels are far from alike.
     let alike = &comparison.mac[0];
     assert!(alike[1..].iter().all(|like| *like < 0.2), "{alike:?}");
-    // In metres the points lie off the mesh: each is told, up to ten, and how many more.
+    // In metres the points lie off the mesh: each is reported, up to ten, and how many more.
     let far = case(&measured.replace("unit = \"mm\"", "unit = \"m\""), dir.path());
     let far_prepared = Prepared::new(&far).unwrap();
     let said = Tests::of_modes(&far_prepared).err().unwrap().to_string();

@@ -6,7 +6,7 @@ use crate::error::{Fault, Faults, Result};
 use crate::sound::{Acoustics, Air, Surface};
 use crate::structure::ShellPart;
 
-/// What listens to a case; asked for before anything is computed or written.
+/// Plates, microphones and air of a case, checked before anything is computed or written.
 ///
 /// # Errors
 /// Plates that are not flat, none at all, a microphone on a plate or in the plane of every one.

@@ -1,4 +1,4 @@
-//! Which plates of a case are heard, and from where; asked for before anything is computed.
+//! The plates of a case that radiate, and its microphones, checked before anything is computed.
 
 mod acoustics;
 #[cfg(test)]

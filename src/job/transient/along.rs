@@ -7,7 +7,7 @@ use crate::linalg::c64;
 use crate::reduction::Reduced;
 use crate::stability::{ComplexMode, ModalFilter, modal_filter, near_mode};
 
-/// What cannot go on without a mode.
+/// Analysis named in the error when a mode is missing.
 const PLACE: &str = "the disturbance of the motion in time";
 
 /// A complex mode, and what measures its amplitude.

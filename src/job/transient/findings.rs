@@ -17,7 +17,7 @@ const SMALL: f64 = 0.01;
 /// Values of a channel that are in memory at once: what is longer is cut into shorter segments, or cut off.
 const AT_ONCE: usize = 1 << 20;
 
-/// What is found in a record.
+/// Spectra and growth of a record.
 pub(super) struct Findings {
     /// Spectra of the channels to show.
     pub(super) spectra: Vec<SpectrumOf>,

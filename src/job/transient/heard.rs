@@ -6,7 +6,7 @@ use crate::results::{Sound, modal_channel};
 use crate::sound::{BLOCK, Listener};
 
 impl HistoryWriter<'_, '_> {
-    /// What is heard of the record of `rows` rows.
+    /// Sound of the record of `rows` rows.
     pub(super) fn heard(&self, mut listener: Listener, rows: usize) -> Result<Sound> {
         let modes = self.recorder.modal.as_ref().map_or(0, |modal| modal.rows.len());
         for first in (0..rows).step_by(BLOCK) {

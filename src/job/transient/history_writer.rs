@@ -10,10 +10,10 @@ use std::time::{Duration, Instant};
 
 /// Rows of a piece, at most.
 const ROWS: usize = 4096;
-/// A piece is handed on at the latest after this time.
+/// A piece is written at the latest after this time.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// What the recorder makes, on its way to its sink. Each piece comes with a checkpoint; memory does not grow with the
+/// Rows of the recorder, written to its sink. Each piece comes with a checkpoint; memory does not grow with the
 /// run. How the rows are cut into pieces has no influence on them.
 pub(super) struct HistoryWriter<'a, 'k> {
     pub(super) recorder: Recorder<'a>,
@@ -33,7 +33,7 @@ impl<'a, 'k> HistoryWriter<'a, 'k> {
         HistoryWriter { recorder, sink, snapshots, first: 0, last_piece: Instant::now() }
     }
 
-    /// Begins with the first row or, where an earlier run stopped, goes on from there.
+    /// Begins with the first row or, where an earlier run stopped, resumes from there.
     ///
     /// # Errors
     /// Input: what the earlier run left is not of this model.

@@ -32,7 +32,7 @@ use crate::reduction::{Reduced, reduce};
 use crate::results::TransientResult;
 use crate::sound::Listener;
 use crate::system::System;
-use crate::transient::{Marched, Method, Model, Plan, Profile, Scheme, State, go_on};
+use crate::transient::{Marched, Method, Model, Plan, Profile, Scheme, State, resume};
 use along::Along;
 use history_writer::HistoryWriter;
 use modal::ModalMotion;
@@ -168,7 +168,7 @@ fn march_on(
     marched: &mut Marched,
     observer: &dyn Observer,
 ) -> Result<()> {
-    let reached = go_on(model, marched, plan, observer, &mut |marched| writer.take(marched));
+    let reached = resume(model, marched, plan, observer, &mut |marched| writer.take(marched));
     let kept = match &reached {
         // A field of the last row may be missing, and the next attempt to write would not be the first.
         Err(Error::Io { .. }) => Ok(()),

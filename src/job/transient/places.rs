@@ -1,4 +1,4 @@
-//! What acts on the structure in time, and where its motion is recorded.
+//! Loads on the structure in time, and the places where its motion is recorded.
 
 use super::step::check_step;
 use crate::case::{FrictionCurve, TransientAnalysis};
@@ -16,7 +16,7 @@ use crate::sound::Acoustics;
 use crate::system::ContactPair;
 use crate::transient::{self, Pulse, Push, Track};
 
-/// What acts on the structure in time, and where its motion is recorded.
+/// Loads on the structure in time, and the places where its motion is recorded.
 #[derive(Debug, Clone)]
 pub struct Places {
     pub(super) pushes: Vec<Push>,
@@ -28,12 +28,12 @@ pub struct Places {
     pub(super) tracks: Vec<Option<Track>>,
     /// The pairs without friction, as they stand still.
     pub(super) still: Vec<ContactPair>,
-    /// What listens, if anything does.
+    /// Plates and microphones, if sound is requested.
     pub(super) acoustics: Option<Acoustics>,
 }
 
 impl Places {
-    /// What a run to a folder is certain to record, sound and what an earlier run recorded left out.
+    /// Smallest record of a run to a folder, without sound and without the rows of an earlier run.
     pub(in crate::job) fn least_record(
         &self,
         prepared: &Prepared<'_>,
@@ -68,7 +68,7 @@ pub(super) fn steps(time: f64, step: f64) -> usize {
     (time / step).round().max(1.0) as usize
 }
 
-/// The places of a run in time; asked for before anything is computed or written.
+/// The places of a run in time; checked before anything is computed or written.
 ///
 /// # Errors
 /// Every name that the mesh does not have, and damping that time does not know.

@@ -1,4 +1,4 @@
-//! What is recorded of every step.
+//! Recorder of the channels of every step.
 
 use super::along::Along;
 use super::channels::{Channels, Sample, Shown};
@@ -31,11 +31,11 @@ pub(super) struct Recorder<'a> {
     pub(super) along: Option<Along>,
     /// The rows at hand, by channel.
     pub(super) values: Vec<Vec<f64>>,
-    /// What happened at the contact points during these rows.
+    /// Events at the contact points during these rows.
     pub(super) events: Vec<Event>,
     /// Whether each contact point has touched.
     pub(super) touched: Vec<bool>,
-    /// What the sound is made of, if it is asked for.
+    /// Modal accelerations from which sound is computed, if it is requested.
     pub(super) modal: Option<ModalMotion>,
     /// How often each kind of event happened since the start.
     pub(super) happened: [usize; EventKind::ALL.len()],
@@ -49,7 +49,7 @@ pub(super) struct Recorder<'a> {
 }
 
 impl<'a> Recorder<'a> {
-    /// A recorder of a run of `model` from its steady state; without a probe it looks at the point that carries most.
+    /// A recorder of a run of `model` from its steady state; without a probe it records the point that carries most.
     pub(super) fn new(
         system: &System,
         steady: &'a SteadySliding,
@@ -181,7 +181,7 @@ impl<'a> Recorder<'a> {
     }
 }
 
-/// What a contact point of a pair does.
+/// State of a contact point of a pair.
 fn does(model: &Model<'_>, state: &State, pair: usize, point: usize) -> TouchState {
     if state.contact_forces(point)[0] == 0.0 {
         TouchState::Open

@@ -17,12 +17,12 @@ use std::f64::consts::TAU;
 
 /// Below this part of |λ| a growth rate is round-off.
 const NO_GROWTH: f64 = 1e-9;
-/// What spans less than this part of its size in steady sliding does not move.
+/// Range below which a channel does not move, as a part of its size in steady sliding.
 const AT_REST: f64 = 1e-10;
 /// The end of the name of a probe's channel.
 const DISPLACEMENT: &str = "_displacement";
 
-/// What the full model does in the first steps of a reduced run, as many of them as are asked for.
+/// Motion of the full model in the first steps of a reduced run, as many of them as are requested.
 ///
 /// # Errors
 /// A step without a solution.

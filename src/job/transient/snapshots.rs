@@ -18,7 +18,7 @@ pub(super) struct Snapshots<'a> {
 }
 
 impl<'a> Snapshots<'a> {
-    /// What will be written of a run of so many steps of which so many were done, the start included.
+    /// Fields to be written of a run of so many steps of which so many were done, the start included.
     pub(super) fn fields(&self, steps: usize, done: usize, step: f64) -> Fields<'a> {
         let every = self.every as f64 * step;
         Fields {

@@ -11,7 +11,7 @@ use crate::transient::Loading;
 
 /// Equilibria between the least and the greatest load; the approach is linear between two of them.
 const EQUILIBRIA: usize = 33;
-/// The part of a load that stands for none: a pair that nothing presses has no equilibrium.
+/// The part of a load that counts as none: a pair that nothing presses has no equilibrium.
 const NO_LOAD: f64 = 1e-6;
 
 /// How a run begins.

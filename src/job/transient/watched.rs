@@ -1,4 +1,4 @@
-//! What the pictures of a run show, read back from its record in parts.
+//! Data of the pictures of a run, read back from its record in parts.
 
 use super::history_writer::HistoryWriter;
 use crate::error::Result;
@@ -73,7 +73,7 @@ impl HistoryWriter<'_, '_> {
         Ok(Orbit { periods: [wanted as f64 * step * hz, hz], curves })
     }
 
-    /// What the contact points that ever touched did.
+    /// States over time of the contact points that ever touched.
     fn contact(&self, rows: usize, step: f64) -> Result<ContactHistory> {
         let points = self.recorder.touched.iter().filter(|touched| **touched).count();
         let mut watch = ContactWatch::new(rows, step, points);

@@ -12,7 +12,7 @@ pub(super) struct Line<'a> {
 
 /// One dataset.
 pub(super) struct Dataset<'a> {
-    /// What kind it is.
+    /// Number of the type of dataset.
     pub kind: u32,
     /// Its lines of text.
     pub lines: Vec<Line<'a>>,

@@ -26,7 +26,7 @@ const AXIS: [usize; 8] = [10, 5, 5, 5, 1, 20, 1, 20];
 /// Reads dataset 58; what it is, in words, where it is no frequency response of motion over force.
 ///
 /// A unit in the label of an axis says what its numbers are; else they are in `units`, or SI where there are none. Whether
-/// the file states the units is told beside the response.
+/// the file states the units is returned with the response.
 pub(super) fn read(
     dataset: &Dataset<'_>,
     units: Option<Units>,
@@ -79,7 +79,7 @@ pub(super) fn read(
     Ok(Ok((FunctionRecord { name, quantity, excitation, response, frequencies_hz, values }, stated)))
 }
 
-/// What a function is, and of which points, with codes of directions.
+/// Type of a function and its points, with codes of directions.
 struct Who {
     kind: i64,
     response: (u64, i64),
@@ -117,7 +117,7 @@ fn dof((node, code): (u64, i64)) -> String {
     }
 }
 
-/// What is along an axis, and its unit.
+/// Quantity along an axis, and its unit.
 struct Axis {
     kind: i64,
     unit: String,
@@ -203,7 +203,7 @@ fn binary_numbers(dataset: &Dataset<'_>, binary: &Binary<'_>, form: &Form) -> Re
 pub struct Function<'a> {
     /// Two lines of text: what it is, and how it came about.
     pub title: [&'a str; 2],
-    /// What of the motion.
+    /// Receptance, mobility or accelerance.
     pub quantity: Quantity,
     /// Label of the point that the force acts on, and the code of its direction.
     pub excitation: (u64, i64),

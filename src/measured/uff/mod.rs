@@ -67,11 +67,11 @@ pub fn read(file: &str, bytes: &[u8], unit: f64) -> Result<Records> {
             kind => skip(format!("dataset {kind}")),
         }
     }
-    let told = |(what, count): (&String, &usize)| match count {
+    let counted = |(what, count): (&String, &usize)| match count {
         1 => format!("{file}: skipped {what}"),
         count => format!("{file}: skipped {count} times {what}"),
     };
-    records.warnings.extend(skipped.iter().map(told));
+    records.warnings.extend(skipped.iter().map(counted));
     if unstated > 0 {
         let words = "frequency responses do not state their units; they are taken as SI";
         records.warnings.push(format!("{file}: {unstated} {words}"));

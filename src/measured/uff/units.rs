@@ -3,7 +3,7 @@
 use super::dataset::Dataset;
 use crate::error::Result;
 
-/// What one unit of the file is in SI.
+/// Factors from the units of the file to SI.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Units {
     /// \[m\].
@@ -33,7 +33,7 @@ pub(super) fn read(dataset: &Dataset<'_>) -> Result<Units> {
 /// Dataset 164 of a file in SI.
 pub(super) const SI: &str = "    -1\n   164\n         1SI: Meter (newton)           2\n   1.0000000000000000D+00   1.0000000000000000D+00   1.0000000000000000D+00\n   2.7315000000000000D+02\n    -1\n";
 
-/// What the unit that an axis is labelled with is in SI.
+/// Factor to SI of the unit that an axis is labelled with.
 pub(super) fn labelled(label: &str) -> Option<f64> {
     const KNOWN: [(&str, f64); 17] = [
         ("m", 1.0),

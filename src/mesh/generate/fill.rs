@@ -20,8 +20,8 @@ pub(super) struct Patch {
 
 /// Circumradius over wanted edge at which a triangle gets a node: an equilateral one has 0.577.
 const REFINE: f64 = 0.75;
-/// Rounds of smoothing; the worst angle hardly changes after about 30.
-const SMOOTHING_ROUNDS: usize = 40;
+/// Passes of smoothing; the worst angle hardly changes after about 30.
+const SMOOTHING_PASSES: usize = 40;
 
 type Delaunay = DelaunayTriangulation<Point2<f64>>;
 
@@ -30,7 +30,7 @@ type Delaunay = DelaunayTriangulation<Point2<f64>>;
 pub(super) fn fill(boundary: &[[f64; 2]], size: impl Fn([f64; 2]) -> f64) -> Result<Patch> {
     let mut points = refine(boundary, &size)?;
     let mut triangles = triangulate(&points, boundary)?;
-    for _ in 0..SMOOTHING_ROUNDS {
+    for _ in 0..SMOOTHING_PASSES {
         smooth(&mut points, &triangles, boundary.len(), &size);
         triangles = triangulate(&points, boundary)?;
     }

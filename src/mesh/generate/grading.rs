@@ -40,7 +40,7 @@ impl Grading {
         (self.fine + self.growth * (d - self.fine_radius).max(0.0)).min(self.coarse)
     }
 
-    /// What is wrong with it.
+    /// Faults of the grading.
     pub(super) fn faults(&self, part: &str) -> Faults {
         let mut faults = require_positive(part, &[("fine", self.fine), ("coarse", self.coarse)]);
         if !(self.fine_radius.is_finite() && self.fine_radius >= 0.0) {

@@ -6,7 +6,7 @@ use crate::error::{Fault, Result};
 use crate::mesh::{Element, Mesh};
 use std::f64::consts::TAU;
 
-/// What a structured plate is made of.
+/// Shape of the faces of a structured plate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Faces {
     /// Two triangles a cell, diagonals alternating.

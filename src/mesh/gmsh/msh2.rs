@@ -105,7 +105,7 @@ fn read_element(file: &mut Reader<'_>, raw: &mut RawMesh, tag: u64, kind: i64, n
         }
     }
     let nodes = (0..n_nodes).map(|_| self::tag(file, "node number")).collect::<Result<Vec<u64>>>()?;
-    // A negative group stands for the reversed side of a surface.
+    // A negative group denotes the reversed side of a surface.
     let groups = if group == 0 { vec![] } else { vec![group.saturating_abs()] };
     raw.elements.push(RawElement { tag, kind, nodes, groups, offset });
     Ok(())

@@ -2,7 +2,7 @@
 //!
 //! mshio keeps the tags of nodes only where the header's smallest and largest tag leave gaps, and otherwise takes
 //! them to be in ascending order, which the format does not promise. So the largest tag is raised for it. What it does not
-//! look at, lines, counts and entities, `layout` has checked before.
+//! inspect, lines, counts and entities, `layout` has checked before.
 
 use super::bytes::{Encoding, Reader};
 use super::layout;
@@ -55,7 +55,7 @@ pub(super) fn parse(bytes: &[u8], body: usize, encoding: Encoding, place: &str) 
         ));
     }
 
-    // A negative group stands for the reversed side of a surface.
+    // A negative group denotes the reversed side of a surface.
     let mut groups: HashMap<(i32, i32), Vec<i64>> = HashMap::new();
     let mut note = |dimension: i32, tag: i32, physical: Vec<i32>| {
         groups.insert((dimension, tag), physical.into_iter().map(|p| i64::from(p).abs()).collect());
@@ -110,7 +110,7 @@ fn with_gaps(bytes: &[u8], encoding: Encoding) -> Vec<u8> {
     file
 }
 
-/// What mshio could not read.
+/// Explanation of an error of mshio.
 fn explain(error: &mshio::MshParserError<&[u8]>) -> String {
     let mut parts: Vec<String> =
         error.filter_msh_errors().filter_map(|(_, kind)| kind.context().map(String::from)).collect();

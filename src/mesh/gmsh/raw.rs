@@ -1,4 +1,4 @@
-//! What a file lists, before groups have names and nodes have places.
+//! Nodes and elements as listed in a file, before groups have names and nodes have places.
 
 use super::bytes::Encoding;
 use super::names::Names;

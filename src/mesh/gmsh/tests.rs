@@ -20,7 +20,7 @@ const BAR_4: &str = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n1 
                      $Nodes\n1 2 1 2\n1 1 0 2\n2\n1\n100 0 0\n0 0 0\n$EndNodes\n\
                      $Elements\n1 1 1 1\n1 1 1 1\n1 1 2\n$EndElements\n";
 
-/// What is said about bytes that are no sound mesh.
+/// Message about bytes that are no valid mesh.
 fn fault(bytes: impl AsRef<[u8]>) -> String {
     let error = parse(bytes.as_ref(), "a.msh", 1.0).unwrap_err();
     assert_eq!(error.exit_code(), 2);

@@ -1,11 +1,11 @@
-//! What a calibration is worth, in sentences.
+//! Quality of a calibration, in sentences.
 
 use super::super::format::{fixed, given, power, significant};
 use crate::results::CalibrationResult;
 
-/// A misfit less probable than this is told.
+/// A misfit less probable than this is reported.
 const IMPROBABLE: f64 = 0.05;
-/// Numbers that are correlated more than this are told.
+/// Correlations above this are reported.
 const TIED: f64 = 0.95;
 
 /// Facts against numbers, what the data determine, the assignments, chance, trials.
@@ -147,7 +147,7 @@ fn tied(result: &CalibrationResult) -> Vec<String> {
     tied.map(|(j, i)| {
         let (a, b) = (&result.numbers[j].name, &result.numbers[i].name);
         format!(
-            "`{a}` and `{b}` are hard to tell apart: their correlation is {}.",
+            "`{a}` and `{b}` are hard to distinguish: their correlation is {}.",
             fixed(correlations[i][j], 3)
         )
     })

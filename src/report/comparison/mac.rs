@@ -8,12 +8,12 @@ use crate::report::section::Picture;
 use crate::results::{MeasuredComparison, NamedModes, file_name};
 
 const CELL: [f64; 2] = [46.0, 30.0];
-/// Room for the labels of the rows, and of the columns.
+/// Space for the labels of the rows, and of the columns.
 const MARGIN: [f64; 2] = [130.0, 112.0];
 /// Columns beyond the highest paired level are of no interest; and there are at most so many.
 const BEYOND: usize = 2;
 const MOST: usize = 40;
-/// Room for the note below.
+/// Space for the note below.
 const NARROWEST: f64 = 500.0;
 
 pub(super) fn picture(comparison: &MeasuredComparison, set: &NamedModes) -> Option<Picture> {

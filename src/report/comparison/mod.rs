@@ -1,4 +1,4 @@
-//! What was measured beside what was computed: tables, the MAC of shapes, frequencies with their scatter, responses.
+//! Measured beside computed: tables, the MAC of shapes, frequencies with their scatter, responses.
 
 mod frequencies;
 mod level;

@@ -24,7 +24,7 @@ const LEGEND: u32 = 26;
 pub(in crate::report) struct Panel {
     /// \[Hz\].
     pub frequencies_hz: Vec<f64>,
-    /// What of the motion.
+    /// Receptance, mobility or accelerance.
     pub quantity: Quantity,
     /// The last is drawn on top.
     pub curves: Vec<Curve>,
@@ -32,7 +32,7 @@ pub(in crate::report) struct Panel {
 
 /// One of them.
 pub(in crate::report) struct Curve {
-    /// What stands in the legend.
+    /// Text of the legend.
     pub words: String,
     /// Its colour.
     pub hex: &'static str,

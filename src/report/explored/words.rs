@@ -1,10 +1,10 @@
-//! What a sweep or a map found, in words and tables.
+//! Results of a sweep or a map, in words and tables.
 
 use crate::report::format::{fixed, hertz, power, signed, significant};
 use crate::report::table::Table;
 use crate::results::{DampingVerdicts, MapResult, Method, SweepResult};
 use crate::stability::unstable;
-use crate::sweep::{CriticalKind, EncounterKind};
+use crate::sweep::{CriticalKind, InteractionKind};
 use std::f64::consts::TAU;
 
 fn with_unit(value: f64, unit: &str) -> String {
@@ -32,7 +32,7 @@ fn list(words: &[String]) -> String {
     }
 }
 
-/// What the sweep found.
+/// Results of the sweep.
 pub(in crate::report) fn sweep_words(result: &SweepResult) -> Vec<String> {
     let (sweep, unit) = (&result.sweep, result.unit.as_str());
     let grows = |b: &&crate::sweep::Branch| b.eigenvalues.iter().any(|z| unstable(*z));
@@ -78,14 +78,14 @@ pub(in crate::report) fn sweep_words(result: &SweepResult) -> Vec<String> {
             words.push(format!("{begin}: {}.", list(&those)));
         }
     }
-    let meet = |kind: EncounterKind| -> Vec<String> {
-        let those = sweep.encounters.iter().filter(|e| e.kind == kind);
+    let meet = |kind: InteractionKind| -> Vec<String> {
+        let those = sweep.interactions.iter().filter(|e| e.kind == kind);
         those
             .map(|e| format!("near {} Hz at {}", hertz(e.frequency_hz, 0), with_unit(e.value, unit)))
             .collect()
     };
     for (kind, begin) in
-        [(EncounterKind::Veering, "Frequencies veer"), (EncounterKind::Crossing, "They cross")]
+        [(InteractionKind::Veering, "Frequencies veer"), (InteractionKind::Crossing, "They cross")]
     {
         let those = meet(kind);
         if !those.is_empty() && those.len() <= 6 {
@@ -120,7 +120,7 @@ pub(in crate::report) fn critical_table(result: &SweepResult) -> Table {
     table
 }
 
-/// What the map found.
+/// Results of the map.
 pub(in crate::report) fn map_words(result: &MapResult) -> Vec<String> {
     let n = result.axes[0].points;
     let answered: Vec<_> =

@@ -6,7 +6,7 @@ use crate::results::{GrowthCompared, TransientResult};
 use crate::signal::LimitCycle;
 use std::f64::consts::TAU;
 
-/// A measured peak stands beside one that differs from it by less than this part.
+/// A measured peak is paired with one that differs from it by less than this part.
 const NEAR: f64 = 0.05;
 
 /// The figures of a run in time.
@@ -100,7 +100,7 @@ fn swing(run: &TransientResult, channel: usize, cycle: &LimitCycle) -> String {
     )
 }
 
-/// What the most loaded contact point did.
+/// States of the most loaded contact point.
 fn contact(run: &TransientResult) -> Vec<String> {
     let [open, stuck, backwards, _] = run.spent.map(|share| fixed(100.0 * share, 1));
     let mut notes = vec![format!(

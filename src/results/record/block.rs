@@ -42,7 +42,7 @@ pub enum Block {
         values: Vec<Vec<f64>>,
         /// The accelerations of each real mode.
         modal: Vec<Vec<f32>>,
-        /// What happened at the contact points.
+        /// Events at the contact points.
         events: Vec<Event>,
     },
     /// The motion of all nodes.

@@ -1,6 +1,6 @@
 //! Numbers and texts as bytes, little endian, and back. Reading never allocates more than the bytes at hand allow.
 
-/// What is wrong with bytes that were read.
+/// Value read from bytes, or their fault.
 pub(super) type Read<T> = std::result::Result<T, &'static str>;
 
 const SHORT: &str = "it ends too early";

@@ -1,8 +1,8 @@
-//! What an interrupted run is taken up from: two files of the results folder that only this program reads.
+//! Record from which an interrupted run is resumed: two files of the results folder that only this program reads.
 //!
-//! - `record.bin` grows while a map or a run in time goes on: every point and row as soon as it is computed ([`Block`]).
+//! - `record.bin` grows during a map or a run in time: every point and row as soon as it is computed ([`Block`]).
 //! - `checkpoint.bin` says how many bytes of it count, their SHA-256, what the case and its files were, and the state that
-//!   the march goes on from ([`Saved`]). It has a checksum of its own and is replaced in one step, after what it counts is on the
+//!   the run resumes from ([`Saved`]). It has a checksum of its own and is replaced in one step, after what it counts is on the
 //!   disk. A process that is killed and a machine that loses power at any moment leave one that fits; what `record.bin` has
 //!   beyond it does not count.
 //!
@@ -41,7 +41,7 @@ const PAUSE: u32 = 100;
 /// The points of a map, and the places that its reduced model was trained on.
 pub type EarlierMap = (Vec<MapPoint>, Vec<[f64; 2]>);
 
-/// What an earlier run has recorded.
+/// Record of an earlier run.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Earlier {
     /// The maps by name.
@@ -54,7 +54,7 @@ pub struct Earlier {
     pub events: usize,
     /// Motions of all nodes in them.
     pub fields: usize,
-    /// What it goes on from.
+    /// State from which the run in time resumes.
     pub march: Option<Checkpoint>,
     modes: usize,
 }
@@ -286,7 +286,7 @@ impl Record {
         self.append(&block::transient(recording.channels.iter().map(|c| c.name.as_str()), recording.modes))
     }
 
-    /// Adds rows of the run in time and what it goes on from after them.
+    /// Adds rows of the run in time and the state from which it resumes after them.
     ///
     /// # Errors
     /// As above.

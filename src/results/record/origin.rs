@@ -1,4 +1,4 @@
-//! What results were made of: the case and the files it reads.
+//! Origin of results: the case and the files it reads.
 
 use crate::error::{Error, Fault, Result};
 use sha2::{Digest, Sha256};
@@ -70,7 +70,7 @@ impl Origin {
     pub(super) fn check(&self, earlier: &Origin, dir: &Path) -> Result<()> {
         let refused = |found: String, expected: &str| {
             let fault = Fault::new(dir.display().to_string(), found, expected);
-            let help = "Run without --resume to begin anew (an interrupted run is kept aside), or name another folder with --out";
+            let help = "Run without --resume to start over (an interrupted run is kept aside), or name another folder with --out";
             Err(Error::input(fault.with_help(help)))
         };
         let changed = differences(&earlier.case, &self.case);

@@ -1,4 +1,4 @@
-//! `checkpoint.bin`: how far `record.bin` counts and what a run in time goes on from, replaced whole.
+//! `checkpoint.bin`: the valid length of `record.bin` and the state from which a run in time resumes, replaced whole.
 //!
 //! Sixteen bytes that name the format, the payload, and the SHA-256 of all before it (32 bytes).
 
@@ -23,7 +23,7 @@ pub struct Saved {
     pub length: u64,
     /// Their SHA-256.
     pub digest: [u8; 32],
-    /// What a run in time goes on from.
+    /// State from which a run in time resumes.
     pub march: Option<Checkpoint>,
 }
 
@@ -35,7 +35,7 @@ impl Saved {
         Saved { program_version, origin, ended: false, length: 0, digest, march: None }
     }
 
-    /// What `checkpoint.bin` holds.
+    /// Contents of `checkpoint.bin`.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = Bytes(FORMAT.to_vec());
         bytes.text(&self.program_version);

@@ -78,7 +78,7 @@ fn same(a: &Earlier, b: &Earlier) -> bool {
 }
 
 #[test]
-fn a_record_is_taken_up_and_goes_on() {
+fn a_record_is_resumed() {
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();
     assert!(resume(dir).unwrap().is_none());
@@ -121,7 +121,7 @@ fn a_record_is_taken_up_and_goes_on() {
 }
 
 #[test]
-fn what_is_on_the_disk_at_any_moment_is_taken_up() {
+fn files_at_any_moment_are_resumed() {
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();
     let mut record = Record::new(dir, origin());

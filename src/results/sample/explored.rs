@@ -3,7 +3,7 @@
 use crate::linalg::c64;
 use crate::results::{DampingRow, DampingVerdicts, MapResult, Method, SweepResult};
 use crate::sweep::{
-    Axis, Boundary, Branch, Checked, Critical, CriticalKind, Encounter, EncounterKind, MapPoint, Sweep,
+    Axis, Boundary, Branch, Checked, Critical, CriticalKind, Interaction, InteractionKind, MapPoint, Sweep,
 };
 use std::f64::consts::TAU;
 
@@ -37,12 +37,12 @@ pub(super) fn sweep() -> SweepResult {
             values: axis.values(),
             branches: vec![along(272.4, -1.0, 0), along(974.8, 120.0, 0), along(1484.2, -2.0, 1)],
             critical: vec![critical(0.3, CriticalKind::Growth), critical(0.31, CriticalKind::Merging)],
-            encounters: vec![Encounter {
+            interactions: vec![Interaction {
                 branches: [0, 2],
                 value: 0.2,
                 distance: 1e-3,
                 frequency_hz: 300.0,
-                kind: EncounterKind::Veering,
+                kind: InteractionKind::Veering,
             }],
         },
         verified: vec![Some(checked), None],

@@ -102,7 +102,7 @@ fn function(a: MatRef<'_, f64>, f: impl Fn(f64) -> f64) -> Result<Mat<f64>> {
 }
 
 /// Whether ½ b M + W c_s Wᵀ is positive semidefinite, M taken with the rounding of its entries ([`rounding`]). First a diagonal
-/// below W c_s Wᵀ stands for it, as that is in the pattern whose analysis is at hand.
+/// below W c_s Wᵀ replaces it, as that is in the pattern whose analysis is at hand.
 fn holds_against_friction(analysis: &Analysis<'_>, b: f64) -> bool {
     let (mass, stiffness) = (analysis.operator.mass, &*analysis.operator.stiffness);
     let definite = |matrix: &SparseMatrix| {

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use std::f64::consts::TAU;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// What a walk round a region found.
+/// Winding number of a region.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Winding {
     /// The zeros of Q_B inside.

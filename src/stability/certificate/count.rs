@@ -37,7 +37,7 @@ pub struct Certificate {
     /// Whether the count is a proof, up to rounding, where `margin` is above 1. Otherwise it is that of a phase followed from point to
     /// point at full order, `margin` half a turn by the largest step.
     pub proven: bool,
-    /// What came near to the contour or is not inside it though unstable.
+    /// Eigenvalues near the contour, or unstable outside it.
     pub close_calls: Vec<CloseCall>,
 }
 

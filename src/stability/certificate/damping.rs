@@ -8,7 +8,7 @@ use crate::stability::analysis::Analysis;
 use crate::stability::damper::{Damper, Part, modal_times};
 use faer::Mat;
 
-/// What of the damping of a structure is not proportional.
+/// Damping of a structure that is not proportional.
 pub(super) struct DampingParts {
     /// Whether the modal damping acts on real modes of the basis only.
     pub(super) modal_inside: bool,
@@ -39,7 +39,7 @@ impl DampingParts {
     }
 }
 
-/// Whether every column of M Ψ of the modal damping is M times a combination of the real modes, told from one
+/// Whether every column of M Ψ of the modal damping is M times a combination of the real modes, decided by one
 /// combination of the columns with fixed, unrelated weights.
 fn modal_inside(analysis: &Analysis<'_>) -> bool {
     let Some(modal) = &analysis.operator.damping.modal else { return true };

@@ -183,7 +183,7 @@ impl Determinant<'_> {
     }
 }
 
-/// What to say where the unstable modes are not counted.
+/// Warning that the unstable modes are not counted.
 pub(super) fn not_counted(modes: &mut ComplexModes, work: f64) {
     modes.warnings.push(format!(
         "the unstable modes were not counted: at full order that would take about {work:.0e} operations; `cea.certify = true` counts them all the same"

@@ -20,7 +20,7 @@
 //!
 //! Where the part that is not symmetric has no low rank the determinant is followed at full order ([`determinant`]).
 //!
-//! What is assumed: the real modes are exact (their residuals enter squared), rounding errors are not bounded, and modal
+//! Assumptions: the real modes are exact (their residuals enter squared), rounding errors are not bounded, and modal
 //! damping counts as acting on real modes when one random combination of its modes does.
 
 mod beyond;
@@ -67,7 +67,7 @@ const LONG_WALK: f64 = 5e9;
 
 /// [`complex_modes`](super::complex_modes) of the band, all of them as they are counted, and the count of those that grow.
 ///
-/// The caller compares: [`Certificate::agrees`] tells whether a mode was missed. Where the modes cannot be counted, such
+/// The caller compares: [`Certificate::agrees`] is false when a mode was missed. Where the modes cannot be counted, such
 /// as with an eigenvalue on the contour wherever it is drawn, or where that is expected to take more than `most_work`
 /// floating-point operations (infinity for no limit), there is no certificate but a warning.
 ///
@@ -112,7 +112,7 @@ pub fn certified_modes<'a>(
     })
 }
 
-/// [`certified_modes`] of a system with sparse skew parts; where only those nearest to a frequency are asked for there is nothing
+/// [`certified_modes`] of a system with sparse skew parts; where only those nearest to a frequency are requested there is nothing
 /// to compare a count with.
 fn counted_at_full_order(
     system: &System,
@@ -127,7 +127,7 @@ fn counted_at_full_order(
     let mut general = general_modes(&operator, known.real, band, observer)?;
     if band.nearest.is_some() {
         general.modes.warnings.push(
-            "the unstable modes were not counted: those nearest to a frequency are asked for, not all of a band"
+            "the unstable modes were not counted: those nearest to a frequency are requested, not all of a band"
                 .to_string(),
         );
         return Ok((general.modes, None));
@@ -161,7 +161,7 @@ fn work_of_a_point(analysis: &Analysis<'_>) -> f64 {
     r * r * (16.0 * m + 40.0 * r) + 4.0 * m * r * (m - analysis.basis.n_real() as f64) + 3e5
 }
 
-/// What a count is expected to take: about thirty points of the contour a mode.
+/// Expected work of a count \[operations\]: about thirty points of the contour a mode.
 fn expected_work(analysis: &Analysis<'_>, modes: &ComplexModes) -> f64 {
     30.0 * (modes.modes.len() + 10) as f64 * work_of_a_point(analysis)
 }
@@ -198,7 +198,7 @@ enum Way {
     Spectrum,
 }
 
-/// What counts the zeros of Q_B in a region.
+/// Function that counts the zeros of Q_B in a region.
 type Count<'a> = dyn Fn(&Region) -> std::result::Result<Winding, Stopped> + 'a;
 
 fn count_by(way: Way, analysis: &Analysis<'_>, modes: &ComplexModes, most_work: f64) -> Result<Certificate> {

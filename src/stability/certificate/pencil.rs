@@ -344,7 +344,7 @@ impl<'a> Pencil<'a> {
     }
 }
 
-/// What was computed at the centre of a disc.
+/// Values at the centre of a disc.
 struct State {
     c: c64,
     poles: Vec<Pole>,

@@ -24,7 +24,7 @@ pub(crate) struct ReducedModel {
     pub(super) active: Vec<usize>,
     /// W_B of the active directions, m × r.
     pub(super) interface: Mat<f64>,
-    /// What the full order has beyond the basis; `None` when the basis is the whole space.
+    /// Coupling to the complement of the basis; `None` when the basis is the whole space.
     pub(super) remainder: Option<Remainder>,
     /// Whether C and H are known to dissipate.
     pub(super) dissipative: bool,
@@ -55,8 +55,8 @@ impl ReducedModel {
         if let Some(rest) = &coupled {
             regular -= rest;
         }
-        if let Some(twins) = off_diagonal(&regular, basis.n_real()) {
-            coupled = Some(coupled.map_or(twins.clone(), |rest| rest + twins));
+        if let Some(doublets) = off_diagonal(&regular, basis.n_real()) {
+            coupled = Some(coupled.map_or(doublets.clone(), |rest| rest + doublets));
         }
         let loss = &operator.dampers[0].loss.split;
         let oscillators = (0..theta.len())
@@ -88,7 +88,7 @@ impl ReducedModel {
     }
 }
 
-/// The entries off the diagonal, when they are more than the round-off of a diagonal matrix: twin modes with different
+/// The entries off the diagonal, when they are more than the round-off of a diagonal matrix: doublets with different
 /// damping ratios.
 fn off_diagonal(a: &Mat<f64>, n_real: usize) -> Option<Mat<f64>> {
     let m = a.nrows();

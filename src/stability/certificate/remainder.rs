@@ -1,4 +1,4 @@
-//! What the full order has beyond the basis, bounded.
+//! Bound of the coupling to the complement of the basis.
 //!
 //! Z is the complement of the basis B that is orthogonal to it in A = K + K_σ − σ_A M, the matrix that the analysis has
 //! factorised. Every real mode below Ω_b is in B, so that A is positive on Z, and with P(s) = s²M + sC + K + K_σ + iH
@@ -124,7 +124,7 @@ impl Remainder {
         let weighted = Mat::from_fn(m, f, |i, j| seen[(i, j)] / (theta[i] - shift));
         square -= product(seen.transpose(), weighted.as_ref());
         let (values, vectors) = symmetric_eigen(square.as_ref())?;
-        // A root of it, one row a column of F, made larger by its rounding: those of the few directions stand for all that
+        // A root of it, one row a column of F, made larger by its rounding: those of the few directions represent all that
         // they span.
         let size = |value: f64| (value.max(0.0) + rounding).sqrt();
         let of_few = Mat::from_fn(f, f, |i, j| vectors[(i, j)] * size(values[j]));
@@ -228,7 +228,7 @@ struct Probes {
 impl Probes {
     /// How many there are.
     const COUNT: usize = 4;
-    /// What the largest error seen is multiplied by. A symmetric error of norm e with the numbers c between −1 and 1 shows as
+    /// Factor on the largest error seen. A symmetric error of norm e with the numbers c between −1 and 1 shows as
     /// e/100 at least in one of four, but for once in three thousand times when it has rank one, and seldomer with more.
     const MARGIN: f64 = 100.0;
 

@@ -75,7 +75,7 @@ impl Rows {
         });
         let PivotedQr { q, r, order } = pivoted_qr(unit);
         let rank = (0..n.min(k)).take_while(|d| r[(*d, *d)].abs() > NOTHING_LEFT).count();
-        // What a direction stands for in the original columns tells its size.
+        // A direction is scaled by its largest share in the original columns.
         let share = |d: usize, j: usize| r[(d, j)] * lengths[order[j]];
         let size = |d: usize| (0..k).fold(0.0f64, |s, j| s.max(share(d, j).abs())).max(f64::MIN_POSITIVE);
         let sizes: Vec<f64> = (0..rank).map(size).collect();

@@ -132,7 +132,7 @@ fn by_rerun(system: &dyn Fn(f64) -> System, at: f64, step: f64, lambda: &[c64]) 
 }
 
 #[test]
-fn sensitivities_of_random_systems_equal_those_of_a_run_anew() {
+fn sensitivities_of_random_systems_equal_those_of_a_rerun() {
     let mut compared = 0;
     for (seed, kind) in [(0, 0), (1, 7)] {
         let system = sample(seed, kind);

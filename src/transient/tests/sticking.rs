@@ -241,7 +241,7 @@ fn what_was_stuck_goes_on_bit_for_bit() {
             Ok(())
         });
         let mut again = middle.march(&model).unwrap();
-        go_on(&model, &mut again, &plan, &(), &mut |_| Ok(())).unwrap();
+        resume(&model, &mut again, &plan, &(), &mut |_| Ok(())).unwrap();
         let packed = |marched: &Marched| {
             let mut end = Checkpoint::default();
             end.put_march(marched);

@@ -1,4 +1,4 @@
-//! Encounters: where two branches come nearest to each other.
+//! Interactions of two branches: crossing, veering, merging (N. C. Perkins and C. D. Mote, J. Sound Vib. 106 (1986) 451).
 
 use super::assign::assign;
 use super::branch::{Branch, Sample};
@@ -6,16 +6,16 @@ use super::{Axis, Modes, Problem};
 use crate::error::Result;
 use rayon::prelude::*;
 
-/// Branches that come nearer than this share of |λ| meet …
+/// Branches that come nearer than this share of |λ| interact …
 const NEAR: f64 = 0.01;
-/// … and samples so near are looked at, because the nearest place lies between them.
-const WORTH_A_LOOK: f64 = 0.05;
-/// A minimum by less than this part of the distance is none: twin modes keep theirs, but for round-off.
+/// … and minima of the samples below this share are refined, because the nearest place lies between samples.
+const CANDIDATE: f64 = 0.05;
+/// A minimum by less than this part of the distance is none: doublets keep theirs, but for round-off.
 const DIP: f64 = 1e-3;
 
-/// Two branches near each other.
+/// Interaction of two branches.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Encounter {
+pub struct Interaction {
     /// The branches, indices into [`super::Sweep::branches`].
     pub branches: [usize; 2],
     /// The value of the parameter at which they are nearest.
@@ -24,29 +24,29 @@ pub struct Encounter {
     pub distance: f64,
     /// ω/2π between them \[Hz\].
     pub frequency_hz: f64,
-    /// What they do.
-    pub kind: EncounterKind,
+    /// Kind of interaction.
+    pub kind: InteractionKind,
 }
 
-/// What two branches do that meet.
+/// Kind of interaction of two branches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum EncounterKind {
+pub enum InteractionKind {
     /// Their frequencies pass through each other, each keeps its shape.
     Crossing,
-    /// They turn away from each other and exchange their shapes.
+    /// Their frequencies veer away from each other and their shapes are exchanged.
     Veering,
     /// Their frequencies become one: flutter begins or ends.
     Merging,
 }
 
 /// Every local minimum of the distance of two branches that is small, narrowed to `tolerance` by golden sections.
-pub(super) fn encounters(
+pub(super) fn interactions(
     problem: &dyn Problem,
     axis: &Axis,
     tolerance: f64,
     samples: &[Sample],
     branches: &[Branch],
-) -> Result<Vec<Encounter>> {
+) -> Result<Vec<Interaction>> {
     let mut near = Vec::new();
     for a in 0..branches.len() {
         for b in a + 1..branches.len() {
@@ -60,25 +60,25 @@ pub(super) fn encounters(
                     continue;
                 };
                 let dips = here < before && here <= after && before.max(after) > (1.0 + DIP) * here;
-                if here < WORTH_A_LOOK && dips {
+                if here < CANDIDATE && dips {
                     near.push(([a, b], k));
                 }
             }
         }
     }
-    let look =
-        |(pair, k): &([usize; 2], usize)| encounter(problem, axis, tolerance, samples, branches, *pair, *k);
-    let looked: Result<Vec<Encounter>> = match problem.parallel() {
-        true => near.par_iter().map(look).collect(),
-        false => near.iter().map(look).collect(),
+    let refine =
+        |(pair, k): &([usize; 2], usize)| interaction(problem, axis, tolerance, samples, branches, *pair, *k);
+    let refined: Result<Vec<Interaction>> = match problem.parallel() {
+        true => near.par_iter().map(refine).collect(),
+        false => near.iter().map(refine).collect(),
     };
-    let mut found: Vec<Encounter> = looked?.into_iter().filter(|m| m.distance < NEAR).collect();
+    let mut found: Vec<Interaction> = refined?.into_iter().filter(|m| m.distance < NEAR).collect();
     let along = (axis.to - axis.from).signum();
     found.sort_by(|x, y| (along * x.value).total_cmp(&(along * y.value)).then(x.branches.cmp(&y.branches)));
     Ok(found)
 }
 
-fn encounter(
+fn interaction(
     problem: &dyn Problem,
     axis: &Axis,
     tolerance: f64,
@@ -86,7 +86,7 @@ fn encounter(
     branches: &[Branch],
     pair: [usize; 2],
     k: usize,
-) -> Result<Encounter> {
+) -> Result<Interaction> {
     let place = |b: usize| branches[b].place(k).expect("the branch is there");
     let places = [place(pair[0]), place(pair[1])];
     // The modes at the sample are the reference by which the two are found again.
@@ -118,12 +118,12 @@ fn encounter(
         if (p - q).abs() <= 1e-7 * p.abs().max(q.abs()) { 0.0 } else { (p - q).signum() }
     };
     let kind = match (order(k - 1), order(k + 1)) {
-        (p, q) if p == 0.0 || q == 0.0 => EncounterKind::Merging,
-        (p, q) if p != q => EncounterKind::Crossing,
-        _ => EncounterKind::Veering,
+        (p, q) if p == 0.0 || q == 0.0 => InteractionKind::Merging,
+        (p, q) if p != q => InteractionKind::Crossing,
+        _ => InteractionKind::Veering,
     };
     let frequency_hz = omega / std::f64::consts::TAU;
-    Ok(Encounter { branches: pair, value, distance, frequency_hz, kind })
+    Ok(Interaction { branches: pair, value, distance, frequency_hz, kind })
 }
 
 /// The relative distance of the two modes that those at `places` of `reference` have become, and their mean Im λ.

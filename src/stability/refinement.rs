@@ -35,11 +35,11 @@ pub(super) struct Measured {
     pub(super) condition: Vec<f64>,
     /// ‖Q(λ)(φ + z)‖ / (|λ|²‖M‖ + |λ|‖C‖ + ‖K‖).
     pub(super) corrected: Vec<f64>,
-    /// What the matrices are between φ and φ, and φ + z and φ + z.
+    /// Bilinear forms of φ with φ, and of φ + z with φ + z.
     pub(super) forms: Vec<[Forms; 2]>,
 }
 
-/// What it takes to measure pairs.
+/// Operator and scales by which pairs are measured.
 pub(super) struct Scale<'a> {
     pub(super) operator: &'a Operator<'a>,
     pub(super) basis: &'a Basis<'a>,
@@ -87,7 +87,7 @@ impl Measured {
 }
 
 /// The corrections that pairs ask for, right and left, each divided by |λ|: their squared E-norm is then about the relative
-/// error of λ that they stand for.
+/// error of λ that they represent.
 #[derive(Default)]
 pub(super) struct Wanted {
     /// Re and Im of z.

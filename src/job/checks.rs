@@ -1,5 +1,4 @@
-//! What speaks against the results of a run that came to its end: modes that are not accurate or were missed, a fit that did not
-//! converge.
+//! Consistency checks of the results of a completed run: modes that are inaccurate or missing, a fit that did not converge.
 
 use crate::error::{Error, Result};
 use crate::linalg::c64;
@@ -15,7 +14,7 @@ use std::f64::consts::TAU;
 /// converged; the first of them.
 pub(super) fn results_hold(results: &RunResults) -> Result<()> {
     modes_are_accurate(results)?;
-    nothing_is_missed(results)?;
+    no_mode_is_missed(results)?;
     two_methods_agree(results)?;
     calibration_converged(results)
 }
@@ -59,8 +58,8 @@ fn calibration_converged(results: &RunResults) -> Result<()> {
     ))
 }
 
-/// A mode that was missed is an error, but only once the results are there to look at.
-fn nothing_is_missed(results: &RunResults) -> Result<()> {
+/// A missed mode is an error, but only once the results are written.
+fn no_mode_is_missed(results: &RunResults) -> Result<()> {
     let certificate = results.get::<ComplexResult>().and_then(|c| c.certificate.as_ref());
     let Some(wrong) = certificate.filter(|c| !c.agrees()) else { return Ok(()) };
     let ([low, high], [slow, fast]) = (wrong.band_hz, wrong.growth);
@@ -83,7 +82,7 @@ fn nothing_is_missed(results: &RunResults) -> Result<()> {
     ))
 }
 
-/// So is a disagreement between the two methods.
+/// A disagreement between the two methods is an error, too.
 fn two_methods_agree(results: &RunResults) -> Result<()> {
     let confirmation = results.get::<ComplexResult>().and_then(|c| c.confirmation.as_ref());
     let Some(wrong) = confirmation.filter(|c| !c.holds()) else { return Ok(()) };
@@ -98,7 +97,7 @@ fn two_methods_agree(results: &RunResults) -> Result<()> {
             list(&wrong.missed),
             list(&wrong.unconfirmed)
         ),
-        "The results are written. Raise `basis_below`, and look at the condition numbers of the modes near these",
+        "The results are written. Raise `basis_below`, and check the condition numbers of the modes near these",
     ))
 }
 
