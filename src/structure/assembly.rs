@@ -2,8 +2,8 @@
 
 use super::check::check_model;
 use super::dofs::DofMap;
-use super::model::{Material, Model, RayleighDamping};
 use super::elements::{ElementMatrix, FiniteElement};
+use super::model::{Material, Model, RayleighDamping};
 use super::registry::{AnyElement, elements};
 use super::scatter::{Pattern, Reduction};
 use crate::error::{Error, Fault, Result};

@@ -46,8 +46,11 @@ pub(super) fn check_model(model: &Model) -> Result<()> {
         let missing = part.faces.iter().flat_map(|f| f.nodes()).filter(|n| !known(n));
         missing_nodes(&place, missing, model.nodes.len(), &mut faults);
         let count = part.faces.len();
-        let shapes: Vec<Option<Shape>> =
-            part.faces.iter().map(|f| f.nodes().iter().all(sound).then(|| shape(part, &model.nodes, f))).collect();
+        let shapes: Vec<Option<Shape>> = part
+            .faces
+            .iter()
+            .map(|f| f.nodes().iter().all(sound).then(|| shape(part, &model.nodes, f)))
+            .collect();
         for (bad, what, expected) in [
             (Shape::NoArea, "without area", "elements with an area"),
             (Shape::Folded, "that are re-entrant or folded", "convex quadrilaterals"),
@@ -76,9 +79,10 @@ pub(super) fn check_model(model: &Model) -> Result<()> {
         positive(&place, "torsion constant", part.section.torsion, "m⁴", &mut faults);
         let missing = part.elements.iter().flatten().filter(|n| !known(n));
         missing_nodes(&place, missing, model.nodes.len(), &mut faults);
-        let bad = part.elements.iter().find(|e| {
-            e.iter().all(sound) && Bar::new(part, &model.nodes, **e).is_degenerate()
-        });
+        let bad = part
+            .elements
+            .iter()
+            .find(|e| e.iter().all(sound) && Bar::new(part, &model.nodes, **e).is_degenerate());
         if let Some([a, b]) = bad {
             faults.push(Fault::new(
                 &place,
@@ -157,8 +161,12 @@ fn check_theory(place: &str, part: &ShellPart, faults: &mut Faults) {
     if part.theory == PlateTheory::Mindlin && !part.rotary_inertia {
         let found = "Mindlin's theory without rotary inertia";
         faults.push(
-            Fault::new(place, found, "its rotary inertia, without which rotations of the section have no mass")
-                .with_help("Count the rotary inertia, or take Kirchhoff's theory"),
+            Fault::new(
+                place,
+                found,
+                "its rotary inertia, without which rotations of the section have no mass",
+            )
+            .with_help("Count the rotary inertia, or take Kirchhoff's theory"),
         );
     }
 }

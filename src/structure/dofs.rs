@@ -223,7 +223,12 @@ mod tests {
             [[0.0, 0.0], [0.1, 0.0], [0.1, 0.1], [0.0, 0.1]].map(|[x, y]| [x * c, y, -x * s]).to_vec();
         let part = ShellPart {
             bending_only,
-            ..ShellPart::new("plate", vec![Element::Triangle([0, 1, 2]), Element::Triangle([0, 2, 3])], STEEL, 1e-3)
+            ..ShellPart::new(
+                "plate",
+                vec![Element::Triangle([0, 1, 2]), Element::Triangle([0, 2, 3])],
+                STEEL,
+                1e-3,
+            )
         };
         Model { nodes, shells: vec![part], ..Model::default() }
     }

@@ -26,6 +26,7 @@ pub use dofs::{DofMap, FreeDof};
 pub use elements::waves::thickness_error;
 pub use free::{FreePart, free_parts};
 pub use model::{
-    BarPart, Material, Model, PlateTheory, PointMass, RayleighDamping, RigidLink, Section, ShellPart, Spring, Support,
+    BarPart, Material, Model, PlateTheory, PointMass, RayleighDamping, RigidLink, Section, ShellPart, Spring,
+    Support,
 };
 pub use warnings::{ThicknessError, thickness_errors};

@@ -1,8 +1,8 @@
 //! Which element stands for what of a model: the only place that names them all.
 
 use super::elements::{
-    Bar, FacePoint, FiniteElement, KirchhoffTriangle, Mass, MindlinQuadrilateral, MindlinTriangle, SpringElement,
-    split_face,
+    Bar, FacePoint, FiniteElement, KirchhoffTriangle, Mass, MindlinQuadrilateral, MindlinTriangle,
+    SpringElement, split_face,
 };
 use super::model::{Model, PlateTheory, ShellPart};
 use crate::mesh::Element;

@@ -111,7 +111,8 @@ impl Pattern {
         let mut sums = wanted.map(|wanted| vec![0.0; if wanted { self.rows.len() } else { 0 }]);
         // Strided batches spread each batch over all columns, so that every owner has work.
         let batches = self.n_pieces().div_ceil(BATCH).max(1);
-        let (mut small, mut pieces): ([Vec<f64>; K], Vec<(usize, usize)>) = (wanted.map(|_| Vec::new()), Vec::new());
+        let (mut small, mut pieces): ([Vec<f64>; K], Vec<(usize, usize)>) =
+            (wanted.map(|_| Vec::new()), Vec::new());
         for batch in 0..batches {
             let mut length = 0;
             pieces.clear();
@@ -123,12 +124,12 @@ impl Pattern {
                 values.clear();
                 values.resize(length, 0.0);
             }
-            self.parts(&pieces, &mut small)
-                .into_par_iter()
-                .with_min_len(16)
-                .for_each_init(W::default, |workspace, (piece, mut own)| {
+            self.parts(&pieces, &mut small).into_par_iter().with_min_len(16).for_each_init(
+                W::default,
+                |workspace, (piece, mut own)| {
                     matrices(workspace, piece, self.dofs_of(piece), &mut own);
-                });
+                },
+            );
             self.owners(&mut sums).into_par_iter().for_each(|(first, last, mut slices)| {
                 for (piece, start) in &pieces {
                     let end = start + self.dofs_of(*piece).len().pow(2);
@@ -148,7 +149,8 @@ impl Pattern {
         small: &'a mut [Vec<f64>; K],
     ) -> Vec<(usize, [&'a mut [f64]; K])> {
         let mut rest: [&'a mut [f64]; K] = small.each_mut().map(|values| values.as_mut_slice());
-        let part = |(piece, _): &(usize, usize)| (*piece, split_off(&mut rest, self.dofs_of(*piece).len().pow(2)));
+        let part =
+            |(piece, _): &(usize, usize)| (*piece, split_off(&mut rest, self.dofs_of(*piece).len().pow(2)));
         pieces.iter().map(part).collect()
     }
 

@@ -46,8 +46,10 @@ mod tests {
         for face in [Element::Triangle([0, 1, 2]), Element::Quadrilateral([0, 1, 2, 3])] {
             let plate = ShellPart::new("plate", vec![face], STEEL, 0.01);
             let mindlin = ShellPart { name: "thick".into(), theory: PlateTheory::Mindlin, ..plate.clone() };
-            let massless = ShellPart { material: crate::structure::Material { density: 0.0, ..STEEL }, ..plate.clone() };
-            let model = Model { nodes: nodes.clone(), shells: vec![mindlin, plate, massless], ..Model::default() };
+            let massless =
+                ShellPart { material: crate::structure::Material { density: 0.0, ..STEEL }, ..plate.clone() };
+            let model =
+                Model { nodes: nodes.clone(), shells: vec![mindlin, plate, massless], ..Model::default() };
             let errors = thickness_errors(&model, 6000.0);
             assert_eq!(errors.len(), 1);
             assert_eq!(errors[0].part, "plate");

@@ -99,7 +99,9 @@ fn rim_gap_is_that_of_the_circle_and_weights_are_its_length() {
 /// Any rigid motion of either body closes and slides each point by what the displacement of that point says.
 #[test]
 fn directions_are_the_relative_displacement_of_the_points() {
-    for (lead, theory) in [(0.0, PlateTheory::Kirchhoff), (0.08, PlateTheory::Kirchhoff), (0.08, PlateTheory::Mindlin)] {
+    for (lead, theory) in
+        [(0.0, PlateTheory::Kirchhoff), (0.08, PlateTheory::Kirchhoff), (0.08, PlateTheory::Mindlin)]
+    {
         let mut rig = rig(lead, -0.031, 0.0);
         rig.slider.theory = theory;
         let points = pair_surfaces(&surfaces(&rig, ContactPatch::Reach(2e-3)), &reduce).unwrap();
@@ -201,7 +203,9 @@ fn a_pad_may_overhang() {
 /// also on a plate that is not flat.
 #[test]
 fn points_do_not_depend_on_the_order_of_faces() {
-    for (bend, theory) in [0.0, 1.0].into_iter().flat_map(|b| [(b, PlateTheory::Kirchhoff), (b, PlateTheory::Mindlin)]) {
+    for (bend, theory) in
+        [0.0, 1.0].into_iter().flat_map(|b| [(b, PlateTheory::Kirchhoff), (b, PlateTheory::Mindlin)])
+    {
         let mut rig = rig(0.0, 0.0, 0.0);
         rig.slider.theory = theory;
         rig.nodes[181..].iter_mut().for_each(|x| x[2] += bend * x[0] * (0.1 * x[0] - 0.3 * x[1]));

@@ -134,7 +134,10 @@ pub(super) fn bending_directions(frame: &Matrix3<f64>) -> Vec<[f64; 6]> {
 }
 
 /// Rows and columns of an interpolation of (ux, uy, uz, rx, ry, rz) turned from local into global axes, column by column.
-pub(super) fn rows_in_global<const N: usize>(local: &SMatrix<f64, 6, N>, frame: &Matrix3<f64>) -> Vec<[f64; 6]> {
+pub(super) fn rows_in_global<const N: usize>(
+    local: &SMatrix<f64, 6, N>,
+    frame: &Matrix3<f64>,
+) -> Vec<[f64; 6]> {
     let mut global = vec![[0.0; 6]; N];
     for i in [0, 3] {
         for j in (0..N).step_by(3) {

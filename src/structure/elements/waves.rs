@@ -24,11 +24,20 @@ pub fn shear_coefficient(poissons_ratio: f64) -> f64 {
 pub fn thickness_error(material: &Material, thickness: f64, rotary_inertia: bool, frequency_hz: f64) -> f64 {
     let k = kirchhoff_wavenumber(material, thickness, rotary_inertia, frequency_hz);
     let omega = std::f64::consts::TAU * frequency_hz;
-    if omega > 0.0 { omega / mindlin_frequency(material, thickness, shear_coefficient(material.poissons_ratio), k) - 1.0 } else { 0.0 }
+    if omega > 0.0 {
+        omega / mindlin_frequency(material, thickness, shear_coefficient(material.poissons_ratio), k) - 1.0
+    } else {
+        0.0
+    }
 }
 
 /// k \[rad/m\] of Kirchhoff's bending wave at `frequency_hz`.
-pub(super) fn kirchhoff_wavenumber(material: &Material, h: f64, rotary_inertia: bool, frequency_hz: f64) -> f64 {
+pub(super) fn kirchhoff_wavenumber(
+    material: &Material,
+    h: f64,
+    rotary_inertia: bool,
+    frequency_hz: f64,
+) -> f64 {
     let omega = std::f64::consts::TAU * frequency_hz;
     let (d, rho_h) = (rigidity(material, h), material.density * h);
     // D k⁴ − R ω² k² − ρh ω² = 0 with R = ρh³/12 or 0.
@@ -51,7 +60,12 @@ pub fn mindlin_frequency(material: &Material, h: f64, shear_coefficient: f64, k:
 
 /// k \[rad/m\] of Mindlin's bending wave at `frequency_hz`, the larger root of
 /// D k⁴ − ω² (ρh³/12 + ρD/κG) k² + (ρ/κG)(ρh³/12) ω⁴ − ρh ω² = 0.
-pub(super) fn mindlin_wavenumber(material: &Material, h: f64, shear_coefficient: f64, frequency_hz: f64) -> f64 {
+pub(super) fn mindlin_wavenumber(
+    material: &Material,
+    h: f64,
+    shear_coefficient: f64,
+    frequency_hz: f64,
+) -> f64 {
     let square = (std::f64::consts::TAU * frequency_hz).powi(2);
     let shear = material.density / (shear_coefficient * material.shear_modulus());
     let (rotary, d) = (material.density * h.powi(3) / 12.0, rigidity(material, h));
@@ -96,7 +110,8 @@ mod tests {
         let h = 0.01;
         for kh in [0.1, 0.3, 0.5, 1.0] {
             let k = kh / h;
-            let (mindlin, exact) = (mindlin_frequency(&STEEL, h, shear_coefficient(0.3), k), lamb_frequency(&STEEL, h, k));
+            let (mindlin, exact) =
+                (mindlin_frequency(&STEEL, h, shear_coefficient(0.3), k), lamb_frequency(&STEEL, h, k));
             let d = rigidity(&STEEL, h);
             let kirchhoff = (d / (STEEL.density * h)).sqrt() * k * k;
             let (estimated, true_error) = (kirchhoff / mindlin - 1.0, kirchhoff / exact - 1.0);

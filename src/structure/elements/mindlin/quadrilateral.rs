@@ -71,7 +71,9 @@ impl MeanPlane {
 
     /// ξ and η of the point with barycentric coordinates `l` on the triangle of three corners, by Newton's method.
     fn coordinates(&self, triangle: [usize; 3], l: [f64; 3]) -> [f64; 2] {
-        let mean = |of: &dyn Fn(usize, usize) -> f64| [0, 1].map(|a| (0..3).map(|k| l[k] * of(triangle[k], a)).sum::<f64>());
+        let mean = |of: &dyn Fn(usize, usize) -> f64| {
+            [0, 1].map(|a| (0..3).map(|k| l[k] * of(triangle[k], a)).sum::<f64>())
+        };
         let goal = mean(&|i, a| self.corners[i][a]);
         let mut at = mean(&|i, a| CORNERS[i][a]);
         for _ in 0..20 {
@@ -153,9 +155,8 @@ fn stiffness(plane: &MeanPlane, section: &PlateSection) -> SMatrix<f64, 12, 12> 
         let weight = weight * jacobian.determinant();
         let (linear, bulging) = (shape_slopes(at), bubble_slopes(at));
         let natural = [0, 1].map(|d| combined(&sides, linear.map(|s| s[d]), bulging.map(|s| s[d])));
-        let gradient = [0, 1].map(|d| {
-            [0, 1].map(|a| natural[0][a] * inverse[(d, 0)] + natural[1][a] * inverse[(d, 1)])
-        });
+        let gradient =
+            [0, 1].map(|d| [0, 1].map(|a| natural[0][a] * inverse[(d, 0)] + natural[1][a] * inverse[(d, 1)]));
         let b = curvatures(&gradient);
         k += b.transpose() * section.rigidity * b * weight;
         let [x, y] = at;
@@ -170,7 +171,12 @@ fn stiffness(plane: &MeanPlane, section: &PlateSection) -> SMatrix<f64, 12, 12> 
 }
 
 /// ρh³/12 ∫ |β|² dA, 12 × 12.
-fn rotary_inertia(plane: &MeanPlane, sides: &[Side<12>; 4], density: f64, thickness: f64) -> SMatrix<f64, 12, 12> {
+fn rotary_inertia(
+    plane: &MeanPlane,
+    sides: &[Side<12>; 4],
+    density: f64,
+    thickness: f64,
+) -> SMatrix<f64, 12, 12> {
     let factor = density * thickness.powi(3) / 12.0;
     let mut m = SMatrix::zeros();
     for (at, weight) in gauss(THREE) {
@@ -183,7 +189,11 @@ fn rotary_inertia(plane: &MeanPlane, sides: &[Side<12>; 4], density: f64, thickn
 }
 
 /// Mapᵀ A Map of a matrix A on (w, ∂w/∂y, −∂w/∂x) at three corners.
-fn on_slopes(map: &SMatrix<f64, 12, 12>, triangle: &[usize; 3], a: &SMatrix<f64, 9, 9>) -> SMatrix<f64, 12, 12> {
+fn on_slopes(
+    map: &SMatrix<f64, 12, 12>,
+    triangle: &[usize; 3],
+    a: &SMatrix<f64, 9, 9>,
+) -> SMatrix<f64, 12, 12> {
     let rows = SMatrix::<f64, 9, 12>::from_fn(|r, c| map[(3 * triangle[r / 3] + r % 3, c)]);
     rows.transpose() * a * rows
 }
@@ -309,7 +319,8 @@ impl FiniteElement for MindlinQuadrilateral<'_> {
             let u = triangle.map(|k| displacement[self.nodes[k]]);
             let [nx, ny, nxy] = shell.membrane_forces(&part.material, part.thickness, &u);
             // From the axes of the triangle to those of the mean plane.
-            let turn = (plane.frame * shell.triangle().frame.transpose()).fixed_view::<2, 2>(0, 0).into_owned();
+            let turn =
+                (plane.frame * shell.triangle().frame.transpose()).fixed_view::<2, 2>(0, 0).into_owned();
             let n = turn * Matrix2::new(nx, nxy, nxy, ny) * turn.transpose();
             let corners = triangle.map(|k| plane.corners[k]);
             let forces = [n[(0, 0)], n[(1, 1)], n[(0, 1)]].map(|n| 0.5 * n);

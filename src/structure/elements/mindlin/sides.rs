@@ -88,9 +88,7 @@ pub fn corner_shear<const N: usize, const C: usize>(sides: &[Side<C>; N]) -> [[R
 /// (w, ∂w/∂y, −∂w/∂x) at the corners from (w, θ₁, θ₂) there, ∇w = γ − β.
 ///
 /// The cubic w with these values and slopes at the ends of a side is the one whose shear strain w,_s + β_s is γ̄ all along it.
-pub fn slopes<const N: usize, const C: usize>(
-    shear: &[[RowSVector<f64, C>; 2]; N],
-) -> SMatrix<f64, C, C> {
+pub fn slopes<const N: usize, const C: usize>(shear: &[[RowSVector<f64, C>; 2]; N]) -> SMatrix<f64, C, C> {
     let mut map = SMatrix::<f64, C, C>::identity();
     for (i, [x, y]) in shear.iter().enumerate() {
         let mut first = map.row_mut(3 * i + 1);

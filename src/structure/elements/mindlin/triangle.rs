@@ -134,8 +134,7 @@ impl FiniteElement for MindlinTriangle<'_> {
         let (corners, area) = (&shell.triangle().corners, shell.triangle().area);
         let (density, thickness) = (part.material.density, part.thickness);
         let map = self.slopes(corners);
-        let mut bending =
-            map.transpose() * deflection_products(corners) * map * (density * thickness * area);
+        let mut bending = map.transpose() * deflection_products(corners) * map * (density * thickness * area);
         if part.rotary_inertia {
             bending += triangle_rotary_inertia(corners, &PlateSection::new(part), density, thickness);
         }
