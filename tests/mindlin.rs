@@ -305,9 +305,9 @@ fn no_locking_in_the_thin_limit() {
 
 /// ω of the lowest antisymmetric Lamb wave of wavenumber k: three-dimensional elasticity, no plate theory.
 fn lamb(h: f64, k: f64) -> f64 {
-    let (e, nu, rho) = (210e9, 0.3, 7850.0);
-    let long = (e * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu) * rho) as f64).sqrt();
-    let shear = (e / (2.0 * (1.0 + nu) * rho) as f64).sqrt();
+    let (e, nu, rho): (f64, f64, f64) = (210e9, 0.3, 7850.0);
+    let long = (e * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu) * rho)).sqrt();
+    let shear = (e / (2.0 * (1.0 + nu) * rho)).sqrt();
     let f = |omega: f64| {
         let p = (k * k - (omega / long).powi(2)).sqrt();
         let q = (k * k - (omega / shear).powi(2)).sqrt();
@@ -509,7 +509,7 @@ fn disc(n: usize, quadrilaterals: bool) -> (Vec<[f64; 3]>, Vec<Element>, Vec<usi
 fn thick_circular_plates_converge_to_the_closed_form() {
     let kappa = PI * PI / 12.0;
     for (edge, h) in [(Edge::Clamped, 0.1), (Edge::Clamped, 0.2), (Edge::Free, 0.1), (Edge::Free, 0.2)] {
-        let scale = (210e9 * h * h / (12.0 * (1.0 - 0.09) * 7850.0) as f64).sqrt() / TAU;
+        let scale = (210e9 * h * h / (12.0 * (1.0 - 0.09) * 7850.0)).sqrt() / TAU;
         let exact: Vec<f64> = circular(h, kappa, edge, 28.0).iter().map(|x| x * scale).collect();
         for quadrilaterals in [false, true] {
             let errors = [32, 64].map(|n| {
