@@ -305,9 +305,9 @@ fn no_locking_in_the_thin_limit() {
 
 /// ω of the lowest antisymmetric Lamb wave of wavenumber k: three-dimensional elasticity, no plate theory.
 fn lamb(h: f64, k: f64) -> f64 {
-    let (e, nu, rho) = (210e9, 0.3, 7850.0);
-    let long = (e * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu) * rho) as f64).sqrt();
-    let shear = (e / (2.0 * (1.0 + nu) * rho) as f64).sqrt();
+    let (e, nu, rho): (f64, f64, f64) = (210e9, 0.3, 7850.0);
+    let long = (e * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu) * rho)).sqrt();
+    let shear = (e / (2.0 * (1.0 + nu) * rho)).sqrt();
     let f = |omega: f64| {
         let p = (k * k - (omega / long).powi(2)).sqrt();
         let q = (k * k - (omega / shear).powi(2)).sqrt();
@@ -502,15 +502,17 @@ fn disc(n: usize, quadrilaterals: bool) -> (Vec<[f64; 3]>, Vec<Element>, Vec<usi
     (nodes, faces, rim)
 }
 
-/// Goal: thick circular plates, clamped and free, converge to the closed form with order ≥ 1.9, as far as the polygon goes to the circle.
+/// Goal: thick circular plates, clamped and free, converge to the closed form with order two. Reason for the bounds: the polygon lies inside
+/// the circle, which adds an error of the order two; of triangles it takes the other's place, so that some of the errors change their sign.
+/// Along a free edge is a layer of width h/√(12κ), half a cell of the coarser mesh at h = 0.1.
 #[test]
 fn thick_circular_plates_converge_to_the_closed_form() {
     let kappa = PI * PI / 12.0;
     for (edge, h) in [(Edge::Clamped, 0.1), (Edge::Clamped, 0.2), (Edge::Free, 0.1), (Edge::Free, 0.2)] {
-        let scale = (210e9 * h * h / (12.0 * (1.0 - 0.09) * 7850.0) as f64).sqrt() / TAU;
+        let scale = h * (210e9_f64 / (12.0 * (1.0 - 0.09) * 7850.0)).sqrt() / TAU;
         let exact: Vec<f64> = circular(h, kappa, edge, 28.0).iter().map(|x| x * scale).collect();
         for quadrilaterals in [false, true] {
-            let errors = [8, 16, 32].map(|n| {
+            let errors = [32, 64].map(|n| {
                 let (nodes, faces, rim) = disc(n, quadrilaterals);
                 let part =
                     ShellPart { shear_coefficient: Some(kappa), bending_only: true, ..thick(faces, h) };
@@ -526,12 +528,12 @@ fn thick_circular_plates_converge_to_the_closed_form() {
                 let found = lowest_frequencies(&assembled.structure, skip + exact.len(), shift);
                 worst(&found[skip..], &exact)
             });
-            let order = (errors[0] / errors[2]).log2() / 2.0;
+            let order = (errors[0] / errors[1]).log2();
             println!(
                 "{edge:?} {h}, quadrilaterals {quadrilaterals}: {} modes, {errors:?} order {order:.2}",
                 exact.len()
             );
-            assert!(errors[2] < 8e-3 && order >= 1.9, "{errors:?} {order}");
+            assert!(errors[1] < 1.5e-3 && (order >= 1.8 || errors[1] < 1.5e-4), "{errors:?} {order}");
         }
     }
 }

@@ -27,8 +27,9 @@ pub fn triangle_stiffness(corners: &[[f64; 2]; 3], section: &PlateSection) -> SM
     for at in [[0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5]] {
         let b = curvatures(&rotation_gradient(corners, &sides, at));
         k += b.transpose() * section.rigidity * b * weight;
-        for direction in 0..2 {
-            let g = (0..3).fold(RowSVector::<f64, 9>::zeros(), |sum, i| sum + shear[i][direction] * at[i]);
+        let shear_at =
+            |d: usize| (0..3).fold(RowSVector::<f64, 9>::zeros(), |sum, i| sum + shear[i][d] * at[i]);
+        for g in [shear_at(0), shear_at(1)] {
             k += g.transpose() * g * (weight * section.shear);
         }
     }
