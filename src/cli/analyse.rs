@@ -14,12 +14,12 @@ use std::process::ExitCode;
 /// A subcommand that runs analyses.
 pub struct Analyse {
     selection: Selection,
-    options: Options,
+    options: AnalyseOptions,
 }
 
 /// The options of these subcommands.
 #[derive(Args)]
-struct Options {
+struct AnalyseOptions {
     /// The case file (TOML)
     case: PathBuf,
     /// The folder for the results; `results/NAME` by default, NAME being the case file's, or its folder's for case.toml
@@ -41,7 +41,7 @@ fn commands() -> impl Iterator<Item = (&'static str, &'static str, Selection)> {
 impl Subcommand for Analyse {
     fn augment_subcommands(command: clap::Command) -> clap::Command {
         commands().fold(command, |command, (name, about, _)| {
-            command.subcommand(Options::augment_args(clap::Command::new(name)).about(about))
+            command.subcommand(AnalyseOptions::augment_args(clap::Command::new(name)).about(about))
         })
     }
 
@@ -61,7 +61,7 @@ impl FromArgMatches for Analyse {
         });
         let (selection, inner) =
             chosen.ok_or_else(|| clap::Error::new(clap::error::ErrorKind::InvalidSubcommand))?;
-        Ok(Analyse { selection, options: Options::from_arg_matches(inner)? })
+        Ok(Analyse { selection, options: AnalyseOptions::from_arg_matches(inner)? })
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> std::result::Result<(), clap::Error> {

@@ -1,18 +1,18 @@
 //! Functions of time of a case.
 
 use crate::case::Course;
-use crate::transient::Profile;
+use crate::transient::TimeProfile;
 
 /// How something runs in time.
-pub fn profile(course: Option<&Course>) -> Profile {
+pub fn profile(course: Option<&Course>) -> TimeProfile {
     match course {
-        None | Some(Course::Constant {}) => Profile::Constant,
-        Some(Course::Ramp { from, duration }) => Profile::Ramp { from: *from, duration: *duration },
+        None | Some(Course::Constant {}) => TimeProfile::Constant,
+        Some(Course::Ramp { from, duration }) => TimeProfile::Ramp { from: *from, duration: *duration },
         Some(Course::Reciprocating { frequency, phase }) => {
-            Profile::Reciprocating { frequency_hz: *frequency, phase: *phase }
+            TimeProfile::Reciprocating { frequency_hz: *frequency, phase: *phase }
         }
         Some(Course::Table { time, factor }) => {
-            Profile::Table { times: time.clone(), factors: factor.clone() }
+            TimeProfile::Table { times: time.clone(), factors: factor.clone() }
         }
     }
 }

@@ -59,5 +59,5 @@ pub use memory::{ExpectedMemory, expected_memory};
 pub use prepared::Prepared;
 #[cfg(feature = "cli")]
 pub use run_case::run_case;
-pub use sink::{Histories, KnownMap, KnownMaps, ResultSink, Stage};
+pub use sink::{Histories, KnownMap, KnownMaps, ResultSink, ResultStage};
 pub use states::Whole;

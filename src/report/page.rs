@@ -3,12 +3,12 @@
 use super::complex::{unstable, verdict};
 use super::format::significant;
 use super::html::{document, escape, notes, section, untitled};
-use super::section::Section;
-use super::table::Table;
+use super::section::ReportSection;
+use super::table::ReportTable;
 use crate::results::{ComplexResult, RunResults};
 
 /// The whole page.
-pub(super) fn page(results: &RunResults, sections: &[Section]) -> String {
+pub(super) fn page(results: &RunResults, sections: &[ReportSection]) -> String {
     let title = if results.title.is_empty() { "Results" } else { &results.title };
     let mut body =
         format!("<h1>{}</h1>\n<p class=\"sub\">{}</p>\n", escape(title), escape(&subtitle(results)));
@@ -60,8 +60,8 @@ fn verdict_box(results: &RunResults) -> String {
 }
 
 /// Where the wall time went.
-fn timings(results: &RunResults) -> Table {
-    let mut table = Table::new("Wall time", &["<phase", "seconds"]);
+fn timings(results: &RunResults) -> ReportTable {
+    let mut table = ReportTable::new("Wall time", &["<phase", "seconds"]);
     for (phase, seconds) in &results.timings {
         table.row(vec![phase.clone(), significant(*seconds, 3)], false);
     }

@@ -76,7 +76,7 @@ pub use channel::{Channel, modal_channel};
 pub use comparison::{MeasuredComparison, MeasuredResponses, MeasuredRow, Placed, ResponsePair};
 pub use complex::ComplexResult;
 pub use damping::{DampingRow, DampingVerdicts};
-pub use explored::Method;
+pub use explored::SweepMethod;
 #[cfg(feature = "hdf5")]
 pub use fields::FieldsFile;
 #[cfg(feature = "hdf5")]
@@ -88,7 +88,7 @@ pub use lock::FolderLock;
 pub use maps::MapResult;
 pub use real_modes::NamedModes;
 pub use record_size::{RecordSize, fits_in_memory, fits_on_disk};
-pub use records::{Record, Records};
+pub use records::{AnalysisRecord, Records};
 pub use reduced_check::{Deviation, MotionCompared, ReducedCheck};
 pub use run_results::{Geometry, ModelSize, NodalField, RunResults};
 pub use search::{Moved, SearchResult, SearchedNumber};
@@ -98,10 +98,12 @@ pub use sound::{Heard, Sound, Sounding, Tone};
 pub use steady::{PairTotals, SteadyResult};
 pub use summary::{SCHEMA_VERSION, summary_json, write_summary};
 pub use sweeps::SweepResult;
-pub use transient::{Field, Fields, GrowthCompared, Piece, Recording, SpectrumOf, TransientResult};
+pub use transient::{
+    FieldSnapshot, Fields, GrowthCompared, RecordPiece, Recording, SpectrumOf, TransientResult,
+};
 pub use transient_csv::{EventTable, HistoryTable};
-pub use validation::{Checked, CheckedCase, passed};
+pub use validation::{CheckedCase, CheckedQuantity, passed};
 pub use vtk::write_vtk;
 pub(crate) use watched::ContactWatch;
-pub use watched::{ContactHistory, Curve, Orbit, TouchState, Watched};
+pub use watched::{ContactHistory, Orbit, PhaseCurve, TouchState, Watched};
 pub use write::write_files;

@@ -447,11 +447,11 @@ fn transient() -> TransientResult {
         orbit: Orbit {
             periods: [12.0, 1668.0],
             curves: vec![
-                Curve {
+                PhaseCurve {
                     axes: ["slip velocity [m/s]", "friction [N]"].map(String::from),
                     points: motion.iter().map(|[_, v]| [0.5 - v, 8.0 + 2.0 * v]).collect(),
                 },
-                Curve { axes: ["displacement [m]", "velocity [m/s]"].map(String::from), points: motion },
+                PhaseCurve { axes: ["displacement [m]", "velocity [m/s]"].map(String::from), points: motion },
             ],
         },
         contact: contact.finish(),

@@ -120,13 +120,13 @@ impl Sounding {
 }
 
 /// A plate's name and the power that it sends out \[W\].
-type Plate<'a> = (&'a str, f64);
+type PlatePower<'a> = (&'a str, f64);
 
-fn plate_columns<'a>(whole: f64) -> Vec<Column<Plate<'a>>> {
+fn plate_columns<'a>(whole: f64) -> Vec<Column<PlatePower<'a>>> {
     vec![
-        column("name", "text", "name of the plate", |(name, _): &Plate| (*name).to_string()),
-        column("power_w", "W", "sound power of both sides", |(_, power): &Plate| *power),
-        column("share", "1", "its part of the whole", move |(_, power): &Plate| power / whole),
+        column("name", "text", "name of the plate", |(name, _): &PlatePower| (*name).to_string()),
+        column("power_w", "W", "sound power of both sides", |(_, power): &PlatePower| *power),
+        column("share", "1", "its part of the whole", move |(_, power): &PlatePower| power / whole),
     ]
 }
 
@@ -157,7 +157,7 @@ impl Sound {
     pub(super) fn group(&self) -> Group<'_> {
         let [level, weighted] = self.power_levels();
         let [mean, mean_weighted] = self.mean_levels(1.0);
-        let plates: Vec<Plate> =
+        let plates: Vec<PlatePower> =
             self.plates.iter().map(|(name, lines)| (&**name, lines.iter().sum())).collect();
         let whole: f64 = (0..self.lines()).map(|k| self.power(k)).sum();
         let air = Group::new("air", "what carries the sound")

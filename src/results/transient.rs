@@ -45,7 +45,7 @@ pub struct Fields<'a> {
 
 /// The motion of all nodes at a time.
 #[derive(Debug, Clone, Copy)]
-pub struct Field<'a> {
+pub struct FieldSnapshot<'a> {
     /// How many were written before it.
     pub number: usize,
     /// From steady sliding \[m\].
@@ -56,7 +56,7 @@ pub struct Field<'a> {
 
 /// A piece of the record, and the state from which the run resumes after it.
 #[derive(Debug, Clone, Copy)]
-pub struct Piece<'a> {
+pub struct RecordPiece<'a> {
     /// The first of its rows.
     pub first: usize,
     /// The values of each channel.

@@ -4,7 +4,7 @@ use super::ComplexMode;
 use super::block::Block;
 use super::budget::growth_budget;
 use super::operator::Operator;
-use super::refinement::Measured;
+use super::refinement::MeasuredPairs;
 use crate::linalg::c64;
 use rayon::prelude::*;
 
@@ -15,7 +15,7 @@ use rayon::prelude::*;
 /// they are requested.
 pub(super) fn finished(
     operator: &Operator<'_>,
-    measured: &mut Measured,
+    measured: &mut MeasuredPairs,
     amplitudes: &Block,
     left: Option<&Block>,
 ) -> Vec<ComplexMode> {

@@ -40,7 +40,7 @@ pub use advice::PointRates;
 pub use analysis::{complex_eigenvalues, complex_modes};
 pub use band::Band;
 pub use certificate::{Certificate, CloseCall, SLOWEST_GROWTH, certified_modes};
-pub use family::{Family, FamilyCheck, FamilyModes, Frame, SlidingState};
+pub use family::{Family, FamilyCheck, FamilyFrame, FamilyModes, SlidingState};
 pub use filter::{ModalFilter, modal_filter};
 pub use full_order::{Confirmation, confirm};
 pub use harmonic::Harmonic;

@@ -1,8 +1,8 @@
 //! The full-order quadratic operator Q(λ) = λ² M + λ (C + C_c) + K + K_σ + iH + K_c, applied without forming it.
 
 use super::block::Block;
-use super::damper::{Between, Damper, Part, modal_times};
-use super::interface::{Interface, Term};
+use super::damper::{Between, Damper, DamperPart, modal_times};
+use super::interface::{Interface, InterfaceTerm};
 use crate::equilibrium::{SteadySliding, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::multivector::Columns;
@@ -65,7 +65,7 @@ enum Loss {
 impl Loss {
     const BOTH: [Loss; 2] = [Loss::Viscous, Loss::Hysteretic];
 
-    fn part<'d>(self, damper: &'d Damper<'_>) -> &'d Part {
+    fn part<'d>(self, damper: &'d Damper<'_>) -> &'d DamperPart {
         match self {
             Loss::Viscous => &damper.viscous,
             Loss::Hysteretic => &damper.loss,
@@ -187,7 +187,7 @@ impl<'a> Operator<'a> {
 
     /// The same operator whose interface has other terms between the same directions, with `weights` for its dampings:
     /// those that are missing are one for the first and none for the others.
-    pub(super) fn with_terms(&self, terms: Vec<Term>, weights: &[f64]) -> Operator<'_> {
+    pub(super) fn with_terms(&self, terms: Vec<InterfaceTerm>, weights: &[f64]) -> Operator<'_> {
         let interface = Interface { directions: self.interface.directions.clone(), terms };
         let mut all = only_first(self.dampers.len());
         all.iter_mut().zip(weights).for_each(|(all, weight)| *all = *weight);

@@ -2,7 +2,7 @@
 
 use super::map::MapPoint;
 use super::root::{Bracket, narrow};
-use super::{Axis, Problem, ROUND_OFF};
+use super::{Axis, ROUND_OFF, SweepProblem};
 use crate::error::Result;
 use crate::progress::Observer;
 use rayon::prelude::*;
@@ -18,7 +18,7 @@ pub struct Boundary {
 }
 
 /// An edge of the grid: its lower left end and whether it goes up.
-type Edge = (usize, usize, bool);
+type GridEdge = (usize, usize, bool);
 
 /// Locates the boundary on every edge of the grid with a stable and an unstable end, to `tolerance` of the value, and
 /// joins the points through the cells. Where all four edges of a cell are cut, the middle of the cell decides.
@@ -26,7 +26,7 @@ type Edge = (usize, usize, bool);
 /// # Errors
 /// A place near the boundary without an answer.
 pub fn boundary(
-    problem: &dyn Problem,
+    problem: &dyn SweepProblem,
     axes: &[Axis; 2],
     map: &[MapPoint],
     tolerance: f64,
@@ -40,7 +40,7 @@ pub fn boundary(
         (Some(a), Some(b)) => a != b,
         _ => false,
     };
-    let mut edges: Vec<Edge> = Vec::new();
+    let mut edges: Vec<GridEdge> = Vec::new();
     for j in 0..ny {
         for i in 0..nx {
             if i + 1 < nx && differ((i, j), (i + 1, j)) {
@@ -56,7 +56,7 @@ pub fn boundary(
         let all = problem.eigenvalues(at)?;
         Ok(all.iter().map(|z| z.re - ROUND_OFF * z.norm()).fold(f64::NEG_INFINITY, f64::max).max(-1e300))
     };
-    let locate = |&(i, j, rising): &Edge| -> Result<[f64; 2]> {
+    let locate = |&(i, j, rising): &GridEdge| -> Result<[f64; 2]> {
         let axis = &axes[usize::from(rising)];
         let place = |x: f64| if rising { [axes[0].value(i), x] } else { [x, axes[1].value(j)] };
         let k = if rising { j } else { i };
@@ -78,7 +78,7 @@ pub fn boundary(
     };
     observer.end();
     let points = points?;
-    let index: BTreeMap<Edge, usize> = edges.iter().enumerate().map(|(k, e)| (*e, k)).collect();
+    let index: BTreeMap<GridEdge, usize> = edges.iter().enumerate().map(|(k, e)| (*e, k)).collect();
     let mut segments = Vec::new();
     for j in 0..ny.saturating_sub(1) {
         for i in 0..nx.saturating_sub(1) {

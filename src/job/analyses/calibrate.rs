@@ -8,9 +8,9 @@ use crate::job::prepared::Prepared;
 use crate::job::run::Run;
 
 /// Calibration.
-pub struct Calibrate;
+pub struct CalibrateCommand;
 
-impl Analysis for Calibrate {
+impl Analysis for CalibrateCommand {
     fn name(&self) -> &'static str {
         "calibrate"
     }

@@ -20,7 +20,7 @@ mod step;
 mod watched;
 
 pub use in_time::InTime;
-pub use places::{Places, places};
+pub use places::{TransientPlaces, places};
 
 use super::course::profile;
 use super::sink::ResultSink;
@@ -32,14 +32,14 @@ use crate::progress::Observer;
 use crate::reduction::{Reduced, reduce};
 use crate::results::TransientResult;
 use crate::system::System;
-use crate::transient::{Marched, Method, Model, Plan, Profile, Scheme, State, resume};
+use crate::transient::{Marched, Plan, Scheme, State, StepMethod, TimeProfile, TransientModel, resume};
 use along::Along;
 use history_writer::HistoryWriter;
 use modal::ModalMotion;
 use recorder::Recorder;
 use reduced_check::{first_steps, reduced_check};
 use snapshots::Snapshots;
-use start::Start;
+use start::InitialState;
 
 /// Peaks and spectrograms reach this many times as high as the band of the complex eigenvalues: modes above it are neither
 /// damped nor resolved as those in it are.
@@ -53,7 +53,7 @@ impl InTime<'_> {
     pub fn run(
         &self,
         wanted: &TransientAnalysis,
-        places: Places,
+        places: TransientPlaces,
         sink: &mut dyn ResultSink,
         observer: &dyn Observer,
     ) -> Result<TransientResult> {
@@ -66,18 +66,18 @@ impl InTime<'_> {
             ModelChoice::Full => None,
             ModelChoice::Reduced => Some(self.on_reduced(&mut places, &mut disturbed)?),
         };
-        let Places { pushes, probes, gauges, tracks, acoustics, .. } = places;
-        let Start { state: origin, at_rest } = start;
+        let TransientPlaces { pushes, probes, gauges, tracks, acoustics, .. } = places;
+        let InitialState { state: origin, at_rest } = start;
         let small = reduced.as_ref().map(|reduced| reduced.steady(&origin));
         let steady = small.as_ref().unwrap_or(&origin);
         let system = reduced.as_ref().map_or(self.system, |reduced| &reduced.system);
-        let profiles: Vec<Profile> = self
+        let profiles: Vec<TimeProfile> = self
             .system
             .pairs
             .iter()
             .map(|pair| profile(wanted.slide.get(&pair.name).map(|s| &s.course)))
             .collect();
-        let model = Model::new(system, steady)?
+        let model = TransientModel::new(system, steady)?
             .driven(profiles, pushes)
             .loaded(loadings)
             .travelling(tracks.iter().map(Option::as_ref).collect());
@@ -138,8 +138,8 @@ impl InTime<'_> {
     }
 
     /// The reduced model, on which all places and the disturbed mode stand from then on.
-    fn on_reduced(&self, places: &mut Places, disturbed: &mut Option<Along>) -> Result<Reduced> {
-        let Places { pushes, probes, gauges, tracks, .. } = places;
+    fn on_reduced(&self, places: &mut TransientPlaces, disturbed: &mut Option<Along>) -> Result<Reduced> {
+        let TransientPlaces { pushes, probes, gauges, tracks, .. } = places;
         let stations = tracks.iter().flatten().flat_map(|track| track.stations.iter().flatten());
         let stations = stations.flat_map(|point| [&point.normal, &point.tangents[0], &point.tangents[1]]);
         let pushed = pushes.iter().map(|push| &push.direction);
@@ -161,7 +161,7 @@ impl InTime<'_> {
 /// Marches to the end; what was recorded is written, whatever comes.
 fn march_on(
     writer: &mut HistoryWriter,
-    (model, plan): (&Model, &Plan),
+    (model, plan): (&TransientModel, &Plan),
     marched: &mut Marched,
     observer: &dyn Observer,
 ) -> Result<()> {
@@ -179,7 +179,7 @@ fn plan(wanted: &TransientAnalysis) -> Plan {
         scheme: scheme(wanted.scheme).0,
         step: wanted.time_step,
         steps: places::steps(wanted.duration, wanted.time_step),
-        method: if wanted.full_newton { Method::FullNewton } else { Method::Condensed },
+        method: if wanted.full_newton { StepMethod::FullNewton } else { StepMethod::Condensed },
         tolerance: wanted.tolerance,
     }
 }

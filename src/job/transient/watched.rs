@@ -2,7 +2,7 @@
 
 use super::history_writer::HistoryWriter;
 use crate::error::Result;
-use crate::results::{ContactHistory, ContactWatch, Curve, Orbit, SpectrumOf, Watched};
+use crate::results::{ContactHistory, ContactWatch, Orbit, PhaseCurve, SpectrumOf, Watched};
 use crate::signal::{LimitCycle, ShortTime, Spectrogram, limit_cycle};
 
 /// The size of an oscillation is taken from this last part of the run, and from no more steps than these.
@@ -65,9 +65,12 @@ impl HistoryWriter<'_, '_> {
         let read = |channel: usize| -> Result<Vec<f64>> {
             Ok(self.read(channel, rows - wanted..rows)?.into_iter().step_by(every).collect())
         };
-        let curve = |[across, up]: [usize; 2]| -> Result<Curve> {
+        let curve = |[across, up]: [usize; 2]| -> Result<PhaseCurve> {
             let points = read(across)?.into_iter().zip(read(up)?).map(|(x, y)| [x, y]).collect();
-            Ok(Curve { axes: [across, up].map(|channel| self.recorder.described[channel].heading()), points })
+            Ok(PhaseCurve {
+                axes: [across, up].map(|channel| self.recorder.described[channel].heading()),
+                points,
+            })
         };
         let curves = self.recorder.orbits().into_iter().map(curve).collect::<Result<_>>()?;
         Ok(Orbit { periods: [wanted as f64 * step * hz, hz], curves })

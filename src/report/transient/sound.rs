@@ -6,7 +6,7 @@ use crate::report::chart::{Area, above, bold, colour, sheet, text};
 use crate::report::colours::{ALARM, INK, SECOND};
 use crate::report::format::{fixed, given, hertz, significant};
 use crate::report::section::Picture;
-use crate::report::table::Table;
+use crate::report::table::ReportTable;
 use crate::results::{RunResults, Sound, TransientResult};
 use crate::sound::{power_level, pressure_level};
 use plotters::prelude::*;
@@ -104,7 +104,7 @@ fn label(
 }
 
 /// How loud a run is.
-pub(in crate::report) fn table(run: &TransientResult, real_modes: &[String]) -> Option<Table> {
+pub(in crate::report) fn table(run: &TransientResult, real_modes: &[String]) -> Option<ReportTable> {
     let sound = run.sound.as_ref()?;
     let headings = ["tone [Hz]", "power level [dB]", "share of the power [%]", "<is"];
     let [level, weighted] = sound.power_levels();
@@ -115,7 +115,7 @@ pub(in crate::report) fn table(run: &TransientResult, real_modes: &[String]) -> 
         fixed(level, 1),
         fixed(weighted, 1)
     );
-    let mut table = Table::new(caption, &headings);
+    let mut table = ReportTable::new(caption, &headings);
     for tone in &sound.tones {
         let cells = vec![
             hertz(tone.peak.frequency_hz, 1),

@@ -1,7 +1,7 @@
 //! The figures of a run in time.
 
 use crate::report::format::{fixed, given, hertz, power, signed, significant};
-use crate::report::table::Table;
+use crate::report::table::ReportTable;
 use crate::results::{GrowthCompared, TransientResult};
 use crate::signal::LimitCycle;
 use std::f64::consts::TAU;
@@ -10,8 +10,8 @@ use std::f64::consts::TAU;
 const NEAR: f64 = 0.05;
 
 /// The figures of a run in time.
-pub(in crate::report) fn table(run: &TransientResult) -> Table {
-    let mut table = Table::new(
+pub(in crate::report) fn table(run: &TransientResult) -> ReportTable {
+    let mut table = ReportTable::new(
         format!(
             "Motion in time: {} steps of {} s, {}",
             run.len().saturating_sub(1),

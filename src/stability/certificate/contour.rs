@@ -1,7 +1,7 @@
 //! The winding number of d along a rectangle, covered by discs in which its phase cannot be misread.
 
-use super::pencil::{Pencil, Point};
-use super::region::Region;
+use super::pencil::{ContourPoint, Pencil};
+use super::region::CountedRegion;
 use crate::linalg::c64;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -34,7 +34,11 @@ const PIECES: usize = 16;
 const POINTS: usize = 20_000;
 
 /// Walks round `region`, with `most_points` points at most.
-pub(super) fn wind(pencil: &Pencil<'_>, region: &Region, most_points: usize) -> Result<Winding, Stopped> {
+pub(super) fn wind(
+    pencil: &Pencil<'_>,
+    region: &CountedRegion,
+    most_points: usize,
+) -> Result<Winding, Stopped> {
     let path = region.path();
     let pieces: Vec<[c64; 2]> = path
         .windows(2)
@@ -49,13 +53,13 @@ pub(super) fn wind(pencil: &Pencil<'_>, region: &Region, most_points: usize) -> 
     let resolution = 1e-11 * region.omega[1];
     // Whether all pieces together stay below the limit does not depend on who counts first.
     let budget = Budget { evaluated: AtomicUsize::new(0), most: most_points };
-    let covered: Vec<Result<Vec<Point>, Stopped>> =
+    let covered: Vec<Result<Vec<ContourPoint>, Stopped>> =
         pieces.par_iter().map(|[a, b]| cover(pencil, *a, *b, resolution, &budget)).collect();
     if budget.spent() {
         return Err(Stopped::TooManyPoints);
     }
-    let covered: Result<Vec<Vec<Point>>, Stopped> = covered.into_iter().collect();
-    let mut points: Vec<Point> = covered?.into_iter().flatten().collect();
+    let covered: Result<Vec<Vec<ContourPoint>>, Stopped> = covered.into_iter().collect();
+    let mut points: Vec<ContourPoint> = covered?.into_iter().flatten().collect();
     let count = points.len();
     let worst = points.iter().copied().reduce(|a, b| if b.defect > a.defect { b } else { a });
     if region.symmetric() {
@@ -105,7 +109,7 @@ fn cover(
     b: c64,
     resolution: f64,
     budget: &Budget,
-) -> Result<Vec<Point>, Stopped> {
+) -> Result<Vec<ContourPoint>, Stopped> {
     let length = (b - a).norm();
     let direction = (b - a) / length;
     let mut done = Vec::new();

@@ -5,7 +5,7 @@
 //! is smooth, so that few points are enough. A stretch is halved until the phase changes by less than [`STEP`] on either half:
 //! the phase between the points is followed, not bounded, so that this is a count and no proof.
 
-use super::region::Region;
+use super::region::CountedRegion;
 use super::{Certificate, SLOWEST_GROWTH, close_calls, found};
 use crate::error::{Error, Result};
 use crate::linalg::c64;
@@ -49,7 +49,7 @@ pub(in crate::stability) fn count(
     // With loss factors the spectrum is not symmetric, and at ω = 0 they mean nothing.
     let lossy = operator.damping.hysteretic.is_some();
     let bottom = if low == 0.0 && lossy { 1e-3 * high } else { low };
-    let region = Region { growth: [SLOWEST_GROWTH * high, FASTEST * high], omega: [bottom, high] };
+    let region = CountedRegion { growth: [SLOWEST_GROWTH * high, FASTEST * high], omega: [bottom, high] };
     let known = known(&general.seen, !lossy);
     let determinant = Determinant { operator, general, known: &known };
     let pieces: Vec<[c64; 2]> = region

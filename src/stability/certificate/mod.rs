@@ -38,7 +38,7 @@ mod tests;
 
 use super::ComplexModes;
 use super::Structural;
-use super::analysis::{Analysis, analyse, check};
+use super::analysis::{CompletedAnalysis, analyse, check};
 use super::band::Band;
 use super::general::general_modes;
 use super::operator::Operator;
@@ -52,8 +52,8 @@ use contour::{Stopped, Winding, wind};
 pub(in crate::stability) use determinant::count as count_determinant;
 use pencil::Pencil;
 use reduced::ReducedModel;
-use region::Region;
-use spectrum::Spectrum;
+use region::CountedRegion;
+use spectrum::ReducedSpectrum;
 use std::f64::consts::TAU;
 
 /// ε relative to the band's top, 2π f: the slowest growth that is counted. At the band's top it is a damping ratio of
@@ -209,19 +209,19 @@ fn counted_at_full_order(
 }
 
 /// The directions in which the interface acts.
-fn directions(analysis: &Analysis<'_>) -> usize {
+fn directions(analysis: &CompletedAnalysis<'_>) -> usize {
     analysis.operator.interface.active(TAU * analysis.band_hz[1]).len()
 }
 
 /// About the floating-point operations of a point of the contour: products of matrices of the sizes of the basis (m) and
 /// the interface (r), and what small ones cost besides.
-fn work_of_a_point(analysis: &Analysis<'_>) -> f64 {
+fn work_of_a_point(analysis: &CompletedAnalysis<'_>) -> f64 {
     let (m, r) = (analysis.basis.len() as f64, directions(analysis) as f64);
     r * r * (16.0 * m + 40.0 * r) + 4.0 * m * r * (m - analysis.basis.n_real() as f64) + 3e5
 }
 
 /// Expected work of a count \[operations\]: about thirty points of the contour a mode.
-fn expected_work(analysis: &Analysis<'_>, modes: &ComplexModes) -> f64 {
+fn expected_work(analysis: &CompletedAnalysis<'_>, modes: &ComplexModes) -> f64 {
     30.0 * (modes.modes.len() + 10) as f64 * work_of_a_point(analysis)
 }
 
@@ -235,7 +235,7 @@ fn weak(certificate: &Certificate) -> String {
 }
 
 /// The count by the walk round the region, or from the spectrum where that is long: then the walk is the last resort.
-fn count(analysis: &Analysis<'_>, modes: &ComplexModes, most_work: f64) -> Result<Certificate> {
+fn count(analysis: &CompletedAnalysis<'_>, modes: &ComplexModes, most_work: f64) -> Result<Certificate> {
     let walk = expected_work(analysis, modes);
     if walk <= LONG_WALK.max(spectrum::work(analysis.basis.len())) {
         return count_by(Way::Walk, analysis, modes, most_work);
@@ -258,9 +258,14 @@ enum Way {
 }
 
 /// Function that counts the zeros of Q_B in a region.
-type Count<'a> = dyn Fn(&Region) -> std::result::Result<Winding, Stopped> + 'a;
+type Count<'a> = dyn Fn(&CountedRegion) -> std::result::Result<Winding, Stopped> + 'a;
 
-fn count_by(way: Way, analysis: &Analysis<'_>, modes: &ComplexModes, most_work: f64) -> Result<Certificate> {
+fn count_by(
+    way: Way,
+    analysis: &CompletedAnalysis<'_>,
+    modes: &ComplexModes,
+    most_work: f64,
+) -> Result<Certificate> {
     let model = ReducedModel::new(analysis)?;
     let top = TAU * analysis.band_hz[1];
     let interface = &analysis.operator.interface;
@@ -272,11 +277,11 @@ fn count_by(way: Way, analysis: &Analysis<'_>, modes: &ComplexModes, most_work: 
             Box::new(move |region| wind(&pencil, region, most_points))
         }
         Way::Spectrum => {
-            let spectrum = Spectrum::new(&model, &interface.terms, &sizes, top)?;
+            let spectrum = ReducedSpectrum::new(&model, &interface.terms, &sizes, top)?;
             Box::new(move |region| spectrum.count(region))
         }
     };
-    let mut best: Option<(Region, Winding)> = None;
+    let mut best: Option<(CountedRegion, Winding)> = None;
     let mut stopped = Stopped::TooManyPoints;
     for attempt in 0..ATTEMPTS {
         let region = region(analysis, attempt);
@@ -330,26 +335,26 @@ fn count_by(way: Way, analysis: &Analysis<'_>, modes: &ComplexModes, most_work: 
 }
 
 /// The band of the analysis times ε … R, each attempt a little smaller.
-fn region(analysis: &Analysis<'_>, attempt: usize) -> Region {
+fn region(analysis: &CompletedAnalysis<'_>, attempt: usize) -> CountedRegion {
     let [low, high] = analysis.band_hz.map(|f| TAU * f);
     let inward = 1e-5 * attempt as f64;
     // With loss factors the spectrum is not symmetric, and at ω = 0 they mean nothing.
     let bottom = if low == 0.0 && analysis.operator.damping.hysteretic.is_some() { 1e-3 * high } else { low };
     let growth = SLOWEST_GROWTH * high * (1.0 + 0.1 * attempt as f64);
-    Region {
+    CountedRegion {
         growth: [growth, high],
         omega: [if bottom > 0.0 { bottom + inward * high } else { 0.0 }, high * (1.0 - inward)],
     }
 }
 
 /// The eigenvalues found inside: each once, or both of a pair when the region holds both.
-fn found(modes: &ComplexModes, region: &Region) -> i64 {
+fn found(modes: &ComplexModes, region: &CountedRegion) -> i64 {
     let inside = modes.modes.iter().map(|m| m.eigenvalue).filter(|z| region.contains(*z));
     inside.map(|z| if region.symmetric() && z.im > 1e-9 * z.norm() { 2 } else { 1 }).sum()
 }
 
 /// Modes within half of ε, or within their own error, of the contour, and unstable ones slower than ε.
-fn close_calls(modes: &ComplexModes, region: &Region) -> Vec<CloseCall> {
+fn close_calls(modes: &ComplexModes, region: &CountedRegion) -> Vec<CloseCall> {
     let slowest = region.growth[0];
     let call = |mode: &super::ComplexMode| {
         let z = mode.eigenvalue;
