@@ -25,7 +25,7 @@ struct AnalyseOptions {
     /// The folder for the results; `results/NAME` by default, NAME being the case file's, or its folder's for case.toml
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Take up the maps and the run in time that an interrupted run of the same case left in the folder
+    /// Resume the maps and the run in time that an interrupted run of the same case left in the folder
     #[arg(long)]
     resume: bool,
 }
@@ -34,7 +34,7 @@ struct AnalyseOptions {
 fn commands() -> impl Iterator<Item = (&'static str, &'static str, Selection)> {
     let run = ("run", "Run every analysis of a case and write a results folder", Selection::Listed);
     let each = ANALYSES.map(|analysis| (analysis.name(), analysis.about(), Selection::Only(analysis.name())));
-    let about = "What tests measured beside the real modes and frequency responses that they are of";
+    let about = "Compare measured with computed real modes and frequency responses";
     std::iter::once(run).chain(each).chain([("compare", about, Selection::Measured)])
 }
 

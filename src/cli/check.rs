@@ -13,7 +13,7 @@ use std::process::ExitCode;
 pub struct CheckOptions {
     /// The case file (TOML)
     case: PathBuf,
-    /// Also list every scalar: path, value, SI unit, the values it may take, what a change makes compute again
+    /// Also list every scalar: path, value, SI unit, the values it may take, what a change invalidates
     #[arg(long)]
     parameters: bool,
     /// Also print the resolved case, every default written out

@@ -27,7 +27,7 @@ pub struct Output {
     /// The file to write (Gmsh 4.1, in millimetres)
     #[arg(long, short, value_name = "FILE")]
     out: PathBuf,
-    /// Overwrite the file if it is there
+    /// Overwrite an existing file
     #[arg(long)]
     force: bool,
 }
@@ -198,7 +198,7 @@ fn write(mesh: &Mesh, output: &Output, common: &Common) -> Result<()> {
     Ok(())
 }
 
-/// Refuses to overwrite what is there; `help` says what else to do.
+/// Refuses to overwrite an existing file; `help` is the corrective action.
 pub(super) fn refuse_existing(path: &Path, help: &str) -> Result<()> {
     if path.exists() {
         let fault = Fault::new(path.display().to_string(), "something there already", "a new name");

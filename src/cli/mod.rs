@@ -32,7 +32,7 @@ struct Command {
 enum Action {
     #[command(flatten)]
     Analyse(analyse::Analyse),
-    /// Search for numbers of a case inside bounds, so that it meets facts of any kind
+    /// Search for parameters of a case inside bounds, so that its results match given facts
     Search(search::SearchOptions),
     /// Check a case and its mesh without running it, and list its parameters
     Check(check::CheckOptions),
@@ -45,7 +45,7 @@ enum Action {
     /// Generate or inspect a mesh
     #[command(subcommand)]
     Mesh(mesh::MeshAction),
-    /// Run the validation cases and print computed beside reference values
+    /// Run the validation cases and compare computed with reference values
     Validate(validate::ValidateOptions),
 }
 

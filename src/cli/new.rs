@@ -16,7 +16,7 @@ const SCHEMA: &str = "case.schema.json";
 
 #[derive(Args)]
 pub struct NewOptions {
-    /// The folder to make; its case file is NAME/case.toml
+    /// The folder to create; its case file is NAME/case.toml
     name: PathBuf,
 }
 

@@ -17,7 +17,7 @@ pub struct SearchOptions {
     /// The folder for the results; `results/NAME` by default, NAME being the file's, or its folder's for search.toml
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Go on with the evaluations that an interrupted run of the same search left in the folder
+    /// Resume from the evaluations that an interrupted run of the same search left in the folder
     #[arg(long)]
     resume: bool,
 }

@@ -103,7 +103,7 @@ impl TestRecords {
             let more = if lost.len() > few.len() { " …" } else { "" };
             let list = few.join(", ") + more;
             warnings.push(format!(
-                "what was measured at points without a place was left out (points {list}); `point` may give places"
+                "data measured at points without coordinates were left out (points {list}); `point` may give coordinates"
             ));
         }
         let set = MeasuredSet { dofs: dofs.collect(), modes: modes.iter().map(mode).collect(), frfs, points };

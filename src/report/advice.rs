@@ -110,10 +110,11 @@ fn draw_cell(sheet: &mut Sheet, [x, y]: SvgPoint, plate: &PlateView, values: &[f
 fn draw_legend(sheet: &mut Sheet, y: f64) {
     let width = colour_bar(sheet, [LEFT + 16.0, y], 14.0);
     let ink = Ink { size: 12.5, colour: INK, bold: false, anchor: Anchor::Middle };
-    for (place, text) in [(0.0, "calms"), (0.5, "0"), (1.0, "feeds")] {
+    for (place, text) in [(0.0, "stabilises"), (0.5, "0"), (1.0, "destabilises")] {
         sheet.text([LEFT + 16.0 + place * width, y + 29.0], text, ink);
     }
-    let note = "change of σ per thing mounted at a place; the range below each plate belongs to its colours";
+    let note =
+        "change of σ per addition mounted at a place; the range below each plate belongs to its colours";
     sheet.text([LEFT + width + 60.0, y + 12.0], note, Ink { anchor: Anchor::Start, ..ink });
 }
 

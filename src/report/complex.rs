@@ -132,7 +132,7 @@ fn second_method(confirmation: &Confirmation) -> String {
 /// The verdict in one sentence.
 pub(super) fn verdict(results: &RunResults) -> String {
     let Some(complex) = results.get::<ComplexResult>() else {
-        return "No complex eigenvalues were requested: this run does not assess squeal.".into();
+        return "No complex eigenvalues were requested: this run makes no statement about squeal.".into();
     };
     let band = complex.band_hz.map(given);
     let modes = &complex.modes.modes;
@@ -152,7 +152,9 @@ pub(super) fn verdict(results: &RunResults) -> String {
         );
     }
     match (modes.len(), unstable) {
-        (0, _) => format!("No complex mode was found {between}: this run says nothing about squeal there."),
+        (0, _) => {
+            format!("No complex mode was found {between}: this run makes no statement about squeal there.")
+        }
         (all, 0) if undecided + inaccurate > 0 => {
             format!("Undecided: none of the {all} complex modes {between} grows for certain.{doubt}")
         }

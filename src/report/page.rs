@@ -118,6 +118,6 @@ mod tests {
     #[test]
     fn a_run_without_results_still_has_a_page() {
         let page = page(&RunResults::default(), &[]);
-        assert!(page.contains("says nothing about squeal") && page.ends_with("</html>\n"));
+        assert!(page.contains("makes no statement about squeal") && page.ends_with("</html>\n"));
     }
 }

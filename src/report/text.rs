@@ -159,6 +159,6 @@ mod tests {
         results.get_mut::<ComplexResult>().unwrap().modes.modes.retain(|mode| !mode.unstable());
         let text = verdict(&results);
         assert!(text.contains("Stable: none of the 11") && text.contains("936 Hz"), "{text}");
-        assert!(verdict(&RunResults::default()).contains("says nothing about squeal"));
+        assert!(verdict(&RunResults::default()).contains("makes no statement about squeal"));
     }
 }

@@ -16,7 +16,7 @@ impl Analysis for CalibrateCommand {
     }
 
     fn about(&self) -> &'static str {
-        "Find numbers of the case from measured frequencies, and what the agreement is worth"
+        "Calibrate parameters of the case with measured modes and responses, and assess the result"
     }
 
     fn example(&self) -> Option<&'static str> {

@@ -17,7 +17,7 @@ impl Analysis for SensitivityCommand {
     }
 
     fn about(&self) -> &'static str {
-        "Complex eigenvalues, what they answer to most, and where a mass or a damper helps"
+        "Complex eigenvalues, their sensitivities, and where a mass or a damper stabilises them"
     }
 
     fn example(&self) -> Option<&'static str> {

@@ -123,7 +123,7 @@ fn read_binary<'a>(dataset: &mut Dataset<'a>, name: &str, cursor: &mut FileCurso
         return Err(Error::input(Fault::new(
             place,
             found,
-            "as many numbers as the header says, then `    -1`",
+            "as many numbers as stated in the header, then `    -1`",
         )));
     };
     let length = length(&sizes).unwrap_or(0);

@@ -145,7 +145,7 @@ fn check_total(file: &ByteReader<'_>, what: &str, found: usize, said: usize) -> 
     if found == said {
         return Ok(());
     }
-    Err(file.wrong(format!("{found} {what}"), format!("{said}, as the head of the section says")))
+    Err(file.wrong(format!("{found} {what}"), format!("{said}, as stated in the head of the section")))
 }
 
 fn check_nodes(file: &mut ByteReader<'_>) -> Result<Vec<usize>> {

@@ -51,7 +51,7 @@ pub(super) fn parse(bytes: &[u8], body: usize, encoding: Encoding, place: &str) 
     if raw.nodes.len() as u64 != nodes.num_nodes {
         return Err(wrong(
             format!("{} nodes", raw.nodes.len()),
-            &format!("{}, as $Nodes says", nodes.num_nodes),
+            &format!("{}, as stated in $Nodes", nodes.num_nodes),
         ));
     }
 
@@ -79,7 +79,7 @@ pub(super) fn parse(bytes: &[u8], body: usize, encoding: Encoding, place: &str) 
     }
     if raw.elements.len() as u64 != elements.num_elements {
         let (found, said) = (raw.elements.len(), elements.num_elements);
-        return Err(wrong(format!("{found} elements"), &format!("{said}, as $Elements says")));
+        return Err(wrong(format!("{found} elements"), &format!("{said}, as stated in $Elements")));
     }
     Ok(raw)
 }

@@ -137,7 +137,7 @@ pub(in crate::report) fn table(run: &TransientResult, real_modes: &[String]) -> 
     }
     let mean = sound.mean_levels(1.0);
     table.notes.push(format!(
-        "Mean over all directions at 1 m: {} dB, {} dB(A). On a disc's axis only its modes without nodal diameters are heard.",
+        "Mean over all directions at 1 m: {} dB, {} dB(A). On a disc's axis only its modes without nodal diameters contribute.",
         fixed(mean[0], 1),
         fixed(mean[1], 1)
     ));

@@ -68,7 +68,7 @@ fn disturbance(growth: &GrowthCompared) -> String {
     let (hz, sigma) = (growth.eigenvalue.im / TAU, growth.eigenvalue.re);
     match growth.found {
         Some(found) => format!(
-            "Small disturbance: σ = {}/s at {} Hz, measured over {} s; the complex mode says {}/s at {} Hz.",
+            "Small disturbance: σ = {}/s at {} Hz, measured over {} s; the complex mode has {}/s at {} Hz.",
             signed(found.rate, 2),
             hertz(found.frequency_hz, 2),
             significant(found.window[1] - found.window[0], 3),

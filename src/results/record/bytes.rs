@@ -72,6 +72,6 @@ impl<'a> RecordCursor<'a> {
 
     /// `value`, when nothing follows.
     pub(super) fn end<T>(self, value: T) -> Read<T> {
-        if self.0.is_empty() { Ok(value) } else { Err("it is longer than it says") }
+        if self.0.is_empty() { Ok(value) } else { Err("it is longer than its stated length") }
     }
 }

@@ -229,7 +229,7 @@ impl Record {
         }
         let digest: [u8; 32] = hasher.clone().finalize().into();
         if digest != saved.digest {
-            return Err(damaged(&path, "not what the checkpoint says (its checksum is wrong)"));
+            return Err(damaged(&path, "not the record of the checkpoint (its checksum is wrong)"));
         }
         let mut earlier = read_record(&path, open(&path)?, saved.length, &mut |_| Ok(()))?;
         earlier.march.clone_from(&saved.march);
