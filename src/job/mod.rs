@@ -15,7 +15,6 @@ mod clock;
 mod compare;
 mod complex;
 mod contacts;
-mod course;
 mod explore;
 mod export;
 #[cfg(feature = "cli")]
@@ -45,6 +44,7 @@ mod sink;
 mod sound;
 mod states;
 mod table;
+mod time_function;
 mod transient;
 mod travel;
 mod verify;

@@ -1,8 +1,8 @@
 //! Contacts that run over the mesh of their counter-body in time.
 
 use super::contacts::{Stand, surface_points};
-use super::course::profile;
 use super::prepared::Prepared;
+use super::time_function::profile;
 use crate::case::{Contact, TransientAnalysis};
 use crate::contact::{Stations, mean_edge};
 use crate::error::{Error, Fault, Faults, Result};

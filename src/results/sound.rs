@@ -22,9 +22,9 @@ pub struct Sound {
     /// The peaks of the power, strongest lines of it: amplitude² is their height in W.
     pub tones: Vec<Tone>,
     /// Pressure at each microphone.
-    pub microphones: Vec<Heard>,
+    pub microphones: Vec<MicrophoneSound>,
     /// The pressure at the first microphone.
-    pub recording: Sounding,
+    pub recording: PressureRecord,
 }
 
 /// A peak of the sound power.
@@ -40,7 +40,7 @@ pub struct Tone {
 
 /// Sound pressure at a microphone.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Heard {
+pub struct MicrophoneSound {
     /// Its name.
     pub name: String,
     /// Where it stands \[m\].
@@ -49,9 +49,9 @@ pub struct Heard {
     pub spectrum: Spectrum,
 }
 
-/// A pressure that can be listened to.
+/// Pressure at a microphone as an audio record.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Sounding {
+pub struct PressureRecord {
     /// The time of the first sample \[s\].
     pub begin: f64,
     /// Samples a second.
@@ -95,7 +95,7 @@ impl Sound {
     }
 }
 
-impl Heard {
+impl MicrophoneSound {
     /// The name of the WAV file, if it is the first.
     fn file(&self) -> String {
         format!("sound_{}.wav", self.name)
@@ -111,7 +111,7 @@ impl Heard {
     }
 }
 
-impl Sounding {
+impl PressureRecord {
     /// The pressure that is the largest number of the WAV file \[Pa\]: the loudest moment reaches 0.9 of it.
     pub fn full_scale(&self) -> f64 {
         let loudest = self.pressure.iter().fold(0.0f64, |m, p| m.max(p.abs()));
@@ -141,14 +141,22 @@ fn tone_columns() -> Vec<Column<Tone>> {
     ]
 }
 
-fn microphone_columns() -> Vec<Column<Heard>> {
+fn microphone_columns() -> Vec<Column<MicrophoneSound>> {
     vec![
-        column("name", "text", "name of the microphone", |heard: &Heard| heard.name.clone()),
-        column("at_m", "m", "where it stands", |heard: &Heard| heard.at).along(Dimension::axes()),
-        column("pressure_level_db", "dB", "sound pressure level re 20 µPa", |heard: &Heard| {
-            heard.levels()[0]
+        column("name", "text", "name of the microphone", |microphone: &MicrophoneSound| {
+            microphone.name.clone()
         }),
-        column("pressure_level_db_a", "dB", "the same, A-weighted", |heard: &Heard| heard.levels()[1]),
+        column("at_m", "m", "position", |microphone: &MicrophoneSound| microphone.at)
+            .along(Dimension::axes()),
+        column(
+            "pressure_level_db",
+            "dB",
+            "sound pressure level re 20 µPa",
+            |microphone: &MicrophoneSound| microphone.levels()[0],
+        ),
+        column("pressure_level_db_a", "dB", "the same, A-weighted", |microphone: &MicrophoneSound| {
+            microphone.levels()[1]
+        }),
     ]
 }
 
@@ -210,20 +218,20 @@ impl Sound {
                 lines[k]
             })
         });
-        let heard = self.microphones.iter().map(|heard| {
-            let spectrum = &heard.spectrum;
+        let microphones = self.microphones.iter().map(|microphone| {
+            let spectrum = &microphone.spectrum;
             let square = |k: usize| spectrum.amplitude.get(k).map_or(0.0, |_| spectrum.mean_square(k));
-            let key = format!("mean_square_pressure_{}", heard.name);
+            let key = format!("mean_square_pressure_{}", microphone.name);
             over_lines(key, "Pa^2", "mean square sound pressure, what each line adds", &square)
         });
-        let columns = std::iter::once(frequency).chain(plates).chain(heard).collect();
+        let columns = std::iter::once(frequency).chain(plates).chain(microphones).collect();
         Table::along("spectrum", rows.clone(), columns).file("sound_spectrum").long()
     }
 }
 
-impl Sounding {
-    /// The pressure at a microphone, and the file that it can be heard from.
-    fn group(&self, at: &Heard) -> Group<'_> {
+impl PressureRecord {
+    /// The pressure at a microphone, and its audio file.
+    fn group(&self, at: &MicrophoneSound) -> Group<'_> {
         let time = Dimension::of_variable("time_s", self.pressure.len());
         let times = Values::RealRows(Box::new(|k| vec![self.begin + k as f64 / f64::from(self.rate)]));
         let pressures = Values::RealRows(Box::new(|k| vec![self.pressure[k]]));

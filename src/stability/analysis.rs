@@ -3,9 +3,9 @@
 use super::band::{Band, in_band};
 use super::basis::Basis;
 use super::block::Block;
-use super::finish::finished;
 use super::general::general_modes;
 use super::operator::Operator;
+use super::post_processing::post_processed;
 use super::projected::{SmallPair, project_interface, solve};
 use super::refinement::{Corrections, MeasuredPairs, PairMeasurement, TOGETHER};
 use super::responses::{add_coupled_responses, few_responses};
@@ -371,7 +371,7 @@ fn evaluate(
         wanted.add(scale, &measured);
         let exact: Vec<bool> = (0..chunk.len()).map(|j| measured.exact(j)).collect();
         let left = asked.left_vectors.then(|| scale.basis.expand(&measured.left));
-        let modes = finished(scale.operator, &mut measured, &amplitudes, left.as_ref());
+        let modes = post_processed(scale.operator, &mut measured, &amplitudes, left.as_ref());
         new.extend(modes.into_iter().zip(exact).map(|(mode, exact)| FoundMode { mode, exact }));
     }
     let mut new = new.into_iter();

@@ -9,8 +9,8 @@
 use super::band::{Band, in_band};
 use super::block::Block;
 use super::budget::growth_budget;
-use super::finish::shares;
 use super::operator::{Operator, Side};
+use super::post_processing::shares;
 use super::refinement::TOGETHER;
 use super::shifted::{Adjoint, Shifted};
 use super::{ComplexMode, ComplexModes, accuracy_warnings};

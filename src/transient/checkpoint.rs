@@ -1,6 +1,6 @@
 //! State needed to resume a run in time, as named arrays that any file can hold.
 
-use super::ledger::Work;
+use super::energy_balance::Work;
 use super::march::{Control, Marched};
 use super::model::TransientModel;
 use super::reaction::Bristles;

@@ -1,6 +1,6 @@
 //! Step after step, from a state to the end.
 
-use super::ledger::Work;
+use super::energy_balance::Work;
 use super::model::TransientModel;
 use super::scheme::Scheme;
 use super::solver::StepFailure;

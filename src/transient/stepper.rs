@@ -1,8 +1,8 @@
 //! One step of the scheme: what acts, what follows, what work was done.
 
 use super::condensed::CondensedStep;
+use super::energy_balance::Work;
 use super::full_newton::FullNewton;
-use super::ledger::Work;
 use super::model::TransientModel;
 use super::rows::{chunks, combine};
 use super::scheme::{Scheme, Weights};

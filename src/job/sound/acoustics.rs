@@ -1,4 +1,4 @@
-//! The plates of a case as the air sees them, and where one listens.
+//! Radiating plates, microphones and air of a case.
 
 use super::super::prepared::Prepared;
 use crate::case::{ON_AXIS, SoundAnalysis};
@@ -6,7 +6,7 @@ use crate::error::{Fault, Faults, Result};
 use crate::sound::{Air, Surface};
 use crate::structure::ShellPart;
 
-/// The plates of a case as the air sees them, and where one listens.
+/// Radiating plates, microphones and air of a case.
 #[derive(Debug, Clone)]
 pub struct Acoustics {
     pub(super) plates: Vec<Surface>,

@@ -2,29 +2,29 @@
 //!
 //! [`places`] says what acts and where motion is recorded, `along` finds the complex mode to start along, `recorder`
 //! makes a row of every step, `snapshots` take the motion of all nodes now and then, `history_writer` hands the rows on a piece at
-//! a time, so that memory does not grow with the run, and `findings`, `watched` and `modal` read them back in parts: spectra and growth, what the pictures show, what is heard.
+//! a time, so that memory does not grow with the run, and `findings`, `diagnostics` and `modal` read them back in parts: spectra and growth, what the pictures show, what is heard.
 
 mod along;
 mod channels;
+mod diagnostics;
 mod findings;
-mod heard;
 mod history_writer;
 mod in_time;
 mod modal;
 mod places;
+mod recorded_sound;
 mod recorder;
 mod reduced_check;
 mod snapshots;
 mod start;
 mod step;
-mod watched;
 
 pub use in_time::InTime;
 pub use places::{TransientPlaces, places};
 
-use super::course::profile;
 use super::sink::ResultSink;
-use super::sound::Listener;
+use super::sound::SoundAccumulator;
+use super::time_function::profile;
 use crate::case::{ModelChoice, SchemeChoice, TransientAnalysis};
 use crate::error::{Error, Result};
 use crate::linalg::SparseVector;
@@ -95,9 +95,10 @@ impl InTime<'_> {
             reduced: reduced.as_ref(),
             origin: &steady.displacement,
         });
-        let listener = acoustics.map(|acoustics| Listener::new(acoustics, self.real, plan.step, steps));
+        let accumulator =
+            acoustics.map(|acoustics| SoundAccumulator::new(acoustics, self.real, plan.step, steps));
         let mass = reduced.is_none().then_some(&*self.system.structure.mass);
-        let modal = listener.as_ref().map(|_| ModalMotion::new(self.real, mass));
+        let modal = accumulator.as_ref().map(|_| ModalMotion::new(self.real, mass));
         let mut recorder = Recorder::new(system, steady, &model, (probes, gauges), disturbed, modal);
         if let Some(motion) = recorder.shown.first_mut().filter(|shown| shown.measured.is_empty()) {
             motion.measured = self.complex.measured_squeal_hz.iter().map(|(hz, _)| *hz).collect();
@@ -108,8 +109,10 @@ impl InTime<'_> {
         let share = |count: usize| count as f64 / (steps + 1) as f64;
         let top = WATCHED * self.complex.band_hz[1];
         let found = history_writer.findings(steps + 1, plan.step, top)?;
-        let watched = history_writer.watched(steps + 1, plan.step, &found.spectra, top)?;
-        let sound = listener.map(|listener| history_writer.heard(listener, steps + 1)).transpose()?;
+        let diagnostics = history_writer.diagnostics(steps + 1, plan.step, &found.spectra, top)?;
+        let sound = accumulator
+            .map(|accumulator| history_writer.recorded_sound(accumulator, steps + 1))
+            .transpose()?;
         let first = |name: &str, count: usize| history_writer.sink.recorded(name, 0..count);
         let own = (self.steady, self.complex);
         let check = |reduced| reduced_check(reduced, own, beside.as_ref(), &first, observer);
@@ -132,7 +135,7 @@ impl InTime<'_> {
             worst_residual: marched.worst_residual,
             split: marched.split,
             parts: marched.control.parts,
-            watched,
+            diagnostics,
             sound,
         })
     }

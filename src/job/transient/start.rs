@@ -5,7 +5,7 @@ use super::places::TransientPlaces;
 use crate::case::{StartChoice, TransientAnalysis};
 use crate::equilibrium::{SteadyOptions, SteadySliding, solve_steady};
 use crate::error::Result;
-use crate::job::course::profile;
+use crate::job::time_function::profile;
 use crate::system::{Closing, System};
 use crate::transient::Loading;
 

@@ -14,7 +14,7 @@ const SIZE: (u32, u32) = (980, 440);
 /// The orbit of the motion and the one of the friction.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let run = results.get::<TransientResult>()?;
-    let orbit = &run.watched.orbit;
+    let orbit = &run.diagnostics.orbit;
     let varies = |curve: &&PhaseCurve| curve.points.iter().any(|p| *p != curve.points[0]);
     let shown: Vec<&PhaseCurve> = orbit.curves.iter().filter(varies).collect();
     if shown.is_empty() {

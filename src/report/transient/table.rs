@@ -41,7 +41,7 @@ pub(in crate::report) fn table(run: &TransientResult) -> ReportTable {
         )
     }));
     table.notes.extend(run.growth.as_ref().map(disturbance));
-    table.notes.extend(run.watched.cycles.iter().map(|(channel, cycle)| swing(run, *channel, cycle)));
+    table.notes.extend(run.diagnostics.cycles.iter().map(|(channel, cycle)| swing(run, *channel, cycle)));
     table.notes.extend(contact(run));
     table.notes.push(energy(run));
     if run.split.0 > 0 {
@@ -91,7 +91,7 @@ fn swing(run: &TransientResult, channel: usize, cycle: &LimitCycle) -> String {
     };
     format!(
         "From {} s on {} swings by ± {} {} about {} (r.m.s. {}), {verdict}.",
-        significant(run.watched.window[0], 3),
+        significant(run.diagnostics.window[0], 3),
         channel.name.replace('_', " "),
         significant(cycle.amplitude, 3),
         channel.unit,

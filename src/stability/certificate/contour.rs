@@ -19,7 +19,7 @@ pub(super) struct Winding {
     pub(super) worst: c64,
 }
 
-/// Why a walk ended early.
+/// Why a contour could not be followed.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Stopped {
     /// The contour passes so near an eigenvalue or a pole that it cannot be followed here.
@@ -33,7 +33,7 @@ const PIECES: usize = 16;
 /// The most points on a piece.
 const POINTS: usize = 20_000;
 
-/// Walks round `region`, with `most_points` points at most.
+/// Winding number around `region`, with `most_points` points at most.
 pub(super) fn wind(
     pencil: &Pencil<'_>,
     region: &CountedRegion,
@@ -73,11 +73,11 @@ pub(super) fn wind(
     }
     // Two neighbouring discs touch, and in each the phase is within asin(3/4) of its centre's: less than half a turn.
     let change: f64 = points.windows(2).map(|p| (p[1].phase * p[0].phase.conj()).arg()).sum();
-    let turns = if region.symmetric() { 2.0 * change / TAU } else { change / TAU };
-    let whole = turns.round();
+    let winding = if region.symmetric() { 2.0 * change / TAU } else { change / TAU };
+    let whole = winding.round();
     match worst {
-        Some(worst) if (turns - whole).abs() < 1e-3 => {
-            // d has as many more zeros than poles inside as it has turns; its poles are the zeros of Π p.
+        Some(worst) if (winding - whole).abs() < 1e-3 => {
+            // The winding number of d is its zeros inside less its poles; its poles are the zeros of Π p.
             let zeros = whole as i64 + pencil.poles_inside(region);
             Ok(Winding { zeros, points: count, defect: worst.defect, worst: worst.s })
         }

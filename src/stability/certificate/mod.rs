@@ -5,11 +5,11 @@
 //!
 //! det Q_B(s) = Π p(s) · d(s), d(s) = det(I + H(s) κ(s)), H = W_Bᵀ diag(1/p) W_B, κ = k + s c,
 //!
-//! d is as small as the contact, and the zeros of Q_B inside are the turns of d round zero along the contour plus the
+//! d is as small as the contact, and the zeros of Q_B inside are the winding number of d around zero along the contour plus the
 //! zeros of p inside, which are known in closed form. Three statements make it a proof, up to rounding:
 //!
 //! 1. *Between the points.* Each point of the contour comes with a disc in which d has no zero and its phase changes by
-//!    less than a quarter turn ([`pencil`]). The discs cover the contour ([`contour`]): a turn cannot be overlooked.
+//!    less than a quarter turn ([`pencil`]). The discs cover the contour ([`contour`]): no winding can be missed.
 //! 2. *Beyond the basis.* With the real modes below Ω_b complete, by the Sturm count, the full order differs from the
 //!    basis by a perturbation of relative size ρ on the contour ([`remainder`]). Where ρ < 1 everywhere the full
 //!    determinant winds like the small one. The margin is the smallest 1/ρ.
@@ -121,8 +121,8 @@ impl Certificate {
 /// How often the contour is moved a little when an eigenvalue is too near for it.
 const ATTEMPTS: usize = 3;
 
-/// Operations of a walk round the region, some seconds, beyond which a cheaper way to count is taken.
-const LONG_WALK: f64 = 5e9;
+/// Operations of a count along the contour, some seconds, beyond which a cheaper method is used.
+const LONG_CONTOUR: f64 = 5e9;
 
 /// [`complex_modes`](super::complex_modes) of the band, all of them as they are counted, and the count of those that grow.
 ///
@@ -234,25 +234,25 @@ fn weak(certificate: &Certificate) -> String {
     )
 }
 
-/// The count by the walk round the region, or from the spectrum where that is long: then the walk is the last resort.
+/// The count along the contour, or from the spectrum where that is long: then the contour is the last resort.
 fn count(analysis: &CompletedAnalysis<'_>, modes: &ComplexModes, most_work: f64) -> Result<Certificate> {
-    let walk = expected_work(analysis, modes);
-    if walk <= LONG_WALK.max(spectrum::work(analysis.basis.len())) {
-        return count_by(Way::Walk, analysis, modes, most_work);
+    let contour_work = expected_work(analysis, modes);
+    if contour_work <= LONG_CONTOUR.max(spectrum::work(analysis.basis.len())) {
+        return count_by(Way::Contour, analysis, modes, most_work);
     }
     let certificate = count_by(Way::Spectrum, analysis, modes, most_work);
     match certificate {
         Ok(certificate) if certificate.margin > 1.0 => Ok(certificate),
-        weak if walk > most_work => weak,
-        weak => count_by(Way::Walk, analysis, modes, most_work).or(weak),
+        weak if contour_work > most_work => weak,
+        weak => count_by(Way::Contour, analysis, modes, most_work).or(weak),
     }
 }
 
 /// How the eigenvalues of the reduced model are counted.
 #[derive(Debug, Clone, Copy)]
 enum Way {
-    /// By the turns of d ([`contour`]).
-    Walk,
+    /// By the winding number of d ([`contour`]).
+    Contour,
     /// One by one ([`spectrum`]).
     Spectrum,
 }
@@ -272,7 +272,7 @@ fn count_by(
     let sizes = interface.sizes(top);
     let most_points = (most_work / work_of_a_point(analysis)).min(1e9) as usize;
     let count: Box<Count<'_>> = match way {
-        Way::Walk => {
+        Way::Contour => {
             let pencil = Pencil::new(&model, &interface.terms, &sizes, top)?;
             Box::new(move |region| wind(&pencil, region, most_points))
         }

@@ -250,7 +250,7 @@ fn too_few_real_modes_or_static_responses_do_not_pass_for_a_proof() {
         let whole = count(&analysis, modes, f64::INFINITY).unwrap();
         let poor = Basis::new(analysis.operator, real.shapes.as_ref(), (TAU * top).powi(2));
         let analysis = CompletedAnalysis { basis: &poor, ..analysis };
-        for way in [Way::Walk, Way::Spectrum] {
+        for way in [Way::Contour, Way::Spectrum] {
             let poor = count_by(way, &analysis, modes, f64::INFINITY);
             assert!(poor.is_ok_and(|poor| !poor.holds() && poor.margin < 0.1 * whole.margin));
         }

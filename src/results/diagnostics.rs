@@ -6,7 +6,7 @@ use crate::signal::{LimitCycle, Spectrogram};
 
 /// Data gathered during the run.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Watched {
+pub struct Diagnostics {
     /// Spectrograms of the channels shown, each with the index of its channel.
     pub spectrograms: Vec<(usize, Spectrogram)>,
     /// How large the oscillation of the channels shown is at the end, each with the index of its channel.
@@ -76,7 +76,7 @@ pub struct ContactHistory {
     pub counts: Vec<[u64; 4]>,
 }
 
-impl Watched {
+impl Diagnostics {
     /// How large the oscillation of the channels shown is at the end.
     pub(super) fn cycle_table(&self, channels: &[Channel]) -> Table<'static> {
         let cycles: Vec<LimitCycleRow> =

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 /// motion and its share of the modes are settled by the projection; z meets only the rest of the spectrum, as far as the
 /// basis goes: so `amplitudes`, what the real modes have of φ, gives their part in φ + z as well. Left vectors are given where
 /// they are requested.
-pub(super) fn finished(
+pub(super) fn post_processed(
     operator: &Operator<'_>,
     measured: &mut MeasuredPairs,
     amplitudes: &Block,
