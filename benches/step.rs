@@ -10,7 +10,7 @@ use std::time::Instant;
 use stridor::case::read_case;
 use stridor::equilibrium::{SteadyOptions, SteadySliding, solve_steady};
 use stridor::job::Prepared;
-use stridor::transient::{Method, Model, Plan, Scheme, State, march};
+use stridor::transient::{Plan, Scheme, State, StepMethod, TransientModel, march};
 
 // As the program does it.
 #[global_allocator]
@@ -53,7 +53,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         scheme: Scheme::TRAPEZOIDAL,
         step: number("--step", 1e-5)?,
         steps: 0,
-        method: Method::Condensed,
+        method: StepMethod::Condensed,
         tolerance: None,
     };
     let (block, blocks) = (number("--block", 20.0)? as usize, number("--blocks", 5.0)? as usize);
@@ -76,7 +76,7 @@ fn measure(
     let system = &prepared.system;
     let before = peak();
     let steady = solve_steady(system, &SteadyOptions::default(), &())?;
-    let model = Model::new(system, &steady)?;
+    let model = TransientModel::new(system, &steady)?;
     let plan = Plan { steps: WARM + block * blocks, ..plan };
     let (cpu_0, began) = (cpu(), Instant::now());
     // CPU and wall seconds at the ends of the first step and of every block.

@@ -4,7 +4,7 @@ use plotters::prelude::*;
 use std::error::Error;
 use std::path::Path;
 use stridor::case::read_case;
-use stridor::job::{Histories, Prepared, Selection, Stage, analyse};
+use stridor::job::{Histories, Prepared, ResultStage, Selection, analyse};
 use stridor::results::{ComplexResult, TransientResult};
 
 /// Room for the words below the lowest panel, beyond the numbers [px].
@@ -111,7 +111,7 @@ fn respond(folder: &Path, part: &Part, value: f64) -> Result<Response, stridor::
         .with_parameter(part.scalar, value)?
         .with_parameter("transient.duration", part.duration)?;
     let mut histories = Histories::default();
-    let mut keep = |stage: Stage<'_>| {
+    let mut keep = |stage: ResultStage<'_>| {
         histories.keep(&stage);
         Ok(())
     };

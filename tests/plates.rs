@@ -366,14 +366,14 @@ fn square_plate_buckles_at_four() {
 fn a_plate_vibrates_in_time_as_its_modes_say() {
     use stridor::equilibrium::{SteadyOptions, solve_steady};
     use stridor::linalg::c64;
-    use stridor::transient::{Method, Model, Plan, Scheme, State, march};
+    use stridor::transient::{Plan, Scheme, State, StepMethod, TransientModel, march};
     let case = stridor::case::Case::parse("disc", &samples::disc(4, 16), ".".into()).expect("a case");
     let prepared = stridor::job::Prepared::new(&case).expect("a model");
     let system = &prepared.system;
     let (real, _) = stridor::modal::compute(&system.structure, stridor::modal::ModesWanted::Count(6), &())
         .expect("modes");
     let steady = solve_steady(system, &SteadyOptions::default(), &()).expect("nothing loads it");
-    let model = Model::new(system, &steady).expect("a model");
+    let model = TransientModel::new(system, &steady).expect("a model");
     for mode in [0, 2, 5] {
         let (shape, omega) = (real.shapes.col_as_slice(mode), real.eigenvalues[mode].sqrt());
         let along: Vec<c64> = shape.iter().map(|x| c64::new(*x, 0.0)).collect();
@@ -382,7 +382,7 @@ fn a_plate_vibrates_in_time_as_its_modes_say() {
                 let step = 1.25 * std::f64::consts::TAU / (omega * steps as f64);
                 let start =
                     State::steady(&model, &steady).disturbed(&model, c64::new(0.0, omega), &along, 1e-6);
-                let plan = Plan { scheme, step, steps, method: Method::Condensed, tolerance: None };
+                let plan = Plan { scheme, step, steps, method: StepMethod::Condensed, tolerance: None };
                 let end = march(&model, start, &plan, &(), &mut |_| Ok(())).expect("a march");
                 let u = end.state.motion.col_as_slice(0);
                 let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();

@@ -4,7 +4,7 @@
 //! last of the best needs no further look (Land and Doig, Econometrica 28 (1960) 497).
 
 use super::linear::{Linear, Misfit};
-use super::problem::{Datum, Problem};
+use super::problem::{CalibrationProblem, Datum};
 
 /// More fits than this are not tried.
 const MOST_FITS: usize = 2_000_000;
@@ -16,7 +16,7 @@ const PARTED: f64 = 0.02;
 
 /// The best assignments.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Found {
+pub(super) struct FoundAssignments {
     /// χ² and the level of each datum, the best first.
     pub best: Vec<(f64, Vec<usize>)>,
     /// Whether no better one can be: false when the search was cut.
@@ -26,11 +26,16 @@ pub(super) struct Found {
 /// The `keep` assignments with the least linearised χ², each level taken once, or by so many neighbouring data as it has
 /// modes; `plausible` lists the levels that each datum
 /// may be.
-pub(super) fn best(linear: &Linear, data: &[Datum], plausible: &[Vec<usize>], keep: usize) -> Found {
+pub(super) fn best(
+    linear: &Linear,
+    data: &[Datum],
+    plausible: &[Vec<usize>],
+    keep: usize,
+) -> FoundAssignments {
     // The data with the fewest choices first: their branches are few, and bound the others.
     let mut order: Vec<usize> = (0..data.len()).collect();
     order.sort_by_key(|i| plausible[*i].len());
-    let mut search = Search {
+    let mut search = AssignmentSearch {
         linear,
         data,
         plausible,
@@ -41,12 +46,17 @@ pub(super) fn best(linear: &Linear, data: &[Datum], plausible: &[Vec<usize>], ke
         best: Vec::new(),
     };
     search.descend(0, &linear.expected(), 0.0);
-    Found { best: search.best, complete: search.fits <= MOST_FITS }
+    FoundAssignments { best: search.best, complete: search.fits <= MOST_FITS }
 }
 
 /// How many assignments there are, at most [`MOST_COUNTED`], and whether that is all.
-pub(super) fn count(problem: &Problem, plausible: &[Vec<usize>]) -> (usize, bool) {
-    fn descend(problem: &Problem, plausible: &[Vec<usize>], taken: &mut Vec<usize>, counted: &mut usize) {
+pub(super) fn count(problem: &CalibrationProblem, plausible: &[Vec<usize>]) -> (usize, bool) {
+    fn descend(
+        problem: &CalibrationProblem,
+        plausible: &[Vec<usize>],
+        taken: &mut Vec<usize>,
+        counted: &mut usize,
+    ) {
         let Some(choices) = plausible.get(taken.len()) else {
             *counted += 1;
             return;
@@ -65,13 +75,13 @@ pub(super) fn count(problem: &Problem, plausible: &[Vec<usize>]) -> (usize, bool
 }
 
 /// Whether `level` is free for `datum` when the data took the levels `chosen`.
-fn free(problem: &Problem, data: &[Datum], chosen: &[usize], datum: usize, level: usize) -> bool {
+fn free(problem: &CalibrationProblem, data: &[Datum], chosen: &[usize], datum: usize, level: usize) -> bool {
     let others = || (0..chosen.len()).filter(|i| chosen[*i] == level);
     let near = |i: usize| (data[i].frequency_hz / data[datum].frequency_hz).ln().abs() < PARTED;
     others().count() < problem.level_modes[level] && others().all(near)
 }
 
-struct Search<'a> {
+struct AssignmentSearch<'a> {
     linear: &'a Linear<'a>,
     data: &'a [Datum],
     plausible: &'a [Vec<usize>],
@@ -82,7 +92,7 @@ struct Search<'a> {
     best: Vec<(f64, Vec<usize>)>,
 }
 
-impl Search<'_> {
+impl AssignmentSearch<'_> {
     fn hopeless(&self, chi2: f64) -> bool {
         self.best.len() == self.keep && self.best.last().is_some_and(|(worst, _)| chi2 >= *worst)
     }
@@ -119,14 +129,14 @@ impl Search<'_> {
 #[cfg(test)]
 mod tests {
     use super::super::samples::{Powers, problem};
-    use super::super::{Model, Problem};
+    use super::super::{CalibrationModel, CalibrationProblem};
     use super::*;
 
     #[test]
     fn branch_and_bound_finds_what_trying_all_finds() {
         let model = Powers::new(8, 2, 4);
         let data = [310.0, 520.0, 640.0, 1010.0];
-        let problem: Problem = problem(&model, &data, 0.01);
+        let problem: CalibrationProblem = problem(&model, &data, 0.01);
         let x = [0.1, -0.2];
         let levels = model.compute(&x).unwrap().levels;
         let linear = Linear::new(&problem, &x, &levels);

@@ -2,7 +2,7 @@
 
 use super::left_out::leave_one_out;
 use super::linear::Linear;
-use super::problem::{Computed, Model, Problem};
+use super::problem::{CalibrationModel, CalibrationProblem, Computed};
 use super::ranked::{ranked, tried};
 use super::{Chance, Knowledge, LeftOut, Ranked, Trials, assignments};
 use crate::error::{Error, Result};
@@ -10,7 +10,7 @@ use crate::progress::Observer;
 
 /// Options besides the fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Options {
+pub struct CalibrationOptions {
     /// A level may be what was measured when, linearised, it comes as near as a factor 1 + this inside the bounds.
     pub reach: f64,
     /// Predicts each datum and each response from all others.
@@ -60,10 +60,10 @@ impl Calibration {
 /// # Errors
 /// A model that cannot be computed, or a measured frequency that no level can come near.
 pub fn calibrate(
-    model: &dyn Model,
-    problem: &Problem,
+    model: &dyn CalibrationModel,
+    problem: &CalibrationProblem,
     start: &[f64],
-    options: &Options,
+    options: &CalibrationOptions,
     observer: &dyn Observer,
 ) -> Result<Calibration> {
     let before = model.compute(start)?;
@@ -108,7 +108,7 @@ pub fn calibrate(
     })
 }
 
-fn nothing_near(problem: &Problem, plausible: &[Vec<usize>], reach: f64) -> Error {
+fn nothing_near(problem: &CalibrationProblem, plausible: &[Vec<usize>], reach: f64) -> Error {
     let alone = problem.data.iter().zip(plausible).filter(|(_, levels)| levels.is_empty());
     let alone: Vec<String> = alone.map(|(datum, _)| format!("{} Hz", datum.frequency_hz)).collect();
     let found = if alone.is_empty() {
@@ -128,7 +128,8 @@ mod tests {
     use super::super::samples::{Powers, problem};
     use super::*;
 
-    const ALL: Options = Options { reach: 0.2, leave_one_out: true, chance_draws: 200, trials: 20 };
+    const ALL: CalibrationOptions =
+        CalibrationOptions { reach: 0.2, leave_one_out: true, chance_draws: 200, trials: 20 };
 
     #[test]
     fn the_assignment_that_made_the_data_wins() {
@@ -176,7 +177,7 @@ mod tests {
         let levels = model.compute(&[0.3, -0.4]).unwrap().levels;
         let data: Vec<f64> = levels.iter().flatten().map(|level| level.frequency_hz).collect();
         let problem = problem(&model, &data, 0.002);
-        let options = Options { reach: 0.02, chance_draws: 0, trials: 0, ..ALL };
+        let options = CalibrationOptions { reach: 0.02, chance_draws: 0, trials: 0, ..ALL };
         let found = calibrate(&model, &problem, &[0.0; 2], &options, &()).unwrap();
         assert_eq!(found.best().assignment, [0, 1, 2, 3]);
         let predicted: Vec<bool> =

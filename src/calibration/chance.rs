@@ -75,7 +75,7 @@ fn span(data: &[Datum], set: usize) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::super::samples::level;
-    use super::super::{Level, Problem, Unknown};
+    use super::super::{CalibrationProblem, Level, Unknown};
     use super::*;
 
     /// Levels a fixed ratio apart and no free unknown: what chance does is known.
@@ -85,7 +85,7 @@ mod tests {
         let levels: Vec<Option<Level>> =
             (0..11).map(|k| Some(level(100.0 * (0.1 * f64::from(k)).exp(), vec![0.0]))).collect();
         let datum = |f: f64| Datum { set: 0, frequency_hz: f, deviation: 0.01, shape: None };
-        let problem = Problem {
+        let problem = CalibrationProblem {
             unknowns: vec![Unknown { bounds: [-1.0, 1.0], expected: None }],
             data: vec![datum(100.0), datum(100.0 * 1.0f64.exp())],
             level_sets: vec![0; 11],

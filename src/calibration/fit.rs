@@ -1,6 +1,6 @@
 //! Bounded nonlinear least squares: Levenberg and Marquardt's method with the bounds in the subproblem.
 
-use super::problem::{Computed, Model, Problem};
+use super::problem::{CalibrationModel, CalibrationProblem, Computed};
 use super::quadratic::least_in_box;
 use super::residuals::Residuals;
 use crate::error::Result;
@@ -43,7 +43,12 @@ struct Here {
 
 impl Here {
     /// `None` where a level of the assignment is not found.
-    fn new(problem: &Problem, assignment: &[usize], x: &[f64], computed: &Computed) -> Option<Here> {
+    fn new(
+        problem: &CalibrationProblem,
+        assignment: &[usize],
+        x: &[f64],
+        computed: &Computed,
+    ) -> Option<Here> {
         let all = Residuals::all(problem, assignment, x, computed)?;
         Some(Here { residuals: all.vector(), jacobian: all.jacobian(x.len()) })
     }
@@ -62,8 +67,8 @@ impl Here {
 /// # Errors
 /// Those of the model.
 pub fn fit(
-    model: &dyn Model,
-    problem: &Problem,
+    model: &dyn CalibrationModel,
+    problem: &CalibrationProblem,
     assignment: &[usize],
     (x, computed): (&[f64], &Computed),
 ) -> Result<Fit> {
@@ -120,7 +125,7 @@ pub fn fit(
 }
 
 /// The largest |g_j|/√h_jj among the unknowns that a step against the gradient would not push out of the bounds.
-fn projected(problem: &Problem, x: &[f64], h: &DMatrix<f64>, g: &DVector<f64>) -> f64 {
+fn projected(problem: &CalibrationProblem, x: &[f64], h: &DMatrix<f64>, g: &DVector<f64>) -> f64 {
     let held = |j: usize| {
         let [lower, upper] = problem.unknowns[j].bounds;
         (x[j] <= lower && g[j] > 0.0) || (x[j] >= upper && g[j] < 0.0)

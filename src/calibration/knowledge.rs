@@ -1,7 +1,7 @@
 //! Resolution of the unknowns by the data: singular values of the sensitivity, covariance, intervals.
 
 use super::Fit;
-use super::problem::{Computed, Problem};
+use super::problem::{CalibrationProblem, Computed};
 use super::residuals::Residuals;
 use super::svd::Svd;
 use nalgebra::DMatrix;
@@ -44,7 +44,7 @@ pub struct Knowledge {
 
 impl Knowledge {
     /// Covariance after the fit of `assignment`.
-    pub(super) fn new(problem: &Problem, assignment: &[usize], fit: &Fit) -> Knowledge {
+    pub(super) fn new(problem: &CalibrationProblem, assignment: &[usize], fit: &Fit) -> Knowledge {
         let n = problem.unknowns.len();
         let (w, h) = sensitivity(problem, assignment, &fit.computed);
         let svd = Svd::new(&w);
@@ -94,7 +94,11 @@ impl Knowledge {
 }
 
 /// W, and WᵀW + P.
-fn sensitivity(problem: &Problem, assignment: &[usize], computed: &Computed) -> (DMatrix<f64>, DMatrix<f64>) {
+fn sensitivity(
+    problem: &CalibrationProblem,
+    assignment: &[usize],
+    computed: &Computed,
+) -> (DMatrix<f64>, DMatrix<f64>) {
     let n = problem.unknowns.len();
     let measured = Residuals::measured(problem, assignment, computed).jacobian(n);
     // Rows of zeros leave the singular values as they are, and there are then as many as unknowns.
@@ -110,7 +114,7 @@ fn sensitivity(problem: &Problem, assignment: &[usize], computed: &Computed) -> 
 /// How much each of some residuals moves when what the data leave open moves by its unit: along the directions that they
 /// determine no better than the bounds do.
 pub(super) fn left_open(
-    problem: &Problem,
+    problem: &CalibrationProblem,
     assignment: &[usize],
     computed: &Computed,
     residuals: &Residuals,

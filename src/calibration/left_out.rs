@@ -1,7 +1,7 @@
 //! Each measured mode and each response predicted from all the others.
 
 use super::knowledge::left_open;
-use super::problem::{Level, Model, Problem};
+use super::problem::{CalibrationModel, CalibrationProblem, Level};
 use super::ranked::Ranked;
 use super::residuals::{Residuals, misfit};
 use super::{Fit, fit};
@@ -47,8 +47,8 @@ pub struct LeftOutCurve {
 /// Fits all but one of what was measured, each in turn, and predicts that one. Nothing where the facts are no more than the
 /// unknowns: what the others leave open would stay where the fit of all put it. The assignment stays.
 pub(super) fn leave_one_out(
-    model: &dyn Model,
-    problem: &Problem,
+    model: &dyn CalibrationModel,
+    problem: &CalibrationProblem,
     best: &Ranked,
     observer: &dyn Observer,
 ) -> Result<LeftOut> {
@@ -57,12 +57,12 @@ pub(super) fn leave_one_out(
     }
     let (data, curves) = (problem.data.len(), problem.curves.len());
     observer.begin("leaving data out", Some((data + curves) as u64));
-    let fitted = |others: &Problem, assignment: &[usize]| -> Result<Fit> {
+    let fitted = |others: &CalibrationProblem, assignment: &[usize]| -> Result<Fit> {
         let found = fit(model, others, assignment, (&best.fit.x, &best.fit.computed))?;
         observer.advance(1);
         Ok(found)
     };
-    let known = |others: &Problem, assignment: &[usize], found: &Fit| {
+    let known = |others: &CalibrationProblem, assignment: &[usize], found: &Fit| {
         misfit(others, assignment, &found.x, &found.computed).is_finite()
     };
     let datum = |out: usize| -> Result<LeftOutDatum> {
@@ -116,10 +116,11 @@ fn mean_square(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::super::samples::{Heard, Powers, curves, problem};
-    use super::super::{Computed, Curve, Options, calibrate};
+    use super::super::{CalibrationOptions, Computed, Curve, calibrate};
     use super::*;
 
-    const ALONE: Options = Options { reach: 0.03, leave_one_out: true, chance_draws: 0, trials: 0 };
+    const ALONE: CalibrationOptions =
+        CalibrationOptions { reach: 0.03, leave_one_out: true, chance_draws: 0, trials: 0 };
 
     /// Two responses: the first has the four lower levels, the second the upper four.
     fn heard() -> Powers {

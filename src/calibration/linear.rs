@@ -1,6 +1,6 @@
 //! The model linearised at one place: what a fit would find there, in microseconds.
 
-use super::problem::{Datum, Level, Problem};
+use super::problem::{CalibrationProblem, Datum, Level};
 use super::quadratic::least_in_box;
 use nalgebra::{DMatrix, DVector};
 
@@ -11,7 +11,7 @@ pub const LIKE: f64 = 0.1;
 /// frequency responses, whose peaks must meet before a slope says anything, take no part before the modes have met.
 #[derive(Debug, Clone)]
 pub(super) struct Linear<'a> {
-    pub(super) problem: &'a Problem,
+    pub(super) problem: &'a CalibrationProblem,
     x: Vec<f64>,
     levels: &'a [Option<Level>],
     /// χ² of the shape of each datum with each level.
@@ -37,7 +37,7 @@ impl Misfit {
 }
 
 impl<'a> Linear<'a> {
-    pub(super) fn new(problem: &'a Problem, x: &[f64], levels: &'a [Option<Level>]) -> Self {
+    pub(super) fn new(problem: &'a CalibrationProblem, x: &[f64], levels: &'a [Option<Level>]) -> Self {
         let apart = |datum: &Datum, level: &Option<Level>| match (&datum.shape, level.as_ref()) {
             (Some(shape), Some(Level { span: Some(span), .. })) => {
                 let size: f64 = shape.iter().map(|v| v * v).sum();

@@ -21,7 +21,7 @@
 //! 3. asks what the data determine ([`Knowledge`]), predicts each datum and each response from all others ([`LeftOut`]), counts
 //!    how often frequencies match as well by chance ([`Chance`]) and whether its own intervals hold the truth ([`Trials`]).
 //!
-//! This module is independent of mechanics: a [`Model`] gives levels with their derivatives.
+//! This module is independent of mechanics: a [`CalibrationModel`] gives levels with their derivatives.
 
 mod assignments;
 mod calibrate;
@@ -41,13 +41,15 @@ mod span;
 mod svd;
 mod trials;
 
-pub use calibrate::{Calibration, Options, calibrate};
+pub use calibrate::{Calibration, CalibrationOptions, calibrate};
 pub use chance::Chance;
 pub use fit::{Fit, fit};
 pub use knowledge::{Interval, Knowledge};
 pub use left_out::{LeftOut, LeftOutCurve, LeftOutDatum};
 pub use linear::LIKE;
-pub use problem::{Computed, Curve, Datum, Level, Line, Model, Problem, Unknown};
+pub use problem::{
+    CalibrationModel, CalibrationProblem, Computed, Curve, Datum, Level, ResponseLine, Unknown,
+};
 pub use ranked::Ranked;
 pub use span::{Apart, Span};
 pub use trials::Trials;

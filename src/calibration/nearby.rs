@@ -1,11 +1,11 @@
 //! A model near one place: quadratic in ln f and in the lines, linear in the shapes, so that thousands of fits cost nothing.
 
-use super::problem::{Computed, Level, Line, Model, Problem};
+use super::problem::{CalibrationModel, CalibrationProblem, Computed, Level, ResponseLine};
 use crate::error::Result;
 use rayon::prelude::*;
 
 /// ln f(x) ≈ ln f₀ + gᵀd + ½ dᵀHd, d = x − x₀, with the slopes g + Hd, of lines alike; Φ(x) ≈ Φ₀ + Σ d_j ∂Φ/∂x_j.
-pub(super) struct Nearby {
+pub(super) struct QuadraticModel {
     x: Vec<f64>,
     here: Computed,
     /// H of every level and every line, by rows.
@@ -20,15 +20,15 @@ fn slope(computed: &Computed, k: usize) -> Option<&[f64]> {
     }
 }
 
-impl Nearby {
+impl QuadraticModel {
     /// The model near `x`, where it is known: H_jk = (g_j(x + h_k) − g_j(x − h_k))/2h_k, made symmetric, with steps of
     /// `steps`, shorter towards a bound.
     pub(super) fn new(
-        model: &dyn Model,
-        problem: &Problem,
+        model: &dyn CalibrationModel,
+        problem: &CalibrationProblem,
         (x, here): (&[f64], &Computed),
         steps: &[f64],
-    ) -> Result<Nearby> {
+    ) -> Result<QuadraticModel> {
         let n = x.len();
         let sides: Vec<(usize, f64)> = (0..n).flat_map(|j| [(j, steps[j]), (j, -steps[j])]).collect();
         let moved = |(j, step): &(usize, f64)| -> Result<(f64, Computed)> {
@@ -51,11 +51,11 @@ impl Nearby {
         let symmetric = |l: usize, j: usize, k: usize| 0.5 * (rate(l, j, k) + rate(l, k, j));
         let of = |l: usize| (0..n).map(|j| (0..n).map(|k| symmetric(l, j, k)).collect()).collect();
         let curvature = (0..here.levels.len() + here.lines.len()).map(of).collect();
-        Ok(Nearby { x: x.to_vec(), here: here.clone(), curvature })
+        Ok(QuadraticModel { x: x.to_vec(), here: here.clone(), curvature })
     }
 }
 
-impl Model for Nearby {
+impl CalibrationModel for QuadraticModel {
     fn compute(&self, x: &[f64]) -> Result<Computed> {
         let d: Vec<f64> = x.iter().zip(&self.x).map(|(x, x0)| x - x0).collect();
         let dot = |row: &[f64]| row.iter().zip(&d).map(|(a, d)| a * d).sum::<f64>();
@@ -76,9 +76,9 @@ impl Model for Nearby {
                 span: level.span.as_ref().map(|span| span.moved(&d)),
             })
         };
-        let line = |(line, h): (&Line, &Vec<Vec<f64>>)| {
+        let line = |(line, h): (&ResponseLine, &Vec<Vec<f64>>)| {
             let (rise, slope) = moved(&line.slope, h);
-            Line { value: line.value + rise, slope }
+            ResponseLine { value: line.value + rise, slope }
         };
         Ok(Computed {
             levels: self.here.levels.iter().zip(of_levels).map(level).collect(),
@@ -98,7 +98,7 @@ mod tests {
         let problem = problem(&model, &[300.0], 0.01);
         let x = [0.3, -0.4, 1.9];
         let here = model.compute(&x).unwrap();
-        let near = Nearby::new(&model, &problem, (&x, &here), &[0.5; 3]).unwrap();
+        let near = QuadraticModel::new(&model, &problem, (&x, &here), &[0.5; 3]).unwrap();
         let there = [0.9, -1.0, 1.2];
         let (own, exact) = (near.compute(&there).unwrap(), model.compute(&there).unwrap());
         for (a, b) in own.levels.iter().zip(&exact.levels) {

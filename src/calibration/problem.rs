@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// Computed levels and lines as a function of the unknowns.
-pub trait Model: Sync {
+pub trait CalibrationModel: Sync {
     /// Every level and line at `x`, in the same order for every `x`.
     ///
     /// # Errors
@@ -28,12 +28,12 @@ pub struct Computed {
     /// The levels; `None` where one is not found.
     pub levels: Vec<Option<Level>>,
     /// The lines of its frequency responses.
-    pub lines: Vec<Line>,
+    pub lines: Vec<ResponseLine>,
 }
 
 /// A frequency response at one frequency.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Line {
+pub struct ResponseLine {
     /// Its logarithm.
     pub value: f64,
     /// ∂value/∂x_j.
@@ -95,7 +95,7 @@ pub struct Unknown {
 
 /// Unknowns and what was measured.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Problem {
+pub struct CalibrationProblem {
     /// The unknowns.
     pub unknowns: Vec<Unknown>,
     /// Measured modes.
@@ -108,21 +108,21 @@ pub struct Problem {
     pub curves: Vec<Curve>,
 }
 
-impl Problem {
+impl CalibrationProblem {
     /// Levels and, where responses were measured, lines of `model` at `x`.
-    pub(super) fn compute(&self, model: &dyn Model, x: &[f64]) -> Result<Computed> {
+    pub(super) fn compute(&self, model: &dyn CalibrationModel, x: &[f64]) -> Result<Computed> {
         if self.curves.is_empty() { model.levels(x) } else { model.compute(x) }
     }
 
     /// The same without responses.
-    pub(super) fn modes_alone(&self) -> Problem {
-        Problem { curves: Vec::new(), ..self.clone() }
+    pub(super) fn modes_alone(&self) -> CalibrationProblem {
+        CalibrationProblem { curves: Vec::new(), ..self.clone() }
     }
 
     /// The same without shapes and responses.
-    pub(super) fn frequencies_alone(&self) -> Problem {
+    pub(super) fn frequencies_alone(&self) -> CalibrationProblem {
         let data = self.data.iter().map(|datum| Datum { shape: None, ..datum.clone() }).collect();
-        Problem { data, ..self.modes_alone() }
+        CalibrationProblem { data, ..self.modes_alone() }
     }
 
     /// `x` moved inside the bounds.

@@ -8,7 +8,7 @@ const RIDGE: f64 = 1e-12;
 
 /// Where a variable stands.
 #[derive(Clone, Copy, PartialEq)]
-enum At {
+enum BoundState {
     Free,
     Lower,
     Upper,
@@ -23,10 +23,10 @@ pub(super) fn least_in_box(h: &DMatrix<f64>, g: &DVector<f64>, lower: &[f64], up
     let n = g.len();
     let size = (0..n).map(|j| h[(j, j)]).fold(f64::MIN_POSITIVE, f64::max);
     let mut x = DVector::zeros(n);
-    let mut at = vec![At::Free; n];
+    let mut at = vec![BoundState::Free; n];
     // Each pass fixes or releases a variable; far fewer are needed.
     for _ in 0..50 * (n + 1) {
-        let free: Vec<usize> = (0..n).filter(|j| at[*j] == At::Free).collect();
+        let free: Vec<usize> = (0..n).filter(|j| at[*j] == BoundState::Free).collect();
         let slope = g + h * &x;
         let mut part = 1.0;
         let mut blocking = None;
@@ -39,26 +39,26 @@ pub(super) fn least_in_box(h: &DMatrix<f64>, g: &DVector<f64>, lower: &[f64], up
                 let distance = if step[k] < 0.0 { lower[*j] - x[*j] } else { upper[*j] - x[*j] };
                 if step[k] != 0.0 && distance / step[k] < part {
                     part = (distance / step[k]).max(0.0);
-                    blocking = Some((*j, if step[k] < 0.0 { At::Lower } else { At::Upper }));
+                    blocking = Some((*j, if step[k] < 0.0 { BoundState::Lower } else { BoundState::Upper }));
                 }
             }
             free.iter().enumerate().for_each(|(k, j)| x[*j] += part * step[k]);
         }
         if let Some((j, bound)) = blocking {
             at[j] = bound;
-            x[j] = if bound == At::Lower { lower[j] } else { upper[j] };
+            x[j] = if bound == BoundState::Lower { lower[j] } else { upper[j] };
             continue;
         }
         let slope = g + h * &x;
         // How strongly each bound pulls its variable inwards; what is no more than round-off does not count.
         let pull = |j: usize| match at[j] {
-            At::Free => 0.0,
-            At::Lower => -slope[j],
-            At::Upper => slope[j],
+            BoundState::Free => 0.0,
+            BoundState::Lower => -slope[j],
+            BoundState::Upper => slope[j],
         };
         let strongest = (0..n).max_by(|a, b| pull(*a).total_cmp(&pull(*b)));
         match strongest.filter(|j| pull(*j) > 1e-12 * (slope.amax() + size * x.amax())) {
-            Some(j) => at[j] = At::Free,
+            Some(j) => at[j] = BoundState::Free,
             None => break,
         }
     }

@@ -1,6 +1,6 @@
 //! The best assignments fitted to the model itself, and ranked by the whole χ².
 
-use super::problem::{Computed, Datum, Model, Problem};
+use super::problem::{CalibrationModel, CalibrationProblem, Computed, Datum};
 use super::residuals::misfit;
 use super::{Fit, fit};
 use crate::error::Result;
@@ -41,12 +41,12 @@ struct Begin {
 }
 
 /// Whether assignments are fitted to the modes before they are to all.
-fn modes_first(problem: &Problem) -> bool {
+fn modes_first(problem: &CalibrationProblem) -> bool {
     !problem.data.is_empty() && !problem.curves.is_empty()
 }
 
 /// How many of the best assignments are worth looking at.
-pub(super) fn tried(problem: &Problem) -> usize {
+pub(super) fn tried(problem: &CalibrationProblem) -> usize {
     if modes_first(problem) { TRIED } else { FITTED }
 }
 
@@ -57,8 +57,8 @@ pub(super) fn tried(problem: &Problem) -> usize {
 /// the modes first, which takes no responses; the responses are computed once there, and what has the least whole χ² is fitted
 /// to all, from there, or from the start where the whole χ² is less.
 pub(super) fn ranked(
-    model: &dyn Model,
-    problem: &Problem,
+    model: &dyn CalibrationModel,
+    problem: &CalibrationProblem,
     mut found: Vec<(f64, Vec<usize>)>,
     start: (&[f64], &Computed),
     observer: &dyn Observer,
@@ -108,7 +108,7 @@ pub(super) fn ranked(
 }
 
 /// max |f/y − 1| of an assignment; infinite where a level is not found.
-fn largest_error(problem: &Problem, assignment: &[usize], computed: &Computed) -> f64 {
+fn largest_error(problem: &CalibrationProblem, assignment: &[usize], computed: &Computed) -> f64 {
     let error = |(datum, k): (&Datum, &usize)| {
         computed.levels[*k]
             .as_ref()
@@ -118,7 +118,7 @@ fn largest_error(problem: &Problem, assignment: &[usize], computed: &Computed) -
 }
 
 /// The least MAC of a measured shape with its level; none without shapes.
-fn least_mac(problem: &Problem, assignment: &[usize], computed: &Computed) -> Option<f64> {
+fn least_mac(problem: &CalibrationProblem, assignment: &[usize], computed: &Computed) -> Option<f64> {
     let each = problem.data.iter().zip(assignment).filter_map(|(datum, k)| {
         let (shape, level) = (datum.shape.as_ref()?, computed.levels[*k].as_ref());
         Some(level.and_then(|level| level.span.as_ref()).map_or(0.0, |span| span.mac(shape)))
@@ -129,15 +129,16 @@ fn least_mac(problem: &Problem, assignment: &[usize], computed: &Computed) -> Op
 #[cfg(test)]
 mod tests {
     use super::super::samples::{Heard, Powers, curves, problem};
-    use super::super::{Calibration, Options, calibrate};
+    use super::super::{Calibration, CalibrationOptions, calibrate};
     use super::*;
 
-    const FITS: Options = Options { reach: 0.05, leave_one_out: false, chance_draws: 0, trials: 0 };
+    const FITS: CalibrationOptions =
+        CalibrationOptions { reach: 0.05, leave_one_out: false, chance_draws: 0, trials: 0 };
 
     /// Calibrated with the responses and without them.
     fn both(model: &Powers, data: &[f64], truth: &[f64]) -> [Calibration; 2] {
         let alone = problem(model, data, 0.002);
-        let with = Problem { curves: curves(model, truth, 0.1), ..alone.clone() };
+        let with = CalibrationProblem { curves: curves(model, truth, 0.1), ..alone.clone() };
         let start = vec![0.0; truth.len()];
         [with, alone].map(|problem| calibrate(model, &problem, &start, &FITS, &()).unwrap())
     }

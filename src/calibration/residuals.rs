@@ -1,6 +1,6 @@
 //! Residuals of measured and computed, and their derivatives.
 
-use super::problem::{Computed, Curve, Datum, Level, Line, Problem};
+use super::problem::{CalibrationProblem, Computed, Curve, Datum, Level, ResponseLine};
 use nalgebra::{DMatrix, DVector};
 
 /// Residuals r_i with their rows ∂r_i/∂x_j, in standard deviations.
@@ -41,7 +41,7 @@ impl Residuals {
     }
 
     /// A measured response beside its own of all computed lines.
-    pub(super) fn along(curve: &Curve, lines: &[Line]) -> Residuals {
+    pub(super) fn along(curve: &Curve, lines: &[ResponseLine]) -> Residuals {
         let mut all = Residuals::default();
         let s = curve.deviation;
         for (line, value) in lines[curve.lines()].iter().zip(&curve.values) {
@@ -51,7 +51,11 @@ impl Residuals {
     }
 
     /// Of everything measured, with the levels of `assignment`; those that are not found say nothing.
-    pub(super) fn measured(problem: &Problem, assignment: &[usize], computed: &Computed) -> Residuals {
+    pub(super) fn measured(
+        problem: &CalibrationProblem,
+        assignment: &[usize],
+        computed: &Computed,
+    ) -> Residuals {
         let mut all = Residuals::default();
         for (datum, k) in problem.data.iter().zip(assignment) {
             if let Some(level) = &computed.levels[*k] {
@@ -64,7 +68,7 @@ impl Residuals {
 
     /// Of everything measured and expected at `x`; `None` where a level is not found, or something is not finite.
     pub(super) fn all(
-        problem: &Problem,
+        problem: &CalibrationProblem,
         assignment: &[usize],
         x: &[f64],
         computed: &Computed,
@@ -99,11 +103,16 @@ impl Residuals {
 }
 
 /// χ² of an assignment at `x`, where everything is `computed`; infinite where a level is not found.
-pub(super) fn misfit(problem: &Problem, assignment: &[usize], x: &[f64], computed: &Computed) -> f64 {
+pub(super) fn misfit(
+    problem: &CalibrationProblem,
+    assignment: &[usize],
+    x: &[f64],
+    computed: &Computed,
+) -> f64 {
     Residuals::all(problem, assignment, x, computed)
         .map_or(f64::INFINITY, |all| all.values.iter().map(|r| r * r).sum())
 }
-impl Problem {
+impl CalibrationProblem {
     /// Facts beyond the number of unknowns; none when there are no more. Facts are measured frequencies, lines, expectations,
     /// and the components of measured shapes less the scale factors that fit them to their levels.
     pub fn degrees_of_freedom(&self, assignment: &[usize], computed: &Computed) -> usize {

@@ -1,7 +1,9 @@
 //! Models with a closed form for the tests.
 
 use super::Span;
-use super::problem::{Computed, Curve, Datum, Level, Line, Model, Problem, Unknown};
+use super::problem::{
+    CalibrationModel, CalibrationProblem, Computed, Curve, Datum, Level, ResponseLine, Unknown,
+};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::linalg::random::Random;
@@ -26,7 +28,7 @@ pub(super) struct Heard {
 }
 
 impl Heard {
-    fn line(&self, hz: f64, levels: &[Option<Level>]) -> Line {
+    fn line(&self, hz: f64, levels: &[Option<Level>]) -> ResponseLine {
         let loss = c64::new(1.0, 0.02);
         let unknowns = levels.iter().flatten().next().map_or(0, |level| level.slope.len());
         let (mut h, mut slope) = (c64::new(0.0, 0.0), vec![c64::new(0.0, 0.0); unknowns]);
@@ -39,7 +41,7 @@ impl Heard {
             slope.iter_mut().zip(&level.slope).for_each(|(sum, g)| *sum += turn * *g);
         }
         let along = |d: &c64| (h.conj() * d).re / h.norm_sqr();
-        Line { value: h.norm().ln(), slope: slope.iter().map(along).collect() }
+        ResponseLine { value: h.norm().ln(), slope: slope.iter().map(along).collect() }
     }
 }
 
@@ -79,7 +81,7 @@ impl Powers {
     }
 }
 
-impl Model for Powers {
+impl CalibrationModel for Powers {
     fn compute(&self, x: &[f64]) -> Result<Computed> {
         let level = |(k, (base, a)): (usize, (&f64, &Vec<f64>))| {
             let s: f64 = a.iter().zip(x).map(|(a, x)| a * x).sum();
@@ -92,7 +94,7 @@ impl Model for Powers {
         };
         let levels: Vec<Option<Level>> =
             self.base.iter().zip(&self.exponents).enumerate().map(level).collect();
-        let of = |heard: &Heard| -> Vec<Line> {
+        let of = |heard: &Heard| -> Vec<ResponseLine> {
             heard.frequencies_hz.iter().map(|hz| heard.line(*hz, &levels)).collect()
         };
         Ok(Computed { lines: self.heard.iter().flat_map(of).collect(), levels })
@@ -112,10 +114,10 @@ pub(super) fn curves(model: &Powers, x: &[f64], deviation: f64) -> Vec<Curve> {
 }
 
 /// Unknowns in ±2 without expectation and measured frequencies of one set.
-pub(super) fn problem(model: &Powers, data: &[f64], deviation: f64) -> Problem {
+pub(super) fn problem(model: &Powers, data: &[f64], deviation: f64) -> CalibrationProblem {
     let unknowns = vec![Unknown { bounds: [-2.0, 2.0], expected: None }; model.exponents[0].len()];
     let datum = |f: &f64| Datum { set: 0, frequency_hz: *f, deviation, shape: None };
-    Problem {
+    CalibrationProblem {
         unknowns,
         data: data.iter().map(datum).collect(),
         level_sets: vec![0; model.base.len()],

@@ -25,18 +25,18 @@ pub struct Apart {
 }
 
 /// Φ = U S Vᵀ without what is no motion of its own: U, V S⁻¹.
-struct Factors {
+struct SpanFactors {
     u: DMatrix<f64>,
     v: DMatrix<f64>,
 }
 
 impl Span {
-    fn factors(&self) -> Factors {
+    fn factors(&self) -> SpanFactors {
         let svd = Svd::new(&self.motions);
         let largest = svd.s.first().copied().unwrap_or(0.0);
         let kept = svd.s.iter().filter(|s| **s > RANK * largest).count();
         let v = DMatrix::from_fn(svd.v.nrows(), kept, |i, k| svd.v[(i, k)] / svd.s[k]);
-        Factors { u: svd.u.columns(0, kept).into_owned(), v }
+        SpanFactors { u: svd.u.columns(0, kept).into_owned(), v }
     }
 
     /// How many scale factors a measured shape has in it: the dimension of the space.
@@ -53,7 +53,7 @@ impl Span {
     /// (variable projection: Golub and Pereyra, SIAM J. Numer. Anal. 10 (1973) 413), which do not know how Φ is turned or
     /// scaled. ‖e‖² = (1 − MAC)‖ψ‖².
     pub fn apart(&self, shape: &[f64]) -> Apart {
-        let Factors { u, v } = self.factors();
+        let SpanFactors { u, v } = self.factors();
         let shape = DVector::from_column_slice(shape);
         let inside = u.tr_mul(&shape);
         let rest = &shape - &u * &inside;
@@ -75,7 +75,7 @@ impl Span {
 
     /// The part of a measured shape that lies in the space, as large as the shape.
     pub(super) fn nearest(&self, shape: &[f64]) -> Vec<f64> {
-        let Factors { u, .. } = self.factors();
+        let SpanFactors { u, .. } = self.factors();
         let shape = DVector::from_column_slice(shape);
         let inside = &u * u.tr_mul(&shape);
         let scale = shape.norm() / inside.norm().max(f64::MIN_POSITIVE);

@@ -1,8 +1,8 @@
 //! Whether the intervals hold the truth as often as they say: the fit repeated on data made from its own model.
 
 use super::knowledge::{Interval, Knowledge};
-use super::nearby::Nearby;
-use super::problem::{Computed, Curve, Datum, Model, Problem, Unknown};
+use super::nearby::QuadraticModel;
+use super::problem::{CalibrationModel, CalibrationProblem, Computed, Curve, Datum, Unknown};
 use super::residuals::Residuals;
 use super::{Fit, Span, fit};
 use crate::error::Result;
@@ -37,18 +37,18 @@ pub struct Trials {
 
 impl Trials {
     pub(super) fn new(
-        model: &dyn Model,
-        problem: &Problem,
+        model: &dyn CalibrationModel,
+        problem: &CalibrationProblem,
         assignment: &[usize],
         (truth, known): (&Fit, &Knowledge),
         count: usize,
     ) -> Result<Trials> {
-        let mut normal = Normal { random: Random::new(), second: None };
-        let problems: Vec<Problem> =
+        let mut normal = NormalDeviates { random: Random::new(), second: None };
+        let problems: Vec<CalibrationProblem> =
             (0..count).map(|_| synthetic(problem, assignment, truth, &mut normal)).collect();
         let steps: Vec<f64> = known.deviations.iter().map(|d| d.clamp(LEAST_STEP, 1.0)).collect();
-        let near = Nearby::new(model, problem, (&truth.x, &truth.computed), &steps)?;
-        let one = |trial: &Problem| -> Result<(bool, Vec<f64>, Knowledge)> {
+        let near = QuadraticModel::new(model, problem, (&truth.x, &truth.computed), &steps)?;
+        let one = |trial: &CalibrationProblem| -> Result<(bool, Vec<f64>, Knowledge)> {
             let found = fit(&near, trial, assignment, (&truth.x, &truth.computed))?;
             let known = Knowledge::new(trial, assignment, &found);
             Ok((found.converged, found.x, known))
@@ -74,9 +74,9 @@ impl Trials {
 
 /// |Δ ln f|/s at the estimates with the largest and the smallest value of each unknown.
 fn model_error<'a>(
-    model: &dyn Model,
-    near: &Nearby,
-    problem: &Problem,
+    model: &dyn CalibrationModel,
+    near: &QuadraticModel,
+    problem: &CalibrationProblem,
     assignment: &[usize],
     truth: &Fit,
     estimates: impl Iterator<Item = &'a Vec<f64>> + Clone,
@@ -98,8 +98,13 @@ fn model_error<'a>(
     Ok(errors.into_iter().fold(0.0, f64::max))
 }
 
-fn synthetic(problem: &Problem, assignment: &[usize], truth: &Fit, normal: &mut Normal) -> Problem {
-    let datum = |(datum, k): (&Datum, &usize), normal: &mut Normal| {
+fn synthetic(
+    problem: &CalibrationProblem,
+    assignment: &[usize],
+    truth: &Fit,
+    normal: &mut NormalDeviates,
+) -> CalibrationProblem {
+    let datum = |(datum, k): (&Datum, &usize), normal: &mut NormalDeviates| {
         let level = truth.computed.levels[*k].as_ref();
         let exact = level.map_or(datum.frequency_hz, |level| level.frequency_hz);
         let frequency_hz = exact * (datum.deviation * normal.next()).exp();
@@ -110,15 +115,15 @@ fn synthetic(problem: &Problem, assignment: &[usize], truth: &Fit, normal: &mut 
         let shape = datum.shape.as_ref().zip(span).map(noisy);
         Datum { frequency_hz, shape, ..*datum }
     };
-    let curve = |curve: &Curve, normal: &mut Normal| {
+    let curve = |curve: &Curve, normal: &mut NormalDeviates| {
         let exact = truth.computed.lines[curve.lines()].iter().map(|line| line.value);
         Curve { values: exact.map(|v| v + curve.deviation * normal.next()).collect(), ..curve.clone() }
     };
-    let expected = |(unknown, x): (&Unknown, &f64), normal: &mut Normal| Unknown {
+    let expected = |(unknown, x): (&Unknown, &f64), normal: &mut NormalDeviates| Unknown {
         expected: unknown.expected.map(|_| x + normal.next()),
         ..*unknown
     };
-    Problem {
+    CalibrationProblem {
         data: problem.data.iter().zip(assignment).map(|pair| datum(pair, normal)).collect(),
         curves: problem.curves.iter().map(|measured| curve(measured, normal)).collect(),
         unknowns: problem.unknowns.iter().zip(&truth.x).map(|pair| expected(pair, normal)).collect(),
@@ -127,12 +132,12 @@ fn synthetic(problem: &Problem, assignment: &[usize], truth: &Fit, normal: &mut 
 }
 
 /// Normally distributed numbers, by Box and Muller's transformation (Ann. Math. Stat. 29 (1958) 610).
-struct Normal {
+struct NormalDeviates {
     random: Random,
     second: Option<f64>,
 }
 
-impl Normal {
+impl NormalDeviates {
     fn next(&mut self) -> f64 {
         if let Some(second) = self.second.take() {
             return second;
@@ -152,7 +157,7 @@ mod tests {
 
     #[test]
     fn normal_numbers_have_their_moments() {
-        let mut normal = Normal { random: Random::new(), second: None };
+        let mut normal = NormalDeviates { random: Random::new(), second: None };
         let all: Vec<f64> = (0..40_000).map(|_| normal.next()).collect();
         let moment = |p: i32| all.iter().map(|x| x.powi(p)).sum::<f64>() / all.len() as f64;
         assert!(moment(1).abs() < 0.02 && (moment(2) - 1.0).abs() < 0.03 && (moment(4) - 3.0).abs() < 0.2);

@@ -12,7 +12,7 @@
 use super::measured::is_number;
 use crate::error::Result;
 use crate::linalg::c64;
-use crate::measured::{ModeRecord, Records};
+use crate::measured::{ModeRecord, TestRecords};
 use crate::schema::units::{FREQUENCY, LENGTH, NUMBER};
 use crate::schema::{Report, declare, key, read_table};
 use std::collections::BTreeMap;
@@ -57,7 +57,7 @@ fn check(test: &TestFile, report: &mut Report) {
 ///
 /// # Errors
 /// Every fault of the file, each with its line and key.
-pub fn read_test(file: &str, text: &str) -> Result<Records> {
+pub fn read_test(file: &str, text: &str) -> Result<TestRecords> {
     let TestFile { point, mode } = read_table(file, text)?.table;
     let numbered = |all: BTreeMap<String, [f64; 3]>| {
         all.into_iter().filter_map(|(name, x)| Some((name.parse::<u64>().ok()?, x)))
@@ -69,7 +69,7 @@ pub fn read_test(file: &str, text: &str) -> Result<Records> {
         shape: numbered(mode.shape).map(|(point, u)| (point, u.map(|u| c64::new(u, 0.0)))).collect(),
     };
     let modes = mode.into_values().map(record).collect();
-    Ok(Records { points: numbered(point).collect(), modes, ..Records::default() })
+    Ok(TestRecords { points: numbered(point).collect(), modes, ..TestRecords::default() })
 }
 
 #[cfg(test)]

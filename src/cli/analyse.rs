@@ -14,18 +14,18 @@ use std::process::ExitCode;
 /// A subcommand that runs analyses.
 pub struct Analyse {
     selection: Selection,
-    options: Options,
+    options: AnalyseOptions,
 }
 
 /// The options of these subcommands.
 #[derive(Args)]
-struct Options {
+struct AnalyseOptions {
     /// The case file (TOML)
     case: PathBuf,
     /// The folder for the results; `results/NAME` by default, NAME being the case file's, or its folder's for case.toml
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Take up the maps and the run in time that an interrupted run of the same case left in the folder
+    /// Resume the maps and the run in time that an interrupted run of the same case left in the folder
     #[arg(long)]
     resume: bool,
 }
@@ -34,14 +34,14 @@ struct Options {
 fn commands() -> impl Iterator<Item = (&'static str, &'static str, Selection)> {
     let run = ("run", "Run every analysis of a case and write a results folder", Selection::Listed);
     let each = ANALYSES.map(|analysis| (analysis.name(), analysis.about(), Selection::Only(analysis.name())));
-    let about = "What tests measured beside the real modes and frequency responses that they are of";
+    let about = "Compare measured with computed real modes and frequency responses";
     std::iter::once(run).chain(each).chain([("compare", about, Selection::Measured)])
 }
 
 impl Subcommand for Analyse {
     fn augment_subcommands(command: clap::Command) -> clap::Command {
         commands().fold(command, |command, (name, about, _)| {
-            command.subcommand(Options::augment_args(clap::Command::new(name)).about(about))
+            command.subcommand(AnalyseOptions::augment_args(clap::Command::new(name)).about(about))
         })
     }
 
@@ -61,7 +61,7 @@ impl FromArgMatches for Analyse {
         });
         let (selection, inner) =
             chosen.ok_or_else(|| clap::Error::new(clap::error::ErrorKind::InvalidSubcommand))?;
-        Ok(Analyse { selection, options: Options::from_arg_matches(inner)? })
+        Ok(Analyse { selection, options: AnalyseOptions::from_arg_matches(inner)? })
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> std::result::Result<(), clap::Error> {

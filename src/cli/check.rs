@@ -10,10 +10,10 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 #[derive(Args)]
-pub struct Options {
+pub struct CheckOptions {
     /// The case file (TOML)
     case: PathBuf,
-    /// Also list every scalar: path, value, SI unit, the values it may take, what a change makes compute again
+    /// Also list every scalar: path, value, SI unit, the values it may take, what a change invalidates
     #[arg(long)]
     parameters: bool,
     /// Also print the resolved case, every default written out
@@ -21,7 +21,7 @@ pub struct Options {
     resolved: bool,
 }
 
-pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
+pub fn run(options: &CheckOptions, common: &Common) -> Result<ExitCode> {
     let case = read_case(&options.case)?;
     let prepared = Prepared::new(&case)?;
     let warnings = check_case(&prepared).map_err(|error| case.places.locate(error))?;

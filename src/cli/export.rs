@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 #[derive(Args)]
-pub struct Options {
+pub struct ExportOptions {
     /// The case file (TOML)
     case: PathBuf,
     /// The folder for mass.mtx, stiffness.mtx, damping.mtx, dofs.csv, contact points and a case that takes them
@@ -17,7 +17,7 @@ pub struct Options {
     out: PathBuf,
 }
 
-pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
+pub fn run(options: &ExportOptions, common: &Common) -> Result<ExitCode> {
     let left_out = export(&read_case(&options.case)?, &options.out)?;
     if !common.quiet {
         for sentence in left_out {

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 #[derive(Subcommand)]
-pub enum Action {
+pub enum MeshAction {
     /// A disc or an annulus: regions disc, rim, hub
     Disc(DiscOptions),
     /// A rectangular plate: regions slider, slider_edge_x_min, …
@@ -27,7 +27,7 @@ pub struct Output {
     /// The file to write (Gmsh 4.1, in millimetres)
     #[arg(long, short, value_name = "FILE")]
     out: PathBuf,
-    /// Overwrite the file if it is there
+    /// Overwrite an existing file
     #[arg(long)]
     force: bool,
 }
@@ -146,21 +146,21 @@ fn length(text: &str) -> std::result::Result<f64, String> {
     parse_quantity(text, LENGTH).map_err(|found| format!("found {found}; expected {}", LENGTH.name))
 }
 
-pub fn run(action: &Action, common: &Common) -> Result<ExitCode> {
+pub fn run(action: &MeshAction, common: &Common) -> Result<ExitCode> {
     match action {
-        Action::Info(options) => return info(options, common),
-        Action::Disc(o) => {
+        MeshAction::Info(options) => return info(options, common),
+        MeshAction::Disc(o) => {
             let grading = o.fine.grading(o.size);
             let spec = DiscSpec { outer_radius: o.outer_radius, hub_radius: o.hub_radius, grading };
             write(&generate::disc(&spec)?, &o.output, common)?;
         }
-        Action::Plate(o) => {
+        MeshAction::Plate(o) => {
             let grading = o.fine.grading(o.size);
             let contact = [o.contact_x, o.contact_y];
             let spec = PlateSpec { length: o.length, width: o.width, contact, grading };
             write(&generate::plate(&spec)?, &o.output, common)?;
         }
-        Action::Rig(o) => write(&generate::rig(&rig_spec(o))?, &o.output, common)?,
+        MeshAction::Rig(o) => write(&generate::rig(&rig_spec(o))?, &o.output, common)?,
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -198,7 +198,7 @@ fn write(mesh: &Mesh, output: &Output, common: &Common) -> Result<()> {
     Ok(())
 }
 
-/// Refuses to overwrite what is there; `help` says what else to do.
+/// Refuses to overwrite an existing file; `help` is the corrective action.
 pub(super) fn refuse_existing(path: &Path, help: &str) -> Result<()> {
     if path.exists() {
         let fault = Fault::new(path.display().to_string(), "something there already", "a new name");

@@ -32,21 +32,21 @@ struct Command {
 enum Action {
     #[command(flatten)]
     Analyse(analyse::Analyse),
-    /// Search for numbers of a case inside bounds, so that it meets facts of any kind
-    Search(search::Options),
+    /// Search for parameters of a case inside bounds, so that its results match given facts
+    Search(search::SearchOptions),
     /// Check a case and its mesh without running it, and list its parameters
-    Check(check::Options),
+    Check(check::CheckOptions),
     /// Print the JSON Schema of case files, for editors, or the reference of their keys
-    Schema(schema::Options),
+    Schema(schema::SchemaOptions),
     /// Write M, C, K, the degrees of freedom and the contact points of a case, for other programs
-    Export(export::Options),
+    Export(export::ExportOptions),
     /// Write a case and a mesh to start from
-    New(new::Options),
+    New(new::NewOptions),
     /// Generate or inspect a mesh
     #[command(subcommand)]
-    Mesh(mesh::Action),
-    /// Run the validation cases and print computed beside reference values
-    Validate(validate::Options),
+    Mesh(mesh::MeshAction),
+    /// Run the validation cases and compare computed with reference values
+    Validate(validate::ValidateOptions),
 }
 
 /// Runs the program on the process's arguments.

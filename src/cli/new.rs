@@ -15,12 +15,12 @@ const TEMPLATE_MESH: &str = "../../meshes/rig-medium.msh";
 const SCHEMA: &str = "case.schema.json";
 
 #[derive(Args)]
-pub struct Options {
-    /// The folder to make; its case file is NAME/case.toml
+pub struct NewOptions {
+    /// The folder to create; its case file is NAME/case.toml
     name: PathBuf,
 }
 
-pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
+pub fn run(options: &NewOptions, common: &Common) -> Result<ExitCode> {
     let folder = &options.name;
     refuse_existing(folder, "Choose another name, or move it away")?;
     std::fs::create_dir_all(folder)

@@ -8,13 +8,13 @@ use clap::Args;
 use std::process::ExitCode;
 
 #[derive(Args)]
-pub struct Options {
+pub struct SchemaOptions {
     /// Print the reference of all keys in Markdown instead
     #[arg(long)]
     markdown: bool,
 }
 
-pub fn run(options: &Options, _: &Common) -> Result<ExitCode> {
+pub fn run(options: &SchemaOptions, _: &Common) -> Result<ExitCode> {
     let case = describe::<Case>();
     match options.markdown {
         true => give(format!("# Keys of a case file\n\n{}", key_reference(&case).trim_end()))?,

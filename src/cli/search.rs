@@ -12,18 +12,18 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 #[derive(Args)]
-pub struct Options {
+pub struct SearchOptions {
     /// The file of the search (TOML): a case, its numbers with their bounds, and the facts
     file: PathBuf,
     /// The folder for the results; `results/NAME` by default, NAME being the file's, or its folder's for search.toml
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Go on with the evaluations that an interrupted run of the same search left in the folder
+    /// Resume from the evaluations that an interrupted run of the same search left in the folder
     #[arg(long)]
     resume: bool,
 }
 
-pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
+pub fn run(options: &SearchOptions, common: &Common) -> Result<ExitCode> {
     let file = read_search(&options.file)?;
     let out = options.out.clone().unwrap_or_else(|| PathBuf::from("results").join(&file.name));
     let _lock = FolderLock::take(&out)?;

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 #[derive(Args)]
-pub struct Options {
+pub struct ValidateOptions {
     /// Only the validation cases whose folder name contains this
     filter: Option<String>,
     /// The folder that holds the validation cases
@@ -22,7 +22,7 @@ pub struct Options {
     report: Option<PathBuf>,
 }
 
-pub fn run(options: &Options, common: &Common) -> Result<ExitCode> {
+pub fn run(options: &ValidateOptions, common: &Common) -> Result<ExitCode> {
     let _lock = options.report.as_deref().map(FolderLock::take).transpose()?;
     let cases = validation::run(&options.from, options.filter.as_deref(), &Bars::new(common.quiet))?;
     if common.json {

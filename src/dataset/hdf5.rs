@@ -95,7 +95,7 @@ pub fn opened(parent: &hdf5::Group, name: &str) -> hdf5::Result<hdf5::Group> {
 
 /// Writes variables, and the coordinates of their dimensions that are not among them.
 fn write_variables(group: &hdf5::Group, variables: &[&Variable]) -> hdf5::Result<()> {
-    let mut scales: BTreeMap<&str, Scale> = BTreeMap::new();
+    let mut scales: BTreeMap<&str, AttachedScale> = BTreeMap::new();
     for dimension in variables.iter().flat_map(|variable| &variable.dimensions) {
         if scales.contains_key(dimension.name) {
             continue;
@@ -105,7 +105,7 @@ fn write_variables(group: &hdf5::Group, variables: &[&Variable]) -> hdf5::Result
             Some(variable) => write_variable(group, variable)?,
             None => write_variable(group, &coordinate(dimension))?,
         };
-        scales.insert(dimension.name, Scale::new(group, &dataset, dimension.name)?);
+        scales.insert(dimension.name, AttachedScale::new(group, &dataset, dimension.name)?);
     }
     for variable in variables {
         if scales.contains_key(&*variable.key) {
@@ -121,7 +121,7 @@ fn write_variables(group: &hdf5::Group, variables: &[&Variable]) -> hdf5::Result
         }
         list_dimensions(&dataset, along)?;
     }
-    scales.into_values().try_for_each(Scale::finish)
+    scales.into_values().try_for_each(AttachedScale::finish)
 }
 
 /// The scales of the dimensions of a dataset, one each.
@@ -139,7 +139,7 @@ fn list_dimensions(dataset: &Dataset, scales: Vec<VarLenArray<ObjectReference1>>
 /// # Errors
 /// Those of the HDF5 library.
 pub fn attach_scale(group: &hdf5::Group, name: &str, others: &[String]) -> hdf5::Result<()> {
-    let mut scale = Scale::new(group, &group.dataset(name)?, name)?;
+    let mut scale = AttachedScale::new(group, &group.dataset(name)?, name)?;
     for path in others.iter().take(LISTED) {
         scale.of.push(Attached { dataset: group.reference(path)?, dimension: 0 });
         list_dimensions(&group.dataset(path)?, vec![VarLenArray::from_slice(&[scale.reference])])?;
@@ -148,7 +148,7 @@ pub fn attach_scale(group: &hdf5::Group, name: &str, others: &[String]) -> hdf5:
 }
 
 /// A dataset that is the coordinate of a dimension.
-struct Scale {
+struct AttachedScale {
     dataset: Dataset,
     reference: ObjectReference1,
     of: Vec<Attached>,
@@ -162,11 +162,11 @@ struct Attached {
     dimension: u32,
 }
 
-impl Scale {
+impl AttachedScale {
     fn new(group: &hdf5::Group, dataset: &Dataset, name: &str) -> hdf5::Result<Self> {
         terminated_text(dataset, "CLASS", "DIMENSION_SCALE")?;
         terminated_text(dataset, "NAME", name)?;
-        Ok(Scale { dataset: dataset.clone(), reference: group.reference(name)?, of: Vec::new() })
+        Ok(AttachedScale { dataset: dataset.clone(), reference: group.reference(name)?, of: Vec::new() })
     }
 
     fn finish(self) -> hdf5::Result<()> {

@@ -4,7 +4,7 @@ use super::SteadyOptions;
 use super::SteadySliding;
 use super::condensed::Condensed;
 use super::linear::tangent_stiffness;
-use super::newton::{Contact, norm};
+use super::newton::{ContactProblem, norm};
 use super::steady::{residual, solve_steady, states};
 use crate::error::{Error, Fault, Result};
 use crate::system::System;
@@ -57,7 +57,7 @@ impl<'a> Nearby<'a> {
         const STEPS: usize = 40;
         const SETTLED: f64 = 1e-15;
         const ACCEPTED: f64 = 1e-11;
-        let contact = Contact::new(&other.pairs, &other.load, &self.condensed);
+        let contact = ContactProblem::new(&other.pairs, &other.load, &self.condensed);
         let mut u = self.steady.displacement.clone();
         let mut approach = self.steady.approach.clone();
         let mut penetration: Vec<f64> = self.steady.points.iter().map(|point| point.penetration).collect();

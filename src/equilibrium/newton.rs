@@ -14,7 +14,7 @@ use faer::linalg::solvers::Solve;
 ///
 /// S = gᵀA⁻¹g, T = gᵀA⁻¹t, e₀ = gᵀA⁻¹f. The penetration is an unknown of its own: as the difference a − gap + e it would
 /// lose the digits that a stiff law, where δ is far smaller than e, needs for its force.
-pub(super) struct Contact<'a> {
+pub(super) struct ContactProblem<'a> {
     pairs: &'a [ContactPair],
     load: &'a [f64],
     condensed: &'a Condensed,
@@ -25,7 +25,7 @@ pub(super) struct Contact<'a> {
 }
 
 /// A solution of the condensed problem.
-pub(super) struct Stage {
+pub(super) struct ContactSolution {
     /// δ of every point \[m\].
     pub(super) penetration: Vec<f64>,
     /// a of every pair \[m\].
@@ -53,7 +53,7 @@ impl Correction {
 /// Where a load step stands: the fraction of load and of friction.
 type Fraction = f64;
 
-impl<'a> Contact<'a> {
+impl<'a> ContactProblem<'a> {
     pub(super) fn new(pairs: &'a [ContactPair], load: &'a [f64], condensed: &'a Condensed) -> Self {
         let points: Vec<_> = pairs
             .iter()
@@ -62,11 +62,11 @@ impl<'a> Contact<'a> {
             .collect();
         let loaded = (0..pairs.len()).filter(|k| matches!(pairs[*k].closing, Closing::Load(_))).collect();
         let unloaded = condensed.unloaded(load);
-        Contact { pairs, load, condensed, points, unloaded, loaded }
+        ContactProblem { pairs, load, condensed, points, unloaded, loaded }
     }
 
     /// Newton from first touch; when that fails, in steps of load and friction.
-    pub(super) fn solve(&self, options: &SteadyOptions) -> Result<Stage> {
+    pub(super) fn solve(&self, options: &SteadyOptions) -> Result<ContactSolution> {
         let mut last = None;
         for start in self.starts(1.0) {
             match self.newton(start, 1.0, options) {
@@ -84,9 +84,9 @@ impl<'a> Contact<'a> {
         })
     }
 
-    fn stepped(&self, options: &SteadyOptions) -> std::result::Result<Stage, Option<String>> {
+    fn stepped(&self, options: &SteadyOptions) -> std::result::Result<ContactSolution, Option<String>> {
         let (mut done, mut step): (Fraction, Fraction) = (0.0, 0.125);
-        let mut from: Option<Stage> = None;
+        let mut from: Option<ContactSolution> = None;
         let mut iterations = 0;
         while done < 1.0 {
             let target = (done + step).min(1.0);
@@ -113,7 +113,7 @@ impl<'a> Contact<'a> {
                 None => return Err(failure),
             }
         }
-        from.map(|stage| Stage { iterations, ..stage }).ok_or(None)
+        from.map(|stage| ContactSolution { iterations, ..stage }).ok_or(None)
     }
 
     /// Where to begin: undeformed, at the approach that carries the load; and with every point pressed a little.
@@ -131,7 +131,7 @@ impl<'a> Contact<'a> {
         (mut penetration, mut approach): (Vec<f64>, Vec<f64>),
         fraction: Fraction,
         options: &SteadyOptions,
-    ) -> std::result::Result<Stage, String> {
+    ) -> std::result::Result<ContactSolution, String> {
         let mut length = f64::INFINITY;
         for iteration in 1..=options.max_iterations {
             let laws = self.respond(&penetration, fraction);
@@ -140,7 +140,7 @@ impl<'a> Contact<'a> {
             }) {
                 return Err(format!("at iteration {iteration} a force of the contact is not finite"));
             }
-            let Some(factor) = Small::new(self.jacobian(&laws), self.points.len()) else {
+            let Some(factor) = ScaledLu::new(self.jacobian(&laws), self.points.len()) else {
                 return Err(format!("at iteration {iteration} the contact leaves a motion free"));
             };
             let step = factor.solve(&self.residual(&penetration, &approach, &laws, fraction));
@@ -154,7 +154,11 @@ impl<'a> Contact<'a> {
             loop {
                 let (next, next_approach) = self.moved(&penetration, &approach, &step, -damping);
                 if settled {
-                    return Ok(Stage { penetration: next, approach: next_approach, iterations: iteration });
+                    return Ok(ContactSolution {
+                        penetration: next,
+                        approach: next_approach,
+                        iterations: iteration,
+                    });
                 }
                 let laws = self.respond(&next, fraction);
                 let again =
@@ -287,7 +291,7 @@ impl<'a> Contact<'a> {
     }
 
     /// u = A⁻¹ (f + Σ g (d e − N) + t₁F₁ + t₂F₂).
-    pub(super) fn displacement(&self, stage: &Stage) -> Vec<f64> {
+    pub(super) fn displacement(&self, stage: &ContactSolution) -> Vec<f64> {
         let laws = self.respond(&stage.penetration, 1.0);
         let motions = self.motions(&stage.penetration, &stage.approach);
         let mut rhs = self.load.to_vec();
@@ -328,7 +332,7 @@ impl<'a> Contact<'a> {
     ) -> Option<Correction> {
         let n = self.points.len();
         let laws = self.respond(penetration, 1.0);
-        let factor = Small::new(self.jacobian(&laws), n)?;
+        let factor = ScaledLu::new(self.jacobian(&laws), n)?;
         // de = dδ − da + c with c what u and δ are apart.
         let apart = self.apart(u, approach, penetration);
         let s = &self.condensed.compliance[0];
@@ -410,13 +414,13 @@ pub(super) fn norm(x: &[f64]) -> f64 {
 
 /// A small dense factor. Columns are scaled by their displacement rows, then rows by themselves, so that metres, newtons and
 /// stiffnesses do not mix.
-struct Small {
+struct ScaledLu {
     factor: faer::linalg::solvers::FullPivLu<f64>,
     row_scale: Vec<f64>,
     column_scale: Vec<f64>,
 }
 
-impl Small {
+impl ScaledLu {
     /// Of a matrix whose first `displacements` rows are displacements.
     fn new(mut j: Mat<f64>, displacements: usize) -> Option<Self> {
         let n = j.nrows();
@@ -434,7 +438,7 @@ impl Small {
         let factor = j.full_piv_lu();
         let pivots = (0..n).map(|i| factor.U()[(i, i)].abs());
         let (least, most) = pivots.fold((f64::INFINITY, 0.0f64), |(a, b), p| (a.min(p), b.max(p)));
-        (n == 0 || least > 1e-14 * most).then_some(Small { factor, row_scale, column_scale })
+        (n == 0 || least > 1e-14 * most).then_some(ScaledLu { factor, row_scale, column_scale })
     }
 
     fn solve(&self, rhs: &[f64]) -> Vec<f64> {

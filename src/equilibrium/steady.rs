@@ -2,7 +2,7 @@
 
 use super::condensed::Condensed;
 use super::linear::{directions, tangent_stiffness};
-use super::newton::{Contact, Stage, norm, respond};
+use super::newton::{ContactProblem, ContactSolution, norm, respond};
 use super::{PointState, SteadyOptions, SteadySliding};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::SparseMatrix;
@@ -87,7 +87,7 @@ pub fn solve_steady_with(
     condensed: &Condensed,
     options: &SteadyOptions,
 ) -> Result<SteadySliding> {
-    let contact = Contact::new(&system.pairs, &system.load, condensed);
+    let contact = ContactProblem::new(&system.pairs, &system.load, condensed);
     let mut stage = contact.solve(options)?;
     let (displacement, error) = refine(system, k, &contact, &mut stage);
     let points = states(&system.pairs, &stage.penetration);
@@ -124,7 +124,7 @@ pub fn solve_points(
     options: &SteadyOptions,
 ) -> Result<Vec<PointState>> {
     check_input(pairs, load, condensed.responses.nrows())?;
-    let stage = Contact::new(pairs, load, condensed).solve(options)?;
+    let stage = ContactProblem::new(pairs, load, condensed).solve(options)?;
     let points = states(pairs, &stage.penetration);
     check_contact(pairs, &stage.approach, &points, options)?;
     Ok(points)
@@ -188,7 +188,12 @@ const ACCEPTED: f64 = 1e-6;
 
 /// Newton steps on the full system, by the same condensed tangent, until its residual is at round-off. Gives the
 /// displacement and the error that is left.
-fn refine(system: &System, k: &SparseMatrix, contact: &Contact<'_>, stage: &mut Stage) -> (Vec<f64>, f64) {
+fn refine(
+    system: &System,
+    k: &SparseMatrix,
+    contact: &ContactProblem<'_>,
+    stage: &mut ContactSolution,
+) -> (Vec<f64>, f64) {
     let measure = |u: &[f64], approach: &[f64], penetration: &[f64]| {
         let (r, size) = residual(system, k, u, &states(&system.pairs, penetration));
         (r, norm(&[size, contact.mismatch(u, approach, penetration)]))

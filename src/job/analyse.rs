@@ -4,7 +4,7 @@ use super::analyses::{Planned, Selection};
 use super::prepared::Prepared;
 use super::run::Run;
 use super::singular::explained;
-use super::sink::{KnownMaps, Memory, ResultSink, Stage};
+use super::sink::{KnownMaps, Memory, ResultSink, ResultStage};
 use crate::equilibrium;
 use crate::error::{Fault, Faults, Result};
 use crate::progress::Observer;
@@ -17,7 +17,7 @@ use crate::results::{RecordSize, RunResults};
 pub fn analyse<'a>(
     prepared: &'a Prepared<'a>,
     selection: Selection,
-    record: &mut dyn FnMut(Stage) -> Result<()>,
+    record: &mut dyn FnMut(ResultStage) -> Result<()>,
     observer: &dyn Observer,
 ) -> Result<RunResults> {
     let asked = Asked::new(prepared, selection)?;
@@ -52,7 +52,7 @@ pub(super) fn analyse_from<'a>(
     results.warnings.extend(prepared.warnings.iter().chain(&asked.warnings).cloned());
     results.geometry = prepared.geometry();
     results.size = prepared.size();
-    sink.record(Stage::Model(results))?;
+    sink.record(ResultStage::Model(results))?;
     let mut run =
         Run::new(prepared, [asked.includes("cea"), asked.left_vectors()], known, sink, results, observer);
     let done = asked.planned.into_iter().try_for_each(|planned| planned.run(&mut run));

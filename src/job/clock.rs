@@ -19,23 +19,23 @@ impl Clock {
         value
     }
 
-    /// Times each stage that `work` reports to its observer, which is `observer` with this clock listening.
+    /// Times each stage that `work` reports to its observer, which is `observer` timed by this clock.
     pub(super) fn watch<T>(&mut self, observer: &dyn Observer, work: impl FnOnce(&dyn Observer) -> T) -> T {
-        let listening = Listening { observer, open: Mutex::default(), phases: Mutex::default() };
-        let value = work(&listening);
-        self.phases.extend(listening.phases.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner()));
+        let timed = TimedObserver { observer, open: Mutex::default(), phases: Mutex::default() };
+        let value = work(&timed);
+        self.phases.extend(timed.phases.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner()));
         value
     }
 }
 
 /// Hands on what it hears, and notes when the outermost stages end.
-struct Listening<'a> {
+struct TimedObserver<'a> {
     observer: &'a dyn Observer,
     open: Mutex<Vec<(String, Instant)>>,
     phases: Mutex<Vec<(String, f64)>>,
 }
 
-impl Observer for Listening<'_> {
+impl Observer for TimedObserver<'_> {
     fn begin(&self, stage: &str, total: Option<u64>) {
         self.observer.begin(stage, total);
         if let Ok(mut open) = self.open.lock() {

@@ -1,6 +1,6 @@
 //! Comparison of measured with computed modes and responses.
 
-use super::frf::Frf;
+use super::frf::PreparedFrf;
 use super::measured::measured_set;
 use super::motion::Motion;
 use super::prepared::Prepared;
@@ -8,7 +8,7 @@ use super::sensors::{Sensors, frame};
 use crate::case::{Case, MeasuredData, ModesAnalysis};
 use crate::error::{Faults, Result};
 use crate::linalg::{c64, dense};
-use crate::measured::compare::{ComputedModes, Measured, mac_table, pair};
+use crate::measured::compare::{ComputedModes, ModeToPair, mac_table, pair};
 use crate::measured::geometry::{Frame, distance, dot};
 use crate::measured::{MeasuredDof, MeasuredFrf, MeasuredMode, MeasuredSet, Quantity};
 use crate::modal::levels;
@@ -38,11 +38,11 @@ struct Test {
     sensors: Option<Sensors>,
     /// The nodes of the mesh.
     nodes: Vec<[f64; 3]>,
-    responses: Option<Responses>,
+    responses: Option<PairedResponses>,
 }
 
 /// The frequency responses of a test that have a computed one beside them.
-struct Responses {
+struct PairedResponses {
     frf: String,
     matches: Vec<Match>,
     measured_alone: Vec<String>,
@@ -61,7 +61,7 @@ struct Match {
     sign: f64,
     /// Which of the measured frequencies are in the band.
     lines: std::ops::Range<usize>,
-    /// Index into the second answer of [`Frf::run`].
+    /// Index into the second answer of [`PreparedFrf::run`].
     answer: usize,
 }
 
@@ -103,14 +103,14 @@ impl Tests {
     ///
     /// # Errors
     /// Every file that cannot be read.
-    pub fn of_responses(prepared: &Prepared<'_>, frfs: &mut [Frf<'_>]) -> Result<Tests> {
+    pub fn of_responses(prepared: &Prepared<'_>, frfs: &mut [PreparedFrf<'_>]) -> Result<Tests> {
         let case = prepared.case;
         let (mut faults, mut all) = (Faults::new(), Tests::default());
         for (name, data) in &case.measured {
             let Some(of) = data.frf.as_deref() else { continue };
             let Some(set) = faults.take(all.read(case, name, data)) else { continue };
             let frf = frfs.iter_mut().find(|frf| frf.name() == of);
-            let responses = frf.map(|frf| Responses::new(data, &set, frf));
+            let responses = frf.map(|frf| PairedResponses::new(data, &set, frf));
             all.tests.push(Test { responses, ..Test::unplaced(name, data, set) });
         }
         faults.into_result(all)
@@ -209,8 +209,8 @@ impl Test {
         };
         let computed = ComputedModes { frequencies_hz: &hz, levels: &levels, motions: &motions };
         let own = self.set.modes.iter();
-        let measured: Vec<Measured> = own
-            .map(|mode| Measured { frequency_hz: mode.frequency_hz, shape: mode.shape.as_deref() })
+        let measured: Vec<ModeToPair> = own
+            .map(|mode| ModeToPair { frequency_hz: mode.frequency_hz, shape: mode.shape.as_deref() })
             .collect();
         let mac = mac_table(&measured, &computed);
         let pairs = pair(&measured, &computed, &mac);
@@ -238,7 +238,7 @@ impl Test {
 }
 
 /// A measured response that is of a place of the case.
-pub struct Found {
+pub struct MatchedResponse {
     /// Index into the set's responses.
     pub measured: usize,
     /// Index of the place.
@@ -249,7 +249,11 @@ pub struct Found {
 }
 
 /// The measured responses that are of places of `frf`, and those that are not.
-pub fn matches(data: &MeasuredData, set: &MeasuredSet, frf: &Frf<'_>) -> (Vec<Found>, Vec<String>) {
+pub fn matches(
+    data: &MeasuredData,
+    set: &MeasuredSet,
+    frf: &PreparedFrf<'_>,
+) -> (Vec<MatchedResponse>, Vec<String>) {
     let frame = frame(data);
     let at = |dof: &MeasuredDof, motion: &Motion| place_sign(&frame, set, dof, motion, data.reach);
     let (mut all, mut alone) = (Vec::new(), Vec::new());
@@ -264,7 +268,7 @@ pub fn matches(data: &MeasuredData, set: &MeasuredSet, frf: &Frf<'_>) -> (Vec<Fo
         match found.min_by(|a, b| (a.2.0 + a.3.0).total_cmp(&(b.2.0 + b.3.0))) {
             Some((swapped, seen, driven, motion)) => {
                 let (away, sign) = ([driven.0, motion.0], driven.1 * motion.1);
-                all.push(Found { measured, seen, swapped, away, sign });
+                all.push(MatchedResponse { measured, seen, swapped, away, sign });
             }
             None => alone.push(format!("{}: no response of the case is there", function.name)),
         }
@@ -272,12 +276,12 @@ pub fn matches(data: &MeasuredData, set: &MeasuredSet, frf: &Frf<'_>) -> (Vec<Fo
     (all, alone)
 }
 
-impl Responses {
-    fn new(data: &MeasuredData, set: &MeasuredSet, frf: &mut Frf<'_>) -> Responses {
+impl PairedResponses {
+    fn new(data: &MeasuredData, set: &MeasuredSet, frf: &mut PreparedFrf<'_>) -> PairedResponses {
         let [low, high] = frf.band();
         let (found, mut measured_alone) = matches(data, set, frf);
         let mut matches = Vec::new();
-        for Found { measured, seen, swapped, away, sign } in found {
+        for MatchedResponse { measured, seen, swapped, away, sign } in found {
             let function = &set.frfs[measured];
             let hz = &function.frequencies_hz;
             let lines = hz.partition_point(|f| *f < low)..hz.partition_point(|f| *f <= high);
@@ -291,7 +295,7 @@ impl Responses {
         let alone = frf.seen().iter().map(|(name, _)| name);
         let alone = alone.filter(|name| !matches.iter().any(|m: &Match| m.place == **name));
         let computed_alone = alone.cloned().collect();
-        Responses { frf: frf.name().to_string(), matches, measured_alone, computed_alone }
+        PairedResponses { frf: frf.name().to_string(), matches, measured_alone, computed_alone }
     }
 }
 

@@ -24,7 +24,7 @@ const SPANNED: f64 = 1.5;
 const SPANNED_AT_LEAST: f64 = 1.4;
 
 /// Modes of an analysis, with the band and the real modes that span it.
-struct Found {
+struct BandModes {
     band: [f64; 2],
     basis: RealModes,
     modes: ComplexModes,
@@ -49,7 +49,8 @@ pub fn complex_result<'a>(
     };
     let mut system = Cow::Borrowed(&prepared.system);
     let left_vectors = left_vectors || cea.left_vectors;
-    let mut problem = Problem { prepared, cea, left_vectors, system: &mut system, state, clock, observer };
+    let mut problem =
+        ComplexProblem { prepared, cea, left_vectors, system: &mut system, state, clock, observer };
     let nearest = cea.nearest.zip(cea.count).map(|(hz, count)| Nearest { hz, count, within: cea.band });
     let found = match nearest {
         Some(asked) => problem.nearest(&asked, &preloaded)?,
@@ -59,10 +60,10 @@ pub fn complex_result<'a>(
                 None => whole_modes(&preloaded, cea.basis_below, problem.clock, observer)?,
             };
             let (modes, certificate) = problem.modes((&basis).into(), cea.band)?;
-            Found { band: cea.band, basis, modes, certificate }
+            BandModes { band: cea.band, basis, modes, certificate }
         }
     };
-    let Found { band, basis, modes, certificate } = found;
+    let BandModes { band, basis, modes, certificate } = found;
     let confirmation = match cea.confirm {
         true => {
             Some(clock.time("second method", || stability::confirm(&system, state, &modes, band, observer))?)
@@ -95,7 +96,7 @@ pub fn complex_result<'a>(
 }
 
 /// Input of a complex eigenvalue analysis.
-struct Problem<'p, 'a> {
+struct ComplexProblem<'p, 'a> {
     prepared: &'a Prepared<'p>,
     cea: &'a CeaAnalysis,
     left_vectors: bool,
@@ -106,7 +107,7 @@ struct Problem<'p, 'a> {
     observer: &'a dyn Observer,
 }
 
-impl Problem<'_, '_> {
+impl ComplexProblem<'_, '_> {
     /// The complex modes of a band, counted where the case asks for it or where that is cheap.
     fn modes(
         &mut self,
@@ -135,7 +136,7 @@ impl Problem<'_, '_> {
 
     /// The complex modes nearest to a frequency: the factors that count the modes below it find the real ones, those give
     /// the band, and all three serve the complex ones.
-    fn nearest(&mut self, asked: &Nearest, structure: &Structure) -> Result<Found> {
+    fn nearest(&mut self, asked: &Nearest, structure: &Structure) -> Result<BandModes> {
         let (mut expected, shifted) =
             self.clock.time("counting modes", || band_expected(structure, asked))?;
         let mut start = Some(shifted);
@@ -162,7 +163,7 @@ impl Problem<'_, '_> {
                 self.modes(Structural { real: &basis, shifted: shifted.as_ref() }, band)?;
             match keep_nearest(&mut modes, asked, band) {
                 Some(wider) => (expected, least, start) = (wider, wider, shifted),
-                None => return Ok(Found { band, basis, modes, certificate }),
+                None => return Ok(BandModes { band, basis, modes, certificate }),
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::modes::add_modal_damping;
 use super::prepared::Prepared;
-use super::sink::{KnownMap, KnownMaps, Stage};
+use super::sink::{KnownMap, KnownMaps, ResultStage};
 use super::states::{OnFamily, States, Whole, keeps_the_structure};
 use crate::case::{Case, Invalidates, MapAnalysis, SweepAnalysis};
 use crate::equilibrium::{Condensed, SteadySliding, tangent_stiffness};
@@ -11,9 +11,9 @@ use crate::linalg::c64;
 use crate::linalg::sparse::times;
 use crate::modal::RealModes;
 use crate::progress::Observer;
-use crate::results::{DampingRow, DampingVerdicts, MapResult, Method, RunResults, SweepResult};
-use crate::stability::{Family, Frame, SlidingState};
-use crate::sweep::{self, Axis, Boundary, Checked, CriticalKind, MapPoint, Problem};
+use crate::results::{DampingRow, DampingVerdicts, MapResult, RunResults, SweepMethod, SweepResult};
+use crate::stability::{Family, FamilyFrame, SlidingState};
+use crate::sweep::{self, Axis, Boundary, Checked, CriticalKind, MapPoint, SweepProblem};
 use crate::system::{Damping, System};
 use faer::Mat;
 
@@ -40,7 +40,7 @@ pub(super) fn explore(
     nominal: &Nominal,
     known: &KnownMaps,
     results: &mut RunResults,
-    record: &mut dyn FnMut(Stage) -> Result<()>,
+    record: &mut dyn FnMut(ResultStage) -> Result<()>,
     observer: &dyn Observer,
 ) -> Result<()> {
     let prepared = nominal.prepared;
@@ -52,12 +52,13 @@ pub(super) fn explore(
     let k = tangent_stiffness(nominal.system, &nominal.steady.displacement)?;
     let condensed = Condensed::new(nominal.system, &k)?;
     let displacement = &nominal.steady.displacement;
-    let frame = Frame::new(nominal.system, displacement, nominal.real, others.iter().collect(), cea.band)?;
+    let frame =
+        FamilyFrame::new(nominal.system, displacement, nominal.real, others.iter().collect(), cea.band)?;
     let reference = times(&nominal.system.structure.mass, nominal.real.shapes.as_ref());
     let explorer = Explorer { nominal, case: &case, condensed, frame, dampings, reference, observer };
     for (name, analysis) in &prepared.case.sweep {
         let result = explorer.sweep(name, analysis)?;
-        record(Stage::Found(&result))?;
+        record(ResultStage::Found(&result))?;
         results.records.push(result);
     }
     for (name, analysis) in &prepared.case.map {
@@ -67,7 +68,7 @@ pub(super) fn explore(
         results.records.push(result);
     }
     if let Some(verdicts) = explorer.damping()? {
-        record(Stage::Found(&verdicts))?;
+        record(ResultStage::Found(&verdicts))?;
         results.records.push(verdicts);
     }
     Ok(())
@@ -107,7 +108,7 @@ struct Explorer<'a> {
     /// Without its sweeps.
     case: &'a Case,
     condensed: Condensed,
-    frame: Frame<'a>,
+    frame: FamilyFrame<'a>,
     dampings: Vec<(String, f64, f64)>,
     /// M Φ.
     reference: Mat<f64>,
@@ -157,7 +158,7 @@ impl Explorer<'_> {
         let axis = Axis { from: analysis.from, to: analysis.to, points: analysis.points, log: analysis.log };
         let parameter = self.case.parameter(&analysis.parameter)?;
         let paths = [analysis.parameter.clone()];
-        let result = |sweep: sweep::Sweep, measured: Measured, method: Method| SweepResult {
+        let result = |sweep: sweep::Sweep, measured: FullOrderErrors, method: SweepMethod| SweepResult {
             name: name.to_string(),
             parameter: parameter.path.clone(),
             unit: parameter.unit.to_string(),
@@ -172,7 +173,7 @@ impl Explorer<'_> {
             let whole = Whole::new(self.case, paths.to_vec(), Some(&self.reference));
             let sweep = sweep::sweep(&whole, &axis, LOCATED[1], self.observer)?;
             let measured = measure(&whole, &sweep, &[axis.to])?;
-            return Ok(result(sweep, measured, Method::Whole));
+            return Ok(result(sweep, measured, SweepMethod::Whole));
         }
         let states = self.states(&paths);
         let at = |t: f64| axis.between(axis.from, axis.to, t);
@@ -187,7 +188,7 @@ impl Explorer<'_> {
             let poor = measured.poor(&sweep);
             if poor.is_empty() || refinement == REFINEMENTS {
                 let dimension = on.family.dimension();
-                return Ok(result(sweep, measured, Method::Reduced(dimension)));
+                return Ok(result(sweep, measured, SweepMethod::Reduced(dimension)));
             }
             for value in poor {
                 on.family.train(&states.at(&[value])?)?;
@@ -214,7 +215,7 @@ impl Explorer<'_> {
             points: Vec::new(),
             boundary: Boundary::default(),
             sample: Vec::new(),
-            method: Method::Whole,
+            method: SweepMethod::Whole,
         })
     }
 
@@ -246,7 +247,7 @@ impl Explorer<'_> {
         name: &str,
         analysis: &MapAnalysis,
         mut known: KnownMap,
-        record: &mut dyn FnMut(Stage) -> Result<()>,
+        record: &mut dyn FnMut(ResultStage) -> Result<()>,
     ) -> Result<(MapResult, Option<String>)> {
         let mut result = self.empty_map(name, analysis)?;
         let axes = result.axes;
@@ -257,7 +258,7 @@ impl Explorer<'_> {
             let whole = Whole::new(self.case, analysis.parameters.to_vec(), Some(&self.reference));
             let failure = self.fill(&whole, &mut result, &known, record)?;
             result.boundary = sweep::boundary(&whole, &axes, &result.points, 1e-6, self.observer)?;
-            record(Stage::Map(&result))?;
+            record(ResultStage::Map(&result))?;
             return Ok((result, failed(failure)));
         }
         let states = self.states(&analysis.parameters);
@@ -274,11 +275,11 @@ impl Explorer<'_> {
         loop {
             let failure = self.fill(&on, &mut result, &known, record)?;
             result.boundary = sweep::boundary(&on, &axes, &result.points, 1e-7, self.observer)?;
-            result.method = Method::Reduced(on.family.dimension());
+            result.method = SweepMethod::Reduced(on.family.dimension());
             let poor = self.check_map(&on, &mut result, &inside);
             refinement += 1;
             if poor.is_empty() || refinement == REFINEMENTS {
-                record(Stage::Map(&result))?;
+                record(ResultStage::Map(&result))?;
                 return Ok((result, failed(failure)));
             }
             for at in poor {
@@ -292,15 +293,15 @@ impl Explorer<'_> {
     /// The points of the grid that are not known, passed on chunk by chunk.
     fn fill(
         &self,
-        problem: &dyn Problem,
+        problem: &dyn SweepProblem,
         result: &mut MapResult,
         known: &KnownMap,
-        record: &mut dyn FnMut(Stage) -> Result<()>,
+        record: &mut dyn FnMut(ResultStage) -> Result<()>,
     ) -> Result<Option<String>> {
         result.points.clear();
-        record(Stage::MapBegins(result, known))?;
+        record(ResultStage::MapBegins(result, known))?;
         let mut keep =
-            |first: usize, points: &[MapPoint]| record(Stage::MapPoints(&result.name, first, points));
+            |first: usize, points: &[MapPoint]| record(ResultStage::MapPoints(&result.name, first, points));
         let (points, failure) = sweep::map(problem, &result.axes, &known.points, &mut keep, self.observer)?;
         result.points = points;
         Ok(failure)
@@ -332,12 +333,12 @@ impl Explorer<'_> {
 }
 
 /// Errors of a sweep at full order.
-struct Measured {
+struct FullOrderErrors {
     critical: Vec<Option<Checked>>,
     sample: Vec<(f64, f64)>,
 }
 
-impl Measured {
+impl FullOrderErrors {
     /// Values at which the reduced model is not good enough. Where modes merge, the error of λ is the root of that of
     /// the matrices: there the backward error decides.
     fn poor(&self, sweep: &sweep::Sweep) -> Vec<f64> {
@@ -354,14 +355,14 @@ impl Measured {
 }
 
 /// Measures every critical mode and all modes at the `sample` values.
-fn measure(problem: &dyn Problem, sweep: &sweep::Sweep, sample: &[f64]) -> Result<Measured> {
+fn measure(problem: &dyn SweepProblem, sweep: &sweep::Sweep, sample: &[f64]) -> Result<FullOrderErrors> {
     let critical =
         |c: &sweep::Critical| -> Result<Option<Checked>> { problem.check_nearest(&[c.value], c.eigenvalue) };
     let worst = |value: &f64| -> Result<(f64, f64)> {
         let checks = problem.check(&[*value])?;
         Ok((*value, worst_alone(&checks)))
     };
-    Ok(Measured {
+    Ok(FullOrderErrors {
         critical: sweep.critical.iter().map(critical).collect::<Result<_>>()?,
         sample: sample.iter().map(worst).collect::<Result<_>>()?,
     })

@@ -1,10 +1,11 @@
 //! The results folder as a sink: every result is written as soon as it is there.
 
-use super::sink::{ResultSink, Stage};
+use super::sink::{ResultSink, ResultStage};
 use crate::error::{Error, Fault, Result};
-use crate::results::record::{Block, Earlier, Record};
+use crate::results::record::{Earlier, Record, RecordBlock};
 use crate::results::{
-    EventTable, Field, FieldsFile, HistoryTable, Piece, RecordSize, Recording, ResultsFile, fits_on_disk,
+    EventTable, FieldSnapshot, FieldsFile, HistoryTable, RecordPiece, RecordSize, Recording, ResultsFile,
+    fits_on_disk,
 };
 use crate::transient::Checkpoint;
 use std::ops::Range;
@@ -34,22 +35,22 @@ impl<'a> Folder<'a> {
         Folder { dir, file, record, earlier, tables: None, fields: None, seconds: 0.0, seconds_in_time: 0.0 }
     }
 
-    fn write(&mut self, stage: &Stage<'_>) -> Result<()> {
+    fn write(&mut self, stage: &ResultStage<'_>) -> Result<()> {
         let file = &mut self.file;
         match stage {
-            Stage::Model(model) => file.write_head(model),
-            Stage::Found(result) => file.write(&result.describe()),
-            Stage::MapBegins(map, known) => {
+            ResultStage::Model(model) => file.write_head(model),
+            ResultStage::Found(result) => file.write(&result.describe()),
+            ResultStage::MapBegins(map, known) => {
                 file.begin_map(map, &known.points, &known.trained)?;
                 self.record.begin_map(&map.name, &known.points, &known.trained)
             }
-            Stage::MapPoints(name, first, points) => {
+            ResultStage::MapPoints(name, first, points) => {
                 file.write_map_points(name, *first, points)?;
                 self.record.add_map_points(name, *first, points)
             }
-            Stage::Map(map) => file.finish_map(map),
-            Stage::TransientBegins(recording) => self.begin_transient(recording),
-            Stage::TransientPiece(piece) => {
+            ResultStage::Map(map) => file.finish_map(map),
+            ResultStage::TransientBegins(recording) => self.begin_transient(recording),
+            ResultStage::TransientPiece(piece) => {
                 file.write_transient_piece(piece)?;
                 self.tables.iter_mut().try_for_each(|(history, events)| {
                     history.append(piece.first, piece.values)?;
@@ -57,11 +58,11 @@ impl<'a> Folder<'a> {
                 })?;
                 self.record.add_piece(piece)
             }
-            Stage::TransientField(field) => {
+            ResultStage::TransientField(field) => {
                 self.fields.iter_mut().try_for_each(|file| file.write(field))?;
                 self.record.add_field(field)
             }
-            Stage::Transient(transient) => file.finish_transient(transient),
+            ResultStage::Transient(transient) => file.finish_transient(transient),
         }
     }
 
@@ -84,9 +85,9 @@ impl<'a> Folder<'a> {
         if let Some(checkpoint) = &checkpoint {
             // Before it takes the place of the earlier file, which has these rows.
             record.replay(&mut |block| match block {
-                Block::Rows { first, values, modal, events } => {
+                RecordBlock::Rows { first, values, modal, events } => {
                     let (values, modal, events) = (&values, &modal, &events);
-                    file.write_transient_piece(&Piece { first, values, modal, events, checkpoint })
+                    file.write_transient_piece(&RecordPiece { first, values, modal, events, checkpoint })
                 }
                 _ => Ok(()),
             })?;
@@ -99,26 +100,29 @@ impl<'a> Folder<'a> {
             return record.begin_transient(recording);
         }
         record.replay(&mut |block| match block {
-            Block::Rows { first, values, modal: _, events: happened } => {
+            RecordBlock::Rows { first, values, modal: _, events: happened } => {
                 history.append(first, &values)?;
                 events.append(&happened)
             }
-            Block::Field { number, motion: [displacement, velocity] } => {
-                let field = Field { number, displacement: &displacement, velocity: &velocity };
+            RecordBlock::Field { number, motion: [displacement, velocity] } => {
+                let field = FieldSnapshot { number, displacement: &displacement, velocity: &velocity };
                 fields.iter_mut().try_for_each(|file| file.write(&field))
             }
-            Block::Map { .. } | Block::MapPoints { .. } | Block::Transient { .. } => Ok(()),
+            RecordBlock::Map { .. } | RecordBlock::MapPoints { .. } | RecordBlock::Transient { .. } => Ok(()),
         })
     }
 }
 
 impl ResultSink for Folder<'_> {
-    fn record(&mut self, stage: Stage<'_>) -> Result<()> {
+    fn record(&mut self, stage: ResultStage<'_>) -> Result<()> {
         let started = Instant::now();
         let written = self.write(&stage);
         let seconds = started.elapsed().as_secs_f64();
         self.seconds += seconds;
-        if matches!(stage, Stage::TransientBegins(_) | Stage::TransientPiece(_) | Stage::TransientField(_)) {
+        if matches!(
+            stage,
+            ResultStage::TransientBegins(_) | ResultStage::TransientPiece(_) | ResultStage::TransientField(_)
+        ) {
             self.seconds_in_time += seconds;
         }
         written

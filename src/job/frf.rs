@@ -24,7 +24,7 @@ const BEND: f64 = 0.01;
 const COMPARED: usize = 5;
 
 /// A frequency response whose places are known.
-pub struct Frf<'a> {
+pub struct PreparedFrf<'a> {
     name: &'a str,
     wanted: &'a FrfAnalysis,
     force: Motion,
@@ -36,7 +36,7 @@ pub struct Frf<'a> {
 ///
 /// # Errors
 /// Every place that the mesh does not have.
-pub fn frfs<'a>(prepared: &Prepared<'a>) -> Result<Vec<Frf<'a>>> {
+pub fn frfs<'a>(prepared: &Prepared<'a>) -> Result<Vec<PreparedFrf<'a>>> {
     let mut faults = Faults::new();
     let mut all = Vec::new();
     for (name, wanted) in &prepared.case.frf {
@@ -53,12 +53,12 @@ pub fn frfs<'a>(prepared: &Prepared<'a>) -> Result<Vec<Frf<'a>>> {
         if wanted.response.is_empty() {
             seen.push(("drive_point".into(), force.clone()));
         }
-        all.push(Frf { name, wanted, force, seen, beside: Vec::new() });
+        all.push(PreparedFrf { name, wanted, force, seen, beside: Vec::new() });
     }
     faults.into_result(all)
 }
 
-impl Frf<'_> {
+impl PreparedFrf<'_> {
     /// Its name.
     pub fn name(&self) -> &str {
         self.name
@@ -90,7 +90,7 @@ impl Frf<'_> {
     }
 
     /// Asks for the receptance of a place at frequencies \[Hz\] of its own, besides; gives where it will be in the second
-    /// answer of [`Frf::run`].
+    /// answer of [`PreparedFrf::run`].
     pub fn also_at(&mut self, place: usize, frequencies_hz: Vec<f64>) -> usize {
         self.beside.push((place, frequencies_hz));
         self.beside.len() - 1
@@ -239,12 +239,16 @@ fn apart(a: &[c64], b: &[c64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).norm() / b.norm().max(f64::MIN_POSITIVE)).fold(0.0, f64::max)
 }
 
-type Lines = (Vec<f64>, Vec<Vec<c64>>);
+type ResponseLines = (Vec<f64>, Vec<Vec<c64>>);
 
 /// Frequencies \[Hz\] that show every bend of a response within `band`, and the response there. Begins with an even
 /// logarithmic grid and the frequencies `near` which something happens, and halves every interval whose middle is off the
 /// straight line between its ends by more than 1 %.
-fn grid(band: [f64; 2], near: &[f64], response: &(impl Fn(f64) -> Result<Vec<c64>> + Sync)) -> Result<Lines> {
+fn grid(
+    band: [f64; 2],
+    near: &[f64],
+    response: &(impl Fn(f64) -> Result<Vec<c64>> + Sync),
+) -> Result<ResponseLines> {
     let ratio = (band[1] / band[0]).powf(1.0 / (FIRST - 1) as f64);
     let even = (0..FIRST).map(|k| if k + 1 < FIRST { band[0] * ratio.powi(k as i32) } else { band[1] });
     let mut all: Vec<f64> = even.chain(near.iter().copied()).collect();

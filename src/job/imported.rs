@@ -1,6 +1,6 @@
 //! A case made of matrices: files → a system, with the contact points and the places of rows that the case gives.
 
-use super::table::{MOST_FAULTS, Table};
+use super::table::{MOST_FAULTS, TextTable};
 use crate::case::{Case, Contact, ContactPoints, Matrices};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::matrix_market::{self, MarketMatrix};
@@ -92,10 +92,15 @@ pub fn read_model(case: &Case, matrices: &Matrices) -> Result<ImportedModel> {
 }
 
 /// A factor and the matrix it multiplies.
-type Term = (f64, MarketMatrix);
+type FactoredMatrix = (f64, MarketMatrix);
 
 /// Terms added to M, C and K, each of `rows` rows and columns; none when there is a fault.
-fn read_terms(case: &Case, matrices: &Matrices, rows: usize, faults: &mut Faults) -> Option<[Vec<Term>; 3]> {
+fn read_terms(
+    case: &Case,
+    matrices: &Matrices,
+    rows: usize,
+    faults: &mut Faults,
+) -> Option<[Vec<FactoredMatrix>; 3]> {
     let mut terms = [Vec::new(), Vec::new(), Vec::new()];
     let earlier = faults.0.len();
     for (name, term) in &matrices.term {
@@ -119,11 +124,11 @@ fn read_terms(case: &Case, matrices: &Matrices, rows: usize, faults: &mut Faults
 }
 
 /// The matrix with what is added to it, if there is anything.
-fn with_terms(matrix: Option<MarketMatrix>, terms: Vec<Term>) -> Option<MarketMatrix> {
+fn with_terms(matrix: Option<MarketMatrix>, terms: Vec<FactoredMatrix>) -> Option<MarketMatrix> {
     if terms.is_empty() {
         return matrix;
     }
-    let all: Vec<Term> = matrix.into_iter().map(|matrix| (1.0, matrix)).chain(terms).collect();
+    let all: Vec<FactoredMatrix> = matrix.into_iter().map(|matrix| (1.0, matrix)).chain(terms).collect();
     let sum = |parts: Vec<(f64, &SparseMatrix)>| (!parts.is_empty()).then(|| add_scaled(&parts));
     let re = sum(all.iter().map(|(factor, matrix)| (*factor, &matrix.re)).collect())?;
     let im = sum(all.iter().filter_map(|(factor, matrix)| Some((*factor, matrix.im.as_ref()?))).collect());
@@ -154,15 +159,15 @@ fn read_load(place: &str, f: &MarketMatrix, n: usize) -> Result<Vec<f64>> {
 /// Every fault of the heading, and the first faults of the lines.
 pub fn read_rows(name: &str, text: &str, n: usize) -> Result<(Vec<[f64; 3]>, Vec<FreeDof>)> {
     let [required, known] = ROW_COLUMNS;
-    rows_of(&Table::parse(name.to_string(), text.to_string(), required, known)?, n)
+    rows_of(&TextTable::parse(name.to_string(), text.to_string(), required, known)?, n)
 }
 
 fn rows_in(path: &Path, n: usize) -> Result<(Vec<[f64; 3]>, Vec<FreeDof>)> {
     let [required, known] = ROW_COLUMNS;
-    rows_of(&Table::read(path, required, known)?, n)
+    rows_of(&TextTable::read(path, required, known)?, n)
 }
 
-fn rows_of(table: &Table, n: usize) -> Result<(Vec<[f64; 3]>, Vec<FreeDof>)> {
+fn rows_of(table: &TextTable, n: usize) -> Result<(Vec<[f64; 3]>, Vec<FreeDof>)> {
     let mut faults = Faults::new();
     let mut nodes: Vec<[f64; 3]> = Vec::new();
     let mut free = Vec::with_capacity(table.rows().count());
@@ -236,7 +241,7 @@ pub fn given_points(
         }
         ContactPoints::File(file) => {
             let [required, known] = POINT_COLUMNS;
-            return points_of(&Table::read(&case.folder.join(file), required, known)?, n);
+            return points_of(&TextTable::read(&case.folder.join(file), required, known)?, n);
         }
     }
     debug_assert!(contact.points.is_some());
@@ -249,10 +254,10 @@ pub fn given_points(
 /// Every fault of the heading, and the first faults of the lines.
 pub fn read_points(name: &str, text: &str, n: usize) -> Result<Vec<ContactPoint>> {
     let [required, known] = POINT_COLUMNS;
-    points_of(&Table::parse(name.to_string(), text.to_string(), required, known)?, n)
+    points_of(&TextTable::parse(name.to_string(), text.to_string(), required, known)?, n)
 }
 
-fn points_of(table: &Table, n: usize) -> Result<Vec<ContactPoint>> {
+fn points_of(table: &TextTable, n: usize) -> Result<Vec<ContactPoint>> {
     let mut faults = Faults::new();
     let mut found = Vec::with_capacity(table.rows().count());
     for row in table.rows() {

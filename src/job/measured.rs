@@ -1,10 +1,10 @@
 //! Reads what tests found: the tables `[measured.NAME]` and their files.
 
-use super::table::{MOST_FAULTS, Table};
+use super::table::{MOST_FAULTS, TextTable};
 use crate::case::{Case, MeasuredData, read_test};
 use crate::error::read::{read_bytes, read_text};
 use crate::error::{Error, Fault, Faults, Result};
-use crate::measured::{MeasuredSet, ModeRecord, Records, uff};
+use crate::measured::{MeasuredSet, ModeRecord, TestRecords, uff};
 use crate::mesh::unit_in_metres;
 use std::collections::BTreeMap;
 
@@ -40,23 +40,23 @@ pub fn measured_set(case: &Case, name: &str) -> Result<(MeasuredSet, Vec<String>
 }
 
 /// The frequencies in the case itself.
-fn listed(data: &MeasuredData) -> Records {
+fn listed(data: &MeasuredData) -> TestRecords {
     let mode = |(k, hz): (usize, &f64)| ModeRecord {
         frequency_hz: *hz,
         damping_ratio: data.damping_ratios.get(k).copied(),
         deviation: None,
         shape: BTreeMap::new(),
     };
-    Records { modes: data.frequencies.iter().enumerate().map(mode).collect(), ..Records::default() }
+    TestRecords { modes: data.frequencies.iter().enumerate().map(mode).collect(), ..TestRecords::default() }
 }
 
-fn read_file(case: &Case, name: &str, file: &str, unit: f64) -> Result<Records> {
+fn read_file(case: &Case, name: &str, file: &str, unit: f64) -> Result<TestRecords> {
     let path = case.folder.join(file);
     let shown = path.display().to_string();
     let kind = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     let key = format!("`measured.{name}.file`");
     match kind.as_str() {
-        "csv" => modes_of(&Table::read(&path, &COLUMNS[..1], &COLUMNS)?),
+        "csv" => modes_of(&TextTable::read(&path, &COLUMNS[..1], &COLUMNS)?),
         "toml" => read_test(&shown, &read_text(&path, "a test in TOML")?),
         "uff" | "unv" | "uf" | "ufb" => uff::read(&shown, &read_bytes(&path, "a universal file")?, unit),
         _ => Err(Error::input(Fault::new(key, format!("\"{file}\""), "a file .uff, .unv, .csv or .toml"))),
@@ -67,11 +67,11 @@ fn read_file(case: &Case, name: &str, file: &str, unit: f64) -> Result<Records> 
 ///
 /// # Errors
 /// Every fault of the heading, and the first faults of the lines.
-pub fn read_modes(name: &str, text: &str) -> Result<Records> {
-    modes_of(&Table::parse(name.to_string(), text.to_string(), &COLUMNS[..1], &COLUMNS)?)
+pub fn read_modes(name: &str, text: &str) -> Result<TestRecords> {
+    modes_of(&TextTable::parse(name.to_string(), text.to_string(), &COLUMNS[..1], &COLUMNS)?)
 }
 
-fn modes_of(table: &Table) -> Result<Records> {
+fn modes_of(table: &TextTable) -> Result<TestRecords> {
     let mut faults = Faults::new();
     let mut modes = Vec::new();
     for row in table.rows() {
@@ -98,7 +98,7 @@ fn modes_of(table: &Table) -> Result<Records> {
         modes.push(ModeRecord { frequency_hz, damping_ratio, deviation, shape: BTreeMap::new() });
     }
     faults.0.truncate(MOST_FAULTS);
-    faults.into_result(Records { modes, ..Records::default() })
+    faults.into_result(TestRecords { modes, ..TestRecords::default() })
 }
 
 #[cfg(test)]

@@ -102,22 +102,26 @@ pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Opti
     if let Some(cea) = complex {
         modes = modes.max(below(cea.basis_below)?);
     }
-    let run = Run { dofs, entries: pattern.compute_nnz(), fill, modes: modes.min(dofs as f64) };
+    let run = ProblemSize { dofs, entries: pattern.compute_nnz(), fill, modes: modes.min(dofs as f64) };
     let swept = case.sweep.values().map(|sweep| &sweep.parameter);
     let mut studies = None;
     let swept = swept.chain(case.map.values().flat_map(|map| &map.parameters));
     for path in swept.filter(|_| selection.includes("sweep", case)) {
-        let kind = if keeps_the_structure(case, path)? { Kind::Study } else { Kind::StudyOfStructures };
+        let kind = if keeps_the_structure(case, path)? {
+            AnalysisKind::Study
+        } else {
+            AnalysisKind::StudyOfStructures
+        };
         studies = studies.max(Some(kind));
     }
-    let kind = if complex.is_some() { studies.unwrap_or(Kind::Complex) } else { Kind::Real };
+    let kind = if complex.is_some() { studies.unwrap_or(AnalysisKind::Complex) } else { AnalysisKind::Real };
     let bytes = run.peak(kind);
     Ok(Some(ExpectedMemory { bytes, dofs, fill, modes: run.modes }))
 }
 
 /// The analysis that takes the most memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Kind {
+enum AnalysisKind {
     /// Real modes.
     Real,
     /// Complex eigenvalues.
@@ -129,29 +133,29 @@ enum Kind {
 }
 
 /// Sizes that determine the peak.
-struct Run {
+struct ProblemSize {
     dofs: usize,
     entries: usize,
     fill: usize,
     modes: f64,
 }
 
-impl Run {
+impl ProblemSize {
     /// The peak \[bytes\]: as many matrices, factors and vectors as were counted in runs of 20 000 to 415 000 degrees of freedom.
     ///
     /// The size of the matrices also represents what is proportional to the mesh. Of each mode there are two vectors in the basis of Lanczos
     /// and the vector itself; of a complex one also its parts, the left vector and the corrections; of a study the vectors at
     /// other values.
-    fn peak(&self, kind: Kind) -> f64 {
+    fn peak(&self, kind: AnalysisKind) -> f64 {
         const PROGRAM: f64 = 4e7;
         let vector = 8.0 * self.dofs as f64;
         let (matrix, factor) = (12.0 * self.entries as f64, 8.0 * self.fill as f64);
         let (factors, vectors) = match kind {
-            Kind::Real => (0.5, 3.0),
-            Kind::Complex => (2.0, 8.0),
-            Kind::Study | Kind::StudyOfStructures => (2.0, 17.0),
+            AnalysisKind::Real => (0.5, 3.0),
+            AnalysisKind::Complex => (2.0, 8.0),
+            AnalysisKind::Study | AnalysisKind::StudyOfStructures => (2.0, 17.0),
         };
-        let structures = if kind == Kind::StudyOfStructures { 1.7 } else { 1.0 };
+        let structures = if kind == AnalysisKind::StudyOfStructures { 1.7 } else { 1.0 };
         PROGRAM + structures * (6.6 * matrix + factors * factor + (vectors * self.modes + 72.0) * vector)
     }
 }
@@ -178,7 +182,7 @@ mod tests {
     /// Peaks of runs as the system counted them (VmHWM, two threads): square plates and rigs.
     #[test]
     fn peaks_are_those_of_runs_within_thirty_percent() {
-        use Kind::{Complex, Real, Study, StudyOfStructures};
+        use AnalysisKind::{Complex, Real, Study, StudyOfStructures};
         for (dofs, entries, fill, modes, kind, mebibytes) in [
             (20_532, 846_576, 2_530_000, 9.0, Real, 135.0),
             (20_532, 846_576, 2_530_000, 48.0, Real, 146.0),
@@ -192,7 +196,7 @@ mod tests {
             (24_532, 1_010_000, 2_810_000, 55.0, Study, 365.0),
             (24_532, 1_010_000, 2_810_000, 55.0, StudyOfStructures, 538.0),
         ] {
-            let expected = Run { dofs, entries, fill, modes }.peak(kind) / f64::from(1 << 20);
+            let expected = ProblemSize { dofs, entries, fill, modes }.peak(kind) / f64::from(1 << 20);
             assert!(
                 (expected / mebibytes - 1.0).abs() < 0.3,
                 "{dofs}: {expected} MiB, measured {mebibytes} MiB"

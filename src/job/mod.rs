@@ -15,7 +15,6 @@ mod clock;
 mod compare;
 mod complex;
 mod contacts;
-mod course;
 mod explore;
 mod export;
 #[cfg(feature = "cli")]
@@ -45,6 +44,7 @@ mod sink;
 mod sound;
 mod states;
 mod table;
+mod time_function;
 mod transient;
 mod travel;
 mod verify;
@@ -59,5 +59,5 @@ pub use memory::{ExpectedMemory, expected_memory};
 pub use prepared::Prepared;
 #[cfg(feature = "cli")]
 pub use run_case::run_case;
-pub use sink::{Histories, KnownMap, KnownMaps, ResultSink, Stage};
+pub use sink::{Histories, KnownMap, KnownMaps, ResultSink, ResultStage};
 pub use states::Whole;

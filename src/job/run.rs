@@ -3,12 +3,12 @@
 use super::clock::Clock;
 use super::complex::whole_modes;
 use super::prepared::Prepared;
-use super::sink::{KnownMaps, ResultSink, Stage};
+use super::sink::{KnownMaps, ResultSink, ResultStage};
 use crate::equilibrium::{self, SteadySliding};
 use crate::error::Result;
 use crate::modal::RealModes;
 use crate::progress::Observer;
-use crate::results::{Record, RunResults, SteadyResult};
+use crate::results::{AnalysisRecord, RunResults, SteadyResult};
 use crate::system::System;
 use std::borrow::Cow;
 use std::rc::Rc;
@@ -77,8 +77,8 @@ impl<'a, 'k> Run<'a, 'k> {
     ///
     /// # Errors
     /// The machine refuses.
-    pub fn found(&mut self, record: impl Record) -> Result<()> {
-        self.sink.record(Stage::Found(&record))?;
+    pub fn found(&mut self, record: impl AnalysisRecord) -> Result<()> {
+        self.sink.record(ResultStage::Found(&record))?;
         self.results.records.push(record);
         Ok(())
     }

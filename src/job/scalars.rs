@@ -9,7 +9,7 @@ use crate::system::System;
 
 /// A scalar of the case that the complex eigenvalues may depend on.
 #[derive(Debug, Clone)]
-pub struct Scalar {
+pub struct CaseScalar {
     /// Its path.
     pub path: String,
     /// Its value \[SI\].
@@ -17,12 +17,12 @@ pub struct Scalar {
     /// Its SI unit; empty for a pure number.
     pub unit: &'static str,
     /// Part of the problem that depends on it.
-    pub kind: Kind,
+    pub kind: ScalarKind,
 }
 
 /// Part of the problem that depends on a scalar, which decides how a neighbouring system is built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum ScalarKind {
     /// Contact laws, loads, velocities: the structure and the contact points stay.
     Law,
     /// Ratios of modal damping: C is linear in them.
@@ -32,17 +32,17 @@ pub enum Kind {
 }
 
 /// A path with the reason why λ has no derivative by it.
-pub type LeftOut = (String, String);
+pub type WithoutDerivative = (String, String);
 
 /// The scalars that `patterns` name, in the order of the case, and those of them that have no derivative.
-pub fn chosen(case: &Case, patterns: &[String]) -> (Vec<Scalar>, Vec<LeftOut>) {
+pub fn chosen(case: &Case, patterns: &[String]) -> (Vec<CaseScalar>, Vec<WithoutDerivative>) {
     let (mut scalars, mut left_out) = (Vec::new(), Vec::new());
     for parameter in case.parameters() {
         if !patterns.iter().any(|pattern| path_matches(pattern, &parameter.path)) {
             continue;
         }
         match kind(&parameter) {
-            Ok(Some(kind)) => scalars.push(Scalar::new(parameter, kind)),
+            Ok(Some(kind)) => scalars.push(CaseScalar::new(parameter, kind)),
             Ok(None) => {}
             Err(reason) => left_out.push((parameter.path, reason.to_string())),
         }
@@ -51,14 +51,14 @@ pub fn chosen(case: &Case, patterns: &[String]) -> (Vec<Scalar>, Vec<LeftOut>) {
 }
 
 /// Kind of a scalar; `None` when no eigenvalue depends on it; the reason when λ has no derivative by it.
-fn kind(parameter: &Parameter) -> std::result::Result<Option<Kind>, &'static str> {
+fn kind(parameter: &Parameter) -> std::result::Result<Option<ScalarKind>, &'static str> {
     match parameter.derivative {
         Derivative::Zero => Ok(None),
         Derivative::None(reason) => Err(reason),
         Derivative::Exists => Ok(Some(match parameter.invalidates {
-            Invalidates::Damping if parameter.path.starts_with("damping.") => Kind::Ratio,
-            Invalidates::Law | Invalidates::Equilibrium => Kind::Law,
-            _ => Kind::Structure,
+            Invalidates::Damping if parameter.path.starts_with("damping.") => ScalarKind::Ratio,
+            Invalidates::Law | Invalidates::Equilibrium => ScalarKind::Law,
+            _ => ScalarKind::Structure,
         })),
     }
 }
@@ -67,15 +67,15 @@ fn kind(parameter: &Parameter) -> std::result::Result<Option<Kind>, &'static str
 ///
 /// # Errors
 /// A path that is not a number of the case, or one that nothing has a derivative by.
-pub fn scalar(case: &Case, path: &str) -> Result<Option<Scalar>> {
+pub fn scalar(case: &Case, path: &str) -> Result<Option<CaseScalar>> {
     let parameter = case.parameter(path)?;
     let kind = kind(&parameter).map_err(no_derivative)?;
-    Ok(kind.map(|kind| Scalar::new(parameter, kind)))
+    Ok(kind.map(|kind| CaseScalar::new(parameter, kind)))
 }
 
-impl Scalar {
-    fn new(parameter: Parameter, kind: Kind) -> Scalar {
-        Scalar { path: parameter.path, value: parameter.value, unit: parameter.unit, kind }
+impl CaseScalar {
+    fn new(parameter: Parameter, kind: ScalarKind) -> CaseScalar {
+        CaseScalar { path: parameter.path, value: parameter.value, unit: parameter.unit, kind }
     }
 
     /// A step that is small against the magnitude of the scalar, and a guess where it is zero.
@@ -102,7 +102,7 @@ impl Scalar {
     pub fn system_at(&self, prepared: &Prepared, value: f64) -> Result<System> {
         let system = &prepared.system;
         let case = prepared.case.with_parameter(&self.path, value)?;
-        if self.kind != Kind::Structure {
+        if self.kind != ScalarKind::Structure {
             let load = external_load(&case, &prepared.regions, &prepared.assembled)?;
             return Ok(System { pairs: with_laws(&system.pairs, &case)?, load, ..system.clone() });
         }
@@ -146,10 +146,10 @@ mod tests {
         let kind = |path: &str| kind(&case.parameter(path).unwrap());
         assert_eq!((kind("cea.band.1"), kind("transient.time_step")), (Ok(None), Ok(None)));
         assert!(kind("mesh.rig.disc_size").is_err() && kind("contact.rim.reach").is_err());
-        assert_eq!(kind("mesh.rig.bar_length"), Ok(Some(Kind::Structure)));
-        assert_eq!(kind("contact.rim.friction.mu0"), Ok(Some(Kind::Law)));
-        assert_eq!(kind("contact.rim.load"), Ok(Some(Kind::Law)));
-        assert_eq!(kind("damping.modal_ratio"), Ok(Some(Kind::Ratio)));
+        assert_eq!(kind("mesh.rig.bar_length"), Ok(Some(ScalarKind::Structure)));
+        assert_eq!(kind("contact.rim.friction.mu0"), Ok(Some(ScalarKind::Law)));
+        assert_eq!(kind("contact.rim.load"), Ok(Some(ScalarKind::Law)));
+        assert_eq!(kind("damping.modal_ratio"), Ok(Some(ScalarKind::Ratio)));
     }
 
     #[test]

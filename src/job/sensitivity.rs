@@ -2,7 +2,7 @@
 
 use super::modes::modal_ratios;
 use super::prepared::Prepared;
-use super::scalars::{Kind, Scalar, chosen, same_structure};
+use super::scalars::{CaseScalar, ScalarKind, chosen, same_structure};
 use super::verify;
 use crate::case::{Factor, SensitivityAnalysis};
 use crate::equilibrium::SteadySliding;
@@ -56,7 +56,7 @@ impl Analysed<'_> {
         let sensitivity = Sensitivity::new(self.system, self.steady, self.real, &modes)?;
 
         observer.begin("sensitivities", Some(scalars.len() as u64));
-        let of = |scalar: &Scalar| {
+        let of = |scalar: &CaseScalar| {
             let rates = self.rates(&sensitivity, scalar);
             observer.advance(1);
             rates
@@ -163,10 +163,10 @@ impl Analysed<'_> {
     }
 
     /// dλ/dp of every chosen mode.
-    pub(super) fn rates(&self, sensitivity: &Sensitivity, scalar: &Scalar) -> Result<Vec<Rate>> {
+    pub(super) fn rates(&self, sensitivity: &Sensitivity, scalar: &CaseScalar) -> Result<Vec<Rate>> {
         let case = self.prepared.case;
         let value = scalar.value;
-        if scalar.kind == Kind::Ratio {
+        if scalar.kind == ScalarKind::Ratio {
             // C is linear in the ratio, so that a step of any size gives the derivative.
             let step = if value > 0.5 { -0.1 } else { 0.1 };
             let here = modal_ratios(case, self.real)?;

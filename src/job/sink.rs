@@ -3,8 +3,8 @@
 use crate::dataset::Describe;
 use crate::error::Result;
 use crate::results::{
-    Field, MapResult, Piece, RecordSize, Recording, RunResults, TransientResult, fits_in_memory,
-    modal_channel,
+    FieldSnapshot, MapResult, RecordPiece, RecordSize, Recording, RunResults, TransientResult,
+    fits_in_memory, modal_channel,
 };
 use crate::sweep::MapPoint;
 use crate::transient::Checkpoint;
@@ -24,7 +24,7 @@ pub struct KnownMap {
 pub type KnownMaps = BTreeMap<String, KnownMap>;
 
 /// A result that is ready to be written.
-pub enum Stage<'a> {
+pub enum ResultStage<'a> {
     /// The case, its size and its geometry.
     Model(&'a RunResults),
     /// Complete results of an analysis.
@@ -38,9 +38,9 @@ pub enum Stage<'a> {
     /// A run in time that begins or, after [`ResultSink::stopped`] had an answer, resumes.
     TransientBegins(&'a Recording<'a>),
     /// New rows of it.
-    TransientPiece(&'a Piece<'a>),
+    TransientPiece(&'a RecordPiece<'a>),
     /// The motion of all nodes at one of its times.
-    TransientField(&'a Field<'a>),
+    TransientField(&'a FieldSnapshot<'a>),
     /// A whole run in time.
     Transient(&'a TransientResult),
 }
@@ -51,7 +51,7 @@ pub trait ResultSink {
     ///
     /// # Errors
     /// The machine refuses.
-    fn record(&mut self, stage: Stage<'_>) -> Result<()>;
+    fn record(&mut self, stage: ResultStage<'_>) -> Result<()>;
 
     /// Rows of a channel of the run in time.
     ///
@@ -75,14 +75,14 @@ pub struct Histories {
 
 impl Histories {
     /// Adds what a stage brings.
-    pub fn keep(&mut self, stage: &Stage<'_>) {
+    pub fn keep(&mut self, stage: &ResultStage<'_>) {
         match stage {
-            Stage::TransientBegins(recording) => {
+            ResultStage::TransientBegins(recording) => {
                 let names = recording.channels.iter().map(|channel| channel.name.clone());
                 let names = names.chain((0..recording.modes).map(modal_channel));
                 self.channels = names.map(|name| (name, Vec::new())).collect();
             }
-            Stage::TransientPiece(piece) => {
+            ResultStage::TransientPiece(piece) => {
                 let (channels, modal) = self.channels.split_at_mut(piece.values.len());
                 channels.iter_mut().zip(piece.values).for_each(|((_, all), new)| all.extend(new));
                 let modal = modal.iter_mut().zip(piece.modal);
@@ -105,19 +105,19 @@ impl Histories {
 
 /// Hands results on to a function and holds the record of a run in time itself, for runs that are short.
 pub(super) struct Memory<'a> {
-    record: &'a mut dyn FnMut(Stage) -> Result<()>,
+    record: &'a mut dyn FnMut(ResultStage) -> Result<()>,
     pub(super) histories: Histories,
 }
 
 impl<'a> Memory<'a> {
-    pub(super) fn new(record: &'a mut dyn FnMut(Stage) -> Result<()>) -> Self {
+    pub(super) fn new(record: &'a mut dyn FnMut(ResultStage) -> Result<()>) -> Self {
         Memory { record, histories: Histories::default() }
     }
 }
 
 impl ResultSink for Memory<'_> {
-    fn record(&mut self, stage: Stage<'_>) -> Result<()> {
-        if let Stage::TransientBegins(recording) = &stage {
+    fn record(&mut self, stage: ResultStage<'_>) -> Result<()> {
+        if let ResultStage::TransientBegins(recording) = &stage {
             fits_in_memory(&RecordSize::from(*recording))?;
         }
         self.histories.keep(&stage);

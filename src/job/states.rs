@@ -10,7 +10,7 @@ use crate::linalg::c64;
 use crate::linalg::multivector::gram;
 use crate::modal::{self, ModesWanted};
 use crate::stability::{Band, ComplexMode, Family, FamilyCheck, SlidingState, complex_modes};
-use crate::sweep::{Checked, Modes, Problem};
+use crate::sweep::{Checked, Modes, SweepProblem};
 use crate::system::Structure;
 use faer::Mat;
 use std::borrow::Cow;
@@ -73,7 +73,7 @@ pub(super) struct OnFamily<'a, 'f> {
     pub(super) family: Family<'f>,
 }
 
-impl Problem for OnFamily<'_, '_> {
+impl SweepProblem for OnFamily<'_, '_> {
     fn modes(&self, at: &[f64]) -> Result<Modes> {
         let modes = self.family.modes(&self.states.at(at)?)?;
         Ok(Modes { eigenvalues: modes.eigenvalues, vectors: modes.vectors })
@@ -133,7 +133,7 @@ impl<'a> Whole<'a> {
     }
 }
 
-impl Problem for Whole<'_> {
+impl SweepProblem for Whole<'_> {
     fn modes(&self, at: &[f64]) -> Result<Modes> {
         let modes = self.analyse(at)?;
         let eigenvalues: Vec<c64> = modes.iter().map(|m| m.eigenvalue).collect();

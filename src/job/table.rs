@@ -8,7 +8,7 @@ use std::path::Path;
 pub(super) const MOST_FAULTS: usize = 20;
 
 /// A table with the file it comes from.
-pub struct Table {
+pub struct TextTable {
     name: String,
     text: String,
     separator: char,
@@ -17,21 +17,21 @@ pub struct Table {
 
 /// One row with its line.
 #[derive(Clone, Copy)]
-pub struct Row<'a> {
-    table: &'a Table,
+pub struct TextRow<'a> {
+    table: &'a TextTable,
     line: usize,
     text: &'a str,
 }
 
-impl Table {
-    /// Reads the file at `path`; see [`Table::parse`].
+impl TextTable {
+    /// Reads the file at `path`; see [`TextTable::parse`].
     ///
     /// # Errors
-    /// No such file, and those of [`Table::parse`].
-    pub fn read(path: &Path, required: &[&str], known: &[&str]) -> Result<Table> {
+    /// No such file, and those of [`TextTable::parse`].
+    pub fn read(path: &Path, required: &[&str], known: &[&str]) -> Result<TextTable> {
         let name = path.display().to_string();
         let text = read_text(path, "a table (CSV)")?;
-        Table::parse(name, text, required, known)
+        TextTable::parse(name, text, required, known)
     }
 
     /// The table of the `text` of the file `name`; its heading may only name columns among `known` and must name all of
@@ -39,7 +39,7 @@ impl Table {
     ///
     /// # Errors
     /// Columns that are not known, missing or named twice, rows of another length.
-    pub fn parse(name: String, text: String, required: &[&str], known: &[&str]) -> Result<Table> {
+    pub fn parse(name: String, text: String, required: &[&str], known: &[&str]) -> Result<TextTable> {
         let heading = text.lines().next().unwrap_or("");
         let separator = if heading.contains(';') { ';' } else { ',' };
         // Beyond these, every further column is not known or there twice.
@@ -56,7 +56,7 @@ impl Table {
         for column in required.iter().filter(|c| !columns.iter().any(|have| have == *c)) {
             faults.push(Fault::new(format!("{name}:1"), format!("no column \"{column}\""), all.clone()));
         }
-        let table = Table { name, separator, columns, text };
+        let table = TextTable { name, separator, columns, text };
         let width = table.columns.len();
         for row in table.rows() {
             if faults.0.len() >= MOST_FAULTS {
@@ -76,9 +76,9 @@ impl Table {
     }
 
     /// The rows that are not empty.
-    pub fn rows(&self) -> impl Iterator<Item = Row<'_>> {
+    pub fn rows(&self) -> impl Iterator<Item = TextRow<'_>> {
         let lines = self.text.lines().enumerate().skip(1).filter(|(_, line)| !line.trim().is_empty());
-        lines.map(|(k, text)| Row { table: self, line: k + 1, text })
+        lines.map(|(k, text)| TextRow { table: self, line: k + 1, text })
     }
 
     /// The file's name.
@@ -87,7 +87,7 @@ impl Table {
     }
 }
 
-impl<'a> Row<'a> {
+impl<'a> TextRow<'a> {
     /// File and line.
     pub fn place(&self) -> String {
         format!("{}:{}", self.table.name, self.line)

@@ -1,8 +1,8 @@
 //! Contacts that run over the mesh of their counter-body in time.
 
 use super::contacts::{Stand, surface_points};
-use super::course::profile;
 use super::prepared::Prepared;
+use super::time_function::profile;
 use crate::case::{Contact, TransientAnalysis};
 use crate::contact::{Stations, mean_edge};
 use crate::error::{Error, Fault, Faults, Result};
@@ -59,7 +59,7 @@ fn track(
     let Stations { first, spacing, points } = Stations::new([low, high], edge, at).ok_or_else(|| {
         let found = format!("a way from {low:.4} m to {high:.4} m, which leaves `{}`", contact.counter);
         Error::input(
-            Fault::new(format!("`transient.slide.{name}`"), found, "a way that stays on the counter-body")
+            Fault::new(format!("`transient.slide.{name}`"), found, "a path that stays on the counter-body")
                 .with_help("Shorten the stroke or the run, or set `travels = false` to keep the contact in its place"),
         )
     })?;

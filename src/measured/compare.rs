@@ -26,7 +26,7 @@ pub struct ComputedModes<'a> {
 
 /// A measured mode to compare.
 #[derive(Debug, Clone, Copy)]
-pub struct Measured<'a> {
+pub struct ModeToPair<'a> {
     /// \[Hz\].
     pub frequency_hz: f64,
     /// Its shape at the measured degrees of freedom, if it is known.
@@ -80,7 +80,7 @@ fn norm(vector: &[f64]) -> f64 {
 }
 
 /// The MAC of every measured mode (a row) with every level; a row without a shape is empty.
-pub fn mac_table(measured: &[Measured<'_>], computed: &ComputedModes<'_>) -> Vec<Vec<f64>> {
+pub fn mac_table(measured: &[ModeToPair<'_>], computed: &ComputedModes<'_>) -> Vec<Vec<f64>> {
     let row = |shape: &[c64]| -> Vec<f64> {
         computed.levels.iter().map(|level| subspace_mac(shape, &computed.motions[level.clone()])).collect()
     };
@@ -94,7 +94,7 @@ pub fn mac_table(measured: &[Measured<'_>], computed: &ComputedModes<'_>) -> Vec
 /// the second part only where a shape is known. Each computed mode is taken once, so that a double level may take two.
 /// A mode stays alone where nothing costs less than 2, or is as like as ½.
 pub fn pair(
-    measured: &[Measured<'_>],
+    measured: &[ModeToPair<'_>],
     computed: &ComputedModes<'_>,
     mac_table: &[Vec<f64>],
 ) -> Vec<Option<Pair>> {
@@ -164,10 +164,10 @@ mod tests {
         let levels = [0..1, 1..2, 2..3];
         let computed = ComputedModes { frequencies_hz: &hz, levels: &levels, motions: &motions };
         let shapes = [complex(&[0.1, 1.0, 0.0]), complex(&[1.0, 0.1, 0.0]), complex(&[1.0, 1.0, 1.0])];
-        let measured: Vec<Measured> = [100.0, 103.0, 190.0]
+        let measured: Vec<ModeToPair> = [100.0, 103.0, 190.0]
             .iter()
             .zip(&shapes)
-            .map(|(hz, shape)| Measured { frequency_hz: *hz, shape: Some(shape) })
+            .map(|(hz, shape)| ModeToPair { frequency_hz: *hz, shape: Some(shape) })
             .collect();
         let like = mac_table(&measured, &computed);
         let pairs = pair(&measured, &computed, &like);
@@ -175,7 +175,7 @@ mod tests {
         assert_eq!(modes, [Some(1), Some(0), None]);
         assert!(pairs[0].unwrap().mac.unwrap() > 0.98);
         // Without shapes the nearest ones.
-        let bare: Vec<Measured> = measured.iter().map(|m| Measured { shape: None, ..*m }).collect();
+        let bare: Vec<ModeToPair> = measured.iter().map(|m| ModeToPair { shape: None, ..*m }).collect();
         let pairs = pair(&bare, &computed, &mac_table(&bare, &computed));
         let modes: Vec<Option<usize>> = pairs.iter().map(|p| p.map(|p| p.mode)).collect();
         assert_eq!(modes, [Some(0), Some(1), Some(2)]);
@@ -186,7 +186,7 @@ mod tests {
         let hz = [100.0, 100.05, 160.0];
         let levels = [0..2, 2..3];
         let computed = ComputedModes { frequencies_hz: &hz, levels: &levels, motions: &[] };
-        let of = |frequency_hz| Measured { frequency_hz, shape: None };
+        let of = |frequency_hz| ModeToPair { frequency_hz, shape: None };
         let measured = [of(99.0), of(101.0), of(105.0), of(240.0)];
         let none = vec![Vec::new(); 4];
         let modes: Vec<Option<usize>> =
@@ -200,7 +200,7 @@ mod tests {
         let hz = [100.0, 104.0];
         let levels = [0..1, 1..2];
         let computed = ComputedModes { frequencies_hz: &hz, levels: &levels, motions: &[] };
-        let of = |frequency_hz| Measured { frequency_hz, shape: None };
+        let of = |frequency_hz| ModeToPair { frequency_hz, shape: None };
         let pairs = pair(&[of(103.0), of(112.0)], &computed, &[Vec::new(), Vec::new()]);
         assert_eq!(pairs.iter().map(|p| p.unwrap().mode).collect::<Vec<_>>(), [0, 1]);
     }

@@ -1,7 +1,7 @@
 //! Measured data, and their comparison with computed modes.
 //!
 //! * [`MeasuredSet`]: points, modes and frequency responses of a test, plain data in SI units.
-//! * [`Records`]: what a file of a test holds, by the numbers of its points.
+//! * [`TestRecords`]: what a file of a test holds, by the numbers of its points.
 //! * [`uff`]: universal files, read and written.
 //! * [`geometry`]: where the frame of a test lies in the mesh, and which nodes its points are.
 //! * [`compare`]: MAC, double modes as subspaces; which computed mode a measured one is.
@@ -12,5 +12,5 @@ mod records;
 mod set;
 pub mod uff;
 
-pub use records::{FunctionRecord, ModeRecord, Records};
+pub use records::{FunctionRecord, ModeRecord, TestRecords};
 pub use set::{MeasuredDof, MeasuredFrf, MeasuredMode, MeasuredPoint, MeasuredSet, Quantity};

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// The content of a file, in SI units. A shape gives the points that it has; what it leaves out is at rest.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Records {
+pub struct TestRecords {
     /// Points by number \[m\].
     pub points: BTreeMap<u64, [f64; 3]>,
     /// Modes in any order.
@@ -47,11 +47,11 @@ pub struct FunctionRecord {
     pub values: Vec<c64>,
 }
 
-impl Records {
+impl TestRecords {
     /// The set with its modes in ascending order, and the warnings. A direction in which no mode moves a point was not
     /// measured there. What belongs to a point without a place is left out with a warning, and so are modes at 0 Hz.
     pub fn into_set(self) -> (MeasuredSet, Vec<String>) {
-        let Records { points: places, mut modes, functions, mut warnings } = self;
+        let TestRecords { points: places, mut modes, functions, mut warnings } = self;
         let points: Vec<MeasuredPoint> =
             places.iter().map(|(id, position)| MeasuredPoint { id: *id, position: *position }).collect();
         let index = |id: &u64| points.binary_search_by_key(id, |p| p.id).ok();
@@ -103,7 +103,7 @@ impl Records {
             let more = if lost.len() > few.len() { " …" } else { "" };
             let list = few.join(", ") + more;
             warnings.push(format!(
-                "what was measured at points without a place was left out (points {list}); `point` may give places"
+                "data measured at points without coordinates were left out (points {list}); `point` may give coordinates"
             ));
         }
         let set = MeasuredSet { dofs: dofs.collect(), modes: modes.iter().map(mode).collect(), frfs, points };
@@ -131,7 +131,7 @@ mod tests {
             mode(0.0, &[]),
             mode(30.0, &[]),
         ];
-        let (set, warnings) = Records { points, modes, ..Records::default() }.into_set();
+        let (set, warnings) = TestRecords { points, modes, ..TestRecords::default() }.into_set();
         assert_eq!(set.modes.iter().map(|m| m.frequency_hz).collect::<Vec<_>>(), [10.0, 20.0, 30.0]);
         assert_eq!(set.dofs[0], MeasuredDof { point: 0, direction: [1.0, 0.0, 0.0] });
         assert_eq!(set.dofs[1], MeasuredDof { point: 1, direction: [0.0, 0.0, 1.0] });

@@ -2,10 +2,10 @@
 
 use super::colours::{INK, MUTED};
 use super::format::{hertz, signed, significant};
-use super::plate::{Plate, colour_bar};
+use super::plate::{PlateView, colour_bar};
 use super::section::Picture;
-use super::svg::{Anchor, Ink, Point, Sheet};
-use super::view::Fit;
+use super::svg::{Anchor, Ink, Sheet, SvgPoint};
+use super::view::PlacedView;
 use crate::results::{ModeSensitivity, RunResults, SensitivityResult};
 use std::f64::consts::TAU;
 
@@ -36,8 +36,8 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     modes.truncate(MOST_MODES);
     modes.sort_by(|a, b| a.eigenvalue.im.total_cmp(&b.eigenvalue.im));
     let geometry = &results.geometry;
-    let plates: Vec<(usize, Plate)> = (0..geometry.parts.len())
-        .filter_map(|part| Some((part, Plate::new(geometry, part)?)))
+    let plates: Vec<(usize, PlateView)> = (0..geometry.parts.len())
+        .filter_map(|part| Some((part, PlateView::new(geometry, part)?)))
         .take(MOST_PLATES)
         .collect();
     if modes.is_empty() || plates.is_empty() {
@@ -82,13 +82,14 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     Some(Picture { file: "advice".into(), caption, svg: sheet.finish() })
 }
 
-fn draw_cell(sheet: &mut Sheet, [x, y]: Point, plate: &Plate, values: &[f64], best: Option<usize>) {
+fn draw_cell(sheet: &mut Sheet, [x, y]: SvgPoint, plate: &PlateView, values: &[f64], best: Option<usize>) {
     let own: Vec<f64> = plate.nodes.iter().map(|k| values.get(*k).copied().unwrap_or(0.0)).collect();
     let size = own.iter().map(|v| v.abs()).filter(|v| v.is_finite()).fold(0.0, f64::max);
     let scale = if size > 0.0 { 1.0 / size } else { 0.0 };
     let scaled: Vec<f64> = own.iter().map(|v| if v.is_finite() { v * scale } else { 0.0 }).collect();
-    let fit = Fit::new(plate.points.iter().copied(), [x + 14.0, y + 8.0], [CELL[0] - 28.0, CELL[1] - 52.0]);
-    let pixels: Vec<Point> = plate.points.iter().map(|p| fit.pixel(*p)).collect();
+    let fit =
+        PlacedView::new(plate.points.iter().copied(), [x + 14.0, y + 8.0], [CELL[0] - 28.0, CELL[1] - 52.0]);
+    let pixels: Vec<SvgPoint> = plate.points.iter().map(|p| fit.pixel(*p)).collect();
     plate.paint(sheet, &pixels, &scaled);
     if let Some(k) = best.and_then(|node| plate.nodes.binary_search(&node).ok()) {
         let [u, v] = pixels[k];
@@ -109,10 +110,11 @@ fn draw_cell(sheet: &mut Sheet, [x, y]: Point, plate: &Plate, values: &[f64], be
 fn draw_legend(sheet: &mut Sheet, y: f64) {
     let width = colour_bar(sheet, [LEFT + 16.0, y], 14.0);
     let ink = Ink { size: 12.5, colour: INK, bold: false, anchor: Anchor::Middle };
-    for (place, text) in [(0.0, "calms"), (0.5, "0"), (1.0, "feeds")] {
+    for (place, text) in [(0.0, "stabilises"), (0.5, "0"), (1.0, "destabilises")] {
         sheet.text([LEFT + 16.0 + place * width, y + 29.0], text, ink);
     }
-    let note = "change of σ per thing mounted at a place; the range below each plate belongs to its colours";
+    let note =
+        "change of σ per addition mounted at a place; the range below each plate belongs to its colours";
     sheet.text([LEFT + width + 60.0, y + 12.0], note, Ink { anchor: Anchor::Start, ..ink });
 }
 

@@ -15,10 +15,10 @@ const MOST: usize = 12;
 const SIZE: (u32, u32) = (980, 460);
 
 /// A term's name, its colour and its part of the growth rate.
-type Term = (&'static str, &'static str, fn(&GrowthBudget) -> f64);
+type BudgetTerm = (&'static str, &'static str, fn(&GrowthBudget) -> f64);
 
 /// The terms in the order of the stack, with colours of Okabe and Ito's set.
-const TERMS: [Term; 4] = [
+const TERMS: [BudgetTerm; 4] = [
     ("mode coupling", "#d55e00", |b| b.mode_coupling),
     ("falling friction", "#e69f00", |b| b.falling_friction),
     ("transverse friction", "#56b4e9", |b| b.transverse_friction),

@@ -1,25 +1,25 @@
 //! Complex eigenvalues, what the count and the second method say of them, and the verdict.
 
 use super::format::{fixed, given, hertz, power, rate, signed, significant};
-use super::section::{Display, Section};
+use super::section::{Display, ReportSection};
 use super::squeal::{SQUEAL_TOLERANCE, near, nearest_squeal};
-use super::table::Table;
+use super::table::ReportTable;
 use super::{budget, growth, participation};
 use crate::linalg::c64;
 use crate::results::{ComplexResult, RunResults};
 use crate::stability::{Certificate, Confirmation, Verdict};
 
 /// Complex eigenvalues, where the run has them.
-pub(super) fn sections(results: &RunResults) -> Vec<Section> {
+pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
     let Some(complex) = results.get::<ComplexResult>() else { return Vec::new() };
     let pictures = [growth::picture(results), budget::picture(results), participation::picture(results)];
-    let section = Section::new("Complex eigenvalues").pictures(pictures.into_iter().flatten());
+    let section = ReportSection::new("Complex eigenvalues").pictures(pictures.into_iter().flatten());
     vec![section.tables(Display::Untitled, [table(complex)])]
 }
 
 /// The complex eigenvalues, unstable ones marked.
-fn table(result: &ComplexResult) -> Table {
-    let mut table = Table::of("Complex eigenvalues at steady sliding", &result.mode_table(), true);
+fn table(result: &ComplexResult) -> ReportTable {
+    let mut table = ReportTable::of("Complex eigenvalues at steady sliding", &result.mode_table(), true);
     table.alarming = true;
     for (row, mode) in table.rows.iter_mut().zip(&result.modes.modes) {
         row.marked = matches!(mode.verdict(), Verdict::Unstable | Verdict::Inaccurate);
@@ -31,10 +31,10 @@ fn table(result: &ComplexResult) -> Table {
 }
 
 /// The unstable modes, the strongest growth first, with the nearest measured squeal.
-pub(super) fn unstable(result: &ComplexResult) -> Table {
+pub(super) fn unstable(result: &ComplexResult) -> ReportTable {
     let headings =
         ["f [Hz]", "growth rate σ [1/s]", "damping ratio [%]", "grows tenfold in [ms]", "<measured squeal"];
-    let mut table = Table::new("Unstable modes", &headings);
+    let mut table = ReportTable::new("Unstable modes", &headings);
     table.alarming = true;
     let mut modes: Vec<_> = result.modes.modes.iter().filter(|m| m.unstable()).collect();
     modes.sort_by(|a, b| b.growth_rate().total_cmp(&a.growth_rate()));
@@ -132,7 +132,7 @@ fn second_method(confirmation: &Confirmation) -> String {
 /// The verdict in one sentence.
 pub(super) fn verdict(results: &RunResults) -> String {
     let Some(complex) = results.get::<ComplexResult>() else {
-        return "No complex eigenvalues were requested: this run does not assess squeal.".into();
+        return "No complex eigenvalues were requested: this run makes no statement about squeal.".into();
     };
     let band = complex.band_hz.map(given);
     let modes = &complex.modes.modes;
@@ -152,7 +152,9 @@ pub(super) fn verdict(results: &RunResults) -> String {
         );
     }
     match (modes.len(), unstable) {
-        (0, _) => format!("No complex mode was found {between}: this run says nothing about squeal there."),
+        (0, _) => {
+            format!("No complex mode was found {between}: this run makes no statement about squeal there.")
+        }
         (all, 0) if undecided + inaccurate > 0 => {
             format!("Undecided: none of the {all} complex modes {between} grows for certain.{doubt}")
         }

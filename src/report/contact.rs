@@ -4,7 +4,7 @@ use super::chart::{Area, bold, colour, sheet, text, widened};
 use super::colours::{ALARM, CALM, INK, MEASURED, MUTED};
 use super::format::{given, significant};
 use super::section::Picture;
-use super::view::{Vector, cross, dot, unit};
+use super::view::{ViewVector, cross, dot, unit};
 use crate::results::{RunResults, SteadyResult};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -46,26 +46,26 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
 fn marks(steady: &SteadyResult) -> Option<(Vec<Mark>, String)> {
     let (pair, ..) = steady.pairs.first()?;
     let all = || steady.points.iter().zip(&steady.state.points).filter(|((name, _), _)| name == pair);
-    let closed: Vec<Vector> =
+    let closed: Vec<ViewVector> =
         all().filter(|(_, state)| state.closed()).map(|((_, place), _)| *place).collect();
-    let span = |direction: Vector| {
+    let span = |direction: ViewVector| {
         let along = closed.iter().map(|place| dot(*place, direction));
         along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), s| (low.min(s), high.max(s)))
     };
-    let width = |direction: Vector| span(direction).1 - span(direction).0;
+    let width = |direction: ViewVector| span(direction).1 - span(direction).0;
     let axes = [([0.0, 1.0, 0.0], "y"), ([1.0, 0.0, 0.0], "x"), ([0.0, 0.0, 1.0], "z")];
     let (axis, name) =
         axes.into_iter().reduce(|best, a| if width(a.0) > width(best.0) { a } else { best })?;
     // Points farther than this from the closed ones say nothing: the far side of a rim, for one.
     let reach = axes.iter().map(|(direction, _)| width(*direction)).fold(1e-3, f64::max);
-    let near = |place: Vector| {
+    let near = |place: ViewVector| {
         axes.iter().all(|(direction, _)| {
             let (low, high) = span(*direction);
             (low - reach..=high + reach).contains(&dot(place, *direction))
         })
     };
     let edge = edge_divider(steady, all().map(|((_, place), _)| *place).filter(|p| near(*p)).collect(), axis);
-    let mark = |place: Vector, state: &crate::equilibrium::PointState| Mark {
+    let mark = |place: ViewVector, state: &crate::equilibrium::PointState| Mark {
         place: 1e3 * dot(place, axis),
         force: state.forces.normal,
         penetration: 1e6 * state.penetration,
@@ -78,7 +78,11 @@ fn marks(steady: &SteadyResult) -> Option<(Vec<Mark>, String)> {
 }
 
 /// The sliding direction and the place on it that parts the two edges of a rim, where the points lie on two edges.
-fn edge_divider(steady: &SteadyResult, places: Vec<Vector>, axis: Vector) -> Option<(Vector, f64)> {
+fn edge_divider(
+    steady: &SteadyResult,
+    places: Vec<ViewVector>,
+    axis: ViewVector,
+) -> Option<(ViewVector, f64)> {
     let [_, slide] = *steady.directions.first()?;
     let direction = unit(cross(cross(axis, slide), axis))?;
     let along: Vec<f64> = places.iter().map(|place| dot(*place, direction)).collect();

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 /// The region where a field is at or above a level.
 #[derive(Debug, Default)]
-pub(super) struct Region {
+pub(super) struct FilledContour {
     /// Its outlines, holes included.
     pub loops: Vec<Vec<[f64; 2]>>,
     /// The stretches of the outline on which the field equals the level, one a triangle.
@@ -19,8 +19,13 @@ pub(super) struct Region {
 type Corner = (usize, usize);
 
 /// The region where the field `values`, given at `points`, is at least `level`; triangles are of either turn.
-pub(super) fn at_least(points: &[[f64; 2]], triangles: &[[usize; 3]], values: &[f64], level: f64) -> Region {
-    let mut region = Region::default();
+pub(super) fn at_least(
+    points: &[[f64; 2]],
+    triangles: &[[usize; 3]],
+    values: &[f64],
+    level: f64,
+) -> FilledContour {
+    let mut region = FilledContour::default();
     // Directed sides, region on the left; a list for each start, since regions may touch at a corner.
     let mut sides: BTreeMap<Corner, Vec<Corner>> = BTreeMap::new();
     let place = |(a, b): Corner| {
@@ -116,7 +121,7 @@ mod tests {
     }
 
     /// Signed area: holes count as negative.
-    fn area(region: &Region) -> f64 {
+    fn area(region: &FilledContour) -> f64 {
         let one = |l: &Vec<[f64; 2]>| -> f64 {
             (0..l.len()).map(|k| (l[k], l[(k + 1) % l.len()])).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum()
         };

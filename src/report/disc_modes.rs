@@ -3,10 +3,10 @@
 use super::colours::{INK, MEASURED, MUTED};
 use super::contours::at_least;
 use super::format::{given, hertz, signed};
-use super::plate::{Plate, colour_bar};
+use super::plate::{PlateView, colour_bar};
 use super::section::Picture;
-use super::svg::{Anchor, Ink, Point, Sheet};
-use super::view::{Fit, dot};
+use super::svg::{Anchor, Ink, Sheet, SvgPoint};
+use super::view::{PlacedView, dot};
 use crate::modal::{DiscModeName, levels};
 use crate::results::{Geometry, MeasuredComparison, MeasuredRow, NamedModes, RunResults};
 use std::ops::Range;
@@ -20,7 +20,7 @@ const FOOT: f64 = 62.0;
 /// The picture, when a set of modes has named ones.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let set = chosen_set(results)?;
-    let disc = Disc::new(&results.geometry, set)?;
+    let disc = DiscPicture::new(&results.geometry, set)?;
     let groups = groups(set);
     let comparisons = results.all::<MeasuredComparison>().into_iter().filter(|m| m.is_of(set));
     let rows: Vec<&MeasuredRow> = comparisons.clone().flat_map(|m| &m.rows).collect();
@@ -54,29 +54,29 @@ fn chosen_set(results: &RunResults) -> Option<&NamedModes> {
 }
 
 /// A mode that has a name, or the two of a double one.
-struct Group {
+struct ModeGroup {
     name: DiscModeName,
     modes: Range<usize>,
 }
 
-fn groups(set: &NamedModes) -> Vec<Group> {
+fn groups(set: &NamedModes) -> Vec<ModeGroup> {
     let hz: Vec<f64> = (0..set.modes.len()).map(|k| set.modes.frequency_hz(k)).collect();
-    let named = |modes: Range<usize>| Some(Group { name: set.names[modes.start]?, modes });
+    let named = |modes: Range<usize>| Some(ModeGroup { name: set.names[modes.start]?, modes });
     levels(&hz, &set.names).into_iter().filter_map(named).collect()
 }
 
 /// The disc seen along its axis.
-struct Disc {
-    plate: Plate,
+struct DiscPicture {
+    plate: PlateView,
     /// Nodes at rest in every mode: a clamped hub.
     held: Vec<bool>,
 }
 
-impl Disc {
+impl DiscPicture {
     fn new(geometry: &Geometry, set: &NamedModes) -> Option<Self> {
         let part = disc_part(geometry, set)?;
-        let plate = Plate::new(geometry, part)?;
-        let mut disc = Disc { held: vec![true; plate.nodes.len()], plate };
+        let plate = PlateView::new(geometry, part)?;
+        let mut disc = DiscPicture { held: vec![true; plate.nodes.len()], plate };
         for k in 0..set.modes.len() {
             let w = disc.deflection(&set.shape(k));
             disc.held.iter_mut().zip(&w).for_each(|(held, w)| *held &= w.abs() < 1e-6);
@@ -136,10 +136,10 @@ fn plate_motions(geometry: &Geometry, set: &NamedModes) -> Vec<f64> {
 
 fn draw_mode(
     sheet: &mut Sheet,
-    corner: Point,
-    disc: &Disc,
+    corner: SvgPoint,
+    disc: &DiscPicture,
     set: &NamedModes,
-    group: &Group,
+    group: &ModeGroup,
     (row, scale): (Option<&MeasuredRow>, Option<f64>),
 ) {
     let radius = 74.0;
@@ -148,12 +148,12 @@ fn draw_mode(
         let style = format!("rx=\"8\" fill=\"#eef5fa\" stroke=\"{MEASURED}\" stroke-width=\"1.2\"");
         sheet.rectangle([corner[0] + 5.0, corner[1] + 5.0], [CELL[0] - 10.0, CELL[1] - 10.0], &style);
     }
-    let fit = Fit::new(
+    let fit = PlacedView::new(
         disc.plate.points.iter().copied(),
         [centre_x - radius, corner[1] + 15.0],
         [2.0 * radius, 2.0 * radius],
     );
-    let pixels: Vec<Point> = disc.plate.points.iter().map(|p| fit.pixel(*p)).collect();
+    let pixels: Vec<SvgPoint> = disc.plate.points.iter().map(|p| fit.pixel(*p)).collect();
     let w = disc.deflection(&set.shape(group.modes.start));
     disc.plate.paint(sheet, &pixels, &w);
     let nodal = at_least(&pixels, &disc.lively(&w), &w, 0.0).level_lines;
@@ -204,7 +204,7 @@ fn draw_legend(sheet: &mut Sheet, top: f64, scale: Option<f64>) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::view::{Vector, View};
+    use super::super::view::{View, ViewVector};
     use super::*;
     use crate::results::sample;
 
@@ -227,7 +227,7 @@ mod tests {
     fn the_nodal_lines_are_where_the_shape_vanishes() {
         let results = sample::rig();
         let set = results.all::<NamedModes>()[0];
-        let disc = Disc::new(&results.geometry, set).unwrap();
+        let disc = DiscPicture::new(&results.geometry, set).unwrap();
         let k = set.names.iter().position(|n| n.is_some_and(|n| n.nodal_circles == 1)).unwrap();
         let w = disc.deflection(&set.shape(k));
         let lines = at_least(&disc.plate.points, &disc.lively(&w), &w, 0.0).level_lines;
@@ -240,7 +240,7 @@ mod tests {
         }
     }
 
-    fn tilted_centre(results: &RunResults) -> Vector {
+    fn tilted_centre(results: &RunResults) -> ViewVector {
         let bar =
             results.geometry.elements.iter().zip(&results.geometry.part_of).find(|(_, p)| **p == 2).unwrap();
         results.geometry.nodes[bar.0[0]]

@@ -5,8 +5,8 @@ use super::chart::{Area, colour, sheet, text};
 use super::colours::{ALARM, INK, MEASURED, MUTED, PARTS, SECOND};
 use super::format::{fixed, given, hertz, power};
 use super::magnitude::{draw_magnitude, draw_phase, magnitude_axes, phase_axes};
-use super::section::{Display, Picture, Section};
-use super::table::Table;
+use super::section::{Display, Picture, ReportSection};
+use super::table::ReportTable;
 use crate::results::{FrfResult, RunResults, file_name};
 use plotters::prelude::*;
 use std::error::Error;
@@ -17,9 +17,9 @@ const HIDDEN: f64 = 0.01;
 const NEAR: f64 = 0.05;
 
 /// Every frequency response.
-pub(super) fn sections(results: &RunResults) -> Vec<Section> {
+pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
     let section = |frf: &FrfResult| {
-        Section::new(format!("Frequency response: {}", frf.name))
+        ReportSection::new(format!("Frequency response: {}", frf.name))
             .pictures(picture(frf))
             .tables(Display::Titled, [table(frf)])
     };
@@ -110,9 +110,9 @@ fn shown(chart: &Chart, frf: &FrfResult) -> Vec<f64> {
 }
 
 /// The real modes of the band, and how much of each shows at each place.
-fn table(frf: &FrfResult) -> Table {
+fn table(frf: &FrfResult) -> ReportTable {
     let headings = ["<mode", "f [Hz]", "measured [Hz]", "<place", "seen [%]", "<why"];
-    let mut table = Table::new(
+    let mut table = ReportTable::new(
         format!("Frequency response {}: {} for a force at {}", frf.name, frf.quantity.word(), frf.excitation),
         &headings,
     );

@@ -1,7 +1,7 @@
 //! Parts of a page: plain HTML with its style and its pictures inside, no script.
 
-use super::section::{Display, Item, Section};
-use super::table::{Column, Table};
+use super::section::{Display, Item, ReportSection};
+use super::table::{ReportColumn, ReportTable};
 use crate::error::text::printable_lines;
 
 const STYLE: &str = "\
@@ -39,12 +39,12 @@ pub(super) fn figure(svg: &str, caption: &str) -> String {
 }
 
 /// A table under its caption.
-pub(super) fn titled_table(content: &Table) -> String {
+pub(super) fn titled_table(content: &ReportTable) -> String {
     table(content)
 }
 
 /// A section with its heading.
-pub(super) fn section(section: &Section) -> String {
+pub(super) fn section(section: &ReportSection) -> String {
     let heading = match section.heading.as_str() {
         "" => String::new(),
         heading => format!("<h2>{}</h2>\n", escape(heading)),
@@ -60,7 +60,7 @@ pub(super) fn section(section: &Section) -> String {
 /// A table with this many rows is long.
 const LONG: usize = 25;
 
-fn shown(content: &Table, display: Display) -> String {
+fn shown(content: &ReportTable, display: Display) -> String {
     let closed = match display {
         Display::Closed => true,
         Display::Folded => content.rows.len() > LONG,
@@ -75,12 +75,12 @@ fn shown(content: &Table, display: Display) -> String {
 }
 
 /// A table whose caption a heading above it gives already.
-pub(super) fn untitled(content: &Table) -> String {
-    table(&Table { caption: String::new(), ..content.clone() })
+pub(super) fn untitled(content: &ReportTable) -> String {
+    table(&ReportTable { caption: String::new(), ..content.clone() })
 }
 
-fn table(content: &Table) -> String {
-    let class = |column: &Column| if column.words { " class=\"w\"" } else { "" };
+fn table(content: &ReportTable) -> String {
+    let class = |column: &ReportColumn| if column.words { " class=\"w\"" } else { "" };
     let alarm = if content.alarming { " bad" } else { "" };
     let mut text = format!("<div class=\"scroll{alarm}\"><table>\n");
     if !content.caption.is_empty() {
@@ -101,7 +101,7 @@ fn table(content: &Table) -> String {
     text + "</tbody></table></div>\n" + &notes(content)
 }
 
-pub(super) fn notes(content: &Table) -> String {
+pub(super) fn notes(content: &ReportTable) -> String {
     content.notes.iter().map(|note| format!("<p class=\"note\">{}</p>\n", escape(note))).collect()
 }
 

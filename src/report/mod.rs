@@ -8,7 +8,7 @@
 //!   `mac_<name>.svg`, `frequencies_<name>.svg` and `measured_frf_<name>.svg` of measured data;
 //!   `sweep_<name>.svg`, `root_locus_<name>.svg` and `map_<name>.svg` of every sweep and map.
 //!
-//! Each analysis has a function that gives its [`Section`]s from the results; tables and words are shown in either form, a picture
+//! Each analysis has a function that gives its [`ReportSection`]s from the results; tables and words are shown in either form, a picture
 //! is a pure function from the results to SVG. [`SECTIONS`] lists them.
 
 mod advice;
@@ -52,11 +52,11 @@ pub use validation::write_validation;
 
 use crate::error::Result;
 use crate::results::{FileNames, RunResults, write_result};
-use section::Section;
+use section::ReportSection;
 use std::path::Path;
 
 /// Sections of each analysis, in the order of the report: one line an analysis.
-const SECTIONS: [fn(&RunResults) -> Vec<Section>; 10] = [
+const SECTIONS: [fn(&RunResults) -> Vec<ReportSection>; 10] = [
     rig::sections,
     real_modes::sections,
     comparison::sections,
@@ -70,7 +70,7 @@ const SECTIONS: [fn(&RunResults) -> Vec<Section>; 10] = [
 ];
 
 /// The sections that a run has something for.
-fn sections(results: &RunResults) -> Vec<Section> {
+fn sections(results: &RunResults) -> Vec<ReportSection> {
     SECTIONS.iter().flat_map(|section| section(results)).collect()
 }
 
@@ -81,7 +81,7 @@ fn sections(results: &RunResults) -> Vec<Section> {
 pub fn write_report(dir: &Path, results: &RunResults) -> Result<()> {
     let sections = sections(results);
     let mut names = FileNames::default();
-    for picture in sections.iter().flat_map(Section::drawn) {
+    for picture in sections.iter().flat_map(ReportSection::drawn) {
         let file = format!("{}.svg", names.once(picture.file.clone()));
         write_result(dir, &file, picture.svg.as_bytes())?;
     }

@@ -3,12 +3,12 @@
 use super::complex::{unstable, verdict};
 use super::format::significant;
 use super::html::{document, escape, notes, section, untitled};
-use super::section::Section;
-use super::table::Table;
+use super::section::ReportSection;
+use super::table::ReportTable;
 use crate::results::{ComplexResult, RunResults};
 
 /// The whole page.
-pub(super) fn page(results: &RunResults, sections: &[Section]) -> String {
+pub(super) fn page(results: &RunResults, sections: &[ReportSection]) -> String {
     let title = if results.title.is_empty() { "Results" } else { &results.title };
     let mut body =
         format!("<h1>{}</h1>\n<p class=\"sub\">{}</p>\n", escape(title), escape(&subtitle(results)));
@@ -60,8 +60,8 @@ fn verdict_box(results: &RunResults) -> String {
 }
 
 /// Where the wall time went.
-fn timings(results: &RunResults) -> Table {
-    let mut table = Table::new("Wall time", &["<phase", "seconds"]);
+fn timings(results: &RunResults) -> ReportTable {
+    let mut table = ReportTable::new("Wall time", &["<phase", "seconds"]);
     for (phase, seconds) in &results.timings {
         table.row(vec![phase.clone(), significant(*seconds, 3)], false);
     }
@@ -118,6 +118,6 @@ mod tests {
     #[test]
     fn a_run_without_results_still_has_a_page() {
         let page = page(&RunResults::default(), &[]);
-        assert!(page.contains("says nothing about squeal") && page.ends_with("</html>\n"));
+        assert!(page.contains("makes no statement about squeal") && page.ends_with("</html>\n"));
     }
 }

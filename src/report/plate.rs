@@ -2,15 +2,15 @@
 
 use super::colours::{MUTED, diverging};
 use super::contours::at_least;
-use super::svg::{Point, Sheet};
-use super::view::{Vector, View, along, cross, dot};
+use super::svg::{Sheet, SvgPoint};
+use super::view::{View, ViewVector, along, cross, dot};
 use crate::results::Geometry;
 
 /// Half the number of colour steps.
 pub(super) const STEPS: i32 = 6;
 
 /// A plate seen along its mean normal.
-pub(super) struct Plate {
+pub(super) struct PlateView {
     /// Its nodes, ascending.
     pub nodes: Vec<usize>,
     /// Where each is on the picture \[m\].
@@ -18,10 +18,10 @@ pub(super) struct Plate {
     /// Triangles of indices into `nodes`.
     pub triangles: Vec<[usize; 3]>,
     /// Towards the viewer.
-    pub normal: Vector,
+    pub normal: ViewVector,
 }
 
-impl Plate {
+impl PlateView {
     /// The faces of `part`; `None` when it has none or they face no common side.
     pub(super) fn new(geometry: &Geometry, part: usize) -> Option<Self> {
         let faces =
@@ -46,11 +46,11 @@ impl Plate {
         let viewer = if toward_eye < 0.0 { sum.map(|c| -c) } else { sum };
         let view = View::facing(viewer)?;
         let points = nodes.iter().map(|k| view.project(geometry.nodes[*k])).collect();
-        Some(Plate { nodes, points, triangles, normal: view.towards })
+        Some(PlateView { nodes, points, triangles, normal: view.towards })
     }
 
     /// Paints `values` in [−1, 1], one a node of the plate, at the places `pixels`.
-    pub(super) fn paint(&self, sheet: &mut Sheet, pixels: &[Point], values: &[f64]) {
+    pub(super) fn paint(&self, sheet: &mut Sheet, pixels: &[SvgPoint], values: &[f64]) {
         for step in -STEPS..STEPS {
             let level = if step == -STEPS { f64::NEG_INFINITY } else { f64::from(step) / f64::from(STEPS) };
             let region = at_least(pixels, &self.triangles, values, level);
@@ -69,7 +69,7 @@ impl Plate {
 }
 
 /// The colour steps beside each other, `width` pixels a step; returns the width of them all.
-pub(super) fn colour_bar(sheet: &mut Sheet, [left, y]: Point, step: f64) -> f64 {
+pub(super) fn colour_bar(sheet: &mut Sheet, [left, y]: SvgPoint, step: f64) -> f64 {
     for k in -STEPS..STEPS {
         let x = left + step * f64::from(k + STEPS);
         let colour = diverging((f64::from(k) + 0.5) / f64::from(STEPS));

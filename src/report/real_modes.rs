@@ -2,23 +2,23 @@
 
 use super::disc_modes;
 use super::format::{fixed, given, hertz, power, signed};
-use super::section::{Display, Section};
-use super::table::Table;
+use super::section::{Display, ReportSection};
+use super::table::ReportTable;
 use crate::results::{MeasuredComparison, NamedModes, RunResults};
 
 /// The sets of real modes.
-pub(super) fn sections(results: &RunResults) -> Vec<Section> {
+pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
     let sets = results.all::<NamedModes>();
     if sets.is_empty() {
         return Vec::new();
     }
-    let section = Section::new("Real modes beside the measured frequencies");
+    let section = ReportSection::new("Real modes beside the measured frequencies");
     let tables = sets.into_iter().map(|set| table(results, set));
     vec![section.pictures(disc_modes::picture(results)).tables(Display::Folded, tables)]
 }
 
 /// The modes of a set beside the measured frequencies that were compared with it.
-fn table(results: &RunResults, set: &NamedModes) -> Table {
+fn table(results: &RunResults, set: &NamedModes) -> ReportTable {
     let comparisons: Vec<_> =
         results.all::<MeasuredComparison>().into_iter().filter(|m| m.is_of(set)).collect();
     let mut headings = vec!["no.", "f [Hz]"];
@@ -40,7 +40,7 @@ fn table(results: &RunResults, set: &NamedModes) -> Table {
         headings.extend(["measured", "diff. [%]"]);
     }
     headings.extend(["m_x [%]", "m_y [%]", "m_z [%]", "η"]);
-    let mut table = Table::new(format!("Real modes: {}", set.name), &headings);
+    let mut table = ReportTable::new(format!("Real modes: {}", set.name), &headings);
     let rows: Vec<_> = comparisons.iter().flat_map(|m| &m.rows).collect();
     for k in 0..set.modes.len() {
         // The frequency of a rigid-body motion is round-off.

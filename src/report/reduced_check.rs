@@ -1,13 +1,13 @@
 //! The table that sets a reduced model beside the full one.
 
 use super::format::{hertz, power};
-use super::table::Table;
+use super::table::ReportTable;
 use crate::results::{ComplexResult, Deviation, ReducedCheck};
 
 /// The largest deviations, one a row.
-pub(super) fn table(check: &ReducedCheck, complex: Option<&ComplexResult>) -> Table {
+pub(super) fn table(check: &ReducedCheck, complex: Option<&ComplexResult>) -> ReportTable {
     let mut table =
-        Table::new("Reduced model beside the full one", &["<largest deviation of", "relative", "<at"]);
+        ReportTable::new("Reduced model beside the full one", &["<largest deviation of", "relative", "<at"]);
     let mode = |of: &Deviation| {
         let modes = complex.and_then(|c| c.modes.modes.get(of.mode));
         modes.map_or(String::new(), |mode| {

@@ -2,9 +2,9 @@
 
 use super::colours::{ALARM, INK, MEASURED, MUTED, PARTS};
 use super::format::given;
-use super::section::{Picture, Section};
-use super::svg::{Anchor, Ink, Point, Sheet};
-use super::view::{Fit, Vector, View, along, dot};
+use super::section::{Picture, ReportSection};
+use super::svg::{Anchor, Ink, Sheet, SvgPoint};
+use super::view::{PlacedView, View, ViewVector, along, dot};
 use crate::results::{Geometry, RunResults, SteadyResult};
 use std::collections::BTreeMap;
 
@@ -13,8 +13,8 @@ const SIZE: [f64; 2] = [860.0, 560.0];
 const FINEST_EDGE: f64 = 2.5;
 
 /// The model, before the analyses.
-pub(super) fn sections(results: &RunResults) -> Vec<Section> {
-    picture(results).map(|picture| Section::new("").pictures([picture])).into_iter().collect()
+pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
+    picture(results).map(|picture| ReportSection::new("").pictures([picture])).into_iter().collect()
 }
 
 /// The picture, when the model has a mesh.
@@ -30,8 +30,8 @@ fn picture(results: &RunResults) -> Option<Picture> {
     let used = geometry.elements.iter().flatten().map(|k| geometry.nodes[*k]);
     let ends = arrows.iter().flat_map(|arrow| [arrow.tail, arrow.head]);
     let places = used.chain(ends).map(|place| view.project(place));
-    let fit = Fit::new(places, [70.0, 66.0], [SIZE[0] - 200.0, SIZE[1] - 132.0]);
-    let pixel = |place: Vector| fit.pixel(view.project(place));
+    let fit = PlacedView::new(places, [70.0, 66.0], [SIZE[0] - 200.0, SIZE[1] - 132.0]);
+    let pixel = |place: ViewVector| fit.pixel(view.project(place));
     let mut sheet = Sheet::new(SIZE[0], SIZE[1]);
     draw_elements(&mut sheet, geometry, &view, &fit);
     if let Some(steady) = results.get::<SteadyResult>() {
@@ -47,7 +47,7 @@ fn picture(results: &RunResults) -> Option<Picture> {
 }
 
 /// Elements from the farthest to the nearest (the painter's algorithm); stretches of one part share a path.
-fn draw_elements(sheet: &mut Sheet, geometry: &Geometry, view: &View, fit: &Fit) {
+fn draw_elements(sheet: &mut Sheet, geometry: &Geometry, view: &View, fit: &PlacedView) {
     let centre = |element: &[usize]| {
         let sum = element.iter().fold([0.0; 3], |sum, k| along(sum, 1.0, geometry.nodes[*k]));
         sum.map(|c| c / element.len().max(1) as f64)
@@ -56,7 +56,7 @@ fn draw_elements(sheet: &mut Sheet, geometry: &Geometry, view: &View, fit: &Fit)
         geometry.elements.iter().enumerate().map(|(k, e)| (view.nearness(centre(e)), k)).collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let outline = outlines(geometry);
-    let pixels = |element: &[usize]| -> Vec<Point> {
+    let pixels = |element: &[usize]| -> Vec<SvgPoint> {
         element.iter().map(|k| fit.pixel(view.project(geometry.nodes[*k]))).collect()
     };
     let fine = fineness(geometry) * fit.scale() < FINEST_EDGE;
@@ -64,7 +64,8 @@ fn draw_elements(sheet: &mut Sheet, geometry: &Geometry, view: &View, fit: &Fit)
     for stretch in order.chunk_by(|a, b| kind(a.1) == kind(b.1)) {
         let (part, corners) = kind(stretch[0].1);
         let [fill, edge] = PARTS[part % PARTS.len()];
-        let shapes: Vec<Vec<Point>> = stretch.iter().map(|(_, k)| pixels(&geometry.elements[*k])).collect();
+        let shapes: Vec<Vec<SvgPoint>> =
+            stretch.iter().map(|(_, k)| pixels(&geometry.elements[*k])).collect();
         match corners {
             1 => shapes.iter().for_each(|s| sheet.circle(s[0], 4.0, &format!("fill=\"{edge}\""))),
             2 => {
@@ -79,7 +80,7 @@ fn draw_elements(sheet: &mut Sheet, geometry: &Geometry, view: &View, fit: &Fit)
                     format!("stroke=\"{edge}\" stroke-width=\"0.5\" stroke-opacity=\"0.55\"")
                 };
                 sheet.polygons(shapes.iter().map(Vec::as_slice), &format!("fill=\"{fill}\" {stroke}"));
-                let sides: Vec<Vec<Point>> = stretch
+                let sides: Vec<Vec<SvgPoint>> = stretch
                     .iter()
                     .filter_map(|(_, k)| outline.get(k))
                     .flatten()
@@ -127,8 +128,8 @@ fn fineness(geometry: &Geometry) -> f64 {
 
 /// An arrow in space with its label at the tail or the head.
 struct Arrow {
-    tail: Vector,
-    head: Vector,
+    tail: ViewVector,
+    head: ViewVector,
     label: String,
     colour: &'static str,
     label_at_head: bool,
@@ -141,7 +142,7 @@ fn arrows(geometry: &Geometry, steady: &SteadyResult) -> Vec<Arrow> {
         .max(extent(geometry, [0.0, 1.0, 0.0], [0.0; 3]))
         .max(extent(geometry, [0.0, 0.0, 1.0], [0.0; 3]));
     for ((name, load, velocity), [press, slide]) in steady.pairs.iter().zip(&steady.directions) {
-        let all: Vec<Vector> =
+        let all: Vec<ViewVector> =
             steady.points.iter().filter(|(pair, _)| pair == name).map(|(_, p)| *p).collect();
         let centre = all.iter().fold([0.0; 3], |sum, p| along(sum, 1.0 / all.len() as f64, *p));
         let above = extent(geometry, press.map(|c| -c), centre);
@@ -160,13 +161,13 @@ fn arrows(geometry: &Geometry, steady: &SteadyResult) -> Vec<Arrow> {
 }
 
 /// How far the plates reach from `from` along `direction` \[m\].
-fn extent(geometry: &Geometry, direction: Vector, from: Vector) -> f64 {
+fn extent(geometry: &Geometry, direction: ViewVector, from: ViewVector) -> f64 {
     let plates = geometry.elements.iter().filter(|e| e.len() >= 3);
     let reach = plates.flatten().map(|k| dot(along(geometry.nodes[*k], -1.0, from), direction));
     reach.fold(0.0, f64::max)
 }
 
-fn draw_arrow(sheet: &mut Sheet, arrow: &Arrow, pixel: impl Fn(Vector) -> Point) {
+fn draw_arrow(sheet: &mut Sheet, arrow: &Arrow, pixel: impl Fn(ViewVector) -> SvgPoint) {
     let (tail, head) = (pixel(arrow.tail), pixel(arrow.head));
     sheet.arrow(tail, head, arrow.colour, 4.0);
     let ink = Ink { size: 15.0, colour: arrow.colour, bold: true, anchor: Anchor::Middle };
@@ -176,7 +177,7 @@ fn draw_arrow(sheet: &mut Sheet, arrow: &Arrow, pixel: impl Fn(Vector) -> Point)
 }
 
 /// Closed points filled, open ones hollow.
-fn draw_points(sheet: &mut Sheet, steady: &SteadyResult, pixel: impl Fn(Vector) -> Point) {
+fn draw_points(sheet: &mut Sheet, steady: &SteadyResult, pixel: impl Fn(ViewVector) -> SvgPoint) {
     let states = steady.points.iter().zip(&steady.state.points);
     let (closed, open): (Vec<_>, Vec<_>) = states.partition(|(_, state)| state.closed());
     for ((_, place), _) in open {
@@ -213,7 +214,7 @@ fn draw_legend(sheet: &mut Sheet, geometry: &Geometry, contact: bool) {
 }
 
 /// The three axes and a scale bar in the lower right corner.
-fn draw_axes(sheet: &mut Sheet, view: &View, fit: &Fit) {
+fn draw_axes(sheet: &mut Sheet, view: &View, fit: &PlacedView) {
     let origin = [SIZE[0] - 86.0, SIZE[1] - 92.0];
     for (axis, name) in [([1.0, 0.0, 0.0], "x"), ([0.0, 1.0, 0.0], "y"), ([0.0, 0.0, 1.0], "z")] {
         let [right, up] = view.project(axis);

@@ -5,7 +5,7 @@ use super::colours::{ALARM, CALM, INK, MEASURED, MUTED};
 use super::format::{fixed, given, significant};
 use super::html::{self, escape};
 use super::svg::{Anchor, Ink, Sheet};
-use super::table::Table;
+use super::table::ReportTable;
 use super::text::render;
 use crate::error::Result;
 use crate::results::{SearchResult, SearchedNumber, passed, write_result};
@@ -100,8 +100,9 @@ fn words(result: &SearchResult) -> Vec<String> {
     words
 }
 
-fn fact_table(result: &SearchResult) -> Table {
-    let mut table = Table::new("Facts", &["<fact", "wanted", "tolerance", "before", "found", "÷ tol.", "<"]);
+fn fact_table(result: &SearchResult) -> ReportTable {
+    let mut table =
+        ReportTable::new("Facts", &["<fact", "wanted", "tolerance", "before", "found", "÷ tol.", "<"]);
     table.alarming = true;
     for (row, before) in result.facts.rows.iter().zip(&result.before) {
         let tolerance = match row.relative {
@@ -132,9 +133,9 @@ fn shortened(words: &str) -> String {
     }
 }
 
-fn number_table(result: &SearchResult) -> Table {
+fn number_table(result: &SearchResult) -> ReportTable {
     let headings = ["<number", "<unit", "from", "to", "before", "found", "weight", "<"];
-    let mut table = Table::new("Numbers", &headings);
+    let mut table = ReportTable::new("Numbers", &headings);
     for number in &result.numbers {
         let cells = vec![
             number.name.clone(),
@@ -233,11 +234,11 @@ fn weight_picture(result: &SearchResult) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::{Checked, CheckedCase, Moved};
+    use crate::results::{CheckedCase, CheckedQuantity, Moved};
 
     #[test]
     fn what_is_missed_and_what_matters_is_told() {
-        let fact = |quantity: &str, computed: f64| Checked {
+        let fact = |quantity: &str, computed: f64| CheckedQuantity {
             quantity: quantity.into(),
             computed,
             reference: 936.0,

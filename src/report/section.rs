@@ -1,6 +1,6 @@
 //! A part of the report: what one analysis found, in tables, words and pictures, once for the terminal and the page.
 
-use super::table::Table;
+use super::table::ReportTable;
 
 /// A picture with the name of its file, without the extension, and its caption.
 #[derive(Debug, Clone)]
@@ -12,7 +12,7 @@ pub(super) struct Picture {
 
 /// Section of one analysis.
 #[derive(Debug, Clone)]
-pub(super) struct Section {
+pub(super) struct ReportSection {
     /// Its heading on the page; empty for none.
     pub heading: String,
     pub items: Vec<Item>,
@@ -22,7 +22,7 @@ pub(super) struct Section {
 #[derive(Debug, Clone)]
 pub(super) enum Item {
     Picture(Picture),
-    Table(Table, Display),
+    Table(ReportTable, Display),
     Words(String),
 }
 
@@ -39,10 +39,10 @@ pub(super) enum Display {
     Closed,
 }
 
-impl Section {
+impl ReportSection {
     /// An empty section.
     pub(super) fn new(heading: impl Into<String>) -> Self {
-        Section { heading: heading.into(), items: Vec::new() }
+        ReportSection { heading: heading.into(), items: Vec::new() }
     }
 
     /// With pictures.
@@ -54,7 +54,7 @@ impl Section {
 
     /// With tables.
     #[must_use]
-    pub(super) fn tables(mut self, display: Display, tables: impl IntoIterator<Item = Table>) -> Self {
+    pub(super) fn tables(mut self, display: Display, tables: impl IntoIterator<Item = ReportTable>) -> Self {
         self.items.extend(tables.into_iter().map(|table| Item::Table(table, display)));
         self
     }

@@ -1,19 +1,19 @@
 //! Sensitivities of complex modes, and the additions that stabilise them.
 
 use super::format::{fixed, given, hertz, power, rate};
-use super::section::{Display, Section};
-use super::table::Table;
+use super::section::{Display, ReportSection};
+use super::table::ReportTable;
 use super::{advice, tornado};
 use crate::linalg::c64;
 use crate::results::{ModeSensitivity, RunResults, SensitivityResult};
 use std::f64::consts::TAU;
 
 /// Sensitivities, where the run has them.
-pub(super) fn sections(results: &RunResults) -> Vec<Section> {
+pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
     let Some(found) = results.get::<SensitivityResult>() else { return Vec::new() };
     let places = found.modes.iter().any(|mode| !mode.best.is_empty()).then(|| advice_table(found));
     let left_out = found.left_out.iter().map(|(path, why)| format!("{path} is left out: {why}."));
-    let section = Section::new("What the modes answer to, and what would calm them")
+    let section = ReportSection::new("Sensitivities of the modes, and additions that stabilise them")
         .pictures([tornado::picture(results), advice::picture(results)].into_iter().flatten())
         .tables(Display::Closed, found.modes.iter().map(rates))
         .tables(Display::Untitled, places)
@@ -23,10 +23,10 @@ pub(super) fn sections(results: &RunResults) -> Vec<Section> {
 
 /// Derivatives of a mode, the scalar that moves its growth rate most first. The derivatives proper are the last two
 /// columns.
-fn rates(mode: &ModeSensitivity) -> Table {
+fn rates(mode: &ModeSensitivity) -> ReportTable {
     let hz = hertz(mode.eigenvalue.im / TAU, 1);
-    let caption = format!("What the mode at {hz} Hz, σ = {} 1/s, answers to", rate(mode.eigenvalue));
-    let mut table = Table::of(caption, &mode.rates(), false);
+    let caption = format!("Sensitivities of the mode at {hz} Hz, σ = {} 1/s", rate(mode.eigenvalue));
+    let mut table = ReportTable::of(caption, &mode.rates(), false);
     table.notes.push(
         "The steady state follows every scalar. Error: of dλ/dp, relative; dσ/dp, df/dp: per SI unit.".into(),
     );
@@ -37,28 +37,28 @@ fn rates(mode: &ModeSensitivity) -> Table {
 }
 
 /// The best places for a mass and a damper, one row each.
-fn advice_table(result: &SensitivityResult) -> Table {
+fn advice_table(result: &SensitivityResult) -> ReportTable {
     let headings =
         ["f [Hz]", "σ [1/s]", "<mount", "<at x, y, z [mm]", "<along", "by slope", "done", "slope error"];
     let mut table =
-        Table::new("What would calm the modes: σ with a thing mounted at its best place", &headings);
+        ReportTable::new("Stabilising additions: σ with each one mounted at its best place", &headings);
     for mode in &result.modes {
-        for thing in &mode.best {
-            let amount = if thing.kind == "mass" {
-                format!("{} g", given(1e3 * thing.amount))
+        for addition in &mode.best {
+            let amount = if addition.kind == "mass" {
+                format!("{} g", given(1e3 * addition.amount))
             } else {
-                format!("{} {} {}", thing.kind, given(thing.amount), thing.unit)
+                format!("{} {} {}", addition.kind, given(addition.amount), addition.unit)
             };
             let sigma = |d: c64| rate(mode.eigenvalue + d);
             let cells = vec![
                 hertz(mode.eigenvalue.im / TAU, 1),
                 rate(mode.eigenvalue),
                 amount,
-                thing.position.map(|c| fixed(1e3 * c, 1)).join(", "),
-                thing.direction.map_or(String::new(), axis),
-                sigma(thing.predicted),
-                thing.done.map_or("–".into(), sigma),
-                thing.slope_error.map_or("–".into(), power),
+                addition.position.map(|c| fixed(1e3 * c, 1)).join(", "),
+                addition.direction.map_or(String::new(), axis),
+                sigma(addition.predicted),
+                addition.done.map_or("–".into(), sigma),
+                addition.slope_error.map_or("–".into(), power),
             ];
             table.row(cells, false);
         }
@@ -67,7 +67,8 @@ fn advice_table(result: &SensitivityResult) -> Table {
         .notes
         .push("By slope: to first order; done: mounted on the model and everything recomputed.".into());
     table.notes.push(
-        "Slope error: how far a thousandth of the thing, really mounted, is from the slope, relative.".into(),
+        "Slope error: relative difference between the slope and the effect of a thousandth of the addition mounted on the model."
+            .into(),
     );
     table
 }

@@ -4,7 +4,7 @@ use super::html::escape;
 use std::fmt::Write;
 
 /// A point on the sheet \[px\], y downwards.
-pub(super) type Point = [f64; 2];
+pub(super) type SvgPoint = [f64; 2];
 
 /// A sheet that is being drawn on.
 pub(super) struct Sheet {
@@ -39,31 +39,31 @@ impl Sheet {
     }
 
     /// A rectangle by its upper left corner and its size; `style` holds SVG attributes, here and below.
-    pub(super) fn rectangle(&mut self, [x, y]: Point, [w, h]: [f64; 2], style: &str) {
+    pub(super) fn rectangle(&mut self, [x, y]: SvgPoint, [w, h]: [f64; 2], style: &str) {
         self.put(format_args!(
             "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{w:.1}\" height=\"{h:.1}\" {style}/>"
         ));
     }
 
     /// A circle.
-    pub(super) fn circle(&mut self, [x, y]: Point, radius: f64, style: &str) {
+    pub(super) fn circle(&mut self, [x, y]: SvgPoint, radius: f64, style: &str) {
         self.put(format_args!("<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius:.1}\" {style}/>"));
     }
 
     /// Closed polygons as one path; a point inside an even number of them is outside.
-    pub(super) fn polygons<'a>(&mut self, polygons: impl IntoIterator<Item = &'a [Point]>, style: &str) {
+    pub(super) fn polygons<'a>(&mut self, polygons: impl IntoIterator<Item = &'a [SvgPoint]>, style: &str) {
         let path: String = polygons.into_iter().map(|polygon| trace(polygon) + "z").collect();
         self.put(format_args!("<path d=\"{path}\" fill-rule=\"evenodd\" {style}/>"));
     }
 
     /// Open lines as one path.
-    pub(super) fn lines<'a>(&mut self, lines: impl IntoIterator<Item = &'a [Point]>, style: &str) {
+    pub(super) fn lines<'a>(&mut self, lines: impl IntoIterator<Item = &'a [SvgPoint]>, style: &str) {
         let path: String = lines.into_iter().map(trace).collect();
         self.put(format_args!("<path d=\"{path}\" fill=\"none\" {style}/>"));
     }
 
     /// An arrow with a filled head.
-    pub(super) fn arrow(&mut self, tail: Point, head: Point, colour: &str, width: f64) {
+    pub(super) fn arrow(&mut self, tail: SvgPoint, head: SvgPoint, colour: &str, width: f64) {
         let d = [head[0] - tail[0], head[1] - tail[1]];
         let length = d[0].hypot(d[1]);
         if length < 1e-9 {
@@ -78,7 +78,7 @@ impl Sheet {
     }
 
     /// A text on its baseline.
-    pub(super) fn text(&mut self, [x, y]: Point, text: &str, ink: Ink) {
+    pub(super) fn text(&mut self, [x, y]: SvgPoint, text: &str, ink: Ink) {
         let anchor = match ink.anchor {
             Anchor::Start => "start",
             Anchor::Middle => "middle",
@@ -106,7 +106,7 @@ impl Sheet {
 }
 
 /// `M x y l dx dy …` with a tenth of a pixel, in whole tenths so that rounding does not add up along the way.
-fn trace(points: &[Point]) -> String {
+fn trace(points: &[SvgPoint]) -> String {
     let mut path = String::new();
     let mut last = [0_i64; 2];
     for (k, point) in points.iter().enumerate() {

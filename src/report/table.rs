@@ -4,10 +4,10 @@ use crate::dataset;
 
 /// A table with its caption and the notes below it.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Table {
+pub(super) struct ReportTable {
     pub caption: String,
-    pub columns: Vec<Column>,
-    pub rows: Vec<Row>,
+    pub columns: Vec<ReportColumn>,
+    pub rows: Vec<ReportRow>,
     pub notes: Vec<String>,
     /// Whether its marked rows are bad news.
     pub alarming: bool,
@@ -15,26 +15,26 @@ pub(super) struct Table {
 
 /// A column's heading and whether it holds words (set left) or numbers (set right).
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Column {
+pub(super) struct ReportColumn {
     pub heading: &'static str,
     pub words: bool,
 }
 
 /// A row; `marked` rows stand out.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Row {
+pub(super) struct ReportRow {
     pub cells: Vec<String>,
     pub marked: bool,
 }
 
-impl Table {
+impl ReportTable {
     /// An empty table; a heading that begins with `<` is that of a column of words.
     pub(super) fn new(caption: impl Into<String>, headings: &[&'static str]) -> Self {
         let column = |heading: &&'static str| match heading.strip_prefix('<') {
-            Some(heading) => Column { heading, words: true },
-            None => Column { heading, words: false },
+            Some(heading) => ReportColumn { heading, words: true },
+            None => ReportColumn { heading, words: false },
         };
-        Table {
+        ReportTable {
             caption: caption.into(),
             columns: headings.iter().map(column).collect(),
             rows: vec![],
@@ -45,9 +45,9 @@ impl Table {
 
     /// The columns of a table that are shown to people, after the number of the row where `numbered`.
     pub(super) fn of(caption: impl Into<String>, data: &dataset::Table, numbered: bool) -> Self {
-        let mut table = Table::new(caption, if numbered { &["no."] } else { &[] });
+        let mut table = ReportTable::new(caption, if numbered { &["no."] } else { &[] });
         let shown: Vec<_> = data.columns.iter().filter_map(|column| column.shown.as_ref()).collect();
-        let column = |shown: &&dataset::Shown| Column { heading: shown.heading, words: shown.words };
+        let column = |shown: &&dataset::Shown| ReportColumn { heading: shown.heading, words: shown.words };
         table.columns.extend(shown.iter().map(column));
         for k in 0..data.rows.length {
             let number = numbered.then(|| (k + 1).to_string());
@@ -60,6 +60,6 @@ impl Table {
     }
 
     pub(super) fn row(&mut self, cells: Vec<String>, marked: bool) {
-        self.rows.push(Row { cells, marked });
+        self.rows.push(ReportRow { cells, marked });
     }
 }

@@ -1,8 +1,8 @@
 //! The tables for the terminal: aligned, at most 100 columns wide.
 
 use super::complex;
-use super::section::{Display, Item, Section};
-use super::table::Table;
+use super::section::{Display, Item, ReportSection};
+use super::table::ReportTable;
 use crate::results::{ComplexResult, RunResults};
 
 const WIDTH: usize = 100;
@@ -22,7 +22,7 @@ pub fn summary(results: &RunResults) -> String {
 }
 
 /// The tables and words of a section; its heading where no table has a caption.
-fn section(section: &Section) -> String {
+fn section(section: &ReportSection) -> String {
     let titled = section.items.iter().any(|item| matches!(item, Item::Table(..)));
     let worded = section.items.iter().any(|item| matches!(item, Item::Words(_)));
     let heading = if worded && !titled { wrap(&section.heading) } else { String::new() };
@@ -42,7 +42,7 @@ fn section(section: &Section) -> String {
 }
 
 /// The first rows and columns of a table.
-fn shortened(table: &Table) -> Table {
+fn shortened(table: &ReportTable) -> ReportTable {
     let [rows, columns] = CLOSED;
     let mut table = table.clone();
     table.rows.truncate(rows);
@@ -62,7 +62,7 @@ fn verdict(results: &RunResults) -> String {
     }
 }
 
-pub(super) fn render(table: &Table) -> String {
+pub(super) fn render(table: &ReportTable) -> String {
     let shown = &table.rows[..table.rows.len().min(ROWS)];
     let mut widths: Vec<usize> = table.columns.iter().map(|column| length(column.heading)).collect();
     for row in shown {
@@ -92,7 +92,7 @@ pub(super) fn render(table: &Table) -> String {
     text + &notes(table)
 }
 
-fn notes(table: &Table) -> String {
+fn notes(table: &ReportTable) -> String {
     table.notes.iter().map(|note| wrap(note)).collect()
 }
 
@@ -159,6 +159,6 @@ mod tests {
         results.get_mut::<ComplexResult>().unwrap().modes.modes.retain(|mode| !mode.unstable());
         let text = verdict(&results);
         assert!(text.contains("Stable: none of the 11") && text.contains("936 Hz"), "{text}");
-        assert!(verdict(&RunResults::default()).contains("says nothing about squeal"));
+        assert!(verdict(&RunResults::default()).contains("makes no statement about squeal"));
     }
 }

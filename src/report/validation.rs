@@ -5,7 +5,7 @@ use super::colours::{ALARM, INK, MEASURED, MUTED};
 use super::format::{fixed, given, power, significant};
 use super::html::{self, escape};
 use super::svg::{Anchor, Ink, Sheet};
-use super::table::Table;
+use super::table::ReportTable;
 use crate::error::Result;
 use crate::results::{CheckedCase, passed, write_atomically};
 use std::path::Path;
@@ -49,9 +49,9 @@ fn page(cases: &[CheckedCase], svg: &str) -> String {
     html::document("Validation", &body)
 }
 
-fn table(case: &CheckedCase) -> Table {
+fn table(case: &CheckedCase) -> ReportTable {
     let headings = ["<quantity", "computed", "reference", "difference", "tolerance", "<"];
-    let mut table = Table::new("", &headings);
+    let mut table = ReportTable::new("", &headings);
     table.alarming = true;
     let mut reasons: Vec<&str> = Vec::new();
     for row in &case.rows {
@@ -110,11 +110,11 @@ fn picture(cases: &[CheckedCase]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::Checked;
+    use crate::results::CheckedQuantity;
 
     #[test]
     fn a_failure_is_told_on_the_page_and_in_the_picture() {
-        let row = |computed: f64| Checked {
+        let row = |computed: f64| CheckedQuantity {
             quantity: "f < g".into(),
             computed,
             reference: 1.0,
@@ -122,7 +122,7 @@ mod tests {
             relative: true,
             reason: "because".into(),
         };
-        let case = |rows: Vec<Checked>| CheckedCase {
+        let case = |rows: Vec<CheckedQuantity>| CheckedCase {
             name: "disc".into(),
             title: "A disc".into(),
             source: "a book".into(),

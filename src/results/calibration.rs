@@ -202,44 +202,47 @@ impl CalibratedNumber {
 }
 
 /// A measured frequency, and ∂ ln f by each number.
-type Datum<'a> = (&'a CalibratedDatum, Vec<f64>);
+type DatumRow<'a> = (&'a CalibratedDatum, Vec<f64>);
 
-fn data_columns<'a>(numbers: usize) -> Vec<Column<Datum<'a>>> {
+fn data_columns<'a>(numbers: usize) -> Vec<Column<DatumRow<'a>>> {
     vec![
-        column("set", "text", "name of real modes, or `squeal`", |(d, _): &Datum| d.set.clone()),
-        column("mode", "text", "the mode it was taken for", |(d, _): &Datum| d.level.clone()),
-        column("measured_hz", "Hz", "measured frequency", |(d, _): &Datum| d.measured_hz),
-        column("relative_deviation", "1", "its relative standard deviation", |(d, _): &Datum| d.deviation),
-        column("before_hz", "Hz", "computed with the values of the case", |(d, _): &Datum| d.before_hz),
-        column("after_hz", "Hz", "computed with the values that were found", |(d, _): &Datum| d.after_hz),
-        column("before_percent", "%", "100 (before − measured)/measured", |(d, _): &Datum| {
+        column("set", "text", "name of real modes, or `squeal`", |(d, _): &DatumRow| d.set.clone()),
+        column("mode", "text", "the mode it was taken for", |(d, _): &DatumRow| d.level.clone()),
+        column("measured_hz", "Hz", "measured frequency", |(d, _): &DatumRow| d.measured_hz),
+        column("relative_deviation", "1", "its relative standard deviation", |(d, _): &DatumRow| d.deviation),
+        column("before_hz", "Hz", "computed with the values of the case", |(d, _): &DatumRow| d.before_hz),
+        column("after_hz", "Hz", "computed with the values that were found", |(d, _): &DatumRow| d.after_hz),
+        column("before_percent", "%", "100 (before − measured)/measured", |(d, _): &DatumRow| {
             d.error_percent(d.before_hz)
         }),
-        column("error_percent", "%", "100 (after − measured)/measured", |(d, _): &Datum| {
+        column("error_percent", "%", "100 (after − measured)/measured", |(d, _): &DatumRow| {
             d.error_percent(d.after_hz)
         }),
-        column("left_out_hz", "Hz", "predicted from all other data", |(d, _): &Datum| d.left_out_hz),
-        column("left_out_percent", "%", "100 (predicted − measured)/measured", |(d, _): &Datum| {
+        column("left_out_hz", "Hz", "predicted from all other data", |(d, _): &DatumRow| d.left_out_hz),
+        column("left_out_percent", "%", "100 (predicted − measured)/measured", |(d, _): &DatumRow| {
             d.error_percent(d.left_out_hz)
         }),
-        column("growth_rate", "1/s", "σ with the values that were found", |(d, _): &Datum| d.growth),
-        column("shape_components", "1", "measured components of its shape", |(d, _): &Datum| {
+        column("growth_rate", "1/s", "σ with the values that were found", |(d, _): &DatumRow| d.growth),
+        column("shape_components", "1", "measured components of its shape", |(d, _): &DatumRow| {
             d.shape.map(|shape| shape.components)
         }),
-        column("mac_before", "1", "MAC of its shape with the values of the case", |(d, _): &Datum| {
+        column("mac_before", "1", "MAC of its shape with the values of the case", |(d, _): &DatumRow| {
             d.mac(|shape| shape.before)
         }),
-        column("mac_after", "1", "MAC of its shape with the values that were found", |(d, _): &Datum| {
+        column("mac_after", "1", "MAC of its shape with the values that were found", |(d, _): &DatumRow| {
             d.mac(|shape| shape.after)
         }),
-        column("mac_left_out", "1", "MAC of its shape, predicted from all other data", |(d, _): &Datum| {
-            d.mac(|shape| shape.left_out)
-        }),
+        column(
+            "mac_left_out",
+            "1",
+            "MAC of its shape, predicted from all other data",
+            |(d, _): &DatumRow| d.mac(|shape| shape.left_out),
+        ),
         column(
             "sensitivity",
             "1",
             "∂ ln f by each number, in units of its deviation or half the width of its bounds",
-            |(_, slopes): &Datum| slopes.clone(),
+            |(_, slopes): &DatumRow| slopes.clone(),
         )
         .along(Dimension::numbered("parameter", numbers)),
     ]
@@ -282,24 +285,35 @@ fn response_columns() -> Vec<Column<CalibratedResponse>> {
 }
 
 /// A line of a response: the number of the response, the response, and the line.
-type Line<'a> = (usize, &'a CalibratedResponse, usize);
+type CalibrationLineRow<'a> = (usize, &'a CalibratedResponse, usize);
 
-fn line_columns<'a>() -> Vec<Column<Line<'a>>> {
+fn line_columns<'a>() -> Vec<Column<CalibrationLineRow<'a>>> {
     vec![
-        column("response", "1", "number of the response, from 1", |(number, ..): &Line| *number),
-        column("set", "text", "name of the measured set", |(_, r, _): &Line| r.set.clone()),
-        column("name", "text", "what the test calls it", |(_, r, _): &Line| r.name.clone()),
-        column("place", "text", "what the case calls its place", |(_, r, _): &Line| r.place.clone()),
-        column("frequency_hz", "Hz", "frequency", |(_, r, k): &Line| r.frequencies_hz[*k]),
-        column("measured", "unit", "√(|h|² + n²) with the floor n, measured", |(_, r, k): &Line| {
-            r.measured[*k]
+        column("response", "1", "number of the response, from 1", |(number, ..): &CalibrationLineRow| {
+            *number
         }),
-        column("before", "unit", "with the values of the case", |(_, r, k): &Line| r.before[*k]),
-        column("after", "unit", "with the values that were found", |(_, r, k): &Line| r.after[*k]),
-        column("left_out", "unit", "predicted from all other data", |(_, r, k): &Line| {
+        column("set", "text", "name of the measured set", |(_, r, _): &CalibrationLineRow| r.set.clone()),
+        column("name", "text", "what the test calls it", |(_, r, _): &CalibrationLineRow| r.name.clone()),
+        column("place", "text", "what the case calls its place", |(_, r, _): &CalibrationLineRow| {
+            r.place.clone()
+        }),
+        column("frequency_hz", "Hz", "frequency", |(_, r, k): &CalibrationLineRow| r.frequencies_hz[*k]),
+        column(
+            "measured",
+            "unit",
+            "√(|h|² + n²) with the floor n, measured",
+            |(_, r, k): &CalibrationLineRow| r.measured[*k],
+        ),
+        column("before", "unit", "with the values of the case", |(_, r, k): &CalibrationLineRow| {
+            r.before[*k]
+        }),
+        column("after", "unit", "with the values that were found", |(_, r, k): &CalibrationLineRow| {
+            r.after[*k]
+        }),
+        column("left_out", "unit", "predicted from all other data", |(_, r, k): &CalibrationLineRow| {
             r.left_out.as_ref().map(|sizes| sizes[*k])
         }),
-        column("unit", "text", "SI unit of the quantity", |(_, r, _): &Line| r.quantity.unit()),
+        column("unit", "text", "SI unit of the quantity", |(_, r, _): &CalibrationLineRow| r.quantity.unit()),
     ]
 }
 
@@ -335,7 +349,7 @@ impl Describe for CalibrationResult {
             Some(level) => level.slope.clone(),
             None => vec![f64::NAN; self.numbers.len()],
         };
-        let data: Vec<Datum> = self.data.iter().zip(best.assignment.iter().map(slopes)).collect();
+        let data: Vec<DatumRow> = self.data.iter().zip(best.assignment.iter().map(slopes)).collect();
         let assigned: Vec<Assigned> =
             self.calibration.ranked.iter().map(|ranked| (ranked, &*self.levels)).collect();
         let mut group =
@@ -347,7 +361,7 @@ impl Describe for CalibrationResult {
                 .table(Table::of("responses", "response", &response_columns(), &self.responses));
         if !self.responses.is_empty() {
             let each = self.responses.iter().enumerate();
-            let lines: Vec<Line> =
+            let lines: Vec<CalibrationLineRow> =
                 each.flat_map(|(k, r)| (0..r.frequencies_hz.len()).map(move |i| (k + 1, r, i))).collect();
             let lines = Table::of("response_lines", "line", &line_columns(), &lines);
             group = group.table(lines.file("calibration_responses").long());

@@ -158,15 +158,15 @@ fn mode_columns() -> Vec<Column<MeasuredRow>> {
 }
 
 /// A level of computed modes: its number, its modes and its frequency.
-type Level = (usize, Range<usize>, f64);
+type LevelRow = (usize, Range<usize>, f64);
 
-fn level_columns() -> Vec<Column<Level>> {
+fn level_columns() -> Vec<Column<LevelRow>> {
     vec![
-        column("modes", "1", "numbers of its first and its last mode", |(_, modes, _): &Level| {
+        column("modes", "1", "numbers of its first and its last mode", |(_, modes, _): &LevelRow| {
             [modes.start + 1, modes.end]
         })
         .along(ends()),
-        column("frequency_hz", "Hz", "frequency of the first times the scale", |(.., hz): &Level| *hz),
+        column("frequency_hz", "Hz", "frequency of the first times the scale", |(.., hz): &LevelRow| *hz),
     ]
 }
 
@@ -190,12 +190,12 @@ impl MeasuredComparison {
         let story = "MAC of each measured shape with each level of computed modes";
         let mac = Variable::reals("mac", "1", story, vec![rows, columns], mac);
         let levels = self.levels.iter().zip(&self.levels_hz).enumerate();
-        let levels: Vec<Level> = levels.map(|(k, (level, hz))| (k + 1, level.clone(), *hz)).collect();
+        let levels: Vec<LevelRow> = levels.map(|(k, (level, hz))| (k + 1, level.clone(), *hz)).collect();
         let missed = self.computed_alone();
-        let missed: Vec<Level> =
+        let missed: Vec<LevelRow> =
             levels.iter().filter(|(_, modes, _)| missed.contains(modes)).cloned().collect();
         let mut missed_columns = level_columns();
-        missed_columns.insert(0, column("level", "1", "number of the level", |(k, ..): &Level| *k));
+        missed_columns.insert(0, column("level", "1", "number of the level", |(k, ..): &LevelRow| *k));
         let alone = self.rows.iter().filter(|row| row.mode.is_none()).map(|row| row.frequency_hz);
         let alone: Vec<f64> = alone.collect();
         let numbers = Dimension::of_variable("measured_alone_hz", alone.len());
@@ -243,16 +243,18 @@ fn pair_columns() -> Vec<Column<ResponsePair>> {
 }
 
 /// A pair at one of its frequencies.
-type Line<'a> = (&'a ResponsePair, usize);
+type ResponseLineRow<'a> = (&'a ResponsePair, usize);
 
-fn line_columns<'a>() -> Vec<Column<Line<'a>>> {
+fn line_columns<'a>() -> Vec<Column<ResponseLineRow<'a>>> {
     vec![
-        column("response", "text", "what the test calls it", |(p, _): &Line| p.name.clone()),
-        column("quantity", "text", "what of the motion was measured", |(p, _): &Line| p.quantity.word()),
-        column("unit", "text", "its unit", |(p, _): &Line| p.quantity.unit()),
-        column("frequency_hz", "Hz", "frequency", |(p, k): &Line| p.frequencies_hz[*k]),
-        column("measured", "unit", "measured response", |(p, k): &Line| p.measured[*k]),
-        column("computed", "unit", "computed response", |(p, k): &Line| p.computed[*k]),
+        column("response", "text", "what the test calls it", |(p, _): &ResponseLineRow| p.name.clone()),
+        column("quantity", "text", "what of the motion was measured", |(p, _): &ResponseLineRow| {
+            p.quantity.word()
+        }),
+        column("unit", "text", "its unit", |(p, _): &ResponseLineRow| p.quantity.unit()),
+        column("frequency_hz", "Hz", "frequency", |(p, k): &ResponseLineRow| p.frequencies_hz[*k]),
+        column("measured", "unit", "measured response", |(p, k): &ResponseLineRow| p.measured[*k]),
+        column("computed", "unit", "computed response", |(p, k): &ResponseLineRow| p.computed[*k]),
     ]
 }
 
@@ -266,7 +268,7 @@ impl MeasuredResponses {
     /// Both sides.
     fn group(&self) -> Group<'_> {
         let lines = self.pairs.iter().flat_map(|pair| (0..pair.frequencies_hz.len()).map(move |k| (pair, k)));
-        let lines = Table::of("lines", "line", &line_columns(), &lines.collect::<Vec<Line>>());
+        let lines = Table::of("lines", "line", &line_columns(), &lines.collect::<Vec<ResponseLineRow>>());
         Group::new(&*self.name, "measured frequency responses beside computed ones")
             .value("frf", "text", "name of the computed response", self.frf.clone())
             .value("source", "text", "where the measured figures come from", self.source.clone())

@@ -33,60 +33,74 @@ pub struct ComplexResult {
 }
 
 /// A complex mode with the words on its real modes.
-type Mode<'a> = (&'a ComplexMode, &'a str);
+type ComplexModeRow<'a> = (&'a ComplexMode, &'a str);
 
-fn columns<'a>() -> Vec<Column<Mode<'a>>> {
+fn columns<'a>() -> Vec<Column<ComplexModeRow<'a>>> {
     vec![
-        column("frequency_hz", "Hz", "ω/2π", |(m, _): &Mode| m.frequency_hz())
+        column("frequency_hz", "Hz", "ω/2π", |(m, _): &ComplexModeRow| m.frequency_hz())
             .shown("f [Hz]", |(m, _)| hertz(m.frequency_hz(), 1)),
-        column("growth_rate", "1/s", "σ; the mode is unstable when it is positive", |(m, _): &Mode| {
-            m.growth_rate()
-        })
+        column(
+            "growth_rate",
+            "1/s",
+            "σ; the mode is unstable when it is positive",
+            |(m, _): &ComplexModeRow| m.growth_rate(),
+        )
         .shown("σ [1/s]", |(m, _)| growth(m.growth_rate(), m.eigenvalue.norm(), ROUND_OFF)),
-        column("damping_ratio", "1", "ζ = −σ/|λ|", |(m, _): &Mode| m.damping_ratio())
+        column("damping_ratio", "1", "ζ = −σ/|λ|", |(m, _): &ComplexModeRow| m.damping_ratio())
             .shown("ζ [%]", |(m, _)| signed(100.0 * m.damping_ratio(), 3)),
-        column("verdict", "text", "stable, unstable, undecided or not accurate", |(m, _): &Mode| {
-            m.verdict().word()
-        })
+        column(
+            "verdict",
+            "text",
+            "stable, unstable, undecided or not accurate",
+            |(m, _): &ComplexModeRow| m.verdict().word(),
+        )
         .shown("", |(m, _)| match m.verdict() {
             Verdict::Stable => String::new(),
             Verdict::Undecided => Verdict::Undecided.word().into(),
             alarming => alarming.word().to_uppercase(),
         }),
-        column("unstable", "1", "whether the mode is unstable", |(m, _): &Mode| m.unstable()),
-        column("undecided", "1", "whether σ is within its error", |(m, _): &Mode| {
+        column("unstable", "1", "whether the mode is unstable", |(m, _): &ComplexModeRow| m.unstable()),
+        column("undecided", "1", "whether σ is within its error", |(m, _): &ComplexModeRow| {
             m.verdict() == Verdict::Undecided
         }),
-        column("growth_structural_damping", "1/s", "part of σ by structural damping", |(m, _): &Mode| {
-            m.growth.structural_damping
-        }),
+        column(
+            "growth_structural_damping",
+            "1/s",
+            "part of σ by structural damping",
+            |(m, _): &ComplexModeRow| m.growth.structural_damping,
+        ),
         column(
             "growth_falling_friction",
             "1/s",
             "part of σ by friction that falls with speed",
-            |(m, _): &Mode| m.growth.falling_friction,
+            |(m, _): &ComplexModeRow| m.growth.falling_friction,
         ),
         column(
             "growth_transverse_friction",
             "1/s",
             "part of σ by friction across the sliding",
-            |(m, _): &Mode| m.growth.transverse_friction,
+            |(m, _): &ComplexModeRow| m.growth.transverse_friction,
         ),
-        column("growth_mode_coupling", "1/s", "part of σ by the unsymmetric stiffness", |(m, _): &Mode| {
-            m.growth.mode_coupling
-        }),
+        column(
+            "growth_mode_coupling",
+            "1/s",
+            "part of σ by the unsymmetric stiffness",
+            |(m, _): &ComplexModeRow| m.growth.mode_coupling,
+        ),
         column(
             "backward_error",
             "1",
             "η = ‖Q(λ)φ‖ / ((|λ|²‖M‖ + |λ|‖C‖ + ‖K‖)‖φ‖)",
-            |(m, _): &Mode| m.backward_error,
+            |(m, _): &ComplexModeRow| m.backward_error,
         )
         .shown("η", |(m, _)| power(m.backward_error)),
-        column("eigenvalue_error", "1", "estimated |Δλ|/|λ|", |(m, _): &Mode| m.eigenvalue_error)
-            .shown("|Δλ|/|λ|", |(m, _)| power(m.eigenvalue_error)),
-        column("condition", "1", "condition number κ of λ", |(m, _): &Mode| m.condition)
+        column("eigenvalue_error", "1", "estimated |Δλ|/|λ|", |(m, _): &ComplexModeRow| {
+            m.eigenvalue_error
+        })
+        .shown("|Δλ|/|λ|", |(m, _)| power(m.eigenvalue_error)),
+        column("condition", "1", "condition number κ of λ", |(m, _): &ComplexModeRow| m.condition)
             .shown("κ", |(m, _)| significant(m.condition, 2)),
-        column("participation", "text", "the real modes that take part", |(_, words): &Mode| {
+        column("participation", "text", "the real modes that take part", |(_, words): &ComplexModeRow| {
             (*words).to_string()
         })
         .shown("real modes that take part", |(_, words)| (*words).to_string()),
@@ -190,7 +204,7 @@ impl ComplexResult {
     /// The modes, one a row.
     pub(crate) fn mode_table(&self) -> Table<'static> {
         let words = |k: usize| self.participation.get(k).map_or("", String::as_str);
-        let modes: Vec<Mode> =
+        let modes: Vec<ComplexModeRow> =
             self.modes.modes.iter().enumerate().map(|(k, mode)| (mode, words(k))).collect();
         Table::of("eigenvalues", "mode", &columns(), &modes).file("complex_modes")
     }

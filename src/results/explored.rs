@@ -4,18 +4,18 @@ use crate::dataset::{Dimension, Group, Variable};
 
 /// How the points of a sweep or map were solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Method {
+pub enum SweepMethod {
     /// On one reduced model of this many degrees of freedom, right at full order where it was measured.
     Reduced(usize),
     /// A whole analysis each, because the scalar changes the structure.
     Whole,
 }
 
-impl Method {
+impl SweepMethod {
     pub(super) fn group(self) -> Group<'static> {
         let (kind, dimension) = match self {
-            Method::Reduced(dimension) => ("reduced", Some(dimension)),
-            Method::Whole => ("whole", None),
+            SweepMethod::Reduced(dimension) => ("reduced", Some(dimension)),
+            SweepMethod::Whole => ("whole", None),
         };
         Group::new("method", "how the points were solved")
             .value("kind", "text", "on one reduced model, or a whole analysis each", kind)

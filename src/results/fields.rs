@@ -9,7 +9,7 @@ use super::file::plain;
 use super::file::{options, preallocated};
 use super::folder::{own, refusal};
 use super::hdf5::{attribute, rows};
-use super::{Field, Fields, NodalField};
+use super::{FieldSnapshot, Fields, NodalField};
 use crate::error::{Error, Result};
 use hdf5::Group;
 use hdf5::types::FixedAscii;
@@ -51,7 +51,7 @@ impl FieldsFile {
     ///
     /// # Errors
     /// The machine refuses.
-    pub fn write(&mut self, field: &Field) -> Result<()> {
+    pub fn write(&mut self, field: &FieldSnapshot) -> Result<()> {
         let part = field.number * self.nodes..(field.number + 1) * self.nodes;
         let put = |name: &str, values: &NodalField<f64>| {
             let short = Array2::from_shape_fn((values.len(), 3), |(node, axis)| values[node][axis] as f32);
@@ -162,7 +162,7 @@ mod tests {
         let fields = Fields { geometry: &geometry, every: 1e-3, count: 5, done: 0 };
         let write = |file: &mut FieldsFile, number: usize| {
             let (displacement, velocity) = (&motion(number, nodes), &motion(number + 100, nodes));
-            file.write(&Field { number, displacement, velocity }).unwrap();
+            file.write(&FieldSnapshot { number, displacement, velocity }).unwrap();
         };
         let mut file = FieldsFile::begin(dir.path(), &fields).unwrap();
         (0..2).for_each(|number| write(&mut file, number));

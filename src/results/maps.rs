@@ -1,6 +1,6 @@
 //! Maps: the strongest growth over two scalars of the case.
 
-use super::explored::Method;
+use super::explored::SweepMethod;
 use super::file_name;
 use crate::dataset::{Column, Describe, Dimension, Group, Table, Values, Variable, column};
 use crate::sweep::{Axis, Boundary, MapPoint};
@@ -25,7 +25,7 @@ pub struct MapResult {
     /// Places at which all modes were measured on the full order, with the largest |Δλ|/|λ| there.
     pub sample: Vec<([f64; 2], f64)>,
     /// How it was solved.
-    pub method: Method,
+    pub method: SweepMethod,
 }
 
 fn point_columns() -> Vec<Column<MapPoint>> {

@@ -6,7 +6,7 @@
 //! | `summary.json` | the figures of each analysis: a contract for scripts | any script |
 //! | `modes_<set>.csv`, `contact_points.csv`, `complex_modes.csv`, `sensitivities_mode_<k>.csv` | the tables | spreadsheets |
 //! | `transient.csv`, `transient_spectrum.csv`, `events.csv` | motion in time, step by step, its spectra, what happened at the contacts | spreadsheets |
-//! | `sound_<microphone>.wav`, `sound_spectrum.csv` | what is heard, and sound power and pressure over frequency | listeners, spreadsheets |
+//! | `sound_<microphone>.wav`, `sound_spectrum.csv` | sound pressure in time, and sound power and pressure over frequency | audio players, spreadsheets |
 //! | `frf_<name>.csv`, `frf_<name>.uff` | frequency responses | spreadsheets, test-data programs |
 //! | `comparison_<name>.csv`, `comparison_<name>_frf.csv` | measured modes and responses beside the computed ones | spreadsheets |
 //! | `modes_<set>.uff` | the shapes, for test-data programs | test-data programs |
@@ -26,6 +26,7 @@ mod comparison;
 mod complex;
 mod csv;
 mod damping;
+mod diagnostics;
 #[cfg(feature = "hdf5")]
 mod events_hdf5;
 mod explored;
@@ -61,7 +62,6 @@ mod transient_hdf5;
 mod uff;
 mod validation;
 mod vtk;
-mod watched;
 mod write;
 
 #[cfg(test)]
@@ -76,32 +76,34 @@ pub use channel::{Channel, modal_channel};
 pub use comparison::{MeasuredComparison, MeasuredResponses, MeasuredRow, Placed, ResponsePair};
 pub use complex::ComplexResult;
 pub use damping::{DampingRow, DampingVerdicts};
-pub use explored::Method;
+pub use explored::SweepMethod;
 #[cfg(feature = "hdf5")]
 pub use fields::FieldsFile;
 #[cfg(feature = "hdf5")]
 pub use file::ResultsFile;
 
+pub(crate) use diagnostics::ContactWatch;
+pub use diagnostics::{ContactHistory, Diagnostics, Orbit, PhaseCurve, TouchState};
 pub(crate) use folder::{FileNames, file_name, retire, write_atomically, write_result};
 pub use frf::{FrfResponse, FrfResult, PlaceAndDirection, Resonance};
 pub use lock::FolderLock;
 pub use maps::MapResult;
 pub use real_modes::NamedModes;
 pub use record_size::{RecordSize, fits_in_memory, fits_on_disk};
-pub use records::{Record, Records};
+pub use records::{AnalysisRecord, Records};
 pub use reduced_check::{Deviation, MotionCompared, ReducedCheck};
 pub use run_results::{Geometry, ModelSize, NodalField, RunResults};
 pub use search::{Moved, SearchResult, SearchedNumber};
 pub use sensitivity::{AdviceField, ModeSensitivity, Mounted, ParameterRate, SensitivityResult};
 pub(crate) use set_aside::set_aside;
-pub use sound::{Heard, Sound, Sounding, Tone};
+pub use sound::{MicrophoneSound, PressureRecord, Sound, Tone};
 pub use steady::{PairTotals, SteadyResult};
 pub use summary::{SCHEMA_VERSION, summary_json, write_summary};
 pub use sweeps::SweepResult;
-pub use transient::{Field, Fields, GrowthCompared, Piece, Recording, SpectrumOf, TransientResult};
+pub use transient::{
+    FieldSnapshot, Fields, GrowthCompared, RecordPiece, Recording, SpectrumOf, TransientResult,
+};
 pub use transient_csv::{EventTable, HistoryTable};
-pub use validation::{Checked, CheckedCase, passed};
+pub use validation::{CheckedCase, CheckedQuantity, passed};
 pub use vtk::write_vtk;
-pub(crate) use watched::ContactWatch;
-pub use watched::{ContactHistory, Curve, Orbit, TouchState, Watched};
 pub use write::write_files;

@@ -33,36 +33,38 @@ pub struct NamedModes {
 }
 
 /// A mode of a set by its index.
-type Mode<'a> = (&'a NamedModes, usize);
+type RealModeRow<'a> = (&'a NamedModes, usize);
 
-fn columns<'a>() -> Vec<Column<Mode<'a>>> {
-    let name = |(set, k): &Mode| set.names.get(*k).copied().flatten();
+fn columns<'a>() -> Vec<Column<RealModeRow<'a>>> {
+    let name = |(set, k): &RealModeRow| set.names.get(*k).copied().flatten();
     vec![
-        column("frequency_hz", "Hz", "natural frequency ω/2π", |(set, k): &Mode| {
+        column("frequency_hz", "Hz", "natural frequency ω/2π", |(set, k): &RealModeRow| {
             set.modes.frequency_hz(*k)
         }),
-        column("eigenvalue", "rad^2/s^2", "ω² as computed", |(set, k): &Mode| set.modes.eigenvalues[*k]),
-        column("moving_part", "text", "the part with the most kinetic energy", |(set, k): &Mode| {
+        column("eigenvalue", "rad^2/s^2", "ω² as computed", |(set, k): &RealModeRow| {
+            set.modes.eigenvalues[*k]
+        }),
+        column("moving_part", "text", "the part with the most kinetic energy", |(set, k): &RealModeRow| {
             set.moving_part.get(*k).cloned().flatten()
         }),
-        column("nodal_diameters", "1", "nodal diameters of a disc's mode", move |mode: &Mode| {
+        column("nodal_diameters", "1", "nodal diameters of a disc's mode", move |mode: &RealModeRow| {
             name(mode).map(|name| name.nodal_diameters)
         }),
-        column("nodal_circles", "1", "nodal circles of a disc's mode", move |mode: &Mode| {
+        column("nodal_circles", "1", "nodal circles of a disc's mode", move |mode: &RealModeRow| {
             name(mode).map(|name| name.nodal_circles)
         }),
-        column("effective_mass_kg", "kg", "modal effective mass along x, y, z", |(set, k): &Mode| {
+        column("effective_mass_kg", "kg", "modal effective mass along x, y, z", |(set, k): &RealModeRow| {
             set.effective_mass.get(*k).copied()
         })
         .along(Dimension::axes()),
-        column("damping_ratio", "1", "ζ by the damping of the case", |(set, k): &Mode| {
+        column("damping_ratio", "1", "ζ by the damping of the case", |(set, k): &RealModeRow| {
             set.damping_ratio.get(*k).copied()
         }),
         column(
             "backward_error",
             "1",
             "η = ‖Kφ − ω²Mφ‖ / ((‖K‖ + |ω²| ‖M‖) ‖φ‖)",
-            |(set, k): &Mode| set.modes.backward_errors[*k],
+            |(set, k): &RealModeRow| set.modes.backward_errors[*k],
         ),
     ]
 }
@@ -83,7 +85,7 @@ impl NamedModes {
 
     /// The modes, one a row, with their shapes.
     fn table(&self) -> Table<'_> {
-        let modes: Vec<Mode> = (0..self.modes.len()).map(|k| (self, k)).collect();
+        let modes: Vec<RealModeRow> = (0..self.modes.len()).map(|k| (self, k)).collect();
         let table = Table::of(&*self.name, "mode", &columns(), &modes).file(file_name("modes", &self.name));
         if self.modes.is_empty() {
             return table;

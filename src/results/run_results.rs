@@ -1,7 +1,7 @@
 //! Everything that a run produced.
 
 use super::record::InputFile;
-use super::records::{Record, Records};
+use super::records::{AnalysisRecord, Records};
 
 /// Everything a run produced, as plain data for the writers and the report.
 #[derive(Debug, Default)]
@@ -30,22 +30,22 @@ pub struct RunResults {
 
 impl RunResults {
     /// The first record of type `T`: `results.get::<ComplexResult>()`.
-    pub fn get<T: Record>(&self) -> Option<&T> {
+    pub fn get<T: AnalysisRecord>(&self) -> Option<&T> {
         self.records.get()
     }
 
     /// The same, to be changed.
-    pub fn get_mut<T: Record>(&mut self) -> Option<&mut T> {
+    pub fn get_mut<T: AnalysisRecord>(&mut self) -> Option<&mut T> {
         self.records.get_mut()
     }
 
     /// The first record of type `T`, taken out.
-    pub fn take<T: Record>(&mut self) -> Option<T> {
+    pub fn take<T: AnalysisRecord>(&mut self) -> Option<T> {
         self.records.take()
     }
 
     /// The records of type `T`, in the order in which they were found.
-    pub fn all<T: Record>(&self) -> Vec<&T> {
+    pub fn all<T: AnalysisRecord>(&self) -> Vec<&T> {
         self.records.all()
     }
 }

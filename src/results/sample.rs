@@ -440,18 +440,18 @@ fn transient() -> TransientResult {
     for k in 0..=steps {
         contact.take([k / 400 % 2, k / 800 % 2, 1]);
     }
-    let watched = Watched {
+    let diagnostics = Diagnostics {
         spectrograms: [0, 1].map(short).into(),
         cycles: [0, 1].into_iter().filter_map(cycle).collect(),
         window: [0.06, 0.08],
         orbit: Orbit {
             periods: [12.0, 1668.0],
             curves: vec![
-                Curve {
+                PhaseCurve {
                     axes: ["slip velocity [m/s]", "friction [N]"].map(String::from),
                     points: motion.iter().map(|[_, v]| [0.5 - v, 8.0 + 2.0 * v]).collect(),
                 },
-                Curve { axes: ["displacement [m]", "velocity [m/s]"].map(String::from), points: motion },
+                PhaseCurve { axes: ["displacement [m]", "velocity [m/s]"].map(String::from), points: motion },
             ],
         },
         contact: contact.finish(),
@@ -473,7 +473,7 @@ fn transient() -> TransientResult {
         spent: [0.0, 0.0, 0.0, 1.0],
         parts: 0,
         events: [2, 1, 4, 0, 0],
-        watched,
+        diagnostics,
         sound: Some(sound()),
     }
 }
@@ -498,8 +498,8 @@ fn sound() -> Sound {
         plates: vec![("disc".into(), lines(1.0)), ("slider".into(), lines(0.02))],
         mode_shares: vec![0.01, 0.9, 0.09],
         tones: vec![Tone { peak, power: 2e-3, share: 0.98 }],
-        microphones: vec![Heard { name: "axis".into(), at: [1.0, 0.0, 0.075], spectrum }],
-        recording: Sounding {
+        microphones: vec![MicrophoneSound { name: "axis".into(), at: [1.0, 0.0, 0.075], spectrum }],
+        recording: PressureRecord {
             begin: 0.0,
             rate: 48_000,
             pressure: (0..4800).map(|k| 0.3 * (TAU * 1668.0 * k as f64 / 48e3).sin()).collect(),

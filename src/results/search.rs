@@ -1,6 +1,6 @@
 //! Numbers of a case that were searched for, beside the facts that the case then meets or misses.
 
-use super::{Checked, CheckedCase, write_result};
+use super::{CheckedCase, CheckedQuantity, write_result};
 use crate::dataset::{Column, Describe, Dimension, Group, Table, Variable, column};
 use crate::error::Result;
 use std::path::Path;
@@ -85,7 +85,7 @@ impl SearchResult {
 }
 
 /// A fact and what was computed for it at the start.
-type Fact<'a> = (&'a Checked, f64);
+type Fact<'a> = (&'a CheckedQuantity, f64);
 
 fn fact_columns<'a>() -> Vec<Column<Fact<'a>>> {
     type F<'a> = Fact<'a>;

@@ -5,21 +5,21 @@ use crate::dataset::{Column, Dimension, Group, Table, Values, Variable, column};
 use crate::sound::{power_level, wav};
 use std::path::Path;
 
-pub use crate::sound::{Heard, Sound, Sounding, Tone};
+pub use crate::sound::{MicrophoneSound, PressureRecord, Sound, Tone};
 
 /// The name of the WAV file of a microphone, if it is the first.
-fn file(heard: &Heard) -> String {
+fn file(heard: &MicrophoneSound) -> String {
     format!("sound_{}.wav", heard.name)
 }
 
 /// A plate's name and the power that it sends out \[W\].
-type Plate<'a> = (&'a str, f64);
+type PlatePower<'a> = (&'a str, f64);
 
-fn plate_columns<'a>(whole: f64) -> Vec<Column<Plate<'a>>> {
+fn plate_columns<'a>(whole: f64) -> Vec<Column<PlatePower<'a>>> {
     vec![
-        column("name", "text", "name of the plate", |(name, _): &Plate| (*name).to_string()),
-        column("power_w", "W", "sound power of both sides", |(_, power): &Plate| *power),
-        column("share", "1", "its part of the whole", move |(_, power): &Plate| power / whole),
+        column("name", "text", "name of the plate", |(name, _): &PlatePower| (*name).to_string()),
+        column("power_w", "W", "sound power of both sides", |(_, power): &PlatePower| *power),
+        column("share", "1", "its part of the whole", move |(_, power): &PlatePower| power / whole),
     ]
 }
 
@@ -34,14 +34,22 @@ fn tone_columns() -> Vec<Column<Tone>> {
     ]
 }
 
-fn microphone_columns() -> Vec<Column<Heard>> {
+fn microphone_columns() -> Vec<Column<MicrophoneSound>> {
     vec![
-        column("name", "text", "name of the microphone", |heard: &Heard| heard.name.clone()),
-        column("at_m", "m", "where it stands", |heard: &Heard| heard.at).along(Dimension::axes()),
-        column("pressure_level_db", "dB", "sound pressure level re 20 µPa", |heard: &Heard| {
-            heard.levels()[0]
+        column("name", "text", "name of the microphone", |microphone: &MicrophoneSound| {
+            microphone.name.clone()
         }),
-        column("pressure_level_db_a", "dB", "the same, A-weighted", |heard: &Heard| heard.levels()[1]),
+        column("at_m", "m", "position", |microphone: &MicrophoneSound| microphone.at)
+            .along(Dimension::axes()),
+        column(
+            "pressure_level_db",
+            "dB",
+            "sound pressure level re 20 µPa",
+            |microphone: &MicrophoneSound| microphone.levels()[0],
+        ),
+        column("pressure_level_db_a", "dB", "the same, A-weighted", |microphone: &MicrophoneSound| {
+            microphone.levels()[1]
+        }),
     ]
 }
 
@@ -50,7 +58,7 @@ impl Sound {
     pub(super) fn group(&self) -> Group<'_> {
         let [level, weighted] = self.power_levels();
         let [mean, mean_weighted] = self.mean_levels(1.0);
-        let plates: Vec<Plate> =
+        let plates: Vec<PlatePower> =
             self.plates.iter().map(|(name, lines)| (&**name, lines.iter().sum())).collect();
         let whole: f64 = (0..self.lines()).map(|k| self.power(k)).sum();
         let air = Group::new("air", "what carries the sound")
@@ -103,20 +111,20 @@ impl Sound {
                 lines[k]
             })
         });
-        let heard = self.microphones.iter().map(|heard| {
-            let spectrum = &heard.spectrum;
+        let microphones = self.microphones.iter().map(|microphone| {
+            let spectrum = &microphone.spectrum;
             let square = |k: usize| spectrum.amplitude.get(k).map_or(0.0, |_| spectrum.mean_square(k));
-            let key = format!("mean_square_pressure_{}", heard.name);
+            let key = format!("mean_square_pressure_{}", microphone.name);
             over_lines(key, "Pa^2", "mean square sound pressure, what each line adds", &square)
         });
-        let columns = std::iter::once(frequency).chain(plates).chain(heard).collect();
+        let columns = std::iter::once(frequency).chain(plates).chain(microphones).collect();
         Table::along("spectrum", rows.clone(), columns).file("sound_spectrum").long()
     }
 }
 
-impl Sounding {
-    /// The pressure at a microphone, and the file that it can be heard from.
-    fn group(&self, at: &Heard) -> Group<'_> {
+impl PressureRecord {
+    /// The pressure at a microphone, and its audio file.
+    fn group(&self, at: &MicrophoneSound) -> Group<'_> {
         let time = Dimension::of_variable("time_s", self.pressure.len());
         let times = Values::RealRows(Box::new(|k| vec![self.begin + k as f64 / f64::from(self.rate)]));
         let pressures = Values::RealRows(Box::new(|k| vec![self.pressure[k]]));

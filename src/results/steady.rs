@@ -49,24 +49,29 @@ fn pair_columns<'a>() -> Vec<Column<PairTotals<'a>>> {
 }
 
 /// The pair, the position and the state of a contact point.
-type Point<'a> = (&'a str, [f64; 3], &'a PointState);
+type ContactPointRow<'a> = (&'a str, [f64; 3], &'a PointState);
 
-fn point_columns<'a>() -> Vec<Column<Point<'a>>> {
+fn point_columns<'a>() -> Vec<Column<ContactPointRow<'a>>> {
     vec![
-        column("pair", "text", "name of the pair", |(pair, ..): &Point| (*pair).to_string()),
-        column("position_m", "m", "position", |(_, position, _): &Point| *position).along(Dimension::axes()),
-        column("penetration_m", "m", "δ, negative when open", |(.., state): &Point| state.penetration),
-        column("normal_force_n", "N", "N, positive in compression", |(.., state): &Point| {
+        column("pair", "text", "name of the pair", |(pair, ..): &ContactPointRow| (*pair).to_string()),
+        column("position_m", "m", "position", |(_, position, _): &ContactPointRow| *position)
+            .along(Dimension::axes()),
+        column("penetration_m", "m", "δ, negative when open", |(.., state): &ContactPointRow| {
+            state.penetration
+        }),
+        column("normal_force_n", "N", "N, positive in compression", |(.., state): &ContactPointRow| {
             state.forces.normal
         }),
         column(
             "friction_force_n",
             "N",
             "F₁, F₂ on the body, along t₁ and t₂",
-            |(.., state): &Point| state.forces.friction,
+            |(.., state): &ContactPointRow| state.forces.friction,
         )
         .along(directions()),
-        column("closed", "1", "whether the point carries load", |(.., state): &Point| state.closed()),
+        column("closed", "1", "whether the point carries load", |(.., state): &ContactPointRow| {
+            state.closed()
+        }),
     ]
 }
 
@@ -78,7 +83,7 @@ fn directions() -> Dimension {
 impl Describe for SteadyResult {
     fn describe(&self) -> Group<'_> {
         let places = self.points.iter().zip(&self.state.points);
-        let points: Vec<Point> =
+        let points: Vec<ContactPointRow> =
             places.map(|((pair, position), state)| (&**pair, *position, state)).collect();
         let mut points =
             Table::of("points", "point", &point_columns(), &points).file("contact_points").long();

@@ -30,7 +30,7 @@ pub fn summary_json(results: &RunResults) -> Value {
         .value("program", "text", "name of the program", env!("CARGO_PKG_NAME"))
         .value("program_version", "text", "its version", env!("CARGO_PKG_VERSION"))
         .value("complete", "1", "whether every requested analysis is present", results.failed.is_none())
-        .value("failed", "text", "why not: what the analysis that failed says", results.failed.clone())
+        .value("failed", "text", "error message of the analysis that failed", results.failed.clone())
         .to_json();
     let parts = [head(results), tail(results), expected(), analyses(results)].map(|group| group.to_json());
     if let Some(object) = json.as_object_mut() {

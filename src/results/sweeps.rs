@@ -1,6 +1,6 @@
 //! Sweeps: complex modes along one scalar of the case.
 
-use super::explored::{Method, ends};
+use super::explored::{SweepMethod, ends};
 use super::file_name;
 use crate::dataset::{Column, Describe, Dimension, Group, Table, Values, Variable, column};
 use crate::linalg::c64;
@@ -29,7 +29,7 @@ pub struct SweepResult {
     /// Values at which all modes were measured on the full order, with the largest |Δλ|/|λ| there.
     pub sample: Vec<(f64, f64)>,
     /// How it was solved.
-    pub method: Method,
+    pub method: SweepMethod,
 }
 
 /// A branch with the values of its sweep.

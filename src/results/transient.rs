@@ -2,7 +2,7 @@
 
 use super::channel::Channel;
 use super::explored::window;
-use super::{Geometry, NodalField, ReducedCheck, Sound, TouchState, Watched};
+use super::{Diagnostics, Geometry, NodalField, ReducedCheck, Sound, TouchState};
 use crate::dataset::{Column, Describe, Dimension, Group, Table, Variable, column};
 use crate::linalg::c64;
 use crate::signal::{Growth, Peak, Spectrum};
@@ -45,7 +45,7 @@ pub struct Fields<'a> {
 
 /// The motion of all nodes at a time.
 #[derive(Debug, Clone, Copy)]
-pub struct Field<'a> {
+pub struct FieldSnapshot<'a> {
     /// How many were written before it.
     pub number: usize,
     /// From steady sliding \[m\].
@@ -56,7 +56,7 @@ pub struct Field<'a> {
 
 /// A piece of the record, and the state from which the run resumes after it.
 #[derive(Debug, Clone, Copy)]
-pub struct Piece<'a> {
+pub struct RecordPiece<'a> {
     /// The first of its rows.
     pub first: usize,
     /// The values of each channel.
@@ -134,7 +134,7 @@ pub struct TransientResult {
     /// How often each [`EventKind`] happened, at all contact points together.
     pub events: [usize; EventKind::ALL.len()],
     /// Data of its pictures.
-    pub watched: Watched,
+    pub diagnostics: Diagnostics,
     /// How loud it is, if the case asks for it.
     pub sound: Option<Sound>,
 }
@@ -157,7 +157,7 @@ impl Describe for TransientResult {
             self.set_valued.clone(),
         );
         let spectra = self.spectra.iter().map(|of| of.group(&self.channels[of.channel])).collect();
-        let cycles = self.watched.cycle_table(&self.channels);
+        let cycles = self.diagnostics.cycle_table(&self.channels);
         Group::new("transient", "motion in time from steady sliding")
             .value("time_step_s", "s", "Δt", self.time_step)
             .value("steps", "1", "steps, the start not counted", steps)
@@ -185,8 +185,8 @@ impl Describe for TransientResult {
                 self.worst_residual,
             )
             .table(cycles)
-            .list("spectrogram", self.watched.spectrogram_groups(&self.channels))
-            .optional("contact_state", self.watched.contact.group())
+            .list("spectrogram", self.diagnostics.spectrogram_groups(&self.channels))
+            .optional("contact_state", self.diagnostics.contact.group())
             .optional("sound", self.sound.as_ref().map(Sound::group))
     }
 }

@@ -15,7 +15,7 @@ pub(super) const TIME: &str = "time_s";
 /// A table with a line for every step. Whole lines are added, so that it can be watched.
 #[derive(Debug)]
 pub struct HistoryTable {
-    lines: Lines,
+    lines: CsvFile,
     /// Δt \[s\].
     time_step: f64,
 }
@@ -28,7 +28,7 @@ impl HistoryTable {
     pub fn create(dir: &Path, recording: &Recording) -> Result<Self> {
         let channels = recording.channels.iter().map(Channel::title);
         let titles: Vec<String> = std::iter::once(TIME.into()).chain(channels).collect();
-        let lines = Lines::create(dir, "transient.csv", &titles)?;
+        let lines = CsvFile::create(dir, "transient.csv", &titles)?;
         Ok(HistoryTable { lines, time_step: recording.time_step })
     }
 
@@ -53,7 +53,7 @@ impl HistoryTable {
 /// A table with a line for everything that happens at a contact point.
 #[derive(Debug)]
 pub struct EventTable {
-    lines: Lines,
+    lines: CsvFile,
     /// The name of the pair of every contact point.
     pairs: Vec<String>,
 }
@@ -64,7 +64,7 @@ impl EventTable {
     /// # Errors
     /// [`crate::error::Error::Io`], here and later, when the machine refuses.
     pub fn create(dir: &Path, recording: &Recording) -> Result<Self> {
-        let lines = Lines::create(dir, "events.csv", &[TIME, "point", "pair", "kind"])?;
+        let lines = CsvFile::create(dir, "events.csv", &[TIME, "point", "pair", "kind"])?;
         Ok(EventTable { lines, pairs: recording.pairs.to_vec() })
     }
 
@@ -84,17 +84,17 @@ impl EventTable {
 
 /// A file that whole lines are added to.
 #[derive(Debug)]
-struct Lines {
+struct CsvFile {
     file: File,
     path: PathBuf,
 }
 
-impl Lines {
+impl CsvFile {
     fn create(dir: &Path, name: &str, titles: &[impl AsRef<str>]) -> Result<Self> {
         own(dir, name)?;
         let path = dir.join(name);
         let file = File::create(&path).map_err(|source| refusal(&path, source))?;
-        let mut lines = Lines { file, path };
+        let mut lines = CsvFile { file, path };
         lines.write(&Table::new(titles).text)?;
         Ok(lines)
     }

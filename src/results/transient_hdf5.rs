@@ -15,7 +15,7 @@
 use super::events_hdf5 as events;
 use super::file::preallocated;
 use super::transient_csv::TIME;
-use super::{Piece, Recording, ResultsFile, TransientResult, modal_channel};
+use super::{RecordPiece, Recording, ResultsFile, TransientResult, modal_channel};
 use crate::dataset::Describe;
 use crate::dataset::{attach_scale, attribute, describe, text_attribute};
 use crate::error::Result;
@@ -43,7 +43,7 @@ impl ResultsFile {
     ///
     /// # Errors
     /// The machine refuses.
-    pub fn write_transient_piece(&mut self, piece: &Piece) -> Result<()> {
+    pub fn write_transient_piece(&mut self, piece: &RecordPiece) -> Result<()> {
         self.reserve_events(piece.events.len())?;
         let end = piece.first + piece.values.first().map_or(0, Vec::len);
         let channels = std::mem::take(&mut self.channels);
@@ -170,7 +170,7 @@ mod tests {
         let modal = [0, 1].map(|mode| rows.clone().map(|row| modal(mode, row)).collect::<Vec<f32>>());
         let (first, checkpoint) = (rows.start, Checkpoint::default());
         let events = events(rows, often);
-        file.write_transient_piece(&Piece {
+        file.write_transient_piece(&RecordPiece {
             first,
             values: &values,
             modal: &modal,

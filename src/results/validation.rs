@@ -10,14 +10,14 @@ pub struct CheckedCase {
     /// Where the references come from.
     pub source: String,
     /// The quantities.
-    pub rows: Vec<Checked>,
+    pub rows: Vec<CheckedQuantity>,
     /// Time taken \[s\].
     pub seconds: f64,
 }
 
 /// One quantity, computed beside its reference.
 #[derive(Debug, Clone)]
-pub struct Checked {
+pub struct CheckedQuantity {
     /// Computed quantity.
     pub quantity: String,
     /// The computed value.
@@ -32,7 +32,7 @@ pub struct Checked {
     pub reason: String,
 }
 
-impl Checked {
+impl CheckedQuantity {
     /// |computed − reference|, over |reference| when relative.
     pub fn difference(&self) -> f64 {
         let difference = (self.computed - self.reference).abs();
@@ -57,7 +57,7 @@ mod tests {
 
     #[test]
     fn a_value_that_is_no_number_fails() {
-        let row = |computed: f64, relative: bool| Checked {
+        let row = |computed: f64, relative: bool| CheckedQuantity {
             quantity: String::new(),
             computed,
             reference: 2.0,

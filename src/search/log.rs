@@ -22,25 +22,25 @@ pub(super) struct Log {
     origin: Origin,
     /// Files that the search reads, which may be in its folder.
     read: Vec<PathBuf>,
-    kept: Mutex<Kept>,
+    kept: Mutex<KnownEvaluations>,
 }
 
 #[derive(Default)]
-struct Kept {
+struct KnownEvaluations {
     /// All that is known, by the values of the numbers; of an earlier run also what this one has not come to yet.
-    known: BTreeMap<Vec<u64>, Row>,
+    known: BTreeMap<Vec<u64>, LoggedEvaluation>,
     /// The values that this run has come to.
     seen: BTreeSet<Vec<u64>>,
     /// Rows in the order of the search.
-    rows: Vec<Row>,
+    rows: Vec<LoggedEvaluation>,
     /// Rows of this generation, in the order in which the threads came.
-    fresh: Vec<Row>,
+    fresh: Vec<LoggedEvaluation>,
     /// Whether the files of an earlier search are gone.
     alone: bool,
 }
 
 #[derive(Clone)]
-struct Row {
+struct LoggedEvaluation {
     values: Vec<f64>,
     cost: f64,
     computed: Vec<f64>,
@@ -97,7 +97,8 @@ impl Log {
                 ));
             }
             let (values, computed) = cells[1..].split_at(numbers);
-            let row = Row { values: values.to_vec(), cost: cells[0], computed: computed.to_vec() };
+            let row =
+                LoggedEvaluation { values: values.to_vec(), cost: cells[0], computed: computed.to_vec() };
             kept.known.insert(key(values), row);
         }
         Ok(())
@@ -116,7 +117,8 @@ impl Log {
     /// Keeps an evaluation until [`Log::flush`].
     pub(super) fn keep(&self, values: &[f64], facts: &Facts) {
         let mut kept = self.kept.lock().expect("no thread panics here");
-        let row = Row { values: values.to_vec(), cost: facts.cost, computed: facts.computed.clone() };
+        let row =
+            LoggedEvaluation { values: values.to_vec(), cost: facts.cost, computed: facts.computed.clone() };
         if kept.seen.insert(key(values)) {
             kept.known.insert(key(values), row.clone());
             kept.fresh.push(row);

@@ -56,7 +56,7 @@ pub fn search(file: &SearchFile, out: &Path, resume: bool, observer: &dyn Observ
     let first = cost.facts(&start)?;
     if first.computed.is_empty() {
         let found = "the case has no answer at its own values";
-        return Err(Error::analysis("search", found, "Run the case alone: it says what is wrong"));
+        return Err(Error::analysis("search", found, "Run the case alone to see its faults"));
     }
     observer.begin("searching", Some(file.evaluations as u64));
     let descent = descent::descend(file, &cost, &start, observer);

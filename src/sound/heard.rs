@@ -19,9 +19,9 @@ pub struct Sound {
     /// The peaks of the power, strongest lines of it: amplitude² is their height in W.
     pub tones: Vec<Tone>,
     /// What is heard where.
-    pub microphones: Vec<Heard>,
+    pub microphones: Vec<MicrophoneSound>,
     /// The pressure at the first microphone.
-    pub recording: Sounding,
+    pub recording: PressureRecord,
 }
 
 /// A peak of the sound power.
@@ -37,7 +37,7 @@ pub struct Tone {
 
 /// What a microphone hears.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Heard {
+pub struct MicrophoneSound {
     /// Its name.
     pub name: String,
     /// Where it stands \[m\].
@@ -48,7 +48,7 @@ pub struct Heard {
 
 /// A pressure that can be listened to.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Sounding {
+pub struct PressureRecord {
     /// The time of the first sample \[s\].
     pub begin: f64,
     /// Samples a second.
@@ -92,7 +92,7 @@ impl Sound {
     }
 }
 
-impl Heard {
+impl MicrophoneSound {
     /// The sound pressure level in dB re 20 µPa and, A-weighted, in dB(A).
     pub fn levels(&self) -> [f64; 2] {
         let sum = |weight: &dyn Fn(f64) -> f64| -> f64 {
@@ -103,7 +103,7 @@ impl Heard {
     }
 }
 
-impl Sounding {
+impl PressureRecord {
     /// The pressure that is the largest number of the WAV file \[Pa\]: the loudest moment reaches 0.9 of it.
     pub fn full_scale(&self) -> f64 {
         let loudest = self.pressure.iter().fold(0.0f64, |m, p| m.max(p.abs()));

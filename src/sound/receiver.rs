@@ -27,8 +27,8 @@ impl Receiver {
         let modes = plates.iter().map(|plate| plate.strength.ncols()).max().unwrap_or(0);
         let per_metre = 1.0 / (air.speed * step);
         let distance = |x: &[f64; 3]| (0..3).map(|k| (place[k] - x[k]).powi(2)).sum::<f64>().sqrt();
-        let heard = || plates.iter().filter(|plate| plate.side(place) != 0.0);
-        let distances = || heard().flat_map(|plate| plate.points.iter().map(distance));
+        let radiating = || plates.iter().filter(|plate| plate.side(place) != 0.0);
+        let distances = || radiating().flat_map(|plate| plate.points.iter().map(distance));
         let nearest = distances().fold(f64::INFINITY, f64::min);
         let farthest = distances().fold(0.0, f64::max);
         // The cubic reaches from one step before to two after.
@@ -37,7 +37,7 @@ impl Receiver {
         let length = if nearest.is_finite() { whole(farthest) + 3 - first } else { 1 };
         let length = length.next_multiple_of(TOGETHER);
         let mut taps = vec![vec![0.0; length]; modes];
-        for plate in heard() {
+        for plate in radiating() {
             let side = plate.side(place);
             for (i, x) in plate.points.iter().enumerate() {
                 let r = distance(x);
@@ -61,13 +61,13 @@ impl Receiver {
         Receiver { first, tail: vec![0.0; length - 1], taps }
     }
 
-    /// Steps before anything is heard.
+    /// Steps before any pressure arrives.
     pub fn delay(&self) -> usize {
         self.first
     }
 
     /// The pressure \[Pa\], one value a step, for the next modal accelerations: one slice a mode, all of one length.
-    pub fn hear(&mut self, accelerations: &[Vec<f64>]) -> Vec<f64> {
+    pub fn receive(&mut self, accelerations: &[Vec<f64>]) -> Vec<f64> {
         let steps = accelerations.first().map_or(0, Vec::len);
         let mut out = std::mem::take(&mut self.tail);
         out.resize(steps + out.len(), 0.0);
@@ -103,7 +103,7 @@ mod tests {
         let delay = receiver.delay();
         let mut pressure = Vec::new();
         let record: Vec<f64> = (0..2 * n).map(|k| angle(k).cos()).collect();
-        record.chunks(97).for_each(|piece| pressure.extend(receiver.hear(&[piece.to_vec()])));
+        record.chunks(97).for_each(|piece| pressure.extend(receiver.receive(&[piece.to_vec()])));
         // The second half is steady; f n Δt is whole to 1e-4, so that a projection suffices.
         let mut found = [0.0; 2];
         for (k, p) in pressure.iter().enumerate().skip(n) {
@@ -148,9 +148,9 @@ mod tests {
             let mut receiver = Receiver::new(std::slice::from_ref(&point), [0.0, 0.0, r], air, step);
             let pulse = |t: f64| (-(t / 2e-4 - 5.0).powi(2)).exp();
             let record: Vec<f64> = (0..600).map(|k| pulse(k as f64 * step)).collect();
-            let heard = receiver.hear(&[record]);
+            let received = receiver.receive(&[record]);
             let scale = air.density * 2e-4 / (TAU * r);
-            for (k, p) in heard.iter().enumerate() {
+            for (k, p) in received.iter().enumerate() {
                 let time = (k + receiver.delay()) as f64 * step;
                 let exact = scale * pulse(time - r / air.speed);
                 assert!((p - exact).abs() < 1e-5 * scale, "{r} {k}: {p} {exact}");

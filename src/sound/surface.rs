@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 const FLAT: f64 = 1e-3;
 
 /// Makes a linear form of the degrees of freedom from terms (node, axis, coefficient) in nodal translations.
-type Reduce<'a> = dyn Fn(&[(usize, usize, f64)]) -> SparseVector + 'a;
+type ReduceMotion<'a> = dyn Fn(&[(usize, usize, f64)]) -> SparseVector + 'a;
 
 /// A flat plate as pistons at its nodes, each with its share of the area; a quadrilateral is four triangles of half weight.
 #[derive(Debug, Clone)]
@@ -37,7 +37,7 @@ impl Surface {
         name: &str,
         nodes: &[[f64; 3]],
         faces: impl IntoIterator<Item = &'f [usize]>,
-        reduce: &Reduce<'_>,
+        reduce: &ReduceMotion<'_>,
     ) -> Option<Surface> {
         let at = |node: usize| Vector3::from(nodes[node]);
         let areas = vector_areas(nodes, faces);

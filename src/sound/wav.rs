@@ -1,4 +1,4 @@
-//! Sound that can be listened to.
+//! Sound pressure as a WAV file.
 
 /// The bytes of a WAV file, mono, 16 bits linear: a pressure of `full_scale` is the largest number, what is beyond it is
 /// cut. `comment` goes into the file's list of information (RIFF `INFO`, `ICMT`).

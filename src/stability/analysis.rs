@@ -3,11 +3,11 @@
 use super::band::{Band, in_band};
 use super::basis::Basis;
 use super::block::Block;
-use super::finish::finished;
 use super::general::general_modes;
 use super::operator::Operator;
+use super::post_processing::post_processed;
 use super::projected::{SmallPair, project_interface, solve};
-use super::refinement::{Measured, Scale, TOGETHER, Wanted};
+use super::refinement::{Corrections, MeasuredPairs, PairMeasurement, TOGETHER};
 use super::responses::{add_coupled_responses, few_responses};
 use super::{ComplexMode, ComplexModes, Structural, accuracy_warnings};
 use crate::equilibrium::SteadySliding;
@@ -88,7 +88,7 @@ pub fn complex_modes<'a>(
 }
 
 /// Data of an analysis with its modes found.
-pub(super) struct Analysis<'a> {
+pub(super) struct CompletedAnalysis<'a> {
     pub(super) operator: &'a Operator<'a>,
     pub(super) basis: &'a Basis<'a>,
     /// A = K + K_σ − shift · M.
@@ -106,7 +106,7 @@ pub(super) fn analyse<'a, T>(
     known: impl Into<Structural<'a>>,
     band: impl Into<Band>,
     observer: &dyn Observer,
-    then: impl FnOnce(&mut ComplexModes, Analysis<'_>) -> T,
+    then: impl FnOnce(&mut ComplexModes, CompletedAnalysis<'_>) -> T,
 ) -> Result<(ComplexModes, T)> {
     let (known, asked) = (known.into(), band.into());
     let (real, band_hz) = (known.real, asked.hz);
@@ -126,7 +126,7 @@ pub(super) fn analyse<'a, T>(
     observer.end();
     let (own, (mut modes, basis)) = solved?;
     let shifted = at(&own, known);
-    let analysis = Analysis {
+    let analysis = CompletedAnalysis {
         operator: &operator,
         basis: &basis,
         factor: &*shifted.factor,
@@ -206,7 +206,7 @@ fn solve_and_refine<'a>(
     let mut counts = Vec::new();
     let (mut found, mut refinements, mut finer) = (Vec::new(), 0, 0);
     loop {
-        let scale = Scale { operator, basis: &basis, factor, top: band[1] };
+        let scale = PairMeasurement { operator, basis: &basis, factor, top: band[1] };
         let wanted;
         (found, wanted) = evaluate(&scale, asked, found)?;
         observer.advance(1);
@@ -318,7 +318,7 @@ fn middle_frequency(basis: &Basis<'_>, top: f64) -> f64 {
 }
 
 /// Pairs of the projected problem, the right vectors on the full order, and what the real modes have of those: ΦᵀMφ.
-fn expand(basis: &Basis<'_>, pairs: &[&SmallPair], to: &mut Measured) -> Block {
+fn expand(basis: &Basis<'_>, pairs: &[&SmallPair], to: &mut MeasuredPairs) -> Block {
     let small = |pick: fn(&SmallPair) -> &Vec<c64>| {
         let small: Vec<&[c64]> = pairs.iter().map(|pair| pick(pair).as_slice()).collect();
         unit_mass(basis, Block::from_columns(basis.len(), &small))
@@ -341,14 +341,18 @@ fn unit_mass(basis: &Basis<'_>, mut y: Block) -> (Block, Vec<f64>) {
 }
 
 /// A mode, and whether it is as exact as the refinement aims at.
-struct Found {
+struct FoundMode {
     mode: ComplexMode,
     exact: bool,
 }
 
 /// The modes of the projected problem, measured on the full order, and what those ask for that are not exact. Of those found
 /// before, the exact ones are kept.
-fn evaluate(scale: &Scale<'_>, asked: Band, before: Vec<Found>) -> Result<(Vec<Found>, Wanted)> {
+fn evaluate(
+    scale: &PairMeasurement<'_>,
+    asked: Band,
+    before: Vec<FoundMode>,
+) -> Result<(Vec<FoundMode>, Corrections)> {
     let mut pairs = small_pairs(scale.operator, scale.basis, asked.hz.map(|f| TAU * f))?;
     if let Some(nearest) = asked.nearest {
         keep_nearest(&mut pairs, nearest);
@@ -356,19 +360,19 @@ fn evaluate(scale: &Scale<'_>, asked: Band, before: Vec<Found>) -> Result<(Vec<F
     let settled: Vec<Option<usize>> = pairs.iter().map(|p| settled(&before, &pairs, p.lambda)).collect();
     // Those that are measured again are not held beside what replaces them.
     let stays = |k: usize| settled.contains(&Some(k));
-    let mut before: Vec<Option<Found>> =
+    let mut before: Vec<Option<FoundMode>> =
         before.into_iter().enumerate().map(|(k, found)| stays(k).then_some(found)).collect();
     let fresh: Vec<&SmallPair> =
         pairs.iter().zip(&settled).filter(|(_, place)| place.is_none()).map(|(pair, _)| pair).collect();
-    let (mut wanted, mut new, mut measured) = (Wanted::default(), Vec::new(), Measured::default());
+    let (mut wanted, mut new, mut measured) = (Corrections::default(), Vec::new(), MeasuredPairs::default());
     for chunk in fresh.chunks(TOGETHER) {
         let amplitudes = expand(scale.basis, chunk, &mut measured);
         scale.measure(&mut measured);
         wanted.add(scale, &measured);
         let exact: Vec<bool> = (0..chunk.len()).map(|j| measured.exact(j)).collect();
         let left = asked.left_vectors.then(|| scale.basis.expand(&measured.left));
-        let modes = finished(scale.operator, &mut measured, &amplitudes, left.as_ref());
-        new.extend(modes.into_iter().zip(exact).map(|(mode, exact)| Found { mode, exact }));
+        let modes = post_processed(scale.operator, &mut measured, &amplitudes, left.as_ref());
+        new.extend(modes.into_iter().zip(exact).map(|(mode, exact)| FoundMode { mode, exact }));
     }
     let mut new = new.into_iter();
     let of = |place: Option<usize>| match place {
@@ -379,7 +383,7 @@ fn evaluate(scale: &Scale<'_>, asked: Band, before: Vec<Found>) -> Result<(Vec<F
 }
 
 /// The place of the exact mode that has this λ, when there is just one mode and one pair of `all` there.
-fn settled(before: &[Found], all: &[SmallPair], lambda: c64) -> Option<usize> {
+fn settled(before: &[FoundMode], all: &[SmallPair], lambda: c64) -> Option<usize> {
     let apart = |z: c64| (z - lambda).norm() / lambda.norm();
     let mut own = (0..before.len()).filter(|j| apart(before[*j].mode.eigenvalue) <= ALONE);
     let alone = all.iter().filter(|pair| apart(pair.lambda) <= ALONE).count() == 1;

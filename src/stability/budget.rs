@@ -1,7 +1,7 @@
 //! Where the growth of a mode comes from, and which real modes take part in it.
 
 use super::GrowthBudget;
-use super::interface::Origin;
+use super::interface::TermOrigin;
 use super::operator::{Forms, Operator};
 use crate::linalg::c64;
 
@@ -42,10 +42,10 @@ pub(super) fn growth_budget(
         let product = motion[term.row].conj() * motion[term.column];
         let share = by_velocity(product * term.damping) + by_displacement(product * term.stiffness);
         match term.origin {
-            Origin::Normal => budget.structural_damping += share,
-            Origin::Falling => budget.falling_friction += share,
-            Origin::Transverse => budget.transverse_friction += share,
-            Origin::Coupling => budget.mode_coupling += share,
+            TermOrigin::Normal => budget.structural_damping += share,
+            TermOrigin::Falling => budget.falling_friction += share,
+            TermOrigin::Transverse => budget.transverse_friction += share,
+            TermOrigin::Coupling => budget.mode_coupling += share,
         }
     }
     budget

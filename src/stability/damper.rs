@@ -13,14 +13,14 @@ use std::sync::Arc;
 /// C and H of a structure, each α M + β K, a few rows, and what is wide: seldom all of them.
 #[derive(Debug, Clone)]
 pub(super) struct Damper<'a> {
-    pub(super) viscous: Part,
-    pub(super) loss: Part,
+    pub(super) viscous: DamperPart,
+    pub(super) loss: DamperPart,
     pub(super) modal: Option<&'a ModalDamping>,
 }
 
 /// C, but for modal damping, or H.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Part {
+pub(super) struct DamperPart {
     /// α M + β K + rest.
     pub(super) split: Proportional,
     /// The rest, where it has entries in few rows.
@@ -35,12 +35,12 @@ pub(super) struct Between<'a> {
     pub(super) stiffness: MatRef<'a, f64>,
 }
 
-impl Part {
+impl DamperPart {
     fn new(x: Option<&SparseMatrix>, mass: &SparseMatrix, stiffness: &SparseMatrix) -> Self {
-        let Some(x) = x else { return Part::default() };
+        let Some(x) = x else { return DamperPart::default() };
         let split = Proportional::split(x, mass, stiffness);
         let few = split.rest.as_ref().map(RowSparse::new).filter(|few| few.are_few(x.ncols()));
-        Part { split, few }
+        DamperPart { split, few }
     }
 
     /// The rest, where it has entries in many rows.
@@ -72,12 +72,12 @@ impl Part {
 
 impl<'a> Damper<'a> {
     pub(super) fn new(damping: &'a Damping, mass: &SparseMatrix, stiffness: &SparseMatrix) -> Self {
-        let part = |x: &Option<Arc<SparseMatrix>>| Part::new(x.as_deref(), mass, stiffness);
+        let part = |x: &Option<Arc<SparseMatrix>>| DamperPart::new(x.as_deref(), mass, stiffness);
         let (viscous, loss) = rayon::join(|| part(&damping.viscous), || part(&damping.hysteretic));
         Damper { viscous, loss, modal: damping.modal.as_ref() }
     }
 
-    /// [`Part::form`] of C, modal damping included.
+    /// [`DamperPart::form`] of C, modal damping included.
     pub(super) fn viscous_form(&self, of: &Between<'_>) -> Mat<f64> {
         let mut form = self.viscous.form(of);
         if let Some(modal) = self.modal {

@@ -5,10 +5,10 @@ use super::band::in_band;
 use super::basis::Basis;
 use super::block::Block;
 use super::damper::{Between, Damper};
-use super::interface::{Interface, Term, terms_of_every_point};
+use super::interface::{Interface, InterfaceTerm, terms_of_every_point};
 use super::operator::Operator;
-use super::reduced::{Projection, Reduced, ReducedModes};
-use super::refinement::{Measured, Scale, TOGETHER, Wanted};
+use super::reduced::{FamilyMatrices, Projection, ReducedModes};
+use super::refinement::{Corrections, MeasuredPairs, PairMeasurement, TOGETHER};
 use super::responses::interface_responses;
 use crate::equilibrium::{PointState, tangent_stiffness};
 use crate::error::Result;
@@ -23,7 +23,7 @@ use std::f64::consts::TAU;
 
 /// Data on the full order common to all states of a family: the structure, every direction in which a contact point may
 /// act, and the factor of A = K + K_σ − s M.
-pub struct Frame<'a> {
+pub struct FamilyFrame<'a> {
     system: &'a System,
     operator: Operator<'a>,
     factor: Box<dyn SymmetricFactor>,
@@ -39,18 +39,18 @@ pub struct Frame<'a> {
 pub struct SlidingState {
     /// The contact points at steady sliding, in the order of [`System::points`].
     pub points: Vec<PointState>,
-    /// C = w₀C₀ + w₁C₁ + …: the weight of the system's own damping, then of those given to [`Frame::new`]. As damping
+    /// C = w₀C₀ + w₁C₁ + …: the weight of the system's own damping, then of those given to [`FamilyFrame::new`]. As damping
     /// is affine in each of its scalars, weights that add up to one reach every value.
     pub damping_weights: Vec<f64>,
 }
 
 /// A reduced model that is right at full order on the states it was trained on, and measured on any other.
 pub struct Family<'f> {
-    frame: &'f Frame<'f>,
+    frame: &'f FamilyFrame<'f>,
     basis: Basis<'f>,
     /// Closed contact springs of the reference stiffness: direction and N/m.
     springs: Vec<(usize, f64)>,
-    reduced: Reduced,
+    reduced: FamilyMatrices,
 }
 
 /// The complex modes of one state in the coordinates of its family, ascending in (ω, σ); one of each conjugate pair.
@@ -82,7 +82,7 @@ impl FamilyCheck {
     }
 }
 
-impl<'a> Frame<'a> {
+impl<'a> FamilyFrame<'a> {
     /// For `system` whose structure does not change, `displacement` being its steady one where a prestress counts;
     /// `real` are its real modes, best up to twice the band.
     ///
@@ -100,10 +100,10 @@ impl<'a> Frame<'a> {
             Operator::with_interface(system, stiffness, Interface::of_every_point(system), &dampings);
         let band = band_hz.map(|f| TAU * f);
         let (factor, _) = shifted_factor(&operator, real, band)?;
-        Ok(Frame { system, operator, factor, real, dampings, band })
+        Ok(FamilyFrame { system, operator, factor, real, dampings, band })
     }
 
-    fn terms(&self, state: &SlidingState) -> Vec<Term> {
+    fn terms(&self, state: &SlidingState) -> Vec<InterfaceTerm> {
         terms_of_every_point(self.system, &state.points)
     }
 }
@@ -115,7 +115,7 @@ impl<'f> Family<'f> {
     ///
     /// # Errors
     /// A projection that is not definite: parts without mass.
-    pub fn new(frame: &'f Frame<'f>, states: &[SlidingState]) -> Result<Self> {
+    pub fn new(frame: &'f FamilyFrame<'f>, states: &[SlidingState]) -> Result<Self> {
         const STATIC: usize = 240;
         let terms = envelope(states.iter().map(|state| frame.terms(state)));
         let springs: Vec<(usize, f64)> = terms
@@ -212,16 +212,16 @@ impl<'f> Family<'f> {
     }
 
     /// Some modes of `state` on the full order, and what those ask for that are not exact.
-    fn measure(&self, state: &SlidingState, modes: &ReducedModes) -> (FamilyCheck, Wanted) {
+    fn measure(&self, state: &SlidingState, modes: &ReducedModes) -> (FamilyCheck, Corrections) {
         let operator = self.frame.operator.with_terms(self.frame.terms(state), &state.damping_weights);
         let (basis, factor) = (&self.basis, &*self.frame.factor);
-        let scale = Scale { operator: &operator, basis, factor, top: self.frame.band[1] };
+        let scale = PairMeasurement { operator: &operator, basis, factor, top: self.frame.band[1] };
         let turned = |y: &Mat<c64>, first: usize, count: usize| {
             let y = Block::from_fn(y.nrows(), count, |i, j| y[(i, first + j)]);
             y.map(|y| product(self.reduced.rotation.as_ref(), y))
         };
         let (mut check, mut wanted, mut measured) =
-            (FamilyCheck::default(), Wanted::default(), Measured::default());
+            (FamilyCheck::default(), Corrections::default(), MeasuredPairs::default());
         for (chunk, lambda) in modes.eigenvalues.chunks(TOGETHER).enumerate() {
             let of = |y: &Mat<c64>| turned(y, chunk * TOGETHER, lambda.len());
             measured.lambda = lambda.to_vec();
@@ -239,7 +239,7 @@ impl<'f> Family<'f> {
 }
 
 /// Projects every damping on the basis and diagonalises.
-fn reduce(frame: &Frame<'_>, basis: &Basis<'_>, springs: &[(usize, f64)]) -> Result<Reduced> {
+fn reduce(frame: &FamilyFrame<'_>, basis: &Basis<'_>, springs: &[(usize, f64)]) -> Result<FamilyMatrices> {
     let parts = basis.between();
     let whole = |form: &dyn Fn(&Between<'_>) -> Mat<f64>| {
         let [of_modes, of_added] = parts.each_ref().map(form);
@@ -260,14 +260,14 @@ fn reduce(frame: &Frame<'_>, basis: &Basis<'_>, springs: &[(usize, f64)]) -> Res
             .collect(),
         interface: basis.interface.clone(),
     };
-    Reduced::new(&projection, springs, 1e-3 * frame.band[1])
+    FamilyMatrices::new(&projection, springs, 1e-3 * frame.band[1])
 }
 
 /// Every entry that any of the lists has, with its largest stiffness and damping.
-fn envelope(lists: impl Iterator<Item = Vec<Term>>) -> Vec<Term> {
+fn envelope(lists: impl Iterator<Item = Vec<InterfaceTerm>>) -> Vec<InterfaceTerm> {
     let mut all = std::collections::BTreeMap::new();
     for term in lists.flatten() {
-        let largest: &mut Term = all.entry((term.row, term.column)).or_insert(term);
+        let largest: &mut InterfaceTerm = all.entry((term.row, term.column)).or_insert(term);
         let larger = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
         largest.stiffness = larger(largest.stiffness, term.stiffness);
         largest.damping = larger(largest.damping, term.damping);

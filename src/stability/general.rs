@@ -9,8 +9,8 @@
 use super::band::{Band, in_band};
 use super::block::Block;
 use super::budget::growth_budget;
-use super::finish::shares;
 use super::operator::{Operator, Side};
+use super::post_processing::shares;
 use super::refinement::TOGETHER;
 use super::shifted::{Adjoint, Shifted};
 use super::{ComplexMode, ComplexModes, accuracy_warnings};
@@ -48,7 +48,7 @@ pub(super) struct General {
 }
 
 /// Eigenvalues with their right and left vectors (n × m), found at one shift.
-struct Piece {
+struct SpectrumPart {
     values: Vec<c64>,
     left_values: Vec<c64>,
     right: Mat<c64>,
@@ -68,7 +68,7 @@ pub(super) fn general_modes(
     observer: &dyn Observer,
 ) -> Result<General> {
     let band = asked.hz.map(|f| TAU * f);
-    let mut search = Search {
+    let mut search = ShiftSearch {
         operator,
         band,
         symbolic: None,
@@ -105,7 +105,7 @@ pub(super) fn general_modes(
     Ok(General { modes, seen: search.seen, symbolic: search.symbolic })
 }
 
-struct Search<'a> {
+struct ShiftSearch<'a> {
     operator: &'a Operator<'a>,
     band: [f64; 2],
     symbolic: Option<SymbolicFactor>,
@@ -116,7 +116,7 @@ struct Search<'a> {
     depth: f64,
 }
 
-impl<'a> Search<'a> {
+impl<'a> ShiftSearch<'a> {
     fn shifted(&mut self, middle: f64) -> Result<Shifted<'a>> {
         // Off the imaginary axis, where an undamped structure has its eigenvalues.
         let size = middle.max(1e-3 * self.band[1]);
@@ -136,7 +136,7 @@ impl<'a> Search<'a> {
     }
 
     /// The modes nearest to iω: `count` of them in the band.
-    fn nearest(&mut self, omega: f64, count: usize) -> Result<Piece> {
+    fn nearest(&mut self, omega: f64, count: usize) -> Result<SpectrumPart> {
         let shifted = self.shifted(omega)?;
         let n = 2 * self.operator.n();
         let distance = |z: &c64| (z - c64::new(0.0, omega)).norm();
@@ -160,7 +160,7 @@ impl<'a> Search<'a> {
     }
 
     /// All pieces of the band.
-    fn all(&mut self, real: &RealModes, observer: &dyn Observer) -> Result<Vec<Piece>> {
+    fn all(&mut self, real: &RealModes, observer: &dyn Observer) -> Result<Vec<SpectrumPart>> {
         let [low, high] = self.band;
         let expected = |a: f64, b: f64| {
             let inside = (0..real.len()).map(|k| TAU * real.frequency_hz(k)).filter(|w| (a..b).contains(w));
@@ -172,7 +172,7 @@ impl<'a> Search<'a> {
             .map(|k| [k, k + 1].map(|k| low + (high - low) * k as f64 / parts as f64))
             .rev()
             .collect();
-        let (mut pieces, mut done): (Vec<Piece>, usize) = (Vec::new(), 0);
+        let (mut pieces, mut done): (Vec<SpectrumPart>, usize) = (Vec::new(), 0);
         while let Some([a, b]) = open.pop() {
             done += 1;
             if done > PIECES {
@@ -208,7 +208,7 @@ impl<'a> Search<'a> {
     }
 
     /// All eigenvalues within √2 `half` of i `middle`; none where these are too many for one shift.
-    fn circle(&mut self, middle: f64, half: f64, expected: usize) -> Result<Option<Piece>> {
+    fn circle(&mut self, middle: f64, half: f64, expected: usize) -> Result<Option<SpectrumPart>> {
         let shifted = self.shifted(middle)?;
         let shift = c64::new(1e-3 * middle.max(1e-3 * self.band[1]), middle);
         let reach = 2f64.sqrt() * half * (1.0 + 1e-6) + 4.0 * shift.re;
@@ -228,7 +228,7 @@ impl<'a> Search<'a> {
     }
 
     /// The `count` eigenvalues nearest the shift, from both sides.
-    fn at(&mut self, shifted: &Shifted<'_>, middle: f64, radius: f64, count: usize) -> Result<Piece> {
+    fn at(&mut self, shifted: &Shifted<'_>, middle: f64, radius: f64, count: usize) -> Result<SpectrumPart> {
         let radius = radius.max(1e-3 * middle);
         let right = toar(shifted, shifted.shift(), radius, count, TOLERANCE)?;
         self.solves += right.solves;
@@ -255,7 +255,7 @@ impl<'a> Search<'a> {
                 let chosen: Vec<usize> = (0..right.values.len())
                     .filter_map(|j| partners[j].or_else(|| nearest(right.values[j])))
                     .collect();
-                return Ok(Piece {
+                return Ok(SpectrumPart {
                     left_values: chosen.iter().map(|k| left_values[*k]).collect(),
                     left: Mat::from_fn(self.operator.n(), chosen.len(), |i, k| left.vectors[(i, chosen[k])]),
                     whole: right.values.len() < count,
@@ -268,7 +268,7 @@ impl<'a> Search<'a> {
     }
 
     /// Modes with their errors, condition numbers and growth budgets.
-    fn measured(&self, piece: Piece, real: &RealModes, left_vectors: bool) -> Vec<ComplexMode> {
+    fn measured(&self, piece: SpectrumPart, real: &RealModes, left_vectors: bool) -> Vec<ComplexMode> {
         let piece = self.biorthogonal(piece);
         let operator = self.operator;
         let mut modes = Vec::new();
@@ -323,7 +323,7 @@ impl<'a> Search<'a> {
 
     /// Left vectors of eigenvalues that all but coincide are mixed until ψᵢᴴQ′φⱼ = 0 for i ≠ j: Krylov spaces give any vectors
     /// of the common space.
-    fn biorthogonal(&self, mut piece: Piece) -> Piece {
+    fn biorthogonal(&self, mut piece: SpectrumPart) -> SpectrumPart {
         let m = piece.values.len();
         let mut grouped = vec![false; m];
         for j in 0..m {
@@ -355,12 +355,12 @@ impl<'a> Search<'a> {
     }
 }
 
-impl Piece {
+impl SpectrumPart {
     /// Those whose eigenvalue is wanted.
     fn keep(self, wanted: impl Fn(c64) -> bool) -> Self {
         let kept: Vec<usize> = (0..self.values.len()).filter(|j| wanted(self.values[*j])).collect();
         let some = |x: &Mat<c64>| Mat::from_fn(x.nrows(), kept.len(), |i, k| x[(i, kept[k])]);
-        Piece {
+        SpectrumPart {
             values: kept.iter().map(|j| self.values[*j]).collect(),
             left_values: kept.iter().map(|j| self.left_values[*j]).collect(),
             right: some(&self.right),

@@ -10,22 +10,22 @@ pub(crate) struct Interface<'a> {
     /// The columns of W (n × r): g, t₁, t₂ of every contact point that is not silent, then the imported ones.
     pub(crate) directions: Vec<&'a SparseVector>,
     /// The entries of k and c that are not both zero.
-    pub(crate) terms: Vec<Term>,
+    pub(crate) terms: Vec<InterfaceTerm>,
 }
 
 /// One entry of k \[N/m\] and c \[N s/m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Term {
+pub(crate) struct InterfaceTerm {
     pub(crate) row: usize,
     pub(crate) column: usize,
     pub(crate) stiffness: f64,
     pub(crate) damping: f64,
-    pub(crate) origin: Origin,
+    pub(crate) origin: TermOrigin,
 }
 
 /// Origin of an entry, by which the growth budget sorts it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Origin {
+pub(crate) enum TermOrigin {
     /// (g, g): stiffness and damping of the normal motion.
     Normal,
     /// (t₁, t₁): friction that falls, or rises, with the slip velocity.
@@ -85,40 +85,40 @@ impl<'a> Interface<'a> {
 }
 
 /// The terms of a state of the contact points between the directions of [`Interface::of_every_point`].
-pub(crate) fn terms_of_every_point(system: &System, points: &[PointState]) -> Vec<Term> {
+pub(crate) fn terms_of_every_point(system: &System, points: &[PointState]) -> Vec<InterfaceTerm> {
     let blocks = linearize_points(points).blocks;
-    let mut terms: Vec<Term> =
+    let mut terms: Vec<InterfaceTerm> =
         blocks.iter().flat_map(|block| contact_terms(block, 3 * block.point)).collect();
     terms.extend(system.coupling.iter().flat_map(|rest| imported_terms(rest, 3 * points.len())));
     terms
 }
 
 /// The entries of the imported coupling whose directions are those from `first` on.
-fn imported_terms(rest: &Coupling, first: usize) -> impl Iterator<Item = Term> {
+fn imported_terms(rest: &Coupling, first: usize) -> impl Iterator<Item = InterfaceTerm> {
     entries(rest.directions.len()).filter_map(move |(row, column)| {
         let (stiffness, damping) = (rest.stiffness[(row, column)], rest.damping[(row, column)]);
         let (row, column) = (first + row, first + column);
-        (stiffness != 0.0 || damping != 0.0).then_some(Term {
+        (stiffness != 0.0 || damping != 0.0).then_some(InterfaceTerm {
             row,
             column,
             stiffness,
             damping,
-            origin: Origin::Coupling,
+            origin: TermOrigin::Coupling,
         })
     })
 }
 
 /// The entries of one contact point whose g, t₁, t₂ are the directions from `first` on.
-fn contact_terms(block: &ContactBlock, first: usize) -> impl Iterator<Item = Term> + '_ {
+fn contact_terms(block: &ContactBlock, first: usize) -> impl Iterator<Item = InterfaceTerm> + '_ {
     entries(3).filter_map(move |(a, b)| {
         let (stiffness, damping) = (block.stiffness[a][b], block.damping[a][b]);
         let origin = match (a, b) {
-            (0, 0) => Origin::Normal,
-            (_, 0) | (0, _) => Origin::Coupling,
-            (1, 1) => Origin::Falling,
-            _ => Origin::Transverse,
+            (0, 0) => TermOrigin::Normal,
+            (_, 0) | (0, _) => TermOrigin::Coupling,
+            (1, 1) => TermOrigin::Falling,
+            _ => TermOrigin::Transverse,
         };
-        (stiffness != 0.0 || damping != 0.0).then_some(Term {
+        (stiffness != 0.0 || damping != 0.0).then_some(InterfaceTerm {
             row: first + a,
             column: first + b,
             stiffness,

@@ -59,7 +59,7 @@ impl ModalChange {
             inner.map(|inner| above(inner, gram(momenta.as_ref(), x.parts()).as_ref()))
         };
         let (all_a, all_b) = (extend(phi, &a), extend(psi, &b));
-        let spectrum = Spectrum {
+        let spectrum = DampedModes {
             omega: real.eigenvalues.iter().chain(&ritz).map(|w| w.max(0.0).sqrt()).collect(),
             f: damping.coefficients.iter().copied().chain(ritz.iter().map(|_| 0.0)).collect(),
         };
@@ -141,12 +141,12 @@ impl ModalChange {
 }
 
 /// ω and f = 2ζω of the modes in C, then of the rest, where f = 0.
-struct Spectrum {
+struct DampedModes {
     omega: Vec<f64>,
     f: Vec<f64>,
 }
 
-impl Spectrum {
+impl DampedModes {
     /// 2ζ, when both modes have the same.
     fn common(&self, j: usize, k: usize) -> Option<f64> {
         let ratio = |i: usize| if self.omega[i] > 0.0 { self.f[i] / self.omega[i] } else { 0.0 };

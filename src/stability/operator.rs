@@ -1,8 +1,8 @@
 //! The full-order quadratic operator Q(λ) = λ² M + λ (C + C_c) + K + K_σ + iH + K_c, applied without forming it.
 
 use super::block::Block;
-use super::damper::{Between, Damper, Part, modal_times};
-use super::interface::{Interface, Term};
+use super::damper::{Between, Damper, DamperPart, modal_times};
+use super::interface::{Interface, InterfaceTerm};
 use crate::equilibrium::{SteadySliding, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::multivector::Columns;
@@ -30,7 +30,7 @@ pub(super) struct Operator<'a> {
     /// How much of each acts.
     weights: Vec<f64>,
     /// M, K + K_σ, and what is wide of C and H.
-    merged: Arc<SharedPattern<'a>>,
+    shared: Arc<SharedPattern<'a>>,
     mass_norm: f64,
     damping_norm: f64,
     stiffness_norm: f64,
@@ -65,7 +65,7 @@ enum Loss {
 impl Loss {
     const BOTH: [Loss; 2] = [Loss::Viscous, Loss::Hysteretic];
 
-    fn part<'d>(self, damper: &'d Damper<'_>) -> &'d Part {
+    fn part<'d>(self, damper: &'d Damper<'_>) -> &'d DamperPart {
         match self {
             Loss::Viscous => &damper.viscous,
             Loss::Hysteretic => &damper.loss,
@@ -166,12 +166,12 @@ impl<'a> Operator<'a> {
         let norm = |m: &Option<Arc<SparseMatrix>>| m.as_ref().map_or(0.0, |m| norm_1(m));
         let mut sparse: Vec<&SparseMatrix> = vec![mass, &stiffness];
         sparse.extend(dampers[0].viscous.wide().into_iter().chain(dampers[0].loss.wide()));
-        let merged = match &stiffness {
+        let shared = match &stiffness {
             Cow::Borrowed(stiffness) if sparse.len() == 2 => SharedPattern::new(&[mass, stiffness]),
             _ => SharedPattern::new(&sparse).into_owned(),
         };
         Operator {
-            merged: Arc::new(merged),
+            shared: Arc::new(shared),
             mass,
             mass_norm: norm_1(mass),
             damping_norm: norm(&damping.viscous),
@@ -187,12 +187,12 @@ impl<'a> Operator<'a> {
 
     /// The same operator whose interface has other terms between the same directions, with `weights` for its dampings:
     /// those that are missing are one for the first and none for the others.
-    pub(super) fn with_terms(&self, terms: Vec<Term>, weights: &[f64]) -> Operator<'_> {
+    pub(super) fn with_terms(&self, terms: Vec<InterfaceTerm>, weights: &[f64]) -> Operator<'_> {
         let interface = Interface { directions: self.interface.directions.clone(), terms };
         let mut all = only_first(self.dampers.len());
         all.iter_mut().zip(weights).for_each(|(all, weight)| *all = *weight);
-        let (stiffness, merged) = (Cow::Borrowed(&*self.stiffness), Arc::clone(&self.merged));
-        Operator { stiffness, interface, merged, dampers: Arc::clone(&self.dampers), weights: all, ..*self }
+        let (stiffness, shared) = (Cow::Borrowed(&*self.stiffness), Arc::clone(&self.shared));
+        Operator { stiffness, interface, shared, dampers: Arc::clone(&self.dampers), weights: all, ..*self }
     }
 
     pub(super) fn n(&self) -> usize {
@@ -212,7 +212,7 @@ impl<'a> Operator<'a> {
         y: MatRef<'_, f64>,
         images: &mut Vec<Mat<f64>>,
     ) -> [Mat<f64>; 4] {
-        self.merged.times(y, images);
+        self.shared.times(y, images);
         let [mass, stiffness] = [0, 1].map(|k| b.gram(images[k].as_ref()));
         let own = &self.dampers[0];
         let of = Between { b, y, mass: mass.as_ref(), stiffness: stiffness.as_ref() };
@@ -232,19 +232,19 @@ impl<'a> Operator<'a> {
     ) -> Vec<Vec<Forms>> {
         let of_images: Vec<[c64; 2]> = sums.iter().map(|sum| self.of_images(sum)).collect();
         let mut factors: Vec<Vec<c64>> = (0..2).map(|a| of_images.iter().map(|f| f[a]).collect()).collect();
-        for loss in self.merged_losses() {
+        for loss in self.shared_losses() {
             factors.push(sums.iter().map(|sum| loss.factor(sum) * self.weights[0]).collect());
         }
         let parts: Vec<_> = tests.iter().map(|t| t.parts()).collect();
-        let between = self.merged.add_weighed(&factors, x.parts(), y.parts_mut(), &parts);
+        let between = self.shared.add_weighed(&factors, x.parts(), y.parts_mut(), &parts);
         let mut forms: Vec<Vec<Forms>> =
             between.iter().map(|of| of.iter().map(|entries| self.forms_of(entries)).collect()).collect();
         self.add_others(1, side, sums, x, y, (tests, &mut forms));
         forms
     }
 
-    /// Those whose wide parts are merged with M and K.
-    fn merged_losses(&self) -> impl Iterator<Item = Loss> {
+    /// Those whose wide parts share the pattern of M and K.
+    fn shared_losses(&self) -> impl Iterator<Item = Loss> {
         Loss::BOTH.into_iter().filter(|loss| loss.part(&self.dampers[0]).wide().is_some())
     }
 
@@ -252,7 +252,7 @@ impl<'a> Operator<'a> {
     fn forms_of(&self, entries: &PerMatrix) -> Forms {
         let [mass, stiffness, ref wide @ ..] = *entries;
         let mut forms = Forms { mass, stiffness, ..Forms::default() };
-        for (loss, entry) in self.merged_losses().zip(wide) {
+        for (loss, entry) in self.shared_losses().zip(wide) {
             *loss.of(&mut forms) += entry * self.weights[0];
         }
         for (weight, damper) in self.acting() {

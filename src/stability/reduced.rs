@@ -1,6 +1,6 @@
 //! A reduced model that serves a whole family of sliding states: between them a few numbers differ.
 
-use super::interface::Term;
+use super::interface::InterfaceTerm;
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::linalg::dense::{definite_pencil, product};
@@ -8,7 +8,7 @@ use crate::linalg::unsymmetric::{complex_spectrum, eigenvalues, spectrum};
 use faer::{Mat, MatRef};
 
 /// (λ² + λ (Σ wᵢCᵢ + B c Bᵀ) + K + i Σ wᵢHᵢ + B k Bᵀ) y = 0 in M-orthonormal coordinates, m of them.
-pub(super) struct Reduced {
+pub(super) struct FamilyMatrices {
     /// From these coordinates to those of the basis.
     pub(super) rotation: Mat<f64>,
     stiffness: Mat<f64>,
@@ -41,7 +41,7 @@ pub(super) struct ReducedModes {
     pub(super) steepness: Vec<c64>,
 }
 
-impl Reduced {
+impl FamilyMatrices {
     /// Goes to the coordinates in which M = 1 and the reference stiffness K + Σ `springs` · bbᵀ is diagonal; `floor`
     /// \[rad/s\] is the least frequency to balance by.
     pub(super) fn new(p: &Projection, springs: &[(usize, f64)], floor: f64) -> Result<Self> {
@@ -53,7 +53,7 @@ impl Reduced {
         let (squares, rotation) = definite_pencil(reference.as_ref(), p.mass.as_ref())?;
         let into =
             |a: &Mat<f64>| product(rotation.transpose(), product(a.as_ref(), rotation.as_ref()).as_ref());
-        Ok(Reduced {
+        Ok(FamilyMatrices {
             stiffness: into(&p.stiffness),
             frequencies: squares.iter().map(|s| s.max(0.0).sqrt().max(floor)).collect(),
             damping: p.damping.iter().map(into).collect(),
@@ -70,7 +70,7 @@ impl Reduced {
     /// half of its left vector is that of Q.
     pub(super) fn solve(
         &self,
-        terms: &[Term],
+        terms: &[InterfaceTerm],
         weights: &[f64],
         wanted: impl Fn(c64) -> bool,
     ) -> Result<ReducedModes> {
@@ -114,14 +114,14 @@ impl Reduced {
         Ok(ReducedModes { eigenvalues, right, left, steepness })
     }
 
-    /// The eigenvalues that are `wanted`, in no order and without the correction of [`Reduced::solve`], at a third of its
+    /// The eigenvalues that are `wanted`, in no order and without the correction of [`FamilyMatrices::solve`], at a third of its
     /// cost.
     ///
     /// # Errors
     /// Numbers that are not finite.
     pub(super) fn eigenvalues(
         &self,
-        terms: &[Term],
+        terms: &[InterfaceTerm],
         weights: &[f64],
         wanted: impl Fn(c64) -> bool,
     ) -> Result<Vec<c64>> {
@@ -134,7 +134,7 @@ impl Reduced {
     }
 
     /// C and K with the interface.
-    fn matrices(&self, terms: &[Term], weights: &[f64]) -> (Mat<f64>, Mat<f64>) {
+    fn matrices(&self, terms: &[InterfaceTerm], weights: &[f64]) -> (Mat<f64>, Mat<f64>) {
         let mut c = self.between(terms, |t| t.damping);
         let mut k = self.between(terms, |t| t.stiffness);
         k += &self.stiffness;
@@ -166,7 +166,7 @@ impl Reduced {
     }
 
     /// Σ b_row value b_columnᵀ over the terms.
-    fn between(&self, terms: &[Term], value: impl Fn(&Term) -> f64) -> Mat<f64> {
+    fn between(&self, terms: &[InterfaceTerm], value: impl Fn(&InterfaceTerm) -> f64) -> Mat<f64> {
         let m = self.interface.nrows();
         let mut used: Vec<usize> = terms.iter().filter(|t| value(t) != 0.0).map(|t| t.column).collect();
         used.sort_unstable();

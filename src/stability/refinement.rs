@@ -20,7 +20,7 @@ pub(super) const TOGETHER: usize = 8;
 
 /// A few pairs with their measures on the full order. Its memory serves the next few.
 #[derive(Default)]
-pub(super) struct Measured {
+pub(super) struct MeasuredPairs {
     pub(super) lambda: Vec<c64>,
     /// φ, with unit mass.
     pub(super) right: Block,
@@ -40,7 +40,7 @@ pub(super) struct Measured {
 }
 
 /// Operator and scales by which pairs are measured.
-pub(super) struct Scale<'a> {
+pub(super) struct PairMeasurement<'a> {
     pub(super) operator: &'a Operator<'a>,
     pub(super) basis: &'a Basis<'a>,
     /// A.
@@ -49,12 +49,12 @@ pub(super) struct Scale<'a> {
     pub(super) top: f64,
 }
 
-impl Scale<'_> {
+impl PairMeasurement<'_> {
     /// Measures pairs, given λ, φ and what is known of ψ. The right corrections, which are solved for, give the errors of λ
     /// and φ.
-    pub(super) fn measure(&self, pairs: &mut Measured) {
-        let Scale { operator, basis, factor, top } = *self;
-        let Measured { lambda, right, left, steepness, correction, .. } = pairs;
+    pub(super) fn measure(&self, pairs: &mut MeasuredPairs) {
+        let PairMeasurement { operator, basis, factor, top } = *self;
+        let MeasuredPairs { lambda, right, left, steepness, correction, .. } = pairs;
         let columns = 0..lambda.len();
         // Q(λ)φ and Q(λ)z are not held longer than this, as the vectors that are given add up.
         let [mut residual, mut image] = [(); 2].map(|()| Block::zeros(operator.n(), lambda.len()));
@@ -79,7 +79,7 @@ impl Scale<'_> {
     }
 }
 
-impl Measured {
+impl MeasuredPairs {
     /// Whether pair `j` is as exact as the refinement aims at.
     pub(super) fn exact(&self, j: usize) -> bool {
         self.backward_error[j] <= BACKWARD_ERROR && self.eigenvalue_error[j] <= EIGENVALUE_ERROR
@@ -89,16 +89,16 @@ impl Measured {
 /// The corrections that pairs ask for, right and left, each divided by |λ|: their squared E-norm is then about the relative
 /// error of λ that they represent.
 #[derive(Default)]
-pub(super) struct Wanted {
+pub(super) struct Corrections {
     /// Re and Im of z.
     right: Vec<Mat<f64>>,
     /// Re and Im of Q(λ)ᴴψ.
     left: Vec<Mat<f64>>,
 }
 
-impl Wanted {
+impl Corrections {
     /// Adds those of the pairs that are not exact.
-    pub(super) fn add(&mut self, scale: &Scale<'_>, measured: &Measured) {
+    pub(super) fn add(&mut self, scale: &PairMeasurement<'_>, measured: &MeasuredPairs) {
         let open: Vec<usize> = (0..measured.lambda.len()).filter(|j| !measured.exact(*j)).collect();
         if open.is_empty() {
             return;

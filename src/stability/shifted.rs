@@ -19,7 +19,7 @@ use faer::{Mat, MatRef};
 pub(super) struct Shifted<'a> {
     operator: &'a Operator<'a>,
     shift: c64,
-    factors: Factors,
+    factors: FactorKind,
     /// G.
     small: Mat<c64>,
     right: Woodbury,
@@ -27,7 +27,7 @@ pub(super) struct Shifted<'a> {
 }
 
 /// P_s.
-enum Factors {
+enum FactorKind {
     Symmetric(Box<dyn SymmetricFactor<c64>>),
     Unsymmetric(Box<UnsymmetricFactor>),
 }
@@ -38,11 +38,11 @@ struct Woodbury {
     lu: Lu<c64>,
 }
 
-impl Factors {
+impl FactorKind {
     fn solve(&self, side: Side, r: &mut Mat<c64>) {
         match (self, side) {
-            (Factors::Symmetric(factor), Side::Right) => factor.solve_in_place(r.as_mut()),
-            (Factors::Symmetric(factor), Side::Left) => {
+            (FactorKind::Symmetric(factor), Side::Right) => factor.solve_in_place(r.as_mut()),
+            (FactorKind::Symmetric(factor), Side::Left) => {
                 let conjugate = |r: &mut Mat<c64>| {
                     (0..r.ncols()).for_each(|j| r.col_mut(j).iter_mut().for_each(|v| *v = v.conj()));
                 };
@@ -50,7 +50,7 @@ impl Factors {
                 factor.solve_in_place(r.as_mut());
                 conjugate(r);
             }
-            (Factors::Unsymmetric(factor), side) => {
+            (FactorKind::Unsymmetric(factor), side) => {
                 let system = if side == Side::Right { System::Plain } else { System::Adjoint };
                 factor.solve(system, r.as_mut());
             }
@@ -79,7 +79,7 @@ impl<'a> Shifted<'a> {
         terms.extend(operator.damping.viscous.as_deref().map(|c| (shift, c)));
         terms.extend(operator.damping.hysteretic.as_deref().map(|h| (c64::new(0.0, 1.0), h)));
         let factors = match operator.skew {
-            None => Factors::Symmetric(factorize(&add_scaled(&terms))?),
+            None => FactorKind::Symmetric(factorize(&add_scaled(&terms))?),
             Some(skew) => {
                 terms.extend([(one, &*skew.stiffness), (shift, &*skew.damping)]);
                 let sum = add_scaled(&terms);
@@ -87,7 +87,7 @@ impl<'a> Shifted<'a> {
                     Some(known) => known.clone(),
                     None => SymbolicFactor::new(sum.symbolic())?,
                 };
-                Factors::Unsymmetric(Box::new(UnsymmetricFactor::new(&symbolic, sum)?))
+                FactorKind::Unsymmetric(Box::new(UnsymmetricFactor::new(&symbolic, sum)?))
             }
         };
         let small = small(operator, shift);
@@ -117,16 +117,16 @@ impl<'a> Shifted<'a> {
     /// The analysis of the pattern of P_s, where P_s is not symmetric.
     pub(super) fn symbolic(&self) -> Option<SymbolicFactor> {
         match &self.factors {
-            Factors::Symmetric(_) => None,
-            Factors::Unsymmetric(factor) => Some(factor.symbolic()),
+            FactorKind::Symmetric(_) => None,
+            FactorKind::Unsymmetric(factor) => Some(factor.symbolic()),
         }
     }
 
     /// det P / |det P|; `None` where P_s is symmetric, or P is singular.
     pub(super) fn phase(&self) -> Option<c64> {
         match &self.factors {
-            Factors::Symmetric(_) => None,
-            Factors::Unsymmetric(factor) => Some(factor.phase() * self.right.lu.phase()?),
+            FactorKind::Symmetric(_) => None,
+            FactorKind::Unsymmetric(factor) => Some(factor.phase() * self.right.lu.phase()?),
         }
     }
 

@@ -526,7 +526,7 @@ fn a_family_gives_what_a_whole_analysis_gives_at_every_member() {
         let kept = n / 3;
         let real = dense_modes(&base, kept);
         let band = [0.01, 0.5 * (real.frequency_hz(kept / 2) + real.frequency_hz(kept / 2 + 1))];
-        let frame = Frame::new(&base, &[], &real, Vec::new(), band).unwrap();
+        let frame = FamilyFrame::new(&base, &[], &real, Vec::new(), band).unwrap();
         let ends = [state(&at(0.0, 0.5)), state(&at(0.7, 2.0))];
         let mut family = Family::new(&frame, &ends).unwrap();
         for end in &ends {
@@ -556,7 +556,7 @@ fn weights_of_dampings_are_their_sum_on_the_reduced_and_on_the_full_order() {
     let other = damped(random_system(80, 3, 20.0, 41), 3).structure.damping;
     let real = dense_modes(&base, 40);
     let band = [0.01, real.frequency_hz(20)];
-    let frame = Frame::new(&base, &[], &real, vec![&other], band).unwrap();
+    let frame = FamilyFrame::new(&base, &[], &real, vec![&other], band).unwrap();
     let member =
         |weights: &[f64]| SlidingState { points: steady(&base).points, damping_weights: weights.to_vec() };
     let mut family = Family::new(&frame, &[member(&[1.0, 0.0])]).unwrap();

@@ -2,7 +2,7 @@
 
 use super::map::MapPoint;
 use super::root::{Bracket, narrow};
-use super::{Axis, Problem, ROUND_OFF};
+use super::{Axis, ROUND_OFF, SweepProblem};
 use crate::error::Result;
 use crate::progress::Observer;
 use rayon::prelude::*;
@@ -18,7 +18,7 @@ pub struct Boundary {
 }
 
 /// An edge of the grid: its lower left end and whether it goes up.
-type Edge = (usize, usize, bool);
+type GridEdge = (usize, usize, bool);
 
 /// Locates the boundary on every edge of the grid with a stable and an unstable end, to `tolerance` of the value, and
 /// joins the points through the cells. Where all four edges of a cell are cut, the middle of the cell decides.
@@ -26,7 +26,7 @@ type Edge = (usize, usize, bool);
 /// # Errors
 /// A place near the boundary without an answer.
 pub fn boundary(
-    problem: &dyn Problem,
+    problem: &dyn SweepProblem,
     axes: &[Axis; 2],
     map: &[MapPoint],
     tolerance: f64,
@@ -35,7 +35,7 @@ pub fn boundary(
     let grid = Grid { problem, axes, map };
     let edges = grid.cut_edges();
     observer.begin("stability boundary", Some(edges.len() as u64));
-    let locate = |edge: &Edge| {
+    let locate = |edge: &GridEdge| {
         let place = grid.locate(edge, tolerance)?;
         observer.advance(1);
         Ok(place)
@@ -51,7 +51,7 @@ pub fn boundary(
 
 /// A map on the grid of its axes.
 struct Grid<'a> {
-    problem: &'a dyn Problem,
+    problem: &'a dyn SweepProblem,
     axes: &'a [Axis; 2],
     map: &'a [MapPoint],
 }
@@ -64,13 +64,13 @@ impl Grid<'_> {
     }
 
     /// The edges with a stable and an unstable end.
-    fn cut_edges(&self) -> Vec<Edge> {
+    fn cut_edges(&self) -> Vec<GridEdge> {
         let [nx, ny] = [self.axes[0].points, self.axes[1].points];
         let differ = |a: (usize, usize), b: (usize, usize)| {
             let ends = self.unstable(a.0, a.1).zip(self.unstable(b.0, b.1));
             ends.is_some_and(|(a, b)| a != b)
         };
-        let mut edges: Vec<Edge> = Vec::new();
+        let mut edges: Vec<GridEdge> = Vec::new();
         for j in 0..ny {
             for i in 0..nx {
                 if i + 1 < nx && differ((i, j), (i + 1, j)) {
@@ -91,7 +91,7 @@ impl Grid<'_> {
     }
 
     /// Where the boundary cuts an edge, to `tolerance` of the value along it.
-    fn locate(&self, &(i, j, rising): &Edge, tolerance: f64) -> Result<[f64; 2]> {
+    fn locate(&self, &(i, j, rising): &GridEdge, tolerance: f64) -> Result<[f64; 2]> {
         let axis = &self.axes[usize::from(rising)];
         let place = |x: f64| if rising { [self.axes[0].value(i), x] } else { [x, self.axes[1].value(j)] };
         let k = if rising { j } else { i };
@@ -108,9 +108,9 @@ impl Grid<'_> {
     }
 
     /// Pairs of cut edges between which the boundary runs through a cell.
-    fn segments(&self, edges: &[Edge]) -> Result<Vec<[usize; 2]>> {
+    fn segments(&self, edges: &[GridEdge]) -> Result<Vec<[usize; 2]>> {
         let [nx, ny] = [self.axes[0].points, self.axes[1].points];
-        let index: BTreeMap<Edge, usize> = edges.iter().enumerate().map(|(k, e)| (*e, k)).collect();
+        let index: BTreeMap<GridEdge, usize> = edges.iter().enumerate().map(|(k, e)| (*e, k)).collect();
         let mut segments = Vec::new();
         for j in 0..ny.saturating_sub(1) {
             for i in 0..nx.saturating_sub(1) {

@@ -3,7 +3,7 @@
 use super::assign::difference;
 use super::branch::{Branch, Sample};
 use super::root::{Bracket, narrow};
-use super::{Axis, Modes, Problem, ROUND_OFF, unstable};
+use super::{Axis, Modes, ROUND_OFF, SweepProblem, unstable};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::linalg::dense::mac;
@@ -54,7 +54,7 @@ impl End {
 }
 
 pub(super) fn critical_values(
-    problem: &dyn Problem,
+    problem: &dyn SweepProblem,
     axis: &Axis,
     tolerance: f64,
     samples: &[Sample],
@@ -91,7 +91,7 @@ pub(super) fn critical_values(
 /// Narrows the bracket between two neighbouring samples. The mode is followed from its unstable end: beyond a
 /// coalescence two modes have one frequency, and only from there it is plain which of them grows.
 fn locate(
-    problem: &dyn Problem,
+    problem: &dyn SweepProblem,
     axis: &Axis,
     tolerance: f64,
     branch: usize,

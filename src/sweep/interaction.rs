@@ -2,7 +2,7 @@
 
 use super::assign::assign;
 use super::branch::{Branch, Sample};
-use super::{Axis, Modes, Problem};
+use super::{Axis, Modes, SweepProblem};
 use crate::error::Result;
 use rayon::prelude::*;
 
@@ -41,7 +41,7 @@ pub enum InteractionKind {
 
 /// Every local minimum of the distance of two branches that is small, narrowed to `tolerance` by golden sections.
 pub(super) fn interactions(
-    problem: &dyn Problem,
+    problem: &dyn SweepProblem,
     axis: &Axis,
     tolerance: f64,
     samples: &[Sample],
@@ -79,7 +79,7 @@ pub(super) fn interactions(
 }
 
 fn interaction(
-    problem: &dyn Problem,
+    problem: &dyn SweepProblem,
     axis: &Axis,
     tolerance: f64,
     samples: &[Sample],

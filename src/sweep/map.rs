@@ -1,6 +1,6 @@
 //! Maps: the strongest growth over two parameters.
 
-use super::{Axis, Problem, unstable};
+use super::{Axis, SweepProblem, unstable};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::progress::Observer;
@@ -43,7 +43,7 @@ impl MapPoint {
 /// # Errors
 /// Those of `record`.
 pub fn map(
-    problem: &dyn Problem,
+    problem: &dyn SweepProblem,
     axes: &[Axis; 2],
     known: &[MapPoint],
     record: &mut dyn FnMut(usize, &[MapPoint]) -> Result<()>,

@@ -4,7 +4,7 @@
 //!   one becomes unstable or stable.
 //! * [`map`] solves a grid over two parameters; [`boundary`] locates the line on which the largest growth is zero.
 //!
-//! All of them take a [`Problem`]: a reduced family or whole analyses, they do not know which.
+//! All of them take a [`SweepProblem`]: a reduced family or whole analyses, they do not know which.
 
 mod assign;
 mod boundary;
@@ -30,7 +30,7 @@ use crate::stability::{ROUND_OFF, unstable};
 use faer::Mat;
 
 /// Parametric eigenvalue problem of a sweep: the complex modes at a place of its parameters.
-pub trait Problem: Sync {
+pub trait SweepProblem: Sync {
     /// The modes at `at`, one value a parameter.
     ///
     /// # Errors
@@ -40,7 +40,7 @@ pub trait Problem: Sync {
     /// λ of the modes at `at` alone, in any order.
     ///
     /// # Errors
-    /// As [`Problem::modes`].
+    /// As [`SweepProblem::modes`].
     fn eigenvalues(&self, at: &[f64]) -> Result<Vec<c64>> {
         Ok(self.modes(at)?.eigenvalues)
     }
@@ -48,13 +48,13 @@ pub trait Problem: Sync {
     /// The modes at `at` with their errors on the full order.
     ///
     /// # Errors
-    /// As [`Problem::modes`].
+    /// As [`SweepProblem::modes`].
     fn check(&self, at: &[f64]) -> Result<Vec<Checked>>;
 
     /// The mode at `at` that is nearest to λ = `near`, with its error on the full order.
     ///
     /// # Errors
-    /// As [`Problem::modes`].
+    /// As [`SweepProblem::modes`].
     fn check_nearest(&self, at: &[f64], near: c64) -> Result<Option<Checked>> {
         let far = |mode: &Checked| (mode.eigenvalue - near).norm();
         Ok(self.check(at)?.into_iter().min_by(|a, b| far(a).total_cmp(&far(b))))

@@ -22,7 +22,7 @@ impl<F: Fn(&[f64]) -> System + Sync> Members<F> {
     }
 }
 
-impl<F: Fn(&[f64]) -> System + Sync> Problem for Members<F> {
+impl<F: Fn(&[f64]) -> System + Sync> SweepProblem for Members<F> {
     fn modes(&self, at: &[f64]) -> Result<Modes> {
         let modes = self.analyse(at)?;
         let n = modes.first().map_or(0, |m| m.right.len());
@@ -125,7 +125,7 @@ struct Oscillators {
     coupling: f64,
 }
 
-impl Problem for Oscillators {
+impl SweepProblem for Oscillators {
     fn modes(&self, at: &[f64]) -> Result<Modes> {
         let (half, c) = (0.5 * (2.0 * at[0] - 1.0), self.coupling);
         let root = half.hypot(c);

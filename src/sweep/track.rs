@@ -4,7 +4,7 @@ use super::assign::{Link, assign};
 use super::branch::{Branch, Sample};
 use super::critical::{Critical, critical_values};
 use super::interaction::{Interaction, interactions};
-use super::{Axis, Problem};
+use super::{Axis, SweepProblem};
 use crate::error::Result;
 use crate::progress::Observer;
 use rayon::prelude::*;
@@ -35,7 +35,12 @@ pub struct Sweep {
 ///
 /// # Errors
 /// A value without modes, such as one at which the contact opens.
-pub fn sweep(problem: &dyn Problem, axis: &Axis, tolerance: f64, observer: &dyn Observer) -> Result<Sweep> {
+pub fn sweep(
+    problem: &dyn SweepProblem,
+    axis: &Axis,
+    tolerance: f64,
+    observer: &dyn Observer,
+) -> Result<Sweep> {
     let values = axis.values();
     observer.begin("sweep", Some(values.len() as u64));
     let solve = |value: f64| {
@@ -62,7 +67,7 @@ pub fn sweep(problem: &dyn Problem, axis: &Axis, tolerance: f64, observer: &dyn 
 
 /// The samples so far and the links between neighbours.
 struct Chain<'a> {
-    problem: &'a dyn Problem,
+    problem: &'a dyn SweepProblem,
     axis: &'a Axis,
     samples: Vec<Sample>,
     links: Vec<Link>,

@@ -1,17 +1,17 @@
 //! The contact problem of a step, along the directions in which contact acts.
 
-use super::interface::{Interface, parts};
-use super::model::Model;
+use super::interface::{TravellingInterface, parts};
+use super::model::TransientModel;
 use super::reaction::{Reaction, Since, resistance};
 use super::scheme::Weights;
-use super::solver::{ITERATIONS, ROUND_OFF, Stuck, UNMATCHED};
+use super::solver::{ITERATIONS, ROUND_OFF, StepFailure, UNMATCHED};
 use super::state::State;
 use super::tangent::Tangent;
 use faer::Mat;
 
 /// r − R(r, q, q̇) = 0 with q = q_t + x, q̇ = q̇_t + c₁x and x = x* − b S r.
 #[derive(Debug)]
-pub(super) struct Contact {
+pub(super) struct StepContact {
     /// S = DᵀA⁻¹D \[m/N\].
     compliance: Mat<f64>,
     /// b.
@@ -45,11 +45,11 @@ pub(super) struct Contact {
     again: Vec<f64>,
 }
 
-impl Contact {
-    pub(super) fn new(model: &Model<'_>, weights: &Weights) -> Self {
+impl StepContact {
+    pub(super) fn new(model: &TransientModel<'_>, weights: &Weights) -> Self {
         let r = model.n_directions();
         let zeros = || vec![0.0; r];
-        Contact {
+        StepContact {
             compliance: Mat::zeros(r, r),
             share: weights.share(),
             rate: weights.rate,
@@ -71,7 +71,7 @@ impl Contact {
     }
 
     /// S from PᵀA⁻¹P.
-    pub(super) fn mix(&mut self, seen: &Mat<f64>, at: &Interface) {
+    pub(super) fn mix(&mut self, seen: &Mat<f64>, at: &TravellingInterface) {
         for (j, right) in at.mixes.iter().enumerate() {
             for (i, left) in at.mixes.iter().enumerate() {
                 let entry = |(column, share): (usize, f64)| -> f64 {
@@ -90,10 +90,10 @@ impl Contact {
     /// monotonicity test, in the motion x). Leaves r in `reaction`.
     pub(super) fn solve(
         &mut self,
-        model: &Model<'_>,
+        model: &TransientModel<'_>,
         from: &State,
         to: &mut State,
-    ) -> std::result::Result<(), Stuck> {
+    ) -> std::result::Result<(), StepFailure> {
         self.force.copy_from_slice(&from.reaction);
         self.evaluate(model, from, to);
         let mut length = 0.0;
@@ -104,7 +104,7 @@ impl Contact {
             times(&self.compliance, self.share, &self.newton, &mut self.moved);
             length = longest(&self.moved).max(0.0 * longest(&self.newton));
             if !length.is_finite() {
-                return Err(Stuck::NotFinite);
+                return Err(StepFailure::NotFinite);
             }
             if length <= self.round_off() && self.reaction.mismatch(&self.force) <= UNMATCHED {
                 return Ok(());
@@ -136,11 +136,15 @@ impl Contact {
         // What only round-off keeps from converging is good enough.
         let enough =
             length <= 1e3 * self.round_off() && self.reaction.mismatch(&self.force) <= 1e3 * UNMATCHED;
-        if enough { Ok(()) } else { Err(Stuck::Newton { length, point: moved_most(&self.moved, model) }) }
+        if enough {
+            Ok(())
+        } else {
+            Err(StepFailure::Newton { length, point: moved_most(&self.moved, model) })
+        }
     }
 
     /// x and R at the iterate of r, and what is left.
-    fn evaluate(&mut self, model: &Model<'_>, from: &State, to: &State) {
+    fn evaluate(&mut self, model: &TransientModel<'_>, from: &State, to: &State) {
         times(&self.compliance, -self.share, &self.force, &mut self.x);
         self.x.iter_mut().zip(&self.free).for_each(|(x, free)| *x += free);
         let [place, velocity] = &self.predicted;
@@ -182,7 +186,7 @@ fn longest(x: &[f64]) -> f64 {
 }
 
 /// The contact point with the largest entry among those of its directions.
-pub(super) fn moved_most(along: &[f64], model: &Model<'_>) -> Option<usize> {
+pub(super) fn moved_most(along: &[f64], model: &TransientModel<'_>) -> Option<usize> {
     let largest = |p: &usize| along[3 * p..3 * p + 3].iter().fold(0.0f64, |m, x| m.max(x.abs()));
     (0..model.points.len()).max_by(|a, b| largest(a).total_cmp(&largest(b)))
 }

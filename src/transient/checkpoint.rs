@@ -1,8 +1,8 @@
 //! State needed to resume a run in time, as named arrays that any file can hold.
 
-use super::ledger::Work;
+use super::energy_balance::Work;
 use super::march::{Control, Marched};
-use super::model::Model;
+use super::model::TransientModel;
 use super::reaction::Bristles;
 use super::state::State;
 use crate::error::{Error, Fault, Result};
@@ -70,7 +70,7 @@ impl Checkpoint {
     ///
     /// # Errors
     /// Input: it is of another model.
-    pub fn march(&self, model: &Model<'_>) -> Result<Marched> {
+    pub fn march(&self, model: &TransientModel<'_>) -> Result<Marched> {
         let [begin, time, worst_residual, fastest] = self.numbers("march")?;
         let [step, split, most, level, parts] =
             self.numbers("march_counts")?.map(|count: f64| count as usize);
@@ -111,7 +111,7 @@ impl Checkpoint {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Method, Plan, Profile, Scheme, march, resume};
+    use super::super::{Plan, Scheme, StepMethod, TimeProfile, march, resume};
     use super::*;
     use crate::equilibrium::samples::random_system;
     use crate::equilibrium::{SteadyOptions, solve_steady};
@@ -120,13 +120,13 @@ mod tests {
 
     #[test]
     fn a_march_that_was_put_away_goes_on_bit_for_bit() {
-        for method in [Method::Condensed, Method::FullNewton] {
+        for method in [StepMethod::Condensed, StepMethod::FullNewton] {
             let mut system = random_system(12, 3, 2.0, 4);
             let basis = Mat::from_fn(12, 2, |i, j| ((1 + i) as f64 * (0.3 + j as f64)).sin());
             system.structure.damping.modal = Some(ModalDamping { basis, coefficients: vec![0.1, 0.2] });
             let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
-            let profile = Profile::Reciprocating { frequency_hz: 0.7, phase: 0.1 };
-            let model = Model::new(&system, &steady).unwrap().driven(vec![profile], vec![]);
+            let profile = TimeProfile::Reciprocating { frequency_hz: 0.7, phase: 0.1 };
+            let model = TransientModel::new(&system, &steady).unwrap().driven(vec![profile], vec![]);
             let shape: Vec<c64> = (0..12).map(|k| c64::new(0.02 * k as f64, 0.1)).collect();
             let start = State::steady(&model, &steady).disturbed(&model, c64::new(0.0, 3.0), &shape, 1.0);
             let scheme = Scheme::hht(-0.05);
@@ -161,10 +161,10 @@ mod tests {
         let large = random_system(14, 3, 2.0, 4);
         let [small, large] =
             [&small, &large].map(|s| (s, solve_steady(s, &SteadyOptions::default(), &()).unwrap()));
-        let model = Model::new(small.0, &small.1).unwrap();
+        let model = TransientModel::new(small.0, &small.1).unwrap();
         let mut checkpoint = Checkpoint::default();
         checkpoint.put_march(&State::steady(&model, &small.1).into());
-        let other = Model::new(large.0, &large.1).unwrap();
+        let other = TransientModel::new(large.0, &large.1).unwrap();
         let error = checkpoint.march(&other).unwrap_err();
         assert!(error.exit_code() == 2 && error.to_string().contains("36 numbers"), "{error}");
     }

@@ -1,11 +1,11 @@
 //! One implicit step, condensed exactly onto the directions in which contact acts.
 
-use super::along::Contact;
+use super::along::StepContact;
 use super::effective::Effective;
-use super::interface::{Interface, parts};
-use super::model::Model;
+use super::interface::{TravellingInterface, parts};
+use super::model::TransientModel;
 use super::scheme::Weights;
-use super::solver::{Solver, Stuck};
+use super::solver::{Solver, StepFailure};
 use super::state::State;
 use crate::error::Result;
 use faer::Mat;
@@ -19,32 +19,32 @@ use faer::Mat;
 /// Then A Δ = h − b D r. DᵀA⁻¹h is known halfway through the solution with the factors of A, so that r joins h there: one
 /// solution a step, and what comes out is that of Newton's method on the whole but for round-off.
 #[derive(Debug)]
-pub(super) struct Condensed<'a> {
-    model: &'a Model<'a>,
+pub(super) struct CondensedStep<'a> {
+    model: &'a TransientModel<'a>,
     weights: Weights,
     effective: Effective,
-    contact: Contact,
+    contact: StepContact,
 }
 
-impl<'a> Condensed<'a> {
+impl<'a> CondensedStep<'a> {
     /// # Errors
     /// A matrix that is singular: a part without stiffness and mass.
-    pub(super) fn new(model: &'a Model<'a>, weights: Weights) -> Result<Self> {
+    pub(super) fn new(model: &'a TransientModel<'a>, weights: Weights) -> Result<Self> {
         let effective = Effective::new(model, &weights)?;
-        let mut contact = Contact::new(model, &weights);
-        contact.mix(&effective.seen, &Interface::new(model));
-        Ok(Condensed { model, weights, effective, contact })
+        let mut contact = StepContact::new(model, &weights);
+        contact.mix(&effective.seen, &TravellingInterface::new(model));
+        Ok(CondensedStep { model, weights, effective, contact })
     }
 }
 
-impl Solver for Condensed<'_> {
+impl Solver for CondensedStep<'_> {
     fn increment(
         &mut self,
         h: &mut Mat<f64>,
         modal: &mut Mat<f64>,
         from: &State,
         to: &mut State,
-    ) -> std::result::Result<(), Stuck> {
+    ) -> std::result::Result<(), StepFailure> {
         let (model, weights) = (self.model, &self.weights);
         let (effective, contact) = (&mut self.effective, &mut self.contact);
         effective.begin(h.col_as_slice(0), modal);

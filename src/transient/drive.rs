@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 /// How a sliding velocity or a load runs in time: V(t) = V · factor(t).
 #[derive(Debug, Clone, PartialEq, Default)]
-pub enum Profile {
+pub enum TimeProfile {
     /// V.
     #[default]
     Constant,
@@ -32,17 +32,17 @@ pub enum Profile {
     },
 }
 
-impl Profile {
+impl TimeProfile {
     /// factor(t).
     pub fn factor(&self, time: f64) -> f64 {
         match self {
-            Profile::Constant => 1.0,
-            Profile::Ramp { from, duration } => {
+            TimeProfile::Constant => 1.0,
+            TimeProfile::Ramp { from, duration } => {
                 let done = if *duration > 0.0 { (time / duration).clamp(0.0, 1.0) } else { 1.0 };
                 from + (1.0 - from) * done
             }
-            Profile::Reciprocating { frequency_hz, phase } => (TAU * frequency_hz * time + phase).cos(),
-            Profile::Table { times, factors } => {
+            TimeProfile::Reciprocating { frequency_hz, phase } => (TAU * frequency_hz * time + phase).cos(),
+            TimeProfile::Table { times, factors } => {
                 let after = times.partition_point(|t| *t <= time);
                 match (after.checked_sub(1), times.get(after)) {
                     (None, _) => factors.first().copied().unwrap_or(1.0),
@@ -57,22 +57,22 @@ impl Profile {
     }
 }
 
-impl Profile {
+impl TimeProfile {
     /// ∫factor dt from 0 to `time` \[s\]: V times it is how far a counter-body has come.
     pub fn integral(&self, time: f64) -> f64 {
         match self {
-            Profile::Constant => time,
-            Profile::Ramp { from, duration } => {
+            TimeProfile::Constant => time,
+            TimeProfile::Ramp { from, duration } => {
                 let ramped = time.min(*duration);
                 let over =
                     if *duration > 0.0 { 0.5 * (1.0 - from) * ramped * ramped / duration } else { 0.0 };
                 from * ramped + over + (time - ramped)
             }
-            Profile::Reciprocating { frequency_hz, phase } => {
+            TimeProfile::Reciprocating { frequency_hz, phase } => {
                 let omega = TAU * frequency_hz;
                 ((omega * time + phase).sin() - phase.sin()) / omega
             }
-            Profile::Table { times, .. } => {
+            TimeProfile::Table { times, .. } => {
                 // The trapezoidal rule is exact between the kinks.
                 let kinks = times.iter().copied().filter(|t| *t > 0.0 && *t < time);
                 let (mut at, mut sum) = ((0.0, self.factor(0.0)), 0.0);
@@ -86,19 +86,19 @@ impl Profile {
         }
     }
 
-    /// The least and the greatest of [`Profile::integral`] from 0 to `duration` \[s\].
+    /// The least and the greatest of [`TimeProfile::integral`] from 0 to `duration` \[s\].
     pub fn reach(&self, duration: f64) -> [f64; 2] {
         let mut turns = vec![0.0, duration];
         match self {
-            Profile::Constant => {}
-            Profile::Ramp { from, duration: whole } => turns.push(whole * from / (from - 1.0)),
-            Profile::Reciprocating { frequency_hz, phase } => {
+            TimeProfile::Constant => {}
+            TimeProfile::Ramp { from, duration: whole } => turns.push(whole * from / (from - 1.0)),
+            TimeProfile::Reciprocating { frequency_hz, phase } => {
                 // cos is zero at (k + ½)π: as many turns as it takes for every one to have come.
                 let first = ((phase / PI - 0.5).ceil() as i64).max(i64::MIN / 2);
                 let turn = |k: i64| ((k as f64 + 0.5) * PI - phase) / (TAU * frequency_hz);
                 turns.extend((0..3).map(|k| turn(first + k)));
             }
-            Profile::Table { times, factors } => {
+            TimeProfile::Table { times, factors } => {
                 turns.extend(times);
                 for (t, f) in times.windows(2).zip(factors.windows(2)).filter(|(_, f)| f[0] * f[1] < 0.0) {
                     turns.push(t[0] + (t[1] - t[0]) * f[0] / (f[0] - f[1]));
@@ -130,7 +130,7 @@ pub enum Pulse {
         duration: f64,
     },
     /// factor(t) − 1 of a profile: what a force that is part of the constant load has more or less than that.
-    Change(Profile),
+    Change(TimeProfile),
 }
 
 impl Push {
@@ -151,7 +151,7 @@ impl Push {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loading {
     /// How the load runs.
-    pub profile: Profile,
+    pub profile: TimeProfile,
     /// The approach \[m\] at equally spaced factors from the first to the last of `factors`; linear between them.
     pub approaches: Vec<f64>,
     /// The least and the greatest factor of the load.
@@ -177,19 +177,19 @@ mod tests {
 
     #[test]
     fn profiles_and_pushes_run_as_they_say() {
-        let table = Profile::Table { times: vec![1.0, 2.0, 4.0], factors: vec![0.5, 1.0, -1.0] };
+        let table = TimeProfile::Table { times: vec![1.0, 2.0, 4.0], factors: vec![0.5, 1.0, -1.0] };
         for (t, expected) in [(0.0, 0.5), (1.5, 0.75), (2.0, 1.0), (3.0, 0.0), (9.0, -1.0)] {
             assert_eq!(table.factor(t), expected, "{t}");
         }
-        let ramp = Profile::Ramp { from: 0.2, duration: 2.0 };
+        let ramp = TimeProfile::Ramp { from: 0.2, duration: 2.0 };
         let ramped = [0.0, 1.0, 5.0].map(|t| ramp.factor(t));
         assert!(ramped.iter().zip([0.2, 0.6, 1.0]).all(|(a, b)| (a - b).abs() < 1e-15));
-        let back = Profile::Reciprocating { frequency_hz: 2.0, phase: 0.0 };
+        let back = TimeProfile::Reciprocating { frequency_hz: 2.0, phase: 0.0 };
         assert!((back.factor(0.25) + 1.0).abs() < 1e-15);
         // ∫factor against the midpoint rule, and its reach against all of its values.
-        let other = Profile::Reciprocating { frequency_hz: 2.0, phase: 1.1 };
-        let falling = Profile::Ramp { from: -0.5, duration: 2.0 };
-        for profile in [table, ramp, back, other, falling, Profile::Constant] {
+        let other = TimeProfile::Reciprocating { frequency_hz: 2.0, phase: 1.1 };
+        let falling = TimeProfile::Ramp { from: -0.5, duration: 2.0 };
+        for profile in [table, ramp, back, other, falling, TimeProfile::Constant] {
             let (mut sum, mut low, mut high) = (0.0, 0.0f64, 0.0f64);
             for k in 0..50_000 {
                 sum += 1e-4 * profile.factor((f64::from(k) + 0.5) * 1e-4);
@@ -202,7 +202,7 @@ mod tests {
         let half_sine = Pulse::HalfSine { begin: 1.0, duration: 2.0 };
         let push = Push { direction: SparseVector::from_entries([(0, 2.0)]), course: half_sine };
         assert_eq!([push.factor(0.9), push.factor(2.0), push.factor(3.1)], [0.0, 1.0, 0.0]);
-        let ramp = Profile::Ramp { from: 0.0, duration: 2.0 };
+        let ramp = TimeProfile::Ramp { from: 0.0, duration: 2.0 };
         let less = Push { course: Pulse::Change(ramp.clone()), ..push };
         assert_eq!([less.factor(0.0), less.factor(1.0), less.factor(2.0)], [-1.0, -0.5, 0.0]);
         let loading = Loading { profile: ramp, approaches: vec![0.0, 2.0, 3.0], factors: [0.0, 1.0] };

@@ -1,6 +1,6 @@
 //! The matrix of an implicit step, factorised once.
 
-use super::model::Model;
+use super::model::TransientModel;
 use super::products::Diagonal;
 use super::scheme::Weights;
 use crate::error::{Error, Result};
@@ -43,7 +43,7 @@ enum Inverse {
 }
 
 impl Inverse {
-    fn new(model: &Model<'_>, weights: &Weights) -> Result<Self> {
+    fn new(model: &TransientModel<'_>, weights: &Weights) -> Result<Self> {
         let Some(Diagonal { mass, stiffness, viscous }) = model.products.diagonal() else {
             return Ok(Inverse::Factor(factorize(&model.effective(weights))?));
         };
@@ -159,7 +159,7 @@ impl ModalUpdate {
 }
 
 impl Effective {
-    pub(super) fn new(model: &Model<'_>, weights: &Weights) -> Result<Self> {
+    pub(super) fn new(model: &TransientModel<'_>, weights: &Weights) -> Result<Self> {
         let [_, c, _] = weights.effective();
         let n = model.n();
         let inverse = Inverse::new(model, weights)?;

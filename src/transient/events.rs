@@ -1,6 +1,6 @@
 //! Events at the contact points: opening, closing, sticking, slipping, reversal of slip.
 
-use super::model::Model;
+use super::model::TransientModel;
 use super::state::State;
 
 /// Event at a contact point.
@@ -51,12 +51,12 @@ pub struct Event {
 #[derive(Debug, Clone)]
 pub struct Watch {
     time: f64,
-    last: Vec<Seen>,
+    last: Vec<PreviousContact>,
 }
 
 /// How a contact point stands.
 #[derive(Debug, Clone, Copy)]
-struct Seen {
+struct PreviousContact {
     closed: bool,
     sticks: bool,
     /// δ \[m\].
@@ -67,12 +67,12 @@ struct Seen {
 
 impl Watch {
     /// Looks at a state for the first time.
-    pub fn new(model: &Model<'_>, state: &State) -> Self {
+    pub fn new(model: &TransientModel<'_>, state: &State) -> Self {
         Watch { time: state.time, last: seen(model, state).collect() }
     }
 
     /// Looks at the next state, and adds what has happened since.
-    pub fn look(&mut self, model: &Model<'_>, state: &State, events: &mut Vec<Event>) {
+    pub fn look(&mut self, model: &TransientModel<'_>, state: &State, events: &mut Vec<Event>) {
         for (point, now) in seen(model, state).enumerate() {
             let last = std::mem::replace(&mut self.last[point], now);
             let depth = (last.penetration, now.penetration);
@@ -94,8 +94,8 @@ impl Watch {
     }
 }
 
-fn seen(model: &Model<'_>, state: &State) -> impl Iterator<Item = Seen> {
-    (0..model.points.len()).map(move |point| Seen {
+fn seen(model: &TransientModel<'_>, state: &State) -> impl Iterator<Item = PreviousContact> {
+    (0..model.points.len()).map(move |point| PreviousContact {
         closed: state.contact_forces(point)[0] != 0.0,
         sticks: state.sticks(point),
         penetration: state.penetration(point),
@@ -105,7 +105,7 @@ fn seen(model: &Model<'_>, state: &State) -> impl Iterator<Item = Seen> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Method, Plan, Profile, Scheme, march};
+    use super::super::{Plan, Scheme, StepMethod, TimeProfile, march};
     use super::*;
     use crate::contact::{Coulomb, NormalLaw, SlidingLaw};
     use crate::equilibrium::SteadySliding;
@@ -131,14 +131,14 @@ mod tests {
         };
         let (displacement, approach) = (vec![0.0; 2], vec![0.0]);
         let steady = SteadySliding { displacement, approach, points: vec![], iterations: 0, residual: 0.0 };
-        let profile = Profile::Reciprocating { frequency_hz: 3.0, phase: 0.0 };
-        let model = Model::new(&system, &steady).unwrap().driven(vec![profile], vec![]);
+        let profile = TimeProfile::Reciprocating { frequency_hz: 3.0, phase: 0.0 };
+        let model = TransientModel::new(&system, &steady).unwrap().driven(vec![profile], vec![]);
         let mut start = State::empty(&model);
         start.motion.col_as_slice_mut(2)[0] = 10.0;
         start.settle(&model);
         let mut watch = Watch::new(&model, &start);
         let mut events = Vec::new();
-        let (scheme, method) = (Scheme::TRAPEZOIDAL, Method::Condensed);
+        let (scheme, method) = (Scheme::TRAPEZOIDAL, StepMethod::Condensed);
         let plan = Plan { scheme, step: 1e-4, steps: 15_000, method, tolerance: None };
         march(&model, start, &plan, &(), &mut |marched| {
             watch.look(&model, &marched.state, &mut events);

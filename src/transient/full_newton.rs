@@ -1,10 +1,10 @@
 //! One implicit step by Newton's method on the whole system: slow and plain, to compare with.
 
 use super::along::moved_most;
-use super::model::Model;
+use super::model::TransientModel;
 use super::reaction::{Reaction, Since, resistance};
 use super::scheme::Weights;
-use super::solver::{ITERATIONS, ROUND_OFF, Solver, Stuck, UNMATCHED};
+use super::solver::{ITERATIONS, ROUND_OFF, Solver, StepFailure, UNMATCHED};
 use super::state::State;
 use crate::linalg::multivector::{expand, gram};
 use crate::linalg::sparse::{entry, multiply_vector};
@@ -19,7 +19,7 @@ use faer::linalg::solvers::Solve;
 /// The modal part B E Bᵀ, dense but small beside A₀, is left to the iteration.
 #[derive(Debug)]
 pub(super) struct FullNewton<'a> {
-    model: &'a Model<'a>,
+    model: &'a TransientModel<'a>,
     weights: Weights,
     linear: SparseMatrix,
     /// The diagonal of A₀.
@@ -28,7 +28,7 @@ pub(super) struct FullNewton<'a> {
 }
 
 impl<'a> FullNewton<'a> {
-    pub(super) fn new(model: &'a Model<'a>, weights: Weights) -> Self {
+    pub(super) fn new(model: &'a TransientModel<'a>, weights: Weights) -> Self {
         let linear = model.effective(&weights);
         let diagonal = diagonal(&linear);
         FullNewton { model, weights, linear, diagonal, reaction: Reaction::new(model) }
@@ -73,7 +73,7 @@ impl<'a> FullNewton<'a> {
     }
 
     /// The tangent of both equations.
-    fn tangent(&self, directions: &[SparseVector]) -> Result<SparseMatrix, Stuck> {
+    fn tangent(&self, directions: &[SparseVector]) -> Result<SparseMatrix, StepFailure> {
         let (n, r) = (self.model.n(), directions.len());
         let mut entries = Vec::new();
         for j in 0..n {
@@ -92,7 +92,7 @@ impl<'a> FullNewton<'a> {
             }
             entries.extend(row.held.iter().map(|(k, held)| entry(n + row.place, n + k, -held)));
         });
-        SparseMatrix::try_new_from_triplets(n + r, n + r, &entries).map_err(|_| Stuck::NotFinite)
+        SparseMatrix::try_new_from_triplets(n + r, n + r, &entries).map_err(|_| StepFailure::NotFinite)
     }
 }
 
@@ -103,7 +103,7 @@ impl Solver for FullNewton<'_> {
         modal: &mut Mat<f64>,
         from: &State,
         to: &mut State,
-    ) -> Result<(), Stuck> {
+    ) -> Result<(), StepFailure> {
         let (model, weights) = (self.model, self.weights);
         let n = model.n();
         let mut at = [0, 1].map(|_| vec![0.0; model.n_directions()]);
@@ -132,11 +132,11 @@ impl Solver for FullNewton<'_> {
                 let part = expand(own.basis.as_ref(), share.as_ref());
                 rho.iter_mut().zip(part.col_as_slice(0)).for_each(|(r, p)| *r += p);
             }
-            let lu = self.tangent(&directions)?.sp_lu().map_err(|_| Stuck::NotFinite)?;
+            let lu = self.tangent(&directions)?.sp_lu().map_err(|_| StepFailure::NotFinite)?;
             let step = lu.solve(Mat::from_fn(rho.len(), 1, |i, _| rho[i]));
             length = step.subrows(0, n).norm_max();
             if !step.norm_max().is_finite() {
-                return Err(Stuck::NotFinite);
+                return Err(StepFailure::NotFinite);
             }
             to.interface.motions(model, &step.col_as_slice(0)[..n], &mut moved);
             delta.iter_mut().enumerate().for_each(|(i, delta)| *delta -= step[(i, 0)]);
@@ -156,7 +156,7 @@ impl Solver for FullNewton<'_> {
                 return Ok(());
             }
         }
-        Err(Stuck::Newton { length, point: moved_most(&moved, model) })
+        Err(StepFailure::Newton { length, point: moved_most(&moved, model) })
     }
 }
 

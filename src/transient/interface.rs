@@ -1,13 +1,13 @@
 //! Where the contacts act at one moment.
 
-use super::model::Model;
+use super::model::TransientModel;
 use super::track::Shares;
 use crate::linalg::SparseVector;
 
 /// D(t): the directions in which contacts and imported terms act, as mixes of the constant columns P of the model; and how
 /// close the points are.
 #[derive(Debug, Clone)]
-pub(super) struct Interface {
+pub(super) struct TravellingInterface {
     /// For each direction its columns of P with their shares.
     pub(super) mixes: Vec<Shares>,
     /// approach − gap \[m\] of each point: δ at gᵀu = 0.
@@ -16,10 +16,10 @@ pub(super) struct Interface {
     pub(super) travel: Vec<f64>,
 }
 
-impl Interface {
+impl TravellingInterface {
     /// That of a model at t = 0.
-    pub(super) fn new(model: &Model<'_>) -> Self {
-        let mut at = Interface {
+    pub(super) fn new(model: &TransientModel<'_>) -> Self {
+        let mut at = TravellingInterface {
             mixes: vec![[(0, 0.0); 4]; model.n_directions()],
             closeness: vec![0.0; model.points.len()],
             travel: vec![0.0; model.velocities.len()],
@@ -29,7 +29,7 @@ impl Interface {
     }
 
     /// Where the contacts act at a time \[s\].
-    pub(super) fn locate(&mut self, model: &Model<'_>, time: f64) {
+    pub(super) fn locate(&mut self, model: &TransientModel<'_>, time: f64) {
         let travelled =
             model.velocities.iter().zip(&model.profiles).map(|(v, profile)| v * profile.integral(time));
         self.travel.iter_mut().zip(travelled).for_each(|(at, travel)| *at = travel);
@@ -64,24 +64,24 @@ impl Interface {
     }
 
     /// Dᵀx.
-    pub(super) fn motions(&self, model: &Model<'_>, x: &[f64], out: &mut [f64]) {
+    pub(super) fn motions(&self, model: &TransientModel<'_>, x: &[f64], out: &mut [f64]) {
         out.iter_mut().enumerate().for_each(|(index, out)| *out = self.motion(model, index, x));
     }
 
     /// One entry of Dᵀx.
-    pub(super) fn motion(&self, model: &Model<'_>, index: usize, x: &[f64]) -> f64 {
+    pub(super) fn motion(&self, model: &TransientModel<'_>, index: usize, x: &[f64]) -> f64 {
         parts(&self.mixes[index]).map(|(column, share)| share * model.columns[column].dot(x)).sum()
     }
 
     /// x += factor · D r.
-    pub(super) fn add_reactions(&self, model: &Model<'_>, factor: f64, r: &[f64], x: &mut [f64]) {
+    pub(super) fn add_reactions(&self, model: &TransientModel<'_>, factor: f64, r: &[f64], x: &mut [f64]) {
         for (mix, r) in self.mixes.iter().zip(r).filter(|(_, r)| **r != 0.0) {
             parts(mix).for_each(|(column, share)| model.columns[column].add_to(factor * share * r, x));
         }
     }
 
     /// A direction as it is now.
-    pub(super) fn direction(&self, model: &Model<'_>, index: usize) -> SparseVector {
+    pub(super) fn direction(&self, model: &TransientModel<'_>, index: usize) -> SparseVector {
         let entries = parts(&self.mixes[index])
             .flat_map(|(column, share)| model.columns[column].iter().map(move |(i, v)| (i, share * v)));
         SparseVector::from_entries(entries)

@@ -1,11 +1,11 @@
 //! Step after step, from a state to the end.
 
-use super::ledger::Work;
-use super::model::Model;
+use super::energy_balance::Work;
+use super::model::TransientModel;
 use super::scheme::Scheme;
-use super::solver::Stuck;
+use super::solver::StepFailure;
 use super::state::State;
-use super::stepper::{Method, Stepper};
+use super::stepper::{StepMethod, Stepper};
 use crate::error::{Error, Result};
 use crate::progress::Observer;
 
@@ -22,7 +22,7 @@ pub struct Plan {
     /// How many of them.
     pub steps: usize,
     /// How each is solved.
-    pub method: Method,
+    pub method: StepMethod,
     /// The local error that each may have at most, see [`Control`]; any when absent.
     pub tolerance: Option<f64>,
 }
@@ -79,7 +79,7 @@ impl From<State> for Marched {
 /// # Errors
 /// A step without a solution even when split; what `record` returns.
 pub fn march(
-    model: &Model<'_>,
+    model: &TransientModel<'_>,
     start: State,
     plan: &Plan,
     observer: &dyn Observer,
@@ -96,7 +96,7 @@ pub fn march(
 /// # Errors
 /// As [`march`]; `marched` is then where the last good step ended.
 pub fn resume(
-    model: &Model<'_>,
+    model: &TransientModel<'_>,
     marched: &mut Marched,
     plan: &Plan,
     observer: &dyn Observer,
@@ -125,7 +125,7 @@ pub fn resume(
 
 /// The steps of Δt, Δt/2, Δt/4 …, each made ready when it is first needed.
 struct Steppers<'a> {
-    model: &'a Model<'a>,
+    model: &'a TransientModel<'a>,
     plan: &'a Plan,
     levels: Vec<Stepper<'a>>,
 }
@@ -139,7 +139,7 @@ impl Steppers<'_> {
         ends: [f64; 2],
         control: &mut Control,
     ) -> Result<(Work, usize)> {
-        let mut stuck = Stuck::NotFinite;
+        let mut stuck = StepFailure::NotFinite;
         let tolerance = self.plan.tolerance.unwrap_or(f64::INFINITY);
         for level in control.level..=SPLITS {
             while self.levels.len() <= level {
@@ -167,13 +167,13 @@ impl Steppers<'_> {
             }
         }
         let why = match stuck {
-            Stuck::Newton { length, .. } => {
+            StepFailure::Newton { length, .. } => {
                 format!("Newton's method for the contact still moves it by {length:.1e} m")
             }
-            Stuck::NotFinite => "the motion is no longer finite".to_string(),
+            StepFailure::NotFinite => "the motion is no longer finite".to_string(),
         };
         let (place, name) = match stuck {
-            Stuck::Newton { point: Some(point), .. } => self.model.place(point),
+            StepFailure::Newton { point: Some(point), .. } => self.model.place(point),
             _ => (String::new(), "NAME"),
         };
         let found = format!(
@@ -196,7 +196,7 @@ impl Steppers<'_> {
         next: &mut State,
         ends: [f64; 2],
         fastest: &mut f64,
-    ) -> std::result::Result<(Work, f64), Stuck> {
+    ) -> std::result::Result<(Work, f64), StepFailure> {
         let parts = 1usize << level;
         let (mut work, mut worst) = (Work::default(), 0.0f64);
         let length = (ends[1] - ends[0]) / parts as f64;

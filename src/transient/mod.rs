@@ -1,6 +1,6 @@
 //! Motion in time: implicit integration of M ü + C u̇ + K u + D r(Dᵀu, Dᵀu̇) = f with the contact laws as they are.
 //!
-//! [`Scheme`] is the generalised-α family, [`Model`] what it needs of a system, [`march`] the run. The structure is
+//! [`Scheme`] is the generalised-α family, [`TransientModel`] what it needs of a system, [`march`] the run. The structure is
 //! factorised once for a time step; contact is condensed exactly onto the few directions in which it acts, so that a
 //! step costs one solution with sparse factors and Newton's method on a small dense system (`condensed`). Newton's method
 //! on the whole is kept beside it to compare with (`full_newton`). Friction that is set-valued at rest is an unknown of both, so
@@ -12,10 +12,10 @@ mod checkpoint;
 mod condensed;
 mod drive;
 mod effective;
+mod energy_balance;
 mod events;
 mod full_newton;
 mod interface;
-mod ledger;
 mod march;
 mod model;
 mod products;
@@ -31,12 +31,12 @@ mod tests;
 mod track;
 
 pub use checkpoint::Checkpoint;
-pub use drive::{Loading, Profile, Pulse, Push};
+pub use drive::{Loading, Pulse, Push, TimeProfile};
+pub use energy_balance::Work;
 pub use events::{Event, EventKind, Watch};
-pub use ledger::Work;
 pub use march::{Control, Marched, Plan, march, resume};
-pub use model::{Model, refuse_hysteretic};
+pub use model::{TransientModel, refuse_hysteretic};
 pub use scheme::Scheme;
 pub use state::State;
-pub use stepper::Method;
+pub use stepper::StepMethod;
 pub use track::Track;

@@ -1,6 +1,6 @@
 //! Model of a system for time integration.
 
-use super::drive::{Loading, Profile, Push};
+use super::drive::{Loading, Push, TimeProfile};
 use super::products::Products;
 use super::scheme::Weights;
 use super::track::Track;
@@ -15,7 +15,7 @@ use std::borrow::Cow;
 /// M ü + C u̇ + (K + K_σ) u + D r = f: the structure, and the directions D in which contacts and imported unsymmetric
 /// terms act on it.
 #[derive(Debug)]
-pub struct Model<'a> {
+pub struct TransientModel<'a> {
     pub(super) mass: &'a SparseMatrix,
     pub(super) damping: &'a Damping,
     /// K + K_σ(u₀).
@@ -33,7 +33,7 @@ pub struct Model<'a> {
     /// V \[m/s\] of each pair.
     pub(super) velocities: Vec<f64>,
     /// How each of them runs in time.
-    pub(super) profiles: Vec<Profile>,
+    pub(super) profiles: Vec<TimeProfile>,
     /// How the points of each pair change as its counter-body travels; those of the others stay.
     pub(super) tracks: Vec<Option<&'a Track>>,
     /// Pushes on the structure.
@@ -59,7 +59,7 @@ pub(super) struct Touch<'a> {
     pub(super) gap: f64,
 }
 
-impl<'a> Model<'a> {
+impl<'a> TransientModel<'a> {
     /// The system about steady sliding: its approach is kept, as in the complex eigenvalues, and the geometric stiffness
     /// of its preload if the system asks for it.
     ///
@@ -84,7 +84,7 @@ impl<'a> Model<'a> {
         let imported = system.coupling.iter().flat_map(|rest| &rest.directions);
         let (mass, damping) = (&system.structure.mass, &system.structure.damping);
         let stiffness = tangent_stiffness(system, &steady.displacement)?;
-        Ok(Model {
+        Ok(TransientModel {
             mass,
             damping,
             products: Products::new(mass, &stiffness, damping),
@@ -94,7 +94,7 @@ impl<'a> Model<'a> {
             points,
             coupling: system.coupling.as_ref().map(|rest| [&rest.stiffness, &rest.damping]),
             velocities: system.pairs.iter().map(|pair| pair.sliding_velocity).collect(),
-            profiles: vec![Profile::Constant; system.pairs.len()],
+            profiles: vec![TimeProfile::Constant; system.pairs.len()],
             tracks: vec![None; system.pairs.len()],
             pushes: Vec::new(),
             loadings: vec![None; system.pairs.len()],
@@ -105,9 +105,9 @@ impl<'a> Model<'a> {
     ///
     /// # Panics
     /// When there is not one profile for each pair.
-    pub fn driven(self, profiles: Vec<Profile>, pushes: Vec<Push>) -> Self {
+    pub fn driven(self, profiles: Vec<TimeProfile>, pushes: Vec<Push>) -> Self {
         assert!(profiles.len() == self.velocities.len(), "one profile a pair");
-        Model { profiles, pushes, ..self }
+        TransientModel { profiles, pushes, ..self }
     }
 
     /// The same model whose points run along tracks, one a pair, as its counter-body travels.
@@ -132,7 +132,7 @@ impl<'a> Model<'a> {
             }
         }
         self.columns.extend(imported);
-        Model { tracks, ..self }
+        TransientModel { tracks, ..self }
     }
 
     /// The same model whose closing loads run in time, one entry a pair.
@@ -141,7 +141,7 @@ impl<'a> Model<'a> {
     /// When there is not one entry for each pair.
     pub fn loaded(self, loadings: Vec<Option<Loading>>) -> Self {
         assert!(loadings.len() == self.velocities.len(), "one entry a pair");
-        Model { loadings, ..self }
+        TransientModel { loadings, ..self }
     }
 
     /// Where a contact point is, in words, and the name of its pair.

@@ -102,7 +102,7 @@ impl Products {
                 Some(viscous) => {
                     matrices.multiply([(0, elastic), (1, inertia), (1, viscous.as_mut())], motion.as_ref());
                 }
-                None => unreachable!("three matrices are merged where there is damping"),
+                None => unreachable!("three matrices share a pattern where there is damping"),
             },
         }
     }

@@ -1,7 +1,7 @@
 //! The forces along the directions D, as functions of the motion along them.
 
-use super::interface::Interface;
-use super::model::Model;
+use super::interface::TravellingInterface;
+use super::model::TransientModel;
 use crate::equilibrium::ContactBlock;
 use crate::system::{ContactMotion, ContactTangent, SlipAnswer, SlipStep};
 use faer::Mat;
@@ -37,7 +37,7 @@ const HELD: f64 = 1.0 - 1e-8;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Moment<'a> {
     /// Where the contacts act.
-    pub(super) interface: &'a Interface,
+    pub(super) interface: &'a TravellingInterface,
     /// V of each pair \[m/s\].
     pub(super) speeds: &'a [f64],
     /// Dᵀu, Dᵀv, Dᵀa of the motion at the beginning of the step that ends here, r × 3.
@@ -61,7 +61,7 @@ pub(super) struct Since<'a> {
 
 /// A row of the linearised equation r − R(r, q, q̇) = 0, with R the answer of the laws.
 #[derive(Debug)]
-pub(super) struct Row<'a> {
+pub(super) struct LinearisedRow<'a> {
     /// Which one.
     pub(super) place: usize,
     /// ∂R/∂q + c₁ ∂R/∂q̇ by direction.
@@ -78,7 +78,7 @@ pub(super) fn resistance(compliance: [f64; 2], factor: f64) -> f64 {
 }
 
 impl Reaction {
-    pub(super) fn new(model: &Model<'_>) -> Self {
+    pub(super) fn new(model: &TransientModel<'_>) -> Self {
         let silent = |point| ContactBlock::new(point, &ContactTangent::default());
         Reaction {
             force: vec![0.0; model.n_directions()],
@@ -92,7 +92,7 @@ impl Reaction {
     /// of all, as in steady sliding.
     pub(super) fn evaluate(
         &mut self,
-        model: &Model<'_>,
+        model: &TransientModel<'_>,
         [q, rate]: [&[f64]; 2],
         to: Moment<'_>,
         since: Option<Since<'_>>,
@@ -153,7 +153,12 @@ impl Reaction {
     }
 
     /// Calls `visit` with every row of the linearised equation in which something acts.
-    pub(super) fn rows(&self, model: &Model<'_>, rate: f64, visit: &mut dyn FnMut(Row<'_>)) {
+    pub(super) fn rows(
+        &self,
+        model: &TransientModel<'_>,
+        rate: f64,
+        visit: &mut dyn FnMut(LinearisedRow<'_>),
+    ) {
         let acting = self.blocks.iter().filter(|block| block.acts() || self.holds(block.point));
         for block in acting {
             let first = 3 * block.point;
@@ -166,7 +171,7 @@ impl Reaction {
                     _ => held[own - 1].map(|h| HELD * h),
                 };
                 let held = [(first + 1, held[0]), (first + 2, held[1])];
-                visit(Row { place: first + own, slopes: &slopes, held: &held });
+                visit(LinearisedRow { place: first + own, slopes: &slopes, held: &held });
             }
         }
         if let Some([k, c]) = model.coupling {
@@ -174,7 +179,7 @@ impl Reaction {
             for i in 0..k.nrows() {
                 let slopes: Vec<(usize, f64)> =
                     (0..k.ncols()).map(|j| (first + j, k[(i, j)] + rate * c[(i, j)])).collect();
-                visit(Row { place: first + i, slopes: &slopes, held: &[] });
+                visit(LinearisedRow { place: first + i, slopes: &slopes, held: &[] });
             }
         }
     }

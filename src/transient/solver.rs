@@ -13,7 +13,7 @@ pub(super) const UNMATCHED: f64 = 1e-10;
 
 /// Why a step has no solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Stuck {
+pub(super) enum StepFailure {
     /// Newton's method did not converge.
     Newton {
         /// The length of its last step \[m\].
@@ -34,5 +34,5 @@ pub(super) trait Solver: Debug {
         modal: &mut Mat<f64>,
         from: &State,
         to: &mut State,
-    ) -> std::result::Result<(), Stuck>;
+    ) -> std::result::Result<(), StepFailure>;
 }

@@ -1,7 +1,7 @@
 //! Where a system stands: its motion, and what the matrices make of it.
 
-use super::interface::Interface;
-use super::model::Model;
+use super::interface::TravellingInterface;
+use super::model::TransientModel;
 use super::products::Derived;
 use super::reaction::{Bristles, Moment, Reaction};
 use super::rows::combine;
@@ -37,7 +37,7 @@ pub struct State {
     /// V of each pair at t \[m/s\].
     pub(super) speeds: Vec<f64>,
     /// Where the contacts act at t.
-    pub(super) interface: Interface,
+    pub(super) interface: TravellingInterface,
     /// Dᵀu, Dᵀv, Dᵀa of the motion at the beginning of the step that ended here, with its D: r × 3.
     pub(super) before: Mat<f64>,
     /// Newton's steps that its last step took.
@@ -46,7 +46,7 @@ pub struct State {
 
 impl State {
     /// Steady sliding: at rest, displaced by u₀.
-    pub fn steady(model: &Model<'_>, steady: &SteadySliding) -> Self {
+    pub fn steady(model: &TransientModel<'_>, steady: &SteadySliding) -> Self {
         let mut state = State::empty(model);
         state.motion.col_as_slice_mut(0).copy_from_slice(&steady.displacement);
         state.settle(model);
@@ -54,7 +54,7 @@ impl State {
     }
 
     /// At rest, displaced by the u of a state without friction: nothing slid yet, and no bristle is bent.
-    pub fn at_rest(model: &Model<'_>, still: &SteadySliding) -> Self {
+    pub fn at_rest(model: &TransientModel<'_>, still: &SteadySliding) -> Self {
         let mut state = State::empty(model);
         state.motion.col_as_slice_mut(0).copy_from_slice(&still.displacement);
         state.act(model, 0.0);
@@ -67,7 +67,7 @@ impl State {
     }
 
     /// Moves along a complex mode: u += Re(s φ), v += Re(s λ φ), a += Re(s λ² φ), with s = `factor`.
-    pub fn disturbed(mut self, model: &Model<'_>, lambda: c64, shape: &[c64], factor: f64) -> Self {
+    pub fn disturbed(mut self, model: &TransientModel<'_>, lambda: c64, shape: &[c64], factor: f64) -> Self {
         let mut turned = c64::new(factor, 0.0);
         for k in 0..3 {
             let column = self.motion.col_as_slice_mut(k);
@@ -79,7 +79,7 @@ impl State {
     }
 
     /// Computes all that depends on time and motion.
-    pub(super) fn settle(&mut self, model: &Model<'_>) {
+    pub(super) fn settle(&mut self, model: &TransientModel<'_>) {
         self.act(model, self.time);
         self.derive(model);
         self.project(model);
@@ -87,14 +87,14 @@ impl State {
     }
 
     /// The motion of the modes that are damped.
-    fn project(&mut self, model: &Model<'_>) {
+    fn project(&mut self, model: &TransientModel<'_>) {
         if let (Some(modal), Some(out)) = (&model.damping.modal, &mut self.modal) {
             *out = gram(modal.basis.as_ref(), self.motion.as_ref());
         }
     }
 
     /// The reaction to the motion, as in steady sliding.
-    fn react(&mut self, model: &Model<'_>) {
+    fn react(&mut self, model: &TransientModel<'_>) {
         let mut reaction = Reaction::new(model);
         let along = [0, 1].map(|k| self.along.col_as_slice(k));
         reaction.evaluate(model, along, self.moment(), None);
@@ -108,7 +108,7 @@ impl State {
     }
 
     /// Sets velocities, pulse loads and contact places at a time.
-    pub(super) fn act(&mut self, model: &Model<'_>, time: f64) {
+    pub(super) fn act(&mut self, model: &TransientModel<'_>, time: f64) {
         self.time = time;
         self.speeds.iter_mut().zip(model.speeds(time)).for_each(|(now, v)| *now = v);
         self.pushes.iter_mut().zip(&model.pushes).for_each(|(now, push)| *now = push.factor(time));
@@ -116,7 +116,7 @@ impl State {
     }
 
     /// The motion that a step to here begins with, along the directions at its end.
-    pub(super) fn look_back(&mut self, model: &Model<'_>, from: &State) {
+    pub(super) fn look_back(&mut self, model: &TransientModel<'_>, from: &State) {
         if model.travels() {
             for k in 0..3 {
                 self.interface.motions(model, from.motion.col_as_slice(k), self.before.col_as_slice_mut(k));
@@ -160,7 +160,7 @@ impl State {
     }
 
     /// The slip velocity of a contact point along t₁ and t₂ \[m/s\].
-    pub fn slip_velocity(&self, model: &Model<'_>, point: usize) -> [f64; 2] {
+    pub fn slip_velocity(&self, model: &TransientModel<'_>, point: usize) -> [f64; 2] {
         let at = 3 * point;
         [self.speeds[model.points[point].pair] - self.along[(at + 1, 1)], -self.along[(at + 2, 1)]]
     }
@@ -173,7 +173,7 @@ impl State {
     }
 
     /// Allocated, zero state of `model`.
-    pub(super) fn empty(model: &Model<'_>) -> Self {
+    pub(super) fn empty(model: &TransientModel<'_>) -> Self {
         let (n, r) = (model.n(), model.n_directions());
         State {
             time: 0.0,
@@ -187,14 +187,14 @@ impl State {
             bristles: vec![Bristles::default(); model.points.len()],
             pushes: vec![0.0; model.pushes.len()],
             speeds: model.velocities.clone(),
-            interface: Interface::new(model),
+            interface: TravellingInterface::new(model),
             before: Mat::zeros(r, 3),
             iterations: 0,
         }
     }
 
     /// Products of the sparse matrices with the motion, and the motion along the directions.
-    pub(super) fn derive(&mut self, model: &Model<'_>) {
+    pub(super) fn derive(&mut self, model: &TransientModel<'_>) {
         let (elastic, inertia) = (&mut self.elastic, &mut self.inertia);
         model.products.derive(&self.motion, Derived { elastic, inertia, viscous: self.viscous.as_mut() });
         for k in 0..3 {

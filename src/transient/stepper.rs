@@ -1,19 +1,19 @@
 //! One step of the scheme: what acts, what follows, what work was done.
 
-use super::condensed::Condensed;
+use super::condensed::CondensedStep;
+use super::energy_balance::Work;
 use super::full_newton::FullNewton;
-use super::ledger::Work;
-use super::model::Model;
+use super::model::TransientModel;
 use super::rows::{chunks, combine};
 use super::scheme::{Scheme, Weights};
-use super::solver::{Solver, Stuck};
+use super::solver::{Solver, StepFailure};
 use super::state::State;
 use crate::error::Result;
 use faer::Mat;
 
 /// How a step is solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Method {
+pub enum StepMethod {
     /// Condensed onto the contact: one solution with a matrix that is factorised once.
     #[default]
     Condensed,
@@ -28,7 +28,7 @@ pub enum Method {
 /// A Δ = h − b D r_{n+1}, h = f_α − α_m M a − b (K u_t + C v_t) − α_f (K u + C v + D r)_n.
 #[derive(Debug)]
 pub(super) struct Stepper<'a> {
-    model: &'a Model<'a>,
+    model: &'a TransientModel<'a>,
     weights: Weights,
     solver: Box<dyn Solver + 'a>,
     /// h, then Δ.
@@ -40,17 +40,22 @@ impl<'a> Stepper<'a> {
     ///
     /// # Errors
     /// A matrix that is singular: a part without stiffness and mass.
-    pub(super) fn new(model: &'a Model<'a>, scheme: Scheme, step: f64, method: Method) -> Result<Self> {
+    pub(super) fn new(
+        model: &'a TransientModel<'a>,
+        scheme: Scheme,
+        step: f64,
+        method: StepMethod,
+    ) -> Result<Self> {
         let weights = Weights::new(scheme, step);
         let solver: Box<dyn Solver + 'a> = match method {
-            Method::Condensed => Box::new(Condensed::new(model, weights)?),
-            Method::FullNewton => Box::new(FullNewton::new(model, weights)),
+            StepMethod::Condensed => Box::new(CondensedStep::new(model, weights)?),
+            StepMethod::FullNewton => Box::new(FullNewton::new(model, weights)),
         };
         Ok(Stepper { model, weights, solver, increment: Mat::zeros(model.n(), 1) })
     }
 
     /// Advances `from` to `to`, which says what acts at its end ([`State::act`]); says what work was done.
-    pub(super) fn step(&mut self, from: &State, to: &mut State) -> std::result::Result<Work, Stuck> {
+    pub(super) fn step(&mut self, from: &State, to: &mut State) -> std::result::Result<Work, StepFailure> {
         let (model, weights) = (self.model, self.weights);
         to.look_back(model, from);
         let mut modal = self.force(from, to);
@@ -62,7 +67,7 @@ impl<'a> Stepper<'a> {
         to.derive(model);
         let work = Work::between(model, &weights, from, to);
         // Every number of the motion is in it.
-        if work.turnover().is_finite() { Ok(work) } else { Err(Stuck::NotFinite) }
+        if work.turnover().is_finite() { Ok(work) } else { Err(StepFailure::NotFinite) }
     }
 
     /// h but for its modal part goes to `increment`; returned is w of that part, B w.

@@ -1,6 +1,6 @@
 //! The tangent of the condensed step.
 
-use super::model::Model;
+use super::model::TransientModel;
 use super::reaction::Reaction;
 use crate::linalg::lu::Lu;
 use faer::{Mat, MatMut, MatRef};
@@ -14,21 +14,21 @@ pub(super) struct Tangent {
     /// The rows of J − I there, one after the other.
     rows: Vec<f64>,
     /// The active part of J.
-    small: Small,
+    small: SmallLu,
     /// The solution there.
     some: Vec<f64>,
 }
 
 impl Tangent {
     pub(super) fn new() -> Self {
-        let small = Small { lu: Vec::new(), pivots: Vec::new(), large: None };
+        let small = SmallLu { lu: Vec::new(), pivots: Vec::new(), large: None };
         Tangent { active: Vec::new(), rows: Vec::new(), small, some: Vec::new() }
     }
 
     /// J at the place where the reaction was evaluated last.
     pub(super) fn set(
         &mut self,
-        model: &Model<'_>,
+        model: &TransientModel<'_>,
         reaction: &Reaction,
         compliance: &Mat<f64>,
         (share, rate): (f64, f64),
@@ -69,7 +69,7 @@ impl Tangent {
 
 /// L U of a matrix of the size of a contact, with partial pivoting.
 #[derive(Debug)]
-struct Small {
+struct SmallLu {
     /// L and U by columns.
     lu: Vec<f64>,
     /// The row that was exchanged with row k.
@@ -81,7 +81,7 @@ struct Small {
 /// Up to here elimination in place takes less time than a library's preparations.
 const FEW: usize = 32;
 
-impl Small {
+impl SmallLu {
     fn factorise(&mut self, n: usize, entry: impl Fn(usize, usize) -> f64) {
         self.lu.clear();
         self.lu.extend((0..n).flat_map(|j| (0..n).map(move |i| (i, j))).map(|(i, j)| entry(i, j)));
@@ -139,7 +139,7 @@ mod tests {
             let entry = |i: usize, j: usize| {
                 ((3 * i + 5 * j * j + i * j) % 11) as f64 - if i == j { 0.0 } else { 2.5 }
             };
-            let mut small = Small { lu: Vec::new(), pivots: Vec::new(), large: None };
+            let mut small = SmallLu { lu: Vec::new(), pivots: Vec::new(), large: None };
             small.factorise(n, entry);
             assert_eq!(small.large.is_some(), n > FEW);
             let wanted: Vec<f64> = (0..n).map(|i| (i as f64 * 1.3).sin() + 1.0).collect();

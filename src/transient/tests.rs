@@ -40,7 +40,7 @@ fn oscillator(omega: f64) -> (System, SteadySliding) {
 }
 
 /// Starts with u, v and the acceleration that the structure alone gives them.
-fn start(model: &Model<'_>, u: &[f64], v: &[f64], a: &[f64]) -> State {
+fn start(model: &TransientModel<'_>, u: &[f64], v: &[f64], a: &[f64]) -> State {
     let mut state = State::empty(model);
     for (k, x) in [u, v, a].into_iter().enumerate() {
         state.motion.col_as_slice_mut(k).copy_from_slice(x);
@@ -49,12 +49,12 @@ fn start(model: &Model<'_>, u: &[f64], v: &[f64], a: &[f64]) -> State {
     state
 }
 
-fn run(model: &Model<'_>, from: State, plan: Plan) -> Marched {
+fn run(model: &TransientModel<'_>, from: State, plan: Plan) -> Marched {
     march(model, from, &plan, &(), &mut |_| Ok(())).unwrap()
 }
 
 pub(super) fn plan(scheme: Scheme, step: f64, steps: usize) -> Plan {
-    Plan { scheme, step, steps, method: Method::Condensed, tolerance: None }
+    Plan { scheme, step, steps, method: StepMethod::Condensed, tolerance: None }
 }
 
 /// The amplification matrix of x = (u, Δt v, Δt² a) of an undamped oscillator, from the equations of the scheme as
@@ -74,7 +74,7 @@ fn the_oscillator_follows_the_amplification_matrix_with_its_damping_and_frequenc
     for scheme in schemes() {
         for big_omega in [0.05, 0.7, 5.0] {
             let (system, steady) = oscillator(big_omega);
-            let model = Model::new(&system, &steady).unwrap();
+            let model = TransientModel::new(&system, &steady).unwrap();
             let steps = 50;
             let end = run(
                 &model,
@@ -112,7 +112,7 @@ fn the_oscillator_follows_the_amplification_matrix_with_its_damping_and_frequenc
 #[test]
 fn schemes_are_of_second_order_where_they_should_be() {
     let (system, steady) = oscillator(TAU);
-    let model = Model::new(&system, &steady).unwrap();
+    let model = TransientModel::new(&system, &steady).unwrap();
     let error = |scheme: Scheme, steps: usize| {
         let end = run(
             &model,
@@ -140,7 +140,7 @@ fn the_trapezoidal_rule_keeps_the_energy_of_a_linear_system_over_a_million_steps
         },
     );
     let (system, steady) = free(chain);
-    let model = Model::new(&system, &steady).unwrap();
+    let model = TransientModel::new(&system, &steady).unwrap();
     let from = start(&model, &[1.0, 0.0, 0.0], &[0.0, 0.0, 0.5], &[-2.0, 1.0, 0.0]);
     let before = from.energy();
     let end = run(&model, from, plan(Scheme::TRAPEZOIDAL, 0.1, 1_000_000));
@@ -177,12 +177,12 @@ fn blow() -> Push {
 
 /// Holds the `states` of a condensed march against Newton's method on the whole.
 pub(super) fn full_newton_agrees(
-    model: &Model<'_>,
+    model: &TransientModel<'_>,
     steady: &SteadySliding,
     condensed: Plan,
     states: &[Mat<f64>],
 ) {
-    let full = Plan { method: Method::FullNewton, ..condensed };
+    let full = Plan { method: StepMethod::FullNewton, ..condensed };
     let largest = states.iter().map(|m| m.col(0).norm_max()).fold(0.0, f64::max);
     march(model, State::steady(model, steady), &full, &(), &mut |moment| {
         let difference = (moment.state.motion.col(0) - states[moment.step].col(0)).norm_max();
@@ -204,9 +204,9 @@ fn the_condensed_step_is_the_full_newton_step_through_lift_off() {
         }
         let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
         let push = blow();
-        let model = Model::new(&system, &steady)
+        let model = TransientModel::new(&system, &steady)
             .unwrap()
-            .driven(vec![Profile::Reciprocating { frequency_hz: 0.2, phase: 0.1 }], vec![push]);
+            .driven(vec![TimeProfile::Reciprocating { frequency_hz: 0.2, phase: 0.1 }], vec![push]);
         let (mut open, mut back) = (0, 0);
         let mut states = Vec::new();
         let condensed = plan(scheme, 2e-3, 1000);
@@ -246,7 +246,7 @@ fn momentum_and_energy_pass_through_an_impact() {
         iterations: 0,
         residual: 0.0,
     };
-    let model = Model::new(&system, &steady).unwrap();
+    let model = TransientModel::new(&system, &steady).unwrap();
     let from = start(&model, &[0.0, 0.0], &[1.0, -0.5], &[0.0, 0.0]);
     let mut touched = 0;
     let end = march(&model, from, &plan(Scheme::TRAPEZOIDAL, 1e-4, 4000), &(), &mut |moment| {
@@ -273,7 +273,7 @@ fn measured(system: &System, scheme: Scheme, step: f64, mode: usize) -> (c64, c6
     let modes = complex_modes(system, &steady, &dense_modes(system, n), [0.0, 1e3], &()).unwrap().modes;
     let mode = &modes[mode % modes.len()];
     let (lambda, shape) = (mode.eigenvalue, &mode.right);
-    let model = Model::new(system, &steady).unwrap();
+    let model = TransientModel::new(system, &steady).unwrap();
     let from = State::steady(&model, &steady).disturbed(&model, lambda, shape, SMALL);
     let steps = (8.0 * TAU / lambda.im / step).round() as usize;
     let dof = (0..n).max_by(|a, b| shape[*a].norm().total_cmp(&shape[*b].norm())).unwrap();
@@ -313,7 +313,7 @@ fn small_disturbances_grow_and_turn_as_the_complex_eigenvalues_say() {
 fn a_loss_factor_is_refused_with_what_to_do() {
     let (mut system, steady) = oscillator(1.0);
     system.structure.damping.hysteretic = Some(sparse(1, |_, _| 0.1).into());
-    let text = Model::new(&system, &steady).unwrap_err().to_string();
+    let text = TransientModel::new(&system, &steady).unwrap_err().to_string();
     assert!(text.contains("loss factor") && text.contains("modal_ratio"), "{text}");
 }
 
@@ -328,8 +328,9 @@ fn a_model_reduced_to_all_it_has_moves_like_the_full_one() {
         course: Pulse::HalfSine { begin: 0.01, duration: 0.3 },
     };
     let seen = Push { direction: reduced.form(&push.direction), ..push.clone() };
-    let full = Model::new(&system, &steady).unwrap().driven(vec![Profile::Constant], vec![push]);
-    let few = Model::new(&reduced.system, &small).unwrap().driven(vec![Profile::Constant], vec![seen]);
+    let full = TransientModel::new(&system, &steady).unwrap().driven(vec![TimeProfile::Constant], vec![push]);
+    let few =
+        TransientModel::new(&reduced.system, &small).unwrap().driven(vec![TimeProfile::Constant], vec![seen]);
     let plan = plan(Scheme::hht(-0.05), 1e-3, 800);
     let a = run(&full, State::steady(&full, &steady), plan).state;
     let b = run(&few, State::steady(&few, &small), plan).state;
@@ -372,8 +373,8 @@ fn a_travelling_contact_that_sticks_is_condensed_exactly_too() {
         let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
         let track = winding(&system);
         let push = blow();
-        let back = Profile::Reciprocating { frequency_hz: 1.0, phase: 0.1 };
-        let model = Model::new(&system, &steady).unwrap().driven(vec![back], vec![push]);
+        let back = TimeProfile::Reciprocating { frequency_hz: 1.0, phase: 0.1 };
+        let model = TransientModel::new(&system, &steady).unwrap().driven(vec![back], vec![push]);
         let model = model.travelling(vec![Some(&track)]);
         let (mut open, mut stuck, mut far) = (0, 0, 0.0f64);
         let mut states = Vec::new();
@@ -399,9 +400,9 @@ fn a_contact_that_has_travelled_slowly_stands_like_one_that_was_set_there() {
     system.pairs[0].sliding_velocity = 0.2 / 400.0;
     let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
     let track = winding(&system);
-    let model = Model::new(&system, &steady)
+    let model = TransientModel::new(&system, &steady)
         .unwrap()
-        .driven(vec![Profile::Constant], vec![])
+        .driven(vec![TimeProfile::Constant], vec![])
         .travelling(vec![Some(&track)]);
     // From the third station, where the pair stands, to the fifth.
     let end = run(&model, State::steady(&model, &steady), plan(Scheme::hht(-0.3), 0.05, 16_000)).state;
@@ -439,7 +440,7 @@ fn a_mass_on_a_belt_sticks_and_slips_with_the_period_of_the_exact_solution() {
         coupling: None,
     };
     let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
-    let model = Model::new(&system, &steady).unwrap();
+    let model = TransientModel::new(&system, &steady).unwrap();
     // A push away from steady sliding, which is unstable.
     let from = start(&model, &[0.9, 1e-3], &[0.0, 0.0], &[0.0, 0.0]);
     let step = 1e-3;
@@ -475,7 +476,7 @@ fn a_mass_on_a_belt_sticks_and_slips_with_the_period_of_the_exact_solution() {
 #[test]
 fn steps_are_split_until_the_frequency_is_as_right_as_was_asked() {
     let (system, steady) = oscillator(TAU);
-    let model = Model::new(&system, &steady).unwrap();
+    let model = TransientModel::new(&system, &steady).unwrap();
     let go = |tolerance: f64| {
         let plan = Plan { tolerance: Some(tolerance), ..plan(Scheme::TRAPEZOIDAL, 0.1, 200) };
         let end = run(&model, start(&model, &[1.0], &[0.0], &[-TAU * TAU]), plan);

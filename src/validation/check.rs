@@ -2,13 +2,13 @@
 
 use super::in_time;
 use super::kirchhoff::{Edge, PlateMode, ThinPlate, circular_modes};
-use super::reference::{Check, Kind, Measure, Quantity, Reference};
+use super::reference::{Check, CheckQuantity, Measure, QuantityKind, Reference};
 use super::resumed;
-use super::run::Run;
+use super::run::CaseRun;
 use super::two_dof::TwoDof;
 use crate::case::{Case, ModelChoice, TransientAnalysis, read_case};
 use crate::error::{Error, Fault, Result};
-use crate::job::{Histories, Prepared, Selection, Stage, analyse, export};
+use crate::job::{Histories, Prepared, ResultStage, Selection, analyse, export};
 use crate::linalg::c64;
 use crate::progress::Observer;
 use crate::results::{CheckedCase, ComplexResult, NamedModes, RunResults, TransientResult};
@@ -58,7 +58,7 @@ fn quantity<'a>(
     runs: &mut BTreeMap<&'a str, Runs<'a>>,
     cases: &'a BTreeMap<String, Case>,
     check: &Check,
-    of: &'a Quantity,
+    of: &'a CheckQuantity,
     observer: &'a dyn Observer,
 ) -> Result<f64> {
     let new = || Runs { case: &cases[&of.case], done: BTreeMap::new(), observer };
@@ -68,7 +68,7 @@ fn quantity<'a>(
 /// The analyses of one case with scalars set to values, each done once.
 struct Runs<'a> {
     case: &'a Case,
-    done: BTreeMap<String, Run>,
+    done: BTreeMap<String, CaseRun>,
     observer: &'a dyn Observer,
 }
 
@@ -81,12 +81,12 @@ impl Runs<'_> {
         Ok(&self.run(set)?.results)
     }
 
-    fn run(&mut self, set: &[(String, f64)]) -> Result<&Run> {
+    fn run(&mut self, set: &[(String, f64)]) -> Result<&CaseRun> {
         self.run_as(set, None)
     }
 
     /// With the motion in time of a model of this kind instead of the case's own.
-    fn run_as(&mut self, set: &[(String, f64)], model: Option<ModelChoice>) -> Result<&Run> {
+    fn run_as(&mut self, set: &[(String, f64)], model: Option<ModelChoice>) -> Result<&CaseRun> {
         let mut key = set.iter().map(|(path, value)| format!("{path}={value:e} ")).collect::<String>();
         key += &model.map_or(String::new(), |model| format!("{model:?}"));
         if !self.done.contains_key(&key) {
@@ -96,12 +96,12 @@ impl Runs<'_> {
             }
             let prepared = Prepared::new(&case)?;
             let mut histories = Histories::default();
-            let mut keep = |stage: Stage<'_>| {
+            let mut keep = |stage: ResultStage<'_>| {
                 histories.keep(&stage);
                 Ok(())
             };
             let results = analyse(&prepared, Selection::Listed, &mut keep, self.observer)?;
-            self.done.insert(key.clone(), Run { results, histories });
+            self.done.insert(key.clone(), CaseRun { results, histories });
         }
         Ok(&self.done[&key])
     }
@@ -153,24 +153,24 @@ fn change(before: &[c64], after: &[c64]) -> f64 {
 }
 
 /// A quantity of the check `name`.
-fn compute(runs: &mut Runs, Quantity { kind, set, .. }: &Quantity, name: &str) -> Result<f64> {
+fn compute(runs: &mut Runs, CheckQuantity { kind, set, .. }: &CheckQuantity, name: &str) -> Result<f64> {
     let missing = |found: &str| {
         Error::input(Fault::new(format!("`{name}`"), format!("\"{found}\""), "a name of the case"))
     };
     match kind {
-        Kind::Value(pointer) => number_at(runs.with(set)?, pointer, name),
-        Kind::Slope { pointer, parameter, step } => {
+        QuantityKind::Value(pointer) => number_at(runs.with(set)?, pointer, name),
+        QuantityKind::Slope { pointer, parameter, step } => {
             let own = runs.case_with(set)?.parameter(parameter)?.value;
             let mut at = |steps: f64| {
                 number_at(runs.with(&set_also(set, parameter, own + steps * step))?, pointer, name)
             };
             Ok((8.0 * (at(1.0)? - at(-1.0)?) - (at(2.0)? - at(-2.0)?)) / (12.0 * step))
         }
-        Kind::Exported => exported(runs, set),
-        Kind::Resumed => resumed::differences(&runs.case_with(set)?, runs.observer),
-        Kind::Faults(file) => count_faults(runs, file),
-        Kind::Onset { parameter, between, above } => onset(runs, set, parameter, *between, *above),
-        Kind::LargestGrowth { parameter, values } => {
+        QuantityKind::Exported => exported(runs, set),
+        QuantityKind::Resumed => resumed::differences(&runs.case_with(set)?, runs.observer),
+        QuantityKind::Faults(file) => count_faults(runs, file),
+        QuantityKind::Onset { parameter, between, above } => onset(runs, set, parameter, *between, *above),
+        QuantityKind::LargestGrowth { parameter, values } => {
             let mut largest = f64::NEG_INFINITY;
             for value in values {
                 let results = runs.with(&set_also(set, parameter, *value))?;
@@ -178,14 +178,14 @@ fn compute(runs: &mut Runs, Quantity { kind, set, .. }: &Quantity, name: &str) -
             }
             Ok(largest)
         }
-        Kind::Change(to) => {
+        QuantityKind::Change(to) => {
             let before = eigenvalues(runs.with(set)?);
             let changed: Vec<_> = set.iter().chain(to).cloned().collect();
             Ok(change(&before, &eigenvalues(runs.with(&changed)?)))
         }
-        Kind::UnstableNear(hz) => Ok(unstable_near(runs.with(set)?, *hz).im / TAU),
-        Kind::GrowthNear(hz) => Ok(unstable_near(runs.with(set)?, *hz).re),
-        Kind::Disturbance { growth } => {
+        QuantityKind::UnstableNear(hz) => Ok(unstable_near(runs.with(set)?, *hz).im / TAU),
+        QuantityKind::GrowthNear(hz) => Ok(unstable_near(runs.with(set)?, *hz).re),
+        QuantityKind::Disturbance { growth } => {
             let transient = runs.with(set)?.get::<TransientResult>();
             let compared =
                 transient.and_then(|t| t.growth.as_ref()).ok_or_else(|| missing("transient.disturbance"))?;
@@ -195,8 +195,8 @@ fn compute(runs: &mut Runs, Quantity { kind, set, .. }: &Quantity, name: &str) -
                 false => (TAU * found.frequency_hz / omega - 1.0).abs(),
             }))
         }
-        Kind::GrowthRate => Ok(growth_rate(runs.with(set)?)),
-        Kind::InTime { of: span, measure, over_full } => {
+        QuantityKind::GrowthRate => Ok(growth_rate(runs.with(set)?)),
+        QuantityKind::InTime { of: span, measure, over_full } => {
             let mut measured = |model: Option<ModelChoice>| {
                 let found = in_time::measured(runs.run_as(set, model)?, span, measure);
                 found.ok_or_else(|| missing(&span.channel))
@@ -204,7 +204,7 @@ fn compute(runs: &mut Runs, Quantity { kind, set, .. }: &Quantity, name: &str) -
             let own = measured(None)?;
             Ok(if *over_full { own / measured(Some(ModelChoice::Full))? } else { own })
         }
-        Kind::Rises { parameter, values, of } => {
+        QuantityKind::Rises { parameter, values, of } => {
             let mut levels = Vec::new();
             for value in values {
                 let run = runs.run(&set_also(set, parameter, *value))?;
@@ -216,13 +216,13 @@ fn compute(runs: &mut Runs, Quantity { kind, set, .. }: &Quantity, name: &str) -
             }
             Ok(levels.windows(2).filter(|pair| pair[1] > pair[0]).count() as f64)
         }
-        Kind::PaperEquations(span) => {
+        QuantityKind::PaperEquations(span) => {
             let case = runs.case_with(set)?;
             let model = TwoDof::of(&case).ok_or_else(|| missing("belt"))?;
             let found = in_time::deviation(runs.run(set)?, span, &model);
             found.ok_or_else(|| missing(&span.channel))
         }
-        Kind::RoundPlate { modes, part, outer, inner } => {
+        QuantityKind::RoundPlate { modes, part, outer, inner } => {
             let exact =
                 plate_modes(runs.case, (modes, part), (*outer, *inner)).ok_or_else(|| missing(part))?;
             let sets = runs.with(set)?.all::<NamedModes>();

@@ -15,7 +15,7 @@ pub mod two_dof;
 
 pub(crate) use check::computed;
 pub(crate) use reference::read_check;
-pub use reference::{Check, Kind, Measure, Near, Quantity, Reference, Span};
+pub use reference::{ChannelWindow, Check, CheckQuantity, Measure, Near, QuantityKind, Reference};
 
 use crate::error::{Error, Fault, Faults, Result};
 use crate::progress::Observer;

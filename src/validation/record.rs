@@ -8,18 +8,18 @@ const LINES: usize = 8;
 
 /// The part of a channel that is evaluated.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Record<'a> {
+pub(super) struct ChannelRecord<'a> {
     pub(super) values: &'a [f64],
     /// Δt \[s\].
     step: f64,
 }
 
-impl<'a> Record<'a> {
+impl<'a> ChannelRecord<'a> {
     /// The samples from the first to the last time \[s\], those there are.
     pub(super) fn new(values: &'a [f64], step: f64, window: [f64; 2]) -> Self {
         let [first, last] = window.map(|t| (t / step).round().max(0.0) as usize);
         let end = (last + 1).min(values.len());
-        Record { values: &values[first.min(end)..end], step }
+        ChannelRecord { values: &values[first.min(end)..end], step }
     }
 
     /// The largest value; not a number without samples, as in what follows.
@@ -128,7 +128,7 @@ mod tests {
         let parts = [(936.4, 0.1), (1661.0, 1.0), (2000.0, 0.03), (2600.0, 0.3)];
         let at = |t: f64| parts.iter().map(|(f, a)| a * (std::f64::consts::TAU * f * t).sin()).sum::<f64>();
         let values: Vec<f64> = (0..20_000).map(|k| at(2e-5 * k as f64)).collect();
-        let record = Record::new(&values, 2e-5, [0.1, 0.4]);
+        let record = ChannelRecord::new(&values, 2e-5, [0.1, 0.4]);
         let near = |frequencies: &[f64], below_hz: f64| Near {
             frequencies_hz: frequencies.to_vec(),
             within: 0.02,
@@ -139,7 +139,7 @@ mod tests {
         assert!(record.level(&near(&[1650.0, 936.0], 1e9), true).abs() < 1e-12);
         assert!((record.level(&near(&[1661.0], 1e9), false) + 10.5).abs() < 1.0);
         assert!((record.level(&near(&[1661.0, 936.0], 2200.0), false) + 30.5).abs() < 1.0);
-        let silent = Record::new(&values, 2e-5, [1.0, 2.0]);
+        let silent = ChannelRecord::new(&values, 2e-5, [1.0, 2.0]);
         assert!(
             silent.peak_near(&near(&[936.0], 1e9)).is_nan()
                 && silent.level(&near(&[936.0], 1e9), true).is_nan()
@@ -154,15 +154,15 @@ mod tests {
             if part < 0.3 { 1.0 + part / 0.15 } else { 3.0 - (part - 0.3) / 0.05 }
         };
         let values: Vec<f64> = (0..5000).map(|k| at(1e-3 * k as f64)).collect();
-        let record = Record::new(&values, 1e-3, [1.0, 4.0]);
+        let record = ChannelRecord::new(&values, 1e-3, [1.0, 4.0]);
         // b₁ = A/(π² d (1 − d)) sin πd of a triangle with rise d = 0.75 and amplitude A = 1, times 2.
         let line = 2.0 * (0.75 * std::f64::consts::PI).sin() / (std::f64::consts::PI.powi(2) * 0.75 * 0.25);
         assert!((record.tone().frequency_hz - 2.5).abs() < 1e-3, "{:?}", record.tone());
         assert!((record.tone().amplitude / line - 1.0).abs() < 2e-3, "{:?} {line}", record.tone());
         assert!((record.period() - 0.4).abs() < 1e-9 && (record.rise() - 0.3).abs() < 1.1e-3);
         assert!((record.amplitude() - 1.0).abs() < 0.02 && (record.highest() - 3.0).abs() < 0.02);
-        let short = Record::new(&values, 1e-3, [1.0, 1.2]);
+        let short = ChannelRecord::new(&values, 1e-3, [1.0, 1.2]);
         assert!(short.period().is_nan() && short.rise().is_nan() && short.lowest() >= 1.0);
-        assert!(Record::new(&values, 1e-3, [7.0, 8.0]).amplitude().is_nan());
+        assert!(ChannelRecord::new(&values, 1e-3, [7.0, 8.0]).amplitude().is_nan());
     }
 }

@@ -4,7 +4,7 @@ use super::kirchhoff::Edge;
 use crate::case::{Case, read_case};
 use crate::error::read::read_text;
 use crate::error::{Faults, Result};
-use crate::results::Checked;
+use crate::results::CheckedQuantity;
 use crate::schema::reader::{Section, read_document};
 use crate::schema::units::{FREQUENCY, LENGTH, NUMBER, RATE, TIME};
 use std::collections::{BTreeMap, BTreeSet};
@@ -32,11 +32,11 @@ pub struct Check {
     /// Description of the quantity.
     pub quantity: String,
     /// How it is computed.
-    pub of: Quantity,
+    pub of: CheckQuantity,
     /// The reference value; not a number where it is computed, too.
     pub reference: f64,
     /// The reference, computed in another way.
-    pub second: Option<Quantity>,
+    pub second: Option<CheckQuantity>,
     /// The largest difference that passes.
     pub tolerance: f64,
     /// The difference is divided by the reference.
@@ -47,18 +47,18 @@ pub struct Check {
 
 /// A quantity of a case.
 #[derive(Debug)]
-pub struct Quantity {
+pub struct CheckQuantity {
     /// The file of the case.
     pub case: String,
     /// How it is computed.
-    pub kind: Kind,
+    pub kind: QuantityKind,
     /// Scalars of the case to set first.
     pub set: Vec<(String, f64)>,
 }
 
 /// The ways to compute a quantity.
 #[derive(Debug)]
-pub enum Kind {
+pub enum QuantityKind {
     /// A number of `summary.json`, by its JSON pointer; of a list its length, of true and false one and zero.
     Value(String),
     /// The derivative of such a number by a scalar, from differences of four runs.
@@ -109,7 +109,7 @@ pub enum Kind {
     /// Measure of a channel of the run in time between two times.
     InTime {
         /// Which and when.
-        of: Span,
+        of: ChannelWindow,
         /// Its measure.
         measure: Measure,
         /// As a part of what the full model says, for a case whose model is reduced.
@@ -123,11 +123,11 @@ pub enum Kind {
         /// Its values.
         values: Vec<f64>,
         /// Where the amplitude is taken.
-        of: Option<Span>,
+        of: Option<ChannelWindow>,
     },
     /// The largest deviation of a channel from what Eqs. (3)–(5) of Rusli et al. (2020) give, integrated apart, as a part of
     /// its amplitude there.
-    PaperEquations(Span),
+    PaperEquations(ChannelWindow),
     /// The largest relative error of the modes of a round plate against Kirchhoff theory.
     RoundPlate {
         /// The real-mode analysis, which must be of this plate alone.
@@ -143,7 +143,7 @@ pub enum Kind {
 
 /// A channel of the run in time, between two times \[s\].
 #[derive(Debug, Clone)]
-pub struct Span {
+pub struct ChannelWindow {
     /// Its name.
     pub channel: String,
     /// The first and the last time.
@@ -192,8 +192,8 @@ pub struct Near {
 
 impl Check {
     /// The check with what was computed for it.
-    pub fn beside(&self, computed: f64) -> Checked {
-        Checked {
+    pub fn beside(&self, computed: f64) -> CheckedQuantity {
+        CheckedQuantity {
             computed,
             quantity: self.quantity.clone(),
             reference: self.reference,
@@ -263,7 +263,7 @@ pub fn read_check(name: &str, s: &Section, case: &str, reason: &str) -> Check {
         s.is_table("reference").then(|| s.section("reference", |second| read_quantity(second, case, "near")));
     let of = read_quantity(s, case, if second.is_some() { "near" } else { "reference" });
     let unit = match of.kind {
-        Kind::GrowthNear(_) | Kind::GrowthRate => RATE,
+        QuantityKind::GrowthNear(_) | QuantityKind::GrowthRate => RATE,
         _ => FREQUENCY,
     };
     Check {
@@ -278,15 +278,15 @@ pub fn read_check(name: &str, s: &Section, case: &str, reason: &str) -> Check {
 }
 
 /// How a quantity is computed; a frequency near which it is sought is the number of the key `about`.
-fn read_quantity(s: &Section, case: &str, about: &str) -> Quantity {
-    Quantity {
+fn read_quantity(s: &Section, case: &str, about: &str) -> CheckQuantity {
+    CheckQuantity {
         case: s.string("case").or(case.to_string()),
         kind: read_kind(s, about),
         set: read_set(s, "set"),
     }
 }
 
-fn read_kind(s: &Section, about: &str) -> Kind {
+fn read_kind(s: &Section, about: &str) -> QuantityKind {
     const KINDS: [&str; 28] = [
         "value",
         "slope",
@@ -323,38 +323,38 @@ fn read_kind(s: &Section, about: &str) -> Kind {
     let at = || s.quantity(about, FREQUENCY).required(FREQUENCY.name);
     let in_time = |measure: Measure| {
         let over_full = s.boolean("over_full").or(false);
-        Kind::InTime { of: read_span(s), measure, over_full }
+        QuantityKind::InTime { of: read_span(s), measure, over_full }
     };
     match s.choice("kind", &KINDS).required("how it is computed") {
-        "slope" => Kind::Slope {
+        "slope" => QuantityKind::Slope {
             pointer: s.string("pointer").required("a JSON pointer into summary.json"),
             parameter: parameter(),
             step: s.quantity("step", NUMBER).positive().required("a difference of the scalar in SI units"),
         },
-        "exported" => Kind::Exported,
-        "resumed" => Kind::Resumed,
-        "faults" => Kind::Faults(s.string("file").required("the name of a case file")),
-        "onset" => Kind::Onset {
+        "exported" => QuantityKind::Exported,
+        "resumed" => QuantityKind::Resumed,
+        "faults" => QuantityKind::Faults(s.string("file").required("the name of a case file")),
+        "onset" => QuantityKind::Onset {
             parameter: parameter(),
             between: s.quantities("between", NUMBER).required("a stable and an unstable value"),
             above: s.quantity("above", NUMBER).positive().or(1e-6),
         },
-        "largest_growth" => Kind::LargestGrowth {
+        "largest_growth" => QuantityKind::LargestGrowth {
             parameter: parameter(),
             values: s.quantity_list("values", NUMBER).required("a list of values"),
         },
-        "change" => Kind::Change(read_set(s, "to")),
-        "unstable_near" => Kind::UnstableNear(at()),
-        "growth_near" => Kind::GrowthNear(s.quantity("near", FREQUENCY).required(FREQUENCY.name)),
-        "growth_in_time" => Kind::Disturbance { growth: true },
-        "frequency_in_time" => Kind::Disturbance { growth: false },
-        "growth_rate" => Kind::GrowthRate,
-        "rises" => Kind::Rises {
+        "change" => QuantityKind::Change(read_set(s, "to")),
+        "unstable_near" => QuantityKind::UnstableNear(at()),
+        "growth_near" => QuantityKind::GrowthNear(s.quantity("near", FREQUENCY).required(FREQUENCY.name)),
+        "growth_in_time" => QuantityKind::Disturbance { growth: true },
+        "frequency_in_time" => QuantityKind::Disturbance { growth: false },
+        "growth_rate" => QuantityKind::GrowthRate,
+        "rises" => QuantityKind::Rises {
             parameter: parameter(),
             values: s.quantity_list("values", NUMBER).required("a list of values"),
             of: s.has("channel").then(|| read_span(s)),
         },
-        "paper_equations" => Kind::PaperEquations(read_span(s)),
+        "paper_equations" => QuantityKind::PaperEquations(read_span(s)),
         "amplitude" => in_time(Measure::Amplitude),
         "amplitude_over" => in_time(Measure::AmplitudeOver(earlier())),
         "growth_since" => in_time(Measure::GrowthSince(earlier())),
@@ -367,7 +367,7 @@ fn read_kind(s: &Section, about: &str) -> Kind {
         "peak_near" => in_time(Measure::PeakNear(read_near(s, vec![at()]))),
         "level" => in_time(Measure::Level(read_near(s, near()))),
         "other_level" => in_time(Measure::OtherLevel(read_near(s, near()))),
-        "round_plate" => Kind::RoundPlate {
+        "round_plate" => QuantityKind::RoundPlate {
             modes: s.string("modes").required("the name of an analysis"),
             part: s.string("part").required("the name of a shell"),
             outer: s.section("outer", read_edge).unwrap_or_else(|| {
@@ -376,7 +376,7 @@ fn read_kind(s: &Section, about: &str) -> Kind {
             }),
             inner: s.section("inner", read_edge),
         },
-        _ => Kind::Value(s.string("pointer").or(String::new())),
+        _ => QuantityKind::Value(s.string("pointer").or(String::new())),
     }
 }
 
@@ -389,8 +389,8 @@ fn read_edge(s: &Section) -> (f64, Edge) {
     (s.quantity("radius", LENGTH).positive().required(LENGTH.name), edge)
 }
 
-fn read_span(s: &Section) -> Span {
-    Span {
+fn read_span(s: &Section) -> ChannelWindow {
+    ChannelWindow {
         channel: s.string("channel").required("the name of a channel of the run in time"),
         window: s.quantities("window", TIME).required("two times"),
     }

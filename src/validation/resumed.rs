@@ -46,11 +46,11 @@ struct Halfway<'a> {
     observer: &'a dyn Observer,
     from: &'a Path,
     to: &'a Path,
-    stage: Mutex<Stage>,
+    stage: Mutex<ProgressStage>,
 }
 
 #[derive(Default)]
-struct Stage {
+struct ProgressStage {
     steps: u64,
     done: u64,
     /// The most steps of any stage so far whose middle has been seen.

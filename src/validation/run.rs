@@ -4,7 +4,7 @@ use crate::job::Histories;
 use crate::results::RunResults;
 
 /// Results and histories of the analyses of a case.
-pub(super) struct Run {
+pub(super) struct CaseRun {
     pub(super) results: RunResults,
     pub(super) histories: Histories,
 }

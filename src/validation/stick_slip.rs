@@ -21,7 +21,7 @@ pub struct MassOnBelt {
 
 /// A period of sticking and slipping.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Cycle {
+pub struct StickSlipCycle {
     /// How long it slips \[s\].
     pub slip: f64,
     /// How long it sticks \[s\].
@@ -32,7 +32,7 @@ pub struct Cycle {
     pub lowest: f64,
 }
 
-impl Cycle {
+impl StickSlipCycle {
     /// T \[s\].
     pub fn period(&self) -> f64 {
         self.slip + self.stick
@@ -45,7 +45,7 @@ impl MassOnBelt {
     /// Sticking ends at k x = F_s with ẋ = V, whatever was before: so the first slip from there is that of the cycle. It
     /// ends when ẋ = V again; sticking lasts as long as the belt takes back to F_s/k. The motion between is integrated by
     /// extrapolation, and the events are found to round-off by steps of just the length that leads to them.
-    pub fn cycle(&self) -> Option<Cycle> {
+    pub fn cycle(&self) -> Option<StickSlipCycle> {
         let MassOnBelt { mass, stiffness, static_friction, decline, velocity } = *self;
         let f = |_: f64, y: &[f64; 2]| {
             let friction = static_friction / (1.0 + decline * (velocity - y[1]));
@@ -78,7 +78,7 @@ impl MassOnBelt {
                 let last = reaching(velocity);
                 let x = step(&f, time, y, last)[0];
                 // It sticks there if the spring does not pull more than friction holds.
-                return (x.abs() <= end).then_some(Cycle {
+                return (x.abs() <= end).then_some(StickSlipCycle {
                     slip: time + last,
                     stick: (end - x) / velocity,
                     highest,

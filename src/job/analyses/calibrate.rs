@@ -8,15 +8,15 @@ use crate::job::prepared::Prepared;
 use crate::job::run::Run;
 
 /// Calibration.
-pub struct Calibrate;
+pub struct CalibrateCommand;
 
-impl Analysis for Calibrate {
+impl Analysis for CalibrateCommand {
     fn name(&self) -> &'static str {
         "calibrate"
     }
 
     fn about(&self) -> &'static str {
-        "Find numbers of the case from measured frequencies, and what the agreement is worth"
+        "Calibrate parameters of the case with measured modes and responses, and assess the result"
     }
 
     fn example(&self) -> Option<&'static str> {

@@ -8,9 +8,9 @@ use crate::job::prepared::Prepared;
 use crate::job::run::{OperatingPoint, Run};
 
 /// Complex eigenvalue analysis.
-pub struct Cea;
+pub struct CeaCommand;
 
-impl Analysis for Cea {
+impl Analysis for CeaCommand {
     fn name(&self) -> &'static str {
         "cea"
     }
@@ -29,13 +29,13 @@ impl Analysis for Cea {
 
     fn plan<'a>(&self, prepared: &'a Prepared<'a>, _: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
         let wanted = prepared.case.cea.as_ref().ok_or_else(|| self.no_table())?;
-        Ok(Box::new(Wanted(wanted)))
+        Ok(Box::new(PlannedCea(wanted)))
     }
 }
 
-struct Wanted<'a>(&'a CeaAnalysis);
+struct PlannedCea<'a>(&'a CeaAnalysis);
 
-impl<'a> Planned<'a> for Wanted<'a> {
+impl<'a> Planned<'a> for PlannedCea<'a> {
     fn slides(&self) -> bool {
         true
     }

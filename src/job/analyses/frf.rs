@@ -9,9 +9,9 @@ use crate::job::prepared::Prepared;
 use crate::job::run::Run;
 
 /// Frequency responses.
-pub struct Frf;
+pub struct FrfCommand;
 
-impl Analysis for Frf {
+impl Analysis for FrfCommand {
     fn name(&self) -> &'static str {
         "frf"
     }
@@ -35,18 +35,18 @@ impl Analysis for Frf {
         let mut frfs = faults.take(frfs(prepared)).unwrap_or_default();
         frfs.retain(|frf| scope == Scope::All || has_measured_frf(prepared.case, frf.name()));
         let tests = faults.take(Tests::of_responses(prepared, &mut frfs)).unwrap_or_default();
-        faults.into_result(Box::new(Responses { frfs, tests }))
+        faults.into_result(Box::new(PlannedFrfs { frfs, tests }))
     }
 }
 
-struct Responses<'a> {
-    frfs: Vec<frf::Frf<'a>>,
+struct PlannedFrfs<'a> {
+    frfs: Vec<frf::PreparedFrf<'a>>,
     tests: Tests,
 }
 
-impl<'a> Planned<'a> for Responses<'a> {
+impl<'a> Planned<'a> for PlannedFrfs<'a> {
     fn slides(&self) -> bool {
-        self.frfs.iter().any(frf::Frf::slides)
+        self.frfs.iter().any(frf::PreparedFrf::slides)
     }
 
     fn warnings(&self) -> Vec<String> {

@@ -11,9 +11,9 @@ use crate::job::run::Run;
 use crate::modal;
 
 /// Real modes.
-pub struct Modes;
+pub struct ModesCommand;
 
-impl Analysis for Modes {
+impl Analysis for ModesCommand {
     fn name(&self) -> &'static str {
         "modes"
     }

@@ -7,13 +7,13 @@ use crate::error::{Fault, Faults, Result};
 
 /// All analyses, in the order in which they run.
 pub const ANALYSES: [&dyn Analysis; 7] = [
-    &modes::Modes,
-    &cea::Cea,
-    &sensitivity::Sensitivity,
-    &transient::Transient,
-    &sweep::Sweep,
-    &frf::Frf,
-    &calibrate::Calibrate,
+    &modes::ModesCommand,
+    &cea::CeaCommand,
+    &sensitivity::SensitivityCommand,
+    &transient::TransientCommand,
+    &sweep::SweepCommand,
+    &frf::FrfCommand,
+    &calibrate::CalibrateCommand,
 ];
 
 /// Which analyses to run.

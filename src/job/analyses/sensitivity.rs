@@ -9,15 +9,15 @@ use crate::job::sensitivity::Analysed;
 use crate::results::ComplexResult;
 
 /// Sensitivities of complex eigenvalues.
-pub struct Sensitivity;
+pub struct SensitivityCommand;
 
-impl Analysis for Sensitivity {
+impl Analysis for SensitivityCommand {
     fn name(&self) -> &'static str {
         "sensitivity"
     }
 
     fn about(&self) -> &'static str {
-        "Complex eigenvalues, what they answer to most, and where a mass or a damper helps"
+        "Complex eigenvalues, their sensitivities, and where a mass or a damper stabilises them"
     }
 
     fn example(&self) -> Option<&'static str> {
@@ -38,13 +38,13 @@ impl Analysis for Sensitivity {
     }
 
     fn plan<'a>(&self, prepared: &'a Prepared<'a>, _: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
-        Ok(Box::new(Wanted(prepared.case.sensitivity.clone().unwrap_or_default())))
+        Ok(Box::new(PlannedSensitivity(prepared.case.sensitivity.clone().unwrap_or_default())))
     }
 }
 
-struct Wanted(SensitivityAnalysis);
+struct PlannedSensitivity(SensitivityAnalysis);
 
-impl<'a> Planned<'a> for Wanted {
+impl<'a> Planned<'a> for PlannedSensitivity {
     fn run(self: Box<Self>, run: &mut Run<'a, '_>) -> Result<()> {
         let Some((point, complex)) = run.operating_point.clone().zip(run.results.get::<ComplexResult>())
         else {

@@ -8,9 +8,9 @@ use crate::job::prepared::Prepared;
 use crate::job::run::Run;
 
 /// Sweeps and maps.
-pub struct Sweep;
+pub struct SweepCommand;
 
-impl Analysis for Sweep {
+impl Analysis for SweepCommand {
     fn name(&self) -> &'static str {
         "sweep"
     }

@@ -5,17 +5,17 @@ use crate::case::{Case, TransientAnalysis};
 use crate::error::{Fault, Faults, Result};
 use crate::job::prepared::Prepared;
 use crate::job::run::Run;
-use crate::job::sink::Stage;
-use crate::job::transient::{InTime, Places, places};
+use crate::job::sink::ResultStage;
+use crate::job::transient::{InTime, TransientPlaces, places};
 use crate::results::{ComplexResult, RecordSize};
 
 /// The phase of motion in time.
 pub const PHASE: &str = "transient";
 
 /// Motion in time.
-pub struct Transient;
+pub struct TransientCommand;
 
-impl Analysis for Transient {
+impl Analysis for TransientCommand {
     fn name(&self) -> &'static str {
         "transient"
     }
@@ -51,19 +51,19 @@ impl Analysis for Transient {
         }
         let planned = faults.take(places(prepared, wanted)).map(|places| -> Box<dyn Planned<'a> + 'a> {
             let least = places.least_record(prepared, wanted);
-            Box::new(Wanted { wanted, places, least })
+            Box::new(PlannedTransient { wanted, places, least })
         });
         faults.into_result(planned)?.ok_or_else(|| self.no_table())
     }
 }
 
-struct Wanted<'a> {
+struct PlannedTransient<'a> {
     wanted: &'a TransientAnalysis,
-    places: Places,
+    places: TransientPlaces,
     least: RecordSize,
 }
 
-impl<'a> Planned<'a> for Wanted<'a> {
+impl<'a> Planned<'a> for PlannedTransient<'a> {
     fn record_size(&self) -> Option<RecordSize> {
         Some(self.least)
     }
@@ -82,7 +82,7 @@ impl<'a> Planned<'a> for Wanted<'a> {
             geometry: &results.geometry,
         };
         let found = clock.time(PHASE, || in_time.run(self.wanted, self.places, *sink, *observer))?;
-        sink.record(Stage::Transient(&found))?;
+        sink.record(ResultStage::Transient(&found))?;
         results.records.push(found);
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use super::super::prepared::Prepared;
 use super::super::sensors::Sensors;
-use super::responses::{self, Measured};
+use super::responses::{self, MeasuredResponses};
 use crate::case::{Case, MeasuredData, SQUEAL};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::job::measured_set;
@@ -16,16 +16,16 @@ const SHAPE_DEVIATION: f64 = 0.1;
 #[derive(Debug, Clone, Default)]
 pub struct Measurements {
     /// Modes.
-    pub modes: Vec<Facts>,
+    pub modes: Vec<MeasuredModeSet>,
     /// Frequency responses.
-    pub responses: Vec<Measured>,
+    pub responses: Vec<MeasuredResponses>,
 }
 
 /// Measured modes of one kind.
 #[derive(Debug, Clone)]
-pub struct Facts {
+pub struct MeasuredModeSet {
     /// Structure or state whose modes they are.
-    pub of: Of,
+    pub of: ModeKind,
     /// The modes.
     pub modes: Vec<Fact>,
     /// Where their shapes were measured, if they have any.
@@ -45,19 +45,19 @@ pub struct Fact {
 
 /// Kind of computed modes.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Of {
+pub enum ModeKind {
     /// Real modes of this name.
     RealModes(String),
     /// Unstable complex modes at steady sliding.
     Unstable,
 }
 
-impl Of {
+impl ModeKind {
     /// Name in the case.
     pub fn name(&self) -> &str {
         match self {
-            Of::RealModes(name) => name,
-            Of::Unstable => SQUEAL,
+            ModeKind::RealModes(name) => name,
+            ModeKind::Unstable => SQUEAL,
         }
     }
 }
@@ -72,14 +72,14 @@ pub fn measurements(prepared: &Prepared) -> Result<Measurements> {
     let mut faults = Faults::new();
     let mut all = Measurements::default();
     for (name, calibrate) in case.calibrate.iter().flat_map(|c| c.against.iter().map(move |name| (name, c))) {
-        let listed = |of: Of, frequencies_hz: &[f64]| {
+        let listed = |of: ModeKind, frequencies_hz: &[f64]| {
             let fact = |hz: &f64| Fact { frequency_hz: *hz, deviation: calibrate.deviation, shape: None };
-            Facts { of, modes: frequencies_hz.iter().map(fact).collect(), sensors: None }
+            MeasuredModeSet { of, modes: frequencies_hz.iter().map(fact).collect(), sensors: None }
         };
         if name == SQUEAL {
-            all.modes.extend(case.cea.as_ref().map(|cea| listed(Of::Unstable, &cea.measured_squeal)));
+            all.modes.extend(case.cea.as_ref().map(|cea| listed(ModeKind::Unstable, &cea.measured_squeal)));
         } else if let Some(modes) = case.modes.get(name) {
-            all.modes.push(listed(Of::RealModes(name.clone()), &modes.measured));
+            all.modes.push(listed(ModeKind::RealModes(name.clone()), &modes.measured));
         } else if let Some(data) = case.measured.get(name) {
             if data.of.is_some() {
                 all.modes.extend(faults.take(modes(prepared, name, data)));
@@ -93,7 +93,7 @@ pub fn measurements(prepared: &Prepared) -> Result<Measurements> {
 }
 
 /// The modes of `[measured.NAME]`.
-fn modes(prepared: &Prepared, name: &str, data: &MeasuredData) -> Result<Facts> {
+fn modes(prepared: &Prepared, name: &str, data: &MeasuredData) -> Result<MeasuredModeSet> {
     let case = prepared.case;
     let (of, calibrate) = (data.of.clone().unwrap_or_default(), case.calibrate.as_ref());
     let deviation = calibrate.map_or(data.deviation, |calibrate| calibrate.deviation);
@@ -115,7 +115,8 @@ fn modes(prepared: &Prepared, name: &str, data: &MeasuredData) -> Result<Facts> 
         deviation: mode.deviation.unwrap_or(deviation),
         shape: if shapes { shape(mode, data.shape_deviation.unwrap_or(SHAPE_DEVIATION)) } else { None },
     };
-    let facts = Facts { modes: set.modes.iter().map(fact).collect(), of: Of::RealModes(of), sensors };
+    let facts =
+        MeasuredModeSet { modes: set.modes.iter().map(fact).collect(), of: ModeKind::RealModes(of), sensors };
     faults.into_result(facts)
 }
 

@@ -20,11 +20,11 @@ mod tests;
 mod unstable;
 
 pub use self::coordinate::Coordinate;
-use self::facts::{Fact, Facts, Measurements};
+use self::facts::{Fact, MeasuredModeSet, Measurements};
 use self::model::{CaseModel, scalars};
-use self::responses::{Measured, Response};
+use self::responses::{MeasuredResponses, Response};
 use super::prepared::Prepared;
-use crate::calibration::{self, Calibration, Computed, Curve, Datum, Options, Problem};
+use crate::calibration::{self, Calibration, CalibrationOptions, CalibrationProblem, Computed, Curve, Datum};
 use crate::case::{CalibrateAnalysis, Case};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::progress::Observer;
@@ -74,7 +74,7 @@ impl<'a> Calibrate<'a> {
         let case = self.prepared.case;
         let model = CaseModel::new(self.prepared, &self.coordinates, &self.measured)?;
         let problem = self.problem(&model);
-        let options = Options {
+        let options = CalibrationOptions {
             reach: self.wanted.mode_reach,
             leave_one_out: self.wanted.leave_one_out,
             chance_draws: self.wanted.chance_draws,
@@ -129,8 +129,8 @@ impl<'a> Calibrate<'a> {
 
 impl Calibrate<'_> {
     /// Unknowns and what was measured.
-    fn problem(&self, model: &CaseModel) -> Problem {
-        let data = |(set, facts): (usize, &Facts)| {
+    fn problem(&self, model: &CaseModel) -> CalibrationProblem {
+        let data = |(set, facts): (usize, &MeasuredModeSet)| {
             let datum = move |fact: &Fact| Datum {
                 set,
                 frequency_hz: fact.frequency_hz,
@@ -139,7 +139,7 @@ impl Calibrate<'_> {
             };
             facts.modes.iter().map(datum).collect::<Vec<_>>()
         };
-        Problem {
+        CalibrationProblem {
             unknowns: self.coordinates.iter().map(Coordinate::unknown).collect(),
             data: self.measured.modes.iter().enumerate().flat_map(data).collect(),
             level_sets: model.level_sets(),
@@ -151,7 +151,7 @@ impl Calibrate<'_> {
     /// The numbers that were found, one an unknown.
     fn numbers(
         &self,
-        problem: &Problem,
+        problem: &CalibrationProblem,
         found: &Calibration,
         values: &[f64],
     ) -> Result<Vec<CalibratedNumber>> {
@@ -199,7 +199,7 @@ impl Calibrate<'_> {
     fn compared(&self, curves: &[Curve], found: &Calibration) -> Vec<CalibratedResponse> {
         let sets =
             self.measured.responses.iter().flat_map(|set| set.responses.iter().map(move |own| (set, own)));
-        let compared = |(i, ((set, own), curve)): (usize, ((&Measured, &Response), &Curve))| {
+        let compared = |(i, ((set, own), curve)): (usize, ((&MeasuredResponses, &Response), &Curve))| {
             let sizes = |there: &Computed| -> Vec<f64> {
                 there.lines[curve.lines()].iter().map(|line| line.value.exp()).collect()
             };

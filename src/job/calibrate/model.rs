@@ -2,16 +2,16 @@
 
 use super::super::modes::{modal_ratios, part_assembled};
 use super::super::prepared::Prepared;
-use super::super::scalars::{Kind, Scalar, same_structure, scalar};
+use super::super::scalars::{CaseScalar, ScalarKind, same_structure, scalar};
 use super::super::sensors::Sensors;
 use super::coordinate::Coordinate;
-use super::facts::{Facts, Measurements, Of};
+use super::facts::{MeasuredModeSet, Measurements, ModeKind};
 use super::follow::{Path, Picks};
 use super::neighbours::{Change, Neighbour, derivatives};
 use super::real::Solved;
-use super::responses::{self, Measured, Places};
+use super::responses::{self, MeasuredResponses, ResponsePlaces};
 use super::unstable::Sliding;
-use crate::calibration::{Computed, LIKE, Model, Span};
+use crate::calibration::{CalibrationModel, Computed, LIKE, Span};
 use crate::case::{Case, CeaAnalysis};
 use crate::error::{Error, Result};
 use crate::modal::RealModes;
@@ -23,14 +23,14 @@ use std::collections::BTreeMap;
 const RANGE: f64 = 1.4;
 
 /// Modes of one kind at the start, which all others are followed from.
-enum Start {
+enum LevelSource {
     Real { name: String, below_hz: f64, solved: Box<Solved>, sensors: Option<Sensors> },
     Unstable(Box<Sliding>),
 }
 
 /// One kind of modes.
 pub struct Set {
-    start: Start,
+    start: LevelSource,
     /// The modes of each level at the start.
     pub levels: Picks,
     /// Name of each level.
@@ -47,7 +47,7 @@ pub struct CaseModel<'a> {
     start: Vec<f64>,
     /// The kinds of modes, in the order of the facts.
     pub sets: Vec<Set>,
-    responses: &'a [Measured],
+    responses: &'a [MeasuredResponses],
 }
 
 impl<'a> CaseModel<'a> {
@@ -72,9 +72,9 @@ impl<'a> CaseModel<'a> {
         Ok(model)
     }
 
-    fn set(&self, prepared: &Prepared, facts: &Facts) -> Result<Set> {
+    fn set(&self, prepared: &Prepared, facts: &MeasuredModeSet) -> Result<Set> {
         match &facts.of {
-            Of::RealModes(name) => {
+            ModeKind::RealModes(name) => {
                 let highest = facts.modes.iter().fold(0.0f64, |m, mode| m.max(mode.frequency_hz));
                 let path = scale_path(name);
                 let scaled = self.coordinates.iter().filter(|c| c.parameter.path.contains(&path));
@@ -88,15 +88,15 @@ impl<'a> CaseModel<'a> {
                 let levels = solved.levels();
                 let names = solved.labels(&levels);
                 let like = levels.iter().map(|level| like(&solved, level, facts)).collect();
-                let start = Start::Real { name: name.clone(), below_hz, solved, sensors };
+                let start = LevelSource::Real { name: name.clone(), below_hz, solved, sensors };
                 Ok(Set { start, levels, names, like })
             }
-            Of::Unstable => {
+            ModeKind::Unstable => {
                 let sliding = Box::new(Sliding::new(prepared)?);
                 let levels = sliding.levels();
                 let names = sliding.names(&levels);
                 let like = vec![false; levels.len()];
-                Ok(Set { start: Start::Unstable(sliding), levels, names, like })
+                Ok(Set { start: LevelSource::Unstable(sliding), levels, names, like })
             }
         }
     }
@@ -139,8 +139,8 @@ impl<'a> CaseModel<'a> {
         let mut all = Vec::new();
         for set in &self.sets {
             match &set.start {
-                Start::Real { .. } => all.extend(set.levels.iter().map(|_| None)),
-                Start::Unstable(start) => {
+                LevelSource::Real { .. } => all.extend(set.levels.iter().map(|_| None)),
+                LevelSource::Unstable(start) => {
                     let here = Sliding::new(&prepared)?;
                     let picks = self.follow_sliding(start, &set.levels, (x, &here))?;
                     all.extend(here.growth(&picks));
@@ -157,16 +157,22 @@ impl<'a> CaseModel<'a> {
     }
 
     /// Structures to solve for a case: every set of real modes, then every frequency response.
-    fn views<'c>(&'c self, prepared: &Prepared<'c>, responses: &[Measured]) -> Result<Vec<View<'c>>> {
+    fn views<'c>(
+        &'c self,
+        prepared: &Prepared<'c>,
+        responses: &[MeasuredResponses],
+    ) -> Result<Vec<SolvedStructure<'c>>> {
         let real = self.sets.iter().filter_map(|set| match &set.start {
-            Start::Real { name, sensors, .. } => Some((name, sensors)),
-            Start::Unstable(_) => None,
+            LevelSource::Real { name, sensors, .. } => Some((name, sensors)),
+            LevelSource::Unstable(_) => None,
         });
         let part = |(name, sensors): (&'c String, &Option<Sensors>)| {
             let on = |sensors: &Sensors| sensors.on(prepared, &prepared.case.modes[name]);
-            Ok(View::Part(name, sensors.as_ref().map(on)))
+            Ok(SolvedStructure::Part(name, sensors.as_ref().map(on)))
         };
-        let whole = |measured: &Measured| Ok(View::Whole(Places::new(prepared, &measured.frf)?));
+        let whole = |measured: &MeasuredResponses| {
+            Ok(SolvedStructure::Whole(ResponsePlaces::new(prepared, &measured.frf)?))
+        };
         real.map(part).chain(responses.iter().map(whole)).collect()
     }
 
@@ -174,13 +180,13 @@ impl<'a> CaseModel<'a> {
     fn changes(
         &self,
         (case, prepared): (&Case, &Prepared),
-        views: &[View],
+        views: &[SolvedStructure],
         values: &[f64],
     ) -> Result<Vec<Option<Vec<Change>>>> {
         let of = |(c, value): (&Coordinate, &f64)| -> Result<Option<Vec<Change>>> {
             let scalars = scalars(case, c)?;
             let Some(first) =
-                scalars.iter().find(|s| s.kind == Kind::Structure).filter(|_| !views.is_empty())
+                scalars.iter().find(|s| s.kind == ScalarKind::Structure).filter(|_| !views.is_empty())
             else {
                 return Ok(None);
             };
@@ -198,7 +204,7 @@ impl<'a> CaseModel<'a> {
     }
 
     /// Every level, and the lines of `responses`, at `x`.
-    fn at(&self, x: &[f64], responses: &[Measured]) -> Result<Computed> {
+    fn at(&self, x: &[f64], responses: &[MeasuredResponses]) -> Result<Computed> {
         let case = self.case_at(x)?;
         let values = self.values(x);
         let prepared = Prepared::new(&case)?;
@@ -212,10 +218,10 @@ impl<'a> CaseModel<'a> {
         let mut levels = Vec::new();
         for set in &self.sets {
             match &set.start {
-                Start::Real { name, below_hz, solved, .. } => {
+                LevelSource::Real { name, below_hz, solved, .. } => {
                     let wanted = (name.as_str(), *below_hz);
                     let sensors = match views.next() {
-                        Some(View::Part(_, sensors)) => sensors,
+                        Some(SolvedStructure::Part(_, sensors)) => sensors,
                         _ => None,
                     };
                     let here = Solved::new(&prepared, wanted, sensors, Some(solved))?;
@@ -245,10 +251,10 @@ impl<'a> CaseModel<'a> {
                         Some(level)
                     }));
                 }
-                Start::Unstable(start) => {
+                LevelSource::Unstable(start) => {
                     let here = Sliding::new(&prepared)?;
                     let picks = self.follow_sliding(start, &set.levels, (x, &here))?;
-                    let unknowns: Vec<(Vec<Scalar>, f64)> = self
+                    let unknowns: Vec<(Vec<CaseScalar>, f64)> = self
                         .coordinates
                         .iter()
                         .zip(&values)
@@ -264,7 +270,7 @@ impl<'a> CaseModel<'a> {
         };
         let mut lines = Vec::new();
         for (measured, view) in responses.iter().zip(views) {
-            if let View::Whole(places) = view {
+            if let SolvedStructure::Whole(places) = view {
                 lines.extend(responses::lines(&prepared, (measured, &places), &of_view(), &ratios)?);
             }
         }
@@ -272,7 +278,7 @@ impl<'a> CaseModel<'a> {
     }
 }
 
-impl Model for CaseModel<'_> {
+impl CalibrationModel for CaseModel<'_> {
     fn compute(&self, x: &[f64]) -> Result<Computed> {
         self.at(x, self.responses)
     }
@@ -283,23 +289,23 @@ impl Model for CaseModel<'_> {
 }
 
 /// Structure to solve for a case.
-enum View<'c> {
+enum SolvedStructure<'c> {
     /// The structure of `[modes.NAME]`, and where its shapes were measured.
     Part(&'c String, Option<Sensors>),
     /// The whole, and the places of its frequency responses.
-    Whole(Places<'c>),
+    Whole(ResponsePlaces<'c>),
 }
 
-impl View<'_> {
+impl SolvedStructure<'_> {
     /// The same of a neighbouring case.
     fn of(&self, other: &Prepared) -> Result<Neighbour> {
         match self {
-            View::Part(name, sensors) => {
+            SolvedStructure::Part(name, sensors) => {
                 let assembled = part_assembled(other, name)?;
                 let forms = |s: &Sensors| s.forms(&other.model.nodes, &assembled.dofs);
                 Ok(Neighbour { seen: sensors.as_ref().map(forms).unwrap_or_default(), assembled })
             }
-            View::Whole(places) => {
+            SolvedStructure::Whole(places) => {
                 Ok(Neighbour { seen: places.forms(other), assembled: other.assembled.clone() })
             }
         }
@@ -309,7 +315,7 @@ impl View<'_> {
 /// ∂ζ/∂x of the modal damping of every real mode, in which it is linear; none by what it does not depend on.
 fn ratio_rates(case: &Case, c: &Coordinate, value: f64, real: &RealModes) -> Result<Option<Vec<f64>>> {
     let all = scalars(case, c)?;
-    let Some(first) = all.iter().find(|s| s.kind == Kind::Ratio) else { return Ok(None) };
+    let Some(first) = all.iter().find(|s| s.kind == ScalarKind::Ratio) else { return Ok(None) };
     let at = |step: f64| Ok((step, modal_ratios(&with(case, c, value + step)?, real)?));
     let (step, there) = at(first.step()).or_else(|_: Error| at(-first.step()))?;
     let rate = c.rate(value) / step;
@@ -318,7 +324,7 @@ fn ratio_rates(case: &Case, c: &Coordinate, value: f64, real: &RealModes) -> Res
 }
 
 /// Whether a measured shape is at all like a level.
-fn like(solved: &Solved, level: &[usize], facts: &Facts) -> bool {
+fn like(solved: &Solved, level: &[usize], facts: &MeasuredModeSet) -> bool {
     let Some(seen) = solved.seen() else { return false };
     let span = Span { motions: seen.motions(level), slopes: Vec::new() };
     facts.modes.iter().filter_map(|mode| mode.shape.as_ref()).any(|shape| span.mac(shape) >= LIKE)
@@ -344,7 +350,7 @@ fn with(case: &Case, c: &Coordinate, value: f64) -> Result<Case> {
 }
 
 /// The scalars that a number sets, those of them that modes depend on.
-pub fn scalars(case: &Case, c: &Coordinate) -> Result<Vec<Scalar>> {
+pub fn scalars(case: &Case, c: &Coordinate) -> Result<Vec<CaseScalar>> {
     let all = c.parameter.path.iter().map(|path| scalar(case, path)).collect::<Result<Vec<_>>>()?;
     Ok(all.into_iter().flatten().collect())
 }

@@ -5,7 +5,7 @@ use super::super::prepared::Prepared;
 use super::super::sensors::Sensors;
 use super::follow::{Picks, most_alike};
 use super::neighbours::Change;
-use super::shapes::{Observation, Seen};
+use super::shapes::{Observation, ObservedModes};
 use crate::calibration::Level;
 use crate::error::Result;
 use crate::linalg::multivector::gram;
@@ -55,9 +55,9 @@ impl Solved {
     }
 
     /// The modes as the test sees them, if it measured shapes.
-    pub fn seen(&self) -> Option<Seen<'_>> {
+    pub fn seen(&self) -> Option<ObservedModes<'_>> {
         let observation = self.observation.as_ref()?;
-        Some(Seen { structure: &self.assembled.structure, modes: &self.modes, observation })
+        Some(ObservedModes { structure: &self.assembled.structure, modes: &self.modes, observation })
     }
 
     fn n_dofs(&self) -> usize {

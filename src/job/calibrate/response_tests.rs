@@ -3,7 +3,7 @@ use super::super::samples::disc;
 use super::facts::measurements;
 use super::model::CaseModel;
 use super::*;
-use crate::calibration::{Line, Model};
+use crate::calibration::{CalibrationModel, ResponseLine};
 use crate::measured::Quantity;
 use crate::measured::uff::{Function, functions_file};
 use std::path::Path;
@@ -62,7 +62,7 @@ fn hz() -> Vec<f64> {
 
 /// The largest difference between slopes and differences (4 D(h) − D(2h))/3, over the largest slope, for each unknown.
 fn roughness(model: &CaseModel, h: f64) -> Vec<f64> {
-    let lines = |x: &[f64]| -> Vec<Line> { model.compute(x).unwrap().lines };
+    let lines = |x: &[f64]| -> Vec<ResponseLine> { model.compute(x).unwrap().lines };
     let here = lines(model.start());
     let one = |j: usize| {
         let at = |k: f64| {

@@ -1,13 +1,13 @@
 //! Frequency responses of the case beside measured ones, and how they follow the unknowns.
 
 use super::super::compare::matches;
-use super::super::frf::{Frf, frfs};
+use super::super::frf::{PreparedFrf, frfs};
 use super::super::measured::measured_set;
 use super::super::modes::modal_damping;
 use super::super::motion::Motion;
 use super::super::prepared::Prepared;
 use super::neighbours::Change;
-use crate::calibration::Line;
+use crate::calibration::ResponseLine;
 use crate::case::{FrfSolution, MeasuredData};
 use crate::error::{Fault, Faults, Result};
 use crate::linalg::multivector::gram;
@@ -30,7 +30,7 @@ const FLOOR: f64 = 0.05;
 
 /// Responses of one `[frf.NAME]` measured in a test.
 #[derive(Debug, Clone)]
-pub struct Measured {
+pub struct MeasuredResponses {
     /// The name of `[measured.NAME]`.
     pub name: String,
     /// That of `[frf.NAME]`.
@@ -76,11 +76,16 @@ impl Response {
 ///
 /// # Errors
 /// A file that cannot be read, responses of which none is of a place of the case, a band without lines.
-pub fn measured(prepared: &Prepared, name: &str, data: &MeasuredData, frf: &str) -> Result<Measured> {
+pub fn measured(
+    prepared: &Prepared,
+    name: &str,
+    data: &MeasuredData,
+    frf: &str,
+) -> Result<MeasuredResponses> {
     let (set, _) = measured_set(prepared.case, name)?;
     let all = frfs(prepared)?;
     let mut faults = Faults::new();
-    let mut found = Measured { name: name.to_string(), frf: frf.to_string(), responses: Vec::new() };
+    let mut found = MeasuredResponses { name: name.to_string(), frf: frf.to_string(), responses: Vec::new() };
     let key = |key: &str| format!("`measured.{name}.{key}`");
     let Some(wanted) = all.iter().find(|wanted| wanted.name() == frf) else { return Ok(found) };
     if wanted.slides() {
@@ -173,18 +178,18 @@ fn thinned(levels: &[f64], most: usize) -> Vec<usize> {
 }
 
 /// The places of a response, its force first, of which the forms are made on any mesh of the case.
-pub struct Places<'a> {
-    frf: Frf<'a>,
+pub struct ResponsePlaces<'a> {
+    frf: PreparedFrf<'a>,
 }
 
-impl<'a> Places<'a> {
+impl<'a> ResponsePlaces<'a> {
     /// Those of `[frf.NAME]`.
     ///
     /// # Errors
     /// Places that the mesh does not have.
-    pub fn new(prepared: &Prepared<'a>, name: &str) -> Result<Places<'a>> {
+    pub fn new(prepared: &Prepared<'a>, name: &str) -> Result<ResponsePlaces<'a>> {
         let found = frfs(prepared)?.into_iter().find(|frf| frf.name() == name);
-        Ok(Places { frf: found.expect("the case was checked for it") })
+        Ok(ResponsePlaces { frf: found.expect("the case was checked for it") })
     }
 
     fn motions(&self) -> impl Iterator<Item = &Motion> {
@@ -202,7 +207,7 @@ impl<'a> Places<'a> {
 pub type Ratios<'a> = dyn Fn(&RealModes) -> Result<Vec<Option<Vec<f64>>>> + 'a;
 
 /// Derivatives of the reduced matrices, VᵀAV.
-struct Small {
+struct ReducedMatrices {
     stiffness: Mat<f64>,
     mass: Mat<f64>,
     viscous: Mat<f64>,
@@ -210,7 +215,7 @@ struct Small {
 }
 
 /// Receptances at one frequency: of every place, and their slopes by every unknown.
-struct At {
+struct ReceptancesAt {
     values: Vec<c64>,
     slopes: Vec<Vec<c64>>,
 }
@@ -229,10 +234,10 @@ struct At {
 /// Modes that cannot be computed, a resonance that nothing damps.
 pub fn lines(
     prepared: &Prepared,
-    (measured, places): (&Measured, &Places),
+    (measured, places): (&MeasuredResponses, &ResponsePlaces),
     changes: &[Option<Change>],
     ratios: &Ratios,
-) -> Result<Vec<Line>> {
+) -> Result<Vec<ResponseLine>> {
     let wanted = &prepared.case.frf[&measured.frf];
     let forms = places.forms(prepared);
     let highest = measured
@@ -243,7 +248,7 @@ pub fn lines(
     let damping = |mass: &SparseMatrix, real: &RealModes| modal_damping(mass, real, prepared.case);
     let whole = Receptance::new(&prepared.system, None, (highest, &forms), &damping, &())?;
     let rates = ratios(&whole.real)?;
-    let small: Vec<Small> = changes
+    let small: Vec<ReducedMatrices> = changes
         .iter()
         .zip(&rates)
         .map(|(c, r)| reduced(&whole, c.as_ref(), r.as_deref(), wanted.solution))
@@ -252,7 +257,7 @@ pub fn lines(
     let steady = whole.reduced.steady(&whole.steady);
     let few = Harmonic::new(&whole.reduced.system, &steady)?;
     let full = Harmonic::new(&whole.system, &whole.steady)?;
-    let at = |hz: f64| -> Result<At> {
+    let at = |hz: f64| -> Result<ReceptancesAt> {
         let omega = TAU * hz;
         let (moved, own, few) = match wanted.solution {
             FrfSolution::Modes => {
@@ -268,7 +273,7 @@ pub fn lines(
         let u = moved.as_ref().unwrap_or(&few);
         let on = |form: &SparseVector, k: usize| -> c64 { form.iter().map(|(i, v)| u[(i, k)] * v).sum() };
         let count = forms.len() - 1;
-        let slope = |(small, change): (&Small, &Option<Change>)| -> Vec<c64> {
+        let slope = |(small, change): (&ReducedMatrices, &Option<Change>)| -> Vec<c64> {
             // ∂Z u_f: of the small matrices all of it, at full order the modal damping alone.
             let inner = |a: &Mat<f64>, k: usize| bilinear(&few, a, k);
             let sparse =
@@ -294,7 +299,7 @@ pub fn lines(
                 })
                 .collect()
         };
-        Ok(At {
+        Ok(ReceptancesAt {
             values: (1..=count).map(|k| on(&own[k], 0)).collect(),
             slopes: small.iter().zip(changes).map(slope).collect(),
         })
@@ -303,21 +308,27 @@ pub fn lines(
 }
 
 /// Lines at the measured frequencies, each frequency computed once by `at`.
-fn beside_measured(measured: &Measured, at: &(dyn Fn(f64) -> Result<At> + Sync)) -> Result<Vec<Line>> {
+fn beside_measured(
+    measured: &MeasuredResponses,
+    at: &(dyn Fn(f64) -> Result<ReceptancesAt> + Sync),
+) -> Result<Vec<ResponseLine>> {
     let mut all: Vec<f64> =
         measured.responses.iter().flat_map(|r| r.frequencies_hz.iter().copied()).collect();
     all.sort_by(f64::total_cmp);
     all.dedup();
-    let answers = all.par_iter().map(|hz| at(*hz)).collect::<Result<Vec<At>>>()?;
+    let answers = all.par_iter().map(|hz| at(*hz)).collect::<Result<Vec<ReceptancesAt>>>()?;
     let line = |response: &Response, hz: f64| {
         let answer = &answers[all.partition_point(|f| *f < hz)];
         let factor = response.quantity.factor(hz).norm();
         let h = answer.values[response.seen] * factor;
         let size = h.norm_sqr() + response.floor * response.floor;
         let slope = |slopes: &Vec<c64>| (h.conj() * slopes[response.seen] * factor).re / size;
-        Line { value: level(h.norm(), response.floor), slope: answer.slopes.iter().map(slope).collect() }
+        ResponseLine {
+            value: level(h.norm(), response.floor),
+            slope: answer.slopes.iter().map(slope).collect(),
+        }
     };
-    let of = |r: &Response| r.frequencies_hz.iter().map(|hz| line(r, *hz)).collect::<Vec<Line>>();
+    let of = |r: &Response| r.frequencies_hz.iter().map(|hz| line(r, *hz)).collect::<Vec<ResponseLine>>();
     Ok(measured.responses.iter().flat_map(of).collect())
 }
 
@@ -363,12 +374,12 @@ fn reduced(
     change: Option<&Change>,
     ratios: Option<&[f64]>,
     solution: FrfSolution,
-) -> Small {
+) -> ReducedMatrices {
     let v = whole.reduced.basis.as_ref();
     let size = whole.reduced.basis.ncols();
     let onto = |a: &SparseMatrix| gram(v, times(a, v).as_ref());
     let none = || Mat::<f64>::zeros(size, size);
-    let mut small = Small {
+    let mut small = ReducedMatrices {
         stiffness: change.map_or_else(none, |c| onto(&c.stiffness)),
         mass: change.map_or_else(none, |c| onto(&c.mass)),
         viscous: match (solution, change.and_then(|c| c.viscous.as_ref())) {

@@ -3,7 +3,7 @@ use super::super::samples::disc;
 use super::facts::measurements;
 use super::model::CaseModel;
 use super::*;
-use crate::calibration::Model;
+use crate::calibration::CalibrationModel;
 use crate::linalg::random::Random;
 use std::fmt::Write;
 use std::path::Path;

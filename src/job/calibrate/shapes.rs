@@ -27,7 +27,7 @@ pub struct Observation {
 }
 
 /// The modes of a structure that a test sees.
-pub struct Seen<'a> {
+pub struct ObservedModes<'a> {
     /// M and K.
     pub structure: &'a Structure,
     /// All modes up to a frequency.
@@ -36,7 +36,7 @@ pub struct Seen<'a> {
     pub observation: &'a Observation,
 }
 
-impl Seen<'_> {
+impl ObservedModes<'_> {
     /// Shapes of the modes `level` at the sensors, n_sensors × n_modes.
     pub fn motions(&self, level: &[usize]) -> DMatrix<f64> {
         self.observe(&self.observation.forms, level.iter().map(|k| self.modes.shapes.col_as_slice(*k)))
@@ -93,7 +93,7 @@ impl Seen<'_> {
     /// # Errors
     /// An iteration that does not converge.
     fn turned(&self, wanted: &[(usize, &[usize])], change: &Change) -> Result<Mat<f64>> {
-        let Seen { structure, modes, observation } = self;
+        let ObservedModes { structure, modes, observation } = self;
         let (n, shapes) = (modes.shapes.nrows(), modes.shapes.as_ref());
         let lambda: Vec<f64> = wanted.iter().map(|(k, _)| modes.eigenvalues[*k]).collect();
         let own = Mat::from_fn(n, wanted.len(), |i, c| modes.shapes[(i, wanted[c].0)]);

@@ -1,10 +1,10 @@
 use super::super::samples::disc;
 use super::coordinate::Coordinate;
-use super::facts::{Facts, measurements};
+use super::facts::{MeasuredModeSet, measurements};
 use super::model::CaseModel;
 use super::neighbours::Neighbour;
 use super::*;
-use crate::calibration::{Level, Model};
+use crate::calibration::{CalibrationModel, Level};
 use crate::case::Case;
 
 fn case(more: &str) -> Case {
@@ -174,8 +174,9 @@ fn measured_data_bring_their_own_deviations() {
     let more = "[modes.disc]\nbelow = \"3 kHz\"\n[measured.tap]\nof = \"disc\"\nfrequencies = [450, 900]\ndeviation = 0.01\n\
         [calibrate]\nagainst = \"tap\"\n[calibrate.parameter.scale]\npath = \"modes.disc.frequency_scale\"\n\
         between = [0.9, 1.1]\n";
-    let facts_of =
-        |more: &str| -> Result<Vec<Facts>> { Ok(measurements(&Prepared::new(&case(more)).unwrap())?.modes) };
+    let facts_of = |more: &str| -> Result<Vec<MeasuredModeSet>> {
+        Ok(measurements(&Prepared::new(&case(more)).unwrap())?.modes)
+    };
     let found = facts_of(more).unwrap();
     assert_eq!(found.len(), 1);
     let fact = |frequency_hz| Fact { frequency_hz, deviation: 0.01, shape: None };

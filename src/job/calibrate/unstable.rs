@@ -3,7 +3,7 @@
 use super::super::clock::Clock;
 use super::super::complex::complex_result;
 use super::super::prepared::Prepared;
-use super::super::scalars::Scalar;
+use super::super::scalars::CaseScalar;
 use super::super::sensitivity::Analysed;
 use super::follow::{Picks, most_alike};
 use crate::calibration::Level;
@@ -79,7 +79,7 @@ impl Sliding {
         &self,
         prepared: &Prepared,
         levels: &Picks,
-        unknowns: &[(Vec<Scalar>, f64)],
+        unknowns: &[(Vec<CaseScalar>, f64)],
     ) -> Result<Vec<Option<Level>>> {
         let found: Vec<usize> = levels.iter().filter_map(|level| level.first().copied()).collect();
         let modes: Vec<&ComplexMode> = found.iter().map(|k| &self.modes()[*k]).collect();

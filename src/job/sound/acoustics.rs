@@ -1,4 +1,4 @@
-//! The plates of a case as the air sees them, and where one listens.
+//! Radiating plates, microphones and air of a case.
 
 use super::super::prepared::Prepared;
 use crate::case::{ON_AXIS, SoundAnalysis};

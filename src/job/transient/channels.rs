@@ -1,16 +1,16 @@
 //! The channels of a run in time: the name, the unit and the value of each.
 
-use super::places::{Gauge, Probe};
+use super::places::{Gauge, ProbePlace};
 use crate::equilibrium::SteadySliding;
 use crate::linalg::{SparseVector, c64};
 use crate::results::{Channel, TouchState};
 use crate::system::System;
-use crate::transient::{Marched, Model};
+use crate::transient::{Marched, TransientModel};
 use std::sync::Arc;
 
 /// A step from which a row is made.
-pub(super) struct Sample<'s> {
-    pub(super) model: &'s Model<'s>,
+pub(super) struct ChannelSample<'s> {
+    pub(super) model: &'s TransientModel<'s>,
     pub(super) marched: &'s Marched,
     /// Contact points in each state of [`TouchState::ALL`].
     pub(super) counts: [usize; TouchState::ALL.len()],
@@ -18,18 +18,18 @@ pub(super) struct Sample<'s> {
     pub(super) amplitude: c64,
 }
 
-impl Sample<'_> {
+impl ChannelSample<'_> {
     /// Displacement, velocity or acceleration (0, 1, 2) of all degrees of freedom.
     fn motion(&self, derivative: usize) -> &[f64] {
         self.marched.state.motion.col_as_slice(derivative)
     }
 }
 
-type Value = Box<dyn Fn(&Sample<'_>) -> f64 + Send + Sync>;
+type ChannelValue = Box<dyn Fn(&ChannelSample<'_>) -> f64 + Send + Sync>;
 
 /// A channel to show, and the peaks that were measured in its place \[Hz\].
 #[derive(Debug, Clone)]
-pub(super) struct Shown {
+pub(super) struct ShownChannel {
     pub(super) channel: usize,
     pub(super) measured: Vec<f64>,
 }
@@ -38,9 +38,9 @@ pub(super) struct Shown {
 #[derive(Default)]
 pub(super) struct Channels {
     pub(super) described: Vec<Channel>,
-    values: Vec<Value>,
+    values: Vec<ChannelValue>,
     /// The channels to show: acceleration, friction, and the force in the first load cell, those of them that there are.
-    pub(super) shown: Vec<Shown>,
+    pub(super) shown: Vec<ShownChannel>,
     /// The channel of the penetration of the most loaded point; its slip follows.
     pub(super) penetration: usize,
     /// The channels that count the points that stick, slip backwards and slip forwards begin here.
@@ -55,7 +55,7 @@ impl Channels {
     pub(super) fn new(
         system: &System,
         steady: &SteadySliding,
-        (probes, gauges): (&[Probe], Vec<Gauge>),
+        (probes, gauges): (&[ProbePlace], Vec<Gauge>),
         point: usize,
         disturbed: bool,
     ) -> Self {
@@ -73,7 +73,7 @@ impl Channels {
     }
 
     /// The values of a step, one a channel.
-    pub(super) fn row<'r>(&'r self, sample: &'r Sample<'_>) -> impl Iterator<Item = f64> + 'r {
+    pub(super) fn row<'r>(&'r self, sample: &'r ChannelSample<'_>) -> impl Iterator<Item = f64> + 'r {
         self.values.iter().map(|value| value(sample))
     }
 
@@ -82,7 +82,7 @@ impl Channels {
         name: impl Into<String>,
         unit: &'static str,
         about: impl Into<String>,
-        value: impl Fn(&Sample<'_>) -> f64 + Send + Sync + 'static,
+        value: impl Fn(&ChannelSample<'_>) -> f64 + Send + Sync + 'static,
     ) -> usize {
         self.described.push(Channel::new(name.into(), unit, about.into()));
         self.values.push(Box::new(value));
@@ -90,13 +90,13 @@ impl Channels {
     }
 
     /// Motion along a direction: dᵀ(u − u₀), dᵀu̇, dᵀü.
-    fn probes(&mut self, probes: &[Probe], steady: &SteadySliding) {
-        for Probe { name, place, measured, direction } in probes {
+    fn probes(&mut self, probes: &[ProbePlace], steady: &SteadySliding) {
+        for ProbePlace { name, place, measured, direction } in probes {
             let origin = direction.dot(&steady.displacement);
             let direction = Arc::new(direction.clone());
             let along = |derivative: usize| {
                 let direction = direction.clone();
-                move |sample: &Sample<'_>| direction.dot(sample.motion(derivative))
+                move |sample: &ChannelSample<'_>| direction.dot(sample.motion(derivative))
             };
             let displacement = along(0);
             let about = format!("displacement at {name} ({place}), from steady sliding");
@@ -106,22 +106,22 @@ impl Channels {
             let about = format!("acceleration at {name} ({place})");
             let channel = self.add(format!("{name}_acceleration"), "m/s^2", about, along(2));
             if self.shown.is_empty() {
-                self.shown.push(Shown { channel, measured: measured.clone() });
+                self.shown.push(ShownChannel { channel, measured: measured.clone() });
             }
         }
     }
 
     /// Forces kᵀu + cᵀu̇ in springs; gives the first of them.
-    fn gauges(&mut self, gauges: Vec<Gauge>) -> Option<Shown> {
+    fn gauges(&mut self, gauges: Vec<Gauge>) -> Option<ShownChannel> {
         let mut first = None;
         for Gauge { name, spring, stiffness, damping, measured, .. } in gauges {
-            let force = move |sample: &Sample<'_>| {
+            let force = move |sample: &ChannelSample<'_>| {
                 let part = |row: &SparseVector, derivative| row.dot(sample.motion(derivative));
                 part(&stiffness, 0) + part(&damping, 1)
             };
             let channel =
                 self.add(format!("{name}_force"), "N", format!("force in the spring {spring}"), force);
-            first.get_or_insert(Shown { channel, measured });
+            first.get_or_insert(ShownChannel { channel, measured });
         }
         first
     }
@@ -134,7 +134,7 @@ impl Channels {
             first = points.end;
             let sum = |component: usize| {
                 let points = points.clone();
-                move |sample: &Sample<'_>| -> f64 {
+                move |sample: &ChannelSample<'_>| -> f64 {
                     points.clone().map(|p| sample.marched.state.contact_forces(p)[component]).sum()
                 }
             };
@@ -143,22 +143,22 @@ impl Channels {
             let about = format!("sum of friction of {name} on the body along the sliding direction");
             let friction = self.add(format!("{name}_friction_force"), "N", about, sum(1));
             let about = format!("velocity of the counter-body of {name}");
-            let speed = move |sample: &Sample<'_>| sample.marched.state.speeds()[k];
+            let speed = move |sample: &ChannelSample<'_>| sample.marched.state.speeds()[k];
             self.add(format!("{name}_sliding_velocity"), "m/s", about, speed);
             if k == 0 {
-                self.shown.push(Shown { channel: friction, measured: Vec::new() });
+                self.shown.push(ShownChannel { channel: friction, measured: Vec::new() });
             }
         }
     }
 
     /// Penetration and slip of the most loaded point, and how many points are in each state; zero without contact.
     fn contact(&mut self, point: usize, touches: bool) {
-        let deep = move |sample: &Sample<'_>| {
+        let deep = move |sample: &ChannelSample<'_>| {
             if touches { sample.marched.state.penetration(point) } else { 0.0 }
         };
         let about = "of the point that carries most in steady sliding";
         self.penetration = self.add("penetration", "m", about, deep);
-        let slip = move |sample: &Sample<'_>| {
+        let slip = move |sample: &ChannelSample<'_>| {
             if touches { sample.marched.state.slip_velocity(sample.model, point)[0] } else { 0.0 }
         };
         self.add("slip_velocity", "m/s", "of the same point along the sliding direction", slip);
@@ -171,7 +171,7 @@ impl Channels {
             ("points_forwards", "slip as the counter-body moves", TouchState::Forwards),
         ];
         let numbers = states.map(|(name, words, state)| {
-            let count = move |sample: &Sample<'_>| sample.counts[state as usize] as f64;
+            let count = move |sample: &ChannelSample<'_>| sample.counts[state as usize] as f64;
             self.add(name, "1", format!("contact points that {words}"), count)
         });
         self.states = numbers.first().copied();

@@ -1,6 +1,6 @@
 //! Results of a whole record, read back from its sink in parts.
 
-use super::channels::Shown;
+use super::channels::ShownChannel;
 use super::history_writer::HistoryWriter;
 use crate::error::Result;
 use crate::results::{GrowthCompared, SpectrumOf};
@@ -45,7 +45,7 @@ impl HistoryWriter<'_, '_> {
     }
 
     /// The spectrum of the second half of a channel, and its peaks up to `top_hz`.
-    fn spectrum_of(&self, shown: &Shown, rows: usize, step: f64, top_hz: f64) -> Result<SpectrumOf> {
+    fn spectrum_of(&self, shown: &ShownChannel, rows: usize, step: f64, top_hz: f64) -> Result<SpectrumOf> {
         let first = rows / 2;
         let length = (rows - first).min(AT_ONCE) * 2 / (SEGMENTS + 1);
         let mut welch = Welch::new(length, step);
@@ -59,7 +59,7 @@ impl HistoryWriter<'_, '_> {
         let mut peaks = signal::peaks(&lines, FLOOR, PEAKS);
         signal::name_peaks(&mut peaks, 0.5 * spectrum.resolution_hz);
         let window = [first as f64 * step, rows.saturating_sub(1) as f64 * step];
-        let Shown { channel, measured } = shown.clone();
+        let ShownChannel { channel, measured } = shown.clone();
         Ok(SpectrumOf { channel, window, spectrum, peaks, measured, beyond })
     }
 

@@ -3,9 +3,9 @@
 use super::recorder::Recorder;
 use super::snapshots::Snapshots;
 use crate::error::{Error, Fault, Result};
-use crate::job::sink::{ResultSink, Stage};
-use crate::results::{Field, Piece, Recording};
-use crate::transient::{Checkpoint, Marched, Model, Plan, State};
+use crate::job::sink::{ResultSink, ResultStage};
+use crate::results::{FieldSnapshot, RecordPiece, Recording};
+use crate::transient::{Checkpoint, Marched, Plan, State, TransientModel};
 use std::time::{Duration, Instant};
 
 /// Rows of a piece, at most.
@@ -37,7 +37,7 @@ impl<'a, 'k> HistoryWriter<'a, 'k> {
     ///
     /// # Errors
     /// Input: what the earlier run left is not of this model.
-    pub(super) fn begin(&mut self, start: State, model: &Model<'_>, plan: &Plan) -> Result<Marched> {
+    pub(super) fn begin(&mut self, start: State, model: &TransientModel<'_>, plan: &Plan) -> Result<Marched> {
         let mut marched = Marched::from(start);
         self.recorder.take(&marched);
         let earlier = self.sink.stopped()?;
@@ -47,7 +47,7 @@ impl<'a, 'k> HistoryWriter<'a, 'k> {
             self.recorder.restore(checkpoint, &marched)?;
             self.first = marched.step + 1;
         }
-        self.sink.record(Stage::TransientBegins(&Recording {
+        self.sink.record(ResultStage::TransientBegins(&Recording {
             time_step: plan.step,
             rows: plan.steps + 1,
             done: self.first,
@@ -96,8 +96,8 @@ impl<'a, 'k> HistoryWriter<'a, 'k> {
             let checkpoint = self.checkpoint(marched);
             let Recorder { values, events, modal, .. } = &self.recorder;
             let modal = modal.as_ref().map_or(&[][..], |modal| &modal.rows);
-            let piece = Piece { first: self.first, values, modal, events, checkpoint: &checkpoint };
-            self.sink.record(Stage::TransientPiece(&piece))?;
+            let piece = RecordPiece { first: self.first, values, modal, events, checkpoint: &checkpoint };
+            self.sink.record(ResultStage::TransientPiece(&piece))?;
             self.first += self.recorder.rows();
             self.recorder.forget();
         }
@@ -111,7 +111,7 @@ impl<'a, 'k> HistoryWriter<'a, 'k> {
         let Some(snapshots) = self.snapshots.as_ref().filter(due) else { return Ok(()) };
         let number = marched.step / snapshots.every;
         let [displacement, velocity] = &snapshots.take(&marched.state);
-        self.sink.record(Stage::TransientField(&Field { number, displacement, velocity }))
+        self.sink.record(ResultStage::TransientField(&FieldSnapshot { number, displacement, velocity }))
     }
 
     fn checkpoint(&self, marched: &Marched) -> Checkpoint {

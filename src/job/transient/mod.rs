@@ -2,44 +2,44 @@
 //!
 //! [`places`] says what acts and where motion is recorded, `along` finds the complex mode to start along, `recorder`
 //! makes a row of every step, `snapshots` take the motion of all nodes now and then, `history_writer` hands the rows on a piece at
-//! a time, so that memory does not grow with the run, and `findings`, `watched` and `modal` read them back in parts: spectra and growth, what the pictures show, what is heard.
+//! a time, so that memory does not grow with the run, and `findings`, `diagnostics` and `modal` read them back in parts: spectra and growth, what the pictures show, what is heard.
 
 mod along;
 mod channels;
+mod diagnostics;
 mod findings;
-mod heard;
 mod history_writer;
 mod in_time;
 mod modal;
 mod places;
+mod recorded_sound;
 mod recorder;
 mod reduced_check;
 mod snapshots;
 mod start;
 mod step;
-mod watched;
 
 pub use in_time::InTime;
-pub use places::{Places, places};
+pub use places::{TransientPlaces, places};
 
-use super::course::profile;
 use super::sink::ResultSink;
+use super::time_function::profile;
 use crate::case::{ModelChoice, SchemeChoice, TransientAnalysis};
 use crate::error::{Error, Result};
 use crate::linalg::SparseVector;
 use crate::progress::Observer;
 use crate::reduction::{Reduced, reduce};
 use crate::results::TransientResult;
-use crate::sound::Listener;
+use crate::sound::SoundAccumulator;
 use crate::system::System;
-use crate::transient::{Marched, Method, Model, Plan, Profile, Scheme, State, resume};
+use crate::transient::{Marched, Plan, Scheme, State, StepMethod, TimeProfile, TransientModel, resume};
 use along::Along;
 use history_writer::HistoryWriter;
 use modal::ModalMotion;
 use recorder::Recorder;
 use reduced_check::{first_steps, reduced_check};
 use snapshots::Snapshots;
-use start::Start;
+use start::InitialState;
 
 /// Peaks and spectrograms reach this many times as high as the band of the complex eigenvalues: modes above it are neither
 /// damped nor resolved as those in it are.
@@ -53,7 +53,7 @@ impl InTime<'_> {
     pub fn run(
         &self,
         wanted: &TransientAnalysis,
-        places: Places,
+        places: TransientPlaces,
         sink: &mut dyn ResultSink,
         observer: &dyn Observer,
     ) -> Result<TransientResult> {
@@ -66,18 +66,18 @@ impl InTime<'_> {
             ModelChoice::Full => None,
             ModelChoice::Reduced => Some(self.on_reduced(&mut places, &mut disturbed)?),
         };
-        let Places { pushes, probes, gauges, tracks, acoustics, .. } = places;
-        let Start { state: origin, at_rest } = start;
+        let TransientPlaces { pushes, probes, gauges, tracks, acoustics, .. } = places;
+        let InitialState { state: origin, at_rest } = start;
         let small = reduced.as_ref().map(|reduced| reduced.steady(&origin));
         let steady = small.as_ref().unwrap_or(&origin);
         let system = reduced.as_ref().map_or(self.system, |reduced| &reduced.system);
-        let profiles: Vec<Profile> = self
+        let profiles: Vec<TimeProfile> = self
             .system
             .pairs
             .iter()
             .map(|pair| profile(wanted.slide.get(&pair.name).map(|s| &s.course)))
             .collect();
-        let model = Model::new(system, steady)?
+        let model = TransientModel::new(system, steady)?
             .driven(profiles, pushes)
             .loaded(loadings)
             .travelling(tracks.iter().map(Option::as_ref).collect());
@@ -98,9 +98,10 @@ impl InTime<'_> {
         // Real modes are complete up to their highest.
         let highest = (0..self.real.len()).map(|k| self.real.frequency_hz(k)).fold(0.0, f64::max);
         let modes = (&self.real.shapes, highest);
-        let listener = acoustics.map(|acoustics| Listener::new(acoustics, modes, (plan.step, steps)));
+        let accumulator =
+            acoustics.map(|acoustics| SoundAccumulator::new(acoustics, modes, (plan.step, steps)));
         let mass = reduced.is_none().then_some(&*self.system.structure.mass);
-        let modal = listener.as_ref().map(|_| ModalMotion::new(self.real, mass));
+        let modal = accumulator.as_ref().map(|_| ModalMotion::new(self.real, mass));
         let mut recorder = Recorder::new(system, steady, &model, (probes, gauges), disturbed, modal);
         if let Some(motion) = recorder.shown.first_mut().filter(|shown| shown.measured.is_empty()) {
             motion.measured = self.complex.measured_squeal_hz.iter().map(|(hz, _)| *hz).collect();
@@ -111,8 +112,10 @@ impl InTime<'_> {
         let share = |count: usize| count as f64 / (steps + 1) as f64;
         let top = WATCHED * self.complex.band_hz[1];
         let found = history_writer.findings(steps + 1, plan.step, top)?;
-        let watched = history_writer.watched(steps + 1, plan.step, &found.spectra, top)?;
-        let sound = listener.map(|listener| history_writer.heard(listener, steps + 1)).transpose()?;
+        let diagnostics = history_writer.diagnostics(steps + 1, plan.step, &found.spectra, top)?;
+        let sound = accumulator
+            .map(|accumulator| history_writer.recorded_sound(accumulator, steps + 1))
+            .transpose()?;
         let first = |name: &str, count: usize| history_writer.sink.recorded(name, 0..count);
         let own = (self.steady, self.complex);
         let check = |reduced| reduced_check(reduced, own, beside.as_ref(), &first, observer);
@@ -135,14 +138,14 @@ impl InTime<'_> {
             worst_residual: marched.worst_residual,
             split: marched.split,
             parts: marched.control.parts,
-            watched,
+            diagnostics,
             sound,
         })
     }
 
     /// The reduced model, on which all places and the disturbed mode stand from then on.
-    fn on_reduced(&self, places: &mut Places, disturbed: &mut Option<Along>) -> Result<Reduced> {
-        let Places { pushes, probes, gauges, tracks, .. } = places;
+    fn on_reduced(&self, places: &mut TransientPlaces, disturbed: &mut Option<Along>) -> Result<Reduced> {
+        let TransientPlaces { pushes, probes, gauges, tracks, .. } = places;
         let stations = tracks.iter().flatten().flat_map(|track| track.stations.iter().flatten());
         let stations = stations.flat_map(|point| [&point.normal, &point.tangents[0], &point.tangents[1]]);
         let pushed = pushes.iter().map(|push| &push.direction);
@@ -164,7 +167,7 @@ impl InTime<'_> {
 /// Marches to the end; what was recorded is written, whatever comes.
 fn march_on(
     writer: &mut HistoryWriter,
-    (model, plan): (&Model, &Plan),
+    (model, plan): (&TransientModel, &Plan),
     marched: &mut Marched,
     observer: &dyn Observer,
 ) -> Result<()> {
@@ -182,7 +185,7 @@ fn plan(wanted: &TransientAnalysis) -> Plan {
         scheme: scheme(wanted.scheme).0,
         step: wanted.time_step,
         steps: places::steps(wanted.duration, wanted.time_step),
-        method: if wanted.full_newton { Method::FullNewton } else { Method::Condensed },
+        method: if wanted.full_newton { StepMethod::FullNewton } else { StepMethod::Condensed },
         tolerance: wanted.tolerance,
     }
 }

@@ -5,10 +5,10 @@ use crate::case::{FrictionCurve, TransientAnalysis};
 use crate::contact::Coulomb;
 use crate::error::{Error, Fault, Faults, Result};
 use crate::job::contacts::with_laws;
-use crate::job::course::profile;
 use crate::job::motion::{Motion, motion};
 use crate::job::prepared::Prepared;
 use crate::job::sound::acoustics;
+use crate::job::time_function::profile;
 use crate::job::travel::tracks;
 use crate::linalg::SparseVector;
 use crate::results::RecordSize;
@@ -18,10 +18,10 @@ use crate::transient::{self, Pulse, Push, Track};
 
 /// Loads on the structure in time, and the places where its motion is recorded.
 #[derive(Debug, Clone)]
-pub struct Places {
+pub struct TransientPlaces {
     pub(super) pushes: Vec<Push>,
     /// Where motion is recorded.
-    pub(super) probes: Vec<Probe>,
+    pub(super) probes: Vec<ProbePlace>,
     /// Load cells.
     pub(super) gauges: Vec<Gauge>,
     /// How the contact points of each pair travel.
@@ -32,7 +32,7 @@ pub struct Places {
     pub(super) acoustics: Option<Acoustics>,
 }
 
-impl Places {
+impl TransientPlaces {
     /// Smallest record of a run to a folder, without sound and without the rows of an earlier run.
     pub(in crate::job) fn least_record(
         &self,
@@ -72,7 +72,7 @@ pub(super) fn steps(time: f64, step: f64) -> usize {
 ///
 /// # Errors
 /// Every name that the mesh does not have, and damping that time does not know.
-pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Places> {
+pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<TransientPlaces> {
     transient::refuse_hysteretic(&prepared.system)?;
     let mut faults = Faults::new();
     faults.take(check_step(&prepared.system.structure, wanted.time_step));
@@ -101,9 +101,14 @@ pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Pla
         let (on, direction) = (probe.on.as_deref(), probe.direction.unwrap_or_default());
         let found = motion(prepared, on, probe.at, direction, &format!("transient.probe.{name}"));
         let (name, measured) = (name.clone(), probe.measured.clone());
-        probes.push(found.map(|Motion { place, direction, .. }| Probe { name, place, direction, measured }));
+        probes.push(found.map(|Motion { place, direction, .. }| ProbePlace {
+            name,
+            place,
+            direction,
+            measured,
+        }));
     }
-    let probes: Vec<Probe> = probes.into_iter().filter_map(|probe| faults.take(probe)).collect();
+    let probes: Vec<ProbePlace> = probes.into_iter().filter_map(|probe| faults.take(probe)).collect();
     let gauges: Vec<Gauge> = gauges.into_iter().filter_map(|gauge| faults.take(gauge)).collect();
     let tracks = faults.take(tracks(prepared, wanted)).unwrap_or_default();
     let mut smooth = prepared.case.clone();
@@ -113,12 +118,12 @@ pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Pla
         .for_each(|contact| contact.friction.law = FrictionCurve::Coulomb { law: Coulomb { mu0: 0.0 } });
     let still = faults.take(with_laws(&prepared.system.pairs, &smooth)).unwrap_or_default();
     let acoustics = wanted.sound.as_ref().and_then(|sound| faults.take(acoustics(prepared, sound)));
-    faults.into_result(Places { pushes, probes, gauges, tracks, still, acoustics })
+    faults.into_result(TransientPlaces { pushes, probes, gauges, tracks, still, acoustics })
 }
 
 /// A place whose motion is recorded.
 #[derive(Debug, Clone)]
-pub struct Probe {
+pub struct ProbePlace {
     pub(super) name: String,
     /// Where it is, in words.
     pub(super) place: String,

@@ -1,19 +1,19 @@
 //! Recorder of the channels of every step.
 
 use super::along::Along;
-use super::channels::{Channels, Sample, Shown};
+use super::channels::{ChannelSample, Channels, ShownChannel};
 use super::modal::ModalMotion;
-use super::places::{Gauge, Probe};
+use super::places::{Gauge, ProbePlace};
 use crate::equilibrium::SteadySliding;
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::results::{Channel, TouchState};
 use crate::system::System;
-use crate::transient::{Checkpoint, Event, EventKind, Marched, Model, State, Watch};
+use crate::transient::{Checkpoint, Event, EventKind, Marched, State, TransientModel, Watch};
 
 /// Makes a row of every step: a value for each channel. Holds the rows that are not yet written.
 pub(super) struct Recorder<'a> {
-    model: &'a Model<'a>,
+    model: &'a TransientModel<'a>,
     /// The name of the pair of every contact point.
     pub(super) named: Vec<String>,
     /// The points of each pair.
@@ -27,7 +27,7 @@ pub(super) struct Recorder<'a> {
     /// Name, unit and story of each channel.
     pub(super) described: Vec<Channel>,
     /// The channels to show: acceleration, friction, and the force in the first load cell, those of them that there are.
-    pub(super) shown: Vec<Shown>,
+    pub(super) shown: Vec<ShownChannel>,
     pub(super) along: Option<Along>,
     /// The rows at hand, by channel.
     pub(super) values: Vec<Vec<f64>>,
@@ -53,8 +53,8 @@ impl<'a> Recorder<'a> {
     pub(super) fn new(
         system: &System,
         steady: &'a SteadySliding,
-        model: &'a Model<'a>,
-        (mut probes, gauges): (Vec<Probe>, Vec<Gauge>),
+        model: &'a TransientModel<'a>,
+        (mut probes, gauges): (Vec<ProbePlace>, Vec<Gauge>),
         along: Option<Along>,
         modal: Option<ModalMotion>,
     ) -> Self {
@@ -66,7 +66,7 @@ impl<'a> Recorder<'a> {
         {
             let direction = place.tangents[0].clone();
             let place = "the point that carries most".into();
-            probes.push(Probe { name: "contact".into(), place, direction, measured: Vec::new() });
+            probes.push(ProbePlace { name: "contact".into(), place, direction, measured: Vec::new() });
         }
         let mut channels = Channels::new(system, steady, (&probes, gauges), point, along.is_some());
         let mut first = 0;
@@ -100,7 +100,7 @@ impl<'a> Recorder<'a> {
     pub(super) fn take(&mut self, marched: &Marched) {
         let state = &marched.state;
         let (counts, amplitude) = (self.look(state), self.amplitude(state));
-        let sample = Sample { model: self.model, marched, counts, amplitude };
+        let sample = ChannelSample { model: self.model, marched, counts, amplitude };
         self.values.iter_mut().zip(self.channels.row(&sample)).for_each(|(all, value)| all.push(value));
         if let Some(modal) = &mut self.modal {
             modal.take(state.motion.col_as_slice(2));
@@ -182,7 +182,7 @@ impl<'a> Recorder<'a> {
 }
 
 /// State of a contact point of a pair.
-fn does(model: &Model<'_>, state: &State, pair: usize, point: usize) -> TouchState {
+fn does(model: &TransientModel<'_>, state: &State, pair: usize, point: usize) -> TouchState {
     if state.contact_forces(point)[0] == 0.0 {
         TouchState::Open
     } else if state.sticks(point) {

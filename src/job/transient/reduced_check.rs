@@ -1,11 +1,11 @@
 //! A reduced model beside the full one: its complex eigenvalues, and the first steps of the motion.
 
 use super::in_time::InTime;
-use super::places::Places;
+use super::places::TransientPlaces;
 use crate::case::{ModelChoice, TransientAnalysis};
 use crate::equilibrium::SteadySliding;
 use crate::error::Result;
-use crate::job::sink::{Histories, Memory, Stage};
+use crate::job::sink::{Histories, Memory, ResultStage};
 use crate::linalg::c64;
 use crate::modal::{RealModes, SturmCertificate};
 use crate::progress::Observer;
@@ -29,7 +29,7 @@ const DISPLACEMENT: &str = "_displacement";
 pub(super) fn first_steps(
     run: &InTime<'_>,
     wanted: &TransientAnalysis,
-    places: &Places,
+    places: &TransientPlaces,
     observer: &dyn Observer,
 ) -> Result<Option<Histories>> {
     let Some(steps) = wanted.compare_steps.filter(|steps| *steps > 0) else { return Ok(None) };
@@ -40,8 +40,8 @@ pub(super) fn first_steps(
         duration: wanted.duration.min(steps as f64 * wanted.time_step),
         ..wanted.clone()
     };
-    let places = Places { acoustics: None, ..places.clone() };
-    let mut nowhere = |_: Stage<'_>| Ok(());
+    let places = TransientPlaces { acoustics: None, ..places.clone() };
+    let mut nowhere = |_: ResultStage<'_>| Ok(());
     let mut memory = Memory::new(&mut nowhere);
     run.run(&full, places, &mut memory, observer)?;
     Ok(Some(memory.histories))

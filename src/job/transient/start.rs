@@ -1,11 +1,11 @@
 //! Where a run in time begins, and how the approach of a pair follows a load that runs in time.
 
 use super::in_time::InTime;
-use super::places::Places;
+use super::places::TransientPlaces;
 use crate::case::{StartChoice, TransientAnalysis};
 use crate::equilibrium::{SteadyOptions, SteadySliding, solve_steady};
 use crate::error::Result;
-use crate::job::course::profile;
+use crate::job::time_function::profile;
 use crate::system::{Closing, System};
 use crate::transient::Loading;
 
@@ -15,7 +15,7 @@ const EQUILIBRIA: usize = 33;
 const NO_LOAD: f64 = 1e-6;
 
 /// How a run begins.
-pub(super) struct Start {
+pub(super) struct InitialState {
     /// The equilibrium it begins at.
     pub(super) state: SteadySliding,
     /// Whether nothing has slid yet.
@@ -27,7 +27,7 @@ impl InTime<'_> {
     ///
     /// # Errors
     /// No equilibrium.
-    pub(super) fn start(&self, wanted: &TransientAnalysis, places: &Places) -> Result<Start> {
+    pub(super) fn start(&self, wanted: &TransientAnalysis, places: &TransientPlaces) -> Result<InitialState> {
         let velocity = |name: &str| profile(wanted.slide.get(name).map(|slide| &slide.course)).factor(0.0);
         let load = |name: &str| profile(wanted.load.get(name)).factor(0.0);
         let at_rest = wanted.start == StartChoice::Rest
@@ -35,7 +35,7 @@ impl InTime<'_> {
         let as_given = |name: &str| velocity(name) == 1.0 && load(name) == 1.0;
         let pushed = places.pushes.iter().any(|push| push.factor(0.0) != 0.0);
         if !at_rest && !pushed && self.system.pairs.iter().all(|pair| as_given(&pair.name)) {
-            return Ok(Start { state: self.steady.clone(), at_rest });
+            return Ok(InitialState { state: self.steady.clone(), at_rest });
         }
         let mut system = self.system.clone();
         for (pair, still) in system.pairs.iter_mut().zip(&places.still) {
@@ -49,7 +49,7 @@ impl InTime<'_> {
         for push in &places.pushes {
             push.direction.add_to(push.factor(0.0), &mut system.load);
         }
-        Ok(Start { state: solve_steady(&system, &SteadyOptions::default(), &())?, at_rest })
+        Ok(InitialState { state: solve_steady(&system, &SteadyOptions::default(), &())?, at_rest })
     }
 
     /// How the approach of each pair follows its load, where that runs in time.

@@ -5,7 +5,7 @@ use crate::error::{Error, Fault, Result};
 use std::borrow::Cow;
 
 /// A line with its number.
-pub(super) struct Line<'a> {
+pub(super) struct DatasetLine<'a> {
     pub text: Cow<'a, str>,
     pub number: usize,
 }
@@ -15,7 +15,7 @@ pub(super) struct Dataset<'a> {
     /// Number of the type of dataset.
     pub kind: u32,
     /// Its lines of text.
-    pub lines: Vec<Line<'a>>,
+    pub lines: Vec<DatasetLine<'a>>,
     /// Its numbers, where they are binary.
     pub binary: Option<Binary<'a>>,
     /// The file's name.

@@ -1,7 +1,7 @@
 //! A universal file cut into its datasets: text lines, and for a binary one its bytes.
 
-use super::dataset::{Binary, Dataset, Line, shown};
-use super::form::Form;
+use super::dataset::{Binary, Dataset, DatasetLine, shown};
+use super::form::ValueLayout;
 use super::record::whole;
 use crate::error::{Error, Fault, Result};
 
@@ -9,20 +9,20 @@ use crate::error::{Error, Fault, Result};
 const HEADER: usize = 11;
 
 /// Reads lines from the front of a file.
-struct Cursor<'a> {
+struct FileCursor<'a> {
     bytes: &'a [u8],
     at: usize,
     number: usize,
 }
 
-impl<'a> Cursor<'a> {
-    fn line(&mut self) -> Option<Line<'a>> {
+impl<'a> FileCursor<'a> {
+    fn line(&mut self) -> Option<DatasetLine<'a>> {
         let rest = self.bytes.get(self.at..).filter(|rest| !rest.is_empty())?;
         let length = rest.iter().position(|b| *b == b'\n').unwrap_or(rest.len());
         self.at += length + 1;
         self.number += 1;
         let text = rest[..length].strip_suffix(b"\r").unwrap_or(&rest[..length]);
-        Some(Line { text: String::from_utf8_lossy(text), number: self.number })
+        Some(DatasetLine { text: String::from_utf8_lossy(text), number: self.number })
     }
 
     fn skip(&mut self, bytes: usize) {
@@ -42,7 +42,7 @@ fn delimits(text: &str) -> bool {
 /// # Errors
 /// A line outside of datasets, a dataset that does not end, binary numbers of unknown form.
 pub(super) fn datasets<'a>(file: &'a str, bytes: &'a [u8]) -> Result<Vec<Dataset<'a>>> {
-    let mut cursor = Cursor { bytes, at: 0, number: 0 };
+    let mut cursor = FileCursor { bytes, at: 0, number: 0 };
     let mut all = Vec::new();
     let wrong = |number: usize, found: String, expected: &str| {
         Error::input(Fault::new(format!("{file}:{number}"), found, expected))
@@ -90,7 +90,7 @@ pub(super) fn datasets<'a>(file: &'a str, bytes: &'a [u8]) -> Result<Vec<Dataset
 
 /// The header and the bytes of a binary dataset. The length is worked out from the header: the byte count of the
 /// first line is wrong in many files.
-fn read_binary<'a>(dataset: &mut Dataset<'a>, name: &str, cursor: &mut Cursor<'a>) -> Result<()> {
+fn read_binary<'a>(dataset: &mut Dataset<'a>, name: &str, cursor: &mut FileCursor<'a>) -> Result<()> {
     let words: Vec<i64> = name.split_whitespace().skip(1).map(|word| whole(word).unwrap_or(-1)).collect();
     let word = |k: usize| words.get(k).copied().unwrap_or(-1);
     if dataset.kind != 58 {
@@ -107,7 +107,7 @@ fn read_binary<'a>(dataset: &mut Dataset<'a>, name: &str, cursor: &mut Cursor<'a
         return Err(dataset.fault(usize::MAX, found, expected));
     }
     dataset.lines.extend((0..HEADER).map_while(|_| cursor.line()));
-    let form = Form::read(dataset)?;
+    let form = ValueLayout::read(dataset)?;
     let at = cursor.at.min(cursor.bytes.len());
     let rest = &cursor.bytes[at..];
     let closes = |length: &usize| {
@@ -123,7 +123,7 @@ fn read_binary<'a>(dataset: &mut Dataset<'a>, name: &str, cursor: &mut Cursor<'a
         return Err(Error::input(Fault::new(
             place,
             found,
-            "as many numbers as the header says, then `    -1`",
+            "as many numbers as stated in the header, then `    -1`",
         )));
     };
     let length = length(&sizes).unwrap_or(0);

@@ -5,7 +5,7 @@ use super::record::{columns, float, whole};
 use crate::error::Result;
 
 /// How the numbers of a function are stored.
-pub(super) struct Form {
+pub(super) struct ValueLayout {
     /// 2, 4: real; 5, 6: complex; single and double precision.
     pub kind: i64,
     /// How many values.
@@ -18,9 +18,9 @@ pub(super) struct Form {
     pub step: f64,
 }
 
-impl Form {
+impl ValueLayout {
     /// Reads record 7.
-    pub fn read(dataset: &Dataset<'_>) -> Result<Form> {
+    pub fn read(dataset: &Dataset<'_>) -> Result<ValueLayout> {
         const FORM: usize = 6;
         let cells = columns(dataset.line(FORM)?, &[10, 10, 10, 13, 13, 13]);
         let words: Vec<String> = dataset.line(FORM)?.split_whitespace().map(str::to_string).collect();
@@ -43,7 +43,7 @@ impl Form {
             let expected = "0 (uneven) or 1 (even)";
             return Err(dataset.fault(FORM, format!("abscissa spacing {spacing}"), expected));
         }
-        Ok(Form { kind, count, even: spacing == 1, first: real(3)?, step: real(4)? })
+        Ok(ValueLayout { kind, count, even: spacing == 1, first: real(3)?, step: real(4)? })
     }
 
     /// Whether a value has an imaginary part.

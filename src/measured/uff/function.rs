@@ -3,9 +3,9 @@
 use super::super::records::FunctionRecord;
 use super::super::set::Quantity;
 use super::dataset::{Binary, Dataset, shown};
-use super::form::Form;
+use super::form::ValueLayout;
 use super::record::{columns, e_format, text_line, whole};
-use super::units::{Units, labelled};
+use super::units::{UnitFactors, labelled};
 use crate::error::Result;
 use crate::linalg::c64;
 
@@ -29,13 +29,13 @@ const AXIS: [usize; 8] = [10, 5, 5, 5, 1, 20, 1, 20];
 /// the file states the units is returned with the response.
 pub(super) fn read(
     dataset: &Dataset<'_>,
-    units: Option<Units>,
+    units: Option<UnitFactors>,
 ) -> Result<std::result::Result<(FunctionRecord, bool), String>> {
     let [first, second] = [dataset.line(0)?.trim(), dataset.line(1)?.trim()];
     let title = if first == "NONE" || first.is_empty() { second } else { first };
     let who = who(dataset)?;
     let name = format!("{title}, {}/{}", dof(who.response), dof(who.reference));
-    let form = Form::read(dataset)?;
+    let form = ValueLayout::read(dataset)?;
     if who.kind != FRF {
         return Ok(Err(format!("functions of type {}, which are no frequency responses", who.kind)));
     }
@@ -118,18 +118,18 @@ fn dof((node, code): (u64, i64)) -> String {
 }
 
 /// Quantity along an axis, and its unit.
-struct Axis {
+struct AxisRecord {
     kind: i64,
     unit: String,
 }
 
-fn axis(dataset: &Dataset<'_>, record: usize) -> Result<Axis> {
+fn axis(dataset: &Dataset<'_>, record: usize) -> Result<AxisRecord> {
     let text = dataset.line(record)?;
     let cells = columns(text, &AXIS);
     let first = text.split_whitespace().next().unwrap_or("");
     let kind = whole(&cells[0]).or(whole(first));
     let kind = kind.ok_or_else(|| dataset.fault(record, shown(&cells[0]), "a specific data type"))?;
-    Ok(Axis { kind, unit: cells[7].clone() })
+    Ok(AxisRecord { kind, unit: cells[7].clone() })
 }
 
 /// The unit vector of a code: ±1, ±2, ±3; zero where the direction is not stated; `None` for rotations.
@@ -145,7 +145,7 @@ fn direction(code: i64) -> Option<[f64; 3]> {
 }
 
 /// Numbers in lines that are all of one length, but for the last.
-fn text_numbers(dataset: &Dataset<'_>, form: &Form) -> Result<Vec<f64>> {
+fn text_numbers(dataset: &Dataset<'_>, form: &ValueLayout) -> Result<Vec<f64>> {
     const FIRST: usize = 11;
     let wanted = form.count.saturating_mul(form.parts() + usize::from(!form.even));
     let (mut numbers, mut length) = (Vec::new(), None);
@@ -174,7 +174,7 @@ fn text_numbers(dataset: &Dataset<'_>, form: &Form) -> Result<Vec<f64>> {
     Ok(numbers)
 }
 
-fn binary_numbers(dataset: &Dataset<'_>, binary: &Binary<'_>, form: &Form) -> Result<Vec<f64>> {
+fn binary_numbers(dataset: &Dataset<'_>, binary: &Binary<'_>, form: &ValueLayout) -> Result<Vec<f64>> {
     let [abscissa, value] = binary.sizes;
     let row = [abscissa].into_iter().filter(|size| *size > 0).chain(std::iter::repeat_n(value, form.parts()));
     let row: Vec<usize> = row.collect();

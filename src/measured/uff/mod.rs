@@ -24,7 +24,7 @@ mod units;
 pub use function::Function;
 pub use shape::RealShape;
 
-use super::records::Records;
+use super::records::TestRecords;
 use crate::error::{Faults, Result};
 use std::collections::BTreeMap;
 
@@ -35,8 +35,8 @@ const SILENT: [u32; 1] = [151];
 ///
 /// # Errors
 /// Every dataset that cannot be read, with file and line, or the byte of binary numbers.
-pub fn read(file: &str, bytes: &[u8], unit: f64) -> Result<Records> {
-    let mut records = Records::default();
+pub fn read(file: &str, bytes: &[u8], unit: f64) -> Result<TestRecords> {
+    let mut records = TestRecords::default();
     let mut faults = Faults::new();
     let mut units = None;
     let mut skipped: BTreeMap<String, usize> = BTreeMap::new();
@@ -45,7 +45,7 @@ pub fn read(file: &str, bytes: &[u8], unit: f64) -> Result<Records> {
         let mut skip = |what: String| *skipped.entry(what).or_insert(0) += 1;
         match dataset.kind {
             15 | 2411 => {
-                let unit = units.map_or(unit, |u: units::Units| u.length);
+                let unit = units.map_or(unit, |u: units::UnitFactors| u.length);
                 let found = faults.take(nodes::read(&dataset, unit, &mut records.points));
                 local.extend(found.unwrap_or_default());
             }

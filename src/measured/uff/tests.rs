@@ -57,7 +57,7 @@ fn modes_of_both_kinds_are_read() {
 
 #[test]
 fn functions_in_text_are_read_in_every_form() {
-    let values = |records: Records| records.functions[0].clone();
+    let values = |records: TestRecords| records.functions[0].clone();
     let of = |text: &str| values(read("t", text.as_bytes(), 1.0).unwrap());
     let even = of(&text_58(5, 2, true, "  1.00000E+00 -2.00000E+00  3.00000E+00  4.00000E+00\n"));
     assert_eq!(even.frequencies_hz, [10.0, 12.5]);

@@ -5,7 +5,7 @@ use crate::error::Result;
 
 /// Factors from the units of the file to SI.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Units {
+pub(super) struct UnitFactors {
     /// \[m\].
     pub length: f64,
     /// \[N\].
@@ -13,14 +13,14 @@ pub(super) struct Units {
 }
 
 /// Reads dataset 164: a quantity of the file divided by its factor is in SI.
-pub(super) fn read(dataset: &Dataset<'_>) -> Result<Units> {
+pub(super) fn read(dataset: &Dataset<'_>) -> Result<UnitFactors> {
     let mut factors = Vec::new();
     for index in 1..dataset.lines.len() {
         factors.extend(dataset.numbers(index, &[25])?);
     }
     match factors[..] {
         [length, force, ..] if length > 0.0 && force > 0.0 => {
-            Ok(Units { length: 1.0 / length, force: 1.0 / force })
+            Ok(UnitFactors { length: 1.0 / length, force: 1.0 / force })
         }
         _ => Err(dataset.fault(
             1,

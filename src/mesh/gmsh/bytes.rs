@@ -14,7 +14,7 @@ pub(super) enum Encoding {
 }
 
 /// Reads a file from front to back.
-pub(super) struct Reader<'a> {
+pub(super) struct ByteReader<'a> {
     bytes: &'a [u8],
     at: usize,
     pub encoding: Encoding,
@@ -32,9 +32,9 @@ fn position(bytes: &[u8], at: usize, encoding: Encoding) -> String {
     }
 }
 
-impl<'a> Reader<'a> {
+impl<'a> ByteReader<'a> {
     pub fn new(bytes: &'a [u8], at: usize, encoding: Encoding, place: &'a str) -> Self {
-        Reader { bytes, at, encoding, place }
+        ByteReader { bytes, at, encoding, place }
     }
 
     /// How many bytes are left: no count of things can be larger.

@@ -3,7 +3,7 @@
 //! mshio reads on where a line is missing or two numbers touch, takes any coordinate for one and needs no entities. So this
 //! goes through the whole file first, number by number, and names the line of what is wrong.
 
-use super::bytes::{Encoding, Reader};
+use super::bytes::{ByteReader, Encoding};
 use super::raw::n_nodes;
 use crate::error::{Error, Fault, Result};
 use std::collections::HashSet;
@@ -12,7 +12,7 @@ use std::collections::HashSet;
 type Entities = HashSet<(i64, i64)>;
 
 /// Elements of one entity: its dimension and tag, and where they are in the file.
-struct Block {
+struct EntityBlock {
     entity: (i64, i64),
     position: String,
 }
@@ -28,7 +28,7 @@ pub(super) struct Offsets {
 ///
 /// # Errors
 /// Input: a number too few or too many, a count that the file does not hold, an entity that is missing or there twice.
-pub(super) fn check(mut file: Reader<'_>) -> Result<Offsets> {
+pub(super) fn check(mut file: ByteReader<'_>) -> Result<Offsets> {
     file.skip_section("MeshFormat")?;
     let (mut entities, mut blocks) = (None, None);
     let mut nodes = false;
@@ -69,10 +69,11 @@ pub(super) fn check(mut file: Reader<'_>) -> Result<Offsets> {
     let Some(blocks) = blocks else {
         return Err(file.wrong("the end of the file", "`$Elements`: the file holds none or is cut off"));
     };
-    let known = |block: &Block| entities.as_ref().is_none_or(|all: &Entities| all.contains(&block.entity));
+    let known =
+        |block: &EntityBlock| entities.as_ref().is_none_or(|all: &Entities| all.contains(&block.entity));
     match blocks.into_iter().find(|block| !known(block)) {
         None => Ok(offsets),
-        Some(Block { entity: (dimension, tag), position }) => {
+        Some(EntityBlock { entity: (dimension, tag), position }) => {
             let found = format!("elements of entity {tag} of dimension {dimension}, which $Entities lacks");
             Err(Error::input(Fault::new(position, found, "entities of the file")))
         }
@@ -80,7 +81,7 @@ pub(super) fn check(mut file: Reader<'_>) -> Result<Offsets> {
 }
 
 /// A count, bounded by what the rest of the file can hold.
-fn count(file: &mut Reader<'_>, what: &str) -> Result<usize> {
+fn count(file: &mut ByteReader<'_>, what: &str) -> Result<usize> {
     let count = file.size(what)?;
     if count > file.left() as u64 {
         return Err(file.wrong(format!("{what} {count}"), "a count that the rest of the file can hold"));
@@ -89,14 +90,14 @@ fn count(file: &mut Reader<'_>, what: &str) -> Result<usize> {
 }
 
 /// Goes to the first number of a section.
-fn enter(file: &mut Reader<'_>) {
+fn enter(file: &mut ByteReader<'_>) {
     if file.encoding != Encoding::Ascii {
         file.end_line();
     }
 }
 
 /// Points with three coordinates; curves, surfaces and volumes with a box and what bounds them.
-fn check_entities(file: &mut Reader<'_>) -> Result<Entities> {
+fn check_entities(file: &mut ByteReader<'_>) -> Result<Entities> {
     enter(file);
     let mut entities = Entities::new();
     let mut counts = [0; 4];
@@ -131,7 +132,7 @@ fn check_entities(file: &mut Reader<'_>) -> Result<Entities> {
 }
 
 /// The head of a section of blocks: how many blocks and how many things in all; the smallest and largest tag are of no use.
-fn head(file: &mut Reader<'_>, what: &str) -> Result<[usize; 2]> {
+fn head(file: &mut ByteReader<'_>, what: &str) -> Result<[usize; 2]> {
     enter(file);
     let counts = [count(file, "number of blocks")?, count(file, &format!("number of {what}"))?];
     file.size("smallest tag")?;
@@ -140,14 +141,14 @@ fn head(file: &mut Reader<'_>, what: &str) -> Result<[usize; 2]> {
 }
 
 /// Fails where the blocks of a section hold another number of things than its head says.
-fn check_total(file: &Reader<'_>, what: &str, found: usize, said: usize) -> Result<()> {
+fn check_total(file: &ByteReader<'_>, what: &str, found: usize, said: usize) -> Result<()> {
     if found == said {
         return Ok(());
     }
-    Err(file.wrong(format!("{found} {what}"), format!("{said}, as the head of the section says")))
+    Err(file.wrong(format!("{found} {what}"), format!("{said}, as stated in the head of the section")))
 }
 
-fn check_nodes(file: &mut Reader<'_>) -> Result<Vec<usize>> {
+fn check_nodes(file: &mut ByteReader<'_>) -> Result<Vec<usize>> {
     let [blocks, total] = head(file, "nodes")?;
     let mut offsets = Vec::new();
     for _ in 0..blocks {
@@ -183,7 +184,7 @@ fn check_nodes(file: &mut Reader<'_>) -> Result<Vec<usize>> {
 }
 
 /// Adds where each element is to `offsets`.
-fn check_elements(file: &mut Reader<'_>, offsets: &mut Vec<usize>) -> Result<Vec<Block>> {
+fn check_elements(file: &mut ByteReader<'_>, offsets: &mut Vec<usize>) -> Result<Vec<EntityBlock>> {
     let [n_blocks, total] = head(file, "elements")?;
     let mut blocks = Vec::new();
     for _ in 0..n_blocks {
@@ -202,14 +203,14 @@ fn check_elements(file: &mut Reader<'_>, offsets: &mut Vec<usize>) -> Result<Vec
             }
             file.line_is_over("an element")?;
         }
-        blocks.push(Block { entity, position });
+        blocks.push(EntityBlock { entity, position });
     }
     check_total(file, "elements", offsets.len(), total)?;
     file.expect("$EndElements")?;
     Ok(blocks)
 }
 
-fn tag(file: &mut Reader<'_>, what: &str) -> Result<()> {
+fn tag(file: &mut ByteReader<'_>, what: &str) -> Result<()> {
     match file.size(what)? {
         0 => Err(file.wrong(format!("{what} 0"), "a positive number")),
         _ => Ok(()),

@@ -18,8 +18,8 @@ mod raw;
 use super::{Mesh, check};
 use crate::error::read::read_bytes;
 use crate::error::{Error, Fault, Faults, Result};
-use bytes::{Encoding, Reader};
-use raw::{Lines, RawMesh};
+use bytes::{ByteReader, Encoding};
+use raw::{LineNumbers, RawMesh};
 use std::path::Path;
 
 /// Reads the mesh file `path`, whose coordinates are in units of `unit_in_metres` (0.001: millimetres).
@@ -54,10 +54,10 @@ pub fn parse(bytes: &[u8], place: &str, unit_in_metres: f64) -> Result<Mesh> {
     let header = header(bytes, place)?;
     let raw: RawMesh = match header.version {
         Version::Four => msh4::parse(bytes, header.body, header.encoding, place)?,
-        Version::Two => msh2::parse(Reader::new(bytes, header.body, header.encoding, place))?,
+        Version::Two => msh2::parse(ByteReader::new(bytes, header.body, header.encoding, place))?,
     };
     let names = names::parse(bytes, place)?;
-    let mesh = raw.into_mesh(&names, (place, &Lines::new(bytes, header.encoding)), unit_in_metres)?;
+    let mesh = raw.into_mesh(&names, (place, &LineNumbers::new(bytes, header.encoding)), unit_in_metres)?;
     let faults = check::diagnose(&mesh).faults.0;
     let placed = faults.into_iter().map(|f| Fault { place: format!("{place}: {}", f.place), ..f }).collect();
     Faults(placed).into_result(mesh)
@@ -69,7 +69,7 @@ enum Version {
     Four,
 }
 
-struct Header {
+struct GmshHeader {
     version: Version,
     encoding: Encoding,
     /// Where the bytes after the header's line begin.
@@ -77,7 +77,7 @@ struct Header {
 }
 
 /// Reads `$MeshFormat`: version, 0 (ASCII) or 1 (binary), size of a number; and the byte order of a binary file.
-fn header(bytes: &[u8], place: &str) -> Result<Header> {
+fn header(bytes: &[u8], place: &str) -> Result<GmshHeader> {
     let wrong = |found: String, expected: &str, help: &str| {
         Error::input(Fault::new(format!("{place}: $MeshFormat"), found, expected).with_help(help))
     };
@@ -127,7 +127,7 @@ fn header(bytes: &[u8], place: &str) -> Result<Header> {
         },
         _ => return Err(wrong(format!("file type {kind}"), "0 (ASCII) or 1 (binary)", CONVERT)),
     };
-    Ok(Header { version, encoding, body })
+    Ok(GmshHeader { version, encoding, body })
 }
 
 #[cfg(test)]

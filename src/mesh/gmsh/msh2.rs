@@ -1,11 +1,11 @@
 //! MSH 2.2: nodes, then elements that each carry their physical group.
 
-use super::bytes::{Encoding, Reader};
+use super::bytes::{ByteReader, Encoding};
 use super::raw::{RawElement, RawMesh, RawNode, n_nodes};
 use crate::error::Result;
 
 /// Reads what follows the header's line.
-pub(super) fn parse(mut file: Reader<'_>) -> Result<RawMesh> {
+pub(super) fn parse(mut file: ByteReader<'_>) -> Result<RawMesh> {
     file.skip_section("MeshFormat")?;
     let mut raw = RawMesh::default();
     let (mut nodes, mut elements) = (false, false);
@@ -36,7 +36,7 @@ pub(super) fn parse(mut file: Reader<'_>) -> Result<RawMesh> {
 }
 
 /// The count at the head of a section, bounded by what the rest of the file can hold.
-fn count(file: &mut Reader<'_>, what: &str) -> Result<usize> {
+fn count(file: &mut ByteReader<'_>, what: &str) -> Result<usize> {
     let count: u64 = file.text_number(what)?;
     if count > file.left() as u64 {
         return Err(file.wrong(format!("{what} {count}"), "a count that the rest of the file can hold"));
@@ -47,7 +47,7 @@ fn count(file: &mut Reader<'_>, what: &str) -> Result<usize> {
     Ok(count as usize)
 }
 
-fn read_nodes(file: &mut Reader<'_>, raw: &mut RawMesh) -> Result<()> {
+fn read_nodes(file: &mut ByteReader<'_>, raw: &mut RawMesh) -> Result<()> {
     for _ in 0..count(file, "number of nodes")? {
         let tag = tag(file, "node number")?;
         let offset = file.offset();
@@ -58,7 +58,7 @@ fn read_nodes(file: &mut Reader<'_>, raw: &mut RawMesh) -> Result<()> {
     Ok(())
 }
 
-fn read_elements(file: &mut Reader<'_>, raw: &mut RawMesh) -> Result<()> {
+fn read_elements(file: &mut ByteReader<'_>, raw: &mut RawMesh) -> Result<()> {
     let total = count(file, "number of elements")?;
     let mut read = 0;
     while read < total {
@@ -89,7 +89,13 @@ fn read_elements(file: &mut Reader<'_>, raw: &mut RawMesh) -> Result<()> {
 }
 
 /// Tags, of which the first is the physical group (0: none), then nodes.
-fn read_element(file: &mut Reader<'_>, raw: &mut RawMesh, tag: u64, kind: i64, n_tags: i64) -> Result<()> {
+fn read_element(
+    file: &mut ByteReader<'_>,
+    raw: &mut RawMesh,
+    tag: u64,
+    kind: i64,
+    n_tags: i64,
+) -> Result<()> {
     let Some(n_nodes) = n_nodes(kind) else {
         return Err(file.wrong(format!("element type {kind}"), "a type of the MSH 2.2 format"));
     };
@@ -111,7 +117,7 @@ fn read_element(file: &mut Reader<'_>, raw: &mut RawMesh, tag: u64, kind: i64, n
     Ok(())
 }
 
-fn tag(file: &mut Reader<'_>, what: &str) -> Result<u64> {
+fn tag(file: &mut ByteReader<'_>, what: &str) -> Result<u64> {
     let number = file.int(what)?;
     match u64::try_from(number) {
         Ok(tag) if tag > 0 => Ok(tag),

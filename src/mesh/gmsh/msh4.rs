@@ -4,7 +4,7 @@
 //! them to be in ascending order, which the format does not promise. So the largest tag is raised for it. What it does not
 //! inspect, lines, counts and entities, `layout` has checked before.
 
-use super::bytes::{Encoding, Reader};
+use super::bytes::{ByteReader, Encoding};
 use super::layout;
 use super::names::find;
 use super::raw::{RawElement, RawMesh, RawNode};
@@ -15,7 +15,7 @@ use std::panic::catch_unwind;
 
 /// Reads the whole file, whose numbers after the header begin at `body`.
 pub(super) fn parse(bytes: &[u8], body: usize, encoding: Encoding, place: &str) -> Result<RawMesh> {
-    let offsets = layout::check(Reader::new(bytes, body, encoding, place))?;
+    let offsets = layout::check(ByteReader::new(bytes, body, encoding, place))?;
     let wrong = |found: String, expected: &str| Error::input(Fault::new(place, found, expected));
     let bytes = with_gaps(bytes, encoding);
     let parsed = catch_unwind(|| mshio::parse_msh_bytes(&bytes).map_err(|error| explain(&error)));
@@ -51,7 +51,7 @@ pub(super) fn parse(bytes: &[u8], body: usize, encoding: Encoding, place: &str) 
     if raw.nodes.len() as u64 != nodes.num_nodes {
         return Err(wrong(
             format!("{} nodes", raw.nodes.len()),
-            &format!("{}, as $Nodes says", nodes.num_nodes),
+            &format!("{}, as stated in $Nodes", nodes.num_nodes),
         ));
     }
 
@@ -79,7 +79,7 @@ pub(super) fn parse(bytes: &[u8], body: usize, encoding: Encoding, place: &str) 
     }
     if raw.elements.len() as u64 != elements.num_elements {
         let (found, said) = (raw.elements.len(), elements.num_elements);
-        return Err(wrong(format!("{found} elements"), &format!("{said}, as $Elements says")));
+        return Err(wrong(format!("{found} elements"), &format!("{said}, as stated in $Elements")));
     }
     Ok(raw)
 }

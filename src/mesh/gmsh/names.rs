@@ -40,7 +40,7 @@ pub(super) fn parse(bytes: &[u8], place: &str) -> Result<Names> {
         }
     }
     if names.len() != count {
-        return Err(wrong(format!("{} names", names.len()), &format!("{count}, as the section says")));
+        return Err(wrong(format!("{} names", names.len()), &format!("{count}, as stated in the section")));
     }
     Ok(names)
 }

@@ -38,13 +38,13 @@ pub(super) struct RawElement {
 }
 
 /// The lines of a text file, so that what is there can be found; none of a binary one.
-pub(super) struct Lines(Option<Vec<usize>>);
+pub(super) struct LineNumbers(Option<Vec<usize>>);
 
-impl Lines {
+impl LineNumbers {
     /// The lines of `bytes`.
     pub fn new(bytes: &[u8], encoding: Encoding) -> Self {
         let ends = || (0..bytes.len()).filter(|at| bytes[*at] == b'\n').collect();
-        Lines((encoding == Encoding::Ascii).then(ends))
+        LineNumbers((encoding == Encoding::Ascii).then(ends))
     }
 
     /// The line, from 1, of what is at a byte.
@@ -77,7 +77,7 @@ impl RawMesh {
     pub fn into_mesh(
         mut self,
         names: &Names,
-        (place, lines): (&str, &Lines),
+        (place, lines): (&str, &LineNumbers),
         unit_in_metres: f64,
     ) -> Result<Mesh> {
         if names.is_empty() {
@@ -157,7 +157,12 @@ impl RawMesh {
         }
     }
 
-    fn assemble(self, names: &Names, (place, lines): (&str, &Lines), unit_in_metres: f64) -> Result<Mesh> {
+    fn assemble(
+        self,
+        names: &Names,
+        (place, lines): (&str, &LineNumbers),
+        unit_in_metres: f64,
+    ) -> Result<Mesh> {
         let mut mesh = Mesh::default();
         let known: HashMap<u64, usize> = self.nodes.iter().enumerate().map(|(i, n)| (n.tag, i)).collect();
         let mut used = vec![false; self.nodes.len()];

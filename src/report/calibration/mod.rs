@@ -4,19 +4,19 @@ mod picture;
 mod words;
 
 use super::format::{fixed, given, hertz, power, short, signed, significant};
-use super::section::{Display, Section};
-use super::table::Table;
+use super::section::{Display, ReportSection};
+use super::table::ReportTable;
 use crate::results::{CalibratedNumber, CalibrationResult, RunResults};
 use words::words;
 
 /// A calibration, where the run has one.
-pub(super) fn sections(results: &RunResults) -> Vec<Section> {
+pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
     let Some(result) = results.get::<CalibrationResult>() else { return Vec::new() };
     let modes = !result.data.is_empty();
     let shapes = result.shapes().next().is_some();
     let responses = picture::responses(result);
     let response_table = responses.as_ref().map(|_| response_table(result));
-    let section = Section::new("Calibration")
+    let section = ReportSection::new("Calibration")
         .pictures(modes.then(|| picture::errors(result)))
         .tables(Display::Titled, modes.then(|| fit_table(result)))
         .tables(Display::Titled, shapes.then(|| shape_table(result)))
@@ -30,9 +30,9 @@ pub(super) fn sections(results: &RunResults) -> Vec<Section> {
 }
 
 /// How like the computed shapes are to the measured ones, before and after.
-fn shape_table(result: &CalibrationResult) -> Table {
+fn shape_table(result: &CalibrationResult) -> ReportTable {
     let headings = ["<mode", "measured [Hz]", "components", "MAC before", "MAC after", "MAC from the others"];
-    let mut table = Table::new("Calibration: measured and computed shapes", &headings);
+    let mut table = ReportTable::new("Calibration: measured and computed shapes", &headings);
     for d in &result.data {
         let Some(shape) = d.shape else { continue };
         let mac = |mac: Option<f64>| mac.map_or("–".into(), |mac| fixed(mac, 4));
@@ -50,7 +50,7 @@ fn shape_table(result: &CalibrationResult) -> Table {
 }
 
 /// How far the computed responses are from the measured ones, before and after.
-fn response_table(result: &CalibrationResult) -> Table {
+fn response_table(result: &CalibrationResult) -> ReportTable {
     let headings = [
         "<place",
         "lines",
@@ -63,7 +63,7 @@ fn response_table(result: &CalibrationResult) -> Table {
         "[deviations]",
         "<response",
     ];
-    let mut table = Table::new("Calibration: measured and computed frequency responses", &headings);
+    let mut table = ReportTable::new("Calibration: measured and computed frequency responses", &headings);
     for r in &result.responses {
         let left_out = |apart: &dyn Fn(&[f64]) -> f64| {
             r.left_out.as_ref().map_or("–".into(), |sizes| fixed(apart(sizes), 2))
@@ -94,7 +94,7 @@ fn response_table(result: &CalibrationResult) -> Table {
 }
 
 /// Measured beside computed frequencies, before and after.
-fn fit_table(result: &CalibrationResult) -> Table {
+fn fit_table(result: &CalibrationResult) -> ReportTable {
     let sets = result.data.iter().any(|d| d.set != result.data[0].set);
     let grows = result.data.iter().any(|d| d.growth.is_some());
     let mut headings = vec![
@@ -113,7 +113,7 @@ fn fit_table(result: &CalibrationResult) -> Table {
     if grows {
         headings.push("σ [1/s]");
     }
-    let mut table = Table::new("Calibration: measured and computed frequencies", &headings);
+    let mut table = ReportTable::new("Calibration: measured and computed frequencies", &headings);
     for d in &result.data {
         let mut cells = vec![d.level.clone(), given(d.measured_hz)];
         for hz in [d.before_hz, d.after_hz, d.left_out_hz] {
@@ -136,7 +136,7 @@ fn fit_table(result: &CalibrationResult) -> Table {
 }
 
 /// The numbers with their intervals.
-fn number_table(result: &CalibrationResult) -> Table {
+fn number_table(result: &CalibrationResult) -> ReportTable {
     let headings = [
         "<number",
         "before",
@@ -150,7 +150,7 @@ fn number_table(result: &CalibrationResult) -> Table {
         "<unit",
         "<",
     ];
-    let mut table = Table::new("Numbers found", &headings);
+    let mut table = ReportTable::new("Numbers found", &headings);
     for n in &result.numbers {
         let value = |v: f64| significant(v, 4);
         let scaled = |k: usize| n.scaled_interval.map_or("–".into(), |ends| value(ends[k]));
@@ -187,14 +187,14 @@ fn expected(n: &CalibratedNumber) -> String {
 }
 
 /// The assignments that were fitted.
-fn assignment_table(result: &CalibrationResult) -> Table {
+fn assignment_table(result: &CalibrationResult) -> ReportTable {
     let mut headings =
         vec!["<modes, in the order of the measured frequencies", "χ²", "largest error [%]", "weight", "<"];
     let shapes = result.shapes().next().is_some();
     if shapes {
         headings.insert(3, "least MAC");
     }
-    let mut table = Table::new("Assignments of modes to measured frequencies", &headings);
+    let mut table = ReportTable::new("Assignments of modes to measured frequencies", &headings);
     for r in &result.calibration.ranked {
         let modes: Vec<&str> = r.assignment.iter().map(|k| result.levels[*k].as_str()).collect();
         let mut cells = vec![

@@ -1,7 +1,7 @@
 //! `calibration_errors.svg` and `calibration_numbers.svg`.
 
 use super::super::colours::{ALARM, CALM, INK, MEASURED, MUTED, SECOND};
-use super::super::comparison::{Curve, Panel, stacked};
+use super::super::comparison::{ResponseCurve, ResponsePanel, stacked};
 use super::super::format::{given, short, signed, significant};
 use super::super::section::Picture;
 use super::super::svg::{Anchor, Ink, Sheet};
@@ -82,13 +82,13 @@ pub(super) fn errors(result: &CalibrationResult) -> Picture {
 /// The measured responses over the computed ones before and after; `None` where there are none.
 pub(super) fn responses(result: &CalibrationResult) -> Option<Picture> {
     // Calibration is against ln |h|.
-    let curve = |words: String, hex: &'static str, sizes: &[f64]| Curve {
+    let curve = |words: String, hex: &'static str, sizes: &[f64]| ResponseCurve {
         words,
         hex,
         sizes: sizes.to_vec(),
         phases: Vec::new(),
     };
-    let panel = |r: &CalibratedResponse| Panel {
+    let panel = |r: &CalibratedResponse| ResponsePanel {
         frequencies_hz: r.frequencies_hz.clone(),
         quantity: r.quantity,
         curves: [
@@ -101,7 +101,7 @@ pub(super) fn responses(result: &CalibrationResult) -> Option<Picture> {
         .flatten()
         .collect(),
     };
-    let panels: Vec<Panel> = result.responses.iter().map(panel).collect();
+    let panels: Vec<ResponsePanel> = result.responses.iter().map(panel).collect();
     let svg = stacked(&panels)?;
     let others = match result.responses.iter().any(|r| r.left_out.is_some()) {
         true => ", and with those found without the response",

@@ -6,22 +6,22 @@ mod mac;
 mod responses;
 mod table;
 
-pub(super) use responses::{Curve, Panel, stacked};
+pub(super) use responses::{ResponseCurve, ResponsePanel, stacked};
 use table::{modes_table, responses_table};
 
-use super::section::{Display, Picture, Section};
+use super::section::{Display, Picture, ReportSection};
 use crate::results::{MeasuredComparison, MeasuredResponses, NamedModes, RunResults};
 
 /// Every test beside what was computed.
-pub(super) fn sections(results: &RunResults) -> Vec<Section> {
+pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
     let sets = results.all::<NamedModes>();
     let modes = results.all::<MeasuredComparison>().into_iter().filter_map(|test| {
         let set = sets.iter().find(|set| test.is_of(set))?;
-        let section = Section::new(format!("Measured beside computed modes: {}", test.name));
+        let section = ReportSection::new(format!("Measured beside computed modes: {}", test.name));
         Some(section.pictures(pictures(test, set)).tables(Display::Titled, [modes_table(test, set)]))
     });
     let responses = results.all::<MeasuredResponses>().into_iter().map(|test| {
-        let section = Section::new(format!("Measured beside computed responses: {}", test.name));
+        let section = ReportSection::new(format!("Measured beside computed responses: {}", test.name));
         section.pictures(responses::picture(test)).tables(Display::Titled, [responses_table(test)])
     });
     modes.chain(responses).collect()

@@ -21,17 +21,17 @@ const WORDS: u32 = 26;
 const LEGEND: u32 = 26;
 
 /// Responses over one another.
-pub(in crate::report) struct Panel {
+pub(in crate::report) struct ResponsePanel {
     /// \[Hz\].
     pub frequencies_hz: Vec<f64>,
     /// Receptance, mobility or accelerance.
     pub quantity: Quantity,
     /// The last is drawn on top.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<ResponseCurve>,
 }
 
 /// One of them.
-pub(in crate::report) struct Curve {
+pub(in crate::report) struct ResponseCurve {
     /// Text of the legend.
     pub words: String,
     /// Its colour.
@@ -44,7 +44,7 @@ pub(in crate::report) struct Curve {
 
 pub(super) fn picture(responses: &MeasuredResponses) -> Option<Picture> {
     let panel = |pair: &ResponsePair| {
-        let curve = |words: String, hex: &'static str, values: &[c64]| Curve {
+        let curve = |words: String, hex: &'static str, values: &[c64]| ResponseCurve {
             words,
             hex,
             sizes: values.iter().map(|v| v.norm()).collect(),
@@ -53,7 +53,7 @@ pub(super) fn picture(responses: &MeasuredResponses) -> Option<Picture> {
         let short = pair.name.chars().take(36).collect::<String>();
         let place = pair.place.replace('_', " ");
         let computed = format!("computed: {place}, FRAC {}", fixed(pair.assurance, 3));
-        Panel {
+        ResponsePanel {
             frequencies_hz: pair.frequencies_hz.clone(),
             quantity: pair.quantity,
             curves: vec![
@@ -62,7 +62,7 @@ pub(super) fn picture(responses: &MeasuredResponses) -> Option<Picture> {
             ],
         }
     };
-    let panels: Vec<Panel> = responses.pairs.iter().take(MOST).map(panel).collect();
+    let panels: Vec<ResponsePanel> = responses.pairs.iter().take(MOST).map(panel).collect();
     let svg = stacked(&panels)?;
     let more = if responses.pairs.len() > MOST { format!("; the first {MOST}") } else { String::new() };
     let caption = format!(
@@ -73,12 +73,12 @@ pub(super) fn picture(responses: &MeasuredResponses) -> Option<Picture> {
 }
 
 /// The first panels, one below the other; `None` where there are none.
-pub(in crate::report) fn stacked(panels: &[Panel]) -> Option<String> {
+pub(in crate::report) fn stacked(panels: &[ResponsePanel]) -> Option<String> {
     let shown = &panels[..panels.len().min(MOST)];
     if shown.is_empty() {
         return None;
     }
-    let heights = shown.iter().map(Panel::height).sum::<u32>();
+    let heights = shown.iter().map(ResponsePanel::height).sum::<u32>();
     sheet((WIDTH, heights + WORDS), |area| {
         let mut rest = area.clone();
         for (k, own) in shown.iter().enumerate() {
@@ -91,7 +91,7 @@ pub(in crate::report) fn stacked(panels: &[Panel]) -> Option<String> {
     })
 }
 
-impl Panel {
+impl ResponsePanel {
     fn has_phases(&self) -> bool {
         self.curves.iter().any(|curve| !curve.phases.is_empty())
     }

@@ -1,15 +1,15 @@
 //! The tables: measured modes and responses, each beside the computed one.
 
 use super::super::format::{fixed, given, hertz, signed, significant};
-use super::super::table::Table;
+use super::super::table::ReportTable;
 use super::level::level_name;
 use crate::results::{MeasuredComparison, MeasuredResponses, NamedModes};
 
 /// The measured modes of a comparison, one row each.
-pub(super) fn modes_table(comparison: &MeasuredComparison, set: &NamedModes) -> Table {
+pub(super) fn modes_table(comparison: &MeasuredComparison, set: &NamedModes) -> ReportTable {
     let headings = ["measured [Hz]", "± [%]", "ζ [%]", "<computed", "f [Hz]", "ζ [%]", "diff. [%]", "MAC"];
     let caption = format!("Measured beside computed modes: {} ({})", comparison.name, set.name);
-    let mut table = Table::new(caption, &headings);
+    let mut table = ReportTable::new(caption, &headings);
     let none = String::new;
     for row in &comparison.rows {
         let level = row.mode.and_then(|mode| comparison.level_of(mode)).map(|at| &comparison.levels[at]);
@@ -57,10 +57,10 @@ pub(super) fn modes_table(comparison: &MeasuredComparison, set: &NamedModes) -> 
 }
 
 /// The measured responses beside a computed one.
-pub(super) fn responses_table(responses: &MeasuredResponses) -> Table {
+pub(super) fn responses_table(responses: &MeasuredResponses) -> ReportTable {
     let headings = ["<measured", "<place", "<", "off [mm]", "lines", "from [Hz]", "to [Hz]", "FRAC"];
     let caption = format!("Measured beside computed responses: {} ({})", responses.name, responses.frf);
-    let mut table = Table::new(caption, &headings);
+    let mut table = ReportTable::new(caption, &headings);
     for pair in &responses.pairs {
         let end = |hz: Option<&f64>| hz.map_or(String::new(), |hz| given(*hz));
         let cells = vec![

@@ -1,8 +1,8 @@
 //! Results of a sweep or a map, in words and tables.
 
 use crate::report::format::{fixed, hertz, power, signed, significant};
-use crate::report::table::Table;
-use crate::results::{DampingVerdicts, MapResult, Method, SweepResult};
+use crate::report::table::ReportTable;
+use crate::results::{DampingVerdicts, MapResult, SweepMethod, SweepResult};
 use crate::stability::unstable;
 use crate::sweep::{CriticalKind, InteractionKind};
 use std::f64::consts::TAU;
@@ -12,12 +12,12 @@ fn with_unit(value: f64, unit: &str) -> String {
     if unit.is_empty() { number } else { format!("{number} {unit}") }
 }
 
-fn method(method: Method) -> String {
+fn method(method: SweepMethod) -> String {
     match method {
-        Method::Reduced(dimension) => {
+        SweepMethod::Reduced(dimension) => {
             format!("One reduced model of {dimension} degrees of freedom served every point.")
         }
-        Method::Whole => {
+        SweepMethod::Whole => {
             "The scalar changes the structure or the contact's directions: every point was a whole analysis."
                 .into()
         }
@@ -105,10 +105,10 @@ pub(in crate::report) fn sweep_words(result: &SweepResult) -> Vec<String> {
 }
 
 /// The critical values of a sweep.
-pub(in crate::report) fn critical_table(result: &SweepResult) -> Table {
+pub(in crate::report) fn critical_table(result: &SweepResult) -> ReportTable {
     let unit = if result.unit.is_empty() { String::new() } else { format!(" [{}]", result.unit) };
     let caption = format!("Sweep {}: critical values of {}{unit}", result.name, result.parameter);
-    let mut table = Table::of(caption, &result.critical_table(), false);
+    let mut table = ReportTable::of(caption, &result.critical_table(), false);
     table.alarming = true;
     let rows = table.rows.iter_mut().zip(&result.sweep.critical);
     rows.for_each(|(row, critical)| row.marked = critical.rises);
@@ -160,7 +160,7 @@ pub(in crate::report) fn map_words(result: &MapResult) -> Vec<String> {
 }
 
 /// Which verdicts the modal damping decides.
-pub(in crate::report) fn damping_table(verdicts: &DampingVerdicts) -> Table {
+pub(in crate::report) fn damping_table(verdicts: &DampingVerdicts) -> ReportTable {
     let percent = |ratio: f64| format!("{} %", significant(100.0 * ratio, 4));
     let caption = format!(
         "Verdicts that damping decides between {} and {}, the case having {}",
@@ -169,7 +169,7 @@ pub(in crate::report) fn damping_table(verdicts: &DampingVerdicts) -> Table {
         percent(verdicts.ratio)
     );
     let headings = ["f [Hz]", "σ [1/s]", "<verdict", "critical damping ratio [%]", "of the case's"];
-    let mut table = Table::new(caption, &headings);
+    let mut table = ReportTable::new(caption, &headings);
     table.alarming = true;
     for row in &verdicts.rows {
         let grows = unstable(row.eigenvalue);

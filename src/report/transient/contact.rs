@@ -27,7 +27,7 @@ const ORDER: [TouchState; 4] =
 /// Shares of the states, one upon the other.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let run = results.get::<TransientResult>()?;
-    let history = Some(&run.watched.contact).filter(|history| history.points > 0)?;
+    let history = Some(&run.diagnostics.contact).filter(|history| history.points > 0)?;
     let whole: u64 = history.counts.iter().flatten().sum();
     let part = |state: TouchState| {
         history.counts.iter().map(|c| c[state as usize]).sum::<u64>() as f64 / whole.max(1) as f64

@@ -11,11 +11,11 @@ mod spectrogram;
 mod table;
 
 use super::reduced_check;
-use super::section::{Display, Section};
+use super::section::{Display, ReportSection};
 use crate::results::{ComplexResult, RunResults, TransientResult};
 
 /// Motion in time, where the run has it.
-pub(super) fn sections(results: &RunResults) -> Vec<Section> {
+pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
     let Some(run) = results.get::<TransientResult>() else { return Vec::new() };
     let complex = results.get::<ComplexResult>();
     let pictures = [
@@ -28,7 +28,7 @@ pub(super) fn sections(results: &RunResults) -> Vec<Section> {
     ];
     let modes = complex.map_or(&[][..], |complex| &complex.real_modes);
     let check = run.reduced_check.as_ref().map(|check| reduced_check::table(check, complex));
-    let section = Section::new("Motion in time")
+    let section = ReportSection::new("Motion in time")
         .pictures(pictures.into_iter().flatten())
         .tables(Display::Untitled, [table::table(run)])
         .tables(Display::Titled, sound::table(run, modes))

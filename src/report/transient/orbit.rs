@@ -5,7 +5,7 @@ use crate::report::chart::{Area, colour, sheet, widened};
 use crate::report::colours::{ALARM, MUTED, SECOND};
 use crate::report::format::{fixed, hertz, significant};
 use crate::report::section::Picture;
-use crate::results::{Curve, RunResults, TransientResult};
+use crate::results::{PhaseCurve, RunResults, TransientResult};
 use plotters::prelude::*;
 use std::error::Error;
 
@@ -14,9 +14,9 @@ const SIZE: (u32, u32) = (980, 440);
 /// The orbit of the motion and the one of the friction.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let run = results.get::<TransientResult>()?;
-    let orbit = &run.watched.orbit;
-    let varies = |curve: &&Curve| curve.points.iter().any(|p| *p != curve.points[0]);
-    let shown: Vec<&Curve> = orbit.curves.iter().filter(varies).collect();
+    let orbit = &run.diagnostics.orbit;
+    let varies = |curve: &&PhaseCurve| curve.points.iter().any(|p| *p != curve.points[0]);
+    let shown: Vec<&PhaseCurve> = orbit.curves.iter().filter(varies).collect();
     if shown.is_empty() {
         return None;
     }
@@ -41,7 +41,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
 
 fn curve(
     area: &Area,
-    Curve { axes: [below, beside], points }: &Curve,
+    PhaseCurve { axes: [below, beside], points }: &PhaseCurve,
     ink: &str,
 ) -> Result<(), Box<dyn Error>> {
     let range = |k: usize| {

@@ -6,7 +6,7 @@ use crate::report::chart::{Area, above, bold, colour, sheet, text};
 use crate::report::colours::{ALARM, INK, SECOND};
 use crate::report::format::{fixed, given, hertz, significant};
 use crate::report::section::Picture;
-use crate::report::table::Table;
+use crate::report::table::ReportTable;
 use crate::results::{RunResults, Sound, TransientResult};
 use crate::sound::{power_level, pressure_level};
 use plotters::prelude::*;
@@ -26,22 +26,22 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     if !power.iter().any(|level| level.is_finite()) {
         return None;
     }
-    let heard = sound.microphones.first();
+    let microphone = sound.microphones.first();
     let end = highest_frequency(run).min(sound.frequency_hz(sound.lines() - 1));
     let svg = sheet((WIDTH, 640), |area| {
-        let parts = area.split_evenly((1 + usize::from(heard.is_some()), 1));
+        let parts = area.split_evenly((1 + usize::from(microphone.is_some()), 1));
         let last = |k: usize| (k + 1 == parts.len()).then_some("frequency [Hz]");
         let [level, weighted] = sound.power_levels();
         let words = format!("sound power {} dB, {} dB(A)", fixed(level, 1), fixed(weighted, 1));
         let beside = "power level [dB re 1 pW]";
         let mut chart = lines(&parts[0], sound, (&power, ALARM), end, [beside, &words], last(0))?;
         label(&parts[0], &mut chart, sound, &power, end)?;
-        if let (Some(part), Some(heard)) = (parts.get(1), heard) {
-            let count = heard.spectrum.amplitude.len();
+        if let (Some(part), Some(microphone)) = (parts.get(1), microphone) {
+            let count = microphone.spectrum.amplitude.len();
             let levels: Vec<f64> =
-                (0..count).map(|k| pressure_level(heard.spectrum.mean_square(k))).collect();
-            let [level, weighted] = heard.levels();
-            let words = format!("{}: {} dB, {} dB(A)", heard.name, fixed(level, 1), fixed(weighted, 1));
+                (0..count).map(|k| pressure_level(microphone.spectrum.mean_square(k))).collect();
+            let [level, weighted] = microphone.levels();
+            let words = format!("{}: {} dB, {} dB(A)", microphone.name, fixed(level, 1), fixed(weighted, 1));
             let beside = "pressure level [dB re 20 µPa]";
             lines(part, sound, (&levels, SECOND), end, [beside, &words], last(1))?;
         }
@@ -52,7 +52,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
         given(sound.window[0]),
         given(sound.window[1]),
         significant(sound.resolution_hz, 3),
-        heard.map_or(String::new(), |h| format!("; pressure at microphone {}", h.name))
+        microphone.map_or(String::new(), |h| format!("; pressure at microphone {}", h.name))
     );
     Some(Picture { file: "sound".into(), caption, svg })
 }
@@ -104,7 +104,7 @@ fn label(
 }
 
 /// How loud a run is.
-pub(in crate::report) fn table(run: &TransientResult, real_modes: &[String]) -> Option<Table> {
+pub(in crate::report) fn table(run: &TransientResult, real_modes: &[String]) -> Option<ReportTable> {
     let sound = run.sound.as_ref()?;
     let headings = ["tone [Hz]", "power level [dB]", "share of the power [%]", "<is"];
     let [level, weighted] = sound.power_levels();
@@ -115,7 +115,7 @@ pub(in crate::report) fn table(run: &TransientResult, real_modes: &[String]) -> 
         fixed(level, 1),
         fixed(weighted, 1)
     );
-    let mut table = Table::new(caption, &headings);
+    let mut table = ReportTable::new(caption, &headings);
     for tone in &sound.tones {
         let cells = vec![
             hertz(tone.peak.frequency_hz, 1),
@@ -125,19 +125,19 @@ pub(in crate::report) fn table(run: &TransientResult, real_modes: &[String]) -> 
         ];
         table.row(cells, false);
     }
-    for heard in &sound.microphones {
-        let [level, weighted] = heard.levels();
-        let [x, y, z] = heard.at.map(|c| fixed(c, 3));
+    for microphone in &sound.microphones {
+        let [level, weighted] = microphone.levels();
+        let [x, y, z] = microphone.at.map(|c| fixed(c, 3));
         table.notes.push(format!(
             "Microphone {} at ({x}, {y}, {z}) m: {} dB, {} dB(A) re 20 µPa.",
-            heard.name,
+            microphone.name,
             fixed(level, 1),
             fixed(weighted, 1)
         ));
     }
     let mean = sound.mean_levels(1.0);
     table.notes.push(format!(
-        "Mean over all directions at 1 m: {} dB, {} dB(A). On a disc's axis only its modes without nodal diameters are heard.",
+        "Mean over all directions at 1 m: {} dB, {} dB(A). On a disc's axis only its modes without nodal diameters contribute.",
         fixed(mean[0], 1),
         fixed(mean[1], 1)
     ));

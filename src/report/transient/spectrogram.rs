@@ -22,7 +22,7 @@ const BAR: u32 = 140;
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let run = results.get::<TransientResult>()?;
     let shown: Vec<&(usize, Spectrogram)> =
-        run.watched.spectrograms.iter().filter(|(_, s)| alive(s)).collect();
+        run.diagnostics.spectrograms.iter().filter(|(_, s)| alive(s)).collect();
     let (_, first) = shown.first()?;
     let (end, duration) = (highest_frequency(run), run.len().saturating_sub(1) as f64 * run.time_step);
     let measured = |channel: usize| -> &[f64] {

@@ -1,7 +1,7 @@
 //! The figures of a run in time.
 
 use crate::report::format::{fixed, given, hertz, power, signed, significant};
-use crate::report::table::Table;
+use crate::report::table::ReportTable;
 use crate::results::{GrowthCompared, TransientResult};
 use crate::signal::LimitCycle;
 use std::f64::consts::TAU;
@@ -10,8 +10,8 @@ use std::f64::consts::TAU;
 const NEAR: f64 = 0.05;
 
 /// The figures of a run in time.
-pub(in crate::report) fn table(run: &TransientResult) -> Table {
-    let mut table = Table::new(
+pub(in crate::report) fn table(run: &TransientResult) -> ReportTable {
+    let mut table = ReportTable::new(
         format!(
             "Motion in time: {} steps of {} s, {}",
             run.len().saturating_sub(1),
@@ -41,7 +41,7 @@ pub(in crate::report) fn table(run: &TransientResult) -> Table {
         )
     }));
     table.notes.extend(run.growth.as_ref().map(disturbance));
-    table.notes.extend(run.watched.cycles.iter().map(|(channel, cycle)| swing(run, *channel, cycle)));
+    table.notes.extend(run.diagnostics.cycles.iter().map(|(channel, cycle)| swing(run, *channel, cycle)));
     table.notes.extend(contact(run));
     table.notes.push(energy(run));
     if run.split.0 > 0 {
@@ -68,7 +68,7 @@ fn disturbance(growth: &GrowthCompared) -> String {
     let (hz, sigma) = (growth.eigenvalue.im / TAU, growth.eigenvalue.re);
     match growth.found {
         Some(found) => format!(
-            "Small disturbance: σ = {}/s at {} Hz, measured over {} s; the complex mode says {}/s at {} Hz.",
+            "Small disturbance: σ = {}/s at {} Hz, measured over {} s; the complex mode has {}/s at {} Hz.",
             signed(found.rate, 2),
             hertz(found.frequency_hz, 2),
             significant(found.window[1] - found.window[0], 3),
@@ -91,7 +91,7 @@ fn swing(run: &TransientResult, channel: usize, cycle: &LimitCycle) -> String {
     };
     format!(
         "From {} s on {} swings by ± {} {} about {} (r.m.s. {}), {verdict}.",
-        significant(run.watched.window[0], 3),
+        significant(run.diagnostics.window[0], 3),
         channel.name.replace('_', " "),
         significant(cycle.amplitude, 3),
         channel.unit,

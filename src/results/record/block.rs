@@ -1,7 +1,7 @@
 //! Blocks of `record.bin`: a byte for the kind, the length of the payload (8 bytes), the payload.
 
-use super::bytes::{Bytes, Cursor, Read};
-use crate::results::{Field, NodalField, Piece};
+use super::bytes::{Bytes, Read, RecordCursor};
+use crate::results::{FieldSnapshot, NodalField, RecordPiece};
 use crate::sweep::MapPoint;
 use crate::transient::{Event, EventKind};
 
@@ -10,7 +10,7 @@ pub(super) const HEAD: usize = 9;
 
 /// Something that was computed.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Block {
+pub enum RecordBlock {
     /// A map begins, or begins again with more places that its reduced model is trained on.
     Map {
         /// The map.
@@ -91,7 +91,7 @@ pub(super) fn transient<'a>(channels: impl ExactSizeIterator<Item = &'a str>, mo
     })
 }
 
-pub(super) fn rows(piece: &Piece) -> Vec<u8> {
+pub(super) fn rows(piece: &RecordPiece) -> Vec<u8> {
     block(4, |bytes| {
         bytes.count(piece.first);
         bytes.count(piece.values.first().map_or(0, Vec::len));
@@ -108,7 +108,7 @@ pub(super) fn rows(piece: &Piece) -> Vec<u8> {
     })
 }
 
-pub(super) fn field(field: &Field) -> Vec<u8> {
+pub(super) fn field(field: &FieldSnapshot) -> Vec<u8> {
     block(5, |bytes| {
         bytes.count(field.number);
         bytes.count(field.displacement.len());
@@ -118,16 +118,16 @@ pub(super) fn field(field: &Field) -> Vec<u8> {
     })
 }
 
-impl Block {
+impl RecordBlock {
     /// The block of this kind with this payload.
-    pub(super) fn read(kind: u8, payload: &[u8]) -> Read<Block> {
-        let mut from = Cursor(payload);
+    pub(super) fn read(kind: u8, payload: &[u8]) -> Read<RecordBlock> {
+        let mut from = RecordCursor(payload);
         let block = match kind {
             1 => {
                 let name = from.text()?;
                 let count = from.count(16)?;
                 let trained = from.doubles(2 * count)?.chunks_exact(2).map(|at| [at[0], at[1]]).collect();
-                Block::Map { name, trained }
+                RecordBlock::Map { name, trained }
             }
             2 => {
                 let name = from.text()?;
@@ -139,19 +139,19 @@ impl Block {
                     Ok(MapPoint { growth_rate: values[0], frequency_hz: values[1], unstable })
                 };
                 let points = (0..count).map(point).collect::<Read<_>>()?;
-                Block::MapPoints { name, first, points }
+                RecordBlock::MapPoints { name, first, points }
             }
             3 => {
                 let modes = index(&mut from)?;
                 let count = from.count(8)?;
                 let channels = (0..count).map(|_| from.text()).collect::<Read<_>>()?;
-                Block::Transient { channels, modes }
+                RecordBlock::Transient { channels, modes }
             }
             4 => read_rows(&mut from)?,
             5 => {
                 let number = index(&mut from)?;
                 let nodes = from.count(24)?;
-                Block::Field {
+                RecordBlock::Field {
                     number,
                     motion: [read_motion(&mut from, nodes)?, read_motion(&mut from, nodes)?],
                 }
@@ -162,7 +162,7 @@ impl Block {
     }
 }
 
-fn read_rows(from: &mut Cursor) -> Read<Block> {
+fn read_rows(from: &mut RecordCursor) -> Read<RecordBlock> {
     let first = index(from)?;
     let rows = from.count(8)?;
     if rows == 0 {
@@ -181,15 +181,15 @@ fn read_rows(from: &mut Cursor) -> Read<Block> {
         Ok(Event { time, point, kind })
     };
     let events = (0..count).map(event).collect::<Read<_>>()?;
-    Ok(Block::Rows { first, values, modal, events })
+    Ok(RecordBlock::Rows { first, values, modal, events })
 }
 
-fn read_motion(from: &mut Cursor, nodes: usize) -> Read<NodalField<f64>> {
+fn read_motion(from: &mut RecordCursor, nodes: usize) -> Read<NodalField<f64>> {
     let values = from.singles(3 * nodes)?;
     Ok(values.chunks_exact(3).map(|v| [v[0], v[1], v[2], 0.0, 0.0, 0.0].map(f64::from)).collect())
 }
 
 /// A number of something that is elsewhere.
-fn index(from: &mut Cursor) -> Read<usize> {
+fn index(from: &mut RecordCursor) -> Read<usize> {
     u32::try_from(from.whole()?).map(|index| index as usize).map_err(|_| "a number that is too large")
 }

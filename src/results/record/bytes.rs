@@ -30,9 +30,9 @@ impl Bytes {
 
 /// Bytes that are read from their start.
 #[derive(Clone, Copy)]
-pub(super) struct Cursor<'a>(pub(super) &'a [u8]);
+pub(super) struct RecordCursor<'a>(pub(super) &'a [u8]);
 
-impl<'a> Cursor<'a> {
+impl<'a> RecordCursor<'a> {
     pub(super) fn take(&mut self, count: usize) -> Read<&'a [u8]> {
         let (taken, rest) = self.0.split_at_checked(count).ok_or(SHORT)?;
         self.0 = rest;
@@ -72,6 +72,6 @@ impl<'a> Cursor<'a> {
 
     /// `value`, when nothing follows.
     pub(super) fn end<T>(self, value: T) -> Read<T> {
-        if self.0.is_empty() { Ok(value) } else { Err("it is longer than it says") }
+        if self.0.is_empty() { Ok(value) } else { Err("it is longer than its stated length") }
     }
 }

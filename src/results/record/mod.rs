@@ -1,6 +1,6 @@
 //! Record from which an interrupted run is resumed: two files of the results folder that only this program reads.
 //!
-//! - `record.bin` grows during a map or a run in time: every point and row as soon as it is computed ([`Block`]).
+//! - `record.bin` grows during a map or a run in time: every point and row as soon as it is computed ([`RecordBlock`]).
 //! - `checkpoint.bin` says how many bytes of it count, their SHA-256, what the case and its files were, and the state that
 //!   the run resumes from ([`Saved`]). It has a checksum of its own and is replaced in one step, after what it counts is on the
 //!   disk. A process that is killed and a machine that loses power at any moment leave one that fits; what `record.bin` has
@@ -14,12 +14,12 @@ mod bytes;
 mod origin;
 mod saved;
 
-pub use block::Block;
+pub use block::RecordBlock;
 pub use origin::{InputFile, Origin};
 pub use saved::Saved;
 
 use super::folder::{own, refusal, synchronise, write_durably};
-use super::{Field, Piece, Recording};
+use super::{FieldSnapshot, RecordPiece, Recording};
 use crate::error::{Error, Fault, Result};
 use crate::sweep::MapPoint;
 use crate::transient::Checkpoint;
@@ -61,16 +61,16 @@ pub struct Earlier {
 
 impl Earlier {
     /// Adds a block; says what is wrong when it does not follow those before.
-    fn add(&mut self, block: &Block) -> std::result::Result<(), &'static str> {
+    fn add(&mut self, block: &RecordBlock) -> std::result::Result<(), &'static str> {
         match block {
-            Block::Map { name, trained } => {
+            RecordBlock::Map { name, trained } => {
                 self.maps.insert(name.clone(), (Vec::new(), trained.clone()));
             }
-            Block::MapPoints { name, first, points } => {
+            RecordBlock::MapPoints { name, first, points } => {
                 let map = self.maps.get_mut(name).filter(|(before, _)| before.len() == *first);
                 map.ok_or("points of a map that do not follow those before")?.0.extend(points);
             }
-            Block::Transient { channels, modes } => {
+            RecordBlock::Transient { channels, modes } => {
                 if self.rows > 0 {
                     return Err("two runs in time");
                 }
@@ -78,7 +78,7 @@ impl Earlier {
                 *self = Earlier { maps: std::mem::take(&mut self.maps), channels, ..Earlier::default() };
                 self.modes = *modes;
             }
-            Block::Rows { first, values, modal, events } => {
+            RecordBlock::Rows { first, values, modal, events } => {
                 if *first != self.rows || values.len() != self.channels.len() || modal.len() != self.modes {
                     return Err("rows that do not follow those before");
                 }
@@ -88,7 +88,7 @@ impl Earlier {
                 self.rows += values.first().map_or(0, Vec::len);
                 self.events += events.len();
             }
-            Block::Field { number, .. } => {
+            RecordBlock::Field { number, .. } => {
                 if *number != self.fields {
                     return Err("motion that does not follow that before");
                 }
@@ -107,7 +107,7 @@ pub fn read_record(
     path: &Path,
     mut input: impl Read,
     length: u64,
-    each: &mut dyn FnMut(Block) -> Result<()>,
+    each: &mut dyn FnMut(RecordBlock) -> Result<()>,
 ) -> Result<Earlier> {
     let mut earlier = Earlier::default();
     let mut left = length;
@@ -127,7 +127,7 @@ pub fn read_record(
         if payload.len() as u64 != size {
             return Err(wrong("it ends too early", left));
         }
-        let block = Block::read(*kind, &payload).map_err(|what| wrong(what, left))?;
+        let block = RecordBlock::read(*kind, &payload).map_err(|what| wrong(what, left))?;
         earlier.add(&block).map_err(|what| wrong(what, left))?;
         each(block)?;
         left -= head_bytes + size;
@@ -229,7 +229,7 @@ impl Record {
         }
         let digest: [u8; 32] = hasher.clone().finalize().into();
         if digest != saved.digest {
-            return Err(damaged(&path, "not what the checkpoint says (its checksum is wrong)"));
+            return Err(damaged(&path, "not the record of the checkpoint (its checksum is wrong)"));
         }
         let mut earlier = read_record(&path, open(&path)?, saved.length, &mut |_| Ok(()))?;
         earlier.march.clone_from(&saved.march);
@@ -251,7 +251,7 @@ impl Record {
     ///
     /// # Errors
     /// The file was changed since; what `each` returns.
-    pub fn replay(&self, each: &mut dyn FnMut(Block) -> Result<()>) -> Result<()> {
+    pub fn replay(&self, each: &mut dyn FnMut(RecordBlock) -> Result<()>) -> Result<()> {
         let path = self.dir.join(RECORD);
         read_record(&path, open(&path)?, self.saved.length, each).map(|_| ())
     }
@@ -290,7 +290,7 @@ impl Record {
     ///
     /// # Errors
     /// As above.
-    pub fn add_piece(&mut self, piece: &Piece) -> Result<()> {
+    pub fn add_piece(&mut self, piece: &RecordPiece) -> Result<()> {
         self.append(&block::rows(piece))?;
         self.saved.march = Some(piece.checkpoint.clone());
         self.save()
@@ -300,7 +300,7 @@ impl Record {
     ///
     /// # Errors
     /// As above.
-    pub fn add_field(&mut self, field: &Field) -> Result<()> {
+    pub fn add_field(&mut self, field: &FieldSnapshot) -> Result<()> {
         self.append(&block::field(field))
     }
 

@@ -2,7 +2,7 @@
 //!
 //! Sixteen bytes that name the format, the payload, and the SHA-256 of all before it (32 bytes).
 
-use super::bytes::{Bytes, Cursor, Read};
+use super::bytes::{Bytes, Read, RecordCursor};
 use super::origin::{InputFile, Origin};
 use crate::transient::Checkpoint;
 use sha2::{Digest, Sha256};
@@ -68,7 +68,7 @@ impl Saved {
     /// # Errors
     /// Bytes that are not what [`Saved::to_bytes`] writes.
     pub fn from_bytes(bytes: &[u8]) -> std::result::Result<Saved, &'static str> {
-        let mut from = Cursor(bytes);
+        let mut from = RecordCursor(bytes);
         if from.take(FORMAT.len()).ok() != Some(FORMAT) {
             return Err("it is not a checkpoint of this version of the program");
         }
@@ -77,7 +77,7 @@ impl Saved {
         if said.len() < FORMAT.len() || Sha256::digest(said)[..] != *digest {
             return Err("its checksum is wrong");
         }
-        let mut from = Cursor(&said[FORMAT.len()..]);
+        let mut from = RecordCursor(&said[FORMAT.len()..]);
         let program_version = from.text()?;
         let case = from.text()?;
         let count = from.count(24)?;
@@ -92,7 +92,7 @@ impl Saved {
     }
 }
 
-fn read_march(from: &mut Cursor) -> Read<Checkpoint> {
+fn read_march(from: &mut RecordCursor) -> Read<Checkpoint> {
     let count = from.count(16)?;
     let array = |_| {
         let name = from.text()?;

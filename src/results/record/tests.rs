@@ -47,14 +47,17 @@ fn begin(record: &mut Record) {
 /// Ten rows, two events and the motion of all nodes.
 fn add(record: &mut Record, first: usize) {
     let number = first / 10;
-    record.add_field(&Field { number, displacement: &motion(number), velocity: &motion(100) }).unwrap();
+    record
+        .add_field(&FieldSnapshot { number, displacement: &motion(number), velocity: &motion(100) })
+        .unwrap();
     let rows = first..first + 10;
     let values = [1.0, 2.0].map(|c| rows.clone().map(|row| c * row as f64).collect::<Vec<f64>>());
     let modal = [0.5_f32; MODES].map(|c| rows.clone().map(|row| c * row as f32).collect::<Vec<f32>>());
     let event = |k: usize| Event { time: k as f64, point: k, kind: EventKind::ALL[k % 5] };
     let events = [event(first), event(first + 1)];
     let checkpoint = checkpoint(first + 9);
-    let piece = Piece { first, values: &values, modal: &modal, events: &events, checkpoint: &checkpoint };
+    let piece =
+        RecordPiece { first, values: &values, modal: &modal, events: &events, checkpoint: &checkpoint };
     record.add_piece(&piece).unwrap();
 }
 
@@ -95,12 +98,12 @@ fn a_record_is_resumed() {
     again
         .replay(&mut |block| {
             match block {
-                Block::Rows { first, values, modal, events } => {
+                RecordBlock::Rows { first, values, modal, events } => {
                     assert_eq!((first, values[1][3]), (rows.len(), 2.0 * (first + 3) as f64));
                     assert_eq!((modal[1][4], events[1].point), (0.5 * (first + 4) as f32, first + 1));
                     rows.extend(values[0].clone());
                 }
-                Block::Field { number, motion: [displacement, velocity] } => {
+                RecordBlock::Field { number, motion: [displacement, velocity] } => {
                     assert!(number == fields && displacement == motion(number) && velocity == motion(100));
                     fields += 1;
                 }

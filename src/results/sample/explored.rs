@@ -1,7 +1,7 @@
 //! A made-up sweep, a map, and what damping decides.
 
 use crate::linalg::c64;
-use crate::results::{DampingRow, DampingVerdicts, MapResult, Method, SweepResult};
+use crate::results::{DampingRow, DampingVerdicts, MapResult, SweepMethod, SweepResult};
 use crate::sweep::{
     Axis, Boundary, Branch, Checked, Critical, CriticalKind, Interaction, InteractionKind, MapPoint, Sweep,
 };
@@ -47,7 +47,7 @@ pub(super) fn sweep() -> SweepResult {
         },
         verified: vec![Some(checked), None],
         sample: vec![(0.2, 1e-9), (0.4, 2e-9)],
-        method: Method::Reduced(88),
+        method: SweepMethod::Reduced(88),
     }
 }
 
@@ -76,7 +76,7 @@ pub(super) fn map() -> MapResult {
             lines: vec![vec![0, 1, 2]],
         },
         sample: vec![([15.0, 0.3], 1e-9)],
-        method: Method::Whole,
+        method: SweepMethod::Whole,
     }
 }
 

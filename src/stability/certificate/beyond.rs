@@ -17,13 +17,13 @@ use crate::linalg::SparseMatrix;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::factor::inertia_like;
 use crate::linalg::sparse::{add_scaled, diagonal, entry};
-use crate::stability::analysis::Analysis;
+use crate::stability::analysis::CompletedAnalysis;
 use faer::{Mat, MatRef};
 use std::f64::consts::TAU;
 
 /// Whether no eigenvalue with |ω| ≤ R has a growth rate of R or more, R the top of the band; false when that could not
 /// be shown.
-pub(super) fn nothing_faster(model: &ReducedModel, analysis: &Analysis<'_>) -> Result<bool> {
+pub(super) fn nothing_faster(model: &ReducedModel, analysis: &CompletedAnalysis<'_>) -> Result<bool> {
     let radius = TAU * analysis.band_hz[1];
     if !model.dissipative {
         return Ok(false);
@@ -70,7 +70,7 @@ pub(super) fn nothing_faster(model: &ReducedModel, analysis: &Analysis<'_>) -> R
 /// `None` when K + R²M is not known to be positive definite.
 fn receptance(
     model: &ReducedModel,
-    analysis: &Analysis<'_>,
+    analysis: &CompletedAnalysis<'_>,
     scale: &[f64],
     radius: f64,
 ) -> Option<(Mat<f64>, f64)> {
@@ -103,7 +103,7 @@ fn function(a: MatRef<'_, f64>, f: impl Fn(f64) -> f64) -> Result<Mat<f64>> {
 
 /// Whether ½ b M + W c_s Wᵀ is positive semidefinite, M taken with the rounding of its entries ([`rounding`]). First a diagonal
 /// below W c_s Wᵀ replaces it, as that is in the pattern whose analysis is at hand.
-fn holds_against_friction(analysis: &Analysis<'_>, b: f64) -> bool {
+fn holds_against_friction(analysis: &CompletedAnalysis<'_>, b: f64) -> bool {
     let (mass, stiffness) = (analysis.operator.mass, &*analysis.operator.stiffness);
     let definite = |matrix: &SparseMatrix| {
         inertia_like(analysis.factor, matrix).is_ok_and(|i| i.negative == 0 && i.zero == 0)
@@ -141,7 +141,7 @@ fn diagonal_below(a: &SparseMatrix, mass: &SparseMatrix) -> SparseMatrix {
 }
 
 /// W c_s Wᵀ as a sparse matrix.
-fn symmetric_damping(analysis: &Analysis<'_>) -> SparseMatrix {
+fn symmetric_damping(analysis: &CompletedAnalysis<'_>) -> SparseMatrix {
     let (interface, n) = (&analysis.operator.interface, analysis.operator.n());
     let mut triplets = Vec::new();
     for term in interface.terms.iter().filter(|t| t.damping != 0.0) {

@@ -1,7 +1,7 @@
 //! The winding number of d along a rectangle, covered by discs in which its phase cannot be misread.
 
-use super::pencil::{Pencil, Point};
-use super::region::Region;
+use super::pencil::{ContourPoint, Pencil};
+use super::region::CountedRegion;
 use crate::linalg::c64;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -19,7 +19,7 @@ pub(super) struct Winding {
     pub(super) worst: c64,
 }
 
-/// Why a walk ended early.
+/// Why a contour could not be followed.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Stopped {
     /// The contour passes so near an eigenvalue or a pole that it cannot be followed here.
@@ -33,8 +33,12 @@ const PIECES: usize = 16;
 /// The most points on a piece.
 const POINTS: usize = 20_000;
 
-/// Walks round `region`, with `most_points` points at most.
-pub(super) fn wind(pencil: &Pencil<'_>, region: &Region, most_points: usize) -> Result<Winding, Stopped> {
+/// Winding number around `region`, with `most_points` points at most.
+pub(super) fn wind(
+    pencil: &Pencil<'_>,
+    region: &CountedRegion,
+    most_points: usize,
+) -> Result<Winding, Stopped> {
     let path = region.path();
     let pieces: Vec<[c64; 2]> = path
         .windows(2)
@@ -49,13 +53,13 @@ pub(super) fn wind(pencil: &Pencil<'_>, region: &Region, most_points: usize) -> 
     let resolution = 1e-11 * region.omega[1];
     // Whether all pieces together stay below the limit does not depend on who counts first.
     let budget = Budget { evaluated: AtomicUsize::new(0), most: most_points };
-    let covered: Vec<Result<Vec<Point>, Stopped>> =
+    let covered: Vec<Result<Vec<ContourPoint>, Stopped>> =
         pieces.par_iter().map(|[a, b]| cover(pencil, *a, *b, resolution, &budget)).collect();
     if budget.spent() {
         return Err(Stopped::TooManyPoints);
     }
-    let covered: Result<Vec<Vec<Point>>, Stopped> = covered.into_iter().collect();
-    let mut points: Vec<Point> = covered?.into_iter().flatten().collect();
+    let covered: Result<Vec<Vec<ContourPoint>>, Stopped> = covered.into_iter().collect();
+    let mut points: Vec<ContourPoint> = covered?.into_iter().flatten().collect();
     let count = points.len();
     let worst = points.iter().copied().reduce(|a, b| if b.defect > a.defect { b } else { a });
     if region.symmetric() {
@@ -69,11 +73,11 @@ pub(super) fn wind(pencil: &Pencil<'_>, region: &Region, most_points: usize) -> 
     }
     // Two neighbouring discs touch, and in each the phase is within asin(3/4) of its centre's: less than half a turn.
     let change: f64 = points.windows(2).map(|p| (p[1].phase * p[0].phase.conj()).arg()).sum();
-    let turns = if region.symmetric() { 2.0 * change / TAU } else { change / TAU };
-    let whole = turns.round();
+    let winding = if region.symmetric() { 2.0 * change / TAU } else { change / TAU };
+    let whole = winding.round();
     match worst {
-        Some(worst) if (turns - whole).abs() < 1e-3 => {
-            // d has as many more zeros than poles inside as it has turns; its poles are the zeros of Π p.
+        Some(worst) if (winding - whole).abs() < 1e-3 => {
+            // The winding number of d is its zeros inside less its poles; its poles are the zeros of Π p.
             let zeros = whole as i64 + pencil.poles_inside(region);
             Ok(Winding { zeros, points: count, defect: worst.defect, worst: worst.s })
         }
@@ -105,7 +109,7 @@ fn cover(
     b: c64,
     resolution: f64,
     budget: &Budget,
-) -> Result<Vec<Point>, Stopped> {
+) -> Result<Vec<ContourPoint>, Stopped> {
     let length = (b - a).norm();
     let direction = (b - a) / length;
     let mut done = Vec::new();

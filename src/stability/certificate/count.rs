@@ -1,6 +1,6 @@
 //! A count of eigenvalues beside those that were found.
 
-use super::region::Region;
+use super::region::CountedRegion;
 use crate::stability::{ComplexMode, ComplexModes};
 use std::f64::consts::TAU;
 
@@ -67,13 +67,13 @@ impl Certificate {
 }
 
 /// The eigenvalues found inside: each once, or both of a pair when the region holds both.
-pub(super) fn found(modes: &ComplexModes, region: &Region) -> i64 {
+pub(super) fn found(modes: &ComplexModes, region: &CountedRegion) -> i64 {
     let inside = modes.modes.iter().map(|m| m.eigenvalue).filter(|z| region.contains(*z));
     inside.map(|z| if region.symmetric() && z.im > 1e-9 * z.norm() { 2 } else { 1 }).sum()
 }
 
 /// Modes within half of ε, or within their own error, of the contour, and unstable ones slower than ε.
-pub(super) fn close_calls(modes: &ComplexModes, region: &Region) -> Vec<CloseCall> {
+pub(super) fn close_calls(modes: &ComplexModes, region: &CountedRegion) -> Vec<CloseCall> {
     let slowest = region.growth[0];
     let call = |mode: &ComplexMode| {
         let z = mode.eigenvalue;

@@ -1,12 +1,12 @@
-//! A count at full order, where the part that is not symmetric has no low rank: the turns of det Q round the region.
+//! A count at full order, where the part that is not symmetric has no low rank: the winding number of det Q around the region.
 //!
 //! f(s) = det Q(s) / Π (s − λ) over the eigenvalues λ that were seen has the phase of U's diagonal in Q(s) = L U, less that of the
-//! known factors. Its turns along the contour are the eigenvalues inside that nobody saw; near an eigenvalue that was seen it
+//! known factors. Its winding number along the contour counts the eigenvalues inside that nobody saw; near an eigenvalue that was seen it
 //! is smooth, so that few points are enough. A stretch is halved until the phase changes by less than [`STEP`] on either half:
 //! the phase between the points is followed, not bounded, so that this is a count and no proof.
 
 use super::count::{Certificate, SLOWEST_GROWTH, close_calls, found};
-use super::region::Region;
+use super::region::CountedRegion;
 use crate::error::{Error, Result};
 use crate::linalg::c64;
 use crate::numbers::hertz;
@@ -22,7 +22,7 @@ const STEP: f64 = 0.25 * PI;
 /// The fastest growth that is counted, by the top of the band: a damping ratio of about −10 %.
 const FASTEST: f64 = 0.1;
 /// Pieces of an edge that are followed independently of each other. The eigenvalues that nobody saw, all but a few, turn the
-/// phase, too: with 4 pieces, halves of a piece turned by whole turns at 4,680 degrees of freedom, and the count was wrong.
+/// phase, too: with 4 pieces, halves of a piece changed by multiples of 2π at 4,680 degrees of freedom, and the count was wrong.
 const PIECES: usize = 64;
 /// Halvings of a piece at most.
 const HALVINGS: usize = 14;
@@ -49,7 +49,7 @@ pub(in crate::stability) fn count(
     // With loss factors the spectrum is not symmetric, and at ω = 0 they mean nothing.
     let lossy = operator.damping.hysteretic.is_some();
     let bottom = if low == 0.0 && lossy { 1e-3 * high } else { low };
-    let region = Region { growth: [SLOWEST_GROWTH * high, FASTEST * high], omega: [bottom, high] };
+    let region = CountedRegion { growth: [SLOWEST_GROWTH * high, FASTEST * high], omega: [bottom, high] };
     let known = known(&general.seen, !lossy);
     let determinant = Determinant { operator, general, known: &known };
     let pieces: Vec<[c64; 2]> = region
@@ -61,18 +61,19 @@ pub(in crate::stability) fn count(
             (0..PIECES).map(move |k| [at(k), at(k + 1)])
         })
         .collect();
-    let walked = pieces.par_iter().map(|[a, b]| determinant.walk(*a, *b)).collect::<Result<Vec<Walked>>>()?;
-    let change: f64 = walked.iter().map(|w| w.change).sum();
-    let turns = if region.symmetric() { 2.0 * change / TAU } else { change / TAU };
-    let widest = walked
+    let followed =
+        pieces.par_iter().map(|[a, b]| determinant.follow(*a, *b)).collect::<Result<Vec<FollowedPhase>>>()?;
+    let change: f64 = followed.iter().map(|w| w.change).sum();
+    let winding = if region.symmetric() { 2.0 * change / TAU } else { change / TAU };
+    let widest = followed
         .iter()
         .copied()
         .reduce(|a, b| if b.step > a.step { b } else { a })
         .expect("a region has edges");
-    if (turns - turns.round()).abs() > 1e-3 {
+    if (winding - winding.round()).abs() > 1e-3 {
         return Err(Error::analysis(
             "count of the unstable modes",
-            format!("the phase of the determinant makes {turns:.4} turns round the region"),
+            format!("the phase of the determinant winds {winding:.4} times around the region"),
             "Move the ends of the band by a few hertz",
         ));
     }
@@ -80,11 +81,11 @@ pub(in crate::stability) fn count(
     Ok(Certificate {
         band_hz: region.omega.map(|w| w / TAU),
         growth: region.growth,
-        counted: turns.round() as i64 + inside,
+        counted: winding.round() as i64 + inside,
         found: found(&general.modes, &region),
         margin: PI / widest.step.max(1e-6),
         tightest: [widest.at.im / TAU, widest.at.re],
-        points: walked.iter().map(|w| w.points).sum(),
+        points: followed.iter().map(|w| w.points).sum(),
         structure_poles: 0,
         dissipative: false,
         nothing_faster: false,
@@ -125,7 +126,7 @@ struct Determinant<'a> {
 
 /// A stretch of the contour: the change of the phase along it, the largest step and where, and the points.
 #[derive(Debug, Clone, Copy)]
-struct Walked {
+struct FollowedPhase {
     change: f64,
     step: f64,
     at: c64,
@@ -150,20 +151,20 @@ impl Determinant<'_> {
         Ok(factors.fold(phase, |product, factor| product * factor))
     }
 
-    fn walk(&self, a: c64, b: c64) -> Result<Walked> {
+    fn follow(&self, a: c64, b: c64) -> Result<FollowedPhase> {
         let (first, last) = (self.phase(a)?, self.phase(b)?);
-        let mut walked = Walked { change: 0.0, step: 0.0, at: a, points: 2 };
+        let mut followed = FollowedPhase { change: 0.0, step: 0.0, at: a, points: 2 };
         let mut open = vec![(a, first, b, last, 0)];
         while let Some((a, of_a, b, of_b, depth)) = open.pop() {
             let middle = (a + b) * 0.5;
             let of_middle = self.phase(middle)?;
-            walked.points += 1;
+            followed.points += 1;
             let steps = [(of_middle * of_a.conj()).arg(), (of_b * of_middle.conj()).arg()];
             let largest = steps[0].abs().max(steps[1].abs());
             if largest <= STEP {
-                walked.change += steps[0] + steps[1];
-                if largest > walked.step {
-                    (walked.step, walked.at) = (largest, middle);
+                followed.change += steps[0] + steps[1];
+                if largest > followed.step {
+                    (followed.step, followed.at) = (largest, middle);
                 }
             } else if depth == HALVINGS {
                 return Err(Error::analysis(
@@ -179,7 +180,7 @@ impl Determinant<'_> {
                 open.push((a, of_a, middle, of_middle, depth + 1));
             }
         }
-        Ok(walked)
+        Ok(followed)
     }
 }
 

@@ -5,11 +5,11 @@
 //!
 //! det Q_B(s) = Π p(s) · d(s), d(s) = det(I + H(s) κ(s)), H = W_Bᵀ diag(1/p) W_B, κ = k + s c,
 //!
-//! d is as small as the contact, and the zeros of Q_B inside are the turns of d round zero along the contour plus the
+//! d is as small as the contact, and the zeros of Q_B inside are the winding number of d around zero along the contour plus the
 //! zeros of p inside, which are known in closed form. Three statements make it a proof, up to rounding:
 //!
 //! 1. *Between the points.* Each point of the contour comes with a disc in which d has no zero and its phase changes by
-//!    less than a quarter turn ([`pencil`]). The discs cover the contour ([`contour`]): a turn cannot be overlooked.
+//!    less than a quarter turn ([`pencil`]). The discs cover the contour ([`contour`]): no winding can be missed.
 //! 2. *Beyond the basis.* With the real modes below Ω_b complete, by the Sturm count, the full order differs from the
 //!    basis by a perturbation of relative size ρ on the contour ([`remainder`]). Where ρ < 1 everywhere the full
 //!    determinant winds like the small one. The margin is the smallest 1/ρ.
@@ -39,7 +39,7 @@ mod tests;
 
 use super::ComplexModes;
 use super::Structural;
-use super::analysis::{Analysis, analyse, check};
+use super::analysis::{CompletedAnalysis, analyse, check};
 use super::band::Band;
 use super::general::general_modes;
 use super::operator::Operator;
@@ -55,15 +55,15 @@ use count::{close_calls, found};
 pub(in crate::stability) use determinant::count as count_determinant;
 use pencil::Pencil;
 use reduced::ReducedModel;
-use region::Region;
-use spectrum::Spectrum;
+use region::CountedRegion;
+use spectrum::ReducedSpectrum;
 use std::f64::consts::TAU;
 
 /// How often the contour is moved a little when an eigenvalue is too near for it.
 const ATTEMPTS: usize = 3;
 
-/// Operations of a walk round the region, some seconds, beyond which a cheaper way to count is taken.
-const LONG_WALK: f64 = 5e9;
+/// Operations of a count along the contour, some seconds, beyond which a cheaper method is used.
+const LONG_CONTOUR: f64 = 5e9;
 
 /// [`complex_modes`](super::complex_modes) of the band, all of them as they are counted, and the count of those that grow.
 ///
@@ -150,19 +150,19 @@ fn counted_at_full_order(
 }
 
 /// The directions in which the interface acts.
-fn directions(analysis: &Analysis<'_>) -> usize {
+fn directions(analysis: &CompletedAnalysis<'_>) -> usize {
     analysis.operator.interface.active(TAU * analysis.band_hz[1]).len()
 }
 
 /// About the floating-point operations of a point of the contour: products of matrices of the sizes of the basis (m) and
 /// the interface (r), and what small ones cost besides.
-fn work_of_a_point(analysis: &Analysis<'_>) -> f64 {
+fn work_of_a_point(analysis: &CompletedAnalysis<'_>) -> f64 {
     let (m, r) = (analysis.basis.len() as f64, directions(analysis) as f64);
     r * r * (16.0 * m + 40.0 * r) + 4.0 * m * r * (m - analysis.basis.n_real() as f64) + 3e5
 }
 
 /// Expected work of a count \[operations\]: about thirty points of the contour a mode.
-fn expected_work(analysis: &Analysis<'_>, modes: &ComplexModes) -> f64 {
+fn expected_work(analysis: &CompletedAnalysis<'_>, modes: &ComplexModes) -> f64 {
     30.0 * (modes.modes.len() + 10) as f64 * work_of_a_point(analysis)
 }
 
@@ -175,49 +175,54 @@ fn weak(certificate: &Certificate) -> String {
     )
 }
 
-/// The count by the walk round the region, or from the spectrum where that is long: then the walk is the last resort.
-fn count(analysis: &Analysis<'_>, modes: &ComplexModes, most_work: f64) -> Result<Certificate> {
-    let walk = expected_work(analysis, modes);
-    if walk <= LONG_WALK.max(spectrum::work(analysis.basis.len())) {
-        return count_by(Way::Walk, analysis, modes, most_work);
+/// The count along the contour, or from the spectrum where that is long: then the contour is the last resort.
+fn count(analysis: &CompletedAnalysis<'_>, modes: &ComplexModes, most_work: f64) -> Result<Certificate> {
+    let contour_work = expected_work(analysis, modes);
+    if contour_work <= LONG_CONTOUR.max(spectrum::work(analysis.basis.len())) {
+        return count_by(Way::Contour, analysis, modes, most_work);
     }
     let certificate = count_by(Way::Spectrum, analysis, modes, most_work);
     match certificate {
         Ok(certificate) if certificate.margin > 1.0 => Ok(certificate),
-        weak if walk > most_work => weak,
-        weak => count_by(Way::Walk, analysis, modes, most_work).or(weak),
+        weak if contour_work > most_work => weak,
+        weak => count_by(Way::Contour, analysis, modes, most_work).or(weak),
     }
 }
 
 /// How the eigenvalues of the reduced model are counted.
 #[derive(Debug, Clone, Copy)]
 enum Way {
-    /// By the turns of d ([`contour`]).
-    Walk,
+    /// By the winding number of d ([`contour`]).
+    Contour,
     /// One by one ([`spectrum`]).
     Spectrum,
 }
 
 /// Function that counts the zeros of Q_B in a region.
-type Count<'a> = dyn Fn(&Region) -> std::result::Result<Winding, Stopped> + 'a;
+type Count<'a> = dyn Fn(&CountedRegion) -> std::result::Result<Winding, Stopped> + 'a;
 
-fn count_by(way: Way, analysis: &Analysis<'_>, modes: &ComplexModes, most_work: f64) -> Result<Certificate> {
+fn count_by(
+    way: Way,
+    analysis: &CompletedAnalysis<'_>,
+    modes: &ComplexModes,
+    most_work: f64,
+) -> Result<Certificate> {
     let model = ReducedModel::new(analysis)?;
     let top = TAU * analysis.band_hz[1];
     let interface = &analysis.operator.interface;
     let sizes = interface.sizes(top);
     let most_points = (most_work / work_of_a_point(analysis)).min(1e9) as usize;
     let count: Box<Count<'_>> = match way {
-        Way::Walk => {
+        Way::Contour => {
             let pencil = Pencil::new(&model, &interface.terms, &sizes, top)?;
             Box::new(move |region| wind(&pencil, region, most_points))
         }
         Way::Spectrum => {
-            let spectrum = Spectrum::new(&model, &interface.terms, &sizes, top)?;
+            let spectrum = ReducedSpectrum::new(&model, &interface.terms, &sizes, top)?;
             Box::new(move |region| spectrum.count(region))
         }
     };
-    let mut best: Option<(Region, Winding)> = None;
+    let mut best: Option<(CountedRegion, Winding)> = None;
     let mut stopped = Stopped::TooManyPoints;
     for attempt in 0..ATTEMPTS {
         let region = region(analysis, attempt);
@@ -271,13 +276,13 @@ fn count_by(way: Way, analysis: &Analysis<'_>, modes: &ComplexModes, most_work: 
 }
 
 /// The band of the analysis times ε … R, each attempt a little smaller.
-fn region(analysis: &Analysis<'_>, attempt: usize) -> Region {
+fn region(analysis: &CompletedAnalysis<'_>, attempt: usize) -> CountedRegion {
     let [low, high] = analysis.band_hz.map(|f| TAU * f);
     let inward = 1e-5 * attempt as f64;
     // With loss factors the spectrum is not symmetric, and at ω = 0 they mean nothing.
     let bottom = if low == 0.0 && analysis.operator.damping.hysteretic.is_some() { 1e-3 * high } else { low };
     let growth = SLOWEST_GROWTH * high * (1.0 + 0.1 * attempt as f64);
-    Region {
+    CountedRegion {
         growth: [growth, high],
         omega: [if bottom > 0.0 { bottom + inward * high } else { 0.0 }, high * (1.0 - inward)],
     }

@@ -1,13 +1,13 @@
 //! The contact-size determinant d(s) = det(I + H(s) κ(s)) at a point, with a disc around it in which it is understood.
 
 use super::reduced::{Oscillator, ReducedModel};
-use super::region::Region;
+use super::region::CountedRegion;
 use super::remainder::Remainder;
 use crate::error::{Error, Result};
 use crate::linalg::c64;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::lu::inverse_and_phase;
-use crate::stability::interface::Term;
+use crate::stability::interface::InterfaceTerm;
 use faer::Mat;
 
 /// Q_B(s) = diag(p) + V κ(s) Vᵀ with κ = k + s c: det Q_B = Π p · d, d(s) = det(I + H κ), H = Vᵀ diag(1/p) V.
@@ -20,7 +20,7 @@ pub(super) struct Pencil<'a> {
     remainder: Option<&'a Remainder>,
     /// V, m × r.
     directions: Mat<f64>,
-    entries: Vec<Entry>,
+    entries: Vec<PencilEntry>,
     /// The columns of κ that are not zero: d is the determinant of their block of I + Hκ.
     columns: Vec<usize>,
     /// The square root of the size of κ's columns, relative to that of its rows and columns. X is measured with its
@@ -36,7 +36,7 @@ pub(super) struct Pencil<'a> {
 
 /// An entry of κ.
 #[derive(Debug, Clone, Copy)]
-struct Entry {
+struct PencilEntry {
     row: usize,
     column: usize,
     /// The place of the column among those that are not zero.
@@ -47,7 +47,7 @@ struct Entry {
 
 /// d at a point of the contour.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Point {
+pub(super) struct ContourPoint {
     pub(super) s: c64,
     /// d / |d|.
     pub(super) phase: c64,
@@ -61,14 +61,14 @@ pub(super) struct Point {
 const CHANGE: f64 = 0.75;
 
 /// The terms of the interface between the active directions, each divided by the root of its size, `scale`.
-fn contact_entries(model: &ReducedModel, terms: &[Term], scale: &[f64]) -> Vec<Entry> {
+fn contact_entries(model: &ReducedModel, terms: &[InterfaceTerm], scale: &[f64]) -> Vec<PencilEntry> {
     let place = |d: usize| model.active.iter().position(|a| *a == d);
     terms
         .iter()
         .filter_map(|t| {
             let (row, column) = (place(t.row)?, place(t.column)?);
             let size = scale[row] * scale[column];
-            Some(Entry {
+            Some(PencilEntry {
                 row,
                 column,
                 place: 0,
@@ -82,7 +82,12 @@ fn contact_entries(model: &ReducedModel, terms: &[Term], scale: &[f64]) -> Vec<E
 impl<'a> Pencil<'a> {
     /// The reduced model with the numbers of an interface, scaled for frequencies up to `top` \[rad/s\]; `sizes` are
     /// those of the operator's directions.
-    pub(super) fn new(model: &'a ReducedModel, terms: &[Term], sizes: &[f64], top: f64) -> Result<Self> {
+    pub(super) fn new(
+        model: &'a ReducedModel,
+        terms: &[InterfaceTerm],
+        sizes: &[f64],
+        top: f64,
+    ) -> Result<Self> {
         let m = model.oscillators.len();
         let zero = c64::new(0.0, 0.0);
         let scale: Vec<f64> = model.active.iter().map(|d| sizes[*d].sqrt()).collect();
@@ -97,7 +102,7 @@ impl<'a> Pencil<'a> {
                 let here = columns.len();
                 columns.push((0..m).map(|i| vectors[(i, j)] * (value.abs() * unit).sqrt()).collect());
                 let sign = value.signum();
-                entries.push(Entry {
+                entries.push(PencilEntry {
                     row: here,
                     column: here,
                     place: 0,
@@ -153,7 +158,7 @@ impl<'a> Pencil<'a> {
     }
 
     /// The zeros of Π p in a region.
-    pub(super) fn poles_inside(&self, region: &Region) -> i64 {
+    pub(super) fn poles_inside(&self, region: &CountedRegion) -> i64 {
         self.oscillators.iter().flat_map(|o| o.roots()).filter(|root| region.contains(*root)).count() as i64
     }
 
@@ -171,7 +176,7 @@ impl<'a> Pencil<'a> {
     }
 
     /// x κ, in the columns that are not zero.
-    fn times_entries(&self, x: &Mat<c64>, value: impl Fn(&Entry) -> c64) -> Mat<c64> {
+    fn times_entries(&self, x: &Mat<c64>, value: impl Fn(&PencilEntry) -> c64) -> Mat<c64> {
         let mut y = Mat::zeros(x.nrows(), self.columns.len());
         for entry in &self.entries {
             let factor = value(entry);
@@ -182,7 +187,7 @@ impl<'a> Pencil<'a> {
     }
 
     /// κ x or c x, with the rows of `x` those columns.
-    fn entries_times(&self, x: &Mat<c64>, value: impl Fn(&Entry) -> c64) -> Mat<c64> {
+    fn entries_times(&self, x: &Mat<c64>, value: impl Fn(&PencilEntry) -> c64) -> Mat<c64> {
         let mut y = Mat::zeros(self.directions.ncols(), x.ncols());
         for j in 0..x.ncols() {
             let (from, to) = (x.col_as_slice(j), y.col_as_slice_mut(j));
@@ -200,7 +205,7 @@ impl<'a> Pencil<'a> {
     /// eigenvalues is at most its nuclear norm, which is bounded in the disc ([`Pencil::change`]). As the matrices with
     /// ‖X‖ < 1 are a convex set without a singular I + X, the phase of d changes by Σ arg(1 + xᵢ), and by asin(Σ|xᵢ|) at
     /// most.
-    pub(super) fn point(&self, c: c64, wish: f64) -> Option<Point> {
+    pub(super) fn point(&self, c: c64, wish: f64) -> Option<ContourPoint> {
         let (v, r) = (&self.directions, self.columns.len());
         let used = Mat::from_fn(v.nrows(), r, |i, j| v[(i, self.columns[j])]);
         let poles: Vec<Pole> = self.oscillators.iter().map(|o| Pole::new(o, c)).collect();
@@ -213,8 +218,8 @@ impl<'a> Pencil<'a> {
             |re: Mat<f64>, im: Mat<f64>| Mat::from_fn(r, v.ncols(), |i, j| c64::new(re[(i, j)], im[(i, j)]));
         let h = both(weighted(|p| p.compliance.re), weighted(|p| p.compliance.im));
         let h_rate = both(weighted(|p| p.rate.re), weighted(|p| p.rate.im));
-        let kappa = |e: &Entry| e.stiffness + c * e.damping;
-        let rate = |e: &Entry| c64::new(e.damping, 0.0);
+        let kappa = |e: &PencilEntry| e.stiffness + c * e.damping;
+        let rate = |e: &PencilEntry| c64::new(e.damping, 0.0);
         let full = self.as_matrices(c);
         let mut n = match &full {
             Some([kappa, _]) => product(h.as_ref(), kappa.as_ref()),
@@ -240,7 +245,7 @@ impl<'a> Pencil<'a> {
         let (mut balanced_stiff, mut balanced_damped) = (stiff.clone(), damped.clone());
         over(&mut balanced_stiff, false);
         over(&mut balanced_damped, false);
-        let state = State {
+        let state = DiscState {
             stiff_rows: row_norms(v, &balanced_stiff),
             damped_rows: row_norms(v, &balanced_damped),
             stiff: size(&stiff),
@@ -250,7 +255,7 @@ impl<'a> Pencil<'a> {
             c,
         };
         let reach = self.reach(&state, wish.min(0.9 * nearest))?;
-        Some(Point { s: c, phase, reach, defect: self.defect(&state, reach) })
+        Some(ContourPoint { s: c, phase, reach, defect: self.defect(&state, reach) })
     }
 
     /// A bound on the nuclear norm of X in the disc of radius `h`.
@@ -258,7 +263,7 @@ impl<'a> Pencil<'a> {
     /// V weighted by the largest change of each 1/p bounds (H(s) − H(c)) κ N⁻¹ by a product of two Frobenius norms. Near
     /// two nearly equal eigenvalues that is too large by orders of magnitude, as it is blind to what cancels in d′; there
     /// (s − c) N′N⁻¹ itself is used, with a bound of the same kind on the second-order rest. The smaller counts.
-    fn change(&self, state: &State, h: f64) -> f64 {
+    fn change(&self, state: &DiscState, h: f64) -> f64 {
         let mut first = [0.0; 2];
         let (mut fixed, mut second, mut cross) = ([0.0; 2], [0.0; 2], [0.0; 2]);
         for (i, pole) in state.poles.iter().enumerate() {
@@ -281,7 +286,7 @@ impl<'a> Pencil<'a> {
     }
 
     /// The radius, at most `wish`, in which the change stays below [`CHANGE`].
-    fn reach(&self, state: &State, wish: f64) -> Option<f64> {
+    fn reach(&self, state: &DiscState, wish: f64) -> Option<f64> {
         let at = |h: f64| self.change(state, h);
         let (mut good, mut bad) = (0.0, wish);
         if at(wish) <= CHANGE {
@@ -306,7 +311,7 @@ impl<'a> Pencil<'a> {
 
     /// A bound on ρ(s) = q ‖E‖ in the disc of radius `h`, as far as the contour goes: not left of the imaginary axis and
     /// not above the band.
-    fn defect(&self, state: &State, h: f64) -> f64 {
+    fn defect(&self, state: &DiscState, h: f64) -> f64 {
         let Some(remainder) = self.remainder else { return 0.0 };
         let (c, v, change) = (state.c, &self.directions, self.change(state, h));
         let omega = (c.im.abs() + h).min(remainder.tau.sqrt());
@@ -345,7 +350,7 @@ impl<'a> Pencil<'a> {
 }
 
 /// Values at the centre of a disc.
-struct State {
+struct DiscState {
     c: c64,
     poles: Vec<Pole>,
     /// ‖(V κ N⁻¹)ᵢ‖ and ‖(V c N⁻¹)ᵢ‖ in balanced columns, one a row.
@@ -433,9 +438,9 @@ fn size(x: &Mat<c64>) -> f64 {
 }
 
 /// V κ Vᵀ as entries between the coordinates themselves, scaled so that they are about one.
-fn in_coordinates(v: &Mat<f64>, entries: &[Entry], top: f64) -> (Mat<f64>, Vec<Entry>) {
+fn in_coordinates(v: &Mat<f64>, entries: &[PencilEntry], top: f64) -> (Mat<f64>, Vec<PencilEntry>) {
     let (m, r) = (v.nrows(), v.ncols());
-    let dense = |value: &dyn Fn(&Entry) -> f64| {
+    let dense = |value: &dyn Fn(&PencilEntry) -> f64| {
         let mut left = Mat::<f64>::zeros(m, r);
         for entry in entries {
             (0..m).for_each(|i| left[(i, entry.column)] += v[(i, entry.row)] * value(entry));
@@ -456,7 +461,7 @@ fn in_coordinates(v: &Mat<f64>, entries: &[Entry], top: f64) -> (Mat<f64>, Vec<E
         for row in 0..m {
             let s = scale[row] * scale[column];
             let stiffness = c64::new(re[(row, column)] / s, im[(row, column)] / s);
-            all.push(Entry { row, column, place: 0, stiffness, damping: c[(row, column)] / s });
+            all.push(PencilEntry { row, column, place: 0, stiffness, damping: c[(row, column)] / s });
         }
     }
     (directions, all)

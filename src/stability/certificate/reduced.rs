@@ -2,10 +2,10 @@
 
 use super::damping::DampingParts;
 use super::remainder::Remainder;
-use super::rows::Rows;
+use super::rows::ColumnBlock;
 use crate::error::Result;
 use crate::linalg::dense::{definite_pencil, product};
-use crate::stability::analysis::Analysis;
+use crate::stability::analysis::CompletedAnalysis;
 use faer::Mat;
 use std::f64::consts::TAU;
 
@@ -43,13 +43,13 @@ pub(super) struct Oscillator {
 
 impl ReducedModel {
     /// Brings the projections of the analysis to diagonal form and bounds what they leave out.
-    pub(crate) fn new(analysis: &Analysis<'_>) -> Result<Self> {
+    pub(crate) fn new(analysis: &CompletedAnalysis<'_>) -> Result<Self> {
         let (operator, basis) = (&analysis.operator, &analysis.basis);
         let top = TAU * analysis.band_hz[1];
         let parts = DampingParts::new(analysis);
         let (theta, x) = definite_pencil(basis.stiffness.as_ref(), basis.mass.as_ref())?;
         let rotate = |a: &Mat<f64>| product(x.transpose(), product(a.as_ref(), x.as_ref()).as_ref());
-        let small = |image: &Rows| rotate(&image.seen_by(&basis.columns()));
+        let small = |image: &ColumnBlock| rotate(&image.seen_by(&basis.columns()));
         let mut coupled = parts.damped.as_ref().map(small);
         let mut regular = rotate(&basis.damping);
         if let Some(rest) = &coupled {

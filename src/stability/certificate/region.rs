@@ -4,13 +4,13 @@ use crate::linalg::c64;
 
 /// A closed region of the plane of s: growth \[1/s\] times angular frequency \[rad/s\].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Region {
+pub(super) struct CountedRegion {
     pub(super) growth: [f64; 2],
     /// When it begins at zero, the region reaches as far below the real axis as above.
     pub(super) omega: [f64; 2],
 }
 
-impl Region {
+impl CountedRegion {
     /// Whether the region is symmetric about the real axis.
     pub(super) fn symmetric(&self) -> bool {
         self.omega[0] == 0.0

@@ -19,7 +19,7 @@
 //! may hide in it is measured (`Probes`) and added.
 
 use super::damping::DampingParts;
-use super::rows::Rows;
+use super::rows::ColumnBlock;
 use crate::error::Result;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::factor::{SymmetricFactor, compliances, inertia_like};
@@ -27,8 +27,8 @@ use crate::linalg::multivector::{combine, expand, panels};
 use crate::linalg::random::Random;
 use crate::linalg::sparse::{add_scaled, dot, multiply, times};
 use crate::linalg::{SparseMatrix, c64};
-use crate::stability::analysis::Analysis;
-use crate::stability::damper::{Damper, Part};
+use crate::stability::analysis::CompletedAnalysis;
+use crate::stability::damper::{Damper, DamperPart};
 use faer::{Accum, Mat, MatRef};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -41,7 +41,7 @@ pub(super) struct Remainder {
     /// σ_A.
     pub(super) shift: f64,
     /// The terms of Γ(s)ᵀ (m × f each), with the polynomial that multiplies each.
-    pub(super) terms: Vec<(Factor, Mat<f64>)>,
+    pub(super) terms: Vec<(CouplingFactor, Mat<f64>)>,
     /// γ \[s\]: C ≥ −γ (K + τM) outside the basis.
     pub(super) indefinite: f64,
     /// τ of γ \[1/s²\].
@@ -55,13 +55,13 @@ pub(super) struct Remainder {
 
 /// s² + linear · s + constant, or s.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Factor {
+pub(super) struct CouplingFactor {
     pub(super) square: f64,
     pub(super) linear: f64,
     pub(super) constant: c64,
 }
 
-impl Factor {
+impl CouplingFactor {
     /// Its value at `s`.
     pub(super) fn at(&self, s: c64) -> c64 {
         s * s * self.square + s * self.linear + self.constant
@@ -76,7 +76,7 @@ impl Factor {
 impl Remainder {
     /// Solves for A⁻¹F, with `theta` and `x` the Ritz values and vectors in the basis, and W of the `active` directions.
     pub(super) fn new(
-        analysis: &Analysis<'_>,
+        analysis: &CompletedAnalysis<'_>,
         parts: &DampingParts,
         theta: &[f64],
         x: &Mat<f64>,
@@ -160,14 +160,19 @@ impl Remainder {
 }
 
 /// \[DB, H_rB/top, W\], W of the `active` directions with the root of its size: the columns of F with entries in a few rows.
-fn of_few_rows(analysis: &Analysis<'_>, parts: &DampingParts, active: &[usize], top: f64) -> Rows {
+fn of_few_rows(
+    analysis: &CompletedAnalysis<'_>,
+    parts: &DampingParts,
+    active: &[usize],
+    top: f64,
+) -> ColumnBlock {
     let sizes = analysis.operator.interface.sizes(top);
     let scales: Vec<f64> = active.iter().map(|d| sizes[*d].sqrt()).collect();
     let mut few = directions(analysis, active, &scales);
     for (image, scale) in [(&parts.lossy, 1.0 / top), (&parts.damped, 1.0)] {
         if let Some(image) = image {
             let values = &image.values * faer::Scale(scale);
-            few = Rows { rows: image.rows.clone(), values }.beside(&few);
+            few = ColumnBlock { rows: image.rows.clone(), values }.beside(&few);
         }
     }
     few
@@ -189,20 +194,25 @@ impl Root {
     }
 
     /// [`Remainder::terms`], with the Ritz vectors `x` in the basis.
-    fn terms(&self, analysis: &Analysis<'_>, parts: &DampingParts, x: &Mat<f64>) -> Vec<(Factor, Mat<f64>)> {
+    fn terms(
+        &self,
+        analysis: &CompletedAnalysis<'_>,
+        parts: &DampingParts,
+        x: &Mat<f64>,
+    ) -> Vec<(CouplingFactor, Mat<f64>)> {
         let (basis, shift) = (&analysis.basis, analysis.shift);
         let (m, first, f) = (basis.len(), basis.n_real(), self.of_few.ncols());
         let top = TAU * analysis.band_hz[1];
         let Damper { viscous, loss, .. } = &analysis.operator.dampers[0];
         let [(alpha, beta), (alpha_h, beta_h)] =
             [viscous, loss].map(|part| (part.split.mass_factor, part.split.stiffness_factor));
-        let of_mass = Factor {
+        let of_mass = CouplingFactor {
             square: 1.0,
             linear: alpha + beta * shift,
             constant: c64::new(shift, alpha_h + beta_h * shift),
         };
-        let of_damping = Factor { square: 0.0, linear: 1.0, constant: c64::new(0.0, 0.0) };
-        let of_loss = Factor { square: 0.0, linear: 0.0, constant: c64::new(0.0, 1.0) };
+        let of_damping = CouplingFactor { square: 0.0, linear: 1.0, constant: c64::new(0.0, 0.0) };
+        let of_loss = CouplingFactor { square: 0.0, linear: 0.0, constant: c64::new(0.0, 1.0) };
         // The rows of F that an image of the basis has, and the first vector that has one.
         let mut start = self.beyond;
         let inertia = Mat::from_fn(m, f, |i, j| if i < first { 0.0 } else { self.at(i - first, j) / top });
@@ -228,12 +238,12 @@ struct Probes {
 impl Probes {
     /// How many there are.
     const COUNT: usize = 4;
-    /// Factor on the largest error seen. A symmetric error of norm e with the numbers c between −1 and 1 shows as
+    /// CouplingFactor on the largest error seen. A symmetric error of norm e with the numbers c between −1 and 1 shows as
     /// e/100 at least in one of four, but for once in three thousand times when it has rank one, and seldomer with more.
     const MARGIN: f64 = 100.0;
 
-    fn new(analysis: &Analysis<'_>, forces: MatRef<'_, f64>) -> Self {
-        let Analysis { operator, factor, shift, .. } = analysis;
+    fn new(analysis: &CompletedAnalysis<'_>, forces: MatRef<'_, f64>) -> Self {
+        let CompletedAnalysis { operator, factor, shift, .. } = analysis;
         let mut random = Random::new();
         let combinations = Mat::from_fn(forces.ncols(), Self::COUNT, |_, _| random.next());
         let mut sum = expand(forces, combinations.as_ref());
@@ -258,7 +268,7 @@ impl Probes {
 }
 
 /// W of the `active` directions, each times the root of its size.
-fn directions(analysis: &Analysis<'_>, active: &[usize], scales: &[f64]) -> Rows {
+fn directions(analysis: &CompletedAnalysis<'_>, active: &[usize], scales: &[f64]) -> ColumnBlock {
     let all: Vec<_> = active.iter().map(|d| analysis.operator.interface.directions[*d]).collect();
     let mut rows: Vec<usize> = all.iter().flat_map(|d| d.indices().iter().copied()).collect();
     rows.sort_unstable();
@@ -267,25 +277,30 @@ fn directions(analysis: &Analysis<'_>, active: &[usize], scales: &[f64]) -> Rows
     for (j, (direction, scale)) in all.iter().zip(scales).enumerate() {
         direction.iter().for_each(|(i, v)| values[(rows.partition_point(|r| *r < i), j)] = scale * v);
     }
-    Rows { rows, values }
+    ColumnBlock { rows, values }
 }
 
 /// γ with C ≥ −γ(K + K_σ + τM) outside the basis, τ the square of the band's top, and whether C and H are known to be
 /// positive semidefinite; `lowest` is the least ω² of the basis. What is neither proportional nor semidefinite by itself is
 /// settled by the inertia of C + γ(K + K_σ + τM) for growing γ.
-pub(super) fn dissipation(analysis: &Analysis<'_>, parts: &DampingParts, lowest: f64) -> (f64, bool) {
+pub(super) fn dissipation(
+    analysis: &CompletedAnalysis<'_>,
+    parts: &DampingParts,
+    lowest: f64,
+) -> (f64, bool) {
     let (operator, damping) = (&analysis.operator, analysis.operator.damping);
     let top = TAU * analysis.band_hz[1];
     let worst_modal =
         damping.modal.as_ref().map_or(0.0, |modal| modal.coefficients.iter().fold(0.0f64, |w, c| w.max(-c)));
     let lowest = if analysis.complete_below > 0.0 { lowest.min(0.0) } else { f64::NEG_INFINITY };
     let energy = || add_scaled(&[(1.0, &*operator.stiffness), (top * top, operator.mass)]);
-    let settle = |whole: &Option<Arc<SparseMatrix>>, part: &Part, unit: f64| match (whole, &part.split.rest) {
-        (Some(whole), Some(_)) if !part.dissipates(lowest) => {
-            least_shift(analysis.factor, whole, &energy(), unit)
-        }
-        _ => Some(0.0),
-    };
+    let settle =
+        |whole: &Option<Arc<SparseMatrix>>, part: &DamperPart, unit: f64| match (whole, &part.split.rest) {
+            (Some(whole), Some(_)) if !part.dissipates(lowest) => {
+                least_shift(analysis.factor, whole, &energy(), unit)
+            }
+            _ => Some(0.0),
+        };
     let Damper { viscous, loss, .. } = &operator.dampers[0];
     let viscous = settle(&damping.viscous, viscous, 1.0 / top);
     let losses = settle(&damping.hysteretic, loss, 1.0);

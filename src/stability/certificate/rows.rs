@@ -9,24 +9,24 @@ use faer::{Mat, MatMut};
 
 /// Columns with entries in the rows `rows` (ascending) only.
 #[derive(Debug, Clone)]
-pub(super) struct Rows {
+pub(super) struct ColumnBlock {
     pub(super) rows: Vec<usize>,
     pub(super) values: Mat<f64>,
 }
 
-impl Rows {
+impl ColumnBlock {
     /// Columns with entries everywhere.
     pub(super) fn whole(values: Mat<f64>) -> Self {
-        Rows { rows: (0..values.nrows()).collect(), values }
+        ColumnBlock { rows: (0..values.nrows()).collect(), values }
     }
 
     /// D B.
     pub(super) fn image(d: &RowSparse, b: &Columns<'_>) -> Self {
-        Rows { rows: d.rows().to_vec(), values: d.times_picked(b.picked(d.rows()).as_ref()) }
+        ColumnBlock { rows: d.rows().to_vec(), values: d.times_picked(b.picked(d.rows()).as_ref()) }
     }
 
     /// The columns of both, one behind the other.
-    pub(super) fn beside(&self, other: &Rows) -> Self {
+    pub(super) fn beside(&self, other: &ColumnBlock) -> Self {
         let rows = union(&self.rows, &other.rows);
         let mut values = Mat::zeros(rows.len(), self.values.ncols() + other.values.ncols());
         for (part, first) in [(self, 0), (other, self.values.ncols())] {
@@ -36,13 +36,13 @@ impl Rows {
                 places.iter().zip(part.values.col_as_slice(j)).for_each(|(i, v)| to[*i] = *v);
             }
         }
-        Rows { rows, values }
+        ColumnBlock { rows, values }
     }
 
     /// The sum of as many columns.
-    pub(super) fn plus(&self, other: &Rows) -> Self {
+    pub(super) fn plus(&self, other: &ColumnBlock) -> Self {
         let (both, k) = (self.beside(other), self.values.ncols());
-        Rows { values: both.values.subcols(0, k) + both.values.subcols(k, k), rows: both.rows }
+        ColumnBlock { values: both.values.subcols(0, k) + both.values.subcols(k, k), rows: both.rows }
     }
 
     /// VᵀF.
@@ -62,7 +62,7 @@ impl Rows {
     /// orthogonal, their sizes those of the rests.
     ///
     /// Columns with entries nearly everywhere stay as they are: there is nothing to gain.
-    pub(super) fn spanned(self) -> (Rows, Mat<f64>) {
+    pub(super) fn spanned(self) -> (ColumnBlock, Mat<f64>) {
         const NOTHING_LEFT: f64 = 1e-12;
         let (n, k) = (self.rows.len(), self.values.ncols());
         if n > 8 * k {
@@ -84,7 +84,7 @@ impl Rows {
         for (j, column) in order.iter().enumerate() {
             (0..rank).for_each(|d| coefficients[(d, *column)] = share(d, j) / sizes[d]);
         }
-        (Rows { rows: self.rows, values }, coefficients)
+        (ColumnBlock { rows: self.rows, values }, coefficients)
     }
 }
 
@@ -106,7 +106,7 @@ mod tests {
     use crate::linalg::dense::product;
     use crate::linalg::samples;
 
-    fn written(n: usize, x: &Rows) -> Mat<f64> {
+    fn written(n: usize, x: &ColumnBlock) -> Mat<f64> {
         let mut all = Mat::zeros(n, x.values.ncols());
         x.write(all.as_mut());
         all
@@ -121,11 +121,11 @@ mod tests {
         });
         let d = samples::from_dense(few.as_ref());
         let b = Mat::from_fn(n, 11, |i, j| ((3 * i + 5 * j) as f64).sin());
-        let image = Rows::image(&RowSparse::new(&d), &Columns::of([b.as_ref()]));
+        let image = ColumnBlock::image(&RowSparse::new(&d), &Columns::of([b.as_ref()]));
         let whole = &few * &b;
         assert!((written(n, &image) - &whole).norm_max() < 1e-13);
         assert!((image.seen_by(&Columns::of([b.as_ref()])) - b.transpose() * &whole).norm_max() < 1e-12);
-        let twice = Rows::whole(whole.clone()).plus(&image);
+        let twice = ColumnBlock::whole(whole.clone()).plus(&image);
         assert!((written(n, &twice) - &whole - &whole).norm_max() < 1e-12);
     }
 
@@ -139,7 +139,7 @@ mod tests {
             _ => (((i + 1) * (j + 2)) as f64).cos() * 10f64.powi(j as i32 % 13 - 6),
         });
         let values = &base * &mix;
-        let (few, coefficients) = Rows::whole(values.clone()).spanned();
+        let (few, coefficients) = ColumnBlock::whole(values.clone()).spanned();
         assert_eq!(few.values.ncols(), rank);
         let again = product(few.values.as_ref(), coefficients.as_ref());
         for j in 0..25 {

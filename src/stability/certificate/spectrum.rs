@@ -22,14 +22,14 @@
 
 use super::contour::{Stopped, Winding};
 use super::reduced::ReducedModel;
-use super::region::Region;
+use super::region::CountedRegion;
 use super::remainder::Remainder;
 use crate::error::{Error, Result};
 use crate::linalg::c64;
 use crate::linalg::dense::product;
 use crate::linalg::lu::inverse_and_phase;
 use crate::linalg::unsymmetric::{complex_spectrum, spectrum};
-use crate::stability::interface::Term;
+use crate::stability::interface::InterfaceTerm;
 use faer::Mat;
 
 /// Floating-point operations for a basis of `m` vectors: about 60 (2m)³ for the vectors, their inverse and the check.
@@ -39,7 +39,7 @@ pub(super) fn work(m: usize) -> f64 {
 
 /// The eigenvalues of the reduced model, each with what it contributes to a bound on E.
 #[derive(Debug)]
-pub(super) struct Spectrum<'a> {
+pub(super) struct ReducedSpectrum<'a> {
     remainder: Option<&'a Remainder>,
     /// Λ.
     values: Vec<c64>,
@@ -61,17 +61,17 @@ struct Reach {
 }
 
 /// Factors of p₀, p₁ and p₂, and their magnitudes.
-struct Weights([c64; 3], [f64; 3]);
+struct SpectrumWeights([c64; 3], [f64; 3]);
 
-impl Weights {
+impl SpectrumWeights {
     fn new(weights: [c64; 3]) -> Self {
-        Weights(weights, weights.map(|w| w.norm()))
+        SpectrumWeights(weights, weights.map(|w| w.norm()))
     }
 
     /// Those of the value at `c`, the slope there, and the curvature.
     fn at(c: c64) -> [Self; 3] {
         let (zero, one) = (c64::new(0.0, 0.0), c64::new(1.0, 0.0));
-        [[one, c, c * c], [zero, one, c * 2.0], [zero, zero, one]].map(Weights::new)
+        [[one, c, c * c], [zero, one, c * 2.0], [zero, zero, one]].map(SpectrumWeights::new)
     }
 }
 
@@ -81,7 +81,7 @@ impl Reach {
     }
 
     /// ‖Σ wᵢ pᵢ‖, not less in spite of rounding.
-    fn size(&self, Weights(weights, magnitudes): &Weights) -> f64 {
+    fn size(&self, SpectrumWeights(weights, magnitudes): &SpectrumWeights) -> f64 {
         let (mut square, mut terms) = (0.0, 0.0);
         for i in 0..3 {
             let term = magnitudes[i] * self.sizes[i];
@@ -95,7 +95,7 @@ impl Reach {
     }
 
     /// A bound on the size within `h` of a point, whose weights are given.
-    fn within(&self, [value, slope, curvature]: &[Weights; 3], h: f64) -> f64 {
+    fn within(&self, [value, slope, curvature]: &[SpectrumWeights; 3], h: f64) -> f64 {
         self.size(value) + h * (self.size(slope) + h * self.size(curvature))
     }
 }
@@ -105,13 +105,18 @@ const DISCS: usize = 1_000_000;
 /// The radius of a disc by the distance of its centre from the nearest eigenvalue: 1/|s − λ| is known within a quarter.
 const RADIUS: f64 = 0.2;
 
-impl<'a> Spectrum<'a> {
+impl<'a> ReducedSpectrum<'a> {
     /// The reduced model with the numbers of an interface, scaled for frequencies up to `top` \[rad/s\]; `sizes` are those
     /// of the operator's directions.
     ///
     /// # Errors
     /// When the eigenvalues cannot be computed.
-    pub(super) fn new(model: &'a ReducedModel, terms: &[Term], sizes: &[f64], top: f64) -> Result<Self> {
+    pub(super) fn new(
+        model: &'a ReducedModel,
+        terms: &[InterfaceTerm],
+        sizes: &[f64],
+        top: f64,
+    ) -> Result<Self> {
         let (m, r) = (model.oscillators.len(), model.active.len());
         let place = |d: usize| model.active.iter().position(|a| *a == d);
         let scale: Vec<f64> = model.active.iter().map(|d| sizes[*d].sqrt()).collect();
@@ -181,11 +186,11 @@ impl<'a> Spectrum<'a> {
             ];
             missed = [&k, &c].map(|a| product(remainder.missed.transpose(), through(a).as_ref()).norm_l2());
         }
-        Ok(Spectrum { remainder, values, rests, reaches, missed })
+        Ok(ReducedSpectrum { remainder, values, rests, reaches, missed })
     }
 
     /// Covers the boundary of `region` with discs and counts what lies inside.
-    pub(super) fn count(&self, region: &Region) -> std::result::Result<Winding, Stopped> {
+    pub(super) fn count(&self, region: &CountedRegion) -> std::result::Result<Winding, Stopped> {
         let resolution = 1e-11 * region.omega[1];
         let (mut points, mut defect) = (0, 0.0);
         let path = region.path();
@@ -243,7 +248,7 @@ impl<'a> Spectrum<'a> {
         let Some(remainder) = self.remainder else { return Some(0.0) };
         let omega = (c.im.abs() + h).min(remainder.tau.sqrt());
         let q = remainder.amplification([(c.re - h).max(0.0), c.re + h], omega);
-        let weights = Weights::at(c);
+        let weights = SpectrumWeights::at(c);
         let right: Vec<f64> =
             (0..near.len()).map(|k| near[k][0] * self.reaches[1][k].within(&weights, h)).collect();
         let largest = right.iter().fold(0.0f64, |l, v| l.max(*v));

@@ -1,4 +1,4 @@
-use super::region::Region;
+use super::region::CountedRegion;
 use super::*;
 use crate::equilibrium::SteadySliding;
 use crate::equilibrium::samples::*;
@@ -249,8 +249,8 @@ fn too_few_real_modes_or_static_responses_do_not_pass_for_a_proof() {
     analyse(&system, &state, &real, [0.0, top], &(), |modes, analysis| {
         let whole = count(&analysis, modes, f64::INFINITY).unwrap();
         let poor = Basis::new(analysis.operator, real.shapes.as_ref(), (TAU * top).powi(2));
-        let analysis = Analysis { basis: &poor, ..analysis };
-        for way in [Way::Walk, Way::Spectrum] {
+        let analysis = CompletedAnalysis { basis: &poor, ..analysis };
+        for way in [Way::Contour, Way::Spectrum] {
             let poor = count_by(way, &analysis, modes, f64::INFINITY);
             assert!(poor.is_ok_and(|poor| !poor.holds() && poor.margin < 0.1 * whole.margin));
         }
@@ -267,18 +267,24 @@ fn bounds_hold_at_full_order() {
             bounds_hold(kind, &system, &state, band, &analysis);
             // Without the static responses to the interface, W_Z and its coupling with Γ count.
             let poor = Basis::new(analysis.operator, real.shapes.as_ref(), (TAU * band[1]).powi(2));
-            bounds_hold(kind, &system, &state, band, &Analysis { basis: &poor, ..analysis });
+            bounds_hold(kind, &system, &state, band, &CompletedAnalysis { basis: &poor, ..analysis });
         })
         .unwrap();
     }
 }
 
-fn bounds_hold(kind: u64, system: &System, state: &SteadySliding, band: [f64; 2], analysis: &Analysis<'_>) {
+fn bounds_hold(
+    kind: u64,
+    system: &System,
+    state: &SteadySliding,
+    band: [f64; 2],
+    analysis: &CompletedAnalysis<'_>,
+) {
     let model = ReducedModel::new(analysis).unwrap();
     let top = TAU * band[1];
     let interface = &analysis.operator.interface;
     let pencil = Pencil::new(&model, &interface.terms, &interface.sizes(top), top).unwrap();
-    let spectrum = Spectrum::new(&model, &interface.terms, &interface.sizes(top), top).unwrap();
+    let spectrum = ReducedSpectrum::new(&model, &interface.terms, &interface.sizes(top), top).unwrap();
     let (k, c) = dense_matrices(system, state);
     let (m, n) = (system.structure.mass.to_dense(), system.n_dofs());
     let real_k = system.structure.stiffness.to_dense();
@@ -331,7 +337,7 @@ fn bounds_hold(kind: u64, system: &System, state: &SteadySliding, band: [f64; 2]
 
 #[test]
 fn the_contour_leaves_out_what_is_outside() {
-    let region = Region { growth: [1.0, 10.0], omega: [0.0, 20.0] };
+    let region = CountedRegion { growth: [1.0, 10.0], omega: [0.0, 20.0] };
     assert!(
         region.symmetric() && region.contains(c64::new(2.0, -5.0)) && !region.contains(c64::new(0.5, 1.0))
     );

@@ -89,9 +89,9 @@ fn touch(weight: f64) -> ContactPoint {
     point(0.0, weight, vector(&[(1, 1.0)]), vector(&[(0, 1.0)]), SparseVector::default())
 }
 
-fn reciprocating<'a>(system: &'a System, steady: &SteadySliding, omega: f64) -> Model<'a> {
-    let profile = Profile::Reciprocating { frequency_hz: omega / TAU, phase: 0.0 };
-    Model::new(system, steady).unwrap().driven(vec![profile], vec![])
+fn reciprocating<'a>(system: &'a System, steady: &SteadySliding, omega: f64) -> TransientModel<'a> {
+    let profile = TimeProfile::Reciprocating { frequency_hz: omega / TAU, phase: 0.0 };
+    TransientModel::new(system, steady).unwrap().driven(vec![profile], vec![])
 }
 
 #[test]
@@ -228,7 +228,7 @@ fn a_march_that_stops_says_where_and_what_cures_it() {
 
 #[test]
 fn what_was_stuck_goes_on_bit_for_bit() {
-    for method in [Method::Condensed, Method::FullNewton] {
+    for method in [StepMethod::Condensed, StepMethod::FullNewton] {
         let (system, steady) = turned(SlidingLaw::new(NormalLaw::linear(1e3), Coulomb { mu0: 0.6 }, 0.0));
         let model = reciprocating(&system, &steady, 0.7);
         let plan = Plan { method, tolerance: Some(1e-4), ..plan(Scheme::hht(-0.1), 2e-2, 500) };

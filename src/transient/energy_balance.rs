@@ -1,6 +1,6 @@
 //! Where the energy goes, step by step.
 
-use super::model::Model;
+use super::model::TransientModel;
 use super::rows::sums;
 use super::scheme::Weights;
 use super::state::State;
@@ -40,7 +40,7 @@ pub struct Work {
 
 impl Work {
     /// The work between two states.
-    pub(super) fn between(model: &Model<'_>, weights: &Weights, from: &State, to: &State) -> Work {
+    pub(super) fn between(model: &TransientModel<'_>, weights: &Weights, from: &State, to: &State) -> Work {
         let n = model.n();
         let [u0, v0, a0] = [0, 1, 2].map(|k| from.motion.col_as_slice(k));
         let [u1, v1, a1] = [0, 1, 2].map(|k| to.motion.col_as_slice(k));

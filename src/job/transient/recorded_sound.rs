@@ -3,17 +3,17 @@
 use super::history_writer::HistoryWriter;
 use crate::error::Result;
 use crate::results::{Sound, modal_channel};
-use crate::sound::{BLOCK, Listener};
+use crate::sound::{BLOCK, SoundAccumulator};
 
 impl HistoryWriter<'_, '_> {
     /// Sound of the record of `rows` rows.
-    pub(super) fn heard(&self, mut listener: Listener, rows: usize) -> Result<Sound> {
+    pub(super) fn recorded_sound(&self, mut accumulator: SoundAccumulator, rows: usize) -> Result<Sound> {
         let modes = self.recorder.modal.as_ref().map_or(0, |modal| modal.rows.len());
         for first in (0..rows).step_by(BLOCK) {
             let part = first..rows.min(first + BLOCK);
             let read = |mode: usize| self.sink.recorded(&modal_channel(mode), part.clone());
-            listener.hear((0..modes).map(read).collect::<Result<Vec<Vec<f64>>>>()?);
+            accumulator.add((0..modes).map(read).collect::<Result<Vec<Vec<f64>>>>()?);
         }
-        Ok(listener.finish())
+        Ok(accumulator.finish())
     }
 }

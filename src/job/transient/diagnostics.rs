@@ -2,7 +2,7 @@
 
 use super::history_writer::HistoryWriter;
 use crate::error::Result;
-use crate::results::{ContactHistory, ContactWatch, Curve, Orbit, SpectrumOf, Watched};
+use crate::results::{ContactHistory, ContactWatch, Diagnostics, Orbit, PhaseCurve, SpectrumOf};
 use crate::signal::{LimitCycle, ShortTime, Spectrogram, limit_cycle};
 
 /// The size of an oscillation is taken from this last part of the run, and from no more steps than these.
@@ -17,13 +17,13 @@ const AT_ONCE: usize = 1 << 16;
 impl HistoryWriter<'_, '_> {
     /// Looks through the record of `rows` rows, `step` seconds apart, whose `spectra` are known; spectrograms reach up to
     /// `top_hz`.
-    pub(super) fn watched(
+    pub(super) fn diagnostics(
         &self,
         rows: usize,
         step: f64,
         spectra: &[SpectrumOf],
         top_hz: f64,
-    ) -> Result<Watched> {
+    ) -> Result<Diagnostics> {
         let strongest = |channel: usize| {
             let of = spectra.iter().find(|of| of.channel == channel)?;
             let peak = of.peaks.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
@@ -49,7 +49,7 @@ impl HistoryWriter<'_, '_> {
         spectrograms.retain(|(_, spectrogram)| spectrogram.columns() > 0);
         let hz = shown.first().and_then(|motion| strongest(motion.channel));
         let orbit = hz.map(|hz| self.orbit(rows, begin, step, hz)).transpose()?;
-        Ok(Watched {
+        Ok(Diagnostics {
             spectrograms,
             cycles,
             window: [begin as f64 * step, rows.saturating_sub(1) as f64 * step],
@@ -65,9 +65,12 @@ impl HistoryWriter<'_, '_> {
         let read = |channel: usize| -> Result<Vec<f64>> {
             Ok(self.read(channel, rows - wanted..rows)?.into_iter().step_by(every).collect())
         };
-        let curve = |[across, up]: [usize; 2]| -> Result<Curve> {
+        let curve = |[across, up]: [usize; 2]| -> Result<PhaseCurve> {
             let points = read(across)?.into_iter().zip(read(up)?).map(|(x, y)| [x, y]).collect();
-            Ok(Curve { axes: [across, up].map(|channel| self.recorder.described[channel].heading()), points })
+            Ok(PhaseCurve {
+                axes: [across, up].map(|channel| self.recorder.described[channel].heading()),
+                points,
+            })
         };
         let curves = self.recorder.orbits().into_iter().map(curve).collect::<Result<_>>()?;
         Ok(Orbit { periods: [wanted as f64 * step * hz, hz], curves })

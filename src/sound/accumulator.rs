@@ -1,6 +1,8 @@
 //! Sound of a run, computed while the run proceeds.
 
-use super::{Air, CrossSpectra, Heard, Plate, Radiation, Receiver, Sound, Sounding, Surface, Tone};
+use super::{
+    Air, CrossSpectra, MicrophoneSound, Plate, PressureRecord, Radiation, Receiver, Sound, Surface, Tone,
+};
 use crate::signal::{Resampler, Spectrum, Welch, name_peaks, peaks};
 use faer::Mat;
 use std::f64::consts::TAU;
@@ -38,13 +40,13 @@ pub struct Acoustics {
 
 /// Listens to a run: modal accelerations in, block by block, levels and a recording out; its memory does not grow with
 /// the run.
-pub struct Listener {
+pub struct SoundAccumulator {
     modes: usize,
     plates: Vec<Plate>,
     air: Air,
     step: f64,
     /// Steps worked on, the first that counts for the levels, and the highest frequency that does \[Hz\].
-    heard: usize,
+    taken: usize,
     counted: usize,
     top: f64,
     cross: CrossSpectra,
@@ -54,7 +56,7 @@ pub struct Listener {
     dropped: usize,
 }
 
-impl Listener {
+impl SoundAccumulator {
     /// For a run of `steps` steps of `step` seconds of a model whose real modes have `shapes`, n_dofs × n_modes, and are
     /// complete up to `highest` \[Hz\]. Levels are taken over its second half.
     pub fn new(
@@ -82,13 +84,13 @@ impl Listener {
         for first in (0..silence).step_by(SILENCE) {
             resampler.take(&vec![0.0; SILENCE.min(silence - first)], &mut recording);
         }
-        Listener {
+        SoundAccumulator {
             modes,
             cross: CrossSpectra::new(modes, length, step, top),
             plates,
             air: acoustics.air,
             step,
-            heard: 0,
+            taken: 0,
             counted,
             top,
             microphones,
@@ -99,11 +101,11 @@ impl Listener {
     }
 
     /// The next accelerations of the modes, one list each, all of one length; the start comes first.
-    pub fn hear(&mut self, mut block: Vec<Vec<f64>>) {
+    pub fn add(&mut self, mut block: Vec<Vec<f64>>) {
         let length = block.first().map_or(0, Vec::len);
-        let early = self.counted.saturating_sub(self.heard).min(length);
+        let early = self.counted.saturating_sub(self.taken).min(length);
         for (k, (_, _, receiver, welch)) in self.microphones.iter_mut().enumerate() {
-            let pressure = receiver.hear(&block);
+            let pressure = receiver.receive(&block);
             welch.take(&pressure[early..]);
             if k == 0 {
                 self.resampler.take(&pressure, &mut self.recording);
@@ -112,7 +114,7 @@ impl Listener {
         self.forget();
         block.iter_mut().for_each(|mode| drop(mode.drain(..early)));
         self.cross.take(&block);
-        self.heard += length;
+        self.taken += length;
     }
 
     /// Keeps the end of the recording.
@@ -127,7 +129,7 @@ impl Listener {
 
     /// Sound of the whole run.
     pub fn finish(mut self) -> Sound {
-        let Listener { cross, air, plates, step, .. } = &self;
+        let SoundAccumulator { cross, air, plates, step, .. } = &self;
         let (lines, resolution_hz) = (cross.lines(), cross.resolution_hz());
         let mut mode_shares = vec![0.0; self.modes];
         let mut power = vec![vec![0.0; lines]; plates.len()];
@@ -144,14 +146,14 @@ impl Listener {
         let whole: f64 = power.iter().flatten().sum();
         mode_shares.iter_mut().for_each(|share| *share /= whole.max(f64::MIN_POSITIVE));
         let each: Vec<f64> = (0..lines).map(|k| power.iter().map(|p| p[k]).sum()).collect();
-        let window = [self.counted as f64 * step, self.heard.saturating_sub(1) as f64 * step];
+        let window = [self.counted as f64 * step, self.taken.saturating_sub(1) as f64 * step];
         let names = plates.iter().map(|plate| plate.name.clone());
         let plates = names.zip(power).collect();
         let microphones = self.microphones.into_iter().map(|(name, at, _, welch)| {
             let mut spectrum = welch.finish();
             spectrum.amplitude.truncate(lines);
             spectrum.amplitude.iter_mut().take(1).for_each(|a| *a = 0.0);
-            Heard { name, at, spectrum }
+            MicrophoneSound { name, at, spectrum }
         });
         let microphones = microphones.collect();
         self.resampler.finish(&mut self.recording);
@@ -166,7 +168,7 @@ impl Listener {
             mode_shares,
             tones: tones(&each, resolution_hz),
             microphones,
-            recording: Sounding { begin, rate: RATE, pressure: self.recording },
+            recording: PressureRecord { begin, rate: RATE, pressure: self.recording },
         }
     }
 }

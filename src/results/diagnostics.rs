@@ -6,7 +6,7 @@ use crate::signal::{LimitCycle, Spectrogram};
 
 /// Data gathered during the run.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Watched {
+pub struct Diagnostics {
     /// Spectrograms of the channels shown, each with the index of its channel.
     pub spectrograms: Vec<(usize, Spectrogram)>,
     /// How large the oscillation of the channels shown is at the end, each with the index of its channel.
@@ -25,12 +25,12 @@ pub struct Orbit {
     /// How many periods of the strongest line they are, and its frequency \[Hz\].
     pub periods: [f64; 2],
     /// Velocity over displacement, and friction over the slip of the point that carries most where there is a contact.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<PhaseCurve>,
 }
 
 /// One record over another.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Curve {
+pub struct PhaseCurve {
     /// Quantities across and up, with units.
     pub axes: [String; 2],
     /// Their values.
@@ -76,10 +76,10 @@ pub struct ContactHistory {
     pub counts: Vec<[u64; 4]>,
 }
 
-impl Watched {
+impl Diagnostics {
     /// How large the oscillation of the channels shown is at the end.
     pub(super) fn cycle_table(&self, channels: &[Channel]) -> Table<'static> {
-        let cycles: Vec<Cycle> =
+        let cycles: Vec<LimitCycleRow> =
             self.cycles.iter().map(|(channel, cycle)| (&channels[*channel], self.window, cycle)).collect();
         Table::of("limit_cycle", "cycle", &cycle_columns(), &cycles)
     }
@@ -93,26 +93,35 @@ impl Watched {
 }
 
 /// A channel, the window, and the size of the oscillation.
-type Cycle<'a> = (&'a Channel, [f64; 2], &'a LimitCycle);
+type LimitCycleRow<'a> = (&'a Channel, [f64; 2], &'a LimitCycle);
 
-fn cycle_columns<'a>() -> Vec<Column<Cycle<'a>>> {
+fn cycle_columns<'a>() -> Vec<Column<LimitCycleRow<'a>>> {
     vec![
-        column("channel", "text", "name of the channel", |(channel, ..): &Cycle| channel.name.clone()),
-        column("unit", "text", "its unit", |(channel, ..): &Cycle| channel.unit),
+        column("channel", "text", "name of the channel", |(channel, ..): &LimitCycleRow| {
+            channel.name.clone()
+        }),
+        column("unit", "text", "its unit", |(channel, ..): &LimitCycleRow| channel.unit),
         column(
             "window_s",
             "s",
             "the first and the last time of what was analysed",
-            |(_, window, _): &Cycle| *window,
+            |(_, window, _): &LimitCycleRow| *window,
         )
         .along(Dimension::limits()),
-        column("amplitude", "unit", "half the range of the oscillation", |(.., c): &Cycle| c.amplitude),
-        column("rms", "unit", "root of the mean square about the mean", |(.., c): &Cycle| c.rms),
-        column("mean", "unit", "mean", |(.., c): &Cycle| c.mean),
-        column("drift", "1", "relative change of the r.m.s. over the window", |(.., c): &Cycle| c.drift),
-        column("steady", "1", "whether the oscillation neither grew nor died away", |(.., c): &Cycle| {
-            c.steady()
+        column("amplitude", "unit", "half the range of the oscillation", |(.., c): &LimitCycleRow| {
+            c.amplitude
         }),
+        column("rms", "unit", "root of the mean square about the mean", |(.., c): &LimitCycleRow| c.rms),
+        column("mean", "unit", "mean", |(.., c): &LimitCycleRow| c.mean),
+        column("drift", "1", "relative change of the r.m.s. over the window", |(.., c): &LimitCycleRow| {
+            c.drift
+        }),
+        column(
+            "steady",
+            "1",
+            "whether the oscillation neither grew nor died away",
+            |(.., c): &LimitCycleRow| c.steady(),
+        ),
     ]
 }
 

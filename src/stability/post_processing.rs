@@ -4,7 +4,7 @@ use super::ComplexMode;
 use super::block::Block;
 use super::budget::growth_budget;
 use super::operator::Operator;
-use super::refinement::Measured;
+use super::refinement::MeasuredPairs;
 use crate::linalg::c64;
 use rayon::prelude::*;
 
@@ -13,9 +13,9 @@ use rayon::prelude::*;
 /// motion and its share of the modes are settled by the projection; z meets only the rest of the spectrum, as far as the
 /// basis goes: so `amplitudes`, what the real modes have of φ, gives their part in φ + z as well. Left vectors are given where
 /// they are requested.
-pub(super) fn finished(
+pub(super) fn post_processed(
     operator: &Operator<'_>,
-    measured: &mut Measured,
+    measured: &mut MeasuredPairs,
     amplitudes: &Block,
     left: Option<&Block>,
 ) -> Vec<ComplexMode> {
