@@ -49,7 +49,7 @@ pub(super) fn best(
     FoundAssignments { best: search.best, complete: search.fits <= MOST_FITS }
 }
 
-/// How many assignments there are, at most [`MOST_COUNTED`], and whether that is all.
+/// Number of assignments, at most [`MOST_COUNTED`], and whether that is all.
 pub(super) fn count(problem: &CalibrationProblem, plausible: &[Vec<usize>]) -> (usize, bool) {
     fn descend(
         problem: &CalibrationProblem,

@@ -27,7 +27,7 @@ pub struct Fit {
     pub chi2: f64,
     /// Accepted and refused steps.
     pub iterations: usize,
-    /// How often the model was computed, the start not counted.
+    /// Number of times the model was computed, the start not counted.
     pub evaluations: usize,
     /// The largest entry of the projected gradient over √(JᵀJ)_jj: by about its square χ² could still fall.
     pub gradient: f64,

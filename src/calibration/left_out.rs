@@ -115,7 +115,7 @@ fn mean_square(values: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::samples::{Heard, Powers, curves, problem};
+    use super::super::samples::{Powers, SampledResponse, curves, problem};
     use super::super::{CalibrationOptions, Computed, Curve, calibrate};
     use super::*;
 
@@ -123,14 +123,14 @@ mod tests {
         CalibrationOptions { reach: 0.03, leave_one_out: true, chance_draws: 0, trials: 0 };
 
     /// Two responses: the first has the four lower levels, the second the upper four.
-    fn heard() -> Powers {
+    fn sampled() -> Powers {
         let hz = |from: f64, to: f64| (0..60).map(|k| from + (to - from) * f64::from(k) / 59.0).collect();
-        let of = |weights: [f64; 6], from: f64, to: f64| Heard {
+        let of = |weights: [f64; 6], from: f64, to: f64| SampledResponse {
             weights: weights.to_vec(),
             frequencies_hz: hz(from, to),
         };
         let mut model = Powers::new(6, 2, 1);
-        model.heard = vec![
+        model.sampled = vec![
             of([1.0, 2.0, 1.0, 2.0, 0.0, 0.0], 250.0, 600.0),
             of([0.0, 0.0, 1.0, 1.0, 3.0, 2.0], 380.0, 900.0),
         ];
@@ -152,8 +152,8 @@ mod tests {
     #[test]
     fn a_response_is_predicted_by_the_right_model_and_not_by_a_wrong_one() {
         let truth = [0.4, -0.5];
-        let right = heard();
-        let mut wrong = heard();
+        let right = sampled();
+        let mut wrong = sampled();
         wrong.base[5] *= 1.04;
         let levels = right.compute(&truth).unwrap().levels;
         let data: Vec<f64> = levels.iter().flatten().take(3).map(|level| level.frequency_hz).collect();
@@ -189,7 +189,7 @@ mod tests {
 
     #[test]
     fn what_only_one_response_tells_is_not_predicted_from_the_others() {
-        let mut model = heard();
+        let mut model = sampled();
         // The second unknown moves the last level alone, which only the second response has.
         model.exponents.iter_mut().for_each(|a| a[1] = 0.0);
         model.exponents[5][1] = 0.1;
@@ -211,7 +211,7 @@ mod tests {
 
     #[test]
     fn the_slopes_of_the_sample_are_those_of_differences() {
-        let (model, x, h) = (heard(), [0.2, 0.3], 1e-4);
+        let (model, x, h) = (sampled(), [0.2, 0.3], 1e-4);
         let here = model.compute(&x).unwrap().lines;
         for j in 0..2 {
             let at = |k: f64| {

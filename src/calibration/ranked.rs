@@ -128,7 +128,7 @@ fn least_mac(problem: &CalibrationProblem, assignment: &[usize], computed: &Comp
 
 #[cfg(test)]
 mod tests {
-    use super::super::samples::{Heard, Powers, curves, problem};
+    use super::super::samples::{Powers, SampledResponse, curves, problem};
     use super::super::{Calibration, CalibrationOptions, calibrate};
     use super::*;
 
@@ -149,14 +149,14 @@ mod tests {
 
     #[test]
     fn a_response_decides_what_a_frequency_leaves_open() {
-        let heard = Heard {
+        let sampled = SampledResponse {
             weights: vec![0.0, 0.0, 1.0],
             frequencies_hz: (0..40).map(|k| 450.0 + 8.0 * f64::from(k)).collect(),
         };
         let model = Powers {
             base: vec![300.0, 340.0, 600.0],
             exponents: vec![vec![0.1], vec![-0.05], vec![0.06]],
-            heard: vec![heard],
+            sampled: vec![sampled],
             ..Powers::new(3, 1, 0)
         };
         let truth = [1.0];
@@ -174,7 +174,7 @@ mod tests {
         model.base = (0..9).map(|k| 300.0 * 1.1f64.powi(k)).collect();
         let weights = (0..9).map(|k| 1.0 + f64::from(k % 3)).collect();
         let frequencies_hz = (0..90).map(|k| 250.0 + 5.0 * f64::from(k)).collect();
-        model.heard = vec![Heard { weights, frequencies_hz }];
+        model.sampled = vec![SampledResponse { weights, frequencies_hz }];
         let truth = [0.9, -0.6, 0.3];
         let levels = model.compute(&truth).unwrap().levels;
         let mut hidden = 0;

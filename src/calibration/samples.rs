@@ -17,17 +17,17 @@ pub(super) struct Powers {
     /// Measured components of a shape; none for frequencies alone.
     pub components: usize,
     /// Its frequency responses.
-    pub heard: Vec<Heard>,
+    pub sampled: Vec<SampledResponse>,
 }
 
 /// ln |Σ w_k / (f_k² − f² + iηf_k²)| with η = 2 %, at some frequencies.
-pub(super) struct Heard {
+pub(super) struct SampledResponse {
     /// w_k of each level.
     pub weights: Vec<f64>,
     pub frequencies_hz: Vec<f64>,
 }
 
-impl Heard {
+impl SampledResponse {
     fn line(&self, hz: f64, levels: &[Option<Level>]) -> ResponseLine {
         let loss = c64::new(1.0, 0.02);
         let unknowns = levels.iter().flatten().next().map_or(0, |level| level.slope.len());
@@ -77,7 +77,7 @@ impl Powers {
         let base =
             (0..levels).map(|k| 300.0 * 1.2f64.powi(k as i32) * (1.0 + 0.05 * random.next())).collect();
         let exponents = (0..levels).map(|_| (0..unknowns).map(|_| 0.1 * random.next()).collect()).collect();
-        Powers { base, exponents, bend: 0.5, components: 0, heard: Vec::new() }
+        Powers { base, exponents, bend: 0.5, components: 0, sampled: Vec::new() }
     }
 }
 
@@ -94,10 +94,10 @@ impl CalibrationModel for Powers {
         };
         let levels: Vec<Option<Level>> =
             self.base.iter().zip(&self.exponents).enumerate().map(level).collect();
-        let of = |heard: &Heard| -> Vec<ResponseLine> {
-            heard.frequencies_hz.iter().map(|hz| heard.line(*hz, &levels)).collect()
+        let of = |sampled: &SampledResponse| -> Vec<ResponseLine> {
+            sampled.frequencies_hz.iter().map(|hz| sampled.line(*hz, &levels)).collect()
         };
-        Ok(Computed { lines: self.heard.iter().flat_map(of).collect(), levels })
+        Ok(Computed { lines: self.sampled.iter().flat_map(of).collect(), levels })
     }
 }
 
@@ -105,12 +105,12 @@ impl CalibrationModel for Powers {
 pub(super) fn curves(model: &Powers, x: &[f64], deviation: f64) -> Vec<Curve> {
     let lines = model.compute(x).unwrap().lines;
     let mut first = 0;
-    let curve = |heard: &Heard| {
-        let own = first..first + heard.frequencies_hz.len();
+    let curve = |sampled: &SampledResponse| {
+        let own = first..first + sampled.frequencies_hz.len();
         first = own.end;
         Curve { first: own.start, values: lines[own].iter().map(|line| line.value).collect(), deviation }
     };
-    model.heard.iter().map(curve).collect()
+    model.sampled.iter().map(curve).collect()
 }
 
 /// Unknowns in ±2 without expectation and measured frequencies of one set.

@@ -20,7 +20,7 @@ const LEAST_STEP: f64 = 1e-2;
 /// The fits are made to the model near the truth, quadratic in ln f and linear in the shapes; its deviation from the model itself is reported.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trials {
-    /// How many.
+    /// Number.
     pub count: usize,
     /// Those whose fit converged.
     pub converged: usize,

@@ -25,7 +25,7 @@ pub fn say(text: impl Display) -> Result<()> {
     give(printable_lines(&text.to_string()))
 }
 
-/// Prints data on stdout as it is. A reader that has gone away, such as `head`, has seen what it wanted.
+/// Prints data on stdout as it is. A reader that has closed the pipe, such as `head`, is no error.
 pub fn give(text: impl Display) -> Result<()> {
     match writeln!(std::io::stdout(), "{text}") {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
@@ -35,12 +35,12 @@ pub fn give(text: impl Display) -> Result<()> {
     }
 }
 
-/// Prints a line on stderr, where nobody may listen.
+/// Prints a line on stderr, which may be closed.
 pub fn complain(text: impl Display) {
     let _ = writeln!(std::io::stderr(), "error: {text}");
 }
 
-/// Prints a note on stderr, where nobody may listen.
+/// Prints a note on stderr, which may be closed.
 pub fn note(text: impl Display) {
     let _ = writeln!(std::io::stderr(), "note: {text}");
 }

@@ -37,7 +37,7 @@ pub struct Shown {
 pub struct Dimension {
     /// Its name.
     pub name: &'static str,
-    /// How many values there are along it.
+    /// Number of values along it.
     pub length: usize,
     /// The values of its coordinate.
     pub labels: Labels,

@@ -11,7 +11,7 @@ use super::sink::{KnownMap, KnownMaps};
 use crate::case::Case;
 use crate::error::{Error, Fault, Result};
 use crate::progress::Observer;
-use crate::results::record::{Earlier, InputFile, Origin, Record};
+use crate::results::record::{Earlier, InputFile, Record, RecordOrigin};
 use crate::results::{self, FieldsFile, FolderLock, ResultsFile, RunResults, fits_on_disk};
 use std::path::Path;
 use std::time::Instant;
@@ -44,7 +44,7 @@ pub fn run_case(
     asked.record_sizes().try_for_each(|size| fits_on_disk(out, &size))?;
     let inputs =
         case.files().iter().map(|file| InputFile::read(&case.folder, file)).collect::<Result<_>>()?;
-    let origin = Origin { case: case.to_toml(), inputs };
+    let origin = RecordOrigin { case: case.to_toml(), inputs };
     let _lock = FolderLock::take(out)?;
     let mut results = RunResults { inputs: origin.inputs.clone(), ..RunResults::default() };
     let (record, earlier) = match resume {
@@ -89,7 +89,7 @@ pub fn run_case(
 }
 
 /// Record of an earlier run to resume from.
-fn resumed(out: &Path, origin: Origin, asked: &Asked) -> Result<(Record, Earlier)> {
+fn resumed(out: &Path, origin: RecordOrigin, asked: &Asked) -> Result<(Record, Earlier)> {
     let Some((record, earlier)) = Record::resume(out, &origin)? else {
         return Ok((Record::new(out, origin), Earlier::default()));
     };

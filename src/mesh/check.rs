@@ -113,7 +113,7 @@ fn check_unreferenced(mesh: &Mesh, diagnosis: &mut Diagnosis) {
     }
 }
 
-/// Nodes at the same place: a fault inside a region (a crack nobody sees), a warning between regions.
+/// Nodes at the same place: a fault inside a region (a hidden crack), a warning between regions.
 fn check_coincident(mesh: &Mesh, diagnosis: &mut Diagnosis) {
     let Some([low, high]) = bounds(mesh) else { return };
     let tolerance = COINCIDENT * norm(minus(high, low));

@@ -1,4 +1,4 @@
-//! `rig.svg`: the model as the analyses saw it, with its contact points, load and sliding direction.
+//! `rig.svg`: the model as analysed, with its contact points, load and sliding direction.
 
 use super::colours::{ALARM, INK, MEASURED, MUTED, PARTS};
 use super::format::given;

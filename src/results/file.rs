@@ -211,7 +211,7 @@ impl Drop for ResultsFile {
 }
 
 /// How a file is opened to write to it: without the buffer for raw data, which is written when a dataset is closed, where
-/// nobody hears of an error and the numbers are lost.
+/// errors are not reported and the numbers are lost.
 pub(super) fn options() -> FileBuilder {
     let mut options = hdf5::File::with_options();
     options.with_fapl(|access| access.sieve_buf_size(0));

@@ -52,7 +52,7 @@ fn both() -> Dimension {
 }
 
 impl MapResult {
-    /// How many points there are.
+    /// Number of points.
     fn total(&self) -> usize {
         self.axes[0].points * self.axes[1].points
     }

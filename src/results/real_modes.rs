@@ -102,7 +102,7 @@ impl NamedModes {
         ))
     }
 
-    /// How many modes there are, and the Sturm count beside them.
+    /// Number of modes, and the Sturm count beside them.
     fn summary(&self) -> Group<'_> {
         let count = &self.modes.certificate;
         let shifts = Dimension::numbered("shift", 2);

@@ -65,7 +65,7 @@ pub struct ModelSize {
     pub contact_points: usize,
 }
 
-/// Nodes and elements as the analyses saw them (after the disc was tilted and set on the slider).
+/// Nodes and elements as analysed (after the disc was tilted and set on the slider).
 #[derive(Debug, Clone, Default)]
 pub struct Geometry {
     /// Coordinates \[m\].

@@ -22,7 +22,7 @@ pub struct Recording<'a> {
     pub happened: usize,
     /// Channels recorded at each step.
     pub channels: &'a [Channel],
-    /// How many real modes there are whose accelerations are recorded, too.
+    /// Number of real modes whose accelerations are recorded, too.
     pub modes: usize,
     /// The name of the pair of every contact point.
     pub pairs: &'a [String],

@@ -45,7 +45,7 @@ impl CheckedQuantity {
     }
 }
 
-/// How many quantities there are, and how many of them are within their tolerance.
+/// Number of quantities, and how many of them are within their tolerance.
 pub fn passed(cases: &[CheckedCase]) -> [usize; 2] {
     let rows = || cases.iter().flat_map(|case| &case.rows);
     [rows().count(), rows().filter(|row| row.passed()).count()]

@@ -3,7 +3,7 @@
 use crate::case::{CalibratedParameter, Case, check_parameter, read_case};
 use crate::error::read::read_text;
 use crate::error::{Error, Fault, Faults, Result};
-use crate::results::record::{InputFile, Origin};
+use crate::results::record::{InputFile, RecordOrigin};
 use crate::schema::reader::{Section, read_document};
 use crate::schema::units::NUMBER;
 use crate::validation::{Check, read_check};
@@ -139,7 +139,7 @@ impl SearchFile {
     ///
     /// # Errors
     /// A file that cannot be read.
-    pub(super) fn origin(&self) -> Result<Origin> {
+    pub(super) fn origin(&self) -> Result<RecordOrigin> {
         let table = |text: &str| text.parse::<toml::Table>().unwrap_or_default();
         let mut all = table(&self.text);
         all.retain(|key, _| key == "fact");
@@ -155,7 +155,7 @@ impl SearchFile {
                 inputs.push(InputFile { path: format!("{file} of {name}"), ..input });
             }
         }
-        Ok(Origin { case: all.to_string(), inputs })
+        Ok(RecordOrigin { case: all.to_string(), inputs })
     }
 
     /// The paths of the cases and of the files that they read.

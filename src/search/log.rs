@@ -5,7 +5,7 @@ use super::file::SearchFile;
 use crate::dataset::CsvTable;
 use crate::error::text::printable;
 use crate::error::{Error, Fault, Result};
-use crate::results::record::{self, Origin};
+use crate::results::record::{self, RecordOrigin};
 use crate::results::{retire, write_result};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ pub(super) struct Log {
     heading: String,
     facts: usize,
     /// Origin of the evaluations.
-    origin: Origin,
+    origin: RecordOrigin,
     /// Files that the search reads, which may be in its folder.
     read: Vec<PathBuf>,
     kept: Mutex<KnownEvaluations>,

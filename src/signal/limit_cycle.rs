@@ -19,7 +19,7 @@ pub struct LimitCycle {
     pub mean: f64,
     /// The change of the r.m.s. from the first to the second half of the record, as a part of their mean.
     pub drift: f64,
-    /// How many pieces there were.
+    /// Number of pieces.
     pub pieces: usize,
 }
 

@@ -2,7 +2,7 @@
 
 use faer::Mat;
 
-/// A flat plate seen by the air: small pistons in its plane, and how much volume each displaces in each mode.
+/// Acoustic model of a flat plate: small pistons in its plane, and how much volume each displaces in each mode.
 #[derive(Debug, Clone)]
 pub struct Plate {
     /// Its name.

@@ -41,7 +41,7 @@ const SAME: f64 = 1e-9;
 /// The modes of a band, and what else was met on the way.
 pub(super) struct General {
     pub(super) modes: ComplexModes,
-    /// Every eigenvalue that was seen, those outside the band included, one of each conjugate pair or both.
+    /// Every eigenvalue found, those outside the band included, one of each conjugate pair or both.
     pub(super) seen: Vec<c64>,
     /// The analysis of the pattern of Q.
     pub(super) symbolic: Option<SymbolicFactor>,

@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 pub struct Nearest {
     /// The frequency to which their λ is nearest \[Hz\].
     pub hz: f64,
-    /// How many.
+    /// Number.
     pub count: usize,
     /// The widest band in which they are sought \[Hz\].
     pub within: [f64; 2],

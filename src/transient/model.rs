@@ -157,7 +157,7 @@ impl<'a> TransientModel<'a> {
         self.tracks.iter().any(Option::is_some)
     }
 
-    /// How many directions there are: three a point, and those that were imported.
+    /// Number of directions: three a point, and those that were imported.
     pub(super) fn n_directions(&self) -> usize {
         3 * self.points.len() + self.coupling.map_or(0, |[k, _]| k.nrows())
     }

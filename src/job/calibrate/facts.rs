@@ -2,7 +2,7 @@
 
 use super::super::prepared::Prepared;
 use super::super::sensors::Sensors;
-use super::responses::{self, MeasuredResponses};
+use super::responses::{self, MeasuredFrfData};
 use crate::case::{Case, MeasuredData, SQUEAL};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::job::measured_set;
@@ -18,7 +18,7 @@ pub struct Measurements {
     /// Modes.
     pub modes: Vec<MeasuredModeSet>,
     /// Frequency responses.
-    pub responses: Vec<MeasuredResponses>,
+    pub responses: Vec<MeasuredFrfData>,
 }
 
 /// Measured modes of one kind.

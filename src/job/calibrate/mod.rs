@@ -22,7 +22,7 @@ mod unstable;
 pub use self::coordinate::Coordinate;
 use self::facts::{Fact, MeasuredModeSet, Measurements};
 use self::model::{CaseModel, scalars};
-use self::responses::{MeasuredResponses, Response};
+use self::responses::{MeasuredFrfData, Response};
 use super::prepared::Prepared;
 use crate::calibration::{self, Calibration, CalibrationOptions, CalibrationProblem, Computed, Curve, Datum};
 use crate::case::{CalibrateAnalysis, Case};
@@ -199,7 +199,7 @@ impl Calibrate<'_> {
     fn compared(&self, curves: &[Curve], found: &Calibration) -> Vec<CalibratedResponse> {
         let sets =
             self.measured.responses.iter().flat_map(|set| set.responses.iter().map(move |own| (set, own)));
-        let compared = |(i, ((set, own), curve)): (usize, ((&MeasuredResponses, &Response), &Curve))| {
+        let compared = |(i, ((set, own), curve)): (usize, ((&MeasuredFrfData, &Response), &Curve))| {
             let sizes = |there: &Computed| -> Vec<f64> {
                 there.lines[curve.lines()].iter().map(|line| line.value.exp()).collect()
             };

@@ -9,7 +9,7 @@ use super::facts::{MeasuredModeSet, Measurements, ModeKind};
 use super::follow::{Path, Picks};
 use super::neighbours::{Change, Neighbour, derivatives};
 use super::real::Solved;
-use super::responses::{self, MeasuredResponses, ResponsePlaces};
+use super::responses::{self, MeasuredFrfData, ResponsePlaces};
 use super::unstable::Sliding;
 use crate::calibration::{CalibrationModel, Computed, LIKE, Span};
 use crate::case::{Case, CeaAnalysis};
@@ -47,7 +47,7 @@ pub struct CaseModel<'a> {
     start: Vec<f64>,
     /// The kinds of modes, in the order of the facts.
     pub sets: Vec<Set>,
-    responses: &'a [MeasuredResponses],
+    responses: &'a [MeasuredFrfData],
 }
 
 impl<'a> CaseModel<'a> {
@@ -160,7 +160,7 @@ impl<'a> CaseModel<'a> {
     fn views<'c>(
         &'c self,
         prepared: &Prepared<'c>,
-        responses: &[MeasuredResponses],
+        responses: &[MeasuredFrfData],
     ) -> Result<Vec<SolvedStructure<'c>>> {
         let real = self.sets.iter().filter_map(|set| match &set.start {
             LevelSource::Real { name, sensors, .. } => Some((name, sensors)),
@@ -170,7 +170,7 @@ impl<'a> CaseModel<'a> {
             let on = |sensors: &Sensors| sensors.on(prepared, &prepared.case.modes[name]);
             Ok(SolvedStructure::Part(name, sensors.as_ref().map(on)))
         };
-        let whole = |measured: &MeasuredResponses| {
+        let whole = |measured: &MeasuredFrfData| {
             Ok(SolvedStructure::Whole(ResponsePlaces::new(prepared, &measured.frf)?))
         };
         real.map(part).chain(responses.iter().map(whole)).collect()
@@ -204,7 +204,7 @@ impl<'a> CaseModel<'a> {
     }
 
     /// Every level, and the lines of `responses`, at `x`.
-    fn at(&self, x: &[f64], responses: &[MeasuredResponses]) -> Result<Computed> {
+    fn at(&self, x: &[f64], responses: &[MeasuredFrfData]) -> Result<Computed> {
         let case = self.case_at(x)?;
         let values = self.values(x);
         let prepared = Prepared::new(&case)?;

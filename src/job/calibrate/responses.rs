@@ -30,7 +30,7 @@ const FLOOR: f64 = 0.05;
 
 /// Responses of one `[frf.NAME]` measured in a test.
 #[derive(Debug, Clone)]
-pub struct MeasuredResponses {
+pub struct MeasuredFrfData {
     /// The name of `[measured.NAME]`.
     pub name: String,
     /// That of `[frf.NAME]`.
@@ -76,16 +76,11 @@ impl Response {
 ///
 /// # Errors
 /// A file that cannot be read, responses of which none is of a place of the case, a band without lines.
-pub fn measured(
-    prepared: &Prepared,
-    name: &str,
-    data: &MeasuredData,
-    frf: &str,
-) -> Result<MeasuredResponses> {
+pub fn measured(prepared: &Prepared, name: &str, data: &MeasuredData, frf: &str) -> Result<MeasuredFrfData> {
     let (set, _) = measured_set(prepared.case, name)?;
     let all = frfs(prepared)?;
     let mut faults = Faults::new();
-    let mut found = MeasuredResponses { name: name.to_string(), frf: frf.to_string(), responses: Vec::new() };
+    let mut found = MeasuredFrfData { name: name.to_string(), frf: frf.to_string(), responses: Vec::new() };
     let key = |key: &str| format!("`measured.{name}.{key}`");
     let Some(wanted) = all.iter().find(|wanted| wanted.name() == frf) else { return Ok(found) };
     if wanted.slides() {
@@ -234,7 +229,7 @@ struct ReceptancesAt {
 /// Modes that cannot be computed, a resonance that nothing damps.
 pub fn lines(
     prepared: &Prepared,
-    (measured, places): (&MeasuredResponses, &ResponsePlaces),
+    (measured, places): (&MeasuredFrfData, &ResponsePlaces),
     changes: &[Option<Change>],
     ratios: &Ratios,
 ) -> Result<Vec<ResponseLine>> {
@@ -309,7 +304,7 @@ pub fn lines(
 
 /// Lines at the measured frequencies, each frequency computed once by `at`.
 fn beside_measured(
-    measured: &MeasuredResponses,
+    measured: &MeasuredFrfData,
     at: &(dyn Fn(f64) -> Result<ReceptancesAt> + Sync),
 ) -> Result<Vec<ResponseLine>> {
     let mut all: Vec<f64> =

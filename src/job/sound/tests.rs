@@ -45,11 +45,11 @@ fn one_mode_sounds_as_loud_as_its_closed_form() {
     let [level, weighted] = sound.power_levels();
     assert!((level - power_level(watt)).abs() < 0.1, "{level} {}", power_level(watt));
     assert!((weighted - level - 20.0 * crate::sound::a_weighting(hz).log10()).abs() < 0.05);
-    for heard in &sound.microphones {
-        let r = heard.at.iter().map(|c| c * c).sum::<f64>().sqrt();
+    for microphone in &sound.microphones {
+        let r = microphone.at.iter().map(|c| c * c).sum::<f64>().sqrt();
         let amplitude = air.density * volume / (TAU * r);
         let exact = pressure_level(0.5 * amplitude * amplitude);
-        assert!((heard.levels()[0] - exact).abs() < 0.1, "{} {exact}", heard.levels()[0]);
+        assert!((microphone.levels()[0] - exact).abs() < 0.1, "{} {exact}", microphone.levels()[0]);
     }
     assert!((sound.mode_shares[mode] - 1.0).abs() < 1e-9);
     assert_eq!(sound.tones.len(), 1);

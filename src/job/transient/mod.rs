@@ -2,7 +2,7 @@
 //!
 //! [`places`] says what acts and where motion is recorded, `along` finds the complex mode to start along, `recorder`
 //! makes a row of every step, `snapshots` take the motion of all nodes now and then, `history_writer` hands the rows on a piece at
-//! a time, so that memory does not grow with the run, and `findings`, `diagnostics` and `modal` read them back in parts: spectra and growth, what the pictures show, what is heard.
+//! a time, so that memory does not grow with the run, and `findings`, `diagnostics` and `modal` read them back in parts: spectra and growth, data of the pictures, sound.
 
 mod along;
 mod channels;

@@ -129,7 +129,7 @@ impl<'a> Recorder<'a> {
         motion.into_iter().chain(friction).collect()
     }
 
-    /// How many rows are at hand.
+    /// Number of rows at hand.
     pub(super) fn rows(&self) -> usize {
         self.values.first().map_or(0, Vec::len)
     }

@@ -15,7 +15,7 @@ mod origin;
 mod saved;
 
 pub use block::RecordBlock;
-pub use origin::{InputFile, Origin};
+pub use origin::{InputFile, RecordOrigin};
 pub use saved::Saved;
 
 use super::folder::{own, refusal, synchronise, write_durably};
@@ -161,7 +161,7 @@ pub(super) fn read_saved(dir: &Path) -> Result<Option<Saved>> {
 ///
 /// # Errors
 /// Input: it is of another case, or of other files; the checkpoint is damaged.
-pub fn check_origin(dir: &Path, origin: &Origin) -> Result<()> {
+pub fn check_origin(dir: &Path, origin: &RecordOrigin) -> Result<()> {
     read_saved(dir)?.map_or(Ok(()), |saved| origin.check(&saved.origin, dir))
 }
 
@@ -170,7 +170,7 @@ pub fn check_origin(dir: &Path, origin: &Origin) -> Result<()> {
 ///
 /// # Errors
 /// The machine refuses.
-pub fn keep_origin(dir: &Path, origin: &Origin, ended: bool) -> Result<()> {
+pub fn keep_origin(dir: &Path, origin: &RecordOrigin, ended: bool) -> Result<()> {
     let saved = Saved { ended, ..Saved::new(origin.clone()) };
     write_durably(dir, CHECKPOINT, &saved.to_bytes())
 }
@@ -191,7 +191,7 @@ pub struct Record {
 
 impl Record {
     /// Begins a record in the folder `dir`; its files are made with the first block.
-    pub fn new(dir: &Path, origin: Origin) -> Self {
+    pub fn new(dir: &Path, origin: RecordOrigin) -> Self {
         Record {
             dir: dir.to_path_buf(),
             saved: Saved::new(origin),
@@ -206,7 +206,7 @@ impl Record {
     ///
     /// # Errors
     /// Input: it is of another case, of other files, of another version of the program, or damaged. The machine refuses.
-    pub fn resume(dir: &Path, origin: &Origin) -> Result<Option<(Self, Earlier)>> {
+    pub fn resume(dir: &Path, origin: &RecordOrigin) -> Result<Option<(Self, Earlier)>> {
         let Some(saved) = read_saved(dir)? else { return Ok(None) };
         origin.check(&saved.origin, dir)?;
         let own = env!("CARGO_PKG_VERSION");

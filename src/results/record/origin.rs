@@ -55,19 +55,19 @@ fn hexadecimal(bytes: &[u8]) -> String {
 
 /// The case and the files it reads.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Origin {
+pub struct RecordOrigin {
     /// The resolved case as TOML.
     pub case: String,
     /// The files.
     pub inputs: Vec<InputFile>,
 }
 
-impl Origin {
+impl RecordOrigin {
     /// Whether results of `earlier` in the folder `dir` are results of this; otherwise what differs.
     ///
     /// # Errors
     /// Input: the keys of the case, or the files, that have changed.
-    pub(super) fn check(&self, earlier: &Origin, dir: &Path) -> Result<()> {
+    pub(super) fn check(&self, earlier: &RecordOrigin, dir: &Path) -> Result<()> {
         let refused = |found: String, expected: &str| {
             let fault = Fault::new(dir.display().to_string(), found, expected);
             let help = "Run without --resume to start over (an interrupted run is kept aside), or name another folder with --out";
@@ -154,7 +154,7 @@ mod tests {
         let dir = Path::new("out");
         let input =
             |path: &str, sha256: &str| InputFile { path: path.into(), bytes: 5, sha256: sha256.into() };
-        let origin = |case: &str, sha256: &str| Origin {
+        let origin = |case: &str, sha256: &str| RecordOrigin {
             case: case.into(),
             inputs: vec![input("a.msh", "00"), input("b.uff", sha256)],
         };
@@ -168,7 +168,7 @@ mod tests {
         assert!(said.contains("`cea.band`") || said.contains("`cea.b`"), "{said}");
         let fewer = origin("title = \"x\"\n", "11").check(&earlier, dir).unwrap_err().to_string();
         assert!(fewer.contains("`cea.a` was `1` and is absent"), "{fewer}");
-        let changed = Origin { inputs: origin("", "22").inputs, ..earlier.clone() };
+        let changed = RecordOrigin { inputs: origin("", "22").inputs, ..earlier.clone() };
         let said = changed.check(&earlier, dir).unwrap_err().to_string();
         assert!(said.contains("`b.uff` has changed") && !said.contains("a.msh"), "{said}");
     }

@@ -3,7 +3,7 @@
 //! Sixteen bytes that name the format, the payload, and the SHA-256 of all before it (32 bytes).
 
 use super::bytes::{Bytes, Read, RecordCursor};
-use super::origin::{InputFile, Origin};
+use super::origin::{InputFile, RecordOrigin};
 use crate::transient::Checkpoint;
 use sha2::{Digest, Sha256};
 
@@ -16,7 +16,7 @@ pub struct Saved {
     /// The version of the program.
     pub program_version: String,
     /// The case and the files it reads.
-    pub origin: Origin,
+    pub origin: RecordOrigin,
     /// Whether the run has ended by itself, with results or without.
     pub ended: bool,
     /// Bytes of `record.bin` that count.
@@ -29,7 +29,7 @@ pub struct Saved {
 
 impl Saved {
     /// Nothing recorded yet.
-    pub(super) fn new(origin: Origin) -> Self {
+    pub(super) fn new(origin: RecordOrigin) -> Self {
         let program_version = env!("CARGO_PKG_VERSION").into();
         let digest = Sha256::digest([]).into();
         Saved { program_version, origin, ended: false, length: 0, digest, march: None }
@@ -87,7 +87,7 @@ impl Saved {
         let length = from.whole()?;
         let digest = from.array()?;
         let march = if from.array::<1>()? == [0] { None } else { Some(read_march(&mut from)?) };
-        let origin = Origin { case, inputs };
+        let origin = RecordOrigin { case, inputs };
         from.end(Saved { program_version, origin, ended, length, digest, march })
     }
 }

@@ -4,9 +4,9 @@ use crate::transient::{Event, EventKind};
 
 const MODES: usize = 2;
 
-fn origin() -> Origin {
+fn origin() -> RecordOrigin {
     let input = InputFile { path: "a.msh".into(), bytes: 3, sha256: "00".into() };
-    Origin { case: "title = \"a case\"\n".into(), inputs: vec![input] }
+    RecordOrigin { case: "title = \"a case\"\n".into(), inputs: vec![input] }
 }
 
 fn channels() -> [Channel; 2] {
@@ -217,7 +217,7 @@ fn wrong_bytes_with_right_checksums_do_no_harm() {
 fn another_case_and_other_files_are_refused() {
     let dir = tempfile::tempdir().unwrap();
     record(dir.path());
-    let case = Origin { case: "title = \"another\"\n".into(), ..origin() };
+    let case = RecordOrigin { case: "title = \"another\"\n".into(), ..origin() };
     let said = Record::resume(dir.path(), &case).unwrap_err().to_string();
     assert!(said.contains("`title` was `\"a case\"` and is `\"another\"`"), "{said}");
     let mut files = origin();

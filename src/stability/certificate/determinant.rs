@@ -1,7 +1,7 @@
 //! A count at full order, where the part that is not symmetric has no low rank: the winding number of det Q around the region.
 //!
-//! f(s) = det Q(s) / Π (s − λ) over the eigenvalues λ that were seen has the phase of U's diagonal in Q(s) = L U, less that of the
-//! known factors. Its winding number along the contour counts the eigenvalues inside that nobody saw; near an eigenvalue that was seen it
+//! f(s) = det Q(s) / Π (s − λ) over the eigenvalues λ that were found has the phase of U's diagonal in Q(s) = L U, less that of the
+//! known factors. Its winding number along the contour counts the eigenvalues inside that were not found; near a found eigenvalue it
 //! is smooth, so that few points are enough. A stretch is halved until the phase changes by less than [`STEP`] on either half:
 //! the phase between the points is followed, not bounded, so that this is a count and no proof.
 
@@ -21,7 +21,7 @@ use std::f64::consts::{PI, TAU};
 const STEP: f64 = 0.25 * PI;
 /// The fastest growth that is counted, by the top of the band: a damping ratio of about −10 %.
 const FASTEST: f64 = 0.1;
-/// Pieces of an edge that are followed independently of each other. The eigenvalues that nobody saw, all but a few, turn the
+/// Pieces of an edge that are followed independently of each other. The eigenvalues that were not found, all but a few, change the
 /// phase, too: with 4 pieces, halves of a piece changed by multiples of 2π at 4,680 degrees of freedom, and the count was wrong.
 const PIECES: usize = 64;
 /// Halvings of a piece at most.
@@ -39,7 +39,7 @@ pub(super) fn work(general: &General) -> f64 {
 /// The eigenvalues in the band with growth rates from [`SLOWEST_GROWTH`] to [`FASTEST`] of its top, counted.
 ///
 /// # Errors
-/// An eigenvalue on the contour that the search has not seen.
+/// An eigenvalue on the contour that the search has not found.
 pub(in crate::stability) fn count(
     operator: &Operator<'_>,
     general: &General,
@@ -94,7 +94,7 @@ pub(in crate::stability) fn count(
     })
 }
 
-/// Each eigenvalue that was seen once, with its conjugate where the spectrum is symmetric.
+/// Each found eigenvalue once, with its conjugate where the spectrum is symmetric.
 fn known(seen: &[c64], symmetric: bool) -> Vec<c64> {
     let mut all: Vec<c64> = seen.to_vec();
     if symmetric {

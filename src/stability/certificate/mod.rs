@@ -16,7 +16,7 @@
 //!    Of a large interface d costs too much: the eigenvalues of the reduced model are then computed and counted one by
 //!    one, their number inside is proven from what is left of the matrix in their coordinates, and the same coordinates
 //!    bound ρ ([`spectrum`]).
-//! 3. *Beyond the region.* Nothing in the band grows faster than R ([`beyond`]); said where it could be shown.
+//! 3. *Beyond the region.* Nothing in the band grows faster than R ([`beyond`]); reported where it could be shown.
 //!
 //! Where the part that is not symmetric has no low rank the determinant is followed at full order ([`determinant`]).
 //!
