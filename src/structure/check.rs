@@ -22,6 +22,18 @@ pub fn check(model: &Model) -> Result<()> {
 /// The faults of `model`, all of them; of like faults in one part the first, with their number.
 pub(super) fn check_model(model: &Model) -> Result<()> {
     let mut faults = Faults::new();
+    check_nodes(model, &mut faults);
+    check_shells(model, &mut faults);
+    check_bars(model, &mut faults);
+    shared_elements(model, &mut faults);
+    check_masses(model, &mut faults);
+    check_springs(model, &mut faults);
+    check_ties(model, &mut faults);
+    faults.into_result(())
+}
+
+/// Coordinates.
+fn check_nodes(model: &Model, faults: &mut Faults) {
     let bad_nodes: Vec<usize> =
         (0..model.nodes.len()).filter(|n| model.nodes[*n].iter().any(|x| !x.is_finite())).collect();
     if let Some(first) = bad_nodes.first() {
@@ -31,21 +43,24 @@ pub(super) fn check_model(model: &Model) -> Result<()> {
             "finite coordinates",
         ));
     }
+}
+
+/// Plates: material, thickness, theory, faces.
+fn check_shells(model: &Model, faults: &mut Faults) {
     let known = |node: &usize| *node < model.nodes.len();
     let sound = |node: &usize| known(node) && model.nodes[*node].iter().all(|x| x.is_finite());
-
     for part in &model.shells {
         let place = format!("`shell.{}`", part.name);
-        check_material(&place, &part.material, &mut faults);
-        positive(&place, "thickness", part.thickness, "m", &mut faults);
-        check_theory(&place, part, &mut faults);
+        check_material(&place, &part.material, faults);
+        positive(&place, "thickness", part.thickness, "m", faults);
+        check_theory(&place, part, faults);
         let not_faces = part.faces.iter().filter(|f| f.dimension() != 2).count();
         if not_faces > 0 {
             let found = format!("{not_faces} elements that are points or lines");
             faults.push(Fault::new(&place, found, "triangles and quadrilaterals"));
         }
         let missing = part.faces.iter().flat_map(|f| f.nodes()).filter(|n| !known(n));
-        missing_nodes(&place, missing, model.nodes.len(), &mut faults);
+        missing_nodes(&place, missing, model.nodes.len(), faults);
         let count = part.faces.len();
         let shapes: Vec<Option<Shape>> = part
             .faces
@@ -71,15 +86,21 @@ pub(super) fn check_model(model: &Model) -> Result<()> {
             }
         }
     }
+}
+
+/// Bars: material, section, ends.
+fn check_bars(model: &Model, faults: &mut Faults) {
+    let known = |node: &usize| *node < model.nodes.len();
+    let sound = |node: &usize| known(node) && model.nodes[*node].iter().all(|x| x.is_finite());
     for part in &model.bars {
         let place = format!("`bar.{}`", part.name);
-        check_material(&place, &part.material, &mut faults);
-        positive(&place, "area", part.section.area, "m²", &mut faults);
-        positive(&place, "first second moment", part.section.inertia_1, "m⁴", &mut faults);
-        positive(&place, "second second moment", part.section.inertia_2, "m⁴", &mut faults);
-        positive(&place, "torsion constant", part.section.torsion, "m⁴", &mut faults);
+        check_material(&place, &part.material, faults);
+        positive(&place, "area", part.section.area, "m²", faults);
+        positive(&place, "first second moment", part.section.inertia_1, "m⁴", faults);
+        positive(&place, "second second moment", part.section.inertia_2, "m⁴", faults);
+        positive(&place, "torsion constant", part.section.torsion, "m⁴", faults);
         let missing = part.elements.iter().flatten().filter(|n| !known(n));
-        missing_nodes(&place, missing, model.nodes.len(), &mut faults);
+        missing_nodes(&place, missing, model.nodes.len(), faults);
         let bad = part
             .elements
             .iter()
@@ -92,26 +113,30 @@ pub(super) fn check_model(model: &Model) -> Result<()> {
             ));
         }
     }
-    shared_elements(model, &mut faults);
+}
+
+/// Point masses.
+fn check_masses(model: &Model, faults: &mut Faults) {
+    let known = |node: &usize| *node < model.nodes.len();
     for (k, point) in model.masses.iter().enumerate() {
         let place = format!("point mass {}", k + 1);
-        missing_nodes(
-            &place,
-            std::iter::once(&point.node).filter(|n| !known(n)),
-            model.nodes.len(),
-            &mut faults,
-        );
-        not_negative(&place, "mass", point.mass, "kg", &mut faults);
+        missing_nodes(&place, std::iter::once(&point.node).filter(|n| !known(n)), model.nodes.len(), faults);
+        not_negative(&place, "mass", point.mass, "kg", faults);
         for inertia in point.inertia {
-            not_negative(&place, "moment of inertia", inertia, "kg m²", &mut faults);
+            not_negative(&place, "moment of inertia", inertia, "kg m²", faults);
         }
     }
+}
+
+/// Springs and dashpots.
+fn check_springs(model: &Model, faults: &mut Faults) {
+    let known = |node: &usize| *node < model.nodes.len();
     for (k, spring) in model.springs.iter().enumerate() {
         let place = format!("spring {}", k + 1);
         let ends = std::iter::once(&spring.node).chain(&spring.other);
-        missing_nodes(&place, ends.filter(|n| !known(n)), model.nodes.len(), &mut faults);
-        not_negative(&place, "stiffness", spring.stiffness, "N/m or N m/rad", &mut faults);
-        not_negative(&place, "damping", spring.damping, "N s/m or N m s/rad", &mut faults);
+        missing_nodes(&place, ends.filter(|n| !known(n)), model.nodes.len(), faults);
+        not_negative(&place, "stiffness", spring.stiffness, "N/m or N m/rad", faults);
+        not_negative(&place, "damping", spring.damping, "N s/m or N m s/rad", faults);
         if spring_direction(spring).is_none() {
             let found = format!("direction {}", components(spring.direction));
             faults.push(Fault::new(&place, found, "a direction with a length"));
@@ -121,16 +146,20 @@ pub(super) fn check_model(model: &Model) -> Result<()> {
             faults.push(Fault::new(&place, found, "two nodes, or a node and the ground"));
         }
     }
+}
+
+/// Rigid links and supports.
+fn check_ties(model: &Model, faults: &mut Faults) {
+    let known = |node: &usize| *node < model.nodes.len();
     for (k, link) in model.links.iter().enumerate() {
         let ends = std::iter::once(&link.master).chain(&link.slaves);
         let place = format!("rigid link {}", k + 1);
-        missing_nodes(&place, ends.filter(|n| !known(n)), model.nodes.len(), &mut faults);
+        missing_nodes(&place, ends.filter(|n| !known(n)), model.nodes.len(), faults);
     }
     for (k, support) in model.supports.iter().enumerate() {
         let place = format!("support {}", k + 1);
-        missing_nodes(&place, support.nodes.iter().filter(|n| !known(n)), model.nodes.len(), &mut faults);
+        missing_nodes(&place, support.nodes.iter().filter(|n| !known(n)), model.nodes.len(), faults);
     }
-    faults.into_result(())
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]

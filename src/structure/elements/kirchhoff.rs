@@ -12,20 +12,20 @@ pub struct KirchhoffTriangle<'a> {
     nodes: [usize; 3],
     /// 1, or ½ of the triangles of a quadrilateral.
     weight: f64,
+    /// `None` where its corners leave it without an area.
+    geometry: Option<FlatShell>,
 }
 
 impl<'a> KirchhoffTriangle<'a> {
     /// A triangle of `part` on nodes with the given coordinates \[m\].
     pub fn new(part: &'a ShellPart, coordinates: &'a [[f64; 3]], triangle: &WeightedTriangle) -> Self {
-        KirchhoffTriangle { part, coordinates, nodes: triangle.nodes, weight: triangle.weight }
+        let WeightedTriangle { nodes, weight } = *triangle;
+        let geometry = FlatShell::new(&nodes.map(|n| coordinates[n]));
+        KirchhoffTriangle { part, coordinates, nodes, weight, geometry }
     }
 
-    fn geometry(&self) -> Option<FlatShell> {
-        FlatShell::new(&self.nodes.map(|n| self.coordinates[n]))
-    }
-
-    fn shell(&self) -> FlatShell {
-        self.geometry().expect("checked: it has an area")
+    fn shell(&self) -> &FlatShell {
+        self.geometry.as_ref().expect("checked: it has an area")
     }
 
     fn weighted(&self, matrix: &SMatrix<f64, 18, 18>, to: &mut ElementMatrix) -> bool {
@@ -47,7 +47,7 @@ impl FiniteElement for KirchhoffTriangle<'_> {
     }
 
     fn is_degenerate(&self) -> bool {
-        self.geometry().is_none()
+        self.geometry.is_none()
     }
 
     fn material(&self) -> Option<&Material> {
@@ -75,7 +75,7 @@ impl FiniteElement for KirchhoffTriangle<'_> {
     }
 
     fn mass_and_center(&self) -> (f64, [f64; 3]) {
-        let area = self.geometry().map_or(0.0, |shell| shell.triangle().area);
+        let area = self.geometry.as_ref().map_or(0.0, |shell| shell.triangle().area);
         let mass = self.part.material.density * self.part.thickness * area * self.weight;
         (mass, super::mean(&self.nodes, self.coordinates))
     }
