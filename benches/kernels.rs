@@ -40,13 +40,11 @@ fn plate(n: usize) -> Model {
         loss_factor: 0.0,
         rayleigh: RayleighDamping::default(),
     };
+    let faces = (0..n).flat_map(|i| (0..n).flat_map(move |j| cell(i, j))).collect();
     let part = ShellPart {
-        name: "plate".into(),
-        faces: (0..n).flat_map(|i| (0..n).flat_map(move |j| cell(i, j))).collect(),
-        material,
-        thickness: 0.01,
         bending_only: true,
         rotary_inertia: false,
+        ..ShellPart::new("plate", faces, material, 0.01)
     };
     Model { nodes, shells: vec![part], ..Model::default() }
 }

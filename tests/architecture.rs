@@ -106,7 +106,19 @@ const MAY_USE: [(&str, &[&str]); 30] = [
     ("search", &["error", "progress", "schema", "dataset", "results", "case", "job", "validation"]),
     (
         "cli",
-        &["error", "progress", "schema", "mesh", "report", "results", "case", "job", "validation", "search"],
+        &[
+            "error",
+            "progress",
+            "dataset",
+            "schema",
+            "mesh",
+            "report",
+            "results",
+            "case",
+            "job",
+            "validation",
+            "search",
+        ],
     ),
 ];
 

@@ -201,10 +201,10 @@ fn interpolation_meets_rigid_motions() {
     let nodes = [[0.1, 0.2, 0.3], [1.0, 0.1, 0.5], [1.2, 1.0, 0.1]];
     let at = [0.2, 0.3, 0.5];
     let point: [f64; 3] = std::array::from_fn(|k| (0..3).map(|i| at[i] * nodes[i][k]).sum());
-    let rows = FlatShell::new(&nodes).unwrap().displacement_at(at);
+    let columns = FlatShell::new(&nodes).unwrap().displacement_at(at);
     for motion in 0..6 {
         let r = rigid_motion(&nodes, motion);
-        let found = rows.map(|row| row.iter().zip(&r).map(|(c, u)| c * u).sum::<f64>());
+        let found: [f64; 6] = std::array::from_fn(|i| columns.iter().zip(&r).map(|(c, u)| c[i] * u).sum());
         let exact = rigid_motion(&[point], motion);
         assert!(found.iter().zip(&exact).all(|(f, e)| (f - e).abs() < 1e-13), "{found:?} {exact:?}");
     }

@@ -76,18 +76,16 @@ fn rectangle(a: f64, b: f64, n: usize, m: usize, quadrilaterals: bool) -> (Vec<[
 }
 
 fn plate(thin: &ThinPlate, faces: Vec<Element>, bending_only: bool) -> ShellPart {
+    let material = Material {
+        youngs_modulus: thin.youngs_modulus,
+        poissons_ratio: thin.poissons_ratio,
+        density: thin.density,
+        ..steel()
+    };
     ShellPart {
-        name: "plate".into(),
-        faces,
-        material: Material {
-            youngs_modulus: thin.youngs_modulus,
-            poissons_ratio: thin.poissons_ratio,
-            density: thin.density,
-            ..steel()
-        },
-        thickness: thin.thickness,
         bending_only,
         rotary_inertia: false,
+        ..ShellPart::new("plate", faces, material, thin.thickness)
     }
 }
 

@@ -247,6 +247,23 @@ fn with_elements_in_another_order_and_from_another_corner() {
     }
 }
 
+/// Plates by Mindlin's theory, triangles and true quadrilaterals.
+#[test]
+fn thick_plates_in_another_order_from_another_corner_turned_and_moved() {
+    let thick = CASE.replace("thickness =", "theory = \"mindlin\"\nthickness =");
+    let frame = rotation([2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0], 1.1);
+    for mesh in [mesh(), quadrilaterals()] {
+        let one = eigenvalues(&in_frame(&ITSELF, &thick), &as_it_is(&mesh));
+        let mut other = with_elements_shuffled(&mesh);
+        assert_same("shuffled", &one, &eigenvalues(&in_frame(&ITSELF, &thick), &as_it_is(&other)));
+        for x in &mut other.nodes {
+            let at = turned(&frame, *x);
+            *x = [at[0] + 0.3, at[1] - 0.1, at[2] + 0.2];
+        }
+        assert_same("turned", &one, &eigenvalues(&in_frame(&frame, &thick), &as_it_is(&other)));
+    }
+}
+
 #[test]
 fn in_other_units() {
     let mut case = in_frame(&ITSELF, CASE);

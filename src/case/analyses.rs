@@ -1,6 +1,6 @@
 //! `[modes.NAME]`, `[cea]`, `[sensitivity]`: real modes, complex eigenvalues, and how these answer scalars.
 
-use crate::schema::reader::LARGEST;
+use crate::schema::raw::LARGEST;
 use crate::schema::units::*;
 use crate::schema::{Report, choices, declare, key};
 use std::ops::Bound;

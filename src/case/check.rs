@@ -1,26 +1,48 @@
 //! What sections say of each other: names that must stand elsewhere, and what does not go together.
 
+use super::consistent::Consistent;
 use super::names::unknown_name;
-use super::{Case, ContactState, Parameter, Pressing, path_matches};
+use super::{Case, ContactState, Parameter, Pressing, TransientAnalysis, path_matches};
 use crate::schema::{Report, dotted, key};
 
-/// Refuses what does not go together in a case.
-pub(super) fn check(case: &Case, report: &mut Report) {
-    // Tables of named tables without names may have meant to define any name.
-    let sections = ["material", "shell", "bar", "spring", "force", "contact", "modes", "frf", "measured"];
-    if !sections.iter().any(|section| report.unread_itself(section)) {
-        check_names(report, case);
+impl Consistent for Case {
+    fn check(&self, report: &mut Report) {
+        // Tables of named tables without names may have meant to define any name.
+        let sections = ["material", "shell", "bar", "spring", "force", "contact", "modes", "frf", "measured"];
+        if !sections.iter().any(|section| report.unread_itself(section)) {
+            check_names(report, self);
+        }
+        super::measured::check(report, self);
+        let sound = report.is_sound(&["sensitivity", "sweep", "map", "calibrate"]);
+        let scalars = sound.then(|| self.without_studies().parameters());
+        check_sensitivity(report, self, scalars.as_deref());
+        super::explore::check(self, scalars.as_deref(), report);
+        super::calibrate::check(self, scalars.as_deref(), report);
     }
-    super::measured::check(report, case);
-    let sound = report.is_sound(&["sensitivity", "sweep", "map", "calibrate"]);
-    let scalars = sound.then(|| case.without_studies().parameters());
-    check_sensitivity(report, case, scalars.as_deref());
-    super::explore::check(case, scalars.as_deref(), report);
-    super::calibrate::check(case, scalars.as_deref(), report);
 }
 
-/// Names that must stand elsewhere in the file: materials, parts, contacts.
+/// Names that must stand elsewhere in the file, and sections that need others.
 fn check_names(root: &mut Report, case: &Case) {
+    check_materials(root, case);
+    check_modes(root, case);
+    if case.cea.is_some() && case.contact.is_empty() && case.matrices.is_none() {
+        root.fault("cea", "no [contact] in the case", "a contact, without which nothing slides", "");
+    }
+    if case.sensitivity.is_some() && case.cea.is_none() {
+        root.fault("sensitivity", "no [cea] in the case", "a [cea], whose eigenvalues are looked into", "");
+    }
+    if let Some(transient) = &case.transient {
+        check_transient(root, case, transient);
+    }
+    if case.matrices.is_some() {
+        check_matrices(root, case);
+    } else if case.mesh.is_none() && case.point.is_empty() {
+        root.fault("mesh", "nothing", "a [mesh] with a file, [point] coordinates, or [matrices]", "");
+    }
+}
+
+/// Materials of parts, and contacts that are given point by point.
+fn check_materials(root: &mut Report, case: &Case) {
     let materials: Vec<&str> = case.material.keys().map(String::as_str).collect();
     let used = case
         .shell
@@ -42,6 +64,10 @@ fn check_names(root: &mut Report, case: &Case) {
             );
         }
     }
+}
+
+/// Parts and contacts of analyses of real modes.
+fn check_modes(root: &mut Report, case: &Case) {
     let parts: Vec<&str> = case.shell.keys().chain(case.bar.keys()).map(String::as_str).collect();
     for (name, analysis) in &case.modes {
         for part in analysis.parts.iter().filter(|p| !parts.contains(&p.as_str())) {
@@ -64,59 +90,55 @@ fn check_names(root: &mut Report, case: &Case) {
             );
         }
     }
-    if case.cea.is_some() && case.contact.is_empty() && case.matrices.is_none() {
-        root.fault("cea", "no [contact] in the case", "a contact, without which nothing slides", "");
+}
+
+/// What motion in time names, and what it needs.
+fn check_transient(root: &mut Report, case: &Case, transient: &TransientAnalysis) {
+    if case.cea.is_none() {
+        let expected = "a [cea], whose modes the motion starts along and is compared with";
+        root.fault("transient", "no [cea] in the case", expected, "");
     }
-    if case.sensitivity.is_some() && case.cea.is_none() {
-        root.fault("sensitivity", "no [cea] in the case", "a [cea], whose eigenvalues are looked into", "");
+    if transient.fields_every.is_some() && case.mesh.is_none() {
+        let expected = "a case with a [mesh], whose nodes have the fields";
+        root.fault("transient.fields_every", "no [mesh] in the case", expected, "");
     }
-    if let Some(transient) = &case.transient {
-        if case.cea.is_none() {
-            let expected = "a [cea], whose modes the motion starts along and is compared with";
-            root.fault("transient", "no [cea] in the case", expected, "");
-        }
-        if transient.fields_every.is_some() && case.mesh.is_none() {
-            let expected = "a case with a [mesh], whose nodes have the fields";
-            root.fault("transient.fields_every", "no [mesh] in the case", expected, "");
-        }
-        let contacts: Vec<&str> = case.contact.keys().map(String::as_str).collect();
-        for name in transient.slide.keys().filter(|name| !contacts.contains(&name.as_str())) {
-            unknown_name(root, &format!("transient.slide.{}", dotted(name)), name, "contact", &contacts);
-        }
-        let pressed = case.contact.iter().filter(|(_, c)| matches!(c.pressing, Pressing::Load { .. }));
-        let loads: Vec<&str> =
-            pressed.map(|(name, _)| name.as_str()).chain(case.force.keys().map(String::as_str)).collect();
-        for name in transient.load.keys().filter(|name| !loads.contains(&name.as_str())) {
-            unknown_name(
-                root,
-                &format!("transient.load.{}", dotted(name)),
-                name,
-                "force or contact with a load",
-                &loads,
-            );
-        }
-        for (name, _) in transient
-            .load
-            .iter()
-            .filter(|(name, course)| course.range()[0] < 0.0 && case.contact.contains_key(name.as_str()))
-        {
-            let expected = "factors of zero or more: a load presses";
-            root.fault(&format!("transient.load.{}", dotted(name)), "a factor below zero", expected, "");
-        }
-        for name in transient.probe.keys().filter(|name| !key::is_file_name(name)) {
-            let place = format!("transient.probe.{}", dotted(name));
-            root.fault(&place, format!("the name \"{name}\""), "letters, digits, `-` and `_`", "");
-        }
-        let plates: Vec<&str> = case.shell.keys().map(String::as_str).collect();
-        let heard = transient.sound.iter().flat_map(|sound| &sound.plates);
-        for name in heard.filter(|name| !plates.contains(&name.as_str())) {
-            unknown_name(root, "transient.sound.plates", name, "shell", &plates);
-        }
+    check_courses(root, case, transient);
+    for name in transient.probe.keys().filter(|name| !key::is_file_name(name)) {
+        let place = format!("transient.probe.{}", dotted(name));
+        root.fault(&place, format!("the name \"{name}\""), "letters, digits, `-` and `_`", "");
     }
-    if case.matrices.is_some() {
-        check_matrices(root, case);
-    } else if case.mesh.is_none() && case.point.is_empty() {
-        root.fault("mesh", "nothing", "a [mesh] with a file, [point] coordinates, or [matrices]", "");
+    let plates: Vec<&str> = case.shell.keys().map(String::as_str).collect();
+    let heard = transient.sound.iter().flat_map(|sound| &sound.plates);
+    for name in heard.filter(|name| !plates.contains(&name.as_str())) {
+        unknown_name(root, "transient.sound.plates", name, "shell", &plates);
+    }
+}
+
+/// Contacts that slide and loads that change in time.
+fn check_courses(root: &mut Report, case: &Case, transient: &TransientAnalysis) {
+    let contacts: Vec<&str> = case.contact.keys().map(String::as_str).collect();
+    for name in transient.slide.keys().filter(|name| !contacts.contains(&name.as_str())) {
+        unknown_name(root, &format!("transient.slide.{}", dotted(name)), name, "contact", &contacts);
+    }
+    let pressed = case.contact.iter().filter(|(_, c)| matches!(c.pressing, Pressing::Load { .. }));
+    let loads: Vec<&str> =
+        pressed.map(|(name, _)| name.as_str()).chain(case.force.keys().map(String::as_str)).collect();
+    for name in transient.load.keys().filter(|name| !loads.contains(&name.as_str())) {
+        unknown_name(
+            root,
+            &format!("transient.load.{}", dotted(name)),
+            name,
+            "force or contact with a load",
+            &loads,
+        );
+    }
+    for (name, _) in transient
+        .load
+        .iter()
+        .filter(|(name, course)| course.range()[0] < 0.0 && case.contact.contains_key(name.as_str()))
+    {
+        let expected = "factors of zero or more: a load presses";
+        root.fault(&format!("transient.load.{}", dotted(name)), "a factor below zero", expected, "");
     }
 }
 

@@ -7,6 +7,7 @@
 mod analyses;
 mod calibrate;
 mod check;
+mod consistent;
 mod contact;
 mod explore;
 mod expression;
@@ -52,6 +53,7 @@ use crate::error::read::read_text;
 use crate::schema::units::LENGTH;
 use crate::schema::{Report, declare, key, read_table, to_toml};
 use crate::structure::Material;
+use consistent::Consistent;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -121,8 +123,9 @@ declare! {
     }
 }
 
+/// Refuses what does not go together.
 fn check_case(case: &Case, report: &mut Report) {
-    check::check(case, report);
+    case.check(report);
 }
 
 /// Reads and validates the case file at `path`.

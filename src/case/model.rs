@@ -1,21 +1,34 @@
 //! `[shell]`, `[bar]`, `[mass]`, `[spring]`, `[rigid]`, `[support]`, `[force]`, `[damping]`: the structure.
 
 use crate::schema::units::*;
-use crate::schema::{Derivative, Invalidates, declare, key, variants};
-use crate::structure::Section;
+use crate::schema::{Derivative, Invalidates, Report, declare, key, variants};
+use crate::structure::{PlateTheory, Section};
 use std::ops::Bound;
 
 declare! {
     /// A plate.
-    pub struct Shell {
+    pub struct Shell, checked by check_shell {
         /// Material by name.
         pub material: String = key::name("the name of a material"),
         /// h \[m\].
         pub thickness: f64 = key::quantity(LENGTH).positive(),
+        /// `kirchhoff`: thin, rigid in transverse shear; `mindlin`: with transverse shear and rotary inertia, for thick plates, too.
+        pub theory: PlateTheory = key::choice().or(PlateTheory::Kirchhoff),
         /// Holds the membrane.
         pub bending_only: bool = key::flag(false),
-        /// Counts rotary inertia.
+        /// Counts rotary inertia, as Mindlin's theory always does.
         pub rotary_inertia: bool = key::flag(true),
+    }
+}
+
+fn check_shell(shell: &Shell, report: &mut Report) {
+    if shell.theory == PlateTheory::Mindlin && !shell.rotary_inertia {
+        report.fault(
+            "rotary_inertia",
+            "false, with `theory = \"mindlin\"`",
+            "true: without it the rotations of the section would have no mass",
+            "Leave `rotary_inertia` out, or take `theory = \"kirchhoff\"`",
+        );
     }
 }
 

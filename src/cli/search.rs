@@ -2,6 +2,7 @@
 
 use super::output::{Common, give, say};
 use super::progress::Bars;
+use crate::dataset::Describe;
 use crate::error::Result;
 use crate::report::{search_text, write_search};
 use crate::results::FolderLock;
@@ -30,7 +31,7 @@ pub fn run(options: &SearchOptions, common: &Common) -> Result<ExitCode> {
     result.write(&out)?;
     write_search(&out, &result)?;
     if common.json {
-        give(serde_json::to_string_pretty(&result.to_json()).expect("numbers and strings are JSON"))?;
+        give(format!("{:#}", result.describe().to_json()))?;
     } else if !common.quiet {
         say(search_text(&result))?;
         say(format!("Results are in {}: open search.html; the case is found.toml.", out.display()))?;

@@ -1,5 +1,8 @@
 //! Two bodies that touch: where ([`pairing`]) and with which forces ([`law`], from [`normal`] and [`friction`]).
 //!
+//! N = w (k_n δ + k_nl δ³ + c_n δ̇) for a penetration δ > 0 and a weight w of the point; friction on the body is
+//! F = μ(|v|, p) N v/√(|v|² + v_ε²) along the slip velocity v of the counter-body, p = N/w.
+//!
 //! A [`SlidingLaw`] is a pure function (penetration, slip velocity) → (N, F₁, F₂) with its Jacobian;
 //! [`pair_surfaces`] builds the contact points of a pair from the meshes of its bodies. Together with a closing
 //! load they make a [`crate::system::ContactPair`]. [`ground_points`] are those of nodes on rigid ground, [`place`] sets a

@@ -1,6 +1,6 @@
 //! Contact points from the geometry of two plates.
 
-use super::projection::{Foot, Plate, Vector, add, area_vector, cross, dot, scale, subtract};
+use super::projection::{Foot, Part, Plate, Vector, add, area_vector, cross, dot, scale, subtract};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::SparseVector;
 use crate::mesh::Element;
@@ -139,10 +139,11 @@ pub fn pair_surfaces(surfaces: &Surfaces<'_>, reduce: &Reduce<'_>) -> Result<Vec
             );
             faults.push(Fault::new(place("stroke"), found, "a stroke that stays on the counter-body"));
         }
+        let moved = at_foot(surfaces, foot);
         let direction = |w: Vector, sign: f64| {
             let mut terms = Vec::with_capacity(24);
             on_body(candidate, scale(sign, w), &mut terms);
-            on_counter(foot, 0.5 * surfaces.counter.thickness, scale(-sign, w), &mut terms);
+            on_counter((foot, &moved), 0.5 * surfaces.counter.thickness, scale(-sign, w), &mut terms);
             reduce(&terms)
         };
         points.push(ContactPoint {
@@ -345,18 +346,39 @@ fn on_body(candidate: &Candidate, w: Vector, terms: &mut Vec<(usize, usize, f64)
     }
 }
 
-/// The same at the foot on the counter-face, `half` off the mid-surface, interpolated from the faces' nodes.
-fn on_counter(foot: &Foot, half: f64, w: Vector, terms: &mut Vec<(usize, usize, f64)>) {
+/// What a component of the displacement of a node adds to that of a foot.
+struct Moved {
+    node: usize,
+    component: usize,
+    /// The share of the part of the foot.
+    share: f64,
+    /// (ux, uy, uz, rx, ry, rz) of the part for a unit of the component.
+    by: [f64; 6],
+}
+
+/// The displacement of the mid-surface at the foot, by the elements of the counter-body.
+fn at_foot(surfaces: &Surfaces<'_>, foot: &Foot) -> Vec<Moved> {
+    let on_face = |part: &Part| {
+        let moved = surfaces.counter.displacement_at(surfaces.nodes, part.face, &part.at);
+        let share = part.share;
+        moved.into_iter().map(move |(node, component, by)| Moved { node, component, share, by })
+    };
+    foot.parts.iter().flat_map(on_face).collect()
+}
+
+/// The same at the foot on the counter-face, `half` off the mid-surface, whose displacement is `at_foot`.
+fn on_counter(
+    (foot, at_foot): (&Foot, &[Moved]),
+    half: f64,
+    w: Vector,
+    terms: &mut Vec<(usize, usize, f64)>,
+) {
     let moment = cross(scale(half, foot.normal), w);
     let force = [w[0], w[1], w[2], moment[0], moment[1], moment[2]];
-    for part in &foot.parts {
-        let rows = part.shell.displacement_at(part.barycentric);
-        for (node, component) in (0..3).flat_map(|n| (0..6).map(move |c| (n, c))) {
-            let coefficient: f64 =
-                force.iter().zip(&rows).map(|(f, row)| f * row[6 * node + component]).sum();
-            if coefficient != 0.0 {
-                terms.push((part.nodes[node], component, part.share * coefficient));
-            }
+    for Moved { node, component, share, by } in at_foot {
+        let coefficient: f64 = force.iter().zip(by).map(|(f, by)| f * by).sum();
+        if coefficient != 0.0 {
+            terms.push((*node, *component, share * coefficient));
         }
     }
 }

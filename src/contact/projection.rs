@@ -1,7 +1,7 @@
 //! Where a point stands over a plate: the faces under it, the coordinates on them, the height.
 
 use crate::mesh::Element;
-use crate::structure::elements::{FlatShell, WeightedTriangle, split_face};
+use crate::structure::elements::{FacePoint, WeightedTriangle, split_face};
 use std::collections::HashMap;
 
 pub(super) type Vector = [f64; 3];
@@ -27,7 +27,7 @@ type Face = Vec<(WeightedTriangle, [Vector; 3])>;
 ///
 /// The interpolation of a plate has no single slope across a side between two faces. A point over such a side
 /// therefore stands on both: the foot is their mean, which depends on no order of faces or corners. A quadrilateral
-/// is the mean of its two splittings, as its stiffness is.
+/// is the mean of its two splittings into triangles.
 pub(super) struct Foot {
     pub(super) parts: Vec<Part>,
     /// Unit normal, towards the other body.
@@ -36,13 +36,13 @@ pub(super) struct Foot {
     pub(super) height: f64,
 }
 
-/// The part of a foot that is on one triangle.
+/// The part of a foot that is on one triangle of a face.
 pub(super) struct Part {
     /// Its share of the displacement; the shares of a foot add up to 1.
     pub(super) share: f64,
-    pub(super) nodes: [usize; 3],
-    pub(super) shell: FlatShell,
-    pub(super) barycentric: [f64; 3],
+    /// The face among those of the plate.
+    pub(super) face: usize,
+    pub(super) at: FacePoint,
 }
 
 impl Plate {
@@ -108,18 +108,18 @@ impl Plate {
     /// The mean over the nearest faces that `x` projects onto along their normals; `None` beside the plate.
     pub(super) fn foot(&self, x: Vector) -> Option<Foot> {
         let faces = self.grid.get(&self.place(x).map(|p| p.floor() as i64))?;
-        let feet: Vec<Foot> = faces.iter().filter_map(|f| self.foot_on_face(&self.faces[*f], x)).collect();
+        let feet: Vec<Foot> = faces.iter().filter_map(|f| self.foot_on_face(*f, x)).collect();
         let nearest = feet.iter().map(|f| f.height.abs()).fold(f64::INFINITY, f64::min);
         mean(feet.into_iter().filter(|f| f.height.abs() <= nearest + self.tolerance()))
     }
 
     /// The mean over the splittings of a face, and over the triangles of each that hold the projection.
-    fn foot_on_face(&self, face: &Face, x: Vector) -> Option<Foot> {
-        let on = |(t, corners): &(WeightedTriangle, _)| self.foot_on(t.nodes, corners, x);
-        mean(face.chunks(2).filter_map(|splitting| mean(splitting.iter().filter_map(on))))
+    fn foot_on_face(&self, face: usize, x: Vector) -> Option<Foot> {
+        let on = |(t, corners): &(WeightedTriangle, _)| self.foot_on(face, t.nodes, corners, x);
+        mean(self.faces[face].chunks(2).filter_map(|splitting| mean(splitting.iter().filter_map(on))))
     }
 
-    fn foot_on(&self, nodes: [usize; 3], corners: &[Vector; 3], x: Vector) -> Option<Foot> {
+    fn foot_on(&self, face: usize, nodes: [usize; 3], corners: &[Vector; 3], x: Vector) -> Option<Foot> {
         let area = area_vector(corners);
         let square = dot(area, area);
         // Twice the area of the triangle that the projection makes with each opposite side.
@@ -130,11 +130,11 @@ impl Plate {
         if !barycentric.iter().all(|b| *b >= -TOLERANCE) {
             return None;
         }
-        let shell = FlatShell::new(corners)?;
         let side = if dot(area, self.normal) < 0.0 { -1.0 } else { 1.0 };
         let normal = scale(side / square.sqrt(), area);
         let height = dot(subtract(x, corners[0]), normal);
-        Some(Foot { parts: vec![Part { share: 1.0, nodes, shell, barycentric }], normal, height })
+        let at = FacePoint { corners: nodes, barycentric };
+        Some(Foot { parts: vec![Part { share: 1.0, face, at }], normal, height })
     }
 }
 

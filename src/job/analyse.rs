@@ -77,7 +77,8 @@ impl<'a> Asked<'a> {
         let case = prepared.case;
         let mut faults = Faults::new();
         faults.take(selection.check(case));
-        let ready = selection.analyses(case).filter(|analysis| analysis.ready(case));
+        let named = matches!(selection, Selection::Only(_));
+        let ready = selection.analyses(case).filter(|analysis| !named || analysis.ready(case));
         let planned = ready.filter_map(|analysis| faults.take(analysis.plan(prepared, selection.scope())));
         let planned: Vec<_> = planned.collect();
         if planned.iter().any(|planned| planned.slides()) {

@@ -17,12 +17,10 @@ pub fn whole_model(case: &Case, regions: &Regions) -> Result<Model> {
     for (name, shell) in &case.shell {
         let faces = faults.take(regions.elements(name, 2, &format!("`shell.{name}`")));
         model.shells.push(ShellPart {
-            name: name.clone(),
-            faces: faces.unwrap_or_default(),
-            material: case.material[&shell.material],
-            thickness: shell.thickness,
+            theory: shell.theory,
             bending_only: shell.bending_only,
             rotary_inertia: shell.rotary_inertia,
+            ..ShellPart::new(name, faces.unwrap_or_default(), case.material[&shell.material], shell.thickness)
         });
     }
     for (name, bar) in &case.bar {

@@ -10,6 +10,7 @@ use super::sparse::{columns, columns_mut};
 use faer::traits::ComplexField;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
 use rayon::prelude::*;
+use real::ROWS;
 use std::ops::Range;
 
 /// Columns that go through the matrices together where there may be many.
@@ -20,9 +21,6 @@ pub fn panels(columns: Range<usize>) -> impl Iterator<Item = (usize, usize)> {
     let end = columns.end;
     columns.step_by(PANEL).map(move |start| (start, PANEL.min(end - start)))
 }
-
-/// Rows that one task works on.
-pub(super) const ROWS: usize = 8192;
 
 /// Numbers of tall matrices, `f64` or [`c64`].
 pub trait Entry: ComplexField {

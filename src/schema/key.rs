@@ -1,8 +1,9 @@
 //! Declarations of keys that hold values: [`quantity`] and its like, then bounds, default, checks.
 
+pub use super::keys::is_name;
 pub use super::table::{flat, is_file_name, named, table, values};
 
-use super::scalars::{Derivative, Invalidates};
+use super::invalidates::{Derivative, Invalidates};
 use super::units::Dimension;
 use super::value::{Form, Units, Value};
 use super::{Key, Kind, Slot, Visitor};
@@ -142,11 +143,6 @@ pub fn choice<T: Value>() -> Field<T> {
     let Form::Choice(words) = T::form() else { unreachable!("an enum of words") };
     let words: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
     field(format!("one of {}", words.join(", ")), Units::none())
-}
-
-/// A name: at least one character, none of them for control.
-pub fn is_name(name: &str) -> bool {
-    !name.is_empty() && !name.contains(char::is_control)
 }
 
 impl<T: Value> Field<T> {

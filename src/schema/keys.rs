@@ -1,4 +1,4 @@
-//! Paths of scalars: keys joined by dots; a name that has dots itself stands in quotes, as in TOML.
+//! Names, and paths of scalars: keys joined by dots; a name that has dots itself stands in quotes, as in TOML.
 
 use std::borrow::Cow;
 
@@ -8,6 +8,11 @@ pub fn dotted(key: &str) -> Cow<'_, str> {
         true => Cow::Owned(format!("\"{}\"", key.replace('\\', "\\\\").replace('"', "\\\""))),
         false => Cow::Borrowed(key),
     }
+}
+
+/// A name: at least one character, none of them for control.
+pub fn is_name(name: &str) -> bool {
+    !name.is_empty() && !name.contains(char::is_control)
 }
 
 /// The keys of `path`.

@@ -175,7 +175,7 @@ macro_rules! choices {
                 _: &$crate::schema::Units,
                 _: usize,
             ) -> Result<Self, String> {
-                $crate::schema::reader::word_of(value, &[$(($word, $Name::$Variant)),*])
+                $crate::schema::raw::word_of(value, &[$(($word, $Name::$Variant)),*])
             }
 
             fn to_toml(&self) -> Option<toml::Value> {

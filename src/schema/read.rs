@@ -3,6 +3,7 @@
 use super::check::{Report, check};
 use super::defaults::set_defaults;
 use super::keys::dotted;
+use super::raw::word_of;
 use super::reader::{Section, read_parts};
 use super::value::Blank;
 use super::{By, Key, Places, Presence, Slot, Table, TableSlot, Variants, Visitor};
@@ -41,11 +42,21 @@ pub fn read_table<T: Table + Blank>(file: &str, text: &str) -> Result<ReadTable<
     if faults.is_empty() { Ok(ReadTable { table, places }) } else { Err(Error::Input(Faults(faults))) }
 }
 
+impl Section<'_> {
+    /// A declared table that stands here, checked; `more` checks what its declaration does not know.
+    pub fn declared<T: Table + Blank>(&self, more: impl FnOnce(&T, &mut Report)) -> T {
+        let (table, faults) = read_section(self, more);
+        let path = format!("`{}.", self.path);
+        for fault in faults {
+            let key = fault.place.strip_prefix(&path).unwrap_or("").trim_end_matches('`');
+            self.fault(key, fault.found.as_str(), fault.expected.as_str(), &fault.help);
+        }
+        table
+    }
+}
+
 /// A table that stands in a section, with the faults of its checks; `more` checks what its declaration does not know.
-pub(super) fn read_section<T: Table + Blank>(
-    section: &Section,
-    more: impl FnOnce(&T, &mut Report),
-) -> (T, Vec<Fault>) {
+fn read_section<T: Table + Blank>(section: &Section, more: impl FnOnce(&T, &mut Report)) -> (T, Vec<Fault>) {
     let mut report = Report::at(section.path_of(""));
     let mut table = T::blank();
     read_into(&mut table, section, &mut report);
@@ -122,7 +133,7 @@ impl Visitor for Reading<'_, '_> {
                 None => variants.default.ok_or((tag, "nothing".to_string())),
                 Some(value) => {
                     let indices: Vec<(&str, usize)> = words.clone().zip(0..).collect();
-                    super::reader::word_of(value.get_ref(), &indices).map_err(|found| (tag, found))
+                    word_of(value.get_ref(), &indices).map_err(|found| (tag, found))
                 }
             },
             By::Presence => {

@@ -1,20 +1,16 @@
 //! Reads TOML section by section, remembering every fault with its line: unknown keys, wrong types, wrong units.
 
-use super::key::{describe_bounds, is_name};
-use super::keys::dotted;
+use super::key::describe_bounds;
+use super::keys::{dotted, is_name};
 use super::places::Places;
-use super::units::{Dimension, parse_any, parse_quantity};
+use super::raw::{describe, list_of, name_of, quantity_of, string_of, whole_of, word_of};
+use super::units::Dimension;
 use crate::error::{Error, Fault, Faults, Result, nearest};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::{Bound, RangeBounds};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
-
-/// The largest size of a quantity in SI units; the least that is not zero is one over it. Products of several stay finite.
-pub const LARGEST: f64 = 1e60;
-/// The largest whole number.
-pub(super) const MOST: usize = 1_000_000_000;
 
 /// A parsed TOML text and the faults found in it so far.
 pub struct Reader<'a> {
@@ -29,7 +25,8 @@ pub struct Reader<'a> {
 pub struct Section<'a> {
     reader: &'a Reader<'a>,
     table: &'a DeTable<'a>,
-    path: String,
+    /// Keys of the tables around it, joined by dots.
+    pub(super) path: String,
     start: usize,
     known: RefCell<Vec<String>>,
 }
@@ -303,17 +300,6 @@ impl<'a> Section<'a> {
         .flatten()
     }
 
-    /// A declared table that stands here, checked; `more` checks what its declaration does not know.
-    pub fn declared<T: super::Table + super::Blank>(&self, more: impl FnOnce(&T, &mut super::Report)) -> T {
-        let (table, faults) = super::read::read_section(self, more);
-        let path = format!("`{}.", self.path);
-        for fault in faults {
-            let key = fault.place.strip_prefix(&path).unwrap_or("").trim_end_matches('`');
-            self.fault(key, fault.found.as_str(), fault.expected.as_str(), &fault.help);
-        }
-        table
-    }
-
     /// Refuses keys that nobody asked for, offering the nearest known one.
     fn finish(&self) {
         let known = self.known.borrow();
@@ -388,69 +374,5 @@ impl Found<'_, f64> {
     /// Refuses values outside these bounds.
     pub fn within(self, lower: Bound<f64>, upper: Bound<f64>) -> Self {
         self.check(&describe_bounds(lower, upper), |v| (lower, upper).contains(v))
-    }
-}
-
-/// A number, or a string with a unit of the dimension; of any dimension where none is given.
-pub(super) fn quantity_of(value: &DeValue, dimension: Option<Dimension>) -> std::result::Result<f64, String> {
-    let number = match value {
-        DeValue::Integer(i) => {
-            i64::from_str_radix(&i.as_str().replace('_', ""), i.radix()).ok().map(|v| v as f64)
-        }
-        DeValue::Float(f) => f.as_str().replace('_', "").parse().ok(),
-        DeValue::String(text) => Some(match dimension {
-            Some(dimension) => parse_quantity(text, dimension)?,
-            None => parse_any(text)?.0,
-        }),
-        _ => None,
-    };
-    match number {
-        Some(v) if v == 0.0 || (1.0 / LARGEST..=LARGEST).contains(&v.abs()) => Ok(v),
-        Some(v) if v.is_finite() => Err(format!("{v:e}, which is not from 1e-60 to 1e60 in size")),
-        Some(v) => Err(format!("{v}, which is not finite")),
-        None => Err(describe(value)),
-    }
-}
-
-/// The value that belongs to one of some words.
-pub(crate) fn word_of<T: Copy>(value: &DeValue, words: &[(&str, T)]) -> std::result::Result<T, String> {
-    let text = string_of(value)?;
-    let near = nearest(&text, words.iter().map(|(word, _)| *word));
-    let meant = near.map_or(String::new(), |near| format!(" (did you mean \"{near}\"?)"));
-    words.iter().find(|(word, _)| *word == text).map(|(_, value)| *value).ok_or(format!("\"{text}\"{meant}"))
-}
-
-fn string_of(value: &DeValue) -> std::result::Result<String, String> {
-    value.as_str().map(str::to_string).ok_or_else(|| describe(value))
-}
-
-/// A name: not empty, without control characters.
-fn name_of(value: &DeValue) -> std::result::Result<String, String> {
-    let name = string_of(value)?;
-    if is_name(&name) { Ok(name) } else { Err(format!("the string {name:?}")) }
-}
-
-fn whole_of(value: &DeValue, least: usize) -> std::result::Result<usize, String> {
-    let number = value.as_integer().and_then(|i| usize::from_str_radix(i.as_str(), i.radix()).ok());
-    number.filter(|n| (least..=MOST).contains(n)).ok_or_else(|| describe(value))
-}
-
-fn list_of<T>(
-    value: &DeValue,
-    item: impl Fn(&DeValue) -> std::result::Result<T, String>,
-) -> std::result::Result<Vec<T>, String> {
-    let array = value.as_array().ok_or_else(|| describe(value))?;
-    array.iter().map(|v| item(v.get_ref())).collect()
-}
-
-pub(super) fn describe(value: &DeValue) -> String {
-    match value {
-        DeValue::String(s) => format!("the string \"{s}\""),
-        DeValue::Integer(i) => format!("the whole number {}", i.as_str()),
-        DeValue::Float(f) => format!("the number {}", f.as_str()),
-        DeValue::Boolean(b) => format!("{b}"),
-        DeValue::Datetime(d) => format!("the date {d}"),
-        DeValue::Array(a) => format!("a list of {}", a.len()),
-        DeValue::Table(_) => "a table".into(),
     }
 }

@@ -1,5 +1,6 @@
 //! The numbers of tables: each has a path, a value, a unit and bounds, and can be set.
 
+use super::invalidates::{Derivative, Invalidates};
 use super::keys::dotted;
 use super::{Key, Slot, Table, TableSlot, Variants, Visitor};
 use std::ops::{Bound, RangeBounds};
@@ -26,34 +27,6 @@ impl Scalar {
     pub fn accepts(&self, value: f64) -> bool {
         value.is_finite() && self.bounds.contains(&value)
     }
-}
-
-/// What a change of a scalar invalidates, the cheapest first; each includes those before it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Invalidates {
-    /// What is asked or compared: bands, measured values. The system stays.
-    Question,
-    /// C of the structure. The steady state and the real modes stay.
-    Damping,
-    /// The contact law. The compliance that the steady state is condensed on stays.
-    Law,
-    /// The steady state: loads and velocities.
-    Equilibrium,
-    /// Which points may touch, and their directions.
-    Interface,
-    /// M or K: mesh, materials, sections, springs, where the bodies stand.
-    Structure,
-}
-
-/// Whether eigenvalues have a derivative by a scalar.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Derivative {
-    /// They have.
-    Exists,
-    /// They do not depend on it.
-    Zero,
-    /// They have none, for this reason.
-    None(&'static str),
 }
 
 /// A walk over the numbers of a table.

@@ -1,7 +1,8 @@
 //! Declarations of keys that hold tables.
 
-use super::key::{Field, is_name};
-use super::scalars::Invalidates;
+use super::invalidates::Invalidates;
+use super::key::Field;
+use super::keys::is_name;
 use super::value::{Blank, Value};
 use super::{Key, Kind, Table, Visitor};
 use std::collections::BTreeMap;

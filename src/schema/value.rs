@@ -1,6 +1,6 @@
 //! Types of values: how they are read from TOML and written, and the numbers in them.
 
-use super::reader::{MOST, describe, quantity_of};
+use super::raw::{MOST, describe, quantity_of};
 use super::units::{Dimension, NUMBER};
 use std::cell::RefCell;
 use std::collections::BTreeMap;

@@ -16,9 +16,12 @@
 //!
 //! Plates move in modes, so that everything is linear in the modal accelerations q̈: [`Receiver`] gives the pressure at
 //! a point, step by step, [`Radiation`] the resistance that gives the power of [`CrossSpectra`]. [`a_weighting`] and
-//! the levels are those of IEC 61672-1. [`wav`] makes the pressure audible.
+//! the levels are those of IEC 61672-1. [`wav`] makes the pressure audible. A [`SoundAccumulator`] does all of it during a run and
+//! gives the [`Sound`] in the end.
 
+mod accumulator;
 mod cross;
+mod levels;
 mod plate;
 mod radiation;
 mod receiver;
@@ -26,7 +29,9 @@ mod surface;
 mod wav;
 mod weighting;
 
+pub use accumulator::{Acoustics, BLOCK, SoundAccumulator};
 pub use cross::CrossSpectra;
+pub use levels::{MicrophoneSound, PressureRecord, Sound, Tone};
 pub use plate::Plate;
 pub use radiation::Radiation;
 pub use receiver::Receiver;

@@ -2,8 +2,10 @@
 
 use super::check::check_model;
 use super::dofs::DofMap;
+use super::elements::{ElementMatrix, FiniteElement};
+use super::material::{Material, RayleighDamping};
 use super::model::Model;
-use super::pieces::{Piece, PieceMatrices, pieces};
+use super::registry::{AnyElement, elements};
 use super::scatter::{Couplings, Pattern, Reduction};
 use crate::error::{Error, Fault, Result};
 use crate::linalg::SparseMatrix;
@@ -34,25 +36,18 @@ pub struct Assembled {
 /// nodes that exist, elements with an extent, links without circles, supports on nodes that lead).
 pub fn assemble(model: &Model) -> Result<Assembled> {
     check_model(model)?;
-    let dofs = DofMap::new(model)?;
-    let pieces = pieces(model);
-    let couplings = couplings(&dofs, &pieces);
+    let elements = elements(model);
+    let dofs = DofMap::new(model, &elements)?;
+    let couplings = Couplings::new(&dofs, &elements);
     let symbolic = couplings.pattern();
     let pattern = Pattern { couplings: &couplings, symbolic: symbolic.as_ref() };
-    let [mass, stiffness, viscous, hysteretic] = pattern.sum(|p, coupled| {
-        let PieceMatrices { mass, stiffness, viscous, hysteretic } = pieces[p].matrices(&model.nodes);
-        let reduction = Reduction::new(&dofs, pieces[p].nodes(), coupled);
-        let reduce = |full| reduction.apply(full);
-        [
-            reduce(&mass),
-            reduce(&stiffness),
-            viscous.as_ref().map(reduce).unwrap_or_default(),
-            hysteretic.as_ref().map(reduce).unwrap_or_default(),
-        ]
-    });
+    let [mass, stiffness, viscous, hysteretic] =
+        pattern.sum(kinds(&elements), |work: &mut Workspace, p, coupled, small| {
+            work.add_matrices(&dofs, elements[p].as_ref(), coupled, small);
+        });
     let (mut total_mass, mut moment) = (0.0, [0.0; 3]);
-    for piece in &pieces {
-        let (mass, center) = piece.mass_and_center(&model.nodes);
+    for element in &elements {
+        let (mass, center) = element.mass_and_center();
         total_mass += mass;
         for (m, c) in moment.iter_mut().zip(center) {
             *m += mass * c;
@@ -72,9 +67,79 @@ pub fn assemble(model: &Model) -> Result<Assembled> {
     Ok(Assembled { structure, dofs: Arc::new(dofs), total_mass, center_of_mass, stiffness })
 }
 
-fn couplings(dofs: &DofMap, pieces: &[Piece<'_>]) -> Couplings {
-    let nodes: Vec<Vec<usize>> = pieces.iter().map(|piece| piece.nodes().collect()).collect();
-    Couplings::new(dofs, &nodes)
+/// Which of M, K, C and η K there are.
+fn kinds(elements: &[AnyElement]) -> [bool; 4] {
+    let (mut viscous, mut hysteretic) = (false, false);
+    for element in elements {
+        let damping = element.material().map_or((RayleighDamping::default(), 0.0), damping);
+        viscous |= damping.0 != RayleighDamping::default() || element.has_dashpot();
+        hysteretic |= damping.1 != 0.0;
+    }
+    [true, true, viscous, hysteretic]
+}
+
+fn damping(material: &Material) -> (RayleighDamping, f64) {
+    (material.rayleigh, material.loss_factor)
+}
+
+/// What one element after the other is computed in.
+#[derive(Debug, Default)]
+struct Workspace {
+    reduction: Reduction,
+    mass: ElementMatrix,
+    stiffness: ElementMatrix,
+    other: ElementMatrix,
+}
+
+impl Workspace {
+    /// Adds M, K, C and η K of an element on the free degrees of freedom that it couples.
+    fn add_matrices(
+        &mut self,
+        dofs: &DofMap,
+        element: &dyn FiniteElement,
+        coupled: &[usize],
+        [mass, stiffness, viscous, hysteretic]: &mut [&mut [f64]; 4],
+    ) {
+        let Workspace { reduction, mass: m, stiffness: k, other } = self;
+        reduction.set(dofs, element, coupled);
+        for matrix in [&mut *m, &mut *k, &mut *other] {
+            matrix.reset(element.n_freedoms());
+        }
+        let (has_mass, has_stiffness) = (element.mass(m), element.stiffness(k));
+        if has_mass {
+            reduction.apply(m, mass);
+        }
+        if has_stiffness {
+            reduction.apply(k, stiffness);
+        }
+        let (rayleigh, loss_factor) = element.material().map_or((RayleighDamping::default(), 0.0), damping);
+        if rayleigh != RayleighDamping::default() {
+            other.set_sum([rayleigh.alpha, rayleigh.beta], [m, k]);
+            reduction.apply(other, viscous);
+        } else if element.dashpot(other) {
+            reduction.apply(other, viscous);
+        }
+        if loss_factor != 0.0 {
+            other.set_sum([0.0, loss_factor], [m, k]);
+            reduction.apply(other, hysteretic);
+        }
+    }
+
+    /// Adds K_σ of an element on the free degrees of freedom that it couples.
+    fn add_geometric_stiffness(
+        &mut self,
+        dofs: &DofMap,
+        element: &dyn FiniteElement,
+        coupled: &[usize],
+        displacement: &[[f64; 6]],
+        small: &mut [f64],
+    ) {
+        self.other.reset(element.n_freedoms());
+        if element.geometric_stiffness(displacement, &mut self.other) {
+            self.reduction.set(dofs, element, coupled);
+            self.reduction.apply(&self.other, small);
+        }
+    }
 }
 
 impl Assembled {
@@ -106,13 +171,11 @@ impl Prestress for GeometricStiffness {
             )));
         }
         let u = self.dofs.expand(displacement);
-        let pieces = pieces(&self.model);
-        let couplings = couplings(&self.dofs, &pieces);
+        let elements = elements(&self.model);
+        let couplings = Couplings::new(&self.dofs, &elements);
         let pattern = Pattern { couplings: &couplings, symbolic: self.stiffness.symbolic() };
-        let [sum] = pattern.sum(|p, coupled| {
-            let full = pieces[p].geometric_stiffness(&self.model.nodes, &u);
-            let reduction = Reduction::new(&self.dofs, pieces[p].nodes(), coupled);
-            [full.map(|k| reduction.apply(&k)).unwrap_or_default()]
+        let [sum] = pattern.sum([true], |work: &mut Workspace, p, coupled, small| {
+            work.add_geometric_stiffness(&self.dofs, elements[p].as_ref(), coupled, &u, small[0]);
         });
         Ok(sum.unwrap_or_else(|| pattern.zero()))
     }
@@ -125,7 +188,7 @@ mod tests {
     use crate::system::Prestress;
 
     /// A wavy strip of `n` × `n` quadrilaterals and triangles with a bar, a mass, a spring and a rigid link.
-    fn strip(n: usize) -> Model {
+    fn strip(n: usize, theory: PlateTheory) -> Model {
         let material = Material {
             youngs_modulus: 70e9,
             poissons_ratio: 0.33,
@@ -156,12 +219,8 @@ mod tests {
         nodes.push([1.2, 0.5, 0.2]);
         nodes.push([1.5, 0.5, 0.4]);
         let plate = |name: &str, faces: Vec<Element>| ShellPart {
-            name: name.into(),
-            faces,
-            material,
-            thickness: 2e-3,
-            bending_only: false,
-            rotary_inertia: true,
+            theory,
+            ..ShellPart::new(name, faces, material, 2e-3)
         };
         Model {
             nodes,
@@ -192,11 +251,15 @@ mod tests {
 
     #[test]
     fn any_number_of_threads_gives_the_same_bits_and_symmetry_is_exact() {
-        let model = strip(24);
+        same_bits(&strip(24, PlateTheory::Kirchhoff));
+        same_bits(&strip(24, PlateTheory::Mindlin));
+    }
+
+    fn same_bits(model: &Model) {
         let with = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
-                let assembled = assemble(&model).unwrap();
+                let assembled = assemble(model).unwrap();
                 let u: Vec<f64> = (0..assembled.dofs.n_dofs()).map(|k| 1e-5 * (k as f64).sin()).collect();
                 let k_sigma = assembled.prestress(model.clone()).geometric_stiffness(&u).unwrap();
                 (assembled.structure, k_sigma)
@@ -220,7 +283,11 @@ mod tests {
 
     #[test]
     fn geometric_stiffness_is_linear_and_free_of_rigid_displacements() {
-        let mut model = strip(6);
+        linear_and_free_of_rigid_displacements(strip(6, PlateTheory::Kirchhoff));
+        linear_and_free_of_rigid_displacements(strip(6, PlateTheory::Mindlin));
+    }
+
+    fn linear_and_free_of_rigid_displacements(mut model: Model) {
         model.supports.clear();
         let assembled = assemble(&model).unwrap();
         let prestress = assembled.prestress(model);
@@ -238,7 +305,8 @@ mod tests {
 
     #[test]
     fn every_fault_of_a_model_is_told_at_once() {
-        let mut model = strip(2);
+        let mut model = strip(2, PlateTheory::Mindlin);
+        model.shells[0].rotary_inertia = false;
         model.shells[0].thickness = -1e-3;
         model.shells[0].material.poissons_ratio = 0.5;
         model.shells[0].material.youngs_modulus = f64::NAN;
@@ -266,10 +334,11 @@ mod tests {
             "mass inf",
             "direction",
             "finite",
+            "rotary inertia",
         ] {
             assert!(text.contains(word), "{word} missing in {text}");
         }
-        assert_eq!(faults.0.len(), 12, "{text}");
+        assert_eq!(faults.0.len(), 13, "{text}");
     }
 
     #[test]

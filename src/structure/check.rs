@@ -1,9 +1,10 @@
 //! Whether a model can be assembled: every fault at once, before any matrix.
 
 use super::dofs::DofMap;
-use super::elements::{Beam, FlatShell, split_face, spring_direction};
+use super::elements::{Bar, FiniteElement, FlatTriangle, split_face, spring_direction};
 use super::material::Material;
-use super::model::Model;
+use super::model::{Model, PlateTheory, ShellPart};
+use super::registry::elements;
 use crate::error::{Fault, Faults, Result};
 use crate::mesh::Element;
 use crate::numbers::components;
@@ -15,7 +16,7 @@ use std::collections::{BTreeMap, HashMap};
 /// Those of [`assemble`](super::assemble).
 pub fn check(model: &Model) -> Result<()> {
     check_model(model)?;
-    DofMap::new(model).map(|_| ())
+    DofMap::new(model, &elements(model)).map(|_| ())
 }
 
 /// The faults of `model`, all of them; of like faults in one part the first, with their number.
@@ -37,6 +38,7 @@ pub(super) fn check_model(model: &Model) -> Result<()> {
         let place = format!("`shell.{}`", part.name);
         check_material(&place, &part.material, &mut faults);
         positive(&place, "thickness", part.thickness, "m", &mut faults);
+        check_theory(&place, part, &mut faults);
         let not_faces = part.faces.iter().filter(|f| f.dimension() != 2).count();
         if not_faces > 0 {
             let found = format!("{not_faces} elements that are points or lines");
@@ -45,8 +47,11 @@ pub(super) fn check_model(model: &Model) -> Result<()> {
         let missing = part.faces.iter().flat_map(|f| f.nodes()).filter(|n| !known(n));
         missing_nodes(&place, missing, model.nodes.len(), &mut faults);
         let count = part.faces.len();
-        let shapes: Vec<Option<Shape>> =
-            part.faces.iter().map(|f| f.nodes().iter().all(sound).then(|| shape(&model.nodes, f))).collect();
+        let shapes: Vec<Option<Shape>> = part
+            .faces
+            .iter()
+            .map(|f| f.nodes().iter().all(sound).then(|| shape(part, &model.nodes, f)))
+            .collect();
         for (bad, what, expected) in [
             (Shape::NoArea, "without area", "elements with an area"),
             (Shape::Folded, "that are re-entrant or folded", "convex quadrilaterals"),
@@ -75,9 +80,10 @@ pub(super) fn check_model(model: &Model) -> Result<()> {
         positive(&place, "torsion constant", part.section.torsion, "m⁴", &mut faults);
         let missing = part.elements.iter().flatten().filter(|n| !known(n));
         missing_nodes(&place, missing, model.nodes.len(), &mut faults);
-        let bad = part.elements.iter().find(|e| {
-            e.iter().all(sound) && Beam::new(&e.map(|n| model.nodes[n]), part.orientation).is_none()
-        });
+        let bad = part
+            .elements
+            .iter()
+            .find(|e| e.iter().all(sound) && Bar::new(part, &model.nodes, **e).is_degenerate());
         if let Some([a, b]) = bad {
             faults.push(Fault::new(
                 &place,
@@ -134,17 +140,36 @@ enum Shape {
     Folded,
 }
 
-/// Whether all triangles of a face have an area and look the same way.
-fn shape(nodes: &[[f64; 3]], face: &Element) -> Shape {
-    let triangles = split_face(face);
-    let shells: Vec<FlatShell> =
-        triangles.iter().filter_map(|t| FlatShell::new(&t.nodes.map(|n| nodes[n]))).collect();
-    if shells.len() < triangles.len() {
+/// Whether all triangles of a face have an area and look the same way, and the elements of the part can be made of it.
+fn shape(part: &ShellPart, nodes: &[[f64; 3]], face: &Element) -> Shape {
+    let split = split_face(face);
+    let triangles: Vec<FlatTriangle> =
+        split.iter().filter_map(|t| FlatTriangle::new(&t.nodes.map(|n| nodes[n]))).collect();
+    if triangles.len() < split.len() {
         return Shape::NoArea;
     }
-    let normals: Vec<[f64; 3]> = shells.iter().map(|s| s.triangle().normal()).collect();
+    let normals: Vec<[f64; 3]> = triangles.iter().map(FlatTriangle::normal).collect();
     let turned = |n: &[f64; 3]| n.iter().zip(normals[0]).map(|(a, b)| a * b).sum::<f64>() <= 0.0;
-    if normals.iter().any(turned) { Shape::Folded } else { Shape::Sound }
+    let unusable = || part.elements_on(face, nodes).iter().any(|e| e.is_degenerate());
+    if normals.iter().any(turned) || unusable() { Shape::Folded } else { Shape::Sound }
+}
+
+/// What Mindlin's theory needs of a plate.
+fn check_theory(place: &str, part: &ShellPart, faults: &mut Faults) {
+    if let Some(kappa) = part.shear_coefficient {
+        positive(place, "shear coefficient", kappa, "1", faults);
+    }
+    if part.theory == PlateTheory::Mindlin && !part.rotary_inertia {
+        let found = "Mindlin's theory without rotary inertia";
+        faults.push(
+            Fault::new(
+                place,
+                found,
+                "its rotary inertia, without which rotations of the section have no mass",
+            )
+            .with_help("Count the rotary inertia, or take Kirchhoff's theory"),
+        );
+    }
 }
 
 /// Elements that two parts have: their stiffness and mass would count twice.
@@ -225,18 +250,13 @@ fn missing_nodes<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::structure::ShellPart;
     use crate::structure::samples::STEEL;
 
     #[test]
     fn an_element_belongs_to_one_part() {
-        let plate = |name: &str, faces: &[[usize; 3]]| ShellPart {
-            name: name.into(),
-            faces: faces.iter().map(|nodes| Element::Triangle(*nodes)).collect(),
-            material: STEEL,
-            thickness: 1e-3,
-            bending_only: false,
-            rotary_inertia: true,
+        let plate = |name: &str, faces: &[[usize; 3]]| {
+            let faces = faces.iter().map(|nodes| Element::Triangle(*nodes)).collect();
+            ShellPart::new(name, faces, STEEL, 1e-3)
         };
         let nodes = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
         let apart = [plate("a", &[[0, 1, 2]]), plate("b", &[[1, 3, 2]])];

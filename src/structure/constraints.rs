@@ -1,7 +1,8 @@
 //! What moves a node and what holds it: rigid links, the directions in which elements act, supports.
 
-use super::elements::{FlatShell, mass_diagonal, split_face, spring_direction};
+use super::elements::Acting;
 use super::model::Model;
+use super::registry::AnyElement;
 use crate::error::{Fault, Faults, Result};
 use nalgebra::{SMatrix, SVector, Vector3};
 
@@ -158,46 +159,19 @@ impl Space {
 }
 
 /// What acts on every node through the elements that use it.
-pub(super) fn active_spaces(model: &Model) -> Vec<Space> {
-    let mut spaces = vec![Space::default(); model.nodes.len()];
-    for part in &model.shells {
-        for triangle in part.faces.iter().flat_map(split_face) {
-            if !part.bending_only {
-                triangle.nodes.iter().for_each(|n| spaces[*n].fill());
-                continue;
-            }
-            if triangle.nodes.iter().all(|n| spaces[*n].is_full()) {
-                continue;
-            }
-            if let Some(shell) = FlatShell::new(&triangle.nodes.map(|n| model.nodes[n])) {
-                let frame = &shell.triangle().frame;
-                let axis = |row: usize, offset: usize| {
-                    let mut a = SVector::<f64, 6>::zeros();
-                    a.fixed_rows_mut::<3>(offset).copy_from(&frame.row(row).transpose());
-                    a
-                };
-                for node in triangle.nodes {
-                    [axis(2, 0), axis(0, 3), axis(1, 3)].into_iter().for_each(|a| spaces[node].add(a));
+pub(super) fn active_spaces(n_nodes: usize, elements: &[AnyElement]) -> Vec<Space> {
+    let mut spaces = vec![Space::default(); n_nodes];
+    for element in elements {
+        let nodes = element.nodes();
+        if nodes.iter().all(|n| spaces[*n].is_full()) {
+            continue;
+        }
+        match element.acting() {
+            Acting::Everywhere => nodes.iter().for_each(|n| spaces[*n].fill()),
+            Acting::Along(directions) => {
+                for node in nodes {
+                    directions.iter().for_each(|a| spaces[*node].add(SVector::from(*a)));
                 }
-            }
-        }
-    }
-    for node in model.bars.iter().flat_map(|part| part.elements.iter().flatten()) {
-        spaces[*node].fill();
-    }
-    for point in &model.masses {
-        for (k, mass) in mass_diagonal(point).into_iter().enumerate() {
-            if mass > 0.0 {
-                spaces[point.node].add(SVector::<f64, 6>::ith(k, 1.0));
-            }
-        }
-    }
-    // A spring of no stiffness and no damping would leave a direction without mass a row of zeros. What moves does not notice that it
-    // is left out: a spring that acts alone on such a direction takes no force, however stiff.
-    for spring in model.springs.iter().filter(|s| s.stiffness != 0.0 || s.damping != 0.0) {
-        if let Some(a) = spring_direction(spring) {
-            for node in std::iter::once(spring.node).chain(spring.other) {
-                spaces[node].add(SVector::from(a));
             }
         }
     }

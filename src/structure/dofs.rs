@@ -17,7 +17,7 @@
 use super::constraints::{active_spaces, lead, resolve_links};
 use super::model::Model;
 use super::numbering::node_order;
-use super::pieces::pieces;
+use super::registry::AnyElement;
 use crate::error::{Error, Fault, Result};
 use crate::linalg::{SparseVector, c64};
 use nalgebra::{SMatrix, SVector, Vector3};
@@ -158,10 +158,10 @@ impl DofMap {
         DofMap { nodes, free, starts, terms }
     }
 
-    /// The map of `model`, whose node indices and geometry are known to be sound.
-    pub(super) fn new(model: &Model) -> Result<Self> {
+    /// The map of `model` with its `elements`, whose node indices and geometry are known to be sound.
+    pub(super) fn new(model: &Model, elements: &[AnyElement]) -> Result<Self> {
         let masters = resolve_links(model)?;
-        let mut spaces = active_spaces(model);
+        let mut spaces = active_spaces(model.nodes.len(), elements);
         let lengths = lead(model, &masters, &mut spaces);
 
         let mut held = vec![[false; 6]; model.nodes.len()];
@@ -173,7 +173,7 @@ impl DofMap {
             }
         }
         let coupled: Vec<Vec<usize>> =
-            pieces(model).iter().map(|piece| piece.nodes().map(|node| masters[node]).collect()).collect();
+            elements.iter().map(|e| e.nodes().iter().map(|node| masters[*node]).collect()).collect();
         let mut free = Vec::new();
         let mut of_node = vec![0..0; model.nodes.len()];
         for node in node_order(model.nodes.len(), &coupled) {
@@ -230,12 +230,13 @@ mod tests {
         let nodes =
             [[0.0, 0.0], [0.1, 0.0], [0.1, 0.1], [0.0, 0.1]].map(|[x, y]| [x * c, y, -x * s]).to_vec();
         let part = ShellPart {
-            name: "plate".into(),
-            faces: vec![Element::Triangle([0, 1, 2]), Element::Triangle([0, 2, 3])],
-            material: STEEL,
-            thickness: 1e-3,
             bending_only,
-            rotary_inertia: false,
+            ..ShellPart::new(
+                "plate",
+                vec![Element::Triangle([0, 1, 2]), Element::Triangle([0, 2, 3])],
+                STEEL,
+                1e-3,
+            )
         };
         Model { nodes, shells: vec![part], ..Model::default() }
     }

@@ -34,3 +34,10 @@ declare! {
         pub beta: f64 = key::quantity(TIME).non_negative().or(0.0),
     }
 }
+
+impl Material {
+    /// G = E/2(1+ν) \[Pa\].
+    pub fn shear_modulus(&self) -> f64 {
+        self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
+    }
+}

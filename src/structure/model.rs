@@ -1,9 +1,11 @@
 //! What a structure is made of, before any matrix: plain data that the case fills in.
 
-use super::elements::{FlatShell, split_face};
+use super::elements::waves::shear_coefficient;
+use super::elements::{FlatTriangle, split_face};
 use super::material::Material;
 use super::section::Section;
 use crate::mesh::Element;
+use crate::schema::choices;
 
 /// A structure: nodes and all that hangs on them. Degrees of freedom are (ux, uy, uz, rx, ry, rz) at every node.
 #[derive(Debug, Clone, Default)]
@@ -24,6 +26,16 @@ pub struct Model {
     pub supports: Vec<Support>,
 }
 
+choices! {
+    /// What a plate takes into account when it bends.
+    pub enum PlateTheory {
+        /// Rigid in transverse shear: thin plates.
+        Kirchhoff = "kirchhoff",
+        /// Transverse shear and rotary inertia (Mindlin, Reissner): thin and thick plates.
+        Mindlin = "mindlin",
+    }
+}
+
 /// A plate of constant thickness.
 #[derive(Debug, Clone)]
 pub struct ShellPart {
@@ -35,6 +47,10 @@ pub struct ShellPart {
     pub material: Material,
     /// h \[m\].
     pub thickness: f64,
+    /// What its bending takes into account.
+    pub theory: PlateTheory,
+    /// κ of Mindlin's theory; `None` for 5/(6−ν), see [`ShellPart::shear_coefficient`].
+    pub shear_coefficient: Option<f64>,
     /// Holds the membrane: displacements in the plate's plane and the rotation about its normal.
     pub bending_only: bool,
     /// Counts the rotary inertia ρh³/12 of the cross-section.
@@ -42,15 +58,32 @@ pub struct ShellPart {
 }
 
 impl ShellPart {
-    /// A plate of `faces`, its membrane free, its rotary inertia counted; `thickness` h \[m\].
+    /// A thin plate of `faces`, its membrane free, its rotary inertia counted; `thickness` h \[m\].
     pub fn new(name: &str, faces: Vec<Element>, material: Material, thickness: f64) -> Self {
-        ShellPart { name: name.into(), faces, material, thickness, bending_only: false, rotary_inertia: true }
+        ShellPart {
+            name: name.into(),
+            faces,
+            material,
+            thickness,
+            theory: PlateTheory::Kirchhoff,
+            shear_coefficient: None,
+            bending_only: false,
+            rotary_inertia: true,
+        }
+    }
+
+    /// κ of the transverse shear force κ G h γ by Mindlin's theory.
+    ///
+    /// 5/(6−ν) unless another is given: with it, bending waves are as slow as those of three-dimensional elasticity to the
+    /// order (kh)², the measure by which Kirchhoff's theory is judged ([`super::thickness_error`]).
+    pub fn shear_coefficient(&self) -> f64 {
+        self.shear_coefficient.unwrap_or_else(|| shear_coefficient(self.material.poissons_ratio))
     }
 
     /// A \[m²\] of all faces.
     pub fn area(&self, nodes: &[[f64; 3]]) -> f64 {
         let triangles = self.faces.iter().flat_map(split_face);
-        let area = |nodes: [[f64; 3]; 3]| FlatShell::new(&nodes).map_or(0.0, |shell| shell.triangle().area);
+        let area = |nodes: [[f64; 3]; 3]| FlatTriangle::new(&nodes).map_or(0.0, |triangle| triangle.area);
         triangles.map(|t| t.weight * area(t.nodes.map(|n| nodes[n]))).sum()
     }
 }

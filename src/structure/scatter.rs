@@ -1,23 +1,24 @@
 //! The sparsity pattern of a set of small matrices, and adding them up on it in parallel.
 //!
-//! Every entry of the result is the sum of its contributions in the order of a fixed walk over the pieces, whatever
+//! Every entry of the result is the sum of its contributions in the order of a fixed walk over the elements, whatever
 //! the number of threads: small matrices are computed in parallel, a batch at a time, and each thread then adds
 //! those of the whole batch to the columns that it owns.
 
 use super::dofs::DofMap;
+use super::elements::{ElementMatrix, FiniteElement};
+use super::registry::AnyElement;
 use super::users::users;
 use crate::linalg::SparseMatrix;
 use crate::linalg::sparse::{Index, compressed_pattern};
 use faer::sparse::{SymbolicSparseColMat, SymbolicSparseColMatRef};
-use nalgebra::SMatrix;
 use rayon::prelude::*;
 
-/// Pieces whose matrices are held at once.
+/// Elements whose matrices are held at once.
 const BATCH: usize = 8192;
 /// Columns whose pattern is made by one task.
 const COLUMNS: usize = 1024;
 
-/// The free degrees of freedom that each piece couples, ascending: those of piece p are `dofs[starts[p]..starts[p + 1]]`.
+/// The free degrees of freedom that each element couples, ascending: those of element p are `dofs[starts[p]..starts[p + 1]]`.
 #[derive(Debug)]
 pub(super) struct Couplings {
     n: usize,
@@ -26,27 +27,27 @@ pub(super) struct Couplings {
 }
 
 impl Couplings {
-    /// The couplings of pieces on the given nodes.
-    pub fn new(dofs: &DofMap, piece_nodes: &[Vec<usize>]) -> Self {
-        let lists: Vec<Vec<usize>> = piece_nodes.par_iter().map(|nodes| coupled_dofs(dofs, nodes)).collect();
+    /// The couplings of `elements`.
+    pub fn new(dofs: &DofMap, elements: &[AnyElement]) -> Self {
+        let lists: Vec<Vec<usize>> = elements.par_iter().map(|e| coupled_dofs(dofs, e.as_ref())).collect();
         let (starts, all) = flattened(&lists);
         Couplings { n: dofs.n_dofs(), starts, dofs: all }
     }
 
-    fn n_pieces(&self) -> usize {
+    fn n_elements(&self) -> usize {
         self.starts.len() - 1
     }
 
-    fn dofs_of(&self, piece: usize) -> &[usize] {
-        &self.dofs[self.starts[piece]..self.starts[piece + 1]]
+    fn dofs_of(&self, element: usize) -> &[usize] {
+        &self.dofs[self.starts[element]..self.starts[element + 1]]
     }
 
-    /// The sparsity pattern of the sum of the pieces' matrices, n × n; every diagonal entry is part of it.
+    /// The sparsity pattern of the sum of the elements' matrices, n × n; every diagonal entry is part of it.
     pub fn pattern(&self) -> SymbolicSparseColMat<Index> {
         let n = self.n;
-        // The pieces of every degree of freedom, ascending.
-        let pieces = (0..self.n_pieces()).map(|piece| self.dofs_of(piece));
-        let (starts, users) = users(n, pieces);
+        // The elements of every degree of freedom, ascending.
+        let lists = (0..self.n_elements()).map(|element| self.dofs_of(element));
+        let (starts, users) = users(n, lists);
         let users_of = |k: usize| &users[starts[k]..starts[k + 1]];
         let columns: Vec<(Vec<usize>, Vec<Index>)> = (0..n.div_ceil(COLUMNS))
             .into_par_iter()
@@ -55,12 +56,12 @@ impl Couplings {
                 let mut column: Vec<Index> = Vec::new();
                 let first = task * COLUMNS;
                 for k in first..n.min(first + COLUMNS) {
-                    // Degrees of freedom of one node mostly have the same pieces, hence the same column.
+                    // Degrees of freedom of one node mostly have the same elements, hence the same column.
                     if k == first || users_of(k) != users_of(k - 1) || users_of(k).is_empty() {
                         column.clear();
                         column.push(k as Index);
-                        for piece in users_of(k) {
-                            column.extend(self.dofs_of(*piece).iter().map(|dof| *dof as Index));
+                        for element in users_of(k) {
+                            column.extend(self.dofs_of(*element).iter().map(|dof| *dof as Index));
                         }
                         column.sort_unstable();
                         column.dedup();
@@ -84,7 +85,7 @@ impl Couplings {
     }
 }
 
-/// The pattern of a sum of pieces' matrices, which stands on it; it may have more entries than they.
+/// The pattern of a sum of elements' matrices, which stands on it; it may have more entries than they.
 pub(super) struct Pattern<'a> {
     pub couplings: &'a Couplings,
     pub symbolic: SymbolicSparseColMatRef<'a, Index>,
@@ -100,33 +101,58 @@ impl Pattern<'_> {
         self.symbolic.col_ptr()[k] as usize
     }
 
-    /// Adds up K matrices at once: `matrices(p)` gives those of piece p on its coupled degrees of freedom
-    /// (column by column); an empty one counts as zero. A sum to which nothing was added is `None`.
-    pub fn sum<const K: usize>(
+    /// Adds up K matrices at once: `matrices(workspace, p, coupled, small)` adds those of element p on its `coupled` degrees of
+    /// freedom (column by column) to `small`, which holds zeros. Those not `wanted` are `None`, and empty in `small`.
+    pub fn sum<const K: usize, W: Default>(
         &self,
-        matrices: impl Fn(usize, &[usize]) -> [Vec<f64>; K] + Sync,
+        wanted: [bool; K],
+        matrices: impl Fn(&mut W, usize, &[usize], &mut [&mut [f64]; K]) + Sync,
     ) -> [Option<SparseMatrix>; K] {
-        let mut values: [Vec<f64>; K] = std::array::from_fn(|_| Vec::new());
+        let mut sums = wanted.map(|wanted| vec![0.0; if wanted { self.n_entries() } else { 0 }]);
         // Strided batches spread each batch over all columns, so that every owner has work.
-        let batches = self.couplings.n_pieces().div_ceil(BATCH).max(1);
+        let batches = self.couplings.n_elements().div_ceil(BATCH).max(1);
+        let (mut small, mut pieces): ([Vec<f64>; K], Vec<(usize, usize)>) =
+            (wanted.map(|_| Vec::new()), Vec::new());
         for batch in 0..batches {
-            let computed: Vec<(usize, [Vec<f64>; K])> = (batch..self.couplings.n_pieces())
-                .into_par_iter()
-                .step_by(batches)
-                .map(|piece| (piece, matrices(piece, self.couplings.dofs_of(piece))))
-                .collect();
-            for (kind, sum) in values.iter_mut().enumerate() {
-                if sum.is_empty() && computed.iter().any(|(_, m)| !m[kind].is_empty()) {
-                    sum.resize(self.n_entries(), 0.0);
-                }
+            let mut length = 0;
+            pieces.clear();
+            for piece in (batch..self.couplings.n_elements()).step_by(batches) {
+                pieces.push((piece, length));
+                length += self.couplings.dofs_of(piece).len().pow(2);
             }
-            self.owners(&mut values).into_par_iter().for_each(|(first, last, mut slices)| {
-                for (piece, small) in &computed {
-                    self.add_columns(*piece, small, first, last, &mut slices);
+            for (values, _) in small.iter_mut().zip(wanted).filter(|(_, wanted)| *wanted) {
+                values.clear();
+                values.resize(length, 0.0);
+            }
+            self.parts(&pieces, &mut small).into_par_iter().with_min_len(16).for_each_init(
+                W::default,
+                |workspace, (piece, mut own)| {
+                    matrices(workspace, piece, self.couplings.dofs_of(piece), &mut own);
+                },
+            );
+            self.owners(&mut sums).into_par_iter().for_each(|(first, last, mut slices)| {
+                for (piece, start) in &pieces {
+                    let end = start + self.couplings.dofs_of(*piece).len().pow(2);
+                    let own = small.each_ref().map(|values| values.get(*start..end).unwrap_or_default());
+                    self.add_columns(*piece, &own, first, last, &mut slices);
                 }
             });
         }
-        values.map(|v| (!v.is_empty()).then(|| self.with_values(v)))
+        let mut wanted = wanted.into_iter();
+        sums.map(|values| (wanted.next() == Some(true)).then(|| self.with_values(values)))
+    }
+
+    /// The values of each of `pieces` among those of a batch.
+    fn parts<'a, const K: usize>(
+        &self,
+        pieces: &[(usize, usize)],
+        small: &'a mut [Vec<f64>; K],
+    ) -> Vec<(usize, [&'a mut [f64]; K])> {
+        let mut rest: [&'a mut [f64]; K] = small.each_mut().map(|values| values.as_mut_slice());
+        let part = |(piece, _): &(usize, usize)| {
+            (*piece, split_off(&mut rest, self.couplings.dofs_of(*piece).len().pow(2)))
+        };
+        pieces.iter().map(part).collect()
     }
 
     /// Ranges of columns with about equally many entries, and the values that belong to each.
@@ -147,14 +173,7 @@ impl Pattern<'_> {
                 columns.partition_point(|s| (*s as usize) < goal).clamp(first, self.couplings.n)
             };
             let length = self.start(last) - self.start(first);
-            let mine = rest.each_mut().map(|slice| {
-                let whole = std::mem::take(slice);
-                let at = length.min(whole.len());
-                let (head, tail) = whole.split_at_mut(at);
-                *slice = tail;
-                head
-            });
-            owners.push((first, last, mine));
+            owners.push((first, last, split_off(&mut rest, length)));
             first = last;
         }
         owners
@@ -164,7 +183,7 @@ impl Pattern<'_> {
     fn add_columns<const K: usize>(
         &self,
         piece: usize,
-        small: &[Vec<f64>; K],
+        small: &[&[f64]; K],
         first: usize,
         last: usize,
         sums: &mut [&mut [f64]; K],
@@ -203,18 +222,30 @@ impl Pattern<'_> {
     }
 }
 
-/// Free degrees of freedom that the nodes of a piece move with, ascending.
-fn coupled_dofs(dofs: &DofMap, nodes: &[usize]) -> Vec<usize> {
-    let mut list: Vec<usize> = nodes
-        .iter()
-        .flat_map(|node| (0..6).flat_map(|dof| dofs.terms(*node, dof).iter().map(|(k, _)| *k)))
-        .collect();
+/// Takes the first `length` values off each slice, fewer where there are not as many.
+fn split_off<'a, const K: usize>(rest: &mut [&'a mut [f64]; K], length: usize) -> [&'a mut [f64]; K] {
+    rest.each_mut().map(|slice| {
+        let whole = std::mem::take(slice);
+        let at = length.min(whole.len());
+        let (head, tail) = whole.split_at_mut(at);
+        *slice = tail;
+        head
+    })
+}
+
+/// Free degrees of freedom that an element couples, ascending.
+fn coupled_dofs(dofs: &DofMap, element: &dyn FiniteElement) -> Vec<usize> {
+    let components = element.components();
+    let freedoms = element.nodes().iter().flat_map(|node| components.iter().map(|dof| (*node, *dof)));
+    let mut list: Vec<usize> =
+        freedoms.flat_map(|(node, dof)| dofs.terms(node, dof).iter().map(|(k, _)| *k)).collect();
     list.sort_unstable();
     list.dedup();
     list
 }
 
-/// Takes matrices on the six degrees of freedom of a piece's nodes to Tᵀ A T on the free ones that it couples.
+/// Takes matrices on the freedoms of an element to Tᵀ A T on the free degrees of freedom that it couples.
+#[derive(Debug, Default)]
 pub(super) struct Reduction {
     size: usize,
     /// (row of A, place among the coupled degrees of freedom, coefficient) of every entry of T.
@@ -222,23 +253,22 @@ pub(super) struct Reduction {
 }
 
 impl Reduction {
-    /// The rows of T of `nodes`; `coupled` are the free degrees of freedom in them, ascending.
-    pub fn new(dofs: &DofMap, nodes: impl Iterator<Item = usize>, coupled: &[usize]) -> Self {
-        let mut entries = Vec::with_capacity(18);
-        for (corner, node) in nodes.enumerate() {
-            for dof in 0..6 {
-                for (k, coefficient) in dofs.terms(node, dof) {
-                    entries.push((6 * corner + dof, coupled.partition_point(|c| c < k), *coefficient));
-                }
+    /// Becomes that of `element`; `coupled` are the free degrees of freedom that it couples, ascending.
+    pub fn set(&mut self, dofs: &DofMap, element: &dyn FiniteElement, coupled: &[usize]) {
+        self.size = coupled.len();
+        self.entries.clear();
+        let components = element.components();
+        let freedoms = element.nodes().iter().flat_map(|node| components.iter().map(|dof| (*node, *dof)));
+        for (row, (node, dof)) in freedoms.enumerate() {
+            for (k, coefficient) in dofs.terms(node, dof) {
+                self.entries.push((row, coupled.partition_point(|c| c < k), *coefficient));
             }
         }
-        Reduction { size: coupled.len(), entries }
     }
 
-    /// Tᵀ A T, column by column: symmetric to the last bit when A is.
-    pub fn apply(&self, full: &SMatrix<f64, 18, 18>) -> Vec<f64> {
+    /// Adds Tᵀ A T, column by column, to `small`, which holds zeros: symmetric to the last bit when A is.
+    pub fn apply(&self, full: &ElementMatrix, small: &mut [f64]) {
         let m = self.size;
-        let mut small = vec![0.0; m * m];
         for (b, column, tb) in &self.entries {
             let (from, to) = (full.column(*b), &mut small[column * m..(column + 1) * m]);
             for (a, row, ta) in &self.entries {
@@ -251,7 +281,6 @@ impl Reduction {
                 small[row * m + column] = small[column * m + row];
             }
         }
-        small
     }
 }
 

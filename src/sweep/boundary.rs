@@ -32,45 +32,13 @@ pub fn boundary(
     tolerance: f64,
     observer: &dyn Observer,
 ) -> Result<Boundary> {
-    let [nx, ny] = [axes[0].points, axes[1].points];
-    let state = |i: usize, j: usize| {
-        map.get(i + nx * j).filter(|p| p.growth_rate.is_finite()).map(|p| p.unstable > 0)
-    };
-    let differ = |a: (usize, usize), b: (usize, usize)| match (state(a.0, a.1), state(b.0, b.1)) {
-        (Some(a), Some(b)) => a != b,
-        _ => false,
-    };
-    let mut edges: Vec<GridEdge> = Vec::new();
-    for j in 0..ny {
-        for i in 0..nx {
-            if i + 1 < nx && differ((i, j), (i + 1, j)) {
-                edges.push((i, j, false));
-            }
-            if j + 1 < ny && differ((i, j), (i, j + 1)) {
-                edges.push((i, j, true));
-            }
-        }
-    }
+    let grid = Grid { problem, axes, map };
+    let edges = grid.cut_edges();
     observer.begin("stability boundary", Some(edges.len() as u64));
-    let growth = |at: &[f64]| -> Result<f64> {
-        let all = problem.eigenvalues(at)?;
-        Ok(all.iter().map(|z| z.re - ROUND_OFF * z.norm()).fold(f64::NEG_INFINITY, f64::max).max(-1e300))
-    };
-    let locate = |&(i, j, rising): &GridEdge| -> Result<[f64; 2]> {
-        let axis = &axes[usize::from(rising)];
-        let place = |x: f64| if rising { [axes[0].value(i), x] } else { [x, axes[1].value(j)] };
-        let k = if rising { j } else { i };
-        let (a, b) = (axis.value(k), axis.value(k + 1));
-        let (fa, fb) = (growth(&place(a))?, growth(&place(b))?);
-        let bracket = if fa > 0.0 {
-            Bracket { below: (b, fb), above: (a, fa) }
-        } else {
-            Bracket { below: (a, fa), above: (b, fb) }
-        };
-        let width = tolerance * a.abs().max(b.abs());
-        let found = narrow(bracket, width, |x| growth(&place(x)))?;
+    let locate = |edge: &GridEdge| {
+        let place = grid.locate(edge, tolerance)?;
         observer.advance(1);
-        Ok(place(0.5 * (found.below.0 + found.above.0)))
+        Ok(place)
     };
     let points: Result<Vec<[f64; 2]>> = match problem.parallel() {
         true => edges.par_iter().map(locate).collect(),
@@ -78,33 +46,98 @@ pub fn boundary(
     };
     observer.end();
     let points = points?;
-    let index: BTreeMap<GridEdge, usize> = edges.iter().enumerate().map(|(k, e)| (*e, k)).collect();
-    let mut segments = Vec::new();
-    for j in 0..ny.saturating_sub(1) {
-        for i in 0..nx.saturating_sub(1) {
-            // Bottom, right, top, left.
-            let around = [(i, j, false), (i + 1, j, true), (i, j + 1, false), (i, j, true)];
-            let cut: Vec<usize> = around.iter().filter_map(|e| index.get(e).copied()).collect();
-            match cut[..] {
-                [a, b] => segments.push([a, b]),
-                [bottom, right, top, left] => {
-                    let at = [0, 1].map(|d| {
-                        let k = [i, j][d];
-                        axes[d].between(axes[d].value(k), axes[d].value(k + 1), 0.5)
-                    });
-                    // The middle like the lower left corner: the two corners are joined, the others cut off.
-                    let joined = (growth(&at)? > 0.0) == (state(i, j) == Some(true));
-                    segments.extend(if joined {
-                        [[bottom, right], [top, left]]
-                    } else {
-                        [[bottom, left], [top, right]]
-                    });
+    Ok(Boundary { lines: chains(points.len(), &grid.segments(&edges)?), points })
+}
+
+/// A map on the grid of its axes.
+struct Grid<'a> {
+    problem: &'a dyn SweepProblem,
+    axes: &'a [Axis; 2],
+    map: &'a [MapPoint],
+}
+
+impl Grid<'_> {
+    /// Whether a point of the grid is unstable; `None` where there is no answer.
+    fn unstable(&self, i: usize, j: usize) -> Option<bool> {
+        let point = self.map.get(i + self.axes[0].points * j);
+        point.filter(|p| p.growth_rate.is_finite()).map(|p| p.unstable > 0)
+    }
+
+    /// The edges with a stable and an unstable end.
+    fn cut_edges(&self) -> Vec<GridEdge> {
+        let [nx, ny] = [self.axes[0].points, self.axes[1].points];
+        let differ = |a: (usize, usize), b: (usize, usize)| {
+            let ends = self.unstable(a.0, a.1).zip(self.unstable(b.0, b.1));
+            ends.is_some_and(|(a, b)| a != b)
+        };
+        let mut edges: Vec<GridEdge> = Vec::new();
+        for j in 0..ny {
+            for i in 0..nx {
+                if i + 1 < nx && differ((i, j), (i + 1, j)) {
+                    edges.push((i, j, false));
                 }
-                _ => {}
+                if j + 1 < ny && differ((i, j), (i, j + 1)) {
+                    edges.push((i, j, true));
+                }
             }
         }
+        edges
     }
-    Ok(Boundary { lines: chains(points.len(), &segments), points })
+
+    /// The largest growth rate at a place \[1/s\], less round-off.
+    fn growth(&self, at: &[f64]) -> Result<f64> {
+        let all = self.problem.eigenvalues(at)?;
+        Ok(all.iter().map(|z| z.re - ROUND_OFF * z.norm()).fold(f64::NEG_INFINITY, f64::max).max(-1e300))
+    }
+
+    /// Where the boundary cuts an edge, to `tolerance` of the value along it.
+    fn locate(&self, &(i, j, rising): &GridEdge, tolerance: f64) -> Result<[f64; 2]> {
+        let axis = &self.axes[usize::from(rising)];
+        let place = |x: f64| if rising { [self.axes[0].value(i), x] } else { [x, self.axes[1].value(j)] };
+        let k = if rising { j } else { i };
+        let (a, b) = (axis.value(k), axis.value(k + 1));
+        let (fa, fb) = (self.growth(&place(a))?, self.growth(&place(b))?);
+        let bracket = if fa > 0.0 {
+            Bracket { below: (b, fb), above: (a, fa) }
+        } else {
+            Bracket { below: (a, fa), above: (b, fb) }
+        };
+        let width = tolerance * a.abs().max(b.abs());
+        let found = narrow(bracket, width, |x| self.growth(&place(x)))?;
+        Ok(place(0.5 * (found.below.0 + found.above.0)))
+    }
+
+    /// Pairs of cut edges between which the boundary runs through a cell.
+    fn segments(&self, edges: &[GridEdge]) -> Result<Vec<[usize; 2]>> {
+        let [nx, ny] = [self.axes[0].points, self.axes[1].points];
+        let index: BTreeMap<GridEdge, usize> = edges.iter().enumerate().map(|(k, e)| (*e, k)).collect();
+        let mut segments = Vec::new();
+        for j in 0..ny.saturating_sub(1) {
+            for i in 0..nx.saturating_sub(1) {
+                // Bottom, right, top, left.
+                let around = [(i, j, false), (i + 1, j, true), (i, j + 1, false), (i, j, true)];
+                let cut: Vec<usize> = around.iter().filter_map(|e| index.get(e).copied()).collect();
+                match cut[..] {
+                    [a, b] => segments.push([a, b]),
+                    [bottom, right, top, left] => {
+                        let at = [(0, i), (1, j)].map(|(d, k)| {
+                            let axis = &self.axes[d];
+                            axis.between(axis.value(k), axis.value(k + 1), 0.5)
+                        });
+                        // The middle like the lower left corner: the two corners are joined, the others cut off.
+                        let joined = (self.growth(&at)? > 0.0) == (self.unstable(i, j) == Some(true));
+                        segments.extend(if joined {
+                            [[bottom, right], [top, left]]
+                        } else {
+                            [[bottom, left], [top, right]]
+                        });
+                    }
+                    _ => {}
+                }
+            }
+        }
+        Ok(segments)
+    }
 }
 
 /// Joins segments that share an end into lines, open ones first.

@@ -1,5 +1,5 @@
 use super::*;
-use crate::structure::{Material, RayleighDamping};
+use crate::structure::{Material, PlateTheory, RayleighDamping};
 
 const DISC_RADIUS: f64 = 0.075;
 const SLIDER: f64 = 0.010;
@@ -8,7 +8,7 @@ fn part(name: &str, thickness: f64, faces: Vec<Element>) -> ShellPart {
     let rayleigh = RayleighDamping::default();
     let material =
         Material { youngs_modulus: 2e11, poissons_ratio: 0.3, density: 7850.0, loss_factor: 0.0, rayleigh };
-    ShellPart { name: name.into(), faces, material, thickness, bending_only: false, rotary_inertia: false }
+    ShellPart { rotary_inertia: false, ..ShellPart::new(name, faces, material, thickness) }
 }
 
 /// A fan of triangles in the y–z plane (tilted by `lead` about y), its lowest rim node touching z = 0 at `x`, and a
@@ -99,8 +99,11 @@ fn rim_gap_is_that_of_the_circle_and_weights_are_its_length() {
 /// Any rigid motion of either body closes and slides each point by what the displacement of that point says.
 #[test]
 fn directions_are_the_relative_displacement_of_the_points() {
-    for lead in [0.0, 0.08] {
-        let rig = rig(lead, -0.031, 0.0);
+    for (lead, theory) in
+        [(0.0, PlateTheory::Kirchhoff), (0.08, PlateTheory::Kirchhoff), (0.08, PlateTheory::Mindlin)]
+    {
+        let mut rig = rig(lead, -0.031, 0.0);
+        rig.slider.theory = theory;
         let points = pair_surfaces(&surfaces(&rig, ContactPatch::Reach(2e-3)), &reduce).unwrap();
         let disc_nodes = 0..181;
         let (t, r) = ([3e-4, -2e-4, 5e-4], [0.02, -0.03, 0.04]);
@@ -200,8 +203,11 @@ fn a_pad_may_overhang() {
 /// also on a plate that is not flat.
 #[test]
 fn points_do_not_depend_on_the_order_of_faces() {
-    for bend in [0.0, 1.0] {
+    for (bend, theory) in
+        [0.0, 1.0].into_iter().flat_map(|b| [(b, PlateTheory::Kirchhoff), (b, PlateTheory::Mindlin)])
+    {
         let mut rig = rig(0.0, 0.0, 0.0);
+        rig.slider.theory = theory;
         rig.nodes[181..].iter_mut().for_each(|x| x[2] += bend * x[0] * (0.1 * x[0] - 0.3 * x[1]));
         let faces = add_pad(&mut rig, 0.0);
         let pad = part("pad", 4e-3, faces.clone());

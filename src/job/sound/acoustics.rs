@@ -3,16 +3,8 @@
 use super::super::prepared::Prepared;
 use crate::case::{ON_AXIS, SoundAnalysis};
 use crate::error::{Fault, Faults, Result};
-use crate::sound::{Air, Surface};
+use crate::sound::{Acoustics, Air, Surface};
 use crate::structure::ShellPart;
-
-/// Radiating plates, microphones and air of a case.
-#[derive(Debug, Clone)]
-pub struct Acoustics {
-    pub(super) plates: Vec<Surface>,
-    pub(super) microphones: Vec<(String, [f64; 3])>,
-    pub(super) air: Air,
-}
 
 /// Plates, microphones and air of a case, checked before anything is computed or written.
 ///

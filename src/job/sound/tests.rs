@@ -1,12 +1,10 @@
 use super::acoustics::acoustics;
-use super::{BLOCK, SoundAccumulator};
 use crate::case::Case;
 use crate::case::{ON_AXIS, SoundAnalysis};
 use crate::job::Prepared;
 use crate::job::samples::disc;
 use crate::modal::{ModesWanted, compute};
-use crate::sound::Air;
-use crate::sound::{power_level, pressure_level};
+use crate::sound::{Air, BLOCK, SoundAccumulator, power_level, pressure_level};
 use std::f64::consts::TAU;
 
 fn wanted(distance: Option<f64>, at: &[(&str, [f64; 3])]) -> SoundAnalysis {
@@ -33,7 +31,8 @@ fn one_mode_sounds_as_loud_as_its_closed_form() {
     let mode = (0..3).max_by(|a, b| volume(*a).abs().total_cmp(&volume(*b).abs())).unwrap();
     let (step, steps, hz) = (2e-5, 20_000, 180.0);
     let q = |k: usize| 3.0 * (TAU * hz * step * k as f64).sin();
-    let mut accumulator = SoundAccumulator::new(acoustics, &real, step, steps);
+    let mut accumulator =
+        SoundAccumulator::new(acoustics, (&real.shapes, real.frequency_hz(2)), (step, steps));
     for first in (0..=steps).step_by(BLOCK) {
         let moments = first..(first + BLOCK).min(steps + 1);
         let motion = |m: usize| moments.clone().map(|k| if m == mode { q(k) } else { 0.0 }).collect();

@@ -23,7 +23,6 @@ pub use in_time::InTime;
 pub use places::{TransientPlaces, places};
 
 use super::sink::ResultSink;
-use super::sound::SoundAccumulator;
 use super::time_function::profile;
 use crate::case::{ModelChoice, SchemeChoice, TransientAnalysis};
 use crate::error::{Error, Result};
@@ -31,6 +30,7 @@ use crate::linalg::SparseVector;
 use crate::progress::Observer;
 use crate::reduction::{Reduced, reduce};
 use crate::results::TransientResult;
+use crate::sound::SoundAccumulator;
 use crate::system::System;
 use crate::transient::{Marched, Plan, Scheme, State, StepMethod, TimeProfile, TransientModel, resume};
 use along::Along;
@@ -95,8 +95,11 @@ impl InTime<'_> {
             reduced: reduced.as_ref(),
             origin: &steady.displacement,
         });
+        // Real modes are complete up to their highest.
+        let highest = (0..self.real.len()).map(|k| self.real.frequency_hz(k)).fold(0.0, f64::max);
+        let modes = (&self.real.shapes, highest);
         let accumulator =
-            acoustics.map(|acoustics| SoundAccumulator::new(acoustics, self.real, plan.step, steps));
+            acoustics.map(|acoustics| SoundAccumulator::new(acoustics, modes, (plan.step, steps)));
         let mass = reduced.is_none().then_some(&*self.system.structure.mass);
         let modal = accumulator.as_ref().map(|_| ModalMotion::new(self.real, mass));
         let mut recorder = Recorder::new(system, steady, &model, (probes, gauges), disturbed, modal);

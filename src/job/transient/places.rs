@@ -7,11 +7,12 @@ use crate::error::{Error, Fault, Faults, Result};
 use crate::job::contacts::with_laws;
 use crate::job::motion::{Motion, motion};
 use crate::job::prepared::Prepared;
-use crate::job::sound::{Acoustics, acoustics};
+use crate::job::sound::acoustics;
 use crate::job::time_function::profile;
 use crate::job::travel::tracks;
 use crate::linalg::SparseVector;
 use crate::results::RecordSize;
+use crate::sound::Acoustics;
 use crate::system::ContactPair;
 use crate::transient::{self, Pulse, Push, Track};
 

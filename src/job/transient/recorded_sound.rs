@@ -2,8 +2,8 @@
 
 use super::history_writer::HistoryWriter;
 use crate::error::Result;
-use crate::job::sound::{BLOCK, SoundAccumulator};
 use crate::results::{Sound, modal_channel};
+use crate::sound::{BLOCK, SoundAccumulator};
 
 impl HistoryWriter<'_, '_> {
     /// Sound of the record of `rows` rows.

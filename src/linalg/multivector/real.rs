@@ -5,12 +5,13 @@
 
 use super::super::lanes::lay;
 use super::super::sparse::columns_mut;
-use super::ROWS;
 use faer::{Accum, Mat, MatMut, MatRef};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use std::ops::Range;
 
+/// Rows that one task works on.
+pub(super) const ROWS: usize = 8192;
 /// Rows that stay in the cache while all columns pass.
 const SLAB: usize = 1024;
 

@@ -194,17 +194,7 @@ impl RawMesh {
                 mesh.origin.unused_nodes.push(*tag);
             }
         }
-        let mut regions: Vec<Region> = Vec::new();
-        let mut region_of: HashMap<(usize, i64), usize> = HashMap::new();
-        for ((dimension, number), name) in names {
-            // Two numbers with one name and dimension are one region.
-            let same = regions.iter().position(|r| r.name == *name && r.dimension == *dimension);
-            let index = same.unwrap_or_else(|| {
-                regions.push(Region { name: name.clone(), dimension: *dimension, elements: vec![] });
-                regions.len() - 1
-            });
-            region_of.insert((*dimension, *number), index);
-        }
+        let mut regions = RegionList::new(names);
         // Element and regions by nodes.
         let mut listed: HashMap<(i64, Vec<usize>), (usize, Vec<usize>)> = HashMap::new();
         for RawElement { tag, kind, nodes, groups, offset } in self.elements {
@@ -217,16 +207,7 @@ impl RawMesh {
                 _ => continue,
             };
             let dimension = element.dimension();
-            let of: Vec<usize> = groups
-                .into_iter()
-                .map(|group| {
-                    *region_of.entry((dimension, group)).or_insert_with(|| {
-                        let name = format!("{} {group}", ["point", "curve", "surface"][dimension]);
-                        regions.push(Region { name, dimension, elements: vec![] });
-                        regions.len() - 1
-                    })
-                })
-                .collect();
+            let of: Vec<usize> = groups.into_iter().map(|group| regions.index(dimension, group)).collect();
             // MSH 2.2 lists an element once more for every further group; twice in one group is a fault, found later.
             let listed = listed.entry((kind, n)).or_insert_with(|| (usize::MAX, vec![]));
             if listed.0 == usize::MAX || of.iter().any(|region| listed.1.contains(region)) {
@@ -238,13 +219,50 @@ impl RawMesh {
             for region in of {
                 if !listed.1.contains(&region) {
                     listed.1.push(region);
-                    regions[region].elements.push(listed.0);
+                    regions.all[region].elements.push(listed.0);
                 }
             }
         }
-        regions.iter_mut().for_each(|region| region.elements.sort_unstable());
-        regions.retain(|region| !region.elements.is_empty());
-        mesh.regions = regions;
+        mesh.regions = regions.with_elements();
         Ok(mesh)
+    }
+}
+
+/// Regions by dimension and number.
+struct RegionList {
+    all: Vec<Region>,
+    of: HashMap<(usize, i64), usize>,
+}
+
+impl RegionList {
+    /// Those that have names; two numbers with one name and dimension are one region.
+    fn new(names: &Names) -> Self {
+        let mut list = RegionList { all: Vec::new(), of: HashMap::new() };
+        for ((dimension, number), name) in names {
+            let same = list.all.iter().position(|r| r.name == *name && r.dimension == *dimension);
+            let index = same.unwrap_or_else(|| {
+                list.all.push(Region { name: name.clone(), dimension: *dimension, elements: vec![] });
+                list.all.len() - 1
+            });
+            list.of.insert((*dimension, *number), index);
+        }
+        list
+    }
+
+    /// The place of a region, which is made where there is none: `surface 7`.
+    fn index(&mut self, dimension: usize, number: i64) -> usize {
+        let RegionList { all, of } = self;
+        *of.entry((dimension, number)).or_insert_with(|| {
+            let name = format!("{} {number}", ["point", "curve", "surface"][dimension]);
+            all.push(Region { name, dimension, elements: vec![] });
+            all.len() - 1
+        })
+    }
+
+    /// The regions that have elements, those ascending.
+    fn with_elements(mut self) -> Vec<Region> {
+        self.all.iter_mut().for_each(|region| region.elements.sort_unstable());
+        self.all.retain(|region| !region.elements.is_empty());
+        self.all
     }
 }

@@ -5,8 +5,8 @@
 //! is smooth, so that few points are enough. A stretch is halved until the phase changes by less than [`STEP`] on either half:
 //! the phase between the points is followed, not bounded, so that this is a count and no proof.
 
+use super::count::{Certificate, SLOWEST_GROWTH, close_calls, found};
 use super::region::CountedRegion;
-use super::{Certificate, SLOWEST_GROWTH, close_calls, found};
 use crate::error::{Error, Result};
 use crate::linalg::c64;
 use crate::numbers::hertz;

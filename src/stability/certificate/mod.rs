@@ -25,6 +25,7 @@
 
 mod beyond;
 mod contour;
+mod count;
 mod damping;
 mod determinant;
 mod pencil;
@@ -48,6 +49,8 @@ use crate::numbers::hertz;
 use crate::progress::Observer;
 use crate::system::System;
 use contour::{Stopped, Winding, wind};
+pub use count::{Certificate, CloseCall, SLOWEST_GROWTH};
+use count::{close_calls, found};
 #[cfg(test)]
 pub(in crate::stability) use determinant::count as count_determinant;
 use pencil::Pencil;
@@ -55,68 +58,6 @@ use reduced::ReducedModel;
 use region::CountedRegion;
 use spectrum::ReducedSpectrum;
 use std::f64::consts::TAU;
-
-/// ε relative to the band's top, 2π f: the slowest growth that is counted. At the band's top it is a damping ratio of
-/// −1e-5, an amplitude that takes 16,000 periods to grow e-fold: less than the damping of any built structure is known
-/// to. It keeps the contour clear of the modes of an undamped structure, which lie on the imaginary axis.
-pub const SLOWEST_GROWTH: f64 = 1e-5;
-
-/// How many eigenvalues lie in a closed region, counted, beside how many were found.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Certificate {
-    /// The region's frequencies ω/2π \[Hz\]. When they begin at zero the region reaches as far below the real axis as
-    /// above: it holds real eigenvalues (divergence), and both of each conjugate pair.
-    pub band_hz: [f64; 2],
-    /// The region's growth rates σ \[1/s\].
-    pub growth: [f64; 2],
-    /// Eigenvalues counted inside.
-    pub counted: i64,
-    /// Eigenvalues found inside.
-    pub found: i64,
-    /// The smallest 1/ρ on the contour: above 1 the count holds at full order; at most 1e16.
-    pub margin: f64,
-    /// Frequency \[Hz\] and growth rate \[1/s\] on the contour where the margin is smallest.
-    pub tightest: [f64; 2],
-    /// Points of the contour.
-    pub points: usize,
-    /// Zeros of the oscillators inside, accounted for in the count; none when the structure dissipates and K is
-    /// positive semidefinite.
-    pub structure_poles: usize,
-    /// Whether C and H are known to dissipate.
-    pub dissipative: bool,
-    /// Whether it was shown that no eigenvalue of the band grows faster than the region reaches.
-    pub nothing_faster: bool,
-    /// Whether the count is a proof, up to rounding, where `margin` is above 1. Otherwise it is that of a phase followed from point to
-    /// point at full order, `margin` half a turn by the largest step.
-    pub proven: bool,
-    /// Eigenvalues near the contour, or unstable outside it.
-    pub close_calls: Vec<CloseCall>,
-}
-
-/// A mode that is near the contour, or grows too slowly to be counted.
-#[derive(Debug, Clone, PartialEq)]
-pub struct CloseCall {
-    /// ω/2π of the mode \[Hz\].
-    pub frequency_hz: f64,
-    /// σ of the mode \[1/s\].
-    pub growth_rate: f64,
-    /// Its distance from the contour \[1/s\].
-    pub distance: f64,
-    /// Whether it was counted as inside.
-    pub inside: bool,
-}
-
-impl Certificate {
-    /// Whether the count equals the number found.
-    pub fn agrees(&self) -> bool {
-        self.counted == self.found
-    }
-
-    /// Whether the count equals the number found and holds at full order.
-    pub fn holds(&self) -> bool {
-        self.agrees() && self.margin > 1.0
-    }
-}
 
 /// How often the contour is moved a little when an eigenvalue is too near for it.
 const ATTEMPTS: usize = 3;
@@ -345,28 +286,4 @@ fn region(analysis: &CompletedAnalysis<'_>, attempt: usize) -> CountedRegion {
         growth: [growth, high],
         omega: [if bottom > 0.0 { bottom + inward * high } else { 0.0 }, high * (1.0 - inward)],
     }
-}
-
-/// The eigenvalues found inside: each once, or both of a pair when the region holds both.
-fn found(modes: &ComplexModes, region: &CountedRegion) -> i64 {
-    let inside = modes.modes.iter().map(|m| m.eigenvalue).filter(|z| region.contains(*z));
-    inside.map(|z| if region.symmetric() && z.im > 1e-9 * z.norm() { 2 } else { 1 }).sum()
-}
-
-/// Modes within half of ε, or within their own error, of the contour, and unstable ones slower than ε.
-fn close_calls(modes: &ComplexModes, region: &CountedRegion) -> Vec<CloseCall> {
-    let slowest = region.growth[0];
-    let call = |mode: &super::ComplexMode| {
-        let z = mode.eigenvalue;
-        let error = mode.eigenvalue_error * z.norm();
-        let distance = region.distance(z);
-        let slow = z.re > (1e-2 * slowest).max(10.0 * error) && z.re <= slowest;
-        (distance <= (0.5 * slowest).max(10.0 * error) || slow).then_some(CloseCall {
-            frequency_hz: z.im / TAU,
-            growth_rate: z.re,
-            distance,
-            inside: region.contains(z),
-        })
-    };
-    modes.modes.iter().filter_map(call).collect()
 }

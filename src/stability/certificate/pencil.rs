@@ -60,6 +60,25 @@ pub(super) struct ContourPoint {
 /// Bound on ‖(N(s) − N(c)) N(c)⁻¹‖ in the disc of a point.
 const CHANGE: f64 = 0.75;
 
+/// The terms of the interface between the active directions, each divided by the root of its size, `scale`.
+fn contact_entries(model: &ReducedModel, terms: &[InterfaceTerm], scale: &[f64]) -> Vec<PencilEntry> {
+    let place = |d: usize| model.active.iter().position(|a| *a == d);
+    terms
+        .iter()
+        .filter_map(|t| {
+            let (row, column) = (place(t.row)?, place(t.column)?);
+            let size = scale[row] * scale[column];
+            Some(PencilEntry {
+                row,
+                column,
+                place: 0,
+                stiffness: c64::new(t.stiffness / size, 0.0),
+                damping: t.damping / size,
+            })
+        })
+        .collect()
+}
+
 impl<'a> Pencil<'a> {
     /// The reduced model with the numbers of an interface, scaled for frequencies up to `top` \[rad/s\]; `sizes` are
     /// those of the operator's directions.
@@ -71,24 +90,10 @@ impl<'a> Pencil<'a> {
     ) -> Result<Self> {
         let m = model.oscillators.len();
         let zero = c64::new(0.0, 0.0);
-        let place = |d: usize| model.active.iter().position(|a| *a == d);
         let scale: Vec<f64> = model.active.iter().map(|d| sizes[*d].sqrt()).collect();
         let mut columns: Vec<Vec<f64>> =
             (0..scale.len()).map(|j| (0..m).map(|i| model.interface[(i, j)] * scale[j]).collect()).collect();
-        let mut entries: Vec<PencilEntry> = terms
-            .iter()
-            .filter_map(|t| {
-                let (row, column) = (place(t.row)?, place(t.column)?);
-                let size = scale[row] * scale[column];
-                Some(PencilEntry {
-                    row,
-                    column,
-                    place: 0,
-                    stiffness: c64::new(t.stiffness / size, 0.0),
-                    damping: t.damping / size,
-                })
-            })
-            .collect();
+        let mut entries = contact_entries(model, terms, &scale);
         let mut add = |coupled: &Option<Mat<f64>>, unit: f64, stiffness: c64, damping: f64| -> Result<()> {
             let Some(a) = coupled else { return Ok(()) };
             let (values, vectors) = symmetric_eigen(a.as_ref())?;

@@ -89,15 +89,7 @@ impl Remainder {
         let beyond = m - first;
         // Of one size, so that the smallest are not lost in the rounding of the largest: \[top MB, DB, H_rB/top, W\]. The
         // last three have entries in a few rows, and a few columns span them.
-        let sizes = operator.interface.sizes(top);
-        let scales: Vec<f64> = active.iter().map(|d| sizes[*d].sqrt()).collect();
-        let mut few = directions(analysis, active, &scales);
-        for (image, scale) in [(&parts.lossy, 1.0 / top), (&parts.damped, 1.0)] {
-            if let Some(image) = image {
-                let values = &image.values * faer::Scale(scale);
-                few = ColumnBlock { rows: image.rows.clone(), values }.beside(&few);
-            }
-        }
+        let few = of_few_rows(analysis, parts, active, top);
         let behind = few.values.ncols();
         let (few, coefficients) = few.spanned();
         let f = beyond + few.values.ncols();
@@ -137,33 +129,10 @@ impl Remainder {
         let size = |value: f64| (value.max(0.0) + rounding).sqrt();
         let of_few = Mat::from_fn(f, f, |i, j| vectors[(i, j)] * size(values[j]));
         let spanned = product(coefficients.transpose(), of_few.as_ref().subrows(beyond, f - beyond));
-        let root =
-            |row: usize, j: usize| if row < beyond { of_few[(row, j)] } else { spanned[(row - beyond, j)] };
+        let root = Root { of_few, spanned, beyond };
         let all = beyond + behind;
-        let missed = Mat::from_fn(active.len(), f, |i, j| root(all - active.len() + i, j));
-        let mut terms = Vec::new();
-        let Damper { viscous, loss, .. } = &operator.dampers[0];
-        let [(alpha, beta), (alpha_h, beta_h)] =
-            [viscous, loss].map(|part| (part.split.mass_factor, part.split.stiffness_factor));
-        let of_mass = CouplingFactor {
-            square: 1.0,
-            linear: alpha + beta * shift,
-            constant: c64::new(shift, alpha_h + beta_h * shift),
-        };
-        let of_damping = CouplingFactor { square: 0.0, linear: 1.0, constant: c64::new(0.0, 0.0) };
-        let of_loss = CouplingFactor { square: 0.0, linear: 0.0, constant: c64::new(0.0, 1.0) };
-        // The rows of F that an image of the basis has, and the first vector that has one.
-        let mut start = beyond;
-        let inertia = Mat::from_fn(m, f, |i, j| if i < first { 0.0 } else { root(i - first, j) / top });
-        let mut images = vec![(of_mass, inertia)];
-        for (image, scale, kind) in [(&parts.damped, 1.0, of_damping), (&parts.lossy, top, of_loss)] {
-            if let Some(image) = image {
-                let rows = Mat::from_fn(m, f, |i, j| scale * root(start + i, j));
-                start += image.values.ncols();
-                images.push((kind, rows));
-            }
-        }
-        terms.extend(images.iter().map(|(kind, rows)| (*kind, product(x.transpose(), rows.as_ref()))));
+        let missed = Mat::from_fn(active.len(), f, |i, j| root.at(all - active.len() + i, j));
+        let terms = root.terms(analysis, parts, x);
         let (sizes, _) = symmetric_eigen(product(missed.as_ref(), missed.transpose()).as_ref())?;
         Ok(Remainder {
             complete_below: analysis.complete_below,
@@ -190,6 +159,75 @@ impl Remainder {
     }
 }
 
+/// \[DB, H_rB/top, W\], W of the `active` directions with the root of its size: the columns of F with entries in a few rows.
+fn of_few_rows(
+    analysis: &CompletedAnalysis<'_>,
+    parts: &DampingParts,
+    active: &[usize],
+    top: f64,
+) -> ColumnBlock {
+    let sizes = analysis.operator.interface.sizes(top);
+    let scales: Vec<f64> = active.iter().map(|d| sizes[*d].sqrt()).collect();
+    let mut few = directions(analysis, active, &scales);
+    for (image, scale) in [(&parts.lossy, 1.0 / top), (&parts.damped, 1.0)] {
+        if let Some(image) = image {
+            let values = &image.values * faer::Scale(scale);
+            few = ColumnBlock { rows: image.rows.clone(), values }.beside(&few);
+        }
+    }
+    few
+}
+
+/// A root of FᵀA⁻¹F beyond the basis, one row a column of F.
+struct Root {
+    /// Of the columns of MB and of those that span the few rows.
+    of_few: Mat<f64>,
+    /// Of the columns with few rows.
+    spanned: Mat<f64>,
+    /// How many columns MB has.
+    beyond: usize,
+}
+
+impl Root {
+    fn at(&self, row: usize, j: usize) -> f64 {
+        if row < self.beyond { self.of_few[(row, j)] } else { self.spanned[(row - self.beyond, j)] }
+    }
+
+    /// [`Remainder::terms`], with the Ritz vectors `x` in the basis.
+    fn terms(
+        &self,
+        analysis: &CompletedAnalysis<'_>,
+        parts: &DampingParts,
+        x: &Mat<f64>,
+    ) -> Vec<(CouplingFactor, Mat<f64>)> {
+        let (basis, shift) = (&analysis.basis, analysis.shift);
+        let (m, first, f) = (basis.len(), basis.n_real(), self.of_few.ncols());
+        let top = TAU * analysis.band_hz[1];
+        let Damper { viscous, loss, .. } = &analysis.operator.dampers[0];
+        let [(alpha, beta), (alpha_h, beta_h)] =
+            [viscous, loss].map(|part| (part.split.mass_factor, part.split.stiffness_factor));
+        let of_mass = CouplingFactor {
+            square: 1.0,
+            linear: alpha + beta * shift,
+            constant: c64::new(shift, alpha_h + beta_h * shift),
+        };
+        let of_damping = CouplingFactor { square: 0.0, linear: 1.0, constant: c64::new(0.0, 0.0) };
+        let of_loss = CouplingFactor { square: 0.0, linear: 0.0, constant: c64::new(0.0, 1.0) };
+        // The rows of F that an image of the basis has, and the first vector that has one.
+        let mut start = self.beyond;
+        let inertia = Mat::from_fn(m, f, |i, j| if i < first { 0.0 } else { self.at(i - first, j) / top });
+        let mut images = vec![(of_mass, inertia)];
+        for (image, scale, kind) in [(&parts.damped, 1.0, of_damping), (&parts.lossy, top, of_loss)] {
+            if let Some(image) = image {
+                let rows = Mat::from_fn(m, f, |i, j| scale * self.at(start + i, j));
+                start += image.values.ncols();
+                images.push((kind, rows));
+            }
+        }
+        images.iter().map(|(kind, rows)| (*kind, product(x.transpose(), rows.as_ref()))).collect()
+    }
+}
+
 /// A few random combinations c of forces F, with cᵀFᵀA⁻¹Fc to the square of the rounding: a solution x ≈ A⁻¹f of f = Fc leaves
 /// r = f − Ax, and fᵀA⁻¹f = fᵀx + rᵀx + rᵀA⁻¹r. What rounding makes of r itself shows as an error, too.
 struct Probes {
@@ -200,7 +238,7 @@ struct Probes {
 impl Probes {
     /// How many there are.
     const COUNT: usize = 4;
-    /// Factor on the largest error seen. A symmetric error of norm e with the numbers c between −1 and 1 shows as
+    /// CouplingFactor on the largest error seen. A symmetric error of norm e with the numbers c between −1 and 1 shows as
     /// e/100 at least in one of four, but for once in three thousand times when it has rank one, and seldomer with more.
     const MARGIN: f64 = 100.0;
 

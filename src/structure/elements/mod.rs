@@ -1,6 +1,21 @@
-//! Elements: pure functions from coordinates and material to small symmetric matrices.
+//! Elements: from coordinates and material to small symmetric matrices.
 //!
-//! | element | field | file |
+//! The rest of the program knows an element as a [`FiniteElement`]: nodes, freedoms, matrices of any size, the displacement
+//! at a point of its face, the range of its theory. A new one is a file here, and a line in `structure/registry.rs`, which says what
+//! of a model it stands for.
+//!
+//! | element | what it is | freedoms | file |
+//! |---|---|---|---|
+//! | [`KirchhoffTriangle`] | thin flat shell: DKT + OPT | 18 | `kirchhoff` |
+//! | [`MindlinTriangle`] | thick flat shell: DKMT + OPT | 18 | `mindlin/triangle` |
+//! | [`MindlinQuadrilateral`] | thick flat shell: DKMQ + OPT | 24 | `mindlin/quadrilateral` |
+//! | [`Bar`] | Euler–Bernoulli bar | 12 | `bar` |
+//! | [`Mass`] | concentrated mass | 6 | `point` |
+//! | [`SpringElement`] | spring and dashpot | 6, 12 | `point` |
+//!
+//! They are made of pure functions:
+//!
+//! | function | field | file |
 //! |---|---|---|
 //! | [`FlatTriangle`] | a triangle in its own plane: local frame, areas, gradients | `triangle` |
 //! | [`dkt`] | bending stiffness, discrete Kirchhoff triangle | `dkt` |
@@ -9,6 +24,8 @@
 //! | [`mass`] | consistent masses of bending and membrane | `mass` |
 //! | [`geometric`] | string effect of membrane and axial forces | `geometric` |
 //! | [`FlatShell`] | DKT + OPT in space, 18 degrees of freedom | `shell` |
+//! | [`mindlin`] | bending and shear with discrete shear constraints on the sides | `mindlin/sides` |
+//! | [`waves`] | bending waves of both theories, and how far Kirchhoff's is off | `waves` |
 //! | [`split_face`] | quadrilaterals as the mean of their two splittings into triangles | `face` |
 //! | [`Beam`] | Euler–Bernoulli bar in space, 12 degrees of freedom | `beam` |
 //! | [`spring_direction`] | springs, dashpots and point masses | `point` |
@@ -16,20 +33,31 @@
 //! A triangle's local axes are e₁ along its first side, e₃ its normal, e₂ = e₃ × e₁. Rotations are components of
 //! the rotation vector, so a deflection w along e₃ turns the normal by θ₁ = ∂w/∂y and θ₂ = −∂w/∂x.
 
+mod bar;
 pub mod bciz;
 mod beam;
 pub mod dkt;
+mod element_matrix;
 mod face;
+mod finite_element;
 pub mod geometric;
+mod kirchhoff;
 pub mod mass;
+pub mod mindlin;
 pub mod opt;
 mod point;
 mod shell;
 mod triangle;
+pub mod waves;
 
+pub use bar::Bar;
 pub use beam::Beam;
+pub use element_matrix::ElementMatrix;
 pub use face::{WeightedTriangle, split_face};
-pub use point::{mass_diagonal, spring_direction};
+pub use finite_element::{Acting, FacePoint, FiniteElement, TheoryError};
+pub use kirchhoff::KirchhoffTriangle;
+pub use mindlin::{MindlinQuadrilateral, MindlinTriangle};
+pub use point::{Mass, SpringElement, mass_diagonal, spring_direction};
 pub use shell::FlatShell;
 pub use triangle::FlatTriangle;
 
@@ -53,4 +81,9 @@ pub(crate) fn to_global<const N: usize>(
         }
     }
     symmetrized(global)
+}
+
+/// The mean of the coordinates of some nodes.
+fn mean(nodes: &[usize], coordinates: &[[f64; 3]]) -> [f64; 3] {
+    std::array::from_fn(|k| nodes.iter().map(|n| coordinates[*n][k]).sum::<f64>() / nodes.len() as f64)
 }

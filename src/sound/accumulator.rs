@@ -1,13 +1,13 @@
 //! Sound of a run, computed while the run proceeds.
 
-use super::Acoustics;
-use crate::modal::RealModes;
-use crate::results::{MicrophoneSound, PressureRecord, Sound, Tone};
+use super::{
+    Air, CrossSpectra, MicrophoneSound, Plate, PressureRecord, Radiation, Receiver, Sound, Surface, Tone,
+};
 use crate::signal::{Resampler, Spectrum, Welch, name_peaks, peaks};
-use crate::sound::{CrossSpectra, Plate, Radiation, Receiver};
+use faer::Mat;
 use std::f64::consts::TAU;
 
-/// No one hears beyond this \[Hz\].
+/// Highest audible frequency \[Hz\].
 const AUDIBLE: f64 = 20_000.0;
 /// Lines of the spectra are this far apart, if the run is long enough and they fit in memory \[Hz, bytes\].
 const RESOLUTION: f64 = 10.0;
@@ -27,12 +27,23 @@ const KEPT: usize = 60;
 /// Steps that are best worked on together.
 pub const BLOCK: usize = 1024;
 
+/// Radiating plates, microphones and air of a case.
+#[derive(Debug, Clone)]
+pub struct Acoustics {
+    /// The plates.
+    pub plates: Vec<Surface>,
+    /// Names and places of the microphones \[m\].
+    pub microphones: Vec<(String, [f64; 3])>,
+    /// Properties of the air.
+    pub air: Air,
+}
+
 /// Sound of a run: takes modal accelerations block by block and returns levels and a recording; its memory does not grow with
 /// the run.
 pub struct SoundAccumulator {
     modes: usize,
     plates: Vec<Plate>,
-    air: crate::sound::Air,
+    air: Air,
     step: f64,
     /// Steps worked on, the first that counts for the levels, and the highest frequency that does \[Hz\].
     taken: usize,
@@ -46,14 +57,17 @@ pub struct SoundAccumulator {
 }
 
 impl SoundAccumulator {
-    /// For a run of `steps` steps of `step` seconds of a model whose real modes are `real`. Levels are taken over its
-    /// second half.
-    pub fn new(acoustics: Acoustics, real: &RealModes, step: f64, steps: usize) -> Self {
-        let modes = real.len();
-        let plates: Vec<Plate> = acoustics.plates.iter().map(|plate| plate.moving(&real.shapes)).collect();
+    /// For a run of `steps` steps of `step` seconds of a model whose real modes have `shapes`, n_dofs × n_modes, and are
+    /// complete up to `highest` \[Hz\]. Levels are taken over its second half.
+    pub fn new(
+        acoustics: Acoustics,
+        (shapes, highest): (&Mat<f64>, f64),
+        (step, steps): (f64, usize),
+    ) -> Self {
+        let modes = shapes.ncols();
+        let plates: Vec<Plate> = acoustics.plates.iter().map(|plate| plate.moving(shapes)).collect();
         let counted = steps / 2;
-        // Modes are complete up to their highest; a time step carries what it samples well.
-        let highest = (0..modes).map(|k| real.frequency_hz(k)).fold(0.0, f64::max);
+        // A time step carries what it samples well.
         let top = AUDIBLE.min(0.4 / step).min(highest.max(RESOLUTION));
         let most = (MEMORY / (4 * modes * (modes + 1)).max(1) as f64).max(16.0);
         let seconds = (1.0 / RESOLUTION).min(0.5 * (steps + 1 - counted) as f64 * step).min(most / top);
