@@ -8,8 +8,8 @@ use std::path::Path;
 pub use crate::sound::{MicrophoneSound, PressureRecord, Sound, Tone};
 
 /// The name of the WAV file of a microphone, if it is the first.
-fn file(heard: &MicrophoneSound) -> String {
-    format!("sound_{}.wav", heard.name)
+fn file(microphone: &MicrophoneSound) -> String {
+    format!("sound_{}.wav", microphone.name)
 }
 
 /// A plate's name and the power that it sends out \[W\].

@@ -7,7 +7,7 @@ use crate::signal::{Resampler, Spectrum, Welch, name_peaks, peaks};
 use faer::Mat;
 use std::f64::consts::TAU;
 
-/// No one hears beyond this \[Hz\].
+/// Highest audible frequency \[Hz\].
 const AUDIBLE: f64 = 20_000.0;
 /// Lines of the spectra are this far apart, if the run is long enough and they fit in memory \[Hz, bytes\].
 const RESOLUTION: f64 = 10.0;
@@ -27,18 +27,18 @@ const KEPT: usize = 60;
 /// Steps that are best worked on together.
 pub const BLOCK: usize = 1024;
 
-/// Plates that are heard, and where one listens.
+/// Radiating plates, microphones and air of a case.
 #[derive(Debug, Clone)]
 pub struct Acoustics {
     /// The plates.
     pub plates: Vec<Surface>,
     /// Names and places of the microphones \[m\].
     pub microphones: Vec<(String, [f64; 3])>,
-    /// What carries the sound.
+    /// Properties of the air.
     pub air: Air,
 }
 
-/// Listens to a run: modal accelerations in, block by block, levels and a recording out; its memory does not grow with
+/// Sound of a run: takes modal accelerations block by block and returns levels and a recording; its memory does not grow with
 /// the run.
 pub struct SoundAccumulator {
     modes: usize,

@@ -21,7 +21,7 @@
 
 mod accumulator;
 mod cross;
-mod heard;
+mod levels;
 mod plate;
 mod radiation;
 mod receiver;
@@ -31,7 +31,7 @@ mod weighting;
 
 pub use accumulator::{Acoustics, BLOCK, SoundAccumulator};
 pub use cross::CrossSpectra;
-pub use heard::{MicrophoneSound, PressureRecord, Sound, Tone};
+pub use levels::{MicrophoneSound, PressureRecord, Sound, Tone};
 pub use plate::Plate;
 pub use radiation::Radiation;
 pub use receiver::Receiver;

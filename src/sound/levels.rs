@@ -8,17 +8,17 @@ use crate::signal::{Peak, Spectrum};
 pub struct Sound {
     /// The first and last time of what the levels are taken from \[s\].
     pub window: [f64; 2],
-    /// What carries it.
+    /// Air around the plates.
     pub air: Air,
     /// Δf \[Hz\]: line k stands at k Δf. The last line is the highest frequency that counts.
     pub resolution_hz: f64,
     /// Each plate's name, and the power \[W\] that it sends out in each line, both sides.
     pub plates: Vec<(String, Vec<f64>)>,
-    /// The share of each real mode in the power; a mode that takes up what others send counts below zero.
+    /// The share of each real mode in the power; negative for a mode that absorbs power radiated by others.
     pub mode_shares: Vec<f64>,
     /// The peaks of the power, strongest lines of it: amplitude² is their height in W.
     pub tones: Vec<Tone>,
-    /// What is heard where.
+    /// Pressure at each microphone.
     pub microphones: Vec<MicrophoneSound>,
     /// The pressure at the first microphone.
     pub recording: PressureRecord,
@@ -35,7 +35,7 @@ pub struct Tone {
     pub share: f64,
 }
 
-/// What a microphone hears.
+/// Sound pressure at a microphone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MicrophoneSound {
     /// Its name.
@@ -46,7 +46,7 @@ pub struct MicrophoneSound {
     pub spectrum: Spectrum,
 }
 
-/// A pressure that can be listened to.
+/// Pressure at a microphone as an audio record.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PressureRecord {
     /// The time of the first sample \[s\].
