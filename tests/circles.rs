@@ -123,7 +123,7 @@ impl Sources {
         let first = path.first()?.as_str();
         let mut base = module.clone();
         match first {
-            "crate" => return Some(path[1..].to_vec()),
+            "crate" => Some(path[1..].to_vec()),
             "super" | "self" => {
                 let ups = path.iter().take_while(|word| ["super", "self"].contains(&word.as_str())).count();
                 let levels = path[..ups].iter().filter(|word| *word == "super").count();
