@@ -16,7 +16,7 @@ pub trait CalibrationModel: Sync {
     /// The levels; lines need not be there.
     ///
     /// # Errors
-    /// As [`compute`](Model::compute).
+    /// As [`compute`](CalibrationModel::compute).
     fn levels(&self, x: &[f64]) -> Result<Computed> {
         self.compute(x)
     }

@@ -28,7 +28,7 @@ pub fn analyse<'a>(
     Ok(results)
 }
 
-/// Finds every fault that [`run_case`] finds before it computes; gives what the user should know.
+/// Finds every fault that [`run_case`](super::run_case) finds before it computes; gives what the user should know.
 ///
 /// # Errors
 /// All of them.

@@ -8,8 +8,8 @@
 //!   `mac_<name>.svg`, `frequencies_<name>.svg` and `measured_frf_<name>.svg` of measured data;
 //!   `sweep_<name>.svg`, `root_locus_<name>.svg` and `map_<name>.svg` of every sweep and map.
 //!
-//! Each analysis has a function that gives its [`ReportSection`]s from the results; tables and words are shown in either form, a picture
-//! is a pure function from the results to SVG. [`SECTIONS`] lists them.
+//! Each analysis has a function that gives its sections from the results; tables and words are shown in either form, a picture
+//! is a pure function from the results to SVG. `SECTIONS` lists them.
 
 mod advice;
 mod axes;
