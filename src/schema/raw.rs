@@ -1,4 +1,4 @@
-//! Single values of TOML: what they are read as, and how a fault tells them.
+//! Single values of TOML: how they are read, and how a fault reports them.
 
 use super::keys::is_name;
 use super::units::{Dimension, parse_any, parse_quantity};
