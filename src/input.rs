@@ -17,7 +17,7 @@ const LARGEST: u64 = 16 << 30;
 /// ```
 ///
 /// # Errors
-/// What the system says; a folder, a pipe, a device or a socket; more than 16 GiB.
+/// The error of the operating system; a folder, a pipe, a device or a socket; more than 16 GiB.
 pub fn read(path: &Path) -> Result<Vec<u8>> {
     read_up_to(path, LARGEST)
 }
@@ -61,7 +61,7 @@ mod tests {
         let said = |path: &Path| read(path).unwrap_err().to_string();
         assert!(said(dir.path()).contains("a folder"));
         assert_eq!(read(&dir.path().join("none")).unwrap_err().kind(), ErrorKind::NotFound);
-        // A file with a hole takes no room on the disk.
+        // A file with a hole takes no space on the disk.
         File::create(&path).unwrap().set_len(100 << 30).unwrap();
         assert_eq!(said(&path), "100.000 GiB; 16 GiB at most");
     }

@@ -1,40 +1,40 @@
 #![warn(missing_docs)]
 // Without these features some helpers have no user.
 #![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
-//! **stridor** tells when a disc will squeal, at which frequency, how loud, and what to change.
+//! **stridor** predicts when a disc will squeal, at which frequency, how loud, and what to change.
 //!
 //! The modules, in the order of the imports (a module only uses modules above it):
 //!
-//! | module | what it holds |
+//! | module | content |
 //! |---|---|
-//! | [`error`], [`progress`] | one error type that carries data; how long work reports where it stands |
+//! | [`error`], [`progress`] | error type that carries data; progress of long work |
 //! | [`numbers`] | numbers as text |
 //! | [`schema`] | tables of a TOML file, each key declared once |
 //! | [`pages`] | memory in large pages |
-//! | [`memory`] | how much memory there is |
+//! | [`memory`] | memory available to the process |
 //! | [`input`] | input files: regular, of a bounded size |
 //! | [`linalg`] | sparse symmetric factorisation, eigenvalues; knows no mechanics |
-//! | [`system`] | the seam: M, C, K and the sliding interface, what every analysis takes |
+//! | [`system`] | M, C, K and the sliding interface: the input of every analysis |
 //! | [`mesh`] | Gmsh files, generated discs and plates, regions, quality |
 //! | [`structure`] | elements, constraints, assembly |
 //! | [`contact`] | pairing of two bodies, normal and friction laws |
 //! | [`equilibrium`] | steady sliding and its linearisation |
 //! | [`modal`] | real modes, their names, their certificate |
-//! | [`reduction`] | a small system that moves like a large one at its contacts |
+//! | [`reduction`] | reduced models that keep the motion at the contacts |
 //! | [`stability`] | complex eigenvalues at steady sliding |
 //! | [`transient`] | motion in time: implicit integration, contact condensed |
 //! | [`signal`] | spectra, spectrograms, peaks, growth and size of a record |
-//! | [`sound`] | how loud vibrating plates are: Rayleigh's integral |
-//! | [`sweep`] | how complex modes change with scalars: branches, critical values, maps |
-//! | [`measured`] | what a test found, and how like it the computed is |
-//! | [`calibration`] | scalars found from measured frequencies, and what the agreement is worth |
-//! | [`dataset`] | named quantities with units and dimensions, and how JSON, HDF5, CSV and tables hold them |
+//! | [`sound`] | sound of vibrating plates: Rayleigh's integral |
+//! | [`sweep`] | complex modes over scalars: branches, critical values, maps |
+//! | [`measured`] | measured modes and responses, compared with the computed ones |
+//! | [`calibration`] | scalars identified from measurements, with their uncertainty |
+//! | [`dataset`] | named quantities with units and dimensions, in JSON, HDF5, CSV and tables |
 //! | [`results`] | HDF5, VTK, JSON, CSV |
 //! | [`report`] | pictures and the HTML page |
 //! | [`case`] | TOML → validated case → system |
 //! | [`job`] | from a case to its results |
-//! | [`validation`] | what the program is checked against |
-//! | [`search`] | numbers of a case searched for, so that it meets facts of any kind |
+//! | [`validation`] | the validation suite: computed and reference values |
+//! | [`search`] | search for scalars of a case, so that its results match references of any kind |
 //! | [`cli`] | the command line |
 //!
 //! Cargo features: `cli` (default) is the program with its results folders, search and validation suite; `hdf5` and `report`,

@@ -5,7 +5,7 @@
 pub struct Available {
     /// How much \[bytes\].
     pub bytes: u64,
-    /// What sets the bound, as a phrase.
+    /// Origin of the bound, as a phrase.
     pub by: &'static str,
 }
 
@@ -36,7 +36,7 @@ fn field(text: &str, name: &str) -> Option<u64> {
     rest.split_whitespace().next()?.parse::<u64>().ok()?.checked_mul(1024)
 }
 
-/// What the control group of the process and those above it leave (version 2: memory.max less memory.current; version 1: the same
+/// Memory left by the control group of the process and those above it \[bytes\] (version 2: memory.max less memory.current; version 1: the same
 /// by other names), file caches counted as free.
 fn control_group() -> Option<u64> {
     let groups = read("/proc/self/cgroup")?;

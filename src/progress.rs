@@ -1,4 +1,4 @@
-//! How long work tells its observer where it stands. Solvers never print; the command line draws the bars.
+//! Progress of long work, reported to an observer. Solvers never print; the command line draws the bars.
 
 /// Watches a long computation. All methods default to silence, so `()` is the quiet observer.
 pub trait Observer: Sync {

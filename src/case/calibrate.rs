@@ -32,7 +32,7 @@ declare! {
         pub chance_draws: usize = key::whole().check("at most a million", |n| *n <= 1_000_000).or(1000),
         /// Fits of synthetic data, for the coverage of the intervals; 0 for none.
         pub trials: usize = key::whole().check("at most a million", |n| *n <= 1_000_000).or(0),
-        /// What is to be found, by name.
+        /// Scalars to be found, by name.
         pub parameter: BTreeMap<String, CalibratedParameter> = key::named(),
     }
 }
@@ -53,7 +53,7 @@ declare! {
                 .check("the lower bound before the upper one", |[low, high]| low < high)
                 .check("bounds above zero with `log`", move |[low, _]| !log || *low > 0.0)
         },
-        /// What is expected \[SI\]; the value of the case where the file does not say.
+        /// Expected value \[SI\]; that of the case by default.
         pub expected: Option<f64> = {
             let [low, high] = *between;
             key::quantity_of_scalar()
@@ -229,7 +229,7 @@ fn check_against(case: &Case, analysis: &CalibrateAnalysis, report: &mut Report)
 }
 
 impl CalibratedParameter {
-    /// What is expected \[SI\]: of the case, or the middle of the bounds where it is not known.
+    /// Expected value \[SI\]: that of the case, or the middle of the bounds where it is not known.
     pub fn expectation(&self) -> f64 {
         self.expected.unwrap_or(0.5 * (self.between[0] + self.between[1]))
     }

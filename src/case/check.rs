@@ -1,4 +1,4 @@
-//! What sections say of each other: names that must stand elsewhere, and what does not go together.
+//! Checks across sections: names that must be defined elsewhere, and keys that exclude each other.
 
 use super::consistent::Consistent;
 use super::names::unknown_name;
@@ -92,7 +92,7 @@ fn check_modes(root: &mut Report, case: &Case) {
     }
 }
 
-/// What motion in time names, and what it needs.
+/// Checks the names in `[transient]`, and the sections that it needs.
 fn check_transient(root: &mut Report, case: &Case, transient: &TransientAnalysis) {
     if case.cea.is_none() {
         let expected = "a [cea], whose modes the motion starts along and is compared with";
@@ -160,7 +160,7 @@ fn check_sensitivity(root: &mut Report, case: &Case, scalars: Option<&[Parameter
     }
 }
 
-/// What a case with matrices may not say besides, and what only such a case may say.
+/// Checks the keys that a case with matrices excludes, and those that only such a case has.
 fn check_matrices(root: &mut Report, case: &Case) {
     let built = [
         ("mesh", case.mesh.is_some()),

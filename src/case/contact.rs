@@ -27,7 +27,7 @@ declare! {
             .or(1e-3)
             .invalidates(Invalidates::Interface)
             .derivative(|_| Derivative::None("it only decides which contact points are considered")),
-        /// What presses the pair together.
+        /// Normal load or approach of the pair.
         pub pressing: Pressing = key::flat(),
         /// V \[m/s\] of the counter-body relative to the body along the sliding direction.
         pub sliding_velocity: f64 = key::quantity(VELOCITY)
@@ -56,7 +56,7 @@ declare! {
         pub friction: Friction = key::table()
             .required("a table such as { law = \"coulomb\", mu0 = 0.4 }")
             .invalidates(Invalidates::Law),
-        /// What bends before a point slips.
+        /// Tangential stiffness before a point slips.
         pub bristle: Option<BristleChoice> = {
             let per = normal.per;
             key::table().invalidates(Invalidates::Law).optional().beforehand(move |b: &mut BristleChoice| b.per = per)
@@ -154,7 +154,7 @@ impl Value for ContactPoints {
 }
 
 variants! {
-    /// What presses a contact pair together.
+    /// Normal load or approach of a contact pair.
     #[derive(Copy)]
     pub enum Pressing by presence {
         /// A normal load.
@@ -180,7 +180,7 @@ declare! {
             key::quantity(per.dimensions()[2]).non_negative().or(0.0).derivative(|_| Derivative::Zero),
     }
     also {
-        /// What the normal stiffness belongs to.
+        /// Reference of the normal stiffness: a point, a length or an area.
         pub per: StiffnessPer,
     }
 }
@@ -199,7 +199,7 @@ declare! {
 }
 
 choices! {
-    /// What a contact stiffness belongs to.
+    /// Reference of a contact stiffness.
     pub enum StiffnessPer {
         /// The one point nearest to the counter-body \[N/m\].
         Point = "point",
@@ -233,7 +233,7 @@ impl StiffnessPer {
 declare! {
     /// N = k_n δ + k_nl δ³ + c_n δ̇.
     pub struct Normal, checked by check_normal {
-        /// What the coefficients belong to.
+        /// Reference of the coefficients: a point, a length or an area.
         pub per: StiffnessPer =
             key::choice().expecting("what the stiffness belongs to: point, length or area"),
         /// k_n.

@@ -15,7 +15,7 @@ pub struct Dual {
     pub slope: f64,
 }
 
-/// What an expression has that it may not have: found, expected.
+/// Fault of an expression: (found, expected).
 pub type Wrong = (String, String);
 
 /// The value of `text` with the scalars `names`, and its derivative by the scalar `by`: numbers, names, `+ - * / ^` and
@@ -30,7 +30,7 @@ pub type Wrong = (String, String);
 /// ```
 ///
 /// # Errors
-/// What is no expression, a name that is not there, a division by zero, a result that is not finite.
+/// Text that is no expression, an unknown name, a division by zero, a result that is not finite.
 pub fn evaluate(text: &str, names: &BTreeMap<String, f64>, by: &str) -> Result<Dual, Wrong> {
     if text.chars().count() > LONGEST {
         let start: String = text.chars().take(40).collect();

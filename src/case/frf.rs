@@ -13,7 +13,7 @@ declare! {
             .required("where the force acts: { at = [0, 0, \"-70 mm\"], direction = [1, 0, 0] }"),
         /// Where and along what motion is looked at, by name; at the excitation where none is named.
         pub response: BTreeMap<String, MotionAt> = key::named(),
-        /// What of the motion.
+        /// Quantity of the response: displacement, velocity or acceleration per force.
         pub quantity: FrfQuantity = key::choice().or(FrfQuantity::Accelerance),
         /// The lowest and the highest frequency \[Hz\].
         pub band: [f64; 2] = key::quantities(FREQUENCY)
@@ -50,7 +50,7 @@ fn check_place(place: &MotionAt, report: &mut Report) {
 }
 
 choices! {
-    /// What the contacts do.
+    /// State of the contacts.
     pub enum FrfContact {
         /// Nothing touches.
         Open = "open",

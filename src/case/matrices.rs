@@ -6,7 +6,7 @@ use crate::schema::{Blank, Form, Report, Units, Value, declare, dotted, key, key
 use std::collections::BTreeMap;
 use toml::de::DeValue;
 
-/// What is expected of a file of a matrix.
+/// Expected value of a key that names a file of a matrix.
 const FILE: &str = "the path of a MatrixMarket file";
 
 declare! {
@@ -25,7 +25,7 @@ declare! {
         /// Scalars that the factors are expressions of, such as a speed, by name.
         pub scalar: BTreeMap<String, f64> =
             key::values(|| key::quantity(NUMBER), "letters, digits and _, not a digit first", is_name),
-        /// What is added to them, by name.
+        /// Terms added to them, by name.
         pub term: BTreeMap<String, MatrixTerm> = key::named(),
     }
 }

@@ -6,7 +6,7 @@ use crate::schema::{Report, declare, dotted, key};
 use std::collections::BTreeMap;
 
 declare! {
-    /// What a test found: in a file, or frequencies in the case itself.
+    /// Measured modes or frequency responses: in a file, or frequencies in the case itself.
     pub struct MeasuredData, checked by check_data {
         /// The real-mode analysis whose modes these are; none where only frequency responses are compared.
         pub of: Option<String> = key::name("the name of a [modes] analysis").optional(),

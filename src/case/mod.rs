@@ -62,7 +62,7 @@ declare! {
     pub struct Case, checked by check_case {
         /// One line for reports.
         pub title: String = key::text().or("untitled".into()),
-        /// What the source of the case does not state, one sentence each; shown in every report.
+        /// Assumptions that the source of the case does not state, one sentence each; shown in every report.
         pub assumptions: Vec<String> = key::texts(),
         /// Whether the preload's geometric stiffness counts.
         pub prestress: bool = key::flag(false),
@@ -106,7 +106,7 @@ declare! {
         pub transient: Option<TransientAnalysis> = key::table().invalidates(Invalidates::Question).optional(),
         /// Frequency responses by name.
         pub frf: BTreeMap<String, FrfAnalysis> = key::named().invalidates(Invalidates::Question),
-        /// What tests found, by name.
+        /// Measured modes and frequency responses, by name.
         pub measured: BTreeMap<String, MeasuredData> = key::named().invalidates(Invalidates::Question),
         /// Scalars to be found from measured frequencies, if asked for.
         pub calibrate: Option<CalibrateAnalysis> = key::table().invalidates(Invalidates::Question).optional(),

@@ -19,7 +19,7 @@ declare! {
         pub direction: Option<[f64; 3]> = key::direction().optional(),
         /// The plates that are heard; all when empty.
         pub plates: Vec<String> = key::names("the names of plates").or(Vec::new()),
-        /// What carries the sound; air of 20 °C at sea level where not said.
+        /// Medium of the sound; air of 20 °C at sea level by default.
         pub air: AirChoice = key::table(),
     }
 }

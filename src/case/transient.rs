@@ -45,9 +45,9 @@ declare! {
                 .check("a time between the time step and the duration", move |t| (step..=duration).contains(t))
                 .optional()
         },
-        /// What the motion begins with.
+        /// Initial state of the motion.
         pub start: StartChoice = key::choice().or(StartChoice::Steady),
-        /// What disturbs it at the start.
+        /// Initial disturbance.
         pub disturbance: Option<Disturbance> = key::table().optional(),
         /// Pushes by name.
         pub push: BTreeMap<String, PushedRegion> = key::named(),
@@ -80,7 +80,7 @@ fn check(run: &TransientAnalysis, report: &mut Report) {
 }
 
 choices! {
-    /// What a run in time begins with.
+    /// Initial state of a run in time.
     pub enum StartChoice {
         /// Steady sliding at the velocities and loads of t = 0.
         Steady = "steady",
@@ -90,7 +90,7 @@ choices! {
 }
 
 choices! {
-    /// What moves.
+    /// Model that is integrated in time.
     pub enum ModelChoice {
         /// The full finite-element model.
         Full = "full",

@@ -1,7 +1,7 @@
 //! Friction coefficients: how μ depends on the slip speed and on the pressure.
 
 use super::coefficient::{Coefficient, FrictionCoefficient};
-use super::table::Table;
+use super::table::FrictionTable;
 use crate::error::Result;
 use crate::schema::units::{INVERSE_VELOCITY, NUMBER, VELOCITY};
 use crate::schema::{Field, Report, declare, key, variants};
@@ -47,7 +47,7 @@ impl FrictionCurve {
     /// The law of the curve; `place` names a table in faults.
     ///
     /// # Errors
-    /// Those of [`Table::new`].
+    /// Those of [`FrictionTable::new`].
     pub fn coefficient(&self, place: &str) -> Result<Arc<dyn FrictionCoefficient>> {
         Ok(match self {
             FrictionCurve::Coulomb { law } => Arc::new(*law),
@@ -55,7 +55,7 @@ impl FrictionCurve {
             FrictionCurve::Stribeck { law } => Arc::new(*law),
             FrictionCurve::Hyperbolic { law } => Arc::new(*law),
             FrictionCurve::Table { velocity, pressure, mu } => {
-                Arc::new(Table::new(place, velocity.clone(), pressure.clone(), mu.clone())?)
+                Arc::new(FrictionTable::new(place, velocity.clone(), pressure.clone(), mu.clone())?)
             }
         })
     }

@@ -24,7 +24,7 @@ pub struct SlidingLaw {
     pub regularisation: f64,
     /// Which way friction pulls.
     pub sense: FrictionSense,
-    /// What bends before the point slips; in time only, as steady sliding has bent it as far as it goes.
+    /// Bristle, the tangential stiffness before the point slips; in time only, since in steady sliding it is at its limit.
     pub bristle: Option<Bristle>,
 }
 
@@ -107,7 +107,7 @@ impl ContactLaw for SlidingLaw {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Coulomb, Exponential, Table};
+    use crate::contact::{Coulomb, Exponential, FrictionTable};
 
     fn motion(penetration: f64, penetration_rate: f64, v1: f64, v2: f64) -> ContactMotion {
         ContactMotion { penetration, penetration_rate, slip_velocity: [v1, v2] }
@@ -153,7 +153,7 @@ mod tests {
     #[test]
     fn jacobian_agrees_with_differences_in_every_regime() {
         let normal = NormalLaw { stiffness: 2e6, cubic_stiffness: 4e16, damping: 30.0, bilateral: false };
-        let table = Table::new(
+        let table = FrictionTable::new(
             "mu",
             vec![0.0, 0.1, 1.0, 5.0],
             vec![0.0, 10.0, 60.0],

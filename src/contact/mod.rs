@@ -29,6 +29,6 @@ pub use ground::{GroundFault, ground_points};
 pub use law::{FrictionSense, SlidingLaw};
 pub use normal::{NormalForce, NormalLaw};
 pub use pairing::{ContactPatch, ContactSide, Reduce, Surfaces, pair_surfaces};
-pub use placement::{OffCounter, Placement, place};
-pub use table::Table;
+pub use placement::{BodyPlacement, OffCounter, place};
+pub use table::FrictionTable;
 pub use travel::{Stations, mean_edge, travelled};

@@ -1,6 +1,6 @@
 //! Contact points from the geometry of two plates.
 
-use super::projection::{Foot, Part, Plate, Vector, add, area_vector, cross, dot, scale, subtract};
+use super::projection::{FaceGrid, Foot, Part, Vector, add, area_vector, cross, dot, scale, subtract};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::SparseVector;
 use crate::mesh::Element;
@@ -94,7 +94,7 @@ pub fn pair_surfaces(surfaces: &Surfaces<'_>, reduce: &Reduce<'_>) -> Result<Vec
     let touching = touching_nodes(surfaces, &place("body"))?;
     let mean = touching.iter().fold([0.0; 3], |sum, t| add(sum, surfaces.nodes[t.node]));
     let mean = scale(1.0 / touching.len() as f64, mean);
-    let plate = Plate::new(surfaces.nodes, &surfaces.counter.faces, mean).ok_or_else(|| {
+    let plate = FaceGrid::new(surfaces.nodes, &surfaces.counter.faces, mean).ok_or_else(|| {
         let found = "faces without area or turned against each other";
         Error::input(Fault::new(
             place("counter"),
@@ -235,7 +235,7 @@ fn touching_nodes(surfaces: &Surfaces<'_>, place: &str) -> Result<Vec<Touching>>
         .collect())
 }
 
-fn candidates(surfaces: &Surfaces<'_>, plate: &Plate, touching: &[Touching]) -> Vec<Candidate> {
+fn candidates(surfaces: &Surfaces<'_>, plate: &FaceGrid, touching: &[Touching]) -> Vec<Candidate> {
     let half = 0.5 * surfaces.body.thickness;
     let place = |t: &Touching, offset: Vector, weight: f64| {
         let position = add(surfaces.nodes[t.node], offset);
@@ -261,7 +261,7 @@ fn candidates(surfaces: &Surfaces<'_>, plate: &Plate, touching: &[Touching]) -> 
 }
 
 /// Refuses bodies out of reach, beside or inside each other, so that at least one point is kept.
-fn check_nearest(surfaces: &Surfaces<'_>, plate: &Plate, all: &[Candidate]) -> Result<()> {
+fn check_nearest(surfaces: &Surfaces<'_>, plate: &FaceGrid, all: &[Candidate]) -> Result<()> {
     let lowest = |a: &&Candidate, b: &&Candidate| a.gap.total_cmp(&b.gap);
     let over = all.iter().filter(|c| c.foot.is_some()).min_by(lowest);
     let Some(nearest) = all.iter().min_by(lowest) else { return Ok(()) };
@@ -346,8 +346,8 @@ fn on_body(candidate: &Candidate, w: Vector, terms: &mut Vec<(usize, usize, f64)
     }
 }
 
-/// What a component of the displacement of a node adds to that of a foot.
-struct Moved {
+/// Contribution of a component of the displacement of a node to that of a foot.
+struct NodeShare {
     node: usize,
     component: usize,
     /// The share of the part of the foot.
@@ -357,25 +357,25 @@ struct Moved {
 }
 
 /// The displacement of the mid-surface at the foot, by the elements of the counter-body.
-fn at_foot(surfaces: &Surfaces<'_>, foot: &Foot) -> Vec<Moved> {
+fn at_foot(surfaces: &Surfaces<'_>, foot: &Foot) -> Vec<NodeShare> {
     let on_face = |part: &Part| {
         let moved = surfaces.counter.displacement_at(surfaces.nodes, part.face, &part.at);
         let share = part.share;
-        moved.into_iter().map(move |(node, component, by)| Moved { node, component, share, by })
+        moved.into_iter().map(move |(node, component, by)| NodeShare { node, component, share, by })
     };
     foot.parts.iter().flat_map(on_face).collect()
 }
 
 /// The same at the foot on the counter-face, `half` off the mid-surface, whose displacement is `at_foot`.
 fn on_counter(
-    (foot, at_foot): (&Foot, &[Moved]),
+    (foot, at_foot): (&Foot, &[NodeShare]),
     half: f64,
     w: Vector,
     terms: &mut Vec<(usize, usize, f64)>,
 ) {
     let moment = cross(scale(half, foot.normal), w);
     let force = [w[0], w[1], w[2], moment[0], moment[1], moment[2]];
-    for Moved { node, component, share, by } in at_foot {
+    for NodeShare { node, component, share, by } in at_foot {
         let coefficient: f64 = force.iter().zip(by).map(|(f, by)| f * by).sum();
         if coefficient != 0.0 {
             terms.push((*node, *component, share * coefficient));

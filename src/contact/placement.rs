@@ -2,7 +2,7 @@
 
 /// How a body stands on a counter-body.
 #[derive(Debug, Clone, Copy)]
-pub struct Placement<'a> {
+pub struct BodyPlacement<'a> {
     /// Whether a node moves with the body, one a node.
     pub moves: &'a [bool],
     /// Nodes of the body of which the lowest touches.
@@ -35,8 +35,8 @@ pub struct OffCounter {
 ///
 /// # Errors
 /// A position off the counter-body, the nodes then turned and not moved.
-pub fn place(nodes: &mut [[f64; 3]], placement: &Placement<'_>) -> Result<(), OffCounter> {
-    let Placement { moves, touching, counter, thickness, lead_angle, position } = *placement;
+pub fn place(nodes: &mut [[f64; 3]], placement: &BodyPlacement<'_>) -> Result<(), OffCounter> {
+    let BodyPlacement { moves, touching, counter, thickness, lead_angle, position } = *placement;
     let (sin, cos) = lead_angle.sin_cos();
     for (node, _) in nodes.iter_mut().zip(moves).filter(|(_, moves)| **moves) {
         let [x, y, z] = *node;
@@ -78,7 +78,7 @@ mod tests {
     #[test]
     fn the_body_turns_by_the_lead_angle_and_its_lowest_node_stands_on_the_upper_face() {
         let moves: Vec<bool> = (0..8).map(|k| k < 4).collect();
-        let own = Placement {
+        let own = BodyPlacement {
             moves: &moves,
             touching: &[0, 1, 2, 3],
             counter: &[4, 5, 6, 7],
@@ -93,7 +93,7 @@ mod tests {
         // From the lowest corner to the upper one: (0, 2) turned by θ about y.
         assert!(near(nodes[2], [0.3 + 2.0 * 0.1f64.sin(), -0.4, -2.9 + 2.0 * 0.1f64.cos()]));
         assert_eq!(nodes[4..], bodies()[4..]);
-        let off = Placement { position: [0.0, 1.5], ..own };
+        let off = BodyPlacement { position: [0.0, 1.5], ..own };
         assert_eq!(place(&mut bodies(), &off), Err(OffCounter { axis: 1, reach: 1.0 }));
     }
 }

@@ -6,11 +6,11 @@ use std::collections::HashMap;
 
 pub(super) type Vector = [f64; 3];
 
-/// What counts as equal, as a part of the size of a triangle: far above round-off, far below what a mesh resolves.
+/// Relative tolerance, to the size of a triangle: far above round-off, far below what a mesh resolves.
 const TOLERANCE: f64 = 1e-9;
 
 /// The faces of a plate, sorted into a grid on its mean plane.
-pub(super) struct Plate {
+pub(super) struct FaceGrid {
     faces: Vec<Face>,
     /// Mean unit normal, towards the other body.
     pub(super) normal: Vector,
@@ -45,7 +45,7 @@ pub(super) struct Part {
     pub(super) at: FacePoint,
 }
 
-impl Plate {
+impl FaceGrid {
     /// `None` when the faces have no common side (no area, or normals that cancel).
     pub(super) fn new(nodes: &[Vector], faces: &[Element], towards: Vector) -> Option<Self> {
         let placed = |t: WeightedTriangle| (t, t.nodes.map(|n| nodes[n]));
@@ -67,7 +67,7 @@ impl Plate {
         let first = axis_across(normal);
         let axes = [first, cross(normal, first)];
         let cell = 2.0 * (area / faces.len() as f64).sqrt();
-        let mut plate = Plate { faces, normal, axes, origin, cell, grid: HashMap::new() };
+        let mut plate = FaceGrid { faces, normal, axes, origin, cell, grid: HashMap::new() };
         for f in 0..plate.faces.len() {
             let [i, j] = plate.cells_of(&plate.faces[f]);
             for i in i[0]..=i[1] {

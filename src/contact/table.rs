@@ -7,7 +7,7 @@ use crate::error::{Error, Fault, Faults, Result};
 /// 238: no overshoot between the values, continuous ∂μ/∂v, which is what falling friction depends on), linear in
 /// the pressure, constant beyond the first and last values.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Table {
+pub struct FrictionTable {
     speeds: Vec<f64>,
     pressures: Vec<f64>,
     /// One row a pressure: μ at every speed.
@@ -16,7 +16,7 @@ pub struct Table {
     slopes: Vec<Vec<f64>>,
 }
 
-impl Table {
+impl FrictionTable {
     /// `values[i][j]` is μ at `pressures[i]` and `speeds[j]` \[m/s\]; `place` names the table in faults.
     ///
     /// # Errors
@@ -44,7 +44,7 @@ impl Table {
             return Err(Error::Input(faults));
         }
         let slopes = values.iter().map(|mus| monotone_slopes(&speeds, mus)).collect();
-        Ok(Table { speeds, pressures, values, slopes })
+        Ok(FrictionTable { speeds, pressures, values, slopes })
     }
 
     /// μ and ∂μ/∂v on one row.
@@ -63,7 +63,7 @@ impl Table {
     }
 }
 
-impl FrictionCoefficient for Table {
+impl FrictionCoefficient for FrictionTable {
     fn mu(&self, speed: f64, pressure: f64) -> Coefficient {
         let Some((k, s)) = locate(&self.pressures, pressure) else {
             let end = if pressure <= self.pressures[0] { 0 } else { self.pressures.len() - 1 };
@@ -133,9 +133,9 @@ fn check_axis(faults: &mut Faults, place: &str, axis: &[f64]) {
 mod tests {
     use super::*;
 
-    fn falling() -> Table {
+    fn falling() -> FrictionTable {
         let values = vec![vec![0.6, 0.5, 0.42, 0.4], vec![0.5, 0.45, 0.41, 0.41]];
-        Table::new("friction", vec![0.0, 0.5, 1.0, 3.0], vec![1e5, 1e6], values).unwrap()
+        FrictionTable::new("friction", vec![0.0, 0.5, 1.0, 3.0], vec![1e5, 1e6], values).unwrap()
     }
 
     #[test]
@@ -167,7 +167,8 @@ mod tests {
     #[test]
     fn a_bad_table_is_refused_with_every_fault() {
         let values = vec![vec![0.5, f64::NAN], vec![0.4]];
-        let text = Table::new("mu.csv", vec![1.0, 0.5], vec![0.0, -1.0], values).unwrap_err().to_string();
+        let text =
+            FrictionTable::new("mu.csv", vec![1.0, 0.5], vec![0.0, -1.0], values).unwrap_err().to_string();
         for part in
             ["speeds: found 0.5 after 1", "pressures: found -1", "row 1: found NaN", "row 2: found 1 coeff"]
         {

@@ -33,7 +33,7 @@ pub fn place(
             .with_help("Remove the placement, or the nodes and links that join the two"),
         ));
     }
-    let stand = contact::Placement {
+    let stand = contact::BodyPlacement {
         moves: &moves,
         touching: &body_nodes,
         counter: &counter_nodes,

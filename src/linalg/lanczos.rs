@@ -34,7 +34,7 @@ pub struct BlockLanczos<'a> {
     factor: &'a dyn SymmetricFactor,
     /// V in the first `len` columns, X in the `width` columns after them.
     basis: Mat<f64>,
-    /// The columns that the basis has room for.
+    /// The columns that the basis has memory for.
     capacity: usize,
     projected: Mat<f64>,
     len: usize,
@@ -88,7 +88,7 @@ impl Window {
 }
 
 impl<'a> BlockLanczos<'a> {
-    /// An empty basis with room for `capacity` columns, started with vectors that are the same in every run. Ritz pairs
+    /// An empty basis with memory for `capacity` columns, started with vectors that are the same in every run. Ritz pairs
     /// are accepted at ‖A x − ν x‖_M ≤ `accepted` |ν|.
     pub fn new(
         mass: &'a SparseMatrix,
@@ -118,7 +118,7 @@ impl<'a> BlockLanczos<'a> {
         lanczos
     }
 
-    /// Makes room for `capacity` columns and two blocks.
+    /// Reserves memory for `capacity` columns and two blocks.
     pub fn reserve(&mut self, capacity: usize) {
         let total = capacity.max(4 * BLOCK) + 2 * BLOCK;
         if total > self.capacity {
@@ -144,10 +144,10 @@ impl<'a> BlockLanczos<'a> {
         for _ in 0..MOST_STEPS {
             let complete = self.width == 0 && !self.inject();
             if !complete {
-                let room = 3 * self.width.max(BLOCK);
-                self.reserve(window.negative + window.largest + 2 * room);
-                if self.len + room > self.capacity {
-                    self.restart(window, room)?;
+                let extra = 3 * self.width.max(BLOCK);
+                self.reserve(window.negative + window.largest + 2 * extra);
+                if self.len + extra > self.capacity {
+                    self.restart(window, extra)?;
                 }
                 self.step()?;
                 observer.advance(1);
@@ -378,13 +378,13 @@ impl<'a> BlockLanczos<'a> {
         true
     }
 
-    /// Keeps the Ritz vectors of the window and the best of the rest as the new V, with room for more columns.
-    fn restart(&mut self, window: Window, room: usize) -> Result<()> {
+    /// Keeps the Ritz vectors of the window and the best of the rest as the new V, with memory for more columns.
+    fn restart(&mut self, window: Window, extra: usize) -> Result<()> {
         let ritz = self.ritz()?;
         let mut order: Vec<usize> = (0..self.len).collect();
         order.sort_by(|a, b| ritz.values[*b].abs().total_cmp(&ritz.values[*a].abs()));
         let wanted = (window.negative + window.largest).min(self.len);
-        let keep = (wanted + (self.len - wanted) / 2).min(self.capacity - room);
+        let keep = (wanted + (self.len - wanted) / 2).min(self.capacity - extra);
         let mut kept = order[..keep].to_vec();
         kept.sort_unstable();
         let s = Mat::from_fn(self.len, keep, |i, k| ritz.coefficients[(i, kept[k])]);
@@ -435,7 +435,7 @@ fn lengths(square: &Mat<f64>) -> Vec<f64> {
     (0..square.ncols()).map(|j| square[(j, j)].max(0.0).sqrt()).collect()
 }
 
-/// Makes room in the memory at hand, which is not cleared.
+/// Resizes `a` to `n` × `columns`; its values are undefined.
 fn resize(a: &mut Mat<f64>, n: usize, columns: usize) {
     a.resize_with(n, columns, |_, _| 0.0);
 }

@@ -1,12 +1,12 @@
-//! Columns laid side by side, row by row, as sparse products want them; and back.
+//! Columns packed side by side, row by row, as sparse products want them; and back.
 
 use super::scalar::Scalar;
 use pulp::{Arch, Simd, WithSimd};
 
-/// Columns that are laid together, and rows and columns that change places in registers when they are spread.
+/// Columns that are packed together, and rows and columns that change places in registers when they are unpacked.
 const TILE: usize = 8;
 
-/// What begins with a line of the cache: a row that lies in two of them takes twice the time to fetch.
+/// A value aligned to a cache line (64 bytes): a row that spans two lines takes twice the time to fetch.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 pub struct Aligned<L>(pub L);
@@ -48,12 +48,12 @@ impl<T: Scalar, const W: usize> Row<T, W> for Aligned<[T; W]> {
 }
 
 /// rows\[i\]\[c\] = columns\[c\]\[i\]; what a row has beyond the columns is left alone.
-pub(super) fn lay<T: Scalar, R: Row<T, W>, const W: usize>(columns: &[&[T]], rows: &mut [R]) {
+pub(super) fn pack<T: Scalar, R: Row<T, W>, const W: usize>(columns: &[&[T]], rows: &mut [R]) {
     Arch::new().dispatch(Lay { columns, rows });
 }
 
 /// columns\[c\]\[i\] = row(i)\[c\].
-pub(super) fn spread<'a, T: Scalar + 'a, const W: usize>(
+pub(super) fn unpack<'a, T: Scalar + 'a, const W: usize>(
     row: impl Fn(usize) -> &'a [T; W],
     columns: &mut [&mut [T]],
 ) {
@@ -135,13 +135,13 @@ mod tests {
             let columns: Vec<Vec<f64>> =
                 (0..count).map(|c| (0..n).map(|i| (100 * c + i) as f64).collect()).collect();
             let mut rows = vec![Aligned([-1.0; 16]); n];
-            lay(&columns.iter().map(|c| &c[..]).collect::<Vec<_>>(), &mut rows);
+            pack(&columns.iter().map(|c| &c[..]).collect::<Vec<_>>(), &mut rows);
             for (i, row) in rows.iter().enumerate() {
                 let expected = |c: usize| if c < count { columns[c][i] } else { -1.0 };
                 assert_eq!(row.0, std::array::from_fn(expected));
             }
             let mut back = vec![vec![0.0; n]; count];
-            spread(|i| rows[i].values(), &mut back.iter_mut().map(|c| &mut c[..]).collect::<Vec<_>>());
+            unpack(|i| rows[i].values(), &mut back.iter_mut().map(|c| &mut c[..]).collect::<Vec<_>>());
             assert_eq!(back, columns);
         }
     }

@@ -40,7 +40,7 @@ enum Symmetry {
     Skew,
 }
 
-/// What the first line says.
+/// Header: the first line of the file.
 #[derive(Debug, Clone, Copy)]
 struct Header {
     coordinate: bool,

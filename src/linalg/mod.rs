@@ -14,7 +14,7 @@
 //! * [`orthogonal`]: orthogonal factors of small dense matrices.
 //! * [`proportional`]: a matrix as α M + β K and a rest.
 //! * [`random`]: start vectors that are the same in every run.
-//! * [`multivector`]: products of tall matrices, such as a set of modes.
+//! * [`multivector`]: products of multivectors, such as a set of modes.
 //! * [`toar`]: eigenpairs of a quadratic problem nearest a shift, by two-level Arnoldi.
 //! * [`unsymmetric`]: small dense eigenproblems that are not symmetric.
 

@@ -1,4 +1,4 @@
-//! Products of tall matrices, real or complex: thousands of rows, tens or hundreds of columns.
+//! Products of multivectors, real or complex: thousands of rows, tens or hundreds of columns.
 //!
 //! Work is split over fixed ranges of rows, and sums are added in the order of the ranges: the same bits for any number
 //! of threads.
@@ -22,7 +22,7 @@ pub fn panels(columns: Range<usize>) -> impl Iterator<Item = (usize, usize)> {
     columns.step_by(PANEL).map(move |start| (start, PANEL.min(end - start)))
 }
 
-/// Numbers of tall matrices, `f64` or [`c64`].
+/// Scalars of multivectors, `f64` or [`c64`].
 pub trait Entry: ComplexField {
     /// AᴴB.
     fn gram(a: MatRef<'_, Self>, b: MatRef<'_, Self>) -> Mat<Self>;
@@ -80,7 +80,7 @@ pub fn combine<T: Entry>(y: MatMut<'_, T>, accumulate: Accum, v: MatRef<'_, T>, 
     T::combine(y, accumulate, v, c, factor);
 }
 
-/// The columns of a tall real matrix V, which may lie in several places.
+/// The columns of a real multivector V, which may lie in several places.
 #[derive(Debug, Clone)]
 pub struct Columns<'a> {
     rows: usize,

@@ -11,7 +11,7 @@ pub struct Proportional {
     pub mass_factor: f64,
     /// β \[s for C, 1 for H\], not negative.
     pub stiffness_factor: f64,
-    /// What is left; `None` when nothing is.
+    /// Remainder; `None` when it is zero.
     pub rest: Option<SparseMatrix>,
 }
 
@@ -25,7 +25,7 @@ const LAST: usize = 2;
 
 impl Proportional {
     /// Splits a symmetric `x`. The factors are those that fit most of the entries exactly (least sum of magnitudes, by
-    /// reweighted least squares), so that a few dashpots on top of Rayleigh damping are told apart from it. Where no
+    /// reweighted least squares), so that a few dashpots on top of Rayleigh damping are separated from it. Where no
     /// factors fit at least half of the entries, all of `x` is rest.
     pub fn split(x: &SparseMatrix, mass: &SparseMatrix, stiffness: &SparseMatrix) -> Self {
         let merged = SharedPattern::new(&[mass, stiffness, x]);

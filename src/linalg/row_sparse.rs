@@ -72,7 +72,7 @@ impl RowSparse {
     }
 }
 
-/// Some rows of a tall matrix.
+/// Some rows of a multivector.
 pub fn picked(v: MatRef<'_, f64>, rows: &[usize]) -> Mat<f64> {
     Mat::from_fn(rows.len(), v.ncols(), |i, j| v[(rows[i], j)])
 }

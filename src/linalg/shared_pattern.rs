@@ -8,8 +8,8 @@ mod weighed;
 pub use weighed::PerMatrix;
 
 use super::SparseMatrix;
-use super::lanes::{Aligned, Row, spread};
-use super::sparse::{Index, ROWS_A_TASK, columns_mut, union, with_laid, with_packed};
+use super::lanes::{Aligned, Row, unpack};
+use super::sparse::{Index, ROWS_A_TASK, columns_mut, union, with_packed, with_packed_columns};
 use faer::{Mat, MatMut, MatRef};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -94,7 +94,7 @@ impl<'a> SharedPattern<'a> {
                 self.each_block(packed, tasks, |task, rows, sums| {
                     for (a, columns) in task.iter_mut().enumerate() {
                         let mut columns: Vec<_> = columns.iter_mut().map(|y| &mut y[rows.clone()]).collect();
-                        spread(|i| &sums[i * self.values.len() + a], &mut columns);
+                        unpack(|i| &sums[i * self.values.len() + a], &mut columns);
                     }
                 });
             });
@@ -115,7 +115,7 @@ impl<'a> SharedPattern<'a> {
     ) -> Vec<T> {
         let n = self.starts.len() - 1;
         assert!(columns.iter().all(|column| column.len() == n), "as many rows");
-        with_laid(&columns, n, |packed: &[PackedRow]| self.each_block(packed, tasks, take))
+        with_packed_columns(&columns, n, |packed: &[PackedRow]| self.each_block(packed, tasks, take))
     }
 
     fn each_block<T: Send>(

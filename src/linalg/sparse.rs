@@ -2,7 +2,7 @@
 
 pub use super::scalar::Scalar;
 
-use super::lanes::{Aligned, Row, lay, spread};
+use super::lanes::{Aligned, Row, pack, unpack};
 use super::workspace::with_workspace;
 use faer::sparse::{SparseColMat, SymbolicSparseColMat, Triplet};
 use faer::{Mat, MatMut, MatRef};
@@ -152,7 +152,7 @@ pub fn multiply<T: Scalar>(a: &SparseMatrix, x: MatRef<'_, T>, mut y: MatMut<'_,
     }
 }
 
-/// y = A x for W columns. They are first laid side by side, row by row, so that an entry of A meets all its
+/// y = A x for W columns. They are first packed side by side, row by row, so that an entry of A meets all its
 /// W factors in one place of memory.
 fn panel<T: Scalar, R: Row<T, W>, const W: usize>(a: &SparseMatrix, x: MatRef<'_, T>, y: MatMut<'_, T>) {
     let width = x.ncols();
@@ -161,7 +161,7 @@ fn panel<T: Scalar, R: Row<T, W>, const W: usize>(a: &SparseMatrix, x: MatRef<'_
             let mut sums = vec![[T::ZERO; W]; y.nrows()];
             Arch::new().dispatch(Rows { a, first: task * ROWS_A_TASK, packed, sums: &mut sums });
             match columns_mut(y.as_mut()) {
-                Some(mut columns) => spread(|i| &sums[i], &mut columns),
+                Some(mut columns) => unpack(|i| &sums[i], &mut columns),
                 None => (0..width).for_each(|c| {
                     y.as_mut().col_mut(c).iter_mut().zip(&sums).for_each(|(y, sum)| *y = sum[c]);
                 }),
@@ -211,13 +211,13 @@ pub(super) fn columns_mut<T>(a: MatMut<'_, T>) -> Option<Vec<&mut [T]>> {
     a.col_iter_mut().map(|column| column.try_as_col_major_mut().map(|column| column.as_slice_mut())).collect()
 }
 
-/// What `f` makes of columns laid side by side, row by row; those that are missing hold anything.
+/// Result of `f` on columns packed row by row, `W` a row; missing columns have undefined values.
 pub(super) fn with_packed<T: Scalar, R: Row<T, W>, const W: usize, Y>(
     x: MatRef<'_, T>,
     f: impl FnOnce(&[R]) -> Y,
 ) -> Y {
     if let Some(columns) = columns(x) {
-        return with_laid(&columns, x.nrows(), f);
+        return with_packed_columns(&columns, x.nrows(), f);
     }
     with_workspace(x.nrows(), R::ZERO, |packed: &mut [R]| {
         for (i, row) in packed.iter_mut().enumerate() {
@@ -228,7 +228,7 @@ pub(super) fn with_packed<T: Scalar, R: Row<T, W>, const W: usize, Y>(
 }
 
 /// [`with_packed`] of columns of `n` rows that are each in one piece.
-pub(super) fn with_laid<T: Scalar, R: Row<T, W>, const W: usize, Y>(
+pub(super) fn with_packed_columns<T: Scalar, R: Row<T, W>, const W: usize, Y>(
     columns: &[&[T]],
     n: usize,
     f: impl FnOnce(&[R]) -> Y,
@@ -236,7 +236,7 @@ pub(super) fn with_laid<T: Scalar, R: Row<T, W>, const W: usize, Y>(
     with_workspace(n, R::ZERO, |packed: &mut [R]| {
         packed.par_chunks_mut(ROWS_A_TASK).enumerate().for_each(|(task, packed)| {
             let rows = task * ROWS_A_TASK..task * ROWS_A_TASK + packed.len();
-            lay(&columns.iter().map(|column| &column[rows.clone()]).collect::<Vec<_>>(), packed);
+            pack(&columns.iter().map(|column| &column[rows.clone()]).collect::<Vec<_>>(), packed);
         });
         f(packed)
     })
@@ -270,7 +270,7 @@ impl<T: Scalar, R: Row<T, W>, const W: usize> WithSimd for Rows<'_, T, R, W> {
     }
 }
 
-/// A X as a new matrix, for a symmetric `a` stored whole: the allocating twin of [`multiply`].
+/// A X as a new matrix, for a symmetric `a` stored whole; the allocating form of [`multiply`].
 pub fn times(a: &SparseMatrix, x: MatRef<'_, f64>) -> Mat<f64> {
     let mut y = Mat::zeros(a.ncols(), x.ncols());
     multiply(a, x, y.as_mut());
@@ -424,7 +424,7 @@ where
 /// Matrices of one size, met column by column on the union of their patterns.
 struct Joined<'a> {
     matrices: &'a [&'a SparseMatrix],
-    /// What is still to come of a column of each.
+    /// Remaining entries of a column of each matrix.
     open: Vec<(&'a [Index], &'a [f64])>,
     entries: Vec<f64>,
 }

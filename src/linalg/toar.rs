@@ -26,7 +26,7 @@ pub trait ShiftedQuadratic {
     fn solve(&self, x: Mat<c64>, y: Mat<c64>) -> Mat<c64>;
 }
 
-/// What [`toar`] found, nearest the shift first.
+/// Eigenpairs of [`toar`], nearest the shift first.
 #[derive(Debug)]
 pub struct ToarPairs {
     /// λ.

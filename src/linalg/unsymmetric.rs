@@ -10,7 +10,7 @@ use faer::{Mat, MatMut, MatRef, Par};
 
 /// A X = X diag(λ) and YᴴA = diag(λ) Yᴴ.
 #[derive(Debug, Clone)]
-pub struct Spectrum {
+pub struct Eigenvalues {
     /// λ, in the order of the algorithm.
     pub values: Vec<c64>,
     /// X, one right vector a column.
@@ -29,22 +29,22 @@ pub struct Spectrum {
 ///
 /// # Errors
 /// [`Error::Analysis`] when a number is not finite or the iteration does not converge.
-pub fn spectrum(a: MatRef<'_, f64>) -> Result<Spectrum> {
+pub fn spectrum(a: MatRef<'_, f64>) -> Result<Eigenvalues> {
     let n = a.nrows();
     let (mut left, mut right) = (Mat::zeros(n, n), Mat::zeros(n, n));
     let values = eigen_of_real(a, Some(left.as_mut()), Some(right.as_mut()))?;
-    Ok(Spectrum { right: in_pairs(&right, &values), left: in_pairs(&left, &values), values })
+    Ok(Eigenvalues { right: in_pairs(&right, &values), left: in_pairs(&left, &values), values })
 }
 
 /// [`spectrum`] of a complex matrix.
 ///
 /// # Errors
 /// As [`spectrum`].
-pub fn complex_spectrum(a: MatRef<'_, c64>) -> Result<Spectrum> {
+pub fn complex_spectrum(a: MatRef<'_, c64>) -> Result<Eigenvalues> {
     let n = a.nrows();
     let (mut left, mut right) = (Mat::zeros(n, n), Mat::zeros(n, n));
     let values = eigen_of_complex(a, Some(left.as_mut()), Some(right.as_mut()))?;
-    Ok(Spectrum { values, right, left })
+    Ok(Eigenvalues { values, right, left })
 }
 
 /// The eigenvalues and right vectors of a real matrix.
@@ -109,7 +109,7 @@ fn eigen_of_complex(
     Ok(values.column_vector().iter().copied().collect())
 }
 
-/// What the algorithm needs beside its results.
+/// Work memory of the decomposition beside its results.
 fn scratch<T: ComplexField>(
     n: usize,
     left: &Option<MatMut<'_, T>>,

@@ -1,7 +1,7 @@
 //! Workspace: blocks of memory that are used again by the next call that needs as much.
 //!
 //! A block of a few megabytes that is given back goes to the operating system, which has to clear every page before it hands
-//! it out again: for products and substitutions with tall matrices that would be a tenth of their time.
+//! it out again: for products and substitutions with multivectors that would be a tenth of their time.
 
 use std::any::Any;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -13,7 +13,7 @@ const MOST: usize = 4;
 /// Calls for workspace after which a block that was of no use to any of them is given back.
 const IDLE: u64 = 12;
 
-/// Blocks, each with the number of calls when it was laid down.
+/// Blocks, each with the number of calls when it was allocated.
 struct Rest {
     calls: u64,
     blocks: Vec<(u64, Box<dyn Any + Send>)>,

@@ -7,20 +7,20 @@ use std::ops::Bound;
 /// A table.
 #[derive(Debug, Clone, Default)]
 pub struct DescribedTable {
-    /// What it is.
+    /// Documentation, one line.
     pub doc: String,
     /// Its keys, in the order of declaration.
     pub keys: Vec<DescribedKey>,
     /// Keys of which one set stands there.
     pub variants: Vec<DescribedVariants>,
-    /// What a key holds where keys are free.
+    /// Content of a key, where the names of keys are free.
     pub free: Option<Box<DescribedKey>>,
 }
 
 /// Sets of keys of which one stands in a table.
 #[derive(Debug, Clone)]
 pub struct DescribedVariants {
-    /// What tells them apart.
+    /// Criterion that selects the variant.
     pub by: By,
     /// The index of the one that stands there when nothing is said.
     pub default: Option<usize>,
@@ -33,20 +33,20 @@ pub struct DescribedVariants {
 pub struct DescribedKey {
     /// Its name.
     pub name: String,
-    /// What it is.
+    /// Documentation, one line.
     pub doc: String,
-    /// What it holds.
+    /// Content: a value, a table, variants.
     pub content: Content,
 }
 
-/// What a key holds.
+/// Content of a key.
 #[derive(Debug, Clone)]
 pub enum Content {
     /// A value.
     Value {
-        /// What it looks like.
+        /// Form in TOML.
         form: Form,
-        /// What is expected, in words.
+        /// Expected value, in words.
         expected: String,
         /// The SI unit of its numbers; empty for pure numbers.
         unit: &'static str,
@@ -61,7 +61,7 @@ pub enum Content {
     Table(Presence, DescribedTable),
 }
 
-/// What is declared of tables of the type `T`.
+/// Description of tables of the type `T`.
 pub fn describe<T: Table + Blank>() -> DescribedTable {
     described(&mut T::blank())
 }

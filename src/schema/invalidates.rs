@@ -1,9 +1,9 @@
-//! What a change of a number invalidates, and whether eigenvalues have a derivative by it.
+//! Results that a change of a scalar invalidates, and whether eigenvalues have a derivative by it.
 
-/// What a change of a scalar invalidates, the cheapest first; each includes those before it.
+/// Results that a change of a scalar invalidates, the cheapest first; each level includes those before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Invalidates {
-    /// What is asked or compared: bands, measured values. The system stays.
+    /// Requests and references: bands, measured values. The system stays.
     Question,
     /// C of the structure. The steady state and the real modes stay.
     Damping,

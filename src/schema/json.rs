@@ -94,7 +94,7 @@ fn required(keys: &[DescribedKey]) -> Vec<&str> {
     keys.iter().filter(must).map(|key| key.name.as_str()).collect()
 }
 
-/// What a key holds.
+/// JSON Schema of the value of a key.
 fn property(key: &DescribedKey, path: &str, definitions: &mut Map<String, Value>) -> Value {
     let path = if path.is_empty() { key.name.clone() } else { format!("{path}.{}", key.name) };
     match &key.content {

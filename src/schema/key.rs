@@ -11,15 +11,15 @@ use std::borrow::Cow;
 use std::ops::{Bound, RangeBounds};
 use toml::de::DeValue;
 
-/// What is declared of a key beside its type.
+/// Declaration of a key beside its type.
 pub struct About {
-    /// What is expected, in words.
+    /// Expected value, in words, for messages.
     pub expected: Cow<'static, str>,
     /// The units of its numbers.
     pub units: Units,
     /// The values that each of its numbers may have.
     pub bounds: (Bound<f64>, Bound<f64>),
-    /// What a change of it invalidates; as the table it is in where nothing is said.
+    /// Results that a change invalidates; `None` for those of its table.
     pub invalidates: Option<Invalidates>,
     /// Whether eigenvalues have a derivative by its numbers, by their indices in lists.
     pub derivative: fn(&[usize]) -> Derivative,
@@ -166,7 +166,7 @@ impl<T: Value> Field<T> {
         self
     }
 
-    /// What is expected, in words, where the key is absent or of another type.
+    /// Sets the expected value, in words, for messages about an absent key or another type.
     pub fn expecting(mut self, words: &'static str) -> Self {
         self.about.expected = words.into();
         self
@@ -182,7 +182,7 @@ impl<T: Value> Field<T> {
         self
     }
 
-    /// What a change of the value invalidates, where it is not what its table says.
+    /// Sets the results that a change of the value invalidates, where they differ from those of its table.
     pub fn invalidates(mut self, what: Invalidates) -> Self {
         self.about.invalidates = Some(what);
         self

@@ -85,7 +85,7 @@ macro_rules! variants {
                 all[k]()
             }
 
-            /// The word that tells it from the others.
+            /// The word that selects the variant.
             pub fn word(&self) -> &'static str {
                 match self {
                     $( $Name::$Variant { .. } => $word, )*

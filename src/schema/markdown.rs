@@ -64,7 +64,7 @@ fn rows(text: &mut String, keys: &[&DescribedKey]) {
     text.push('\n');
 }
 
-/// What a key holds, in words: unit, bounds, choices.
+/// Expected value of a key, in words: unit, bounds, choices.
 fn expected(key: &DescribedKey) -> String {
     let Content::Value { form, unit, bounds, expected, .. } = &key.content else { return "a table".into() };
     let unit = if unit.is_empty() { String::new() } else { format!(" \\[{unit}\\]") };

@@ -84,15 +84,15 @@ pub trait Slot {
     fn default_toml(&self) -> Option<toml::Value>;
     /// The value as TOML; `None` where it is nothing.
     fn to_toml(&self) -> Option<toml::Value>;
-    /// What is wrong with the value: what was found, what was expected.
+    /// Faults of the value: (found, expected).
     fn faults(&self) -> Vec<(String, String)>;
     /// Hands every number to `each`, with its indices in lists.
     fn numbers(&mut self, each: &mut dyn FnMut(&[usize], &mut f64));
-    /// What the value looks like in TOML.
+    /// Form of the value in TOML.
     fn form(&self) -> Form;
 }
 
-/// What walks over declared keys.
+/// Visitor of declared keys.
 pub trait Visitor {
     /// A key with a value.
     fn value(&mut self, key: Key, slot: &mut dyn Slot);
@@ -120,7 +120,7 @@ pub trait Visitor {
 /// Tables of which one stands in a place.
 #[derive(Debug, Clone, Copy)]
 pub struct Variants {
-    /// What tells them apart.
+    /// Criterion that selects the variant.
     pub by: By,
     /// Word and documentation of each.
     pub each: &'static [(&'static str, &'static str)],
@@ -128,7 +128,7 @@ pub struct Variants {
     pub default: Option<usize>,
 }
 
-/// What tells variants apart.
+/// Criterion that selects a variant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum By {
     /// The word at this key.

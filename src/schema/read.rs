@@ -4,7 +4,7 @@ use super::check::{Report, check};
 use super::defaults::set_defaults;
 use super::keys::dotted;
 use super::raw::word_of;
-use super::reader::{Section, read_parts};
+use super::reader::{TableReader, read_parts};
 use super::value::Blank;
 use super::{By, Key, Places, Presence, Slot, Table, TableSlot, Variants, Visitor};
 use crate::error::{Error, Fault, Faults, Result};
@@ -42,7 +42,7 @@ pub fn read_table<T: Table + Blank>(file: &str, text: &str) -> Result<ReadTable<
     if faults.is_empty() { Ok(ReadTable { table, places }) } else { Err(Error::Input(Faults(faults))) }
 }
 
-impl Section<'_> {
+impl TableReader<'_> {
     /// A declared table that stands here, checked; `more` checks what its declaration does not know.
     pub fn declared<T: Table + Blank>(&self, more: impl FnOnce(&T, &mut Report)) -> T {
         let (table, faults) = read_section(self, more);
@@ -56,7 +56,10 @@ impl Section<'_> {
 }
 
 /// A table that stands in a section, with the faults of its checks; `more` checks what its declaration does not know.
-fn read_section<T: Table + Blank>(section: &Section, more: impl FnOnce(&T, &mut Report)) -> (T, Vec<Fault>) {
+fn read_section<T: Table + Blank>(
+    section: &TableReader,
+    more: impl FnOnce(&T, &mut Report),
+) -> (T, Vec<Fault>) {
     let mut report = Report::at(section.path_of(""));
     let mut table = T::blank();
     read_into(&mut table, section, &mut report);
@@ -65,12 +68,12 @@ fn read_section<T: Table + Blank>(section: &Section, more: impl FnOnce(&T, &mut 
     (table, report.faults)
 }
 
-fn read_into(table: &mut dyn Table, section: &Section, report: &mut Report) {
+fn read_into(table: &mut dyn Table, section: &TableReader, report: &mut Report) {
     table.visit(&mut Reading { section, report });
 }
 
 struct Reading<'a, 'b> {
-    section: &'a Section<'b>,
+    section: &'a TableReader<'b>,
     report: &'a mut Report,
 }
 
@@ -181,7 +184,7 @@ impl Visitor for Reading<'_, '_> {
 }
 
 /// Names the keys of a table without reading them.
-struct Known<'a, 'b>(&'a Section<'b>);
+struct Known<'a, 'b>(&'a TableReader<'b>);
 
 impl Visitor for Known<'_, '_> {
     fn value(&mut self, key: Key, _: &mut dyn Slot) {

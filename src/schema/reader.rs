@@ -21,8 +21,8 @@ pub struct Reader<'a> {
     faults: RefCell<Vec<(usize, Fault)>>,
 }
 
-/// One table of the text. Each key is asked for by name; [`Section::finish`] then refuses those nobody asked for.
-pub struct Section<'a> {
+/// One table of the text. Each key is read by name; [`TableReader::finish`] then refuses those that were not read.
+pub struct TableReader<'a> {
     reader: &'a Reader<'a>,
     table: &'a DeTable<'a>,
     /// Keys of the tables around it, joined by dots.
@@ -33,14 +33,14 @@ pub struct Section<'a> {
 
 /// A value that may be absent, with where it stands.
 pub struct Found<'a, T> {
-    section: &'a Section<'a>,
+    section: &'a TableReader<'a>,
     key: String,
     value: Option<T>,
     faulty: bool,
 }
 
 /// Parses `text` and hands its root to `read`, then gives its value, or every fault.
-pub fn read_document<T>(file: &str, text: &str, read: impl FnOnce(&Section) -> T) -> Result<T> {
+pub fn read_document<T>(file: &str, text: &str, read: impl FnOnce(&TableReader) -> T) -> Result<T> {
     let (value, faults) = read_parts(file, text, read)?;
     Faults(faults.into_iter().map(|(_, fault)| fault).collect()).into_result(value)
 }
@@ -49,7 +49,7 @@ pub fn read_document<T>(file: &str, text: &str, read: impl FnOnce(&Section) -> T
 pub(super) fn read_parts<T>(
     file: &str,
     text: &str,
-    read: impl FnOnce(&Section) -> T,
+    read: impl FnOnce(&TableReader) -> T,
 ) -> Result<(T, Vec<(usize, Fault)>)> {
     let reader = Reader {
         file,
@@ -64,7 +64,7 @@ pub(super) fn read_parts<T>(
                 .with_help(error.message().replace('\n', ", ")),
         )
     })?;
-    let section = Section {
+    let section = TableReader {
         reader: &reader,
         table: root.get_ref(),
         path: String::new(),
@@ -86,7 +86,7 @@ impl Reader<'_> {
     }
 }
 
-impl<'a> Section<'a> {
+impl<'a> TableReader<'a> {
     /// The keys of this table, for tables whose keys are names.
     pub fn names(&self) -> Vec<String> {
         self.table.keys().map(|key| key.get_ref().to_string()).collect()
@@ -173,7 +173,7 @@ impl<'a> Section<'a> {
         Found { section: self, key: key.to_string(), value, faulty }
     }
 
-    /// Leaves `keys` unread without calling them unknown: what they mean cannot be told.
+    /// Leaves `keys` unread without calling them unknown: their meaning is not known.
     pub fn skip(&self, keys: &[&str]) {
         self.known.borrow_mut().extend(keys.iter().map(|key| key.to_string()));
     }
@@ -255,14 +255,14 @@ impl<'a> Section<'a> {
     }
 
     /// A sub-table, read by `read` and then refused if it has unknown keys.
-    pub fn section<T>(&self, key: &str, read: impl FnOnce(&Section) -> T) -> Option<T> {
+    pub fn section<T>(&self, key: &str, read: impl FnOnce(&TableReader) -> T) -> Option<T> {
         let value = self.get(key)?;
         let Some(table) = value.get_ref().as_table() else {
             self.fault(key, describe(value.get_ref()), format!("a table [{}]", self.path_of(key)), "");
             return None;
         };
         let start = self.table.get_key_value(key).map_or(self.start, |(k, _)| k.span().start);
-        let section = Section {
+        let section = TableReader {
             reader: self.reader,
             table,
             path: self.path_of(&dotted(key)),
@@ -276,7 +276,7 @@ impl<'a> Section<'a> {
 
     /// Named tables `[key.NAME]`, in the order of their names; none when they have no names. What stands right under `[key]` is
     /// one fault, as the name was left out.
-    pub fn named<T>(&self, key: &str, mut read: impl FnMut(&str, &Section) -> T) -> Option<Vec<T>> {
+    pub fn named<T>(&self, key: &str, mut read: impl FnMut(&str, &TableReader) -> T) -> Option<Vec<T>> {
         if !self.has(key) {
             self.skip(&[key]);
             return Some(Vec::new());
@@ -300,7 +300,7 @@ impl<'a> Section<'a> {
         .flatten()
     }
 
-    /// Refuses keys that nobody asked for, offering the nearest known one.
+    /// Refuses keys that were not read, offering the nearest known one.
     fn finish(&self) {
         let known = self.known.borrow();
         for key in self.table.keys() {

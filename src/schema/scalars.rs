@@ -16,7 +16,7 @@ pub struct Scalar {
     pub unit: &'static str,
     /// The values that it may have.
     pub bounds: (Bound<f64>, Bound<f64>),
-    /// What must be computed again when it changes.
+    /// Results that must be computed again when it changes.
     pub invalidates: Invalidates,
     /// Whether eigenvalues have a derivative by it.
     pub derivative: Derivative,

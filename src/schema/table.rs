@@ -24,7 +24,7 @@ pub enum Presence {
 pub trait TableSlot {
     /// When it is there.
     fn presence(&self) -> Presence;
-    /// What a change in it invalidates; as the table around it where nothing is said.
+    /// Results that a change in the table invalidates; `None` for those of the table around it.
     fn invalidates(&self) -> Option<Invalidates>;
     /// Makes the table, under `name` where there are several, and gives it.
     fn make(&mut self, name: &str) -> &mut dyn Table;
@@ -69,13 +69,13 @@ impl OneTable {
         MaybeOne { invalidates: self.invalidates, beforehand: None }
     }
 
-    /// What a change in it invalidates.
+    /// Sets the results that a change in the table invalidates.
     pub fn invalidates(self, what: Invalidates) -> OneTable {
         OneTable { invalidates: Some(what), ..self }
     }
 }
 
-/// What is done with a table before its keys are visited.
+/// Preparation of a table before its keys are visited.
 type Preparation<T> = Box<dyn Fn(&mut T)>;
 
 /// A table that may be absent.
@@ -85,7 +85,7 @@ pub struct MaybeOne<T> {
 }
 
 impl<T> MaybeOne<T> {
-    /// What is done with the table before its keys are visited, where they depend on keys around it.
+    /// Sets the preparation of the table before its keys are visited, where they depend on keys around it.
     pub fn beforehand(self, act: impl Fn(&mut T) + 'static) -> MaybeOne<T> {
         MaybeOne { beforehand: Some(Box::new(act)), ..self }
     }
@@ -97,7 +97,7 @@ pub struct NamedTables {
 }
 
 impl NamedTables {
-    /// What a change in them invalidates.
+    /// Sets the results that a change in the tables invalidates.
     pub fn invalidates(self, what: Invalidates) -> NamedTables {
         NamedTables { invalidates: Some(what) }
     }
@@ -206,7 +206,7 @@ pub struct MapOf<T> {
 }
 
 impl<T> MapOf<T> {
-    /// What a change in it invalidates.
+    /// Sets the results that a change in the table invalidates.
     pub fn invalidates(self, what: Invalidates) -> MapOf<T> {
         MapOf { invalidates: Some(what), ..self }
     }

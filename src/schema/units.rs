@@ -7,7 +7,7 @@ pub struct Dimension {
     powers: Powers,
     /// Its SI unit; empty for a pure number.
     pub symbol: &'static str,
-    /// What the dimension is called, with an example.
+    /// Name of the dimension, with an example.
     pub name: &'static str,
 }
 
@@ -75,7 +75,7 @@ pub fn dimension_of(symbol: &'static str) -> Dimension {
     Dimension { powers, symbol, name: "a value in the unit of the parameter" }
 }
 
-/// Reads `"1.5 mm"` as SI in the dimension asked for; the error says what was found instead.
+/// Reads `"1.5 mm"` as SI in the expected dimension; the error states what was found instead.
 pub fn parse_quantity(text: &str, expected: Dimension) -> Result<f64, String> {
     let (value, unit, powers) = parse_any(text)?;
     if powers == expected.powers {
@@ -110,9 +110,9 @@ pub(super) fn parse_any(text: &str) -> Result<(f64, &str, Powers), String> {
 struct Unit {
     /// Power of ten.
     tens: i32,
-    /// What no power of ten is: π/180.
+    /// Factor that is no power of ten: π/180.
     times: f64,
-    /// What divides: 60.
+    /// Divisor: 60.
     over: f64,
     powers: Powers,
 }

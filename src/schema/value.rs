@@ -18,7 +18,7 @@ pub trait Value: Blank + Clone + std::fmt::Debug + 'static {
     fn read(value: &DeValue, units: &Units, k: usize) -> Result<Self, String>;
     /// The value as TOML; `None` for nothing.
     fn to_toml(&self) -> Option<toml::Value>;
-    /// What it looks like in TOML.
+    /// Form of the value in TOML.
     fn form() -> Form;
     /// Hands every number to `each`, with its indices in lists, which begin with those of `at`.
     fn numbers(&mut self, _at: &mut Vec<usize>, _each: &mut dyn FnMut(&[usize], &mut f64)) {}
@@ -28,7 +28,7 @@ pub trait Value: Blank + Clone + std::fmt::Debug + 'static {
     }
 }
 
-/// What a value looks like in TOML.
+/// Form of a value in TOML.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Form {
     /// A number, or a string with a unit.

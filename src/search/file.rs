@@ -4,7 +4,7 @@ use crate::case::{CalibratedParameter, Case, check_parameter, read_case};
 use crate::error::read::read_text;
 use crate::error::{Error, Fault, Faults, Result};
 use crate::results::record::{InputFile, RecordOrigin};
-use crate::schema::reader::{Section, read_document};
+use crate::schema::reader::{TableReader, read_document};
 use crate::schema::units::NUMBER;
 use crate::validation::{Check, read_check};
 use std::collections::{BTreeMap, BTreeSet};
@@ -54,7 +54,7 @@ pub fn read_search(path: &Path) -> Result<SearchFile> {
     Ok(SearchFile { name: name.to_string_lossy().into_owned(), text, ..found })
 }
 
-fn read_root(root: &Section, file: &str, case: Case) -> SearchFile {
+fn read_root(root: &TableReader, file: &str, case: Case) -> SearchFile {
     let scalars = case.parameters();
     let parameters = root.named("parameter", |name, s| {
         let parameter: CalibratedParameter =

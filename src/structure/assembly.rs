@@ -82,7 +82,7 @@ fn damping(material: &Material) -> (RayleighDamping, f64) {
     (material.rayleigh, material.loss_factor)
 }
 
-/// What one element after the other is computed in.
+/// Work arrays of the element loop.
 #[derive(Debug, Default)]
 struct Workspace {
     reduction: Reduction,

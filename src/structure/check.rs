@@ -1,7 +1,7 @@
 //! Whether a model can be assembled: every fault at once, before any matrix.
 
 use super::dofs::DofMap;
-use super::elements::{Bar, FiniteElement, FlatTriangle, split_face, spring_direction};
+use super::elements::{BarElement, FiniteElement, FlatTriangle, split_face, spring_direction};
 use super::material::Material;
 use super::model::{Model, PlateTheory, ShellPart};
 use super::registry::elements;
@@ -104,7 +104,7 @@ fn check_bars(model: &Model, faults: &mut Faults) {
         let bad = part
             .elements
             .iter()
-            .find(|e| e.iter().all(sound) && Bar::new(part, &model.nodes, **e).is_degenerate());
+            .find(|e| e.iter().all(sound) && BarElement::new(part, &model.nodes, **e).is_degenerate());
         if let Some([a, b]) = bad {
             faults.push(Fault::new(
                 &place,
@@ -183,7 +183,7 @@ fn shape(part: &ShellPart, nodes: &[[f64; 3]], face: &Element) -> Shape {
     if normals.iter().any(turned) || unusable() { Shape::Folded } else { Shape::Sound }
 }
 
-/// What Mindlin's theory needs of a plate.
+/// Checks the data that Mindlin's theory needs of a plate.
 fn check_theory(place: &str, part: &ShellPart, faults: &mut Faults) {
     if let Some(kappa) = part.shear_coefficient {
         positive(place, "shear coefficient", kappa, "1", faults);

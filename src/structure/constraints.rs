@@ -1,4 +1,4 @@
-//! What moves a node and what holds it: rigid links, the directions in which elements act, supports.
+//! Constraints of nodes: rigid links, supports, and the directions in which elements have stiffness.
 
 use super::elements::Acting;
 use super::model::Model;
@@ -158,7 +158,7 @@ impl Space {
     }
 }
 
-/// What acts on every node through the elements that use it.
+/// Directions in which elements act on each node, shape (nodes).
 pub(super) fn active_spaces(n_nodes: usize, elements: &[AnyElement]) -> Vec<Space> {
     let mut spaces = vec![Space::default(); n_nodes];
     for element in elements {

@@ -254,7 +254,7 @@ mod tests {
         let flat = assemble(&tilted(0.0, true)).unwrap();
         let labels: Vec<String> = flat.dofs.free_dofs()[..3].iter().map(FreeDof::label).collect();
         assert_eq!(labels, ["uz", "rx", "ry"]);
-        // Held in z alone: an inclined deflection has no room left, the rotations have.
+        // Held in z alone: an inclined deflection has no freedom left, the rotations have.
         let mut model = tilted(0.3, true);
         model.supports.push(Support { nodes: vec![0], held: [false, false, true, false, false, false] });
         assert_eq!(assemble(&model).unwrap().dofs.n_dofs(), 11);

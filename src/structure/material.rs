@@ -1,4 +1,4 @@
-//! What parts are made of.
+//! Materials: isotropic elasticity, density and damping.
 
 use crate::schema::units::{DENSITY, NUMBER, PRESSURE, RATE, TIME};
 use crate::schema::{Invalidates, declare, key};

@@ -1,4 +1,4 @@
-//! What a structure is made of, before any matrix: plain data that the case fills in.
+//! Model of a structure: parts, sections and supports as plain data, before any matrix.
 
 use super::elements::waves::shear_coefficient;
 use super::elements::{FlatTriangle, split_face};
@@ -27,7 +27,7 @@ pub struct Model {
 }
 
 choices! {
-    /// What a plate takes into account when it bends.
+    /// Plate theory of bending.
     pub enum PlateTheory {
         /// Rigid in transverse shear: thin plates.
         Kirchhoff = "kirchhoff",
@@ -43,11 +43,11 @@ pub struct ShellPart {
     pub name: String,
     /// Triangles and quadrilaterals on [`Model::nodes`], all turned the same way.
     pub faces: Vec<Element>,
-    /// What it is made of.
+    /// Material.
     pub material: Material,
     /// h \[m\].
     pub thickness: f64,
-    /// What its bending takes into account.
+    /// Plate theory of bending.
     pub theory: PlateTheory,
     /// κ of Mindlin's theory; `None` for 5/(6−ν), see [`ShellPart::shear_coefficient`].
     pub shear_coefficient: Option<f64>,
@@ -95,7 +95,7 @@ pub struct BarPart {
     pub name: String,
     /// Two-node elements on [`Model::nodes`].
     pub elements: Vec<[usize; 2]>,
-    /// What it is made of.
+    /// Material.
     pub material: Material,
     /// Its section.
     pub section: Section,

@@ -1,8 +1,8 @@
 //! Which element stands for what of a model: the only place that names them all.
 
 use super::elements::{
-    Bar, FacePoint, FiniteElement, KirchhoffTriangle, Mass, MindlinQuadrilateral, MindlinTriangle,
-    SpringElement, split_face,
+    BarElement, FacePoint, FiniteElement, KirchhoffTriangle, MassElement, MindlinQuadrilateral,
+    MindlinTriangle, SpringElement, split_face,
 };
 use super::model::{Model, PlateTheory, ShellPart};
 use crate::mesh::Element;
@@ -20,9 +20,9 @@ pub(super) fn elements(model: &Model) -> Elements<'_> {
         part.faces.iter().for_each(|face| push_elements(part, face, nodes, &mut elements));
     }
     for part in &model.bars {
-        elements.extend(part.elements.iter().map(|ends| boxed(Bar::new(part, nodes, *ends))));
+        elements.extend(part.elements.iter().map(|ends| boxed(BarElement::new(part, nodes, *ends))));
     }
-    elements.extend(model.masses.iter().map(|point| boxed(Mass::new(point, nodes))));
+    elements.extend(model.masses.iter().map(|point| boxed(MassElement::new(point, nodes))));
     elements.extend(model.springs.iter().map(|spring| boxed(SpringElement::new(spring))));
     elements
 }

@@ -1,4 +1,4 @@
-//! What tests of the structure share.
+//! Materials shared by the tests of the structure.
 
 use super::{Material, RayleighDamping};
 

@@ -41,11 +41,11 @@ const MASS_ZERO: f64 = 0.5 * f64::EPSILON;
 /// Imported matrices, split.
 #[derive(Debug, Clone)]
 pub struct Imported {
-    /// What is symmetric; Im K is the hysteretic damping.
+    /// The symmetric part; Im K is the hysteretic damping.
     pub structure: Structure,
-    /// What is not.
+    /// The unsymmetric part.
     pub coupling: Option<Coupling>,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 

@@ -13,7 +13,7 @@ pub struct ContactPair {
     pub points: Vec<ContactPoint>,
     /// Forces from motion.
     pub law: Arc<dyn ContactLaw>,
-    /// What presses the bodies together.
+    /// Closing condition: normal load or approach.
     pub closing: Closing,
     /// V \[m/s\]: velocity of the counter-body relative to the body along t₁, without vibration.
     pub sliding_velocity: f64,
@@ -34,7 +34,7 @@ pub struct ContactPoint {
     pub tangents: [SparseVector; 2],
 }
 
-/// What presses the two bodies of a pair together.
+/// Closing condition of a contact pair: normal load or approach.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Closing {
     /// The bodies are moved towards each other until ΣN equals this load \[N\]; the approach is an unknown.

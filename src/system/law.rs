@@ -1,4 +1,4 @@
-//! What a contact law is: a pure function from the motion at a point to forces and their derivatives.
+//! Contact law: a pure function from the motion at a point to forces and their derivatives.
 
 use std::fmt::Debug;
 
@@ -48,7 +48,7 @@ pub struct SlipStep {
     pub resistance: f64,
 }
 
-/// What a law answers at the end of a time step.
+/// Forces and tangents of a law at the end of a time step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SlipAnswer {
     /// The forces.

@@ -32,7 +32,7 @@ pub struct System {
     pub load: Vec<f64>,
     /// Geometric stiffness of the preload, when the case asks for it.
     pub prestress: Option<Arc<dyn Prestress>>,
-    /// What imported K and C have beyond the symmetric structure.
+    /// Part of imported K and C beyond the symmetric structure.
     pub coupling: Option<Coupling>,
 }
 

@@ -63,7 +63,7 @@ pub struct Coupling {
     pub stiffness: Mat<f64>,
     /// c \[N s/m\], r × r.
     pub damping: Mat<f64>,
-    /// What is of high rank.
+    /// The part of high rank.
     pub skew: Option<Skew>,
 }
 

@@ -5,7 +5,7 @@ use crate::case::{Case, read_case};
 use crate::error::read::read_text;
 use crate::error::{Faults, Result};
 use crate::results::CheckedQuantity;
-use crate::schema::reader::{Section, read_document};
+use crate::schema::reader::{TableReader, read_document};
 use crate::schema::units::{FREQUENCY, LENGTH, NUMBER, RATE, TIME};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Bound;
@@ -248,7 +248,7 @@ impl Reference {
 
 /// A quantity of the case file `case` with its reference, tolerance and the `reason` for it, which the table may state
 /// otherwise.
-pub fn read_check(name: &str, s: &Section, case: &str, reason: &str) -> Check {
+pub fn read_check(name: &str, s: &TableReader, case: &str, reason: &str) -> Check {
     let relative = s.quantity("tolerance", NUMBER).positive().optional();
     let absolute = s.quantity("absolute_tolerance", NUMBER).positive().optional();
     if relative.is_some() == absolute.is_some() {
@@ -278,7 +278,7 @@ pub fn read_check(name: &str, s: &Section, case: &str, reason: &str) -> Check {
 }
 
 /// How a quantity is computed; a frequency near which it is sought is the number of the key `about`.
-fn read_quantity(s: &Section, case: &str, about: &str) -> CheckQuantity {
+fn read_quantity(s: &TableReader, case: &str, about: &str) -> CheckQuantity {
     CheckQuantity {
         case: s.string("case").or(case.to_string()),
         kind: read_kind(s, about),
@@ -286,7 +286,7 @@ fn read_quantity(s: &Section, case: &str, about: &str) -> CheckQuantity {
     }
 }
 
-fn read_kind(s: &Section, about: &str) -> QuantityKind {
+fn read_kind(s: &TableReader, about: &str) -> QuantityKind {
     const KINDS: [&str; 28] = [
         "value",
         "slope",
@@ -380,7 +380,7 @@ fn read_kind(s: &Section, about: &str) -> QuantityKind {
     }
 }
 
-fn read_edge(s: &Section) -> (f64, Edge) {
+fn read_edge(s: &TableReader) -> (f64, Edge) {
     let edge = match s.choice("edge", &["clamped", "simply_supported", "free"]).required("how it is held") {
         "clamped" => Edge::Clamped,
         "simply_supported" => Edge::SimplySupported,
@@ -389,20 +389,20 @@ fn read_edge(s: &Section) -> (f64, Edge) {
     (s.quantity("radius", LENGTH).positive().required(LENGTH.name), edge)
 }
 
-fn read_span(s: &Section) -> ChannelWindow {
+fn read_span(s: &TableReader) -> ChannelWindow {
     ChannelWindow {
         channel: s.string("channel").required("the name of a channel of the run in time"),
         window: s.quantities("window", TIME).required("two times"),
     }
 }
 
-fn read_near(s: &Section, frequencies_hz: Vec<f64>) -> Near {
+fn read_near(s: &TableReader, frequencies_hz: Vec<f64>) -> Near {
     let within = s.quantity("within", NUMBER).within(Bound::Excluded(0.0), Bound::Excluded(1.0));
     let below_hz = s.quantity("below", FREQUENCY).positive();
     Near { frequencies_hz, within: within.or(0.03), below_hz: below_hz.or(f64::INFINITY) }
 }
 
-fn read_set(s: &Section, key: &str) -> Vec<(String, f64)> {
+fn read_set(s: &TableReader, key: &str) -> Vec<(String, f64)> {
     s.section(key, |set| {
         let value = |path: &String| (path.clone(), set.quantity(path, NUMBER).or(0.0));
         set.names().iter().map(value).collect()

@@ -17,10 +17,10 @@ pub fn compliances(factor: &dyn SymmetricFactor, mut f: MatMut<'_, f64>) -> Mat<
     let columns = f.ncols();
     factor.forward_in_place(f.as_mut());
     let mut square = Mat::zeros(columns, columns);
-    let mut room = Mat::zeros(f.nrows(), TOGETHER.min(columns));
+    let mut work = Mat::zeros(f.nrows(), TOGETHER.min(columns));
     for start in (0..columns).step_by(TOGETHER) {
         let width = TOGETHER.min(columns - start);
-        let mut turned = room.subcols_mut(0, width);
+        let mut turned = work.subcols_mut(0, width);
         turned.copy_from(f.as_ref().subcols(start, width));
         factor.pivots_in_place(turned.as_mut());
         let part = gram(f.as_ref().subcols(start, columns - start), turned.as_ref());

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 const ALPHA: f64 = 0.640_388_203_202_207_6;
 /// The smallest pivot relative to its column.
 const THRESHOLD: f64 = 0.01;
-/// What counts as zero: its reciprocal is still a number.
+/// Smallest pivot that does not count as zero: its reciprocal is finite.
 const SMALLEST: f64 = 1e-290;
 /// Columns that are eliminated before the others are updated.
 const BLOCK: usize = 32;
@@ -37,7 +37,7 @@ pub(super) struct Panel<'a, T> {
     pub inverse: Vec<[T; 2]>,
 }
 
-/// What a column says of itself when it is asked to be a pivot.
+/// Outcome of the pivot test of a column.
 enum Pivot {
     /// The column at this place.
     Single(usize),

@@ -32,19 +32,19 @@ impl<'a, T: Field> Lower<'a, T> {
         panels(width).map(|(first, count)| (rows - first) * count).sum()
     }
 
-    /// What [`Lower::lay`] gave.
+    /// The packed values that [`Lower::pack`] wrote.
     pub(super) fn of(values: &'a [T], rows: usize, width: usize) -> Self {
         Lower { rows, width, values }
     }
 
     /// Puts the first `width` columns of `columns`, each with `rows` entries, behind `values`.
-    pub(super) fn lay(columns: &[T], rows: usize, width: usize, values: &mut Vec<T>) {
+    pub(super) fn pack(columns: &[T], rows: usize, width: usize, values: &mut Vec<T>) {
         let columns = |first: usize| &columns[first * rows..];
         for (first, count) in panels(width) {
             match count {
-                WIDE => lay::<T, WIDE>(columns(first), rows, first, values),
-                NARROW => lay::<T, NARROW>(columns(first), rows, first, values),
-                _ => lay::<T, 1>(columns(first), rows, first, values),
+                WIDE => pack::<T, WIDE>(columns(first), rows, first, values),
+                NARROW => pack::<T, NARROW>(columns(first), rows, first, values),
+                _ => pack::<T, 1>(columns(first), rows, first, values),
             }
         }
     }
@@ -107,7 +107,7 @@ const fn rows_in_registers<S: Simd, L>() -> usize {
 }
 
 /// Of C columns, each with `rows` entries, what stands from row `first` on, row by row.
-fn lay<T: Field, const C: usize>(columns: &[T], rows: usize, first: usize, values: &mut Vec<T>) {
+fn pack<T: Field, const C: usize>(columns: &[T], rows: usize, first: usize, values: &mut Vec<T>) {
     let columns: [&[T]; C] = std::array::from_fn(|c| &columns[c * rows..][first..rows]);
     values.extend((0..rows - first).flat_map(|i| columns.map(|column| column[i])));
 }
@@ -240,7 +240,7 @@ mod tests {
             let l = |i: usize, j: usize| if i > j { 0.1 * ((3 * i + 5 * j) as f64).sin() } else { 7.0 };
             let columns: Vec<f64> = (0..width * rows).map(|k| l(k % rows, k / rows)).collect();
             let mut values = vec![0.5];
-            Lower::lay(&columns, rows, width, &mut values);
+            Lower::pack(&columns, rows, width, &mut values);
             assert_eq!(values.len(), 1 + Lower::<f64>::size(rows, width));
             let lower = Lower::of(&values[1..], rows, width);
             let start: Vec<[f64; 2]> = (0..rows).map(|i| [i as f64, (i as f64).cos()]).collect();

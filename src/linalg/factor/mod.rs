@@ -283,7 +283,7 @@ impl<T: Field> Multifrontal<T> {
     /// [`Multifrontal::substitute`] for up to as many columns as `L` has.
     fn substitute_lanes<L: Lanes<T>>(&self, rhs: MatMut<'_, T>, whole: bool) {
         with_workspace(self.n(), L::ZERO, |x| {
-            self.lay(rhs.as_ref(), x);
+            self.pack(rhs.as_ref(), x);
             self.substitution().up(x);
             if whole {
                 self.substitution().down(x);
@@ -302,7 +302,7 @@ impl<T: Field> Multifrontal<T> {
     }
 
     /// The rows of P S B. They are taken as they come, so that only whole rows of x are met out of order.
-    fn lay<L: Lanes<T>>(&self, b: MatRef<'_, T>, x: &mut [L]) {
+    fn pack<L: Lanes<T>>(&self, b: MatRef<'_, T>, x: &mut [L]) {
         if b.ncols() < L::COLUMNS {
             x.fill(L::ZERO);
         }

@@ -29,7 +29,7 @@ impl<T> Front<'_, T> {
     }
 }
 
-/// What a task gave: its own fronts, and what its subtasks gave.
+/// Factors of a task: its own fronts, and those of its subtasks.
 ///
 /// The fronts stand one behind the other. Most are small: were each a piece of memory of its own, the processor would wait
 /// at the beginning of each, in every substitution.
@@ -49,7 +49,7 @@ pub(super) struct Branch<T> {
 }
 
 impl<T: Field> Branch<T> {
-    /// Without fronts, with room for those that the pattern expects.
+    /// Without fronts, with memory for those that the pattern expects.
     fn new(plan: &Plan, task: &Task, kept: Kept) -> Self {
         let expected = |size: fn(usize, usize) -> usize| -> usize {
             let of = |s: usize| {
@@ -92,7 +92,7 @@ impl<T: Field> Branch<T> {
     /// Puts the first rows of L, as many as columns were eliminated, behind the others: `columns` by columns.
     fn push(&mut self, rows: &[u32], columns: &[T], inverse: &[[T; 2]]) {
         self.rows.extend_from_slice(rows);
-        Lower::lay(columns, rows.len(), inverse.len(), &mut self.lower);
+        Lower::pack(columns, rows.len(), inverse.len(), &mut self.lower);
         self.inverse.extend_from_slice(inverse);
         self.starts.push([self.rows.len(), self.lower.len(), self.inverse.len()]);
     }
@@ -102,7 +102,7 @@ impl<T: Field> Branch<T> {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stuck(pub usize);
 
-/// What is left of a front when its columns are gone: a lower triangle for the parent.
+/// Schur complement of a front after its columns are eliminated: a lower triangle, added to the parent.
 struct Remainder<T> {
     /// The rows, by their place in the order of elimination; the first `passed_on` are columns without a pivot.
     rows: Vec<u32>,
@@ -119,7 +119,7 @@ struct Elimination<'a, T> {
     kept: Kept,
 }
 
-/// What a task keeps from front to front.
+/// Work arrays of a task, used by one front after the other.
 struct Scratch<T> {
     /// Where a row stands in the present front, for the rows that it has.
     places: Vec<u32>,
@@ -129,7 +129,7 @@ struct Scratch<T> {
     product: Vec<T>,
 }
 
-/// What of the factors is wanted.
+/// Part of the factors that is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kept {
     All,
@@ -189,7 +189,7 @@ impl<T: Field> Elimination<'_, T> {
         beyond.for_each(|row| *row = names[*row as usize]);
     }
 
-    /// Assembles node s from A and its children, eliminates it and puts it into the branch. `scratch.places` then tells where
+    /// Assembles node s from A and its children, eliminates it and puts it into the branch. `scratch.places` then holds where
     /// each of its rows stands.
     fn front(
         &self,

@@ -31,7 +31,7 @@ impl Quotient {
     pub fn new(pattern: SymbolicSparseColMatRef<'_, Index>) -> Self {
         let n = pattern.ncols();
         let rows = |j: usize| pattern.row_idx_of_col(j);
-        // A sum of scrambled indices over the row's neighbours and itself tells most different rows apart at once.
+        // A sum of scrambled indices over the row's neighbours and itself separates most different rows at once.
         let scramble = |i: usize| (i as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29);
         let scramble = |i: usize| scramble(i).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         let keys: Vec<(u64, usize)> = (0..n)

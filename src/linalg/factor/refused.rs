@@ -1,4 +1,4 @@
-//! What to say where memory does not suffice for a factorisation.
+//! Error for a factorisation that does not fit into memory.
 
 use crate::error::Error;
 

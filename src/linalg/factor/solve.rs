@@ -1,7 +1,7 @@
 //! Forward and backward substitution along the tree, its tasks side by side, up to sixteen right-hand sides at once.
 //!
 //! Upwards every front solves L y = b for its columns and takes what they bring from the rows below them; downwards it takes
-//! what it knows of those rows and solves Lᵀ x = y. Both happen in place, row by row, in the right-hand sides laid out in the
+//! what it knows of those rows and solves Lᵀ x = y. Both happen in place, row by row, in the right-hand sides packed in the
 //! order of elimination. What a task brings to rows beyond its own columns is kept apart and handed to the task above, so that
 //! tasks may run side by side and the order of every sum is that of the tree.
 
@@ -67,7 +67,7 @@ impl<T: Field> Substitution<'_, T> {
     }
 }
 
-/// What the subtasks of a task gave, and the parts of x that belong to them.
+/// Factors of the subtasks of a task, and the parts of x that belong to them.
 fn subtasks<'x, T, L>(branch: &'x Branch<T>, x: &'x mut [L]) -> Vec<(&'x Branch<T>, &'x mut [L])> {
     let (mut rest, mut at) = (x, branch.columns.start);
     let part = |subtask: &'x Branch<T>| {

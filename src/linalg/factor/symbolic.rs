@@ -1,8 +1,8 @@
-//! What a sparsity pattern alone decides: the order of elimination, the fronts and the tree that they form, and how
+//! Symbolic factorisation: the order of elimination, the fronts and the tree that they form, and how
 //! that tree is split into tasks.
 //!
 //! A *front* is a dense symmetric matrix: some columns that are eliminated together and the rows that they touch.
-//! What is left of it after the elimination is added to the front of its parent (Duff & Reid, ACM TOMS 9 (1983) 302).
+//! Its Schur complement after the elimination is added to the front of its parent (Duff & Reid, ACM TOMS 9 (1983) 302).
 //! Columns of equal structure share a front; a child is merged with its parent when few zeros come in (`may_merge`).
 
 use super::super::sparse::Index;

@@ -62,7 +62,7 @@ pub enum System {
     Adjoint,
 }
 
-/// What is left of a front for its parent, below × below.
+/// Schur complement of a front for its parent, shape (below, below).
 type Remainder = Mat<c64>;
 
 /// A matrix on its way through the tree.

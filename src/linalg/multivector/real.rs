@@ -3,7 +3,7 @@
 //! A general product first copies its operands into an order of its own, which pays when each entry is used often. Here the
 //! other matrix is narrow, so that the copy would cost as much as the product.
 
-use super::super::lanes::lay;
+use super::super::lanes::pack;
 use super::super::sparse::columns_mut;
 use faer::{Accum, Mat, MatMut, MatRef};
 use pulp::{Arch, Simd, WithSimd};
@@ -120,7 +120,7 @@ impl Dots<'_> {
             for (b, sums) in self.b.chunks(LANES).zip(self.sums.chunks_mut(m.max(1))) {
                 let mut some = [&[][..]; LANES];
                 some.iter_mut().zip(b).for_each(|(some, b)| *some = &b[rows.clone()]);
-                lay(&some[..b.len()], packed);
+                pack(&some[..b.len()], packed);
                 let whole = m - m % G;
                 for (a, sums) in self.a.chunks_exact(G).zip(sums.chunks_exact_mut(G)) {
                     add_dots::<G>(std::array::from_fn(|g| &a[g][rows.clone()]), packed, sums);

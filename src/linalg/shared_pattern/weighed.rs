@@ -2,7 +2,7 @@
 //! written down.
 
 use super::super::c64;
-use super::super::lanes::{lay, spread};
+use super::super::lanes::{pack, unpack};
 use super::super::sparse::{ROWS_A_TASK, columns, columns_mut};
 use super::{PANEL, SharedPattern, split};
 use faer::{MatMut, MatRef};
@@ -16,14 +16,14 @@ type Row = [f64; PANEL];
 /// tᴴAx of every matrix A, in their order; zero beyond them.
 pub type PerMatrix = [c64; 4];
 
-/// What a few columns of one task make.
+/// Result of a few columns of one task.
 struct Task<'y> {
     /// Re and Im of y.
     y: Vec<Vec<&'y mut [f64]>>,
     /// The first row.
     first: usize,
     /// y and then a test, row by row.
-    laid: Vec<Row>,
+    packed: Vec<Row>,
     /// tᴴAx, that of every matrix for the first test, then for the next.
     sums: Vec<Row>,
 }
@@ -65,7 +65,7 @@ impl SharedPattern<'_> {
             let of = |(number, y)| Task {
                 y,
                 first: number * ROWS_A_TASK,
-                laid: Vec::new(),
+                packed: Vec::new(),
                 sums: vec![[0.0; PANEL]; tests.len() * self.values.len()],
             };
             let tasks = tasks.into_iter().enumerate().map(of).collect();
@@ -104,23 +104,26 @@ fn factor_row(factors: &[c64]) -> Row {
 
 impl Task<'_> {
     fn take(&mut self, rows: Range<usize>, products: &[Row], factors: &[Row], tests: &[[&[f64]; PANEL]]) {
-        self.laid.resize(rows.len(), [0.0; PANEL]);
-        let laid = &mut self.laid;
+        self.packed.resize(rows.len(), [0.0; PANEL]);
+        let packed = &mut self.packed;
         let whole = self.first + rows.start..self.first + rows.end;
         for (test, sums) in tests.iter().zip(self.sums.chunks_mut(factors.len())) {
-            lay(&test.map(|column| &column[whole.clone()]), laid);
-            Arch::new().dispatch(Dots { products, tests: laid, sums });
+            pack(&test.map(|column| &column[whole.clone()]), packed);
+            Arch::new().dispatch(Dots { products, tests: packed, sums });
         }
         let [re, im] = &mut self.y[..] else { return };
         for (part, half) in [&*re, &*im].into_iter().zip(0..) {
             for (c, column) in part.iter().enumerate() {
-                laid.iter_mut().zip(&column[rows.clone()]).for_each(|(row, v)| row[half * VECTORS + c] = *v);
+                packed
+                    .iter_mut()
+                    .zip(&column[rows.clone()])
+                    .for_each(|(row, v)| row[half * VECTORS + c] = *v);
             }
         }
-        Arch::new().dispatch(Sums { products, factors, y: laid });
+        Arch::new().dispatch(Sums { products, factors, y: packed });
         for (part, half) in [re, im].into_iter().zip(0..) {
             let mut columns: Vec<_> = part.iter_mut().map(|y| &mut y[rows.clone()]).collect();
-            spread(|i| laid[i].as_chunks::<VECTORS>().0[half..].first().expect("two halves"), &mut columns);
+            unpack(|i| packed[i].as_chunks::<VECTORS>().0[half..].first().expect("two halves"), &mut columns);
         }
     }
 }

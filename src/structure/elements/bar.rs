@@ -4,16 +4,16 @@ use super::{Beam, ElementMatrix, FiniteElement};
 use crate::structure::{BarPart, Material};
 
 /// An Euler–Bernoulli bar between two nodes, 12 freedoms.
-pub struct Bar<'a> {
+pub struct BarElement<'a> {
     part: &'a BarPart,
     coordinates: &'a [[f64; 3]],
     nodes: [usize; 2],
 }
 
-impl<'a> Bar<'a> {
+impl<'a> BarElement<'a> {
     /// A bar of `part` on nodes with the given coordinates \[m\].
     pub fn new(part: &'a BarPart, coordinates: &'a [[f64; 3]], nodes: [usize; 2]) -> Self {
-        Bar { part, coordinates, nodes }
+        BarElement { part, coordinates, nodes }
     }
 
     fn geometry(&self) -> Option<Beam> {
@@ -25,7 +25,7 @@ impl<'a> Bar<'a> {
     }
 }
 
-impl FiniteElement for Bar<'_> {
+impl FiniteElement for BarElement<'_> {
     fn nodes(&self) -> &[usize] {
         &self.nodes
     }

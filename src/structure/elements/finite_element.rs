@@ -1,4 +1,4 @@
-//! What an element is to the rest of the program: any number of nodes and freedoms.
+//! Interface of a finite element, of any number of nodes and freedoms.
 
 use super::ElementMatrix;
 use crate::structure::Material;
@@ -31,12 +31,12 @@ pub trait FiniteElement: Send + Sync {
         Acting::Everywhere
     }
 
-    /// Whether its nodes leave it without length, area or orientation; its matrices may then not be asked for.
+    /// Whether its nodes leave it without length, area or orientation; its matrices may then not be computed.
     fn is_degenerate(&self) -> bool {
         false
     }
 
-    /// What it is made of: Rayleigh damping C = α M + β K and loss factor, η K. `None` for no damping but its own.
+    /// Material: Rayleigh damping C = α M + β K and loss factor, η K. `None` for an element without damping or with its own.
     fn material(&self) -> Option<&Material> {
         None
     }

@@ -9,8 +9,8 @@
 //! | [`KirchhoffTriangle`] | thin flat shell: DKT + OPT | 18 | `kirchhoff` |
 //! | [`MindlinTriangle`] | thick flat shell: DKMT + OPT | 18 | `mindlin/triangle` |
 //! | [`MindlinQuadrilateral`] | thick flat shell: DKMQ + OPT | 24 | `mindlin/quadrilateral` |
-//! | [`Bar`] | Euler–Bernoulli bar | 12 | `bar` |
-//! | [`Mass`] | concentrated mass | 6 | `point` |
+//! | [`BarElement`] | Euler–Bernoulli bar | 12 | `bar` |
+//! | [`MassElement`] | concentrated mass | 6 | `point` |
 //! | [`SpringElement`] | spring and dashpot | 6, 12 | `point` |
 //!
 //! They are made of pure functions:
@@ -50,14 +50,14 @@ mod shell;
 mod triangle;
 pub mod waves;
 
-pub use bar::Bar;
+pub use bar::BarElement;
 pub use beam::Beam;
 pub use element_matrix::ElementMatrix;
 pub use face::{WeightedTriangle, split_face};
 pub use finite_element::{Acting, FacePoint, FiniteElement, TheoryError};
 pub use kirchhoff::KirchhoffTriangle;
 pub use mindlin::{MindlinQuadrilateral, MindlinTriangle};
-pub use point::{Mass, SpringElement, mass_diagonal, spring_direction};
+pub use point::{MassElement, SpringElement, mass_diagonal, spring_direction};
 pub use shell::FlatShell;
 pub use triangle::FlatTriangle;
 

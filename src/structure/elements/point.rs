@@ -25,19 +25,19 @@ pub fn spring_direction(spring: &Spring) -> Option<[f64; 6]> {
 }
 
 /// A concentrated mass, 6 freedoms.
-pub struct Mass<'a> {
+pub struct MassElement<'a> {
     point: &'a PointMass,
     coordinates: &'a [[f64; 3]],
 }
 
-impl<'a> Mass<'a> {
+impl<'a> MassElement<'a> {
     /// The mass on a node with coordinates \[m\] among the given ones.
     pub fn new(point: &'a PointMass, coordinates: &'a [[f64; 3]]) -> Self {
-        Mass { point, coordinates }
+        MassElement { point, coordinates }
     }
 }
 
-impl FiniteElement for Mass<'_> {
+impl FiniteElement for MassElement<'_> {
     fn nodes(&self) -> &[usize] {
         std::slice::from_ref(&self.point.node)
     }
