@@ -394,7 +394,7 @@ fn faults_of_a_transient_come_together() {
 }
 
 #[test]
-fn check_lists_every_scalar_and_new_makes_a_case_that_is_sound() {
+fn check_lists_every_scalar_and_new_makes_a_valid_case() {
     let folder = TempDir::new().expect("a temporary folder");
     assert_eq!(stridor(folder.path(), &["new", "mine"]).status.code(), Some(0));
     let output = stridor(folder.path(), &["check", "mine/case.toml", "--parameters"]);
@@ -403,6 +403,28 @@ fn check_lists_every_scalar_and_new_makes_a_case_that_is_sound() {
     let again = stridor(folder.path(), &["new", "mine"]);
     assert_eq!(again.status.code(), Some(2));
     assert!(text(&again.stderr).contains("already"));
+}
+
+#[test]
+fn every_template_is_valid_and_runs() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let ran = [
+        ("rig", "report.html"),
+        ("pad", "growth.svg"),
+        ("two-dof", "complex_modes.csv"),
+        ("imported", "sensitivity.svg"),
+        ("transient", "transient.csv"),
+        ("measured", "mac_shapes.svg"),
+    ];
+    for (template, result) in ran {
+        assert_eq!(stridor(folder.path(), &["new", template, "--template", template]).status.code(), Some(0));
+        let case = format!("{template}/case.toml");
+        let checked = stridor(folder.path(), &["check", &case]);
+        assert_eq!(checked.status.code(), Some(0), "{template}: {}", text(&checked.stderr));
+        let output = stridor(folder.path(), &["run", &case, "--out", &format!("{template}/results")]);
+        assert_eq!(output.status.code(), Some(0), "{template}: {}", text(&output.stderr));
+        assert!(folder.path().join(template).join("results").join(result).is_file(), "{template}");
+    }
 }
 
 #[test]
@@ -494,19 +516,6 @@ fn a_reader_that_goes_away_is_no_error() {
         .output()
         .expect("the program starts");
     assert_eq!((output.status.code(), text(&output.stderr).as_str()), (Some(0), ""));
-}
-
-#[test]
-fn what_the_readme_asks_of_a_case_is_accepted() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let readme = std::fs::read_to_string(root.join("README.md")).expect("README.md");
-    let (_, block) = readme.split_once("```toml\n").expect("a TOML block");
-    let (block, _) = block.split_once("```").expect("its end");
-    let folder = TempDir::new().expect("a temporary folder");
-    let case = RIG.to_string() + "\n" + block;
-    std::fs::write(folder.path().join("case.toml"), case).expect("a file");
-    let output = stridor(folder.path(), &["check", "case.toml"]);
-    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
 }
 
 #[test]

@@ -133,7 +133,7 @@ fn the_guide_has_the_schema_and_the_keys() {
     let keys = format!("# Keys of a case file\n\n{}\n", key_reference(&all).trim_end());
     for (file, command, expected) in [
         ("case.schema.json", "stridor schema", format!("{:#}\n", json_schema("A case of stridor", &all))),
-        ("keys.md", "stridor schema --markdown", keys),
+        ("src/keys.md", "stridor schema --markdown", keys),
     ] {
         let found = std::fs::read_to_string(guide.join(file)).unwrap_or_default();
         assert!(found == expected, "guide/{file} is not what `{command}` prints: regenerate it");

@@ -12,6 +12,7 @@ mod output;
 mod progress;
 mod schema;
 mod search;
+mod templates;
 mod validate;
 
 use crate::error::{Error, Fault, Result};

@@ -1,16 +1,13 @@
-//! `stridor new`: a folder with the reference case and a small mesh to start from.
+//! `stridor new`: a folder with a case to start from, and the files that it reads.
 
 use super::mesh::refuse_existing;
 use super::output::{Common, say};
+use super::templates::Template;
 use crate::error::{Error, Result};
-use crate::mesh::generate::{self, RigSpec};
 use clap::Args;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// The reference case of the validation suite is what users start from: one text, checked by every run of the suite.
-const TEMPLATE: &str = include_str!("../../validation/rig/case.toml");
-const TEMPLATE_MESH: &str = "../../meshes/rig-medium.msh";
 /// The JSON Schema beside it, which editors find by the first line of the case.
 const SCHEMA: &str = "case.schema.json";
 
@@ -18,22 +15,22 @@ const SCHEMA: &str = "case.schema.json";
 pub struct NewOptions {
     /// The folder to create; its case file is NAME/case.toml
     name: PathBuf,
+    /// The case to start from
+    #[arg(long, value_enum, default_value = "rig")]
+    template: Template,
 }
 
 pub fn run(options: &NewOptions, common: &Common) -> Result<ExitCode> {
     let folder = &options.name;
     refuse_existing(folder, "Choose another name, or move it away")?;
-    std::fs::create_dir_all(folder)
-        .map_err(|error| Error::io(folder, error, "Choose a folder that can be written"))?;
-    crate::mesh::write(&folder.join("rig.msh"), &generate::rig(&RigSpec::medium())?, 1e-3)?;
-    let case = folder.join("case.toml");
-    let text = format!("#:schema {SCHEMA}\n{}", TEMPLATE.replace(TEMPLATE_MESH, "rig.msh"));
-    for (file, text) in [(&case, text), (&folder.join(SCHEMA), super::schema::of_cases())] {
-        std::fs::write(file, text)
-            .map_err(|error| Error::io(file, error, "Choose a folder that can be written"))?;
-    }
+    let failed = |path: &PathBuf, error| Error::io(path, error, "Choose a folder that can be written");
+    std::fs::create_dir_all(folder).map_err(|error| failed(folder, error))?;
+    options.template.write(folder, &format!("#:schema {SCHEMA}"))?;
+    let schema = folder.join(SCHEMA);
+    std::fs::write(&schema, super::schema::of_cases()).map_err(|error| failed(&schema, error))?;
     if !common.quiet {
-        say(format!("{} and its mesh are ready. Next: stridor run {}", case.display(), case.display()))?;
+        let case = folder.join("case.toml").display().to_string();
+        say(format!("{case} is ready, with its files. Next: stridor run {case}"))?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -3,6 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+/// xarray with both of its readers of HDF5.
+#[allow(dead_code)]
+pub const XARRAY: [(&str, &str); 4] =
+    [("xarray", "2026.9.0"), ("h5netcdf", "1.8.2"), ("h5py", "3.16.0"), ("netCDF4", "1.7.5.1.post1")];
+
 /// A Python that has these releases of packages. It is made when it is not there.
 pub fn with(packages: &[(&str, &str)]) -> PathBuf {
     let name: Vec<String> = packages.iter().map(|(name, version)| format!("{name}-{version}")).collect();
