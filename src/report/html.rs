@@ -4,38 +4,25 @@ use super::section::{Display, Item, ReportSection};
 use super::table::{ReportColumn, ReportTable};
 use crate::error::text::printable_lines;
 
-const STYLE: &str = "\
-body{font:16px/1.5 system-ui,'Segoe UI',Helvetica,Arial,sans-serif;color:#1b1f24;background:#fff;\
-max-width:1040px;margin:2.5rem auto;padding:0 1.2rem}\
-h1{font-size:1.7rem;line-height:1.25;margin:0 0 .3rem}h2{font-size:1.2rem;margin:2.4rem 0 .6rem;\
-border-bottom:1px solid #d5dae0;padding-bottom:.25rem}\
-.sub{color:#5b6570;margin:0 0 1.4rem}.verdict{border-left:6px solid #009e73;background:#eef7f4;\
-padding:.8rem 1.1rem;margin:1rem 0}.verdict.bad{border-color:#d55e00;background:#fdf3ec}\
-.verdict p{font-size:1.1rem;font-weight:600;margin:.1rem 0 .5rem}\
-.scroll{overflow-x:auto}table{border-collapse:collapse;font-size:.9rem;margin:.5rem 0;\
-font-variant-numeric:tabular-nums}caption{text-align:left;font-weight:600;padding:.3rem 0}\
-th,td{padding:.22rem .7rem;text-align:right;white-space:nowrap;border-bottom:1px solid #e6e9ed}\
-th{border-bottom:2px solid #9aa4af;font-weight:600}.w{text-align:left}\
-tr.m td{background:#eef5fa;font-weight:600}.bad tr.m td{background:#fdf3ec}.note{color:#5b6570;font-size:.88rem;margin:.15rem 0}\
-figure{margin:1.2rem 0}figure svg{max-width:100%;height:auto;display:block}\
-figcaption{color:#5b6570;font-size:.9rem;margin-top:.3rem}\
-.warn{border-left:6px solid #e69f00;background:#fdf8ec;padding:.4rem 1.1rem;margin:.5rem 0}\
-pre{background:#f5f6f8;padding:.8rem 1rem;overflow-x:auto;font-size:.84rem}summary{cursor:pointer;font-weight:600}\
-@media print{body{margin:0;max-width:none;font-size:11pt}details{display:none}}";
+/// The style sheet, for light, dark and paper.
+const STYLE: &str = include_str!("page.css");
 
 /// A page with its style.
 pub(super) fn document(title: &str, body: &str) -> String {
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>{}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n{body}</body>\n</html>\n",
+         <title>{}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{body}</body>\n</html>\n",
         escape(title)
     )
 }
 
 /// A picture with its caption.
 pub(super) fn figure(svg: &str, caption: &str) -> String {
-    format!("<figure>{svg}<figcaption>{}</figcaption></figure>\n", escape(caption))
+    format!(
+        "<figure><div class=\"picture\">{svg}</div><figcaption>{}</figcaption></figure>\n",
+        escape(caption)
+    )
 }
 
 /// A table under its caption.
@@ -124,4 +111,47 @@ pub(super) fn escape(text: &str) -> String {
         }
     }
     safe
+}
+
+#[cfg(test)]
+mod tests {
+    use super::STYLE;
+    use std::collections::BTreeMap;
+
+    /// Relative luminance of `#rrggbb` (WCAG 2.2).
+    fn luminance(colour: &str) -> f64 {
+        let channel = |k: usize| {
+            let v = f64::from(u8::from_str_radix(&colour[k..k + 2], 16).unwrap()) / 255.0;
+            if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+        };
+        0.2126 * channel(1) + 0.7152 * channel(3) + 0.0722 * channel(5)
+    }
+
+    fn contrast(a: &str, b: &str) -> f64 {
+        let [a, b] = [luminance(a), luminance(b)];
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    #[test]
+    fn text_stands_out_in_light_dark_and_on_paper() {
+        assert!((contrast("#ffffff", "#000000") - 21.0).abs() < 1e-9);
+        let blocks: Vec<&str> =
+            STYLE.split(":root {").skip(1).map(|b| b.split('}').next().unwrap()).collect();
+        assert_eq!(blocks.len(), 3);
+        let mut colours: BTreeMap<&str, &str> = BTreeMap::new();
+        for block in blocks {
+            let lines = block.lines().filter_map(|line| line.trim().strip_prefix("--")?.split_once(": "));
+            colours.extend(lines.map(|(name, value)| (name, value.trim_end_matches(';'))));
+            let grounds = colours.iter().filter(|(name, _)| name.ends_with("ground") || **name == "raised");
+            for (ground, under) in grounds {
+                for text in ["ink", "muted", "link"] {
+                    assert!(contrast(colours[text], under) >= 4.5, "{text} on {ground}");
+                }
+            }
+            for class in ["good", "attention", "bad", "neutral"] {
+                let ground = format!("{class}-ground");
+                assert!(contrast(colours[class], colours[&*ground]) >= 4.5, "{class}");
+            }
+        }
+    }
 }

@@ -50,7 +50,7 @@ fn subtitle(results: &RunResults) -> String {
 fn verdict_box(results: &RunResults) -> String {
     let unstable = results.get::<ComplexResult>().map(unstable);
     let bad = unstable.as_ref().is_some_and(|t| !t.rows.is_empty());
-    let class = if bad { "verdict bad" } else { "verdict" };
+    let class = if bad { "verdict bad" } else { "verdict good" };
     let shown = match &unstable {
         Some(t) if bad => untitled(t),
         Some(t) => notes(t),

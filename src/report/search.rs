@@ -27,7 +27,7 @@ pub fn write_search(dir: &Path, result: &SearchResult) -> Result<()> {
     write_result(dir, "search_weights.svg", weights.as_bytes())?;
     let (title, facts) = (&result.title, std::slice::from_ref(&result.facts));
     let [all, met] = passed(facts);
-    let class = if met == all { "verdict" } else { "verdict bad" };
+    let class = if met == all { "verdict good" } else { "verdict bad" };
     let words: String = words(result).iter().map(|w| format!("<p>{}</p>\n", escape(w))).collect();
     let body = format!(
         "<h1>{}</h1>\n<p class=\"sub\">{} {} · {} evaluations</p>\n<div class=\"{class}\">{words}</div>\n",

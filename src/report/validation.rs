@@ -30,7 +30,7 @@ pub fn write_validation(dir: &Path, cases: &[CheckedCase]) -> Result<()> {
 fn page(cases: &[CheckedCase], svg: &str) -> String {
     let [all, within] = passed(cases);
     let seconds: f64 = cases.iter().map(|case| case.seconds).sum();
-    let class = if within == all { "verdict" } else { "verdict bad" };
+    let class = if within == all { "verdict good" } else { "verdict bad" };
     let mut body = format!(
         "<h1>Validation</h1>\n<p class=\"sub\">{} {} · {} cases in {} s</p>\n\
          <div class=\"{class}\"><p>{within} of {all} quantities within tolerance</p></div>\n",
