@@ -25,6 +25,7 @@ pub(super) fn modes_table(comparison: &MeasuredComparison, set: &NamedModes) -> 
         ];
         table.row(cells, row.mode.is_none());
     }
+    let mut table = table.without_columns(str::is_empty);
     let alone = comparison.computed_alone();
     let levels = comparison.levels.iter().zip(&comparison.levels_hz);
     let named = levels.filter(|(level, _)| alone.contains(level));
