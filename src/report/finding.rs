@@ -1,6 +1,5 @@
 //! Findings: what each analysis found, in a sentence or a few, first on the page and last on the terminal.
 
-use super::section::ReportSection;
 use super::table::ReportTable;
 
 /// How a finding is to be taken. The most urgent class comes first.
@@ -42,30 +41,5 @@ impl Finding {
     /// A finding without a table.
     pub(super) fn new(class: FindingClass, words: impl Into<String>) -> Self {
         Finding { class, words: words.into(), table: None }
-    }
-}
-
-/// The findings of all sections with the numbers of their sections, the most urgent first, else in the order of the
-/// report.
-pub(super) fn findings(sections: &[ReportSection]) -> Vec<(usize, &Finding)> {
-    let each = sections.iter().enumerate();
-    let mut all: Vec<_> =
-        each.flat_map(|(k, section)| section.findings.iter().map(move |f| (k, f))).collect();
-    all.sort_by_key(|(_, finding)| finding.class);
-    all
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_most_urgent_comes_first_and_equals_keep_their_order() {
-        let section = |class, words: &str| ReportSection::new("x").findings([Finding::new(class, words)]);
-        use FindingClass::{Attention, Bad, Good, Neutral};
-        let sections = [section(Neutral, "a"), section(Bad, "b"), section(Good, "c"), section(Bad, "d")];
-        let sections = [&sections[..], &[section(Attention, "e")]].concat();
-        let order: Vec<(usize, &str)> = findings(&sections).iter().map(|(k, f)| (*k, &*f.words)).collect();
-        assert_eq!(order, [(1, "b"), (3, "d"), (4, "e"), (2, "c"), (0, "a")]);
     }
 }

@@ -4,7 +4,7 @@ use super::axes::{Chart, WIDTH};
 use super::chart::{Area, colour, sheet, text};
 use super::colours::{ALARM, INK, MEASURED, MUTED, PARTS, SECOND};
 use super::finding::{Finding, FindingClass};
-use super::format::{fixed, given, hertz, power, significant};
+use super::format::{fixed, given, hertz, power, prefixed};
 use super::magnitude::{draw_magnitude, draw_phase, magnitude_axes, phase_axes};
 use super::section::{Display, Picture, ReportSection};
 use super::table::{ReportTable, idle};
@@ -41,11 +41,10 @@ fn finding(frf: &FrfResult) -> Finding {
         return Finding::new(FindingClass::Attention, words);
     };
     let mut words = format!(
-        "Frequency response {}: the largest {} is {} {} at {} Hz, at {}.",
+        "Frequency response {}: the largest {} is {} at {} Hz, at {}.",
         frf.name,
         frf.quantity.word(),
-        significant(size, 3),
-        frf.quantity.unit(),
+        prefixed(size, frf.quantity.unit(), 3),
         hertz(hz, 1),
         of.name.replace('_', " ")
     );

@@ -1,9 +1,9 @@
 //! The page of a run: what was found first, then contents, the sections, and at the end where the results come from.
 
-use super::finding::{FindingClass, findings};
+use super::finding::FindingClass;
 use super::html::{PageLayout, document, escape, finding_box, heading, notes, prose, rows};
 use super::provenance::{provenance, the_case};
-use super::section::ReportSection;
+use super::section::{ReportSection, findings};
 use crate::results::RunResults;
 use std::collections::BTreeSet;
 
@@ -114,7 +114,7 @@ mod tests {
             "Assumptions</h2>",
             "<svg",
             "Real modes beside the measured frequencies</h2>",
-            "2050 Hz",
+            "Measured without a computed mode beside it: 2050 Hz",
             "Steady sliding</h2>",
             "Complex eigenvalues</h2>",
             "Calibration</h2>",

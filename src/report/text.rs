@@ -1,7 +1,7 @@
 //! The tables for the terminal: aligned, at most 100 columns wide.
 
-use super::finding::{Finding, findings};
-use super::section::{Display, Item, ReportSection};
+use super::finding::Finding;
+use super::section::{Display, Item, ReportSection, findings};
 use super::table::ReportTable;
 use crate::results::RunResults;
 

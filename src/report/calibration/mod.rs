@@ -177,7 +177,7 @@ fn number_table(result: &CalibrationResult) -> ReportTable {
          Student's t. Both end at the bounds."
             .into(),
     );
-    table
+    table.without_columns(str::is_empty)
 }
 
 fn expected(n: &CalibratedNumber) -> String {
@@ -216,7 +216,7 @@ fn assignment_table(result: &CalibrationResult) -> ReportTable {
          weights are too sharp."
             .into(),
     );
-    table
+    table.without_columns(str::is_empty)
 }
 
 #[cfg(test)]

@@ -9,6 +9,9 @@ const FREQUENCY_PERCENT: f64 = 5.0;
 /// Customary limit of the MAC of shapes that are taken for the same.
 const MAC: f64 = 0.9;
 
+/// Frequencies that are named one by one.
+const NAMED: usize = 3;
+
 /// The largest difference of a frequency, the least MAC, and what has no computed mode.
 pub(super) fn modes(test: &MeasuredComparison) -> Finding {
     let paired: Vec<(f64, f64)> =
@@ -19,6 +22,12 @@ pub(super) fn modes(test: &MeasuredComparison) -> Finding {
         paired.len(),
         test.rows.len()
     );
+    let alone = test.rows.iter().filter(|row| row.computed_hz.is_none());
+    let alone: Vec<String> = alone.take(NAMED).map(|row| format!("{} Hz", given(row.frequency_hz))).collect();
+    if !alone.is_empty() {
+        let more = if test.rows.len() - paired.len() > NAMED { " …" } else { "" };
+        words += &format!(" None is near {}{more}.", alone.join(", "));
+    }
     let mut within = paired.len() == test.rows.len() && !paired.is_empty();
     if let Some((hz, percent)) = paired.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) {
         let inside = percent.abs() <= FREQUENCY_PERCENT;

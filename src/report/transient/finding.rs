@@ -2,7 +2,7 @@
 
 use crate::linalg::c64;
 use crate::report::finding::{Finding, FindingClass};
-use crate::report::format::{fixed, hertz, power, prefixed, rate, signed, significant};
+use crate::report::format::{fixed, given, hertz, power, prefixed, rate, signed};
 use crate::results::TransientResult;
 use crate::signal::{Growth, Peak};
 use std::f64::consts::TAU;
@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 /// Growth of a small disturbance, where it was measured; the motion at the end; the energy balance.
 pub(super) fn motion(run: &TransientResult) -> Finding {
     let mut class = FindingClass::Neutral;
-    let mut words = String::from("Motion in time:");
+    let mut parts: Vec<String> = Vec::new();
     if let Some((growth, found)) = run.growth.as_ref().and_then(|growth| Some((growth, growth.found?))) {
         let does = match change(&found) {
             0 => "neither grows nor decays measurably,",
@@ -20,13 +20,13 @@ pub(super) fn motion(run: &TransientResult) -> Finding {
             }
             _ => "decays with",
         };
-        words += &format!(
-            " a small disturbance {does} σ = {} 1/s at {} Hz (the complex mode: {} 1/s at {} Hz).",
+        parts.push(format!(
+            "a small disturbance {does} σ = {} 1/s at {} Hz (the complex mode: {} 1/s at {} Hz)",
             rate(c64::new(found.rate, TAU * found.frequency_hz)),
             hertz(found.frequency_hz, 1),
             rate(growth.eigenvalue),
             hertz(growth.eigenvalue.im / TAU, 1)
-        );
+        ));
     }
     let shown = run.diagnostics.cycles.iter().find(|(k, _)| run.shown.contains(k));
     if let Some((k, cycle)) = shown.or(run.diagnostics.cycles.first()) {
@@ -38,23 +38,23 @@ pub(super) fn motion(run: &TransientResult) -> Finding {
         } else {
             class = class.min(FindingClass::Attention);
             let drift = signed(100.0 * cycle.drift, 0);
-            format!("not steady: {drift} % from the first to the second half of what was analysed")
+            format!("not steady ({drift} % from the first to the second half of what was analysed)")
         };
-        words += &format!(
-            " From {} s on {} oscillates by ± {}{at}, {steady}.",
-            significant(run.diagnostics.window[0], 3),
+        parts.push(format!(
+            "from {} s on {} oscillates by ± {}{at}, {steady}",
+            given(run.diagnostics.window[0]),
             channel.name.replace('_', " "),
             prefixed(cycle.amplitude, channel.unit, 3)
-        );
+        ));
     } else if run.growth.is_none() {
-        words += &format!(" {} steps of {} s.", run.len().saturating_sub(1), power(run.time_step));
+        parts.push(format!("{} steps of {} s", run.len().saturating_sub(1), power(run.time_step)));
     }
     if run.spectra.iter().any(|of| of.beyond.is_some()) {
         class = class.min(FindingClass::Attention);
-        words += " The strongest line is beyond the modes of the case, where damping is not known.";
+        parts.push("the strongest line is beyond the modes of the case, where damping is not known".into());
     }
-    words += &format!(" The energy balance of each step closes to {}.", power(run.worst_residual));
-    Finding::new(class, words)
+    parts.push(format!("the energy balance of each step closes to {}", power(run.worst_residual)));
+    Finding::new(class, format!("Motion in time: {}.", parts.join("; ")))
 }
 
 /// Change of ln|c| over the time of the fit that is smaller than this is no growth.
