@@ -14,6 +14,7 @@ use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::time::{Duration, Instant};
+use stridor::results::KEYS_OF_THE_RUN;
 use tempfile::TempDir;
 
 const TITLES: [&str; 2] = ["The first case", "The second case"];
@@ -120,11 +121,12 @@ fn results(out: &Path) -> Results {
     numbers(&file, &mut record);
     let fields = hdf5::File::open(out.join("transient.vtkhdf")).expect("transient.vtkhdf opens");
     numbers(&fields, &mut record);
-    record.retain(|(name, _)| !name.contains("timings"));
+    record.retain(|(name, _)| !KEYS_OF_THE_RUN.iter().any(|key| name.contains(key)));
     assert!(record.len() > 50);
     let summary = std::fs::read(out.join("summary.json")).expect("a summary");
     let mut summary: serde_json::Value = serde_json::from_slice(&summary).expect("JSON");
-    ["timings", "title", "warnings"].iter().for_each(|key| drop(summary[key].take()));
+    let others = ["title", "warnings"];
+    KEYS_OF_THE_RUN.iter().chain(&others).for_each(|key| drop(summary[*key].take()));
     let tables = ["transient.csv", "events.csv", "map_m.csv", "modes_disc.csv", "steady.vtu"];
     let tables = tables.map(|name| std::fs::read(out.join(name)).expect("a table"));
     (record, summary, tables.to_vec())

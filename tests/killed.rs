@@ -152,7 +152,7 @@ fn kill_after(time: Duration, folder: &Path, case: &str, out: &str, resume: bool
     child.wait().expect("it ends");
 }
 
-/// What a finished run says: the numbers of its record, its summary without wall times, its tables.
+/// What a finished run says: the numbers of its record, its summary without what differs from run to run, its tables.
 fn said(out: &Path) -> (Record, serde_json::Value, [Vec<u8>; 2]) {
     let file = hdf5::File::open(out.join("results.h5")).expect("results.h5 opens");
     assert!(file.attr("complete").and_then(|a| a.read_scalar::<bool>()).expect("a root attribute"));
@@ -163,7 +163,7 @@ fn said(out: &Path) -> (Record, serde_json::Value, [Vec<u8>; 2]) {
     }
     let summary = std::fs::read_to_string(out.join("summary.json")).expect("a summary");
     let mut summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
-    summary["timings"].take();
+    stridor::results::KEYS_OF_THE_RUN.iter().for_each(|key| drop(summary[*key].take()));
     (
         record,
         summary,

@@ -145,7 +145,7 @@ impl Case {
     /// Every fault of the text, each with its line and key.
     pub fn parse(file: &str, text: &str, folder: PathBuf) -> Result<Case> {
         let read = read_table::<Case>(file, text)?;
-        let mut case = Case { folder, places: read.places, ..read.table };
+        let mut case = Case { folder, places: read.places.of_text(text), ..read.table };
         case.expect_own_values();
         Ok(case)
     }

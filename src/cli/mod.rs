@@ -123,13 +123,15 @@ mod tests {
     use std::collections::BTreeSet;
     use std::path::Path;
 
-    /// Words of the sources below `folder`, their unit tests and comments left out.
+    /// Words of the sources below `folder`; unit tests, comments, and styles and scripts of the page left out.
     fn words(folder: &Path, text: &mut String) {
         for entry in std::fs::read_dir(folder).unwrap().flatten() {
             let path = entry.path();
             if path.is_dir() {
                 words(&path, text);
-            } else if !path.ends_with("tests.rs") {
+            } else if !path.ends_with("tests.rs")
+                && !path.extension().is_some_and(|e| e == "css" || e == "js")
+            {
                 let file = std::fs::read_to_string(&path).unwrap();
                 let code = file.split("#[cfg(test)]\nmod tests {").next().unwrap();
                 text.extend(code.lines().filter(|line| !line.trim_start().starts_with("//")));

@@ -14,6 +14,7 @@ pub struct Column<R> {
     /// Dimensions beyond the rows.
     dimensions: Vec<Dimension>,
     shown: Option<(&'static str, Text<R>)>,
+    proof: bool,
     value: Box<dyn Fn(&R) -> Cell>,
 }
 
@@ -59,7 +60,8 @@ pub fn column<R, V: IntoCell>(
     value: impl Fn(&R) -> V + 'static,
 ) -> Column<R> {
     let value = Box::new(move |record: &R| value(record).cell());
-    Column { key, unit: unit.into(), description, kind: V::KIND, dimensions: Vec::new(), shown: None, value }
+    let (unit, kind) = (unit.into(), V::KIND);
+    Column { key, unit, description, kind, dimensions: Vec::new(), shown: None, proof: false, value }
 }
 
 impl<R> Column<R> {
@@ -75,6 +77,13 @@ impl<R> Column<R> {
     pub fn shown(mut self, heading: &'static str, text: impl Fn(&R) -> String + 'static) -> Self {
         self.shown = Some((heading, Box::new(text)));
         self
+    }
+
+    /// The same of an error or a condition number, which proves the other columns: in a table beside theirs.
+    #[must_use]
+    pub fn proof(mut self, heading: &'static str, text: impl Fn(&R) -> String + 'static) -> Self {
+        self.proof = true;
+        self.shown(heading, text)
     }
 
     /// The quantity of one record.
@@ -106,6 +115,7 @@ impl<R> Column<R> {
             heading,
             cells: records.iter().map(text).collect(),
             words: self.kind == Kind::Text,
+            proof: self.proof,
         });
         variable
     }

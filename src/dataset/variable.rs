@@ -30,6 +30,8 @@ pub struct Shown {
     pub cells: Vec<String>,
     /// Whether they are words, set left.
     pub words: bool,
+    /// Whether it proves the other columns (an error, a condition number) and stands in a table of its own.
+    pub proof: bool,
 }
 
 /// A dimension of a [`Variable`].

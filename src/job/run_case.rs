@@ -12,7 +12,7 @@ use crate::case::Case;
 use crate::error::{Error, Fault, Result};
 use crate::progress::Observer;
 use crate::results::record::{Earlier, InputFile, Record, RecordOrigin};
-use crate::results::{self, FieldsFile, FolderLock, ResultsFile, RunResults, fits_on_disk};
+use crate::results::{self, FieldsFile, FolderLock, Provenance, ResultsFile, RunResults, fits_on_disk};
 use std::path::Path;
 use std::time::Instant;
 
@@ -34,6 +34,8 @@ pub fn run_case(
     observer: &dyn Observer,
 ) -> Result<RunResults> {
     let started = Instant::now();
+    let (file, text) = case.places.source();
+    let provenance = Some(Provenance::now(file, text));
     let prepared = Prepared::new(case)?;
     // Its faults are reported before anything is written.
     let asked = Asked::new(&prepared, selection)?;
@@ -46,7 +48,7 @@ pub fn run_case(
         case.files().iter().map(|file| InputFile::read(&case.folder, file)).collect::<Result<_>>()?;
     let origin = RecordOrigin { case: case.to_toml(), inputs };
     let _lock = FolderLock::take(out)?;
-    let mut results = RunResults { inputs: origin.inputs.clone(), ..RunResults::default() };
+    let mut results = RunResults { inputs: origin.inputs.clone(), provenance, ..RunResults::default() };
     let (record, earlier) = match resume {
         true => resumed(out, origin, &asked)?,
         false => {

@@ -1,20 +1,22 @@
 //! Complex eigenvalues, what the count and the second method say of them, and the verdict.
 
+use super::finding::{Finding, FindingClass};
 use super::format::{fixed, given, hertz, power, rate, signed, significant};
 use super::section::{Display, ReportSection};
 use super::squeal::{SQUEAL_TOLERANCE, near, nearest_squeal};
-use super::table::ReportTable;
+use super::table::{ReportTable, idle};
 use super::{budget, growth, participation};
 use crate::linalg::c64;
 use crate::results::{ComplexResult, RunResults};
-use crate::stability::{Certificate, Confirmation, Verdict};
+use crate::stability::{Certificate, ComplexMode, Confirmation, Verdict};
 
 /// Complex eigenvalues, where the run has them.
 pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
     let Some(complex) = results.get::<ComplexResult>() else { return Vec::new() };
     let pictures = [growth::picture(results), budget::picture(results), participation::picture(results)];
-    let section = ReportSection::new("Complex eigenvalues").pictures(pictures.into_iter().flatten());
-    vec![section.tables(Display::Untitled, [table(complex)])]
+    let section = ReportSection::new("Complex eigenvalues").findings([finding(complex)]);
+    let section = section.pictures(pictures.into_iter().flatten()).tables(Display::Titled, [table(complex)]);
+    vec![section.tables(Display::Proof, [proof(complex)])]
 }
 
 /// The complex eigenvalues, unstable ones marked.
@@ -24,14 +26,30 @@ fn table(result: &ComplexResult) -> ReportTable {
     for (row, mode) in table.rows.iter_mut().zip(&result.modes.modes) {
         row.marked = matches!(mode.verdict(), Verdict::Unstable | Verdict::Inaccurate);
     }
+    let mut table = table.without_columns(idle);
     table.notes.push("σ: growth rate; ζ = −σ/|λ|: damping ratio, negative when unstable.".into());
-    table.notes.push("η: backward error; |Δλ|/|λ|: estimated eigenvalue error; κ: condition number.".into());
+    let largest = |of: fn(&ComplexMode) -> f64| result.modes.modes.iter().map(of).fold(f64::NAN, f64::max);
+    table.notes.push(format!(
+        "Largest backward error η {}, eigenvalue error |Δλ|/|λ| {}, condition number κ {}.",
+        power(largest(|mode| mode.backward_error)),
+        power(largest(|mode| mode.eigenvalue_error)),
+        significant(largest(|mode| mode.condition), 2)
+    ));
     table.notes.extend(result.confirmation.as_ref().map(second_method));
     table
 }
 
+/// The errors of each mode.
+fn proof(result: &ComplexResult) -> ReportTable {
+    let caption = "Proof: backward errors, eigenvalue errors and condition numbers of the complex modes";
+    let mut table = ReportTable::proof_of(caption, &result.mode_table(), true, &["f [Hz]"]);
+    let words = "η: backward error; |Δλ|/|λ|: estimated eigenvalue error; κ: condition number.";
+    table.notes.push(words.into());
+    table
+}
+
 /// The unstable modes, the strongest growth first, with the nearest measured squeal.
-pub(super) fn unstable(result: &ComplexResult) -> ReportTable {
+fn unstable(result: &ComplexResult) -> ReportTable {
     let headings =
         ["f [Hz]", "growth rate σ [1/s]", "damping ratio [%]", "grows tenfold in [ms]", "<measured squeal"];
     let mut table = ReportTable::new("Unstable modes", &headings);
@@ -128,14 +146,11 @@ fn second_method(confirmation: &Confirmation) -> String {
     )
 }
 
-/// Whether a computed frequency is that of a measured squeal.
-/// The verdict in one sentence.
-pub(super) fn verdict(results: &RunResults) -> String {
-    let Some(complex) = results.get::<ComplexResult>() else {
-        return "No complex eigenvalues were requested: this run makes no statement about squeal.".into();
-    };
-    let band = complex.band_hz.map(given);
-    let modes = &complex.modes.modes;
+/// Whether any mode grows, and whether the count and the second method agree. A stable result is good only where as many
+/// modes were counted as were found.
+fn finding(result: &ComplexResult) -> Finding {
+    let band = result.band_hz.map(given);
+    let modes = &result.modes.modes;
     let count = |verdict| modes.iter().filter(|m| m.verdict() == verdict).count();
     let (unstable, undecided, inaccurate) =
         (count(Verdict::Unstable), count(Verdict::Undecided), count(Verdict::Inaccurate));
@@ -146,20 +161,41 @@ pub(super) fn verdict(results: &RunResults) -> String {
         n => format!(" The growth rates of {n} are within their errors."),
     };
     if inaccurate > 0 {
-        doubt += &format!(
-            " {inaccurate} {} not accurate: neither stable nor unstable.",
-            if inaccurate == 1 { "is" } else { "are" }
-        );
+        let are = if inaccurate == 1 { "is" } else { "are" };
+        doubt += &format!(" {inaccurate} {are} not accurate: neither stable nor unstable.");
     }
-    match (modes.len(), unstable) {
-        (0, _) => {
-            format!("No complex mode was found {between}: this run makes no statement about squeal there.")
-        }
+    let counted = result.certificate.as_ref().map(Certificate::agrees);
+    let (mut class, mut words) = match (modes.len(), unstable) {
+        (0, _) => (FindingClass::Attention, format!("No complex mode was found {between}.")),
         (all, 0) if undecided + inaccurate > 0 => {
-            format!("Undecided: none of the {all} complex modes {between} grows for certain.{doubt}")
+            let words =
+                format!("Undecided: none of the {all} complex modes {between} grows for certain.{doubt}");
+            (FindingClass::Attention, words)
         }
-        (all, 0) => format!("Stable: none of the {all} complex modes {between} grows."),
-        (all, 1) => format!("Unstable: 1 of {all} complex modes {between} grows.{doubt}"),
-        (all, n) => format!("Unstable: {n} of {all} complex modes {between} grow.{doubt}"),
+        (all, 0) => {
+            let class = if counted == Some(true) { FindingClass::Good } else { FindingClass::Neutral };
+            (class, format!("Stable: none of the {all} complex modes {between} grows."))
+        }
+        (all, 1) => {
+            (FindingClass::Bad, format!("Unstable: 1 of {all} complex modes {between} grows.{doubt}"))
+        }
+        (all, n) => {
+            (FindingClass::Bad, format!("Unstable: {n} of {all} complex modes {between} grow.{doubt}"))
+        }
+    };
+    match counted {
+        Some(true) => {}
+        Some(false) => {
+            class = FindingClass::Bad;
+            words += " A mode was missed.";
+        }
+        None => words += " That none was missed is not shown: they were not counted.",
     }
+    if result.confirmation.as_ref().is_some_and(|second| !second.holds()) {
+        class = FindingClass::Bad;
+        words += " The two methods disagree.";
+    }
+    let table = self::unstable(result);
+    let table = (!table.rows.is_empty() || !table.notes.is_empty()).then_some(table);
+    Finding { class, words, table }
 }

@@ -15,3 +15,44 @@ pub(super) fn short(value: f64) -> String {
     let text = given(value);
     if text.contains('e') { significant(value, 2) } else { text }
 }
+
+/// `value` with a decimal prefix before its unit: 1.2e−5 m as `12.0 µm`. Units whose first part is not a bare unit (a
+/// square, a ratio of numbers) keep the power of ten.
+pub(super) fn prefixed(value: f64, unit: &str, digits: usize) -> String {
+    const PREFIXES: [(i32, &str); 7] =
+        [(-12, "p"), (-9, "n"), (-6, "µ"), (-3, "m"), (0, ""), (3, "k"), (6, "M")];
+    let first = unit.split(['/', ' ']).next().unwrap_or("");
+    let takes = ["m", "N", "J", "W", "Pa", "V", "rad"].contains(&first) && value != 0.0 && value.is_finite();
+    // Lengths and angles above one have no prefix: kilometres per second squared are no unit of vibration.
+    let most = if ["m", "rad"].contains(&first) { 0 } else { 6 };
+    let thousand = (3 * (value.abs().log10() / 3.0).floor() as i32).min(most);
+    match PREFIXES.iter().find(|(power, _)| takes && *power == thousand) {
+        Some((power, prefix)) => {
+            format!("{} {prefix}{unit}", significant(value / 10f64.powi(*power), digits))
+        }
+        None => format!("{} {unit}", significant(value, digits)).trim_end().to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::prefixed;
+
+    #[test]
+    fn prefixes_keep_the_digits_short() {
+        let shown = [
+            (1.2e-5, "m"),
+            (-0.345, "m/s"),
+            (7930.0, "m/s^2"),
+            (1234.0, "N"),
+            (3e-15, "m"),
+            (0.0, "m"),
+            (2e-4, "1"),
+        ];
+        let shown = shown.map(|(value, unit)| prefixed(value, unit, 3));
+        assert_eq!(
+            shown,
+            ["12.0 µm", "−345 mm/s", "7930 m/s^2", "1.23 kN", "3.00e−15 m", "0 m", "0.000200 1"]
+        );
+    }
+}

@@ -3,16 +3,19 @@
 use super::axes::{Chart, WIDTH};
 use super::chart::{Area, colour, sheet, text};
 use super::colours::{ALARM, INK, MEASURED, MUTED, PARTS, SECOND};
-use super::format::{fixed, given, hertz, power};
+use super::finding::{Finding, FindingClass};
+use super::format::{fixed, given, hertz, power, prefixed};
 use super::magnitude::{draw_magnitude, draw_phase, magnitude_axes, phase_axes};
 use super::section::{Display, Picture, ReportSection};
-use super::table::ReportTable;
+use super::table::{ReportTable, idle};
 use crate::results::{FrfResult, RunResults, file_name};
 use plotters::prelude::*;
 use std::error::Error;
 
 /// A mode with less than this part of the largest product of shapes does not show.
 const HIDDEN: f64 = 0.01;
+/// Superposition that differs from the direct solution by more than this part is reported first.
+const DEVIATION: f64 = 0.01;
 /// A measured resonance is paired with a mode that differs from it by less than this part.
 const NEAR: f64 = 0.05;
 
@@ -20,10 +23,40 @@ const NEAR: f64 = 0.05;
 pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
     let section = |frf: &FrfResult| {
         ReportSection::new(format!("Frequency response: {}", frf.name))
+            .findings([finding(frf)])
             .pictures(picture(frf))
             .tables(Display::Titled, [table(frf)])
     };
     results.all::<FrfResult>().into_iter().map(section).collect()
+}
+
+/// The largest response, and whether superposition and the direct solution agree.
+fn finding(frf: &FrfResult) -> Finding {
+    let values = frf.responses.iter().flat_map(|of| {
+        frf.frequencies_hz.iter().zip(&of.values).map(move |(hz, value)| (value.norm(), *hz, of))
+    });
+    let largest = values.filter(|(size, ..)| size.is_finite()).max_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((size, hz, of)) = largest else {
+        let words = format!("Frequency response {}: no value is finite.", frf.name);
+        return Finding::new(FindingClass::Attention, words);
+    };
+    let mut words = format!(
+        "Frequency response {}: the largest {} is {} at {} Hz, at {}.",
+        frf.name,
+        frf.quantity.word(),
+        prefixed(size, frf.quantity.unit(), 3),
+        hertz(hz, 1),
+        of.name.replace('_', " ")
+    );
+    if frf.compared > 0 && frf.deviation > DEVIATION {
+        words += &format!(
+            " At one of {} frequencies superposition differs from the direct solution by {} of the latter.",
+            frf.compared,
+            power(frf.deviation)
+        );
+        return Finding::new(FindingClass::Attention, words);
+    }
+    Finding::new(FindingClass::Neutral, words)
 }
 
 fn caption(frf: &FrfResult) -> String {
@@ -116,6 +149,7 @@ fn table(frf: &FrfResult) -> ReportTable {
         format!("Frequency response {}: {} for a force at {}", frf.name, frf.quantity.word(), frf.excitation),
         &headings,
     );
+    table.file = Some(file_name("frf", &frf.name));
     let beside = beside(frf);
     for (k, resonance) in frf.resonances.iter().enumerate() {
         for (place, response) in frf.responses.iter().enumerate() {
@@ -133,6 +167,7 @@ fn table(frf: &FrfResult) -> ReportTable {
             table.row(cells, false);
         }
     }
+    let mut table = table.without_columns(idle);
     let node = "Hidden: the place or the force stands on a node of the mode.";
     table.notes.push(node.into());
     table.notes.push(format!("{}; {} frequencies.", capital(&frf.about), frf.frequencies_hz.len()));
@@ -172,6 +207,10 @@ mod tests {
         let table = table(results.all::<FrfResult>()[0]);
         assert_eq!(table.rows.len(), 4);
         assert!(table.rows[3].cells[5].starts_with("hidden") && table.rows[2].cells[2] == "1697");
-        assert!(crate::report::html::section(section).contains("Superposition differs"));
+        assert!(
+            crate::report::html::PageLayout::default()
+                .section(section, "x")
+                .contains("Superposition differs")
+        );
     }
 }

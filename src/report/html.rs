@@ -1,93 +1,136 @@
-//! Parts of a page: plain HTML with its style and its pictures inside, no script.
+//! Parts of a page: HTML with its style and its pictures inside.
 
+use super::finding::FindingClass;
 use super::section::{Display, Item, ReportSection};
 use super::table::{ReportColumn, ReportTable};
 use crate::error::text::printable_lines;
+use crate::results::FileNames;
+use std::collections::BTreeSet;
 
-const STYLE: &str = "\
-body{font:16px/1.5 system-ui,'Segoe UI',Helvetica,Arial,sans-serif;color:#1b1f24;background:#fff;\
-max-width:1040px;margin:2.5rem auto;padding:0 1.2rem}\
-h1{font-size:1.7rem;line-height:1.25;margin:0 0 .3rem}h2{font-size:1.2rem;margin:2.4rem 0 .6rem;\
-border-bottom:1px solid #d5dae0;padding-bottom:.25rem}\
-.sub{color:#5b6570;margin:0 0 1.4rem}.verdict{border-left:6px solid #009e73;background:#eef7f4;\
-padding:.8rem 1.1rem;margin:1rem 0}.verdict.bad{border-color:#d55e00;background:#fdf3ec}\
-.verdict p{font-size:1.1rem;font-weight:600;margin:.1rem 0 .5rem}\
-.scroll{overflow-x:auto}table{border-collapse:collapse;font-size:.9rem;margin:.5rem 0;\
-font-variant-numeric:tabular-nums}caption{text-align:left;font-weight:600;padding:.3rem 0}\
-th,td{padding:.22rem .7rem;text-align:right;white-space:nowrap;border-bottom:1px solid #e6e9ed}\
-th{border-bottom:2px solid #9aa4af;font-weight:600}.w{text-align:left}\
-tr.m td{background:#eef5fa;font-weight:600}.bad tr.m td{background:#fdf3ec}.note{color:#5b6570;font-size:.88rem;margin:.15rem 0}\
-figure{margin:1.2rem 0}figure svg{max-width:100%;height:auto;display:block}\
-figcaption{color:#5b6570;font-size:.9rem;margin-top:.3rem}\
-.warn{border-left:6px solid #e69f00;background:#fdf8ec;padding:.4rem 1.1rem;margin:.5rem 0}\
-pre{background:#f5f6f8;padding:.8rem 1rem;overflow-x:auto;font-size:.84rem}summary{cursor:pointer;font-weight:600}\
-@media print{body{margin:0;max-width:none;font-size:11pt}details{display:none}}";
+/// The style sheet, for light, dark and paper.
+const STYLE: &str = include_str!("page.css");
 
 /// A page with its style.
 pub(super) fn document(title: &str, body: &str) -> String {
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>{}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n{body}</body>\n</html>\n",
+         <title>{}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{body}</body>\n</html>\n",
         escape(title)
     )
 }
 
-/// A picture with its caption.
-pub(super) fn figure(svg: &str, caption: &str) -> String {
-    format!("<figure>{svg}<figcaption>{}</figcaption></figure>\n", escape(caption))
+/// What is numbered and named once on a page, and which files stand beside it.
+#[derive(Debug, Default)]
+pub(super) struct PageLayout {
+    figures: usize,
+    tables: usize,
+    ids: FileNames,
+    /// Names of the files of the run.
+    pub files: BTreeSet<String>,
 }
 
-/// A table under its caption.
-pub(super) fn titled_table(content: &ReportTable) -> String {
-    table(content)
-}
+impl PageLayout {
+    /// Of a page beside these files.
+    pub(super) fn beside(files: impl IntoIterator<Item = String>) -> Self {
+        PageLayout { files: files.into_iter().collect(), ..PageLayout::default() }
+    }
 
-/// A section with its heading.
-pub(super) fn section(section: &ReportSection) -> String {
-    let heading = match section.heading.as_str() {
-        "" => String::new(),
-        heading => format!("<h2>{}</h2>\n", escape(heading)),
-    };
-    let item = |item: &Item| match item {
-        Item::Picture(picture) => figure(&picture.svg, &picture.caption),
-        Item::Table(content, display) => shown(content, *display),
-        Item::Words(words) => format!("<p>{}</p>\n", escape(words)),
-    };
-    heading + &section.items.iter().map(item).collect::<String>()
+    /// A name for an element with this heading, unlike all others on the page.
+    pub(super) fn id(&mut self, heading: &str) -> String {
+        self.ids.next(&heading.to_lowercase())
+    }
+
+    /// A link to a file beside the page; nothing where the run has not written it.
+    pub(super) fn link(&self, file: &str) -> Option<String> {
+        let address: String = file.bytes().map(address_byte).collect();
+        self.files.contains(file).then(|| format!("<a href=\"{address}\">{}</a>", escape(file)))
+    }
+
+    /// A picture with its number and caption; `file` names it, without the extension.
+    pub(super) fn figure(&mut self, svg: &str, file: &str, caption: &str) -> String {
+        self.figures += 1;
+        let id = format!("figure-{}", self.figures);
+        let link = self.link(&format!("{file}.svg")).map_or(String::new(), |link| format!(" ({link})"));
+        format!(
+            "<figure id=\"{id}\"><div class=\"picture\" role=\"img\" aria-labelledby=\"{id}-caption\">{svg}</div>\
+             <figcaption id=\"{id}-caption\"><b>Figure {}.</b> {}{link}</figcaption></figure>\n",
+            self.figures,
+            escape(caption)
+        )
+    }
+
+    /// A table with its number and caption.
+    pub(super) fn table(&mut self, content: &ReportTable) -> String {
+        let caption = format!("<caption>{}</caption>\n", self.caption(content));
+        rows(content, &caption) + &notes(content)
+    }
+
+    /// A table that is opened with a click.
+    pub(super) fn closed_table(&mut self, content: &ReportTable) -> String {
+        let caption = self.caption(content);
+        format!(
+            "<details><summary>{caption} ({} rows)</summary>\n{}{}</details>\n",
+            content.rows.len(),
+            rows(content, ""),
+            notes(content)
+        )
+    }
+
+    fn caption(&mut self, content: &ReportTable) -> String {
+        self.tables += 1;
+        let file = content.file.as_ref().and_then(|file| self.link(&format!("{file}.csv")));
+        let link = file.map_or(String::new(), |link| format!(" <small>({link})</small>"));
+        format!("Table {}. {}{link}", self.tables, escape(&content.caption))
+    }
+
+    /// A section with its heading, which gets the name `id`.
+    pub(super) fn section(&mut self, section: &ReportSection, id: &str) -> String {
+        let mut text = heading(id, &section.heading);
+        for finding in &section.findings {
+            text += &format!("<p class=\"finding\">{}</p>\n", prose(&finding.words));
+        }
+        for item in &section.items {
+            text += &match item {
+                Item::Picture(picture) => self.figure(&picture.svg, &picture.file, &picture.caption),
+                Item::Table(content, display) => match display {
+                    Display::Closed | Display::Proof => self.closed_table(content),
+                    Display::Folded if content.rows.len() > LONG => self.closed_table(content),
+                    Display::Titled | Display::Folded => self.table(content),
+                },
+                Item::Words(words) => format!("<p>{}</p>\n", prose(words)),
+            };
+        }
+        text
+    }
 }
 
 /// A table with this many rows is long.
 const LONG: usize = 25;
 
-fn shown(content: &ReportTable, display: Display) -> String {
-    let closed = match display {
-        Display::Closed => true,
-        Display::Folded => content.rows.len() > LONG,
-        Display::Titled | Display::Untitled => false,
-    };
-    if closed {
-        let (caption, inner) = (escape(&content.caption), untitled(content));
-        let rows = content.rows.len();
-        return format!("<details><summary>{caption} ({rows} rows)</summary>\n{inner}</details>\n");
+/// A byte of a file name in an address: letters, digits and a few marks as they are (RFC 3986, 2.3).
+fn address_byte(byte: u8) -> String {
+    match byte {
+        b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'_' | b'.' | b'~' => char::from(byte).to_string(),
+        byte => format!("%{byte:02X}"),
     }
-    if display == Display::Untitled { untitled(content) } else { table(content) }
 }
 
-/// A table whose caption a heading above it gives already.
-pub(super) fn untitled(content: &ReportTable) -> String {
-    table(&ReportTable { caption: String::new(), ..content.clone() })
+/// A heading that contents lists lead to.
+pub(super) fn heading(id: &str, words: &str) -> String {
+    format!("<h2 id=\"{id}\">{}</h2>\n", escape(words))
 }
 
-fn table(content: &ReportTable) -> String {
+/// The rows of a table without caption and notes.
+pub(super) fn rows(content: &ReportTable, caption: &str) -> String {
     let class = |column: &ReportColumn| if column.words { " class=\"w\"" } else { "" };
     let alarm = if content.alarming { " bad" } else { "" };
-    let mut text = format!("<div class=\"scroll{alarm}\"><table>\n");
-    if !content.caption.is_empty() {
-        text += &format!("<caption>{}</caption>\n", escape(&content.caption));
-    }
-    let headings: String =
-        content.columns.iter().map(|c| format!("<th{}>{}</th>", class(c), escape(c.heading))).collect();
+    let mut text = format!("<div class=\"scroll{alarm}\"><table>\n{caption}");
+    let headings: String = content
+        .columns
+        .iter()
+        .map(|c| format!("<th scope=\"col\"{}>{}</th>", class(c), escape(c.heading)))
+        .collect();
     text += &format!("<thead><tr>{headings}</tr></thead>\n<tbody>\n");
     for row in &content.rows {
         let cells: String = row
@@ -98,16 +141,33 @@ fn table(content: &ReportTable) -> String {
             .collect();
         text += &format!("<tr{}>{cells}</tr>\n", if row.marked { " class=\"m\"" } else { "" });
     }
-    text + "</tbody></table></div>\n" + &notes(content)
+    text + "</tbody></table></div>\n"
 }
 
+/// The notes below a table.
 pub(super) fn notes(content: &ReportTable) -> String {
-    content.notes.iter().map(|note| format!("<p class=\"note\">{}</p>\n", escape(note))).collect()
+    content.notes.iter().map(|note| format!("<p class=\"note\">{}</p>\n", prose(note))).collect()
+}
+
+/// The box of a finding; `more` is HTML that belongs to it.
+pub(super) fn finding_box(class: FindingClass, words: &str, more: &str) -> String {
+    format!("<div class=\"verdict {}\"><p>{}</p>\n{more}</div>\n", class.name(), prose(words))
 }
 
 /// `text` without characters that XML 1.0 forbids; they, and those that turn the direction of writing, become `\u{…}`.
 pub(super) fn allowed(text: &str) -> String {
     printable_lines(text).replace(['\u{fffe}', '\u{ffff}'], "")
+}
+
+/// Sentences in HTML; what stands between back-ticks, as names of keys and commands do, is code.
+pub(super) fn prose(text: &str) -> String {
+    let safe = escape(text);
+    let parts: Vec<&str> = safe.split('`').collect();
+    if parts.len().is_multiple_of(2) {
+        return safe;
+    }
+    let each = parts.iter().enumerate();
+    each.map(|(k, part)| if k % 2 == 1 { format!("<code>{part}</code>") } else { part.to_string() }).collect()
 }
 
 /// User text made harmless in HTML and XML.
@@ -124,4 +184,53 @@ pub(super) fn escape(text: &str) -> String {
         }
     }
     safe
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{STYLE, prose};
+    use std::collections::BTreeMap;
+
+    /// Relative luminance of `#rrggbb` (WCAG 2.2).
+    fn luminance(colour: &str) -> f64 {
+        let channel = |k: usize| {
+            let v = f64::from(u8::from_str_radix(&colour[k..k + 2], 16).unwrap()) / 255.0;
+            if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+        };
+        0.2126 * channel(1) + 0.7152 * channel(3) + 0.0722 * channel(5)
+    }
+
+    fn contrast(a: &str, b: &str) -> f64 {
+        let [a, b] = [luminance(a), luminance(b)];
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    #[test]
+    fn names_in_sentences_are_code() {
+        assert_eq!(prose("`a<b` and `c`"), "<code>a&lt;b</code> and <code>c</code>");
+        assert_eq!(prose("one ` alone <"), "one ` alone &lt;");
+    }
+
+    #[test]
+    fn text_stands_out_in_light_dark_and_on_paper() {
+        assert!((contrast("#ffffff", "#000000") - 21.0).abs() < 1e-9);
+        let blocks: Vec<&str> =
+            STYLE.split(":root {").skip(1).map(|b| b.split('}').next().unwrap()).collect();
+        assert_eq!(blocks.len(), 3);
+        let mut colours: BTreeMap<&str, &str> = BTreeMap::new();
+        for block in blocks {
+            let lines = block.lines().filter_map(|line| line.trim().strip_prefix("--")?.split_once(": "));
+            colours.extend(lines.map(|(name, value)| (name, value.trim_end_matches(';'))));
+            let grounds = colours.iter().filter(|(name, _)| name.ends_with("ground") || **name == "raised");
+            for (ground, under) in grounds {
+                for text in ["ink", "muted", "link"] {
+                    assert!(contrast(colours[text], under) >= 4.5, "{text} on {ground}");
+                }
+            }
+            for class in ["good", "attention", "bad", "neutral"] {
+                let ground = format!("{class}-ground");
+                assert!(contrast(colours[class], colours[&*ground]) >= 4.5, "{class}");
+            }
+        }
+    }
 }

@@ -8,8 +8,9 @@
 //!   `mac_<name>.svg`, `frequencies_<name>.svg` and `measured_frf_<name>.svg` of measured data;
 //!   `sweep_<name>.svg`, `root_locus_<name>.svg` and `map_<name>.svg` of every sweep and map.
 //!
-//! Each analysis has a function that gives its sections from the results; tables and words are shown in either form, a picture
-//! is a pure function from the results to SVG. `SECTIONS` lists them.
+//! Each analysis has a function that gives its sections from the results: what it found in a sentence with its class, tables and
+//! words, which are shown in either form, and pictures, each a pure function from the results to SVG. `SECTIONS` lists them. The
+//! findings of all sections come first on the page, the most urgent before the others, and last on the terminal.
 
 mod advice;
 mod axes;
@@ -23,6 +24,7 @@ mod contact;
 mod contours;
 mod disc_modes;
 mod explored;
+mod finding;
 mod format;
 mod frf;
 mod growth;
@@ -31,6 +33,7 @@ mod magnitude;
 mod page;
 mod participation;
 mod plate;
+mod provenance;
 mod real_modes;
 mod reduced_check;
 mod rig;
@@ -51,7 +54,7 @@ pub use search::{search_text, write_search};
 pub use validation::write_validation;
 
 use crate::error::Result;
-use crate::results::{FileNames, RunResults, write_result};
+use crate::results::{FileNames, RunResults, write_result, written_files};
 use section::ReportSection;
 use std::path::Path;
 
@@ -85,7 +88,7 @@ pub fn write_report(dir: &Path, results: &RunResults) -> Result<()> {
         let file = format!("{}.svg", names.once(picture.file.clone()));
         write_result(dir, &file, picture.svg.as_bytes())?;
     }
-    write_result(dir, "report.html", page::page(results, &sections).as_bytes())
+    write_result(dir, "report.html", page::page(results, &sections, written_files(dir)).as_bytes())
 }
 
 #[cfg(test)]

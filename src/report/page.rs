@@ -1,38 +1,51 @@
-//! The page of a run: the verdict first, then the sections, then times and the case.
+//! The page of a run: what was found first, then contents, the sections, and at the end where the results come from.
 
-use super::complex::{unstable, verdict};
-use super::format::significant;
-use super::html::{document, escape, notes, section, untitled};
-use super::section::ReportSection;
-use super::table::ReportTable;
-use crate::results::{ComplexResult, RunResults};
+use super::finding::FindingClass;
+use super::html::{PageLayout, document, escape, finding_box, heading, notes, prose, rows};
+use super::provenance::{provenance, the_case};
+use super::section::{ReportSection, findings};
+use crate::results::RunResults;
+use std::collections::BTreeSet;
 
-/// The whole page.
-pub(super) fn page(results: &RunResults, sections: &[ReportSection]) -> String {
+/// The whole page; `files` are the names of those beside it.
+pub(super) fn page(results: &RunResults, sections: &[ReportSection], files: BTreeSet<String>) -> String {
     let title = if results.title.is_empty() { "Results" } else { &results.title };
+    let mut layout = PageLayout::beside(files);
+    let ids: Vec<String> = sections.iter().map(|section| layout.id(&section.heading)).collect();
     let mut body =
         format!("<h1>{}</h1>\n<p class=\"sub\">{}</p>\n", escape(title), escape(&subtitle(results)));
-    body += &verdict_box(results);
-    let failed = results.failed.iter().map(|error| format!("This run failed. {error}"));
-    for warning in failed.chain(results.warnings.iter().cloned()) {
-        body += &format!("<div class=\"warn\">{}</div>\n", escape(&warning));
+    body += &headline(results, sections, &ids);
+    for warning in &results.warnings {
+        body += &format!("<div class=\"warn\">{}</div>\n", prose(warning));
     }
-    if !results.assumptions.is_empty() {
-        let items: String = results.assumptions.iter().map(|a| format!("<li>{}</li>", escape(a))).collect();
-        body += &format!("<h2>Assumptions</h2>\n<ul>{items}</ul>\n");
+    let named = sections.iter().zip(&ids).map(|(section, id)| (id.as_str(), section.heading.as_str()));
+    let ends = [
+        (!results.assumptions.is_empty(), ASSUMPTIONS),
+        (true, PROVENANCE),
+        (!results.resolved_case.is_empty(), CASE),
+    ];
+    let [assumptions, others @ ..] = ends.map(|(there, names)| there.then_some(names));
+    body += &contents(assumptions.into_iter().chain(named).chain(others.into_iter().flatten()));
+    if let Some((id, words)) = assumptions {
+        let items: String = results.assumptions.iter().map(|a| format!("<li>{}</li>", prose(a))).collect();
+        body += &format!("{}<ul>{items}</ul>\n", heading(id, words));
     }
-    body += &sections.iter().map(section).collect::<String>();
-    if !results.timings.is_empty() {
-        body += &format!("<h2>Wall time</h2>\n{}", untitled(&timings(results)));
+    for (section, id) in sections.iter().zip(&ids) {
+        body += &layout.section(section, id);
     }
+    body += &heading(PROVENANCE.0, PROVENANCE.1);
+    body += &provenance(results, &mut layout);
     if !results.resolved_case.is_empty() {
-        let case = escape(&results.resolved_case);
-        body += &format!(
-            "<h2>The case</h2>\n<details><summary>Every value as the run used it</summary><pre>{case}</pre></details>\n"
-        );
+        body += &heading(CASE.0, CASE.1);
+        body += &the_case(results);
     }
     document(title, &body)
 }
+
+/// Names and headings of what is on every page. The name of a section has no full stop.
+const ASSUMPTIONS: (&str, &str) = ("page.assumptions", "Assumptions");
+const PROVENANCE: (&str, &str) = ("page.provenance", "Provenance");
+const CASE: (&str, &str) = ("page.case", "The case");
 
 fn subtitle(results: &RunResults) -> String {
     let size = &results.size;
@@ -47,27 +60,39 @@ fn subtitle(results: &RunResults) -> String {
     )
 }
 
-fn verdict_box(results: &RunResults) -> String {
-    let unstable = results.get::<ComplexResult>().map(unstable);
-    let bad = unstable.as_ref().is_some_and(|t| !t.rows.is_empty());
-    let class = if bad { "verdict bad" } else { "verdict" };
-    let shown = match &unstable {
-        Some(t) if bad => untitled(t),
-        Some(t) => notes(t),
-        None => String::new(),
-    };
-    format!("<div class=\"{class}\"><p>{}</p>\n{shown}</div>\n", escape(&verdict(results)))
+/// A failure, then the findings, each with a link to its section; those without a class in one box.
+fn headline(results: &RunResults, sections: &[ReportSection], ids: &[String]) -> String {
+    let failed = results.failed.iter();
+    let mut text: String = failed
+        .map(|error| finding_box(FindingClass::Bad, &format!("This run failed. {error}"), ""))
+        .collect();
+    let mut neutral = String::new();
+    for (k, finding) in findings(sections) {
+        let link = format!("<a href=\"#{}\">{}</a>", ids[k], escape(&sections[k].heading));
+        if finding.class == FindingClass::Neutral && finding.table.is_none() {
+            neutral += &format!("<p>{} {link}</p>\n", prose(&finding.words));
+            continue;
+        }
+        let more = finding.table.as_ref().map_or(String::new(), |table| match table.rows.is_empty() {
+            true => notes(table),
+            false => rows(table, "") + &notes(table),
+        });
+        text += &finding_box(finding.class, &finding.words, &format!("{more}<p class=\"note\">{link}</p>\n"));
+    }
+    if !neutral.is_empty() {
+        text += &format!(
+            "<div class=\"verdict neutral {}\">{neutral}</div>\n",
+            if text.is_empty() { "alone" } else { "others" }
+        );
+    }
+    if text.is_empty() { finding_box(FindingClass::Neutral, "This run has no results.", "") } else { text }
 }
 
-/// Where the wall time went.
-fn timings(results: &RunResults) -> ReportTable {
-    let mut table = ReportTable::new("Wall time", &["<phase", "seconds"]);
-    for (phase, seconds) in &results.timings {
-        table.row(vec![phase.clone(), significant(*seconds, 3)], false);
-    }
-    let total: f64 = results.timings.iter().map(|(_, seconds)| seconds).sum();
-    table.row(vec!["all".into(), significant(total, 3)], true);
-    table
+/// Links to all headings.
+fn contents<'a>(headings: impl Iterator<Item = (&'a str, &'a str)>) -> String {
+    let links: String =
+        headings.map(|(id, words)| format!("<li><a href=\"#{id}\">{}</a></li>\n", escape(words))).collect();
+    format!("<nav aria-label=\"Contents\"><b>Contents</b>\n<ul>\n{links}</ul></nav>\n")
 }
 
 #[cfg(test)]
@@ -79,20 +104,23 @@ mod tests {
     #[test]
     fn the_page_opens_with_the_verdict_and_needs_nothing_else() {
         let results = sample::rig();
-        let page = page(&results, &super::super::sections(&results));
+        let page = page(&results, &super::super::sections(&results), BTreeSet::new());
         let at = |text: &str| page.find(text).unwrap_or_else(|| panic!("no {text}"));
         let order = [
             "Unstable: 3 of 14",
             "1668.3",
             "is thick for Kirchhoff",
-            "Assumptions",
+            "<nav",
+            "Assumptions</h2>",
             "<svg",
-            "Real modes beside",
-            "2050 Hz",
-            "<h2>Steady sliding",
-            "<h2>Complex eigenvalues",
-            "<h2>Calibration",
+            "Real modes beside the measured frequencies</h2>",
+            "Measured without a computed mode beside it: 2050 Hz",
+            "Steady sliding</h2>",
+            "Complex eigenvalues</h2>",
+            "Calibration</h2>",
+            "Provenance</h2>",
             "Wall time",
+            "The case</h2>",
             "Every value as the run used it",
         ];
         assert!(order.windows(2).all(|pair| at(pair[0]) < at(pair[1])));
@@ -105,10 +133,10 @@ mod tests {
         results.warnings = vec!["</div><script>alert('x')</script>\u{1}\u{ffff}\u{202e}".into()];
         results.resolved_case = "a = \"</pre><script>\"".into();
         results.get_mut::<NamedModes>().unwrap().name = "<b>disc</b>".into();
-        let page = page(&results, &super::super::sections(&results));
+        let page = page(&results, &super::super::sections(&results), BTreeSet::new());
         assert!(
             !page.contains("<script")
-                && !page.contains("<b>")
+                && !page.contains("<b>disc")
                 && !page.contains(['\u{1}', '\u{ffff}', '\u{202e}'])
         );
         assert!(page.contains("Disc on slider &lt;reference &amp; &quot;first&quot; case&gt;"));
@@ -117,7 +145,32 @@ mod tests {
 
     #[test]
     fn a_run_without_results_still_has_a_page() {
-        let page = page(&RunResults::default(), &[]);
-        assert!(page.contains("makes no statement about squeal") && page.ends_with("</html>\n"));
+        let page = page(&RunResults::default(), &[], BTreeSet::new());
+        assert!(page.contains("This run has no results.") && page.ends_with("</html>\n"));
+    }
+
+    #[test]
+    fn every_link_leads_somewhere_and_every_number_and_name_is_there_once() {
+        let mut results = sample::rig();
+        // Names of a user that would be the same, and would end an attribute.
+        results.get_mut::<NamedModes>().unwrap().name = "a\" b".into();
+        let files = ["complex_modes.csv", "growth.svg", "mode <1>.csv"].map(String::from);
+        let page = page(&results, &super::super::sections(&results), BTreeSet::from(files));
+        let all = |mark: &str| -> Vec<String> {
+            page.split(mark).skip(1).map(|rest| rest.split('"').next().unwrap().to_string()).collect()
+        };
+        let ids = all(" id=\"");
+        let unique: BTreeSet<&String> = ids.iter().collect();
+        assert_eq!(ids.len(), unique.len(), "{ids:?}");
+        for target in all("href=\"#").iter().chain(&all("aria-labelledby=\"")) {
+            assert!(unique.contains(target), "{target} is nowhere");
+        }
+        let pictures = page.matches("<figure").count();
+        assert!(pictures > 15 && page.contains(&format!("<b>Figure {pictures}.</b>")));
+        assert_eq!(page.matches("role=\"img\" aria-labelledby").count(), pictures);
+        for file in ["complex_modes.csv", "growth.svg", "mode%20%3C1%3E.csv"] {
+            assert!(page.contains(&format!("href=\"{file}\"")), "{file}");
+        }
+        assert!(!page.contains("href=\"sensitivity.svg\""), "a file that is not there");
     }
 }

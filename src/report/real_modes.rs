@@ -1,10 +1,11 @@
 //! Real modes beside the measured frequencies.
 
 use super::disc_modes;
+use super::finding::{Finding, FindingClass};
 use super::format::{fixed, given, hertz, power, signed};
 use super::section::{Display, ReportSection};
-use super::table::ReportTable;
-use crate::results::{MeasuredComparison, NamedModes, RunResults};
+use super::table::{ReportTable, idle};
+use crate::results::{MeasuredComparison, NamedModes, RunResults, file_name};
 
 /// The sets of real modes.
 pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
@@ -12,9 +13,44 @@ pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
     if sets.is_empty() {
         return Vec::new();
     }
-    let section = ReportSection::new("Real modes beside the measured frequencies");
-    let tables = sets.into_iter().map(|set| table(results, set));
-    vec![section.pictures(disc_modes::picture(results)).tables(Display::Folded, tables)]
+    let measured = !results.all::<MeasuredComparison>().is_empty();
+    let heading = if measured { "Real modes beside the measured frequencies" } else { "Real modes" };
+    let mut section = ReportSection::new(heading).findings([finding(&sets)]);
+    section = section.pictures(disc_modes::picture(results));
+    for set in sets {
+        section = section.tables(Display::Folded, [table(results, set)]).tables(Display::Proof, [proof(set)]);
+    }
+    vec![section]
+}
+
+/// How many there are, and whether the Sturm count holds for all sets.
+fn finding(sets: &[&NamedModes]) -> Finding {
+    let range = |set: &NamedModes| match set.modes.len() {
+        0 => format!("none of {}", set.name),
+        n => format!("{n} of {} up to {} Hz", set.name, hertz(set.modes.frequency_hz(n - 1), 0)),
+    };
+    let ranges: Vec<String> = sets.iter().map(|set| range(set)).collect();
+    let words = format!("Real modes: {}.", ranges.join(", "));
+    let wrong: Vec<String> =
+        sets.iter().filter(|set| !set.modes.certificate.holds()).map(|set| certificate(set)).collect();
+    match wrong.is_empty() {
+        true => {
+            Finding::new(FindingClass::Neutral, format!("{words} None is missing: as many were counted."))
+        }
+        false => Finding::new(FindingClass::Bad, format!("{words} {}", wrong.join(" "))),
+    }
+}
+
+/// The backward error of each mode.
+fn proof(set: &NamedModes) -> ReportTable {
+    let caption = format!("Proof: backward errors of the real modes of {}", set.name);
+    let mut table = ReportTable::new(caption, &["no.", "f [Hz]", "η"]);
+    table.file = Some(file_name("modes", &set.name));
+    for (k, error) in set.modes.backward_errors.iter().enumerate() {
+        table.row(vec![(k + 1).to_string(), hertz(set.modes.frequency_hz(k), 1), power(*error)], false);
+    }
+    table.notes.push("η = ‖Kφ − ω²Mφ‖ / ((‖K‖ + |ω²| ‖M‖) ‖φ‖).".into());
+    table
 }
 
 /// The modes of a set beside the measured frequencies that were compared with it.
@@ -39,8 +75,9 @@ fn table(results: &RunResults, set: &NamedModes) -> ReportTable {
     if !comparisons.is_empty() {
         headings.extend(["measured", "diff. [%]"]);
     }
-    headings.extend(["m_x [%]", "m_y [%]", "m_z [%]", "η"]);
+    headings.extend(["m_x [%]", "m_y [%]", "m_z [%]"]);
     let mut table = ReportTable::new(format!("Real modes: {}", set.name), &headings);
+    table.file = Some(file_name("modes", &set.name));
     let rows: Vec<_> = comparisons.iter().flat_map(|m| &m.rows).collect();
     for k in 0..set.modes.len() {
         // The frequency of a rigid-body motion is round-off.
@@ -69,10 +106,11 @@ fn table(results: &RunResults, set: &NamedModes) -> ReportTable {
         }
         let mass = |axis: usize| set.effective_mass.get(k).map(|m| 100.0 * m[axis] / set.total_mass);
         cells.extend((0..3).map(|axis| mass(axis).map_or("–".into(), |share| fixed(share, 1))));
-        cells.push(set.modes.backward_errors.get(k).map_or("–".into(), |e| power(*e)));
         table.row(cells, paired.is_some());
     }
-    table.notes.push(certificate(set));
+    let mut table = table.without_columns(idle);
+    let largest = set.modes.backward_errors.iter().copied().fold(f64::NAN, f64::max);
+    table.notes.push(format!("{} Largest backward error η {}.", certificate(set), power(largest)));
     for comparison in comparisons {
         table.notes.push(format!("Measured: {}.", comparison.source));
         if comparison.frequency_scale != 1.0 {
@@ -90,7 +128,7 @@ fn table(results: &RunResults, set: &NamedModes) -> ReportTable {
     if named {
         table.notes.push("(n, s): nodal diameters and circles.".into());
     }
-    table.notes.push("m: effective mass, share of the total; η: backward error.".into());
+    table.notes.push("m: effective mass, share of the total.".into());
     table
 }
 

@@ -14,7 +14,7 @@ const FINEST_EDGE: f64 = 2.5;
 
 /// The model, before the analyses.
 pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
-    picture(results).map(|picture| ReportSection::new("").pictures([picture])).into_iter().collect()
+    picture(results).map(|picture| ReportSection::new("The model").pictures([picture])).into_iter().collect()
 }
 
 /// The picture, when the model has a mesh.

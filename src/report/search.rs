@@ -2,8 +2,9 @@
 //! matters most.
 
 use super::colours::{ALARM, CALM, INK, MEASURED, MUTED};
+use super::finding::FindingClass;
 use super::format::{fixed, given, significant};
-use super::html::{self, escape};
+use super::html::{self, PageLayout, escape};
 use super::svg::{Anchor, Ink, Sheet};
 use super::table::ReportTable;
 use super::text::render;
@@ -27,21 +28,30 @@ pub fn write_search(dir: &Path, result: &SearchResult) -> Result<()> {
     write_result(dir, "search_weights.svg", weights.as_bytes())?;
     let (title, facts) = (&result.title, std::slice::from_ref(&result.facts));
     let [all, met] = passed(facts);
-    let class = if met == all { "verdict" } else { "verdict bad" };
-    let words: String = words(result).iter().map(|w| format!("<p>{}</p>\n", escape(w))).collect();
+    let class = match met == all {
+        true if result.numbers.len() < all => FindingClass::Good,
+        true => FindingClass::Attention,
+        false => FindingClass::Bad,
+    };
+    let sentences = words(result);
+    let (first, others) = sentences.split_first().expect("how many facts are met");
+    let others: String = others.iter().map(|w| format!("<p>{}</p>\n", html::prose(w))).collect();
+    let mut layout = PageLayout::beside(["search_weights.svg", "search_cost.svg"].map(String::from));
     let body = format!(
-        "<h1>{}</h1>\n<p class=\"sub\">{} {} · {} evaluations</p>\n<div class=\"{class}\">{words}</div>\n",
+        "<h1>{}</h1>\n<p class=\"sub\">{} {} · {} evaluations</p>\n",
         escape(title),
         env!("CARGO_PKG_NAME"),
         env!("CARGO_PKG_VERSION"),
         result.history.len(),
-    ) + &html::titled_table(&fact_table(result))
-        + &html::titled_table(&number_table(result))
-        + &html::figure(
+    ) + &html::finding_box(class, first, &others)
+        + &layout.table(&fact_table(result))
+        + &layout.table(&number_table(result))
+        + &layout.figure(
             &weights,
+            "search_weights",
             "How much the cost rises when one number is moved by a twentieth of its bounds, the others as found.",
         )
-        + &html::figure(&cost, "The cost of every evaluation, and the least so far.");
+        + &layout.figure(&cost, "search_cost", "The cost of every evaluation, and the least so far.");
     write_result(dir, "search.html", html::document(title, &body).as_bytes())
 }
 
@@ -225,7 +235,7 @@ fn weight_picture(result: &SearchResult) -> String {
             sheet.text([LABELS + length + 6.0, top + 8.0], &words, ink);
         }
     }
-    let foot = "rise of the cost; blue: a smaller number, red: a larger one, and the fact that gets worst";
+    let foot = "rise of the cost; blue: a smaller number, orange: a larger one, and the fact that gets worst";
     let bottom = ROW * numbers.len() as f64 + 36.0;
     sheet.text([0.5 * (LABELS + WIDTH), bottom], foot, small(MUTED, Anchor::Middle));
     sheet.finish()

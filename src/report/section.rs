@@ -1,5 +1,6 @@
 //! A part of the report: what one analysis found, in tables, words and pictures, once for the terminal and the page.
 
+use super::finding::Finding;
 use super::table::ReportTable;
 
 /// A picture with the name of its file, without the extension, and its caption.
@@ -13,8 +14,10 @@ pub(super) struct Picture {
 /// Section of one analysis.
 #[derive(Debug, Clone)]
 pub(super) struct ReportSection {
-    /// Its heading on the page; empty for none.
+    /// Its heading on the page.
     pub heading: String,
+    /// What was found, in a sentence or a few each.
+    pub findings: Vec<Finding>,
     pub items: Vec<Item>,
 }
 
@@ -29,20 +32,27 @@ pub(super) enum Item {
 /// How the page shows a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Display {
-    /// Under its caption.
+    /// Open.
     Titled,
-    /// Without its caption: the heading of the section says the same.
-    Untitled,
     /// Closed when it is long.
     Folded,
     /// Closed; the terminal shows its first rows and columns.
     Closed,
+    /// Closed; the terminal leaves it out: errors and condition numbers of another table.
+    Proof,
 }
 
 impl ReportSection {
     /// An empty section.
     pub(super) fn new(heading: impl Into<String>) -> Self {
-        ReportSection { heading: heading.into(), items: Vec::new() }
+        ReportSection { heading: heading.into(), findings: Vec::new(), items: Vec::new() }
+    }
+
+    /// With findings.
+    #[must_use]
+    pub(super) fn findings(mut self, findings: impl IntoIterator<Item = Finding>) -> Self {
+        self.findings.extend(findings);
+        self
     }
 
     /// With pictures.
@@ -72,5 +82,31 @@ impl ReportSection {
             Item::Picture(picture) => Some(picture),
             _ => None,
         })
+    }
+}
+
+/// The findings of all sections with the numbers of their sections, the most urgent first, else in the order of the
+/// report.
+pub(super) fn findings(sections: &[ReportSection]) -> Vec<(usize, &Finding)> {
+    let each = sections.iter().enumerate();
+    let mut all: Vec<_> =
+        each.flat_map(|(k, section)| section.findings.iter().map(move |f| (k, f))).collect();
+    all.sort_by_key(|(_, finding)| finding.class);
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::finding::FindingClass;
+
+    #[test]
+    fn the_most_urgent_comes_first_and_equals_keep_their_order() {
+        let section = |class, words: &str| ReportSection::new("x").findings([Finding::new(class, words)]);
+        use FindingClass::{Attention, Bad, Good, Neutral};
+        let sections = [section(Neutral, "a"), section(Bad, "b"), section(Good, "c"), section(Bad, "d")];
+        let sections = [&sections[..], &[section(Attention, "e")]].concat();
+        let order: Vec<(usize, &str)> = findings(&sections).iter().map(|(k, f)| (*k, &*f.words)).collect();
+        assert_eq!(order, [(1, "b"), (3, "d"), (4, "e"), (2, "c"), (0, "a")]);
     }
 }

@@ -1,11 +1,12 @@
 //! Sensitivities of complex modes, and the additions that stabilise them.
 
-use super::format::{fixed, given, hertz, power, rate};
+use super::finding::{Finding, FindingClass};
+use super::format::{fixed, given, hertz, power, rate, signed, significant};
 use super::section::{Display, ReportSection};
 use super::table::ReportTable;
 use super::{advice, tornado};
 use crate::linalg::c64;
-use crate::results::{ModeSensitivity, RunResults, SensitivityResult};
+use crate::results::{ModeSensitivity, Mounted, RunResults, SensitivityResult};
 use std::f64::consts::TAU;
 
 /// Sensitivities, where the run has them.
@@ -14,11 +15,54 @@ pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
     let places = found.modes.iter().any(|mode| !mode.best.is_empty()).then(|| advice_table(found));
     let left_out = found.left_out.iter().map(|(path, why)| format!("{path} is left out: {why}."));
     let section = ReportSection::new("Sensitivities of the modes, and additions that stabilise them")
+        .findings(finding(found))
         .pictures([tornado::picture(results), advice::picture(results)].into_iter().flatten())
         .tables(Display::Closed, found.modes.iter().map(rates))
-        .tables(Display::Untitled, places)
+        .tables(Display::Titled, places)
         .words(left_out);
     vec![section]
+}
+
+/// What moves the mode that grows most, and what calms it.
+fn finding(result: &SensitivityResult) -> Option<Finding> {
+    let mode = result.modes.iter().max_by(|a, b| a.eigenvalue.re.total_cmp(&b.eigenvalue.re))?;
+    let hz = hertz(mode.eigenvalue.im / TAU, 1);
+    let mut words = format!(
+        "Sensitivity: of the examined modes that at {hz} Hz grows most, σ = {} 1/s.",
+        rate(mode.eigenvalue)
+    );
+    if let Some(first) = mode.parameters.first() {
+        let change = first.growth_per_percent();
+        let sign = if change > 0.0 { "+" } else { "" };
+        words += &format!(
+            " `{}` moves it most: by {sign}{} 1/s when it grows by 1 %.",
+            first.path,
+            significant(change, 3)
+        );
+    }
+    let calmest = |a: &&Mounted, b: &&Mounted| outcome(mode, a).0.total_cmp(&outcome(mode, b).0);
+    if let Some(best) = mode.best.iter().min_by(calmest) {
+        let (sigma, how) = outcome(mode, best);
+        let place = best.position.map(|c| fixed(1e3 * c, 1)).join(", ");
+        words += &format!(" {} at ({place}) mm: σ = {} 1/s, {how}.", mounted(best), signed(sigma, 2));
+    }
+    Some(Finding::new(FindingClass::Neutral, words))
+}
+
+/// σ with a thing mounted, and how that is known.
+fn outcome(mode: &ModeSensitivity, thing: &Mounted) -> (f64, &'static str) {
+    match thing.done {
+        Some(change) => (mode.eigenvalue.re + change.re, "recomputed with it"),
+        None => (mode.eigenvalue.re + thing.predicted.re, "to first order"),
+    }
+}
+
+/// What is mounted, with its size.
+fn mounted(thing: &Mounted) -> String {
+    match thing.kind {
+        "mass" => format!("A mass of {} g", given(1e3 * thing.amount)),
+        kind => format!("A {kind} of {} {}", given(thing.amount), thing.unit),
+    }
 }
 
 /// Derivatives of a mode, the scalar that moves its growth rate most first. The derivatives proper are the last two

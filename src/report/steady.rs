@@ -1,21 +1,51 @@
 //! Steady sliding.
 
 use super::contact;
-use super::format::power;
+use super::finding::{Finding, FindingClass};
+use super::format::{power, significant};
 use super::section::{Display, ReportSection};
-use super::table::ReportTable;
+use super::table::{ReportTable, idle};
 use crate::results::{RunResults, SteadyResult};
 
 /// Steady sliding, where the run has it.
 pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
-    let steady = results.get::<SteadyResult>();
-    let section = |steady| ReportSection::new("Steady sliding").tables(Display::Untitled, [table(steady)]);
-    steady.map(|steady| section(steady).pictures(contact::picture(results))).into_iter().collect()
+    let Some(steady) = results.get::<SteadyResult>() else { return Vec::new() };
+    let section = ReportSection::new("Steady sliding").findings([finding(steady)]);
+    vec![section.tables(Display::Titled, [table(steady)]).pictures(contact::picture(results))]
+}
+
+/// Pairs that are named one by one.
+const NAMED: usize = 3;
+
+/// Where the load is carried.
+fn finding(result: &SteadyResult) -> Finding {
+    let totals = result.totals();
+    let open: Vec<&str> = totals.iter().filter(|pair| pair.closed == 0).map(|pair| pair.name).collect();
+    let each = totals.iter().take(NAMED).map(|pair| {
+        format!(
+            "{} carries {} N on {} of {} points",
+            pair.name,
+            significant(pair.normal_force, 3),
+            pair.closed,
+            pair.closed + pair.open
+        )
+    });
+    let each: Vec<String> = each.collect();
+    let more = match totals.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        more => format!(", and {more} more"),
+    };
+    let words = format!("Steady sliding: {}{more}.", each.join("; "));
+    if open.is_empty() {
+        return Finding::new(FindingClass::Neutral, words);
+    }
+    Finding::new(FindingClass::Attention, format!("{words} Nothing touches in {}.", open.join(", ")))
 }
 
 /// Steady sliding, one row a pair.
 fn table(result: &SteadyResult) -> ReportTable {
-    let mut table = ReportTable::of("Steady sliding", &result.pair_table(), false);
+    let table = ReportTable::of("Steady sliding", &result.pair_table(), false);
+    let mut table = table.without_columns(idle);
     let residual = power(result.state.residual);
     table.notes.push(format!("{} Newton iterations, relative residual {residual}.", result.state.iterations));
     table

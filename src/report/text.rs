@@ -1,9 +1,9 @@
 //! The tables for the terminal: aligned, at most 100 columns wide.
 
-use super::complex;
-use super::section::{Display, Item, ReportSection};
+use super::finding::Finding;
+use super::section::{Display, Item, ReportSection, findings};
 use super::table::ReportTable;
-use crate::results::{ComplexResult, RunResults};
+use crate::results::RunResults;
 
 const WIDTH: usize = 100;
 /// More rows than this go to the CSV file only.
@@ -12,12 +12,14 @@ const ROWS: usize = 60;
 /// Rows and columns of a table that the page keeps closed.
 const CLOSED: [usize; 2] = [8, 6];
 
-/// Everything the command line prints after a run: the tables of all sections, warnings, the verdict.
+/// Everything the command line prints after a run: the tables of all sections, warnings, what was found.
 pub fn summary(results: &RunResults) -> String {
-    let mut parts: Vec<String> = super::sections(results).iter().map(section).collect();
+    let sections = super::sections(results);
+    let mut parts: Vec<String> = sections.iter().map(section).collect();
     parts.retain(|part| !part.is_empty());
     parts.extend(results.warnings.iter().map(|warning| wrap(&format!("Warning: {warning}"))));
-    parts.push(verdict(results));
+    // The most urgent last, where the eye is.
+    parts.extend(findings(&sections).iter().rev().map(|(_, finding)| verdict(finding)));
     parts.join("\n")
 }
 
@@ -29,7 +31,7 @@ fn section(section: &ReportSection) -> String {
     let mut parts: Vec<String> = Vec::new();
     for item in &section.items {
         match item {
-            Item::Picture(_) => {}
+            Item::Picture(_) | Item::Table(_, Display::Proof) => {}
             Item::Table(table, Display::Closed) => parts.push(render(&shortened(table))),
             Item::Table(table, _) => parts.push(render(table)),
             Item::Words(words) => match parts.last_mut() {
@@ -51,13 +53,12 @@ fn shortened(table: &ReportTable) -> ReportTable {
     table
 }
 
-/// The verdict and the unstable modes.
-fn verdict(results: &RunResults) -> String {
-    let unstable = results.get::<ComplexResult>().map(complex::unstable);
-    let sentence = wrap(&complex::verdict(results));
-    match unstable.filter(|table| !table.rows.is_empty() || !table.notes.is_empty()) {
-        Some(table) if table.rows.is_empty() => format!("{sentence}\n{}", notes(&table)),
-        Some(table) => format!("{sentence}\n{}", render(&table)),
+/// What was found, with the table that belongs to it.
+fn verdict(finding: &Finding) -> String {
+    let sentence = wrap(&finding.words);
+    match &finding.table {
+        Some(table) if table.rows.is_empty() => sentence + &notes(table),
+        Some(table) => format!("{sentence}\n{}", render(table)),
         None => sentence,
     }
 }
@@ -125,8 +126,8 @@ pub(super) fn wrap(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::NamedModes;
     use crate::results::sample;
+    use crate::results::{ComplexResult, NamedModes};
 
     #[test]
     fn tables_are_aligned_and_fit_the_terminal() {
@@ -157,8 +158,8 @@ mod tests {
         results.get_mut::<NamedModes>().unwrap().modes.certificate.counted = [21, 22];
         assert!(summary(&results).contains("NOT CERTIFIED"));
         results.get_mut::<ComplexResult>().unwrap().modes.modes.retain(|mode| !mode.unstable());
-        let text = verdict(&results);
+        let text = summary(&results);
         assert!(text.contains("Stable: none of the 11") && text.contains("936 Hz"), "{text}");
-        assert!(verdict(&RunResults::default()).contains("makes no statement about squeal"));
+        assert_eq!(summary(&RunResults::default()), "");
     }
 }

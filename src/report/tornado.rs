@@ -36,7 +36,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
         top += height(mode);
     }
     let ink = Ink { size: 13.0, colour: MUTED, bold: false, anchor: Anchor::Middle };
-    let foot = "change of the growth rate [1/s] when the scalar grows by 1 % of its value; red: the mode grows faster";
+    let foot = "change of the growth rate [1/s] when the scalar grows by 1 % of its value; orange: the mode grows faster";
     sheet.text([0.5 * WIDTH, top + 12.0], foot, ink);
     let caption =
         "Largest sensitivities of the growth rate of each mode, the steady state following every scalar."

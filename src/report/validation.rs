@@ -2,8 +2,9 @@
 //! parts of their tolerances in one picture.
 
 use super::colours::{ALARM, INK, MEASURED, MUTED};
+use super::finding::FindingClass;
 use super::format::{fixed, given, power, significant};
-use super::html::{self, escape};
+use super::html::{self, PageLayout};
 use super::svg::{Anchor, Ink, Sheet};
 use super::table::ReportTable;
 use crate::error::Result;
@@ -30,28 +31,30 @@ pub fn write_validation(dir: &Path, cases: &[CheckedCase]) -> Result<()> {
 fn page(cases: &[CheckedCase], svg: &str) -> String {
     let [all, within] = passed(cases);
     let seconds: f64 = cases.iter().map(|case| case.seconds).sum();
-    let class = if within == all { "verdict" } else { "verdict bad" };
+    let class = if within == all { FindingClass::Good } else { FindingClass::Bad };
+    let mut layout = PageLayout::beside(["validation.svg".into()]);
     let mut body = format!(
-        "<h1>Validation</h1>\n<p class=\"sub\">{} {} · {} cases in {} s</p>\n\
-         <div class=\"{class}\"><p>{within} of {all} quantities within tolerance</p></div>\n",
+        "<h1>Validation</h1>\n<p class=\"sub\">{} {} · {} cases in {} s</p>\n",
         env!("CARGO_PKG_NAME"),
         env!("CARGO_PKG_VERSION"),
         cases.len(),
         fixed(seconds, 0),
     );
+    body += &html::finding_box(class, &format!("{within} of {all} quantities within tolerance"), "");
     let caption = "Every quantity as a dot: its difference from the reference as a part of its tolerance. \
                    What is further left than the axis agrees better; right of the line fails.";
-    body += &html::figure(svg, caption);
+    body += &layout.figure(svg, "validation", caption);
     for case in cases {
-        body += &format!("<h2>{}</h2>\n", escape(&case.title));
-        body += &html::titled_table(&table(case));
+        let id = layout.id(&case.name);
+        body += &html::heading(&id, &case.title);
+        body += &layout.table(&table(case));
     }
     html::document("Validation", &body)
 }
 
 fn table(case: &CheckedCase) -> ReportTable {
     let headings = ["<quantity", "computed", "reference", "difference", "tolerance", "<"];
-    let mut table = ReportTable::new("", &headings);
+    let mut table = ReportTable::new(format!("Computed beside reference: {}", case.name), &headings);
     table.alarming = true;
     let mut reasons: Vec<&str> = Vec::new();
     for row in &case.rows {

@@ -93,13 +93,13 @@ fn columns<'a>() -> Vec<Column<ComplexModeRow<'a>>> {
             "η = ‖Q(λ)φ‖ / ((|λ|²‖M‖ + |λ|‖C‖ + ‖K‖)‖φ‖)",
             |(m, _): &ComplexModeRow| m.backward_error,
         )
-        .shown("η", |(m, _)| power(m.backward_error)),
+        .proof("η", |(m, _)| power(m.backward_error)),
         column("eigenvalue_error", "1", "estimated |Δλ|/|λ|", |(m, _): &ComplexModeRow| {
             m.eigenvalue_error
         })
-        .shown("|Δλ|/|λ|", |(m, _)| power(m.eigenvalue_error)),
+        .proof("|Δλ|/|λ|", |(m, _)| power(m.eigenvalue_error)),
         column("condition", "1", "condition number κ of λ", |(m, _): &ComplexModeRow| m.condition)
-            .shown("κ", |(m, _)| significant(m.condition, 2)),
+            .proof("κ", |(m, _)| significant(m.condition, 2)),
         column("participation", "text", "the real modes that take part", |(_, words): &ComplexModeRow| {
             (*words).to_string()
         })

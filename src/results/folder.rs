@@ -101,6 +101,16 @@ pub(super) fn owned(dir: &Path) -> BTreeSet<String> {
     names.map(str::to_string).collect()
 }
 
+/// The files of the run in the folder that others read, `results.h5` among them when it is about to take its place.
+pub(crate) fn written_files(dir: &Path) -> BTreeSet<String> {
+    let mut names = owned(dir);
+    if dir.join("results.new.h5").exists() {
+        names.insert("results.h5".into());
+    }
+    names.retain(|name| !name.ends_with(".bin"));
+    names
+}
+
 /// Deletes the files of an earlier run in the folder `dir`, but those in `spared`: names, or whole paths of files that the
 /// run reads.
 pub(crate) fn retire(dir: &Path, spared: &[PathBuf]) -> Result<()> {

@@ -42,6 +42,7 @@ mod lock;
 mod maps;
 #[cfg(feature = "hdf5")]
 mod maps_hdf5;
+mod provenance;
 mod real_modes;
 pub mod record;
 mod record_size;
@@ -84,10 +85,11 @@ pub use file::ResultsFile;
 
 pub(crate) use diagnostics::ContactWatch;
 pub use diagnostics::{ContactHistory, Diagnostics, Orbit, PhaseCurve, TouchState};
-pub(crate) use folder::{FileNames, file_name, retire, write_atomically, write_result};
+pub(crate) use folder::{FileNames, file_name, retire, write_atomically, write_result, written_files};
 pub use frf::{FrfResponse, FrfResult, PlaceAndDirection, Resonance};
 pub use lock::FolderLock;
 pub use maps::MapResult;
+pub use provenance::{COMMIT, KEYS_OF_THE_RUN, Provenance};
 pub use real_modes::NamedModes;
 pub use record_size::{RecordSize, fits_in_memory, fits_on_disk};
 pub use records::{AnalysisRecord, Records};

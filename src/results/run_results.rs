@@ -1,5 +1,6 @@
 //! Everything that a run produced.
 
+use super::provenance::Provenance;
 use super::record::InputFile;
 use super::records::{AnalysisRecord, Records};
 
@@ -24,6 +25,8 @@ pub struct RunResults {
     pub timings: Vec<(String, f64)>,
     /// The files that the case reads.
     pub inputs: Vec<InputFile>,
+    /// Where the results come from; `None` of a run that was not written into a folder.
+    pub provenance: Option<Provenance>,
     /// Why the run has ended before its end, if it has: an analysis without an answer.
     pub failed: Option<String>,
 }

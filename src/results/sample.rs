@@ -87,6 +87,18 @@ pub(crate) fn rig() -> RunResults {
         .to_vec(),
         geometry,
         inputs: vec![InputFile { path: "rig.msh".into(), bytes: 1234, sha256: "0".repeat(64) }],
+        provenance: Some(Provenance {
+            commit: "unknown",
+            started: "2026-01-31T09:05:00Z".into(),
+            command: ["stridor", "run", "rig.toml"].map(String::from).to_vec(),
+            threads: 2,
+            system: "linux".into(),
+            processor: None,
+            cores: Some(2),
+            memory_bytes: Some(1 << 34),
+            case_file: Some(InputFile { path: "rig.toml".into(), bytes: 12, sha256: "1".repeat(64) }),
+            case_text: "title = \"<written by hand>\"\n".into(),
+        }),
         failed: None,
     }
 }

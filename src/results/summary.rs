@@ -4,6 +4,7 @@
 //! [`SCHEMA_VERSION`]. Keys are snake_case and name the unit where it is not plain SI or obvious (`growth_rate` σ is in 1/s).
 //! A number that is not finite is `null`.
 
+use super::provenance::Provenance;
 use super::record::InputFile;
 use super::{Geometry, ModelSize, RunResults, write_result};
 use crate::dataset::{Dimension, Group, Table, Values, Variable, column};
@@ -82,6 +83,7 @@ pub(super) fn tail(results: &RunResults) -> Group<'_> {
     Group::new("", "")
         .with(sentences("warnings", "what the user should know", &results.warnings))
         .table(Table::by("timings", "phase", &timings, &results.timings))
+        .optional("provenance", results.provenance.as_ref().map(Provenance::group))
 }
 
 pub(super) fn sentences<'a>(

@@ -81,7 +81,7 @@ fn critical_columns<'a>(unit: &str) -> Vec<Column<Passed<'a>>> {
         column("verified_error", "1", "estimated relative error of the value", |(result, k): &P| {
             result.value_error(*k)
         })
-        .shown("rel. error", |(result, k)| power(result.value_error(*k))),
+        .proof("rel. error of the value", |(result, k)| power(result.value_error(*k))),
         column("frequency_hz", "Hz", "ω/2π there", move |p: &P| passed(p).eigenvalue.im / TAU)
             .shown("f [Hz]", move |p| hertz(passed(p).eigenvalue.im / TAU, 1)),
         column("becomes", "text", "unstable or stable, along the sweep", move |p: &P| becomes(passed(p)))
@@ -103,11 +103,11 @@ fn critical_columns<'a>(unit: &str) -> Vec<Column<Passed<'a>>> {
         }),
         column("branch", "1", "number of the branch", move |p: &P| passed(p).branch + 1),
         column("backward_error", "1", "η at full order", move |p: &P| full(p, |c| c.backward_error))
-            .shown("η", move |p| shown(full(p, |c| c.backward_error))),
+            .proof("η", move |p| shown(full(p, |c| c.backward_error))),
         column("eigenvalue_error", "1", "estimated |Δλ|/|λ| at full order", move |p: &P| {
             full(p, |c| c.eigenvalue_error)
         })
-        .shown("|Δλ|/|λ|", move |p| shown(full(p, |c| c.eigenvalue_error))),
+        .proof("|Δλ|/|λ|", move |p| shown(full(p, |c| c.eigenvalue_error))),
     ]
 }
 

@@ -7,6 +7,8 @@ use std::collections::BTreeMap;
 #[derive(Debug, Clone, Default)]
 pub struct Places {
     pub(super) file: String,
+    /// The text of the file, as it was read.
+    pub(super) text: String,
     /// The line of each key, by its path.
     pub(super) lines: BTreeMap<String, usize>,
 }
@@ -18,6 +20,17 @@ impl PartialEq for Places {
 }
 
 impl Places {
+    /// Name and text of the file; empty of a case that was no file.
+    pub(crate) fn source(&self) -> (&str, &str) {
+        (&self.file, &self.text)
+    }
+
+    /// With the text of the file.
+    #[must_use]
+    pub(crate) fn of_text(self, text: &str) -> Self {
+        Places { text: text.into(), ..self }
+    }
+
     /// The same error; faults whose place begins with a key in back-ticks get file and line before it, in the order of
     /// the lines.
     pub(crate) fn locate(&self, error: Error) -> Error {
@@ -53,7 +66,7 @@ mod tests {
     fn faults_of_keys_get_their_lines_and_come_in_their_order() {
         let lines = [("force.a.on", 9), ("force.a", 8), ("force", 8), ("mesh", 2)];
         let lines = lines.map(|(key, line)| (key.to_string(), line)).into();
-        let places = Places { file: "a.toml".into(), lines };
+        let places = Places { file: "a.toml".into(), lines, ..Places::default() };
         let fault = |place: &str| Fault::new(place, "x", "y");
         let faults = ["`force.a.on.0`", "`mesh.rig.size`", "`frf.b`", "a.msh:3"].map(fault).to_vec();
         let Error::Input(located) = places.locate(Error::Input(Faults(faults))) else { panic!() };

@@ -193,7 +193,7 @@ impl<'a> TableReader<'a> {
                 lines.insert(path, self.reader.line(key.span().start));
             }
         }
-        Places { file: self.reader.file.to_string(), lines }
+        Places { file: self.reader.file.to_string(), lines, ..Places::default() }
     }
 
     /// Whether the table has `key`.

@@ -4,13 +4,13 @@ use crate::case::Case;
 use crate::error::Result;
 use crate::job::{Selection, run_case};
 use crate::progress::Observer;
-use crate::results::summary_json;
+use crate::results::{KEYS_OF_THE_RUN, summary_json};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 /// In how many places the summary of a run of `case` that was stopped differs from that of a whole run: what the whole run left
-/// in its folder halfway through its longest work is resumed with `resume`. Times that a phase took do not count.
+/// in its folder halfway through its longest work is resumed with `resume`. What says how a run went and not what it found does not count.
 ///
 /// # Errors
 /// As [`run_case`].
@@ -22,7 +22,7 @@ pub(super) fn differences(case: &Case, observer: &dyn Observer) -> Result<f64> {
     let found = run_case(case, Selection::Listed, &stopped, true, observer)?;
     let summary = |results| {
         let mut summary = summary_json(results);
-        summary["timings"] = Value::Null;
+        KEYS_OF_THE_RUN.iter().for_each(|key| summary[*key] = Value::Null);
         summary
     };
     Ok(different(&summary(&expected), &summary(&found)) as f64)

@@ -1,5 +1,6 @@
 //! Numbers found from measured frequencies, shapes and responses: tables, words and pictures.
 
+mod finding;
 mod picture;
 mod words;
 
@@ -17,6 +18,7 @@ pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
     let responses = picture::responses(result);
     let response_table = responses.as_ref().map(|_| response_table(result));
     let section = ReportSection::new("Calibration")
+        .findings([finding::finding(result)])
         .pictures(modes.then(|| picture::errors(result)))
         .tables(Display::Titled, modes.then(|| fit_table(result)))
         .tables(Display::Titled, shapes.then(|| shape_table(result)))
@@ -175,7 +177,7 @@ fn number_table(result: &CalibrationResult) -> ReportTable {
          Student's t. Both end at the bounds."
             .into(),
     );
-    table
+    table.without_columns(str::is_empty)
 }
 
 fn expected(n: &CalibratedNumber) -> String {
@@ -214,7 +216,7 @@ fn assignment_table(result: &CalibrationResult) -> ReportTable {
          weights are too sharp."
             .into(),
     );
-    table
+    table.without_columns(str::is_empty)
 }
 
 #[cfg(test)]
@@ -238,7 +240,7 @@ mod tests {
         // 20 log₁₀ of 2, of 2 and of 1; of 10/9 and of 10/8 at one of three lines; a deviation is 0.87 dB.
         let cells = &response_table(result).rows[0].cells;
         assert_eq!(cells[4..9], ["4.92", "0.53", "0.61", "1.12", "1.29"]);
-        let page = crate::report::html::section(section);
+        let page = crate::report::html::PageLayout::default().section(section, "x");
         assert!(page.contains("not converged") && page.contains("stiffness"));
         let words = words(result).join(" ");
         for expected in [

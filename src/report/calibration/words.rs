@@ -1,10 +1,9 @@
 //! Quality of a calibration, in sentences.
 
 use super::super::format::{fixed, given, power, significant};
+use super::finding::IMPROBABLE;
 use crate::results::CalibrationResult;
 
-/// A misfit less probable than this is reported.
-const IMPROBABLE: f64 = 0.05;
 /// Correlations above this are reported.
 const TIED: f64 = 0.95;
 

@@ -1,5 +1,6 @@
 //! Measured beside computed: tables, the MAC of shapes, frequencies with their scatter, responses.
 
+mod finding;
 mod frequencies;
 mod level;
 mod mac;
@@ -18,10 +19,12 @@ pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
     let modes = results.all::<MeasuredComparison>().into_iter().filter_map(|test| {
         let set = sets.iter().find(|set| test.is_of(set))?;
         let section = ReportSection::new(format!("Measured beside computed modes: {}", test.name));
+        let section = section.findings([finding::modes(test)]);
         Some(section.pictures(pictures(test, set)).tables(Display::Titled, [modes_table(test, set)]))
     });
     let responses = results.all::<MeasuredResponses>().into_iter().map(|test| {
         let section = ReportSection::new(format!("Measured beside computed responses: {}", test.name));
+        let section = section.findings([finding::responses(test)]);
         section.pictures(responses::picture(test)).tables(Display::Titled, [responses_table(test)])
     });
     modes.chain(responses).collect()

@@ -1,7 +1,7 @@
 //! The tables: measured modes and responses, each beside the computed one.
 
 use super::super::format::{fixed, given, hertz, signed, significant};
-use super::super::table::ReportTable;
+use super::super::table::{ReportTable, idle};
 use super::level::level_name;
 use crate::results::{MeasuredComparison, MeasuredResponses, NamedModes};
 
@@ -25,6 +25,7 @@ pub(super) fn modes_table(comparison: &MeasuredComparison, set: &NamedModes) -> 
         ];
         table.row(cells, row.mode.is_none());
     }
+    let mut table = table.without_columns(idle);
     let alone = comparison.computed_alone();
     let levels = comparison.levels.iter().zip(&comparison.levels_hz);
     let named = levels.filter(|(level, _)| alone.contains(level));

@@ -19,7 +19,7 @@ pub(super) fn picture(result: &MapResult) -> Option<Picture> {
     }
     let svg = sheet((980, 620), |area| draw(area, result))?;
     let caption = format!(
-        "Largest growth rate of any mode over {} and {}: red where a mode grows, blue where all decay, grey where there is no answer. Line: the boundary of stability. Ring: the case itself.",
+        "Largest growth rate of any mode over {} and {}: red where a mode grows, blue where all decay, grey where there is no answer; the colour goes with the root of the growth rate. Line: the boundary of stability. Ring: the case itself.",
         result.parameters[0], result.parameters[1]
     );
     Some(Picture { file: file_name("map", &result.name), caption, svg })

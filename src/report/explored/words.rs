@@ -1,14 +1,14 @@
 //! Results of a sweep or a map, in words and tables.
 
-use crate::report::format::{fixed, hertz, power, signed, significant};
+use crate::report::format::{fixed, given, hertz, power, signed, significant};
 use crate::report::table::ReportTable;
 use crate::results::{DampingVerdicts, MapResult, SweepMethod, SweepResult};
 use crate::stability::unstable;
 use crate::sweep::{CriticalKind, InteractionKind};
 use std::f64::consts::TAU;
 
-fn with_unit(value: f64, unit: &str) -> String {
-    let number = significant(value, 6);
+pub(super) fn with_unit(value: f64, unit: &str) -> String {
+    let number = given(value);
     if unit.is_empty() { number } else { format!("{number} {unit}") }
 }
 
@@ -24,7 +24,7 @@ fn method(method: SweepMethod) -> String {
     }
 }
 
-fn list(words: &[String]) -> String {
+pub(super) fn list(words: &[String]) -> String {
     match words {
         [] => String::new(),
         [one] => one.clone(),
@@ -37,27 +37,16 @@ pub(in crate::report) fn sweep_words(result: &SweepResult) -> Vec<String> {
     let (sweep, unit) = (&result.sweep, result.unit.as_str());
     let grows = |b: &&crate::sweep::Branch| b.eigenvalues.iter().any(|z| unstable(*z));
     let ever: Vec<_> = sweep.branches.iter().filter(grows).collect();
-    let range = format!(
-        "{} from {} to {}",
-        result.parameter,
-        with_unit(result.axis.from, unit),
-        with_unit(result.axis.to, unit)
-    );
-    let mut first = match ever.len() {
-        0 => format!("Along {range}, none of {} modes grows.", sweep.branches.len()),
-        1 => format!("Along {range}, 1 of {} modes grows somewhere.", sweep.branches.len()),
-        n => format!("Along {range}, {n} of {} modes grow somewhere.", sweep.branches.len()),
-    };
     let all: Vec<String> = ever
         .iter()
         .filter(|b| b.first == 0 && b.eigenvalues.len() == sweep.values.len())
         .filter(|b| b.eigenvalues.iter().all(|z| unstable(*z)))
         .map(|b| format!("{} Hz", hertz(b.eigenvalues[0].im / TAU, 0)))
         .collect();
+    let mut words = Vec::new();
     if !all.is_empty() {
-        first += &format!(" At every value: {}.", list(&all));
+        words.push(format!("Unstable at every value: {}.", list(&all)));
     }
-    let mut words = vec![first];
     let change = |rises: bool| -> Vec<String> {
         let those = sweep.critical.iter().filter(|c| c.rises == rises);
         those
@@ -115,34 +104,24 @@ pub(in crate::report) fn critical_table(result: &SweepResult) -> ReportTable {
     if result.sweep.critical.is_empty() {
         table.notes.push("No mode becomes unstable or stable in this range.".into());
     } else {
-        table.notes.push("η and |Δλ|/|λ|: backward and eigenvalue error, measured at full order.".into());
+        let count = result.sweep.critical.len();
+        let largest = (0..count).map(|k| result.value_error(k)).fold(0.0, f64::max);
+        table.notes.push(format!("Largest estimated relative error of a critical value {}.", power(largest)));
     }
     table
 }
 
+/// The errors of the critical values, where there are any.
+pub(in crate::report) fn critical_proof(result: &SweepResult) -> Option<ReportTable> {
+    let caption = format!("Proof: errors of the critical values of sweep {}", result.name);
+    let mut table = ReportTable::proof_of(caption, &result.critical_table(), false, &["value", "f [Hz]"]);
+    table.notes.push("η and |Δλ|/|λ|: backward and eigenvalue error, measured at full order.".into());
+    (!table.rows.is_empty()).then_some(table)
+}
+
 /// Results of the map.
 pub(in crate::report) fn map_words(result: &MapResult) -> Vec<String> {
-    let n = result.axes[0].points;
-    let answered: Vec<_> =
-        result.points.iter().enumerate().filter(|(_, p)| p.growth_rate.is_finite()).collect();
-    let unstable = answered.iter().filter(|(_, p)| p.unstable > 0).count();
-    let mut words = vec![format!(
-        "{} of {} points over {} and {} are unstable.",
-        unstable,
-        answered.len(),
-        result.parameters[0],
-        result.parameters[1]
-    )];
-    let strongest = answered.iter().max_by(|a, b| a.1.growth_rate.total_cmp(&b.1.growth_rate));
-    if let Some((k, p)) = strongest {
-        words.push(format!(
-            "The largest growth rate, {} 1/s at {} Hz, is at {} and {}.",
-            signed(p.growth_rate, 2),
-            hertz(p.frequency_hz, 0),
-            with_unit(result.axes[0].value(k % n), &result.units[0]),
-            with_unit(result.axes[1].value(k / n), &result.units[1])
-        ));
-    }
+    let mut words = Vec::new();
     let worst = result.sample.iter().map(|(_, e)| *e).fold(0.0, f64::max);
     let line = match result.boundary.points.len() {
         0 => "No boundary of stability crosses the map.".to_string(),

@@ -2,6 +2,7 @@
 //! the tables.
 
 mod contact;
+mod finding;
 mod history;
 mod orbit;
 mod raster;
@@ -29,8 +30,10 @@ pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
     let modes = complex.map_or(&[][..], |complex| &complex.real_modes);
     let check = run.reduced_check.as_ref().map(|check| reduced_check::table(check, complex));
     let section = ReportSection::new("Motion in time")
+        .findings([finding::motion(run)])
+        .findings(finding::sound(run))
         .pictures(pictures.into_iter().flatten())
-        .tables(Display::Untitled, [table::table(run)])
+        .tables(Display::Titled, [table::table(run)])
         .tables(Display::Titled, sound::table(run, modes))
         .tables(Display::Titled, check);
     vec![section]

@@ -49,6 +49,14 @@ impl InputFile {
     }
 }
 
+impl InputFile {
+    /// A file at `path` that has this text.
+    pub fn of_text(path: &str, text: &str) -> Self {
+        let sha256 = hexadecimal(&Sha256::digest(text.as_bytes()));
+        InputFile { path: path.into(), bytes: text.len() as u64, sha256 }
+    }
+}
+
 fn hexadecimal(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

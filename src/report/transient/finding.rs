@@ -1,0 +1,131 @@
+//! What a run in time found: growth, how large the motion is at its end, how loud it is.
+
+use crate::linalg::c64;
+use crate::report::finding::{Finding, FindingClass};
+use crate::report::format::{fixed, given, hertz, power, prefixed, rate, signed};
+use crate::results::TransientResult;
+use crate::signal::{Growth, Peak};
+use std::f64::consts::TAU;
+
+/// Growth of a small disturbance, where it was measured; the motion at the end; the energy balance.
+pub(super) fn motion(run: &TransientResult) -> Finding {
+    let mut class = FindingClass::Neutral;
+    let mut parts: Vec<String> = Vec::new();
+    if let Some((growth, found)) = run.growth.as_ref().and_then(|growth| Some((growth, growth.found?))) {
+        let does = match change(&found) {
+            0 => "neither grows nor decays measurably,",
+            1.. => {
+                class = FindingClass::Bad;
+                "grows with"
+            }
+            _ => "decays with",
+        };
+        parts.push(format!(
+            "a small disturbance {does} σ = {} 1/s at {} Hz (the complex mode: {} 1/s at {} Hz)",
+            rate(c64::new(found.rate, TAU * found.frequency_hz)),
+            hertz(found.frequency_hz, 1),
+            rate(growth.eigenvalue),
+            hertz(growth.eigenvalue.im / TAU, 1)
+        ));
+    }
+    let shown = run.diagnostics.cycles.iter().find(|(k, _)| run.shown.contains(k));
+    if let Some((k, cycle)) = shown.or(run.diagnostics.cycles.first()) {
+        let channel = &run.channels[*k];
+        let at = strongest(run, *k)
+            .map_or(String::new(), |peak| format!(", at {} Hz", hertz(peak.frequency_hz, 1)));
+        let steady = if cycle.steady() {
+            "steady".to_string()
+        } else {
+            class = class.min(FindingClass::Attention);
+            let drift = signed(100.0 * cycle.drift, 0);
+            format!("not steady ({drift} % from the first to the second half of what was analysed)")
+        };
+        parts.push(format!(
+            "from {} s on {} oscillates by ± {}{at}, {steady}",
+            given(run.diagnostics.window[0]),
+            channel.name.replace('_', " "),
+            prefixed(cycle.amplitude, channel.unit, 3)
+        ));
+    } else if run.growth.is_none() {
+        parts.push(format!("{} steps of {} s", run.len().saturating_sub(1), power(run.time_step)));
+    }
+    if run.spectra.iter().any(|of| of.beyond.is_some()) {
+        class = class.min(FindingClass::Attention);
+        parts.push("the strongest line is beyond the modes of the case, where damping is not known".into());
+    }
+    parts.push(format!("the energy balance of each step closes to {}", power(run.worst_residual)));
+    Finding::new(class, format!("Motion in time: {}.", parts.join("; ")))
+}
+
+/// Change of ln|c| over the time of the fit that is smaller than this is no growth.
+const LEAST_CHANGE: f64 = 0.01;
+
+/// 1 when the disturbance grows, −1 when it decays, 0 when ln|c| changes over the time of the fit by less than it scatters
+/// about its line, or by less than a hundredth.
+fn change(found: &Growth) -> i32 {
+    let change = found.rate * (found.window[1] - found.window[0]);
+    if change.abs() > found.deviation.max(LEAST_CHANGE) { change.signum() as i32 } else { 0 }
+}
+
+/// The strongest peak of a channel.
+fn strongest(run: &TransientResult, channel: usize) -> Option<&Peak> {
+    let of = run.spectra.iter().find(|of| of.channel == channel)?;
+    of.peaks.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude))
+}
+
+/// The loudest microphone, or the sound power without one, and the strongest tone.
+pub(super) fn sound(run: &TransientResult) -> Option<Finding> {
+    let sound = run.sound.as_ref()?;
+    let [level, weighted] = sound.power_levels();
+    if !level.is_finite() {
+        return Some(Finding::new(FindingClass::Neutral, "Sound: the plates send out no sound."));
+    }
+    let power = format!("sound power {} dB(A) re 1 pW", fixed(weighted, 1));
+    let loudest = sound.microphones.iter().max_by(|a, b| a.levels()[1].total_cmp(&b.levels()[1]));
+    let mut words = match loudest {
+        Some(microphone) => {
+            let weighted = fixed(microphone.levels()[1], 1);
+            format!("Sound: {weighted} dB(A) re 20 µPa at microphone {}, {power}", microphone.name)
+        }
+        None => format!("Sound: {power}"),
+    };
+    let strongest = sound.tones.iter().max_by(|a, b| a.power.total_cmp(&b.power));
+    if let Some(tone) = strongest {
+        let (hz, share) = (hertz(tone.peak.frequency_hz, 1), fixed(100.0 * tone.share, 0));
+        words += &format!("; the strongest tone, {hz} Hz, has {share} % of the power");
+    }
+    Some(Finding::new(FindingClass::Neutral, words + "."))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::{GrowthCompared, sample};
+
+    #[test]
+    fn growth_decides_the_class_and_every_figure_has_its_unit() {
+        let results = sample::rig();
+        let mut run = results.get::<TransientResult>().unwrap().clone();
+        let window = [0.001, 0.021];
+        let found = Growth { rate: 200.0, frequency_hz: 1668.0, window, deviation: 0.1 };
+        let eigenvalue = c64::new(201.0, 1e4);
+        run.growth = Some(GrowthCompared { mode: 0, eigenvalue, found: Some(found) });
+        let finding = motion(&run);
+        assert_eq!(finding.class, FindingClass::Bad, "{}", finding.words);
+        assert!(finding.words.contains("grows with σ = +") && finding.words.contains("oscillates by ± "));
+        let loud = sound(&run).unwrap();
+        assert!(loud.words.contains("dB(A)") && loud.class == FindingClass::Neutral, "{}", loud.words);
+        // e^0.08 is less than the scatter.
+        run.growth.as_mut().unwrap().found.as_mut().unwrap().rate = 4.0;
+        assert!(motion(&run).words.contains("neither grows nor decays measurably"));
+        run.growth.as_mut().unwrap().found.as_mut().unwrap().rate = -200.0;
+        run.diagnostics.cycles[0].1.drift = 0.0;
+        run.spectra.iter_mut().for_each(|of| of.beyond = None);
+        assert_eq!(motion(&run).class, FindingClass::Neutral);
+        run.diagnostics.cycles[0].1.drift = 0.5;
+        assert_eq!(motion(&run).class, FindingClass::Attention);
+        run.growth = None;
+        run.sound = None;
+        assert!(!motion(&run).words.contains("disturbance") && sound(&run).is_none());
+    }
+}
