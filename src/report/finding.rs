@@ -13,6 +13,8 @@ pub(super) enum FindingClass {
     Good,
     /// A result that is neither good nor bad.
     Neutral,
+    /// A result on which the others stand, such as the state of steady sliding.
+    Basis,
 }
 
 impl FindingClass {
@@ -23,6 +25,7 @@ impl FindingClass {
             FindingClass::Attention => "attention",
             FindingClass::Good => "good",
             FindingClass::Neutral => "neutral",
+            FindingClass::Basis => "basis",
         }
     }
 }

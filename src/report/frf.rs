@@ -50,7 +50,7 @@ fn finding(frf: &FrfResult) -> Finding {
     );
     if frf.compared > 0 && frf.deviation > DEVIATION {
         words += &format!(
-            " At one of {} frequencies superposition differs from the direct solution by {} of the latter.",
+            " At one of {} frequencies superposition differs from the direct solution by {} times the latter.",
             frf.compared,
             power(frf.deviation)
         );

@@ -60,7 +60,7 @@ fn subtitle(results: &RunResults) -> String {
     )
 }
 
-/// A failure, then the findings, each with a link to its section; those without a class in one box.
+/// A failure, then the findings, each with a link to its section; those that are neither good nor bad in one box.
 fn headline(results: &RunResults, sections: &[ReportSection], ids: &[String]) -> String {
     let failed = results.failed.iter();
     let mut text: String = failed
@@ -69,8 +69,9 @@ fn headline(results: &RunResults, sections: &[ReportSection], ids: &[String]) ->
     let mut neutral = String::new();
     for (k, finding) in findings(sections) {
         let link = format!("<a href=\"#{}\">{}</a>", ids[k], escape(&sections[k].heading));
-        if finding.class == FindingClass::Neutral && finding.table.is_none() {
-            neutral += &format!("<p>{} {link}</p>\n", prose(&finding.words));
+        if finding.class >= FindingClass::Neutral && finding.table.is_none() {
+            let class = finding.class.name();
+            neutral += &format!("<p class=\"{class}\">{} {link}</p>\n", prose(&finding.words));
             continue;
         }
         let more = finding.table.as_ref().map_or(String::new(), |table| match table.rows.is_empty() {
@@ -80,10 +81,7 @@ fn headline(results: &RunResults, sections: &[ReportSection], ids: &[String]) ->
         text += &finding_box(finding.class, &finding.words, &format!("{more}<p class=\"note\">{link}</p>\n"));
     }
     if !neutral.is_empty() {
-        text += &format!(
-            "<div class=\"verdict neutral {}\">{neutral}</div>\n",
-            if text.is_empty() { "alone" } else { "others" }
-        );
+        text += &format!("<div class=\"verdict neutral\">{neutral}</div>\n");
     }
     if text.is_empty() { finding_box(FindingClass::Neutral, "This run has no results.", "") } else { text }
 }

@@ -34,9 +34,7 @@ fn finding(sets: &[&NamedModes]) -> Finding {
     let wrong: Vec<String> =
         sets.iter().filter(|set| !set.modes.certificate.holds()).map(|set| certificate(set)).collect();
     match wrong.is_empty() {
-        true => {
-            Finding::new(FindingClass::Neutral, format!("{words} None is missing: as many were counted."))
-        }
+        true => Finding::new(FindingClass::Basis, format!("{words} None is missing: as many were counted.")),
         false => Finding::new(FindingClass::Bad, format!("{words} {}", wrong.join(" "))),
     }
 }

@@ -37,7 +37,7 @@ fn finding(result: &SteadyResult) -> Finding {
     };
     let words = format!("Steady sliding: {}{more}.", each.join("; "));
     if open.is_empty() {
-        return Finding::new(FindingClass::Neutral, words);
+        return Finding::new(FindingClass::Basis, words);
     }
     Finding::new(FindingClass::Attention, format!("{words} Nothing touches in {}.", open.join(", ")))
 }

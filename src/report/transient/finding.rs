@@ -2,7 +2,7 @@
 
 use crate::linalg::c64;
 use crate::report::finding::{Finding, FindingClass};
-use crate::report::format::{fixed, given, hertz, power, prefixed, rate, signed};
+use crate::report::format::{fixed, hertz, power, prefixed, rate, signed, significant};
 use crate::results::TransientResult;
 use crate::signal::{Growth, Peak};
 use std::f64::consts::TAU;
@@ -42,7 +42,7 @@ pub(super) fn motion(run: &TransientResult) -> Finding {
         };
         parts.push(format!(
             "from {} s on {} oscillates by ± {}{at}, {steady}",
-            given(run.diagnostics.window[0]),
+            significant(run.diagnostics.window[0], 3),
             channel.name.replace('_', " "),
             prefixed(cycle.amplitude, channel.unit, 3)
         ));
