@@ -1,4 +1,4 @@
-//! Parts of a page: plain HTML with its style and its pictures inside, no script.
+//! Parts of a page: plain HTML with its style, its pictures and its scripts inside.
 
 use super::section::{Display, Item, ReportSection};
 use super::table::{ReportColumn, ReportTable};
@@ -23,12 +23,15 @@ figcaption{color:#5b6570;font-size:.9rem;margin-top:.3rem}\
 pre{background:#f5f6f8;padding:.8rem 1rem;overflow-x:auto;font-size:.84rem}summary{cursor:pointer;font-weight:600}\
 @media print{body{margin:0;max-width:none;font-size:11pt}details{display:none}}";
 
+/// Values under the pointer and zoom for the charts.
+const SCRIPT: &str = include_str!("charts.js");
+
 /// A page with its style.
 pub(super) fn document(title: &str, body: &str) -> String {
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>{}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n{body}</body>\n</html>\n",
+         <title>{}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n{body}<script>{SCRIPT}</script>\n</body>\n</html>\n",
         escape(title)
     )
 }
@@ -52,6 +55,7 @@ pub(super) fn section(section: &ReportSection) -> String {
     let item = |item: &Item| match item {
         Item::Picture(picture) => figure(&picture.svg, &picture.caption),
         Item::Table(content, display) => shown(content, *display),
+        Item::Markup(html) => html.clone(),
         Item::Words(words) => format!("<p>{}</p>\n", escape(words)),
     };
     heading + &section.items.iter().map(item).collect::<String>()

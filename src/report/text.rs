@@ -29,7 +29,7 @@ fn section(section: &ReportSection) -> String {
     let mut parts: Vec<String> = Vec::new();
     for item in &section.items {
         match item {
-            Item::Picture(_) => {}
+            Item::Picture(_) | Item::Markup(_) => {}
             Item::Table(table, Display::Closed) => parts.push(render(&shortened(table))),
             Item::Table(table, _) => parts.push(render(table)),
             Item::Words(words) => match parts.last_mut() {

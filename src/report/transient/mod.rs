@@ -10,6 +10,7 @@ mod spectra;
 mod spectrogram;
 mod table;
 
+use super::player::player;
 use super::reduced_check;
 use super::section::{Display, ReportSection};
 use crate::results::{ComplexResult, RunResults, TransientResult};
@@ -30,6 +31,7 @@ pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
     let check = run.reduced_check.as_ref().map(|check| reduced_check::table(check, complex));
     let section = ReportSection::new("Motion in time")
         .pictures(pictures.into_iter().flatten())
+        .markup(run.sound.as_ref().and_then(player))
         .tables(Display::Untitled, [table::table(run)])
         .tables(Display::Titled, sound::table(run, modes))
         .tables(Display::Titled, check);
