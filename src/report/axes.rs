@@ -3,6 +3,7 @@
 use crate::report::chart::{Area, colour, text};
 use crate::report::colours::{INK, MUTED};
 use crate::report::format::given;
+use crate::report::readout::{AxisScale, axes_of};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use std::error::Error;
@@ -20,7 +21,7 @@ pub(super) fn axes<'a>(
     beside: &str,
     label: impl Fn(f64) -> String,
 ) -> Result<Chart<'a>, Box<dyn Error>> {
-    let words = Words { below, beside, across: &given, up: &label, labels: 10, grid: true };
+    let words = Words { below, beside, across: &given, up: &label, labels: 10, decades: 0.0, grid: true };
     labelled(area, ranges, &words)
 }
 
@@ -36,6 +37,8 @@ pub(super) struct Words<'a> {
     pub up: &'a dyn Fn(f64) -> String,
     /// About how many labels the axis across has.
     pub labels: usize,
+    /// 0 where the axis up is linear, 1 where its places are decimal logarithms of the values.
+    pub decades: f64,
     /// Whether there are lines at the labels.
     pub grid: bool,
 }
@@ -70,5 +73,8 @@ pub(super) fn labelled<'a>(
         .x_label_formatter(&|x| (words.across)(clean(*x, &wide)))
         .y_label_formatter(&|y| (words.up)(clean(*y, &high)))
         .draw()?;
+    let scale = |name, decades| AxisScale { name, decades };
+    let scales = [scale(words.below.unwrap_or_default(), 0.0), scale(words.beside, words.decades)];
+    axes_of(area, &chart, scales)?;
     Ok(chart)
 }

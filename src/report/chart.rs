@@ -1,6 +1,7 @@
 //! Common parts of the charts: a sheet of plotters' SVG backend, its text styles, axes that end on round numbers.
 
 use super::html::allowed;
+use super::readout::elements;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -25,7 +26,7 @@ pub(super) fn sheet(
         area.present().ok()?;
     }
     // plotters writes control characters as they are.
-    Some(allowed(&svg))
+    Some(allowed(&elements(&svg)))
 }
 
 /// A colour of [`super::colours`], written `#rrggbb`.

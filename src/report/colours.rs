@@ -2,6 +2,8 @@
 
 /// Colour of emphasis: unstable, closed (vermilion of Okabe and Ito's set).
 pub(super) const ALARM: &str = "#d55e00";
+/// Text of that colour: darker, for a contrast of 5.5 to white.
+pub(super) const ALARM_TEXT: &str = "#b04a00";
 /// Neutral colour: stable, open.
 pub(super) const CALM: &str = "#8a949e";
 /// Colour of measured data (their blue).

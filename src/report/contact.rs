@@ -3,6 +3,7 @@
 use super::chart::{Area, bold, colour, sheet, text, widened};
 use super::colours::{ALARM, CALM, INK, MEASURED, MUTED};
 use super::format::{given, significant};
+use super::readout::{axes_of, linear};
 use super::section::Picture;
 use super::view::{ViewVector, cross, dot, unit};
 use crate::results::{RunResults, SteadyResult};
@@ -125,13 +126,14 @@ fn draw(area: &Area, marks: &[Mark], axis: String) -> Result<(), Box<dyn Error>>
             .axis_style(colour(MUTED))
             .label_style(text(13.0, INK))
             .axis_desc_style(text(14.0, INK))
-            .x_desc(described)
+            .x_desc(&described)
             .y_desc(title)
             .x_labels(12)
             .y_labels(6)
             .x_label_formatter(&|v| given(*v))
             .y_label_formatter(&|v| given(*v))
             .draw()?;
+        axes_of(&panel, &chart, [linear(&described), linear(title)])?;
         let zero = PathElement::new([(across.start, 0.0), (across.end, 0.0)], colour(INK).stroke_width(1));
         chart.draw_series([zero])?;
         for mark in marks {

@@ -2,8 +2,9 @@
 
 use super::axes::Chart;
 use super::chart::{Area, above, below, bold, colour, sheet, text, widened};
-use super::colours::{ALARM, CALM, INK, MEASURED, MUTED};
+use super::colours::{ALARM, ALARM_TEXT, CALM, INK, MEASURED, MUTED};
 use super::format::{fixed, given, hertz, signed};
+use super::readout::{axes_of, linear, title_at};
 use super::section::Picture;
 use super::squeal::SQUEAL_TOLERANCE;
 use crate::results::{ComplexResult, RunResults};
@@ -72,13 +73,19 @@ fn draw(area: &Area, complex: &ComplexResult) -> Result<(), Box<dyn Error>> {
         .x_label_formatter(&|hz| given(*hz))
         .y_label_formatter(&|sigma| given(*sigma))
         .draw()?;
+    axes_of(area, &chart, ["frequency [Hz]", "growth rate σ [1/s]"].map(linear))?;
     draw_squeal(area, &mut chart, complex)?;
     chart.draw_series([PathElement::new(
         [(across.start, 0.0), (across.end, 0.0)],
         colour(INK).stroke_width(2),
     )])?;
     draw_stable(&mut chart, modes)?;
-    draw_unstable(area, &mut chart, modes)
+    draw_unstable(area, &mut chart, modes)?;
+    modes.iter().enumerate().try_for_each(|(k, mode)| {
+        let (hz, rate) = (hertz(mode.frequency_hz(), 1), signed(mode.growth_rate(), 2));
+        let place = chart.backend_coord(&(mode.frequency_hz(), mode.growth_rate().max(up.start)));
+        title_at(area, place, &format!("mode {}: {hz} Hz, σ {rate} 1/s", k + 1))
+    })
 }
 
 /// A band about each measured squeal frequency.
@@ -148,7 +155,7 @@ fn draw_unstable(area: &Area, chart: &mut Chart, modes: &[ComplexMode]) -> Resul
             format!("σ {}/s, ζ {} %", signed(mode.growth_rate(), 1), signed(100.0 * mode.damping_ratio(), 2));
         area.draw_text(
             &format!("{} Hz", hertz(mode.frequency_hz(), 0)),
-            &above(bold(13.5, ALARM)),
+            &above(bold(13.5, ALARM_TEXT)),
             local(area, x, y - 15),
         )?;
         area.draw_text(&rates, &above(text(12.0, INK)), local(area, x, y))?;

@@ -1,4 +1,4 @@
-//! Parts of a page: HTML with its style and its pictures inside.
+//! Parts of a page: HTML with its style, its pictures and its scripts inside.
 
 use super::finding::FindingClass;
 use super::section::{Display, Item, ReportSection};
@@ -10,12 +10,15 @@ use std::collections::BTreeSet;
 /// The style sheet, for light, dark and paper.
 const STYLE: &str = include_str!("page.css");
 
+/// Values under the pointer and zoom for the charts.
+const SCRIPT: &str = include_str!("charts.js");
+
 /// A page with its style.
 pub(super) fn document(title: &str, body: &str) -> String {
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>{}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{body}</body>\n</html>\n",
+         <title>{}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{body}<script>\n{SCRIPT}</script>\n</body>\n</html>\n",
         escape(title)
     )
 }
@@ -98,6 +101,7 @@ impl PageLayout {
                     Display::Folded if content.rows.len() > LONG => self.closed_table(content),
                     Display::Titled | Display::Folded => self.table(content),
                 },
+                Item::Markup(html) => html.clone(),
                 Item::Words(words) => format!("<p>{}</p>\n", prose(words)),
             };
         }

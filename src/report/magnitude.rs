@@ -1,6 +1,6 @@
 //! Magnitude and phase over frequency, as frequency responses are drawn: magnitude on a logarithmic scale.
 
-use super::axes::{Chart, Words, axes, labelled};
+use super::axes::{Chart, Words, labelled};
 use super::chart::{Area, colour};
 use super::format::{fixed, given};
 use crate::measured::Quantity;
@@ -27,7 +27,10 @@ pub(super) fn magnitude_axes<'a>(
     let top = largest.log10() + 0.3;
     let low = (sizes.iter().copied().fold(largest, f64::min).log10() - 0.3).max(top - DECADES);
     let beside = format!("{} [{}]", quantity.word(), quantity.unit());
-    axes(area, (band(hz), low..top), below, &beside, |v| format!("{:.0e}", 10f64.powf(v)))
+    let value = |v: f64| format!("{:.0e}", 10f64.powf(v));
+    let words =
+        Words { below, beside: &beside, across: &given, up: &value, labels: 10, decades: 1.0, grid: true };
+    labelled(area, (band(hz), low..top), &words)
 }
 
 /// Axes for the phase over the frequencies, which stand below.
@@ -37,7 +40,15 @@ pub(super) fn phase_axes<'a>(
     below: Option<&str>,
 ) -> Result<Chart<'a>, Box<dyn Error>> {
     let degrees = |v: f64| fixed(v, 0);
-    let words = Words { below, beside: "phase [°]", across: &given, up: &degrees, labels: 10, grid: true };
+    let words = Words {
+        below,
+        beside: "phase [°]",
+        across: &given,
+        up: &degrees,
+        labels: 10,
+        decades: 0.0,
+        grid: true,
+    };
     labelled(area, (band(hz), -HALF - MARGIN..HALF + MARGIN), &words)
 }
 

@@ -8,12 +8,15 @@
 //!   `mac_<name>.svg`, `frequencies_<name>.svg` and `measured_frf_<name>.svg` of measured data;
 //!   `sweep_<name>.svg`, `root_locus_<name>.svg` and `map_<name>.svg` of every sweep and map.
 //!
+//! The page's scripts: `shapes/viewer.js` moves the mode shapes, `charts.js` shows values under the pointer and zooms.
+//!
 //! Each analysis has a function that gives its sections from the results: what it found in a sentence with its class, tables and
 //! words, which are shown in either form, and pictures, each a pure function from the results to SVG. `SECTIONS` lists them. The
 //! findings of all sections come first on the page, the most urgent before the others, and last on the terminal.
 
 mod advice;
 mod axes;
+mod base64;
 mod budget;
 mod calibration;
 mod chart;
@@ -33,13 +36,16 @@ mod magnitude;
 mod page;
 mod participation;
 mod plate;
+mod player;
 mod provenance;
+mod readout;
 mod real_modes;
 mod reduced_check;
 mod rig;
 mod search;
 mod section;
 mod sensitivity;
+mod shapes;
 mod squeal;
 mod steady;
 mod svg;
@@ -59,8 +65,9 @@ use section::ReportSection;
 use std::path::Path;
 
 /// Sections of each analysis, in the order of the report: one line an analysis.
-const SECTIONS: [fn(&RunResults) -> Vec<ReportSection>; 10] = [
+const SECTIONS: [fn(&RunResults) -> Vec<ReportSection>; 11] = [
     rig::sections,
+    shapes::sections,
     real_modes::sections,
     comparison::sections,
     frf::sections,

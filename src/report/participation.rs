@@ -1,6 +1,6 @@
 //! `participation.svg`: the real modes that take part in each unstable mode, as stacked bars.
 
-use super::colours::{ALARM, INK, MUTED};
+use super::colours::{ALARM_TEXT, INK, MUTED};
 use super::format::{fixed, hertz, signed};
 use super::section::Picture;
 use super::svg::{Anchor, Ink, Sheet};
@@ -64,7 +64,7 @@ fn chosen(all: &[ComplexMode]) -> Vec<&ComplexMode> {
 
 /// One bar; `coloured` are the real modes that have their colour already.
 fn draw(sheet: &mut Sheet, top: f64, mode: &ComplexMode, complex: &ComplexResult, coloured: &mut Vec<usize>) {
-    let colour = if mode.unstable() { ALARM } else { INK };
+    let colour = if mode.unstable() { ALARM_TEXT } else { INK };
     let name = Ink { size: 14.0, colour, bold: true, anchor: Anchor::End };
     sheet.text([LEFT - 12.0, top + 13.0], &format!("{} Hz", hertz(mode.frequency_hz(), 0)), name);
     let rate = Ink { size: 12.0, colour: MUTED, bold: false, ..name };

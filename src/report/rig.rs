@@ -1,6 +1,6 @@
 //! `rig.svg`: the model as analysed, with its contact points, load and sliding direction.
 
-use super::colours::{ALARM, INK, MEASURED, MUTED, PARTS};
+use super::colours::{ALARM, ALARM_TEXT, INK, MEASURED, MUTED, PARTS};
 use super::format::given;
 use super::section::{Picture, ReportSection};
 use super::svg::{Anchor, Ink, Sheet, SvgPoint};
@@ -149,7 +149,7 @@ fn arrows(geometry: &Geometry, steady: &SteadyResult) -> Vec<Arrow> {
         let label = format!("load {} N", given(*load));
         let (tail, head) =
             (along(centre, -above - 0.24 * size, *press), along(centre, -above - 0.03 * size, *press));
-        arrows.push(Arrow { tail, head, label, colour: ALARM, label_at_head: false });
+        arrows.push(Arrow { tail, head, label, colour: ALARM_TEXT, label_at_head: false });
         let direction = if *velocity < 0.0 { slide.map(|c| -c) } else { *slide };
         let ahead = extent(geometry, direction, centre);
         let label = format!("sliding {} m/s", given(velocity.abs()));

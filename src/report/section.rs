@@ -27,6 +27,8 @@ pub(super) enum Item {
     Picture(Picture),
     Table(ReportTable, Display),
     Words(String),
+    /// Markup of the page alone, with all text in it escaped.
+    Markup(String),
 }
 
 /// How the page shows a table.
@@ -73,6 +75,13 @@ impl ReportSection {
     #[must_use]
     pub(super) fn words(mut self, words: impl IntoIterator<Item = String>) -> Self {
         self.items.extend(words.into_iter().map(Item::Words));
+        self
+    }
+
+    /// With markup that the page alone shows.
+    #[must_use]
+    pub(super) fn markup(mut self, html: impl IntoIterator<Item = String>) -> Self {
+        self.items.extend(html.into_iter().map(Item::Markup));
         self
     }
 

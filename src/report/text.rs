@@ -31,7 +31,7 @@ fn section(section: &ReportSection) -> String {
     let mut parts: Vec<String> = Vec::new();
     for item in &section.items {
         match item {
-            Item::Picture(_) | Item::Table(_, Display::Proof) => {}
+            Item::Picture(_) | Item::Markup(_) | Item::Table(_, Display::Proof) => {}
             Item::Table(table, Display::Closed) => parts.push(render(&shortened(table))),
             Item::Table(table, _) => parts.push(render(table)),
             Item::Words(words) => match parts.last_mut() {

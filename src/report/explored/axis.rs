@@ -1,5 +1,6 @@
 //! Axes over values of a scalar of the case.
 
+use crate::report::readout::AxisScale;
 use crate::sweep::Axis;
 
 /// A parameter's path with its unit, for axes.
@@ -15,6 +16,11 @@ pub(super) fn place(axis: &Axis, value: f64) -> f64 {
 /// The value at a place.
 pub(super) fn value_at(axis: &Axis, place: f64) -> f64 {
     if axis.log { axis.from.signum() * 10f64.powf(place) } else { place }
+}
+
+/// The axis as the page's script reads it.
+pub(super) fn scale<'a>(axis: &Axis, name: &'a str) -> AxisScale<'a> {
+    AxisScale { name, decades: if axis.log { axis.from.signum() } else { 0.0 } }
 }
 
 /// Three digits, for labels of a logarithmic axis.

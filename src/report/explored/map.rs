@@ -1,9 +1,10 @@
 //! `map_<name>.svg`: the largest growth rate over two parameters, with the boundary of stability.
 
-use super::axis::{axis_name, place, round, value_at};
+use super::axis::{axis_name, place, round, scale, value_at};
 use crate::report::chart::{Area, colour, sheet, text};
 use crate::report::colours::{INK, MUTED, diverging};
 use crate::report::format::{given, signed};
+use crate::report::readout::axes_of;
 use crate::report::section::Picture;
 use crate::results::{MapResult, file_name};
 use plotters::prelude::*;
@@ -62,6 +63,8 @@ fn draw(area: &Area, result: &MapResult) -> Result<(), Box<dyn Error>> {
         .x_label_area_size(52)
         .y_label_area_size(84)
         .build_cartesian_2d(span(&across), span(&up))?;
+    let names = [0, 1].map(|d| axis_name(&result.parameters[d], &result.units[d]));
+    axes_of(&main, &chart, [0, 1].map(|d| scale(&result.axes[d], &names[d])))?;
     let n = result.axes[0].points;
     for (low, high, j) in &up {
         for (left, right, i) in &across {
@@ -77,8 +80,8 @@ fn draw(area: &Area, result: &MapResult) -> Result<(), Box<dyn Error>> {
         .axis_style(colour(MUTED))
         .label_style(text(13.0, INK))
         .axis_desc_style(text(14.0, INK))
-        .x_desc(axis_name(&result.parameters[0], &result.units[0]))
-        .y_desc(axis_name(&result.parameters[1], &result.units[1]))
+        .x_desc(&names[0])
+        .y_desc(&names[1])
         .x_label_formatter(&|v| label(0, *v))
         .y_label_formatter(&|v| label(1, *v))
         .draw()?;

@@ -1,10 +1,11 @@
 //! `sweep_<name>.svg` and `root_locus_<name>.svg`: the branches over the parameter and in the complex plane.
 
-use super::axis::{axis_name, place, round, value_at};
+use super::axis::{axis_name, place, round, scale, value_at};
 use crate::linalg::c64;
 use crate::report::chart::{Area, above, bold, colour, sheet, text, widened};
 use crate::report::colours::{ALARM, CALM, INK, MEASURED, MUTED};
 use crate::report::format::{given, hertz, significant};
+use crate::report::readout::{axes_of, linear};
 use crate::report::section::Picture;
 use crate::results::{SweepResult, file_name};
 use crate::stability::unstable;
@@ -90,9 +91,12 @@ fn draw_branches(area: &Area, result: &SweepResult) -> Drawing {
     let mut top = plot(&upper, across.clone(), frequency_range(result))?;
     label_axes(&mut top, result, "", "frequency [Hz]")?;
     draw_lines(&mut top, result, frequency)?;
+    let below = axis_name(&result.parameter, &result.unit);
+    axes_of(&upper, &top, [scale(axis, ""), linear("frequency [Hz]")])?;
     let up = growth_range(result);
     let mut bottom = plot(&lower, across.clone(), up.clone())?;
-    label_axes(&mut bottom, result, &axis_name(&result.parameter, &result.unit), "growth rate σ [1/s]")?;
+    label_axes(&mut bottom, result, &below, "growth rate σ [1/s]")?;
+    axes_of(&lower, &bottom, [scale(axis, &below), linear("growth rate σ [1/s]")])?;
     let zero = [(across.start, 0.0), (across.end, 0.0)];
     bottom.draw_series([PathElement::new(zero, colour(INK).stroke_width(2))])?;
     draw_lines(&mut bottom, result, growth)?;
@@ -143,6 +147,7 @@ fn draw_locus(area: &Area, result: &SweepResult) -> Drawing {
         .x_label_formatter(&|v| given(*v))
         .y_label_formatter(&|v| given(*v))
         .draw()?;
+    axes_of(area, &chart, ["growth rate σ [1/s]", "frequency [Hz]"].map(linear))?;
     chart.draw_series([PathElement::new([(0.0, up.start), (0.0, up.end)], colour(INK).stroke_width(2))])?;
     let inside = |z: &c64| across.contains(&z.re);
     for b in 0..result.sweep.branches.len() {

@@ -11,6 +11,7 @@ mod spectra;
 mod spectrogram;
 mod table;
 
+use super::player::player;
 use super::reduced_check;
 use super::section::{Display, ReportSection};
 use crate::results::{ComplexResult, RunResults, TransientResult};
@@ -33,6 +34,7 @@ pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
         .findings([finding::motion(run)])
         .findings(finding::sound(run))
         .pictures(pictures.into_iter().flatten())
+        .markup(run.sound.as_ref().and_then(player))
         .tables(Display::Titled, [table::table(run)])
         .tables(Display::Titled, sound::table(run, modes))
         .tables(Display::Titled, check);

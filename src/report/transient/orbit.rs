@@ -52,7 +52,8 @@ fn curve(
     };
     let (across, up) = (range(0), range(1));
     let label = |v: f64| significant(v, 3);
-    let words = Words { below: Some(below), beside, across: &label, up: &label, labels: 5, grid: true };
+    let words =
+        Words { below: Some(below), beside, across: &label, up: &label, labels: 5, decades: 0.0, grid: true };
     let mut chart = labelled(area, (across.clone(), up.clone()), &words)?;
     if across.contains(&0.0) {
         let line = [(0.0, up.start), (0.0, up.end)];

@@ -67,8 +67,15 @@ fn panel(
     let (main, bar) = area.split_horizontally(WIDTH - BAR);
     let rows = (1 + (end / of.resolution_hz) as usize).clamp(3, of.rows);
     let top = (rows as f64 - 0.5) * of.resolution_hz;
-    let words =
-        Words { below, beside: "frequency [Hz]", across: &given, up: &given, labels: 10, grid: false };
+    let words = Words {
+        below,
+        beside: "frequency [Hz]",
+        across: &given,
+        up: &given,
+        labels: 10,
+        decades: 0.0,
+        grid: false,
+    };
     let mut chart = labelled(&main, (0.0..duration, 0.0..top), &words)?;
     for hz in measured.iter().filter(|hz| **hz < top) {
         let line = [(0.0, *hz), (duration, *hz)];
