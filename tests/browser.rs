@@ -29,7 +29,7 @@ fn page(case: &str) -> PathBuf {
     out.join("report.html")
 }
 
-const RIG: &str = "rig-coarse";
+const RIG: &str = "rig";
 const SOUND: &str = "sound-piston";
 
 /// What `browser/measure.py` says of a page.
@@ -115,7 +115,7 @@ fn the_sound_decodes_and_plays() {
 fn charts_tell_the_values_under_the_pointer_and_zoom() {
     let found = measure(RIG, "charts");
     let points = found["points"].as_array().unwrap();
-    // `mode 3: 1668.3 Hz, σ +1.2 1/s` and `frequency 1668.1 Hz   growth rate σ …`.
+    // `mode 3: 1668.3 Hz, σ +1.2 1/s` and `frequency 1668.1 Hz · growth rate σ …`.
     let hertz =
         |words: &str, before: usize| -> f64 { words.split(' ').nth(before).unwrap().parse().unwrap() };
     for point in points {

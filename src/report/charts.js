@@ -1,7 +1,15 @@
 // Values under the pointer and zoom for every chart of the page. A chart says its axes in <rect class="axes">:
 // data-x and data-y hold the ends of the axis and 0 (linear) or ±1 (values are ±10^place); data-names its names.
 'use strict';
-for (const svg of document.querySelectorAll('figure svg')) {
+const charts = [...document.querySelectorAll('figure svg')].filter(svg => svg.querySelector('rect.axes'));
+if (charts.length) {
+  const help = document.createElement('p');
+  help.className = 'note';
+  help.textContent = 'Charts show the values under the pointer. Zoom: drag a rectangle, or Ctrl and the wheel; back: double click.';
+  charts[0].closest('figure').before(help);
+  addEventListener('beforeprint', () => help.remove());
+}
+for (const svg of charts) {
   const NS = 'http://www.w3.org/2000/svg';
   const whole = svg.viewBox.baseVal, home = [whole.x, whole.y, whole.width, whole.height];
   const panels = [...svg.querySelectorAll('rect.axes')].map(rect => {
@@ -10,15 +18,14 @@ for (const svg of document.querySelectorAll('figure svg')) {
     const [x, y, w, h] = ['x', 'y', 'width', 'height'].map(number);
     return { x, y, w, h, across: axis(rect.dataset.x), up: axis(rect.dataset.y), names: rect.dataset.names.split('|') };
   });
-  if (!panels.length) continue;
   const element = (name, style) => {
     const made = svg.appendChild(document.createElementNS(NS, name));
     made.setAttribute('style', `pointer-events:none;display:none;${style}`);
     return made;
   };
-  const line = () => element('path', 'stroke:#1b1f24;stroke-width:1;stroke-dasharray:3 3;fill:none');
-  const frame = element('rect', 'fill:#0072b2;fill-opacity:.12;stroke:#0072b2');
-  const cross = line(), plate = element('rect', 'fill:#fff;fill-opacity:.92;stroke:#5b6570');
+  const line = () => element('path', 'stroke:#1b1f24;stroke-width:1;stroke-dasharray:3 3;fill:none;vector-effect:non-scaling-stroke');
+  const frame = element('rect', 'fill:#0072b2;fill-opacity:.12;stroke:#0072b2;vector-effect:non-scaling-stroke');
+  const cross = line(), plate = element('rect', 'fill:#fff;fill-opacity:.92;stroke:#5b6570;vector-effect:non-scaling-stroke');
   const words = element('text', "font:13px system-ui,'Segoe UI',Helvetica,Arial,sans-serif;fill:#1b1f24");
   const show = (made, on) => { made.style.display = on ? '' : 'none'; };
   const set = (made, values) => Object.entries(values).forEach(([key, value]) => made.setAttribute(key, value));
@@ -42,8 +49,8 @@ for (const svg of document.querySelectorAll('figure svg')) {
     const p = panels.find(q => at.x >= q.x && at.x <= q.x + q.w && at.y >= q.y && at.y <= q.y + q.h);
     if (!p) return clear();
     const scale = svg.viewBox.baseVal.width / home[2];
-    set(cross, { d: `M${at.x} ${p.y}v${p.h}M${p.x} ${at.y}h${p.w}`, 'stroke-width': scale });
-    words.textContent = `${read(p.across, (at.x - p.x) / p.w, p.names[0] || below)}   ${read(p.up, 1 - (at.y - p.y) / p.h, p.names[1])}`;
+    set(cross, { d: `M${at.x} ${p.y}v${p.h}M${p.x} ${at.y}h${p.w}` });
+    words.textContent = `${read(p.across, (at.x - p.x) / p.w, p.names[0] || below)} · ${read(p.up, 1 - (at.y - p.y) / p.h, p.names[1])}`;
     words.style.fontSize = `${13 * scale}px`;
     [cross, plate, words].forEach(made => show(made, true));
     const box = words.getBBox(), view = svg.viewBox.baseVal, gap = 10 * scale;
