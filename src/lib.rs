@@ -76,3 +76,7 @@ pub mod system;
 pub mod transient;
 #[cfg(feature = "cli")]
 pub mod validation;
+
+/// The git commit of the sources that this build is of, 12 digits; none for a build without a repository. `build.rs` asks git
+/// when HEAD moves, so that changes that are not committed do not show.
+pub const COMMIT: Option<&str> = option_env!("STRIDOR_COMMIT");
