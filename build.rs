@@ -1,5 +1,5 @@
 //! Puts the commit of the sources into `STRIDOR_COMMIT`: that of the git repository whose root this package is, with
-//! `-modified` where the sources differ from it, that of the package file, or `unknown`.
+//! `-modified` where the sources differ from it, or that of the package file; `src/lib.rs` reads it.
 //!
 //! It runs again when the sources change, not at every commit: the commit is the one at which the sources were last compiled.
 
@@ -13,8 +13,9 @@ fn main() {
     for path in SOURCES.iter().filter(|path| Path::new(path).exists()) {
         println!("cargo:rerun-if-changed={path}");
     }
-    let commit = of_repository().or_else(of_package).unwrap_or_else(|| "unknown".into());
-    println!("cargo:rustc-env=STRIDOR_COMMIT={commit}");
+    if let Some(commit) = of_repository().or_else(of_package) {
+        println!("cargo:rustc-env=STRIDOR_COMMIT={commit}");
+    }
 }
 
 fn git(arguments: &[&str]) -> Option<String> {

@@ -76,3 +76,7 @@ pub mod system;
 pub mod transient;
 #[cfg(feature = "cli")]
 pub mod validation;
+
+/// The git commit at which the sources of this build were last compiled, 12 digits, with `-modified` where they differed from it;
+/// `None` for a build outside a repository.
+pub const COMMIT: Option<&str> = option_env!("STRIDOR_COMMIT");

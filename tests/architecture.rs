@@ -133,7 +133,7 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The modules that `text` names as `crate::module`, its unit tests and comments left out.
+/// The modules that `text` names as `crate::module`, its unit tests and comments left out; constants are no modules.
 fn modules_used(text: &str) -> BTreeSet<String> {
     let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or(text);
     let mut used = BTreeSet::new();
@@ -141,7 +141,9 @@ fn modules_used(text: &str) -> BTreeSet<String> {
         for (at, _) in line.match_indices("crate::") {
             let name: String =
                 line[at + 7..].chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
-            used.insert(name);
+            if name.starts_with(char::is_lowercase) {
+                used.insert(name);
+            }
         }
     }
     used

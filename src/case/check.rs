@@ -142,7 +142,7 @@ fn check_courses(root: &mut Report, case: &Case, transient: &TransientAnalysis) 
     }
 }
 
-/// Refuses patterns that name no scalar of a case that is sound but for them.
+/// Refuses patterns that name no scalar of a case that is valid but for them.
 fn check_sensitivity(root: &mut Report, case: &Case, scalars: Option<&[Parameter]>) {
     let (Some(analysis), Some(parameters)) = (&case.sensitivity, scalars) else { return };
     // What is asked about the scalars is none of them.

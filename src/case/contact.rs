@@ -156,16 +156,16 @@ impl Value for ContactPoints {
 variants! {
     /// Normal load or approach of a contact pair.
     #[derive(Copy)]
-    pub enum Pressing by presence {
+    pub enum Pressing by presence or "approach" {
         /// A normal load.
         Load "load" {
             /// ΣN \[N\].
             load: f64 = key::quantity(FORCE).positive().invalidates(Invalidates::Equilibrium),
         }
-        /// A prescribed approach of the bodies.
+        /// A prescribed approach of the bodies, between which forces of the case may press, too.
         Approach "approach" {
-            /// Approach \[m\].
-            approach: f64 = key::quantity(LENGTH).invalidates(Invalidates::Equilibrium),
+            /// Approach \[m\]; 0 for the bodies as they are meshed or placed.
+            approach: f64 = key::quantity(LENGTH).or(0.0).invalidates(Invalidates::Equilibrium),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! `stridor run`, `compare`, and a subcommand for every analysis.
 
-use super::output::{Common, give, say};
+use super::examples;
+use super::output::{Common, give, say, window_width};
 use super::progress::Bars;
 use crate::case::read_case;
 use crate::error::Result;
@@ -41,7 +42,8 @@ fn commands() -> impl Iterator<Item = (&'static str, &'static str, Selection)> {
 impl Subcommand for Analyse {
     fn augment_subcommands(command: clap::Command) -> clap::Command {
         commands().fold(command, |command, (name, about, _)| {
-            command.subcommand(AnalyseOptions::augment_args(clap::Command::new(name)).about(about))
+            let own = AnalyseOptions::augment_args(clap::Command::new(name)).about(about);
+            command.subcommand(own.after_help(examples::of_analysis(name)))
         })
     }
 
@@ -79,15 +81,16 @@ pub fn run(analyse: &Analyse, common: &Common) -> Result<ExitCode> {
     if common.json {
         give(crate::results::summary_json(&results))?;
     } else if !common.quiet {
-        say(report::text::summary(&results))?;
+        say(report::text::summary(&results, window_width()))?;
         say(format!("Results are in {}: open report.html, or *.vtu in ParaView.", out.display()))?;
     }
     Ok(ExitCode::SUCCESS)
 }
 
-/// Name of the results folder of a case file: `disc.toml` → `disc`, `rig/case.toml` → `rig`.
+/// Name of the results folder of a case file: `disc.toml` → `disc`, `rig/case.toml` → `rig`, also from within that folder.
 fn case_name(case: &Path) -> OsString {
-    let stem = case.file_stem().unwrap_or_default();
-    let folder = case.parent().and_then(Path::file_name);
+    let path = std::path::absolute(case).unwrap_or_else(|_| case.to_path_buf());
+    let stem = path.file_stem().unwrap_or_default();
+    let folder = path.parent().and_then(Path::file_name);
     folder.filter(|_| stem == "case").unwrap_or(stem).to_os_string()
 }

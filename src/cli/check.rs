@@ -1,10 +1,12 @@
 //! `stridor check`: the case and its mesh, without an analysis.
 
+use super::error_json::fault_json;
 use super::output::{Common, give, say};
 use crate::case::{Parameter, read_case};
-use crate::error::Result;
-use crate::job::{Prepared, Selection, check_case, expected_memory};
+use crate::error::{Fault, Result};
+use crate::job::{CaseWarnings, Prepared, Selection, check_case, expected_memory};
 use clap::Args;
+use serde_json::{Value, json};
 use std::ops::Bound;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -25,6 +27,10 @@ pub fn run(options: &CheckOptions, common: &Common) -> Result<ExitCode> {
     let case = read_case(&options.case)?;
     let prepared = Prepared::new(&case)?;
     let warnings = check_case(&prepared).map_err(|error| case.places.locate(error))?;
+    if common.json {
+        give(format!("{:#}", as_json(options, &prepared, &warnings)?))?;
+        return Ok(ExitCode::SUCCESS);
+    }
     if options.resolved {
         give(case.to_toml().trim_end())?;
     }
@@ -36,18 +42,11 @@ pub fn run(options: &CheckOptions, common: &Common) -> Result<ExitCode> {
         }
     }
     if !common.quiet && !options.resolved && !options.parameters {
-        for warning in prepared.warnings.iter().chain(&warnings) {
+        let unlikely = warnings.unlikely.iter().map(Fault::to_string);
+        for warning in warnings.sentences.iter().cloned().chain(unlikely) {
             say(format!("warning: {warning}"))?;
         }
-        let size = prepared.size();
-        say(format!(
-            "{}: sound. {} nodes, {} elements, {} degrees of freedom, {} contact points within reach.",
-            options.case.display(),
-            size.nodes,
-            size.elements,
-            size.dofs,
-            size.contact_points
-        ))?;
+        say(format!("{}: valid. {}.", options.case.display(), sizes(&prepared)))?;
         if let Some(expected) = expected_memory(&prepared, Selection::Listed)? {
             say(format!(
                 "A run is expected to take about {} of memory: {:.2e} entries of a factor, about {:.0} real modes.",
@@ -58,6 +57,52 @@ pub fn run(options: &CheckOptions, common: &Common) -> Result<ExitCode> {
         }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Nodes, elements, degrees of freedom and, where there is a contact, its points.
+fn sizes(prepared: &Prepared) -> String {
+    let size = prepared.size();
+    let contact = match prepared.case.contact.is_empty() {
+        true => String::new(),
+        false => format!(", {} contact points within reach", size.contact_points),
+    };
+    format!("{} nodes, {} elements, {} degrees of freedom{contact}", size.nodes, size.elements, size.dofs)
+}
+
+/// `ok`, `faults` (none here), `warnings`, `sizes`, `memory` of a large case, and what else was asked for.
+fn as_json(options: &CheckOptions, prepared: &Prepared, warnings: &CaseWarnings) -> Result<Value> {
+    let size = prepared.size();
+    let sentences = warnings.sentences.iter().map(|sentence| json!({ "message": sentence }));
+    let memory = expected_memory(prepared, Selection::Listed)?;
+    let mut all = json!({
+        "ok": true,
+        "case": options.case.display().to_string(),
+        "faults": [],
+        "warnings": sentences.chain(warnings.unlikely.iter().map(fault_json)).collect::<Vec<_>>(),
+        "sizes": {
+            "nodes": size.nodes,
+            "elements": size.elements,
+            "degrees_of_freedom": size.dofs,
+            "contact_points": size.contact_points,
+        },
+        "memory": memory.map(|expected| json!({
+            "bytes": expected.bytes,
+            "factor_entries": expected.fill,
+            "real_modes": expected.modes,
+        })),
+    });
+    if options.parameters {
+        let parameter = |p: Parameter| {
+            let bounds = range(&p);
+            let redo = format!("{:?}", p.invalidates).to_lowercase();
+            json!({ "path": p.path, "value": p.value, "unit": p.unit, "range": bounds, "invalidates": redo })
+        };
+        all["parameters"] = prepared.case.parameters().into_iter().map(parameter).collect();
+    }
+    if options.resolved {
+        all["resolved"] = prepared.case.to_toml().into();
+    }
+    Ok(all)
 }
 
 /// All digits of a number, with an exponent when it is very large or small.

@@ -1,10 +1,14 @@
 //! The command line: parses, calls the library, prints what it returns. One file a subcommand.
 //!
-//! Results go to stdout, progress and errors to stderr. Exit codes: 0 done, 1 the analysis or the machine failed,
-//! 2 the input is wrong.
+//! Results go to stdout, progress and errors to stderr; with `--json` stdout gets one JSON document, of an error, too. Exit codes:
+//! 0 done, 1 the analysis or the machine failed, 2 the input is wrong.
 
 mod analyse;
 mod check;
+mod colour;
+mod documents;
+mod error_json;
+mod examples;
 mod export;
 mod mesh;
 mod new;
@@ -16,12 +20,19 @@ mod templates;
 mod validate;
 
 use crate::error::{Error, Fault, Result};
-use clap::{Parser, Subcommand};
-use output::{Common, complain};
+use clap::{CommandFactory, Parser, Subcommand};
+use output::{Common, complain, give};
 use std::process::ExitCode;
+use std::sync::LazyLock;
+
+/// Version and, where it is known, commit: `0.1.0 (0123456789ab)`.
+static VERSION: LazyLock<String> = LazyLock::new(|| {
+    let commit = crate::COMMIT.map_or(String::new(), |commit| format!(" ({commit})"));
+    format!("{}{commit}", env!("CARGO_PKG_VERSION"))
+});
 
 #[derive(Parser)]
-#[command(name = "stridor", version, about, propagate_version = true)]
+#[command(name = "stridor", version = VERSION.as_str(), about, propagate_version = true, after_help = examples::PROGRAM)]
 struct Command {
     #[command(subcommand)]
     action: Action,
@@ -34,20 +45,32 @@ enum Action {
     #[command(flatten)]
     Analyse(analyse::Analyse),
     /// Search for parameters of a case inside bounds, so that its results match given facts
+    #[command(after_help = examples::SEARCH)]
     Search(search::SearchOptions),
     /// Check a case and its mesh without running it, and list its parameters
+    #[command(after_help = examples::CHECK)]
     Check(check::CheckOptions),
     /// Print the JSON Schema of case files, for editors, or the reference of their keys
+    #[command(after_help = examples::SCHEMA)]
     Schema(schema::SchemaOptions),
     /// Write M, C, K, the degrees of freedom and the contact points of a case, for other programs
+    #[command(after_help = examples::EXPORT)]
     Export(export::ExportOptions),
     /// Write a case and a mesh to start from
+    #[command(after_help = examples::NEW)]
     New(new::NewOptions),
     /// Generate or inspect a mesh
-    #[command(subcommand)]
+    #[command(subcommand, after_help = examples::MESH)]
     Mesh(mesh::MeshAction),
     /// Run the validation cases and compare computed with reference values
+    #[command(after_help = examples::VALIDATE)]
     Validate(validate::ValidateOptions),
+    /// Print the completions of a shell
+    #[command(after_help = examples::COMPLETIONS)]
+    Completions(documents::CompletionsOptions),
+    /// Print a page of the manual, or write all
+    #[command(after_help = examples::MAN)]
+    Man(documents::ManOptions),
 }
 
 /// Runs the program on the process's arguments.
@@ -57,13 +80,21 @@ pub fn main() -> ExitCode {
         Ok(command) => command,
         Err(error) => {
             let _ = error.print();
+            if error.use_stderr() && std::env::args_os().any(|argument| argument == "--json") {
+                let message = error.to_string();
+                let _ = give(format!("{:#}", error_json::usage_json(message.trim_end())));
+            }
             return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
         }
     };
+    colour::choose(command.common.color);
     // On a thread of the pool: work that is too small to be shared then costs no handing over.
     match set_threads(command.common.threads).and_then(|()| rayon::scope(|_| act(&command))) {
         Ok(code) => code,
         Err(error) => {
+            if command.common.json {
+                let _ = give(format!("{:#}", error_json::error_json(&error)));
+            }
             complain(&error);
             ExitCode::from(error.exit_code())
         }
@@ -91,6 +122,8 @@ fn act(command: &Command) -> Result<ExitCode> {
         Action::New(options) => new::run(options, common),
         Action::Mesh(action) => mesh::run(action, common),
         Action::Validate(options) => validate::run(options, common),
+        Action::Completions(options) => documents::completions(options, Command::command()),
+        Action::Man(options) => documents::man(options, Command::command(), common),
     }
 }
 
@@ -119,7 +152,7 @@ fn set_threads(threads: Option<usize>) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::Command;
-    use clap::CommandFactory;
+    use clap::{CommandFactory, Parser};
     use std::collections::BTreeSet;
     use std::path::Path;
 
@@ -145,6 +178,31 @@ mod tests {
             text[at + mark.len()..].chars().take_while(|c| c.is_ascii_lowercase() || *c == '-').collect()
         };
         text.match_indices(mark).map(word).filter(|word| !word.is_empty()).collect()
+    }
+
+    #[test]
+    fn every_subcommand_has_examples_that_can_be_run() {
+        let program = Command::command();
+        let mut lines = Vec::new();
+        for command in program.get_subcommands().chain([&program]).filter(|c| c.get_name() != "help") {
+            let help = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+            let examples = help.lines().filter(|line| line.starts_with("  stridor ")).map(str::to_string);
+            let before = lines.len();
+            lines.extend(examples);
+            assert!(lines.len() > before, "{} has no example", command.get_name());
+        }
+        for line in lines {
+            // What follows several blanks says what the command does.
+            let command = line.trim().split("   ").next().unwrap();
+            let quoted = command.split('\'').enumerate();
+            let words = quoted.flat_map(|(k, part)| match k % 2 {
+                0 => part.split_whitespace().collect(),
+                _ => vec![part],
+            });
+            let read = Command::try_parse_from(words);
+            let shown = read.as_ref().err().is_none_or(|error| !error.use_stderr());
+            assert!(shown, "{line}: {}", read.err().unwrap());
+        }
     }
 
     #[test]

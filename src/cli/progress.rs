@@ -3,7 +3,7 @@
 use super::output::note;
 use crate::error::text::printable;
 use crate::progress::Observer;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -35,6 +35,13 @@ impl Bars {
     }
 }
 
+/// The time that is left, once a step has shown how long one takes.
+fn left(state: &ProgressState, text: &mut dyn std::fmt::Write) {
+    if state.pos() > 0 && state.len().is_some_and(|all| state.pos() < all) {
+        let _ = write!(text, ", {:#} left", HumanDuration(state.eta()));
+    }
+}
+
 /// Draws the bar again and again, on a thread that ends with it. Where no thread can be had, steps alone draw it.
 fn keep_ticking(current: &Arc<Mutex<ProgressBar>>) {
     let bar = Arc::downgrade(current);
@@ -58,13 +65,14 @@ impl Observer for Bars {
         self.with_bar(|bar| {
             bar.finish_and_clear();
             *bar = ProgressBar::with_draw_target(total, ProgressDrawTarget::stderr());
+            // Of 80 columns, and less than a tenth of them for the times.
             let template = if total.is_some() {
-                "{msg:32} [{bar:30}] {pos}/{len} {elapsed}"
+                "{msg:26} [{bar:20}] {pos}/{len} {elapsed}{left}"
             } else {
-                "{msg:32} {spinner} {elapsed}"
+                "{msg:26} {spinner} {elapsed}"
             };
             if let Ok(style) = ProgressStyle::with_template(template) {
-                bar.set_style(style.progress_chars("=> "));
+                bar.set_style(style.progress_chars("=> ").with_key("left", left));
             }
             bar.set_message(printable(stage));
         });

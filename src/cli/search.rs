@@ -1,6 +1,6 @@
 //! `stridor search`: numbers of a case, so that it meets facts of any kind.
 
-use super::output::{Common, give, say};
+use super::output::{Common, give, say, window_width};
 use super::progress::Bars;
 use crate::dataset::Describe;
 use crate::error::Result;
@@ -33,7 +33,7 @@ pub fn run(options: &SearchOptions, common: &Common) -> Result<ExitCode> {
     if common.json {
         give(format!("{:#}", result.describe().to_json()))?;
     } else if !common.quiet {
-        say(search_text(&result))?;
+        say(search_text(&result, window_width()))?;
         say(format!("Results are in {}: open search.html; the case is found.toml.", out.display()))?;
     }
     Ok(ExitCode::SUCCESS)

@@ -1,7 +1,9 @@
 //! The analyses of a case in their order, each result written as soon as it is there.
 
 use super::analyses::{Planned, Selection};
+use super::plausible;
 use super::prepared::Prepared;
+use super::pressed;
 use super::run::Run;
 use super::singular::explained;
 use super::sink::{KnownMaps, Memory, ResultSink, ResultStage};
@@ -32,8 +34,19 @@ pub fn analyse<'a>(
 ///
 /// # Errors
 /// All of them.
-pub fn check_case(prepared: &Prepared) -> Result<Vec<String>> {
-    Ok(Asked::new(prepared, Selection::Listed)?.warnings)
+pub fn check_case(prepared: &Prepared) -> Result<CaseWarnings> {
+    let asked = Asked::new(prepared, Selection::Listed)?;
+    let sentences = prepared.warnings.iter().chain(&asked.warnings).cloned().collect();
+    Ok(CaseWarnings { sentences, unlikely: plausible::warnings(prepared) })
+}
+
+/// What the user should know of a valid case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CaseWarnings {
+    /// Sentences about its files and analyses.
+    pub sentences: Vec<String>,
+    /// Numbers that are hardly meant.
+    pub unlikely: Vec<Fault>,
 }
 
 /// [`analyse`] with the maps of an earlier run. What was found before a failure is in `results`.
@@ -50,6 +63,7 @@ pub(super) fn analyse_from<'a>(
     results.resolved_case = case.to_toml();
     results.assumptions = case.assumptions.clone();
     results.warnings.extend(prepared.warnings.iter().chain(&asked.warnings).cloned());
+    results.warnings.extend(plausible::warnings(prepared).iter().map(Fault::to_string));
     results.geometry = prepared.geometry();
     results.size = prepared.size();
     sink.record(ResultStage::Model(results))?;
@@ -57,7 +71,6 @@ pub(super) fn analyse_from<'a>(
         Run::new(prepared, [asked.includes("cea"), asked.left_vectors()], known, sink, results, observer);
     let done = asked.planned.into_iter().try_for_each(|planned| planned.run(&mut run));
     let Run { clock, results, .. } = run;
-    results.warnings.extend(thickness_warnings(prepared));
     results.timings = clock.phases;
     done
 }
@@ -83,6 +96,7 @@ impl<'a> Asked<'a> {
         let planned: Vec<_> = planned.collect();
         if planned.iter().any(|planned| planned.slides()) {
             faults.take(equilibrium::check(&prepared.system));
+            faults.take(pressed::check(prepared));
         }
         if !planned.is_empty() && prepared.system.structure.mass.val().iter().all(|m| *m == 0.0) {
             let expected = "a part with mass: nothing vibrates without";
@@ -119,24 +133,4 @@ fn once<T: PartialEq>(items: Vec<T>) -> Vec<T> {
         }
     }
     all
-}
-
-/// Where Kirchhoff's theory is off by more than a percent at the highest requested frequency.
-fn thickness_warnings(prepared: &Prepared) -> Vec<String> {
-    let case = prepared.case;
-    let asked = case.modes.values().filter_map(|m| m.below).chain(case.cea.iter().map(|c| c.band[1]));
-    let highest = asked.fold(0.0, f64::max);
-    let errors = crate::structure::thickness_errors(&prepared.model, highest);
-    let worth_saying = errors.iter().filter(|e| e.relative_error > 0.01);
-    worth_saying
-        .map(|e| {
-            format!(
-                "Plate `{}` is thick for Kirchhoff's theory: its modes near {:.0} Hz come out about {:.1} % too high (kh = {:.2})",
-                e.part,
-                e.frequency_hz,
-                100.0 * e.relative_error,
-                e.wavenumber_times_thickness
-            )
-        })
-        .collect()
 }

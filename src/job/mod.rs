@@ -29,7 +29,9 @@ mod model;
 mod modes;
 mod motion;
 mod place;
+mod plausible;
 mod prepared;
+mod pressed;
 mod regions;
 mod run;
 #[cfg(feature = "cli")]
@@ -49,7 +51,7 @@ mod transient;
 mod travel;
 mod verify;
 
-pub use analyse::{analyse, check_case};
+pub use analyse::{CaseWarnings, analyse, check_case};
 pub use analyses::{ANALYSES, Analysis, Selection};
 pub use calibrate::Coordinate;
 pub use export::export;

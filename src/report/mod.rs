@@ -51,6 +51,7 @@ mod steady;
 mod svg;
 mod table;
 pub mod text;
+mod text_table;
 mod tornado;
 mod transient;
 mod validation;

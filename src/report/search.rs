@@ -7,7 +7,7 @@ use super::format::{fixed, given, significant};
 use super::html::{self, PageLayout, escape};
 use super::svg::{Anchor, Ink, Sheet};
 use super::table::ReportTable;
-use super::text::render;
+use super::text_table::render;
 use crate::error::Result;
 use crate::results::{SearchResult, SearchedNumber, passed, write_result};
 use std::path::Path;
@@ -55,11 +55,11 @@ pub fn write_search(dir: &Path, result: &SearchResult) -> Result<()> {
     write_result(dir, "search.html", html::document(title, &body).as_bytes())
 }
 
-/// Text printed on the command line.
-pub fn search_text(result: &SearchResult) -> String {
+/// Text printed on the command line, in lines of at most `width` columns; tables are as wide as they are without one.
+pub fn search_text(result: &SearchResult, width: Option<usize>) -> String {
     let tables = [fact_table(result), number_table(result)];
-    let words = words(result).into_iter().map(|w| super::text::wrap(&w));
-    tables.iter().map(render).chain(words).collect::<Vec<_>>().join("\n")
+    let words = words(result).into_iter().map(|w| super::text::wrap(&w, width));
+    tables.iter().map(|table| render(table, width)).chain(words).collect::<Vec<_>>().join("\n")
 }
 
 fn words(result: &SearchResult) -> Vec<String> {
@@ -285,11 +285,11 @@ mod tests {
             without_answer: 1,
             found_case: String::new(),
         };
-        let text = search_text(&result);
+        let text = search_text(&result, None);
         assert!(!text.contains("bottom"));
         let mut better = result.clone();
         better.costs[1] = 2.6;
-        assert!(search_text(&better).contains("not at the bottom: with `lead` alone"));
+        assert!(search_text(&better, None).contains("not at the bottom: with `lead` alone"));
         for words in
             ["1 of 2 facts", "2 numbers free", "proves nothing", "`stiffness`", "“peak”", "1 of them without"]
         {

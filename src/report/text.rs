@@ -1,52 +1,61 @@
-//! The tables for the terminal: aligned, at most 100 columns wide.
+//! Tables and sentences for the terminal, of the width of its window.
 
 use super::finding::Finding;
 use super::section::{Display, Item, ReportSection, findings};
 use super::table::ReportTable;
+use super::text_table::render;
 use crate::results::RunResults;
 
+/// The widest line of a sentence.
 const WIDTH: usize = 100;
-/// More rows than this go to the CSV file only.
-const ROWS: usize = 60;
-
-/// Rows and columns of a table that the page keeps closed.
+/// Rows and columns that a window shows of a table that the page keeps closed.
 const CLOSED: [usize; 2] = [8, 6];
 
 /// Everything the command line prints after a run: the tables of all sections, warnings, what was found.
-pub fn summary(results: &RunResults) -> String {
+///
+/// Lines have at most `width` columns; without a width, such as in a file, tables are as wide and as long as they are.
+pub fn summary(results: &RunResults, width: Option<usize>) -> String {
     let sections = super::sections(results);
-    let mut parts: Vec<String> = sections.iter().map(section).collect();
+    let mut parts: Vec<String> = sections.iter().map(|part| section(part, width)).collect();
     parts.retain(|part| !part.is_empty());
-    parts.extend(results.warnings.iter().map(|warning| wrap(&format!("Warning: {warning}"))));
+    parts.extend(results.warnings.iter().map(|warning| wrap(&format!("Warning: {warning}"), width)));
     // The most urgent last, where the eye is.
-    parts.extend(findings(&sections).iter().rev().map(|(_, finding)| verdict(finding)));
+    parts.extend(findings(&sections).iter().rev().map(|(_, finding)| verdict(finding, width)));
     parts.join("\n")
 }
 
 /// The tables and words of a section; its heading where no table has a caption.
-fn section(section: &ReportSection) -> String {
+fn section(section: &ReportSection, width: Option<usize>) -> String {
     let titled = section.items.iter().any(|item| matches!(item, Item::Table(..)));
     let worded = section.items.iter().any(|item| matches!(item, Item::Words(_)));
-    let heading = if worded && !titled { wrap(&section.heading) } else { String::new() };
+    let heading = if worded && !titled { wrap(&section.heading, width) } else { String::new() };
     let mut parts: Vec<String> = Vec::new();
     for item in &section.items {
         match item {
             Item::Picture(_) | Item::Markup(_) | Item::Table(_, Display::Proof) => {}
-            Item::Table(table, Display::Closed) => parts.push(render(&shortened(table))),
-            Item::Table(table, _) => parts.push(render(table)),
+            Item::Table(table, Display::Closed) if width.is_some() => {
+                parts.push(render(&shortened(table), width));
+            }
+            Item::Table(table, _) => parts.push(render(table, width)),
             Item::Words(words) => match parts.last_mut() {
-                Some(last) => last.push_str(&wrap(words)),
-                None => parts.push(wrap(words)),
+                Some(last) => last.push_str(&wrap(words, width)),
+                None => parts.push(wrap(words, width)),
             },
         }
     }
     heading + &parts.join("\n")
 }
 
-/// The first rows and columns of a table.
+/// The first rows and columns of a table, and how many more there are.
 fn shortened(table: &ReportTable) -> ReportTable {
     let [rows, columns] = CLOSED;
     let mut table = table.clone();
+    let more = [(table.rows.len(), rows, "rows"), (table.columns.len(), columns, "columns")];
+    let more = more.iter().filter(|(all, shown, _)| all > shown);
+    let more: Vec<String> = more.map(|(all, shown, what)| format!("{} more {what}", all - shown)).collect();
+    if !more.is_empty() {
+        table.notes.push(format!("… and {} in the results folder", more.join(" and ")));
+    }
     table.rows.truncate(rows);
     table.columns.truncate(columns);
     table.rows.iter_mut().for_each(|row| row.cells.truncate(columns));
@@ -54,73 +63,49 @@ fn shortened(table: &ReportTable) -> ReportTable {
 }
 
 /// What was found, with the table that belongs to it.
-fn verdict(finding: &Finding) -> String {
-    let sentence = wrap(&finding.words);
+fn verdict(finding: &Finding, width: Option<usize>) -> String {
+    let sentence = wrap(&finding.words, width);
     match &finding.table {
-        Some(table) if table.rows.is_empty() => sentence + &notes(table),
-        Some(table) => format!("{sentence}\n{}", render(table)),
+        Some(table) if table.rows.is_empty() => sentence + &notes(table, width),
+        Some(table) => format!("{sentence}\n{}", render(table, width)),
         None => sentence,
     }
 }
 
-pub(super) fn render(table: &ReportTable) -> String {
-    let shown = &table.rows[..table.rows.len().min(ROWS)];
-    let mut widths: Vec<usize> = table.columns.iter().map(|column| length(column.heading)).collect();
-    for row in shown {
-        widths.iter_mut().zip(&row.cells).for_each(|(width, cell)| *width = (*width).max(length(cell)));
-    }
-    let line = |cells: &[&str], lead: char| {
-        let mut text = String::from(lead);
-        for ((cell, width), column) in cells.iter().zip(&widths).zip(&table.columns) {
-            text.push(' ');
-            let blank = " ".repeat(width - length(cell));
-            text.push_str(&if column.words { format!("{cell}{blank}") } else { format!("{blank}{cell}") });
-            text.push(' ');
-        }
-        cut(text.trim_end()) + "\n"
-    };
-    let headings: Vec<&str> = table.columns.iter().map(|column| column.heading).collect();
-    let mut text = format!("{}\n", cut(&table.caption)) + &line(&headings, ' ');
-    let rule: usize = widths.iter().map(|width| width + 2).sum();
-    text.push_str(&format!(" {}\n", "─".repeat(rule.min(WIDTH - 1))));
-    for row in shown {
-        let cells: Vec<&str> = row.cells.iter().map(String::as_str).collect();
-        text.push_str(&line(&cells, if row.marked { '*' } else { ' ' }));
-    }
-    if shown.len() < table.rows.len() {
-        text.push_str(&format!(" … and {} more in the results folder\n", table.rows.len() - shown.len()));
-    }
-    text + &notes(table)
+/// The sentences below a table.
+pub(super) fn notes(table: &ReportTable, width: Option<usize>) -> String {
+    table.notes.iter().map(|note| wrap(note, width)).collect()
 }
 
-fn notes(table: &ReportTable) -> String {
-    table.notes.iter().map(|note| wrap(note)).collect()
+/// Lines of at most [`WIDTH`] columns, or of `width` where that is less, indented by one.
+pub(super) fn wrap(text: &str, width: Option<usize>) -> String {
+    let width = width.unwrap_or(WIDTH).min(WIDTH) - 1;
+    wrapped(text, width).iter().map(|line| format!(" {line}\n")).collect()
 }
 
-fn length(text: &str) -> usize {
-    text.chars().count()
-}
-
-/// At most [`WIDTH`] columns, the rest left out.
-fn cut(text: &str) -> String {
-    if length(text) <= WIDTH {
-        return text.to_string();
-    }
-    text.chars().take(WIDTH - 1).chain(['…']).collect()
-}
-
-/// Lines of at most [`WIDTH`] columns, indented by one.
-pub(super) fn wrap(text: &str) -> String {
-    let (mut lines, mut line) = (String::new(), String::new());
+/// The words of `text` in lines of at most `width` columns; longer words are broken.
+pub(super) fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
     for word in text.split_whitespace() {
-        if !line.is_empty() && length(&line) + length(word) + 2 > WIDTH {
-            lines += &format!("{line}\n");
-            line.clear();
+        let letters: Vec<char> = word.chars().collect();
+        for piece in letters.chunks(width) {
+            let line = lines.last_mut().expect("there is one");
+            let joined = !line.is_empty() && length(line) + 1 + piece.len() <= width;
+            if joined {
+                line.push(' ');
+            }
+            match joined || line.is_empty() {
+                true => line.extend(piece),
+                false => lines.push(piece.iter().collect()),
+            }
         }
-        line.push(' ');
-        line.push_str(word);
     }
-    lines + &cut(&line) + "\n"
+    lines
+}
+
+/// The columns that a text takes.
+pub(super) fn length(text: &str) -> usize {
+    text.chars().count()
 }
 
 #[cfg(test)]
@@ -130,21 +115,33 @@ mod tests {
     use crate::results::{ComplexResult, NamedModes};
 
     #[test]
-    fn tables_are_aligned_and_fit_the_terminal() {
+    fn tables_are_aligned_fit_the_window_and_say_all() {
         let mut results = sample::rig();
         results.get_mut::<ComplexResult>().unwrap().participation[0] = "a very long story ".repeat(20);
-        let text = summary(&results);
-        assert!(text.lines().all(|line| length(line) <= WIDTH), "{text}");
-        let table = summary(&results);
+        let words = |text: &str| -> Vec<String> {
+            let mut words: Vec<String> = text.split_whitespace().map(str::to_string).collect();
+            words.retain(|word| !word.starts_with('─') && word != "*");
+            words.sort();
+            words.dedup();
+            words
+        };
+        let whole = summary(&results, None);
+        for width in [60, 80, 120] {
+            let text = summary(&results, Some(width));
+            assert!(text.lines().all(|line| length(line) <= width), "{text}");
+            let missing: Vec<String> =
+                words(&whole).into_iter().filter(|w| !words(&text).contains(w)).collect();
+            assert!(missing.is_empty(), "at {width} columns {missing:?} are not in\n{text}");
+        }
         let ends: Vec<usize> =
-            table.lines().filter_map(|l| l.find("UNSTABLE").map(|at| length(&l[..at]))).collect();
+            whole.lines().filter_map(|l| l.find("UNSTABLE").map(|at| length(&l[..at]))).collect();
         assert_eq!(ends.len(), 3);
-        assert!(ends.iter().all(|end| *end == ends[0]), "{table}");
+        assert!(ends.iter().all(|end| *end == ends[0]), "{whole}");
     }
 
     #[test]
     fn measured_frequencies_stand_beside_their_modes() {
-        let text = summary(&sample::rig());
+        let text = summary(&sample::rig(), Some(100));
         let row = text.lines().find(|line| line.contains("(4, 0)") && line.starts_with('*')).unwrap();
         // 974.8 Hz × 0.972 = 947.5 Hz, 1.23 % above 936 Hz.
         assert!(["974.8", "947.5", "936", "+1.23"].iter().all(|figure| row.contains(figure)), "{row}");
@@ -156,10 +153,10 @@ mod tests {
     fn a_broken_certificate_and_a_stable_run_are_said() {
         let mut results = sample::rig();
         results.get_mut::<NamedModes>().unwrap().modes.certificate.counted = [21, 22];
-        assert!(summary(&results).contains("NOT CERTIFIED"));
+        assert!(summary(&results, None).contains("NOT CERTIFIED"));
         results.get_mut::<ComplexResult>().unwrap().modes.modes.retain(|mode| !mode.unstable());
-        let text = summary(&results);
+        let text = summary(&results, None);
         assert!(text.contains("Stable: none of the 11") && text.contains("936 Hz"), "{text}");
-        assert_eq!(summary(&RunResults::default()), "");
+        assert_eq!(summary(&RunResults::default(), None), "");
     }
 }

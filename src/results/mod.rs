@@ -89,7 +89,7 @@ pub(crate) use folder::{FileNames, file_name, retire, write_atomically, write_re
 pub use frf::{FrfResponse, FrfResult, PlaceAndDirection, Resonance};
 pub use lock::FolderLock;
 pub use maps::MapResult;
-pub use provenance::{COMMIT, KEYS_OF_THE_RUN, Provenance};
+pub use provenance::{KEYS_OF_THE_RUN, Provenance};
 pub use real_modes::NamedModes;
 pub use record_size::{RecordSize, fits_in_memory, fits_on_disk};
 pub use records::{AnalysisRecord, Records};

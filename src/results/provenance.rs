@@ -9,16 +9,10 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 /// differ in them.
 pub const KEYS_OF_THE_RUN: [&str; 2] = ["timings", "provenance"];
 
-/// Commit of the sources of this program, with `-modified` where they differed from it; `unknown` outside a repository.
-pub const COMMIT: &str = match option_env!("STRIDOR_COMMIT") {
-    Some(commit) => commit,
-    None => "unknown",
-};
-
 /// Where results come from.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Provenance {
-    /// Commit of the program's sources: [`COMMIT`].
+    /// Commit of the program's sources: [`crate::COMMIT`]; `unknown` outside a repository.
     pub commit: &'static str,
     /// When the run began: date and time in UTC (ISO 8601), `2026-01-31T09:05:00Z`.
     pub started: String,
@@ -45,7 +39,7 @@ impl Provenance {
     pub fn now(file: &str, text: &str) -> Self {
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or(Duration::ZERO);
         Provenance {
-            commit: COMMIT,
+            commit: crate::COMMIT.unwrap_or("unknown"),
             started: utc(since.as_secs()),
             command: std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect(),
             threads: rayon::current_num_threads(),

@@ -74,7 +74,7 @@ fn branches(variants: &DescribedVariants) -> Vec<Value> {
                     required.push(tag);
                 }
             }
-            By::Presence if !required.contains(word) => required.push(word),
+            By::Presence if variants.default != Some(k) && !required.contains(word) => required.push(word),
             By::Presence => {}
         }
         json!({ "required": required, "properties": properties })

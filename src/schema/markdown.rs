@@ -29,7 +29,7 @@ fn section(text: &mut String, path: &str, doc: &str, table: &DescribedTable) {
             let default = if variants.default == Some(k) { " (default)" } else { "" };
             let chosen = match variants.by {
                 By::Tag(tag) => format!("`{tag} = \"{word}\"`{default}: "),
-                By::Presence => format!("With `{word}`: "),
+                By::Presence => format!("With `{word}`{default}: "),
             };
             let _ = writeln!(text, "{chosen}{doc}\n");
             rows(text, &keys.keys.iter().collect::<Vec<_>>());

@@ -41,6 +41,14 @@ impl Places {
         Error::Input(Faults(located.into_iter().map(|(_, fault)| fault).collect()))
     }
 
+    /// The same faults, as [`Places::locate`] gives them.
+    pub(crate) fn located(&self, faults: Vec<Fault>) -> Vec<Fault> {
+        match self.locate(Error::Input(Faults(faults))) {
+            Error::Input(Faults(located)) => located,
+            _ => Vec::new(),
+        }
+    }
+
     pub(super) fn with_line(&self, fault: Fault) -> (usize, Fault) {
         let key = fault.place.strip_prefix('`').and_then(|rest| rest.split('`').next());
         let Some(key) = key.filter(|_| !self.file.is_empty()) else { return (0, fault) };

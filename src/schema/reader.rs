@@ -329,7 +329,7 @@ impl<'a> TableReader<'a> {
 }
 
 impl<'a, T> Found<'a, T> {
-    /// The value, if it is there and sound.
+    /// The value, if it is there and valid.
     pub fn optional(self) -> Option<T> {
         self.value
     }

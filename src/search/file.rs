@@ -49,8 +49,10 @@ pub fn read_search(path: &Path) -> Result<SearchFile> {
     let text = read_text(path, "the file of a search, in TOML")?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let found = SearchFile::parse(&place, &text, |file| read_case(&folder.join(file)))?;
-    let stem = path.file_stem().unwrap_or_default();
-    let name = folder.file_name().filter(|_| stem == "search").unwrap_or(stem);
+    let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
+    let stem = whole.file_stem().unwrap_or_default();
+    let parent = whole.parent().and_then(Path::file_name);
+    let name = parent.filter(|_| stem == "search").unwrap_or(stem);
     Ok(SearchFile { name: name.to_string_lossy().into_owned(), text, ..found })
 }
 

@@ -32,7 +32,7 @@ pub struct Assembled {
 /// M and K are symmetric to the last bit, share one sparsity pattern, and do not depend on the number of threads.
 ///
 /// # Errors
-/// Every fault of the model at once: see the rules of a sound [`Model`] (positive thickness, E > 0, −1 < ν < ½, ρ ≥ 0,
+/// Every fault of the model at once: see the rules of a valid [`Model`] (positive thickness, E > 0, −1 < ν < ½, ρ ≥ 0,
 /// nodes that exist, elements with an extent, links without circles, supports on nodes that lead).
 pub fn assemble(model: &Model) -> Result<Assembled> {
     check_model(model)?;

@@ -158,7 +158,7 @@ impl DofMap {
         DofMap { nodes, free, starts, terms }
     }
 
-    /// The map of `model` with its `elements`, whose node indices and geometry are known to be sound.
+    /// The map of `model` with its `elements`, whose node indices and geometry are known to be valid.
     pub(super) fn new(model: &Model, elements: &[AnyElement]) -> Result<Self> {
         let masters = resolve_links(model)?;
         let mut spaces = active_spaces(model.nodes.len(), elements);

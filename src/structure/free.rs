@@ -19,6 +19,8 @@ pub struct FreePart {
 
 /// A motion is free when xᵀKx / xᵀx is below this part of the largest K_ii of the piece.
 const FREE: f64 = 1e-12;
+/// A motion is free when xᵀKx is below this part of Σ |xᵢ Kᵢⱼ xⱼ|: the rounding of K and of the sum.
+const ROUNDING: f64 = 1e-14;
 
 /// The connected pieces of `model` that K holds in less than all of their rigid-body motions, contacts left out.
 ///
@@ -27,15 +29,7 @@ const FREE: f64 = 1e-12;
 pub fn free_parts(model: &Model, assembled: &Assembled) -> Result<Vec<FreePart>> {
     let (dofs, stiffness) = (&assembled.dofs, &assembled.structure.stiffness);
     let free = dofs.free_dofs();
-    let mut piece: Vec<usize> = (0..dofs.n_nodes()).collect();
-    for matrix in [stiffness, &assembled.structure.mass] {
-        for j in 0..matrix.ncols() {
-            for i in matrix.row_idx_of_col(j) {
-                join(&mut piece, free[i].node, free[j].node);
-            }
-        }
-    }
-    let of_node: Vec<usize> = (0..piece.len()).map(|node| root(&mut piece, node)).collect();
+    let of_node = pieces(assembled);
     let mut first_node = vec![None; of_node.len()];
     for dof in free.iter().rev() {
         first_node[of_node[dof.node]] = Some(dof.node);
@@ -59,6 +53,49 @@ pub fn free_parts(model: &Model, assembled: &Assembled) -> Result<Vec<FreePart>>
         }
     }
     Ok(found)
+}
+
+/// Whether the piece that `nodes` are of can be moved along a direction as a whole without any force, contacts left out.
+pub fn is_free_along(model: &Model, assembled: &Assembled, nodes: &[usize], direction: [f64; 3]) -> bool {
+    let (dofs, stiffness) = (&assembled.dofs, &assembled.structure.stiffness);
+    let free = dofs.free_dofs();
+    let of_node = pieces(assembled);
+    let center = model.nodes.first().copied().unwrap_or_default();
+    let motions = dofs.rigid_body_vectors(center);
+    let moved = |piece: usize| -> bool {
+        let along = |i: usize| (0..3).map(|k| direction[k] * motions[k][i]).sum::<f64>();
+        let inside = |i: usize| of_node[free[i].node] == piece;
+        let x: Vec<f64> = (0..free.len()).map(|i| if inside(i) { along(i) } else { 0.0 }).collect();
+        // xᵀKx, and what its terms are in size: a motion without force leaves the rounding of that.
+        let (mut energy, mut terms) = (0.0, 0.0f64);
+        for j in 0..free.len() {
+            let entries = stiffness.row_idx_of_col(j).zip(stiffness.val_of_col(j));
+            for term in entries.map(|(i, v)| x[i] * v * x[j]) {
+                energy += term;
+                terms += term.abs();
+            }
+        }
+        terms > 0.0 && energy <= ROUNDING * terms
+    };
+    let known = nodes.iter().find_map(|node| {
+        let terms = (0..6).find_map(|dof| dofs.terms(*node, dof).first().map(|(k, _)| *k));
+        terms.map(|k| of_node[free[k].node])
+    });
+    known.is_some_and(moved)
+}
+
+/// For every node, the lowest of those that M or K connect it to.
+fn pieces(assembled: &Assembled) -> Vec<usize> {
+    let (dofs, free) = (&assembled.dofs, assembled.dofs.free_dofs());
+    let mut piece: Vec<usize> = (0..dofs.n_nodes()).collect();
+    for matrix in [&assembled.structure.stiffness, &assembled.structure.mass] {
+        for j in 0..matrix.ncols() {
+            for i in matrix.row_idx_of_col(j) {
+                join(&mut piece, free[i].node, free[j].node);
+            }
+        }
+    }
+    (0..piece.len()).map(|node| root(&mut piece, node)).collect()
 }
 
 /// How many of the motions that the columns of `x` span have xᵀKx / xᵀx of at most `bound`, with `forces` = K x.
@@ -149,5 +186,10 @@ mod tests {
         assert_eq!(found_by_node.len(), 2, "{found_by_node:?}");
         assert_eq!(found_by_node[0], part("hinged", 4 + usize::from(found_by_node[0].node == 5), 1));
         assert_eq!(found_by_node[1], part("loose", 2 + usize::from(found_by_node[1].node == 3), 5));
+        let assembled = assemble(&model).unwrap();
+        let free = |node, direction| is_free_along(&model, &assembled, &[node], direction);
+        // The spring along x holds the loose bar in that direction only.
+        assert!(free(3, [0.0, 1.0, 0.0]) && free(2, [0.0, 0.0, 1.0]) && !free(3, [1.0, 0.0, 0.0]));
+        assert!(!free(1, [0.0, 1.0, 0.0]) && !free(5, [0.0, 1.0, 0.0]));
     }
 }

@@ -3,7 +3,7 @@
 use super::{Material, RayleighDamping};
 
 /// Steel without damping.
-pub(super) const STEEL: Material = Material {
+pub(crate) const STEEL: Material = Material {
     youngs_modulus: 210e9,
     poissons_ratio: 0.3,
     density: 7850.0,

@@ -182,8 +182,9 @@ impl Steppers<'_> {
             self.plan.step / (1 << SPLITS) as f64
         );
         let help = format!(
-            "Let the contact give before it slips, `[contact.{name}] bristle` with a `stiffness` as large as the normal \
-             one; or make its friction law smoother, `friction.regularisation`, or `transient.time_step` smaller"
+            "Make `transient.time_step` smaller, or let `transient.tolerance = 1e-3` split steps before they fail; or let the \
+             contact give before it slips, `[contact.{name}] bristle` with a `stiffness` as large as the normal one, or make \
+             its friction law smoother, `friction.regularisation`"
         );
         Err(Error::analysis("transient", found, help))
     }

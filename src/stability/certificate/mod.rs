@@ -65,11 +65,15 @@ const ATTEMPTS: usize = 3;
 /// Operations of a count along the contour, some seconds, beyond which a cheaper method is used.
 const LONG_CONTOUR: f64 = 5e9;
 
+/// The part of the operations of the eigenvalues that a certificate may take whatever `most_work` is.
+const SHARE: f64 = 0.5;
+
 /// [`complex_modes`](super::complex_modes) of the band, all of them as they are counted, and the count of those that grow.
 ///
 /// The caller compares: [`Certificate::agrees`] is false when a mode was missed. Where the modes cannot be counted, such
 /// as with an eigenvalue on the contour wherever it is drawn, or where that is expected to take more than `most_work`
-/// floating-point operations (infinity for no limit), there is no certificate but a warning.
+/// floating-point operations (infinity for no limit) and more than half of those of the eigenvalues, there is no certificate
+/// but a warning.
 ///
 /// # Errors
 /// Those of [`complex_modes`](super::complex_modes).
@@ -86,7 +90,8 @@ pub fn certified_modes<'a>(
     }
     let band = Band { nearest: None, ..band.into() };
     analyse(system, steady, known, band, observer, |modes, analysis| {
-        let work = expected_work(&analysis, modes).min(spectrum::work(analysis.basis.len()));
+        let work = expected_work(&analysis, modes).min(work_by_spectrum(&analysis));
+        let most_work = most_work.max(SHARE * eigenvalue_work(&analysis, modes));
         if work > most_work {
             modes.warnings.push(format!(
                 "the unstable modes were not counted: with {} directions of contact that would take about {work:.0e} operations; `cea.certify = true` counts them all the same",
@@ -166,6 +171,19 @@ fn expected_work(analysis: &CompletedAnalysis<'_>, modes: &ComplexModes) -> f64 
     30.0 * (modes.modes.len() + 10) as f64 * work_of_a_point(analysis)
 }
 
+/// Expected work of a count from the spectrum of the reduced model.
+fn work_by_spectrum(analysis: &CompletedAnalysis<'_>) -> f64 {
+    spectrum::work(analysis.basis.len(), directions(analysis))
+}
+
+/// About the floating-point operations that the eigenvalues took: the dense problem of the basis once and after each refinement,
+/// 25 (2m)³ with vectors (G. H. Golub & C. F. Van Loan, Matrix Computations, QR algorithm), the factor and a solution a vector.
+fn eigenvalue_work(analysis: &CompletedAnalysis<'_>, modes: &ComplexModes) -> f64 {
+    let (m, symbolic) = (analysis.basis.len() as f64, analysis.factor.symbolic());
+    let dense = 25.0 * (2.0 * m).powi(3) * (modes.refinements + 1) as f64;
+    dense + symbolic.multiplications() + 4.0 * symbolic.fill() as f64 * m
+}
+
 /// The count agrees, and yet is no proof.
 fn weak(certificate: &Certificate) -> String {
     format!(
@@ -178,7 +196,7 @@ fn weak(certificate: &Certificate) -> String {
 /// The count along the contour, or from the spectrum where that is long: then the contour is the last resort.
 fn count(analysis: &CompletedAnalysis<'_>, modes: &ComplexModes, most_work: f64) -> Result<Certificate> {
     let contour_work = expected_work(analysis, modes);
-    if contour_work <= LONG_CONTOUR.max(spectrum::work(analysis.basis.len())) {
+    if contour_work <= LONG_CONTOUR.max(work_by_spectrum(analysis)) {
         return count_by(Way::Contour, analysis, modes, most_work);
     }
     let certificate = count_by(Way::Spectrum, analysis, modes, most_work);

@@ -74,6 +74,12 @@ pub(super) fn mindlin_wavenumber(
     ((b + (b * b - 4.0 * d * c).sqrt()) / (2.0 * d)).sqrt()
 }
 
+/// c_s/2h \[Hz\], c_s = √(G/ρ): the first resonance of shear across the thickness, half a wave of which is h (Mindlin, J. Appl.
+/// Mech. 18 (1951) 31). Above it bending is no longer the only antisymmetric wave of a plate.
+pub fn thickness_shear_frequency(material: &Material, thickness: f64) -> f64 {
+    (material.shear_modulus() / material.density).sqrt() / (2.0 * thickness)
+}
+
 /// D = E h³ / 12(1−ν²) \[N m\].
 fn rigidity(material: &Material, h: f64) -> f64 {
     material.youngs_modulus * h.powi(3) / (12.0 * (1.0 - material.poissons_ratio.powi(2)))
