@@ -23,11 +23,14 @@ pub enum Template {
     Measured,
 }
 
+/// Makes a mesh.
+type Generator = fn() -> Result<Mesh>;
+
 /// Case file of a template, and its files.
 struct Content {
     case: String,
     /// Name and generator of its mesh.
-    mesh: Option<(&'static str, fn() -> Result<Mesh>)>,
+    mesh: Option<(&'static str, Generator)>,
     /// Names and bytes.
     files: &'static [(&'static str, &'static [u8])],
 }
@@ -47,7 +50,7 @@ distance = \"1 m\"
 
 impl Template {
     fn content(self) -> Content {
-        let meshed = |case: &str, stored: &str, mesh, generate: fn() -> Result<Mesh>| Content {
+        let meshed = |case: &str, stored: &str, mesh, generate: Generator| Content {
             case: case.replace(&format!("../../meshes/{stored}"), mesh),
             mesh: Some((mesh, generate)),
             files: &[],
