@@ -101,16 +101,16 @@ mod tests {
             title_at(area, chart.backend_coord(&(5.0, 0.0)), "mode <1>")
         })
         .unwrap();
-        // 16 + 104 to the left, 10 above, 20 to the right, 46 below.
+        // 16 + 104 to the left, 10 above, 20 to the right, 46 below; the upper end stands on the last pixel.
         assert!(
-            svg.contains("<rect class=\"axes\" x=\"120\" y=\"10\" width=\"260\" height=\"244\""),
+            svg.contains("<rect class=\"axes\" x=\"120\" y=\"10\" width=\"259\" height=\"243\""),
             "{svg}"
         );
         assert!(svg.contains(
             "data-x=\"0 10 0\" data-y=\"-2 2 0\" data-names=\"time &quot;t&quot; [s]|force [N]\"/>"
         ));
         assert!(
-            svg.contains("cx=\"250\" cy=\"132\"") && svg.contains("<title>mode &lt;1&gt;</title>"),
+            svg.contains("cx=\"249\" cy=\"132\"") && svg.contains("<title>mode &lt;1&gt;</title>"),
             "{svg}"
         );
         assert!(!svg.contains([ELEMENT, FIELD]));
