@@ -96,7 +96,7 @@ mod tests {
             (210e9, 7.85, "\"7.85 g/cm^3\""),
             (210e9, 7.85e-9, "t/mm^3\""),
             (210e9, 7.85e5, "unit"),
-            (210e9, 78.5, "51700 m/s"),
+            (210e9, 78.5, "51722 m/s"),
         ] {
             let found = of_material("m", &Material { youngs_modulus, density, ..STEEL });
             let text: Vec<String> = found.iter().map(ToString::to_string).collect();
