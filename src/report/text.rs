@@ -126,9 +126,11 @@ mod tests {
             words
         };
         let whole = summary(&results, None);
+        let modes = |width| section(&complex::sections(&results)[0], width) + &verdict(&results, width);
         for width in [60, 80, 120] {
             let text = summary(&results, Some(width));
             assert!(text.lines().all(|line| length(line) <= width), "{text}");
+            let (whole, text) = (modes(None), modes(Some(width)));
             let missing: Vec<String> =
                 words(&whole).into_iter().filter(|w| !words(&text).contains(w)).collect();
             assert!(missing.is_empty(), "at {width} columns {missing:?} are not in\n{text}");

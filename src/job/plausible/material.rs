@@ -43,7 +43,9 @@ fn of_material(name: &str, material: &Material) -> Vec<Fault> {
         let found = format!("waves at √(E/ρ) = {} m/s", significant(speed, 3));
         let expected = "10 m/s (rubber) to 20000 m/s (diamond); 5200 m/s in steel";
         let fault = Fault::new(format!("`material.{}`", dotted(name)), found, expected);
-        all.push(fault.with_help("Check both `youngs_modulus` and `density`"));
+        all.push(
+            fault.with_help("Check both `youngs_modulus`, which is in Pa without a unit, and `density`"),
+        );
     }
     if material.poissons_ratio < 0.0 {
         let found = given(material.poissons_ratio);
@@ -90,11 +92,11 @@ mod tests {
         }
         for (youngs_modulus, density, word) in [
             (200.0, 7850.0, "\"200 GPa\""),
-            (2.1e5, 7850.0, "\"210000 MPa\""),
+            (2.1e5, 7850.0, "5.17 m/s"),
             (210e9, 7.85, "\"7.85 g/cm^3\""),
             (210e9, 7.85e-9, "t/mm^3\""),
             (210e9, 7.85e5, "unit"),
-            (210e9, 78.5, "51700 m/s"),
+            (210e9, 78.5, "51722 m/s"),
         ] {
             let found = of_material("m", &Material { youngs_modulus, density, ..STEEL });
             let text: Vec<String> = found.iter().map(ToString::to_string).collect();

@@ -53,10 +53,10 @@ mod tests {
     fn a_plate_of_one_element_carries_no_short_waves() {
         let nodes = [[0.0; 3], [0.1, 0.0, 0.0], [0.1, 0.1, 0.0], [0.0, 0.1, 0.0]];
         let part = ShellPart::new("disc", vec![Element::Quadrilateral([0, 1, 2, 3])], STEEL, 1e-3);
-        // λ = 2π (D/ρh)^¼/√ω = 312 mm at 100 Hz and 0.99 m at 10 Hz: D = 19.23 N m, ρh = 7.85 kg/m².
+        // λ = 2π (D/ρh)^¼/√ω = 314 mm at 100 Hz and 0.99 m at 10 Hz: D = 19.23 N m, ρh = 7.85 kg/m².
         assert_eq!(of_part(&part, &nodes, 10.0), None);
         let text = of_part(&part, &nodes, 100.0).unwrap().to_string();
-        assert!(text.contains("elements of 100 mm, 3.1 to") && text.contains("310 mm at 100 Hz"), "{text}");
+        assert!(text.contains("elements of 100 mm, 3.1 to") && text.contains("314 mm at 100 Hz"), "{text}");
         assert!(text.contains("elements of 52 mm"), "{text}");
         assert_eq!(of_part(&part, &nodes, 0.0), None);
     }

@@ -52,6 +52,6 @@ mod tests {
             |thickness| ShellPart::new("disc", vec![Element::Quadrilateral([0, 1, 2, 3])], STEEL, thickness);
         assert_eq!(of_part(&part(0.04), &nodes), None);
         let text = of_part(&part(1.0), &nodes).unwrap().to_string();
-        assert!(text.contains("6.7 times") && text.contains("0.045 m") && text.contains("unit"), "{text}");
+        assert!(text.contains("6.7 times") && text.contains("0.0450 m") && text.contains("unit"), "{text}");
     }
 }
