@@ -110,6 +110,7 @@ pub(super) fn length(text: &str) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use super::super::complex;
     use super::*;
     use crate::results::sample;
     use crate::results::{ComplexResult, NamedModes};
@@ -126,7 +127,12 @@ mod tests {
             words
         };
         let whole = summary(&results, None);
-        let modes = |width| section(&complex::sections(&results)[0], width) + &verdict(&results, width);
+        let modes = |width| {
+            let sections = complex::sections(&results);
+            let found: String =
+                findings(&sections).iter().map(|(_, finding)| verdict(finding, width)).collect();
+            section(&sections[0], width) + &found
+        };
         for width in [60, 80, 120] {
             let text = summary(&results, Some(width));
             assert!(text.lines().all(|line| length(line) <= width), "{text}");
