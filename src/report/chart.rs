@@ -1,7 +1,7 @@
 //! Common parts of the charts: a sheet of plotters' SVG backend, its text styles, axes that end on round numbers.
 
+use super::chart_elements::elements;
 use super::html::allowed;
-use super::readout::elements;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};

@@ -172,7 +172,7 @@ mod tests {
         for target in all("href=\"#").iter().chain(&all("aria-labelledby=\"")) {
             assert!(unique.contains(target), "{target} is nowhere");
         }
-        let pictures = page.matches("<figure").count();
+        let pictures = page.matches("<figure id=\"figure-").count();
         assert!(pictures > 15 && page.contains(&format!("<b>Figure {pictures}.</b>")));
         assert_eq!(page.matches("role=\"img\" aria-labelledby").count(), pictures);
         for file in ["complex_modes.csv", "growth.svg", "mode%20%3C1%3E.csv"] {

@@ -1,22 +1,16 @@
 //! What the script of the page reads from a chart: its axes, and titles of points.
 //!
 //! plotters writes marks but no attributes of one's own. The elements are therefore drawn as texts that begin with a
-//! character for private use, and [`super::chart::sheet`] replaces them by `<rect class="axes" data-…>` and
+//! character for private use, and [`super::chart_elements::elements`] replaces them by `<rect class="axes" data-…>` and
 //! `<circle><title>…</title></circle>`, both invisible.
 
 use super::chart::{Area, text};
+use super::chart_elements::{ELEMENT, FIELD};
 use super::colours::INK;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use std::error::Error;
 use std::fmt::Write;
-
-/// Begins such a text; the next character says which element it is.
-const ELEMENT: char = '\u{e000}';
-/// Between its fields.
-const FIELD: char = '\u{e001}';
-/// Radius within which a point shows its title \[px\].
-const REACH: u32 = 9;
 
 /// Name with unit and scale of an axis.
 #[derive(Debug, Clone, Copy)]
@@ -53,38 +47,6 @@ pub(super) fn axes_of(area: &Area, chart: &Linear, [x, y]: [AxisScale; 2]) -> Re
 pub(super) fn title_at(area: &Area, (x, y): (i32, i32), title: &str) -> Result<(), Box<dyn Error>> {
     area.draw_text(&format!("{ELEMENT}t{x}{FIELD}{y}{FIELD}{title}"), &text(1.0, INK), (0, 0))?;
     Ok(())
-}
-
-/// The picture with its elements in place of those texts.
-pub(super) fn elements(svg: &str) -> String {
-    let mut done = String::with_capacity(svg.len());
-    let mut rest = svg;
-    while let Some(at) = rest.find(ELEMENT) {
-        let begin = rest[..at].rfind("<text").unwrap_or(at);
-        let words = &rest[at + ELEMENT.len_utf8()..];
-        let end = words.find("</text>").unwrap_or(words.len());
-        done += &rest[..begin];
-        done += &element(words[..end].trim_end());
-        rest = words[end..].strip_prefix("</text>").unwrap_or_default();
-    }
-    done + rest
-}
-
-/// One element; plotters has escaped the words already. Nothing where they are not of the form above.
-fn element(words: &str) -> String {
-    let fields: Vec<&str> = words.get(1..).unwrap_or_default().split(FIELD).collect();
-    match (words.chars().next(), &fields[..]) {
-        (Some('a'), [x, y, w, h, x0, x1, y0, y1, dx, dy, name_x, name_y]) => format!(
-            "<rect class=\"axes\" x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" fill=\"none\" data-x=\"{x0} {x1} {dx}\" \
-             data-y=\"{y0} {y1} {dy}\" data-names=\"{name_x}|{name_y}\"/>"
-        ),
-        (Some('t'), [x, y, title]) => {
-            format!(
-                "<circle cx=\"{x}\" cy=\"{y}\" r=\"{REACH}\" fill-opacity=\"0\"><title>{title}</title></circle>"
-            )
-        }
-        _ => String::new(),
-    }
 }
 
 #[cfg(test)]

@@ -58,7 +58,7 @@ pub fn write_search(dir: &Path, result: &SearchResult) -> Result<()> {
 /// Text printed on the command line, in lines of at most `width` columns; tables are as wide as they are without one.
 pub fn search_text(result: &SearchResult, width: Option<usize>) -> String {
     let tables = [fact_table(result), number_table(result)];
-    let words = words(result).into_iter().map(|w| super::text::wrap(&w, width));
+    let words = words(result).into_iter().map(|w| super::lines::wrap(&w, width));
     tables.iter().map(|table| render(table, width)).chain(words).collect::<Vec<_>>().join("\n")
 }
 

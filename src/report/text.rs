@@ -1,13 +1,12 @@
 //! Tables and sentences for the terminal, of the width of its window.
 
 use super::finding::Finding;
+use super::lines::wrap;
 use super::section::{Display, Item, ReportSection, findings};
 use super::table::ReportTable;
-use super::text_table::render;
+use super::text_table::{notes, render};
 use crate::results::RunResults;
 
-/// The widest line of a sentence.
-const WIDTH: usize = 100;
 /// Rows and columns that a window shows of a table that the page keeps closed.
 const CLOSED: [usize; 2] = [8, 6];
 
@@ -72,45 +71,10 @@ fn verdict(finding: &Finding, width: Option<usize>) -> String {
     }
 }
 
-/// The sentences below a table.
-pub(super) fn notes(table: &ReportTable, width: Option<usize>) -> String {
-    table.notes.iter().map(|note| wrap(note, width)).collect()
-}
-
-/// Lines of at most [`WIDTH`] columns, or of `width` where that is less, indented by one.
-pub(super) fn wrap(text: &str, width: Option<usize>) -> String {
-    let width = width.unwrap_or(WIDTH).min(WIDTH) - 1;
-    wrapped(text, width).iter().map(|line| format!(" {line}\n")).collect()
-}
-
-/// The words of `text` in lines of at most `width` columns; longer words are broken.
-pub(super) fn wrapped(text: &str, width: usize) -> Vec<String> {
-    let mut lines = vec![String::new()];
-    for word in text.split_whitespace() {
-        let letters: Vec<char> = word.chars().collect();
-        for piece in letters.chunks(width) {
-            let line = lines.last_mut().expect("there is one");
-            let joined = !line.is_empty() && length(line) + 1 + piece.len() <= width;
-            if joined {
-                line.push(' ');
-            }
-            match joined || line.is_empty() {
-                true => line.extend(piece),
-                false => lines.push(piece.iter().collect()),
-            }
-        }
-    }
-    lines
-}
-
-/// The columns that a text takes.
-pub(super) fn length(text: &str) -> usize {
-    text.chars().count()
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::complex;
+    use super::super::lines::length;
     use super::*;
     use crate::results::sample;
     use crate::results::{ComplexResult, NamedModes};

@@ -3,8 +3,8 @@
 //! A table that is wider than the window first gets its columns of words narrower, their cells in several lines. Where that is not
 //! enough it comes in blocks below each other, each of which begins with the first column: nothing is left out.
 
+use super::lines::{length, wrap, wrapped};
 use super::table::ReportTable;
-use super::text::{length, notes, wrap, wrapped};
 
 /// More rows than this a window does not show.
 const ROWS: usize = 60;
@@ -12,6 +12,11 @@ const ROWS: usize = 60;
 const NARROW: usize = 24;
 /// Blanks between two columns.
 const BETWEEN: usize = 2;
+
+/// The sentences below a table.
+pub(super) fn notes(table: &ReportTable, width: Option<usize>) -> String {
+    table.notes.iter().map(|note| wrap(note, width)).collect()
+}
 
 /// The table with its caption and notes, in lines of at most `width` columns; without a width as wide and long as it is.
 pub(super) fn render(table: &ReportTable, width: Option<usize>) -> String {

@@ -1,8 +1,9 @@
-//! Numbers of a case that can be computed with but are hardly meant: a unit that was forgotten, a plate that is a block, a mesh
+//! Numbers of a case that can be computed with but are implausible: a unit that was forgotten, a plate that is a block, a mesh
 //! that is too coarse for the frequency. `stridor check` and every run warn of them.
 //!
 //! Each warning gives what was found, what is expected and what to do.
 
+mod frequency;
 mod material;
 mod resolution;
 mod size;
@@ -22,14 +23,4 @@ pub fn warnings(prepared: &Prepared) -> Vec<Fault> {
         all = [theory::warnings(prepared), resolution::warnings(prepared)].concat();
     }
     prepared.case.places.located(all)
-}
-
-/// The highest frequency \[Hz\] that the analyses of the case ask of a part; zero where none has a band.
-fn highest_frequency(prepared: &Prepared, part: &str) -> f64 {
-    let case = prepared.case;
-    let of_part = |parts: &[String]| parts.is_empty() || parts.iter().any(|name| name == part);
-    let modes = case.modes.values().filter(|modes| of_part(&modes.parts)).filter_map(|modes| modes.below);
-    let complex = case.cea.iter().map(|cea| cea.band[1]).filter(|top| top.is_finite());
-    let responses = case.frf.values().map(|frf| frf.band[1]);
-    modes.chain(complex).chain(responses).fold(0.0, f64::max)
 }

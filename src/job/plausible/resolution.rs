@@ -3,7 +3,7 @@
 //! A mode at f has half waves as long as half a bending wave, λ = 2π/k, k by the theory of the plate. Six elements a wave are
 //! the usual least for linear elements (S. Marburg, J. Comput. Acoust. 10 (2002) 25, on where that rule comes from).
 
-use super::highest_frequency;
+use super::frequency::highest_frequency;
 use crate::error::Fault;
 use crate::job::prepared::Prepared;
 use crate::numbers::significant;

@@ -1,6 +1,6 @@
 //! Where the theory of a plate is off at the highest frequency asked.
 
-use super::highest_frequency;
+use super::frequency::highest_frequency;
 use crate::error::Fault;
 use crate::job::prepared::Prepared;
 use crate::numbers::significant;
