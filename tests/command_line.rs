@@ -757,11 +757,11 @@ fn results_carry_the_name_of_the_folder_of_the_case() {
 }
 
 #[test]
-fn the_transient_of_the_readme_runs_on_the_shipped_case() {
+fn the_transient_of_the_guide_runs_on_the_shipped_case() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let readme = std::fs::read_to_string(root.join("README.md")).expect("README.md");
-    let block =
-        readme.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a TOML block");
+    let guide = std::fs::read_to_string(root.join("guide/src/motion-and-sound.md")).expect("a chapter");
+    let mut blocks = guide.split("```toml,file=keys.toml\n").skip(1);
+    let block = blocks.next().and_then(|rest| rest.split("```").next()).expect("a TOML block");
     let begin = block.find("[transient]").expect("a transient");
     let end = begin + block[begin..].find("\n[transient.sound]").expect("its end");
     let transient = block[begin..end].replace("\"0.3 s\"", "\"8 ms\"").replace("\"0.1 s\"", "\"4 ms\"");
