@@ -22,7 +22,9 @@ FAULTS = """() => {
         const box = figure.getBoundingClientRect();
         if (!figure.checkVisibility()) continue;
         if (!(box.width > 20 && box.height > 20)) faults.figures.push(name(figure));
-        if (box.left < -1 || box.right > width + 1) faults.figures.push('past the edge: ' + name(figure));
+        // A picture stays legible on a narrow screen, where its frame scrolls; paper cannot.
+        const frame = (!paper && figure.closest('.picture') || figure).getBoundingClientRect();
+        if (frame.left < -1 || frame.right > width + 1) faults.figures.push('past the edge: ' + name(figure));
     }
     if (document.documentElement.scrollWidth > width + 1) {
         for (const e of document.body.querySelectorAll('*')) {
