@@ -1,5 +1,5 @@
 //! `report.html` in headless Chromium: on wide and narrow screens, light and dark, and on paper; the shapes move, the sound
-//! decodes, charts tell values. `.ci/browser` installs the browser and runs these tests.
+//! decodes, charts show values. `.ci/browser` installs the browser and runs these tests.
 
 #[path = "common/program.rs"]
 mod program;
@@ -112,7 +112,7 @@ fn the_sound_decodes_and_plays() {
 
 #[test]
 #[ignore = "needs Chromium; .ci/browser runs it"]
-fn charts_tell_the_values_under_the_pointer_and_zoom() {
+fn charts_show_the_values_under_the_pointer_and_zoom() {
     let found = measure(RIG, "charts");
     let points = found["points"].as_array().unwrap();
     // `mode 3: 1668.3 Hz, σ +1.2 1/s` and `frequency 1668.1 Hz · growth rate σ …`.

@@ -15,8 +15,9 @@ pub fn with(packages: &[(&str, &str)]) -> PathBuf {
     let own = home.join("bin/python");
     let import: String = packages
         .iter()
-        .map(|(name, version)| format!("import {name}; assert {name}.__version__ == '{version}'\n"))
+        .map(|(name, version)| format!("import {name}; assert version('{name}') == '{version}'\n"))
         .collect();
+    let import = format!("from importlib.metadata import version\n{import}");
     let knows = |python: &Path| {
         Command::new(python).args(["-c", &import]).output().is_ok_and(|done| done.status.success())
     };
