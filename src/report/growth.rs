@@ -1,7 +1,7 @@
 //! `growth.svg`: growth rate over frequency, unstable modes marked, measured squeal as bands.
 
 use super::axes::Chart;
-use super::chart::{Area, above, below, bold, colour, sheet, text, widened};
+use super::chart::{Area, above, bold, colour, sheet, text, widened};
 use super::colours::{ALARM, ALARM_TEXT, CALM, INK, MEASURED, MUTED};
 use super::format::{fixed, given, hertz, signed};
 use super::readout::{axes_of, linear, title_at};
@@ -17,6 +17,8 @@ const SIZE: (u32, u32) = (980, 520);
 const DEEPEST: f64 = 2.0;
 /// Unstable modes with a label; the others have their mark only.
 const LABELS: usize = 10;
+/// Height of a label \[px\].
+const LABEL_HEIGHT: i32 = 17;
 
 /// The picture, when the run has complex modes.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
@@ -74,13 +76,14 @@ fn draw(area: &Area, complex: &ComplexResult) -> Result<(), Box<dyn Error>> {
         .y_label_formatter(&|sigma| given(*sigma))
         .draw()?;
     axes_of(area, &chart, ["frequency [Hz]", "growth rate σ [1/s]"].map(linear))?;
-    draw_squeal(area, &mut chart, complex)?;
+    let mut labels = Labels::default();
+    draw_squeal(area, &mut chart, complex, &mut labels)?;
     chart.draw_series([PathElement::new(
         [(across.start, 0.0), (across.end, 0.0)],
         colour(INK).stroke_width(2),
     )])?;
     draw_stable(&mut chart, modes)?;
-    draw_unstable(area, &mut chart, modes)?;
+    draw_unstable(area, &mut chart, modes, &mut labels)?;
     modes.iter().enumerate().try_for_each(|(k, mode)| {
         let (hz, rate) = (hertz(mode.frequency_hz(), 1), signed(mode.growth_rate(), 2));
         let place = chart.backend_coord(&(mode.frequency_hz(), mode.growth_rate().max(up.start)));
@@ -88,26 +91,46 @@ fn draw(area: &Area, complex: &ComplexResult) -> Result<(), Box<dyn Error>> {
     })
 }
 
+/// Places of the labels: left, top, right, lower edge \[px\].
+#[derive(Debug, Default)]
+struct Labels(Vec<[i32; 4]>);
+
+impl Labels {
+    /// The lower edge of a label of `width` × [`LABEL_HEIGHT`] about `x`, at `y` or the next place in steps of `step` that is free.
+    fn place(&mut self, x: i32, mut y: i32, width: i32, step: i32) -> i32 {
+        let (left, right) = (x - width / 2, x + width / 2);
+        let covers =
+            |y: i32, [l, t, r, b]: &[i32; 4]| left < *r && right > *l && y - LABEL_HEIGHT < *b && y > *t;
+        while self.0.iter().any(|other| covers(y, other)) {
+            y += step;
+        }
+        self.0.push([left, y - LABEL_HEIGHT, right, y]);
+        y
+    }
+}
+
 /// A band about each measured squeal frequency.
-fn draw_squeal(area: &Area, chart: &mut Chart, complex: &ComplexResult) -> Result<(), Box<dyn Error>> {
-    let (across, up) = (chart.x_range(), chart.y_range());
+fn draw_squeal(
+    area: &Area,
+    chart: &mut Chart,
+    complex: &ComplexResult,
+    labels: &mut Labels,
+) -> Result<(), Box<dyn Error>> {
+    let up = chart.y_range();
     let band = colour(MEASURED);
-    for (k, (hz, _)) in complex.measured_squeal_hz.iter().enumerate() {
+    for (hz, _) in &complex.measured_squeal_hz {
         let (left, right) = (hz * (1.0 - SQUEAL_TOLERANCE), hz * (1.0 + SQUEAL_TOLERANCE));
         chart.draw_series([Rectangle::new([(left, up.start), (right, up.end)], band.mix(0.13).filled())])?;
         chart.draw_series([PathElement::new(
             [(*hz, up.start), (*hz, up.end)],
             band.mix(0.55).stroke_width(1),
         )])?;
-        let near = complex.measured_squeal_hz[..k]
-            .iter()
-            .any(|(other, _)| (other - hz).abs() < 0.16 * (across.end - across.start));
-        let drop = if near { 22 } else { 6 };
         let (x, y) = chart.backend_coord(&(*hz, up.end));
+        let y = labels.place(x, y + 6 + LABEL_HEIGHT, 112, LABEL_HEIGHT);
         area.draw_text(
             &format!("squeal {} Hz", given(*hz)),
-            &below(bold(12.5, MEASURED)),
-            local(area, x, y + drop),
+            &above(bold(12.5, MEASURED)),
+            local(area, x, y),
         )?;
     }
     Ok(())
@@ -130,11 +153,15 @@ fn draw_stable(chart: &mut Chart, modes: &[ComplexMode]) -> Result<(), Box<dyn E
     Ok(())
 }
 
-/// Modes that grow, the strongest with their figures.
-fn draw_unstable(area: &Area, chart: &mut Chart, modes: &[ComplexMode]) -> Result<(), Box<dyn Error>> {
+/// Modes that grow, the strongest with their frequency; a label that is moved away from its mark is joined to it by a line.
+fn draw_unstable(
+    area: &Area,
+    chart: &mut Chart,
+    modes: &[ComplexMode],
+    labels: &mut Labels,
+) -> Result<(), Box<dyn Error>> {
     let mut unstable: Vec<_> = modes.iter().filter(|m| m.unstable()).collect();
     unstable.sort_by(|a, b| b.growth_rate().total_cmp(&a.growth_rate()));
-    let mut taken: Vec<(i32, i32)> = vec![];
     for (k, mode) in unstable.iter().enumerate() {
         let place = (mode.frequency_hz(), mode.growth_rate());
         chart.draw_series([PathElement::new([(place.0, 0.0), place], colour(ALARM).stroke_width(2))])?;
@@ -142,23 +169,17 @@ fn draw_unstable(area: &Area, chart: &mut Chart, modes: &[ComplexMode]) -> Resul
         if k >= LABELS {
             continue;
         }
-        let (x, mut y) = chart.backend_coord(&place);
-        // A label is about 160 wide and stays on the plot.
+        let (x, mark) = chart.backend_coord(&place);
+        // A label stays on the plot.
         let std::ops::Range { start: left, end: right } = chart.plotting_area().get_x_axis_pixel_range();
-        let x = x.clamp(left + 85, right - 85);
-        y -= 12;
-        while taken.iter().any(|(u, v)| (u - x).abs() < 160 && (v - y).abs() < 34) {
-            y -= 6;
+        let x = x.clamp(left + 32, right - 32);
+        let y = labels.place(x, mark - 9, 64, -4);
+        if y < mark - 9 {
+            let line = [local(area, x, y), local(area, x, mark - 7)];
+            area.draw(&PathElement::new(line, colour(ALARM).mix(0.5).stroke_width(1)))?;
         }
-        taken.push((x, y));
-        let rates =
-            format!("σ {}/s, ζ {} %", signed(mode.growth_rate(), 1), signed(100.0 * mode.damping_ratio(), 2));
-        area.draw_text(
-            &format!("{} Hz", hertz(mode.frequency_hz(), 0)),
-            &above(bold(13.5, ALARM_TEXT)),
-            local(area, x, y - 15),
-        )?;
-        area.draw_text(&rates, &above(text(12.0, INK)), local(area, x, y))?;
+        let frequency = format!("{} Hz", hertz(mode.frequency_hz(), 0));
+        area.draw_text(&frequency, &above(bold(13.5, ALARM_TEXT)), local(area, x, y))?;
     }
     Ok(())
 }
@@ -174,6 +195,17 @@ mod tests {
     use super::*;
     use crate::linalg::c64;
     use crate::results::sample;
+
+    #[test]
+    fn labels_do_not_cover_each_other() {
+        let mut labels = Labels::default();
+        let places: Vec<i32> = [100, 130, 160, 100, 400].map(|x| labels.place(x, 200, 64, -4)).to_vec();
+        assert_eq!((places[0], places[4]), (200, 200));
+        for (k, [left, top, right, low]) in labels.0.iter().enumerate() {
+            let free = |[l, t, r, b]: &[i32; 4]| right <= l || left >= r || low <= t || top >= b;
+            assert!(labels.0[k + 1..].iter().all(free), "{labels:?}");
+        }
+    }
 
     #[test]
     fn unstable_modes_are_labelled_and_a_deep_one_does_not_flatten_the_picture() {

@@ -16,7 +16,6 @@
 
 mod advice;
 mod axes;
-mod base64;
 mod budget;
 mod calibration;
 mod chart;

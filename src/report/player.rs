@@ -1,9 +1,9 @@
 //! A player for the sound of a run, on the page.
 
-use super::base64::base64;
 use super::html::escape;
 use crate::results::Sound;
 use crate::sound::wav;
+use base64::prelude::{BASE64_STANDARD, Engine};
 
 /// A larger WAV file is not copied into the page: the player takes the file beside it \[bytes\], 31 s.
 const LIMIT: usize = 3_000_000;
@@ -17,7 +17,11 @@ pub(super) fn player(sound: &Sound) -> Option<String> {
     let bytes = wav(&record.pressure, record.rate, record.full_scale(), "");
     let file = format!("sound_{}.wav", first.name);
     let within = bytes.len() <= LIMIT;
-    let source = if within { format!("data:audio/wav;base64,{}", base64(&bytes)) } else { escape(&file) };
+    let source = if within {
+        format!("data:audio/wav;base64,{}", BASE64_STANDARD.encode(&bytes))
+    } else {
+        escape(&file)
+    };
     let seconds = record.pressure.len() as f64 / f64::from(record.rate);
     let (repeated, again) = if seconds < SHORT { (" loop", ", repeated") } else { ("", "") };
     let beside = if within { "the same" } else { "it plays from the file beside this page" };

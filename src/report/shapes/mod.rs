@@ -12,7 +12,6 @@
 mod field;
 mod surface;
 
-use super::base64::base64;
 use super::colours::{PARTS, diverging, sequential};
 use super::format::{hertz, rate};
 use super::html::{allowed, escape};
@@ -21,6 +20,7 @@ use super::view::View;
 use crate::linalg::c64;
 use crate::results::{ComplexResult, NamedModes, RunResults};
 use crate::stability::ComplexMode;
+use base64::prelude::{BASE64_STANDARD, Engine};
 use field::{Motion, encode};
 use serde_json::{Value, json};
 use surface::Surface;
@@ -121,7 +121,7 @@ fn data(surface: &Surface, modes: Vec<Value>, first: usize) -> Value {
     json!({
         "view": [view.right, view.up, view.towards],
         "places": encode(&surface.places()),
-        "normals": base64(&surface.normals().iter().map(|c| (127.0 * c).round() as i8 as u8).collect::<Vec<_>>()),
+        "normals": BASE64_STANDARD.encode(surface.normals().iter().map(|c| (127.0 * c).round() as i8 as u8).collect::<Vec<_>>()),
         "parts": surface.parts.iter().enumerate().map(|(k, part)| json!({
             "name": allowed(&part.name),
             "colour": PARTS[k % PARTS.len()][0],
@@ -138,7 +138,7 @@ fn data(surface: &Surface, modes: Vec<Value>, first: usize) -> Value {
 
 /// Indices of nodes, 32 bits each.
 fn indices<const N: usize>(corners: &[[u32; N]]) -> String {
-    base64(&corners.iter().flatten().flat_map(|k| k.to_le_bytes()).collect::<Vec<_>>())
+    BASE64_STANDARD.encode(corners.iter().flatten().flat_map(|k| k.to_le_bytes()).collect::<Vec<_>>())
 }
 
 /// The controls, the data and the script.
