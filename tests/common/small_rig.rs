@@ -1,8 +1,11 @@
 //! The program on a small rig in a temporary folder.
 #![allow(dead_code)]
 
+#[path = "program.rs"]
+mod program;
+
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 use tempfile::TempDir;
 
 /// A small rig that needs no file beside it.
@@ -71,11 +74,7 @@ band = [0, "1.5 kHz"]
 "#;
 
 pub fn stridor(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_stridor"))
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .expect("the binary runs")
+    program::command(folder, arguments).output().expect("the binary runs")
 }
 
 pub fn text(bytes: &[u8]) -> String {
