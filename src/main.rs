@@ -13,9 +13,9 @@ static ENDED: AtomicBool = AtomicBool::new(false);
 fn main() -> std::process::ExitCode {
     on_abort();
     on_exit();
-    let code = stridor::cli::main();
+    let code = stridor::cli::main(std::env::args_os());
     ENDED.store(true, Relaxed);
-    code
+    code.into()
 }
 
 /// Memory in large pages. Where there is none left the program says so and ends with exit code 1: a library cannot know

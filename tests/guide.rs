@@ -6,7 +6,7 @@
 //! * `text`: lines that the commands before it printed, in this order; `…` stands for any lines between; with `example`, lines that
 //!   depend on the release of another program, or commands that are not for the test;
 //! * `toml,file=NAME` (or any other language): the content of a file; with `append=NAME`, more of it;
-//! * `python`: a script, which must succeed.
+//! * `python`: a script, which must succeed; with `package`, one of the Python package, which `.ci/python` runs.
 //!
 //! Chapters that need Gmsh are run by `.ci/guide`, which installs it.
 
@@ -87,6 +87,7 @@ impl Reader {
             }
             ("text", ..) if options.contains(&"example") => Ok(()),
             ("text", ..) => self.shown(&block.text),
+            ("python", ..) if options.contains(&"package") => Ok(()),
             ("python", ..) => {
                 let python = self.python.get_or_insert_with(|| python::with(&python::XARRAY)).clone();
                 self.run(&python.to_string_lossy(), &["-c", &block.text], false)

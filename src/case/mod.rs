@@ -139,7 +139,8 @@ pub fn read_case(path: &Path) -> Result<Case> {
 }
 
 impl Case {
-    /// Reads a case from TOML text; `file` names it in faults and `folder` is where relative paths start.
+    /// Reads a case from TOML text; `file` names it in faults and `folder` is where relative paths start. A case that is no
+    /// file has an empty name: its faults have keys and no lines.
     ///
     /// # Errors
     /// Every fault of the text, each with its line and key.

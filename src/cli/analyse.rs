@@ -1,5 +1,6 @@
 //! `stridor run`, `compare`, and a subcommand for every analysis.
 
+use super::SUCCESS;
 use super::examples;
 use super::output::{Common, give, say, window_width};
 use super::progress::Bars;
@@ -10,7 +11,6 @@ use crate::report;
 use clap::{ArgMatches, Args, FromArgMatches, Subcommand};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 /// A subcommand that runs analyses.
 pub struct Analyse {
@@ -72,7 +72,7 @@ impl FromArgMatches for Analyse {
     }
 }
 
-pub fn run(analyse: &Analyse, common: &Common) -> Result<ExitCode> {
+pub fn run(analyse: &Analyse, common: &Common) -> Result<u8> {
     let Analyse { selection, options } = analyse;
     let case = read_case(&options.case)?;
     let out = options.out.clone().unwrap_or_else(|| PathBuf::from("results").join(case_name(&options.case)));
@@ -84,7 +84,7 @@ pub fn run(analyse: &Analyse, common: &Common) -> Result<ExitCode> {
         say(report::text::summary(&results, window_width()))?;
         say(format!("Results are in {}: open report.html, or *.vtu in ParaView.", out.display()))?;
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(SUCCESS)
 }
 
 /// Name of the results folder of a case file: `disc.toml` → `disc`, `rig/case.toml` → `rig`, also from within that folder.

@@ -1,5 +1,6 @@
 //! `stridor check`: the case and its mesh, without an analysis.
 
+use super::SUCCESS;
 use super::error_json::fault_json;
 use super::output::{Common, give, say};
 use crate::case::{Parameter, read_case};
@@ -9,7 +10,6 @@ use clap::Args;
 use serde_json::{Value, json};
 use std::ops::Bound;
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 #[derive(Args)]
 pub struct CheckOptions {
@@ -23,13 +23,13 @@ pub struct CheckOptions {
     resolved: bool,
 }
 
-pub fn run(options: &CheckOptions, common: &Common) -> Result<ExitCode> {
+pub fn run(options: &CheckOptions, common: &Common) -> Result<u8> {
     let case = read_case(&options.case)?;
     let prepared = Prepared::new(&case)?;
     let warnings = check_case(&prepared).map_err(|error| case.places.locate(error))?;
     if common.json {
         give(format!("{:#}", as_json(options, &prepared, &warnings)?))?;
-        return Ok(ExitCode::SUCCESS);
+        return Ok(SUCCESS);
     }
     if options.resolved {
         give(case.to_toml().trim_end())?;
@@ -56,7 +56,7 @@ pub fn run(options: &CheckOptions, common: &Common) -> Result<ExitCode> {
             ))?;
         }
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(SUCCESS)
 }
 
 /// Nodes, elements, degrees of freedom and, where there is a contact, its points.

@@ -1,11 +1,11 @@
 //! `stridor completions` and `stridor man`: what a shell and a manual hold of the command line, from its one declaration.
 
+use super::SUCCESS;
 use super::output::{Common, give, say};
 use crate::error::{Error, Fault, Result, nearest};
 use clap::{Args, Command};
 use clap_complete::{Shell, generate};
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 #[derive(Args)]
 pub struct CompletionsOptions {
@@ -14,11 +14,11 @@ pub struct CompletionsOptions {
 }
 
 /// Prints the completions of a shell.
-pub fn completions(options: &CompletionsOptions, mut command: Command) -> Result<ExitCode> {
+pub fn completions(options: &CompletionsOptions, mut command: Command) -> Result<u8> {
     let mut script = Vec::new();
     generate(options.shell, &mut command, "stridor", &mut script);
     give(String::from_utf8_lossy(&script).trim_end())?;
-    Ok(ExitCode::SUCCESS)
+    Ok(SUCCESS)
 }
 
 #[derive(Args)]
@@ -31,7 +31,7 @@ pub struct ManOptions {
 }
 
 /// Prints a page of the manual, or writes all.
-pub fn man(options: &ManOptions, mut command: Command, common: &Common) -> Result<ExitCode> {
+pub fn man(options: &ManOptions, mut command: Command, common: &Common) -> Result<u8> {
     let refused = |error| Error::io(PathBuf::from("manual"), error, "Choose a folder that can be written");
     if let Some(folder) = &options.out {
         let refused = |error| Error::io(folder, error, "Choose a folder that can be written");
@@ -40,7 +40,7 @@ pub fn man(options: &ManOptions, mut command: Command, common: &Common) -> Resul
         if !common.quiet {
             say(format!("The manual is in {}: man {0}/stridor.1", folder.display()))?;
         }
-        return Ok(ExitCode::SUCCESS);
+        return Ok(SUCCESS);
     }
     command.build();
     let page = match &options.command {
@@ -54,7 +54,7 @@ pub fn man(options: &ManOptions, mut command: Command, common: &Common) -> Resul
     let mut text = Vec::new();
     clap_mangen::Man::new(page).render(&mut text).map_err(refused)?;
     give(String::from_utf8_lossy(&text).trim_end())?;
-    Ok(ExitCode::SUCCESS)
+    Ok(SUCCESS)
 }
 
 fn unknown(name: &str, known: &[String]) -> Error {

@@ -29,7 +29,8 @@ Examples:
 
 pub const NEW: &str = "\
 Examples:
-  stridor new rig";
+  stridor new rig
+  stridor new pad --template pad";
 
 pub const MESH: &str = "\
 Examples:

@@ -1,12 +1,12 @@
 //! `stridor export`: a case as matrices, for other programs and for tests.
 
+use super::SUCCESS;
 use super::output::{Common, say};
 use crate::case::read_case;
 use crate::error::Result;
 use crate::job::export;
 use clap::Args;
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 #[derive(Args)]
 pub struct ExportOptions {
@@ -17,7 +17,7 @@ pub struct ExportOptions {
     out: PathBuf,
 }
 
-pub fn run(options: &ExportOptions, common: &Common) -> Result<ExitCode> {
+pub fn run(options: &ExportOptions, common: &Common) -> Result<u8> {
     let left_out = export(&read_case(&options.case)?, &options.out)?;
     if !common.quiet {
         for sentence in left_out {
@@ -25,5 +25,5 @@ pub fn run(options: &ExportOptions, common: &Common) -> Result<ExitCode> {
         }
         say(format!("M, C and K are in {}; case.toml there takes them.", options.out.display()))?;
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(SUCCESS)
 }

@@ -1,5 +1,6 @@
 //! `stridor mesh`: generators and a look inside a mesh file.
 
+use super::SUCCESS;
 use super::output::{Common, say};
 use crate::error::{Error, Fault, Result};
 use crate::mesh::generate::{self, BarSide, BarSpec, DiscSpec, Grading, PlateSpec, RigSpec};
@@ -7,7 +8,6 @@ use crate::mesh::{self, Info, Mesh};
 use crate::schema::units::{LENGTH, parse_quantity};
 use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 #[derive(Subcommand)]
 pub enum MeshAction {
@@ -146,7 +146,7 @@ fn length(text: &str) -> std::result::Result<f64, String> {
     parse_quantity(text, LENGTH).map_err(|found| format!("found {found}; expected {}", LENGTH.name))
 }
 
-pub fn run(action: &MeshAction, common: &Common) -> Result<ExitCode> {
+pub fn run(action: &MeshAction, common: &Common) -> Result<u8> {
     match action {
         MeshAction::Info(options) => return info(options, common),
         MeshAction::Disc(o) => {
@@ -162,7 +162,7 @@ pub fn run(action: &MeshAction, common: &Common) -> Result<ExitCode> {
         }
         MeshAction::Rig(o) => write(&generate::rig(&rig_spec(o))?, &o.output, common)?,
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(SUCCESS)
 }
 
 fn rig_spec(o: &RigOptions) -> RigSpec {
@@ -207,7 +207,7 @@ pub(super) fn refuse_existing(path: &Path, help: &str) -> Result<()> {
     Ok(())
 }
 
-fn info(options: &InfoOptions, common: &Common) -> Result<ExitCode> {
+fn info(options: &InfoOptions, common: &Common) -> Result<u8> {
     let mesh = mesh::read(&options.file, mesh::unit_in_metres(&options.unit))?;
     let diagnosis = mesh::diagnose(&mesh);
     if !common.quiet {
@@ -217,5 +217,5 @@ fn info(options: &InfoOptions, common: &Common) -> Result<ExitCode> {
         }
     }
     diagnosis.faults.into_result(())?;
-    Ok(ExitCode::SUCCESS)
+    Ok(SUCCESS)
 }

@@ -21,8 +21,9 @@ mod validate;
 
 use crate::error::{Error, Fault, Result};
 use clap::{CommandFactory, Parser, Subcommand};
+pub use new::new_case;
 use output::{Common, complain, give};
-use std::process::ExitCode;
+use std::ffi::OsString;
 use std::sync::LazyLock;
 
 /// Version and, where it is known, commit: `0.1.0 (0123456789ab)`.
@@ -73,18 +74,22 @@ enum Action {
     Man(documents::ManOptions),
 }
 
-/// Runs the program on the process's arguments.
-pub fn main() -> ExitCode {
+/// The exit code of what has gone well.
+const SUCCESS: u8 = 0;
+
+/// Runs the program on `arguments`, the first of which is its name, and gives its exit code.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     too_large_is_an_error();
-    let command = match Command::try_parse() {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let command = match Command::try_parse_from(&arguments) {
         Ok(command) => command,
         Err(error) => {
             let _ = error.print();
-            if error.use_stderr() && std::env::args_os().any(|argument| argument == "--json") {
+            if error.use_stderr() && arguments.iter().any(|argument| argument == "--json") {
                 let message = error.to_string();
                 let _ = give(format!("{:#}", error_json::usage_json(message.trim_end())));
             }
-            return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
+            return if error.use_stderr() { 2 } else { SUCCESS };
         }
     };
     colour::choose(command.common.color);
@@ -96,7 +101,7 @@ pub fn main() -> ExitCode {
                 let _ = give(format!("{:#}", error_json::error_json(&error)));
             }
             complain(&error);
-            ExitCode::from(error.exit_code())
+            error.exit_code()
         }
     }
 }
@@ -111,7 +116,7 @@ fn too_large_is_an_error() {
     }
 }
 
-fn act(command: &Command) -> Result<ExitCode> {
+fn act(command: &Command) -> Result<u8> {
     let common = &command.common;
     match &command.action {
         Action::Analyse(options) => analyse::run(options, common),

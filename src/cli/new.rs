@@ -1,12 +1,12 @@
 //! `stridor new`: a folder with a case to start from, and the files that it reads.
 
+use super::SUCCESS;
 use super::mesh::refuse_existing;
 use super::output::{Common, say};
 use super::templates::Template;
-use crate::error::{Error, Result};
-use clap::Args;
-use std::path::PathBuf;
-use std::process::ExitCode;
+use crate::error::{Error, Fault, Result};
+use clap::{Args, ValueEnum};
+use std::path::{Path, PathBuf};
 
 /// The JSON Schema beside it, which editors find by the first line of the case.
 const SCHEMA: &str = "case.schema.json";
@@ -20,17 +20,36 @@ pub struct NewOptions {
     template: Template,
 }
 
-pub fn run(options: &NewOptions, common: &Common) -> Result<ExitCode> {
+pub fn run(options: &NewOptions, common: &Common) -> Result<u8> {
     let folder = &options.name;
-    refuse_existing(folder, "Choose another name, or move it away")?;
-    let failed = |path: &PathBuf, error| Error::io(path, error, "Choose a folder that can be written");
-    std::fs::create_dir_all(folder).map_err(|error| failed(folder, error))?;
-    options.template.write(folder, &format!("#:schema {SCHEMA}"))?;
-    let schema = folder.join(SCHEMA);
-    std::fs::write(&schema, super::schema::of_cases()).map_err(|error| failed(&schema, error))?;
+    write(folder, options.template)?;
     if !common.quiet {
         let case = folder.join("case.toml").display().to_string();
         say(format!("{case} is ready, with its files. Next: stridor run {case}"))?;
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(SUCCESS)
+}
+
+/// Writes the template called `template` (`rig`, `pad` …) into the new folder `folder`, as `stridor new` does.
+///
+/// # Errors
+/// A template that there is not, a folder that is there already, or one that cannot be written.
+pub fn new_case(folder: &Path, template: &str) -> Result<()> {
+    let template = Template::from_str(template, false).map_err(|_| {
+        let names = Template::value_variants().iter().filter_map(ValueEnum::to_possible_value);
+        let names: Vec<String> = names.map(|value| value.get_name().to_string()).collect();
+        let expected = format!("one of {}", names.join(", "));
+        Error::input(Fault::new("`template`", format!("\"{template}\""), expected))
+    })?;
+    write(folder, template)
+}
+
+/// Writes a case, the files that it reads, and the schema of its keys.
+fn write(folder: &Path, template: Template) -> Result<()> {
+    refuse_existing(folder, "Choose another name, or move it away")?;
+    let failed = |path: &Path, error| Error::io(path, error, "Choose a folder that can be written");
+    std::fs::create_dir_all(folder).map_err(|error| failed(folder, error))?;
+    template.write(folder, &format!("#:schema {SCHEMA}"))?;
+    let schema = folder.join(SCHEMA);
+    std::fs::write(&schema, super::schema::of_cases()).map_err(|error| failed(&schema, error))
 }

@@ -1,11 +1,11 @@
 //! `stridor schema`: what a case file may say, for editors and for people.
 
+use super::SUCCESS;
 use super::output::{Common, give};
 use crate::case::Case;
 use crate::error::Result;
 use crate::schema::{describe, json_schema, key_reference};
 use clap::Args;
-use std::process::ExitCode;
 
 #[derive(Args)]
 pub struct SchemaOptions {
@@ -14,13 +14,13 @@ pub struct SchemaOptions {
     markdown: bool,
 }
 
-pub fn run(options: &SchemaOptions, _: &Common) -> Result<ExitCode> {
+pub fn run(options: &SchemaOptions, _: &Common) -> Result<u8> {
     let case = describe::<Case>();
     match options.markdown {
         true => give(format!("# Keys of a case file\n\n{}", key_reference(&case).trim_end()))?,
         false => give(of_cases())?,
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(SUCCESS)
 }
 
 /// The JSON Schema of case files.

@@ -1,5 +1,6 @@
 //! `stridor search`: numbers of a case, so that it meets facts of any kind.
 
+use super::SUCCESS;
 use super::output::{Common, give, say, window_width};
 use super::progress::Bars;
 use crate::dataset::Describe;
@@ -9,7 +10,6 @@ use crate::results::FolderLock;
 use crate::search::{read_search, search};
 use clap::Args;
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 #[derive(Args)]
 pub struct SearchOptions {
@@ -23,7 +23,7 @@ pub struct SearchOptions {
     resume: bool,
 }
 
-pub fn run(options: &SearchOptions, common: &Common) -> Result<ExitCode> {
+pub fn run(options: &SearchOptions, common: &Common) -> Result<u8> {
     let file = read_search(&options.file)?;
     let out = options.out.clone().unwrap_or_else(|| PathBuf::from("results").join(&file.name));
     let _lock = FolderLock::take(&out)?;
@@ -36,5 +36,5 @@ pub fn run(options: &SearchOptions, common: &Common) -> Result<ExitCode> {
         say(search_text(&result, window_width()))?;
         say(format!("Results are in {}: open search.html; the case is found.toml.", out.display()))?;
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(SUCCESS)
 }

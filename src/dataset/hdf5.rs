@@ -4,7 +4,7 @@
 //! dimension scales (HDF5 Dimension Scale Specification: attributes `CLASS`, `NAME`, `REFERENCE_LIST` of a scale, `DIMENSION_LIST` of
 //! the others), so that xarray and netCDF show them by name.
 
-use super::variable::{Dimension, Labels, Values, Variable};
+use super::variable::{Values, Variable};
 use super::{Entry, Group, Table};
 use crate::linalg::c64;
 use hdf5::types::{VarLenArray, VarLenUnicode};
@@ -103,7 +103,7 @@ fn write_variables(group: &hdf5::Group, variables: &[&Variable]) -> hdf5::Result
         let own = variables.iter().find(|variable| variable.key == dimension.name);
         let dataset = match own {
             Some(variable) => write_variable(group, variable)?,
-            None => write_variable(group, &coordinate(dimension))?,
+            None => write_variable(group, &dimension.coordinate())?,
         };
         scales.insert(dimension.name, AttachedScale::new(group, &dataset, dimension.name)?);
     }
@@ -176,24 +176,6 @@ impl AttachedScale {
         let list = self.dataset.new_attr::<Attached>().shape(self.of.len());
         list.create("REFERENCE_LIST")?.write(&Array1::from(self.of))
     }
-}
-
-/// The coordinate of a dimension that has no variable.
-fn coordinate(dimension: &Dimension) -> Variable<'static> {
-    let n = dimension.length;
-    let (unit, values) = match dimension.labels {
-        Labels::From(first) => ("1", Values::Integers((first..first + n as i64).collect())),
-        Labels::Names(names) => {
-            ("text", Values::Texts(names.iter().map(|name| Some((*name).to_string())).collect()))
-        }
-        Labels::Variable => ("1", Values::Integers((0..n as i64).collect())),
-    };
-    let description = match dimension.labels {
-        Labels::From(0) => "index, from 0",
-        Labels::From(_) => "number, from 1",
-        Labels::Names(_) | Labels::Variable => "the parts of each value",
-    };
-    Variable::new(dimension.name, unit, description, vec![dimension.clone()], values)
 }
 
 fn write_variable(group: &hdf5::Group, variable: &Variable) -> hdf5::Result<Dataset> {

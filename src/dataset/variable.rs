@@ -91,6 +91,24 @@ impl Dimension {
     pub fn limits() -> Self {
         Self::named("limit", &["lower", "upper"])
     }
+
+    /// The coordinate, for a group that has no variable of this name.
+    pub fn coordinate(&self) -> Variable<'static> {
+        let n = self.length;
+        let (unit, values) = match self.labels {
+            Labels::From(first) => ("1", Values::Integers((first..first + n as i64).collect())),
+            Labels::Names(names) => {
+                ("text", Values::Texts(names.iter().map(|name| Some((*name).to_string())).collect()))
+            }
+            Labels::Variable => ("1", Values::Integers((0..n as i64).collect())),
+        };
+        let description = match self.labels {
+            Labels::From(0) => "index, from 0",
+            Labels::From(_) => "number, from 1",
+            Labels::Names(_) | Labels::Variable => "the parts of each value",
+        };
+        Variable::new(self.name, unit, description, vec![self.clone()], values)
+    }
 }
 
 /// Values, row after row.

@@ -11,7 +11,7 @@ use crate::linalg::SparseMatrix;
 use crate::linalg::matrix_market::to_text;
 use crate::linalg::sparse::{add_scaled, entry};
 use crate::results::{FileNames, FolderLock, write_atomically};
-use crate::system::ContactPair;
+use crate::system::{ConstantMatrices, ContactPair};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -29,18 +29,13 @@ use std::path::Path;
 pub fn export(case: &Case, out: &Path) -> Result<Vec<String>> {
     let prepared = Prepared::new(case)?;
     let _lock = FolderLock::take(out)?;
-    let (system, structure) = (&prepared.system, &prepared.system.structure);
-    let rest = system.coupling.as_ref().map(|c| c.assembled(system.n_dofs())).transpose()?;
-    let whole = |symmetric: &SparseMatrix, which: usize| match &rest {
-        Some(rest) => add_scaled(&[(1.0, symmetric), (1.0, &rest[which])]),
-        None => symmetric.clone(),
-    };
+    let system = &prepared.system;
+    let ConstantMatrices { mass, damping, stiffness, loss } = system.constant_matrices()?;
     let write = |name: &str, text: String| write_atomically(out, name, text.as_bytes());
     let title = &case.title;
-    write("mass.mtx", to_text(&structure.mass, None, &format!("{title}: mass [kg, kg m2]")))?;
-    let stiffness = whole(&structure.stiffness, 0);
+    write("mass.mtx", to_text(&mass, None, &format!("{title}: mass [kg, kg m2]")))?;
     let comment = format!("{title}: stiffness [N/m, N m]");
-    match &structure.damping.hysteretic {
+    match &loss {
         Some(h) => {
             let (re, im) =
                 (add_scaled(&[(1.0, &stiffness), (0.0, h)]), add_scaled(&[(0.0, &stiffness), (1.0, h)]));
@@ -48,11 +43,6 @@ pub fn export(case: &Case, out: &Path) -> Result<Vec<String>> {
         }
         None => write("stiffness.mtx", to_text(&stiffness, None, &comment))?,
     }
-    let damping = match (&structure.damping.viscous, &rest) {
-        (Some(viscous), _) => Some(whole(viscous, 1)),
-        (None, Some(rest)) => Some(rest[1].clone()),
-        (None, None) => None,
-    };
     if let Some(damping) = &damping {
         write("damping.mtx", to_text(damping, None, &format!("{title}: damping [N s/m, N m s]")))?;
     }

@@ -4,6 +4,12 @@ use crate::dataset::Variable;
 use crate::error::Result;
 use std::ops::Range;
 
+/// The time of each row, and when each event happened.
+pub(crate) const TIME: &str = "time_s";
+/// The unit of the acceleration of a real mode.
+pub(crate) const MODAL_UNIT: &str = "sqrt(kg) m/s^2";
+/// The acceleration of a real mode in words.
+pub(crate) const MODAL_ABOUT: &str = "acceleration of a mass-normalised real mode";
 /// Columns that a long record is drawn in, so that no spike is lost.
 const COLUMNS: usize = 840;
 /// Values of a channel that are processed together.

@@ -1,8 +1,7 @@
 //! `/transient/events` of `results.h5`: the events at the contact points, in datasets that are doubled when they are full.
 
-use super::ResultsFile;
 use super::file::preallocated;
-use super::transient_csv::TIME;
+use super::{ResultsFile, TIME};
 use crate::dataset::{attach_scale, describe, text_attribute};
 use crate::error::Result;
 use crate::transient::{Event, EventKind};

@@ -1,8 +1,8 @@
 //! How stages of a run are written to `results.h5`; how it is written safely: `file.rs`.
 
 use super::{ResultsFile, RunResults, summary};
+use crate::dataset::Group;
 pub(super) use crate::dataset::attribute;
-use crate::dataset::{Group, Variable};
 use crate::error::Result;
 use ndarray::Array2;
 
@@ -12,12 +12,7 @@ impl ResultsFile {
     /// # Errors
     /// As every method of the file: the machine refuses.
     pub fn write_head(&mut self, results: &RunResults) -> Result<()> {
-        let case = Variable::text(
-            "case",
-            "the case with every default written out, as TOML",
-            &results.resolved_case,
-        );
-        let head = summary::head(results).with(case).group(results.geometry.group());
+        let head = summary::model(results);
         self.stage(|root| head.write_hdf5(root))
     }
 

@@ -74,6 +74,7 @@ pub use calibration::{
     CalibratedDatum, CalibratedNumber, CalibratedResponse, CalibratedShape, CalibrationResult,
 };
 pub use channel::{Channel, modal_channel};
+pub(crate) use channel::{MODAL_ABOUT, MODAL_UNIT, TIME};
 pub use comparison::{MeasuredComparison, MeasuredResponses, MeasuredRow, Placed, ResponsePair};
 pub use complex::ComplexResult;
 pub use damping::{DampingRow, DampingVerdicts};

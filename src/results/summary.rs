@@ -7,7 +7,7 @@
 use super::provenance::Provenance;
 use super::record::InputFile;
 use super::{Geometry, ModelSize, RunResults, write_result};
-use crate::dataset::{Dimension, Group, Table, Values, Variable, column};
+use crate::dataset::{Describe, Dimension, Group, Table, Values, Variable, column};
 use crate::error::Result;
 use serde_json::Value;
 use std::path::Path;
@@ -47,6 +47,20 @@ pub fn summary_json(results: &RunResults) -> Value {
 fn case_object(toml_text: &str) -> Value {
     let table: Option<toml::Table> = toml_text.parse().ok();
     table.and_then(|table| serde_json::to_value(table).ok()).unwrap_or_default()
+}
+
+impl Describe for RunResults {
+    /// Everything that `results.h5` has, but for the histories of a run in time and its events.
+    fn describe(&self) -> Group<'_> {
+        [analyses(self), tail(self)].into_iter().fold(model(self), Group::merged)
+    }
+}
+
+/// Group of the model: what is known before the first analysis, with the case and the geometry.
+pub(super) fn model(results: &RunResults) -> Group<'_> {
+    let story = "the case with every default written out, as TOML";
+    let case = Variable::text("case", story, &results.resolved_case);
+    head(results).with(case).group(results.geometry.group())
 }
 
 /// Group of the data that are known before the first analysis.
@@ -109,7 +123,7 @@ fn expected<'a>() -> Group<'a> {
 
 impl Geometry {
     /// Nodes, elements and parts.
-    pub(super) fn group(&self) -> Group<'_> {
+    fn group(&self) -> Group<'_> {
         let whole = |numbers: Vec<usize>| Values::Integers(numbers.into_iter().map(|n| n as i64).collect());
         let nodes = vec![Dimension::indexed("node", self.nodes.len()), Dimension::axes()];
         let flat: Vec<usize> = self.elements.iter().flatten().copied().collect();

@@ -1,16 +1,13 @@
 //! `transient.csv` and `events.csv`, which grow during the run.
 
 use super::folder::{own, refusal};
-use super::{Channel, Recording};
+use super::{Channel, Recording, TIME};
 use crate::dataset::{CsvTable as Table, number};
 use crate::error::Result;
 use crate::transient::Event;
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-
-/// The time of each row, and when each event happened.
-pub(super) const TIME: &str = "time_s";
 
 /// A table with a line for every step. Whole lines are added, so that it can be watched.
 #[derive(Debug)]

@@ -14,8 +14,9 @@
 
 use super::events_hdf5 as events;
 use super::file::preallocated;
-use super::transient_csv::TIME;
-use super::{RecordPiece, Recording, ResultsFile, TransientResult, modal_channel};
+use super::{
+    MODAL_ABOUT, MODAL_UNIT, RecordPiece, Recording, ResultsFile, TIME, TransientResult, modal_channel,
+};
 use crate::dataset::Describe;
 use crate::dataset::{attach_scale, attribute, describe, text_attribute};
 use crate::error::Result;
@@ -119,7 +120,7 @@ fn preallocate(group: &Group, recording: &Recording) -> hdf5::Result<()> {
     }
     for mode in 0..recording.modes {
         let dataset = preallocated(history, &modal_channel(mode), recording.rows, f32::NAN)?;
-        describe(&dataset, "sqrt(kg) m/s^2", "acceleration of a mass-normalised real mode")?;
+        describe(&dataset, MODAL_UNIT, MODAL_ABOUT)?;
     }
     let channels = recording.channels.iter().map(|channel| channel.name.clone());
     let all: Vec<String> = channels.chain((0..recording.modes).map(modal_channel)).collect();

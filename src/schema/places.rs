@@ -33,7 +33,7 @@ impl Places {
 
     /// The same error; faults whose place begins with a key in back-ticks get file and line before it, in the order of
     /// the lines.
-    pub(crate) fn locate(&self, error: Error) -> Error {
+    pub fn locate(&self, error: Error) -> Error {
         let Error::Input(Faults(faults)) = error else { return error };
         let mut located: Vec<(usize, Fault)> =
             faults.into_iter().map(|fault| self.with_line(fault)).collect();

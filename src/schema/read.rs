@@ -17,7 +17,7 @@ pub struct ReadTable<T> {
     pub places: Places,
 }
 
-/// Reads a table from TOML `text` and checks it; `file` names it in faults.
+/// Reads a table from TOML `text` and checks it; `file` names it in faults, which have no lines where it is empty.
 ///
 /// # Errors
 /// Every fault of the text, each with its line and key.
@@ -31,7 +31,7 @@ pub fn read_table<T: Table + Blank>(file: &str, text: &str) -> Result<ReadTable<
     check(&mut table, &mut report);
     faults.extend(report.faults.into_iter().map(|fault| match places.with_line(fault) {
         // What the outermost table lacks is missed from its first line on.
-        (0, fault) => {
+        (0, fault) if !file.is_empty() => {
             let place = fault.place.replacen(&format!("{file} "), &format!("{file}:1 "), 1);
             (1, Fault { place, ..fault })
         }

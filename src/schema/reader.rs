@@ -135,7 +135,11 @@ impl<'a> TableReader<'a> {
         expected: impl Into<String>,
         help: &str,
     ) {
-        let place = format!("{}:{} `{path}`", self.reader.file, self.reader.line(offset));
+        let Reader { file, .. } = self.reader;
+        let place = match file.is_empty() {
+            true => format!("`{path}`"),
+            false => format!("{file}:{} `{path}`", self.reader.line(offset)),
+        };
         let fault = Fault::new(place, found, expected).with_help(help);
         self.reader.faults.borrow_mut().push((offset, fault));
     }

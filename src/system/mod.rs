@@ -19,7 +19,23 @@ pub use interface::{Closing, ContactPair, ContactPoint};
 pub use law::{ContactForces, ContactLaw, ContactMotion, ContactTangent, SlipAnswer, SlipStep};
 pub use structure::{Coupling, Damping, ModalDamping, Prestress, Skew, Structure};
 
+use crate::error::Result;
+use crate::linalg::SparseMatrix;
+use crate::linalg::sparse::add_scaled;
 use std::sync::Arc;
+
+/// M, C and K of a system without its contacts, every constant part added up, n × n, both triangles stored.
+#[derive(Debug, Clone)]
+pub struct ConstantMatrices {
+    /// M \[kg, kg m²\].
+    pub mass: Arc<SparseMatrix>,
+    /// C \[N s/m, N m s\]: Rayleigh damping, dashpots, imported parts; without modal damping. `None` where there is none.
+    pub damping: Option<SparseMatrix>,
+    /// K, its real part \[N/m, N m\].
+    pub stiffness: SparseMatrix,
+    /// The imaginary part of K \[N/m, N m\], from loss factors.
+    pub loss: Option<Arc<SparseMatrix>>,
+}
 
 /// A structure, its sliding contacts and its external load.
 #[derive(Debug, Clone)]
@@ -46,6 +62,30 @@ impl System {
     /// The number of degrees of freedom.
     pub fn n_dofs(&self) -> usize {
         self.structure.n_dofs()
+    }
+
+    /// M, C and K as other programs take them; what depends on the state, the stiffness of the preload, is not part of K.
+    ///
+    /// # Errors
+    /// Not enough memory for the sums.
+    pub fn constant_matrices(&self) -> Result<ConstantMatrices> {
+        let structure = &self.structure;
+        let rest = self.coupling.as_ref().map(|c| c.assembled(self.n_dofs())).transpose()?;
+        let [of_stiffness, of_damping] = rest.map_or([None, None], |rest| rest.map(Some));
+        let sum = |symmetric: &SparseMatrix, rest: Option<SparseMatrix>| match rest {
+            Some(rest) => add_scaled(&[(1.0, symmetric), (1.0, &rest)]),
+            None => symmetric.clone(),
+        };
+        let damping = match &structure.damping.viscous {
+            Some(viscous) => Some(sum(viscous, of_damping)),
+            None => of_damping,
+        };
+        Ok(ConstantMatrices {
+            mass: structure.mass.clone(),
+            damping,
+            stiffness: sum(&structure.stiffness, of_stiffness),
+            loss: structure.damping.hysteretic.clone(),
+        })
     }
 
     /// The sparse skew parts of K and C, where it has them.

@@ -1,0 +1,174 @@
+"""Results of a run."""
+
+from __future__ import annotations
+
+import json
+import os
+import webbrowser
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from . import _native
+from ._tree import tree_of
+
+if TYPE_CHECKING:
+    import pyvista
+    from matplotlib.axes import Axes
+
+
+class Results:
+    """Results of a run: a tree of named arrays with units and dimensions.
+
+    ``results["cea/eigenvalues"]`` is a group of the tree, ``results["cea/eigenvalues/growth_rate"]`` an array. Groups and names are
+    those of ``results.h5``; the guide lists them.
+    """
+
+    def __init__(self, tree: xr.DataTree, summary: dict[str, Any], folder: Path | None) -> None:
+        # Lists of sentences are in the summary: as coordinates of the root every group would inherit them.
+        tree.dataset = tree.to_dataset().drop_dims(list(tree.sizes))
+        self.tree: xr.DataTree = tree
+        """All results."""
+        self.summary: dict[str, Any] = summary
+        """The figures of each analysis, as in ``summary.json``."""
+        self.folder: Path | None = folder
+        """The results folder; ``None`` of a run in memory."""
+
+    @classmethod
+    def _in_memory(cls, run: _native.Run) -> Results:
+        return cls(tree_of(run), json.loads(run.summary()), None)
+
+    def __getitem__(self, path: str) -> Any:
+        """The group (``DataTree``) or array (``DataArray``) at a path."""
+        try:
+            return self.tree[path]
+        except KeyError:
+            raise KeyError(f"no {path!r} in these results, which have {', '.join(self._paths())}") from None
+
+    def __contains__(self, path: str) -> bool:
+        try:
+            self.tree[path]
+        except KeyError:
+            return False
+        return True
+
+    def _paths(self) -> list[str]:
+        return [group.lstrip("/") for group in self.tree.groups if group != "/"]
+
+    def _dataset(self, path: str, table: str) -> xr.Dataset:
+        node = self.tree[path] if f"/{path}" in self.tree.groups else None
+        if not isinstance(node, xr.DataTree):
+            raise KeyError(f"no {path!r} in these results: the run had no [{table}]")
+        return node.to_dataset(inherit=False)
+
+    @property
+    def title(self) -> str:
+        """The title of the case."""
+        return str(self.summary["title"])
+
+    @property
+    def warnings(self) -> list[str]:
+        """What the user should know, one sentence each."""
+        return list(self.summary["warnings"])
+
+    @property
+    def complex_modes(self) -> xr.Dataset:
+        """The complex modes at steady sliding: eigenvalues, frequencies, growth rates, verdicts, shapes."""
+        return self._dataset("cea/eigenvalues", "cea")
+
+    @property
+    def eigenvalues(self) -> npt.NDArray[np.complex128]:
+        """The complex eigenvalues λ = σ + iω [1/s], one a mode."""
+        return np.asarray(self.complex_modes["eigenvalue"].values, dtype=np.complex128)
+
+    @property
+    def unstable_modes(self) -> xr.Dataset:
+        """Those of the complex modes that grow."""
+        modes = self.complex_modes
+        return modes.isel(mode=np.flatnonzero(modes["unstable"].values))
+
+    @property
+    def history(self) -> xr.Dataset:
+        """Motion and forces of a run in time, at every step."""
+        return self._dataset("transient/history", "transient")
+
+    def mesh(self, field: xr.DataArray | None = None) -> pyvista.UnstructuredGrid:
+        """The mesh as a PyVista object, with the number of the part of each element.
+
+        ``field`` is a motion of all nodes (dimensions ``node`` and ``freedom``), such as a mode shape. The mesh then has the
+        point data ``displacement`` and ``rotation``, and of a complex field their imaginary parts ``displacement_imag`` and
+        ``rotation_imag``, too.
+
+        >>> shape = results.complex_modes["right"].sel(mode=3)
+        >>> results.mesh(shape).warp_by_vector("displacement", factor=0.01).plot()
+        """
+        import pyvista
+
+        geometry = self._dataset("geometry", "mesh")
+        nodes = geometry["element_nodes"].values
+        ends = geometry["element_offsets"].values
+        sizes = np.diff(ends)
+        cells = np.insert(nodes, ends[:-1], sizes)
+        types = np.array([0, *_CELL_TYPES])[sizes]
+        grid = pyvista.UnstructuredGrid(cells, types, np.asarray(geometry["nodes"].values, dtype=float))
+        grid.cell_data["part"] = geometry["element_part"].values
+        grid.field_data["part_names"] = geometry["part_names"].values.astype(str)
+        if field is not None:
+            values = field.transpose("node", "freedom").values
+            parts = {"": values.real}
+            if np.iscomplexobj(values):
+                parts["_imag"] = values.imag
+            for suffix, part in parts.items():
+                grid.point_data[f"displacement{suffix}"] = part[:, :3]
+                grid.point_data[f"rotation{suffix}"] = part[:, 3:]
+        return grid
+
+    def plot_growth(self, ax: Axes | None = None) -> Axes:
+        """Growth rate over frequency of the complex modes, with the frequencies of those that grow."""
+        import matplotlib.pyplot as plt
+
+        modes = self.complex_modes
+        frequency, growth = modes["frequency_hz"].values, modes["growth_rate"].values
+        grows = modes["unstable"].values.astype(bool)
+        if ax is None:
+            ax = plt.subplots(layout="constrained")[1]
+        ax.axhline(0.0, color="0.5", linewidth=0.8)
+        ax.scatter(frequency[~grows], growth[~grows], s=18, color="C0", label="decays")
+        ax.scatter(frequency[grows], growth[grows], s=40, color="C3", marker="D", label="grows: squeal")
+        for x, y in zip(frequency[grows], growth[grows], strict=True):
+            ax.annotate(f"{x:.0f} Hz", (x, y), xytext=(6, 4), textcoords="offset points")
+        ax.set_xlabel("frequency f (Hz)")
+        ax.set_ylabel("growth rate σ (1/s)")
+        ax.set_yscale("symlog", linthresh=1.0)
+        ax.set_title(self.title)
+        ax.legend()
+        return ax
+
+    def show_report(self) -> None:
+        """Opens ``report.html`` of the results folder in a browser."""
+        if self.folder is None:
+            raise ValueError("these results are in memory: run the case with out=FOLDER to get its page")
+        webbrowser.open((self.folder / "report.html").resolve().as_uri())
+
+    def __repr__(self) -> str:
+        place = "in memory" if self.folder is None else os.fspath(self.folder)
+        groups = [group for group in self._paths() if "/" not in group]
+        return f"<stridor.Results of {self.title!r}, {place}: {', '.join(groups)}>"
+
+    def _repr_html_(self) -> str:
+        return str(self.tree._repr_html_())  # type: ignore[no-untyped-call]
+
+
+_CELL_TYPES = (1, 3, 5, 9)
+"""The VTK types of elements with 1, 2, 3 and 4 nodes: vertex, line, triangle, quadrilateral."""
+
+
+def open_results(folder: str | os.PathLike[str]) -> Results:
+    """The results in a folder that a run has written; arrays are read where they are used."""
+    folder = Path(folder)
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    tree = xr.open_datatree(folder / "results.h5", engine="h5netcdf")
+    return Results(tree, summary, folder)
