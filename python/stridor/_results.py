@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
+import pandas as pd
 import xarray as xr
 
 from . import _native
@@ -63,6 +64,19 @@ class Results:
         if not isinstance(node, xr.DataTree):
             raise KeyError(f"no {path!r} in these results: the run had no [{table}]")
         return node.to_dataset(inherit=False)
+
+    def table(self, path: str) -> pd.DataFrame:
+        """A group with one value a row, as a pandas table: ``results.table("cea/eigenvalues")``.
+
+        Columns with several values a row, such as shapes, are left out.
+        """
+        node = self[path]
+        if not isinstance(node, xr.DataTree):
+            raise KeyError(f"{path!r} is an array, not a group")
+        dataset = node.to_dataset(inherit=False)
+        rows = next((variable.dims[:1] for variable in dataset.data_vars.values() if variable.dims), ())
+        columns = [key for key, variable in dataset.data_vars.items() if variable.dims == rows]
+        return dataset[columns].to_dataframe() if rows else pd.DataFrame({k: [dataset[k].item()] for k in columns})
 
     @property
     def title(self) -> str:
@@ -138,8 +152,9 @@ class Results:
         ax.axhline(0.0, color="0.5", linewidth=0.8)
         ax.scatter(frequency[~grows], growth[~grows], s=18, color="C0", label="decays")
         ax.scatter(frequency[grows], growth[grows], s=40, color="C3", marker="D", label="grows: squeal")
-        for x, y in zip(frequency[grows], growth[grows], strict=True):
-            ax.annotate(f"{x:.0f} Hz", (x, y), xytext=(6, 4), textcoords="offset points")
+        for k, (x, y) in enumerate(zip(frequency[grows], growth[grows], strict=True)):
+            # Above and below in turn, so that labels of neighbours do not meet.
+            ax.annotate(f"{x:.0f} Hz", (x, y), xytext=(6, (4, -12)[k % 2]), textcoords="offset points")
         ax.set_xlabel("frequency f (Hz)")
         ax.set_ylabel("growth rate σ (1/s)")
         ax.set_yscale("symlog", linthresh=1.0)

@@ -87,6 +87,16 @@ def test_complex_modes_have_names_units_and_dimensions(squeal: stridor.Results) 
     assert "sweeps/friction" in squeal and "sweeps/mu" not in squeal
 
 
+def test_tables_are_pandas_tables(squeal: stridor.Results) -> None:
+    table = squeal.table("cea/eigenvalues")
+    assert table.index.name == "mode" and len(table) == squeal.complex_modes.sizes["mode"]
+    assert table["growth_rate"].max() == squeal.eigenvalues.real.max()
+    assert "right" not in table
+    assert list(squeal.table("model")["contact_points"]) == [squeal.summary["model"]["contact_points"]]
+    with pytest.raises(KeyError, match="an array"):
+        squeal.table("cea/eigenvalues/growth_rate")
+
+
 def test_a_run_in_time_has_its_whole_history() -> None:
     case = stridor.Case.read(SUITE / "rig-limit-cycle" / "case.toml")
     step = case["transient.time_step"]
