@@ -31,9 +31,9 @@ pub struct Orbit {
 /// One record over another.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PhaseCurve {
-    /// Quantities across and up, with units.
-    pub axes: [String; 2],
-    /// Their values.
+    /// The channels across and up.
+    pub channels: [usize; 2],
+    /// Their values, at least 200 a period: between the steps by Akima's interpolation.
     pub points: Vec<[f64; 2]>,
 }
 

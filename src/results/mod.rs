@@ -25,6 +25,7 @@ mod channel;
 mod comparison;
 mod complex;
 mod csv;
+mod cycle_fields;
 mod damping;
 mod diagnostics;
 #[cfg(feature = "hdf5")]
@@ -76,6 +77,7 @@ pub use calibration::{
 pub use channel::{Channel, modal_channel};
 pub use comparison::{MeasuredComparison, MeasuredResponses, MeasuredRow, Placed, ResponsePair};
 pub use complex::ComplexResult;
+pub use cycle_fields::CycleFields;
 pub use damping::{DampingRow, DampingVerdicts};
 pub use explored::SweepMethod;
 #[cfg(feature = "hdf5")]

@@ -3,7 +3,7 @@
 use super::history_writer::HistoryWriter;
 use crate::error::Result;
 use crate::results::{ContactHistory, ContactWatch, Diagnostics, Orbit, PhaseCurve, SpectrumOf};
-use crate::signal::{LimitCycle, ShortTime, Spectrogram, limit_cycle};
+use crate::signal::{LimitCycle, ShortTime, Spectrogram, akima, limit_cycle};
 
 /// The size of an oscillation is taken from this last part of the run, and from no more steps than these.
 const PART: usize = 4;
@@ -11,6 +11,8 @@ const TAIL: usize = 1 << 16;
 /// Periods of the strongest line that a phase plane shows, and points that it has at most.
 const PERIODS: f64 = 12.0;
 const POINTS: usize = 4000;
+/// Points of a period, at least.
+const SMOOTH: f64 = 200.0;
 /// Rows that are read at once.
 const AT_ONCE: usize = 1 << 16;
 
@@ -62,15 +64,16 @@ impl HistoryWriter<'_, '_> {
     fn orbit(&self, rows: usize, begin: usize, step: f64, hz: f64) -> Result<Orbit> {
         let wanted = ((PERIODS / (hz * step)).ceil() as usize).clamp(1, rows - begin);
         let every = wanted.div_ceil(POINTS).max(1);
+        // Corners between the steps would show: they are no property of the motion.
+        let parts = (SMOOTH * hz * step).ceil().max(1.0) as usize;
         let read = |channel: usize| -> Result<Vec<f64>> {
-            Ok(self.read(channel, rows - wanted..rows)?.into_iter().step_by(every).collect())
+            let values = self.read(channel, rows - wanted..rows)?;
+            Ok(if every > 1 { values.into_iter().step_by(every).collect() } else { akima(&values, parts) })
         };
-        let curve = |[across, up]: [usize; 2]| -> Result<PhaseCurve> {
+        let curve = |channels: [usize; 2]| -> Result<PhaseCurve> {
+            let [across, up] = channels;
             let points = read(across)?.into_iter().zip(read(up)?).map(|(x, y)| [x, y]).collect();
-            Ok(PhaseCurve {
-                axes: [across, up].map(|channel| self.recorder.described[channel].heading()),
-                points,
-            })
+            Ok(PhaseCurve { channels, points })
         };
         let curves = self.recorder.orbits().into_iter().map(curve).collect::<Result<_>>()?;
         Ok(Orbit { periods: [wanted as f64 * step * hz, hz], curves })
