@@ -213,7 +213,7 @@ fn info(options: &InfoOptions, common: &Common) -> Result<ExitCode> {
     if !common.quiet {
         say(Info::of(&mesh))?;
         for warning in &diagnosis.warnings {
-            say(format!("warning: {warning}"))?;
+            say(format!("warning: {}", warning.warning()))?;
         }
     }
     diagnosis.faults.into_result(())?;

@@ -9,7 +9,7 @@ use crate::linalg::c64;
 /// is not periodic with f₀ is left out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CycleFields {
-    /// f₀ \[Hz\]: the fundamental of the record up to three quarters of the run.
+    /// f₀ \[Hz\]: the fundamental of the record up to three quarters of the run; of a short one its strongest line.
     pub frequency_hz: f64,
     /// The first and last time of the steps \[s\].
     pub window: [f64; 2],

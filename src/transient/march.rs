@@ -139,8 +139,8 @@ fn remedy(tolerance: Option<f64>, contact: Option<(&str, FrictionAtRest)>) -> St
             format!("; or make its bristle softer, `contact.{name}.bristle.stiffness`, or damp it, `contact.{name}.bristle.damping`")
         }
         FrictionAtRest::Smoothed => format!(
-            "; or make its friction law smoother, a larger `contact.{name}.friction.regularisation`, or let the contact stick, \
-             `[contact.{name}.bristle]` in place of it"
+            "; or let the contact give before it slips, `[contact.{name}.bristle]` with a `stiffness` as large as the normal one in \
+             place of `contact.{name}.friction.regularisation`, or make that larger"
         ),
         FrictionAtRest::AsInSlip => String::new(),
     });
@@ -263,7 +263,10 @@ mod tests {
                 && !elastic.contains("[contact")
                 && !elastic.contains("regularisation")
         );
-        assert!(of(FrictionAtRest::Smoothed).contains("a larger `contact.rim.friction.regularisation`"));
+        assert!(
+            of(FrictionAtRest::Smoothed)
+                .ends_with("`contact.rim.friction.regularisation`, or make that larger")
+        );
         assert!(!of(FrictionAtRest::AsInSlip).contains("contact"));
         let with_tolerance = remedy(Some(1e-3), None);
         assert!(

@@ -5,6 +5,7 @@ use super::history_writer::HistoryWriter;
 use crate::error::Result;
 use crate::results::{GrowthCompared, SpectrumOf};
 use crate::signal::{self, Tones, Welch};
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 /// Segments that the second half of a run is cut into, each overlapping the next by a half.
@@ -60,12 +61,14 @@ impl HistoryWriter<'_, '_> {
         Ok((spectra, fundamental_hz))
     }
 
-    /// The fundamental of a record of `rows` rows or, where it has none, the strongest peak of its first channel \[Hz\].
-    pub(super) fn strongest_tone(&self, rows: usize, step: f64, top_hz: f64) -> Result<Option<f64>> {
+    /// Frequency of the motion in the first `rows` rows \[Hz\]: the fundamental, else the strongest peak of the first channel, else
+    /// that of the mode along which it was disturbed.
+    pub(super) fn frequency(&self, rows: usize, step: f64, top_hz: f64) -> Result<Option<f64>> {
         let (spectra, fundamental_hz) = self.spectra(rows, step, top_hz)?;
         let peaks = spectra.first().map_or(&[][..], |of| &of.peaks);
         let strongest = peaks.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
-        Ok(fundamental_hz.or(strongest.map(|peak| peak.frequency_hz)))
+        let mode = self.recorder.along.as_ref().map(|along| along.eigenvalue.im / TAU);
+        Ok(fundamental_hz.or(strongest.map(|peak| peak.frequency_hz)).or(mode))
     }
 
     pub(super) fn read(&self, channel: usize, part: Range<usize>) -> Result<Vec<f64>> {

@@ -128,3 +128,89 @@ impl<'a> HarmonicFields<'a> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::case::Case;
+    use crate::job::{Prepared, Selection, analyse};
+    use crate::linalg::c64;
+    use crate::results::TransientResult;
+    use std::f64::consts::TAU;
+
+    /// A mass of 1 kg on a spring, 100 Hz, that starts 1 µm out of its rest; the contact is a hair.
+    const OSCILLATOR: &str = r#"
+title = "An oscillator"
+assumptions = ["Everything here is made up."]
+
+[point]
+block = [0, 0, 0]
+
+[mass.block]
+on = "block"
+mass = "1 kg"
+
+[support.guide]
+on = "block"
+held = ["uy", "uz", "rx", "ry", "rz"]
+
+[spring.axis]
+on = "block"
+direction = [1, 0, 0]
+stiffness = "394784.176 N/m"
+
+[contact.hair]
+body = "block"
+counter = "ground"
+into = [1, 0, 0]
+approach = "1 nm"
+sliding_velocity = "1 m/s"
+sliding_direction = [0, 1, 0]
+normal = { per = "point", stiffness = "1e-9 N/m", unilateral = false }
+friction = { law = "coulomb", mu0 = 0 }
+
+[cea]
+band = [0, "200 Hz"]
+
+[transient]
+duration = "0.4 s"
+time_step = "20 us"
+scheme = "newmark"
+disturbance = { mode_near = "100 Hz", amplitude = "1 um" }
+probe.block = { on = "block", direction = [1, 0, 0] }
+"#;
+
+    fn run(duration: &str) -> TransientResult {
+        let text = OSCILLATOR.replace("0.4 s", duration);
+        let case = Case::parse("case.toml", &text, ".".into()).unwrap();
+        let prepared = Prepared::new(&case).unwrap();
+        analyse(&prepared, Selection::Listed, &mut |_| Ok(()), &())
+            .unwrap()
+            .take::<TransientResult>()
+            .unwrap()
+    }
+
+    #[test]
+    fn an_oscillation_is_its_first_harmonic_with_amplitude_and_phase() {
+        let run = run("0.4 s");
+        let cycle = run.cycle.as_ref().unwrap();
+        assert!(
+            (cycle.frequency_hz - 100.0).abs() < 0.1 && cycle.harmonics.len() == 6,
+            "{}",
+            cycle.frequency_hz
+        );
+        assert!((cycle.window[0] - 0.3).abs() < 1e-3 && (cycle.window[1] - 0.4).abs() < 1e-12);
+        let [first, others @ ..] = &cycle.harmonics[..] else { panic!("no harmonic") };
+        let u = first[0][0];
+        assert!((u.norm() - 1e-6).abs() < 1e-9, "{u}");
+        assert!(others.iter().all(|field| field[0][0].norm() < 1e-10) && first[0][1].norm() == 0.0);
+        // At the end the block is where the record has it.
+        let channel = run.channels.iter().find(|c| c.name == "block_displacement").unwrap();
+        let series = (u * c64::from_polar(1.0, TAU * cycle.frequency_hz * cycle.window[1])).re;
+        assert!((series - channel.last.unwrap()).abs() < 5e-9, "{series} {:?}", channel.last);
+    }
+
+    #[test]
+    fn a_run_with_fewer_than_four_periods_at_its_end_has_none() {
+        assert!(run("0.15 s").cycle.is_none());
+    }
+}

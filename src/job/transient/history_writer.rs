@@ -75,7 +75,7 @@ impl<'a, 'k> HistoryWriter<'a, 'k> {
     /// Begins the motion over the last periods: its fundamental is that of the record up to there.
     fn begin_cycle(&mut self) -> Result<()> {
         let (fields, top_hz) = &self.cycle;
-        let hz = self.strongest_tone(fields.ready() + 1, fields.step, *top_hz)?;
+        let hz = self.frequency(fields.ready() + 1, fields.step, *top_hz)?;
         if let Some(hz) = hz {
             self.cycle.0.begin(hz);
         }

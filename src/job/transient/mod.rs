@@ -116,7 +116,7 @@ impl InTime<'_> {
         march_on(&mut history_writer, (&model, &plan), &mut marched, observer)?;
         let share = |count: usize| count as f64 / (steps + 1) as f64;
         let found = history_writer.findings(steps + 1, plan.step, top)?;
-        let diagnostics = history_writer.diagnostics(steps + 1, plan.step, &found.spectra, top)?;
+        let diagnostics = history_writer.diagnostics(steps + 1, plan.step, &found, top)?;
         let mut sound = accumulator
             .map(|accumulator| history_writer.recorded_sound(accumulator, steps + 1))
             .transpose()?;

@@ -68,12 +68,14 @@ pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
     if modes.is_empty() {
         return Vec::new();
     }
-    let mut words = caption(results, chosen.len(), &surface);
-    if let Some(cycle) = cycle.filter(|_| moves) {
-        words += &caption_in_time(cycle);
-    }
-    let section =
-        ReportSection::new("Mode shapes in motion").markup([viewer(&data(&surface, modes, first), &words)]);
+    let words = [
+        (modes.len() > usize::from(moves)).then(|| modes_caption(results, chosen.len())),
+        cycle.filter(|_| moves).map(caption_in_time),
+        Some(drawn(chosen.len(), moves, &surface)),
+    ];
+    let words = words.into_iter().flatten().collect::<Vec<_>>().join(" ");
+    let heading = if moves { "Motion in 3-D" } else { "Mode shapes in motion" };
+    let section = ReportSection::new(heading).markup([viewer(&data(&surface, modes, first), &words)]);
     vec![section]
 }
 
@@ -184,7 +186,7 @@ fn viewer(data: &Value, caption: &str) -> String {
     )
 }
 
-fn caption(results: &RunResults, shown: usize, surface: &Surface) -> String {
+fn modes_caption(results: &RunResults, shown: usize) -> String {
     let complex = results.get::<ComplexResult>().map_or(&[][..], |complex| &complex.modes.modes);
     let unstable = complex.iter().filter(|mode| mode.unstable()).count();
     let which = match (unstable, shown) {
@@ -194,26 +196,38 @@ fn caption(results: &RunResults, shown: usize, surface: &Surface) -> String {
         (1, _) => "The unstable mode".into(),
         _ => "Every unstable mode".into(),
     };
-    let file = if shown > 0 { "complex_modes.vtu" } else { "modes_<set>.vtu" };
-    let left_out = match surface.nodes.len() {
-        n if n < surface.all_nodes => {
-            format!(" Shown with {n} of {} nodes; all of them are in {file}.", surface.all_nodes)
-        }
-        _ => format!(" The same in full precision: {file}."),
-    };
-    format!(
-        "{which}, u(t) = Re(φ e^(iωt)) at constant amplitude and slowed down; the displacement is enlarged. Normal displacement: along the \
-         normal of the surface at rest.{left_out}"
-    )
+    format!("{which}, u(t) = Re(φ e^(iωt)) at constant amplitude and slowed down.")
 }
 
 fn caption_in_time(cycle: &CycleFields) -> String {
     let [begin, end] = cycle.window.map(given);
+    let harmonics = match cycle.harmonics.len() {
+        1 => String::new(),
+        n => format!(", h = 1 to {n}"),
+    };
     format!(
-        " Motion in time: u(t) = Re Σ U_h e^(2πi h f₀ t) with f₀ = {} Hz and h up to {}, from {begin} to {end} s, about its mean; \
-         motion of other frequencies is left out.",
-        hertz(cycle.frequency_hz, 1),
-        cycle.harmonics.len()
+        "Motion in time about its mean, u(t) = Re Σ U_h e^(2πi h f₀ t) with f₀ = {} Hz{harmonics}, from the steps between {begin} and {end} s; \
+         motion that is not periodic with f₀ is left out.",
+        hertz(cycle.frequency_hz, 1)
+    )
+}
+
+/// How the motion is drawn, and the files that have the whole of it.
+fn drawn(complex: usize, in_time: bool, surface: &Surface) -> String {
+    let file = match (complex, in_time) {
+        (0, true) => "results.h5",
+        (0, false) => "modes_<set>.vtu",
+        (_, true) => "complex_modes.vtu and results.h5",
+        (_, false) => "complex_modes.vtu",
+    };
+    let files = match surface.nodes.len() {
+        n if n < surface.all_nodes => {
+            format!("Shown with {n} of {} nodes; all of them are in {file}.", surface.all_nodes)
+        }
+        _ => format!("The same in full precision: {file}."),
+    };
+    format!(
+        "The displacement is enlarged. Normal displacement: along the normal of the surface at rest. {files}"
     )
 }
 

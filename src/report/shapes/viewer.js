@@ -234,9 +234,10 @@
       redraw();
     }
     last = now;
-    const time = state.mode.begin + state.phase / (2 * Math.PI * state.mode.hz);
-    at('degrees').value = `${at('phase').value}°, t = ${(1000 * time).toFixed(3)} ms`;
-    at('slower').value = `1 : ${Math.round(state.mode.hz / state.speed)}`;
+    // A mode that does not oscillate has no time of its own.
+    const { hz, begin } = state.mode, time = begin + state.phase / (2 * Math.PI * hz);
+    at('degrees').value = `${at('phase').value}°` + (hz > 0 ? `, t = ${(1000 * time).toFixed(3)} ms` : '');
+    at('slower').value = hz > 0 ? `1 : ${Math.round(hz / state.speed)}` : '';
     picture.frame();
   }
 

@@ -89,7 +89,9 @@ fn lines<'a>(
     for (k, (levels, ink, words)) in curves.iter().enumerate() {
         let points = levels.iter().enumerate().skip(1).map(|(k, l)| (sound.frequency_hz(k), l.max(floor)));
         let path: Vec<(f64, f64)> = points.take_while(|(hz, _)| *hz <= end).collect();
-        chart.draw_series([PathElement::new(path, colour(ink).stroke_width(1))])?;
+        // Later ones are thinner, so that equal curves do not hide each other.
+        let width = 1 + (curves.len() - 1 - k).min(3) as u32;
+        chart.draw_series([PathElement::new(path, colour(ink).stroke_width(width))])?;
         let (x, y) = (x - left - 8, y - upper + 6 + 18 * k as i32);
         let style = bold(13.0, INK).pos(Pos::new(HPos::Right, VPos::Top));
         area.draw_text(words, &style, (x - 26 * i32::from(curves.len() > 1), y))?;

@@ -103,13 +103,14 @@ fn mark(
     Ok(())
 }
 
-/// Where something is to be seen: up to a third beyond the last named peak, and some harmonics of the strongest.
+/// Where something is to be seen: up to a third beyond the last peak, and some harmonics of the fundamental or the strongest.
 pub(super) fn highest_frequency(run: &TransientResult) -> f64 {
     let Some(first) = run.spectra.first() else { return 0.0 };
     let peaks = || run.spectra.iter().flat_map(|of| &of.peaks);
     let last = peaks().map(|p| p.frequency_hz).fold(0.0, f64::max);
     let strongest = first.peaks.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
-    let harmonics = strongest.map_or(f64::INFINITY, |p| 6.5 * p.frequency_hz);
+    let first_hz = run.fundamental_hz.or(strongest.map(|p| p.frequency_hz));
+    let harmonics = first_hz.map_or(f64::INFINITY, |hz| 6.5 * hz);
     let nyquist = first.spectrum.frequency_hz(first.spectrum.amplitude.len().saturating_sub(1));
     if last > 0.0 { (1.33 * last).min(harmonics).min(nyquist) } else { nyquist }
 }
