@@ -104,6 +104,14 @@ impl Fault {
         self.help = help.into();
         self
     }
+
+    /// The fault as a sentence, for a warning.
+    pub fn warning(&self) -> String {
+        let (place, found, expected) =
+            (text::place(&self.place), phrase(&self.found), phrase(&self.expected));
+        let words = format!("Found {found}, at {place}; expected {expected}. {}", sentence(&self.help));
+        words.trim_end().to_string()
+    }
 }
 
 /// Advice with its full stop.
@@ -224,6 +232,14 @@ pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_warning_is_a_sentence() {
+        let fault = Fault::new("a.toml:3 `disc.thickness`", "1 m", "at most 20 mm");
+        assert_eq!(fault.warning(), "Found 1 m, at a.toml:3 `disc.thickness`; expected at most 20 mm.");
+        let words = fault.with_help("Is it in mm").warning();
+        assert!(words.ends_with("expected at most 20 mm. Is it in mm."), "{words}");
+    }
 
     #[test]
     fn all_faults_are_shown_and_input_exits_with_two() {

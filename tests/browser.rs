@@ -105,9 +105,40 @@ fn without_webgl_there_is_a_still_picture_and_a_sentence() {
 #[ignore = "needs Chromium; .ci/browser runs it"]
 fn the_sound_decodes_and_plays() {
     let found = measure(SOUND, "sound");
-    let number = |key: &str| found[key].as_f64().unwrap();
-    assert!(number("decoded") > 0.1 && (number("decoded") - number("player")).abs() < 1e-3, "{found:#}");
-    assert!((0.5..=1.0).contains(&number("peak")) && number("position") > 0.0, "{found:#}");
+    let names = found["microphones"].as_array().unwrap();
+    assert!(
+        names.len() == 3 && names.iter().all(|name| name.as_str().unwrap().ends_with(" dB(A)")),
+        "{found:#}"
+    );
+    let recordings = found["found"].as_array().unwrap();
+    for one in recordings {
+        let number = |key: &str| one[key].as_f64().unwrap();
+        assert!(number("decoded") > 0.1 && (number("decoded") - number("player")).abs() < 1e-3, "{one:#}");
+        assert!((0.5..=1.0).contains(&number("peak")) && number("position") > 0.0, "{one:#}");
+    }
+    // In front of the plate and behind it the pressure is opposite.
+    assert!(recordings[0]["head"] != recordings[1]["head"] && recordings[1]["head"] != recordings[2]["head"]);
+}
+
+#[test]
+#[ignore = "needs Chromium; .ci/browser runs it"]
+fn the_motion_in_time_moves_and_says_when() {
+    let found = measure(SOUND, "in_time");
+    assert!(
+        found["set"] == "motion in time" && found["differ"] == true && found["plays"] == true,
+        "{found:#}"
+    );
+    assert!(found["name"].as_str().unwrap().contains("largest displacement 1.00 µm"), "{found:#}");
+    // A quarter of a period of 273 Hz from one to the next, the last period of a run of 0.4 s.
+    let time = |k: usize| -> f64 {
+        let words = found["times"][k].as_str().unwrap();
+        words.split(' ').rev().nth(1).unwrap().parse().unwrap()
+    };
+    assert!((time(0) - (400.0 - 1000.0 / 272.95)).abs() < 0.01, "{found:#}");
+    for k in [1, 2] {
+        assert!((time(k) - time(k - 1) - 250.0 / 272.95).abs() < 0.01, "{found:#}");
+    }
+    assert!(found["slower"][0] != found["slower"][1], "{found:#}");
 }
 
 #[test]

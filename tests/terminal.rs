@@ -21,7 +21,7 @@ fn check_warns_of_implausible_numbers() {
     let said = text(&valid.stdout);
     assert!(said.contains("rig.toml: valid. ") && said.contains("contact points within reach"), "{said}");
     for (from, to, words) in [
-        ("\"210 GPa\"", "210", &["material.steel.youngs_modulus", "found 210 Pa", "\"210 GPa\""][..]),
+        ("\"210 GPa\"", "210", &["material.steel.youngs_modulus", "Found 210 Pa", "\"210 GPa\""][..]),
         ("density = 7850", "density = 7.85", &["material.steel.density", "\"7.85 g/cm^3\""]),
         ("poissons_ratio = 0.3", "poissons_ratio = -0.3", &["poissons_ratio", "auxetic"]),
         ("thickness = \"10 mm\"", "thickness = 1", &["shell.slider.thickness", "times the size", "0.0465 m"]),
@@ -32,7 +32,10 @@ fn check_warns_of_implausible_numbers() {
         let said = text(&output.stdout);
         assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
         for word in words {
-            assert!(said.contains("warning: rig.toml:") && said.contains(word), "{word} is not in {said}");
+            assert!(
+                said.contains("warning: Found ") && said.contains(", at rig.toml:") && said.contains(word),
+                "{word} is not in {said}"
+            );
         }
     }
 }

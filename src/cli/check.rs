@@ -42,7 +42,7 @@ pub fn run(options: &CheckOptions, common: &Common) -> Result<u8> {
         }
     }
     if !common.quiet && !options.resolved && !options.parameters {
-        let unlikely = warnings.unlikely.iter().map(Fault::to_string);
+        let unlikely = warnings.unlikely.iter().map(Fault::warning);
         for warning in warnings.sentences.iter().cloned().chain(unlikely) {
             say(format!("warning: {warning}"))?;
         }

@@ -213,7 +213,7 @@ fn info(options: &InfoOptions, common: &Common) -> Result<u8> {
     if !common.quiet {
         say(Info::of(&mesh))?;
         for warning in &diagnosis.warnings {
-            say(format!("warning: {warning}"))?;
+            say(format!("warning: {}", warning.warning()))?;
         }
     }
     diagnosis.faults.into_result(())?;

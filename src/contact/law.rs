@@ -5,7 +5,9 @@ use super::coefficient::FrictionCoefficient;
 use super::coulomb;
 use super::normal::NormalLaw;
 use crate::schema::choices;
-use crate::system::{ContactForces, ContactLaw, ContactMotion, ContactTangent, SlipAnswer, SlipStep};
+use crate::system::{
+    ContactForces, ContactLaw, ContactMotion, ContactTangent, FrictionAtRest, SlipAnswer, SlipStep,
+};
 use std::sync::Arc;
 
 /// **F** = μ(|v|, p) N **v** / √(|v|² + v_ε²), with N of the normal law and p = N/weight.
@@ -95,8 +97,13 @@ impl ContactLaw for SlidingLaw {
         SlipAnswer { forces, tangent, ..SlipAnswer::default() }
     }
 
-    fn is_set_valued(&self) -> bool {
-        self.bristle.is_none() && self.regularisation == 0.0 && self.sense == FrictionSense::WithSlip
+    fn at_rest(&self) -> FrictionAtRest {
+        match (self.sense, self.bristle) {
+            (FrictionSense::AgainstSliding, _) => FrictionAtRest::AsInSlip,
+            (_, Some(_)) => FrictionAtRest::Elastic,
+            _ if self.regularisation == 0.0 => FrictionAtRest::SetValued,
+            _ => FrictionAtRest::Smoothed,
+        }
     }
 
     fn bent(&self, friction: [f64; 2], weight: f64) -> [f64; 2] {

@@ -63,7 +63,7 @@ pub(super) fn analyse_from<'a>(
     results.resolved_case = case.to_toml();
     results.assumptions = case.assumptions.clone();
     results.warnings.extend(prepared.warnings.iter().chain(&asked.warnings).cloned());
-    results.warnings.extend(plausible::warnings(prepared).iter().map(Fault::to_string));
+    results.warnings.extend(plausible::warnings(prepared).iter().map(Fault::warning));
     results.geometry = prepared.geometry();
     results.size = prepared.size();
     sink.record(ResultStage::Model(results))?;

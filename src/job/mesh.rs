@@ -1,7 +1,7 @@
 //! The mesh of a case: read from a file, or generated.
 
 use crate::case::{AnnulusMesh, Case, MeshSource, PlateMesh, RigMesh};
-use crate::error::{Error, Result};
+use crate::error::{Error, Fault, Result};
 use crate::mesh::generate::{self, BarSide, BarSpec, DiscSpec, Faces, Grading, PlateSpec, RigSpec};
 use crate::mesh::{self, Mesh};
 
@@ -22,7 +22,7 @@ pub(super) fn read_mesh(case: &Case, source: &MeshSource) -> Result<(Mesh, Vec<S
     let mesh = mesh.map_err(|error| by_keys(error, source))?;
     let diagnosis = mesh::diagnose(&mesh);
     diagnosis.faults.into_result(())?;
-    Ok((mesh, diagnosis.warnings.iter().map(ToString::to_string).collect()))
+    Ok((mesh, diagnosis.warnings.iter().map(Fault::warning).collect()))
 }
 
 /// Faults of a generator at the keys of the case that give its sizes.

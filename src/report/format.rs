@@ -16,22 +16,36 @@ pub(super) fn short(value: f64) -> String {
     if text.contains('e') { significant(value, 2) } else { text }
 }
 
-/// `value` with a decimal prefix before its unit: 1.2e−5 m as `12.0 µm`. Units whose first part is not a bare unit (a
-/// square, a ratio of numbers) keep the power of ten.
-pub(super) fn prefixed(value: f64, unit: &str, digits: usize) -> String {
+/// A decimal multiple of an SI unit: µm, mm/s, kN.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Multiple {
+    /// Its size in the SI unit.
+    pub size: f64,
+    /// How it is written.
+    pub unit: String,
+}
+
+/// The multiple of `unit` in which `value` has one to three digits before the point. Units whose first part is not a bare unit (a
+/// square, a ratio of numbers) have none but themselves, nor have numbers beyond all prefixes.
+pub(super) fn multiple(value: f64, unit: &str) -> Multiple {
     const PREFIXES: [(i32, &str); 7] =
         [(-12, "p"), (-9, "n"), (-6, "µ"), (-3, "m"), (0, ""), (3, "k"), (6, "M")];
+    let written = unit.replace("^2", "²");
     let first = unit.split(['/', ' ']).next().unwrap_or("");
     let takes = ["m", "N", "J", "W", "Pa", "V", "rad"].contains(&first) && value != 0.0 && value.is_finite();
     // Lengths and angles above one have no prefix: kilometres per second squared are no unit of vibration.
     let most = if ["m", "rad"].contains(&first) { 0 } else { 6 };
     let thousand = (3 * (value.abs().log10() / 3.0).floor() as i32).min(most);
     match PREFIXES.iter().find(|(power, _)| takes && *power == thousand) {
-        Some((power, prefix)) => {
-            format!("{} {prefix}{unit}", significant(value / 10f64.powi(*power), digits))
-        }
-        None => format!("{} {unit}", significant(value, digits)).trim_end().to_string(),
+        Some((power, prefix)) => Multiple { size: 10f64.powi(*power), unit: format!("{prefix}{written}") },
+        None => Multiple { size: 1.0, unit: written },
     }
+}
+
+/// `value` in a multiple of its unit: 1.2e−5 m as `12.0 µm`.
+pub(super) fn prefixed(value: f64, unit: &str, digits: usize) -> String {
+    let Multiple { size, unit } = multiple(value, unit);
+    format!("{} {unit}", significant(value / size, digits)).trim_end().to_string()
 }
 
 #[cfg(test)]
@@ -52,7 +66,7 @@ mod tests {
         let shown = shown.map(|(value, unit)| prefixed(value, unit, 3));
         assert_eq!(
             shown,
-            ["12.0 µm", "−345 mm/s", "7930 m/s^2", "1.23 kN", "3.00e−15 m", "0 m", "0.000200 1"]
+            ["12.0 µm", "−345 mm/s", "7930 m/s²", "1.23 kN", "3.00e−15 m", "0 m", "0.000200 1"]
         );
     }
 }

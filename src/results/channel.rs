@@ -79,9 +79,9 @@ impl Channel {
         Variable::reals(&*self.name, self.unit, "", Vec::new(), Vec::new()).title()
     }
 
-    /// `rim velocity [m/s]`.
-    pub fn heading(&self) -> String {
-        format!("{} [{}]", self.name.replace('_', " "), self.unit)
+    /// The name in words: `rim velocity`.
+    pub fn words(&self) -> String {
+        self.name.replace('_', " ")
     }
 }
 

@@ -22,7 +22,7 @@ pub struct Diagnostics {
 /// The last periods of the motion, sample by sample.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Orbit {
-    /// How many periods of the strongest line they are, and its frequency \[Hz\].
+    /// How many periods of the fundamental, or of the strongest line, they are, and its frequency \[Hz\].
     pub periods: [f64; 2],
     /// Velocity over displacement, and friction over the slip of the point that carries most where there is a contact.
     pub curves: Vec<PhaseCurve>,
@@ -31,9 +31,9 @@ pub struct Orbit {
 /// One record over another.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PhaseCurve {
-    /// Quantities across and up, with units.
-    pub axes: [String; 2],
-    /// Their values.
+    /// The channels across and up.
+    pub channels: [usize; 2],
+    /// Their values, at least 200 a period: between the steps by Akima's interpolation.
     pub points: Vec<[f64; 2]>,
 }
 

@@ -25,6 +25,7 @@ mod channel;
 mod comparison;
 mod complex;
 mod csv;
+mod cycle_fields;
 mod damping;
 mod diagnostics;
 #[cfg(feature = "hdf5")]
@@ -77,6 +78,7 @@ pub use channel::{Channel, modal_channel};
 pub(crate) use channel::{MODAL_ABOUT, MODAL_UNIT, TIME};
 pub use comparison::{MeasuredComparison, MeasuredResponses, MeasuredRow, Placed, ResponsePair};
 pub use complex::ComplexResult;
+pub use cycle_fields::CycleFields;
 pub use damping::{DampingRow, DampingVerdicts};
 pub use explored::SweepMethod;
 #[cfg(feature = "hdf5")]

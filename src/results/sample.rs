@@ -57,7 +57,7 @@ pub(crate) fn rig() -> RunResults {
     records.push(steady_result(&geometry));
     records.push(complex);
     records.push(sensitivity);
-    records.push(transient());
+    records.push(transient(geometry.nodes.len()));
     records.push(explored::sweep());
     records.push(explored::map());
     records.push(explored::damping());
@@ -421,8 +421,8 @@ fn frf() -> FrfResult {
     }
 }
 
-/// A decaying transient at 1668 Hz with its double.
-fn transient() -> TransientResult {
+/// A decaying transient at 1668 Hz with its double; all of the nodes move along x by 2 µm.
+fn transient(nodes: usize) -> TransientResult {
     let (step, steps) = (2e-5, 4000);
     let of = |f: &dyn Fn(f64) -> f64| (0..=steps).map(|k| f(k as f64 * step)).collect::<Vec<f64>>();
     let squeal = |t: f64| 0.3 * (TAU * 1668.0 * t).sin() * (1.0 - (-60.0 * t).exp());
@@ -460,10 +460,10 @@ fn transient() -> TransientResult {
             periods: [12.0, 1668.0],
             curves: vec![
                 PhaseCurve {
-                    axes: ["slip velocity [m/s]", "friction [N]"].map(String::from),
+                    channels: [0, 1],
                     points: motion.iter().map(|[_, v]| [0.5 - v, 8.0 + 2.0 * v]).collect(),
                 },
-                PhaseCurve { axes: ["displacement [m]", "velocity [m/s]"].map(String::from), points: motion },
+                PhaseCurve { channels: [2, 0], points: motion },
             ],
         },
         contact: contact.finish(),
@@ -478,6 +478,12 @@ fn transient() -> TransientResult {
         channels,
         shown: vec![0, 1],
         spectra: spectra.into(),
+        fundamental_hz: Some(1668.0),
+        cycle: Some(CycleFields {
+            frequency_hz: 1668.0,
+            window: [0.0704, 0.08],
+            harmonics: [2e-6, 1e-8].map(|x| vec![[c64::new(0.0, x), c64::ZERO, c64::ZERO]; nodes]).into(),
+        }),
         growth: Some(GrowthCompared { mode: 3, eigenvalue: c64::new(60.0, TAU * 1668.0), found: None }),
         work: crate::transient::Work { drive: 0.5, heat: 0.49, damping: -0.01, ..Default::default() },
         worst_residual: 1e-13,
@@ -498,9 +504,18 @@ fn sound() -> Sound {
     };
     let lines =
         |scale: f64| (0..500).map(|k| if k == 0 { 0.0 } else { line(k, scale) }).collect::<Vec<f64>>();
-    let spectrum = crate::signal::Spectrum {
-        resolution_hz: 10.0,
-        amplitude: lines(1.0).iter().map(|w| (100.0 * w).sqrt()).collect(),
+    let microphone = |(name, part): (&str, f64)| MicrophoneSound {
+        name: name.into(),
+        at: [part, 0.0, 0.075],
+        spectrum: crate::signal::Spectrum {
+            resolution_hz: 10.0,
+            amplitude: lines(1.0).iter().map(|w| part * (100.0 * w).sqrt()).collect(),
+        },
+        recording: PressureRecord {
+            begin: 0.0,
+            rate: 48_000,
+            pressure: (0..4800).map(|k| 0.3 * part * (TAU * 1668.0 * k as f64 / 48e3).sin()).collect(),
+        },
     };
     let peak = crate::signal::Peak { frequency_hz: 1668.0, amplitude: 0.0316, relation: String::new() };
     Sound {
@@ -510,11 +525,6 @@ fn sound() -> Sound {
         plates: vec![("disc".into(), lines(1.0)), ("slider".into(), lines(0.02))],
         mode_shares: vec![0.01, 0.9, 0.09],
         tones: vec![Tone { peak, power: 2e-3, share: 0.98 }],
-        microphones: vec![MicrophoneSound { name: "axis".into(), at: [1.0, 0.0, 0.075], spectrum }],
-        recording: PressureRecord {
-            begin: 0.0,
-            rate: 48_000,
-            pressure: (0..4800).map(|k| 0.3 * (TAU * 1668.0 * k as f64 / 48e3).sin()).collect(),
-        },
+        microphones: [("axis", 1.0), ("side", 0.5)].map(microphone).into(),
     }
 }

@@ -7,7 +7,7 @@ use std::path::Path;
 
 pub use crate::sound::{MicrophoneSound, PressureRecord, Sound, Tone};
 
-/// The name of the WAV file of a microphone, if it is the first.
+/// The name of the WAV file of a microphone.
 fn file(microphone: &MicrophoneSound) -> String {
     format!("sound_{}.wav", microphone.name)
 }
@@ -30,7 +30,9 @@ fn tone_columns() -> Vec<Column<Tone>> {
             power_level(tone.power)
         }),
         column("share", "1", "its part of the whole", |tone: &Tone| tone.share),
-        column("relation", "text", "what it is of stronger ones", |tone: &Tone| tone.peak.relation.clone()),
+        column("relation", "text", "relation to the fundamental of the motion", |tone: &Tone| {
+            tone.peak.relation.clone()
+        }),
     ]
 }
 
@@ -93,7 +95,7 @@ impl Sound {
             .table(Table::of("tones", "tone", &tone_columns(), &self.tones))
             .table(Table::of("microphones", "microphone", &microphone_columns(), &self.microphones))
             .table(self.spectrum())
-            .optional("wav", self.microphones.first().map(|first| self.recording.group(first)))
+            .list("recordings", self.microphones.iter().map(recording).collect())
             .with(Variable::text("limits", "what the levels suppose", limits))
     }
 
@@ -122,34 +124,36 @@ impl Sound {
     }
 }
 
-impl PressureRecord {
-    /// The pressure at a microphone, and its audio file.
-    fn group(&self, at: &MicrophoneSound) -> Group<'_> {
-        let time = Dimension::of_variable("time_s", self.pressure.len());
-        let times = Values::RealRows(Box::new(|k| vec![self.begin + k as f64 / f64::from(self.rate)]));
-        let pressures = Values::RealRows(Box::new(|k| vec![self.pressure[k]]));
-        Group::new("wav", "sound pressure at the first microphone")
-            .value("file", "text", "name of the WAV file", file(at))
-            .value("microphone", "text", "name of the microphone", at.name.clone())
-            .value("begin_s", "s", "time of the first sample", self.begin)
-            .value("samples_per_second", "Hz", "samples a second", self.rate)
-            .value("full_scale_pa", "Pa", "the largest number of the WAV file", self.full_scale())
-            .with(Variable::new("time_s", "s", "time", vec![time.clone()], times))
-            .with(Variable::new("pressure_pa", "Pa", "sound pressure p", vec![time], pressures))
-    }
+/// The pressure at a microphone, and its audio file.
+fn recording(at: &MicrophoneSound) -> Group<'_> {
+    let record = &at.recording;
+    let time = Dimension::of_variable("time_s", record.pressure.len());
+    let times = Values::RealRows(Box::new(|k| vec![record.begin + k as f64 / f64::from(record.rate)]));
+    let pressures = Values::RealRows(Box::new(|k| vec![record.pressure[k]]));
+    Group::new(&*at.name, "sound pressure at a microphone")
+        .value("file", "text", "name of the WAV file", file(at))
+        .value("microphone", "text", "name of the microphone", at.name.clone())
+        .value("begin_s", "s", "time of the first sample", record.begin)
+        .value("samples_per_second", "Hz", "samples a second", record.rate)
+        .value("full_scale_pa", "Pa", "the largest number of the WAV file", record.full_scale())
+        .with(Variable::new("time_s", "s", "time", vec![time.clone()], times))
+        .with(Variable::new("pressure_pa", "Pa", "sound pressure p", vec![time], pressures))
 }
 
-/// Writes `sound_<microphone>.wav` into the folder `dir`.
+/// Writes `sound_<microphone>.wav` of each microphone into the folder `dir`.
 pub(super) fn write_sound(dir: &Path, sound: &Sound) -> crate::error::Result<()> {
-    let Some(first) = sound.microphones.first() else { return Ok(()) };
-    let scale = sound.recording.full_scale();
-    let [x, y, z] = first.at;
-    let comment = format!(
-        "Sound pressure at microphone {} ({x:.3}, {y:.3}, {z:.3}) m; full scale is {scale:.6e} Pa; begins at {:.6} s",
-        first.name, sound.recording.begin
-    );
-    let bytes = wav(&sound.recording.pressure, sound.recording.rate, scale, &comment);
-    super::write_result(dir, &file(first), &bytes)
+    for microphone in &sound.microphones {
+        let record = &microphone.recording;
+        let scale = record.full_scale();
+        let [x, y, z] = microphone.at;
+        let comment = format!(
+            "Sound pressure at microphone {} ({x:.3}, {y:.3}, {z:.3}) m; full scale is {scale:.6e} Pa; begins at {:.6} s",
+            microphone.name, record.begin
+        );
+        let bytes = wav(&record.pressure, record.rate, scale, &comment);
+        super::write_result(dir, &file(microphone), &bytes)?;
+    }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -174,10 +178,12 @@ mod tests {
         let wav = std::fs::read(dir.path().join("sound_axis.wav")).unwrap();
         assert!(wav.windows(22).any(|w| w == b"full scale is 3.333333"), "0.3 Pa is 0.9 of it");
         let table = sound.spectrum().to_csv();
-        let header = "frequency_hz,power_disc [W],power_slider [W],mean_square_pressure_axis [Pa^2]\n";
+        let header = "frequency_hz,power_disc [W],power_slider [W],mean_square_pressure_axis [Pa^2],mean_square_pressure_side [Pa^2]\n";
         assert!(table.lines().count() == 501 && table.starts_with(header), "{table}");
         let summary = sound.group().to_json();
-        assert_eq!(summary["wav"]["file"], "sound_axis.wav");
+        let files = [0, 1].map(|k| summary["recordings"][k]["file"].as_str().unwrap());
+        assert_eq!(files, ["sound_axis.wav", "sound_side.wav"]);
+        assert!(files.iter().all(|file| dir.path().join(file).exists()));
         assert!((summary["plates"][0]["share"].as_f64().unwrap() - 1.0 / 1.02).abs() < 1e-9);
     }
 }

@@ -13,7 +13,7 @@ use serde_json::Value;
 use std::path::Path;
 
 /// The version of the layout of `summary.json` and `results.h5`.
-pub const SCHEMA_VERSION: u32 = 2;
+pub const SCHEMA_VERSION: u32 = 3;
 
 /// Writes `summary.json` into the folder `dir`, whole or not at all.
 ///

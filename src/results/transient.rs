@@ -2,7 +2,7 @@
 
 use super::channel::Channel;
 use super::explored::window;
-use super::{Diagnostics, Geometry, NodalField, ReducedCheck, Sound, TouchState};
+use super::{CycleFields, Diagnostics, Geometry, NodalField, ReducedCheck, Sound, TouchState};
 use crate::dataset::{Column, Describe, Dimension, Group, Table, Variable, column};
 use crate::linalg::c64;
 use crate::signal::{Growth, Peak, Spectrum};
@@ -119,6 +119,10 @@ pub struct TransientResult {
     pub shown: Vec<usize>,
     /// Spectra of the second half of the run.
     pub spectra: Vec<SpectrumOf>,
+    /// Frequency of which the named peaks are multiples, one of all channels \[Hz\]; `None` of a record of few periods.
+    pub fundamental_hz: Option<f64>,
+    /// The motion of all nodes over the last periods; `None` where they are fewer than four.
+    pub cycle: Option<CycleFields>,
     /// Growth beside the complex eigenvalue.
     pub growth: Option<GrowthCompared>,
     /// All work.
@@ -167,6 +171,12 @@ impl Describe for TransientResult {
             .optional("reduced", reduced)
             .optional("reduced_check", self.reduced_check.as_ref().map(ReducedCheck::group))
             .table(Table::of("channels", "channel", &channel_columns(), &self.channels))
+            .value(
+                "fundamental_hz",
+                "Hz",
+                "frequency of which the named peaks are multiples",
+                self.fundamental_hz,
+            )
             .list("spectrum", spectra)
             .table(self.spectrum_lines())
             .optional("growth", self.growth.as_ref().map(GrowthCompared::group))
@@ -186,6 +196,7 @@ impl Describe for TransientResult {
             )
             .table(cycles)
             .list("spectrogram", self.diagnostics.spectrogram_groups(&self.channels))
+            .optional("cycle", self.cycle.as_ref().map(CycleFields::group))
             .optional("contact_state", self.diagnostics.contact.group())
             .optional("sound", self.sound.as_ref().map(Sound::group))
     }
@@ -265,7 +276,7 @@ impl SpectrumOf {
         let peaks = [
             column("frequency_hz", "Hz", "frequency, between the lines", |peak: &Peak| peak.frequency_hz),
             column("amplitude", channel.unit, "amplitude", |peak: &Peak| peak.amplitude),
-            column("relation", "text", "what it is of stronger ones", |peak: &Peak| peak.relation.clone()),
+            column("relation", "text", "relation to the fundamental", |peak: &Peak| peak.relation.clone()),
         ];
         let measured = Dimension::of_variable("measured_hz", self.measured.len());
         Group::new(&*channel.name, "a channel over frequency")

@@ -1,4 +1,4 @@
-//! Peaks of a spectrum, and what they are of each other.
+//! Peaks of a spectrum.
 
 use super::Spectrum;
 use std::f64::consts::PI;
@@ -10,7 +10,8 @@ pub struct Peak {
     pub frequency_hz: f64,
     /// How high it is, in the unit of the spectrum.
     pub amplitude: f64,
-    /// Relation to the stronger peaks: `2 × 1661 Hz`, `936 + 1661 Hz`; empty for an independent one.
+    /// Relation to the fundamental of the run: `fundamental`, `2 × 1661 Hz`, `936 + 1661 Hz`; empty where none is shown: see
+    /// [`Tones`](super::Tones).
     pub relation: String,
 }
 
@@ -46,54 +47,6 @@ pub fn peaks(spectrum: &Spectrum, floor: f64, count: usize) -> Vec<Peak> {
     found
 }
 
-/// Names peaks that are harmonics of stronger ones, or sums or differences of two stronger ones, to within `tolerance`
-/// \[Hz\].
-pub fn name_peaks(peaks: &mut [Peak], tolerance: f64) {
-    let mut order: Vec<usize> = (0..peaks.len()).collect();
-    order.sort_by(|a, b| peaks[*b].amplitude.total_cmp(&peaks[*a].amplitude));
-    let mut own: Vec<f64> = Vec::new();
-    for k in order {
-        let hz = peaks[k].frequency_hz;
-        match relation(hz, &own, tolerance) {
-            Some(words) => peaks[k].relation = words,
-            None => own.push(hz),
-        }
-    }
-}
-
-fn relation(hz: f64, own: &[f64], tolerance: f64) -> Option<String> {
-    const HARMONICS: usize = 40;
-    for f in own {
-        let n = (hz / f).round();
-        if n >= 2.0 && n <= HARMONICS as f64 && (hz - n * f).abs() <= n * tolerance {
-            return Some(format!("{n:.0} × {f:.0} Hz"));
-        }
-        let n = (f / hz).round();
-        if (2.0..=4.0).contains(&n) && (hz - f / n).abs() <= tolerance {
-            return Some(format!("{f:.0}/{n:.0} Hz"));
-        }
-    }
-    for (i, f) in own.iter().enumerate() {
-        for g in &own[i + 1..] {
-            let (low, high) = (f.min(*g), f.max(*g));
-            let combinations = [
-                (high + low, format!("{low:.0} + {high:.0} Hz")),
-                (high - low, format!("{high:.0} − {low:.0} Hz")),
-                (2.0 * high - low, format!("2 × {high:.0} − {low:.0} Hz")),
-                ((2.0 * low - high).abs(), format!("|2 × {low:.0} − {high:.0}| Hz")),
-                (2.0 * low + high, format!("2 × {low:.0} + {high:.0} Hz")),
-                (2.0 * high + low, format!("2 × {high:.0} + {low:.0} Hz")),
-            ];
-            if let Some((_, words)) =
-                combinations.into_iter().find(|(at, _)| (hz - at).abs() <= 2.0 * tolerance)
-            {
-                return Some(words);
-            }
-        }
-    }
-    None
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -101,7 +54,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     #[test]
-    fn sines_between_the_lines_are_found_with_their_amplitudes_and_relations() {
+    fn sines_between_the_lines_are_found_with_their_amplitudes() {
         let parts = [(936.3, 2.0), (1661.0, 5.0), (2597.3, 0.1), (3322.0, 0.3), (725.9, 0.002)];
         let step = 5e-5;
         let at = |k: usize| -> f64 {
@@ -110,7 +63,7 @@ mod tests {
         let record: Vec<f64> = (0..12_000).map(at).collect();
         let spectrum = spectrum(&record, step, 4000);
         // The smallest is below a thousandth of the highest.
-        let mut found = peaks(&spectrum, 1e-3, 10);
+        let found = peaks(&spectrum, 1e-3, 10);
         assert_eq!(found.len(), 4, "{found:?}");
         for (peak, (f, a)) in found.iter().zip(&parts[..4]) {
             assert!(
@@ -118,8 +71,5 @@ mod tests {
                 "{peak:?}"
             );
         }
-        name_peaks(&mut found, 1.0);
-        let words: Vec<&str> = found.iter().map(|p| p.relation.as_str()).collect();
-        assert_eq!(words, ["", "", "936 + 1661 Hz", "2 × 1661 Hz"]);
     }
 }

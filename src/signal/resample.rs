@@ -61,7 +61,7 @@ impl Resampler {
     }
 
     /// Remaining output, up to the last sample.
-    pub fn finish(mut self, out: &mut Vec<f64>) {
+    pub fn finish(&mut self, out: &mut Vec<f64>) {
         let end = (self.first + self.samples.len()) as f64 * self.step;
         while (self.next as f64 + 0.5) / self.rate < end {
             out.push(self.value(self.next as f64 / self.rate));

@@ -3,7 +3,7 @@
 use super::{
     Air, CrossSpectra, MicrophoneSound, Plate, PressureRecord, Radiation, Receiver, Sound, Surface, Tone,
 };
-use crate::signal::{Resampler, Spectrum, Welch, name_peaks, peaks};
+use crate::signal::{Resampler, Spectrum, Welch, peaks};
 use faer::Mat;
 use std::f64::consts::TAU;
 
@@ -50,10 +50,61 @@ pub struct SoundAccumulator {
     counted: usize,
     top: f64,
     cross: CrossSpectra,
-    microphones: Vec<(String, [f64; 3], Receiver, Welch)>,
+    microphones: Vec<Microphone>,
+}
+
+/// A microphone at work.
+struct Microphone {
+    name: String,
+    at: [f64; 3],
+    receiver: Receiver,
+    welch: Welch,
     resampler: Resampler,
     recording: Vec<f64>,
+    /// Samples that lie before the recording.
     dropped: usize,
+}
+
+impl Microphone {
+    /// With spectra of `length` samples, one every `step` seconds; silent until the first sound arrives.
+    fn new((name, at): (String, [f64; 3]), receiver: Receiver, (length, step): (usize, f64)) -> Self {
+        let mut resampler = Resampler::new(step, f64::from(RATE));
+        let mut recording = Vec::new();
+        let silence = receiver.delay();
+        for first in (0..silence).step_by(SILENCE) {
+            resampler.take(&vec![0.0; SILENCE.min(silence - first)], &mut recording);
+        }
+        Microphone { name, at, receiver, welch: Welch::new(length, step), resampler, recording, dropped: 0 }
+    }
+
+    /// The next accelerations of the modes, of which the first `early` do not count for the levels.
+    fn add(&mut self, block: &[Vec<f64>], early: usize) {
+        let pressure = self.receiver.receive(block);
+        self.welch.take(&pressure[early..]);
+        self.resampler.take(&pressure, &mut self.recording);
+        if self.recording.len() > 2 * KEPT * RATE as usize {
+            self.forget();
+        }
+    }
+
+    /// Keeps the end of the recording.
+    fn forget(&mut self) {
+        let excess = self.recording.len().saturating_sub(KEPT * RATE as usize);
+        self.recording.drain(..excess);
+        self.dropped += excess;
+    }
+
+    /// Levels of so many lines, and the recording.
+    fn finish(mut self, lines: usize) -> MicrophoneSound {
+        self.resampler.finish(&mut self.recording);
+        self.forget();
+        let mut spectrum = self.welch.finish();
+        spectrum.amplitude.truncate(lines);
+        spectrum.amplitude.iter_mut().take(1).for_each(|a| *a = 0.0);
+        let begin = self.dropped as f64 / f64::from(RATE);
+        let recording = PressureRecord { begin, rate: RATE, pressure: self.recording };
+        MicrophoneSound { name: self.name, at: self.at, spectrum, recording }
+    }
 }
 
 impl SoundAccumulator {
@@ -75,15 +126,9 @@ impl SoundAccumulator {
         let length = (seconds / step).min(pending) as usize;
         let microphone = |(name, at): (String, [f64; 3])| {
             let receiver = Receiver::new(&plates, at, acoustics.air, step);
-            (name, at, receiver, Welch::new(length, step))
+            Microphone::new((name, at), receiver, (length, step))
         };
         let microphones: Vec<_> = acoustics.microphones.into_iter().map(microphone).collect();
-        let mut resampler = Resampler::new(step, f64::from(RATE));
-        let mut recording = Vec::new();
-        let silence = microphones.first().map_or(0, |(_, _, receiver, _)| receiver.delay());
-        for first in (0..silence).step_by(SILENCE) {
-            resampler.take(&vec![0.0; SILENCE.min(silence - first)], &mut recording);
-        }
         SoundAccumulator {
             modes,
             cross: CrossSpectra::new(modes, length, step, top),
@@ -94,9 +139,6 @@ impl SoundAccumulator {
             counted,
             top,
             microphones,
-            resampler,
-            recording,
-            dropped: 0,
         }
     }
 
@@ -104,31 +146,14 @@ impl SoundAccumulator {
     pub fn add(&mut self, mut block: Vec<Vec<f64>>) {
         let length = block.first().map_or(0, Vec::len);
         let early = self.counted.saturating_sub(self.taken).min(length);
-        for (k, (_, _, receiver, welch)) in self.microphones.iter_mut().enumerate() {
-            let pressure = receiver.receive(&block);
-            welch.take(&pressure[early..]);
-            if k == 0 {
-                self.resampler.take(&pressure, &mut self.recording);
-            }
-        }
-        self.forget();
+        self.microphones.iter_mut().for_each(|microphone| microphone.add(&block, early));
         block.iter_mut().for_each(|mode| drop(mode.drain(..early)));
         self.cross.take(&block);
         self.taken += length;
     }
 
-    /// Keeps the end of the recording.
-    fn forget(&mut self) {
-        let kept = KEPT * RATE as usize;
-        if self.recording.len() > 2 * kept {
-            let dropped = self.recording.len() - kept;
-            self.recording.drain(..dropped);
-            self.dropped += dropped;
-        }
-    }
-
     /// Sound of the whole run.
-    pub fn finish(mut self) -> Sound {
+    pub fn finish(self) -> Sound {
         let SoundAccumulator { cross, air, plates, step, .. } = &self;
         let (lines, resolution_hz) = (cross.lines(), cross.resolution_hz());
         let mut mode_shares = vec![0.0; self.modes];
@@ -149,17 +174,7 @@ impl SoundAccumulator {
         let window = [self.counted as f64 * step, self.taken.saturating_sub(1) as f64 * step];
         let names = plates.iter().map(|plate| plate.name.clone());
         let plates = names.zip(power).collect();
-        let microphones = self.microphones.into_iter().map(|(name, at, _, welch)| {
-            let mut spectrum = welch.finish();
-            spectrum.amplitude.truncate(lines);
-            spectrum.amplitude.iter_mut().take(1).for_each(|a| *a = 0.0);
-            MicrophoneSound { name, at, spectrum }
-        });
-        let microphones = microphones.collect();
-        self.resampler.finish(&mut self.recording);
-        let excess = self.recording.len().saturating_sub(KEPT * RATE as usize);
-        self.recording.drain(..excess);
-        let begin = (self.dropped + excess) as f64 / f64::from(RATE);
+        let microphones = self.microphones.into_iter().map(|microphone| microphone.finish(lines)).collect();
         Sound {
             window,
             air: self.air,
@@ -168,7 +183,6 @@ impl SoundAccumulator {
             mode_shares,
             tones: tones(&each, resolution_hz),
             microphones,
-            recording: PressureRecord { begin, rate: RATE, pressure: self.recording },
         }
     }
 }
@@ -177,8 +191,7 @@ impl SoundAccumulator {
 fn tones(power: &[f64], resolution_hz: f64) -> Vec<Tone> {
     let amplitude = power.iter().map(|w| w.max(0.0).sqrt()).collect();
     let spectrum = Spectrum { resolution_hz, amplitude };
-    let mut found = peaks(&spectrum, FLOOR, TONES);
-    name_peaks(&mut found, 0.5 * resolution_hz);
+    let found = peaks(&spectrum, FLOOR, TONES);
     let whole: f64 = power.iter().sum();
     let tone = |peak: crate::signal::Peak| {
         let line = (peak.frequency_hz / resolution_hz).round() as usize;

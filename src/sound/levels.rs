@@ -20,8 +20,6 @@ pub struct Sound {
     pub tones: Vec<Tone>,
     /// Pressure at each microphone.
     pub microphones: Vec<MicrophoneSound>,
-    /// The pressure at the first microphone.
-    pub recording: PressureRecord,
 }
 
 /// A peak of the sound power.
@@ -44,6 +42,8 @@ pub struct MicrophoneSound {
     pub at: [f64; 3],
     /// The pressure over frequency \[Pa\], as many lines as the power has.
     pub spectrum: Spectrum,
+    /// The pressure over time.
+    pub recording: PressureRecord,
 }
 
 /// Pressure at a microphone as an audio record.
@@ -82,6 +82,18 @@ impl Sound {
             (0..self.lines()).map(|k| weight(self.frequency_hz(k)).powi(2) * self.power(k)).sum()
         };
         [power_level(sum(&|_| 1.0)), power_level(sum(&a_weighting))]
+    }
+
+    /// Gives each tone the relation of the nearest of the named peaks of the motion, within a line: power has no phase of its own.
+    pub fn name_tones<'p>(&mut self, peaks: impl Iterator<Item = &'p Peak>) {
+        let named: Vec<&Peak> = peaks.filter(|peak| !peak.relation.is_empty()).collect();
+        for tone in &mut self.tones {
+            let away = |peak: &&&Peak| (peak.frequency_hz - tone.peak.frequency_hz).abs();
+            let nearest = named.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
+            if let Some(peak) = nearest.filter(|peak| away(peak) < self.resolution_hz) {
+                tone.peak.relation.clone_from(&peak.relation);
+            }
+        }
     }
 
     /// The sound pressure level, in dB re 20 µPa and in dB(A), of the mean square over all directions at a `distance`

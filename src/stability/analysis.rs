@@ -230,13 +230,13 @@ fn solve_and_refine<'a>(
     if let Some(first) = counts.first().filter(|first| counts.iter().any(|c| c != *first)) {
         let last = counts.last().unwrap_or(first);
         warnings.push(format!(
-            "the refinement changed the number of complex modes in the band from {first} to {last}"
+            "The refinement changed the number of complex modes in the band from {first} to {last}"
         ));
     }
     let modes: Vec<ComplexMode> = found.into_iter().map(|found| found.mode).collect();
     for mode in modes.iter().filter(|mode| mode.accepted() && mode.condition > ILL_CONDITIONED) {
         warnings.push(format!(
-            "the mode at {} Hz is ill-conditioned: a relative change of the matrices moves it by {:.0e} times as much",
+            "The mode at {} Hz is ill-conditioned: a relative change of the matrices moves it by {:.0e} times as much",
             hertz(mode.frequency_hz(), 2),
             mode.condition
         ));
@@ -255,7 +255,7 @@ fn incomplete(operator: &Operator<'_>, real: &RealModes, top_hz: f64) -> Option<
     let reach = highest.max(counted);
     (real.len() < operator.n() && reach < top_hz).then(|| {
         format!(
-            "the real modes are known up to {} Hz, the band reaches to {} Hz: complex modes may be missing",
+            "The real modes are known up to {} Hz, the band reaches to {} Hz: complex modes may be missing",
             hertz(reach, 1),
             hertz(top_hz, 1)
         )

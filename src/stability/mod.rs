@@ -173,7 +173,7 @@ impl ComplexMode {
 fn accuracy_warnings(modes: &[ComplexMode]) -> impl Iterator<Item = String> {
     modes.iter().filter(|mode| !mode.accepted()).map(|mode| {
         let degree = if mode.accurate() { "less accurate than aimed at" } else { "not accurate" };
-        format!("a mode is {degree}: {}", mode.errors())
+        format!("A mode is {degree}: {}", mode.errors())
     })
 }
 

@@ -95,7 +95,7 @@ pub fn keep_nearest(modes: &mut ComplexModes, asked: &Nearest, band: [f64; 2]) -
             return Some([(target - wider).max(within[0]), (target + wider).min(within[1])]);
         }
         _ => modes.warnings.push(format!(
-            "only {} of the {count} complex modes nearest to {target} Hz lie between {} and {} Hz",
+            "Only {} of the {count} complex modes nearest to {target} Hz lie between {} and {} Hz",
             modes.modes.len(),
             band[0],
             band[1]

@@ -66,6 +66,19 @@ pub struct SlipAnswer {
     pub sticks: bool,
 }
 
+/// Friction of a contact law at zero slip.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FrictionAtRest {
+    /// Any force up to μ(0) N.
+    SetValued,
+    /// The force of bristles.
+    Elastic,
+    /// None: it falls to zero over a range of slip.
+    Smoothed,
+    /// As at any slip: its direction is fixed.
+    AsInSlip,
+}
+
 /// A contact law: (motion, weight) → (forces, their Jacobian). Pure: the same input gives the same output.
 ///
 /// `weight` is the contact length or area that the point stands for \[m or m²\], or its share of one when the
@@ -80,9 +93,14 @@ pub trait ContactLaw: Debug + Send + Sync {
         SlipAnswer { forces, tangent, ..SlipAnswer::default() }
     }
 
+    /// Friction at zero slip.
+    fn at_rest(&self) -> FrictionAtRest {
+        FrictionAtRest::AsInSlip
+    }
+
     /// Whether friction at rest is any force up to μ(0) N, so that it follows from the motion of the whole only.
     fn is_set_valued(&self) -> bool {
-        false
+        self.at_rest() == FrictionAtRest::SetValued
     }
 
     /// How far steady friction **F** \[N\] has bent the bristles of a point: s \[m\].

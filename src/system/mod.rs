@@ -16,7 +16,9 @@ mod structure;
 
 pub use imported::{Given, Imported, split};
 pub use interface::{Closing, ContactPair, ContactPoint};
-pub use law::{ContactForces, ContactLaw, ContactMotion, ContactTangent, SlipAnswer, SlipStep};
+pub use law::{
+    ContactForces, ContactLaw, ContactMotion, ContactTangent, FrictionAtRest, SlipAnswer, SlipStep,
+};
 pub use structure::{Coupling, Damping, ModalDamping, Prestress, Skew, Structure};
 
 use crate::error::Result;

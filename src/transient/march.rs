@@ -8,6 +8,7 @@ use super::state::State;
 use super::stepper::{StepMethod, Stepper};
 use crate::error::{Error, Result};
 use crate::progress::Observer;
+use crate::system::FrictionAtRest;
 
 /// A step that fails is split into 2, 4 … 2^SPLITS parts.
 const SPLITS: usize = 10;
@@ -123,6 +124,29 @@ pub fn resume(
     Ok(())
 }
 
+/// What helps a step that fails: shorter steps, and a contact, if one is known, whose friction changes less abruptly at rest.
+fn remedy(tolerance: Option<f64>, contact: Option<(&str, FrictionAtRest)>) -> String {
+    let shorter = match tolerance {
+        None => "or let `transient.tolerance = 1e-3` split steps before they fail".into(),
+        Some(tolerance) => format!("or `transient.tolerance`, which is {tolerance:e}"),
+    };
+    let softer = contact.map_or(String::new(), |(name, at_rest)| match at_rest {
+        FrictionAtRest::SetValued => format!(
+            "; or let the contact give before it slips, `[contact.{name}.bristle]` with a `stiffness` as large as the normal one, or \
+             smooth its friction law, `contact.{name}.friction.regularisation`"
+        ),
+        FrictionAtRest::Elastic => {
+            format!("; or make its bristle softer, `contact.{name}.bristle.stiffness`, or damp it, `contact.{name}.bristle.damping`")
+        }
+        FrictionAtRest::Smoothed => format!(
+            "; or let the contact give before it slips, `[contact.{name}.bristle]` with a `stiffness` as large as the normal one in \
+             place of `contact.{name}.friction.regularisation`, or make that larger"
+        ),
+        FrictionAtRest::AsInSlip => String::new(),
+    });
+    format!("Make `transient.time_step` smaller, {shorter}{softer}")
+}
+
 /// The steps of Δt, Δt/2, Δt/4 …, each made ready when it is first needed.
 struct Steppers<'a> {
     model: &'a TransientModel<'a>,
@@ -172,20 +196,19 @@ impl Steppers<'_> {
             }
             StepFailure::NotFinite => "the motion is no longer finite".to_string(),
         };
-        let (place, name) = match stuck {
-            StepFailure::Newton { point: Some(point), .. } => self.model.place(point),
-            _ => (String::new(), "NAME"),
+        let (place, contact) = match stuck {
+            StepFailure::Newton { point: Some(point), .. } => {
+                let (place, contact) = self.model.place(point);
+                (place, Some(contact))
+            }
+            _ => (String::new(), None),
         };
         let found = format!(
             "at t = {:.6e} s, in steps of {:.1e} s, {why}{place}",
             ends[0],
             self.plan.step / (1 << SPLITS) as f64
         );
-        let help = format!(
-            "Make `transient.time_step` smaller, or let `transient.tolerance = 1e-3` split steps before they fail; or let the \
-             contact give before it slips, `[contact.{name}] bristle` with a `stiffness` as large as the normal one, or make \
-             its friction law smoother, `friction.regularisation`"
-        );
+        let help = remedy(self.plan.tolerance, contact);
         Err(Error::analysis("transient", found, help))
     }
 
@@ -223,5 +246,32 @@ impl Steppers<'_> {
             }
         }
         Ok((work, worst))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_remedy_is_one_that_the_contact_does_not_have_yet() {
+        let of = |at_rest| remedy(None, Some(("rim", at_rest)));
+        assert!(of(FrictionAtRest::SetValued).contains("`[contact.rim.bristle]` with a `stiffness`"));
+        let elastic = of(FrictionAtRest::Elastic);
+        assert!(
+            elastic.contains("bristle softer")
+                && !elastic.contains("[contact")
+                && !elastic.contains("regularisation")
+        );
+        assert!(
+            of(FrictionAtRest::Smoothed)
+                .ends_with("`contact.rim.friction.regularisation`, or make that larger")
+        );
+        assert!(!of(FrictionAtRest::AsInSlip).contains("contact"));
+        let with_tolerance = remedy(Some(1e-3), None);
+        assert!(
+            with_tolerance.ends_with("or `transient.tolerance`, which is 1e-3")
+                && !with_tolerance.contains("contact")
+        );
     }
 }

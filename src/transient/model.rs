@@ -8,7 +8,7 @@ use crate::equilibrium::{SteadySliding, directions, tangent_stiffness};
 use crate::error::{Error, Fault, Result};
 use crate::linalg::sparse::add_scaled;
 use crate::linalg::{SparseMatrix, SparseVector};
-use crate::system::{ContactLaw, Damping, System};
+use crate::system::{ContactLaw, Damping, FrictionAtRest, System};
 use faer::Mat;
 use std::borrow::Cow;
 
@@ -144,12 +144,15 @@ impl<'a> TransientModel<'a> {
         TransientModel { loadings, ..self }
     }
 
-    /// Where a contact point is, in words, and the name of its pair.
-    pub(super) fn place(&self, point: usize) -> (String, &'a str) {
-        let Touch { pair, name, position, .. } = &self.points[point];
+    /// Where a contact point is, in words; the name of its pair, and friction there at rest.
+    pub(super) fn place(&self, point: usize) -> (String, (&'a str, FrictionAtRest)) {
+        let Touch { pair, name, position, law, .. } = &self.points[point];
         let number = self.points[..=point].iter().filter(|other| other.pair == *pair).count();
         let [x, y, z] = position.map(|x| 1e3 * x);
-        (format!(", at point {number} of the contact `{name}`, at ({x:.3}, {y:.3}, {z:.3}) mm"), name)
+        (
+            format!(", at point {number} of the contact `{name}`, at ({x:.3}, {y:.3}, {z:.3}) mm"),
+            (name, law.at_rest()),
+        )
     }
 
     /// Whether a direction changes in time.

@@ -151,6 +151,29 @@ def motion(browser, page_file):
     return {**found, "changed": changed, "modes": modes, "log": log}
 
 
+def in_time(browser, page_file):
+    log = []
+    page = opened(browser, page_file, log, viewport={"width": 1000, "height": 900})
+    page.locator("#shapes canvas").scroll_into_view_if_needed()
+    text = lambda name: page.locator(f"#shapes [data-of={name}]").evaluate("e => e.value")
+    shown = page.locator("#shapes [data-of=mode] option:checked")
+    found = {"set": shown.evaluate("e => e.parentElement.label"), "name": shown.text_content()}
+    frames = []
+    for phase in ("0", "90", "180"):
+        page.fill("#shapes [data-of=phase]", phase)
+        page.wait_for_timeout(250)
+        frames.append([page.evaluate(FRAME), text("degrees")])
+    found["differ"] = len({picture for picture, _ in frames}) == len(frames)
+    found["times"] = [time for _, time in frames]
+    page.click("#shapes [data-of=play]")
+    page.wait_for_timeout(400)
+    found["plays"] = text("degrees") != frames[-1][1]
+    before = text("slower")
+    page.fill("#shapes [data-of=speed]", "-2")
+    page.wait_for_timeout(200)
+    return {**found, "slower": [before, text("slower")], "log": log}
+
+
 def still(browser, page_file):
     log = []
     page = opened(browser, page_file, log, viewport={"width": 1000, "height": 900})
@@ -163,17 +186,25 @@ def still(browser, page_file):
 def sound(browser, page_file):
     log = []
     page = opened(browser, page_file, log)
-    decoded = page.evaluate("""async () => {
+    decode = """async () => {
         const audio = document.querySelector('audio');
         const data = Uint8Array.from(atob(audio.src.split(',')[1]), c => c.charCodeAt(0)).buffer;
         const buffer = await new OfflineAudioContext(1, 1, 48000).decodeAudioData(data);
         const samples = buffer.getChannelData(0);
-        return { player: audio.duration, decoded: buffer.duration, peak: samples.reduce((m, v) => Math.max(m, Math.abs(v)), 0) };
-    }""")
-    page.locator("audio").evaluate("audio => audio.play()")
-    page.wait_for_timeout(400)
-    decoded["position"] = page.locator("audio").evaluate("audio => audio.currentTime")
-    return {**decoded, "log": log}
+        return { player: audio.duration, decoded: buffer.duration, peak: samples.reduce((m, v) => Math.max(m, Math.abs(v)), 0),
+                 head: audio.src.slice(0, 4000) };
+    }"""
+    microphones = page.locator("figure:has(audio) option").all_text_contents()
+    found = []
+    for name in microphones:
+        page.select_option("figure:has(audio) select", label=name)
+        page.wait_for_timeout(300)
+        decoded = page.evaluate(decode)
+        page.locator("audio").evaluate("audio => audio.play()")
+        page.wait_for_timeout(400)
+        decoded["position"] = page.locator("audio").evaluate("audio => audio.currentTime")
+        found.append(decoded)
+    return {"microphones": microphones, "found": found, "log": log}
 
 
 def charts(browser, page_file):
@@ -201,5 +232,5 @@ chromium, page_file, what = sys.argv[1:]
 flags = FLAGS.split() + (["--disable-3d-apis"] if what == "still" else [])
 with sync_playwright() as playwright:
     browser = playwright.chromium.launch(executable_path=chromium, args=flags)
-    print(json.dumps({"screens": screens, "paper": paper, "motion": motion, "still": still, "sound": sound, "charts": charts}[what](browser, page_file)))
+    print(json.dumps({"screens": screens, "paper": paper, "motion": motion, "in_time": in_time, "still": still, "sound": sound, "charts": charts}[what](browser, page_file)))
     browser.close()

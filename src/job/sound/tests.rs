@@ -55,7 +55,16 @@ fn one_mode_sounds_as_loud_as_its_closed_form() {
     assert_eq!(sound.tones.len(), 1);
     assert!((sound.tones[0].peak.frequency_hz - hz).abs() < 0.1 && sound.tones[0].share > 0.99);
     let far = &sound.microphones[1];
-    assert!(far.name == "far" && sound.recording.pressure.len().abs_diff(19_200 + 70) < 5);
+    // 4 m take 11.7 ms, 0.5 m take 1.5 ms; both are silent until then.
+    assert!(far.name == "far");
+    for (microphone, samples) in sound.microphones.iter().zip([70, 560]) {
+        let pressure = &microphone.recording.pressure;
+        assert!(pressure.len().abs_diff(19_200 + samples) < 5, "{}", pressure.len());
+        assert!(
+            pressure[..samples - 40].iter().all(|p| p.abs() < 1e-12)
+                && pressure.iter().any(|p| p.abs() > 1e-6)
+        );
+    }
 }
 
 #[test]

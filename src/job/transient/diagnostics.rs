@@ -1,31 +1,34 @@
 //! Data of the pictures of a run, read back from its record in parts.
 
+use super::findings::Findings;
 use super::history_writer::HistoryWriter;
 use crate::error::Result;
-use crate::results::{ContactHistory, ContactWatch, Diagnostics, Orbit, PhaseCurve, SpectrumOf};
-use crate::signal::{LimitCycle, ShortTime, Spectrogram, limit_cycle};
+use crate::results::{ContactHistory, ContactWatch, Diagnostics, Orbit, PhaseCurve};
+use crate::signal::{LimitCycle, ShortTime, Spectrogram, akima, limit_cycle};
 
 /// The size of an oscillation is taken from this last part of the run, and from no more steps than these.
 const PART: usize = 4;
 const TAIL: usize = 1 << 16;
-/// Periods of the strongest line that a phase plane shows, and points that it has at most.
+/// Periods that a phase plane shows, and points that it has at most.
 const PERIODS: f64 = 12.0;
 const POINTS: usize = 4000;
+/// Points of a period, at least.
+const SMOOTH: f64 = 200.0;
 /// Rows that are read at once.
 const AT_ONCE: usize = 1 << 16;
 
 impl HistoryWriter<'_, '_> {
-    /// Looks through the record of `rows` rows, `step` seconds apart, whose `spectra` are known; spectrograms reach up to
+    /// Looks through the record of `rows` rows, `step` seconds apart, whose spectra are known; spectrograms reach up to
     /// `top_hz`.
     pub(super) fn diagnostics(
         &self,
         rows: usize,
         step: f64,
-        spectra: &[SpectrumOf],
+        known: &Findings,
         top_hz: f64,
     ) -> Result<Diagnostics> {
         let strongest = |channel: usize| {
-            let of = spectra.iter().find(|of| of.channel == channel)?;
+            let of = known.spectra.iter().find(|of| of.channel == channel)?;
             let peak = of.peaks.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
             let line = || of.spectrum.strongest().map(|k| of.spectrum.frequency_hz(k));
             peak.map(|peak| peak.frequency_hz).or_else(line)
@@ -47,7 +50,7 @@ impl HistoryWriter<'_, '_> {
             }
         }
         spectrograms.retain(|(_, spectrogram)| spectrogram.columns() > 0);
-        let hz = shown.first().and_then(|motion| strongest(motion.channel));
+        let hz = known.fundamental_hz.or_else(|| strongest(shown.first()?.channel));
         let orbit = hz.map(|hz| self.orbit(rows, begin, step, hz)).transpose()?;
         Ok(Diagnostics {
             spectrograms,
@@ -58,19 +61,20 @@ impl HistoryWriter<'_, '_> {
         })
     }
 
-    /// The last periods of the strongest line, not before row `begin`.
+    /// The last periods of the fundamental, or of the strongest line, not before row `begin`.
     fn orbit(&self, rows: usize, begin: usize, step: f64, hz: f64) -> Result<Orbit> {
         let wanted = ((PERIODS / (hz * step)).ceil() as usize).clamp(1, rows - begin);
         let every = wanted.div_ceil(POINTS).max(1);
+        // Corners between the steps would show: they are no property of the motion.
+        let parts = (SMOOTH * hz * step).ceil().max(1.0) as usize;
         let read = |channel: usize| -> Result<Vec<f64>> {
-            Ok(self.read(channel, rows - wanted..rows)?.into_iter().step_by(every).collect())
+            let values = self.read(channel, rows - wanted..rows)?;
+            Ok(if every > 1 { values.into_iter().step_by(every).collect() } else { akima(&values, parts) })
         };
-        let curve = |[across, up]: [usize; 2]| -> Result<PhaseCurve> {
+        let curve = |channels: [usize; 2]| -> Result<PhaseCurve> {
+            let [across, up] = channels;
             let points = read(across)?.into_iter().zip(read(up)?).map(|(x, y)| [x, y]).collect();
-            Ok(PhaseCurve {
-                axes: [across, up].map(|channel| self.recorder.described[channel].heading()),
-                points,
-            })
+            Ok(PhaseCurve { channels, points })
         };
         let curves = self.recorder.orbits().into_iter().map(curve).collect::<Result<_>>()?;
         Ok(Orbit { periods: [wanted as f64 * step * hz, hz], curves })

@@ -4,7 +4,8 @@ use super::channels::ShownChannel;
 use super::history_writer::HistoryWriter;
 use crate::error::Result;
 use crate::results::{GrowthCompared, SpectrumOf};
-use crate::signal::{self, Welch};
+use crate::signal::{self, Tones, Welch};
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 /// Segments that the second half of a run is cut into, each overlapping the next by a half.
@@ -16,11 +17,15 @@ const FLOOR: f64 = 1e-3;
 const SMALL: f64 = 0.01;
 /// Values of a channel that are in memory at once: what is longer is cut into shorter segments, or cut off.
 const AT_ONCE: usize = 1 << 20;
+/// Peaks are named from no more than this many last values of each channel.
+const NAMED: usize = 1 << 18;
 
 /// Spectra and growth of a record.
 pub(super) struct Findings {
     /// Spectra of the channels to show.
     pub(super) spectra: Vec<SpectrumOf>,
+    /// Fundamental of their peaks \[Hz\].
+    pub(super) fundamental_hz: Option<f64>,
     /// How the disturbance grew while it was small.
     pub(super) growth: Option<GrowthCompared>,
 }
@@ -34,10 +39,36 @@ impl HistoryWriter<'_, '_> {
             channel.look(rows, step, |part| self.sink.recorded(&name, part))?;
         }
         self.recorder.described = channels;
+        let (spectra, fundamental_hz) = self.spectra(rows, step, top_hz)?;
+        Ok(Findings { spectra, fundamental_hz, growth: self.growth(rows, step)? })
+    }
+
+    /// The spectra of the second half of the channels to show, their peaks with names, and the fundamental \[Hz\].
+    fn spectra(&self, rows: usize, step: f64, top_hz: f64) -> Result<(Vec<SpectrumOf>, Option<f64>)> {
         let shown = self.recorder.shown.iter();
-        let spectra =
-            shown.map(|shown| self.spectrum_of(shown, rows, step, top_hz)).collect::<Result<_>>()?;
-        Ok(Findings { spectra, growth: self.growth(rows, step)? })
+        let spectra = shown.map(|shown| self.spectrum_of(shown, rows, step, top_hz));
+        let mut spectra = spectra.collect::<Result<Vec<SpectrumOf>>>()?;
+        let part = rows - (rows / 2).min(NAMED)..rows;
+        let records = spectra.iter().map(|of| self.read(of.channel, part.clone()));
+        let records = records.collect::<Result<Vec<Vec<f64>>>>()?;
+        let mut tones = Tones {
+            records: records.iter().map(Vec::as_slice).collect(),
+            resolution_hz: spectra.first().map_or(0.0, |of| of.spectrum.resolution_hz),
+            peaks: spectra.iter_mut().map(|of| &mut of.peaks[..]).collect(),
+            step,
+        };
+        let fundamental_hz = tones.name();
+        Ok((spectra, fundamental_hz))
+    }
+
+    /// Frequency of the motion in the first `rows` rows \[Hz\]: the fundamental, else the strongest peak of the first channel, else
+    /// that of the mode along which it was disturbed.
+    pub(super) fn frequency(&self, rows: usize, step: f64, top_hz: f64) -> Result<Option<f64>> {
+        let (spectra, fundamental_hz) = self.spectra(rows, step, top_hz)?;
+        let peaks = spectra.first().map_or(&[][..], |of| &of.peaks);
+        let strongest = peaks.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
+        let mode = self.recorder.along.as_ref().map(|along| along.eigenvalue.im / TAU);
+        Ok(fundamental_hz.or(strongest.map(|peak| peak.frequency_hz)).or(mode))
     }
 
     pub(super) fn read(&self, channel: usize, part: Range<usize>) -> Result<Vec<f64>> {
@@ -56,8 +87,7 @@ impl HistoryWriter<'_, '_> {
         let mut lines = spectrum.clone();
         lines.amplitude.truncate((top_hz / spectrum.resolution_hz) as usize + 1);
         let beyond = spectrum.strongest().map(|k| spectrum.frequency_hz(k)).filter(|hz| *hz > top_hz);
-        let mut peaks = signal::peaks(&lines, FLOOR, PEAKS);
-        signal::name_peaks(&mut peaks, 0.5 * spectrum.resolution_hz);
+        let peaks = signal::peaks(&lines, FLOOR, PEAKS);
         let window = [first as f64 * step, rows.saturating_sub(1) as f64 * step];
         let ShownChannel { channel, measured } = shown.clone();
         Ok(SpectrumOf { channel, window, spectrum, peaks, measured, beyond })

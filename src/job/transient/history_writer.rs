@@ -1,5 +1,6 @@
 //! Hands the record on, a piece at a time.
 
+use super::harmonic_fields::HarmonicFields;
 use super::recorder::Recorder;
 use super::snapshots::Snapshots;
 use crate::error::{Error, Fault, Result};
@@ -19,6 +20,8 @@ pub(super) struct HistoryWriter<'a, 'k> {
     pub(super) recorder: Recorder<'a>,
     pub(super) sink: &'k mut dyn ResultSink,
     snapshots: Option<Snapshots<'a>>,
+    /// The motion over the last periods, and the highest frequency \[Hz\] that it may have.
+    pub(super) cycle: (HarmonicFields<'a>, f64),
     /// The first row that is at hand.
     first: usize,
     last_piece: Instant,
@@ -28,9 +31,10 @@ impl<'a, 'k> HistoryWriter<'a, 'k> {
     pub(super) fn new(
         recorder: Recorder<'a>,
         snapshots: Option<Snapshots<'a>>,
+        cycle: (HarmonicFields<'a>, f64),
         sink: &'k mut dyn ResultSink,
     ) -> Self {
-        HistoryWriter { recorder, sink, snapshots, first: 0, last_piece: Instant::now() }
+        HistoryWriter { recorder, sink, snapshots, cycle, first: 0, last_piece: Instant::now() }
     }
 
     /// Begins with the first row or, where an earlier run stopped, resumes from there.
@@ -45,6 +49,7 @@ impl<'a, 'k> HistoryWriter<'a, 'k> {
             self.begins_alike()?;
             marched = checkpoint.march(model)?;
             self.recorder.restore(checkpoint, &marched)?;
+            self.cycle.0.restore(checkpoint)?;
             self.first = marched.step + 1;
         }
         self.sink.record(ResultStage::TransientBegins(&Recording {
@@ -61,7 +66,20 @@ impl<'a, 'k> HistoryWriter<'a, 'k> {
             self.snapshot(&marched)?;
         }
         self.flush(&marched)?;
+        if marched.step >= self.cycle.0.ready() && !self.cycle.0.has_begun() {
+            self.begin_cycle()?;
+        }
         Ok(marched)
+    }
+
+    /// Begins the motion over the last periods: its fundamental is that of the record up to there.
+    fn begin_cycle(&mut self) -> Result<()> {
+        let (fields, top_hz) = &self.cycle;
+        let hz = self.frequency(fields.ready() + 1, fields.step, *top_hz)?;
+        if let Some(hz) = hz {
+            self.cycle.0.begin(hz);
+        }
+        Ok(())
     }
 
     /// A program or a machine that is another may give another first row.
@@ -84,6 +102,11 @@ impl<'a, 'k> HistoryWriter<'a, 'k> {
     pub(super) fn take(&mut self, marched: &Marched) -> Result<()> {
         self.recorder.take(marched);
         self.snapshot(marched)?;
+        self.cycle.0.take(marched);
+        if marched.step == self.cycle.0.ready() {
+            self.flush(marched)?;
+            return self.begin_cycle();
+        }
         if self.recorder.rows() >= ROWS || self.last_piece.elapsed() >= PATIENCE {
             self.flush(marched)?;
         }
@@ -118,6 +141,7 @@ impl<'a, 'k> HistoryWriter<'a, 'k> {
         let mut checkpoint = Checkpoint::default();
         checkpoint.put_march(marched);
         self.recorder.put(&mut checkpoint);
+        self.cycle.0.put(&mut checkpoint);
         checkpoint
     }
 }

@@ -1,13 +1,14 @@
 //! A case in time: what is recorded, step after step, and what the record says.
 //!
 //! [`places`] says what acts and where motion is recorded, `along` finds the complex mode to start along, `recorder`
-//! makes a row of every step, `snapshots` take the motion of all nodes now and then, `history_writer` hands the rows on a piece at
+//! makes a row of every step, `snapshots` take the motion of all nodes now and then, `harmonic_fields` its Fourier series over the last periods, `history_writer` hands the rows on a piece at
 //! a time, so that memory does not grow with the run, and `findings`, `diagnostics` and `modal` read them back in parts: spectra and growth, data of the pictures, sound.
 
 mod along;
 mod channels;
 mod diagnostics;
 mod findings;
+mod harmonic_fields;
 mod history_writer;
 mod in_time;
 mod modal;
@@ -34,6 +35,7 @@ use crate::sound::SoundAccumulator;
 use crate::system::System;
 use crate::transient::{Marched, Plan, Scheme, State, StepMethod, TimeProfile, TransientModel, resume};
 use along::Along;
+use harmonic_fields::HarmonicFields;
 use history_writer::HistoryWriter;
 use modal::ModalMotion;
 use recorder::Recorder;
@@ -88,13 +90,14 @@ impl InTime<'_> {
         }
         let plan = plan(wanted);
         let steps = plan.steps;
-        let snapshots = wanted.fields_every.map(|every| Snapshots {
-            every: places::steps(every, wanted.time_step),
+        let nodes = Snapshots {
+            every: wanted.fields_every.map_or(steps, |every| places::steps(every, wanted.time_step)),
             geometry: self.geometry,
             dofs: self.dofs,
             reduced: reduced.as_ref(),
             origin: &steady.displacement,
-        });
+        };
+        let top = WATCHED * self.complex.band_hz[1];
         // Real modes are complete up to their highest.
         let highest = (0..self.real.len()).map(|k| self.real.frequency_hz(k)).fold(0.0, f64::max);
         let modes = (&self.real.shapes, highest);
@@ -106,21 +109,25 @@ impl InTime<'_> {
         if let Some(motion) = recorder.shown.first_mut().filter(|shown| shown.measured.is_empty()) {
             motion.measured = self.complex.measured_squeal_hz.iter().map(|(hz, _)| *hz).collect();
         }
-        let mut history_writer = HistoryWriter::new(recorder, snapshots, sink);
+        let cycle = (HarmonicFields::new(nodes, plan.step, steps), top);
+        let snapshots = wanted.fields_every.map(|_| nodes);
+        let mut history_writer = HistoryWriter::new(recorder, snapshots, cycle, sink);
         let mut marched = history_writer.begin(start, &model, &plan)?;
         march_on(&mut history_writer, (&model, &plan), &mut marched, observer)?;
         let share = |count: usize| count as f64 / (steps + 1) as f64;
-        let top = WATCHED * self.complex.band_hz[1];
         let found = history_writer.findings(steps + 1, plan.step, top)?;
-        let diagnostics = history_writer.diagnostics(steps + 1, plan.step, &found.spectra, top)?;
-        let sound = accumulator
+        let diagnostics = history_writer.diagnostics(steps + 1, plan.step, &found, top)?;
+        let mut sound = accumulator
             .map(|accumulator| history_writer.recorded_sound(accumulator, steps + 1))
             .transpose()?;
+        if let Some(sound) = &mut sound {
+            sound.name_tones(found.spectra.iter().flat_map(|of| &of.peaks));
+        }
         let first = |name: &str, count: usize| history_writer.sink.recorded(name, 0..count);
         let own = (self.steady, self.complex);
         let check = |reduced| reduced_check(reduced, own, beside.as_ref(), &first, observer);
         let reduced_check = reduced.as_ref().map(check).transpose()?;
-        let recorder = history_writer.recorder;
+        let HistoryWriter { recorder, cycle, .. } = history_writer;
         Ok(TransientResult {
             time_step: plan.step,
             rows: steps + 1,
@@ -133,6 +140,8 @@ impl InTime<'_> {
             events: recorder.happened,
             channels: recorder.described,
             spectra: found.spectra,
+            fundamental_hz: found.fundamental_hz,
+            cycle: cycle.0.finish(),
             growth: found.growth,
             work: marched.work,
             worst_residual: marched.worst_residual,

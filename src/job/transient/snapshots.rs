@@ -6,6 +6,7 @@ use crate::structure::DofMap;
 use crate::transient::State;
 
 /// How often and of what snapshots are taken.
+#[derive(Clone, Copy)]
 pub(super) struct Snapshots<'a> {
     /// Steps between two.
     pub(super) every: usize,
@@ -33,9 +34,14 @@ impl<'a> Snapshots<'a> {
     pub(super) fn take(&self, state: &State) -> [NodalField<f64>; 2] {
         let [u, v] = [0, 1].map(|k| state.motion.col_as_slice(k));
         let moved: Vec<f64> = u.iter().zip(self.origin).map(|(u, origin)| u - origin).collect();
-        [&moved[..], v].map(|x| match self.reduced {
+        [&moved[..], v].map(|x| self.of_all(x))
+    }
+
+    /// A vector in the coordinates of the model, at every node.
+    pub(super) fn of_all(&self, x: &[f64]) -> NodalField<f64> {
+        match self.reduced {
             Some(reduced) => self.dofs.expand(&reduced.expand(x)),
             None => self.dofs.expand(x),
-        })
+        }
     }
 }

@@ -1,7 +1,14 @@
-//! The displacements of a mode at the nodes of the picture, at the size and the phase at which they are shown.
+//! The displacements of a mode, or of a motion in time, at the nodes of the picture, at the size and the phase at which they are shown.
 
 use crate::linalg::c64;
+use crate::results::CycleFields;
 use base64::prelude::{BASE64_STANDARD, Engine};
+use std::f64::consts::TAU;
+
+/// Phases of a period at which the largest displacement of a series is looked for.
+const PHASES: usize = 64;
+/// A harmonic whose amplitude is below this part of the largest displacement is not shown.
+const LEAST: f64 = 1e-3;
 
 /// Re φ and Im φ \[1\], 3 numbers a node: scaled so that the largest displacement of a node during a cycle is 1, and turned in
 /// phase by a common factor e^{iα} so that the sum of squares of Re φ is as large as can be: t = 0 is the phase of the
@@ -25,6 +32,45 @@ impl Motion {
         let turn = c64::from_polar(1.0 / largest, -0.5 * squares.arg());
         let turned = u.iter().flatten().map(|c| c * turn);
         Some(Motion { re: turned.clone().map(|c| c.re).collect(), im: turned.map(|c| c.im).collect() })
+    }
+}
+
+/// A motion of several harmonics h = 1, 2 …, u = Σ_h (Re U_h cos hϑ − Im U_h sin hϑ), scaled so that the largest displacement is 1.
+#[derive(Debug)]
+pub(super) struct MotionInTime {
+    pub harmonics: Vec<Motion>,
+    /// The largest displacement of a node during the period \[m\].
+    pub largest: f64,
+    /// Time of ϑ = 0, a period before the end of the run \[s\].
+    pub begin: f64,
+}
+
+impl MotionInTime {
+    /// The last period of `nodes`; `None` where none of them moves.
+    pub(super) fn new(cycle: &CycleFields, nodes: &[usize]) -> Option<Self> {
+        let begin = cycle.window[1] - 1.0 / cycle.frequency_hz;
+        let turned = |(h, field): (i32, &Vec<[c64; 3]>)| -> Vec<c64> {
+            let turn = c64::from_polar(1.0, TAU * f64::from(h) * cycle.frequency_hz * begin);
+            nodes.iter().flat_map(|k| field[*k].map(|c| c * turn)).collect()
+        };
+        let mut fields: Vec<Vec<c64>> = (1..).zip(&cycle.harmonics).map(turned).collect();
+        let at = |phase: usize| -> f64 {
+            let wave = |h: usize| c64::from_polar(1.0, TAU * (h * phase) as f64 / PHASES as f64);
+            let u = |k: usize| (1..).zip(&fields).map(|(h, field)| (field[k] * wave(h)).re).sum::<f64>();
+            let squares = |node: usize| (0..3).map(|c| u(3 * node + c).powi(2)).sum::<f64>();
+            (0..nodes.len()).map(squares).fold(0.0, f64::max).sqrt()
+        };
+        let largest = (0..PHASES).map(at).fold(0.0, f64::max);
+        if !(largest > 0.0 && largest.is_finite()) {
+            return None;
+        }
+        let counts = |field: &Vec<c64>| field.iter().any(|c| c.norm() >= LEAST * largest);
+        fields.truncate(1 + fields.iter().rposition(counts).unwrap_or(0));
+        let scaled = |field: Vec<c64>| Motion {
+            re: field.iter().map(|c| c.re / largest).collect(),
+            im: field.iter().map(|c| c.im / largest).collect(),
+        };
+        Some(MotionInTime { harmonics: fields.into_iter().map(scaled).collect(), largest, begin })
     }
 }
 
@@ -76,6 +122,41 @@ mod tests {
         let motion = Motion::new(&standing, &[3, 7]).unwrap();
         assert!(motion.im.iter().all(|im| im.abs() < 1e-14) && motion.re.len() == 6);
         assert!(Motion::new(&[[c64::new(0.0, 0.0); 6]], &[0]).is_none());
+    }
+
+    #[test]
+    fn the_last_period_is_the_motion_at_the_end_of_the_run() {
+        let (hz, end) = (1668.0, 0.0803);
+        let of = |a: f64| -> Vec<[c64; 3]> {
+            let u = |k: usize| c64::new((a * k as f64).sin(), (1.0 + a * k as f64).cos());
+            (0..20).map(|k| [u(3 * k), u(3 * k + 1), u(3 * k + 2)].map(|c| 1e-6 * c)).collect()
+        };
+        let small = of(1.1).into_iter().map(|u| u.map(|c| 1e-4 * c)).collect();
+        let cycle =
+            CycleFields { frequency_hz: hz, window: [0.07, end], harmonics: vec![of(1.7), of(2.3), small] };
+        let nodes = [3, 7, 11];
+        let motion = MotionInTime::new(&cycle, &nodes).unwrap();
+        assert_eq!(motion.harmonics.len(), 2, "the third is too small");
+        for part in [0.0, 0.13, 0.7] {
+            let time = motion.begin + part / hz;
+            for (place, node) in nodes.iter().enumerate() {
+                let exact: f64 = (1..)
+                    .zip(&cycle.harmonics[..2])
+                    .map(|(h, field)| {
+                        (field[*node][1] * c64::from_polar(1.0, TAU * f64::from(h) * hz * time)).re
+                    })
+                    .sum();
+                let shown: f64 = (1..)
+                    .zip(&motion.harmonics)
+                    .map(|(h, m)| {
+                        let (sin, cos) = (TAU * f64::from(h) * part).sin_cos();
+                        m.re[3 * place + 1] * cos - m.im[3 * place + 1] * sin
+                    })
+                    .sum();
+                assert!((motion.largest * shown - exact).abs() < 1e-15, "{part} {node}");
+            }
+        }
+        assert!((motion.begin + 1.0 / hz - end).abs() < 1e-15);
     }
 
     #[test]

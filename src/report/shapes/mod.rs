@@ -1,9 +1,12 @@
-//! The mode shapes in motion, on the page: a viewer in WebGL with the data it draws.
+//! The mode shapes, and the motion at the end of a run in time, on the page: a viewer in WebGL with the data it draws.
 //!
 //! A complex mode moves every node by u(t) = Re(φ e^{iωt}) = Re φ cos ωt − Im φ sin ωt, without its growth e^{σt}: an
 //! ellipse in space, which nodes pass at different times (a travelling wave) unless φ is real but for a factor. A real
 //! mode moves by φ cos ωt (a standing wave). Shapes have no size of their own: the largest displacement of a cycle is
 //! shown as a chosen part of the model.
+//!
+//! A run in time moves them by the Fourier series of its last periods, u(t) = Re Σ_h U_h e^{2πi h f₀ t}
+//! ([`CycleFields`](crate::results::CycleFields)): a field for each harmonic instead of one for each picture.
 //!
 //! * [`surface`]: faces, bars and points of the model, with fewer nodes where the page would become too large.
 //! * [`field`]: displacements at their nodes, in 16 bits.
@@ -13,15 +16,15 @@ mod field;
 mod surface;
 
 use super::colours::{PARTS, diverging, sequential};
-use super::format::{hertz, rate};
+use super::format::{given, hertz, prefixed, rate};
 use super::html::{allowed, escape};
 use super::section::ReportSection;
 use super::view::View;
 use crate::linalg::c64;
-use crate::results::{ComplexResult, NamedModes, RunResults};
+use crate::results::{ComplexResult, CycleFields, NamedModes, RunResults, TransientResult};
 use crate::stability::ComplexMode;
 use base64::prelude::{BASE64_STANDARD, Engine};
-use field::{Motion, encode};
+use field::{Motion, MotionInTime, encode};
 use serde_json::{Value, json};
 use surface::Surface;
 
@@ -31,23 +34,29 @@ const MOST: usize = 24;
 const NEAREST: usize = 6;
 /// Real modes of a set, the lowest that are not rigid-body modes.
 const REAL: usize = 12;
-/// Size of the data of the complex modes on a page at most \[bytes\]: with more, nodes are left out.
+/// Size of the data of the complex modes and of the motion in time on a page at most \[bytes\]: with more, nodes are left out.
 const LIMIT: usize = 4_000_000;
 /// Real modes are added while all data is smaller than this \[bytes\].
 const LIMIT_WITH_REAL: usize = 1_000_000;
 
-/// The viewer, where the run has a mesh and modes.
+/// The viewer, where the run has a mesh and modes or motion in time.
 pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
     let complex = results.get::<ComplexResult>();
     let chosen = complex.map_or(Vec::new(), |complex| chosen(&complex.modes.modes));
     let sets = results.all::<NamedModes>();
     let any_real = sets.iter().any(|set| set.modes.eigenvalues.len() > set.modes.rigid_bodies);
-    if results.geometry.elements.is_empty() || chosen.is_empty() && !any_real {
+    let cycle = results.get::<TransientResult>().and_then(|run| run.cycle.as_ref());
+    if results.geometry.elements.is_empty() || chosen.is_empty() && !any_real && cycle.is_none() {
         return Vec::new();
     }
-    let surface = Surface::within(&results.geometry, chosen.len().max(1), LIMIT);
+    let fields = chosen.len() + cycle.map_or(0, |cycle| cycle.harmonics.len());
+    let surface = Surface::within(&results.geometry, fields.max(1), LIMIT);
     let mut modes: Vec<Value> = chosen.iter().filter_map(|k| complex_mode(complex?, *k, &surface)).collect();
-    let mut size: usize = surface.encoded_size(modes.len());
+    let in_time = cycle.and_then(|cycle| motion_in_time(cycle, &surface));
+    let first = if in_time.is_some() { modes.len() } else { strongest(complex, &chosen) };
+    let mut size: usize = surface.encoded_size(fields);
+    let moves = in_time.is_some();
+    modes.extend(in_time);
     for set in sets {
         for k in set.modes.rigid_bodies..set.modes.eigenvalues.len().min(set.modes.rigid_bodies + REAL) {
             size += surface.encoded_field_size() / 2;
@@ -59,9 +68,14 @@ pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
     if modes.is_empty() {
         return Vec::new();
     }
-    let first = strongest(complex, &chosen);
-    let section = ReportSection::new("Mode shapes in motion")
-        .markup([viewer(&data(&surface, modes, first), &caption(results, chosen.len(), &surface))]);
+    let words = [
+        (modes.len() > usize::from(moves)).then(|| modes_caption(results, chosen.len())),
+        cycle.filter(|_| moves).map(caption_in_time),
+        Some(drawn(chosen.len(), moves, &surface)),
+    ];
+    let words = words.into_iter().flatten().collect::<Vec<_>>().join(" ");
+    let heading = if moves { "Motion in 3-D" } else { "Mode shapes in motion" };
+    let section = ReportSection::new(heading).markup([viewer(&data(&surface, modes, first), &words)]);
     vec![section]
 }
 
@@ -95,9 +109,26 @@ fn complex_mode(complex: &ComplexResult, k: usize, surface: &Surface) -> Option<
         "set": "complex modes",
         "name": name,
         "hz": mode.frequency_hz(),
-        "re": encode(&motion.re),
-        "im": encode(&motion.im),
+        "begin": 0,
+        "harmonics": [harmonic(&motion)],
     }))
+}
+
+/// The last period of a run in time.
+fn motion_in_time(cycle: &CycleFields, surface: &Surface) -> Option<Value> {
+    let motion = MotionInTime::new(cycle, &surface.nodes)?;
+    let largest = prefixed(motion.largest, "m", 3);
+    Some(json!({
+        "set": "motion in time",
+        "name": format!("last period, {} Hz: largest displacement {largest}", hertz(cycle.frequency_hz, 1)),
+        "hz": cycle.frequency_hz,
+        "begin": motion.begin,
+        "harmonics": motion.harmonics.iter().map(harmonic).collect::<Vec<_>>(),
+    }))
+}
+
+fn harmonic(motion: &Motion) -> Value {
+    json!({ "re": encode(&motion.re), "im": encode(&motion.im) })
 }
 
 fn real_mode(set: &NamedModes, k: usize, surface: &Surface) -> Option<Value> {
@@ -110,7 +141,8 @@ fn real_mode(set: &NamedModes, k: usize, surface: &Surface) -> Option<Value> {
         "set": format!("real modes: {}", allowed(&set.name)),
         "name": format!("mode {}: {} Hz{figure}", k + 1, hertz(hz, 1)),
         "hz": hz,
-        "re": encode(&motion.re),
+        "begin": 0,
+        "harmonics": [{ "re": encode(&motion.re) }],
     }))
 }
 
@@ -154,7 +186,7 @@ fn viewer(data: &Value, caption: &str) -> String {
     )
 }
 
-fn caption(results: &RunResults, shown: usize, surface: &Surface) -> String {
+fn modes_caption(results: &RunResults, shown: usize) -> String {
     let complex = results.get::<ComplexResult>().map_or(&[][..], |complex| &complex.modes.modes);
     let unstable = complex.iter().filter(|mode| mode.unstable()).count();
     let which = match (unstable, shown) {
@@ -164,16 +196,38 @@ fn caption(results: &RunResults, shown: usize, surface: &Surface) -> String {
         (1, _) => "The unstable mode".into(),
         _ => "Every unstable mode".into(),
     };
-    let file = if shown > 0 { "complex_modes.vtu" } else { "modes_<set>.vtu" };
-    let left_out = match surface.nodes.len() {
-        n if n < surface.all_nodes => {
-            format!(" Shown with {n} of {} nodes; all of them are in {file}.", surface.all_nodes)
-        }
-        _ => format!(" The same in full precision: {file}."),
+    format!("{which}, u(t) = Re(φ e^(iωt)) at constant amplitude and slowed down.")
+}
+
+fn caption_in_time(cycle: &CycleFields) -> String {
+    let [begin, end] = cycle.window.map(given);
+    let harmonics = match cycle.harmonics.len() {
+        1 => String::new(),
+        n => format!(", h = 1 to {n}"),
     };
     format!(
-        "{which}, u(t) = Re(φ e^(iωt)) at constant amplitude and slowed down; the displacement is enlarged. Normal displacement: along the \
-         normal of the surface at rest.{left_out}"
+        "Motion in time about its mean, u(t) = Re Σ U_h e^(2πi h f₀ t) with f₀ = {} Hz{harmonics}, from the steps between {begin} and {end} s; \
+         motion that is not periodic with f₀ is left out.",
+        hertz(cycle.frequency_hz, 1)
+    )
+}
+
+/// How the motion is drawn, and the files that have the whole of it.
+fn drawn(complex: usize, in_time: bool, surface: &Surface) -> String {
+    let file = match (complex, in_time) {
+        (0, true) => "results.h5",
+        (0, false) => "modes_<set>.vtu",
+        (_, true) => "complex_modes.vtu and results.h5",
+        (_, false) => "complex_modes.vtu",
+    };
+    let files = match surface.nodes.len() {
+        n if n < surface.all_nodes => {
+            format!("Shown with {n} of {} nodes; all of them are in {file}.", surface.all_nodes)
+        }
+        _ => format!("The same in full precision: {file}."),
+    };
+    format!(
+        "The displacement is enlarged. Normal displacement: along the normal of the surface at rest. {files}"
     )
 }
 
@@ -196,7 +250,9 @@ mod tests {
 
     #[test]
     fn every_unstable_mode_moves_and_the_strongest_comes_first() {
-        let data = shown(&markup(&sample::rig()));
+        let mut results = sample::rig();
+        results.get_mut::<TransientResult>().unwrap().cycle = None;
+        let data = shown(&markup(&results));
         let names: Vec<&str> =
             data["modes"].as_array().unwrap().iter().map(|m| m["name"].as_str().unwrap()).collect();
         assert!(
@@ -205,8 +261,26 @@ mod tests {
         assert!(names[..3].iter().all(|name| name.ends_with("unstable")) && !names[3].contains("unstable"));
         assert_eq!(data["first"], 1);
         assert_eq!(data["modes"][3]["set"], "real modes: disc");
-        assert!(data["modes"][0]["im"].is_string() && data["modes"][3]["im"].is_null());
+        let im = |mode: usize| &data["modes"][mode]["harmonics"][0]["im"];
+        assert!(im(0).is_string() && im(3).is_null());
         assert_eq!(data["parts"].as_array().unwrap().len(), 3);
+    }
+
+    #[test]
+    fn motion_in_time_is_shown_first_with_its_harmonics_and_its_time() {
+        let data = shown(&markup(&sample::rig()));
+        let mode = &data["modes"][data["first"].as_u64().unwrap() as usize];
+        assert!(
+            mode["set"] == "motion in time" && mode["harmonics"].as_array().unwrap().len() == 2,
+            "{mode}"
+        );
+        assert!((mode["begin"].as_f64().unwrap() - (0.08 - 1.0 / 1668.0)).abs() < 1e-12);
+        assert!(mode["name"].as_str().unwrap().contains("1668.0 Hz: largest displacement 2.0"), "{mode}");
+        // Without a mode it is there alone.
+        let mut results = sample::rig();
+        results.take::<ComplexResult>();
+        while results.take::<NamedModes>().is_some() {}
+        assert_eq!(shown(&markup(&results))["modes"].as_array().unwrap().len(), 1);
     }
 
     #[test]

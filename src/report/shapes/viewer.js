@@ -1,4 +1,5 @@
-// The mode shapes of the page in motion: u = re cos ωt − im sin ωt at every node, worked out by the graphics processor.
+// The mode shapes of the page in motion, and its motion in time: u = Σ re_h cos hωt − im_h sin hωt at every node, h = 1, 2 …, worked
+// out by the graphics processor.
 // Drawn with WebGL2; where there is none, as a still picture that follows the controls.
 'use strict';
 (() => {
@@ -69,16 +70,19 @@
   const stops = [data.diverging, data.sequential].map(list => list.map(rgb));
 
   const still = matchMedia('(prefers-reduced-motion: reduce)').matches;
-  const state = { phase: 0, amplitude: 0.08, colour: 0, zoom: 1, turn: data.view, playing: !still, mode: null };
-  let re, im;
+  const state = { phase: 0, amplitude: 0.08, colour: 0, zoom: 1, turn: data.view, playing: !still, mode: null, speed: 0.5 };
+  // Of each harmonic of the mode: re and im at every vertex. WebGL2 has attributes for six, place and normal.
+  const MOST = 6, each = Array.from({ length: MOST }, (_, h) => h);
+  let fields = [];
+  const waves = () => each.flatMap(h => [Math.cos((h + 1) * state.phase), Math.sin((h + 1) * state.phase)]);
 
   // --- WebGL2 ---
   const VERTEX = `#version 300 es
-    in vec3 place, normal, re, im;
-    uniform mat3 turn; uniform vec2 wave, fit; uniform float amplitude; uniform int colour;
+    in vec3 place, normal, ${each.map(h => `re${h}, im${h}`).join(', ')};
+    uniform mat3 turn; uniform vec2 waves[${MOST}], fit; uniform float amplitude; uniform int colour;
     out vec3 seen; out float value;
     void main() {
-      vec3 u = re * wave.x - im * wave.y;
+      vec3 u = ${each.map(h => `re${h} * waves[${h}].x - im${h} * waves[${h}].y`).join(' + ')};
       seen = (place + amplitude * u) * turn;
       value = colour == 0 ? 0.5 + 0.5 * dot(u, normal) : length(u);
       // Outlines stand a little before their faces.
@@ -122,6 +126,10 @@
     const buffers = {};
     const attribute = (name, values) => {
       const slot = gl.getAttribLocation(program, name);
+      if (!values) {
+        if (slot >= 0) gl.disableVertexAttribArray(slot);
+        return;
+      }
       gl.bindBuffer(gl.ARRAY_BUFFER, buffers[name] ||= gl.createBuffer());
       gl.bufferData(gl.ARRAY_BUFFER, values, gl.STATIC_DRAW);
       if (slot < 0) return;
@@ -145,7 +153,7 @@
       const [w, h] = [canvas.width, canvas.height], size = fit(w, h);
       gl.viewport(0, 0, w, h);
       gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-      gl.uniform2f(uniform('wave'), Math.cos(state.phase), Math.sin(state.phase));
+      gl.uniform2fv(uniform('waves'), waves());
       gl.uniform2f(uniform('fit'), size / w, size / h);
       // Rows as columns: the shader multiplies from the left.
       gl.uniformMatrix3fv(uniform('turn'), false, state.turn.flat());
@@ -164,7 +172,8 @@
         parts.filter(part => part.on).forEach(part => draw(part.buffers[1], gl.LINES, part.edges.length));
       }
     };
-    return { frame, fields: () => { attribute('re', re); attribute('im', im); } };
+    // An attribute without an array is zero.
+    return { frame, fields: () => each.forEach(h => { attribute(`re${h}`, fields[h]?.re); attribute(`im${h}`, fields[h]?.im); }) };
   }
 
   // --- Without WebGL2: the faces from the farthest to the nearest ---
@@ -172,9 +181,9 @@
     const sheet = canvas.getContext('2d');
     const frame = () => {
       const [w, h] = [canvas.width, canvas.height], size = 0.5 * fit(w, h);
-      const [c, s] = [Math.cos(state.phase), Math.sin(state.phase)];
+      const wave = waves();
       const seen = nodeOf.map((_, k) => {
-        const u = [0, 1, 2].map(i => re[3 * k + i] * c - im[3 * k + i] * s);
+        const u = [0, 1, 2].map(i => fields.reduce((sum, { re, im }, h) => sum + re[3 * k + i] * wave[2 * h] - im[3 * k + i] * wave[2 * h + 1], 0));
         const p = place(k).map((x, i) => x + state.amplitude * u[i]);
         const value = state.colour === 0 ? 0.5 + 0.5 * u.reduce((sum, v, i) => sum + v * normals[3 * k + i], 0) : Math.hypot(...u);
         const [x, y, z] = state.turn.map(row => row.reduce((sum, r, i) => sum + r * p[i], 0));
@@ -220,20 +229,22 @@
   function frame(now) {
     due = false;
     if (state.playing && visible) {
-      state.phase = (state.phase + Math.min(now - last, 100) * 0.001 * Math.PI) % (2 * Math.PI);
+      state.phase = (state.phase + Math.min(now - last, 100) * 0.002 * Math.PI * state.speed) % (2 * Math.PI);
       at('phase').value = Math.round(state.phase * 180 / Math.PI);
       redraw();
     }
     last = now;
-    at('degrees').value = `${at('phase').value}°`;
+    // A mode that does not oscillate has no time of its own.
+    const { hz, begin } = state.mode, time = begin + state.phase / (2 * Math.PI * hz);
+    at('degrees').value = `${at('phase').value}°` + (hz > 0 ? `, t = ${(1000 * time).toFixed(3)} ms` : '');
+    at('slower').value = hz > 0 ? `1 : ${Math.round(hz / state.speed)}` : '';
     picture.frame();
   }
 
   // --- Controls ---
   function choose(k) {
     state.mode = data.modes[k];
-    re = spread(shorts(state.mode.re));
-    im = spread(state.mode.im && shorts(state.mode.im));
+    fields = state.mode.harmonics.map(({ re, im }) => ({ re: spread(shorts(re)), im: spread(im && shorts(im)) }));
     picture.fields();
     canvas.setAttribute('aria-label', `The model in the motion of ${state.mode.name}`);
     redraw();
@@ -275,6 +286,7 @@
   at('play').addEventListener('click', () => play(!state.playing));
   at('home').addEventListener('click', () => { state.turn = data.view; state.zoom = 1; redraw(); });
   at('phase').addEventListener('input', () => { state.phase = at('phase').value * Math.PI / 180; play(false); });
+  at('speed').addEventListener('input', () => { state.speed = 0.5 * 2 ** at('speed').value; redraw(); });
   at('amplitude').addEventListener('input', () => { state.amplitude = at('amplitude').value / 100; redraw(); });
 
   // --- Turning and zooming: the rows of `turn` are right, up and towards the viewer ---

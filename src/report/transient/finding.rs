@@ -4,7 +4,7 @@ use crate::linalg::c64;
 use crate::report::finding::{Finding, FindingClass};
 use crate::report::format::{fixed, hertz, power, prefixed, rate, signed, significant};
 use crate::results::TransientResult;
-use crate::signal::{Growth, Peak};
+use crate::signal::{Growth, LimitCycle, Peak};
 use std::f64::consts::TAU;
 
 /// Growth of a small disturbance, where it was measured; the motion at the end; the energy balance.
@@ -28,26 +28,13 @@ pub(super) fn motion(run: &TransientResult) -> Finding {
             hertz(growth.eigenvalue.im / TAU, 1)
         ));
     }
-    let shown = run.diagnostics.cycles.iter().find(|(k, _)| run.shown.contains(k));
-    if let Some((k, cycle)) = shown.or(run.diagnostics.cycles.first()) {
-        let channel = &run.channels[*k];
-        let at = strongest(run, *k)
-            .map_or(String::new(), |peak| format!(", at {} Hz", hertz(peak.frequency_hz, 1)));
-        let steady = if cycle.steady() {
-            "steady".to_string()
-        } else {
-            class = class.min(FindingClass::Attention);
-            let drift = signed(100.0 * cycle.drift, 0);
-            format!("not steady ({drift} % from the first to the second half of what was analysed)")
-        };
-        parts.push(format!(
-            "from {} s on {} oscillates by ± {}{at}, {steady}",
-            significant(run.diagnostics.window[0], 3),
-            channel.name.replace('_', " "),
-            prefixed(cycle.amplitude, channel.unit, 3)
-        ));
-    } else if run.growth.is_none() {
+    if run.diagnostics.cycles.is_empty() && run.growth.is_none() {
         parts.push(format!("{} steps of {} s", run.len().saturating_sub(1), power(run.time_step)));
+    } else if let Some(words) = oscillation(run) {
+        if !run.diagnostics.cycles.iter().all(|(_, cycle)| cycle.steady()) {
+            class = class.min(FindingClass::Attention);
+        }
+        parts.push(words);
     }
     if run.spectra.iter().any(|of| of.beyond.is_some()) {
         class = class.min(FindingClass::Attention);
@@ -55,6 +42,51 @@ pub(super) fn motion(run: &TransientResult) -> Finding {
     }
     parts.push(format!("the energy balance of each step closes to {}", power(run.worst_residual)));
     Finding::new(class, format!("Motion in time: {}.", parts.join("; ")))
+}
+
+/// How large the oscillation of every analysed channel is at the end, at which frequency, and which of them are steady.
+fn oscillation(run: &TransientResult) -> Option<String> {
+    let cycles = &run.diagnostics.cycles;
+    let sizes: Vec<String> = cycles
+        .iter()
+        .map(|(k, cycle)| {
+            let channel = &run.channels[*k];
+            format!("{} by ± {}", channel.words(), prefixed(cycle.amplitude, channel.unit, 3))
+        })
+        .collect();
+    let first = cycles.iter().find_map(|(k, _)| strongest(run, *k)).map(|peak| peak.frequency_hz);
+    let at = run.fundamental_hz.or(first).map_or(String::new(), |hz| format!(", at {} Hz", hertz(hz, 1)));
+    let change = |(k, cycle): &(usize, LimitCycle)| {
+        format!("{} ({} %)", run.channels[*k].words(), signed(100.0 * cycle.drift, 0))
+    };
+    let [still, moving]: [Vec<&(usize, LimitCycle)>; 2] =
+        [true, false].map(|steady| cycles.iter().filter(|(_, cycle)| cycle.steady() == steady).collect());
+    let steady = match (still.len(), moving.len()) {
+        (_, 0) if cycles.len() == 1 => "steady".into(),
+        (_, 0) => "all steady".into(),
+        (0, _) => format!(
+            "not steady from the first to the second half: {}",
+            joined(moving.into_iter().map(change))
+        ),
+        _ => format!(
+            "{} steady, not so from the first to the second half: {}",
+            joined(still.iter().map(|(k, _)| run.channels[*k].words())),
+            joined(moving.into_iter().map(change))
+        ),
+    };
+    let from = significant(run.diagnostics.window[0], 3);
+    (!sizes.is_empty())
+        .then(|| format!("from {from} s on oscillation of {}{at}; {steady}", joined(sizes.into_iter())))
+}
+
+/// `a`, `a and b`, `a, b and c`.
+fn joined(words: impl Iterator<Item = String>) -> String {
+    let words: Vec<String> = words.collect();
+    match &words[..] {
+        [] => String::new(),
+        [one] => one.clone(),
+        [others @ .., last] => format!("{} and {last}", others.join(", ")),
+    }
 }
 
 /// Change of ln|c| over the time of the fit that is smaller than this is no growth.
@@ -112,18 +144,27 @@ mod tests {
         run.growth = Some(GrowthCompared { mode: 0, eigenvalue, found: Some(found) });
         let finding = motion(&run);
         assert_eq!(finding.class, FindingClass::Bad, "{}", finding.words);
-        assert!(finding.words.contains("grows with σ = +") && finding.words.contains("oscillates by ± "));
+        assert!(
+            finding.words.contains("grows with σ = +")
+                && finding.words.contains("oscillation of rim velocity by ± ")
+        );
         let loud = sound(&run).unwrap();
         assert!(loud.words.contains("dB(A)") && loud.class == FindingClass::Neutral, "{}", loud.words);
         // e^0.08 is less than the scatter.
         run.growth.as_mut().unwrap().found.as_mut().unwrap().rate = 4.0;
         assert!(motion(&run).words.contains("neither grows nor decays measurably"));
         run.growth.as_mut().unwrap().found.as_mut().unwrap().rate = -200.0;
-        run.diagnostics.cycles[0].1.drift = 0.0;
+        run.diagnostics.cycles.iter_mut().for_each(|(_, cycle)| cycle.drift = 0.0);
+        assert!(motion(&run).words.contains("contact friction force by ± "));
+        assert!(motion(&run).words.contains("; all steady"));
         run.spectra.iter_mut().for_each(|of| of.beyond = None);
         assert_eq!(motion(&run).class, FindingClass::Neutral);
         run.diagnostics.cycles[0].1.drift = 0.5;
-        assert_eq!(motion(&run).class, FindingClass::Attention);
+        let finding = motion(&run);
+        assert_eq!(finding.class, FindingClass::Attention);
+        let words =
+            "contact friction force steady, not so from the first to the second half: rim velocity (+50 %)";
+        assert!(finding.words.contains(words), "{}", finding.words);
         run.growth = None;
         run.sound = None;
         assert!(!motion(&run).words.contains("disturbance") && sound(&run).is_none());

@@ -3,7 +3,7 @@
 use crate::report::axes::{WIDTH, axes};
 use crate::report::chart::{Area, colour, sheet, widened};
 use crate::report::colours::{ALARM, SECOND};
-use crate::report::format::significant;
+use crate::report::format::{given, multiple};
 use crate::report::section::Picture;
 use crate::results::{Channel, RunResults, TransientResult};
 use plotters::prelude::*;
@@ -36,11 +36,13 @@ fn panels(run: &TransientResult) -> Vec<&Channel> {
 }
 
 fn panel(area: &Area, channel: &Channel, end: f64, ink: &str, last: bool) -> Result<(), Box<dyn Error>> {
-    let [low, high] = channel.range;
+    let unit = multiple(channel.range[0].abs().max(channel.range[1].abs()), channel.unit);
+    let [low, high] = channel.range.map(|v| v / unit.size);
     let below = last.then_some("time [s]");
     let ranges = (0.0..end, widened(low, high, 0.08));
-    let mut chart = axes(area, ranges, below, &channel.heading(), |v| significant(v, 3))?;
-    let line = PathElement::new(channel.line.clone(), colour(ink).stroke_width(2));
+    let mut chart = axes(area, ranges, below, &format!("{} [{}]", channel.words(), unit.unit), given)?;
+    let points: Vec<(f64, f64)> = channel.line.iter().map(|(t, v)| (*t, v / unit.size)).collect();
+    let line = PathElement::new(points, colour(ink).stroke_width(2));
     chart.draw_series([line])?;
     Ok(())
 }

@@ -3,7 +3,7 @@
 use crate::report::axes::{Words, labelled};
 use crate::report::chart::{Area, colour, sheet, widened};
 use crate::report::colours::{ALARM, MUTED, SECOND};
-use crate::report::format::{fixed, hertz, significant};
+use crate::report::format::{fixed, given, hertz, multiple};
 use crate::report::section::Picture;
 use crate::results::{PhaseCurve, RunResults, TransientResult};
 use plotters::prelude::*;
@@ -22,7 +22,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     }
     let svg = sheet(SIZE, |area| {
         for ((part, of), ink) in area.split_evenly((1, shown.len())).iter().zip(&shown).zip([ALARM, SECOND]) {
-            curve(part, of, ink)?;
+            curve(part, of, run, ink)?;
         }
         Ok(())
     })?;
@@ -41,25 +41,34 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
 
 fn curve(
     area: &Area,
-    PhaseCurve { axes: [below, beside], points }: &PhaseCurve,
+    PhaseCurve { channels, points }: &PhaseCurve,
+    run: &TransientResult,
     ink: &str,
 ) -> Result<(), Box<dyn Error>> {
-    let range = |k: usize| {
-        let finite = points.iter().map(|p| p[k]).filter(|v| v.is_finite());
-        let (low, high) =
-            finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
-        widened(low, high, 0.08)
+    let axis = |k: usize| {
+        let channel = &run.channels[channels[k]];
+        let finite = || points.iter().map(|p| p[k]).filter(|v| v.is_finite());
+        let unit = multiple(finite().map(f64::abs).fold(0.0, f64::max), channel.unit);
+        let ends = [finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max)];
+        let [low, high] = ends.map(|v| v / unit.size);
+        (format!("{} [{}]", channel.words(), unit.unit), unit.size, widened(low, high, 0.08))
     };
-    let (across, up) = (range(0), range(1));
-    let label = |v: f64| significant(v, 3);
-    let words =
-        Words { below: Some(below), beside, across: &label, up: &label, labels: 5, decades: 0.0, grid: true };
+    let [(below, wide, across), (beside, high, up)] = [axis(0), axis(1)];
+    let words = Words {
+        below: Some(&below),
+        beside: &beside,
+        across: &given,
+        up: &given,
+        labels: 5,
+        decades: 0.0,
+        grid: true,
+    };
     let mut chart = labelled(area, (across.clone(), up.clone()), &words)?;
     if across.contains(&0.0) {
         let line = [(0.0, up.start), (0.0, up.end)];
         chart.draw_series([PathElement::new(line, colour(MUTED).stroke_width(1))])?;
     }
-    let path: Vec<(f64, f64)> = points.iter().map(|[x, y]| (*x, *y)).collect();
+    let path: Vec<(f64, f64)> = points.iter().map(|[x, y]| (x / wide, y / high)).collect();
     chart.draw_series([PathElement::new(path, colour(ink).stroke_width(1))])?;
     Ok(())
 }

@@ -1,13 +1,13 @@
 //! `sound.svg` and the table: how loud it is.
 
 use super::spectra::highest_frequency;
-use crate::report::axes::{WIDTH, axes};
+use crate::report::axes::{Chart, WIDTH, axes};
 use crate::report::chart::{Area, above, bold, colour, sheet, text};
-use crate::report::colours::{ALARM, INK, SECOND};
+use crate::report::colours::{ALARM, INK, MEASURED, MUTED, SECOND};
 use crate::report::format::{fixed, given, hertz, significant};
 use crate::report::section::Picture;
 use crate::report::table::ReportTable;
-use crate::results::{RunResults, Sound, TransientResult};
+use crate::results::{MicrophoneSound, RunResults, Sound, TransientResult};
 use crate::sound::{power_level, pressure_level};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -15,10 +15,17 @@ use std::error::Error;
 
 /// Decibels below the highest line that are shown.
 const DEPTH: f64 = 70.0;
+/// Room for the name of a curve above the highest line \[dB\].
+const NAME: f64 = 7.0;
+/// Colours of the microphones, in turn.
+const INKS: [&str; 5] = [SECOND, MEASURED, "#cc79a7", "#b08a00", MUTED];
 /// Modes that the table names.
 const MODES: usize = 4;
 
-/// Sound power, and the pressure at the first microphone, over frequency.
+/// Curves of one panel, each with its colour and the words that name it.
+type Curves = Vec<(Vec<f64>, &'static str, String)>;
+
+/// Sound power, and the pressure at every microphone, over frequency.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let run = results.get::<TransientResult>()?;
     let sound = run.sound.as_ref()?;
@@ -26,63 +33,79 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     if !power.iter().any(|level| level.is_finite()) {
         return None;
     }
-    let microphone = sound.microphones.first();
     let end = highest_frequency(run).min(sound.frequency_hz(sound.lines() - 1));
+    let named = |name: &str, [level, weighted]: [f64; 2]| {
+        format!("{name}: {} dB, {} dB(A)", fixed(level, 1), fixed(weighted, 1))
+    };
+    let pressure = |(k, microphone): (usize, &MicrophoneSound)| {
+        let lines = 0..microphone.spectrum.amplitude.len();
+        let levels = lines.map(|k| pressure_level(microphone.spectrum.mean_square(k))).collect();
+        (levels, INKS[k % INKS.len()], named(&microphone.name, microphone.levels()))
+    };
+    let microphones: Curves = sound.microphones.iter().enumerate().map(pressure).collect();
+    let whole: Curves = vec![(power, ALARM, named("sound power", sound.power_levels()))];
     let svg = sheet((WIDTH, 640), |area| {
-        let parts = area.split_evenly((1 + usize::from(microphone.is_some()), 1));
+        let parts = area.split_evenly((1 + usize::from(!microphones.is_empty()), 1));
         let last = |k: usize| (k + 1 == parts.len()).then_some("frequency [Hz]");
-        let [level, weighted] = sound.power_levels();
-        let words = format!("sound power {} dB, {} dB(A)", fixed(level, 1), fixed(weighted, 1));
-        let beside = "power level [dB re 1 pW]";
-        let mut chart = lines(&parts[0], sound, (&power, ALARM), end, [beside, &words], last(0))?;
-        label(&parts[0], &mut chart, sound, &power, end)?;
-        if let (Some(part), Some(microphone)) = (parts.get(1), microphone) {
-            let count = microphone.spectrum.amplitude.len();
-            let levels: Vec<f64> =
-                (0..count).map(|k| pressure_level(microphone.spectrum.mean_square(k))).collect();
-            let [level, weighted] = microphone.levels();
-            let words = format!("{}: {} dB, {} dB(A)", microphone.name, fixed(level, 1), fixed(weighted, 1));
-            let beside = "pressure level [dB re 20 µPa]";
-            lines(part, sound, (&levels, SECOND), end, [beside, &words], last(1))?;
+        let mut chart =
+            lines(&parts[0], sound, &whole, end, ["power level [dB re 1 pW]", last(0).unwrap_or_default()])?;
+        label(&parts[0], &mut chart, sound, &whole[0].0, end)?;
+        if let Some(part) = parts.get(1) {
+            lines(part, sound, &microphones, end, ["pressure level [dB re 20 µPa]", "frequency [Hz]"])?;
         }
         Ok(())
     })?;
+    let names: Vec<&str> = sound.microphones.iter().map(|m| m.name.as_str()).collect();
+    let at = match names.len() {
+        0 => String::new(),
+        1 => format!("; pressure at microphone {}", names[0]),
+        _ => format!("; pressure at the microphones {}", names.join(", ")),
+    };
     let caption = format!(
-        "Sound from {} to {} s, level of each line of {} Hz: power of all plates, both sides{}. Each plate as if in an infinite rigid baffle.",
+        "Sound from {} to {} s, level of each line of {} Hz: power of all plates, both sides{at}. Each plate as if in an infinite rigid baffle.",
         given(sound.window[0]),
         given(sound.window[1]),
-        significant(sound.resolution_hz, 3),
-        microphone.map_or(String::new(), |h| format!("; pressure at microphone {}", h.name))
+        significant(sound.resolution_hz, 3)
     );
     Some(Picture { file: "sound".into(), caption, svg })
 }
 
+/// A panel with curves, named in its upper right corner.
 fn lines<'a>(
     area: &Area<'a>,
     sound: &Sound,
-    (levels, ink): (&[f64], &str),
+    curves: &Curves,
     end: f64,
-    [beside, words]: [&str; 2],
-    below: Option<&str>,
-) -> Result<crate::report::axes::Chart<'a>, Box<dyn Error>> {
-    let highest = levels.iter().skip(1).filter(|l| l.is_finite()).fold(f64::NEG_INFINITY, |m, l| m.max(*l));
+    [beside, below]: [&str; 2],
+) -> Result<Chart<'a>, Box<dyn Error>> {
+    let levels = curves.iter().flat_map(|(levels, ..)| levels.iter().skip(1));
+    let highest = levels.filter(|l| l.is_finite()).fold(f64::NEG_INFINITY, |m, l| m.max(*l));
     let highest = if highest.is_finite() { highest } else { 0.0 };
-    let (top, floor) = (highest + 14.0, highest - DEPTH);
+    let (top, floor) = (highest + NAME * (1.0 + curves.len() as f64), highest - DEPTH);
+    let below = Some(below).filter(|words| !words.is_empty());
     let mut chart = axes(area, (0.0..end, floor..top), below, beside, |v| fixed(v, 0))?;
-    let points = levels.iter().enumerate().skip(1).map(|(k, l)| (sound.frequency_hz(k), l.max(floor)));
-    let path: Vec<(f64, f64)> = points.take_while(|(hz, _)| *hz <= end).collect();
-    chart.draw_series([PathElement::new(path, colour(ink).stroke_width(1))])?;
     let (x, y) = chart.backend_coord(&(end, top));
     let (left, upper) = area.get_base_pixel();
-    let style = bold(13.0, INK).pos(Pos::new(HPos::Right, VPos::Top));
-    area.draw_text(words, &style, (x - left - 8, y - upper + 6))?;
+    for (k, (levels, ink, words)) in curves.iter().enumerate() {
+        let points = levels.iter().enumerate().skip(1).map(|(k, l)| (sound.frequency_hz(k), l.max(floor)));
+        let path: Vec<(f64, f64)> = points.take_while(|(hz, _)| *hz <= end).collect();
+        // Later ones are thinner, so that equal curves do not hide each other.
+        let width = 1 + (curves.len() - 1 - k).min(3) as u32;
+        chart.draw_series([PathElement::new(path, colour(ink).stroke_width(width))])?;
+        let (x, y) = (x - left - 8, y - upper + 6 + 18 * k as i32);
+        let style = bold(13.0, INK).pos(Pos::new(HPos::Right, VPos::Top));
+        area.draw_text(words, &style, (x - 26 * i32::from(curves.len() > 1), y))?;
+        if curves.len() > 1 {
+            area.draw(&PathElement::new([(x - 20, y + 7), (x, y + 7)], colour(ink).stroke_width(3)))?;
+        }
+    }
     Ok(chart)
 }
 
 /// The frequencies of the tones.
 fn label(
     area: &Area,
-    chart: &mut crate::report::axes::Chart,
+    chart: &mut Chart,
     sound: &Sound,
     levels: &[f64],
     end: f64,
@@ -155,11 +178,11 @@ pub(in crate::report) fn table(run: &TransientResult, real_modes: &[String]) -> 
     if whole > 0.0 {
         table.notes.push(format!("Of the power: {}. By modes: {}.", plates.join(", "), modes.join(", ")));
     }
-    if let Some(first) = sound.microphones.first() {
+    for microphone in &sound.microphones {
         table.notes.push(format!(
-            "sound_{}.wav: the pressure there, 48 kHz, full scale {} Pa.",
-            first.name,
-            significant(sound.recording.full_scale(), 3)
+            "sound_{}.wav: the pressure at that microphone, 48 kHz, full scale {} Pa.",
+            microphone.name,
+            significant(microphone.recording.full_scale(), 3)
         ));
     }
     let limits = "Rayleigh's integral: each plate in an infinite rigid baffle, nothing reflected; an upper estimate \

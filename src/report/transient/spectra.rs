@@ -1,9 +1,9 @@
 //! `transient_spectrum.svg`: motion and friction over frequency.
 
-use crate::report::axes::{Chart, WIDTH, axes};
+use crate::report::axes::{Chart, WIDTH, Words, labelled};
 use crate::report::chart::{Area, above, bold, colour, sheet, text};
 use crate::report::colours::{ALARM, INK, MEASURED, SECOND};
-use crate::report::format::{given, hertz, significant};
+use crate::report::format::{given, hertz, multiple, significant};
 use crate::report::section::Picture;
 use crate::results::{Channel, RunResults, SpectrumOf, TransientResult};
 use plotters::prelude::*;
@@ -49,14 +49,19 @@ fn lines(
     let amplitude = &of.spectrum.amplitude;
     let highest = amplitude.iter().skip(2).fold(f64::MIN_POSITIVE, |m: f64, v| m.max(*v));
     let (top, floor) = (highest.log10() + 0.7, highest.log10() - DECADES);
-    let heading = channel.heading();
-    let mut chart =
-        axes(area, (0.0..end, floor..top), below, &heading, |v| format!("{:.0e}", 10f64.powf(v)))?;
-    mark(area, &mut chart, &of.measured, end, floor..top)?;
+    let unit = multiple(highest, channel.unit);
+    let heading = format!("{} [{}]", channel.words(), unit.unit);
+    // Places are decimal logarithms of the values in that unit.
+    let shift = unit.size.log10();
+    let value = |v: f64| significant(10f64.powf(v), 1);
+    let words =
+        Words { below, beside: &heading, across: &given, up: &value, labels: 10, decades: 1.0, grid: true };
+    let mut chart = labelled(area, (0.0..end, floor - shift..top - shift), &words)?;
+    mark(area, &mut chart, &of.measured, end, floor - shift..top - shift)?;
     let line = amplitude
         .iter()
         .enumerate()
-        .map(|(k, a)| (of.spectrum.frequency_hz(k), a.max(f64::MIN_POSITIVE).log10().max(floor)))
+        .map(|(k, a)| (of.spectrum.frequency_hz(k), a.max(f64::MIN_POSITIVE).log10().max(floor) - shift))
         .take_while(|(hz, _)| *hz <= end);
     chart.draw_series([PathElement::new(line.collect::<Vec<_>>(), colour(ink).stroke_width(1))])?;
     let (left, upper) = area.get_base_pixel();
@@ -64,7 +69,7 @@ fn lines(
     let mut strongest: Vec<_> = of.peaks.iter().collect();
     strongest.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
     for peak in strongest.into_iter().filter(|peak| peak.frequency_hz < end) {
-        let (x, y) = chart.backend_coord(&(peak.frequency_hz, peak.amplitude.log10()));
+        let (x, y) = chart.backend_coord(&(peak.frequency_hz, peak.amplitude.log10() - shift));
         if taken.iter().any(|u| (u - x).abs() < 60) {
             continue;
         }
@@ -98,13 +103,14 @@ fn mark(
     Ok(())
 }
 
-/// Where something is to be seen: up to a third beyond the last named peak, and some harmonics of the strongest.
+/// Where something is to be seen: up to a third beyond the last peak, and some harmonics of the fundamental or the strongest.
 pub(super) fn highest_frequency(run: &TransientResult) -> f64 {
     let Some(first) = run.spectra.first() else { return 0.0 };
     let peaks = || run.spectra.iter().flat_map(|of| &of.peaks);
     let last = peaks().map(|p| p.frequency_hz).fold(0.0, f64::max);
     let strongest = first.peaks.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
-    let harmonics = strongest.map_or(f64::INFINITY, |p| 6.5 * p.frequency_hz);
+    let first_hz = run.fundamental_hz.or(strongest.map(|p| p.frequency_hz));
+    let harmonics = first_hz.map_or(f64::INFINITY, |hz| 6.5 * hz);
     let nyquist = first.spectrum.frequency_hz(first.spectrum.amplitude.len().saturating_sub(1));
     if last > 0.0 { (1.33 * last).min(harmonics).min(nyquist) } else { nyquist }
 }

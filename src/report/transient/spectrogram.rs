@@ -5,7 +5,7 @@ use super::spectra::highest_frequency;
 use crate::report::axes::{WIDTH, Words, labelled};
 use crate::report::chart::{Area, colour, sheet, text};
 use crate::report::colours::{INK, MEASURED, sequential};
-use crate::report::format::{given, significant};
+use crate::report::format::{given, multiple, significant};
 use crate::report::section::Picture;
 use crate::results::{Channel, RunResults, TransientResult};
 use crate::signal::Spectrogram;
@@ -111,14 +111,15 @@ fn scale(bar: &Area, channel: &Channel, most: f64) -> Result<(), Box<dyn Error>>
         bar.draw(&Rectangle::new(corner, colour(&shade).filled()))?;
     }
     let left = text(11.5, INK).pos(Pos::new(HPos::Left, VPos::Center));
+    let unit = multiple(most, channel.unit);
     for decade in 0..=DECADES as i32 {
         let y = top + (f64::from(decade) / DECADES * f64::from(length)) as i32;
-        bar.draw_text(&significant(most * 10f64.powi(-decade), 2), &left, (26, y))?;
+        bar.draw_text(&significant(most / unit.size * 10f64.powi(-decade), 2), &left, (26, y))?;
     }
-    let name = channel.name.replace('_', " ");
+    let name = channel.words();
     let words: Vec<&str> = name.rsplitn(2, ' ').collect();
     let [last, first] = [words[0], words.get(1).copied().unwrap_or_default()];
     bar.draw_text(first, &left, (2, 12))?;
-    bar.draw_text(&format!("{last} [{}]", channel.unit), &left, (2, 27))?;
+    bar.draw_text(&format!("{last} [{}]", unit.unit), &left, (2, 27))?;
     Ok(())
 }

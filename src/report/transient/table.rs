@@ -1,6 +1,6 @@
 //! The figures of a run in time.
 
-use crate::report::format::{fixed, given, hertz, power, signed, significant};
+use crate::report::format::{fixed, given, hertz, power, prefixed, signed, significant};
 use crate::report::table::ReportTable;
 use crate::results::{GrowthCompared, TransientResult};
 use crate::signal::LimitCycle;
@@ -24,7 +24,7 @@ pub(in crate::report) fn table(run: &TransientResult) -> ReportTable {
         let channel = &run.channels[of.channel];
         for peak in &of.peaks {
             let cells = vec![
-                channel.name.replace('_', " "),
+                channel.words(),
                 hertz(peak.frequency_hz, 1),
                 significant(peak.amplitude, 3),
                 channel.unit.to_string(),
@@ -34,6 +34,12 @@ pub(in crate::report) fn table(run: &TransientResult) -> ReportTable {
             table.row(cells, false);
         }
     }
+    table.notes.extend(run.fundamental_hz.map(|hz| {
+        format!(
+            "Fundamental of all channels: {} Hz. A peak has a relation to it where its amplitude and its phase keep to it.",
+            hertz(hz, 1)
+        )
+    }));
     table.notes.extend(beyond(run));
     table.notes.extend(run.reduced.map(|[modes, attached]| {
         format!(
@@ -56,7 +62,7 @@ pub(in crate::report) fn table(run: &TransientResult) -> ReportTable {
 /// Lines that stand above all modes of the case.
 fn beyond(run: &TransientResult) -> impl Iterator<Item = String> {
     run.spectra.iter().filter_map(|of| {
-        let (name, hz) = (run.channels[of.channel].name.replace('_', " "), hertz(of.beyond?, 0));
+        let (name, hz) = (run.channels[of.channel].words(), hertz(of.beyond?, 0));
         Some(format!(
             "The strongest line of {name} is at {hz} Hz, beyond the modes of the case, where a ratio given for them damps nothing: give [cea] a wider band or the materials `rayleigh` damping."
         ))
@@ -90,13 +96,12 @@ fn swing(run: &TransientResult, channel: usize, cycle: &LimitCycle) -> String {
         format!("not steady: {} % from the first to the second half", signed(100.0 * cycle.drift, 0))
     };
     format!(
-        "From {} s on {} swings by ± {} {} about {} (r.m.s. {}), {verdict}.",
+        "From {} s on {} swings by ± {} about {} (r.m.s. {}), {verdict}.",
         significant(run.diagnostics.window[0], 3),
-        channel.name.replace('_', " "),
-        significant(cycle.amplitude, 3),
-        channel.unit,
-        significant(cycle.mean, 3),
-        significant(cycle.rms, 3)
+        channel.words(),
+        prefixed(cycle.amplitude, channel.unit, 3),
+        prefixed(cycle.mean, channel.unit, 3),
+        prefixed(cycle.rms, channel.unit, 3)
     )
 }
 

@@ -187,6 +187,6 @@ impl Determinant<'_> {
 /// Warning that the unstable modes are not counted.
 pub(super) fn not_counted(modes: &mut ComplexModes, work: f64) {
     modes.warnings.push(format!(
-        "the unstable modes were not counted: at full order that would take about {work:.0e} operations; `cea.certify = true` counts them all the same"
+        "The unstable modes were not counted: at full order that would take about {work:.0e} operations; `cea.certify = true` counts them all the same"
     ));
 }

@@ -94,7 +94,7 @@ pub fn certified_modes<'a>(
         let most_work = most_work.max(SHARE * eigenvalue_work(&analysis, modes));
         if work > most_work {
             modes.warnings.push(format!(
-                "the unstable modes were not counted: with {} directions of contact that would take about {work:.0e} operations; `cea.certify = true` counts them all the same",
+                "The unstable modes were not counted: with {} directions of contact that would take about {work:.0e} operations; `cea.certify = true` counts them all the same",
                 directions(&analysis)
             ));
             return None;
@@ -110,7 +110,7 @@ pub fn certified_modes<'a>(
                 Some(certificate)
             }
             Err(error) => {
-                modes.warnings.push(format!("the unstable modes could not be counted: {error}"));
+                modes.warnings.push(format!("The unstable modes could not be counted: {error}"));
                 None
             }
         }
@@ -132,7 +132,7 @@ fn counted_at_full_order(
     let mut general = general_modes(&operator, known.real, band, observer)?;
     if band.nearest.is_some() {
         general.modes.warnings.push(
-            "the unstable modes were not counted: those nearest to a frequency are requested, not all of a band"
+            "The unstable modes were not counted: those nearest to a frequency are requested, not all of a band"
                 .to_string(),
         );
         return Ok((general.modes, None));
@@ -148,7 +148,7 @@ fn counted_at_full_order(
     match certificate {
         Ok(certificate) => Ok((general.modes, Some(certificate))),
         Err(error) => {
-            general.modes.warnings.push(format!("the unstable modes could not be counted: {error}"));
+            general.modes.warnings.push(format!("The unstable modes could not be counted: {error}"));
             Ok((general.modes, None))
         }
     }
@@ -187,7 +187,7 @@ fn eigenvalue_work(analysis: &CompletedAnalysis<'_>, modes: &ComplexModes) -> f6
 /// The count agrees, and yet is no proof.
 fn weak(certificate: &Certificate) -> String {
     format!(
-        "the count of the unstable modes is no proof at full order: near {} Hz what the basis leaves out may be {:.1e} times what would change it; take more real modes (`cea.basis_below`)",
+        "The count of the unstable modes is no proof at full order: near {} Hz what the basis leaves out may be {:.1e} times what would change it; take more real modes (`cea.basis_below`)",
         hertz(certificate.tightest[0], 1),
         1.0 / certificate.margin
     )

@@ -219,7 +219,7 @@ fn a_march_that_stops_says_where_and_what_cures_it() {
     let error = march(&model, State::steady(&model, &steady), &plan, &(), &mut |_| Ok(())).unwrap_err();
     let text = error.to_string();
     let name = &system.pairs[0].name;
-    let bristle = format!("`[contact.{name}] bristle`");
+    let bristle = format!("`[contact.{name}.bristle]`");
     for part in ["at t = ", "point 1 of the contact", &bristle, "friction.regularisation", "time_step"] {
         assert!(text.contains(part), "{text}");
     }
