@@ -239,7 +239,7 @@ declare! {
         /// k_n.
         pub stiffness: f64 = key::quantity(per.dimensions()[0]).non_negative(),
         /// k_nl.
-        pub cubic: f64 = key::quantity(per.dimensions()[1]).non_negative().or(0.0),
+        pub cubic: f64 = key::quantity(per.dimensions()[1]).non_negative().or(0.0).label("cubic stiffness"),
         /// c_n.
         pub damping: f64 = key::quantity(per.dimensions()[2]).non_negative().or(0.0),
         /// Never pulls.

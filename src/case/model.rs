@@ -154,6 +154,7 @@ declare! {
     pub struct StructureDamping {
         /// ζ of every real mode up to the highest one in use.
         pub modal_ratio: f64 = key::quantity(NUMBER)
+            .label("modal damping ratio")
             .within(Bound::Included(0.0), Bound::Excluded(1.0))
             .or(0.0),
         /// ζ of single modes instead: (frequency near the mode \[Hz\], ζ).

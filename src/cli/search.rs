@@ -6,7 +6,7 @@ use super::progress::Bars;
 use crate::dataset::Describe;
 use crate::error::Result;
 use crate::report::{search_text, write_search};
-use crate::results::FolderLock;
+use crate::results::{FolderLock, Provenance};
 use crate::search::{read_search, search};
 use clap::Args;
 use std::path::PathBuf;
@@ -27,9 +27,11 @@ pub fn run(options: &SearchOptions, common: &Common) -> Result<u8> {
     let file = read_search(&options.file)?;
     let out = options.out.clone().unwrap_or_else(|| PathBuf::from("results").join(&file.name));
     let _lock = FolderLock::take(&out)?;
+    let provenance = Provenance::now(&options.file.to_string_lossy(), file.text());
+    let inputs = file.inputs()?;
     let result = search(&file, &out, options.resume, &Bars::new(common.quiet))?;
     result.write(&out)?;
-    write_search(&out, &result)?;
+    write_search(&out, &result, &provenance, &inputs)?;
     if common.json {
         give(format!("{:#}", result.describe().to_json()))?;
     } else if !common.quiet {

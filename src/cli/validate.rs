@@ -4,7 +4,7 @@ use super::output::{Common, complain, give, say};
 use super::progress::Bars;
 use crate::error::Result;
 use crate::report::write_validation;
-use crate::results::{FolderLock, passed};
+use crate::results::{FolderLock, Provenance, passed};
 use crate::validation;
 use clap::Args;
 use std::path::PathBuf;
@@ -23,6 +23,7 @@ pub struct ValidateOptions {
 
 pub fn run(options: &ValidateOptions, common: &Common) -> Result<u8> {
     let _lock = options.report.as_deref().map(FolderLock::take).transpose()?;
+    let provenance = Provenance::now("", "");
     let cases = validation::run(&options.from, options.filter.as_deref(), &Bars::new(common.quiet))?;
     if common.json {
         give(validation::to_json(&cases))?;
@@ -30,7 +31,8 @@ pub fn run(options: &ValidateOptions, common: &Common) -> Result<u8> {
         say(validation::table(&cases).trim_end())?;
     }
     if let Some(folder) = &options.report {
-        write_validation(folder, &cases)?;
+        let inputs = validation::inputs(&options.from, options.filter.as_deref())?;
+        write_validation(folder, &cases, &provenance, &inputs)?;
     }
     let [all, within] = passed(&cases);
     let failed = all - within;

@@ -63,7 +63,7 @@ impl FrictionCurve {
 
 /// A friction coefficient of zero or more.
 fn coefficient() -> Field<f64> {
-    key::quantity(NUMBER).expecting("a friction coefficient").non_negative()
+    key::quantity(NUMBER).expecting("a friction coefficient").non_negative().label("friction coefficient")
 }
 
 fn ascending(list: Field<Vec<f64>>, expected: &'static str) -> Field<Vec<f64>> {
@@ -107,10 +107,11 @@ declare! {
             let expected = "a value with which μ at rest, mu0 + mu1, is zero or more";
             key::quantity(NUMBER)
                 .expecting("a friction coefficient")
+                .label("friction coefficient")
                 .check(expected, move |mu1| mu0 + mu1 >= 0.0)
         },
         /// α \[s/m\].
-        pub alpha: f64 = key::quantity(INVERSE_VELOCITY).non_negative(),
+        pub alpha: f64 = key::quantity(INVERSE_VELOCITY).non_negative().label("decay with speed"),
     }
 }
 
@@ -131,7 +132,7 @@ declare! {
         /// μ_k, at high speed.
         pub mu_kinetic: f64 = coefficient(),
         /// v_s \[m/s\].
-        pub stribeck_velocity: f64 = key::quantity(VELOCITY).positive(),
+        pub stribeck_velocity: f64 = key::quantity(VELOCITY).positive().label("Stribeck velocity"),
         /// δ: 1 for an exponential, 2 for a bell.
         pub exponent: f64 =
             key::quantity(NUMBER).within(Bound::Included(1.0), Bound::Included(10.0)).or(2.0),

@@ -161,6 +161,7 @@ impl Explorer<'_> {
         let result = |sweep: sweep::Sweep, measured: FullOrderErrors, method: SweepMethod| SweepResult {
             name: name.to_string(),
             parameter: parameter.path.clone(),
+            label: parameter.label.clone(),
             unit: parameter.unit.to_string(),
             axis,
             nominal: parameter.value,
@@ -209,6 +210,7 @@ impl Explorer<'_> {
         Ok(MapResult {
             name: name.to_string(),
             parameters: analysis.parameters.clone(),
+            labels: [a.label, b.label],
             units: [a.unit.to_string(), b.unit.to_string()],
             axes,
             nominal: [a.value, b.value],

@@ -43,14 +43,17 @@ pub(super) struct Words<'a> {
     pub grid: bool,
 }
 
+/// The value of a tick of an axis, zero where it is that but for round-off.
+pub(super) fn clean(tick: f64, axis: &Range<f64>) -> f64 {
+    if tick.abs() < 1e-9 * (axis.end - axis.start) { 0.0 } else { tick }
+}
+
 /// Axes with words of one's own.
 pub(super) fn labelled<'a>(
     area: &Area<'a>,
     (across, up): (Range<f64>, Range<f64>),
     words: &Words,
 ) -> Result<Chart<'a>, Box<dyn Error>> {
-    // A tick that is zero but for round-off.
-    let clean = |v: f64, of: &Range<f64>| if v.abs() < 1e-9 * (of.end - of.start) { 0.0 } else { v };
     let (wide, high) = (across.clone(), up.clone());
     let mut chart = ChartBuilder::on(area)
         .margin_left(16)

@@ -3,6 +3,7 @@
 use super::chart::{Area, above, below, bold, colour, sheet, text, widened};
 use super::colours::{INK, MUTED};
 use super::format::{given, hertz, signed};
+use super::html::described;
 use super::section::Picture;
 use crate::results::{ComplexResult, RunResults};
 use crate::stability::{ComplexMode, GrowthBudget};
@@ -39,7 +40,17 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let svg = sheet(SIZE, |area| draw(area, &modes))?;
     let caption =
         "Where the growth of each unstable mode comes from; the terms add up to σ (black line).".to_string();
-    Some(Picture { file: "growth_budget".into(), caption, svg })
+    Some(Picture { file: "growth_budget".into(), caption, svg: described(&svg, &seen(&modes)) })
+}
+
+/// The largest term of each mode that feeds it.
+fn seen(modes: &[&ComplexMode]) -> String {
+    let each = modes.iter().map(|mode| {
+        let largest = TERMS.iter().max_by(|a, b| a.2(&mode.growth).total_cmp(&b.2(&mode.growth)));
+        let (name, _, term) = largest.expect("there are four");
+        format!("{} {} 1/s at {} Hz", name, signed(term(&mode.growth), 1), hertz(mode.frequency_hz(), 0))
+    });
+    format!("What feeds each unstable mode most: {}.", each.collect::<Vec<_>>().join("; "))
 }
 
 /// The ends of the stack: what feeds the mode and what takes from it.

@@ -1,4 +1,5 @@
-//! Elements of a chart that plotters does not write, in place of the texts that stand for them: see [`super::readout`].
+//! Elements of a chart that plotters does not write, in place of the texts that stand for them: see [`super::readout`] and
+//! [`super::curve`].
 
 /// Begins such a text; the next character says which element it is.
 pub(super) const ELEMENT: char = '\u{e000}';
@@ -35,6 +36,13 @@ fn element(words: &str) -> String {
                 "<circle cx=\"{x}\" cy=\"{y}\" r=\"{REACH}\" fill-opacity=\"0\"><title>{title}</title></circle>"
             )
         }
+        (Some('l'), [hex, width, opacity, dash, points]) => format!(
+            "<path d=\"M{points}\" fill=\"none\" stroke=\"{hex}\" stroke-width=\"{width}\" stroke-opacity=\"{opacity}\" \
+             stroke-dasharray=\"{dash}\" stroke-linejoin=\"round\"/>"
+        ),
+        (Some('c'), [x, y, radius, fill, stroke, width]) => format!(
+            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"{width}\"/>"
+        ),
         _ => String::new(),
     }
 }

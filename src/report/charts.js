@@ -43,7 +43,7 @@ for (const svg of charts) {
     const place = from + part * (to - from), value = decades ? decades * 10 ** place : place;
     const unit = (name.match(/\[(.*)\]\s*$/) || [])[1], word = name.replace(/\s*\[.*\]\s*$/, '');
     const text = decades ? value.toPrecision(4) : digits(value, to - from);
-    return `${word} ${text.replace('-', '−')}${unit && unit !== '1' ? ` ${unit}` : ''}`;
+    return `${word} ${text.replace('-', '−')}${unit && unit !== '1' && unit !== '–' ? ` ${unit}` : ''}`;
   };
   function hover(at) {
     const p = panels.find(q => at.x >= q.x && at.x <= q.x + q.w && at.y >= q.y && at.y <= q.y + q.h);

@@ -1,17 +1,24 @@
-//! `contact.svg`: normal force and penetration of the contact points along the contact, open and closed.
+//! `contact.svg`: normal force and penetration of the contact points, open and closed: over the position along a line of points,
+//! in plan view for a face; a table where the points are few.
 
 use super::chart::{Area, bold, colour, sheet, text, widened};
 use super::colours::{ALARM, CALM, INK, MEASURED, MUTED};
+use super::contact_face;
+use super::curve::{Pen, draw_curve, draw_dot, draw_ring, pen};
 use super::format::{given, significant};
 use super::readout::{axes_of, linear};
 use super::section::Picture;
+use super::table::ReportTable;
 use super::view::{ViewVector, cross, dot, unit};
+use crate::equilibrium::PointState;
 use crate::results::{RunResults, SteadyResult};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::error::Error;
 
 const SIZE: (u32, u32) = (980, 560);
+/// Fewer points are no curve: they stand in the table.
+const FEWEST: usize = 5;
 
 /// A contact point on the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,12 +34,26 @@ struct Mark {
     ahead: bool,
 }
 
-/// The picture, when the first pair has a closed point.
+/// Pairs with their number of points.
+fn counted(steady: &SteadyResult) -> impl Iterator<Item = (&str, usize)> {
+    let points = |name: &str| steady.points.iter().filter(|(pair, _)| pair == name).count();
+    steady.pairs.iter().map(move |(name, ..)| (name.as_str(), points(name)))
+}
+
+/// The picture of the first pair with enough points, when one of them is closed.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let steady = results.get::<SteadyResult>()?;
-    let (marks, axis) = marks(steady)?;
+    let (name, _) = counted(steady).find(|(_, points)| *points >= FEWEST)?;
+    let points = near_closed(steady, name);
+    if points.is_empty() {
+        return None;
+    }
+    if let Some(picture) = contact_face::picture(steady, name, &points) {
+        return Some(picture);
+    }
+    let of_pair = steady.pairs.iter().zip(&steady.directions).find(|((pair, ..), _)| pair == name);
+    let (marks, axis) = marks(&points, of_pair.map(|(_, [_, slide])| *slide));
     let svg = sheet(SIZE, |area| draw(area, &marks, axis))?;
-    let (name, ..) = steady.pairs.first()?;
     let edges = if marks.iter().any(|m| m.ahead) {
         " Circles: the edge that lies behind in the sliding direction; squares: the one ahead."
     } else {
@@ -43,48 +64,77 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     Some(Picture { file: "contact".into(), caption, svg })
 }
 
-/// The points of the first pair near its closed ones, and the name of the axis they are drawn over.
-fn marks(steady: &SteadyResult) -> Option<(Vec<Mark>, String)> {
-    let (pair, ..) = steady.pairs.first()?;
-    let all = || steady.points.iter().zip(&steady.state.points).filter(|((name, _), _)| name == pair);
-    let closed: Vec<ViewVector> =
-        all().filter(|(_, state)| state.closed()).map(|((_, place), _)| *place).collect();
-    let span = |direction: ViewVector| {
-        let along = closed.iter().map(|place| dot(*place, direction));
-        along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), s| (low.min(s), high.max(s)))
-    };
-    let width = |direction: ViewVector| span(direction).1 - span(direction).0;
-    let axes = [([0.0, 1.0, 0.0], "y"), ([1.0, 0.0, 0.0], "x"), ([0.0, 0.0, 1.0], "z")];
-    let (axis, name) =
-        axes.into_iter().reduce(|best, a| if width(a.0) > width(best.0) { a } else { best })?;
-    // Points farther than this from the closed ones say nothing: the far side of a rim, for one.
-    let reach = axes.iter().map(|(direction, _)| width(*direction)).fold(1e-3, f64::max);
+/// The points of all pairs with few; `None` where there are no such pairs.
+pub(super) fn table(steady: &SteadyResult) -> Option<ReportTable> {
+    let few: Vec<&str> = counted(steady).filter(|(_, n)| *n < FEWEST).map(|(name, _)| name).collect();
+    let headings = ["<pair", "x [mm]", "y [mm]", "z [mm]", "N [N]", "F₁ [N]", "F₂ [N]", "δ [µm]", "<state"];
+    let mut table = ReportTable::new("Contact points at steady sliding", &headings);
+    for ((pair, place), state) in steady.points.iter().zip(&steady.state.points) {
+        if !few.contains(&pair.as_str()) {
+            continue;
+        }
+        let mut cells = vec![pair.clone()];
+        cells.extend(place.map(|x| significant(1e3 * x, 4)));
+        cells.push(significant(state.forces.normal, 4));
+        cells.extend(state.forces.friction.map(|f| significant(f, 4)));
+        cells.push(significant(1e6 * state.penetration, 4));
+        cells.push(if state.closed() { "closed" } else { "open" }.into());
+        table.row(cells, false);
+    }
+    (!table.rows.is_empty()).then(|| table.without_columns(super::table::idle))
+}
+
+/// A contact point at a place.
+pub(super) type PlacedPoint<'a> = (ViewVector, &'a PointState);
+
+const AXES: [(ViewVector, &str); 3] =
+    [([0.0, 1.0, 0.0], "y"), ([1.0, 0.0, 0.0], "x"), ([0.0, 0.0, 1.0], "z")];
+
+/// The largest and least place of the closed points along a direction.
+fn span(points: &[PlacedPoint], direction: ViewVector) -> (f64, f64) {
+    let along = points.iter().filter(|(_, s)| s.closed()).map(|(place, _)| dot(*place, direction));
+    along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), s| (low.min(s), high.max(s)))
+}
+
+fn width(points: &[PlacedPoint], direction: ViewVector) -> f64 {
+    let (low, high) = span(points, direction);
+    high - low
+}
+
+/// The points of a pair near its closed ones: the far side of a rim, for one, says nothing.
+fn near_closed<'a>(steady: &'a SteadyResult, pair: &str) -> Vec<PlacedPoint<'a>> {
+    let of_pair = steady.points.iter().zip(&steady.state.points).filter(|((name, _), _)| name == pair);
+    let all: Vec<PlacedPoint> = of_pair.map(|((_, place), state)| (*place, state)).collect();
+    let reach = AXES.iter().map(|(direction, _)| width(&all, *direction)).fold(1e-3, f64::max);
     let near = |place: ViewVector| {
-        axes.iter().all(|(direction, _)| {
-            let (low, high) = span(*direction);
+        AXES.iter().all(|(direction, _)| {
+            let (low, high) = span(&all, *direction);
             (low - reach..=high + reach).contains(&dot(place, *direction))
         })
     };
-    let edge = edge_divider(steady, all().map(|((_, place), _)| *place).filter(|p| near(*p)).collect(), axis);
-    let mark = |place: ViewVector, state: &crate::equilibrium::PointState| Mark {
-        place: 1e3 * dot(place, axis),
+    all.iter().copied().filter(|(place, _)| near(*place)).collect()
+}
+
+/// Points along a line or a rim, and the name of the axis they are drawn over.
+fn marks(points: &[PlacedPoint], slide: Option<ViewVector>) -> (Vec<Mark>, String) {
+    let longer = |best: (ViewVector, &'static str), a: (ViewVector, &'static str)| {
+        if width(points, a.0) > width(points, best.0) { a } else { best }
+    };
+    let (axis, name) = AXES.into_iter().reduce(longer).expect("there are three");
+    let edge =
+        slide.and_then(|slide| edge_divider(slide, points.iter().map(|(place, _)| *place).collect(), axis));
+    let mark = |(place, state): &PlacedPoint| Mark {
+        place: 1e3 * dot(*place, axis),
         force: state.forces.normal,
         penetration: 1e6 * state.penetration,
         closed: state.closed(),
-        ahead: edge.is_some_and(|(direction, middle)| dot(place, direction) > middle),
+        ahead: edge.is_some_and(|(direction, middle)| dot(*place, direction) > middle),
     };
-    let marks: Vec<Mark> =
-        all().filter(|((_, place), _)| near(*place)).map(|((_, place), state)| mark(*place, state)).collect();
-    (!closed.is_empty()).then(|| (marks, name.to_string()))
+    (points.iter().map(mark).collect(), name.to_string())
 }
 
 /// The sliding direction and the place on it that parts the two edges of a rim, where the points lie on two edges.
-fn edge_divider(
-    steady: &SteadyResult,
-    places: Vec<ViewVector>,
-    axis: ViewVector,
-) -> Option<(ViewVector, f64)> {
-    let [_, slide] = *steady.directions.first()?;
+fn edge_divider(slide: ViewVector, places: Vec<ViewVector>, axis: ViewVector) -> Option<(ViewVector, f64)> {
     let direction = unit(cross(cross(axis, slide), axis))?;
     let along: Vec<f64> = places.iter().map(|place| dot(*place, direction)).collect();
     let (low, high) =
@@ -134,33 +184,28 @@ fn draw(area: &Area, marks: &[Mark], axis: String) -> Result<(), Box<dyn Error>>
             .y_label_formatter(&|v| given(*v))
             .draw()?;
         axes_of(&panel, &chart, [linear(&described), linear(title)])?;
-        let zero = PathElement::new([(across.start, 0.0), (across.end, 0.0)], colour(INK).stroke_width(1));
-        chart.draw_series([zero])?;
+        draw_curve(&chart, [(across.start, 0.0), (across.end, 0.0)], pen(INK, 1.0))?;
         for mark in marks {
             let value = if k == 0 { mark.force } else { mark.penetration };
-            if value < up.start {
-                continue;
-            }
             let hex = match (mark.closed, mark.ahead) {
                 (false, _) => CALM,
                 (true, false) => ALARM,
                 (true, true) => MEASURED,
             };
+            let at = (mark.place, value);
             if k == 0 && mark.closed {
-                let stem = PathElement::new(
-                    [(mark.place, 0.0), (mark.place, value)],
-                    colour(hex).mix(0.6).stroke_width(3),
-                );
-                chart.draw_series([stem])?;
+                draw_curve(&chart, [(mark.place, 0.0), at], Pen { opacity: 0.6, ..pen(hex, 3.0) })?;
             }
-            let style = if mark.closed { colour(hex).filled() } else { colour(hex).stroke_width(2) };
-            if mark.ahead {
-                let (x, y) = chart.backend_coord(&(mark.place, value));
+            if mark.ahead && value >= up.start {
+                let (x, y) = chart.backend_coord(&at);
                 let (x0, y0) = panel.get_base_pixel();
                 let (x, y) = (x - x0, y - y0);
+                let style = if mark.closed { colour(hex).filled() } else { colour(hex).stroke_width(2) };
                 panel.draw(&Rectangle::new([(x - 4, y - 4), (x + 4, y + 4)], style))?;
+            } else if mark.closed {
+                draw_dot(&chart, at, 5.0, hex)?;
             } else {
-                chart.draw_series([Circle::new((mark.place, value), 5, style)])?;
+                draw_ring(&chart, at, 5.0, (hex, 2.0))?;
             }
         }
         if k == 0 {
@@ -190,12 +235,27 @@ mod tests {
         far.penetration = -0.15;
         far.forces.normal = 0.0;
         steady.state.points.push(far);
-        let (marks, axis) = marks(steady).unwrap();
+        let (marks, axis) = marks(&near_closed(steady, "rim"), Some([1.0, 0.0, 0.0]));
         assert_eq!((marks.len(), axis.as_str()), (26, "y"));
         assert!((marks.iter().map(|m| m.force).sum::<f64>() - 20.0).abs() < 1e-12);
         assert_eq!(marks.iter().filter(|m| m.ahead).count(), 13);
+        assert!(table(steady).is_none());
         let svg = picture(&results).unwrap().svg;
         assert!(svg.contains("ΣN = 20.00 N on 11 closed points of 26") && !svg.contains("NaN"));
+    }
+
+    #[test]
+    fn few_points_are_a_table() {
+        let mut results = sample::rig();
+        let steady = results.get_mut::<SteadyResult>().unwrap();
+        steady.points.truncate(3);
+        steady.state.points.truncate(3);
+        let listed = table(steady).unwrap();
+        assert_eq!(listed.rows.len(), 3);
+        let state = |k: usize| listed.rows[k].cells.last().unwrap().clone();
+        let closed = steady.state.points[1].closed();
+        assert_eq!(state(1), if closed { "closed" } else { "open" });
+        assert!(picture(&results).is_none());
     }
 
     #[test]

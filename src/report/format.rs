@@ -10,6 +10,11 @@ pub(super) fn rate(lambda: c64) -> String {
     growth(lambda.re, lambda.norm(), ROUND_OFF)
 }
 
+/// `value` rounded to `digits` significant digits, of which [`given`] shows no more than it has.
+pub(super) fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
+}
+
 /// A value that a person gave; with two digits where it takes a power of ten.
 pub(super) fn short(value: f64) -> String {
     let text = given(value);
@@ -50,7 +55,13 @@ pub(super) fn prefixed(value: f64, unit: &str, digits: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::prefixed;
+    use super::{given, prefixed, rounded};
+
+    #[test]
+    fn rounded_values_are_as_short_as_they_can_be() {
+        let shown = [20.0, 0.589815, 3141.59, 0.0, 1e-18].map(|v| given(rounded(v, 4)));
+        assert_eq!(shown, ["20", "0.5898", "3142", "0", "1.00000e−18"]);
+    }
 
     #[test]
     fn prefixes_keep_the_digits_short() {

@@ -1,15 +1,15 @@
 //! Frequency responses: magnitude and phase, and which resonances show.
 
 use super::axes::{Chart, WIDTH};
-use super::chart::{Area, colour, sheet, text};
+use super::chart::{Area, sheet, text};
 use super::colours::{ALARM, INK, MEASURED, MUTED, PARTS, SECOND};
+use super::curve::{Dash, Pen, draw_curve, legend_line, pen};
 use super::finding::{Finding, FindingClass};
 use super::format::{fixed, given, hertz, power, prefixed};
 use super::magnitude::{draw_magnitude, draw_phase, magnitude_axes, phase_axes};
 use super::section::{Display, Picture, ReportSection};
 use super::table::{ReportTable, idle};
 use crate::results::{FrfResult, RunResults, file_name};
-use plotters::prelude::*;
 use std::error::Error;
 
 /// A mode with less than this part of the largest product of shapes does not show.
@@ -83,19 +83,19 @@ fn picture(frf: &FrfResult) -> Option<Picture> {
         let (upper, lower) = main.split_vertically(390);
         for (k, response) in frf.responses.iter().enumerate() {
             let x = 120 + 190 * (k % 4) as i32;
-            legend.draw(&Rectangle::new([(x, 12), (x + 16, 26)], colour(ink(k)).filled()))?;
-            legend.draw_text(&response.name.replace('_', " "), &text(13.0, INK), (x + 22, 11))?;
+            legend_line(&legend, (x, 18), line(k))?;
+            legend.draw_text(&response.name.replace('_', " "), &text(13.0, INK), (x + 36, 10))?;
         }
         let hz = &frf.frequencies_hz;
-        let mut sizes = magnitude_axes(&upper, hz, frf.quantity, magnitudes(frf), None)?;
-        let mut phases = phase_axes(&lower, hz, Some("frequency [Hz]"))?;
-        marks(&mut sizes, frf)?;
-        marks(&mut phases, frf)?;
+        let sizes = magnitude_axes(&upper, hz, frf.quantity, magnitudes(frf), None)?;
+        let phases = phase_axes(&lower, hz, Some("frequency [Hz]"))?;
+        marks(&sizes, frf)?;
+        marks(&phases, frf)?;
         name_measured(&upper, &sizes, frf)?;
         for (k, response) in frf.responses.iter().enumerate() {
             let points = || hz.iter().copied().zip(&response.values);
-            draw_magnitude(&mut sizes, points().map(|(hz, v)| (hz, v.norm())), (ink(k), 1))?;
-            draw_phase(&mut phases, points().map(|(hz, v)| (hz, v.arg())), (ink(k), 1))?;
+            draw_magnitude(&sizes, points().map(|(hz, v)| (hz, v.norm())), line(k))?;
+            draw_phase(&phases, points().map(|(hz, v)| (hz, v.arg())), line(k))?;
         }
         Ok(())
     })?;
@@ -106,22 +106,22 @@ fn magnitudes(frf: &FrfResult) -> impl Iterator<Item = f64> + '_ {
     frf.responses.iter().flat_map(|of| &of.values).map(|v| v.norm()).filter(|v| v.is_finite())
 }
 
-fn ink(k: usize) -> &'static str {
-    [ALARM, SECOND, PARTS[2][0], INK][k % 4]
+/// The line of response `k`: dashes show the lines below where responses coincide.
+fn line(k: usize) -> Pen<'static> {
+    let dash = [Dash::Solid, Dash::Dashed, Dash::DashDotted, Dash::Dotted][k % 4];
+    Pen { dash, ..pen([ALARM, SECOND, PARTS[2][0], INK][k % 4], if k == 0 { 2.0 } else { 1.5 }) }
 }
 
 /// Dotted lines at the natural frequencies, blue ones at the measured.
-fn marks(chart: &mut Chart, frf: &FrfResult) -> Result<(), Box<dyn Error>> {
+fn marks(chart: &Chart, frf: &FrfResult) -> Result<(), Box<dyn Error>> {
     let up = chart.y_range();
     for resonance in &frf.resonances {
-        let dots = (0..40).map(|k| up.start + (up.end - up.start) * f64::from(k) / 40.0);
-        chart.draw_series(
-            dots.map(|y| Circle::new((resonance.frequency_hz, y), 1, colour(MUTED).mix(0.35).filled())),
-        )?;
+        let line = [(resonance.frequency_hz, up.start), (resonance.frequency_hz, up.end)];
+        draw_curve(chart, line, Pen { opacity: 0.6, dash: Dash::Dotted, ..pen(MUTED, 1.0) })?;
     }
     for measured in shown(chart, frf) {
         let line = [(measured, up.start), (measured, up.end)];
-        chart.draw_series([PathElement::new(line, colour(MEASURED).mix(0.7).stroke_width(1))])?;
+        draw_curve(chart, line, Pen { opacity: 0.7, ..pen(MEASURED, 1.0) })?;
     }
     Ok(())
 }

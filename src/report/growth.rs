@@ -3,7 +3,10 @@
 use super::axes::Chart;
 use super::chart::{Area, above, bold, colour, sheet, text, widened};
 use super::colours::{ALARM, ALARM_TEXT, CALM, INK, MEASURED, MUTED};
+use super::curve::{Pen, draw_curve, draw_dot, draw_ring, pen};
 use super::format::{fixed, given, hertz, signed};
+use super::html::described;
+use super::labels::{LABEL_HEIGHT, Labels, local};
 use super::readout::{axes_of, linear, title_at};
 use super::section::Picture;
 use super::squeal::SQUEAL_TOLERANCE;
@@ -17,8 +20,6 @@ const SIZE: (u32, u32) = (980, 520);
 const DEEPEST: f64 = 2.0;
 /// Unstable modes with a label; the others have their mark only.
 const LABELS: usize = 10;
-/// Height of a label \[px\].
-const LABEL_HEIGHT: i32 = 17;
 
 /// The picture, when the run has complex modes.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
@@ -33,7 +34,23 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let caption = format!(
         "Growth rate of the complex modes: above zero a mode grows (orange), below it dies away (grey; a triangle where it lies below the axis).{squeal}"
     );
-    Some(Picture { file: "growth".into(), caption, svg })
+    Some(Picture { file: "growth".into(), caption, svg: described(&svg, &seen(complex)) })
+}
+
+/// How many modes grow, and which grows most.
+fn seen(complex: &ComplexResult) -> String {
+    let modes = &complex.modes.modes;
+    let unstable = modes.iter().filter(|m| m.unstable());
+    let strongest = unstable.clone().max_by(|a, b| a.growth_rate().total_cmp(&b.growth_rate()));
+    let largest = strongest.map_or(String::new(), |mode| {
+        let (rate, hz) = (signed(mode.growth_rate(), 1), hertz(mode.frequency_hz(), 0));
+        format!("; the largest growth rate is {rate} 1/s at {hz} Hz")
+    });
+    format!(
+        "Growth rate over frequency: {} of {} modes are unstable{largest}.",
+        unstable.count(),
+        modes.len()
+    )
 }
 
 /// Range of the axis of the growth rate.
@@ -78,10 +95,7 @@ fn draw(area: &Area, complex: &ComplexResult) -> Result<(), Box<dyn Error>> {
     axes_of(area, &chart, ["frequency [Hz]", "growth rate σ [1/s]"].map(linear))?;
     let mut labels = Labels::default();
     draw_squeal(area, &mut chart, complex, &mut labels)?;
-    chart.draw_series([PathElement::new(
-        [(across.start, 0.0), (across.end, 0.0)],
-        colour(INK).stroke_width(2),
-    )])?;
+    draw_curve(&chart, [(across.start, 0.0), (across.end, 0.0)], pen(INK, 2.0))?;
     draw_stable(&mut chart, modes)?;
     draw_unstable(area, &mut chart, modes, &mut labels)?;
     modes.iter().enumerate().try_for_each(|(k, mode)| {
@@ -89,24 +103,6 @@ fn draw(area: &Area, complex: &ComplexResult) -> Result<(), Box<dyn Error>> {
         let place = chart.backend_coord(&(mode.frequency_hz(), mode.growth_rate().max(up.start)));
         title_at(area, place, &format!("mode {}: {hz} Hz, σ {rate} 1/s", k + 1))
     })
-}
-
-/// Places of the labels: left, top, right, lower edge \[px\].
-#[derive(Debug, Default)]
-struct Labels(Vec<[i32; 4]>);
-
-impl Labels {
-    /// The lower edge of a label of `width` × [`LABEL_HEIGHT`] about `x`, at `y` or the next place in steps of `step` that is free.
-    fn place(&mut self, x: i32, mut y: i32, width: i32, step: i32) -> i32 {
-        let (left, right) = (x - width / 2, x + width / 2);
-        let covers =
-            |y: i32, [l, t, r, b]: &[i32; 4]| left < *r && right > *l && y - LABEL_HEIGHT < *b && y > *t;
-        while self.0.iter().any(|other| covers(y, other)) {
-            y += step;
-        }
-        self.0.push([left, y - LABEL_HEIGHT, right, y]);
-        y
-    }
 }
 
 /// A band about each measured squeal frequency.
@@ -121,10 +117,7 @@ fn draw_squeal(
     for (hz, _) in &complex.measured_squeal_hz {
         let (left, right) = (hz * (1.0 - SQUEAL_TOLERANCE), hz * (1.0 + SQUEAL_TOLERANCE));
         chart.draw_series([Rectangle::new([(left, up.start), (right, up.end)], band.mix(0.13).filled())])?;
-        chart.draw_series([PathElement::new(
-            [(*hz, up.start), (*hz, up.end)],
-            band.mix(0.55).stroke_width(1),
-        )])?;
+        draw_curve(chart, [(*hz, up.start), (*hz, up.end)], Pen { opacity: 0.55, ..pen(MEASURED, 1.0) })?;
         let (x, y) = chart.backend_coord(&(*hz, up.end));
         let y = labels.place(x, y + 6 + LABEL_HEIGHT, 112, LABEL_HEIGHT);
         area.draw_text(
@@ -143,11 +136,11 @@ fn draw_stable(chart: &mut Chart, modes: &[ComplexMode]) -> Result<(), Box<dyn E
         let place = (mode.frequency_hz(), mode.growth_rate());
         if !mode.accurate() {
             let place = (place.0, place.1.max(up.start));
-            chart.draw_series([Circle::new(place, 5, colour(MUTED).stroke_width(1))])?;
+            draw_ring(chart, place, 5.0, (MUTED, 1.0))?;
         } else if place.1 < up.start {
             chart.draw_series([TriangleMarker::new((place.0, up.start), -6, colour(CALM).filled())])?;
         } else {
-            chart.draw_series([Circle::new(place, 4, colour(CALM).filled())])?;
+            draw_dot(chart, place, 4.0, CALM)?;
         }
     }
     Ok(())
@@ -164,8 +157,8 @@ fn draw_unstable(
     unstable.sort_by(|a, b| b.growth_rate().total_cmp(&a.growth_rate()));
     for (k, mode) in unstable.iter().enumerate() {
         let place = (mode.frequency_hz(), mode.growth_rate());
-        chart.draw_series([PathElement::new([(place.0, 0.0), place], colour(ALARM).stroke_width(2))])?;
-        chart.draw_series([Circle::new(place, 6, colour(ALARM).filled())])?;
+        draw_curve(chart, [(place.0, 0.0), place], pen(ALARM, 2.0))?;
+        draw_dot(chart, place, 6.0, ALARM)?;
         if k >= LABELS {
             continue;
         }
@@ -184,28 +177,11 @@ fn draw_unstable(
     Ok(())
 }
 
-/// A pixel of the whole sheet as a pixel of `area`.
-fn local(area: &Area, x: i32, y: i32) -> (i32, i32) {
-    let (left, top) = area.get_base_pixel();
-    (x - left, y - top)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::linalg::c64;
     use crate::results::sample;
-
-    #[test]
-    fn labels_do_not_cover_each_other() {
-        let mut labels = Labels::default();
-        let places: Vec<i32> = [100, 130, 160, 100, 400].map(|x| labels.place(x, 200, 64, -4)).to_vec();
-        assert_eq!((places[0], places[4]), (200, 200));
-        for (k, [left, top, right, low]) in labels.0.iter().enumerate() {
-            let free = |[l, t, r, b]: &[i32; 4]| right <= l || left >= r || low <= t || top >= b;
-            assert!(labels.0[k + 1..].iter().all(free), "{labels:?}");
-        }
-    }
 
     #[test]
     fn unstable_modes_are_labelled_and_a_deep_one_does_not_flatten_the_picture() {

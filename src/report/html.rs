@@ -50,13 +50,19 @@ impl PageLayout {
         self.files.contains(file).then(|| format!("<a href=\"{address}\">{}</a>", escape(file)))
     }
 
-    /// A picture with its number and caption; `file` names it, without the extension.
-    pub(super) fn figure(&mut self, svg: &str, file: &str, caption: &str) -> String {
+    /// A picture with its number and caption; `file` names it, without the extension. Its alternative text is its description
+    /// or, where it has none, what was `found`.
+    pub(super) fn figure(&mut self, svg: &str, file: &str, caption: &str, found: &str) -> String {
         self.figures += 1;
         let id = format!("figure-{}", self.figures);
+        let alternative = match description(svg) {
+            Some(words) => words.to_string(),
+            None if found.is_empty() => escape(caption),
+            None => escape(&found.replace('`', "")),
+        };
         let link = self.link(&format!("{file}.svg")).map_or(String::new(), |link| format!(" ({link})"));
         format!(
-            "<figure id=\"{id}\"><div class=\"picture\" role=\"img\" aria-labelledby=\"{id}-caption\">{svg}</div>\
+            "<figure id=\"{id}\"><div class=\"picture\" role=\"img\" aria-label=\"{alternative}\" aria-describedby=\"{id}-caption\">{svg}</div>\
              <figcaption id=\"{id}-caption\"><b>Figure {}.</b> {}{link}</figcaption></figure>\n",
             self.figures,
             escape(caption)
@@ -93,9 +99,10 @@ impl PageLayout {
         for finding in &section.findings {
             text += &format!("<p class=\"finding\">{}</p>\n", prose(&finding.words));
         }
+        let found = section.findings.first().map_or("", |finding| finding.words.as_str());
         for item in &section.items {
             text += &match item {
-                Item::Picture(picture) => self.figure(&picture.svg, &picture.file, &picture.caption),
+                Item::Picture(picture) => self.figure(&picture.svg, &picture.file, &picture.caption, found),
                 Item::Table(content, display) => match display {
                     Display::Closed | Display::Proof => self.closed_table(content),
                     Display::Folded if content.rows.len() > LONG => self.closed_table(content),
@@ -107,6 +114,19 @@ impl PageLayout {
         }
         text
     }
+}
+
+/// A picture with a description for those who do not see it.
+pub(super) fn described(svg: &str, words: &str) -> String {
+    match svg.split_once('>') {
+        Some((head, rest)) => format!("{head}><desc>{}</desc>{rest}", escape(words)),
+        None => svg.to_string(),
+    }
+}
+
+/// The description of a picture, escaped.
+fn description(svg: &str) -> Option<&str> {
+    Some(svg.split_once("<desc>")?.1.split_once("</desc>")?.0)
 }
 
 /// A table with this many rows is long.
@@ -192,7 +212,7 @@ pub(super) fn escape(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{STYLE, prose};
+    use super::{PageLayout, STYLE, described, prose};
     use std::collections::BTreeMap;
 
     /// Relative luminance of `#rrggbb` (WCAG 2.2).
@@ -213,6 +233,21 @@ mod tests {
     fn names_in_sentences_are_code() {
         assert_eq!(prose("`a<b` and `c`"), "<code>a&lt;b</code> and <code>c</code>");
         assert_eq!(prose("one ` alone <"), "one ` alone &lt;");
+    }
+
+    #[test]
+    fn a_figure_says_what_is_seen() {
+        let svg = "<svg xmlns=\"x\"><rect/></svg>";
+        let label = |svg: &str, found: &str| {
+            let figure = PageLayout::default().figure(svg, "x", "The caption", found);
+            let label = figure.split_once("aria-label=\"").unwrap().1;
+            label.split('"').next().unwrap().to_string()
+        };
+        assert_eq!(label(svg, ""), "The caption");
+        assert_eq!(label(svg, "`a` grows"), "a grows");
+        let own = described(svg, "3 \"modes\"");
+        assert_eq!(own, "<svg xmlns=\"x\"><desc>3 &quot;modes&quot;</desc><rect/></svg>");
+        assert_eq!(label(&own, "`a` grows"), "3 &quot;modes&quot;");
     }
 
     #[test]

@@ -1,10 +1,10 @@
 //! Magnitude and phase over frequency, as frequency responses are drawn: magnitude on a logarithmic scale.
 
 use super::axes::{Chart, Words, labelled};
-use super::chart::{Area, colour};
+use super::chart::Area;
+use super::curve::{LinearChart, Pen, draw_curve};
 use super::format::{fixed, given};
 use crate::measured::Quantity;
-use plotters::prelude::*;
 use std::error::Error;
 use std::ops::Range;
 
@@ -58,25 +58,21 @@ fn band(hz: &[f64]) -> Range<f64> {
 
 /// Draws sizes over frequencies on [`magnitude_axes`].
 pub(super) fn draw_magnitude(
-    chart: &mut Chart,
+    chart: &LinearChart,
     points: impl Iterator<Item = (f64, f64)>,
-    (hex, width): (&str, u32),
+    pen: Pen,
 ) -> Result<(), Box<dyn Error>> {
-    let low = chart.y_range().start;
-    let points = points.map(|(hz, v)| (hz, v.max(f64::MIN_POSITIVE).log10().max(low)));
-    chart.draw_series([PathElement::new(points.collect::<Vec<_>>(), colour(hex).stroke_width(width))])?;
-    Ok(())
+    draw_curve(chart, points.map(|(hz, v)| (hz, v.max(f64::MIN_POSITIVE).log10())), pen)
 }
 
 /// Draws phases \[rad\] over frequencies on [`phase_axes`].
 pub(super) fn draw_phase(
-    chart: &mut Chart,
+    chart: &LinearChart,
     points: impl Iterator<Item = (f64, f64)>,
-    (hex, width): (&str, u32),
+    pen: Pen,
 ) -> Result<(), Box<dyn Error>> {
     let pieces = unbroken(points.map(|(hz, phase)| (hz, phase.to_degrees())));
-    chart.draw_series(pieces.into_iter().map(|p| PathElement::new(p, colour(hex).stroke_width(width))))?;
-    Ok(())
+    pieces.into_iter().try_for_each(|piece| draw_curve(chart, piece, pen))
 }
 
 /// Phases from −180° to 180° as lines that end at ±180° where the next one lies beyond, and continue at ∓180°.

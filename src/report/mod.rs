@@ -6,7 +6,7 @@
 //!   `growth_budget.svg`, `participation.svg`, `sensitivity.svg`, `advice.svg`, `transient.svg`, `transient_spectrum.svg`,
 //!   `transient_spectrogram.svg`, `transient_phase.svg`, `transient_contact.svg`, `sound.svg`, `frf_<name>.svg`, those of them that the run has something for;
 //!   `mac_<name>.svg`, `frequencies_<name>.svg` and `measured_frf_<name>.svg` of measured data;
-//!   `sweep_<name>.svg`, `root_locus_<name>.svg` and `map_<name>.svg` of every sweep and map.
+//!   `sweep_<name>.svg`, `sweep_<name>_places.svg`, `root_locus_<name>.svg` and `map_<name>.svg` of every sweep and map.
 //!
 //! The page's scripts: `shapes/viewer.js` moves the mode shapes, `charts.js` shows values under the pointer and zooms.
 //!
@@ -24,7 +24,9 @@ mod colours;
 mod comparison;
 mod complex;
 mod contact;
+mod contact_face;
 mod contours;
+mod curve;
 mod disc_modes;
 mod explored;
 mod finding;
@@ -32,6 +34,7 @@ mod format;
 mod frf;
 mod growth;
 mod html;
+mod labels;
 mod lines;
 mod magnitude;
 mod page;

@@ -169,12 +169,19 @@ mod tests {
         let ids = all(" id=\"");
         let unique: BTreeSet<&String> = ids.iter().collect();
         assert_eq!(ids.len(), unique.len(), "{ids:?}");
-        for target in all("href=\"#").iter().chain(&all("aria-labelledby=\"")) {
+        for target in all("href=\"#").iter().chain(&all("aria-describedby=\"")) {
             assert!(unique.contains(target), "{target} is nowhere");
         }
         let pictures = page.matches("<figure id=\"figure-").count();
         assert!(pictures > 15 && page.contains(&format!("<b>Figure {pictures}.</b>")));
-        assert_eq!(page.matches("role=\"img\" aria-labelledby").count(), pictures);
+        assert_eq!(page.matches("class=\"picture\" role=\"img\" aria-label=").count(), pictures);
+        for seen in [
+            "Growth rate over frequency: 3 of 14 modes are unstable",
+            "The model: disc, slider, bar; 11 of 26 contact points are closed",
+            "Steady sliding: rim carries",
+        ] {
+            assert!(page.contains(&format!("aria-label=\"{seen}")), "{seen}");
+        }
         for file in ["complex_modes.csv", "growth.svg", "mode%20%3C1%3E.csv"] {
             assert!(page.contains(&format!("href=\"{file}\"")), "{file}");
         }

@@ -2,6 +2,7 @@
 
 use super::colours::{ALARM_TEXT, INK, MUTED};
 use super::format::{fixed, hertz, signed};
+use super::html::described;
 use super::section::Picture;
 use super::svg::{Anchor, Ink, Sheet};
 use crate::results::{ComplexResult, RunResults};
@@ -49,7 +50,14 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let caption = format!(
         "The real modes that take part in {which}, by their share in its shape; those below {percent} % are the others."
     );
-    Some(Picture { file: "participation".into(), caption, svg: sheet.finish() })
+    let each = modes.iter().filter_map(|mode| {
+        let (real, share) = mode.participation.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let name = complex.real_modes.get(*real).filter(|name| !name.is_empty());
+        let name = name.cloned().unwrap_or_else(|| format!("mode {}", real + 1));
+        Some(format!("{} Hz: {} % {name}", hertz(mode.frequency_hz(), 0), fixed(100.0 * share, 0)))
+    });
+    let seen = format!("The largest share of each mode: {}.", each.collect::<Vec<_>>().join("; "));
+    Some(Picture { file: "participation".into(), caption, svg: described(&sheet.finish(), &seen) })
 }
 
 /// The unstable modes or, where there is none, those nearest to it; ascending in frequency.

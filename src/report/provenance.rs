@@ -3,20 +3,37 @@
 use super::format::{fixed, significant};
 use super::html::{PageLayout, escape};
 use super::table::ReportTable;
+use crate::results::record::InputFile;
 use crate::results::{Provenance, RunResults};
 
 /// The tables of the end of the page, and links to the files beside it.
 pub(super) fn provenance(results: &RunResults, layout: &mut PageLayout) -> String {
-    let mut text = results.provenance.as_ref().map_or(String::new(), |p| layout.table(&facts(p)));
-    let inputs = inputs(results);
-    if !inputs.rows.is_empty() {
-        text += &layout.table(&inputs);
-    }
+    let mut text = origin(results.provenance.as_ref(), &results.inputs, layout);
     if !results.timings.is_empty() {
         text += &layout.table(&timings(results));
     }
     text + &links(layout)
 }
+
+/// Program, command and machine, the case file and the files that were read.
+pub(super) fn origin(
+    provenance: Option<&Provenance>,
+    inputs: &[InputFile],
+    layout: &mut PageLayout,
+) -> String {
+    let mut text = provenance.map_or(String::new(), |p| layout.table(&facts(p)));
+    let case = provenance.and_then(|p| p.case_file.as_ref());
+    let files = files(case.into_iter().chain(inputs));
+    text += &match files.rows.len() {
+        0 => String::new(),
+        1..=MANY => layout.table(&files),
+        _ => layout.closed_table(&files),
+    };
+    text
+}
+
+/// More files than this are opened with a click.
+const MANY: usize = 25;
 
 /// Program, command and machine.
 fn facts(p: &Provenance) -> ReportTable {
@@ -38,11 +55,10 @@ fn facts(p: &Provenance) -> ReportTable {
     table
 }
 
-/// The case and the files that it reads, with their checksums.
-fn inputs(results: &RunResults) -> ReportTable {
+/// Files with their checksums.
+fn files<'a>(files: impl Iterator<Item = &'a InputFile>) -> ReportTable {
     let mut table = ReportTable::new("Files that were read", &["<file", "bytes", "<SHA-256"]);
-    let case = results.provenance.iter().filter_map(|p| p.case_file.as_ref());
-    for file in case.chain(&results.inputs) {
+    for file in files {
         table.row(vec![file.path.clone(), file.bytes.to_string(), file.sha256.clone()], false);
     }
     table
@@ -83,14 +99,18 @@ fn links(layout: &PageLayout) -> String {
     if each.is_empty() { each } else { format!("<h3>Files beside this page</h3>\n<ul>\n{each}</ul>\n") }
 }
 
+/// The file of a case as the user wrote it; nothing of one that was no file.
+pub(super) fn as_written(title: &str, provenance: &Provenance) -> String {
+    if provenance.case_text.is_empty() {
+        return String::new();
+    }
+    let shown = escape(&provenance.case_text.replace('\t', "    ").replace("\r\n", "\n"));
+    format!("<details open><summary>{title}</summary><pre>{shown}</pre></details>\n")
+}
+
 /// The case as the user wrote it, and as the run used it.
 pub(super) fn the_case(results: &RunResults) -> String {
-    let written = results.provenance.as_ref().map_or("", |p| p.case_text.as_str());
-    let mut text = String::new();
-    if !written.is_empty() {
-        let shown = escape(&written.replace('\t', "    ").replace("\r\n", "\n"));
-        text += &format!("<details open><summary>The case file</summary><pre>{shown}</pre></details>\n");
-    }
+    let text = results.provenance.as_ref().map_or(String::new(), |p| as_written("The case file", p));
     let resolved = escape(&results.resolved_case);
     text + &format!(
         "<details><summary>Every value as the run used it</summary><pre>{resolved}</pre></details>\n"

@@ -7,8 +7,7 @@
 use super::chart::{Area, text};
 use super::chart_elements::{ELEMENT, FIELD};
 use super::colours::INK;
-use plotters::coord::types::RangedCoordf64;
-use plotters::prelude::*;
+use super::curve::LinearChart;
 use std::error::Error;
 use std::fmt::Write;
 
@@ -25,11 +24,12 @@ pub(super) fn linear(name: &str) -> AxisScale<'_> {
     AxisScale { name, decades: 0.0 }
 }
 
-/// A chart with linear places on both axes.
-type Linear<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
-
 /// The axes of `chart`: its rectangle on the sheet, the ranges across it, names and scales.
-pub(super) fn axes_of(area: &Area, chart: &Linear, [x, y]: [AxisScale; 2]) -> Result<(), Box<dyn Error>> {
+pub(super) fn axes_of(
+    area: &Area,
+    chart: &LinearChart,
+    [x, y]: [AxisScale; 2],
+) -> Result<(), Box<dyn Error>> {
     let plot = chart.plotting_area();
     let (across, up) = (plot.get_x_axis_pixel_range(), plot.get_y_axis_pixel_range());
     let (wide, high) = (chart.x_range(), chart.y_range());

@@ -1,14 +1,17 @@
 //! `rig.svg`: the model as analysed, with its contact points, load and sliding direction.
 
 use super::colours::{ALARM, ALARM_TEXT, INK, MEASURED, MUTED, PARTS};
-use super::format::given;
+use super::format::{given, rounded};
+use super::html::described;
 use super::section::{Picture, ReportSection};
 use super::svg::{Anchor, Ink, Sheet, SvgPoint};
 use super::view::{PlacedView, View, ViewVector, along, dot};
 use crate::results::{Geometry, RunResults, SteadyResult};
 use std::collections::BTreeMap;
 
-const SIZE: [f64; 2] = [860.0, 560.0];
+const SIZE: [f64; 2] = [960.0, 560.0];
+/// Width of the legend \[px\].
+const LEGEND: f64 = 200.0;
 /// Element edges closer than this [px] would make a grey patch: only outlines are drawn then.
 const FINEST_EDGE: f64 = 2.5;
 
@@ -20,9 +23,8 @@ pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
 /// The picture, when the model has a mesh.
 fn picture(results: &RunResults) -> Option<Picture> {
     let geometry = &results.geometry;
-    // Points alone are a picture only while they are few: masses on springs, not the nodes of imported matrices.
-    let cloud = geometry.elements.len() > 500 && geometry.elements.iter().all(|e| e.len() == 1);
-    if geometry.elements.is_empty() || cloud {
+    // Points alone are no picture of a machine: masses on springs, the nodes of imported matrices.
+    if geometry.elements.iter().all(|e| e.len() < 2) || size(geometry) == 0.0 {
         return None;
     }
     let view = View::facing([0.68, -0.85, 0.55])?;
@@ -30,7 +32,7 @@ fn picture(results: &RunResults) -> Option<Picture> {
     let used = geometry.elements.iter().flatten().map(|k| geometry.nodes[*k]);
     let ends = arrows.iter().flat_map(|arrow| [arrow.tail, arrow.head]);
     let places = used.chain(ends).map(|place| view.project(place));
-    let fit = PlacedView::new(places, [70.0, 66.0], [SIZE[0] - 200.0, SIZE[1] - 132.0]);
+    let fit = PlacedView::new(places, [LEGEND, 40.0], [SIZE[0] - LEGEND - 110.0, SIZE[1] - 80.0]);
     let pixel = |place: ViewVector| fit.pixel(view.project(place));
     let mut sheet = Sheet::new(SIZE[0], SIZE[1]);
     draw_elements(&mut sheet, geometry, &view, &fit);
@@ -38,12 +40,18 @@ fn picture(results: &RunResults) -> Option<Picture> {
         draw_points(&mut sheet, steady, pixel);
     }
     for arrow in &arrows {
-        draw_arrow(&mut sheet, arrow, pixel);
+        sheet.arrow(pixel(arrow.tail), pixel(arrow.head), arrow.colour, 4.0);
     }
-    draw_legend(&mut sheet, geometry, results.get::<SteadyResult>().is_some());
+    draw_legend(&mut sheet, geometry, results.get::<SteadyResult>().is_some(), &arrows);
     draw_axes(&mut sheet, &view, &fit);
     let caption = "The model at rest, as the analyses saw it.".to_string();
-    Some(Picture { file: "rig".into(), caption, svg: sheet.finish() })
+    let contact = results.get::<SteadyResult>().map_or(String::new(), |steady| {
+        let closed = steady.state.points.iter().filter(|point| point.closed()).count();
+        format!("; {closed} of {} contact points are closed", steady.points.len())
+    });
+    let labels = arrows.iter().take(NAMED).map(|arrow| format!("; {}", arrow.label)).collect::<String>();
+    let seen = format!("The model: {}{contact}{labels}.", geometry.parts.join(", "));
+    Some(Picture { file: "rig".into(), caption, svg: described(&sheet.finish(), &seen) })
 }
 
 /// Elements from the farthest to the nearest (the painter's algorithm); stretches of one part share a path.
@@ -126,54 +134,68 @@ fn fineness(geometry: &Geometry) -> f64 {
     sides.get(sides.len() / 2).copied().unwrap_or(f64::INFINITY)
 }
 
-/// An arrow in space with its label at the tail or the head.
+/// An arrow in space with its words in the legend, where they cover nothing.
 struct Arrow {
     tail: ViewVector,
     head: ViewVector,
     label: String,
     colour: &'static str,
-    label_at_head: bool,
 }
 
-/// Load and sliding velocity of every pair, drawn just outside the model.
+/// Arrows in the legend at most.
+const NAMED: usize = 6;
+/// A load below this is none \[N\].
+const LEAST: f64 = 1e-12;
+
+/// Load and sliding velocity of every pair, drawn just outside the model; none of what is zero.
 fn arrows(geometry: &Geometry, steady: &SteadyResult) -> Vec<Arrow> {
     let mut arrows = vec![];
-    let size = extent(geometry, [1.0, 0.0, 0.0], [0.0; 3])
-        .max(extent(geometry, [0.0, 1.0, 0.0], [0.0; 3]))
-        .max(extent(geometry, [0.0, 0.0, 1.0], [0.0; 3]));
+    let size = size(geometry);
+    let several = steady.pairs.len() > 1;
     for ((name, load, velocity), [press, slide]) in steady.pairs.iter().zip(&steady.directions) {
         let all: Vec<ViewVector> =
             steady.points.iter().filter(|(pair, _)| pair == name).map(|(_, p)| *p).collect();
+        if all.is_empty() {
+            continue;
+        }
         let centre = all.iter().fold([0.0; 3], |sum, p| along(sum, 1.0 / all.len() as f64, *p));
-        let above = extent(geometry, press.map(|c| -c), centre);
-        let label = format!("load {} N", given(*load));
-        let (tail, head) =
-            (along(centre, -above - 0.24 * size, *press), along(centre, -above - 0.03 * size, *press));
-        arrows.push(Arrow { tail, head, label, colour: ALARM_TEXT, label_at_head: false });
-        let direction = if *velocity < 0.0 { slide.map(|c| -c) } else { *slide };
-        let ahead = extent(geometry, direction, centre);
-        let label = format!("sliding {} m/s", given(velocity.abs()));
-        let (tail, head) =
-            (along(centre, ahead + 0.03 * size, direction), along(centre, ahead + 0.2 * size, direction));
-        arrows.push(Arrow { tail, head, label, colour: MEASURED, label_at_head: true });
+        let of = if several { format!(" ({name})") } else { String::new() };
+        if *load > LEAST {
+            let above = extent(geometry, press.map(|c| -c), centre);
+            let label = format!("load {} N{of}", given(rounded(*load, 4)));
+            let (tail, head) =
+                (along(centre, -above - 0.24 * size, *press), along(centre, -above - 0.03 * size, *press));
+            arrows.push(Arrow { tail, head, label, colour: ALARM_TEXT });
+        }
+        if *velocity != 0.0 {
+            let direction = if *velocity < 0.0 { slide.map(|c| -c) } else { *slide };
+            let ahead = extent(geometry, direction, centre);
+            let label = format!("sliding {} m/s{of}", given(rounded(velocity.abs(), 4)));
+            let (tail, head) =
+                (along(centre, ahead + 0.03 * size, direction), along(centre, ahead + 0.2 * size, direction));
+            arrows.push(Arrow { tail, head, label, colour: MEASURED });
+        }
     }
     arrows
 }
 
-/// How far the plates reach from `from` along `direction` \[m\].
+/// The largest extent of the model along x, y, z \[m\].
+fn size(geometry: &Geometry) -> f64 {
+    let used = || geometry.elements.iter().flatten().map(|k| geometry.nodes[*k]);
+    let span = |c: usize| {
+        let (low, high) = used().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), place| {
+            (low.min(place[c]), high.max(place[c]))
+        });
+        high - low
+    };
+    [0, 1, 2].map(span).into_iter().fold(0.0, f64::max)
+}
+
+/// How far the elements reach from `from` along `direction` \[m\].
 fn extent(geometry: &Geometry, direction: ViewVector, from: ViewVector) -> f64 {
     let plates = geometry.elements.iter().filter(|e| e.len() >= 3);
     let reach = plates.flatten().map(|k| dot(along(geometry.nodes[*k], -1.0, from), direction));
     reach.fold(0.0, f64::max)
-}
-
-fn draw_arrow(sheet: &mut Sheet, arrow: &Arrow, pixel: impl Fn(ViewVector) -> SvgPoint) {
-    let (tail, head) = (pixel(arrow.tail), pixel(arrow.head));
-    sheet.arrow(tail, head, arrow.colour, 4.0);
-    let ink = Ink { size: 15.0, colour: arrow.colour, bold: true, anchor: Anchor::Middle };
-    let place = if arrow.label_at_head { head } else { tail };
-    let below = if arrow.label_at_head { 22.0 } else { -9.0 };
-    sheet.text([place[0], place[1] + below], &arrow.label, ink);
 }
 
 /// Closed points filled, open ones hollow.
@@ -192,7 +214,7 @@ fn draw_points(sheet: &mut Sheet, steady: &SteadyResult, pixel: impl Fn(ViewVect
     }
 }
 
-fn draw_legend(sheet: &mut Sheet, geometry: &Geometry, contact: bool) {
+fn draw_legend(sheet: &mut Sheet, geometry: &Geometry, contact: bool, arrows: &[Arrow]) {
     let ink = Ink { size: 14.0, colour: INK, bold: false, anchor: Anchor::Start };
     let (x, mut y) = (22.0, 26.0);
     for (k, part) in geometry.parts.iter().enumerate() {
@@ -210,6 +232,11 @@ fn draw_legend(sheet: &mut Sheet, geometry: &Geometry, contact: bool) {
             sheet.text([x + 27.0, y], text, ink);
             y += 23.0;
         }
+    }
+    for arrow in arrows.iter().take(NAMED) {
+        sheet.arrow([x, y - 5.0], [x + 20.0, y - 5.0], arrow.colour, 3.0);
+        sheet.text([x + 27.0, y], &arrow.label, Ink { colour: arrow.colour, bold: true, ..ink });
+        y += 23.0;
     }
 }
 
@@ -252,6 +279,20 @@ mod tests {
         assert_eq!(svg.matches("r=\"3.2\"").count(), closed);
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
         assert!(picture(&RunResults::default()).is_none());
+    }
+
+    #[test]
+    fn nothing_is_drawn_of_a_model_of_points_and_of_a_load_that_is_none() {
+        let mut results = sample::rig();
+        results.get_mut::<SteadyResult>().unwrap().pairs[0].1 = 1e-18;
+        let svg = picture(&results).unwrap().svg;
+        assert!(!svg.contains("load") && svg.contains(">sliding 0.5 m/s<"));
+        results.geometry.elements = vec![vec![0], vec![1]];
+        results.geometry.part_of = vec![0, 0];
+        assert!(picture(&results).is_none(), "points");
+        results.geometry.elements = vec![vec![0, 0, 0]];
+        results.geometry.part_of = vec![0];
+        assert!(picture(&results).is_none(), "without size");
     }
 
     #[test]

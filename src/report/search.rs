@@ -5,11 +5,13 @@ use super::colours::{ALARM, CALM, INK, MEASURED, MUTED};
 use super::finding::FindingClass;
 use super::format::{fixed, given, significant};
 use super::html::{self, PageLayout, escape};
+use super::provenance::{as_written, origin};
 use super::svg::{Anchor, Ink, Sheet};
 use super::table::ReportTable;
 use super::text_table::render;
 use crate::error::Result;
-use crate::results::{SearchResult, SearchedNumber, passed, write_result};
+use crate::results::record::InputFile;
+use crate::results::{Provenance, SearchResult, SearchedNumber, passed, write_result};
 use std::path::Path;
 
 const WIDTH: f64 = 980.0;
@@ -18,11 +20,17 @@ const LABELS: f64 = 210.0;
 const HEIGHT: f64 = 320.0;
 const ROW: f64 = 24.0;
 
-/// Writes `search.html`, `search_cost.svg` and `search_weights.svg` into the folder `dir`.
+/// Writes `search.html`, `search_cost.svg` and `search_weights.svg` into the folder `dir`; `inputs` are the cases and the files
+/// that they read.
 ///
 /// # Errors
 /// [`crate::error::Error::Io`] when the folder cannot be made or a file not be written.
-pub fn write_search(dir: &Path, result: &SearchResult) -> Result<()> {
+pub fn write_search(
+    dir: &Path,
+    result: &SearchResult,
+    provenance: &Provenance,
+    inputs: &[InputFile],
+) -> Result<()> {
     let (cost, weights) = (cost_picture(result), weight_picture(result));
     write_result(dir, "search_cost.svg", cost.as_bytes())?;
     write_result(dir, "search_weights.svg", weights.as_bytes())?;
@@ -50,8 +58,19 @@ pub fn write_search(dir: &Path, result: &SearchResult) -> Result<()> {
             &weights,
             "search_weights",
             "How much the cost rises when one number is moved by a twentieth of its bounds, the others as found.",
+            sentences.last().expect("how many facts are met"),
         )
-        + &layout.figure(&cost, "search_cost", "The cost of every evaluation, and the least so far.");
+        + &layout.figure(
+            &cost,
+            "search_cost",
+            "The cost of every evaluation, and the least so far.",
+            &sentences[1],
+        );
+    let ends = html::heading("page.provenance", "Provenance")
+        + &origin(Some(provenance), inputs, &mut layout)
+        + &html::heading("page.search", "The search")
+        + &as_written("The file of the search", provenance);
+    let body = body + &ends;
     write_result(dir, "search.html", html::document(title, &body).as_bytes())
 }
 
@@ -296,9 +315,16 @@ mod tests {
             assert!(text.contains(words), "{words} not in\n{text}");
         }
         let dir = tempfile::tempdir().unwrap();
-        write_search(dir.path(), &result).unwrap();
+        let provenance = Provenance::now("search.toml", "title = \"A < B\"\n");
+        let case = InputFile::of_text("case.toml", "title = 1");
+        write_search(dir.path(), &result, &provenance, &[case]).unwrap();
         let read = |name: &str| std::fs::read_to_string(dir.path().join(name)).unwrap();
         assert!(read("search.html").contains("A &lt; B") && read("search.html").contains("verdict bad"));
+        for words in
+            ["Provenance</h2>", "commit", "case.toml", "18eedd0d53ee", "title = &quot;A &lt; B&quot;"]
+        {
+            assert!(read("search.html").contains(words), "{words}");
+        }
         assert_eq!(read("search_cost.svg").matches("<circle").count(), 3);
         assert!(read("search_weights.svg").contains("stiffness"));
     }

@@ -11,7 +11,8 @@ use crate::results::{RunResults, SteadyResult};
 pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
     let Some(steady) = results.get::<SteadyResult>() else { return Vec::new() };
     let section = ReportSection::new("Steady sliding").findings([finding(steady)]);
-    vec![section.tables(Display::Titled, [table(steady)]).pictures(contact::picture(results))]
+    let section = section.tables(Display::Titled, [table(steady)]);
+    vec![section.tables(Display::Folded, contact::table(steady)).pictures(contact::picture(results))]
 }
 
 /// Pairs that are named one by one.

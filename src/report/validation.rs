@@ -5,10 +5,12 @@ use super::colours::{ALARM, INK, MEASURED, MUTED};
 use super::finding::FindingClass;
 use super::format::{fixed, given, power, significant};
 use super::html::{self, PageLayout};
+use super::provenance::origin;
 use super::svg::{Anchor, Ink, Sheet};
 use super::table::ReportTable;
 use crate::error::Result;
-use crate::results::{CheckedCase, passed, write_atomically};
+use crate::results::record::InputFile;
+use crate::results::{CheckedCase, Provenance, passed, write_atomically};
 use std::path::Path;
 
 const WIDTH: f64 = 980.0;
@@ -18,17 +20,22 @@ const TOP: f64 = 34.0;
 /// The decades of difference ÷ tolerance that are drawn; what is smaller or larger stands at the ends.
 const DECADES: [i32; 2] = [-4, 1];
 
-/// Writes `validation.html` and `validation.svg` into the folder `dir`.
+/// Writes `validation.html` and `validation.svg` into the folder `dir`; `inputs` are the cases and their references.
 ///
 /// # Errors
 /// [`crate::error::Error::Io`] when the folder cannot be made or a file not be written.
-pub fn write_validation(dir: &Path, cases: &[CheckedCase]) -> Result<()> {
+pub fn write_validation(
+    dir: &Path,
+    cases: &[CheckedCase],
+    provenance: &Provenance,
+    inputs: &[InputFile],
+) -> Result<()> {
     let svg = picture(cases);
     write_atomically(dir, "validation.svg", svg.as_bytes())?;
-    write_atomically(dir, "validation.html", page(cases, &svg).as_bytes())
+    write_atomically(dir, "validation.html", page(cases, &svg, (provenance, inputs)).as_bytes())
 }
 
-fn page(cases: &[CheckedCase], svg: &str) -> String {
+fn page(cases: &[CheckedCase], svg: &str, (provenance, inputs): (&Provenance, &[InputFile])) -> String {
     let [all, within] = passed(cases);
     let seconds: f64 = cases.iter().map(|case| case.seconds).sum();
     let class = if within == all { FindingClass::Good } else { FindingClass::Bad };
@@ -43,12 +50,24 @@ fn page(cases: &[CheckedCase], svg: &str) -> String {
     body += &html::finding_box(class, &format!("{within} of {all} quantities within tolerance"), "");
     let caption = "Every quantity as a dot: its difference from the reference as a part of its tolerance. \
                    What is further left than the axis agrees better; right of the line fails.";
-    body += &layout.figure(svg, "validation", caption);
+    let ratio = |row: &crate::results::CheckedQuantity| row.difference() / row.tolerance;
+    let rows = cases.iter().flat_map(|case| case.rows.iter().map(move |row| (case, row)));
+    let worst = rows.max_by(|a, b| ratio(a.1).total_cmp(&ratio(b.1)));
+    let seen = worst.map_or(String::new(), |(case, row)| {
+        let part = significant(ratio(row), 2);
+        format!(
+            "{within} of {all} differences are within their tolerances; the largest is {part} times its tolerance: {} of {}.",
+            row.quantity, case.name
+        )
+    });
+    body += &layout.figure(svg, "validation", caption, &seen);
     for case in cases {
         let id = layout.id(&case.name);
         body += &html::heading(&id, &case.title);
         body += &layout.table(&table(case));
     }
+    body += &html::heading("page.provenance", "Provenance");
+    body += &origin(Some(provenance), inputs, &mut layout);
     html::document("Validation", &body)
 }
 
@@ -134,11 +153,17 @@ mod tests {
         };
         let dir = tempfile::tempdir().unwrap();
         let read = |name: &str| std::fs::read_to_string(dir.path().join(name)).unwrap();
-        write_validation(dir.path(), &[case(vec![row(1.01), row(1.0)])]).unwrap();
+        let provenance = Provenance::now("", "");
+        let inputs = [InputFile::of_text("disc/case.toml", "title = 1")];
+        let write = |case: CheckedCase| write_validation(dir.path(), &[case], &provenance, &inputs).unwrap();
+        write(case(vec![row(1.01), row(1.0)]));
         let good = read("validation.html");
         assert!(good.contains("2 of 2") && !good.contains("verdict bad") && good.contains("f &lt; g"));
         assert!(!read("validation.svg").contains(ALARM));
-        write_validation(dir.path(), &[case(vec![row(1.2), row(f64::NAN)])]).unwrap();
+        for words in ["Provenance</h2>", "commit", "disc/case.toml", "18eedd0d53ee"] {
+            assert!(good.contains(words), "{words}");
+        }
+        write(case(vec![row(1.2), row(f64::NAN)]));
         let bad = read("validation.html");
         assert!(bad.contains("0 of 2") && bad.contains("verdict bad"));
         assert_eq!(read("validation.svg").matches(ALARM).count(), 2);

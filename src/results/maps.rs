@@ -12,6 +12,8 @@ pub struct MapResult {
     pub name: String,
     /// The paths of the scalars.
     pub parameters: [String; 2],
+    /// Names of the quantities with their symbols, for axes.
+    pub labels: [String; 2],
     /// Their SI units.
     pub units: [String; 2],
     /// The values, the first parameter running fastest in `points`.
@@ -84,6 +86,7 @@ impl MapResult {
         }
         Group::new(&*self.name, "the strongest growth over two scalars of the case")
             .with(texts("parameters", "paths of the scalars", &self.parameters))
+            .with(texts("labels", "names of the quantities with their symbols", &self.labels))
             .with(texts("units", "their units; empty of a pure number", &self.units))
             .with(reals("from", "first values, in their units", self.axes.map(|axis| axis.from)))
             .with(reals("to", "last values, in their units", self.axes.map(|axis| axis.to)))

@@ -16,6 +16,8 @@ pub struct SweepResult {
     pub name: String,
     /// The path of the scalar.
     pub parameter: String,
+    /// Name of the quantity with its symbol, for axes.
+    pub label: String,
     /// Its SI unit; empty for a pure number.
     pub unit: String,
     /// The requested values.
@@ -199,6 +201,7 @@ impl SweepResult {
         ];
         Group::new(&*self.name, "complex modes along one scalar of the case")
             .value("parameter", "text", "path of the scalar", self.parameter.clone())
+            .value("label", "text", "name of the quantity with its symbol", self.label.clone())
             .value("unit", "text", "its unit; empty of a pure number", unit.clone())
             .with(self.value("from", "first value", self.axis.from))
             .with(self.value("to", "last value", self.axis.to))

@@ -27,6 +27,8 @@ pub struct About {
     pub required: bool,
     /// The default in words, where it follows from other keys.
     pub default_words: Option<&'static str>,
+    /// Name of the quantity for axes, where the words of the key are none.
+    pub label: Option<&'static str>,
 }
 
 /// A condition on a value, with what is expected in words.
@@ -48,6 +50,7 @@ fn field<T: Value>(expected: impl Into<Cow<'static, str>>, units: Units) -> Fiel
         derivative: |_| Derivative::Exists,
         required: true,
         default_words: None,
+        label: None,
     };
     Field { about, default: None, conditions: Vec::new() }
 }
@@ -185,6 +188,12 @@ impl<T: Value> Field<T> {
     /// Sets the results that a change of the value invalidates, where they differ from those of its table.
     pub fn invalidates(mut self, what: Invalidates) -> Self {
         self.about.invalidates = Some(what);
+        self
+    }
+
+    /// Sets the name of the quantity for axes, where the words of the key are none.
+    pub fn label(mut self, words: &'static str) -> Self {
+        self.about.label = Some(words);
         self
     }
 

@@ -10,6 +10,8 @@ use std::ops::{Bound, RangeBounds};
 pub struct Scalar {
     /// Keys joined by dots; entries of lists by their index from 0.
     pub path: String,
+    /// Name of the quantity with its symbol and what it belongs to, for axes: `friction coefficient μ₀ of rim`.
+    pub label: String,
     /// Its value in SI units.
     pub value: f64,
     /// The SI unit; empty for a pure number.
@@ -32,6 +34,8 @@ impl Scalar {
 /// A walk over the numbers of a table.
 struct Walk<'a> {
     path: String,
+    /// Names of the tables that the user named.
+    owner: String,
     invalidates: Invalidates,
     each: &'a mut dyn FnMut(Scalar, &mut f64),
 }
@@ -56,7 +60,12 @@ pub fn set_scalar(table: &mut dyn Table, path: &str, value: f64) -> bool {
 }
 
 fn walk(table: &mut dyn Table, each: &mut dyn FnMut(Scalar, &mut f64)) {
-    table.visit(&mut Walk { path: String::new(), invalidates: Invalidates::Structure, each });
+    table.visit(&mut Walk {
+        path: String::new(),
+        owner: String::new(),
+        invalidates: Invalidates::Structure,
+        each,
+    });
 }
 
 impl Walk<'_> {
@@ -64,13 +73,36 @@ impl Walk<'_> {
         let key = dotted(key);
         if self.path.is_empty() { key.into_owned() } else { format!("{}.{key}", self.path) }
     }
+
+    /// The label of the number at index `at` of a key.
+    fn label(&self, key: Key, words: Option<&str>, at: &[usize]) -> String {
+        let mut label = words.map_or_else(|| key.name.replace('_', " "), String::from);
+        if let Some(symbol) = symbol(key.doc).filter(|_| at.is_empty()) {
+            label += &format!(" {symbol}");
+        }
+        if !self.owner.is_empty() {
+            label += &format!(" of {}", self.owner);
+        }
+        at.iter().fold(label, |label, k| format!("{label}, entry {}", k + 1))
+    }
+}
+
+/// The symbol with which a documentation begins: `E \[Pa\].`, `μ_s, at rest.`
+fn symbol(doc: &str) -> Option<&str> {
+    let doc = doc.trim();
+    let end = doc.find([' ', ',', ':', '.', '\\']).unwrap_or(doc.len());
+    let (word, rest) = doc.split_at(end);
+    let base = word.split('_').next().unwrap_or_default();
+    let greek = word.starts_with(|c| ('Α'..='ω').contains(&c));
+    let alone = greek || rest.starts_with([',', ':', '.']) || rest.starts_with(" \\[");
+    (alone && (1..=2).contains(&base.chars().count())).then_some(word)
 }
 
 impl Visitor for Walk<'_> {
     fn value(&mut self, key: Key, slot: &mut dyn Slot) {
         let path = self.path_of(key.name);
         let about = slot.about();
-        let (bounds, derivative) = (about.bounds, about.derivative);
+        let (bounds, derivative, words) = (about.bounds, about.derivative, about.label);
         let invalidates = about.invalidates.unwrap_or(self.invalidates);
         let units: [&'static str; 2] = [0, 1].map(|k| about.units.at(k).map_or("", |d| d.symbol));
         slot.numbers(&mut |at, value| {
@@ -78,7 +110,8 @@ impl Visitor for Walk<'_> {
             let unit = units[at.last().map_or(0, |k| (*k).min(1))];
             let derivative =
                 if invalidates == Invalidates::Question { Derivative::Zero } else { derivative(at) };
-            let scalar = Scalar { path, value: *value, unit, bounds, invalidates, derivative };
+            let label = self.label(key, words, at);
+            let scalar = Scalar { path, label, value: *value, unit, bounds, invalidates, derivative };
             (self.each)(scalar, value);
         });
     }
@@ -88,7 +121,8 @@ impl Visitor for Walk<'_> {
         let invalidates = slot.invalidates().unwrap_or(self.invalidates);
         slot.each(&mut |name, table| {
             let path = name.map_or(path.clone(), |name| format!("{path}.{}", dotted(name)));
-            table.visit(&mut Walk { path, invalidates, each: &mut *self.each });
+            let owner = [self.owner.as_str(), name.unwrap_or_default()].join(" ").trim().to_string();
+            table.visit(&mut Walk { path, owner, invalidates, each: &mut *self.each });
         });
     }
 

@@ -146,3 +146,26 @@ fn schema_and_reference_name_every_key() {
         );
     }
 }
+
+#[test]
+fn a_scalar_is_named_as_the_quantity_it_is() {
+    let things =
+        read("[thing.a]\nradius = 1\n[thing.\"b.c\"]\nedges = [1, 2, 3]\n[weight]\nx = 3\n").unwrap();
+    let labels: BTreeMap<String, String> = scalars(&things).into_iter().map(|s| (s.path, s.label)).collect();
+    assert_eq!(labels["thing.a.radius"], "radius r of a");
+    assert_eq!(labels["thing.a.share"], "share of a");
+    assert_eq!(labels["thing.\"b.c\".edges.1"], "edges of b.c, entry 2");
+    assert_eq!(labels["weight.x"], "x");
+    let text = include_str!("../../validation/rig-coarse/case.toml");
+    let case = Case::parse("case", text, ".".into()).unwrap();
+    for (path, label) in [
+        ("contact.rim.friction.mu0", "friction coefficient μ₀ of rim"),
+        ("contact.rim.load", "load ΣN of rim"),
+        ("contact.rim.placement.lead_angle", "lead angle θ of rim"),
+        ("contact.rim.normal.stiffness", "stiffness k_n of rim"),
+        ("material.steel.youngs_modulus", "Young's modulus E of steel"),
+        ("damping.modal_ratio", "modal damping ratio ζ"),
+    ] {
+        assert_eq!(case.parameter(path).unwrap().label, label);
+    }
+}

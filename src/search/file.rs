@@ -149,15 +149,35 @@ impl SearchFile {
         for fact in facts.into_iter().flatten().filter_map(|(_, fact)| fact.as_table_mut()) {
             fact.retain(|key, _| !["reference", "tolerance", "absolute_tolerance", "reason"].contains(&key));
         }
+        all.extend(self.cases.iter().map(|(name, case)| (name.clone(), table(&case.to_toml()).into())));
+        Ok(RecordOrigin { case: all.to_string(), inputs: self.files_of_cases()? })
+    }
+
+    /// The files that the cases read.
+    fn files_of_cases(&self) -> Result<Vec<InputFile>> {
         let mut inputs = Vec::new();
         for (name, case) in &self.cases {
-            all.insert(name.clone(), table(&case.to_toml()).into());
             for file in case.files() {
                 let input = InputFile::read(&case.folder, &file)?;
                 inputs.push(InputFile { path: format!("{file} of {name}"), ..input });
             }
         }
-        Ok(RecordOrigin { case: all.to_string(), inputs })
+        Ok(inputs)
+    }
+
+    /// The cases and the files that they read.
+    ///
+    /// # Errors
+    /// A file that cannot be read.
+    pub fn inputs(&self) -> Result<Vec<InputFile>> {
+        let text = |case: &Case| case.places.source().1.to_string();
+        let cases = self.cases.iter().map(|(name, case)| InputFile::of_text(name, &text(case)));
+        Ok(cases.chain(self.files_of_cases()?).collect())
+    }
+
+    /// The file itself.
+    pub fn text(&self) -> &str {
+        &self.text
     }
 
     /// The paths of the cases and of the files that they read.

@@ -9,11 +9,12 @@ declare! {
     #[derive(Copy)]
     pub struct Material {
         /// E \[Pa\].
-        pub youngs_modulus: f64 = key::quantity(PRESSURE).positive(),
+        pub youngs_modulus: f64 = key::quantity(PRESSURE).positive().label("Young's modulus"),
         /// ν.
         pub poissons_ratio: f64 = key::quantity(NUMBER)
             .within(Bound::Excluded(-1.0), Bound::Excluded(0.5))
-            .expecting("a number such as 0.3"),
+            .expecting("a number such as 0.3")
+            .label("Poisson's ratio"),
         /// ρ \[kg/m³\].
         pub density: f64 = key::quantity(DENSITY).positive(),
         /// η of K(1 + iη); zero for none.
@@ -29,9 +30,9 @@ declare! {
     #[derive(Copy)]
     pub struct RayleighDamping {
         /// α \[1/s\].
-        pub alpha: f64 = key::quantity(RATE).non_negative().or(0.0),
+        pub alpha: f64 = key::quantity(RATE).non_negative().or(0.0).label("Rayleigh coefficient"),
         /// β \[s\].
-        pub beta: f64 = key::quantity(TIME).non_negative().or(0.0),
+        pub beta: f64 = key::quantity(TIME).non_negative().or(0.0).label("Rayleigh coefficient"),
     }
 }
 

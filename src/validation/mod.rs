@@ -19,6 +19,7 @@ pub use reference::{ChannelWindow, Check, CheckQuantity, Measure, Near, Quantity
 
 use crate::error::{Error, Fault, Faults, Result};
 use crate::progress::Observer;
+use crate::results::record::InputFile;
 use crate::results::{CheckedCase, passed};
 use rayon::ThreadPool;
 use std::panic::resume_unwind;
@@ -74,6 +75,19 @@ fn side_by_side(references: &[Reference], observer: &dyn Observer) -> Result<Vec
     observer.end();
     found.sort_by_key(|(k, _)| *k);
     found.into_iter().map(|(_, case)| case).collect()
+}
+
+/// The cases below `root` whose folder name contains `filter`, and their references.
+///
+/// # Errors
+/// A folder without cases, a file that cannot be read.
+pub fn inputs(root: &Path, filter: Option<&str>) -> Result<Vec<InputFile>> {
+    let folders = folders(root, filter)?;
+    let files = folders.iter().flat_map(|folder| {
+        let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        ["case.toml", "reference.toml"].map(|file| format!("{name}/{file}"))
+    });
+    files.filter(|file| root.join(file).is_file()).map(|file| InputFile::read(root, &file)).collect()
 }
 
 fn folders(root: &Path, filter: Option<&str>) -> Result<Vec<PathBuf>> {

@@ -1,7 +1,8 @@
 //! `calibration_errors.svg` and `calibration_numbers.svg`.
 
 use super::super::colours::{ALARM, CALM, INK, MEASURED, MUTED, SECOND};
-use super::super::comparison::{ResponseCurve, ResponsePanel, stacked};
+use super::super::comparison::{ResponseCurve, ResponsePanel, computed_pen, measured_pen, stacked};
+use super::super::curve::{Pen, pen};
 use super::super::format::{given, short, signed, significant};
 use super::super::section::Picture;
 use super::super::svg::{Anchor, Ink, Sheet};
@@ -82,9 +83,9 @@ pub(super) fn errors(result: &CalibrationResult) -> Picture {
 /// The measured responses over the computed ones before and after; `None` where there are none.
 pub(super) fn responses(result: &CalibrationResult) -> Option<Picture> {
     // Calibration is against ln |h|.
-    let curve = |words: String, hex: &'static str, sizes: &[f64]| ResponseCurve {
+    let curve = |words: String, pen: Pen<'static>, sizes: &[f64]| ResponseCurve {
         words,
-        hex,
+        pen,
         sizes: sizes.to_vec(),
         phases: Vec::new(),
     };
@@ -92,10 +93,10 @@ pub(super) fn responses(result: &CalibrationResult) -> Option<Picture> {
         frequencies_hz: r.frequencies_hz.clone(),
         quantity: r.quantity,
         curves: [
-            Some(curve("before".to_string(), CALM, &r.before)),
-            r.left_out.as_ref().map(|sizes| curve("from the others".to_string(), SECOND, sizes)),
-            Some(curve("after".to_string(), ALARM, &r.after)),
-            Some(curve(format!("measured at {}", r.place.replace('_', " ")), MEASURED, &r.measured)),
+            Some(curve("before".to_string(), pen(CALM, 1.5), &r.before)),
+            r.left_out.as_ref().map(|sizes| curve("from the others".to_string(), pen(SECOND, 1.5), sizes)),
+            Some(curve("after".to_string(), computed_pen(), &r.after)),
+            Some(curve(format!("measured at {}", r.place.replace('_', " ")), measured_pen(), &r.measured)),
         ]
         .into_iter()
         .flatten()
@@ -108,7 +109,7 @@ pub(super) fn responses(result: &CalibrationResult) -> Option<Picture> {
         false => "",
     };
     let caption = format!(
-        "Measured responses, and the computed ones with the values of the case, with those found{others}."
+        "Measured responses (dashed), and the computed ones with the values of the case, with those found{others}."
     );
     Some(Picture { file: "calibration_responses".into(), caption, svg })
 }

@@ -1,15 +1,15 @@
 //! `measured_frf_<name>.svg`: measured over computed responses, one panel each.
 
 use super::super::axes::WIDTH;
-use super::super::chart::{Area, colour, sheet, text};
+use super::super::chart::{Area, sheet, text};
 use super::super::colours::{ALARM, INK, MEASURED};
+use super::super::curve::{Dash, Pen, legend_line, pen};
 use super::super::format::fixed;
 use super::super::magnitude::{draw_magnitude, draw_phase, magnitude_axes, phase_axes};
 use crate::linalg::c64;
 use crate::measured::Quantity;
 use crate::report::section::Picture;
 use crate::results::{MeasuredResponses, ResponsePair, file_name};
-use plotters::prelude::{Color, Rectangle};
 use std::error::Error;
 
 /// Panels in one picture; the others are in the table.
@@ -34,19 +34,29 @@ pub(in crate::report) struct ResponsePanel {
 pub(in crate::report) struct ResponseCurve {
     /// Text of the legend.
     pub words: String,
-    /// Its colour.
-    pub hex: &'static str,
+    /// Its line: dashed where it lies over another.
+    pub pen: Pen<'static>,
     /// Its magnitude at each frequency.
     pub sizes: Vec<f64>,
     /// Its phase at each frequency \[rad\]; empty where only magnitudes are compared.
     pub phases: Vec<f64>,
 }
 
+/// A solid line under the measured one.
+pub(in crate::report) fn computed_pen() -> Pen<'static> {
+    pen(ALARM, 3.5)
+}
+
+/// Dashes over the computed line, both of which are seen where the two coincide.
+pub(in crate::report) fn measured_pen() -> Pen<'static> {
+    Pen { dash: Dash::Dashed, ..pen(MEASURED, 1.6) }
+}
+
 pub(super) fn picture(responses: &MeasuredResponses) -> Option<Picture> {
     let panel = |pair: &ResponsePair| {
-        let curve = |words: String, hex: &'static str, values: &[c64]| ResponseCurve {
+        let curve = |words: String, pen: Pen<'static>, values: &[c64]| ResponseCurve {
             words,
-            hex,
+            pen,
             sizes: values.iter().map(|v| v.norm()).collect(),
             phases: values.iter().map(|v| v.arg()).collect(),
         };
@@ -57,8 +67,8 @@ pub(super) fn picture(responses: &MeasuredResponses) -> Option<Picture> {
             frequencies_hz: pair.frequencies_hz.clone(),
             quantity: pair.quantity,
             curves: vec![
-                curve(computed, ALARM, &pair.computed),
-                curve(format!("measured: {short}"), MEASURED, &pair.measured),
+                curve(computed, computed_pen(), &pair.computed),
+                curve(format!("measured: {short}"), measured_pen(), &pair.measured),
             ],
         }
     };
@@ -66,7 +76,7 @@ pub(super) fn picture(responses: &MeasuredResponses) -> Option<Picture> {
     let svg = stacked(&panels)?;
     let more = if responses.pairs.len() > MOST { format!("; the first {MOST}") } else { String::new() };
     let caption = format!(
-        "Measured responses ({}) over the computed ones ({}){more}. FRAC is 1 where they are alike over the band.",
+        "Measured responses ({}, dashed) over the computed ones ({}, solid){more}. FRAC is 1 where they are alike over the band.",
         responses.name, responses.frf
     );
     Some(Picture { file: file_name("measured_frf", &responses.name), caption, svg })
@@ -105,9 +115,9 @@ impl ResponsePanel {
         let (legend, main) = area.split_vertically(LEGEND);
         let mut x = 120;
         for curve in self.curves.iter().rev() {
-            legend.draw(&Rectangle::new([(x, 10), (x + 16, 14)], colour(curve.hex).filled()))?;
-            legend.draw_text(&curve.words, &text(13.0, INK), (x + 22, 4))?;
-            x += 60 + 8 * curve.words.chars().count() as i32;
+            legend_line(&legend, (x, 12), curve.pen)?;
+            legend.draw_text(&curve.words, &text(13.0, INK), (x + 36, 4))?;
+            x += 74 + 8 * curve.words.chars().count() as i32;
         }
         let (upper, lower) = match self.has_phases() {
             true => main.split_vertically(SIZES - LEGEND),
@@ -115,23 +125,43 @@ impl ResponsePanel {
         };
         let sizes = self.curves.iter().flat_map(|curve| curve.sizes.iter().copied());
         let under_sizes = below.filter(|_| !self.has_phases());
-        let mut chart = magnitude_axes(&upper, hz, self.quantity, sizes, under_sizes)?;
-        for (k, curve) in self.curves.iter().enumerate() {
+        let chart = magnitude_axes(&upper, hz, self.quantity, sizes, under_sizes)?;
+        for curve in &self.curves {
             let points = hz.iter().copied().zip(curve.sizes.iter().copied());
-            draw_magnitude(&mut chart, points, (curve.hex, self.width(k)))?;
+            draw_magnitude(&chart, points, curve.pen)?;
         }
         if !self.has_phases() {
             return Ok(());
         }
-        let mut chart = phase_axes(&lower, hz, below)?;
-        for (k, curve) in self.curves.iter().enumerate() {
+        let chart = phase_axes(&lower, hz, below)?;
+        for curve in &self.curves {
             let points = hz.iter().copied().zip(curve.phases.iter().copied());
-            draw_phase(&mut chart, points, (curve.hex, self.width(k)))?;
+            draw_phase(&chart, points, curve.pen)?;
         }
         Ok(())
     }
+}
 
-    fn width(&self, curve: usize) -> u32 {
-        if curve + 1 == self.curves.len() { 2 } else { 1 }
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::sample;
+
+    #[test]
+    fn a_measured_curve_is_dashed_over_a_computed_one_that_is_equal() {
+        let results = sample::rig();
+        let mut responses = results.all::<MeasuredResponses>()[0].clone();
+        for pair in &mut responses.pairs {
+            pair.measured = pair.computed.clone();
+        }
+        responses.pairs.truncate(1);
+        let svg = picture(&responses).unwrap().svg;
+        let lines: Vec<&str> =
+            svg.split("<path ").skip(1).map(|rest| rest.split("/>").next().unwrap()).collect();
+        let of = |hex: &str| lines.iter().position(|line| line.contains(hex) && line.len() > 300).unwrap();
+        let (below, above) = (lines[of(ALARM)], lines[of(MEASURED)]);
+        let points = |line: &str| line.split('"').nth(1).unwrap().to_string();
+        assert!(of(ALARM) < of(MEASURED) && points(below) == points(above));
+        assert!(below.contains("dasharray=\"none\"") && above.contains("dasharray=\"7 5\""), "{above}");
     }
 }

@@ -2,7 +2,7 @@
 
 use super::words::{list, with_unit};
 use crate::report::finding::{Finding, FindingClass};
-use crate::report::format::{hertz, signed, significant};
+use crate::report::format::{hertz, rounded, signed, significant};
 use crate::results::{DampingVerdicts, MapResult, SweepResult};
 use crate::stability::unstable;
 
@@ -19,11 +19,11 @@ pub(super) fn sweep(result: &SweepResult) -> Finding {
     let ranges = unstable_ranges(result);
     let (class, where_) = match &ranges[..] {
         [] => {
-            let words = format!("none of {all} modes grows for {} from {low} to {high}", result.parameter);
+            let words = format!("none of {all} modes grows for {} from {low} to {high}", result.label);
             (FindingClass::Good, words)
         }
         [range] if *range == ends => {
-            let words = format!("a mode grows at every value of {} from {low} to {high}", result.parameter);
+            let words = format!("a mode grows at every value of {} from {low} to {high}", result.label);
             (FindingClass::Attention, words)
         }
         several => {
@@ -37,7 +37,7 @@ pub(super) fn sweep(result: &SweepResult) -> Finding {
             };
             let each = list(&each.collect::<Vec<_>>());
             let words =
-                format!("a mode grows for {} {each}{more}, examined from {low} to {high}", result.parameter);
+                format!("a mode grows for {} {each}{more}, examined from {low} to {high}", result.label);
             (FindingClass::Attention, words)
         }
     };
@@ -47,8 +47,7 @@ pub(super) fn sweep(result: &SweepResult) -> Finding {
 
 /// A critical value with four digits, so that an end of the sweep is written as it was given.
 fn located(value: f64, unit: &str) -> String {
-    let digits = 10f64.powi(3 - value.abs().log10().floor().max(-300.0) as i32);
-    with_unit(if value == 0.0 { 0.0 } else { (value * digits).round() / digits }, unit)
+    with_unit(rounded(value, 4), unit)
 }
 
 /// The ranges of the parameter in which a mode grows, ascending: between critical values, or the values of the sweep where
@@ -105,8 +104,8 @@ pub(super) fn map(result: &MapResult) -> Finding {
         "Map {}: {unstable} of {} points over {} and {} are unstable.",
         result.name,
         answered.len(),
-        result.parameters[0],
-        result.parameters[1]
+        result.labels[0],
+        result.labels[1]
     );
     let without = result.points.len() - answered.len();
     if without > 0 {

@@ -1,69 +1,68 @@
 //! `sweep_<name>.svg` and `root_locus_<name>.svg`: the branches over the parameter and in the complex plane.
 
-use super::axis::{axis_name, place, round, scale, value_at};
+use super::axis::{axis_name, label, place, places, scale};
+use super::branches::{draw_lines, draw_nominal};
+use super::places::{MOST, SweepPlace};
 use crate::linalg::c64;
+use crate::report::axes::clean;
 use crate::report::chart::{Area, above, bold, colour, sheet, text, widened};
-use crate::report::colours::{ALARM, CALM, INK, MEASURED, MUTED};
-use crate::report::format::{given, hertz, significant};
+use crate::report::colours::{ALARM, ALARM_TEXT, CALM, INK, MUTED};
+use crate::report::curve::{Dash, LinearChart, Pen, draw_curve, draw_dot, draw_ring, pen};
+use crate::report::format::{given, hertz, rounded};
+use crate::report::labels::{LABEL_HEIGHT, Labels, local};
 use crate::report::readout::{axes_of, linear};
 use crate::report::section::Picture;
 use crate::results::{SweepResult, file_name};
 use crate::stability::unstable;
-use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use std::error::Error;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
 type Drawing = Result<(), Box<dyn Error>>;
-type Plot<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// Stable modes farther below zero than this many times the largest growth are off the picture.
 const DEEPEST: f64 = 1.5;
-/// Critical values with a label.
-const LABELS: usize = 8;
+/// Values with a label above the charts.
+const LABELS: usize = 10;
+/// Width of such a label \[px\].
+const LABEL_WIDTH: i32 = 150;
+/// Heights of the two charts, the lower one with the words under its axis.
+const HEIGHTS: [u32; 2] = [380, 400];
+/// Where the axis across begins and how far from the right edge it ends \[px\].
+const ENDS: [i32; 2] = [94, 16];
+const WIDTH: u32 = 980;
 
-/// `name` is the part of the file names that is the sweep's.
-pub(super) fn pictures(result: &SweepResult) -> Vec<Picture> {
-    let parameter = axis_name(&result.parameter, &result.unit);
-    let branches = sheet((980, 820), |area| draw_branches(area, result)).map(|svg| Picture {
-        file: file_name("sweep", &result.name),
-        caption: format!(
-            "Frequency and growth rate of every mode over {parameter}: orange where it grows. Dots: critical values. Dashed: the case itself."
-        ),
-        svg,
-    });
-    let locus = sheet((980, 560), |area| draw_locus(area, result)).map(|svg| Picture {
-        file: file_name("root_locus", &result.name),
-        caption: format!(
-            "Eigenvalues in the complex plane as {parameter} goes from {} (circles) to {} (dots); to the right of the line a mode grows.",
-            given(result.axis.from),
-            given(result.axis.to)
-        ),
-        svg,
-    });
-    let any = !result.sweep.branches.is_empty();
-    [branches, locus].into_iter().flatten().filter(|_| any).collect()
+/// Every branch over the parameter; the windows of the first of `found` are outlined.
+pub(super) fn picture(result: &SweepResult, found: &[SweepPlace]) -> Option<Picture> {
+    if result.sweep.branches.is_empty() {
+        return None;
+    }
+    let parameter = axis_name(&result.label, &result.unit);
+    let (height, labels) = strip(result, found);
+    let size = (WIDTH, height + HEIGHTS[0] + HEIGHTS[1]);
+    let svg = sheet(size, |area| draw_branches(area, result, found, (height, &labels)))?;
+    let windows = if found.is_empty() { "" } else { " Numbers and frames: the places of the next figure." };
+    let caption = format!(
+        "Frequency and growth rate of every mode over {parameter}: orange where it grows. Dots: critical values. Dashed: the case \
+         itself.{windows}"
+    );
+    Some(Picture { file: file_name("sweep", &result.name), caption, svg })
 }
 
-/// A branch as points (place on the axis, λ), its critical points among them, and which stretches grow.
-fn trace(result: &SweepResult, b: usize) -> Vec<(f64, c64, bool)> {
-    let sweep = &result.sweep;
-    let branch = &sweep.branches[b];
-    let mut points: Vec<(f64, c64, bool)> = Vec::new();
-    let own = sweep.critical.iter().filter(|c| c.branch == b);
-    let own: Vec<(f64, c64)> = own.map(|c| (c.value, c64::new(0.0, c.eigenvalue.im))).collect();
-    for (k, z) in branch.eigenvalues.iter().enumerate() {
-        let value = sweep.values[branch.first + k];
-        if k > 0 {
-            let before = sweep.values[branch.first + k - 1];
-            let (low, high) = (before.min(value), before.max(value));
-            let between = own.iter().filter(|(v, _)| *v > low && *v < high);
-            points.extend(between.map(|(v, z)| (place(&result.axis, *v), *z, true)));
-        }
-        points.push((place(&result.axis, value), *z, unstable(*z)));
+/// The eigenvalues in the complex plane.
+pub(super) fn locus(result: &SweepResult) -> Option<Picture> {
+    if result.sweep.branches.is_empty() {
+        return None;
     }
-    points
+    let svg = sheet((WIDTH, 560), |area| draw_locus(area, result))?;
+    let caption = format!(
+        "Eigenvalues in the complex plane as {} goes from {} (circles) to {} (dots); to the right of the line a mode grows.",
+        axis_name(&result.label, &result.unit),
+        given(result.axis.from),
+        given(result.axis.to)
+    );
+    Some(Picture { file: file_name("root_locus", &result.name), caption, svg })
 }
 
 fn growth_range(result: &SweepResult) -> Range<f64> {
@@ -81,60 +80,100 @@ fn frequency_range(result: &SweepResult) -> Range<f64> {
     widened(all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max), 0.04)
 }
 
-fn draw_branches(area: &Area, result: &SweepResult) -> Drawing {
-    let (upper, lower) = area.split_vertically(400);
+/// A label above the charts.
+struct StripLabel {
+    words: String,
+    /// Value of the parameter, and ω/2π of the mode there \[Hz\].
+    at: (f64, f64),
+    /// Middle and lower edge \[px\].
+    pixel: (i32, i32),
+    critical: bool,
+}
+
+/// Labels of the numbered places and of further critical values in a strip of this height, where no curve is.
+fn strip(result: &SweepResult, found: &[SweepPlace]) -> (u32, Vec<StripLabel>) {
+    let words = |value: f64, hz: f64| format!("{} · {} Hz", given(rounded(value, 4)), hertz(hz, 0));
+    let shown = &found[..found.len().min(MOST)];
+    let numbered = shown.iter().enumerate().map(|(k, p)| {
+        (format!("{}: {}", k + 1, words(p.value, p.frequency_hz)), (p.value, p.frequency_hz), p.critical)
+    });
+    let others = result.sweep.critical.iter().filter(|c| shown.iter().all(|p| p.value != c.value));
+    let others = others.map(|c| {
+        let hz = c.eigenvalue.im / TAU;
+        (words(c.value, hz), (c.value, hz), true)
+    });
+    let across = places(&result.axis);
+    let (left, right) = (ENDS[0], WIDTH as i32 - ENDS[1]);
+    let mut places = Labels::default();
+    let mut labels: Vec<StripLabel> = numbered
+        .chain(others)
+        .take(LABELS)
+        .map(|(words, at, critical)| {
+            let part = (place(&result.axis, at.0) - across.start) / (across.end - across.start);
+            let x = left + (part * f64::from(right - left)) as i32;
+            let x = x.clamp(left + LABEL_WIDTH / 2, right - LABEL_WIDTH / 2);
+            StripLabel { words, at, pixel: (x, places.place(x, 0, LABEL_WIDTH, -LABEL_HEIGHT)), critical }
+        })
+        .collect();
+    let highest = labels.iter().map(|label| label.pixel.1).min().unwrap_or(LABEL_HEIGHT) - LABEL_HEIGHT;
+    let height = -highest + if labels.is_empty() { 0 } else { 10 };
+    labels.iter_mut().for_each(|label| label.pixel.1 += height);
+    (height.unsigned_abs(), labels)
+}
+
+fn draw_branches(
+    area: &Area,
+    result: &SweepResult,
+    found: &[SweepPlace],
+    (strip, labels): (u32, &[StripLabel]),
+) -> Drawing {
+    let (_, main) = area.split_vertically(strip);
+    let (upper, lower) = main.split_vertically(HEIGHTS[0]);
     let axis = &result.axis;
-    let ends = [place(axis, axis.from), place(axis, axis.to)];
-    let across = widened(ends[0].min(ends[1]), ends[0].max(ends[1]), 0.02);
-    let frequency = |z: c64| z.im / TAU;
-    let growth = |z: c64| z.re;
-    let mut top = plot(&upper, across.clone(), frequency_range(result))?;
-    label_axes(&mut top, result, "", "frequency [Hz]")?;
-    draw_lines(&mut top, result, frequency)?;
-    let below = axis_name(&result.parameter, &result.unit);
+    let across = places(axis);
+    let below = axis_name(&result.label, &result.unit);
+    let top = plot(&upper, (across.clone(), frequency_range(result)), axis, ["", "frequency [Hz]"])?;
     axes_of(&upper, &top, [scale(axis, ""), linear("frequency [Hz]")])?;
-    let up = growth_range(result);
-    let mut bottom = plot(&lower, across.clone(), up.clone())?;
-    label_axes(&mut bottom, result, &below, "growth rate σ [1/s]")?;
+    let words = [below.as_str(), "growth rate σ [1/s]"];
+    let bottom = plot(&lower, (across.clone(), growth_range(result)), axis, words)?;
     axes_of(&lower, &bottom, [scale(axis, &below), linear("growth rate σ [1/s]")])?;
-    let zero = [(across.start, 0.0), (across.end, 0.0)];
-    bottom.draw_series([PathElement::new(zero, colour(INK).stroke_width(2))])?;
-    draw_lines(&mut bottom, result, growth)?;
-    let own = place(axis, result.nominal);
-    if across.contains(&own) {
-        for chart in [&mut top, &mut bottom] {
-            let range = chart.y_range();
-            let dash = [(own, range.start), (own, range.end)];
-            chart.draw_series(DashedLineSeries::new(dash, 6, 5, colour(MEASURED).stroke_width(1)))?;
-        }
-    }
-    let mut taken: Vec<(i32, i32)> = Vec::new();
-    for (k, c) in result.sweep.critical.iter().enumerate() {
+    draw_curve(&bottom, [(across.start, 0.0), (across.end, 0.0)], pen(INK, 2.0))?;
+    draw_lines(&top, result, |x, z| (x, z.im / TAU), (|_| true, pen(CALM, 1.0)))?;
+    draw_lines(&bottom, result, |x, z| (x, z.re), (|_| true, pen(CALM, 1.0)))?;
+    draw_nominal(&top, result)?;
+    draw_nominal(&bottom, result)?;
+    for c in &result.sweep.critical {
         let x = place(axis, c.value);
-        top.draw_series([Circle::new((x, frequency(c.eigenvalue)), 5, colour(ALARM).filled())])?;
-        bottom.draw_series([Circle::new((x, 0.0), 5, colour(ALARM).filled())])?;
-        if k >= LABELS {
-            continue;
-        }
-        let (px, mut py) = bottom.backend_coord(&(x, 0.0));
-        let Range { start: left, end: right } = bottom.plotting_area().get_x_axis_pixel_range();
-        let px = px.clamp(left + 70, right - 70);
-        py -= 10;
-        while taken.iter().any(|(u, v)| (u - px).abs() < 130 && (v - py).abs() < 18) {
-            py -= 18;
-        }
-        taken.push((px, py));
-        let words = format!("{} · {} Hz", significant(c.value, 4), hertz(frequency(c.eigenvalue), 0));
-        let (base_x, base_y) = lower.get_base_pixel();
-        lower.draw_text(&words, &above(bold(12.0, INK)), (px - base_x, py - base_y))?;
+        draw_dot(&top, (x, c.eigenvalue.im / TAU), 4.5, ALARM)?;
+        draw_dot(&bottom, (x, 0.0), 4.5, ALARM)?;
+    }
+    for p in found.iter().take(MOST) {
+        let [a, b] = [p.across.start, p.across.end];
+        let [c, d] = [p.frequencies.start, p.frequencies.end];
+        draw_curve(&top, [(a, c), (b, c), (b, d), (a, d), (a, c)], Pen { opacity: 0.6, ..pen(INK, 1.0) })?;
+    }
+    for label in labels {
+        let hex = if label.critical { ALARM } else { MUTED };
+        let (x, y) = label.pixel;
+        let at = (place(axis, label.at.0), label.at.1);
+        let leader = Pen { opacity: 0.55, dash: Dash::Dotted, ..pen(hex, 1.0) };
+        let (px, _) = top.backend_coord(&at);
+        let ends = [local(area, x, y - 3), local(area, px, strip as i32 + 16)];
+        area.draw(&PathElement::new(ends, colour(hex).mix(leader.opacity).stroke_width(1)))?;
+        draw_curve(&top, [(at.0, at.1), (at.0, top.y_range().end)], leader)?;
+        let ink = if label.critical { ALARM_TEXT } else { MUTED };
+        area.draw_text(&label.words, &above(bold(12.5, ink)), local(area, x, y))?;
     }
     Ok(())
 }
 
 fn draw_locus(area: &Area, result: &SweepResult) -> Drawing {
-    let across = growth_range(result);
-    let up = frequency_range(result);
-    let mut chart = plot(area, across.clone(), up.clone())?;
+    let (across, up) = (growth_range(result), frequency_range(result));
+    let mut chart = ChartBuilder::on(area)
+        .margin(16)
+        .x_label_area_size(46)
+        .y_label_area_size(78)
+        .build_cartesian_2d(across.clone(), up.clone())?;
     chart
         .configure_mesh()
         .light_line_style(TRANSPARENT)
@@ -144,42 +183,36 @@ fn draw_locus(area: &Area, result: &SweepResult) -> Drawing {
         .axis_desc_style(text(14.0, INK))
         .x_desc("growth rate σ [1/s]")
         .y_desc("frequency [Hz]")
-        .x_label_formatter(&|v| given(*v))
+        .x_label_formatter(&|v| given(clean(*v, &across)))
         .y_label_formatter(&|v| given(*v))
         .draw()?;
     axes_of(area, &chart, ["growth rate σ [1/s]", "frequency [Hz]"].map(linear))?;
-    chart.draw_series([PathElement::new([(0.0, up.start), (0.0, up.end)], colour(INK).stroke_width(2))])?;
-    let inside = |z: &c64| across.contains(&z.re);
-    for b in 0..result.sweep.branches.len() {
-        let points = trace(result, b);
-        for pair in points.windows(2).filter(|p| inside(&p[0].1) && inside(&p[1].1)) {
-            let grows = pair[0].2 && pair[1].2;
-            let style = if grows { colour(ALARM).stroke_width(3) } else { colour(CALM).stroke_width(2) };
-            let ends = [0, 1].map(|k: usize| (pair[k].1.re, pair[k].1.im / TAU));
-            chart.draw_series([PathElement::new(ends, style)])?;
-        }
-        let (Some(first), Some(last)) = (points.first(), points.last()) else { continue };
-        let hue = |grows: bool| colour(if grows { ALARM } else { CALM });
-        if inside(&first.1) {
-            let at = (first.1.re, first.1.im / TAU);
-            chart.draw_series([Circle::new(at, 4, hue(first.2).stroke_width(1))])?;
-        }
-        if inside(&last.1) {
-            let at = (last.1.re, last.1.im / TAU);
-            chart.draw_series([Circle::new(at, 4, hue(last.2).filled())])?;
-        }
+    draw_curve(&chart, [(0.0, up.start), (0.0, up.end)], pen(INK, 2.0))?;
+    draw_lines(&chart, result, |_, z| (z.re, z.im / TAU), (|_| true, pen(CALM, 2.0)))?;
+    for branch in &result.sweep.branches {
+        let (Some(first), Some(last)) = (branch.eigenvalues.first(), branch.eigenvalues.last()) else {
+            continue;
+        };
+        let hue = |z: &c64| if unstable(*z) { ALARM } else { CALM };
+        draw_ring(&chart, (first.re, first.im / TAU), 4.0, (hue(first), 1.0))?;
+        draw_dot(&chart, (last.re, last.im / TAU), 4.0, hue(last))?;
     }
     Ok(())
 }
 
-fn plot<'a, 'b>(area: &Area<'b>, across: Range<f64>, up: Range<f64>) -> Result<Plot<'a, 'b>, Box<dyn Error>> {
-    let mut builder = ChartBuilder::on(area);
-    builder.margin(16).x_label_area_size(46).y_label_area_size(78);
-    Ok(builder.build_cartesian_2d(across, up)?)
-}
-
-fn label_axes(chart: &mut Plot, result: &SweepResult, x: &str, y: &str) -> Drawing {
-    let axis = result.axis;
+/// Axes over the parameter, with words below and beside.
+fn plot<'a, 'b>(
+    area: &Area<'b>,
+    (across, up): (Range<f64>, Range<f64>),
+    axis: &crate::sweep::Axis,
+    [below, beside]: [&str; 2],
+) -> Result<LinearChart<'a, 'b>, Box<dyn Error>> {
+    let high = up.clone();
+    let mut chart = ChartBuilder::on(area)
+        .margin(ENDS[1])
+        .x_label_area_size(46)
+        .y_label_area_size(ENDS[0] - ENDS[1])
+        .build_cartesian_2d(across, up)?;
     chart
         .configure_mesh()
         .light_line_style(TRANSPARENT)
@@ -187,30 +220,40 @@ fn label_axes(chart: &mut Plot, result: &SweepResult, x: &str, y: &str) -> Drawi
         .axis_style(colour(MUTED))
         .label_style(text(13.0, INK))
         .axis_desc_style(text(14.0, INK))
-        .x_desc(x)
-        .y_desc(y)
+        .x_desc(below)
+        .y_desc(beside)
         .x_labels(10)
-        .x_label_formatter(&|v| given(if axis.log { round(value_at(&axis, *v)) } else { *v }))
-        .y_label_formatter(&|v| given(*v))
+        .x_label_formatter(&|v| label(axis, *v))
+        .y_label_formatter(&|v| given(clean(*v, &high)))
         .draw()?;
-    Ok(())
+    Ok(chart)
 }
 
-/// Every branch: calm lines first, those that grow on top.
-fn draw_lines(chart: &mut Plot, result: &SweepResult, height: impl Fn(c64) -> f64) -> Drawing {
-    let range = chart.y_range();
-    for growing in [false, true] {
-        for b in 0..result.sweep.branches.len() {
-            for pair in trace(result, b).windows(2) {
-                let ends = [0, 1].map(|k: usize| (pair[k].0, height(pair[k].1)));
-                let shown = ends.iter().all(|(_, y)| *y >= range.start && *y <= range.end);
-                if shown && (pair[0].2 && pair[1].2) == growing {
-                    let style =
-                        if growing { colour(ALARM).stroke_width(3) } else { colour(CALM).stroke_width(1) };
-                    chart.draw_series([PathElement::new(ends, style)])?;
-                }
+#[cfg(test)]
+mod tests {
+    use super::super::places::places_of;
+    use super::*;
+    use crate::results::sample;
+
+    #[test]
+    fn labels_stand_above_the_curves_and_apart() {
+        let results = sample::rig();
+        let mut result = results.all::<SweepResult>()[0].clone();
+        let one = result.sweep.critical[0];
+        result.sweep.critical =
+            (0..14).map(|k| crate::sweep::Critical { value: 0.3 + 2e-3 * f64::from(k), ..one }).collect();
+        let found = places_of(&result);
+        let (height, labels) = strip(&result, &found);
+        assert_eq!(labels.len(), LABELS);
+        for (k, a) in labels.iter().enumerate() {
+            assert!(a.pixel.1 <= height as i32 && a.pixel.1 >= LABEL_HEIGHT, "{:?} of {height}", a.pixel);
+            for b in &labels[k + 1..] {
+                let (dx, dy) = ((a.pixel.0 - b.pixel.0).abs(), (a.pixel.1 - b.pixel.1).abs());
+                assert!(dx >= LABEL_WIDTH || dy >= LABEL_HEIGHT, "{} {}", a.words, b.words);
             }
         }
+        let svg = picture(&result, &found).unwrap().svg;
+        assert!(svg.contains("friction coefficient μ₀ of rim [–]") && !svg.contains("mu0"));
+        assert!(!svg.contains("NaN"));
     }
-    Ok(())
 }

@@ -7,6 +7,9 @@ use crate::stability::unstable;
 use crate::sweep::{CriticalKind, InteractionKind};
 use std::f64::consts::TAU;
 
+/// Interactions that are named one by one.
+const NAMED: usize = 6;
+
 pub(super) fn with_unit(value: f64, unit: &str) -> String {
     let number = given(value);
     if unit.is_empty() { number } else { format!("{number} {unit}") }
@@ -68,16 +71,26 @@ pub(in crate::report) fn sweep_words(result: &SweepResult) -> Vec<String> {
         }
     }
     let meet = |kind: InteractionKind| -> Vec<String> {
-        let those = sweep.interactions.iter().filter(|e| e.kind == kind);
+        let mut those: Vec<_> = sweep.interactions.iter().filter(|e| e.kind == kind).collect();
+        // The nearest ones are named; they stand in the order of the sweep when all are.
+        if those.len() > NAMED {
+            those.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        }
         those
+            .iter()
             .map(|e| format!("near {} Hz at {}", hertz(e.frequency_hz, 0), with_unit(e.value, unit)))
             .collect()
     };
     for (kind, begin) in
-        [(InteractionKind::Veering, "Frequencies veer"), (InteractionKind::Crossing, "They cross")]
+        [(InteractionKind::Veering, "Frequencies veer"), (InteractionKind::Crossing, "Frequencies cross")]
     {
-        let those = meet(kind);
-        if !those.is_empty() && those.len() <= 6 {
+        let mut those = meet(kind);
+        let more = those.len().saturating_sub(NAMED);
+        if more > 0 {
+            those.truncate(NAMED);
+            those.push(format!("at {more} more places"));
+        }
+        if !those.is_empty() {
             words.push(format!("{begin} {}.", list(&those)));
         }
     }

@@ -30,6 +30,7 @@ pub(super) fn sweep() -> SweepResult {
     SweepResult {
         name: "over / friction".into(),
         parameter: "contact.rim.friction.mu0".into(),
+        label: "friction coefficient μ₀ of rim".into(),
         unit: String::new(),
         axis,
         nominal: 0.4,
@@ -64,6 +65,7 @@ pub(super) fn map() -> MapResult {
     MapResult {
         name: "load and speed".into(),
         parameters: ["contact.rim.load", "contact.rim.sliding_velocity"].map(String::from),
+        labels: ["load ΣN of rim", "sliding velocity V of rim"].map(String::from),
         units: ["N", "m/s"].map(String::from),
         axes: [
             Axis { from: 10.0, to: 40.0, points: 4, log: false },

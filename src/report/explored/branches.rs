@@ -1,0 +1,81 @@
+//! Branches of a sweep as lines of a chart.
+
+use super::axis::place;
+use crate::linalg::c64;
+use crate::report::colours::{ALARM, MEASURED};
+use crate::report::curve::{Dash, LinearChart, Pen, draw_curve, pen};
+use crate::results::SweepResult;
+use crate::stability::unstable;
+use crate::sweep::{Critical, CriticalKind, InteractionKind};
+use std::error::Error;
+
+/// A branch as points (place on the axis, λ), its critical points among them, and which stretches grow.
+fn trace(result: &SweepResult, b: usize) -> Vec<(f64, c64, bool)> {
+    let sweep = &result.sweep;
+    let branch = &sweep.branches[b];
+    let mut points: Vec<(f64, c64, bool)> = Vec::new();
+    // Two branches that merge meet in one point.
+    let merges = |c: &&Critical| c.kind == CriticalKind::Merging && partner(result, c) == Some(b);
+    let own = sweep.critical.iter().filter(|c| c.branch == b || merges(c));
+    let own: Vec<(f64, c64)> = own.map(|c| (c.value, c64::new(0.0, c.eigenvalue.im))).collect();
+    for (k, z) in branch.eigenvalues.iter().enumerate() {
+        let value = sweep.values[branch.first + k];
+        if k > 0 {
+            let before = sweep.values[branch.first + k - 1];
+            let (low, high) = (before.min(value), before.max(value));
+            let between = own.iter().filter(|(v, _)| *v > low && *v < high);
+            points.extend(between.map(|(v, z)| (place(&result.axis, *v), *z, true)));
+        }
+        points.push((place(&result.axis, value), *z, unstable(*z)));
+    }
+    points
+}
+
+/// The branch with which that of a critical value merges there.
+fn partner(result: &SweepResult, critical: &Critical) -> Option<usize> {
+    let near = 1e-3 * (result.axis.to - result.axis.from).abs();
+    let merging = result.sweep.interactions.iter().find(|e| {
+        e.kind == InteractionKind::Merging
+            && e.branches.contains(&critical.branch)
+            && (e.value - critical.value).abs() < near
+    })?;
+    merging.branches.into_iter().find(|b| *b != critical.branch)
+}
+
+/// Growing and other stretches of a branch, each a list of (place on the axis, λ).
+fn stretches(result: &SweepResult, b: usize) -> Vec<(bool, Vec<(f64, c64)>)> {
+    let mut all: Vec<(bool, Vec<(f64, c64)>)> = Vec::new();
+    for pair in trace(result, b).windows(2) {
+        let [from, to] = [pair[0], pair[1]];
+        let grows = from.2 && to.2;
+        match all.last_mut() {
+            Some((growing, points)) if *growing == grows => points.push((to.0, to.1)),
+            _ => all.push((grows, vec![(from.0, from.1), (to.0, to.1)])),
+        }
+    }
+    all
+}
+
+/// Every branch that is `chosen`: what does not grow in the line `calm`, what grows on top.
+pub(super) fn draw_lines(
+    chart: &LinearChart,
+    result: &SweepResult,
+    point: impl Fn(f64, c64) -> (f64, f64),
+    (chosen, calm): (impl Fn(usize) -> bool, Pen),
+) -> Result<(), Box<dyn Error>> {
+    for growing in [false, true] {
+        for b in (0..result.sweep.branches.len()).filter(|b| chosen(*b)) {
+            for (_, points) in stretches(result, b).iter().filter(|(grows, _)| *grows == growing) {
+                let line = if growing { pen(ALARM, 3.0) } else { calm };
+                draw_curve(chart, points.iter().map(|(x, z)| point(*x, *z)), line)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The case's own value as a dashed line.
+pub(super) fn draw_nominal(chart: &LinearChart, result: &SweepResult) -> Result<(), Box<dyn Error>> {
+    let (own, up) = (place(&result.axis, result.nominal), chart.y_range());
+    draw_curve(chart, [(own, up.start), (own, up.end)], Pen { dash: Dash::Dashed, ..pen(MEASURED, 1.2) })
+}
