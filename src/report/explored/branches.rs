@@ -2,7 +2,7 @@
 
 use super::axis::place;
 use crate::linalg::c64;
-use crate::report::colours::{ALARM, MEASURED};
+use crate::report::colours::MEASURED;
 use crate::report::curve::{Dash, LinearChart, Pen, draw_curve, pen};
 use crate::results::SweepResult;
 use crate::stability::unstable;
@@ -56,17 +56,16 @@ fn stretches(result: &SweepResult, b: usize) -> Vec<(bool, Vec<(f64, c64)>)> {
     all
 }
 
-/// Every branch that is `chosen`: what does not grow in the line `calm`, what grows on top.
+/// Every branch that is `chosen`: what does not grow in the first line, what grows in the second, on top.
 pub(super) fn draw_lines(
     chart: &LinearChart,
     result: &SweepResult,
     point: impl Fn(f64, c64) -> (f64, f64),
-    (chosen, calm): (impl Fn(usize) -> bool, Pen),
+    (chosen, lines): (impl Fn(usize) -> bool, [Pen; 2]),
 ) -> Result<(), Box<dyn Error>> {
-    for growing in [false, true] {
+    for (growing, line) in [false, true].into_iter().zip(lines) {
         for b in (0..result.sweep.branches.len()).filter(|b| chosen(*b)) {
             for (_, points) in stretches(result, b).iter().filter(|(grows, _)| *grows == growing) {
-                let line = if growing { pen(ALARM, 3.0) } else { calm };
                 draw_curve(chart, points.iter().map(|(x, z)| point(*x, *z)), line)?;
             }
         }

@@ -5,16 +5,17 @@ use super::branches::{draw_lines, draw_nominal};
 use super::places::{MOST, SweepPlace};
 use crate::linalg::c64;
 use crate::report::axes::clean;
-use crate::report::chart::{Area, above, bold, colour, sheet, text, widened};
+use crate::report::chart::{Area, bold, colour, sheet, text, widened};
 use crate::report::colours::{ALARM, ALARM_TEXT, CALM, INK, MUTED};
 use crate::report::curve::{Dash, LinearChart, Pen, draw_curve, draw_dot, draw_ring, pen};
 use crate::report::format::{given, hertz, rounded};
-use crate::report::labels::{LABEL_HEIGHT, Labels, local};
+use crate::report::labels::{LABEL_HEIGHT, local};
 use crate::report::readout::{axes_of, linear};
 use crate::report::section::Picture;
 use crate::results::{SweepResult, file_name};
 use crate::stability::unstable;
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::error::Error;
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -26,7 +27,7 @@ const DEEPEST: f64 = 1.5;
 /// Values with a label above the charts.
 const LABELS: usize = 10;
 /// Width of such a label \[px\].
-const LABEL_WIDTH: i32 = 150;
+const LABEL_WIDTH: i32 = 140;
 /// Heights of the two charts, the lower one with the words under its axis.
 const HEIGHTS: [u32; 2] = [380, 400];
 /// Where the axis across begins and how far from the right edge it ends \[px\].
@@ -85,12 +86,15 @@ struct StripLabel {
     words: String,
     /// Value of the parameter, and ω/2π of the mode there \[Hz\].
     at: (f64, f64),
-    /// Middle and lower edge \[px\].
+    /// Its right and lower edges \[px\].
     pixel: (i32, i32),
+    /// Where the line to the value leaves it \[px\].
+    leader: i32,
     critical: bool,
 }
 
-/// Labels of the numbered places and of further critical values in a strip of this height, where no curve is.
+/// Labels of the numbered places and of further critical values in a strip of this height, where no curve is. Each ends at the line
+/// to its value, and those farther right stand higher: no line crosses a label.
 fn strip(result: &SweepResult, found: &[SweepPlace]) -> (u32, Vec<StripLabel>) {
     let words = |value: f64, hz: f64| format!("{} · {} Hz", given(rounded(value, 4)), hertz(hz, 0));
     let shown = &found[..found.len().min(MOST)];
@@ -104,17 +108,23 @@ fn strip(result: &SweepResult, found: &[SweepPlace]) -> (u32, Vec<StripLabel>) {
     });
     let across = places(&result.axis);
     let (left, right) = (ENDS[0], WIDTH as i32 - ENDS[1]);
-    let mut places = Labels::default();
-    let mut labels: Vec<StripLabel> = numbered
-        .chain(others)
-        .take(LABELS)
-        .map(|(words, at, critical)| {
-            let part = (place(&result.axis, at.0) - across.start) / (across.end - across.start);
-            let x = left + (part * f64::from(right - left)) as i32;
-            let x = x.clamp(left + LABEL_WIDTH / 2, right - LABEL_WIDTH / 2);
-            StripLabel { words, at, pixel: (x, places.place(x, 0, LABEL_WIDTH, -LABEL_HEIGHT)), critical }
-        })
-        .collect();
+    let label = |(words, at, critical): (String, (f64, f64), bool)| {
+        let part = (place(&result.axis, at.0) - across.start) / (across.end - across.start);
+        let leader = left + (part * f64::from(right - left)) as i32;
+        StripLabel { words, at, pixel: (leader.max(LABEL_WIDTH), 0), leader, critical }
+    };
+    let mut labels: Vec<StripLabel> = numbered.chain(others).take(LABELS).map(label).collect();
+    labels.sort_by_key(|label| label.leader);
+    let mut lowest = i32::MAX;
+    let mut before: Option<i32> = None;
+    for label in &mut labels {
+        // Beside the one before where that ends, else above it.
+        let free = before.is_none_or(|end| label.pixel.0 - LABEL_WIDTH >= end);
+        let y = if free { 0 } else { lowest - LABEL_HEIGHT };
+        label.pixel.1 = y;
+        lowest = y;
+        before = Some(label.pixel.0);
+    }
     let highest = labels.iter().map(|label| label.pixel.1).min().unwrap_or(LABEL_HEIGHT) - LABEL_HEIGHT;
     let height = -highest + if labels.is_empty() { 0 } else { 10 };
     labels.iter_mut().for_each(|label| label.pixel.1 += height);
@@ -138,8 +148,8 @@ fn draw_branches(
     let bottom = plot(&lower, (across.clone(), growth_range(result)), axis, words)?;
     axes_of(&lower, &bottom, [scale(axis, &below), linear("growth rate σ [1/s]")])?;
     draw_curve(&bottom, [(across.start, 0.0), (across.end, 0.0)], pen(INK, 2.0))?;
-    draw_lines(&top, result, |x, z| (x, z.im / TAU), (|_| true, pen(CALM, 1.0)))?;
-    draw_lines(&bottom, result, |x, z| (x, z.re), (|_| true, pen(CALM, 1.0)))?;
+    draw_lines(&top, result, |x, z| (x, z.im / TAU), (|_| true, [pen(CALM, 1.0), pen(ALARM, 3.0)]))?;
+    draw_lines(&bottom, result, |x, z| (x, z.re), (|_| true, [pen(CALM, 1.0), pen(ALARM, 3.0)]))?;
     draw_nominal(&top, result)?;
     draw_nominal(&bottom, result)?;
     for c in &result.sweep.critical {
@@ -158,11 +168,12 @@ fn draw_branches(
         let at = (place(axis, label.at.0), label.at.1);
         let leader = Pen { opacity: 0.55, dash: Dash::Dotted, ..pen(hex, 1.0) };
         let (px, _) = top.backend_coord(&at);
-        let ends = [local(area, x, y - 3), local(area, px, strip as i32 + 16)];
+        let ends = [local(area, px, y - LABEL_HEIGHT), local(area, px, strip as i32 + 16)];
         area.draw(&PathElement::new(ends, colour(hex).mix(leader.opacity).stroke_width(1)))?;
         draw_curve(&top, [(at.0, at.1), (at.0, top.y_range().end)], leader)?;
         let ink = if label.critical { ALARM_TEXT } else { MUTED };
-        area.draw_text(&label.words, &above(bold(12.5, ink)), local(area, x, y))?;
+        let beside = Pos::new(HPos::Right, VPos::Bottom);
+        area.draw_text(&label.words, &bold(12.5, ink).pos(beside), local(area, x - 4, y))?;
     }
     Ok(())
 }
@@ -188,7 +199,7 @@ fn draw_locus(area: &Area, result: &SweepResult) -> Drawing {
         .draw()?;
     axes_of(area, &chart, ["growth rate σ [1/s]", "frequency [Hz]"].map(linear))?;
     draw_curve(&chart, [(0.0, up.start), (0.0, up.end)], pen(INK, 2.0))?;
-    draw_lines(&chart, result, |_, z| (z.re, z.im / TAU), (|_| true, pen(CALM, 2.0)))?;
+    draw_lines(&chart, result, |_, z| (z.re, z.im / TAU), (|_| true, [pen(CALM, 2.0), pen(ALARM, 3.0)]))?;
     for branch in &result.sweep.branches {
         let (Some(first), Some(last)) = (branch.eigenvalues.first(), branch.eigenvalues.last()) else {
             continue;
@@ -250,6 +261,9 @@ mod tests {
             for b in &labels[k + 1..] {
                 let (dx, dy) = ((a.pixel.0 - b.pixel.0).abs(), (a.pixel.1 - b.pixel.1).abs());
                 assert!(dx >= LABEL_WIDTH || dy >= LABEL_HEIGHT, "{} {}", a.words, b.words);
+                let (high, low) = if a.pixel.1 < b.pixel.1 { (a, b) } else { (b, a) };
+                let under = low.pixel.0 - LABEL_WIDTH..low.pixel.0;
+                assert!(!under.contains(&high.leader), "a line crosses {}", low.words);
             }
         }
         let svg = picture(&result, &found).unwrap().svg;

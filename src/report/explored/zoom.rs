@@ -82,7 +82,8 @@ fn draw_panel(
     let high = (found.across.clone(), found.frequencies.clone());
     let chart = plot(&upper, high, result, "frequency [Hz]")?;
     axes_of(&upper, &chart, [scale(axis, &name), linear("frequency [Hz]")])?;
-    let (others, own) = (Pen { opacity: 0.5, ..pen(CALM, 1.0) }, pen(CALM, 2.5));
+    let others = [CALM, ALARM].map(|hex| Pen { opacity: 0.5, ..pen(hex, 1.0) });
+    let own = [pen(CALM, 2.5), pen(ALARM, 3.0)];
     draw_lines(&chart, result, |x, z| (x, z.im / TAU), (|b| !pair(b), others))?;
     draw_lines(&chart, result, |x, z| (x, z.im / TAU), (pair, own))?;
     draw_nominal(&chart, result)?;
