@@ -71,7 +71,7 @@ mod tests {
         let shown = shown.map(|(value, unit)| prefixed(value, unit, 3));
         assert_eq!(
             shown,
-            ["1.00 µm", "12.0 µm", "−345 mm/s", "7930 m/s²", "1.23 kN", "3.00e−15 m", "0 m", "0.000200 1"]
+            ["1.000 µm", "12.0 µm", "−345 mm/s", "7930 m/s²", "1.23 kN", "3.00e−15 m", "0 m", "0.000200 1"]
         );
     }
 }
