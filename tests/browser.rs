@@ -128,7 +128,7 @@ fn the_motion_in_time_moves_and_says_when() {
         found["set"] == "motion in time" && found["differ"] == true && found["plays"] == true,
         "{found:#}"
     );
-    assert!(found["name"].as_str().unwrap().contains("largest displacement 1.00 µm"), "{found:#}");
+    assert!(found["name"].as_str().unwrap().contains("largest displacement 1.000 µm"), "{found:#}");
     // A quarter of a period of 273 Hz from one to the next, the last period of a run of 0.4 s.
     let time = |k: usize| -> f64 {
         let words = found["times"][k].as_str().unwrap();

@@ -30,6 +30,9 @@ pub(super) struct Multiple {
     pub unit: String,
 }
 
+/// 1000 over the least number that is 1000 with three digits.
+const ROUNDED: f64 = 1000.0 / 999.5;
+
 /// The multiple of `unit` in which `value` has one to three digits before the point. Units whose first part is not a bare unit (a
 /// square, a ratio of numbers) have none but themselves, nor have numbers beyond all prefixes.
 pub(super) fn multiple(value: f64, unit: &str) -> Multiple {
@@ -40,7 +43,8 @@ pub(super) fn multiple(value: f64, unit: &str) -> Multiple {
     let takes = ["m", "N", "J", "W", "Pa", "V", "rad"].contains(&first) && value != 0.0 && value.is_finite();
     // Lengths and angles above one have no prefix: kilometres per second squared are no unit of vibration.
     let most = if ["m", "rad"].contains(&first) { 0 } else { 6 };
-    let thousand = (3 * (value.abs().log10() / 3.0).floor() as i32).min(most);
+    // With three digits 999.5 is 1000, one of the next.
+    let thousand = (((value.abs() * ROUNDED).log10() / 3.0).floor() as i32).saturating_mul(3).min(most);
     match PREFIXES.iter().find(|(power, _)| takes && *power == thousand) {
         Some((power, prefix)) => Multiple { size: 10f64.powi(*power), unit: format!("{prefix}{written}") },
         None => Multiple { size: 1.0, unit: written },
@@ -66,6 +70,7 @@ mod tests {
     #[test]
     fn prefixes_keep_the_digits_short() {
         let shown = [
+            (9.9999e-7, "m"),
             (1.2e-5, "m"),
             (-0.345, "m/s"),
             (7930.0, "m/s^2"),
@@ -77,7 +82,7 @@ mod tests {
         let shown = shown.map(|(value, unit)| prefixed(value, unit, 3));
         assert_eq!(
             shown,
-            ["12.0 µm", "−345 mm/s", "7930 m/s²", "1.23 kN", "3.00e−15 m", "0 m", "0.000200 1"]
+            ["1.000 µm", "12.0 µm", "−345 mm/s", "7930 m/s²", "1.23 kN", "3.00e−15 m", "0 m", "0.000200 1"]
         );
     }
 }

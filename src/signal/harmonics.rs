@@ -4,11 +4,12 @@
 //! fundamental in phase. The record is cut into K segments, at most 8, each at least five periods of f₀ (of f₀/2 for m = 2) long, with a Hann window.
 //! With X_k and Y_k the complex amplitudes of the segments at f₀ and f about their middles, m and n whole numbers, f ≈ (n/m) f₀,
 //!
-//! γ² = |Σ_k a_k|² / (K Σ_k |a_k|²), a_k = |Y_k| exp i(m arg Y_k − n arg X_k),
+//! γ² = |Σ_k a_k|² / (Σ_k |X_k|² Σ_k |Y_k|²), a_k = |X_k| |Y_k| exp i(m arg Y_k − n arg X_k),
 //!
-//! is the part of the power of the peak that keeps its amplitude and its phase to the fundamental: n : m phase synchronisation
+//! is the part of the power of the peak that rises and falls with the fundamental and keeps its phase to it: n : m phase synchronisation
 //! (P. Tass et al., Phys. Rev. Lett. 81 (1998) 3291), weighted by amplitude; the phase of a bicoherence for the sum of two tones (Y. C.
-//! Kim & E. J. Powers, IEEE Trans. Plasma Sci. 7 (1979) 120). A peak is named where γ² ≥ 0.8, and at least 1 − 0.001^(1/(K−1)).
+//! Kim & E. J. Powers, IEEE Trans. Plasma Sci. 7 (1979) 120). A peak is named where γ² ≥ 0.8, and at least 1 − 0.001^(1/(K'−1)), where K' =
+//! (Σ|a_k|)²/Σ|a_k|² is the number of segments that count: K of a steady oscillation, few of one that begins late.
 //!
 //! False alarms. Of Gaussian noise the a_k are complex Gaussian, γ² has the Beta(1, K−1) distribution, P(γ² > x) = (1−x)^(K−1): at
 //! most 0.1 %. A tone of its own that is δ away from (n/m) f₀ turns by mδT over the record of length T, γ = sinc(mδT), and passes for |mδ| < 0.26/T: of
@@ -61,10 +62,11 @@ struct Line {
     power: f64,
 }
 
-/// A line whose phase others are compared with: its frequency, and arg X_k.
+/// A line with which others are compared: its frequency, arg X_k, and |X_k| as a part of the largest.
 struct Reference {
     hz: f64,
     phases: Vec<f64>,
+    sizes: Vec<f64>,
 }
 
 /// A fundamental: for its multiples and, where the record is long enough, for those of its half.
@@ -137,8 +139,10 @@ impl Tones<'_> {
         };
         let explained: Vec<(Line, f64)> = candidates.iter().map(|c| (*c, explained(c))).collect();
         let most = explained.iter().map(|(_, power)| *power).fold(0.0, f64::max);
-        let enough =
-            explained.into_iter().filter(|(_, power)| *power >= EXPLAINED * most).map(|(line, _)| line);
+        let enough = explained
+            .into_iter()
+            .filter(|(_, power)| *power >= EXPLAINED * most && most > 0.0)
+            .map(|(line, _)| line);
         enough.max_by(|a, b| a.hz.total_cmp(&b.hz))
     }
 
@@ -157,8 +161,14 @@ impl Tones<'_> {
     }
 
     fn reference(&self, line: &Line, count: usize) -> Reference {
-        let phases = self.amplitudes(line, count).into_iter().map(|x| x.arg()).collect();
-        Reference { hz: line.hz, phases }
+        let amplitudes = self.amplitudes(line, count);
+        // As a part of the largest, so that no square of a small number is lost.
+        let largest = amplitudes.iter().map(|x| x.norm()).fold(f64::MIN_POSITIVE, f64::max);
+        Reference {
+            hz: line.hz,
+            phases: amplitudes.iter().map(|x| x.arg()).collect(),
+            sizes: amplitudes.iter().map(|x| x.norm() / largest).collect(),
+        }
     }
 
     /// \[n, m\] of f = (n/m) f₀, m = 1 or 2, where the line is locked to it.
@@ -189,14 +199,21 @@ impl Tones<'_> {
         if (m_hz - sum).abs() > (self.resolution_hz * (0.5 + FREQUENCY_ERROR * order)).min(turn) {
             return false;
         }
-        let (mut total, mut power) = (Complex64::ZERO, 0.0);
+        let (mut total, mut sizes, mut squares) = (Complex64::ZERO, 0.0, 0.0);
+        let (mut own, mut others) = (0.0, 0.0);
         for (k, y) in self.amplitudes(line, count).into_iter().enumerate() {
-            let of_terms: f64 = terms.iter().map(|(n, of)| f64::from(*n) * of.phases[k]).sum();
-            total += Complex64::from_polar(y.norm(), f64::from(m) * y.arg() - of_terms);
-            power += y.norm_sqr();
+            let phase: f64 = terms.iter().map(|(n, of)| f64::from(*n) * of.phases[k]).sum();
+            let size: f64 = terms.iter().map(|(_, of)| of.sizes[k]).product();
+            let a = Complex64::from_polar(size * y.norm(), f64::from(m) * y.arg() - phase);
+            total += a;
+            sizes += a.norm();
+            squares += a.norm_sqr();
+            own += y.norm_sqr();
+            others += size * size;
         }
-        let share = total.norm_sqr() / (count as f64 * power).max(f64::MIN_POSITIVE);
-        share >= SHARE.max(1.0 - FALSE_ALARM.powf(1.0 / (count as f64 - 1.0)))
+        let share = total.norm_sqr() / (own * others).max(f64::MIN_POSITIVE);
+        let counting = sizes * sizes / squares.max(f64::MIN_POSITIVE);
+        share >= SHARE.max(1.0 - FALSE_ALARM.powf(1.0 / (counting - 1.0).max(f64::MIN_POSITIVE)))
     }
 
     /// X_k = Σ_j w_j x_j e^{−iω(t_j − t_k)}, t_k the middle of segment k.
@@ -291,6 +308,20 @@ mod tests {
         assert_eq!(words(&found[0]), ["fundamental", "2 × 1664 Hz"]);
         let own = ["fundamental", "2 × 1664 Hz", "3 × 1664 Hz", "4 × 1664 Hz", "5 × 1664 Hz"];
         assert_eq!(words(&found[1]), own);
+    }
+
+    /// As where a squeal grows in the second half of a run: its harmonics begin with it. A tone of its own that grows as it does is none.
+    #[test]
+    fn harmonics_of_a_squeal_that_begins_late_are_named() {
+        let size = |t: f64| 1.0 / (1.0 + (-(t - 0.03) / 0.004).exp());
+        let late = |away: f64| {
+            record(move |t| {
+                let angle = TAU * 1663.7 * t;
+                size(t) * (angle.sin() + 0.4 * (2.0 * angle + 0.3 + TAU * away * t).sin())
+            })
+        };
+        assert_eq!(words(&named(&[late(0.0)]).0[0]), ["fundamental", "2 × 1664 Hz"]);
+        assert_eq!(words(&named(&[late(12.0)]).0[0]), ["fundamental", ""]);
     }
 
     /// Frequencies within a line of the spectrum (20 Hz) of a multiple, as names by frequency alone would take them.
