@@ -1,8 +1,7 @@
 //! `stridor run`, `compare`, and a subcommand for every analysis.
 
-use super::SUCCESS;
 use super::examples;
-use super::output::{Common, give, say, window_width};
+use super::output::{Common, SUCCESS, give, say, window_width};
 use super::progress::Bars;
 use crate::case::read_case;
 use crate::error::Result;

@@ -1,8 +1,7 @@
 //! `stridor check`: the case and its mesh, without an analysis.
 
-use super::SUCCESS;
 use super::error_json::fault_json;
-use super::output::{Common, give, say};
+use super::output::{Common, SUCCESS, give, say};
 use crate::case::{Parameter, read_case};
 use crate::error::{Fault, Result};
 use crate::job::{CaseWarnings, Prepared, Selection, check_case, expected_memory};

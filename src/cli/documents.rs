@@ -1,7 +1,6 @@
 //! `stridor completions` and `stridor man`: what a shell and a manual hold of the command line, from its one declaration.
 
-use super::SUCCESS;
-use super::output::{Common, give, say};
+use super::output::{Common, SUCCESS, give, say};
 use crate::error::{Error, Fault, Result, nearest};
 use clap::{Args, Command};
 use clap_complete::{Shell, generate};

@@ -1,7 +1,6 @@
 //! `stridor export`: a case as matrices, for other programs and for tests.
 
-use super::SUCCESS;
-use super::output::{Common, say};
+use super::output::{Common, SUCCESS, say};
 use crate::case::read_case;
 use crate::error::Result;
 use crate::job::export;

@@ -1,7 +1,6 @@
 //! `stridor mesh`: generators and a look inside a mesh file.
 
-use super::SUCCESS;
-use super::output::{Common, say};
+use super::output::{Common, SUCCESS, say};
 use crate::error::{Error, Fault, Result};
 use crate::mesh::generate::{self, BarSide, BarSpec, DiscSpec, Grading, PlateSpec, RigSpec};
 use crate::mesh::{self, Info, Mesh};

@@ -22,7 +22,7 @@ mod validate;
 use crate::error::{Error, Fault, Result};
 use clap::{CommandFactory, Parser, Subcommand};
 pub use new::new_case;
-use output::{Common, complain, give};
+use output::{Common, SUCCESS, complain, give};
 use std::ffi::OsString;
 use std::sync::LazyLock;
 
@@ -73,9 +73,6 @@ enum Action {
     #[command(after_help = examples::MAN)]
     Man(documents::ManOptions),
 }
-
-/// The exit code of what has gone well.
-const SUCCESS: u8 = 0;
 
 /// Runs the program on `arguments`, the first of which is its name, and gives its exit code.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {

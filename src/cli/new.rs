@@ -1,8 +1,7 @@
 //! `stridor new`: a folder with a case to start from, and the files that it reads.
 
-use super::SUCCESS;
 use super::mesh::refuse_existing;
-use super::output::{Common, say};
+use super::output::{Common, SUCCESS, say};
 use super::templates::Template;
 use crate::error::{Error, Fault, Result};
 use clap::{Args, ValueEnum};

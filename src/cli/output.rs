@@ -7,6 +7,9 @@ use clap::Args;
 use std::fmt::Display;
 use std::io::{ErrorKind, IsTerminal, Write};
 
+/// The exit code of what has gone well.
+pub const SUCCESS: u8 = 0;
+
 /// Options of every subcommand.
 #[derive(Args)]
 pub struct Common {

@@ -1,7 +1,6 @@
 //! `stridor schema`: what a case file may say, for editors and for people.
 
-use super::SUCCESS;
-use super::output::{Common, give};
+use super::output::{Common, SUCCESS, give};
 use crate::case::Case;
 use crate::error::Result;
 use crate::schema::{describe, json_schema, key_reference};

@@ -1,7 +1,6 @@
 //! `stridor search`: numbers of a case, so that it meets facts of any kind.
 
-use super::SUCCESS;
-use super::output::{Common, give, say, window_width};
+use super::output::{Common, SUCCESS, give, say, window_width};
 use super::progress::Bars;
 use crate::dataset::Describe;
 use crate::error::Result;
