@@ -15,7 +15,7 @@ use std::error::Error;
 
 /// Decibels below the highest line that are shown.
 const DEPTH: f64 = 70.0;
-/// Room for the name of a curve above the highest line \[dB\].
+/// Height of the name of a curve above the highest line \[dB\].
 const NAME: f64 = 7.0;
 /// Colours of the microphones, in turn.
 const INKS: [&str; 5] = [SECOND, MEASURED, "#cc79a7", "#b08a00", MUTED];
