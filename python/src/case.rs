@@ -109,7 +109,7 @@ impl Case {
     /// M, C, K, the load, the degrees of freedom and the contact points.
     fn model<'py>(&self, py: Python<'py>) -> PyResult<pyo3::Bound<'py, PyDict>> {
         let parts = py.detach(|| Parts::of(&Prepared::new(&self.inner)?));
-        raised(py, parts)?.to_python(py)
+        raised(py, parts)?.into_python(py)
     }
 }
 

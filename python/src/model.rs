@@ -40,7 +40,7 @@ impl Parts {
     }
 
     /// A dict of arrays; matrices as [`columns`].
-    pub fn to_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    pub fn into_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let n = self.load.len();
         let ConstantMatrices { mass, damping, stiffness, loss } = &self.matrices;
         let dict = PyDict::new(py);

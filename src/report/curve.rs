@@ -29,7 +29,7 @@ pub(super) enum Dash {
     Solid,
     Dashed,
     Dotted,
-    DashDotted,
+    Chain,
 }
 
 impl Dash {
@@ -39,7 +39,7 @@ impl Dash {
             Dash::Solid => "none",
             Dash::Dashed => "7 5",
             Dash::Dotted => "2 3",
-            Dash::DashDotted => "9 3 2 3",
+            Dash::Chain => "9 3 2 3",
         }
     }
 }

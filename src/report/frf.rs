@@ -108,7 +108,7 @@ fn magnitudes(frf: &FrfResult) -> impl Iterator<Item = f64> + '_ {
 
 /// The line of response `k`: dashes show the lines below where responses coincide.
 fn line(k: usize) -> Pen<'static> {
-    let dash = [Dash::Solid, Dash::Dashed, Dash::DashDotted, Dash::Dotted][k % 4];
+    let dash = [Dash::Solid, Dash::Dashed, Dash::Chain, Dash::Dotted][k % 4];
     Pen { dash, ..pen([ALARM, SECOND, PARTS[2][0], INK][k % 4], if k == 0 { 2.0 } else { 1.5 }) }
 }
 
