@@ -3,9 +3,10 @@
 #[path = "common/program.rs"]
 mod program;
 
-#[cfg(target_os = "linux")]
 use program::limit_memory;
 use program::{command, folder_with, run, said};
+#[cfg(target_os = "linux")]
+use std::f64::consts::TAU;
 use std::path::Path;
 use std::process::Output;
 
@@ -108,10 +109,10 @@ fn a_stiffer_penalty_moves_no_squeal_mode() {
         assert_eq!(stiffer.len(), reference.len());
         for ([hz, growth], [hz_before, growth_before]) in stiffer.iter().zip(&reference) {
             assert!((hz / hz_before - 1.0).abs() < 1e-6, "{stiffness}: {hz} Hz, {hz_before} Hz");
-            assert!(
-                (growth - growth_before).abs() < 1e-5 * growth_before.abs().max(1.0),
-                "{stiffness}: {growth}, {growth_before} 1/s"
-            );
+            // Of 1e18 N/m rounding alone is 220 N/m, which moves an eigenvalue by some 1e-7 of its size, by the processor.
+            let rounding = if stiffness == "1e18" { 1e-6 * TAU * hz_before } else { 0.0 };
+            let bound = (1e-5 * growth_before.abs().max(1.0)).max(rounding);
+            assert!((growth - growth_before).abs() < bound, "{stiffness}: {growth}, {growth_before} 1/s");
         }
     }
 }

@@ -18,6 +18,9 @@ fn allowed() -> BTreeSet<String> {
     list.iter().map(|licence| licence.as_str().expect("a name").to_string()).collect()
 }
 
+/// The packages of this repository.
+const OURS: [&str; 2] = [env!("CARGO_PKG_NAME"), concat!(env!("CARGO_PKG_NAME"), "-python")];
+
 /// Whether the SPDX expression can be met by allowed licences: of every part one alternative.
 fn acceptable(expression: &str, allowed: &BTreeSet<String>) -> bool {
     let plain = expression.replace('/', " OR ").replace(['(', ')'], "");
@@ -41,7 +44,7 @@ fn every_dependency_is_from_crates_io_under_an_allowed_licence() {
     assert!(metadata.status.success(), "{}", String::from_utf8_lossy(&metadata.stderr));
     let metadata: serde_json::Value = serde_json::from_slice(&metadata.stdout).expect("JSON");
     let (packages, allowed) = (metadata["packages"].as_array().expect("a list"), allowed());
-    let of_others = packages.iter().filter(|package| package["name"] != env!("CARGO_PKG_NAME"));
+    let of_others = packages.iter().filter(|package| !OURS.iter().any(|own| package["name"] == *own));
     let mut wrong = Vec::new();
     for package in of_others {
         if package["source"] != CRATES_IO {
@@ -59,7 +62,7 @@ fn every_dependency_is_from_crates_io_under_an_allowed_licence() {
 fn every_locked_package_has_a_checksum() {
     let lock: toml::Table = text_of("Cargo.lock").parse().expect("TOML");
     for package in lock["package"].as_array().expect("a list") {
-        let ours = package["name"].as_str() == Some(env!("CARGO_PKG_NAME"));
+        let ours = package["name"].as_str().is_some_and(|name| OURS.contains(&name));
         assert!(ours || package.get("checksum").is_some(), "{package} is locked without a checksum");
         assert!(ours || package["source"].as_str() == Some(CRATES_IO), "{package}");
     }
