@@ -3,9 +3,9 @@
 #[path = "common/program.rs"]
 mod program;
 
+#[cfg(target_os = "linux")]
 use program::limit_memory;
 use program::{command, folder_with, run, said};
-#[cfg(target_os = "linux")]
 use std::f64::consts::TAU;
 use std::path::Path;
 use std::process::Output;
