@@ -200,9 +200,12 @@ def sound(browser, page_file):
         page.select_option("figure:has(audio) select", label=name)
         page.wait_for_timeout(300)
         decoded = page.evaluate(decode)
-        page.locator("audio").evaluate("audio => audio.play()")
-        page.wait_for_timeout(400)
-        decoded["position"] = page.locator("audio").evaluate("audio => audio.currentTime")
+        # The farthest position that the player says, within ten seconds.
+        decoded["position"] = page.locator("audio").evaluate("""audio => new Promise(resolve => {
+            setTimeout(() => resolve(0), 10000);
+            audio.addEventListener('timeupdate', () => audio.currentTime > 0 && resolve(audio.currentTime));
+            audio.play();
+        })""")
         found.append(decoded)
     return {"microphones": microphones, "found": found, "log": log}
 
