@@ -64,7 +64,8 @@ def test_no_group_inherits_lists_of_sentences(squeal: stridor.Results, tmp_path:
     folder = stridor.run(TWO_DOF, out=tmp_path / "out", progress=False)
     for tree in (squeal.tree, folder.tree):
         assert not tree.sizes
-    assert set(squeal["cea/eigenvalues"].sizes) == {"mode", "node", "freedom", "dof", "real_mode"}
+    own = {"mode", "node", "freedom", "dof", "real_mode", "limit"}
+    assert set(squeal["cea/eigenvalues"].sizes) == own
 
 
 def test_complex_modes_have_names_units_and_dimensions(squeal: stridor.Results) -> None:
