@@ -100,8 +100,7 @@ impl Case {
     fn check(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         let warnings = py.detach(|| {
             let warnings = check_case(&Prepared::new(&self.inner)?).map_err(|error| self.located(error))?;
-            let unlikely = warnings.unlikely.iter().map(Fault::to_string);
-            Ok(warnings.sentences.into_iter().chain(unlikely).collect())
+            Ok(warnings.words().collect())
         });
         raised(py, warnings)
     }
@@ -122,13 +121,12 @@ impl Case {
 
 /// The TOML text of a JSON object.
 fn toml_of_json(text: &str) -> Result<String> {
-    let value: serde_json::Value = serde_json::from_str(text)
-        .map_err(|error| Error::input(Fault::new("case", error.to_string(), "a table of keys")))?;
+    let refused = |found: String| Error::input(Fault::new("case", found, "a table of keys"));
+    let value: serde_json::Value = serde_json::from_str(text).map_err(|error| refused(error.to_string()))?;
     let mut faults = Faults::new();
     refuse_null(&value, "", &mut faults);
     faults.into_result(())?;
-    toml::to_string(&value)
-        .map_err(|error| Error::input(Fault::new("case", error.to_string(), "a table of keys")))
+    toml::to_string(&value).map_err(|error| refused(error.to_string()))
 }
 
 /// A fault for each value that is not there: TOML has none.

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
-use stridor::dataset::{Describe, Group};
+use stridor::dataset::Describe;
 use stridor::error::{Error, Fault, Result};
 use stridor::job::{ANALYSES, Histories, Prepared, Selection, analyse, run_case};
 use stridor::progress::{Observer, interrupt, until_interrupted};
@@ -24,12 +24,6 @@ const TICK: Duration = Duration::from_millis(30);
 pub struct Run {
     results: RunResults,
     histories: Histories,
-}
-
-impl Run {
-    fn group(&self) -> Group<'_> {
-        self.results.describe().merged(self.histories.describe())
-    }
 }
 
 #[pymethods]
@@ -66,7 +60,7 @@ impl Run {
 
     /// The results as nested dicts, laid out as in `results.h5`.
     fn tree<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        tree::to_python(py, &self.group())
+        tree::to_python(py, &self.results.describe().merged(self.histories.describe()))
     }
 
     /// Rows of a field of the tree that is worked out on request.
@@ -77,7 +71,8 @@ impl Run {
         key: &str,
         rows: Vec<usize>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        tree::rows(py, &self.group(), (&path, key), &rows)
+        // Histories have none: they need not be described again.
+        tree::rows(py, &self.results.describe(), (&path, key), &rows)
     }
 
     /// The contents of `summary.json`.

@@ -3,7 +3,7 @@
 use super::error_json::fault_json;
 use super::output::{Common, SUCCESS, give, say};
 use crate::case::{Parameter, read_case};
-use crate::error::{Fault, Result};
+use crate::error::Result;
 use crate::job::{CaseWarnings, Prepared, Selection, check_case, expected_memory};
 use clap::Args;
 use serde_json::{Value, json};
@@ -41,8 +41,7 @@ pub fn run(options: &CheckOptions, common: &Common) -> Result<u8> {
         }
     }
     if !common.quiet && !options.resolved && !options.parameters {
-        let unlikely = warnings.unlikely.iter().map(Fault::warning);
-        for warning in warnings.sentences.iter().cloned().chain(unlikely) {
+        for warning in warnings.words() {
             say(format!("warning: {warning}"))?;
         }
         say(format!("{}: valid. {}.", options.case.display(), sizes(&prepared)))?;

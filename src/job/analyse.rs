@@ -49,6 +49,13 @@ pub struct CaseWarnings {
     pub unlikely: Vec<Fault>,
 }
 
+impl CaseWarnings {
+    /// All of them as sentences.
+    pub fn words(&self) -> impl Iterator<Item = String> + '_ {
+        self.sentences.iter().cloned().chain(self.unlikely.iter().map(Fault::warning))
+    }
+}
+
 /// [`analyse`] with the maps of an earlier run. What was found before a failure is in `results`.
 pub(super) fn analyse_from<'a>(
     prepared: &'a Prepared<'a>,
