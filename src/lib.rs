@@ -14,6 +14,8 @@
 //! | [`memory`] | memory available to the process |
 //! | [`input`] | input files: regular, of a bounded size |
 //! | [`linalg`] | sparse symmetric factorisation, eigenvalues; knows no mechanics |
+//! | `slepc` | PETSc, SLEPc and MUMPS over MPI: the wrapper |
+//! | `distributed` | matrices factorised over the ranks of an MPI program |
 //! | [`system`] | M, C, K and the sliding interface: the input of every analysis |
 //! | [`mesh`] | Gmsh files, generated discs and plates, regions, quality |
 //! | [`structure`] | elements, constraints, assembly |
@@ -38,7 +40,7 @@
 //! | [`cli`] | the command line |
 //!
 //! Cargo features: `cli` (default) is the program with its results folders, search and validation suite; `hdf5` and `report`,
-//! which it needs, are `results.h5` and the page with its pictures. Meshes, models, analyses and their results need none.
+//! which it needs, are `results.h5` and the page with its pictures; `slepc` is `--engine` for several machines. Meshes, models, analyses and their results need none.
 //!
 //! M ü + C u̇ + K u + Σ [g N − t₁ F₁ − t₂ F₂] = f. SI units (m, kg, s, N, rad) everywhere inside.
 
@@ -48,6 +50,8 @@ pub mod case;
 pub mod cli;
 pub mod contact;
 pub mod dataset;
+#[cfg(feature = "slepc")]
+pub mod distributed;
 pub mod equilibrium;
 pub mod error;
 pub mod input;
@@ -68,6 +72,8 @@ pub mod schema;
 #[cfg(feature = "cli")]
 pub mod search;
 pub mod signal;
+#[cfg(feature = "slepc")]
+pub mod slepc;
 pub mod sound;
 pub mod stability;
 pub mod structure;

@@ -12,7 +12,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 use stridor::dataset::Describe;
 use stridor::error::{Error, Fault, Result};
-use stridor::job::{ANALYSES, Histories, Prepared, Selection, analyse, run_case};
+use stridor::job::{ANALYSES, Histories, Prepared, RunOptions, Selection, analyse, run_case};
 use stridor::progress::{Observer, interrupt, until_interrupted};
 use stridor::results::{RunResults, summary_json};
 
@@ -46,7 +46,8 @@ impl Run {
         let watch = Watch::default();
         let work = || match &out {
             Some(out) => {
-                let results = run_case(&case.inner, selection, out, resume, &watch)?;
+                let options = RunOptions { resume, ..RunOptions::default() };
+                let results = run_case(&case.inner, selection, out, &options, &watch)?;
                 Ok(Run { results, histories: Histories::default() })
             }
             None => in_memory(case, selection, &watch),

@@ -1,11 +1,13 @@
 //! `stridor run`, `compare`, and a subcommand for every analysis.
 
+use super::engine::{EngineName, with_engine};
 use super::examples;
 use super::output::{Common, SUCCESS, give, say, window_width};
 use super::progress::Bars;
 use crate::case::read_case;
 use crate::error::Result;
-use crate::job::{ANALYSES, Selection, run_case};
+use crate::job::{ANALYSES, RunOptions, Selection, run_case};
+use crate::linalg::Engine;
 use crate::report;
 use clap::{ArgMatches, Args, FromArgMatches, Subcommand};
 use std::ffi::OsString;
@@ -28,6 +30,9 @@ struct AnalyseOptions {
     /// Resume the maps and the run in time that an interrupted run of the same case left in the folder
     #[arg(long)]
     resume: bool,
+    /// Distribute the matrices over the ranks of `mpirun`
+    #[arg(long, value_name = "NAME")]
+    engine: Option<EngineName>,
 }
 
 /// Name, help and analyses of every subcommand.
@@ -73,9 +78,15 @@ impl FromArgMatches for Analyse {
 
 pub fn run(analyse: &Analyse, common: &Common) -> Result<u8> {
     let Analyse { selection, options } = analyse;
+    with_engine(options.engine, *selection, |engine| run_with(analyse, engine, common))
+}
+
+fn run_with(analyse: &Analyse, engine: &Engine, common: &Common) -> Result<u8> {
+    let Analyse { selection, options } = analyse;
     let case = read_case(&options.case)?;
     let out = options.out.clone().unwrap_or_else(|| PathBuf::from("results").join(case_name(&options.case)));
-    let results = run_case(&case, *selection, &out, options.resume, &Bars::new(common.quiet));
+    let run_options = RunOptions { resume: options.resume, engine: engine.clone() };
+    let results = run_case(&case, *selection, &out, &run_options, &Bars::new(common.quiet));
     let results = results.map_err(|error| case.places.locate(error))?;
     if common.json {
         give(crate::results::summary_json(&results))?;

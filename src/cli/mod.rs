@@ -7,6 +7,7 @@ mod analyse;
 mod check;
 mod colour;
 mod documents;
+mod engine;
 mod error_json;
 mod examples;
 mod export;

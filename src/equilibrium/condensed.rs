@@ -4,7 +4,6 @@ use super::linear::directions;
 use crate::error::{Error, Result};
 use crate::linalg::SparseMatrix;
 use crate::linalg::SymmetricFactor;
-use crate::linalg::factor::factorize;
 use crate::linalg::sparse::{add_scaled, sum_of_squares, times};
 use crate::system::{ContactMotion, ContactPoint, System};
 use faer::{Mat, MatRef};
@@ -39,7 +38,8 @@ impl Condensed {
         let closed: Vec<f64> = system.points().map(|(pair, point)| spring(pair, point, k)).collect();
         let springs = points.iter().zip(&closed).map(|(point, d)| (*d, &point.normal));
         let a = add_scaled(&[(1.0, k), (1.0, &sum_of_squares(n, springs))]);
-        let factor = factorize(&a).map_err(|error| nothing_holds(&error.to_string()))?;
+        let factor =
+            system.structure.engine.factorize(&a).map_err(|error| nothing_holds(&error.to_string()))?;
         check_held(&a, &*factor)?;
         let mut responses = Mat::<f64>::zeros(n, points.len());
         for (p, point) in points.iter().enumerate() {

@@ -33,7 +33,12 @@ pub(crate) fn structure(
     m: impl Fn(usize, usize) -> f64,
     k: impl Fn(usize, usize) -> f64,
 ) -> Structure {
-    Structure { mass: sparse(n, m).into(), stiffness: sparse(n, k).into(), damping: Damping::default() }
+    Structure {
+        mass: sparse(n, m).into(),
+        stiffness: sparse(n, k).into(),
+        damping: Damping::default(),
+        engine: Default::default(),
+    }
 }
 
 pub(crate) fn vector(entries: &[(usize, f64)]) -> SparseVector {

@@ -165,6 +165,7 @@ fn prestress_is_carried_to_its_fixed_point() {
             mass: sparse(1, |_, _| 1.0).into(),
             stiffness: sparse(1, |_, _| 70.0).into(),
             damping: Damping::default(),
+            engine: Default::default(),
         },
         pairs: vec![pair(
             vec![p],

@@ -4,7 +4,6 @@ use super::analyses::Selection;
 use super::prepared::Prepared;
 use super::states::keeps_the_structure;
 use crate::error::{Error, Result};
-use crate::linalg::factor::SymbolicFactor;
 use crate::linalg::sparse::{add_scaled, sum_of_squares};
 use crate::memory::{Available, available};
 use crate::structure::Model;
@@ -87,8 +86,10 @@ pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Opti
         ])
     };
     let pattern = pencil(1.0);
-    let symbolic = SymbolicFactor::new(pattern.symbolic())?;
-    let fill = symbolic.fill();
+    let engine = &prepared.system.structure.engine;
+    let symbolic = engine.analyse(pattern.symbolic())?;
+    // Factors on other ranks are not in the memory of this one.
+    let fill = if engine.backend().is_some() { 0 } else { symbolic.fill() };
     let case = prepared.case;
     let below = |hz: f64| match &case.matrices {
         None => Ok(modes_below(&prepared.model, hz)),

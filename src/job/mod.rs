@@ -60,6 +60,6 @@ pub use measured::{measured_set, read_modes};
 pub use memory::{ExpectedMemory, expected_memory};
 pub use prepared::Prepared;
 #[cfg(feature = "cli")]
-pub use run_case::run_case;
+pub use run_case::{RunOptions, run_case};
 pub use sink::{Histories, KnownMap, KnownMaps, ResultSink, ResultStage};
 pub use states::Whole;

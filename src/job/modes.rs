@@ -41,7 +41,10 @@ pub fn part_assembled(prepared: &Prepared, name: &str) -> Result<Arc<Assembled>>
         let model =
             super::model::part_model(prepared.case, &prepared.regions, &prepared.model, name, analysis)?;
         let clamp = (!analysis.clamp.is_empty()).then(|| format!("`modes.{name}.clamp`"));
-        Arc::new(assemble(&model).map_err(|error| in_terms_of_the_case(error, prepared.case, clamp))?)
+        let mut assembled =
+            assemble(&model).map_err(|error| in_terms_of_the_case(error, prepared.case, clamp))?;
+        assembled.structure.engine = prepared.system.structure.engine.clone();
+        Arc::new(assembled)
     };
     if assembled.dofs.n_dofs() == 0 {
         return Err(Error::input(Fault::new(

@@ -10,6 +10,7 @@ use super::regions::Regions;
 use crate::case::{Case, Matrices};
 use crate::equilibrium::SteadyOptions;
 use crate::error::{Faults, Result};
+use crate::linalg::Engine;
 use crate::mesh::Mesh;
 use crate::modal::Disc;
 use crate::results::{Geometry, ModelSize};
@@ -87,6 +88,13 @@ impl<'a> Prepared<'a> {
             coupling: imported.coupling,
         };
         Ok(Prepared { case, regions, model, assembled, system, warnings: imported.warnings })
+    }
+
+    /// The same with its matrices factorised by `engine`.
+    pub fn with_engine(mut self, engine: &Engine) -> Self {
+        Arc::make_mut(&mut self.assembled).structure.engine = engine.clone();
+        self.system.structure.engine = engine.clone();
+        self
     }
 
     /// Nodes, elements, degrees of freedom.

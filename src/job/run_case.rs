@@ -10,15 +10,25 @@ use super::singular::explained;
 use super::sink::{KnownMap, KnownMaps};
 use crate::case::Case;
 use crate::error::{Error, Fault, Result};
+use crate::linalg::Engine;
 use crate::progress::Observer;
 use crate::results::record::{Earlier, InputFile, Record, RecordOrigin};
 use crate::results::{self, FieldsFile, FolderLock, Provenance, ResultsFile, RunResults, fits_on_disk};
 use std::path::Path;
 use std::time::Instant;
 
+/// How a case is run.
+#[derive(Debug, Clone, Default)]
+pub struct RunOptions {
+    /// Whether an interrupted run is resumed.
+    pub resume: bool,
+    /// Where matrices are factorised.
+    pub engine: Engine,
+}
+
 /// Runs the analyses of a case and writes the results folder `out`; nothing is written when the input is wrong.
 ///
-/// With `resume` the maps and the run in time that an earlier run of the same case left in `out` are resumed where it
+/// With [`RunOptions::resume`] the maps and the run in time that an earlier run of the same case left in `out` are resumed where it
 /// stopped; the result is the same, bit for bit. Results of another case or of other files are refused. Without it an
 /// interrupted record is moved to a folder of its own in `out`; the files of a run that had ended are replaced.
 ///
@@ -30,13 +40,14 @@ pub fn run_case(
     case: &Case,
     selection: Selection,
     out: &Path,
-    resume: bool,
+    options: &RunOptions,
     observer: &dyn Observer,
 ) -> Result<RunResults> {
+    let resume = options.resume;
     let started = Instant::now();
     let (file, text) = case.places.source();
     let provenance = Some(Provenance::now(file, text));
-    let prepared = Prepared::new(case)?;
+    let prepared = Prepared::new(case)?.with_engine(&options.engine);
     // Its faults are reported before anything is written.
     let asked = Asked::new(&prepared, selection)?;
     if let Some(expected) = check_memory(&prepared, selection)? {

@@ -11,7 +11,7 @@ mod tests;
 
 use super::SparseMatrix;
 use super::dense::inverse_root;
-use super::factor::{SymbolicFactor, SymmetricFactor};
+use super::factor::{Engine, SymbolicFactor, SymmetricFactor};
 use super::lanczos::{BlockLanczos, Ritz, Window};
 use super::multivector::{gram, panels, rotate};
 use super::shared_pattern::SharedPattern;
@@ -103,6 +103,23 @@ pub fn lowest_eigenpairs(
     wanted: Wanted,
     observer: &dyn Observer,
 ) -> Result<Eigenpairs> {
+    lowest_eigenpairs_by(&Engine::default(), k, m, wanted, observer)
+}
+
+/// [`lowest_eigenpairs`] with K − σM factorised by `engine`.
+///
+/// # Errors
+/// As [`lowest_eigenpairs`].
+///
+/// # Panics
+/// When the matrices are not square and of one size.
+pub fn lowest_eigenpairs_by(
+    engine: &Engine,
+    k: &SparseMatrix,
+    m: &SparseMatrix,
+    wanted: Wanted,
+    observer: &dyn Observer,
+) -> Result<Eigenpairs> {
     let n = k.ncols();
     if n == 0 {
         return Err(Error::analysis(
@@ -119,7 +136,7 @@ pub fn lowest_eigenpairs(
         }
         Wanted::Count(_) => {}
     }
-    let pencil = Pencil::new(k, m)?;
+    let pencil = Pencil::new(k, m, engine)?;
     observer.begin("eigenvalues", None);
     let result = if n <= DENSE {
         pencil.solve_densely(wanted)
@@ -210,13 +227,13 @@ struct Found {
 }
 
 impl<'a> Pencil<'a> {
-    fn new(k: &'a SparseMatrix, m: &'a SparseMatrix) -> Result<Self> {
+    fn new(k: &'a SparseMatrix, m: &'a SparseMatrix, engine: &Engine) -> Result<Self> {
         if norm_1(m) == 0.0 {
             let help = "Give a part a density, or put a mass on a node";
             return Err(Error::analysis("eigenvalues", "the mass matrix is zero", help));
         }
         let union = add_scaled(&[(1.0, k), (1.0, m)]);
-        Ok(Pencil { k, m, symbolic: SymbolicFactor::new(union.symbolic())?, aim: RESULT })
+        Ok(Pencil { k, m, symbolic: engine.analyse(union.symbolic())?, aim: RESULT })
     }
 
     /// K − σM.

@@ -42,7 +42,9 @@ mod workspace;
 #[cfg(test)]
 pub(crate) mod samples;
 
-pub use eigenpairs::{Eigenpairs, SturmCount, Wanted, eigenpairs_below, lowest_eigenpairs};
-pub use factor::{Inertia, SymbolicFactor, SymmetricFactor};
+pub use eigenpairs::{
+    Eigenpairs, SturmCount, Wanted, eigenpairs_below, lowest_eigenpairs, lowest_eigenpairs_by,
+};
+pub use factor::{Engine, Inertia, SymbolicFactor, SymmetricFactor};
 pub use faer::c64;
 pub use sparse::{SparseMatrix, SparseVector};

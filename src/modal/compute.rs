@@ -2,7 +2,9 @@
 
 use super::{RealModes, SturmCertificate};
 use crate::error::{Error, Fault, Result};
-use crate::linalg::{Eigenpairs, SparseMatrix, SymmetricFactor, Wanted, eigenpairs_below, lowest_eigenpairs};
+use crate::linalg::{
+    Eigenpairs, SparseMatrix, SymmetricFactor, Wanted, eigenpairs_below, lowest_eigenpairs_by,
+};
 use crate::progress::Observer;
 use crate::system::Structure;
 use faer::Mat;
@@ -58,7 +60,8 @@ pub fn compute(
         ModesWanted::BelowHz(hz) => (format!("below {hz} Hz"), Wanted::Below((TAU * hz).powi(2))),
         ModesWanted::Count(count) => (format!("the lowest {count}"), Wanted::Count(count)),
     };
-    let pairs = lowest_eigenpairs(&structure.stiffness, &structure.mass, below, observer);
+    let pairs =
+        lowest_eigenpairs_by(&structure.engine, &structure.stiffness, &structure.mass, below, observer);
     pairs.map(|pairs| modes_and_factor(structure, pairs)).map_err(|e| failed(&range, e))
 }
 
@@ -140,7 +143,12 @@ mod tests {
     use crate::system::Damping;
 
     fn structure((stiffness, mass): (SparseMatrix, SparseMatrix)) -> Structure {
-        Structure { mass: mass.into(), stiffness: stiffness.into(), damping: Damping::default() }
+        Structure {
+            mass: mass.into(),
+            stiffness: stiffness.into(),
+            damping: Damping::default(),
+            engine: Default::default(),
+        }
     }
 
     #[test]

@@ -17,7 +17,7 @@ use crate::linalg::dense::symmetric_eigen;
 use crate::linalg::factor::factorize;
 use crate::linalg::multivector::{beside, combine, expand, gram};
 use crate::linalg::sparse::{add_scaled, dense_columns, diagonal_matrix, entry, times};
-use crate::linalg::{SparseMatrix, SparseVector};
+use crate::linalg::{Engine, SparseMatrix, SparseVector};
 use crate::modal::RealModes;
 use crate::system::{ContactPair, ContactPoint, Coupling, Damping, Structure, System};
 use faer::{Accum, Mat, MatRef};
@@ -106,6 +106,7 @@ pub fn reduce(
         mass: diagonal_matrix(&vec![1.0; basis.ncols()]).into(),
         stiffness: diagonal_matrix(&squares).into(),
         damping: damping(&system.structure.damping, &basis, modes),
+        engine: Engine::default(),
     };
     let pairs = system.pairs.iter().map(|pair| ContactPair {
         points: pair.points.iter().map(|point| seen(&basis, point)).collect(),
@@ -155,7 +156,7 @@ fn softened(
         return Ok(factor);
     }
     let first = real.eigenvalues.get(real.rigid_bodies).copied().unwrap_or(1.0).abs();
-    factorize(&add_scaled(&[(1.0, stiffness), (0.1 * first, mass)]))
+    Ok(factorize(&add_scaled(&[(1.0, stiffness), (0.1 * first, mass)]))?)
 }
 
 /// ω² and shapes of what `responses` have besides the modes: M-orthonormal, K-orthogonal, and both to the modes.

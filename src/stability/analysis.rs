@@ -15,7 +15,6 @@ use crate::error::{Error, Fault, Result};
 use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
 use crate::linalg::dense::product;
-use crate::linalg::factor::factorize;
 use crate::linalg::sparse::add_scaled;
 use crate::modal::{RealModes, ShiftedStiffness};
 use crate::numbers::hertz;
@@ -276,7 +275,8 @@ pub(super) fn shifted_factor(
     let widest = ends.windows(2).max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
     let shift = widest.map_or(middle, |gap| 0.5 * (gap[0] + gap[1]));
     let at = |s: f64| {
-        factorize(&add_scaled(&[(1.0, &*operator.stiffness), (-s, operator.mass)])).map(|factor| (factor, s))
+        let pencil = add_scaled(&[(1.0, &*operator.stiffness), (-s, operator.mass)]);
+        operator.engine.factorize(&pencil).map(|factor| (factor, s))
     };
     at(shift).or_else(|_| at(-middle))
 }

@@ -3,7 +3,6 @@
 use super::ComplexModes;
 use crate::error::Result;
 use crate::linalg::c64;
-use crate::linalg::factor::factorize;
 use crate::linalg::sparse::add_scaled;
 use crate::modal::{RealModes, ShiftedStiffness};
 use crate::system::Structure;
@@ -40,7 +39,9 @@ pub fn band_expected(structure: &Structure, asked: &Nearest) -> Result<([f64; 2]
     let Nearest { hz: target, count, within: [lowest, highest] } = *asked;
     let at = |hz: f64| -> Result<ShiftedStiffness> {
         let shift = (TAU * hz).powi(2);
-        let factor = factorize(&add_scaled(&[(1.0, &structure.stiffness), (-shift, &structure.mass)]))?;
+        let factor = structure
+            .engine
+            .factorize(&add_scaled(&[(1.0, &structure.stiffness), (-shift, &structure.mass)]))?;
         Ok(ShiftedStiffness { shift, factor })
     };
     // A shift that sits on an eigenvalue is moved a little.
@@ -118,8 +119,12 @@ mod tests {
     #[test]
     fn the_band_holds_enough_modes_and_not_many_more() {
         let (stiffness, mass) = samples::plate(24, false);
-        let structure =
-            Structure { mass: mass.into(), stiffness: stiffness.into(), damping: Damping::default() };
+        let structure = Structure {
+            mass: mass.into(),
+            stiffness: stiffness.into(),
+            damping: Damping::default(),
+            engine: Default::default(),
+        };
         let (modes, _) = compute(&structure, ModesWanted::BelowHz(12e3), &()).unwrap();
         let held = |[low, high]: [f64; 2]| {
             (0..modes.len()).filter(|k| (low..=high).contains(&modes.frequency_hz(*k))).count()

@@ -9,7 +9,7 @@ use crate::linalg::multivector::Columns;
 use crate::linalg::proportional::Proportional;
 use crate::linalg::shared_pattern::{PerMatrix, SharedPattern};
 use crate::linalg::sparse::{norm_1, times};
-use crate::linalg::{SparseMatrix, c64};
+use crate::linalg::{Engine, SparseMatrix, c64};
 use crate::system::{Damping, Skew, System};
 use faer::{Mat, MatRef};
 use rayon::prelude::*;
@@ -22,6 +22,8 @@ pub(super) struct Operator<'a> {
     /// K + K_σ.
     pub(super) stiffness: Cow<'a, SparseMatrix>,
     pub(super) damping: &'a Damping,
+    /// Where the matrices are factorised.
+    pub(super) engine: &'a Engine,
     pub(super) interface: Interface<'a>,
     /// The sparse skew parts of K and C, for which no other method than that at full order is.
     pub(super) skew: Option<&'a Skew>,
@@ -180,6 +182,7 @@ impl<'a> Operator<'a> {
             dampers: Arc::new(dampers),
             stiffness,
             damping,
+            engine: &system.structure.engine,
             interface,
             skew: system.skew(),
         }

@@ -8,7 +8,7 @@ use super::model::Model;
 use super::registry::{AnyElement, elements};
 use super::scatter::{Couplings, Pattern, Reduction};
 use crate::error::{Error, Fault, Result};
-use crate::linalg::SparseMatrix;
+use crate::linalg::{Engine, SparseMatrix};
 use crate::system::{Damping, Prestress, Structure};
 use std::sync::Arc;
 
@@ -62,6 +62,7 @@ pub fn assemble(model: &Model) -> Result<Assembled> {
             modal: None,
             hysteretic: hysteretic.map(Into::into),
         },
+        engine: Engine::default(),
     };
     let stiffness = Arc::clone(&structure.stiffness);
     Ok(Assembled { structure, dofs: Arc::new(dofs), total_mass, center_of_mass, stiffness })

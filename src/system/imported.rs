@@ -18,7 +18,7 @@ use crate::linalg::dense::product;
 use crate::linalg::matrix_market::MarketMatrix;
 use crate::linalg::orthogonal::{PivotedQr, pivoted_qr};
 use crate::linalg::sparse::{add_scaled, diagonal, entry, on_one_pattern};
-use crate::linalg::{SparseMatrix, SparseVector};
+use crate::linalg::{Engine, SparseMatrix, SparseVector};
 use faer::Mat;
 use std::collections::BTreeMap;
 
@@ -137,6 +137,7 @@ pub fn split(mass: Given<'_>, damping: Option<Given<'_>>, stiffness: Given<'_>) 
             modal: None,
             hysteretic: hysteretic.map(|h| Halves::of(h).symmetric.into()),
         },
+        engine: Engine::default(),
     };
     Ok(Imported { structure, coupling, warnings })
 }

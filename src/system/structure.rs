@@ -1,7 +1,7 @@
 //! M, C and K of the structure without its contacts.
 
 use crate::error::Result;
-use crate::linalg::{SparseMatrix, SparseVector};
+use crate::linalg::{Engine, SparseMatrix, SparseVector};
 use faer::Mat;
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -16,6 +16,8 @@ pub struct Structure {
     pub stiffness: Arc<SparseMatrix>,
     /// C and the loss factors.
     pub damping: Damping,
+    /// Where its matrices are factorised.
+    pub engine: Engine,
 }
 
 impl Structure {

@@ -4,11 +4,11 @@ use super::model::TransientModel;
 use super::products::Diagonal;
 use super::scheme::Weights;
 use crate::error::{Error, Result};
+use crate::linalg::SparseVector;
 use crate::linalg::dense::product;
-use crate::linalg::factor::factorize;
+use crate::linalg::factor::{HalfSolutions, factorize};
 use crate::linalg::lu::Lu;
 use crate::linalg::multivector::{combine, gram};
-use crate::linalg::{SparseVector, SymmetricFactor};
 use faer::{Accum, Mat, MatMut, MatRef};
 use rayon::prelude::*;
 
@@ -37,7 +37,7 @@ pub(super) struct Effective {
 /// A₀⁻¹.
 #[derive(Debug)]
 enum Inverse {
-    Factor(Box<dyn SymmetricFactor>),
+    Factor(Box<dyn HalfSolutions>),
     /// The diagonal of A₀⁻¹.
     Diagonal(Vec<f64>),
 }

@@ -2,7 +2,7 @@
 
 use crate::case::Case;
 use crate::error::Result;
-use crate::job::{Selection, run_case};
+use crate::job::{RunOptions, Selection, run_case};
 use crate::progress::Observer;
 use crate::results::{KEYS_OF_THE_RUN, summary_json};
 use serde_json::Value;
@@ -18,8 +18,14 @@ pub(super) fn differences(case: &Case, observer: &dyn Observer) -> Result<f64> {
     let folder = super::scratch::scratch()?;
     let (whole, stopped) = (folder.path().join("whole"), folder.path().join("stopped"));
     let halfway = Halfway { observer, from: &whole, to: &stopped, stage: Mutex::default() };
-    let expected = run_case(case, Selection::Listed, &whole, false, &halfway)?;
-    let found = run_case(case, Selection::Listed, &stopped, true, observer)?;
+    let expected = run_case(case, Selection::Listed, &whole, &RunOptions::default(), &halfway)?;
+    let found = run_case(
+        case,
+        Selection::Listed,
+        &stopped,
+        &RunOptions { resume: true, ..RunOptions::default() },
+        observer,
+    )?;
     let summary = |results| {
         let mut summary = summary_json(results);
         KEYS_OF_THE_RUN.iter().for_each(|key| summary[*key] = Value::Null);

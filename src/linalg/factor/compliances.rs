@@ -1,4 +1,4 @@
-//! The compliances fᵀA⁻¹g of many forces, by half solutions.
+//! The compliances fᵀA⁻¹g of many forces, by half solutions where the factors give them.
 //!
 //! With PSASPᵀ = LBLᵀ, fᵀA⁻¹g = (L⁻¹PSf)ᵀ B⁻¹ (L⁻¹PSg): the way back down the tree is not needed, and of a sparse f the way up
 //! touches only what lies between its entries and the root.
@@ -12,17 +12,27 @@ use faer::{Mat, MatMut};
 /// # Panics
 /// When `f` has not n rows.
 pub fn compliances(factor: &dyn SymmetricFactor, mut f: MatMut<'_, f64>) -> Mat<f64> {
-    /// Columns that go through the pivots together: wide enough for the products, few enough to be held twice.
+    match factor.halves() {
+        Some(halves) => {
+            halves.forward_in_place(f.as_mut());
+            mirrored(f, |turned| halves.pivots_in_place(turned))
+        }
+        None => mirrored(f, |solved| factor.solve_in_place(solved)),
+    }
+}
+
+/// FᵀX, symmetric, for the columns X that `apply` makes of those of F.
+fn mirrored(f: MatMut<'_, f64>, apply: impl Fn(MatMut<'_, f64>)) -> Mat<f64> {
+    /// Columns that are applied to together: wide enough for the products, few enough to be held twice.
     const TOGETHER: usize = 64;
     let columns = f.ncols();
-    factor.forward_in_place(f.as_mut());
     let mut square = Mat::zeros(columns, columns);
     let mut work = Mat::zeros(f.nrows(), TOGETHER.min(columns));
     for start in (0..columns).step_by(TOGETHER) {
         let width = TOGETHER.min(columns - start);
         let mut turned = work.subcols_mut(0, width);
         turned.copy_from(f.as_ref().subcols(start, width));
-        factor.pivots_in_place(turned.as_mut());
+        apply(turned.as_mut());
         let part = gram(f.as_ref().subcols(start, columns - start), turned.as_ref());
         for j in 0..width {
             for i in j..columns - start {

@@ -49,19 +49,6 @@ impl<'a, T: Field> Lower<'a, T> {
         }
     }
 
-    /// The largest |entry| below the diagonal.
-    pub(super) fn growth(&self) -> f64 {
-        let (mut largest, mut rest) = (0.0f64, self.values);
-        for (first, count) in panels(self.width) {
-            let (panel, after) = rest.split_at((self.rows - first) * count);
-            for (i, row) in panel.chunks_exact(count).enumerate() {
-                largest = row[..i.min(count)].iter().map(|l| l.size()).fold(largest, f64::max);
-            }
-            rest = after;
-        }
-        largest
-    }
-
     /// v₁ ← L₁₁⁻¹ v₁, v₂ ← v₂ − L₂₁ v₁, with the registers of S, where row i of v stands at `names[i]` of `v`.
     #[inline(always)]
     pub(super) fn up<S: Simd, L: Lanes<T>>(&self, names: &[u32], v: &mut Rows<'_, L>) {
@@ -274,8 +261,6 @@ mod tests {
                     assert!((found[k] - expected[k]).abs() < 1e-10 * expected[k].abs().max(1.0))
                 });
             }
-            let below = (0..width).flat_map(|j| (j + 1..rows).map(move |i| l(i, j).abs()));
-            assert_eq!(lower.growth(), below.fold(0.0, f64::max));
         }
     }
 }

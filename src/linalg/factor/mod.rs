@@ -14,22 +14,28 @@
 //!
 //! `unsymmetric` factorises a complex matrix of a symmetric pattern that is not symmetric, on the same fronts.
 //!
+//! `engine` lets another library factorise real matrices, over several processes.
+//!
 //! `field` holds what real and complex numbers have in common. Tasks run on all threads; the order of every sum is
 //! that of the tree, so the bits do not depend on how many there are.
 
 mod compliances;
+mod engine;
 mod field;
 mod front;
 mod lower;
 mod numeric;
 mod ordering;
+mod partition;
 mod refused;
 mod solve;
 mod symbolic;
 mod unsymmetric;
 
 pub use compliances::compliances;
+pub use engine::{Backend, DistributedPattern, Engine};
 pub use field::Field;
+pub use partition::partition;
 pub use unsymmetric::{System, UnsymmetricFactor};
 
 use super::SparseMatrix;
@@ -68,9 +74,25 @@ pub trait SymmetricFactor<T: Field = f64>: Debug + Send + Sync {
     /// When `rhs` has not n rows.
     fn solve_in_place(&self, rhs: MatMut<'_, T>);
 
+    /// The same factors, where they give solutions in two halves.
+    fn halves(&self) -> Option<&dyn HalfSolutions<T>>;
+
+    /// The analysis of the pattern, which serves other matrices of the same one.
+    fn symbolic(&self) -> SymbolicFactor;
+
+    /// How many eigenvalues of a real A are negative, zero, positive. For a complex A the signs of the real parts of
+    /// the eigenvalues of B are counted, which say something only when A is nearly real.
+    fn inertia(&self) -> Inertia;
+
+    /// The bytes that the factors take.
+    fn memory_bytes(&self) -> usize;
+}
+
+/// Factors that give a solution in two halves.
+pub trait HalfSolutions<T: Field = f64>: SymmetricFactor<T> {
     /// y = L⁻¹ P S b: the first half of a solution, in the order of elimination.
     ///
-    /// Together with [`SymmetricFactor::pivots`] it measures aᵀA⁻¹b = (L⁻¹PSa)ᵀ B⁻¹ (L⁻¹PSb) without the second half, and the
+    /// Together with [`HalfSolutions::pivots`] it measures aᵀA⁻¹b = (L⁻¹PSa)ᵀ B⁻¹ (L⁻¹PSb) without the second half, and the
     /// half of a sparse vector has entries on its way to the root only.
     ///
     /// # Panics
@@ -86,7 +108,7 @@ pub trait SymmetricFactor<T: Field = f64>: Debug + Send + Sync {
     /// When a length is not n.
     fn backward(&self, y: &mut [T], x: &mut [T]);
 
-    /// The columns b of `rhs` (n × k) become L⁻¹PSb, in the order of elimination: [`SymmetricFactor::forward`] of many.
+    /// The columns b of `rhs` (n × k) become L⁻¹PSb, in the order of elimination: [`HalfSolutions::forward`] of many.
     ///
     /// # Panics
     /// When `rhs` has not n rows.
@@ -97,25 +119,17 @@ pub trait SymmetricFactor<T: Field = f64>: Debug + Send + Sync {
     /// # Panics
     /// When `rhs` has not n rows, or a column is in pieces.
     fn pivots_in_place(&self, rhs: MatMut<'_, T>);
-
-    /// The analysis of the pattern, which serves other matrices of the same one.
-    fn symbolic(&self) -> SymbolicFactor;
-
-    /// How many eigenvalues of a real A are negative, zero, positive. For a complex A the signs of the real parts of
-    /// the eigenvalues of B are counted, which say something only when A is nearly real.
-    fn inertia(&self) -> Inertia;
-
-    /// The largest |entry| of L: 1e2 at most; far above 1 says that small pivots had to be taken.
-    fn growth(&self) -> f64;
-
-    /// The bytes that the factors take.
-    fn memory_bytes(&self) -> usize;
 }
 
-/// The order of elimination and the place of every entry of L, found once for a sparsity pattern; it serves real
-/// and complex matrices.
+/// The order of elimination and the place of every entry of L, found once for a sparsity pattern.
 #[derive(Debug, Clone)]
-pub struct SymbolicFactor(Arc<Plan>);
+pub struct SymbolicFactor {
+    plan: Arc<Plan>,
+    /// Where its matrices are factorised.
+    engine: Engine,
+    /// The pattern as the library of that engine knows it.
+    distributed: Option<Arc<dyn DistributedPattern>>,
+}
 
 impl SymbolicFactor {
     /// Analyses a symmetric pattern stored whole.
@@ -127,23 +141,27 @@ impl SymbolicFactor {
     /// When the pattern is not square.
     pub fn new(pattern: SymbolicSparseColMatRef<'_, Index>) -> Result<Self> {
         assert!(pattern.nrows() == pattern.ncols(), "a symmetric matrix is square");
-        Ok(SymbolicFactor(Arc::new(Plan::new(pattern)?)))
+        Ok(SymbolicFactor::in_this_process(Arc::new(Plan::new(pattern)?)))
+    }
+
+    fn in_this_process(plan: Arc<Plan>) -> Self {
+        SymbolicFactor { plan, engine: Engine::default(), distributed: None }
     }
 
     /// The entries of L, diagonal included, as far as the pattern decides.
     pub fn fill(&self) -> usize {
-        self.0.fill
+        self.plan.fill
     }
 
     /// The multiplications of an unsymmetric factorisation, about.
     pub fn multiplications(&self) -> f64 {
         let of = |width: f64, below: f64| width * (width + below) * (width + below);
-        self.0.nodes.iter().map(|node| of(node.columns.len() as f64, node.rows.len() as f64)).sum()
+        self.plan.nodes.iter().map(|node| of(node.columns.len() as f64, node.rows.len() as f64)).sum()
     }
 
     /// Whether this is the analysis of `pattern`.
     pub fn fits(&self, pattern: SymbolicSparseColMatRef<'_, Index>) -> bool {
-        self.0.fingerprint == fingerprint(pattern)
+        self.plan.fingerprint == fingerprint(pattern)
     }
 
     /// Factorises a matrix that has the analysed pattern.
@@ -153,9 +171,14 @@ impl SymbolicFactor {
     ///
     /// # Panics
     /// When the pattern is another one.
-    pub fn factorize<T: Field>(&self, a: &SparseColMat<Index, T>) -> Result<Box<dyn SymmetricFactor<T>>> {
-        let (branch, scaling) = self.eliminate(a, Kept::All)?;
-        Ok(Box::new(Multifrontal { plan: Arc::clone(&self.0), branch, scaling }))
+    pub fn factorize(&self, a: &SparseMatrix) -> Result<Box<dyn SymmetricFactor>> {
+        match &self.distributed {
+            Some(distributed) => {
+                self.check(a)?;
+                distributed.factorize(a, self.clone())
+            }
+            None => Ok(Box::new(Multifrontal::new(self, a)?)),
+        }
     }
 
     /// The inertia of a matrix that has the analysed pattern, by factors that are not kept.
@@ -166,36 +189,51 @@ impl SymbolicFactor {
     /// # Panics
     /// When the pattern is another one.
     pub fn inertia(&self, a: &SparseMatrix) -> Result<Inertia> {
-        self.eliminate(a, Kept::Pivots).map(|(branch, _)| inertia(&branch))
+        match &self.distributed {
+            Some(distributed) => {
+                self.check(a)?;
+                distributed.inertia(a)
+            }
+            None => self.eliminate(a, Kept::Pivots).map(|(branch, _)| inertia(&branch)),
+        }
+    }
+
+    /// That a matrix has the analysed pattern, and numbers in it.
+    fn check<T: Field>(&self, a: &SparseColMat<Index, T>) -> Result<()> {
+        assert!(
+            a.ncols() == self.plan.order.len() && a.compute_nnz() == self.plan.entries,
+            "the pattern was not the analysed one"
+        );
+        finite(a)
     }
 
     /// The fronts of S A S, and S.
     fn eliminate<T: Field>(&self, a: &SparseColMat<Index, T>, kept: Kept) -> Result<(Branch<T>, Vec<f64>)> {
-        let n = a.ncols();
-        assert!(
-            n == self.0.order.len() && a.compute_nnz() == self.0.entries,
-            "the pattern was not the analysed one"
-        );
-        finite(a)?;
+        self.check(a)?;
         let scaling = equilibrate(a);
-        let branch = numeric::factorize(&self.0, a.as_ref(), &scaling, kept).map_err(|stuck| {
-            Error::analysis(
-                "factorisation",
-                format!("the matrix is singular: elimination stops at row {} of {n}", self.0.order[stuck.0]),
-                "A part that nothing holds, a degree of freedom without stiffness and mass, or a shift on an \
-                 eigenvalue does this",
-            )
+        let branch = numeric::factorize(&self.plan, a.as_ref(), &scaling, kept).map_err(|stuck| {
+            let (row, n) = (self.plan.order[stuck.0], a.ncols());
+            singular(format!("elimination stops at row {row} of {n}"))
         })?;
         Ok((branch, scaling))
     }
 }
 
-/// Analyses and factorises in one go.
+/// The error of a matrix that is singular; `found` says how that was seen.
+pub fn singular(found: impl std::fmt::Display) -> Error {
+    Error::analysis(
+        "factorisation",
+        format!("the matrix is singular: {found}"),
+        "A part that nothing holds, a degree of freedom without stiffness and mass, or a shift on an eigenvalue does this",
+    )
+}
+
+/// Analyses and factorises in one go, in this process.
 ///
 /// # Errors
 /// Those of [`SymbolicFactor::new`] and [`SymbolicFactor::factorize`].
-pub fn factorize<T: Field>(a: &SparseColMat<Index, T>) -> Result<Box<dyn SymmetricFactor<T>>> {
-    SymbolicFactor::new(a.symbolic())?.factorize(a)
+pub fn factorize<T: Field>(a: &SparseColMat<Index, T>) -> Result<Box<dyn HalfSolutions<T>>> {
+    Ok(Box::new(Multifrontal::new(&SymbolicFactor::new(a.symbolic())?, a)?))
 }
 
 /// The inertia of `a`, with the analysis of a matrix factorised before where both have the same pattern.
@@ -207,7 +245,7 @@ pub fn inertia_like(known: &dyn SymmetricFactor, a: &SparseMatrix) -> Result<Ine
     if symbolic.fits(a.symbolic()) {
         symbolic.inertia(a)
     } else {
-        SymbolicFactor::new(a.symbolic())?.inertia(a)
+        symbolic.engine.analyse(a.symbolic())?.inertia(a)
     }
 }
 
@@ -265,6 +303,11 @@ const COLUMNS_A_TASK: usize = 16;
 const ROWS_A_TASK: usize = 8192;
 
 impl<T: Field> Multifrontal<T> {
+    fn new(symbolic: &SymbolicFactor, a: &SparseColMat<Index, T>) -> Result<Self> {
+        let (branch, scaling) = symbolic.eliminate(a, Kept::All)?;
+        Ok(Multifrontal { plan: Arc::clone(&symbolic.plan), branch, scaling })
+    }
+
     fn substitution(&self) -> Substitution<'_, T> {
         Substitution { branch: &self.branch }
     }
@@ -323,6 +366,24 @@ impl<T: Field> SymmetricFactor<T> for Multifrontal<T> {
         self.substitute(rhs, true);
     }
 
+    fn halves(&self) -> Option<&dyn HalfSolutions<T>> {
+        Some(self)
+    }
+
+    fn symbolic(&self) -> SymbolicFactor {
+        SymbolicFactor::in_this_process(Arc::clone(&self.plan))
+    }
+
+    fn inertia(&self) -> Inertia {
+        inertia(&self.branch)
+    }
+
+    fn memory_bytes(&self) -> usize {
+        8 * self.n() + self.branch.branches().into_iter().map(Branch::memory_bytes).sum::<usize>()
+    }
+}
+
+impl<T: Field> HalfSolutions<T> for Multifrontal<T> {
     fn forward_in_place(&self, rhs: MatMut<'_, T>) {
         self.substitute(rhs, false);
     }
@@ -333,10 +394,6 @@ impl<T: Field> SymmetricFactor<T> for Multifrontal<T> {
             let column = column.try_as_col_major_mut().expect("columns in one piece");
             self.substitution().pivots(column.as_slice_mut());
         });
-    }
-
-    fn symbolic(&self) -> SymbolicFactor {
-        SymbolicFactor(Arc::clone(&self.plan))
     }
 
     fn forward(&self, b: &[T], y: &mut [T]) {
@@ -360,19 +417,6 @@ impl<T: Field> SymmetricFactor<T> for Multifrontal<T> {
             let places = self.plan.place[rows.clone()].iter().zip(&self.scaling[rows]);
             x.iter_mut().zip(places).for_each(|(x, (place, scale))| *x = y[*place] * *scale);
         });
-    }
-
-    fn inertia(&self) -> Inertia {
-        inertia(&self.branch)
-    }
-
-    fn growth(&self) -> f64 {
-        let branches = self.branch.branches().into_iter();
-        branches.flat_map(Branch::fronts).map(|front| front.lower.growth()).fold(0.0, f64::max)
-    }
-
-    fn memory_bytes(&self) -> usize {
-        8 * self.n() + self.branch.branches().into_iter().map(Branch::memory_bytes).sum::<usize>()
     }
 }
 

@@ -16,6 +16,9 @@ use std::sync::Mutex;
 /// Groups below which dissection does not pay.
 const SMALL: usize = 1000;
 
+/// METIS draws its random numbers from one place for the whole process: two calls at once would disturb each other's result.
+static METIS: Mutex<()> = Mutex::new(());
+
 /// A graph whose vertices are groups of rows with the same neighbours.
 pub(super) struct Quotient {
     /// The rows of each group, ascending.
@@ -24,6 +27,13 @@ pub(super) struct Quotient {
     pub starts: Vec<usize>,
     /// The other groups that a group touches, ascending.
     pub neighbours: Vec<usize>,
+}
+
+/// A graph as METIS takes it.
+struct MetisGraph {
+    starts: Vec<idx_t>,
+    neighbours: Vec<idx_t>,
+    weights: Vec<idx_t>,
 }
 
 impl Quotient {
@@ -96,21 +106,61 @@ impl Quotient {
         }
     }
 
+    /// The graph as METIS takes it; none beyond its 32-bit indices.
+    fn metis_graph(&self) -> Option<MetisGraph> {
+        let short = |all: &[usize]| all.iter().map(|i| idx_t::try_from(*i).ok()).collect::<Option<Vec<_>>>();
+        Some(MetisGraph {
+            starts: short(&self.starts)?,
+            neighbours: short(&self.neighbours)?,
+            weights: self.members.iter().map(|rows| rows.len() as idx_t).collect(),
+        })
+    }
+
+    /// The part, below `parts`, of every group: about as many rows in each part, and few neighbours in others. None where METIS
+    /// gives up.
+    pub fn parts(&self, parts: usize) -> Option<Vec<usize>> {
+        if parts == 1 {
+            return Some(vec![0; self.len()]);
+        }
+        let MetisGraph { mut starts, mut neighbours, mut weights } = self.metis_graph()?;
+        let (mut q, mut constraints, mut count) = (self.len() as idx_t, 1, parts as idx_t);
+        let (mut cut, mut part) = (0, vec![0; self.len()]);
+        let mut options = [0; metis_sys::METIS_NOPTIONS as usize];
+        let _guard = METIS.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        // SAFETY: the graph is in METIS's format, symmetric and without loops; every array has the length that METIS
+        // expects and outlives the call; what is null is optional.
+        let status = unsafe {
+            metis_sys::METIS_SetDefaultOptions(options.as_mut_ptr());
+            options[metis_sys::moptions_et_METIS_OPTION_SEED as usize] = 1;
+            metis_sys::METIS_PartGraphKway(
+                &mut q,
+                &mut constraints,
+                starts.as_mut_ptr(),
+                neighbours.as_mut_ptr(),
+                weights.as_mut_ptr(),
+                std::ptr::null_mut(),
+                std::ptr::null_mut(),
+                &mut count,
+                std::ptr::null_mut(),
+                std::ptr::null_mut(),
+                options.as_mut_ptr(),
+                &mut cut,
+                part.as_mut_ptr(),
+            )
+        };
+        (status == metis_sys::rstatus_et_METIS_OK).then(|| part.into_iter().map(|p| p as usize).collect())
+    }
+
     /// Nested dissection; none for a graph that is small, beyond METIS's 32-bit indices, or that METIS gives up.
     fn dissected(&self) -> Option<Vec<usize>> {
         if self.len() < SMALL {
             return None;
         }
-        let short = |all: &[usize]| all.iter().map(|i| idx_t::try_from(*i).ok()).collect::<Option<Vec<_>>>();
-        let (mut starts, mut neighbours) = (short(&self.starts)?, short(&self.neighbours)?);
-        let mut weights: Vec<idx_t> = self.members.iter().map(|rows| rows.len() as idx_t).collect();
+        let MetisGraph { mut starts, mut neighbours, mut weights } = self.metis_graph()?;
         let mut q = self.len() as idx_t;
         let (mut order, mut place) = (vec![0; self.len()], vec![0; self.len()]);
         let mut options = [0; metis_sys::METIS_NOPTIONS as usize];
-        // METIS draws its random numbers from one place for the whole process: two calls at once would disturb each
-        // other's result.
-        static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
-        let _guard = ONE_AT_A_TIME.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let _guard = METIS.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         // SAFETY: the graph is in METIS's format, symmetric and without loops; every array has the length that METIS
         // expects and outlives the call.
         let status = unsafe {

@@ -83,7 +83,7 @@ impl UnsymmetricFactor {
     /// # Panics
     /// When the pattern is another one.
     pub fn new(symbolic: &SymbolicFactor, matrix: SparseColMat<Index, c64>) -> Result<Self> {
-        let plan = Arc::clone(&symbolic.0);
+        let plan = Arc::clone(&symbolic.plan);
         assert!(symbolic.fits(matrix.symbolic()), "the pattern was not the analysed one");
         finite(&matrix)?;
         let scaling = equilibrate(&matrix);
@@ -127,7 +127,7 @@ impl UnsymmetricFactor {
 
     /// The analysis of the pattern, which serves other matrices of the same one.
     pub fn symbolic(&self) -> SymbolicFactor {
-        SymbolicFactor(Arc::clone(&self.plan))
+        SymbolicFactor::in_this_process(Arc::clone(&self.plan))
     }
 
     /// The order of A.

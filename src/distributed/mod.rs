@@ -1,0 +1,78 @@
+//! The distributed engine: matrices factorised over the ranks of an MPI program.
+//!
+//! Rank 0 runs the analysis as a program of one process does: it reads the case, assembles M and K and holds the vectors. What
+//! grows fastest with the mesh, the factors, is spread over all ranks ([`Cluster`], a [`Backend`] of [`Engine`]): METIS shares out
+//! the rows, each rank receives the entries of its own and hands them to MUMPS, which factorises and solves in parallel. The other
+//! ranks [serve]: they wait for commands of rank 0 and perform them with it. Only rank 0 reads and writes files, so that ranks cannot
+//! have different ones.
+//!
+//! [`Backend`]: crate::linalg::factor::Backend
+//! [`Engine`]: crate::linalg::Engine
+
+mod cluster;
+mod command;
+mod rank;
+
+pub use cluster::Cluster;
+pub use rank::serve;
+
+use crate::error::{Error, Result};
+use crate::slepc::World;
+use std::sync::Arc;
+
+/// What this process is to do.
+#[derive(Debug)]
+pub enum Role {
+    /// Rank 0: run the analysis.
+    Lead(Arc<Cluster>),
+    /// Another rank, whose work is over: end with this exit code.
+    Ended(u8),
+}
+
+/// Starts MPI. Rank 0 comes back at once, the others when rank 0 has [ended](Cluster::end) its work.
+///
+/// # Errors
+/// MPI cannot be started; the ranks run different builds of the program.
+pub fn start(build: &str) -> Result<Role> {
+    let world = World::start()?;
+    same_build(&world, build)?;
+    match world.rank() {
+        0 => Ok(Role::Lead(Arc::new(Cluster::new(world)))),
+        _ => serve(world).map(Role::Ended),
+    }
+}
+
+/// That all ranks run the same build.
+fn same_build(world: &World, build: &str) -> Result<()> {
+    let own = fingerprint(build);
+    let mut first = [own];
+    world.broadcast(&mut first)?;
+    let same = u64::from(first[0] == own);
+    let mut other = None;
+    if world.rank() == 0 {
+        for rank in 1..world.size() {
+            if world.receive::<u64>(rank)? != [1] {
+                other.get_or_insert(rank);
+            }
+        }
+    } else {
+        world.send(&[same], 0)?;
+    }
+    let mut verdict = [other.map_or(0, |rank| rank as u64)];
+    world.broadcast(&mut verdict)?;
+    match verdict[0] {
+        0 => Ok(()),
+        rank => Err(Error::analysis(
+            "starting MPI",
+            format!("rank {rank} runs another build of stridor than rank 0, which is {build}"),
+            "Install the same program on all machines",
+        )),
+    }
+}
+
+/// FNV-1a.
+fn fingerprint(text: &str) -> u64 {
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}

@@ -1,0 +1,30 @@
+//! PETSc, SLEPc and MUMPS over MPI, as far as the distributed engine needs them: a thin wrapper, and the only place of the crate
+//! that calls foreign functions of theirs.
+//!
+//! * [`World`]: the ranks of the program, and messages between them.
+//! * [`DistributedFactor`]: A = L B Lᵀ of a real symmetric matrix by MUMPS, with its inertia. A complex PETSc has no inertia, and
+//!   real arithmetic takes a quarter of the operations.
+//!
+//! `shim.c` holds what only the headers of the machine know. An error code becomes an [`Error`] with the text of
+//! the library. All functions that say *collective* must be called by all ranks in the same order.
+
+mod ffi;
+mod mumps;
+mod world;
+
+pub use mumps::{DistributedFactor, Entries};
+pub use world::World;
+
+use crate::error::Error;
+use std::ffi::{CStr, c_int};
+
+/// The error behind a code of a library that is not zero.
+fn check(call: &str, code: c_int) -> crate::error::Result<()> {
+    if code == 0 {
+        return Ok(());
+    }
+    // SAFETY: the text is a static array that ends with a zero.
+    let text = unsafe { CStr::from_ptr(ffi::stridor_error_text()) }.to_string_lossy().into_owned();
+    let found = if text.is_empty() { format!("error {code}") } else { text };
+    Err(Error::analysis(call, found, "The message is that of the MPI, PETSc or SLEPc library"))
+}
