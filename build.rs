@@ -71,7 +71,8 @@ mod slepc {
         check(&found.headers);
         let compiler = std::env::var("MPICC").unwrap_or_else(|_| "mpicc".to_string());
         let mut shim = cc::Build::new();
-        shim.compiler(&compiler).file("src/slepc/shim.c").includes(&found.headers).compile("stridor_slepc");
+        let sources = ["messages.c", "factor.c", "eigen.c"].map(|file| Path::new("src/slepc").join(file));
+        shim.compiler(&compiler).files(sources).includes(&found.headers).compile("stridor_slepc");
         for folder in found.folders {
             println!("cargo:rustc-link-search=native={}", folder.display());
             // The program finds the libraries again where they are in no place that the system searches.

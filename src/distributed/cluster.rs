@@ -1,14 +1,15 @@
 //! Rank 0: shares out the matrices and leads the other ranks.
 
 use super::command::Command;
-use super::rank::{Factorized, Rank};
+use super::rank::{Factorized, QuadraticPart, Rank, send_rows};
+use super::shares::Shares;
 use crate::error::{Error, Fault, Result};
-use crate::linalg::factor::{Backend, DistributedPattern, HalfSolutions, partition};
+use crate::linalg::factor::{Backend, DistributedPattern, HalfSolutions, QuadraticProblem, QuadraticSolver};
 use crate::linalg::sparse::Index;
-use crate::linalg::{Inertia, SparseMatrix, SymbolicFactor, SymmetricFactor};
+use crate::linalg::{Inertia, SparseMatrix, SymbolicFactor, SymmetricFactor, c64};
 use crate::slepc::{Entries, World};
-use faer::MatMut;
-use faer::sparse::SymbolicSparseColMatRef;
+use faer::sparse::{SparseColMat, SymbolicSparseColMatRef};
+use faer::{Mat, MatMut, MatRef};
 use std::sync::{Arc, Mutex, MutexGuard};
 
 /// All ranks, led by this one.
@@ -24,6 +25,20 @@ struct State {
     rank: Rank,
     /// The number of the next pattern or factor.
     next: u64,
+}
+
+impl State {
+    fn number(&mut self) -> u64 {
+        self.next += 1;
+        self.next
+    }
+}
+
+impl Drop for Cluster {
+    fn drop(&mut self) {
+        // Where the analysis has not ended it has failed.
+        self.end(1);
+    }
 }
 
 impl Cluster {
@@ -76,67 +91,99 @@ impl Backend for Arc<Cluster> {
                 fault.with_help(format!("The model has {n} degrees of freedom: start fewer ranks")),
             ));
         }
-        let part = partition(pattern, self.size);
-        let columns: Vec<Vec<Index>> = (0..self.size)
-            .map(|own| (0..n as Index).filter(|j| part[*j as usize] == own).collect())
-            .collect();
-        let from_one = |i: usize| i as i32 + 1;
-        let entries = |own: &[Index], place: Vec<i32>| {
-            let (mut rows, mut of_columns) = (Vec::new(), Vec::new());
-            for j in own.iter().map(|j| *j as usize) {
-                for i in pattern.row_idx_of_col(j).filter(|i| *i >= j) {
-                    rows.push(from_one(i));
-                    of_columns.push(from_one(j));
-                }
-            }
-            Entries { n: n as i32, rows, columns: of_columns, place }
-        };
-        let own = entries(&columns[0], place.iter().map(|p| from_one(*p)).collect());
-        let id = self.with(|State { rank, next }| {
-            let id = *next;
-            *next += 1;
+        let shares = Arc::new(Shares::new(pattern, self.size));
+        let place = place.iter().map(|p| *p as i32 + 1).collect();
+        let id = self.with(|state| {
+            let id = state.number();
+            let rank = &mut state.rank;
             Command::announce(rank.world(), Some(Command::Pattern { id, n: n as u64 }))?;
-            for (other, columns) in columns.iter().enumerate().skip(1) {
-                let Entries { rows, columns, .. } = entries(columns, Vec::new());
+            for other in 1..self.size {
+                let Entries { rows, columns, .. } = shares.entries(pattern, other, Vec::new());
                 rank.world().send(&rows, other)?;
                 rank.world().send(&columns, other)?;
             }
-            rank.add_pattern(id, own);
+            rank.add_pattern(id, shares.entries(pattern, 0, place));
             Ok(id)
         })?;
-        Ok(Arc::new(SharedPattern { cluster: Arc::clone(self), id, columns }))
+        Ok(Arc::new(SharedPattern { own: Numbered { cluster: Arc::clone(self), id }, shares }))
+    }
+
+    fn quadratic(&self, problem: &QuadraticProblem<'_>) -> Result<Box<dyn QuadraticSolver>> {
+        let n = problem.mass.ncols();
+        let shares = Shares::new(problem.couples.symbolic(), self.size);
+        let stiffness = transposed(&problem.stiffness);
+        let damping = transposed(&problem.damping);
+        let (basis, coefficients) = problem.low_rank;
+        let part = |rank: usize| QuadraticPart {
+            n,
+            matrices: [
+                shares.rows_of_transpose(&stiffness, rank),
+                shares.rows_of_transpose(&damping, rank),
+                shares.rows_of_transpose(problem.mass, rank),
+            ],
+            basis: basis
+                .col_iter()
+                .flat_map(|column| shares.rows[rank].iter().map(move |row| column[*row as usize]))
+                .collect(),
+            coefficients: coefficients.to_vec(),
+        };
+        let id = self.with(|state| {
+            let id = state.number();
+            let rank = &mut state.rank;
+            let world = rank.world();
+            Command::announce(world, Some(Command::Quadratic { id, n: n as u64 }))?;
+            for other in 1..self.size {
+                let QuadraticPart { matrices, basis, coefficients, .. } = part(other);
+                matrices.iter().try_for_each(|rows| send_rows(world, rows, other))?;
+                world.send(&basis, other)?;
+                world.send(&coefficients, other)?;
+            }
+            rank.add_quadratic(id, part(0)).map(|()| id)
+        })?;
+        Ok(Box::new(SharedQuadratic { own: Numbered { cluster: Arc::clone(self), id }, n }))
     }
 }
 
-/// A pattern whose columns are shared out.
+/// Aᵀ.
+fn transposed<T: faer::traits::ComplexField>(a: &SparseColMat<Index, T>) -> SparseColMat<Index, T> {
+    a.as_ref().transpose().to_col_major().expect("as much memory as for the matrix")
+}
+
+/// What all ranks hold a part of, by its number; they forget it when this is dropped.
 #[derive(Debug)]
-struct SharedPattern {
+struct Numbered {
     cluster: Arc<Cluster>,
     id: u64,
-    /// The columns of each rank.
-    columns: Vec<Vec<Index>>,
+}
+
+impl Drop for Numbered {
+    fn drop(&mut self) {
+        // Where the ranks have ended there is nothing left to forget.
+        let _ = self.cluster.with(|State { rank, .. }| {
+            Command::announce(rank.world(), Some(Command::Free(self.id)))?;
+            rank.free(self.id);
+            Ok(())
+        });
+    }
+}
+
+/// A pattern whose rows are shared out.
+#[derive(Debug)]
+struct SharedPattern {
+    own: Numbered,
+    shares: Arc<Shares>,
 }
 
 impl SharedPattern {
-    /// The entries of the lower triangle in some columns.
-    fn values(a: &SparseMatrix, columns: &[Index]) -> Vec<f64> {
-        let of_column = |j: usize| {
-            let entries = a.row_idx_of_col(j).zip(a.val_of_col(j));
-            entries.filter(move |(i, _)| *i >= j).map(|(_, v)| *v)
-        };
-        columns.iter().flat_map(|j| of_column(*j as usize)).collect()
-    }
-
     fn factorize_as(&self, a: &SparseMatrix, keep: bool) -> Result<(u64, Factorized)> {
-        self.cluster.with(|State { rank, next }| {
-            let id = *next;
-            *next += 1;
-            let kept = keep.then_some(id);
-            Command::announce(rank.world(), Some(Command::Factorize { pattern: self.id, kept }))?;
-            for (other, columns) in self.columns.iter().enumerate().skip(1) {
-                rank.world().send(&Self::values(a, columns), other)?;
+        self.own.cluster.with(|state| {
+            let (pattern, id) = (self.own.id, state.number());
+            let (kept, rank) = (keep.then_some(id), &mut state.rank);
+            Command::announce(rank.world(), Some(Command::Factorize { pattern, kept }))?;
+            for other in 1..self.own.cluster.size {
+                rank.world().send(&self.shares.values(a, other), other)?;
             }
-            rank.factorize(self.id, kept, Self::values(a, &self.columns[0])).map(|figures| (id, figures))
+            rank.factorize(pattern, kept, self.shares.values(a, 0)).map(|figures| (id, figures))
         })
     }
 }
@@ -144,7 +191,8 @@ impl SharedPattern {
 impl DistributedPattern for SharedPattern {
     fn factorize(&self, a: &SparseMatrix, symbolic: SymbolicFactor) -> Result<Box<dyn SymmetricFactor>> {
         let (id, figures) = self.factorize_as(a, true)?;
-        Ok(Box::new(SharedFactor { cluster: Arc::clone(&self.cluster), id, n: a.ncols(), figures, symbolic }))
+        let own = Numbered { cluster: Arc::clone(&self.own.cluster), id };
+        Ok(Box::new(SharedFactor { own, n: a.ncols(), figures, symbolic, shares: Arc::clone(&self.shares) }))
     }
 
     fn inertia(&self, a: &SparseMatrix) -> Result<Inertia> {
@@ -152,25 +200,32 @@ impl DistributedPattern for SharedPattern {
     }
 }
 
-impl Drop for SharedPattern {
-    fn drop(&mut self) {
-        // Where the ranks have ended there is nothing left to forget.
-        let _ = self.cluster.with(|State { rank, .. }| {
-            Command::announce(rank.world(), Some(Command::FreePattern(self.id)))?;
-            rank.free_pattern(self.id);
-            Ok(())
-        });
+/// A quadratic problem on all ranks.
+#[derive(Debug)]
+struct SharedQuadratic {
+    own: Numbered,
+    n: usize,
+}
+
+impl QuadraticSolver for SharedQuadratic {
+    fn nearest(&self, shift: c64, count: usize, tolerance: f64) -> Result<Vec<c64>> {
+        let (quadratic, count) = (self.own.id, count.min(2 * self.n));
+        self.own.cluster.with(|State { rank, .. }| {
+            let command = Command::Nearest { quadratic, shift, count: count as u64, tolerance };
+            Command::announce(rank.world(), Some(command))?;
+            rank.nearest(quadratic, shift, count, tolerance)
+        })
     }
 }
 
 /// Factors on all ranks.
 #[derive(Debug)]
 struct SharedFactor {
-    cluster: Arc<Cluster>,
-    id: u64,
+    own: Numbered,
     n: usize,
     figures: Factorized,
     symbolic: SymbolicFactor,
+    shares: Arc<Shares>,
 }
 
 impl SymmetricFactor for SharedFactor {
@@ -188,10 +243,10 @@ impl SymmetricFactor for SharedFactor {
             let some = rhs.as_mut().subcols_mut(start, count);
             columns.clear();
             some.as_ref().col_iter().for_each(|column| columns.extend(column.iter()));
-            let solved = self.cluster.with(|State { rank, .. }| {
-                let command = Command::Solve { factor: self.id, count: count as u64 };
+            let solved = self.own.cluster.with(|State { rank, .. }| {
+                let command = Command::Solve { factor: self.own.id, count: count as u64 };
                 Command::announce(rank.world(), Some(command))?;
-                let solved = rank.solve(self.id, &mut columns, count);
+                let solved = rank.solve(self.own.id, &mut columns, count);
                 if let Err(error) = &solved {
                     // A solution has no error of its own to give, and nothing can go on without it.
                     eprintln!("error: {error}");
@@ -210,6 +265,28 @@ impl SymmetricFactor for SharedFactor {
         None
     }
 
+    fn nearest_eigenpairs(
+        &self,
+        pencil: [&SparseMatrix; 2],
+        shift: f64,
+        count: usize,
+        tolerance: f64,
+    ) -> Option<Result<(Vec<f64>, Mat<f64>)>> {
+        let (factor, ranks) = (self.own.id, self.own.cluster.size);
+        let rows = |rank: usize| pencil.map(|a| self.shares.rows_of_transpose(a, rank));
+        let pairs = self.own.cluster.with(|State { rank, .. }| {
+            let command = Command::Eigenpairs { factor, shift, count: count as u64, tolerance };
+            Command::announce(rank.world(), Some(command))?;
+            for other in 1..ranks {
+                rows(other).iter().try_for_each(|rows| send_rows(rank.world(), rows, other))?;
+            }
+            rank.eigenpairs(rows(0), (factor, shift), &self.shares.order(), count, tolerance)
+        });
+        Some(pairs.map(|(values, vectors)| {
+            (values, MatRef::from_column_major_slice(&vectors, self.n, count).to_owned())
+        }))
+    }
+
     fn symbolic(&self) -> SymbolicFactor {
         self.symbolic.clone()
     }
@@ -220,16 +297,5 @@ impl SymmetricFactor for SharedFactor {
 
     fn memory_bytes(&self) -> usize {
         self.figures.memory_bytes
-    }
-}
-
-impl Drop for SharedFactor {
-    fn drop(&mut self) {
-        // Where the ranks have ended there is nothing left to forget.
-        let _ = self.cluster.with(|State { rank, .. }| {
-            Command::announce(rank.world(), Some(Command::FreeFactor(self.id)))?;
-            rank.free_factor(self.id);
-            Ok(())
-        });
     }
 }

@@ -2,8 +2,9 @@
 //!
 //! Rank 0 runs the analysis as a program of one process does: it reads the case, assembles M and K and holds the vectors. What
 //! grows fastest with the mesh, the factors, is spread over all ranks ([`Cluster`], a [`Backend`] of [`Engine`]): METIS shares out
-//! the rows, each rank receives the entries of its own and hands them to MUMPS, which factorises and solves in parallel. The other
-//! ranks [serve]: they wait for commands of rank 0 and perform them with it. Only rank 0 reads and writes files, so that ranks cannot
+//! the rows, each rank receives those of its own and hands them to MUMPS, which factorises and solves in parallel, or to SLEPc, whose
+//! Krylov–Schur method finds the real modes and whose TOAR confirms the complex ones. The other ranks [serve]: they wait for commands
+//! of rank 0 and perform them with it. Only rank 0 reads and writes files, so that ranks cannot
 //! have different ones.
 //!
 //! [`Backend`]: crate::linalg::factor::Backend
@@ -12,6 +13,7 @@
 mod cluster;
 mod command;
 mod rank;
+mod shares;
 
 pub use cluster::Cluster;
 pub use rank::serve;

@@ -2,16 +2,17 @@
 
 use super::command::Command;
 use crate::error::Result;
-use crate::linalg::Inertia;
-use crate::slepc::{DistributedFactor, Entries, World};
+use crate::linalg::{Inertia, c64};
+use crate::slepc::{DistributedFactor, DistributedMatrix, Entries, KrylovSchur, Quadratic, Rows, World};
 use std::collections::HashMap;
 
-/// The part of the patterns and factors that lies on this rank.
+/// The part of the patterns, factors and problems that lies on this rank, each with its number.
 #[derive(Debug)]
 pub struct Rank {
     patterns: HashMap<u64, Entries>,
     factors: HashMap<u64, DistributedFactor>,
-    // Ends MPI when it is dropped: after the factors.
+    quadratics: HashMap<u64, Quadratic>,
+    // Ends MPI when it is dropped: after the others.
     world: World,
 }
 
@@ -24,10 +25,23 @@ pub struct Factorized {
     pub memory_bytes: usize,
 }
 
+/// The own part of a quadratic problem.
+#[derive(Debug)]
+pub struct QuadraticPart {
+    /// n.
+    pub n: usize,
+    /// Of K, C and M.
+    pub matrices: [Rows; 3],
+    /// The own rows of B, column after column.
+    pub basis: Vec<f64>,
+    /// c.
+    pub coefficients: Vec<f64>,
+}
+
 impl Rank {
     /// A rank that holds nothing yet.
     pub fn new(world: World) -> Self {
-        Rank { patterns: HashMap::new(), factors: HashMap::new(), world }
+        Rank { patterns: HashMap::new(), factors: HashMap::new(), quadratics: HashMap::new(), world }
     }
 
     /// The ranks.
@@ -62,15 +76,62 @@ impl Rank {
         self.factors.get_mut(&factor).expect("a factor that was made").solve(columns, count)
     }
 
-    /// Forgets a factor; collective.
-    pub fn free_factor(&mut self, id: u64) {
-        self.factors.remove(&id);
+    /// The eigenpairs nearest the shift of a factor; collective. See [`KrylovSchur::solve`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn eigenpairs(
+        &mut self,
+        pencil: [Rows; 2],
+        (factor, shift): (u64, f64),
+        order: &[i32],
+        count: usize,
+        tolerance: f64,
+    ) -> Result<(Vec<f64>, Vec<f64>)> {
+        let factor = self.factors.get_mut(&factor).expect("a factor that was made");
+        let n = factor.n();
+        let [k, m] = pencil.map(|rows| DistributedMatrix::new(&self.world, n, &rows));
+        let (k, m) = (k?, m?);
+        KrylovSchur { pencil: [&k, &m], factor, order, shift }.solve(&self.world, count, tolerance)
     }
 
-    /// Forgets a pattern.
-    pub fn free_pattern(&mut self, id: u64) {
-        self.patterns.remove(&id);
+    /// Takes the own part of a quadratic problem; collective.
+    ///
+    /// # Errors
+    /// As [`DistributedMatrix::new`].
+    pub fn add_quadratic(&mut self, id: u64, part: QuadraticPart) -> Result<()> {
+        let QuadraticPart { n, matrices, basis, coefficients } = part;
+        let [k, c, m] = matrices.map(|rows| DistributedMatrix::new(&self.world, n, &rows));
+        self.quadratics.insert(id, Quadratic { matrices: [k?, c?, m?], basis, coefficients });
+        Ok(())
     }
+
+    /// The eigenvalues of a quadratic problem nearest a shift; collective.
+    ///
+    /// # Errors
+    /// As [`Quadratic::nearest`].
+    pub fn nearest(&mut self, quadratic: u64, shift: c64, count: usize, tolerance: f64) -> Result<Vec<c64>> {
+        let quadratic = self.quadratics.get(&quadratic).expect("a problem that was sent");
+        quadratic.nearest(&self.world, shift, count, tolerance)
+    }
+
+    /// Forgets what has this number; collective.
+    pub fn free(&mut self, id: u64) {
+        self.patterns.remove(&id);
+        self.factors.remove(&id);
+        self.quadratics.remove(&id);
+    }
+}
+
+/// Sends the own rows of a matrix to another rank.
+pub fn send_rows(world: &World, rows: &Rows, to: usize) -> Result<()> {
+    world.send(&rows.starts, to)?;
+    world.send(&rows.columns, to)?;
+    world.send(&rows.values, to)
+}
+
+fn receive_rows(world: &World) -> Result<Rows> {
+    Ok(Rows { starts: world.receive(0)?, columns: world.receive(0)?, values: world.receive(0)? })
 }
 
 /// Performs the commands of rank 0 until it ends; gives the exit code.
@@ -80,21 +141,38 @@ impl Rank {
 pub fn serve(world: World) -> Result<u8> {
     let mut rank = Rank::new(world);
     loop {
-        match Command::announce(rank.world(), None)? {
+        let command = Command::announce(rank.world(), None)?;
+        let world = rank.world();
+        // What fails here fails on rank 0, too.
+        match command {
             Command::Pattern { id, n } => {
-                let [rows, columns] = [rank.world().receive(0)?, rank.world().receive(0)?];
+                let [rows, columns] = [world.receive(0)?, world.receive(0)?];
                 rank.add_pattern(id, Entries { n: n as i32, rows, columns, place: Vec::new() });
             }
             Command::Factorize { pattern, kept } => {
-                let values = rank.world().receive(0)?;
-                // Rank 0 has the same error.
+                let values = world.receive(0)?;
                 let _ = rank.factorize(pattern, kept, values);
             }
             Command::Solve { factor, count } => {
                 let _ = rank.solve(factor, &mut [], count as usize);
             }
-            Command::FreeFactor(id) => rank.free_factor(id),
-            Command::FreePattern(id) => rank.free_pattern(id),
+            Command::Eigenpairs { factor, shift, count, tolerance } => {
+                let pencil = [receive_rows(world)?, receive_rows(world)?];
+                let _ = rank.eigenpairs(pencil, (factor, shift), &[], count as usize, tolerance);
+            }
+            Command::Quadratic { id, n } => {
+                let part = QuadraticPart {
+                    n: n as usize,
+                    matrices: [receive_rows(world)?, receive_rows(world)?, receive_rows(world)?],
+                    basis: world.receive(0)?,
+                    coefficients: world.receive(0)?,
+                };
+                let _ = rank.add_quadratic(id, part);
+            }
+            Command::Nearest { quadratic, shift, count, tolerance } => {
+                let _ = rank.nearest(quadratic, shift, count as usize, tolerance);
+            }
+            Command::Free(id) => rank.free(id),
             Command::End(code) => return Ok(code),
         }
     }

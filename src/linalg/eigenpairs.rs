@@ -333,11 +333,19 @@ impl<'a> Pencil<'a> {
         counted: usize,
         observer: &dyn Observer,
     ) -> Result<Found> {
+        let accepted = self.accepted(above - shift);
+        if let Some(pairs) = factor.nearest_eigenpairs([self.k, self.m], shift, counted, accepted) {
+            let (values, vectors) = ascending(pairs?);
+            let found = values.iter().filter(|theta| **theta < above).count();
+            return match found == counted {
+                true => Ok(Found { values, vectors, shift, factor }),
+                false => Err(missing(found, counted, above)),
+            };
+        }
         let negative = factor.inertia().negative;
         let window =
             Window { negative, largest: counted.saturating_sub(negative), floor: 1.0 / (above - shift) };
-        let mut lanczos =
-            BlockLanczos::new(self.m, &*factor, capacity(counted), self.accepted(above - shift));
+        let mut lanczos = BlockLanczos::new(self.m, &*factor, capacity(counted), accepted);
         let ritz = lanczos.converge(window, observer)?.ok_or_else(|| missing(0, counted, above))?;
         let (values, vectors) = lanczos.pairs(&ritz, window, shift)?;
         drop(lanczos);
@@ -505,6 +513,15 @@ impl<'a> Pencil<'a> {
             factor: found.factor,
         })
     }
+}
+
+/// Pairs in the order of their values.
+fn ascending((values, vectors): (Vec<f64>, Mat<f64>)) -> (Vec<f64>, Mat<f64>) {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
+    let mut sorted = Mat::zeros(vectors.nrows(), values.len());
+    order.iter().enumerate().for_each(|(k, old)| sorted.col_mut(k).copy_from(vectors.col(*old)));
+    (order.iter().map(|old| values[*old]).collect(), sorted)
 }
 
 impl Found {

@@ -1,10 +1,16 @@
-//! The functions of `shim.c`.
+//! The functions of the C side.
 
 use std::ffi::{c_char, c_int};
 
 /// `struct factor`.
 #[repr(C)]
 pub struct Factor {
+    _private: [u8; 0],
+}
+
+/// `Mat` of PETSc.
+#[repr(C)]
+pub struct Matrix {
     _private: [u8; 0],
 }
 
@@ -31,4 +37,40 @@ unsafe extern "C" {
     pub fn stridor_mumps_infog(factor: *const Factor, k: c_int) -> c_int;
     pub fn stridor_mumps_rinfog(factor: *const Factor, k: c_int) -> f64;
     pub fn stridor_mumps_free(factor: *mut Factor);
+    pub fn stridor_matrix_new(
+        n: i64,
+        own: i64,
+        starts: *const i64,
+        columns: *const i64,
+        values: *const f64,
+        parts: c_int,
+        matrix: *mut *mut Matrix,
+    ) -> c_int;
+    pub fn stridor_matrix_free(matrix: *mut Matrix);
+    pub fn stridor_krylov_schur(
+        k: *mut Matrix,
+        m: *mut Matrix,
+        factor: *mut Factor,
+        order: *const c_int,
+        shift: f64,
+        count: c_int,
+        tolerance: f64,
+        found: *mut c_int,
+        values: *mut f64,
+        vectors: *mut f64,
+    ) -> c_int;
+    pub fn stridor_toar(
+        k: *mut Matrix,
+        c: *mut Matrix,
+        m: *mut Matrix,
+        basis: *const f64,
+        coefficients: *const f64,
+        rank: c_int,
+        shift_re: f64,
+        shift_im: f64,
+        count: c_int,
+        tolerance: f64,
+        found: *mut c_int,
+        values: *mut f64,
+    ) -> c_int;
 }

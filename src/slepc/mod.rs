@@ -4,14 +4,20 @@
 //! * [`World`]: the ranks of the program, and messages between them.
 //! * [`DistributedFactor`]: A = L B Lᵀ of a real symmetric matrix by MUMPS, with its inertia. A complex PETSc has no inertia, and
 //!   real arithmetic takes a quarter of the operations.
+//! * [`DistributedMatrix`]: a sparse matrix of PETSc.
+//! * [`KrylovSchur`], [`Quadratic`]: eigenvalue problems by SLEPc.
 //!
-//! `shim.c` holds what only the headers of the machine know. An error code becomes an [`Error`] with the text of
+//! The C files hold what only the headers of the machine know. An error code becomes an [`Error`] with the text of
 //! the library. All functions that say *collective* must be called by all ranks in the same order.
 
+mod eigen;
 mod ffi;
+mod matrix;
 mod mumps;
 mod world;
 
+pub use eigen::{KrylovSchur, Quadratic};
+pub use matrix::{DistributedMatrix, Rows};
 pub use mumps::{DistributedFactor, Entries};
 pub use world::World;
 

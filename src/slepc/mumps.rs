@@ -82,6 +82,10 @@ impl DistributedFactor {
         }
     }
 
+    pub(super) fn as_ptr(&mut self) -> *mut ffi::Factor {
+        self.factor.as_ptr()
+    }
+
     /// Floating-point operations of the elimination on all ranks.
     pub fn operations(&self) -> f64 {
         // SAFETY: the factor lives; RINFOG has 40 numbers.

@@ -5,10 +5,13 @@ use super::operator::Operator;
 use super::shifted::Shifted;
 use crate::equilibrium::SteadySliding;
 use crate::error::Result;
-use crate::linalg::c64;
+use crate::linalg::factor::{QuadraticProblem, QuadraticSolver};
+use crate::linalg::sparse::{add_scaled, entry};
 use crate::linalg::toar::toar;
+use crate::linalg::{SparseMatrix, c64};
 use crate::progress::Observer;
 use crate::system::System;
+use faer::MatRef;
 use std::f64::consts::TAU;
 
 /// The complex modes of a band beside those that a second, independent method finds there.
@@ -45,7 +48,8 @@ const SAME: f64 = 1e-7;
 ///
 /// Within the distance of the farthest eigenvalue that a shift gave, the method finds all that its Krylov space holds; it
 /// is no proof that there are no others, but it shares nothing with the projection: neither real modes, nor basis, nor
-/// the dense solver of the small problem.
+/// the dense solver of the small problem. Where an engine factorises over several processes it is the method of its library, at
+/// the same shifts.
 ///
 /// # Errors
 /// A shift that cannot be factorised, or an iteration that does not converge.
@@ -61,6 +65,7 @@ pub fn confirm(
         found.modes.iter().filter(|m| m.eigenvalue.im > 0.0).map(|m| (m.eigenvalue, m.condition)).collect();
     let band = band_hz.map(|f| TAU * f);
     observer.begin("second method", Some(modes.len().div_ceil(GROUP) as u64));
+    let second = SecondMethod::new(&operator)?;
     let mut confirmation = Confirmation::default();
     let mut seen = vec![false; modes.len()];
     for group in modes.chunks(GROUP) {
@@ -69,14 +74,14 @@ pub fn confirm(
         // Off the imaginary axis, where an undamped structure has its eigenvalues.
         let shift = c64::new(1e-3 * middle.max(1e-3 * band[1]), middle);
         let farthest = group.iter().map(|(z, _)| (z - shift).norm()).fold(0.0, f64::max);
-        let problem = Shifted::new(&operator, shift)?;
+        let nearest = second.at(shift)?;
         confirmation.shifts += 1;
         let mut count = group.len() + 4;
         let values = loop {
-            let pairs = toar(&problem, shift, farthest.max(1e-3 * middle), count, 1e-12)?;
-            let reach = pairs.values.iter().map(|z| (z - shift).norm()).fold(0.0, f64::max);
-            if reach > farthest * (1.0 + 1e-6) || pairs.values.len() < count || count >= 2 * operator.n() {
-                break pairs.values;
+            let values = nearest(farthest.max(1e-3 * middle), count)?;
+            let reach = values.iter().map(|z| (z - shift).norm()).fold(0.0, f64::max);
+            if reach > farthest * (1.0 + 1e-6) || values.len() < count || count >= 2 * operator.n() {
+                break values;
             }
             count *= 2;
         };
@@ -107,6 +112,77 @@ pub fn confirm(
     confirmation.unconfirmed =
         modes.iter().zip(&seen).filter(|(_, seen)| !**seen).map(|((z, _), _)| *z).collect();
     Ok(confirmation)
+}
+
+/// Two-level Arnoldi of this program, or of the library of the engine.
+enum SecondMethod<'s, 'a> {
+    Own(&'s Operator<'a>),
+    Library(Box<dyn QuadraticSolver>),
+}
+
+/// Gives a number of eigenvalues within a distance, about, of a shift.
+type NearestValues<'s> = Box<dyn Fn(f64, usize) -> Result<Vec<c64>> + 's>;
+
+impl<'s, 'a> SecondMethod<'s, 'a> {
+    fn new(operator: &'s Operator<'a>) -> Result<Self> {
+        Ok(match operator.engine.backend() {
+            None => SecondMethod::Own(operator),
+            Some(library) => SecondMethod::Library(library.quadratic(&assembled(operator))?),
+        })
+    }
+
+    fn at(&self, shift: c64) -> Result<NearestValues<'_>> {
+        const TOLERANCE: f64 = 1e-12;
+        Ok(match self {
+            SecondMethod::Own(operator) => {
+                let problem = Shifted::new(operator, shift)?;
+                Box::new(move |radius, count| {
+                    toar(&problem, shift, radius, count, TOLERANCE).map(|pairs| pairs.values)
+                })
+            }
+            SecondMethod::Library(solver) => {
+                Box::new(move |_, count| solver.nearest(shift, count, TOLERANCE))
+            }
+        })
+    }
+}
+
+/// M, C + C_c and K + K_σ + iH + K_c with the interface assembled; modal damping stays of low rank.
+fn assembled<'s>(operator: &'s Operator<'_>) -> QuadraticProblem<'s> {
+    let n = operator.n();
+    let (mut stiff, mut damped) = (Vec::new(), Vec::new());
+    for term in &operator.interface.terms {
+        let (row, column) =
+            (operator.interface.directions[term.row], operator.interface.directions[term.column]);
+        for (i, a) in row.iter() {
+            for (j, b) in column.iter() {
+                stiff.push(entry(i, j, term.stiffness * a * b));
+                damped.push(entry(i, j, term.damping * a * b));
+            }
+        }
+    }
+    let sparse =
+        |entries: &[_]| SparseMatrix::try_new_from_triplets(n, n, entries).expect("directions of the system");
+    let (stiff, damped) = (sparse(&stiff), sparse(&damped));
+    let (one, i) = (c64::new(1.0, 0.0), c64::new(0.0, 1.0));
+    let mut stiffness: Vec<(c64, &SparseMatrix)> = vec![(one, &operator.stiffness), (one, &stiff)];
+    let mut damping: Vec<(f64, &SparseMatrix)> = vec![(0.0, operator.mass), (1.0, &damped)];
+    stiffness.extend(operator.damping.hysteretic.as_deref().map(|h| (i, h)));
+    damping.extend(operator.damping.viscous.as_deref().map(|c| (1.0, c)));
+    if let Some(skew) = operator.skew {
+        stiffness.push((one, &skew.stiffness));
+        damping.push((1.0, &skew.damping));
+    }
+    let modal = operator.damping.modal.as_ref();
+    QuadraticProblem {
+        mass: operator.mass,
+        damping: add_scaled(&damping),
+        stiffness: add_scaled(&stiffness),
+        low_rank: modal.map_or((MatRef::from_column_major_slice(&[], 0, 0), &[]), |modal| {
+            (modal.basis.as_ref(), modal.coefficients.as_slice())
+        }),
+        couples: &operator.stiffness,
+    }
 }
 
 fn same((known, condition): (c64, f64), value: c64) -> bool {

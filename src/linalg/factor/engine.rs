@@ -2,9 +2,10 @@
 
 use super::{Inertia, SymbolicFactor, SymmetricFactor};
 use crate::error::Result;
-use crate::linalg::SparseMatrix;
 use crate::linalg::sparse::Index;
-use faer::sparse::SymbolicSparseColMatRef;
+use crate::linalg::{SparseMatrix, c64};
+use faer::MatRef;
+use faer::sparse::{SparseColMat, SymbolicSparseColMatRef};
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -20,6 +21,36 @@ pub trait Backend: Debug + Send + Sync {
         pattern: SymbolicSparseColMatRef<'_, Index>,
         place: &[usize],
     ) -> Result<Arc<dyn DistributedPattern>>;
+
+    /// Takes a quadratic eigenvalue problem.
+    ///
+    /// # Errors
+    /// The library refuses.
+    fn quadratic(&self, problem: &QuadraticProblem<'_>) -> Result<Box<dyn QuadraticSolver>>;
+}
+
+/// (λ² M + λ (C + B diag(c) Bᵀ) + K) x = 0, all n × n.
+#[derive(Debug)]
+pub struct QuadraticProblem<'a> {
+    /// M, symmetric.
+    pub mass: &'a SparseMatrix,
+    /// C.
+    pub damping: SparseMatrix,
+    /// K.
+    pub stiffness: SparseColMat<Index, c64>,
+    /// B (n × m) and c; of no columns where there is none.
+    pub low_rank: (MatRef<'a, f64>, &'a [f64]),
+    /// A symmetric matrix that couples about the same rows as K.
+    pub couples: &'a SparseMatrix,
+}
+
+/// Quadratic eigenvalue problem that a library has taken.
+pub trait QuadraticSolver: Debug {
+    /// The `count` eigenvalues nearest `shift`, to a relative residual of `tolerance`; fewer where there are fewer.
+    ///
+    /// # Errors
+    /// They do not converge.
+    fn nearest(&self, shift: c64, count: usize, tolerance: f64) -> Result<Vec<c64>>;
 }
 
 /// Pattern that such a library has analysed.

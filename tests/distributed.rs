@@ -1,0 +1,191 @@
+//! Analyses over the ranks of an MPI program: the results of one process, faults in words, ranks that die.
+
+#[path = "common/program.rs"]
+mod program;
+#[path = "common/solid.rs"]
+mod solid;
+
+use serde_json::Value;
+use std::f64::consts::TAU;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+/// The program on some ranks.
+fn on_ranks(ranks: usize, folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new("mpirun");
+    command.args(["--oversubscribe", "--allow-run-as-root", "-n", &ranks.to_string()]);
+    command.arg(env!("CARGO_BIN_EXE_stridor")).args(arguments);
+    // MUMPS calls BLAS on every rank.
+    command.current_dir(folder).env("OMP_NUM_THREADS", "1").env("RUST_BACKTRACE", "0");
+    command
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// That it ended well; its summary.
+fn summary(output: Output, out: &Path) -> Value {
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    serde_json::from_str(&std::fs::read_to_string(out.join("summary.json")).unwrap()).unwrap()
+}
+
+fn eigenvalues(summary: &Value) -> Vec<[f64; 2]> {
+    let modes = summary["cea"]["eigenvalues"].as_array().unwrap();
+    let number = |mode: &Value, key: &str| mode[key].as_f64().unwrap();
+    modes.iter().map(|mode| [number(mode, "growth_rate"), TAU * number(mode, "frequency_hz")]).collect()
+}
+
+/// One process and 1, 2 and 4 ranks of `case.toml` in a folder: the same complex modes to 1e-8, and the same count of the
+/// unstable ones.
+fn same_on_all_ranks(folder: &Path) -> Value {
+    let (out, one) = (folder.join("one"), ["cea", "case.toml", "--out", "one", "--quiet"]);
+    let alone = summary(program::command(folder, &one).output().unwrap(), &out);
+    let expected = eigenvalues(&alone);
+    assert!(!expected.is_empty());
+    for ranks in [1, 2, 4] {
+        let name = format!("ranks-{ranks}");
+        let arguments = ["cea", "case.toml", "--out", &name, "--quiet", "--engine", "slepc"];
+        let found = summary(on_ranks(ranks, folder, &arguments).output().unwrap(), &folder.join(&name));
+        let values = eigenvalues(&found);
+        assert_eq!(values.len(), expected.len(), "{ranks} ranks");
+        for (found, expected) in values.iter().zip(&expected) {
+            let apart = (found[0] - expected[0]).hypot(found[1] - expected[1]);
+            assert!(apart <= 1e-8 * expected[0].hypot(expected[1]), "{ranks} ranks: {found:?}, {expected:?}");
+        }
+        let certificate = |summary: &Value, key: &str| summary["cea"]["certificate"][key].clone();
+        for key in ["unstable_counted", "unstable_found"] {
+            assert_eq!(certificate(&found, key), certificate(&alone, key), "{ranks} ranks");
+        }
+        let errors = found["cea"]["eigenvalues"].as_array().unwrap().iter().map(|mode| &mode["backward_error"]);
+        assert!(errors.flat_map(Value::as_f64).all(|error| error <= 1e-10), "{ranks} ranks");
+        let second = &found["cea"]["second_method"];
+        for other in ["unconfirmed_hz", "missed_hz"] {
+            assert_eq!(second[other].as_array().map(Vec::len), Some(0), "{ranks} ranks: {second}");
+        }
+        assert!(second["confirmed"].as_u64().is_some_and(|count| count > 0), "{ranks} ranks: {second}");
+    }
+    alone
+}
+
+#[test]
+fn rig_with_modal_damping() {
+    let folder = tempfile::tempdir().unwrap();
+    let new = program::command(folder.path(), &["new", "rig"]).output().unwrap();
+    assert!(new.status.success(), "{}", text(&new.stderr));
+    let rig = folder.path().join("rig");
+    let case = std::fs::read_to_string(rig.join("case.toml")).unwrap();
+    assert!(case.contains("modal_ratio") && case.contains("[cea]\n"));
+    std::fs::write(rig.join("case.toml"), case.replace("[cea]\n", "[cea]\nconfirm = true\n")).unwrap();
+    let alone = same_on_all_ranks(&rig);
+    assert!(alone["cea"]["certificate"]["unstable_counted"].as_u64().unwrap() > 0);
+}
+
+#[test]
+fn solid_as_matrices() {
+    let folder = tempfile::tempdir().unwrap();
+    solid::write(folder.path());
+    let alone = same_on_all_ranks(folder.path());
+    assert!(alone["cea"]["eigenvalues"].as_array().unwrap().len() > 5);
+}
+
+#[test]
+fn real_modes_with_their_count() {
+    let folder = tempfile::tempdir().unwrap();
+    solid::write(folder.path());
+    let run = |command: &mut Command, out: &str| {
+        summary(command.output().unwrap(), &folder.path().join(out))["modes"].clone()
+    };
+    let arguments = |out| ["modes", "case.toml", "--out", out, "--quiet", "--engine", "slepc"];
+    let alone = run(&mut program::command(folder.path(), &arguments("one")[..5]), "one");
+    let frequencies = |modes: &Value| -> Vec<f64> {
+        modes.as_array().unwrap().iter().map(|mode| mode["frequency_hz"].as_f64().unwrap()).collect()
+    };
+    let expected = frequencies(&alone);
+    assert!(expected.len() > 10);
+    for ranks in [1, 2, 4] {
+        let found = run(&mut on_ranks(ranks, folder.path(), &arguments("several")), "several");
+        let found = frequencies(&found);
+        assert_eq!(found.len(), expected.len());
+        assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() <= 1e-8 * b), "{ranks} ranks");
+    }
+}
+
+#[test]
+fn wrong_use_is_a_fault() {
+    let folder = program::folder_with(program::CASE);
+    // Each: ranks, arguments, words of the message.
+    let faults: [(usize, &[&str], &[&str]); 3] = [
+        (2, &["run", "case.toml", "--engine", "slepc"], &["--engine slepc", "`stridor cea`"]),
+        (2, &["cea", "missing.toml", "--engine", "slepc"], &["missing.toml"]),
+        (2, &["cea", "case.toml", "--engine", "petsc"], &["petsc", "slepc"]),
+    ];
+    for (ranks, arguments, words) in faults {
+        let output = on_ranks(ranks, folder.path(), arguments).output().unwrap();
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(words.iter().all(|word| message.contains(word)), "{message}");
+        assert!(!folder.path().join("results").exists(), "nothing is written");
+    }
+}
+
+#[test]
+fn more_ranks_than_rows_are_a_fault() {
+    let folder = tempfile::tempdir().unwrap();
+    let new = program::command(folder.path(), &["new", "two", "--template", "two-dof"]).output().unwrap();
+    assert!(new.status.success(), "{}", text(&new.stderr));
+    let arguments = ["cea", "two/case.toml", "--out", "out", "--engine", "slepc"];
+    let output = on_ranks(4, folder.path(), &arguments).output().unwrap();
+    let message = text(&output.stderr);
+    assert!(!output.status.success() && message.contains("4 ranks") && message.contains("at most 2"), "{message}");
+    let output = on_ranks(2, folder.path(), &arguments).output().unwrap();
+    assert!(output.status.success(), "{}", text(&output.stderr));
+}
+
+/// A rank that is killed ends the program with an error, and a later run has the whole result.
+#[test]
+fn a_killed_rank_leaves_no_half_result() {
+    let folder: TempDir = tempfile::tempdir().unwrap();
+    let new = program::command(folder.path(), &["new", "rig"]).output().unwrap();
+    assert!(new.status.success());
+    let arguments = ["cea", "rig/case.toml", "--out", "out", "--quiet", "--engine", "slepc"];
+    let started = Instant::now();
+    let child = on_ranks(2, folder.path(), &arguments).stderr(Stdio::piped()).spawn().unwrap();
+    let victim = loop {
+        let ranks = ranks_in(folder.path());
+        // The two of them compute.
+        if ranks.len() == 2 && started.elapsed() > Duration::from_secs(2) {
+            break ranks[1];
+        }
+        assert!(started.elapsed() < Duration::from_secs(60), "two ranks start");
+        std::thread::sleep(Duration::from_millis(20));
+    };
+    let killed = Command::new("kill").args(["-9", &victim.to_string()]).status().unwrap();
+    assert!(killed.success());
+    let output = child.wait_with_output().unwrap();
+    assert!(!output.status.success());
+    assert!(text(&output.stderr).contains("signal 9"), "{}", text(&output.stderr));
+    assert!(!folder.path().join("out/summary.json").exists());
+    let again = on_ranks(2, folder.path(), &arguments).output().unwrap();
+    let whole = summary(again, &folder.path().join("out"));
+    assert!(!eigenvalues(&whole).is_empty());
+}
+
+/// The processes of the program that work in a folder, ascending.
+fn ranks_in(folder: &Path) -> Vec<u32> {
+    let folder = folder.canonicalize().unwrap();
+    let program = Path::new(env!("CARGO_BIN_EXE_stridor")).canonicalize().unwrap();
+    let mut found: Vec<u32> = std::fs::read_dir("/proc")
+        .unwrap()
+        .flatten()
+        .filter_map(|entry| entry.file_name().to_str()?.parse().ok())
+        .filter(|pid: &u32| {
+            let of = |link: &str| std::fs::read_link(format!("/proc/{pid}/{link}"));
+            of("cwd").is_ok_and(|cwd| cwd == folder) && of("exe").is_ok_and(|exe| exe == program)
+        })
+        .collect();
+    found.sort_unstable();
+    found
+}
