@@ -39,6 +39,17 @@ pub enum Error {
     },
 }
 
+impl Clone for Error {
+    /// The same error; of that of the operating system or a file library its words.
+    fn clone(&self) -> Self {
+        match self {
+            Error::Input(faults) => Error::Input(faults.clone()),
+            Error::Analysis { what, found, help } => Error::analysis(what, found, help),
+            Error::Io { path, source, help } => Error::io(path, source.to_string(), help),
+        }
+    }
+}
+
 impl Error {
     /// An input error with a single fault.
     pub fn input(fault: Fault) -> Self {

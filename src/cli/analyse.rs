@@ -1,4 +1,4 @@
-//! `stridor run`, `compare`, and a subcommand for every analysis.
+//! `stridor run`, `compare`, and a subcommand for every analysis; `stridor sweep` in parts.
 
 use super::engine::{EngineName, with_engine};
 use super::examples;
@@ -6,9 +6,10 @@ use super::output::{Common, SUCCESS, give, say, window_width};
 use super::progress::Bars;
 use crate::case::read_case;
 use crate::error::Result;
-use crate::job::{ANALYSES, RunOptions, Selection, run_case};
+use crate::job::{ANALYSES, PartDone, RunOptions, Selection, merge_parts, run_case, run_part};
 use crate::linalg::Engine;
 use crate::report;
+use crate::results::record::Part;
 use clap::{ArgMatches, Args, FromArgMatches, Subcommand};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -17,6 +18,7 @@ use std::path::{Path, PathBuf};
 pub struct Analyse {
     selection: Selection,
     options: AnalyseOptions,
+    parts: PartOptions,
 }
 
 /// The options of these subcommands.
@@ -35,6 +37,27 @@ struct AnalyseOptions {
     engine: Option<EngineName>,
 }
 
+impl AnalyseOptions {
+    fn out(&self) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| PathBuf::from("results").join(case_name(&self.case)))
+    }
+}
+
+/// The subcommand that computes in parts.
+const IN_PARTS: &str = "sweep";
+
+/// The options of `stridor sweep` alone.
+#[derive(Args, Default)]
+struct PartOptions {
+    /// Compute the I-th of N shares of the points of all sweeps and maps, as job I of a job array of N, into a file of the results
+    /// folder; called again, a part that was killed resumes
+    #[arg(long, value_name = "I/N", conflicts_with = "resume")]
+    part: Option<String>,
+    /// Make the results of all parts in the results folder: those of a run without --part
+    #[arg(long, conflicts_with_all = ["part", "resume"])]
+    merge: bool,
+}
+
 /// Name, help and analyses of every subcommand.
 fn commands() -> impl Iterator<Item = (&'static str, &'static str, Selection)> {
     let run = ("run", "Run every analysis of a case and write a results folder", Selection::Listed);
@@ -47,6 +70,7 @@ impl Subcommand for Analyse {
     fn augment_subcommands(command: clap::Command) -> clap::Command {
         commands().fold(command, |command, (name, about, _)| {
             let own = AnalyseOptions::augment_args(clap::Command::new(name)).about(about);
+            let own = if name == IN_PARTS { PartOptions::augment_args(own) } else { own };
             command.subcommand(own.after_help(examples::of_analysis(name)))
         })
     }
@@ -63,11 +87,13 @@ impl Subcommand for Analyse {
 impl FromArgMatches for Analyse {
     fn from_arg_matches(matches: &ArgMatches) -> std::result::Result<Self, clap::Error> {
         let chosen = matches.subcommand().and_then(|(name, inner)| {
-            commands().find(|(own, ..)| *own == name).map(|found| (found.2, inner))
+            commands().find(|(own, ..)| *own == name).map(|found| (found.0, found.2, inner))
         });
-        let (selection, inner) =
+        let (name, selection, inner) =
             chosen.ok_or_else(|| clap::Error::new(clap::error::ErrorKind::InvalidSubcommand))?;
-        Ok(Analyse { selection, options: AnalyseOptions::from_arg_matches(inner)? })
+        let parts =
+            if name == IN_PARTS { PartOptions::from_arg_matches(inner)? } else { PartOptions::default() };
+        Ok(Analyse { selection, options: AnalyseOptions::from_arg_matches(inner)?, parts })
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> std::result::Result<(), clap::Error> {
@@ -77,22 +103,54 @@ impl FromArgMatches for Analyse {
 }
 
 pub fn run(analyse: &Analyse, common: &Common) -> Result<u8> {
-    let Analyse { selection, options } = analyse;
+    let Analyse { selection, options, parts } = analyse;
+    let part = parts.part.as_deref().map(Part::read).transpose()?;
+    if let Some(part) = part {
+        return run_share(part, options, common);
+    }
     with_engine(options.engine, *selection, |engine| run_with(analyse, engine, common))
 }
 
 fn run_with(analyse: &Analyse, engine: &Engine, common: &Common) -> Result<u8> {
-    let Analyse { selection, options } = analyse;
+    let Analyse { selection, options, parts } = analyse;
     let case = read_case(&options.case)?;
-    let out = options.out.clone().unwrap_or_else(|| PathBuf::from("results").join(case_name(&options.case)));
-    let run_options = RunOptions { resume: options.resume, engine: engine.clone() };
-    let results = run_case(&case, *selection, &out, &run_options, &Bars::new(common.quiet));
+    let (out, bars) = (options.out(), Bars::new(common.quiet));
+    let results = match parts.merge {
+        true => merge_parts(&case, &out, &bars),
+        false => {
+            let run_options = RunOptions { resume: options.resume, engine: engine.clone() };
+            run_case(&case, *selection, &out, &run_options, &bars)
+        }
+    };
     let results = results.map_err(|error| case.places.locate(error))?;
     if common.json {
         give(crate::results::summary_json(&results))?;
     } else if !common.quiet {
         say(report::text::summary(&results, window_width()))?;
         say(format!("Results are in {}: open report.html, or *.vtu in ParaView.", out.display()))?;
+    }
+    Ok(SUCCESS)
+}
+
+/// One job of a job array.
+fn run_share(part: Part, options: &AnalyseOptions, common: &Common) -> Result<u8> {
+    let case = read_case(&options.case)?;
+    let done = run_part(&case, part, &options.out(), &Bars::new(common.quiet));
+    print_part(part, &done.map_err(|error| case.places.locate(error))?, common)
+}
+
+fn print_part(part: Part, done: &PartDone, common: &Common) -> Result<u8> {
+    let PartDone { points, file } = done;
+    if common.json {
+        let file = (*points > 0).then(|| file.display().to_string());
+        give(serde_json::json!({ "part": part.number, "of": part.of, "points": points, "file": file }))?;
+    } else if *points == 0 && !common.quiet {
+        say(format!("There are fewer points than parts: {part} has none."))?;
+    } else if !common.quiet {
+        say(format!(
+            "All {points} points of {part} are in {}. When all parts are there: --merge.",
+            file.display()
+        ))?;
     }
     Ok(SUCCESS)
 }

@@ -57,8 +57,15 @@ Examples:
 
 /// Of a subcommand that runs analyses.
 pub fn of_analysis(name: &str) -> String {
+    let parts = match name {
+        "sweep" => {
+            "\n  stridor sweep rig/case.toml --part 3/40       The third of 40 shares of the points\n  \
+             stridor sweep rig/case.toml --merge           One result of all 40"
+        }
+        _ => "",
+    };
     format!(
         "Examples:\n  stridor {name} rig/case.toml\n  stridor {name} rig/case.toml --out results/softer --threads 4\n  \
-         stridor {name} rig/case.toml --json --quiet"
+         stridor {name} rig/case.toml --json --quiet{parts}"
     )
 }

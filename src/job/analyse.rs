@@ -1,16 +1,18 @@
 //! The analyses of a case in their order, each result written as soon as it is there.
 
 use super::analyses::{Planned, Selection};
+use super::known::KnownPoints;
 use super::plausible;
 use super::prepared::Prepared;
 use super::pressed;
-use super::run::Run;
+use super::run::{OperatingPoint, Run};
 use super::singular::explained;
-use super::sink::{KnownMaps, Memory, ResultSink, ResultStage};
+use super::sink::{Memory, ResultSink, ResultStage};
 use crate::equilibrium;
 use crate::error::{Fault, Faults, Result};
 use crate::progress::Observer;
 use crate::results::{RecordSize, RunResults};
+use std::rc::Rc;
 
 /// Runs the analyses of a prepared case; `record` is called with each result as soon as it is there.
 ///
@@ -25,7 +27,7 @@ pub fn analyse<'a>(
     let asked = Asked::new(prepared, selection)?;
     let mut results = RunResults::default();
     let sink = &mut Memory::new(record);
-    analyse_from(prepared, asked, &KnownMaps::new(), sink, &mut results, observer)
+    analyse_from(prepared, asked, &KnownPoints::default(), sink, &mut results, observer)
         .map_err(|error| explained(prepared, error.while_computing()))?;
     Ok(results)
 }
@@ -56,11 +58,11 @@ impl CaseWarnings {
     }
 }
 
-/// [`analyse`] with the maps of an earlier run. What was found before a failure is in `results`.
+/// [`analyse`] with points that are known. What was found before a failure is in `results`.
 pub(super) fn analyse_from<'a>(
     prepared: &'a Prepared<'a>,
     asked: Asked<'a>,
-    known: &KnownMaps,
+    known: &KnownPoints,
     sink: &mut dyn ResultSink,
     results: &mut RunResults,
     observer: &dyn Observer,
@@ -80,6 +82,26 @@ pub(super) fn analyse_from<'a>(
     let Run { clock, results, .. } = run;
     results.timings = clock.phases;
     done
+}
+
+/// The state about which the complex modes of a case are computed; its sweeps and maps start from it.
+#[cfg(feature = "cli")]
+pub(super) fn operating_point<'a>(
+    prepared: &'a Prepared<'a>,
+    asked: Asked<'a>,
+    observer: &dyn Observer,
+) -> Result<Rc<OperatingPoint<'a>>> {
+    let (known, mut results) = (KnownPoints::default(), RunResults::default());
+    let mut nowhere = |_: ResultStage| Ok(());
+    let sink = &mut Memory::new(&mut nowhere);
+    let mut run = Run::new(prepared, [true, false], &known, sink, &mut results, observer);
+    for planned in asked.planned {
+        planned.run(&mut run)?;
+        if let Some(point) = run.operating_point.take() {
+            return Ok(point);
+        }
+    }
+    unreachable!("sweeps and maps need complex modes")
 }
 
 /// The analyses that are selected; their input has no fault.

@@ -1,21 +1,21 @@
 //! The sweeps and maps of a case, and what its damping decides.
 
+use super::grids::Grid;
+use super::known::{KnownPoints, Parts, Reference};
 use super::modes::add_modal_damping;
 use super::prepared::Prepared;
-use super::sink::{KnownMap, KnownMaps, ResultStage};
+use super::sink::{KnownMap, ResultStage};
 use super::states::{OnFamily, States, Whole, keeps_the_structure};
 use crate::case::{Case, Invalidates, MapAnalysis, SweepAnalysis};
 use crate::equilibrium::{Condensed, SteadySliding, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::c64;
-use crate::linalg::sparse::times;
 use crate::modal::RealModes;
 use crate::progress::Observer;
 use crate::results::{DampingRow, DampingVerdicts, MapResult, RunResults, SweepMethod, SweepResult};
 use crate::stability::{Family, FamilyFrame, SlidingState};
-use crate::sweep::{self, Axis, Boundary, Checked, CriticalKind, MapPoint, SweepProblem};
+use crate::sweep::{self, Answered, Answers, Axis, Boundary, Checked, CriticalKind, MapPoint, SweepProblem};
 use crate::system::{Damping, System};
-use faer::Mat;
 
 /// The largest |Δλ|/|λ| at full order that is accepted.
 const ACCURACY: f64 = 1e-8;
@@ -38,32 +38,21 @@ pub(super) struct Nominal<'a> {
 /// Runs every sweep and map of the case and hands each on when it is there.
 pub(super) fn explore(
     nominal: &Nominal,
-    known: &KnownMaps,
+    known: &KnownPoints,
     results: &mut RunResults,
     record: &mut dyn FnMut(ResultStage) -> Result<()>,
     observer: &dyn Observer,
 ) -> Result<()> {
-    let prepared = nominal.prepared;
-    let case = prepared.case.without_sweeps();
-    let Some(cea) = &case.cea else { return Ok(()) };
-    let dampings = dampings(prepared.case, &case)?;
-    let others =
-        dampings.iter().map(|d| other_damping(nominal, &case, d)).collect::<Result<Vec<Damping>>>()?;
-    let k = tangent_stiffness(nominal.system, &nominal.steady.displacement)?;
-    let condensed = Condensed::new(nominal.system, &k)?;
-    let displacement = &nominal.steady.displacement;
-    let frame =
-        FamilyFrame::new(nominal.system, displacement, nominal.real, others.iter().collect(), cea.band)?;
-    let reference = times(&nominal.system.structure.mass, nominal.real.shapes.as_ref());
-    let explorer = Explorer { nominal, case: &case, condensed, frame, dampings, reference, observer };
-    for (name, analysis) in &prepared.case.sweep {
-        let result = explorer.sweep(name, analysis)?;
+    let start = Start::new(nominal)?;
+    known.parts.check(&start.reference)?;
+    let explorer = Explorer::new(&start, observer)?;
+    for (name, analysis) in &nominal.prepared.case.sweep {
+        let result = explorer.sweep(name, analysis, &known.parts)?;
         record(ResultStage::Found(&result))?;
         results.records.push(result);
     }
-    for (name, analysis) in &prepared.case.map {
-        let start = known.get(name).cloned().unwrap_or_default();
-        let (result, failure) = explorer.map(name, analysis, start, record)?;
+    for (name, analysis) in &nominal.prepared.case.map {
+        let (result, failure) = explorer.map(name, analysis, known, record)?;
         results.warnings.extend(failure);
         results.records.push(result);
     }
@@ -103,16 +92,54 @@ fn other_damping(nominal: &Nominal, case: &Case, (path, _, value): &(String, f64
     Ok(structure.damping)
 }
 
-struct Explorer<'a> {
+/// Data that all sweeps and maps of a case start from.
+pub(super) struct Start<'a> {
     nominal: &'a Nominal<'a>,
     /// Without its sweeps.
-    case: &'a Case,
+    case: Case,
     condensed: Condensed,
-    frame: FamilyFrame<'a>,
     dampings: Vec<(String, f64, f64)>,
-    /// M Φ.
-    reference: Mat<f64>,
+    /// The damping of the structure with each of them at its other value.
+    others: Vec<Damping>,
+    pub(super) reference: Reference,
+}
+
+impl<'a> Start<'a> {
+    pub(super) fn new(nominal: &'a Nominal<'a>) -> Result<Self> {
+        let case = nominal.prepared.case.without_sweeps();
+        let dampings = dampings(nominal.prepared.case, &case)?;
+        let others = dampings.iter().map(|d| other_damping(nominal, &case, d)).collect::<Result<_>>()?;
+        let k = tangent_stiffness(nominal.system, &nominal.steady.displacement)?;
+        let condensed = Condensed::new(nominal.system, &k)?;
+        let reference = Reference::new(nominal.system, nominal.real);
+        Ok(Start { nominal, case, condensed, dampings, others, reference })
+    }
+}
+
+/// The problem of a sweep or of a map.
+enum Problem<'s> {
+    Whole(Whole<'s>),
+    /// On a reduced model that is not refined yet.
+    Reduced(OnFamily<'s, 's>),
+}
+
+pub(super) struct Explorer<'a> {
+    start: &'a Start<'a>,
+    nominal: &'a Nominal<'a>,
+    case: &'a Case,
+    frame: FamilyFrame<'a>,
     observer: &'a dyn Observer,
+}
+
+impl<'a> Explorer<'a> {
+    pub(super) fn new(start: &'a Start<'a>, observer: &'a dyn Observer) -> Result<Self> {
+        let Start { nominal, case, .. } = start;
+        let cea = case.cea.as_ref().expect("a case with complex modes");
+        let displacement = &nominal.steady.displacement;
+        let others = start.others.iter().collect();
+        let frame = FamilyFrame::new(nominal.system, displacement, nominal.real, others, cea.band)?;
+        Ok(Explorer { start, nominal, case, frame, observer })
+    }
 }
 
 impl Explorer<'_> {
@@ -121,9 +148,9 @@ impl Explorer<'_> {
             prepared: self.nominal.prepared,
             case: self.case,
             paths: paths.to_vec(),
-            condensed: &self.condensed,
+            condensed: &self.start.condensed,
             nominal: &self.nominal.steady.points,
-            dampings: &self.dampings,
+            dampings: &self.start.dampings,
         }
     }
 
@@ -154,10 +181,35 @@ impl Explorer<'_> {
         Ok(OnFamily { states, family })
     }
 
-    fn sweep(&self, name: &str, analysis: &SweepAnalysis) -> Result<SweepResult> {
-        let axis = Axis { from: analysis.from, to: analysis.to, points: analysis.points, log: analysis.log };
+    /// The problem of a sweep or of a map, whose `states` are those of its scalars.
+    fn problem<'s>(&'s self, states: &'s States<'s>, grid: &Grid) -> Result<Problem<'s>> {
+        if self.keeps_the_structure(&grid.paths)? {
+            return Ok(Problem::Reduced(self.family(states, &grid.training())?));
+        }
+        Ok(Problem::Whole(Whole::new(self.case, grid.paths.clone(), Some(&self.start.reference.0))))
+    }
+
+    /// The answers at the points `wanted` of a sweep or of a map, handed to `keep` as soon as they are there.
+    ///
+    /// # Errors
+    /// A reduced model that cannot be trained; those of `keep`.
+    pub(super) fn answers(
+        &self,
+        grid: &Grid,
+        wanted: &[usize],
+        keep: &mut dyn FnMut(Answers) -> Result<()>,
+    ) -> Result<()> {
+        let states = self.states(&grid.paths);
+        match self.problem(&states, grid)? {
+            Problem::Whole(whole) => sweep::answers(&whole, &grid.axes, wanted, keep, self.observer),
+            Problem::Reduced(on) => sweep::answers(&on, &grid.axes, wanted, keep, self.observer),
+        }
+    }
+
+    fn sweep(&self, name: &str, analysis: &SweepAnalysis, parts: &Parts) -> Result<SweepResult> {
+        let grid = Grid::of_sweep(name, analysis);
+        let axis = grid.axes[0];
         let parameter = self.case.parameter(&analysis.parameter)?;
-        let paths = [analysis.parameter.clone()];
         let result = |sweep: sweep::Sweep, measured: FullOrderErrors, method: SweepMethod| SweepResult {
             name: name.to_string(),
             parameter: parameter.path.clone(),
@@ -170,20 +222,22 @@ impl Explorer<'_> {
             sample: measured.sample,
             method,
         };
-        if !self.keeps_the_structure(&paths)? {
-            let whole = Whole::new(self.case, paths.to_vec(), Some(&self.reference));
-            let sweep = sweep::sweep(&whole, &axis, LOCATED[1], self.observer)?;
-            let measured = measure(&whole, &sweep, &[axis.to])?;
-            return Ok(result(sweep, measured, SweepMethod::Whole));
-        }
-        let states = self.states(&paths);
-        let at = |t: f64| axis.between(axis.from, axis.to, t);
-        let places: Vec<Vec<f64>> = [0.0, 1.0, 0.5].map(|t| vec![at(t)]).to_vec();
-        let mut on = self.family(&states, &places)?;
-        let sample = [0.25, 0.75].map(at);
+        let answers = || parts.answers(&grid.name);
+        let states = self.states(&grid.paths);
+        let mut on = match self.problem(&states, &grid)? {
+            Problem::Whole(whole) => {
+                let answered = Answered::new(&whole, &grid.axes, answers());
+                let sweep = sweep::sweep(&answered, &axis, LOCATED[1], self.observer)?;
+                let measured = measure(&whole, &sweep, &[axis.to])?;
+                return Ok(result(sweep, measured, SweepMethod::Whole));
+            }
+            Problem::Reduced(on) => on,
+        };
+        let sample = [0.25, 0.75].map(|share| axis.between(axis.from, axis.to, share));
         let mut refinement = 0;
         loop {
-            let sweep = sweep::sweep(&on, &axis, LOCATED[0], self.observer)?;
+            let answered = Answered::new(&on, &grid.axes, answers().filter(|_| refinement == 0));
+            let sweep = sweep::sweep(&answered, &axis, LOCATED[0], self.observer)?;
             let measured = measure(&on, &sweep, &sample)?;
             refinement += 1;
             let poor = measured.poor(&sweep);
@@ -198,13 +252,7 @@ impl Explorer<'_> {
     }
 
     /// A map without points.
-    fn empty_map(&self, name: &str, analysis: &MapAnalysis) -> Result<MapResult> {
-        let axes = [0, 1].map(|k| Axis {
-            from: analysis.from[k],
-            to: analysis.to[k],
-            points: analysis.points[k],
-            log: analysis.log[k],
-        });
+    fn empty_map(&self, name: &str, analysis: &MapAnalysis, grid: &Grid) -> Result<MapResult> {
         let [a, b] = [0, 1].map(|k| self.case.parameter(&analysis.parameters[k]));
         let (a, b) = (a?, b?);
         Ok(MapResult {
@@ -212,7 +260,7 @@ impl Explorer<'_> {
             parameters: analysis.parameters.clone(),
             labels: [a.label, b.label],
             units: [a.unit.to_string(), b.unit.to_string()],
-            axes,
+            axes: [grid.axes[0], grid.axes[1]],
             nominal: [a.value, b.value],
             points: Vec::new(),
             boundary: Boundary::default(),
@@ -248,35 +296,37 @@ impl Explorer<'_> {
         &self,
         name: &str,
         analysis: &MapAnalysis,
-        mut known: KnownMap,
+        known: &KnownPoints,
         record: &mut dyn FnMut(ResultStage) -> Result<()>,
     ) -> Result<(MapResult, Option<String>)> {
-        let mut result = self.empty_map(name, analysis)?;
+        let grid = Grid::of_map(name, analysis);
+        let mut result = self.empty_map(name, analysis, &grid)?;
         let axes = result.axes;
         let failed = |failure: Option<String>| {
             failure.map(|f| format!("Map `{name}`: points without an answer are left blank; the first: {f}"))
         };
-        if !self.keeps_the_structure(&analysis.parameters)? {
-            let whole = Whole::new(self.case, analysis.parameters.to_vec(), Some(&self.reference));
-            let failure = self.fill(&whole, &mut result, &known, record)?;
-            result.boundary = sweep::boundary(&whole, &axes, &result.points, 1e-6, self.observer)?;
-            record(ResultStage::Map(&result))?;
-            return Ok((result, failed(failure)));
-        }
-        let states = self.states(&analysis.parameters);
-        let place = |u: f64, v: f64| {
-            vec![axes[0].between(axes[0].from, axes[0].to, u), axes[1].between(axes[1].from, axes[1].to, v)]
+        let answers = || known.parts.answers(&grid.name);
+        let mut earlier = known.maps.get(name).cloned().unwrap_or_default();
+        let states = self.states(&grid.paths);
+        let mut on = match self.problem(&states, &grid)? {
+            Problem::Whole(whole) => {
+                let answered = Answered::new(&whole, &axes, answers());
+                let failure = self.fill(&answered, &mut result, &earlier, record)?;
+                result.boundary = sweep::boundary(&answered, &axes, &result.points, 1e-6, self.observer)?;
+                record(ResultStage::Map(&result))?;
+                return Ok((result, failed(failure)));
+            }
+            Problem::Reduced(on) => on,
         };
-        let corners = [(0.0, 0.0), (1.0, 1.0), (0.0, 1.0), (1.0, 0.0), (0.5, 0.5)];
-        let mut on = self.family(&states, &corners.map(|(u, v)| place(u, v)))?;
-        let inside = [(0.3, 0.7), (0.75, 0.2)].map(|(u, v)| place(u, v)).map(|p| [p[0], p[1]]);
-        for at in &known.trained {
+        let inside = [[0.3, 0.7], [0.75, 0.2]].map(|shares| grid.between(&shares)).map(|at| [at[0], at[1]]);
+        for at in &earlier.trained {
             on.family.train(&states.at(at)?)?;
         }
         let mut refinement = 0;
         loop {
-            let failure = self.fill(&on, &mut result, &known, record)?;
-            result.boundary = sweep::boundary(&on, &axes, &result.points, 1e-7, self.observer)?;
+            let answered = Answered::new(&on, &axes, answers().filter(|_| refinement == 0));
+            let failure = self.fill(&answered, &mut result, &earlier, record)?;
+            result.boundary = sweep::boundary(&answered, &axes, &result.points, 1e-7, self.observer)?;
             result.method = SweepMethod::Reduced(on.family.dimension());
             let poor = self.check_map(&on, &mut result, &inside);
             refinement += 1;
@@ -286,9 +336,9 @@ impl Explorer<'_> {
             }
             for at in poor {
                 on.family.train(&states.at(&at)?)?;
-                known.trained.push(at);
+                earlier.trained.push(at);
             }
-            known.points.clear();
+            earlier.points.clear();
         }
     }
 

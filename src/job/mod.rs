@@ -2,7 +2,8 @@
 //!
 //! 1. [`Prepared::new`] reads the mesh, places the bodies and builds the [`crate::system::System`].
 //! 2. [`analyse`] runs the analyses of the case on it and hands each result on as soon as it is there.
-//! 3. [`run_case`] does both and writes the results folder.
+//! 3. [`run_case`] does both and writes the results folder; [`run_part`] computes a share of the points of sweeps and maps,
+//!    [`merge_parts`] makes the results folder of all shares.
 //!
 //! A case may give M, C and K themselves instead of a mesh; [`export()`] writes any case in that form.
 
@@ -20,7 +21,9 @@ mod export;
 #[cfg(feature = "cli")]
 mod folder;
 mod frf;
+mod grids;
 mod imported;
+mod known;
 mod links;
 mod measured;
 mod memory;
@@ -28,6 +31,8 @@ mod mesh;
 mod model;
 mod modes;
 mod motion;
+#[cfg(feature = "cli")]
+mod parts;
 mod place;
 mod plausible;
 mod prepared;
@@ -58,8 +63,10 @@ pub use export::export;
 pub use imported::{read_points, read_rows};
 pub use measured::{measured_set, read_modes};
 pub use memory::{ExpectedMemory, expected_memory};
+#[cfg(feature = "cli")]
+pub use parts::{PartDone, run_part};
 pub use prepared::Prepared;
 #[cfg(feature = "cli")]
-pub use run_case::{RunOptions, run_case};
+pub use run_case::{RunOptions, merge_parts, run_case};
 pub use sink::{Histories, KnownMap, KnownMaps, ResultSink, ResultStage};
 pub use states::Whole;

@@ -2,8 +2,9 @@
 
 use super::clock::Clock;
 use super::complex::whole_modes;
+use super::known::KnownPoints;
 use super::prepared::Prepared;
-use super::sink::{KnownMaps, ResultSink, ResultStage};
+use super::sink::{ResultSink, ResultStage};
 use crate::equilibrium::{self, SteadySliding};
 use crate::error::Result;
 use crate::modal::RealModes;
@@ -25,8 +26,8 @@ pub struct Run<'a, 'k> {
     pub clock: Clock,
     /// Results so far.
     pub results: &'k mut RunResults,
-    /// Points of the maps that an earlier run has computed.
-    pub known: &'k KnownMaps,
+    /// Points of sweeps and maps that are known.
+    pub known: &'k KnownPoints,
     /// Whether an analysis takes the left vectors of the complex modes.
     pub left_vectors: bool,
     /// The real modes of the whole that span the complex analysis, until that takes them: see [`Run::basis`].
@@ -48,12 +49,12 @@ pub struct OperatingPoint<'a> {
 }
 
 impl<'a, 'k> Run<'a, 'k> {
-    /// A run of which nothing is known but the maps that an earlier run left; `complex` when it comes to complex modes,
+    /// A run of which nothing is known but points of its sweeps and maps; `complex` when it comes to complex modes,
     /// `left_vectors` when these get left vectors.
     pub fn new(
         prepared: &'a Prepared<'a>,
         [complex, left_vectors]: [bool; 2],
-        known: &'k KnownMaps,
+        known: &'k KnownPoints,
         sink: &'k mut dyn ResultSink,
         results: &'k mut RunResults,
         observer: &'k dyn Observer,

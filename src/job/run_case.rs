@@ -4,15 +4,17 @@ use super::analyse::{Asked, analyse_from};
 use super::analyses::{PHASE, Selection};
 use super::checks::results_hold;
 use super::folder::Folder;
+use super::known::{KnownPoints, Parts, origin};
 use super::memory::check_memory;
+use super::parts::collect;
 use super::prepared::Prepared;
 use super::singular::explained;
-use super::sink::{KnownMap, KnownMaps};
+use super::sink::KnownMap;
 use crate::case::Case;
 use crate::error::{Error, Fault, Result};
 use crate::linalg::Engine;
 use crate::progress::Observer;
-use crate::results::record::{Earlier, InputFile, Record, RecordOrigin};
+use crate::results::record::{Earlier, Record, RecordOrigin};
 use crate::results::{self, FieldsFile, FolderLock, Provenance, ResultsFile, RunResults, fits_on_disk};
 use std::path::Path;
 use std::time::Instant;
@@ -43,11 +45,41 @@ pub fn run_case(
     options: &RunOptions,
     observer: &dyn Observer,
 ) -> Result<RunResults> {
-    let resume = options.resume;
+    let begin = if options.resume { Begin::Resumed } else { Begin::Anew };
+    run_from(case, selection, out, (begin, &options.engine), observer)
+}
+
+/// Makes the results of the sweeps and maps of a case in the folder `out` of the parts there ([`run_part`](super::run_part)): those
+/// of a run of the case, bit for bit.
+///
+/// # Errors
+/// As [`run_case`]; parts that do not have all points, of another case, of other files, or damaged ones.
+pub fn merge_parts(case: &Case, out: &Path, observer: &dyn Observer) -> Result<RunResults> {
+    run_from(case, Selection::Only("sweep"), out, (Begin::Merged, &Engine::default()), observer)
+}
+
+/// What a run begins with.
+#[derive(Clone, Copy, PartialEq)]
+enum Begin {
+    /// Nothing.
+    Anew,
+    /// The record of an interrupted run.
+    Resumed,
+    /// The parts of a job array.
+    Merged,
+}
+
+fn run_from(
+    case: &Case,
+    selection: Selection,
+    out: &Path,
+    (begin, engine): (Begin, &Engine),
+    observer: &dyn Observer,
+) -> Result<RunResults> {
     let started = Instant::now();
     let (file, text) = case.places.source();
     let provenance = Some(Provenance::now(file, text));
-    let prepared = Prepared::new(case)?.with_engine(&options.engine);
+    let prepared = Prepared::new(case)?.with_engine(engine);
     // Its faults are reported before anything is written.
     let asked = Asked::new(&prepared, selection)?;
     if let Some(expected) = check_memory(&prepared, selection)? {
@@ -55,33 +87,32 @@ pub fn run_case(
         observer.end();
     }
     asked.record_sizes().try_for_each(|size| fits_on_disk(out, &size))?;
-    let inputs =
-        case.files().iter().map(|file| InputFile::read(&case.folder, file)).collect::<Result<_>>()?;
-    let origin = RecordOrigin { case: case.to_toml(), inputs };
+    let origin = origin(case)?;
+    let parts = if begin == Begin::Merged { collect(case, out, &origin)? } else { Parts::default() };
     let _lock = FolderLock::take(out)?;
     let mut results = RunResults { inputs: origin.inputs.clone(), provenance, ..RunResults::default() };
-    let (record, earlier) = match resume {
-        true => resumed(out, origin, &asked)?,
-        false => {
+    let (record, earlier) = match begin {
+        Begin::Resumed => resumed(out, origin, &asked)?,
+        Begin::Anew | Begin::Merged => {
             results.warnings.extend(moved_aside(out, observer)?);
             (Record::new(out, origin), Earlier::default())
         }
     };
-    let known = earlier.maps.iter().map(|(name, (points, trained))| {
+    let maps = earlier.maps.iter().map(|(name, (points, trained))| {
         (name.clone(), KnownMap { points: points.clone(), trained: trained.clone() })
     });
-    let known: KnownMaps = known.collect();
+    let known = KnownPoints { maps: maps.collect(), parts };
     let mut file = ResultsFile::create(out)?;
     let read = case.files().into_iter().chain(["calibrated.toml".into()]).map(|name| case.folder.join(name));
     file.spare(read.filter_map(|path| std::path::absolute(path).ok()));
-    if resume {
+    if begin == Begin::Resumed {
         file.spare(record.files());
     }
     let preparation = started.elapsed().as_secs_f64();
     let mut folder = Folder::new(out, file, record, earlier);
     let done = analyse_from(&prepared, asked, &known, &mut folder, &mut results, observer)
-        // What another run left, and does not fit, is input.
-        .map_err(|error| if resume { error } else { error.while_computing() })
+        // What other runs left, and does not fit, is input.
+        .map_err(|error| if begin == Begin::Anew { error.while_computing() } else { error })
         .map_err(|error| explained(&prepared, error));
     let failure = match done {
         Ok(()) => results_hold(&results).err(),

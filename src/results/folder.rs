@@ -36,7 +36,8 @@ pub(super) fn write_durably(dir: &Path, name: &str, bytes: &[u8]) -> Result<()> 
     replace(dir, name, bytes, true)
 }
 
-fn replace(dir: &Path, name: &str, bytes: &[u8], durable: bool) -> Result<()> {
+/// The same, of a file that outlives a loss of power where it is `durable`.
+pub(super) fn replace(dir: &Path, name: &str, bytes: &[u8], durable: bool) -> Result<()> {
     prepare_folder(dir)?;
     let path = dir.join(name);
     let partial = dir.join(format!(".{name}.part"));

@@ -1,4 +1,4 @@
-//! One process at a time in a results folder.
+//! One process at a time in a results folder, or at a part of one.
 
 use super::folder::{prepare_folder, refusal};
 use crate::error::{Error, Result};
@@ -12,7 +12,7 @@ const NAME: &str = ".lock";
 /// Characters of a command that are shown.
 const SHOWN: usize = 80;
 
-/// The lock of a results folder. The operating system releases it when the process ends, however it ends.
+/// The lock of a results folder, or of a part. The operating system releases it when the process ends, however it ends.
 #[derive(Debug)]
 pub struct FolderLock {
     // The lock lives as long as the open file.
@@ -25,14 +25,22 @@ impl FolderLock {
     /// # Errors
     /// [`Error::Io`]: another process holds the lock, or the machine refuses.
     pub fn take(dir: &Path) -> Result<Self> {
+        Self::take_file(dir, NAME, "the folder")
+    }
+
+    /// Locks what the file `name` of the folder `dir` stands for, called `what` in messages.
+    ///
+    /// # Errors
+    /// As above.
+    pub(super) fn take_file(dir: &Path, name: &str, what: &str) -> Result<Self> {
         prepare_folder(dir)?;
-        let path = dir.join(NAME);
+        let path = dir.join(name);
         let refused = |source: std::io::Error| refusal(&path, source);
         let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
         let mut file = file.map_err(refused)?;
         match file.try_lock() {
             Ok(()) => {}
-            Err(TryLockError::WouldBlock) => return Err(in_use(dir, &holder(&mut file))),
+            Err(TryLockError::WouldBlock) => return Err(in_use(dir, what, &holder(&mut file))),
             // Some network file systems have no locks.
             Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {
                 return Ok(FolderLock { _file: None });
@@ -47,9 +55,9 @@ impl FolderLock {
     }
 }
 
-fn in_use(dir: &Path, holder: &str) -> Error {
+fn in_use(dir: &Path, what: &str, holder: &str) -> Error {
     let help = "Wait until it ends, or name another folder for the results.";
-    Error::io(dir, format!("the folder is in use by {holder}"), help)
+    Error::io(dir, format!("{what} is in use by {holder}"), help)
 }
 
 /// Who holds the lock, from what it wrote: process, command and how long it runs.

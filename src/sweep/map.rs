@@ -1,14 +1,12 @@
 //! Maps: the strongest growth over two parameters.
 
+use super::answers::{CHUNK, answer, points};
 use super::{Axis, SweepProblem, unstable};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::progress::Observer;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
-
-/// Points that are computed and recorded together.
-const CHUNK: usize = 32;
 
 /// Values of a map at one point; not numbers where the point has no modes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,8 +47,7 @@ pub fn map(
     record: &mut dyn FnMut(usize, &[MapPoint]) -> Result<()>,
     observer: &dyn Observer,
 ) -> Result<(Vec<MapPoint>, Option<String>)> {
-    let [across, up] = axes;
-    let total = across.points * up.points;
+    let total = points(axes);
     let mut points: Vec<MapPoint> = known[..known.len().min(total)].to_vec();
     let mut failure = None;
     observer.begin("map", Some(total as u64));
@@ -58,8 +55,7 @@ pub fn map(
     while points.len() < total {
         let first = points.len();
         let solve = |k: usize| {
-            let at = [across.value(k % across.points), up.value(k / across.points)];
-            let point = problem.eigenvalues(&at).map(|all| MapPoint::of(&all));
+            let point = answer(problem, axes, k).map(|modes| MapPoint::of(&modes.eigenvalues));
             observer.advance(1);
             point
         };

@@ -6,6 +6,7 @@
 //!
 //! All of them take a [`SweepProblem`]: a reduced family or whole analyses, they do not know which.
 
+mod answers;
 mod assign;
 mod boundary;
 mod branch;
@@ -17,6 +18,7 @@ mod root;
 mod tests;
 mod track;
 
+pub use answers::{Answered, Answers, answer, answers, place, points};
 pub use boundary::{Boundary, boundary};
 pub use branch::Branch;
 pub use critical::{Critical, CriticalKind};

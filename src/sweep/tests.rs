@@ -232,3 +232,65 @@ fn a_place_without_an_answer_leaves_a_hole_in_the_map_and_ends_a_sweep() {
     assert!(points[1].growth_rate.is_nan() && points[0].growth_rate.is_finite());
     assert!(sweep(&problem, &axes[0], 1e-6, &()).is_err());
 }
+
+/// A problem that counts how often it is solved, and has no answer at places above ¾.
+struct Counted(Oscillators, std::sync::atomic::AtomicUsize);
+
+impl Counted {
+    fn new() -> Self {
+        Counted(Oscillators { coupling: 0.005 }, Default::default())
+    }
+
+    fn count(&self) -> usize {
+        self.1.load(std::sync::atomic::Ordering::Relaxed)
+    }
+}
+
+impl SweepProblem for Counted {
+    fn modes(&self, at: &[f64]) -> Result<Modes> {
+        self.1.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        if at[0] > 0.75 && at.len() > 1 {
+            return Err(crate::error::Error::analysis("modes", format!("{} is too much", at[0]), "Take less"));
+        }
+        self.0.modes(at)
+    }
+
+    fn check(&self, _: &[f64]) -> Result<Vec<Checked>> {
+        Ok(Vec::new())
+    }
+}
+
+/// All answers on a grid, computed in two shares.
+fn in_two_shares(axes: &[Axis]) -> Answers {
+    let mut all = Answers::new();
+    for share in 0..2 {
+        let wanted: Vec<usize> = (0..points(axes)).filter(|k| k % 2 == share).collect();
+        let keep = &mut |new| {
+            all.extend::<Answers>(new);
+            Ok(())
+        };
+        answers(&Counted::new(), axes, &wanted, keep, &()).unwrap();
+    }
+    all
+}
+
+#[test]
+fn answers_computed_in_shares_give_the_same_and_are_not_computed_again() {
+    let axes = [axis(0.0, 1.0, 12)];
+    let known = in_two_shares(&axes);
+    let (whole, rest) = (Counted::new(), Counted::new());
+    let expected = sweep(&whole, &axes[0], 1e-8, &()).unwrap();
+    let answered = Answered::new(&rest, &axes, known.iter().map(|(k, answer)| (*k, answer)));
+    let found = sweep(&answered, &axes[0], 1e-8, &()).unwrap();
+    assert_eq!(format!("{found:?}"), format!("{expected:?}"));
+    assert!(rest.count() > 0 && rest.count() + 12 == whole.count(), "{} and {}", rest.count(), whole.count());
+    let axes = [axis(0.0, 1.0, 9), axis(0.0, 1.0, 5)];
+    let known = in_two_shares(&axes);
+    let rest = Counted::new();
+    let answered = Answered::new(&rest, &axes, known.iter().map(|(k, answer)| (*k, answer)));
+    let [found, expected] = [&answered as &dyn SweepProblem, &Counted::new()]
+        .map(|problem| map(problem, &axes, &[], &mut |_, _| Ok(()), &()).unwrap());
+    assert_eq!(format!("{found:?}"), format!("{expected:?}"));
+    assert_eq!(found.1.as_deref(), Some("modes: 0.875 is too much. Take less."));
+    assert_eq!(rest.count(), 0);
+}

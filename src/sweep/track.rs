@@ -1,5 +1,6 @@
 //! Branches: every mode followed along one parameter.
 
+use super::answers::answer;
 use super::assign::{Link, assign};
 use super::branch::{Branch, Sample};
 use super::critical::{Critical, critical_values};
@@ -41,17 +42,16 @@ pub fn sweep(
     tolerance: f64,
     observer: &dyn Observer,
 ) -> Result<Sweep> {
-    let values = axis.values();
-    observer.begin("sweep", Some(values.len() as u64));
-    let solve = |value: f64| {
-        let modes = problem.modes(&[value])?;
+    observer.begin("sweep", Some(axis.points as u64));
+    let solve = |k: usize| {
+        let modes = answer(problem, std::slice::from_ref(axis), k)?;
         observer.advance(1);
-        Ok(Sample { value, modes })
+        Ok(Sample { value: axis.value(k), modes })
     };
     let solved: Result<Vec<Sample>> = if problem.parallel() {
-        values.par_iter().map(|v| solve(*v)).collect()
+        (0..axis.points).into_par_iter().map(solve).collect()
     } else {
-        values.iter().map(|v| solve(*v)).collect()
+        (0..axis.points).map(solve).collect()
     };
     observer.end();
     let mut chain = Chain { problem, axis, samples: Vec::new(), links: Vec::new() };

@@ -131,7 +131,7 @@ impl RecordBlock {
             }
             2 => {
                 let name = from.text()?;
-                let first = index(&mut from)?;
+                let first = from.index()?;
                 let count = from.count(20)?;
                 let point = |_| {
                     let values = from.doubles(2)?;
@@ -142,14 +142,14 @@ impl RecordBlock {
                 RecordBlock::MapPoints { name, first, points }
             }
             3 => {
-                let modes = index(&mut from)?;
+                let modes = from.index()?;
                 let count = from.count(8)?;
                 let channels = (0..count).map(|_| from.text()).collect::<Read<_>>()?;
                 RecordBlock::Transient { channels, modes }
             }
             4 => read_rows(&mut from)?,
             5 => {
-                let number = index(&mut from)?;
+                let number = from.index()?;
                 let nodes = from.count(24)?;
                 RecordBlock::Field {
                     number,
@@ -163,7 +163,7 @@ impl RecordBlock {
 }
 
 fn read_rows(from: &mut RecordCursor) -> Read<RecordBlock> {
-    let first = index(from)?;
+    let first = from.index()?;
     let rows = from.count(8)?;
     if rows == 0 {
         return Err("a block without rows");
@@ -175,7 +175,7 @@ fn read_rows(from: &mut RecordCursor) -> Read<RecordBlock> {
     let count = from.count(17)?;
     let event = |_| {
         let time = f64::from_le_bytes(from.array()?);
-        let point = index(from)?;
+        let point = from.index()?;
         let [kind] = from.array()?;
         let kind = EventKind::ALL.get(usize::from(kind)).copied().ok_or("an event of an unknown kind")?;
         Ok(Event { time, point, kind })
@@ -187,9 +187,4 @@ fn read_rows(from: &mut RecordCursor) -> Read<RecordBlock> {
 fn read_motion(from: &mut RecordCursor, nodes: usize) -> Read<NodalField<f64>> {
     let values = from.singles(3 * nodes)?;
     Ok(values.chunks_exact(3).map(|v| [v[0], v[1], v[2], 0.0, 0.0, 0.0].map(f64::from)).collect())
-}
-
-/// A number of something that is elsewhere.
-fn index(from: &mut RecordCursor) -> Read<usize> {
-    u32::try_from(from.whole()?).map(|index| index as usize).map_err(|_| "a number that is too large")
 }

@@ -47,6 +47,11 @@ impl<'a> RecordCursor<'a> {
         Ok(u64::from_le_bytes(self.array()?))
     }
 
+    /// A number of something that is elsewhere.
+    pub(super) fn index(&mut self) -> Read<usize> {
+        u32::try_from(self.whole()?).map(|index| index as usize).map_err(|_| "a number that is too large")
+    }
+
     /// How many things of at least `each` bytes follow.
     pub(super) fn count(&mut self, each: usize) -> Read<usize> {
         let count = usize::try_from(self.whole()?).map_err(|_| SHORT)?;

@@ -1,4 +1,5 @@
-//! Record from which an interrupted run is resumed: two files of the results folder that only this program reads.
+//! Record from which an interrupted run is resumed: two files of the results folder that only this program reads. The parts of a
+//! job array ([`PartFile`]) are files of their own.
 //!
 //! - `record.bin` grows during a map or a run in time: every point and row as soon as it is computed ([`RecordBlock`]).
 //! - `checkpoint.bin` says how many bytes of it count, their SHA-256, what the case and its files were, and the state that
@@ -12,12 +13,15 @@
 mod block;
 mod bytes;
 mod origin;
+mod part;
 mod saved;
 
 pub use block::RecordBlock;
 pub use origin::{InputFile, RecordOrigin};
+pub use part::{Part, PartFile, PartRecord, read_parts};
 pub use saved::Saved;
 
+use self::origin::START_OVER;
 use super::folder::{own, refusal, synchronise, write_durably};
 use super::{FieldSnapshot, RecordPiece, Recording};
 use crate::error::{Error, Fault, Result};
@@ -162,7 +166,7 @@ pub(super) fn read_saved(dir: &Path) -> Result<Option<Saved>> {
 /// # Errors
 /// Input: it is of another case, or of other files; the checkpoint is damaged.
 pub fn check_origin(dir: &Path, origin: &RecordOrigin) -> Result<()> {
-    read_saved(dir)?.map_or(Ok(()), |saved| origin.check(&saved.origin, dir))
+    read_saved(dir)?.map_or(Ok(()), |saved| origin.check(&saved.origin, dir, START_OVER))
 }
 
 /// Notes in the folder `dir` of what its results are, and whether the work that makes them has ended, where they are kept
@@ -208,7 +212,7 @@ impl Record {
     /// Input: it is of another case, of other files, of another version of the program, or damaged. The machine refuses.
     pub fn resume(dir: &Path, origin: &RecordOrigin) -> Result<Option<(Self, Earlier)>> {
         let Some(saved) = read_saved(dir)? else { return Ok(None) };
-        origin.check(&saved.origin, dir)?;
+        origin.check(&saved.origin, dir, START_OVER)?;
         let own = env!("CARGO_PKG_VERSION");
         if saved.program_version != own {
             let found = format!("results of version {:.20}", saved.program_version);

@@ -1,5 +1,6 @@
 //! Origin of results: the case and the files it reads.
 
+use super::bytes::{Bytes, Read as Parsed, RecordCursor};
 use crate::error::{Error, Fault, Result};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -70,15 +71,17 @@ pub struct RecordOrigin {
     pub inputs: Vec<InputFile>,
 }
 
+/// Advice where an interrupted run cannot be resumed.
+pub(super) const START_OVER: &str = "Run without --resume to start over (an interrupted run is kept aside), or name another folder with --out";
+
 impl RecordOrigin {
-    /// Whether results of `earlier` in the folder `dir` are results of this; otherwise what differs.
+    /// Whether results of `earlier` at `place` are results of this; otherwise what differs, with the advice `help`.
     ///
     /// # Errors
     /// Input: the keys of the case, or the files, that have changed.
-    pub(super) fn check(&self, earlier: &RecordOrigin, dir: &Path) -> Result<()> {
+    pub(super) fn check(&self, earlier: &RecordOrigin, place: &Path, help: &str) -> Result<()> {
         let refused = |found: String, expected: &str| {
-            let fault = Fault::new(dir.display().to_string(), found, expected);
-            let help = "Run without --resume to start over (an interrupted run is kept aside), or name another folder with --out";
+            let fault = Fault::new(place.display().to_string(), found, expected);
             Err(Error::input(fault.with_help(help)))
         };
         let changed = differences(&earlier.case, &self.case);
@@ -102,6 +105,26 @@ impl RecordOrigin {
             return Ok(());
         }
         refused(format!("results of other files: {}", shown(&changed)), "the files as they were")
+    }
+
+    /// Adds it to `bytes`.
+    pub(super) fn write(&self, bytes: &mut Bytes) {
+        bytes.text(&self.case);
+        bytes.count(self.inputs.len());
+        for InputFile { path, bytes: length, sha256 } in &self.inputs {
+            bytes.text(path);
+            bytes.0.extend(length.to_le_bytes());
+            bytes.text(sha256);
+        }
+    }
+
+    /// Takes it from bytes.
+    pub(super) fn read(from: &mut RecordCursor) -> Parsed<Self> {
+        let case = from.text()?;
+        let count = from.count(24)?;
+        let input = |_| Ok(InputFile { path: from.text()?, bytes: from.whole()?, sha256: from.text()? });
+        let inputs = (0..count).map(input).collect::<Parsed<_>>()?;
+        Ok(RecordOrigin { case, inputs })
     }
 }
 
@@ -167,17 +190,17 @@ mod tests {
             inputs: vec![input("a.msh", "00"), input("b.uff", sha256)],
         };
         let earlier = origin("title = \"x\"\n[cea]\nband = [0, 1]\na = 1\nb = 1\nc = 1\n", "11");
-        assert!(earlier.check(&earlier, dir).is_ok());
+        assert!(earlier.check(&earlier, dir, START_OVER).is_ok());
         let now = origin("title = \"x\"\n[cea]\nband = [0, 2]\na = 2\nb = 2\nc = 2\n", "11");
-        let said = now.check(&earlier, dir).unwrap_err();
+        let said = now.check(&earlier, dir, START_OVER).unwrap_err();
         assert_eq!(said.exit_code(), 2);
         let said = said.to_string();
         assert!(said.contains("`cea.a` was `1` and is `2`") && said.contains("and 1 more"), "{said}");
         assert!(said.contains("`cea.band`") || said.contains("`cea.b`"), "{said}");
-        let fewer = origin("title = \"x\"\n", "11").check(&earlier, dir).unwrap_err().to_string();
+        let fewer = origin("title = \"x\"\n", "11").check(&earlier, dir, START_OVER).unwrap_err().to_string();
         assert!(fewer.contains("`cea.a` was `1` and is absent"), "{fewer}");
         let changed = RecordOrigin { inputs: origin("", "22").inputs, ..earlier.clone() };
-        let said = changed.check(&earlier, dir).unwrap_err().to_string();
+        let said = changed.check(&earlier, dir, START_OVER).unwrap_err().to_string();
         assert!(said.contains("`b.uff` has changed") && !said.contains("a.msh"), "{said}");
     }
 }

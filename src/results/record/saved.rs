@@ -3,7 +3,7 @@
 //! Sixteen bytes that name the format, the payload, and the SHA-256 of all before it (32 bytes).
 
 use super::bytes::{Bytes, Read, RecordCursor};
-use super::origin::{InputFile, RecordOrigin};
+use super::origin::RecordOrigin;
 use crate::transient::Checkpoint;
 use sha2::{Digest, Sha256};
 
@@ -39,13 +39,7 @@ impl Saved {
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = Bytes(FORMAT.to_vec());
         bytes.text(&self.program_version);
-        bytes.text(&self.origin.case);
-        bytes.count(self.origin.inputs.len());
-        for InputFile { path, bytes: length, sha256 } in &self.origin.inputs {
-            bytes.text(path);
-            bytes.0.extend(length.to_le_bytes());
-            bytes.text(sha256);
-        }
+        self.origin.write(&mut bytes);
         bytes.0.push(u8::from(self.ended));
         bytes.0.extend(self.length.to_le_bytes());
         bytes.0.extend(self.digest);
@@ -79,15 +73,11 @@ impl Saved {
         }
         let mut from = RecordCursor(&said[FORMAT.len()..]);
         let program_version = from.text()?;
-        let case = from.text()?;
-        let count = from.count(24)?;
-        let input = |_| Ok(InputFile { path: from.text()?, bytes: from.whole()?, sha256: from.text()? });
-        let inputs = (0..count).map(input).collect::<Read<_>>()?;
+        let origin = RecordOrigin::read(&mut from)?;
         let ended = from.array::<1>()? != [0];
         let length = from.whole()?;
         let digest = from.array()?;
         let march = if from.array::<1>()? == [0] { None } else { Some(read_march(&mut from)?) };
-        let origin = RecordOrigin { case, inputs };
         from.end(Saved { program_version, origin, ended, length, digest, march })
     }
 }
