@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Each module with all modules that it may use.
-const MAY_USE: [(&str, &[&str]); 30] = [
+const MAY_USE: [(&str, &[&str]); 32] = [
     ("input", &[]),
     ("error", &["input"]),
     ("progress", &[]),
@@ -13,6 +13,9 @@ const MAY_USE: [(&str, &[&str]); 30] = [
     ("pages", &[]),
     ("memory", &[]),
     ("linalg", &["error", "progress"]),
+    // Libraries of others over MPI.
+    ("slepc", &["error", "linalg"]),
+    ("distributed", &["error", "linalg", "slepc"]),
     ("dataset", &["linalg"]),
     ("system", &["error", "linalg"]),
     // Mechanics: builds a system, knows no analysis.
@@ -109,6 +112,8 @@ const MAY_USE: [(&str, &[&str]); 30] = [
         &[
             "error",
             "progress",
+            "linalg",
+            "distributed",
             "dataset",
             "schema",
             "mesh",

@@ -490,3 +490,16 @@ fn a_search_leaves_a_case_and_a_page() {
     assert_eq!(output.status.code(), Some(2));
     assert!(text(&output.stderr).contains("growth_ratio") && !folder.path().join("nothing").exists());
 }
+
+#[cfg(not(feature = "slepc"))]
+#[test]
+fn an_engine_that_is_not_built_in_is_a_fault() {
+    let folder = folder_with(RIG);
+    let output = stridor(folder.path(), &["cea", "rig.toml", "--engine", "slepc"]);
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    for word in ["--engine slepc", "without MPI", "--features slepc", ".ci/setup --mpi"] {
+        assert!(message.contains(word), "\"{word}\" is not in: {message}");
+    }
+    assert!(!folder.path().join("results").exists());
+}

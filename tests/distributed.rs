@@ -59,7 +59,8 @@ fn same_on_all_ranks(folder: &Path) -> Value {
         for key in ["unstable_counted", "unstable_found"] {
             assert_eq!(certificate(&found, key), certificate(&alone, key), "{ranks} ranks");
         }
-        let errors = found["cea"]["eigenvalues"].as_array().unwrap().iter().map(|mode| &mode["backward_error"]);
+        let errors =
+            found["cea"]["eigenvalues"].as_array().unwrap().iter().map(|mode| &mode["backward_error"]);
         assert!(errors.flat_map(Value::as_f64).all(|error| error <= 1e-10), "{ranks} ranks");
         let second = &found["cea"]["second_method"];
         for other in ["unconfirmed_hz", "missed_hz"] {
@@ -139,7 +140,10 @@ fn more_ranks_than_rows_are_a_fault() {
     let arguments = ["cea", "two/case.toml", "--out", "out", "--engine", "slepc"];
     let output = on_ranks(4, folder.path(), &arguments).output().unwrap();
     let message = text(&output.stderr);
-    assert!(!output.status.success() && message.contains("4 ranks") && message.contains("at most 2"), "{message}");
+    assert!(
+        !output.status.success() && message.contains("4 ranks") && message.contains("at most 2"),
+        "{message}"
+    );
     let output = on_ranks(2, folder.path(), &arguments).output().unwrap();
     assert!(output.status.success(), "{}", text(&output.stderr));
 }

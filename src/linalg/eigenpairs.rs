@@ -334,7 +334,10 @@ impl<'a> Pencil<'a> {
         observer: &dyn Observer,
     ) -> Result<Found> {
         let accepted = self.accepted(above - shift);
-        if let Some(pairs) = factor.nearest_eigenpairs([self.k, self.m], shift, counted, accepted) {
+        let pencil = [self.k, self.m];
+        if counted > 0
+            && let Some(pairs) = factor.nearest_eigenpairs(pencil, shift, counted, accepted)
+        {
             let (values, vectors) = ascending(pairs?);
             let found = values.iter().filter(|theta| **theta < above).count();
             return match found == counted {

@@ -1,24 +1,33 @@
 #include "shim.h"
 
+/* The same outcome on all ranks, where one of them may have failed on its own before it comes to a collective call. */
+static int agreed(int code) {
+    int worst = code, failed = (int)MPI_Allreduce(&code, &worst, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD);
+    if (failed) return failed;
+    if (worst && !code) snprintf(stridor_text, sizeof stridor_text, "another rank failed: its memory or its indices do not suffice");
+    return worst;
+}
+
 /* ---- PETSc: matrices whose rows are shared out ---- */
 
 /* The n x n matrix of which this rank has the next `own` rows, compressed; `parts` is 2 for complex values, 1 for real ones. */
 int stridor_matrix_new(int64_t n, int64_t own, const int64_t *starts, const int64_t *columns, const double *values, int parts,
                        Mat *matrix) {
     int64_t entries = starts[own];
+    PetscInt *i = malloc((own + 1) * sizeof *i), *j = malloc((entries + 1) * sizeof *j);
+    PetscScalar *v = malloc((entries + 1) * sizeof *v);
+    int code = 0;
     if (n > PETSC_MAX_INT || entries > PETSC_MAX_INT) {
         snprintf(stridor_text, sizeof stridor_text,
                  "a part of %lld rows and %lld entries needs 64-bit indices: build PETSc with --with-64-bit-indices, or take more ranks",
                  (long long)own, (long long)entries);
-        return 1;
-    }
-    PetscInt *i = malloc((own + 1) * sizeof *i), *j = malloc((entries + 1) * sizeof *j);
-    PetscScalar *v = malloc((entries + 1) * sizeof *v);
-    int code = 0;
-    if (!i || !j || !v) {
+        code = 1;
+    } else if (!i || !j || !v) {
         snprintf(stridor_text, sizeof stridor_text, "memory does not suffice for the rows of a matrix");
         code = 1;
-    } else {
+    }
+    code = agreed(code);
+    if (!code) {
         for (int64_t k = 0; k <= own; k++) i[k] = (PetscInt)starts[k];
         for (int64_t k = 0; k < entries; k++) {
             j[k] = (PetscInt)columns[k];
@@ -155,7 +164,7 @@ int stridor_krylov_schur(Mat k, Mat m, struct factor *factor, const int *order, 
     if ((code = MPI_Comm_rank(PETSC_COMM_WORLD, &rank))) return code;
     if (rank == 0 && (code = (int)MatGetSize(m, &n, NULL))) return code;
     inverse.columns = malloc((2 * (size_t)n + 1) * sizeof *inverse.columns);
-    if (!inverse.columns) return PETSC_ERR_MEM;
+    if ((code = agreed(inverse.columns ? 0 : 1))) return code;
     code = (int)krylov_schur(&inverse, k, m, shift, count, tolerance, found, values, vectors);
     free(inverse.columns);
     return code;
@@ -268,7 +277,8 @@ static PetscErrorCode toar(struct shifted *shifted, Mat k, Mat c, Mat m, const d
     PetscCall(PEPSetTarget(pep, shift));
     PetscCall(PEPSetWhichEigenpairs(pep, PEP_TARGET_MAGNITUDE));
     PetscCall(PEPSetTolerances(pep, tolerance, 1000));
-    PetscCall(PEPSetScale(pep, PEP_SCALE_SCALAR, PETSC_DEFAULT, NULL, NULL, PETSC_DEFAULT, PETSC_DEFAULT));
+    /* By the size of the eigenvalues, not by the norms of the matrices, which belong to those far above. */
+    PetscCall(PEPSetScale(pep, PEP_SCALE_SCALAR, PetscAbsScalar(shift), NULL, NULL, PETSC_DEFAULT, PETSC_DEFAULT));
     PetscCall(PEPGetST(pep, &st));
     PetscCall(STSetType(st, STSINVERT));
     PetscCall(STSetMatMode(st, ST_MATMODE_SHELL));

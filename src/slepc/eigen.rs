@@ -1,6 +1,6 @@
 //! Eigenvalue problems of distributed matrices by SLEPc.
 
-use super::{DistributedFactor, DistributedMatrix, World, check, ffi};
+use super::{DistributedFactor, DistributedMatrix, World, alone, check, ffi};
 use crate::error::{Error, Result};
 use crate::linalg::c64;
 use std::ffi::c_int;
@@ -30,6 +30,7 @@ impl KrylovSchur<'_> {
         assert!(self.order.len() == held, "the order of the rows on rank 0");
         let (mut values, mut vectors) = (vec![0.0; count], vec![0.0; held * count]);
         let mut found = 0;
+        let _alone = alone();
         // SAFETY: the objects live; the arrays have the lengths that the function writes to, `order` has one number a row on rank 0
         // and is not read elsewhere.
         let code = unsafe {
@@ -73,6 +74,7 @@ impl Quadratic {
         let rank = coefficients.len();
         assert!(basis.len() == m.own() * rank, "the own rows of the basis");
         let (mut values, mut found) = (vec![0.0; 2 * count], 0);
+        let _alone = alone();
         // SAFETY: the objects live; the arrays have the lengths that the function reads and writes.
         let code = unsafe {
             ffi::stridor_toar(

@@ -1,6 +1,6 @@
 //! Sparse matrices of PETSc, whose rows are shared out.
 
-use super::{World, check, ffi};
+use super::{World, alone, check, ffi};
 use crate::error::Result;
 use std::ptr::NonNull;
 
@@ -42,6 +42,7 @@ impl DistributedMatrix {
             "compressed rows"
         );
         let mut matrix = std::ptr::null_mut();
+        let _alone = alone();
         // SAFETY: the arrays have the lengths that were asserted, and PETSc copies them.
         let code = unsafe {
             ffi::stridor_matrix_new(
@@ -71,6 +72,7 @@ impl DistributedMatrix {
 
 impl Drop for DistributedMatrix {
     fn drop(&mut self) {
+        let _alone = alone();
         // SAFETY: it lives until here, and MPI still runs.
         unsafe { ffi::stridor_matrix_free(self.matrix.as_ptr()) };
     }

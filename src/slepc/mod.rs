@@ -23,6 +23,13 @@ pub use world::World;
 
 use crate::error::Error;
 use std::ffi::{CStr, c_int};
+use std::sync::{Mutex, MutexGuard};
+
+/// MPI is started for calls of one thread at a time.
+fn alone() -> MutexGuard<'static, ()> {
+    static CALLS: Mutex<()> = Mutex::new(());
+    CALLS.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
 
 /// The error behind a code of a library that is not zero.
 fn check(call: &str, code: c_int) -> crate::error::Result<()> {

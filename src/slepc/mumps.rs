@@ -1,6 +1,6 @@
 //! Real symmetric matrices factorised by MUMPS.
 
-use super::{World, ffi};
+use super::{World, alone, ffi};
 use crate::error::{Error, Result};
 use crate::linalg::Inertia;
 use crate::linalg::factor::singular;
@@ -39,6 +39,7 @@ impl DistributedFactor {
     pub fn new(_: &World, entries: &mut Entries, values: &mut [f64], kept: bool) -> Result<Self> {
         let Entries { n, rows, columns, place } = entries;
         let mut status = 0;
+        let alone_while_factorizing = alone();
         // SAFETY: the arrays have the stated lengths and are not used by MUMPS after the call: it holds the pointers, but reads them
         // during analysis and factorisation alone.
         let factor = unsafe {
@@ -53,6 +54,7 @@ impl DistributedFactor {
                 &mut status,
             )
         };
+        drop(alone_while_factorizing);
         let factor = NonNull::new(factor).ok_or_else(|| failure(-13, 0))?;
         let mut factor = DistributedFactor { factor, n: *n as usize, inertia: Inertia::default() };
         if status < 0 {
@@ -101,6 +103,7 @@ impl DistributedFactor {
     /// When `columns` are not whole ones.
     pub fn solve(&mut self, columns: &mut [f64], count: usize) -> Result<()> {
         assert!(columns.is_empty() || columns.len() == self.n * count, "whole columns");
+        let _alone = alone();
         // SAFETY: on rank 0 the array holds `count` columns of n numbers; elsewhere MUMPS does not read it.
         let status = unsafe {
             ffi::stridor_mumps_solve(
@@ -121,6 +124,7 @@ impl DistributedFactor {
 
 impl Drop for DistributedFactor {
     fn drop(&mut self) {
+        let _alone = alone();
         // SAFETY: it lives until here, and MPI still runs.
         unsafe { ffi::stridor_mumps_free(self.factor.as_ptr()) };
     }

@@ -1,6 +1,6 @@
 //! The ranks of an MPI program, and messages between them.
 
-use super::{check, ffi};
+use super::{alone, check, ffi};
 use crate::error::Result;
 use bytemuck::Pod;
 use std::ffi::c_int;
@@ -48,6 +48,7 @@ impl World {
     /// The library refuses.
     pub fn broadcast<T: Pod>(&self, values: &mut [T]) -> Result<()> {
         let bytes: &mut [u8] = bytemuck::cast_slice_mut(values);
+        let _alone = alone();
         // SAFETY: the slice is valid for reads and writes of its length.
         check("MPI broadcast", unsafe { ffi::stridor_broadcast(bytes.as_mut_ptr(), bytes.len() as i64) })
     }
@@ -59,6 +60,7 @@ impl World {
     /// The library refuses.
     pub fn announce<T: Pod>(&self, values: &mut [T]) -> Result<()> {
         let bytes: &mut [u8] = bytemuck::cast_slice_mut(values);
+        let _alone = alone();
         // SAFETY: the slice is valid for reads and writes of its length until the call returns.
         check("MPI broadcast", unsafe { ffi::stridor_announce(bytes.as_mut_ptr(), bytes.len() as i64) })
     }
@@ -69,6 +71,7 @@ impl World {
     /// The library refuses.
     pub fn send<T: Pod>(&self, values: &[T], to: usize) -> Result<()> {
         let count = [values.len() as u64];
+        let _alone = alone();
         for bytes in [bytemuck::cast_slice(&count), bytemuck::cast_slice::<T, u8>(values)] {
             // SAFETY: the slice is valid for reads of its length.
             let code = unsafe { ffi::stridor_send(bytes.as_ptr(), bytes.len() as i64, to as c_int) };
@@ -91,12 +94,13 @@ impl World {
 
     fn receive_into<T: Pod>(&self, values: &mut [T], from: usize) -> Result<()> {
         let bytes: &mut [u8] = bytemuck::cast_slice_mut(values);
+        let _alone = alone();
         // SAFETY: the slice is valid for writes of its length.
         let code = unsafe { ffi::stridor_receive(bytes.as_mut_ptr(), bytes.len() as i64, from as c_int) };
         check("MPI receive", code)
     }
 
-    /// Ends all ranks at once, whatever they do.
+    /// Ends all ranks at once, whatever they do; comes back only where MPI refuses.
     pub fn abort(&self, code: u8) {
         // SAFETY: allowed at any time between start and end.
         unsafe { ffi::stridor_abort(c_int::from(code)) };
@@ -105,7 +109,8 @@ impl World {
 
 impl Drop for World {
     fn drop(&mut self) {
-        // SAFETY: MPI runs, and nothing uses it any more: factors hold no World, but their owner drops them before.
+        let _alone = alone();
+        // SAFETY: MPI runs, and nothing uses it any more: the owner of factors and matrices drops them before.
         unsafe { ffi::stridor_stop() };
     }
 }

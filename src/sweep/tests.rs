@@ -250,7 +250,11 @@ impl SweepProblem for Counted {
     fn modes(&self, at: &[f64]) -> Result<Modes> {
         self.1.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         if at[0] > 0.75 && at.len() > 1 {
-            return Err(crate::error::Error::analysis("modes", format!("{} is too much", at[0]), "Take less"));
+            return Err(crate::error::Error::analysis(
+                "modes",
+                format!("{} is too much", at[0]),
+                "Take less",
+            ));
         }
         self.0.modes(at)
     }

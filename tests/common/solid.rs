@@ -38,8 +38,7 @@ pub fn write(folder: &Path) {
     let (stiffness, mass) = brick();
     let (mut k, mut m) = (Triplets::new(), Triplets::new());
     for (i, j, l) in (0..nx * ny * nz).map(|e| (e / (ny * nz), e / nz % ny, e % nz)) {
-        let corners: Vec<usize> =
-            (0..8).map(|c| node(i + (c & 1), j + (c >> 1 & 1), l + (c >> 2))).collect();
+        let corners: Vec<usize> = (0..8).map(|c| node(i + (c & 1), j + (c >> 1 & 1), l + (c >> 2))).collect();
         let dofs: Vec<Option<usize>> =
             corners.iter().flat_map(|n| (0..3).map(|axis| free(*n, axis))).collect();
         for (a, row) in dofs.iter().enumerate() {
@@ -62,7 +61,8 @@ pub fn write(folder: &Path) {
     }
     let size = 3 * nx * (ny + 1) * (nz + 1);
     for (name, matrix) in [("m.mtx", &m), ("c.mtx", &c), ("k.mtx", &k)] {
-        let mut text = format!("%%MatrixMarket matrix coordinate real general\n{size} {size} {}\n", matrix.len());
+        let mut text =
+            format!("%%MatrixMarket matrix coordinate real general\n{size} {size} {}\n", matrix.len());
         for ((i, j), v) in matrix {
             writeln!(text, "{} {} {v:e}", i + 1, j + 1).expect("a string");
         }

@@ -104,3 +104,107 @@ impl Engine {
         self.analyse(a.symbolic())?.factorize(a)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{HalfSolutions, compliances, factorize, inertia_like};
+    use super::*;
+    use crate::linalg::samples;
+    use crate::linalg::sparse::add_scaled;
+    use crate::linalg::{Wanted, lowest_eigenpairs, lowest_eigenpairs_by};
+    use faer::{Mat, MatMut};
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    /// A library that factorises with the factors of this program, without half solutions, and counts how often.
+    #[derive(Debug, Default)]
+    struct Library(Arc<AtomicUsize>);
+
+    #[derive(Debug)]
+    struct Pattern(Arc<AtomicUsize>);
+
+    #[derive(Debug)]
+    struct Factor {
+        inner: Box<dyn HalfSolutions>,
+        symbolic: SymbolicFactor,
+    }
+
+    impl Backend for Library {
+        fn analyse(
+            &self,
+            pattern: SymbolicSparseColMatRef<'_, Index>,
+            place: &[usize],
+        ) -> Result<Arc<dyn DistributedPattern>> {
+            let mut rows = place.to_vec();
+            rows.sort_unstable();
+            assert!(rows.into_iter().eq(0..pattern.ncols()), "every row has a place");
+            Ok(Arc::new(Pattern(Arc::clone(&self.0))))
+        }
+
+        fn quadratic(&self, _: &QuadraticProblem<'_>) -> Result<Box<dyn QuadraticSolver>> {
+            unreachable!("no quadratic problem here")
+        }
+    }
+
+    impl DistributedPattern for Pattern {
+        fn factorize(&self, a: &SparseMatrix, symbolic: SymbolicFactor) -> Result<Box<dyn SymmetricFactor>> {
+            self.0.fetch_add(1, Ordering::Relaxed);
+            Ok(Box::new(Factor { inner: factorize(a)?, symbolic }))
+        }
+
+        fn inertia(&self, a: &SparseMatrix) -> Result<Inertia> {
+            self.0.fetch_add(1, Ordering::Relaxed);
+            Ok(factorize(a)?.inertia())
+        }
+    }
+
+    impl SymmetricFactor for Factor {
+        fn n(&self) -> usize {
+            self.inner.n()
+        }
+
+        fn solve_in_place(&self, rhs: MatMut<'_, f64>) {
+            self.inner.solve_in_place(rhs);
+        }
+
+        fn halves(&self) -> Option<&dyn HalfSolutions> {
+            None
+        }
+
+        fn symbolic(&self) -> SymbolicFactor {
+            self.symbolic.clone()
+        }
+
+        fn inertia(&self) -> Inertia {
+            self.inner.inertia()
+        }
+
+        fn memory_bytes(&self) -> usize {
+            self.inner.memory_bytes()
+        }
+    }
+
+    #[test]
+    fn all_that_is_factorised_goes_to_the_library() {
+        let (k, m) = samples::plate(12, false);
+        let calls = Arc::new(AtomicUsize::new(0));
+        let engine = Engine::new(Arc::new(Library(Arc::clone(&calls))));
+        let seen = || calls.swap(0, Ordering::Relaxed);
+        for wanted in [Wanted::Count(8), Wanted::Below(1e7)] {
+            let own = lowest_eigenpairs(&k, &m, wanted, &()).unwrap();
+            let found = lowest_eigenpairs_by(&engine, &k, &m, wanted, &()).unwrap();
+            assert_eq!(found.values, own.values);
+            assert!(seen() >= 2, "a shift and a count");
+        }
+        let a = add_scaled(&[(1.0, &k), (-1e6, &m)]);
+        let (factor, own) = (engine.factorize(&a).unwrap(), factorize(&a).unwrap());
+        // The same pattern, and another one.
+        for b in [&a, &samples::identity(a.ncols())] {
+            assert_eq!(inertia_like(&*factor, b).unwrap(), inertia_like(&*own, b).unwrap());
+        }
+        assert_eq!(seen(), 3);
+        let f = Mat::from_fn(a.ncols(), 5, |i, j| ((i + 3 * j) as f64 * 0.7).sin());
+        let [whole, halves] =
+            [&*factor, &*own as &dyn SymmetricFactor].map(|factor| compliances(factor, f.clone().as_mut()));
+        assert!((&whole - &halves).norm_max() < 1e-11 * halves.norm_max());
+    }
+}
