@@ -4,7 +4,7 @@ use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use stridor::case::{Case, read_test};
 use stridor::error::{Error, Fault, Result};
-use stridor::results::record::{Saved, read_record};
+use stridor::results::record::{PartRecord, Saved, read_record};
 use stridor::search::SearchFile;
 use stridor::validation::Reference;
 use stridor::{job, linalg::matrix_market, measured::uff, mesh::gmsh};
@@ -26,7 +26,7 @@ const KIB: usize = 1 << 10;
 
 /// `times` is what an input of the densest kind takes, a list just after it has been doubled and copied: `1,1,1` in a list of
 /// TOML makes some 110 bytes of two, a line of one digit a mode of 64, an empty line of a universal file 32.
-pub const READERS: [Reader; 12] = [
+pub const READERS: [Reader; 13] = [
     Reader {
         name: "mesh",
         read: mesh,
@@ -54,6 +54,8 @@ pub const READERS: [Reader; 12] = [
     Reader { name: "points", read: points, samples: &[], times: 128, constant: 64 * KIB },
     Reader { name: "checkpoint", read: checkpoint, samples: &[], times: 16, constant: 64 * KIB },
     Reader { name: "record", read: record, samples: &[], times: 16, constant: 64 * KIB },
+    // Tables of one answer each.
+    Reader { name: "part", read: part, samples: &[], times: 64, constant: 64 * KIB },
     Reader {
         name: "test",
         read: test,
@@ -122,13 +124,24 @@ fn points(bytes: &[u8]) -> Result<String> {
     Ok(about(job::read_points("points", &String::from_utf8_lossy(bytes), 9)?.len()).to_string())
 }
 
-/// As it is, and with the checksum that belongs to it.
-fn checkpoint(bytes: &[u8]) -> Result<String> {
+/// The bytes with the checksum that belongs to them.
+fn mended(bytes: &[u8]) -> Vec<u8> {
     let said = &bytes[..bytes.len().saturating_sub(32)];
-    let read = Saved::from_bytes(bytes).or_else(|_| {
-        let mended = [said, &Sha256::digest(said)[..]].concat();
-        Saved::from_bytes(&mended)
-    });
+    [said, &Sha256::digest(said)[..]].concat()
+}
+
+/// As it is, and with its checksum mended.
+fn part(bytes: &[u8]) -> Result<String> {
+    let read = PartRecord::from_bytes(bytes).or_else(|_| PartRecord::from_bytes(&mended(bytes)));
+    let part = read.map_err(|what| Error::input(Fault::new("part", what, "a part")))?;
+    let (found, none): (Vec<_>, Vec<_>) =
+        part.answers.values().flatten().partition(|(_, answer)| answer.is_ok());
+    Ok(format!("{:?}", [part.answers.len(), found.len(), none.len()].map(about)))
+}
+
+/// As it is, and with its checksum mended.
+fn checkpoint(bytes: &[u8]) -> Result<String> {
+    let read = Saved::from_bytes(bytes).or_else(|_| Saved::from_bytes(&mended(bytes)));
     let saved = read.map_err(|what| Error::input(Fault::new("checkpoint", what, "a checkpoint")))?;
     let arrays = saved.march.map_or(0, |march| march.arrays.len());
     Ok(format!("{} {}", about(saved.origin.inputs.len()), about(arrays)))

@@ -49,12 +49,12 @@ const IN_PARTS: &str = "sweep";
 /// The options of `stridor sweep` alone.
 #[derive(Args, Default)]
 struct PartOptions {
-    /// Compute the I-th of N shares of the points of all sweeps and maps, as job I of a job array of N, into a file of the results
-    /// folder; called again, a part that was killed resumes
-    #[arg(long, value_name = "I/N", conflicts_with = "resume")]
+    /// Compute the I-th of N parts of the sweeps and maps, as job I of a job array of N, into a file of the results folder; a part
+    /// that was killed resumes when it is called again
+    #[arg(long, value_name = "I/N", conflicts_with_all = ["resume", "engine"])]
     part: Option<String>,
-    /// Make the results of all parts in the results folder: those of a run without --part
-    #[arg(long, conflicts_with_all = ["part", "resume"])]
+    /// Make the results of one run of all parts in the results folder
+    #[arg(long, conflicts_with_all = ["part", "resume", "engine"])]
     merge: bool,
 }
 
@@ -145,10 +145,10 @@ fn print_part(part: Part, done: &PartDone, common: &Common) -> Result<u8> {
         let file = (*points > 0).then(|| file.display().to_string());
         give(serde_json::json!({ "part": part.number, "of": part.of, "points": points, "file": file }))?;
     } else if *points == 0 && !common.quiet {
-        say(format!("There are fewer points than parts: {part} has none."))?;
+        say(format!("There are more parts than the sweeps and maps can be cut into: {part} has none."))?;
     } else if !common.quiet {
         say(format!(
-            "All {points} points of {part} are in {}. When all parts are there: --merge.",
+            "Done: {part}, {points} points, in {}. When all parts are done: --merge.",
             file.display()
         ))?;
     }

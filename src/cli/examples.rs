@@ -59,7 +59,7 @@ Examples:
 pub fn of_analysis(name: &str) -> String {
     let parts = match name {
         "sweep" => {
-            "\n  stridor sweep rig/case.toml --part 3/40       The third of 40 shares of the points\n  \
+            "\n  stridor sweep rig/case.toml --part 3/40       The third of 40 parts of a job array\n  \
              stridor sweep rig/case.toml --merge           One result of all 40"
         }
         _ => "",

@@ -14,13 +14,17 @@ use crate::modal::RealModes;
 use crate::progress::Observer;
 use crate::results::{DampingRow, DampingVerdicts, MapResult, RunResults, SweepMethod, SweepResult};
 use crate::stability::{Family, FamilyFrame, SlidingState};
-use crate::sweep::{self, Answered, Answers, Axis, Boundary, Checked, CriticalKind, MapPoint, SweepProblem};
+use crate::sweep::{
+    self, AnswerStore, Answered, Axis, Block, Boundary, Checked, CriticalKind, MapPoint, SweepProblem,
+};
 use crate::system::{Damping, System};
 
 /// The largest |Δλ|/|λ| at full order that is accepted.
 const ACCURACY: f64 = 1e-8;
 /// Relative length of the bracket of a critical value on a reduced model, and by whole analyses.
 const LOCATED: [f64; 2] = [1e-10, 1e-7];
+/// The same of a point of the boundary of stability.
+const BOUNDARY: [f64; 2] = [1e-7, 1e-6];
 /// Full-order measures that were not good enough lead to a richer family, so often at most.
 const REFINEMENTS: usize = 3;
 /// The path of ζ.
@@ -45,22 +49,9 @@ pub(super) fn explore(
 ) -> Result<()> {
     let start = Start::new(nominal)?;
     known.parts.check(&start.reference)?;
-    let explorer = Explorer::new(&start, observer)?;
-    for (name, analysis) in &nominal.prepared.case.sweep {
-        let result = explorer.sweep(name, analysis, &known.parts)?;
-        record(ResultStage::Found(&result))?;
-        results.records.push(result);
-    }
-    for (name, analysis) in &nominal.prepared.case.map {
-        let (result, failure) = explorer.map(name, analysis, known, record)?;
-        results.warnings.extend(failure);
-        results.records.push(result);
-    }
-    if let Some(verdicts) = explorer.damping()? {
-        record(ResultStage::Found(&verdicts))?;
-        results.records.push(verdicts);
-    }
-    Ok(())
+    let explored = Explorer::new(&start, observer).and_then(|explorer| explorer.all(known, results, record));
+    // Beside their reference nothing that is found is a fault of the parts.
+    explored.map_err(|error| if known.parts.records.is_empty() { error } else { error.while_computing() })
 }
 
 /// Every damping scalar that a sweep, a map or the verdicts vary: path, its value, another value that the case accepts.
@@ -118,7 +109,7 @@ impl<'a> Start<'a> {
 
 /// The problem of a sweep or of a map.
 enum Problem<'s> {
-    Whole(Whole<'s>),
+    Whole(Box<Whole<'s>>),
     /// On a reduced model that is not refined yet.
     Reduced(OnFamily<'s, 's>),
 }
@@ -143,6 +134,31 @@ impl<'a> Explorer<'a> {
 }
 
 impl Explorer<'_> {
+    /// Every sweep and map of the case, and the verdicts of its damping.
+    fn all(
+        &self,
+        known: &KnownPoints,
+        results: &mut RunResults,
+        record: &mut dyn FnMut(ResultStage) -> Result<()>,
+    ) -> Result<()> {
+        let case = self.nominal.prepared.case;
+        for (name, analysis) in &case.sweep {
+            let result = self.sweep(name, analysis, &known.parts)?;
+            record(ResultStage::Found(&result))?;
+            results.records.push(result);
+        }
+        for (name, analysis) in &case.map {
+            let (result, failure) = self.map(name, analysis, known, record)?;
+            results.warnings.extend(failure);
+            results.records.push(result);
+        }
+        if let Some(verdicts) = self.damping()? {
+            record(ResultStage::Found(&verdicts))?;
+            results.records.push(verdicts);
+        }
+        Ok(())
+    }
+
     fn states(&self, paths: &[String]) -> States<'_> {
         States {
             prepared: self.nominal.prepared,
@@ -186,24 +202,23 @@ impl Explorer<'_> {
         if self.keeps_the_structure(&grid.paths)? {
             return Ok(Problem::Reduced(self.family(states, &grid.training())?));
         }
-        Ok(Problem::Whole(Whole::new(self.case, grid.paths.clone(), Some(&self.start.reference.0))))
+        let whole = Whole::new(self.case, grid.paths.clone(), Some(&self.start.reference.0));
+        Ok(Problem::Whole(Box::new(whole)))
     }
 
-    /// The answers at the points `wanted` of a sweep or of a map, handed to `keep` as soon as they are there.
+    /// Computes a block of a sweep or of a map; its answers are in `store`, or put there.
     ///
     /// # Errors
-    /// A reduced model that cannot be trained; those of `keep`.
-    pub(super) fn answers(
-        &self,
-        grid: &Grid,
-        wanted: &[usize],
-        keep: &mut dyn FnMut(Answers) -> Result<()>,
-    ) -> Result<()> {
+    /// A reduced model that cannot be trained; those of [`Block::solve`].
+    pub(super) fn block(&self, grid: &Grid, block: &Block, store: &dyn AnswerStore) -> Result<()> {
         let states = self.states(&grid.paths);
-        match self.problem(&states, grid)? {
-            Problem::Whole(whole) => sweep::answers(&whole, &grid.axes, wanted, keep, self.observer),
-            Problem::Reduced(on) => sweep::answers(&on, &grid.axes, wanted, keep, self.observer),
-        }
+        let problem = self.problem(&states, grid)?;
+        let (problem, reduced): (&dyn SweepProblem, bool) = match &problem {
+            Problem::Whole(whole) => (&**whole, false),
+            Problem::Reduced(on) => (on, true),
+        };
+        let tolerance = if grid.axes.len() == 1 { LOCATED } else { BOUNDARY }[usize::from(!reduced)];
+        block.solve(&Answered::new(problem, store), &grid.axes, tolerance, self.observer)
     }
 
     fn sweep(&self, name: &str, analysis: &SweepAnalysis, parts: &Parts) -> Result<SweepResult> {
@@ -222,13 +237,13 @@ impl Explorer<'_> {
             sample: measured.sample,
             method,
         };
-        let answers = || parts.answers(&grid.name);
         let states = self.states(&grid.paths);
         let mut on = match self.problem(&states, &grid)? {
             Problem::Whole(whole) => {
-                let answered = Answered::new(&whole, &grid.axes, answers());
+                let known = parts.of(&grid.name, true);
+                let answered = Answered::new(&*whole, &known);
                 let sweep = sweep::sweep(&answered, &axis, LOCATED[1], self.observer)?;
-                let measured = measure(&whole, &sweep, &[axis.to])?;
+                let measured = measure(&*whole, &sweep, &[axis.to])?;
                 return Ok(result(sweep, measured, SweepMethod::Whole));
             }
             Problem::Reduced(on) => on,
@@ -236,8 +251,9 @@ impl Explorer<'_> {
         let sample = [0.25, 0.75].map(|share| axis.between(axis.from, axis.to, share));
         let mut refinement = 0;
         loop {
-            let answered = Answered::new(&on, &grid.axes, answers().filter(|_| refinement == 0));
-            let sweep = sweep::sweep(&answered, &axis, LOCATED[0], self.observer)?;
+            // Parts have the answers of the model that is not refined.
+            let known = parts.of(&grid.name, refinement == 0);
+            let sweep = sweep::sweep(&Answered::new(&on, &known), &axis, LOCATED[0], self.observer)?;
             let measured = measure(&on, &sweep, &sample)?;
             refinement += 1;
             let poor = measured.poor(&sweep);
@@ -305,14 +321,15 @@ impl Explorer<'_> {
         let failed = |failure: Option<String>| {
             failure.map(|f| format!("Map `{name}`: points without an answer are left blank; the first: {f}"))
         };
-        let answers = || known.parts.answers(&grid.name);
         let mut earlier = known.maps.get(name).cloned().unwrap_or_default();
         let states = self.states(&grid.paths);
         let mut on = match self.problem(&states, &grid)? {
             Problem::Whole(whole) => {
-                let answered = Answered::new(&whole, &axes, answers());
+                let parts = known.parts.of(&grid.name, true);
+                let answered = Answered::new(&*whole, &parts);
                 let failure = self.fill(&answered, &mut result, &earlier, record)?;
-                result.boundary = sweep::boundary(&answered, &axes, &result.points, 1e-6, self.observer)?;
+                result.boundary =
+                    sweep::boundary(&answered, &axes, &result.points, BOUNDARY[1], self.observer)?;
                 record(ResultStage::Map(&result))?;
                 return Ok((result, failed(failure)));
             }
@@ -324,9 +341,10 @@ impl Explorer<'_> {
         }
         let mut refinement = 0;
         loop {
-            let answered = Answered::new(&on, &axes, answers().filter(|_| refinement == 0));
+            let parts = known.parts.of(&grid.name, refinement == 0);
+            let answered = Answered::new(&on, &parts);
             let failure = self.fill(&answered, &mut result, &earlier, record)?;
-            result.boundary = sweep::boundary(&answered, &axes, &result.points, 1e-7, self.observer)?;
+            result.boundary = sweep::boundary(&answered, &axes, &result.points, BOUNDARY[0], self.observer)?;
             result.method = SweepMethod::Reduced(on.family.dimension());
             let poor = self.check_map(&on, &mut result, &inside);
             refinement += 1;

@@ -1,7 +1,7 @@
 //! The sweeps and maps of a case as grids of points that are independent of each other.
 
 use crate::case::{Case, MapAnalysis, SweepAnalysis};
-use crate::sweep::{self, Axis};
+use crate::sweep::Axis;
 
 /// The points of a sweep or of a map.
 pub(super) struct Grid {
@@ -22,11 +22,6 @@ impl Grid {
     pub(super) fn of_map(name: &str, of: &MapAnalysis) -> Self {
         let axis = |k: usize| Axis { from: of.from[k], to: of.to[k], points: of.points[k], log: of.log[k] };
         Grid { name: format!("map.{name}"), paths: of.parameters.to_vec(), axes: [0, 1].map(axis).to_vec() }
-    }
-
-    /// Number of points.
-    pub(super) fn points(&self) -> usize {
-        sweep::points(&self.axes)
     }
 
     /// The place at these shares of the way along the axes.

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::linalg::sparse::times;
 use crate::modal::RealModes;
 use crate::results::record::{InputFile, PartRecord, RecordOrigin};
-use crate::sweep::Modes;
+use crate::sweep::{AnswerStore, Answers, Modes};
 use crate::system::System;
 use faer::Mat;
 use sha2::{Digest, Sha256};
@@ -31,10 +31,10 @@ pub struct Parts {
 }
 
 impl Parts {
-    /// The answers at points of the sweep or map with this table in the case.
-    pub(super) fn answers(&self, table: &str) -> impl Iterator<Item = (usize, &Result<Modes>)> {
-        let all = self.records.iter().filter_map(move |part| part.answers.get(table));
-        all.flatten().map(|(k, answer)| (*k, answer))
+    /// The answers of the sweep or map with this table in the case; none unless `wanted`.
+    pub(super) fn of<'a>(&'a self, table: &str, wanted: bool) -> KnownAnswers<'a> {
+        let all = self.records.iter().filter_map(|part| part.answers.get(table));
+        KnownAnswers(all.filter(|_| wanted).collect())
     }
 
     /// Whether their shapes are compared by this reference.
@@ -44,6 +44,19 @@ impl Parts {
         }
         let digest = reference.digest();
         self.records.iter().try_for_each(|part| part.check_reference(&self.dir, digest))
+    }
+}
+
+/// Answers of the parts; more are not kept.
+pub(super) struct KnownAnswers<'a>(Vec<&'a Answers>);
+
+impl AnswerStore for KnownAnswers<'_> {
+    fn find(&self, place: &[u64]) -> Option<Result<Modes>> {
+        self.0.iter().find_map(|part| part.get(place)).cloned()
+    }
+
+    fn keep(&self, _: Vec<u64>, _: &Result<Modes>) -> Result<()> {
+        Ok(())
     }
 }
 

@@ -1,5 +1,5 @@
-//! Parts of a job array: each process computes a share of the points of all sweeps and maps of a case, and one makes the results of
-//! a single run of them.
+//! Parts of a job array: each process computes a block of every sweep and map of a case, and one makes the results of a single run
+//! of all of them.
 
 use super::analyse::{Asked, operating_point};
 use super::analyses::Selection;
@@ -13,30 +13,33 @@ use crate::case::Case;
 use crate::error::{Error, Fault, Result};
 use crate::progress::Observer;
 use crate::results::record::{Part, PartFile, RecordOrigin, read_parts};
-use crate::sweep::Answers;
-use std::collections::{BTreeMap, BTreeSet};
+use crate::sweep::{AnswerStore, Block, Modes, bits, blocks, place};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The folder of the parts in the results folder.
 const FOLDER: &str = "parts";
 /// Parts that were begun of which a message says how many points they lack.
 const SHOWN: usize = 20;
 
-/// A part that has all its points.
+/// A part that is done.
 #[derive(Debug)]
 pub struct PartDone {
-    /// Number of its points; none where there are more parts than points.
+    /// Number of its points; none where the grids cannot be cut into so many parts.
     pub points: usize,
     /// Its file, which is not there without points.
     pub file: PathBuf,
 }
 
-/// Computes the points of a part, apart from those that an earlier, interrupted process computed, and keeps them in a file of the
-/// results folder `out`, chunk by chunk; of that folder it writes nothing else. Nothing is written when the input is wrong.
+/// Computes a part, apart from what an earlier, interrupted process computed of it, and keeps its answers in a file of the results
+/// folder `out` as soon as they are there; of that folder it writes nothing else. Nothing is written when the input is wrong.
+///
+/// A place without an answer is kept as such: the merge has the same error there as a whole run.
 ///
 /// # Errors
-/// Faults of the input, a folder with other parts, an analysis without an answer, a file that cannot be written or that another
-/// process uses.
+/// Faults of the input, a folder with other parts, a case without complex modes, a file that cannot be written or that another process
+/// uses.
 pub fn run_part(case: &Case, part: Part, out: &Path, observer: &dyn Observer) -> Result<PartDone> {
     let own = without_second_opinions(case);
     let prepared = Prepared::new(&own)?;
@@ -44,19 +47,15 @@ pub fn run_part(case: &Case, part: Part, out: &Path, observer: &dyn Observer) ->
     let asked = Asked::new(&prepared, selection)?;
     check_memory(&prepared, selection)?;
     let (dir, grids) = (out.join(FOLDER), grids(case));
-    let mut share = share(&grids, part);
-    let points = share.iter().map(|(_, points)| points.len()).sum();
+    let share = shares(&grids, part.of).into_iter().filter(|(number, ..)| *number == part.number);
+    let share: Vec<(&Grid, Block)> = share.map(|(_, grid, block)| (grid, block)).collect();
+    let points = share.iter().map(|(grid, block)| block.points(&grid.axes).len()).sum();
     let done = PartDone { points, file: dir.join(part.file()) };
     if points == 0 {
         return Ok(done);
     }
     let mut file = PartFile::open(&dir, part, origin(case)?)?;
-    for (grid, points) in &mut share {
-        let known = file.record.answers.get(&grid.name);
-        points.retain(|k| known.is_none_or(|known| !known.contains_key(k)));
-    }
-    share.retain(|(_, points)| !points.is_empty());
-    if share.is_empty() {
+    if file.record.done {
         return Ok(done);
     }
     let computing = |error: Error| explained(&prepared, error.while_computing());
@@ -66,12 +65,57 @@ pub fn run_part(case: &Case, part: Part, out: &Path, observer: &dyn Observer) ->
     let start = Start::new(&nominal).map_err(computing)?;
     let explorer = Explorer::new(&start, observer).map_err(computing)?;
     file.begin(start.reference.digest())?;
-    for (grid, points) in &share {
-        let computed = explorer.answers(grid, points, &mut |answers| keep(&mut file, grid, answers));
-        file.save()?;
-        computed.map_err(computing)?;
-    }
+    compute(&explorer, &share, file, observer)?;
     Ok(done)
+}
+
+/// Computes blocks of grids and keeps their answers in the file of their part, which is then done.
+fn compute(
+    explorer: &Explorer,
+    share: &[(&Grid, Block)],
+    file: PartFile,
+    observer: &dyn Observer,
+) -> Result<()> {
+    let file = Mutex::new(file);
+    for (grid, block) in share {
+        let computed = explorer.block(grid, block, &Keeping { file: &file, table: &grid.name });
+        locked(&file).save()?;
+        match computed {
+            Err(refused @ Error::Io { .. }) => return Err(refused),
+            Err(error) => {
+                observer.note(&format!("No answer in [{}], as the merge will say: {error}", grid.name))
+            }
+            Ok(()) => {}
+        }
+    }
+    let mut file = locked(&file);
+    file.record.done = true;
+    file.save()
+}
+
+/// The answers of a part for the sweep or map with this table in the case.
+struct Keeping<'a> {
+    file: &'a Mutex<PartFile>,
+    table: &'a str,
+}
+
+/// The file, also after a thread has panicked that had it: answers are added whole.
+fn locked(file: &Mutex<PartFile>) -> MutexGuard<'_, PartFile> {
+    file.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl AnswerStore for Keeping<'_> {
+    fn find(&self, place: &[u64]) -> Option<Result<Modes>> {
+        locked(self.file).record.answers.get(self.table)?.get(place).cloned()
+    }
+
+    fn keep(&self, place: Vec<u64>, answer: &Result<Modes>) -> Result<()> {
+        match answer {
+            // That the machine refuses something is no answer.
+            Err(Error::Io { .. }) => Ok(()),
+            answer => locked(self.file).add(self.table, place, answer.clone()),
+        }
+    }
 }
 
 /// The case without what is computed to confirm its complex modes.
@@ -87,36 +131,17 @@ fn without_second_opinions(case: &Case) -> Case {
     own
 }
 
-/// Keeps answers. A sweep has no result without one of its points; and that the machine refuses something is no answer.
-fn keep(file: &mut PartFile, grid: &Grid, answers: Answers) -> Result<()> {
-    let (mut kept, mut refused) = (Answers::new(), None);
-    for (k, answer) in answers {
-        match answer {
-            Err(error) if grid.axes.len() == 1 || matches!(error, Error::Io { .. }) => {
-                refused.get_or_insert(error);
-            }
-            answer => drop(kept.insert(k, answer)),
-        }
-    }
-    file.add(&grid.name, kept)?;
-    refused.map_or(Ok(()), Err)
+/// The blocks of all grids, each with the number of its part: dealt out in turn.
+fn shares(grids: &[Grid], of: usize) -> Vec<(usize, &Grid, Block)> {
+    let all =
+        grids.iter().flat_map(|grid| blocks(&grid.axes, of).into_iter().map(move |block| (grid, block)));
+    all.enumerate().map(|(k, (grid, block))| (k % of + 1, grid, block)).collect()
 }
 
-/// The points of a part: the points of all grids in their order are dealt out to the parts in turn.
-fn share(grids: &[Grid], part: Part) -> Vec<(&Grid, Vec<usize>)> {
-    let mut before = 0;
-    let own = |grid| {
-        let first = before;
-        before += Grid::points(grid);
-        (grid, (0..Grid::points(grid)).filter(|k| part.has(first + k)).collect())
-    };
-    grids.iter().map(own).collect()
-}
-
-/// The parts in the results folder `out`, which have every point of the sweeps and maps of the case.
+/// The parts in the results folder `out`, which together are whole.
 ///
 /// # Errors
-/// Input: points that are missing, with the parts that they belong to; parts of another case, or damaged ones.
+/// Input: parts that are missing, or not done; parts of another case, or damaged ones.
 pub(super) fn collect(case: &Case, out: &Path, origin: &RecordOrigin) -> Result<Parts> {
     let dir = out.join(FOLDER);
     let records = read_parts(&dir, origin)?;
@@ -130,49 +155,50 @@ pub(super) fn collect(case: &Case, out: &Path, origin: &RecordOrigin) -> Result<
     Ok(parts)
 }
 
-/// Refuses parts that lack points.
+/// Refuses parts that are missing or not done.
 fn complete(parts: &Parts, of: usize, grids: &[Grid]) -> Result<()> {
-    // Points of each part, and how many of them are missing.
-    let mut count: BTreeMap<usize, [usize; 2]> = BTreeMap::new();
-    let mut point = 0;
-    for grid in grids {
-        let known: BTreeSet<usize> = parts.answers(&grid.name).map(|(k, _)| k).collect();
-        for k in 0..grid.points() {
-            let [all, missing] = count.entry(point % of + 1).or_default();
-            *all += 1;
-            *missing += usize::from(!known.contains(&k));
-            point += 1;
-        }
-    }
-    let lacking: Vec<(usize, [usize; 2])> =
-        count.into_iter().filter(|(_, [_, missing])| *missing > 0).collect();
-    if lacking.is_empty() {
+    let shares = shares(grids, of);
+    let record = |number: usize| parts.records.iter().find(|record| record.part.number == number);
+    let numbers: BTreeSet<usize> = shares.iter().map(|(number, ..)| *number).collect();
+    let (begun, absent): (Vec<usize>, Vec<usize>) = numbers
+        .into_iter()
+        .filter(|number| record(*number).is_none_or(|record| !record.done))
+        .partition(|number| record(*number).is_some());
+    if begun.is_empty() && absent.is_empty() {
         return Ok(());
     }
-    let missing: usize = lacking.iter().map(|(_, [_, missing])| missing).sum();
-    let begun = |number: &usize| parts.records.iter().any(|part| part.part.number == *number);
-    let numbers = |keep: bool| lacking.iter().map(|(number, _)| *number).filter(move |n| begun(n) == keep);
-    let mut found = format!("{} of {point} points", point - missing);
-    let absent: Vec<usize> = numbers(false).collect();
+    // Points of a part, and those that it has.
+    let count = |number: usize| {
+        let (mut all, mut there) = (0, 0);
+        for (_, grid, block) in shares.iter().filter(|(own, ..)| *own == number) {
+            let answers = record(number).and_then(|record| record.answers.get(&grid.name));
+            let points = block.points(&grid.axes);
+            let known =
+                |k: &&usize| answers.is_some_and(|all| all.contains_key(&bits(&place(&grid.axes, **k))));
+            (all, there) = (all + points.len(), there + points.iter().filter(known).count());
+        }
+        (all, there)
+    };
+    let lacks = |number: &usize| match count(*number) {
+        (all, there) if there < all => format!("part {number} lacks {} of its {all} points", all - there),
+        _ => format!("part {number} lacks places between its points"),
+    };
+    let mut found = Vec::new();
     if !absent.is_empty() {
-        found += &format!("; of {of} parts these are missing: {}", ranges(&absent));
+        found.push(format!("of {of} parts these are missing: {}", ranges(&absent)));
     }
-    let unfinished: Vec<String> = lacking
-        .iter()
-        .filter(|(number, _)| begun(number))
-        .map(|(number, [all, missing])| format!("part {number} lacks {missing} of its {all}"))
-        .collect();
-    if !unfinished.is_empty() {
-        let more = unfinished.len().saturating_sub(SHOWN);
-        found += &format!("; begun: {}", unfinished[..unfinished.len() - more].join(", "));
-        found += &if more > 0 { format!(", and {more} more") } else { String::new() };
+    if !begun.is_empty() {
+        let more = begun.len().saturating_sub(SHOWN);
+        let shown = begun[..begun.len() - more].iter().map(lacks).collect::<Vec<_>>().join(", ");
+        let more = if more > 0 { format!(", and {more} more") } else { String::new() };
+        found.push(format!("not done: {shown}{more}"));
     }
-    let all: Vec<usize> = lacking.iter().map(|(number, _)| *number).collect();
+    let all: Vec<usize> = begun.into_iter().chain(absent).collect::<BTreeSet<_>>().into_iter().collect();
     let help = format!(
         "Compute {} of {of} with --part; a part that was begun resumes where it stopped",
         ranges(&all)
     );
-    let fault = Fault::new(parts.dir.display().to_string(), found, "all points");
+    let fault = Fault::new(parts.dir.display().to_string(), found.join("; "), "all parts, each done");
     Err(Error::input(fault.with_help(help)))
 }
 
@@ -197,22 +223,15 @@ mod tests {
     }
 
     #[test]
-    fn every_point_belongs_to_one_part() {
+    fn the_blocks_are_dealt_out_in_turn() {
         let axis = |points| crate::sweep::Axis { from: 0.0, to: 1.0, points, log: false };
         let grid = |name: &str, axes| Grid { name: name.into(), paths: Vec::new(), axes };
-        let grids = [grid("sweep.a", vec![axis(5)]), grid("map.b", vec![axis(3), axis(2)])];
-        for of in [1, 4, 11, 20] {
-            let mut seen = [vec![0; 5], vec![0; 6]];
-            for number in 1..=of {
-                let share = share(&grids, Part { of, number });
-                let count: usize = share.iter().map(|(_, points)| points.len()).sum();
-                assert!(count.abs_diff(11 / of) <= 1, "part {number} of {of} has {count} points");
-                share
-                    .iter()
-                    .zip(&mut seen)
-                    .for_each(|((_, points), seen)| points.iter().for_each(|k| seen[*k] += 1));
-            }
-            assert_eq!(seen, [vec![1; 5], vec![1; 6]]);
-        }
+        let grids = [grid("sweep.a", vec![axis(4)]), grid("map.b", vec![axis(3), axis(2)])];
+        // Three intervals and two cells.
+        let numbers = |of| shares(&grids, of).iter().map(|(number, ..)| *number).collect::<Vec<_>>();
+        assert_eq!(numbers(1), [1, 1]);
+        assert_eq!(numbers(2), [1, 2, 1, 2]);
+        assert_eq!(numbers(5), [1, 2, 3, 4, 5]);
+        assert_eq!(numbers(9), [1, 2, 3, 4, 5]);
     }
 }

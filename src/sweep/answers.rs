@@ -1,19 +1,26 @@
-//! Answers at the points of a grid: one axis of a sweep, two of a map. They are independent of each other, so that several
-//! processes can share them; [`answer`] computes one, and [`Answered`] gives those that are known instead of computing them again.
+//! Answers of a problem at the places that a sweep or a map asks for, kept so that several processes can share them: [`answer`]
+//! computes one at a point of a grid, [`Answered`] keeps each and gives it instead of computing it again.
 
 use super::{Axis, Checked, Modes, SweepProblem};
 use crate::error::Result;
 use crate::linalg::c64;
-use crate::progress::Observer;
 use faer::Mat;
-use rayon::prelude::*;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
-/// Points that are computed and recorded together.
-pub(super) const CHUNK: usize = 32;
+/// The modes at places, or why there are none, by the bits of the values there.
+pub type Answers = BTreeMap<Vec<u64>, Result<Modes>>;
 
-/// The modes at points of a grid, or why there are none, by the number of the point.
-pub type Answers = BTreeMap<usize, Result<Modes>>;
+/// Answers that are known.
+pub trait AnswerStore: Sync {
+    /// The answer at a place, given by the bits of the values there.
+    fn find(&self, place: &[u64]) -> Option<Result<Modes>>;
+
+    /// Takes an answer that was computed.
+    ///
+    /// # Errors
+    /// The machine refuses.
+    fn keep(&self, place: Vec<u64>, answer: &Result<Modes>) -> Result<()>;
+}
 
 /// Number of points of the grid of these axes.
 pub fn points(axes: &[Axis]) -> usize {
@@ -31,81 +38,59 @@ pub fn place(axes: &[Axis], k: usize) -> Vec<f64> {
     axes.iter().map(value).collect()
 }
 
+/// The bits of values.
+pub fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|value| value.to_bits()).collect()
+}
+
 /// The modes at point `k` of the grid of these axes: with their shapes in a sweep, λ alone in a map.
 ///
 /// # Errors
 /// A place without an answer.
 pub fn answer(problem: &dyn SweepProblem, axes: &[Axis], k: usize) -> Result<Modes> {
     let at = place(axes, k);
-    if let [_] = axes {
-        return problem.modes(&at);
+    match axes {
+        [_] => problem.modes(&at),
+        _ => problem.eigenvalues(&at).map(alone),
     }
-    let eigenvalues = problem.eigenvalues(&at)?;
-    Ok(Modes { vectors: Mat::zeros(0, eigenvalues.len()), eigenvalues })
 }
 
-/// The answers at the points `wanted` of a grid, handed to `keep` as soon as they are there: one by one, or in chunks where several
-/// are computed at once.
-///
-/// # Errors
-/// Those of `keep`.
-pub fn answers(
-    problem: &dyn SweepProblem,
-    axes: &[Axis],
-    wanted: &[usize],
-    keep: &mut dyn FnMut(Answers) -> Result<()>,
-    observer: &dyn Observer,
-) -> Result<()> {
-    observer.begin("points", Some(wanted.len() as u64));
-    let solve = |k: &usize| {
-        let found = answer(problem, axes, *k);
-        observer.advance(1);
-        (*k, found)
-    };
-    for chunk in wanted.chunks(if problem.parallel() { CHUNK } else { 1 }) {
-        keep(chunk.par_iter().map(solve).collect())?;
-    }
-    observer.end();
-    Ok(())
+/// Eigenvalues without their shapes.
+fn alone(eigenvalues: Vec<c64>) -> Modes {
+    Modes { vectors: Mat::zeros(0, eigenvalues.len()), eigenvalues }
 }
 
-/// A problem of which answers are known at points of a grid.
+/// A problem with a store of its answers: those of a sweep, which asks for modes, or of a map, which asks for eigenvalues alone.
 pub struct Answered<'a> {
     problem: &'a dyn SweepProblem,
-    /// By the bits of the values at the point.
-    known: HashMap<Vec<u64>, &'a Result<Modes>>,
+    store: &'a dyn AnswerStore,
 }
 
 impl<'a> Answered<'a> {
-    /// With `answers` at points of the grid of these axes.
-    pub fn new<'b: 'a>(
-        problem: &'a dyn SweepProblem,
-        axes: &[Axis],
-        answers: impl Iterator<Item = (usize, &'b Result<Modes>)>,
-    ) -> Self {
-        Answered { problem, known: answers.map(|(k, answer)| (bits(&place(axes, k)), answer)).collect() }
+    /// The answers of `problem` are in `store`, or put there.
+    pub fn new(problem: &'a dyn SweepProblem, store: &'a dyn AnswerStore) -> Self {
+        Answered { problem, store }
     }
 
-    fn at(&self, at: &[f64]) -> Option<&'a Result<Modes>> {
-        self.known.get(&bits(at)).copied()
+    fn answer(&self, at: &[f64], compute: impl FnOnce() -> Result<Modes>) -> Result<Modes> {
+        let place = bits(at);
+        if let Some(known) = self.store.find(&place) {
+            return known;
+        }
+        let answer = compute();
+        self.store.keep(place, &answer)?;
+        answer
     }
-}
-
-fn bits(at: &[f64]) -> Vec<u64> {
-    at.iter().map(|value| value.to_bits()).collect()
 }
 
 impl SweepProblem for Answered<'_> {
     fn modes(&self, at: &[f64]) -> Result<Modes> {
-        self.at(at).map_or_else(|| self.problem.modes(at), Clone::clone)
+        self.answer(at, || self.problem.modes(at))
     }
 
     fn eigenvalues(&self, at: &[f64]) -> Result<Vec<c64>> {
-        match self.at(at) {
-            Some(Ok(modes)) => Ok(modes.eigenvalues.clone()),
-            Some(Err(error)) => Err(error.clone()),
-            None => self.problem.eigenvalues(at),
-        }
+        let modes = self.answer(at, || self.problem.eigenvalues(at).map(alone))?;
+        Ok(modes.eigenvalues)
     }
 
     fn check(&self, at: &[f64]) -> Result<Vec<Checked>> {

@@ -1,12 +1,15 @@
 //! Maps: the strongest growth over two parameters.
 
-use super::answers::{CHUNK, answer, points};
+use super::answers::{answer, points};
 use super::{Axis, SweepProblem, unstable};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::progress::Observer;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
+
+/// Points that are computed and recorded together.
+const CHUNK: usize = 32;
 
 /// Values of a map at one point; not numbers where the point has no modes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,7 +26,7 @@ impl MapPoint {
     /// A point without an answer.
     pub const NONE: MapPoint = MapPoint { growth_rate: f64::NAN, frequency_hz: f64::NAN, unstable: 0 };
 
-    fn of(eigenvalues: &[c64]) -> Self {
+    pub(super) fn of(eigenvalues: &[c64]) -> Self {
         let strongest = eigenvalues.iter().max_by(|a, b| a.re.total_cmp(&b.re));
         strongest.map_or(MapPoint::NONE, |z| MapPoint {
             growth_rate: z.re,

@@ -3,11 +3,13 @@
 //! * [`sweep`] follows every mode along one parameter by its shape, through crossings, and *locates* the values at which
 //!   one becomes unstable or stable.
 //! * [`map`] solves a grid over two parameters; [`boundary`] locates the line on which the largest growth is zero.
+//! * [`blocks`] cut both so that several processes share them; [`Answered`] keeps their answers.
 //!
 //! All of them take a [`SweepProblem`]: a reduced family or whole analyses, they do not know which.
 
 mod answers;
 mod assign;
+mod blocks;
 mod boundary;
 mod branch;
 mod critical;
@@ -18,7 +20,8 @@ mod root;
 mod tests;
 mod track;
 
-pub use answers::{Answered, Answers, answer, answers, place, points};
+pub use answers::{AnswerStore, Answered, Answers, answer, bits, place, points};
+pub use blocks::{Block, blocks};
 pub use boundary::{Boundary, boundary};
 pub use branch::Branch;
 pub use critical::{Critical, CriticalKind};

@@ -249,14 +249,15 @@ impl Counted {
 impl SweepProblem for Counted {
     fn modes(&self, at: &[f64]) -> Result<Modes> {
         self.1.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-        if at[0] > 0.75 && at.len() > 1 {
-            return Err(crate::error::Error::analysis(
-                "modes",
-                format!("{} is too much", at[0]),
-                "Take less",
-            ));
+        let [first, rest @ ..] = at else { panic!("no values") };
+        if *first > 0.75 && !rest.is_empty() {
+            return Err(crate::error::Error::analysis("modes", format!("{first} is too much"), "Take less"));
         }
-        self.0.modes(at)
+        let mut modes = self.0.modes(at)?;
+        // In a map the growth rate is zero on a circle.
+        let growth = rest.first().map_or(0.0, |second| 0.3 - first.hypot(*second));
+        modes.eigenvalues.iter_mut().for_each(|z| z.re += growth);
+        Ok(modes)
     }
 
     fn check(&self, _: &[f64]) -> Result<Vec<Checked>> {
@@ -264,37 +265,71 @@ impl SweepProblem for Counted {
     }
 }
 
-/// All answers on a grid, computed in two shares.
-fn in_two_shares(axes: &[Axis]) -> Answers {
-    let mut all = Answers::new();
-    for share in 0..2 {
-        let wanted: Vec<usize> = (0..points(axes)).filter(|k| k % 2 == share).collect();
-        let keep = &mut |new| {
-            all.extend::<Answers>(new);
-            Ok(())
-        };
-        answers(&Counted::new(), axes, &wanted, keep, &()).unwrap();
+/// Answers in memory.
+#[derive(Default)]
+struct Stored(std::sync::Mutex<Answers>);
+
+impl AnswerStore for Stored {
+    fn find(&self, place: &[u64]) -> Option<Result<Modes>> {
+        self.0.lock().unwrap().get(place).cloned()
     }
-    all
+
+    fn keep(&self, place: Vec<u64>, answer: &Result<Modes>) -> Result<()> {
+        self.0.lock().unwrap().insert(place, answer.clone());
+        Ok(())
+    }
+}
+
+/// All that `count` blocks of a grid ask for, each computed by itself; how often a whole is solved beyond that.
+fn in_blocks(axes: &[Axis], count: usize, whole: impl Fn(&dyn SweepProblem) -> String) -> usize {
+    let all = Stored::default();
+    for block in blocks(axes, count) {
+        let own = Stored::default();
+        let problem = Counted::new();
+        // Its error, if any, is that of the whole.
+        let _ = block.solve(&Answered::new(&problem, &own), axes, 1e-8, &());
+        all.0.lock().unwrap().extend(own.0.into_inner().unwrap());
+    }
+    let (alone, rest) = (Counted::new(), Counted::new());
+    assert_eq!(whole(&Answered::new(&rest, &all)), whole(&alone));
+    assert!(alone.count() > points(axes));
+    rest.count()
 }
 
 #[test]
-fn answers_computed_in_shares_give_the_same_and_are_not_computed_again() {
-    let axes = [axis(0.0, 1.0, 12)];
-    let known = in_two_shares(&axes);
-    let (whole, rest) = (Counted::new(), Counted::new());
-    let expected = sweep(&whole, &axes[0], 1e-8, &()).unwrap();
-    let answered = Answered::new(&rest, &axes, known.iter().map(|(k, answer)| (*k, answer)));
-    let found = sweep(&answered, &axes[0], 1e-8, &()).unwrap();
-    assert_eq!(format!("{found:?}"), format!("{expected:?}"));
-    assert!(rest.count() > 0 && rest.count() + 12 == whole.count(), "{} and {}", rest.count(), whole.count());
-    let axes = [axis(0.0, 1.0, 9), axis(0.0, 1.0, 5)];
-    let known = in_two_shares(&axes);
-    let rest = Counted::new();
-    let answered = Answered::new(&rest, &axes, known.iter().map(|(k, answer)| (*k, answer)));
-    let [found, expected] = [&answered as &dyn SweepProblem, &Counted::new()]
-        .map(|problem| map(problem, &axes, &[], &mut |_, _| Ok(()), &()).unwrap());
-    assert_eq!(format!("{found:?}"), format!("{expected:?}"));
-    assert_eq!(found.1.as_deref(), Some("modes: 0.875 is too much. Take less."));
-    assert_eq!(rest.count(), 0);
+fn blocks_computed_apart_have_all_that_a_sweep_asks_for() {
+    let axis = axis(0.0, 1.0, 12);
+    for count in [1, 2, 3, 5, 11, 40] {
+        let rest = in_blocks(&[axis], count, |p| format!("{:?}", sweep(p, &axis, 1e-8, &()).unwrap()));
+        assert_eq!(rest, 0, "{count} blocks");
+    }
+}
+
+#[test]
+fn blocks_computed_apart_have_all_that_a_map_and_its_boundary_ask_for() {
+    let axes = [axis(0.0, 1.0, 9), axis(-1.0, 1.0, 6)];
+    let whole = |p: &dyn SweepProblem| {
+        let (points, failure) = map(p, &axes, &[], &mut |_, _| Ok(()), &()).unwrap();
+        assert_eq!(failure.as_deref(), Some("modes: 0.875 is too much. Take less."));
+        format!("{points:?} {:?}", boundary(p, &axes, &points, 1e-8, &()).unwrap())
+    };
+    for count in [1, 2, 5, 6, 13, 40, 100] {
+        assert_eq!(in_blocks(&axes, count, whole), 0, "{count} blocks");
+    }
+}
+
+#[test]
+fn blocks_cover_a_grid_and_share_the_points_between_them() {
+    let [a, b] = [axis(0.0, 1.0, 8), axis(0.0, 1.0, 4)];
+    assert_eq!(blocks(&[a], 3), [[0, 2], [2, 4], [4, 7]].map(|along| Block(vec![along])));
+    assert_eq!(blocks(&[a], 100).len(), 7);
+    for (most, count) in [(1, 1), (4, 4), (6, 6), (7, 7), (11, 10), (13, 12), (21, 21), (500, 21)] {
+        let all = blocks(&[a, b], most);
+        assert_eq!(all.len(), count, "{most}: {all:?}");
+        let covered: std::collections::BTreeSet<usize> =
+            all.iter().flat_map(|block| block.points(&[a, b])).collect();
+        assert_eq!(covered.len(), 32);
+        let cells = |Block(ends): &Block| ends.iter().map(|[first, last]| last - first).product::<usize>();
+        assert_eq!(all.iter().map(cells).sum::<usize>(), 21, "{all:?}");
+    }
 }

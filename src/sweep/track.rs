@@ -9,11 +9,14 @@ use super::{Axis, SweepProblem};
 use crate::error::Result;
 use crate::progress::Observer;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Halvings of a step at most where the MAC of shapes leaves a doubt.
 const HALVINGS: usize = 7;
 /// A halving that raises the MAC of what is in doubt by less than this does not help.
 const SURER: f64 = 0.02;
+/// Relative length to which interactions are narrowed at least.
+const CLOSE: f64 = 1e-7;
 
 /// The modes along one parameter.
 #[derive(Debug, Clone)]
@@ -42,27 +45,34 @@ pub fn sweep(
     tolerance: f64,
     observer: &dyn Observer,
 ) -> Result<Sweep> {
-    observer.begin("sweep", Some(axis.points as u64));
-    let solve = |k: usize| {
-        let modes = answer(problem, std::slice::from_ref(axis), k)?;
-        observer.advance(1);
-        Ok(Sample { value: axis.value(k), modes })
-    };
-    let solved: Result<Vec<Sample>> = if problem.parallel() {
-        (0..axis.points).into_par_iter().map(solve).collect()
-    } else {
-        (0..axis.points).map(solve).collect()
-    };
-    observer.end();
-    let mut chain = Chain { problem, axis, samples: Vec::new(), links: Vec::new() };
-    for sample in solved? {
-        chain.reach(sample, HALVINGS)?;
-    }
-    let branches = branches(&chain.samples, &chain.links);
-    let critical = critical_values(problem, axis, tolerance, &chain.samples, &branches, observer)?;
-    let interactions = interactions(problem, axis, tolerance.max(1e-7), &chain.samples, &branches)?;
-    let values = chain.samples.iter().map(|s| s.value).collect();
+    let Chain { samples, links, .. } = Chain::along(problem, axis, 0..axis.points, observer)?;
+    let branches = branches(&samples, &links);
+    let critical = critical_values(problem, axis, tolerance, &samples, &branches, observer)?;
+    let interactions = interactions(problem, axis, tolerance.max(CLOSE), &samples, &branches)?;
+    let values = samples.iter().map(|s| s.value).collect();
     Ok(Sweep { values, branches, critical, interactions })
+}
+
+/// Asks `problem` for every place that [`sweep`] asks for between two points of the axis, and for what interacts at the last one.
+///
+/// # Errors
+/// As [`sweep`].
+pub(super) fn follow_block(
+    problem: &dyn SweepProblem,
+    axis: &Axis,
+    [first, last]: [usize; 2],
+    tolerance: f64,
+    observer: &dyn Observer,
+) -> Result<()> {
+    // Whether branches are nearest at the last point shows in the step behind it.
+    let points = first..(last + 2).min(axis.points);
+    let Chain { samples, links, .. } = Chain::along(problem, axis, points, observer)?;
+    let end = samples.iter().position(|sample| sample.value == axis.value(last));
+    let end = end.expect("the last point is one of the chain") + 1;
+    let own = &samples[..end];
+    critical_values(problem, axis, tolerance, own, &branches(own, &links), observer)?;
+    let own = &samples[..samples.len().min(end + 1)];
+    interactions(problem, axis, tolerance.max(CLOSE), own, &branches(own, &links)).map(|_| ())
 }
 
 /// The samples so far and the links between neighbours.
@@ -73,7 +83,33 @@ struct Chain<'a> {
     links: Vec<Link>,
 }
 
-impl Chain<'_> {
+impl<'a> Chain<'a> {
+    /// The samples at points of the axis, and those between them.
+    fn along(
+        problem: &'a dyn SweepProblem,
+        axis: &'a Axis,
+        points: Range<usize>,
+        observer: &dyn Observer,
+    ) -> Result<Self> {
+        observer.begin("sweep", Some(points.len() as u64));
+        let solve = |k: usize| {
+            let modes = answer(problem, std::slice::from_ref(axis), k)?;
+            observer.advance(1);
+            Ok(Sample { value: axis.value(k), modes })
+        };
+        let solved: Result<Vec<Sample>> = if problem.parallel() {
+            points.into_par_iter().map(solve).collect()
+        } else {
+            points.map(solve).collect()
+        };
+        observer.end();
+        let mut chain = Chain { problem, axis, samples: Vec::new(), links: Vec::new() };
+        for sample in solved? {
+            chain.reach(sample, HALVINGS)?;
+        }
+        Ok(chain)
+    }
+
     /// Goes on to `next`, over the middle where the link is doubtful.
     fn reach(&mut self, next: Sample, halvings: usize) -> Result<()> {
         if let Some(last) = self.samples.last() {

@@ -149,7 +149,7 @@ fn massless_degrees_of_freedom_have_no_finite_eigenvalue() {
 #[test]
 fn a_withheld_mode_is_noticed() {
     let (k, m) = samples::membrane(12);
-    let pencil = Pencil::new(&k, &m).unwrap();
+    let pencil = Pencil::new(&k, &m, &Engine::default()).unwrap();
     let whole = lowest_eigenpairs(&k, &m, Wanted::Count(7), &()).unwrap();
     let count = whole.values.len();
     let mut found =

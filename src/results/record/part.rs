@@ -1,4 +1,4 @@
-//! Parts of a job array: the answers at one share of the points of all sweeps and maps of a case, a file each (`3-of-40.bin`).
+//! Parts of a job array: the answers that one share of all sweeps and maps of a case asks for, a file each (`3-of-40.bin`).
 //!
 //! Sixteen bytes that name the format, the payload, and the SHA-256 of all before it (32 bytes). The file is replaced whole, after
 //! what it holds is on the disk, so that a process that is killed leaves the one before. Each part has a lock of its own: parts of
@@ -23,7 +23,7 @@ use std::time::Instant;
 /// The format and its version.
 const FORMAT: &[u8; 16] = b"stridor part   1";
 
-/// One of several shares of the points of a case.
+/// One of several shares of the sweeps and maps of a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Part {
     /// How many shares there are.
@@ -45,11 +45,6 @@ impl Part {
             let expected = "the part and how many there are, from 1/40 to 40/40 for a job array of 40";
             Error::input(Fault::new("--part", format!("`{text}`"), expected))
         })
-    }
-
-    /// Whether the point with this number, from 0 over all sweeps and maps, belongs to the part.
-    pub fn has(self, point: usize) -> bool {
-        point % self.of + 1 == self.number
     }
 
     /// The name of its file.
@@ -81,6 +76,8 @@ pub struct PartRecord {
     pub part: Part,
     /// SHA-256 of M Φ of the real modes that shapes are compared by.
     pub reference: [u8; 32],
+    /// Whether the part has all answers that it asks for.
+    pub done: bool,
     /// The answers, by the table of the case that asks for them: `sweep.NAME`, `map.NAME`.
     pub answers: BTreeMap<String, Answers>,
 }
@@ -92,7 +89,8 @@ fn program() -> String {
 
 impl PartRecord {
     fn new(part: Part, origin: RecordOrigin) -> Self {
-        PartRecord { program: program(), origin, part, reference: [0; 32], answers: BTreeMap::new() }
+        let answers = BTreeMap::new();
+        PartRecord { program: program(), origin, part, reference: [0; 32], done: false, answers }
     }
 
     /// Contents of its file.
@@ -103,12 +101,14 @@ impl PartRecord {
         bytes.count(self.part.number);
         bytes.count(self.part.of);
         bytes.0.extend(self.reference);
+        bytes.0.push(u8::from(self.done));
         bytes.count(self.answers.len());
         for (name, answers) in &self.answers {
             bytes.text(name);
             bytes.count(answers.len());
-            for (k, answer) in answers {
-                bytes.count(*k);
+            for (place, answer) in answers {
+                bytes.count(place.len());
+                place.iter().for_each(|value| bytes.0.extend(value.to_le_bytes()));
                 write_answer(&mut bytes, answer);
             }
         }
@@ -135,15 +135,20 @@ impl PartRecord {
         let origin = RecordOrigin::read(&mut from)?;
         let part = Part { number: from.index()?, of: from.index()? };
         let reference = from.array()?;
+        let done = from.array::<1>()? != [0];
         let count = from.count(16)?;
         let table = |_| {
             let name = from.text()?;
             let count = from.count(9)?;
-            let answer = |_| Ok((from.index()?, read_answer(&mut from)?));
+            let answer = |_| {
+                let values = from.count(8)?;
+                let place = (0..values).map(|_| from.whole()).collect::<Read<_>>()?;
+                Ok((place, read_answer(&mut from)?))
+            };
             Ok((name, (0..count).map(answer).collect::<Read<_>>()?))
         };
         let answers = (0..count).map(table).collect::<Read<_>>()?;
-        from.end(PartRecord { program, origin, part, reference, answers })
+        from.end(PartRecord { program, origin, part, reference, done, answers })
     }
 
     /// Reads the file of a part in the folder `dir`, if it is there.
@@ -318,16 +323,16 @@ impl PartFile {
         self.save()
     }
 
-    /// Adds answers of the table `name` of the case; they are on the disk at once, or soon where the disk takes long.
+    /// Adds an answer that the table `name` of the case asks for; it is on the disk at once, or soon where the disk takes long.
     ///
     /// # Errors
     /// The machine refuses.
-    pub fn add(&mut self, name: &str, answers: Answers) -> Result<()> {
-        self.record.answers.entry(name.into()).or_default().extend(answers);
+    pub fn add(&mut self, name: &str, place: Vec<u64>, answer: Result<Modes>) -> Result<()> {
+        self.record.answers.entry(name.into()).or_default().insert(place, answer);
         if self.due.is_some_and(|due| Instant::now() < due) { Ok(()) } else { self.save() }
     }
 
-    /// Waits until all is on the disk.
+    /// Writes all to the disk.
     ///
     /// # Errors
     /// The machine refuses.
@@ -356,12 +361,11 @@ mod tests {
         let failed = Err(Error::analysis("steady sliding", "no contact", "Press harder"));
         let io = Err(Error::io("a/b", "Permission denied", "Ask for it"));
         let answers = [
-            ("sweep.a", Answers::from([(0, modes(3)), (7, modes(0))])),
-            ("map.b", Answers::from([(2, failed), (3, refused), (5, io)])),
-            ("map.c", Answers::new()),
+            ("sweep.a", Answers::from([(vec![0], modes(3)), (vec![7], modes(0))])),
+            ("map.b", Answers::from([(vec![2, 9], failed), (vec![3, 9], refused), (vec![5, 9], io)])),
         ];
         let answers = answers.map(|(name, answers)| (name.to_string(), answers)).into();
-        PartRecord { reference: [7; 32], answers, ..PartRecord::new(part, origin) }
+        PartRecord { reference: [7; 32], done: true, answers, ..PartRecord::new(part, origin) }
     }
 
     #[test]
@@ -394,8 +398,9 @@ mod tests {
         assert!(twice.to_string().contains("part 1 of 2 is in use by process"), "{twice}");
         file.begin([7; 32]).unwrap();
         for (name, answers) in earlier.answers.clone() {
-            file.add(&name, answers).unwrap();
+            answers.into_iter().for_each(|(place, answer)| file.add(&name, place, answer).unwrap());
         }
+        file.record.done = true;
         file.save().unwrap();
         drop(file);
         let mut file = PartFile::open(dir, part, origin.clone()).unwrap();
