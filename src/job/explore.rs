@@ -108,8 +108,9 @@ impl<'a> Start<'a> {
 }
 
 /// The problem of a sweep or of a map.
+#[allow(clippy::large_enum_variant, reason = "one at a time")]
 enum Problem<'s> {
-    Whole(Box<Whole<'s>>),
+    Whole(Whole<'s>),
     /// On a reduced model that is not refined yet.
     Reduced(OnFamily<'s, 's>),
 }
@@ -202,8 +203,7 @@ impl Explorer<'_> {
         if self.keeps_the_structure(&grid.paths)? {
             return Ok(Problem::Reduced(self.family(states, &grid.training())?));
         }
-        let whole = Whole::new(self.case, grid.paths.clone(), Some(&self.start.reference.0));
-        Ok(Problem::Whole(Box::new(whole)))
+        Ok(Problem::Whole(Whole::new(self.case, grid.paths.clone(), Some(&self.start.reference.0))))
     }
 
     /// Computes a block of a sweep or of a map; its answers are in `store`, or put there.
@@ -214,7 +214,7 @@ impl Explorer<'_> {
         let states = self.states(&grid.paths);
         let problem = self.problem(&states, grid)?;
         let (problem, reduced): (&dyn SweepProblem, bool) = match &problem {
-            Problem::Whole(whole) => (&**whole, false),
+            Problem::Whole(whole) => (whole, false),
             Problem::Reduced(on) => (on, true),
         };
         let tolerance = if grid.axes.len() == 1 { LOCATED } else { BOUNDARY }[usize::from(!reduced)];
@@ -241,9 +241,9 @@ impl Explorer<'_> {
         let mut on = match self.problem(&states, &grid)? {
             Problem::Whole(whole) => {
                 let known = parts.of(&grid.name, true);
-                let answered = Answered::new(&*whole, &known);
+                let answered = Answered::new(&whole, &known);
                 let sweep = sweep::sweep(&answered, &axis, LOCATED[1], self.observer)?;
-                let measured = measure(&*whole, &sweep, &[axis.to])?;
+                let measured = measure(&whole, &sweep, &[axis.to])?;
                 return Ok(result(sweep, measured, SweepMethod::Whole));
             }
             Problem::Reduced(on) => on,
@@ -326,7 +326,7 @@ impl Explorer<'_> {
         let mut on = match self.problem(&states, &grid)? {
             Problem::Whole(whole) => {
                 let parts = known.parts.of(&grid.name, true);
-                let answered = Answered::new(&*whole, &parts);
+                let answered = Answered::new(&whole, &parts);
                 let failure = self.fill(&answered, &mut result, &earlier, record)?;
                 result.boundary =
                     sweep::boundary(&answered, &axes, &result.points, BOUNDARY[1], self.observer)?;

@@ -34,7 +34,8 @@ pub fn blocks(axes: &[Axis], most: usize) -> Vec<Block> {
 /// Numbers of columns and rows of blocks, `most` or a little fewer blocks, nearly square.
 fn columns_and_rows([across, up]: [usize; 2], most: usize) -> [usize; 2] {
     let shape = |count: usize| {
-        let fit = (1..=count.min(across)).filter(|columns| count % columns == 0 && count / columns <= up);
+        let fit =
+            (1..=count.min(across)).filter(|columns| count.is_multiple_of(*columns) && count / columns <= up);
         let length = |columns: &usize| across.div_ceil(*columns) + up.div_ceil(count / columns);
         fit.min_by_key(length).map(|columns| [columns, count / columns])
     };
