@@ -187,7 +187,7 @@ static void set_up(int rank, long nodes) {
     mumps.ICNTL(7) = 1;
     mumps.ICNTL(12) = 1;
     mumps.ICNTL(13) = 1;
-    mumps.ICNTL(14) = 30;
+    mumps.ICNTL(14) = 100; /* the engine begins with 30 and takes more where that does not suffice */
     mumps.ICNTL(18) = 3;
     mumps.ICNTL(24) = 1;
     mumps.ICNTL(28) = 1;
