@@ -192,8 +192,20 @@ impl SymbolicFactor {
                 self.check(a)?;
                 distributed.factorize(a, self.clone())
             }
-            None => Ok(Box::new(Multifrontal::new(self, a)?)),
+            None => self.factorize_here(a).map(|factor| factor as Box<dyn SymmetricFactor>),
         }
+    }
+
+    /// Factorises a real or complex matrix that has the analysed pattern, in this process.
+    ///
+    /// # Errors
+    /// As [`SymbolicFactor::factorize`].
+    ///
+    /// # Panics
+    /// When the pattern is another one.
+    pub fn factorize_here<T: Field>(&self, a: &SparseColMat<Index, T>) -> Result<Box<dyn HalfSolutions<T>>> {
+        let (branch, scaling) = self.eliminate(a, Kept::All)?;
+        Ok(Box::new(Multifrontal { plan: Arc::clone(&self.plan), branch, scaling }))
     }
 
     /// The inertia of a matrix that has the analysed pattern, by factors that are not kept.
@@ -246,9 +258,9 @@ pub fn singular(found: impl std::fmt::Display) -> Error {
 /// Analyses and factorises in one go, in this process.
 ///
 /// # Errors
-/// Those of [`SymbolicFactor::new`] and [`SymbolicFactor::factorize`].
+/// Those of [`SymbolicFactor::new`] and [`SymbolicFactor::factorize_here`].
 pub fn factorize<T: Field>(a: &SparseColMat<Index, T>) -> Result<Box<dyn HalfSolutions<T>>> {
-    Ok(Box::new(Multifrontal::new(&SymbolicFactor::new(a.symbolic())?, a)?))
+    SymbolicFactor::new(a.symbolic())?.factorize_here(a)
 }
 
 /// The inertia of `a`, with the analysis of a matrix factorised before where both have the same pattern.
@@ -318,11 +330,6 @@ const COLUMNS_A_TASK: usize = 16;
 const ROWS_A_TASK: usize = 8192;
 
 impl<T: Field> Multifrontal<T> {
-    fn new(symbolic: &SymbolicFactor, a: &SparseColMat<Index, T>) -> Result<Self> {
-        let (branch, scaling) = symbolic.eliminate(a, Kept::All)?;
-        Ok(Multifrontal { plan: Arc::clone(&symbolic.plan), branch, scaling })
-    }
-
     fn substitution(&self) -> Substitution<'_, T> {
         Substitution { branch: &self.branch }
     }
