@@ -12,8 +12,9 @@ struct factor {
     DMUMPS_STRUC_C mumps;
 };
 
-/* L B L' of the n x n matrix whose entries of one triangle lie on all ranks; irn and jcn, from 1, and the order of elimination,
- * place of every row from 1 (on rank 0), stay in use as long as the factor. `kept` is 0 for the inertia alone. The status is INFOG(1). */
+/* L B L' of the n x n matrix whose entries of one triangle lie on all ranks: irn and jcn from 1; `place`, on rank 0, is the place of
+ * every row in the order of elimination, from 1. The arrays are read during the call alone. `kept` is 0 for the inertia alone. The
+ * status is INFOG(1). */
 struct factor *stridor_mumps_new(int n, int64_t entries, int *irn, int *jcn, double *values, int *place, int kept, int *status) {
     struct factor *factor = calloc(1, sizeof *factor);
     if (!factor) return NULL;
@@ -44,6 +45,7 @@ struct factor *stridor_mumps_new(int n, int64_t entries, int *irn, int *jcn, dou
         *status = mumps->infog[0];
         if (*status != -8 && *status != -9) break; /* workspace too small */
     }
+    mumps->irn_loc = mumps->jcn_loc = mumps->perm_in = NULL;
     mumps->a_loc = NULL;
     return factor;
 }
