@@ -2,8 +2,8 @@
 //!
 //! 1. [`Prepared::new`] reads the mesh, places the bodies and builds the [`crate::system::System`].
 //! 2. [`analyse`] runs the analyses of the case on it and hands each result on as soon as it is there.
-//! 3. [`run_case`] does both and writes the results folder; [`run_part`] computes a share of the points of sweeps and maps,
-//!    [`merge_parts`] makes the results folder of all shares.
+//! 3. [`run_case`] does both and writes the results folder; [`run_part`] computes a block of every sweep and map,
+//!    [`merge_parts`] makes the results folder of all blocks.
 //!
 //! A case may give M, C and K themselves instead of a mesh; [`export()`] writes any case in that form.
 
