@@ -76,6 +76,8 @@ const MAY_USE: [(&str, &[&str]); 32] = [
     (
         "job",
         &[
+            "slepc",
+            "distributed",
             "error",
             "dataset",
             "memory",
@@ -113,6 +115,7 @@ const MAY_USE: [(&str, &[&str]); 32] = [
             "error",
             "progress",
             "linalg",
+            "slepc",
             "distributed",
             "dataset",
             "schema",

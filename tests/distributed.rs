@@ -4,6 +4,8 @@
 mod program;
 #[path = "common/solid.rs"]
 mod solid;
+#[path = "common/sweeps.rs"]
+mod sweeps;
 
 use serde_json::Value;
 use std::f64::consts::TAU;
@@ -118,8 +120,10 @@ fn real_modes_with_their_count() {
 fn wrong_use_is_a_fault() {
     let folder = program::folder_with(program::CASE);
     // Each: ranks, arguments, words of the message.
-    let faults: [(usize, &[&str], &[&str]); 3] = [
+    let faults: [(usize, &[&str], &[&str]); 5] = [
         (2, &["run", "case.toml", "--engine", "slepc"], &["--engine slepc", "`stridor cea`"]),
+        (2, &["cea", "case.toml", "--engine", "mpi"], &["--engine mpi", "`stridor sweep`"]),
+        (2, &["sweep", "missing.toml", "--engine", "mpi"], &["missing.toml"]),
         (2, &["cea", "missing.toml", "--engine", "slepc"], &["missing.toml"]),
         (2, &["cea", "case.toml", "--engine", "petsc"], &["petsc", "slepc"]),
     ];
@@ -192,4 +196,48 @@ fn ranks_in(folder: &Path) -> Vec<u32> {
         .collect();
     found.sort_unstable();
     found
+}
+
+#[test]
+fn sweeps_over_ranks_are_those_of_one_process() {
+    let folder = program::folder_with(&sweeps::disc());
+    let at = folder.path();
+    let alone = program::command(at, &["sweep", "case.toml", "--quiet", "--out", "one"]).output().unwrap();
+    assert!(alone.status.success(), "{}", text(&alone.stderr));
+    let whole = sweeps::found(&at.join("one"));
+    for ranks in [1, 2, 3] {
+        let out = format!("ranks-{ranks}");
+        let arguments = ["sweep", "case.toml", "--quiet", "--out", &out, "--threads", "1", "--engine", "mpi"];
+        let output = on_ranks(ranks, at, &arguments).output().unwrap();
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        assert!(sweeps::found(&at.join(&out)) == whole, "{ranks} ranks have another result");
+        assert!(!at.join(&out).join("parts/ranks.txt").exists());
+    }
+}
+
+/// What the ranks had finished is there after one is killed; the next run, of another number of ranks, names what was lost.
+#[test]
+fn sweeps_resume_after_a_rank_was_killed() {
+    let folder = program::folder_with(&sweeps::disc());
+    let at = folder.path();
+    let arguments = ["sweep", "case.toml", "--out", "out", "--threads", "1", "--engine", "mpi"];
+    let child = on_ranks(2, at, &arguments).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    let parts = at.join("out/parts");
+    let started = Instant::now();
+    let finished = || std::fs::read_dir(&parts).is_ok_and(|entries| entries.flatten().count() >= 4);
+    while !finished() {
+        assert!(started.elapsed() < Duration::from_secs(120), "parts come");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let victim = *ranks_in(at).last().expect("two ranks");
+    assert!(Command::new("kill").args(["-9", &victim.to_string()]).status().unwrap().success());
+    assert!(!child.wait_with_output().unwrap().status.success());
+    assert!(!at.join("out/summary.json").exists());
+    let again = on_ranks(3, at, &arguments).output().unwrap();
+    assert!(again.status.success(), "{}", text(&again.stderr));
+    let said = text(&again.stderr);
+    assert!(said.contains("An earlier run ended while rank") && said.contains("which is resumed"), "{said}");
+    let alone = program::command(at, &["sweep", "case.toml", "--quiet", "--out", "one"]).output().unwrap();
+    assert!(alone.status.success());
+    assert!(sweeps::found(&at.join("out")) == sweeps::found(&at.join("one")));
 }

@@ -1,6 +1,8 @@
 //! `stridor run`, `compare`, and a subcommand for every analysis; `stridor sweep` in parts.
 
-use super::engine::{EngineName, with_engine};
+use super::engine::EngineName;
+#[cfg(feature = "slepc")]
+use super::engine::{shared_matrices, shared_points};
 use super::examples;
 use super::output::{Common, SUCCESS, give, say, window_width};
 use super::progress::Bars;
@@ -9,6 +11,7 @@ use crate::error::Result;
 use crate::job::{ANALYSES, PartDone, RunOptions, Selection, merge_parts, run_case, run_part};
 use crate::linalg::Engine;
 use crate::report;
+use crate::results::RunResults;
 use crate::results::record::Part;
 use clap::{ArgMatches, Args, FromArgMatches, Subcommand};
 use std::ffi::OsString;
@@ -32,8 +35,8 @@ struct AnalyseOptions {
     /// Resume the maps and the run in time that an interrupted run of the same case left in the folder
     #[arg(long)]
     resume: bool,
-    /// Distribute the matrices over the ranks of `mpirun`
-    #[arg(long, value_name = "NAME")]
+    /// Share the work over the ranks of `mpirun`
+    #[arg(long, value_name = "NAME", conflicts_with = "resume")]
     engine: Option<EngineName>,
 }
 
@@ -108,7 +111,24 @@ pub fn run(analyse: &Analyse, common: &Common) -> Result<u8> {
     if let Some(part) = part {
         return run_share(part, options, common);
     }
-    with_engine(options.engine, *selection, |engine| run_with(analyse, engine, common))
+    if let Some(engine) = options.engine {
+        engine.check(*selection)?;
+    }
+    #[cfg(feature = "slepc")]
+    match options.engine {
+        Some(EngineName::Slepc) => return shared_matrices(|engine| run_with(analyse, engine, common)),
+        Some(EngineName::Mpi) => return run_on_ranks(options, common),
+        None => {}
+    }
+    run_with(analyse, &Engine::default(), common)
+}
+
+/// Points of sweeps and maps over the ranks; rank 0 prints.
+#[cfg(feature = "slepc")]
+fn run_on_ranks(options: &AnalyseOptions, common: &Common) -> Result<u8> {
+    let out = options.out();
+    let results = shared_points(|| read_case(&options.case), &out, common.quiet)?;
+    results.map_or(Ok(SUCCESS), |results| print_results(&results, &out, common))
 }
 
 fn run_with(analyse: &Analyse, engine: &Engine, common: &Common) -> Result<u8> {
@@ -122,11 +142,14 @@ fn run_with(analyse: &Analyse, engine: &Engine, common: &Common) -> Result<u8> {
             run_case(&case, *selection, &out, &run_options, &bars)
         }
     };
-    let results = results.map_err(|error| case.places.locate(error))?;
+    print_results(&results.map_err(|error| case.places.locate(error))?, &out, common)
+}
+
+fn print_results(results: &RunResults, out: &Path, common: &Common) -> Result<u8> {
     if common.json {
-        give(crate::results::summary_json(&results))?;
+        give(crate::results::summary_json(results))?;
     } else if !common.quiet {
-        say(report::text::summary(&results, window_width()))?;
+        say(report::text::summary(results, window_width()))?;
         say(format!("Results are in {}: open report.html, or *.vtu in ParaView.", out.display()))?;
     }
     Ok(SUCCESS)

@@ -2,60 +2,84 @@
 
 use crate::error::{Error, Fault, Result};
 use crate::job::Selection;
-use crate::linalg::Engine;
 use clap::ValueEnum;
 
-/// Libraries that an analysis can be distributed with.
+/// How an analysis is shared out over the ranks of `mpirun`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum EngineName {
-    /// MUMPS, PETSc and SLEPc: matrices over the ranks of `mpirun`; for `modes` and `cea`
+    /// For `modes` and `cea`: its matrices, by MUMPS, PETSc and SLEPc
     Slepc,
+    /// For `sweep`: its points
+    Mpi,
 }
 
 impl EngineName {
-    /// That it can do what is asked for.
-    fn check(self, selection: Selection) -> Result<()> {
-        match selection {
-            Selection::Only("modes" | "cea") => Ok(()),
-            _ => Err(Error::input(Fault::new(
-                "--engine slepc",
-                "a subcommand without distributed matrices",
-                "`stridor modes` or `stridor cea`",
-            ))),
-        }
+    fn option(self) -> String {
+        let name = self.to_possible_value().expect("no value is skipped");
+        format!("--engine {}", name.get_name())
     }
-}
 
-/// Runs `work` with the engine of that name, on rank 0; other ranks help and come back with its exit code.
-pub fn with_engine(
-    name: Option<EngineName>,
-    selection: Selection,
-    work: impl FnOnce(&Engine) -> Result<u8>,
-) -> Result<u8> {
-    let Some(name) = name else { return work(&Engine::default()) };
-    name.check(selection)?;
-    distributed(work)
+    /// That it can do what is asked for.
+    ///
+    /// # Errors
+    /// Another subcommand; a build without MPI.
+    pub fn check(self, selection: Selection) -> Result<()> {
+        let (fits, expected) = match self {
+            EngineName::Slepc => {
+                (matches!(selection, Selection::Only("modes" | "cea")), "`stridor modes` or `stridor cea`")
+            }
+            EngineName::Mpi => (matches!(selection, Selection::Only("sweep")), "`stridor sweep`"),
+        };
+        if !fits {
+            return Err(Error::input(Fault::new(self.option(), "another subcommand", expected)));
+        }
+        if !cfg!(feature = "slepc") {
+            let (found, expected) = ("a build of stridor without MPI", "one with the feature `slepc`");
+            let help = "Build it with `.ci/setup --mpi` and `cargo build --release --features slepc`";
+            return Err(Error::input(Fault::new(self.option(), found, expected).with_help(help)));
+        }
+        Ok(())
+    }
 }
 
 #[cfg(feature = "slepc")]
-fn distributed(work: impl FnOnce(&Engine) -> Result<u8>) -> Result<u8> {
-    use crate::distributed::{Role, start};
+pub use on_ranks::{shared_matrices, shared_points};
+
+#[cfg(feature = "slepc")]
+mod on_ranks {
+    use crate::case::Case;
+    use crate::cli::VERSION;
+    use crate::cli::progress::Bars;
+    use crate::distributed::{Role, same_build, start};
+    use crate::error::{Error, Result};
+    use crate::job::sweep_on_ranks;
+    use crate::linalg::Engine;
+    use crate::results::RunResults;
+    use crate::slepc::World;
+    use std::path::Path;
     use std::sync::Arc;
-    match start(&super::VERSION)? {
-        Role::Ended(code) => Ok(code),
-        Role::Lead(cluster) => {
-            let done = work(&Engine::new(Arc::new(Arc::clone(&cluster))));
-            cluster.end(done.as_ref().map_or_else(Error::exit_code, |code| *code));
-            done
+
+    /// Runs `work` on rank 0 with matrices that lie on all ranks; the others come back with its exit code.
+    pub fn shared_matrices(work: impl FnOnce(&Engine) -> Result<u8>) -> Result<u8> {
+        match start(&VERSION)? {
+            Role::Ended(code) => Ok(code),
+            Role::Lead(cluster) => {
+                let done = work(&Engine::new(Arc::new(Arc::clone(&cluster))));
+                cluster.end(done.as_ref().map_or_else(Error::exit_code, |code| *code));
+                done
+            }
         }
     }
-}
 
-#[cfg(not(feature = "slepc"))]
-fn distributed(_: impl FnOnce(&Engine) -> Result<u8>) -> Result<u8> {
-    let fault =
-        Fault::new("--engine slepc", "a build of stridor without MPI", "one with the feature `slepc`");
-    Err(Error::input(
-        fault.with_help("Build it with `.ci/setup --mpi` and `cargo build --release --features slepc`"),
-    ))
+    /// Shares the points of the sweeps and maps of a case; the results on rank 0.
+    pub fn shared_points(
+        read: impl FnOnce() -> Result<Case>,
+        out: &Path,
+        quiet: bool,
+    ) -> Result<Option<RunResults>> {
+        let world = Arc::new(World::start()?);
+        let bars = Bars::new(quiet || world.rank() > 0);
+        same_build(&world, &VERSION)?;
+        sweep_on_ranks(read(), out, &world, &bars)
+    }
 }

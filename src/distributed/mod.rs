@@ -7,15 +7,19 @@
 //! of rank 0 and perform them with it. Only rank 0 reads and writes files, so that ranks cannot
 //! have different ones.
 //!
+//! Of sweeps and maps the ranks share the points instead: [`Deal`] hands out numbers as they come free.
+//!
 //! [`Backend`]: crate::linalg::factor::Backend
 //! [`Engine`]: crate::linalg::Engine
 
 mod cluster;
 mod command;
+mod deal;
 mod rank;
 mod shares;
 
 pub use cluster::Cluster;
+pub use deal::Deal;
 pub use rank::serve;
 
 use crate::error::{Error, Result};
@@ -45,31 +49,40 @@ pub fn start(build: &str) -> Result<Role> {
 }
 
 /// That all ranks run the same build.
-fn same_build(world: &World, build: &str) -> Result<()> {
-    let own = fingerprint(build);
-    let mut first = [own];
-    world.broadcast(&mut first)?;
-    let same = u64::from(first[0] == own);
-    let mut other = None;
-    if world.rank() == 0 {
-        for rank in 1..world.size() {
-            if world.receive::<u64>(rank)? != [1] {
-                other.get_or_insert(rank);
-            }
-        }
-    } else {
-        world.send(&[same], 0)?;
-    }
-    let mut verdict = [other.map_or(0, |rank| rank as u64)];
-    world.broadcast(&mut verdict)?;
-    match verdict[0] {
-        0 => Ok(()),
-        rank => Err(Error::analysis(
+///
+/// # Errors
+/// They do not.
+pub fn same_build(world: &World, build: &str) -> Result<()> {
+    match first_that_differs(world, build)? {
+        None => Ok(()),
+        Some(rank) => Err(Error::analysis(
             "starting MPI",
-            format!("rank {rank} runs another build of stridor than rank 0, which is {build}"),
+            format!("rank {rank} runs another build of stridor than rank 0"),
             "Install the same program on all machines",
         )),
     }
+}
+
+/// The first rank whose `text` is not that of rank 0; collective.
+///
+/// # Errors
+/// MPI refuses.
+pub fn first_that_differs(world: &World, text: &str) -> Result<Option<usize>> {
+    let own = fingerprint(text);
+    let mut first = [own];
+    world.broadcast(&mut first)?;
+    let mut verdict = [0u64];
+    if world.rank() == 0 {
+        for rank in 1..world.size() {
+            if world.receive::<u64>(rank)? != [1] && verdict[0] == 0 {
+                verdict[0] = rank as u64;
+            }
+        }
+    } else {
+        world.send(&[u64::from(first[0] == own)], 0)?;
+    }
+    world.broadcast(&mut verdict)?;
+    Ok((verdict[0] > 0).then_some(verdict[0] as usize))
 }
 
 /// FNV-1a.

@@ -31,6 +31,8 @@ mod mesh;
 mod model;
 mod modes;
 mod motion;
+#[cfg(feature = "slepc")]
+mod on_ranks;
 #[cfg(feature = "cli")]
 mod parts;
 mod place;
@@ -63,8 +65,10 @@ pub use export::export;
 pub use imported::{read_points, read_rows};
 pub use measured::{measured_set, read_modes};
 pub use memory::{ExpectedMemory, expected_memory};
+#[cfg(feature = "slepc")]
+pub use on_ranks::sweep_on_ranks;
 #[cfg(feature = "cli")]
-pub use parts::{PartDone, run_part};
+pub use parts::{PartDone, run_part, run_parts};
 pub use prepared::Prepared;
 #[cfg(feature = "cli")]
 pub use run_case::{RunOptions, merge_parts, run_case};

@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The folder of the parts in the results folder.
-const FOLDER: &str = "parts";
+pub(super) const FOLDER: &str = "parts";
 /// Parts that were begun of which a message says how many points they lack.
 const SHOWN: usize = 20;
 
@@ -41,43 +41,74 @@ pub struct PartDone {
 /// Faults of the input, a folder with other parts, a case without complex modes, a file that cannot be written or that another process
 /// uses.
 pub fn run_part(case: &Case, part: Part, out: &Path, observer: &dyn Observer) -> Result<PartDone> {
+    let mut number = Some(part.number);
+    let done = run_parts(case, part.of, &mut || Ok(number.take()), out, observer)?;
+    Ok(done.into_iter().next().expect("one number was given"))
+}
+
+/// [`run_part`] of several parts of `of`: `next` gives their numbers, until it has none. What all share is computed once.
+///
+/// # Errors
+/// As [`run_part`]; those of `next`.
+pub fn run_parts(
+    case: &Case,
+    of: usize,
+    next: &mut dyn FnMut() -> Result<Option<usize>>,
+    out: &Path,
+    observer: &dyn Observer,
+) -> Result<Vec<PartDone>> {
     let own = without_second_opinions(case);
     let prepared = Prepared::new(&own)?;
     let selection = Selection::Only("sweep");
     let asked = Asked::new(&prepared, selection)?;
     check_memory(&prepared, selection)?;
-    let (dir, grids) = (out.join(FOLDER), grids(case));
-    let share = shares(&grids, part.of).into_iter().filter(|(number, ..)| *number == part.number);
-    let share: Vec<(&Grid, Block)> = share.map(|(_, grid, block)| (grid, block)).collect();
-    let points = share.iter().map(|(grid, block)| block.points(&grid.axes).len()).sum();
-    let done = PartDone { points, file: dir.join(part.file()) };
-    if points == 0 {
-        return Ok(done);
-    }
-    let mut file = PartFile::open(&dir, part, origin(case)?)?;
-    if file.record.done {
-        return Ok(done);
-    }
+    let (dir, grids, origin) = (out.join(FOLDER), grids(case), origin(case)?);
+    let (shares, mut done) = (shares(&grids, of), Vec::new());
+    // The next part that is not done yet.
+    let mut open = |done: &mut Vec<PartDone>| -> Result<Option<(Share<'_>, PartFile)>> {
+        while let Some(number) = next()? {
+            let part = Part { of, number };
+            let share: Share = shares.iter().filter(|(own, ..)| *own == number).collect();
+            let points = share.iter().map(|(_, grid, block)| block.points(&grid.axes).len()).sum();
+            done.push(PartDone { points, file: dir.join(part.file()) });
+            if points == 0 {
+                continue;
+            }
+            let file = PartFile::open(&dir, part, origin.clone())?;
+            if !file.record.done {
+                return Ok(Some((share, file)));
+            }
+        }
+        Ok(None)
+    };
+    let Some(mut work) = open(&mut done)? else { return Ok(done) };
     let computing = |error: Error| explained(&prepared, error.while_computing());
     let point = operating_point(&prepared, asked, observer).map_err(computing)?;
     let nominal =
         Nominal { prepared: &prepared, system: &point.system, steady: &point.steady, real: &point.real };
     let start = Start::new(&nominal).map_err(computing)?;
     let explorer = Explorer::new(&start, observer).map_err(computing)?;
-    file.begin(start.reference.digest())?;
-    compute(&explorer, &share, file, observer)?;
-    Ok(done)
+    loop {
+        let (share, mut file) = work;
+        file.begin(start.reference.digest())?;
+        compute(&explorer, &share, file, observer)?;
+        let Some(next) = open(&mut done)? else { return Ok(done) };
+        work = next;
+    }
 }
+
+/// The blocks of a part.
+type Share<'a> = Vec<&'a (usize, &'a Grid, Block)>;
 
 /// Computes blocks of grids and keeps their answers in the file of their part, which is then done.
 fn compute(
     explorer: &Explorer,
-    share: &[(&Grid, Block)],
+    share: &[&(usize, &Grid, Block)],
     file: PartFile,
     observer: &dyn Observer,
 ) -> Result<()> {
     let file = Mutex::new(file);
-    for (grid, block) in share {
+    for (_, grid, block) in share {
         let computed = explorer.block(grid, block, &Keeping { file: &file, table: &grid.name });
         locked(&file).save()?;
         match computed {
@@ -200,6 +231,18 @@ fn complete(parts: &Parts, of: usize, grids: &[Grid]) -> Result<()> {
     );
     let fault = Fault::new(parts.dir.display().to_string(), found.join("; "), "all parts, each done");
     Err(Error::input(fault.with_help(help)))
+}
+
+/// How many parts the case is cut into in the results folder `out`, and the numbers of those that are done; none where there are no
+/// parts.
+///
+/// # Errors
+/// Input: parts of another case, or damaged ones.
+#[cfg(feature = "slepc")]
+pub(super) fn parts_done(case: &Case, out: &Path) -> Result<Option<(usize, BTreeSet<usize>)>> {
+    let records = read_parts(&out.join(FOLDER), &origin(case)?)?;
+    let done = || records.iter().filter(|record| record.done).map(|record| record.part.number);
+    Ok(records.first().map(|first| (first.part.of, done().collect())))
 }
 
 /// Ascending numbers as job arrays take them: `2,5-7`.

@@ -22,6 +22,7 @@ unsafe extern "C" {
     pub fn stridor_broadcast(bytes: *mut u8, count: i64) -> c_int;
     pub fn stridor_announce(bytes: *mut u8, count: i64) -> c_int;
     pub fn stridor_send(bytes: *const u8, count: i64, to: c_int) -> c_int;
+    pub fn stridor_waiting(from: *mut c_int) -> c_int;
     pub fn stridor_receive(bytes: *mut u8, count: i64, from: c_int) -> c_int;
     pub fn stridor_mumps_new(
         n: c_int,

@@ -96,3 +96,11 @@ int stridor_receive(char *bytes, int64_t count, int from) {
     }
     return 0;
 }
+
+/* The rank whose message comes next; -1 where there is none. */
+int stridor_waiting(int *from) {
+    MPI_Status status;
+    int there = 0, code = mpi_error(MPI_Iprobe(MPI_ANY_SOURCE, 0, MPI_COMM_WORLD, &there, &status));
+    *from = !code && there ? status.MPI_SOURCE : -1;
+    return code;
+}

@@ -14,6 +14,7 @@ static STARTED: AtomicBool = AtomicBool::new(false);
 pub struct World {
     rank: usize,
     size: usize,
+    abandoned: AtomicBool,
 }
 
 impl World {
@@ -29,7 +30,7 @@ impl World {
         let (mut rank, mut size) = (0, 0);
         // SAFETY: both pointers are valid for the call.
         check("starting MPI", unsafe { ffi::stridor_start(&mut rank, &mut size) })?;
-        Ok(World { rank: rank as usize, size: size as usize })
+        Ok(World { rank: rank as usize, size: size as usize, abandoned: AtomicBool::new(false) })
     }
 
     /// The number of this rank, from 0.
@@ -92,6 +93,24 @@ impl World {
         Ok(values)
     }
 
+    /// A rank that has sent something which is not received yet; comes back at once.
+    ///
+    /// # Errors
+    /// The library refuses.
+    pub fn waiting(&self) -> Result<Option<usize>> {
+        let mut from = -1;
+        let _alone = alone();
+        // SAFETY: the pointer is valid for the call.
+        check("MPI probe", unsafe { ffi::stridor_waiting(&mut from) })?;
+        Ok(usize::try_from(from).ok())
+    }
+
+    /// Leaves MPI running when this is dropped: after an error on this rank alone the others would never come to the common end. The end
+    /// of the process then ends them.
+    pub fn abandon(&self) {
+        self.abandoned.store(true, Ordering::SeqCst);
+    }
+
     fn receive_into<T: Pod>(&self, values: &mut [T], from: usize) -> Result<()> {
         let bytes: &mut [u8] = bytemuck::cast_slice_mut(values);
         let _alone = alone();
@@ -109,6 +128,9 @@ impl World {
 
 impl Drop for World {
     fn drop(&mut self) {
+        if self.abandoned.load(Ordering::SeqCst) {
+            return;
+        }
         let _alone = alone();
         // SAFETY: MPI runs, and nothing uses it any more: the owner of factors and matrices drops them before.
         unsafe { ffi::stridor_stop() };
