@@ -195,7 +195,8 @@ fn the_index_of_the_library_names_every_module() {
     let index = include_str!("../src/lib.rs");
     for (module, _) in MAY_USE {
         assert!(index.contains(&format!("pub mod {module};")), "{module} is not public");
-        assert!(index.contains(&format!("[`{module}`]")), "{module} is not in the index");
+        // Those of a feature that is left out are no links.
+        assert!(index.contains(&format!("`{module}`")), "{module} is not in the index");
     }
 }
 

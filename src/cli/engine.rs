@@ -48,8 +48,8 @@ pub use on_ranks::{shared_matrices, shared_points};
 #[cfg(feature = "slepc")]
 mod on_ranks {
     use crate::case::Case;
-    use crate::cli::VERSION;
     use crate::cli::progress::Bars;
+    use crate::cli::version::VERSION;
     use crate::distributed::{Role, same_build, start};
     use crate::error::{Error, Result};
     use crate::job::sweep_on_ranks;

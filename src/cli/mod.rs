@@ -19,19 +19,14 @@ mod schema;
 mod search;
 mod templates;
 mod validate;
+mod version;
 
 use crate::error::{Error, Fault, Result};
 use clap::{CommandFactory, Parser, Subcommand};
 pub use new::new_case;
 use output::{Common, SUCCESS, complain, give};
 use std::ffi::OsString;
-use std::sync::LazyLock;
-
-/// Version and, where it is known, commit: `0.1.0 (0123456789ab)`.
-static VERSION: LazyLock<String> = LazyLock::new(|| {
-    let commit = crate::COMMIT.map_or(String::new(), |commit| format!(" ({commit})"));
-    format!("{}{commit}", env!("CARGO_PKG_VERSION"))
-});
+use version::VERSION;
 
 #[derive(Parser)]
 #[command(name = "stridor", version = VERSION.as_str(), about, propagate_version = true, after_help = examples::PROGRAM)]

@@ -19,7 +19,7 @@ use super::shared_pattern::SharedPattern;
 use super::sparse::{add_scaled, diagonal, norm_1, times};
 use crate::error::{Error, Result};
 use crate::progress::Observer;
-use bounds::{extrapolated, gap};
+use bounds::{APART, extrapolated, gap};
 use faer::{Mat, MatRef};
 
 /// Which eigenpairs are wanted.
@@ -77,8 +77,6 @@ const BASIS: Aim = Aim { backward_error: 1e-11, residual: 1e-6 };
 
 /// Problems up to this size are solved densely.
 const DENSE: usize = 300;
-/// Half the distance of the two certifying shifts, relative to the bound.
-const APART: f64 = 1e-5;
 /// Where in the range the shift lies, with two places to evade to: the ends are about equally far in blocks of
 /// Lanczos, as modes of plates lie denser towards the lower one.
 const INSIDE: [f64; 3] = [0.4, 0.38, 0.42];

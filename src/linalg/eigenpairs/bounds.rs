@@ -1,6 +1,7 @@
 //! Bounds between eigenvalues that are known, and where others are to be expected.
 
-use super::APART;
+/// Half the distance of the two certifying shifts, relative to the bound.
+pub(super) const APART: f64 = 1e-5;
 
 /// A bound next to the wanted one with space for two shifts around it: the wanted bound itself unless an eigenvalue
 /// sits on it, else the middle of the next gap above. `values` ascend; those from `first_above` on are not below the
