@@ -7,10 +7,9 @@
 //! from a QR factorisation with column pivoting after the rows are scaled to the size of K and C. S = −Sᵀ has its
 //! columns in the span of Q, hence its rows too, and S = Q (QᵀSQ) Qᵀ loses nothing but round-off.
 //!
-//! A skew entry s_ij = ½(a_ij − a_ji) is the difference of two sums that were rounded at the size of a, however small it
-//! is itself: its noise is |ν_ij| ≤ p u √(r_i r_j), u = 2⁻⁵³, p the roundings of a sum and r_i the largest entry of
-//! row i. With every row scaled by 1/√r the m × 2m matrix [K C] of a group carries a noise of ‖ν‖ ≤ √2 m p u (Frobenius),
-//! and what is left after the pivots of the true rank is that noise alone: no rank is seen in what is smaller.
+//! A skew entry s_ij = ½(a_ij − a_ji) is the difference of two sums that were rounded at the size of a, however small it is
+//! itself: |ν_ij| ≤ p u √(r_i r_j), u = 2⁻⁵³, p the roundings of a sum and r_i the largest entry of row i. With every row scaled by
+//! 1/√r the matrix [K C] of a group, m × 2m, has a noise of ‖ν‖ ≤ √2 m p u: no rank is seen in what is smaller.
 
 use super::{Coupling, Damping, Skew, Structure};
 use crate::error::{Error, Fault, Faults, Result};
