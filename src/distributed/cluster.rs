@@ -47,11 +47,6 @@ impl Cluster {
         Cluster { size, state: Mutex::new(Some(State { rank: Rank::new(world), next: 0 })) }
     }
 
-    /// How many ranks there are.
-    pub fn size(&self) -> usize {
-        self.size
-    }
-
     /// Ends the other ranks with an exit code, and MPI; once.
     pub fn end(&self, code: u8) {
         if let Some(state) = self.lock().take() {

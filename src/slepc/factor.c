@@ -63,8 +63,6 @@ int stridor_mumps_solve(struct factor *factor, double *columns, int count, int s
 
 int stridor_mumps_infog(const struct factor *factor, int k) { return factor->mumps.infog[k - 1]; }
 
-double stridor_mumps_rinfog(const struct factor *factor, int k) { return factor->mumps.rinfog[k - 1]; }
-
 void stridor_mumps_free(struct factor *factor) {
     factor->mumps.job = -2;
     dmumps_c(&factor->mumps);

@@ -36,7 +36,6 @@ unsafe extern "C" {
     ) -> *mut Factor;
     pub fn stridor_mumps_solve(factor: *mut Factor, columns: *mut f64, count: c_int, stride: c_int) -> c_int;
     pub fn stridor_mumps_infog(factor: *const Factor, k: c_int) -> c_int;
-    pub fn stridor_mumps_rinfog(factor: *const Factor, k: c_int) -> f64;
     pub fn stridor_mumps_free(factor: *mut Factor);
     pub fn stridor_matrix_new(
         n: i64,

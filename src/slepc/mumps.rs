@@ -88,12 +88,6 @@ impl DistributedFactor {
         self.factor.as_ptr()
     }
 
-    /// Floating-point operations of the elimination on all ranks.
-    pub fn operations(&self) -> f64 {
-        // SAFETY: the factor lives; RINFOG has 40 numbers.
-        unsafe { ffi::stridor_mumps_rinfog(self.factor.as_ptr(), 3) }
-    }
-
     /// The right-hand sides on rank 0 (n × k, column after column, nothing on other ranks) become solutions; collective.
     ///
     /// # Errors
