@@ -68,7 +68,7 @@ mod slepc {
             println!("cargo:rerun-if-env-changed={variable}");
         }
         let found = of_variables().unwrap_or_else(of_pkg_config);
-        check(&found.headers);
+        let settings = check(&found.headers);
         let compiler = std::env::var("MPICC").unwrap_or_else(|_| "mpicc".to_string());
         let mut shim = cc::Build::new();
         let sources = ["messages.c", "factor.c", "eigen.c"].map(|file| Path::new("src/slepc").join(file));
@@ -78,7 +78,7 @@ mod slepc {
             // The program finds the libraries again where they are in no place that the system searches.
             println!("cargo:rustc-link-arg=-Wl,-rpath,{}", folder.display());
         }
-        for name in found.names.iter().map(String::as_str).chain(["dmumps"]) {
+        for name in found.names.iter().chain([&real_mumps(&settings)]) {
             println!("cargo:rustc-link-lib=dylib={name}");
         }
         link_mpi(&compiler);
@@ -99,7 +99,8 @@ mod slepc {
         let plain = |base: &str| {
             let has =
                 |name: &String| folders.iter().any(|folder| folder.join(format!("lib{name}.so")).exists());
-            [base.to_string(), format!("{base}_complex")]
+            ["", "_complex", "64_complex"]
+                .map(|suffix| format!("{base}{suffix}"))
                 .into_iter()
                 .find(has)
                 .unwrap_or_else(|| base.to_string())
@@ -120,31 +121,33 @@ mod slepc {
         found
     }
 
-    /// That PETSc is built for complex numbers, with MUMPS and for several processes.
-    fn check(headers: &[PathBuf]) {
+    /// The file of PETSc's settings, by which it is built for complex numbers, with MUMPS and for several processes.
+    fn check(headers: &[PathBuf]) -> PathBuf {
         let file = headers.iter().map(|folder| folder.join("petscconf.h")).find(|file| file.exists());
         let Some(file) = file else { panic!("no petscconf.h in {headers:?}. {HELP}") };
         println!("cargo:rerun-if-changed={}", file.display());
         let settings = std::fs::read_to_string(&file).unwrap_or_default();
         let set = |name: &str| settings.lines().any(|line| line.split_whitespace().nth(1) == Some(name));
-        if !set("PETSC_USE_COMPLEX") {
-            panic!(
-                "PETSc of {} is built for real scalars; the feature `slepc` needs complex ones. {HELP}",
-                file.display()
-            );
+        let refused = [
+            (!set("PETSC_USE_COMPLEX"), "for real scalars: the feature `slepc` needs complex ones"),
+            (!set("PETSC_HAVE_MUMPS"), "without MUMPS, which the feature `slepc` needs"),
+            (set("PETSC_HAVE_MPIUNI"), "without MPI, which the feature `slepc` needs"),
+        ];
+        if let Some((_, how)) = refused.iter().find(|(refused, _)| *refused) {
+            panic!("PETSc of {} is built {how}. {HELP}", file.display());
         }
-        if !set("PETSC_HAVE_MUMPS") {
-            panic!(
-                "PETSc of {} is built without MUMPS, which the feature `slepc` needs. {HELP}",
-                file.display()
-            );
-        }
-        if set("PETSC_HAVE_MPIUNI") {
-            panic!(
-                "PETSc of {} is built without MPI, which the feature `slepc` needs. {HELP}",
-                file.display()
-            );
-        }
+        file
+    }
+
+    /// The library of MUMPS for real numbers beside the one for complex numbers that PETSc links, whose integers may have another
+    /// size in a build of its own: `-ldmumps_64` of MUMPS_LIB in lib/petsc/conf/petscvariables.
+    fn real_mumps(settings: &Path) -> String {
+        let variables = settings.parent().map(|folder| folder.join("../lib/petsc/conf/petscvariables"));
+        let text = variables.and_then(|file| std::fs::read_to_string(file).ok()).unwrap_or_default();
+        let line = text.lines().find(|line| line.starts_with("MUMPS_LIB"));
+        let mut words =
+            line.unwrap_or_default().split_whitespace().filter_map(|word| word.strip_prefix("-l"));
+        words.find(|name| name.starts_with("dmumps")).unwrap_or("dmumps").to_string()
     }
 
     /// The libraries that MPI's compiler links: the linker does not resolve symbols through those of PETSc.

@@ -116,8 +116,8 @@ pub fn run(analyse: &Analyse, common: &Common) -> Result<u8> {
     }
     #[cfg(feature = "slepc")]
     match options.engine {
-        Some(EngineName::Slepc) => return shared_matrices(|engine| run_with(analyse, engine, common)),
         Some(EngineName::Mpi) => return run_on_ranks(options, common),
+        Some(name) => return shared_matrices(name, |engine| run_with(analyse, engine, common)),
         None => {}
     }
     run_with(analyse, &Engine::default(), common)

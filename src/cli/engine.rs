@@ -9,6 +9,8 @@ use clap::ValueEnum;
 pub enum EngineName {
     /// For `modes` and `cea`: its matrices, by MUMPS, PETSc and SLEPc
     Slepc,
+    /// The same with the real modes by Krylov–Schur of SLEPc, a second method to find them
+    SlepcKrylovSchur,
     /// For `sweep`: its points
     Mpi,
 }
@@ -25,7 +27,7 @@ impl EngineName {
     /// Another subcommand; a build without MPI.
     pub fn check(self, selection: Selection) -> Result<()> {
         let (fits, expected) = match self {
-            EngineName::Slepc => {
+            EngineName::Slepc | EngineName::SlepcKrylovSchur => {
                 (matches!(selection, Selection::Only("modes" | "cea")), "`stridor modes` or `stridor cea`")
             }
             EngineName::Mpi => (matches!(selection, Selection::Only("sweep")), "`stridor sweep`"),
@@ -47,10 +49,11 @@ pub use on_ranks::{shared_matrices, shared_points};
 
 #[cfg(feature = "slepc")]
 mod on_ranks {
+    use super::EngineName;
     use crate::case::Case;
     use crate::cli::progress::Bars;
     use crate::cli::version::VERSION;
-    use crate::distributed::{Role, same_build, start};
+    use crate::distributed::{RealModesMethod, Role, same_build, start};
     use crate::error::{Error, Result};
     use crate::job::sweep_on_ranks;
     use crate::linalg::Engine;
@@ -60,8 +63,12 @@ mod on_ranks {
     use std::sync::Arc;
 
     /// Runs `work` on rank 0 with matrices that lie on all ranks; the others come back with its exit code.
-    pub fn shared_matrices(work: impl FnOnce(&Engine) -> Result<u8>) -> Result<u8> {
-        match start(&VERSION)? {
+    pub fn shared_matrices(name: EngineName, work: impl FnOnce(&Engine) -> Result<u8>) -> Result<u8> {
+        let method = match name {
+            EngineName::SlepcKrylovSchur => RealModesMethod::KrylovSchur,
+            EngineName::Slepc | EngineName::Mpi => RealModesMethod::BlockLanczos,
+        };
+        match start(&VERSION, method)? {
             Role::Ended(code) => Ok(code),
             Role::Lead(cluster) => {
                 let done = work(&Engine::new(Arc::new(Arc::clone(&cluster))));
@@ -79,7 +86,9 @@ mod on_ranks {
     ) -> Result<Option<RunResults>> {
         let world = Arc::new(World::start()?);
         let bars = Bars::new(quiet || world.rank() > 0);
-        same_build(&world, &VERSION)?;
+        if !same_build(&world, &VERSION)? {
+            return Ok(None);
+        }
         sweep_on_ranks(read(), out, &world, &bars)
     }
 }

@@ -4,18 +4,30 @@ use super::command::Command;
 use super::rank::{Factorized, QuadraticPart, Rank, send_rows};
 use super::shares::Shares;
 use crate::error::{Error, Fault, Result};
-use crate::linalg::factor::{Backend, DistributedPattern, HalfSolutions, QuadraticProblem, QuadraticSolver};
+use crate::linalg::factor::{
+    Backend, DistributedPattern, EigenSolver, HalfSolutions, QuadraticProblem, QuadraticSolver,
+};
 use crate::linalg::sparse::Index;
 use crate::linalg::{Inertia, SparseMatrix, SymbolicFactor, SymmetricFactor, c64};
 use crate::slepc::{Entries, World};
 use faer::sparse::{SparseColMat, SymbolicSparseColMatRef};
-use faer::{Mat, MatMut, MatRef};
+use faer::{Mat, MatMut};
 use std::sync::{Arc, Mutex, MutexGuard};
+
+/// What finds the real modes with the distributed factors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RealModesMethod {
+    /// The block Lanczos method of this program, with its basis on rank 0.
+    BlockLanczos,
+    /// The Krylov–Schur method of SLEPc, with its basis shared out.
+    KrylovSchur,
+}
 
 /// All ranks, led by this one.
 #[derive(Debug)]
 pub struct Cluster {
     size: usize,
+    method: RealModesMethod,
     /// None once it has ended.
     state: Mutex<Option<State>>,
 }
@@ -42,9 +54,9 @@ impl Drop for Cluster {
 }
 
 impl Cluster {
-    pub(super) fn new(world: World) -> Self {
+    pub(super) fn new(world: World, method: RealModesMethod) -> Self {
         let size = world.size();
-        Cluster { size, state: Mutex::new(Some(State { rank: Rank::new(world), next: 0 })) }
+        Cluster { size, method, state: Mutex::new(Some(State { rank: Rank::new(world), next: 0 })) }
     }
 
     /// Ends the other ranks with an exit code, and MPI; once.
@@ -70,6 +82,17 @@ impl Cluster {
 }
 
 impl Backend for Arc<Cluster> {
+    fn name(&self) -> &'static str {
+        match self.method {
+            RealModesMethod::BlockLanczos => "slepc",
+            RealModesMethod::KrylovSchur => "slepc-krylov-schur",
+        }
+    }
+
+    fn ranks(&self) -> usize {
+        self.size
+    }
+
     fn analyse(
         &self,
         pattern: SymbolicSparseColMatRef<'_, Index>,
@@ -260,26 +283,8 @@ impl SymmetricFactor for SharedFactor {
         None
     }
 
-    fn nearest_eigenpairs(
-        &self,
-        pencil: [&SparseMatrix; 2],
-        shift: f64,
-        count: usize,
-        tolerance: f64,
-    ) -> Option<Result<(Vec<f64>, Mat<f64>)>> {
-        let (factor, ranks) = (self.own.id, self.own.cluster.size);
-        let rows = |rank: usize| pencil.map(|a| self.shares.rows_of_transpose(a, rank));
-        let pairs = self.own.cluster.with(|State { rank, .. }| {
-            let command = Command::Eigenpairs { factor, shift, count: count as u64, tolerance };
-            Command::announce(rank.world(), Some(command))?;
-            for other in 1..ranks {
-                rows(other).iter().try_for_each(|rows| send_rows(rank.world(), rows, other))?;
-            }
-            rank.eigenpairs(rows(0), (factor, shift), &self.shares.order(), count, tolerance)
-        });
-        Some(pairs.map(|(values, vectors)| {
-            (values, MatRef::from_column_major_slice(&vectors, self.n, count).to_owned())
-        }))
+    fn eigensolver(&self) -> Option<&dyn EigenSolver> {
+        (self.own.cluster.method == RealModesMethod::KrylovSchur).then_some(self)
     }
 
     fn symbolic(&self) -> SymbolicFactor {
@@ -292,5 +297,30 @@ impl SymmetricFactor for SharedFactor {
 
     fn memory_bytes(&self) -> usize {
         self.figures.memory_bytes
+    }
+}
+
+impl EigenSolver for SharedFactor {
+    fn nearest(
+        &self,
+        pencil: [&SparseMatrix; 2],
+        shift: f64,
+        count: usize,
+        tolerance: f64,
+    ) -> Result<(Vec<f64>, Mat<f64>)> {
+        let (factor, ranks) = (self.own.id, self.own.cluster.size);
+        let rows = |rank: usize| pencil.map(|a| self.shares.rows_of_transpose(a, rank));
+        let (values, columns) = self.own.cluster.with(|State { rank, .. }| {
+            let command = Command::Eigenpairs { factor, shift, count: count as u64, tolerance };
+            Command::announce(rank.world(), Some(command))?;
+            for other in 1..ranks {
+                rows(other).iter().try_for_each(|rows| send_rows(rank.world(), rows, other))?;
+            }
+            rank.eigenpairs(rows(0), (factor, shift), &self.shares.order(), count, tolerance)
+        })?;
+        let mut ascending: Vec<usize> = (0..count).collect();
+        ascending.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
+        let vectors = Mat::from_fn(self.n, count, |i, j| columns[ascending[j] * self.n + i]);
+        Ok((ascending.iter().map(|j| values[*j]).collect(), vectors))
     }
 }

@@ -17,7 +17,7 @@ mod deal;
 mod rank;
 mod shares;
 
-pub use cluster::Cluster;
+pub use cluster::{Cluster, RealModesMethod};
 pub use deal::Deal;
 
 use crate::error::{Error, Result};
@@ -38,22 +38,24 @@ pub enum Role {
 ///
 /// # Errors
 /// MPI cannot be started; the ranks run different builds of the program.
-pub fn start(build: &str) -> Result<Role> {
+pub fn start(build: &str, method: RealModesMethod) -> Result<Role> {
     let world = World::start()?;
-    same_build(&world, build)?;
+    let same = same_build(&world, build)?;
     match world.rank() {
-        0 => Ok(Role::Lead(Arc::new(Cluster::new(world)))),
+        0 => Ok(Role::Lead(Arc::new(Cluster::new(world, method)))),
+        _ if !same => Ok(Role::Ended(1)),
         _ => serve(world).map(Role::Ended),
     }
 }
 
-/// That all ranks run the same build.
+/// Whether all ranks run the same build.
 ///
 /// # Errors
-/// They do not.
-pub fn same_build(world: &World, build: &str) -> Result<()> {
+/// On rank 0, when they do not.
+pub fn same_build(world: &World, build: &str) -> Result<bool> {
     match first_that_differs(world, build)? {
-        None => Ok(()),
+        None => Ok(true),
+        Some(_) if world.rank() > 0 => Ok(false),
         Some(rank) => Err(Error::analysis(
             "starting MPI",
             format!("rank {rank} runs another build of stridor than rank 0"),

@@ -5,7 +5,7 @@ use super::analyses::Selection;
 use super::known::origin;
 use super::parts::{FOLDER, parts_done, run_parts};
 use super::prepared::Prepared;
-use super::run_case::merge_parts;
+use super::run_case::merge;
 use crate::case::Case;
 use crate::distributed::{Deal, first_that_differs};
 use crate::error::{Error, Fault, Result};
@@ -76,7 +76,7 @@ pub fn sweep_on_ranks(
     if world.rank() > 0 {
         return Ok(None);
     }
-    let results = merge_parts(&case, out, observer)?;
+    let results = merge(&case, out, Some(world.size()), observer)?;
     let _ = std::fs::remove_file(&list);
     Ok(Some(results))
 }

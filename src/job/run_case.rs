@@ -55,7 +55,17 @@ pub fn run_case(
 /// # Errors
 /// As [`run_case`]; parts that do not have all points, of another case, of other files, or damaged ones.
 pub fn merge_parts(case: &Case, out: &Path, observer: &dyn Observer) -> Result<RunResults> {
-    run_from(case, Selection::Only("sweep"), out, (Begin::Merged, &Engine::default()), observer)
+    merge(case, out, None, observer)
+}
+
+/// [`merge_parts`] of so many `ranks`, or of a job array.
+pub(super) fn merge(
+    case: &Case,
+    out: &Path,
+    ranks: Option<usize>,
+    observer: &dyn Observer,
+) -> Result<RunResults> {
+    run_from(case, Selection::Only("sweep"), out, (Begin::Merged { ranks }, &Engine::default()), observer)
 }
 
 /// What a run begins with.
@@ -65,8 +75,8 @@ enum Begin {
     Anew,
     /// The record of an interrupted run.
     Resumed,
-    /// The parts of a job array.
-    Merged,
+    /// The parts that so many ranks have computed, or a job array.
+    Merged { ranks: Option<usize> },
 }
 
 fn run_from(
@@ -78,7 +88,11 @@ fn run_from(
 ) -> Result<RunResults> {
     let started = Instant::now();
     let (file, text) = case.places.source();
-    let provenance = Some(Provenance::now(file, text));
+    let (engine_name, ranks) = match begin {
+        Begin::Merged { ranks: Some(ranks) } => ("mpi", ranks),
+        _ => (engine.name(), engine.ranks()),
+    };
+    let provenance = Some(Provenance::now(file, text).on_ranks(engine_name, ranks));
     let prepared = Prepared::new(case)?.with_engine(engine);
     // Its faults are reported before anything is written.
     let asked = Asked::new(&prepared, selection)?;
@@ -88,12 +102,15 @@ fn run_from(
     }
     asked.record_sizes().try_for_each(|size| fits_on_disk(out, &size))?;
     let origin = origin(case)?;
-    let parts = if begin == Begin::Merged { collect(case, out, &origin)? } else { Parts::default() };
+    let parts = match begin {
+        Begin::Merged { .. } => collect(case, out, &origin)?,
+        Begin::Anew | Begin::Resumed => Parts::default(),
+    };
     let _lock = FolderLock::take(out)?;
     let mut results = RunResults { inputs: origin.inputs.clone(), provenance, ..RunResults::default() };
     let (record, earlier) = match begin {
         Begin::Resumed => resumed(out, origin, &asked)?,
-        Begin::Anew | Begin::Merged => {
+        Begin::Anew | Begin::Merged { .. } => {
             results.warnings.extend(moved_aside(out, observer)?);
             (Record::new(out, origin), Earlier::default())
         }

@@ -6,6 +6,8 @@
 //! either side of it, and at two shifts that enclose the upper bound, which certify the result.
 
 mod bounds;
+mod counted;
+mod iteration;
 mod small;
 #[cfg(test)]
 mod tests;
@@ -13,14 +15,15 @@ mod tests;
 use super::SparseMatrix;
 use super::dense::inverse_root;
 use super::factor::{Engine, SymbolicFactor, SymmetricFactor};
-use super::lanczos::{BlockLanczos, Ritz, Window};
+use super::lanczos::Window;
 use super::multivector::{gram, panels, rotate};
 use super::shared_pattern::SharedPattern;
 use super::sparse::{add_scaled, diagonal, norm_1, times};
 use crate::error::{Error, Result};
 use crate::progress::Observer;
-use bounds::{APART, extrapolated, gap};
+use bounds::{APART, gap};
 use faer::{Mat, MatRef};
+use iteration::Iteration;
 
 /// Which eigenpairs are wanted.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -334,127 +337,15 @@ impl<'a> Pencil<'a> {
         observer: &dyn Observer,
     ) -> Result<Found> {
         let accepted = self.accepted(above - shift);
-        let pencil = [self.k, self.m];
-        if counted > 0
-            && let Some(pairs) = factor.nearest_eigenpairs(pencil, shift, counted, accepted)
-        {
-            let (values, vectors) = ascending(pairs?);
-            let found = values.iter().filter(|theta| **theta < above).count();
-            return match found == counted {
-                true => Ok(Found { values, vectors, shift, factor }),
-                false => Err(missing(found, counted, above)),
-            };
-        }
+        let mut iteration = Iteration::new([self.k, self.m], (shift, &*factor), capacity(counted), accepted);
         let negative = factor.inertia().negative;
         let window =
             Window { negative, largest: counted.saturating_sub(negative), floor: 1.0 / (above - shift) };
-        let mut lanczos = BlockLanczos::new(self.m, &*factor, capacity(counted), accepted);
-        let ritz = lanczos.converge(window, observer)?.ok_or_else(|| missing(0, counted, above))?;
-        let (values, vectors) = lanczos.pairs(&ritz, window, shift)?;
-        drop(lanczos);
+        if let (found, true) = iteration.values(window, observer)? {
+            return Err(missing(found.len(), counted, above));
+        }
+        let (values, vectors) = iteration.pairs()?;
         Ok(Found { values, vectors, shift, factor })
-    }
-
-    fn count(&self, count: usize, observer: &dyn Observer) -> Result<Eigenpairs> {
-        let (shift, factor, reach) = self.shift_for(count, observer)?;
-        let negative = factor.inertia().negative;
-        let mut lanczos = BlockLanczos::new(self.m, &*factor, capacity(count + 1), self.accepted(reach));
-        // One more than wanted shows the gap above them.
-        let mut total = (count + 1).max(negative + 1);
-        // A bound above all of them and how many there are below it, once a count has shown that some were not seen.
-        let mut known: Option<(f64, usize)> = None;
-        for _ in 0..20 {
-            let floor = known.map_or(0.0, |(bound, _)| 1.0 / (bound - shift));
-            let window = Window { negative, largest: total - negative, floor };
-            let ritz = lanczos.converge(window, observer)?;
-            let all = ritz.is_none();
-            let ritz = ritz.map_or_else(|| lanczos.ritz(), Ok)?;
-            let window = if all { lanczos.everything(&ritz) } else { window };
-            let mut values: Vec<f64> = ritz_values(&ritz, window, shift);
-            values.sort_by(f64::total_cmp);
-            let Some(last) = values.last().copied() else { return Err(none_found(self.local_scale())) };
-            let cut = if values.len() <= count {
-                values.len()
-            } else {
-                let apart = |c: &usize| {
-                    values[*c] - values[*c - 1]
-                        > (CLUSTER * (values[*c] - shift).abs()).max(self.rigid_below())
-                };
-                match (count..values.len()).find(apart) {
-                    Some(cut) => cut,
-                    None => {
-                        total += 2;
-                        continue;
-                    }
-                }
-            };
-            let (low, high) = match values.get(cut) {
-                Some(next) => (values[cut - 1], *next),
-                None => (last, last + 0.2 * last.abs().max((last - shift).abs())),
-            };
-            let (bound, counted) = match known {
-                Some((bound, counted)) if counted == cut && cut == values.len() => (bound, counted),
-                // In a gap one count says all.
-                _ => {
-                    let part = |part: f64| low + part * (high - low);
-                    self.count_near([0.5, 0.4, 0.6].map(part))?
-                }
-            };
-            if counted > cut && !all {
-                // Copies of a multiple eigenvalue that the block has not seen yet: Lanczos goes on until it has all.
-                (total, known) = (counted, Some((bound, counted)));
-                lanczos.look_again();
-                continue;
-            }
-            let (values, vectors) = lanczos.pairs(&ritz, window, shift)?;
-            let mut found = Found { values, vectors, shift, factor };
-            found.truncate(cut);
-            let sturm = SturmCount { bound, shifts: [bound; 2], counted: [counted; 2] };
-            return self.certify(found, sturm);
-        }
-        Err(missing(total, total + 1, shift))
-    }
-
-    /// A shift in the middle of the lowest `count` eigenvalues, from Ritz values of a short run at a small negative one and,
-    /// where that went too far, from the counts. Gives also the distance of the farthest.
-    fn shift_for(&self, count: usize, observer: &dyn Observer) -> Result<(f64, Factor, f64)> {
-        let scale = self.local_scale();
-        let guess = [1e-9, 1e-7, 1e-5].map(|part| -part * scale);
-        let (mut shift, mut factor) = self.factorize_near(guess)?;
-        let (mut values, mut settled) = (Vec::new(), Vec::new());
-        let mut lanczos = BlockLanczos::new(self.m, &*factor, count.min(EXPLORED) + 40, 1.0);
-        let ritz = lanczos.explore(count.min(EXPLORED) + 32, observer)?;
-        for (v, residual) in ritz.values.iter().zip(&ritz.residuals) {
-            values.push(shift + 1.0 / v);
-            if *residual <= SETTLED * v.abs() {
-                settled.push(shift + 1.0 / v);
-            }
-        }
-        drop(lanczos);
-        values.sort_by(f64::total_cmp);
-        settled.sort_by(f64::total_cmp);
-        let lowest = values.first().copied().unwrap_or(0.0);
-        let mut estimate = extrapolated(&settled, count)
-            .or(values.get(count - 1).or(values.last()).copied())
-            .unwrap_or(scale);
-        if estimate <= self.rigid_below() {
-            // All are negative or rigid-body motions: go below the negative ones, where the shift meets none.
-            let reach = (estimate - shift).abs().max((lowest - shift).abs());
-            if lowest < 1e3 * shift {
-                (shift, factor) = self.factorize_near([1.5, 1.6, 1.7].map(|part| part * lowest))?;
-            }
-            return Ok((shift, factor, reach));
-        }
-        for _ in 0..6 {
-            (shift, factor) = self.factorize_near(INSIDE.map(|part| part * estimate))?;
-            let below = factor.inertia().negative;
-            if below <= count + 8 {
-                break;
-            }
-            // The modes of plates are about equally far in ω = √θ.
-            estimate = shift * (count as f64 / below as f64).powi(2);
-        }
-        Ok((shift, factor, (estimate - shift).abs().max((lowest - shift).abs())))
     }
 
     /// For pairs with |θ − σ| up to `reach`, the residual ‖A x − ν x‖_M / |ν| at which the backward error
@@ -518,15 +409,6 @@ impl<'a> Pencil<'a> {
     }
 }
 
-/// Pairs in the order of their values.
-fn ascending((values, vectors): (Vec<f64>, Mat<f64>)) -> (Vec<f64>, Mat<f64>) {
-    let mut order: Vec<usize> = (0..values.len()).collect();
-    order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
-    let mut sorted = Mat::zeros(vectors.nrows(), values.len());
-    order.iter().enumerate().for_each(|(k, old)| sorted.col_mut(k).copy_from(vectors.col(*old)));
-    (order.iter().map(|old| values[*old]).collect(), sorted)
-}
-
 impl Found {
     fn truncate(&mut self, count: usize) {
         self.values.truncate(count);
@@ -550,10 +432,6 @@ fn capacity(count: usize) -> usize {
     2 * count + 64
 }
 
-fn ritz_values(ritz: &Ritz, window: Window, shift: f64) -> Vec<f64> {
-    window.indices(ritz).into_iter().map(|k| shift + 1.0 / ritz.values[k]).collect()
-}
-
 fn none_found(scale: f64) -> Error {
     Error::analysis(
         "eigenvalues",
@@ -568,16 +446,4 @@ fn missing(found: usize, counted: usize, bound: f64) -> Error {
         format!("the inertia counts {counted} below θ = {bound:.9e}, {found} were found"),
         "Move the bound a little; if that does not help the matrices are not symmetric or M is not positive semidefinite",
     )
-}
-
-impl BlockLanczos<'_> {
-    /// The pairs (θ, x) of a window, θ ascending.
-    fn pairs(&self, ritz: &Ritz, window: Window, shift: f64) -> Result<(Vec<f64>, Mat<f64>)> {
-        let mut which: Vec<(f64, usize)> =
-            window.indices(ritz).into_iter().map(|k| (shift + 1.0 / ritz.values[k], k)).collect();
-        which.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let columns: Vec<usize> = which.iter().map(|(_, k)| *k).collect();
-        let vectors = self.vectors(ritz, &columns)?;
-        Ok((which.into_iter().map(|(theta, _)| theta).collect(), vectors))
-    }
 }

@@ -46,6 +46,8 @@ fn facts(p: &Provenance) -> ReportTable {
         ("started (UTC)", p.started.clone()),
         ("command", p.command.join(" ")),
         ("threads", p.threads.to_string()),
+        ("engine", p.engine.to_string()),
+        ("MPI ranks", p.ranks.to_string()),
         ("system", p.system.clone()),
         ("processor", known(p.processor.clone())),
         ("cores", known(p.cores.map(|cores| cores.to_string()))),

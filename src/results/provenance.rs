@@ -20,6 +20,10 @@ pub struct Provenance {
     pub command: Vec<String>,
     /// Number of threads.
     pub threads: usize,
+    /// What shares the work among processes: the value of `--engine`, `default` without it.
+    pub engine: &'static str,
+    /// Number of these processes: MPI ranks.
+    pub ranks: usize,
     /// Operating system with its version, and the architecture.
     pub system: String,
     /// Model name of the processor, where the system says it.
@@ -43,6 +47,8 @@ impl Provenance {
             started: utc(since.as_secs()),
             command: std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect(),
             threads: rayon::current_num_threads(),
+            engine: "default",
+            ranks: 1,
             system: system(),
             processor: field("/proc/cpuinfo", "model name"),
             cores: std::thread::available_parallelism().ok().map(usize::from),
@@ -50,6 +56,11 @@ impl Provenance {
             case_file: (!file.is_empty()).then(|| InputFile::of_text(file, text)),
             case_text: text.to_string(),
         }
+    }
+
+    /// The same, of a run whose work `engine` shares among so many `ranks`.
+    pub fn on_ranks(self, engine: &'static str, ranks: usize) -> Self {
+        Provenance { engine, ranks, ..self }
     }
 
     /// Its quantities.
@@ -61,6 +72,8 @@ impl Provenance {
             .value("started", "text", "when the run began, UTC (ISO 8601)", self.started.clone())
             .with(Variable::texts("command", "the program and its arguments", words, self.command.clone()))
             .value("threads", "1", "number of threads", self.threads)
+            .value("engine", "text", "what shares the work among processes, as --engine", self.engine)
+            .value("ranks", "1", "number of MPI ranks", self.ranks)
             .value("system", "text", "operating system and architecture", self.system.clone())
             .value("processor", "text", "model name of the processor", self.processor.clone())
             .value("cores", "1", "cores that the process may use", self.cores)

@@ -92,6 +92,8 @@ pub(crate) fn rig() -> RunResults {
             started: "2026-01-31T09:05:00Z".into(),
             command: ["stridor", "run", "rig.toml"].map(String::from).to_vec(),
             threads: 2,
+            engine: "default",
+            ranks: 1,
             system: "linux".into(),
             processor: None,
             cores: Some(2),

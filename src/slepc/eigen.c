@@ -54,14 +54,9 @@ struct inverse {
     double *columns;    /* on rank 0: real and imaginary part of a right-hand side */
 };
 
-static PetscErrorCode gather(struct inverse *inverse, Vec from, Vec to) {
-    PetscCall(VecScatterBegin(inverse->to_first, from, to, INSERT_VALUES, SCATTER_FORWARD));
-    return VecScatterEnd(inverse->to_first, from, to, INSERT_VALUES, SCATTER_FORWARD);
-}
-
-static PetscErrorCode spread(struct inverse *inverse, Vec from, Vec to) {
-    PetscCall(VecScatterBegin(inverse->to_first, from, to, INSERT_VALUES, SCATTER_REVERSE));
-    return VecScatterEnd(inverse->to_first, from, to, INSERT_VALUES, SCATTER_REVERSE);
+static PetscErrorCode scatter(VecScatter way, Vec from, Vec to, ScatterMode mode) {
+    PetscCall(VecScatterBegin(way, from, to, INSERT_VALUES, mode));
+    return VecScatterEnd(way, from, to, INSERT_VALUES, mode);
 }
 
 /* y = (K - shift M)^-1 x. Vectors that start real stay real: then one right-hand side is solved for. */
@@ -71,7 +66,7 @@ static PetscErrorCode apply_inverse(PC pc, Vec x, Vec y) {
     PetscInt n;
     int parts = 1;
     PetscCall(PCShellGetContext(pc, &inverse));
-    PetscCall(gather(inverse, x, inverse->whole));
+    PetscCall(scatter(inverse->to_first, x, inverse->whole, SCATTER_FORWARD));
     PetscCall(VecGetLocalSize(inverse->whole, &n));
     PetscCall(VecGetArray(inverse->whole, &whole));
     for (PetscInt k = 0; k < n; k++) {
@@ -87,7 +82,7 @@ static PetscErrorCode apply_inverse(PC pc, Vec x, Vec y) {
         whole[k] = inverse->columns[row] + (parts == 2 ? inverse->columns[n + row] * PETSC_i : 0);
     }
     PetscCall(VecRestoreArray(inverse->whole, &whole));
-    return spread(inverse, inverse->whole, y);
+    return scatter(inverse->to_first, inverse->whole, y, SCATTER_REVERSE);
 }
 
 /* A start that is the same in every run, whatever the number of ranks. */
@@ -101,7 +96,7 @@ static PetscErrorCode start(struct inverse *inverse, Vec x) {
         whole[i] = place - floor(place) - 0.5;
     }
     PetscCall(VecRestoreArray(inverse->whole, &whole));
-    return spread(inverse, inverse->whole, x);
+    return scatter(inverse->to_first, inverse->whole, x, SCATTER_REVERSE);
 }
 
 static PetscErrorCode krylov_schur(struct inverse *inverse, Mat k, Mat m, double shift, int count, double tolerance, int *found,
@@ -143,7 +138,7 @@ static PetscErrorCode krylov_schur(struct inverse *inverse, Mat k, Mat m, double
         const PetscScalar *whole;
         PetscCall(EPSGetEigenpair(eps, pair, &theta, NULL, x, NULL));
         values[pair] = PetscRealPart(theta);
-        PetscCall(gather(inverse, x, inverse->whole));
+        PetscCall(scatter(inverse->to_first, x, inverse->whole, SCATTER_FORWARD));
         PetscCall(VecGetArrayRead(inverse->whole, &whole));
         for (PetscInt i = 0; i < n; i++) vectors[(int64_t)pair * n + inverse->order[i]] = PetscRealPart(whole[i]);
         PetscCall(VecRestoreArrayRead(inverse->whole, &whole));
@@ -188,8 +183,7 @@ static PetscErrorCode apply_shifted(PC pc, Vec x, Vec y) {
     PetscCall(KSPSolve(shifted->sparse, x, y));
     if (shifted->rank == 0) return 0;
     PetscCall(MatMultTranspose(shifted->basis, y, shifted->coordinates));
-    PetscCall(VecScatterBegin(shifted->to_all, shifted->coordinates, shifted->all, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(VecScatterEnd(shifted->to_all, shifted->coordinates, shifted->all, INSERT_VALUES, SCATTER_FORWARD));
+    PetscCall(scatter(shifted->to_all, shifted->coordinates, shifted->all, SCATTER_FORWARD));
     PetscCall(MatSolve(shifted->small, shifted->all, shifted->force));
     /* Every rank has all of the force: it keeps its own part. */
     PetscInt first, last;
@@ -235,8 +229,7 @@ static PetscErrorCode factorize_shifted(struct shifted *shifted, Mat k, Mat c, M
         PetscCall(MatDenseRestoreColumnVecRead(shifted->basis, j, &b));
         PetscCall(MatMultTranspose(shifted->basis, y, shifted->coordinates));
         PetscCall(MatDenseRestoreColumnVecWrite(shifted->response, j, &y));
-        PetscCall(VecScatterBegin(shifted->to_all, shifted->coordinates, shifted->all, INSERT_VALUES, SCATTER_FORWARD));
-        PetscCall(VecScatterEnd(shifted->to_all, shifted->coordinates, shifted->all, INSERT_VALUES, SCATTER_FORWARD));
+        PetscCall(scatter(shifted->to_all, shifted->coordinates, shifted->all, SCATTER_FORWARD));
         PetscCall(VecGetArrayRead(shifted->all, &column));
         for (PetscInt i = 0; i < shifted->rank; i++) {
             PetscScalar own = i == j ? 1.0 / (shift * coefficients[i]) : 0.0;

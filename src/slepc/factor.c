@@ -5,6 +5,8 @@
 
 #define ICNTL(k) icntl[(k) - 1]
 
+_Static_assert(sizeof(MUMPS_INT) == sizeof(int), "MUMPS with 32-bit integers (-DINTSIZE32) is needed: its matrices are numbered by them");
+
 /* Working memory beyond what the analysis expects, in percent, and what is tried where it does not suffice. */
 static const int SPARE[] = {30, 100, 400};
 

@@ -4,13 +4,19 @@ use super::{Inertia, SymbolicFactor, SymmetricFactor};
 use crate::error::Result;
 use crate::linalg::sparse::Index;
 use crate::linalg::{SparseMatrix, c64};
-use faer::MatRef;
 use faer::sparse::{SparseColMat, SymbolicSparseColMatRef};
+use faer::{Mat, MatRef};
 use std::fmt::Debug;
 use std::sync::Arc;
 
 /// Library that factorises over several processes.
 pub trait Backend: Debug + Send + Sync {
+    /// Its name.
+    fn name(&self) -> &'static str;
+
+    /// The number of processes.
+    fn ranks(&self) -> usize;
+
     /// Prepares for the matrices of a symmetric pattern stored whole; `place` is the place of every row in the order of
     /// elimination.
     ///
@@ -68,6 +74,22 @@ pub trait DistributedPattern: Debug + Send + Sync {
     fn inertia(&self, a: &SparseMatrix) -> Result<Inertia>;
 }
 
+/// Eigensolver of a library that has factorised A = K − σM.
+pub trait EigenSolver: Debug {
+    /// The `count` eigenpairs of K x = θ M x nearest σ, θ ascending, with ‖A⁻¹M x − ν x‖ ≤ `tolerance` |ν|, ν = 1/(θ − σ), and
+    /// xᵀMx = 1.
+    ///
+    /// # Errors
+    /// They do not converge.
+    fn nearest(
+        &self,
+        pencil: [&SparseMatrix; 2],
+        shift: f64,
+        count: usize,
+        tolerance: f64,
+    ) -> Result<(Vec<f64>, Mat<f64>)>;
+}
+
 /// Where the matrices of an analysis are factorised; in this process by default.
 #[derive(Debug, Clone, Default)]
 pub struct Engine(Option<Arc<dyn Backend>>);
@@ -81,6 +103,16 @@ impl Engine {
     /// The other library, where there is one.
     pub fn backend(&self) -> Option<&dyn Backend> {
         self.0.as_deref()
+    }
+
+    /// Its name: that of the other library, or `default`.
+    pub fn name(&self) -> &'static str {
+        self.backend().map_or("default", Backend::name)
+    }
+
+    /// The number of processes that factorise.
+    pub fn ranks(&self) -> usize {
+        self.backend().map_or(1, Backend::ranks)
     }
 
     /// Analyses a symmetric pattern stored whole.
@@ -112,7 +144,7 @@ mod tests {
     use crate::linalg::samples;
     use crate::linalg::sparse::add_scaled;
     use crate::linalg::{Wanted, lowest_eigenpairs, lowest_eigenpairs_by};
-    use faer::{Mat, MatMut};
+    use faer::MatMut;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     /// A library that factorises with the factors of this program, without half solutions, and counts how often.
@@ -129,6 +161,14 @@ mod tests {
     }
 
     impl Backend for Library {
+        fn name(&self) -> &'static str {
+            "stand-in"
+        }
+
+        fn ranks(&self) -> usize {
+            3
+        }
+
         fn analyse(
             &self,
             pattern: SymbolicSparseColMatRef<'_, Index>,
@@ -188,6 +228,8 @@ mod tests {
         let (k, m) = samples::plate(12, false);
         let calls = Arc::new(AtomicUsize::new(0));
         let engine = Engine::new(Arc::new(Library(Arc::clone(&calls))));
+        assert_eq!((engine.name(), engine.ranks()), ("stand-in", 3));
+        assert_eq!((Engine::default().name(), Engine::default().ranks()), ("default", 1));
         let seen = || calls.swap(0, Ordering::Relaxed);
         for wanted in [Wanted::Count(8), Wanted::Below(1e7)] {
             let own = lowest_eigenpairs(&k, &m, wanted, &()).unwrap();

@@ -33,7 +33,7 @@ mod symbolic;
 mod unsymmetric;
 
 pub use compliances::compliances;
-pub use engine::{Backend, DistributedPattern, Engine, QuadraticProblem, QuadraticSolver};
+pub use engine::{Backend, DistributedPattern, EigenSolver, Engine, QuadraticProblem, QuadraticSolver};
 pub use field::Field;
 pub use partition::partition;
 pub use unsymmetric::{System, UnsymmetricFactor};
@@ -77,18 +77,8 @@ pub trait SymmetricFactor<T: Field = f64>: Debug + Send + Sync {
     /// The same factors, where they give solutions in two halves.
     fn halves(&self) -> Option<&dyn HalfSolutions<T>>;
 
-    /// The `count` eigenpairs of K x = θ M x nearest σ, for A = K − σM, with ‖A⁻¹M x − ν x‖ ≤ `tolerance` |ν|, ν = 1/(θ − σ),
-    /// and xᵀMx = 1, by the eigensolver of the library behind these factors; `None` where that has none.
-    ///
-    /// # Errors
-    /// They do not converge.
-    fn nearest_eigenpairs(
-        &self,
-        _pencil: [&SparseMatrix; 2],
-        _shift: f64,
-        _count: usize,
-        _tolerance: f64,
-    ) -> Option<Result<(Vec<f64>, Mat<f64>)>> {
+    /// The eigensolver of the library behind these factors, where real modes are to be found by that.
+    fn eigensolver(&self) -> Option<&dyn EigenSolver> {
         None
     }
 
