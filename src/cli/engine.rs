@@ -49,8 +49,8 @@ pub use on_ranks::{shared_matrices, shared_points};
 
 #[cfg(feature = "slepc")]
 mod on_ranks {
-    use super::EngineName;
     use crate::case::Case;
+    use crate::cli::engine::EngineName;
     use crate::cli::progress::Bars;
     use crate::cli::version::VERSION;
     use crate::distributed::{RealModesMethod, Role, same_build, start};

@@ -93,22 +93,27 @@ impl Backend for Arc<Cluster> {
         self.size
     }
 
+    fn check_order(&self, n: usize) -> Result<()> {
+        let (option, dofs) = (format!("--engine {}", self.name()), format!("{n} degrees of freedom"));
+        if i32::try_from(n).is_err() {
+            let expected = format!("at most {}", i32::MAX);
+            return Err(Error::input(Fault::new(option, dofs, expected)));
+        }
+        if n < self.size {
+            let expected = format!("at most {n}, for the model has {dofs}");
+            let fault = Fault::new(option, format!("{} ranks", self.size), expected);
+            return Err(Error::input(fault.with_help("Start fewer ranks")));
+        }
+        Ok(())
+    }
+
     fn analyse(
         &self,
         pattern: SymbolicSparseColMatRef<'_, Index>,
         place: &[usize],
     ) -> Result<Arc<dyn DistributedPattern>> {
         let n = pattern.ncols();
-        if i32::try_from(n).is_err() {
-            let expected = format!("at most {} degrees of freedom", i32::MAX);
-            return Err(Error::input(Fault::new("--engine slepc", n.to_string(), expected)));
-        }
-        if n < self.size {
-            let fault = Fault::new("--engine slepc", format!("{} ranks", self.size), format!("at most {n}"));
-            return Err(Error::input(
-                fault.with_help(format!("The model has {n} degrees of freedom: start fewer ranks")),
-            ));
-        }
+        self.check_order(n)?;
         let shares = Arc::new(Shares::new(pattern, self.size));
         let place = place.iter().map(|p| *p as i32 + 1).collect();
         let id = self.with(|state| {

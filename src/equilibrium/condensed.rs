@@ -4,6 +4,7 @@ use super::linear::directions;
 use crate::error::{Error, Result};
 use crate::linalg::SparseMatrix;
 use crate::linalg::SymmetricFactor;
+use crate::linalg::factor::is_singular;
 use crate::linalg::sparse::{add_scaled, sum_of_squares, times};
 use crate::system::{ContactMotion, ContactPoint, System};
 use faer::{Mat, MatRef};
@@ -38,8 +39,11 @@ impl Condensed {
         let closed: Vec<f64> = system.points().map(|(pair, point)| spring(pair, point, k)).collect();
         let springs = points.iter().zip(&closed).map(|(point, d)| (*d, &point.normal));
         let a = add_scaled(&[(1.0, k), (1.0, &sum_of_squares(n, springs))]);
-        let factor =
-            system.structure.engine.factorize(&a).map_err(|error| nothing_holds(&error.to_string()))?;
+        let factor = system.structure.engine.factorize(&a).map_err(|error| match is_singular(&error) {
+            true => nothing_holds(error.to_string().trim_end_matches('.')),
+            // Memory that does not suffice has another remedy.
+            false => error,
+        })?;
         check_held(&a, &*factor)?;
         let mut responses = Mat::<f64>::zeros(n, points.len());
         for (p, point) in points.iter().enumerate() {

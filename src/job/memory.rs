@@ -88,8 +88,8 @@ pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Opti
     let pattern = pencil(1.0);
     let engine = &prepared.system.structure.engine;
     let symbolic = engine.analyse(pattern.symbolic())?;
-    // Factors on other ranks are not in the memory of this one.
-    let fill = if engine.backend().is_some() { 0 } else { symbolic.fill() };
+    // Of factors on several ranks this one has a share.
+    let fill = symbolic.fill() / engine.ranks();
     let case = prepared.case;
     let below = |hz: f64| match &case.matrices {
         None => Ok(modes_below(&prepared.model, hz)),

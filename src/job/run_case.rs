@@ -94,6 +94,7 @@ fn run_from(
     };
     let provenance = Some(Provenance::now(file, text).on_ranks(engine_name, ranks));
     let prepared = Prepared::new(case)?.with_engine(engine);
+    engine.check_order(prepared.system.n_dofs())?;
     // Its faults are reported before anything is written.
     let asked = Asked::new(&prepared, selection)?;
     if let Some(expected) = check_memory(&prepared, selection)? {

@@ -150,6 +150,7 @@ fn failure(status: c_int, detail: c_int) -> Error {
 #[cfg(test)]
 mod tests {
     use super::failure;
+    use crate::linalg::factor::is_singular;
 
     #[test]
     fn codes_of_mumps_have_words() {
@@ -157,6 +158,7 @@ mod tests {
             [(-10, "singular"), (-13, "memory"), (-9, "memory"), (-51, "64-bit"), (-90, "INFOG(1) = -90")]
         {
             let text = failure(code, 7).to_string();
+            assert_eq!(is_singular(&failure(code, 7)), code == -10);
             assert!(text.contains(words) && text.contains("INFOG(2) = 7"), "{text}");
         }
     }

@@ -13,5 +13,7 @@ case=${1:?usage: sbatch cea.sh CASE}
 
 # MUMPS: one thread on each rank.
 export OMP_NUM_THREADS=1
+# The log gets no colours.
+export NO_COLOR=1
 # Rank 0's own work takes the cores of its machine while the other ranks wait; so no rank is bound to a core.
 mpirun --bind-to none stridor cea "$case" --engine slepc --threads "${SLURM_NTASKS_PER_NODE:-1}" --out "results/$SLURM_JOB_ID"

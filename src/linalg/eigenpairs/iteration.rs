@@ -21,11 +21,11 @@ type Pairs = (Vec<f64>, Mat<f64>);
 
 enum Method<'a> {
     BlockLanczos(Box<BlockLanczos<'a>>, Option<(Ritz, Window)>),
-    Library(Asked<'a>, Pairs),
+    Library(Library<'a>, Pairs),
 }
 
-/// What a library is asked.
-struct Asked<'a> {
+/// The library and what it is to solve.
+struct Library<'a> {
     solver: &'a dyn EigenSolver,
     pencil: [&'a SparseMatrix; 2],
     tolerance: f64,
@@ -42,7 +42,7 @@ impl<'a> Iteration<'a> {
     ) -> Self {
         let method = match factor.eigensolver() {
             Some(solver) => {
-                Method::Library(Asked { solver, pencil, tolerance: accepted }, (Vec::new(), Mat::new()))
+                Method::Library(Library { solver, pencil, tolerance: accepted }, (Vec::new(), Mat::new()))
             }
             None => {
                 let lanczos = BlockLanczos::new(pencil[1], factor, capacity, accepted);
@@ -69,9 +69,9 @@ impl<'a> Iteration<'a> {
                 *found = Some((ritz, window));
                 Ok((values, all))
             }
-            Method::Library(asked, found) => {
+            Method::Library(library, found) => {
                 let all;
-                (*found, all) = asked.pairs(window, self.shift)?;
+                (*found, all) = library.pairs(window, self.shift)?;
                 observer.advance(1);
                 Ok((found.0.clone(), all))
             }
@@ -111,7 +111,7 @@ impl<'a> Iteration<'a> {
     }
 }
 
-impl Asked<'_> {
+impl Library<'_> {
     /// The pairs of a window, and whether M reaches no others.
     fn pairs(&self, window: Window, shift: f64) -> Result<(Pairs, bool)> {
         let (wanted, n) = (window.negative + window.largest, self.pencil[1].ncols());
@@ -137,5 +137,94 @@ impl Asked<'_> {
             format!("of {wanted} that the inertia counts near θ = {shift:.9e} the library finds fewer"),
             "Use another engine, or move the bound a little",
         ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Wanted, lowest_eigenpairs};
+    use super::*;
+    use crate::linalg::factor::{HalfSolutions, SymbolicFactor, factorize};
+    use crate::linalg::sparse::add_scaled;
+    use crate::linalg::{Inertia, samples};
+    use faer::MatMut;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    /// Factors with an eigensolver that misses one of the nearest pairs, the first few times.
+    #[derive(Debug)]
+    struct Forgetful {
+        inner: Box<dyn HalfSolutions>,
+        missed: usize,
+        times: usize,
+        asked: AtomicUsize,
+    }
+
+    impl EigenSolver for Forgetful {
+        fn nearest(&self, [k, m]: [&SparseMatrix; 2], shift: f64, count: usize, _: f64) -> Result<Pairs> {
+            let all = lowest_eigenpairs(k, m, Wanted::Count(count + 20), &())?;
+            let mut nearest: Vec<usize> = (0..all.values.len()).collect();
+            nearest.sort_by(|a, b| (all.values[*a] - shift).abs().total_cmp(&(all.values[*b] - shift).abs()));
+            if self.asked.fetch_add(1, Ordering::Relaxed) < self.times {
+                nearest.remove(self.missed);
+            }
+            nearest.truncate(count);
+            nearest.sort_unstable();
+            let vectors = Mat::from_fn(k.ncols(), count, |i, j| all.vectors[(i, nearest[j])]);
+            Ok((nearest.iter().map(|pair| all.values[*pair]).collect(), vectors))
+        }
+    }
+
+    impl SymmetricFactor for Forgetful {
+        fn n(&self) -> usize {
+            self.inner.n()
+        }
+
+        fn solve_in_place(&self, rhs: MatMut<'_, f64>) {
+            self.inner.solve_in_place(rhs);
+        }
+
+        fn halves(&self) -> Option<&dyn HalfSolutions> {
+            None
+        }
+
+        fn eigensolver(&self) -> Option<&dyn EigenSolver> {
+            Some(self)
+        }
+
+        fn symbolic(&self) -> SymbolicFactor {
+            self.inner.symbolic()
+        }
+
+        fn inertia(&self) -> Inertia {
+            self.inner.inertia()
+        }
+
+        fn memory_bytes(&self) -> usize {
+            self.inner.memory_bytes()
+        }
+    }
+
+    #[test]
+    fn a_library_that_misses_a_pair_is_asked_again() {
+        let (k, m) = samples::plate(12, false);
+        let all = lowest_eigenpairs(&k, &m, Wanted::Count(12), &()).unwrap().values;
+        let shift = 0.5 * (all[4] + all[5]);
+        let bound = 0.5 * (all[10] + all[11]);
+        let window = Window { negative: 5, largest: 6, floor: 1.0 / (bound - shift) };
+        // One of the nearest two is below the shift, the other above it.
+        for (missed, times) in [(0, 0), (0, 1), (1, 1), (1, 2), (0, 9)] {
+            let inner = factorize(&add_scaled(&[(1.0, &k), (-shift, &m)])).unwrap();
+            let factor = Forgetful { inner, missed, times, asked: AtomicUsize::new(0) };
+            let mut iteration = Iteration::new([&k, &m], (shift, &factor), 40, 1e-10);
+            let found = iteration.values(window, &());
+            if times > MORE.len() {
+                assert!(found.unwrap_err().to_string().contains("the library finds fewer"));
+                continue;
+            }
+            let (values, complete) = found.unwrap();
+            assert!(values.iter().zip(&all).all(|(a, b)| (a - b).abs() < 1e-9 * b) && !complete);
+            assert_eq!((values.len(), factor.asked.load(Ordering::Relaxed)), (11, times + 1));
+            assert_eq!(iteration.pairs().unwrap().1.ncols(), 11);
+        }
     }
 }

@@ -17,6 +17,12 @@ pub trait Backend: Debug + Send + Sync {
     /// The number of processes.
     fn ranks(&self) -> usize;
 
+    /// That it takes matrices of this order.
+    ///
+    /// # Errors
+    /// Input: too few rows or too many.
+    fn check_order(&self, n: usize) -> Result<()>;
+
     /// Prepares for the matrices of a symmetric pattern stored whole; `place` is the place of every row in the order of
     /// elimination.
     ///
@@ -115,6 +121,14 @@ impl Engine {
         self.backend().map_or(1, Backend::ranks)
     }
 
+    /// That matrices of this order can be factorised.
+    ///
+    /// # Errors
+    /// Those of [`Backend::check_order`].
+    pub fn check_order(&self, n: usize) -> Result<()> {
+        self.backend().map_or(Ok(()), |backend| backend.check_order(n))
+    }
+
     /// Analyses a symmetric pattern stored whole.
     ///
     /// # Errors
@@ -167,6 +181,10 @@ mod tests {
 
         fn ranks(&self) -> usize {
             3
+        }
+
+        fn check_order(&self, _: usize) -> Result<()> {
+            Ok(())
         }
 
         fn analyse(

@@ -36,6 +36,7 @@ pub use compliances::compliances;
 pub use engine::{Backend, DistributedPattern, EigenSolver, Engine, QuadraticProblem, QuadraticSolver};
 pub use field::Field;
 pub use partition::partition;
+pub use refused::{is_singular, singular};
 pub use unsymmetric::{System, UnsymmetricFactor};
 
 use super::SparseMatrix;
@@ -234,15 +235,6 @@ impl SymbolicFactor {
         })?;
         Ok((branch, scaling))
     }
-}
-
-/// The error of a matrix that is singular; `found` says how that was seen.
-pub fn singular(found: impl std::fmt::Display) -> Error {
-    Error::analysis(
-        "factorisation",
-        format!("the matrix is singular: {found}"),
-        "A part that nothing holds, a degree of freedom without stiffness and mass, or a shift on an eigenvalue does this",
-    )
 }
 
 /// Analyses and factorises in one go, in this process.
