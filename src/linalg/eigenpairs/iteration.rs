@@ -144,16 +144,12 @@ impl Library<'_> {
 mod tests {
     use super::super::{Wanted, lowest_eigenpairs};
     use super::*;
-    use crate::linalg::factor::{HalfSolutions, SymbolicFactor, factorize};
-    use crate::linalg::sparse::add_scaled;
-    use crate::linalg::{Inertia, samples};
-    use faer::MatMut;
+    use crate::linalg::samples;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
-    /// Factors with an eigensolver that misses one of the nearest pairs, the first few times.
+    /// An eigensolver that misses one of the nearest pairs, the first few times.
     #[derive(Debug)]
     struct Forgetful {
-        inner: Box<dyn HalfSolutions>,
         missed: usize,
         times: usize,
         asked: AtomicUsize,
@@ -174,57 +170,37 @@ mod tests {
         }
     }
 
-    impl SymmetricFactor for Forgetful {
-        fn n(&self) -> usize {
-            self.inner.n()
-        }
-
-        fn solve_in_place(&self, rhs: MatMut<'_, f64>) {
-            self.inner.solve_in_place(rhs);
-        }
-
-        fn halves(&self) -> Option<&dyn HalfSolutions> {
-            None
-        }
-
-        fn eigensolver(&self) -> Option<&dyn EigenSolver> {
-            Some(self)
-        }
-
-        fn symbolic(&self) -> SymbolicFactor {
-            self.inner.symbolic()
-        }
-
-        fn inertia(&self) -> Inertia {
-            self.inner.inertia()
-        }
-
-        fn memory_bytes(&self) -> usize {
-            self.inner.memory_bytes()
-        }
-    }
-
     #[test]
     fn a_library_that_misses_a_pair_is_asked_again() {
         let (k, m) = samples::plate(12, false);
         let all = lowest_eigenpairs(&k, &m, Wanted::Count(12), &()).unwrap().values;
-        let shift = 0.5 * (all[4] + all[5]);
-        let bound = 0.5 * (all[10] + all[11]);
-        let window = Window { negative: 5, largest: 6, floor: 1.0 / (bound - shift) };
-        // One of the nearest two is below the shift, the other above it.
+        // Between modes that are far apart: a square plate has double ones.
+        let gap = |numbers: std::ops::Range<usize>| {
+            numbers
+                .max_by(|a, b| (all[*a] - all[a - 1]).total_cmp(&(all[*b] - all[b - 1])))
+                .expect("a number")
+        };
+        let (negative, wanted) = (gap(4..7), gap(9..12));
+        let [shift, bound] = [negative, wanted].map(|k| 0.5 * (all[k - 1] + all[k]));
+        let window = Window { negative, largest: wanted - negative, floor: 1.0 / (bound - shift) };
         for (missed, times) in [(0, 0), (0, 1), (1, 1), (1, 2), (0, 9)] {
-            let inner = factorize(&add_scaled(&[(1.0, &k), (-shift, &m)])).unwrap();
-            let factor = Forgetful { inner, missed, times, asked: AtomicUsize::new(0) };
-            let mut iteration = Iteration::new([&k, &m], (shift, &factor), 40, 1e-10);
+            let solver = Forgetful { missed, times, asked: AtomicUsize::new(0) };
+            let library = Library { solver: &solver, pencil: [&k, &m], tolerance: 1e-10 };
+            let mut iteration =
+                Iteration { shift, method: Method::Library(library, (Vec::new(), Mat::new())) };
             let found = iteration.values(window, &());
             if times > MORE.len() {
                 assert!(found.unwrap_err().to_string().contains("the library finds fewer"));
                 continue;
             }
-            let (values, complete) = found.unwrap();
-            assert!(values.iter().zip(&all).all(|(a, b)| (a - b).abs() < 1e-9 * b) && !complete);
-            assert_eq!((values.len(), factor.asked.load(Ordering::Relaxed)), (11, times + 1));
-            assert_eq!(iteration.pairs().unwrap().1.ncols(), 11);
+            let (values, all_of_m) = found.unwrap();
+            assert!(
+                values.iter().zip(&all).all(|(a, b)| (a - b).abs() < 1e-9 * bound),
+                "{values:?}, {all:?}"
+            );
+            assert!(!all_of_m, "M reaches more");
+            assert_eq!((values.len(), solver.asked.load(Ordering::Relaxed)), (wanted, times + 1));
+            assert_eq!(iteration.pairs().unwrap().1.ncols(), wanted);
         }
     }
 }
