@@ -129,7 +129,7 @@ fn failure(status: c_int, detail: c_int) -> Error {
     let codes = format!("INFOG(1) = {status}, INFOG(2) = {detail}");
     match status {
         -10 | -6 => singular(format!("MUMPS stops, {codes}")),
-        -8 | -9 | -11 | -13 | -14 | -15 | -17 | -18 | -19 | -20 => Error::analysis(
+        -5 | -7 | -8 | -9 | -11 | -13 | -14 | -15 | -17 | -18 | -19 | -20 => Error::analysis(
             "factorisation by MUMPS",
             format!("memory does not suffice on a rank ({codes})"),
             "Take more ranks on more machines, fewer ranks on each machine, or a coarser mesh",
@@ -154,9 +154,14 @@ mod tests {
 
     #[test]
     fn codes_of_mumps_have_words() {
-        for (code, words) in
-            [(-10, "singular"), (-13, "memory"), (-9, "memory"), (-51, "64-bit"), (-90, "INFOG(1) = -90")]
-        {
+        for (code, words) in [
+            (-10, "singular"),
+            (-13, "memory"),
+            (-7, "memory"),
+            (-9, "memory"),
+            (-51, "64-bit"),
+            (-90, "INFOG(1) = -90"),
+        ] {
             let text = failure(code, 7).to_string();
             assert_eq!(is_singular(&failure(code, 7)), code == -10);
             assert!(text.contains(words) && text.contains("INFOG(2) = 7"), "{text}");
