@@ -1,10 +1,11 @@
 //! The distributed engine: matrices factorised over the ranks of an MPI program.
 //!
-//! Rank 0 runs the analysis as a program of one process does: it reads the case, assembles M and K and holds the vectors. What
-//! grows fastest with the mesh, the factors, is spread over all ranks ([`Cluster`], a [`Backend`] of [`Engine`]): METIS shares out
-//! the rows, each rank receives those of its own and hands them to MUMPS, which factorises and solves in parallel, or to SLEPc, whose
-//! Krylov–Schur method finds the real modes and whose TOAR confirms the complex ones. The other ranks serve: they wait for commands
-//! of rank 0 and perform them with it. Only rank 0 reads and writes files then, so that ranks cannot have different ones.
+//! Rank 0 runs the analysis as a program of one process does: it reads the case, assembles M and K and holds the vectors. What grows
+//! fastest with the mesh, the factors, is spread over all ranks ([`Cluster`], a [`Backend`] of [`Engine`]): METIS shares out the rows,
+//! each rank receives those of its own and hands them to MUMPS, which factorises and solves in parallel, or to SLEPc, whose TOAR
+//! confirms the complex modes and whose Krylov–Schur method finds the real ones where that is asked for ([`RealModesMethod`]). The
+//! other ranks serve: they wait for commands of rank 0 and perform them with it. Only rank 0 reads and writes files then, so that ranks
+//! cannot have different ones.
 //!
 //! Of sweeps and maps the ranks share the points instead: [`Deal`] hands out numbers as they come free.
 //!
