@@ -203,14 +203,14 @@ fn solve_and_refine<'a>(
     }
     let mut warnings = Vec::new();
     let mut counts = Vec::new();
-    let (mut found, mut refinements, mut finer) = (Vec::new(), 0, 0);
+    let (mut found, mut refinements, mut finer, mut last) = (Vec::new(), 0, 0, false);
     loop {
         let scale = PairMeasurement { operator, basis: &basis, factor, top: band[1] };
         let wanted;
-        (found, wanted) = evaluate(&scale, asked, found)?;
+        (found, wanted) = evaluate(&scale, asked, found, last)?;
         observer.advance(1);
         counts.push(found.len());
-        if wanted.is_empty() || refinements == MOST_REFINEMENTS {
+        if wanted.is_empty() || last {
             break;
         }
         // The error of λ is quadratic in that of the vectors: coarse first, so that the basis stays small.
@@ -221,10 +221,8 @@ fn solve_and_refine<'a>(
             added = basis.enrich(&corrections, tolerance, usize::MAX);
             finer += 1;
         }
-        if added == 0 {
-            break;
-        }
-        refinements += 1;
+        refinements += usize::from(added > 0);
+        last = added == 0 || refinements == MOST_REFINEMENTS;
     }
     if let Some(first) = counts.first().filter(|first| counts.iter().any(|c| c != *first)) {
         let last = counts.last().unwrap_or(first);
@@ -232,7 +230,7 @@ fn solve_and_refine<'a>(
             "The refinement changed the number of complex modes in the band from {first} to {last}"
         ));
     }
-    let modes: Vec<ComplexMode> = found.into_iter().map(|found| found.mode).collect();
+    let modes: Vec<ComplexMode> = found.into_iter().filter_map(|found| found.mode).collect();
     for mode in modes.iter().filter(|mode| mode.accepted() && mode.condition > ILL_CONDITIONED) {
         warnings.push(format!(
             "The mode at {} Hz is ill-conditioned: a relative change of the matrices moves it by {:.0e} times as much",
@@ -340,18 +338,20 @@ fn unit_mass(basis: &Basis<'_>, mut y: Block) -> (Block, Vec<f64>) {
     (y, factors)
 }
 
-/// A mode, and whether it is as exact as the refinement aims at.
+/// A pair of the projected problem, and its mode where that is given: where it is as exact as the refinement aims at, and all
+/// of them in the last round. Others are measured again, and their vectors are not held until then.
 struct FoundMode {
-    mode: ComplexMode,
-    exact: bool,
+    eigenvalue: c64,
+    mode: Option<ComplexMode>,
 }
 
 /// The modes of the projected problem, measured on the full order, and what those ask for that are not exact. Of those found
-/// before, the exact ones are kept.
+/// before, the exact ones are kept. In the `last` round all modes are given as they are.
 fn evaluate(
     scale: &PairMeasurement<'_>,
     asked: Band,
     before: Vec<FoundMode>,
+    last: bool,
 ) -> Result<(Vec<FoundMode>, Corrections)> {
     let mut pairs = small_pairs(scale.operator, scale.basis, asked.hz.map(|f| TAU * f))?;
     if let Some(nearest) = asked.nearest {
@@ -364,15 +364,22 @@ fn evaluate(
         before.into_iter().enumerate().map(|(k, found)| stays(k).then_some(found)).collect();
     let fresh: Vec<&SmallPair> =
         pairs.iter().zip(&settled).filter(|(_, place)| place.is_none()).map(|(pair, _)| pair).collect();
-    let (mut wanted, mut new, mut measured) = (Corrections::default(), Vec::new(), MeasuredPairs::default());
+    let mut wanted = Corrections::of_at_most(fresh.len());
+    let (mut new, mut measured) = (Vec::new(), MeasuredPairs::default());
     for chunk in fresh.chunks(TOGETHER) {
         let amplitudes = expand(scale.basis, chunk, &mut measured);
         scale.measure(&mut measured);
-        wanted.add(scale, &measured);
-        let exact: Vec<bool> = (0..chunk.len()).map(|j| measured.exact(j)).collect();
-        let left = asked.left_vectors.then(|| scale.basis.expand(&measured.left));
-        let modes = post_processed(scale.operator, &mut measured, &amplitudes, left.as_ref());
-        new.extend(modes.into_iter().zip(exact).map(|(mode, exact)| FoundMode { mode, exact }));
+        if !last {
+            wanted.add(scale, &measured);
+        }
+        let given: Vec<usize> = (0..chunk.len()).filter(|j| last || measured.exact(*j)).collect();
+        let left = (asked.left_vectors && !given.is_empty()).then(|| scale.basis.expand(&measured.left));
+        let mut modes =
+            post_processed(scale.operator, &mut measured, &given, &amplitudes, left.as_ref()).into_iter();
+        new.extend(chunk.iter().enumerate().map(|(j, pair)| FoundMode {
+            eigenvalue: pair.lambda,
+            mode: given.contains(&j).then(|| modes.next().expect("one for each that is given")),
+        }));
     }
     let mut new = new.into_iter();
     let of = |place: Option<usize>| match place {
@@ -385,10 +392,10 @@ fn evaluate(
 /// The place of the exact mode that has this λ, when there is just one mode and one pair of `all` there.
 fn settled(before: &[FoundMode], all: &[SmallPair], lambda: c64) -> Option<usize> {
     let apart = |z: c64| (z - lambda).norm() / lambda.norm();
-    let mut own = (0..before.len()).filter(|j| apart(before[*j].mode.eigenvalue) <= ALONE);
+    let mut own = (0..before.len()).filter(|j| apart(before[*j].eigenvalue) <= ALONE);
     let alone = all.iter().filter(|pair| apart(pair.lambda) <= ALONE).count() == 1;
-    let j = own.next().filter(|j| alone && own.next().is_none() && before[*j].exact)?;
-    (apart(before[j].mode.eigenvalue) <= UNMOVED).then_some(j)
+    let j = own.next().filter(|j| alone && own.next().is_none() && before[*j].mode.is_some())?;
+    (apart(before[j].eigenvalue) <= UNMOVED).then_some(j)
 }
 
 #[cfg(test)]

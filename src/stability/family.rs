@@ -220,8 +220,8 @@ impl<'f> Family<'f> {
             let y = Block::from_fn(y.nrows(), count, |i, j| y[(i, first + j)]);
             y.map(|y| product(self.reduced.rotation.as_ref(), y))
         };
-        let (mut check, mut wanted, mut measured) =
-            (FamilyCheck::default(), Corrections::default(), MeasuredPairs::default());
+        let mut wanted = Corrections::of_at_most(modes.eigenvalues.len());
+        let (mut check, mut measured) = (FamilyCheck::default(), MeasuredPairs::default());
         for (chunk, lambda) in modes.eigenvalues.chunks(TOGETHER).enumerate() {
             let of = |y: &Mat<c64>| turned(y, chunk * TOGETHER, lambda.len());
             measured.lambda = lambda.to_vec();

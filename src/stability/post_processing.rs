@@ -8,14 +8,15 @@ use super::refinement::MeasuredPairs;
 use crate::linalg::c64;
 use rayon::prelude::*;
 
-/// The modes of pairs that were measured. The error of φ is about the correction z = −A⁻¹Q(λ)φ, which was solved for to give
-/// that of λ: φ + z is given where its residual is the smaller one, which leaves a few hundredths of that error. Its contact
-/// motion and its share of the modes are settled by the projection; z meets only the rest of the spectrum, as far as the
-/// basis goes: so `amplitudes`, what the real modes have of φ, gives their part in φ + z as well. Left vectors are given where
+/// The modes of the pairs `given` of those that were measured. The error of φ is about the correction z = −A⁻¹Q(λ)φ, which was
+/// solved for to give that of λ: φ + z is given where its residual is the smaller one, which leaves a few hundredths of that error.
+/// Its contact motion and its share of the modes are settled by the projection; z meets only the rest of the spectrum, as far as
+/// the basis goes: so `amplitudes`, what the real modes have of φ, gives their part in φ + z as well. Left vectors are given where
 /// they are requested.
 pub(super) fn post_processed(
     operator: &Operator<'_>,
     measured: &mut MeasuredPairs,
+    given: &[usize],
     amplitudes: &Block,
     left: Option<&Block>,
 ) -> Vec<ComplexMode> {
@@ -49,7 +50,7 @@ pub(super) fn post_processed(
             participation: shares(amplitudes, j),
         }
     };
-    (0..measured.lambda.len()).into_par_iter().map(mode).collect()
+    given.par_iter().map(|j| mode(*j)).collect()
 }
 
 /// |φₖᵀMφ|² of every real mode that has at least one part in ten thousand, largest first.

@@ -6,9 +6,9 @@ use super::operator::{Forms, Operator, Side};
 use super::responses::SKETCH;
 use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
-use crate::linalg::multivector::expand;
+use crate::linalg::multivector::{combine, expand};
 use crate::linalg::random::Random;
-use faer::Mat;
+use faer::{Accum, Mat};
 use rayon::prelude::*;
 
 /// Aims of the refinement, below what [`super::ComplexMode::accepted`] asks.
@@ -88,20 +88,34 @@ impl MeasuredPairs {
 
 /// The corrections that pairs ask for, right and left, each divided by |λ|: their squared E-norm is then about the relative
 /// error of λ that they represent.
-#[derive(Default)]
 pub(super) struct Corrections {
-    /// Re and Im of z.
-    right: Vec<Mat<f64>>,
-    /// Re and Im of Q(λ)ᴴψ.
-    left: Vec<Mat<f64>>,
+    /// The most pairs that can ask for some.
+    most: usize,
+    /// Re and Im of z, with memory for the left ones after them.
+    right: Mat<f64>,
+    /// Re and Im of Q(λ)ᴴψ; of many only as many random combinations as reveal what they have in common (Halko, Martinsson &
+    /// Tropp, SIAM Rev. 53 (2011) 217), as the contact forces of many pairs come from few motions.
+    left: Mat<f64>,
+    /// The factors of those combinations, once there are any.
+    random: Option<Random>,
 }
 
 impl Corrections {
+    /// None yet, of at most so many pairs.
+    pub(super) fn of_at_most(most: usize) -> Self {
+        Corrections { most, right: Mat::new(), left: Mat::new(), random: None }
+    }
+
     /// Adds those of the pairs that are not exact.
     pub(super) fn add(&mut self, scale: &PairMeasurement<'_>, measured: &MeasuredPairs) {
         let open: Vec<usize> = (0..measured.lambda.len()).filter(|j| !measured.exact(*j)).collect();
         if open.is_empty() {
             return;
+        }
+        if self.is_empty() {
+            let (n, left) = (scale.operator.n(), SKETCH.min(2 * self.most));
+            self.right = Mat::with_capacity(n, 2 * self.most + left);
+            self.left = Mat::with_capacity(n, left);
         }
         let lambda: Vec<c64> = open.iter().map(|j| measured.lambda[*j]).collect();
         let factors: Vec<f64> = lambda.iter().map(|z| 1.0 / z.norm().max(1e-3 * scale.top)).collect();
@@ -109,39 +123,46 @@ impl Corrections {
             block.scale(&factors);
             block.into_parts()
         };
-        self.right.push(scaled(Block::gathered(&measured.correction, &open)));
+        append(&mut self.right, &scaled(Block::gathered(&measured.correction, &open)));
         let left = scale.basis.expand(&Block::gathered(&measured.left, &open));
-        self.left.push(scaled(scale.operator.value(Side::Left, &lambda, &left)));
+        self.add_left(scaled(scale.operator.value(Side::Left, &lambda, &left)));
+    }
+
+    fn add_left(&mut self, new: Mat<f64>) {
+        let known = self.left.ncols();
+        if self.random.is_none() && known + new.ncols() <= SKETCH {
+            return append(&mut self.left, &new);
+        }
+        let mut random = self.random.take().unwrap_or_else(|| {
+            let mut random = Random::new();
+            self.left = expand(self.left.as_ref(), mixing(known, &mut random).as_ref());
+            random
+        });
+        let factors = mixing(new.ncols(), &mut random);
+        combine(self.left.as_mut(), Accum::Add, new.as_ref(), factors.as_ref(), 1.0);
+        self.random = Some(random);
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        self.right.is_empty()
+        self.right.ncols() == 0
     }
 
-    /// The corrections, one a column.
-    ///
-    /// The left ones are still to be solved for: of many only as many random combinations as reveal what they have in common
-    /// (Halko, Martinsson & Tropp, SIAM Rev. 53 (2011) 217), as the contact forces of many pairs come from few motions.
+    /// The corrections, one a column; the left ones are solved for here.
     pub(super) fn corrections(self, factor: &dyn SymmetricFactor) -> Mat<f64> {
-        let n = factor.n();
-        let count = |parts: &[Mat<f64>]| parts.iter().map(Mat::ncols).sum::<usize>();
-        let [right, left] = [&self.right, &self.left].map(|parts| count(parts));
-        let mut left = joined(Mat::with_capacity(n, left), n, self.left);
-        if left.ncols() > SKETCH {
-            let mut random = Random::new();
-            left = expand(left.as_ref(), Mat::from_fn(left.ncols(), SKETCH, |_, _| random.next()).as_ref());
-        }
+        let Corrections { right: mut all, mut left, .. } = self;
         factor.solve_in_place(left.as_mut());
-        joined(Mat::with_capacity(n, right + left.ncols()), n, self.right.into_iter().chain([left]))
+        append(&mut all, &left);
+        all
     }
 }
 
-/// The columns of `parts`, of `n` rows each, after one another in the memory of `all`; each part is given back as soon as it
-/// is copied.
-fn joined(mut all: Mat<f64>, n: usize, parts: impl IntoIterator<Item = Mat<f64>>) -> Mat<f64> {
-    for part in parts {
-        let first = all.ncols();
-        all.resize_with(n, first + part.ncols(), |i, j| part[(i, j - first)]);
-    }
-    all
+/// Random factors of `rows` vectors in [`SKETCH`] combinations.
+fn mixing(rows: usize, random: &mut Random) -> Mat<f64> {
+    Mat::from_fn(rows, SKETCH, |_, _| random.next())
+}
+
+/// Adds the columns of `part` after those of `all`.
+fn append(all: &mut Mat<f64>, part: &Mat<f64>) {
+    let first = all.ncols();
+    all.resize_with(part.nrows(), first + part.ncols(), |i, j| part[(i, j - first)]);
 }
