@@ -144,7 +144,7 @@ impl<'a> Asked<'a> {
 
     /// Whether an analysis takes the left vectors of the complex modes.
     fn left_vectors(&self) -> bool {
-        self.selection.analyses(self.prepared.case).any(|analysis| analysis.takes_left_vectors())
+        self.selection.takes_left_vectors(self.prepared.case)
     }
 
     /// The sizes of the records that are kept on the disk.

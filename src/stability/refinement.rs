@@ -166,3 +166,31 @@ fn append(all: &mut Mat<f64>, part: &Mat<f64>) {
     let first = all.ncols();
     all.resize_with(part.nrows(), first + part.ncols(), |i, j| part[(i, j - first)]);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Left corrections of `count` columns, all multiples of (1, 2, …), eight at a time.
+    fn alike(count: usize) -> Mat<f64> {
+        let mut corrections = Corrections::of_at_most(count);
+        for first in (0..count).step_by(8) {
+            let new = Mat::from_fn(5, 8.min(count - first), |i, j| (i + 1) as f64 * (first + j + 1) as f64);
+            corrections.add_left(new);
+        }
+        corrections.left
+    }
+
+    #[test]
+    fn many_left_corrections_become_combinations_that_span_what_they_span() {
+        let few = alike(SKETCH);
+        assert!(few.ncols() == SKETCH && (0..SKETCH).all(|j| few[(0, j)] == (j + 1) as f64));
+        let many = alike(3 * SKETCH);
+        assert_eq!(many.ncols(), SKETCH);
+        for column in many.col_iter() {
+            let size = column[0].abs();
+            assert!(size > 1e-3, "a random combination does not vanish");
+            assert!((0..5).all(|i| (column[i] - (i + 1) as f64 * column[0]).abs() < 1e-9 * size.max(1e3)));
+        }
+    }
+}

@@ -55,6 +55,11 @@ impl Selection {
         self.analyses(case).any(|analysis| analysis.name() == name)
     }
 
+    /// Whether an analysis that is run for `case` takes the left vectors of the complex modes.
+    pub(in crate::job) fn takes_left_vectors(self, case: &Case) -> bool {
+        self.analyses(case).any(|analysis| analysis.takes_left_vectors())
+    }
+
     /// Refuses a case that lacks a table of an analysis that is requested by name.
     pub(in crate::job) fn check(self, case: &Case) -> Result<()> {
         let mut faults = Faults::new();
