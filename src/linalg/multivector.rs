@@ -190,6 +190,12 @@ pub fn beside(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
     both
 }
 
+/// Adds the columns of `part` after those of `all`.
+pub fn append(all: &mut Mat<f64>, part: MatRef<'_, f64>) {
+    let first = all.ncols();
+    all.resize_with(part.nrows(), first + part.ncols(), |i, j| part[(i, j - first)]);
+}
+
 /// V C as a new matrix, over fixed ranges of rows.
 pub fn expand<T: Entry>(v: MatRef<'_, T>, c: MatRef<'_, T>) -> Mat<T> {
     let mut y = Mat::zeros(v.nrows(), c.ncols());

@@ -210,7 +210,7 @@ fn solve_and_refine<'a>(
         (found, wanted) = evaluate(&scale, asked, found, last)?;
         observer.advance(1);
         counts.push(found.len());
-        if wanted.is_empty() || last {
+        if wanted.is_empty() {
             break;
         }
         // The error of λ is quadratic in that of the vectors: coarse first, so that the basis stays small.
@@ -346,7 +346,7 @@ struct FoundMode {
 }
 
 /// The modes of the projected problem, measured on the full order, and what those ask for that are not exact. Of those found
-/// before, the exact ones are kept. In the `last` round all modes are given as they are.
+/// before, the exact ones are kept. In the `last` round all modes are given as they are, and nothing is asked for.
 fn evaluate(
     scale: &PairMeasurement<'_>,
     asked: Band,
@@ -372,14 +372,11 @@ fn evaluate(
         if !last {
             wanted.add(scale, &measured);
         }
-        let given: Vec<usize> = (0..chunk.len()).filter(|j| last || measured.exact(*j)).collect();
-        let left = (asked.left_vectors && !given.is_empty()).then(|| scale.basis.expand(&measured.left));
-        let mut modes =
-            post_processed(scale.operator, &mut measured, &given, &amplitudes, left.as_ref()).into_iter();
-        new.extend(chunk.iter().enumerate().map(|(j, pair)| FoundMode {
-            eigenvalue: pair.lambda,
-            mode: given.contains(&j).then(|| modes.next().expect("one for each that is given")),
-        }));
+        let given: Vec<bool> = (0..chunk.len()).map(|j| last || measured.exact(j)).collect();
+        let left = (asked.left_vectors && given.contains(&true)).then(|| scale.basis.expand(&measured.left));
+        let modes = post_processed(scale.operator, &mut measured, &given, &amplitudes, left.as_ref());
+        let found = |(pair, mode): (&&SmallPair, _)| FoundMode { eigenvalue: pair.lambda, mode };
+        new.extend(chunk.iter().zip(modes).map(found));
     }
     let mut new = new.into_iter();
     let of = |place: Option<usize>| match place {

@@ -5,7 +5,7 @@ use super::damper::Between;
 use super::operator::Operator;
 use crate::linalg::SparseMatrix;
 use crate::linalg::dense::{product, symmetric_eigen};
-use crate::linalg::multivector::{Columns, combine, expand, gram, panels};
+use crate::linalg::multivector::{Columns, append, combine, expand, gram, panels};
 use crate::linalg::sparse::{add_scaled, times};
 use faer::linalg::triangular_solve::solve_upper_triangular_in_place;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
@@ -257,8 +257,7 @@ impl<'a> Basis<'a> {
 
     /// Adds vectors and their projections.
     fn append(&mut self, new: MatRef<'_, f64>) {
-        let old = self.added.ncols();
-        self.added.resize_with(new.nrows(), old + new.ncols(), |i, j| new[(i, j - old)]);
+        append(&mut self.added, new);
         self.project();
     }
 

@@ -8,18 +8,18 @@ use super::refinement::MeasuredPairs;
 use crate::linalg::c64;
 use rayon::prelude::*;
 
-/// The modes of the pairs `given` of those that were measured. The error of φ is about the correction z = −A⁻¹Q(λ)φ, which was
-/// solved for to give that of λ: φ + z is given where its residual is the smaller one, which leaves a few hundredths of that error.
-/// Its contact motion and its share of the modes are settled by the projection; z meets only the rest of the spectrum, as far as
-/// the basis goes: so `amplitudes`, what the real modes have of φ, gives their part in φ + z as well. Left vectors are given where
+/// The modes of measured pairs, of those to be `given`. The error of φ is about the correction z = −A⁻¹Q(λ)φ, which was solved
+/// for to give that of λ: φ + z is given where its residual is the smaller one, which leaves a few hundredths of that error. Its
+/// contact motion and its share of the modes are settled by the projection; z meets only the rest of the spectrum, as far as the
+/// basis goes: so `amplitudes`, what the real modes have of φ, gives their part in φ + z as well. Left vectors are given where
 /// they are requested.
 pub(super) fn post_processed(
     operator: &Operator<'_>,
     measured: &mut MeasuredPairs,
-    given: &[usize],
+    given: &[bool],
     amplitudes: &Block,
     left: Option<&Block>,
-) -> Vec<ComplexMode> {
+) -> Vec<Option<ComplexMode>> {
     let one = vec![c64::new(1.0, 0.0); measured.lambda.len()];
     measured.correction.add_scaled(&one, &measured.right);
     let measured = &*measured;
@@ -50,7 +50,7 @@ pub(super) fn post_processed(
             participation: shares(amplitudes, j),
         }
     };
-    given.par_iter().map(|j| mode(*j)).collect()
+    given.par_iter().enumerate().map(|(j, given)| given.then(|| mode(j))).collect()
 }
 
 /// |φₖᵀMφ|² of every real mode that has at least one part in ten thousand, largest first.

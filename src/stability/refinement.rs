@@ -6,7 +6,7 @@ use super::operator::{Forms, Operator, Side};
 use super::responses::SKETCH;
 use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
-use crate::linalg::multivector::{combine, expand};
+use crate::linalg::multivector::{append, combine, expand};
 use crate::linalg::random::Random;
 use faer::{Accum, Mat};
 use rayon::prelude::*;
@@ -123,7 +123,7 @@ impl Corrections {
             block.scale(&factors);
             block.into_parts()
         };
-        append(&mut self.right, &scaled(Block::gathered(&measured.correction, &open)));
+        append(&mut self.right, scaled(Block::gathered(&measured.correction, &open)).as_ref());
         let left = scale.basis.expand(&Block::gathered(&measured.left, &open));
         self.add_left(scaled(scale.operator.value(Side::Left, &lambda, &left)));
     }
@@ -131,7 +131,7 @@ impl Corrections {
     fn add_left(&mut self, new: Mat<f64>) {
         let known = self.left.ncols();
         if self.random.is_none() && known + new.ncols() <= SKETCH {
-            return append(&mut self.left, &new);
+            return append(&mut self.left, new.as_ref());
         }
         let mut random = self.random.take().unwrap_or_else(|| {
             let mut random = Random::new();
@@ -151,7 +151,7 @@ impl Corrections {
     pub(super) fn corrections(self, factor: &dyn SymmetricFactor) -> Mat<f64> {
         let Corrections { right: mut all, mut left, .. } = self;
         factor.solve_in_place(left.as_mut());
-        append(&mut all, &left);
+        append(&mut all, left.as_ref());
         all
     }
 }
@@ -159,12 +159,6 @@ impl Corrections {
 /// Random factors of `rows` vectors in [`SKETCH`] combinations.
 fn mixing(rows: usize, random: &mut Random) -> Mat<f64> {
     Mat::from_fn(rows, SKETCH, |_, _| random.next())
-}
-
-/// Adds the columns of `part` after those of `all`.
-fn append(all: &mut Mat<f64>, part: &Mat<f64>) {
-    let first = all.ncols();
-    all.resize_with(part.nrows(), first + part.ncols(), |i, j| part[(i, j - first)]);
 }
 
 #[cfg(test)]
