@@ -28,6 +28,7 @@
 //! | [`signal`] | spectra, spectrograms, peaks, growth and size of a record |
 //! | [`sound`] | sound of vibrating plates: Rayleigh's integral |
 //! | [`sweep`] | complex modes over scalars: branches, critical values, maps |
+//! | [`uncertainty`] | uncertain scalars: distributions, samples, statistics |
 //! | [`measured`] | measured modes and responses, compared with the computed ones |
 //! | [`calibration`] | scalars identified from measurements, with their uncertainty |
 //! | [`dataset`] | named quantities with units and dimensions, in JSON, HDF5, CSV and tables |
@@ -80,6 +81,7 @@ pub mod structure;
 pub mod sweep;
 pub mod system;
 pub mod transient;
+pub mod uncertainty;
 #[cfg(feature = "cli")]
 pub mod validation;
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Each module with all modules that it may use.
-const MAY_USE: [(&str, &[&str]); 32] = [
+const MAY_USE: [(&str, &[&str]); 33] = [
     ("input", &[]),
     ("error", &["input"]),
     ("progress", &[]),
@@ -28,6 +28,7 @@ const MAY_USE: [(&str, &[&str]); 32] = [
     ("reduction", &["error", "progress", "linalg", "system", "equilibrium", "modal"]),
     ("stability", &["error", "progress", "numbers", "linalg", "system", "equilibrium", "modal"]),
     ("sweep", &["error", "progress", "linalg", "stability"]),
+    ("uncertainty", &["schema"]),
     ("transient", &["error", "progress", "linalg", "system", "equilibrium"]),
     ("signal", &[]),
     ("calibration", &["error", "progress", "linalg"]),
@@ -47,6 +48,7 @@ const MAY_USE: [(&str, &[&str]); 32] = [
             "modal",
             "stability",
             "sweep",
+            "uncertainty",
             "transient",
             "signal",
             "sound",
@@ -65,6 +67,7 @@ const MAY_USE: [(&str, &[&str]); 32] = [
             "modal",
             "stability",
             "sweep",
+            "uncertainty",
             "signal",
             "sound",
             "measured",
@@ -72,7 +75,7 @@ const MAY_USE: [(&str, &[&str]); 32] = [
         ],
     ),
     // From a file to results.
-    ("case", &["error", "schema", "linalg", "structure", "contact", "measured"]),
+    ("case", &["error", "schema", "linalg", "structure", "contact", "measured", "uncertainty"]),
     (
         "job",
         &[
@@ -92,6 +95,7 @@ const MAY_USE: [(&str, &[&str]); 32] = [
             "modal",
             "stability",
             "sweep",
+            "uncertainty",
             "reduction",
             "transient",
             "signal",

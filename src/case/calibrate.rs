@@ -1,9 +1,12 @@
 //! `[calibrate]`: scalars of the case to be found from measured modes and frequency responses.
 
-use super::{Case, ContactPoints, ContactState, Invalidates, Matrices, MatrixTerm, MeshSource, Parameter};
-use crate::error::{Error, Fault, Result, nearest};
-use crate::schema::units::{NUMBER, dimension_of, parse_quantity};
-use crate::schema::{Report, declare, dotted, key, keys_of};
+use super::varied::check_parameters;
+use super::{
+    Case, ContactPoints, ContactState, Matrices, MatrixTerm, MeshSource, Parameter, VariedParameter,
+};
+use crate::error::Result;
+use crate::schema::units::NUMBER;
+use crate::schema::{Report, declare, key};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Bound;
 
@@ -33,36 +36,7 @@ declare! {
         /// Fits of synthetic data, for the coverage of the intervals; 0 for none.
         pub trials: usize = key::whole().check("at most a million", |n| *n <= 1_000_000).or(0),
         /// Scalars to be found, by name.
-        pub parameter: BTreeMap<String, CalibratedParameter> = key::named(),
-    }
-}
-
-declare! {
-    /// A number to be found.
-    pub struct CalibratedParameter {
-        /// The paths of the scalars that have this value.
-        pub path: Vec<String> = key::names("the path of a scalar of the case, or of several that are the same")
-            .check("at least one path", |paths| !paths.is_empty()),
-        /// Takes equal ratios, not equal differences, as equal steps.
-        pub log: bool = key::flag(false),
-        /// The least and the largest value \[SI\].
-        pub between: [f64; 2] = {
-            let log = *log;
-            key::quantities_of_scalars()
-                .expecting("two bounds")
-                .check("the lower bound before the upper one", |[low, high]| low < high)
-                .check("bounds above zero with `log`", move |[low, _]| !log || *low > 0.0)
-        },
-        /// Expected value \[SI\]; that of the case by default.
-        pub expected: Option<f64> = {
-            let [low, high] = *between;
-            key::quantity_of_scalar()
-                .check("a value inside the bounds", move |v| low >= high || (low..=high).contains(v))
-                .optional()
-        },
-        /// Standard deviation of what is expected \[SI\]; its share of the value where `log`. Without it every value inside the
-        /// bounds is as good.
-        pub deviation: Option<f64> = key::quantity_of_scalar().positive().optional(),
+        pub parameter: BTreeMap<String, VariedParameter> = key::named(),
     }
 }
 
@@ -72,103 +46,7 @@ pub(super) fn check(case: &Case, scalars: Option<&[Parameter]>, report: &mut Rep
     if !report.unread("calibrate.against") {
         check_against(case, analysis, report);
     }
-    let parameters = &analysis.parameter;
-    if parameters.is_empty() && !report.unread("calibrate.parameter") {
-        report.fault("calibrate.parameter", "nothing", "at least one table [calibrate.parameter.NAME]", "");
-    }
-    let without = case.without_studies();
-    for (name, parameter) in parameters {
-        check_parameter(
-            parameter,
-            &format!("calibrate.parameter.{}", dotted(name)),
-            &without,
-            scalars,
-            report,
-        );
-    }
-    let all: Vec<(&String, &String)> =
-        parameters.iter().flat_map(|(name, p)| p.path.iter().map(move |path| (name, path))).collect();
-    for (k, (name, path)) in all.iter().enumerate() {
-        if all[..k].iter().any(|(_, other)| other == path) {
-            let key = format!("calibrate.parameter.{}.path", dotted(name));
-            report.fault(&key, format!("`{path}` twice"), "each scalar once", "");
-        }
-    }
-}
-
-/// Checks a number of `case` to be found, whose table is at `place`; `scalars` are those of the case, where they are known.
-pub(crate) fn check_parameter(
-    parameter: &CalibratedParameter,
-    place: &str,
-    case: &Case,
-    scalars: Option<&[Parameter]>,
-    report: &mut Report,
-) {
-    let key = |key: &str| if place.is_empty() { key.to_string() } else { format!("{place}.{key}") };
-    let CalibratedParameter { path, between, log, .. } = parameter;
-    let Some(all) = scalars.filter(|_| !report.unread(&key("path"))) else { return };
-    let found: Option<Vec<&Parameter>> =
-        path.iter().map(|path| find(report, &key("path"), all, path)).collect();
-    let Some(first) = found.as_ref().and_then(|found| found.first()) else { return };
-    let dimension = dimension_of(first.unit);
-    for other in found.iter().flatten().filter(|p| p.unit != first.unit) {
-        let found = format!("`{}` in {} beside {}", other.path, other.unit, first.unit);
-        report.fault(&key("path"), found, "scalars of one unit", "");
-    }
-    let share = if *log { NUMBER } else { dimension };
-    for (name, dimension) in [("between", dimension), ("expected", dimension), ("deviation", share)] {
-        for (_, text) in report.given(&key(name)) {
-            if let Err(found) = parse_quantity(&text, dimension) {
-                report.fault(&key(name), found, dimension.name, "");
-            }
-        }
-    }
-    let sound = between[0] < between[1] && !report.unread(&key("between"));
-    for value in between.iter().filter(|_| sound) {
-        if let Some(expected) = path.iter().find_map(|path| refused(case, path, *value)) {
-            report.fault(&key("between"), format!("{value}"), expected, "");
-        }
-    }
-}
-
-/// Why the case does not take `value` at `path`, if it does not.
-fn refused(case: &Case, path: &str, value: f64) -> Option<String> {
-    match case.with_parameter(path, value) {
-        Ok(_) => None,
-        Err(Error::Input(faults)) => {
-            Some(faults.0.first().map_or(String::new(), |f| format!("{} for `{path}`", f.expected)))
-        }
-        Err(other) => Some(other.to_string()),
-    }
-}
-
-fn find<'a>(report: &mut Report, key: &str, all: &'a [Parameter], path: &str) -> Option<&'a Parameter> {
-    match all.iter().find(|p| p.path == path) {
-        Some(p) if p.invalidates == Invalidates::Question && !is_scale(path) => {
-            let expected = "a scalar of the model, or the `frequency_scale` of real modes";
-            report.fault(key, format!("`{path}`, which only says what is asked"), expected, "");
-            None
-        }
-        Some(p) => Some(p),
-        None => {
-            no_number(report, key, path, all);
-            None
-        }
-    }
-}
-
-/// Notes that `path` is no number of a case, with the nearest one that is.
-pub(super) fn no_number(report: &mut Report, key: &str, path: &str, all: &[Parameter]) {
-    let help = nearest(path, all.iter().map(|p| p.path.as_str()))
-        .map_or("`stridor check CASE --parameters` lists them".to_string(), |near| {
-            format!("Did you mean `{near}`?")
-        });
-    report.fault(key, format!("`{path}`, no number of the case"), "the path of a scalar", &help);
-}
-
-/// Whether `path` is the `frequency_scale` of a set of real modes.
-fn is_scale(path: &str) -> bool {
-    matches!(&keys_of(path)[..], [modes, _, scale] if modes == "modes" && scale == "frequency_scale")
+    check_parameters(&analysis.parameter, "calibrate.parameter", &case.without_studies(), scalars, report);
 }
 
 fn check_against(case: &Case, analysis: &CalibrateAnalysis, report: &mut Report) {
@@ -228,51 +106,14 @@ fn check_against(case: &Case, analysis: &CalibrateAnalysis, report: &mut Report)
     }
 }
 
-impl CalibratedParameter {
-    /// Expected value \[SI\]: that of the case, or the middle of the bounds where it is not known.
-    pub fn expectation(&self) -> f64 {
-        self.expected.unwrap_or(0.5 * (self.between[0] + self.between[1]))
-    }
-
-    /// The value that its scalars have in `case`, where a search starts; `place` says where a key of it stands.
-    ///
-    /// # Errors
-    /// Scalars whose values differ, or are outside the bounds.
-    pub fn start(&self, case: &Case, place: impl Fn(&str) -> String) -> Result<f64> {
-        let values = self.path.iter().map(|path| Ok(case.parameter(path)?.value));
-        let values: Vec<f64> = values.collect::<Result<_>>()?;
-        let [low, high] = self.between;
-        if values.iter().any(|value| *value != values[0]) {
-            let found = format!("values {values:?}");
-            return Err(Error::input(Fault::new(place("path"), found, "scalars of one value")));
-        }
-        if !(low..=high).contains(&values[0]) {
-            let found = format!("bounds {low} to {high} without the case's own value {}", values[0]);
-            let expected = "bounds that hold the value of the case, where the search starts";
-            return Err(Error::input(Fault::new(place("between"), found, expected)));
-        }
-        Ok(values[0])
-    }
-}
-
 impl Case {
-    /// Every number to be found expects the value that it has, within its bounds, unless the case says otherwise.
-    pub(super) fn expect_own_values(&mut self) {
-        let all = if self.calibrate.is_some() { self.parameters() } else { return };
-        for number in self.calibrate.iter_mut().flat_map(|calibrate| calibrate.parameter.values_mut()) {
-            let first = number.path.first().and_then(|path| all.iter().find(|p| p.path == *path));
-            let [low, high] = number.between;
-            number.expected = number.expected.or(first.map(|p| p.value.clamp(low, high)));
-        }
-    }
-
     /// The same case with the scalars of some numbers at values \[SI\], one a number.
     ///
     /// # Errors
     /// A value that the case refuses.
     pub(crate) fn with_numbers<'a>(
         &self,
-        numbers: impl IntoIterator<Item = &'a CalibratedParameter>,
+        numbers: impl IntoIterator<Item = &'a VariedParameter>,
         values: &[f64],
     ) -> Result<Case> {
         let each = numbers.into_iter().zip(values);

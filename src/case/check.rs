@@ -13,10 +13,11 @@ impl Consistent for Case {
             check_names(report, self);
         }
         super::measured::check(report, self);
-        let sound = report.is_sound(&["sensitivity", "sweep", "map", "calibrate"]);
+        let sound = report.is_sound(&["sensitivity", "sweep", "map", "uncertainty", "calibrate"]);
         let scalars = sound.then(|| self.without_studies().parameters());
         check_sensitivity(report, self, scalars.as_deref());
         super::explore::check(self, scalars.as_deref(), report);
+        super::uncertainty::check(self, scalars.as_deref(), report);
         super::calibrate::check(self, scalars.as_deref(), report);
     }
 }

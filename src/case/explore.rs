@@ -1,6 +1,6 @@
 //! `[sweep.NAME]` and `[map.NAME]`: complex eigenvalues over scalars of the rest of the case.
 
-use super::calibrate::no_number;
+use super::varied::no_number;
 use super::{Case, Invalidates, Parameter};
 use crate::schema::units::{dimension_of, parse_quantity};
 use crate::schema::{Report, declare, dotted, key};

@@ -23,10 +23,11 @@ mod test_file;
 #[cfg(test)]
 mod tests;
 mod transient;
+mod uncertainty;
+mod varied;
 
 pub use analyses::{CeaAnalysis, ContactState, ModesAnalysis, SensitivityAnalysis};
-pub(crate) use calibrate::check_parameter;
-pub use calibrate::{CalibrateAnalysis, CalibratedParameter, SQUEAL};
+pub use calibrate::{CalibrateAnalysis, SQUEAL};
 pub use contact::{
     BristleChoice, Contact, ContactPoints, Friction, FrictionCurve, Normal, Placement, Pressing, Sense,
     StiffnessPer,
@@ -45,6 +46,9 @@ pub use transient::{
     Course, Disturbance, ModelChoice, Probe, PushedRegion, SchemeChoice, Slide, StartChoice,
     TransientAnalysis,
 };
+pub use uncertainty::UncertaintyAnalysis;
+pub use varied::VariedParameter;
+pub(crate) use varied::check_parameter;
 
 pub use crate::schema::{Invalidates, Places, Scalar as Parameter};
 
@@ -114,6 +118,8 @@ declare! {
         pub sweep: BTreeMap<String, SweepAnalysis> = key::named().invalidates(Invalidates::Question),
         /// Complex eigenvalues over two scalars, by name.
         pub map: BTreeMap<String, MapAnalysis> = key::named().invalidates(Invalidates::Question),
+        /// Complex eigenvalues of samples of uncertain scalars, by name.
+        pub uncertainty: BTreeMap<String, UncertaintyAnalysis> = key::named().invalidates(Invalidates::Question),
     }
     also {
         /// The folder that relative paths start from.
@@ -151,14 +157,14 @@ impl Case {
         Ok(case)
     }
 
-    /// The same case without what names scalars of it: sweeps, maps, calibration.
+    /// The same case without what names scalars of it: sweeps, maps, uncertain scalars, calibration.
     pub fn without_studies(&self) -> Case {
         Case { calibrate: None, ..self.without_sweeps() }
     }
 
-    /// The same case without its sweeps and maps, as each of their points is.
+    /// The same case without its sweeps, maps and uncertain scalars, as each of their points is.
     pub fn without_sweeps(&self) -> Case {
-        Case { sweep: BTreeMap::new(), map: BTreeMap::new(), ..self.clone() }
+        Case { sweep: BTreeMap::new(), map: BTreeMap::new(), uncertainty: BTreeMap::new(), ..self.clone() }
     }
 
     /// The case as TOML in SI units with every default written out.

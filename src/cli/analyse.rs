@@ -1,4 +1,4 @@
-//! `stridor run`, `compare`, and a subcommand for every analysis; `stridor sweep` in parts.
+//! `stridor run`, `compare`, and a subcommand for every analysis; studies in parts.
 
 use super::engine::EngineName;
 #[cfg(feature = "slepc")]
@@ -8,7 +8,7 @@ use super::output::{Common, SUCCESS, give, say, window_width};
 use super::progress::Bars;
 use crate::case::read_case;
 use crate::error::Result;
-use crate::job::{ANALYSES, PartDone, RunOptions, Selection, merge_parts, run_case, run_part};
+use crate::job::{ANALYSES, PartDone, RunOptions, SHARED, Selection, merge_parts, run_case, run_part};
 use crate::linalg::Engine;
 use crate::report;
 use crate::results::RunResults;
@@ -19,6 +19,7 @@ use std::path::{Path, PathBuf};
 
 /// A subcommand that runs analyses.
 pub struct Analyse {
+    name: &'static str,
     selection: Selection,
     options: AnalyseOptions,
     parts: PartOptions,
@@ -32,7 +33,7 @@ struct AnalyseOptions {
     /// The folder for the results; `results/NAME` by default, NAME being the case file's, or its folder's for case.toml
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Resume the maps and the run in time that an interrupted run of the same case left in the folder
+    /// Resume the maps, the samples and the run in time that an interrupted run of the same case left in the folder
     #[arg(long)]
     resume: bool,
     /// Share the work over the ranks of `mpirun`
@@ -46,14 +47,11 @@ impl AnalyseOptions {
     }
 }
 
-/// The subcommand that computes in parts.
-const IN_PARTS: &str = "sweep";
-
-/// The options of `stridor sweep` alone.
+/// The options of the subcommands whose points several processes can share.
 #[derive(Args, Default)]
 struct PartOptions {
-    /// Compute the I-th of N parts of the sweeps and maps, as job I of a job array of N, into a file of the results folder; a part
-    /// that was killed resumes when it is called again
+    /// Compute the I-th of N parts of the points, as job I of a job array of N, into a file of the results folder; a part that was
+    /// killed resumes when it is called again
     #[arg(long, value_name = "I/N", conflicts_with_all = ["resume", "engine"])]
     part: Option<String>,
     /// Make the results of one run of all parts in the results folder
@@ -73,7 +71,7 @@ impl Subcommand for Analyse {
     fn augment_subcommands(command: clap::Command) -> clap::Command {
         commands().fold(command, |command, (name, about, _)| {
             let own = AnalyseOptions::augment_args(clap::Command::new(name)).about(about);
-            let own = if name == IN_PARTS { PartOptions::augment_args(own) } else { own };
+            let own = if SHARED.contains(&name) { PartOptions::augment_args(own) } else { own };
             command.subcommand(own.after_help(examples::of_analysis(name)))
         })
     }
@@ -94,9 +92,11 @@ impl FromArgMatches for Analyse {
         });
         let (name, selection, inner) =
             chosen.ok_or_else(|| clap::Error::new(clap::error::ErrorKind::InvalidSubcommand))?;
-        let parts =
-            if name == IN_PARTS { PartOptions::from_arg_matches(inner)? } else { PartOptions::default() };
-        Ok(Analyse { selection, options: AnalyseOptions::from_arg_matches(inner)?, parts })
+        let parts = match SHARED.contains(&name) {
+            true => PartOptions::from_arg_matches(inner)?,
+            false => PartOptions::default(),
+        };
+        Ok(Analyse { name, selection, options: AnalyseOptions::from_arg_matches(inner)?, parts })
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> std::result::Result<(), clap::Error> {
@@ -106,37 +106,37 @@ impl FromArgMatches for Analyse {
 }
 
 pub fn run(analyse: &Analyse, common: &Common) -> Result<u8> {
-    let Analyse { selection, options, parts } = analyse;
+    let Analyse { name, selection, options, parts } = analyse;
     let part = parts.part.as_deref().map(Part::read).transpose()?;
     if let Some(part) = part {
-        return run_share(part, options, common);
+        return run_share(name, part, options, common);
     }
     if let Some(engine) = options.engine {
         engine.check(*selection)?;
     }
     #[cfg(feature = "slepc")]
     match options.engine {
-        Some(EngineName::Mpi) => return run_on_ranks(options, common),
-        Some(name) => return shared_matrices(name, |engine| run_with(analyse, engine, common)),
+        Some(EngineName::Mpi) => return run_on_ranks(name, options, common),
+        Some(method) => return shared_matrices(method, |engine| run_with(analyse, engine, common)),
         None => {}
     }
     run_with(analyse, &Engine::default(), common)
 }
 
-/// Points of sweeps and maps over the ranks; rank 0 prints.
+/// Points of studies over the ranks; rank 0 prints.
 #[cfg(feature = "slepc")]
-fn run_on_ranks(options: &AnalyseOptions, common: &Common) -> Result<u8> {
+fn run_on_ranks(analysis: &'static str, options: &AnalyseOptions, common: &Common) -> Result<u8> {
     let out = options.out();
-    let results = shared_points(|| read_case(&options.case), &out, common.quiet)?;
+    let results = shared_points(|| read_case(&options.case), analysis, &out, common.quiet)?;
     results.map_or(Ok(SUCCESS), |results| print_results(&results, &out, common))
 }
 
 fn run_with(analyse: &Analyse, engine: &Engine, common: &Common) -> Result<u8> {
-    let Analyse { selection, options, parts } = analyse;
+    let Analyse { name, selection, options, parts } = analyse;
     let case = read_case(&options.case)?;
     let (out, bars) = (options.out(), Bars::new(common.quiet));
     let results = match parts.merge {
-        true => merge_parts(&case, &out, &bars),
+        true => merge_parts(&case, name, &out, &bars),
         false => {
             let run_options = RunOptions { resume: options.resume, engine: engine.clone() };
             run_case(&case, *selection, &out, &run_options, &bars)
@@ -156,9 +156,9 @@ fn print_results(results: &RunResults, out: &Path, common: &Common) -> Result<u8
 }
 
 /// One job of a job array.
-fn run_share(part: Part, options: &AnalyseOptions, common: &Common) -> Result<u8> {
+fn run_share(analysis: &'static str, part: Part, options: &AnalyseOptions, common: &Common) -> Result<u8> {
     let case = read_case(&options.case)?;
-    let done = run_part(&case, part, &options.out(), &Bars::new(common.quiet));
+    let done = run_part(&case, analysis, part, &options.out(), &Bars::new(common.quiet));
     print_part(part, &done.map_err(|error| case.places.locate(error))?, common)
 }
 
@@ -168,7 +168,7 @@ fn print_part(part: Part, done: &PartDone, common: &Common) -> Result<u8> {
         let file = (*points > 0).then(|| file.display().to_string());
         give(serde_json::json!({ "part": part.number, "of": part.of, "points": points, "file": file }))?;
     } else if *points == 0 && !common.quiet {
-        say(format!("There are more parts than the sweeps and maps can be cut into: {part} has none."))?;
+        say(format!("There are more parts than the points can be cut into: {part} has none."))?;
     } else if !common.quiet {
         say(format!(
             "Done: {part}, {points} points, in {}. When all parts are done: --merge.",

@@ -1,7 +1,7 @@
 //! `--engine`: analyses over the ranks of an MPI program.
 
 use crate::error::{Error, Fault, Result};
-use crate::job::Selection;
+use crate::job::{SHARED, Selection};
 use clap::ValueEnum;
 
 /// How an analysis is shared out over the ranks of `mpirun`.
@@ -11,7 +11,7 @@ pub enum EngineName {
     Slepc,
     /// The same with the real modes by Krylov–Schur of SLEPc, a second method to find them
     SlepcKrylovSchur,
-    /// For `sweep`: its points
+    /// For `sweep` and `uncertainty`: their points
     Mpi,
 }
 
@@ -30,7 +30,10 @@ impl EngineName {
             EngineName::Slepc | EngineName::SlepcKrylovSchur => {
                 (matches!(selection, Selection::Only("modes" | "cea")), "`stridor modes` or `stridor cea`")
             }
-            EngineName::Mpi => (matches!(selection, Selection::Only("sweep")), "`stridor sweep`"),
+            EngineName::Mpi => (
+                matches!(selection, Selection::Only(name) if SHARED.contains(&name)),
+                "`stridor sweep` or `stridor uncertainty`",
+            ),
         };
         if !fits {
             return Err(Error::input(Fault::new(self.option(), "another subcommand", expected)));
@@ -55,7 +58,7 @@ mod on_ranks {
     use crate::cli::version::VERSION;
     use crate::distributed::{RealModesMethod, Role, same_build, start};
     use crate::error::{Error, Result};
-    use crate::job::sweep_on_ranks;
+    use crate::job::studies_on_ranks;
     use crate::linalg::Engine;
     use crate::results::RunResults;
     use crate::slepc::World;
@@ -78,9 +81,10 @@ mod on_ranks {
         }
     }
 
-    /// Shares the points of the sweeps and maps of a case; the results on rank 0.
+    /// Shares the points of the studies of a case that `analysis` takes; the results on rank 0.
     pub fn shared_points(
         read: impl FnOnce() -> Result<Case>,
+        analysis: &'static str,
         out: &Path,
         quiet: bool,
     ) -> Result<Option<RunResults>> {
@@ -89,6 +93,6 @@ mod on_ranks {
         if !same_build(&world, &VERSION)? {
             return Ok(None);
         }
-        sweep_on_ranks(read(), out, &world, &bars)
+        studies_on_ranks(read(), analysis, out, &world, &bars)
     }
 }

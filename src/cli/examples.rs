@@ -1,5 +1,7 @@
 //! The examples below the help of each subcommand; a test reads every line as a command line.
 
+use crate::job::SHARED;
+
 pub const PROGRAM: &str = "\
 Examples:
   stridor new rig                          A case and a mesh to start from
@@ -57,12 +59,12 @@ Examples:
 
 /// Of a subcommand that runs analyses.
 pub fn of_analysis(name: &str) -> String {
-    let parts = match name {
-        "sweep" => {
-            "\n  stridor sweep rig/case.toml --part 3/40       The third of 40 parts of a job array\n  \
-             stridor sweep rig/case.toml --merge           One result of all 40"
-        }
-        _ => "",
+    let parts = match SHARED.contains(&name) {
+        true => format!(
+            "\n  stridor {name} rig/case.toml --part 3/40       The third of 40 parts of a job array\n  \
+             stridor {name} rig/case.toml --merge           One result of all 40"
+        ),
+        false => String::new(),
     };
     format!(
         "Examples:\n  stridor {name} rig/case.toml\n  stridor {name} rig/case.toml --out results/softer --threads 4\n  \

@@ -1,11 +1,11 @@
-//! The sweeps and maps of a case, and what its damping decides.
+//! The sweeps and maps of a case, and what its damping decides; what all its studies start from.
 
-use super::grids::Grid;
 use super::known::{KnownPoints, Parts, Reference};
 use super::modes::add_modal_damping;
 use super::prepared::Prepared;
 use super::sink::{KnownMap, ResultStage};
 use super::states::{OnFamily, States, Whole, keeps_the_structure};
+use super::studies::{Points, Study, between};
 use crate::case::{Case, Invalidates, MapAnalysis, SweepAnalysis};
 use crate::equilibrium::{Condensed, SteadySliding, tangent_stiffness};
 use crate::error::Result;
@@ -20,17 +20,17 @@ use crate::sweep::{
 use crate::system::{Damping, System};
 
 /// The largest |Δλ|/|λ| at full order that is accepted.
-const ACCURACY: f64 = 1e-8;
+pub(super) const ACCURACY: f64 = 1e-8;
 /// Relative length of the bracket of a critical value on a reduced model, and by whole analyses.
 const LOCATED: [f64; 2] = [1e-10, 1e-7];
 /// The same of a point of the boundary of stability.
 const BOUNDARY: [f64; 2] = [1e-7, 1e-6];
 /// Full-order measures that were not good enough lead to a richer family, so often at most.
-const REFINEMENTS: usize = 3;
+pub(super) const REFINEMENTS: usize = 3;
 /// The path of ζ.
 const RATIO: &str = "damping.modal_ratio";
 
-/// The case at its own values: what every sweep starts from.
+/// The case at its own values: what every study starts from.
 pub(super) struct Nominal<'a> {
     pub(super) prepared: &'a Prepared<'a>,
     /// With the modal damping.
@@ -39,27 +39,37 @@ pub(super) struct Nominal<'a> {
     pub(super) real: &'a RealModes,
 }
 
-/// Runs every sweep and map of the case and hands each on when it is there.
+/// Runs the studies of the case that one analysis takes, and hands each on when it is there.
+pub(super) type Studies<'a> =
+    dyn Fn(&Explorer, &KnownPoints, &mut RunResults, &mut RecordStage) -> Result<()> + 'a;
+/// Takes results as they are there.
+pub(super) type RecordStage<'a> = dyn FnMut(ResultStage) -> Result<()> + 'a;
+
+/// Runs `studies` of the case at `nominal`.
 pub(super) fn explore(
     nominal: &Nominal,
+    studies: &Studies,
     known: &KnownPoints,
     results: &mut RunResults,
-    record: &mut dyn FnMut(ResultStage) -> Result<()>,
+    record: &mut RecordStage,
     observer: &dyn Observer,
 ) -> Result<()> {
     let start = Start::new(nominal)?;
     known.parts.check(&start.reference)?;
-    let explored = Explorer::new(&start, observer).and_then(|explorer| explorer.all(known, results, record));
+    let explored =
+        Explorer::new(&start, observer).and_then(|explorer| studies(&explorer, known, results, record));
     // Beside their reference nothing that is found is a fault of the parts.
     explored.map_err(|error| if known.parts.records.is_empty() { error } else { error.while_computing() })
 }
 
-/// Every damping scalar that a sweep, a map or the verdicts vary: path, its value, another value that the case accepts.
+/// Every damping scalar that a study or the verdicts vary: path, its value, another value that the case accepts.
 fn dampings(whole: &Case, case: &Case) -> Result<Vec<(String, f64, f64)>> {
     let sweeps = whole.sweep.values().map(|s| (&s.parameter, [s.from, s.to]));
     let maps = whole.map.values().flat_map(|m| [0, 1].map(|k| (&m.parameters[k], [m.from[k], m.to[k]])));
+    let uncertain = whole.uncertainty.values().flat_map(|study| study.parameter.values());
+    let uncertain = uncertain.flat_map(|of| of.path.iter().map(|path| (path, of.between)));
     let mut found: Vec<(String, f64, f64)> = Vec::new();
-    for (path, ends) in sweeps.chain(maps) {
+    for (path, ends) in sweeps.chain(maps).chain(uncertain) {
         let parameter = case.parameter(path)?;
         let known = found.iter().any(|(other, ..)| other == path);
         if parameter.invalidates == Invalidates::Damping && keeps_the_structure(case, path)? && !known {
@@ -83,7 +93,7 @@ fn other_damping(nominal: &Nominal, case: &Case, (path, _, value): &(String, f64
     Ok(structure.damping)
 }
 
-/// Data that all sweeps and maps of a case start from.
+/// Data that all studies of a case start from.
 pub(super) struct Start<'a> {
     nominal: &'a Nominal<'a>,
     /// Without its sweeps.
@@ -107,9 +117,9 @@ impl<'a> Start<'a> {
     }
 }
 
-/// The problem of a sweep or of a map.
+/// The problem of a study.
 #[allow(clippy::large_enum_variant, reason = "one at a time")]
-enum Problem<'s> {
+pub(super) enum Problem<'s> {
     Whole(Whole<'s>),
     /// On a reduced model that is not refined yet.
     Reduced(OnFamily<'s, 's>),
@@ -118,9 +128,10 @@ enum Problem<'s> {
 pub(super) struct Explorer<'a> {
     start: &'a Start<'a>,
     nominal: &'a Nominal<'a>,
-    case: &'a Case,
+    /// Without its studies.
+    pub(super) case: &'a Case,
     frame: FamilyFrame<'a>,
-    observer: &'a dyn Observer,
+    pub(super) observer: &'a dyn Observer,
 }
 
 impl<'a> Explorer<'a> {
@@ -135,14 +146,19 @@ impl<'a> Explorer<'a> {
 }
 
 impl Explorer<'_> {
+    /// The case with its studies.
+    pub(super) fn whole_case(&self) -> &Case {
+        self.nominal.prepared.case
+    }
+
     /// Every sweep and map of the case, and the verdicts of its damping.
-    fn all(
+    pub(super) fn sweeps_and_maps(
         &self,
         known: &KnownPoints,
         results: &mut RunResults,
-        record: &mut dyn FnMut(ResultStage) -> Result<()>,
+        record: &mut RecordStage,
     ) -> Result<()> {
-        let case = self.nominal.prepared.case;
+        let case = self.whole_case();
         for (name, analysis) in &case.sweep {
             let result = self.sweep(name, analysis, &known.parts)?;
             record(ResultStage::Found(&result))?;
@@ -160,7 +176,7 @@ impl Explorer<'_> {
         Ok(())
     }
 
-    fn states(&self, paths: &[String]) -> States<'_> {
+    pub(super) fn states(&self, paths: &[String]) -> States<'_> {
         States {
             prepared: self.nominal.prepared,
             case: self.case,
@@ -198,32 +214,36 @@ impl Explorer<'_> {
         Ok(OnFamily { states, family })
     }
 
-    /// The problem of a sweep or of a map, whose `states` are those of its scalars.
-    fn problem<'s>(&'s self, states: &'s States<'s>, grid: &Grid) -> Result<Problem<'s>> {
-        if self.keeps_the_structure(&grid.paths)? {
-            return Ok(Problem::Reduced(self.family(states, &grid.training())?));
+    /// The problem of a study, whose `states` are those of its scalars.
+    pub(super) fn problem<'s>(&'s self, states: &'s States<'s>, study: &Study) -> Result<Problem<'s>> {
+        if self.keeps_the_structure(&study.paths)? {
+            return Ok(Problem::Reduced(self.family(states, &study.training())?));
         }
-        Ok(Problem::Whole(Whole::new(self.case, grid.paths.clone(), Some(&self.start.reference.0))))
+        Ok(Problem::Whole(Whole::new(self.case, study.paths.clone(), Some(&self.start.reference.0))))
     }
 
-    /// Computes a block of a sweep or of a map; its answers are in `store`, or put there.
+    /// Computes a block of a study; its answers are in `store`, or put there.
     ///
     /// # Errors
-    /// A reduced model that cannot be trained; those of [`Block::solve`].
-    pub(super) fn block(&self, grid: &Grid, block: &Block, store: &dyn AnswerStore) -> Result<()> {
-        let states = self.states(&grid.paths);
-        let problem = self.problem(&states, grid)?;
+    /// A reduced model that cannot be trained; those of [`Block::solve`]; the machine refuses.
+    pub(super) fn block(&self, study: &Study, block: &Block, store: &dyn AnswerStore) -> Result<()> {
+        if let Points::Samples { places, .. } = &study.points {
+            let [first, last] = block.0[0];
+            return self.samples_of_part(study, &places[first..=last], store);
+        }
+        let states = self.states(&study.paths);
+        let problem = self.problem(&states, study)?;
         let (problem, reduced): (&dyn SweepProblem, bool) = match &problem {
             Problem::Whole(whole) => (whole, false),
             Problem::Reduced(on) => (on, true),
         };
-        let tolerance = if grid.axes.len() == 1 { LOCATED } else { BOUNDARY }[usize::from(!reduced)];
-        block.solve(&Answered::new(problem, store), &grid.axes, tolerance, self.observer)
+        let tolerance = if study.axes().len() == 1 { LOCATED } else { BOUNDARY }[usize::from(!reduced)];
+        block.solve(&Answered::new(problem, store), study.axes(), tolerance, self.observer)
     }
 
     fn sweep(&self, name: &str, analysis: &SweepAnalysis, parts: &Parts) -> Result<SweepResult> {
-        let grid = Grid::of_sweep(name, analysis);
-        let axis = grid.axes[0];
+        let study = Study::of_sweep(name, analysis);
+        let axis = study.axes()[0];
         let parameter = self.case.parameter(&analysis.parameter)?;
         let result = |sweep: sweep::Sweep, measured: FullOrderErrors, method: SweepMethod| SweepResult {
             name: name.to_string(),
@@ -237,10 +257,10 @@ impl Explorer<'_> {
             sample: measured.sample,
             method,
         };
-        let states = self.states(&grid.paths);
-        let mut on = match self.problem(&states, &grid)? {
+        let states = self.states(&study.paths);
+        let mut on = match self.problem(&states, &study)? {
             Problem::Whole(whole) => {
-                let known = parts.of(&grid.name, true);
+                let known = parts.of(&study.name, true);
                 let answered = Answered::new(&whole, &known);
                 let sweep = sweep::sweep(&answered, &axis, LOCATED[1], self.observer)?;
                 let measured = measure(&whole, &sweep, &[axis.to])?;
@@ -252,7 +272,7 @@ impl Explorer<'_> {
         let mut refinement = 0;
         loop {
             // Parts have the answers of the model that is not refined.
-            let known = parts.of(&grid.name, refinement == 0);
+            let known = parts.of(&study.name, refinement == 0);
             let sweep = sweep::sweep(&Answered::new(&on, &known), &axis, LOCATED[0], self.observer)?;
             let measured = measure(&on, &sweep, &sample)?;
             refinement += 1;
@@ -268,7 +288,7 @@ impl Explorer<'_> {
     }
 
     /// A map without points.
-    fn empty_map(&self, name: &str, analysis: &MapAnalysis, grid: &Grid) -> Result<MapResult> {
+    fn empty_map(&self, name: &str, analysis: &MapAnalysis, study: &Study) -> Result<MapResult> {
         let [a, b] = [0, 1].map(|k| self.case.parameter(&analysis.parameters[k]));
         let (a, b) = (a?, b?);
         Ok(MapResult {
@@ -276,7 +296,7 @@ impl Explorer<'_> {
             parameters: analysis.parameters.clone(),
             labels: [a.label, b.label],
             units: [a.unit.to_string(), b.unit.to_string()],
-            axes: [grid.axes[0], grid.axes[1]],
+            axes: [study.axes()[0], study.axes()[1]],
             nominal: [a.value, b.value],
             points: Vec::new(),
             boundary: Boundary::default(),
@@ -313,19 +333,19 @@ impl Explorer<'_> {
         name: &str,
         analysis: &MapAnalysis,
         known: &KnownPoints,
-        record: &mut dyn FnMut(ResultStage) -> Result<()>,
+        record: &mut RecordStage,
     ) -> Result<(MapResult, Option<String>)> {
-        let grid = Grid::of_map(name, analysis);
-        let mut result = self.empty_map(name, analysis, &grid)?;
+        let study = Study::of_map(name, analysis);
+        let mut result = self.empty_map(name, analysis, &study)?;
         let axes = result.axes;
         let failed = |failure: Option<String>| {
             failure.map(|f| format!("Map `{name}`: points without an answer are left blank; the first: {f}"))
         };
         let mut earlier = known.maps.get(name).cloned().unwrap_or_default();
-        let states = self.states(&grid.paths);
-        let mut on = match self.problem(&states, &grid)? {
+        let states = self.states(&study.paths);
+        let mut on = match self.problem(&states, &study)? {
             Problem::Whole(whole) => {
-                let parts = known.parts.of(&grid.name, true);
+                let parts = known.parts.of(&study.name, true);
                 let answered = Answered::new(&whole, &parts);
                 let failure = self.fill(&answered, &mut result, &earlier, record)?;
                 result.boundary =
@@ -335,13 +355,14 @@ impl Explorer<'_> {
             }
             Problem::Reduced(on) => on,
         };
-        let inside = [[0.3, 0.7], [0.75, 0.2]].map(|shares| grid.between(&shares)).map(|at| [at[0], at[1]]);
+        let inside =
+            [[0.3, 0.7], [0.75, 0.2]].map(|shares| between(study.axes(), &shares)).map(|at| [at[0], at[1]]);
         for at in &earlier.trained {
             on.family.train(&states.at(at)?)?;
         }
         let mut refinement = 0;
         loop {
-            let parts = known.parts.of(&grid.name, refinement == 0);
+            let parts = known.parts.of(&study.name, refinement == 0);
             let answered = Answered::new(&on, &parts);
             let failure = self.fill(&answered, &mut result, &earlier, record)?;
             result.boundary = sweep::boundary(&answered, &axes, &result.points, BOUNDARY[0], self.observer)?;
@@ -366,7 +387,7 @@ impl Explorer<'_> {
         problem: &dyn SweepProblem,
         result: &mut MapResult,
         known: &KnownMap,
-        record: &mut dyn FnMut(ResultStage) -> Result<()>,
+        record: &mut RecordStage,
     ) -> Result<Option<String>> {
         result.points.clear();
         record(ResultStage::MapBegins(result, known))?;
@@ -439,7 +460,7 @@ fn measure(problem: &dyn SweepProblem, sweep: &sweep::Sweep, sample: &[f64]) -> 
 }
 
 /// The largest estimated |Δλ|/|λ| of the modes that no other merges with.
-fn worst_alone(checks: &[Checked]) -> f64 {
+pub(super) fn worst_alone(checks: &[Checked]) -> f64 {
     checks.iter().filter(|c| !merged(c, checks)).map(|c| c.eigenvalue_error).fold(0.0, f64::max)
 }
 

@@ -156,6 +156,9 @@ fn keep_what_is_there(case: &Case, exported: &mut Case) -> Vec<String> {
     let known = |path: &String| bare.parameter(path).is_ok();
     keep(&mut exported.sweep, out, ("sweep", "its scalar"), |sweep| known(&sweep.parameter));
     keep(&mut exported.map, out, ("map", "its scalars"), |map| map.parameters.iter().all(known));
+    keep(&mut exported.uncertainty, out, ("uncertainty", "its scalars"), |study| {
+        study.parameter.values().flat_map(|parameter| &parameter.path).all(known)
+    });
     if let Some(sensitivity) = &mut exported.sensitivity {
         let scalars = bare.parameters();
         sensitivity.parameters.retain(|pattern| {

@@ -49,6 +49,11 @@ impl<'a> Folder<'a> {
                 self.record.add_map_points(name, *first, points)
             }
             ResultStage::Map(map) => file.finish_map(map),
+            ResultStage::Samples(name, first, modes) => {
+                // Before the record begins, so that files of earlier runs are gone.
+                file.take_place()?;
+                self.record.add_samples(name, *first, modes)
+            }
             ResultStage::TransientBegins(recording) => self.begin_transient(recording),
             ResultStage::TransientPiece(piece) => {
                 file.write_transient_piece(piece)?;
@@ -108,7 +113,10 @@ impl<'a> Folder<'a> {
                 let field = FieldSnapshot { number, displacement: &displacement, velocity: &velocity };
                 fields.iter_mut().try_for_each(|file| file.write(&field))
             }
-            RecordBlock::Map { .. } | RecordBlock::MapPoints { .. } | RecordBlock::Transient { .. } => Ok(()),
+            RecordBlock::Map { .. }
+            | RecordBlock::MapPoints { .. }
+            | RecordBlock::Samples { .. }
+            | RecordBlock::Transient { .. } => Ok(()),
         })
     }
 }

@@ -1,4 +1,4 @@
-//! Points of sweeps and maps that are known before a run, and the origin that they must have.
+//! Points of studies that are known before a run, and the origin that they must have.
 
 use super::sink::KnownMaps;
 use crate::case::Case;
@@ -6,17 +6,20 @@ use crate::error::Result;
 use crate::linalg::sparse::times;
 use crate::modal::RealModes;
 use crate::results::record::{InputFile, PartRecord, RecordOrigin};
-use crate::sweep::{AnswerStore, Answers, Modes};
+use crate::sweep::{AnswerStore, Answers, Modes, SampleModes};
 use crate::system::System;
 use faer::Mat;
 use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// Points of sweeps and maps that are known before a run.
+/// Points of studies that are known before a run.
 #[derive(Default)]
 pub struct KnownPoints {
     /// First points of the maps, of an interrupted run.
     pub maps: KnownMaps,
+    /// First samples of the studies of uncertain scalars, by name, of an interrupted run.
+    pub samples: BTreeMap<String, Vec<SampleModes>>,
     /// Points that a job array has computed.
     pub parts: Parts,
 }
@@ -31,7 +34,7 @@ pub struct Parts {
 }
 
 impl Parts {
-    /// The answers of the sweep or map with this table in the case; none unless `wanted`.
+    /// The answers of the study with this table in the case; none unless `wanted`.
     pub(super) fn of<'a>(&'a self, table: &str, wanted: bool) -> KnownAnswers<'a> {
         let all = self.records.iter().filter_map(|part| part.answers.get(table));
         KnownAnswers(all.filter(|_| wanted).collect())

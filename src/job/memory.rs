@@ -3,6 +3,7 @@
 use super::analyses::Selection;
 use super::prepared::Prepared;
 use super::states::keeps_the_structure;
+use super::studies::{SHARED, varied_paths};
 use crate::error::{Error, Result};
 use crate::linalg::sparse::{add_scaled, sum_of_squares};
 use crate::memory::{Available, available};
@@ -117,10 +118,9 @@ pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Opti
         modes = modes.max(below(cea.basis_below)?);
     }
     let run = ProblemSize { dofs, entries: pattern.compute_nnz(), fill, modes: modes.min(dofs as f64) };
-    let swept = case.sweep.values().map(|sweep| &sweep.parameter);
     let mut studies = None;
-    let swept = swept.chain(case.map.values().flat_map(|map| &map.parameters));
-    for path in swept.filter(|_| selection.includes("sweep", case)) {
+    let varied = SHARED.into_iter().filter(|analysis| selection.includes(analysis, case));
+    for path in varied.flat_map(|analysis| varied_paths(case, analysis)) {
         let kind = if keeps_the_structure(case, path)? {
             AnalysisKind::Study
         } else {
@@ -145,9 +145,9 @@ enum AnalysisKind {
     Real,
     /// Complex eigenvalues.
     Complex { left_vectors: bool },
-    /// A sweep or a map of friction, load or contact.
+    /// A study of friction, load or contact.
     Study,
-    /// A sweep or a map that changes M or K.
+    /// A study that changes M or K.
     StudyOfStructures,
 }
 

@@ -2,7 +2,7 @@
 //!
 //! 1. [`Prepared::new`] reads the mesh, places the bodies and builds the [`crate::system::System`].
 //! 2. [`analyse`] runs the analyses of the case on it and hands each result on as soon as it is there.
-//! 3. [`run_case`] does both and writes the results folder; [`run_part`] computes a block of every sweep and map,
+//! 3. [`run_case`] does both and writes the results folder; [`run_part`] computes a block of every study,
 //!    [`merge_parts`] makes the results folder of all blocks.
 //!
 //! A case may give M, C and K themselves instead of a mesh; [`export()`] writes any case in that form.
@@ -21,7 +21,6 @@ mod export;
 #[cfg(feature = "cli")]
 mod folder;
 mod frf;
-mod grids;
 mod imported;
 mod known;
 mod links;
@@ -52,10 +51,12 @@ mod singular;
 mod sink;
 mod sound;
 mod states;
+mod studies;
 mod table;
 mod time_function;
 mod transient;
 mod travel;
+mod uncertainty;
 mod verify;
 
 pub use analyse::{CaseWarnings, analyse, check_case};
@@ -66,7 +67,7 @@ pub use imported::{read_points, read_rows};
 pub use measured::{measured_set, read_modes};
 pub use memory::{ExpectedMemory, expected_memory};
 #[cfg(feature = "slepc")]
-pub use on_ranks::sweep_on_ranks;
+pub use on_ranks::studies_on_ranks;
 #[cfg(feature = "cli")]
 pub use parts::{PartDone, run_part, run_parts};
 pub use prepared::Prepared;
@@ -74,3 +75,4 @@ pub use prepared::Prepared;
 pub use run_case::{RunOptions, merge_parts, run_case};
 pub use sink::{Histories, KnownMap, KnownMaps, ResultSink, ResultStage};
 pub use states::Whole;
+pub use studies::SHARED;

@@ -1,9 +1,9 @@
-//! Sweeps and maps over the ranks of an MPI program: each rank computes the next part as it comes free, and rank 0 makes the results.
+//! Studies over the ranks of an MPI program: each rank computes the next part as it comes free, and rank 0 makes the results.
 
 use super::analyse::Asked;
 use super::analyses::Selection;
 use super::known::origin;
-use super::parts::{FOLDER, parts_done, run_parts};
+use super::parts::{folder, parts_done, run_parts};
 use super::prepared::Prepared;
 use super::run_case::merge;
 use crate::case::Case;
@@ -22,13 +22,14 @@ const PARTS_FOR_A_RANK: usize = 4;
 /// The list of ranks and the parts that they got, in the folder of the parts.
 const LIST: &str = "ranks.txt";
 
-/// Computes the sweeps and maps of a case in the folder `out`; collective. Parts that are done there are not computed again, also those
+/// Computes the studies that `analysis` takes (`sweep`, `uncertainty`) in the folder `out`; collective. Parts that are done there are not computed again, also those
 /// of a run that ended early or of a job array. Rank 0 gets the results, which are those of one process bit for bit.
 ///
 /// # Errors
 /// Faults of the input, on rank 0; an error of this rank, whose process is to end then: that ends the others ([`World::abandon`]).
-pub fn sweep_on_ranks(
+pub fn studies_on_ranks(
     case: Result<Case>,
+    analysis: &'static str,
     out: &Path,
     world: &Arc<World>,
     observer: &dyn Observer,
@@ -36,9 +37,9 @@ pub fn sweep_on_ranks(
     // What is wrong with the input is said once, by rank 0.
     let checked = case.and_then(|case| {
         if world.rank() == 0 {
-            Asked::new(&Prepared::new(&case)?, Selection::Only("sweep"))?;
+            Asked::new(&Prepared::new(&case)?, Selection::Only(analysis))?;
         }
-        let known = if world.rank() == 0 { parts_done(&case, out)? } else { None };
+        let known = if world.rank() == 0 { parts_done(&case, analysis, out)? } else { None };
         Ok((case, known))
     });
     let mut valid = [u8::from(checked.is_ok())];
@@ -59,7 +60,7 @@ pub fn sweep_on_ranks(
     let mut of = [known.as_ref().map_or(PARTS_FOR_A_RANK * world.size(), |(of, _)| *of) as u64];
     world.broadcast(&mut of)?;
     let of = of[0] as usize;
-    let list = out.join(FOLDER).join(LIST);
+    let list = folder(out, analysis).join(LIST);
     if world.rank() == 0 {
         let done = known.map(|(_, done)| done).unwrap_or_default();
         for (rank, number) in earlier(&list).into_iter().filter(|(_, number)| !done.contains(number)) {
@@ -70,13 +71,13 @@ pub fn sweep_on_ranks(
         let _ = std::fs::remove_file(&list);
     }
     let deal = Deal::new(world, of, Arc::new(note_in(&list)));
-    let computed = run_parts(&case, of, &mut || Ok(deal.next()?.map(|k| k + 1)), out, observer);
+    let computed = run_parts((&case, analysis), of, &mut || Ok(deal.next()?.map(|k| k + 1)), out, observer);
     computed.map_err(|error| of_rank(world, error))?;
     deal.end().map_err(|error| of_rank(world, error))?;
     if world.rank() > 0 {
         return Ok(None);
     }
-    let results = merge(&case, out, Some(world.size()), observer)?;
+    let results = merge(&case, analysis, out, Some(world.size()), observer)?;
     let _ = std::fs::remove_file(&list);
     Ok(Some(results))
 }

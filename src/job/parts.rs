@@ -1,57 +1,67 @@
-//! Parts of a job array: each process computes a block of every sweep and map of a case, and one makes the results of a single run
-//! of all of them.
+//! Parts of a job array: each process computes a block of every study of a case (of its sweeps and maps, or of its samples), and one
+//! makes the results of a single run of all of them.
 
 use super::analyse::{Asked, operating_point};
 use super::analyses::Selection;
 use super::explore::{Explorer, Nominal, Start};
-use super::grids::{Grid, grids};
 use super::known::{Parts, origin};
 use super::memory::check_memory;
 use super::prepared::Prepared;
 use super::singular::explained;
+use super::studies::{Study, studies};
 use crate::case::Case;
 use crate::error::{Error, Fault, Result};
 use crate::progress::Observer;
 use crate::results::record::{Part, PartFile, RecordOrigin, read_parts};
-use crate::sweep::{AnswerStore, Block, Modes, bits, blocks, place};
+use crate::sweep::{AnswerStore, Block, Modes, bits};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The folder of the parts in the results folder.
-pub(super) const FOLDER: &str = "parts";
+/// The folder of the parts of an analysis in the results folder `out`.
+pub(super) fn folder(out: &Path, analysis: &str) -> PathBuf {
+    out.join("parts").join(analysis)
+}
+
 /// Parts that were begun of which a message says how many points they lack.
 const SHOWN: usize = 20;
 
 /// A part that is done.
 #[derive(Debug)]
 pub struct PartDone {
-    /// Number of its points; none where the grids cannot be cut into so many parts.
+    /// Number of its points; none where the studies cannot be cut into so many parts.
     pub points: usize,
     /// Its file, which is not there without points.
     pub file: PathBuf,
 }
 
-/// Computes a part, apart from what an earlier, interrupted process computed of it, and keeps its answers in a file of the results
-/// folder `out` as soon as they are there; of that folder it writes nothing else. Nothing is written when the input is wrong.
+/// Computes a part of `analysis` (`sweep`, `uncertainty`), apart from what an earlier, interrupted process computed of it, and keeps its
+/// answers in a file of the results folder `out` as soon as they are there; of that folder it writes nothing else. Nothing is written
+/// when the input is wrong.
 ///
 /// A place without an answer is kept as such: the merge has the same error there as a whole run.
 ///
 /// # Errors
 /// Faults of the input, a folder with other parts, a case without complex modes, a file that cannot be written or that another process
 /// uses.
-pub fn run_part(case: &Case, part: Part, out: &Path, observer: &dyn Observer) -> Result<PartDone> {
+pub fn run_part(
+    case: &Case,
+    analysis: &'static str,
+    part: Part,
+    out: &Path,
+    observer: &dyn Observer,
+) -> Result<PartDone> {
     let mut number = Some(part.number);
-    let done = run_parts(case, part.of, &mut || Ok(number.take()), out, observer)?;
+    let done = run_parts((case, analysis), part.of, &mut || Ok(number.take()), out, observer)?;
     Ok(done.into_iter().next().expect("one number was given"))
 }
 
-/// [`run_part`] of several parts of `of`: `next` gives their numbers, until it has none. What all share is computed once.
+/// [`run_part`] of several parts of `of` of an analysis: `next` gives their numbers, until it has none. What all share is computed once.
 ///
 /// # Errors
 /// As [`run_part`]; those of `next`.
 pub fn run_parts(
-    case: &Case,
+    (case, analysis): (&Case, &'static str),
     of: usize,
     next: &mut dyn FnMut() -> Result<Option<usize>>,
     out: &Path,
@@ -59,17 +69,17 @@ pub fn run_parts(
 ) -> Result<Vec<PartDone>> {
     let own = without_second_opinions(case);
     let prepared = Prepared::new(&own)?;
-    let selection = Selection::Only("sweep");
+    let selection = Selection::Only(analysis);
     let asked = Asked::new(&prepared, selection)?;
     check_memory(&prepared, selection)?;
-    let (dir, grids, origin) = (out.join(FOLDER), grids(case), origin(case)?);
-    let (shares, mut done) = (shares(&grids, of), Vec::new());
+    let (dir, studies, origin) = (folder(out, analysis), studies(case, analysis), origin(case)?);
+    let (shares, mut done) = (shares(&studies, of), Vec::new());
     // The next part that is not done yet.
     let mut open = |done: &mut Vec<PartDone>| -> Result<Option<(Share<'_>, PartFile)>> {
         while let Some(number) = next()? {
             let part = Part { of, number };
             let share: Share = shares.iter().filter(|(own, ..)| *own == number).collect();
-            let points = share.iter().map(|(_, grid, block)| block.points(&grid.axes).len()).sum();
+            let points = share.iter().map(|(_, study, block)| study.points_of(block).len()).sum();
             done.push(PartDone { points, file: dir.join(part.file()) });
             if points == 0 {
                 continue;
@@ -98,23 +108,23 @@ pub fn run_parts(
 }
 
 /// The blocks of a part.
-type Share<'a> = Vec<&'a (usize, &'a Grid, Block)>;
+type Share<'a> = Vec<&'a (usize, &'a Study, Block)>;
 
-/// Computes blocks of grids and keeps their answers in the file of their part, which is then done.
+/// Computes blocks of studies and keeps their answers in the file of their part, which is then done.
 fn compute(
     explorer: &Explorer,
-    share: &[&(usize, &Grid, Block)],
+    share: &[&(usize, &Study, Block)],
     file: PartFile,
     observer: &dyn Observer,
 ) -> Result<()> {
     let file = Mutex::new(file);
-    for (_, grid, block) in share {
-        let computed = explorer.block(grid, block, &Keeping { file: &file, table: &grid.name });
+    for (_, study, block) in share {
+        let computed = explorer.block(study, block, &Keeping { file: &file, table: &study.name });
         locked(&file).save()?;
         match computed {
             Err(refused @ Error::Io { .. }) => return Err(refused),
             Err(error) => {
-                observer.note(&format!("No answer in [{}], as the merge will say: {error}", grid.name))
+                observer.note(&format!("No answer in [{}], as the merge will say: {error}", study.name))
             }
             Ok(()) => {}
         }
@@ -124,7 +134,7 @@ fn compute(
     file.save()
 }
 
-/// The answers of a part for the sweep or map with this table in the case.
+/// The answers of a part for the study with this table in the case.
 struct Keeping<'a> {
     file: &'a Mutex<PartFile>,
     table: &'a str,
@@ -162,33 +172,32 @@ fn without_second_opinions(case: &Case) -> Case {
     own
 }
 
-/// The blocks of all grids, each with the number of its part: dealt out in turn.
-fn shares(grids: &[Grid], of: usize) -> Vec<(usize, &Grid, Block)> {
-    let all =
-        grids.iter().flat_map(|grid| blocks(&grid.axes, of).into_iter().map(move |block| (grid, block)));
-    all.enumerate().map(|(k, (grid, block))| (k % of + 1, grid, block)).collect()
+/// The blocks of all studies, each with the number of its part: dealt out in turn.
+fn shares(studies: &[Study], of: usize) -> Vec<(usize, &Study, Block)> {
+    let all = studies.iter().flat_map(|study| study.blocks(of).into_iter().map(move |block| (study, block)));
+    all.enumerate().map(|(k, (study, block))| (k % of + 1, study, block)).collect()
 }
 
-/// The parts in the results folder `out`, which together are whole.
+/// The parts of `analysis` in the results folder `out`, which together are whole.
 ///
 /// # Errors
 /// Input: parts that are missing, or not done; parts of another case, or damaged ones.
-pub(super) fn collect(case: &Case, out: &Path, origin: &RecordOrigin) -> Result<Parts> {
-    let dir = out.join(FOLDER);
+pub(super) fn collect(case: &Case, analysis: &str, out: &Path, origin: &RecordOrigin) -> Result<Parts> {
+    let dir = folder(out, analysis);
     let records = read_parts(&dir, origin)?;
     let Some(of) = records.first().map(|first| first.part.of) else {
         let fault = Fault::new(dir.display().to_string(), "no part", "the files that --part leaves there");
-        let help = "Compute every part first, as `stridor sweep CASE --part 1/40` to 40/40";
+        let help = format!("Compute every part first, as `stridor {analysis} CASE --part 1/40` to 40/40");
         return Err(Error::input(fault.with_help(help)));
     };
     let parts = Parts { dir, records };
-    complete(&parts, of, &grids(case))?;
+    complete(&parts, of, &studies(case, analysis))?;
     Ok(parts)
 }
 
 /// Refuses parts that are missing or not done.
-fn complete(parts: &Parts, of: usize, grids: &[Grid]) -> Result<()> {
-    let shares = shares(grids, of);
+fn complete(parts: &Parts, of: usize, studies: &[Study]) -> Result<()> {
+    let shares = shares(studies, of);
     let record = |number: usize| parts.records.iter().find(|record| record.part.number == number);
     let numbers: BTreeSet<usize> = shares.iter().map(|(number, ..)| *number).collect();
     let (begun, absent): (Vec<usize>, Vec<usize>) = numbers
@@ -201,11 +210,10 @@ fn complete(parts: &Parts, of: usize, grids: &[Grid]) -> Result<()> {
     // Points of a part, and those that it has.
     let count = |number: usize| {
         let (mut all, mut there) = (0, 0);
-        for (_, grid, block) in shares.iter().filter(|(own, ..)| *own == number) {
-            let answers = record(number).and_then(|record| record.answers.get(&grid.name));
-            let points = block.points(&grid.axes);
-            let known =
-                |k: &&usize| answers.is_some_and(|all| all.contains_key(&bits(&place(&grid.axes, **k))));
+        for (_, study, block) in shares.iter().filter(|(own, ..)| *own == number) {
+            let answers = record(number).and_then(|record| record.answers.get(&study.name));
+            let points = study.points_of(block);
+            let known = |k: &&usize| answers.is_some_and(|all| all.contains_key(&bits(&study.place(**k))));
             (all, there) = (all + points.len(), there + points.iter().filter(known).count());
         }
         (all, there)
@@ -233,14 +241,18 @@ fn complete(parts: &Parts, of: usize, grids: &[Grid]) -> Result<()> {
     Err(Error::input(fault.with_help(help)))
 }
 
-/// How many parts the case is cut into in the results folder `out`, and the numbers of those that are done; none where there are no
-/// parts.
+/// How many parts the studies of `analysis` are cut into in the results folder `out`, and the numbers of those that are done; none where
+/// there are no parts.
 ///
 /// # Errors
 /// Input: parts of another case, or damaged ones.
 #[cfg(feature = "slepc")]
-pub(super) fn parts_done(case: &Case, out: &Path) -> Result<Option<(usize, BTreeSet<usize>)>> {
-    let records = read_parts(&out.join(FOLDER), &origin(case)?)?;
+pub(super) fn parts_done(
+    case: &Case,
+    analysis: &str,
+    out: &Path,
+) -> Result<Option<(usize, BTreeSet<usize>)>> {
+    let records = read_parts(&folder(out, analysis), &origin(case)?)?;
     let done = || records.iter().filter(|record| record.done).map(|record| record.part.number);
     Ok(records.first().map(|first| (first.part.of, done().collect())))
 }
@@ -268,10 +280,14 @@ mod tests {
     #[test]
     fn the_blocks_are_dealt_out_in_turn() {
         let axis = |points| crate::sweep::Axis { from: 0.0, to: 1.0, points, log: false };
-        let grid = |name: &str, axes| Grid { name: name.into(), paths: Vec::new(), axes };
-        let grids = [grid("sweep.a", vec![axis(4)]), grid("map.b", vec![axis(3), axis(2)])];
+        let grid = |name: &str, axes| Study {
+            name: name.into(),
+            paths: Vec::new(),
+            points: crate::job::studies::Points::Grid(axes),
+        };
+        let studies = [grid("sweep.a", vec![axis(4)]), grid("map.b", vec![axis(3), axis(2)])];
         // Three intervals and two cells.
-        let numbers = |of| shares(&grids, of).iter().map(|(number, ..)| *number).collect::<Vec<_>>();
+        let numbers = |of| shares(&studies, of).iter().map(|(number, ..)| *number).collect::<Vec<_>>();
         assert_eq!(numbers(1), [1, 1]);
         assert_eq!(numbers(2), [1, 2, 1, 2]);
         assert_eq!(numbers(5), [1, 2, 3, 4, 5]);

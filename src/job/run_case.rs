@@ -30,7 +30,7 @@ pub struct RunOptions {
 
 /// Runs the analyses of a case and writes the results folder `out`; nothing is written when the input is wrong.
 ///
-/// With [`RunOptions::resume`] the maps and the run in time that an earlier run of the same case left in `out` are resumed where it
+/// With [`RunOptions::resume`] the maps, the samples and the run in time that an earlier run of the same case left in `out` are resumed where it
 /// stopped; the result is the same, bit for bit. Results of another case or of other files are refused. Without it an
 /// interrupted record is moved to a folder of its own in `out`; the files of a run that had ended are replaced.
 ///
@@ -49,23 +49,30 @@ pub fn run_case(
     run_from(case, selection, out, (begin, &options.engine), observer)
 }
 
-/// Makes the results of the sweeps and maps of a case in the folder `out` of the parts there ([`run_part`](super::run_part)): those
-/// of a run of the case, bit for bit.
+/// Makes the results of `analysis` (`sweep`, `uncertainty`) in the folder `out` of the parts there ([`run_part`](super::run_part)): those
+/// of one process, bit for bit.
 ///
 /// # Errors
 /// As [`run_case`]; parts that do not have all points, of another case, of other files, or damaged ones.
-pub fn merge_parts(case: &Case, out: &Path, observer: &dyn Observer) -> Result<RunResults> {
-    merge(case, out, None, observer)
+pub fn merge_parts(
+    case: &Case,
+    analysis: &'static str,
+    out: &Path,
+    observer: &dyn Observer,
+) -> Result<RunResults> {
+    merge(case, analysis, out, None, observer)
 }
 
 /// [`merge_parts`] of so many `ranks`, or of a job array.
 pub(super) fn merge(
     case: &Case,
+    analysis: &'static str,
     out: &Path,
     ranks: Option<usize>,
     observer: &dyn Observer,
 ) -> Result<RunResults> {
-    run_from(case, Selection::Only("sweep"), out, (Begin::Merged { ranks }, &Engine::default()), observer)
+    let begin = Begin::Merged { analysis, ranks };
+    run_from(case, Selection::Only(analysis), out, (begin, &Engine::default()), observer)
 }
 
 /// What a run begins with.
@@ -75,8 +82,8 @@ enum Begin {
     Anew,
     /// The record of an interrupted run.
     Resumed,
-    /// The parts that so many ranks have computed, or a job array.
-    Merged { ranks: Option<usize> },
+    /// The parts of an analysis that so many ranks have computed, or a job array.
+    Merged { analysis: &'static str, ranks: Option<usize> },
 }
 
 fn run_from(
@@ -89,7 +96,7 @@ fn run_from(
     let started = Instant::now();
     let (file, text) = case.places.source();
     let (engine_name, ranks) = match begin {
-        Begin::Merged { ranks: Some(ranks) } => ("mpi", ranks),
+        Begin::Merged { ranks: Some(ranks), .. } => ("mpi", ranks),
         _ => (engine.name(), engine.ranks()),
     };
     let provenance = Some(Provenance::now(file, text).on_ranks(engine_name, ranks));
@@ -104,7 +111,7 @@ fn run_from(
     asked.record_sizes().try_for_each(|size| fits_on_disk(out, &size))?;
     let origin = origin(case)?;
     let parts = match begin {
-        Begin::Merged { .. } => collect(case, out, &origin)?,
+        Begin::Merged { analysis, .. } => collect(case, analysis, out, &origin)?,
         Begin::Anew | Begin::Resumed => Parts::default(),
     };
     let _lock = FolderLock::take(out)?;
@@ -119,7 +126,7 @@ fn run_from(
     let maps = earlier.maps.iter().map(|(name, (points, trained))| {
         (name.clone(), KnownMap { points: points.clone(), trained: trained.clone() })
     });
-    let known = KnownPoints { maps: maps.collect(), parts };
+    let known = KnownPoints { maps: maps.collect(), samples: earlier.samples.clone(), parts };
     let mut file = ResultsFile::create(out)?;
     let read = case.files().into_iter().chain(["calibrated.toml".into()]).map(|name| case.folder.join(name));
     file.spare(read.filter_map(|path| std::path::absolute(path).ok()));
@@ -155,8 +162,11 @@ fn resumed(out: &Path, origin: RecordOrigin, asked: &Asked) -> Result<(Record, E
     let Some((record, earlier)) = Record::resume(out, &origin)? else {
         return Ok((Record::new(out, origin), Earlier::default()));
     };
-    let left_out =
-        [(earlier.rows > 0, "a run in time", "transient"), (!earlier.maps.is_empty(), "maps", "sweep")];
+    let left_out = [
+        (earlier.rows > 0, "a run in time", "transient"),
+        (!earlier.maps.is_empty(), "maps", "sweep"),
+        (!earlier.samples.is_empty(), "samples", "uncertainty"),
+    ];
     let lost = left_out.into_iter().find(|(there, _, analysis)| *there && !asked.includes(analysis));
     if let Some((_, what, analysis)) = lost.filter(|_| !record.ended()) {
         let found = format!("an interrupted record of {what}");

@@ -6,7 +6,7 @@ use crate::results::{
     FieldSnapshot, MODAL_ABOUT, MODAL_UNIT, MapResult, RecordPiece, RecordSize, Recording, RunResults, TIME,
     TransientResult, fits_in_memory, modal_channel,
 };
-use crate::sweep::MapPoint;
+use crate::sweep::{MapPoint, SampleModes};
 use crate::transient::{Checkpoint, Event};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -35,6 +35,8 @@ pub enum ResultStage<'a> {
     MapPoints(&'a str, usize, &'a [MapPoint]),
     /// A whole map.
     Map(&'a MapResult),
+    /// New samples of the study of this name, from this one on.
+    Samples(&'a str, usize, &'a [SampleModes]),
     /// A run in time that begins or, after [`ResultSink::stopped`] had an answer, resumes.
     TransientBegins(&'a Recording<'a>),
     /// New rows of it.

@@ -6,7 +6,8 @@
 //!   `growth_budget.svg`, `participation.svg`, `sensitivity.svg`, `advice.svg`, `transient.svg`, `transient_spectrum.svg`,
 //!   `transient_spectrogram.svg`, `transient_phase.svg`, `transient_contact.svg`, `sound.svg`, `frf_<name>.svg`, those of them that the run has something for;
 //!   `mac_<name>.svg`, `frequencies_<name>.svg` and `measured_frf_<name>.svg` of measured data;
-//!   `sweep_<name>.svg`, `sweep_<name>_places.svg`, `root_locus_<name>.svg` and `map_<name>.svg` of every sweep and map.
+//!   `sweep_<name>.svg`, `sweep_<name>_places.svg`, `root_locus_<name>.svg` and `map_<name>.svg` of every sweep and map;
+//!   `uncertainty_<name>.svg`, `…_growth.svg` and `…_scalars.svg` of every study of uncertain scalars.
 //!
 //! The page's scripts: `shapes/viewer.js` moves the mode shapes, `charts.js` shows values under the pointer and zooms.
 //!
@@ -58,6 +59,7 @@ pub mod text;
 mod text_table;
 mod tornado;
 mod transient;
+mod uncertainty;
 mod validation;
 mod view;
 
@@ -70,7 +72,7 @@ use section::ReportSection;
 use std::path::Path;
 
 /// Sections of each analysis, in the order of the report: one line an analysis.
-const SECTIONS: [fn(&RunResults) -> Vec<ReportSection>; 11] = [
+const SECTIONS: [fn(&RunResults) -> Vec<ReportSection>; 12] = [
     rig::sections,
     shapes::sections,
     real_modes::sections,
@@ -81,6 +83,7 @@ const SECTIONS: [fn(&RunResults) -> Vec<ReportSection>; 11] = [
     sensitivity::sections,
     transient::sections,
     explored::sections,
+    uncertainty::sections,
     calibration::sections,
 ];
 
@@ -116,6 +119,7 @@ mod tests {
         let files = "rig modes_disc mac_impact frequencies_impact measured_frf_impact frf_hammer contact growth growth_budget \
                      participation sensitivity advice transient transient_spectrum transient_spectrogram transient_phase \
                      transient_contact sound sweep_over_friction root_locus_over_friction map_load_and_speed \
+                     uncertainty_all uncertainty_all_growth uncertainty_all_scalars \
                      calibration_errors calibration_responses calibration_numbers";
         for file in files.split(' ').map(|stem| format!("{stem}.svg")) {
             let svg = std::fs::read_to_string(dir.path().join(&file)).unwrap();

@@ -13,11 +13,12 @@
 //! | `calibrated.toml`, `calibration.csv` | the case with the numbers that were found, and measured beside computed frequencies; `calibration_responses.csv`: responses | stridor, spreadsheets |
 //! | `sweep_<name>.csv`, `sweep_<name>_critical.csv` | the modes along a scalar, its critical values | spreadsheets |
 //! | `map_<name>.csv`, `map_<name>_boundary.csv` | growth over two scalars, the boundary of stability | spreadsheets |
+//! | `uncertainty_<name>.csv`, `…_modes.csv`, `…_scalars.csv` | samples of uncertain scalars; how often each mode grows; which scalar decides | spreadsheets |
 //! | `damping_verdicts.csv` | verdicts that the modal damping decides | spreadsheets |
 //! | `transient.vtkhdf` | the motion of all nodes at regular times | ParaView |
 //! | `modes_<set>.vtu`, `steady.vtu`, `complex_modes.vtu`, `advice.vtu` | the shapes on the mesh | ParaView, pyvista |
 //! | `record.bin`, `checkpoint.bin` | record from which an interrupted run is resumed: [`record`] | `--resume` |
-//! | `parts/<k>-of-<n>.bin` | what one job of a job array computed of the sweeps and maps: [`record::PartFile`] | `--merge` |
+//! | `parts/<analysis>/<k>-of-<n>.bin` | what one job of a job array computed of the sweeps and maps, or of the samples: [`record::PartFile`] | `--merge` |
 //!
 //! [`ResultsFile`] is used during the run, [`write_files`] once at its end.
 
@@ -63,6 +64,7 @@ mod transient_csv;
 #[cfg(feature = "hdf5")]
 mod transient_hdf5;
 mod uff;
+mod uncertainty;
 mod validation;
 mod vtk;
 mod write;
@@ -110,6 +112,9 @@ pub use transient::{
     FieldSnapshot, Fields, GrowthCompared, RecordPiece, Recording, SpectrumOf, TransientResult,
 };
 pub use transient_csv::{EventTable, HistoryTable};
+pub use uncertainty::{
+    CheckedSample, ModeStatistics, SampledScalar, ScalarStatistics, UncertaintyResult, UncertaintyStudy,
+};
 pub use validation::{CheckedCase, CheckedQuantity, passed};
 pub use vtk::write_vtk;
 pub use write::write_files;

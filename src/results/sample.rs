@@ -61,6 +61,7 @@ pub(crate) fn rig() -> RunResults {
     records.push(explored::sweep());
     records.push(explored::map());
     records.push(explored::damping());
+    records.push(explored::uncertainty());
     records.push(frf());
     records.push(measured::responses(frf()));
     records.push(calibration::calibration());

@@ -115,7 +115,8 @@ pub(super) fn analyses(results: &RunResults) -> Group<'_> {
 
 /// Keys of `summary.json` that are there whatever was run: empty lists, and `null` for single results.
 fn expected<'a>() -> Group<'a> {
-    let lists = ["mode_sets", "modes", "frf", "sweeps", "maps", "comparison", "comparison_frf"];
+    let lists =
+        ["mode_sets", "modes", "frf", "sweeps", "maps", "uncertainty", "comparison", "comparison_frf"];
     let single = ["steady_sliding", "cea", "sensitivity", "transient", "calibration", "damping_verdicts"];
     let group = lists.into_iter().fold(Group::new("", ""), |group, key| group.list(key, Vec::new()));
     single.into_iter().fold(group, |group, key| group.optional(key, None))

@@ -1,6 +1,6 @@
 //! The file of a search: the case, its numbers that are searched for, and the facts.
 
-use crate::case::{CalibratedParameter, Case, check_parameter, read_case};
+use crate::case::{Case, VariedParameter, check_parameter, read_case};
 use crate::error::read::read_text;
 use crate::error::{Error, Fault, Faults, Result};
 use crate::results::record::{InputFile, RecordOrigin};
@@ -31,7 +31,7 @@ pub struct SearchFile {
     /// The standard deviation of the first samples, as a share of the bounds.
     pub spread: f64,
     /// Parameters of the search by name.
-    pub parameters: BTreeMap<String, CalibratedParameter>,
+    pub parameters: BTreeMap<String, VariedParameter>,
     /// The values of the case \[SI\].
     pub(super) start: Vec<f64>,
     /// The facts.
@@ -59,7 +59,7 @@ pub fn read_search(path: &Path) -> Result<SearchFile> {
 fn read_root(root: &TableReader, file: &str, case: Case) -> SearchFile {
     let scalars = case.parameters();
     let parameters = root.named("parameter", |name, s| {
-        let parameter: CalibratedParameter =
+        let parameter: VariedParameter =
             s.declared(|parameter, report| check_parameter(parameter, "", &case, Some(&scalars), report));
         (name.to_string(), parameter)
     });

@@ -89,7 +89,7 @@ pub fn search(file: &SearchFile, out: &Path, resume: bool, observer: &dyn Observ
     log.flush()?;
     log.end()?;
 
-    let number = |(j, (name, parameter)): (usize, (&String, &crate::case::CalibratedParameter))| {
+    let number = |(j, (name, parameter)): (usize, (&String, &crate::case::VariedParameter))| {
         let scalar = file.case.parameter(&parameter.path[0])?;
         Ok(SearchedNumber {
             name: name.clone(),

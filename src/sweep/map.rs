@@ -1,15 +1,12 @@
 //! Maps: the strongest growth over two parameters.
 
 use super::answers::{answer, points};
+use super::points::{Filled, RecordPoints, fill};
 use super::{Axis, SweepProblem, unstable};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::progress::Observer;
-use rayon::prelude::*;
 use std::f64::consts::TAU;
-
-/// Points that are computed and recorded together.
-const CHUNK: usize = 32;
 
 /// Values of a map at one point; not numbers where the point has no modes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,7 +23,8 @@ impl MapPoint {
     /// A point without an answer.
     pub const NONE: MapPoint = MapPoint { growth_rate: f64::NAN, frequency_hz: f64::NAN, unstable: 0 };
 
-    pub(super) fn of(eigenvalues: &[c64]) -> Self {
+    /// The values of a point with these λ \[1/s\].
+    pub fn of(eigenvalues: &[c64]) -> Self {
         let strongest = eigenvalues.iter().max_by(|a, b| a.re.total_cmp(&b.re));
         strongest.map_or(MapPoint::NONE, |z| MapPoint {
             growth_rate: z.re,
@@ -36,45 +34,20 @@ impl MapPoint {
     }
 }
 
-/// Every point of the grid, the first parameter running fastest, and why points have no answer, if any has none.
-///
-/// `known` are the first points of an earlier run, which are not computed again. `record` is called with each new chunk
-/// and the index of its first point, in order. The numbers depend on neither the chunks nor the number of threads.
+/// Every point of the grid, the first parameter running fastest; `known` are its first points, of an earlier run.
 ///
 /// # Errors
-/// Those of `record`.
+/// As [`fill`].
 pub fn map(
     problem: &dyn SweepProblem,
     axes: &[Axis; 2],
     known: &[MapPoint],
-    record: &mut dyn FnMut(usize, &[MapPoint]) -> Result<()>,
+    record: &mut RecordPoints<MapPoint>,
     observer: &dyn Observer,
-) -> Result<(Vec<MapPoint>, Option<String>)> {
-    let total = points(axes);
-    let mut points: Vec<MapPoint> = known[..known.len().min(total)].to_vec();
-    let mut failure = None;
-    observer.begin("map", Some(total as u64));
-    observer.advance(points.len() as u64);
-    while points.len() < total {
-        let first = points.len();
-        let solve = |k: usize| {
-            let point = answer(problem, axes, k).map(|modes| MapPoint::of(&modes.eigenvalues));
-            observer.advance(1);
-            point
-        };
-        let chunk = first..total.min(first + CHUNK);
-        let solved: Vec<Result<MapPoint>> = match problem.parallel() {
-            true => chunk.into_par_iter().map(solve).collect(),
-            false => chunk.map(solve).collect(),
-        };
-        for point in solved {
-            points.push(point.unwrap_or_else(|error| {
-                failure.get_or_insert_with(|| error.to_string());
-                MapPoint::NONE
-            }));
-        }
-        record(first, &points[first..])?;
-    }
+) -> Result<Filled<MapPoint>> {
+    let solve = |k: usize| answer(problem, axes, k).map(|modes| MapPoint::of(&modes.eigenvalues));
+    observer.begin("map", Some(points(axes) as u64));
+    let filled = fill((points(axes), problem.parallel()), &solve, MapPoint::NONE, known, record, observer)?;
     observer.end();
-    Ok((points, failure))
+    Ok(filled)
 }

@@ -3,6 +3,7 @@
 //! * [`sweep`] follows every mode along one parameter by its shape, through crossings, and *locates* the values at which
 //!   one becomes unstable or stable.
 //! * [`map`] solves a grid over two parameters; [`boundary`] locates the line on which the largest growth is zero.
+//! * [`sampled`] solves places that are given one by one, each mode paired with one of a reference.
 //! * [`blocks`] cut both so that several processes share them; [`Answered`] keeps their answers.
 //!
 //! All of them take a [`SweepProblem`]: a reduced family or whole analyses, they do not know which.
@@ -15,7 +16,9 @@ mod branch;
 mod critical;
 mod interaction;
 mod map;
+mod points;
 mod root;
+mod sampled;
 #[cfg(test)]
 mod tests;
 mod track;
@@ -27,6 +30,8 @@ pub use branch::Branch;
 pub use critical::{Critical, CriticalKind};
 pub use interaction::{Interaction, InteractionKind};
 pub use map::{MapPoint, map};
+pub use points::{Filled, RecordPoints};
+pub use sampled::{Paired, SampleModes, sampled};
 pub use track::{Sweep, sweep};
 
 use crate::error::Result;

@@ -11,6 +11,7 @@ mod selection;
 mod sensitivity;
 mod sweep;
 mod transient;
+mod uncertainty;
 
 pub use analysis::{Analysis, Planned};
 pub use selection::{ANALYSES, Selection};

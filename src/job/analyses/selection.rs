@@ -1,17 +1,18 @@
 //! The list of the analyses, and which of them to run.
 
 use super::analysis::{Analysis, Scope};
-use super::{calibrate, cea, frf, modes, sensitivity, sweep, transient};
+use super::{calibrate, cea, frf, modes, sensitivity, sweep, transient, uncertainty};
 use crate::case::Case;
 use crate::error::{Fault, Faults, Result};
 
 /// All analyses, in the order in which they run.
-pub const ANALYSES: [&dyn Analysis; 7] = [
+pub const ANALYSES: [&dyn Analysis; 8] = [
     &modes::ModesCommand,
     &cea::CeaCommand,
     &sensitivity::SensitivityCommand,
     &transient::TransientCommand,
     &sweep::SweepCommand,
+    &uncertainty::UncertaintyCommand,
     &frf::FrfCommand,
     &calibrate::CalibrateCommand,
 ];

@@ -3,7 +3,7 @@
 use super::analysis::{Analysis, Planned, Scope};
 use crate::case::Case;
 use crate::error::Result;
-use crate::job::explore::{Nominal, explore};
+use crate::job::explore::{Nominal, Studies, explore};
 use crate::job::prepared::Prepared;
 use crate::job::run::Run;
 
@@ -42,16 +42,19 @@ struct All;
 
 impl<'a> Planned<'a> for All {
     fn run(self: Box<Self>, run: &mut Run<'a, '_>) -> Result<()> {
-        let Some(point) = run.operating_point.clone() else { return Ok(()) };
-        let nominal = Nominal {
-            prepared: run.prepared,
-            system: &point.system,
-            steady: &point.steady,
-            real: &point.real,
-        };
-        let Run { sink, results, clock, known, observer, .. } = run;
-        clock.time("sweeps and maps", || {
-            explore(&nominal, known, results, &mut |stage| sink.record(stage), *observer)
+        run_studies(run, "sweeps and maps", &|explorer, known, results, record| {
+            explorer.sweeps_and_maps(known, results, record)
         })
     }
+}
+
+/// Runs studies of the case as one phase.
+pub(super) fn run_studies<'a>(run: &mut Run<'a, '_>, phase: &str, studies: &Studies) -> Result<()> {
+    let Some(point) = run.operating_point.clone() else { return Ok(()) };
+    let nominal =
+        Nominal { prepared: run.prepared, system: &point.system, steady: &point.steady, real: &point.real };
+    let Run { sink, results, clock, known, observer, .. } = run;
+    clock.time(phase, || {
+        explore(&nominal, studies, known, results, &mut |stage| sink.record(stage), *observer)
+    })
 }

@@ -1,20 +1,20 @@
 //! A number of the case as an unknown of the calibration, in its own unit and back.
 
 use crate::calibration::Unknown;
-use crate::case::CalibratedParameter;
+use crate::case::VariedParameter;
 
 /// x = (z − z̄)/s with z the value p or, in equal ratios, ln p; z̄ what is expected, and s its standard deviation, or half of
 /// the width of the bounds where none is stated.
 #[derive(Debug, Clone)]
 pub struct Coordinate<'a> {
     /// The number.
-    pub parameter: &'a CalibratedParameter,
+    pub parameter: &'a VariedParameter,
     scale: f64,
 }
 
 impl<'a> Coordinate<'a> {
     /// The coordinate of `parameter`.
-    pub fn new(parameter: &'a CalibratedParameter) -> Self {
+    pub fn new(parameter: &'a VariedParameter) -> Self {
         let mut own = Coordinate { parameter, scale: 1.0 };
         let [low, high] = parameter.between;
         own.scale = parameter.deviation.unwrap_or(0.5 * (own.z(high) - own.z(low)));
@@ -58,13 +58,8 @@ mod tests {
     #[test]
     fn there_and_back() {
         for (log, deviation) in [(false, None), (false, Some(0.3)), (true, None), (true, Some(0.3))] {
-            let parameter = CalibratedParameter {
-                path: vec![],
-                between: [2.0, 8.0],
-                expected: Some(3.0),
-                deviation,
-                log,
-            };
+            let parameter =
+                VariedParameter { path: vec![], between: [2.0, 8.0], expected: Some(3.0), deviation, log };
             let c = Coordinate::new(&parameter);
             for p in [2.0, 3.0, 5.0, 8.0] {
                 assert!((c.value(c.x(p)) - p).abs() < 1e-14, "{log} {deviation:?} {p}");

@@ -1,8 +1,9 @@
 //! Blocks of `record.bin`: a byte for the kind, the length of the payload (8 bytes), the payload.
 
 use super::bytes::{Bytes, Read, RecordCursor};
+use crate::linalg::c64;
 use crate::results::{FieldSnapshot, NodalField, RecordPiece};
-use crate::sweep::MapPoint;
+use crate::sweep::{MapPoint, SampleModes};
 use crate::transient::{Event, EventKind};
 
 /// Bytes before the payload of a block.
@@ -26,6 +27,15 @@ pub enum RecordBlock {
         first: usize,
         /// Theirs.
         points: Vec<MapPoint>,
+    },
+    /// Samples of a study of uncertain scalars.
+    Samples {
+        /// The study.
+        name: String,
+        /// The first of them.
+        first: usize,
+        /// Theirs.
+        modes: Vec<SampleModes>,
     },
     /// A run in time begins.
     Transient {
@@ -79,6 +89,19 @@ pub(super) fn map_points(name: &str, first: usize, points: &[MapPoint]) -> Vec<u
         for MapPoint { growth_rate, frequency_hz, unstable } in points {
             bytes.doubles([growth_rate, frequency_hz]);
             bytes.0.extend(unstable.to_le_bytes());
+        }
+    })
+}
+
+pub(super) fn samples(name: &str, first: usize, modes: &[SampleModes]) -> Vec<u8> {
+    block(6, |bytes| {
+        bytes.text(name);
+        bytes.count(first);
+        bytes.count(modes.len());
+        for sample in modes {
+            // Zero of one without an answer.
+            bytes.count(sample.as_ref().map_or(0, |modes| modes.len() + 1));
+            sample.iter().flatten().for_each(|z| bytes.doubles([&z.re, &z.im]));
         }
     })
 }
@@ -156,10 +179,23 @@ impl RecordBlock {
                     motion: [read_motion(&mut from, nodes)?, read_motion(&mut from, nodes)?],
                 }
             }
+            6 => {
+                let name = from.text()?;
+                let first = from.index()?;
+                let count = from.count(8)?;
+                let modes = (0..count).map(|_| read_sample(&mut from)).collect::<Read<_>>()?;
+                RecordBlock::Samples { name, first, modes }
+            }
             _ => return Err("a block of an unknown kind"),
         };
         from.end(block)
     }
+}
+
+fn read_sample(from: &mut RecordCursor) -> Read<SampleModes> {
+    let Some(modes) = from.index()?.checked_sub(1) else { return Ok(None) };
+    let values = from.doubles(2 * modes)?;
+    Ok(Some(values.chunks_exact(2).map(|z| c64::new(z[0], z[1])).collect()))
 }
 
 fn read_rows(from: &mut RecordCursor) -> Read<RecordBlock> {

@@ -1,7 +1,7 @@
 //! Record from which an interrupted run is resumed: two files of the results folder that only this program reads. The parts of a
 //! job array ([`PartFile`]) are files of their own.
 //!
-//! - `record.bin` grows during a map or a run in time: every point and row as soon as it is computed ([`RecordBlock`]).
+//! - `record.bin` grows during a map, a study of samples or a run in time: every point and row as soon as it is computed ([`RecordBlock`]).
 //! - `checkpoint.bin` says how many bytes of it count, their SHA-256, what the case and its files were, and the state that
 //!   the run resumes from ([`Saved`]). It has a checksum of its own and is replaced in one step, after what it counts is on the
 //!   disk. A process that is killed and a machine that loses power at any moment leave one that fits; what `record.bin` has
@@ -25,7 +25,7 @@ use self::origin::START_OVER;
 use super::folder::{own, refusal, synchronise, write_durably};
 use super::{FieldSnapshot, RecordPiece, Recording};
 use crate::error::{Error, Fault, Result};
-use crate::sweep::MapPoint;
+use crate::sweep::{MapPoint, SampleModes};
 use crate::transient::Checkpoint;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -50,6 +50,8 @@ pub type EarlierMap = (Vec<MapPoint>, Vec<[f64; 2]>);
 pub struct Earlier {
     /// The maps by name.
     pub maps: BTreeMap<String, EarlierMap>,
+    /// First samples of the studies of uncertain scalars, by name.
+    pub samples: BTreeMap<String, Vec<SampleModes>>,
     /// The channels of the run in time, each with its first value.
     pub channels: Vec<(String, f64)>,
     /// Rows of the run in time.
@@ -74,12 +76,20 @@ impl Earlier {
                 let map = self.maps.get_mut(name).filter(|(before, _)| before.len() == *first);
                 map.ok_or("points of a map that do not follow those before")?.0.extend(points);
             }
+            RecordBlock::Samples { name, first, modes } => {
+                let samples = self.samples.entry(name.clone()).or_default();
+                if samples.len() != *first {
+                    return Err("samples that do not follow those before");
+                }
+                samples.extend_from_slice(modes);
+            }
             RecordBlock::Transient { channels, modes } => {
                 if self.rows > 0 {
                     return Err("two runs in time");
                 }
                 let channels = channels.iter().map(|name| (name.clone(), f64::NAN)).collect();
-                *self = Earlier { maps: std::mem::take(&mut self.maps), channels, ..Earlier::default() };
+                let (maps, samples) = (std::mem::take(&mut self.maps), std::mem::take(&mut self.samples));
+                *self = Earlier { maps, samples, channels, ..Earlier::default() };
                 self.modes = *modes;
             }
             RecordBlock::Rows { first, values, modal, events } => {
@@ -278,6 +288,15 @@ impl Record {
             return Ok(());
         }
         self.append(&block::map_points(name, first, points))?;
+        self.save()
+    }
+
+    /// Adds samples of a study of uncertain scalars.
+    ///
+    /// # Errors
+    /// As above.
+    pub fn add_samples(&mut self, name: &str, first: usize, modes: &[SampleModes]) -> Result<()> {
+        self.append(&block::samples(name, first, modes))?;
         self.save()
     }
 

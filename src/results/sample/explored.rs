@@ -1,10 +1,14 @@
 //! A made-up sweep, a map, and what damping decides.
 
 use crate::linalg::c64;
-use crate::results::{DampingRow, DampingVerdicts, MapResult, SweepMethod, SweepResult};
+use crate::results::{
+    CheckedSample, DampingRow, DampingVerdicts, MapResult, SampledScalar, SweepMethod, SweepResult,
+    UncertaintyResult, UncertaintyStudy,
+};
 use crate::sweep::{
     Axis, Boundary, Branch, Checked, Critical, CriticalKind, Interaction, InteractionKind, MapPoint, Sweep,
 };
+use crate::uncertainty::Distribution;
 use std::f64::consts::TAU;
 
 /// Five modes over friction, of which one grows beyond 0.3 and one has no answer at the first value.
@@ -90,4 +94,41 @@ pub(super) fn damping() -> DampingVerdicts {
     };
     let rows = vec![row(-8.0, 338.0, None), row(12.0, 974.8, Some(0.005))];
     DampingVerdicts { ratio: 0.0035, range: [0.00175, 0.007], rows }
+}
+
+/// Forty samples of friction and load, of which the last has no answer: the second of three modes grows with friction.
+pub(super) fn uncertainty() -> UncertaintyResult {
+    let scalar = |name: &str, path: &str, unit: &str, between: [f64; 2]| SampledScalar {
+        name: name.into(),
+        paths: vec![path.into()],
+        label: name.into(),
+        unit: unit.into(),
+        distribution: Distribution { between, normal: None, log: false },
+        nominal: between[0],
+    };
+    let values: Vec<Vec<f64>> =
+        (0..40).map(|k| vec![0.2 + 0.01 * f64::from(k), 10.0 + f64::from(7 * k % 40)]).collect();
+    let modes = |mu: f64| {
+        let hz = [272.4, 974.8, 1484.2];
+        let growth = [-3.0, 120.0 * (mu - 0.4), -2.0];
+        Some((0..3).map(|k| c64::new(growth[k], TAU * (hz[k] + 20.0 * mu))).collect())
+    };
+    let mut samples: Vec<_> = values.iter().map(|sample| modes(sample[0])).collect();
+    samples[39] = None;
+    let study = UncertaintyStudy {
+        name: "all".into(),
+        scalars: vec![
+            scalar("friction", "contact.rim.friction.mu0", "", [0.2, 0.6]),
+            scalar("load", "contact.rim.load", "N", [10.0, 50.0]),
+        ],
+        values,
+        sampling: "latin_hypercube",
+        seed: 1,
+        confidence: 0.95,
+        reference: modes(0.3).unwrap_or_default(),
+        modes: samples,
+        method: SweepMethod::Reduced(60),
+    };
+    let checked = |sample| CheckedSample { sample, eigenvalue_error: 1e-10 };
+    UncertaintyResult::new(study, vec![checked(3), checked(20)])
 }

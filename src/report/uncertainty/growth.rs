@@ -1,0 +1,117 @@
+//! `uncertainty_<name>_growth.svg`: how the largest growth rate is distributed, and how the probability of instability settles.
+
+use super::{file, level, percent};
+use crate::report::axes::{Chart, Words, labelled};
+use crate::report::chart::{Area, colour, sheet};
+use crate::report::colours::{ALARM, CALM, INK};
+use crate::report::curve::{draw_curve, pen};
+use crate::report::format::given;
+use crate::report::html::described;
+use crate::report::section::Picture;
+use crate::results::UncertaintyResult;
+use crate::uncertainty::proportion;
+use plotters::prelude::*;
+use std::error::Error;
+
+/// Bars of the histogram at most, on either side of zero.
+const BARS: usize = 24;
+/// Places at which the settling probability is drawn.
+const STEPS: usize = 200;
+
+pub(super) fn picture(result: &UncertaintyResult) -> Option<Picture> {
+    let rates = result.growth_rates();
+    if rates.is_empty() {
+        return None;
+    }
+    let svg = sheet((980, 560), |area| {
+        let (top, bottom) = area.split_vertically(310);
+        draw_histogram(&top, &rates)?;
+        draw_settling(&bottom, result)
+    })?;
+    let caption = format!(
+        "Above: samples by their largest growth rate, orange where a mode grows. Below: the probability of instability after so many samples, with its interval of {} confidence.",
+        level(result)
+    );
+    let seen = format!(
+        "Histogram of the largest growth rate of {} samples; below, the probability of instability settles at {}.",
+        rates.len(),
+        percent(result.unstable.share)
+    );
+    Some(Picture { file: file(result, "_growth"), caption, svg: described(&svg, &seen) })
+}
+
+/// The width of the bars, and how many lie below and above zero.
+fn bars(ascending: &[f64]) -> (f64, [usize; 2]) {
+    let low = ascending.first().copied().unwrap_or(0.0).min(0.0);
+    let high = ascending.last().copied().unwrap_or(0.0).max(0.0);
+    let wanted = (ascending.len() as f64).sqrt().clamp(8.0, BARS as f64);
+    let width = ((high - low) / wanted).max(f64::MIN_POSITIVE);
+    // One more, for a value at the end.
+    (width, [-low, high].map(|end| (end / width).floor() as usize + 1))
+}
+
+fn draw_histogram(area: &Area, rates: &[f64]) -> Result<(), Box<dyn Error>> {
+    let (width, [below, above]) = bars(rates);
+    let mut counts = vec![0_usize; below + above];
+    for rate in rates {
+        let bar = (rate / width).floor() as i64 + below as i64;
+        counts[(bar.max(0) as usize).min(below + above - 1)] += 1;
+    }
+    let most = counts.iter().copied().max().unwrap_or(1) as f64;
+    let edge = |bar: usize| (bar as f64 - below as f64) * width;
+    let words = axis_words("largest growth rate σ [1/s]", "samples");
+    let mut chart = labelled(area, (edge(0)..edge(below + above), 0.0..1.08 * most), &words)?;
+    for (bar, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+        let hex = if bar >= below { ALARM } else { CALM };
+        let corners = [(edge(bar), 0.0), (edge(bar + 1), *count as f64)];
+        chart.draw_series([Rectangle::new(corners, colour(hex).mix(0.85).filled())])?;
+        chart.draw_series([Rectangle::new(corners, WHITE.stroke_width(1))])?;
+    }
+    draw_curve(&chart, [(0.0, 0.0), (0.0, 1.08 * most)], pen(INK, 1.5))
+}
+
+/// The words of a panel's axes.
+fn axis_words<'a>(below: &'a str, beside: &'a str) -> Words<'a> {
+    Words { below: Some(below), beside, across: &given, up: &given, labels: 10, decades: 0.0, grid: true }
+}
+
+fn draw_settling(area: &Area, result: &UncertaintyResult) -> Result<(), Box<dyn Error>> {
+    let verdicts: Vec<bool> = result.points.iter().flatten().map(|point| point.unstable > 0).collect();
+    let all = verdicts.len();
+    let steps = STEPS.min(all);
+    let (mut count, mut done) = (0, 0);
+    let mut along = Vec::new();
+    for step in 1..=steps {
+        let until = all * step / steps;
+        count += verdicts[done..until].iter().filter(|grows| **grows).count();
+        done = until;
+        let found = proportion(count, done, result.study.confidence);
+        along.push((done as f64, 100.0 * found.share, found.limits.map(|share| 100.0 * share)));
+    }
+    let highest = along.iter().map(|(.., [_, high])| *high).fold(0.0, f64::max);
+    let lowest = along.iter().map(|(.., [low, _])| *low).fold(100.0, f64::min);
+    let words = axis_words("samples", "probability [%]");
+    let mut chart: Chart = labelled(
+        area,
+        (0.0..all as f64 * 1.02, (lowest - 3.0).max(0.0)..(highest + 3.0).min(103.0)),
+        &words,
+    )?;
+    let band = along.iter().map(|(n, _, [low, _])| (*n, *low));
+    let band = band.chain(along.iter().rev().map(|(n, _, [_, high])| (*n, *high)));
+    chart.draw_series([Polygon::new(band.collect::<Vec<_>>(), colour(ALARM).mix(0.18))])?;
+    draw_curve(&chart, along.iter().map(|(n, share, _)| (*n, *share)), pen(ALARM, 2.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bars_begin_at_zero() {
+        let (width, [below, above]) = bars(&[-1.0, -0.5, 0.0, 3.0]);
+        assert_eq!((width, below, above), (0.5, 3, 7));
+        let (width, sides) = bars(&[2.0, 4.0]);
+        assert_eq!((width, sides), (0.5, [1, 9]));
+        assert!(bars(&[0.0]).0 > 0.0);
+    }
+}

@@ -1,0 +1,59 @@
+//! Points that are independent of each other, computed in chunks that are recorded as they are there.
+
+use crate::error::{Error, Result};
+use crate::progress::Observer;
+use rayon::prelude::*;
+
+/// Points that are computed on all threads and recorded together.
+const CHUNK: usize = 32;
+
+/// Points, and why points have no answer, if any has none.
+pub type Filled<P> = (Vec<P>, Option<String>);
+
+/// Takes a chunk of points with the index of the first.
+pub type RecordPoints<'a, P> = dyn FnMut(usize, &[P]) -> Result<()> + 'a;
+
+/// Points 0 to `total`, `parallel` or one at a time; a point without an answer is `none`.
+///
+/// `known` are the first points of an earlier run, which are not computed again. `record` is called with each new chunk and the index of
+/// its first point, in order. The numbers depend on neither the chunks nor the number of threads.
+///
+/// # Errors
+/// The machine refuses; those of `record`.
+pub(super) fn fill<P: Clone + Send>(
+    (total, parallel): (usize, bool),
+    solve: &(dyn Fn(usize) -> Result<P> + Sync),
+    none: P,
+    known: &[P],
+    record: &mut RecordPoints<P>,
+    observer: &dyn Observer,
+) -> Result<Filled<P>> {
+    let mut points: Vec<P> = known[..known.len().min(total)].to_vec();
+    let mut failure = None;
+    observer.advance(points.len() as u64);
+    let solve = |k: usize| {
+        let point = solve(k);
+        observer.advance(1);
+        point
+    };
+    while points.len() < total {
+        let first = points.len();
+        let solved: Vec<Result<P>> = match parallel {
+            true => (first..total.min(first + CHUNK)).into_par_iter().map(solve).collect(),
+            // Each may take long.
+            false => vec![solve(first)],
+        };
+        for point in solved {
+            points.push(match point {
+                Err(refused @ Error::Io { .. }) => return Err(refused),
+                Err(error) => {
+                    failure.get_or_insert_with(|| error.to_string());
+                    none.clone()
+                }
+                Ok(point) => point,
+            });
+        }
+        record(first, &points[first..])?;
+    }
+    Ok((points, failure))
+}

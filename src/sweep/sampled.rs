@@ -1,0 +1,141 @@
+//! Complex modes at places that are given one by one, each paired with a mode of a reference.
+
+use super::assign::assign;
+use super::points::{Filled, RecordPoints, fill};
+use super::{Checked, Modes, SweepProblem};
+use crate::error::Result;
+use crate::linalg::c64;
+use crate::progress::Observer;
+use faer::Mat;
+
+/// λ of the modes at a place \[1/s\]: first that of each reference mode, not a number where it has none there, then the others; `None`
+/// where the place has no answer.
+pub type SampleModes = Option<Vec<c64>>;
+
+/// A problem whose eigenvalues come in the order of reference modes, as [`SampleModes`] has them. Modes are paired by shape and
+/// frequency ([`Modes`] that cannot be compared: by λ alone), each with one at most.
+pub struct Paired<'a> {
+    problem: &'a dyn SweepProblem,
+    reference: &'a Modes,
+}
+
+impl<'a> Paired<'a> {
+    /// The modes of `problem` as those of `reference`.
+    pub fn new(problem: &'a dyn SweepProblem, reference: &'a Modes) -> Self {
+        Paired { problem, reference }
+    }
+}
+
+impl SweepProblem for Paired<'_> {
+    fn modes(&self, at: &[f64]) -> Result<Modes> {
+        let found = self.problem.modes(at)?;
+        let links = assign(self.reference, &found).to;
+        let of = |link: &Option<(usize, f64)>| {
+            link.map_or(c64::new(f64::NAN, f64::NAN), |(k, _)| found.eigenvalues[k])
+        };
+        let others =
+            (0..found.eigenvalues.len()).filter(|k| !links.iter().flatten().any(|(own, _)| own == k));
+        let eigenvalues: Vec<c64> =
+            links.iter().map(of).chain(others.map(|k| found.eigenvalues[k])).collect();
+        Ok(Modes { vectors: Mat::zeros(0, eigenvalues.len()), eigenvalues })
+    }
+
+    fn check(&self, at: &[f64]) -> Result<Vec<Checked>> {
+        self.problem.check(at)
+    }
+
+    fn check_nearest(&self, at: &[f64], near: c64) -> Result<Option<Checked>> {
+        self.problem.check_nearest(at, near)
+    }
+
+    fn parallel(&self) -> bool {
+        self.problem.parallel()
+    }
+}
+
+/// The eigenvalues at each of `places`; `known` are the first of them, of an earlier run, and `record` is called with the new ones.
+///
+/// # Errors
+/// The machine refuses; those of `record`.
+pub fn sampled(
+    problem: &dyn SweepProblem,
+    places: &[Vec<f64>],
+    known: &[SampleModes],
+    record: &mut RecordPoints<SampleModes>,
+    observer: &dyn Observer,
+) -> Result<Filled<SampleModes>> {
+    let solve = |k: usize| problem.eigenvalues(&places[k]).map(Some);
+    observer.begin("samples", Some(places.len() as u64));
+    let filled = fill((places.len(), problem.parallel()), &solve, None, known, record, observer)?;
+    observer.end();
+    Ok(filled)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    /// Two modes whose frequencies cross at zero, and a third that is there below zero only; no answer above nine.
+    struct Crossing(AtomicUsize);
+
+    impl SweepProblem for Crossing {
+        fn modes(&self, at: &[f64]) -> Result<Modes> {
+            self.0.fetch_add(1, Ordering::Relaxed);
+            if at[0] > 9.0 {
+                return Err(crate::error::Error::analysis("test", "above nine", ""));
+            }
+            let mut all = vec![(100.0 + at[0], 0), (100.0 - at[0], 1)];
+            if at[0] < 0.0 {
+                all.push((300.0, 2));
+            }
+            all.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let vectors =
+                Mat::from_fn(3, all.len(), |i, j| c64::new(f64::from(u8::from(i == all[j].1)), 0.0));
+            Ok(Modes { eigenvalues: all.iter().map(|(w, _)| c64::new(0.0, *w)).collect(), vectors })
+        }
+
+        fn check(&self, _: &[f64]) -> Result<Vec<Checked>> {
+            Ok(Vec::new())
+        }
+    }
+
+    #[test]
+    fn modes_are_paired_by_their_shapes() {
+        let crossing = Crossing(AtomicUsize::new(0));
+        let reference = crossing.modes(&[-1.0]).unwrap();
+        let paired = Paired::new(&crossing, &reference);
+        // The reference has the first shape below the second; on the other side of the crossing it is above.
+        let frequencies =
+            |at: f64| -> Vec<f64> { paired.eigenvalues(&[at]).unwrap().iter().map(|z| z.im).collect() };
+        assert_eq!(frequencies(-2.0), [98.0, 102.0, 300.0]);
+        let beyond = frequencies(2.0);
+        assert!(beyond[..2] == [102.0, 98.0] && beyond[2].is_nan() && beyond.len() == 3, "{beyond:?}");
+        // A mode that the reference does not have comes after those that it has.
+        let few = crossing.modes(&[1.0]).unwrap();
+        let extra = Paired::new(&crossing, &few).eigenvalues(&[-1.0]).unwrap();
+        assert_eq!(extra.iter().map(|z| z.im).collect::<Vec<_>>(), [101.0, 99.0, 300.0]);
+    }
+
+    #[test]
+    fn known_samples_are_not_computed_again_and_failures_are_named() {
+        let places: Vec<Vec<f64>> = (0..100).map(|k| vec![0.1 * f64::from(k)]).collect();
+        let solve = |known: &[SampleModes]| {
+            let crossing = Crossing(AtomicUsize::new(0));
+            let mut recorded = known.to_vec();
+            let mut record = |first: usize, new: &[SampleModes]| {
+                assert_eq!(first, recorded.len());
+                recorded.extend_from_slice(new);
+                Ok(())
+            };
+            let (all, failure) = sampled(&crossing, &places, known, &mut record, &()).unwrap();
+            assert_eq!(recorded, all);
+            (all, failure, crossing.0.into_inner())
+        };
+        let (all, failure, count) = solve(&[]);
+        assert!(failure.unwrap().contains("above nine") && count == 100);
+        assert_eq!(all.iter().filter(|modes| modes.is_none()).count(), 9);
+        let (again, _, count) = solve(&all[..70]);
+        assert!(again == all && count == 30);
+    }
+}
