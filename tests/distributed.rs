@@ -209,31 +209,36 @@ fn ranks_in(folder: &Path) -> Vec<u32> {
 }
 
 #[test]
-fn sweeps_over_ranks_are_those_of_one_process() {
+fn studies_over_ranks_are_those_of_one_process() {
     let folder = program::folder_with(&sweeps::disc());
     let at = folder.path();
-    let alone = program::command(at, &["sweep", "case.toml", "--quiet", "--out", "one"]).output().unwrap();
-    assert!(alone.status.success(), "{}", text(&alone.stderr));
-    let whole = sweeps::found(&at.join("one"));
-    for ranks in [1, 2, 3] {
-        let out = format!("ranks-{ranks}");
-        let arguments = ["sweep", "case.toml", "--quiet", "--out", &out, "--threads", "1", "--engine", "mpi"];
-        let provenance =
-            &summary(on_ranks(ranks, at, &arguments).output().unwrap(), &at.join(&out))["provenance"];
-        assert_eq!((&provenance["engine"], &provenance["ranks"]), (&"mpi".into(), &ranks.into()));
-        assert!(sweeps::found(&at.join(&out)) == whole, "{ranks} ranks have another result");
-        assert!(!at.join(&out).join("parts/ranks.txt").exists());
+    for analysis in ["sweep", "uncertainty"] {
+        let one = format!("one-{analysis}");
+        let alone =
+            program::command(at, &[analysis, "case.toml", "--quiet", "--out", &one]).output().unwrap();
+        assert!(alone.status.success(), "{}", text(&alone.stderr));
+        let whole = sweeps::found(&at.join(one));
+        for ranks in [1, 2, 3] {
+            let out = format!("{analysis}-{ranks}");
+            let arguments =
+                [analysis, "case.toml", "--quiet", "--out", &out, "--threads", "1", "--engine", "mpi"];
+            let provenance =
+                &summary(on_ranks(ranks, at, &arguments).output().unwrap(), &at.join(&out))["provenance"];
+            assert_eq!((&provenance["engine"], &provenance["ranks"]), (&"mpi".into(), &ranks.into()));
+            assert!(sweeps::found(&at.join(&out)) == whole, "{analysis}: {ranks} ranks have another result");
+            assert!(!at.join(&out).join("parts").join(analysis).join("ranks.txt").exists());
+        }
     }
 }
 
 /// What the ranks had finished is there after one is killed; the next run, of another number of ranks, names what was lost.
 #[test]
-fn sweeps_resume_after_a_rank_was_killed() {
+fn studies_resume_after_a_rank_was_killed() {
     let folder = program::folder_with(&sweeps::disc());
     let at = folder.path();
     let arguments = ["sweep", "case.toml", "--out", "out", "--threads", "1", "--engine", "mpi"];
     let child = on_ranks(2, at, &arguments).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
-    let parts = at.join("out/parts");
+    let parts = at.join("out/parts/sweep");
     let started = Instant::now();
     let finished = || std::fs::read_dir(&parts).is_ok_and(|entries| entries.flatten().count() >= 4);
     while !finished() {

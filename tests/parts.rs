@@ -79,9 +79,9 @@ fn parts_computed_apart_make_the_result_of_one_run() {
     both.into_iter().for_each(|mut part| assert!(part.wait().expect("it ends").success()));
     sweep(at, "elsewhere", &["--part", "3/3"], 0);
     assert_eq!(names(&at.join("elsewhere")), ["parts"]);
-    let place = |out: &str, part: &str| at.join(out).join("parts").join(part);
+    let place = |out: &str, part: &str| at.join(out).join("parts/sweep").join(part);
     std::fs::copy(place("elsewhere", "3-of-3.bin"), place("out", "3-of-3.bin")).expect("it is copied");
-    assert_eq!(names(&at.join("out/parts")), ["1-of-3.bin", "2-of-3.bin", "3-of-3.bin"]);
+    assert_eq!(names(&at.join("out/parts/sweep")), ["1-of-3.bin", "2-of-3.bin", "3-of-3.bin"]);
     let mut first = read(&place("out", "1-of-3.bin"));
     let tables: Vec<&String> = first.answers.keys().collect();
     assert_eq!(tables, ["map.gap", "map.m", "sweep.friction", "sweep.thickness"]);
@@ -116,7 +116,7 @@ fn there_may_be_more_parts_than_a_case_can_be_cut_into() {
     said(&empty, 0);
     let printed = String::from_utf8_lossy(&empty.stdout);
     assert!(printed.contains("part 39 of 40 has none"), "{printed}");
-    assert_eq!(names(&at.join("out/parts")).len(), 38);
+    assert_eq!(names(&at.join("out/parts/sweep")).len(), 38);
     sweep(at, "out", &["--merge"], 0);
     assert!(found(&at.join("out")) == whole);
 }
@@ -124,7 +124,7 @@ fn there_may_be_more_parts_than_a_case_can_be_cut_into() {
 #[test]
 fn a_part_that_was_killed_is_named_and_resumes() {
     let folder = folder_with(&block().replace("points = 9", "points = 8001"));
-    let (at, file) = (folder.path(), folder.path().join("out/parts/1-of-2.bin"));
+    let (at, file) = (folder.path(), folder.path().join("out/parts/sweep/1-of-2.bin"));
     let mut part = start(at, "out", "1/2");
     let began = Instant::now();
     while !(file.exists() && count(&read(&file)) > 0) && began.elapsed() < Duration::from_secs(100) {
@@ -140,7 +140,9 @@ fn a_part_that_was_killed_is_named_and_resumes() {
     assert!((1..4001).contains(&count(&left)), "{} of {all} points", count(&left));
     let unfinished = sweep(at, "out", &["--merge"], 2);
     let lacks = format!("not done: part 1 lacks {} of its {all} points", all - count(&left));
-    for words in [&lacks, "of 2 parts these are missing: 2", "Compute 1-2 of 2 with --part", "out/parts:"] {
+    for words in
+        [&lacks, "of 2 parts these are missing: 2", "Compute 1-2 of 2 with --part", "out/parts/sweep:"]
+    {
         assert!(unfinished.contains(words), "{unfinished}");
     }
     assert_eq!(names(&at.join("out")), ["parts"]);
@@ -178,7 +180,10 @@ fn wrong_parts_are_refused_and_nothing_is_written() {
     let message = said(&run(&mut command(at, &["cea", "case.toml", "--part", "1/2"])), 2);
     assert!(message.contains("unexpected argument '--part'"), "{message}");
     let message = sweep(at, "out", &["--merge"], 2);
-    assert!(message.contains("out/parts: found no part") && message.contains("--part 1/40"), "{message}");
+    assert!(
+        message.contains("out/parts/sweep: found no part") && message.contains("--part 1/40"),
+        "{message}"
+    );
     std::fs::write(at.join("case.toml"), block().replace(TWO_MODES, "")).expect("a case");
     for arguments in [["--part", "1/2"].as_slice(), &["--merge"]] {
         let message = sweep(at, "out", arguments, 2);
@@ -198,7 +203,7 @@ fn parts_of_something_else_are_refused_and_nothing_is_written() {
          [sweep.friction]\nparameter = \"contact.pin.friction.mu0\"\nfrom = 0\nto = 1\npoints = 3\n"
     );
     let folder = folder_with(&case);
-    let (at, parts) = (folder.path(), folder.path().join("out/parts"));
+    let (at, parts) = (folder.path(), folder.path().join("out/parts/sweep"));
     let mesh = |size: &str| {
         let arguments =
             ["mesh", "disc", "--out", "disc.msh", "--force", "--size", size, "--contact-size", "10 mm"];

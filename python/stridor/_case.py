@@ -137,7 +137,7 @@ class Case:
         ----------
         only
             The name of one analysis, which is run with those that it needs: ``"modes"``, ``"cea"``, ``"sensitivity"``,
-            ``"transient"``, ``"sweep"``, ``"frf"``, ``"calibrate"`` or ``"compare"``. All that the case lists by default.
+            ``"transient"``, ``"sweep"``, ``"uncertainty"``, ``"frf"``, ``"calibrate"`` or ``"compare"``. All that the case lists by default.
         out
             A folder for the results, as the command line writes it, with ``report.html``. Without it results stay in memory,
             with the whole record of a run in time.

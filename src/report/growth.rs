@@ -2,11 +2,11 @@
 
 use super::axes::Chart;
 use super::chart::{Area, above, bold, colour, sheet, text, widened};
-use super::colours::{ALARM, ALARM_TEXT, CALM, INK, MEASURED, MUTED};
+use super::colours::{ALARM, CALM, INK, MEASURED, MUTED};
 use super::curve::{Pen, draw_curve, draw_dot, draw_ring, pen};
 use super::format::{fixed, given, hertz, signed};
 use super::html::described;
-use super::labels::{LABEL_HEIGHT, Labels, local};
+use super::labels::{LABEL_HEIGHT, Labels, label_unstable, local};
 use super::readout::{axes_of, linear, title_at};
 use super::section::Picture;
 use super::squeal::SQUEAL_TOLERANCE;
@@ -146,7 +146,7 @@ fn draw_stable(chart: &mut Chart, modes: &[ComplexMode]) -> Result<(), Box<dyn E
     Ok(())
 }
 
-/// Modes that grow, the strongest with their frequency; a label that is moved away from its mark is joined to it by a line.
+/// Modes that grow, the strongest with their frequency.
 fn draw_unstable(
     area: &Area,
     chart: &mut Chart,
@@ -166,13 +166,7 @@ fn draw_unstable(
         // A label stays on the plot.
         let std::ops::Range { start: left, end: right } = chart.plotting_area().get_x_axis_pixel_range();
         let x = x.clamp(left + 32, right - 32);
-        let y = labels.place(x, mark - 9, 64, -4);
-        if y < mark - 9 {
-            let line = [local(area, x, y), local(area, x, mark - 7)];
-            area.draw(&PathElement::new(line, colour(ALARM).mix(0.5).stroke_width(1)))?;
-        }
-        let frequency = format!("{} Hz", hertz(mode.frequency_hz(), 0));
-        area.draw_text(&frequency, &above(bold(13.5, ALARM_TEXT)), local(area, x, y))?;
+        label_unstable(area, labels, (x, mark), &format!("{} Hz", hertz(mode.frequency_hz(), 0)))?;
     }
     Ok(())
 }

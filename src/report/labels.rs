@@ -1,6 +1,9 @@
 //! Labels of a chart that do not cover each other.
 
-use super::chart::Area;
+use super::chart::{Area, above, bold, colour};
+use super::colours::{ALARM, ALARM_TEXT};
+use plotters::prelude::*;
+use std::error::Error;
 
 /// Height of a label \[px\].
 pub(super) const LABEL_HEIGHT: i32 = 17;
@@ -30,6 +33,23 @@ impl Labels {
             self.0[k + 1..].iter().all(free)
         })
     }
+}
+
+/// Words above the mark of an unstable mode at a pixel of the whole sheet, where they cover no other label; a line joins them to a mark that
+/// they are moved away from.
+pub(super) fn label_unstable(
+    area: &Area,
+    labels: &mut Labels,
+    (x, mark): (i32, i32),
+    words: &str,
+) -> Result<(), Box<dyn Error>> {
+    let y = labels.place(x, mark - 9, 64, -4);
+    if y < mark - 9 {
+        let line = [local(area, x, y), local(area, x, mark - 7)];
+        area.draw(&PathElement::new(line, colour(ALARM).mix(0.5).stroke_width(1)))?;
+    }
+    area.draw_text(words, &above(bold(13.5, ALARM_TEXT)), local(area, x, y))?;
+    Ok(())
 }
 
 /// A pixel of the whole sheet as a pixel of `area`.

@@ -1,4 +1,4 @@
-//! A case with sweeps and a map, and what a results folder of it holds.
+//! A case with sweeps, a map and uncertain scalars, and what a results folder of it holds.
 #![allow(dead_code)]
 
 use crate::program::{CASE, Record, names, numbers};
@@ -26,16 +26,41 @@ to = ["2 um", "1.1 mm"]
 points = [3, 2]
 "#;
 
+/// Samples on a reduced model, some with an open contact, and by whole analyses.
+pub const SAMPLES: &str = r#"
+[uncertainty.gap]
+samples = 60
+[uncertainty.gap.parameter.approach]
+path = "contact.pin.approach"
+between = ["-0.5 um", "2 um"]
+[uncertainty.gap.parameter.friction]
+path = "contact.pin.friction.mu0"
+between = [0.1, 0.8]
+deviation = 0.1
+
+[uncertainty.thickness]
+samples = 12
+sampling = "random"
+[uncertainty.thickness.parameter.disc]
+path = "shell.disc.thickness"
+between = ["0.95 mm", "1.05 mm"]
+log = true
+deviation = 0.02
+"#;
+
 /// A disc on a pin with a narrow band.
 pub fn disc() -> String {
     let (head, _) = CASE.split_once("[transient]").expect("a run in time");
     let band = head.replace("\"1 kHz\"", "\"260 Hz\"");
     assert!(band != head);
-    band + SWEEPS
+    band + SWEEPS + SAMPLES
 }
 
+/// Arrays, summary, and other files by name.
+pub type Found = (Record, serde_json::Value, Vec<(String, Vec<u8>)>);
+
 /// The numbers of `results.h5`, the summary and the other files of a results folder, but what differs from run to run.
-pub fn found(out: &Path) -> (Record, serde_json::Value, Vec<(String, Vec<u8>)>) {
+pub fn found(out: &Path) -> Found {
     let file = hdf5::File::open(out.join("results.h5")).expect("results.h5 opens");
     let mut record = Vec::new();
     numbers(&file, &mut record);

@@ -2,12 +2,12 @@
 
 use super::{file, level, percent};
 use crate::report::axes::{Words, labelled};
-use crate::report::chart::{Area, above, bold, sheet, widened};
-use crate::report::colours::{ALARM, ALARM_TEXT, CALM};
+use crate::report::chart::{Area, sheet, widened};
+use crate::report::colours::{ALARM, CALM};
 use crate::report::curve::{Pen, draw_curve, draw_dot, pen};
 use crate::report::format::{given, hertz};
 use crate::report::html::described;
-use crate::report::labels::{Labels, local};
+use crate::report::labels::{Labels, label_unstable};
 use crate::report::readout::title_at;
 use crate::report::section::Picture;
 use crate::results::{ModeStatistics, UncertaintyResult};
@@ -47,7 +47,7 @@ fn draw(area: &Area, modes: &[&ModeStatistics]) -> Result<(), Box<dyn Error>> {
         decades: 0.0,
         grid: true,
     };
-    let chart = labelled(area, (widened(low, high, 0.05), 0.0..112.0), &words)?;
+    let chart = labelled(area, (widened(low, high, 0.05), 0.0..118.0), &words)?;
     let mut order: Vec<usize> = (0..modes.len()).collect();
     order.sort_by(|a, b| modes[*b].unstable.share.total_cmp(&modes[*a].unstable.share));
     let mut labels = Labels::default();
@@ -63,9 +63,8 @@ fn draw(area: &Area, modes: &[&ModeStatistics]) -> Result<(), Box<dyn Error>> {
         draw_dot(&chart, place, if grows { 5.0 } else { 3.5 }, hex)?;
         let (x, y) = chart.backend_coord(&place);
         if grows && rank < LABELS {
-            let y = labels.place(x, chart.backend_coord(&(place.0, to)).1 - 4, 64, -4);
-            let words = format!("{} Hz", hertz(mode.mean_hz, 0));
-            area.draw_text(&words, &above(bold(12.5, ALARM_TEXT)), local(area, x, y))?;
+            let mark = chart.backend_coord(&(place.0, to)).1 + 4;
+            label_unstable(area, &mut labels, (x, mark), &format!("{} Hz", hertz(mode.mean_hz, 0)))?;
         }
         let title =
             format!("mode {}: {} Hz, {}", k + 1, hertz(mode.mean_hz, 1), percent(mode.unstable.share));
