@@ -2,9 +2,11 @@
 
 use super::assign::assign;
 use super::branch::{Branch, Sample};
-use super::{Axis, Modes, SweepProblem};
+use super::{Axis, SweepProblem};
 use crate::error::Result;
+use crate::linalg::c64;
 use rayon::prelude::*;
+use std::f64::consts::TAU;
 
 /// Branches that come nearer than this share of |λ| interact …
 const NEAR: f64 = 0.01;
@@ -12,6 +14,13 @@ const NEAR: f64 = 0.01;
 const CANDIDATE: f64 = 0.05;
 /// A minimum by less than this part of the distance is none: doublets keep theirs, but for round-off.
 const DIP: f64 = 1e-3;
+
+/// Steps at most.
+const STEPS: usize = 80;
+/// The shorter part of a golden section.
+const GOLDEN: f64 = 0.381_966_011_250_105_1;
+/// Pieces in which the minimum of a parabola is sought first.
+const PIECES: usize = 64;
 
 /// Interaction of two branches.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,7 +48,7 @@ pub enum InteractionKind {
     Merging,
 }
 
-/// Every local minimum of the distance of two branches that is small, narrowed to `tolerance` by golden sections.
+/// Every local minimum of the distance of two branches that is small, narrowed to `tolerance`.
 pub(super) fn interactions(
     problem: &dyn SweepProblem,
     axis: &Axis,
@@ -91,27 +100,18 @@ fn interaction(
     let places = [place(pair[0]), place(pair[1])];
     // The modes at the sample are the reference by which the two are found again.
     let reference = &samples[k].modes;
-    let measure = |x: f64| -> Result<(f64, f64)> {
-        let modes = problem.modes(&[x])?;
-        Ok(distance(reference, places, &modes))
+    let measure = |value: f64| -> Result<Gap> {
+        let modes = problem.modes(&[value])?;
+        let link = assign(reference, &modes);
+        let [a, b] = places.map(|p| link.to[p].map(|(j, _)| modes.eigenvalues[j]));
+        Ok(Gap { value, modes: a.zip(b) })
     };
-    let golden = 0.5 * (5f64.sqrt() - 1.0);
-    let (mut low, mut high) = (samples[k - 1].value, samples[k + 1].value);
+    let known = [k - 1, k, k + 1].map(|k| {
+        let [a, b] = pair.map(|b| branches[b].at(k));
+        Gap { value: samples[k].value, modes: a.zip(b) }
+    });
     let width = tolerance * samples[k].value.abs().max(1e-3 * (axis.to - axis.from).abs());
-    let (mut x1, mut x2) = (high - golden * (high - low), low + golden * (high - low));
-    let (mut f1, mut f2) = (measure(x1)?, measure(x2)?);
-    while (high - low).abs() > width && x1 != x2 {
-        if f1.0 <= f2.0 {
-            (high, x2, f2) = (x2, x1, f1);
-            x1 = high - golden * (high - low);
-            f1 = measure(x1)?;
-        } else {
-            (low, x1, f1) = (x1, x2, f2);
-            x2 = low + golden * (high - low);
-            f2 = measure(x2)?;
-        }
-    }
-    let (value, (distance, omega)) = if f1.0 <= f2.0 { (x1, f1) } else { (x2, f2) };
+    let gap = narrowest(known, width, measure)?;
     let order = |k: usize| {
         let at = |b: usize| branches[b].at(k).map_or(0.0, |z| z.im);
         let (p, q) = (at(pair[0]), at(pair[1]));
@@ -122,18 +122,131 @@ fn interaction(
         (p, q) if p != q => InteractionKind::Crossing,
         _ => InteractionKind::Veering,
     };
-    let frequency_hz = omega / std::f64::consts::TAU;
-    Ok(Interaction { branches: pair, value, distance, frequency_hz, kind })
+    let frequency_hz = gap.modes.map_or(0.0, |(a, b)| 0.5 * (a.im + b.im)) / TAU;
+    Ok(Interaction { branches: pair, value: gap.value, distance: gap.distance(), frequency_hz, kind })
 }
 
-/// The relative distance of the two modes that those at `places` of `reference` have become, and their mean Im λ.
-fn distance(reference: &Modes, places: [usize; 2], modes: &Modes) -> (f64, f64) {
-    let link = assign(reference, modes);
-    let [a, b] = places.map(|p| link.to[p].map(|(j, _)| modes.eigenvalues[j]));
-    match (a, b) {
-        (Some(a), Some(b)) => {
-            ((a - b).norm() / a.norm().max(b.norm()).max(f64::MIN_POSITIVE), 0.5 * (a.im + b.im))
+/// Two modes at a value of the parameter.
+#[derive(Debug, Clone, Copy)]
+struct Gap {
+    value: f64,
+    /// λ₁ and λ₂, where both are found.
+    modes: Option<(c64, c64)>,
+}
+
+impl Gap {
+    /// |λ₁ − λ₂|/|λ|.
+    fn distance(&self) -> f64 {
+        let relative = |(a, b): (c64, c64)| (a - b).norm() / a.norm().max(b.norm()).max(f64::MIN_POSITIVE);
+        self.modes.map_or(f64::INFINITY, relative)
+    }
+
+    /// (λ₁ − λ₂)², which is smooth where the modes cross, veer or merge: the discriminant of the characteristic polynomial of the two.
+    fn square(&self) -> c64 {
+        self.modes.map_or(c64::new(f64::NAN, f64::NAN), |(a, b)| (a - b) * (a - b))
+    }
+}
+
+/// Where two modes are nearest: a minimum of |(λ₁ − λ₂)²|, of which three values with the least in the middle are known, to within `width`.
+///
+/// Each step goes to the minimum of the parabola through the three values that are nearest to the least one, or, where that does not
+/// close in, by a golden section into the longer side, as Brent's method does (Algorithms for Minimization without Derivatives, 1973).
+fn narrowest(
+    [mut low, mut least, mut high]: [Gap; 3],
+    width: f64,
+    mut measure: impl FnMut(f64) -> Result<Gap>,
+) -> Result<Gap> {
+    let mut known = vec![low, least, high];
+    // Lengths of the last two steps.
+    let mut steps = [f64::INFINITY; 2];
+    for step in 0..STEPS {
+        let side =
+            if (high.value - least.value).abs() > (low.value - least.value).abs() { high } else { low };
+        let section = least.value + GOLDEN * (side.value - least.value);
+        let ahead = minimum_of_parabola(&known, least.value, [low.value, high.value]);
+        let length = (ahead - least.value).abs();
+        // The first parabola is not confirmed yet.
+        if (length <= width && step > 1) || (high.value - low.value).abs() <= width {
+            break;
         }
-        _ => (f64::INFINITY, 0.0),
+        let value = if length < 0.5 * steps[0] && length > 0.1 * width { ahead } else { section };
+        if known.iter().any(|gap| gap.value == value) {
+            break;
+        }
+        steps = [steps[1], (value - least.value).abs()];
+        let gap = measure(value)?;
+        known.push(gap);
+        let above = (value - least.value) * (high.value - least.value) > 0.0;
+        match (gap.distance() < least.distance(), above) {
+            (true, true) => (low, least) = (least, gap),
+            (true, false) => (high, least) = (least, gap),
+            (false, true) => high = gap,
+            (false, false) => low = gap,
+        }
+    }
+    Ok(least)
+}
+
+/// Where the modulus of the parabola through (λ₁ − λ₂)² at the three places nearest to `least` is least, between two ends; not a number
+/// where there are no such three.
+fn minimum_of_parabola(known: &[Gap], least: f64, [from, to]: [f64; 2]) -> f64 {
+    let mut near: Vec<&Gap> = known.iter().filter(|gap| gap.modes.is_some()).collect();
+    near.sort_by(|a, b| (a.value - least).abs().total_cmp(&(b.value - least).abs()));
+    let [a, b, c, ..] = near[..] else { return f64::NAN };
+    let slope = |a: &Gap, b: &Gap| (b.square() - a.square()) / (b.value - a.value);
+    let (first, second) = (slope(a, b), (slope(b, c) - slope(a, b)) / (c.value - a.value));
+    let modulus = |x: f64| (a.square() + (first + second * (x - b.value)) * (x - a.value)).norm();
+    let place = |t: f64| from + t * (to - from);
+    let nearest = (0..=PIECES).min_by(|p, q| {
+        let modulus = |k: usize| modulus(place(k as f64 / PIECES as f64));
+        modulus(*p).total_cmp(&modulus(*q))
+    });
+    let nearest = nearest.unwrap_or(0) as f64;
+    let [mut low, mut high] = [nearest - 1.0, nearest + 1.0].map(|k| (k / PIECES as f64).clamp(0.0, 1.0));
+    for _ in 0..STEPS {
+        let [left, right] = [low + GOLDEN * (high - low), high - GOLDEN * (high - low)];
+        if modulus(place(left)) <= modulus(place(right)) { high = right } else { low = left }
+    }
+    place(0.5 * (low + high))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two undamped modes of frequencies ω₀² ± √s(x).
+    fn two(x: f64, s: impl Fn(f64) -> f64) -> Gap {
+        let root = c64::new(s(x), 0.0).sqrt();
+        let i = c64::new(0.0, 1.0);
+        Gap { value: x, modes: Some((i * (1.0 + root).sqrt(), i * (1.0 - root).sqrt())) }
+    }
+
+    #[test]
+    fn the_nearest_place_takes_few_steps() {
+        // Veering; a crossing; the end of a range of flutter; a crossing inside of two that are one at the ends, descending.
+        type Square = fn(f64) -> f64;
+        let cases: [(Square, [f64; 3], f64); 4] = [
+            (|x| 1e-4 + 0.01 * (x - 0.3).powi(2) + 0.004 * (x - 0.3).powi(3), [0.0, 0.4, 1.0], 0.3),
+            (|x| (0.1 * (x - 0.7) + 0.03 * (x - 0.7).powi(2)).powi(2), [0.0, 0.6, 1.0], 0.7),
+            (|x| 0.05 * (x.exp() - 0.25_f64.exp()), [0.0, 0.2, 1.0], 0.25),
+            (|x| (0.1 * (x - 0.3)).powi(2), [1.0, 0.4, 0.0], 0.3),
+        ];
+        for (k, (square, places, exact)) in cases.into_iter().enumerate() {
+            let mut count = 0;
+            let found = narrowest(places.map(|x| two(x, square)), 1e-7, |x| {
+                count += 1;
+                Ok(two(x, square))
+            });
+            let found = found.unwrap().value;
+            assert!((found - exact).abs() < 2e-7 && count <= 9, "{k}: {found} after {count}");
+        }
+    }
+
+    #[test]
+    fn places_without_the_two_modes_are_passed_over() {
+        let square = |x: f64| 1e-4 + 0.01 * (x - 0.3).powi(2);
+        let gap = |x: f64| if x < 0.2 { Gap { value: x, modes: None } } else { two(x, square) };
+        let found = narrowest([0.0, 0.45, 1.0].map(gap), 1e-6, |x| Ok(gap(x))).unwrap();
+        assert!((found.value - 0.3).abs() < 2e-6, "{}", found.value);
     }
 }
