@@ -34,6 +34,7 @@ fn a_command_refuses_a_case_without_its_table() {
     let folder = folder_with(RIG);
     for (command, example) in [
         ("sweep", "[sweep.mu]"),
+        ("uncertainty", "[uncertainty.all.parameter.mu]"),
         ("transient", "[transient]"),
         ("frf", "[frf.tap]"),
         ("calibrate", "[calibrate]"),

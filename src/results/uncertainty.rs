@@ -11,7 +11,7 @@ use crate::uncertainty::{Distribution, Proportion, first_order, proportion, quan
 use std::f64::consts::TAU;
 
 /// The probabilities of the quantiles that are given.
-pub const QUANTILES: [f64; 3] = [0.05, 0.5, 0.95];
+const QUANTILES: [f64; 3] = [0.05, 0.5, 0.95];
 
 /// An uncertain scalar, or several of one value.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,9 +73,9 @@ pub struct ModeStatistics {
     pub mean_hz: f64,
     /// Standard deviation of ω/2π \[Hz\].
     pub deviation_hz: f64,
-    /// [`QUANTILES`] of ω/2π \[Hz\].
+    /// Quantiles 0.05, 0.5 and 0.95 of ω/2π \[Hz\].
     pub frequency_hz: [f64; 3],
-    /// [`QUANTILES`] of σ \[1/s\].
+    /// Quantiles 0.05, 0.5 and 0.95 of σ \[1/s\].
     pub growth_rate: [f64; 3],
 }
 

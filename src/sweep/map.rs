@@ -37,7 +37,7 @@ impl MapPoint {
 /// Every point of the grid, the first parameter running fastest; `known` are its first points, of an earlier run.
 ///
 /// # Errors
-/// As [`fill`].
+/// The machine refuses; those of `record`.
 pub fn map(
     problem: &dyn SweepProblem,
     axes: &[Axis; 2],

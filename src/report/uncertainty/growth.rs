@@ -1,6 +1,6 @@
 //! `uncertainty_<name>_growth.svg`: how the largest growth rate is distributed, and how the probability of instability settles.
 
-use super::{file, level, percent};
+use super::words::{file, level, percent};
 use crate::report::axes::{Chart, Words, labelled};
 use crate::report::chart::{Area, colour, sheet};
 use crate::report::colours::{ALARM, CALM, INK};

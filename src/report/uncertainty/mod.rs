@@ -3,12 +3,14 @@
 mod growth;
 mod modes;
 mod scalars;
+mod words;
 
 use super::finding::{Finding, FindingClass};
 use super::format::{given, power, significant};
 use super::section::{Display, ReportSection};
 use super::table::ReportTable;
-use crate::results::{RunResults, SweepMethod, UncertaintyResult, file_name};
+use crate::results::{RunResults, SweepMethod, UncertaintyResult};
+use words::{file, level, percent};
 
 /// Every study of uncertain scalars.
 pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
@@ -19,24 +21,9 @@ pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
             .pictures(growth::picture(result))
             .pictures(scalars::picture(result))
             .tables(Display::Titled, [mode_table(result), scalar_table(result)])
-            .words([words(result)])
+            .words([method(result)])
     };
     results.all::<UncertaintyResult>().into_iter().map(section).collect()
-}
-
-/// A share in percent.
-fn percent(share: f64) -> String {
-    format!("{} %", significant(100.0 * share, 3))
-}
-
-/// The confidence of the intervals in percent.
-fn level(result: &UncertaintyResult) -> String {
-    format!("{} %", given(100.0 * result.study.confidence))
-}
-
-/// The file of a picture of the study, without extension.
-fn file(result: &UncertaintyResult, what: &str) -> String {
-    file_name("uncertainty", &result.study.name) + what
 }
 
 /// How probable it is that a mode grows.
@@ -102,7 +89,7 @@ fn scalar_table(result: &UncertaintyResult) -> ReportTable {
 }
 
 /// How it was solved, and how exactly.
-fn words(result: &UncertaintyResult) -> String {
+fn method(result: &UncertaintyResult) -> String {
     let study = &result.study;
     let method = match study.method {
         SweepMethod::Reduced(dimension) => {
@@ -146,7 +133,7 @@ mod tests {
             assert!(found.words.contains(part), "{part}: {}", found.words);
         }
         assert_eq!(mode_table(result).rows.len(), 1);
-        assert!(words(result).contains("measured on the full order at 2 samples"), "{}", words(result));
+        assert!(method(result).contains("measured on the full order at 2 samples"), "{}", method(result));
         let mut none = result.study.clone();
         none.modes.iter_mut().flatten().flatten().for_each(|z| z.re = -1.0);
         let none = UncertaintyResult::new(

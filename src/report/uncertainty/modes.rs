@@ -1,6 +1,6 @@
 //! `uncertainty_<name>.svg`: the probability that each mode is unstable, over its frequency.
 
-use super::{file, level, percent};
+use super::words::{file, level, percent};
 use crate::report::axes::{Words, labelled};
 use crate::report::chart::{Area, sheet, widened};
 use crate::report::colours::{ALARM, CALM};

@@ -1,6 +1,6 @@
 //! `uncertainty_<name>_scalars.svg`: which uncertain scalar decides the largest growth rate.
 
-use super::file;
+use super::words::file;
 use crate::report::colours::{ALARM, INK, MEASURED, MUTED};
 use crate::report::format::{signed, significant};
 use crate::report::section::Picture;

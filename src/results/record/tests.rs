@@ -1,4 +1,5 @@
 use super::*;
+use crate::linalg::c64;
 use crate::results::{Channel, NodalField};
 use crate::transient::{Event, EventKind};
 
@@ -61,7 +62,12 @@ fn add(record: &mut Record, first: usize) {
     record.add_piece(&piece).unwrap();
 }
 
-/// Thirty rows and five points of a map.
+/// Samples of which the second has no answer and the third no mode.
+fn samples() -> [SampleModes; 3] {
+    [Some(vec![c64::new(-1.0, 2.0), c64::new(f64::NAN, f64::NAN)]), None, Some(Vec::new())]
+}
+
+/// Thirty rows, five points of a map and five samples.
 fn record(dir: &Path) {
     let mut record = Record::new(dir, origin());
     begin(&mut record);
@@ -69,6 +75,8 @@ fn record(dir: &Path) {
     record.begin_map("m", &[], &[[1.0, 2.0]]).unwrap();
     record.add_map_points("m", 0, &[0, 1, 2].map(point)).unwrap();
     record.add_map_points("m", 3, &[3, 4].map(point)).unwrap();
+    record.add_samples("s", 0, &samples()).unwrap();
+    record.add_samples("s", 3, &samples()[..2]).unwrap();
 }
 
 fn resume(dir: &Path) -> Result<Option<(Record, Earlier)>> {
@@ -94,6 +102,8 @@ fn a_record_is_resumed() {
     let (points, trained) = &earlier.maps["m"];
     assert_eq!(format!("{points:?}"), format!("{:?}", [0, 1, 2, 3, 4].map(point)));
     assert_eq!(*trained, [[1.0, 2.0]]);
+    let all = [&samples()[..], &samples()[..2]].concat();
+    assert_eq!(format!("{:?}", earlier.samples["s"]), format!("{all:?}"));
     let (mut rows, mut fields) = (Vec::new(), 0);
     again
         .replay(&mut |block| {
@@ -118,9 +128,11 @@ fn a_record_is_resumed() {
     let whole = std::fs::read(&path).unwrap();
     std::fs::write(&path, [&whole[..], &[4; 1000]].concat()).unwrap();
     again.add_map_points("m", 5, &[point(5)]).unwrap();
+    again.add_samples("s", 5, &samples()).unwrap();
     again.end().unwrap();
     let (last, later) = resume(dir).unwrap().unwrap();
     assert!(last.ended() && later.maps["m"].0.len() == 6 && later.rows == 30);
+    assert_eq!(later.samples["s"].len(), 8);
 }
 
 #[test]
