@@ -86,3 +86,46 @@ impl Shares {
         rows
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::samples::plate;
+    use std::collections::BTreeSet;
+
+    /// Each rank has the rows of its own part and nothing of the others'; all of them together have every entry once.
+    #[test]
+    fn each_rank_has_its_own_part_of_the_matrix_and_no_more() {
+        let (matrix, _) = plate(20, false);
+        let n = matrix.ncols();
+        let of_column = |j: usize| matrix.row_idx_of_col(j).map(move |i| (i as i32 + 1, j as i32 + 1));
+        let lower: BTreeSet<(i32, i32)> = (0..n).flat_map(of_column).filter(|(i, j)| i >= j).collect();
+        for ranks in [1, 2, 3, 4, 7] {
+            let shares = Shares::new(matrix.symbolic(), ranks);
+            let most = shares.rows.iter().map(Vec::len).max().unwrap();
+            assert!(most <= n.div_ceil(ranks) * 11 / 10, "{most} of {n} rows on one of {ranks} ranks");
+            let (mut found, mut rows_found, mut across) = (BTreeSet::new(), BTreeSet::new(), 0);
+            for rank in 0..ranks {
+                let own: BTreeSet<i32> = shares.rows[rank].iter().map(|row| *row as i32 + 1).collect();
+                let entries = shares.entries(matrix.symbolic(), rank, Vec::new());
+                let values = shares.values(&matrix, rank);
+                assert_eq!(entries.rows.len(), values.len());
+                for ((i, j), value) in entries.rows.iter().zip(&entries.columns).zip(values) {
+                    assert!(
+                        own.contains(j) && found.insert((*i, *j)),
+                        "({i}, {j}) twice, or of another rank"
+                    );
+                    let (i, j) = (*i as usize - 1, *j as usize - 1);
+                    assert_eq!(matrix.as_ref().get(i, j), Some(&value));
+                    across += usize::from(!own.contains(&(i as i32 + 1)));
+                }
+                let rows = shares.rows_of_transpose(&matrix, rank);
+                assert_eq!(rows.starts.len(), own.len() + 1);
+                rows_found.extend(own);
+            }
+            assert!(found == lower && rows_found.len() == n);
+            // Parts of a mesh: few entries between them.
+            assert!(across <= lower.len() * (ranks - 1) / 20, "{across} of {} between {ranks}", lower.len());
+        }
+    }
+}
