@@ -5,6 +5,7 @@ use super::problem::{CalibrationProblem, Computed};
 use super::residuals::Residuals;
 use super::svd::Svd;
 use nalgebra::DMatrix;
+use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
 
 /// Standard deviations either side of the mean that hold 95 % of a normal distribution.
 const NORMAL: f64 = 1.959_963_984_540_054;
@@ -72,8 +73,7 @@ impl Knowledge {
                 (0..n).map(|j| around(j, factor * deviations[j])).collect()
             }),
             reduced_chi2,
-            chi2_probability: (freedom > 0)
-                .then(|| puruspe::gammq(0.5 * freedom as f64, 0.5 * fit.chi2.min(1e6))),
+            chi2_probability: (freedom > 0).then(|| exceeded(fit.chi2, freedom as f64)),
             deviations,
         }
     }
@@ -140,11 +140,14 @@ fn inverse(h: &DMatrix<f64>) -> DMatrix<f64> {
     &eigen.eigenvectors * DMatrix::from_diagonal(&variance) * eigen.eigenvectors.transpose()
 }
 
-/// t with P(|T| > t) = 5 % for Student's distribution with ν degrees of freedom: ν/(ν + t²) is the 5 % point of the
-/// incomplete beta function I(ν/2, ½) (Abramowitz and Stegun 26.5.27).
+/// t with P(|T| > t) = 5 % for Student's distribution with ν degrees of freedom.
 fn student(freedom: f64) -> f64 {
-    let z = puruspe::invbetai(OUTSIDE, 0.5 * freedom, 0.5);
-    (freedom * (1.0 - z) / z).sqrt()
+    StudentsT::new(0.0, 1.0, freedom).map_or(f64::NAN, |t| t.inverse_cdf(1.0 - 0.5 * OUTSIDE))
+}
+
+/// P(X > χ²) for the chi-squared distribution with ν degrees of freedom.
+fn exceeded(chi2: f64, freedom: f64) -> f64 {
+    ChiSquared::new(freedom).map_or(f64::NAN, |distribution| distribution.sf(chi2))
 }
 
 #[cfg(test)]
@@ -158,6 +161,23 @@ mod tests {
         for (freedom, t) in [(1.0, 12.706), (2.0, 4.303), (5.0, 2.571), (30.0, 2.042)] {
             assert!((student(freedom) - t).abs() < 6e-4, "{freedom} {}", student(freedom));
         }
+    }
+
+    #[test]
+    fn the_probability_of_chi2_is_that_of_the_tables() {
+        // 95 % points of chi-squared.
+        for (freedom, chi2) in [(1.0, 3.841_459), (10.0, 18.307_038), (100.0, 124.342_113)] {
+            assert!((exceeded(chi2, freedom) - 0.05).abs() < 1e-7, "{freedom}");
+        }
+        // For many degrees of freedom as many standard deviations away as Wilson and Hilferty say, on either side.
+        for freedom in [250.0, 1e3, 1e4, 1e6] {
+            for (z, probability) in [(-2.0, 0.977_250), (0.0, 0.5), (2.0, 0.022_750)] {
+                let h: f64 = 2.0 / (9.0 * freedom);
+                let found = exceeded(freedom * (1.0 - h + z * h.sqrt()).powi(3), freedom);
+                assert!((found - probability).abs() < 2e-5, "{freedom}, {z}: {found}");
+            }
+        }
+        assert!(exceeded(1e300, 500.0) == 0.0 && exceeded(0.0, 500.0) == 1.0);
     }
 
     #[test]

@@ -2,16 +2,20 @@
 
 use crate::error::{Error, Fault, Result};
 use crate::job::{SHARED, Selection};
+use crate::linalg::factor::engine_names;
 use clap::ValueEnum;
 
 /// How an analysis is shared out over the ranks of `mpirun`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum EngineName {
     /// For `modes` and `cea`: its matrices, by MUMPS, PETSc and SLEPc
+    #[value(name = engine_names::SLEPC)]
     Slepc,
     /// The same with the real modes by Krylov–Schur of SLEPc, a second method to find them
+    #[value(name = engine_names::SLEPC_KRYLOV_SCHUR)]
     SlepcKrylovSchur,
     /// For `sweep` and `uncertainty`: their points
+    #[value(name = engine_names::MPI)]
     Mpi,
 }
 

@@ -5,7 +5,7 @@ use super::rank::{Factorized, QuadraticPart, Rank, send_rows};
 use super::shares::Shares;
 use crate::error::{Error, Fault, Result};
 use crate::linalg::factor::{
-    Backend, DistributedPattern, EigenSolver, HalfSolutions, QuadraticProblem, QuadraticSolver,
+    Backend, DistributedPattern, EigenSolver, HalfSolutions, QuadraticProblem, QuadraticSolver, engine_names,
 };
 use crate::linalg::sparse::Index;
 use crate::linalg::{Inertia, SparseMatrix, SymbolicFactor, SymmetricFactor, c64};
@@ -84,8 +84,8 @@ impl Cluster {
 impl Backend for Arc<Cluster> {
     fn name(&self) -> &'static str {
         match self.method {
-            RealModesMethod::BlockLanczos => "slepc",
-            RealModesMethod::KrylovSchur => "slepc-krylov-schur",
+            RealModesMethod::BlockLanczos => engine_names::SLEPC,
+            RealModesMethod::KrylovSchur => engine_names::SLEPC_KRYLOV_SCHUR,
         }
     }
 

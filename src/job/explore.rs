@@ -5,7 +5,8 @@ use super::modes::add_modal_damping;
 use super::prepared::Prepared;
 use super::sink::{KnownMap, ResultStage};
 use super::states::{OnFamily, States, Whole, keeps_the_structure};
-use super::studies::{Points, Study, between};
+use super::studies::{Points, SHARED, Study, between, ranges};
+use super::uncertainty::ProblemOfSamples;
 use crate::case::{Case, Invalidates, MapAnalysis, SweepAnalysis};
 use crate::equilibrium::{Condensed, SteadySliding, tangent_stiffness};
 use crate::error::Result;
@@ -15,7 +16,8 @@ use crate::progress::Observer;
 use crate::results::{DampingRow, DampingVerdicts, MapResult, RunResults, SweepMethod, SweepResult};
 use crate::stability::{Family, FamilyFrame, SlidingState};
 use crate::sweep::{
-    self, AnswerStore, Answered, Axis, Block, Boundary, Checked, CriticalKind, MapPoint, SweepProblem,
+    self, AnswerStore, Answered, Axis, Block, Boundary, Checked, CriticalKind, MapPoint, MeasuredProblem,
+    SweepProblem,
 };
 use crate::system::{Damping, System};
 
@@ -64,12 +66,8 @@ pub(super) fn explore(
 
 /// Every damping scalar that a study or the verdicts vary: path, its value, another value that the case accepts.
 fn dampings(whole: &Case, case: &Case) -> Result<Vec<(String, f64, f64)>> {
-    let sweeps = whole.sweep.values().map(|s| (&s.parameter, [s.from, s.to]));
-    let maps = whole.map.values().flat_map(|m| [0, 1].map(|k| (&m.parameters[k], [m.from[k], m.to[k]])));
-    let uncertain = whole.uncertainty.values().flat_map(|study| study.parameter.values());
-    let uncertain = uncertain.flat_map(|of| of.path.iter().map(|path| (path, of.between)));
     let mut found: Vec<(String, f64, f64)> = Vec::new();
-    for (path, ends) in sweeps.chain(maps).chain(uncertain) {
+    for (path, ends) in SHARED.into_iter().flat_map(|analysis| ranges(whole, analysis)) {
         let parameter = case.parameter(path)?;
         let known = found.iter().any(|(other, ..)| other == path);
         if parameter.invalidates == Invalidates::Damping && keeps_the_structure(case, path)? && !known {
@@ -122,7 +120,54 @@ impl<'a> Start<'a> {
 pub(super) enum Problem<'s> {
     Whole(Whole<'s>),
     /// On a reduced model that is not refined yet.
-    Reduced(OnFamily<'s, 's>),
+    Reduced(OnFamily<'s>),
+}
+
+impl Problem<'_> {
+    pub(super) fn of(&self) -> &dyn MeasuredProblem {
+        match self {
+            Problem::Whole(whole) => whole,
+            Problem::Reduced(on) => on,
+        }
+    }
+
+    pub(super) fn method(&self) -> SweepMethod {
+        match self {
+            Problem::Whole(_) => SweepMethod::Whole,
+            Problem::Reduced(on) => SweepMethod::Reduced(on.family.dimension()),
+        }
+    }
+}
+
+/// Computes blocks of a study.
+#[allow(clippy::large_enum_variant, reason = "one at a time")]
+pub(super) enum StudySolver<'s> {
+    Grid { axes: &'s [Axis], problem: Problem<'s>, tolerance: f64 },
+    Samples { places: &'s [Vec<f64>], problem: ProblemOfSamples<'s> },
+}
+
+impl StudySolver<'_> {
+    /// Computes a block; its answers are in `store`, or put there.
+    ///
+    /// # Errors
+    /// Those of [`Block::solve`]; the machine refuses.
+    pub(super) fn solve(
+        &self,
+        block: &Block,
+        store: &dyn AnswerStore,
+        observer: &dyn Observer,
+    ) -> Result<()> {
+        match self {
+            StudySolver::Grid { axes, problem, tolerance } => {
+                block.solve(&Answered::new(problem.of(), store), axes, *tolerance, observer)
+            }
+            StudySolver::Samples { places, problem } => {
+                let [first, last] = block.0[0];
+                let places = &places[first..=last];
+                problem.solve(places, &[], store, &mut |_, _| Ok(()), observer).map(|_| ())
+            }
+        }
+    }
 }
 
 pub(super) struct Explorer<'a> {
@@ -176,7 +221,7 @@ impl Explorer<'_> {
         Ok(())
     }
 
-    pub(super) fn states(&self, paths: &[String]) -> States<'_> {
+    fn states(&self, paths: &[String]) -> States<'_> {
         States {
             prepared: self.nominal.prepared,
             case: self.case,
@@ -197,8 +242,9 @@ impl Explorer<'_> {
         Ok(each.iter().all(|keeps| *keeps))
     }
 
-    /// A family trained on the states at `places`; those without an answer are left out.
-    fn family<'s>(&'s self, states: &'s States<'s>, places: &[Vec<f64>]) -> Result<OnFamily<'s, 's>> {
+    /// A family trained on the states of the scalars at `paths` at `places`; those without an answer are left out.
+    fn family(&self, paths: &[String], places: &[Vec<f64>]) -> Result<OnFamily<'_>> {
+        let states = self.states(paths);
         self.observer.begin("reduced model", Some(places.len() as u64));
         let members: Vec<SlidingState> = places.iter().filter_map(|at| states.at(at).ok()).collect();
         if members.is_empty() {
@@ -214,31 +260,30 @@ impl Explorer<'_> {
         Ok(OnFamily { states, family })
     }
 
-    /// The problem of a study, whose `states` are those of its scalars.
-    pub(super) fn problem<'s>(&'s self, states: &'s States<'s>, study: &Study) -> Result<Problem<'s>> {
+    /// The problem of a study.
+    pub(super) fn problem(&self, study: &Study) -> Result<Problem<'_>> {
         if self.keeps_the_structure(&study.paths)? {
-            return Ok(Problem::Reduced(self.family(states, &study.training())?));
+            return Ok(Problem::Reduced(self.family(&study.paths, &study.training())?));
         }
         Ok(Problem::Whole(Whole::new(self.case, study.paths.clone(), Some(&self.start.reference.0))))
     }
 
-    /// Computes a block of a study; its answers are in `store`, or put there.
+    /// The solver of the blocks of a study.
     ///
     /// # Errors
-    /// A reduced model that cannot be trained; those of [`Block::solve`]; the machine refuses.
-    pub(super) fn block(&self, study: &Study, block: &Block, store: &dyn AnswerStore) -> Result<()> {
-        if let Points::Samples { places, .. } = &study.points {
-            let [first, last] = block.0[0];
-            return self.samples_of_part(study, &places[first..=last], store);
+    /// A reduced model that cannot be trained.
+    pub(super) fn solver<'s>(&'s self, study: &'s Study) -> Result<StudySolver<'s>> {
+        match &study.points {
+            Points::Grid(axes) => {
+                let problem = self.problem(study)?;
+                let tolerances = if axes.len() == 1 { LOCATED } else { BOUNDARY };
+                let tolerance = tolerances[usize::from(matches!(problem, Problem::Whole(_)))];
+                Ok(StudySolver::Grid { axes, problem, tolerance })
+            }
+            Points::Samples { places, .. } => {
+                Ok(StudySolver::Samples { places, problem: self.problem_of_samples(study, places)? })
+            }
         }
-        let states = self.states(&study.paths);
-        let problem = self.problem(&states, study)?;
-        let (problem, reduced): (&dyn SweepProblem, bool) = match &problem {
-            Problem::Whole(whole) => (whole, false),
-            Problem::Reduced(on) => (on, true),
-        };
-        let tolerance = if study.axes().len() == 1 { LOCATED } else { BOUNDARY }[usize::from(!reduced)];
-        block.solve(&Answered::new(problem, store), study.axes(), tolerance, self.observer)
     }
 
     fn sweep(&self, name: &str, analysis: &SweepAnalysis, parts: &Parts) -> Result<SweepResult> {
@@ -257,8 +302,7 @@ impl Explorer<'_> {
             sample: measured.sample,
             method,
         };
-        let states = self.states(&study.paths);
-        let mut on = match self.problem(&states, &study)? {
+        let mut on = match self.problem(&study)? {
             Problem::Whole(whole) => {
                 let known = parts.of(&study.name, true);
                 let answered = Answered::new(&whole, &known);
@@ -282,7 +326,7 @@ impl Explorer<'_> {
                 return Ok(result(sweep, measured, SweepMethod::Reduced(dimension)));
             }
             for value in poor {
-                on.family.train(&states.at(&[value])?)?;
+                on.train(&[value])?;
             }
         }
     }
@@ -342,8 +386,7 @@ impl Explorer<'_> {
             failure.map(|f| format!("Map `{name}`: points without an answer are left blank; the first: {f}"))
         };
         let mut earlier = known.maps.get(name).cloned().unwrap_or_default();
-        let states = self.states(&study.paths);
-        let mut on = match self.problem(&states, &study)? {
+        let mut on = match self.problem(&study)? {
             Problem::Whole(whole) => {
                 let parts = known.parts.of(&study.name, true);
                 let answered = Answered::new(&whole, &parts);
@@ -358,7 +401,7 @@ impl Explorer<'_> {
         let inside =
             [[0.3, 0.7], [0.75, 0.2]].map(|shares| between(study.axes(), &shares)).map(|at| [at[0], at[1]]);
         for at in &earlier.trained {
-            on.family.train(&states.at(at)?)?;
+            on.train(at)?;
         }
         let mut refinement = 0;
         loop {
@@ -374,7 +417,7 @@ impl Explorer<'_> {
                 return Ok((result, failed(failure)));
             }
             for at in poor {
-                on.family.train(&states.at(&at)?)?;
+                on.train(&at)?;
                 earlier.trained.push(at);
             }
             earlier.points.clear();
@@ -406,8 +449,7 @@ impl Explorer<'_> {
         }
         let range = [0.5 * ratio, (2.0 * ratio).min(0.999)];
         let axis = Axis { from: range[0], to: range[1], points: 9, log: true };
-        let states = self.states(&[RATIO.to_string()]);
-        let on = self.family(&states, &[vec![range[0]], vec![range[1]]])?;
+        let on = self.family(&[RATIO.to_string()], &[vec![range[0]], vec![range[1]]])?;
         let own = on.modes(&[ratio])?;
         let sweep = sweep::sweep(&on, &axis, LOCATED[0], self.observer)?;
         let middle = (0..sweep.values.len())
@@ -446,7 +488,7 @@ impl FullOrderErrors {
 }
 
 /// Measures every critical mode and all modes at the `sample` values.
-fn measure(problem: &dyn SweepProblem, sweep: &sweep::Sweep, sample: &[f64]) -> Result<FullOrderErrors> {
+fn measure(problem: &dyn MeasuredProblem, sweep: &sweep::Sweep, sample: &[f64]) -> Result<FullOrderErrors> {
     let critical =
         |c: &sweep::Critical| -> Result<Option<Checked>> { problem.check_nearest(&[c.value], c.eigenvalue) };
     let worst = |value: &f64| -> Result<(f64, f64)> {

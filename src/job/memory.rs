@@ -3,7 +3,7 @@
 use super::analyses::Selection;
 use super::prepared::Prepared;
 use super::states::keeps_the_structure;
-use super::studies::{SHARED, varied_paths};
+use super::studies::{SHARED, ranges};
 use crate::error::{Error, Result};
 use crate::linalg::sparse::{add_scaled, sum_of_squares};
 use crate::memory::{Available, available};
@@ -37,6 +37,8 @@ pub struct ExpectedMemory {
     pub fill: usize,
     /// About how many real modes are computed at once.
     pub modes: f64,
+    /// Whether it holds left vectors that only results need.
+    pub left_vectors: bool,
 }
 
 impl ExpectedMemory {
@@ -64,7 +66,10 @@ impl ExpectedMemory {
                 words(available.bytes as f64),
                 fill = *fill as f64,
             ),
-            "Take a coarser mesh, a lower `cea.basis_below`, `below` or `count`, or a machine with more memory",
+            format!(
+                "Take a coarser mesh, a lower `cea.basis_below`, `below` or `count`, {}or a machine with more memory",
+                if self.left_vectors { "`cea.left_vectors = false`, " } else { "" },
+            ),
         ))
     }
 }
@@ -120,7 +125,7 @@ pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Opti
     let run = ProblemSize { dofs, entries: pattern.compute_nnz(), fill, modes: modes.min(dofs as f64) };
     let mut studies = None;
     let varied = SHARED.into_iter().filter(|analysis| selection.includes(analysis, case));
-    for path in varied.flat_map(|analysis| varied_paths(case, analysis)) {
+    for (path, _) in varied.flat_map(|analysis| ranges(case, analysis)) {
         let kind = if keeps_the_structure(case, path)? {
             AnalysisKind::Study
         } else {
@@ -135,7 +140,9 @@ pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Opti
         }),
     };
     let bytes = run.peak(kind);
-    Ok(Some(ExpectedMemory { bytes, dofs, fill, modes: run.modes }))
+    let left_vectors =
+        kind == AnalysisKind::Complex { left_vectors: true } && !selection.takes_left_vectors(case);
+    Ok(Some(ExpectedMemory { bytes, dofs, fill, modes: run.modes, left_vectors }))
 }
 
 /// The analysis that takes the most memory.
@@ -241,7 +248,8 @@ mod tests {
 
     #[test]
     fn a_run_that_cannot_fit_is_refused_with_both_figures() {
-        let expected = ExpectedMemory { bytes: 3e9, dofs: 100_000, fill: 20_000_000, modes: 40.0 };
+        let expected =
+            ExpectedMemory { bytes: 3e9, dofs: 100_000, fill: 20_000_000, modes: 40.0, left_vectors: true };
         let by = "the machine's free memory";
         assert!(expected.check(&Available { bytes: 4_000_000_000, by }).is_ok());
         let error = expected.check(&Available { bytes: 1 << 30, by }).unwrap_err();
@@ -250,6 +258,9 @@ mod tests {
             text.contains("2.8 GiB") && text.contains("leaves 1.0 GiB") && text.contains("coarser"),
             "{text}"
         );
+        assert!(text.contains("left_vectors = false"), "{text}");
+        let without = ExpectedMemory { left_vectors: false, ..expected };
+        assert!(!without.check(&Available { bytes: 1 << 30, by }).unwrap_err().to_string().contains("left"));
         assert_eq!(error.exit_code(), 1);
     }
 

@@ -3,7 +3,7 @@
 
 use super::analyse::{Asked, operating_point};
 use super::analyses::Selection;
-use super::explore::{Explorer, Nominal, Start};
+use super::explore::{Explorer, Nominal, Start, StudySolver};
 use super::known::{Parts, origin};
 use super::memory::check_memory;
 use super::prepared::Prepared;
@@ -98,10 +98,11 @@ pub fn run_parts(
         Nominal { prepared: &prepared, system: &point.system, steady: &point.steady, real: &point.real };
     let start = Start::new(&nominal).map_err(computing)?;
     let explorer = Explorer::new(&start, observer).map_err(computing)?;
+    let mut solvers = Solvers { explorer: &explorer, last: None };
     loop {
         let (share, mut file) = work;
         file.begin(start.reference.digest())?;
-        compute(&explorer, &share, file, observer)?;
+        compute(&mut solvers, &share, file, observer)?;
         let Some(next) = open(&mut done)? else { return Ok(done) };
         work = next;
     }
@@ -111,15 +112,16 @@ pub fn run_parts(
 type Share<'a> = Vec<&'a (usize, &'a Study, Block)>;
 
 /// Computes blocks of studies and keeps their answers in the file of their part, which is then done.
-fn compute(
-    explorer: &Explorer,
-    share: &[&(usize, &Study, Block)],
+fn compute<'s>(
+    solvers: &mut Solvers<'s>,
+    share: &[&(usize, &'s Study, Block)],
     file: PartFile,
     observer: &dyn Observer,
 ) -> Result<()> {
     let file = Mutex::new(file);
     for (_, study, block) in share {
-        let computed = explorer.block(study, block, &Keeping { file: &file, table: &study.name });
+        let store = Keeping { file: &file, table: &study.name };
+        let computed = solvers.of(study).and_then(|solver| solver.solve(block, &store, observer));
         locked(&file).save()?;
         match computed {
             Err(refused @ Error::Io { .. }) => return Err(refused),
@@ -132,6 +134,22 @@ fn compute(
     let mut file = locked(&file);
     file.record.done = true;
     file.save()
+}
+
+/// Solvers of studies. The last one is kept, as the next part may begin with its study; two would take twice the memory.
+struct Solvers<'s> {
+    explorer: &'s Explorer<'s>,
+    last: Option<(&'s str, StudySolver<'s>)>,
+}
+
+impl<'s> Solvers<'s> {
+    fn of(&mut self, study: &'s Study) -> Result<&StudySolver<'s>> {
+        if self.last.as_ref().is_none_or(|(name, _)| *name != study.name) {
+            self.last = None;
+            self.last = Some((&study.name, self.explorer.solver(study)?));
+        }
+        Ok(&self.last.as_ref().expect("a solver that was made").1)
+    }
 }
 
 /// The answers of a part for the study with this table in the case.

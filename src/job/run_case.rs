@@ -13,6 +13,7 @@ use super::sink::KnownMap;
 use crate::case::Case;
 use crate::error::{Error, Fault, Result};
 use crate::linalg::Engine;
+use crate::linalg::factor::engine_names;
 use crate::progress::Observer;
 use crate::results::record::{Earlier, Record, RecordOrigin};
 use crate::results::{self, FieldsFile, FolderLock, Provenance, ResultsFile, RunResults, fits_on_disk};
@@ -96,7 +97,7 @@ fn run_from(
     let started = Instant::now();
     let (file, text) = case.places.source();
     let (engine_name, ranks) = match begin {
-        Begin::Merged { ranks: Some(ranks), .. } => ("mpi", ranks),
+        Begin::Merged { ranks: Some(ranks), .. } => (engine_names::MPI, ranks),
         _ => (engine.name(), engine.ranks()),
     };
     let provenance = Some(Provenance::now(file, text).on_ranks(engine_name, ranks));

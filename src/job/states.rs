@@ -10,7 +10,7 @@ use crate::linalg::c64;
 use crate::linalg::multivector::gram;
 use crate::modal::{self, ModesWanted};
 use crate::stability::{Band, ComplexMode, Family, FamilyCheck, SlidingState, complex_modes};
-use crate::sweep::{Checked, Modes, SweepProblem};
+use crate::sweep::{Checked, MeasuredProblem, Modes, SweepProblem};
 use crate::system::Structure;
 use faer::Mat;
 use std::borrow::Cow;
@@ -68,12 +68,19 @@ impl States<'_> {
 }
 
 /// The members of a sweep on one reduced model.
-pub(super) struct OnFamily<'a, 'f> {
-    pub(super) states: &'a States<'a>,
-    pub(super) family: Family<'f>,
+pub(super) struct OnFamily<'a> {
+    pub(super) states: States<'a>,
+    pub(super) family: Family<'a>,
 }
 
-impl SweepProblem for OnFamily<'_, '_> {
+impl OnFamily<'_> {
+    /// Adds to the reduced model what the state at `at` needs.
+    pub(super) fn train(&mut self, at: &[f64]) -> Result<()> {
+        self.family.train(&self.states.at(at)?).map(|_| ())
+    }
+}
+
+impl SweepProblem for OnFamily<'_> {
     fn modes(&self, at: &[f64]) -> Result<Modes> {
         let modes = self.family.modes(&self.states.at(at)?)?;
         Ok(Modes { eigenvalues: modes.eigenvalues, vectors: modes.vectors })
@@ -82,7 +89,9 @@ impl SweepProblem for OnFamily<'_, '_> {
     fn eigenvalues(&self, at: &[f64]) -> Result<Vec<c64>> {
         self.family.eigenvalues(&self.states.at(at)?)
     }
+}
 
+impl MeasuredProblem for OnFamily<'_> {
     fn check(&self, at: &[f64]) -> Result<Vec<Checked>> {
         Ok(rows(self.family.check(&self.states.at(at)?)?))
     }
@@ -152,6 +161,12 @@ impl SweepProblem for Whole<'_> {
         Ok(Modes { eigenvalues, vectors })
     }
 
+    fn parallel(&self) -> bool {
+        false
+    }
+}
+
+impl MeasuredProblem for Whole<'_> {
     fn check(&self, at: &[f64]) -> Result<Vec<Checked>> {
         let checked = |m: &ComplexMode| Checked {
             eigenvalue: m.eigenvalue,
@@ -159,9 +174,5 @@ impl SweepProblem for Whole<'_> {
             eigenvalue_error: m.eigenvalue_error,
         };
         Ok(self.analyse(at)?.iter().map(checked).collect())
-    }
-
-    fn parallel(&self) -> bool {
-        false
     }
 }

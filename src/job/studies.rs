@@ -32,13 +32,13 @@ impl Study {
     pub(super) fn of_sweep(name: &str, of: &SweepAnalysis) -> Self {
         let axis = Axis { from: of.from, to: of.to, points: of.points, log: of.log };
         let points = Points::Grid(vec![axis]);
-        Study { name: format!("sweep.{name}"), paths: vec![of.parameter.clone()], points }
+        Study { name: format!("sweep.{name}"), paths: paths(&of.ranges()), points }
     }
 
     pub(super) fn of_map(name: &str, of: &MapAnalysis) -> Self {
         let axis = |k: usize| Axis { from: of.from[k], to: of.to[k], points: of.points[k], log: of.log[k] };
         let points = Points::Grid([0, 1].map(axis).to_vec());
-        Study { name: format!("map.{name}"), paths: of.parameters.to_vec(), points }
+        Study { name: format!("map.{name}"), paths: paths(&of.ranges()), points }
     }
 
     pub(super) fn of_samples(name: &str, of: &UncertaintyAnalysis) -> Self {
@@ -62,8 +62,11 @@ impl Study {
         if distributions.len() > SCALARS {
             training.extend(places.iter().take(2 * SCALARS).cloned());
         }
-        let paths = parameters.iter().flat_map(|parameter| parameter.path.clone()).collect();
-        Study { name: format!("uncertainty.{name}"), paths, points: Points::Samples { places, training } }
+        Study {
+            name: format!("uncertainty.{name}"),
+            paths: paths(&of.ranges()),
+            points: Points::Samples { places, training },
+        }
     }
 
     /// The axes of a grid; none of samples.
@@ -116,6 +119,10 @@ impl Study {
     }
 }
 
+fn paths(ranges: &[(&String, [f64; 2])]) -> Vec<String> {
+    ranges.iter().map(|(path, _)| path.to_string()).collect()
+}
+
 /// The place at these shares of the way along axes.
 pub(super) fn between(axes: &[Axis], shares: &[f64]) -> Vec<f64> {
     axes.iter().zip(shares).map(|(axis, share)| axis.between(axis.from, axis.to, *share)).collect()
@@ -130,14 +137,13 @@ pub(super) fn studies(case: &Case, analysis: &str) -> Vec<Study> {
     sweeps.chain(case.map.iter().map(|(name, of)| Study::of_map(name, of))).collect()
 }
 
-/// The paths of the scalars that the studies of an analysis vary, without their samples.
-pub(super) fn varied_paths<'a>(case: &'a Case, analysis: &str) -> Vec<&'a String> {
+/// The paths of the scalars that the studies of an analysis vary, each with its bounds.
+pub(super) fn ranges<'a>(case: &'a Case, analysis: &str) -> Vec<(&'a String, [f64; 2])> {
     if analysis == UNCERTAINTY {
-        let parameters = case.uncertainty.values().flat_map(|study| study.parameter.values());
-        return parameters.flat_map(|parameter| &parameter.path).collect();
+        return case.uncertainty.values().flat_map(UncertaintyAnalysis::ranges).collect();
     }
-    let swept = case.sweep.values().map(|sweep| &sweep.parameter);
-    swept.chain(case.map.values().flat_map(|map| &map.parameters)).collect()
+    let sweeps = case.sweep.values().flat_map(SweepAnalysis::ranges);
+    sweeps.chain(case.map.values().flat_map(MapAnalysis::ranges)).collect()
 }
 
 #[cfg(test)]

@@ -3,15 +3,16 @@
 use super::explore::{ACCURACY, Explorer, Problem, REFINEMENTS, RecordStage, worst_alone};
 use super::known::{KnownPoints, Parts};
 use super::sink::ResultStage;
-use super::states::OnFamily;
 use super::studies::{Points, Study};
 use crate::case::UncertaintyAnalysis;
 use crate::error::Result;
 use crate::linalg::c64;
-use crate::results::{
-    CheckedSample, RunResults, SampledScalar, SweepMethod, UncertaintyResult, UncertaintyStudy,
+use crate::progress::Observer;
+use crate::results::{CheckedSample, RunResults, SampledScalar, UncertaintyResult, UncertaintyStudy};
+use crate::sweep::{
+    AnswerStore, Answered, Filled, MeasuredProblem, Modes, Paired, RecordPoints, SampleModes, SweepProblem,
+    sampled,
 };
-use crate::sweep::{AnswerStore, Answered, Modes, Paired, SampleModes, SweepProblem, sampled};
 use faer::Mat;
 
 /// Samples at which the reduced model is measured on the full order before it serves all, in each round.
@@ -49,18 +50,10 @@ impl Explorer<'_> {
     ) -> Result<(UncertaintyResult, Option<String>)> {
         let study = Study::of_samples(name, analysis);
         let Points::Samples { places, .. } = &study.points else { unreachable!("samples") };
-        let states = self.states(&study.paths);
-        let problem = self.trained(self.problem(&states, &study)?, places)?;
-        let reference = self.reference(problem.of(), &study)?;
         let known = parts.of(&study.name, true);
-        let paired = Paired::new(problem.of(), &reference);
+        let on = self.problem_of_samples(&study, places)?;
         let mut keep = |first: usize, new: &[SampleModes]| record(ResultStage::Samples(name, first, new));
-        let (modes, failure) =
-            sampled(&Answered::new(&paired, &known), places, earlier, &mut keep, self.observer)?;
-        let method = match &problem {
-            Problem::Whole(_) => SweepMethod::Whole,
-            Problem::Reduced(on) => SweepMethod::Reduced(on.family.dimension()),
-        };
+        let (modes, failure) = on.solve(places, earlier, &known, &mut keep, self.observer)?;
         let study = UncertaintyStudy {
             name: name.to_string(),
             scalars: self.scalars(analysis)?,
@@ -69,31 +62,30 @@ impl Explorer<'_> {
             sampling: analysis.sampling.word(),
             seed: analysis.seed,
             confidence: analysis.confidence,
-            reference: reference.eigenvalues.clone(),
+            reference: on.reference.eigenvalues.clone(),
             modes,
-            method,
+            method: on.problem.method(),
         };
-        let measured = self.measured(&problem, &study, places);
+        let measured = self.measured(&on.problem, &study, places);
         Ok((UncertaintyResult::new(study, measured), failure))
     }
 
-    /// Computes the samples at `places` of a study; their answers are in `store`, or put there.
-    pub(super) fn samples_of_part(
+    /// The problem of a study of samples, the same in every process.
+    ///
+    /// # Errors
+    /// A reduced model that cannot be trained; a case without an answer at its own values.
+    pub(super) fn problem_of_samples(
         &self,
         study: &Study,
         places: &[Vec<f64>],
-        store: &dyn AnswerStore,
-    ) -> Result<()> {
-        let Points::Samples { places: all, .. } = &study.points else { unreachable!("samples") };
-        let states = self.states(&study.paths);
-        let problem = self.trained(self.problem(&states, study)?, all)?;
+    ) -> Result<ProblemOfSamples<'_>> {
+        let problem = self.trained(self.problem(study)?, places)?;
         let reference = self.reference(problem.of(), study)?;
-        let paired = Paired::new(problem.of(), &reference);
-        sampled(&Answered::new(&paired, store), places, &[], &mut |_, _| Ok(()), self.observer).map(|_| ())
+        Ok(ProblemOfSamples { problem, reference })
     }
 
     /// A reduced model is measured at some of the samples and trained on those where it is not good enough, before it serves all of
-    /// them: the same in every process.
+    /// them.
     fn trained<'s>(&self, mut problem: Problem<'s>, places: &[Vec<f64>]) -> Result<Problem<'s>> {
         let Problem::Reduced(on) = &mut problem else { return Ok(problem) };
         self.observer.begin("full-order check", Some((REFINEMENTS * PROBES).min(places.len()) as u64));
@@ -107,7 +99,7 @@ impl Explorer<'_> {
                 break;
             }
             for at in poor {
-                on.family.train(&on.states.at(at)?)?;
+                on.train(at)?;
             }
         }
         self.observer.end();
@@ -172,17 +164,29 @@ impl Explorer<'_> {
     }
 }
 
-impl<'s> Problem<'s> {
-    fn of(&self) -> &dyn SweepProblem {
-        match self {
-            Problem::Whole(whole) => whole,
-            Problem::Reduced(on) => on as &OnFamily<'s, 's>,
-        }
+/// The problem of the samples of a study, and the modes with which theirs are paired.
+pub(super) struct ProblemOfSamples<'s> {
+    problem: Problem<'s>,
+    reference: Modes,
+}
+
+impl ProblemOfSamples<'_> {
+    /// As [`sampled`]; answers are in `store`, or put there.
+    pub(super) fn solve(
+        &self,
+        places: &[Vec<f64>],
+        earlier: &[SampleModes],
+        store: &dyn AnswerStore,
+        record: &mut RecordPoints<SampleModes>,
+        observer: &dyn Observer,
+    ) -> Result<Filled<SampleModes>> {
+        let paired = Paired::new(self.problem.of(), &self.reference);
+        sampled(&Answered::new(&paired, store), places, earlier, record, observer)
     }
 }
 
 /// The largest error of a mode at `at`, measured on the full order; none where there is no answer.
-fn worst(problem: &dyn SweepProblem, at: &[f64]) -> Option<f64> {
+fn worst(problem: &dyn MeasuredProblem, at: &[f64]) -> Option<f64> {
     problem.check(at).ok().map(|checks| worst_alone(&checks))
 }
 

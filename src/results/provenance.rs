@@ -3,6 +3,7 @@
 
 use super::record::InputFile;
 use crate::dataset::{Dimension, Group, Variable};
+use crate::linalg::factor::engine_names;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// Keys of `summary.json` and of the root of `results.h5` that say how a run went and not what it found: two runs of a case
@@ -47,7 +48,7 @@ impl Provenance {
             started: utc(since.as_secs()),
             command: std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect(),
             threads: rayon::current_num_threads(),
-            engine: "default",
+            engine: engine_names::DEFAULT,
             ranks: 1,
             system: system(),
             processor: field("/proc/cpuinfo", "model name"),

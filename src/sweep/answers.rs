@@ -1,7 +1,7 @@
 //! Answers of a problem at the places that a sweep or a map asks for, kept so that several processes can share them: [`answer`]
 //! computes one at a point of a grid, [`Answered`] keeps each and gives it instead of computing it again.
 
-use super::{Axis, Checked, Modes, SweepProblem};
+use super::{Axis, Modes, SweepProblem};
 use crate::error::Result;
 use crate::linalg::c64;
 use faer::Mat;
@@ -91,14 +91,6 @@ impl SweepProblem for Answered<'_> {
     fn eigenvalues(&self, at: &[f64]) -> Result<Vec<c64>> {
         let modes = self.answer(at, || self.problem.eigenvalues(at).map(alone))?;
         Ok(modes.eigenvalues)
-    }
-
-    fn check(&self, at: &[f64]) -> Result<Vec<Checked>> {
-        self.problem.check(at)
-    }
-
-    fn check_nearest(&self, at: &[f64], near: c64) -> Result<Option<Checked>> {
-        self.problem.check_nearest(at, near)
     }
 
     fn parallel(&self) -> bool {

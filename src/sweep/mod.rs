@@ -55,6 +55,14 @@ pub trait SweepProblem: Sync {
         Ok(self.modes(at)?.eigenvalues)
     }
 
+    /// Whether several places may be solved at once; `false` when a single one takes all memory and threads.
+    fn parallel(&self) -> bool {
+        true
+    }
+}
+
+/// A problem whose modes can be measured on the full order.
+pub trait MeasuredProblem: SweepProblem {
     /// The modes at `at` with their errors on the full order.
     ///
     /// # Errors
@@ -68,11 +76,6 @@ pub trait SweepProblem: Sync {
     fn check_nearest(&self, at: &[f64], near: c64) -> Result<Option<Checked>> {
         let far = |mode: &Checked| (mode.eigenvalue - near).norm();
         Ok(self.check(at)?.into_iter().min_by(|a, b| far(a).total_cmp(&far(b))))
-    }
-
-    /// Whether several places may be solved at once; `false` when a single one takes all memory and threads.
-    fn parallel(&self) -> bool {
-        true
     }
 }
 

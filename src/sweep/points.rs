@@ -4,8 +4,8 @@ use crate::error::{Error, Result};
 use crate::progress::Observer;
 use rayon::prelude::*;
 
-/// Points that are computed on all threads and recorded together.
-const CHUNK: usize = 32;
+/// Points for each thread that are computed on all threads and recorded together.
+const CHUNK: usize = 16;
 
 /// Points, and why points have no answer, if any has none.
 pub type Filled<P> = (Vec<P>, Option<String>);
@@ -36,10 +36,11 @@ pub(super) fn fill<P: Clone + Send>(
         observer.advance(1);
         point
     };
+    let chunk = CHUNK * rayon::current_num_threads();
     while points.len() < total {
         let first = points.len();
         let solved: Vec<Result<P>> = match parallel {
-            true => (first..total.min(first + CHUNK)).into_par_iter().map(solve).collect(),
+            true => (first..total.min(first + chunk)).into_par_iter().map(solve).collect(),
             // Each may take long.
             false => vec![solve(first)],
         };

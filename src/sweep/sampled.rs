@@ -2,7 +2,7 @@
 
 use super::assign::assign;
 use super::points::{Filled, RecordPoints, fill};
-use super::{Checked, Modes, SweepProblem};
+use super::{Modes, SweepProblem};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::progress::Observer;
@@ -38,14 +38,6 @@ impl SweepProblem for Paired<'_> {
         let eigenvalues: Vec<c64> =
             links.iter().map(of).chain(others.map(|k| found.eigenvalues[k])).collect();
         Ok(Modes { vectors: Mat::zeros(0, eigenvalues.len()), eigenvalues })
-    }
-
-    fn check(&self, at: &[f64]) -> Result<Vec<Checked>> {
-        self.problem.check(at)
-    }
-
-    fn check_nearest(&self, at: &[f64], near: c64) -> Result<Option<Checked>> {
-        self.problem.check_nearest(at, near)
     }
 
     fn parallel(&self) -> bool {
@@ -93,10 +85,6 @@ mod tests {
             let vectors =
                 Mat::from_fn(3, all.len(), |i, j| c64::new(f64::from(u8::from(i == all[j].1)), 0.0));
             Ok(Modes { eigenvalues: all.iter().map(|(w, _)| c64::new(0.0, *w)).collect(), vectors })
-        }
-
-        fn check(&self, _: &[f64]) -> Result<Vec<Checked>> {
-            Ok(Vec::new())
         }
     }
 

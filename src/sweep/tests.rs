@@ -31,15 +31,6 @@ impl<F: Fn(&[f64]) -> System + Sync> SweepProblem for Members<F> {
             vectors: Mat::from_fn(n, modes.len(), |i, j| modes[j].right[i]),
         })
     }
-
-    fn check(&self, at: &[f64]) -> Result<Vec<Checked>> {
-        let checked = |m: &crate::stability::ComplexMode| Checked {
-            eigenvalue: m.eigenvalue,
-            backward_error: m.backward_error,
-            eigenvalue_error: m.eigenvalue_error,
-        };
-        Ok(self.analyse(at)?.iter().map(checked).collect())
-    }
 }
 
 fn axis(from: f64, to: f64, points: usize) -> Axis {
@@ -135,10 +126,6 @@ impl SweepProblem for Oscillators {
         let vectors = faer::mat![[z(-angle.sin()), z(angle.cos())], [z(angle.cos()), z(angle.sin())]];
         let eigenvalues = [1.5 - root, 1.5 + root].map(|w| c64::new(0.0, w.sqrt())).to_vec();
         Ok(Modes { eigenvalues, vectors })
-    }
-
-    fn check(&self, _: &[f64]) -> Result<Vec<Checked>> {
-        Ok(Vec::new())
     }
 }
 
@@ -258,10 +245,6 @@ impl SweepProblem for Counted {
         let growth = rest.first().map_or(0.0, |second| 0.3 - first.hypot(*second));
         modes.eigenvalues.iter_mut().for_each(|z| z.re += growth);
         Ok(modes)
-    }
-
-    fn check(&self, _: &[f64]) -> Result<Vec<Checked>> {
-        Ok(Vec::new())
     }
 }
 

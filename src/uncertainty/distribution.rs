@@ -1,6 +1,6 @@
 //! The distribution of a scalar inside its bounds.
 
-use puruspe::{erfc, inverfc};
+use statrs::function::erf::{erfc, erfc_inv};
 use std::f64::consts::SQRT_2;
 
 /// Below this probability of the interval between the bounds a normal distribution is flat there, to nine digits.
@@ -44,7 +44,7 @@ fn below(z: f64) -> f64 {
 
 /// Φ⁻¹(p).
 fn point(p: f64) -> f64 {
-    -SQRT_2 * inverfc(2.0 * p)
+    -SQRT_2 * erfc_inv(2.0 * p)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Statistics of samples.
 
-use puruspe::ln_gamma;
+use statrs::function::gamma::ln_gamma;
 
 /// A probability estimated as the share of samples, with its confidence interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,7 +39,7 @@ fn beta_quantile(p: f64, a: f64, b: f64) -> f64 {
 }
 
 /// Regularised incomplete beta function I_x(a, b), 0 < x < 1, by its continued fraction (Abramowitz and Stegun 26.5.8) in the form of Lentz.
-/// The functions of puruspe and statrs stop too early where a and b are in the thousands.
+/// Those of statrs stops too early where a and b are in the thousands.
 fn incomplete_beta(a: f64, b: f64, x: f64) -> f64 {
     // Where the fraction converges in about √max(a, b) steps.
     if x > (a + 1.0) / (a + b + 2.0) {

@@ -34,27 +34,31 @@ impl Analysis for SweepCommand {
     }
 
     fn plan<'a>(&self, _: &'a Prepared<'a>, _: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
-        Ok(Box::new(All))
+        Ok(Box::new(PlannedStudies {
+            phase: "sweeps and maps",
+            studies: &|explorer, known, results, record| explorer.sweeps_and_maps(known, results, record),
+        }))
     }
 }
 
-struct All;
+/// Studies of the case, which run as one phase.
+pub(super) struct PlannedStudies {
+    pub(super) phase: &'static str,
+    pub(super) studies: &'static Studies<'static>,
+}
 
-impl<'a> Planned<'a> for All {
+impl<'a> Planned<'a> for PlannedStudies {
     fn run(self: Box<Self>, run: &mut Run<'a, '_>) -> Result<()> {
-        run_studies(run, "sweeps and maps", &|explorer, known, results, record| {
-            explorer.sweeps_and_maps(known, results, record)
+        let Some(point) = run.operating_point.clone() else { return Ok(()) };
+        let nominal = Nominal {
+            prepared: run.prepared,
+            system: &point.system,
+            steady: &point.steady,
+            real: &point.real,
+        };
+        let Run { sink, results, clock, known, observer, .. } = run;
+        clock.time(self.phase, || {
+            explore(&nominal, self.studies, known, results, &mut |stage| sink.record(stage), *observer)
         })
     }
-}
-
-/// Runs studies of the case as one phase.
-pub(super) fn run_studies<'a>(run: &mut Run<'a, '_>, phase: &str, studies: &Studies) -> Result<()> {
-    let Some(point) = run.operating_point.clone() else { return Ok(()) };
-    let nominal =
-        Nominal { prepared: run.prepared, system: &point.system, steady: &point.steady, real: &point.real };
-    let Run { sink, results, clock, known, observer, .. } = run;
-    clock.time(phase, || {
-        explore(&nominal, studies, known, results, &mut |stage| sink.record(stage), *observer)
-    })
 }

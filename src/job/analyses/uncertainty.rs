@@ -1,11 +1,10 @@
 //! Complex modes of samples of uncertain scalars.
 
 use super::analysis::{Analysis, Planned, Scope};
-use super::sweep::run_studies;
+use super::sweep::PlannedStudies;
 use crate::case::Case;
 use crate::error::Result;
 use crate::job::prepared::Prepared;
-use crate::job::run::Run;
 
 /// Studies of uncertain scalars.
 pub struct UncertaintyCommand;
@@ -35,16 +34,9 @@ impl Analysis for UncertaintyCommand {
     }
 
     fn plan<'a>(&self, _: &'a Prepared<'a>, _: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
-        Ok(Box::new(All))
-    }
-}
-
-struct All;
-
-impl<'a> Planned<'a> for All {
-    fn run(self: Box<Self>, run: &mut Run<'a, '_>) -> Result<()> {
-        run_studies(run, "samples of uncertain scalars", &|explorer, known, results, record| {
-            explorer.uncertainty(known, results, record)
-        })
+        Ok(Box::new(PlannedStudies {
+            phase: "samples of uncertain scalars",
+            studies: &|explorer, known, results, record| explorer.uncertainty(known, results, record),
+        }))
     }
 }

@@ -9,6 +9,18 @@ use faer::{Mat, MatRef};
 use std::fmt::Debug;
 use std::sync::Arc;
 
+/// Names of engines, as the option `--engine` takes them and results give them.
+pub mod engine_names {
+    /// This process alone.
+    pub const DEFAULT: &str = "default";
+    /// Matrices shared out over ranks.
+    pub const SLEPC: &str = "slepc";
+    /// The same, with real modes by the Krylov–Schur method.
+    pub const SLEPC_KRYLOV_SCHUR: &str = "slepc-krylov-schur";
+    /// Points of studies shared out over ranks.
+    pub const MPI: &str = "mpi";
+}
+
 /// Library that factorises over several processes.
 pub trait Backend: Debug + Send + Sync {
     /// Its name.
@@ -113,7 +125,7 @@ impl Engine {
 
     /// Its name: that of the other library, or `default`.
     pub fn name(&self) -> &'static str {
-        self.backend().map_or("default", Backend::name)
+        self.backend().map_or(engine_names::DEFAULT, Backend::name)
     }
 
     /// The number of processes that factorise.

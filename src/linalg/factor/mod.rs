@@ -33,7 +33,9 @@ mod symbolic;
 mod unsymmetric;
 
 pub use compliances::compliances;
-pub use engine::{Backend, DistributedPattern, EigenSolver, Engine, QuadraticProblem, QuadraticSolver};
+pub use engine::{
+    Backend, DistributedPattern, EigenSolver, Engine, QuadraticProblem, QuadraticSolver, engine_names,
+};
 pub use field::Field;
 pub use partition::partition;
 pub use refused::{is_singular, singular};
