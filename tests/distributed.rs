@@ -236,24 +236,31 @@ fn studies_over_ranks_are_those_of_one_process() {
 fn studies_resume_after_a_rank_was_killed() {
     let folder = program::folder_with(&sweeps::disc());
     let at = folder.path();
-    let arguments = ["sweep", "case.toml", "--out", "out", "--threads", "1", "--engine", "mpi"];
-    let child = on_ranks(2, at, &arguments).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
-    let parts = at.join("out/parts/sweep");
-    let started = Instant::now();
-    let finished = || std::fs::read_dir(&parts).is_ok_and(|entries| entries.flatten().count() >= 4);
-    while !finished() {
-        assert!(started.elapsed() < Duration::from_secs(120), "parts come");
-        std::thread::sleep(Duration::from_millis(5));
+    for analysis in ["sweep", "uncertainty"] {
+        let (out, one) = (format!("out-{analysis}"), format!("one-{analysis}"));
+        let arguments = [analysis, "case.toml", "--out", &out, "--threads", "1", "--engine", "mpi"];
+        let child = on_ranks(2, at, &arguments).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        let parts = at.join(&out).join("parts").join(analysis);
+        let started = Instant::now();
+        let finished = || std::fs::read_dir(&parts).is_ok_and(|entries| entries.flatten().count() >= 4);
+        while !finished() {
+            assert!(started.elapsed() < Duration::from_secs(120), "parts come");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        let victim = *ranks_in(at).last().expect("two ranks");
+        assert!(Command::new("kill").args(["-9", &victim.to_string()]).status().unwrap().success());
+        assert!(!child.wait_with_output().unwrap().status.success());
+        assert!(!at.join(&out).join("summary.json").exists());
+        let again = on_ranks(3, at, &arguments).output().unwrap();
+        assert!(again.status.success(), "{}", text(&again.stderr));
+        let said = text(&again.stderr);
+        assert!(
+            said.contains("An earlier run ended while rank") && said.contains("which is resumed"),
+            "{said}"
+        );
+        let alone =
+            program::command(at, &[analysis, "case.toml", "--quiet", "--out", &one]).output().unwrap();
+        assert!(alone.status.success());
+        assert!(sweeps::found(&at.join(&out)) == sweeps::found(&at.join(&one)), "{analysis}");
     }
-    let victim = *ranks_in(at).last().expect("two ranks");
-    assert!(Command::new("kill").args(["-9", &victim.to_string()]).status().unwrap().success());
-    assert!(!child.wait_with_output().unwrap().status.success());
-    assert!(!at.join("out/summary.json").exists());
-    let again = on_ranks(3, at, &arguments).output().unwrap();
-    assert!(again.status.success(), "{}", text(&again.stderr));
-    let said = text(&again.stderr);
-    assert!(said.contains("An earlier run ended while rank") && said.contains("which is resumed"), "{said}");
-    let alone = program::command(at, &["sweep", "case.toml", "--quiet", "--out", "one"]).output().unwrap();
-    assert!(alone.status.success());
-    assert!(sweeps::found(&at.join("out")) == sweeps::found(&at.join("one")));
 }

@@ -14,7 +14,7 @@ mod tests;
 
 use super::SparseMatrix;
 use super::dense::inverse_root;
-use super::factor::{Engine, SymbolicFactor, SymmetricFactor};
+use super::factor::{Engine, SymbolicFactor, SymmetricFactor, is_singular};
 use super::lanczos::Window;
 use super::multivector::{gram, panels, rotate};
 use super::shared_pattern::SharedPattern;
@@ -221,6 +221,27 @@ struct Pencil<'a> {
 
 type Factor = Box<dyn SymmetricFactor>;
 
+/// The first of `shifts` for which `f` gives something, and that; nothing, or a singular matrix, stands for a shift on an eigenvalue.
+/// Memory that does not suffice for one shift does not for another.
+fn off_eigenvalues<T>(shifts: [f64; 3], f: impl Fn(f64) -> Result<Option<T>>) -> Result<(f64, T)> {
+    let mut refused = None;
+    for shift in shifts {
+        match f(shift) {
+            Ok(Some(found)) => return Ok((shift, found)),
+            Ok(None) => {}
+            Err(error) if is_singular(&error) => refused = Some(error),
+            Err(error) => return Err(error),
+        }
+    }
+    Err(refused.unwrap_or_else(|| {
+        Error::analysis(
+            "eigenvalues",
+            format!("K − σM is singular to rounding for σ = {shifts:?}"),
+            "A degree of freedom with neither stiffness nor mass does this",
+        )
+    }))
+}
+
 /// Pairs found at a shift.
 struct Found {
     values: Vec<f64>,
@@ -250,7 +271,7 @@ impl<'a> Pencil<'a> {
             let factor = self.symbolic.factorize(&self.shifted(shift))?;
             Ok((factor.inertia().zero == 0).then_some(factor))
         };
-        self.off_eigenvalues(shifts, factorize)
+        off_eigenvalues(shifts, factorize)
     }
 
     /// How many eigenvalues lie below the first of `shifts` that does not sit on one, and that shift.
@@ -259,26 +280,7 @@ impl<'a> Pencil<'a> {
             let inertia = self.symbolic.inertia(&self.shifted(shift))?;
             Ok((inertia.zero == 0).then_some(inertia.negative))
         };
-        self.off_eigenvalues(shifts, count)
-    }
-
-    /// The first of `shifts` for which `f` gives something, and that; nothing stands for a shift on an eigenvalue.
-    fn off_eigenvalues<T>(&self, shifts: [f64; 3], f: impl Fn(f64) -> Result<Option<T>>) -> Result<(f64, T)> {
-        let mut refused = None;
-        for shift in shifts {
-            match f(shift) {
-                Ok(Some(found)) => return Ok((shift, found)),
-                Ok(None) => {}
-                Err(error) => refused = Some(error),
-            }
-        }
-        Err(refused.unwrap_or_else(|| {
-            Error::analysis(
-                "eigenvalues",
-                format!("K − σM is singular to rounding for σ = {shifts:?}"),
-                "A degree of freedom with neither stiffness nor mass does this",
-            )
-        }))
+        off_eigenvalues(shifts, count)
     }
 
     /// The number of eigenvalues below each of two shifts, factorised side by side.

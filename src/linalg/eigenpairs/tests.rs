@@ -1,5 +1,5 @@
 use super::super::dense::definite_pencil;
-use super::super::factor::factorize;
+use super::super::factor::{factorize, singular};
 use super::super::samples;
 use super::super::sparse::entry;
 use super::*;
@@ -225,4 +225,23 @@ fn negative_eigenvalues_belong_to_the_lowest() {
             );
         }
     }
+}
+
+#[test]
+fn other_shifts_are_tried_where_the_matrix_is_singular_and_not_where_memory_is_short() {
+    let tried = |error: fn() -> Error| {
+        let count = std::cell::Cell::new(0);
+        let refuse = |_: f64| -> Result<Option<()>> {
+            count.set(count.get() + 1);
+            Err(error())
+        };
+        let refused = off_eigenvalues([1.0, 2.0, 3.0], refuse).unwrap_err().to_string();
+        (count.get(), refused)
+    };
+    let (count, refused) = tried(|| singular("row 3"));
+    assert!(count == 3 && refused.contains("singular"), "{count}: {refused}");
+    let (count, refused) = tried(|| Error::analysis("factorisation", "memory does not suffice", "Wait"));
+    assert!(count == 1 && refused.contains("memory"), "{count}: {refused}");
+    // One that sits on an eigenvalue is passed over.
+    assert_eq!(off_eigenvalues([1.0, 2.0, 3.0], |s| Ok((s > 1.5).then_some(s))).unwrap(), (2.0, 2.0));
 }
