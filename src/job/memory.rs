@@ -3,7 +3,7 @@
 use super::analyses::Selection;
 use super::prepared::Prepared;
 use super::states::keeps_the_structure;
-use super::studies::{SHARED, ranges};
+use super::studies::{SHARED, UNCERTAINTY, ranges};
 use crate::error::{Error, Result};
 use crate::linalg::sparse::{add_scaled, sum_of_squares};
 use crate::memory::{Available, available};
@@ -25,6 +25,10 @@ const RIGHT_VECTORS: f64 = 4.5;
 const LEFT_AND_RIGHT_VECTORS: f64 = 6.5;
 /// Vectors besides.
 const OTHER_VECTORS: f64 = 72.0;
+/// What a sample of uncertain scalars takes in all \[bytes\],
+const SAMPLE: f64 = 460.0;
+/// and for each of its modes: counted in runs of 20 000 to 200 000 samples of 2 and 22 modes.
+const MODE_OF_SAMPLE: f64 = 34.0;
 
 /// The peak of memory that is expected of a run, and what it is made of.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,6 +43,8 @@ pub struct ExpectedMemory {
     pub modes: f64,
     /// Whether it holds left vectors that only results need.
     pub left_vectors: bool,
+    /// What samples of uncertain scalars take of it \[bytes\].
+    pub samples: f64,
 }
 
 impl ExpectedMemory {
@@ -67,8 +73,9 @@ impl ExpectedMemory {
                 fill = *fill as f64,
             ),
             format!(
-                "Take a coarser mesh, a lower `cea.basis_below`, `below` or `count`, {}or a machine with more memory",
+                "Take a coarser mesh, a lower `cea.basis_below`, `below` or `count`, {}{}or a machine with more memory",
                 if self.left_vectors { "`cea.left_vectors = false`, " } else { "" },
+                if self.samples > 0.1 * self.bytes { "fewer `samples`, " } else { "" },
             ),
         ))
     }
@@ -119,8 +126,13 @@ pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Opti
         modes = modes.max(wanted.below.map_or(Ok(wanted.count.unwrap_or(1) as f64), below)?);
     }
     let complex = case.cea.as_ref().filter(|_| selection.includes("cea", case));
+    let mut samples = 0.0;
     if let Some(cea) = complex {
         modes = modes.max(below(cea.basis_below)?);
+        if selection.includes(UNCERTAINTY, case) && !case.uncertainty.is_empty() {
+            let count: usize = case.uncertainty.values().map(|study| study.samples).sum();
+            samples = count as f64 * (SAMPLE + MODE_OF_SAMPLE * below(cea.band[1])?);
+        }
     }
     let run = ProblemSize { dofs, entries: pattern.compute_nnz(), fill, modes: modes.min(dofs as f64) };
     let mut studies = None;
@@ -139,10 +151,10 @@ pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Opti
             left_vectors: cea.left_vectors || selection.takes_left_vectors(case),
         }),
     };
-    let bytes = run.peak(kind);
+    let bytes = run.peak(kind) + samples;
     let left_vectors =
         kind == AnalysisKind::Complex { left_vectors: true } && !selection.takes_left_vectors(case);
-    Ok(Some(ExpectedMemory { bytes, dofs, fill, modes: run.modes, left_vectors }))
+    Ok(Some(ExpectedMemory { bytes, dofs, fill, modes: run.modes, left_vectors, samples }))
 }
 
 /// The analysis that takes the most memory.
@@ -248,8 +260,14 @@ mod tests {
 
     #[test]
     fn a_run_that_cannot_fit_is_refused_with_both_figures() {
-        let expected =
-            ExpectedMemory { bytes: 3e9, dofs: 100_000, fill: 20_000_000, modes: 40.0, left_vectors: true };
+        let expected = ExpectedMemory {
+            bytes: 3e9,
+            dofs: 100_000,
+            fill: 20_000_000,
+            modes: 40.0,
+            left_vectors: true,
+            samples: 0.0,
+        };
         let by = "the machine's free memory";
         assert!(expected.check(&Available { bytes: 4_000_000_000, by }).is_ok());
         let error = expected.check(&Available { bytes: 1 << 30, by }).unwrap_err();
@@ -259,8 +277,9 @@ mod tests {
             "{text}"
         );
         assert!(text.contains("left_vectors = false"), "{text}");
-        let without = ExpectedMemory { left_vectors: false, ..expected };
-        assert!(!without.check(&Available { bytes: 1 << 30, by }).unwrap_err().to_string().contains("left"));
+        let other = ExpectedMemory { left_vectors: false, samples: 1e9, ..expected };
+        let text = other.check(&Available { bytes: 1 << 30, by }).unwrap_err().to_string();
+        assert!(!text.contains("left_vectors") && text.contains("fewer `samples`"), "{text}");
         assert_eq!(error.exit_code(), 1);
     }
 

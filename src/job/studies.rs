@@ -9,7 +9,8 @@ const SCALARS: usize = 8;
 
 /// The analyses whose points several processes can share.
 pub const SHARED: [&str; 2] = ["sweep", UNCERTAINTY];
-const UNCERTAINTY: &str = "uncertainty";
+/// The one whose studies are samples.
+pub(super) const UNCERTAINTY: &str = "uncertainty";
 
 /// The points of a sweep, of a map or of samples.
 pub(super) struct Study {
