@@ -5,8 +5,7 @@ use super::modes::add_modal_damping;
 use super::prepared::Prepared;
 use super::sink::{KnownMap, ResultStage};
 use super::states::{OnFamily, States, Whole, keeps_the_structure};
-use super::studies::{Points, SHARED, Study, between, ranges};
-use super::uncertainty::ProblemOfSamples;
+use super::studies::{SHARED, Study, between, ranges};
 use crate::case::{Case, Invalidates, MapAnalysis, SweepAnalysis};
 use crate::equilibrium::{Condensed, SteadySliding, tangent_stiffness};
 use crate::error::Result;
@@ -16,17 +15,16 @@ use crate::progress::Observer;
 use crate::results::{DampingRow, DampingVerdicts, MapResult, RunResults, SweepMethod, SweepResult};
 use crate::stability::{Family, FamilyFrame, SlidingState};
 use crate::sweep::{
-    self, AnswerStore, Answered, Axis, Block, Boundary, Checked, CriticalKind, MapPoint, MeasuredProblem,
-    SweepProblem,
+    self, Answered, Axis, Boundary, Checked, CriticalKind, MapPoint, MeasuredProblem, SweepProblem,
 };
 use crate::system::{Damping, System};
 
 /// The largest |Δλ|/|λ| at full order that is accepted.
 pub(super) const ACCURACY: f64 = 1e-8;
 /// Relative length of the bracket of a critical value on a reduced model, and by whole analyses.
-const LOCATED: [f64; 2] = [1e-10, 1e-7];
+pub(super) const LOCATED: [f64; 2] = [1e-10, 1e-7];
 /// The same of a point of the boundary of stability.
-const BOUNDARY: [f64; 2] = [1e-7, 1e-6];
+pub(super) const BOUNDARY: [f64; 2] = [1e-7, 1e-6];
 /// Full-order measures that were not good enough lead to a richer family, so often at most.
 pub(super) const REFINEMENTS: usize = 3;
 /// The path of ζ.
@@ -139,37 +137,6 @@ impl Problem<'_> {
     }
 }
 
-/// Computes blocks of a study.
-#[allow(clippy::large_enum_variant, reason = "one at a time")]
-pub(super) enum StudySolver<'s> {
-    Grid { axes: &'s [Axis], problem: Problem<'s>, tolerance: f64 },
-    Samples { places: &'s [Vec<f64>], problem: ProblemOfSamples<'s> },
-}
-
-impl StudySolver<'_> {
-    /// Computes a block; its answers are in `store`, or put there.
-    ///
-    /// # Errors
-    /// Those of [`Block::solve`]; the machine refuses.
-    pub(super) fn solve(
-        &self,
-        block: &Block,
-        store: &dyn AnswerStore,
-        observer: &dyn Observer,
-    ) -> Result<()> {
-        match self {
-            StudySolver::Grid { axes, problem, tolerance } => {
-                block.solve(&Answered::new(problem.of(), store), axes, *tolerance, observer)
-            }
-            StudySolver::Samples { places, problem } => {
-                let [first, last] = block.0[0];
-                let places = &places[first..=last];
-                problem.solve(places, &[], store, &mut |_, _| Ok(()), observer).map(|_| ())
-            }
-        }
-    }
-}
-
 pub(super) struct Explorer<'a> {
     start: &'a Start<'a>,
     nominal: &'a Nominal<'a>,
@@ -266,24 +233,6 @@ impl Explorer<'_> {
             return Ok(Problem::Reduced(self.family(&study.paths, &study.training())?));
         }
         Ok(Problem::Whole(Whole::new(self.case, study.paths.clone(), Some(&self.start.reference.0))))
-    }
-
-    /// The solver of the blocks of a study.
-    ///
-    /// # Errors
-    /// A reduced model that cannot be trained.
-    pub(super) fn solver<'s>(&'s self, study: &'s Study) -> Result<StudySolver<'s>> {
-        match &study.points {
-            Points::Grid(axes) => {
-                let problem = self.problem(study)?;
-                let tolerances = if axes.len() == 1 { LOCATED } else { BOUNDARY };
-                let tolerance = tolerances[usize::from(matches!(problem, Problem::Whole(_)))];
-                Ok(StudySolver::Grid { axes, problem, tolerance })
-            }
-            Points::Samples { places, .. } => {
-                Ok(StudySolver::Samples { places, problem: self.problem_of_samples(study, places)? })
-            }
-        }
     }
 
     fn sweep(&self, name: &str, analysis: &SweepAnalysis, parts: &Parts) -> Result<SweepResult> {

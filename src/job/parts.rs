@@ -3,12 +3,13 @@
 
 use super::analyse::{Asked, operating_point};
 use super::analyses::Selection;
-use super::explore::{Explorer, Nominal, Start, StudySolver};
+use super::explore::{Explorer, Nominal, Start};
 use super::known::{Parts, origin};
 use super::memory::check_memory;
 use super::prepared::Prepared;
 use super::singular::explained;
 use super::studies::{Study, studies};
+use super::study_solver::StudySolver;
 use crate::case::Case;
 use crate::error::{Error, Fault, Result};
 use crate::progress::Observer;
