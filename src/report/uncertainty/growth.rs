@@ -9,6 +9,7 @@ use crate::report::format::given;
 use crate::report::html::described;
 use crate::report::section::Picture;
 use crate::results::UncertaintyResult;
+use crate::sweep::MapPoint;
 use crate::uncertainty::proportion;
 use plotters::prelude::*;
 use std::error::Error;
@@ -25,7 +26,7 @@ pub(super) fn picture(result: &UncertaintyResult) -> Option<Picture> {
     }
     let svg = sheet((980, 560), |area| {
         let (top, bottom) = area.split_vertically(310);
-        draw_histogram(&top, &rates)?;
+        draw_histogram(&top, &rates, result)?;
         draw_settling(&bottom, result)
     })?;
     let caption = format!(
@@ -50,22 +51,33 @@ fn bars(ascending: &[f64]) -> (f64, [usize; 2]) {
     (width, [-low, high].map(|end| (end / width).floor() as usize + 1))
 }
 
-fn draw_histogram(area: &Area, rates: &[f64]) -> Result<(), Box<dyn Error>> {
-    let (width, [below, above]) = bars(rates);
-    let mut counts = vec![0_usize; below + above];
-    for rate in rates {
-        let bar = (rate / width).floor() as i64 + below as i64;
-        counts[(bar.max(0) as usize).min(below + above - 1)] += 1;
+/// How many samples are in each bar: those in which no mode grows, and those in which one does. Without damping the rates of the former
+/// are zero but for rounding, in the first bar above zero.
+fn counts(points: &[Option<MapPoint>], width: f64, [below, above]: [usize; 2]) -> Vec<[usize; 2]> {
+    let mut counts = vec![[0; 2]; below + above];
+    for point in points.iter().flatten().filter(|point| point.growth_rate.is_finite()) {
+        let bar = (point.growth_rate / width).floor() as i64 + below as i64;
+        counts[(bar.max(0) as usize).min(below + above - 1)][usize::from(point.unstable > 0)] += 1;
     }
-    let most = counts.iter().copied().max().unwrap_or(1) as f64;
+    counts
+}
+
+fn draw_histogram(area: &Area, rates: &[f64], result: &UncertaintyResult) -> Result<(), Box<dyn Error>> {
+    let (width, sides @ [below, above]) = bars(rates);
+    let counts = counts(&result.points, width, sides);
+    let most = counts.iter().map(|[stable, unstable]| stable + unstable).max().unwrap_or(1) as f64;
     let edge = |bar: usize| (bar as f64 - below as f64) * width;
     let words = axis_words("largest growth rate σ [1/s]", "samples");
     let mut chart = labelled(area, (edge(0)..edge(below + above), 0.0..1.08 * most), &words)?;
-    for (bar, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
-        let hex = if bar >= below { ALARM } else { CALM };
-        let corners = [(edge(bar), 0.0), (edge(bar + 1), *count as f64)];
-        chart.draw_series([Rectangle::new(corners, colour(hex).mix(0.85).filled())])?;
-        chart.draw_series([Rectangle::new(corners, WHITE.stroke_width(1))])?;
+    for (bar, [stable, unstable]) in counts.into_iter().enumerate() {
+        // One above the other.
+        for (from, count, hex) in [(0, stable, CALM), (stable, unstable, ALARM)] {
+            if count > 0 {
+                let corners = [(edge(bar), from as f64), (edge(bar + 1), (from + count) as f64)];
+                chart.draw_series([Rectangle::new(corners, colour(hex).mix(0.85).filled())])?;
+                chart.draw_series([Rectangle::new(corners, WHITE.stroke_width(1))])?;
+            }
+        }
     }
     draw_curve(&chart, [(0.0, 0.0), (0.0, 1.08 * most)], pen(INK, 1.5))
 }
@@ -113,5 +125,13 @@ mod tests {
         let (width, sides) = bars(&[2.0, 4.0]);
         assert_eq!((width, sides), (0.5, [1, 9]));
         assert!(bars(&[0.0]).0 > 0.0);
+    }
+
+    #[test]
+    fn samples_without_growth_are_counted_apart_where_they_are_zero_but_for_rounding() {
+        let point =
+            |growth_rate: f64, unstable: u32| Some(MapPoint { growth_rate, unstable, ..MapPoint::NONE });
+        let points = [point(1e-17, 0), point(-1e-17, 0), point(0.2, 1), point(1.0, 2), None];
+        assert_eq!(counts(&points, 0.5, [1, 3]), [[1, 0], [1, 1], [0, 0], [0, 1]]);
     }
 }
