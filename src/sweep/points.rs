@@ -4,8 +4,8 @@ use crate::error::{Error, Result};
 use crate::progress::Observer;
 use rayon::prelude::*;
 
-/// Points for each thread that are computed on all threads and recorded together.
-const CHUNK: usize = 16;
+/// Points that are recorded together.
+const PIECE: usize = 32;
 
 /// Points, and why points have no answer, if any has none.
 pub type Filled<P> = (Vec<P>, Option<String>);
@@ -36,7 +36,8 @@ pub(super) fn fill<P: Clone + Send>(
         observer.advance(1);
         point
     };
-    let chunk = CHUNK * rayon::current_num_threads();
+    // Work for all threads, and the same pieces for any number of them.
+    let chunk = PIECE * rayon::current_num_threads().div_ceil(2);
     while points.len() < total {
         let first = points.len();
         let solved: Vec<Result<P>> = match parallel {
@@ -54,7 +55,9 @@ pub(super) fn fill<P: Clone + Send>(
                 Ok(point) => point,
             });
         }
-        record(first, &points[first..])?;
+        for (k, piece) in points[first..].chunks(PIECE).enumerate() {
+            record(first + k * PIECE, piece)?;
+        }
     }
     Ok((points, failure))
 }
