@@ -1,4 +1,4 @@
-//! Points that are independent of each other, computed in chunks that are recorded as they are there.
+//! Points that are independent of each other, recorded piece by piece as they are there.
 
 use crate::error::{Error, Result};
 use crate::progress::Observer;
@@ -10,13 +10,13 @@ const PIECE: usize = 32;
 /// Points, and why points have no answer, if any has none.
 pub type Filled<P> = (Vec<P>, Option<String>);
 
-/// Takes a chunk of points with the index of the first.
+/// Takes a piece of the points with the index of the first.
 pub type RecordPoints<'a, P> = dyn FnMut(usize, &[P]) -> Result<()> + 'a;
 
 /// Points 0 to `total`, `parallel` or one at a time; a point without an answer is `none`.
 ///
-/// `known` are the first points of an earlier run, which are not computed again. `record` is called with each new chunk and the index of
-/// its first point, in order. The numbers depend on neither the chunks nor the number of threads.
+/// `known` are the first points of an earlier run, which are not computed again. `record` is called with each new piece and the index of
+/// its first point, in order. Neither the numbers nor the pieces depend on the number of threads.
 ///
 /// # Errors
 /// The machine refuses; those of `record`.
