@@ -129,9 +129,10 @@ pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Opti
     let mut samples = 0.0;
     if let Some(cea) = complex {
         modes = modes.max(below(cea.basis_below)?);
-        if selection.includes(UNCERTAINTY, case) && !case.uncertainty.is_empty() {
+        if selection.includes(UNCERTAINTY, case) {
             let count: usize = case.uncertainty.values().map(|study| study.samples).sum();
-            samples = count as f64 * (SAMPLE + MODE_OF_SAMPLE * below(cea.band[1])?);
+            // The band has fewer modes; to count them takes a factorisation where matrices are given.
+            samples = count as f64 * (SAMPLE + MODE_OF_SAMPLE * modes);
         }
     }
     let run = ProblemSize { dofs, entries: pattern.compute_nnz(), fill, modes: modes.min(dofs as f64) };
