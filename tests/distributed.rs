@@ -19,9 +19,13 @@ const ENGINES: [&str; 2] = ["slepc", "slepc-krylov-schur"];
 
 /// The program on some ranks.
 fn on_ranks(ranks: usize, folder: &Path, arguments: &[&str]) -> Command {
+    ranks_of(env!("CARGO_BIN_EXE_stridor"), ranks, folder, arguments)
+}
+
+fn ranks_of(program: &str, ranks: usize, folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new("mpirun");
     command.args(["--oversubscribe", "--allow-run-as-root", "-n", &ranks.to_string()]);
-    command.arg(env!("CARGO_BIN_EXE_stridor")).args(arguments);
+    command.arg(program).args(arguments);
     // MUMPS calls BLAS on every rank.
     command.current_dir(folder).env("OMP_NUM_THREADS", "1").env("RUST_BACKTRACE", "0");
     command
@@ -160,6 +164,12 @@ fn more_ranks_than_rows_are_a_fault() {
     assert!(!folder.path().join("out").exists(), "nothing is written");
     let output = on_ranks(2, folder.path(), &arguments).output().unwrap();
     assert!(output.status.success(), "{}", text(&output.stderr));
+    // However long rank 0 takes to write its message, the end of the others does not end it.
+    let late = r#""$@"; code=$?; [ "$OMPI_COMM_WORLD_RANK" != 0 ] || { sleep 1; touch late; }; exit $code"#;
+    let program = [&["-c", late, "sh", env!("CARGO_BIN_EXE_stridor")], &arguments[..]].concat();
+    let output = ranks_of("sh", 4, folder.path(), &program).output().unwrap();
+    assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
+    assert!(folder.path().join("late").exists(), "rank 0 was ended by another rank");
 }
 
 /// A rank that is killed ends the program with an error, and a later run has the whole result.

@@ -58,10 +58,11 @@ pub use on_ranks::{shared_matrices, shared_points};
 mod on_ranks {
     use crate::case::Case;
     use crate::cli::engine::EngineName;
+    use crate::cli::output::SUCCESS;
     use crate::cli::progress::Bars;
     use crate::cli::version::VERSION;
     use crate::distributed::{RealModesMethod, Role, same_build, start};
-    use crate::error::{Error, Result};
+    use crate::error::Result;
     use crate::job::studies_on_ranks;
     use crate::linalg::Engine;
     use crate::results::RunResults;
@@ -69,17 +70,17 @@ mod on_ranks {
     use std::path::Path;
     use std::sync::Arc;
 
-    /// Runs `work` on rank 0 with matrices that lie on all ranks; the others come back with its exit code.
+    /// Runs `work` on rank 0 with matrices that lie on all ranks; the others come back when it has ended.
     pub fn shared_matrices(name: EngineName, work: impl FnOnce(&Engine) -> Result<u8>) -> Result<u8> {
         let method = match name {
             EngineName::SlepcKrylovSchur => RealModesMethod::KrylovSchur,
             EngineName::Slepc | EngineName::Mpi => RealModesMethod::BlockLanczos,
         };
         match start(&VERSION, method)? {
-            Role::Ended(code) => Ok(code),
+            Role::Ended => Ok(SUCCESS),
             Role::Lead(cluster) => {
                 let done = work(&Engine::new(Arc::new(Arc::clone(&cluster))));
-                cluster.end(done.as_ref().map_or_else(Error::exit_code, |code| *code));
+                cluster.end();
                 done
             }
         }

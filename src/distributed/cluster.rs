@@ -49,7 +49,7 @@ impl State {
 impl Drop for Cluster {
     fn drop(&mut self) {
         // Where the analysis has not ended it has failed.
-        self.end(1);
+        self.end();
     }
 }
 
@@ -59,10 +59,10 @@ impl Cluster {
         Cluster { size, method, state: Mutex::new(Some(State { rank: Rank::new(world), next: 0 })) }
     }
 
-    /// Ends the other ranks with an exit code, and MPI; once.
-    pub fn end(&self, code: u8) {
+    /// Ends the other ranks, and MPI; once.
+    pub fn end(&self) {
         if let Some(state) = self.lock().take() {
-            let _ = Command::announce(state.rank.world(), Some(Command::End(code)));
+            let _ = Command::announce(state.rank.world(), Some(Command::End));
         }
     }
 

@@ -24,8 +24,8 @@ pub enum Command {
     Nearest { quadratic: u64, shift: c64, count: u64, tolerance: f64 },
     /// Forget what has this number.
     Free(u64),
-    /// End with this exit code.
-    End(u8),
+    /// End.
+    End,
 }
 
 impl Command {
@@ -42,7 +42,7 @@ impl Command {
                 [5, quadratic, count, shift.re.to_bits(), shift.im.to_bits(), tolerance.to_bits()]
             }
             Command::Free(id) => [6, id, 0, 0, 0, 0],
-            Command::End(code) => [7, u64::from(code), 0, 0, 0, 0],
+            Command::End => [7, 0, 0, 0, 0, 0],
         }
     }
 
@@ -61,7 +61,7 @@ impl Command {
                 Command::Nearest { quadratic, shift, count, tolerance: number(tolerance) }
             }
             [6, id, ..] => Command::Free(id),
-            [_, code, ..] => Command::End(code as u8),
+            _ => Command::End,
         }
     }
 
@@ -91,7 +91,7 @@ mod tests {
             Command::Quadratic { id: 4, n: 70 },
             Command::Nearest { quadratic: 4, shift: c64::new(0.1, -3.0), count: 5, tolerance: 1e-12 },
             Command::Free(9),
-            Command::End(2),
+            Command::End,
         ] {
             assert_eq!(Command::decoded(command.encoded()), command);
         }

@@ -31,8 +31,9 @@ use std::sync::Arc;
 pub enum Role {
     /// Rank 0: run the analysis.
     Lead(Arc<Cluster>),
-    /// Another rank, whose work is over: end with this exit code.
-    Ended(u8),
+    /// Another rank, whose work is over. It ends with exit code 0 whatever the result: at another one `mpirun` ends rank 0, which may
+    /// not have written its message yet.
+    Ended,
 }
 
 /// Starts MPI. Rank 0 comes back at once, the others when rank 0 has [ended](Cluster::end) its work.
@@ -44,8 +45,8 @@ pub fn start(build: &str, method: RealModesMethod) -> Result<Role> {
     let same = same_build(&world, build)?;
     match world.rank() {
         0 => Ok(Role::Lead(Arc::new(Cluster::new(world, method)))),
-        _ if !same => Ok(Role::Ended(1)),
-        _ => serve(world).map(Role::Ended),
+        _ if !same => Ok(Role::Ended),
+        _ => serve(world).map(|()| Role::Ended),
     }
 }
 

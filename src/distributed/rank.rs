@@ -138,7 +138,7 @@ fn receive_rows(world: &World) -> Result<Rows> {
 ///
 /// # Errors
 /// MPI refuses. An error of a collective step is one of rank 0, too, which reports it.
-pub fn serve(world: World) -> Result<u8> {
+pub fn serve(world: World) -> Result<()> {
     let mut rank = Rank::new(world);
     loop {
         let command = Command::announce(rank.world(), None)?;
@@ -173,7 +173,7 @@ pub fn serve(world: World) -> Result<u8> {
                 let _ = rank.nearest(quadratic, shift, count as usize, tolerance);
             }
             Command::Free(id) => rank.free(id),
-            Command::End(code) => return Ok(code),
+            Command::End => return Ok(()),
         }
     }
 }
