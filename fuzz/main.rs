@@ -133,7 +133,7 @@ fn holds(reader: &Reader, options: &Options) -> bool {
         return false;
     }
     let words = words(&inputs);
-    let mut random = Random(options.seed);
+    let mut random = Random::new(options.seed);
     let begun = Instant::now();
     let until = begun + Duration::from_secs(if options.seconds == 0 { 1 << 30 } else { options.seconds });
     let mut new = Vec::new();

@@ -1,19 +1,23 @@
 //! Random changes of an input: of bytes, of lines, of numbers, of words, and parts of other inputs.
 
-/// Pseudo-random numbers (splitmix64; S. Vigna).
-pub struct Random(pub u64);
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Pseudo-random numbers, the same for a seed.
+pub struct Random(ChaCha8Rng);
 
 impl Random {
-    pub fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+    pub fn new(seed: u64) -> Self {
+        Random(ChaCha8Rng::seed_from_u64(seed))
     }
 
     /// A number below `count`; 0 for 0.
     pub fn below(&mut self, count: usize) -> usize {
-        if count == 0 { 0 } else { (self.next() % count as u64) as usize }
+        if count == 0 { 0 } else { self.0.gen_range(0..count) }
+    }
+
+    fn byte(&mut self) -> u8 {
+        self.0.r#gen()
     }
 
     fn pick<'a, T>(&mut self, all: &'a [T]) -> &'a T {
@@ -112,9 +116,9 @@ fn change(random: &mut Random, bytes: &mut Vec<u8>, other: &[u8], words: &[Vec<u
     match random.below(15) {
         _ if length == 0 => bytes.extend_from_slice(other),
         0 => bytes[at] ^= 1 << random.below(8),
-        1 => bytes[at] = random.next() as u8,
+        1 => bytes[at] = random.byte(),
         2 => {
-            let new = (0..1 + random.below(8)).map(|_| random.next() as u8).collect::<Vec<_>>();
+            let new = (0..1 + random.below(8)).map(|_| random.byte()).collect::<Vec<_>>();
             bytes.splice(at..at, new);
         }
         3 => drop(bytes.drain(random.part(length))),

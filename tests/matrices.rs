@@ -2,6 +2,8 @@
 
 use faer::linalg::solvers::Solve;
 use faer::{Mat, c64};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -10,20 +12,8 @@ use stridor::error::Result;
 use stridor::job::{Prepared, Selection, analyse, export};
 use stridor::results::{ComplexResult, MeasuredComparison, NamedModes, RunResults, SteadyResult};
 
-/// Marsaglia's xorshift: numbers in [-1, 1), the same in every run.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
-
 /// M, C, K of a random system.
-struct Random3 {
+struct RandomSystem {
     m: Mat<f64>,
     c: Mat<f64>,
     k: Mat<f64>,
@@ -31,31 +21,32 @@ struct Random3 {
 
 /// A chain-like random system of order n with stiffness-proportional and random damping; `rows` rows of K and C are not
 /// symmetric, `massless` rows have no mass, and K is singular when `free`.
-fn random_system(n: usize, rows: usize, massless: usize, free: bool, seed: u64) -> Random3 {
-    let mut random = Random(0x9E37_79B9_7F4A_7C15 ^ (seed * 7919 + 1));
+fn random_system(n: usize, rows: usize, massless: usize, free: bool, seed: u64) -> RandomSystem {
+    let mut generator = ChaCha8Rng::seed_from_u64(seed);
+    let mut random = || generator.gen_range(-1.0..1.0);
     let (mut m, mut c, mut k) = (Mat::zeros(n, n), Mat::zeros(n, n), Mat::<f64>::zeros(n, n));
     for i in 0..n {
-        m[(i, i)] = 1.0 + 0.5 * random.next();
+        m[(i, i)] = 1.0 + 0.5 * random();
         for j in [i + 1, i + 3, i + 7].into_iter().filter(|j| *j < n) {
-            let spring = 2e6 * (1.2 + random.next());
+            let spring = 2e6 * (1.2 + random());
             for (a, b, sign) in [(i, i, 1.0), (j, j, 1.0), (i, j, -1.0), (j, i, -1.0)] {
                 k[(a, b)] += sign * spring;
                 c[(a, b)] += sign * spring * 2e-6 * (1.0 + 0.3 * (i % 3) as f64);
             }
         }
         if !free {
-            k[(i, i)] += 1e5 * (1.5 + random.next());
+            k[(i, i)] += 1e5 * (1.5 + random());
         }
         if i + 1 < n {
-            let coupled = 0.2 * random.next();
+            let coupled = 0.2 * random();
             m[(i, i + 1)] = coupled;
             m[(i + 1, i)] = coupled;
         }
     }
     for p in 0..rows {
         let (row, column) = ((5 * p + 2) % n, (5 * p + 4) % n);
-        k[(row, column)] += 1.5e6 * random.next();
-        c[(row, (column + 1) % n)] += 20.0 * random.next();
+        k[(row, column)] += 1.5e6 * random();
+        c[(row, (column + 1) % n)] += 20.0 * random();
     }
     for p in 0..massless {
         let row = (6 * p + 1) % n;
@@ -67,13 +58,13 @@ fn random_system(n: usize, rows: usize, massless: usize, free: bool, seed: u64) 
             c[(j, row)] = 0.0;
         }
     }
-    Random3 { m, c, k }
+    RandomSystem { m, c, k }
 }
 
 /// All finite eigenvalues with Im λ > 0 and a frequency in the band, dense, independent of the program: the companion of
 /// μ² Q(s) + μ Q′(s) + M at μ = 1/(λ − s), then Newton's inverse iteration on Q itself.
-fn dense_eigenvalues(system: &Random3, band: [f64; 2]) -> Vec<c64> {
-    let Random3 { m, c, k } = system;
+fn dense_eigenvalues(system: &RandomSystem, band: [f64; 2]) -> Vec<c64> {
+    let RandomSystem { m, c, k } = system;
     let n = m.nrows();
     let s = TAU * band[1];
     let value = m * faer::Scale(s * s) + c * faer::Scale(s) + k;

@@ -1,23 +1,10 @@
 //! Small hand-made systems for the tests of equilibrium and stability.
 
 use crate::contact::{Coulomb, Exponential, NormalLaw, SlidingLaw};
+use crate::linalg::random::Random;
 use crate::linalg::{SparseMatrix, SparseVector, sparse};
 use crate::system::{Closing, ContactPair, ContactPoint, Damping, Structure, System};
 use std::sync::Arc;
-
-/// Pseudo-random numbers in [0, 1), the same on every machine.
-pub(crate) struct Random(pub(crate) u64);
-
-impl Random {
-    pub(crate) fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-}
 
 /// A sparse matrix from its dense rows.
 pub(crate) fn sparse(n: usize, entry: impl Fn(usize, usize) -> f64) -> SparseMatrix {
@@ -87,7 +74,7 @@ pub(crate) fn two_dof(k_t: f64, k_n: f64, mu: f64) -> System {
 /// A random elastic body of `n` degrees of freedom on springs to the ground, with `points` unilateral contact points
 /// of random sparse directions, a cubic normal law and falling friction, pressed by `load`.
 pub(crate) fn random_system(n: usize, points: usize, load: f64, seed: u64) -> System {
-    let mut random = Random(seed);
+    let mut random = Random::seeded(seed);
     let ground: Vec<f64> = (0..n).map(|_| random.between(50.0, 400.0)).collect();
     let link: Vec<f64> = (0..n).map(|_| random.between(200.0, 2000.0)).collect();
     let far: Vec<f64> = (0..n).map(|_| random.between(10.0, 100.0)).collect();
@@ -118,9 +105,8 @@ pub(crate) fn random_system(n: usize, points: usize, load: f64, seed: u64) -> Sy
     let points = (0..points)
         .map(|_| {
             let mut direction = |entries: usize| {
-                let pick: Vec<(usize, f64)> = (0..entries)
-                    .map(|_| (random.between(0.0, n as f64) as usize, random.between(-1.0, 1.0)))
-                    .collect();
+                let pick: Vec<(usize, f64)> =
+                    (0..entries).map(|_| (random.below(n), random.between(-1.0, 1.0))).collect();
                 vector(&pick)
             };
             let (g, t1, t2) = (direction(4), direction(4), direction(3));

@@ -2,6 +2,7 @@ use super::samples::*;
 use super::*;
 use crate::contact::{Coulomb, NormalLaw, SlidingLaw};
 use crate::error::{Error, Result};
+use crate::linalg::random::Random;
 use crate::linalg::{SparseMatrix, SparseVector};
 use crate::system::{Closing, Damping, Prestress, Structure, System};
 use std::sync::Arc;
@@ -206,7 +207,7 @@ fn linearised_contact_is_the_derivative_of_the_residual() {
         let contact = linearize(&system, &steady);
         assert!(!contact.blocks.is_empty());
         let points: Vec<_> = system.points().map(|(_, p)| p).collect();
-        let mut random = Random(seed + 1);
+        let mut random = Random::seeded(seed + 1);
         let du: Vec<f64> = (0..n).map(|_| random.between(-1.0, 1.0)).collect();
         let dv: Vec<f64> = (0..n).map(|_| random.between(-1.0, 1.0)).collect();
         let mut exact = vec![0.0; n];

@@ -11,6 +11,24 @@ impl Random {
         Random(0x2545_F491_4F6C_DD1D)
     }
 
+    /// Another beginning for every seed.
+    #[cfg(test)]
+    pub fn seeded(seed: u64) -> Self {
+        Random(seed.wrapping_mul(2).wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15))
+    }
+
+    /// The next number in [low, high).
+    #[cfg(test)]
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * 0.5 * (self.next() + 1.0)
+    }
+
+    /// A whole number below `count`.
+    #[cfg(test)]
+    pub fn below(&mut self, count: usize) -> usize {
+        self.between(0.0, count as f64) as usize
+    }
+
     /// The next number.
     #[expect(clippy::should_implement_trait)]
     pub fn next(&mut self) -> f64 {

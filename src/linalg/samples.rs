@@ -1,22 +1,9 @@
 //! Matrices for the tests: membranes and plates with known eigenvalues, random ones.
 
 use super::SparseMatrix;
+use super::random::Random;
 use super::sparse::entry;
 use faer::{Mat, MatRef};
-
-/// Numbers in [-1, 1) that are the same everywhere: a linear congruential generator's upper bits.
-pub struct Random(u64);
-
-impl Random {
-    pub fn new(seed: u64) -> Self {
-        Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1)
-    }
-
-    pub fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
 
 pub fn from_dense(a: MatRef<'_, f64>) -> SparseMatrix {
     let entries: Vec<_> = (0..a.ncols())
@@ -29,7 +16,7 @@ pub fn from_dense(a: MatRef<'_, f64>) -> SparseMatrix {
 
 /// Symmetric with about one entry in five, indefinite.
 pub fn random_symmetric(n: usize, seed: u64) -> SparseMatrix {
-    let mut random = Random::new(seed);
+    let mut random = Random::seeded(seed);
     let mut a = Mat::zeros(n, n);
     for j in 0..n {
         for i in 0..=j {
@@ -43,7 +30,7 @@ pub fn random_symmetric(n: usize, seed: u64) -> SparseMatrix {
 
 /// G Gᵀ + I/10 for a random G: symmetric positive definite.
 pub fn random_definite(n: usize, seed: u64) -> SparseMatrix {
-    let mut random = Random::new(seed);
+    let mut random = Random::seeded(seed);
     let g = Mat::from_fn(n, n, |_, _| random.next());
     from_dense((&g * g.transpose() + Mat::<f64>::identity(n, n) * faer::Scale(0.1)).as_ref())
 }

@@ -264,7 +264,7 @@ fn range(a: MatRef<'_, c64>) -> Result<(Mat<c64>, usize)> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::samples::Random;
+    use super::super::random::Random;
     use super::*;
     use faer::linalg::solvers::Solve;
 
@@ -315,7 +315,7 @@ mod tests {
     #[test]
     fn random_quadratic_problems_agree_with_a_dense_solver() {
         for (n, count, seed) in [(1, 1, 1), (2, 4, 2), (12, 5, 3), (40, 12, 4), (90, 20, 5)] {
-            let mut numbers = Random::new(seed);
+            let mut numbers = Random::seeded(seed);
             let (m, c, k) = (random(n, &mut numbers), random(n, &mut numbers), random(n, &mut numbers));
             let shift = c64::new(0.3 * numbers.next(), numbers.next());
             let expected = exact(&m, &c, &k, shift);

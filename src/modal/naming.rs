@@ -221,12 +221,12 @@ fn sign_changes(amplitude: &[f64]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::samples::Random;
+    use crate::linalg::random::Random;
 
     /// Points scattered over an annulus 0.015 … 0.075 m, finer towards the lowest rim point (θ = −π/2), where the
     /// disc touches.
     fn scattered(n: usize) -> Vec<(f64, f64)> {
-        let mut random = Random::new(11);
+        let mut random = Random::seeded(11);
         let mut unit = || 0.5 + 0.5 * random.next();
         (0..n)
             .map(|k| {
@@ -250,7 +250,7 @@ mod tests {
         for count in [900, 3000, 20_000] {
             let points = scattered(count);
             let disc = DiscPoints::new(&points).unwrap();
-            let mut random = Random::new(5);
+            let mut random = Random::seeded(5);
             for n in [0, 1, 2, 3, 5, 8] {
                 for s in 0..=2 {
                     // Each of a double pair, turned by any angle, with 3 % noise.
@@ -292,7 +292,7 @@ mod tests {
             points.iter().map(|(r, a)| radial(*r, 0) * ((2.0 * a).cos() + (3.0 * a).sin())).collect();
         assert_eq!(disc.name(&mixed), None);
         assert_eq!(disc.name(&vec![0.0; 3000]), None);
-        let mut random = Random::new(3);
+        let mut random = Random::seeded(3);
         let noise: Vec<f64> = points.iter().map(|_| random.next()).collect();
         assert_eq!(disc.name(&noise), None);
     }

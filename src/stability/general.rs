@@ -389,14 +389,14 @@ mod tests {
     use super::super::{certified_modes, complex_modes};
     use super::*;
     use crate::equilibrium::samples::{random_system, sparse};
-    use crate::linalg::samples::Random;
+    use crate::linalg::random::Random;
     use crate::system::{Coupling, Skew, System};
 
     /// A random body with skew parts of full rank, gyroscopic (`spin`) and circulatory (`friction`), and damping of a kind; with
     /// contacts, where these are all that is not symmetric in K.
     fn rotating(n: usize, seed: u64, spin: f64, friction: f64) -> System {
         let mut system = damped(random_system(n, 2, 20.0, seed), seed % 8);
-        let mut random = Random::new(seed);
+        let mut random = Random::seeded(seed);
         let mut skew = |size: f64| {
             let below: Vec<f64> = (0..n).map(|_| size * random.next()).collect();
             let value = |i: usize, j: usize| match i.abs_diff(j) {

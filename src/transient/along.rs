@@ -102,7 +102,7 @@ impl StepContact {
             self.tangent.set(model, &self.reaction, &self.compliance, (self.share, self.rate));
             self.tangent.solve(&self.rho, &mut self.newton);
             times(&self.compliance, self.share, &self.newton, &mut self.moved);
-            length = longest(&self.moved).max(0.0 * longest(&self.newton));
+            length = longest(&self.moved);
             if !length.is_finite() {
                 return Err(StepFailure::NotFinite);
             }

@@ -43,7 +43,7 @@ impl<'a> FullNewton<'a> {
         points.map(|p| resistance([1, 2].map(|k| compliance(&directions[3 * p + k])), factor)).collect()
     }
 
-    /// Residual of both equations at Δ and r, without B w.
+    /// Residual of both equations at Δ and r.
     fn residual(
         &mut self,
         [delta, force]: [&[f64]; 2],
@@ -66,6 +66,14 @@ impl<'a> FullNewton<'a> {
             Some(Since { travel, bristles, duration, force, resistance }),
         );
         let mut rho = multiply_vector(&self.linear, delta);
+        if let Some(own) = &model.damping.modal {
+            let [_, c, _] = self.weights.effective();
+            let column = Mat::from_fn(delta.len(), 1, |i, _| delta[i]);
+            let mut share = gram(own.basis.as_ref(), column.as_ref());
+            own.coefficients.iter().enumerate().for_each(|(i, own)| share[(i, 0)] *= c * own);
+            let part = expand(own.basis.as_ref(), share.as_ref());
+            rho.iter_mut().zip(part.col_as_slice(0)).for_each(|(rho, p)| *rho += p);
+        }
         rho.iter_mut().zip(h).for_each(|(rho, h)| *rho -= h);
         to.interface.add_reactions(model, self.weights.share(), force, &mut rho);
         rho.extend(force.iter().zip(&self.reaction.force).map(|(r, answer)| r - answer));
@@ -116,7 +124,6 @@ impl Solver for FullNewton<'_> {
             let part = expand(own.basis.as_ref(), modal.as_ref());
             given.iter_mut().zip(part.col_as_slice(0)).for_each(|(h, p)| *h += p);
         }
-        let [_, c, _] = weights.effective();
         // From where the last acceleration would lead, and the last forces.
         let mut delta: Vec<f64> = from.motion.col_as_slice(2).iter().map(|a| a / weights.inertia).collect();
         let mut force = from.reaction.clone();
@@ -124,29 +131,31 @@ impl Solver for FullNewton<'_> {
         let mut moved = vec![0.0; model.n_directions()];
         for iteration in 1..=ITERATIONS {
             to.iterations = iteration;
-            let mut rho = self.residual([&delta, &force], &given, &at, [from, to], &resistance);
-            let column = Mat::from_fn(n, 1, |i, _| delta[i]);
-            if let Some(own) = &model.damping.modal {
-                let mut share = gram(own.basis.as_ref(), column.as_ref());
-                own.coefficients.iter().enumerate().for_each(|(i, own)| share[(i, 0)] *= c * own);
-                let part = expand(own.basis.as_ref(), share.as_ref());
-                rho.iter_mut().zip(part.col_as_slice(0)).for_each(|(r, p)| *r += p);
-            }
+            let rho = self.residual([&delta, &force], &given, &at, [from, to], &resistance);
             let lu = self.tangent(&directions)?.sp_lu().map_err(|_| StepFailure::NotFinite)?;
-            let step = lu.solve(Mat::from_fn(rho.len(), 1, |i, _| rho[i]));
+            let newton = |rho: &[f64]| lu.solve(Mat::from_fn(rho.len(), 1, |i, _| rho[i]));
+            let step = newton(&rho);
             length = step.subrows(0, n).norm_max();
             if !step.norm_max().is_finite() {
                 return Err(StepFailure::NotFinite);
             }
             to.interface.motions(model, &step.col_as_slice(0)[..n], &mut moved);
-            delta.iter_mut().enumerate().for_each(|(i, delta)| *delta -= step[(i, 0)]);
-            force.iter_mut().enumerate().for_each(|(k, r)| *r -= step[(n + k, 0)]);
-            let scale = from.motion.col(0).norm_max().max(column.norm_max());
-            if length <= ROUND_OFF * scale {
-                self.residual([&delta, &force], &given, &at, [from, to], &resistance);
-                if self.reaction.mismatch(&force) > UNMATCHED {
-                    continue;
+            let last = [delta.clone(), force.clone()];
+            let mut damping = 1.0;
+            // Halved while the next step, with this tangent, would not be shorter: Deuflhard's natural monotonicity test.
+            loop {
+                delta.iter_mut().enumerate().for_each(|(i, x)| *x = last[0][i] - damping * step[(i, 0)]);
+                force.iter_mut().enumerate().for_each(|(k, r)| *r = last[1][k] - damping * step[(n + k, 0)]);
+                let rho = self.residual([&delta, &force], &given, &at, [from, to], &resistance);
+                let left = newton(&rho).subrows(0, n).norm_max();
+                if left <= (1.0 - 0.25 * damping) * length || damping < 1e-3 {
+                    break;
                 }
+                damping *= 0.5;
+            }
+            let largest = |x: &[f64]| x.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+            let scale = from.motion.col(0).norm_max().max(largest(&delta));
+            if length <= ROUND_OFF * scale && self.reaction.mismatch(&force) <= UNMATCHED {
                 to.reaction.copy_from_slice(&self.reaction.force);
                 to.bristles.copy_from_slice(&self.reaction.bristles);
                 h.col_as_slice_mut(0).copy_from_slice(&delta);

@@ -184,22 +184,23 @@ pub(super) fn full_newton_agrees(
 ) {
     let full = Plan { method: StepMethod::FullNewton, ..condensed };
     let largest = states.iter().map(|m| m.col(0).norm_max()).fold(0.0, f64::max);
-    march(model, State::steady(model, steady), &full, &(), &mut |moment| {
+    let end = march(model, State::steady(model, steady), &full, &(), &mut |moment| {
         let difference = (moment.state.motion.col(0) - states[moment.step].col(0)).norm_max();
         assert!(difference <= 1e-10 * largest, "{:?}, step {}: {difference:e}", full.scheme, moment.step);
         Ok(())
     })
     .unwrap();
+    assert_eq!(end.split.0, 0, "steps of Newton's method on the whole were split");
 }
 
 #[test]
 fn the_condensed_step_is_the_full_newton_step_through_lift_off() {
-    for (seed, scheme) in schemes().into_iter().enumerate() {
+    for (seed, scheme) in schemes().into_iter().cycle().take(10).enumerate() {
         let mut system = damped(seed as u64 + 1);
-        if seed == 3 {
+        if seed % 5 == 3 {
             system.structure.damping.modal = None;
         }
-        if seed == 4 {
+        if seed % 5 == 4 {
             system.structure.damping = Damping::default();
         }
         let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();

@@ -337,7 +337,8 @@ impl Elimination<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::samples::{self, Random};
+    use super::super::super::random::Random;
+    use super::super::super::samples;
     use super::super::super::sparse::add_scaled;
     use super::*;
 
@@ -345,7 +346,7 @@ mod tests {
     fn rotating(cells: usize, size: f64) -> SparseColMat<Index, c64> {
         let (k, m) = samples::plate(cells, false);
         let mut skew = add_scaled(&[(0.0, &k)]);
-        let mut random = Random::new(7);
+        let mut random = Random::seeded(7);
         for j in 0..k.ncols() {
             let rows: Vec<usize> = k.row_idx_of_col(j).collect();
             for (v, i) in skew.val_of_col_mut(j).iter_mut().zip(rows) {
