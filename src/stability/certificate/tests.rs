@@ -29,7 +29,7 @@ fn small_system(seed: u64) -> System {
     let load = random.between(5.0, 40.0);
     let mut system = random_system(n, 1 + random.below(3), load, seed);
     let r = 1 + random.below(4);
-    let size = 4000.0 * random.between(0.0, 1.0).powi(2);
+    let size = 5000.0 * random.between(0.0, 1.0).powi(2);
     let directions: Vec<SparseVector> =
         (0..r).map(|_| vector(&[0, 1, 2].map(|_| (random.below(n), random.between(-1.0, 1.0))))).collect();
     let stiffness = Mat::from_fn(r, r, |_, _| size * random.between(-1.0, 1.0));
@@ -113,7 +113,7 @@ fn a_thousand_random_systems_agree_with_the_dense_count() {
     }
     println!("{stable} {several} {diverging} {partial} {held} {one_by_one} {bounded}");
     assert!(held >= 950 && one_by_one >= 950, "{held} and {one_by_one} of 1000 proven");
-    assert!(stable > 100 && several > 50 && diverging > 30 && partial > 30 && bounded > 300);
+    assert!(stable > 100 && several > 50 && diverging > 50 && partial > 30 && bounded > 300);
 }
 
 /// A system larger than its basis, with a coupling that makes pairs of modes flutter.
