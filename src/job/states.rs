@@ -13,6 +13,7 @@ use crate::stability::{Band, ComplexMode, Family, FamilyCheck, SlidingState, com
 use crate::sweep::{Checked, MeasuredProblem, Modes, SweepProblem};
 use crate::system::Structure;
 use faer::Mat;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::borrow::Cow;
 
 /// Whether a change of the scalar at `path` leaves M, K and the contact directions alone, and C affine in it.
@@ -111,6 +112,10 @@ fn rows(check: FamilyCheck) -> Vec<Checked> {
     check.eigenvalues.into_iter().zip(errors).map(row).collect()
 }
 
+/// Degrees of freedom up to which several analyses run at once, each on one thread: inside one of them there is too little work for
+/// several threads, and it takes some tens of megabytes.
+const SMALL: usize = 5000;
+
 /// The members of a sweep by whole analyses, for scalars that change the structure.
 pub struct Whole<'a> {
     case: Case,
@@ -127,6 +132,13 @@ impl<'a> Whole<'a> {
     }
 
     fn analyse(&self, at: &[f64]) -> Result<Vec<ComplexMode>> {
+        match self.parallel() {
+            true => on_one_thread(&|| self.analyse_here(at)),
+            false => self.analyse_here(at),
+        }
+    }
+
+    fn analyse_here(&self, at: &[f64]) -> Result<Vec<ComplexMode>> {
         let case = varied(&self.case, &self.paths, at)?;
         let Some(cea) = case.cea.clone() else { return Ok(Vec::new()) };
         let prepared = Prepared::new(&case)?;
@@ -162,7 +174,7 @@ impl SweepProblem for Whole<'_> {
     }
 
     fn parallel(&self) -> bool {
-        false
+        self.reference.is_some_and(|r| r.nrows() <= SMALL)
     }
 }
 
@@ -175,4 +187,22 @@ impl MeasuredProblem for Whole<'_> {
         };
         Ok(self.analyse(at)?.iter().map(checked).collect())
     }
+}
+
+/// Does work on one thread, and what would be parallel inside it, too. The thread that waits takes no other work meanwhile, as one of a
+/// thread pool would: analyses never run inside each other.
+fn on_one_thread<T: Send>(work: &(dyn Fn() -> T + Sync)) -> T {
+    thread_local! {
+        static OWN: Option<ThreadPool> = ThreadPoolBuilder::new().num_threads(1).build().ok();
+    }
+    OWN.with(|own| {
+        std::thread::scope(|scope| {
+            let done = own.as_ref().and_then(|pool| {
+                let waiting = std::thread::Builder::new().spawn_scoped(scope, || pool.install(work)).ok()?;
+                Some(waiting.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+            });
+            // Where the machine has no thread left, on this one.
+            done.unwrap_or_else(work)
+        })
+    })
 }

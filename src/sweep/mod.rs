@@ -55,7 +55,7 @@ pub trait SweepProblem: Sync {
         Ok(self.modes(at)?.eigenvalues)
     }
 
-    /// Whether several places may be solved at once; `false` when a single one takes all memory and threads.
+    /// Whether several places may be solved at once; `false` when a single one takes much memory or all threads.
     fn parallel(&self) -> bool {
         true
     }

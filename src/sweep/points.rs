@@ -42,7 +42,7 @@ pub(super) fn fill<P: Clone + Send>(
         let first = points.len();
         let solved: Vec<Result<P>> = match parallel {
             true => (first..total.min(first + chunk)).into_par_iter().map(solve).collect(),
-            // Each may take long.
+            // Each takes long.
             false => vec![solve(first)],
         };
         for point in solved {
