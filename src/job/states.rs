@@ -10,10 +10,9 @@ use crate::linalg::c64;
 use crate::linalg::multivector::gram;
 use crate::modal::{self, ModesWanted};
 use crate::stability::{Band, ComplexMode, Family, FamilyCheck, SlidingState, complex_modes};
-use crate::sweep::{Checked, MeasuredProblem, Modes, SweepProblem};
+use crate::sweep::{AtOnce, Checked, MeasuredProblem, Modes, SweepProblem};
 use crate::system::Structure;
 use faer::Mat;
-use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::borrow::Cow;
 
 /// Whether a change of the scalar at `path` leaves M, K and the contact directions alone, and C affine in it.
@@ -112,8 +111,8 @@ fn rows(check: FamilyCheck) -> Vec<Checked> {
     check.eigenvalues.into_iter().zip(errors).map(row).collect()
 }
 
-/// Degrees of freedom up to which several analyses run at once, each on one thread: inside one of them there is too little work for
-/// several threads, and it takes some tens of megabytes.
+/// Degrees of freedom up to which several analyses run at once: each takes some tens of megabytes at most, and has too little work for
+/// several threads.
 const SMALL: usize = 5000;
 
 /// The members of a sweep by whole analyses, for scalars that change the structure.
@@ -132,13 +131,6 @@ impl<'a> Whole<'a> {
     }
 
     fn analyse(&self, at: &[f64]) -> Result<Vec<ComplexMode>> {
-        match self.parallel() {
-            true => on_one_thread(&|| self.analyse_here(at)),
-            false => self.analyse_here(at),
-        }
-    }
-
-    fn analyse_here(&self, at: &[f64]) -> Result<Vec<ComplexMode>> {
         let case = varied(&self.case, &self.paths, at)?;
         let Some(cea) = case.cea.clone() else { return Ok(Vec::new()) };
         let prepared = Prepared::new(&case)?;
@@ -173,8 +165,11 @@ impl SweepProblem for Whole<'_> {
         Ok(Modes { eigenvalues, vectors })
     }
 
-    fn parallel(&self) -> bool {
-        self.reference.is_some_and(|r| r.nrows() <= SMALL)
+    fn at_once(&self) -> AtOnce {
+        match self.reference {
+            Some(reference) if reference.nrows() <= SMALL => AtOnce::Alone,
+            _ => AtOnce::One,
+        }
     }
 }
 
@@ -187,22 +182,4 @@ impl MeasuredProblem for Whole<'_> {
         };
         Ok(self.analyse(at)?.iter().map(checked).collect())
     }
-}
-
-/// Does work on one thread, and what would be parallel inside it, too. The thread that waits takes no other work meanwhile, as one of a
-/// thread pool would: analyses never run inside each other.
-fn on_one_thread<T: Send>(work: &(dyn Fn() -> T + Sync)) -> T {
-    thread_local! {
-        static OWN: Option<ThreadPool> = ThreadPoolBuilder::new().num_threads(1).build().ok();
-    }
-    OWN.with(|own| {
-        std::thread::scope(|scope| {
-            let done = own.as_ref().and_then(|pool| {
-                let waiting = std::thread::Builder::new().spawn_scoped(scope, || pool.install(work)).ok()?;
-                Some(waiting.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-            });
-            // Where the machine has no thread left, on this one.
-            done.unwrap_or_else(work)
-        })
-    })
 }

@@ -1,7 +1,7 @@
 //! Answers of a problem at the places that a sweep or a map asks for, kept so that several processes can share them: [`answer`]
 //! computes one at a point of a grid, [`Answered`] keeps each and gives it instead of computing it again.
 
-use super::{Axis, Modes, SweepProblem};
+use super::{AtOnce, Axis, Modes, SweepProblem};
 use crate::error::Result;
 use crate::linalg::c64;
 use faer::Mat;
@@ -93,7 +93,7 @@ impl SweepProblem for Answered<'_> {
         Ok(modes.eigenvalues)
     }
 
-    fn parallel(&self) -> bool {
-        self.problem.parallel()
+    fn at_once(&self) -> AtOnce {
+        self.problem.at_once()
     }
 }

@@ -2,13 +2,13 @@
 //! them, which often takes longer (steps that are halved, critical values, interactions, the boundary of stability).
 
 use super::answers::{answer, points};
+use super::at_once::solve_all;
 use super::boundary::boundary;
 use super::map::MapPoint;
 use super::track::follow_block;
 use super::{Axis, SweepProblem};
 use crate::error::{Error, Result};
 use crate::progress::Observer;
-use rayon::prelude::*;
 
 /// The first and the last point of a block along each axis. Neighbouring blocks share the points between them.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,19 +70,15 @@ impl Block {
     ) -> Result<()> {
         let own = self.points(axes);
         observer.begin("points", Some(own.len() as u64));
-        let solve = |k: &usize| {
-            let found = answer(problem, axes, *k);
+        let solve = |k: usize| {
+            let found = answer(problem, axes, own[k]);
             observer.advance(1);
             match found {
                 Err(error @ Error::Io { .. }) => Err(error),
-                found => Ok((*k, found.ok())),
+                found => Ok((own[k], found.ok())),
             }
         };
-        let found: Result<Vec<_>> = match problem.parallel() {
-            true => own.par_iter().map(solve).collect(),
-            false => own.iter().map(solve).collect(),
-        };
-        let found = found?;
+        let found = solve_all(problem.at_once(), 0..own.len(), &solve)?;
         observer.end();
         if let [across, up] = axes {
             let mut map = vec![MapPoint::NONE; points(axes)];

@@ -1,11 +1,11 @@
 //! The boundary of stability in a map: the line on which the largest growth rate is zero.
 
+use super::at_once::solve_all;
 use super::map::MapPoint;
 use super::root::{Bracket, narrow};
 use super::{Axis, ROUND_OFF, SweepProblem};
 use crate::error::Result;
 use crate::progress::Observer;
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Located points of the boundary and the lines through them.
@@ -35,15 +35,12 @@ pub fn boundary(
     let grid = Grid { problem, axes, map };
     let edges = grid.cut_edges();
     observer.begin("stability boundary", Some(edges.len() as u64));
-    let locate = |edge: &GridEdge| {
-        let place = grid.locate(edge, tolerance)?;
+    let locate = |k: usize| {
+        let place = grid.locate(&edges[k], tolerance)?;
         observer.advance(1);
         Ok(place)
     };
-    let points: Result<Vec<[f64; 2]>> = match problem.parallel() {
-        true => edges.par_iter().map(locate).collect(),
-        false => edges.iter().map(locate).collect(),
-    };
+    let points: Result<Vec<[f64; 2]>> = solve_all(problem.at_once(), 0..edges.len(), &locate);
     observer.end();
     let points = points?;
     Ok(Boundary { lines: chains(points.len(), &grid.segments(&edges)?), points })

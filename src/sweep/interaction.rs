@@ -1,11 +1,11 @@
 //! Interactions of two branches: crossing, veering, merging (N. C. Perkins and C. D. Mote, J. Sound Vib. 106 (1986) 451).
 
 use super::assign::assign;
+use super::at_once::solve_all;
 use super::branch::{Branch, Sample};
 use super::{Axis, SweepProblem};
 use crate::error::Result;
 use crate::linalg::c64;
-use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// Branches that come nearer than this share of |λ| interact …
@@ -77,13 +77,12 @@ pub(super) fn interactions(
             }
         }
     }
-    let refine =
-        |(pair, k): &([usize; 2], usize)| interaction(problem, axis, tolerance, samples, branches, *pair, *k);
-    let refined: Result<Vec<Interaction>> = match problem.parallel() {
-        true => near.par_iter().map(refine).collect(),
-        false => near.iter().map(refine).collect(),
+    let refine = |candidate: usize| {
+        let (pair, k) = near[candidate];
+        interaction(problem, axis, tolerance, samples, branches, pair, k)
     };
-    let mut found: Vec<Interaction> = refined?.into_iter().filter(|m| m.distance < NEAR).collect();
+    let refined = solve_all(problem.at_once(), 0..near.len(), &refine)?;
+    let mut found: Vec<Interaction> = refined.into_iter().filter(|m| m.distance < NEAR).collect();
     let along = (axis.to - axis.from).signum();
     found.sort_by(|x, y| (along * x.value).total_cmp(&(along * y.value)).then(x.branches.cmp(&y.branches)));
     Ok(found)

@@ -47,7 +47,7 @@ pub fn map(
 ) -> Result<Filled<MapPoint>> {
     let solve = |k: usize| answer(problem, axes, k).map(|modes| MapPoint::of(&modes.eigenvalues));
     observer.begin("map", Some(points(axes) as u64));
-    let filled = fill((points(axes), problem.parallel()), &solve, MapPoint::NONE, known, record, observer)?;
+    let filled = fill((points(axes), problem.at_once()), &solve, MapPoint::NONE, known, record, observer)?;
     observer.end();
     Ok(filled)
 }

@@ -10,6 +10,7 @@
 
 mod answers;
 mod assign;
+mod at_once;
 mod blocks;
 mod boundary;
 mod branch;
@@ -24,6 +25,7 @@ mod tests;
 mod track;
 
 pub use answers::{AnswerStore, Answered, Answers, answer, bits, place, points};
+pub use at_once::AtOnce;
 pub use blocks::{Block, blocks};
 pub use boundary::{Boundary, boundary};
 pub use branch::Branch;
@@ -55,9 +57,9 @@ pub trait SweepProblem: Sync {
         Ok(self.modes(at)?.eigenvalues)
     }
 
-    /// Whether several places may be solved at once; `false` when a single one takes much memory or all threads.
-    fn parallel(&self) -> bool {
-        true
+    /// How many places are solved at once.
+    fn at_once(&self) -> AtOnce {
+        AtOnce::Shared
     }
 }
 

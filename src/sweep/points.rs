@@ -1,8 +1,9 @@
 //! Points that are independent of each other, recorded piece by piece as they are there.
 
+use super::AtOnce;
+use super::at_once::solve_all;
 use crate::error::{Error, Result};
 use crate::progress::Observer;
-use rayon::prelude::*;
 
 /// Points that are recorded together.
 const PIECE: usize = 32;
@@ -13,7 +14,7 @@ pub type Filled<P> = (Vec<P>, Option<String>);
 /// Takes a piece of the points with the index of the first.
 pub type RecordPoints<'a, P> = dyn FnMut(usize, &[P]) -> Result<()> + 'a;
 
-/// Points 0 to `total`, `parallel` or one at a time; a point without an answer is `none`.
+/// Points 0 to `total`; a point without an answer is `none`.
 ///
 /// `known` are the first points of an earlier run, which are not computed again. `record` is called with each new piece and the index of
 /// its first point, in order. Neither the numbers nor the pieces depend on the number of threads.
@@ -21,7 +22,7 @@ pub type RecordPoints<'a, P> = dyn FnMut(usize, &[P]) -> Result<()> + 'a;
 /// # Errors
 /// The machine refuses; those of `record`.
 pub(super) fn fill<P: Clone + Send>(
-    (total, parallel): (usize, bool),
+    (total, at_once): (usize, AtOnce),
     solve: &(dyn Fn(usize) -> Result<P> + Sync),
     none: P,
     known: &[P],
@@ -34,18 +35,17 @@ pub(super) fn fill<P: Clone + Send>(
     let solve = |k: usize| {
         let point = solve(k);
         observer.advance(1);
-        point
+        Ok(point)
     };
     // Work for all threads, and the same pieces for any number of them.
-    let chunk = PIECE * rayon::current_num_threads().div_ceil(2);
+    let chunk = match at_once {
+        // Each takes long.
+        AtOnce::One => 1,
+        AtOnce::Shared | AtOnce::Alone => PIECE * rayon::current_num_threads().div_ceil(2),
+    };
     while points.len() < total {
         let first = points.len();
-        let solved: Vec<Result<P>> = match parallel {
-            true => (first..total.min(first + chunk)).into_par_iter().map(solve).collect(),
-            // Each takes long.
-            false => vec![solve(first)],
-        };
-        for point in solved {
+        for point in solve_all(at_once, first..total.min(first + chunk), &solve)? {
             points.push(match point {
                 Err(refused @ Error::Io { .. }) => return Err(refused),
                 Err(error) => {

@@ -2,7 +2,7 @@
 
 use super::assign::assign;
 use super::points::{Filled, RecordPoints, fill};
-use super::{Modes, SweepProblem};
+use super::{AtOnce, Modes, SweepProblem};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::progress::Observer;
@@ -40,8 +40,8 @@ impl SweepProblem for Paired<'_> {
         Ok(Modes { vectors: Mat::zeros(0, eigenvalues.len()), eigenvalues })
     }
 
-    fn parallel(&self) -> bool {
-        self.problem.parallel()
+    fn at_once(&self) -> AtOnce {
+        self.problem.at_once()
     }
 }
 
@@ -58,7 +58,7 @@ pub fn sampled(
 ) -> Result<Filled<SampleModes>> {
     let solve = |k: usize| problem.eigenvalues(&places[k]).map(Some);
     observer.begin("samples", Some(places.len() as u64));
-    let filled = fill((places.len(), problem.parallel()), &solve, None, known, record, observer)?;
+    let filled = fill((places.len(), problem.at_once()), &solve, None, known, record, observer)?;
     observer.end();
     Ok(filled)
 }

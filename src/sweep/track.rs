@@ -2,13 +2,13 @@
 
 use super::answers::answer;
 use super::assign::{Link, assign};
+use super::at_once::solve_all;
 use super::branch::{Branch, Sample};
 use super::critical::{Critical, critical_values};
 use super::interaction::{Interaction, interactions};
 use super::{Axis, SweepProblem};
 use crate::error::Result;
 use crate::progress::Observer;
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// Halvings of a step at most where the MAC of shapes leaves a doubt.
@@ -97,11 +97,7 @@ impl<'a> Chain<'a> {
             observer.advance(1);
             Ok(Sample { value: axis.value(k), modes })
         };
-        let solved: Result<Vec<Sample>> = if problem.parallel() {
-            points.into_par_iter().map(solve).collect()
-        } else {
-            points.map(solve).collect()
-        };
+        let solved = solve_all(problem.at_once(), points, &solve);
         observer.end();
         let mut chain = Chain { problem, axis, samples: Vec::new(), links: Vec::new() };
         for sample in solved? {
