@@ -77,7 +77,7 @@ mod tests {
     use super::*;
     use crate::error::Error;
     use std::collections::BTreeSet;
-    use std::sync::Mutex;
+    use std::sync::{Barrier, Mutex};
 
     #[test]
     fn answers_are_in_order_and_the_first_error_is_given() {
@@ -102,14 +102,14 @@ mod tests {
     #[test]
     fn a_place_has_one_thread_and_several_places_run_at_once() {
         let pool = ThreadPoolBuilder::new().num_threads(3).build().unwrap();
-        let threads = Mutex::new(BTreeSet::new());
+        let (threads, together) = (Mutex::new(BTreeSet::new()), Barrier::new(3));
         let solve = |_| {
             let outside = format!("{:?}", thread::current().id());
             let inside: Vec<String> =
                 (0..100).into_par_iter().map(|_| format!("{:?}", thread::current().id())).collect();
             assert!(inside.iter().all(|id| *id == outside));
             threads.lock().unwrap().insert(outside);
-            thread::sleep(std::time::Duration::from_millis(20));
+            together.wait();
             Ok(())
         };
         pool.install(|| solve_all(AtOnce::Alone, 0..12, &solve)).unwrap();
