@@ -24,16 +24,13 @@ pub enum AtOnce {
 /// That of `solve`, of the lowest number unless they share threads.
 pub(super) fn solve_all<T: Send>(
     at_once: AtOnce,
-    mut numbers: Range<usize>,
+    numbers: Range<usize>,
     solve: &(dyn Fn(usize) -> Result<T> + Sync),
 ) -> Result<Vec<T>> {
     match at_once {
         AtOnce::Shared => numbers.into_par_iter().map(solve).collect(),
         AtOnce::Alone if current_num_threads().min(numbers.len()) > 1 => each_on_one_thread(numbers, solve),
-        AtOnce::One | AtOnce::Alone => numbers.try_fold(Vec::new(), |mut all, k| {
-            all.push(solve(k)?);
-            Ok(all)
-        }),
+        AtOnce::One | AtOnce::Alone => numbers.map(solve).collect(),
     }
 }
 
