@@ -22,6 +22,7 @@ fn on_ranks(ranks: usize, folder: &Path, arguments: &[&str]) -> Command {
     ranks_of(env!("CARGO_BIN_EXE_stridor"), ranks, folder, arguments)
 }
 
+/// Some ranks of any program.
 fn ranks_of(program: &str, ranks: usize, folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new("mpirun");
     command.args(["--oversubscribe", "--allow-run-as-root", "-n", &ranks.to_string()]);

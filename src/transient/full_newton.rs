@@ -129,9 +129,9 @@ impl Solver for FullNewton<'_> {
         let mut force = from.reaction.clone();
         let mut length = 0.0;
         let mut moved = vec![0.0; model.n_directions()];
+        let mut rho = self.residual([&delta, &force], &given, &at, [from, to], &resistance);
         for iteration in 1..=ITERATIONS {
             to.iterations = iteration;
-            let rho = self.residual([&delta, &force], &given, &at, [from, to], &resistance);
             let lu = self.tangent(&directions)?.sp_lu().map_err(|_| StepFailure::NotFinite)?;
             let newton = |rho: &[f64]| lu.solve(Mat::from_fn(rho.len(), 1, |i, _| rho[i]));
             let step = newton(&rho);
@@ -146,7 +146,7 @@ impl Solver for FullNewton<'_> {
             loop {
                 delta.iter_mut().enumerate().for_each(|(i, x)| *x = last[0][i] - damping * step[(i, 0)]);
                 force.iter_mut().enumerate().for_each(|(k, r)| *r = last[1][k] - damping * step[(n + k, 0)]);
-                let rho = self.residual([&delta, &force], &given, &at, [from, to], &resistance);
+                rho = self.residual([&delta, &force], &given, &at, [from, to], &resistance);
                 let left = newton(&rho).subrows(0, n).norm_max();
                 if left <= (1.0 - 0.25 * damping) * length || damping < 1e-3 {
                     break;
