@@ -30,7 +30,7 @@ pub const READERS: [Reader; 13] = [
     Reader {
         name: "mesh",
         read: mesh,
-        samples: &[("tests/data", ".msh"), ("validation", ".msh")],
+        samples: &[("crates/mesh/tests/data", ".msh"), ("validation", ".msh")],
         times: 16,
         constant: 64 * KIB,
     },

@@ -50,32 +50,15 @@ pub mod case;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod contact;
-pub mod dataset;
-#[cfg(feature = "slepc")]
-pub mod distributed;
 pub mod equilibrium;
-pub mod error;
-pub mod input;
 pub mod job;
-pub mod linalg;
-pub mod measured;
-pub mod memory;
-pub mod mesh;
 pub mod modal;
-pub mod numbers;
-pub mod pages;
-pub mod progress;
 pub mod reduction;
 #[cfg(feature = "report")]
 pub mod report;
 pub mod results;
-pub mod schema;
 #[cfg(feature = "cli")]
 pub mod search;
-pub mod signal;
-#[cfg(feature = "slepc")]
-pub mod slepc;
-pub mod sound;
 pub mod stability;
 pub mod structure;
 pub mod sweep;
@@ -84,6 +67,18 @@ pub mod transient;
 pub mod uncertainty;
 #[cfg(feature = "cli")]
 pub mod validation;
+
+// Members of the workspace, below `crates/`.
+pub use stridor_base::{error, input, memory, numbers, pages, progress};
+pub use stridor_dataset as dataset;
+pub use stridor_linalg as linalg;
+pub use stridor_measured as measured;
+pub use stridor_mesh as mesh;
+#[cfg(feature = "slepc")]
+pub use stridor_mpi::{distributed, slepc};
+pub use stridor_schema as schema;
+pub use stridor_signal as signal;
+pub use stridor_sound as sound;
 
 /// The git commit at which the sources of this build were last compiled, 12 digits, with `-modified` where they differed from it;
 /// `None` for a build outside a repository.

@@ -5,12 +5,12 @@ mod program;
 #[path = "common/sweeps.rs"]
 mod sweeps;
 
-use num_complex::Complex64;
 use program::{command, folder_with, names, run, said};
 use serde_json::Value;
 use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
+use stridor::linalg::c64;
 use stridor::results::record::{Saved, read_record};
 use sweeps::{disc, found};
 
@@ -61,8 +61,7 @@ fn the_probability_of_one_scalar_is_that_of_its_distribution() {
         let row = row.expect("a row");
         let [mu, growth, hz] = [1, 2, 3].map(|k| row[k].parse::<f64>().expect("a number"));
         let b = 0.25 * (2.0 * mu - 1.25);
-        let exact =
-            (Complex64::new(1.75, 0.0) + Complex64::new(0.0, 1.0) * Complex64::new(b, 0.0).sqrt()).sqrt();
+        let exact = (c64::new(1.75, 0.0) + c64::new(0.0, 1.0) * c64::new(b, 0.0).sqrt()).sqrt();
         // At the limit λ moves as the root of the error of the matrices.
         let error = 1e-14 / b.abs().sqrt();
         if b > 0.0 {

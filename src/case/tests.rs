@@ -1,5 +1,6 @@
 use super::*;
 use crate::contact::Exponential;
+use crate::schema::{Content, DescribedTable, describe, json_schema, key_reference};
 
 const RIG: &str = r#"
 title = "A small rig"
@@ -204,4 +205,49 @@ fn text_that_is_not_toml_is_refused_with_its_line() {
     let error = parse("title = \"a\"\n[mesh\n").unwrap_err().to_string();
     assert!(error.contains("rig.toml:2"), "{error}");
     assert!(parse("").is_err());
+}
+
+/// Schema and reference name every key that a case may have.
+#[test]
+fn schema_and_reference_name_every_key() {
+    fn keys(table: &DescribedTable, all: &mut Vec<String>) {
+        let of_variants = table.variants.iter().flat_map(|v| &v.each).flat_map(|(_, _, keys)| &keys.keys);
+        for key in table.keys.iter().chain(of_variants) {
+            all.push(key.name.clone());
+            assert!(!key.doc.is_empty(), "{} has no documentation", key.name);
+            if let Content::Table(_, inner) = &key.content {
+                keys(inner, all);
+            }
+        }
+    }
+    let case = describe::<Case>();
+    let mut all = Vec::new();
+    keys(&case, &mut all);
+    assert!(all.len() > 150, "{}", all.len());
+    let (schema, reference) = (json_schema("case", &case).to_string(), key_reference(&case));
+    for key in &all {
+        assert!(schema.contains(&format!("\"{key}\"")), "{key}");
+        assert!(
+            reference.contains(&format!("`{key}`"))
+                || reference.contains(&format!("{key}]`"))
+                || reference.contains(&format!("{key}.NAME]`")),
+            "{key}"
+        );
+    }
+}
+
+#[test]
+fn scalars_of_a_case_are_named_as_the_quantities_they_are() {
+    let text = include_str!("../../validation/rig-coarse/case.toml");
+    let case = Case::parse("case", text, ".".into()).unwrap();
+    for (path, label) in [
+        ("contact.rim.friction.mu0", "friction coefficient μ₀ of rim"),
+        ("contact.rim.load", "load ΣN of rim"),
+        ("contact.rim.placement.lead_angle", "lead angle θ of rim"),
+        ("contact.rim.normal.stiffness", "stiffness k_n of rim"),
+        ("material.steel.youngs_modulus", "Young's modulus E of steel"),
+        ("damping.modal_ratio", "modal damping ratio ζ"),
+    ] {
+        assert_eq!(case.parameter(path).unwrap().label, label);
+    }
 }

@@ -55,73 +55,70 @@ fn microphone_columns() -> Vec<Column<MicrophoneSound>> {
     ]
 }
 
-impl Sound {
-    /// Levels, plates, tones, microphones, spectra and the recording; the level of nothing is −∞.
-    pub(super) fn group(&self) -> Group<'_> {
-        let [level, weighted] = self.power_levels();
-        let [mean, mean_weighted] = self.mean_levels(1.0);
-        let plates: Vec<PlatePower> =
-            self.plates.iter().map(|(name, lines)| (&**name, lines.iter().sum())).collect();
-        let whole: f64 = (0..self.lines()).map(|k| self.power(k)).sum();
-        let air = Group::new("air", "what carries the sound")
-            .value("density_kg_per_m3", "kg/m^3", "density ρ₀", self.air.density)
-            .value("speed_m_per_s", "m/s", "speed of sound c", self.air.speed);
-        let modes = vec![Dimension::numbered("mode", self.mode_shares.len())];
-        let limits =
-            "each plate in an infinite rigid baffle, free field: an upper estimate below coincidence";
-        Group::new("sound", "sound of the plates over the steady part of the run")
-            .with(window(self.window, "the first and the last time of what the levels are taken from"))
-            .value("up_to_hz", "Hz", "the highest line", self.frequency_hz(self.lines().saturating_sub(1)))
-            .value("resolution_hz", "Hz", "Δf, from line to line", self.resolution_hz)
-            .group(air)
-            .value("power_w", "W", "sound power of all plates", whole)
-            .value("power_level_db", "dB", "sound power level re 1 pW", level)
-            .value("power_level_db_a", "dB", "the same, A-weighted", weighted)
-            .value(
-                "mean_pressure_level_at_1_m_db",
-                "dB",
-                "sound pressure level re 20 µPa of the mean square over all directions at 1 m",
-                mean,
-            )
-            .value("mean_pressure_level_at_1_m_db_a", "dB", "the same, A-weighted", mean_weighted)
-            .table(Table::of("plates", "plate", &plate_columns(whole), &plates))
-            .with(Variable::reals(
-                "mode_shares",
-                "1",
-                "share of each real mode in the sound power",
-                modes,
-                self.mode_shares.clone(),
-            ))
-            .table(Table::of("tones", "tone", &tone_columns(), &self.tones))
-            .table(Table::of("microphones", "microphone", &microphone_columns(), &self.microphones))
-            .table(self.spectrum())
-            .list("recordings", self.microphones.iter().map(recording).collect())
-            .with(Variable::text("limits", "what the levels suppose", limits))
-    }
+/// Levels, plates, tones, microphones, spectra and the recording; the level of nothing is −∞.
+pub(super) fn group(sound: &Sound) -> Group<'_> {
+    let [level, weighted] = sound.power_levels();
+    let [mean, mean_weighted] = sound.mean_levels(1.0);
+    let plates: Vec<PlatePower> =
+        sound.plates.iter().map(|(name, lines)| (&**name, lines.iter().sum())).collect();
+    let whole: f64 = (0..sound.lines()).map(|k| sound.power(k)).sum();
+    let air = Group::new("air", "what carries the sound")
+        .value("density_kg_per_m3", "kg/m^3", "density ρ₀", sound.air.density)
+        .value("speed_m_per_s", "m/s", "speed of sound c", sound.air.speed);
+    let modes = vec![Dimension::numbered("mode", sound.mode_shares.len())];
+    let limits = "each plate in an infinite rigid baffle, free field: an upper estimate below coincidence";
+    Group::new("sound", "sound of the plates over the steady part of the run")
+        .with(window(sound.window, "the first and the last time of what the levels are taken from"))
+        .value("up_to_hz", "Hz", "the highest line", sound.frequency_hz(sound.lines().saturating_sub(1)))
+        .value("resolution_hz", "Hz", "Δf, from line to line", sound.resolution_hz)
+        .group(air)
+        .value("power_w", "W", "sound power of all plates", whole)
+        .value("power_level_db", "dB", "sound power level re 1 pW", level)
+        .value("power_level_db_a", "dB", "the same, A-weighted", weighted)
+        .value(
+            "mean_pressure_level_at_1_m_db",
+            "dB",
+            "sound pressure level re 20 µPa of the mean square over all directions at 1 m",
+            mean,
+        )
+        .value("mean_pressure_level_at_1_m_db_a", "dB", "the same, A-weighted", mean_weighted)
+        .table(Table::of("plates", "plate", &plate_columns(whole), &plates))
+        .with(Variable::reals(
+            "mode_shares",
+            "1",
+            "share of each real mode in the sound power",
+            modes,
+            sound.mode_shares.clone(),
+        ))
+        .table(Table::of("tones", "tone", &tone_columns(), &sound.tones))
+        .table(Table::of("microphones", "microphone", &microphone_columns(), &sound.microphones))
+        .table(spectrum(sound))
+        .list("recordings", sound.microphones.iter().map(recording).collect())
+        .with(Variable::text("limits", "what the levels suppose", limits))
+}
 
-    /// Power and mean square pressure over frequency.
-    fn spectrum(&self) -> Table<'static> {
-        let rows = Dimension::of_variable("frequency_hz", self.lines());
-        let over_lines =
-            |key: String, unit: &'static str, description: &'static str, of: &dyn Fn(usize) -> f64| {
-                let values = (0..self.lines()).map(of).collect();
-                Variable::reals(key, unit, description, vec![rows.clone()], values)
-            };
-        let frequency = over_lines(rows.name.into(), "Hz", "frequency", &|k| self.frequency_hz(k));
-        let plates = self.plates.iter().map(|(name, lines)| {
-            over_lines(format!("power_{name}"), "W", "sound power of both sides, what each line adds", &|k| {
-                lines[k]
-            })
-        });
-        let microphones = self.microphones.iter().map(|microphone| {
-            let spectrum = &microphone.spectrum;
-            let square = |k: usize| spectrum.amplitude.get(k).map_or(0.0, |_| spectrum.mean_square(k));
-            let key = format!("mean_square_pressure_{}", microphone.name);
-            over_lines(key, "Pa^2", "mean square sound pressure, what each line adds", &square)
-        });
-        let columns = std::iter::once(frequency).chain(plates).chain(microphones).collect();
-        Table::along("spectrum", rows.clone(), columns).file("sound_spectrum").long()
-    }
+/// Power and mean square pressure over frequency.
+fn spectrum(sound: &Sound) -> Table<'static> {
+    let rows = Dimension::of_variable("frequency_hz", sound.lines());
+    let over_lines =
+        |key: String, unit: &'static str, description: &'static str, of: &dyn Fn(usize) -> f64| {
+            let values = (0..sound.lines()).map(of).collect();
+            Variable::reals(key, unit, description, vec![rows.clone()], values)
+        };
+    let frequency = over_lines(rows.name.into(), "Hz", "frequency", &|k| sound.frequency_hz(k));
+    let plates = sound.plates.iter().map(|(name, lines)| {
+        over_lines(format!("power_{name}"), "W", "sound power of both sides, what each line adds", &|k| {
+            lines[k]
+        })
+    });
+    let microphones = sound.microphones.iter().map(|microphone| {
+        let spectrum = &microphone.spectrum;
+        let square = |k: usize| spectrum.amplitude.get(k).map_or(0.0, |_| spectrum.mean_square(k));
+        let key = format!("mean_square_pressure_{}", microphone.name);
+        over_lines(key, "Pa^2", "mean square sound pressure, what each line adds", &square)
+    });
+    let columns = std::iter::once(frequency).chain(plates).chain(microphones).collect();
+    Table::along("spectrum", rows.clone(), columns).file("sound_spectrum").long()
 }
 
 /// The pressure at a microphone, and its audio file.
@@ -177,10 +174,10 @@ mod tests {
         super::write_sound(dir.path(), sound).unwrap();
         let wav = std::fs::read(dir.path().join("sound_axis.wav")).unwrap();
         assert!(wav.windows(22).any(|w| w == b"full scale is 3.333333"), "0.3 Pa is 0.9 of it");
-        let table = sound.spectrum().to_csv();
+        let table = super::spectrum(sound).to_csv();
         let header = "frequency_hz,power_disc [W],power_slider [W],mean_square_pressure_axis [Pa^2],mean_square_pressure_side [Pa^2]\n";
         assert!(table.lines().count() == 501 && table.starts_with(header), "{table}");
-        let summary = sound.group().to_json();
+        let summary = super::group(sound).to_json();
         let files = [0, 1].map(|k| summary["recordings"][k]["file"].as_str().unwrap());
         assert_eq!(files, ["sound_axis.wav", "sound_side.wav"]);
         assert!(files.iter().all(|file| dir.path().join(file).exists()));

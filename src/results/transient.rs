@@ -198,7 +198,7 @@ impl Describe for TransientResult {
             .list("spectrogram", self.diagnostics.spectrogram_groups(&self.channels))
             .optional("cycle", self.cycle.as_ref().map(CycleFields::group))
             .optional("contact_state", self.diagnostics.contact.group())
-            .optional("sound", self.sound.as_ref().map(Sound::group))
+            .optional("sound", self.sound.as_ref().map(super::sound::group))
     }
 }
 

@@ -1,0 +1,9 @@
+//! What every part of stridor needs: errors that carry data ([`error`]), progress of long work ([`progress`]), numbers as text
+//! ([`numbers`]), input files of a bounded size ([`input`]), the memory that is left ([`memory`]) and memory in large pages ([`pages`]).
+
+pub mod error;
+pub mod input;
+pub mod memory;
+pub mod numbers;
+pub mod pages;
+pub mod progress;

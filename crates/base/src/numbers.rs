@@ -1,0 +1,133 @@
+//! Numbers as text, for tables and messages.
+
+/// `value` with about `digits` significant digits: plain where that is short, in powers of ten elsewhere.
+pub fn significant(value: f64, digits: usize) -> String {
+    if !value.is_finite() {
+        return "–".into();
+    }
+    if value == 0.0 {
+        return "0".into();
+    }
+    let exponent = value.abs().log10().floor() as i32;
+    if (-4..7).contains(&exponent) {
+        let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+        minus(&format!("{value:.decimals$}"))
+    } else {
+        minus(&format!("{value:.*e}", digits.saturating_sub(1)))
+    }
+}
+
+/// A frequency \[Hz\]: with a fixed number of decimals from 10 Hz to 10 MHz, with significant digits outside.
+///
+/// ```
+/// use stridor_base::numbers::hertz;
+/// assert_eq!([hertz(1668.34, 1), hertz(1.5918e-4, 1), hertz(1e10, 1)], ["1668.3", "0.0001592", "1.0000e10"]);
+/// ```
+pub fn hertz(value: f64, decimals: usize) -> String {
+    let size = value.abs();
+    match size {
+        _ if size == 0.0 || (10.0..1e7).contains(&size) => minus(&format!("{value:.decimals$}")),
+        _ if size < 10.0 => significant(value, decimals + 3),
+        _ => significant(value, decimals + 4),
+    }
+}
+
+/// A growth rate \[1/s\] of an eigenvalue of size `lambda` \[1/s\], with its sign: two decimals, and significant digits where
+/// these would hide a rate above `round_off` · `lambda`.
+pub fn growth(value: f64, lambda: f64, round_off: f64) -> String {
+    let size = value.abs();
+    let text = match size {
+        _ if !value.is_finite() => return "–".into(),
+        _ if size >= 1e7 || (size < 0.1 && size > round_off * lambda) => significant(value, 3),
+        _ => minus(&format!("{value:.2}")),
+    };
+    if value > 0.0 { format!("+{text}") } else { text }
+}
+
+/// Coordinates or components with at most six significant digits: `[0.1, -0.0333333, 0.0]`.
+pub fn components(values: [f64; 3]) -> String {
+    format!("{:?}", values.map(|v| format!("{v:.5e}").parse::<f64>().unwrap_or(v)))
+}
+
+/// The minus sign of print, and none before a number that rounds to zero.
+pub fn minus(text: &str) -> String {
+    match text.strip_prefix('-') {
+        Some(digits) if digits.chars().all(|c| c == '0' || c == '.') => digits.to_string(),
+        Some(digits) => format!("−{}", digits.replace("e-", "e−")),
+        None => text.replace("e-", "e−"),
+    }
+}
+
+/// A value that a person gave: as short as it was written, at most six significant digits.
+pub fn given(value: f64) -> String {
+    let text = significant(value, 6);
+    match text.split_once('.') {
+        Some((whole, decimals)) if !text.contains('e') => {
+            let decimals = decimals.trim_end_matches('0');
+            if decimals.is_empty() { whole.to_string() } else { format!("{whole}.{decimals}") }
+        }
+        _ => text,
+    }
+}
+
+/// `value` with a fixed number of decimals; a dash when it is not finite.
+pub fn fixed(value: f64, decimals: usize) -> String {
+    if value.is_finite() { minus(&format!("{value:.decimals$}")) } else { "–".into() }
+}
+
+/// The same with a plus sign when positive.
+pub fn signed(value: f64, decimals: usize) -> String {
+    let text = fixed(value, decimals);
+    if value > 0.0 && value.is_finite() { format!("+{text}") } else { text }
+}
+
+/// An error measure as a power of ten with two digits, `–` when it is not finite.
+pub fn power(value: f64) -> String {
+    if value.is_finite() { format!("{value:.1e}") } else { "–".into() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_their_significant_digits() {
+        assert_eq!(significant(1668.34, 4), "1668");
+        assert_eq!(significant(0.012345, 3), "0.0123");
+        assert_eq!(significant(-3.04e-8, 3), "−3.04e−8");
+        assert_eq!(significant(123456.7, 2), "123457");
+        assert_eq!(significant(f64::NAN, 3), "–");
+    }
+
+    #[test]
+    fn frequencies_far_from_audio_keep_their_digits() {
+        assert_eq!([hertz(0.0, 1), hertz(974.84, 1), hertz(974.84, 0)], ["0.0", "974.8", "975"]);
+        assert_eq!([hertz(0.15918, 1), hertz(9.87654, 2), hertz(3.2e-7, 0)], ["0.1592", "9.8765", "3.20e−7"]);
+        assert_eq!([hertz(12_345_678_901.0, 1), hertz(9_999_999.0, 1)], ["1.2346e10", "9999999.0"]);
+        assert_eq!(hertz(f64::NAN, 1), "–");
+    }
+
+    #[test]
+    fn components_have_six_digits() {
+        assert_eq!(components([0.1, -1.0 / 30.0, 0.0]), "[0.1, -0.0333333, 0.0]");
+        assert_eq!(components([1e-12 / 3.0, f64::NAN, 1234567.0]), "[3.33333e-13, NaN, 1234570.0]");
+    }
+
+    #[test]
+    fn slow_growth_of_a_slow_mode_is_no_zero() {
+        assert_eq!([growth(111.84, 6e3, 1e-9), growth(-2.4e-13, 6e3, 1e-9)], ["+111.84", "0.00"]);
+        assert_eq!([growth(3.2e-6, 1e-3, 1e-9), growth(-3.2e-6, 1e-3, 1e-9)], ["+3.20e−6", "−3.20e−6"]);
+        assert_eq!(growth(4.5e8, 1e10, 1e-9), "+4.50e8");
+    }
+
+    #[test]
+    fn given_and_signed_numbers_are_short() {
+        assert_eq!(
+            (given(936.0), given(0.5), given(1e-9)),
+            ("936".into(), "0.5".into(), "1.00000e−9".into())
+        );
+        assert_eq!(fixed(-0.0004, 2), "0.00");
+        assert_eq!(signed(1.25, 1), "+1.2");
+        assert_eq!(signed(-1.26, 1), "−1.3");
+    }
+}

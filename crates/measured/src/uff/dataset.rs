@@ -1,0 +1,75 @@
+//! One dataset of a universal file.
+
+use super::record::{fields, whole};
+use std::borrow::Cow;
+use stridor_base::error::{Error, Fault, Result};
+
+/// A line with its number.
+pub(super) struct DatasetLine<'a> {
+    pub text: Cow<'a, str>,
+    pub number: usize,
+}
+
+/// One dataset.
+pub(super) struct Dataset<'a> {
+    /// Number of the type of dataset.
+    pub kind: u32,
+    /// Its lines of text.
+    pub lines: Vec<DatasetLine<'a>>,
+    /// Its numbers, where they are binary.
+    pub binary: Option<Binary<'a>>,
+    /// The file's name.
+    pub file: &'a str,
+    /// The number of its first line.
+    pub first: usize,
+}
+
+/// Binary numbers.
+pub(super) struct Binary<'a> {
+    pub data: &'a [u8],
+    /// Where they begin in the file.
+    pub at: usize,
+    pub big_endian: bool,
+    /// Bytes of an abscissa (0 where it is even), and of a value.
+    pub sizes: [usize; 2],
+}
+
+impl Dataset<'_> {
+    /// A fault of the line with this index.
+    pub fn fault(&self, index: usize, found: impl Into<String>, expected: impl Into<String>) -> Error {
+        let number = self.lines.get(index).map_or(self.first, |line| line.number);
+        let place = format!("{}:{number}, dataset {}", self.file, self.kind);
+        Error::input(Fault::new(place, found, expected))
+    }
+
+    /// The line with this index.
+    pub fn line(&self, index: usize) -> Result<&str> {
+        let cut = || self.fault(self.lines.len().saturating_sub(1), "the end of the dataset", "more lines");
+        self.lines.get(index).map(|line| &*line.text).ok_or_else(cut)
+    }
+
+    /// Whole numbers at the beginning of a line.
+    pub fn wholes<const N: usize>(&self, index: usize, widths: [usize; N]) -> Result<[i64; N]> {
+        let text = self.line(index)?;
+        let mut numbers = [0; N];
+        for (number, field) in numbers.iter_mut().zip(fields(text, &widths)) {
+            *number = whole(&field).ok_or_else(|| self.fault(index, shown(&field), "a whole number"))?;
+        }
+        Ok(numbers)
+    }
+
+    /// All numbers of a line.
+    pub fn numbers(&self, index: usize, widths: &[usize]) -> Result<Vec<f64>> {
+        let text = self.line(index)?;
+        super::record::numbers(text, widths)
+            .map_err(|field| self.fault(index, shown(&field), "a finite number"))
+    }
+}
+
+/// A field for a message.
+pub(super) fn shown(field: &str) -> String {
+    match field.trim() {
+        "" => "nothing".into(),
+        field => format!("`{}`", field.chars().take(40).collect::<String>().escape_debug()),
+    }
+}

@@ -1,0 +1,423 @@
+//! Check of a mesh: all faults at once, in the numbers of its file.
+//!
+//! Faults make an analysis wrong or impossible; warnings say that a result may be poor.
+
+use super::connected::lowest_connected;
+use super::quality::{dot, face_shape, minus, norm};
+use super::{Element, Mesh, Region};
+use std::collections::BTreeMap;
+use stridor_base::error::{Fault, Faults};
+
+/// The smallest corner angle \[degrees\] that passes without a warning.
+pub const POOR_ANGLE_DEG: f64 = 15.0;
+/// The largest longest-to-shortest edge that passes without a warning.
+pub const POOR_ASPECT: f64 = 8.0;
+/// The largest warp of a quadrilateral that passes without a warning.
+pub const POOR_WARP: f64 = 0.05;
+/// Nodes closer than this share of the bounding box's diagonal are coincident.
+const COINCIDENT: f64 = 1e-8;
+/// How many numbers a message lists before it says how many more there are.
+const LISTED: usize = 5;
+
+/// Faults and warnings of a mesh.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Diagnosis {
+    /// Faults: no analysis should take this mesh.
+    pub faults: Faults,
+    /// Warnings: results may be poor.
+    pub warnings: Vec<Fault>,
+}
+
+/// Examines a mesh: coordinates, unreferenced and coincident nodes, duplicate, degenerate, folded and inverted
+/// elements, their quality, and regions in several pieces.
+///
+/// ```
+/// use stridor_mesh::{self as mesh, generate};
+/// let diagnosis = mesh::diagnose(&generate::rig(&generate::RigSpec::small())?);
+/// assert!(diagnosis.faults.0.is_empty() && diagnosis.warnings.is_empty());
+/// # Ok::<(), stridor_base::error::Error>(())
+/// ```
+pub fn diagnose(mesh: &Mesh) -> Diagnosis {
+    let mut faults = Faults::new();
+    check_coordinates(mesh, &mut faults);
+    if !faults.0.is_empty() {
+        // Nothing else can be measured.
+        return Diagnosis { faults, warnings: Vec::new() };
+    }
+    let mut diagnosis = Diagnosis { faults, warnings: Vec::new() };
+    check_unreferenced(mesh, &mut diagnosis);
+    check_coincident(mesh, &mut diagnosis);
+    check_shapes(mesh, &mut diagnosis);
+    for region in &mesh.regions {
+        check_duplicates(mesh, region, &mut diagnosis.faults);
+        check_orientation(mesh, region, &mut diagnosis.faults);
+        check_pieces(mesh, region, &mut diagnosis.warnings);
+    }
+    diagnosis
+}
+
+/// `3 (line 12), 5 (line 14) and 312 more`.
+fn list(places: impl ExactSizeIterator<Item = String>) -> String {
+    let count = places.len();
+    let mut text = places.take(LISTED).collect::<Vec<_>>().join(", ");
+    if count > LISTED {
+        text += &format!(" and {} more", count - LISTED);
+    }
+    text
+}
+
+fn elements(mesh: &Mesh, which: &[usize]) -> String {
+    format!("element {}", list(which.iter().map(|e| mesh.element_place(*e))))
+}
+
+fn nodes(mesh: &Mesh, which: &[usize]) -> String {
+    format!("node {}", list(which.iter().map(|n| mesh.node_place(*n))))
+}
+
+fn check_coordinates(mesh: &Mesh, faults: &mut Faults) {
+    let bad: Vec<usize> =
+        (0..mesh.nodes.len()).filter(|n| !mesh.nodes[*n].iter().all(|c| c.is_finite())).collect();
+    if !bad.is_empty() {
+        let found = format!("coordinates that are infinite or not a number ({} nodes)", bad.len());
+        faults.push(Fault::new(nodes(mesh, &bad), found, "three finite numbers a node"));
+    }
+    let bad: Vec<usize> = (0..mesh.elements.len())
+        .filter(|e| mesh.elements[*e].nodes().iter().any(|n| *n >= mesh.nodes.len()))
+        .collect();
+    if !bad.is_empty() {
+        faults.push(Fault::new(elements(mesh, &bad), "a node that does not exist", "nodes of the mesh"));
+    }
+}
+
+fn check_unreferenced(mesh: &Mesh, diagnosis: &mut Diagnosis) {
+    let mut used = vec![false; mesh.nodes.len()];
+    mesh.elements.iter().flat_map(Element::nodes).for_each(|n| used[*n] = true);
+    let stray: Vec<usize> = (0..used.len()).filter(|n| !used[*n]).collect();
+    if !stray.is_empty() {
+        let found = format!("{} nodes that no element uses", stray.len());
+        let fault = Fault::new(nodes(mesh, &stray), found, "every node to belong to an element");
+        diagnosis
+            .faults
+            .push(fault.with_help("They would have no stiffness; remove them or name their elements"));
+    }
+    let unused = &mesh.origin.unused_nodes;
+    if !unused.is_empty() {
+        diagnosis.warnings.push(
+            Fault::new(
+                format!("node {}", list(unused.iter().map(u64::to_string))),
+                format!("{} nodes of the file that no element of a named physical group uses", unused.len()),
+                "none",
+            )
+            .with_help("They are left out; if a part is missing, give it a physical group"),
+        );
+    }
+}
+
+/// Nodes at the same place: a fault inside a region (a hidden crack), a warning between regions.
+fn check_coincident(mesh: &Mesh, diagnosis: &mut Diagnosis) {
+    let Some([low, high]) = bounds(mesh) else { return };
+    let tolerance = COINCIDENT * norm(minus(high, low));
+    if tolerance == 0.0 {
+        return;
+    }
+    // Along a skew direction hardly any but coincident nodes are neighbours.
+    let mut order: Vec<(f64, usize)> =
+        mesh.nodes.iter().enumerate().map(|(n, p)| (dot(*p, [0.577, 0.613, 0.541]), n)).collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let mut pairs: Vec<[usize; 2]> = Vec::new();
+    for (k, (s, n)) in order.iter().enumerate() {
+        let near = order[k + 1..].iter().take_while(|other| other.0 - s <= tolerance);
+        // One partner is enough: the nodes of a heap form a chain.
+        let partner =
+            near.map(|other| other.1).find(|m| norm(minus(mesh.nodes[*n], mesh.nodes[*m])) <= tolerance);
+        pairs.extend(partner.map(|m| [*n.min(&m), *n.max(&m)]));
+    }
+    if pairs.is_empty() {
+        return;
+    }
+    pairs.sort_unstable();
+    let mut regions_of: BTreeMap<usize, Vec<usize>> =
+        pairs.iter().flatten().map(|n| (*n, Vec::new())).collect();
+    for (r, region) in mesh.regions.iter().enumerate() {
+        for e in &region.elements {
+            for n in mesh.elements[*e].nodes() {
+                if let Some(regions) = regions_of.get_mut(n) {
+                    regions.push(r);
+                }
+            }
+        }
+    }
+    let (within, between): (Vec<_>, Vec<_>) =
+        pairs.iter().partition(|[i, j]| regions_of[i].iter().any(|r| regions_of[j].contains(r)));
+    let text = |pairs: &[[usize; 2]]| {
+        let tags = |p: &[usize; 2]| format!("{} and {}", mesh.node_place(p[0]), mesh.node_place(p[1]));
+        let more = pairs.len().saturating_sub(LISTED);
+        let first = pairs.iter().take(LISTED).map(tags).collect::<Vec<_>>().join("; ");
+        format!("nodes {first}{}", if more > 0 { format!("; and {more} more pairs") } else { String::new() })
+    };
+    if !within.is_empty() {
+        let fault = Fault::new(text(&within), "two nodes at the same place in one region", "one node");
+        diagnosis
+            .faults
+            .push(fault.with_help("The part would be torn open there; merge them (Gmsh: `Coherence Mesh;`)"));
+    }
+    if !between.is_empty() {
+        let fault =
+            Fault::new(text(&between), "two nodes at the same place in different regions", "one node");
+        diagnosis.warnings.push(fault.with_help("The parts are not joined there unless the case joins them"));
+    }
+}
+
+fn check_shapes(mesh: &Mesh, diagnosis: &mut Diagnosis) {
+    let (mut degenerate, mut folded, mut sharp, mut slender, mut warped) =
+        (vec![], vec![], vec![], vec![], vec![]);
+    let mut worst = [f64::INFINITY, 0.0, 0.0];
+    for (e, element) in mesh.elements.iter().enumerate() {
+        let n = element.nodes();
+        let repeated = (1..n.len()).any(|i| n[..i].contains(&n[i]));
+        if repeated {
+            degenerate.push(e);
+            continue;
+        }
+        if let Element::Line([i, j]) = element
+            && mesh.nodes[*i] == mesh.nodes[*j]
+        {
+            degenerate.push(e);
+        }
+        let Some(shape) = face_shape(mesh, element) else { continue };
+        if shape.area <= 1e-6 * shape.edges[1].powi(2) {
+            degenerate.push(e);
+            continue;
+        }
+        if shape.convexity <= 0.0 {
+            folded.push(e);
+            continue;
+        }
+        let aspect = shape.edges[1] / shape.edges[0];
+        worst = [worst[0].min(shape.angles[0].to_degrees()), worst[1].max(aspect), worst[2].max(shape.warp)];
+        for (poor, which) in [
+            (shape.angles[0].to_degrees() < POOR_ANGLE_DEG, &mut sharp),
+            (aspect > POOR_ASPECT, &mut slender),
+            (shape.warp > POOR_WARP, &mut warped),
+        ] {
+            if poor {
+                which.push(e);
+            }
+        }
+    }
+    if !degenerate.is_empty() {
+        let found = format!("{} elements without length or area", degenerate.len());
+        diagnosis.faults.push(Fault::new(
+            elements(mesh, &degenerate),
+            found,
+            "distinct nodes, not in line, in order around the element",
+        ));
+    }
+    if !folded.is_empty() {
+        let found = format!("{} quadrilaterals that are folded or not convex", folded.len());
+        diagnosis.faults.push(Fault::new(
+            elements(mesh, &folded),
+            found,
+            "corners in order around the element",
+        ));
+    }
+    let mut warn = |which: Vec<usize>, found: String, expected: String| {
+        if !which.is_empty() {
+            diagnosis.warnings.push(Fault::new(elements(mesh, &which), found, expected));
+        }
+    };
+    let found = format!("{} sharp elements, smallest angle {:.1}°", sharp.len(), worst[0]);
+    warn(sharp, found, format!("angles above {POOR_ANGLE_DEG}°"));
+    let found = format!("{} slender elements, edges in the ratio {:.1}", slender.len(), worst[1]);
+    warn(slender, found, format!("a ratio below {POOR_ASPECT}"));
+    let found = format!("{} warped quadrilaterals, by {:.3} of an edge", warped.len(), worst[2]);
+    warn(warped, found, format!("at most {POOR_WARP}"));
+}
+
+fn check_duplicates(mesh: &Mesh, region: &Region, faults: &mut Faults) {
+    let mut keys: Vec<([usize; 4], usize)> = region
+        .elements
+        .iter()
+        .map(|e| {
+            let mut key = [usize::MAX; 4];
+            let n = mesh.elements[*e].nodes();
+            key[..n.len()].copy_from_slice(n);
+            key.sort_unstable();
+            (key, *e)
+        })
+        .collect();
+    keys.sort_unstable();
+    let mut twice: Vec<usize> = keys.windows(2).filter(|w| w[0].0 == w[1].0).map(|w| w[1].1).collect();
+    twice.sort_unstable();
+    if !twice.is_empty() {
+        let found =
+            format!("{} elements on the nodes of another one in region `{}`", twice.len(), region.name);
+        faults.push(Fault::new(elements(mesh, &twice), found, "each element once"));
+    }
+}
+
+/// Two faces that are turned alike run along their common edge in opposite directions.
+fn check_orientation(mesh: &Mesh, region: &Region, faults: &mut Faults) {
+    if region.dimension != 2 {
+        return;
+    }
+    let mut edges: Vec<([usize; 2], usize, bool)> = Vec::with_capacity(4 * region.elements.len());
+    for e in &region.elements {
+        let n = mesh.elements[*e].nodes();
+        edges.extend((0..n.len()).map(|i| {
+            let (a, b) = (n[i], n[(i + 1) % n.len()]);
+            ([a.min(b), a.max(b)], *e, a < b)
+        }));
+    }
+    edges.sort_unstable();
+    let mut clashing: Vec<[usize; 2]> = edges
+        .chunk_by(|a, b| a.0 == b.0)
+        .filter_map(|faces| match faces {
+            // Where three or more plates meet there is no common side.
+            [(_, e, up), (_, f, also_up)] if e != f && up == also_up => Some([*e, *f]),
+            _ => None,
+        })
+        .collect();
+    clashing.sort_unstable();
+    if let Some([e, f]) = clashing.first() {
+        let place = format!("elements {} and {}", mesh.element_place(*e), mesh.element_place(*f));
+        let found = format!(
+            "neighbours turned opposite ways in region `{}` ({} edges like this)",
+            region.name,
+            clashing.len()
+        );
+        let fault = Fault::new(place, found, "one side up for the whole region");
+        faults.push(fault.with_help("In Gmsh, `ReverseMesh Surface{…};` turns a surface's elements over"));
+    }
+}
+
+fn check_pieces(mesh: &Mesh, region: &Region, warnings: &mut Vec<Fault>) {
+    let pieces = count_pieces(mesh, region);
+    if region.dimension > 0 && pieces > 1 {
+        warnings.push(
+            Fault::new(
+                format!("region `{}`", region.name),
+                format!("{pieces} pieces that share no node"),
+                "one",
+            )
+            .with_help("Where they should be one part, merge their nodes"),
+        );
+    }
+}
+
+/// The number of pieces of a region that share no node.
+pub(super) fn count_pieces(mesh: &Mesh, region: &Region) -> usize {
+    let elements = region.elements.iter().map(|e| mesh.elements[*e].nodes());
+    let lowest = lowest_connected(mesh.nodes.len(), elements);
+    mesh.region_nodes(region).into_iter().filter(|n| lowest[*n] == *n).count()
+}
+
+/// The corners of the bounding box; `None` for a mesh without nodes.
+pub(super) fn bounds(mesh: &Mesh) -> Option<[[f64; 3]; 2]> {
+    let first = *mesh.nodes.first()?;
+    Some(mesh.nodes.iter().fold([first; 2], |[low, high], p| {
+        [[0, 1, 2].map(|k| low[k].min(p[k])), [0, 1, 2].map(|k| high[k].max(p[k]))]
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Origin;
+    use crate::generate::{Faces, structured_plate};
+
+    /// A 2 × 2 plate of quadrilaterals whose file numbers nodes from 101 and elements from 501.
+    fn plate() -> Mesh {
+        let mut mesh = structured_plate(2.0, 2.0, 2, 2, Faces::Quadrilaterals).unwrap();
+        mesh.origin = Origin {
+            node_tags: (101..101 + mesh.nodes.len() as u64).collect(),
+            element_tags: (501..501 + mesh.elements.len() as u64).collect(),
+            ..Origin::default()
+        };
+        mesh
+    }
+
+    fn one_fault(mesh: &Mesh) -> String {
+        let diagnosis = diagnose(mesh);
+        assert_eq!(diagnosis.faults.0.len(), 1, "{}", diagnosis.faults);
+        diagnosis.faults.to_string()
+    }
+
+    #[test]
+    fn a_sound_plate_has_nothing_to_say() {
+        assert_eq!(diagnose(&plate()), Diagnosis::default());
+    }
+
+    #[test]
+    fn each_fault_is_found_and_named_by_the_tags_of_the_file() {
+        let mut mesh = plate();
+        mesh.nodes[3][1] = f64::NAN;
+        mesh.nodes[4][0] = f64::INFINITY;
+        assert!(one_fault(&mesh).contains("node 104, 105"));
+
+        let mut mesh = plate();
+        mesh.elements[2] = Element::Quadrilateral([3, 4, 7, 99]);
+        assert!(one_fault(&mesh).contains("element 503"));
+
+        let mut mesh = plate();
+        mesh.nodes.push([5.0, 0.0, 0.0]);
+        mesh.origin.node_tags.push(777);
+        assert!(one_fault(&mesh).contains("node 777"));
+
+        let mut mesh = plate();
+        let repeated = mesh.elements[0].clone();
+        mesh.elements.push(repeated);
+        mesh.origin.element_tags.push(900);
+        let last = mesh.elements.len() - 1;
+        mesh.regions[0].elements.push(last);
+        assert!(diagnose(&mesh).faults.to_string().contains("element 900: found 1 elements on the nodes"));
+
+        let mut mesh = plate();
+        mesh.nodes[4] = mesh.nodes[3];
+        let text = diagnose(&mesh).faults.to_string();
+        assert!(text.contains("nodes 104 and 105") && text.contains("same place in one region"), "{text}");
+
+        let mut mesh = plate();
+        mesh.elements[1] = Element::Quadrilateral([1, 4, 5, 2]);
+        assert!(one_fault(&mesh).contains("turned opposite ways"));
+
+        let mut mesh = plate();
+        mesh.nodes[4] = [-0.7, -0.7, 0.0];
+        assert!(one_fault(&mesh).contains("element 501: found 1 quadrilaterals that are folded"));
+
+        let mut mesh = plate();
+        mesh.elements[1] = Element::Quadrilateral([1, 2, 4, 5]);
+        assert!(
+            diagnose(&mesh)
+                .faults
+                .to_string()
+                .contains("element 502: found 1 elements without length or area")
+        );
+    }
+
+    #[test]
+    fn poor_shapes_and_pieces_are_warnings() {
+        let mut mesh = plate();
+        mesh.nodes.iter_mut().for_each(|p| p[1] *= 0.1);
+        mesh.nodes[4][2] = 0.2;
+        let diagnosis = diagnose(&mesh);
+        assert!(diagnosis.faults.0.is_empty());
+        let text = Faults(diagnosis.warnings).to_string();
+        assert!(text.contains("slender") && text.contains("warped"), "{text}");
+
+        let mut mesh = plate();
+        let mut far = plate();
+        far.nodes.iter_mut().for_each(|p| p[0] += 10.0);
+        mesh.append(far);
+        let moved = mesh.regions.remove(5).elements;
+        mesh.regions[0].elements.extend(moved);
+        let text = Faults(diagnose(&mesh).warnings).to_string();
+        assert!(text.contains("`plate`: found 2 pieces"), "{text}");
+    }
+
+    #[test]
+    fn long_lists_are_cut() {
+        let numbers: Vec<String> = (1..=9).map(|k| k.to_string()).collect();
+        assert_eq!(list(numbers.into_iter()), "1, 2, 3, 4, 5 and 4 more");
+    }
+}

@@ -1,0 +1,162 @@
+//! Summary of a mesh in a few lines.
+
+use super::check::{Diagnosis, bounds, count_pieces, diagnose};
+use super::quality::{face_shape, minus, norm};
+use super::{Element, Mesh};
+use std::fmt;
+
+/// Summary of a mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Info {
+    /// Number of nodes.
+    pub n_nodes: usize,
+    /// Number of points, lines, triangles, quadrilaterals.
+    pub n_elements: [usize; 4],
+    /// Corners of the bounding box \[m\]; zero without nodes.
+    pub bounds: [[f64; 3]; 2],
+    /// Summary of each region.
+    pub regions: Vec<RegionInfo>,
+    /// Smallest corner angle of all faces \[degrees\]; `None` without faces.
+    pub smallest_angle_deg: Option<f64>,
+    /// Faults and warnings.
+    pub diagnosis: Diagnosis,
+}
+
+/// Summary of a region.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RegionInfo {
+    /// Its name.
+    pub name: String,
+    /// 0 points, 1 lines, 2 faces.
+    pub dimension: usize,
+    /// Number of its elements.
+    pub n_elements: usize,
+    /// Number of the nodes they use.
+    pub n_nodes: usize,
+    /// Pieces that share no node.
+    pub pieces: usize,
+    /// Its length \[m\] or area \[m²\]; 0 for points.
+    pub measure: f64,
+    /// Shortest and longest edge \[m\]; zero for points.
+    pub edges: [f64; 2],
+}
+
+impl Info {
+    /// Sums up `mesh`. Indices out of range are left to the diagnosis: such a mesh shows its faults and no regions.
+    pub fn of(mesh: &Mesh) -> Self {
+        let count = |f: fn(&Element) -> bool| mesh.elements.iter().filter(|e| f(e)).count();
+        let broken = mesh.elements.iter().any(|e| e.nodes().iter().any(|n| *n >= mesh.nodes.len()));
+        let angles = mesh.elements.iter().filter(|_| !broken).filter_map(|e| face_shape(mesh, e));
+        Info {
+            n_nodes: mesh.nodes.len(),
+            n_elements: [
+                count(|e| matches!(e, Element::Point(_))),
+                count(|e| matches!(e, Element::Line(_))),
+                count(|e| matches!(e, Element::Triangle(_))),
+                count(|e| matches!(e, Element::Quadrilateral(_))),
+            ],
+            bounds: bounds(mesh).unwrap_or_default(),
+            regions: if broken { vec![] } else { region_infos(mesh) },
+            smallest_angle_deg: angles.map(|s| s.angles[0].to_degrees()).min_by(f64::total_cmp),
+            diagnosis: diagnose(mesh),
+        }
+    }
+}
+
+fn region_infos(mesh: &Mesh) -> Vec<RegionInfo> {
+    let info = |region: &super::Region| {
+        let mut measure = 0.0;
+        let mut edges = [f64::INFINITY, 0.0];
+        for e in &region.elements {
+            let element = &mesh.elements[*e];
+            let shape = match element {
+                Element::Line([i, j]) => {
+                    let length = norm(minus(mesh.nodes[*i], mesh.nodes[*j]));
+                    Some((length, [length; 2]))
+                }
+                _ => face_shape(mesh, element).map(|s| (s.area, s.edges)),
+            };
+            if let Some((size, [short, long])) = shape {
+                measure += size;
+                edges = [edges[0].min(short), edges[1].max(long)];
+            }
+        }
+        RegionInfo {
+            name: region.name.clone(),
+            dimension: region.dimension,
+            n_elements: region.elements.len(),
+            n_nodes: mesh.region_nodes(region).len(),
+            pieces: count_pieces(mesh, region),
+            measure,
+            edges: if edges[1] > 0.0 { edges } else { [0.0; 2] },
+        }
+    };
+    mesh.regions.iter().map(info).collect()
+}
+
+impl fmt::Display for Info {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [points, lines, triangles, quads] = self.n_elements;
+        writeln!(
+            f,
+            "{} nodes, {triangles} triangles, {quads} quadrilaterals, {lines} lines, {points} points",
+            self.n_nodes
+        )?;
+        let [low, high] = self.bounds;
+        let mm = |k: usize| format!("{} = {:.3} … {:.3}", ["x", "y", "z"][k], 1e3 * low[k], 1e3 * high[k]);
+        writeln!(f, "bounding box (mm): {}, {}, {}", mm(0), mm(1), mm(2))?;
+        if let Some(angle) = self.smallest_angle_deg {
+            writeln!(f, "smallest angle: {angle:.1}°")?;
+        }
+        let width = self.regions.iter().map(|r| r.name.chars().count()).max().unwrap_or(0).max(6);
+        writeln!(
+            f,
+            "{:width$}  kind     elements    nodes  pieces  length or area     edges (mm)",
+            "region"
+        )?;
+        for r in &self.regions {
+            let kind = ["points", "lines", "faces"].get(r.dimension).copied().unwrap_or("");
+            let measure = match r.dimension {
+                1 => format!("{:.3} mm", 1e3 * r.measure),
+                2 => format!("{:.2} mm²", 1e6 * r.measure),
+                _ => String::new(),
+            };
+            let edges = if r.dimension > 0 {
+                format!("{:.3} … {:.3}", 1e3 * r.edges[0], 1e3 * r.edges[1])
+            } else {
+                String::new()
+            };
+            let line = format!(
+                "{:width$}  {kind:7} {:9} {:8} {:7}  {measure:>14}  {edges:>13}",
+                r.name, r.n_elements, r.n_nodes, r.pieces
+            );
+            writeln!(f, "{}", line.trim_end())?;
+        }
+        for fault in &self.diagnosis.faults.0 {
+            writeln!(f, "fault: {fault}")?;
+        }
+        for warning in &self.diagnosis.warnings {
+            writeln!(f, "warning: {warning}")?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generate::{Faces, structured_plate};
+
+    #[test]
+    fn the_sums_of_a_plate_are_its_area_and_perimeter() {
+        let mesh = structured_plate(2.0, 1.0, 4, 2, Faces::Triangles).unwrap();
+        let info = Info::of(&mesh);
+        assert_eq!((info.n_nodes, info.n_elements), (15, [0, 12, 16, 0]));
+        assert!((info.regions[0].measure - 2.0).abs() < 1e-14);
+        assert!((info.regions[1..].iter().map(|r| r.measure).sum::<f64>() - 6.0).abs() < 1e-14);
+        assert_eq!(info.regions[0].edges, [0.5, 0.5f64.hypot(0.5)]);
+        assert!((info.smallest_angle_deg.unwrap() - 45.0).abs() < 1e-12);
+        let text = info.to_string();
+        assert!(text.contains("15 nodes") && text.contains("plate_edge_x_min"), "{text}");
+    }
+}
