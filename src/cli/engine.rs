@@ -79,7 +79,7 @@ mod on_ranks {
         match start(&VERSION, method)? {
             Role::Ended => Ok(SUCCESS),
             Role::Lead(cluster) => {
-                let done = work(&Engine::new(Arc::new(Arc::clone(&cluster))));
+                let done = work(&Engine::new(Arc::new(cluster.clone())));
                 cluster.end();
                 done
             }

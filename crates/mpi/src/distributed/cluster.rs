@@ -23,9 +23,12 @@ pub enum RealModesMethod {
     KrylovSchur,
 }
 
-/// All ranks, led by this one.
+/// All ranks, led by this one. Clones lead the same ranks.
+#[derive(Debug, Clone)]
+pub struct Cluster(Arc<Ranks>);
+
 #[derive(Debug)]
-pub struct Cluster {
+struct Ranks {
     size: usize,
     method: RealModesMethod,
     /// None once it has ended.
@@ -46,7 +49,7 @@ impl State {
     }
 }
 
-impl Drop for Cluster {
+impl Drop for Ranks {
     fn drop(&mut self) {
         // Where the analysis has not ended it has failed.
         self.end();
@@ -56,11 +59,18 @@ impl Drop for Cluster {
 impl Cluster {
     pub(super) fn new(world: World, method: RealModesMethod) -> Self {
         let size = world.size();
-        Cluster { size, method, state: Mutex::new(Some(State { rank: Rank::new(world), next: 0 })) }
+        let state = Mutex::new(Some(State { rank: Rank::new(world), next: 0 }));
+        Cluster(Arc::new(Ranks { size, method, state }))
     }
 
     /// Ends the other ranks, and MPI; once.
     pub fn end(&self) {
+        self.0.end();
+    }
+}
+
+impl Ranks {
+    fn end(&self) {
         if let Some(state) = self.lock().take() {
             let _ = Command::announce(state.rank.world(), Some(Command::End));
         }
@@ -81,16 +91,16 @@ impl Cluster {
     }
 }
 
-impl Backend for Arc<Cluster> {
+impl Backend for Cluster {
     fn name(&self) -> &'static str {
-        match self.method {
+        match self.0.method {
             RealModesMethod::BlockLanczos => engine_names::SLEPC,
             RealModesMethod::KrylovSchur => engine_names::SLEPC_KRYLOV_SCHUR,
         }
     }
 
     fn ranks(&self) -> usize {
-        self.size
+        self.0.size
     }
 
     fn check_order(&self, n: usize) -> Result<()> {
@@ -99,9 +109,9 @@ impl Backend for Arc<Cluster> {
             let expected = format!("at most {}", i32::MAX);
             return Err(Error::input(Fault::new(option, dofs, expected)));
         }
-        if n < self.size {
+        if n < self.0.size {
             let expected = format!("at most {n}, for the model has {dofs}");
-            let fault = Fault::new(option, format!("{} ranks", self.size), expected);
+            let fault = Fault::new(option, format!("{} ranks", self.0.size), expected);
             return Err(Error::input(fault.with_help("Start fewer ranks")));
         }
         Ok(())
@@ -114,13 +124,13 @@ impl Backend for Arc<Cluster> {
     ) -> Result<Arc<dyn DistributedPattern>> {
         let n = pattern.ncols();
         self.check_order(n)?;
-        let shares = Arc::new(Shares::new(pattern, self.size));
+        let shares = Arc::new(Shares::new(pattern, self.0.size));
         let place = place.iter().map(|p| *p as i32 + 1).collect();
-        let id = self.with(|state| {
+        let id = self.0.with(|state| {
             let id = state.number();
             let rank = &mut state.rank;
             Command::announce(rank.world(), Some(Command::Pattern { id, n: n as u64 }))?;
-            for other in 1..self.size {
+            for other in 1..self.0.size {
                 let Entries { rows, columns, .. } = shares.entries(pattern, other, Vec::new());
                 rank.world().send(&rows, other)?;
                 rank.world().send(&columns, other)?;
@@ -128,12 +138,12 @@ impl Backend for Arc<Cluster> {
             rank.add_pattern(id, shares.entries(pattern, 0, place));
             Ok(id)
         })?;
-        Ok(Arc::new(SharedPattern { own: Numbered { cluster: Arc::clone(self), id }, shares }))
+        Ok(Arc::new(SharedPattern { own: Numbered { cluster: self.clone(), id }, shares }))
     }
 
     fn quadratic(&self, problem: &QuadraticProblem<'_>) -> Result<Box<dyn QuadraticSolver>> {
         let n = problem.mass.ncols();
-        let shares = Shares::new(problem.couples.symbolic(), self.size);
+        let shares = Shares::new(problem.couples.symbolic(), self.0.size);
         let stiffness = transposed(&problem.stiffness);
         let damping = transposed(&problem.damping);
         let (basis, coefficients) = problem.low_rank;
@@ -150,12 +160,12 @@ impl Backend for Arc<Cluster> {
                 .collect(),
             coefficients: coefficients.to_vec(),
         };
-        let id = self.with(|state| {
+        let id = self.0.with(|state| {
             let id = state.number();
             let rank = &mut state.rank;
             let world = rank.world();
             Command::announce(world, Some(Command::Quadratic { id, n: n as u64 }))?;
-            for other in 1..self.size {
+            for other in 1..self.0.size {
                 let QuadraticPart { matrices, basis, coefficients, .. } = part(other);
                 matrices.iter().try_for_each(|rows| send_rows(world, rows, other))?;
                 world.send(&basis, other)?;
@@ -163,7 +173,7 @@ impl Backend for Arc<Cluster> {
             }
             rank.add_quadratic(id, part(0)).map(|()| id)
         })?;
-        Ok(Box::new(SharedQuadratic { own: Numbered { cluster: Arc::clone(self), id }, n }))
+        Ok(Box::new(SharedQuadratic { own: Numbered { cluster: self.clone(), id }, n }))
     }
 }
 
@@ -175,14 +185,14 @@ fn transposed<T: faer::traits::ComplexField>(a: &SparseColMat<Index, T>) -> Spar
 /// What all ranks hold a part of, by its number; they forget it when this is dropped.
 #[derive(Debug)]
 struct Numbered {
-    cluster: Arc<Cluster>,
+    cluster: Cluster,
     id: u64,
 }
 
 impl Drop for Numbered {
     fn drop(&mut self) {
         // Where the ranks have ended there is nothing left to forget.
-        let _ = self.cluster.with(|State { rank, .. }| {
+        let _ = self.cluster.0.with(|State { rank, .. }| {
             Command::announce(rank.world(), Some(Command::Free(self.id)))?;
             rank.free(self.id);
             Ok(())
@@ -199,11 +209,11 @@ struct SharedPattern {
 
 impl SharedPattern {
     fn factorize_as(&self, a: &SparseMatrix, keep: bool) -> Result<(u64, Factorized)> {
-        self.own.cluster.with(|state| {
+        self.own.cluster.0.with(|state| {
             let (pattern, id) = (self.own.id, state.number());
             let (kept, rank) = (keep.then_some(id), &mut state.rank);
             Command::announce(rank.world(), Some(Command::Factorize { pattern, kept }))?;
-            for other in 1..self.own.cluster.size {
+            for other in 1..self.own.cluster.0.size {
                 rank.world().send(&self.shares.values(a, other), other)?;
             }
             rank.factorize(pattern, kept, self.shares.values(a, 0)).map(|figures| (id, figures))
@@ -214,7 +224,7 @@ impl SharedPattern {
 impl DistributedPattern for SharedPattern {
     fn factorize(&self, a: &SparseMatrix, symbolic: SymbolicFactor) -> Result<Box<dyn SymmetricFactor>> {
         let (id, figures) = self.factorize_as(a, true)?;
-        let own = Numbered { cluster: Arc::clone(&self.own.cluster), id };
+        let own = Numbered { cluster: self.own.cluster.clone(), id };
         Ok(Box::new(SharedFactor { own, n: a.ncols(), figures, symbolic, shares: Arc::clone(&self.shares) }))
     }
 
@@ -233,7 +243,7 @@ struct SharedQuadratic {
 impl QuadraticSolver for SharedQuadratic {
     fn nearest(&self, shift: c64, count: usize, tolerance: f64) -> Result<Vec<c64>> {
         let (quadratic, count) = (self.own.id, count.min(2 * self.n));
-        self.own.cluster.with(|State { rank, .. }| {
+        self.own.cluster.0.with(|State { rank, .. }| {
             let command = Command::Nearest { quadratic, shift, count: count as u64, tolerance };
             Command::announce(rank.world(), Some(command))?;
             rank.nearest(quadratic, shift, count, tolerance)
@@ -266,7 +276,7 @@ impl SymmetricFactor for SharedFactor {
             let some = rhs.as_mut().subcols_mut(start, count);
             columns.clear();
             some.as_ref().col_iter().for_each(|column| columns.extend(column.iter()));
-            let solved = self.own.cluster.with(|State { rank, .. }| {
+            let solved = self.own.cluster.0.with(|State { rank, .. }| {
                 let command = Command::Solve { factor: self.own.id, count: count as u64 };
                 Command::announce(rank.world(), Some(command))?;
                 let solved = rank.solve(self.own.id, &mut columns, count);
@@ -289,7 +299,7 @@ impl SymmetricFactor for SharedFactor {
     }
 
     fn eigensolver(&self) -> Option<&dyn EigenSolver> {
-        (self.own.cluster.method == RealModesMethod::KrylovSchur).then_some(self)
+        (self.own.cluster.0.method == RealModesMethod::KrylovSchur).then_some(self)
     }
 
     fn symbolic(&self) -> SymbolicFactor {
@@ -313,9 +323,9 @@ impl EigenSolver for SharedFactor {
         count: usize,
         tolerance: f64,
     ) -> Result<(Vec<f64>, Mat<f64>)> {
-        let (factor, ranks) = (self.own.id, self.own.cluster.size);
+        let (factor, ranks) = (self.own.id, self.own.cluster.0.size);
         let rows = |rank: usize| pencil.map(|a| self.shares.rows_of_transpose(a, rank));
-        let (values, columns) = self.own.cluster.with(|State { rank, .. }| {
+        let (values, columns) = self.own.cluster.0.with(|State { rank, .. }| {
             let command = Command::Eigenpairs { factor, shift, count: count as u64, tolerance };
             Command::announce(rank.world(), Some(command))?;
             for other in 1..ranks {

@@ -23,14 +23,13 @@ pub use deal::Deal;
 
 use crate::slepc::World;
 use rank::serve;
-use std::sync::Arc;
 use stridor_base::error::{Error, Result};
 
 /// What this process is to do.
 #[derive(Debug)]
 pub enum Role {
     /// Rank 0: run the analysis.
-    Lead(Arc<Cluster>),
+    Lead(Cluster),
     /// Another rank, whose work is over. It ends with exit code 0 whatever the result: at another one `mpirun` ends rank 0, which may
     /// not have written its message yet.
     Ended,
@@ -44,7 +43,7 @@ pub fn start(build: &str, method: RealModesMethod) -> Result<Role> {
     let world = World::start()?;
     let same = same_build(&world, build)?;
     match world.rank() {
-        0 => Ok(Role::Lead(Arc::new(Cluster::new(world, method)))),
+        0 => Ok(Role::Lead(Cluster::new(world, method))),
         _ if !same => Ok(Role::Ended),
         _ => serve(world).map(|()| Role::Ended),
     }
