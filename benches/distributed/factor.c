@@ -1,4 +1,4 @@
-/* Factorises K - s M of a block of 8-node bricks by MUMPS with the settings of the distributed engine (src/slepc), and
+/* Factorises K - s M of a block of 8-node bricks by MUMPS with the settings of the distributed engine (crates/mpi), and
  * writes what it took as one line of JSON:
  *
  *     mpirun -n P factor NX NY NZ RING WHAT

@@ -1,4 +1,4 @@
-/* Makes calls of a program to the system fail: built as a shared library by tests/faults.rs, loaded by LD_PRELOAD, Linux only.
+/* Makes calls of a program to the system fail: built as a shared library by tests/processes/faults.rs, loaded by LD_PRELOAD, Linux only.
  *
  *   FAULT_CALLS   which calls are counted, from main() on:
  *                 writes: those that write to, make, rename or delete files below the folder FAULT_BELOW;

@@ -1,8 +1,4 @@
 //! The program on a small rig in a temporary folder.
-#![allow(dead_code)]
-
-#[path = "program.rs"]
-mod program;
 
 use std::path::Path;
 use std::process::Output;
@@ -74,7 +70,7 @@ band = [0, "1.5 kHz"]
 "#;
 
 pub fn stridor(folder: &Path, arguments: &[&str]) -> Output {
-    program::command(folder, arguments).output().expect("the binary runs")
+    crate::program::command(folder, arguments).output().expect("the binary runs")
 }
 
 pub fn text(bytes: &[u8]) -> String {

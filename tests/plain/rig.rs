@@ -14,7 +14,7 @@ use stridor::stability::{ComplexMode, complex_modes};
 
 /// The reference case with a large hub and on a mesh so coarse that dense algebra can follow.
 fn coarse_rig() -> Case {
-    let text = include_str!("../validation/rig-convergence/case.toml")
+    let text = include_str!("../../validation/rig-convergence/case.toml")
         .replace("contact_size = \"0.4 mm\"", "hub_radius = \"50 mm\"\ncontact_size = \"12 mm\"")
         .replace("contact_radius = \"2 mm\"", "contact_radius = \"12 mm\"")
         .replace("disc_size = \"3 mm\"", "disc_size = \"30 mm\"")

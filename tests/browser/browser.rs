@@ -1,12 +1,8 @@
 //! `report.html` in headless Chromium: on wide and narrow screens, light and dark, and on paper; the shapes move, the sound
 //! decodes, charts show values. `.ci/browser` installs the browser and runs these tests.
 
-#[path = "common/program.rs"]
-mod program;
-#[path = "common/python.rs"]
-mod python;
-
-use program::command;
+use crate::program::command;
+use crate::python;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -1,8 +1,6 @@
 //! Mindlin–Reissner plates: patch tests, closed forms of thick plates, three-dimensional elasticity, no locking.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use nalgebra::{DMatrix, DVector, Rotation3, Vector3};
 use puruspe::{In, Jn};
 use std::f64::consts::{PI, TAU};

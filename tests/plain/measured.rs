@@ -1,11 +1,8 @@
 //! Universal files both ways with pyuff, an independent reader and writer (Python), which this test installs below the
 //! target folder.
 
-mod common;
-#[path = "common/python.rs"]
-mod python;
-
-use common::samples;
+use crate::common::samples;
+use crate::python;
 use std::path::Path;
 use std::process::Command;
 use stridor::linalg::c64;

@@ -10,9 +10,7 @@
 //!
 //! Chapters that need Gmsh are run by `.ci/guide`, which installs it.
 
-#[path = "common/python.rs"]
-mod python;
-
+use crate::python;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use tempfile::TempDir;

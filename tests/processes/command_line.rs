@@ -1,9 +1,6 @@
 //! The program as its users meet it: runs the binary in a temporary folder.
 
-#[path = "common/small_rig.rs"]
-mod small_rig;
-
-use small_rig::{RIG, folder_with, refused, stridor, text};
+use crate::small_rig::{RIG, folder_with, refused, stridor, text};
 use std::path::Path;
 use std::process::Command;
 use tempfile::TempDir;
@@ -444,7 +441,7 @@ fn a_reader_that_goes_away_is_no_error() {
 
 #[test]
 fn a_calibrated_case_is_a_case() {
-    let case = include_str!("../validation/calibrate-disc/case.toml")
+    let case = include_str!("../../validation/calibrate-disc/case.toml")
         .replace("radial = 48", "radial = 5")
         .replace("around = 144", "around = 24")
         .replace("2600]", "2700]")
@@ -469,7 +466,7 @@ fn a_calibrated_case_is_a_case() {
 
 #[test]
 fn a_search_leaves_a_case_and_a_page() {
-    let case = include_str!("../validation/hoffmann/case.toml");
+    let case = include_str!("../../validation/hoffmann/case.toml");
     let folder = folder_with(case);
     let search = "title = \"t\"\nsource = \"s\"\ncase = \"rig.toml\"\nevaluations = 60\n\
                   [parameter.friction]\npath = \"contact.belt.friction.mu0\"\nbetween = [0, 1]\n\

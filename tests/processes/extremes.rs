@@ -2,7 +2,7 @@
 //! does not refuse.
 //!
 //! The tests that always run take a sample. All of it, which takes hours, is run by
-//! `EXTREMES=FILTER cargo test --release --test extremes -- --ignored --nocapture`: the cases whose path has FILTER in it.
+//! `EXTREMES=FILTER cargo test --release --test processes extremes -- --ignored --nocapture`: the cases whose path has FILTER in it.
 
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash, Hasher};

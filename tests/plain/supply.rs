@@ -18,8 +18,10 @@ fn allowed() -> BTreeSet<String> {
     list.iter().map(|licence| licence.as_str().expect("a name").to_string()).collect()
 }
 
-/// The packages of this repository.
-const OURS: [&str; 2] = [env!("CARGO_PKG_NAME"), concat!(env!("CARGO_PKG_NAME"), "-python")];
+/// Whether a package is of this repository.
+fn ours(name: &str) -> bool {
+    name == "stridor" || name.starts_with("stridor-")
+}
 
 /// Whether the SPDX expression can be met by allowed licences: of every part one alternative.
 fn acceptable(expression: &str, allowed: &BTreeSet<String>) -> bool {
@@ -44,7 +46,7 @@ fn every_dependency_is_from_crates_io_under_an_allowed_licence() {
     assert!(metadata.status.success(), "{}", String::from_utf8_lossy(&metadata.stderr));
     let metadata: serde_json::Value = serde_json::from_slice(&metadata.stdout).expect("JSON");
     let (packages, allowed) = (metadata["packages"].as_array().expect("a list"), allowed());
-    let of_others = packages.iter().filter(|package| !OURS.iter().any(|own| package["name"] == *own));
+    let of_others = packages.iter().filter(|package| !package["name"].as_str().is_some_and(ours));
     let mut wrong = Vec::new();
     for package in of_others {
         if package["source"] != CRATES_IO {
@@ -62,7 +64,7 @@ fn every_dependency_is_from_crates_io_under_an_allowed_licence() {
 fn every_locked_package_has_a_checksum() {
     let lock: toml::Table = text_of("Cargo.lock").parse().expect("TOML");
     for package in lock["package"].as_array().expect("a list") {
-        let ours = package["name"].as_str().is_some_and(|name| OURS.contains(&name));
+        let ours = package["name"].as_str().is_some_and(ours);
         assert!(ours || package.get("checksum").is_some(), "{package} is locked without a checksum");
         assert!(ours || package["source"].as_str() == Some(CRATES_IO), "{package}");
     }
@@ -71,7 +73,7 @@ fn every_locked_package_has_a_checksum() {
 #[test]
 fn every_direct_dependency_says_what_it_is_for() {
     let manifest = text_of("Cargo.toml");
-    let part = manifest.split("\n[dependencies]\n").nth(1).expect("dependencies");
+    let part = manifest.split("\n[workspace.dependencies]\n").nth(1).expect("dependencies");
     let lines: Vec<&str> = part.split("\n[").next().expect("a first part").trim().lines().collect();
     for (k, line) in lines.iter().enumerate().filter(|(_, line)| !line.starts_with('#')) {
         assert!(line.is_empty() || k > 0 && lines[k - 1].starts_with("# "), "no reason above: {line}");

@@ -1,11 +1,8 @@
 //! Results folders under kills, refused writes, reruns and changed inputs: nothing is lost, nothing is mixed. A run in time
 //! that is killed with SIGKILL is resumed, and the result is that of a whole run.
 
-#[path = "common/program.rs"]
-mod program;
-
+use crate::program::{Record, names, numbers, titles};
 use ndarray::Array1;
-use program::{Record, names, numbers, titles};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};

@@ -1,8 +1,6 @@
 //! What the elements must do on any mesh: patch tests, rank, rigid motions, frame invariance, closed forms.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, SMatrix, SVector, Vector3};
 use stridor::structure::elements::{Beam, FlatShell, dkt, opt};
 use stridor::structure::*;

@@ -1,13 +1,9 @@
 //! Calls to the system that fail, by a library that is loaded before all others (tests/common/faults.c): writes, allocations and
 //! threads that are refused at the n-th call, a clock that jumps, and which writes wait for the disk. The tests of the suite take a
-//! sample of the calls; `cargo test --release --test faults -- --ignored` takes every write
+//! sample of the calls; `cargo test --release --test processes faults -- --ignored` takes every write
 //! and many allocations (`FAULT_EVERY=1`: all).
-#![cfg(target_os = "linux")]
 
-#[path = "common/program.rs"]
-mod program;
-
-use program::{CASE, Record, command, numbers, titles};
+use crate::program::{self, CASE, Record, command, numbers, titles};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};

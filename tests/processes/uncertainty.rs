@@ -1,22 +1,17 @@
 //! Studies of uncertain scalars: against closed forms of the model of Rusli et al. (2020), in parts, after a kill, and with wrong input.
 
-#[path = "common/program.rs"]
-mod program;
-#[path = "common/sweeps.rs"]
-mod sweeps;
-
-use program::{command, folder_with, names, run, said};
+use crate::program::{command, folder_with, names, run, said};
+use crate::sweeps::{self, disc, found};
 use serde_json::Value;
 use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 use stridor::linalg::c64;
 use stridor::results::record::{Saved, read_record};
-use sweeps::{disc, found};
 
 /// The block of Rusli et al. (2020) with these uncertain scalars.
 fn block(study: &str) -> String {
-    format!("{}\n{study}", include_str!("../validation/two-dof/case.toml"))
+    format!("{}\n{study}", include_str!("../../validation/two-dof/case.toml"))
 }
 
 /// `stridor uncertainty case.toml` with results in `out` and these arguments; what it prints on stderr, where the exit code is `code`.

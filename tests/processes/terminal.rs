@@ -1,9 +1,6 @@
 //! What the program says on a terminal, in a file and as JSON, and what `check` warns of.
 
-#[path = "common/small_rig.rs"]
-mod small_rig;
-
-use small_rig::{RIG, folder_with, stridor, text};
+use crate::small_rig::{RIG, folder_with, stridor, text};
 use std::path::Path;
 use std::process::{Command, Output};
 use tempfile::TempDir;

@@ -217,7 +217,7 @@ fn names_of_contacts_need_not_be_names_of_files() {
 fn an_exported_case_keeps_what_was_measured_of_what_it_has() {
     let (from, to) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     std::fs::write(from.path().join("tap.csv"), "frequency_hz,damping_ratio\n0.2,0.01\n").unwrap();
-    let text = include_str!("../validation/two-dof/case.toml").to_string()
+    let text = include_str!("../../validation/two-dof/case.toml").to_string()
         + r#"
 [modes.whole]
 count = 2

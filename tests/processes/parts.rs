@@ -1,18 +1,13 @@
 //! Sweeps and maps in parts: parts that are computed apart, at the same time, or again after a kill make the result of one run,
 //! bit for bit; wrong ones are refused.
 
-#[path = "common/program.rs"]
-mod program;
-#[path = "common/sweeps.rs"]
-mod sweeps;
-
-use program::{CASE, command, folder_with, names, run, said};
+use crate::program::{CASE, command, folder_with, names, run, said};
+use crate::sweeps::{SWEEPS, disc, found};
 use std::path::Path;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 use stridor::linalg::c64;
 use stridor::results::record::PartRecord;
-use sweeps::{SWEEPS, disc, found};
 
 /// Two modes that part, and the line on which they do, by whole analyses.
 const TWO_MODES: &str = r#"
@@ -31,7 +26,7 @@ points = [7, 6]
 
 /// The block of Rusli et al. (2020), unstable as it is.
 fn block() -> String {
-    let case = include_str!("../validation/two-dof/case.toml");
+    let case = include_str!("../../validation/two-dof/case.toml");
     let unstable = case.replace("mu0 = 0.4 ", "mu0 = 0.7 ");
     assert!(unstable != case);
     unstable + TWO_MODES

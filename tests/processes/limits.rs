@@ -1,11 +1,8 @@
 //! Numbers and machines at their limits: the binary answers with a result or with a sentence and an exit code.
 
-#[path = "common/program.rs"]
-mod program;
-
 #[cfg(target_os = "linux")]
-use program::limit_memory;
-use program::{command, folder_with, run, said};
+use crate::program::limit_memory;
+use crate::program::{command, folder_with, run, said};
 use std::f64::consts::TAU;
 use std::path::Path;
 use std::process::Output;
@@ -90,7 +87,7 @@ fn contacts_of_extreme_numbers_are_analysed_or_refused() {
 /// A penalty is the limit of a rigid contact: above a certain stiffness neither the load nor the complex modes move.
 #[test]
 fn a_stiffer_penalty_moves_no_squeal_mode() {
-    let rig = include_str!("../validation/rig-coarse/plain.toml").replace("\"6 kHz\"", "\"2 kHz\"");
+    let rig = include_str!("../../validation/rig-coarse/plain.toml").replace("\"6 kHz\"", "\"2 kHz\"");
     let with = |stiffness: &str| {
         let folder = folder_with(&rig.replace("\"10 MN/m\"", stiffness));
         let output = stridor(folder.path(), &["cea", "case.toml", "--json", "-q"]);
@@ -164,7 +161,7 @@ fn what_a_case_asks_of_no_mode_is_said() {
 /// Where the penalty leaves λ no digits, the modes are marked in every output and the run fails.
 #[test]
 fn modes_without_digits_have_no_verdict() {
-    let rig = include_str!("../validation/rig-coarse/plain.toml").replace("\"6 kHz\"", "\"2 kHz\"");
+    let rig = include_str!("../../validation/rig-coarse/plain.toml").replace("\"6 kHz\"", "\"2 kHz\"");
     let folder = folder_with(&rig.replace("\"10 MN/m\"", "1e23"));
     let text = said(&stridor(folder.path(), &["cea", "case.toml", "--out", "out"]), 1);
     assert!(text.contains("complex modes: the refinement did not settle"), "{text}");

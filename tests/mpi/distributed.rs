@@ -1,12 +1,8 @@
 //! Analyses over the ranks of an MPI program: the results of one process, faults in words, ranks that die.
 
-#[path = "common/program.rs"]
-mod program;
-#[path = "common/solid.rs"]
-mod solid;
-#[path = "common/sweeps.rs"]
-mod sweeps;
-
+use crate::program;
+use crate::solid;
+use crate::sweeps;
 use serde_json::Value;
 use std::f64::consts::TAU;
 use std::path::Path;

@@ -1,8 +1,6 @@
 //! Plates, discs and bars against closed forms and published figures.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use stridor::mesh::Element;
 use stridor::structure::*;
 use stridor::validation::kirchhoff::{

@@ -1,11 +1,7 @@
 //! results.h5 in xarray, an independent reader (Python), which this test installs below the target folder.
 
-#[path = "common/program.rs"]
-mod program;
-#[path = "common/python.rs"]
-mod python;
-
-use program::{CASE, command, folder_with};
+use crate::program::{CASE, command, folder_with};
+use crate::python;
 use std::process::Command;
 
 /// Opens the file as a tree of datasets with named axes, by both readers of xarray, and compares it with summary.json.

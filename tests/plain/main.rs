@@ -1,0 +1,19 @@
+//! Tests that call the library or read its sources.
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../common/python.rs"]
+mod python;
+
+mod architecture;
+mod circles;
+mod elements;
+mod matrices;
+mod measured;
+mod meshes;
+mod mindlin;
+mod plates;
+mod properties;
+mod rig;
+mod schema;
+mod supply;
