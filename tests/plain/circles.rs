@@ -28,8 +28,8 @@ fn read(folder: &Path, inside: &[String], text: &mut BTreeMap<Module, String>) {
         if path.is_dir() {
             module.push(name);
             read(&path, &module, text);
-        } else if path.extension().is_some_and(|e| e == "rs") && !["lib", "main"].contains(&name.as_str()) {
-            if name != "mod" {
+        } else if path.extension().is_some_and(|e| e == "rs") && name != "main" {
+            if !["mod", "lib"].contains(&name.as_str()) {
                 module.push(name);
             }
             let code = std::fs::read_to_string(&path).expect("source is text");

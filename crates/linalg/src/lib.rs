@@ -18,6 +18,10 @@
 //! * [`toar`]: eigenpairs of a quadratic problem nearest a shift, by two-level Arnoldi.
 //! * [`unsymmetric`]: small dense eigenproblems that are not symmetric.
 
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 pub mod assignment;
 pub mod dense;
 pub mod eigenpairs;
