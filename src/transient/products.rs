@@ -92,7 +92,7 @@ impl Products {
                 }
             }
             Products::Proportional { matrices, viscous } => {
-                matrices.multiply([(0, elastic), (1, inertia)], motion.as_ref());
+                matrices.multiply(&mut [(0, elastic), (1, inertia)], motion.as_ref());
                 if let (Some(Viscous { factors, rest }), Some(viscous)) = (viscous, out.viscous) {
                     combine(*factors, out.inertia, out.elastic, viscous);
                     rest.iter().for_each(|rest| rest.add_times(rates, viscous));
@@ -100,7 +100,8 @@ impl Products {
             }
             Products::General { matrices } => match out.viscous {
                 Some(viscous) => {
-                    matrices.multiply([(0, elastic), (1, inertia), (1, viscous.as_mut())], motion.as_ref());
+                    let out = &mut [(0, elastic), (1, inertia), (1, viscous.as_mut())];
+                    matrices.multiply(out, motion.as_ref());
                 }
                 None => unreachable!("three matrices share a pattern where there is damping"),
             },

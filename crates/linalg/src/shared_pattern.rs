@@ -158,8 +158,16 @@ impl<'a> SharedPattern<'a> {
     /// columns at most. As [`SharedPattern::times`], without its memory: made for a few columns again and again.
     ///
     /// # Panics
-    /// When the shapes do not agree.
-    pub fn multiply<const C: usize>(&self, out: [(usize, MatMut<'_, f64>); C], x: MatRef<'_, f64>) {
+    /// When the shapes do not agree, or there are not two or three matrices.
+    pub fn multiply(&self, out: &mut [(usize, MatMut<'_, f64>)], x: MatRef<'_, f64>) {
+        match out {
+            [a, b] => self.multiply_each([a, b], x),
+            [a, b, c] => self.multiply_each([a, b, c], x),
+            _ => panic!("two matrices or three"),
+        }
+    }
+
+    fn multiply_each<const C: usize>(&self, out: [&mut (usize, MatMut<'_, f64>); C], x: MatRef<'_, f64>) {
         let n = self.starts.len() - 1;
         assert!(x.nrows() == n && x.ncols() <= FEW, "shapes of A and X disagree");
         let values = self.slices::<C>();
@@ -169,10 +177,10 @@ impl<'a> SharedPattern<'a> {
         (0..n).into_par_iter().with_min_len(ROWS_A_TASK).map(row).collect_into_vec(&mut packed);
         let mut tasks: Vec<[Vec<&mut [f64]>; C]> = Vec::new();
         tasks.resize_with(n.div_ceil(ROWS_A_TASK), || std::array::from_fn(|_| Vec::new()));
-        let first = out.each_ref().map(|(first, _)| *first);
+        let first = out.each_ref().map(|own| own.0);
         for (a, (first, y)) in out.into_iter().enumerate() {
-            assert!(y.nrows() == n && first + y.ncols() <= x.ncols(), "shapes of X and Y disagree");
-            for column in y.col_iter_mut() {
+            assert!(y.nrows() == n && *first + y.ncols() <= x.ncols(), "shapes of X and Y disagree");
+            for column in y.as_mut().col_iter_mut() {
                 let column = column.try_as_col_major_mut().expect("columns in one piece").as_slice_mut();
                 let parts = column.chunks_mut(ROWS_A_TASK);
                 tasks.iter_mut().zip(parts).for_each(|(task, part)| task[a].push(part));
@@ -311,7 +319,7 @@ mod tests {
         let x = Mat::from_fn(301, 3, |i, j| ((i * 7 + j * 3) as f64).sin());
         let mut out = [3, 2, 1].map(|k| Mat::zeros(301, k));
         let [first, second, third] = out.each_mut().map(|y| y.as_mut());
-        merged.multiply([(0, first), (1, second), (2, third)], x.as_ref());
+        merged.multiply(&mut [(0, first), (1, second), (2, third)], x.as_ref());
         for (y, (begin, a)) in out.iter().zip([(0, &a), (1, &b), (2, &c)]) {
             let expected = times(a, x.subcols(begin, 3 - begin));
             assert!((y - expected).norm_max() < 1e-13 * a.to_dense().norm_max() * 301.0);

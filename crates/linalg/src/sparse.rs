@@ -133,7 +133,11 @@ const PANEL: usize = 8;
 ///
 /// # Panics
 /// When the shapes do not agree.
-pub fn multiply<T: Scalar>(a: &SparseMatrix, x: MatRef<'_, T>, mut y: MatMut<'_, T>) {
+pub fn multiply<T: Scalar>(a: &SparseMatrix, x: MatRef<'_, T>, y: MatMut<'_, T>) {
+    T::multiply(a, x, y);
+}
+
+pub(super) fn multiply_panels<T: Scalar>(a: &SparseMatrix, x: MatRef<'_, T>, mut y: MatMut<'_, T>) {
     let (n, k) = (a.ncols(), x.ncols());
     assert!(
         a.nrows() == n && x.nrows() == n && y.nrows() == n && y.ncols() == k,

@@ -197,6 +197,10 @@ impl SymbolicFactor {
     /// # Panics
     /// When the pattern is another one.
     pub fn factorize_here<T: Field>(&self, a: &SparseColMat<Index, T>) -> Result<Box<dyn HalfSolutions<T>>> {
+        T::factorize(self, a)
+    }
+
+    fn factorize_as<T: Field>(&self, a: &SparseColMat<Index, T>) -> Result<Box<dyn HalfSolutions<T>>> {
         let (branch, scaling) = self.eliminate(a, Kept::All)?;
         Ok(Box::new(Multifrontal { plan: Arc::clone(&self.plan), branch, scaling }))
     }
