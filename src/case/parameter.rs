@@ -2,17 +2,20 @@
 
 use super::{Case, Invalidates, Parameter};
 use crate::error::{Error, Fault, Faults, Result, nearest};
-use crate::schema::{Report, check, scalars, set_scalar};
+use crate::schema::{Report, check, scalar, scalars, set_scalar};
 
 impl Case {
     /// Every scalar of the case, in the order of the declarations.
     pub fn parameters(&self) -> Vec<Parameter> {
-        let mut all = scalars(self);
-        // The preload's geometric stiffness follows the steady state.
-        for parameter in all.iter_mut().filter(|p| self.prestress && p.invalidates >= Invalidates::Law) {
+        scalars(self).into_iter().map(|parameter| self.with_preload(parameter)).collect()
+    }
+
+    /// The preload's geometric stiffness follows the steady state.
+    fn with_preload(&self, mut parameter: Parameter) -> Parameter {
+        if self.prestress && parameter.invalidates >= Invalidates::Law {
             parameter.invalidates = Invalidates::Structure;
         }
-        all
+        parameter
     }
 
     /// The scalar at `path`.
@@ -20,10 +23,10 @@ impl Case {
     /// # Errors
     /// A path that is not a number of the case, with the nearest one that is.
     pub fn parameter(&self, path: &str) -> Result<Parameter> {
-        let all = self.parameters();
-        if let Some(found) = all.iter().find(|p| p.path == path) {
-            return Ok(found.clone());
+        if let Some(found) = scalar(self, path) {
+            return Ok(self.with_preload(found));
         }
+        let all = self.parameters();
         let near = nearest(path, all.iter().map(|p| p.path.as_str()));
         let help = near.map_or("`stridor check CASE --parameters` lists them".into(), |n| {
             format!("Did you mean `{n}`?")

@@ -37,7 +37,7 @@ pub use keys::{dotted, keys_of};
 pub use markdown::key_reference;
 pub use places::Places;
 pub use read::{ReadTable, read_table};
-pub use scalars::{Scalar, scalars, set_scalar};
+pub use scalars::{Scalar, scalar, scalars, set_scalar};
 pub use table::{Presence, TableSlot};
 pub use units::Dimension;
 pub use value::{Blank, Form, Units, Value};

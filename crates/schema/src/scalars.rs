@@ -33,6 +33,8 @@ impl Scalar {
 
 /// A walk over the numbers of a table.
 struct Walk<'a> {
+    /// Only what lies on this path.
+    only: Option<&'a str>,
     path: String,
     /// Names of the tables that the user named.
     owner: String,
@@ -43,14 +45,25 @@ struct Walk<'a> {
 /// Every number of `table`, in the order of declaration. A key whose table says nothing invalidates the structure.
 pub fn scalars<T: Table + Clone>(table: &T) -> Vec<Scalar> {
     let mut all = Vec::new();
-    walk(&mut table.clone(), &mut |scalar, _| all.push(scalar));
+    walk(&mut table.clone(), None, &mut |scalar, _| all.push(scalar));
     all
+}
+
+/// The number at `path`.
+pub fn scalar<T: Table + Clone>(table: &T, path: &str) -> Option<Scalar> {
+    let mut found = None;
+    walk(&mut table.clone(), Some(path), &mut |scalar, _| {
+        if scalar.path == path {
+            found = Some(scalar);
+        }
+    });
+    found
 }
 
 /// Sets the number at `path`; `false` when there is none.
 pub fn set_scalar(table: &mut dyn Table, path: &str, value: f64) -> bool {
     let mut found = false;
-    walk(table, &mut |scalar, slot| {
+    walk(table, Some(path), &mut |scalar, slot| {
         if scalar.path == path {
             *slot = value;
             found = true;
@@ -59,8 +72,9 @@ pub fn set_scalar(table: &mut dyn Table, path: &str, value: f64) -> bool {
     found
 }
 
-fn walk(table: &mut dyn Table, each: &mut dyn FnMut(Scalar, &mut f64)) {
+fn walk(table: &mut dyn Table, only: Option<&str>, each: &mut dyn FnMut(Scalar, &mut f64)) {
     table.visit(&mut Walk {
+        only,
         path: String::new(),
         owner: String::new(),
         invalidates: Invalidates::Structure,
@@ -72,6 +86,11 @@ impl Walk<'_> {
     fn path_of(&self, key: &str) -> String {
         let key = dotted(key);
         if self.path.is_empty() { key.into_owned() } else { format!("{}.{key}", self.path) }
+    }
+
+    /// Whether what has `path` is asked for, or may have in it what is.
+    fn wanted(&self, path: &str) -> bool {
+        self.only.is_none_or(|only| only.starts_with(path))
     }
 
     /// The label of the number at index `at` of a key.
@@ -101,6 +120,9 @@ fn symbol(doc: &str) -> Option<&str> {
 impl Visitor for Walk<'_> {
     fn value(&mut self, key: Key, slot: &mut dyn Slot) {
         let path = self.path_of(key.name);
+        if !self.wanted(&path) {
+            return;
+        }
         let about = slot.about();
         let (bounds, derivative, words) = (about.bounds, about.derivative, about.label);
         let invalidates = about.invalidates.unwrap_or(self.invalidates);
@@ -118,11 +140,17 @@ impl Visitor for Walk<'_> {
 
     fn table(&mut self, key: Key, slot: &mut dyn TableSlot) {
         let path = self.path_of(key.name);
+        if !self.wanted(&path) {
+            return;
+        }
         let invalidates = slot.invalidates().unwrap_or(self.invalidates);
         slot.each(&mut |name, table| {
             let path = name.map_or(path.clone(), |name| format!("{path}.{}", dotted(name)));
+            if !self.wanted(&path) {
+                return;
+            }
             let owner = [self.owner.as_str(), name.unwrap_or_default()].join(" ").trim().to_string();
-            table.visit(&mut Walk { path, owner, invalidates, each: &mut *self.each });
+            table.visit(&mut Walk { only: self.only, path, owner, invalidates, each: &mut *self.each });
         });
     }
 
