@@ -1,20 +1,17 @@
 //! Figures 3, 4 and 5 of Rusli et al. (2020), drawn from the cases in `validation/` beside their READMEs.
 
-use plotters::prelude::*;
 use std::error::Error;
 use std::path::Path;
 use stridor::case::read_case;
 use stridor::job::{Histories, Prepared, ResultStage, Selection, analyse};
+use stridor::report::chart::{Axis, Chart};
+use stridor::report::svg::{Sheet, ink, stroke};
 use stridor::results::{ComplexResult, TransientResult};
 
-/// Room for the words below the lowest panel, beyond the numbers [px].
-const WORDS: u32 = 26;
-const FONT: &str = "system-ui, 'Segoe UI', Helvetica, Arial, sans-serif";
-const SIZE: (u32, u32) = (1080, 620);
-const GROWS: RGBColor = RGBColor(213, 94, 0);
-const STAYS: RGBColor = RGBColor(0, 114, 178);
-const INK: RGBColor = RGBColor(27, 31, 36);
-const MUTED: RGBColor = RGBColor(91, 101, 112);
+const SIZE: [f64; 2] = [1080.0, 620.0];
+const GROWS: &str = "#d55e00";
+const STAYS: &str = "#0072b2";
+const INK: &str = "#1b1f24";
 
 /// One half of a figure: a panel for each value of a scalar.
 struct Part {
@@ -82,25 +79,23 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn draw(folder: &str, parts: [Part; 2]) -> Result<(), Box<dyn Error>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("validation").join(folder);
     let file = folder.join("response.svg");
-    let sheet = SVGBackend::new(&file, SIZE).into_drawing_area();
-    sheet.fill(&WHITE)?;
-    for (half, part) in sheet.split_evenly((1, 2)).iter().zip(&parts) {
+    let mut sheet = Sheet::new(SIZE[0], SIZE[1]);
+    for (half, part) in parts.iter().enumerate() {
         let responses = part.values.iter().map(|value| respond(&folder, part, *value));
         let responses = responses.collect::<Result<Vec<_>, _>>()?;
-        let (title, below) = half.split_vertically(34);
-        title.draw_text(part.title, &text(16.0, INK), (74, 10))?;
+        let left = 0.5 * SIZE[0] * half as f64;
+        sheet.text([left + 74.0, 25.0], part.title, ink(16.0, INK));
         let largest = |r: &Response| r.x.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         let all = responses.iter().map(largest).fold(0.0, f64::max);
-        // The last one has the words below it.
-        let each = (below.dim_in_pixel().1 - WORDS) / responses.len() as u32;
-        let ends: Vec<u32> = (1..responses.len() as u32).map(|k| k * each).collect();
-        let areas = below.split_by_breakpoints(Vec::<u32>::new(), ends);
-        for (k, (area, response)) in areas.iter().zip(&responses).enumerate() {
-            let scale = if part.one_scale { all } else { largest(response) };
-            panel(area, response, 1.1 * scale, k + 1 == responses.len())?;
+        let each = (SIZE[1] - 60.0) / responses.len() as f64;
+        for (k, response) in responses.iter().enumerate() {
+            let scale = 1.1 * if part.one_scale { all } else { largest(response) };
+            let top = 34.0 + each * k as f64;
+            let area = [left + 74.0, top + 20.0, left + 0.5 * SIZE[0] - 16.0, top + each - 18.0];
+            panel(&mut sheet, area, response, scale, k + 1 == responses.len());
         }
     }
-    sheet.present()?;
+    std::fs::write(&file, sheet.finish())?;
     println!("{}", file.display());
     Ok(())
 }
@@ -129,41 +124,15 @@ fn respond(folder: &Path, part: &Part, value: f64) -> Result<Response, stridor::
     })
 }
 
-fn panel(
-    area: &DrawingArea<SVGBackend<'_>, plotters::coord::Shift>,
-    response: &Response,
-    scale: f64,
-    last: bool,
-) -> Result<(), Box<dyn Error>> {
+/// x over time between four edges of the sheet.
+fn panel(sheet: &mut Sheet, area: [f64; 4], response: &Response, scale: f64, last: bool) {
     let end = response.step * (response.x.len() - 1) as f64;
-    let mut chart = ChartBuilder::on(area)
-        .margin_left(14)
-        .margin_right(16)
-        .margin_top(20)
-        .x_label_area_size(if last { 18 + WORDS } else { 18 })
-        .y_label_area_size(60)
-        .build_cartesian_2d(0.0..end, -scale..scale)?;
-    chart
-        .configure_mesh()
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(RGBColor(230, 233, 237))
-        .axis_style(MUTED)
-        .label_style(text(12.0, INK))
-        .x_desc(if last { "time [s]" } else { "" })
-        .y_desc("x [m]")
-        .x_labels(6)
-        .y_labels(6)
-        .x_label_formatter(&|t| format!("{t:.0}"))
-        .y_label_formatter(&|x| if scale < 0.5 { format!("{x:.2}") } else { format!("{x}") })
-        .draw()?;
+    let across = Axis::new(if last { "time [s]" } else { "" }, 0.0..end);
+    let mut chart = Chart::new(area, across, Axis::new("x [m]", -scale..scale));
     let every = response.x.len().div_ceil(1000);
-    let points = response.x.iter().enumerate().step_by(every).map(|(k, x)| (k as f64 * response.step, *x));
+    let points = response.x.iter().enumerate().step_by(every).map(|(k, x)| [k as f64 * response.step, *x]);
     let colour = if response.grows { GROWS } else { STAYS };
-    chart.draw_series([PathElement::new(points.collect::<Vec<_>>(), colour.stroke_width(1))])?;
-    area.draw_text(&response.label, &text(13.0, colour), (80, 3))?;
-    Ok(())
-}
-
-fn text(pixels: f64, colour: RGBColor) -> TextStyle<'static> {
-    (FONT, 1.24 * pixels).into_font().color(&colour)
+    chart.line(points, &stroke(colour, 1.0));
+    chart.text([0.0, scale], [6.0, -6.0], &response.label, ink(13.0, colour));
+    chart.draw(sheet);
 }

@@ -4,7 +4,7 @@ use super::colours::{INK, MUTED};
 use super::format::{hertz, signed, significant};
 use super::plate::{PlateView, colour_bar};
 use super::section::Picture;
-use super::svg::{Anchor, Ink, Sheet, SvgPoint};
+use super::svg::{Sheet, SvgPoint, ink, stroke};
 use super::view::PlacedView;
 use crate::results::{ModeSensitivity, RunResults, SensitivityResult};
 use std::f64::consts::TAU;
@@ -46,26 +46,21 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let columns = THINGS.len() * plates.len();
     let height = HEAD + CELL[1] * modes.len() as f64;
     let mut sheet = Sheet::new(LEFT + CELL[0] * columns as f64 + 12.0, height + FOOT);
-    let ink = Ink { size: 15.0, colour: INK, bold: true, anchor: Anchor::Middle };
     for (t, (title, ..)) in THINGS.iter().enumerate() {
         let centre = LEFT + CELL[0] * plates.len() as f64 * (t as f64 + 0.5);
-        sheet.text([centre, 24.0], title, ink);
+        sheet.text([centre, 24.0], title, ink(15.0, INK).bold().middle());
         for (p, (part, _)) in plates.iter().enumerate() {
             let x = LEFT + CELL[0] * ((t * plates.len() + p) as f64 + 0.5);
-            let small = Ink { size: 13.0, colour: MUTED, bold: false, ..ink };
-            sheet.text([x, 46.0], &geometry.parts[*part], small);
+            sheet.text([x, 46.0], &geometry.parts[*part], ink(13.0, MUTED).middle());
         }
     }
     for (m, mode) in modes.iter().enumerate() {
         let top = HEAD + CELL[1] * m as f64;
-        let name = Ink { size: 15.0, anchor: Anchor::Start, ..ink };
-        sheet.text([14.0, top + 0.42 * CELL[1]], &format!("{} Hz", hertz(mode.eigenvalue.im / TAU, 0)), name);
-        let small = Ink { size: 13.0, colour: MUTED, bold: false, ..name };
-        sheet.text(
-            [14.0, top + 0.42 * CELL[1] + 20.0],
-            &format!("σ {} 1/s", signed(mode.eigenvalue.re, 1)),
-            small,
-        );
+        let middle = top + 0.42 * CELL[1];
+        let name = format!("{} Hz", hertz(mode.eigenvalue.im / TAU, 0));
+        sheet.text([14.0, middle], &name, ink(15.0, INK).bold());
+        let rate = format!("σ {} 1/s", signed(mode.eigenvalue.re, 1));
+        sheet.text([14.0, middle + 20.0], &rate, ink(13.0, MUTED));
         for (t, (_, kind, field)) in THINGS.iter().enumerate() {
             let Some(values) = field(mode) else { continue };
             for (p, (_, plate)) in plates.iter().enumerate() {
@@ -95,7 +90,7 @@ fn draw_cell(sheet: &mut Sheet, [x, y]: SvgPoint, plate: &PlateView, values: &[f
         let [u, v] = pixels[k];
         let arms = [[[u - 7.0, v - 7.0], [u + 7.0, v + 7.0]], [[u - 7.0, v + 7.0], [u + 7.0, v - 7.0]]];
         for (colour, width) in [("#ffffff", 5.0), (INK, 2.4)] {
-            let style = format!("stroke=\"{colour}\" stroke-width=\"{width}\" stroke-linecap=\"round\"");
+            let style = stroke(colour, width) + " stroke-linecap=\"round\"";
             sheet.lines(arms.iter().map(|arm| &arm[..]), &style);
         }
     }
@@ -103,19 +98,14 @@ fn draw_cell(sheet: &mut Sheet, [x, y]: SvgPoint, plate: &PlateView, values: &[f
     let high = own.iter().copied().fold(0.0, f64::max);
     let plus = if high > 0.0 { "+" } else { "" };
     let range = format!("{} … {plus}{} 1/s", significant(low, 3), significant(high, 3));
-    let ink = Ink { size: 12.5, colour: INK, bold: false, anchor: Anchor::Middle };
-    sheet.text([x + 0.5 * CELL[0], y + CELL[1] - 22.0], &range, ink);
+    sheet.text([x + 0.5 * CELL[0], y + CELL[1] - 22.0], &range, ink(12.5, INK).middle());
 }
 
 fn draw_legend(sheet: &mut Sheet, y: f64) {
-    let width = colour_bar(sheet, [LEFT + 16.0, y], 14.0);
-    let ink = Ink { size: 12.5, colour: INK, bold: false, anchor: Anchor::Middle };
-    for (place, text) in [(0.0, "stabilises"), (0.5, "0"), (1.0, "destabilises")] {
-        sheet.text([LEFT + 16.0 + place * width, y + 29.0], text, ink);
-    }
+    let width = colour_bar(sheet, [LEFT + 16.0, y], 14.0, ["stabilises", "destabilises"]);
     let note =
         "change of σ per addition mounted at a place; the range below each plate belongs to its colours";
-    sheet.text([LEFT + width + 60.0, y + 12.0], note, Ink { anchor: Anchor::Start, ..ink });
+    sheet.text([LEFT + width + 60.0, y + 12.0], note, ink(12.5, INK));
 }
 
 #[cfg(test)]

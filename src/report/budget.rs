@@ -1,19 +1,18 @@
 //! `growth_budget.svg`: which terms make each unstable mode grow, and which hold it back.
 
-use super::chart::{Area, above, below, bold, colour, sheet, text, widened};
-use super::colours::{INK, MUTED};
-use super::format::{given, hertz, signed};
+use super::chart::{Axis, Chart, WIDTH, ends, widened};
+use super::colours::INK;
+use super::format::{hertz, signed};
 use super::html::described;
 use super::section::Picture;
+use super::svg::{Key, Sheet, fill, ink, stroke};
 use crate::results::{ComplexResult, RunResults};
 use crate::stability::{ComplexMode, GrowthBudget};
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use std::error::Error;
 
 /// The strongest modes get a bar.
 const MOST: usize = 12;
-const SIZE: (u32, u32) = (980, 460);
+/// Left edge of the names of the terms \[px\].
+const NAMES: f64 = 790.0;
 
 /// A term's name, its colour and its part of the growth rate.
 type BudgetTerm = (&'static str, &'static str, fn(&GrowthBudget) -> f64);
@@ -37,10 +36,9 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     if modes.is_empty() {
         return None;
     }
-    let svg = sheet(SIZE, |area| draw(area, &modes))?;
     let caption =
         "Where the growth of each unstable mode comes from; the terms add up to σ (black line).".to_string();
-    Some(Picture { file: "growth_budget".into(), caption, svg: described(&svg, &seen(&modes)) })
+    Some(Picture { file: "growth_budget".into(), caption, svg: described(&drawn(&modes), &seen(&modes)) })
 }
 
 /// The largest term of each mode that feeds it.
@@ -54,69 +52,42 @@ fn seen(modes: &[&ComplexMode]) -> String {
 }
 
 /// The ends of the stack: what feeds the mode and what takes from it.
-fn ends(budget: &GrowthBudget) -> (f64, f64) {
+fn span(budget: &GrowthBudget) -> [f64; 2] {
     let terms = TERMS.map(|(_, _, term)| term(budget));
-    (terms.iter().map(|t| t.min(0.0)).sum(), terms.iter().map(|t| t.max(0.0)).sum())
+    [terms.iter().map(|t| t.min(0.0)).sum(), terms.iter().map(|t| t.max(0.0)).sum()]
 }
 
-fn draw(area: &Area, modes: &[&ComplexMode]) -> Result<(), Box<dyn Error>> {
-    let (plot, legend) = area.split_horizontally(SIZE.0 - 190);
-    let spans: Vec<(f64, f64)> = modes.iter().map(|m| ends(&m.growth)).collect();
-    let low = spans.iter().map(|s| s.0).fold(0.0, f64::min);
-    let high = spans.iter().map(|s| s.1).fold(0.0, f64::max);
-    let up = widened(low, high, 0.1);
+fn drawn(modes: &[&ComplexMode]) -> String {
+    let up = widened(ends(modes.iter().flat_map(|m| span(&m.growth)).chain([0.0])), 0.1);
     let slots = modes.len().max(4) as f64;
-    let mut chart = ChartBuilder::on(&plot)
-        .margin(16)
-        .x_label_area_size(40)
-        .y_label_area_size(78)
-        .build_cartesian_2d(-0.5..slots - 0.5, up.clone())?;
-    chart
-        .configure_mesh()
-        .disable_x_mesh()
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(colour("#e6e9ed"))
-        .axis_style(colour(MUTED))
-        .label_style(text(13.0, INK))
-        .axis_desc_style(text(14.0, INK))
-        .y_desc("part of the growth rate [1/s]")
-        .x_labels(0)
-        .y_label_formatter(&|sigma| given(*sigma))
-        .draw()?;
-    for (k, mode) in modes.iter().enumerate() {
+    let mut sheet = Sheet::new(WIDTH, 460.0);
+    let across = Axis::new("", -0.5..slots - 0.5).at([]).bare();
+    let foot = up.start;
+    let mut chart =
+        Chart::new([94.0, 16.0, NAMES - 16.0, 404.0], across, Axis::new("part of the growth rate [1/s]", up));
+    for (mode, x) in modes.iter().zip((0..).map(f64::from)) {
         let (mut down, mut top) = (0.0, 0.0);
-        let x = k as f64;
         for (_, hex, term) in TERMS {
             let value = term(&mode.growth);
             let base = if value < 0.0 { &mut down } else { &mut top };
-            let bar = Rectangle::new([(x - 0.28, *base), (x + 0.28, *base + value)], colour(hex).filled());
+            chart.bar([[x - 0.28, *base], [x + 0.28, *base + value]], &fill(hex));
             *base += value;
-            chart.draw_series([bar])?;
         }
         let sigma = mode.growth_rate();
-        chart
-            .draw_series([PathElement::new([(x - 0.36, sigma), (x + 0.36, sigma)], BLACK.stroke_width(3))])?;
-        let (px, py) = chart.backend_coord(&(x, top.max(sigma)));
-        let label = above(bold(12.5, INK));
-        plot.draw_text(&format!("σ {}", signed(sigma, 1)), &label, (px, py - 6))?;
-        let (px, py) = chart.backend_coord(&(x, up.start));
-        plot.draw_text(
-            &format!("{} Hz", hertz(mode.frequency_hz(), 0)),
-            &below(bold(13.5, INK)),
-            (px, py + 8),
-        )?;
+        chart.line([[x - 0.36, sigma], [x + 0.36, sigma]], &stroke("#000000", 3.0));
+        let words = format!("σ {}", signed(sigma, 1));
+        chart.text([x, top.max(sigma)], [0.0, -8.0], &words, ink(12.5, INK).bold().middle());
+        let words = format!("{} Hz", hertz(mode.frequency_hz(), 0));
+        chart.text([x, foot], [0.0, 20.0], &words, ink(13.5, INK).bold().middle());
     }
-    chart.draw_series([PathElement::new([(-0.5, 0.0), (slots - 0.5, 0.0)], colour(INK).stroke_width(2))])?;
-    let beside = |style: TextStyle<'static>| style.pos(Pos::new(HPos::Left, VPos::Center));
-    for (k, (name, hex, _)) in TERMS.iter().enumerate() {
-        let y = 40 + 28 * k as i32;
-        legend.draw(&Rectangle::new([(4, y - 8), (20, y + 8)], colour(hex).filled()))?;
-        legend.draw_text(name, &beside(text(13.5, INK)), (30, y))?;
+    chart.rule(1, 0.0, &stroke(INK, 2.0));
+    chart.draw(&mut sheet);
+    let terms = TERMS.map(|(name, hex, _)| (Key::Box(fill(hex)), name));
+    let mut y = 32.0;
+    for (key, name) in terms.into_iter().chain([(Key::Line(stroke("#000000", 3.0)), "σ, their sum")]) {
+        y = sheet.keys([NAMES + 4.0, y], [(key, name.to_string())]) + 8.0;
     }
-    let y = 40 + 28 * TERMS.len() as i32;
-    legend.draw(&PathElement::new([(2, y), (22, y)], BLACK.stroke_width(3)))?;
-    legend.draw_text("σ, their sum", &beside(text(13.5, INK)), (30, y))?;
-    Ok(())
+    sheet.finish()
 }
 
 #[cfg(test)]
@@ -128,7 +99,7 @@ mod tests {
     fn the_stack_ends_where_the_terms_do_and_adds_up() {
         let results = sample::rig();
         for mode in results.get::<ComplexResult>().unwrap().modes.modes.iter() {
-            let (low, high) = ends(&mode.growth);
+            let [low, high] = span(&mode.growth);
             assert!(low <= 0.0 && high >= 0.0 && (low + high - mode.growth_rate()).abs() < 1e-9);
         }
         let svg = picture(&results).unwrap().svg;

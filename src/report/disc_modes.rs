@@ -5,7 +5,7 @@ use super::contours::at_least;
 use super::format::{given, hertz, signed};
 use super::plate::{PlateView, colour_bar};
 use super::section::Picture;
-use super::svg::{Anchor, Ink, Sheet, SvgPoint};
+use super::svg::{Sheet, SvgPoint, ink, outlined, stroke};
 use super::view::{PlacedView, dot};
 use crate::modal::{DiscModeName, levels};
 use crate::results::{Geometry, MeasuredComparison, MeasuredRow, NamedModes, RunResults};
@@ -145,7 +145,7 @@ fn draw_mode(
     let radius = 74.0;
     let centre_x = corner[0] + 0.5 * CELL[0];
     if row.is_some() {
-        let style = format!("rx=\"8\" fill=\"#eef5fa\" stroke=\"{MEASURED}\" stroke-width=\"1.2\"");
+        let style = outlined("#eef5fa", MEASURED, 1.2) + " rx=\"8\"";
         sheet.rectangle([corner[0] + 5.0, corner[1] + 5.0], [CELL[0] - 10.0, CELL[1] - 10.0], &style);
     }
     let fit = PlacedView::new(
@@ -158,48 +158,40 @@ fn draw_mode(
     disc.plate.paint(sheet, &pixels, &w);
     let nodal = at_least(&pixels, &disc.lively(&w), &w, 0.0).level_lines;
     if !nodal.is_empty() {
-        let style = format!("stroke=\"{INK}\" stroke-width=\"1.8\" stroke-linecap=\"round\"");
+        let style = stroke(INK, 1.8) + " stroke-linecap=\"round\"";
         sheet.lines(nodal.iter().map(|line| &line[..]), &style);
     }
     let DiscModeName { nodal_diameters: n, nodal_circles: s } = group.name;
     let times = if group.modes.len() > 1 { " ×2" } else { "" };
     let hz = scale.unwrap_or(1.0) * set.modes.frequency_hz(group.modes.start);
     let title = format!("({n}, {s}){times}  {} Hz", hertz(hz, if hz < 1000.0 { 1 } else { 0 }));
-    let ink = Ink { size: 15.0, colour: INK, bold: true, anchor: Anchor::Middle };
     let y = corner[1] + 15.0 + 2.0 * radius + 24.0;
-    sheet.text([centre_x, y], &title, ink);
-    let small = Ink { size: 12.5, colour: MUTED, bold: false, anchor: Anchor::Middle };
+    sheet.text([centre_x, y], &title, ink(15.0, INK).bold().middle());
     match row {
         Some(row) => {
             let difference =
                 row.difference_percent().map_or(String::new(), |d| format!(" ({} %)", signed(d, 1)));
             let text = format!("measured {} Hz{difference}", given(row.frequency_hz));
-            sheet.text([centre_x, y + 18.0], &text, Ink { colour: MEASURED, ..small });
+            sheet.text([centre_x, y + 18.0], &text, ink(12.5, MEASURED).middle());
         }
-        None if scale.is_some() => sheet.text([centre_x, y + 18.0], "no measured peak paired", small),
+        None if scale.is_some() => {
+            sheet.text([centre_x, y + 18.0], "no measured peak paired", ink(12.5, MUTED).middle());
+        }
         None => {}
     }
 }
 
 fn draw_legend(sheet: &mut Sheet, top: f64, scale: Option<f64>) {
     let (left, y) = (MARGIN + 16.0, top + 14.0);
-    let width = colour_bar(sheet, [left, y], 16.0);
-    let ink = Ink { size: 12.5, colour: INK, bold: false, anchor: Anchor::Middle };
-    for (place, text) in [(0.0, "−max"), (0.5, "0"), (1.0, "+max")] {
-        sheet.text([left + place * width, y + 29.0], text, ink);
-    }
-    let ink = Ink { anchor: Anchor::Start, ..ink };
+    let width = colour_bar(sheet, [left, y], 16.0, ["−max", "+max"]);
     let x = left + width + 40.0;
-    sheet.text([x, y + 12.0], "deflection w along the disc's axis", ink);
-    sheet.lines(
-        [&[[x, y + 25.0], [x + 22.0, y + 25.0]][..]],
-        &format!("stroke=\"{INK}\" stroke-width=\"1.8\""),
-    );
+    sheet.text([x, y + 12.0], "deflection w along the disc's axis", ink(12.5, INK));
+    sheet.line([[x, y + 25.0], [x + 22.0, y + 25.0]], &stroke(INK, 1.8));
     let scaled = match scale {
         Some(scale) if scale != 1.0 => format!(" · frequencies: computed × {} (assumed scale)", given(scale)),
         _ => String::new(),
     };
-    sheet.text([x + 28.0, y + 29.0], &format!("nodal line{scaled}"), ink);
+    sheet.text([x + 28.0, y + 29.0], &format!("nodal line{scaled}"), ink(12.5, INK));
 }
 
 #[cfg(test)]

@@ -1,16 +1,13 @@
 //! Frequency responses: magnitude and phase, and which resonances show.
 
-use super::axes::{Chart, WIDTH};
-use super::chart::{Area, sheet, text};
-use super::colours::{ALARM, INK, MEASURED, MUTED, PARTS, SECOND};
-use super::curve::{Dash, Pen, draw_curve, legend_line, pen};
+use super::colours::{ALARM, INK, PARTS, SECOND};
 use super::finding::{Finding, FindingClass};
 use super::format::{fixed, given, hertz, power, prefixed};
-use super::magnitude::{draw_magnitude, draw_phase, magnitude_axes, phase_axes};
+use super::magnitude::{ResponseCurve, ResponsePanel, stacked};
 use super::section::{Display, Picture, ReportSection};
+use super::svg::{CHAIN, DASHED, DOTTED, Style, stroke};
 use super::table::{ReportTable, idle};
-use crate::results::{FrfResult, RunResults, file_name};
-use std::error::Error;
+use crate::results::{FrfResponse, FrfResult, RunResults, file_name};
 
 /// A mode with less than this part of the largest product of shapes does not show.
 const HIDDEN: f64 = 0.01;
@@ -75,71 +72,30 @@ fn capital(word: &str) -> String {
 }
 
 fn picture(frf: &FrfResult) -> Option<Picture> {
-    if !magnitudes(frf).any(|size| size > 0.0) {
-        return None;
-    }
-    let svg = sheet((WIDTH, 620), |area| {
-        let (legend, main) = area.split_vertically(34);
-        let (upper, lower) = main.split_vertically(390);
-        for (k, response) in frf.responses.iter().enumerate() {
-            let x = 120 + 190 * (k % 4) as i32;
-            legend_line(&legend, (x, 18), line(k))?;
-            legend.draw_text(&response.name.replace('_', " "), &text(13.0, INK), (x + 36, 10))?;
-        }
-        let hz = &frf.frequencies_hz;
-        let sizes = magnitude_axes(&upper, hz, frf.quantity, magnitudes(frf), None)?;
-        let phases = phase_axes(&lower, hz, Some("frequency [Hz]"))?;
-        marks(&sizes, frf)?;
-        marks(&phases, frf)?;
-        name_measured(&upper, &sizes, frf)?;
-        for (k, response) in frf.responses.iter().enumerate() {
-            let points = || hz.iter().copied().zip(&response.values);
-            draw_magnitude(&sizes, points().map(|(hz, v)| (hz, v.norm())), line(k))?;
-            draw_phase(&phases, points().map(|(hz, v)| (hz, v.arg())), line(k))?;
-        }
-        Ok(())
-    })?;
+    let curve = |(k, response): (usize, &FrfResponse)| ResponseCurve {
+        words: response.name.replace('_', " "),
+        style: line(k),
+        sizes: response.values.iter().map(|v| v.norm()).collect(),
+        phases: response.values.iter().map(|v| v.arg()).collect(),
+    };
+    let panel = ResponsePanel {
+        frequencies_hz: frf.frequencies_hz.clone(),
+        quantity: frf.quantity,
+        curves: frf.responses.iter().enumerate().map(curve).collect(),
+        natural_hz: frf.resonances.iter().map(|resonance| resonance.frequency_hz).collect(),
+        measured_hz: frf.measured.clone(),
+        heights: [356.0, 160.0],
+    };
+    let known =
+        panel.curves.iter().flat_map(|curve| &curve.sizes).any(|size| *size > 0.0 && size.is_finite());
+    let svg = stacked(&[panel]).filter(|_| known)?;
     Some(Picture { file: file_name("frf", &frf.name), caption: caption(frf), svg })
 }
 
-fn magnitudes(frf: &FrfResult) -> impl Iterator<Item = f64> + '_ {
-    frf.responses.iter().flat_map(|of| &of.values).map(|v| v.norm()).filter(|v| v.is_finite())
-}
-
 /// The line of response `k`: dashes show the lines below where responses coincide.
-fn line(k: usize) -> Pen<'static> {
-    let dash = [Dash::Solid, Dash::Dashed, Dash::Chain, Dash::Dotted][k % 4];
-    Pen { dash, ..pen([ALARM, SECOND, PARTS[2][0], INK][k % 4], if k == 0 { 2.0 } else { 1.5 }) }
-}
-
-/// Dotted lines at the natural frequencies, blue ones at the measured.
-fn marks(chart: &Chart, frf: &FrfResult) -> Result<(), Box<dyn Error>> {
-    let up = chart.y_range();
-    for resonance in &frf.resonances {
-        let line = [(resonance.frequency_hz, up.start), (resonance.frequency_hz, up.end)];
-        draw_curve(chart, line, Pen { opacity: 0.6, dash: Dash::Dotted, ..pen(MUTED, 1.0) })?;
-    }
-    for measured in shown(chart, frf) {
-        let line = [(measured, up.start), (measured, up.end)];
-        draw_curve(chart, line, Pen { opacity: 0.7, ..pen(MEASURED, 1.0) })?;
-    }
-    Ok(())
-}
-
-/// The measured frequencies in figures, each at the top of its line.
-fn name_measured(area: &Area, chart: &Chart, frf: &FrfResult) -> Result<(), Box<dyn Error>> {
-    for measured in shown(chart, frf) {
-        let (x, y) = chart.backend_coord(&(measured, chart.y_range().end));
-        let (left, upper) = area.get_base_pixel();
-        area.draw_text(&given(measured), &text(11.5, MEASURED), (x - left + 4, y - upper))?;
-    }
-    Ok(())
-}
-
-/// The measured frequencies inside the chart.
-fn shown(chart: &Chart, frf: &FrfResult) -> Vec<f64> {
-    let band = chart.x_range();
-    frf.measured.iter().copied().filter(|hz| band.contains(hz)).collect()
+fn line(k: usize) -> Style {
+    let hex = [ALARM, SECOND, PARTS[2][0], INK][k % 4];
+    stroke(hex, if k == 0 { 2.0 } else { 1.5 }) + ["", DASHED, CHAIN, DOTTED][k % 4]
 }
 
 /// The real modes of the band, and how much of each shows at each place.

@@ -11,23 +11,23 @@
 //!
 //! The page's scripts: `shapes/viewer.js` moves the mode shapes, `charts.js` shows values under the pointer and zooms.
 //!
+//! [`chart`] is the one chart under all pictures with axes, [`svg`] the sheet that it and the drawings of models are on.
+//!
 //! Each analysis has a function that gives its sections from the results: what it found in a sentence with its class, tables and
 //! words, which are shown in either form, and pictures, each a pure function from the results to SVG. `SECTIONS` lists them. The
 //! findings of all sections come first on the page, the most urgent before the others, and last on the terminal.
 
 mod advice;
-mod axes;
+mod axis;
 mod budget;
 mod calibration;
-mod chart;
-mod chart_elements;
+pub mod chart;
 mod colours;
 mod comparison;
 mod complex;
 mod contact;
 mod contact_face;
 mod contours;
-mod curve;
 mod disc_modes;
 mod explored;
 mod finding;
@@ -35,7 +35,6 @@ mod format;
 mod frf;
 mod growth;
 mod html;
-mod labels;
 mod lines;
 mod magnitude;
 mod page;
@@ -43,7 +42,6 @@ mod participation;
 mod plate;
 mod player;
 mod provenance;
-mod readout;
 mod real_modes;
 mod reduced_check;
 mod rig;
@@ -53,7 +51,7 @@ mod sensitivity;
 mod shapes;
 mod squeal;
 mod steady;
-mod svg;
+pub mod svg;
 mod table;
 pub mod text;
 mod text_table;

@@ -1,10 +1,11 @@
 //! `participation.svg`: the real modes that take part in each unstable mode, as stacked bars.
 
+use super::chart::WIDTH;
 use super::colours::{ALARM_TEXT, INK, MUTED};
 use super::format::{fixed, hertz, signed};
 use super::html::described;
 use super::section::Picture;
-use super::svg::{Anchor, Ink, Sheet};
+use super::svg::{Sheet, ink, outlined, stroke};
 use crate::results::{ComplexResult, RunResults};
 use crate::stability::{ComplexMode, Verdict};
 
@@ -14,7 +15,6 @@ const MOST: usize = 12;
 const NEAREST: usize = 6;
 /// Smaller shares are among the others.
 const SMALLEST: f64 = 0.05;
-const WIDTH: f64 = 980.0;
 const LEFT: f64 = 140.0;
 const LENGTH: f64 = WIDTH - LEFT - 24.0;
 const HEAD: f64 = 12.0;
@@ -73,10 +73,10 @@ fn chosen(all: &[ComplexMode]) -> Vec<&ComplexMode> {
 /// One bar; `coloured` are the real modes that have their colour already.
 fn draw(sheet: &mut Sheet, top: f64, mode: &ComplexMode, complex: &ComplexResult, coloured: &mut Vec<usize>) {
     let colour = if mode.unstable() { ALARM_TEXT } else { INK };
-    let name = Ink { size: 14.0, colour, bold: true, anchor: Anchor::End };
-    sheet.text([LEFT - 12.0, top + 13.0], &format!("{} Hz", hertz(mode.frequency_hz(), 0)), name);
-    let rate = Ink { size: 12.0, colour: MUTED, bold: false, ..name };
-    sheet.text([LEFT - 12.0, top + 29.0], &format!("σ {} 1/s", signed(mode.growth_rate(), 2)), rate);
+    let name = format!("{} Hz", hertz(mode.frequency_hz(), 0));
+    sheet.text([LEFT - 12.0, top + 13.0], &name, ink(14.0, colour).bold().end());
+    let rate = format!("σ {} 1/s", signed(mode.growth_rate(), 2));
+    sheet.text([LEFT - 12.0, top + 29.0], &rate, ink(12.0, MUTED).end());
     let shown = mode.participation.iter().filter(|(_, share)| *share >= SMALLEST);
     let mut parts: Vec<(String, &str, f64)> = shown
         .map(|(real, share)| {
@@ -95,12 +95,11 @@ fn draw(sheet: &mut Sheet, top: f64, mode: &ComplexMode, complex: &ComplexResult
     }
     let mut start = LEFT;
     let mut narrow = Vec::new();
-    let label = Ink { size: 12.0, colour: INK, bold: false, anchor: Anchor::Middle };
+    let label = ink(12.0, INK).middle();
     for (text, fill, share) in &parts {
         let length = LENGTH * share;
         let middle = start + 0.5 * length;
-        let style = format!("fill=\"{fill}\" stroke=\"#ffffff\"");
-        sheet.rectangle([start, top], [length, BAR], &style);
+        sheet.rectangle([start, top], [length, BAR], &outlined(fill, "#ffffff", 1.0));
         let width = LETTER * text.chars().count() as f64;
         if width + 6.0 <= length {
             sheet.text([middle, top + 17.0], text, label);
@@ -114,8 +113,7 @@ fn draw(sheet: &mut Sheet, top: f64, mode: &ComplexMode, complex: &ComplexResult
     for (text, middle, width) in narrow.into_iter().rev() {
         let end = limit.min(middle + 0.5 * width);
         let below = [end - 0.5 * width, top + BAR + 16.0];
-        let line = [[middle, top + BAR], [below[0], below[1] - 11.0]];
-        sheet.lines([&line[..]], &format!("stroke=\"{MUTED}\" stroke-width=\"0.8\""));
+        sheet.line([[middle, top + BAR], [below[0], below[1] - 11.0]], &stroke(MUTED, 0.8));
         sheet.text(below, text, label);
         limit = end - width - 8.0;
     }

@@ -1,8 +1,8 @@
 //! A plate of the model seen face-on, and a field painted on it in colour steps.
 
-use super::colours::{MUTED, diverging};
+use super::colours::{INK, MUTED, diverging};
 use super::contours::at_least;
-use super::svg::{Sheet, SvgPoint};
+use super::svg::{Sheet, SvgPoint, fill, ink, outlined, stroke};
 use super::view::{View, ViewVector, along, cross, dot};
 use crate::results::Geometry;
 
@@ -55,28 +55,25 @@ impl PlateView {
             let level = if step == -STEPS { f64::NEG_INFINITY } else { f64::from(step) / f64::from(STEPS) };
             let region = at_least(pixels, &self.triangles, values, level);
             let colour = diverging((f64::from(step) + 0.5) / f64::from(STEPS));
-            let outline = if step == -STEPS {
-                format!(" stroke=\"{MUTED}\" stroke-width=\"1.6\"")
-            } else {
-                String::new()
-            };
+            let style = if step == -STEPS { outlined(&colour, MUTED, 1.6) } else { fill(&colour) };
             if !region.loops.is_empty() {
-                let loops = region.loops.iter().map(Vec::as_slice);
-                sheet.polygons(loops, &format!("fill=\"{colour}\"{outline}"));
+                sheet.polygons(region.loops.iter().map(Vec::as_slice), &style);
             }
         }
     }
 }
 
-/// The colour steps beside each other, `width` pixels a step; returns the width of them all.
-pub(super) fn colour_bar(sheet: &mut Sheet, [left, y]: SvgPoint, step: f64) -> f64 {
+/// The colour steps beside each other, `step` pixels a step, with words at both ends and in the middle; returns the width of them all.
+pub(super) fn colour_bar(sheet: &mut Sheet, [left, y]: SvgPoint, step: f64, [low, high]: [&str; 2]) -> f64 {
     for k in -STEPS..STEPS {
         let x = left + step * f64::from(k + STEPS);
         let colour = diverging((f64::from(k) + 0.5) / f64::from(STEPS));
-        sheet.rectangle([x, y], [step + 0.3, 14.0], &format!("fill=\"{colour}\""));
+        sheet.rectangle([x, y], [step + 0.3, 14.0], &fill(&colour));
     }
     let width = 2.0 * f64::from(STEPS) * step;
-    let style = format!("fill=\"none\" stroke=\"{MUTED}\" stroke-width=\"0.8\"");
-    sheet.rectangle([left, y], [width, 14.0], &style);
+    sheet.rectangle([left, y], [width, 14.0], &stroke(MUTED, 0.8));
+    for (place, words) in [(0.0, low), (0.5, "0"), (1.0, high)] {
+        sheet.text([left + place * width, y + 29.0], words, ink(12.5, INK).middle());
+    }
     width
 }

@@ -1,10 +1,11 @@
 //! `rig.svg`: the model as analysed, with its contact points, load and sliding direction.
 
+use super::chart::ends;
 use super::colours::{ALARM, ALARM_TEXT, INK, MEASURED, MUTED, PARTS};
 use super::format::{given, rounded};
 use super::html::described;
 use super::section::{Picture, ReportSection};
-use super::svg::{Anchor, Ink, Sheet, SvgPoint};
+use super::svg::{Sheet, SvgPoint, fill, ink, outlined, stroke};
 use super::view::{PlacedView, View, ViewVector, along, dot};
 use crate::results::{Geometry, RunResults, SteadyResult};
 use std::collections::BTreeMap;
@@ -71,23 +72,22 @@ fn draw_elements(sheet: &mut Sheet, geometry: &Geometry, view: &View, fit: &Plac
     let kind = |k: usize| (geometry.part_of[k], geometry.elements[k].len().min(3));
     for stretch in order.chunk_by(|a, b| kind(a.1) == kind(b.1)) {
         let (part, corners) = kind(stretch[0].1);
-        let [fill, edge] = PARTS[part % PARTS.len()];
+        let [face, edge] = PARTS[part % PARTS.len()];
         let shapes: Vec<Vec<SvgPoint>> =
             stretch.iter().map(|(_, k)| pixels(&geometry.elements[*k])).collect();
         match corners {
-            1 => shapes.iter().for_each(|s| sheet.circle(s[0], 4.0, &format!("fill=\"{edge}\""))),
+            1 => shapes.iter().for_each(|s| sheet.circle(s[0], 4.0, &fill(edge))),
             2 => {
-                let line = shapes.iter().map(Vec::as_slice);
-                sheet.lines(line, &format!("stroke=\"{edge}\" stroke-width=\"7\" stroke-linecap=\"round\""));
+                let style = stroke(edge, 7.0) + " stroke-linecap=\"round\"";
+                sheet.lines(shapes.iter().map(Vec::as_slice), &style);
             }
             _ => {
                 // A stroke of the fill's own colour closes the hairlines between neighbours.
-                let stroke = if fine {
-                    format!("stroke=\"{fill}\" stroke-width=\"0.7\"")
-                } else {
-                    format!("stroke=\"{edge}\" stroke-width=\"0.5\" stroke-opacity=\"0.55\"")
+                let style = match fine {
+                    true => outlined(face, face, 0.7),
+                    false => outlined(face, edge, 0.5) + " stroke-opacity=\"0.55\"",
                 };
-                sheet.polygons(shapes.iter().map(Vec::as_slice), &format!("fill=\"{fill}\" {stroke}"));
+                sheet.polygons(shapes.iter().map(Vec::as_slice), &style);
                 let sides: Vec<Vec<SvgPoint>> = stretch
                     .iter()
                     .filter_map(|(_, k)| outline.get(k))
@@ -95,7 +95,7 @@ fn draw_elements(sheet: &mut Sheet, geometry: &Geometry, view: &View, fit: &Plac
                     .map(|side| pixels(side))
                     .collect();
                 if !sides.is_empty() {
-                    let style = format!("stroke=\"{edge}\" stroke-width=\"1.6\" stroke-linecap=\"round\"");
+                    let style = stroke(edge, 1.6) + " stroke-linecap=\"round\"";
                     sheet.lines(sides.iter().map(Vec::as_slice), &style);
                 }
             }
@@ -183,9 +183,7 @@ fn arrows(geometry: &Geometry, steady: &SteadyResult) -> Vec<Arrow> {
 fn size(geometry: &Geometry) -> f64 {
     let used = || geometry.elements.iter().flatten().map(|k| geometry.nodes[*k]);
     let span = |c: usize| {
-        let (low, high) = used().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), place| {
-            (low.min(place[c]), high.max(place[c]))
-        });
+        let [low, high] = ends(used().map(|place| place[c]));
         high - low
     };
     [0, 1, 2].map(span).into_iter().fold(0.0, f64::max)
@@ -203,39 +201,32 @@ fn draw_points(sheet: &mut Sheet, steady: &SteadyResult, pixel: impl Fn(ViewVect
     let states = steady.points.iter().zip(&steady.state.points);
     let (closed, open): (Vec<_>, Vec<_>) = states.partition(|(_, state)| state.closed());
     for ((_, place), _) in open {
-        sheet.circle(pixel(*place), 2.0, &format!("fill=\"#ffffff\" stroke=\"{MUTED}\" stroke-width=\"1\""));
+        sheet.circle(pixel(*place), 2.0, &outlined("#ffffff", MUTED, 1.0));
     }
     for ((_, place), _) in closed {
-        sheet.circle(
-            pixel(*place),
-            3.2,
-            &format!("fill=\"{ALARM}\" stroke=\"#ffffff\" stroke-width=\"0.7\""),
-        );
+        sheet.circle(pixel(*place), 3.2, &outlined(ALARM, "#ffffff", 0.7));
     }
 }
 
 fn draw_legend(sheet: &mut Sheet, geometry: &Geometry, contact: bool, arrows: &[Arrow]) {
-    let ink = Ink { size: 14.0, colour: INK, bold: false, anchor: Anchor::Start };
     let (x, mut y) = (22.0, 26.0);
     for (k, part) in geometry.parts.iter().enumerate() {
         let [fill, edge] = PARTS[k % PARTS.len()];
-        let style = format!("fill=\"{fill}\" stroke=\"{edge}\" stroke-width=\"1.4\"");
-        sheet.rectangle([x, y - 11.0], [18.0, 13.0], &style);
-        sheet.text([x + 27.0, y], part, ink);
+        sheet.rectangle([x, y - 11.0], [18.0, 13.0], &outlined(fill, edge, 1.4));
+        sheet.text([x + 27.0, y], part, ink(14.0, INK));
         y += 23.0;
     }
     if contact {
-        let closed = format!("fill=\"{ALARM}\"");
-        let open = format!("fill=\"#ffffff\" stroke=\"{MUTED}\" stroke-width=\"1.2\"");
-        for (style, text) in [(closed, "contact point, closed"), (open, "contact point, open")] {
-            sheet.circle([x + 9.0, y - 5.0], 4.0, &style);
-            sheet.text([x + 27.0, y], text, ink);
+        let styles = [fill(ALARM), outlined("#ffffff", MUTED, 1.2)];
+        for (style, text) in styles.iter().zip(["contact point, closed", "contact point, open"]) {
+            sheet.circle([x + 9.0, y - 5.0], 4.0, style);
+            sheet.text([x + 27.0, y], text, ink(14.0, INK));
             y += 23.0;
         }
     }
     for arrow in arrows.iter().take(NAMED) {
         sheet.arrow([x, y - 5.0], [x + 20.0, y - 5.0], arrow.colour, 3.0);
-        sheet.text([x + 27.0, y], &arrow.label, Ink { colour: arrow.colour, bold: true, ..ink });
+        sheet.text([x + 27.0, y], &arrow.label, ink(14.0, arrow.colour).bold());
         y += 23.0;
     }
 }
@@ -247,9 +238,8 @@ fn draw_axes(sheet: &mut Sheet, view: &View, fit: &PlacedView) {
         let [right, up] = view.project(axis);
         let at = |length: f64| [origin[0] + length * right, origin[1] - length * up];
         sheet.arrow(origin, at(42.0), MUTED, 2.2);
-        let ink = Ink { size: 14.0, colour: MUTED, bold: true, anchor: Anchor::Middle };
         let [x, y] = at(54.0);
-        sheet.text([x, y + 5.0], name, ink);
+        sheet.text([x, y + 5.0], name, ink(14.0, MUTED).bold().middle());
     }
     // The longest of 1, 2, 5 × 10ᵏ m that fits.
     let longest = 110.0 / fit.scale();
@@ -257,9 +247,8 @@ fn draw_axes(sheet: &mut Sheet, view: &View, fit: &PlacedView) {
     let length = [5.0, 2.0, 1.0].map(|m| m * decade).into_iter().find(|l| *l <= longest).unwrap_or(decade);
     let (x, y, width) = (SIZE[0] - 30.0, SIZE[1] - 34.0, length * fit.scale());
     let bar = [[x - width, y - 4.0], [x - width, y], [x, y], [x, y - 4.0]];
-    sheet.lines([&bar[..]], &format!("stroke=\"{INK}\" stroke-width=\"1.4\""));
-    let ink = Ink { size: 13.0, colour: INK, bold: false, anchor: Anchor::End };
-    sheet.text([x, y + 17.0], &format!("{} mm", given(1e3 * length)), ink);
+    sheet.lines([&bar[..]], &stroke(INK, 1.4));
+    sheet.text([x, y + 17.0], &format!("{} mm", given(1e3 * length)), ink(13.0, INK).end());
 }
 
 #[cfg(test)]

@@ -1,12 +1,13 @@
 //! The page of a search: which facts the case meets with the numbers that were found, how the cost fell, and which number
 //! matters most.
 
+use super::chart::{Axis, Chart, WIDTH, ends, wide};
 use super::colours::{ALARM, CALM, INK, MEASURED, MUTED};
 use super::finding::FindingClass;
 use super::format::{fixed, given, significant};
 use super::html::{self, PageLayout, escape};
 use super::provenance::{as_written, origin};
-use super::svg::{Anchor, Ink, Sheet};
+use super::svg::{Sheet, fill, ink, sheer, stroke};
 use super::table::ReportTable;
 use super::text_table::render;
 use crate::error::Result;
@@ -14,10 +15,7 @@ use crate::results::record::InputFile;
 use crate::results::{Provenance, SearchResult, SearchedNumber, passed, write_result};
 use std::path::Path;
 
-const WIDTH: f64 = 980.0;
-const LEFT: f64 = 90.0;
 const LABELS: f64 = 210.0;
-const HEIGHT: f64 = 320.0;
 const ROW: f64 = 24.0;
 
 /// Writes `search.html`, `search_cost.svg` and `search_weights.svg` into the folder `dir`; `inputs` are the cases and the files
@@ -184,51 +182,31 @@ fn number_table(result: &SearchResult) -> ReportTable {
     table
 }
 
-fn small(colour: &str, anchor: Anchor) -> Ink<'_> {
-    Ink { size: 12.0, colour, bold: false, anchor }
-}
-
 /// Every evaluation as a dot, the least so far as a line, the cost on a logarithmic axis.
 fn cost_picture(result: &SearchResult) -> String {
-    let mut sheet = Sheet::new(WIDTH, HEIGHT + 56.0);
     let costs = &result.history;
-    let sound = || costs.iter().copied().filter(|c| c.is_finite() && *c > 0.0);
-    let (low, high) = (sound().fold(f64::INFINITY, f64::min), sound().fold(0.0, f64::max));
+    let [low, high] = ends(costs.iter().copied().filter(|cost| *cost > 0.0));
     if low > high {
-        return sheet.finish();
+        return Sheet::new(WIDTH, 376.0).finish();
     }
-    let decades = [low.log10() - 0.05, high.log10() + 0.05];
-    let across = |k: usize| LEFT + (WIDTH - LEFT - 30.0) * (k as f64 + 0.5) / costs.len() as f64;
-    let down =
-        |cost: f64| 20.0 + (HEIGHT - 20.0) * (decades[1] - cost.max(low).log10()) / (decades[1] - decades[0]);
-    for tick in ticks(decades) {
-        let y = down(tick);
-        sheet.lines([&[[LEFT, y], [WIDTH - 30.0, y]][..]], "stroke=\"#e6e9ed\"");
-        sheet.text([LEFT - 10.0, y + 4.0], &given(tick), small(INK, Anchor::End));
-    }
+    let name = format!("evaluations, 1 to {}", costs.len());
+    let up = Axis::log("cost", low.log10() - 0.05..high.log10() + 0.05, 1.0);
+    let across = Axis::new(name, 0.5..costs.len() as f64 + 0.5).bare();
+    let mut chart = Chart::new(wide(16.0, 324.0), across, up);
     let mut least = f64::INFINITY;
     let mut line = Vec::new();
-    for (k, cost) in costs.iter().enumerate().filter(|(_, cost)| cost.is_finite()) {
-        sheet.circle([across(k), down(*cost)], 2.2, &format!("fill=\"{CALM}\" fill-opacity=\"0.5\""));
-        if *cost < least {
+    let numbered = costs.iter().zip((1..).map(f64::from)).map(|(cost, k)| (cost.max(low), k));
+    for (cost, k) in numbered.filter(|(cost, _)| cost.is_finite()) {
+        chart.circle([k, cost], 2.2, &sheer(fill(CALM), 0.5));
+        if cost < least {
             // Down from what was least before, if anything was.
-            line.extend([least, *cost].into_iter().filter(|c| c.is_finite()).map(|c| [across(k), down(c)]));
-            least = *cost;
+            line.extend([least, cost].into_iter().filter(|c| c.is_finite()).map(|c| [k, c]));
+            least = cost;
         }
     }
-    line.push([WIDTH - 30.0, down(least)]);
-    sheet.lines([&line[..]], &format!("stroke=\"{ALARM}\" stroke-width=\"2\""));
-    sheet.text([LEFT - 60.0, 14.0], "cost", small(MUTED, Anchor::Start));
-    let foot = format!("evaluations, 1 to {}", costs.len());
-    sheet.text([0.5 * (LEFT + WIDTH), HEIGHT + 36.0], &foot, small(MUTED, Anchor::Middle));
-    sheet.finish()
-}
-
-/// 1, 2 and 5 times powers of ten inside a range of decades.
-fn ticks([low, high]: [f64; 2]) -> Vec<f64> {
-    let powers = low.floor() as i32..=high.ceil() as i32;
-    let all = powers.flat_map(|power| [1.0, 2.0, 5.0].map(|part| part * 10f64.powi(power)));
-    all.filter(|tick| (low..=high).contains(&tick.log10())).collect()
+    line.push([costs.len() as f64 + 0.5, least]);
+    chart.line(line, &stroke(ALARM, 2.0));
+    chart.picture(376.0)
 }
 
 /// The weight of each number as a bar, the heaviest first.
@@ -240,23 +218,21 @@ fn weight_picture(result: &SearchResult) -> String {
     let largest = numbers.first().map_or(0.0, |n| n.weight(cost)).max(f64::MIN_POSITIVE);
     for (k, number) in numbers.iter().enumerate() {
         let y = 12.0 + ROW * k as f64;
-        sheet.text([LABELS - 12.0, y + 13.0], &number.name, small(INK, Anchor::End));
+        sheet.text([LABELS - 12.0, y + 13.0], &number.name, ink(12.0, INK).end());
         for (half, moved) in number.moved.iter().enumerate() {
             let Some(moved) = moved else { continue };
             let rise = (moved.cost - cost).max(0.0);
             let length = 0.45 * (WIDTH - LABELS) * rise / largest;
-            let (colour, top) = ([MEASURED, ALARM][half], y + 9.0 * half as f64);
-            sheet.rectangle([LABELS, top], [length, 8.0], &format!("fill=\"{colour}\""));
             let label = format!("{} {}", significant(moved.to, 4), number.unit);
             let fact = &result.facts.rows[moved.worst].quantity;
             let words = if rise > 0.02 * largest { format!("{label}: {fact}") } else { label };
-            let ink = Ink { size: 10.0, ..small(MUTED, Anchor::Start) };
-            sheet.text([LABELS + length + 6.0, top + 8.0], &words, ink);
+            let hex = [MEASURED, ALARM][half];
+            sheet.bar([LABELS, y + 9.0 * half as f64], [length, 8.0], hex, &words);
         }
     }
     let foot = "rise of the cost; blue: a smaller number, orange: a larger one, and the fact that gets worst";
     let bottom = ROW * numbers.len() as f64 + 36.0;
-    sheet.text([0.5 * (LABELS + WIDTH), bottom], foot, small(MUTED, Anchor::Middle));
+    sheet.text([0.5 * (LABELS + WIDTH), bottom], foot, ink(12.0, MUTED).middle());
     sheet.finish()
 }
 

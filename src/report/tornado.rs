@@ -1,9 +1,10 @@
 //! `sensitivity.svg`: the scalars that move the growth rate of each chosen mode most, by 1 % of themselves.
 
+use super::chart::WIDTH;
 use super::colours::{ALARM, INK, MEASURED, MUTED};
 use super::format::{hertz, signed, significant};
 use super::section::Picture;
-use super::svg::{Anchor, Ink, Sheet};
+use super::svg::{Sheet, ink, stroke};
 use crate::results::{ModeSensitivity, ParameterRate, RunResults, SensitivityResult};
 use std::f64::consts::TAU;
 
@@ -11,7 +12,6 @@ use std::f64::consts::TAU;
 const MOST_MODES: usize = 6;
 /// Scalars at most for each mode.
 const MOST: usize = 9;
-const WIDTH: f64 = 980.0;
 const LABELS: f64 = 330.0;
 const ROW: f64 = 22.0;
 const HEAD: f64 = 40.0;
@@ -35,9 +35,8 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
         draw(&mut sheet, top, mode);
         top += height(mode);
     }
-    let ink = Ink { size: 13.0, colour: MUTED, bold: false, anchor: Anchor::Middle };
     let foot = "change of the growth rate [1/s] when the scalar grows by 1 % of its value; orange: the mode grows faster";
-    sheet.text([0.5 * WIDTH, top + 12.0], foot, ink);
+    sheet.text([0.5 * WIDTH, top + 12.0], foot, ink(13.0, MUTED).middle());
     let caption =
         "Largest sensitivities of the growth rate of each mode, the steady state following every scalar."
             .to_string();
@@ -58,8 +57,7 @@ fn draw(sheet: &mut Sheet, top: f64, mode: &ModeSensitivity) {
         hertz(mode.eigenvalue.im / TAU, 0),
         signed(mode.eigenvalue.re, 2)
     );
-    let ink = Ink { size: 15.0, colour: INK, bold: true, anchor: Anchor::Start };
-    sheet.text([18.0, top + 22.0], &title, ink);
+    sheet.text([18.0, top + 22.0], &title, ink(15.0, INK).bold());
     let shown = strongest(mode);
     let largest = shown.iter().map(|p| p.growth_per_percent().abs()).fold(f64::MIN_POSITIVE, f64::max);
     // Space for the figures at both ends.
@@ -68,25 +66,14 @@ fn draw(sheet: &mut Sheet, top: f64, mode: &ModeSensitivity) {
     for (k, p) in shown.iter().enumerate() {
         let y = top + HEAD + ROW * k as f64;
         let effect = p.growth_per_percent();
-        let length = reach * effect / largest;
-        let colour = if effect > 0.0 { ALARM } else { MEASURED };
-        let corner = [zero.min(zero + length), y - 1.0];
-        sheet.rectangle(corner, [length.abs(), ROW - 6.0], &format!("fill=\"{colour}\""));
-        let label = Ink { size: 13.0, colour: INK, bold: false, anchor: Anchor::End };
         let dagger = if p.kink { " †" } else { "" };
-        sheet.text([LABELS, y + 12.0], &format!("{}{dagger}", p.path), label);
-        let sign = if effect > 0.0 { "+" } else { "" };
+        sheet.text([LABELS, y + 12.0], &format!("{}{dagger}", p.path), ink(13.0, INK).end());
+        let (hex, sign) = if effect > 0.0 { (ALARM, "+") } else { (MEASURED, "") };
         let figure = format!("{sign}{}", significant(effect, 3));
-        let (place, anchor) = if effect > 0.0 {
-            (zero + length + 6.0, Anchor::Start)
-        } else {
-            (zero + length - 6.0, Anchor::End)
-        };
-        sheet.text([place, y + 12.0], &figure, Ink { anchor, ..label });
+        sheet.bar([zero, y - 1.0], [reach * effect / largest, ROW - 6.0], hex, &figure);
     }
     let bottom = top + HEAD + ROW * shown.len() as f64 - 4.0;
-    let axis = [[zero, top + HEAD - 5.0], [zero, bottom]];
-    sheet.lines([&axis[..]], &format!("stroke=\"{INK}\" stroke-width=\"1.2\""));
+    sheet.line([[zero, top + HEAD - 5.0], [zero, bottom]], &stroke(INK, 1.2));
 }
 
 #[cfg(test)]

@@ -1,19 +1,19 @@
 //! The page of the validation suite: every quantity beside its reference, with source and reason, and all differences as
 //! parts of their tolerances in one picture.
 
-use super::colours::{ALARM, INK, MEASURED, MUTED};
+use super::chart::{Axis, Chart, WIDTH};
+use super::colours::{ALARM, INK, MEASURED};
 use super::finding::FindingClass;
 use super::format::{fixed, given, power, significant};
 use super::html::{self, PageLayout};
 use super::provenance::origin;
-use super::svg::{Anchor, Ink, Sheet};
+use super::svg::{fill, sheer, stroke};
 use super::table::ReportTable;
 use crate::error::Result;
 use crate::results::record::InputFile;
 use crate::results::{CheckedCase, Provenance, passed, write_atomically};
 use std::path::Path;
 
-const WIDTH: f64 = 980.0;
 const LABELS: f64 = 300.0;
 const ROW: f64 = 24.0;
 const TOP: f64 = 34.0;
@@ -98,35 +98,27 @@ fn table(case: &CheckedCase) -> ReportTable {
 }
 
 fn picture(cases: &[CheckedCase]) -> String {
-    let bottom = TOP + ROW * cases.len() as f64;
-    let mut sheet = Sheet::new(WIDTH, bottom + 52.0);
     let [low, high] = DECADES.map(f64::from);
-    let across = |part: f64| {
-        let decade = part.max(f64::MIN_POSITIVE).log10().clamp(low, high);
-        LABELS + (WIDTH - LABELS - 40.0) * (decade - low) / (high - low)
+    let label = |decade: i32| match 10f64.powi(decade) {
+        1.0 => (1.0, "tolerance".to_string()),
+        part => (part, given(part)),
     };
-    let small = |colour, anchor| Ink { size: 12.0, colour, bold: false, anchor };
-    for decade in DECADES[0]..=DECADES[1] {
-        let x = across(10f64.powi(decade));
-        let limit = decade == 0;
-        let style = if limit { "stroke=\"#1b1f24\" stroke-width=\"1.4\"" } else { "stroke=\"#e6e9ed\"" };
-        sheet.lines([&[[x, TOP - 6.0], [x, bottom]][..]], style);
-        let label = if limit { "tolerance".to_string() } else { given(10f64.powi(decade)) };
-        sheet.text([x, bottom + 18.0], &label, small(INK, Anchor::Middle));
-    }
+    let across = Axis::log("difference from the reference ÷ tolerance", low..high, 1.0);
+    let across = across.at((DECADES[0]..=DECADES[1]).map(label));
+    let bottom = TOP + ROW * cases.len() as f64;
+    let names = cases.iter().map(|case| case.name.clone());
+    let mut chart = Chart::new([LABELS, TOP - 6.0, WIDTH - 40.0, bottom], across, Axis::rows(names));
+    chart.rule(0, 1.0, &stroke(INK, 1.4));
     for (k, case) in cases.iter().enumerate() {
-        let y = TOP + ROW * (k as f64 + 0.5);
-        sheet.text([LABELS - 14.0, y + 4.0], &case.name, small(INK, Anchor::End));
         for row in &case.rows {
-            let colour = if row.passed() { MEASURED } else { ALARM };
+            let hex = if row.passed() { MEASURED } else { ALARM };
             let part = row.difference() / row.tolerance;
-            let x = across(if part.is_nan() { f64::INFINITY } else { part });
-            sheet.circle([x, y], 4.2, &format!("fill=\"{colour}\" fill-opacity=\"0.55\""));
+            let [least, most] = DECADES.map(|decade| 10f64.powi(decade));
+            let part = if part.is_nan() { most } else { part.clamp(least, most) };
+            chart.circle([part, k as f64 + 0.5], 4.2, &sheer(fill(hex), 0.55));
         }
     }
-    let foot = "difference from the reference ÷ tolerance";
-    sheet.text([0.5 * (LABELS + WIDTH - 40.0), bottom + 40.0], foot, small(MUTED, Anchor::Middle));
-    sheet.finish()
+    chart.picture(bottom + 52.0)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::super::colours::{INK, MEASURED, MUTED, sequential};
 use super::super::format::{fixed, given, hertz};
-use super::super::svg::{Anchor, Ink, Sheet};
+use super::super::svg::{Sheet, ink, outlined, stroke};
 use super::level::level_name;
 use crate::report::section::Picture;
 use crate::results::{MeasuredComparison, NamedModes, file_name};
@@ -30,7 +30,7 @@ pub(super) fn picture(comparison: &MeasuredComparison, set: &NamedModes) -> Opti
     }
     let (width, height) = (columns as f64 * CELL[0], rows.len() as f64 * CELL[1]);
     let mut sheet = Sheet::new((MARGIN[0] + width + 30.0).max(NARROWEST), MARGIN[1] + height + 34.0);
-    let ink = Ink { size: 12.5, colour: INK, bold: false, anchor: Anchor::Middle };
+    let small = ink(12.5, INK);
     for column in 0..columns {
         let x = MARGIN[0] + (column as f64 + 0.5) * CELL[0];
         let name = level_name(set, &comparison.levels[column]);
@@ -38,29 +38,26 @@ pub(super) fn picture(comparison: &MeasuredComparison, set: &NamedModes) -> Opti
         let (first, second) = name.split_once(" ×").map_or((name.as_str(), ""), |(a, b)| (a, b));
         let lines = [first.to_string(), if second.is_empty() { String::new() } else { format!("×{second}") }];
         for (k, line) in lines.iter().enumerate() {
-            sheet.text([x, MARGIN[1] - 40.0 + 15.0 * k as f64], line, ink);
+            sheet.text([x, MARGIN[1] - 40.0 + 15.0 * k as f64], line, small.middle());
         }
-        sheet.text([x, MARGIN[1] - 10.0], &hertz(hz(column), 0), Ink { colour: MUTED, ..ink });
+        sheet.text([x, MARGIN[1] - 10.0], &hertz(hz(column), 0), ink(12.5, MUTED).middle());
     }
-    let left = Ink { anchor: Anchor::Start, ..ink };
-    sheet.text(
-        [MARGIN[0], 24.0],
-        "MAC: squared cosine between shapes",
-        Ink { bold: true, size: 14.0, ..left },
-    );
-    sheet.text([MARGIN[0], 46.0], "computed [Hz]", left);
-    sheet.text([12.0, MARGIN[1] - 10.0], "measured [Hz]", Ink { colour: MEASURED, ..left });
-    let style = format!("fill=\"none\" stroke=\"{MEASURED}\" stroke-width=\"2.4\"");
+    let title = "MAC: squared cosine between shapes";
+    sheet.text([MARGIN[0], 24.0], title, ink(14.0, INK).bold());
+    sheet.text([MARGIN[0], 46.0], "computed [Hz]", small);
+    sheet.text([12.0, MARGIN[1] - 10.0], "measured [Hz]", ink(12.5, MEASURED));
+    let style = stroke(MEASURED, 2.4);
     for (place, k) in rows.iter().enumerate() {
         let row = &comparison.rows[*k];
         let y = MARGIN[1] + place as f64 * CELL[1];
-        let label = Ink { colour: MEASURED, anchor: Anchor::End, ..ink };
+        let label = ink(12.5, MEASURED).end();
         sheet.text([MARGIN[0] - 10.0, y + 20.0], &given(row.frequency_hz), label);
         for (column, like) in comparison.mac[*k][..columns].iter().enumerate() {
             let corner = [MARGIN[0] + column as f64 * CELL[0], y];
-            sheet.rectangle(corner, CELL, &format!("fill=\"{}\" stroke=\"#ffffff\"", sequential(*like)));
+            sheet.rectangle(corner, CELL, &outlined(&sequential(*like), "#ffffff", 1.0));
             let colour = if *like > 0.55 { "#ffffff" } else { INK };
-            sheet.text([corner[0] + 0.5 * CELL[0], y + 20.0], &fixed(*like, 2), Ink { colour, ..ink });
+            let middle = [corner[0] + 0.5 * CELL[0], y + 20.0];
+            sheet.text(middle, &fixed(*like, 2), ink(12.5, colour).middle());
         }
     }
     for (place, k) in rows.iter().enumerate() {
@@ -71,7 +68,7 @@ pub(super) fn picture(comparison: &MeasuredComparison, set: &NamedModes) -> Opti
         }
     }
     let note = "Framed: paired. A level of several modes counts as the space they span.";
-    sheet.text([12.0, MARGIN[1] + height + 22.0], note, Ink { colour: MUTED, ..left });
+    sheet.text([12.0, MARGIN[1] + height + 22.0], note, ink(12.5, MUTED));
     let caption = format!("MAC of the measured shapes ({}) with the computed ones.", comparison.name);
     Some(Picture { file: file_name("mac", &comparison.name), caption, svg: sheet.finish() })
 }

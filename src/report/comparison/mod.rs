@@ -7,7 +7,7 @@ mod mac;
 mod responses;
 mod table;
 
-pub(super) use responses::{ResponseCurve, ResponsePanel, computed_pen, measured_pen, stacked};
+pub(super) use responses::{HEIGHTS, MOST};
 use table::{modes_table, responses_table};
 
 use super::section::{Display, Picture, ReportSection};

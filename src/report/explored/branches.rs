@@ -1,15 +1,14 @@
 //! Branches of a sweep as lines of a chart.
 
-use super::axis::place;
 use crate::linalg::c64;
+use crate::report::chart::Chart;
 use crate::report::colours::MEASURED;
-use crate::report::curve::{Dash, LinearChart, Pen, draw_curve, pen};
+use crate::report::svg::{DASHED, Style, stroke};
 use crate::results::SweepResult;
 use crate::stability::unstable;
 use crate::sweep::{Critical, CriticalKind, InteractionKind};
-use std::error::Error;
 
-/// A branch as points (place on the axis, λ), its critical points among them, and which stretches grow.
+/// A branch as points (value, λ), its critical points among them, and which stretches grow.
 fn trace(result: &SweepResult, b: usize) -> Vec<(f64, c64, bool)> {
     let sweep = &result.sweep;
     let branch = &sweep.branches[b];
@@ -24,9 +23,9 @@ fn trace(result: &SweepResult, b: usize) -> Vec<(f64, c64, bool)> {
             let before = sweep.values[branch.first + k - 1];
             let (low, high) = (before.min(value), before.max(value));
             let between = own.iter().filter(|(v, _)| *v > low && *v < high);
-            points.extend(between.map(|(v, z)| (place(&result.axis, *v), *z, true)));
+            points.extend(between.map(|(v, z)| (*v, *z, true)));
         }
-        points.push((place(&result.axis, value), *z, unstable(*z)));
+        points.push((value, *z, unstable(*z)));
     }
     points
 }
@@ -42,7 +41,7 @@ fn partner(result: &SweepResult, critical: &Critical) -> Option<usize> {
     merging.branches.into_iter().find(|b| *b != critical.branch)
 }
 
-/// Growing and other stretches of a branch, each a list of (place on the axis, λ).
+/// Growing and other stretches of a branch, each a list of (value, λ).
 fn stretches(result: &SweepResult, b: usize) -> Vec<(bool, Vec<(f64, c64)>)> {
     let mut all: Vec<(bool, Vec<(f64, c64)>)> = Vec::new();
     for pair in trace(result, b).windows(2) {
@@ -58,23 +57,21 @@ fn stretches(result: &SweepResult, b: usize) -> Vec<(bool, Vec<(f64, c64)>)> {
 
 /// Every branch that is `chosen`: what does not grow in the first line, what grows in the second, on top.
 pub(super) fn draw_lines(
-    chart: &LinearChart,
+    chart: &mut Chart,
     result: &SweepResult,
-    point: impl Fn(f64, c64) -> (f64, f64),
-    (chosen, lines): (impl Fn(usize) -> bool, [Pen; 2]),
-) -> Result<(), Box<dyn Error>> {
+    point: impl Fn(f64, c64) -> [f64; 2],
+    (chosen, lines): (impl Fn(usize) -> bool, &[Style; 2]),
+) {
     for (growing, line) in [false, true].into_iter().zip(lines) {
         for b in (0..result.sweep.branches.len()).filter(|b| chosen(*b)) {
             for (_, points) in stretches(result, b).iter().filter(|(grows, _)| *grows == growing) {
-                draw_curve(chart, points.iter().map(|(x, z)| point(*x, *z)), line)?;
+                chart.line(points.iter().map(|(x, z)| point(*x, *z)), line);
             }
         }
     }
-    Ok(())
 }
 
 /// The case's own value as a dashed line.
-pub(super) fn draw_nominal(chart: &LinearChart, result: &SweepResult) -> Result<(), Box<dyn Error>> {
-    let (own, up) = (place(&result.axis, result.nominal), chart.y_range());
-    draw_curve(chart, [(own, up.start), (own, up.end)], Pen { dash: Dash::Dashed, ..pen(MEASURED, 1.2) })
+pub(super) fn draw_nominal(chart: &mut Chart, result: &SweepResult) {
+    chart.rule(0, result.nominal, &(stroke(MEASURED, 1.2) + DASHED));
 }

@@ -1,16 +1,13 @@
 //! `map_<name>.svg`: the largest growth rate over two parameters, with the boundary of stability.
 
-use super::axis::{axis_name, label, place, scale};
-use crate::report::chart::{Area, bold, colour, sheet, text};
+use super::axis::{axis_name, between, place, value};
+use crate::report::chart::{Chart, WIDTH};
 use crate::report::colours::{INK, MUTED, diverging};
-use crate::report::curve::{draw_curve, draw_dot, draw_ring, pen};
 use crate::report::format::given;
-use crate::report::readout::axes_of;
 use crate::report::section::Picture;
+use crate::report::svg::{Sheet, fill, ink, outlined, stroke};
 use crate::results::{MapResult, file_name};
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use std::error::Error;
+use std::ops::Range;
 
 /// At most this many cells along an axis; a finer grid is thinned out in the picture.
 const CELLS: usize = 160;
@@ -22,7 +19,7 @@ pub(super) fn picture(result: &MapResult) -> Option<Picture> {
         return None;
     }
     let shades = Shades::of(result);
-    let svg = sheet((980, 620), |area| draw(area, result, &shades))?;
+    let svg = drawn(result, &shades);
     let caption = format!(
         "Largest growth rate of any mode over {} and {}: {}. The colour goes with the square root of the growth rate. Line: the \
          boundary of stability. Ring: the case itself.",
@@ -58,8 +55,8 @@ impl Shades {
         rate.signum() * (rate.abs() / self.size()).sqrt()
     }
 
-    fn colour(&self, rate: f64) -> RGBColor {
-        if rate.is_finite() { colour(&diverging(self.place(rate))) } else { colour(NONE) }
+    fn colour(&self, rate: f64) -> String {
+        if rate.is_finite() { diverging(self.place(rate)) } else { NONE.into() }
     }
 
     /// The colours that are drawn.
@@ -92,8 +89,8 @@ impl Shades {
     }
 }
 
-/// Edges of the cells about the values, and the index of the value of each cell.
-fn cells(result: &MapResult, d: usize) -> Vec<(f64, f64, usize)> {
+/// Edges of the cells about the values as places on the axis, and the index of the value of each cell.
+fn cells(result: &MapResult, d: usize) -> Vec<(Range<f64>, usize)> {
     let axis = &result.axes[d];
     let step = axis.points.div_ceil(CELLS);
     let chosen: Vec<usize> = (0..axis.points).step_by(step).collect();
@@ -104,87 +101,57 @@ fn cells(result: &MapResult, d: usize) -> Vec<(f64, f64, usize)> {
         k if k == n => at[n - 1] + 0.5 * (at[n - 1] - at[n - 2]),
         k => 0.5 * (at[k - 1] + at[k]),
     };
-    (0..n).map(|k| (edge(k), edge(k + 1), chosen[k])).collect()
+    (0..n).map(|k| (edge(k)..edge(k + 1), chosen[k])).collect()
 }
 
-fn draw(area: &Area, result: &MapResult, shades: &Shades) -> Result<(), Box<dyn Error>> {
-    let (main, bar) = area.split_horizontally(830);
-    let (across, up) = (cells(result, 0), cells(result, 1));
-    let span = |cells: &[(f64, f64, usize)]| {
-        let (a, b) = (cells[0].0, cells[cells.len() - 1].1);
-        a.min(b)..a.max(b)
-    };
-    let mut chart = ChartBuilder::on(&main)
-        .margin(16)
-        .x_label_area_size(52)
-        .y_label_area_size(84)
-        .build_cartesian_2d(span(&across), span(&up))?;
-    let names = [0, 1].map(|d| axis_name(&result.labels[d], &result.units[d]));
-    axes_of(&main, &chart, [0, 1].map(|d| scale(&result.axes[d], &names[d])))?;
+fn drawn(result: &MapResult, shades: &Shades) -> String {
+    let cells = [0, 1].map(|d| cells(result, d));
+    let [across, up] = [0, 1].map(|d| {
+        let (a, b) = (cells[d][0].0.start, cells[d][cells[d].len() - 1].0.end);
+        let name = axis_name(&result.labels[d], &result.units[d]);
+        between(&result.axes[d], &name, a.min(b)..a.max(b)).bare()
+    });
+    let mut chart = Chart::new([100.0, 16.0, 814.0, 552.0], across, up);
     let n = result.axes[0].points;
-    for (low, high, j) in &up {
-        for (left, right, i) in &across {
+    for (high, j) in &cells[1] {
+        for (wide, i) in &cells[0] {
             let rate = result.points.get(i + n * j).map_or(f64::NAN, |p| p.growth_rate);
-            chart.draw_series([Rectangle::new(
-                [(*left, *low), (*right, *high)],
-                shades.colour(rate).filled(),
-            )])?;
+            let corners = [[wide.start, high.start], [wide.end, high.end]];
+            chart.bar(
+                corners.map(|[x, y]| [value(&result.axes[0], x), value(&result.axes[1], y)]),
+                &fill(&shades.colour(rate)),
+            );
         }
     }
-    let axes = result.axes;
-    chart
-        .configure_mesh()
-        .disable_mesh()
-        .axis_style(colour(MUTED))
-        .label_style(text(13.0, INK))
-        .axis_desc_style(text(14.0, INK))
-        .x_desc(&names[0])
-        .y_desc(&names[1])
-        .x_label_formatter(&|v| label(&axes[0], *v))
-        .y_label_formatter(&|v| label(&axes[1], *v))
-        .draw()?;
-    let spot = |p: [f64; 2]| (place(&axes[0], p[0]), place(&axes[1], p[1]));
     for line in &result.boundary.lines {
-        draw_curve(&chart, line.iter().map(|k| spot(result.boundary.points[*k])), pen(INK, 3.0))?;
+        chart.line(line.iter().map(|k| result.boundary.points[*k]), &stroke(INK, 3.0));
     }
-    let own = spot(result.nominal);
-    draw_dot(&chart, own, 7.0, "#ffffff")?;
-    draw_ring(&chart, own, 7.0, (INK, 3.0))?;
-    draw_bar(&bar, shades)
+    chart.circle(result.nominal, 7.0, &outlined("#ffffff", INK, 3.0));
+    let mut sheet = Sheet::new(WIDTH, 620.0);
+    chart.draw(&mut sheet);
+    draw_bar(&mut sheet, shades);
+    sheet.finish()
 }
 
 /// The colours with their values.
-fn draw_bar(bar: &Area, shades: &Shades) -> Result<(), Box<dyn Error>> {
+fn draw_bar(sheet: &mut Sheet, shades: &Shades) {
     const TOP: f64 = 72.0;
     const HEIGHT: f64 = 430.0;
-    const STEPS: usize = 86;
-    bar.draw_text("largest growth", &bold(12.5, INK), (10, 16))?;
-    bar.draw_text("rate σ [1/s]", &bold(12.5, INK), (10, 32))?;
-    bar.draw_text("square-root scale", &text(11.5, MUTED), (10, 49))?;
+    const LEFT: f64 = 840.0;
+    sheet.text([LEFT, 28.0], "largest growth", ink(12.5, INK).bold());
+    sheet.text([LEFT, 44.0], "rate σ [1/s]", ink(12.5, INK).bold());
+    sheet.text([LEFT, 60.0], "square-root scale", ink(11.5, MUTED));
     let [low, high] = shades.ends.map(|rate| shades.place(rate));
     let length = (high - low).max(f64::MIN_POSITIVE);
-    let down = |t: f64| (TOP + HEIGHT * (high - t) / length).round() as i32;
-    for k in 0..STEPS {
-        let part = |k: f64| high - length * k / STEPS as f64;
-        let corners = [(10, down(part(k as f64))), (32, down(part((k + 1) as f64)))];
-        let middle = diverging(part(k as f64 + 0.5));
-        bar.draw(&Rectangle::new(corners, colour(&middle).filled()))?;
-    }
-    let outline = [(10, down(high)), (32, down(low))];
-    bar.draw(&Rectangle::new(outline, colour(MUTED).stroke_width(1)))?;
-    let left = |style: TextStyle<'static>| style.pos(Pos::new(HPos::Left, VPos::Center));
-    for tick in shades.ticks(24.0 * length / HEIGHT) {
-        let y = down(shades.place(tick));
-        bar.draw(&PathElement::new([(32, y), (37, y)], colour(MUTED).stroke_width(1)))?;
-        let words = if tick > 0.0 { format!("+{}", given(tick)) } else { given(tick) };
-        bar.draw_text(&words, &left(text(12.5, INK)), (42, y))?;
-    }
+    let ticks = shades.ticks(24.0 * length / HEIGHT).into_iter().map(|tick| {
+        let sign = if tick > 0.0 { "+" } else { "" };
+        ((shades.place(tick) - low) / length, format!("{sign}{}", given(tick)))
+    });
+    sheet.colour_bar([LEFT, TOP], HEIGHT, |part| diverging(low + length * part), ticks);
     if shades.gaps {
-        let y = (TOP + HEIGHT) as i32 + 30;
-        bar.draw(&Rectangle::new([(10, y - 8), (32, y + 8)], colour(NONE).filled()))?;
-        bar.draw_text("no answer", &left(text(12.5, INK)), (42, y))?;
+        sheet.rectangle([LEFT, TOP + HEIGHT + 22.0], [22.0, 16.0], &fill(NONE));
+        sheet.text([LEFT + 32.0, TOP + HEIGHT + 34.0], "no answer", ink(12.5, INK));
     }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 
 use super::axis::{place, places};
 use crate::linalg::c64;
-use crate::report::chart::widened;
+use crate::report::chart::{ends, widened};
 use crate::results::SweepResult;
 use crate::sweep::{CriticalKind, InteractionKind};
 use std::f64::consts::TAU;
@@ -120,7 +120,7 @@ fn with_window(result: &SweepResult, events: &[Event]) -> SweepPlace {
         branches.extend(nearest(result, alone, events[0].value));
     }
     let at = events.iter().map(|event| place(&result.axis, event.value));
-    let (low, high) = at.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+    let [low, high] = ends(at);
     let whole = places(&result.axis);
     let mut half = REACH * (whole.end - whole.start);
     let mut window = (low - half).max(whole.start)..(high + half).min(whole.end);
@@ -155,8 +155,8 @@ fn with_window(result: &SweepResult, events: &[Event]) -> SweepPlace {
         branches,
         critical: events.iter().any(|event| event.critical),
         across: window,
-        frequencies: widened(lowest, highest, 0.12),
-        rates: widened(least, most, 0.1),
+        frequencies: widened([lowest, highest], 0.12),
+        rates: widened([least, most], 0.1),
     }
 }
 
@@ -182,7 +182,7 @@ fn coupling_seen(result: &SweepResult, branches: &[usize], window: &Range<f64>) 
         Some((omega - beside.1).abs())
     });
     let all = branches.iter().flat_map(|b| frequencies(*b)).map(|(_, omega)| omega);
-    let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    let [low, high] = ends(all);
     apart.fold(0.0, f64::max) >= SEEN * (high - low)
 }
 

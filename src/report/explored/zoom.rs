@@ -1,32 +1,27 @@
 //! `sweep_<name>_places.svg`: frequency and growth rate about the critical values and where two frequencies merge or veer, each
 //! in a window of its own.
 
-use super::axis::{axis_name, label, place, scale};
+use super::axis::{axis_name, between};
 use super::branches::{draw_lines, draw_nominal};
 use super::places::{MOST, SweepPlace};
-use crate::report::axes::clean;
-use crate::report::chart::{Area, below, bold, colour, sheet, text};
+use crate::report::chart::{Axis, Chart};
 use crate::report::colours::{ALARM, CALM, INK, MUTED};
-use crate::report::curve::{LinearChart, Pen, draw_curve, draw_dot, pen};
 use crate::report::format::{given, hertz, rounded};
 use crate::report::html::described;
-use crate::report::readout::{axes_of, linear};
 use crate::report::section::Picture;
+use crate::report::svg::{Sheet, SvgPoint, ink, sheer, stroke};
 use crate::results::{SweepResult, file_name};
-use plotters::prelude::*;
-use std::error::Error;
 use std::f64::consts::TAU;
-use std::ops::Range;
 
 /// Panels beside each other at most.
 const COLUMNS: usize = 3;
 /// Widths of a panel among three, and of one or two \[px\].
-const WIDTHS: [u32; 2] = [330, 490];
-/// Heights of the title, and of the charts of frequency and growth rate \[px\].
-const TITLE: u32 = 44;
-const CHARTS: [u32; 2] = [190, 200];
+const WIDTHS: [f64; 2] = [330.0, 490.0];
+/// Heights of the title, and of each of the charts of frequency and growth rate \[px\].
+const TITLE: f64 = 44.0;
+const CHART: f64 = 195.0;
 /// Height of the words below all panels \[px\].
-const FOOT: u32 = 34;
+const FOOT: f64 = 34.0;
 
 /// The first of the places; `None` where there are none.
 pub(super) fn picture(result: &SweepResult, found: &[SweepPlace]) -> Option<Picture> {
@@ -36,17 +31,15 @@ pub(super) fn picture(result: &SweepResult, found: &[SweepPlace]) -> Option<Pict
     }
     let columns = shown.len().min(COLUMNS);
     let rows = shown.len().div_ceil(columns);
-    let panel = (WIDTHS[usize::from(columns < COLUMNS)], TITLE + CHARTS[0] + CHARTS[1]);
-    let size = (panel.0 * columns as u32, panel.1 * rows as u32 + FOOT);
+    let panel = [WIDTHS[usize::from(columns < COLUMNS)], TITLE + 2.0 * CHART];
+    let size = [panel[0] * columns as f64, panel[1] * rows as f64 + FOOT];
     let parameter = axis_name(&result.label, &result.unit);
-    let svg = sheet(size, |area| {
-        let (main, foot) = area.split_vertically(size.1 - FOOT);
-        for (k, (panel, found)) in main.split_evenly((rows, columns)).iter().zip(shown).enumerate() {
-            draw_panel(panel, result, found, k + 1)?;
-        }
-        foot.draw_text(&parameter, &below(text(14.0, INK)), (size.0 as i32 / 2, 6))?;
-        Ok(())
-    })?;
+    let mut sheet = Sheet::new(size[0], size[1]);
+    for (k, found) in shown.iter().enumerate() {
+        let corner = [panel[0] * (k % columns) as f64, panel[1] * (k / columns) as f64];
+        draw_panel(&mut sheet, (corner, panel[0]), result, found, k + 1);
+    }
+    sheet.text([0.5 * size[0], size[1] - 14.0], &parameter, ink(14.0, INK).middle());
     let more = match found.len() - shown.len() {
         0 => String::new(),
         more => format!(" {more} more places are not drawn: see the words and tables below."),
@@ -60,74 +53,43 @@ pub(super) fn picture(result: &SweepResult, found: &[SweepPlace]) -> Option<Pict
         format!("at {}, {} Hz, {}", value.trim_end(), hertz(p.frequency_hz, 0), p.what.join(", "))
     });
     let seen = format!("Places of the sweep: {}.", each.collect::<Vec<_>>().join("; "));
-    let svg = described(&svg, &seen);
+    let svg = described(&sheet.finish(), &seen);
     Some(Picture { file: file_name("sweep", &result.name) + "_places", caption, svg })
 }
 
 fn draw_panel(
-    area: &Area,
+    sheet: &mut Sheet,
+    ([left, top], width): (SvgPoint, f64),
     result: &SweepResult,
     found: &SweepPlace,
     number: usize,
-) -> Result<(), Box<dyn Error>> {
-    let (title, charts) = area.split_vertically(TITLE);
+) {
     let value = format!("{} {}", given(rounded(found.value, 4)), result.unit);
     let first = format!("{number}: {} Hz at {}", hertz(found.frequency_hz, 0), value.trim_end());
-    title.draw_text(&first, &bold(13.5, INK), (16, 8))?;
-    title.draw_text(&found.what.join("; "), &text(12.5, MUTED), (16, 27))?;
-    let (upper, lower) = charts.split_vertically(CHARTS[0]);
+    sheet.text([left + 16.0, top + 20.0], &first, ink(13.5, INK).bold());
+    sheet.text([left + 16.0, top + 38.0], &found.what.join("; "), ink(12.5, MUTED));
     let pair = |b: usize| found.branches.contains(&b);
-    let axis = &result.axis;
-    let name = axis_name(&result.label, &result.unit);
-    let high = (found.across.clone(), found.frequencies.clone());
-    let chart = plot(&upper, high, result, "frequency [Hz]")?;
-    axes_of(&upper, &chart, [scale(axis, &name), linear("frequency [Hz]")])?;
-    let others = [CALM, ALARM].map(|hex| Pen { opacity: 0.5, ..pen(hex, 1.0) });
-    let own = [pen(CALM, 2.5), pen(ALARM, 3.0)];
-    draw_lines(&chart, result, |x, z| (x, z.im / TAU), (|b| !pair(b), others))?;
-    draw_lines(&chart, result, |x, z| (x, z.im / TAU), (pair, own))?;
-    draw_nominal(&chart, result)?;
-    for c in &result.sweep.critical {
-        draw_dot(&chart, (place(axis, c.value), c.eigenvalue.im / TAU), 4.5, ALARM)?;
+    let others = [CALM, ALARM].map(|hex| sheer(stroke(hex, 1.0), 0.5));
+    let own = [stroke(CALM, 2.5), stroke(ALARM, 3.0)];
+    let ups = [
+        Axis::new("frequency [Hz]", found.frequencies.clone()),
+        Axis::new("growth rate σ [1/s]", found.rates.clone()),
+    ];
+    for (k, up) in ups.into_iter().enumerate() {
+        let top = top + TITLE + 6.0 + CHART * k as f64;
+        let across =
+            between(&result.axis, &axis_name(&result.label, &result.unit), found.across.clone()).untitled();
+        let mut chart = Chart::new([left + 78.0, top, left + width - 14.0, top + CHART - 34.0], across, up);
+        let point = |x: f64, z: crate::linalg::c64| [x, [z.im / TAU, z.re][k]];
+        if k == 1 {
+            chart.rule(1, 0.0, &stroke(INK, 1.5));
+        }
+        draw_lines(&mut chart, result, point, (|b| !pair(b), &others));
+        draw_lines(&mut chart, result, point, (pair, &own));
+        draw_nominal(&mut chart, result);
+        for c in result.sweep.critical.iter().filter(|c| k == 0 || pair(c.branch)) {
+            chart.dot([c.value, [c.eigenvalue.im / TAU, 0.0][k]], 4.5, ALARM);
+        }
+        chart.draw(sheet);
     }
-    let chart = plot(&lower, (found.across.clone(), found.rates.clone()), result, "growth rate σ [1/s]")?;
-    axes_of(&lower, &chart, [scale(axis, &name), linear("growth rate σ [1/s]")])?;
-    draw_curve(&chart, [(found.across.start, 0.0), (found.across.end, 0.0)], pen(INK, 1.5))?;
-    draw_lines(&chart, result, |x, z| (x, z.re), (|b| !pair(b), others))?;
-    draw_lines(&chart, result, |x, z| (x, z.re), (pair, own))?;
-    draw_nominal(&chart, result)?;
-    for c in result.sweep.critical.iter().filter(|c| pair(c.branch)) {
-        draw_dot(&chart, (place(axis, c.value), 0.0), 4.5, ALARM)?;
-    }
-    Ok(())
-}
-
-/// Axes of one chart of a panel.
-fn plot<'a, 'b>(
-    area: &Area<'b>,
-    (across, up): (Range<f64>, Range<f64>),
-    result: &SweepResult,
-    beside: &str,
-) -> Result<LinearChart<'a, 'b>, Box<dyn Error>> {
-    let high = up.clone();
-    let mut chart = ChartBuilder::on(area)
-        .margin(8)
-        .margin_right(14)
-        .x_label_area_size(22)
-        .y_label_area_size(70)
-        .build_cartesian_2d(across, up)?;
-    chart
-        .configure_mesh()
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(colour("#e6e9ed"))
-        .axis_style(colour(MUTED))
-        .label_style(text(11.5, INK))
-        .axis_desc_style(text(12.0, INK))
-        .y_desc(beside)
-        .x_labels(5)
-        .y_labels(5)
-        .x_label_formatter(&|v| label(&result.axis, *v))
-        .y_label_formatter(&|v| given(clean(*v, &high)))
-        .draw()?;
-    Ok(chart)
 }

@@ -1,17 +1,14 @@
 //! `sound.svg` and the table: how loud it is.
 
 use super::spectra::highest_frequency;
-use crate::report::axes::{Chart, WIDTH, axes};
-use crate::report::chart::{Area, above, bold, colour, sheet, text};
+use crate::report::chart::{Axis, Chart, WIDTH, ends, wide};
 use crate::report::colours::{ALARM, INK, MEASURED, MUTED, SECOND};
 use crate::report::format::{fixed, given, hertz, significant};
 use crate::report::section::Picture;
+use crate::report::svg::{Sheet, ink, stroke};
 use crate::report::table::ReportTable;
 use crate::results::{MicrophoneSound, RunResults, Sound, TransientResult};
 use crate::sound::{power_level, pressure_level};
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use std::error::Error;
 
 /// Decibels below the highest line that are shown.
 const DEPTH: f64 = 70.0;
@@ -44,17 +41,19 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     };
     let microphones: Curves = sound.microphones.iter().enumerate().map(pressure).collect();
     let whole: Curves = vec![(power, ALARM, named("sound power", sound.power_levels()))];
-    let svg = sheet((WIDTH, 640), |area| {
-        let parts = area.split_evenly((1 + usize::from(!microphones.is_empty()), 1));
-        let last = |k: usize| (k + 1 == parts.len()).then_some("frequency [Hz]");
-        let mut chart =
-            lines(&parts[0], sound, &whole, end, ["power level [dB re 1 pW]", last(0).unwrap_or_default()])?;
-        label(&parts[0], &mut chart, sound, &whole[0].0, end)?;
-        if let Some(part) = parts.get(1) {
-            lines(part, sound, &microphones, end, ["pressure level [dB re 20 µPa]", "frequency [Hz]"])?;
-        }
-        Ok(())
-    })?;
+    let mut sheet = Sheet::new(WIDTH, 640.0);
+    let parts = if microphones.is_empty() { 1.0 } else { 2.0 };
+    let height = 618.0 / parts;
+    let below = if microphones.is_empty() { "frequency [Hz]" } else { "" };
+    let mut chart =
+        lines(&mut sheet, [10.0, height - 30.0], sound, &whole, end, ["power level [dB re 1 pW]", below]);
+    label(&mut chart, sound, &whole[0].0, end);
+    chart.draw(&mut sheet);
+    if !microphones.is_empty() {
+        let names = ["pressure level [dB re 20 µPa]", "frequency [Hz]"];
+        lines(&mut sheet, [height + 10.0, 2.0 * height - 30.0], sound, &microphones, end, names)
+            .draw(&mut sheet);
+    }
     let names: Vec<&str> = sound.microphones.iter().map(|m| m.name.as_str()).collect();
     let at = match names.len() {
         0 => String::new(),
@@ -67,63 +66,45 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
         given(sound.window[1]),
         significant(sound.resolution_hz, 3)
     );
-    Some(Picture { file: "sound".into(), caption, svg })
+    Some(Picture { file: "sound".into(), caption, svg: sheet.finish() })
 }
 
-/// A panel with curves, named in its upper right corner.
-fn lines<'a>(
-    area: &Area<'a>,
+/// A panel with curves between two heights, named in its upper right corner.
+fn lines(
+    sheet: &mut Sheet,
+    [upper, lower]: [f64; 2],
     sound: &Sound,
     curves: &Curves,
     end: f64,
     [beside, below]: [&str; 2],
-) -> Result<Chart<'a>, Box<dyn Error>> {
-    let levels = curves.iter().flat_map(|(levels, ..)| levels.iter().skip(1));
-    let highest = levels.filter(|l| l.is_finite()).fold(f64::NEG_INFINITY, |m, l| m.max(*l));
+) -> Chart {
+    let [_, highest] = ends(curves.iter().flat_map(|(levels, ..)| levels.iter().skip(1).copied()));
     let highest = if highest.is_finite() { highest } else { 0.0 };
     let (top, floor) = (highest + NAME * (1.0 + curves.len() as f64), highest - DEPTH);
-    let below = Some(below).filter(|words| !words.is_empty());
-    let mut chart = axes(area, (0.0..end, floor..top), below, beside, |v| fixed(v, 0))?;
-    let (x, y) = chart.backend_coord(&(end, top));
-    let (left, upper) = area.get_base_pixel();
-    for (k, (levels, ink, words)) in curves.iter().enumerate() {
-        let points = levels.iter().enumerate().skip(1).map(|(k, l)| (sound.frequency_hz(k), l.max(floor)));
-        let path: Vec<(f64, f64)> = points.take_while(|(hz, _)| *hz <= end).collect();
+    let mut chart = Chart::new(wide(upper, lower), Axis::new(below, 0.0..end), Axis::new(beside, floor..top));
+    let several = curves.len() > 1;
+    for (k, (levels, hex, words)) in curves.iter().enumerate() {
+        let points = levels.iter().enumerate().skip(1).map(|(k, l)| [sound.frequency_hz(k), l.max(floor)]);
         // Later ones are thinner, so that equal curves do not hide each other.
-        let width = 1 + (curves.len() - 1 - k).min(3) as u32;
-        chart.draw_series([PathElement::new(path, colour(ink).stroke_width(width))])?;
-        let (x, y) = (x - left - 8, y - upper + 6 + 18 * k as i32);
-        let style = bold(13.0, INK).pos(Pos::new(HPos::Right, VPos::Top));
-        area.draw_text(words, &style, (x - 26 * i32::from(curves.len() > 1), y))?;
-        if curves.len() > 1 {
-            area.draw(&PathElement::new([(x - 20, y + 7), (x, y + 7)], colour(ink).stroke_width(3)))?;
+        let width = 1 + (curves.len() - 1 - k).min(3);
+        chart.line(points, &stroke(hex, width as f64));
+        let [x, y] = [WIDTH - 30.0, upper + 18.0 + 18.0 * k as f64];
+        sheet.text([if several { x - 26.0 } else { x }, y], words, ink(13.0, INK).bold().end());
+        if several {
+            sheet.line([[x - 20.0, y - 4.0], [x, y - 4.0]], &stroke(hex, 3.0));
         }
     }
-    Ok(chart)
+    chart
 }
 
 /// The frequencies of the tones.
-fn label(
-    area: &Area,
-    chart: &mut Chart,
-    sound: &Sound,
-    levels: &[f64],
-    end: f64,
-) -> Result<(), Box<dyn Error>> {
-    let (left, upper) = area.get_base_pixel();
-    let mut taken: Vec<i32> = Vec::new();
+fn label(chart: &mut Chart, sound: &Sound, levels: &[f64], end: f64) {
     let mut tones: Vec<_> = sound.tones.iter().filter(|tone| tone.peak.frequency_hz < end).collect();
     tones.sort_by(|a, b| b.power.total_cmp(&a.power));
-    for tone in tones {
-        let line = (tone.peak.frequency_hz / sound.resolution_hz).round() as usize;
-        let (x, y) = chart.backend_coord(&(tone.peak.frequency_hz, levels[line.min(levels.len() - 1)]));
-        if taken.iter().all(|u| (u - x).abs() >= 60) {
-            taken.push(x);
-            let words = format!("{} Hz", hertz(tone.peak.frequency_hz, 0));
-            area.draw_text(&words, &above(text(12.0, INK)), (x - left, y - upper - 4))?;
-        }
+    for hz in tones.iter().map(|tone| tone.peak.frequency_hz) {
+        let line = (hz / sound.resolution_hz).round() as usize;
+        chart.label_if_free([hz, levels[line.min(levels.len() - 1)]], &format!("{} Hz", hertz(hz, 0)));
     }
-    Ok(())
 }
 
 /// How loud a run is.

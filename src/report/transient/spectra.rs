@@ -1,14 +1,11 @@
 //! `transient_spectrum.svg`: motion and friction over frequency.
 
-use crate::report::axes::{Chart, WIDTH, Words, labelled};
-use crate::report::chart::{Area, above, bold, colour, sheet, text};
-use crate::report::colours::{ALARM, INK, MEASURED, SECOND};
+use crate::report::chart::{Axis, Chart, WIDTH, wide};
+use crate::report::colours::{ALARM, MEASURED, SECOND};
 use crate::report::format::{given, hertz, multiple, significant};
 use crate::report::section::Picture;
+use crate::report::svg::{Sheet, ink, sheer, stroke};
 use crate::results::{Channel, RunResults, SpectrumOf, TransientResult};
-use plotters::prelude::*;
-use std::error::Error;
-use std::ops::Range;
 
 /// Decades below the highest line that a spectrum shows.
 const DECADES: f64 = 5.0;
@@ -21,14 +18,14 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
     let first = shown.first()?;
     let end = highest_frequency(run);
     let measured = shown.iter().any(|of| !of.measured.is_empty());
-    let svg = sheet((WIDTH, 320 * shown.len() as u32), |area| {
-        for (k, (part, of)) in area.split_evenly((shown.len(), 1)).iter().zip(&shown).enumerate() {
-            let ink = if k == 0 { ALARM } else { SECOND };
-            let below = (k + 1 == shown.len()).then_some("frequency [Hz]");
-            lines(part, (of, &run.channels[of.channel]), end, ink, below)?;
-        }
-        Ok(())
-    })?;
+    let mut sheet = Sheet::new(WIDTH, 310.0 * shown.len() as f64 + 22.0);
+    for (k, of) in shown.iter().enumerate() {
+        let style = stroke(if k == 0 { ALARM } else { SECOND }, 1.0);
+        let below = if k + 1 == shown.len() { "frequency [Hz]" } else { "" };
+        let top = 10.0 + 310.0 * k as f64;
+        let across = Axis::new(below, 0.0..end);
+        lines((top, across), (of, &run.channels[of.channel]), end, &style).draw(&mut sheet);
+    }
     let [begin, stop] = first.window;
     let caption = format!(
         "Spectra from {} to {} s (Welch, Hann window, amplitude of a sine, lines every {} Hz).",
@@ -36,71 +33,30 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
         given(stop),
         significant(first.spectrum.resolution_hz, 3)
     ) + if measured { " Blue: measured." } else { "" };
-    Some(Picture { file: "transient_spectrum".into(), caption, svg })
+    Some(Picture { file: "transient_spectrum".into(), caption, svg: sheet.finish() })
 }
 
-fn lines(
-    area: &Area,
-    (of, channel): (&SpectrumOf, &Channel),
-    end: f64,
-    ink: &str,
-    below: Option<&str>,
-) -> Result<(), Box<dyn Error>> {
+fn lines((top, across): (f64, Axis), (of, channel): (&SpectrumOf, &Channel), end: f64, style: &str) -> Chart {
     let amplitude = &of.spectrum.amplitude;
     let highest = amplitude.iter().skip(2).fold(f64::MIN_POSITIVE, |m: f64, v| m.max(*v));
-    let (top, floor) = (highest.log10() + 0.7, highest.log10() - DECADES);
     let unit = multiple(highest, channel.unit);
-    let heading = format!("{} [{}]", channel.words(), unit.unit);
-    // Places are decimal logarithms of the values in that unit.
-    let shift = unit.size.log10();
-    let value = |v: f64| significant(10f64.powf(v), 1);
-    let words =
-        Words { below, beside: &heading, across: &given, up: &value, labels: 10, decades: 1.0, grid: true };
-    let mut chart = labelled(area, (0.0..end, floor - shift..top - shift), &words)?;
-    mark(area, &mut chart, &of.measured, end, floor - shift..top - shift)?;
-    let line = amplitude
-        .iter()
-        .enumerate()
-        .map(|(k, a)| (of.spectrum.frequency_hz(k), a.max(f64::MIN_POSITIVE).log10().max(floor) - shift))
-        .take_while(|(hz, _)| *hz <= end);
-    chart.draw_series([PathElement::new(line.collect::<Vec<_>>(), colour(ink).stroke_width(1))])?;
-    let (left, upper) = area.get_base_pixel();
-    let mut taken: Vec<i32> = Vec::new();
+    let highest = (highest / unit.size).log10();
+    let (head, floor) = (highest + 0.7, highest - DECADES);
+    let up = Axis::log(format!("{} [{}]", channel.words(), unit.unit), floor..head, 1.0);
+    let mut chart = Chart::new(wide(top, top + 268.0), across, up);
+    for hz in of.measured.iter().filter(|hz| **hz < end) {
+        chart.flag(*hz, &given(*hz), &sheer(stroke(MEASURED, 1.0), 0.6), ink(11.5, MEASURED));
+    }
+    let lowest = 10f64.powf(floor);
+    let value = |(k, a): (usize, &f64)| [of.spectrum.frequency_hz(k), (a / unit.size).max(lowest)];
+    chart.line(amplitude.iter().enumerate().map(value), style);
     let mut strongest: Vec<_> = of.peaks.iter().collect();
     strongest.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
     for peak in strongest.into_iter().filter(|peak| peak.frequency_hz < end) {
-        let (x, y) = chart.backend_coord(&(peak.frequency_hz, peak.amplitude.log10() - shift));
-        if taken.iter().any(|u| (u - x).abs() < 60) {
-            continue;
-        }
-        taken.push(x);
-        let label = format!("{} Hz", hertz(peak.frequency_hz, 0));
-        area.draw_text(&label, &above(bold(12.0, INK)), (x - left, y - upper - 4))?;
+        let at = [peak.frequency_hz, peak.amplitude / unit.size];
+        chart.label_if_free(at, &format!("{} Hz", hertz(peak.frequency_hz, 0)));
     }
-    Ok(())
-}
-
-/// Lines at measured frequencies, each with its figure at the head, lower where it would hide another.
-fn mark(
-    area: &Area,
-    chart: &mut Chart,
-    measured: &[f64],
-    end: f64,
-    up: Range<f64>,
-) -> Result<(), Box<dyn Error>> {
-    let (left, upper) = area.get_base_pixel();
-    let mut taken: Vec<(i32, i32)> = Vec::new();
-    for hz in measured.iter().filter(|hz| **hz < end) {
-        let line = [(*hz, up.start), (*hz, up.end)];
-        chart.draw_series([PathElement::new(line, colour(MEASURED).mix(0.6).stroke_width(1))])?;
-        let (x, mut y) = chart.backend_coord(&(*hz, up.end));
-        while taken.iter().any(|(u, v)| (u - x).abs() < 36 && (v - y).abs() < 13) {
-            y += 13;
-        }
-        taken.push((x, y));
-        area.draw_text(&given(*hz), &text(11.5, MEASURED), (x - left + 4, y - upper))?;
-    }
-    Ok(())
+    chart
 }
 
 /// Where something is to be seen: up to a third beyond the last peak, and some harmonics of the fundamental or the strongest.

@@ -1,18 +1,14 @@
 //! `uncertainty_<name>_growth.svg`: how the largest growth rate is distributed, and how the probability of instability settles.
 
 use super::words::{file, level, percent};
-use crate::report::axes::{Chart, Words, labelled};
-use crate::report::chart::{Area, colour, sheet};
+use crate::report::chart::{Axis, Chart, WIDTH, wide};
 use crate::report::colours::{ALARM, CALM, INK};
-use crate::report::curve::{draw_curve, pen};
-use crate::report::format::given;
 use crate::report::html::described;
 use crate::report::section::Picture;
+use crate::report::svg::{Sheet, fill, outlined, sheer, stroke};
 use crate::results::UncertaintyResult;
 use crate::sweep::MapPoint;
 use crate::uncertainty::proportion;
-use plotters::prelude::*;
-use std::error::Error;
 
 /// Bars of the histogram at most, on either side of zero.
 const BARS: usize = 24;
@@ -24,11 +20,9 @@ pub(super) fn picture(result: &UncertaintyResult) -> Option<Picture> {
     if rates.is_empty() {
         return None;
     }
-    let svg = sheet((980, 560), |area| {
-        let (top, bottom) = area.split_vertically(310);
-        draw_histogram(&top, &rates, result)?;
-        draw_settling(&bottom, result)
-    })?;
+    let mut sheet = Sheet::new(WIDTH, 560.0);
+    histogram(&rates, result).draw(&mut sheet);
+    settling(result).draw(&mut sheet);
     let caption = format!(
         "Above: samples by their largest growth rate, orange where a mode grows. Below: the probability of instability after so many samples, with its interval of {} confidence.",
         level(result)
@@ -38,7 +32,7 @@ pub(super) fn picture(result: &UncertaintyResult) -> Option<Picture> {
         rates.len(),
         percent(result.unstable.share)
     );
-    Some(Picture { file: file(result, "_growth"), caption, svg: described(&svg, &seen) })
+    Some(Picture { file: file(result, "_growth"), caption, svg: described(&sheet.finish(), &seen) })
 }
 
 /// The width of the bars, and how many lie below and above zero.
@@ -62,32 +56,27 @@ fn counts(points: &[Option<MapPoint>], width: f64, [below, above]: [usize; 2]) -
     counts
 }
 
-fn draw_histogram(area: &Area, rates: &[f64], result: &UncertaintyResult) -> Result<(), Box<dyn Error>> {
+fn histogram(rates: &[f64], result: &UncertaintyResult) -> Chart {
     let (width, sides @ [below, above]) = bars(rates);
     let counts = counts(&result.points, width, sides);
     let most = counts.iter().map(|[stable, unstable]| stable + unstable).max().unwrap_or(1) as f64;
     let edge = |bar: usize| (bar as f64 - below as f64) * width;
-    let words = axis_words("largest growth rate σ [1/s]", "samples");
-    let mut chart = labelled(area, (edge(0)..edge(below + above), 0.0..1.08 * most), &words)?;
+    let across = Axis::new("largest growth rate σ [1/s]", edge(0)..edge(below + above));
+    let mut chart = Chart::new(wide(14.0, 258.0), across, Axis::new("samples", 0.0..1.08 * most));
     for (bar, [stable, unstable]) in counts.into_iter().enumerate() {
         // One above the other.
         for (from, count, hex) in [(0, stable, CALM), (stable, unstable, ALARM)] {
             if count > 0 {
-                let corners = [(edge(bar), from as f64), (edge(bar + 1), (from + count) as f64)];
-                chart.draw_series([Rectangle::new(corners, colour(hex).mix(0.85).filled())])?;
-                chart.draw_series([Rectangle::new(corners, WHITE.stroke_width(1))])?;
+                let corners = [[edge(bar), from as f64], [edge(bar + 1), (from + count) as f64]];
+                chart.bar(corners, &sheer(outlined(hex, "#ffffff", 1.0), 0.85));
             }
         }
     }
-    draw_curve(&chart, [(0.0, 0.0), (0.0, 1.08 * most)], pen(INK, 1.5))
+    chart.rule(0, 0.0, &stroke(INK, 1.5));
+    chart
 }
 
-/// The words of a panel's axes.
-fn axis_words<'a>(below: &'a str, beside: &'a str) -> Words<'a> {
-    Words { below: Some(below), beside, across: &given, up: &given, labels: 10, decades: 0.0, grid: true }
-}
-
-fn draw_settling(area: &Area, result: &UncertaintyResult) -> Result<(), Box<dyn Error>> {
+fn settling(result: &UncertaintyResult) -> Chart {
     let verdicts: Vec<bool> = result.points.iter().flatten().map(|point| point.unstable > 0).collect();
     let all = verdicts.len();
     let steps = STEPS.min(all);
@@ -102,16 +91,13 @@ fn draw_settling(area: &Area, result: &UncertaintyResult) -> Result<(), Box<dyn 
     }
     let highest = along.iter().map(|(.., [_, high])| *high).fold(0.0, f64::max);
     let lowest = along.iter().map(|(.., [low, _])| *low).fold(100.0, f64::min);
-    let words = axis_words("samples", "probability [%]");
-    let mut chart: Chart = labelled(
-        area,
-        (0.0..all as f64 * 1.02, (lowest - 3.0).max(0.0)..(highest + 3.0).min(103.0)),
-        &words,
-    )?;
-    let band = along.iter().map(|(n, _, [low, _])| (*n, *low));
-    let band = band.chain(along.iter().rev().map(|(n, _, [_, high])| (*n, *high)));
-    chart.draw_series([Polygon::new(band.collect::<Vec<_>>(), colour(ALARM).mix(0.18))])?;
-    draw_curve(&chart, along.iter().map(|(n, share, _)| (*n, *share)), pen(ALARM, 2.0))
+    let up = Axis::new("probability [%]", (lowest - 3.0).max(0.0)..(highest + 3.0).min(103.0));
+    let mut chart = Chart::new(wide(322.0, 508.0), Axis::new("samples", 0.0..all as f64 * 1.02), up);
+    let band = along.iter().map(|(n, _, [low, _])| [*n, *low]);
+    let band = band.chain(along.iter().rev().map(|(n, _, [_, high])| [*n, *high]));
+    chart.polygon(band, &sheer(fill(ALARM), 0.18));
+    chart.line(along.iter().map(|(n, share, _)| [*n, *share]), &stroke(ALARM, 2.0));
+    chart
 }
 
 #[cfg(test)]
