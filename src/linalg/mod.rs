@@ -40,6 +40,10 @@ pub mod unsymmetric;
 mod workspace;
 
 #[cfg(test)]
+pub(crate) mod bounds;
+#[cfg(test)]
+pub(crate) mod extended;
+#[cfg(test)]
 pub(crate) mod samples;
 
 pub use eigenpairs::{
