@@ -11,7 +11,7 @@ use std::panic::Location;
 #[track_caller]
 pub(crate) fn within(error: f64, bound: f64, origin: &str) -> bool {
     if let Some(file) = std::env::var_os("STRIDOR_TEST_BOUNDS") {
-        let (place, share) = (Location::caller(), error / bound);
+        let (place, share) = (Location::caller(), if error == 0.0 { 0.0 } else { error / bound });
         let line =
             format!("{}:{}\t{error:.2e}\t{bound:.2e}\t{share:.1e}\t{origin}\n", place.file(), place.line());
         let open = OpenOptions::new().append(true).create(true).open(file);
