@@ -88,7 +88,8 @@ mod tests {
         };
         let mut nodes = bodies();
         place(&mut nodes, &own).unwrap();
-        let near = |a: [f64; 3], b: [f64; 3]| (0..3).all(|k| (a[k] - b[k]).abs() < 1e-15);
+        // Ten times the rounding of coordinates up to 3.
+        let near = |a: [f64; 3], b: [f64; 3]| (0..3).all(|k| (a[k] - b[k]).abs() < 30.0 * f64::EPSILON);
         assert!(near(nodes[0], [0.3, -0.4, -2.9]));
         // From the lowest corner to the upper one: (0, 2) turned by θ about y.
         assert!(near(nodes[2], [0.3 + 2.0 * 0.1f64.sin(), -0.4, -2.9 + 2.0 * 0.1f64.cos()]));

@@ -124,7 +124,8 @@ mod tests {
         let disc = Disc::recognise(&faces, &nodes).expect("it is a disc");
         for (k, node) in disc.nodes.iter().enumerate() {
             let expected = [0.3, 0.7, 1.0][node / n];
-            assert!((disc.polar[k].0 - expected).abs() < 1e-9, "{} {expected}", disc.polar[k].0);
+            // The ridge of 1e-9 in the fit of the centre.
+            assert!((disc.polar[k].0 - expected).abs() < 1e-8, "{} {expected}", disc.polar[k].0);
         }
         assert!((disc.normal.dot(&e1)).abs() < 1e-12);
     }

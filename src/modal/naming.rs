@@ -247,11 +247,12 @@ mod tests {
 
     #[test]
     fn analytic_shapes_are_named() {
-        for count in [900, 3000, 20_000] {
+        // 900 scattered points may leave a lobe of five or eight diameters without one: of 40 scatters 17 do.
+        for (count, most) in [(900, 3), (3000, 8), (20_000, 8)] {
             let points = scattered(count);
             let disc = DiscPoints::new(&points).unwrap();
             let mut random = Random::seeded(5);
-            for n in [0, 1, 2, 3, 5, 8] {
+            for n in [0, 1, 2, 3, 5, 8].into_iter().filter(|n| *n <= most) {
                 for s in 0..=2 {
                     // Each of a double pair, turned by any angle, with 3 % noise.
                     for turn in [0.0, 0.3, PI / (2.0 * (n as f64).max(1.0))] {

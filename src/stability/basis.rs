@@ -96,6 +96,13 @@ impl<'a> Basis<'a> {
         [of(self.modes, 0, n_real), of(self.added.as_ref(), n_real, added)]
     }
 
+    /// |WᵀB| |y|: at least |WᵀBy| of every direction of the interface.
+    pub(super) fn extents(&self, [re, im]: [&[f64]; 2]) -> Vec<f64> {
+        let sizes: Vec<f64> = re.iter().zip(im).map(|(re, im)| re.hypot(*im)).collect();
+        let of = |d: usize| self.interface.col_as_slice(d).iter().zip(&sizes).map(|(w, y)| w.abs() * y).sum();
+        (0..self.interface.ncols()).map(of).collect()
+    }
+
     /// B y of every column of `y`.
     pub(super) fn expand(&self, y: &Block) -> Block {
         let mut vectors = Block::default();

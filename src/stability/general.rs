@@ -13,7 +13,7 @@ use super::operator::{Operator, Side};
 use super::post_processing::shares;
 use super::refinement::TOGETHER;
 use super::shifted::{Adjoint, Shifted};
-use super::{ComplexMode, ComplexModes, accuracy_warnings};
+use super::{ComplexMode, ComplexModes, ROUNDING, accuracy_warnings};
 use crate::error::{Error, Result};
 use crate::linalg::c64;
 use crate::linalg::factor::SymbolicFactor;
@@ -297,6 +297,10 @@ impl<'a> ShiftSearch<'a> {
                 let factor = mass.sqrt().recip();
                 let apart = |other: c64| (other - z).norm();
                 let spread = apart(found[k]).max(apart(piece.left_values[chunk[k]]));
+                let condition = 2.0 * z.norm() * left_mass * mass.sqrt() / steepness[k].norm();
+                let [of_left, of_right] = [&left, &right].map(|x| operator.interface.extents(x.vector(k)));
+                let work = operator.interface.gross_work(z, &of_left, &of_right) / steepness[k].norm();
+                let size = z.norm().max(1e-6 * self.band[1]);
                 let motion = operator.interface.motions(right.vector(k));
                 let motion: Vec<c64> = motion.into_iter().map(|m| m * factor).collect();
                 let own = Block::from_fn(real.len(), 1, |i, _| amplitudes.get(i, k) * factor);
@@ -305,8 +309,8 @@ impl<'a> ShiftSearch<'a> {
                     right: right.scaled_column(k, factor),
                     left: if left_vectors { left.scaled_column(k, left_mass.recip()) } else { Vec::new() },
                     backward_error: residual.norm(k) / (operator.size(z) * right.norm(k)),
-                    eigenvalue_error: spread / z.norm().max(1e-6 * self.band[1]),
-                    condition: 2.0 * z.norm() * left_mass * mass.sqrt() / steepness[k].norm(),
+                    eigenvalue_error: spread / size + ROUNDING * (condition + work / size),
+                    condition,
                     growth: growth_budget(
                         operator,
                         z,

@@ -78,6 +78,20 @@ impl<'a> Interface<'a> {
         (0..sizes.len()).filter(|d| sizes[*d] > 0.0 && !self.directions[*d].indices().is_empty()).collect()
     }
 
+    /// |ψ|ᵀ|W| |k + λ c| |W|ᵀ|φ| \[N m\], given |ψ|ᵀ|W| and |W|ᵀ|φ|: the work of the interface without cancellation.
+    pub(crate) fn gross_work(&self, lambda: c64, left: &[f64], right: &[f64]) -> f64 {
+        let work = |term: &InterfaceTerm| {
+            left[term.row] * (term.stiffness + lambda * term.damping).norm() * right[term.column]
+        };
+        self.terms.iter().map(work).sum()
+    }
+
+    /// |W|ᵀ |x|.
+    pub(crate) fn extents(&self, [re, im]: [&[f64]; 2]) -> Vec<f64> {
+        let extent = |(i, w): (usize, f64)| w.abs() * re[i].hypot(im[i]);
+        self.directions.iter().map(|direction| direction.iter().map(extent).sum()).collect()
+    }
+
     /// Wᵀ x.
     pub(crate) fn motions(&self, [re, im]: [&[f64]; 2]) -> Vec<c64> {
         self.directions.iter().map(|d| c64::new(d.dot(re), d.dot(im))).collect()

@@ -38,7 +38,7 @@ pub(super) fn post_processed(
             right: vectors.scaled_column(j, to_unit_mass),
             left: left.map_or_else(Vec::new, |left| left.column(j)),
             backward_error: if better { corrected } else { found },
-            eigenvalue_error: measured.eigenvalue_error[j],
+            eigenvalue_error: measured.error(j),
             condition: measured.condition[j],
             growth: growth_budget(
                 operator,

@@ -1,5 +1,6 @@
 //! Pairs measured on the full order: residuals, errors, and the corrections that make them better.
 
+use super::ROUNDING;
 use super::basis::Basis;
 use super::block::Block;
 use super::operator::{Forms, Operator, Side};
@@ -31,7 +32,10 @@ pub(super) struct MeasuredPairs {
     /// z = −A⁻¹Q(λ)φ.
     pub(super) correction: Block,
     pub(super) backward_error: Vec<f64>,
+    /// |ψᴴQ(λ)z| / |λ ψᴴQ′(λ)φ|: what the vectors leave, which a larger basis brings down.
     pub(super) eigenvalue_error: Vec<f64>,
+    /// What rounding leaves at the least, relative to λ ([`super::ComplexMode::eigenvalue_error`]).
+    pub(super) rounding: Vec<f64>,
     pub(super) condition: Vec<f64>,
     /// ‖Q(λ)(φ + z)‖ / (|λ|²‖M‖ + |λ|‖C‖ + ‖K‖).
     pub(super) corrected: Vec<f64>,
@@ -72,6 +76,13 @@ impl PairMeasurement<'_> {
         let size = |j: usize| steepness[j].norm() * lambda[j].norm().max(1e-6 * top);
         pairs.eigenvalue_error = columns.clone().map(|j| left.dot(j, &rise).norm() / size(j)).collect();
         pairs.condition = columns.clone().map(|j| 2.0 * lambda[j].norm() / steepness[j].norm()).collect();
+        let rounding = |j: usize| {
+            let [of_left, of_right] =
+                [basis.extents(left.vector(j)), operator.interface.extents(right.vector(j))];
+            let work = operator.interface.gross_work(lambda[j], &of_left, &of_right);
+            ROUNDING * (pairs.condition[j] + work / size(j))
+        };
+        pairs.rounding = columns.clone().map(rounding).collect();
         let forms = |j: usize| {
             [of_right[0][j], Forms::of_sum(of_right[0][j], of_correction[0][j], of_correction[1][j])]
         };
@@ -80,6 +91,11 @@ impl PairMeasurement<'_> {
 }
 
 impl MeasuredPairs {
+    /// |Δλ| / |λ| of pair `j`.
+    pub(super) fn error(&self, j: usize) -> f64 {
+        self.eigenvalue_error[j] + self.rounding[j]
+    }
+
     /// Whether pair `j` is as exact as the refinement aims at.
     pub(super) fn exact(&self, j: usize) -> bool {
         self.backward_error[j] <= BACKWARD_ERROR && self.eigenvalue_error[j] <= EIGENVALUE_ERROR

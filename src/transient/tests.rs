@@ -94,13 +94,14 @@ fn the_oscillator_follows_the_amplification_matrix_with_its_damping_and_frequenc
             assert!(end.worst_residual < 1e-12, "{:e}", end.worst_residual);
         }
     }
-    // The published spectral radii at infinite frequency, and the frequency of the trapezoidal rule.
+    // The published spectral radii at infinite frequency, and the frequency of the trapezoidal rule. HHT(−1/3) has a threefold
+    // root there: at Ω it is Ω^(−2/3) = 5e-6 away, and round-off moves it by ε^(1/3) = 6e-6.
     for (scheme, rho) in [
         (Scheme::hht(-1.0 / 3.0), 0.5),
         (Scheme::hht(-0.05), 0.95 / 1.05),
         (Scheme::generalised_alpha(0.7), 0.7),
     ] {
-        let spectrum = amplification(scheme, 1e6).eigenvalues().unwrap();
+        let spectrum = amplification(scheme, 1e8).eigenvalues().unwrap();
         let radius = spectrum.iter().map(|z| z.norm()).fold(0.0, f64::max);
         assert!((radius - rho).abs() < 1e-4, "{radius} {rho}");
     }

@@ -129,6 +129,26 @@ fn turned<T: Scalar>(rows: [[T; TILE]; TILE]) -> [[T; TILE]; TILE] {
 mod tests {
     use super::*;
 
+    /// `.ci/widths` limits the vector instructions of the tests; here it shows that they are.
+    #[test]
+    fn vectors_are_as_wide_as_the_processor_is_said_to_have_them() {
+        struct Lanes;
+        impl WithSimd for Lanes {
+            type Output = usize;
+
+            fn with_simd<S: Simd>(self, _: S) -> usize {
+                S::F64_LANES
+            }
+        }
+        let expected = match std::env::var("VECTOR_WIDTH").as_deref() {
+            Ok("avx512") => 8,
+            Ok("avx2") => 4,
+            Ok("sse2") => 1,
+            _ => return,
+        };
+        assert_eq!(Arch::new().dispatch(Lanes), expected);
+    }
+
     #[test]
     fn what_is_laid_spreads_again() {
         for (n, count) in [(19, 11), (8, 8), (5, 16), (32, 3)] {

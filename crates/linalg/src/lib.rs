@@ -16,6 +16,8 @@
 //! * [`random`]: start vectors that are the same in every run.
 //! * [`multivector`]: products of multivectors, such as a set of modes.
 //! * [`toar`]: eigenpairs of a quadratic problem nearest a shift, by two-level Arnoldi.
+//! * [`bounds`], [`extended`], [`samples`]: for tests; comparisons with the origin of their bounds, linear systems solved with twice the
+//!   digits, matrices with known eigenvalues.
 //! * [`unsymmetric`]: small dense eigenproblems that are not symmetric.
 
 #[cfg(doctest)]
@@ -23,8 +25,10 @@
 struct Readme;
 
 pub mod assignment;
+pub mod bounds;
 pub mod dense;
 pub mod eigenpairs;
+pub mod extended;
 pub mod factor;
 pub mod lanczos;
 mod lanes;
@@ -36,14 +40,13 @@ pub mod orthogonal;
 pub mod proportional;
 pub mod random;
 pub mod row_sparse;
+pub mod samples;
 mod scalar;
 pub mod shared_pattern;
 pub mod sparse;
 pub mod toar;
 pub mod unsymmetric;
 mod workspace;
-
-pub mod samples;
 
 pub use eigenpairs::{
     Eigenpairs, SturmCount, Wanted, eigenpairs_below, lowest_eigenpairs, lowest_eigenpairs_by,

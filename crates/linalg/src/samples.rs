@@ -22,7 +22,8 @@ pub fn random_symmetric(n: usize, seed: u64) -> SparseMatrix {
     for j in 0..n {
         for i in 0..=j {
             let keep = random.next() > 0.6 || i == j;
-            a[(i, j)] = if keep { random.next() } else { 0.0 };
+            let value = random.next();
+            a[(i, j)] = if keep { random.perturbed(value) } else { 0.0 };
             a[(j, i)] = a[(i, j)];
         }
     }

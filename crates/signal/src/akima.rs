@@ -45,7 +45,7 @@ mod tests {
         };
         let (x, y) = (of(f64::cos), of(f64::sin));
         assert_eq!(x.len(), 161);
-        // The chords of the polygon come to 0.981.
+        // The chords of the polygon come to 0.981; the cubics of the method are off by 1e-3 of sixteen points.
         let radii = x.iter().zip(&y).map(|(x, y)| x.hypot(*y));
         assert!(radii.skip(20).take(120).all(|r| (r - 1.0).abs() < 0.004));
         let jump: Vec<f64> = (0..12).map(|k| f64::from(k / 6)).collect();

@@ -74,6 +74,7 @@ mod tests {
     fn a_beat_counts_by_its_largest_swing() {
         let beat = record(|t| (TAU * 1661.0 * t).sin() + 0.5 * (TAU * 2597.0 * t).sin() - 3.0);
         let cycle = limit_cycle(&beat, 1e-5, 1661.0).unwrap();
+        // The phase between the two at the swings of a piece; whole periods of one alone.
         assert!((cycle.amplitude - 1.5).abs() < 0.01, "{cycle:?}");
         assert!((cycle.rms - (0.5f64 + 0.125).sqrt()).abs() < 1e-3 && (cycle.mean + 3.0).abs() < 1e-3);
         assert!(cycle.steady() && cycle.pieces == 32);

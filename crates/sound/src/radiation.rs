@@ -164,6 +164,7 @@ mod tests {
             let found = radiation.power(air, k, &[0.5 * omega * omega])[0];
             let resistance = 1.0 - Jn(1, 2.0 * ka) / ka;
             let exact = 2.0 * 0.5 * air.density * air.speed * PI * a * a * resistance;
+            // Discretisation: the largest k is 213 of 220 that the points are made for.
             assert!((found / exact - 1.0).abs() < 2e-3, "{ka}: {found} {exact}");
         }
         // A small piston is a monopole of volume acceleration Q̇ in a baffle: ρ₀ Q̇²/(4πc) a side, Q̇ its amplitude.
@@ -214,6 +215,7 @@ mod tests {
         let (ka, first) = ((k * side).powi(2), 1.0 - 8.0 / (PI * PI));
         let odd = 32.0 * ka / PI.powi(5) * (1.0 - ka / 12.0 * 2.0 * first);
         let found = efficiency(k, [1.0, 0.0, 0.0]);
+        // The next terms of the series in (k side)² = 0.09, and discretisation.
         assert!((found / odd - 1.0).abs() < 2e-3, "{found} {odd}");
         let second = 1.0 - 24.0 / (4.0 * PI * PI);
         let even = 8.0 * ka * ka / (3.0 * 4.0 * PI.powi(5)) * (1.0 - ka / 20.0 * (first + second));
