@@ -2,12 +2,8 @@
 
 use super::super::lanes::Aligned;
 use super::super::{c64, sparse};
-use super::{HalfSolutions, SymbolicFactor};
-use crate::sparse::Index;
-use faer::sparse::SparseColMat;
 use faer::traits::ComplexField;
 use std::ops::{Add, Div, Neg, Sub};
-use stridor_base::error::Result;
 
 /// A number of a factorised matrix: `f64` or `c64`.
 pub trait Field:
@@ -34,13 +30,6 @@ pub trait Field:
 
     /// self − a b, rounded once for each real product where the processor can.
     fn minus(self, a: Self, b: Self) -> Self;
-
-    /// [`SymbolicFactor::factorize_here`], compiled here rather than where it is called, with all that it calls beside it.
-    #[doc(hidden)]
-    fn factorize(
-        symbolic: &SymbolicFactor,
-        a: &SparseColMat<Index, Self>,
-    ) -> Result<Box<dyn HalfSolutions<Self>>>;
 }
 
 /// One row of a block of right-hand sides, its columns side by side in memory.
@@ -79,13 +68,6 @@ impl Field for f64 {
     fn minus(self, a: f64, b: f64) -> f64 {
         (-a).mul_add(b, self)
     }
-
-    fn factorize(
-        symbolic: &SymbolicFactor,
-        a: &SparseColMat<Index, f64>,
-    ) -> Result<Box<dyn HalfSolutions<f64>>> {
-        symbolic.factorize_as(a)
-    }
 }
 
 impl Field for c64 {
@@ -108,13 +90,6 @@ impl Field for c64 {
             a.im.mul_add(b.im, (-a.re).mul_add(b.re, self.re)),
             (-a.im).mul_add(b.re, (-a.re).mul_add(b.im, self.im)),
         )
-    }
-
-    fn factorize(
-        symbolic: &SymbolicFactor,
-        a: &SparseColMat<Index, c64>,
-    ) -> Result<Box<dyn HalfSolutions<c64>>> {
-        symbolic.factorize_as(a)
     }
 }
 
