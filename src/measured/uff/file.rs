@@ -38,8 +38,6 @@ fn delimits(text: &str) -> bool {
 }
 
 /// The datasets of a file called `file`.
-///
-/// # Errors
 /// A line outside of datasets, a dataset that does not end, binary numbers of unknown form.
 pub(super) fn datasets<'a>(file: &'a str, bytes: &'a [u8]) -> Result<Vec<Dataset<'a>>> {
     let mut cursor = FileCursor { bytes, at: 0, number: 0 };

@@ -37,8 +37,6 @@ pub(super) fn work(general: &General) -> f64 {
 }
 
 /// The eigenvalues in the band with growth rates from [`SLOWEST_GROWTH`] to [`FASTEST`] of its top, counted.
-///
-/// # Errors
 /// An eigenvalue on the contour that the search has not found.
 pub(in crate::stability) fn count(
     operator: &Operator<'_>,
