@@ -60,9 +60,9 @@ mod steady;
 mod summary;
 mod sweeps;
 mod transient;
-mod transient_csv;
 #[cfg(feature = "hdf5")]
 mod transient_hdf5;
+mod transient_tables;
 mod uff;
 mod uncertainty;
 mod validation;
@@ -111,7 +111,8 @@ pub use sweeps::SweepResult;
 pub use transient::{
     FieldSnapshot, Fields, GrowthCompared, RecordPiece, Recording, SpectrumOf, TransientResult,
 };
-pub use transient_csv::{EventTable, HistoryTable};
+pub use transient_tables::TransientCsv;
+pub(crate) use transient_tables::TransientTables;
 pub use uncertainty::{
     CheckedSample, ModeStatistics, SampledScalar, ScalarStatistics, UncertaintyResult, UncertaintyStudy,
 };

@@ -19,8 +19,6 @@ pub enum AtOnce {
 }
 
 /// What `solve` gives for each of `numbers`.
-///
-/// # Errors
 /// That of `solve`, of the lowest number unless they share threads.
 pub(super) fn solve_all<T: Send>(
     at_once: AtOnce,

@@ -76,8 +76,6 @@ pub(super) const START_OVER: &str = "Run without --resume to start over (an inte
 
 impl RecordOrigin {
     /// Whether results of `earlier` at `place` are results of this; otherwise what differs, with the advice `help`.
-    ///
-    /// # Errors
     /// Input: the keys of the case, or the files, that have changed.
     pub(super) fn check(&self, earlier: &RecordOrigin, place: &Path, help: &str) -> Result<()> {
         let refused = |found: String, expected: &str| {
