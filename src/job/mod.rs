@@ -52,7 +52,6 @@ mod sink;
 mod sound;
 mod states;
 mod studies;
-#[cfg(feature = "cli")]
 mod study_solver;
 mod table;
 mod time_function;

@@ -168,8 +168,8 @@ fn shares(studies: &[Study], of: usize) -> Vec<(usize, &Study, Block)> {
     all.enumerate().map(|(k, (study, block))| (k % of + 1, study, block)).collect()
 }
 
-/// The parts of `analysis` in the results folder `out`, which together are whole.
-/// Input: parts that are missing, or not done; parts of another case, or damaged ones.
+/// The parts of `analysis` in the results folder `out`, which together are whole. Refuses parts that are missing, not done, of
+/// another case, or damaged.
 pub(super) fn collect(case: &Case, analysis: &str, out: &Path, origin: &RecordOrigin) -> Result<Vec<Record>> {
     let dir = folder(out, analysis);
     let records = read_parts(&dir, origin)?;

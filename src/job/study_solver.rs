@@ -49,6 +49,7 @@ impl StudySolver<'_> {
 
 impl Explorer<'_> {
     /// The solver of a study.
+    /// Fails where a reduced model cannot be trained, and where a study of samples has no answer at the values of the case.
     pub(super) fn solver<'s>(&'s self, study: &'s Study) -> Result<StudySolver<'s>> {
         let mut problem = self.problem(study)?;
         let reference = match &study.points {

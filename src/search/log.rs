@@ -48,7 +48,7 @@ struct LoggedEvaluation {
 
 impl Log {
     /// An empty log, or that of an earlier run of the same search in `dir`.
-    /// A log of another search or of other files, or one that cannot be read.
+    /// Refuses a log of another search or of other files, and one that cannot be read.
     pub(super) fn open(dir: &Path, file: &SearchFile, resume: bool) -> Result<Log> {
         let numbers = file.parameters.keys().map(|name| printable(name));
         let facts = file.checks.iter().map(|check| printable(&check.quantity));

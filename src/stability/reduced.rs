@@ -116,6 +116,7 @@ impl FamilyMatrices {
 
     /// The eigenvalues that are `wanted`, in no order and without the correction of [`FamilyMatrices::solve`], at a third of its
     /// cost.
+    /// Fails where numbers are not finite.
     pub(super) fn eigenvalues(
         &self,
         terms: &[InterfaceTerm],

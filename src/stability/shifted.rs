@@ -60,6 +60,7 @@ impl FactorKind {
 
 impl<'a> Shifted<'a> {
     /// For solutions with P alone.
+    /// Fails at an eigenvalue.
     pub(super) fn new(operator: &'a Operator<'a>, shift: c64) -> Result<Self> {
         Shifted::with_pattern(operator, shift, None)
     }

@@ -37,6 +37,7 @@ pub(super) struct Stepper<'a> {
 
 impl<'a> Stepper<'a> {
     /// Makes ready for steps of `step` seconds.
+    /// Fails where the matrix is singular: a part without stiffness and mass.
     pub(super) fn new(
         model: &'a TransientModel<'a>,
         scheme: Scheme,

@@ -38,6 +38,7 @@ impl<'a, 'k> HistoryWriter<'a, 'k> {
     }
 
     /// Begins with the first row or, where an earlier run stopped, resumes from there.
+    /// Refuses what an earlier run left of another model.
     pub(super) fn begin(&mut self, start: State, model: &TransientModel<'_>, plan: &Plan) -> Result<Marched> {
         let mut marched = Marched::from(start);
         self.recorder.take(&marched);

@@ -1,20 +1,49 @@
 //! Contents of a record as they are read back.
 
+use super::earlier::Earlier;
 use super::entry::{Entry, Head};
-use super::{Earlier, RECORD};
 use crate::error::{Error, Fault, Result};
 use crate::results::folder::refusal;
 use sha2::{Digest, Sha256};
-use std::collections::BTreeMap;
+use std::collections::{BTreeSet, HashMap};
 use std::fs::File;
 use std::io::{BufReader, ErrorKind, Read};
 use std::path::Path;
 
+/// The record of a run.
+pub(in crate::results) const RECORD: &str = "record.bin";
+/// The state from which its run in time resumes.
+pub(in crate::results) const CHECKPOINT: &str = "checkpoint.bin";
 /// The format of a record and its version, its first bytes.
 pub(super) const FORMAT: &[u8; 16] = b"stridor record 1";
 
-/// Where answers are in the file, by the study that asks for them and the place.
-pub(super) type Index = BTreeMap<String, BTreeMap<Vec<u64>, u64>>;
+/// Where answers are in the file. There may be millions: the key is 128 bits of the SHA-256 of the study that asks for them and the place.
+#[derive(Debug, Default)]
+pub(super) struct Index {
+    /// The studies that have answers.
+    pub(super) studies: BTreeSet<String>,
+    offsets: HashMap<u128, u64>,
+}
+
+impl Index {
+    /// The byte at which an answer begins.
+    pub(super) fn find(&self, study: &str, place: &[u64]) -> Option<u64> {
+        self.offsets.get(&key(study, place)).copied()
+    }
+
+    pub(super) fn insert(&mut self, study: &str, place: &[u64], at: u64) {
+        self.offsets.insert(key(study, place), at);
+        if !self.studies.contains(study) {
+            self.studies.insert(study.to_string());
+        }
+    }
+}
+
+fn key(study: &str, place: &[u64]) -> u128 {
+    let mut hasher = Sha256::new_with_prefix(study);
+    place.iter().for_each(|value| hasher.update(value.to_le_bytes()));
+    u128::from_le_bytes(hasher.finalize()[..16].try_into().expect("sixteen"))
+}
 
 /// Where an entry is in its file.
 pub(super) struct Span {
@@ -77,7 +106,7 @@ impl Contents {
             Entry::Reference(digest) => self.reference = Some(*digest),
             Entry::Answer { study, place, modes } => {
                 self.shapes |= modes.as_ref().is_ok_and(|modes| modes.vectors.nrows() > 0);
-                self.answers.entry(study.clone()).or_default().insert(place.clone(), at);
+                self.answers.insert(study, place, at);
             }
             Entry::Transient { .. } | Entry::Rows { .. } | Entry::Field { .. } => self.in_time.add(entry)?,
             Entry::End => {}
@@ -88,7 +117,7 @@ impl Contents {
 
 /// Hands on the entries of the record at `path`, as long as `each` says so. Gives the bytes that
 /// count and their SHA-256: a process that is killed and a machine that loses power leave an end without its checksum.
-/// Input: the file is no record, an entry that has its checksum is none. What `each` returns.
+/// Refuses a file that is no record, and an entry that is none but has its checksum.
 pub(super) fn read_entries(
     path: &Path,
     each: &mut dyn FnMut(Span, Entry) -> Result<bool>,
@@ -154,7 +183,7 @@ pub(super) fn block(content: &[u8], hasher: &mut Sha256) -> (Vec<u8>, [u8; 32]) 
 
 /// A file that is not what the program has written.
 pub(super) fn damaged(path: &Path, what: &str) -> Error {
-    let of_run = path.file_name().is_some_and(|name| name == RECORD || name == super::CHECKPOINT);
+    let of_run = path.file_name().is_some_and(|name| name == RECORD || name == CHECKPOINT);
     let (expected, help) = if of_run {
         (
             "the file as the interrupted run left it",

@@ -1,7 +1,8 @@
 use super::*;
-use crate::error::Faults;
+use crate::error::{Error, Fault, Faults};
 use crate::linalg::c64;
-use crate::results::{Channel, NodalField};
+use crate::results::{Channel, FieldSnapshot, NodalField, RecordPiece, Recording};
+use crate::sweep::Modes;
 use crate::transient::{Checkpoint, Event, EventKind};
 use faer::Mat;
 
