@@ -238,9 +238,9 @@ pub(super) fn parts_done(
     out: &Path,
 ) -> Result<Option<(usize, BTreeSet<usize>)>> {
     let records = read_parts(&folder(out, analysis), &origin(case)?)?;
-    let parts = |record: &Record| record.part();
-    let done = || records.iter().filter(|record| record.ended()).filter_map(parts).map(|part| part.number);
-    Ok(records.first().and_then(parts).map(|first| (first.of, done().collect())))
+    let done = records.iter().filter(|record| record.ended()).filter_map(Record::part);
+    let numbers = done.map(|part| part.number).collect();
+    Ok(records.first().and_then(Record::part).map(|first| (first.of, numbers)))
 }
 
 /// Ascending numbers as job arrays take them: `2,5-7`.

@@ -122,14 +122,23 @@ pub(super) fn read_entries(
     path: &Path,
     each: &mut dyn FnMut(Span, Entry) -> Result<bool>,
 ) -> Result<(u64, Sha256)> {
-    let (mut hasher, mut at) = (Sha256::new(), 0);
     let file = match File::open(path) {
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok((at, hasher)),
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok((0, Sha256::new())),
         file => file.map_err(|source| refusal(path, source))?,
     };
+    let length = file.metadata().map_err(|source| refusal(path, source))?.len();
+    read_from(path, BufReader::new(file), length, each)
+}
+
+/// The same of `input` with so many bytes.
+pub(super) fn read_from(
+    path: &Path,
+    mut input: impl Read,
+    length: u64,
+    each: &mut dyn FnMut(Span, Entry) -> Result<bool>,
+) -> Result<(u64, Sha256)> {
+    let (mut hasher, mut at, mut left) = (Sha256::new(), 0, length);
     let refused = |source: std::io::Error| refusal(path, source);
-    let mut left = file.metadata().map_err(refused)?.len();
-    let mut input = BufReader::new(file);
     // As many bytes, where there are so many.
     let mut take = |count: u64| -> Result<Option<Vec<u8>>> {
         if count > left {

@@ -31,9 +31,9 @@ pub use store::Record;
 
 pub(super) use contents::{CHECKPOINT, RECORD};
 
-use self::contents::{Contents, FORMAT, block, read_entries};
+use self::contents::{Contents, FORMAT, block, read_from};
 use self::origin::START_OVER;
-use super::folder::write_durably;
+use super::folder::{refusal, write_durably};
 use crate::error::Result;
 use sha2::{Digest, Sha256};
 use std::path::Path;
@@ -64,17 +64,25 @@ pub fn keep_origin(dir: &Path, origin: &RecordOrigin, ended: bool) -> Result<()>
     write_durably(dir, RECORD, &to_bytes(&entries))
 }
 
+/// The entries of a record with these bytes.
+///
+/// # Errors
+/// Input: they are no record.
+pub fn from_bytes(bytes: &[u8]) -> Result<Vec<Entry>> {
+    let mut all = Vec::new();
+    read_from(Path::new("record"), bytes, bytes.len() as u64, &mut |_, entry| {
+        all.push(entry);
+        Ok(true)
+    })?;
+    Ok(all)
+}
+
 /// The entries of the record at `path`.
 ///
 /// # Errors
 /// Input: the file is no record. [`Io`](crate::error::Error::Io): it cannot be read.
 pub fn entries(path: &Path) -> Result<Vec<Entry>> {
-    let mut all = Vec::new();
-    read_entries(path, &mut |_, entry| {
-        all.push(entry);
-        Ok(true)
-    })?;
-    Ok(all)
+    from_bytes(&std::fs::read(path).map_err(|source| refusal(path, source))?)
 }
 
 /// The file of a record with these entries.
