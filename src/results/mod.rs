@@ -18,7 +18,7 @@
 //! | `transient.vtkhdf` | the motion of all nodes at regular times | ParaView |
 //! | `modes_<set>.vtu`, `steady.vtu`, `complex_modes.vtu`, `advice.vtu` | the shapes on the mesh | ParaView, pyvista |
 //! | `record.bin`, `checkpoint.bin` | record from which an interrupted run is resumed: [`record`] | `--resume` |
-//! | `parts/<analysis>/<k>-of-<n>.bin` | what one job of a job array computed of the sweeps and maps, or of the samples: [`record::PartFile`] | `--merge` |
+//! | `parts/<analysis>/<k>-of-<n>.bin` | what one job of a job array computed of the sweeps and maps, or of the samples: [`record::Record`] | `--merge` |
 //!
 //! [`ResultsFile`] is used during the run, [`write_files`] once at its end.
 
