@@ -88,9 +88,9 @@ fn selection(only: Option<&str>) -> Result<Selection> {
     if name == "compare" {
         return Ok(Selection::Measured);
     }
-    let own = ANALYSES.into_iter().find(|analysis| analysis.name() == name);
-    own.map(|analysis| Selection::Only(analysis.name())).ok_or_else(|| {
-        let names: Vec<&str> = ANALYSES.iter().map(|analysis| analysis.name()).chain(["compare"]).collect();
+    let own = ANALYSES.into_iter().find(|analysis| analysis.name == name);
+    own.map(|analysis| Selection::Only(analysis.name)).ok_or_else(|| {
+        let names: Vec<&str> = ANALYSES.iter().map(|analysis| analysis.name).chain(["compare"]).collect();
         Error::input(Fault::new("`only`", format!("\"{name}\""), format!("one of {}", names.join(", "))))
     })
 }

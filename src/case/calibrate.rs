@@ -108,9 +108,6 @@ fn check_against(case: &Case, analysis: &CalibrateAnalysis, report: &mut Report)
 
 impl Case {
     /// The same case with the scalars of some numbers at values \[SI\], one a number.
-    ///
-    /// # Errors
-    /// A value that the case refuses.
     pub(crate) fn with_numbers<'a>(
         &self,
         numbers: impl IntoIterator<Item = &'a VariedParameter>,

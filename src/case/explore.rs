@@ -45,20 +45,6 @@ declare! {
     }
 }
 
-impl SweepAnalysis {
-    /// The paths that it varies, each with its bounds.
-    pub fn ranges(&self) -> Vec<(&String, [f64; 2])> {
-        vec![(&self.parameter, [self.from, self.to])]
-    }
-}
-
-impl MapAnalysis {
-    /// The paths that it varies, each with its bounds.
-    pub fn ranges(&self) -> Vec<(&String, [f64; 2])> {
-        self.parameters.iter().enumerate().map(|(k, path)| (path, [self.from[k], self.to[k]])).collect()
-    }
-}
-
 /// Checks sweeps and maps against the case; `scalars` are those of the case, where they are known.
 pub(super) fn check(case: &Case, scalars: Option<&[Parameter]>, report: &mut Report) {
     let all = case.sweep.keys().map(|name| ("sweep", name)).chain(case.map.keys().map(|name| ("map", name)));

@@ -31,13 +31,6 @@ declare! {
     }
 }
 
-impl UncertaintyAnalysis {
-    /// The paths that it varies, each with its bounds: those of a parameter one after another.
-    pub fn ranges(&self) -> Vec<(&String, [f64; 2])> {
-        self.parameter.values().flat_map(|of| of.path.iter().map(|path| (path, of.between))).collect()
-    }
-}
-
 /// Checks the studies against the case; `scalars` are those of the case, where they are known.
 pub(super) fn check(case: &Case, scalars: Option<&[Parameter]>, report: &mut Report) {
     for name in case.uncertainty.keys().filter(|name| !key::is_file_name(name)) {

@@ -62,7 +62,7 @@ struct PartOptions {
 /// Name, help and analyses of every subcommand.
 fn commands() -> impl Iterator<Item = (&'static str, &'static str, Selection)> {
     let run = ("run", "Run every analysis of a case and write a results folder", Selection::Listed);
-    let each = ANALYSES.map(|analysis| (analysis.name(), analysis.about(), Selection::Only(analysis.name())));
+    let each = ANALYSES.map(|analysis| (analysis.name, analysis.about, Selection::Only(analysis.name)));
     let about = "Compare measured with computed real modes and frequency responses";
     std::iter::once(run).chain(each).chain([("compare", about, Selection::Measured)])
 }

@@ -1,7 +1,7 @@
 //! The analyses of a case in their order, each result written as soon as it is there.
 
 use super::analyses::{Planned, Selection};
-use super::known::KnownPoints;
+use super::known::KnownAnswers;
 use super::plausible;
 use super::prepared::Prepared;
 use super::pressed;
@@ -27,7 +27,7 @@ pub fn analyse<'a>(
     let asked = Asked::new(prepared, selection)?;
     let mut results = RunResults::default();
     let sink = &mut Memory::new(record);
-    analyse_from(prepared, asked, &KnownPoints::default(), sink, &mut results, observer)
+    analyse_from(prepared, asked, &KnownAnswers::default(), sink, &mut results, observer)
         .map_err(|error| explained(prepared, error.while_computing()))?;
     Ok(results)
 }
@@ -58,11 +58,11 @@ impl CaseWarnings {
     }
 }
 
-/// [`analyse`] with points that are known. What was found before a failure is in `results`.
+/// [`analyse`] with answers that are known. What was found before a failure is in `results`.
 pub(super) fn analyse_from<'a>(
     prepared: &'a Prepared<'a>,
     asked: Asked<'a>,
-    known: &KnownPoints,
+    known: &KnownAnswers,
     sink: &mut dyn ResultSink,
     results: &mut RunResults,
     observer: &dyn Observer,
@@ -91,7 +91,7 @@ pub(super) fn operating_point<'a>(
     asked: Asked<'a>,
     observer: &dyn Observer,
 ) -> Result<Rc<OperatingPoint<'a>>> {
-    let (known, mut results) = (KnownPoints::default(), RunResults::default());
+    let (known, mut results) = (KnownAnswers::default(), RunResults::default());
     let mut nowhere = |_: ResultStage| Ok(());
     let sink = &mut Memory::new(&mut nowhere);
     let mut run = Run::new(prepared, [true, false], &known, sink, &mut results, observer);
@@ -120,8 +120,8 @@ impl<'a> Asked<'a> {
         let mut faults = Faults::new();
         faults.take(selection.check(case));
         let named = matches!(selection, Selection::Only(_));
-        let ready = selection.analyses(case).filter(|analysis| !named || analysis.ready(case));
-        let planned = ready.filter_map(|analysis| faults.take(analysis.plan(prepared, selection.scope())));
+        let ready = selection.analyses(case).filter(|analysis| !named || (analysis.ready)(case));
+        let planned = ready.filter_map(|analysis| faults.take((analysis.plan)(prepared, selection.scope())));
         let planned: Vec<_> = planned.collect();
         if planned.iter().any(|planned| planned.slides()) {
             faults.take(equilibrium::check(&prepared.system));

@@ -7,10 +7,8 @@ use crate::results::{CalibrationResult, ComplexResult, RunResults};
 use crate::stability::{CloseCall, ComplexMode, LARGEST_BACKWARD_ERROR, LARGEST_EIGENVALUE_ERROR};
 use std::f64::consts::TAU;
 
-/// Fails where a result does not hold. The results are written all the same.
-///
-/// # Errors
-/// Complex modes that are not accurate, an unstable mode that was missed, two methods that disagree, a calibration that has not
+/// Fails where a result does not hold; the results are written all the same:
+/// complex modes that are not accurate, an unstable mode that was missed, two methods that disagree, a calibration that has not
 /// converged; the first of them.
 pub(super) fn results_hold(results: &RunResults) -> Result<()> {
     modes_are_accurate(results)?;

@@ -1,14 +1,14 @@
 //! The sweeps and maps of a case, and what its damping decides; what all its studies start from.
 
-use super::known::{KnownPoints, Parts, Reference};
+use super::known::{KnownAnswers, Reference};
 use super::modes::add_modal_damping;
 use super::prepared::Prepared;
-use super::sink::{KnownMap, ResultStage};
+use super::sink::ResultStage;
 use super::states::{OnFamily, States, Whole, keeps_the_structure};
-use super::studies::{SHARED, Study, between, ranges};
+use super::studies::{SHARED, Study, between, studies};
 use crate::case::{Case, Invalidates, MapAnalysis, SweepAnalysis};
 use crate::equilibrium::{Condensed, SteadySliding, tangent_stiffness};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::linalg::c64;
 use crate::modal::RealModes;
 use crate::progress::Observer;
@@ -22,9 +22,9 @@ use crate::system::{Damping, System};
 /// The largest |Δλ|/|λ| at full order that is accepted.
 pub(super) const ACCURACY: f64 = 1e-8;
 /// Relative length of the bracket of a critical value on a reduced model, and by whole analyses.
-pub(super) const LOCATED: [f64; 2] = [1e-10, 1e-7];
+const LOCATED: [f64; 2] = [1e-10, 1e-7];
 /// The same of a point of the boundary of stability.
-pub(super) const BOUNDARY: [f64; 2] = [1e-7, 1e-6];
+const BOUNDARY: [f64; 2] = [1e-7, 1e-6];
 /// Full-order measures that were not good enough lead to a richer family, so often at most.
 pub(super) const REFINEMENTS: usize = 3;
 /// The path of ζ.
@@ -40,8 +40,7 @@ pub(super) struct Nominal<'a> {
 }
 
 /// Runs the studies of the case that one analysis takes, and hands each on when it is there.
-pub(super) type Studies<'a> =
-    dyn Fn(&Explorer, &KnownPoints, &mut RunResults, &mut RecordStage) -> Result<()> + 'a;
+pub(super) type Studies<'a> = dyn Fn(&Explorer, &mut RunResults, &mut RecordStage) -> Result<()> + 'a;
 /// Takes results as they are there.
 pub(super) type RecordStage<'a> = dyn FnMut(ResultStage) -> Result<()> + 'a;
 
@@ -49,28 +48,29 @@ pub(super) type RecordStage<'a> = dyn FnMut(ResultStage) -> Result<()> + 'a;
 pub(super) fn explore(
     nominal: &Nominal,
     studies: &Studies,
-    known: &KnownPoints,
+    known: &KnownAnswers,
     results: &mut RunResults,
     record: &mut RecordStage,
     observer: &dyn Observer,
 ) -> Result<()> {
     let start = Start::new(nominal)?;
-    known.parts.check(&start.reference)?;
+    known.compare_by(&start.reference)?;
     let explored =
-        Explorer::new(&start, observer).and_then(|explorer| studies(&explorer, known, results, record));
-    // Beside their reference nothing that is found is a fault of the parts.
-    explored.map_err(|error| if known.parts.records.is_empty() { error } else { error.while_computing() })
+        Explorer::new(&start, known, observer).and_then(|explorer| studies(&explorer, results, record));
+    // Beside their reference nothing that is found is a fault of what is known.
+    explored.map_err(Error::while_computing)
 }
 
 /// Every damping scalar that a study or the verdicts vary: path, its value, another value that the case accepts.
 fn dampings(whole: &Case, case: &Case) -> Result<Vec<(String, f64, f64)>> {
     let mut found: Vec<(String, f64, f64)> = Vec::new();
-    for (path, ends) in SHARED.into_iter().flat_map(|analysis| ranges(whole, analysis)) {
-        let parameter = case.parameter(path)?;
-        let known = found.iter().any(|(other, ..)| other == path);
-        if parameter.invalidates == Invalidates::Damping && keeps_the_structure(case, path)? && !known {
+    let all = SHARED.into_iter().flat_map(|analysis| studies(whole, analysis));
+    for (path, ends) in all.flat_map(|study| study.paths.into_iter().zip(study.bounds)) {
+        let parameter = case.parameter(&path)?;
+        let known = found.iter().any(|(other, ..)| *other == path);
+        if parameter.invalidates == Invalidates::Damping && keeps_the_structure(case, &path)? && !known {
             let other = if ends[0] == parameter.value { ends[1] } else { ends[0] };
-            found.push((path.clone(), parameter.value, other));
+            found.push((path, parameter.value, other));
         }
     }
     let ratio = case.damping.modal_ratio;
@@ -129,6 +129,12 @@ impl Problem<'_> {
         }
     }
 
+    /// Relative length of the bracket of what is located between the points of a grid of these axes.
+    pub(super) fn tolerance(&self, axes: &[Axis]) -> f64 {
+        let tolerances = if axes.len() == 1 { LOCATED } else { BOUNDARY };
+        tolerances[usize::from(matches!(self, Problem::Whole(_)))]
+    }
+
     pub(super) fn method(&self) -> SweepMethod {
         match self {
             Problem::Whole(_) => SweepMethod::Whole,
@@ -143,17 +149,22 @@ pub(super) struct Explorer<'a> {
     /// Without its studies.
     pub(super) case: &'a Case,
     frame: FamilyFrame<'a>,
+    pub(super) known: &'a KnownAnswers<'a>,
     pub(super) observer: &'a dyn Observer,
 }
 
 impl<'a> Explorer<'a> {
-    pub(super) fn new(start: &'a Start<'a>, observer: &'a dyn Observer) -> Result<Self> {
+    pub(super) fn new(
+        start: &'a Start<'a>,
+        known: &'a KnownAnswers<'a>,
+        observer: &'a dyn Observer,
+    ) -> Result<Self> {
         let Start { nominal, case, .. } = start;
         let cea = case.cea.as_ref().expect("a case with complex modes");
         let displacement = &nominal.steady.displacement;
         let others = start.others.iter().collect();
         let frame = FamilyFrame::new(nominal.system, displacement, nominal.real, others, cea.band)?;
-        Ok(Explorer { start, nominal, case, frame, observer })
+        Ok(Explorer { start, nominal, case, frame, known, observer })
     }
 }
 
@@ -164,20 +175,16 @@ impl Explorer<'_> {
     }
 
     /// Every sweep and map of the case, and the verdicts of its damping.
-    pub(super) fn sweeps_and_maps(
-        &self,
-        known: &KnownPoints,
-        results: &mut RunResults,
-        record: &mut RecordStage,
-    ) -> Result<()> {
+    pub(super) fn sweeps_and_maps(&self, results: &mut RunResults, record: &mut RecordStage) -> Result<()> {
         let case = self.whole_case();
         for (name, analysis) in &case.sweep {
-            let result = self.sweep(name, analysis, &known.parts)?;
+            record(ResultStage::StudyBegins)?;
+            let result = self.sweep(name, analysis)?;
             record(ResultStage::Found(&result))?;
             results.records.push(result);
         }
         for (name, analysis) in &case.map {
-            let (result, failure) = self.map(name, analysis, known, record)?;
+            let (result, failure) = self.map(name, analysis, record)?;
             results.warnings.extend(failure);
             results.records.push(result);
         }
@@ -235,14 +242,48 @@ impl Explorer<'_> {
         Ok(Problem::Whole(Whole::new(self.case, study.paths.clone(), Some(&self.start.reference.0))))
     }
 
-    fn sweep(&self, name: &str, analysis: &SweepAnalysis, parts: &Parts) -> Result<SweepResult> {
+    /// Solves a study by whole analyses, or on a reduced model, which is trained at the places where `solve` finds that it is not good
+    /// enough. `solve` gets the problem with its answers kept, the problem, and the places on which it was trained so far.
+    fn refined<T>(
+        &self,
+        study: &Study,
+        mut solve: impl FnMut(&Answered, &Problem, &[Vec<f64>]) -> Result<(T, Vec<Vec<f64>>)>,
+    ) -> Result<(T, SweepMethod)> {
+        let (mut problem, mut trained, mut round) = (self.problem(study)?, Vec::new(), 0);
+        loop {
+            let known = self.known.of(&study.name, round);
+            let (found, poor) = solve(&Answered::new(problem.of(), &known), &problem, &trained)?;
+            round += 1;
+            match &mut problem {
+                Problem::Reduced(on) if !poor.is_empty() && round < REFINEMENTS => {
+                    poor.iter().try_for_each(|at| on.train(at))?;
+                    trained.extend(poor);
+                }
+                _ => return Ok((found, problem.method())),
+            }
+        }
+    }
+
+    fn sweep(&self, name: &str, analysis: &SweepAnalysis) -> Result<SweepResult> {
         let study = Study::of_sweep(name, analysis);
         let axis = study.axes()[0];
         let parameter = self.case.parameter(&analysis.parameter)?;
-        let result = |sweep: sweep::Sweep, measured: FullOrderErrors, method: SweepMethod| SweepResult {
+        let ((sweep, measured), method) = self.refined(&study, |answered, problem, _| {
+            let sweep = sweep::sweep(answered, &axis, problem.tolerance(study.axes()), self.observer)?;
+            let sample = match problem {
+                Problem::Whole(_) => vec![axis.to],
+                Problem::Reduced(_) => {
+                    [0.25, 0.75].map(|share| axis.between(axis.from, axis.to, share)).to_vec()
+                }
+            };
+            let measured = measure(problem.of(), &sweep, &sample)?;
+            let poor = measured.poor(&sweep).into_iter().map(|value| vec![value]).collect();
+            Ok(((sweep, measured), poor))
+        })?;
+        Ok(SweepResult {
             name: name.to_string(),
-            parameter: parameter.path.clone(),
-            label: parameter.label.clone(),
+            parameter: parameter.path,
+            label: parameter.label,
             unit: parameter.unit.to_string(),
             axis,
             nominal: parameter.value,
@@ -250,34 +291,7 @@ impl Explorer<'_> {
             verified: measured.critical,
             sample: measured.sample,
             method,
-        };
-        let mut on = match self.problem(&study)? {
-            Problem::Whole(whole) => {
-                let known = parts.of(&study.name, true);
-                let answered = Answered::new(&whole, &known);
-                let sweep = sweep::sweep(&answered, &axis, LOCATED[1], self.observer)?;
-                let measured = measure(&whole, &sweep, &[axis.to])?;
-                return Ok(result(sweep, measured, SweepMethod::Whole));
-            }
-            Problem::Reduced(on) => on,
-        };
-        let sample = [0.25, 0.75].map(|share| axis.between(axis.from, axis.to, share));
-        let mut refinement = 0;
-        loop {
-            // Parts have the answers of the model that is not refined.
-            let known = parts.of(&study.name, refinement == 0);
-            let sweep = sweep::sweep(&Answered::new(&on, &known), &axis, LOCATED[0], self.observer)?;
-            let measured = measure(&on, &sweep, &sample)?;
-            refinement += 1;
-            let poor = measured.poor(&sweep);
-            if poor.is_empty() || refinement == REFINEMENTS {
-                let dimension = on.family.dimension();
-                return Ok(result(sweep, measured, SweepMethod::Reduced(dimension)));
-            }
-            for value in poor {
-                on.train(&[value])?;
-            }
-        }
+        })
     }
 
     /// A map without points.
@@ -325,69 +339,37 @@ impl Explorer<'_> {
         &self,
         name: &str,
         analysis: &MapAnalysis,
-        known: &KnownPoints,
         record: &mut RecordStage,
     ) -> Result<(MapResult, Option<String>)> {
         let study = Study::of_map(name, analysis);
         let mut result = self.empty_map(name, analysis, &study)?;
         let axes = result.axes;
-        let failed = |failure: Option<String>| {
-            failure.map(|f| format!("Map `{name}`: points without an answer are left blank; the first: {f}"))
-        };
-        let mut earlier = known.maps.get(name).cloned().unwrap_or_default();
-        let mut on = match self.problem(&study)? {
-            Problem::Whole(whole) => {
-                let parts = known.parts.of(&study.name, true);
-                let answered = Answered::new(&whole, &parts);
-                let failure = self.fill(&answered, &mut result, &earlier, record)?;
-                result.boundary =
-                    sweep::boundary(&answered, &axes, &result.points, BOUNDARY[1], self.observer)?;
-                record(ResultStage::Map(&result))?;
-                return Ok((result, failed(failure)));
-            }
-            Problem::Reduced(on) => on,
-        };
         let inside =
             [[0.3, 0.7], [0.75, 0.2]].map(|shares| between(study.axes(), &shares)).map(|at| [at[0], at[1]]);
-        for at in &earlier.trained {
-            on.train(at)?;
-        }
-        let mut refinement = 0;
-        loop {
-            let parts = known.parts.of(&study.name, refinement == 0);
-            let answered = Answered::new(&on, &parts);
-            let failure = self.fill(&answered, &mut result, &earlier, record)?;
-            result.boundary = sweep::boundary(&answered, &axes, &result.points, BOUNDARY[0], self.observer)?;
-            result.method = SweepMethod::Reduced(on.family.dimension());
-            let poor = self.check_map(&on, &mut result, &inside);
-            refinement += 1;
-            if poor.is_empty() || refinement == REFINEMENTS {
-                record(ResultStage::Map(&result))?;
-                return Ok((result, failed(failure)));
-            }
-            for at in poor {
-                on.train(&at)?;
-                earlier.trained.push(at);
-            }
-            earlier.points.clear();
-        }
-    }
-
-    /// The points of the grid that are not known, passed on chunk by chunk.
-    fn fill(
-        &self,
-        problem: &dyn SweepProblem,
-        result: &mut MapResult,
-        known: &KnownMap,
-        record: &mut RecordStage,
-    ) -> Result<Option<String>> {
-        result.points.clear();
-        record(ResultStage::MapBegins(result, known))?;
-        let mut keep =
-            |first: usize, points: &[MapPoint]| record(ResultStage::MapPoints(&result.name, first, points));
-        let (points, failure) = sweep::map(problem, &result.axes, &known.points, &mut keep, self.observer)?;
-        result.points = points;
-        Ok(failure)
+        let (failure, method) = self.refined(&study, |answered, problem, trained| {
+            let trained: Vec<[f64; 2]> = trained.iter().map(|at| [at[0], at[1]]).collect();
+            result.points.clear();
+            record(ResultStage::MapBegins(&result, &trained))?;
+            let mut keep = |first: usize, points: &[MapPoint]| {
+                record(ResultStage::MapPoints(&result.name, first, points))
+            };
+            let (points, failure) = sweep::map(answered, &axes, &mut keep, self.observer)?;
+            result.points = points;
+            let tolerance = problem.tolerance(&axes);
+            result.boundary = sweep::boundary(answered, &axes, &result.points, tolerance, self.observer)?;
+            let poor = match problem {
+                Problem::Whole(_) => Vec::new(),
+                Problem::Reduced(on) => {
+                    self.check_map(on, &mut result, &inside).iter().map(|at| at.to_vec()).collect()
+                }
+            };
+            Ok((failure, poor))
+        })?;
+        result.method = method;
+        record(ResultStage::Map(&result))?;
+        let failure =
+            failure.map(|f| format!("Map `{name}`: points without an answer are left blank; the first: {f}"));
+        Ok((result, failure))
     }
 
     /// ζ from half to twice its value.

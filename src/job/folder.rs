@@ -2,10 +2,9 @@
 
 use super::sink::{ResultSink, ResultStage};
 use crate::error::{Error, Fault, Result};
-use crate::results::record::{Earlier, Record, RecordBlock};
+use crate::results::record::{Earlier, Entry, Record};
 use crate::results::{
-    EventTable, FieldSnapshot, FieldsFile, HistoryTable, RecordPiece, RecordSize, Recording, ResultsFile,
-    fits_on_disk,
+    FieldSnapshot, FieldsFile, RecordPiece, RecordSize, Recording, ResultsFile, TransientCsv, fits_on_disk,
 };
 use crate::transient::Checkpoint;
 use std::ops::Range;
@@ -17,11 +16,11 @@ pub(super) struct Folder<'a> {
     dir: &'a Path,
     pub(super) file: ResultsFile,
     /// Record from which an interrupted run is resumed.
-    pub(super) record: Record,
-    /// Record of an earlier run.
+    record: &'a Record,
+    /// What it has of a run in time.
     earlier: Earlier,
     /// `transient.csv` and `events.csv`.
-    tables: Option<(HistoryTable, EventTable)>,
+    tables: Option<TransientCsv>,
     /// `transient.vtkhdf`.
     pub(super) fields: Option<FieldsFile>,
     /// How long it took \[s\].
@@ -31,7 +30,8 @@ pub(super) struct Folder<'a> {
 }
 
 impl<'a> Folder<'a> {
-    pub(super) fn new(dir: &'a Path, file: ResultsFile, record: Record, earlier: Earlier) -> Self {
+    pub(super) fn new(dir: &'a Path, file: ResultsFile, record: &'a Record) -> Self {
+        let earlier = record.in_time();
         Folder { dir, file, record, earlier, tables: None, fields: None, seconds: 0.0, seconds_in_time: 0.0 }
     }
 
@@ -40,32 +40,20 @@ impl<'a> Folder<'a> {
         match stage {
             ResultStage::Model(model) => file.write_head(model),
             ResultStage::Found(result) => file.write(&result.describe()),
-            ResultStage::MapBegins(map, known) => {
-                file.begin_map(map, &known.points, &known.trained)?;
-                self.record.begin_map(&map.name, &known.points, &known.trained)
-            }
-            ResultStage::MapPoints(name, first, points) => {
-                file.write_map_points(name, *first, points)?;
-                self.record.add_map_points(name, *first, points)
-            }
+            // Before the record begins, so that files of earlier runs are gone.
+            ResultStage::StudyBegins => file.take_place(),
+            ResultStage::MapBegins(map, trained) => file.begin_map(map, trained),
+            ResultStage::MapPoints(name, first, points) => file.write_map_points(name, *first, points),
             ResultStage::Map(map) => file.finish_map(map),
-            ResultStage::Samples(name, first, modes) => {
-                // Before the record begins, so that files of earlier runs are gone.
-                file.take_place()?;
-                self.record.add_samples(name, *first, modes)
-            }
             ResultStage::TransientBegins(recording) => self.begin_transient(recording),
             ResultStage::TransientPiece(piece) => {
                 file.write_transient_piece(piece)?;
-                self.tables.iter_mut().try_for_each(|(history, events)| {
-                    history.append(piece.first, piece.values)?;
-                    events.append(piece.events)
-                })?;
+                self.tables.iter_mut().try_for_each(|tables| tables.append(piece))?;
                 self.record.add_piece(piece)
             }
             ResultStage::TransientField(field) => {
-                self.fields.iter_mut().try_for_each(|file| file.write(field))?;
-                self.record.add_field(field)
+                self.record.add_field(field);
+                self.fields.iter_mut().try_for_each(|file| file.write(field))
             }
             ResultStage::Transient(transient) => file.finish_transient(transient),
         }
@@ -84,40 +72,35 @@ impl<'a> Folder<'a> {
             return Err(Error::input(fault.with_help("It is damaged: run without --resume")));
         }
         fits_on_disk(self.dir, &RecordSize::from(recording))?;
-        let checkpoint = earlier.march.clone();
+        let checkpoint = &earlier.march.clone();
         let Folder { file, record, tables, fields, .. } = self;
         file.begin_transient(recording)?;
-        if let Some(checkpoint) = &checkpoint {
-            // Before it takes the place of the earlier file, which has these rows.
-            record.replay(&mut |block| match block {
-                RecordBlock::Rows { first, values, modal, events } => {
+        // The pieces of the earlier run.
+        let replay = |each: &mut dyn FnMut(&RecordPiece) -> Result<()>,
+                      field: &mut dyn FnMut(&FieldSnapshot) -> Result<()>| {
+            let Some(checkpoint) = checkpoint else { return Ok(()) };
+            record.replay(&mut |entry| match entry {
+                Entry::Rows { first, values, modal, events } => {
                     let (values, modal, events) = (&values, &modal, &events);
-                    file.write_transient_piece(&RecordPiece { first, values, modal, events, checkpoint })
+                    each(&RecordPiece { first, values, modal, events, checkpoint })
+                }
+                Entry::Field { number, motion: [displacement, velocity] } => {
+                    field(&FieldSnapshot { number, displacement: &displacement, velocity: &velocity })
                 }
                 _ => Ok(()),
-            })?;
-        }
+            })
+        };
+        // Before it takes the place of the earlier file, which has these rows.
+        replay(&mut |piece| file.write_transient_piece(piece), &mut |_| Ok(()))?;
         file.take_place()?;
         *fields = recording.fields.as_ref().map(|begun| FieldsFile::begin(self.dir, begun)).transpose()?;
-        let (history, events) = tables
-            .insert((HistoryTable::create(self.dir, recording)?, EventTable::create(self.dir, recording)?));
+        let tables = tables.insert(TransientCsv::create(self.dir, recording)?);
+        let mut write = |field: &FieldSnapshot| fields.iter_mut().try_for_each(|file| file.write(field));
+        replay(&mut |piece| tables.append(piece), &mut write)?;
         if checkpoint.is_none() {
-            return record.begin_transient(recording);
+            record.begin_transient(recording);
         }
-        record.replay(&mut |block| match block {
-            RecordBlock::Rows { first, values, modal: _, events: happened } => {
-                history.append(first, &values)?;
-                events.append(&happened)
-            }
-            RecordBlock::Field { number, motion: [displacement, velocity] } => {
-                let field = FieldSnapshot { number, displacement: &displacement, velocity: &velocity };
-                fields.iter_mut().try_for_each(|file| file.write(&field))
-            }
-            RecordBlock::Map { .. }
-            | RecordBlock::MapPoints { .. }
-            | RecordBlock::Samples { .. }
-            | RecordBlock::Transient { .. } => Ok(()),
-        })
+        Ok(())
     }
 }
 
@@ -145,7 +128,7 @@ impl ResultSink for Folder<'_> {
         Ok(start.map(|(_, value)| *value).collect())
     }
 
-    fn stopped(&self) -> Result<Option<Checkpoint>> {
-        Ok(self.earlier.march.clone())
+    fn stopped(&self) -> Option<Checkpoint> {
+        self.earlier.march.clone()
     }
 }

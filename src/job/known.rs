@@ -1,65 +1,60 @@
-//! Points of studies that are known before a run, and the origin that they must have.
+//! Answers of studies that are known before a run, where new ones are kept, and the origin that they must have.
 
-use super::sink::KnownMaps;
 use crate::case::Case;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::linalg::sparse::times;
 use crate::modal::RealModes;
-use crate::results::record::{InputFile, PartRecord, RecordOrigin};
-use crate::sweep::{AnswerStore, Answers, Modes, SampleModes};
+use crate::results::record::{InputFile, Record, RecordOrigin};
+use crate::sweep::{AnswerStore, Modes};
 use crate::system::System;
 use faer::Mat;
 use sha2::{Digest, Sha256};
-use std::collections::BTreeMap;
-use std::path::PathBuf;
 
-/// Points of studies that are known before a run.
+/// Answers of studies in records.
 #[derive(Default)]
-pub struct KnownPoints {
-    /// First points of the maps, of an interrupted run.
-    pub maps: KnownMaps,
-    /// First samples of the studies of uncertain scalars, by name, of an interrupted run.
-    pub samples: BTreeMap<String, Vec<SampleModes>>,
-    /// Points that a job array has computed.
-    pub parts: Parts,
+pub struct KnownAnswers<'a> {
+    /// Record of the run, to which new answers are added.
+    pub own: Option<&'a Record>,
+    /// Records of the parts that a job array has computed.
+    pub parts: Vec<Record>,
 }
 
-/// The parts that a job array has computed.
-#[derive(Default)]
-pub struct Parts {
-    /// Their folder.
-    pub dir: PathBuf,
-    /// Their answers.
-    pub records: Vec<PartRecord>,
-}
-
-impl Parts {
-    /// The answers of the study with this table in the case; none unless `wanted`.
-    pub(super) fn of<'a>(&'a self, table: &str, wanted: bool) -> KnownAnswers<'a> {
-        let all = self.records.iter().filter_map(|part| part.answers.get(table));
-        KnownAnswers(all.filter(|_| wanted).collect())
+impl KnownAnswers<'_> {
+    /// The answers of the study with this table in the case, on the model of this round: each is richer than the one before, as the
+    /// first was not good enough.
+    pub(super) fn of(&self, table: &str, round: usize) -> StudyAnswers<'_> {
+        let study = if round == 0 { table.to_string() } else { format!("{round}.{table}") };
+        StudyAnswers { known: self, study }
     }
 
-    /// Whether their shapes are compared by this reference.
-    pub(super) fn check(&self, reference: &Reference) -> Result<()> {
-        if self.records.is_empty() {
-            return Ok(());
-        }
+    fn all(&self) -> impl Iterator<Item = &Record> {
+        self.own.into_iter().chain(&self.parts)
+    }
+
+    /// Compares shapes by this reference; says so when those that are known were compared by another one.
+    pub(super) fn compare_by(&self, reference: &Reference) -> Result<()> {
         let digest = reference.digest();
-        self.records.iter().try_for_each(|part| part.check_reference(&self.dir, digest))
+        self.all().try_for_each(|record| record.compare_by(digest))
     }
 }
 
-/// Answers of the parts; more are not kept.
-pub(super) struct KnownAnswers<'a>(Vec<&'a Answers>);
+/// The answers of a study.
+pub(super) struct StudyAnswers<'a> {
+    known: &'a KnownAnswers<'a>,
+    study: String,
+}
 
-impl AnswerStore for KnownAnswers<'_> {
+impl AnswerStore for StudyAnswers<'_> {
     fn find(&self, place: &[u64]) -> Option<Result<Modes>> {
-        self.0.iter().find_map(|part| part.get(place)).cloned()
+        self.known.all().find_map(|record| record.answer(&self.study, place))
     }
 
-    fn keep(&self, _: Vec<u64>, _: &Result<Modes>) -> Result<()> {
-        Ok(())
+    fn keep(&self, place: Vec<u64>, answer: &Result<Modes>) -> Result<()> {
+        match (answer, self.known.own) {
+            // That the machine refuses something is no answer.
+            (Err(Error::Io { .. }), _) | (_, None) => Ok(()),
+            (answer, Some(own)) => own.keep(&self.study, &place, answer),
+        }
     }
 }
 

@@ -1,100 +1,46 @@
-//! Who follows whom, and who is held: the rigid bodies and supports of a case, checked in the words of the case.
+//! The rigid bodies and supports of a case, checked in the words of the case.
 
 use super::regions::Regions;
-use crate::case::{Case, Rigid};
+use crate::case::Case;
 use crate::error::{Error, Fault, Faults};
-use crate::structure::{RigidLink, Support};
-use std::collections::BTreeMap;
+use crate::structure::{Model, RigidLink, Support, TieWords, check_ties};
 
-/// The rigid links of the case. A master among its followers moves with itself anyway and is left out there.
+/// Adds the rigid links and the supports of the case to `model`. A master among its followers moves with itself anyway and is left out
+/// there.
 ///
-/// Faults: regions that are missing, a master whose only follower is itself, nodes that follow two masters, circles.
-pub fn rigid_links(case: &Case, regions: &Regions, faults: &mut Faults) -> Vec<RigidLink> {
-    let mut links = Vec::new();
-    // The master of every follower, and the rigid body that says so.
-    let mut leader: BTreeMap<usize, (usize, &str)> = BTreeMap::new();
+/// Faults: regions that are missing, a master whose only follower is itself, those of [`check_ties`].
+pub fn add_ties(case: &Case, regions: &Regions, model: &mut Model, faults: &mut Faults) {
+    let mut names = Vec::new();
     for (name, rigid) in &case.rigid {
-        let Some(link) = link(name, rigid, regions, faults) else { continue };
-        let already = |slave: &&usize| leader.get(slave).is_some_and(|(master, _)| *master != link.master);
-        let twice: Vec<usize> = link.slaves.iter().filter(already).copied().collect();
-        if let Some(first) = twice.first() {
-            let (master, other) = leader[first];
-            let found = format!(
-                "{} that already follow {} by `rigid.{other}`",
-                regions.count_of_nodes(&twice),
-                regions.name_of_node(master)
+        let followers = format!("`rigid.{name}.follow`");
+        let master = faults.take(regions.node(&rigid.master, &format!("`rigid.{name}.master`")));
+        let slaves = regions.nodes_of(&rigid.follow, &followers, faults);
+        let Some(master) = master else { continue };
+        if slaves == [master] {
+            let found = format!("no node but the master itself, {}", regions.name_of_node(master));
+            let help = format!(
+                "Name the regions that move with `{}`; without this rigid body nothing changes",
+                rigid.master
             );
-            let help = "Let one of the masters follow the other instead";
-            faults.push(Fault::new(follow(name), found, "one master for every node").with_help(help));
+            faults.push(Fault::new(followers, found, "regions with other nodes").with_help(help));
         }
-        for slave in &link.slaves {
-            leader.entry(*slave).or_insert((link.master, name));
-        }
-        links.push(link);
+        names.push(name);
+        let slaves = slaves.into_iter().filter(|slave| *slave != master).collect();
+        model.links.push(RigidLink { master, slaves });
     }
-    if let Some((node, (master, name))) = circle(&leader) {
-        let (node, master) = (regions.name_of_node(node), regions.name_of_node(master));
-        let found = format!("a circle: {node} follows {master}, which follows {node} in the end");
-        faults.push(Fault::new(follow(name), found, "a master that follows none of its followers"));
+    let places: Vec<String> = case.support.keys().map(|name| format!("`support.{name}.on`")).collect();
+    for (support, place) in case.support.values().zip(&places) {
+        let nodes = regions.nodes_of(&support.on, place, faults);
+        model.supports.push(Support { nodes, held: support.holds() });
     }
-    links
-}
-
-fn follow(name: &str) -> String {
-    format!("`rigid.{name}.follow`")
-}
-
-fn link(name: &str, rigid: &Rigid, regions: &Regions, faults: &mut Faults) -> Option<RigidLink> {
-    let master = faults.take(regions.node(&rigid.master, &format!("`rigid.{name}.master`")));
-    let slaves = regions.nodes_of(&rigid.follow, &follow(name), faults);
-    let master = master?;
-    if slaves == [master] {
-        let found = format!("no node but the master itself, {}", regions.name_of_node(master));
-        let help = format!(
-            "Name the regions that move with `{}`; without this rigid body nothing changes",
-            rigid.master
-        );
-        faults.push(Fault::new(follow(name), found, "regions with other nodes").with_help(help));
-    }
-    let slaves = slaves.into_iter().filter(|slave| *slave != master).collect();
-    Some(RigidLink { master, slaves })
-}
-
-/// A follower that follows itself in the end, with its leader.
-fn circle<'a>(leader: &BTreeMap<usize, (usize, &'a str)>) -> Option<(usize, (usize, &'a str))> {
-    leader.iter().map(|(node, of)| (*node, *of)).find(|(node, (master, _))| {
-        let mut at = *master;
-        for _ in 0..leader.len() {
-            match leader.get(&at) {
-                _ if at == *node => return true,
-                Some((next, _)) => at = *next,
-                None => return false,
-            }
-        }
-        false
-    })
-}
-
-/// The supports of the case; a fault for each that holds nodes which follow a master.
-pub fn supports(case: &Case, regions: &Regions, links: &[RigidLink], faults: &mut Faults) -> Vec<Support> {
-    let followers: BTreeMap<usize, usize> =
-        links.iter().flat_map(|link| link.slaves.iter().map(|slave| (*slave, link.master))).collect();
-    let mut supports = Vec::new();
-    for (name, support) in &case.support {
-        let place = format!("`support.{name}.on`");
-        let nodes = regions.nodes_of(&support.on, &place, faults);
-        let held = support.holds();
-        let moved: Vec<usize> = nodes.iter().filter(|node| followers.contains_key(node)).copied().collect();
-        if let Some(first) = moved.first().filter(|_| held.contains(&true)) {
-            let master = regions.name_of_node(followers[first]);
-            let follow = if moved.len() == 1 { "follows" } else { "follow" };
-            let found = format!("{} that {follow} {master} rigidly", regions.count_of_nodes(&moved));
-            let fault = Fault::new(place, found, "regions of masters, or of nodes that follow none");
-            faults.push(fault.with_help(format!("Hold the master, {master}")));
-        }
-        supports.push(Support { nodes, held });
-    }
-    supports
+    let words = TieWords {
+        link: &|k| format!("`rigid.{}`", names[k]),
+        followers: &|k| format!("`rigid.{}.follow`", names[k]),
+        support: &|k| places[k].clone(),
+        node: &|node| regions.name_of_node(node),
+        nodes: &|nodes| regions.count_of_nodes(nodes),
+    };
+    check_ties(model, &words, faults);
 }
 
 /// An error of the structure in terms of the case: the keys of all that holds something, `clamp` among them, replace its supports.

@@ -3,7 +3,7 @@
 use super::analyses::Selection;
 use super::prepared::Prepared;
 use super::states::keeps_the_structure;
-use super::studies::{SHARED, UNCERTAINTY, ranges};
+use super::studies::{SHARED, UNCERTAINTY, studies};
 use crate::error::{Error, Result};
 use crate::linalg::sparse::{add_scaled, sum_of_squares};
 use crate::memory::{Available, available};
@@ -136,19 +136,19 @@ pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Opti
         }
     }
     let run = ProblemSize { dofs, entries: pattern.compute_nnz(), fill, modes: modes.min(dofs as f64) };
-    let mut studies = None;
+    let mut explored = None;
     let varied = SHARED.into_iter().filter(|analysis| selection.includes(analysis, case));
-    for (path, _) in varied.flat_map(|analysis| ranges(case, analysis)) {
-        let kind = if keeps_the_structure(case, path)? {
+    for path in varied.flat_map(|analysis| studies(case, analysis)).flat_map(|study| study.paths) {
+        let kind = if keeps_the_structure(case, &path)? {
             AnalysisKind::Study
         } else {
             AnalysisKind::StudyOfStructures
         };
-        studies = studies.max(Some(kind));
+        explored = explored.max(Some(kind));
     }
     let kind = match complex {
         None => AnalysisKind::Real,
-        Some(cea) => studies.unwrap_or(AnalysisKind::Complex {
+        Some(cea) => explored.unwrap_or(AnalysisKind::Complex {
             left_vectors: cea.left_vectors || selection.takes_left_vectors(case),
         }),
     };

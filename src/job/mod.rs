@@ -52,7 +52,6 @@ mod sink;
 mod sound;
 mod states;
 mod studies;
-#[cfg(feature = "cli")]
 mod study_solver;
 mod table;
 mod time_function;
@@ -75,6 +74,6 @@ pub use parts::{PartDone, run_part, run_parts};
 pub use prepared::Prepared;
 #[cfg(feature = "cli")]
 pub use run_case::{RunOptions, merge_parts, run_case};
-pub use sink::{Histories, KnownMap, KnownMaps, ResultSink, ResultStage};
+pub use sink::{Histories, ResultSink, ResultStage};
 pub use states::Whole;
 pub use studies::SHARED;

@@ -1,6 +1,6 @@
 //! Case and mesh → the plain description of the structure, for the whole or for some of its parts.
 
-use super::links::{rigid_links, supports};
+use super::links::add_ties;
 use super::regions::Regions;
 use crate::case::{Case, ModesAnalysis};
 use crate::error::{Fault, Faults, Result};
@@ -63,8 +63,7 @@ pub fn whole_model(case: &Case, regions: &Regions) -> Result<Model> {
             });
         }
     }
-    model.links = rigid_links(case, regions, &mut faults);
-    model.supports = supports(case, regions, &model.links, &mut faults);
+    add_ties(case, regions, &mut model, &mut faults);
     faults.into_result(model)
 }
 

@@ -4,7 +4,7 @@
 use super::analyse::{Asked, operating_point};
 use super::analyses::Selection;
 use super::explore::{Explorer, Nominal, Start};
-use super::known::{Parts, origin};
+use super::known::{KnownAnswers, origin};
 use super::memory::check_memory;
 use super::prepared::Prepared;
 use super::singular::explained;
@@ -13,11 +13,10 @@ use super::study_solver::StudySolver;
 use crate::case::Case;
 use crate::error::{Error, Fault, Result};
 use crate::progress::Observer;
-use crate::results::record::{Part, PartFile, RecordOrigin, read_parts};
-use crate::sweep::{AnswerStore, Block, Modes, bits};
+use crate::results::record::{Part, Record, RecordOrigin, read_parts};
+use crate::sweep::{Block, bits};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The folder of the parts of an analysis in the results folder `out`.
 pub(super) fn folder(out: &Path, analysis: &str) -> PathBuf {
@@ -76,7 +75,7 @@ pub fn run_parts(
     let (dir, studies, origin) = (folder(out, analysis), studies(case, analysis), origin(case)?);
     let (shares, mut done) = (shares(&studies, of), Vec::new());
     // The next part that is not done yet.
-    let mut open = |done: &mut Vec<PartDone>| -> Result<Option<(Share<'_>, PartFile)>> {
+    let mut open = |done: &mut Vec<PartDone>| -> Result<Option<(Share<'_>, Part, Record)>> {
         while let Some(number) = next()? {
             let part = Part { of, number };
             let share: Share = shares.iter().filter(|(own, ..)| *own == number).collect();
@@ -85,9 +84,9 @@ pub fn run_parts(
             if points == 0 {
                 continue;
             }
-            let file = PartFile::open(&dir, part, origin.clone())?;
-            if !file.record.done {
-                return Ok(Some((share, file)));
+            let record = Record::open_part(&dir, part, &origin)?;
+            if !record.ended() {
+                return Ok(Some((share, part, record)));
             }
         }
         Ok(None)
@@ -98,12 +97,13 @@ pub fn run_parts(
     let nominal =
         Nominal { prepared: &prepared, system: &point.system, steady: &point.steady, real: &point.real };
     let start = Start::new(&nominal).map_err(computing)?;
-    let explorer = Explorer::new(&start, observer).map_err(computing)?;
+    let none = KnownAnswers::default();
+    let explorer = Explorer::new(&start, &none, observer).map_err(computing)?;
     let mut solvers = Solvers { explorer: &explorer, last: None };
     loop {
-        let (share, mut file) = work;
-        file.begin(start.reference.digest())?;
-        compute(&mut solvers, &share, file, observer)?;
+        let (share, part, record) = work;
+        record.begin_part(part, start.reference.digest())?;
+        compute(&mut solvers, &share, &record, observer)?;
         let Some(next) = open(&mut done)? else { return Ok(done) };
         work = next;
     }
@@ -112,19 +112,17 @@ pub fn run_parts(
 /// The blocks of a part.
 type Share<'a> = Vec<&'a (usize, &'a Study, Block)>;
 
-/// Computes blocks of studies and keeps their answers in the file of their part, which is then done.
+/// Computes blocks of studies and keeps their answers in the record of their part, which is then done.
 fn compute<'s>(
     solvers: &mut Solvers<'s>,
     share: &[&(usize, &'s Study, Block)],
-    file: PartFile,
+    record: &Record,
     observer: &dyn Observer,
 ) -> Result<()> {
-    let file = Mutex::new(file);
+    let known = KnownAnswers { own: Some(record), parts: Vec::new() };
     for (_, study, block) in share {
-        let store = Keeping { file: &file, table: &study.name };
-        let computed = solvers.of(study).and_then(|solver| solver.solve(block, &store, observer));
-        locked(&file).save()?;
-        match computed {
+        let store = known.of(&study.name, 0);
+        match solvers.of(study).and_then(|solver| solver.solve(block, &store, observer)) {
             Err(refused @ Error::Io { .. }) => return Err(refused),
             Err(error) => {
                 observer.note(&format!("No answer in [{}], as the merge will say: {error}", study.name))
@@ -132,9 +130,7 @@ fn compute<'s>(
             Ok(()) => {}
         }
     }
-    let mut file = locked(&file);
-    file.record.done = true;
-    file.save()
+    record.end()
 }
 
 /// Solvers of studies. The last one is kept, as the next part may begin with its study; two would take twice the memory.
@@ -150,31 +146,6 @@ impl<'s> Solvers<'s> {
             self.last = Some((&study.name, self.explorer.solver(study)?));
         }
         Ok(&self.last.as_ref().expect("a solver that was made").1)
-    }
-}
-
-/// The answers of a part for the study with this table in the case.
-struct Keeping<'a> {
-    file: &'a Mutex<PartFile>,
-    table: &'a str,
-}
-
-/// The file, also after a thread has panicked that had it: answers are added whole.
-fn locked(file: &Mutex<PartFile>) -> MutexGuard<'_, PartFile> {
-    file.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-impl AnswerStore for Keeping<'_> {
-    fn find(&self, place: &[u64]) -> Option<Result<Modes>> {
-        locked(self.file).record.answers.get(self.table)?.get(place).cloned()
-    }
-
-    fn keep(&self, place: Vec<u64>, answer: &Result<Modes>) -> Result<()> {
-        match answer {
-            // That the machine refuses something is no answer.
-            Err(Error::Io { .. }) => Ok(()),
-            answer => locked(self.file).add(self.table, place, answer.clone()),
-        }
     }
 }
 
@@ -197,31 +168,28 @@ fn shares(studies: &[Study], of: usize) -> Vec<(usize, &Study, Block)> {
     all.enumerate().map(|(k, (study, block))| (k % of + 1, study, block)).collect()
 }
 
-/// The parts of `analysis` in the results folder `out`, which together are whole.
-///
-/// # Errors
-/// Input: parts that are missing, or not done; parts of another case, or damaged ones.
-pub(super) fn collect(case: &Case, analysis: &str, out: &Path, origin: &RecordOrigin) -> Result<Parts> {
+/// The parts of `analysis` in the results folder `out`, which together are whole. Refuses parts that are missing, not done, of
+/// another case, or damaged.
+pub(super) fn collect(case: &Case, analysis: &str, out: &Path, origin: &RecordOrigin) -> Result<Vec<Record>> {
     let dir = folder(out, analysis);
     let records = read_parts(&dir, origin)?;
-    let Some(of) = records.first().map(|first| first.part.of) else {
+    let Some(of) = records.first().and_then(Record::part).map(|first| first.of) else {
         let fault = Fault::new(dir.display().to_string(), "no part", "the files that --part leaves there");
         let help = format!("Compute every part first, as `stridor {analysis} CASE --part 1/40` to 40/40");
         return Err(Error::input(fault.with_help(help)));
     };
-    let parts = Parts { dir, records };
-    complete(&parts, of, &studies(case, analysis))?;
-    Ok(parts)
+    complete(&dir, &records, of, &studies(case, analysis))?;
+    Ok(records)
 }
 
 /// Refuses parts that are missing or not done.
-fn complete(parts: &Parts, of: usize, studies: &[Study]) -> Result<()> {
+fn complete(dir: &Path, records: &[Record], of: usize, studies: &[Study]) -> Result<()> {
     let shares = shares(studies, of);
-    let record = |number: usize| parts.records.iter().find(|record| record.part.number == number);
+    let record = |number: usize| records.iter().find(|record| record.part() == Some(Part { of, number }));
     let numbers: BTreeSet<usize> = shares.iter().map(|(number, ..)| *number).collect();
     let (begun, absent): (Vec<usize>, Vec<usize>) = numbers
         .into_iter()
-        .filter(|number| record(*number).is_none_or(|record| !record.done))
+        .filter(|number| record(*number).is_none_or(|record| !record.ended()))
         .partition(|number| record(*number).is_some());
     if begun.is_empty() && absent.is_empty() {
         return Ok(());
@@ -230,9 +198,10 @@ fn complete(parts: &Parts, of: usize, studies: &[Study]) -> Result<()> {
     let count = |number: usize| {
         let (mut all, mut there) = (0, 0);
         for (_, study, block) in shares.iter().filter(|(own, ..)| *own == number) {
-            let answers = record(number).and_then(|record| record.answers.get(&study.name));
             let points = study.points_of(block);
-            let known = |k: &&usize| answers.is_some_and(|all| all.contains_key(&bits(&study.place(**k))));
+            let known = |k: &&usize| {
+                record(number).is_some_and(|record| record.has(&study.name, &bits(&study.place(**k))))
+            };
             (all, there) = (all + points.len(), there + points.iter().filter(known).count());
         }
         (all, there)
@@ -256,15 +225,12 @@ fn complete(parts: &Parts, of: usize, studies: &[Study]) -> Result<()> {
         "Compute {} of {of} with --part; a part that was begun resumes where it stopped",
         ranges(&all)
     );
-    let fault = Fault::new(parts.dir.display().to_string(), found.join("; "), "all parts, each done");
+    let fault = Fault::new(dir.display().to_string(), found.join("; "), "all parts, each done");
     Err(Error::input(fault.with_help(help)))
 }
 
 /// How many parts the studies of `analysis` are cut into in the results folder `out`, and the numbers of those that are done; none where
 /// there are no parts.
-///
-/// # Errors
-/// Input: parts of another case, or damaged ones.
 #[cfg(feature = "slepc")]
 pub(super) fn parts_done(
     case: &Case,
@@ -272,8 +238,9 @@ pub(super) fn parts_done(
     out: &Path,
 ) -> Result<Option<(usize, BTreeSet<usize>)>> {
     let records = read_parts(&folder(out, analysis), &origin(case)?)?;
-    let done = || records.iter().filter(|record| record.done).map(|record| record.part.number);
-    Ok(records.first().map(|first| (first.part.of, done().collect())))
+    let done = records.iter().filter(|record| record.ended()).filter_map(Record::part);
+    let numbers = done.map(|part| part.number).collect();
+    Ok(records.first().and_then(Record::part).map(|first| (first.of, numbers)))
 }
 
 /// Ascending numbers as job arrays take them: `2,5-7`.
@@ -302,6 +269,7 @@ mod tests {
         let grid = |name: &str, axes| Study {
             name: name.into(),
             paths: Vec::new(),
+            bounds: Vec::new(),
             points: crate::job::studies::Points::Grid(axes),
         };
         let studies = [grid("sweep.a", vec![axis(4)]), grid("map.b", vec![axis(3), axis(2)])];

@@ -2,7 +2,7 @@
 
 use super::clock::Clock;
 use super::complex::whole_modes;
-use super::known::KnownPoints;
+use super::known::KnownAnswers;
 use super::prepared::Prepared;
 use super::sink::{ResultSink, ResultStage};
 use crate::equilibrium::{self, SteadySliding};
@@ -26,8 +26,8 @@ pub struct Run<'a, 'k> {
     pub clock: Clock,
     /// Results so far.
     pub results: &'k mut RunResults,
-    /// Points of sweeps and maps that are known.
-    pub known: &'k KnownPoints,
+    /// Answers of studies that are known.
+    pub known: &'k KnownAnswers<'k>,
     /// Whether an analysis takes the left vectors of the complex modes.
     pub left_vectors: bool,
     /// The real modes of the whole that span the complex analysis, until that takes them: see [`Run::basis`].
@@ -49,12 +49,12 @@ pub struct OperatingPoint<'a> {
 }
 
 impl<'a, 'k> Run<'a, 'k> {
-    /// A run of which nothing is known but points of its sweeps and maps; `complex` when it comes to complex modes,
+    /// A run of which nothing is known but answers of its studies; `complex` when it comes to complex modes,
     /// `left_vectors` when these get left vectors.
     pub fn new(
         prepared: &'a Prepared<'a>,
         [complex, left_vectors]: [bool; 2],
-        known: &'k KnownPoints,
+        known: &'k KnownAnswers<'k>,
         sink: &'k mut dyn ResultSink,
         results: &'k mut RunResults,
         observer: &'k dyn Observer,
@@ -75,9 +75,6 @@ impl<'a, 'k> Run<'a, 'k> {
     }
 
     /// Hands a result on and keeps it.
-    ///
-    /// # Errors
-    /// The machine refuses.
     pub fn found(&mut self, record: impl AnalysisRecord) -> Result<()> {
         self.sink.record(ResultStage::Found(&record))?;
         self.results.records.push(record);
@@ -93,7 +90,7 @@ impl<'a, 'k> Run<'a, 'k> {
     /// Steady sliding, which is computed on first use.
     ///
     /// # Errors
-    /// No steady state; the machine refuses.
+    /// No steady state: an open contact, a structure that nothing holds. What the sink returns.
     pub fn steady(&mut self) -> Result<Rc<SteadySliding>> {
         if let Some(steady) = &self.steady {
             return Ok(steady.clone());

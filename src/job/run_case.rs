@@ -4,18 +4,17 @@ use super::analyse::{Asked, analyse_from};
 use super::analyses::{PHASE, Selection};
 use super::checks::results_hold;
 use super::folder::Folder;
-use super::known::{KnownPoints, Parts, origin};
+use super::known::{KnownAnswers, origin};
 use super::memory::check_memory;
 use super::parts::collect;
 use super::prepared::Prepared;
 use super::singular::explained;
-use super::sink::KnownMap;
 use crate::case::Case;
 use crate::error::{Error, Fault, Result};
 use crate::linalg::Engine;
 use crate::linalg::factor::engine_names;
 use crate::progress::Observer;
-use crate::results::record::{Earlier, Record, RecordOrigin};
+use crate::results::record::{Record, RecordOrigin};
 use crate::results::{self, FieldsFile, FolderLock, Provenance, ResultsFile, RunResults, fits_on_disk};
 use std::path::Path;
 use std::time::Instant;
@@ -31,7 +30,7 @@ pub struct RunOptions {
 
 /// Runs the analyses of a case and writes the results folder `out`; nothing is written when the input is wrong.
 ///
-/// With [`RunOptions::resume`] the maps, the samples and the run in time that an earlier run of the same case left in `out` are resumed where it
+/// With [`RunOptions::resume`] the studies and the run in time that an earlier run of the same case left in `out` are resumed where it
 /// stopped; the result is the same, bit for bit. Results of another case or of other files are refused. Without it an
 /// interrupted record is moved to a folder of its own in `out`; the files of a run that had ended are replaced.
 ///
@@ -113,29 +112,26 @@ fn run_from(
     let origin = origin(case)?;
     let parts = match begin {
         Begin::Merged { analysis, .. } => collect(case, analysis, out, &origin)?,
-        Begin::Anew | Begin::Resumed => Parts::default(),
+        Begin::Anew | Begin::Resumed => Vec::new(),
     };
     let _lock = FolderLock::take(out)?;
     let mut results = RunResults { inputs: origin.inputs.clone(), provenance, ..RunResults::default() };
-    let (record, earlier) = match begin {
+    let record = &match begin {
         Begin::Resumed => resumed(out, origin, &asked)?,
         Begin::Anew | Begin::Merged { .. } => {
             results.warnings.extend(moved_aside(out, observer)?);
-            (Record::new(out, origin), Earlier::default())
+            Record::new(out, origin)
         }
     };
-    let maps = earlier.maps.iter().map(|(name, (points, trained))| {
-        (name.clone(), KnownMap { points: points.clone(), trained: trained.clone() })
-    });
-    let known = KnownPoints { maps: maps.collect(), samples: earlier.samples.clone(), parts };
+    let known = KnownAnswers { own: Some(record), parts };
     let mut file = ResultsFile::create(out)?;
     let read = case.files().into_iter().chain(["calibrated.toml".into()]).map(|name| case.folder.join(name));
     file.spare(read.filter_map(|path| std::path::absolute(path).ok()));
     if begin == Begin::Resumed {
-        file.spare(record.files());
+        file.spare(Record::files());
     }
     let preparation = started.elapsed().as_secs_f64();
-    let mut folder = Folder::new(out, file, record, earlier);
+    let mut folder = Folder::new(out, file, record);
     let done = analyse_from(&prepared, asked, &known, &mut folder, &mut results, observer)
         // What other runs left, and does not fit, is input.
         .map_err(|error| if begin == Begin::Anew { error.while_computing() } else { error })
@@ -152,6 +148,7 @@ fn run_from(
     results.failed = failure.as_ref().map(Error::to_string);
     results.timings.insert(0, ("read mesh and assemble".into(), preparation));
     write_results(out, folder, &mut results)?;
+    record.end()?;
     match failure {
         Some(failure) => Err(failure),
         None => Ok(results),
@@ -159,14 +156,13 @@ fn run_from(
 }
 
 /// Record of an earlier run to resume from.
-fn resumed(out: &Path, origin: RecordOrigin, asked: &Asked) -> Result<(Record, Earlier)> {
-    let Some((record, earlier)) = Record::resume(out, &origin)? else {
-        return Ok((Record::new(out, origin), Earlier::default()));
-    };
+fn resumed(out: &Path, origin: RecordOrigin, asked: &Asked) -> Result<Record> {
+    let record = Record::resume(out, origin)?;
     let left_out = [
-        (earlier.rows > 0, "a run in time", "transient"),
-        (!earlier.maps.is_empty(), "maps", "sweep"),
-        (!earlier.samples.is_empty(), "samples", "uncertainty"),
+        (record.in_time().rows > 0, "a run in time", "transient"),
+        (record.has_study("sweep."), "sweeps", "sweep"),
+        (record.has_study("map."), "maps", "sweep"),
+        (record.has_study("uncertainty."), "samples", "uncertainty"),
     ];
     let lost = left_out.into_iter().find(|(there, _, analysis)| *there && !asked.includes(analysis));
     if let Some((_, what, analysis)) = lost.filter(|_| !record.ended()) {
@@ -176,7 +172,7 @@ fn resumed(out: &Path, origin: RecordOrigin, asked: &Asked) -> Result<(Record, E
         let help = "Use that command, or run without --resume (the record is kept aside)";
         return Err(Error::input(fault.with_help(help)));
     }
-    Ok((record, earlier))
+    Ok(record)
 }
 
 /// Keeps an interrupted record aside and says so.
@@ -196,13 +192,12 @@ fn write_results(out: &Path, folder: Folder, results: &mut RunResults) -> Result
     // The time of a phase is that of computing.
     let in_time = results.timings.iter_mut().find(|(phase, _)| phase == PHASE);
     in_time.into_iter().for_each(|(_, seconds)| *seconds -= folder.seconds_in_time);
-    let Folder { mut file, mut record, fields, seconds: recording, .. } = folder;
+    let Folder { mut file, fields, seconds: recording, .. } = folder;
     let writing = Instant::now();
     fields.map_or(Ok(()), FieldsFile::finish)?;
     file.stand_alone()?;
     results::write_files(out, results)?;
     crate::report::write_report(out, results)?;
     results.timings.push(("write results".into(), recording + writing.elapsed().as_secs_f64()));
-    file.finish(results)?;
-    record.end()
+    file.finish(results)
 }

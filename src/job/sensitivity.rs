@@ -131,9 +131,7 @@ impl Analysed<'_> {
 
     /// Indices of the modes nearest to `frequencies`, or of the unstable ones, or of the one nearest to instability;
     /// ascending.
-    ///
-    /// # Errors
-    /// A frequency that no mode is near.
+    /// Fails for a frequency that no mode is near.
     fn chosen_modes(&self, frequencies: &[f64]) -> Result<Vec<usize>> {
         let modes = &self.modes.modes;
         let by_growth = |a: &usize, b: &usize| modes[*b].growth_rate().total_cmp(&modes[*a].growth_rate());

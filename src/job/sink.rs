@@ -1,27 +1,14 @@
 //! Result sinks take results as soon as they are there; the one here keeps them in memory.
 
-use crate::dataset::{Describe, Dimension, Group, Table, Variable, column};
+use crate::dataset::{Describe, Group};
 use crate::error::Result;
 use crate::results::{
-    FieldSnapshot, MODAL_ABOUT, MODAL_UNIT, MapResult, RecordPiece, RecordSize, Recording, RunResults, TIME,
-    TransientResult, fits_in_memory, modal_channel,
+    FieldSnapshot, MapResult, RecordPiece, RecordSize, Recording, RunResults, TransientResult,
+    TransientTables, fits_in_memory, modal_channel,
 };
-use crate::sweep::{MapPoint, SampleModes};
+use crate::sweep::MapPoint;
 use crate::transient::{Checkpoint, Event};
-use std::collections::BTreeMap;
 use std::ops::Range;
-
-/// Points of one map that an earlier, interrupted run has computed.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct KnownMap {
-    /// Its first points.
-    pub points: Vec<MapPoint>,
-    /// Places on which the family was trained beyond those that every run begins with, in their order.
-    pub trained: Vec<[f64; 2]>,
-}
-
-/// The maps of an earlier run by name.
-pub type KnownMaps = BTreeMap<String, KnownMap>;
 
 /// A result that is ready to be written.
 pub enum ResultStage<'a> {
@@ -29,14 +16,14 @@ pub enum ResultStage<'a> {
     Model(&'a RunResults),
     /// Complete results of an analysis.
     Found(&'a dyn Describe),
-    /// A map of which no new point is there yet, and what is known of it.
-    MapBegins(&'a MapResult, &'a KnownMap),
+    /// A study begins that takes long.
+    StudyBegins,
+    /// A map without points, and the places on which its reduced model was trained beyond those of every run.
+    MapBegins(&'a MapResult, &'a [[f64; 2]]),
     /// New points of the map of this name, from this one on.
     MapPoints(&'a str, usize, &'a [MapPoint]),
     /// A whole map.
     Map(&'a MapResult),
-    /// New samples of the study of this name, from this one on.
-    Samples(&'a str, usize, &'a [SampleModes]),
     /// A run in time that begins or, after [`ResultSink::stopped`] had an answer, resumes.
     TransientBegins(&'a Recording<'a>),
     /// New rows of it.
@@ -52,114 +39,78 @@ pub trait ResultSink {
     /// Takes a result.
     ///
     /// # Errors
-    /// The machine refuses.
+    /// [`Error::Io`](crate::error::Error::Io): a file of the results folder cannot be written, the disk is too small for the record of a run
+    /// in time. [`Error::Analysis`](crate::error::Error::Analysis): memory is.
     fn record(&mut self, stage: ResultStage<'_>) -> Result<()>;
 
     /// Rows of a channel of the run in time.
     ///
     /// # Errors
-    /// The machine refuses.
+    /// [`Error::Io`](crate::error::Error::Io): `results.h5`, where the record is kept, cannot be read.
     fn recorded(&self, channel: &str, rows: Range<usize>) -> Result<Vec<f64>>;
 
     /// State at which an earlier run in time stopped that is to be resumed.
-    ///
-    /// # Errors
-    /// The machine refuses.
-    fn stopped(&self) -> Result<Option<Checkpoint>>;
+    fn stopped(&self) -> Option<Checkpoint>;
 }
 
 /// The histories of a run in time that is short enough for memory, gathered from its stages.
 #[derive(Debug, Default)]
 pub struct Histories {
-    /// Δt \[s\].
-    time_step: f64,
-    channels: Vec<History>,
-    /// Accelerations of the real modes, if they are recorded.
-    modal: Vec<History>,
+    tables: TransientTables,
+    /// The name of each channel and of each real mode, if their accelerations are recorded.
+    names: Vec<String>,
+    /// Their values, the start included.
+    values: Vec<Vec<f64>>,
     events: Vec<Event>,
-}
-
-/// A recorded quantity with its values, the start included.
-#[derive(Debug)]
-struct History {
-    name: String,
-    unit: &'static str,
-    about: String,
-    values: Vec<f64>,
 }
 
 impl Histories {
     /// Adds what a stage brings.
     pub fn keep(&mut self, stage: &ResultStage<'_>) {
         match stage {
-            ResultStage::TransientBegins(recording) => *self = Histories::of_recording(recording),
+            ResultStage::TransientBegins(recording) => {
+                let channels = recording.channels.iter().map(|channel| channel.name.clone());
+                let names: Vec<String> = channels.chain((0..recording.modes).map(modal_channel)).collect();
+                let (tables, values) = (TransientTables::new(recording), vec![Vec::new(); names.len()]);
+                *self = Histories { tables, names, values, events: Vec::new() };
+            }
             ResultStage::TransientPiece(piece) => {
-                self.channels.iter_mut().zip(piece.values).for_each(|(all, new)| all.values.extend(new));
-                let modal = self.modal.iter_mut().zip(piece.modal);
-                modal.for_each(|(all, new)| all.values.extend(new.iter().map(|a| f64::from(*a))));
+                let (channels, modal) = self.values.split_at_mut(self.tables.channels.len());
+                channels.iter_mut().zip(piece.values).for_each(|(all, new)| all.extend(new));
+                let modal = modal.iter_mut().zip(piece.modal);
+                modal.for_each(|(all, new)| all.extend(new.iter().map(|a| f64::from(*a))));
                 self.events.extend(piece.events);
             }
             _ => {}
         }
     }
 
-    fn of_recording(recording: &Recording) -> Self {
-        let history =
-            |name: String, unit, about: &str| History { name, unit, about: about.into(), values: Vec::new() };
-        let channels = recording.channels.iter();
-        let modal = |mode| history(modal_channel(mode), MODAL_UNIT, MODAL_ABOUT);
-        Histories {
-            time_step: recording.time_step,
-            channels: channels.map(|c| history(c.name.clone(), c.unit, &c.about)).collect(),
-            modal: (0..recording.modes).map(modal).collect(),
-            events: Vec::new(),
-        }
-    }
-
     /// The name and the values of each channel, the start included.
     pub fn all(&self) -> impl Iterator<Item = (&str, &[f64])> {
-        self.channels.iter().chain(&self.modal).map(|own| (own.name.as_str(), own.values.as_slice()))
+        self.names.iter().map(String::as_str).zip(self.values.iter().map(Vec::as_slice))
     }
 
     /// The values of a channel, the start included.
     pub fn of(&self, channel: &str) -> Option<&[f64]> {
         self.all().find(|(name, _)| *name == channel).map(|(_, all)| all)
     }
-
-    /// The histories over their times.
-    fn table(&self, key: &'static str, histories: &[History]) -> Table<'_> {
-        let rows = Dimension::of_variable(TIME, histories.first().map_or(0, |own| own.values.len()));
-        let times = (0..rows.length).map(|row| row as f64 * self.time_step).collect();
-        let along = || vec![rows.clone()];
-        let time = Variable::reals(TIME, "s", "time of each step, from the start", along(), times);
-        let columns = histories.iter().map(|own| {
-            let name = own.name.rsplit('/').next().unwrap_or_default().to_string();
-            Variable::reals(name, own.unit, own.about.clone(), along(), own.values.clone())
-        });
-        let columns = std::iter::once(time).chain(columns).collect();
-        Table::along(key, rows, columns)
-    }
 }
 
 impl Describe for Histories {
     /// `/transient/history` and `/transient/events` of `results.h5`; nothing without a run in time.
     fn describe(&self) -> Group<'_> {
-        if self.channels.is_empty() {
+        let (channels, modal) = self.values.split_at(self.tables.channels.len());
+        if channels.is_empty() {
             return Group::new("", "");
         }
         let mut history = Group::new("history", "motion and forces at every step");
-        if !self.modal.is_empty() {
-            history = history.table(self.table("modal_acceleration", &self.modal));
+        if !modal.is_empty() {
+            history = history.table(self.tables.modal(0, modal));
         }
-        let events = [
-            column(TIME, "s", "when it happened", |event: &Event| event.time),
-            column("point", "1", "number of the contact point, from 1", |event: &Event| event.point + 1),
-            column("kind", "text", "what it did", |event: &Event| event.kind.name()),
-        ];
         Group::new("transient", "")
-            .table(self.table("history", &self.channels))
+            .table(self.tables.history(0, channels))
             .group(history)
-            .table(Table::by("events", TIME, &events, &self.events))
+            .table(self.tables.events(&self.events))
     }
 }
 
@@ -189,7 +140,7 @@ impl ResultSink for Memory<'_> {
         Ok(values.unwrap_or_default().to_vec())
     }
 
-    fn stopped(&self) -> Result<Option<Checkpoint>> {
-        Ok(None)
+    fn stopped(&self) -> Option<Checkpoint> {
+        None
     }
 }

@@ -18,6 +18,8 @@ pub(super) struct Study {
     pub(super) name: String,
     /// The paths of the scalars that it varies.
     pub(super) paths: Vec<String>,
+    /// Their bounds.
+    pub(super) bounds: Vec<[f64; 2]>,
     pub(super) points: Points,
 }
 
@@ -30,16 +32,25 @@ pub(super) enum Points {
 }
 
 impl Study {
+    fn new<'a>(
+        name: String,
+        ranges: impl IntoIterator<Item = (&'a String, [f64; 2])>,
+        points: Points,
+    ) -> Self {
+        let (paths, bounds) = ranges.into_iter().map(|(path, bounds)| (path.clone(), bounds)).unzip();
+        Study { name, paths, bounds, points }
+    }
+
     pub(super) fn of_sweep(name: &str, of: &SweepAnalysis) -> Self {
         let axis = Axis { from: of.from, to: of.to, points: of.points, log: of.log };
-        let points = Points::Grid(vec![axis]);
-        Study { name: format!("sweep.{name}"), paths: paths(&of.ranges()), points }
+        let range = (&of.parameter, [of.from, of.to]);
+        Study::new(format!("sweep.{name}"), [range], Points::Grid(vec![axis]))
     }
 
     pub(super) fn of_map(name: &str, of: &MapAnalysis) -> Self {
         let axis = |k: usize| Axis { from: of.from[k], to: of.to[k], points: of.points[k], log: of.log[k] };
-        let points = Points::Grid([0, 1].map(axis).to_vec());
-        Study { name: format!("map.{name}"), paths: paths(&of.ranges()), points }
+        let ranges = [0, 1].map(|k| (&of.parameters[k], [of.from[k], of.to[k]]));
+        Study::new(format!("map.{name}"), ranges, Points::Grid([0, 1].map(axis).to_vec()))
     }
 
     pub(super) fn of_samples(name: &str, of: &UncertaintyAnalysis) -> Self {
@@ -63,11 +74,8 @@ impl Study {
         if distributions.len() > SCALARS {
             training.extend(places.iter().take(2 * SCALARS).cloned());
         }
-        Study {
-            name: format!("uncertainty.{name}"),
-            paths: paths(&of.ranges()),
-            points: Points::Samples { places, training },
-        }
+        let ranges = parameters.iter().flat_map(|of| of.path.iter().map(|path| (path, of.between)));
+        Study::new(format!("uncertainty.{name}"), ranges, Points::Samples { places, training })
     }
 
     /// The axes of a grid; none of samples.
@@ -120,10 +128,6 @@ impl Study {
     }
 }
 
-fn paths(ranges: &[(&String, [f64; 2])]) -> Vec<String> {
-    ranges.iter().map(|(path, _)| path.to_string()).collect()
-}
-
 /// The place at these shares of the way along axes.
 pub(super) fn between(axes: &[Axis], shares: &[f64]) -> Vec<f64> {
     axes.iter().zip(shares).map(|(axis, share)| axis.between(axis.from, axis.to, *share)).collect()
@@ -136,15 +140,6 @@ pub(super) fn studies(case: &Case, analysis: &str) -> Vec<Study> {
     }
     let sweeps = case.sweep.iter().map(|(name, of)| Study::of_sweep(name, of));
     sweeps.chain(case.map.iter().map(|(name, of)| Study::of_map(name, of))).collect()
-}
-
-/// The paths of the scalars that the studies of an analysis vary, each with its bounds.
-pub(super) fn ranges<'a>(case: &'a Case, analysis: &str) -> Vec<(&'a String, [f64; 2])> {
-    if analysis == UNCERTAINTY {
-        return case.uncertainty.values().flat_map(UncertaintyAnalysis::ranges).collect();
-    }
-    let sweeps = case.sweep.values().flat_map(SweepAnalysis::ranges);
-    sweeps.chain(case.map.values().flat_map(MapAnalysis::ranges)).collect()
 }
 
 #[cfg(test)]

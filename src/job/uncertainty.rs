@@ -1,18 +1,13 @@
 //! Studies of uncertain scalars: the complex modes of every sample, on one reduced model or by whole analyses.
 
 use super::explore::{ACCURACY, Explorer, Problem, REFINEMENTS, RecordStage, worst_alone};
-use super::known::{KnownPoints, Parts};
 use super::sink::ResultStage;
 use super::studies::{Points, Study};
 use crate::case::UncertaintyAnalysis;
 use crate::error::Result;
 use crate::linalg::c64;
-use crate::progress::Observer;
 use crate::results::{CheckedSample, RunResults, SampledScalar, UncertaintyResult, UncertaintyStudy};
-use crate::sweep::{
-    AnswerStore, Answered, Filled, MeasuredProblem, Modes, Paired, RecordPoints, SampleModes, SweepProblem,
-    sampled,
-};
+use crate::sweep::{MeasuredProblem, Modes, SampleModes, SweepProblem};
 use faer::Mat;
 
 /// Samples at which the reduced model is measured on the full order before it serves all, in each round.
@@ -23,15 +18,9 @@ const MEASURED: [[usize; 3]; 2] = [[4, 2, 4], [1, 1, 0]];
 
 impl Explorer<'_> {
     /// Every study of uncertain scalars of the case.
-    pub(super) fn uncertainty(
-        &self,
-        known: &KnownPoints,
-        results: &mut RunResults,
-        record: &mut RecordStage,
-    ) -> Result<()> {
+    pub(super) fn uncertainty(&self, results: &mut RunResults, record: &mut RecordStage) -> Result<()> {
         for (name, analysis) in &self.whole_case().uncertainty {
-            let earlier = known.samples.get(name).map_or(&[][..], Vec::as_slice);
-            let (result, failure) = self.study(name, analysis, (earlier, &known.parts), record)?;
+            let (result, failure) = self.study(name, analysis, record)?;
             results.warnings.extend(
                 failure.map(|f| format!("Uncertainty `{name}`: samples without an answer; the first: {f}")),
             );
@@ -45,15 +34,13 @@ impl Explorer<'_> {
         &self,
         name: &str,
         analysis: &UncertaintyAnalysis,
-        (earlier, parts): (&[SampleModes], &Parts),
         record: &mut RecordStage,
     ) -> Result<(UncertaintyResult, Option<String>)> {
         let study = Study::of_samples(name, analysis);
         let Points::Samples { places, .. } = &study.points else { unreachable!("samples") };
-        let known = parts.of(&study.name, true);
-        let on = self.problem_of_samples(&study, places)?;
-        let mut keep = |first: usize, new: &[SampleModes]| record(ResultStage::Samples(name, first, new));
-        let (modes, failure) = on.solve(places, earlier, &known, &mut keep, self.observer)?;
+        let on = self.solver(&study)?;
+        record(ResultStage::StudyBegins)?;
+        let (modes, failure) = on.sampled(places, &self.known.of(&study.name, 0), self.observer)?;
         let study = UncertaintyStudy {
             name: name.to_string(),
             scalars: self.scalars(analysis)?,
@@ -62,7 +49,7 @@ impl Explorer<'_> {
             sampling: analysis.sampling.word(),
             seed: analysis.seed,
             confidence: analysis.confidence,
-            reference: on.reference.eigenvalues.clone(),
+            reference: on.reference.iter().flat_map(|modes| modes.eigenvalues.clone()).collect(),
             modes,
             method: on.problem.method(),
         };
@@ -70,24 +57,10 @@ impl Explorer<'_> {
         Ok((UncertaintyResult::new(study, measured), failure))
     }
 
-    /// The problem of a study of samples, the same in every process.
-    ///
-    /// # Errors
-    /// A reduced model that cannot be trained; a case without an answer at its own values.
-    pub(super) fn problem_of_samples(
-        &self,
-        study: &Study,
-        places: &[Vec<f64>],
-    ) -> Result<ProblemOfSamples<'_>> {
-        let problem = self.trained(self.problem(study)?, places)?;
-        let reference = self.reference(problem.of(), study)?;
-        Ok(ProblemOfSamples { problem, reference })
-    }
-
     /// A reduced model is measured at some of the samples and trained on those where it is not good enough, before it serves all of
     /// them.
-    fn trained<'s>(&self, mut problem: Problem<'s>, places: &[Vec<f64>]) -> Result<Problem<'s>> {
-        let Problem::Reduced(on) = &mut problem else { return Ok(problem) };
+    pub(super) fn train(&self, problem: &mut Problem, places: &[Vec<f64>]) -> Result<()> {
+        let Problem::Reduced(on) = problem else { return Ok(()) };
         self.observer.begin("full-order check", Some((REFINEMENTS * PROBES).min(places.len()) as u64));
         for probes in places.chunks(PROBES).take(REFINEMENTS) {
             let mut poor = Vec::new();
@@ -103,11 +76,11 @@ impl Explorer<'_> {
             }
         }
         self.observer.end();
-        Ok(problem)
+        Ok(())
     }
 
     /// The modes at the values of the case itself, by frequency.
-    fn reference(&self, problem: &dyn SweepProblem, study: &Study) -> Result<Modes> {
+    pub(super) fn reference(&self, problem: &dyn SweepProblem, study: &Study) -> Result<Modes> {
         let own = study.paths.iter().map(|path| Ok(self.case.parameter(path)?.value));
         let modes = problem.modes(&own.collect::<Result<Vec<f64>>>()?)?;
         let mut order: Vec<usize> = (0..modes.eigenvalues.len()).collect();
@@ -161,27 +134,6 @@ impl Explorer<'_> {
         let measured = chosen.into_iter().filter_map(check).collect();
         self.observer.end();
         measured
-    }
-}
-
-/// The problem of the samples of a study, and the modes with which theirs are paired.
-pub(super) struct ProblemOfSamples<'s> {
-    problem: Problem<'s>,
-    reference: Modes,
-}
-
-impl ProblemOfSamples<'_> {
-    /// As [`sampled`]; answers are in `store`, or put there.
-    pub(super) fn solve(
-        &self,
-        places: &[Vec<f64>],
-        earlier: &[SampleModes],
-        store: &dyn AnswerStore,
-        record: &mut RecordPoints<SampleModes>,
-        observer: &dyn Observer,
-    ) -> Result<Filled<SampleModes>> {
-        let paired = Paired::new(self.problem.of(), &self.reference);
-        sampled(&Answered::new(&paired, store), places, earlier, record, observer)
     }
 }
 

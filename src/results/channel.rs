@@ -1,6 +1,5 @@
 //! Channels of a run in time: what is recorded at every step.
 
-use crate::dataset::Variable;
 use crate::error::Result;
 use std::ops::Range;
 
@@ -72,11 +71,6 @@ impl Channel {
             self.last = values.last().copied();
         }
         Ok(())
-    }
-
-    /// `rim_velocity [m/s]`: the head of its column in tables.
-    pub(super) fn title(&self) -> String {
-        Variable::reals(&*self.name, self.unit, "", Vec::new(), Vec::new()).title()
     }
 
     /// The name in words: `rim velocity`.

@@ -5,9 +5,6 @@ use crate::error::Result;
 use std::path::Path;
 
 /// Writes every table that has a file into the folder `dir`.
-///
-/// # Errors
-/// [`crate::error::Error::Io`] when the folder cannot be made or a file not be written.
 pub(crate) fn write_csv(dir: &Path, results: &RunResults) -> Result<()> {
     let mut names = FileNames::default();
     for table in summary::analyses(results).tables() {

@@ -32,9 +32,6 @@ impl ResultsFile {
     }
 
     /// Events of the run in time.
-    ///
-    /// # Errors
-    /// The machine refuses.
     pub fn read_events(&self, part: Range<usize>) -> Result<Vec<Event>> {
         self.read(|root| read(&root.group("transient/events")?, part))
     }

@@ -33,7 +33,7 @@ impl FieldsFile {
     /// Begins the file in the folder `dir`.
     ///
     /// # Errors
-    /// [`Error::Io`], here and later: the machine refuses.
+    /// [`Error::Io`], here and later: `transient.vtkhdf` cannot be written.
     pub fn begin(dir: &Path, fields: &Fields) -> Result<Self> {
         let path = dir.join(NAME);
         let nodes = fields.geometry.nodes.len();
@@ -48,9 +48,6 @@ impl FieldsFile {
     }
 
     /// Writes the motion at the next of the times.
-    ///
-    /// # Errors
-    /// The machine refuses.
     pub fn write(&mut self, field: &FieldSnapshot) -> Result<()> {
         let part = field.number * self.nodes..(field.number + 1) * self.nodes;
         let put = |name: &str, values: &NodalField<f64>| {
@@ -64,9 +61,6 @@ impl FieldsFile {
     }
 
     /// Closes the file.
-    ///
-    /// # Errors
-    /// The machine refuses.
     pub fn finish(self) -> Result<()> {
         self.file.close().map_err(|source| refusal(&self.path, plain(&source)))
     }

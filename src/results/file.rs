@@ -15,8 +15,8 @@
 //!
 //! An interrupted run is resumed from `record.bin` and `checkpoint.bin` (see `record`); `results.h5` is only written.
 
-use super::RunResults;
 use super::folder::{make_durable, own, prepare_folder, refusal, retire, synchronise};
+use super::{RunResults, TransientTables};
 use crate::dataset::{attribute, text_attribute};
 use crate::error::Result;
 use hdf5::file::FileBuilder;
@@ -45,15 +45,15 @@ pub struct ResultsFile {
     kept: bool,
     /// Whether a write was refused, so that it is not to be trusted.
     broken: bool,
-    /// The channels of the run in time.
-    pub(super) channels: Vec<String>,
+    /// The tables of the run in time.
+    pub(super) tables: TransientTables,
 }
 
 impl ResultsFile {
     /// Begins a results file in the folder `dir`, which is made when missing.
     ///
     /// # Errors
-    /// [`crate::error::Error::Io`], here and in every other method, when the machine refuses: a file in the
+    /// [`crate::error::Error::Io`], here and in every other method, when `results.h5` cannot be written: a file in the
     /// folder's place, a folder that is not writable, a full disk.
     pub fn create(dir: &Path) -> Result<Self> {
         prepare_folder(dir)?;
@@ -69,7 +69,7 @@ impl ResultsFile {
             alone: false,
             kept: false,
             broken: false,
-            channels: Vec::new(),
+            tables: TransientTables::default(),
         };
         this.stage(|root| {
             text_attribute(root, "program", env!("CARGO_PKG_NAME"))?;
@@ -86,9 +86,6 @@ impl ResultsFile {
     }
 
     /// Deletes the files of the earlier run, so that those of this one can be written.
-    ///
-    /// # Errors
-    /// The machine refuses.
     pub fn stand_alone(&mut self) -> Result<()> {
         if !self.alone {
             retire(self.folder(), &self.spared)?;
@@ -103,9 +100,6 @@ impl ResultsFile {
     }
 
     /// Writes warnings and timings, marks the file complete or says why the run has failed, and closes it.
-    ///
-    /// # Errors
-    /// The machine refuses.
     pub fn finish(mut self, results: &RunResults) -> Result<()> {
         self.stage(|root| {
             super::summary::tail(results).write_hdf5(root)?;
@@ -170,9 +164,6 @@ impl ResultsFile {
     }
 
     /// Takes the place of an earlier run's file, or of what this run had there.
-    ///
-    /// # Errors
-    /// The machine refuses.
     pub fn take_place(&mut self) -> Result<()> {
         if !self.in_place() {
             // The earlier file stays until this one replaces it.

@@ -8,18 +8,12 @@ use ndarray::Array2;
 
 impl ResultsFile {
     /// Writes what is known before the first analysis: title, resolved case, inputs, size, nodes and elements.
-    ///
-    /// # Errors
-    /// As every method of the file: the machine refuses.
     pub fn write_head(&mut self, results: &RunResults) -> Result<()> {
         let head = summary::model(results);
         self.stage(|root| head.write_hdf5(root))
     }
 
     /// Writes what an analysis has found.
-    ///
-    /// # Errors
-    /// As every method of the file: the machine refuses.
     pub fn write(&mut self, group: &Group) -> Result<()> {
         self.keep(|root| group.write_hdf5(root))
     }

@@ -23,15 +23,12 @@ impl FolderLock {
     /// Locks the folder `dir`, which is made when missing.
     ///
     /// # Errors
-    /// [`Error::Io`]: another process holds the lock, or the machine refuses.
+    /// [`Error::Io`]: another process holds the lock (which one, since when), or the folder cannot be written.
     pub fn take(dir: &Path) -> Result<Self> {
         Self::take_file(dir, NAME, "the folder")
     }
 
     /// Locks what the file `name` of the folder `dir` stands for, called `what` in messages.
-    ///
-    /// # Errors
-    /// As above.
     pub(super) fn take_file(dir: &Path, name: &str, what: &str) -> Result<Self> {
         prepare_folder(dir)?;
         let path = dir.join(name);

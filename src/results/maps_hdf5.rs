@@ -12,11 +12,8 @@ fn of(root: &hdf5::Group, name: &str) -> hdf5::Result<hdf5::Group> {
 }
 
 impl ResultsFile {
-    /// Begins a map, or begins it again: its axes, space for its points, and those that are `known`.
-    ///
-    /// # Errors
-    /// The machine refuses.
-    pub fn begin_map(&mut self, map: &MapResult, known: &[MapPoint], trained: &[[f64; 2]]) -> Result<()> {
+    /// Begins a map, or begins it again: its axes, space for its points.
+    pub fn begin_map(&mut self, map: &MapResult, trained: &[[f64; 2]]) -> Result<()> {
         let places = vec![
             Dimension::numbered("trained_place", trained.len()),
             Dimension::of_variable("parameters", 2),
@@ -32,14 +29,10 @@ impl ResultsFile {
             let map = of(root, &map.name)?;
             attribute(&map, "points_done", &0_u64)
         })?;
-        self.write_map_points(&map.name, 0, known)?;
         self.take_place()
     }
 
     /// Writes points of the map `name`, from point `first` on.
-    ///
-    /// # Errors
-    /// The machine refuses.
     pub fn write_map_points(&mut self, name: &str, first: usize, points: &[MapPoint]) -> Result<()> {
         self.fill(|root| grid(points).fill_hdf5(&of(root, name)?, first))?;
         // They count when they are on the disk.
@@ -48,9 +41,6 @@ impl ResultsFile {
     }
 
     /// Writes what a map has when all its points are there: the boundary and the full-order sample.
-    ///
-    /// # Errors
-    /// The machine refuses.
     pub fn finish_map(&mut self, map: &MapResult) -> Result<()> {
         self.stage(|root| {
             map.found().write_hdf5(&root.group("maps")?)?;
@@ -82,7 +72,8 @@ mod tests {
         let mut file = ResultsFile::create(dir.path()).unwrap();
         let begun = MapResult { points: Vec::new(), ..map.clone() };
         for known in [&map.points[..5], &map.points[..2]] {
-            file.begin_map(&begun, known, &[]).unwrap();
+            file.begin_map(&begun, &[]).unwrap();
+            file.write_map_points(&map.name, 0, known).unwrap();
         }
         let before = file.read(|root| Ok(datasets(&of(root, &map.name)?))).unwrap();
         file.write_map_points(&map.name, 2, &map.points[2..8]).unwrap();

@@ -18,7 +18,7 @@
 //! | `transient.vtkhdf` | the motion of all nodes at regular times | ParaView |
 //! | `modes_<set>.vtu`, `steady.vtu`, `complex_modes.vtu`, `advice.vtu` | the shapes on the mesh | ParaView, pyvista |
 //! | `record.bin`, `checkpoint.bin` | record from which an interrupted run is resumed: [`record`] | `--resume` |
-//! | `parts/<analysis>/<k>-of-<n>.bin` | what one job of a job array computed of the sweeps and maps, or of the samples: [`record::PartFile`] | `--merge` |
+//! | `parts/<analysis>/<k>-of-<n>.bin` | what one job of a job array computed of the sweeps and maps, or of the samples: [`record::Record`] | `--merge` |
 //!
 //! [`ResultsFile`] is used during the run, [`write_files`] once at its end.
 
@@ -60,9 +60,9 @@ mod steady;
 mod summary;
 mod sweeps;
 mod transient;
-mod transient_csv;
 #[cfg(feature = "hdf5")]
 mod transient_hdf5;
+mod transient_tables;
 mod uff;
 mod uncertainty;
 mod validation;
@@ -111,7 +111,8 @@ pub use sweeps::SweepResult;
 pub use transient::{
     FieldSnapshot, Fields, GrowthCompared, RecordPiece, Recording, SpectrumOf, TransientResult,
 };
-pub use transient_csv::{EventTable, HistoryTable};
+pub use transient_tables::TransientCsv;
+pub(crate) use transient_tables::TransientTables;
 pub use uncertainty::{
     CheckedSample, ModeStatistics, SampledScalar, ScalarStatistics, UncertaintyResult, UncertaintyStudy,
 };

@@ -1,25 +1,25 @@
 //! An interrupted record is not deleted: it is moved to a folder of its own.
 
 use super::folder::{FILES, owned, prepare_folder, refusal};
-use super::record::{CHECKPOINT, RECORD, read_saved};
+use super::record::{CHECKPOINT, RECORD, ended};
 use crate::error::Result;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// Moves an interrupted record with all the files of its run to a folder of its own, whose path is returned.
 pub(crate) fn set_aside(dir: &Path) -> Result<Option<PathBuf>> {
-    if !dir.join(CHECKPOINT).exists() || matches!(read_saved(dir), Ok(Some(saved)) if saved.ended) {
+    // It is unknown whether the work of a damaged one had ended.
+    if matches!(ended(dir), Ok(None | Some(true))) {
         return Ok(None);
     }
-    // One without a checkpoint is of a move that was killed on its way: the checkpoint goes last.
-    let aside =
-        (1..).map(|k| dir.join(format!("interrupted-{k}"))).find(|path| !path.join(CHECKPOINT).exists());
+    // One without a record is of a move that was killed on its way: the record goes last.
+    let aside = (1..).map(|k| dir.join(format!("interrupted-{k}"))).find(|path| !path.join(RECORD).exists());
     let aside = aside.expect("some number is free");
     prepare_folder(&aside)?;
     let mut names = owned(dir);
-    names.insert(RECORD.into());
-    names.remove(CHECKPOINT);
-    for name in names.iter().map(String::as_str).chain([CHECKPOINT, FILES]) {
+    names.insert(CHECKPOINT.into());
+    names.remove(RECORD);
+    for name in names.iter().map(String::as_str).chain([RECORD, FILES]) {
         let path = dir.join(name);
         if let Err(source) = std::fs::rename(&path, aside.join(name))
             && source.kind() != ErrorKind::NotFound
@@ -51,12 +51,11 @@ mod tests {
         assert_eq!(set_aside(dir).unwrap(), None);
         for k in ["interrupted-1", "interrupted-2"] {
             write_result(dir, "transient.csv", b"rows").unwrap();
-            write_result(dir, RECORD, b"points").unwrap();
-            // It is unknown whether a damaged one had ended.
             write_result(dir, CHECKPOINT, b"state").unwrap();
+            write_result(dir, RECORD, b"points that are damaged").unwrap();
             if k == "interrupted-2" {
                 std::fs::create_dir(dir.join(k)).unwrap();
-                std::fs::rename(dir.join(RECORD), dir.join(k).join(RECORD)).unwrap();
+                std::fs::rename(dir.join(CHECKPOINT), dir.join(k).join(CHECKPOINT)).unwrap();
             }
             assert_eq!(set_aside(dir).unwrap(), Some(dir.join(k)));
             assert_eq!(names(&dir.join(k)), [FILES, CHECKPOINT, RECORD, "transient.csv"]);

@@ -142,14 +142,6 @@ impl SweepResult {
         critical.uncertainty.max(by_mode) / critical.value.abs().max(f64::MIN_POSITIVE)
     }
 
-    /// The index in [`Sweep::values`] nearest to the case's own value, when the sweep covers it.
-    pub fn nominal_index(&self) -> Option<usize> {
-        let (low, high) = (self.axis.from.min(self.axis.to), self.axis.from.max(self.axis.to));
-        let distance = |k: &usize| (self.sweep.values[*k] - self.nominal).abs();
-        let nearest = (0..self.sweep.values.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        nearest.filter(|_| self.nominal >= low && self.nominal <= high)
-    }
-
     /// The critical values, one a row.
     pub(crate) fn critical_table(&self) -> Table<'static> {
         let all: Vec<Passed> = (0..self.sweep.critical.len()).map(|k| (self, k)).collect();

@@ -15,10 +15,10 @@
 use super::events_hdf5 as events;
 use super::file::preallocated;
 use super::{
-    MODAL_ABOUT, MODAL_UNIT, RecordPiece, Recording, ResultsFile, TIME, TransientResult, modal_channel,
+    MODAL_ABOUT, MODAL_UNIT, RecordPiece, Recording, ResultsFile, TIME, TransientResult, TransientTables,
+    modal_channel,
 };
-use crate::dataset::Describe;
-use crate::dataset::{attach_scale, attribute, describe, text_attribute};
+use crate::dataset::{Describe, Table, attach_scale, attribute, describe, text_attribute};
 use crate::error::Result;
 use hdf5::Group;
 use ndarray::s;
@@ -31,36 +31,30 @@ const AT_ONCE: usize = 1 << 16;
 
 impl ResultsFile {
     /// Begins a run in time with space allocated for the whole record. The file can take its place then.
-    ///
-    /// # Errors
-    /// The machine refuses.
     pub fn begin_transient(&mut self, recording: &Recording) -> Result<()> {
         self.keep(|root| preallocate(&root.create_group("transient")?, recording))?;
-        self.channels = recording.channels.iter().map(|channel| channel.name.clone()).collect();
+        self.tables = TransientTables::new(recording);
         Ok(())
     }
 
     /// Adds new rows. They count when they are on the disk.
-    ///
-    /// # Errors
-    /// The machine refuses.
     pub fn write_transient_piece(&mut self, piece: &RecordPiece) -> Result<()> {
         self.reserve_events(piece.events.len())?;
-        let end = piece.first + piece.values.first().map_or(0, Vec::len);
-        let channels = std::mem::take(&mut self.channels);
+        let tables = std::mem::take(&mut self.tables);
         let filled = self.fill(|root| {
             let group = root.group("transient")?;
-            let history = group.group(HISTORY)?;
-            for (name, values) in channels.iter().zip(piece.values) {
-                history.dataset(name)?.write_slice(values, s![piece.first..end])?;
-            }
-            for (mode, values) in piece.modal.iter().enumerate() {
-                history.dataset(&modal_channel(mode))?.write_slice(values, s![piece.first..end])?;
+            tables.history(piece.first, piece.values).fill_hdf5(&group, piece.first)?;
+            if !piece.modal.is_empty() {
+                let mut modal = tables.modal(piece.first, piece.modal);
+                // The times are those of the group around it.
+                modal.columns.remove(0);
+                modal.fill_hdf5(&group.group(HISTORY)?, piece.first)?;
             }
             events::write(&group, piece.events)
         });
-        self.channels = channels;
+        self.tables = tables;
         filled?;
+        let end = piece.first + piece.values.first().map_or(0, Vec::len);
         self.fill(|root| {
             let group = root.group("transient")?;
             group.attr("rows")?.write_scalar(&(end as u64))?;
@@ -70,9 +64,6 @@ impl ResultsFile {
     }
 
     /// Rows of a channel of the run in time.
-    ///
-    /// # Errors
-    /// The machine refuses.
     pub fn read_transient(&self, channel: &str, rows: Range<usize>) -> Result<Vec<f64>> {
         self.read(|root| {
             let dataset = root.group("transient")?.group(HISTORY)?.dataset(channel)?;
@@ -81,9 +72,6 @@ impl ResultsFile {
     }
 
     /// Writes what the whole record says.
-    ///
-    /// # Errors
-    /// The machine refuses.
     pub fn finish_transient(&mut self, result: &TransientResult) -> Result<()> {
         self.stage(|root| {
             let group = root.group("transient")?;
@@ -101,19 +89,14 @@ fn preallocate(group: &Group, recording: &Recording) -> hdf5::Result<()> {
     events::preallocate(group, events::FIRST)?;
     let history = &group.create_group(HISTORY)?;
     text_attribute(history, "description", "motion and forces at every step")?;
-    let time = preallocated(history, TIME, recording.rows, f64::NAN)?;
-    describe(&time, "s", "time of each step, from the start")?;
-    for first in (0..recording.rows).step_by(AT_ONCE) {
-        let part = first..recording.rows.min(first + AT_ONCE);
-        let times: Vec<f64> = part.clone().map(|row| row as f64 * recording.time_step).collect();
-        time.write_slice(&times, s![part])?;
+    let tables = TransientTables::new(recording);
+    for column in &tables.history(0, &[]).columns {
+        let dataset = preallocated(history, &column.key, recording.rows, f64::NAN)?;
+        describe(&dataset, &column.unit, &column.description)?;
     }
-    for channel in recording.channels {
-        describe(
-            &preallocated(history, &channel.name, recording.rows, f64::NAN)?,
-            channel.unit,
-            &channel.about,
-        )?;
+    for first in (0..recording.rows).step_by(AT_ONCE) {
+        let times = tables.times(first, AT_ONCE.min(recording.rows - first));
+        Table::along(HISTORY, times.dimensions[0].clone(), vec![times]).fill_hdf5(group, first)?;
     }
     if recording.modes > 0 {
         history.create_group("modal_acceleration")?;

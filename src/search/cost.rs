@@ -22,9 +22,7 @@ pub(super) struct Cost<'a> {
 
 impl Cost<'_> {
     /// The facts at `x`, which is moved inside the bounds: computed, or taken from the log.
-    ///
-    /// # Errors
-    /// A value that the case refuses, or a fact that it does not have.
+    /// Fails for a value that the case refuses, or a fact that it does not have.
     pub(super) fn facts(&self, x: &[f64]) -> Result<Facts> {
         let values: Vec<f64> = self.coordinates.iter().zip(x).map(|(c, x)| c.value(*x)).collect();
         let known = self.log.find(&values);

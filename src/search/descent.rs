@@ -12,9 +12,6 @@ const OUTSIDE: f64 = 100.0;
 
 /// The unknowns of the least cost among samples from `start`, until `evaluations` different ones were computed: those beyond
 /// the bounds are moved onto them, and the same place costs nothing twice. The samples depend on the seed alone.
-///
-/// # Errors
-/// Those of the cost.
 pub(super) fn descend(
     file: &SearchFile,
     cost: &Cost,

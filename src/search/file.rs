@@ -138,9 +138,6 @@ impl SearchFile {
     }
 
     /// Origin of the facts: the cases, the files they read, and the facts without their references.
-    ///
-    /// # Errors
-    /// A file that cannot be read.
     pub(super) fn origin(&self) -> Result<RecordOrigin> {
         let table = |text: &str| text.parse::<toml::Table>().unwrap_or_default();
         let mut all = table(&self.text);

@@ -48,9 +48,7 @@ struct LoggedEvaluation {
 
 impl Log {
     /// An empty log, or that of an earlier run of the same search in `dir`.
-    ///
-    /// # Errors
-    /// A log of another search or of other files, or one that cannot be read.
+    /// Refuses a log of another search or of other files, and one that cannot be read.
     pub(super) fn open(dir: &Path, file: &SearchFile, resume: bool) -> Result<Log> {
         let numbers = file.parameters.keys().map(|name| printable(name));
         let facts = file.checks.iter().map(|check| printable(&check.quantity));
@@ -126,9 +124,6 @@ impl Log {
     }
 
     /// Writes all, those since the last time in the order of their cost.
-    ///
-    /// # Errors
-    /// A file that cannot be written.
     pub(super) fn flush(&self) -> Result<()> {
         let mut kept = self.kept.lock().expect("no thread panics here");
         if !kept.alone {
@@ -150,9 +145,6 @@ impl Log {
     }
 
     /// Says that the search has ended, so that a later one may take its place.
-    ///
-    /// # Errors
-    /// A file that cannot be written.
     pub(super) fn end(&self) -> Result<()> {
         record::keep_origin(&self.dir, &self.origin, true)
     }

@@ -58,9 +58,7 @@ struct SpectrumPart {
 }
 
 /// Looks for the modes that `asked` names; `real` are the modes of the symmetric part, in which their shapes are expressed.
-///
-/// # Errors
-/// A shift that cannot be factorised, or an iteration that does not converge.
+/// Fails where a shift cannot be factorised, or an iteration does not converge.
 pub(super) fn general_modes(
     operator: &Operator<'_>,
     real: &RealModes,

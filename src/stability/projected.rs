@@ -41,9 +41,7 @@ pub(super) fn project_interface(operator: &Operator<'_>, basis: &Basis<'_>) -> (
 /// θ² Q(s) + θ s Q′(s) + s² M. Its companion matrix needs Q(s)⁻¹, not M⁻¹: directions (next to) without mass are at
 /// θ = 0 and nothing of them is large, so that a singular M costs no digits. One Newton step on Q(λ) itself then takes
 /// back what the linearisation lost.
-///
-/// # Errors
-/// Q(s) is singular, or the eigenvalues do not converge.
+/// Fails where Q(s) is singular, or the eigenvalues do not converge.
 pub(super) fn solve(
     mass: &Mat<f64>,
     damping: &Mat<f64>,

@@ -116,9 +116,7 @@ impl FamilyMatrices {
 
     /// The eigenvalues that are `wanted`, in no order and without the correction of [`FamilyMatrices::solve`], at a third of its
     /// cost.
-    ///
-    /// # Errors
-    /// Numbers that are not finite.
+    /// Fails where numbers are not finite.
     pub(super) fn eigenvalues(
         &self,
         terms: &[InterfaceTerm],

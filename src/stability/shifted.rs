@@ -60,9 +60,7 @@ impl FactorKind {
 
 impl<'a> Shifted<'a> {
     /// For solutions with P alone.
-    ///
-    /// # Errors
-    /// A shift on an eigenvalue.
+    /// Fails at an eigenvalue.
     pub(super) fn new(operator: &'a Operator<'a>, shift: c64) -> Result<Self> {
         Shifted::with_pattern(operator, shift, None)
     }

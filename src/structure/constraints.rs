@@ -1,83 +1,14 @@
-//! Constraints of nodes: rigid links, supports, and the directions in which elements have stiffness.
+//! Directions in which elements and rigid links act on nodes.
 
 use super::elements::Acting;
 use super::model::Model;
 use super::registry::AnyElement;
-use crate::error::{Fault, Faults, Result};
 use nalgebra::{SMatrix, SVector, Vector3};
 
 /// Angles \[rad\] below which two directions are the same one.
 const SAME_DIRECTION: f64 = 1e-3;
 /// Components of unit directions below this are round-off.
 const ROUND_OFF: f64 = 1e-12;
-
-/// The last master of every node; its own number for a node that follows none.
-pub(super) fn resolve_links(model: &Model) -> Result<Vec<usize>> {
-    let mut faults = Faults::new();
-    let mut leader: Vec<usize> = (0..model.nodes.len()).collect();
-    for (k, link) in model.links.iter().enumerate() {
-        let place = format!("rigid link {}", k + 1);
-        let mut twice: Vec<[usize; 2]> = Vec::new();
-        for slave in &link.slaves {
-            if *slave == link.master {
-                faults.push(Fault::new(
-                    &place,
-                    format!("node {} as its own slave", slave + 1),
-                    "slaves other than the master",
-                ));
-            } else if leader[*slave] != *slave && leader[*slave] != link.master {
-                twice.push([*slave, leader[*slave]]);
-            } else {
-                leader[*slave] = link.master;
-            }
-        }
-        if let Some([slave, other]) = twice.first() {
-            let found = format!(
-                "node {} that already follows node {}, one of {} such nodes",
-                slave + 1,
-                other + 1,
-                twice.len()
-            );
-            let fault = Fault::new(&place, found, "one master for each slave");
-            faults.push(fault.with_help("Link the two masters instead"));
-        }
-    }
-    let mut masters = leader.clone();
-    for (node, master) in masters.iter_mut().enumerate() {
-        let mut steps = 0;
-        while leader[*master] != *master && steps <= leader.len() {
-            *master = leader[*master];
-            steps += 1;
-        }
-        if steps > leader.len() {
-            faults.push(Fault::new(
-                "rigid links",
-                format!("a circle through node {}", node + 1),
-                "a master that follows no one in the end",
-            ));
-            return faults.into_result(Vec::new());
-        }
-    }
-    let on_slaves = |support: &super::model::Support| {
-        if !support.held.contains(&true) {
-            return None;
-        }
-        support.nodes.iter().copied().find(|node| masters[*node] != *node)
-    };
-    for (k, support) in model.supports.iter().enumerate() {
-        if let Some(node) = on_slaves(support) {
-            faults.push(
-                Fault::new(
-                    format!("support {}", k + 1),
-                    format!("node {} held, which follows node {} rigidly", node + 1, masters[node] + 1),
-                    "supports on free nodes or masters",
-                )
-                .with_help(format!("Hold the master, node {}", masters[node] + 1)),
-            );
-        }
-    }
-    faults.into_result(masters)
-}
 
 /// The directions in which something acts on a node: an orthonormal basis.
 #[derive(Debug, Clone, Default)]

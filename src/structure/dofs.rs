@@ -14,11 +14,12 @@
 //!
 //! The free degrees of freedom of a node are orthonormal directions, along the global axes wherever possible.
 
-use super::constraints::{active_spaces, lead, resolve_links};
+use super::constraints::{active_spaces, lead};
 use super::model::Model;
 use super::numbering::node_order;
 use super::registry::AnyElement;
-use crate::error::{Error, Fault, Result};
+use super::ties::resolve_links;
+use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::{SparseVector, c64};
 use nalgebra::{SMatrix, SVector, Vector3};
 
@@ -160,7 +161,9 @@ impl DofMap {
 
     /// The map of `model` with its `elements`, whose node indices and geometry are known to be valid.
     pub(super) fn new(model: &Model, elements: &[AnyElement]) -> Result<Self> {
-        let masters = resolve_links(model)?;
+        let mut faults = Faults::new();
+        let masters = resolve_links(model, &mut faults);
+        faults.into_result(())?;
         let mut spaces = active_spaces(model.nodes.len(), elements);
         let lengths = lead(model, &masters, &mut spaces);
 

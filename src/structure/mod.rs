@@ -20,6 +20,7 @@ mod registry;
 pub(crate) mod samples;
 mod scatter;
 mod section;
+mod ties;
 mod users;
 mod warnings;
 
@@ -31,4 +32,5 @@ pub use free::{FreePart, free_parts, is_free_along};
 pub use material::{Material, RayleighDamping};
 pub use model::{BarPart, Model, PlateTheory, PointMass, RigidLink, ShellPart, Spring, Support};
 pub use section::Section;
+pub use ties::{TieWords, check_ties};
 pub use warnings::{ThicknessError, element_size, thickness_errors};

@@ -5,10 +5,6 @@ use super::{AtOnce, Axis, Modes, SweepProblem};
 use crate::error::Result;
 use crate::linalg::c64;
 use faer::Mat;
-use std::collections::BTreeMap;
-
-/// The modes at places, or why there are none, by the bits of the values there.
-pub type Answers = BTreeMap<Vec<u64>, Result<Modes>>;
 
 /// Answers that are known.
 pub trait AnswerStore: Sync {
@@ -18,7 +14,7 @@ pub trait AnswerStore: Sync {
     /// Takes an answer that was computed.
     ///
     /// # Errors
-    /// The machine refuses.
+    /// A store that cannot be written.
     fn keep(&self, place: Vec<u64>, answer: &Result<Modes>) -> Result<()>;
 }
 

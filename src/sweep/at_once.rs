@@ -18,10 +18,7 @@ pub enum AtOnce {
     Alone,
 }
 
-/// What `solve` gives for each of `numbers`.
-///
-/// # Errors
-/// That of `solve`, of the lowest number unless they share threads.
+/// What `solve` gives for each of `numbers`, or its error, of the lowest number unless they share threads.
 pub(super) fn solve_all<T: Send>(
     at_once: AtOnce,
     numbers: Range<usize>,

@@ -60,7 +60,7 @@ impl Block {
     /// `tolerance`. Places without an answer are passed over; what is left out is what a sweep looks for at the first point.
     ///
     /// # Errors
-    /// The machine refuses; the first error of a sweep or of a boundary.
+    /// [`Error::Io`] at a place, or of the store of `problem`; the first error of a sweep or of a boundary.
     pub fn solve(
         &self,
         problem: &dyn SweepProblem,

@@ -34,20 +34,19 @@ impl MapPoint {
     }
 }
 
-/// Every point of the grid, the first parameter running fastest; `known` are its first points, of an earlier run.
+/// Every point of the grid, the first parameter running fastest, handed to `record` piece by piece.
 ///
 /// # Errors
-/// The machine refuses; those of `record`.
+/// [`Error::Io`](crate::error::Error::Io) at a point; those of `record`. Any other error of a point leaves that point blank.
 pub fn map(
     problem: &dyn SweepProblem,
     axes: &[Axis; 2],
-    known: &[MapPoint],
     record: &mut RecordPoints<MapPoint>,
     observer: &dyn Observer,
 ) -> Result<Filled<MapPoint>> {
     let solve = |k: usize| answer(problem, axes, k).map(|modes| MapPoint::of(&modes.eigenvalues));
     observer.begin("map", Some(points(axes) as u64));
-    let filled = fill((points(axes), problem.at_once()), &solve, MapPoint::NONE, known, record, observer)?;
+    let filled = fill((points(axes), problem.at_once()), &solve, MapPoint::NONE, record, observer)?;
     observer.end();
     Ok(filled)
 }

@@ -24,7 +24,7 @@ mod sampled;
 mod tests;
 mod track;
 
-pub use answers::{AnswerStore, Answered, Answers, answer, bits, place, points};
+pub use answers::{AnswerStore, Answered, answer, bits, place, points};
 pub use at_once::AtOnce;
 pub use blocks::{Block, blocks};
 pub use boundary::{Boundary, boundary};

@@ -16,22 +16,16 @@ pub type RecordPoints<'a, P> = dyn FnMut(usize, &[P]) -> Result<()> + 'a;
 
 /// Points 0 to `total`; a point without an answer is `none`.
 ///
-/// `known` are the first points of an earlier run, which are not computed again. `record` is called with each new piece and the index of
-/// its first point, in order. Neither the numbers nor the pieces depend on the number of threads.
-///
-/// # Errors
-/// The machine refuses; those of `record`.
+/// `record` is called with each new piece and the index of its first point, in order. Neither the numbers nor the pieces depend on the
+/// number of threads.
 pub(super) fn fill<P: Clone + Send>(
     (total, at_once): (usize, AtOnce),
     solve: &(dyn Fn(usize) -> Result<P> + Sync),
     none: P,
-    known: &[P],
     record: &mut RecordPoints<P>,
     observer: &dyn Observer,
 ) -> Result<Filled<P>> {
-    let mut points: Vec<P> = known[..known.len().min(total)].to_vec();
-    let mut failure = None;
-    observer.advance(points.len() as u64);
+    let (mut points, mut failure) = (Vec::new(), None);
     let solve = |k: usize| {
         let point = solve(k);
         observer.advance(1);

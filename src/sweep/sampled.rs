@@ -1,7 +1,7 @@
 //! Complex modes at places that are given one by one, each paired with a mode of a reference.
 
 use super::assign::assign;
-use super::points::{Filled, RecordPoints, fill};
+use super::points::{Filled, fill};
 use super::{AtOnce, Modes, SweepProblem};
 use crate::error::Result;
 use crate::linalg::c64;
@@ -45,20 +45,18 @@ impl SweepProblem for Paired<'_> {
     }
 }
 
-/// The eigenvalues at each of `places`; `known` are the first of them, of an earlier run, and `record` is called with the new ones.
+/// The eigenvalues at each of `places`.
 ///
 /// # Errors
-/// The machine refuses; those of `record`.
+/// [`Error::Io`](crate::error::Error::Io) at a place. Any other error of a place leaves that place without an answer.
 pub fn sampled(
     problem: &dyn SweepProblem,
     places: &[Vec<f64>],
-    known: &[SampleModes],
-    record: &mut RecordPoints<SampleModes>,
     observer: &dyn Observer,
 ) -> Result<Filled<SampleModes>> {
     let solve = |k: usize| problem.eigenvalues(&places[k]).map(Some);
     observer.begin("samples", Some(places.len() as u64));
-    let filled = fill((places.len(), problem.at_once()), &solve, None, known, record, observer)?;
+    let filled = fill((places.len(), problem.at_once()), &solve, None, &mut |_, _| Ok(()), observer)?;
     observer.end();
     Ok(filled)
 }
@@ -106,24 +104,11 @@ mod tests {
     }
 
     #[test]
-    fn known_samples_are_not_computed_again_and_failures_are_named() {
+    fn samples_without_an_answer_are_counted_and_the_first_failure_is_named() {
         let places: Vec<Vec<f64>> = (0..100).map(|k| vec![0.1 * f64::from(k)]).collect();
-        let solve = |known: &[SampleModes]| {
-            let crossing = Crossing(AtomicUsize::new(0));
-            let mut recorded = known.to_vec();
-            let mut record = |first: usize, new: &[SampleModes]| {
-                assert_eq!(first, recorded.len());
-                recorded.extend_from_slice(new);
-                Ok(())
-            };
-            let (all, failure) = sampled(&crossing, &places, known, &mut record, &()).unwrap();
-            assert_eq!(recorded, all);
-            (all, failure, crossing.0.into_inner())
-        };
-        let (all, failure, count) = solve(&[]);
-        assert!(failure.unwrap().contains("above nine") && count == 100);
+        let crossing = Crossing(AtomicUsize::new(0));
+        let (all, failure) = sampled(&crossing, &places, &()).unwrap();
+        assert!(failure.unwrap().contains("above nine") && crossing.0.into_inner() == 100);
         assert_eq!(all.iter().filter(|modes| modes.is_none()).count(), 9);
-        let (again, _, count) = solve(&all[..70]);
-        assert!(again == all && count == 30);
     }
 }

@@ -158,7 +158,7 @@ fn branches_pass_through_a_crossing_and_turn_away_at_an_avoided_one() {
 fn the_boundary_of_a_map_lies_on_the_closed_form() {
     let problem = Members { system: |p: &[f64]| two_dof(0.5, p[1], p[0]), band: [0.0, 1.0] };
     let axes = [axis(0.2, 0.8, 9), axis(0.8, 3.0, 8)];
-    let (points, failure) = map(&problem, &axes, &[], &mut |_, _| Ok(()), &()).unwrap();
+    let (points, failure) = map(&problem, &axes, &mut |_, _| Ok(()), &()).unwrap();
     assert!(failure.is_none() && points.len() == 72);
     let closed = |mu: f64, k_n: f64| ((1.5 - k_n) / 2.0).powi(2) + 0.5 * (0.5 - mu * k_n);
     for (k, p) in points.iter().enumerate() {
@@ -186,21 +186,24 @@ fn the_boundary_of_a_map_lies_on_the_closed_form() {
 fn a_resumed_map_and_another_number_of_threads_give_the_same_bits() {
     let problem = Members { system: |p: &[f64]| two_dof(0.5, p[1], p[0]), band: [0.0, 1.0] };
     let axes = [axis(0.2, 0.8, 8), Axis { from: 0.8, to: 3.0, points: 8, log: true }];
-    let run = |threads: usize, known: &[MapPoint]| {
+    let run = |threads: usize, store: &Stored| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let mut seen = 0;
         let mut record = |first: usize, chunk: &[MapPoint]| {
-            assert_eq!(first, known.len() + seen);
+            assert_eq!(first, seen);
             seen += chunk.len();
             Ok(())
         };
-        let points = pool.install(|| map(&problem, &axes, known, &mut record, &()).unwrap().0);
-        let line = pool.install(|| boundary(&problem, &axes, &points, 1e-6, &()).unwrap());
+        let answered = Answered::new(&problem, store);
+        let points = pool.install(|| map(&answered, &axes, &mut record, &()).unwrap().0);
+        let line = pool.install(|| boundary(&answered, &axes, &points, 1e-6, &()).unwrap());
         (points, line)
     };
-    let whole = run(1, &[]);
-    assert_eq!(whole, run(3, &[]));
-    assert_eq!(whole, run(2, &whole.0[..37]));
+    let all = Stored::default();
+    let whole = run(1, &all);
+    assert_eq!(whole, run(3, &Stored::default()));
+    let some = all.0.into_inner().unwrap().into_iter().take(37).collect();
+    assert_eq!(whole, run(2, &Stored(std::sync::Mutex::new(some))));
 }
 
 #[test]
@@ -214,7 +217,7 @@ fn a_place_without_an_answer_leaves_a_hole_in_the_map_and_ends_a_sweep() {
         band: [0.0, 1.0],
     };
     let axes = [axis(-1.0, 1.0, 3), axis(0.0, 1.0, 2)];
-    let (points, failure) = map(&problem, &axes, &[], &mut |_, _| Ok(()), &()).unwrap();
+    let (points, failure) = map(&problem, &axes, &mut |_, _| Ok(()), &()).unwrap();
     assert!(failure.unwrap().contains("velocity"));
     assert!(points[1].growth_rate.is_nan() && points[0].growth_rate.is_finite());
     assert!(sweep(&problem, &axes[0], 1e-6, &()).is_err());
@@ -250,7 +253,7 @@ impl SweepProblem for Counted {
 
 /// Answers in memory.
 #[derive(Default)]
-struct Stored(std::sync::Mutex<Answers>);
+struct Stored(std::sync::Mutex<std::collections::BTreeMap<Vec<u64>, Result<Modes>>>);
 
 impl AnswerStore for Stored {
     fn find(&self, place: &[u64]) -> Option<Result<Modes>> {
@@ -292,7 +295,7 @@ fn blocks_computed_apart_have_all_that_a_sweep_asks_for() {
 fn blocks_computed_apart_have_all_that_a_map_and_its_boundary_ask_for() {
     let axes = [axis(0.0, 1.0, 9), axis(-1.0, 1.0, 6)];
     let whole = |p: &dyn SweepProblem| {
-        let (points, failure) = map(p, &axes, &[], &mut |_, _| Ok(()), &()).unwrap();
+        let (points, failure) = map(p, &axes, &mut |_, _| Ok(()), &()).unwrap();
         assert_eq!(failure.as_deref(), Some("modes: 0.875 is too much. Take less."));
         format!("{points:?} {:?}", boundary(p, &axes, &points, 1e-8, &()).unwrap())
     };

@@ -54,9 +54,6 @@ pub fn sweep(
 }
 
 /// Asks `problem` for every place that [`sweep`] asks for between two points of the axis, and for what interacts at the last one.
-///
-/// # Errors
-/// As [`sweep`].
 pub(super) fn follow_block(
     problem: &dyn SweepProblem,
     axis: &Axis,

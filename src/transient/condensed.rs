@@ -27,8 +27,7 @@ pub(super) struct CondensedStep<'a> {
 }
 
 impl<'a> CondensedStep<'a> {
-    /// # Errors
-    /// A matrix that is singular: a part without stiffness and mass.
+    /// It fails where the matrix is singular: a part without stiffness and mass.
     pub(super) fn new(model: &'a TransientModel<'a>, weights: Weights) -> Result<Self> {
         let effective = Effective::new(model, &weights)?;
         let mut contact = StepContact::new(model, &weights);

@@ -37,9 +37,7 @@ pub(super) struct Stepper<'a> {
 
 impl<'a> Stepper<'a> {
     /// Makes ready for steps of `step` seconds.
-    ///
-    /// # Errors
-    /// A matrix that is singular: a part without stiffness and mass.
+    /// Fails where the matrix is singular: a part without stiffness and mass.
     pub(super) fn new(
         model: &'a TransientModel<'a>,
         scheme: Scheme,

@@ -11,9 +11,6 @@ use std::sync::Mutex;
 
 /// In how many places the summary of a run of `case` that was stopped differs from that of a whole run: what the whole run left
 /// in its folder halfway through its longest work is resumed with `resume`. What says how a run went and not what it found does not count.
-///
-/// # Errors
-/// As [`run_case`].
 pub(super) fn differences(case: &Case, observer: &dyn Observer) -> Result<f64> {
     let folder = super::scratch::scratch()?;
     let (whole, stopped) = (folder.path().join("whole"), folder.path().join("stopped"));

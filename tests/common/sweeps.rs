@@ -69,7 +69,8 @@ pub fn found(out: &Path) -> Found {
     let summary = std::fs::read_to_string(out.join("summary.json")).expect("a summary");
     let mut summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
     keys.iter().for_each(|key| drop(summary[*key].take()));
-    let apart = ["results.h5", "summary.json", "report.html", "checkpoint.bin", "parts"];
+    // The record has what was computed in this run, in the order in which the threads came to it.
+    let apart = ["results.h5", "summary.json", "report.html", "record.bin", "parts"];
     let others = names(out).into_iter().filter(|name| !apart.contains(&name.as_str()));
     let others = others.map(|name| (name.clone(), std::fs::read(out.join(name)).expect("a file")));
     (record, summary, others.collect())

@@ -3,11 +3,12 @@
 
 use crate::program::{CASE, command, folder_with, names, run, said};
 use crate::sweeps::{SWEEPS, disc, found};
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 use stridor::linalg::c64;
-use stridor::results::record::PartRecord;
+use stridor::results::record::{Entry, entries, to_bytes};
 
 /// Two modes that part, and the line on which they do, by whole analyses.
 const TWO_MODES: &str = r#"
@@ -44,19 +45,33 @@ fn start(at: &Path, out: &str, part: &str) -> Child {
     part.stderr(Stdio::inherit()).spawn().expect("the binary runs")
 }
 
-fn read(path: &Path) -> PartRecord {
-    PartRecord::from_bytes(&std::fs::read(path).expect("a part")).expect("a whole part")
+fn read(path: &Path) -> Vec<Entry> {
+    entries(path).expect("a part")
 }
 
-fn count(part: &PartRecord) -> usize {
-    part.answers.values().map(|answers| answers.len()).sum()
+/// The studies of the answers of a part.
+fn studies(part: &[Entry]) -> Vec<&str> {
+    let mut all = Vec::new();
+    for entry in part {
+        if let Entry::Answer { study, .. } = entry {
+            all.push(study.as_str());
+        }
+    }
+    all
 }
 
-/// λ of the first mode at the first place of a sweep.
-fn first_eigenvalue<'a>(part: &'a mut PartRecord, sweep: &str) -> &'a mut c64 {
-    let answers = part.answers.get_mut(sweep).expect("the sweep");
-    let modes = answers.values_mut().next().expect("an answer").as_mut().expect("modes");
-    &mut modes.eigenvalues[0]
+fn count(part: &[Entry]) -> usize {
+    studies(part).len()
+}
+
+/// λ of the first mode at the lowest place of a sweep.
+fn first_eigenvalue<'a>(part: &'a mut [Entry], sweep: &str) -> &'a mut c64 {
+    let answers = part.iter_mut().filter_map(|entry| match entry {
+        Entry::Answer { study, place, modes } if study == sweep => Some((&*place, modes)),
+        _ => None,
+    });
+    let (_, modes) = answers.min_by(|(a, _), (b, _)| a.cmp(b)).expect("an answer");
+    &mut modes.as_mut().expect("modes").eigenvalues[0]
 }
 
 #[test]
@@ -78,16 +93,16 @@ fn parts_computed_apart_make_the_result_of_one_run() {
     std::fs::copy(place("elsewhere", "3-of-3.bin"), place("out", "3-of-3.bin")).expect("it is copied");
     assert_eq!(names(&at.join("out/parts/sweep")), ["1-of-3.bin", "2-of-3.bin", "3-of-3.bin"]);
     let mut first = read(&place("out", "1-of-3.bin"));
-    let tables: Vec<&String> = first.answers.keys().collect();
-    assert_eq!(tables, ["map.gap", "map.m", "sweep.friction", "sweep.thickness"]);
+    let tables: BTreeSet<&str> = studies(&first).into_iter().collect();
+    assert_eq!(Vec::from_iter(tables), ["map.gap", "map.m", "sweep.friction", "sweep.thickness"]);
     // More than its two points: what is looked for between them, too.
-    assert!(first.answers["sweep.thickness"].len() > 50);
+    assert!(studies(&first).iter().filter(|study| **study == "sweep.thickness").count() > 50);
     sweep(at, "out", &["--merge"], 0);
     assert!(found(&at.join("out")) == whole, "the merged result is another one");
     assert!(names(&at.join("out")).contains(&"report.html".to_string()));
     // The parts are used, not computed again.
     first_eigenvalue(&mut first, "sweep.friction").re += 1e-3;
-    std::fs::write(place("out", "1-of-3.bin"), first.to_bytes()).expect("it is written");
+    std::fs::write(place("out", "1-of-3.bin"), to_bytes(&first)).expect("it is written");
     sweep(at, "out", &["--merge"], 0);
     let altered = found(&at.join("out"));
     let differ = whole.0.iter().zip(&altered.0).filter(|(a, b)| a != b).map(|((name, _), _)| name.as_str());
@@ -144,13 +159,13 @@ fn a_part_that_was_killed_is_named_and_resumes() {
     // What it had is not computed again.
     let before = *first_eigenvalue(&mut left, "sweep.spring");
     first_eigenvalue(&mut left, "sweep.spring").re += 1e-12;
-    std::fs::write(&file, left.to_bytes()).expect("it is written");
+    std::fs::write(&file, to_bytes(&left)).expect("it is written");
     sweep(at, "out", &["--part", "1/2"], 0);
     let mut done = read(&file);
-    assert!(count(&done) >= all && done.done);
+    assert!(count(&done) >= all && matches!(done.last(), Some(Entry::End)));
     assert_eq!(*first_eigenvalue(&mut done, "sweep.spring"), before + 1e-12);
     *first_eigenvalue(&mut done, "sweep.spring") = before;
-    std::fs::write(&file, done.to_bytes()).expect("it is written");
+    std::fs::write(&file, to_bytes(&done)).expect("it is written");
     let second = sweep(at, "out", &["--merge"], 2);
     assert!(second.contains("missing: 2;") && second.contains("Compute 2 of 2"), "{second}");
     sweep(at, "out", &["--part", "2/2"], 0);
@@ -225,26 +240,44 @@ fn parts_of_something_else_are_refused_and_nothing_is_written() {
     mesh("30 mm");
     let path = parts.join("1-of-2.bin");
     let whole = std::fs::read(&path).expect("a part");
+    let head = to_bytes(&read(&path)[..1]).len();
     for k in (0..whole.len()).step_by(whole.len() / 7) {
         let mut damaged = whole.clone();
         damaged[k] ^= 1;
         std::fs::write(&path, damaged).expect("it is written");
-        refused(&["--merge"], &["1-of-2.bin", "Delete the file and compute the part again"]);
-        refused(&["--part", "1/2"], &["1-of-2.bin", "Delete the file"]);
+        // Without its head nothing is known of a part; otherwise what is before the damage counts.
+        if k < head {
+            refused(&["--merge"], &["1-of-2.bin", "Delete the file and compute the part again"]);
+            refused(&["--part", "1/2"], &["1-of-2.bin", "Delete the file"]);
+        } else {
+            refused(&["--merge"], &["not done: part 1 lacks", "resumes where it stopped"]);
+        }
     }
     std::fs::write(&path, &whole[..whole.len() / 2]).expect("it is written");
-    refused(&["--merge"], &["1-of-2.bin", "checksum"]);
+    refused(&["--merge"], &["not done: part 1 lacks", "resumes where it stopped"]);
+    sweep(at, "out", &["--part", "1/2"], 0);
+    let completed = count(&read(&path));
+    std::fs::write(&path, &whole).expect("it is written");
+    assert_eq!(completed, count(&read(&path)));
     std::fs::copy(parts.join("2-of-2.bin"), &path).expect("it is copied");
     refused(&["--merge"], &["1-of-2.bin", "another part"]);
-    let original = PartRecord::from_bytes(&whole).expect("a part");
-    let earlier = PartRecord { program: "0.0.1 (0123456789ab)".into(), ..original.clone() };
-    std::fs::write(&path, earlier.to_bytes()).expect("it is written");
+    std::fs::write(&path, &whole).expect("it is written");
+    let original = read(&path);
+    let mut earlier = original.clone();
+    let Entry::Head(head) = &mut earlier[0] else { panic!("a head") };
+    head.program = "0.0.1 (0123456789ab)".into();
+    std::fs::write(&path, to_bytes(&earlier)).expect("it is written");
     refused(&["--merge"], &["1-of-2.bin", "0.0.1 (0123456789ab)"]);
-    let elsewhere = PartRecord { reference: [1; 32], ..original };
-    std::fs::write(&path, elsewhere.to_bytes()).expect("it is written");
+    let mut elsewhere = original;
+    elsewhere.iter_mut().for_each(|entry| {
+        if let Entry::Reference(digest) = entry {
+            *digest = [1; 32];
+        }
+    });
+    std::fs::write(&path, to_bytes(&elsewhere)).expect("it is written");
     refused(&["--merge"], &["1-of-2.bin", "processors of one type"]);
-    let begun = PartRecord { done: false, ..elsewhere };
-    std::fs::write(&path, begun.to_bytes()).expect("it is written");
+    assert!(matches!(elsewhere.pop(), Some(Entry::End)));
+    std::fs::write(&path, to_bytes(&elsewhere)).expect("it is written");
     refused(&["--part", "1/2"], &["1-of-2.bin", "processors of one type"]);
     refused(&["--merge"], &["not done: part 1 lacks places between its points", "Compute 1 of 2"]);
     std::fs::write(&path, &whole).expect("it is written");

@@ -16,45 +16,35 @@ pub enum Scope {
 }
 
 /// An analysis of a case.
-pub trait Analysis: Sync {
+#[derive(Debug, Clone, Copy)]
+pub struct Analysis {
     /// The name of its subcommand and of its table in the case.
-    fn name(&self) -> &'static str;
-
+    pub name: &'static str,
     /// One line for the help of its subcommand.
-    fn about(&self) -> &'static str;
-
+    pub about: &'static str,
     /// An example of the table of the case that it cannot do without, if there is one.
-    fn example(&self) -> Option<&'static str>;
-
+    pub example: Option<&'static str>,
     /// Whether the case asks for it.
-    fn listed(&self, case: &Case) -> bool;
-
-    /// Names of the analyses whose results it starts from.
-    fn needs(&self) -> &'static [&'static str] {
-        &[]
-    }
-
-    /// Whether it takes the left vectors of the complex modes.
-    fn takes_left_vectors(&self) -> bool {
-        false
-    }
-
+    pub listed: fn(&Case) -> bool,
     /// Whether the case has what it cannot do without.
-    fn ready(&self, case: &Case) -> bool {
-        self.example().is_none() || self.listed(case)
-    }
-
-    /// The error of a case without its table.
-    fn no_table(&self) -> Error {
-        let expected = format!("a table such as {}", self.example().unwrap_or_default());
-        Error::input(Fault::new(format!("`{}`", self.name()), "no such table in the case", expected))
-    }
-
+    pub ready: fn(&Case) -> bool,
+    /// Names of the analyses whose results it starts from.
+    pub needs: &'static [&'static str],
+    /// Whether it takes the left vectors of the complex modes.
+    pub left_vectors: bool,
     /// Finds all faults of its input before anything is computed.
-    ///
-    /// # Errors
-    /// These faults.
-    fn plan<'a>(&self, prepared: &'a Prepared<'a>, scope: Scope) -> Result<Box<dyn Planned<'a> + 'a>>;
+    pub plan: Plan,
+}
+
+/// What [`Analysis::plan`] is.
+type Plan = for<'a> fn(&'a Prepared<'a>, Scope) -> Result<Box<dyn Planned<'a> + 'a>>;
+
+impl Analysis {
+    /// The error of a case without its table.
+    pub fn no_table(&self) -> Error {
+        let expected = format!("a table such as {}", self.example.unwrap_or_default());
+        Error::input(Fault::new(format!("`{}`", self.name), "no such table in the case", expected))
+    }
 }
 
 /// An analysis whose input has no fault.
@@ -77,6 +67,6 @@ pub trait Planned<'a> {
     /// Runs it; what it finds goes to [`Run::found`].
     ///
     /// # Errors
-    /// An analysis without an answer, a machine that refuses.
+    /// An analysis without an answer; what [`Run::found`] returns.
     fn run(self: Box<Self>, run: &mut Run<'a, '_>) -> Result<()>;
 }

@@ -1,36 +1,27 @@
 //! Complex eigenvalues at steady sliding.
 
 use super::analysis::{Analysis, Planned, Scope};
-use crate::case::{Case, CeaAnalysis};
+use crate::case::CeaAnalysis;
 use crate::error::Result;
 use crate::job::complex::complex_result;
 use crate::job::prepared::Prepared;
 use crate::job::run::{OperatingPoint, Run};
 
 /// Complex eigenvalue analysis.
-pub struct CeaCommand;
+pub const CEA: Analysis = Analysis {
+    name: "cea",
+    about: "Steady sliding and complex eigenvalues only",
+    example: Some("[cea] with `band = [0, \"6 kHz\"]`"),
+    listed: |case| case.cea.is_some(),
+    ready: |case| case.cea.is_some(),
+    needs: &[],
+    left_vectors: false,
+    plan,
+};
 
-impl Analysis for CeaCommand {
-    fn name(&self) -> &'static str {
-        "cea"
-    }
-
-    fn about(&self) -> &'static str {
-        "Steady sliding and complex eigenvalues only"
-    }
-
-    fn example(&self) -> Option<&'static str> {
-        Some("[cea] with `band = [0, \"6 kHz\"]`")
-    }
-
-    fn listed(&self, case: &Case) -> bool {
-        case.cea.is_some()
-    }
-
-    fn plan<'a>(&self, prepared: &'a Prepared<'a>, _: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
-        let wanted = prepared.case.cea.as_ref().ok_or_else(|| self.no_table())?;
-        Ok(Box::new(PlannedCea(wanted)))
-    }
+fn plan<'a>(prepared: &'a Prepared<'a>, _: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
+    let wanted = prepared.case.cea.as_ref().ok_or_else(|| CEA.no_table())?;
+    Ok(Box::new(PlannedCea(wanted)))
 }
 
 struct PlannedCea<'a>(&'a CeaAnalysis);

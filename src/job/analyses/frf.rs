@@ -1,7 +1,6 @@
 //! Frequency responses, each beside what a test measured.
 
 use super::analysis::{Analysis, Planned, Scope};
-use crate::case::Case;
 use crate::error::{Faults, Result};
 use crate::job::compare::{Tests, has_measured_frf};
 use crate::job::frf::{self, frfs};
@@ -9,34 +8,25 @@ use crate::job::prepared::Prepared;
 use crate::job::run::Run;
 
 /// Frequency responses.
-pub struct FrfCommand;
+pub const FRF: Analysis = Analysis {
+    name: "frf",
+    about: "Frequency responses: motion at some places for a harmonic force at another",
+    example: Some(
+        "[frf.tap] with `band = [\"10 Hz\", \"3 kHz\"]` and `excitation = { at = [0, 0, 0], direction = [0, 0, 1] }`",
+    ),
+    listed: |case| !case.frf.is_empty(),
+    ready: |case| !case.frf.is_empty(),
+    needs: &[],
+    left_vectors: false,
+    plan,
+};
 
-impl Analysis for FrfCommand {
-    fn name(&self) -> &'static str {
-        "frf"
-    }
-
-    fn about(&self) -> &'static str {
-        "Frequency responses: motion at some places for a harmonic force at another"
-    }
-
-    fn example(&self) -> Option<&'static str> {
-        Some(
-            "[frf.tap] with `band = [\"10 Hz\", \"3 kHz\"]` and `excitation = { at = [0, 0, 0], direction = [0, 0, 1] }`",
-        )
-    }
-
-    fn listed(&self, case: &Case) -> bool {
-        !case.frf.is_empty()
-    }
-
-    fn plan<'a>(&self, prepared: &'a Prepared<'a>, scope: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
-        let mut faults = Faults::new();
-        let mut frfs = faults.take(frfs(prepared)).unwrap_or_default();
-        frfs.retain(|frf| scope == Scope::All || has_measured_frf(prepared.case, frf.name()));
-        let tests = faults.take(Tests::of_responses(prepared, &mut frfs)).unwrap_or_default();
-        faults.into_result(Box::new(PlannedFrfs { frfs, tests }))
-    }
+fn plan<'a>(prepared: &'a Prepared<'a>, scope: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
+    let mut faults = Faults::new();
+    let mut frfs = faults.take(frfs(prepared)).unwrap_or_default();
+    frfs.retain(|frf| scope == Scope::All || has_measured_frf(prepared.case, frf.name()));
+    let tests = faults.take(Tests::of_responses(prepared, &mut frfs)).unwrap_or_default();
+    faults.into_result(Box::new(PlannedFrfs { frfs, tests }))
 }
 
 struct PlannedFrfs<'a> {

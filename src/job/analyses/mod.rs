@@ -1,5 +1,5 @@
-//! The analyses of a case. Each is a file here that implements [`Analysis`]: what it is called, what it needs, which faults
-//! its input can have, and how it runs. [`ANALYSES`] lists them in the order in which they run; commands, selection, the check
+//! The analyses of a case. Each is a file here with an [`Analysis`]: what it is called, what it needs, which faults its input
+//! can have; and with how it runs, [`Planned`]. [`ANALYSES`] lists them in the order in which they run; commands, selection, the check
 //! of a case and the run itself follow from the list.
 
 mod analysis;

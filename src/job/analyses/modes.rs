@@ -1,7 +1,7 @@
 //! Real modes of parts and of the whole, each set beside the modes that a test found.
 
 use super::analysis::{Analysis, Planned, Scope};
-use crate::case::{Case, ContactState, ModesAnalysis};
+use crate::case::{ContactState, ModesAnalysis};
 use crate::equilibrium;
 use crate::error::{Faults, Result};
 use crate::job::compare::{Tests, has_measured_modes};
@@ -11,42 +11,29 @@ use crate::job::run::Run;
 use crate::modal;
 
 /// Real modes.
-pub struct ModesCommand;
+pub const MODES: Analysis = Analysis {
+    name: "modes",
+    about: "Real modes only",
+    example: Some("[modes.all] with `count = 10`"),
+    // Tests are read even where nothing of them is compared: a file that is wrong is a fault.
+    listed: |case| !(case.modes.is_empty() && case.measured.is_empty()),
+    ready: |case| !case.modes.is_empty(),
+    needs: &[],
+    left_vectors: false,
+    plan,
+};
 
-impl Analysis for ModesCommand {
-    fn name(&self) -> &'static str {
-        "modes"
+fn plan<'a>(prepared: &'a Prepared<'a>, scope: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
+    let case = prepared.case;
+    let mut faults = Faults::new();
+    let tests = faults.take(Tests::of_modes(prepared)).unwrap_or_default();
+    let taken = |name: &str| scope == Scope::All || has_measured_modes(case, name);
+    let sets = case.modes.iter().filter(|(name, _)| taken(name));
+    let sets: Vec<_> = sets.map(|(name, wanted)| (name.as_str(), wanted)).collect();
+    for (name, _) in &sets {
+        faults.take(check_part(prepared, name));
     }
-
-    fn about(&self) -> &'static str {
-        "Real modes only"
-    }
-
-    fn example(&self) -> Option<&'static str> {
-        Some("[modes.all] with `count = 10`")
-    }
-
-    fn listed(&self, case: &Case) -> bool {
-        // Tests are read even where nothing of them is compared: a file that is wrong is a fault.
-        !(case.modes.is_empty() && case.measured.is_empty())
-    }
-
-    fn ready(&self, case: &Case) -> bool {
-        !case.modes.is_empty()
-    }
-
-    fn plan<'a>(&self, prepared: &'a Prepared<'a>, scope: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
-        let case = prepared.case;
-        let mut faults = Faults::new();
-        let tests = faults.take(Tests::of_modes(prepared)).unwrap_or_default();
-        let taken = |name: &str| scope == Scope::All || has_measured_modes(case, name);
-        let sets = case.modes.iter().filter(|(name, _)| taken(name));
-        let sets: Vec<_> = sets.map(|(name, wanted)| (name.as_str(), wanted)).collect();
-        for (name, _) in &sets {
-            faults.take(check_part(prepared, name));
-        }
-        faults.into_result(Box::new(Sets { sets, tests }))
-    }
+    faults.into_result(Box::new(Sets { sets, tests }))
 }
 
 struct Sets<'a> {

@@ -6,15 +6,15 @@ use crate::case::Case;
 use crate::error::{Fault, Faults, Result};
 
 /// All analyses, in the order in which they run.
-pub const ANALYSES: [&dyn Analysis; 8] = [
-    &modes::ModesCommand,
-    &cea::CeaCommand,
-    &sensitivity::SensitivityCommand,
-    &transient::TransientCommand,
-    &sweep::SweepCommand,
-    &uncertainty::UncertaintyCommand,
-    &frf::FrfCommand,
-    &calibrate::CalibrateCommand,
+pub const ANALYSES: [Analysis; 8] = [
+    modes::MODES,
+    cea::CEA,
+    sensitivity::SENSITIVITY,
+    transient::TRANSIENT,
+    sweep::SWEEP,
+    uncertainty::UNCERTAINTY,
+    frf::FRF,
+    calibrate::CALIBRATE,
 ];
 
 /// Which analyses to run.
@@ -30,14 +30,14 @@ pub enum Selection {
 
 impl Selection {
     /// Whether `analysis` is run for `case`.
-    pub(in crate::job) fn takes(self, analysis: &dyn Analysis, case: &Case) -> bool {
+    pub(in crate::job) fn takes(self, analysis: &Analysis, case: &Case) -> bool {
         match self {
-            Selection::Listed => analysis.listed(case) && needed(analysis).iter().all(|a| a.listed(case)),
+            Selection::Listed => (analysis.listed)(case) && needed(analysis).iter().all(|a| (a.listed)(case)),
             Selection::Only(name) => {
-                let own = ANALYSES.into_iter().find(|own| own.name() == name);
-                own.is_some_and(|own| own.name() == analysis.name() || own.needs().contains(&analysis.name()))
+                let own = ANALYSES.into_iter().find(|own| own.name == name);
+                own.is_some_and(|own| own.name == analysis.name || own.needs.contains(&analysis.name))
             }
-            Selection::Measured => ["modes", "frf"].contains(&analysis.name()),
+            Selection::Measured => ["modes", "frf"].contains(&analysis.name),
         }
     }
 
@@ -47,25 +47,25 @@ impl Selection {
     }
 
     /// The analyses that are run for `case`, in their order.
-    pub(in crate::job) fn analyses(self, case: &Case) -> impl Iterator<Item = &'static dyn Analysis> {
-        ANALYSES.into_iter().filter(move |analysis| self.takes(*analysis, case))
+    pub(in crate::job) fn analyses(self, case: &Case) -> impl Iterator<Item = Analysis> {
+        ANALYSES.into_iter().filter(move |analysis| self.takes(analysis, case))
     }
 
     /// Whether the analysis called `name` is run for `case`.
     pub(in crate::job) fn includes(self, name: &str, case: &Case) -> bool {
-        self.analyses(case).any(|analysis| analysis.name() == name)
+        self.analyses(case).any(|analysis| analysis.name == name)
     }
 
     /// Whether an analysis that is run for `case` takes the left vectors of the complex modes.
     pub(in crate::job) fn takes_left_vectors(self, case: &Case) -> bool {
-        self.analyses(case).any(|analysis| analysis.takes_left_vectors())
+        self.analyses(case).any(|analysis| analysis.left_vectors)
     }
 
     /// Refuses a case that lacks a table of an analysis that is requested by name.
     pub(in crate::job) fn check(self, case: &Case) -> Result<()> {
         let mut faults = Faults::new();
         if let Selection::Only(_) = self {
-            for analysis in self.analyses(case).filter(|analysis| !analysis.ready(case)) {
+            for analysis in self.analyses(case).filter(|analysis| !(analysis.ready)(case)) {
                 faults.take::<()>(Err(analysis.no_table()));
             }
         }
@@ -80,9 +80,9 @@ impl Selection {
 }
 
 /// The analyses whose results `analysis` starts from.
-fn needed(analysis: &dyn Analysis) -> Vec<&'static dyn Analysis> {
-    let needs = analysis.needs();
-    ANALYSES.into_iter().filter(|other| needs.contains(&other.name())).collect()
+fn needed(analysis: &Analysis) -> Vec<Analysis> {
+    let needs = analysis.needs;
+    ANALYSES.into_iter().filter(|other| needs.contains(&other.name)).collect()
 }
 
 #[cfg(test)]
@@ -91,13 +91,13 @@ mod tests {
 
     #[test]
     fn an_analysis_runs_after_those_it_needs_and_has_a_name_of_its_own() {
-        let names: Vec<&str> = ANALYSES.iter().map(|analysis| analysis.name()).collect();
+        let names: Vec<&str> = ANALYSES.iter().map(|analysis| analysis.name).collect();
         for (k, analysis) in ANALYSES.iter().enumerate() {
-            assert!(analysis.needs().iter().all(|need| names[..k].contains(need)), "{}", analysis.name());
-            assert!(!names[..k].contains(&analysis.name()), "{} twice", analysis.name());
+            assert!(analysis.needs.iter().all(|need| names[..k].contains(need)), "{}", analysis.name);
+            assert!(!names[..k].contains(&analysis.name), "{} twice", analysis.name);
             // What is needed by what is needed is listed, too.
-            let further = needed(*analysis).into_iter().flat_map(|other| other.needs());
-            assert!(further.into_iter().all(|need| analysis.needs().contains(need)), "{}", analysis.name());
+            let further = needed(analysis).into_iter().flat_map(|other| other.needs);
+            assert!(further.into_iter().all(|need| analysis.needs.contains(need)), "{}", analysis.name);
         }
     }
 }

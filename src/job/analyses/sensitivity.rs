@@ -1,7 +1,7 @@
 //! How complex eigenvalues answer scalars of the case and things mounted on its nodes.
 
 use super::analysis::{Analysis, Planned, Scope};
-use crate::case::{Case, SensitivityAnalysis};
+use crate::case::SensitivityAnalysis;
 use crate::error::Result;
 use crate::job::prepared::Prepared;
 use crate::job::run::Run;
@@ -9,37 +9,20 @@ use crate::job::sensitivity::Analysed;
 use crate::results::ComplexResult;
 
 /// Sensitivities of complex eigenvalues.
-pub struct SensitivityCommand;
+pub const SENSITIVITY: Analysis = Analysis {
+    name: "sensitivity",
+    about: "Complex eigenvalues, their sensitivities, and where a mass or a damper stabilises them",
+    // Every key of its table has a default.
+    example: None,
+    listed: |case| case.sensitivity.is_some(),
+    ready: |_| true,
+    needs: &["cea"],
+    left_vectors: true,
+    plan,
+};
 
-impl Analysis for SensitivityCommand {
-    fn name(&self) -> &'static str {
-        "sensitivity"
-    }
-
-    fn about(&self) -> &'static str {
-        "Complex eigenvalues, their sensitivities, and where a mass or a damper stabilises them"
-    }
-
-    fn example(&self) -> Option<&'static str> {
-        // Every key of its table has a default.
-        None
-    }
-
-    fn listed(&self, case: &Case) -> bool {
-        case.sensitivity.is_some()
-    }
-
-    fn needs(&self) -> &'static [&'static str] {
-        &["cea"]
-    }
-
-    fn takes_left_vectors(&self) -> bool {
-        true
-    }
-
-    fn plan<'a>(&self, prepared: &'a Prepared<'a>, _: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
-        Ok(Box::new(PlannedSensitivity(prepared.case.sensitivity.clone().unwrap_or_default())))
-    }
+fn plan<'a>(prepared: &'a Prepared<'a>, _: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
+    Ok(Box::new(PlannedSensitivity(prepared.case.sensitivity.clone().unwrap_or_default())))
 }
 
 struct PlannedSensitivity(SensitivityAnalysis);

@@ -1,44 +1,30 @@
 //! Complex modes along one scalar of the case, or over two.
 
 use super::analysis::{Analysis, Planned, Scope};
-use crate::case::Case;
 use crate::error::Result;
 use crate::job::explore::{Nominal, Studies, explore};
 use crate::job::prepared::Prepared;
 use crate::job::run::Run;
 
 /// Sweeps and maps.
-pub struct SweepCommand;
+pub const SWEEP: Analysis = Analysis {
+    name: "sweep",
+    about: "Complex eigenvalues, and the sweeps and maps of the case",
+    example: Some(
+        "[sweep.mu] with `parameter = \"contact.NAME.friction.mu0\"`, `from = 0.1` and `to = 0.7`, or a [map.NAME]",
+    ),
+    listed: |case| !(case.sweep.is_empty() && case.map.is_empty()),
+    ready: |case| !(case.sweep.is_empty() && case.map.is_empty()),
+    needs: &["cea"],
+    left_vectors: false,
+    plan,
+};
 
-impl Analysis for SweepCommand {
-    fn name(&self) -> &'static str {
-        "sweep"
-    }
-
-    fn about(&self) -> &'static str {
-        "Complex eigenvalues, and the sweeps and maps of the case"
-    }
-
-    fn example(&self) -> Option<&'static str> {
-        Some(
-            "[sweep.mu] with `parameter = \"contact.NAME.friction.mu0\"`, `from = 0.1` and `to = 0.7`, or a [map.NAME]",
-        )
-    }
-
-    fn listed(&self, case: &Case) -> bool {
-        !(case.sweep.is_empty() && case.map.is_empty())
-    }
-
-    fn needs(&self) -> &'static [&'static str] {
-        &["cea"]
-    }
-
-    fn plan<'a>(&self, _: &'a Prepared<'a>, _: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
-        Ok(Box::new(PlannedStudies {
-            phase: "sweeps and maps",
-            studies: &|explorer, known, results, record| explorer.sweeps_and_maps(known, results, record),
-        }))
-    }
+fn plan<'a>(_: &'a Prepared<'a>, _: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
+    Ok(Box::new(PlannedStudies {
+        phase: "sweeps and maps",
+        studies: &|explorer, results, record| explorer.sweeps_and_maps(results, record),
+    }))
 }
 
 /// Studies of the case, which run as one phase.

@@ -1,7 +1,7 @@
 //! Motion in time from steady sliding.
 
 use super::analysis::{Analysis, Planned, Scope};
-use crate::case::{Case, TransientAnalysis};
+use crate::case::TransientAnalysis;
 use crate::error::{Fault, Faults, Result};
 use crate::job::prepared::Prepared;
 use crate::job::run::Run;
@@ -13,48 +13,31 @@ use crate::results::{ComplexResult, RecordSize};
 pub const PHASE: &str = "transient";
 
 /// Motion in time.
-pub struct TransientCommand;
+pub const TRANSIENT: Analysis = Analysis {
+    name: "transient",
+    about: "Complex eigenvalues, and motion in time from steady sliding",
+    example: Some("[transient] with `duration = \"10 ms\"` and `time_step = \"5 us\"`"),
+    listed: |case| case.transient.is_some(),
+    ready: |case| case.transient.is_some(),
+    needs: &["cea"],
+    left_vectors: true,
+    plan,
+};
 
-impl Analysis for TransientCommand {
-    fn name(&self) -> &'static str {
-        "transient"
+fn plan<'a>(prepared: &'a Prepared<'a>, _: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
+    let wanted = prepared.case.transient.as_ref().ok_or_else(|| TRANSIENT.no_table())?;
+    let mut faults = Faults::new();
+    if prepared.system.skew().is_some() {
+        let found = "matrices whose part that is not symmetric has no low rank, such as gyroscopic terms";
+        let expected = "matrices that are symmetric but for contact with friction, for motion in time";
+        let help = "Remove [transient]; complex modes and frequency responses are there";
+        faults.push(Fault::new("`transient`", found, expected).with_help(help));
     }
-
-    fn about(&self) -> &'static str {
-        "Complex eigenvalues, and motion in time from steady sliding"
-    }
-
-    fn example(&self) -> Option<&'static str> {
-        Some("[transient] with `duration = \"10 ms\"` and `time_step = \"5 us\"`")
-    }
-
-    fn listed(&self, case: &Case) -> bool {
-        case.transient.is_some()
-    }
-
-    fn needs(&self) -> &'static [&'static str] {
-        &["cea"]
-    }
-
-    fn takes_left_vectors(&self) -> bool {
-        true
-    }
-
-    fn plan<'a>(&self, prepared: &'a Prepared<'a>, _: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
-        let wanted = prepared.case.transient.as_ref().ok_or_else(|| self.no_table())?;
-        let mut faults = Faults::new();
-        if prepared.system.skew().is_some() {
-            let found = "matrices whose part that is not symmetric has no low rank, such as gyroscopic terms";
-            let expected = "matrices that are symmetric but for contact with friction, for motion in time";
-            let help = "Remove [transient]; complex modes and frequency responses are there";
-            faults.push(Fault::new("`transient`", found, expected).with_help(help));
-        }
-        let planned = faults.take(places(prepared, wanted)).map(|places| -> Box<dyn Planned<'a> + 'a> {
-            let least = places.least_record(prepared, wanted);
-            Box::new(PlannedTransient { wanted, places, least })
-        });
-        faults.into_result(planned)?.ok_or_else(|| self.no_table())
-    }
+    let planned = faults.take(places(prepared, wanted)).map(|places| -> Box<dyn Planned<'a> + 'a> {
+        let least = places.least_record(prepared, wanted);
+        Box::new(PlannedTransient { wanted, places, least })
+    });
+    faults.into_result(planned)?.ok_or_else(|| TRANSIENT.no_table())
 }
 
 struct PlannedTransient<'a> {

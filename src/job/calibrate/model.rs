@@ -331,9 +331,7 @@ fn like(solved: &Solved, level: &[usize], facts: &MeasuredModeSet) -> bool {
 }
 
 /// Motion at the sensors of those levels that resemble a measured shape, with its derivatives.
-///
-/// # Errors
-/// Slopes of shapes that do not converge.
+/// Fails where the slopes of shapes do not converge.
 fn spans(here: &Solved, set: &Set, picks: &Picks, changes: &[Option<Change>]) -> Result<Vec<Option<Span>>> {
     let Some(seen) = here.seen() else { return Ok(vec![None; picks.len()]) };
     let wanted: Vec<bool> =

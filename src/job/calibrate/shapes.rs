@@ -89,9 +89,7 @@ impl ObservedModes<'_> {
     /// 26 (1988) 361). What lies beyond the computed modes is solved for by conjugate gradients, M-orthogonal to the computed
     /// modes, with the factors of K − σM that found them as preconditioner: there both are positive definite, and the eigenvalues
     /// of (K − σM)⁻¹(K − λ_i M), (λ − λ_i)/(λ − σ), gather at 1.
-    ///
-    /// # Errors
-    /// An iteration that does not converge.
+    /// Fails where the iteration does not converge.
     fn turned(&self, wanted: &[(usize, &[usize])], change: &Change) -> Result<Mat<f64>> {
         let ObservedModes { structure, modes, observation } = self;
         let (n, shapes) = (modes.shapes.nrows(), modes.shapes.as_ref());

@@ -93,9 +93,7 @@ impl<'a> HarmonicFields<'a> {
     }
 
     /// Goes on from what was put away, if it had begun.
-    ///
-    /// # Errors
-    /// Input: it is of another model.
+    /// Refuses a checkpoint of another model.
     pub(super) fn restore(&mut self, checkpoint: &Checkpoint) -> Result<()> {
         if !checkpoint.arrays.contains_key(CYCLE) {
             return Ok(());

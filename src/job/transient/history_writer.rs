@@ -38,13 +38,11 @@ impl<'a, 'k> HistoryWriter<'a, 'k> {
     }
 
     /// Begins with the first row or, where an earlier run stopped, resumes from there.
-    ///
-    /// # Errors
-    /// Input: what the earlier run left is not of this model.
+    /// Refuses what an earlier run left of another model.
     pub(super) fn begin(&mut self, start: State, model: &TransientModel<'_>, plan: &Plan) -> Result<Marched> {
         let mut marched = Marched::from(start);
         self.recorder.take(&marched);
-        let earlier = self.sink.stopped()?;
+        let earlier = self.sink.stopped();
         if let Some(checkpoint) = &earlier {
             self.begins_alike()?;
             marched = checkpoint.march(model)?;

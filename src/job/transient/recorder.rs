@@ -150,9 +150,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Goes on from what was put away together with a march.
-    ///
-    /// # Errors
-    /// Input: it is of another model.
+    /// Refuses a checkpoint of another model.
     pub(super) fn restore(&mut self, checkpoint: &Checkpoint, marched: &Marched) -> Result<()> {
         self.forget();
         self.spent = checkpoint.numbers("recorder")?.map(|count| count as usize);

@@ -23,9 +23,6 @@ const AT_REST: f64 = 1e-10;
 const DISPLACEMENT: &str = "_displacement";
 
 /// Motion of the full model in the first steps of a reduced run, as many of them as are requested.
-///
-/// # Errors
-/// A step without a solution.
 pub(super) fn first_steps(
     run: &InTime<'_>,
     wanted: &TransientAnalysis,
@@ -50,9 +47,6 @@ pub(super) fn first_steps(
 /// Compares `reduced` with the model it was made from, whose steady state and complex modes are known, and the first
 /// steps of its motion with those of the `full` model, if they are known; `few` has so many values of a channel of the
 /// reduced run.
-///
-/// # Errors
-/// Eigenvalues of the reduced model that cannot be computed; what `few` returns.
 pub(super) fn reduced_check(
     reduced: &Reduced,
     (steady, complex): (&SteadySliding, &ComplexResult),

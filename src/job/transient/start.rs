@@ -24,9 +24,6 @@ pub(super) struct InitialState {
 
 impl InTime<'_> {
     /// Steady sliding at the velocities and loads of t = 0; without friction where a pair stands still then, or all do.
-    ///
-    /// # Errors
-    /// No equilibrium.
     pub(super) fn start(&self, wanted: &TransientAnalysis, places: &TransientPlaces) -> Result<InitialState> {
         let velocity = |name: &str| profile(wanted.slide.get(name).map(|slide| &slide.course)).factor(0.0);
         let load = |name: &str| profile(wanted.load.get(name)).factor(0.0);
@@ -53,9 +50,6 @@ impl InTime<'_> {
     }
 
     /// How the approach of each pair follows its load, where that runs in time.
-    ///
-    /// # Errors
-    /// A load without an equilibrium.
     pub(super) fn loadings(&self, wanted: &TransientAnalysis) -> Result<Vec<Option<Loading>>> {
         let pairs = self.system.pairs.iter().enumerate();
         let loading = |(k, pair): (usize, &crate::system::ContactPair)| {

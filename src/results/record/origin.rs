@@ -75,10 +75,8 @@ pub struct RecordOrigin {
 pub(super) const START_OVER: &str = "Run without --resume to start over (an interrupted run is kept aside), or name another folder with --out";
 
 impl RecordOrigin {
-    /// Whether results of `earlier` at `place` are results of this; otherwise what differs, with the advice `help`.
-    ///
-    /// # Errors
-    /// Input: the keys of the case, or the files, that have changed.
+    /// Whether results of `earlier` at `place` are results of this; otherwise the keys of the case, or the files, that have changed,
+    /// with the advice `help`.
     pub(super) fn check(&self, earlier: &RecordOrigin, place: &Path, help: &str) -> Result<()> {
         let refused = |found: String, expected: &str| {
             let fault = Fault::new(place.display().to_string(), found, expected);

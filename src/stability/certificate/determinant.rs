@@ -36,10 +36,8 @@ pub(super) fn work(general: &General) -> f64 {
     general.symbolic.as_ref().map_or(f64::INFINITY, |symbolic| POINTS * 8.0 * symbolic.multiplications())
 }
 
-/// The eigenvalues in the band with growth rates from [`SLOWEST_GROWTH`] to [`FASTEST`] of its top, counted.
-///
-/// # Errors
-/// An eigenvalue on the contour that the search has not found.
+/// The eigenvalues in the band with growth rates from [`SLOWEST_GROWTH`] to [`FASTEST`] of its top, counted. Fails at an eigenvalue
+/// on the contour that the search has not found.
 pub(in crate::stability) fn count(
     operator: &Operator<'_>,
     general: &General,

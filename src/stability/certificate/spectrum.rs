@@ -110,9 +110,6 @@ const RADIUS: f64 = 0.2;
 impl<'a> ReducedSpectrum<'a> {
     /// The reduced model with the numbers of an interface, scaled for frequencies up to `top` \[rad/s\]; `sizes` are those
     /// of the operator's directions.
-    ///
-    /// # Errors
-    /// When the eigenvalues cannot be computed.
     pub(super) fn new(
         model: &'a ReducedModel,
         terms: &[InterfaceTerm],

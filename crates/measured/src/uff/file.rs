@@ -37,10 +37,7 @@ fn delimits(text: &str) -> bool {
     text.trim() == "-1" && text.find('-').is_some_and(|at| at <= 4)
 }
 
-/// The datasets of a file called `file`.
-///
-/// # Errors
-/// A line outside of datasets, a dataset that does not end, binary numbers of unknown form.
+/// The datasets of a file called `file`. Refused are a line outside of datasets, a dataset that does not end, binary numbers of unknown form.
 pub(super) fn datasets<'a>(file: &'a str, bytes: &'a [u8]) -> Result<Vec<Dataset<'a>>> {
     let mut cursor = FileCursor { bytes, at: 0, number: 0 };
     let mut all = Vec::new();
