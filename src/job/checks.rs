@@ -102,7 +102,7 @@ fn two_methods_agree(results: &RunResults) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::sample;
+    use crate::job::sample;
 
     #[test]
     fn what_has_not_converged_fails_the_run() {
@@ -119,9 +119,10 @@ mod tests {
         assert_eq!(error.exit_code(), 1);
 
         let mut results = RunResults::default();
-        results.records.push(sample::calibration());
+        results.records.push(sample::rig().take::<CalibrationResult>().unwrap());
         let fit = |results: &mut RunResults, converged: bool| {
-            results.get_mut::<CalibrationResult>().unwrap().calibration.ranked[0].fit.converged = converged
+            let fit = &mut results.get_mut::<CalibrationResult>().unwrap().calibration.ranked[0].fit;
+            (fit.converged, fit.iterations) = (converged, 4);
         };
         fit(&mut results, true);
         results_hold(&results).unwrap();

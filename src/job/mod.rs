@@ -43,6 +43,8 @@ mod run;
 #[cfg(feature = "cli")]
 mod run_case;
 #[cfg(test)]
+pub(crate) mod sample;
+#[cfg(test)]
 mod samples;
 mod scalars;
 mod sensitivity;

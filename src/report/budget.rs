@@ -93,18 +93,20 @@ fn drawn(modes: &[&ComplexMode]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::sample;
+    use crate::job::sample;
 
     #[test]
     fn the_stack_ends_where_the_terms_do_and_adds_up() {
         let results = sample::rig();
         for mode in results.get::<ComplexResult>().unwrap().modes.modes.iter() {
             let [low, high] = span(&mode.growth);
-            assert!(low <= 0.0 && high >= 0.0 && (low + high - mode.growth_rate()).abs() < 1e-9);
+            assert!(low <= 0.0 && high >= 0.0);
+            // The terms are computed apart: their sum is σ but for round-off of λ.
+            assert!((low + high - mode.growth_rate()).abs() < 1e-10 * mode.eigenvalue.norm());
         }
         let svg = picture(&results).unwrap().svg;
-        assert!(["942 Hz", "σ +111.8", "mode coupling"].iter().all(|label| svg.contains(label)));
-        assert!(!svg.contains("-642"), "stable modes have no bar");
+        assert!(["332 Hz", "σ +13.0", "mode coupling"].iter().all(|label| svg.contains(label)));
+        assert!(!svg.contains("632 Hz"), "stable modes have no bar");
     }
 
     #[test]

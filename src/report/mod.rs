@@ -107,16 +107,16 @@ pub fn write_report(dir: &Path, results: &RunResults) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::sample;
+    use crate::job::sample;
 
     #[test]
     fn every_picture_stands_beside_the_page_and_in_it() {
         let dir = tempfile::tempdir().unwrap();
         write_report(dir.path(), &sample::rig()).unwrap();
         let page = std::fs::read_to_string(dir.path().join("report.html")).unwrap();
-        let files = "rig modes_disc mac_impact frequencies_impact measured_frf_impact frf_hammer contact growth growth_budget \
+        let files = "rig modes_disc mac_impact frequencies_impact measured_frf_hammer frf_hammer contact growth growth_budget \
                      participation sensitivity advice transient transient_spectrum transient_spectrogram transient_phase \
-                     transient_contact sound sweep_over_friction root_locus_over_friction map_load_and_speed \
+                     transient_contact sound sweep_friction sweep_friction_places root_locus_friction map_friction_and_speed \
                      uncertainty_all uncertainty_all_growth uncertainty_all_scalars \
                      calibration_errors calibration_responses calibration_numbers";
         for file in files.split(' ').map(|stem| format!("{stem}.svg")) {

@@ -122,7 +122,7 @@ pub(super) fn the_case(results: &RunResults) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::sample;
+    use crate::job::sample;
 
     #[test]
     fn facts_files_and_links_are_there() {
@@ -137,6 +137,6 @@ mod tests {
         }
         assert!(!text.contains("x.bin"));
         let case = the_case(&results);
-        assert!(case.contains("&lt;written by hand&gt;") && case.contains("mu = 0.4"));
+        assert!(case.contains("&lt;written by hand&gt;") && case.contains("mu0 = 0.6"));
     }
 }

@@ -45,18 +45,19 @@ pub(super) fn table(check: &ReducedCheck, complex: Option<&ComplexResult>) -> Re
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::job::sample;
     use crate::results::TransientResult;
-    use crate::results::sample;
 
     #[test]
     fn deviations_stand_beside_their_modes_and_what_is_missing_is_said() {
         let results = sample::rig();
         let mut check = results.get::<TransientResult>().unwrap().reduced_check.clone().unwrap();
         let rows = table(&check, results.get::<ComplexResult>()).rows;
-        assert_eq!(rows.len(), 3);
-        assert!(rows[1].cells[2].starts_with("mode 4, ") && rows[2].cells[0] == "displacement at rim");
+        assert_eq!(rows.len(), 4);
+        assert!(rows[1].cells[2].starts_with("mode 7, ") && rows[2].cells[0] == "displacement at rim");
         check.modes = [14, 12];
-        check.motion.as_mut().unwrap().displacement = None;
+        let motion = check.motion.as_mut().unwrap();
+        (motion.displacement, motion.normal_force) = (None, None);
         let notes = table(&check, None).notes;
         assert!(notes[0].starts_with("Nothing moved") && notes[1].starts_with("2 of 14"), "{notes:?}");
     }

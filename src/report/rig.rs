@@ -254,7 +254,7 @@ fn draw_axes(sheet: &mut Sheet, view: &View, fit: &PlacedView) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::sample;
+    use crate::job::sample;
 
     #[test]
     fn parts_points_and_arrows_are_drawn() {

@@ -151,6 +151,9 @@ impl Sheet {
     }
 
     fn text_with(&mut self, at: SvgPoint, text: &str, ink: Ink, more: &str) {
+        if !at.iter().all(|c| c.is_finite()) {
+            return;
+        }
         let ([x, y], text, Ink { size, colour, weight, anchor }) = (at.map(px), escape(text), ink);
         self.put(format_args!(
             "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" fill=\"{colour}\" text-anchor=\"{anchor}\"{weight}{more}>{text}</text>"

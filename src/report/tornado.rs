@@ -79,13 +79,23 @@ fn draw(sheet: &mut Sheet, top: f64, mode: &ModeSensitivity) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::sample;
+    use crate::job::sample;
 
     #[test]
     fn the_strongest_scalars_have_bars_with_signs() {
-        let svg = picture(&sample::rig()).unwrap().svg;
-        // 310 1/s × 0.4 × 1 % = 1.24; −1.05e4 × 0.0035 × 1 % = −0.3675.
-        for label in ["contact.rim.friction.mu0", "+1.24", "−0.36", "lead_angle †", "1668 Hz"] {
+        let mut results = sample::rig();
+        let modes = &mut results.get_mut::<SensitivityResult>().unwrap().modes;
+        let scalars = &mut modes[0].parameters;
+        // 310 1/s × 0.6 × 1 % = 1.86; −1.05e4 × 0.0035 × 1 % = −0.3675.
+        for scalar in scalars.iter_mut() {
+            match scalar.path.as_str() {
+                "contact.rim.friction.mu0" => scalar.rate.re = 310.0,
+                "damping.modal_ratio" => scalar.rate.re = -1.05e4,
+                path => scalar.kink = path.ends_with("lead_angle"),
+            }
+        }
+        let svg = picture(&results).unwrap().svg;
+        for label in ["contact.rim.friction.mu0", "+1.86", "−0.36", "lead_angle †", "332 Hz"] {
             assert!(svg.contains(label), "{label}");
         }
         assert!(!svg.contains("NaN") && !svg.contains("inf"));

@@ -502,24 +502,45 @@ pub(super) fn write_calibrated(dir: &Path, result: &CalibrationResult) -> Result
 
 #[cfg(test)]
 mod tests {
-    use super::super::sample::calibration as sample;
     use super::super::{RunResults, summary_json, write_files};
+    use super::{CalibratedResponse, CalibrationResult};
+    use crate::calibration::Chance;
+    use crate::job::sample;
     use serde_json::json;
 
     #[test]
     fn the_files_say_what_was_found() {
-        let mut results = RunResults::default();
-        results.records.push(sample());
-        let json = &summary_json(&results)["calibration"];
-        assert!((json["largest_error_percent"].as_f64().unwrap() - 1.0).abs() < 1e-9);
-        assert!((json["data"][0]["left_out_percent"].as_f64().unwrap() + 3.0).abs() < 1e-9);
-        assert!((json["chance"]["probability_by_largest_error"].as_f64().unwrap() - 0.05).abs() < 1e-12);
-        assert_eq!(json["trials"]["least_coverage"], 0.95);
-        assert_eq!((&json["data"][0]["mac_after"], &json["least_mac"]), (&json!(0.97), &json!(0.97)));
-        assert_eq!(json["data"][0]["shape_components"], 24);
-        assert!(["shape_components", "mac_after"].iter().all(|key| json["data"][2][key].is_null()));
-        assert_eq!(json["assignments"][0]["modes"][2], "disc (0, 1)");
+        let mut record = sample::rig().take::<CalibrationResult>().unwrap();
         // 8 beside 10 at one line of three, with a deviation of 0.1.
+        record.responses[0] = CalibratedResponse {
+            deviation: 0.1,
+            frequencies_hz: vec![300.0, 330.0, 400.0],
+            measured: vec![1.0, 10.0, 2.0],
+            before: vec![2.0, 5.0, 2.0],
+            after: vec![1.0, 9.0, 2.0],
+            left_out: Some(vec![1.0, 8.0, 2.0]),
+            ..record.responses[0].clone()
+        };
+        record.calibration.chance = Some(Chance { draws: 999, by_error: 49, by_chi2: 59 });
+        record.data[1].shape = None;
+        let mut results = RunResults::default();
+        results.records.push(record.clone());
+        let json = &summary_json(&results)["calibration"];
+        let [first, second] = &record.data[..] else { panic!("two frequencies") };
+        let error = |hz: Option<f64>, measured: f64| 100.0 * (hz.unwrap() / measured - 1.0);
+        let largest = [first, second].map(|d| error(d.after_hz, d.measured_hz).abs());
+        assert!((json["largest_error_percent"].as_f64().unwrap() - largest[0].max(largest[1])).abs() < 1e-9);
+        let left_out = error(first.left_out_hz, first.measured_hz);
+        assert!((json["data"][0]["left_out_percent"].as_f64().unwrap() - left_out).abs() < 1e-9);
+        assert!((json["chance"]["probability_by_largest_error"].as_f64().unwrap() - 0.05).abs() < 1e-12);
+        let trials = record.calibration.trials.as_ref().unwrap();
+        let least = *trials.covered.iter().min().unwrap() as f64 / trials.count as f64;
+        assert_eq!(json["trials"]["least_coverage"], least);
+        assert_eq!(json["data"][0]["mac_after"], json!(first.shape.unwrap().after));
+        assert_eq!(json["least_mac"], json!(record.least_mac(|shape| shape.after)));
+        assert_eq!(json["data"][0]["shape_components"], 32);
+        assert!(["shape_components", "mac_after"].iter().all(|key| json["data"][1][key].is_null()));
+        assert_eq!(json["assignments"][0]["modes"][1], "disc (4, 0)");
         let response = &json["responses"][0];
         let apart = 1.25f64.ln() / 3f64.sqrt();
         assert!((response["left_out_deviations"].as_f64().unwrap() - 10.0 * apart).abs() < 1e-12);
@@ -527,7 +548,7 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         write_files(dir.path(), &results).unwrap();
         let table = std::fs::read_to_string(dir.path().join("calibration.csv")).unwrap();
-        assert!(table.lines().count() == 4 && table.contains("1,disc,\"disc (2, 0)\",330,"), "{table}");
+        assert!(table.lines().count() == 3 && table.contains("1,disc,\"disc (2, 0)\",330,"), "{table}");
         assert!(dir.path().join("calibrated.toml").is_file());
         let lines = std::fs::read_to_string(dir.path().join("calibration_responses.csv")).unwrap();
         assert!(lines.lines().nth(2).unwrap().ends_with(",330,10,5,9,8,m/(N s^2)"), "{lines}");

@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Complex modes, for people.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct ComplexResult {
     /// Eigenvalues, vectors, errors, budgets.
     pub modes: ComplexModes,

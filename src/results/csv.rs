@@ -18,8 +18,8 @@ pub(crate) fn write_csv(dir: &Path, results: &RunResults) -> Result<()> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sample;
     use super::*;
+    use crate::job::sample;
     use crate::results::ComplexResult;
 
     #[test]
@@ -27,7 +27,7 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let results = sample::rig();
         write_csv(dir.path(), &results).unwrap();
-        for name in ["modes_disc.csv", "modes_rig_with_closed_contact.csv", "contact_points.csv"] {
+        for name in ["modes_disc.csv", "modes_rig.csv", "contact_points.csv"] {
             let text = std::fs::read_to_string(dir.path().join(name)).unwrap();
             let width = text.lines().next().unwrap().split(',').count();
             assert!(

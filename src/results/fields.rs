@@ -139,8 +139,8 @@ fn cell_type(nodes: usize) -> u8 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sample;
     use super::*;
+    use crate::job::sample;
 
     fn motion(number: usize, nodes: usize) -> NodalField<f64> {
         (0..nodes)

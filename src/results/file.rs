@@ -234,9 +234,9 @@ pub(super) fn plain(error: &hdf5::Error) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sample;
     use super::*;
     use crate::dataset::Describe;
+    use crate::job::sample;
     use crate::results::NamedModes;
     use crate::results::SteadyResult;
 

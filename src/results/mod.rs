@@ -69,8 +69,6 @@ mod validation;
 mod vtk;
 mod write;
 
-#[cfg(test)]
-pub(crate) mod sample;
 #[cfg(all(test, feature = "hdf5"))]
 mod tests;
 

@@ -10,7 +10,7 @@ use std::sync::Arc;
 pub(super) const SHAPE_UNITS: &str = "1/√kg, 1/(m √kg)";
 
 /// The real modes of one part or of the whole.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct NamedModes {
     /// `disc`, `rig`, `rig with closed contact` …
     pub name: String,

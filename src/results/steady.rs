@@ -6,7 +6,7 @@ use crate::equilibrium::{PointState, SteadySliding};
 use crate::numbers::{given, significant};
 
 /// Steady sliding, for people.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct SteadyResult {
     /// The solution.
     pub state: SteadySliding,

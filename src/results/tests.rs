@@ -1,7 +1,8 @@
 //! Every quantity of a run is in HDF5, in JSON and in CSV under the same name, and equal.
 
-use super::{ComplexResult, NamedModes, ResultsFile, RunResults, sample, summary, summary_json, write_files};
+use super::{ComplexResult, NamedModes, ResultsFile, RunResults, summary, summary_json, write_files};
 use crate::dataset::{Entry, Group, Table, Values, Variable, link};
+use crate::job::sample;
 use crate::linalg::c64;
 use hdf5::types::VarLenUnicode;
 use serde_json::Value;

@@ -150,8 +150,8 @@ fn cells(geometry: &Geometry) -> Cells {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sample;
     use super::*;
+    use crate::job::sample;
     use vtkio::model::{IOBuffer, Piece};
 
     fn read(path: &Path) -> UnstructuredGridPiece {

@@ -1,7 +1,7 @@
 //! Studies of uncertain scalars: against closed forms of the model of Rusli et al. (2020), in parts, after a kill, and with wrong input.
 
 use crate::program::{command, folder_with, names, run, said};
-use crate::sweeps::{self, disc, found};
+use crate::sweeps::{disc, found};
 use serde_json::Value;
 use std::path::Path;
 use std::process::Stdio;

@@ -72,11 +72,13 @@ pub(super) fn finding(result: &CalibrationResult) -> Finding {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::sample;
+    use crate::job::sample;
 
     #[test]
     fn the_probability_of_the_misfit_decides_and_doubts_are_named() {
-        let mut result = sample::calibration();
+        let mut result = sample::rig().take::<CalibrationResult>().unwrap();
+        // The second combination is known to 2.5 of its unit.
+        result.calibration.knowledge.singular_values = vec![30.0, 0.4];
         let found = finding(&result);
         assert!(found.words.contains("1 of 2 numbers ended at a bound"), "{}", found.words);
         assert!(found.words.contains("determine 1 of 2"), "{}", found.words);

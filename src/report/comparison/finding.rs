@@ -66,7 +66,8 @@ pub(super) fn responses(test: &MeasuredResponses) -> Finding {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::{MeasuredRow, sample};
+    use crate::job::sample;
+    use crate::results::MeasuredRow;
 
     #[test]
     fn one_mode_beyond_a_limit_or_without_a_partner_is_enough() {
@@ -87,6 +88,6 @@ mod tests {
         }
         let results = sample::rig();
         let tested = responses(results.all::<MeasuredResponses>()[0]);
-        assert!(tested.words.contains("1.000"), "{}", tested.words);
+        assert!(tested.words.contains("FRAC 0.489"), "{}", tested.words);
     }
 }

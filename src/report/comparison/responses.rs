@@ -48,8 +48,8 @@ pub(super) fn picture(responses: &MeasuredResponses) -> Option<Picture> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::job::sample;
     use crate::report::colours::{ALARM, MEASURED};
-    use crate::results::sample;
 
     #[test]
     fn a_measured_curve_is_dashed_over_a_computed_one_that_is_equal() {

@@ -145,8 +145,8 @@ pub(super) fn damping(verdicts: &DampingVerdicts) -> Finding {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::job::sample;
     use crate::linalg::c64;
-    use crate::results::sample;
     use crate::sweep::{Branch, Critical, CriticalKind};
 
     #[test]

@@ -157,15 +157,16 @@ fn draw_bar(sheet: &mut Sheet, shades: &Shades) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::sample;
+    use crate::job::sample;
     use crate::sweep::MapPoint;
 
     #[test]
     fn the_scale_is_named_and_words_are_those_of_the_colours() {
         let results = sample::rig();
         let mut result = results.all::<MapResult>()[0].clone();
+        result.points[11] = MapPoint::NONE;
         let drawn = picture(&result).unwrap();
-        for words in ["square-root scale", "no answer", "load ΣN of rim [N]", "+10", "−10"] {
+        for words in ["square-root scale", "no answer", "sliding velocity V of rim [m/s]", "+10"] {
             assert!(drawn.svg.contains(words), "{words}");
         }
         assert!(drawn.caption.contains("orange to red where a mode grows, blue where all decay, grey"));

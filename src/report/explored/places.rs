@@ -202,7 +202,7 @@ fn nearest(result: &SweepResult, b: usize, value: f64) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::sample;
+    use crate::job::sample;
     use crate::sweep::{Axis, Branch, Critical, Interaction};
 
     /// λ of two modes that are coupled by friction: ω² = ω₀² (1 ∓ √(d² − μ²)), which merge at μ = d.

@@ -181,7 +181,7 @@ fn drawn_locus(result: &SweepResult) -> String {
 mod tests {
     use super::super::places::places_of;
     use super::*;
-    use crate::results::sample;
+    use crate::job::sample;
 
     #[test]
     fn labels_stand_above_the_curves_and_apart() {

@@ -132,12 +132,16 @@ pub(super) fn sound(run: &TransientResult) -> Option<Finding> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::{GrowthCompared, sample};
+    use crate::job::sample;
+    use crate::results::GrowthCompared;
 
     #[test]
     fn growth_decides_the_class_and_every_figure_has_its_unit() {
         let results = sample::rig();
         let mut run = results.get::<TransientResult>().unwrap().clone();
+        let cycle = |k| (k, LimitCycle { amplitude: 1e-3, rms: 7e-4, mean: 0.0, drift: 0.2, pieces: 8 });
+        run.diagnostics.cycles = vec![cycle(0), cycle(1)];
+        let [first, second] = [0, 1].map(|k| run.channels[k].words());
         let window = [0.001, 0.021];
         let found = Growth { rate: 200.0, frequency_hz: 1668.0, window, deviation: 0.1 };
         let eigenvalue = c64::new(201.0, 1e4);
@@ -146,7 +150,7 @@ mod tests {
         assert_eq!(finding.class, FindingClass::Bad, "{}", finding.words);
         assert!(
             finding.words.contains("grows with σ = +")
-                && finding.words.contains("oscillation of rim velocity by ± ")
+                && finding.words.contains(&format!("oscillation of {first} by ± "))
         );
         let loud = sound(&run).unwrap();
         assert!(loud.words.contains("dB(A)") && loud.class == FindingClass::Neutral, "{}", loud.words);
@@ -155,16 +159,15 @@ mod tests {
         assert!(motion(&run).words.contains("neither grows nor decays measurably"));
         run.growth.as_mut().unwrap().found.as_mut().unwrap().rate = -200.0;
         run.diagnostics.cycles.iter_mut().for_each(|(_, cycle)| cycle.drift = 0.0);
-        assert!(motion(&run).words.contains("contact friction force by ± "));
+        assert!(motion(&run).words.contains(&format!("{second} by ± ")));
         assert!(motion(&run).words.contains("; all steady"));
         run.spectra.iter_mut().for_each(|of| of.beyond = None);
         assert_eq!(motion(&run).class, FindingClass::Neutral);
         run.diagnostics.cycles[0].1.drift = 0.5;
         let finding = motion(&run);
         assert_eq!(finding.class, FindingClass::Attention);
-        let words =
-            "contact friction force steady, not so from the first to the second half: rim velocity (+50 %)";
-        assert!(finding.words.contains(words), "{}", finding.words);
+        let words = format!("{second} steady, not so from the first to the second half: {first} (+50 %)");
+        assert!(finding.words.contains(&words), "{}", finding.words);
         run.growth = None;
         run.sound = None;
         assert!(!motion(&run).words.contains("disturbance") && sound(&run).is_none());
