@@ -69,7 +69,7 @@ pub struct FamilyCheck {
     pub eigenvalues: Vec<c64>,
     /// η of each, as in [`super::ComplexMode`].
     pub backward_errors: Vec<f64>,
-    /// Estimated |Δλ|/|λ| of each.
+    /// Estimated |Δλ|/|λ| of each, likewise.
     pub eigenvalue_errors: Vec<f64>,
 }
 

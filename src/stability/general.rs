@@ -13,7 +13,7 @@ use super::operator::{Operator, Side};
 use super::post_processing::shares;
 use super::refinement::TOGETHER;
 use super::shifted::{Adjoint, Shifted};
-use super::{ComplexMode, ComplexModes, ROUNDING, accuracy_warnings};
+use super::{CONTACT_ROUNDING, ComplexMode, ComplexModes, ROUNDING, accuracy_warnings};
 use crate::error::{Error, Result};
 use crate::linalg::c64;
 use crate::linalg::factor::SymbolicFactor;
@@ -307,7 +307,7 @@ impl<'a> ShiftSearch<'a> {
                     right: right.scaled_column(k, factor),
                     left: if left_vectors { left.scaled_column(k, left_mass.recip()) } else { Vec::new() },
                     backward_error: residual.norm(k) / (operator.size(z) * right.norm(k)),
-                    eigenvalue_error: spread / size + ROUNDING * (condition + work / size),
+                    eigenvalue_error: spread / size + ROUNDING * condition + CONTACT_ROUNDING * work / size,
                     condition,
                     growth: growth_budget(
                         operator,
@@ -477,12 +477,23 @@ mod tests {
 
     #[test]
     fn a_count_shows_a_mode_that_was_not_seen() {
-        let system = rotating(40, 7, 3.0, 400.0);
-        let (state, real) = (steady(&system), dense_modes(&system, 40));
+        // The first sample with a mode inside the region that is counted, which begins above zero for loss factors and leaves out
+        // what grows faster than a tenth of the band.
+        let flutters = |m: &ComplexMode| {
+            m.growth_rate() > 1e-2 * m.eigenvalue.norm() && m.growth_rate() < 0.09 * m.eigenvalue.im
+        };
+        let sample = |seed: u64| {
+            let system = rotating(40, seed, 3.0, 400.0);
+            let (state, real) = (steady(&system), dense_modes(&system, 40));
+            let band = [0.0, real.frequency_hz(30)];
+            let operator = Operator::new(&system, &state).unwrap();
+            let found = general_modes(&operator, &real, band.into(), &()).unwrap().modes.modes;
+            found.iter().any(flutters).then_some((system, state, real, band))
+        };
+        let (system, state, real, band) = (7..57).find_map(sample).expect("a sample with flutter");
         let operator = Operator::new(&system, &state).unwrap();
-        let band = [0.0, real.frequency_hz(30)];
         let mut general = general_modes(&operator, &real, band.into(), &()).unwrap();
-        let place = general.modes.modes.iter().position(|m| m.growth_rate() > 1e-2 * m.eigenvalue.norm());
+        let place = general.modes.modes.iter().position(flutters);
         let lost = general.modes.modes.remove(place.unwrap()).eigenvalue;
         general.seen.retain(|z| {
             (z - lost).norm() > 1e-6 * lost.norm() && (z - lost.conj()).norm() > 1e-6 * lost.norm()

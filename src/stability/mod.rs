@@ -79,8 +79,8 @@ pub struct ComplexMode {
     /// η = ‖Q(λ)φ‖ / ((|λ|²‖M‖ + |λ|‖C‖ + ‖K‖)‖φ‖).
     pub backward_error: f64,
     /// Estimated |Δλ| / |λ|: that from the residuals of both vectors, and the least that rounding leaves,
-    /// 10 ε (κ + |ψ|ᵀ|W| |k + λ c| |W|ᵀ|φ| / |λ ψᴴQ′(λ)φ|) of an interface W (k + λ c) Wᵀ: a stiff contact makes large forces
-    /// from the last digits of motions.
+    /// 10 ε κ + 40 ε |ψ|ᵀ|W| |k + λ c| |W|ᵀ|φ| / |λ ψᴴQ′(λ)φ| of an interface W (k + λ c) Wᵀ: a stiff contact makes large
+    /// forces from the last digits of motions.
     pub eigenvalue_error: f64,
     /// Condition number of λ, 2|λ| ‖ψ‖_M ‖φ‖_M / |ψᴴ(2λM + C + C_c)φ|: 1 for an undamped symmetric system, large near
     /// coalescence.
@@ -218,6 +218,10 @@ pub const ROUND_OFF: f64 = 1e-9;
 
 /// The error of λ over |λ| that a few roundings leave, by the condition number of λ.
 const ROUNDING: f64 = 10.0 * f64::EPSILON;
+
+/// The same by the work of the interface without cancellation: a few roundings each of WᵀB, of k WᵀB, of their product and of
+/// its product with the coordinates of φ.
+const CONTACT_ROUNDING: f64 = 4.0 * ROUNDING;
 
 /// Whether a mode grows by more than round-off.
 pub fn unstable(lambda: c64) -> bool {

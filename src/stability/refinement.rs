@@ -1,10 +1,10 @@
 //! Pairs measured on the full order: residuals, errors, and the corrections that make them better.
 
-use super::ROUNDING;
 use super::basis::Basis;
 use super::block::Block;
 use super::operator::{Forms, Operator, Side};
 use super::responses::SKETCH;
+use super::{CONTACT_ROUNDING, ROUNDING};
 use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
 use crate::linalg::multivector::{append, combine, expand};
@@ -80,7 +80,7 @@ impl PairMeasurement<'_> {
             let [of_left, of_right] =
                 [basis.extents(left.vector(j)), operator.interface.extents(right.vector(j))];
             let work = operator.interface.gross_work(lambda[j], &of_left, &of_right);
-            ROUNDING * (pairs.condition[j] + work / size(j))
+            ROUNDING * pairs.condition[j] + CONTACT_ROUNDING * work / size(j)
         };
         pairs.rounding = columns.clone().map(rounding).collect();
         let forms = |j: usize| {

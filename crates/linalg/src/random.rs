@@ -27,7 +27,7 @@ impl Random {
     pub fn perturbed(&self, x: f64) -> f64 {
         match variation("STRIDOR_TEST_PERTURBATION") {
             0 => x,
-            k => x * (1.0 + f64::EPSILON * (((self.0 ^ self.0 >> 32).wrapping_add(k) % 3) as f64 - 1.0)),
+            k => x * (1.0 + f64::EPSILON * (((self.0 ^ (self.0 >> 32)).wrapping_add(k) % 3) as f64 - 1.0)),
         }
     }
 
