@@ -5,7 +5,7 @@ use super::file_name;
 use crate::dataset::{Column, Describe, Dimension, Group, Table, Values, Variable, column};
 use crate::linalg::c64;
 use crate::numbers::{hertz, signed, significant};
-use crate::stability::unstable;
+use crate::stability::{ROUND_OFF, unstable};
 use crate::sweep::{MapPoint, SampleModes};
 use crate::uncertainty::{Distribution, Proportion, first_order, proportion, quantile, spearman};
 use std::f64::consts::TAU;
@@ -143,11 +143,13 @@ impl UncertaintyResult {
         self.measured.iter().map(|own| own.eigenvalue_error).fold(0.0, f64::max)
     }
 
-    /// Samples whose verdict an error as large as the largest that was measured could change: |σ| ≤ |Δλ| of the mode that grows most.
+    /// Samples whose verdict an error as large as the largest that was measured could change: σ of the mode that grows most is within
+    /// |Δλ| of what counts as growth ([`ROUND_OFF`]).
     pub fn undecided(&self) -> usize {
         let error = self.largest_error();
         let near = |point: &&MapPoint| {
-            point.growth_rate.abs() <= error * TAU * point.frequency_hz.hypot(point.growth_rate / TAU)
+            let size = TAU * point.frequency_hz.hypot(point.growth_rate / TAU);
+            (point.growth_rate - ROUND_OFF * size).abs() <= error * size
         };
         self.points.iter().flatten().filter(near).count()
     }
