@@ -21,7 +21,7 @@ pub struct Reader<'a> {
     faults: RefCell<Vec<(usize, Fault)>>,
 }
 
-/// One table of the text. Each key is read by name; [`TableReader::finish`] then refuses those that were not read.
+/// One table of the text. Each key is read by name; `finish` then refuses those that were not read.
 pub struct TableReader<'a> {
     reader: &'a Reader<'a>,
     table: &'a DeTable<'a>,
