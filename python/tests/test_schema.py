@@ -25,7 +25,7 @@ Table = dict[str, Any]
 
 @pytest.fixture(scope="module")
 def validator() -> jsonschema_rs.Draft7Validator:
-    printed = subprocess.run([sys.executable, "-m", "stridor", "schema"], capture_output=True, check=True)
+    printed = subprocess.run([sys.executable, "-P", "-m", "stridor", "schema"], capture_output=True, check=True)
     return jsonschema_rs.Draft7Validator(json.loads(printed.stdout))
 
 

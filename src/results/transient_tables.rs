@@ -71,13 +71,18 @@ impl TransientTables {
     }
 
     /// What happened at the contact points.
-    pub(crate) fn events(&self, events: &[Event]) -> Table<'_> {
+    pub(crate) fn events<'e>(&self, events: &'e [Event]) -> Table<'e> {
         let columns = [
             column(TIME, "s", "when it happened", |event: &Event| event.time),
             column("point", "1", "number of the contact point, from 1", |event: &Event| event.point + 1),
             column("kind", "text", "what it did", |event: &Event| event.kind.name()),
         ];
-        let mut table = Table::by("events", TIME, &columns, events);
+        Table::by("events", TIME, &columns, events)
+    }
+
+    /// The same with the pair of each point, for readers of `events.csv` alone.
+    fn events_of_pairs<'e>(&self, events: &'e [Event]) -> Table<'e> {
+        let mut table = self.events(events);
         let pairs = events.iter().map(|event| self.pairs.get(event.point).cloned().unwrap_or_default());
         let pair = Variable::texts("pair", "contact pair of the point", table.rows.clone(), pairs.collect());
         table.columns.insert(2, pair);
@@ -101,14 +106,14 @@ impl TransientCsv {
     pub fn create(dir: &Path, recording: &Recording) -> Result<Self> {
         let tables = TransientTables::new(recording);
         let history = CsvFile::create(dir, "transient.csv", &tables.history(0, &[]))?;
-        let events = CsvFile::create(dir, "events.csv", &tables.events(&[]))?;
+        let events = CsvFile::create(dir, "events.csv", &tables.events_of_pairs(&[]))?;
         Ok(TransientCsv { tables, history, events })
     }
 
     /// Adds the rows and events of a piece.
     pub fn append(&mut self, piece: &RecordPiece) -> Result<()> {
         self.history.append(&self.tables.history(piece.first, piece.values))?;
-        self.events.append(&self.tables.events(piece.events))
+        self.events.append(&self.tables.events_of_pairs(piece.events))
     }
 }
 
