@@ -1,4 +1,23 @@
-//! Numbers as text, for tables and messages.
+//! Numbers as text: in tables and messages, and as other programs write them.
+
+/// The number that a program wrote: as C and Rust write it, or as Fortran does, with an exponent in `D` (`1.5D+03`) or without a
+/// letter where it has three digits (`1.5-103`). `nan` and `inf` are numbers, too.
+///
+/// ```
+/// use stridor_base::numbers::parse;
+/// assert_eq!(["1.5D+03", "-1.5-103", "+2", ".5"].map(parse), [Some(1500.0), Some(-1.5e-103), Some(2.0), Some(0.5)]);
+/// assert_eq!(["", "x", "1-2-3", "--1"].map(parse), [None; 4]);
+/// ```
+pub fn parse(text: &str) -> Option<f64> {
+    text.parse().ok().or_else(|| {
+        let plain = text.replace(['d', 'D', 'e'], "E");
+        let exponent = plain.rfind(['+', '-']).filter(|at| *at > 0 && !plain.contains('E'));
+        match exponent {
+            Some(at) => format!("{}E{}", &plain[..at], &plain[at..]).parse().ok(),
+            None => plain.parse().ok(),
+        }
+    })
+}
 
 /// `value` with about `digits` significant digits: plain where that is short, in powers of ten elsewhere.
 pub fn significant(value: f64, digits: usize) -> String {

@@ -2,7 +2,8 @@
 //!
 //! Read are `coordinate` and `array` matrices of `real`, `integer` or `complex` numbers that are `general`,
 //! `symmetric`, `hermitian` or `skew-symmetric`. A triangle is completed to the whole matrix; entries given more than
-//! once add up. Exponents may be written with a Fortran `D`. Every number of a header is bounded by the size of the
+//! once add up. Numbers may be written as Fortran does ([`stridor_base::numbers::parse`]), the text in any encoding that
+//! [`stridor_base::error::read::plain`] knows. Every number of a header is bounded by the size of the
 //! file before memory is taken for it, and the first faults of a file are told together, each with its line.
 
 use super::sparse::{Index, compressed};
@@ -10,8 +11,9 @@ use super::{SparseMatrix, c64};
 use rayon::prelude::*;
 use std::fmt::Write as _;
 use std::path::Path;
-use stridor_base::error::read::read_bytes;
+use stridor_base::error::read::{plain, read_bytes};
 use stridor_base::error::{Error, Fault, Faults, Result};
+use stridor_base::numbers;
 
 /// The most rows or columns.
 const LARGEST: usize = 1 << 26;
@@ -77,6 +79,7 @@ pub fn read(path: &Path, known: usize) -> Result<MarketMatrix> {
 /// assert_eq!((a.re[(0, 0)], a.re[(0, 1)], a.re[(1, 0)]), (3.0, -1.5, -1.5));
 /// ```
 pub fn parse(name: &str, bytes: &[u8], known: usize) -> Result<MarketMatrix> {
+    let bytes = &*plain(bytes);
     let mut lines = Lines { bytes, at: 0, number: 0 };
     let header = read_header(name, &mut lines)?;
     let (line, sizes) = loop {
@@ -163,12 +166,13 @@ fn is_comment(line: &[u8]) -> bool {
 
 /// The beginning of a line, for a fault.
 fn shown(line: &[u8]) -> String {
-    String::from_utf8_lossy(line.trim_ascii()).chars().take(60).collect()
+    let text = String::from_utf8_lossy(line);
+    text.split_whitespace().collect::<Vec<_>>().join(" ").chars().take(60).collect()
 }
 
 fn read_header(name: &str, lines: &mut Lines<'_>) -> Result<Header> {
     let first = lines.next().unwrap_or_default();
-    let text = shown(first).to_lowercase();
+    let text = String::from_utf8_lossy(first).to_lowercase();
     let words: Vec<&str> = text.split_whitespace().collect();
     let fault = |expected: &str, help: &str| {
         Err(Error::input(
@@ -210,6 +214,7 @@ fn whole_numbers(line: &[u8], most: usize) -> (Vec<usize>, bool) {
 }
 
 fn whole_number(word: &[u8]) -> Option<usize> {
+    let word = word.strip_prefix(b"+").unwrap_or(word);
     if word.is_empty() || word.len() > 18 {
         return None;
     }
@@ -217,8 +222,7 @@ fn whole_number(word: &[u8]) -> Option<usize> {
 }
 
 fn number(word: &[u8]) -> Option<f64> {
-    let text = std::str::from_utf8(word).ok()?;
-    text.parse().ok().or_else(|| text.replace(['D', 'd'], "e").parse().ok())
+    std::str::from_utf8(word).ok().and_then(numbers::parse)
 }
 
 /// A fault of one line of a piece: the line within the piece, what was found, what is expected.
@@ -481,6 +485,39 @@ mod tests {
         assert_eq!(dense(&a.re), faer::mat![[1.0, 2.0, 3.0], [2.0, 4.0, 5.0], [3.0, 5.0, 6.0]]);
         let a = text("array real skew-symmetric", "3 3\n1\n2\n3\n").unwrap();
         assert_eq!(dense(&a.re), faer::mat![[0.0, -1.0, -2.0], [1.0, 0.0, -3.0], [2.0, 3.0, 0.0]]);
+    }
+
+    /// Headers in any case and with any blanks, numbers as C or Fortran write them, text in any encoding: the same matrix.
+    #[test]
+    fn the_same_matrix_is_read_however_it_is_written() {
+        let numbers = [
+            ["-1500000", "0.25"],
+            ["-1.5E+06", "+.25"],
+            ["-1.5D6", "2.5d-1"],
+            ["-0.15+007", "25-002"],
+            ["-1.5e6", "0.2500000000000000E+00"],
+        ];
+        for (header, [a, b]) in [
+            "%%MatrixMarket matrix coordinate real general",
+            "%%matrixmarket  MATRIX\tCoordinate    Real     GENERAL   ",
+            &format!("%%MatrixMarket{0}matrix{0}coordinate{0}real{0}general{0}", " ".repeat(40)),
+        ]
+        .iter()
+        .flat_map(|header| numbers.map(|numbers| (header, numbers)))
+        {
+            let text = format!("{header}\n% größer\n  3\t2  +2 \n1 2 {a}\n 3  1   {b}\n");
+            for text in [text.clone(), text.replace('\n', "\r"), format!("\u{feff}{text}")] {
+                let wide = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+                for bytes in [text.clone().into_bytes(), wide] {
+                    let read = parse("a.mtx", &bytes, 0).unwrap();
+                    assert_eq!(
+                        read.re.to_dense(),
+                        faer::mat![[0.0, -1.5e6], [0.0, 0.0], [0.25, 0.0]],
+                        "{text}"
+                    );
+                }
+            }
+        }
     }
 
     #[test]

@@ -3,6 +3,7 @@
 //! Faults make an analysis wrong or impossible; warnings say that a result may be poor.
 
 use super::connected::lowest_connected;
+use super::orient::neighbours;
 use super::quality::{dot, face_shape, minus, norm};
 use super::{Element, Mesh, Region};
 use std::collections::BTreeMap;
@@ -256,28 +257,10 @@ fn check_duplicates(mesh: &Mesh, region: &Region, faults: &mut Faults) {
     }
 }
 
-/// Two faces that are turned alike run along their common edge in opposite directions.
+/// Neighbours that are turned opposite ways; a file's are turned alike when it is read, unless its surface has one side.
 fn check_orientation(mesh: &Mesh, region: &Region, faults: &mut Faults) {
-    if region.dimension != 2 {
-        return;
-    }
-    let mut edges: Vec<([usize; 2], usize, bool)> = Vec::with_capacity(4 * region.elements.len());
-    for e in &region.elements {
-        let n = mesh.elements[*e].nodes();
-        edges.extend((0..n.len()).map(|i| {
-            let (a, b) = (n[i], n[(i + 1) % n.len()]);
-            ([a.min(b), a.max(b)], *e, a < b)
-        }));
-    }
-    edges.sort_unstable();
-    let mut clashing: Vec<[usize; 2]> = edges
-        .chunk_by(|a, b| a.0 == b.0)
-        .filter_map(|faces| match faces {
-            // Where three or more plates meet there is no common side.
-            [(_, e, up), (_, f, also_up)] if e != f && up == also_up => Some([*e, *f]),
-            _ => None,
-        })
-        .collect();
+    let clashing = neighbours(mesh, region).into_iter().filter(|pair| pair.opposite);
+    let mut clashing: Vec<[usize; 2]> = clashing.map(|pair| pair.faces).collect();
     clashing.sort_unstable();
     if let Some([e, f]) = clashing.first() {
         let place = format!("elements {} and {}", mesh.element_place(*e), mesh.element_place(*f));

@@ -24,6 +24,7 @@ mod connected;
 pub mod generate;
 pub mod gmsh;
 pub mod info;
+mod orient;
 pub mod quality;
 mod write;
 

@@ -1,6 +1,7 @@
 //! Numbers one after the other, from text or binary, each with the place it came from.
 
 use stridor_base::error::{Error, Fault, Result};
+use stridor_base::numbers;
 
 /// How numbers are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -82,11 +83,9 @@ impl<'a> ByteReader<'a> {
         if self.encoding != Encoding::Ascii {
             return Ok(());
         }
-        let rest = &self.bytes[self.at..];
-        let blank = rest.iter().take_while(|b| b.is_ascii_whitespace() && **b != b'\n').count();
-        match rest.get(blank) {
-            None | Some(b'\n') => Ok(()),
-            Some(_) => Err(self.wrong(format!("more in the line of {what}"), "the end of the line")),
+        match self.at_line_end() {
+            true => Ok(()),
+            false => Err(self.wrong(format!("more in the line of {what}"), "the end of the line")),
         }
     }
 
@@ -108,10 +107,27 @@ impl<'a> ByteReader<'a> {
         if found == word { Ok(()) } else { Err(self.wrong(shown(found), format!("`{word}`"))) }
     }
 
-    /// A word that is a number, whatever the encoding.
-    pub fn text_number<T: std::str::FromStr>(&mut self, what: &str) -> Result<T> {
+    /// A word that is a whole number, whatever the encoding.
+    pub fn text_number<T: TryFrom<i128>>(&mut self, what: &str) -> Result<T> {
         let word = self.word();
-        word.parse().map_err(|_| self.wrong(shown(word), format!("a number, the {what}")))
+        let number = word.parse::<i128>().ok().and_then(|number| T::try_from(number).ok());
+        number.ok_or_else(|| self.wrong(shown(word), format!("a number, the {what}")))
+    }
+
+    /// Whether the line of a text is over.
+    pub fn at_line_end(&self) -> bool {
+        let rest = &self.bytes[self.at..];
+        matches!(rest.iter().find(|b| !b.is_ascii_whitespace() || **b == b'\n'), None | Some(b'\n'))
+    }
+
+    /// Goes to the next line that begins with a `$`; what stands before it is a comment. Gives the word, empty at the end.
+    pub fn section(&mut self) -> &'a str {
+        loop {
+            match self.word() {
+                word if word.is_empty() || word.starts_with('$') => return word,
+                _ => self.end_line(),
+            }
+        }
     }
 
     /// An integer.
@@ -135,7 +151,10 @@ impl<'a> ByteReader<'a> {
     /// A floating-point number.
     pub fn float(&mut self, what: &str) -> Result<f64> {
         match self.encoding {
-            Encoding::Ascii => self.text_number(what),
+            Encoding::Ascii => {
+                let word = self.word();
+                numbers::parse(word).ok_or_else(|| self.wrong(shown(word), format!("a number, the {what}")))
+            }
             Encoding::LittleEndian => Ok(f64::from_le_bytes(self.take(what)?)),
             Encoding::BigEndian => Ok(f64::from_be_bytes(self.take(what)?)),
         }

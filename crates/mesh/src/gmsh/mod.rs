@@ -2,24 +2,24 @@
 //!
 //! Format: Gmsh reference manual, "MSH file format" and "MSH file format version 2".
 //!
-//! A file passes through four steps: its header says which reader takes it (`msh4`, through the crate mshio after
-//! `layout` has checked the file, or `msh2`), the reader lists what the file holds (`RawMesh`), `names` reads the physical
-//! names, and `raw` turns named groups into regions. Then the mesh is checked ([`check`]). Whatever the bytes, the answer is a mesh
-//! or a fault that says where and what; no count in the file makes the reader allocate more than the file's size
-//! warrants.
+//! A file passes through five steps: its header says which reader takes it (`msh4` or `msh2`), the reader lists what the file
+//! holds (`RawMesh`), `names` reads the physical names, `raw` turns named groups into regions, and `orient` turns
+//! neighbouring faces alike. Then the mesh is checked ([`check`]). Whatever the bytes, the answer is a mesh or a fault
+//! that says where and what; no count in the file makes the reader allocate more than the file's size warrants.
+//!
+//! As Gmsh does, the readers take sections in any order and pass over lines between them that do not begin with `$`.
 
 mod bytes;
-mod layout;
 mod msh2;
 mod msh4;
 mod names;
 mod raw;
 
-use super::{Mesh, check};
+use super::{Mesh, check, orient};
 use bytes::{ByteReader, Encoding};
 use raw::{LineNumbers, RawMesh};
 use std::path::Path;
-use stridor_base::error::read::read_bytes;
+use stridor_base::error::read::{plain, read_bytes};
 use stridor_base::error::{Error, Fault, Faults, Result};
 
 /// Reads the mesh file `path`, whose coordinates are in units of `unit_in_metres` (0.001: millimetres).
@@ -51,13 +51,18 @@ pub fn parse(bytes: &[u8], place: &str, unit_in_metres: f64) -> Result<Mesh> {
         let found = unit_in_metres.to_string();
         return Err(Error::input(Fault::new(format!("{place} unit"), found, "a positive number of metres")));
     }
-    let header = header(bytes, place)?;
+    let text = plain(bytes);
+    let header = header(&text, place)?;
+    let bytes = if header.encoding == Encoding::Ascii { &*text } else { bytes };
+    let reader = ByteReader::new(bytes, 0, header.encoding, place);
     let raw: RawMesh = match header.version {
-        Version::Four => msh4::parse(bytes, header.body, header.encoding, place)?,
-        Version::Two => msh2::parse(ByteReader::new(bytes, header.body, header.encoding, place))?,
+        Version::Four => msh4::parse(reader)?,
+        Version::Two => msh2::parse(reader)?,
     };
     let names = names::parse(bytes, place)?;
-    let mesh = raw.into_mesh(&names, (place, &LineNumbers::new(bytes, header.encoding)), unit_in_metres)?;
+    let mut mesh =
+        raw.into_mesh(&names, (place, &LineNumbers::new(bytes, header.encoding)), unit_in_metres)?;
+    orient::turn_alike(&mut mesh);
     let faults = check::diagnose(&mesh).faults.0;
     let placed = faults.into_iter().map(|f| Fault { place: format!("{place}: {}", f.place), ..f }).collect();
     Faults(placed).into_result(mesh)
@@ -72,8 +77,6 @@ enum Version {
 struct GmshHeader {
     version: Version,
     encoding: Encoding,
-    /// Where the bytes after the header's line begin.
-    body: usize,
 }
 
 /// Reads `$MeshFormat`: version, 0 (ASCII) or 1 (binary), size of a number; and the byte order of a binary file.
@@ -86,15 +89,14 @@ fn header(bytes: &[u8], place: &str) -> Result<GmshHeader> {
     if bytes.is_empty() {
         return Err(wrong("an empty file".into(), EXPECTED, ""));
     }
-    let start = b"$MeshFormat";
-    if !bytes.starts_with(start) {
+    let Some(start) = names::line_with(bytes, "$MeshFormat") else {
         let first = String::from_utf8_lossy(&bytes[..bytes.len().min(24)]).escape_debug().to_string();
         return Err(wrong(format!("a file that begins with \"{first}\""), EXPECTED, CONVERT));
-    }
-    let mut lines = bytes[start.len()..].split_inclusive(|b| *b == b'\n');
+    };
+    let mut lines = bytes[start..].split_inclusive(|b| *b == b'\n');
     let skipped = lines.next().map_or(0, <[u8]>::len);
     let line = lines.next().unwrap_or_default();
-    let body = start.len() + skipped + line.len();
+    let body = start + skipped + line.len();
     let text = String::from_utf8_lossy(line);
     let words: Vec<&str> = text.split_whitespace().collect();
     let [version, kind, size] = words.as_slice() else {
@@ -127,7 +129,7 @@ fn header(bytes: &[u8], place: &str) -> Result<GmshHeader> {
         },
         _ => return Err(wrong(format!("file type {kind}"), "0 (ASCII) or 1 (binary)", CONVERT)),
     };
-    Ok(GmshHeader { version, encoding, body })
+    Ok(GmshHeader { version, encoding })
 }
 
 #[cfg(test)]

@@ -1,16 +1,15 @@
 //! MSH 2.2: nodes, then elements that each carry their physical group.
 
 use super::bytes::{ByteReader, Encoding};
-use super::raw::{RawElement, RawMesh, RawNode, n_nodes};
+use super::raw::{RawElement, RawMesh, RawNode, element_nodes};
 use stridor_base::error::Result;
 
-/// Reads what follows the header's line.
+/// Reads the whole file.
 pub(super) fn parse(mut file: ByteReader<'_>) -> Result<RawMesh> {
-    file.skip_section("MeshFormat")?;
     let mut raw = RawMesh::default();
     let (mut nodes, mut elements) = (false, false);
     loop {
-        match file.word() {
+        match file.section() {
             "" => break,
             "$Nodes" => {
                 read_nodes(&mut file, &mut raw)?;
@@ -22,10 +21,7 @@ pub(super) fn parse(mut file: ByteReader<'_>) -> Result<RawMesh> {
                 file.expect("$EndElements")?;
                 elements = true;
             }
-            other => match other.strip_prefix('$') {
-                Some(name) if name.chars().all(char::is_alphanumeric) => file.skip_section(name)?,
-                _ => return Err(file.wrong("text between sections", "a section like `$Nodes`")),
-            },
+            other => file.skip_section(other.trim_start_matches('$'))?,
         }
     }
     match (nodes, elements) {
@@ -96,9 +92,6 @@ fn read_element(
     kind: i64,
     n_tags: i64,
 ) -> Result<()> {
-    let Some(n_nodes) = n_nodes(kind) else {
-        return Err(file.wrong(format!("element type {kind}"), "a type of the MSH 2.2 format"));
-    };
     if n_tags < 0 || n_tags > file.left() as i64 {
         return Err(file.wrong(format!("{n_tags} tags"), "a few"));
     }
@@ -110,7 +103,7 @@ fn read_element(
             group = number;
         }
     }
-    let nodes = (0..n_nodes).map(|_| self::tag(file, "node number")).collect::<Result<Vec<u64>>>()?;
+    let nodes = element_nodes(file, kind, |file| self::tag(file, "node number"))?;
     // A negative group denotes the reversed side of a surface.
     let groups = if group == 0 { vec![] } else { vec![group.saturating_abs()] };
     raw.elements.push(RawElement { tag, kind, nodes, groups, offset });

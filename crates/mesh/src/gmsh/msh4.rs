@@ -1,119 +1,199 @@
-//! MSH 4.1 through the crate mshio, and what has to be done around it.
+//! MSH 4.1: entities with their physical groups, then nodes and elements in blocks of one entity each.
 //!
-//! mshio keeps the tags of nodes only where the header's smallest and largest tag leave gaps, and otherwise takes
-//! them to be in ascending order, which the format does not promise. So the largest tag is raised for it. What it does not
-//! inspect, lines, counts and entities, `layout` has checked before.
+//! Every number that a count announces must be there, each node and element in a line of its own; faults name the line.
 
 use super::bytes::{ByteReader, Encoding};
-use super::layout;
-use super::names::find;
-use super::raw::{RawElement, RawMesh, RawNode};
-use mshio::MshFile;
+use super::raw::{RawElement, RawMesh, RawNode, element_nodes};
 use std::collections::HashMap;
-use std::panic::catch_unwind;
 use stridor_base::error::{Error, Fault, Result};
 
-/// Reads the whole file, whose numbers after the header begin at `body`.
-pub(super) fn parse(bytes: &[u8], body: usize, encoding: Encoding, place: &str) -> Result<RawMesh> {
-    let offsets = layout::check(ByteReader::new(bytes, body, encoding, place))?;
-    let wrong = |found: String, expected: &str| Error::input(Fault::new(place, found, expected));
-    let bytes = with_gaps(bytes, encoding);
-    let parsed = catch_unwind(|| mshio::parse_msh_bytes(&bytes).map_err(|error| explain(&error)));
-    let file: MshFile<u64, i32, f64> = match parsed {
-        Ok(Ok(file)) => file,
-        Ok(Err(text)) => return Err(wrong(text, "a whole file in the format MSH 4.1")),
-        Err(_) => return Err(wrong("numbers beyond the range of the reader".into(), "the format MSH 4.1")),
-    };
-    let Some(nodes) = file.data.nodes else { return Err(wrong("no section $Nodes".into(), "nodes")) };
-    let Some(elements) = file.data.elements else {
-        return Err(wrong("no section $Elements".into(), "elements"));
-    };
+/// Physical groups of the entities, by dimension and tag.
+type Entities = HashMap<(i64, i64), Vec<i64>>;
 
+/// Elements of one entity: its dimension and tag, where they are in the file, and which of all elements they are.
+struct EntityBlock {
+    entity: (i64, i64),
+    position: String,
+    elements: std::ops::Range<usize>,
+}
+
+/// Reads the whole file.
+///
+/// # Errors
+/// Input: a number too few or too many, a count that the file does not hold, an entity that is missing or there twice.
+pub(super) fn parse(mut file: ByteReader<'_>) -> Result<RawMesh> {
+    let (mut entities, mut blocks) = (None, None);
+    let mut nodes = false;
     let mut raw = RawMesh::default();
-    let [mut node_offsets, mut element_offsets] = [offsets.nodes, offsets.elements].map(Vec::into_iter);
-    for block in nodes.node_blocks {
-        let mut tags = vec![0; block.nodes.len()];
-        for (tag, index) in block.node_tags.into_iter().flatten() {
-            tags[index] = tag;
+    loop {
+        let section = file.section();
+        let again = match section {
+            "$Entities" => entities.is_some(),
+            "$Nodes" => nodes,
+            "$Elements" => blocks.is_some(),
+            _ => false,
+        };
+        if again {
+            return Err(file.wrong(format!("`{section}` again"), "each section once"));
         }
-        if let Some(k) = tags.iter().position(|t| *t == 0) {
-            return Err(wrong(
-                format!("the number of node {} in a block twice", k + 1),
-                "each node number once",
-            ));
+        match section {
+            "" => break,
+            "$Entities" => entities = Some(read_entities(&mut file)?),
+            "$Nodes" => {
+                read_nodes(&mut file, &mut raw)?;
+                nodes = true;
+            }
+            "$Elements" => blocks = Some(read_elements(&mut file, &mut raw)?),
+            "$PartitionedEntities" => {
+                return Err(file.wrong("a mesh in partitions", "a whole mesh: `gmsh -part 0`"));
+            }
+            other => file.skip_section(other.trim_start_matches('$'))?,
         }
-        raw.nodes.extend(tags.into_iter().zip(block.nodes).map(|(tag, n)| RawNode {
-            tag,
-            place: [n.x, n.y, n.z],
-            offset: node_offsets.next().unwrap_or_default(),
-        }));
     }
-    if raw.nodes.len() as u64 != nodes.num_nodes {
-        return Err(wrong(
-            format!("{} nodes", raw.nodes.len()),
-            &format!("{}, as stated in $Nodes", nodes.num_nodes),
-        ));
+    if !nodes {
+        return Err(file.wrong("the end of the file", "`$Nodes`: the file holds none or is cut off"));
     }
-
-    // A negative group denotes the reversed side of a surface.
-    let mut groups: HashMap<(i32, i32), Vec<i64>> = HashMap::new();
-    let mut note = |dimension: i32, tag: i32, physical: Vec<i32>| {
-        groups.insert((dimension, tag), physical.into_iter().map(|p| i64::from(p).abs()).collect());
+    let Some(blocks) = blocks else {
+        return Err(file.wrong("the end of the file", "`$Elements`: the file holds none or is cut off"));
     };
-    if let Some(entities) = file.data.entities {
-        entities.points.into_iter().for_each(|e| note(0, e.tag, e.physical_tags));
-        entities.curves.into_iter().for_each(|e| note(1, e.tag, e.physical_tags));
-        entities.surfaces.into_iter().for_each(|e| note(2, e.tag, e.physical_tags));
-        entities.volumes.into_iter().for_each(|e| note(3, e.tag, e.physical_tags));
-    }
-    for block in elements.element_blocks {
-        let kind = block.element_type as i64;
-        let groups = groups.get(&(block.entity_dim, block.entity_tag)).cloned().unwrap_or_default();
-        raw.elements.extend(block.elements.into_iter().map(|e| RawElement {
-            tag: e.element_tag,
-            kind,
-            nodes: e.nodes,
-            groups: groups.clone(),
-            offset: element_offsets.next().unwrap_or_default(),
-        }));
-    }
-    if raw.elements.len() as u64 != elements.num_elements {
-        let (found, said) = (raw.elements.len(), elements.num_elements);
-        return Err(wrong(format!("{found} elements"), &format!("{said}, as stated in $Elements")));
+    let Some(entities) = entities else { return Ok(raw) };
+    for EntityBlock { entity: (dimension, tag), position, elements } in blocks {
+        let Some(groups) = entities.get(&(dimension, tag)) else {
+            let found = format!("elements of entity {tag} of dimension {dimension}, which $Entities lacks");
+            return Err(Error::input(Fault::new(position, found, "entities of the file")));
+        };
+        raw.elements[elements].iter_mut().for_each(|element| element.groups.clone_from(groups));
     }
     Ok(raw)
 }
 
-/// The file with the largest node tag of `$Nodes` raised, so that mshio keeps all tags.
-fn with_gaps(bytes: &[u8], encoding: Encoding) -> Vec<u8> {
-    let mut file = bytes.to_vec();
-    let Some(start) = find(bytes, b"\n$Nodes") else { return file };
-    let Some(line) = bytes[start + 1..].iter().position(|b| *b == b'\n') else { return file };
-    let head = start + 1 + line + 1;
-    if encoding != Encoding::Ascii {
-        // Four eight-byte numbers: blocks, nodes, smallest tag, largest tag.
-        if let Some(largest) = file.get_mut(head + 24..head + 32) {
-            largest.fill(0xff);
-        }
-        return file;
+/// A count, bounded by what the rest of the file can hold.
+fn count(file: &mut ByteReader<'_>, what: &str) -> Result<usize> {
+    let count = file.size(what)?;
+    if count > file.left() as u64 {
+        return Err(file.wrong(format!("{what} {count}"), "a count that the rest of the file can hold"));
     }
-    let mut at = head;
-    for word in 0..4 {
-        let rest = &bytes[at..];
-        at += rest.iter().take_while(|b| b.is_ascii_whitespace()).count();
-        let length = bytes[at..].iter().take_while(|b| b.is_ascii_digit()).count();
-        if word == 3 && length > 0 {
-            file.splice(at..at + length, u64::MAX.to_string().into_bytes());
-        }
-        at += length;
-    }
-    file
+    Ok(count as usize)
 }
 
-/// Explanation of an error of mshio.
-fn explain(error: &mshio::MshParserError<&[u8]>) -> String {
-    let mut parts: Vec<String> =
-        error.filter_msh_errors().filter_map(|(_, kind)| kind.context().map(String::from)).collect();
-    parts.dedup();
-    format!("what mshio cannot read ({})", parts.join(", in "))
+/// Goes to the first number of a section.
+fn enter(file: &mut ByteReader<'_>) {
+    if file.encoding != Encoding::Ascii {
+        file.end_line();
+    }
+}
+
+/// Points with three coordinates; curves, surfaces and volumes with a box and what bounds them.
+fn read_entities(file: &mut ByteReader<'_>) -> Result<Entities> {
+    enter(file);
+    let mut entities = Entities::new();
+    let mut counts = [0; 4];
+    for (count, what) in counts.iter_mut().zip(["points", "curves", "surfaces", "volumes"]) {
+        *count = self::count(file, &format!("number of {what}"))?;
+    }
+    for (dimension, count) in counts.into_iter().enumerate() {
+        for _ in 0..count {
+            let tag = file.int("entity's tag")?;
+            for _ in 0..if dimension == 0 { 3 } else { 6 } {
+                file.float("entity's coordinate")?;
+            }
+            let mut groups = Vec::new();
+            for _ in 0..self::count(file, "number of physical groups")? {
+                // A negative group denotes the reversed side of a surface.
+                groups.push(file.int("physical group")?.saturating_abs());
+            }
+            if dimension > 0 {
+                for _ in 0..self::count(file, "number of bounding entities")? {
+                    file.int("bounding entity")?;
+                }
+            }
+            if entities.insert((dimension as i64, tag), groups).is_some() {
+                let found = format!("entity {tag} of dimension {dimension} again");
+                return Err(file.wrong(found, "each entity once"));
+            }
+        }
+    }
+    file.expect("$EndEntities")?;
+    Ok(entities)
+}
+
+/// The head of a section of blocks: how many blocks and how many things in all; the smallest and largest tag are of no use.
+fn head(file: &mut ByteReader<'_>, what: &str) -> Result<[usize; 2]> {
+    enter(file);
+    let counts = [count(file, "number of blocks")?, count(file, &format!("number of {what}"))?];
+    file.size("smallest tag")?;
+    file.size("largest tag")?;
+    Ok(counts)
+}
+
+/// Fails where the blocks of a section hold another number of things than its head says.
+fn check_total(file: &ByteReader<'_>, what: &str, found: usize, said: usize) -> Result<()> {
+    if found == said {
+        return Ok(());
+    }
+    Err(file.wrong(format!("{found} {what}"), format!("{said}, as stated in the head of the section")))
+}
+
+/// Blocks of nodes: all numbers, then all coordinates, which a parametric block follows by those on its curve or surface.
+fn read_nodes(file: &mut ByteReader<'_>, raw: &mut RawMesh) -> Result<()> {
+    let [blocks, total] = head(file, "nodes")?;
+    for _ in 0..blocks {
+        let dimension = file.int("entity's dimension")?;
+        file.int("entity's tag")?;
+        let parametric = match (file.int("mark of parametric coordinates")?, dimension) {
+            (0, 0..=3) => 0,
+            (1, 0..=3) => dimension,
+            (mark, _) => {
+                let found = format!("dimension {dimension} with mark {mark} of parametric coordinates");
+                return Err(file.wrong(found, "a dimension of 0 to 3, a mark of 0 or 1"));
+            }
+        };
+        let count = count(file, "number of nodes in the block")?;
+        let first = raw.nodes.len();
+        for _ in 0..count {
+            let tag = tag(file, "node number")?;
+            raw.nodes.push(RawNode { tag, place: [0.0; 3], offset: file.offset() });
+            file.line_is_over("a node's number")?;
+        }
+        for node in &mut raw.nodes[first..] {
+            node.place = [file.float("node's x")?, file.float("node's y")?, file.float("node's z")?];
+            for _ in 0..parametric {
+                file.float("node's parametric coordinate")?;
+            }
+            file.line_is_over("a node")?;
+        }
+    }
+    check_total(file, "nodes", raw.nodes.len(), total)?;
+    file.expect("$EndNodes")
+}
+
+/// Blocks of elements of one entity and one type.
+fn read_elements(file: &mut ByteReader<'_>, raw: &mut RawMesh) -> Result<Vec<EntityBlock>> {
+    let [n_blocks, total] = head(file, "elements")?;
+    let mut blocks = Vec::new();
+    for _ in 0..n_blocks {
+        let entity = (file.int("entity's dimension")?, file.int("entity's tag")?);
+        let kind = file.int("element type")?;
+        let position = file.place();
+        let count = count(file, "number of elements in the block")?;
+        let first = raw.elements.len();
+        for _ in 0..count {
+            let tag = tag(file, "element number")?;
+            let offset = file.offset();
+            let nodes = element_nodes(file, kind, |file| self::tag(file, "node number"))?;
+            file.line_is_over("an element")?;
+            raw.elements.push(RawElement { tag, kind, nodes, groups: Vec::new(), offset });
+        }
+        blocks.push(EntityBlock { entity, position, elements: first..raw.elements.len() });
+    }
+    check_total(file, "elements", raw.elements.len(), total)?;
+    file.expect("$EndElements")?;
+    Ok(blocks)
+}
+
+fn tag(file: &mut ByteReader<'_>, what: &str) -> Result<u64> {
+    match file.size(what)? {
+        0 => Err(file.wrong(format!("{what} 0"), "a positive number")),
+        tag => Ok(tag),
+    }
 }

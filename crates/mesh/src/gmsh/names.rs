@@ -10,7 +10,7 @@ pub(super) type Names = Vec<((usize, i64), String)>;
 ///
 /// Each line is `dimension number "name"`; the line before them says how many.
 pub(super) fn parse(bytes: &[u8], place: &str) -> Result<Names> {
-    let Some(start) = find(bytes, b"\n$PhysicalNames") else { return Ok(Names::new()) };
+    let Some(start) = line_with(bytes, "$PhysicalNames") else { return Ok(Names::new()) };
     let section = &bytes[start..];
     let wrong = |found: String, expected: &str| {
         Error::input(Fault::new(format!("{place}: $PhysicalNames"), found, expected))
@@ -18,8 +18,8 @@ pub(super) fn parse(bytes: &[u8], place: &str) -> Result<Names> {
     let Some(end) = find(section, b"\n$EndPhysicalNames") else {
         return Err(wrong("no end of the section".into(), "`$EndPhysicalNames`"));
     };
-    let text = std::str::from_utf8(&section[1..end])
-        .map_err(|error| Error::input(not_text(bytes, start + 1 + error.valid_up_to(), place)))?;
+    let text = std::str::from_utf8(&section[..end])
+        .map_err(|error| Error::input(not_text(bytes, start + error.valid_up_to(), place)))?;
     let mut lines = text.lines().skip(1).map(str::trim).filter(|l| !l.is_empty());
     let count: usize = match lines.next().map(str::parse) {
         Some(Ok(count)) => count,
@@ -45,7 +45,15 @@ pub(super) fn parse(bytes: &[u8], place: &str) -> Result<Names> {
     Ok(names)
 }
 
+/// The first byte of the first line that begins with `word`.
+pub(super) fn line_with(bytes: &[u8], word: &str) -> Option<usize> {
+    if bytes.starts_with(word.as_bytes()) {
+        return Some(0);
+    }
+    find(bytes, format!("\n{word}").as_bytes()).map(|end| end + 1)
+}
+
 /// Where `word` begins.
-pub(super) fn find(bytes: &[u8], word: &[u8]) -> Option<usize> {
+fn find(bytes: &[u8], word: &[u8]) -> Option<usize> {
     bytes.windows(word.len()).position(|w| w == word)
 }

@@ -1,6 +1,6 @@
 //! Nodes and elements as listed in a file, before groups have names and nodes have places.
 
-use super::bytes::Encoding;
+use super::bytes::{ByteReader, Encoding};
 use super::names::Names;
 use crate::{Element, Mesh, Region, with_line};
 use std::collections::{BTreeMap, HashMap};
@@ -53,13 +53,36 @@ impl LineNumbers {
     }
 }
 
-/// The number of nodes of Gmsh's element types 1 to 31.
-pub(super) fn n_nodes(kind: i64) -> Option<usize> {
+/// The numbers of the nodes of an element of Gmsh's type `kind`, each read by `tag`: as many as types 1 to 31 have; those up to
+/// the end of the line for one of the many other types, all of higher order or solids.
+pub(super) fn element_nodes(
+    file: &mut ByteReader<'_>,
+    kind: i64,
+    tag: impl Fn(&mut ByteReader<'_>) -> Result<u64>,
+) -> Result<Vec<u64>> {
     const NODES: [usize; 31] = [
         2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5, 6, 20,
         35, 56,
     ];
-    NODES.get(usize::try_from(kind).ok()?.checked_sub(1)?).copied()
+    let index = usize::try_from(kind).unwrap_or(0).wrapping_sub(1);
+    let mut nodes = Vec::new();
+    match NODES.get(index) {
+        Some(count) => {
+            for _ in 0..*count {
+                nodes.push(tag(file)?);
+            }
+        }
+        None if file.encoding == Encoding::Ascii && kind > 0 => {
+            while !file.at_line_end() {
+                nodes.push(tag(file)?);
+            }
+        }
+        None => {
+            let found = format!("element type {kind}");
+            return Err(file.wrong(found, "first-order points, lines, triangles and quadrilaterals"));
+        }
+    }
+    Ok(nodes)
 }
 
 /// Dimension of a first-order element that is supported.
@@ -128,7 +151,10 @@ impl RawMesh {
         for e in self.elements.iter().filter(|e| dimension(e.kind).is_none()) {
             *counts.entry(e.kind).or_default() += 1;
         }
-        let solids = |kind: &i64| matches!(kind, 4..=7 | 11..=14 | 17..=19 | 29..=31 | 71..);
+        let solids = |kind: &i64| {
+            matches!(kind, 4..=7 | 11..=14 | 17..=19 | 29..=33 | 35 | 71..=83 | 87.. )
+                && !matches!(kind, 138 | 140)
+        };
         let listed = |solid: bool| {
             let some: Vec<String> = counts
                 .iter()
@@ -152,8 +178,9 @@ impl RawMesh {
                 format!("solid elements ({solid})"),
                 "points, lines, triangles and quadrilaterals",
             );
-            faults
-                .push(fault.with_help("Plates are meshed as mid-surfaces: `gmsh -2 model.geo -o model.msh`"));
+            let help = "Plates are meshed as mid-surfaces: make the mid-surface a surface of the geometry and mesh that \
+                        (of a solid `gmsh -2` meshes the skin, which is something else)";
+            faults.push(fault.with_help(help));
         }
     }
 

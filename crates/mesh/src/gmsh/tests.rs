@@ -112,7 +112,6 @@ fn entities_must_be_there_once_and_finite() {
             "$Elements\n1 1 1 1\n1 7 1 1",
             "entity 7 of dimension 1, which $Entities lacks",
         ),
-        ("0 1 0 0\n1 0 0 0", "0 1 0 0\n1 0 0 inf", "line 10: found inf"),
         ("0 1 0 0\n", "0 2 0 0\n1 0 0 0 1 1 1 0 0\n", "line 11: found entity 1 of dimension 1 again"),
         ("1 1 0 2\n2\n1", "1 1 2 2\n2\n1", "mark 2"),
         ("$Nodes\n1 2", "$Nodes\n1 3", "found 2 nodes; expected 3"),
@@ -125,9 +124,71 @@ fn entities_must_be_there_once_and_finite() {
         let text = fault(BAR_4.replacen(old, new, 1));
         assert!(text.contains(expected), "{text}");
     }
-    // mshio reads no parametric coordinates.
-    let text = fault(BAR_4.replace("1 1 0 2\n2\n1\n100 0 0\n0 0 0", "1 1 1 2\n2\n1\n100 0 0 0.5\n0 0 0 0.1"));
-    assert!(text.contains("parametric nodes"), "{text}");
+}
+
+/// What Gmsh itself reads: any order of sections, comments, parametric coordinates, numbers as C reads them, any encoding.
+#[test]
+fn the_same_mesh_is_read_however_it_is_written() {
+    let expected = parse(BAR_4.as_bytes(), "a.msh", 1.0).unwrap();
+    let parametric = BAR_4.replace("1 1 0 2\n2\n1\n100 0 0\n0 0 0", "1 1 1 2\n2\n1\n100 0 0 0.5\n0 0 0 0.1");
+    let numbers = BAR_4.replace("0 1 0 0\n1 0 0 0 100 0 0", "-0 +1 -0 0\n1 -0. 0 -inf 1.D+02 0 .0");
+    for text in [BAR_4, &parametric, &numbers] {
+        let (head, rest) = text.split_at(text.find("$PhysicalNames").unwrap());
+        let (names, body) = rest.split_at(rest.find("$Entities").unwrap());
+        let (entities, body) = body.split_at(body.find("$Nodes").unwrap());
+        let (nodes, elements) = body.split_at(body.find("$Elements").unwrap());
+        let comment = "$Comments\n1 2 3\n$EndComments\n";
+        for parts in [
+            [head, names, entities, nodes, elements],
+            [names, entities, head, nodes, elements],
+            [comment, head, elements, nodes, entities],
+            [
+                "\n// made by hand, see $Nodes\n",
+                head,
+                names,
+                &[entities, "\n\n17 4\n", nodes].concat(),
+                elements,
+            ],
+        ] {
+            let named = parts.contains(&names);
+            let text = parts.concat() + if named { "" } else { names };
+            for text in [text.clone(), text.replace('\n', "\r"), format!("\u{feff}{text}")] {
+                let wide: Vec<u8> = text.encode_utf16().flat_map(u16::to_be_bytes).collect();
+                for bytes in [text.as_bytes(), &wide] {
+                    let mesh = parse(bytes, "a.msh", 1.0).unwrap_or_else(|error| panic!("{text}\n{error}"));
+                    assert_eq!((&mesh.nodes, &mesh.elements), (&expected.nodes, &expected.elements));
+                    assert_eq!(mesh.regions, expected.regions);
+                }
+            }
+        }
+    }
+}
+
+/// All types of Gmsh beyond those of the first order are told as what they are, of however many nodes.
+#[test]
+fn types_of_higher_order_and_solids_are_told() {
+    for (kind, nodes, expected) in [
+        (36, 16, "higher order (1 of type 36)"),
+        (62, 8, "-order 1"),
+        (47, 49, "-order 1"),
+        (94, 216, "solid elements"),
+    ] {
+        let list = vec!["1"; nodes].join(" ");
+        let two = fault(BAR.replace("1 1 2 1 1 1 2", &format!("1 {kind} 2 1 1 {list}")));
+        let four = fault(BAR_4.replace("1 1 1 1\n1 1 2\n", &format!("1 1 {kind} 1\n1 {list}\n")));
+        for text in [two, four] {
+            assert!(text.contains(expected), "{text}");
+        }
+    }
+}
+
+#[test]
+fn neighbours_may_be_turned_opposite_ways() {
+    let plate = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 1 \"plate\"\n$EndPhysicalNames\n\
+                 $Nodes\n6\n1 0 0 0\n2 1 0 0\n3 2 0 0\n4 0 1 0\n5 1 1 0\n6 2 1 0\n$EndNodes\n\
+                 $Elements\n2\n1 3 2 1 1 1 2 5 4\n2 3 2 1 1 2 5 6 3\n$EndElements\n";
+    let mesh = parse(plate.as_bytes(), "a.msh", 1.0).unwrap();
+    assert_eq!(mesh.elements[1], crate::Element::Quadrilateral([1, 2, 5, 4]));
 }
 
 #[test]
@@ -217,7 +278,8 @@ fn each_wrong_file_is_told_what_is_wrong_with_it() {
         ),
         (BAR.replace("1 1 2 1 1 1 2", "1 4 2 1 1 1 2 1 2"), "solid elements (1 of type 4)"),
         (BAR.replace("1 1 2 1 1 1 2", "1 8 2 1 1 1 2 1"), "-order 1"),
-        (BAR.replace("1 1 2 1 1 1 2", "1 99 2 1 1 1 2"), "element type 99"),
+        (BAR.replace("1 1 2 1 1 1 2", "1 99 2 1 1 1 2"), "solid elements (1 of type 99)"),
+        (BAR.replace("1 1 2 1 1 1 2", "1 -1 2 1 1 1 2"), "element type -1"),
         (BAR.replace("1 1 2 1 1 1 2", "1 1 2 0 1 1 2"), "no element in any physical group"),
         (BAR.replace("2 100 0 0", "2 0 0 0"), "element 1 (line 15): found 1 elements without length"),
     ] {
