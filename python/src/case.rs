@@ -23,6 +23,13 @@ impl From<stridor::case::Case> for Case {
     }
 }
 
+/// A number in SI units, or a text with a unit.
+#[derive(FromPyObject)]
+enum Amount {
+    Number(f64),
+    Text(String),
+}
+
 /// A number of a case: path, value, SI unit, lower and upper bound with whether each is allowed itself.
 type Scalar = (String, f64, &'static str, (f64, bool), (f64, bool));
 
@@ -91,9 +98,16 @@ impl Case {
     }
 
     /// The same case with other numbers at some paths.
-    fn with_scalars(&self, py: Python<'_>, values: BTreeMap<String, f64>) -> PyResult<Self> {
-        let values = values.iter().map(|(path, value)| (path, *value));
-        raised(py, self.inner.with_parameters(values).map(Case::from))
+    fn with_scalars(&self, py: Python<'_>, values: BTreeMap<String, Amount>) -> PyResult<Self> {
+        let value = |(path, amount): (&String, &Amount)| match amount {
+            Amount::Number(value) => Ok((path.clone(), *value)),
+            Amount::Text(text) => Ok((path.clone(), self.inner.parameter_value(path, text)?)),
+        };
+        let case =
+            values.iter().map(value).collect::<Result<Vec<_>>>().and_then(|values| {
+                self.inner.with_parameters(values.iter().map(|(path, value)| (path, *value)))
+            });
+        raised(py, case.map(Case::from))
     }
 
     /// What the user should know of the case and its mesh.

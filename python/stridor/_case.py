@@ -34,6 +34,15 @@ class Scalar(NamedTuple):
     """Whether it may have the upper bound itself."""
 
 
+class Keys(dict[str, Any]):
+    """The keys of a case as nested dicts."""
+
+    def __init__(self, keys: Mapping[str, Any], folder: Path) -> None:
+        super().__init__(keys)
+        self.folder = folder
+        """The folder that relative paths start from."""
+
+
 class Case:
     """A validated case. It does not change: :meth:`replace` gives another one.
 
@@ -65,11 +74,14 @@ class Case:
         return cls(_native.Case.parse(text, Path(folder)))
 
     @classmethod
-    def from_dict(cls, keys: Mapping[str, Any], folder: str | os.PathLike[str] = ".") -> Case:
-        """The case of a mapping with the keys of a case file; relative paths start from ``folder``.
+    def from_dict(cls, keys: Mapping[str, Any], folder: str | os.PathLike[str] | None = None) -> Case:
+        """The case of a mapping with the keys of a case file.
 
-        Quantities are numbers in SI units or texts with a unit (``"1 mm"``); NumPy arrays count as lists.
+        Quantities are numbers in SI units or texts with a unit (``"1 mm"``); NumPy arrays count as lists. Relative paths start
+        from ``folder``: by default that of the case whose :meth:`to_dict` made the mapping, the current one for any other.
         """
+        if folder is None:
+            folder = keys.folder if isinstance(keys, Keys) else Path()
         return cls(_native.Case.parse_json(json.dumps(keys, default=_plain), Path(folder)))
 
     @property
@@ -96,20 +108,21 @@ class Case:
     def __iter__(self) -> Iterator[str]:
         return iter(self.scalars)
 
-    def replace(self, values: Mapping[str, float]) -> Case:
-        """The same case with other numbers, in SI units, at some paths; validated like a file.
+    def replace(self, values: Mapping[str, float | str]) -> Case:
+        """The same case with other numbers at some paths, in SI units or as texts with a unit; validated like a file.
 
-        >>> harder = case.replace({"contact.rim.friction.mu0": 0.4})
+        >>> harder = case.replace({"contact.rim.friction.mu0": 0.4, "shell.disc.thickness": "1.2 mm"})
         """
-        return Case(self._native.with_scalars({path: float(value) for path, value in values.items()}))
+        given = {path: value if isinstance(value, str) else float(value) for path, value in values.items()}
+        return Case(self._native.with_scalars(given))
 
     def to_toml(self) -> str:
         """The case as TOML in SI units with every default written out."""
         return self._native.to_toml()
 
-    def to_dict(self) -> dict[str, Any]:
-        """The same as nested dicts."""
-        return tomllib.loads(self.to_toml())
+    def to_dict(self) -> Keys:
+        """The same as nested dicts, which :meth:`from_dict` takes after a change, with the folder of this case."""
+        return Keys(tomllib.loads(self.to_toml()), self.folder)
 
     def check(self) -> list[str]:
         """Reads the mesh and finds every fault that a run would find before it computes.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import webbrowser
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ import numpy.typing as npt
 import pandas as pd
 import xarray as xr
 
-from . import _native
+from . import _native, _plots
 from ._tree import tree_of
 
 if TYPE_CHECKING:
@@ -142,25 +143,47 @@ class Results:
 
     def plot_growth(self, ax: Axes | None = None) -> Axes:
         """Growth rate over frequency of the complex modes, with the frequencies of those that grow."""
-        import matplotlib.pyplot as plt
-
-        modes = self.complex_modes
-        frequency, growth = modes["frequency_hz"].values, modes["growth_rate"].values
-        grows = modes["unstable"].values.astype(bool)
-        if ax is None:
-            ax = plt.subplots(layout="constrained")[1]
-        ax.axhline(0.0, color="0.5", linewidth=0.8)
-        ax.scatter(frequency[~grows], growth[~grows], s=18, color="C0", label="decays")
-        ax.scatter(frequency[grows], growth[grows], s=40, color="C3", marker="D", label="grows: squeal")
-        for k, (x, y) in enumerate(zip(frequency[grows], growth[grows], strict=True)):
-            # Above and below in turn, so that labels of neighbours do not meet.
-            ax.annotate(f"{x:.0f} Hz", (x, y), xytext=(6, (4, -12)[k % 2]), textcoords="offset points")
-        ax.set_xlabel("frequency f (Hz)")
-        ax.set_ylabel("growth rate σ (1/s)")
-        ax.set_yscale("symlog", linthresh=1.0)
-        ax.set_title(self.title)
-        ax.legend()
+        ax = _plots.growth(self.complex_modes, ax)
+        ax.set_title(self.title, wrap=True, fontsize="medium")
         return ax
+
+    def plot_sweep(self, name: str | None = None, axes: Sequence[Axes] | None = None) -> list[Axes]:
+        """Frequency and growth rate of each branch over the scalar of a ``[sweep]``: dots where it grows, dashed at the
+        critical values.
+
+        ``name`` is that of the sweep, the first by default.
+        """
+        axes = _plots.sweep(self._study("sweeps", name, "sweep"), axes)
+        axes[0].set_title(self.title, wrap=True, fontsize="medium")
+        return axes
+
+    def plot_frf(self, name: str | None = None, axes: Sequence[Axes] | None = None) -> list[Axes]:
+        """Magnitude and phase over frequency of the responses of an ``[frf]``.
+
+        ``name`` is that of the response, the first by default.
+        """
+        axes = _plots.frf(self._study("frf", name, "frf"), axes)
+        axes[0].set_title(self.title, wrap=True, fontsize="medium")
+        return axes
+
+    def plot_history(self, *channels: str, axes: Sequence[Axes] | None = None) -> list[Axes]:
+        """Channels of a run in time, one panel a unit; velocities where none is named.
+
+        >>> results.plot_history("rim_velocity", "rim_normal_force")
+        """
+        axes = _plots.history(self.history, channels, axes)
+        axes[0].set_title(self.title, wrap=True, fontsize="medium")
+        return axes
+
+    def _study(self, group: str, name: str | None, table: str) -> xr.DataTree:
+        names = list(self.tree[group].children) if f"/{group}" in self.tree.groups else []
+        if not names:
+            raise KeyError(f"no {group!r} in these results: the run had no [{table}]")
+        if name is not None and name not in names:
+            raise KeyError(f"no {name!r} among the [{table}] of these results, which are {', '.join(names)}")
+        study = self.tree[f"{group}/{names[0] if name is None else name}"]
+        assert isinstance(study, xr.DataTree)
+        return study
 
     def show_report(self) -> None:
         """Opens ``report.html`` of the results folder in a browser."""

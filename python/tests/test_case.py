@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import subprocess
 import sys
 from pathlib import Path
@@ -33,6 +34,25 @@ def test_scalars_have_values_units_and_bounds(rig: stridor.Case) -> None:
     thicker = rig.replace({"shell.disc.thickness": 2e-3, "contact.rim.load": np.float64(20)})
     assert (thicker["shell.disc.thickness"], thicker["contact.rim.load"]) == (2e-3, 20.0)
     assert rig["shell.disc.thickness"] == 1e-3
+
+
+def test_scalars_take_texts_with_a_unit(rig: stridor.Case) -> None:
+    thicker = rig.replace({"shell.disc.thickness": "1.2 mm", "contact.rim.load": "0.02 kN"})
+    assert thicker["shell.disc.thickness"] == pytest.approx(1.2e-3, rel=1e-15)
+    assert thicker["contact.rim.load"] == pytest.approx(20.0, rel=1e-15)
+    for wrong in ["1.2 kg", "1.2", "thick"]:
+        with pytest.raises(stridor.InputError, match=r"shell\.disc\.thickness.*a value in m"):
+            rig.replace({"shell.disc.thickness": wrong})
+
+
+def test_changed_keys_keep_the_folder_of_the_case(rig: stridor.Case) -> None:
+    keys = copy.deepcopy(rig.to_dict())
+    keys["cea"]["band"] = [0, "2 kHz"]
+    changed = stridor.Case.from_dict(keys)
+    assert changed.folder == rig.folder
+    assert changed.to_dict()["cea"]["band"] == [0.0, 2000.0]
+    assert changed.check() is not None
+    assert stridor.Case.from_dict(dict(keys)).folder == Path()
 
 
 def test_all_faults_come_at_once_with_the_words_of_the_program(tmp_path: Path) -> None:

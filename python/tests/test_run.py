@@ -221,3 +221,36 @@ def test_warnings_of_the_case_are_issued(rig: stridor.Case) -> None:
     with pytest.warns(stridor.CaseWarning) as issued:
         stridor.run(rig, "cea", progress=False)
     assert {warning.filename for warning in issued} == {__file__}
+
+
+def test_sweeps_responses_and_histories_are_drawn() -> None:
+    pytest.importorskip("matplotlib").use("agg")
+    import matplotlib.pyplot as plt
+
+    study = stridor.run(SUITE / "sweep-and-map" / "case.toml", "sweep", progress=False)
+    frequency, growth = study.plot_sweep()
+    points = study["sweeps/friction/points"]
+    branches = [line for line in growth.get_lines() if str(line.get_label()).startswith("branch")]
+    drawn = np.sort(np.concatenate([np.asarray(line.get_ydata()) for line in branches]))
+    assert np.array_equal(drawn, np.sort(points["growth_rate"].values))
+    assert (frequency.get_ylabel(), growth.get_xlabel()) == ("frequency f (Hz)", "contact.belt.friction.mu0")
+    critical = study["sweeps/stiffness/critical/value"].values
+    dashed = [line for line in study.plot_sweep("stiffness")[0].get_lines() if line.get_linestyle() == "--"]
+    assert np.array_equal([np.asarray(line.get_xdata())[0] for line in dashed], critical)
+    with pytest.raises(KeyError, match="friction, stiffness"):
+        study.plot_sweep("nothing")
+    with pytest.raises(KeyError, match=r"\[frf\]"):
+        study.plot_frf()
+    responses = stridor.run(SUITE / "frf-closed-form" / "oscillator.toml", "frf", progress=False)
+    magnitude, phase = responses.plot_frf(axes=list(plt.subplots(2)[1]))
+    lines = next(iter(responses["frf"].children.values()))["lines"].to_dataset()
+    assert [line.get_label() for line in magnitude.get_lines()] == list(lines.data_vars)
+    assert phase.get_xlabel() == "frequency f (Hz)"
+    case = stridor.Case.read(SUITE / "stick-slip-belt" / "case.toml")
+    short = case.replace({"transient.duration": 200 * case["transient.time_step"]}).run("transient", progress=False)
+    velocity = short.plot_history()[0]
+    assert velocity.get_ylabel() == "(m/s)"
+    assert len(short.plot_history("belt_normal_force", "penetration")) == 2
+    with pytest.raises(KeyError, match="penetration"):
+        short.plot_history("nothing")
+    plt.close("all")

@@ -2,6 +2,7 @@
 
 use super::{Case, Invalidates, Parameter};
 use crate::error::{Error, Fault, Faults, Result, nearest};
+use crate::schema::units::{dimension_of, parse_quantity};
 use crate::schema::{Report, check, scalar, scalars, set_scalar};
 
 impl Case {
@@ -34,6 +35,17 @@ impl Case {
         let place = format!("parameter `{path}`");
         let fault = Fault::new(place, "no such number in the case", "the path of a scalar");
         Err(Error::input(fault.with_help(help)))
+    }
+
+    /// The value \[SI\] that a text with a unit, such as `1.2 mm`, gives the scalar at `path`.
+    ///
+    /// # Errors
+    /// A path that is not a number of the case, or a text that is no quantity of its dimension.
+    pub fn parameter_value(&self, path: &str, text: &str) -> Result<f64> {
+        let unit = self.parameter(path)?.unit;
+        let expected = if unit.is_empty() { "a number".into() } else { format!("a value in {unit}") };
+        parse_quantity(text, dimension_of(unit))
+            .map_err(|found| Error::input(Fault::new(format!("parameter `{path}`"), found, expected)))
     }
 
     /// The same case with the scalar at `path` set to `value` \[SI\]; validated like a file.

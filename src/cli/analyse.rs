@@ -70,9 +70,10 @@ fn commands() -> impl Iterator<Item = (&'static str, &'static str, Selection)> {
 impl Subcommand for Analyse {
     fn augment_subcommands(command: clap::Command) -> clap::Command {
         commands().fold(command, |command, (name, about, _)| {
-            let own = AnalyseOptions::augment_args(clap::Command::new(name)).about(about);
+            let own = AnalyseOptions::augment_args(clap::Command::new(name));
             let own = if SHARED.contains(&name) { PartOptions::augment_args(own) } else { own };
-            command.subcommand(own.after_help(examples::of_analysis(name)))
+            // After the options: clap takes the comment of their type for the help of the command.
+            command.subcommand(own.about(about).after_help(examples::of_analysis(name)))
         })
     }
 
@@ -184,4 +185,19 @@ fn case_name(case: &Path) -> OsString {
     let stem = path.file_stem().unwrap_or_default();
     let folder = path.parent().and_then(Path::file_name);
     folder.filter(|_| stem == "case").unwrap_or(stem).to_os_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_help_of_each_analysis_is_its_own() {
+        let command = Analyse::augment_subcommands(clap::Command::new("stridor"));
+        for (name, about, _) in commands() {
+            let shown =
+                command.find_subcommand(name).and_then(clap::Command::get_about).map(ToString::to_string);
+            assert_eq!(shown.as_deref(), Some(about), "{name}");
+        }
+    }
 }

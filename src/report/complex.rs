@@ -96,7 +96,7 @@ fn counted(certificate: &Certificate) -> String {
         false => format!("σ from {} to {} 1/s", significant(slow, 2), significant(fast, 2)),
     };
     let region = format!("between {} and {} Hz with {faster}", given(low), hertz(high, 0));
-    let with_conjugates = if low == 0.0 { ", conjugates included," } else { "" };
+    let with_conjugates = if low == 0.0 { " (conjugates included)" } else { "" };
     let count = format!("{} eigenvalues {region}{with_conjugates}", certificate.counted);
     let mut words = if certificate.agrees() && !certificate.proven {
         let step = significant(180.0 / certificate.margin, 2);

@@ -19,7 +19,7 @@ pub fn warnings(prepared: &Prepared) -> Vec<Fault> {
             let place = format!("`shell.{}.theory`", dotted(&e.part));
             let hz = significant(e.frequency_hz, 3);
             let too_high = format!(
-                "Kirchhoff's theory, by which modes near {hz} Hz come out about {:.1} % too high (kh = {:.2})",
+                "frequencies near {hz} Hz about {:.1} % too high by Kirchhoff's theory (kh = {:.2})",
                 100.0 * e.relative_error,
                 e.wavenumber_times_thickness
             );
