@@ -4,6 +4,7 @@ use super::engine::EngineName;
 #[cfg(feature = "slepc")]
 use super::engine::{shared_matrices, shared_points};
 use super::examples;
+use super::interrupt::says_how_to_continue;
 use super::output::{Common, SUCCESS, give, say, window_width};
 use super::progress::Bars;
 use crate::case::read_case;
@@ -12,7 +13,7 @@ use crate::job::{ANALYSES, PartDone, RunOptions, SHARED, Selection, merge_parts,
 use crate::linalg::Engine;
 use crate::report;
 use crate::results::RunResults;
-use crate::results::record::Part;
+use crate::results::record::{Part, RECORD};
 use clap::{ArgMatches, Args, FromArgMatches, Subcommand};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -136,6 +137,7 @@ fn run_with(analyse: &Analyse, engine: &Engine, common: &Common) -> Result<u8> {
     let Analyse { name, selection, options, parts } = analyse;
     let case = read_case(&options.case)?;
     let (out, bars) = (options.out(), Bars::new(common.quiet));
+    says_how_to_continue(&out.join(RECORD));
     let results = match parts.merge {
         true => merge_parts(&case, name, &out, &bars),
         false => {

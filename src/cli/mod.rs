@@ -11,6 +11,7 @@ mod engine;
 mod error_json;
 mod examples;
 mod export;
+mod interrupt;
 mod mesh;
 mod new;
 mod output;

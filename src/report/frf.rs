@@ -167,7 +167,7 @@ mod tests {
         assert!(table.rows[10].cells[5].starts_with("hidden") && table.rows[12].cells[2] == "560");
         assert!(
             crate::report::html::PageLayout::default()
-                .section(section, "x")
+                .section(section, "x", None)
                 .contains("Superposition differs")
         );
     }

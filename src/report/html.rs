@@ -1,7 +1,7 @@
 //! Parts of a page: HTML with its style, its pictures and its scripts inside.
 
 use super::finding::FindingClass;
-use super::section::{Display, Item, ReportSection};
+use super::section::{Display, Item, Picture, ReportSection};
 use super::table::{ReportColumn, ReportTable};
 use crate::error::text::printable_lines;
 use crate::results::FileNames;
@@ -93,8 +93,13 @@ impl PageLayout {
         format!("Table {}. {}{link}", self.tables, escape(&content.caption))
     }
 
-    /// A section with its heading, which gets the name `id`.
-    pub(super) fn section(&mut self, section: &ReportSection, id: &str) -> String {
+    /// A picture; `found` as for [`PageLayout::figure`].
+    pub(super) fn picture(&mut self, picture: &Picture, found: &str) -> String {
+        self.figure(&picture.svg, &picture.file, &picture.caption, found)
+    }
+
+    /// A section with its heading, which gets the name `id`, without the picture that is `shown` elsewhere.
+    pub(super) fn section(&mut self, section: &ReportSection, id: &str, shown: Option<&Picture>) -> String {
         let mut text = heading(id, &section.heading);
         for finding in &section.findings {
             text += &format!("<p class=\"finding\">{}</p>\n", prose(&finding.words));
@@ -102,7 +107,10 @@ impl PageLayout {
         let found = section.findings.first().map_or("", |finding| finding.words.as_str());
         for item in &section.items {
             text += &match item {
-                Item::Picture(picture) => self.figure(&picture.svg, &picture.file, &picture.caption, found),
+                Item::Picture(picture) if shown.is_some_and(|shown| std::ptr::eq(shown, picture)) => {
+                    String::new()
+                }
+                Item::Picture(picture) => self.picture(picture, found),
                 Item::Table(content, display) => match display {
                     Display::Closed | Display::Proof => self.closed_table(content),
                     Display::Folded if content.rows.len() > LONG => self.closed_table(content),
@@ -122,6 +130,11 @@ pub(super) fn described(svg: &str, words: &str) -> String {
         Some((head, rest)) => format!("{head}><desc>{}</desc>{rest}", escape(words)),
         None => svg.to_string(),
     }
+}
+
+/// A picture that narrow windows show whole, as its words matter less than its shape.
+pub(super) fn whole(svg: &str) -> String {
+    svg.replacen("<svg", "<svg class=\"whole\"", 1)
 }
 
 /// The description of a picture, escaped.

@@ -14,7 +14,10 @@ pub(super) fn page(results: &RunResults, sections: &[ReportSection], files: BTre
     let ids: Vec<String> = sections.iter().map(|section| layout.id(&section.heading)).collect();
     let mut body =
         format!("<h1>{}</h1>\n<p class=\"sub\">{}</p>\n", escape(title), escape(&subtitle(results)));
-    body += &headline(results, sections, &ids);
+    // The picture of what is most urgent stands beside the words, and not again in its section.
+    let lead = findings(sections).first().and_then(|(k, found)| Some((sections[*k].drawn().next()?, *found)));
+    let picture = lead.map_or(String::new(), |(picture, found)| layout.picture(picture, &found.words));
+    body += &headline(results, sections, &ids, picture);
     for warning in &results.warnings {
         body += &format!("<div class=\"warn\">{}</div>\n", prose(warning));
     }
@@ -31,7 +34,7 @@ pub(super) fn page(results: &RunResults, sections: &[ReportSection], files: BTre
         body += &format!("{}<ul>{items}</ul>\n", heading(id, words));
     }
     for (section, id) in sections.iter().zip(&ids) {
-        body += &layout.section(section, id);
+        body += &layout.section(section, id, lead.map(|(picture, _)| picture));
     }
     body += &heading(PROVENANCE.0, PROVENANCE.1);
     body += &provenance(results, &mut layout);
@@ -61,12 +64,14 @@ fn subtitle(results: &RunResults) -> String {
 }
 
 /// A failure, then the findings, each with a link to its section; those that are neither good nor bad in one box.
-fn headline(results: &RunResults, sections: &[ReportSection], ids: &[String]) -> String {
+/// The findings; `picture` is that of the first.
+fn headline(results: &RunResults, sections: &[ReportSection], ids: &[String], picture: String) -> String {
     let failed = results.failed.iter();
     let mut text: String = failed
         .map(|error| finding_box(FindingClass::Bad, &format!("This run failed. {error}"), ""))
         .collect();
     let mut neutral = String::new();
+    let mut picture = Some(picture);
     for (k, finding) in findings(sections) {
         let link = format!("<a href=\"#{}\">{}</a>", ids[k], escape(&sections[k].heading));
         if finding.class >= FindingClass::Neutral && finding.table.is_none() {
@@ -79,10 +84,12 @@ fn headline(results: &RunResults, sections: &[ReportSection], ids: &[String]) ->
             false => rows(table, "") + &notes(table),
         });
         text += &finding_box(finding.class, &finding.words, &format!("{more}<p class=\"note\">{link}</p>\n"));
+        text += &picture.take().unwrap_or_default();
     }
     if !neutral.is_empty() {
         text += &format!("<div class=\"verdict neutral\">{neutral}</div>\n");
     }
+    text += &picture.unwrap_or_default();
     if text.is_empty() { finding_box(FindingClass::Neutral, "This run has no results.", "") } else { text }
 }
 
@@ -107,10 +114,11 @@ mod tests {
         let order = [
             "Unstable: 3 of 16",
             "331.9",
+            "Growth rate over frequency: 3 of 16 modes are unstable",
             "Kirchhoff",
             "<nav",
             "Assumptions</h2>",
-            "<svg",
+            "The model: disc, slider, bar",
             "Real modes beside the measured frequencies</h2>",
             "Measured without a computed mode beside it: 2050 Hz",
             "Steady sliding</h2>",
@@ -122,6 +130,8 @@ mod tests {
             "Every value as the run used it",
         ];
         assert!(order.windows(2).all(|pair| at(pair[0]) < at(pair[1])));
+        // The picture of the verdict stands there, and there alone.
+        assert_eq!(page.matches("aria-label=\"Growth rate over frequency: 3 of 16").count(), 1);
         // Nothing comes from outside: sources are in the page or beside it.
         assert!(!page.contains("<link") && !page.contains("<script src") && !page.contains("@import"));
         let sources = page.split("src=\"").skip(1).chain(page.split("href=\"").skip(1));

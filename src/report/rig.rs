@@ -3,7 +3,7 @@
 use super::chart::ends;
 use super::colours::{ALARM, ALARM_TEXT, INK, MEASURED, MUTED, PARTS};
 use super::format::{given, rounded};
-use super::html::described;
+use super::html::{described, whole};
 use super::section::{Picture, ReportSection};
 use super::svg::{Sheet, SvgPoint, fill, ink, outlined, stroke};
 use super::view::{PlacedView, View, ViewVector, along, dot};
@@ -52,7 +52,7 @@ fn picture(results: &RunResults) -> Option<Picture> {
     });
     let labels = arrows.iter().take(NAMED).map(|arrow| format!("; {}", arrow.label)).collect::<String>();
     let seen = format!("The model: {}{contact}{labels}.", geometry.parts.join(", "));
-    Some(Picture { file: "rig".into(), caption, svg: described(&sheet.finish(), &seen) })
+    Some(Picture { file: "rig".into(), caption, svg: described(&whole(&sheet.finish()), &seen) })
 }
 
 /// Elements from the farthest to the nearest (the painter's algorithm); stretches of one part share a path.

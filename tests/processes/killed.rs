@@ -258,6 +258,30 @@ fn killed_runs_resume(moments: &[f64]) {
     assert!(on_the_way >= 6, "only {on_the_way} runs were killed on their way");
 }
 
+/// Ctrl-C ends the run as the system does, and says how to continue, once there is something to continue from.
+#[test]
+#[cfg(unix)]
+fn an_interrupted_run_says_how_to_continue() {
+    use std::os::unix::process::ExitStatusExt;
+    let folder = TempDir::new().expect("a temporary folder");
+    let at = folder.path();
+    std::fs::write(at.join("case.toml"), BLOCK.replace("200 s", "2000 s")).expect("a case");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stridor"));
+    command.args(["transient", "case.toml", "--out", "out"]).current_dir(at);
+    let child = command.stderr(Stdio::piped()).spawn().expect("the binary runs");
+    let deadline = Instant::now() + Duration::from_secs(60);
+    while !at.join("out/record.bin").exists() && Instant::now() < deadline {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    // SAFETY: a signal to a process that is not yet waited for.
+    unsafe { libc::kill(child.id() as i32, libc::SIGINT) };
+    let ended = child.wait_with_output().expect("it ends");
+    assert_eq!(ended.status.signal(), Some(libc::SIGINT));
+    let words = String::from_utf8(ended.stderr).expect("text");
+    assert!(words.contains("The same command with --resume continues."), "{words}");
+    run(at, "case.toml", "out", true);
+}
+
 #[test]
 fn results_of_another_case_or_another_start_are_not_resumed() {
     let folder = TempDir::new().expect("a temporary folder");

@@ -251,7 +251,7 @@ mod tests {
         // 20 log₁₀ of 2, of 2 and of 1; of 10/9 and of 10/8 at one of three lines; a deviation is 0.87 dB.
         let cells = &response_table(result).rows[0].cells;
         assert_eq!(cells[4..9], ["4.92", "0.53", "0.61", "1.12", "1.29"]);
-        let page = crate::report::html::PageLayout::default().section(section, "x");
+        let page = crate::report::html::PageLayout::default().section(section, "x", None);
         assert!(page.contains("not converged") && page.contains("scale"));
         let words = words(result).join(" ");
         for expected in [

@@ -89,7 +89,8 @@ impl Shades {
     }
 }
 
-/// Edges of the cells about the values as places on the axis, and the index of the value of each cell.
+/// Edges of the cells about the values as places on the axis, and the index of the value of each cell: halfway to the neighbours, and
+/// not beyond what was computed.
 fn cells(result: &MapResult, d: usize) -> Vec<(Range<f64>, usize)> {
     let axis = &result.axes[d];
     let step = axis.points.div_ceil(CELLS);
@@ -97,8 +98,8 @@ fn cells(result: &MapResult, d: usize) -> Vec<(Range<f64>, usize)> {
     let at: Vec<f64> = chosen.iter().map(|k| place(axis, axis.value(*k))).collect();
     let n = at.len();
     let edge = |k: usize| match k {
-        0 => at[0] - 0.5 * (at[1] - at[0]),
-        k if k == n => at[n - 1] + 0.5 * (at[n - 1] - at[n - 2]),
+        0 => at[0],
+        k if k == n => place(axis, axis.to),
         k => 0.5 * (at[k - 1] + at[k]),
     };
     (0..n).map(|k| (edge(k)..edge(k + 1), chosen[k])).collect()

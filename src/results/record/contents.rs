@@ -11,7 +11,7 @@ use std::io::{BufReader, ErrorKind, Read};
 use std::path::Path;
 
 /// The record of a run.
-pub(in crate::results) const RECORD: &str = "record.bin";
+pub(crate) const RECORD: &str = "record.bin";
 /// The state from which its run in time resumes.
 pub(in crate::results) const CHECKPOINT: &str = "checkpoint.bin";
 /// The format of a record and its version, its first bytes.

@@ -29,7 +29,8 @@ pub use part::Part;
 pub use parts::read_parts;
 pub use store::Record;
 
-pub(super) use contents::{CHECKPOINT, RECORD};
+pub(super) use contents::CHECKPOINT;
+pub(crate) use contents::RECORD;
 
 use self::contents::{Contents, FORMAT, block, read_from};
 use self::origin::START_OVER;
