@@ -91,7 +91,7 @@ fn unstable(result: &ComplexResult) -> ReportTable {
 /// Count of the unstable eigenvalues, in words.
 fn counted(certificate: &Certificate) -> String {
     let ([low, high], [slow, fast]) = (certificate.band_hz, certificate.growth);
-    let faster = match certificate.proven {
+    let faster = match certificate.nothing_faster {
         true => format!("σ > {} 1/s", significant(slow, 2)),
         false => format!("σ from {} to {} 1/s", significant(slow, 2), significant(fast, 2)),
     };
@@ -112,11 +112,15 @@ fn counted(certificate: &Certificate) -> String {
         )
     } else if certificate.agrees() {
         format!(
-            "{count} were counted, as many as were found; that the count holds at full order is not shown."
+            "{count} were counted, as many as were found; that the count holds at full order is not shown{}.",
+            if certificate.dissipative { "" } else { ", as the damping is not known to dissipate" }
         )
     } else {
         format!("A MODE WAS MISSED: {count} were counted, {} found.", certificate.found)
     };
+    if !certificate.nothing_faster {
+        words += " That no mode grows faster is not shown.";
+    }
     for call in &certificate.close_calls {
         let hz = hertz(call.frequency_hz, 1);
         words += &format!(" Close call: the mode at {hz} Hz, σ = {} 1/s.", significant(call.growth_rate, 2));
@@ -146,6 +150,11 @@ fn second_method(confirmation: &Confirmation) -> String {
     )
 }
 
+/// Whether the premises of a statement on stability hold, as far as they were examined.
+fn premises_hold(result: &ComplexResult) -> bool {
+    result.modes.broken_premise.is_none() && result.certificate.as_ref().is_none_or(|c| c.dissipative)
+}
+
 /// Whether any mode grows, and whether the count and the second method agree. A stable result is good only where as many
 /// modes were counted as were found.
 fn finding(result: &ComplexResult) -> Finding {
@@ -172,6 +181,9 @@ fn finding(result: &ComplexResult) -> Finding {
                 format!("Undecided: none of the {all} complex modes {between} grows for certain.{doubt}");
             (FindingClass::Attention, words)
         }
+        (all, 0) if !premises_hold(result) => {
+            (FindingClass::Neutral, format!("None of the {all} complex modes found {between} grows."))
+        }
         (all, 0) => {
             let class = if counted == Some(true) { FindingClass::Good } else { FindingClass::Neutral };
             (class, format!("Stable: none of the {all} complex modes {between} grows."))
@@ -190,6 +202,12 @@ fn finding(result: &ComplexResult) -> Finding {
             words += " A mode was missed.";
         }
         None => words += " That none was missed is not shown: they were not counted.",
+    }
+    if let Some(broken) = result.modes.broken_premise {
+        if class != FindingClass::Bad {
+            class = FindingClass::Attention;
+        }
+        words += &format!(" Nothing is said about stability, as {broken}.");
     }
     if result.confirmation.as_ref().is_some_and(|second| !second.holds()) {
         class = FindingClass::Bad;

@@ -240,7 +240,8 @@ fn solve_and_refine<'a>(
     }
     warnings.extend(accuracy_warnings(&modes));
     warnings.extend(incomplete(operator, real, asked.hz[1]));
-    let modes = ComplexModes { modes, subspace_dimension: basis.len(), refinements, warnings };
+    let modes =
+        ComplexModes { modes, subspace_dimension: basis.len(), refinements, warnings, broken_premise: None };
     Ok((modes, basis))
 }
 

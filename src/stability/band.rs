@@ -1,5 +1,6 @@
 //! Selection of complex modes.
 
+use super::SLOWEST_GROWTH;
 use crate::linalg::c64;
 
 /// Selection of complex modes, and options of their output.
@@ -20,9 +21,17 @@ impl From<[f64; 2]> for Band {
     }
 }
 
-/// Whether λ is one to give: one of each conjugate pair, its frequency in the band.
+/// Whether λ is one to give: one of each conjugate pair, its frequency in the band, or one that diverges, whatever the band.
 pub(super) fn in_band(z: c64, band: [f64; 2]) -> bool {
     let oscillates = z.im > 1e-9 * z.norm();
     let real = z.im.abs() <= 1e-9 * z.norm();
-    (oscillates && z.im >= band[0] && z.im <= band[1]) || (real && band[0] == 0.0 && z.norm() <= band[1])
+    (oscillates && z.im >= band[0] && z.im <= band[1])
+        || (real && band[0] == 0.0 && z.norm() <= band[1])
+        || diverges(z, band)
+}
+
+/// Whether λ grows by more than [`SLOWEST_GROWTH`] of the band's top, and tenfold faster than it turns: a real eigenvalue, to which
+/// loss factors give a small imaginary part.
+pub(super) fn diverges(z: c64, band: [f64; 2]) -> bool {
+    z.re > SLOWEST_GROWTH * band[1] && z.im >= -1e-9 * z.norm() && z.im <= 0.1 * z.re
 }

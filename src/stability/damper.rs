@@ -52,8 +52,10 @@ impl DamperPart {
     /// (`lowest` ≤ 0): known from few rows, without the whole matrix.
     pub(super) fn dissipates(&self, lowest: f64) -> bool {
         let Proportional { mass_factor, stiffness_factor, .. } = self.split;
-        let proportional = stiffness_factor == 0.0 || mass_factor + stiffness_factor * lowest >= 0.0;
-        proportional && self.few.as_ref().is_some_and(RowSparse::is_semidefinite)
+        let least = if stiffness_factor == 0.0 { 0.0 } else { stiffness_factor * lowest };
+        let proportional = stiffness_factor >= 0.0 && mass_factor + least >= 0.0;
+        let rest = self.split.rest.is_none() || self.few.as_ref().is_some_and(RowSparse::is_semidefinite);
+        proportional && rest
     }
 
     /// BᵀXY.

@@ -6,9 +6,10 @@
 //! left vectors come from Krylov spaces of their own, so that their eigenvalues confirm each other, and the two-sided
 //! Rayleigh quotient λ − ψᴴQ(λ)φ / ψᴴQ′(λ)φ has an error quadratic in those of the vectors.
 
-use super::band::{Band, in_band};
+use super::band::{Band, diverges, in_band};
 use super::block::Block;
 use super::budget::growth_budget;
+use super::certificate::Definiteness;
 use super::operator::{Operator, Side};
 use super::post_processing::shares;
 use super::refinement::TOGETHER;
@@ -31,6 +32,10 @@ use std::f64::consts::TAU;
 const TOLERANCE: f64 = 1e-12;
 /// Eigenvalues of a piece at most: more are cheaper at two shifts.
 const MOST: usize = 60;
+/// Eigenvalues sought at a shift on the real axis.
+const DIVERGING: usize = 8;
+/// How far along the real axis they are sought where no bound is known, by the top of the band.
+const FARTHEST: f64 = 100.0;
 /// Pieces of a band at most.
 const PIECES: usize = 4096;
 /// Two eigenvalues nearer than this part of |λ| share their vectors.
@@ -78,7 +83,10 @@ pub(super) fn general_modes(
     observer.begin("complex eigenvalues", None);
     let pieces = match asked.nearest {
         Some((hz, count)) => search.nearest(TAU * hz, count).map(|piece| vec![piece]),
-        None => search.all(real, observer),
+        None => search.all(real, observer).and_then(|mut pieces| {
+            pieces.extend(search.diverging(&pieces)?);
+            Ok(pieces)
+        }),
     };
     observer.end();
     let (mut modes, mut warnings) = (Vec::new(), Vec::new());
@@ -99,7 +107,13 @@ pub(super) fn general_modes(
         ));
     }
     warnings.extend(accuracy_warnings(&modes));
-    let modes = ComplexModes { modes, subspace_dimension: operator.n(), refinements: 0, warnings };
+    let modes = ComplexModes {
+        modes,
+        subspace_dimension: operator.n(),
+        refinements: 0,
+        warnings,
+        broken_premise: None,
+    };
     Ok(General { modes, seen: search.seen, symbolic: search.symbolic })
 }
 
@@ -203,6 +217,41 @@ impl<'a> ShiftSearch<'a> {
             }
         }
         Ok(pieces)
+    }
+
+    /// Real eigenvalues beyond the circles of `known`: those nearest to shifts along the positive real axis, up to where the growth of
+    /// the symmetric part ends.
+    fn diverging(&mut self, known: &[SpectrumPart]) -> Result<Vec<SpectrumPart>> {
+        let matrices = Definiteness { operator: self.operator, factor: None };
+        let (band, top) = (self.band, self.band[1]);
+        let mut seen: Vec<c64> = known.iter().flat_map(|p| p.values.iter().copied()).collect();
+        let mut found = Vec::new();
+        if matrices.no_divergence()? {
+            return Ok(found);
+        }
+        let reach = matrices.fastest(top)?.unwrap_or(FARTHEST * top);
+        let mut shift = 0.25 * top;
+        while shift < 4.0 * reach {
+            // A shift on an eigenvalue has no factor: it is moved.
+            let shifted = [1.0, 1.0037]
+                .map(|nudge| c64::new(nudge * shift, 0.0))
+                .into_iter()
+                .find_map(|s| Shifted::with_pattern(self.operator, s, self.symbolic.as_ref()).ok());
+            if let Some(shifted) = shifted {
+                let shifted = shifted.two_sided();
+                self.symbolic = self.symbolic.take().or_else(|| shifted.symbolic());
+                self.shifts += 1;
+                let count = DIVERGING.min(2 * self.operator.n());
+                let piece = self.at(&shifted, 0.0, shift, count)?;
+                let piece = piece.keep(|z| {
+                    diverges(z, band) && seen.iter().all(|k| (k - z).norm() > SAME * z.norm().max(top))
+                });
+                seen.extend(&piece.values);
+                found.push(piece);
+            }
+            shift *= 2.0;
+        }
+        Ok(found)
     }
 
     /// All eigenvalues within √2 `half` of i `middle`; none where these are too many for one shift.
@@ -498,7 +547,8 @@ mod tests {
         general.seen.retain(|z| {
             (z - lost).norm() > 1e-6 * lost.norm() && (z - lost.conj()).norm() > 1e-6 * lost.norm()
         });
-        let certificate = super::super::certificate::count_determinant(&operator, &general, band).unwrap();
+        let certificate =
+            super::super::certificate::count_determinant(&operator, &general, band, None).unwrap();
         // With its conjugate, unless loss factors keep the region off zero.
         let missing = if certificate.band_hz[0] == 0.0 { 2 } else { 1 };
         assert_eq!(certificate.counted, certificate.found + missing, "{certificate:?}");

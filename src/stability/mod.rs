@@ -65,6 +65,8 @@ pub struct ComplexModes {
     pub refinements: usize,
     /// Warnings: a count that changed, a mode not accepted, too few real modes.
     pub warnings: Vec<String>,
+    /// A premise of every statement on stability that is false: such as a mass matrix with negative eigenvalues.
+    pub broken_premise: Option<&'static str>,
 }
 
 /// One complex mode with the measures of its own error.

@@ -1,96 +1,238 @@
-//! Nothing grows faster than the region reaches.
+//! How fast a mode of the band can grow at most, and the premises of that statement: M, C and H are symmetric and positive semidefinite.
 //!
 //! For Re s = σ ≥ R and |Im s| ≤ R the Hermitian part of s̄Q(s)/σ is
 //!
-//! K + K_σ + |s|²M + (|s|²/σ) C + W [k_s + (ω/σ) i k_k + (|s|²/σ) c_s] Wᵀ (+ (ω/σ) H),
+//! K + K_σ + |s|²M + (|s|²/σ) (C + W c_s Wᵀ) + W [k_s + (ω/σ) i k_k] Wᵀ + (ω/σ) i K_k (+ (ω/σ) H),
 //!
-//! with k_s, c_s the symmetric and k_k the skew part of k and c. As ω ≤ σ, |s|² ≥ R² and σ ≤ |s|²/σ ≤ 2σ, it is positive
-//! definite, and s no eigenvalue, when C and H dissipate and
-//! * K + K_σ + R²M + W(k_s − |k_k| − 2b c₋)Wᵀ is positive definite, c₋ the negative part of c_s (σ ≤ b), and
-//! * ½ b M + W c_s Wᵀ is semidefinite (σ > b).
+//! with k_s, c_s the symmetric and k_k the skew part of k and c, K_k the sparse skew part of K; that of C does no work. As |ω| ≤ σ and
+//! |s|² ≥ R², it is positive definite, and s no eigenvalue, when C and H dissipate and
+//! * ½ b M + W c_s Wᵀ is semidefinite, where friction falls, and
+//! * K + K_σ + m R²M + W (k_s − |k_k| − 2b c₋) Wᵀ − |K_k| is positive definite, c₋ the negative part of c_s (σ ≤ b). Without falling
+//!   friction m = 1 and b = 0; where R ≥ b the share m = ½ holds c₋ by itself, which is then left out. |K_k| is bounded by the
+//!   diagonal of its row sums.
 //!
-//! The first is a matter of the receptance at s = R, the second of an inertia count, where friction falls.
+//! Both are inertia counts. With the matrices of the structure any R beyond the largest growth rate will do that is large enough
+//! by the norms of the rest in coordinates of unit mass; multiples of the band's top are tried.
 
-use super::reduced::ReducedModel;
 use crate::error::Result;
 use crate::linalg::SparseMatrix;
 use crate::linalg::dense::{product, symmetric_eigen};
+use crate::linalg::factor::SymmetricFactor;
 use crate::linalg::factor::inertia_like;
-use crate::linalg::sparse::{add_scaled, diagonal, entry};
-use crate::stability::analysis::CompletedAnalysis;
+use crate::linalg::random::Random;
+use crate::linalg::sparse::{add_scaled, diagonal, dot, entry, norm_1, times};
+use crate::stability::interface::InterfaceTerm;
+use crate::stability::operator::Operator;
 use faer::{Mat, MatRef};
-use std::f64::consts::TAU;
 
-/// Whether no eigenvalue with |ω| ≤ R has a growth rate of R or more, R the top of the band; false when that could not
-/// be shown.
-pub(super) fn nothing_faster(model: &ReducedModel, analysis: &CompletedAnalysis<'_>) -> Result<bool> {
-    let radius = TAU * analysis.band_hz[1];
-    if !model.dissipative {
-        return Ok(false);
-    }
-    let interface = &analysis.operator.interface;
-    let sizes = interface.sizes(radius);
-    let r = model.active.len();
-    let scale: Vec<f64> = model.active.iter().map(|d| sizes[*d].sqrt()).collect();
-    let (mut k, mut c) = (Mat::<f64>::zeros(r, r), Mat::<f64>::zeros(r, r));
-    let place = |d: usize| model.active.iter().position(|a| *a == d);
-    for term in &interface.terms {
-        if let (Some(i), Some(j)) = (place(term.row), place(term.column)) {
-            k[(i, j)] += term.stiffness / (scale[i] * scale[j]);
-            c[(i, j)] += term.damping / (scale[i] * scale[j]);
-        }
-    }
-    let part = |a: &Mat<f64>, sign: f64| Mat::from_fn(r, r, |i, j| 0.5 * (a[(i, j)] + sign * a[(j, i)]));
-    let (k_s, k_k, c_s) = (part(&k, 1.0), part(&k, -1.0), part(&c, 1.0));
-    let skew = function(product(k_k.transpose(), k_k.as_ref()).as_ref(), |v| v.max(0.0).sqrt())?;
-    let falling = function(c_s.as_ref(), |v| (-v).max(0.0))?;
-    let falls = falling.norm_max() > 1e-14 * c_s.norm_max();
-    let Some((receptance, error)) = receptance(model, analysis, &scale, radius) else { return Ok(false) };
-    let held = |b: f64| -> Result<bool> {
-        let worst = Mat::from_fn(r, r, |i, j| k_s[(i, j)] - skew[(i, j)] - 2.0 * b * falling[(i, j)]);
-        let root = function(worst.as_ref(), |v| (-v).max(0.0).sqrt())?;
-        let product = product(product(root.as_ref(), receptance.as_ref()).as_ref(), root.as_ref());
-        let (values, _) = symmetric_eigen(product.as_ref())?;
-        let largest = values.last().copied().unwrap_or(0.0);
-        Ok(largest + root.norm_l2().powi(2) * error < 1.0)
-    };
-    if !falls {
-        return held(0.0);
-    }
-    for factor in [1024.0, 256.0, 64.0, 16.0, 4.0, 1.5] {
-        let b = factor * radius;
-        if held(b)? {
-            return Ok(holds_against_friction(analysis, b));
-        }
-    }
-    Ok(false)
+/// R is sought among the band's top times 1, 4, …, 4 to this power.
+const POWERS: i32 = 10;
+/// Halvings of the logarithm of the last step, as a smaller R is easier to count.
+const NARROWINGS: usize = 2;
+/// The part of K + τ²M that counts as rounding of the damping.
+const SMALLEST_SHIFT: f64 = 1e-9;
+/// Entries of scaled blocks below this are rounding.
+const NOISE: f64 = 1e-14;
+
+/// The matrices of an operator, and a factor with the pattern of M and K where one is at hand.
+pub(in crate::stability) struct Definiteness<'a> {
+    pub(in crate::stability) operator: &'a Operator<'a>,
+    pub(in crate::stability) factor: Option<&'a dyn SymmetricFactor>,
 }
 
-/// W_BᵀP_B(R)⁻¹W_B of the undamped structure for the scaled directions, and a bound on what Wᵀ(K + R²M)⁻¹W has beyond it;
-/// `None` when K + R²M is not known to be positive definite.
-fn receptance(
-    model: &ReducedModel,
-    analysis: &CompletedAnalysis<'_>,
-    scale: &[f64],
-    radius: f64,
-) -> Option<(Mat<f64>, f64)> {
-    let m = model.oscillators.len();
-    let stiff: Vec<f64> = model.oscillators.iter().map(|o| o.stiffness + radius * radius).collect();
-    if stiff.iter().any(|v| *v <= 0.0) {
+impl Definiteness<'_> {
+    fn inertia_is(&self, a: &SparseMatrix, zeros_allowed: bool) -> bool {
+        let inertia = match self.factor {
+            Some(factor) => inertia_like(factor, a),
+            None => self.operator.engine.analyse(a.symbolic()).and_then(|symbolic| symbolic.inertia(a)),
+        };
+        inertia.is_ok_and(|i| i.negative == 0 && (zeros_allowed || i.zero == 0))
+    }
+
+    /// What the count takes for granted and is false, in words: each is proven by a factorisation.
+    pub(super) fn broken_premise(&self) -> Option<&'static str> {
+        let Operator { mass, stiffness, damping, .. } = self.operator;
+        let others = [&damping.viscous, &damping.hysteretic].into_iter().flatten().map(|a| &**a);
+        if [*mass, &**stiffness].into_iter().chain(others).any(|a| !symmetric(a)) {
+            return Some("a matrix of the structure is not symmetric");
+        }
+        let rounding = rounding(mass);
+        let sum = add_scaled(&[(1.0, *mass), (1.0, &rounding), (0.0, &**stiffness)]);
+        (!self.inertia_is(&sum, true)).then_some("the mass matrix is not positive semidefinite")
+    }
+
+    /// Whether C and H have no negative eigenvalue, but for 1e-9 of K + τ²M at τ = `top`.
+    pub(super) fn dissipates(&self, top: f64) -> bool {
+        let Operator { mass, stiffness, damping, .. } = self.operator;
+        let modal = damping.modal.as_ref().is_none_or(|modal| modal.coefficients.iter().all(|c| *c >= 0.0));
+        let semidefinite = |a: &SparseMatrix, unit: f64| {
+            let share = SMALLEST_SHIFT * unit;
+            self.inertia_is(&add_scaled(&[(1.0, a), (share, &**stiffness), (share * top * top, mass)]), true)
+        };
+        modal
+            && damping.viscous.as_ref().is_none_or(|c| semidefinite(c, 1.0 / top))
+            && damping.hysteretic.as_ref().is_none_or(|h| semidefinite(h, 1.0))
+    }
+
+    /// Whether no real eigenvalue is positive: sᵀQ(s)s of a real s > 0 has no negative value where the symmetric parts of K + K_c and
+    /// C + C_c have none.
+    pub(in crate::stability) fn no_divergence(&self) -> Result<bool> {
+        let Operator { mass, stiffness, damping, .. } = self.operator;
+        let InterfaceBounds { stiffness: contact, falling } =
+            InterfaceBounds::new(self.operator, 1.0, false)?;
+        let mut terms = vec![(0.0, *mass), (1.0, &**stiffness)];
+        terms.extend(contact.iter().map(|contact| (1.0, contact)));
+        let damped = damping.viscous.as_ref().is_none_or(|c| self.inertia_is(c, true));
+        let modal = damping.modal.as_ref().is_none_or(|modal| modal.coefficients.iter().all(|c| *c >= 0.0));
+        Ok(falling.is_none() && damped && modal && self.inertia_is(&add_scaled(&terms), true))
+    }
+
+    /// The least R of those tried, `top` or more, for which no eigenvalue with |ω| ≤ R has a growth rate of R or more; `None` where
+    /// there is none. C and H must dissipate.
+    pub(in crate::stability) fn fastest(&self, top: f64) -> Result<Option<f64>> {
+        let InterfaceBounds { stiffness: contact, falling } = InterfaceBounds::new(self.operator, top, true)?;
+        let (mass, stiffness) = (self.operator.mass, &*self.operator.stiffness);
+        let skew = self.operator.skew.map(|skew| row_sums(&skew.stiffness));
+        let slowest_falling = match &falling {
+            Some(_) => least(top, |b| self.holds_against_friction(b)),
+            None => Some(0.0),
+        };
+        let Some(b) = slowest_falling else { return Ok(None) };
+        Ok(least(top, |radius| {
+            let share = if b > 0.0 && radius >= b { 0.5 } else { 1.0 };
+            let mut terms = vec![(share * radius * radius, mass), (1.0, stiffness)];
+            terms.extend(contact.iter().map(|contact| (1.0, contact)));
+            terms.extend(skew.iter().map(|skew| (-1.0, skew)));
+            terms.extend(falling.iter().filter(|_| radius < b).map(|falling| (-2.0 * b, falling)));
+            self.inertia_is(&add_scaled(&terms), false)
+        }))
+    }
+
+    /// Whether ½ b M + W c_s Wᵀ is positive semidefinite, M taken with the rounding of its entries ([`rounding`]). First a diagonal
+    /// below W c_s Wᵀ replaces it, as that is in the pattern whose analysis is at hand.
+    fn holds_against_friction(&self, b: f64) -> bool {
+        let (mass, stiffness) = (self.operator.mass, &*self.operator.stiffness);
+        let friction = symmetric_damping(self.operator);
+        let (rounding, below) = (rounding(mass), diagonal_below(&friction, mass));
+        let inertia = [(0.5 * b, mass), (0.5 * b, &rounding)];
+        self.inertia_is(&add_scaled(&[inertia[0], inertia[1], (0.0, stiffness), (1.0, &below)]), false)
+            || self.inertia_is(&add_scaled(&[inertia[0], inertia[1], (1.0, &friction)]), false)
+    }
+}
+
+/// The least of the values tried, `top` or more, from which on something holds.
+fn least(top: f64, holds: impl Fn(f64) -> bool) -> Option<f64> {
+    if holds(top) {
+        return Some(top);
+    }
+    if !holds(top * 4f64.powi(POWERS)) {
         return None;
     }
-    let v = Mat::from_fn(m, scale.len(), |i, j| model.interface[(i, j)] * scale[j]);
-    let flexible = Mat::from_fn(m, scale.len(), |i, j| v[(i, j)] / stiff[i]);
-    let within = product(v.transpose(), flexible.as_ref());
-    let Some(remainder) = &model.remainder else { return Some((within, 0.0)) };
-    // Γ = (R² + σ_A) ZᵀMB without damping, by the first term of the remainder.
-    let g = radius * radius + analysis.shift;
-    let (_, l) = remainder.terms.first()?;
-    let y =
-        (product(l.transpose(), flexible.as_ref()) * faer::Scale(g)).norm_l2() + remainder.missed_response;
-    let own: f64 = (0..m).map(|i| (g * l.row(i).norm_l2()).powi(2) / stiff[i]).sum();
-    let slack = 1.0 / remainder.amplification([radius; 2], 0.0) - own;
-    (slack > 0.0).then(|| (within, y * y / slack))
+    let (mut open, mut least) = (top, 4.0 * top);
+    while !holds(least) {
+        (open, least) = (least, 4.0 * least);
+    }
+    for _ in 0..NARROWINGS {
+        let middle = (open * least).sqrt();
+        if holds(middle) { least = middle } else { open = middle }
+    }
+    Some(least)
+}
+
+/// Whether xᵀAy = yᵀAx for two random vectors, but for rounding.
+fn symmetric(a: &SparseMatrix) -> bool {
+    let mut random = Random::new();
+    let x = Mat::from_fn(a.ncols(), 2, |_, _| random.next());
+    let image = times(a, x.as_ref());
+    let form = |i: usize, j: usize| dot(x.col_as_slice(i), image.col_as_slice(j));
+    (form(0, 1) - form(1, 0)).abs() <= 1e-10 * norm_1(a) * (a.ncols() as f64).sqrt()
+}
+
+/// The diagonal of the row sums of |aᵢⱼ|, and zeros elsewhere.
+fn row_sums(a: &SparseMatrix) -> SparseMatrix {
+    let sum = |j: usize| a.val_of_col(j).iter().map(|v| v.abs()).sum();
+    let triplets: Vec<_> = (0..a.ncols()).map(|j| entry(j, j, sum(j))).collect();
+    SparseMatrix::try_new_from_triplets(a.nrows(), a.ncols(), &triplets).expect("a diagonal")
+}
+
+/// The interface bounded by sparse symmetric matrices, none where there is nothing of the kind. k and c are block-diagonal: |k_k| and c₋
+/// are those of every block.
+struct InterfaceBounds {
+    /// W (k_s − |k_k|) Wᵀ, or W k_s Wᵀ where nothing oscillates.
+    stiffness: Option<SparseMatrix>,
+    /// W c₋ Wᵀ, c₋ the negative part of c_s.
+    falling: Option<SparseMatrix>,
+}
+
+impl InterfaceBounds {
+    fn new(operator: &Operator<'_>, top: f64, oscillating: bool) -> Result<Self> {
+        let interface = &operator.interface;
+        let scale: Vec<f64> = interface.sizes(top).iter().map(|s| s.sqrt()).collect();
+        let (mut stiffness, mut falling) = (Vec::new(), Vec::new());
+        for (block, terms) in blocks(operator) {
+            let r = block.len();
+            let place = |d: usize| block.binary_search(&d).expect("the ends of a term are in its block");
+            let (mut k, mut c) = (Mat::<f64>::zeros(r, r), Mat::<f64>::zeros(r, r));
+            for term in terms.iter().filter(|term| scale[term.row] * scale[term.column] > 0.0) {
+                let (at, size) =
+                    ((place(term.row), place(term.column)), scale[term.row] * scale[term.column]);
+                k[at] += term.stiffness / size;
+                c[at] += term.damping / size;
+            }
+            let part =
+                |a: &Mat<f64>, sign: f64| Mat::from_fn(r, r, |i, j| 0.5 * (a[(i, j)] + sign * a[(j, i)]));
+            let (k_s, k_k, c_s) = (part(&k, 1.0), part(&k, -1.0), part(&c, 1.0));
+            let skew = function(product(k_k.transpose(), k_k.as_ref()).as_ref(), |v| v.max(0.0).sqrt())?;
+            let noise = NOISE * c_s.norm_max();
+            let negative = function(c_s.as_ref(), |v| if v < -noise { -v } else { 0.0 })?;
+            let worst = if oscillating { k_s - skew } else { k_s };
+            for (small, triplets) in [(&worst, &mut stiffness), (&negative, &mut falling)] {
+                let noise = NOISE * small.norm_max();
+                for (i, j) in (0..r).flat_map(|i| (0..r).map(move |j| (i, j))) {
+                    if small[(i, j)].abs() <= noise {
+                        continue;
+                    }
+                    let value = small[(i, j)] * scale[block[i]] * scale[block[j]];
+                    let [to, from] = [i, j].map(|i| interface.directions[block[i]]);
+                    for (p, x) in to.iter() {
+                        triplets.extend(from.iter().map(|(q, y)| entry(p, q, value * (x * y))));
+                    }
+                }
+            }
+        }
+        let n = operator.n();
+        let matrix = |triplets: Vec<_>| {
+            let sum = SparseMatrix::try_new_from_triplets(n, n, &triplets).expect("directions of the system");
+            (!triplets.is_empty()).then_some(sum)
+        };
+        Ok(InterfaceBounds { stiffness: matrix(stiffness), falling: matrix(falling) })
+    }
+}
+
+/// The directions that the terms of the interface connect, ascending, block by block, and those terms.
+fn blocks(operator: &Operator<'_>) -> Vec<(Vec<usize>, Vec<InterfaceTerm>)> {
+    let terms = &operator.interface.terms;
+    let mut leader: Vec<usize> = (0..operator.interface.directions.len()).collect();
+    fn first(leader: &mut [usize], mut d: usize) -> usize {
+        while leader[d] != d {
+            leader[d] = leader[leader[d]];
+            d = leader[d];
+        }
+        d
+    }
+    for term in terms {
+        let (a, b) = (first(&mut leader, term.row), first(&mut leader, term.column));
+        leader[a.max(b)] = a.min(b);
+    }
+    let mut blocks = vec![(Vec::new(), Vec::new()); leader.len()];
+    for d in 0..leader.len() {
+        blocks[first(&mut leader, d)].0.push(d);
+    }
+    for term in terms {
+        blocks[first(&mut leader, term.row)].1.push(*term);
+    }
+    blocks.retain(|(_, terms)| !terms.is_empty());
+    blocks
 }
 
 /// f of a symmetric matrix.
@@ -99,20 +241,6 @@ fn function(a: MatRef<'_, f64>, f: impl Fn(f64) -> f64) -> Result<Mat<f64>> {
     let n = values.len();
     let scaled = Mat::from_fn(n, n, |i, j| vectors[(i, j)] * f(values[j]));
     Ok(product(scaled.as_ref(), vectors.transpose()))
-}
-
-/// Whether ½ b M + W c_s Wᵀ is positive semidefinite, M taken with the rounding of its entries ([`rounding`]). First a diagonal
-/// below W c_s Wᵀ replaces it, as that is in the pattern whose analysis is at hand.
-fn holds_against_friction(analysis: &CompletedAnalysis<'_>, b: f64) -> bool {
-    let (mass, stiffness) = (analysis.operator.mass, &*analysis.operator.stiffness);
-    let definite = |matrix: &SparseMatrix| {
-        inertia_like(analysis.factor, matrix).is_ok_and(|i| i.negative == 0 && i.zero == 0)
-    };
-    let friction = symmetric_damping(analysis);
-    let (rounding, below) = (rounding(mass), diagonal_below(&friction, mass));
-    let inertia = [(0.5 * b, mass), (0.5 * b, &rounding)];
-    definite(&add_scaled(&[inertia[0], inertia[1], (0.0, stiffness), (1.0, &below)]))
-        || definite(&add_scaled(&[inertia[0], inertia[1], (1.0, &friction)]))
 }
 
 /// A diagonal that bounds the rounding of M, d_i = 1e-14 |m_ii| + u max m: massless degrees of freedom have pivots of either
@@ -141,8 +269,8 @@ fn diagonal_below(a: &SparseMatrix, mass: &SparseMatrix) -> SparseMatrix {
 }
 
 /// W c_s Wᵀ as a sparse matrix.
-fn symmetric_damping(analysis: &CompletedAnalysis<'_>) -> SparseMatrix {
-    let (interface, n) = (&analysis.operator.interface, analysis.operator.n());
+fn symmetric_damping(operator: &Operator<'_>) -> SparseMatrix {
+    let (interface, n) = (&operator.interface, operator.n());
     let mut triplets = Vec::new();
     for term in interface.terms.iter().filter(|t| t.damping != 0.0) {
         let (row, column) = (interface.directions[term.row], interface.directions[term.column]);

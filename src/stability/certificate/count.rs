@@ -30,7 +30,7 @@ pub struct Certificate {
     /// Zeros of the oscillators inside, accounted for in the count; none when the structure dissipates and K is
     /// positive semidefinite.
     pub structure_poles: usize,
-    /// Whether C and H are known to dissipate.
+    /// Whether C and H are known to dissipate, by a factorisation.
     pub dissipative: bool,
     /// Whether it was shown that no eigenvalue of the band grows faster than the region reaches.
     pub nothing_faster: bool,
@@ -60,9 +60,14 @@ impl Certificate {
         self.counted == self.found
     }
 
-    /// Whether the count equals the number found and holds at full order.
+    /// Whether the count equals the number found and holds at full order, of a structure that dissipates.
     pub fn holds(&self) -> bool {
-        self.agrees() && self.margin > 1.0
+        self.agrees() && self.margin > 1.0 && self.dissipative
+    }
+
+    /// Whether no mode of the band was missed, however fast it grows: what a statement of stability needs.
+    pub fn whole(&self) -> bool {
+        self.holds() && self.nothing_faster
     }
 }
 

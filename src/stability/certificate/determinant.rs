@@ -19,12 +19,12 @@ use std::f64::consts::{PI, TAU};
 
 /// The largest change of phase from point to point.
 const STEP: f64 = 0.25 * PI;
-/// The fastest growth that is counted, by the top of the band: a damping ratio of about −10 %.
+/// The fastest growth that is counted where no bound is known, by the top of the band: a damping ratio of about −10 %.
 const FASTEST: f64 = 0.1;
 /// Pieces of an edge that are followed independently of each other. The eigenvalues that were not found, all but a few, change the
 /// phase, too: with 4 pieces, halves of a piece changed by multiples of 2π at 4,680 degrees of freedom, and the count was wrong.
 const PIECES: usize = 64;
-/// Halvings of a piece at most.
+/// Halvings of a piece at most, where the region is no taller than the band.
 const HALVINGS: usize = 14;
 /// Points that a contour takes as a rule.
 const POINTS: f64 = 1000.0;
@@ -36,20 +36,35 @@ pub(super) fn work(general: &General) -> f64 {
     general.symbolic.as_ref().map_or(f64::INFINITY, |symbolic| POINTS * 8.0 * symbolic.multiplications())
 }
 
-/// The eigenvalues in the band with growth rates from [`SLOWEST_GROWTH`] to [`FASTEST`] of its top, counted. Fails at an eigenvalue
-/// on the contour that the search has not found.
+/// The eigenvalues in the band with growth rates from [`SLOWEST_GROWTH`] of its top to `fastest`, beyond which none grows, or to
+/// [`FASTEST`] of the top, counted. Fails at an eigenvalue on the contour that the search has not found.
 pub(in crate::stability) fn count(
     operator: &Operator<'_>,
     general: &General,
     band_hz: [f64; 2],
+    fastest: Option<f64>,
+) -> Result<Certificate> {
+    let far = fastest.map(|reach| count_up_to(operator, general, band_hz, reach));
+    match far {
+        Some(Ok(certificate)) => Ok(Certificate { nothing_faster: true, ..certificate }),
+        _ => count_up_to(operator, general, band_hz, FASTEST * TAU * band_hz[1]),
+    }
+}
+
+fn count_up_to(
+    operator: &Operator<'_>,
+    general: &General,
+    band_hz: [f64; 2],
+    reach: f64,
 ) -> Result<Certificate> {
     let [low, high] = band_hz.map(|f| TAU * f);
     // With loss factors the spectrum is not symmetric, and at ω = 0 they mean nothing.
     let lossy = operator.damping.hysteretic.is_some();
     let bottom = if low == 0.0 && lossy { 1e-3 * high } else { low };
-    let region = CountedRegion { growth: [SLOWEST_GROWTH * high, FASTEST * high], omega: [bottom, high] };
+    let region = CountedRegion { growth: [SLOWEST_GROWTH * high, reach], omega: [bottom, high] };
     let known = known(&general.seen, !lossy);
-    let determinant = Determinant { operator, general, known: &known };
+    let halvings = HALVINGS + (reach / high).max(1.0).log2().ceil() as usize;
+    let determinant = Determinant { operator, general, known: &known, halvings };
     let pieces: Vec<[c64; 2]> = region
         .path()
         .windows(2)
@@ -120,6 +135,8 @@ struct Determinant<'a> {
     operator: &'a Operator<'a>,
     general: &'a General,
     known: &'a [c64],
+    /// Halvings of a piece at most.
+    halvings: usize,
 }
 
 /// A stretch of the contour: the change of the phase along it, the largest step and where, and the points.
@@ -164,7 +181,7 @@ impl Determinant<'_> {
                 if largest > followed.step {
                     (followed.step, followed.at) = (largest, middle);
                 }
-            } else if depth == HALVINGS {
+            } else if depth == self.halvings {
                 return Err(Error::analysis(
                     "count of the unstable modes",
                     format!(

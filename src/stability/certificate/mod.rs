@@ -16,9 +16,12 @@
 //!    Of a large interface d costs too much: the eigenvalues of the reduced model are then computed and counted one by
 //!    one, their number inside is proven from what is left of the matrix in their coordinates, and the same coordinates
 //!    bound ρ ([`spectrum`]).
-//! 3. *Beyond the region.* Nothing in the band grows faster than R ([`beyond`]); reported where it could be shown.
+//! 3. *Beyond the region.* Nothing in the band grows faster than R ([`beyond`]), oscillating or not. Where that is not shown, or the
+//!    region up to R could not be counted, R is the top of the band, 2π f, and that faster growth is not excluded is stated.
 //!
 //! Where the part that is not symmetric has no low rank the determinant is followed at full order ([`determinant`]).
+//!
+//! That M, C and H are symmetric and positive semidefinite is proven by inertia counts; otherwise nothing is certified.
 //!
 //! Assumptions: the real modes are exact (their residuals enter squared), rounding errors are not bounded, and modal
 //! damping counts as acting on real modes when one random combination of its modes does.
@@ -48,6 +51,7 @@ use crate::error::{Error, Result};
 use crate::numbers::hertz;
 use crate::progress::Observer;
 use crate::system::System;
+pub(super) use beyond::Definiteness;
 use contour::{Stopped, Winding, wind};
 pub use count::{Certificate, CloseCall, SLOWEST_GROWTH};
 use count::{close_calls, found};
@@ -64,6 +68,10 @@ const ATTEMPTS: usize = 3;
 
 /// Operations of a count along the contour, some seconds, beyond which a cheaper method is used.
 const LONG_CONTOUR: f64 = 5e9;
+
+/// Operations of a count along the contour, a minute or two, at most, whoever requests it: where the bound on what the basis leaves out is
+/// weak, it needs ever more points, and a richer basis costs less.
+const PATIENCE: f64 = 3e11;
 
 /// The part of the operations of the eigenvalues that a certificate may take whatever `most_work` is.
 const SHARE: f64 = 0.5;
@@ -90,6 +98,11 @@ pub fn certified_modes<'a>(
     }
     let band = Band { nearest: None, ..band.into() };
     analyse(system, steady, known, band, observer, |modes, analysis| {
+        let matrices = Definiteness { operator: analysis.operator, factor: Some(analysis.factor) };
+        if let Some(broken) = matrices.broken_premise() {
+            not_countable(modes, broken);
+            return None;
+        }
         let work = expected_work(&analysis, modes).min(work_by_spectrum(&analysis));
         let most_work = most_work.max(SHARE * eigenvalue_work(&analysis, modes));
         if work > most_work {
@@ -137,13 +150,22 @@ fn counted_at_full_order(
         );
         return Ok((general.modes, None));
     }
+    let matrices = Definiteness { operator: &operator, factor: None };
+    if let Some(broken) = matrices.broken_premise() {
+        not_countable(&mut general.modes, broken);
+        return Ok((general.modes, None));
+    }
     let work = determinant::work(&general);
     if work > most_work {
         determinant::not_counted(&mut general.modes, work);
         return Ok((general.modes, None));
     }
     observer.begin("certificate", None);
-    let certificate = determinant::count(&operator, &general, band.hz);
+    let top = TAU * band.hz[1];
+    let dissipative = matrices.dissipates(top);
+    let fastest = if dissipative { matrices.fastest(top)? } else { None };
+    let certificate = determinant::count(&operator, &general, band.hz, fastest)
+        .map(|certificate| Certificate { dissipative, ..certificate });
     observer.end();
     match certificate {
         Ok(certificate) => Ok((general.modes, Some(certificate))),
@@ -152,6 +174,12 @@ fn counted_at_full_order(
             Ok((general.modes, None))
         }
     }
+}
+
+/// Notes that a premise of every statement on stability is false.
+fn not_countable(modes: &mut ComplexModes, broken: &'static str) {
+    modes.warnings.push(format!("The unstable modes cannot be counted: {broken}"));
+    modes.broken_premise = Some(broken);
 }
 
 /// The directions in which the interface acts.
@@ -202,7 +230,7 @@ fn count(analysis: &CompletedAnalysis<'_>, modes: &ComplexModes, most_work: f64)
     let certificate = count_by(Way::Spectrum, analysis, modes, most_work);
     match certificate {
         Ok(certificate) if certificate.margin > 1.0 => Ok(certificate),
-        weak if contour_work > most_work => weak,
+        weak if contour_work > most_work.min(PATIENCE) => weak,
         weak => count_by(Way::Contour, analysis, modes, most_work).or(weak),
     }
 }
@@ -229,7 +257,7 @@ fn count_by(
     let top = TAU * analysis.band_hz[1];
     let interface = &analysis.operator.interface;
     let sizes = interface.sizes(top);
-    let most_points = (most_work / work_of_a_point(analysis)).min(1e9) as usize;
+    let most_points = (most_work.min(PATIENCE) / work_of_a_point(analysis)).max(1.0) as usize;
     let count: Box<Count<'_>> = match way {
         Way::Contour => {
             let pencil = Pencil::new(&model, &interface.terms, &sizes, top)?;
@@ -240,10 +268,15 @@ fn count_by(
             Box::new(move |region| spectrum.count(region))
         }
     };
+    let matrices = Definiteness { operator: analysis.operator, factor: Some(analysis.factor) };
+    let fastest = if model.dissipative { matrices.fastest(top)? } else { None };
     let mut best: Option<(CountedRegion, Winding)> = None;
     let mut stopped = Stopped::TooManyPoints;
-    for attempt in 0..ATTEMPTS {
-        let region = region(analysis, attempt);
+    // As far as a mode can grow, or, where that cannot be counted, as far as the band reaches.
+    let beyond = fastest.filter(|fastest| *fastest > top).map(|fastest| (fastest, 0));
+    let tries = beyond.into_iter().chain((0..ATTEMPTS).map(|attempt| (top, attempt)));
+    for (reach, attempt) in tries {
+        let region = region(analysis, reach, attempt);
         match count(&region) {
             Ok(winding) => {
                 let better = best.as_ref().is_none_or(|(_, b)| winding.defect < b.defect);
@@ -269,7 +302,7 @@ fn count_by(
             ),
             Stopped::TooManyPoints => (
                 format!("the contour takes more than {most_points} points"),
-                "`cea.certify = true` counts them all the same",
+                "Take more real modes (`cea.basis_below`)",
             ),
         };
         return Err(Error::analysis("certificate of the unstable modes", found, help));
@@ -287,21 +320,21 @@ fn count_by(
         points: winding.points,
         structure_poles,
         dissipative: model.dissipative,
-        nothing_faster: beyond::nothing_faster(&model, analysis)?,
+        nothing_faster: fastest.is_some_and(|fastest| region.growth[1] >= fastest),
         proven: true,
         close_calls: close_calls(modes, &region),
     })
 }
 
-/// The band of the analysis times ε … R, each attempt a little smaller.
-fn region(analysis: &CompletedAnalysis<'_>, attempt: usize) -> CountedRegion {
+/// The band of the analysis times ε … `reach`, each attempt a little smaller.
+fn region(analysis: &CompletedAnalysis<'_>, reach: f64, attempt: usize) -> CountedRegion {
     let [low, high] = analysis.band_hz.map(|f| TAU * f);
     let inward = 1e-5 * attempt as f64;
     // With loss factors the spectrum is not symmetric, and at ω = 0 they mean nothing.
     let bottom = if low == 0.0 && analysis.operator.damping.hysteretic.is_some() { 1e-3 * high } else { low };
     let growth = SLOWEST_GROWTH * high * (1.0 + 0.1 * attempt as f64);
     CountedRegion {
-        growth: [growth, high],
+        growth: [growth, reach],
         omega: [if bottom > 0.0 { bottom + inward * high } else { 0.0 }, high * (1.0 - inward)],
     }
 }

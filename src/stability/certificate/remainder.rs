@@ -281,7 +281,7 @@ fn directions(analysis: &CompletedAnalysis<'_>, active: &[usize], scales: &[f64]
 }
 
 /// γ with C ≥ −γ(K + K_σ + τM) outside the basis, τ the square of the band's top, and whether C and H are known to be
-/// positive semidefinite; `lowest` is the least ω² of the basis. What is neither proportional nor semidefinite by itself is
+/// positive semidefinite; `lowest` is the least ω² of the basis. What is not known to be semidefinite by its factors α, β and few rows is
 /// settled by the inertia of C + γ(K + K_σ + τM) for growing γ.
 pub(super) fn dissipation(
     analysis: &CompletedAnalysis<'_>,
@@ -294,13 +294,10 @@ pub(super) fn dissipation(
         damping.modal.as_ref().map_or(0.0, |modal| modal.coefficients.iter().fold(0.0f64, |w, c| w.max(-c)));
     let lowest = if analysis.complete_below > 0.0 { lowest.min(0.0) } else { f64::NEG_INFINITY };
     let energy = || add_scaled(&[(1.0, &*operator.stiffness), (top * top, operator.mass)]);
-    let settle =
-        |whole: &Option<Arc<SparseMatrix>>, part: &DamperPart, unit: f64| match (whole, &part.split.rest) {
-            (Some(whole), Some(_)) if !part.dissipates(lowest) => {
-                least_shift(analysis.factor, whole, &energy(), unit)
-            }
-            _ => Some(0.0),
-        };
+    let settle = |whole: &Option<Arc<SparseMatrix>>, part: &DamperPart, unit: f64| match whole {
+        Some(whole) if !part.dissipates(lowest) => least_shift(analysis.factor, whole, &energy(), unit),
+        _ => Some(0.0),
+    };
     let Damper { viscous, loss, .. } = &operator.dampers[0];
     let viscous = settle(&damping.viscous, viscous, 1.0 / top);
     let losses = settle(&damping.hysteretic, loss, 1.0);

@@ -203,7 +203,7 @@ impl<'a> ReducedSpectrum<'a> {
                 let nearest = self.distance(edge[0] + direction * done);
                 let h = (RADIUS / (1.0 + RADIUS) * nearest)
                     .min(0.5 * (length - done))
-                    .min(0.02 * region.omega[1]);
+                    .min(0.02 * region.omega[1].max((edge[0] + direction * done).norm()));
                 let c = edge[0] + direction * (done + h);
                 if nearest < 10.0 * resolution || points > DISCS {
                     return Err(Stopped::At(c));

@@ -117,6 +117,89 @@ fn a_thousand_random_systems_agree_with_the_dense_count() {
     assert!(stable > 100 && several > 50 && diverging > 50 && partial > 30 && bounded > 300);
 }
 
+/// M, K and perhaps C of random signs with nothing else, and a coupling of rank one or two: divergence near and far beyond the band,
+/// premises that are false.
+fn signed(seed: u64) -> (System, [bool; 3]) {
+    let mut random = Random::seeded(seed + 77);
+    let n = 2 + random.below(5);
+    let base = random_system(n, 1, 20.0, seed);
+    let mut signed = |negative: bool, size: f64| {
+        let q = Mat::from_fn(n, n, |_, _| random.between(-1.0, 1.0)).qr().compute_Q();
+        let values: Vec<f64> = (0..n)
+            .map(|i| size * random.between(0.5, 2.0) * if negative && i == 0 { -0.5 } else { 1.0 })
+            .collect();
+        let a = &q * Mat::from_fn(n, n, |i, j| if i == j { values[i] } else { 0.0 }) * q.transpose();
+        sparse(n, |i, j| 0.5 * (a[(i, j)] + a[(j, i)]))
+    };
+    let bad = [seed % 7 == 3, seed % 5 == 2, false];
+    let soft = seed % 3 == 0;
+    let (mass, damping) = (signed(bad[0], 1.0), signed(bad[1], 3.0));
+    let stiffness = signed(soft, 10f64.powi(4 + (seed % 4) as i32));
+    let mut structure = base.structure.clone();
+    (structure.mass, structure.stiffness) = (mass.into(), stiffness.into());
+    structure.damping = Default::default();
+    let damped = bad[1] || seed % 2 == 1;
+    structure.damping.viscous = damped.then(|| damping.into());
+    let size = 10f64.powi(3 + (seed % 5) as i32);
+    let r = 1 + seed as usize % 2;
+    let mut direction = || vector(&[0, 1].map(|_| (random.below(n), random.between(-1.0, 1.0))));
+    let directions: Vec<SparseVector> = (0..r).map(|_| direction()).collect();
+    let stiffness = Mat::from_fn(r, r, |_, _| size * random.between(-1.0, 1.0));
+    let coupling = Coupling { directions, stiffness, damping: Mat::zeros(r, r), skew: None };
+    let system =
+        System { structure, coupling: Some(coupling), pairs: Vec::new(), load: vec![0.0; n], ..base };
+    (system, [bad[0], damped && bad[1], soft])
+}
+
+/// Divergence is found whatever the band, a certificate holds for every growth rate that it does not name, and there is none where a
+/// premise is false. The values come from dense eigenvalues.
+#[test]
+fn growth_beyond_the_band_is_found_or_named() {
+    let (mut diverging, mut whole, mut without) = (0, 0, 0);
+    for seed in 0..400 {
+        let (system, [mass, damping, _]) = signed(seed);
+        let state = steady(&system);
+        let n = system.n_dofs();
+        if mass {
+            let identity = sparse(n, |i, j| if i == j { 1.0 } else { 0.0 });
+            let mut positive = system.clone();
+            positive.structure.mass = identity.into();
+            let real = dense_modes(&positive, n);
+            let top = 0.5 * real.frequency_hz(n - 1).max(1.0);
+            let found = certified_modes(&system, &state, &real, [0.0, top], f64::INFINITY, &());
+            let broken = found.is_err()
+                || found.is_ok_and(|(modes, count)| count.is_none() && modes.broken_premise.is_some());
+            assert!(broken, "seed {seed}: the mass is indefinite");
+            without += 1;
+            continue;
+        }
+        let real = dense_modes(&system, n);
+        let top = [0.02, 0.3, 1.1][seed as usize % 3] * real.frequency_hz(n - 1).max(1.0);
+        let low = if seed % 4 == 1 { 0.1 * top } else { 0.0 };
+        let spectrum = dense_spectrum(&system, &state);
+        let (modes, certificate) =
+            certified_modes(&system, &state, &real, [low, top], f64::INFINITY, &()).unwrap();
+        let slowest = SLOWEST_GROWTH * TAU * top;
+        for z in spectrum.iter().filter(|z| z.re > 1.01 * slowest && z.im.abs() < 1e-9 * z.norm()) {
+            diverging += 1;
+            let near = modes.modes.iter().map(|m| (m.eigenvalue - z).norm()).fold(f64::INFINITY, f64::min);
+            assert!(near < 1e-6 * z.norm(), "seed {seed}: {z} {:?}", modes.warnings);
+        }
+        let Some(certificate) = certificate else { continue };
+        assert!(!damping || !certificate.holds(), "seed {seed}: C is indefinite, {certificate:?}");
+        if certificate.whole() {
+            whole += 1;
+            let exact = dense_count(
+                &spectrum,
+                &Certificate { growth: [certificate.growth[0], f64::INFINITY], ..certificate.clone() },
+            );
+            assert_eq!(exact, certificate.found, "seed {seed}: {certificate:?}");
+        }
+    }
+    println!("{diverging} {whole} {without}");
+    assert!(diverging > 100 && whole > 150 && without > 40, "{diverging} {whole} {without}");
+}
+
 /// A system larger than its basis, with a coupling that makes pairs of modes flutter.
 fn large(seed: u64, kind: u64) -> (System, SteadySliding, RealModes, [f64; 2]) {
     let n = 140;
