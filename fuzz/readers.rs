@@ -101,7 +101,7 @@ fn matrix(bytes: &[u8]) -> Result<String> {
 }
 
 fn universal(bytes: &[u8]) -> Result<String> {
-    let records = uff::read("universal", bytes, 1e-3)?;
+    let records = uff::read("universal", bytes, uff::Unstated { unit: 1e-3, quantity: None })?;
     let counts = [records.points.len(), records.modes.len(), records.functions.len()];
     let (_, warnings) = records.into_set();
     Ok(format!("{:?} {}", counts.map(about), about(warnings.len())))

@@ -1,6 +1,7 @@
 //! `[measured.NAME]`: what a test found, and where its geometry lies in the mesh.
 
 use super::LengthUnit;
+use crate::measured::Quantity;
 use crate::schema::units::{FREQUENCY, LENGTH, NUMBER};
 use crate::schema::{Report, declare, dotted, key};
 use std::collections::BTreeMap;
@@ -14,6 +15,8 @@ declare! {
         pub frf: Option<String> = key::name("the name of an [frf] analysis").optional(),
         /// A file: universal (`.uff`, `.unv`), `.csv` or `.toml`; relative to the case.
         pub file: Option<String> = key::name("the path of a file").optional(),
+        /// What the responses of a universal file are whose ordinates have no data type (0) and no label: motion over force.
+        pub quantity: Option<Quantity> = key::choice().optional(),
         /// Natural frequencies \[Hz\], where there is no file.
         pub frequencies: Vec<f64> = key::quantity_list(FREQUENCY)
             .check("frequencies above zero", |list| list.iter().all(|f| *f > 0.0))

@@ -39,7 +39,7 @@ pub struct ImportedModel {
 /// # Errors
 /// Every fault of every file.
 pub fn read_model(case: &Case, matrices: &Matrices) -> Result<ImportedModel> {
-    let mut faults = Faults::new();
+    let (mut faults, mut warnings) = (Faults::new(), Vec::new());
     let place = |key: &str, file: &str| format!("`matrices.{key}` {}", case.folder.join(file).display());
     let mut read = |file: &str, columns| faults.take(matrix_market::read(&case.folder.join(file), columns));
     // K has entries in every column; the other matrices may be nearly empty.
@@ -54,12 +54,12 @@ pub fn read_model(case: &Case, matrices: &Matrices) -> Result<ImportedModel> {
         .dofs
         .as_ref()
         .filter(|_| known)
-        .and_then(|file| faults.take(rows_in(&case.folder.join(file), rows)));
+        .and_then(|file| faults.take(rows_in(&case.folder.join(file), rows, &mut warnings)));
     let load = match load.flatten() {
         None => vec![0.0; rows],
         Some((file, f)) => faults.take(read_load(&place("load", file), &f, rows)).unwrap_or_default(),
     };
-    let terms = read_terms(case, matrices, rows, &mut faults);
+    let terms = read_terms(case, matrices, rows, &mut faults, &mut warnings);
     let all = mass.zip(stiffness).filter(|_| !matches!(damping, Some(None)));
     let Some(((mass, stiffness), terms)) = all.zip(terms) else {
         return faults.into_result(()).map(|()| unreachable!("a file that is missing is a fault"));
@@ -72,6 +72,8 @@ pub fn read_model(case: &Case, matrices: &Matrices) -> Result<ImportedModel> {
         .map_or_else(|| "`matrices.term`".to_string(), |file| place("damping", file));
     let [mass, damping, stiffness] = [Some(mass), damping.flatten(), Some(stiffness)];
     let [mass_terms, damping_terms, stiffness_terms] = terms;
+    warnings.extend(one_sided(&stiffness_place, stiffness.as_ref()));
+    warnings.extend(one_sided(&damping_place, damping.as_ref()));
     let sums = (with_terms(mass, mass_terms), with_terms(stiffness, stiffness_terms));
     let (Some(mass), Some(stiffness)) = sums else { unreachable!("both have a term: themselves") };
     let damping = with_terms(damping, damping_terms);
@@ -87,7 +89,7 @@ pub fn read_model(case: &Case, matrices: &Matrices) -> Result<ImportedModel> {
         coupling: imported.coupling,
         load,
         nodes,
-        warnings: imported.warnings,
+        warnings: warnings.into_iter().chain(imported.warnings).collect(),
     })
 }
 
@@ -100,6 +102,7 @@ fn read_terms(
     matrices: &Matrices,
     rows: usize,
     faults: &mut Faults,
+    warnings: &mut Vec<String>,
 ) -> Option<[Vec<FactoredMatrix>; 3]> {
     let mut terms = [Vec::new(), Vec::new(), Vec::new()];
     let earlier = faults.0.len();
@@ -117,10 +120,23 @@ fn read_terms(
                     format!("{rows} × {rows}, as M has"),
                 ));
             }
+            let place = format!("`matrices.term.{name}.{key}` {}", path.display());
+            warnings.extend(one_sided(&place, Some(&matrix)));
             terms.push((matrices.value(&term.factor), matrix));
         }
     }
     (faults.0.len() == earlier).then_some(terms)
+}
+
+/// The warning that one triangle of a matrix is empty: half of a symmetric one whose header says `general`, most likely.
+fn one_sided(place: &str, matrix: Option<&MarketMatrix>) -> Option<String> {
+    let (triangle, count) = matrix?.one_triangle()?;
+    let entries = if count == 1 { "the one entry" } else { "all entries" };
+    let found = format!("{entries} off the diagonal ({count}) in the {triangle} triangle");
+    let fault = Fault::new(place, found, "both triangles, or the lower one of a symmetric matrix");
+    let help = "If it is half of a symmetric matrix, its header has to say `symmetric` (`skew-symmetric` if its other half has \
+                the other sign), with the lower triangle in the file; if it is whole, all is well";
+    Some(fault.with_help(help).warning())
 }
 
 /// The matrix with what is added to it, if there is anything.
@@ -162,9 +178,11 @@ pub fn read_rows(name: &str, text: &str, n: usize) -> Result<(Vec<[f64; 3]>, Vec
     rows_of(&TextTable::parse(name.to_string(), text.to_string(), required, known)?, n)
 }
 
-fn rows_in(path: &Path, n: usize) -> Result<(Vec<[f64; 3]>, Vec<FreeDof>)> {
+fn rows_in(path: &Path, n: usize, warnings: &mut Vec<String>) -> Result<(Vec<[f64; 3]>, Vec<FreeDof>)> {
     let [required, known] = ROW_COLUMNS;
-    rows_of(&TextTable::read(path, required, known)?, n)
+    let table = TextTable::read(path, required, known)?;
+    warnings.extend(table.warnings());
+    rows_of(&table, n)
 }
 
 fn rows_of(table: &TextTable, n: usize) -> Result<(Vec<[f64; 3]>, Vec<FreeDof>)> {
@@ -241,7 +259,7 @@ pub fn given_points(
         }
         ContactPoints::File(file) => {
             let [required, known] = POINT_COLUMNS;
-            return points_of(&TextTable::read(&case.folder.join(file), required, known)?, n);
+            return points_of(&TextTable::read(&case.folder.join(file), required, known)?.all_read()?, n);
         }
     }
     debug_assert!(contact.points.is_some());
@@ -254,7 +272,7 @@ pub fn given_points(
 /// Every fault of the heading, and the first faults of the lines.
 pub fn read_points(name: &str, text: &str, n: usize) -> Result<Vec<ContactPoint>> {
     let [required, known] = POINT_COLUMNS;
-    points_of(&TextTable::parse(name.to_string(), text.to_string(), required, known)?, n)
+    points_of(&TextTable::parse(name.to_string(), text.to_string(), required, known)?.all_read()?, n)
 }
 
 fn points_of(table: &TextTable, n: usize) -> Result<Vec<ContactPoint>> {

@@ -4,8 +4,10 @@ use super::table::{MOST_FAULTS, TextTable};
 use crate::case::{Case, MeasuredData, read_test};
 use crate::error::read::{read_bytes, read_text};
 use crate::error::{Error, Fault, Faults, Result};
-use crate::measured::{MeasuredSet, ModeRecord, TestRecords, uff};
+use crate::measured::uff::{self, Unstated};
+use crate::measured::{MeasuredSet, ModeRecord, TestRecords};
 use crate::mesh::unit_in_metres;
+use crate::numbers::significant;
 use std::collections::BTreeMap;
 
 /// The columns of a CSV file of modes.
@@ -20,11 +22,12 @@ pub fn measured_set(case: &Case, name: &str) -> Result<(MeasuredSet, Vec<String>
     let data = &case.measured[name];
     let mut records = match &data.file {
         None => listed(data),
-        Some(file) => read_file(case, name, file, unit_in_metres(data.transform.unit.word()))?,
+        Some(file) => read_file(case, name, file)?,
     };
     let given = data.point.iter().filter_map(|(number, x)| Some((number.parse().ok()?, *x)));
     records.points.extend(given);
-    let (mut set, warnings) = records.into_set();
+    let (mut set, mut warnings) = records.into_set();
+    warnings.extend(in_percent(&set));
     for mode in &mut set.modes {
         mode.deviation.get_or_insert(data.deviation);
     }
@@ -39,6 +42,21 @@ pub fn measured_set(case: &Case, name: &str) -> Result<(MeasuredSet, Vec<String>
     Ok((set, warnings.into_iter().map(|warning| format!("Measured {name}: {warning}")).collect()))
 }
 
+/// The warning that damping ratios are most likely percentages: their median is that of no structure of metal, nor of a brake.
+fn in_percent(set: &MeasuredSet) -> Option<String> {
+    const LARGE: f64 = 0.05;
+    let mut ratios: Vec<f64> = set.modes.iter().filter_map(|mode| mode.damping_ratio).collect();
+    ratios.sort_by(f64::total_cmp);
+    let median = *ratios.get(ratios.len() / 2)?;
+    (median >= LARGE).then(|| {
+        let [given, meant] = [median * 100.0, median].map(|percent| significant(percent, 3));
+        format!(
+            "damping ratios about {} mean {given} %: if {meant} % is meant, divide them by 100",
+            significant(median, 3)
+        )
+    })
+}
+
 /// The frequencies in the case itself.
 fn listed(data: &MeasuredData) -> TestRecords {
     let mode = |(k, hz): (usize, &f64)| ModeRecord {
@@ -50,7 +68,9 @@ fn listed(data: &MeasuredData) -> TestRecords {
     TestRecords { modes: data.frequencies.iter().enumerate().map(mode).collect(), ..TestRecords::default() }
 }
 
-fn read_file(case: &Case, name: &str, file: &str, unit: f64) -> Result<TestRecords> {
+fn read_file(case: &Case, name: &str, file: &str) -> Result<TestRecords> {
+    let data = &case.measured[name];
+    let unstated = Unstated { unit: unit_in_metres(data.transform.unit.word()), quantity: data.quantity };
     let path = case.folder.join(file);
     let shown = path.display().to_string();
     let kind = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
@@ -58,7 +78,7 @@ fn read_file(case: &Case, name: &str, file: &str, unit: f64) -> Result<TestRecor
     match kind.as_str() {
         "csv" => modes_of(&TextTable::read(&path, &COLUMNS[..1], &COLUMNS)?),
         "toml" => read_test(&shown, &read_text(&path, "a test in TOML")?),
-        "uff" | "unv" | "uf" | "ufb" => uff::read(&shown, &read_bytes(&path, "a universal file")?, unit),
+        "uff" | "unv" | "uf" | "ufb" => uff::read(&shown, &read_bytes(&path, "a universal file")?, unstated),
         _ => Err(Error::input(Fault::new(key, format!("\"{file}\""), "a file .uff, .unv, .csv or .toml"))),
     }
 }
@@ -85,7 +105,8 @@ fn modes_of(table: &TextTable) -> Result<TestRecords> {
             let value = row.number(column, low, &mut faults);
             if !(low..1.0).contains(&value) {
                 let place = format!("{} `{column}`", row.place());
-                faults.push(Fault::new(place, format!("{value}"), format!("a share from {low} to below 1")));
+                let fault = Fault::new(place, format!("{value}"), format!("a share from {low} to below 1"));
+                faults.push(fault.with_help("Divide percentages by 100"));
             }
             Some(value)
         };
@@ -98,7 +119,7 @@ fn modes_of(table: &TextTable) -> Result<TestRecords> {
         modes.push(ModeRecord { frequency_hz, damping_ratio, deviation, shape: BTreeMap::new() });
     }
     faults.0.truncate(MOST_FAULTS);
-    faults.into_result(TestRecords { modes, ..TestRecords::default() })
+    faults.into_result(TestRecords { modes, warnings: table.warnings(), ..TestRecords::default() })
 }
 
 #[cfg(test)]
@@ -130,6 +151,9 @@ mod tests {
         let wrong = said("a.csv", b"frequency_hz,deviation\n-1,0.1\n330,2\nx,\n");
         assert!(["a.csv:2", "a.csv:3 `deviation`", "a.csv:4"].iter().all(|p| wrong.contains(p)), "{wrong}");
         assert!(said("a.csv", b"frequency_hz\n").contains("no mode and no frequency response"));
+        let (_, told) = set("a.csv", b"frequency_hz,damping_ratio\n330,0.3\n936,0.2\n").unwrap();
+        assert!(told[0].contains("about 0.300 mean 30.0 %") && told[0].contains("0.300 %"), "{told:?}");
+        assert!(set("a.csv", b"frequency_hz,damping_ratio\n330,0.003\n").unwrap().1.is_empty());
         assert!(said("a.uff", b"    -1\n  2412\n    -1\n").contains("dataset 2412"));
         assert!(said("a.toml", b"x = 1\n").contains("a.toml:1 `x`"));
     }

@@ -74,7 +74,7 @@ fn modes(nodes: &[[f64; 3]], set: &NamedModes) -> String {
 mod tests {
     use super::*;
     use crate::job::sample;
-    use crate::measured::uff::read;
+    use crate::measured::uff::{Unstated, read};
 
     #[test]
     fn responses_come_back_as_they_were_written() {
@@ -87,7 +87,8 @@ mod tests {
         let begin = lines.iter().position(|l| l.trim_end() == "    58").unwrap();
         assert_eq!(lines[begin + 6].len(), 5 + 10 + 5 + 10 + 1 + 10 + 10 + 4 + 1 + 10 + 10 + 4);
         assert_eq!(lines[begin + 7][10..20].trim().parse::<usize>().unwrap(), frf.frequencies_hz.len());
-        let (set, warnings) = read("t", text.as_bytes(), 1e-3).unwrap().into_set();
+        let (set, warnings) =
+            read("t", text.as_bytes(), Unstated { unit: 1e-3, quantity: None }).unwrap().into_set();
         assert!(warnings.is_empty() && set.frfs.len() == frf.responses.len(), "{warnings:?}");
         for (found, exact) in set.frfs.iter().zip(&frf.responses) {
             assert_eq!(found.quantity, frf.quantity);
@@ -102,7 +103,7 @@ mod tests {
             assert!(near);
         }
         let binary = functions(&FrfResult { binary: true, ..frf.clone() });
-        let (set, warnings) = read("b", &binary, 1e-3).unwrap().into_set();
+        let (set, warnings) = read("b", &binary, Unstated { unit: 1e-3, quantity: None }).unwrap().into_set();
         assert!(warnings.is_empty() && set.frfs.len() == frf.responses.len(), "{warnings:?}");
         for (found, exact) in set.frfs.iter().zip(&frf.responses) {
             assert!(found.values == exact.values && found.frequencies_hz == frf.frequencies_hz);
@@ -115,11 +116,18 @@ mod tests {
         let mut frf = sample::rig().take::<FrfResult>().unwrap();
         let count = frf.frequencies_hz.len();
         frf.frequencies_hz[1] = frf.frequencies_hz[0] * (1.0 + 1e-9);
-        let (set, _) = read("t", &functions(&frf), 1e-3).unwrap().into_set();
+        let (set, _) =
+            read("t", &functions(&frf), Unstated { unit: 1e-3, quantity: None }).unwrap().into_set();
         assert_eq!(set.frfs[0].frequencies_hz.len(), count - 1);
         let first = frf.responses[0].values[0];
         assert!((set.frfs[0].values[0] - first).norm() <= 1e-12 * first.norm());
-        let (set, _) = read("b", &functions(&FrfResult { binary: true, ..frf }), 1e-3).unwrap().into_set();
+        let (set, _) = read(
+            "b",
+            &functions(&FrfResult { binary: true, ..frf }),
+            Unstated { unit: 1e-3, quantity: None },
+        )
+        .unwrap()
+        .into_set();
         assert_eq!(set.frfs[0].frequencies_hz.len(), count);
     }
 
@@ -128,7 +136,8 @@ mod tests {
         let results = sample::rig();
         let set = results.all::<NamedModes>()[0];
         let text = modes(&results.geometry.nodes, set);
-        let (back, warnings) = read("t", text.as_bytes(), 1.0).unwrap().into_set();
+        let (back, warnings) =
+            read("t", text.as_bytes(), Unstated { unit: 1.0, quantity: None }).unwrap().into_set();
         assert!(warnings.is_empty() && back.modes.len() == set.modes.len(), "{warnings:?}");
         assert_eq!(back.points.len(), results.geometry.nodes.len());
         for (k, mode) in back.modes.iter().enumerate() {

@@ -379,8 +379,8 @@ fn an_exported_and_reread_file_of_rows_names_its_faults() {
     let modes = results.all::<NamedModes>()[0];
     assert_eq!(results.geometry.nodes, [[0.1, 0.2, 0.3]]);
     assert!(modes.shape(0)[0].iter().filter(|u| **u != 0.0).count() == 1 && modes.modes.len() == 2);
-    write("dofs.csv", "dof,node,uz,q\n1,7,1,0\n");
-    assert!(run(folder.path(), &text).unwrap_err().to_string().contains("the column \"q\""));
+    write("dofs.csv", "dof,node,uz,uz\n1,7,1,0\n");
+    assert!(run(folder.path(), &text).unwrap_err().to_string().contains("the column \"uz\" again"));
     write("dofs.csv", "dof,node,uz,x\n1,7,1,0\n3,7,1,1\n");
     let message = run(folder.path(), &text).unwrap_err().to_string();
     assert!(message.contains("another place") && message.contains("dof \"3\""), "{message}");

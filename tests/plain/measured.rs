@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::Command;
 use stridor::linalg::c64;
 use stridor::measured::Quantity;
-use stridor::measured::uff::{Function, RealShape, functions_file, modes_text, read};
+use stridor::measured::uff::{Function, RealShape, Unstated, functions_file, modes_text, read};
 
 /// The release whose behaviour the test knows.
 const PYUFF: &str = "2.5.8";
@@ -122,7 +122,7 @@ fn universal_files_go_both_ways_with_pyuff() {
     assert!(off("frf_hz") == 0.0 && off("frf_binary_hz") == 0.0 && off("frf_binary") == 0.0);
 
     let bytes = std::fs::read(dir.path().join("theirs.uff")).unwrap();
-    let records = read("theirs.uff", &bytes, 1.0).unwrap();
+    let records = read("theirs.uff", &bytes, Unstated { unit: 1.0, quantity: None }).unwrap();
     assert!(records.warnings.is_empty(), "{:?}", records.warnings);
     for (point, exact) in records.points.values().zip(points()) {
         assert!((0..3).all(|k| (1e3 * point[k] - exact[k]).abs() < 1e-6), "{point:?} {exact:?} in mm");
@@ -248,7 +248,7 @@ fn wrong_measured_files_are_refused_before_anything_is_written() {
             assert!(!dir.path().join("results").exists());
         }
     };
-    refused("a.csv", "frequency_hz,colour\n330,red\n", &["a.csv:1", "colour"]);
+    refused("a.csv", "frequency,colour\n330,red\n", &["a.csv:1", "colour", "no column \"frequency_hz\""]);
     refused("a.toml", "[mode.1]\nfrequency = \"330 m\"\n", &["a.toml:2", "mode.1.frequency"]);
     refused("a.uff", "330\n936\n", &["a.uff:1", "begins a dataset"]);
     refused("a.unv", "    -1\n    55\n    -1\n", &["a.unv:2", "dataset 55", "the end of the dataset"]);

@@ -34,6 +34,38 @@ pub struct MarketMatrix {
     pub im: Option<SparseMatrix>,
 }
 
+impl MarketMatrix {
+    /// Which triangle holds all entries off the diagonal that are not zero, and how many these are; `None` where both triangles
+    /// hold some, where there are none, and of a matrix that is not square.
+    ///
+    /// ```
+    /// let file = b"%%MatrixMarket matrix coordinate real general\n2 2 2\n1 1 3.0\n2 1 -1.5\n";
+    /// let a = stridor_linalg::matrix_market::parse("k.mtx", file, 0).unwrap();
+    /// assert_eq!(a.one_triangle(), Some(("lower", 1)));
+    /// ```
+    pub fn one_triangle(&self) -> Option<(&'static str, usize)> {
+        let (re, n) = (&self.re, self.re.ncols());
+        if re.nrows() != n {
+            return None;
+        }
+        let mut counts = [0, 0];
+        for j in 0..n {
+            let im = self.im.as_ref().map(|im| im.val_of_col(j));
+            for (k, (i, value)) in re.row_idx_of_col(j).zip(re.val_of_col(j)).enumerate() {
+                let holds = *value != 0.0 || im.is_some_and(|im| im[k] != 0.0);
+                if holds && i != j {
+                    counts[usize::from(i < j)] += 1;
+                }
+            }
+        }
+        match counts {
+            [lower, 0] if lower > 0 => Some(("lower", lower)),
+            [0, upper] if upper > 0 => Some(("upper", upper)),
+            _ => None,
+        }
+    }
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Symmetry {
     General,
@@ -515,6 +547,46 @@ mod tests {
                         faer::mat![[0.0, -1.5e6], [0.0, 0.0], [0.25, 0.0]],
                         "{text}"
                     );
+                }
+            }
+        }
+    }
+
+    /// Random triangles, lower or upper, real or complex, under a general header; with one entry on the other side they are whole.
+    #[test]
+    fn matrices_with_one_triangle_are_told() {
+        let mut random = super::super::random::Random::new();
+        for n in 2..12 {
+            for upper in [false, true] {
+                for complex in [false, true] {
+                    let mut lines = Vec::new();
+                    for i in 1..=n {
+                        for j in 1..=i {
+                            if i == j || random.next() > 0.0 || (i, j) == (2, 1) {
+                                let [i, j] = if upper { [j, i] } else { [i, j] };
+                                let (re, im) = (random.next(), random.next());
+                                let im = if complex { format!(" {im}") } else { String::new() };
+                                lines.push(format!(
+                                    "{i} {j} {}{im}",
+                                    if complex && i != j { 0.0 } else { re }
+                                ));
+                            }
+                        }
+                    }
+                    let field = if complex { "complex" } else { "real" };
+                    let read = |lines: &[String]| {
+                        text(
+                            &format!("coordinate {field} general"),
+                            &format!("{n} {n} {}\n{}", lines.len(), lines.join("\n")),
+                        )
+                        .unwrap()
+                        .one_triangle()
+                    };
+                    let expected = if upper { "upper" } else { "lower" };
+                    assert_eq!(read(&lines), Some((expected, lines.len() - n)), "{lines:?}");
+                    let whole = if complex { "1 0" } else { "1" };
+                    lines.push(if upper { format!("{n} 1 {whole}") } else { format!("1 {n} {whole}") });
+                    assert_eq!(read(&lines), None);
                 }
             }
         }

@@ -9,6 +9,8 @@ use stridor_linalg::c64;
 pub struct TestRecords {
     /// Points by number \[m\].
     pub points: BTreeMap<u64, [f64; 3]>,
+    /// The three directions of the motion of points in shapes by number, where they are not x, y and z.
+    pub axes: BTreeMap<u64, [[f64; 3]; 3]>,
     /// Modes in any order.
     pub modes: Vec<ModeRecord>,
     /// Frequency responses.
@@ -26,7 +28,7 @@ pub struct ModeRecord {
     pub damping_ratio: Option<f64>,
     /// See [`MeasuredMode`].
     pub deviation: Option<f64>,
-    /// Displacement along x, y, z by the number of the point; empty where no shape is known.
+    /// Displacement along x, y, z, or the [`TestRecords::axes`] of the point, by its number; empty where no shape is known.
     pub shape: BTreeMap<u64, [c64; 3]>,
 }
 
@@ -51,7 +53,7 @@ impl TestRecords {
     /// The set with its modes in ascending order, and the warnings. A direction in which no mode moves a point was not
     /// measured there. What belongs to a point without a place is left out with a warning, and so are modes at 0 Hz.
     pub fn into_set(self) -> (MeasuredSet, Vec<String>) {
-        let TestRecords { points: places, mut modes, functions, mut warnings } = self;
+        let TestRecords { points: places, axes, mut modes, functions, mut warnings } = self;
         let points: Vec<MeasuredPoint> =
             places.iter().map(|(id, position)| MeasuredPoint { id: *id, position: *position }).collect();
         let index = |id: &u64| points.binary_search_by_key(id, |p| p.id).ok();
@@ -71,7 +73,11 @@ impl TestRecords {
             moving.extend((0..3).filter(|axis| motion[*axis].norm_sqr() > 0.0).map(|axis| (point, axis)));
         }
         let unit = |axis: usize| [0, 1, 2].map(|k| f64::from(k == axis));
-        let dofs = moving.iter().map(|(point, axis)| MeasuredDof { point: *point, direction: unit(*axis) });
+        let along =
+            |point: usize, axis: usize| axes.get(&points[point].id).map_or(unit(axis), |own| own[axis]);
+        let dof =
+            |(point, axis): &(usize, usize)| MeasuredDof { point: *point, direction: along(*point, *axis) };
+        let dofs = moving.iter().map(dof);
         let shape = |shape: &BTreeMap<u64, [c64; 3]>| -> Option<Vec<c64>> {
             let at = |(point, axis): &(usize, usize)| {
                 shape.get(&points[*point].id).map_or(c64::new(0.0, 0.0), |motion| motion[*axis])

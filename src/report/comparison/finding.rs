@@ -3,6 +3,7 @@
 use crate::report::finding::{Finding, FindingClass};
 use crate::report::format::{fixed, given, signed};
 use crate::results::{MeasuredComparison, MeasuredResponses};
+use std::f64::consts::TAU;
 
 /// Customary limit of the difference of a frequency \[%\].
 const FREQUENCY_PERCENT: f64 = 5.0;
@@ -28,6 +29,7 @@ pub(super) fn modes(test: &MeasuredComparison) -> Finding {
         let more = if test.rows.len() - paired.len() > NAMED { " …" } else { "" };
         words += &format!(" None is near {}{more}.", alone.join(", "));
     }
+    words += &other_unit(test).unwrap_or_default();
     let mut within = paired.len() == test.rows.len() && !paired.is_empty();
     if let Some((hz, percent)) = paired.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) {
         let inside = percent.abs() <= FREQUENCY_PERCENT;
@@ -44,6 +46,25 @@ pub(super) fn modes(test: &MeasuredComparison) -> Finding {
         words += &format!(" The least MAC is {}.", fixed(mac, 2));
     }
     Finding::new(if within { FindingClass::Good } else { FindingClass::Attention }, words)
+}
+
+/// The words that measured frequencies are most likely in another unit: in it more than half of them, and more than now, are
+/// within a fifth of a computed one.
+fn other_unit(test: &MeasuredComparison) -> Option<String> {
+    const NEAR: f64 = 0.2;
+    let near = |factor: f64| {
+        let close = |hz: f64| test.levels_hz.iter().any(|level| (factor * hz / level).ln().abs() < NEAR);
+        test.rows.iter().filter(|row| close(row.frequency_hz)).count()
+    };
+    let (now, all) = (near(1.0), test.rows.len());
+    let units = [(1e3, "kHz", "by 1000"), (1.0 / TAU, "rad/s", "by 1/2π"), (1.0 / 60.0, "1/min", "by 1/60")];
+    let (unit, by, count) = units
+        .into_iter()
+        .map(|(factor, unit, by)| (unit, by, near(factor)))
+        .find(|(_, _, count)| 4 * now < *count && 2 * count > all)?;
+    Some(format!(
+        " Multiplied {by}, {count} of them are near one: are they in {unit}? They have to be in Hz."
+    ))
 }
 
 /// The range of the FRAC.
@@ -68,6 +89,28 @@ mod tests {
     use super::*;
     use crate::job::sample;
     use crate::results::MeasuredRow;
+
+    #[test]
+    fn frequencies_in_another_unit_are_told() {
+        let hz = [410.0, 886.0, 1095.0, 1609.0];
+        let test = |factor: f64, count: usize| MeasuredComparison {
+            levels_hz: hz.to_vec(),
+            rows: hz[..count]
+                .iter()
+                .map(|f| MeasuredRow { frequency_hz: f / factor, ..Default::default() })
+                .collect(),
+            ..MeasuredComparison::default()
+        };
+        for count in 1..=4 {
+            for (factor, unit) in [(1e3, "kHz"), (1.0 / TAU, "rad/s")] {
+                let words = modes(&test(factor, count)).words;
+                assert!(words.contains(unit), "{words}");
+            }
+            for factor in [1.0, 1.1, 3.0, 0.3] {
+                assert!(other_unit(&test(factor, count)).is_none(), "{factor} {count}");
+            }
+        }
+    }
 
     #[test]
     fn one_mode_beyond_a_limit_or_without_a_partner_is_enough() {

@@ -74,8 +74,9 @@ pub fn plain(bytes: &[u8]) -> Cow<'_, [u8]> {
     text
 }
 
-/// The text in `bytes` where they are UTF-16: by their mark, or as every other one of the first four is zero.
-fn utf_16(bytes: &[u8]) -> Option<String> {
+/// The text in `bytes` where they are UTF-16: by their mark, or as every other one of the first four is zero. What is no
+/// character is U+FFFD.
+pub fn utf_16(bytes: &[u8]) -> Option<String> {
     let (big_endian, body) = match bytes {
         [0xff, 0xfe, body @ ..] => (false, body),
         [0xfe, 0xff, body @ ..] => (true, body),

@@ -27,8 +27,6 @@ pub(super) struct Dataset<'a> {
 /// Binary numbers.
 pub(super) struct Binary<'a> {
     pub data: &'a [u8],
-    /// Where they begin in the file.
-    pub at: usize,
     pub big_endian: bool,
     /// Bytes of an abscissa (0 where it is even), and of a value.
     pub sizes: [usize; 2],
@@ -40,6 +38,21 @@ impl Dataset<'_> {
         let number = self.lines.get(index).map_or(self.first, |line| line.number);
         let place = format!("{}:{number}, dataset {}", self.file, self.kind);
         Error::input(Fault::new(place, found, expected))
+    }
+
+    /// The file with the line in which the `k`-th number of the lines from `first` on stands, of which all but the last are of one
+    /// length; that of the dataset where its numbers are binary.
+    pub fn row_place(&self, first: usize, k: usize) -> String {
+        let mut left = k;
+        let holds = |line: &&DatasetLine<'_>| {
+            let count = line.text.split_whitespace().count();
+            let here = left < count;
+            left = left.saturating_sub(count);
+            here
+        };
+        let line = self.lines.iter().skip(first).find(holds);
+        let number = line.map_or(self.first, |line| line.number);
+        format!("{}:{number}, dataset {}", self.file, self.kind)
     }
 
     /// The line with this index.
@@ -58,7 +71,13 @@ impl Dataset<'_> {
         Ok(numbers)
     }
 
-    /// All numbers of a line.
+    /// All numbers of a line, NaN where a program could write none.
+    pub fn values(&self, index: usize, widths: &[usize]) -> Result<Vec<f64>> {
+        let text = self.line(index)?;
+        super::record::values(text, widths).map_err(|field| self.fault(index, shown(&field), "a number"))
+    }
+
+    /// All numbers of a line, finite.
     pub fn numbers(&self, index: usize, widths: &[usize]) -> Result<Vec<f64>> {
         let text = self.line(index)?;
         super::record::numbers(text, widths)

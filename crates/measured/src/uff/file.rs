@@ -16,19 +16,37 @@ struct FileCursor<'a> {
 }
 
 impl<'a> FileCursor<'a> {
+    /// The next line, which ends in LF, CR LF or CR.
     fn line(&mut self) -> Option<DatasetLine<'a>> {
         let rest = self.bytes.get(self.at..).filter(|rest| !rest.is_empty())?;
-        let length = rest.iter().position(|b| *b == b'\n').unwrap_or(rest.len());
-        self.at += length + 1;
+        let length = rest.iter().position(|b| matches!(b, b'\n' | b'\r')).unwrap_or(rest.len());
+        let returns = rest[length..].iter().take_while(|b| **b == b'\r').count();
+        let feed = usize::from(rest.get(length + returns) == Some(&b'\n'));
+        // Returns before a line feed are of this end; without one each is an end itself.
+        let end = if feed == 1 { returns + 1 } else { returns.min(1) };
+        self.at += length + end;
         self.number += 1;
-        let text = rest[..length].strip_suffix(b"\r").unwrap_or(&rest[..length]);
-        Some(DatasetLine { text: String::from_utf8_lossy(text), number: self.number })
+        Some(DatasetLine { text: String::from_utf8_lossy(&rest[..length]), number: self.number })
     }
 
     fn skip(&mut self, bytes: usize) {
         let end = (self.at + bytes).min(self.bytes.len());
         self.number += self.bytes[self.at.min(end)..end].iter().filter(|b| **b == b'\n').count();
         self.at = end;
+    }
+
+    /// Goes to the next line that begins or ends a dataset, or to the end.
+    fn skip_to_mark(&mut self) {
+        const MARK: &[u8] = b"    -1";
+        let rest = &self.bytes[self.at.min(self.bytes.len())..];
+        let mark = (0..rest.len()).find(|at| {
+            let begins = *at == 0 || matches!(rest[at - 1], b'\n' | b'\r');
+            let tail = &rest[*at..];
+            begins
+                && tail.starts_with(MARK)
+                && matches!(tail.get(MARK.len()), None | Some(b'\n' | b'\r' | b' '))
+        });
+        self.skip(mark.unwrap_or(rest.len()));
     }
 }
 
@@ -37,50 +55,83 @@ fn delimits(text: &str) -> bool {
     text.trim() == "-1" && text.find('-').is_some_and(|at| at <= 4)
 }
 
-/// The datasets of a file called `file`. Refused are a line outside of datasets, a dataset that does not end, binary numbers of unknown form.
-pub(super) fn datasets<'a>(file: &'a str, bytes: &'a [u8]) -> Result<Vec<Dataset<'a>>> {
+/// The number of a dataset, and whether its numbers are binary, in the line that begins it.
+fn kind_of(text: &str) -> Option<(u32, bool)> {
+    let word = text.split_whitespace().next()?;
+    let digits = word.strip_suffix(['b', 'B']);
+    Some((digits.unwrap_or(word).parse().ok()?, digits.is_some()))
+}
+
+/// The datasets of a file called `file`; what cannot be read goes to `lost`: text outside of datasets, a dataset that does not
+/// end, binary numbers of unknown form. Refused is a file without any.
+///
+/// A mark `-1` too few or too many between two datasets is no reason to lose them.
+pub(super) fn datasets<'a>(
+    file: &'a str,
+    bytes: &'a [u8],
+    lost: &mut impl FnMut(Error),
+) -> Result<Vec<Dataset<'a>>> {
     let mut cursor = FileCursor { bytes, at: 0, number: 0 };
     let mut all = Vec::new();
     let wrong = |number: usize, found: String, expected: &str| {
         Error::input(Fault::new(format!("{file}:{number}"), found, expected))
     };
+    const MARK: &str = "`    -1`, which begins a dataset of a universal file";
+    // The first line of text outside, and whether a dataset ended just before it.
+    let (mut outside, mut ended) = (false, false);
     while let Some(line) = cursor.line() {
         let text = line.text.trim_start_matches('\u{feff}');
         if text.trim().is_empty() {
             continue;
         }
-        if !delimits(text) {
-            let expected = "`    -1`, which begins a dataset of a universal file";
-            return Err(wrong(line.number, shown(text), expected));
-        }
-        let first = line.number + 1;
-        let Some(name) = cursor.line() else {
-            return Err(wrong(first, "the end of the file".into(), "the number of a dataset"));
+        let name = if delimits(text) {
+            let mut names = std::iter::from_fn(|| cursor.line());
+            names.find(|name| !delimits(&name.text))
+        } else if ended && (text.trim().parse::<u32>().is_ok() || kind_of(text).is_some_and(|(_, b)| b)) {
+            Some(line)
+        } else {
+            if !std::mem::replace(&mut outside, true) {
+                let error = wrong(line.number, shown(text), MARK);
+                if all.is_empty() && !bytes.windows(6).any(|word| word == b"    -1") {
+                    return Err(error);
+                }
+                lost(error);
+            }
+            ended = false;
+            continue;
         };
-        let word = name.text.split_whitespace().next().unwrap_or("");
-        let (digits, binary) = match word.strip_suffix(['b', 'B']) {
-            Some(digits) => (digits, true),
-            None => (word, false),
-        };
-        let Ok(kind) = digits.parse::<u32>() else {
-            return Err(wrong(first, shown(word), "the number of a dataset"));
+        (outside, ended) = (false, true);
+        // A mark alone at the end.
+        let Some(name) = name else { break };
+        let first = name.number;
+        let Some((kind, binary)) = kind_of(&name.text) else {
+            lost(wrong(first, shown(&name.text), "the number of a dataset"));
+            cursor.skip_to_mark();
+            cursor.line();
+            continue;
         };
         let mut dataset = Dataset { kind, lines: Vec::new(), binary: None, file, first };
-        if binary {
-            read_binary(&mut dataset, &name.text, &mut cursor)?;
+        let read = if binary { read_binary(&mut dataset, &name.text, &mut cursor) } else { Ok(()) };
+        if let Err(error) = read {
+            lost(error);
+            cursor.skip_to_mark();
+            cursor.line();
+            continue;
         }
-        loop {
+        let ends = loop {
             match cursor.line() {
-                Some(line) if delimits(&line.text) => break,
+                Some(line) if delimits(&line.text) => break true,
                 Some(line) if dataset.binary.is_none() => dataset.lines.push(line),
                 Some(line) if line.text.trim().is_empty() => {}
-                _ => {
-                    let found = format!("dataset {kind}, which does not end");
-                    return Err(wrong(first, found, "`    -1` after it: the file is cut off"));
-                }
+                _ => break false,
             }
+        };
+        if ends {
+            all.push(dataset);
+        } else {
+            let found = format!("dataset {kind}, which does not end");
+            lost(wrong(first, found, "`    -1` after it: the file is cut off"));
         }
-        all.push(dataset);
     }
     Ok(all)
 }
@@ -125,7 +176,7 @@ fn read_binary<'a>(dataset: &mut Dataset<'a>, name: &str, cursor: &mut FileCurso
     };
     let length = length(&sizes).unwrap_or(0);
     let big_endian = order == 2;
-    dataset.binary = Some(Binary { data: &rest[..length], at, big_endian, sizes });
+    dataset.binary = Some(Binary { data: &rest[..length], big_endian, sizes });
     cursor.skip(length);
     Ok(())
 }

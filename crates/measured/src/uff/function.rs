@@ -5,12 +5,14 @@ use super::super::set::Quantity;
 use super::dataset::{Binary, Dataset, shown};
 use super::form::ValueLayout;
 use super::record::{columns, e_format, text_line, whole};
-use super::units::{UnitFactors, labelled};
+use super::units::{UnitFactors, hertz, is_force, labelled, order};
 use stridor_base::error::Result;
 use stridor_linalg::c64;
 
 /// Code of a frequency response function.
 const FRF: i64 = 4;
+/// Code of what is not known.
+const UNKNOWN: i64 = 0;
 /// Specific data types.
 const DISPLACEMENT: i64 = 8;
 const REACTION: i64 = 9;
@@ -23,30 +25,62 @@ const WHO: [usize; 12] = [5, 10, 5, 10, 1, 10, 10, 4, 1, 10, 10, 4];
 /// Columns of an axis: type, three exponents, label, unit.
 const AXIS: [usize; 8] = [10, 5, 5, 5, 1, 20, 1, 20];
 
+/// What of a response could be read.
+pub(super) struct ReadFunction {
+    pub record: FunctionRecord,
+    /// Whether the file states the units.
+    pub stated: bool,
+    /// Words on frequencies that are left out.
+    pub left_out: Vec<String>,
+}
+
 /// Reads dataset 58; what it is, in words, where it is no frequency response of motion over force.
 ///
-/// A unit in the label of an axis says what its numbers are; else they are in `units`, or SI where there are none. Whether
-/// the file states the units is returned with the response.
+/// A unit in the label of an axis says what its numbers are; else they are in `units`, or SI where there are none. Axes of
+/// type 0 (unknown) are what their labels and units say, else `quantity`, a motion over a force.
 pub(super) fn read(
     dataset: &Dataset<'_>,
     units: Option<UnitFactors>,
-) -> Result<std::result::Result<(FunctionRecord, bool), String>> {
+    quantity: Option<Quantity>,
+) -> Result<std::result::Result<ReadFunction, String>> {
     let [first, second] = [dataset.line(0)?.trim(), dataset.line(1)?.trim()];
     let title = if first == "NONE" || first.is_empty() { second } else { first };
     let who = who(dataset)?;
     let name = format!("{title}, {}/{}", dof(who.response), dof(who.reference));
     let form = ValueLayout::read(dataset)?;
-    if who.kind != FRF {
+    let response = who.kind == FRF || (who.kind == UNKNOWN && quantity.is_some() && form.complex());
+    if !response {
         return Ok(Err(format!("functions of type {}, which are no frequency responses", who.kind)));
     }
     let [abscissa, ordinate, denominator] = [axis(dataset, 7)?, axis(dataset, 8)?, axis(dataset, 9)?];
-    let quantity = match ordinate.kind {
+    let moving = match ordinate.kind {
         DISPLACEMENT => Quantity::Receptance,
         VELOCITY => Quantity::Mobility,
         ACCELERATION => Quantity::Accelerance,
+        UNKNOWN => match motion(&ordinate.unit).or_else(|| motion(&ordinate.label)).or(quantity) {
+            Some(quantity) => quantity,
+            None => {
+                return Ok(Err(
+                    "responses of an unknown quantity (ordinate of data type 0): `quantity`, as in \
+                               quantity = \"accelerance\", says what they are"
+                        .into(),
+                ));
+            }
+        },
         kind => return Ok(Err(format!("responses of data type {kind}, which is no motion"))),
     };
-    if !matches!(denominator.kind, FORCE | REACTION) || !matches!(abscissa.kind, 0 | FREQUENCY) {
+    let force = match denominator.kind {
+        FORCE | REACTION => true,
+        UNKNOWN => {
+            let none = |text: &str| text.is_empty() || text == "NONE";
+            denominator.label.to_lowercase().contains("force")
+                || is_force(&denominator.unit)
+                || ordinate.unit.to_lowercase().ends_with("/n")
+                || (none(&denominator.label) && none(&denominator.unit))
+        }
+        _ => false,
+    };
+    if !force || !matches!(abscissa.kind, UNKNOWN | FREQUENCY) {
         return Ok(Err("responses that are not motion over force over frequency".into()));
     }
     let (Some(excitation), Some(response)) = (direction(who.reference.1), direction(who.response.1)) else {
@@ -56,27 +90,76 @@ pub(super) fn read(
     let under = labelled(&denominator.unit).or(units.map(|u| u.force));
     let stated = over.is_some() && under.is_some();
     let scale = over.unwrap_or(1.0) / under.unwrap_or(1.0);
+    let to_hertz = hertz(&abscissa.unit);
     let numbers = match &dataset.binary {
-        Some(binary) => binary_numbers(dataset, binary, &form)?,
+        Some(binary) => binary_numbers(binary, &form),
         None => text_numbers(dataset, &form)?,
     };
     let stride = form.parts() + usize::from(!form.even);
-    let (mut frequencies_hz, mut values) = (Vec::new(), Vec::new());
+    let (mut rows, mut left_out) = (Vec::new(), Vec::new());
+    let (mut broken, mut first_broken) = (0, None);
     for (k, row) in numbers.chunks_exact(stride).enumerate() {
         let (hz, value) =
             if form.even { (form.first + k as f64 * form.step, row) } else { (row[0], &row[1..]) };
-        frequencies_hz.push(hz);
-        values.push(scale * c64::new(value[0], value.get(1).copied().unwrap_or(0.0)));
+        let hz = to_hertz * hz;
+        if row.iter().all(|number| number.is_finite()) {
+            rows.push((hz, scale * c64::new(value[0], value.get(1).copied().unwrap_or(0.0))));
+        } else {
+            broken += 1;
+            first_broken.get_or_insert((k, hz));
+        }
     }
-    if frequencies_hz.windows(2).any(|pair| pair[0] >= pair[1]) || frequencies_hz.iter().any(|f| *f < 0.0) {
-        return Err(dataset.fault(
-            6,
-            "frequencies that do not rise",
-            "ascending frequencies of zero or more",
+    if let Some((k, hz)) = first_broken {
+        let place = dataset.row_place(11, k * stride);
+        let at = if hz.is_finite() { format!(" ({hz} Hz)") } else { String::new() };
+        left_out.push(format!(
+            "{place}{at}: no finite number: {broken} of {} frequencies left out",
+            broken + rows.len()
         ));
     }
+    // Measured downwards.
+    if rows.len() > 1 && rows.windows(2).all(|pair| pair[0].0 >= pair[1].0) {
+        rows.reverse();
+    }
+    if rows.windows(2).any(|pair| pair[0].0 > pair[1].0) || rows.iter().any(|(hz, _)| *hz < 0.0) {
+        return Err(dataset.fault(
+            6,
+            "frequencies that neither rise nor fall",
+            "frequencies of zero or more in their order",
+        ));
+    }
+    // Those of six digits may be alike.
+    let all = rows.len();
+    let again = rows.windows(2).find(|pair| pair[0].0 == pair[1].0).map(|pair| pair[0].0);
+    rows.dedup_by(|later, earlier| later.0 == earlier.0);
+    if let Some(hz) = again {
+        let (place, count) = (dataset.row_place(6, 0), all - rows.len());
+        left_out.push(format!(
+            "{place}: {hz} Hz again: {count} of {all} frequencies left out, the first of each is taken"
+        ));
+    }
+    if rows.is_empty() {
+        return Err(dataset.fault(6, "no frequency with a finite value", "some"));
+    }
+    let (frequencies_hz, values) = rows.into_iter().unzip();
     let (excitation, response) = ((who.reference.0, excitation), (who.response.0, response));
-    Ok(Ok((FunctionRecord { name, quantity, excitation, response, frequencies_hz, values }, stated)))
+    let record = FunctionRecord { name, quantity: moving, excitation, response, frequencies_hz, values };
+    Ok(Ok(ReadFunction { record, stated, left_out }))
+}
+
+/// The motion that a unit or a label names.
+fn motion(text: &str) -> Option<Quantity> {
+    let words = text.to_lowercase();
+    let named = |parts: [&str; 2]| parts.iter().any(|part| words.contains(part));
+    match order(text) {
+        Some(0) => Some(Quantity::Receptance),
+        Some(1) => Some(Quantity::Mobility),
+        Some(2) => Some(Quantity::Accelerance),
+        _ if named(["accel", "inertance"]) => Some(Quantity::Accelerance),
+        _ if named(["veloc", "mobility"]) => Some(Quantity::Mobility),
+        _ if named(["displ", "recept"]) => Some(Quantity::Receptance),
+        _ => None,
+    }
 }
 
 /// Type of a function and its points, with codes of directions.
@@ -117,9 +200,10 @@ fn dof((node, code): (u64, i64)) -> String {
     }
 }
 
-/// Quantity along an axis, and its unit.
+/// Quantity along an axis, its label and its unit.
 struct AxisRecord {
     kind: i64,
+    label: String,
     unit: String,
 }
 
@@ -129,7 +213,7 @@ fn axis(dataset: &Dataset<'_>, record: usize) -> Result<AxisRecord> {
     let first = text.split_whitespace().next().unwrap_or("");
     let kind = whole(&cells[0]).or(whole(first));
     let kind = kind.ok_or_else(|| dataset.fault(record, shown(&cells[0]), "a specific data type"))?;
-    Ok(AxisRecord { kind, unit: cells[7].clone() })
+    Ok(AxisRecord { kind, label: cells[5].clone(), unit: cells[7].clone() })
 }
 
 /// The unit vector of a code: ±1, ±2, ±3; zero where the direction is not stated; `None` for rotations.
@@ -150,7 +234,7 @@ fn text_numbers(dataset: &Dataset<'_>, form: &ValueLayout) -> Result<Vec<f64>> {
     let wanted = form.count.saturating_mul(form.parts() + usize::from(!form.even));
     let (mut numbers, mut length) = (Vec::new(), None);
     for index in FIRST..dataset.lines.len() {
-        let line = dataset.numbers(index, form.widths())?;
+        let line = dataset.values(index, form.widths())?;
         if line.is_empty() {
             continue;
         }
@@ -174,7 +258,7 @@ fn text_numbers(dataset: &Dataset<'_>, form: &ValueLayout) -> Result<Vec<f64>> {
     Ok(numbers)
 }
 
-fn binary_numbers(dataset: &Dataset<'_>, binary: &Binary<'_>, form: &ValueLayout) -> Result<Vec<f64>> {
+fn binary_numbers(binary: &Binary<'_>, form: &ValueLayout) -> Vec<f64> {
     let [abscissa, value] = binary.sizes;
     let row = [abscissa].into_iter().filter(|size| *size > 0).chain(std::iter::repeat_n(value, form.parts()));
     let row: Vec<usize> = row.collect();
@@ -188,14 +272,10 @@ fn binary_numbers(dataset: &Dataset<'_>, binary: &Binary<'_>, form: &ValueLayout
             (_, Ok(b)) => f64::from(f32::from_le_bytes(b)),
             _ => break,
         };
-        if !number.is_finite() {
-            let place = format!("{number} at byte {}", binary.at + at);
-            return Err(dataset.fault(6, place, "finite numbers"));
-        }
         numbers.push(number);
         at += size;
     }
-    Ok(numbers)
+    numbers
 }
 
 /// A frequency response to write.

@@ -4,13 +4,15 @@
 //! | dataset | read | written |
 //! |---|---|---|
 //! | 15, 2411: points | yes | 15 |
+//! | 18, 2420: coordinate systems of points and of their motion, Cartesian and cylindrical | yes | |
 //! | 55: modes, real and complex | yes | real |
 //! | 58: functions, in text | yes | complex, double precision |
 //! | 58b: functions, in IEEE 754 numbers of either byte order | yes | complex, double precision |
 //! | 164: units | yes | SI |
 //! | 151: header | skipped | |
 //!
-//! Anything else is skipped with a warning.
+//! Anything else is skipped with a warning. What cannot be used costs itself: a point, a mode, a response or a frequency of it is
+//! left out with a warning that names file, line and reason.
 
 mod dataset;
 mod file;
@@ -19,50 +21,67 @@ mod function;
 mod nodes;
 mod record;
 mod shape;
+mod systems;
 mod units;
 
 pub use function::Function;
 pub use shape::RealShape;
 
 use super::records::TestRecords;
+use super::set::Quantity;
 use std::collections::BTreeMap;
-use stridor_base::error::{Faults, Result};
+use stridor_base::error::read::utf_16;
+use stridor_base::error::{Error, Result};
+use systems::Systems;
 
 /// Datasets that say nothing about the test.
 const SILENT: [u32; 1] = [151];
 
-/// Reads the bytes of a universal file called `file`; lengths are in `unit` \[m\] where the file does not state it.
+/// The most warnings of records that are left out.
+const TOLD: usize = 20;
+
+/// What is taken of a file where it does not state it.
+#[derive(Debug, Clone, Copy)]
+pub struct Unstated {
+    /// The unit of lengths \[m\].
+    pub unit: f64,
+    /// What responses of unknown ordinates are.
+    pub quantity: Option<Quantity>,
+}
+
+/// Reads the bytes of a universal file called `file`.
 ///
 /// # Errors
-/// Every dataset that cannot be read, with file and line, or the byte of binary numbers.
-pub fn read(file: &str, bytes: &[u8], unit: f64) -> Result<TestRecords> {
+/// A file without any dataset. What else cannot be read is left out with a warning.
+pub fn read(file: &str, bytes: &[u8], unstated: Unstated) -> Result<TestRecords> {
+    let text = utf_16(bytes);
+    let bytes = text.as_ref().map_or(bytes, |text| text.as_bytes());
     let mut records = TestRecords::default();
-    let mut faults = Faults::new();
+    let mut lost = LeftOut::default();
     let mut units = None;
     let mut skipped: BTreeMap<String, usize> = BTreeMap::new();
-    let (mut local, mut unstated) = (Vec::new(), 0);
-    for dataset in file::datasets(file, bytes)? {
+    let (mut points, mut systems, mut without_unit) = (Vec::new(), Systems::default(), 0);
+    for dataset in file::datasets(file, bytes, &mut |error| lost.note(error))? {
         let mut skip = |what: String| *skipped.entry(what).or_insert(0) += 1;
+        let length = units.map_or(unstated.unit, |u: units::UnitFactors| u.length);
         match dataset.kind {
-            15 | 2411 => {
-                let unit = units.map_or(unit, |u: units::UnitFactors| u.length);
-                let found = faults.take(nodes::read(&dataset, unit, &mut records.points));
-                local.extend(found.unwrap_or_default());
-            }
-            55 => match faults.take(shape::read(&dataset)) {
+            15 | 2411 => nodes::read(&dataset, length, &mut points, &mut |error| lost.note(error)),
+            18 | 2420 => _ = lost.take(systems.read(&dataset, length)),
+            55 => match lost.take(shape::read(&dataset)) {
                 Some(Ok(mode)) => records.modes.push(mode),
                 Some(Err(what)) => skip(what),
                 None => {}
             },
-            58 => match faults.take(function::read(&dataset, units)) {
-                Some(Ok((function, stated))) => {
-                    unstated += usize::from(!stated);
-                    records.functions.push(function);
+            58 => match lost.take(function::read(&dataset, units, unstated.quantity)) {
+                Some(Ok(read)) => {
+                    without_unit += usize::from(!read.stated);
+                    records.functions.push(read.record);
+                    lost.0.extend(read.left_out);
                 }
                 Some(Err(what)) => skip(what),
                 None => {}
             },
-            164 => units = faults.take(units::read(&dataset)).or(units),
+            164 => units = lost.take(units::read(&dataset)).or(units),
             kind if SILENT.contains(&kind) => {}
             kind => skip(format!("dataset {kind}")),
         }
@@ -71,17 +90,64 @@ pub fn read(file: &str, bytes: &[u8], unit: f64) -> Result<TestRecords> {
         1 => format!("{file}: skipped {what}"),
         count => format!("{file}: skipped {count} times {what}"),
     };
+    records.warnings = lost.warnings(file);
     records.warnings.extend(skipped.iter().map(counted));
-    if unstated > 0 {
+    if without_unit > 0 {
         let words = "frequency responses do not state their units; they are taken as SI";
-        records.warnings.push(format!("{file}: {unstated} {words}"));
+        records.warnings.push(format!("{file}: {without_unit} {words}"));
     }
-    if let Some(first) = local.first() {
-        let words = "are given in a coordinate system of their own; they are taken as global";
-        records.warnings.push(format!("{file}: {} points, {first} the first, {words}", local.len()));
+    place(file, &mut records, &points, &systems);
+    Ok(records)
+}
+
+/// Gives points their places and motions their directions, in the frame of the test.
+fn place(file: &str, records: &mut TestRecords, points: &[nodes::PointRecord], systems: &Systems) {
+    let placed = nodes::place(file, points, systems);
+    for mode in &mut records.modes {
+        mode.shape.retain(|label, _| !placed.unknown.contains(label));
     }
-    faults.0.truncate(20);
-    faults.into_result(records)
+    for function in &mut records.functions {
+        for (label, direction) in [&mut function.excitation, &mut function.response] {
+            if let Some(axes) = placed.axes.get(label) {
+                let own = *direction;
+                *direction = [0, 1, 2].map(|k| (0..3).map(|axis| own[axis] * axes[axis][k]).sum());
+            }
+        }
+    }
+    let stated =
+        |(label, direction): &(u64, [f64; 3])| *direction == [0.0; 3] || !placed.unknown.contains(label);
+    records.functions.retain(|function| stated(&function.excitation) && stated(&function.response));
+    records.warnings.extend(placed.warnings);
+    (records.points, records.axes) = (placed.points, placed.axes);
+}
+
+/// What cannot be used, in words.
+#[derive(Default)]
+struct LeftOut(Vec<String>);
+
+impl LeftOut {
+    fn note(&mut self, error: Error) {
+        match error {
+            Error::Input(faults) => self.0.extend(faults.0.iter().map(|fault| {
+                format!("{}: found {}; expected {}: left out", fault.place, fault.found, fault.expected)
+            })),
+            other => self.0.push(other.to_string()),
+        }
+    }
+
+    fn take<T>(&mut self, result: Result<T>) -> Option<T> {
+        result.map_err(|error| self.note(error)).ok()
+    }
+
+    /// The first of them, and how many there are.
+    fn warnings(mut self, file: &str) -> Vec<String> {
+        let more = self.0.len().saturating_sub(TOLD);
+        self.0.truncate(TOLD);
+        if more > 0 {
+            self.0.push(format!("{file}: {more} records more were left out"));
+        }
+        self.0
+    }
 }
 
 /// A universal file in SI: units, points by label \[m\], real modes.

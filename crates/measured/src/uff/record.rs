@@ -1,5 +1,7 @@
 //! Fields of a record as Fortran writes and reads them.
 
+use stridor_base::numbers::parse;
+
 /// The fields of a line: between white space where there are as many as `widths`, in fixed columns otherwise.
 pub(super) fn fields(text: &str, widths: &[usize]) -> Vec<String> {
     let words: Vec<&str> = text.split_whitespace().collect();
@@ -16,26 +18,40 @@ pub(super) fn columns(text: &str, widths: &[usize]) -> Vec<String> {
     widths.iter().map(&mut field).collect()
 }
 
-/// Every number of a line: between white space, or in columns of these widths, over and over, where numbers touch.
-pub(super) fn numbers(text: &str, widths: &[usize]) -> Result<Vec<f64>, String> {
-    let words: Option<Vec<f64>> = text.split_whitespace().map(float).collect();
+/// Every number of a line: between white space, or in columns of these widths, over and over, where numbers touch. What a
+/// program writes in the place of a number, such as `NaN` or Fortran's `*****`, is NaN.
+pub(super) fn values(text: &str, widths: &[usize]) -> Result<Vec<f64>, String> {
+    let words: Option<Vec<f64>> = text.split_whitespace().map(value).collect();
     if let Some(words) = words {
         return Ok(words);
     }
     let pattern: Vec<usize> = widths.iter().copied().cycle().take(text.len()).collect();
     let cells = columns(text.trim_end(), &pattern);
-    cells.iter().filter(|cell| !cell.is_empty()).map(|cell| float(cell).ok_or(cell.clone())).collect()
+    cells.iter().filter(|cell| !cell.is_empty()).map(|cell| value(cell).ok_or(cell.clone())).collect()
+}
+
+/// The same where every number is finite.
+pub(super) fn numbers(text: &str, widths: &[usize]) -> Result<Vec<f64>, String> {
+    let numbers = values(text, widths)?;
+    match numbers.iter().find(|number| !number.is_finite()) {
+        Some(number) => Err(number.to_string()),
+        None => Ok(numbers),
+    }
+}
+
+/// A number, or NaN where a program could write none.
+fn value(text: &str) -> Option<f64> {
+    let none = || {
+        let stars = !text.is_empty() && text.chars().all(|c| c == '*');
+        let upper = text.trim_start_matches(['+', '-']).to_uppercase();
+        stars || ["1.#", "NAN(", "IND", "INFINITY"].iter().any(|word| upper.starts_with(word))
+    };
+    parse(text).or_else(|| none().then_some(f64::NAN))
 }
 
 /// A finite number with an exponent in E or D, or in neither as Fortran writes `1.5-103`.
 pub(super) fn float(text: &str) -> Option<f64> {
-    let plain: String = text.trim().chars().map(|c| if "dDe".contains(c) { 'E' } else { c }).collect();
-    let sign = plain.rfind(['+', '-']).filter(|at| *at > 0 && plain.as_bytes()[at - 1] != b'E');
-    let text = match sign {
-        Some(at) if !plain.contains('E') => format!("{}E{}", &plain[..at], &plain[at..]),
-        _ => plain,
-    };
-    text.parse().ok().filter(|x: &f64| x.is_finite())
+    parse(text.trim()).filter(|x| x.is_finite())
 }
 
 /// A whole number, also written as `12.`; zero where nothing is written.
@@ -81,6 +97,10 @@ mod tests {
         assert_eq!(numbers(touching, &[13]).unwrap(), [-1.23456e-103, -1.23456e103, 1.0]);
         assert_eq!(numbers("1 2   3", &[13]).unwrap(), [1.0, 2.0, 3.0]);
         assert!(numbers("1 x", &[13]).is_err());
+        for none in ["NaN", "-nan", "inf", "1.#QNAN", "-1.#IND", "*************", "-Infinity"] {
+            let read = values(&format!("1.0 {none}"), &[13]).unwrap();
+            assert!(read[0] == 1.0 && !read[1].is_finite() && numbers(none, &[13]).is_err(), "{none}");
+        }
         assert_eq!(fields("  12   3", &[5, 5, 5]), ["12", "3", ""]);
     }
 

@@ -87,8 +87,13 @@ pub(super) fn read(dataset: &Dataset<'_>) -> Result<std::result::Result<ModeReco
             1 => c64::new(numbers[axis], 0.0),
             _ => c64::new(numbers[2 * axis], numbers[2 * axis + 1]),
         };
-        if shape.insert(label, [0, 1, 2].map(along)).is_some() {
-            return Err(dataset.fault(index, format!("node {label} again"), "each node once"));
+        let motion = [0, 1, 2].map(along);
+        if shape.insert(label, motion).is_some_and(|before| before != motion) {
+            return Err(dataset.fault(
+                index,
+                format!("node {label} again, moving otherwise"),
+                "each node once",
+            ));
         }
         index += 1;
     }

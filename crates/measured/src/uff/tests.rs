@@ -1,6 +1,7 @@
 use super::*;
-use crate::Quantity;
 use stridor_linalg::c64;
+
+const SI: Unstated = Unstated { unit: 1.0, quantity: None };
 
 /// Eleven lines of dataset 58: a response of point 3 along −y for a force at 1 along x.
 fn header(kind: i64, count: usize, even: bool, unit: &str) -> String {
@@ -44,7 +45,7 @@ const SIX: &str = "    -1\n    55\nNONE\nNONE\nNONE\nNONE\nNONE\n         1     
 #[test]
 fn modes_of_both_kinds_are_read() {
     let text = [UNITS, NODES, COMPLEX, SIX].concat();
-    let records = read("t", text.as_bytes(), 1.0).unwrap();
+    let records = read("t", text.as_bytes(), SI).unwrap();
     assert!((records.points[&1][0] - 0.015).abs() < 1e-15 && (records.points[&3][1] - 0.075).abs() < 1e-15);
     let [complex, six] = &records.modes[..] else { panic!("two modes") };
     // λ = −2π + 628.287 i: |λ| = 628.318, f = 100 Hz, ζ = 1 %.
@@ -58,7 +59,7 @@ fn modes_of_both_kinds_are_read() {
 #[test]
 fn functions_in_text_are_read_in_every_form() {
     let values = |records: TestRecords| records.functions[0].clone();
-    let of = |text: &str| values(read("t", text.as_bytes(), 1.0).unwrap());
+    let of = |text: &str| values(read("t", text.as_bytes(), SI).unwrap());
     let even = of(&text_58(5, 2, true, "  1.00000E+00 -2.00000E+00  3.00000E+00  4.00000E+00\n"));
     assert_eq!(even.frequencies_hz, [10.0, 12.5]);
     assert_eq!(even.values, [c64::new(1.0, -2.0), c64::new(3.0, 4.0)]);
@@ -92,7 +93,7 @@ fn binary_functions_are_read_in_both_orders_and_sizes() {
     let cases = [(6, false, doubles), (6, true, big), (5, true, singles), (6, false, mixed)];
     for (kind, order, data) in cases {
         let bytes = binary_58(kind, 2, false, order, &data);
-        let function = &read("t", &bytes, 1.0).unwrap().functions[0];
+        let function = &read("t", &bytes, SI).unwrap().functions[0];
         assert_eq!(function.frequencies_hz, [5.0, 6.0]);
         // The label of the ordinate says g.
         let exact = 9.80665 * c64::new(1.5, -2.5);
@@ -102,8 +103,14 @@ fn binary_functions_are_read_in_both_orders_and_sizes() {
 
 #[test]
 fn faults_name_the_line_and_what_is_wrong() {
-    let said = |bytes: &[u8]| read("t.uff", bytes, 1.0).unwrap_err().to_string();
-    assert!(said(b"frequency\n330\n").contains("t.uff:1: found `frequency`"));
+    let no_file = read("t.uff", b"frequency\n330\n", SI).unwrap_err().to_string();
+    assert!(no_file.contains("t.uff:1: found `frequency`"));
+    // What is wrong costs itself.
+    let said = |bytes: &[u8]| {
+        let records = read("t.uff", bytes, SI).unwrap();
+        assert!(records.modes.is_empty() && records.functions.is_empty());
+        records.warnings.join("\n")
+    };
     assert!(said(b"    -1\n    15\n").contains("does not end"));
     assert!(
         said(b"    -1\n    15\n         1         0         0         0  1.0 x 2.0\n    -1\n")
@@ -115,7 +122,7 @@ fn faults_name_the_line_and_what_is_wrong() {
     // A surplus line, anywhere, would shift every value behind it.
     let lines = ["  1.0 2.0 3.0 4.0 5.0 6.0", "  7.0 8.0 9.0 1.0 2.0 3.0", "  4.0 5.0 0.0 0.0 0.0 0.0"];
     let of = |lines: &[&str]| text_58(5, 7, true, &(lines.join("\n") + "\n"));
-    assert!(read("t.uff", of(&lines).as_bytes(), 1.0).is_ok());
+    assert_eq!(read("t.uff", of(&lines).as_bytes(), SI).unwrap().functions.len(), 1);
     for k in 0..3 {
         let mut more = lines.to_vec();
         more.insert(k, lines[k]);
@@ -125,20 +132,20 @@ fn faults_name_the_line_and_what_is_wrong() {
     let uneven = said(of(&[lines[0], " 1.0 2.0", lines[1], lines[2]]).as_bytes());
     assert!(uneven.contains("t.uff:15") && uneven.contains("2 numbers in a line"), "{uneven}");
     let node = "         3\n  1.00000E+00  2.00000E+00  0.00000E+00  0.00000E+00 -3.00000E+00  4.00000E+00\n";
-    let again = COMPLEX.replace(node, &node.repeat(2));
+    let again = COMPLEX.replace(node, &(node.to_string() + &node.replace("3.0", "4.0")));
     assert!(said(again.as_bytes()).contains("node 3 again"), "{again}");
-    let falling = said(text_58(4, 2, false, " 6.0 1.0 5.0 1.0\n").as_bytes());
-    assert!(falling.contains("do not rise"), "{falling}");
+    let falling = said(text_58(4, 3, false, " 6.0 1.0 5.0 1.0 7.0 1.0\n").as_bytes());
+    assert!(falling.contains("neither rise nor fall"), "{falling}");
     let cut = said(&binary_58(6, 2, false, false, &[0; 9]));
     assert!(cut.contains("byte") && cut.contains("58b"), "{cut}");
-    let twice = said([NODES, NODES].concat().as_bytes());
-    assert!(twice.contains("point 1 again") && twice.contains("t.uff:10"), "{twice}");
+    let twice = said([NODES, &NODES.replace("7.5D+01", "7.6D+01")].concat().as_bytes());
+    assert!(twice.contains("point 3 again") && twice.contains("t.uff:12"), "{twice}");
     // What is of no interest is skipped by name.
     let other = "    -1\n  2412\n   1 2 3\n    -1\n".to_string()
         + &text_58(2, 1, true, " 1.0\n").replace("    4    ", "    6    ");
-    let records = read("t", other.as_bytes(), 1.0).unwrap();
+    let records = read("t", other.as_bytes(), SI).unwrap();
     assert!(records.warnings.iter().any(|w| w.contains("dataset 2412")), "{:?}", records.warnings);
-    let bare = read("t", text_58(2, 1, true, " 1.0\n").as_bytes(), 1.0).unwrap();
+    let bare = read("t", text_58(2, 1, true, " 1.0\n").as_bytes(), SI).unwrap();
     assert!(bare.warnings[0].contains("1 frequency responses do not state"), "{:?}", bare.warnings);
 }
 
@@ -148,11 +155,11 @@ fn no_bytes_make_it_panic() {
     let mut bytes = [UNITS, NODES, COMPLEX, SIX].concat().into_bytes();
     bytes.extend(text_58(6, 1, false, "  5.00000E+00  1.500000000000E+00 -2.500000000000E+00\n").as_bytes());
     bytes.extend(binary_58(6, 1, false, false, &data));
-    let (set, warnings) = read("t", &bytes, 1.0).unwrap().into_set();
+    let (set, warnings) = read("t", &bytes, SI).unwrap().into_set();
     assert!(set.frfs.len() == 2 && set.modes.len() == 2 && warnings.is_empty(), "{warnings:?}");
     let mut refused = 0;
-    let mut survives = |bytes: &[u8]| match read("t", bytes, 1.0) {
-        Ok(records) => drop(records.into_set()),
+    let mut survives = |bytes: &[u8]| match read("t", bytes, SI) {
+        Ok(records) => refused += usize::from(!records.into_set().1.is_empty()),
         Err(_) => refused += 1,
     };
     (0..bytes.len()).for_each(|end| survives(&bytes[..end]));
@@ -168,4 +175,209 @@ fn no_bytes_make_it_panic() {
         survives(&wrong);
     }
     assert!(refused > bytes.len());
+}
+
+/// A file of five datasets of which one is spoiled, in any order: the others are read, and the spoiled one is told with its line.
+#[test]
+fn one_spoiled_record_costs_itself_in_every_order() {
+    let row = "  5.00000E+00  1.500000000000E+00 -2.500000000000E+00\n";
+    let response = text_58(6, 1, false, row);
+    let sound = [UNITS, NODES, COMPLEX, SIX, &response];
+    let spoiled: Vec<(usize, String, &str)> = vec![
+        (1, NODES.replace("7.5D+01", "7.5x"), "7.5x"),
+        (1, NODES.replace("         3         0         0        11\n", ""), "a whole number"),
+        (2, COMPLEX.replace("2.00000E+00", "*******"), "dataset 55"),
+        (2, COMPLEX.replace("         5         3\n", "         9         3\n"), "data type 9"),
+        (3, SIX.replace("  5.00000E+01", "         NaN"), "NaN"),
+        (3, SIX.replace("         1\n  1.0", "  1.0"), "dataset 55"),
+        (4, response.replace("1.500000000000E+00", "               NaN"), "no frequency with a finite value"),
+        (4, response.replace("         6         1 ", "         6         7 "), "3 numbers; expected 21"),
+        (4, response.replace("    58\n", "    5x\n"), "`5x`"),
+    ];
+    // All orders of three datasets behind the units and the points, which may stand anywhere, too.
+    let orders = [[0, 1, 2, 3, 4], [0, 4, 3, 2, 1], [0, 2, 1, 4, 3], [0, 3, 4, 1, 2], [0, 4, 2, 3, 1]];
+    for (which, text, expected) in &spoiled {
+        for order in &orders {
+            for between in ["", "a remark between datasets\n\n"] {
+                let dataset = |k: &usize| if k == which { text.as_str() } else { sound[*k] };
+                let file = order.iter().map(dataset).collect::<Vec<_>>().join(between);
+                let records = read("t.uff", file.as_bytes(), SI).unwrap();
+                let counts = [records.points.len(), records.modes.len(), records.functions.len()];
+                let left = |k: usize| usize::from(k != *which);
+                assert_eq!(
+                    counts,
+                    [1 + left(1), left(2) + left(3), left(4)],
+                    "{expected}: {order:?}\n{file}"
+                );
+                let told = records.warnings.join("\n");
+                assert!(told.contains(expected) && told.contains("t.uff:"), "{expected}: {told}");
+            }
+        }
+    }
+    // Marks between datasets too few or too many, and line ends of any kind.
+    let whole = sound.concat();
+    for (k, _) in whole.match_indices("    -1\n    -1\n") {
+        let (before, behind) = whole.split_at(k);
+        let one = format!("{before}{}", &behind[7..]);
+        let three = format!("{before}    -1\n{behind}");
+        for file in [one, three] {
+            for file in [file.clone(), file.replace('\n', "\r"), file.replace('\n', "\r\n")] {
+                let records = read("t.uff", file.as_bytes(), SI).unwrap();
+                let counts = [records.points.len(), records.modes.len(), records.functions.len()];
+                assert_eq!(
+                    (counts, records.warnings.len()),
+                    ([2, 2, 1], 0),
+                    "{file}\n{:?}",
+                    records.warnings
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn frequencies_without_a_value_or_twice_cost_themselves() {
+    let of = |lines: &str, count: usize| {
+        let records = read("t.uff", text_58(4, count, false, lines).as_bytes(), SI).unwrap();
+        (records.functions[0].clone(), records.warnings.join("\n"))
+    };
+    for none in ["NaN", "-nan", "Inf", "********************", "1.#QNAN"] {
+        let (function, told) = of(&format!(" 0.0 {none}\n 5.0 1.0\n 6.0 2.0\n"), 3);
+        assert_eq!(function.frequencies_hz, [5.0, 6.0]);
+        assert!(told.contains("t.uff:14, dataset 58 (0 Hz)") && told.contains("1 of 3"), "{told}");
+    }
+    let (function, told) = of(" 5.0 1.0\n 5.0 7.0\n 6.0 2.0\n", 3);
+    assert_eq!((function.frequencies_hz, function.values[0].re), (vec![5.0, 6.0], 1.0));
+    assert!(told.contains("5 Hz again: 1 of 3"), "{told}");
+    let (function, _) = of(" 6.0 2.0\n 5.0 1.0\n", 2);
+    assert_eq!((function.frequencies_hz, function.values[0].re), (vec![5.0, 6.0], 1.0));
+    // Frequencies in the unit of their axis.
+    let khz = text_58(4, 1, false, " 5.0 1.0\n").replace("Hz  ", "kHz ");
+    assert_eq!(read("t", khz.as_bytes(), SI).unwrap().functions[0].frequencies_hz, [5000.0]);
+}
+
+#[test]
+fn an_unknown_quantity_is_what_its_label_or_the_case_says() {
+    let text = text_58(4, 1, false, " 5.0 1.0\n");
+    let with = |label: &str, unit: &str| {
+        let axis = format!("{:10}    0    0    0 {:<20} {:<20}\n", 12, "NONE", "NONE");
+        assert!(text.contains(&axis));
+        text.replace(&axis, &format!("{:10}    0    0    0 {label:<20} {unit:<20}\n", 0))
+    };
+    let of = |text: &str, quantity| read("t", text.as_bytes(), Unstated { quantity, ..SI }).unwrap();
+    for (label, unit, expected) in [
+        ("NONE", "m/s^2", Quantity::Accelerance),
+        ("NONE", "g", Quantity::Accelerance),
+        ("Acceleration", "NONE", Quantity::Accelerance),
+        ("NONE", "mm/s", Quantity::Mobility),
+        ("Velocity", "", Quantity::Mobility),
+        ("NONE", "mm/N", Quantity::Receptance),
+        ("Displacement", "NONE", Quantity::Receptance),
+    ] {
+        assert_eq!(of(&with(label, unit), None).functions[0].quantity, expected, "{label} {unit}");
+    }
+    let silent = with("NONE", "NONE");
+    let none = of(&silent, None);
+    assert!(none.functions.is_empty() && none.warnings[0].contains("quantity = "), "{:?}", none.warnings);
+    for quantity in Quantity::ALL {
+        assert_eq!(of(&silent, Some(quantity)).functions[0].quantity, quantity);
+    }
+}
+
+/// Points and motions in turned and cylindrical systems of datasets 18 and 2420 are those of the same test in its own frame.
+#[test]
+fn coordinate_systems_are_applied() {
+    let mut random = stridor_linalg::random::Random::new();
+    let number = |v: f64| format!("{v:25.16E}").replace('E', "D");
+    for cylindrical in [false, true] {
+        for newer in [false, true] {
+            for _ in 0..20 {
+                let mut next = || random.next();
+                let (a, b, c) = (3.0 * next(), 3.0 * next(), 3.0 * next());
+                let turn = nalgebra::Rotation3::from_euler_angles(a, b, c);
+                let origin = nalgebra::Vector3::new(next(), next(), next());
+                let (own, motion) = ([0.5 + next().abs(), next(), next()], [next(), next(), next()]);
+                // Closed forms: x = r cos θ, y = r sin θ, u = u_r e_r + u_θ e_θ + u_z e_z.
+                let (sin, cos) = own[1].sin_cos();
+                let (plain, moved, given) = if cylindrical {
+                    let moved =
+                        [motion[0] * cos - motion[1] * sin, motion[0] * sin + motion[1] * cos, motion[2]];
+                    ([own[0] * cos, own[0] * sin, own[2]], moved, [own[0], own[1].to_degrees(), own[2]])
+                } else {
+                    (own, motion, own)
+                };
+                let place = origin + turn * nalgebra::Vector3::from(plain);
+                let expected = turn * nalgebra::Vector3::from(moved);
+                let line = |v: nalgebra::Vector3<f64>| [0, 1, 2].map(|k| number(v[k])).concat();
+                let kind = usize::from(cylindrical);
+                let system = if newer {
+                    let rows: String =
+                        [0, 1, 2].map(|k| line(turn * nalgebra::Vector3::ith(k, 1.0)) + "\n").concat();
+                    format!(
+                        "    -1\n  2420\n         1\npart\n         7{kind:10}         8\nown\n{rows}{}\n    -1\n",
+                        line(origin)
+                    )
+                } else {
+                    let [x, z] =
+                        [nalgebra::Vector3::new(2.0, 0.0, 0.0), nalgebra::Vector3::new(1.5, 0.0, 0.7)];
+                    let [x, z] = [x, z].map(|v| line(origin + turn * v));
+                    format!(
+                        "    -1\n    18\n         7{kind:10}         0         8         1\nown\n{} {x}\n{z}\n    -1\n",
+                        line(origin)
+                    )
+                };
+                let points = format!(
+                    "    -1\n  2411\n         1         7         7        11\n{}\n    -1\n",
+                    [0, 1, 2].map(|k| number(given[k])).concat()
+                );
+                let shape = format!(
+                    "    -1\n    55\nNONE\nNONE\nNONE\nNONE\nNONE\n         1         2         2         8         2         3\n         2         4         1         1\n 5.0 1.0 0.0 0.0\n         1\n {} {} {}\n    -1\n",
+                    motion[0], motion[1], motion[2]
+                );
+                let response = text_58(4, 1, false, " 5.0 1.0\n").replace("         3  -2", "         1  -2");
+                for order in [[&system, &points, &shape, &response], [&response, &shape, &points, &system]] {
+                    let file: String = order.map(String::as_str).concat();
+                    let records = read("t", file.as_bytes(), SI).unwrap();
+                    let axes = records.axes[&1].map(nalgebra::Vector3::from);
+                    let force = records.functions[0].excitation.1;
+                    let (set, _) = records.into_set();
+                    let found = nalgebra::Vector3::from(set.points[0].position);
+                    assert!((found - place).norm() < 1e-12, "{file}");
+                    let values = set.modes[0].shape.clone().unwrap();
+                    let sum: nalgebra::Vector3<f64> = set
+                        .dofs
+                        .iter()
+                        .zip(&values)
+                        .map(|(dof, v)| nalgebra::Vector3::from(dof.direction) * v.re)
+                        .sum();
+                    assert!((sum - expected).norm() < 1e-12, "{file}");
+                    // The force acts along the first of its own directions.
+                    assert!((nalgebra::Vector3::from(force) - axes[0]).norm() < 1e-15);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn motion_in_a_system_that_is_not_known_is_left_out_with_words() {
+    let own = |definition: usize, displacement: usize| {
+        NODES
+            .replace("         3         0         0", &format!("         3{definition:10}{displacement:10}"))
+    };
+    let of = |points: String| read("t", [UNITS, &points, COMPLEX, SIX].concat().as_bytes(), SI).unwrap();
+    let records = of(own(0, 4));
+    assert!(
+        records.points.len() == 2 && records.modes[0].shape.is_empty() && records.modes[1].shape.len() == 1
+    );
+    assert!(records.warnings[0].contains("motion in system 4") && records.warnings[0].contains("points 3"));
+    let records = of(own(4, 0));
+    assert!(records.points.len() == 1 && records.warnings[0].contains("coordinates in system 4"));
+    // All in one of their own: the frame of the test.
+    let records = of(own(4, 4).replace("         1         0         0", "         1         4         4"));
+    assert!(records.points.len() == 2 && records.modes[0].shape.len() == 1 && records.axes.is_empty());
+    assert!(records.warnings[0].contains("taken as the frame"), "{:?}", records.warnings);
+    let spherical = "    -1\n    18\n         4         2         0         8         1\nS\n 0 0 0 1 0 0\n 1 0 1\n    -1\n";
+    let records = read("t", [spherical, UNITS, &own(0, 4), COMPLEX].concat().as_bytes(), SI).unwrap();
+    assert!(records.warnings[0].contains("type 2"), "{:?}", records.warnings);
 }
