@@ -80,6 +80,11 @@ fn check(contact: &Contact, report: &mut Report) {
     for (key, _) in on_mesh.into_iter().filter(|(_, there)| given && *there) {
         report.fault(key, "a place on a mesh", "no such key beside `points`", "Remove it");
     }
+    if !given && !contact.body.is_empty() && contact.body == contact.counter {
+        let expected =
+            "another region than the `body`: a body is in contact with another one, or with the \"ground\"";
+        report.fault("counter", format!("\"{}\", the body itself", contact.counter), expected, "");
+    }
     let ground = contact.counter == "ground";
     if ground && contact.into.is_none() {
         let expected = "the direction in which the body moves into the ground, such as [0, 0, -1]";

@@ -11,7 +11,7 @@ use crate::mesh::Element;
 use crate::structure::{DofMap, Model, ShellPart};
 use crate::system::{Closing, ContactPair, ContactPoint};
 use nalgebra::Vector3;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
 /// Every contact pair of the case.
@@ -178,6 +178,21 @@ pub fn surface_points(
             format!("one of the case's shells ({}), or \"ground\"", known.join(", ")),
         ))
     })?;
+    let own: BTreeSet<usize> = nodes.iter().copied().collect();
+    let shared = counter.faces.iter().flat_map(|face| face.nodes()).filter(|node| own.contains(node));
+    let shared: BTreeSet<usize> = shared.copied().collect();
+    if let Some(first) = shared.first() {
+        let found = format!(
+            "\"{}\", which has {} of the {} nodes of the body, the first {}",
+            contact.counter,
+            shared.len(),
+            nodes.len(),
+            regions.name_of_node(*first)
+        );
+        let fault = Fault::new(place("counter"), found, "another body: none is in contact with itself");
+        let help = "Two plates that touch have nodes of their own, half of both thicknesses apart";
+        return Err(Error::input(fault.with_help(help)));
+    }
     let lines: Vec<[usize; 2]> = touching
         .iter()
         .filter_map(|element| match element {

@@ -5,17 +5,18 @@ use crate::case::Pressing;
 use crate::error::{Fault, Faults, Result};
 use crate::numbers::{components, significant};
 use crate::schema::dotted;
-use crate::structure::is_free_along;
+use crate::structure::{free_parts_without, is_free_along};
 use crate::system::{Closing, ContactMotion};
 
 /// Whether steady sliding can have a contact that carries load.
 ///
 /// # Errors
-/// All contacts are open where the bodies stand, and no load, approach or force closes one; a load presses a body that nothing
+/// A part is free that no contact is on; all contacts are open where the bodies stand, and no load, approach or force closes one; a load presses a body that nothing
 /// holds against it.
 pub fn check(prepared: &Prepared) -> Result<()> {
     let mut faults = Faults::new();
     nothing_touches(prepared, &mut faults);
+    parts_without_a_support(prepared, &mut faults);
     loads_without_a_support(prepared, &mut faults);
     faults.into_result(())
 }
@@ -49,6 +50,34 @@ fn nothing_touches(prepared: &Prepared, faults: &mut Faults) {
         let expected = format!("a `load`, a [force] that presses, or more than {} m", significant(gap, 4));
         let help = "With `load = \"20 N\"` the approach is found; check the unit of the mesh if the bodies should touch";
         faults.push(Fault::new(place, found, expected).with_help(help));
+    }
+}
+
+/// Refuses parts that neither a support nor a spring nor a contact is on.
+fn parts_without_a_support(prepared: &Prepared, faults: &mut Faults) {
+    if prepared.case.matrices.is_some() {
+        return;
+    }
+    let (model, regions) = (&prepared.model, &prepared.regions);
+    let named = prepared.case.contact.values().flat_map(|contact| [&contact.body, &contact.counter]);
+    let touched: Vec<usize> = named.flat_map(|name| regions.nodes(name, "").unwrap_or_default()).collect();
+    // Matrices that hold no numbers are a fault of their own.
+    let parts = free_parts_without(model, &prepared.assembled, &touched).unwrap_or_default();
+    for part in parts {
+        let place = match part.names.first() {
+            Some(name) if prepared.case.shell.contains_key(name) => format!("`shell.{}`", dotted(name)),
+            Some(name) => format!("`bar.{}`", dotted(name)),
+            None => "`mass`".to_string(),
+        };
+        let motions = if part.motions == 1 { "motion" } else { "motions" };
+        let found = format!(
+            "a part that is free in {} rigid-body {motions} and that no contact is on ({})",
+            part.motions,
+            regions.name_of_node(part.node)
+        );
+        let fault = Fault::new(place, found, "a part that supports, springs, links or contacts hold");
+        faults
+            .push(fault.with_help("Add a [support], [spring], [rigid] or [contact], or leave the part out"));
     }
 }
 

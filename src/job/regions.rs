@@ -3,6 +3,7 @@
 use crate::case::{Case, MeshSource};
 use crate::error::{Error, Fault, Faults, Result, nearest};
 use crate::mesh::{Element, Mesh, Region};
+use crate::schema::dotted;
 
 /// A mesh whose regions are looked up by name, with a fault that lists the existing ones.
 #[derive(Debug, Clone)]
@@ -11,6 +12,13 @@ pub struct Regions {
     pub mesh: Mesh,
     /// The file of the mesh, in back-ticks, or `the mesh`.
     name: String,
+}
+
+/// What regions are made of, by dimension.
+const KINDS: [&str; 3] = ["points", "lines", "faces"];
+
+fn kind(region: &Region) -> &'static str {
+    KINDS[region.dimension.min(2)]
 }
 
 impl Regions {
@@ -35,8 +43,16 @@ impl Regions {
     /// The region `name`, that `place` asks for.
     ///
     /// # Errors
-    /// A fault with the regions that the mesh has.
+    /// A fault with the regions that the mesh has; a name of several regions.
     pub fn region(&self, name: &str, place: &str) -> Result<&Region> {
+        let same: Vec<&str> = self.mesh.regions.iter().filter(|r| r.name == name).map(kind).collect();
+        if same.len() > 1 {
+            let found = format!("\"{name}\", the name of {} regions: {}", same.len(), same.join(", "));
+            let fault = Fault::new(place, found, "a name of one region alone");
+            return Err(Error::input(
+                fault.with_help("Rename one of them: a physical group in the mesh, or a [point] of the case"),
+            ));
+        }
         self.mesh.region(name).ok_or_else(|| {
             let names: Vec<&str> = self.mesh.regions.iter().map(|r| r.name.as_str()).collect();
             let known = if names.is_empty() { "it has none".to_string() } else { names.join(", ") };
@@ -77,6 +93,14 @@ impl Regions {
         let mut faults = Faults::new();
         for (place, name) in asked {
             faults.take(self.region(name, &format!("`{place}`")));
+        }
+        for name in case.point.keys() {
+            let mut regions = self.mesh.regions.iter().filter(|region| region.name == *name);
+            if let Some(region) = regions.next().filter(|_| regions.next().is_some()) {
+                let found = format!("the name of a region of {} of {}, too", kind(region), self.name);
+                let place = format!("`point.{}`", dotted(name));
+                faults.push(Fault::new(place, found, "a name that no region of the mesh has"));
+            }
         }
         faults.into_result(())
     }
@@ -129,13 +153,53 @@ impl Regions {
     pub fn elements(&self, name: &str, dimension: usize, place: &str) -> Result<Vec<Element>> {
         let region = self.region(name, place)?;
         if region.dimension != dimension {
-            let kind = |d: usize| ["points", "lines", "faces"][d.min(2)];
             return Err(Error::input(Fault::new(
                 place,
-                format!("region \"{name}\" of {}", kind(region.dimension)),
-                format!("a region of {}", kind(dimension)),
+                format!("region \"{name}\" of {}", kind(region)),
+                format!("a region of {}", KINDS[dimension]),
             )));
         }
         Ok(region.elements.iter().map(|e| self.mesh.elements[*e].clone()).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::case::Case;
+    use crate::job::Prepared;
+
+    /// Two regions of one name, of all kinds, in either order: a fault where the case names it, and none where it does not.
+    #[test]
+    fn a_name_of_two_regions_is_a_fault_whatever_their_order() {
+        let groups = [("0 15 2 1 1 1", 0), ("0 1 2 2 1 1 2", 1), ("0 2 2 3 1 1 2 3", 2)];
+        let dir = tempfile::tempdir().unwrap();
+        for (first, second) in [(0, 1), (1, 0), (0, 2), (2, 0), (1, 2), (2, 1)] {
+            let lines: Vec<String> = [first, second]
+                .iter()
+                .enumerate()
+                .map(|(k, g)| groups[*g].0.replacen('0', &format!("{}", k + 2), 1))
+                .collect();
+            let names = [first, second].map(|g| format!("{} {} \"twice\"\n", groups[g].1, g + 1)).concat();
+            let mesh = format!(
+                "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n2 9 \"plate\"\n{names}$EndPhysicalNames\n\
+                 $Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n$Elements\n3\n1 2 2 9 1 1 2 3\n{}\n{}\n$EndElements\n",
+                lines[0], lines[1]
+            );
+            std::fs::write(dir.path().join("a.msh"), mesh).unwrap();
+            let prepare = |on: &str, point: &str| {
+                let text = format!(
+                    "{point}[mesh]\nfile = \"a.msh\"\nunit = \"m\"\n[material.steel]\nyoungs_modulus = 2e11\n\
+                     poissons_ratio = 0.3\ndensity = 8000\n[shell.plate]\nmaterial = \"steel\"\nthickness = 0.01\n\
+                     [support.s]\non = \"{on}\"\nheld = [\"ux\"]\n[modes.all]\ncount = 1\n"
+                );
+                let case = Case::parse("a.toml", &text, dir.path().into()).unwrap();
+                Prepared::new(&case).map(drop).map_err(|error| error.to_string())
+            };
+            let text = prepare("twice", "").unwrap_err();
+            assert!(text.contains("`support.s.on`") && text.contains("the name of 2 regions"), "{text}");
+            prepare("plate", "").unwrap();
+            let text = prepare("plate", "[point]\nplate = [0, 0, 0]\n").unwrap_err();
+            assert!(text.contains("`point.plate`") && text.contains("faces"), "{text}");
+        }
     }
 }

@@ -55,6 +55,24 @@ pub fn free_parts(model: &Model, assembled: &Assembled) -> Result<Vec<FreePart>>
     Ok(found)
 }
 
+/// The [`free_parts`] that none of `nodes` moves with and no spring is in: nothing but rigid motion is left to them. A piece with
+/// springs, however soft, is not among them.
+///
+/// # Errors
+/// Those of [`free_parts`].
+pub fn free_parts_without(model: &Model, assembled: &Assembled, nodes: &[usize]) -> Result<Vec<FreePart>> {
+    let (dofs, free) = (&assembled.dofs, assembled.dofs.free_dofs());
+    let of_node = pieces(assembled);
+    let sprung = model.springs.iter().flat_map(|spring| [Some(spring.node), spring.other]).flatten();
+    let mut touched: Vec<usize> = Vec::new();
+    for node in nodes.iter().copied().chain(sprung) {
+        let terms = (0..6).flat_map(|dof| dofs.terms(node, dof));
+        touched.extend(terms.map(|(k, _)| of_node[free[*k].node]));
+    }
+    let parts = free_parts(model, assembled)?.into_iter();
+    Ok(parts.filter(|part| !touched.contains(&of_node[part.node])).collect())
+}
+
 /// Whether the piece that `nodes` are of can be moved along a direction as a whole without any force, contacts left out.
 pub fn is_free_along(model: &Model, assembled: &Assembled, nodes: &[usize], direction: [f64; 3]) -> bool {
     let (dofs, stiffness) = (&assembled.dofs, &assembled.structure.stiffness);
@@ -187,6 +205,9 @@ mod tests {
         assert_eq!(found_by_node[0], part("hinged", 4 + usize::from(found_by_node[0].node == 5), 1));
         assert_eq!(found_by_node[1], part("loose", 2 + usize::from(found_by_node[1].node == 3), 5));
         let assembled = assemble(&model).unwrap();
+        // The loose one has a spring; a contact holds the hinged one or it does not.
+        let alone = |nodes: &[usize]| free_parts_without(&model, &assembled, nodes).unwrap().len();
+        assert_eq!([alone(&[]), alone(&[0, 3]), alone(&[5])], [1, 1, 0]);
         let free = |node, direction| is_free_along(&model, &assembled, &[node], direction);
         // The spring along x holds the loose bar in that direction only.
         assert!(free(3, [0.0, 1.0, 0.0]) && free(2, [0.0, 0.0, 1.0]) && !free(3, [1.0, 0.0, 0.0]));

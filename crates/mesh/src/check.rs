@@ -3,11 +3,13 @@
 //! Faults make an analysis wrong or impossible; warnings say that a result may be poor.
 
 use super::connected::lowest_connected;
+use super::hanging::{Hanging, hanging};
 use super::orient::neighbours;
 use super::quality::{dot, face_shape, minus, norm};
 use super::{Element, Mesh, Region};
 use std::collections::BTreeMap;
 use stridor_base::error::{Fault, Faults};
+use stridor_base::numbers::significant;
 
 /// The smallest corner angle \[degrees\] that passes without a warning.
 pub const POOR_ANGLE_DEG: f64 = 15.0;
@@ -16,7 +18,7 @@ pub const POOR_ASPECT: f64 = 8.0;
 /// The largest warp of a quadrilateral that passes without a warning.
 pub const POOR_WARP: f64 = 0.05;
 /// Nodes closer than this share of the bounding box's diagonal are coincident.
-const COINCIDENT: f64 = 1e-8;
+const COINCIDENT: f64 = 1e-6;
 /// How many numbers a message lists before it says how many more there are.
 const LISTED: usize = 5;
 
@@ -29,7 +31,7 @@ pub struct Diagnosis {
     pub warnings: Vec<Fault>,
 }
 
-/// Examines a mesh: coordinates, unreferenced and coincident nodes, duplicate, degenerate, folded and inverted
+/// Examines a mesh: coordinates, unreferenced, coincident and hanging nodes, duplicate, degenerate, folded and inverted
 /// elements, their quality, and regions in several pieces.
 ///
 /// ```
@@ -48,6 +50,7 @@ pub fn diagnose(mesh: &Mesh) -> Diagnosis {
     let mut diagnosis = Diagnosis { faults, warnings: Vec::new() };
     check_unreferenced(mesh, &mut diagnosis);
     check_coincident(mesh, &mut diagnosis);
+    check_hanging(mesh, &mut diagnosis.warnings);
     check_shapes(mesh, &mut diagnosis);
     for region in &mesh.regions {
         check_duplicates(mesh, region, &mut diagnosis.faults);
@@ -167,6 +170,37 @@ fn check_coincident(mesh: &Mesh, diagnosis: &mut Diagnosis) {
             Fault::new(text(&between), "two nodes at the same place in different regions", "one node");
         diagnosis.warnings.push(fault.with_help("The parts are not joined there unless the case joins them"));
     }
+}
+
+/// Nodes on edges of faces that do not have them: two meshes side by side that are not joined.
+fn check_hanging(mesh: &Mesh, warnings: &mut Vec<Fault>) {
+    let found = hanging(mesh);
+    if found.is_empty() {
+        return;
+    }
+    let regions_of = |holds: &dyn Fn(&[usize]) -> bool| -> Vec<usize> {
+        let has = |region: &Region| {
+            region.dimension == 2 && region.elements.iter().any(|e| holds(mesh.elements[*e].nodes()))
+        };
+        (0..mesh.regions.len()).filter(|r| has(&mesh.regions[*r])).collect()
+    };
+    let Hanging { node, edge } = found[0];
+    let mut names: Vec<usize> = regions_of(&|nodes| nodes.contains(&node));
+    names.extend(regions_of(&|nodes| edge.iter().all(|end| nodes.contains(end))));
+    names.sort_unstable();
+    names.dedup();
+    let names: Vec<String> = names.iter().map(|r| format!("`{}`", mesh.regions[*r].name)).collect();
+    let which: Vec<usize> = found.iter().map(|hanging| hanging.node).collect();
+    let [i, j] = edge.map(|end| mesh.node_place(end));
+    let place = mesh.nodes[node].map(|x| significant(x, 4)).join(", ");
+    let words = format!(
+        "{} nodes on edges of faces that do not have them; the first at ({place}) m, between nodes {i} and {j}, in {}",
+        which.len(),
+        names.join(", ")
+    );
+    let help = "The faces are not joined there: mesh both sides with the same nodes (one curve between both surfaces; in Gmsh \
+                `Coherence;` or `BooleanFragments`), or hold them together by `[rigid]` or `[spring]`";
+    warnings.push(Fault::new(nodes(mesh, &which), words, "nodes that both sides have").with_help(help));
 }
 
 fn check_shapes(mesh: &Mesh, diagnosis: &mut Diagnosis) {

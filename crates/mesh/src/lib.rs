@@ -23,6 +23,7 @@ pub mod check;
 mod connected;
 pub mod generate;
 pub mod gmsh;
+mod hanging;
 pub mod info;
 mod orient;
 pub mod quality;

@@ -86,12 +86,14 @@ fn header(bytes: &[u8], place: &str) -> Result<GmshHeader> {
     };
     const EXPECTED: &str = "a Gmsh mesh, MSH 4.1 or 2.2";
     const CONVERT: &str = "Convert it: `gmsh -save -format msh41 -o new.msh old.msh`";
+    const EXPORT: &str = "Write it as Gmsh 4.1 or 2.2, its sets as physical groups with names, in the program that made it; \
+                          `gmsh` itself does not convert Abaqus (.inp) or NASTRAN (.bdf) with their sets";
     if bytes.is_empty() {
         return Err(wrong("an empty file".into(), EXPECTED, ""));
     }
     let Some(start) = names::line_with(bytes, "$MeshFormat") else {
         let first = String::from_utf8_lossy(&bytes[..bytes.len().min(24)]).escape_debug().to_string();
-        return Err(wrong(format!("a file that begins with \"{first}\""), EXPECTED, CONVERT));
+        return Err(wrong(format!("a file that begins with \"{first}\""), EXPECTED, EXPORT));
     };
     let mut lines = bytes[start..].split_inclusive(|b| *b == b'\n');
     let skipped = lines.next().map_or(0, <[u8]>::len);

@@ -1,0 +1,155 @@
+//! Nodes that lie on the edge of a face without being its nodes.
+
+use super::Mesh;
+use super::quality::{dot, minus, norm};
+
+/// How far from an edge a node of it may lie, as a share of its length: more than the sagitta of an arc that is divided into 12.
+const NEAR: f64 = 0.03;
+/// A node nearer to an end of the edge than this share of its length coincides with it, which is another finding.
+const END: f64 = 0.01;
+
+/// The most nodes that are compared with edges: many times those of any sound mesh, whose edges are short.
+const VISITS: usize = 200_000_000;
+
+/// A node on an edge that does not have it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Hanging {
+    pub node: usize,
+    /// The ends of the edge.
+    pub edge: [usize; 2],
+}
+
+/// The nodes of faces that lie between the ends of an edge which one face alone has, and which are no nodes of that face. Each
+/// node is there once, in ascending order.
+pub(super) fn hanging(mesh: &Mesh) -> Vec<Hanging> {
+    let faces = || mesh.elements.iter().enumerate().filter(|(_, element)| element.dimension() == 2);
+    let mut edges: Vec<([usize; 2], &[usize])> = Vec::new();
+    let mut all: Vec<([usize; 2], usize)> = Vec::new();
+    let mut used = vec![false; mesh.nodes.len()];
+    for (e, face) in faces() {
+        let n = face.nodes();
+        n.iter().for_each(|node| used[*node] = true);
+        all.extend((0..n.len()).map(|i| {
+            let (a, b) = (n[i], n[(i + 1) % n.len()]);
+            ([a.min(b), a.max(b)], e)
+        }));
+    }
+    all.sort_unstable();
+    for same in all.chunk_by(|a, b| a.0 == b.0) {
+        let first = mesh.elements[same[0].1].nodes();
+        // A face may be listed twice, once for each of two regions.
+        if same[1..].iter().all(|(_, e)| mesh.elements[*e].nodes().iter().all(|node| first.contains(node))) {
+            edges.push((same[0].0, first));
+        }
+    }
+    // Along a skew direction few nodes are between the ends of an edge.
+    let along = |node: usize| dot(mesh.nodes[node], [0.577, 0.613, 0.541]);
+    let mut order: Vec<(f64, usize)> =
+        (0..mesh.nodes.len()).filter(|node| used[*node]).map(|node| (along(node), node)).collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let mut found: Vec<Hanging> = Vec::new();
+    let mut visits = VISITS;
+    for (edge, face) in edges {
+        let [a, b] = edge;
+        let way = minus(mesh.nodes[b], mesh.nodes[a]);
+        let length = norm(way);
+        let [low, high] = [along(a).min(along(b)) - NEAR * length, along(a).max(along(b)) + NEAR * length];
+        let begin = order.partition_point(|(s, _)| *s < low);
+        let between = order[begin..].iter().take_while(|(s, _)| *s <= high);
+        for (_, node) in between.take(visits) {
+            visits -= 1;
+            let from = minus(mesh.nodes[*node], mesh.nodes[a]);
+            let t = dot(from, way) / length.powi(2);
+            let off = norm([0, 1, 2].map(|k| from[k] - t * way[k]));
+            if (END..=1.0 - END).contains(&t) && off <= NEAR * length && !face.contains(node) {
+                found.push(Hanging { node: *node, edge });
+            }
+        }
+    }
+    found.sort_by_key(|hanging| (hanging.node, hanging.edge));
+    found.dedup_by_key(|hanging| hanging.node);
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generate::{Faces, structured_plate};
+    use crate::{Element, diagnose};
+
+    /// Two plates side by side, of `left` and `right` cells along the seam, which share the nodes at equal places.
+    fn side_by_side(
+        [left, right]: [usize; 2],
+        faces: Faces,
+        seam: impl Fn(f64) -> f64,
+        reverse: bool,
+    ) -> Mesh {
+        let mut mesh = structured_plate(1.0, 1.0, 4, left, faces).unwrap();
+        mesh.regions.truncate(1);
+        mesh.elements.truncate(mesh.regions[0].elements.len());
+        let mut other = structured_plate(1.0, 1.0, 4, right, faces).unwrap();
+        other.regions.truncate(1);
+        other.elements.truncate(other.regions[0].elements.len());
+        let [low, high] = crate::check::bounds(&mesh).unwrap();
+        let width = high[0] - low[0];
+        other.nodes.iter_mut().for_each(|x| x[0] += width);
+        // The right one's nodes in another order.
+        let count = other.nodes.len();
+        let turn = |node: usize| if reverse { count - 1 - node } else { node };
+        if reverse {
+            other.nodes.reverse();
+        }
+        let mut of = vec![0; count];
+        for (node, x) in other.nodes.iter().enumerate() {
+            let same = mesh.nodes.iter().position(|y| norm(minus(*x, *y)) < 1e-9);
+            of[node] = same.unwrap_or_else(|| {
+                mesh.nodes.push(*x);
+                mesh.nodes.len() - 1
+            });
+        }
+        let first = mesh.elements.len();
+        mesh.elements.extend(other.elements.iter().map(|element| match element {
+            Element::Triangle(n) => Element::Triangle(n.map(|node| of[turn(node)])),
+            Element::Quadrilateral(n) => Element::Quadrilateral(n.map(|node| of[turn(node)])),
+            other => other.clone(),
+        }));
+        let elements = first..mesh.elements.len();
+        mesh.regions[0].elements.extend(elements);
+        // The seam as an arc.
+        for x in &mut mesh.nodes {
+            x[2] += seam(x[1]);
+        }
+        mesh
+    }
+
+    /// All divisions of two halves: as many nodes hang as the seam has that the sides do not share.
+    #[test]
+    fn every_node_that_only_one_side_of_a_seam_has_is_found() {
+        let gcd = |a: usize, b: usize| (1..=a).rev().find(|k| a % k == 0 && b % k == 0).unwrap();
+        for faces in [Faces::Triangles, Faces::Quadrilaterals] {
+            for (left, right) in (3..=9).flat_map(|left| (3..=9).map(move |right| (left, right))) {
+                for reverse in [false, true] {
+                    let mesh = side_by_side([left, right], faces, |_| 0.0, reverse);
+                    let expected = left + right - 2 * gcd(left, right);
+                    assert_eq!(hanging(&mesh).len(), expected, "{left} {right}");
+                    let told =
+                        diagnose(&mesh).warnings.iter().any(|w| w.found.contains("nodes on edges of faces"));
+                    assert_eq!(told, expected > 0);
+                }
+            }
+        }
+    }
+
+    /// On an arc of 60° the nodes of one side lie off the chords of the other.
+    #[test]
+    fn nodes_on_arcs_are_found() {
+        for (left, right) in [(12, 13), (13, 12), (8, 24), (11, 17)] {
+            let mesh = side_by_side([left, right], Faces::Triangles, |y| (1.0 - y * y).sqrt(), false);
+            assert!(
+                hanging(&mesh).len() * 10 > 8 * (left + right - 2),
+                "{left} {right}: {}",
+                hanging(&mesh).len()
+            );
+        }
+    }
+}
