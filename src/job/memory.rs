@@ -10,8 +10,10 @@ use crate::memory::{Available, available};
 use crate::structure::Model;
 use std::f64::consts::{PI, TAU};
 
-/// Runs of fewer degrees of freedom fit any machine.
-const LARGE: usize = 15_000;
+/// Runs of fewer degrees of freedom fit any machine, with as many modes as they can have: 14 vectors each take 0.4 GiB.
+const LEAST: usize = 2_000;
+/// Runs of so many degrees of freedom or so many bytes are large: what others take is not told.
+const LARGE: (usize, f64) = (15_000, 2.5e8);
 
 /// What the program itself takes \[bytes\].
 const PROGRAM: f64 = 4e7;
@@ -99,7 +101,7 @@ pub fn check_memory(prepared: &Prepared, selection: Selection) -> Result<Option<
 /// When the pattern of K cannot be analysed.
 pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Option<ExpectedMemory>> {
     let dofs = prepared.system.n_dofs();
-    if dofs < LARGE {
+    if dofs < LEAST {
         return Ok(None);
     }
     let pencil = |square: f64| {
@@ -153,6 +155,9 @@ pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Opti
         }),
     };
     let bytes = run.peak(kind) + samples;
+    if dofs < LARGE.0 && bytes < LARGE.1 {
+        return Ok(None);
+    }
     let left_vectors =
         kind == AnalysisKind::Complex { left_vectors: true } && !selection.takes_left_vectors(case);
     Ok(Some(ExpectedMemory { bytes, dofs, fill, modes: run.modes, left_vectors, samples }))
@@ -282,6 +287,30 @@ mod tests {
         let text = other.check(&Available { bytes: 1 << 30, by }).unwrap_err().to_string();
         assert!(!text.contains("left_vectors") && text.contains("fewer `samples`"), "{text}");
         assert_eq!(error.exit_code(), 1);
+    }
+
+    /// The vectors of as many modes as are asked for are in the prediction, at any number of degrees of freedom above the least.
+    #[test]
+    fn many_modes_of_a_small_model_are_predicted() {
+        for cells in [26, 30] {
+            for count in [10, 3000, 4000] {
+                let text = format!(
+                    "[mesh.plate]\nlength = 1\nwidth = 1\ncells_along = {cells}\ncells_across = {cells}\n\
+                     [material.steel]\nyoungs_modulus = 2e11\npoissons_ratio = 0.3\ndensity = 8000\n\
+                     [shell.plate]\nmaterial = \"steel\"\nthickness = 0.005\n[modes.all]\ncount = {count}\n"
+                );
+                let case = crate::case::Case::parse("", &text, "".into()).unwrap();
+                let prepared = Prepared::new(&case).unwrap();
+                let expected = expected_memory(&prepared, Selection::Listed).unwrap();
+                let Some(expected) = expected else {
+                    assert_eq!(count, 10);
+                    continue;
+                };
+                assert!(expected.dofs == 6 * (cells + 1) * (cells + 1) && expected.modes == count as f64);
+                // Two vectors in the basis and the mode itself.
+                assert!(expected.bytes >= 3.0 * 8.0 * (expected.dofs * count) as f64);
+            }
+        }
     }
 
     #[test]

@@ -128,6 +128,19 @@ impl SearchFile {
                 }
             }
         }
+        let mut taken: BTreeMap<&String, &String> = BTreeMap::new();
+        for (name, path) in
+            found.parameters.iter().flat_map(|(name, p)| p.path.iter().map(move |path| (name, path)))
+        {
+            if let Some(first) = taken.insert(path, name) {
+                let words = format!("`{path}`, which `parameter.{first}` moves already");
+                faults.push(Fault::new(
+                    format!("{place}: `parameter.{name}.path`"),
+                    words,
+                    "each scalar in one parameter, once",
+                ));
+            }
+        }
         found.start = start;
         faults.into_result(found)
     }

@@ -43,16 +43,21 @@ const MOVED: f64 = 0.05;
 /// Searches, with every evaluation kept in the folder `out`.
 ///
 /// # Errors
-/// A case that has no answer at the start; evaluations that cannot be written, or are of another search.
+/// Input: evaluations of another search. As evaluations are written from then on, what follows is no error of the input: a case
+/// that has no answer at the start, or not a fact of it; evaluations that cannot be written.
 pub fn search(file: &SearchFile, out: &Path, resume: bool, observer: &dyn Observer) -> Result<SearchResult> {
-    let started = Instant::now();
-    let coordinates: Vec<Coordinate> = file.parameters.values().map(Coordinate::new).collect();
-    let start: Vec<f64> = coordinates.iter().zip(&file.start).map(|(c, value)| c.x(*value)).collect();
     if !resume && let Some(aside) = set_aside(out)? {
         observer.note(&format!("The evaluations of an interrupted search were moved to {}", aside.display()));
     }
     let log = Log::open(out, file, resume)?;
-    let cost = Cost { file, coordinates: &coordinates, log: &log };
+    searched(file, &log, observer).map_err(Error::while_computing)
+}
+
+fn searched(file: &SearchFile, log: &Log, observer: &dyn Observer) -> Result<SearchResult> {
+    let started = Instant::now();
+    let coordinates: Vec<Coordinate> = file.parameters.values().map(Coordinate::new).collect();
+    let start: Vec<f64> = coordinates.iter().zip(&file.start).map(|(c, value)| c.x(*value)).collect();
+    let cost = Cost { file, coordinates: &coordinates, log };
     let first = cost.facts(&start)?;
     if first.computed.is_empty() {
         let found = "the case has no answer at its own values";

@@ -95,6 +95,39 @@ fn a_log_of_another_search_is_refused_and_kept() {
     }
 }
 
+/// What is only found once evaluations are written is no error of the input; a scalar in two parameters, or twice in one, is.
+#[test]
+fn faults_of_evaluations_are_no_faults_of_the_input() {
+    for pointer in ["/cea/eigenvalues/0/growth", "/cea/eigenvalues/77/frequency_hz", "/none", ""] {
+        let fact =
+            format!("[fact.b]\nkind = \"value\"\npointer = \"{pointer}\"\nreference = 1\ntolerance = 0.1\n");
+        let (dir, path) = folder(NUMBERS, &fact);
+        match read_search(&path) {
+            // Nothing is written.
+            Err(error) => assert_eq!(error.exit_code(), 2),
+            Ok(file) => {
+                let error = search(&file, &dir.path().join("out"), false, &()).unwrap_err();
+                assert_eq!(error.exit_code(), 1, "{pointer}: {error}");
+            }
+        }
+    }
+    for (first, second) in [
+        ("\"a\"", "\"a\""),
+        ("[\"a\", \"b\"]", "\"b\""),
+        ("\"b\"", "[\"a\", \"b\"]"),
+        ("\"b\"", "[\"a\", \"a\"]"),
+    ] {
+        let parameter = |name: &str, path: &str| {
+            let path =
+                path.replace("\"a\"", "\"spring.k1.stiffness\"").replace("\"b\"", "\"spring.k2.stiffness\"");
+            format!("[parameter.{name}]\npath = {path}\nbetween = [\"5 N/m\", \"60 N/m\"]\n")
+        };
+        let (_dir, path) = folder(&(parameter("x", first) + &parameter("y", second)), &facts(14.0, 23.0));
+        let error = read_search(&path).unwrap_err();
+        assert!(error.exit_code() == 2 && error.to_string().contains("moves already"), "{error}");
+    }
+}
+
 #[test]
 fn every_fault_of_the_file_is_told() {
     let (_dir, path) = folder(

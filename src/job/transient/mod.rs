@@ -12,6 +12,7 @@ mod harmonic_fields;
 mod history_writer;
 mod in_time;
 mod modal;
+mod names;
 mod places;
 mod recorded_sound;
 mod recorder;

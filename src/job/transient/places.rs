@@ -1,5 +1,6 @@
 //! Loads on the structure in time, and the places where its motion is recorded.
 
+use super::names::clashing;
 use super::step::check_step;
 use crate::case::{FrictionCurve, TransientAnalysis};
 use crate::contact::Coulomb;
@@ -76,6 +77,7 @@ pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Tra
     transient::refuse_hysteretic(&prepared.system)?;
     let mut faults = Faults::new();
     faults.take(check_step(&prepared.system.structure, wanted.time_step));
+    faults.0.extend(clashing(prepared.case, wanted));
     let mut reduced = |on: &str, place: String, vector: [f64; 3]| {
         let nodes = faults.take(prepared.regions.nodes(on, &place)).unwrap_or_default();
         prepared.assembled.dofs.mean_motion(&nodes, vector)
@@ -169,4 +171,67 @@ fn gauge(prepared: &Prepared<'_>, name: &str, spring: &str) -> Result<Gauge> {
     };
     let (stiffness, damping) = (form(set.stiffness), form(set.damping));
     Ok(Gauge { name: name.to_string(), spring: spring.to_string(), stiffness, damping, measured: Vec::new() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::names::{OF_CONTACTS, OF_PLACES, OF_SPRINGS, OWN};
+    use super::*;
+    use crate::case::Case;
+    use crate::job::Prepared;
+
+    const TWO_DOF: &str = r#"
+point.block = [0, 0, 0]
+mass.block = { on = "block", mass = 1 }
+support.plane = { on = "block", held = ["uz", "rx", "ry", "rz"] }
+spring.k1 = { on = "block", direction = [1, 0, 0], stiffness = 1 }
+spring.kt = { on = "block", direction = [1, -1, 0], stiffness = 1 }
+force.press = { on = "block", force = [0, 1, 0] }
+[contact.belt]
+body = "block"
+counter = "ground"
+into = [0, 1, 0]
+approach = 0
+sliding_velocity = 1
+sliding_direction = [-1, 0, 0]
+normal = { per = "point", stiffness = 1, unilateral = false }
+friction = { law = "coulomb", mu0 = 0.7 }
+"#;
+
+    /// Every name of a probe that makes the name of another channel is refused at its key, whatever it measures; others are not.
+    #[test]
+    fn probes_whose_channels_have_the_name_of_another_are_refused() {
+        let refused = |name: &str, spring: bool| {
+            let of = if spring { "spring = \"kt\"" } else { "on = \"block\"\ndirection = [1, 0, 0]" };
+            let text = format!(
+                "{TWO_DOF}[cea]\nband = [0, \"1 Hz\"]\n[transient]\nduration = \"10 s\"\ntime_step = \"0.1 s\"\n\
+                 [transient.probe.{name}]\n{of}\n"
+            );
+            let case = Case::parse("a.toml", &text, "".into()).unwrap();
+            let prepared = Prepared::new(&case).unwrap();
+            let found = places(&prepared, case.transient.as_ref().unwrap());
+            found.err().is_some_and(|error| {
+                let text = error.to_string();
+                assert!(
+                    text.contains(&format!("`transient.probe.{name}`")) && error.exit_code() == 2,
+                    "{text}"
+                );
+                true
+            })
+        };
+        let taken =
+            OWN.iter().map(|name| name.to_string()).chain(OF_CONTACTS.map(|end| format!("belt{end}")));
+        let mut count = 0;
+        for channel in taken {
+            for (spring, ends) in [(false, &OF_PLACES[..]), (true, &OF_SPRINGS[..])] {
+                for name in ends.iter().filter_map(|end| channel.strip_suffix(end)) {
+                    assert!(refused(name, spring), "{name}");
+                    assert!(!refused(&format!("{name}2"), spring) && !refused(name, !spring), "{name}");
+                    count += 1;
+                }
+            }
+        }
+        // `slip`, `belt_sliding` along a direction; `belt_normal`, `belt_friction` of a spring.
+        assert_eq!(count, 4);
+    }
 }
