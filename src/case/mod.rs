@@ -4,6 +4,7 @@
 //! reported at once with its line. A [`Case`] is complete: every default is filled in, and its TOML form
 //! ([`Case::to_toml`]) reads back as the same case. Every key is declared once ([`crate::schema`]).
 
+mod absent;
 mod analyses;
 mod calibrate;
 mod check;
@@ -151,7 +152,7 @@ impl Case {
     /// # Errors
     /// Every fault of the text, each with its line and key.
     pub fn parse(file: &str, text: &str, folder: PathBuf) -> Result<Case> {
-        let read = read_table::<Case>(file, text)?;
+        let read = read_table::<Case>(file, text).map_err(absent::explained)?;
         let mut case = Case { folder, places: read.places.of_text(text), ..read.table };
         case.expect_own_values();
         Ok(case)

@@ -79,7 +79,9 @@ declare! {
         /// m \[kg\] at each node.
         pub mass: f64 = key::quantity(MASS).non_negative(),
         /// Moments of inertia about x, y, z \[kg m²\].
-        pub inertia: [f64; 3] = key::quantities(INERTIA).or([0.0; 3]),
+        pub inertia: [f64; 3] = key::quantities(INERTIA)
+            .check("three moments of zero or more", |inertia| inertia.iter().all(|i| *i >= 0.0))
+            .or([0.0; 3]),
     }
 }
 

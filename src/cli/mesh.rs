@@ -208,13 +208,9 @@ pub(super) fn refuse_existing(path: &Path, help: &str) -> Result<()> {
 
 fn info(options: &InfoOptions, common: &Common) -> Result<u8> {
     let mesh = mesh::read(&options.file, mesh::unit_in_metres(&options.unit))?;
-    let diagnosis = mesh::diagnose(&mesh);
     if !common.quiet {
         say(Info::of(&mesh))?;
-        for warning in &diagnosis.warnings {
-            say(format!("warning: {}", warning.warning()))?;
-        }
     }
-    diagnosis.faults.into_result(())?;
+    mesh::diagnose(&mesh).faults.into_result(())?;
     Ok(SUCCESS)
 }

@@ -129,7 +129,12 @@ impl<'a> Asked<'a> {
         }
         if !planned.is_empty() && prepared.system.structure.mass.val().iter().all(|m| *m == 0.0) {
             let expected = "a part with mass: nothing vibrates without";
-            faults.push(Fault::new("the case", "no mass", expected));
+            let place = match (&case.matrices, case.material.is_empty()) {
+                (Some(_), _) => "`matrices.mass`",
+                (None, true) => "`mass`",
+                (None, false) => "`material`",
+            };
+            faults.push(Fault::new(place, "no mass", expected));
         }
         // A file that two analyses read has its faults and warnings once.
         let faults = Faults(once(faults.0));

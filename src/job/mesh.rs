@@ -1,7 +1,7 @@
 //! The mesh of a case: read from a file, or generated.
 
 use crate::case::{AnnulusMesh, Case, MeshSource, PlateMesh, RigMesh};
-use crate::error::{Error, Fault, Result};
+use crate::error::{Error, Fault, Faults, Result};
 use crate::mesh::generate::{self, BarSide, BarSpec, DiscSpec, Faces, Grading, PlateSpec, RigSpec};
 use crate::mesh::{self, Mesh};
 
@@ -21,7 +21,14 @@ pub(super) fn read_mesh(case: &Case, source: &MeshSource) -> Result<(Mesh, Vec<S
     };
     let mesh = mesh.map_err(|error| by_keys(error, source))?;
     let diagnosis = mesh::diagnose(&mesh);
-    diagnosis.faults.into_result(())?;
+    let key = match source {
+        MeshSource::File { .. } => "file",
+        MeshSource::Rig { .. } => "rig",
+        MeshSource::Annulus { .. } => "annulus",
+        MeshSource::Plate { .. } => "plate",
+    };
+    let at_key = |fault: Fault| Fault { place: format!("`mesh.{key}`: {}", fault.place), ..fault };
+    Faults(diagnosis.faults.0.into_iter().map(at_key).collect()).into_result(())?;
     Ok((mesh, diagnosis.warnings.iter().map(Fault::warning).collect()))
 }
 
@@ -99,6 +106,28 @@ fn rig_spec(case: &Case, rig: &RigMesh) -> RigSpec {
 mod tests {
     use crate::case::Case;
     use crate::job::Prepared;
+
+    #[test]
+    fn faults_of_meshes_and_masses_name_file_line_and_key() {
+        let said = |text: &str| {
+            let case = Case::parse("made.toml", text, "".into());
+            case.and_then(|case| {
+                let prepared = Prepared::new(&case)?;
+                crate::job::check_case(&prepared).map_err(|error| case.places.locate(error))
+            })
+            .unwrap_err()
+            .to_string()
+        };
+        let plate = |mesh: &str| format!("title = \"t\"\n[mesh.{mesh}\n[modes.all]\ncount = 1\n");
+        let text = said(&plate("annulus]\nouter_radius = 0.1\nhub_radius = 1e-9\nradial = 4\naround = 8"));
+        assert!(text.contains("made.toml:2") && text.contains("`mesh.annulus`: nodes"), "{text}");
+        let text = said("[point]\na = [0, 0, 0]\n[mass.a]\non = \"a\"\nmass = 1\ninertia = [1, -1, 0]\n");
+        assert!(text.contains("made.toml:6 `mass.a.inertia`"), "{text}");
+        let mass = "[point]\na = [0, 0, 0]\n[mass.a]\non = \"a\"\nmass = 0\n[spring.s]\non = \"a\"\n\
+                    direction = [1, 0, 0]\nstiffness = 1\n[modes.all]\ncount = 1\n";
+        let text = said(mass);
+        assert!(text.contains("`mass`: found no mass") && text.contains("made.toml:"), "{text}");
+    }
 
     #[test]
     fn faults_of_generated_meshes_are_at_keys_of_the_case() {

@@ -19,7 +19,9 @@ pub(super) const FILES: &str = ".files";
 /// Makes the folder `dir` and its parents when they are missing.
 pub(super) fn prepare_folder(dir: &Path) -> Result<()> {
     if dir.exists() && !dir.is_dir() {
-        return Err(refusal(dir, "a file stands where the results folder should be"));
+        let found =
+            std::io::Error::new(ErrorKind::NotADirectory, "a file stands where the results folder should be");
+        return Err(refusal(dir, found));
     }
     std::fs::create_dir_all(dir).map_err(|source| refusal(dir, source))
 }
@@ -134,10 +136,40 @@ pub(crate) fn retire(dir: &Path, spared: &[PathBuf]) -> Result<()> {
     refused.map_or_else(|| write_atomically(dir, FILES, kept.as_bytes()), Err)
 }
 
-/// The machine's refusal of `path`, with the advice that fits every such case.
+/// The machine's refusal of `path`, with the advice that fits it.
 pub(super) fn refusal(path: &Path, source: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Error {
-    let help = "Free disk space or make the folder writable, or name another folder for the results.";
+    let source = source.into();
+    let kind = source.downcast_ref::<std::io::Error>().map(std::io::Error::kind);
+    let help = match (dangling(path), kind) {
+        _ if path.to_str().is_none() => {
+            "The path is no text in UTF-8: name another folder for the results.".into()
+        }
+        (Some((link, target)), _) => format!(
+            "\"{}\" is a link to \"{}\", which is not there: make that folder, or name another one for the results.",
+            link.display(),
+            target.display()
+        ),
+        (_, Some(ErrorKind::StorageFull | ErrorKind::QuotaExceeded)) => {
+            "Free disk space, or name another folder for the results.".into()
+        }
+        (_, Some(ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem)) => {
+            "Make the folder writable, or name another folder for the results.".into()
+        }
+        (_, Some(ErrorKind::NotADirectory | ErrorKind::AlreadyExists | ErrorKind::InvalidFilename)) => {
+            "Name another folder for the results.".into()
+        }
+        _ => {
+            "Free disk space or make the folder writable, or name another folder for the results.".to_string()
+        }
+    };
     Error::io(path, source, help)
+}
+
+/// The first link on the way to `path` whose target is not there, and that target.
+fn dangling(path: &Path) -> Option<(PathBuf, PathBuf)> {
+    let ways: Vec<&Path> = path.ancestors().collect();
+    let link = ways.into_iter().rev().find(|way| way.is_symlink() && !way.exists())?;
+    Some((link.to_path_buf(), std::fs::read_link(link).ok()?))
 }
 
 /// Gives every name a form fit for file and group names, each once: `rig, closed` → `rig_closed`.
@@ -196,6 +228,30 @@ mod tests {
         assert!(error.to_string().contains("a file stands where"), "{error}");
         assert_eq!(std::fs::read_to_string(&file).unwrap(), "keep");
         assert!(matches!(prepare_folder(Path::new("/proc/no_such_place")), Err(Error::Io { .. })));
+    }
+
+    /// Each kind of refusal has its own advice; that of a full disk only where the disk is full.
+    #[cfg(unix)]
+    #[test]
+    fn refusals_advise_what_helps() {
+        use std::os::unix::ffi::OsStrExt;
+        let dir = tempfile::tempdir().unwrap();
+        let said = |path: &Path, kind: ErrorKind| refusal(path, std::io::Error::from(kind)).to_string();
+        let link = dir.path().join("link");
+        std::os::unix::fs::symlink("nowhere", &link).unwrap();
+        for path in [link.clone(), link.join("results"), link.join("a/b")] {
+            let text = said(&path, ErrorKind::NotFound);
+            assert!(text.contains("is a link to \"nowhere\"") && !text.contains("disk"), "{text}");
+            assert!(prepare_folder(&path).unwrap_err().to_string().contains("is a link to"));
+        }
+        let latin = dir.path().join(std::ffi::OsStr::from_bytes(b"gr\xfc\xdfe"));
+        let text = said(&latin, ErrorKind::Other);
+        assert!(text.contains("UTF-8") && !text.contains("disk"), "{text}");
+        let plain = dir.path().join("plain");
+        assert!(said(&plain, ErrorKind::StorageFull).contains("Free disk space, or"));
+        for kind in [ErrorKind::PermissionDenied, ErrorKind::NotADirectory] {
+            assert!(!said(&plain, kind).contains("disk"));
+        }
     }
 
     fn names(dir: &Path) -> Vec<String> {

@@ -58,11 +58,12 @@ pub(super) fn read_parts<T>(
     };
     let root = DeTable::parse(text).map_err(|error| {
         let line = error.span().map_or(1, |span| reader.line(span.start));
-        let found = format!("`{}`", text.lines().nth(line - 1).unwrap_or("").trim());
-        Error::input(
-            Fault::new(format!("{file}:{line}"), found, "TOML")
-                .with_help(error.message().replace('\n', ", ")),
-        )
+        let found = text.lines().nth(line - 1).unwrap_or("").trim();
+        let mut help = error.message().replace('\n', ", ");
+        if found.split('"').skip(1).step_by(2).any(|quoted| quoted.contains('\\')) {
+            help = "A backslash in \"…\" begins an escape such as \\n: write paths with / or in '…'".into();
+        }
+        Error::input(Fault::new(format!("{file}:{line}"), format!("`{found}`"), "TOML").with_help(help))
     })?;
     let section = TableReader {
         reader: &reader,

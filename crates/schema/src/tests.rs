@@ -118,6 +118,16 @@ fn every_fault_is_named_once_at_its_line() {
 }
 
 #[test]
+fn paths_with_backslashes_are_told_how_to_write_them() {
+    for path in ["meshes\\disc.msh", "C:\\Users\\me", "..\\case", "a\\x"] {
+        let text = read(&format!("colour = \"{path}\"\n")).err().unwrap().to_string();
+        assert!(text.contains("write paths with / or in '…'"), "{path}: {text}");
+    }
+    let text = read("colour = red\n").err().unwrap().to_string();
+    assert!(!text.contains("paths"), "{text}");
+}
+
+#[test]
 fn a_scalar_is_named_as_the_quantity_it_is() {
     let things =
         read("[thing.a]\nradius = 1\n[thing.\"b.c\"]\nedges = [1, 2, 3]\n[weight]\nx = 3\n").unwrap();
