@@ -55,7 +55,7 @@ fn sentence(fault: &Fault) -> Option<&'static str> {
     let path = fault.place.split('`').nth(1)?;
     let key = path.rsplit('.').next()?.to_lowercase();
     let near = |word: &&str| *word == key || key.strip_suffix('s') == Some(word);
-    ABSENT.iter().find(|(words, _)| words.iter().any(|word| near(&word))).map(|(_, sentence)| *sentence)
+    ABSENT.iter().find(|(words, _)| words.iter().any(near)).map(|(_, sentence)| *sentence)
 }
 
 #[cfg(test)]

@@ -87,7 +87,7 @@ mod tests {
         let mut seed = 2026u64;
         let mut coin = |one_in: u64| {
             seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (seed >> 33) % one_in == 0
+            (seed >> 33).is_multiple_of(one_in)
         };
         for faces in [Faces::Triangles, Faces::Quadrilaterals] {
             for one_in in [1, 2, 5, 20] {

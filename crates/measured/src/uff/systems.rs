@@ -113,7 +113,7 @@ impl Systems {
                 (number, SystemRecord { kind, reference, origin: origin * unit, axes }, index + 4)
             };
             let skew = (system.axes.transpose() * system.axes - Matrix3::identity()).norm();
-            if !(skew < SKEW) {
+            if skew.is_nan() || skew >= SKEW {
                 let found = format!("axes of system {number} that are not perpendicular and of length one");
                 return Err(dataset.fault(index, found, "axes of a Cartesian frame"));
             }
