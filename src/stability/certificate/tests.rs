@@ -132,7 +132,7 @@ fn signed(seed: u64) -> (System, [bool; 3]) {
         sparse(n, |i, j| 0.5 * (a[(i, j)] + a[(j, i)]))
     };
     let bad = [seed % 7 == 3, seed % 5 == 2, false];
-    let soft = seed % 3 == 0;
+    let soft = seed.is_multiple_of(3);
     let (mass, damping) = (signed(bad[0], 1.0), signed(bad[1], 3.0));
     let stiffness = signed(soft, 10f64.powi(4 + (seed % 4) as i32));
     let mut structure = base.structure.clone();
