@@ -1,19 +1,17 @@
 //! Ctrl-C: the run ends at once, as the system ends it, with a line that says how to continue it.
 
-use std::path::Path;
-
-/// From here on an interrupt (SIGINT) says that `--resume` continues the run, if its record `record` is there by then.
+/// There is no such signal here.
 #[cfg(not(unix))]
-pub fn says_how_to_continue(_record: &Path) {}
+pub fn says_how_to_continue(_record: &std::path::Path) {}
 
 #[cfg(unix)]
 pub use unix::says_how_to_continue;
 
 #[cfg(unix)]
 mod unix {
-    use super::Path;
     use std::ffi::CString;
     use std::os::unix::ffi::OsStrExt;
+    use std::path::Path;
     use std::sync::OnceLock;
 
     static RECORD: OnceLock<CString> = OnceLock::new();

@@ -17,7 +17,7 @@ use crate::linalg::c64;
 use crate::linalg::dense::product;
 use crate::linalg::sparse::add_scaled;
 use crate::modal::{RealModes, ShiftedStiffness};
-use crate::numbers::hertz;
+use crate::numbers::{hertz, significant};
 use crate::progress::Observer;
 use crate::system::System;
 use std::f64::consts::TAU;
@@ -230,7 +230,14 @@ fn solve_and_refine<'a>(
             "The refinement changed the number of complex modes in the band from {first} to {last}"
         ));
     }
-    let modes: Vec<ComplexMode> = found.into_iter().filter_map(|found| found.mode).collect();
+    let mut modes: Vec<ComplexMode> = found.into_iter().filter_map(|found| found.mode).collect();
+    // The basis is that of the band: eigenvalues far beyond it, real or heavily damped, need not be those of the full order.
+    let (unconfirmed, kept): (Vec<_>, Vec<_>) =
+        modes.into_iter().partition(|mode| mode.eigenvalue.norm() > band[1] && !mode.accurate());
+    modes = kept;
+    warnings.extend(unconfirmed.iter().map(beyond_the_band));
+    let grows = unconfirmed.iter().any(|mode| mode.growth_rate() > 0.0);
+    let broken_premise = grows.then_some("a mode beyond the band that may grow is not confirmed");
     for mode in modes.iter().filter(|mode| mode.accepted() && mode.condition > ILL_CONDITIONED) {
         warnings.push(format!(
             "The mode at {} Hz is ill-conditioned: a relative change of the matrices moves it by {:.0e} times as much",
@@ -241,8 +248,18 @@ fn solve_and_refine<'a>(
     warnings.extend(accuracy_warnings(&modes));
     warnings.extend(incomplete(operator, real, asked.hz[1]));
     let modes =
-        ComplexModes { modes, subspace_dimension: basis.len(), refinements, warnings, broken_premise: None };
+        ComplexModes { modes, subspace_dimension: basis.len(), refinements, warnings, broken_premise };
     Ok((modes, basis))
+}
+
+/// Warning of an eigenvalue that is left out: its |λ| is beyond the band, and it is not accurate.
+fn beyond_the_band(mode: &ComplexMode) -> String {
+    let [growth, frequency] = [mode.growth_rate(), mode.eigenvalue.im].map(|part| significant(part, 3));
+    format!(
+        "An eigenvalue beyond the band, σ = {growth} 1/s at ω = {frequency} 1/s, is left out: its relative error is {:.0e}; \
+         a higher `cea.basis_below` makes it more accurate",
+        mode.eigenvalue_error
+    )
 }
 
 /// Warning where the real modes do not reach the band's top: those known, or the frequency below which a count has shown

@@ -87,7 +87,9 @@ fn dense_eigenvalues(system: &RandomSystem, band: [f64; 2]) -> Vec<c64> {
             continue;
         }
         let mut z = c64::new(s, 0.0) + c64::new(1.0, 0.0) / mu;
-        if z.im < 1e-6 * z.norm() || z.im > 1.5 * s {
+        // One that diverges is given whatever the band; far beyond it are the infinite ones of what has no mass.
+        let diverges = |z: c64| z.re > 1e-3 * s && z.re < 100.0 * s && z.im.abs() <= 1e-6 * z.norm();
+        if !diverges(z) && (z.im < 1e-6 * z.norm() || z.im > 1.5 * s) {
             continue;
         }
         let mut x = Mat::from_fn(n, 1, |i, _| eigen.U()[(i, index)]);
@@ -102,7 +104,7 @@ fn dense_eigenvalues(system: &RandomSystem, band: [f64; 2]) -> Vec<c64> {
             let size = dot(&y, &y).re.sqrt();
             x = Mat::from_fn(n, 1, |i, _| y[(i, 0)] / size);
         }
-        if z.im >= TAU * band[0] && z.im <= TAU * band[1] {
+        if diverges(z) || (z.im >= TAU * band[0] && z.im <= TAU * band[1]) {
             found.push(z);
         }
     }
