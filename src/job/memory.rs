@@ -12,7 +12,7 @@ use std::f64::consts::{PI, TAU};
 
 /// Runs of fewer degrees of freedom fit any machine, with as many modes as they can have: 14 vectors each take 0.4 GiB.
 const LEAST: usize = 2_000;
-/// Runs of so many degrees of freedom or so many bytes are large: what others take is not told.
+/// Runs of so many degrees of freedom or so many bytes are large: what others take is not reported.
 const LARGE: (usize, f64) = (15_000, 2.5e8);
 
 /// What the program itself takes \[bytes\].

@@ -115,7 +115,7 @@ impl TextTable {
     ///
     /// # Errors
     /// Columns that are missing or named twice, or whose name is nearly that of a known one; rows of another length; decimal
-    /// commas that cannot be told from separators or thousands.
+    /// commas that cannot be distinguished from separators or thousands.
     pub fn parse(name: String, text: String, required: &[&str], known: &[&str]) -> Result<TextTable> {
         let blank = text.lines().take_while(|line| line.trim().is_empty()).count();
         let heading = text.lines().nth(blank).unwrap_or("");

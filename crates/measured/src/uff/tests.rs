@@ -177,7 +177,7 @@ fn no_bytes_make_it_panic() {
     assert!(refused > bytes.len());
 }
 
-/// A file of five datasets of which one is spoiled, in any order: the others are read, and the spoiled one is told with its line.
+/// A file of five datasets of which one is spoiled, in any order: the others are read, and the spoiled one is named with its line.
 #[test]
 fn one_spoiled_record_costs_itself_in_every_order() {
     let row = "  5.00000E+00  1.500000000000E+00 -2.500000000000E+00\n";

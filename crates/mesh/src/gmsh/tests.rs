@@ -164,7 +164,7 @@ fn the_same_mesh_is_read_however_it_is_written() {
     }
 }
 
-/// All types of Gmsh beyond those of the first order are told as what they are, of however many nodes.
+/// All types of Gmsh beyond those of the first order are named as what they are, of however many nodes.
 #[test]
 fn types_of_higher_order_and_solids_are_told() {
     for (kind, nodes, expected) in [
