@@ -2,7 +2,7 @@
 //!
 //! Format: Gmsh reference manual, "MSH file format" and "MSH file format version 2".
 //!
-//! A file passes through five steps: its header says which reader takes it (`msh4` or `msh2`), the reader lists what the file
+//! A file passes through five steps: its header says which reader takes it (`msh4`, by the crate mshio, or `msh2`), the reader lists what the file
 //! holds (`RawMesh`), `names` reads the physical names, `raw` turns named groups into regions, and `orient` turns
 //! neighbouring faces alike. Then the mesh is checked ([`check`]). Whatever the bytes, the answer is a mesh or a fault
 //! that says where and what; no count in the file makes the reader allocate more than the file's size warrants.

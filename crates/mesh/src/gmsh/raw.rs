@@ -86,7 +86,7 @@ pub(super) fn element_nodes(
 }
 
 /// Dimension of a first-order element that is supported.
-fn dimension(kind: i64) -> Option<usize> {
+pub(super) fn dimension(kind: i64) -> Option<usize> {
     match kind {
         15 => Some(0),
         1 => Some(1),

@@ -164,6 +164,50 @@ fn the_same_mesh_is_read_however_it_is_written() {
     }
 }
 
+/// Coordinates come through to the last bit and tags whatever they are, between elements of types that no mesh takes.
+#[test]
+fn numbers_are_exact_and_tags_may_be_any() {
+    let mut seed = 41u64;
+    let mut random = || {
+        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (seed >> 11) | 1
+    };
+    for case in 0..50 {
+        let count = 2 + case % 7;
+        // Ascending multiples, so that all differ; with 1 for the first case, so that they have no gaps.
+        let gap = if case == 0 { 1 } else { random() >> 8 };
+        let nodes: Vec<(u64, f64)> =
+            (1..=count).map(|k| (k * gap, f64::from_bits(random() << 1 & 0x3fff_ffff_ffff_ffff))).collect();
+        let (mut tags, mut places, mut lines) = (String::new(), String::new(), String::new());
+        for (tag, x) in nodes.iter().rev() {
+            tags += &format!("{tag}\n");
+            places += &format!("{x:e} {tag} 0\n");
+        }
+        for (k, pair) in nodes.windows(2).enumerate() {
+            lines += &format!("{} {} {}\n", k as u64 + gap, pair[0].0, pair[1].0);
+        }
+        let text = format!(
+            "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n1 1 \"bar\"\n$EndPhysicalNames\n\
+             $Elements\n3 {total} 1 {total}\n1 2 8 1\n7 1 2 3\n1 1 1 {lines_count}\n{lines}1 2 67 1\n9 1 2\n$EndElements\n\
+             $Nodes\n1 {count} 1 {count}\n1 1 0 {count}\n{tags}{places}$EndNodes\n\
+             $Entities\n0 2 0 0\n1 0 0 0 0 0 0 1 -1 0\n2 0 0 0 0 0 0 0 0\n$EndEntities\n",
+            total = count + 1,
+            lines_count = count - 1,
+        );
+        let mesh = parse(text.as_bytes(), "a.msh", 1.0).unwrap_or_else(|error| panic!("{text}\n{error}"));
+        let read: Vec<(u64, u64)> =
+            mesh.origin.node_tags.iter().zip(&mesh.nodes).map(|(tag, n)| (*tag, n[0].to_bits())).collect();
+        let written: Vec<(u64, u64)> = nodes.iter().map(|(tag, x)| (*tag, x.to_bits())).collect();
+        assert_eq!(read, written);
+        assert_eq!(mesh.require("bar", 1).unwrap().elements.len() as u64, count - 1);
+    }
+    let text = fault(BAR_4.replace("1 0 0 0 100 0 0", "2147483648 0 0 0 100 0 0"));
+    assert!(
+        text.contains("line 10: found entity's tag 2147483648; expected an integer of 32 bits"),
+        "{text}"
+    );
+}
+
 /// All types of Gmsh beyond those of the first order are named as what they are, of however many nodes.
 #[test]
 fn types_of_higher_order_and_solids_are_told() {
