@@ -6,6 +6,9 @@ use super::neighbours::Neighbour;
 use super::*;
 use crate::calibration::{CalibrationModel, Level};
 use crate::case::Case;
+use crate::linalg::SparseMatrix;
+use crate::linalg::random::Random;
+use crate::linalg::sparse::{add_scaled, diagonal};
 
 fn case(more: &str) -> Case {
     let text = format!("{}{more}", disc(5, 32));
@@ -61,6 +64,98 @@ fn one_sided_derivatives_are_those_of_both_sides() {
         }
     }
     assert_eq!(from(1e-3, 1e-3).err().unwrap().exit_code(), 2);
+}
+
+/// K is proportional to E and M to the density, whatever the theory and the thickness; what does not depend on the value changes
+/// by rounding only; and a weak spring has the derivative of a spring, however stiff the rest is.
+#[test]
+fn derivatives_are_those_of_proportional_matrices_and_of_weak_springs() {
+    let mut random = Random::seeded(31);
+    for k in 0..16 {
+        let theory = ["kirchhoff", "mindlin"][k % 2];
+        let thickness = 10f64.powf(random.between(-4.5, -1.7));
+        let (e, spring) = (random.between(1e8, 4e11), 10f64.powf(random.between(-3.0, 3.0)));
+        let more = format!(
+            "[spring.weak]\non = \"rim\"\ndirection = [1, 0, 0]\nstiffness = {spring:e}\n[modes.disc]\nbelow = \"1 kHz\"\n"
+        );
+        let text = (disc(3, 16) + &more)
+            .replace("thickness = \"1 mm\"", &format!("thickness = {thickness:e}\ntheory = \"{theory}\""))
+            .replace("\"210 GPa\"", &format!("{e:e}"));
+        let case = Case::parse("case.toml", &text, ".".into()).unwrap();
+        let here = Prepared::new(&case).unwrap().assembled;
+        let (stiffness, mass) = (&here.structure.stiffness, &here.structure.mass);
+        let change = |path: &str| {
+            let value = case.parameter(path).unwrap().value;
+            let build = |value: f64| {
+                let case = case.with_parameter(path, value)?;
+                Ok(vec![Neighbour { assembled: Prepared::new(&case)?.assembled, seen: Vec::new() }])
+            };
+            let found = super::neighbours::derivatives(value, 1e-3 * value, &build);
+            found.unwrap_or_else(|error| panic!("{theory} {thickness:e} {path}: {error}")).remove(0)
+        };
+        // The largest entry of value · derivative − exact against the diagonal of `like`, to be rounding over the step.
+        let off = |derivative: &SparseMatrix, value: f64, exact: f64, like: &SparseMatrix| {
+            let (off, d) = (add_scaled(&[(value, derivative), (-exact, like)]), diagonal(like));
+            let column =
+                |j: usize| off.row_idx_of_col(j).zip(off.val_of_col(j)).map(move |(i, v)| (i, j, *v));
+            let part = |(i, j, v): (usize, usize, f64)| v.abs() / (d[i] * d[j]).sqrt();
+            (0..off.ncols()).flat_map(column).map(part).fold(0.0, f64::max)
+        };
+        let by_e = change("material.steel.youngs_modulus");
+        let by_density = change("material.steel.density");
+        let rest = add_scaled(&[(1.0, stiffness), (-spring, &change("spring.weak.stiffness").stiffness)]);
+        for (name, off) in [
+            ("∂K/∂E", off(&by_e.stiffness, e, 1.0, &rest)),
+            ("∂M/∂E", off(&by_e.mass, e, 0.0, mass)),
+            ("∂M/∂ρ", off(&by_density.mass, 7850.0, 1.0, mass)),
+            ("∂K/∂ρ", off(&by_density.stiffness, 7850.0, 0.0, stiffness)),
+        ] {
+            assert!(off < 1e-11, "{theory} {thickness:e} {name}: {off:e}");
+        }
+        // One spring, shared by the nodes of the rim: all of its entries together are 1, within rounding of K over the step.
+        let sum: f64 = change("spring.weak.stiffness").stiffness.val().iter().sum();
+        let largest = diagonal(stiffness).into_iter().fold(0.0, f64::max);
+        let rounding = 16.0 * 16.0 * f64::EPSILON * largest / (1e-3 * spring);
+        assert!((sum - 1.0).abs() < 1e-11 + rounding, "{theory} {thickness:e} {spring:e}: {sum}");
+    }
+}
+
+/// Young's modulus follows from frequencies, f ∝ √E, by either theory of plates, held and free.
+#[test]
+fn youngs_modulus_of_a_plate_that_was_made_is_found_again() {
+    let mut random = Random::seeded(32);
+    for k in 0..4 {
+        let theory = ["mindlin", "kirchhoff"][k / 3];
+        let (thickness, made) = (random.between(1.0, 12.0), random.between(160.0, 250.0));
+        let held = k % 2 == 0;
+        let mut text = disc(3, 16).replace(
+            "thickness = \"1 mm\"",
+            &format!("thickness = \"{thickness} mm\"\ntheory = \"{theory}\""),
+        ) + "[modes.disc]\nbelow = BELOW\nfree = FREE\nmeasured = MEASURED\n[calibrate]\nagainst = \"disc\"\n\
+               trials = 2\nchance_draws = 20\n[calibrate.parameter.E]\npath = \"material.steel.youngs_modulus\"\n\
+               between = [\"150 GPa\", \"260 GPa\"]\n";
+        text = text
+            .replace("FREE", if held { "false" } else { "true" })
+            .replace("BELOW", &(2.5e3 * thickness).to_string());
+        let parse = |measured: &[f64]| {
+            Case::parse("case.toml", &text.replace("MEASURED", &format!("{measured:?}")), ".".into()).unwrap()
+        };
+        let named = parse(&[1.0]).with_parameter("material.steel.youngs_modulus", made * 1e9).unwrap();
+        let named = super::super::modes::part_modes(&Prepared::new(&named).unwrap(), "disc", &()).unwrap();
+        let all = (named.modes.rigid_bodies..named.modes.len()).map(|k| named.modes.frequency_hz(k));
+        let mut measured: Vec<f64> = all.collect();
+        measured.dedup_by(|a, b| *a < 1.001 * *b);
+        measured.truncate(5);
+        let case = parse(&measured);
+        let prepared = Prepared::new(&case).unwrap();
+        let found = Calibrate::new(&prepared, case.calibrate.as_ref().unwrap()).unwrap().run(&());
+        let found = found.unwrap_or_else(|error| panic!("{theory} {thickness} {held}: {error}"));
+        let after = found.numbers[0].after;
+        assert!(
+            (after / (made * 1e9) - 1.0).abs() < 1e-6,
+            "{theory} {thickness} {held}: {after:e} for {made}"
+        );
+    }
 }
 
 #[test]
