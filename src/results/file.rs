@@ -16,6 +16,7 @@
 //! An interrupted run is resumed from `record.bin` and `checkpoint.bin` (see `record`); `results.h5` is only written.
 
 use super::folder::{make_durable, own, prepare_folder, refusal, retire, synchronise};
+use super::held::check_held;
 use super::{RunResults, TransientTables};
 use crate::dataset::{attribute, text_attribute};
 use crate::error::Result;
@@ -179,6 +180,7 @@ impl ResultsFile {
     /// Goes on in a copy when the file is in its place.
     fn step_aside(&mut self) -> Result<()> {
         if self.in_place() {
+            check_held(self.folder())?;
             let aside = self.home.with_file_name("results.new.h5");
             std::fs::copy(&self.home, &aside).map_err(|source| {
                 let _ = std::fs::remove_file(&aside);

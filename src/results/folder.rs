@@ -8,6 +8,7 @@
 //! A process that is killed loses nothing that it has written, but a machine that loses power does until the disk has it.
 //! [`write_durably`] waits for the disk, and so does the end of a run, once for all its files ([`make_durable`]).
 
+use super::held::check_held;
 use crate::error::{Error, Result};
 use std::collections::BTreeSet;
 use std::io::{ErrorKind, Write};
@@ -17,7 +18,10 @@ use std::path::{Path, PathBuf};
 pub(super) const FILES: &str = ".files";
 
 /// Makes the folder `dir` and its parents when they are missing.
+///
+/// A folder that this process has locked must still be the one that it has locked.
 pub(super) fn prepare_folder(dir: &Path) -> Result<()> {
+    check_held(dir)?;
     if dir.exists() && !dir.is_dir() {
         let found =
             std::io::Error::new(ErrorKind::NotADirectory, "a file stands where the results folder should be");
@@ -56,6 +60,7 @@ pub(super) fn replace(dir: &Path, name: &str, bytes: &[u8], durable: bool) -> Re
 
 /// Waits until the files of the run in the folder `dir`, and `more`, are on the disk.
 pub(super) fn make_durable(dir: &Path, more: &Path) -> Result<()> {
+    check_held(dir)?;
     let names = owned(dir).into_iter().chain([FILES.into()]);
     let files = names.map(|name| dir.join(name)).filter(|path| path.is_file());
     for path in files.chain([more.to_path_buf(), dir.to_path_buf()]) {
@@ -117,6 +122,7 @@ pub(crate) fn written_files(dir: &Path) -> BTreeSet<String> {
 /// Deletes the files of an earlier run in the folder `dir`, but those in `spared`: names, or whole paths of files that the
 /// run reads.
 pub(crate) fn retire(dir: &Path, spared: &[PathBuf]) -> Result<()> {
+    check_held(dir)?;
     let names = owned(dir);
     if names.is_empty() {
         return Ok(());

@@ -1,14 +1,13 @@
 //! One process at a time in a results folder, or at a part of one.
 
 use super::folder::{prepare_folder, refusal};
+use super::held::{Held, LOCK};
 use crate::error::{Error, Result};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{ErrorKind, Read, Write};
 use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// The file that is locked; it says who holds the lock and stays when the process ends.
-const NAME: &str = ".lock";
 /// Characters of a command that are shown.
 const SHOWN: usize = 80;
 
@@ -17,6 +16,8 @@ const SHOWN: usize = 80;
 pub struct FolderLock {
     // The lock lives as long as the open file.
     _file: Option<File>,
+    /// The folder, where all of it is locked.
+    _held: Option<Held>,
 }
 
 impl FolderLock {
@@ -25,7 +26,9 @@ impl FolderLock {
     /// # Errors
     /// [`Error::Io`]: another process holds the lock (which one, since when), or the folder cannot be written.
     pub fn take(dir: &Path) -> Result<Self> {
-        Self::take_file(dir, NAME, "the folder")
+        let mut lock = Self::take_file(dir, LOCK, "the folder")?;
+        lock._held = lock._file.as_ref().and_then(|file| Held::new(dir, file));
+        Ok(lock)
     }
 
     /// Locks what the file `name` of the folder `dir` stands for, called `what` in messages.
@@ -40,7 +43,7 @@ impl FolderLock {
             Err(TryLockError::WouldBlock) => return Err(in_use(dir, what, &holder(&mut file))),
             // Some network file systems have no locks.
             Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {
-                return Ok(FolderLock { _file: None });
+                return Ok(FolderLock { _file: None, _held: None });
             }
             Err(TryLockError::Error(error)) => return Err(refused(error)),
         }
@@ -48,7 +51,7 @@ impl FolderLock {
             std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
         let said = format!("{}\n{}\n{}\n", std::process::id(), seconds_now(), command.join(" "));
         file.set_len(0).and_then(|()| file.write_all(said.as_bytes())).map_err(refused)?;
-        Ok(FolderLock { _file: Some(file) })
+        Ok(FolderLock { _file: Some(file), _held: None })
     }
 }
 
@@ -93,6 +96,52 @@ mod tests {
         assert!(error.exit_code() == 1 && error.to_string().contains(&holder), "{error}");
         drop(lock);
         FolderLock::take(&folder).unwrap();
+    }
+
+    /// A folder that is removed, moved, emptied or replaced in the middle of a run takes nothing more of it.
+    #[test]
+    #[cfg(unix)]
+    fn a_folder_that_another_takes_the_place_of_is_not_written_into() {
+        use super::super::folder::{make_durable, own, write_atomically, write_durably, write_result};
+        for k in 0..5 {
+            let parent = tempfile::tempdir().unwrap();
+            let dir = parent.path().join("out");
+            let lock = FolderLock::take(&dir).unwrap();
+            write_result(&dir, "first.csv", b"1").unwrap();
+            match k {
+                0 => std::fs::remove_dir_all(&dir).unwrap(),
+                1 => std::fs::rename(&dir, parent.path().join("moved")).unwrap(),
+                2 => std::fs::remove_file(dir.join(LOCK)).unwrap(),
+                _ => {
+                    std::fs::remove_dir_all(&dir).unwrap();
+                    std::fs::create_dir(&dir).unwrap();
+                    std::fs::write(dir.join(LOCK), "another run").unwrap();
+                    if k == 4 {
+                        std::fs::write(dir.join("first.csv"), "other").unwrap();
+                    }
+                }
+            }
+            let before = std::fs::read(dir.join("first.csv")).ok();
+            let tries = [
+                write_result(&dir, "first.csv", b"2"),
+                write_durably(&dir, "second.csv", b"2"),
+                write_atomically(&dir, "third.csv", b"2"),
+                own(&dir, "fourth.csv"),
+                make_durable(&dir, &dir),
+            ];
+            for tried in tries {
+                let error = tried.unwrap_err();
+                assert!(
+                    error.exit_code() == 1 && error.to_string().contains("was removed, moved"),
+                    "{k}: {error}"
+                );
+            }
+            assert_eq!(std::fs::read(dir.join("first.csv")).ok(), before);
+            assert!(k > 1 || !dir.exists());
+            assert!(!dir.join("second.csv").exists());
+            drop(lock);
+            write_result(&dir, "first.csv", b"3").unwrap();
+        }
     }
 
     #[test]

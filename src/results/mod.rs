@@ -41,6 +41,7 @@ mod folder;
 mod frf;
 #[cfg(feature = "hdf5")]
 mod hdf5;
+mod held;
 mod lock;
 mod maps;
 #[cfg(feature = "hdf5")]

@@ -8,6 +8,7 @@ use super::origin::{RecordOrigin, START_OVER};
 use super::part::Part;
 use crate::error::{Error, Fault, Result};
 use crate::results::folder::{own, prepare_folder, refusal, synchronise, write_durably};
+use crate::results::held::check_held;
 use crate::results::lock::FolderLock;
 use crate::results::{FieldSnapshot, RecordPiece, Recording};
 use crate::sweep::Modes;
@@ -275,8 +276,9 @@ impl State {
     /// Hands all that was added to the operating system.
     fn write(&mut self, path: &Path) -> Result<()> {
         let refused = |source: std::io::Error| refusal(path, source);
+        let dir = path.parent().unwrap_or(Path::new(""));
+        check_held(dir)?;
         if !self.appends {
-            let dir = path.parent().unwrap_or(Path::new(""));
             match path.file_name() {
                 Some(name) if name == RECORD => own(dir, RECORD)?,
                 _ => prepare_folder(dir)?,
