@@ -125,7 +125,8 @@ declare! {
     pub struct Held {
         /// The regions.
         pub on: Vec<String> = key::names("a region, or a list of them").not_empty(),
-        /// Names of held degrees of freedom among ux, uy, uz, rx, ry, rz, or `all`.
+        /// Names of held degrees of freedom among ux, uy, uz, rx, ry, rz, or `all`. Along an edge with no displacement the rotation about the
+        /// normal of a membrane stays free: it is half the shear strain there.
         pub held: Vec<String> = key::names("\"all\", or some of ux, uy, uz, rx, ry, rz")
             .check("\"all\", or some of ux, uy, uz, rx, ry, rz", |list| {
                 list.iter().all(|name| name == "all" || DOF_NAMES.contains(&name.as_str()))

@@ -11,10 +11,12 @@
 //! * A rigid slave at x_s follows its master at x_m: u_s = u_m + θ_m × (x_s − x_m), θ_s = θ_m. Links may be chained;
 //!   the last master leads. What acts on the slaves acts on their master. Supports belong on the master: one on a
 //!   slave would hold a combination of the master's motions and is refused.
+//! * The rotation about the normal of a membrane stays free on a clamped edge and on one that follows a master, see `drilling`.
 //!
 //! The free degrees of freedom of a node are orthonormal directions, along the global axes wherever possible.
 
 use super::constraints::{active_spaces, lead};
+use super::drilling::Drilling;
 use super::model::Model;
 use super::numbering::node_order;
 use super::registry::AnyElement;
@@ -22,8 +24,12 @@ use super::ties::resolve_links;
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::{SparseVector, c64};
 use nalgebra::{SMatrix, SVector, Vector3};
+use std::collections::BTreeMap;
 
 const NAMES: [&str; 6] = ["ux", "uy", "uz", "rx", "ry", "rz"];
+
+/// The terms of the six rows of a node of T.
+type Rows = [Vec<(usize, f64)>; 6];
 
 /// The map u = T q between nodes and free degrees of freedom.
 #[derive(Debug, Clone)]
@@ -33,6 +39,9 @@ pub struct DofMap {
     /// Row r = 6 node + dof of T has the terms `terms[starts[r]..starts[r + 1]]`.
     starts: Vec<usize>,
     terms: Vec<(usize, f64)>,
+    drilling: Drilling,
+    /// Rows of the nodes whose rotation about a normal is free, for the elements that move with them as one rigid body.
+    rigid: BTreeMap<usize, Rows>,
 }
 
 /// A free degree of freedom.
@@ -72,6 +81,15 @@ impl DofMap {
     pub fn terms(&self, node: usize, dof: usize) -> &[(usize, f64)] {
         let row = 6 * node + dof;
         &self.terms[self.starts[row]..self.starts[row + 1]]
+    }
+
+    /// The terms of `dof` of `node` as an element between `nodes` sees it: one whose nodes all move as one rigid body does
+    /// not turn with the free rotation of its edge.
+    pub(super) fn terms_of(&self, nodes: &[usize], node: usize, dof: usize) -> &[(usize, f64)] {
+        match self.rigid.get(&node) {
+            Some(rows) if self.drilling.is_rigid(nodes) => &rows[dof],
+            _ => self.terms(node, dof),
+        }
     }
 
     /// Tᵀ v of a sparse v given as (node, dof, coefficient): a force, or the coefficients of a linear form of u.
@@ -156,7 +174,7 @@ impl DofMap {
                 starts.push(terms.len());
             }
         }
-        DofMap { nodes, free, starts, terms }
+        DofMap { nodes, free, starts, terms, drilling: Drilling::none(), rigid: BTreeMap::new() }
     }
 
     /// The map of `model` with its `elements`, whose node indices and geometry are known to be valid.
@@ -175,17 +193,25 @@ impl DofMap {
                 }
             }
         }
-        let coupled: Vec<Vec<usize>> =
-            elements.iter().map(|e| e.nodes().iter().map(|node| masters[*node]).collect()).collect();
+        let drilling = Drilling::new(model, &masters, &held);
+        let own =
+            |node: &usize| (masters[*node] != *node && drilling.normal(*node).is_some()).then_some(*node);
+        let coupling = |nodes: &[usize]| -> Vec<usize> {
+            nodes.iter().map(|node| masters[*node]).chain(nodes.iter().filter_map(own)).collect()
+        };
+        let coupled: Vec<Vec<usize>> = elements.iter().map(|e| coupling(e.nodes())).collect();
         let mut free = Vec::new();
         let mut of_node = vec![0..0; model.nodes.len()];
         for node in node_order(model.nodes.len(), &coupled) {
+            let first = free.len();
             if masters[node] == node {
                 let directions = spaces[node].free_directions(held[node], lengths[node]);
-                let first = free.len();
                 free.extend(directions.into_iter().map(|direction| FreeDof { node, direction }));
-                of_node[node] = first..free.len();
             }
+            if let Some([x, y, z]) = drilling.normal(node) {
+                free.push(FreeDof { node, direction: [0.0, 0.0, 0.0, x, y, z] });
+            }
+            of_node[node] = first..free.len();
         }
         if free.is_empty() {
             return Err(Error::input(
@@ -194,19 +220,43 @@ impl DofMap {
             ));
         }
 
+        // The rows of a node with its own rotation about the normal, or with that of the body that it is part of.
+        let rows = |node: usize, turns: bool| -> Rows {
+            let master = masters[node];
+            let arm = Vector3::from(model.nodes[node]) - Vector3::from(model.nodes[master]);
+            let normal = drilling.normal(node);
+            let mut motions: Vec<(usize, [f64; 6])> =
+                of_node[master].clone().map(|k| (k, moved(&free[k].direction, &arm))).collect();
+            if let Some(normal) = normal {
+                if master != node && turns {
+                    for (_, motion) in &mut motions {
+                        let about: f64 = (0..3).map(|k| normal[k] * motion[3 + k]).sum();
+                        (0..3).for_each(|k| motion[3 + k] -= about * normal[k]);
+                    }
+                    motions.extend(of_node[node].clone().map(|k| (k, free[k].direction)));
+                } else if master == node && !turns {
+                    // It comes last of the node's own.
+                    motions.pop();
+                }
+            }
+            std::array::from_fn(|dof| {
+                motions.iter().filter(|(_, m)| m[dof] != 0.0).map(|(k, m)| (*k, m[dof])).collect()
+            })
+        };
         let mut starts = Vec::with_capacity(6 * model.nodes.len() + 1);
         let mut terms = Vec::with_capacity(free.len());
+        let mut rigid = BTreeMap::new();
         starts.push(0);
-        for (node, &master) in masters.iter().enumerate() {
-            let arm = Vector3::from(model.nodes[node]) - Vector3::from(model.nodes[master]);
-            let motions: Vec<(usize, [f64; 6])> =
-                of_node[master].clone().map(|k| (k, moved(&free[k].direction, &arm))).collect();
-            for dof in 0..6 {
-                terms.extend(motions.iter().filter(|(_, m)| m[dof] != 0.0).map(|(k, m)| (*k, m[dof])));
+        for node in 0..model.nodes.len() {
+            for row in rows(node, true) {
+                terms.extend(row);
                 starts.push(terms.len());
             }
+            if drilling.normal(node).is_some() {
+                rigid.insert(node, rows(node, false));
+            }
         }
-        Ok(DofMap { nodes: model.nodes.clone(), free, starts, terms })
+        Ok(DofMap { nodes: model.nodes.clone(), free, starts, terms, drilling, rigid })
     }
 }
 
@@ -271,7 +321,8 @@ mod tests {
         model.links.push(RigidLink { master: 4, slaves: vec![0, 1] });
         model.links.push(RigidLink { master: 5, slaves: vec![4] });
         let assembled = assemble(&model).unwrap();
-        assert_eq!(assembled.dofs.n_dofs(), 18);
+        // Two nodes that are free, the last master, and the rotations of the edge that follows about the plate's normal.
+        assert_eq!(assembled.dofs.n_dofs(), 12 + 6 + 2);
         // Six rigid motions are annihilated by K, carry the mass, and expand to themselves everywhere.
         let origin = [0.3, -0.1, 0.2];
         for (k, q) in assembled.dofs.rigid_body_vectors(origin).iter().enumerate() {

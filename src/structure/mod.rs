@@ -9,6 +9,7 @@ mod assembly;
 mod check;
 mod constraints;
 mod dofs;
+mod drilling;
 pub mod elements;
 mod free;
 mod imported;

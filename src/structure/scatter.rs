@@ -237,8 +237,9 @@ fn split_off<'a, const K: usize>(rest: &mut [&'a mut [f64]; K], length: usize) -
 fn coupled_dofs(dofs: &DofMap, element: &dyn FiniteElement) -> Vec<usize> {
     let components = element.components();
     let freedoms = element.nodes().iter().flat_map(|node| components.iter().map(|dof| (*node, *dof)));
-    let mut list: Vec<usize> =
-        freedoms.flat_map(|(node, dof)| dofs.terms(node, dof).iter().map(|(k, _)| *k)).collect();
+    let mut list: Vec<usize> = freedoms
+        .flat_map(|(node, dof)| dofs.terms_of(element.nodes(), node, dof).iter().map(|(k, _)| *k))
+        .collect();
     list.sort_unstable();
     list.dedup();
     list
@@ -260,7 +261,7 @@ impl Reduction {
         let components = element.components();
         let freedoms = element.nodes().iter().flat_map(|node| components.iter().map(|dof| (*node, *dof)));
         for (row, (node, dof)) in freedoms.enumerate() {
-            for (k, coefficient) in dofs.terms(node, dof) {
+            for (k, coefficient) in dofs.terms_of(element.nodes(), node, dof) {
                 self.entries.push((row, coupled.partition_point(|c| c < k), *coefficient));
             }
         }

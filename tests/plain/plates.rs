@@ -190,7 +190,8 @@ fn bending_only_is_the_same_plate_in_any_plane() {
     let (c, s) = (0.1_f64.cos(), 0.1_f64.sin());
     tilted.nodes.iter_mut().for_each(|p| *p = [c * p[0] + s * p[2], p[1], c * p[2] - s * p[0]]);
     let bending = assemble(&tilted).unwrap();
-    assert_eq!(full.dofs.n_dofs(), 2 * bending.dofs.n_dofs());
+    // Three of six; the clamped edge of 40 nodes may turn about the normal of the membrane.
+    assert_eq!(full.dofs.n_dofs(), 2 * bending.dofs.n_dofs() + 40);
     let (a, b) =
         (lowest_frequencies(&full.structure, 12, 0.0), lowest_frequencies(&bending.structure, 12, 0.0));
     assert!(a.iter().zip(&b).all(|(x, y)| (x / y - 1.0).abs() < 1e-8), "{a:?} {b:?}");
