@@ -147,6 +147,11 @@ impl<'a> Whole<'a> {
 }
 
 impl SweepProblem for Whole<'_> {
+    /// Each is a whole analysis.
+    fn solutions_between(&self, points: usize) -> usize {
+        40 + 5 * points
+    }
+
     fn modes(&self, at: &[f64]) -> Result<Modes> {
         let modes = self.analyse(at)?;
         let eigenvalues: Vec<c64> = modes.iter().map(|m| m.eigenvalue).collect();

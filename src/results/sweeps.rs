@@ -130,7 +130,8 @@ fn interaction_columns(unit: &str) -> Vec<Column<Interaction>> {
 
 impl SweepResult {
     /// The estimated relative error of critical value `k`: the full-order error of λ over the slope of the growth rate,
-    /// or the bracket's half length when that is more. Where two modes merge the slope is infinite: the bracket alone.
+    /// or the bracket's half length when that is more; relative to a millionth of the range at least. Where two modes merge the slope is
+    /// infinite: the bracket alone.
     pub fn value_error(&self, k: usize) -> f64 {
         let critical = &self.sweep.critical[k];
         let by_mode = match self.verified.get(k).copied().flatten() {
@@ -139,7 +140,8 @@ impl SweepResult {
             }
             _ => 0.0,
         };
-        critical.uncertainty.max(by_mode) / critical.value.abs().max(f64::MIN_POSITIVE)
+        let range = (self.axis.to - self.axis.from).abs();
+        critical.uncertainty.max(by_mode) / critical.value.abs().max(1e-6 * range)
     }
 
     /// The critical values, one a row.

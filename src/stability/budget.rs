@@ -12,6 +12,9 @@ impl GrowthBudget {
     }
 }
 
+/// An eigenvalue with ω below this part of |λ| is real: ω is the rounding of zero.
+const REAL: f64 = 1e-9;
+
 /// The terms of σ of a pair, for φ scaled to φᴴMφ = 1, given what the matrices are between φ and φ, and the `motion` Wᵀφ of
 /// the interface.
 ///
@@ -30,10 +33,10 @@ pub(super) fn growth_budget(
 ) -> GrowthBudget {
     let mut budget = GrowthBudget::default();
     let omega = lambda.im;
-    if omega <= 0.0 {
+    let inertia = 2.0 * omega + gyroscopic;
+    if omega <= REAL * lambda.norm() || inertia.abs() <= REAL * lambda.norm() {
         return budget;
     }
-    let inertia = 2.0 * omega + gyroscopic;
     let by_velocity = |gamma: c64| -(omega * gamma.re + lambda.re * gamma.im) / inertia;
     let by_displacement = |kappa: c64| -kappa.im / inertia;
     budget.mode_coupling = -circulatory / inertia;
@@ -49,4 +52,29 @@ pub(super) fn growth_budget(
         }
     }
     budget
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::equilibrium::samples::random_system;
+    use crate::stability::tests::steady;
+
+    /// What rounding leaves of the frequency of a real eigenvalue divides nothing.
+    #[test]
+    fn real_eigenvalues_have_no_budget() {
+        let system = random_system(12, 3, 20.0, 4);
+        let state = steady(&system);
+        let operator = Operator::new(&system, &state).unwrap();
+        let one = c64::new(1.0, 1e-12);
+        let motion = vec![one; operator.interface.directions.len()];
+        let forms = Forms { mass: one, stiffness: one, damping: one, loss: one };
+        for power in -300..-9 {
+            for growth in [-3.0, 1e-3, 2e4] {
+                let lambda = c64::new(growth, f64::abs(growth) * 10f64.powi(power));
+                let budget = growth_budget(&operator, lambda, &forms, &motion, [0.0; 2]);
+                assert_eq!(budget, GrowthBudget::default(), "{lambda}");
+            }
+        }
+    }
 }

@@ -89,6 +89,10 @@ impl SweepProblem for Answered<'_> {
         Ok(modes.eigenvalues)
     }
 
+    fn solutions_between(&self, points: usize) -> usize {
+        self.problem.solutions_between(points)
+    }
+
     fn at_once(&self) -> AtOnce {
         self.problem.at_once()
     }

@@ -1,9 +1,10 @@
 //! The boundary of stability in a map: the line on which the largest growth rate is zero.
 
 use super::at_once::solve_all;
+use super::critical::rounding;
 use super::map::MapPoint;
 use super::root::{Bracket, narrow};
-use super::{Axis, ROUND_OFF, SweepProblem};
+use super::{Axis, SweepProblem};
 use crate::error::Result;
 use crate::progress::Observer;
 use std::collections::BTreeMap;
@@ -84,7 +85,8 @@ impl Grid<'_> {
     /// The largest growth rate at a place \[1/s\], less round-off.
     fn growth(&self, at: &[f64]) -> Result<f64> {
         let all = self.problem.eigenvalues(at)?;
-        Ok(all.iter().map(|z| z.re - ROUND_OFF * z.norm()).fold(f64::NEG_INFINITY, f64::max).max(-1e300))
+        let growth = (0..all.len()).map(|k| all[k].re - rounding(&all, k));
+        Ok(growth.fold(f64::NEG_INFINITY, f64::max).max(-1e300))
     }
 
     /// Where the boundary cuts an edge, to `tolerance` of the value along it.
@@ -99,8 +101,9 @@ impl Grid<'_> {
         } else {
             Bracket { below: (a, fa), above: (b, fb) }
         };
-        let width = tolerance * a.abs().max(b.abs());
-        let found = narrow(bracket, width, |x| self.growth(&place(x)))?;
+        let (small, large) = (a.abs().min(b.abs()), a.abs().max(b.abs()));
+        let width = tolerance * small.max(1e-3 * large);
+        let found = narrow(bracket, width, usize::MAX, |x| self.growth(&place(x)))?;
         Ok(place(0.5 * (found.below.0 + found.above.0)))
     }
 

@@ -4,7 +4,7 @@ use super::assign::assign;
 use super::at_once::solve_all;
 use super::branch::{Branch, Sample};
 use super::{Axis, SweepProblem};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::linalg::c64;
 use std::f64::consts::TAU;
 
@@ -50,13 +50,14 @@ pub enum InteractionKind {
     Merging,
 }
 
-/// Every local minimum of the distance of two branches that is small, narrowed to `tolerance`.
+/// Every local minimum of the distance of two branches that is small, narrowed to `tolerance`, all with `most` solutions at most.
 pub(super) fn interactions(
     problem: &dyn SweepProblem,
     axis: &Axis,
     tolerance: f64,
     samples: &[Sample],
     branches: &[Branch],
+    most: usize,
 ) -> Result<Vec<Interaction>> {
     let mut near = Vec::new();
     for a in 0..branches.len() {
@@ -77,9 +78,10 @@ pub(super) fn interactions(
             }
         }
     }
+    let steps = (most / near.len().max(1)).min(STEPS);
     let refine = |candidate: usize| {
         let (pair, k) = near[candidate];
-        interaction(problem, axis, tolerance, samples, branches, pair, k)
+        interaction(problem, axis, (tolerance, steps), samples, branches, pair, k)
     };
     let refined = solve_all(problem.at_once(), 0..near.len(), &refine)?;
     let mut found: Vec<Interaction> = refined.into_iter().filter(|m| m.distance < NEAR).collect();
@@ -91,7 +93,7 @@ pub(super) fn interactions(
 fn interaction(
     problem: &dyn SweepProblem,
     axis: &Axis,
-    tolerance: f64,
+    (tolerance, steps): (f64, usize),
     samples: &[Sample],
     branches: &[Branch],
     pair: [usize; 2],
@@ -102,7 +104,10 @@ fn interaction(
     // The modes at the sample are the reference by which the two are found again.
     let reference = &samples[k].modes;
     let measure = |value: f64| -> Result<Gap> {
-        let modes = problem.modes(&[value])?;
+        let modes = match problem.modes(&[value]) {
+            Err(Error::Analysis { .. }) => return Ok(Gap { value, modes: None }),
+            other => other?,
+        };
         let link = assign(reference, &modes);
         let [a, b] = places.map(|p| link.to[p].map(|(j, _)| modes.eigenvalues[j]));
         Ok(Gap { value, modes: a.zip(b) })
@@ -112,7 +117,7 @@ fn interaction(
         Gap { value: samples[k].value, modes: a.zip(b) }
     });
     let width = tolerance * samples[k].value.abs().max(1e-3 * (axis.to - axis.from).abs());
-    let gap = narrowest(known, width, measure)?;
+    let gap = narrowest(known, width, steps, measure)?;
     let order = |k: usize| {
         let at = |b: usize| branches[b].at(k).map_or(0.0, |z| z.im);
         let (p, q) = (at(pair[0]), at(pair[1]));
@@ -160,12 +165,13 @@ impl Gap {
 fn narrowest(
     [mut low, mut least, mut high]: [Gap; 3],
     width: f64,
+    most: usize,
     mut measure: impl FnMut(f64) -> Result<Gap>,
 ) -> Result<Gap> {
     let mut known = vec![low, least, high];
     // Lengths of the last two steps.
     let mut steps = [f64::INFINITY; 2];
-    for step in 0..STEPS {
+    for step in 0..most {
         let side =
             if (high.value - least.value).abs() > (low.value - least.value).abs() { high } else { low };
         let section = least.value + GOLDEN * (side.value - least.value);
@@ -241,7 +247,7 @@ mod tests {
         ];
         for (k, (square, places, exact)) in cases.into_iter().enumerate() {
             let mut count = 0;
-            let found = narrowest(places.map(|x| two(x, square)), 1e-7, |x| {
+            let found = narrowest(places.map(|x| two(x, square)), 1e-7, STEPS, |x| {
                 count += 1;
                 Ok(two(x, square))
             });
@@ -255,7 +261,7 @@ mod tests {
     fn places_without_the_two_modes_are_passed_over() {
         let square = |x: f64| 1e-4 + 0.01 * (x - 0.3).powi(2);
         let gap = |x: f64| if x < 0.2 { Gap { value: x, modes: None } } else { two(x, square) };
-        let found = narrowest([0.0, 0.45, 1.0].map(gap), 1e-6, |x| Ok(gap(x))).unwrap();
+        let found = narrowest([0.0, 0.45, 1.0].map(gap), 1e-6, STEPS, |x| Ok(gap(x))).unwrap();
         assert!((found.value - 0.3).abs() < 2e-6, "{}", found.value);
     }
 }

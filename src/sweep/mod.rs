@@ -17,6 +17,8 @@ mod branch;
 mod critical;
 mod interaction;
 mod map;
+#[cfg(test)]
+mod onset_tests;
 mod points;
 mod root;
 mod sampled;
@@ -55,6 +57,12 @@ pub trait SweepProblem: Sync {
     /// As [`SweepProblem::modes`].
     fn eigenvalues(&self, at: &[f64]) -> Result<Vec<c64>> {
         Ok(self.modes(at)?.eigenvalues)
+    }
+
+    /// The solutions between the points of an axis that each search may take at most: for branches, critical values, interactions. A
+    /// number, and no time, so that the results are the same on every machine.
+    fn solutions_between(&self, points: usize) -> usize {
+        4000 + 20 * points
     }
 
     /// How many places are solved at once.

@@ -11,10 +11,12 @@ pub(super) struct Bracket {
 
 /// Narrows a bracket by the ITP method (Oliveira & Takahashi, ACM Trans. Math. Softw. 47 (2020) 5) until it is no
 /// longer than `tolerance`: never slower than bisection by more than one step, faster where f is smooth. At a square
-/// root, where f jumps out of the round-off, it bisects.
+/// root, where f jumps out of the round-off, it bisects. After `most` values of f, or one that is no
+/// number, the bracket is as long as it is.
 pub(super) fn narrow(
     mut bracket: Bracket,
     tolerance: f64,
+    most: usize,
     mut f: impl FnMut(f64) -> Result<f64>,
 ) -> Result<Bracket> {
     let length = |b: &Bracket| (b.above.0 - b.below.0).abs();
@@ -23,7 +25,7 @@ pub(super) fn narrow(
         return Ok(bracket);
     }
     let steps = (first / tolerance).log2().ceil() as i32 + 1;
-    for step in 0..=steps {
+    for step in (0..=steps).take(most) {
         let (a, b) = (bracket.below, bracket.above);
         let size = length(&bracket);
         let middle = 0.5 * (a.0 + b.0);
@@ -38,6 +40,9 @@ pub(super) fn narrow(
         let x = if (truncated - middle).abs() <= radius { truncated } else { middle - towards * radius };
         let x = if x.is_finite() && x != a.0 && x != b.0 { x } else { middle };
         let value = f(x)?;
+        if value.is_nan() {
+            break;
+        }
         if value > 0.0 { bracket.above = (x, value) } else { bracket.below = (x, value) }
     }
     Ok(bracket)
@@ -55,7 +60,7 @@ mod tests {
             Ok(x * x * x - 2.0)
         };
         let bracket = Bracket { below: (1.0, -1.0), above: (2.0, 6.0) };
-        let found = narrow(bracket, 1e-12, smooth).unwrap();
+        let found = narrow(bracket, 1e-12, usize::MAX, smooth).unwrap();
         assert!((found.above.0 - 2f64.cbrt()).abs() < 1e-12 && count < 20, "{count}");
         let mut count = 0;
         let onset = |x: f64| {
@@ -63,9 +68,10 @@ mod tests {
             Ok(if x > 0.3 { (x - 0.3f64).sqrt() } else { -1e-9 })
         };
         let bracket = Bracket { below: (0.0, -1e-9), above: (1.0, 0.8) };
-        let found = narrow(bracket, 1e-12, onset).unwrap();
+        let found = narrow(bracket, 1e-12, usize::MAX, onset).unwrap();
         assert!((found.above.0 - 0.3).abs() < 1e-12 && count <= 42, "{count}");
-        let falling = narrow(Bracket { below: (3.0, -1.0), above: (0.0, 2.0) }, 1e-10, |x| Ok(2.0 - x));
+        let bracket = Bracket { below: (3.0, -1.0), above: (0.0, 2.0) };
+        let falling = narrow(bracket, 1e-10, usize::MAX, |x| Ok(2.0 - x));
         assert!((falling.unwrap().below.0 - 2.0).abs() < 1e-10);
     }
 }

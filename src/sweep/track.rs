@@ -30,12 +30,16 @@ pub struct Sweep {
     pub critical: Vec<Critical>,
     /// Where two branches come near each other.
     pub interactions: Vec<Interaction>,
+    /// Steps that were not halved, though another link of their modes would be about as good, as the limit of solutions was reached.
+    pub doubtful_steps: usize,
 }
 
 /// Follows every mode of `problem` along `axis`; critical values are located to `tolerance`, relative to the value.
 ///
 /// The values of the axis are solved at once, then linked in their order by their shapes; a step is halved where another
-/// link would be about as good. At a coalescence no step is small enough: there the nearest eigenvalue continues the branch.
+/// link would be about as good. Steps, critical values and interactions take
+/// [`SweepProblem::solutions_between`] solutions each at most, and are given as they are then. At a coalescence no step is small
+/// enough: there the nearest eigenvalue continues the branch.
 ///
 /// # Errors
 /// A value without modes, such as one at which the contact opens.
@@ -45,12 +49,14 @@ pub fn sweep(
     tolerance: f64,
     observer: &dyn Observer,
 ) -> Result<Sweep> {
-    let Chain { samples, links, .. } = Chain::along(problem, axis, 0..axis.points, observer)?;
+    let Chain { samples, links, doubtful: doubtful_steps, .. } =
+        Chain::along(problem, axis, 0..axis.points, observer)?;
     let branches = branches(&samples, &links);
-    let critical = critical_values(problem, axis, tolerance, &samples, &branches, observer)?;
-    let interactions = interactions(problem, axis, tolerance.max(CLOSE), &samples, &branches)?;
+    let most = problem.solutions_between(axis.points);
+    let critical = critical_values(problem, axis, tolerance, &samples, &branches, most, observer)?;
+    let interactions = interactions(problem, axis, tolerance.max(CLOSE), &samples, &branches, most)?;
     let values = samples.iter().map(|s| s.value).collect();
-    Ok(Sweep { values, branches, critical, interactions })
+    Ok(Sweep { values, branches, critical, interactions, doubtful_steps })
 }
 
 /// Asks `problem` for every place that [`sweep`] asks for between two points of the axis, and for what interacts at the last one.
@@ -67,9 +73,10 @@ pub(super) fn follow_block(
     let end = samples.iter().position(|sample| sample.value == axis.value(last));
     let end = end.expect("the last point is one of the chain") + 1;
     let own = &samples[..end];
-    critical_values(problem, axis, tolerance, own, &branches(own, &links), observer)?;
+    let most = problem.solutions_between(axis.points);
+    critical_values(problem, axis, tolerance, own, &branches(own, &links), most, observer)?;
     let own = &samples[..samples.len().min(end + 1)];
-    interactions(problem, axis, tolerance.max(CLOSE), own, &branches(own, &links)).map(|_| ())
+    interactions(problem, axis, tolerance.max(CLOSE), own, &branches(own, &links), most).map(|_| ())
 }
 
 /// The samples so far and the links between neighbours.
@@ -78,6 +85,10 @@ struct Chain<'a> {
     axis: &'a Axis,
     samples: Vec<Sample>,
     links: Vec<Link>,
+    /// Solutions that steps may still be halved by.
+    left: usize,
+    /// Steps that were not halved for want of them.
+    doubtful: usize,
 }
 
 impl<'a> Chain<'a> {
@@ -96,7 +107,8 @@ impl<'a> Chain<'a> {
         };
         let solved = solve_all(problem.at_once(), points, &solve);
         observer.end();
-        let mut chain = Chain { problem, axis, samples: Vec::new(), links: Vec::new() };
+        let left = problem.solutions_between(axis.points);
+        let mut chain = Chain { problem, axis, samples: Vec::new(), links: Vec::new(), left, doubtful: 0 };
         for sample in solved? {
             chain.reach(sample, HALVINGS)?;
         }
@@ -108,7 +120,10 @@ impl<'a> Chain<'a> {
         if let Some(last) = self.samples.last() {
             let link = assign(&last.modes, &next.modes);
             let middle = self.axis.between(last.value, next.value, 0.5);
-            if link.doubtful && halvings > 0 && middle != last.value && middle != next.value {
+            let halves = link.doubtful && halvings > 0 && middle != last.value && middle != next.value;
+            self.doubtful += usize::from(halves && self.left == 0);
+            if halves && self.left > 0 {
+                self.left -= 1;
                 let modes = self.problem.modes(&[middle])?;
                 let halves = [assign(&last.modes, &modes), assign(&modes, &next.modes)];
                 let surer = halves.iter().all(|half| half.certainty > link.certainty + SURER);

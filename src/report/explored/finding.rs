@@ -171,6 +171,7 @@ mod tests {
             eigenvalue: c64::new(0.0, 1000.0),
             rises,
             kind: CriticalKind::Growth,
+            wide: false,
             slope: 1.0,
         };
         result.sweep.values = vec![0.0, 1.0, 2.0, 3.0, 4.0];

@@ -115,11 +115,31 @@ pub(in crate::report) fn critical_table(result: &SweepResult) -> ReportTable {
     let rows = table.rows.iter_mut().zip(&result.sweep.critical);
     rows.for_each(|(row, critical)| row.marked = critical.rises);
     if result.sweep.critical.is_empty() {
-        table.notes.push("No mode becomes unstable or stable in this range.".into());
+        let grows = result.sweep.branches.iter().any(|b| b.eigenvalues.iter().any(|z| unstable(*z)));
+        let words = match grows {
+            true => {
+                "No mode that is followed becomes unstable or stable in this range; those that grow begin, end or stay unstable."
+            }
+            false => "No mode becomes unstable or stable in this range.",
+        };
+        table.notes.push(words.into());
     } else {
         let count = result.sweep.critical.len();
         let largest = (0..count).map(|k| result.value_error(k)).fold(0.0, f64::max);
         table.notes.push(format!("Largest estimated relative error of a critical value {}.", power(largest)));
+        let wide = result.sweep.critical.iter().filter(|c| c.wide).count();
+        if wide > 0 {
+            table.notes.push(format!(
+                "The search came to its limit of solutions: {wide} of {count} critical values are known less exactly than aimed at. More points of the sweep, or a narrower range, give them exactly."
+            ));
+        }
+    }
+    let doubtful = result.sweep.doubtful_steps;
+    if doubtful > 0 {
+        table.notes.push(format!(
+            "The sweep came to its limit of solutions: in {doubtful} of {} steps it is doubtful which mode goes on as which; critical values there may be none. More points of the sweep, or a narrower range, settle it.",
+            result.sweep.values.len() - 1
+        ));
     }
     table
 }
