@@ -4,10 +4,10 @@ use super::table::{MOST_FAULTS, TextTable};
 use crate::case::{Case, Contact, ContactPoints, Matrices};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::matrix_market::{self, MarketMatrix};
-use crate::linalg::sparse::add_scaled;
+use crate::linalg::sparse::{add_scaled, diagonal};
 use crate::linalg::{SparseMatrix, SparseVector};
 use crate::structure::{Assembled, FreeDof};
-use crate::system::{ContactPoint, Coupling, Given, split};
+use crate::system::{ContactPoint, Coupling, Given, is_unsymmetric, split};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -74,6 +74,11 @@ pub fn read_model(case: &Case, matrices: &Matrices) -> Result<ImportedModel> {
     let [mass_terms, damping_terms, stiffness_terms] = terms;
     warnings.extend(one_sided(&stiffness_place, stiffness.as_ref()));
     warnings.extend(one_sided(&damping_place, damping.as_ref()));
+    // Terms of the stiffness that are not symmetric stay whole beside it.
+    let unsymmetric = |(_, term): &FactoredMatrix| term.im.is_none() && is_unsymmetric(&term.re);
+    let (friction, stiffness_terms): (Vec<_>, Vec<_>) = stiffness_terms.into_iter().partition(unsymmetric);
+    let friction: Vec<SparseMatrix> =
+        friction.iter().map(|(factor, term)| add_scaled(&[(*factor, &term.re)])).collect();
     let sums = (with_terms(mass, mass_terms), with_terms(stiffness, stiffness_terms));
     let (Some(mass), Some(stiffness)) = sums else { unreachable!("both have a term: themselves") };
     let damping = with_terms(damping, damping_terms);
@@ -81,6 +86,7 @@ pub fn read_model(case: &Case, matrices: &Matrices) -> Result<ImportedModel> {
         Given { place: &mass_place, matrix: &mass },
         damping.as_ref().map(|matrix| Given { place: &damping_place, matrix }),
         Given { place: &stiffness_place, matrix: &stiffness },
+        &friction,
     ));
     let imported = faults.into_result(imported)?.expect("a missing one is a fault");
     let (nodes, free) = places.map_or((Vec::new(), None), |(nodes, free)| (nodes, Some(free)));
@@ -121,7 +127,10 @@ fn read_terms(
                 ));
             }
             let place = format!("`matrices.term.{name}.{key}` {}", path.display());
-            warnings.extend(one_sided(&place, Some(&matrix)));
+            // Friction alone, forces along t by motions along n, may well fill one triangle; half of a stiffness has a diagonal.
+            if key != "stiffness" || diagonal(&matrix.re).iter().any(|v| *v != 0.0) {
+                warnings.extend(one_sided(&place, Some(&matrix)));
+            }
             terms.push((matrices.value(&term.factor), matrix));
         }
     }

@@ -150,6 +150,9 @@ fn second_method(confirmation: &Confirmation) -> String {
     )
 }
 
+/// What an eigenvalue of zero stands for.
+const ZERO_CAUSES: &str = "rigid-body motion, a drift, or the onset of divergence";
+
 /// Whether the premises of a statement on stability hold, as far as they were examined.
 fn premises_hold(result: &ComplexResult) -> bool {
     result.modes.broken_premise.is_none() && result.certificate.as_ref().is_none_or(|c| c.dissipative)
@@ -169,6 +172,15 @@ fn finding(result: &ComplexResult) -> Finding {
         1 => " The growth rate of 1 is within its error.".into(),
         n => format!(" The growth rates of {n} are within their errors."),
     };
+    let zero = modes.iter().filter(|m| m.is_zero()).count();
+    let zeros = match zero {
+        0 => String::new(),
+        1 => " 1 eigenvalue is zero but for rounding".into(),
+        n => format!(" {n} eigenvalues are zero but for rounding"),
+    };
+    if zero > 0 {
+        doubt += &format!("{zeros}: {ZERO_CAUSES}.");
+    }
     if inaccurate > 0 {
         let are = if inaccurate == 1 { "is" } else { "are" };
         doubt += &format!(" {inaccurate} {are} not accurate: neither stable nor unstable.");
@@ -176,6 +188,10 @@ fn finding(result: &ComplexResult) -> Finding {
     let counted = result.certificate.as_ref().map(Certificate::agrees);
     let (mut class, mut words) = match (modes.len(), unstable) {
         (0, _) => (FindingClass::Attention, format!("No complex mode was found {between}.")),
+        (all, 0) if undecided == zero && zero > 0 && inaccurate == 0 => {
+            let words = format!("None of the {all} complex modes {between} grows.{zeros}: {ZERO_CAUSES}.");
+            (FindingClass::Neutral, words)
+        }
         (all, 0) if undecided + inaccurate > 0 => {
             let words =
                 format!("Undecided: none of the {all} complex modes {between} grows for certain.{doubt}");

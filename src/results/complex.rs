@@ -56,6 +56,7 @@ fn columns<'a>() -> Vec<Column<ComplexModeRow<'a>>> {
         )
         .shown("", |(m, _)| match m.verdict() {
             Verdict::Stable => String::new(),
+            Verdict::Undecided if m.is_zero() => "zero".into(),
             Verdict::Undecided => Verdict::Undecided.word().into(),
             alarming => alarming.word().to_uppercase(),
         }),

@@ -20,6 +20,7 @@ use crate::modal::{RealModes, ShiftedStiffness};
 use crate::numbers::{hertz, significant};
 use crate::progress::Observer;
 use crate::system::System;
+use faer::Mat;
 use std::f64::consts::TAU;
 
 /// Most refinement steps.
@@ -231,11 +232,13 @@ fn solve_and_refine<'a>(
         ));
     }
     let mut modes: Vec<ComplexMode> = found.into_iter().filter_map(|found| found.mode).collect();
+    // Next to zero both of a pair were looked for.
+    modes.retain(|mode| mode.eigenvalue.im >= -1e-9 * mode.eigenvalue.norm());
     // The basis is that of the band: eigenvalues far beyond it, real or heavily damped, need not be those of the full order.
     let (unconfirmed, kept): (Vec<_>, Vec<_>) =
         modes.into_iter().partition(|mode| mode.eigenvalue.norm() > band[1] && !mode.accurate());
     modes = kept;
-    warnings.extend(unconfirmed.iter().map(beyond_the_band));
+    warnings.extend(beyond_the_band(&unconfirmed));
     let grows = unconfirmed.iter().any(|mode| mode.growth_rate() > 0.0);
     let broken_premise = grows.then_some("a mode beyond the band that may grow is not confirmed");
     for mode in modes.iter().filter(|mode| mode.accepted() && mode.condition > ILL_CONDITIONED) {
@@ -252,14 +255,19 @@ fn solve_and_refine<'a>(
     Ok((modes, basis))
 }
 
-/// Warning of an eigenvalue that is left out: its |λ| is beyond the band, and it is not accurate.
-fn beyond_the_band(mode: &ComplexMode) -> String {
-    let [growth, frequency] = [mode.growth_rate(), mode.eigenvalue.im].map(|part| significant(part, 3));
-    format!(
-        "An eigenvalue beyond the band, σ = {growth} 1/s at ω = {frequency} 1/s, is left out: its relative error is {:.0e}; \
-         a higher `cea.basis_below` makes it more accurate",
-        mode.eigenvalue_error
-    )
+/// Warning of eigenvalues that are left out: their |λ| is beyond the band, and they are not accurate.
+fn beyond_the_band(modes: &[ComplexMode]) -> Option<String> {
+    let nearest = modes.iter().min_by(|a, b| a.eigenvalue.norm().total_cmp(&b.eigenvalue.norm()))?;
+    let [growth, frequency] = [nearest.growth_rate(), nearest.eigenvalue.im].map(|part| significant(part, 3));
+    let found = match modes.len() {
+        1 => "An eigenvalue beyond the band is".to_string(),
+        n => format!("{n} eigenvalues beyond the band are"),
+    };
+    let which = if modes.len() == 1 { "it is" } else { "the nearest is" };
+    Some(format!(
+        "{found} left out, as not accurate: {which} σ = {growth} 1/s at ω = {frequency} 1/s; a higher `cea.basis_below` makes such \
+         eigenvalues more accurate"
+    ))
 }
 
 /// Warning where the real modes do not reach the band's top: those known, or the frequency below which a count has shown
@@ -300,12 +308,13 @@ pub(super) fn shifted_factor(
 /// The pairs of the projected problem in the band.
 fn small_pairs(operator: &Operator<'_>, basis: &Basis<'_>, band: [f64; 2]) -> Result<Vec<SmallPair>> {
     let (unsymmetric_damping, unsymmetric_stiffness) = project_interface(operator, basis);
+    let stiffness = &basis.stiffness + unsymmetric_stiffness;
     solve(
         &basis.mass,
         &(&basis.damping + unsymmetric_damping),
-        &(&basis.stiffness + unsymmetric_stiffness),
+        &stiffness,
         basis.hysteretic.as_ref(),
-        middle_frequency(basis, band[1]),
+        middle_frequency(&basis.mass, &stiffness, band[1]),
         |z| in_band(z, band),
     )
 }
@@ -324,13 +333,14 @@ fn keep_nearest(pairs: &mut Vec<SmallPair>, (hz, count): (f64, usize)) {
     }
 }
 
-/// The median of the frequencies √(bᵀKb/bᵀMb) of the basis that are below `top` \[rad/s\]; `top` when there is none.
-fn middle_frequency(basis: &Basis<'_>, top: f64) -> f64 {
-    let square = |i: usize| basis.stiffness[(i, i)] / basis.mass[(i, i)];
+/// The median of the frequencies √(bᵀ(K + K_c)b/bᵀMb) of the basis that are below `top` \[rad/s\], but not less than a thousandth of
+/// it; `top` when there is none.
+fn middle_frequency(mass: &Mat<f64>, stiffness: &Mat<f64>, top: f64) -> f64 {
+    let square = |i: usize| stiffness[(i, i)] / mass[(i, i)];
     let mut below: Vec<f64> =
-        (0..basis.len()).map(square).filter(|w| *w > 0.0 && *w < top * top).map(f64::sqrt).collect();
+        (0..mass.nrows()).map(square).filter(|w| *w > 0.0 && *w < top * top).map(f64::sqrt).collect();
     below.sort_by(f64::total_cmp);
-    below.get(below.len() / 2).copied().unwrap_or(top)
+    below.get(below.len() / 2).map_or(top, |middle| middle.max(1e-3 * top))
 }
 
 /// Pairs of the projected problem, the right vectors on the full order, and what the real modes have of those: ΦᵀMφ.
@@ -392,7 +402,8 @@ fn evaluate(
         }
         let given: Vec<bool> = (0..chunk.len()).map(|j| last || measured.exact(j)).collect();
         let left = (asked.left_vectors && given.contains(&true)).then(|| scale.basis.expand(&measured.left));
-        let modes = post_processed(scale.operator, &mut measured, &given, &amplitudes, left.as_ref());
+        let modes =
+            post_processed(scale.operator, &mut measured, &given, &amplitudes, left.as_ref(), scale.top);
         let found = |(pair, mode): (&&SmallPair, _)| FoundMode { eigenvalue: pair.lambda, mode };
         new.extend(chunk.iter().zip(modes).map(found));
     }

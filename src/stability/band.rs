@@ -21,10 +21,14 @@ impl From<[f64; 2]> for Band {
     }
 }
 
-/// Whether λ is one to give: one of each conjugate pair, its frequency in the band, or one that diverges, whatever the band.
+/// Below this part of the band's top |λ| may be rounding of zero, of which neither λ nor its conjugate is the one to give.
+const NEXT_TO_ZERO: f64 = 1e-6;
+
+/// Whether λ is one to give: one of each conjugate pair, its frequency in the band, or one that diverges, whatever the band. Next to
+/// zero both of a pair are, until it is known whether they are zero.
 pub(super) fn in_band(z: c64, band: [f64; 2]) -> bool {
-    let oscillates = z.im > 1e-9 * z.norm();
-    let real = z.im.abs() <= 1e-9 * z.norm();
+    let real = z.im.abs() <= 1e-9 * z.norm() || z.norm() <= NEXT_TO_ZERO * band[1];
+    let oscillates = !real && z.im > 0.0;
     (oscillates && z.im >= band[0] && z.im <= band[1])
         || (real && band[0] == 0.0 && z.norm() <= band[1])
         || diverges(z, band)

@@ -171,7 +171,6 @@ mod tests {
                     slack += (mode.eigenvalue_error / error.max(f64::EPSILON)).log10();
                     compared += 1;
                 }
-                assert!(stiffness < 1e16 || found.modes.iter().all(|mode| !mode.accurate()));
             }
             // Of stiffer contacts few modes have a digit left.
             assert!(stiffness > 1e14 || compared > 20, "{stiffness:e}: {compared}");

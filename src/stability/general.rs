@@ -348,6 +348,7 @@ impl<'a> ShiftSearch<'a> {
                 let [of_left, of_right] = [&left, &right].map(|x| operator.interface.extents(x.vector(k)));
                 let work = operator.interface.gross_work(z, &of_left, &of_right) / steepness[k].norm();
                 let size = z.norm().max(1e-6 * self.band[1]);
+                let error = spread / size + ROUNDING * condition + CONTACT_ROUNDING * work / size;
                 let motion = operator.interface.motions(right.vector(k));
                 let motion: Vec<c64> = motion.into_iter().map(|m| m * factor).collect();
                 let own = Block::from_fn(real.len(), 1, |i, _| amplitudes.get(i, k) * factor);
@@ -356,7 +357,8 @@ impl<'a> ShiftSearch<'a> {
                     right: right.scaled_column(k, factor),
                     left: if left_vectors { left.scaled_column(k, left_mass.recip()) } else { Vec::new() },
                     backward_error: residual.norm(k) / (operator.size(z) * right.norm(k)),
-                    eigenvalue_error: spread / size + ROUNDING * condition + CONTACT_ROUNDING * work / size,
+                    eigenvalue_error: error,
+                    uncertainty: error * size,
                     condition,
                     growth: growth_budget(
                         operator,

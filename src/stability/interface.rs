@@ -3,6 +3,7 @@
 use crate::equilibrium::{ContactBlock, PointState, SteadySliding, directions, linearize, linearize_points};
 use crate::linalg::{SparseVector, c64};
 use crate::system::{Coupling, System};
+use std::collections::BTreeMap;
 
 /// The linearised contacts, and what imported matrices have beyond their symmetric part, as one low-rank interface.
 #[derive(Debug, Clone)]
@@ -84,6 +85,23 @@ impl<'a> Interface<'a> {
             left[term.row] * (term.stiffness + lambda * term.damping).norm() * right[term.column]
         };
         self.terms.iter().map(work).sum()
+    }
+
+    /// Bounds of ‖W k Wᵀ‖ \[N/m\] and ‖W c Wᵀ‖ \[N s/m\] in the 1-norm.
+    pub(crate) fn norms(&self) -> [f64; 2] {
+        let mut columns: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
+        let force: Vec<f64> =
+            self.directions.iter().map(|d| d.values().iter().map(|w| w.abs()).sum()).collect();
+        for term in &self.terms {
+            let [k, c] = [term.stiffness, term.damping].map(|v| v.abs() * force[term.row]);
+            for (j, w) in self.directions[term.column].iter() {
+                let column = columns.entry(j).or_default();
+                column[0] += k * w.abs();
+                column[1] += c * w.abs();
+            }
+        }
+        let largest = |which: usize| columns.values().map(|c| c[which]).fold(0.0, f64::max);
+        [largest(0), largest(1)]
     }
 
     /// |W|ᵀ |x|.

@@ -25,6 +25,7 @@ mod tests {
             left: Vec::new(),
             backward_error: 0.0,
             eigenvalue_error: 0.0,
+            uncertainty: 0.0,
             condition: 1.0,
             growth: GrowthBudget::default(),
             participation: Vec::new(),

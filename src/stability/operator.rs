@@ -3,6 +3,7 @@
 use super::block::Block;
 use super::damper::{Between, Damper, DamperPart, modal_times};
 use super::interface::{Interface, InterfaceTerm};
+use super::{NEAR_ZERO, ROUNDING};
 use crate::equilibrium::{SteadySliding, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::multivector::Columns;
@@ -36,6 +37,8 @@ pub(super) struct Operator<'a> {
     mass_norm: f64,
     damping_norm: f64,
     stiffness_norm: f64,
+    /// Those of K_c and C_c.
+    contact_norms: [f64; 2],
 }
 
 /// Bilinear forms of the matrices of the structure with two vectors: yᴴMx, yᴴ(K + K_σ)x, yᴴCx with modal damping, yᴴHx.
@@ -176,8 +179,11 @@ impl<'a> Operator<'a> {
             shared: Arc::new(shared),
             mass,
             mass_norm: norm_1(mass),
-            damping_norm: norm(&damping.viscous),
-            stiffness_norm: norm_1(&stiffness) + norm(&damping.hysteretic),
+            damping_norm: norm(&damping.viscous) + system.skew().map_or(0.0, |skew| norm_1(&skew.damping)),
+            stiffness_norm: norm_1(&stiffness)
+                + norm(&damping.hysteretic)
+                + system.skew().map_or(0.0, |skew| norm_1(&skew.stiffness)),
+            contact_norms: interface.norms(),
             weights: only_first(dampers.len()),
             dampers: Arc::new(dampers),
             stiffness,
@@ -195,7 +201,8 @@ impl<'a> Operator<'a> {
         let mut all = only_first(self.dampers.len());
         all.iter_mut().zip(weights).for_each(|(all, weight)| *all = *weight);
         let (stiffness, shared) = (Cow::Borrowed(&*self.stiffness), Arc::clone(&self.shared));
-        Operator { stiffness, interface, shared, dampers: Arc::clone(&self.dampers), weights: all, ..*self }
+        let (contact_norms, dampers) = (interface.norms(), Arc::clone(&self.dampers));
+        Operator { stiffness, interface, shared, dampers, weights: all, contact_norms, ..*self }
     }
 
     pub(super) fn n(&self) -> usize {
@@ -403,10 +410,25 @@ impl<'a> Operator<'a> {
         (0..lambda.len()).into_par_iter().map(|j| left.dot(j, &slope)).collect()
     }
 
-    /// |λ|²‖M‖ + |λ|‖C‖ + ‖K‖ in the 1-norm; modal damping and contact left out, so that η is never flattered.
+    /// |λ|²‖M‖ + |λ|(‖C‖ + ‖C_c‖) + ‖K‖ + ‖K_c‖ in the 1-norm; modal damping left out.
     pub(super) fn size(&self, lambda: c64) -> f64 {
-        let r = lambda.norm();
-        r * r * self.mass_norm + r * self.damping_norm + self.stiffness_norm
+        let (r, [contact, contact_damping]) = (lambda.norm(), self.contact_norms);
+        r * r * self.mass_norm + r * (self.damping_norm + contact_damping) + self.stiffness_norm + contact
+    }
+
+    /// Whether |λ| may be zero but for rounding, of a vector with ‖φ‖² = `square`: a bound, which costs nothing.
+    pub(super) fn may_be_zero(&self, lambda: c64, square: f64) -> bool {
+        lambda.norm_sqr() <= NEAR_ZERO * ROUNDING * (self.stiffness_norm + self.contact_norms[0]) * square
+    }
+
+    /// |φ|ᵀ|K + K_σ||φ|: the strain energy without cancellation.
+    pub(super) fn gross_stiffness(&self, [re, im]: [&[f64]; 2]) -> f64 {
+        let size: Vec<f64> = re.iter().zip(im).map(|(re, im)| re.hypot(*im)).collect();
+        let column = |j: usize| {
+            let entries = self.stiffness.row_idx_of_col(j).zip(self.stiffness.val_of_col(j));
+            entries.map(|(i, k)| size[i] * k.abs()).sum::<f64>() * size[j]
+        };
+        (0..size.len()).map(column).sum()
     }
 }
 

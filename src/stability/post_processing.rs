@@ -12,13 +12,14 @@ use rayon::prelude::*;
 /// for to give that of λ: φ + z is given where its residual is the smaller one, which leaves a few hundredths of that error. Its
 /// contact motion and its share of the modes are settled by the projection; z meets only the rest of the spectrum, as far as the
 /// basis goes: so `amplitudes`, what the real modes have of φ, gives their part in φ + z as well. Left vectors are given where
-/// they are requested.
+/// they are requested. The band ends at `top` \[rad/s\].
 pub(super) fn post_processed(
     operator: &Operator<'_>,
     measured: &mut MeasuredPairs,
     given: &[bool],
     amplitudes: &Block,
     left: Option<&Block>,
+    top: f64,
 ) -> Vec<Option<ComplexMode>> {
     let one = vec![c64::new(1.0, 0.0); measured.lambda.len()];
     measured.correction.add_scaled(&one, &measured.right);
@@ -32,13 +33,22 @@ pub(super) fn post_processed(
         let to_unit_mass = 1.0 / forms.mass.re.sqrt();
         let motion = operator.interface.motions(vectors.vector(j));
         let motion: Vec<c64> = motion.into_iter().map(|m| m * to_unit_mass).collect();
-        let eigenvalue = measured.lambda[j];
+        // Of an eigenvalue that is zero but for rounding no digit is known.
+        let (lambda, uncertainty) = (measured.lambda[j], measured.uncertainty(j, top));
+        let is_zero = measured.zero[j].is_some() && lambda.norm() <= uncertainty;
+        let eigenvalue = match lambda.im.abs() <= f64::EPSILON * lambda.norm() {
+            _ if is_zero => c64::new(0.0, 0.0),
+            // Real but for rounding.
+            true => c64::new(lambda.re, 0.0),
+            false => lambda,
+        };
         ComplexMode {
             eigenvalue,
             right: vectors.scaled_column(j, to_unit_mass),
             left: left.map_or_else(Vec::new, |left| left.column(j)),
             backward_error: if better { corrected } else { found },
             eigenvalue_error: measured.error(j),
+            uncertainty,
             condition: measured.condition[j],
             growth: growth_budget(
                 operator,

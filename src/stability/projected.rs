@@ -6,6 +6,8 @@ use crate::error::{Error, Result};
 use crate::linalg::c64;
 use crate::linalg::dense::product;
 use crate::linalg::lu::Lu;
+use crate::linalg::orthogonal::{ThinSvd, thin_svd};
+use crate::linalg::random::Random;
 use crate::linalg::unsymmetric::{complex_eigenpairs, eigenpairs};
 use faer::{Conj, Mat};
 
@@ -83,10 +85,16 @@ pub(super) fn solve(
         false => lower[(i - m, j)],
     });
     // Without losses all numbers are real.
-    let (theta, v) = match hysteretic {
-        None => eigenpairs(Mat::from_fn(2 * m, 2 * m, |i, j| companion[(i, j)].re).as_ref())?,
-        Some(_) => complex_eigenpairs(companion.as_ref())?,
+    let pairs_of = |companion: &Mat<c64>| match hysteretic {
+        None => eigenpairs(Mat::from_fn(2 * m, 2 * m, |i, j| companion[(i, j)].re).as_ref()),
+        Some(_) => complex_eigenpairs(companion.as_ref()),
     };
+    let (mut theta, mut v) = pairs_of(&companion)?;
+    let mut size = SPLIT;
+    while size < MOST_SPLIT && dependent(&theta, &v) {
+        (theta, v) = pairs_of(&changed(&companion, size))?;
+        size *= 16.0;
+    }
     let mut chosen: Vec<(c64, usize)> =
         (0..2 * m).map(|i| (s + s / theta[i], i)).filter(|(z, _)| z.is_finite() && wanted(*z)).collect();
     chosen.sort_by(|a, b| a.0.im.total_cmp(&b.0.im).then(a.0.re.total_cmp(&b.0.re)));
@@ -102,7 +110,51 @@ pub(super) fn solve(
         damping: complex(damping, None),
         stiffness: complex(stiffness, hysteretic),
     };
-    Ok(polished(&quadratic, &companion, Vectors { lambda, right, left }))
+    let mut pairs = Vectors { lambda, right, left };
+    quadratic.separate(&mut pairs);
+    Ok(polished(&quadratic, &companion, pairs))
+}
+
+/// Two θ are the same within this part of them.
+const TOGETHER: f64 = 1e-12;
+/// θ nearer than this part of them may share their vectors, which are dependent below this sine.
+const CLUSTER: f64 = 1e-9;
+const DEPENDENT: f64 = 1e-10;
+/// λ nearer than this part of them are the same: rounding parts those that share one vector by its root, far more.
+const ALIKE: f64 = 1e-11;
+/// The change that parts them, by the size of a row: a few roundings, at first.
+const SPLIT: f64 = 4.0 * f64::EPSILON;
+const MOST_SPLIT: f64 = 1e-13;
+
+/// λ farther than this many s from s, as those of directions without mass, are not looked at.
+const FAR: f64 = 1e3;
+
+/// Whether θ that are all but equal have vectors that are dependent, as two λ = 0 of a rigid body, or a critically damped pair.
+fn dependent(theta: &[c64], v: &Mat<c64>) -> bool {
+    let mut seen: Vec<bool> = theta.iter().map(|theta| FAR * theta.norm() < 1.0).collect();
+    (0..theta.len()).any(|j| {
+        let near = |k: &usize| (theta[*k] - theta[j]).norm() <= CLUSTER * theta[j].norm();
+        let group: Vec<usize> = (j..theta.len()).filter(|k| !seen[*k] && near(k)).collect();
+        group.iter().for_each(|k| seen[*k] = true);
+        if group.len() < 2 {
+            return false;
+        }
+        let vectors = unit(Mat::from_fn(v.nrows(), group.len(), |i, k| v[(i, group[k])]));
+        thin_svd(vectors.as_ref()).is_none_or(|svd| svd.values[group.len() - 1] < DEPENDENT)
+    })
+}
+
+/// The companion matrix with a random change of its lower half, of `size` times the length of a row: within its own rounding, and
+/// enough to part eigenvalues that would share one vector, by √`size` (approximate diagonalisation, E. B. Davies, SIAM J. Matrix
+/// Anal. Appl. 29 (2007) 1051).
+fn changed(companion: &Mat<c64>, size: f64) -> Mat<c64> {
+    let (m, mut random) = (companion.nrows() / 2, Random::new());
+    let mut changed = companion.clone();
+    for i in m..2 * m {
+        let length = size * companion.row(i).norm_l2();
+        (0..2 * m).for_each(|j| changed[(i, j)] += c64::new(length * random.next(), 0.0));
+    }
+    changed
 }
 
 /// Pairs in coordinates of the basis, one a column.
@@ -141,6 +193,40 @@ impl Quadratic {
         [sum(times(right), &|j| lambda[j]), sum(adjoint(left), &|j| lambda[j].conj())]
     }
 
+    /// Of eigenvalues that are the same but for rounding, as of equal parts, the QR algorithm gives any vectors of their common
+    /// space, nearly parallel ones, too: it gets orthonormal right vectors, and left ones with zᵢᴴQ′yⱼ = 0 for i ≠ j.
+    fn separate(&self, pairs: &mut Vectors) {
+        let count = pairs.lambda.len();
+        let mut seen = vec![false; count];
+        for j in 0..count {
+            let lambda = pairs.lambda[j];
+            let near = |k: &usize| (pairs.lambda[*k] - lambda).norm() <= ALIKE * lambda.norm();
+            let group: Vec<usize> = (j..count).filter(|k| !seen[*k] && near(k)).collect();
+            group.iter().for_each(|k| seen[*k] = true);
+            if group.len() < 2 {
+                continue;
+            }
+            let span = |x: &Mat<c64>| {
+                let x = Mat::from_fn(x.nrows(), group.len(), |i, k| x[(i, group[k])]);
+                let whole = |svd: &ThinSvd<c64>| svd.values[group.len() - 1] > DEPENDENT * svd.values[0];
+                thin_svd(x.as_ref()).filter(whole).map(|svd| svd.left)
+            };
+            let (Some(right), Some(left)) = (span(&pairs.right), span(&pairs.left)) else { continue };
+            let lambda = group.iter().map(|k| pairs.lambda[*k]).collect();
+            let common = Vectors { lambda, right, left };
+            let lu = Lu::new(product(common.left.adjoint(), self.slopes(&common).as_ref()));
+            let mixed = lu.solve(common.left.adjoint().to_owned());
+            if !mixed.is_all_finite() {
+                continue;
+            }
+            let left = unit(mixed.adjoint().to_owned());
+            for (k, column) in group.iter().enumerate() {
+                pairs.right.col_mut(*column).copy_from(common.right.col(k));
+                pairs.left.col_mut(*column).copy_from(left.col(k));
+            }
+        }
+    }
+
     /// Q′(λⱼ) yⱼ.
     fn slopes(&self, Vectors { lambda, right, .. }: &Vectors) -> Mat<c64> {
         let [c, m] = [&self.damping, &self.mass].map(|a| product(a.as_ref(), right.as_ref()));
@@ -176,10 +262,14 @@ impl Companion {
         (unit(Mat::from_fn(m, count, |i, j| self.v[(i, self.own[j])])), unit(left))
     }
 
-    /// θ²/(θ − θᵢ) for the wanted pair j; nothing for its own θᵢ.
+    /// θ²/(θ − θᵢ) for the wanted pair j; nothing for its own θᵢ, and others that are the same.
     fn weight(&self, i: usize, j: usize) -> c64 {
         let theta = self.theta[self.own[j]];
-        if i == self.own[j] { c64::new(0.0, 0.0) } else { theta * theta / (theta - self.theta[i]) }
+        let apart = theta - self.theta[i];
+        if i == self.own[j] || apart.norm() <= TOGETHER * theta.norm() {
+            return c64::new(0.0, 0.0);
+        }
+        theta * theta / apart
     }
 
     /// Q(λⱼ)⁻¹ bⱼ but for the pole at λⱼ: θ² \[I 0\] (θ − T)⁻¹ \[0; Q(s)⁻¹ b\].

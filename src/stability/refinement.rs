@@ -4,17 +4,23 @@ use super::basis::Basis;
 use super::block::Block;
 use super::operator::{Forms, Operator, Side};
 use super::responses::SKETCH;
-use super::{CONTACT_ROUNDING, ROUNDING};
+use super::{CONTACT_ROUNDING, NEAR_ZERO, ROUNDING};
 use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
 use crate::linalg::multivector::{append, combine, expand};
 use crate::linalg::random::Random;
+use crate::linalg::sparse::times;
 use faer::{Accum, Mat};
 use rayon::prelude::*;
 
 /// Aims of the refinement, below what [`super::ComplexMode::accepted`] asks.
 const BACKWARD_ERROR: f64 = 5e-11;
 const EIGENVALUE_ERROR: f64 = 1e-10;
+
+/// |Δλ|/|λ| that rounding leaves of three eigenvalues that have become one: ∛(10 ε), the most that is stated.
+const DEFECTIVE: f64 = 1.4e-5;
+/// Below this part of the band's top an eigenvalue may be zero but for rounding.
+const SLOW: f64 = 1e-3;
 
 /// Pairs that are measured together: few, so that little memory is held.
 pub(super) const TOGETHER: usize = 8;
@@ -36,6 +42,8 @@ pub(super) struct MeasuredPairs {
     pub(super) eigenvalue_error: Vec<f64>,
     /// What rounding leaves at the least, relative to λ ([`super::ComplexMode::eigenvalue_error`]).
     pub(super) rounding: Vec<f64>,
+    /// |Δλ| where λ is zero but for rounding \[1/s\].
+    pub(super) zero: Vec<Option<f64>>,
     pub(super) condition: Vec<f64>,
     /// ‖Q(λ)(φ + z)‖ / (|λ|²‖M‖ + |λ|‖C‖ + ‖K‖).
     pub(super) corrected: Vec<f64>,
@@ -73,16 +81,47 @@ impl PairMeasurement<'_> {
         let rise = image.map(|image| basis.columns().gram(image));
         let corrected = |j: usize| residual.norm_of_sum(j, &image) / sizes[j];
         pairs.corrected = columns.clone().into_par_iter().map(corrected).collect();
-        let size = |j: usize| steepness[j].norm() * lambda[j].norm().max(1e-6 * top);
+        // Where two eigenvalues have become one ψᴴQ′(λ)φ vanishes, and may do so exactly.
+        let steep = |j: usize| steepness[j].norm().max(f64::EPSILON * top);
+        let size = |j: usize| steep(j) * lambda[j].norm().max(1e-6 * top);
         pairs.eigenvalue_error = columns.clone().map(|j| left.dot(j, &rise).norm() / size(j)).collect();
-        pairs.condition = columns.clone().map(|j| 2.0 * lambda[j].norm() / steepness[j].norm()).collect();
+        pairs.condition =
+            columns.clone().map(|j| (2.0 * lambda[j].norm()).max(f64::EPSILON * top) / steep(j)).collect();
         let rounding = |j: usize| {
             let [of_left, of_right] =
                 [basis.extents(left.vector(j)), operator.interface.extents(right.vector(j))];
             let work = operator.interface.gross_work(lambda[j], &of_left, &of_right);
-            ROUNDING * pairs.condition[j] + CONTACT_ROUNDING * work / size(j)
+            (ROUNDING * pairs.condition[j], work)
         };
-        pairs.rounding = columns.clone().map(rounding).collect();
+        let (own, works): (Vec<f64>, Vec<f64>) = columns.clone().map(rounding).unzip();
+        let relative = |j: usize| own[j].min(DEFECTIVE) + CONTACT_ROUNDING * works[j] / size(j);
+        pairs.rounding = columns.clone().map(relative).collect();
+        pairs.zero = vec![None; lambda.len()];
+        let small = |j: &usize| {
+            let size = lambda[*j].norm();
+            size <= SLOW * top || size <= top && operator.may_be_zero(lambda[*j], right.norm(*j).powi(2))
+        };
+        if columns.clone().any(|j| small(&j)) {
+            let value = residual.map(|residual| basis.columns().gram(residual));
+            let inertia = right.map(|x| basis.columns().gram(times(operator.mass, x).as_ref()));
+            for j in columns.clone().filter(small) {
+                let gross = operator.gross_stiffness(right.vector(j));
+                // No digit of λ is known below those of the band.
+                let digits = ROUNDING * SLOW * top * steepness[j].norm();
+                let least = ROUNDING * gross + CONTACT_ROUNDING * works[j] + digits;
+                let [of_vectors, of_value] = [&rise, &value].map(|image| left.dot(j, image).norm());
+                let (change, mass) = (least + of_vectors + 2.0 * of_value, left.dot(j, &inertia).norm());
+                if lambda[j].norm_sqr() * mass > NEAR_ZERO * change {
+                    continue;
+                }
+                let uncertainty = root_shift(change, steepness[j].norm(), mass);
+                let scale = gross.sqrt().max(SLOW * top);
+                pairs.zero[j] = Some(uncertainty);
+                pairs.rounding[j] = uncertainty / scale;
+                pairs.eigenvalue_error[j] =
+                    if of_vectors <= least { 0.0 } else { root_shift(of_vectors, steep(j), mass) / scale };
+            }
+        }
         let forms = |j: usize| {
             [of_right[0][j], Forms::of_sum(of_right[0][j], of_correction[0][j], of_correction[1][j])]
         };
@@ -90,7 +129,21 @@ impl PairMeasurement<'_> {
     }
 }
 
+/// How far a change p of q(λ) = ψᴴQ(λ)φ, of slope s = |q′| and curvature m = |½ q″|, moves the nearest root at most: p/s of a single
+/// one, √(p/m) of a double one.
+fn root_shift(p: f64, s: f64, m: f64) -> f64 {
+    let double = (p / m).sqrt();
+    let single = 2.0 * p / (s + (s * s - 4.0 * m * p).max(0.0).sqrt());
+    // The smaller of the two, whichever is a number.
+    double.min(single)
+}
+
 impl MeasuredPairs {
+    /// |Δλ| of pair `j` \[1/s\], in a band up to `top` \[rad/s\].
+    pub(super) fn uncertainty(&self, j: usize, top: f64) -> f64 {
+        self.zero[j].unwrap_or_else(|| self.error(j) * self.lambda[j].norm().max(1e-6 * top))
+    }
+
     /// |Δλ| / |λ| of pair `j`.
     pub(super) fn error(&self, j: usize) -> f64 {
         self.eigenvalue_error[j] + self.rounding[j]

@@ -9,11 +9,15 @@
 //! The full finite-element model, a reduced model, the two-degree-of-freedom model and imported matrices are all
 //! this one type, and equilibrium, complex eigenvalues, sweeps and transients take nothing else.
 
+mod friction;
+mod halves;
 mod imported;
 mod interface;
 mod law;
+mod low_rank;
 mod structure;
 
+pub use friction::is_unsymmetric;
 pub use imported::{Given, Imported, split};
 pub use interface::{Closing, ContactPair, ContactPoint};
 pub use law::{

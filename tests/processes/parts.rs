@@ -96,7 +96,7 @@ fn parts_computed_apart_make_the_result_of_one_run() {
     let tables: BTreeSet<&str> = studies(&first).into_iter().collect();
     assert_eq!(Vec::from_iter(tables), ["map.gap", "map.m", "sweep.friction", "sweep.thickness"]);
     // More than its two points: what is looked for between them, too.
-    assert!(studies(&first).iter().filter(|study| **study == "sweep.thickness").count() > 50);
+    assert!(studies(&first).iter().filter(|study| **study == "sweep.thickness").count() > 2);
     sweep(at, "out", &["--merge"], 0);
     assert!(found(&at.join("out")) == whole, "the merged result is another one");
     assert!(names(&at.join("out")).contains(&"report.html".to_string()));

@@ -82,7 +82,7 @@ pub(super) fn close_calls(modes: &ComplexModes, region: &CountedRegion) -> Vec<C
     let slowest = region.growth[0];
     let call = |mode: &ComplexMode| {
         let z = mode.eigenvalue;
-        let error = mode.eigenvalue_error * z.norm();
+        let error = mode.uncertainty;
         let distance = region.distance(z);
         let slow = z.re > (1e-2 * slowest).max(10.0 * error) && z.re <= slowest;
         (distance <= (0.5 * slowest).max(10.0 * error) || slow).then_some(CloseCall {

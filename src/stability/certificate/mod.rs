@@ -48,7 +48,7 @@ use super::general::general_modes;
 use super::operator::Operator;
 use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Result};
-use crate::numbers::hertz;
+use crate::numbers::{hertz, significant};
 use crate::progress::Observer;
 use crate::system::System;
 pub(super) use beyond::Definiteness;
@@ -215,9 +215,9 @@ fn eigenvalue_work(analysis: &CompletedAnalysis<'_>, modes: &ComplexModes) -> f6
 /// The count agrees, and yet is no proof.
 fn weak(certificate: &Certificate) -> String {
     format!(
-        "The count of the unstable modes is no proof at full order: near {} Hz what the basis leaves out may be {:.1e} times what would change it; take more real modes (`cea.basis_below`)",
+        "The count of the unstable modes is no proof at full order: near {} Hz what the basis leaves out may be {} times what would change it; take more real modes (`cea.basis_below`)",
         hertz(certificate.tightest[0], 1),
-        1.0 / certificate.margin
+        significant(1.0 / certificate.margin, 2)
     )
 }
 
@@ -244,8 +244,8 @@ enum Way {
     Spectrum,
 }
 
-/// Function that counts the zeros of Q_B in a region.
-type Count<'a> = dyn Fn(&CountedRegion) -> std::result::Result<Winding, Stopped> + 'a;
+/// Function that counts the zeros of Q_B in a region, with so many points of a contour at most.
+type Count<'a> = dyn Fn(&CountedRegion, usize) -> std::result::Result<Winding, Stopped> + 'a;
 
 fn count_by(
     way: Way,
@@ -261,11 +261,11 @@ fn count_by(
     let count: Box<Count<'_>> = match way {
         Way::Contour => {
             let pencil = Pencil::new(&model, &interface.terms, &sizes, top)?;
-            Box::new(move |region| wind(&pencil, region, most_points))
+            Box::new(move |region, most| wind(&pencil, region, most))
         }
         Way::Spectrum => {
             let spectrum = ReducedSpectrum::new(&model, &interface.terms, &sizes, top)?;
-            Box::new(move |region| spectrum.count(region))
+            Box::new(move |region, _| spectrum.count(region))
         }
     };
     let matrices = Definiteness { operator: analysis.operator, factor: Some(analysis.factor) };
@@ -275,10 +275,14 @@ fn count_by(
     // As far as a mode can grow, or, where that cannot be counted, as far as the band reaches.
     let beyond = fastest.filter(|fastest| *fastest > top).map(|fastest| (fastest, 0));
     let tries = beyond.into_iter().chain((0..ATTEMPTS).map(|attempt| (top, attempt)));
+    // All tries together take `most_points`; the one beyond the band, half of them.
+    let mut left = most_points;
     for (reach, attempt) in tries {
         let region = region(analysis, reach, attempt);
-        match count(&region) {
+        let most = if reach > top { left / 2 } else { left };
+        match count(&region, most) {
             Ok(winding) => {
+                left = left.saturating_sub(winding.points);
                 let better = best.as_ref().is_none_or(|(_, b)| winding.defect < b.defect);
                 if better {
                     best = Some((region, winding));
@@ -287,7 +291,13 @@ fn count_by(
                     break;
                 }
             }
-            Err(why) => stopped = why,
+            Err(why) => {
+                left -= if matches!(why, Stopped::TooManyPoints) { most } else { 0 };
+                stopped = why;
+            }
+        }
+        if left == 0 {
+            break;
         }
     }
     let Some((region, winding)) = best else {
