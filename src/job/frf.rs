@@ -5,13 +5,13 @@ use super::motion::{Motion, motion};
 use super::prepared::Prepared;
 use crate::case::{FrfAnalysis, FrfContact, FrfSolution, UniversalForm};
 use crate::equilibrium::SteadySliding;
-use crate::error::{Faults, Result};
+use crate::error::{Error, Faults, Result};
 use crate::linalg::{SparseMatrix, SparseVector, c64};
 use crate::modal::RealModes;
 use crate::progress::Observer;
 use crate::reduction::{Receptance, Reduced};
 use crate::results::{FrfResponse, FrfResult, PlaceAndDirection, Resonance};
-use crate::stability::Harmonic;
+use crate::stability::{DAMPERS, Harmonic, is_unbounded};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
@@ -22,6 +22,13 @@ const MOST: usize = 4000;
 const BEND: f64 = 0.01;
 /// Frequencies at which superposition and direct solution are compared.
 const COMPARED: usize = 5;
+/// At a resonance that nothing damps there is no line closer than this part of its frequency.
+const BESIDE: f64 = 1e-5;
+/// A resonance at which the response is this many times as large as at that distance is one that nothing damps: |H| ∝ 1/|δ + iζ|
+/// for δ = f/f₀ − 1, so that ζ < 1e-7. Eigenfrequencies are accurate to less than 1e-7.
+const UNBOUNDED: f64 = 100.0;
+/// Resonances that a message names.
+const NAMED: usize = 5;
 
 /// A frequency response whose places are known.
 pub struct PreparedFrf<'a> {
@@ -123,8 +130,11 @@ impl PreparedFrf<'_> {
         let seen: Vec<SparseVector> = seen.collect();
         let superposed = |hz: f64| few.at(TAU * hz, &force, &seen);
         let direct = |hz: f64| full.at(TAU * hz, &self.force.direction, &places);
-        let resonances = self.resonances(prepared, &real)?;
-        let near: Vec<f64> = resonances.iter().map(|r| r.frequency_hz).collect();
+        let mut resonances = self.resonances(prepared, &real)?;
+        for resonance in &mut resonances {
+            resonance.undamped = unbounded(resonance.frequency_hz, &superposed)?;
+        }
+        let near: Vec<(f64, bool)> = resonances.iter().map(|r| (r.frequency_hz, r.undamped)).collect();
         let (frequencies, mut lines) = grid(band, &near, &superposed)?;
         let compared: Vec<usize> =
             (0..COMPARED).map(|k| (2 * k + 1) * frequencies.len() / (2 * COMPARED)).collect();
@@ -203,12 +213,12 @@ impl PreparedFrf<'_> {
         format!("{contacts}; {way}")
     }
 
-    /// The real modes in the band, and how much of them shows.
+    /// The real modes in the band, up to [`BESIDE`] its ends, and how much of them shows.
     fn resonances(&self, prepared: &Prepared<'_>, real: &RealModes) -> Result<Vec<Resonance>> {
         let names = labels(&identify(prepared, real, &prepared.assembled), real);
         let [low, high] = self.wanted.band;
-        let inside: Vec<usize> =
-            (0..real.len()).filter(|k| (low..=high).contains(&real.frequency_hz(*k))).collect();
+        let band = low * (1.0 - BESIDE)..=high * (1.0 + BESIDE);
+        let inside: Vec<usize> = (0..real.len()).filter(|k| band.contains(&real.frequency_hz(*k))).collect();
         let at = |motion: &Motion, k: usize| motion.direction.dot(real.shapes.col_as_slice(k));
         let products: Vec<Vec<f64>> = inside
             .iter()
@@ -225,6 +235,7 @@ impl PreparedFrf<'_> {
             frequency_hz: real.frequency_hz(*k),
             name: names[*k].clone(),
             seen: share(products),
+            undamped: false,
         };
         Ok(inside.iter().zip(&products).map(resonance).collect())
     }
@@ -239,21 +250,60 @@ fn apart(a: &[c64], b: &[c64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).norm() / b.norm().max(f64::MIN_POSITIVE)).fold(0.0, f64::max)
 }
 
+/// Whether the response has no bound at `hz`, or one that is the inverse of rounding errors.
+fn unbounded(hz: f64, response: &impl Fn(f64) -> Result<Vec<c64>>) -> Result<bool> {
+    let largest = |hz: f64| match response(hz) {
+        Ok(line) => Ok(line.iter().map(|h| h.norm()).fold(0.0, f64::max)),
+        Err(error) if is_unbounded(&error) => Ok(f64::INFINITY),
+        Err(error) => Err(error),
+    };
+    // On that side on which no neighbouring mode is.
+    let [at, below, above] = [largest(hz)?, largest(hz * (1.0 - BESIDE))?, largest(hz * (1.0 + BESIDE))?];
+    Ok(!at.is_finite() || at > UNBOUNDED * below.min(above))
+}
+
+/// What to know of the resonances that nothing damps, if there are any.
+pub fn undamped(frf: &FrfResult) -> Option<String> {
+    let all: Vec<String> = frf.undamped().map(|r| format!("{:.6} Hz ({})", r.frequency_hz, r.name)).collect();
+    let rest = all.len().saturating_sub(NAMED);
+    let more = if rest > 0 { format!(" and {rest} more") } else { String::new() };
+    (!all.is_empty()).then(|| {
+        format!(
+            "frf.{}: nothing damps the modes at {}{more}: the response has no bound there, and no line closer than {BESIDE:e} of the \
+             frequency. {DAMPERS}; or a `band` between them",
+            frf.name,
+            all[..all.len() - rest].join(", ")
+        )
+    })
+}
+
 type ResponseLines = (Vec<f64>, Vec<Vec<c64>>);
 
 /// Frequencies \[Hz\] that show every bend of a response within `band`, and the response there. Begins with an even
 /// logarithmic grid and the frequencies `near` which something happens, and halves every interval whose middle is off the
-/// straight line between its ends by more than 1 %.
+/// straight line between its ends by more than 1 %. Of the frequencies that are marked as without a bound those at the distance
+/// [`BESIDE`] are taken, and none between.
 fn grid(
     band: [f64; 2],
-    near: &[f64],
+    near: &[(f64, bool)],
     response: &(impl Fn(f64) -> Result<Vec<c64>> + Sync),
 ) -> Result<ResponseLines> {
     let ratio = (band[1] / band[0]).powf(1.0 / (FIRST - 1) as f64);
     let even = (0..FIRST).map(|k| if k + 1 < FIRST { band[0] * ratio.powi(k as i32) } else { band[1] });
-    let mut all: Vec<f64> = even.chain(near.iter().copied()).collect();
+    let beside = |(hz, undamped): &(f64, bool)| match undamped {
+        true => vec![hz * (1.0 - BESIDE), hz * (1.0 + BESIDE)],
+        false => vec![*hz],
+    };
+    // All but rounding of the distance.
+    let gap = |hz: f64| near.iter().any(|(at, undamped)| *undamped && (hz / at - 1.0).abs() < 0.999 * BESIDE);
+    let mut all: Vec<f64> = even.chain(near.iter().flat_map(beside)).collect();
+    all.retain(|hz| (band[0]..=band[1]).contains(hz) && !gap(*hz));
     all.sort_by(f64::total_cmp);
     all.dedup_by(|a, b| *a - *b < 1e-9 * *a);
+    if all.len() < 2 {
+        let found = "a band that a resonance without damping fills";
+        return Err(Error::analysis("frequency response", found, DAMPERS));
+    }
     let answers = |hz: &[f64]| hz.par_iter().map(|hz| response(*hz)).collect::<Result<Vec<_>>>();
     let first = answers(&all)?;
     let mut lines: Vec<(f64, Vec<c64>)> = all.into_iter().zip(first).collect();
@@ -263,7 +313,7 @@ fn grid(
         let middles: Vec<Option<f64>> = lines
             .windows(2)
             .zip(&open)
-            .map(|(ends, open)| open.then(|| 0.5 * (ends[0].0 + ends[1].0)))
+            .map(|(ends, open)| Some(0.5 * (ends[0].0 + ends[1].0)).filter(|middle| *open && !gap(*middle)))
             .collect();
         let asked: Vec<f64> = middles.iter().flatten().copied().collect();
         let mut found = answers(&asked)?.into_iter();
@@ -298,6 +348,7 @@ mod tests {
     use crate::case::Case;
     use crate::equilibrium::{SteadyOptions, solve_steady};
     use crate::job::samples::disc;
+    use crate::linalg::random::Random;
 
     const RESPONSES: &str = r#"
 [damping]
@@ -348,6 +399,82 @@ solution = "direct"
         for place in 0..2 {
             let shares = rim.resonances.iter().map(|r| r.seen[place]);
             assert!(shares.fold(0.0, f64::max) == 1.0);
+        }
+    }
+
+    /// Chains of n masses on springs, driven at the first mass: h = 1/d_1 with d_n = k_n − ω²m_n and
+    /// d_j = k_j + k_{j+1} − ω²m_j − k_{j+1}²/d_{j+1}.
+    #[test]
+    fn resonances_that_nothing_damps_are_named_and_have_no_line() {
+        let mut random = Random::seeded(8);
+        for round in 0..12 {
+            let n = 1 + round % 4;
+            // The first four as round numbers, at which the matrix is singular to the last bit.
+            let number = |random: &mut Random, round: usize, low: f64, high: f64| match round < 4 {
+                true => low,
+                false => random.between(low, high),
+            };
+            let springs: Vec<f64> = (0..n).map(|_| number(&mut random, round, 1800.0, 9000.0)).collect();
+            let masses: Vec<f64> = (0..n).map(|_| number(&mut random, round, 2.0, 5.0)).collect();
+            let solution = ["modes", "direct"][round / 2 % 2];
+            let mut text = String::from("[point]\n");
+            (0..n).for_each(|k| text += &format!("p{k} = [{k}, 0, 0]\n"));
+            for k in 0..n {
+                let to = if k > 0 { format!("to = \"p{}\"\n", k - 1) } else { String::new() };
+                text += &format!(
+                    "[mass.p{k}]\non = \"p{k}\"\nmass = {}\n[spring.s{k}]\non = \"p{k}\"\n{to}direction = [1, 0, 0]\n\
+                     stiffness = {}\n[support.h{k}]\non = \"p{k}\"\nheld = [\"uy\", \"uz\", \"rx\", \"ry\", \"rz\"]\n",
+                    masses[k], springs[k]
+                );
+            }
+            text += &format!(
+                "[frf.a]\nband = [\"1 Hz\", \"40 Hz\"]\nquantity = \"receptance\"\nsolution = \"{solution}\"\n\
+                 excitation = {{ on = \"p0\", direction = [1, 0, 0] }}\n"
+            );
+            let exact = |hz: f64, factor: c64| -> c64 {
+                let square = (TAU * hz).powi(2);
+                let mut d = factor * springs[n - 1] - square * masses[n - 1];
+                for j in (0..n - 1).rev() {
+                    let next = factor * springs[j + 1];
+                    d = factor * springs[j] + next - square * masses[j] - next * next / d;
+                }
+                c64::new(1.0, 0.0) / d
+            };
+            let undamped = &results(&text)[0];
+            assert_eq!(undamped.resonances.len(), n);
+            assert!(undamped.resonances.iter().all(|r| r.undamped), "{text}");
+            let words = super::undamped(undamped).unwrap();
+            assert!(words.matches(" Hz (").count() == n && words.contains("modal_ratio"), "{words}");
+            for (hz, h) in undamped.frequencies_hz.iter().zip(&undamped.responses[0].values) {
+                let away = undamped.resonances.iter().map(|r| (hz / r.frequency_hz - 1.0).abs());
+                let away = away.fold(f64::INFINITY, f64::min);
+                let exact = exact(*hz, c64::new(1.0, 0.0));
+                // Rounding, as the distance from the resonance magnifies it; an antiresonance is small for what it is made of.
+                assert!(away > 0.99 * BESIDE, "{away:e}");
+                let tolerance = 1e-11 * exact.norm() / away.min(1.0) + 1e-12 / springs[0];
+                assert!((h - exact).norm() < tolerance, "{hz}: {h} {exact}");
+            }
+            for r in &undamped.resonances {
+                let beside = |hz: &&f64| (*hz / r.frequency_hz - 1.0).abs() < 1.01 * BESIDE;
+                assert_eq!(undamped.frequencies_hz.iter().filter(beside).count(), 2, "{}", r.frequency_hz);
+            }
+            // With damping ratios of 1e-6 every line has a bound: at a resonance |h| is its residue over 2ζω².
+            let lossy = &results(&(text + "[damping]\nmodal_ratio = 1e-6\n"))[0];
+            assert!(super::undamped(lossy).is_none());
+            for r in &lossy.resonances {
+                let at = lossy.frequencies_hz.iter().position(|hz| (hz / r.frequency_hz - 1.0).abs() < 1e-9);
+                let found = lossy.responses[0].values[at.unwrap()].norm() * 2e-6;
+                // The residue over ω², from both sides, right to the square of the distance.
+                let part = |by: f64| {
+                    exact(r.frequency_hz * (1.0 + by), c64::new(1.0, 0.0)).re * (1.0 - (1.0 + by).powi(2))
+                };
+                let residue = 0.5 * (part(1e-4) + part(-1e-4));
+                assert!(
+                    (found / residue - 1.0).abs() < 1e-2,
+                    "{n} {solution} {}: {found:e} {residue:e}",
+                    r.frequency_hz
+                );
+            }
         }
     }
 

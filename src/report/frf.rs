@@ -29,6 +29,15 @@ pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
 
 /// The largest response, and whether superposition and the direct solution agree.
 fn finding(frf: &FrfResult) -> Finding {
+    let undamped = frf.undamped().count();
+    if undamped > 0 {
+        let words = format!(
+            "Frequency response {}: without a bound at {undamped} resonance{} that nothing damps.",
+            frf.name,
+            if undamped == 1 { "" } else { "s" }
+        );
+        return Finding::new(FindingClass::Attention, words);
+    }
     let values = frf.responses.iter().flat_map(|of| {
         frf.frequencies_hz.iter().zip(&of.values).map(move |(hz, value)| (value.norm(), *hz, of))
     });
@@ -110,7 +119,11 @@ fn table(frf: &FrfResult) -> ReportTable {
     for (k, resonance) in frf.resonances.iter().enumerate() {
         for (place, response) in frf.responses.iter().enumerate() {
             let seen = resonance.seen[place];
-            let why = if seen < HIDDEN { "hidden: a node of it" } else { "" };
+            let why = match (resonance.undamped, seen < HIDDEN) {
+                (true, _) => "nothing damps it: without a bound",
+                (false, true) => "hidden: a node of it",
+                _ => "",
+            };
             let first = place == 0;
             let cells = vec![
                 if first { resonance.name.clone() } else { String::new() },

@@ -69,9 +69,16 @@ pub struct Resonance {
     /// For each place |φ(place) φ(excitation)| over the largest of that product of any mode in the band: near zero where
     /// either of them stands on a node of the mode.
     pub seen: Vec<f64>,
+    /// Whether nothing damps it: the response has no bound there, and no line.
+    pub undamped: bool,
 }
 
 impl FrfResult {
+    /// The resonances that nothing damps.
+    pub fn undamped(&self) -> impl Iterator<Item = &Resonance> {
+        self.resonances.iter().filter(|resonance| resonance.undamped)
+    }
+
     /// The frequency \[Hz\] of the highest peak of a place that differs from `hz` by less than 5 %; a peak stands above
     /// both its neighbours.
     pub fn peak(&self, place: usize, hz: f64) -> Option<f64> {
@@ -131,6 +138,13 @@ impl FrfResult {
         let ends = [self.frequencies_hz.first(), self.frequencies_hz.last()];
         let band = ends.map(|hz| hz.copied().unwrap_or(f64::NAN)).to_vec();
         let responses = self.responses.iter().enumerate();
+        let undamped: Vec<&Resonance> = self.undamped().collect();
+        let undamped_columns = [column(
+            "frequency_hz",
+            "Hz",
+            "frequency of a real mode that nothing damps: the response has no bound there, and no line",
+            |r: &&Resonance| r.frequency_hz,
+        )];
         Group::new(&*self.name, "motion at some places for a harmonic force at another")
             .value("quantity", "text", "what of the motion", self.quantity.word())
             .value("unit", "text", "its unit", self.quantity.unit())
@@ -145,6 +159,7 @@ impl FrfResult {
                 self.deviation,
             )
             .value("compared", "1", "frequencies at which both were compared", self.compared)
+            .table(Table::of("undamped", "resonance", &undamped_columns, &undamped))
             .list("responses", responses.map(|(place, of)| of.group(place, self)).collect())
             .table(self.lines().file(file_name("frf", &self.name)))
     }

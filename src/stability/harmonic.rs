@@ -3,10 +3,12 @@
 use super::operator::Operator;
 use super::shifted::Shifted;
 use crate::equilibrium::SteadySliding;
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::linalg::factor::is_singular;
 use crate::linalg::{SparseVector, c64};
 use crate::system::System;
 use faer::Mat;
+use std::f64::consts::TAU;
 
 /// Receptances of a system about steady sliding: for a force Re(f e^{iωt}) along f the displacement Re(dᵀu e^{iωt}) along
 /// d is Re(h e^{iωt}) with
@@ -17,7 +19,12 @@ use faer::Mat;
 /// the way from one place to another is not that back; without them it is (Maxwell–Betti).
 pub struct Harmonic<'a> {
     operator: Operator<'a>,
+    modal: bool,
 }
+
+/// What a frequency at which the matrix without modal damping is singular is moved by, as a part of it: the response changes by
+/// this over ζ.
+const ASIDE: f64 = 1e-10;
 
 impl<'a> Harmonic<'a> {
     /// Of a system at steady sliding.
@@ -25,7 +32,10 @@ impl<'a> Harmonic<'a> {
     /// # Errors
     /// A geometric stiffness that cannot be worked out.
     pub fn new(system: &'a System, steady: &SteadySliding) -> Result<Self> {
-        Ok(Harmonic { operator: Operator::new(system, steady)? })
+        Ok(Harmonic {
+            operator: Operator::new(system, steady)?,
+            modal: system.structure.damping.modal.is_some(),
+        })
     }
 
     /// h of each direction of `seen` for a force along `force` at ω \[rad/s\], by one factorisation of Q(iω).
@@ -47,8 +57,32 @@ impl<'a> Harmonic<'a> {
         for (k, force) in forces.iter().enumerate() {
             force.iter().for_each(|(i, v)| columns[(i, k)] = c64::new(v, 0.0));
         }
-        Ok(Shifted::new(&self.operator, c64::new(0.0, omega))?.invert(columns))
+        let at = |omega: f64| Shifted::new(&self.operator, c64::new(0.0, omega));
+        let shifted = match at(omega) {
+            // The factor is of the matrix without modal damping, which then is added: it may be singular where the sum is not.
+            Err(error) if is_singular(&error) && self.modal => at(omega * (1.0 + ASIDE)),
+            shifted => shifted,
+        };
+        let shifted = shifted.map_err(|error| if is_singular(&error) { unbounded(omega) } else { error });
+        Ok(shifted?.invert(columns))
     }
+}
+
+/// What the error of a response without a bound begins with.
+const UNBOUNDED: &str = "nothing damps the resonance there";
+
+/// What damps a resonance.
+pub const DAMPERS: &str = "Give `[damping] modal_ratio = 0.002` or `rayleigh`, a material's `loss_factor`, or springs with `damping`";
+
+/// The error of a response at a resonance that nothing damps.
+fn unbounded(omega: f64) -> Error {
+    let found = format!("{UNBOUNDED}: the response has no bound");
+    Error::analysis(format!("frequency response at {:.6} Hz", omega / TAU), found, DAMPERS)
+}
+
+/// Whether this is the error of a response at a resonance that nothing damps.
+pub fn is_unbounded(error: &Error) -> bool {
+    matches!(error, Error::Analysis { found, .. } if found.starts_with(UNBOUNDED))
 }
 
 #[cfg(test)]

@@ -47,7 +47,7 @@ pub use certificate::{Certificate, CloseCall, SLOWEST_GROWTH, certified_modes};
 pub use family::{Family, FamilyCheck, FamilyFrame, FamilyModes, SlidingState};
 pub use filter::{ModalFilter, modal_filter};
 pub use full_order::{Confirmation, confirm};
-pub use harmonic::Harmonic;
+pub use harmonic::{DAMPERS, Harmonic, is_unbounded};
 pub use near::near_mode;
 pub use nearest::{Nearest, band_around, band_expected, keep_nearest};
 pub use sensitivity::{Domain, Rate, Sensitivity};

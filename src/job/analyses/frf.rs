@@ -50,6 +50,7 @@ impl<'a> Planned<'a> for PlannedFrfs<'a> {
             let phase = format!("frequency response {}", frf.name());
             let (response, beside) =
                 run.timed(&phase, |observer| frf.run(prepared, steady.as_deref(), observer))?;
+            run.results.warnings.extend(frf::undamped(&response));
             let compared = self.tests.responses(&response, &beside);
             run.found(response)?;
             compared.into_iter().try_for_each(|comparison| run.found(comparison))?;

@@ -128,7 +128,7 @@ fn youngs_modulus_of_a_plate_that_was_made_is_found_again() {
         let theory = ["mindlin", "kirchhoff"][k / 3];
         let (thickness, made) = (random.between(1.0, 12.0), random.between(160.0, 250.0));
         let held = k % 2 == 0;
-        let mut text = disc(3, 16).replace(
+        let mut text = disc(3, 22).replace(
             "thickness = \"1 mm\"",
             &format!("thickness = \"{thickness} mm\"\ntheory = \"{theory}\""),
         ) + "[modes.disc]\nbelow = BELOW\nfree = FREE\nmeasured = MEASURED\n[calibrate]\nagainst = \"disc\"\n\
