@@ -368,8 +368,10 @@ fn a_travelling_contact_that_sticks_is_condensed_exactly_too() {
     for (seed, scheme) in [Scheme::TRAPEZOIDAL, Scheme::hht(-0.1)].into_iter().enumerate() {
         let mut system = damped(seed as u64 + 2);
         let normal = NormalLaw { stiffness: 60.0, cubic_stiffness: 5.0, damping: 0.5, bilateral: false };
-        let friction = Stribeck { mu_static: 0.5, mu_kinetic: 0.3, stribeck_velocity: 0.2, exponent: 2.0 };
-        let bristle = Some(Bristle { stiffness: 40.0, damping: 0.4 });
+        // Friction that falls by 0.86 (μ_s − μ_k) N/v_s faster than k_t Δt + c_t rises has two solutions of a step, one that sticks and
+        // one that slips: this one is slower for all N below 6.
+        let friction = Stribeck { mu_static: 0.4, mu_kinetic: 0.3, stribeck_velocity: 0.5, exponent: 2.0 };
+        let bristle = Some(Bristle { stiffness: 40.0, damping: 1.0 });
         let law = SlidingLaw { bristle, ..SlidingLaw::new(normal, friction, 0.0) };
         system.pairs[0].law = std::sync::Arc::new(law);
         let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
@@ -390,7 +392,7 @@ fn a_travelling_contact_that_sticks_is_condensed_exactly_too() {
             Ok(())
         })
         .unwrap();
-        assert!(open > 20 && stuck > 100 && stuck < 3900 && far > 0.1, "{open} {stuck} {far}");
+        assert!(open > 20 && stuck > 20 && stuck < 3900 && far > 0.1, "{open} {stuck} {far}");
         assert!(end.worst_residual < 1e-9, "{scheme:?}: {:e}", end.worst_residual);
         full_newton_agrees(&model, &steady, condensed, &states);
     }
