@@ -126,7 +126,7 @@ fn disc_names(
                 .map(|(free, factor)| factor * modes.shapes[(*free, k)])
                 .sum()
         };
-        disc.name(|node| [0, 1, 2].map(|dof| along(node, dof)))
+        disc.name(|node| [0, 1, 2, 3, 4, 5].map(|dof| along(node, dof)))
     };
     (0..modes.len()).map(|k| if k < modes.rigid_bodies { None } else { name(k) }).collect()
 }
@@ -253,4 +253,54 @@ pub fn modal_ratios(case: &Case, modes: &RealModes) -> Result<Vec<f64>> {
         )
     };
     Faults(without_mode.iter().map(fault).collect()).into_result(ratios)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::samples::disc;
+    use std::collections::BTreeMap;
+
+    /// Frequencies \[Hz\] of the modes of each name of a disc clamped at a hub of 20 mm.
+    fn named(radial: usize, around: usize, below_hz: f64) -> BTreeMap<(usize, usize), Vec<f64>> {
+        let text = disc(radial, around).replace("\"15 mm\"", "\"20 mm\"");
+        let text = format!("{text}[modes.disc]\nbelow = {below_hz}\n");
+        let case = Case::parse("case.toml", &text, ".".into()).unwrap();
+        let found = part_modes(&Prepared::new(&case).unwrap(), "disc", &()).unwrap();
+        let mut all: BTreeMap<_, Vec<f64>> = BTreeMap::new();
+        for (k, name) in found.names.iter().enumerate() {
+            if let Some(name) = name {
+                let hz = found.modes.frequency_hz(k);
+                all.entry((name.nodal_diameters, name.nodal_circles)).or_default().push(hz);
+            }
+        }
+        all
+    }
+
+    #[test]
+    fn coarse_discs_have_no_wrong_names() {
+        let fine = named(12, 60, 8e3);
+        let coarse = named(8, 48, 6e3);
+        // Kirchhoff's plate by Bessel functions; what is left is of the mesh.
+        for (n, exact) in [(0, 4974.8), (1, 5085.8), (2, 5430.9), (3, 6036.4)] {
+            for (meshed, within) in [(&fine, 0.01), (&coarse, 0.02)] {
+                let hz = meshed.get(&(n, 2)).unwrap_or_else(|| panic!("no ({n}, 2)"))[0];
+                assert!((hz / exact - 1.0).abs() < within, "({n}, 2): {hz} for {exact}");
+            }
+        }
+        for (radial, around) in
+            [(8, 48), (8, 96), (6, 36), (5, 24), (4, 12), (8, 12), (2, 40), (1, 30), (12, 20)]
+        {
+            for (name, all) in named(radial, around, 6e3) {
+                assert!(all.len() <= if name.0 > 0 { 2 } else { 1 }, "{radial} × {around} {name:?}: {all:?}");
+                let right =
+                    fine.get(&name).unwrap_or_else(|| panic!("{radial} × {around} {name:?}: {all:?}"))[0];
+                // One element from hub to rim is a fifth too stiff; with another name a frequency is half as far again away, at least.
+                assert!(
+                    all.iter().all(|hz| (hz / right - 1.0).abs() < 0.25),
+                    "{radial} × {around} {name:?}: {all:?} for {right}"
+                );
+            }
+        }
+    }
 }

@@ -4,6 +4,10 @@ use super::{DiscModeName, DiscPoints};
 use nalgebra::{Matrix4, Vector3, Vector4};
 use std::collections::BTreeMap;
 
+/// Nodes that move by less than this part of rotation times radius stand on nodal lines; a wave of a hundred lobes around moves them by
+/// a hundredth.
+const STANDING: f64 = 1e-4;
+
 /// A flat round plate, with or without a hole.
 #[derive(Debug, Clone)]
 pub struct Disc {
@@ -13,6 +17,8 @@ pub struct Disc {
     pub nodes: Vec<usize>,
     /// (r \[m\], θ \[rad\]) of each node about the centre.
     pub polar: Vec<(f64, f64)>,
+    /// Unit vectors along θ = 0 and θ = 90°.
+    axes: [Vector3<f64>; 2],
     points: DiscPoints,
 }
 
@@ -49,17 +55,40 @@ impl Disc {
             })
             .collect();
         let points = DiscPoints::new(&polar)?;
-        Some(Disc { normal, nodes, polar, points })
+        Some(Disc { normal, nodes, polar, axes: [e1, e2], points })
     }
 
-    /// Nodal diameters and circles of the bending in a shape, given by the displacement of each node \[m\]; `None` when the disc
-    /// moves more in its plane than across it, or when no number of diameters dominates.
-    pub fn name(&self, displacement: impl Fn(usize) -> [f64; 3]) -> Option<DiscModeName> {
-        let moved: Vec<Vector3<f64>> = self.nodes.iter().map(|node| displacement(*node).into()).collect();
+    /// Nodal diameters and circles of the bending in a shape, given by the displacement \[m\] and rotation \[rad\] of each node;
+    /// `None` when the disc moves more in its plane than across it, when all nodes stand on nodal lines, when the shape has
+    /// shorter waves than the nodes tell, or when [`DiscPoints::name`] has none.
+    pub fn name(&self, motion: impl Fn(usize) -> [f64; 6]) -> Option<DiscModeName> {
+        let motions: Vec<[f64; 6]> = self.nodes.iter().map(|node| motion(*node)).collect();
+        let moved: Vec<Vector3<f64>> = motions.iter().map(|[x, y, z, ..]| Vector3::new(*x, *y, *z)).collect();
+        let largest = |along: &dyn Fn(&[f64; 6]) -> f64| motions.iter().map(along).fold(0.0, f64::max);
+        let [moves, turns] = [0, 3].map(|at| {
+            largest(&|motion| motion[at..at + 3].iter().fold(0.0f64, |most, part| most.max(part.abs())))
+        });
+        let outer = self.polar.iter().map(|(r, _)| *r).fold(0.0, f64::max);
+        if moves < STANDING * outer * turns {
+            return None;
+        }
         let transverse: Vec<f64> = moved.iter().map(|u| u.dot(&self.normal)).collect();
         let across: f64 = transverse.iter().map(|w| w * w).sum();
         let whole: f64 = moved.iter().map(Vector3::norm_squared).sum();
-        if across > 0.5 * whole { self.points.name(&transverse) } else { None }
+        // The nodes turn about the radius by (1/r) ∂w/∂θ and across it by ∂w/∂r, also where they are too few to tell a short wave
+        // from a long one by w alone.
+        let mut waves = [0.0; 2];
+        for (motion, (r, angle)) in motions.iter().zip(&self.polar) {
+            let turned = Vector3::new(motion[3], motion[4], motion[5]);
+            let [x, y] = self.axes.map(|axis| axis.dot(&turned));
+            let (sin, cos) = angle.sin_cos();
+            waves[0] += (r * (x * cos + y * sin)).powi(2);
+            waves[1] += (y * cos - x * sin).powi(2);
+        }
+        let shortest = self.points.highest_wave_numbers();
+        let short = waves.iter().zip(shortest).any(|(wave, most)| *wave > most * most * across);
+        let told = across > 0.5 * whole && !short;
+        if told { self.points.name(&transverse) } else { None }
     }
 }
 
