@@ -300,7 +300,7 @@ fn grid(
     all.retain(|hz| (band[0]..=band[1]).contains(hz) && !gap(*hz));
     all.sort_by(f64::total_cmp);
     all.dedup_by(|a, b| *a - *b < 1e-9 * *a);
-    if all.len() < 2 {
+    if all.is_empty() {
         let found = "a band that a resonance without damping fills";
         return Err(Error::analysis("frequency response", found, DAMPERS));
     }
