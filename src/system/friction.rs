@@ -32,6 +32,10 @@ pub fn is_unsymmetric(a: &SparseMatrix) -> bool {
 
 /// What a term has beside its H: forces f, of length one, their sizes s, and motions m of R = Σ f s mᵀ.
 type Terms = Vec<(SparseVector, f64, SparseVector)>;
+/// The same with f and m by the rows of a group.
+type GroupTerms = Vec<(Vec<f64>, f64, Vec<f64>)>;
+/// Columns of R that are parallel to one, before they are scaled: its values, the same as a force by its rows, and the motion.
+type Parallel = (Vec<f64>, SparseVector, Vec<(usize, f64)>);
 
 /// H, n × n, and R of a term.
 pub(super) fn divided(a: &SparseMatrix) -> (SparseMatrix, Terms) {
@@ -82,7 +86,7 @@ pub(super) fn divided(a: &SparseMatrix) -> (SparseMatrix, Terms) {
 }
 
 /// The singular vectors and values of R of one group that are more than rounding of a matrix of this size.
-fn factors(rest: &Mat<f64>, size: f64) -> Option<Vec<(Vec<f64>, f64, Vec<f64>)>> {
+fn factors(rest: &Mat<f64>, size: f64) -> Option<GroupTerms> {
     let svd = thin_svd(rest.as_ref())?;
     let noise = 2.0 * f64::EPSILON * size;
     let kept = svd.values.iter().enumerate().take_while(|(_, s)| **s > noise);
@@ -154,7 +158,7 @@ pub(super) fn low_rank(terms: Terms, highest: usize) -> Option<Coupling> {
 
 /// R = Σ f s mᵀ by its columns, those that are parallel in one term: the force f, of length one, its size s, and the motion m.
 fn column_terms(rest: &SparseMatrix) -> Terms {
-    let mut terms: Vec<(Vec<f64>, SparseVector, Vec<(usize, f64)>)> = Vec::new();
+    let mut terms: Vec<Parallel> = Vec::new();
     let mut alike: BTreeMap<Vec<usize>, Vec<usize>> = BTreeMap::new();
     for j in 0..rest.ncols() {
         let entries = rest.row_idx_of_col(j).zip(rest.val_of_col(j).iter().copied());
@@ -180,7 +184,7 @@ fn column_terms(rest: &SparseMatrix) -> Terms {
             }
         }
     }
-    let finish = |(values, force, motion): (Vec<f64>, SparseVector, Vec<(usize, f64)>)| {
+    let finish = |(values, force, motion): Parallel| {
         let size = values.iter().map(|v| v * v).sum::<f64>().sqrt();
         let unit = SparseVector::from_entries(force.iter().map(|(i, v)| (i, v / size)));
         (unit, size, SparseVector::from_entries(motion))
