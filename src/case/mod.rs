@@ -44,7 +44,7 @@ pub(crate) use parameter::path_matches;
 pub use sound::{AirChoice, Microphone, ON_AXIS, SoundAnalysis};
 pub use test_file::read_test;
 pub use transient::{
-    Course, Disturbance, ModelChoice, Probe, PushedRegion, SchemeChoice, Slide, StartChoice,
+    Course, Disturbance, HoldChoice, ModelChoice, Probe, PushedRegion, SchemeChoice, Slide, StartChoice,
     TransientAnalysis,
 };
 pub use uncertainty::UncertaintyAnalysis;

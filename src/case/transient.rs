@@ -47,6 +47,8 @@ declare! {
         },
         /// Initial state of the motion.
         pub start: StartChoice = key::choice().or(StartChoice::Steady),
+        /// What a contact keeps in motion that a load closes.
+        pub hold: HoldChoice = key::choice().or(HoldChoice::Approach),
         /// Initial disturbance.
         pub disturbance: Option<Disturbance> = key::table().optional(),
         /// Pushes by name.
@@ -86,6 +88,18 @@ choices! {
         Steady = "steady",
         /// Equilibrium without friction: nothing has slid yet.
         Rest = "rest",
+    }
+}
+
+choices! {
+    /// What a contact keeps in motion that a `load` closes; one with an `approach` always keeps that.
+    pub enum HoldChoice {
+        /// The approach at which it carries its load at rest, as in the complex eigenvalues: the bodies are clamped together, and
+        /// ΣN varies with the motion.
+        Approach = "approach",
+        /// The load: a device without inertia and friction follows, and ΣN is the load at the end of every step. A contact of
+        /// one point then has a constant normal force, so that its friction does not couple modes.
+        Load = "load",
     }
 }
 

@@ -93,8 +93,12 @@ pub struct GrowthCompared {
     pub mode: usize,
     /// Its λ.
     pub eigenvalue: c64,
-    /// Growth in the transient while the penetration changes by less than 1 %; `None` when that time is too short.
+    /// Growth in the transient while the motion is small; `None` where it cannot be read.
     pub found: Option<Growth>,
+    /// Why it cannot.
+    pub refused: Option<String>,
+    /// What the integrator itself adds to σ \[1/s\] in steps that are not split.
+    pub integrator: f64,
 }
 
 /// A run in time.
@@ -141,6 +145,8 @@ pub struct TransientResult {
     pub diagnostics: Diagnostics,
     /// How loud it is, if the case asks for it.
     pub sound: Option<Sound>,
+    /// What in this motion is beyond what the model or the record can mean.
+    pub warnings: Vec<String>,
 }
 
 impl Describe for TransientResult {
@@ -314,6 +320,13 @@ impl GrowthCompared {
                 g.found.map(|f| f.window)
             })
             .along(Dimension::limits()),
+            column("refused", "text", "why growth in time cannot be read", |g: &Compared| g.refused.clone()),
+            column(
+                "integrator_growth_rate",
+                "1/s",
+                "what the integrator itself adds to σ",
+                |g: &Compared| g.integrator,
+            ),
             column("deviation", "1", "r.m.s. deviation of ln|c| from its line", |g: &Compared| {
                 g.found.map(|f| f.deviation)
             }),

@@ -155,11 +155,12 @@ impl StepContact {
         }
         let (duration, force, resistance) = (self.step, &self.force, &self.resistance);
         let (travel, bristles) = (&from.interface.travel, &from.bristles);
+        let approaches = &from.interface.approaches;
         self.reaction.evaluate(
             model,
             [q, rate],
             to.moment(),
-            Some(Since { travel, bristles, duration, force, resistance }),
+            Some(Since { travel, approaches, bristles, duration, force, resistance }),
         );
         let terms = self.force.iter().zip(&self.reaction.force);
         self.rho.iter_mut().zip(terms).for_each(|(rho, (r, answer))| *rho = r - answer);

@@ -61,6 +61,7 @@ impl Checkpoint {
         self.put_columns("free_motion", &state.motion);
         state.modal.iter().for_each(|modal| self.put_columns("modal", modal));
         self.put("reaction", &state.reaction);
+        self.put("approaches", &state.interface.approaches);
         let bristles = state.bristles.iter();
         let kept = bristles.flat_map(|b| [b.bent[0], b.bent[1], f64::from(u8::from(b.stick))]);
         self.put("bristles", &kept.collect::<Vec<f64>>());
@@ -86,6 +87,7 @@ impl Checkpoint {
         for (bristles, kept) in state.bristles.iter_mut().zip(kept.chunks(3)) {
             *bristles = Bristles { bent: [kept[0], kept[1]], stick: kept[2] != 0.0 };
         }
+        self.get("approaches", &mut state.interface.approaches)?;
         state.act(model, time);
         state.derive(model);
         let control = Control { level, fastest, parts };

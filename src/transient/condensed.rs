@@ -55,8 +55,7 @@ impl Solver for CondensedStep<'_> {
         }
         to.predict_along(weights, &mut contact.predicted);
         contact.solve(model, from, to)?;
-        to.reaction.copy_from_slice(&contact.reaction.force);
-        to.bristles.copy_from_slice(&contact.reaction.bristles);
+        to.answer(&contact.reaction);
         for (mix, r) in to.interface.mixes.iter().zip(&to.reaction).filter(|(_, r)| **r != 0.0) {
             parts(mix).for_each(|(column, share)| effective.push(column, -weights.share() * share * r));
         }

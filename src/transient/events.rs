@@ -98,7 +98,7 @@ fn seen(model: &TransientModel<'_>, state: &State) -> impl Iterator<Item = Previ
     (0..model.points.len()).map(move |point| PreviousContact {
         closed: state.contact_forces(point)[0] != 0.0,
         sticks: state.sticks(point),
-        penetration: state.penetration(point),
+        penetration: state.penetration(model, point),
         slip: state.slip_velocity(model, point)[0],
     })
 }

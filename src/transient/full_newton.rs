@@ -59,11 +59,12 @@ impl<'a> FullNewton<'a> {
         let rate: Vec<f64> = along.iter().zip(&at[1]).map(|(x, v)| v + self.weights.rate * x).collect();
         let duration = self.weights.step;
         let (travel, bristles) = (&from.interface.travel, &from.bristles);
+        let approaches = &from.interface.approaches;
         self.reaction.evaluate(
             model,
             [&q, &rate],
             to.moment(),
-            Some(Since { travel, bristles, duration, force, resistance }),
+            Some(Since { travel, approaches, bristles, duration, force, resistance }),
         );
         let mut rho = multiply_vector(&self.linear, delta);
         if let Some(own) = &model.damping.modal {
@@ -156,8 +157,7 @@ impl Solver for FullNewton<'_> {
             let largest = |x: &[f64]| x.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
             let scale = from.motion.col(0).norm_max().max(largest(&delta));
             if length <= ROUND_OFF * scale && self.reaction.mismatch(&force) <= UNMATCHED {
-                to.reaction.copy_from_slice(&self.reaction.force);
-                to.bristles.copy_from_slice(&self.reaction.bristles);
+                to.answer(&self.reaction);
                 h.col_as_slice_mut(0).copy_from_slice(&delta);
                 if let Some(own) = &model.damping.modal {
                     *modal = gram(own.basis.as_ref(), h.as_ref());

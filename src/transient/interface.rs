@@ -10,8 +10,10 @@ use crate::linalg::SparseVector;
 pub(super) struct TravellingInterface {
     /// For each direction its columns of P with their shares.
     pub(super) mixes: Vec<Shares>,
-    /// approach − gap \[m\] of each point: δ at gᵀu = 0.
-    pub(super) closeness: Vec<f64>,
+    /// The gap of each point \[m\].
+    pub(super) gaps: Vec<f64>,
+    /// The approach of each pair \[m\]: approach − gap is δ at gᵀu = 0.
+    pub(super) approaches: Vec<f64>,
     /// ∫V dt \[m\] of each pair since t = 0.
     pub(super) travel: Vec<f64>,
 }
@@ -21,7 +23,8 @@ impl TravellingInterface {
     pub(super) fn new(model: &TransientModel<'_>) -> Self {
         let mut at = TravellingInterface {
             mixes: vec![[(0, 0.0); 4]; model.n_directions()],
-            closeness: vec![0.0; model.points.len()],
+            gaps: vec![0.0; model.points.len()],
+            approaches: model.approaches.clone(),
             travel: vec![0.0; model.velocities.len()],
         };
         at.locate(model, 0.0);
@@ -38,14 +41,18 @@ impl TravellingInterface {
         for (pair, track) in model.tracks.iter().enumerate() {
             let count = model.points[first..].iter().take_while(|point| point.pair == pair).count();
             let shares = track.map(|track| track.shares(self.travel[pair]));
-            let approach = model.loadings[pair].as_ref().map(|loading| loading.approach(time));
+            if let Some(loading) = &model.loadings[pair]
+                && model.held_load(pair, time).is_none()
+            {
+                self.approaches[pair] = loading.approach(time);
+            }
             for p in 0..count {
                 let point = &model.points[first + p];
                 let mut gap = point.gap;
                 if let (Some(track), Some(shares)) = (track, &shares) {
                     gap = shares.iter().map(|(station, share)| share * track.stations[*station][p].gap).sum();
                 }
-                self.closeness[first + p] = approach.unwrap_or(point.approach) - gap;
+                self.gaps[first + p] = gap;
                 for c in 0..3 {
                     self.mixes[3 * (first + p) + c] = match &shares {
                         Some(shares) => {

@@ -103,7 +103,7 @@ pub fn resume(
     observer: &dyn Observer,
     record: &mut dyn FnMut(&Marched) -> Result<()>,
 ) -> Result<()> {
-    let mut steppers = Steppers { model, plan, levels: Vec::new() };
+    let mut steppers = Steppers { model, plan, levels: Vec::new(), sticking: Vec::new() };
     let mut next = State::empty(model);
     observer.begin("transient", Some(plan.steps as u64));
     observer.advance(marched.step as u64);
@@ -152,6 +152,8 @@ struct Steppers<'a> {
     model: &'a TransientModel<'a>,
     plan: &'a Plan,
     levels: Vec<Stepper<'a>>,
+    /// Those of the same length in which a point sticks, see [`Scheme::for_sticking`].
+    sticking: Vec<Option<Stepper<'a>>>,
 }
 
 impl Steppers<'_> {
@@ -169,6 +171,7 @@ impl Steppers<'_> {
             while self.levels.len() <= level {
                 let step = self.plan.step / (1 << self.levels.len()) as f64;
                 self.levels.push(Stepper::new(self.model, self.plan.scheme, step, self.plan.method)?);
+                self.sticking.push(None);
             }
             let parts = 1usize << level;
             // What is kept to go back to; a single step that may fail but not err needs none.
@@ -212,6 +215,33 @@ impl Steppers<'_> {
         Err(Error::analysis("transient", found, help))
     }
 
+    /// One step of the scheme, or of the one that takes its place where a point sticks.
+    fn step(
+        &mut self,
+        level: usize,
+        now: &State,
+        next: &mut State,
+    ) -> std::result::Result<Work, StepFailure> {
+        let Some(other) = self.plan.scheme.for_sticking() else {
+            return self.levels[level].step(now, next);
+        };
+        if !now.rests(self.model) {
+            let work = self.levels[level].step(now, next)?;
+            if !next.rests(self.model) {
+                return Ok(work);
+            }
+        }
+        let damped = match &mut self.sticking[level] {
+            Some(damped) => damped,
+            absent => {
+                let step = self.plan.step / (1 << level) as f64;
+                let stepper = Stepper::new(self.model, other, step, self.plan.method);
+                absent.insert(stepper.map_err(|_| StepFailure::NotFinite)?)
+            }
+        };
+        damped.step(now, next)
+    }
+
     /// The work of 2^level parts, and the largest error of one.
     fn parts(
         &mut self,
@@ -227,7 +257,7 @@ impl Steppers<'_> {
         for part in 1..=parts {
             let time = if part == parts { ends[1] } else { ends[0] + length * part as f64 };
             next.act(self.model, time);
-            work.add(&self.levels[level].step(now, next)?);
+            work.add(&self.step(level, now, next)?);
             std::mem::swap(now, next);
             if self.plan.tolerance.is_some() {
                 // `next` is where the part began.

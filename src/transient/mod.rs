@@ -35,7 +35,7 @@ pub use drive::{Loading, Pulse, Push, TimeProfile};
 pub use energy_balance::Work;
 pub use events::{Event, EventKind, Watch};
 pub use march::{Control, Marched, Plan, march, resume};
-pub use model::{TransientModel, refuse_hysteretic};
+pub use model::{NO_LOAD, TransientModel, refuse_hysteretic};
 pub use scheme::Scheme;
 pub use state::State;
 pub use stepper::StepMethod;

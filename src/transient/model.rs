@@ -8,7 +8,9 @@ use crate::equilibrium::{SteadySliding, directions, tangent_stiffness};
 use crate::error::{Error, Fault, Result};
 use crate::linalg::sparse::add_scaled;
 use crate::linalg::{SparseMatrix, SparseVector};
-use crate::system::{ContactLaw, Damping, FrictionAtRest, System};
+use crate::system::{
+    ContactForces, ContactLaw, ContactMotion, ContactTangent, Damping, FrictionAtRest, System,
+};
 use faer::Mat;
 use std::borrow::Cow;
 
@@ -40,7 +42,14 @@ pub struct TransientModel<'a> {
     pub(super) pushes: Vec<Push>,
     /// How the load that closes each pair runs in time, if it does.
     pub(super) loadings: Vec<Option<Loading>>,
+    /// The approach of each pair \[m\] at the start.
+    pub(super) approaches: Vec<f64>,
+    /// The load \[N\] that each pair keeps in motion; the others keep their approach.
+    pub(super) loads: Vec<Option<f64>>,
 }
+
+/// The part of a load that counts as none: where nothing presses a pair, its approach has no value.
+pub const NO_LOAD: f64 = 1e-6;
 
 /// A point that may touch, without its directions.
 #[derive(Debug)]
@@ -53,8 +62,6 @@ pub(super) struct Touch<'a> {
     pub(super) position: [f64; 3],
     pub(super) law: &'a dyn ContactLaw,
     pub(super) weight: f64,
-    /// The approach of its pair \[m\].
-    pub(super) approach: f64,
     /// Its gap where it does not travel \[m\].
     pub(super) gap: f64,
 }
@@ -67,16 +74,15 @@ impl<'a> TransientModel<'a> {
     /// Input: hysteretic damping, which means something in harmonic motion only.
     pub fn new(system: &'a System, steady: &SteadySliding) -> Result<Self> {
         refuse_hysteretic(system)?;
-        let pairs = system.pairs.iter().zip(&steady.approach).enumerate();
+        let pairs = system.pairs.iter().enumerate();
         let points: Vec<Touch> = pairs
-            .flat_map(|(k, (pair, approach))| {
+            .flat_map(|(k, pair)| {
                 pair.points.iter().map(move |point| Touch {
                     pair: k,
                     name: &pair.name,
                     position: point.position,
                     law: &*pair.law,
                     weight: point.weight,
-                    approach: *approach,
                     gap: point.gap,
                 })
             })
@@ -98,7 +104,57 @@ impl<'a> TransientModel<'a> {
             tracks: vec![None; system.pairs.len()],
             pushes: Vec::new(),
             loadings: vec![None; system.pairs.len()],
+            approaches: steady.approach.clone(),
+            loads: vec![None; system.pairs.len()],
         })
+    }
+
+    /// The same model in which pairs keep the load \[N\] that closes them, one entry a pair, in place of their approach: the
+    /// loading device follows without inertia and without friction, and at the end of every step ΣN = load.
+    ///
+    /// # Panics
+    /// When there is not one entry for each pair.
+    pub fn holding(self, loads: Vec<Option<f64>>) -> Self {
+        assert!(loads.len() == self.velocities.len(), "one entry a pair");
+        TransientModel { loads, ..self }
+    }
+
+    /// Whether a pair keeps its load.
+    pub fn holds_load(&self) -> bool {
+        self.loads.iter().any(Option::is_some)
+    }
+
+    /// N′ \[N/m\] of a contact point at a penetration \[m\].
+    pub fn normal_stiffness(&self, point: usize, penetration: f64) -> f64 {
+        self.normal(point, penetration).1.by_penetration[0]
+    }
+
+    /// Whether a contact point also pulls, so that it never opens.
+    pub fn is_bilateral(&self, point: usize) -> bool {
+        self.normal(point, -1.0).0.normal < 0.0
+    }
+
+    /// Whether the friction of a contact point at a penetration \[m\] depends on how fast it slips, not only on where to.
+    pub fn friction_varies(&self, point: usize, penetration: f64) -> bool {
+        let friction = |part: f64| self.respond(point, penetration, part).0.friction[0];
+        friction(0.5) != friction(1.0)
+    }
+
+    fn normal(&self, point: usize, penetration: f64) -> (ContactForces, ContactTangent) {
+        self.respond(point, penetration, 1.0)
+    }
+
+    /// What a contact point answers that slips at a part of the sliding velocity.
+    fn respond(&self, point: usize, penetration: f64, part: f64) -> (ContactForces, ContactTangent) {
+        let touch = &self.points[point];
+        let slip_velocity = [part * self.velocities[touch.pair], 0.0];
+        touch.law.respond(&ContactMotion { penetration, penetration_rate: 0.0, slip_velocity }, touch.weight)
+    }
+
+    /// The load \[N\] that a pair keeps at a time; `None` where it keeps its approach.
+    pub(super) fn held_load(&self, pair: usize, time: f64) -> Option<f64> {
+        let factor = self.loadings[pair].as_ref().map_or(1.0, |loading| loading.profile.factor(time));
+        self.loads[pair].map(|load| load * factor.max(NO_LOAD))
     }
 
     /// The same model whose counter-bodies slide as `profiles` say, one a pair, and that is pushed.

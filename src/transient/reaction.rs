@@ -18,6 +18,12 @@ pub(super) struct Reaction {
     blocks: Vec<ContactBlock>,
     /// ∂(F₁, F₂)/∂**F** of the iterate of each point.
     by_friction: Vec<[[f64; 2]; 2]>,
+    /// The approach of each pair \[m\].
+    pub(super) approaches: Vec<f64>,
+    /// How the approach of a pair that keeps its load follows the motion, by direction: ∂a/∂q and ∂a/∂q̇.
+    follows: Vec<Vec<(usize, [f64; 2])>>,
+    /// ∂r/∂a \[N/m\] of each point whose pair keeps its load.
+    by_approach: Vec<[f64; 3]>,
 }
 
 /// Internal friction state of a contact point.
@@ -36,6 +42,8 @@ const HELD: f64 = 1.0 - 1e-8;
 /// Arguments of the reactions besides the motion along the directions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Moment<'a> {
+    /// t \[s\].
+    pub(super) time: f64,
     /// Where the contacts act.
     pub(super) interface: &'a TravellingInterface,
     /// V of each pair \[m/s\].
@@ -49,6 +57,8 @@ pub(super) struct Moment<'a> {
 pub(super) struct Since<'a> {
     /// ∫V dt of each pair where it began \[m\].
     pub(super) travel: &'a [f64],
+    /// The approach of each pair there \[m\].
+    pub(super) approaches: &'a [f64],
     /// Bristle deflections of each point there.
     pub(super) bristles: &'a [Bristles],
     /// Δt \[s\].
@@ -85,6 +95,9 @@ impl Reaction {
             bristles: vec![Bristles::default(); model.points.len()],
             blocks: (0..model.points.len()).map(silent).collect(),
             by_friction: vec![[[0.0; 2]; 2]; model.points.len()],
+            approaches: model.approaches.clone(),
+            follows: vec![Vec::new(); model.velocities.len()],
+            by_approach: vec![[0.0; 3]; model.points.len()],
         }
     }
 
@@ -97,15 +110,16 @@ impl Reaction {
         to: Moment<'_>,
         since: Option<Since<'_>>,
     ) {
+        self.approach(model, [q, rate], to, since);
         for (p, point) in model.points.iter().enumerate() {
             let at = 3 * p;
             let motion = ContactMotion {
-                penetration: to.interface.closeness[p] + q[at],
-                penetration_rate: rate[at],
+                penetration: self.approaches[point.pair] - to.interface.gaps[p] + q[at],
+                penetration_rate: rate[at] + approaching(&self.approaches, point.pair, since),
                 slip_velocity: [to.speeds[point.pair] - rate[at + 1], -rate[at + 2]],
             };
             let answer = match since {
-                Some(Since { travel: before, bristles, duration, force, resistance }) => {
+                Some(Since { travel: before, bristles, duration, force, resistance, .. }) => {
                     let travel = to.interface.travel[point.pair] - before[point.pair];
                     let moved = [1, 2].map(|c| q[at + c] - to.before[(at + c, 0)]);
                     let since = SlipStep {
@@ -132,6 +146,9 @@ impl Reaction {
                 // Both −F and −Δ: the signs cancel.
                 (0..2).for_each(|j| block.stiffness[1 + i][1 + j] += row[j]);
             }
+            let per_step = since.map_or(0.0, |since| 1.0 / since.duration);
+            self.by_approach[p] =
+                [0, 1, 2].map(|row| block.stiffness[row][0] + per_step * block.damping[row][0]);
             self.blocks[p] = block;
             self.by_friction[p] = by_friction;
         }
@@ -141,6 +158,56 @@ impl Reaction {
                 let row =
                     |a: &Mat<f64>, x: &[f64]| (0..k.ncols()).map(|j| a[(i, j)] * x[first + j]).sum::<f64>();
                 self.force[first + i] = row(k, q) + row(c, rate);
+            }
+        }
+    }
+
+    /// Finds the approach a of every pair that keeps its load L: Σ N(δ + a, δ̇ + ȧ) = L with ȧ = Δa/Δt, which has one solution as N
+    /// rises with δ. There da = −Σ (N′ dq + c dq̇)/Σ (N′ + c/Δt).
+    fn approach(
+        &mut self,
+        model: &TransientModel<'_>,
+        [q, rate]: [&[f64]; 2],
+        to: Moment<'_>,
+        since: Option<Since<'_>>,
+    ) {
+        let before = since.map_or(&to.interface.approaches[..], |since| since.approaches);
+        for pair in 0..model.velocities.len() {
+            let Some(load) = model.held_load(pair, to.time) else {
+                self.approaches[pair] = to.interface.approaches[pair];
+                continue;
+            };
+            let own = model.points.iter().enumerate().filter(|(_, point)| point.pair == pair);
+            let per_step = since.map_or(0.0, |since| 1.0 / since.duration);
+            let normal = |p: usize, approach: f64| {
+                let motion = ContactMotion {
+                    penetration: approach - to.interface.gaps[p] + q[3 * p],
+                    penetration_rate: rate[3 * p] + per_step * (approach - before[pair]),
+                    slip_velocity: [to.speeds[pair], 0.0],
+                };
+                let (forces, tangent) = model.points[p].law.respond(&motion, model.points[p].weight);
+                (forces.normal, tangent.by_penetration[0], tangent.by_penetration_rate[0])
+            };
+            let points: Vec<usize> = own.map(|(p, _)| p).collect();
+            let sum = |approach: f64| {
+                points
+                    .iter()
+                    .map(|p| normal(*p, approach))
+                    .fold([-load, 0.0], |[force, slope], (n, k, c)| [force + n, slope + k + per_step * c])
+            };
+            // Where the first point touches, the others being farther off.
+            let touching =
+                points.iter().map(|p| to.interface.gaps[*p] - q[3 * p]).fold(f64::INFINITY, f64::min);
+            let approach = rising_root(&sum, before[pair], touching);
+            self.approaches[pair] = approach;
+            let [_, slope] = sum(approach);
+            self.follows[pair].clear();
+            if slope > 0.0 {
+                let share = |p: &usize| {
+                    let (_, k, c) = normal(*p, approach);
+                    (3 * p, [-k / slope, -c / slope])
+                };
+                self.follows[pair].extend(points.iter().map(share));
             }
         }
     }
@@ -171,7 +238,17 @@ impl Reaction {
                     _ => held[own - 1].map(|h| HELD * h),
                 };
                 let held = [(first + 1, held[0]), (first + 2, held[1])];
-                visit(LinearisedRow { place: first + own, slopes: &slopes, held: &held });
+                let follows = &self.follows[model.points[block.point].pair];
+                if follows.is_empty() {
+                    visit(LinearisedRow { place: first + own, slopes: &slopes, held: &held });
+                } else {
+                    let by_approach = self.by_approach[block.point][own];
+                    let along = follows
+                        .iter()
+                        .map(|(k, [by_q, by_rate])| (*k, by_approach * (by_q + rate * by_rate)));
+                    let slopes: Vec<(usize, f64)> = slopes.into_iter().chain(along).collect();
+                    visit(LinearisedRow { place: first + own, slopes: &slopes, held: &held });
+                }
             }
         }
         if let Some([k, c]) = model.coupling {
@@ -187,4 +264,48 @@ impl Reaction {
     fn holds(&self, point: usize) -> bool {
         self.by_friction[point] != [[0.0; 2]; 2]
     }
+}
+
+/// ȧ of a pair \[m/s\] in a step.
+fn approaching(approaches: &[f64], pair: usize, since: Option<Since<'_>>) -> f64 {
+    since.map_or(0.0, |since| (approaches[pair] - since.approaches[pair]) / since.duration)
+}
+
+/// The root of a function that rises from below zero at `low` and beyond all bounds, by Newton's method from `first` within
+/// a bracket; `sum` gives its value and its slope.
+fn rising_root(sum: &dyn Fn(f64) -> [f64; 2], first: f64, low: f64) -> f64 {
+    let (mut low, mut high) = (low, f64::INFINITY);
+    let mut x = first;
+    let mut stride = 0.0f64;
+    for _ in 0..200 {
+        let [value, slope] = sum(x);
+        if value == 0.0 || !value.is_finite() {
+            return x;
+        }
+        if value > 0.0 {
+            high = high.min(x);
+            if low >= x {
+                // A contact that pulls, or whose dashpot presses.
+                low = f64::NEG_INFINITY;
+            }
+        } else {
+            low = low.max(x);
+        }
+        let newton = x - value / slope;
+        let inside = newton.is_finite() && newton >= low.min(x) && newton <= high.max(x);
+        let next = if inside {
+            newton
+        } else if high.is_finite() && low.is_finite() && low < high {
+            0.5 * (low + high)
+        } else {
+            // Nothing touches yet, or the function pulls below: strides that double.
+            stride = 2.0 * stride.max((x - low).abs()).max(f64::EPSILON * x.abs()).max(f64::MIN_POSITIVE);
+            x + stride
+        };
+        if (next - x).abs() <= f64::EPSILON * next.abs() {
+            return next;
+        }
+        x = next;
+    }
+    x
 }

@@ -98,13 +98,19 @@ impl State {
         let mut reaction = Reaction::new(model);
         let along = [0, 1].map(|k| self.along.col_as_slice(k));
         reaction.evaluate(model, along, self.moment(), None);
-        self.reaction = reaction.force;
-        self.bristles = reaction.bristles;
+        self.answer(&reaction);
+    }
+
+    /// Takes over what the contacts answer.
+    pub(super) fn answer(&mut self, reaction: &Reaction) {
+        self.reaction.copy_from_slice(&reaction.force);
+        self.bristles.copy_from_slice(&reaction.bristles);
+        self.interface.approaches.copy_from_slice(&reaction.approaches);
     }
 
     /// Arguments of the reactions besides the motion.
     pub(super) fn moment(&self) -> Moment<'_> {
-        Moment { interface: &self.interface, speeds: &self.speeds, before: &self.before }
+        Moment { time: self.time, interface: &self.interface, speeds: &self.speeds, before: &self.before }
     }
 
     /// Sets velocities, pulse loads and contact places at a time.
@@ -154,9 +160,15 @@ impl State {
         self.bristles[point].stick
     }
 
+    /// Whether a point sticks whose friction at rest is set-valued.
+    pub(super) fn rests(&self, model: &TransientModel<'_>) -> bool {
+        model.points.iter().zip(&self.bristles).any(|(point, own)| own.stick && point.law.is_set_valued())
+    }
+
     /// δ \[m\] of a contact point.
-    pub fn penetration(&self, point: usize) -> f64 {
-        self.interface.closeness[point] + self.along[(3 * point, 0)]
+    pub fn penetration(&self, model: &TransientModel<'_>, point: usize) -> f64 {
+        let pair = model.points[point].pair;
+        self.interface.approaches[pair] - self.interface.gaps[point] + self.along[(3 * point, 0)]
     }
 
     /// The slip velocity of a contact point along t₁ and t₂ \[m/s\].

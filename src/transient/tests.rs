@@ -1,3 +1,4 @@
+mod held_load;
 mod sticking;
 
 use super::*;

@@ -62,10 +62,12 @@ impl<'a> Planned<'a> for PlannedTransient<'a> {
             complex,
             real: &point.real,
             dofs: &prepared.assembled.dofs,
+            model: &prepared.model,
             geometry: &results.geometry,
         };
         let found = clock.time(PHASE, || in_time.run(self.wanted, self.places, *sink, *observer))?;
         sink.record(ResultStage::Transient(&found))?;
+        results.warnings.extend(found.warnings.iter().cloned());
         results.records.push(found);
         Ok(())
     }

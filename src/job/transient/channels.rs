@@ -43,6 +43,8 @@ pub(super) struct Channels {
     pub(super) shown: Vec<ShownChannel>,
     /// The channel of the penetration of the most loaded point; its slip follows.
     pub(super) penetration: usize,
+    /// The channel of the velocity of each counter-body.
+    pub(super) speeds: Vec<usize>,
     /// The channels that count the points that stick, slip backwards and slip forwards begin here.
     pub(super) states: Option<usize>,
     /// The channels of the amplitude of the disturbed mode, re and im.
@@ -144,7 +146,8 @@ impl Channels {
             let friction = self.add(format!("{name}_friction_force"), "N", about, sum(1));
             let about = format!("velocity of the counter-body of {name}");
             let speed = move |sample: &ChannelSample<'_>| sample.marched.state.speeds()[k];
-            self.add(format!("{name}_sliding_velocity"), "m/s", about, speed);
+            let speed = self.add(format!("{name}_sliding_velocity"), "m/s", about, speed);
+            self.speeds.push(speed);
             if k == 0 {
                 self.shown.push(ShownChannel { channel: friction, measured: Vec::new() });
             }
@@ -154,7 +157,7 @@ impl Channels {
     /// Penetration and slip of the most loaded point, and how many points are in each state; zero without contact.
     fn contact(&mut self, point: usize, touches: bool) {
         let deep = move |sample: &ChannelSample<'_>| {
-            if touches { sample.marched.state.penetration(point) } else { 0.0 }
+            if touches { sample.marched.state.penetration(sample.model, point) } else { 0.0 }
         };
         let about = "of the point that carries most in steady sliding";
         self.penetration = self.add("penetration", "m", about, deep);

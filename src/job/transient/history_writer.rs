@@ -1,5 +1,6 @@
 //! Hands the record on, a piece at a time.
 
+use super::deflection::Deflections;
 use super::harmonic_fields::HarmonicFields;
 use super::recorder::Recorder;
 use super::snapshots::Snapshots;
@@ -22,6 +23,8 @@ pub(super) struct HistoryWriter<'a, 'k> {
     snapshots: Option<Snapshots<'a>>,
     /// The motion over the last periods, and the highest frequency \[Hz\] that it may have.
     pub(super) cycle: (HarmonicFields<'a>, f64),
+    /// How far plates bend.
+    pub(super) deflections: Deflections<'a>,
     /// The first row that is at hand.
     first: usize,
     last_piece: Instant,
@@ -31,10 +34,10 @@ impl<'a, 'k> HistoryWriter<'a, 'k> {
     pub(super) fn new(
         recorder: Recorder<'a>,
         snapshots: Option<Snapshots<'a>>,
-        cycle: (HarmonicFields<'a>, f64),
+        (cycle, deflections): ((HarmonicFields<'a>, f64), Deflections<'a>),
         sink: &'k mut dyn ResultSink,
     ) -> Self {
-        HistoryWriter { recorder, sink, snapshots, cycle, first: 0, last_piece: Instant::now() }
+        HistoryWriter { recorder, sink, snapshots, cycle, deflections, first: 0, last_piece: Instant::now() }
     }
 
     /// Begins with the first row or, where an earlier run stopped, resumes from there.
@@ -48,6 +51,7 @@ impl<'a, 'k> HistoryWriter<'a, 'k> {
             marched = checkpoint.march(model)?;
             self.recorder.restore(checkpoint, &marched)?;
             self.cycle.0.restore(checkpoint)?;
+            self.deflections.restore(checkpoint)?;
             self.first = marched.step + 1;
         }
         self.sink.record(ResultStage::TransientBegins(&Recording {
@@ -101,6 +105,7 @@ impl<'a, 'k> HistoryWriter<'a, 'k> {
         self.recorder.take(marched);
         self.snapshot(marched)?;
         self.cycle.0.take(marched);
+        self.deflections.take(marched);
         if marched.step == self.cycle.0.ready() {
             self.flush(marched)?;
             return self.begin_cycle();
@@ -140,6 +145,7 @@ impl<'a, 'k> HistoryWriter<'a, 'k> {
         checkpoint.put_march(marched);
         self.recorder.put(&mut checkpoint);
         self.cycle.0.put(&mut checkpoint);
+        self.deflections.put(&mut checkpoint);
         checkpoint
     }
 }

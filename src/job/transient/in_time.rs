@@ -3,7 +3,7 @@
 use crate::equilibrium::SteadySliding;
 use crate::modal::RealModes;
 use crate::results::{ComplexResult, Geometry};
-use crate::structure::DofMap;
+use crate::structure::{DofMap, Model};
 use crate::system::System;
 
 /// A run in time of `system`, whose modal damping is in it, from its steady state.
@@ -18,6 +18,8 @@ pub struct InTime<'a> {
     pub real: &'a RealModes,
     /// The way to the motion of every node.
     pub dofs: &'a DofMap,
+    /// The parts that move.
+    pub model: &'a Model,
     /// The mesh that moves.
     pub geometry: &'a Geometry,
 }

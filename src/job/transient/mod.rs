@@ -3,14 +3,17 @@
 //! [`places`] says what acts and where motion is recorded, `along` finds the complex mode to start along, `recorder`
 //! makes a row of every step, `snapshots` take the motion of all nodes now and then, `harmonic_fields` its Fourier series over the last periods, `history_writer` hands the rows on a piece at
 //! a time, so that memory does not grow with the run, and `findings`, `diagnostics` and `modal` read them back in parts: spectra and growth, data of the pictures, sound.
+//! `limits` and `deflection` say what the record cannot bear.
 
 mod along;
 mod channels;
+mod deflection;
 mod diagnostics;
 mod findings;
 mod harmonic_fields;
 mod history_writer;
 mod in_time;
+mod limits;
 mod modal;
 mod names;
 mod places;
@@ -36,6 +39,7 @@ use crate::sound::SoundAccumulator;
 use crate::system::System;
 use crate::transient::{Marched, Plan, Scheme, State, StepMethod, TimeProfile, TransientModel, resume};
 use along::Along;
+use deflection::Deflections;
 use harmonic_fields::HarmonicFields;
 use history_writer::HistoryWriter;
 use modal::ModalMotion;
@@ -83,6 +87,7 @@ impl InTime<'_> {
         let model = TransientModel::new(system, steady)?
             .driven(profiles, pushes)
             .loaded(loadings)
+            .holding(self.loads(wanted))
             .travelling(tracks.iter().map(Option::as_ref).collect());
         let begin = if at_rest { State::at_rest } else { State::steady };
         let mut start = begin(&model, steady);
@@ -106,17 +111,28 @@ impl InTime<'_> {
             acoustics.map(|acoustics| SoundAccumulator::new(acoustics, modes, (plan.step, steps)));
         let mass = reduced.is_none().then_some(&*self.system.structure.mass);
         let modal = accumulator.as_ref().map(|_| ModalMotion::new(self.real, mass));
+        let along = disturbed.as_ref().map(|along| along.eigenvalue);
         let mut recorder = Recorder::new(system, steady, &model, (probes, gauges), disturbed, modal);
         if let Some(motion) = recorder.shown.first_mut().filter(|shown| shown.measured.is_empty()) {
             motion.measured = self.complex.measured_squeal_hz.iter().map(|(hz, _)| *hz).collect();
         }
         let cycle = (HarmonicFields::new(nodes, plan.step, steps), top);
         let snapshots = wanted.fields_every.map(|_| nodes);
-        let mut history_writer = HistoryWriter::new(recorder, snapshots, cycle, sink);
+        let deflections = Deflections::new(self.model, nodes, steps);
+        let mut history_writer = HistoryWriter::new(recorder, snapshots, (cycle, deflections), sink);
         let mut marched = history_writer.begin(start, &model, &plan)?;
         march_on(&mut history_writer, (&model, &plan), &mut marched, observer)?;
         let share = |count: usize| count as f64 / (steps + 1) as f64;
-        let found = history_writer.findings(steps + 1, plan.step, top)?;
+        let mut found = history_writer.findings(steps + 1, &plan, top)?;
+        if let Some(growth) = found.growth.as_mut().filter(|_| model.holds_load()) {
+            growth.found = None;
+            growth.refused =
+                Some("the load is kept in motion, and the complex eigenvalues keep the approach".to_string());
+        }
+        if !self.names_peaks(along, plan.step) {
+            found.spectra.iter_mut().for_each(|of| of.peaks.clear());
+            found.fundamental_hz = None;
+        }
         let diagnostics = history_writer.diagnostics(steps + 1, plan.step, &found, top)?;
         let mut sound = accumulator
             .map(|accumulator| history_writer.recorded_sound(accumulator, steps + 1))
@@ -128,7 +144,9 @@ impl InTime<'_> {
         let own = (self.steady, self.complex);
         let check = |reduced| reduced_check(reduced, own, beside.as_ref(), &first, observer);
         let reduced_check = reduced.as_ref().map(check).transpose()?;
-        let HistoryWriter { recorder, cycle, .. } = history_writer;
+        let HistoryWriter { recorder, cycle, deflections, .. } = history_writer;
+        let mut warnings = self.motion_warnings(wanted, along, &recorder.described);
+        warnings.extend(deflections.warnings());
         Ok(TransientResult {
             time_step: plan.step,
             rows: steps + 1,
@@ -150,6 +168,7 @@ impl InTime<'_> {
             parts: marched.control.parts,
             diagnostics,
             sound,
+            warnings,
         })
     }
 

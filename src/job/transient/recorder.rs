@@ -13,13 +13,13 @@ use crate::transient::{Checkpoint, Event, EventKind, Marched, State, TransientMo
 
 /// Makes a row of every step: a value for each channel. Holds the rows that are not yet written.
 pub(super) struct Recorder<'a> {
-    model: &'a TransientModel<'a>,
+    pub(super) model: &'a TransientModel<'a>,
     /// The name of the pair of every contact point.
     pub(super) named: Vec<String>,
     /// The points of each pair.
-    pairs: Vec<std::ops::Range<usize>>,
+    pub(super) pairs: Vec<std::ops::Range<usize>>,
     /// The point that carries most at the start.
-    point: usize,
+    pub(super) point: usize,
     /// Whether motion is recorded anywhere.
     probed: bool,
     /// How a row is made of a step.

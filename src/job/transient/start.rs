@@ -2,17 +2,15 @@
 
 use super::in_time::InTime;
 use super::places::TransientPlaces;
-use crate::case::{StartChoice, TransientAnalysis};
+use crate::case::{HoldChoice, StartChoice, TransientAnalysis};
 use crate::equilibrium::{SteadyOptions, SteadySliding, solve_steady};
 use crate::error::Result;
 use crate::job::time_function::profile;
 use crate::system::{Closing, System};
-use crate::transient::Loading;
+use crate::transient::{Loading, NO_LOAD};
 
 /// Equilibria between the least and the greatest load; the approach is linear between two of them.
 const EQUILIBRIA: usize = 33;
-/// The part of a load that counts as none: a pair that nothing presses has no equilibrium.
-const NO_LOAD: f64 = 1e-6;
 
 /// How a run begins.
 pub(super) struct InitialState {
@@ -62,10 +60,22 @@ impl InTime<'_> {
                 press(&mut system.pairs[k].closing, factors[0] + share * (factors[1] - factors[0]));
                 Ok(solve_steady(&system, &SteadyOptions::default(), &())?.approach[k])
             };
-            let approaches = (0..EQUILIBRIA).map(approach).collect::<Result<Vec<f64>>>()?;
+            let approaches = match wanted.hold {
+                HoldChoice::Approach => (0..EQUILIBRIA).map(approach).collect::<Result<Vec<f64>>>()?,
+                HoldChoice::Load => vec![self.steady.approach[k]],
+            };
             Ok(Some(Loading { profile: profile(Some(course)), approaches, factors }))
         };
         pairs.map(loading).collect()
+    }
+
+    /// The load \[N\] that each pair keeps in motion, where it keeps one.
+    pub(super) fn loads(&self, wanted: &TransientAnalysis) -> Vec<Option<f64>> {
+        let load = |closing: Closing| match (wanted.hold, closing) {
+            (HoldChoice::Load, Closing::Load(load)) => Some(load),
+            _ => None,
+        };
+        self.system.pairs.iter().map(|pair| load(pair.closing)).collect()
     }
 }
 

@@ -1,5 +1,6 @@
 //! What a run in time found: growth, how large the motion is at its end, how loud it is.
 
+use super::table::by_integrator;
 use crate::linalg::c64;
 use crate::report::finding::{Finding, FindingClass};
 use crate::report::format::{fixed, hertz, power, prefixed, rate, signed, significant};
@@ -12,21 +13,25 @@ pub(super) fn motion(run: &TransientResult) -> Finding {
     let mut class = FindingClass::Neutral;
     let mut parts: Vec<String> = Vec::new();
     if let Some((growth, found)) = run.growth.as_ref().and_then(|growth| Some((growth, growth.found?))) {
+        let sigma = rate(c64::new(found.rate, TAU * found.frequency_hz));
         let does = match change(&found) {
-            0 => "neither grows nor decays measurably,",
+            0 => "neither grows nor decays measurably".to_string(),
             1.. => {
                 class = FindingClass::Bad;
-                "grows with"
+                format!("grows with σ = {sigma} 1/s")
             }
-            _ => "decays with",
+            _ => format!("decays with σ = {sigma} 1/s"),
         };
         parts.push(format!(
-            "a small disturbance {does} σ = {} 1/s at {} Hz (the complex mode: {} 1/s at {} Hz)",
-            rate(c64::new(found.rate, TAU * found.frequency_hz)),
+            "a small disturbance {does} at {} Hz (the complex mode: {} 1/s at {} Hz)",
             hertz(found.frequency_hz, 1),
             rate(growth.eigenvalue),
             hertz(growth.eigenvalue.im / TAU, 1)
         ));
+        parts.extend(by_integrator(growth).map(|words| format!("{words} of it")));
+    } else if let Some(why) = run.growth.as_ref().and_then(|growth| growth.refused.as_ref()) {
+        class = FindingClass::Attention;
+        parts.push(format!("growth of the disturbance is not stated, as {why}"));
     }
     if run.diagnostics.cycles.is_empty() && run.growth.is_none() {
         parts.push(format!("{} steps of {} s", run.len().saturating_sub(1), power(run.time_step)));
@@ -145,7 +150,8 @@ mod tests {
         let window = [0.001, 0.021];
         let found = Growth { rate: 200.0, frequency_hz: 1668.0, window, deviation: 0.1 };
         let eigenvalue = c64::new(201.0, 1e4);
-        run.growth = Some(GrowthCompared { mode: 0, eigenvalue, found: Some(found) });
+        run.growth =
+            Some(GrowthCompared { mode: 0, eigenvalue, found: Some(found), refused: None, integrator: 0.0 });
         let finding = motion(&run);
         assert_eq!(finding.class, FindingClass::Bad, "{}", finding.words);
         assert!(

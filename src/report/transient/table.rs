@@ -6,6 +6,9 @@ use crate::results::{GrowthCompared, TransientResult};
 use crate::signal::LimitCycle;
 use std::f64::consts::TAU;
 
+/// The part of a growth rate from which what the integrator adds is named.
+const OWN: f64 = 0.2;
+
 /// A measured peak is paired with one that differs from it by less than this part.
 const NEAR: f64 = 0.05;
 
@@ -69,21 +72,33 @@ fn beyond(run: &TransientResult) -> impl Iterator<Item = String> {
     })
 }
 
+/// What the integrator adds to the growth, where that is more than [`OWN`] of it and of the growth of the mode.
+pub(super) fn by_integrator(growth: &GrowthCompared) -> Option<String> {
+    let measured = growth.found?.rate.abs();
+    let most = OWN * measured.max(growth.eigenvalue.re.abs());
+    // Below, the fit is round-off.
+    let counts = growth.integrator.abs() > most.max(1e-9 * growth.eigenvalue.norm());
+    counts.then(|| format!("the integrator adds {}/s", signed(growth.integrator, 4)))
+}
+
 /// How a small disturbance grows, beside the complex mode.
 fn disturbance(growth: &GrowthCompared) -> String {
     let (hz, sigma) = (growth.eigenvalue.im / TAU, growth.eigenvalue.re);
     match growth.found {
-        Some(found) => format!(
-            "Small disturbance: σ = {}/s at {} Hz, measured over {} s; the complex mode has {}/s at {} Hz.",
-            signed(found.rate, 2),
-            hertz(found.frequency_hz, 2),
-            significant(found.window[1] - found.window[0], 3),
-            signed(sigma, 2),
-            hertz(hz, 2)
-        ),
-        None => {
-            "The disturbance was too large, or the run too short, to measure how a small one grows.".into()
+        Some(found) => {
+            format!(
+                "Small disturbance: σ = {}/s at {} Hz, measured over {} s; the complex mode has {}/s at {} Hz.",
+                signed(found.rate, 2),
+                hertz(found.frequency_hz, 2),
+                significant(found.window[1] - found.window[0], 3),
+                signed(sigma, 2),
+                hertz(hz, 2)
+            ) + &by_integrator(growth).map_or(String::new(), |words| format!(" Of the measured σ {words}."))
         }
+        None => match &growth.refused {
+            Some(why) => format!("Growth of the disturbance is not stated, as {why}."),
+            None => "The run is too short to measure how a small disturbance grows.".into(),
+        },
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::super::*;
 use super::{full_newton_agrees, plan};
-use crate::contact::{Bristle, Coulomb, NormalLaw, SlidingLaw, Stribeck};
+use crate::contact::{Bristle, Coulomb, Exponential, NormalLaw, SlidingLaw, Stribeck};
 use crate::equilibrium::samples::{pair, point, structure, vector};
 use crate::equilibrium::{SteadyOptions, SteadySliding, solve_steady};
 use crate::linalg::SparseVector;
@@ -248,5 +248,67 @@ fn what_was_stuck_goes_on_bit_for_bit() {
             end
         };
         assert!(kept > 0 && kept < 500 && packed(&again) == packed(&whole.unwrap()), "{kept}");
+    }
+}
+
+/// The block of 0.8 kg on a spring of 210 N/m, pressed by 30 N on a belt of 0.12 m/s with μ = 0.4 + 0.15 e^{−9|v|}: it sticks for
+/// 0.382028 s of each period of 0.646358 s (quadrature of ẍ between its events). Schemes with γ = ½ hold it without alternating.
+#[test]
+fn a_scheme_without_damping_holds_what_sticks_as_one_with_it() {
+    let law = Exponential { mu0: 0.4, mu1: 0.15, alpha: 9.0 };
+    let free = structure(
+        2,
+        |i, j| if i == j { 0.8 } else { 0.0 },
+        |i, j| if (i, j) == (0, 0) { 210.0 } else { 0.0 },
+    );
+    let system = System {
+        structure: free,
+        pairs: vec![pair(
+            vec![touch(1.0)],
+            SlidingLaw::new(NormalLaw::linear(1e4), law, 0.0),
+            Closing::Approach(0.0),
+            0.12,
+        )],
+        load: vec![0.0, 30.0],
+        prestress: None,
+        coupling: None,
+    };
+    let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
+    let model = TransientModel::new(&system, &steady).unwrap();
+    for scheme in [Scheme::TRAPEZOIDAL, Scheme::hht(0.0), Scheme::generalised_alpha(1.0), Scheme::hht(-0.05)]
+    {
+        let mut start = State::steady(&model, &steady);
+        start.motion[(0, 0)] += 0.024;
+        start.settle(&model);
+        let (step, steps) = (4e-4, 12_000);
+        let (mut changes, mut stuck, mut last, mut worst) = (Vec::new(), 0usize, false, 0.0f64);
+        let mut force = 0.0;
+        march(&model, start, &plan(scheme, step, steps), &(), &mut |moment| {
+            let now = moment.state.sticks(0);
+            let friction = moment.state.contact_forces(0)[1];
+            if now != last {
+                changes.push((moment.step, now));
+            }
+            stuck += usize::from(now);
+            // While it sticks the force follows the spring, 210 N/m × 0.12 m/s × Δt a step; not in the first few steps.
+            let settled = changes.last().is_some_and(|(began, on)| *on && moment.step > began + 100);
+            if settled && last {
+                worst = worst.max((friction - force).abs());
+            }
+            (last, force) = (now, friction);
+            Ok(())
+        })
+        .unwrap();
+        let begins: Vec<usize> = changes.iter().filter(|(_, on)| *on).map(|(at, _)| *at).collect();
+        assert!((7..=8).contains(&begins.len()), "{scheme:?}: {} times", begins.len());
+        let lasted: Vec<usize> =
+            changes.windows(2).filter(|pair| pair[0].1).map(|pair| pair[1].0 - pair[0].0).collect();
+        for length in &lasted[1..] {
+            // Events are at whole steps.
+            assert!((*length as f64 * step - 0.382_028).abs() <= 2.0 * step, "{scheme:?}: {length}");
+        }
+        let period = (begins[begins.len() - 1] - begins[1]) as f64 * step / (begins.len() - 2) as f64;
+        assert!((period - 0.646_358).abs() < step, "{scheme:?}: {period}");
+        assert!(worst < 2.0 * 210.0 * 0.12 * step, "{scheme:?}: {worst}");
     }
 }

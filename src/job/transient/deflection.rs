@@ -1,0 +1,131 @@
+//! How far plates bend in motion, beside their thickness.
+
+use super::snapshots::Snapshots;
+use crate::error::Result;
+use crate::structure::{Model, ShellPart};
+use crate::transient::{Checkpoint, Marched};
+use nalgebra::{Matrix3, Vector3};
+
+/// The motion is looked at this many times in a run, at equal distances.
+const LOOKS: usize = 256;
+/// The deflection, as a part of the thickness, up to which a plate bends linearly: beyond it stretches, and its stiffness
+/// rises (S. P. Timoshenko & S. Woinowsky-Krieger, Theory of Plates and Shells, 1959, ch. 13).
+const LINEAR: f64 = 1.0;
+
+/// The largest deflections of the plates of a run.
+pub(super) struct Deflections<'a> {
+    nodes: Snapshots<'a>,
+    every: usize,
+    plates: Vec<Plate<'a>>,
+}
+
+/// A plate: its nodes, where they are in its mean plane, and its normal.
+struct Plate<'a> {
+    part: &'a ShellPart,
+    nodes: Vec<usize>,
+    /// 1, x, y of each node, the lengths as parts of the size of the plate.
+    places: Vec<Vector3<f64>>,
+    normal: Vector3<f64>,
+    /// The inverse of Σ (1, x, y)(1, x, y)ᵀ.
+    inverse: Matrix3<f64>,
+    /// max |w| so far \[m\].
+    largest: f64,
+}
+
+impl<'a> Deflections<'a> {
+    /// Those of the plates of `model` in a run of so many steps.
+    pub(super) fn new(model: &'a Model, nodes: Snapshots<'a>, steps: usize) -> Self {
+        let plates = model.shells.iter().filter_map(|part| Plate::new(part, &model.nodes)).collect();
+        Deflections { nodes, every: steps.div_ceil(LOOKS).max(1), plates }
+    }
+
+    /// Looks at the motion, where it is time for it.
+    pub(super) fn take(&mut self, marched: &Marched) {
+        if self.plates.is_empty() || !marched.step.is_multiple_of(self.every) {
+            return;
+        }
+        let [moved, _] = self.nodes.take(&marched.state);
+        for plate in &mut self.plates {
+            let moved = plate
+                .nodes
+                .iter()
+                .map(|node| Vector3::from_column_slice(&moved[*node][..3]))
+                .collect::<Vec<_>>();
+            plate.largest = plate.largest.max(plate.deflection(&moved));
+        }
+    }
+
+    /// Adds what the warnings depend on.
+    pub(super) fn put(&self, checkpoint: &mut Checkpoint) {
+        let largest: Vec<f64> = self.plates.iter().map(|plate| plate.largest).collect();
+        checkpoint.put("deflections", &largest);
+    }
+
+    /// Goes on from what was put away.
+    pub(super) fn restore(&mut self, checkpoint: &Checkpoint) -> Result<()> {
+        let mut largest = vec![0.0; self.plates.len()];
+        checkpoint.get("deflections", &mut largest)?;
+        self.plates.iter_mut().zip(largest).for_each(|(plate, largest)| plate.largest = largest);
+        Ok(())
+    }
+
+    /// Plates that bend by more than the model can mean.
+    pub(super) fn warnings(&self) -> Vec<String> {
+        let words = |plate: &Plate| {
+            let ShellPart { name, thickness, .. } = plate.part;
+            format!(
+                "In motion the plate {name} bends by {:.3} mm, {:.1} times its thickness of {:.3} mm: plates are linear here, which they \
+                 are up to about one thickness; beyond, they stretch and stiffen. Amplitudes of this run have no meaning, \
+                 only its beginning has.",
+                1e3 * plate.largest,
+                plate.largest / thickness,
+                1e3 * thickness
+            )
+        };
+        let far = |plate: &&Plate| plate.largest > LINEAR * plate.part.thickness;
+        self.plates.iter().filter(far).map(words).collect()
+    }
+}
+
+impl<'a> Plate<'a> {
+    /// `None` of a part without a mean normal, such as a tube.
+    fn new(part: &'a ShellPart, all: &[[f64; 3]]) -> Option<Self> {
+        let mut nodes: Vec<usize> = part.faces.iter().flat_map(|face| face.nodes()).copied().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let at = |node: usize| Vector3::from(all[node]);
+        let area = |corners: &[usize]| -> Vector3<f64> {
+            (1..corners.len().saturating_sub(1))
+                .map(|k| {
+                    0.5 * (at(corners[k]) - at(corners[0])).cross(&(at(corners[k + 1]) - at(corners[0])))
+                })
+                .sum()
+        };
+        let areas: Vec<Vector3<f64>> = part.faces.iter().map(|face| area(face.nodes())).collect();
+        let whole: Vector3<f64> = areas.iter().sum();
+        if whole.norm() < 0.5 * areas.iter().map(|a| a.norm()).sum::<f64>() || whole.norm() == 0.0 {
+            return None;
+        }
+        let normal = whole.normalize();
+        let across = normal.cross(&Vector3::ith(normal.iamin(), 1.0)).normalize();
+        let other = normal.cross(&across);
+        let size = whole.norm().sqrt();
+        let middle: Vector3<f64> =
+            nodes.iter().map(|node| at(*node)).sum::<Vector3<f64>>() / nodes.len() as f64;
+        let place = |node: &usize| {
+            let from = (at(*node) - middle) / size;
+            Vector3::new(1.0, from.dot(&across), from.dot(&other))
+        };
+        let places: Vec<Vector3<f64>> = nodes.iter().map(place).collect();
+        let inverse = places.iter().map(|p| p * p.transpose()).sum::<Matrix3<f64>>().try_inverse()?;
+        Some(Plate { part, nodes, places, normal, inverse, largest: 0.0 })
+    }
+
+    /// max |w| \[m\] of the motion along the normal without what moves the plate as a whole, w = a + b x + c y by least squares.
+    fn deflection(&self, moved: &[Vector3<f64>]) -> f64 {
+        let along: Vec<f64> = moved.iter().map(|u| u.dot(&self.normal)).collect();
+        let whole = self.inverse * self.places.iter().zip(&along).map(|(p, w)| p * *w).sum::<Vector3<f64>>();
+        let bent = self.places.iter().zip(&along).map(|(p, w)| (w - whole.dot(p)).abs());
+        bent.fold(0.0, f64::max)
+    }
+}
