@@ -171,8 +171,8 @@ impl Reaction {
         to: Moment<'_>,
         since: Option<Since<'_>>,
     ) {
-        let before = since.map_or(&to.interface.approaches[..], |since| since.approaches);
-        for pair in 0..model.velocities.len() {
+        let all_before = since.map_or(&to.interface.approaches[..], |since| since.approaches);
+        for (pair, before) in all_before.iter().copied().enumerate() {
             let Some(load) = model.held_load(pair, to.time) else {
                 self.approaches[pair] = to.interface.approaches[pair];
                 continue;
@@ -182,7 +182,7 @@ impl Reaction {
             let normal = |p: usize, approach: f64| {
                 let motion = ContactMotion {
                     penetration: approach - to.interface.gaps[p] + q[3 * p],
-                    penetration_rate: rate[3 * p] + per_step * (approach - before[pair]),
+                    penetration_rate: rate[3 * p] + per_step * (approach - before),
                     slip_velocity: [to.speeds[pair], 0.0],
                 };
                 let (forces, tangent) = model.points[p].law.respond(&motion, model.points[p].weight);
@@ -198,7 +198,7 @@ impl Reaction {
             // Where the first point touches, the others being farther off.
             let touching =
                 points.iter().map(|p| to.interface.gaps[*p] - q[3 * p]).fold(f64::INFINITY, f64::min);
-            let approach = rising_root(&sum, before[pair], touching);
+            let approach = rising_root(&sum, before, touching);
             self.approaches[pair] = approach;
             let [_, slope] = sum(approach);
             self.follows[pair].clear();
