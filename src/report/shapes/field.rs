@@ -5,7 +5,7 @@ use crate::results::CycleFields;
 use base64::prelude::{BASE64_STANDARD, Engine};
 use std::f64::consts::TAU;
 
-/// Phases of a period at which the largest displacement of a series is looked for.
+/// Phases of a period about the best of which the largest displacement of a series is sought.
 const PHASES: usize = 64;
 /// A harmonic whose amplitude is below this part of the largest displacement is not shown.
 const LEAST: f64 = 1e-3;
@@ -54,13 +54,15 @@ impl MotionInTime {
             nodes.iter().flat_map(|k| field[*k].map(|c| c * turn)).collect()
         };
         let mut fields: Vec<Vec<c64>> = (1..).zip(&cycle.harmonics).map(turned).collect();
-        let at = |phase: usize| -> f64 {
-            let wave = |h: usize| c64::from_polar(1.0, TAU * (h * phase) as f64 / PHASES as f64);
+        let at = |phase: f64| -> f64 {
+            let wave = |h: usize| c64::from_polar(1.0, TAU * h as f64 * phase / PHASES as f64);
             let u = |k: usize| (1..).zip(&fields).map(|(h, field)| (field[k] * wave(h)).re).sum::<f64>();
             let squares = |node: usize| (0..3).map(|c| u(3 * node + c).powi(2)).sum::<f64>();
             (0..nodes.len()).map(squares).fold(0.0, f64::max).sqrt()
         };
-        let largest = (0..PHASES).map(at).fold(0.0, f64::max);
+        let sampled = (0..PHASES).map(|phase| phase as f64);
+        let best = sampled.max_by(|a, b| at(*a).total_cmp(&at(*b))).unwrap_or(0.0);
+        let largest = largest_near(&at, best);
         if !(largest > 0.0 && largest.is_finite()) {
             return None;
         }
@@ -72,6 +74,20 @@ impl MotionInTime {
         };
         Some(MotionInTime { harmonics: fields.into_iter().map(scaled).collect(), largest, begin })
     }
+}
+
+/// The largest value within one of `best`, where there is one maximum: each step leaves out a third.
+fn largest_near(value: &impl Fn(f64) -> f64, best: f64) -> f64 {
+    let (mut low, mut high) = (best - 1.0, best + 1.0);
+    for _ in 0..40 {
+        let third = (high - low) / 3.0;
+        if value(low + third) < value(high - third) {
+            low += third;
+        } else {
+            high -= third;
+        }
+    }
+    value(0.5 * (low + high)).max(value(best))
 }
 
 /// The larger half-axis of the ellipse Re(u e^{iωt}): with a = Re u and b = Im u the root of

@@ -117,7 +117,7 @@ fn complex_mode(complex: &ComplexResult, k: usize, surface: &Surface) -> Option<
 /// The last period of a run in time.
 fn motion_in_time(cycle: &CycleFields, surface: &Surface) -> Option<Value> {
     let motion = MotionInTime::new(cycle, &surface.nodes)?;
-    let largest = prefixed(motion.largest, "m", 3);
+    let largest = prefixed(motion.largest, "m", 4);
     Some(json!({
         "set": "motion in time",
         "name": format!("last period, {} Hz: largest displacement {largest}", hertz(cycle.frequency_hz, 1)),
