@@ -1,15 +1,17 @@
 //! The projected quadratic eigenproblem: small and dense.
 
+use super::ROUNDING;
 use super::basis::Basis;
 use super::operator::Operator;
 use crate::error::{Error, Result};
 use crate::linalg::c64;
-use crate::linalg::dense::product;
+use crate::linalg::dense::{cholesky, product, symmetric_eigen};
 use crate::linalg::lu::Lu;
 use crate::linalg::orthogonal::{ThinSvd, thin_svd};
 use crate::linalg::random::Random;
 use crate::linalg::unsymmetric::{complex_eigenpairs, eigenpairs};
-use faer::{Conj, Mat};
+use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
+use faer::{Conj, Mat, Par};
 
 /// An eigenpair of the projected problem with its left vector, in coordinates of the basis.
 #[derive(Debug, Clone)]
@@ -56,6 +58,12 @@ pub(super) fn solve(
     // A band below all real modes, and nothing that damps or touches.
     if m == 0 {
         return Ok(Vec::new());
+    }
+    if hysteretic.is_none()
+        && damping.norm_max() == 0.0
+        && let Some(pairs) = symmetric_pairs(mass, stiffness, s, &wanted)
+    {
+        return Ok(pairs);
     }
     let failed = |what: &str| {
         Error::analysis(
@@ -113,6 +121,50 @@ pub(super) fn solve(
     let mut pairs = Vectors { lambda, right, left };
     quadratic.separate(&mut pairs);
     Ok(polished(&quadratic, &companion, pairs))
+}
+
+/// The wanted pairs of (λ² M + K) y = 0 with a symmetric K, each with itself as left vector: μ = 1/(s² − λ²) of the symmetric problem
+/// M y = μ (K + s²M) y, so that equal eigenvalues, λ = 0 of several rigid bodies among them, have orthogonal vectors. `None` where K is
+/// not symmetric but for rounding, or K + s²M not positive definite.
+fn symmetric_pairs(
+    mass: &Mat<f64>,
+    stiffness: &Mat<f64>,
+    s: f64,
+    wanted: &impl Fn(c64) -> bool,
+) -> Option<Vec<SmallPair>> {
+    let m = mass.nrows();
+    let noise = ROUNDING * stiffness.norm_max();
+    let skew = |i: usize, j: usize| (stiffness[(i, j)] - stiffness[(j, i)]).abs();
+    if (0..m).any(|j| (0..j).any(|i| skew(i, j) > noise)) {
+        return None;
+    }
+    let half = |a: &Mat<f64>, i: usize, j: usize| 0.5 * (a[(i, j)] + a[(j, i)]);
+    let symmetric = Mat::from_fn(m, m, |i, j| half(stiffness, i, j));
+    let factor =
+        cholesky(Mat::from_fn(m, m, |i, j| symmetric[(i, j)] + s * s * half(mass, i, j)).as_ref()).ok()?;
+    let mut inner = mass.clone();
+    solve_lower_triangular_in_place(factor.as_ref(), inner.as_mut(), Par::Seq);
+    let mut inner = inner.transpose().to_owned();
+    solve_lower_triangular_in_place(factor.as_ref(), inner.as_mut(), Par::Seq);
+    let (mu, mut vectors) = symmetric_eigen(inner.as_ref()).ok()?;
+    solve_upper_triangular_in_place(factor.transpose(), vectors.as_mut(), Par::Seq);
+    let [inertia, force] = [mass, &symmetric].map(|a| product(a.as_ref(), vectors.as_ref()));
+    let mut pairs = Vec::new();
+    // μ = 0 is what has no mass.
+    for k in (0..m).filter(|k| mu[*k] > ROUNDING * mu[m - 1]) {
+        let form = |a: &Mat<f64>| -> f64 { (0..m).map(|i| vectors[(i, k)] * a[(i, k)]).sum() };
+        let (mass, length) = (form(&inertia), vectors.col(k).norm_l2());
+        let square = -form(&force) / mass;
+        let root = square.abs().sqrt();
+        let lambda = if square < 0.0 { c64::new(0.0, root) } else { c64::new(root, 0.0) };
+        let y: Vec<c64> = (0..m).map(|i| c64::new(vectors[(i, k)] / length, 0.0)).collect();
+        for lambda in [lambda, -lambda].into_iter().filter(|z| wanted(*z)) {
+            let steepness = 2.0 * lambda * mass / (length * length);
+            pairs.push(SmallPair { lambda, right: y.clone(), left: y.clone(), steepness });
+        }
+    }
+    pairs.sort_by(|a, b| a.lambda.im.total_cmp(&b.lambda.im).then(a.lambda.re.total_cmp(&b.lambda.re)));
+    Some(pairs)
 }
 
 /// Two θ are the same within this part of them.
