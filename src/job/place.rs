@@ -2,9 +2,9 @@
 
 use super::regions::Regions;
 use crate::case::{Case, Contact, Placement};
+use crate::connected::lowest_connected;
 use crate::contact::{self, OffCounter};
 use crate::error::{Error, Fault, Result};
-use crate::mesh::lowest_connected;
 
 /// Turns and moves everything connected to the contact's body as [`contact::place`] does.
 ///

@@ -60,7 +60,7 @@ impl Disc {
 
     /// Nodal diameters and circles of the bending in a shape, given by the displacement \[m\] and rotation \[rad\] of each node;
     /// `None` when the disc moves more in its plane than across it, when all nodes stand on nodal lines, when the shape has
-    /// shorter waves than the nodes tell, or when [`DiscPoints::name`] has none.
+    /// shorter waves than the nodes resolve, or when [`DiscPoints::name`] has none.
     pub fn name(&self, motion: impl Fn(usize) -> [f64; 6]) -> Option<DiscModeName> {
         let motions: Vec<[f64; 6]> = self.nodes.iter().map(|node| motion(*node)).collect();
         let moved: Vec<Vector3<f64>> = motions.iter().map(|[x, y, z, ..]| Vector3::new(*x, *y, *z)).collect();
@@ -75,7 +75,7 @@ impl Disc {
         let transverse: Vec<f64> = moved.iter().map(|u| u.dot(&self.normal)).collect();
         let across: f64 = transverse.iter().map(|w| w * w).sum();
         let whole: f64 = moved.iter().map(Vector3::norm_squared).sum();
-        // The nodes turn about the radius by (1/r) ∂w/∂θ and across it by ∂w/∂r, also where they are too few to tell a short wave
+        // The nodes turn about the radius by (1/r) ∂w/∂θ and across it by ∂w/∂r, also where they are too few to resolve a short wave
         // from a long one by w alone.
         let mut waves = [0.0; 2];
         for (motion, (r, angle)) in motions.iter().zip(&self.polar) {
@@ -87,8 +87,8 @@ impl Disc {
         }
         let shortest = self.points.highest_wave_numbers();
         let short = waves.iter().zip(shortest).any(|(wave, most)| *wave > most * most * across);
-        let told = across > 0.5 * whole && !short;
-        if told { self.points.name(&transverse) } else { None }
+        let resolved = across > 0.5 * whole && !short;
+        if resolved { self.points.name(&transverse) } else { None }
     }
 }
 

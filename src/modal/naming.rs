@@ -31,7 +31,7 @@ const CLOSEST: f64 = 0.025;
 const MOST_POINTS: usize = 4000;
 /// Cells, along the radius and around, within which the points share the cell's area.
 const CELLS: [usize; 2] = [12, 24];
-/// Part of the mean weight that holds values of which the points tell nothing at zero.
+/// Part of the mean weight that holds values that no point determines at zero.
 const RIDGE: f64 = 1e-6;
 /// A mode is named when one n has this share of the energy.
 const DOMINANT: f64 = 0.7;
@@ -251,8 +251,8 @@ impl Order {
     }
 }
 
-/// How often the values at the knots, which may be `widest` of a mean lobe apart, change sign along the radius; `None` where they do
-/// not tell.
+/// How often the values at the knots, which may be `widest` of a mean lobe apart, change sign along the radius; `None` where that
+/// is not certain.
 fn circles((knots, widest): (&[f64], f64), values: &[f64], deviations: &[f64]) -> Option<usize> {
     let largest = values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
     let last = values.len() - 1;
@@ -276,9 +276,9 @@ fn circles((knots, widest): (&[f64], f64), values: &[f64], deviations: &[f64]) -
     let doubtful = [0, 1].into_iter().any(|k| small[k] && !zero[k]);
     let lobe = (knots[last] - knots[0]) / (turns.len() + 1) as f64;
     let apart = knots.windows(2).map(|ends| ends[1] - ends[0]).fold(0.0, f64::max);
-    let told =
+    let certain =
         !(sure.is_empty() || hidden || narrow || doubtful) && (turns.is_empty() || apart < widest * lobe);
-    told.then_some(turns.len())
+    certain.then_some(turns.len())
 }
 
 /// The area that each of the `chosen` points stands for: that of its cell, shared by the points in it.
@@ -484,17 +484,17 @@ mod tests {
                 }
                 let expected = DiscModeName { nodal_diameters: n, nodal_circles: s };
                 let found = disc.name(&w);
-                let told = format!(
+                let label = format!(
                     "round {round}: {rings} × {around}, moved {moved}, scattered {scattered} {count}, inner {inner}, edges {edges:?}: {expected:?}"
                 );
-                assert!(found.is_none_or(|found| found == expected), "{told} has the name {found:?}");
+                assert!(found.is_none_or(|found| found == expected), "{label} has the name {found:?}");
                 let fine = match scattered {
                     true => count > 60 * (s + 1) * (n + 2),
                     false => rings > 4 * s + 3 && around > (if moved > 0.1 { 6 } else { 4 }) * (n + 1),
                 };
                 resolved += usize::from(fine);
                 named += usize::from(found.is_some());
-                assert!(found.is_some() || !fine, "{told} has no name");
+                assert!(found.is_some() || !fine, "{label} has no name");
             }
         }
         assert!(named > 1500 && resolved > 800, "{named} named, {resolved} resolved");

@@ -76,7 +76,7 @@ fn nothing_grows_in_bodies_that_nothing_holds() {
             // Rounding of K: √ε of its scale.
             assert!(mode.uncertainty < 1e-6 * TAU * top, "{seed}: {mode:?}");
             let hz = if k < 2 * parts { 0.0 } else { real.frequency_hz(k - parts) };
-            // Equal parts are told apart by a change of the projected problem, of which one Newton step leaves less than this.
+            // Equal parts are separated by a change of the projected problem, of which one Newton step leaves less than this.
             assert!((mode.frequency_hz() - hz).abs() < 1e-9 * top, "{seed}: {mode:?}");
         }
     }

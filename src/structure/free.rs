@@ -1,6 +1,7 @@
 //! Parts that nothing holds, or not in every motion.
 
 use super::{Assembled, Model};
+use crate::connected::lowest_connected;
 use crate::error::Result;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::sparse::{diagonal, times};
@@ -105,15 +106,11 @@ pub fn is_free_along(model: &Model, assembled: &Assembled, nodes: &[usize], dire
 /// For every node, the lowest of those that M or K connect it to.
 fn pieces(assembled: &Assembled) -> Vec<usize> {
     let (dofs, free) = (&assembled.dofs, assembled.dofs.free_dofs());
-    let mut piece: Vec<usize> = (0..dofs.n_nodes()).collect();
-    for matrix in [&assembled.structure.stiffness, &assembled.structure.mass] {
-        for j in 0..matrix.ncols() {
-            for i in matrix.row_idx_of_col(j) {
-                join(&mut piece, free[i].node, free[j].node);
-            }
-        }
-    }
-    (0..piece.len()).map(|node| root(&mut piece, node)).collect()
+    let matrices = [&assembled.structure.stiffness, &assembled.structure.mass];
+    let entries = matrices
+        .into_iter()
+        .flat_map(|matrix| (0..matrix.ncols()).flat_map(|j| matrix.row_idx_of_col(j).map(move |i| [i, j])));
+    lowest_connected(dofs.n_nodes(), entries.map(|entry| entry.map(|dof| free[dof].node)))
 }
 
 /// How many of the motions that the columns of `x` span have xᵀKx / xᵀx of at most `bound`, with `forces` = K x.
@@ -144,21 +141,6 @@ fn names(model: &Model, assembled: &Assembled, of_node: &[usize], number: usize)
         .map(|part| (&part.name, part.faces.iter().flat_map(|f| f.nodes()).any(|n| inside(*n))));
     let bars = model.bars.iter().map(|part| (&part.name, part.elements.iter().flatten().any(|n| inside(*n))));
     shells.chain(bars).filter(|(_, inside)| *inside).map(|(name, _)| name.clone()).collect()
-}
-
-/// The root of a node in a forest, with the path to it shortened.
-fn root(parent: &mut [usize], mut node: usize) -> usize {
-    while parent[node] != node {
-        parent[node] = parent[parent[node]];
-        node = parent[node];
-    }
-    node
-}
-
-fn join(parent: &mut [usize], a: usize, b: usize) {
-    let (a, b) = (root(parent, a), root(parent, b));
-    // The lower number leads, whatever the order of the entries.
-    parent[a.max(b)] = a.min(b);
 }
 
 #[cfg(test)]

@@ -194,7 +194,7 @@ fn locate(
     let wide = (found.above.0 - found.below.0).abs() > width;
     let mut uncertainty = 0.5 * (found.above.0 - found.below.0).abs();
     let mut value = 0.5 * (found.below.0 + found.above.0);
-    // The growing end tells what grows: the mode may not be there at the other one.
+    // What grows is known from the growing end: the mode may not be there at the other one.
     let grown = known.iter().find(|end| end.value == found.above.0).unwrap_or(above).lambda;
     let at = known.iter().min_by(|a, b| (a.value - value).abs().total_cmp(&(b.value - value).abs()));
     let lambda = if diverges(grown) { grown } else { at.map_or(grown, |end| end.lambda) };

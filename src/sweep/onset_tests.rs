@@ -117,7 +117,7 @@ fn a_search_with_a_limit_gives_what_it_has() {
     }
 }
 
-/// Two modes whose shapes turn in their plane: one step cannot tell which is which, and none is left to halve it by.
+/// Two modes whose shapes turn in their plane: one step cannot show which is which, and none is left to halve it by.
 struct Turning(usize);
 
 impl SweepProblem for Turning {

@@ -9,6 +9,7 @@
 use super::Coupling;
 use super::halves::{Entry, Halves, mirrored};
 use super::low_rank::grouped;
+use crate::connected::lowest_connected;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::orthogonal::{pivoted_qr, thin_svd};
 use crate::linalg::sparse::{add_scaled, diagonal, entry};
@@ -118,25 +119,15 @@ fn held(a: &Mat<f64>) -> Option<Mat<f64>> {
 
 /// The rows and columns that the entries connect, group by group.
 fn groups(a: &SparseMatrix) -> Vec<Vec<usize>> {
-    let mut parent: Vec<usize> = (0..a.nrows()).collect();
-    fn root(parent: &mut [usize], mut i: usize) -> usize {
-        while parent[i] != i {
-            parent[i] = parent[parent[i]];
-            i = parent[i];
-        }
-        i
-    }
+    let stored = |j: usize| a.row_idx_of_col(j).zip(a.val_of_col(j)).map(move |(i, v)| ([i, j], *v));
+    let entries: Vec<[usize; 2]> =
+        (0..a.ncols()).flat_map(stored).filter(|(_, v)| *v != 0.0).map(|(place, _)| place).collect();
     let mut touched = vec![false; a.nrows()];
-    for j in 0..a.ncols() {
-        for (i, _) in a.row_idx_of_col(j).zip(a.val_of_col(j)).filter(|(_, v)| **v != 0.0) {
-            let (x, y) = (root(&mut parent, i), root(&mut parent, j));
-            parent[x.max(y)] = x.min(y);
-            (touched[i], touched[j]) = (true, true);
-        }
-    }
+    entries.as_flattened().iter().for_each(|i| touched[*i] = true);
+    let lowest = lowest_connected(a.nrows(), &entries);
     let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for i in (0..a.nrows()).filter(|i| touched[*i]) {
-        groups.entry(root(&mut parent, i)).or_default().push(i);
+        groups.entry(lowest[i]).or_default().push(i);
     }
     groups.into_values().collect()
 }

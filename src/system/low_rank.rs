@@ -12,6 +12,7 @@
 
 use super::halves::{Entry, mirrored};
 use super::{Coupling, Skew};
+use crate::connected::lowest_connected;
 use crate::error::{Error, Result};
 use crate::linalg::dense::product;
 use crate::linalg::orthogonal::{PivotedQr, pivoted_qr};
@@ -109,25 +110,14 @@ impl Skew {
 /// The rows that the skew parts connect, group by group, in the order of their first row; none where a group has more than
 /// `most` rows.
 fn groups(n: usize, stiffness: &[Entry], damping: &[Entry], most: usize) -> Option<Vec<Group>> {
-    let mut parent: Vec<usize> = (0..n).collect();
-    fn root(parent: &mut [usize], mut i: usize) -> usize {
-        while parent[i] != i {
-            parent[i] = parent[parent[i]];
-            i = parent[i];
-        }
-        i
-    }
-    for (i, j, _) in stiffness.iter().chain(damping) {
-        let (a, b) = (root(&mut parent, *i), root(&mut parent, *j));
-        parent[a.max(b)] = a.min(b);
-    }
+    let lowest = lowest_connected(n, stiffness.iter().chain(damping).map(|(i, j, _)| [*i, *j]));
     let mut rows: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     let mut touched: Vec<usize> = stiffness.iter().chain(damping).flat_map(|(i, j, _)| [*i, *j]).collect();
     touched.sort_unstable();
     touched.dedup();
     let mut place = vec![(0, 0); n];
     for i in touched {
-        let first = root(&mut parent, i);
+        let first = lowest[i];
         let list = rows.entry(first).or_default();
         place[i] = (first, list.len());
         list.push(i);

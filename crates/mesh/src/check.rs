@@ -2,12 +2,12 @@
 //!
 //! Faults make an analysis wrong or impossible; warnings say that a result may be poor.
 
-use super::connected::lowest_connected;
 use super::hanging::{Hanging, hanging};
 use super::orient::neighbours;
 use super::quality::{dot, face_shape, minus, norm};
 use super::{Element, Mesh, Region};
 use std::collections::BTreeMap;
+use stridor_base::connected::lowest_connected;
 use stridor_base::error::{Fault, Faults};
 use stridor_base::numbers::significant;
 

@@ -20,7 +20,6 @@
 //! ```
 
 pub mod check;
-mod connected;
 pub mod generate;
 pub mod gmsh;
 mod hanging;
@@ -30,7 +29,6 @@ pub mod quality;
 mod write;
 
 pub use check::{Diagnosis, diagnose};
-pub use connected::lowest_connected;
 pub use gmsh::read;
 pub use info::Info;
 pub use write::{to_msh, write};

@@ -11,7 +11,7 @@ use std::sync::Arc;
 const ROUGH: f64 = 1e-3;
 /// A change of an entry a_ij by less than this part of √(a_ii a_jj) is rounding, not another mesh, such as that of the mass of a
 /// Mindlin element by Young's modulus: it goes through the inverse of the stiffness. Measured: 3e-16 for thicknesses of 0.03 to
-/// 20 mm at edges of 20 mm; the rest is room for distorted elements.
+/// 20 mm at edges of 20 mm; the rest is a margin for distorted elements.
 const ROUNDING: f64 = 1e-11;
 
 /// A structure, and what a test would measure of it.

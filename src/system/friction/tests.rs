@@ -81,7 +81,7 @@ fn the_structure_of_contacts_with_friction_has_no_negative_eigenvalue() {
             let (values, _) = symmetric_eigen(structure.as_ref()).unwrap();
             assert!(values[0] > -1e-15 * size * 60.0, "{words}: {}", values[0]);
             let rest = found.coupling.as_ref().unwrap();
-            // One force and one motion a point; more where K alone does not tell which is which.
+            // One force and one motion a point; more where K alone does not show which is which.
             assert!(rest.directions.len() <= 4 * points, "{words}: {}", rest.directions.len());
             let [rest, _] = rest.assembled(structure.nrows()).unwrap();
             let error = (&structure + rest.to_dense() - &all).norm_max();
