@@ -3,6 +3,7 @@
 use super::band::{Band, in_band};
 use super::basis::Basis;
 use super::block::Block;
+use super::closed::{ClosedContact, share_out};
 use super::general::general_modes;
 use super::operator::Operator;
 use super::post_processing::post_processed;
@@ -54,7 +55,7 @@ pub fn complex_eigenvalues(
 /// * Basis: the real modes (of K + K_σ and M, M-orthonormal, best up to twice the band) and A⁻¹W, A = K + K_σ − s M at
 ///   a shift s inside the band, for every direction in which the contact has a force, with some more terms of their
 ///   series in ω². When there are more directions than real modes, a sketch of the responses to damping and interface
-///   represents them.
+///   represents them, and contact springs are part of K (`closed`).
 /// * Every pair is measured on the full order. Its corrections z = −A⁻¹Q(λ)φ and, for the left vector, −A⁻¹Q(λ)ᴴψ show
 ///   no contact motion where A⁻¹W is in the basis: so the same real symmetric factor serves every pair, whatever the
 ///   friction. They enrich the basis until η and the eigenvalue error are small, in six refinement steps at most; pairs that are
@@ -109,29 +110,49 @@ pub(super) fn analyse<'a, T>(
     then: impl FnOnce(&mut ComplexModes, CompletedAnalysis<'_>) -> T,
 ) -> Result<(ComplexModes, T)> {
     let (known, asked) = (known.into(), band.into());
-    let (real, band_hz) = (known.real, asked.hz);
-    check(system, steady, real, band_hz)?;
+    check(system, steady, known.real, asked.hz)?;
     let operator = Operator::new(system, steady)?;
+    let top = TAU * asked.hz[1];
+    let Some(closed) = ClosedContact::of(&operator, (system, steady), known.real, top, observer)? else {
+        return solved(&operator, known, asked, observer, then);
+    };
+    let (mut modes, rest) = {
+        let operator = Operator::new(&closed.system, &closed.steady)?;
+        solved(&operator, closed.structural(), asked, observer, then)?
+    };
+    share_out(&mut modes.modes, system, known.real);
+    Ok((modes, rest))
+}
+
+/// The modes of `operator`, and what `then` makes of them and the analysis.
+fn solved<T>(
+    operator: &Operator<'_>,
+    known: Structural<'_>,
+    asked: Band,
+    observer: &dyn Observer,
+    then: impl FnOnce(&mut ComplexModes, CompletedAnalysis<'_>) -> T,
+) -> Result<(ComplexModes, T)> {
+    let (real, band_hz) = (known.real, asked.hz);
     let band = band_hz.map(|f| TAU * f);
     observer.begin("complex eigenvalues", None);
     let own = match known.serves(band_hz) {
         true => Ok(None),
-        false => shifted_factor(&operator, real, band)
+        false => shifted_factor(operator, real, band)
             .map(|(factor, shift)| Some(ShiftedStiffness { shift, factor })),
     };
     let solved = own.and_then(|own| {
-        let solved = solve_and_refine(&operator, at(&own, known), real, asked, observer)?;
+        let solved = solve_and_refine(operator, at(&own, known), real, asked, observer)?;
         Ok((own, solved))
     });
     observer.end();
     let (own, (mut modes, basis)) = solved?;
     let shifted = at(&own, known);
     let analysis = CompletedAnalysis {
-        operator: &operator,
+        operator,
         basis: &basis,
         factor: &*shifted.factor,
         shift: shifted.shift,
-        complete_below: complete_below(system, real),
+        complete_below: complete_below(operator.n(), real),
         band_hz,
     };
     let rest = then(&mut modes, analysis);
@@ -144,8 +165,8 @@ fn at<'a>(own: &'a Option<ShiftedStiffness>, known: Structural<'a>) -> &'a Shift
 }
 
 /// Ω_b² below which no real mode is missing.
-fn complete_below(system: &System, real: &RealModes) -> f64 {
-    if real.len() == system.n_dofs() {
+fn complete_below(n: usize, real: &RealModes) -> f64 {
+    if real.len() == n {
         f64::INFINITY
     } else if real.certificate.holds() {
         (TAU * real.certificate.below_hz).powi(2)

@@ -14,6 +14,7 @@ mod basis;
 mod block;
 mod budget;
 mod certificate;
+mod closed;
 mod damper;
 #[cfg(test)]
 mod doubles;

@@ -79,16 +79,18 @@ pub(super) fn critical_values(
 ) -> Result<Vec<Critical>> {
     let mut places: Vec<(usize, usize)> = Vec::new();
     for (b, branch) in branches.iter().enumerate() {
+        let at = |(k, sample): (usize, &Sample)| {
+            let place = branch.place(k)?;
+            let all = &sample.modes.eigenvalues;
+            Some((all[place], rounding(all, place)))
+        };
+        let growth: Vec<Option<(c64, f64)>> = samples.iter().enumerate().map(at).collect();
+        let grows = growing(&growth);
         for k in 0..samples.len() - 1 {
-            let growth = |k: usize| {
-                let place = branch.place(k)?;
-                let all = &samples[k].modes.eigenvalues;
-                Some((all[place], rounding(all, place)))
-            };
-            let changes = match (growth(k), growth(k + 1)) {
+            let changes = match (growth[k], growth[k + 1]) {
                 (Some((a, of_a)), Some((b, of_b))) => {
                     let passes = |x: f64, of_x: f64, y: f64, of_y: f64| x > of_x && y < -of_y;
-                    unstable(a) != unstable(b)
+                    grows[k] != grows[k + 1]
                         || passes(a.re, of_a, b.re, of_b)
                         || passes(b.re, of_b, a.re, of_a)
                 }
@@ -121,6 +123,20 @@ pub(super) fn critical_values(
     let along = (axis.to - axis.from).signum();
     found.sort_by(|x, y| (along * x.value).total_cmp(&(along * y.value)).then(x.branch.cmp(&y.branch)));
     Ok(found)
+}
+
+/// Whether a branch grows at each sample, given λ and the rounding of σ: where it is unstable, and before and after that as long as
+/// σ is more than its rounding, though less than an undamped mode needs to be called unstable.
+fn growing(growth: &[Option<(c64, f64)>]) -> Vec<bool> {
+    let positive = |k: usize| growth[k].is_some_and(|(z, rounding)| z.re > rounding);
+    let mut grows: Vec<bool> = growth.iter().map(|at| at.is_some_and(|(z, _)| unstable(z))).collect();
+    for k in 1..grows.len() {
+        grows[k] |= grows[k - 1] && positive(k);
+    }
+    for k in (1..grows.len()).rev() {
+        grows[k - 1] |= grows[k] && positive(k - 1);
+    }
+    grows
 }
 
 /// Whether a mode does not oscillate.
