@@ -83,7 +83,7 @@ pub struct ComplexMode {
     pub left: Vec<c64>,
     /// η = ‖Q(λ)φ‖ / ((|λ|²‖M‖ + |λ|(‖C‖ + ‖C_c‖) + ‖K‖ + ‖K_c‖)‖φ‖).
     pub backward_error: f64,
-    /// Estimated |Δλ| / |λ|: that from the residuals of both vectors, and the least that rounding leaves,
+    /// Estimated |Δλ| / |λ|, within a factor of two: that from the residuals of both vectors, the first term of a series, and the least that rounding leaves,
     /// 10 ε κ + 40 ε |ψ|ᵀ|W| |k + λ c| |W|ᵀ|φ| / |λ ψᴴQ′(λ)φ| of an interface W (k + λ c) Wᵀ: a stiff contact makes large
     /// forces from the last digits of motions. Near coalescence it is at most ∛(10 ε) that rounding leaves.
     ///

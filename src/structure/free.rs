@@ -5,6 +5,7 @@ use crate::connected::lowest_connected;
 use crate::error::Result;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::sparse::{diagonal, times};
+use crate::system::Structure;
 use faer::Mat;
 
 /// A piece of the structure that can move as a rigid body without any force.
@@ -106,11 +107,22 @@ pub fn is_free_along(model: &Model, assembled: &Assembled, nodes: &[usize], dire
 /// For every node, the lowest of those that M or K connect it to.
 fn pieces(assembled: &Assembled) -> Vec<usize> {
     let (dofs, free) = (&assembled.dofs, assembled.dofs.free_dofs());
-    let matrices = [&assembled.structure.stiffness, &assembled.structure.mass];
-    let entries = matrices
-        .into_iter()
-        .flat_map(|matrix| (0..matrix.ncols()).flat_map(|j| matrix.row_idx_of_col(j).map(move |i| [i, j])));
-    lowest_connected(dofs.n_nodes(), entries.map(|entry| entry.map(|dof| free[dof].node)))
+    let Structure { stiffness, mass, .. } = &assembled.structure;
+    let same = mass.col_ptr() == stiffness.col_ptr() && mass.row_idx() == stiffness.row_idx();
+    let mut pairs: Vec<[usize; 2]> = Vec::new();
+    for matrix in std::iter::once(stiffness).chain((!same).then_some(mass)) {
+        for j in 0..matrix.ncols() {
+            let node = free[j].node;
+            for i in matrix.row_idx_of_col(j).take_while(|i| *i < j) {
+                let pair = [free[i].node, node];
+                // The freedoms of a node follow one another.
+                if pairs.last() != Some(&pair) {
+                    pairs.push(pair);
+                }
+            }
+        }
+    }
+    lowest_connected(dofs.n_nodes(), pairs)
 }
 
 /// How many of the motions that the columns of `x` span have xᵀKx / xᵀx of at most `bound`, with `forces` = K x.

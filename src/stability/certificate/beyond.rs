@@ -28,7 +28,11 @@ use faer::{Mat, MatRef};
 /// R is sought among the band's top times 1, 4, …, 4 to this power.
 const POWERS: i32 = 10;
 /// Halvings of the logarithm of the last step, as a smaller R is easier to count.
-const NARROWINGS: usize = 2;
+const NARROWINGS: usize = 1;
+/// Directions of friction up to which the mobility M⁻¹W is solved for.
+const FEW: usize = 240;
+/// Relative distance of a value from the least for which it is confirmed.
+const MARGIN: f64 = 1e-6;
 /// The part of K + τ²M that counts as rounding of the damping.
 const SMALLEST_SHIFT: f64 = 1e-9;
 /// Entries of scaled blocks below this are rounding.
@@ -94,7 +98,7 @@ impl Definiteness<'_> {
         let (mass, stiffness) = (self.operator.mass, &*self.operator.stiffness);
         let skew = self.operator.skew.map(|skew| row_sums(&skew.stiffness));
         let slowest_falling = match &falling {
-            Some(_) => least(top, |b| self.holds_against_friction(b)),
+            Some(_) => self.inertia_against_friction(top),
             None => Some(0.0),
         };
         let Some(b) = slowest_falling else { return Ok(None) };
@@ -108,30 +112,66 @@ impl Definiteness<'_> {
         }))
     }
 
-    /// Whether ½ b M + W c_s Wᵀ is positive semidefinite, M taken with the rounding of its entries ([`rounding`]). First a diagonal
-    /// below W c_s Wᵀ replaces it, as that is in the pattern whose analysis is at hand.
-    fn holds_against_friction(&self, b: f64) -> bool {
+    /// The least b, `top` or more, for which ½ b M + W c_s Wᵀ is positive semidefinite: b = −2 λ_min(G^½ c_s G^½) with G = WᵀM⁻¹W
+    /// where friction acts in few directions, which an inertia count confirms; else the least that is tried.
+    fn inertia_against_friction(&self, top: f64) -> Option<f64> {
+        let direct = self.direct_inertia_against_friction().map(|b| (b * (1.0 + MARGIN)).max(top));
+        let confirmed = direct.filter(|b| b.is_finite() && self.holds_against_friction(*b, false));
+        let holds = |b| self.holds_against_friction(b, true) || self.holds_against_friction(b, false);
+        confirmed.or_else(|| least(top, holds))
+    }
+
+    fn direct_inertia_against_friction(&self) -> Option<f64> {
+        let Operator { mass, stiffness, interface, engine, .. } = self.operator;
+        let terms = || interface.terms.iter().filter(|term| term.damping != 0.0);
+        let mut acting: Vec<usize> = terms().flat_map(|term| [term.row, term.column]).collect();
+        acting.sort_unstable();
+        acting.dedup();
+        let r = acting.len();
+        if r > FEW {
+            return None;
+        }
+        let mut small = Mat::<f64>::zeros(r, r);
+        for term in terms() {
+            let [i, j] = [term.row, term.column].map(|d| acting.binary_search(&d).expect("it acts"));
+            small[(i, j)] += 0.5 * term.damping;
+            small[(j, i)] += 0.5 * term.damping;
+        }
+        let inertia = add_scaled(&[(1.0, *mass), (1.0, &rounding(mass)), (0.0, &**stiffness)]);
+        let factor = engine.factorize(&inertia).ok()?;
+        let mut forces = Mat::<f64>::zeros(self.operator.n(), r);
+        for (j, d) in acting.iter().enumerate() {
+            interface.directions[*d].add_to(1.0, forces.col_as_slice_mut(j));
+        }
+        factor.solve_in_place(forces.as_mut());
+        let mobility = |i: usize, j: usize| interface.directions[acting[i]].dot(forces.col_as_slice(j));
+        let mobility = Mat::from_fn(r, r, |i, j| 0.5 * (mobility(i, j) + mobility(j, i)));
+        let root = function(mobility.as_ref(), |v| v.max(0.0).sqrt()).ok()?;
+        let within = product(root.as_ref(), product(small.as_ref(), root.as_ref()).as_ref());
+        let (values, _) = symmetric_eigen(within.as_ref()).ok()?;
+        Some(-2.0 * values[0])
+    }
+
+    /// Whether ½ b M + W c_s Wᵀ is positive semidefinite, M taken with the rounding of its entries ([`rounding`]): by a diagonal
+    /// below W c_s Wᵀ in its place, which is in the pattern whose analysis is at hand, or as it is.
+    fn holds_against_friction(&self, b: f64, by_diagonal: bool) -> bool {
         let (mass, stiffness) = (self.operator.mass, &*self.operator.stiffness);
         let friction = symmetric_damping(self.operator);
-        let (rounding, below) = (rounding(mass), diagonal_below(&friction, mass));
-        let inertia = [(0.5 * b, mass), (0.5 * b, &rounding)];
-        self.inertia_is(&add_scaled(&[inertia[0], inertia[1], (0.0, stiffness), (1.0, &below)]), false)
-            || self.inertia_is(&add_scaled(&[inertia[0], inertia[1], (1.0, &friction)]), false)
+        let friction = if by_diagonal { diagonal_below(&friction, mass) } else { friction };
+        let rounding = rounding(mass);
+        let terms = [(0.5 * b, mass), (0.5 * b, &rounding), (0.0, stiffness), (1.0, &friction)];
+        self.inertia_is(&add_scaled(&terms), false)
     }
 }
 
 /// The least of the values tried, `top` or more, from which on something holds.
 fn least(top: f64, holds: impl Fn(f64) -> bool) -> Option<f64> {
-    if holds(top) {
+    let mut tried = (0..=POWERS).map(|power| top * 4f64.powi(power));
+    let mut least = tried.find(|value| holds(*value))?;
+    if least == top {
         return Some(top);
     }
-    if !holds(top * 4f64.powi(POWERS)) {
-        return None;
-    }
-    let (mut open, mut least) = (top, 4.0 * top);
-    while !holds(least) {
-        (open, least) = (least, 4.0 * least);
-    }
+    let mut open = 0.25 * least;
     for _ in 0..NARROWINGS {
         let middle = (open * least).sqrt();
         if holds(middle) { least = middle } else { open = middle }
