@@ -195,7 +195,10 @@ fn with_exact_zeros(mass: &SparseMatrix) -> SparseMatrix {
         .map(|i| size[i] > 0.0 && diagonal[i] <= 0.0 && size[i] <= MASS_ZERO * largest)
         .collect();
     let mut exact = mass.clone();
-    for j in (0..exact.ncols()).filter(|_| zero.contains(&true)) {
+    if !zero.contains(&true) {
+        return exact;
+    }
+    for j in 0..exact.ncols() {
         let rows: Vec<usize> = exact.row_idx_of_col(j).collect();
         let entries = rows.iter().zip(exact.val_of_col_mut(j));
         entries.filter(|(i, _)| zero[**i] || zero[j]).for_each(|(_, v)| *v = 0.0);
