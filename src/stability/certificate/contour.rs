@@ -5,7 +5,7 @@ use super::region::CountedRegion;
 use crate::linalg::c64;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Winding number of a region.
 #[derive(Debug, Clone, Copy)]
@@ -26,6 +26,8 @@ pub(super) enum Stopped {
     At(c64),
     /// It takes more points than wanted.
     TooManyPoints,
+    /// What the basis leaves out is more than is of use.
+    Weak,
 }
 
 /// Pieces of an edge that are covered independently of each other.
@@ -33,12 +35,17 @@ const PIECES: usize = 16;
 /// The most points on a piece.
 const POINTS: usize = 20_000;
 
-/// Winding number around `region`, with `most_points` points at most.
-pub(super) fn wind(
-    pencil: &Pencil<'_>,
-    region: &CountedRegion,
-    most_points: usize,
-) -> Result<Winding, Stopped> {
+/// How far a count goes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Limits {
+    /// The most points.
+    pub(super) points: usize,
+    /// ρ above which a count is given up.
+    pub(super) defect: f64,
+}
+
+/// Winding number around `region`, within `limits`.
+pub(super) fn wind(pencil: &Pencil<'_>, region: &CountedRegion, limits: Limits) -> Result<Winding, Stopped> {
     let path = region.path();
     let pieces: Vec<[c64; 2]> = path
         .windows(2)
@@ -51,10 +58,13 @@ pub(super) fn wind(
         })
         .collect();
     let resolution = 1e-11 * region.omega[1];
-    // Whether all pieces together stay below the limit does not depend on who counts first.
-    let budget = Budget { evaluated: AtomicUsize::new(0), most: most_points };
+    // Whether all pieces together stay within the limits does not depend on who counts first.
+    let budget = Budget { evaluated: AtomicUsize::new(0), weak: AtomicBool::new(false), limits };
     let covered: Vec<Result<Vec<ContourPoint>, Stopped>> =
         pieces.par_iter().map(|[a, b]| cover(pencil, *a, *b, resolution, &budget)).collect();
+    if budget.weak.load(Ordering::Relaxed) {
+        return Err(Stopped::Weak);
+    }
     if budget.spent() {
         return Err(Stopped::TooManyPoints);
     }
@@ -88,17 +98,18 @@ pub(super) fn wind(
 /// The points of a contour, over all its pieces.
 struct Budget {
     evaluated: AtomicUsize,
-    most: usize,
+    weak: AtomicBool,
+    limits: Limits,
 }
 
 impl Budget {
     /// Counts a point; whether it is one too many.
     fn take(&self) -> bool {
-        self.evaluated.fetch_add(1, Ordering::Relaxed) >= self.most
+        self.evaluated.fetch_add(1, Ordering::Relaxed) >= self.limits.points
     }
 
     fn spent(&self) -> bool {
-        self.evaluated.load(Ordering::Relaxed) > self.most
+        self.evaluated.load(Ordering::Relaxed) > self.limits.points
     }
 }
 
@@ -124,6 +135,12 @@ fn cover(
             return Err(Stopped::TooManyPoints);
         }
         let point = pencil.point(s, half).ok_or(Stopped::At(s))?;
+        if point.defect > budget.limits.defect {
+            budget.weak.store(true, Ordering::Relaxed);
+        }
+        if budget.weak.load(Ordering::Relaxed) {
+            return Err(Stopped::Weak);
+        }
         if point.reach >= half {
             done.push((middle, point));
             continue;

@@ -52,7 +52,7 @@ use crate::numbers::{hertz, significant};
 use crate::progress::Observer;
 use crate::system::System;
 pub(super) use beyond::Definiteness;
-use contour::{Stopped, Winding, wind};
+use contour::{Limits, Stopped, Winding, wind};
 pub use count::{Certificate, CloseCall, SLOWEST_GROWTH};
 use count::{close_calls, found};
 #[cfg(test)]
@@ -244,8 +244,8 @@ enum Way {
     Spectrum,
 }
 
-/// Function that counts the zeros of Q_B in a region, with so many points of a contour at most.
-type Count<'a> = dyn Fn(&CountedRegion, usize) -> std::result::Result<Winding, Stopped> + 'a;
+/// Function that counts the zeros of Q_B in a region, within limits.
+type Count<'a> = dyn Fn(&CountedRegion, Limits) -> std::result::Result<Winding, Stopped> + 'a;
 
 fn count_by(
     way: Way,
@@ -261,11 +261,11 @@ fn count_by(
     let count: Box<Count<'_>> = match way {
         Way::Contour => {
             let pencil = Pencil::new(&model, &interface.terms, &sizes, top)?;
-            Box::new(move |region, most| wind(&pencil, region, most))
+            Box::new(move |region, limits| wind(&pencil, region, limits))
         }
         Way::Spectrum => {
             let spectrum = ReducedSpectrum::new(&model, &interface.terms, &sizes, top)?;
-            Box::new(move |region, _| spectrum.count(region))
+            Box::new(move |region, limits| spectrum.count(region, limits.defect))
         }
     };
     let matrices = Definiteness { operator: analysis.operator, factor: Some(analysis.factor) };
@@ -279,8 +279,12 @@ fn count_by(
     let mut left = most_points;
     for (reach, attempt) in tries {
         let region = region(analysis, reach, attempt);
-        let most = if reach > top { left / 2 } else { left };
-        match count(&region, most) {
+        // Beyond the band nothing but a proof is of use.
+        let limits = match reach > top {
+            true => Limits { points: left / 2, defect: 1.0 },
+            false => Limits { points: left, defect: f64::INFINITY },
+        };
+        match count(&region, limits) {
             Ok(winding) => {
                 left = left.saturating_sub(winding.points);
                 let better = best.as_ref().is_none_or(|(_, b)| winding.defect < b.defect);
@@ -292,7 +296,7 @@ fn count_by(
                 }
             }
             Err(why) => {
-                left -= if matches!(why, Stopped::TooManyPoints) { most } else { 0 };
+                left -= if matches!(why, Stopped::At(_)) { 0 } else { limits.points };
                 stopped = why;
             }
         }
@@ -310,7 +314,7 @@ fn count_by(
                 ),
                 "Move the ends of the band by a few hertz",
             ),
-            Stopped::TooManyPoints => (
+            Stopped::TooManyPoints | Stopped::Weak => (
                 format!("the contour takes more than {most_points} points"),
                 "Take more real modes (`cea.basis_below`)",
             ),

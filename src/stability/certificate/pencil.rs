@@ -268,7 +268,7 @@ impl<'a> Pencil<'a> {
         let (mut fixed, mut second, mut cross) = ([0.0; 2], [0.0; 2], [0.0; 2]);
         for (i, pole) in state.poles.iter().enumerate() {
             let (v, stiff, damped) = (self.balanced_squares[i], state.stiff_rows[i], state.damped_rows[i]);
-            let (beta, rest, size) = (pole.change(h), pole.second_change(h), pole.compliance.norm());
+            let (beta, rest, size) = (pole.change(h), pole.second_change(h), pole.size);
             let add = |sum: &mut [f64; 2], weight: f64, row: f64| {
                 sum[0] += weight * v;
                 sum[1] += weight * row * row;
@@ -339,7 +339,7 @@ impl<'a> Pencil<'a> {
                 size += factor.at(c).norm() * norms[i];
                 size_change += factor.change(c, h) * norms[i];
             }
-            let (compliance, beta) = (pole.compliance.norm(), pole.change(h));
+            let (compliance, beta) = (pole.size, pole.change(h));
             own += (compliance + beta) * (size + size_change).powi(2);
             y_change += (compliance * size_change + beta * (size + size_change)) * self.squares[i].sqrt();
         }
@@ -365,8 +365,9 @@ struct DiscState {
 
 /// An oscillator seen from a point.
 struct Pole {
-    /// 1/p(c).
+    /// 1/p(c) and its size.
     compliance: c64,
+    size: f64,
     /// (1/p)′(c).
     rate: c64,
     /// |p′(c)|.
@@ -380,8 +381,10 @@ impl Pole {
         let roots = oscillator.roots();
         let p = (c - roots[0]) * (c - roots[1]);
         let slope = c * 2.0 + oscillator.damping;
+        let compliance = c64::new(1.0, 0.0) / p;
         Pole {
-            compliance: c64::new(1.0, 0.0) / p,
+            compliance,
+            size: compliance.norm(),
             rate: -slope / (p * p),
             slope: slope.norm(),
             distances: roots.map(|root| (c - root).norm()),
@@ -394,7 +397,7 @@ impl Pole {
         if h >= a.min(b) {
             return f64::INFINITY;
         }
-        self.compliance.norm() * h * (self.slope + h) / ((a - h) * (b - h))
+        self.size * h * (self.slope + h) / ((a - h) * (b - h))
     }
 
     /// A bound on |1/p(s) − 1/p(c) − (s − c)(1/p)′(c)| within `h` of c.
@@ -403,7 +406,7 @@ impl Pole {
         if h >= a.min(b) {
             return f64::INFINITY;
         }
-        self.compliance.norm() * (h * h / ((a - h) * (b - h)) + h * self.slope * self.change(h))
+        self.size * (h * h / ((a - h) * (b - h)) + h * self.slope * self.change(h))
     }
 }
 

@@ -188,8 +188,12 @@ impl<'a> ReducedSpectrum<'a> {
         Ok(ReducedSpectrum { remainder, values, rests, reaches, missed })
     }
 
-    /// Covers the boundary of `region` with discs and counts what lies inside.
-    pub(super) fn count(&self, region: &CountedRegion) -> std::result::Result<Winding, Stopped> {
+    /// Covers the boundary of `region` with discs and counts what lies inside; given up where ρ is above `largest_defect`.
+    pub(super) fn count(
+        &self,
+        region: &CountedRegion,
+        largest_defect: f64,
+    ) -> std::result::Result<Winding, Stopped> {
         let resolution = 1e-11 * region.omega[1];
         let (mut points, mut defect) = (0, 0.0);
         let path = region.path();
@@ -212,6 +216,9 @@ impl<'a> ReducedSpectrum<'a> {
                 let bound = self.bound(c, 1.001 * h).ok_or(Stopped::At(c))?;
                 if bound > defect {
                     (defect, worst) = (bound, c);
+                }
+                if bound > largest_defect {
+                    return Err(Stopped::Weak);
                 }
                 done += 2.0 * h.max(resolution);
                 points += 1;
