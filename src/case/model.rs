@@ -155,11 +155,17 @@ declare! {
 declare! {
     /// Damping of the whole structure beyond its materials'.
     pub struct StructureDamping {
-        /// ζ of every real mode up to the highest one in use.
+        /// ζ of every real mode up to `modal_below`, with contacts open.
         pub modal_ratio: f64 = key::quantity(NUMBER)
             .label("modal damping ratio")
             .within(Bound::Included(0.0), Bound::Excluded(1.0))
             .or(0.0),
+        /// Real modes above this frequency \[Hz\] have no `modal_ratio`. When not said: 1.5 times the upper end of `cea.band` in
+        /// what is about complex modes; in a frequency response twice the upper end of its band; elsewhere no limit.
+        pub modal_below: Option<f64> = key::quantity(FREQUENCY)
+            .positive()
+            .derivative(|_| Derivative::None("it decides which modes are damped"))
+            .optional(),
         /// ζ of single modes instead: (frequency near the mode \[Hz\], ζ).
         pub modal_ratios: Vec<[f64; 2]> = key::pairs([FREQUENCY, NUMBER])
             .check("rows of a frequency and a ratio from 0 to below 1", |rows| {

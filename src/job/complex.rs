@@ -2,7 +2,7 @@
 //! method beside it.
 
 use super::clock::Clock;
-use super::modes::{identify, labels, modal_damping};
+use super::modes::{damped_below, identify, labels, modal_damping, real_modes_below};
 use super::prepared::Prepared;
 use crate::case::CeaAnalysis;
 use crate::equilibrium::{self, SteadySliding};
@@ -25,24 +25,24 @@ const SPANNED: f64 = 1.5;
 const SPANNED_AT_LEAST: f64 = 1.4;
 
 /// Modes of an analysis, with the band and the real modes that span it.
-struct BandModes {
+pub struct BandModes {
     band: [f64; 2],
     basis: RealModes,
-    modes: ComplexModes,
+    /// The modes.
+    pub modes: ComplexModes,
     certificate: Option<Certificate>,
 }
 
-/// Complex eigenvalues at the steady state, with the system they belong to (its modal damping in it) and the real modes
-/// of the whole, which `basis` gives where they are known already. Left vectors are kept where `left_vectors` or the case asks
-/// for them.
-pub fn complex_result<'a>(
+/// The complex modes at the steady state that the analysis asks for, and the system that they belong to (its modal damping in it).
+/// `basis` is the real modes of the whole where they are known already.
+pub fn band_modes<'a>(
     (prepared, state): (&'a Prepared, &SteadySliding),
     cea: &CeaAnalysis,
     basis: Option<RealModes>,
     left_vectors: bool,
     clock: &mut Clock,
     observer: &dyn Observer,
-) -> Result<(ComplexResult, Cow<'a, System>, RealModes)> {
+) -> Result<(BandModes, Cow<'a, System>)> {
     let structure = &prepared.system.structure;
     let preloaded = match equilibrium::tangent_stiffness(&prepared.system, &state.displacement)? {
         Cow::Borrowed(_) => Cow::Borrowed(structure),
@@ -58,12 +58,31 @@ pub fn complex_result<'a>(
         None => {
             let basis = match basis {
                 Some(basis) => basis,
-                None => whole_modes(&preloaded, cea.basis_below, problem.clock, observer)?,
+                None => {
+                    let below = real_modes_below(prepared.case, cea, cea.basis_below);
+                    whole_modes(&preloaded, below, problem.clock, observer)?
+                }
             };
             let (modes, certificate) = problem.modes((&basis).into(), cea.band)?;
             BandModes { band: cea.band, basis, modes, certificate }
         }
     };
+    Ok((found, system))
+}
+
+/// Complex eigenvalues at the steady state, with the system they belong to (its modal damping in it) and the real modes
+/// of the whole, which `basis` gives where they are known already. Left vectors are kept where `left_vectors` or the case asks
+/// for them.
+pub fn complex_result<'a>(
+    at: (&'a Prepared, &SteadySliding),
+    cea: &CeaAnalysis,
+    basis: Option<RealModes>,
+    left_vectors: bool,
+    clock: &mut Clock,
+    observer: &dyn Observer,
+) -> Result<(ComplexResult, Cow<'a, System>, RealModes)> {
+    let (found, system) = band_modes(at, cea, basis, left_vectors, clock, observer)?;
+    let (prepared, state) = at;
     let BandModes { band, basis, modes, certificate } = found;
     let confirmation = match cea.confirm {
         true => {
@@ -115,8 +134,8 @@ impl ComplexProblem<'_, '_> {
         known: Structural<'_>,
         band: [f64; 2],
     ) -> Result<(ComplexModes, Option<Certificate>)> {
-        let mass = &self.system.structure.mass;
-        if let Some(modal) = modal_damping(mass, known.real, self.prepared.case)? {
+        let (mass, case) = (&self.system.structure.mass, self.prepared.case);
+        if let Some(modal) = modal_damping(mass, known.real, case, damped_below(case, self.cea))? {
             self.system.to_mut().structure.damping.modal = Some(modal);
         }
         let (system, state): (&System, _) = (&*self.system, self.state);
@@ -143,7 +162,8 @@ impl ComplexProblem<'_, '_> {
         let mut start = Some(shifted);
         let mut least = [asked.hz; 2];
         loop {
-            let below = self.cea.basis_below.min(SPANNED * expected[1]);
+            let spanned = self.cea.basis_below.min(SPANNED * expected[1]);
+            let below = real_modes_below(self.prepared.case, self.cea, spanned);
             let inside = |shift: f64| shift < 0.9 * (TAU * below).powi(2);
             let (basis, shifted) = self.clock.time("real modes of the whole", || {
                 match start.take().filter(|start| inside(start.shift)) {
@@ -180,4 +200,90 @@ pub fn whole_modes(
     let modes = clock
         .time("real modes of the whole", || modal::compute(structure, ModesWanted::BelowHz(below), observer));
     modes.map(|(modes, _)| modes)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::case::Case;
+    use crate::job::states::Whole;
+    use crate::job::{Prepared, Selection, analyse};
+    use crate::linalg::c64;
+    use crate::linalg::random::Random;
+    use crate::results::ComplexResult;
+    use crate::sweep::SweepProblem;
+
+    fn eigenvalues(case: &Case) -> Vec<c64> {
+        let prepared = Prepared::new(case).unwrap();
+        let results = analyse(&prepared, Selection::Only("cea"), &mut |_| Ok(()), &()).unwrap();
+        results.get::<ComplexResult>().unwrap().modes.modes.iter().map(|m| m.eigenvalue).collect()
+    }
+
+    /// A coarse rig with a stiff contact, whose complex modes have much of the modes above the band.
+    fn rig(random: &mut Random) -> Case {
+        let between = |low: f64, high: f64, x: f64| low + 0.5 * (x + 1.0) * (high - low);
+        let text = include_str!("../../validation/rig-coarse/case.toml")
+            .replace("confirm = true", "")
+            .replace("certify = true", "certify = false")
+            .replace("[\"200 Hz\", \"6 kHz\"]", "[0, \"2 kHz\"]")
+            .replace("\"1 mm\"", &between(0.8e-3, 3e-3, random.next()).to_string())
+            .replace("\"10 MN/m\"", &10f64.powf(between(6.0, 9.0, random.next())).to_string())
+            .replace("mu0 = 0.6", &format!("mu0 = {}", between(0.1, 0.8, random.next())))
+            .replace(
+                "modal_ratio = 0.0035",
+                &format!("modal_ratio = {}", between(1e-3, 0.05, random.next())),
+            );
+        Case::parse("rig", &text[..text.find("[sensitivity]").unwrap()], ".".into()).unwrap()
+    }
+
+    #[test]
+    fn modal_damping_does_not_depend_on_the_basis() {
+        let mut random = Random::new();
+        for k in 0..4 {
+            let mut case = rig(&mut random);
+            let cea = case.cea.clone().unwrap();
+            case.damping.modal_below = [None, Some(2.5e3), Some(1.2e3), Some(7e3)][k];
+            if k == 2 {
+                case.damping.modal_ratios = vec![[cea.band[1], 0.1]];
+            }
+            let with = |below: f64, nearest: Option<(f64, usize)>| {
+                let mut case = case.clone();
+                let cea = case.cea.as_mut().unwrap();
+                (cea.basis_below, cea.nearest, cea.count) =
+                    (below, nearest.map(|n| n.0), nearest.map(|n| n.1));
+                eigenvalues(&case)
+            };
+            let all: Vec<Vec<c64>> =
+                [2e3, 2.2e3, 3e3, 4e3, 9e3].map(|below| with(below, None)).into_iter().collect();
+            assert!(all[0].len() > 2, "{}", all[0].len());
+            let alike = |a: &c64, b: &c64| {
+                // The analysis aims at 1e-8 of |λ|.
+                (a.re - b.re).abs() < 1e-6 * a.re.abs() + 2e-8 * a.norm()
+            };
+            for other in &all[1..] {
+                assert_eq!(other.len(), all[0].len());
+                for (a, b) in all[0].iter().zip(other) {
+                    assert!(alike(a, b), "{k}: {a} {b}");
+                }
+            }
+            for z in with(3e3, Some((800.0, 4))) {
+                assert!(all[0].iter().any(|a| alike(a, &z) && (a - z).norm() < 1e-6 * z.norm()), "{k}: {z}");
+            }
+        }
+    }
+
+    #[test]
+    fn whole_analyses_of_a_sweep_look_for_the_nearest_modes_too() {
+        let mut random = Random::new();
+        for (hz, count) in [(300.0, 1), (900.0, 3), (1500.0, 2)] {
+            let mut case = rig(&mut random);
+            let cea = case.cea.as_mut().unwrap();
+            (cea.nearest, cea.count) = (Some(hz), Some(count));
+            let path = "shell.disc.thickness".to_string();
+            let at = 1.1 * case.parameter(&path).unwrap().value;
+            let expected = eigenvalues(&case.with_parameter(&path, at).unwrap());
+            let found = Whole::new(&case, vec![path], None).eigenvalues(&[at]).unwrap();
+            assert_eq!(expected.len(), count);
+            assert_eq!(found, expected);
+        }
+    }
 }

@@ -83,9 +83,8 @@ fn dampings(whole: &Case, case: &Case) -> Result<Vec<(String, f64, f64)>> {
 /// The damping of the structure with one scalar at its other value.
 fn other_damping(nominal: &Nominal, case: &Case, (path, _, value): &(String, f64, f64)) -> Result<Damping> {
     let case = case.with_parameter(path, *value)?;
-    let prepared = Prepared::new(&case)?;
-    let mut structure = prepared.system.structure.clone();
-    add_modal_damping(&mut structure, nominal.real, &prepared)?;
+    let mut structure = Prepared::new(&case)?.system.structure.clone();
+    add_modal_damping(&mut structure, nominal.real, &case)?;
     Ok(structure.damping)
 }
 

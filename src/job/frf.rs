@@ -1,6 +1,6 @@
 //! Frequency responses of a case.
 
-use super::modes::{identify, labels, modal_damping};
+use super::modes::{damping_of_response, identify, labels, response_needs};
 use super::motion::{Motion, motion};
 use super::prepared::Prepared;
 use crate::case::{FrfAnalysis, FrfContact, FrfSolution, UniversalForm};
@@ -9,7 +9,7 @@ use crate::error::{Error, Faults, Result};
 use crate::linalg::{SparseMatrix, SparseVector, c64};
 use crate::modal::RealModes;
 use crate::progress::Observer;
-use crate::reduction::{Receptance, Reduced};
+use crate::reduction::{DampingOfModes, Receptance, Reduced};
 use crate::results::{FrfResponse, FrfResult, PlaceAndDirection, Resonance};
 use crate::stability::{DAMPERS, Harmonic, is_unbounded};
 use rayon::prelude::*;
@@ -120,8 +120,9 @@ impl PreparedFrf<'_> {
             std::iter::once(&self.force.direction).chain(&places).cloned().collect();
         let steady = steady.filter(|_| contact == FrfContact::Sliding);
         let Receptance { system, steady, real, reduced } = {
-            let damping = |mass: &SparseMatrix, real: &RealModes| modal_damping(mass, real, prepared.case);
-            Receptance::new(&prepared.system, steady, (band[1], &forms), &damping, observer)?
+            let of = |mass: &SparseMatrix, real: &RealModes| damping_of_response(mass, real, prepared.case);
+            let damping = DampingOfModes { of: &of, needs_below: response_needs(prepared.case) };
+            Receptance::new(&prepared.system, steady, (band[1], &forms), damping, observer)?
         };
         let small = reduced.steady(&steady);
         let few = Harmonic::new(&reduced.system, &small)?;

@@ -1,6 +1,7 @@
 //! How much memory a run takes at its peak, worked out before it begins.
 
 use super::analyses::Selection;
+use super::modes::real_modes_below;
 use super::prepared::Prepared;
 use super::states::keeps_the_structure;
 use super::studies::{SHARED, UNCERTAINTY, studies};
@@ -130,7 +131,7 @@ pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Opti
     let complex = case.cea.as_ref().filter(|_| selection.includes("cea", case));
     let mut samples = 0.0;
     if let Some(cea) = complex {
-        modes = modes.max(below(cea.basis_below)?);
+        modes = modes.max(below(real_modes_below(case, cea, cea.basis_below))?);
         if selection.includes(UNCERTAINTY, case) {
             let count: usize = case.uncertainty.values().map(|study| study.samples).sum();
             // The band has fewer modes; to count them takes a factorisation where matrices are given.

@@ -2,7 +2,7 @@
 
 use super::links::in_terms_of_the_case;
 use super::prepared::Prepared;
-use crate::case::{Case, ContactState, ModesAnalysis};
+use crate::case::{Case, CeaAnalysis, ContactState, ModesAnalysis};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::SparseMatrix;
 use crate::linalg::sparse::times;
@@ -150,7 +150,11 @@ fn damping_ratios(case: &Case, modes: &RealModes, damping: &Damping) -> Vec<f64>
 }
 
 fn given_ratios(case: &Case, modes: &RealModes) -> modal::GivenRatios {
-    modal::given_ratios(modes, case.damping.modal_ratio, &case.damping.modal_ratios)
+    given_below(case, modes, damped_without_band(case))
+}
+
+fn given_below(case: &Case, modes: &RealModes, below: f64) -> modal::GivenRatios {
+    modal::given_ratios(modes, (case.damping.modal_ratio, below), &case.damping.modal_ratios)
 }
 
 /// The part with the largest share of the kinetic energy of each mode.
@@ -216,12 +220,55 @@ pub fn labels(identities: &[Identity], modes: &RealModes) -> Vec<String> {
     identities.iter().enumerate().map(label).collect()
 }
 
-/// Gives a structure the modal damping of the case, where it has one.
+/// The frequency \[Hz\] up to which real modes have `modal_ratio` in what is about the complex modes of `cea`: a property of the machine,
+/// so that what spans the analysis does not move it. Abaqus likewise damps the modes that `*MODAL DAMPING` names, and no others.
+pub fn damped_below(case: &Case, cea: &CeaAnalysis) -> f64 {
+    case.damping.modal_below.unwrap_or(1.5 * cea.band[1])
+}
+
+/// The frequency \[Hz\] up to which real modes are computed for the complex modes of `cea`, where `basis_below` of them span the first
+/// subspace: those that have modal damping are among them.
+pub fn real_modes_below(case: &Case, cea: &CeaAnalysis, basis_below: f64) -> f64 {
+    basis_below.max(damping_needs(case, damped_below(case, cea)))
+}
+
+/// The frequency \[Hz\] up to which the real modes must be known for the modal damping of the case, where those up to `below` have
+/// `modal_ratio`; zero where it has none.
+fn damping_needs(case: &Case, below: f64) -> f64 {
+    let uniform = if case.damping.modal_ratio > 0.0 { below } else { 0.0 };
+    case.damping.modal_ratios.iter().fold(uniform, |top, [hz, _]| top.max((1.0 + modal::NEAR) * hz))
+}
+
+/// What [`modal_damping`] makes of the real modes of a frequency response: all of them have `modal_ratio`, unless the case says up to
+/// which.
 ///
 /// # Errors
 /// Those of [`modal_damping`].
-pub fn add_modal_damping(structure: &mut Structure, modes: &RealModes, prepared: &Prepared) -> Result<()> {
-    if let Some(modal) = modal_damping(&structure.mass, modes, prepared.case)? {
+pub fn damping_of_response(
+    mass: &SparseMatrix,
+    modes: &RealModes,
+    case: &Case,
+) -> Result<Option<ModalDamping>> {
+    modal_damping(mass, modes, case, damped_without_band(case))
+}
+
+/// The frequency \[Hz\] up to which real modes have `modal_ratio` in what is not about complex modes.
+pub fn damped_without_band(case: &Case) -> f64 {
+    case.damping.modal_below.unwrap_or(f64::INFINITY)
+}
+
+/// The frequency \[Hz\] up to which a frequency response needs the real modes for its damping.
+pub fn response_needs(case: &Case) -> f64 {
+    damping_needs(case, case.damping.modal_below.unwrap_or(0.0))
+}
+
+/// Gives a structure the modal damping that the case has for complex modes, if any, from its real modes ([`real_modes_below`]).
+///
+/// # Errors
+/// Those of [`modal_damping`].
+pub fn add_modal_damping(structure: &mut Structure, modes: &RealModes, case: &Case) -> Result<()> {
+    let Some(cea) = &case.cea else { return Ok(()) };
+    if let Some(modal) = modal_damping(&structure.mass, modes, case, damped_below(case, cea))? {
         structure.damping.modal = Some(modal);
     }
     Ok(())
@@ -231,20 +278,25 @@ pub fn add_modal_damping(structure: &mut Structure, modes: &RealModes, prepared:
 ///
 /// # Errors
 /// A ratio that names a frequency without a mode near it.
-pub fn modal_damping(mass: &SparseMatrix, modes: &RealModes, case: &Case) -> Result<Option<ModalDamping>> {
+pub fn modal_damping(
+    mass: &SparseMatrix,
+    modes: &RealModes,
+    case: &Case,
+    below: f64,
+) -> Result<Option<ModalDamping>> {
     if case.damping.modal_ratio == 0.0 && case.damping.modal_ratios.is_empty() {
         return Ok(None);
     }
-    let ratios = modal_ratios(case, modes)?;
+    let ratios = modal_ratios(case, modes, below)?;
     Ok(Some(modal::modal_damping(mass, modes, &ratios)))
 }
 
-/// ζ of every real mode of the whole.
+/// ζ of every real mode of the whole, where those up to `below` \[Hz\] have `modal_ratio`.
 ///
 /// # Errors
 /// A ratio that names a frequency without a mode near it.
-pub fn modal_ratios(case: &Case, modes: &RealModes) -> Result<Vec<f64>> {
-    let modal::GivenRatios { ratios, without_mode } = given_ratios(case, modes);
+pub fn modal_ratios(case: &Case, modes: &RealModes, below: f64) -> Result<Vec<f64>> {
+    let modal::GivenRatios { ratios, without_mode } = given_below(case, modes, below);
     let fault = |hz: &f64| {
         Fault::new(
             "`damping.modal_ratios`",

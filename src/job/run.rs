@@ -3,6 +3,7 @@
 use super::clock::Clock;
 use super::complex::whole_modes;
 use super::known::KnownAnswers;
+use super::modes::real_modes_below;
 use super::prepared::Prepared;
 use super::sink::{ResultSink, ResultStage};
 use crate::equilibrium::{self, SteadySliding};
@@ -120,7 +121,8 @@ impl<'a, 'k> Run<'a, 'k> {
             && self.complex
         {
             let structure = &self.prepared.system.structure;
-            self.basis = Some(whole_modes(structure, cea.basis_below, &mut self.clock, self.observer)?);
+            let below = real_modes_below(case, cea, cea.basis_below);
+            self.basis = Some(whole_modes(structure, below, &mut self.clock, self.observer)?);
         }
         Ok(self.basis.as_ref())
     }

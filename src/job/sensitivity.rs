@@ -1,6 +1,6 @@
 //! Sensitivities of the unstable modes of a case to its scalars and to small masses, springs and dampers at its nodes.
 
-use super::modes::modal_ratios;
+use super::modes::{damped_below, modal_ratios};
 use super::prepared::Prepared;
 use super::scalars::{CaseScalar, ScalarKind, chosen, same_structure};
 use super::verify;
@@ -167,8 +167,9 @@ impl Analysed<'_> {
         if scalar.kind == ScalarKind::Ratio {
             // C is linear in the ratio, so that a step of any size gives the derivative.
             let step = if value > 0.5 { -0.1 } else { 0.1 };
-            let here = modal_ratios(case, self.real)?;
-            let there = modal_ratios(&case.with_parameter(&scalar.path, value + step)?, self.real)?;
+            let below = case.cea.as_ref().map_or(f64::INFINITY, |cea| damped_below(case, cea));
+            let here = modal_ratios(case, self.real, below)?;
+            let there = modal_ratios(&case.with_parameter(&scalar.path, value + step)?, self.real, below)?;
             let change: Vec<f64> = there.iter().zip(&here).map(|(a, b)| (a - b) / step).collect();
             let exact = |value: c64| Rate { value, error: 0.0, kink: false };
             return Ok(sensitivity.change_by_ratios(&change).into_iter().map(exact).collect());

@@ -1,24 +1,24 @@
 //! The members of a sweep: a case with some scalars at other values → its sliding state, or its whole analysis.
 
+use super::clock::Clock;
+use super::complex::band_modes;
 use super::contacts::with_laws;
-use super::modes::add_modal_damping;
 use super::prepared::{Prepared, external_load};
-use crate::case::{Case, Invalidates};
+use crate::case::{Case, CeaAnalysis, Invalidates};
 use crate::equilibrium::{self, Condensed, PointState, solve_points};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::linalg::multivector::gram;
-use crate::modal::{self, ModesWanted};
-use crate::stability::{Band, ComplexMode, Family, FamilyCheck, SlidingState, complex_modes};
+use crate::stability::{ComplexMode, Family, FamilyCheck, SlidingState};
 use crate::sweep::{AtOnce, Checked, MeasuredProblem, Modes, SweepProblem};
-use crate::system::Structure;
 use faer::Mat;
 use std::borrow::Cow;
 
 /// Whether a change of the scalar at `path` leaves M, K and the contact directions alone, and C affine in it.
 pub(super) fn keeps_the_structure(case: &Case, path: &str) -> Result<bool> {
-    let chooses_a_mode = path.starts_with("damping.modal_ratios.") && path.ends_with(".0");
-    Ok(case.parameter(path)?.invalidates <= Invalidates::Equilibrium && !chooses_a_mode)
+    let chooses_modes =
+        path == "damping.modal_below" || path.starts_with("damping.modal_ratios.") && path.ends_with(".0");
+    Ok(case.parameter(path)?.invalidates <= Invalidates::Equilibrium && !chooses_modes)
 }
 
 /// The case with the scalars at `paths` set to `at`.
@@ -132,17 +132,13 @@ impl<'a> Whole<'a> {
 
     fn analyse(&self, at: &[f64]) -> Result<Vec<ComplexMode>> {
         let case = varied(&self.case, &self.paths, at)?;
-        let Some(cea) = case.cea.clone() else { return Ok(Vec::new()) };
+        let Some(cea) = &case.cea else { return Ok(Vec::new()) };
         let prepared = Prepared::new(&case)?;
-        let mut system = prepared.system.clone();
-        let options = prepared.steady_options();
-        let steady = equilibrium::solve_steady(&system, &options, &())?;
-        let stiffness = equilibrium::tangent_stiffness(&system, &steady.displacement)?.into_owned();
-        let preloaded = Structure { stiffness: stiffness.into(), ..system.structure.clone() };
-        let (real, _) = modal::compute(&preloaded, ModesWanted::BelowHz(cea.basis_below), &())?;
-        add_modal_damping(&mut system.structure, &real, &prepared)?;
-        let band = Band { left_vectors: false, ..cea.band.into() };
-        Ok(complex_modes(&system, &steady, &real, band, &())?.modes)
+        let steady = equilibrium::solve_steady(&prepared.system, &prepared.steady_options(), &())?;
+        // Growth is read off the eigenvalues here, not counted.
+        let cea = CeaAnalysis { certify: Some(false), left_vectors: false, ..cea.clone() };
+        let (found, ..) = band_modes((&prepared, &steady), &cea, None, false, &mut Clock::default(), &())?;
+        Ok(found.modes.modes)
     }
 }
 

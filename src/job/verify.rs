@@ -1,6 +1,6 @@
 //! Verification of the advice: the addition is mounted on the model and everything is recomputed.
 
-use super::modes::add_modal_damping;
+use super::modes::{add_modal_damping, real_modes_below};
 use super::prepared::Prepared;
 use crate::equilibrium::{solve_steady, tangent_stiffness};
 use crate::error::{Error, Result};
@@ -42,8 +42,9 @@ pub fn mounted(prepared: &Prepared, mode: &ComplexMode, thing: &Mounted) -> Resu
     let steady = solve_steady(&system, &options, &())?;
     let stiffness = tangent_stiffness(&system, &steady.displacement)?.into_owned();
     let preloaded = Structure { stiffness: stiffness.into(), ..system.structure.clone() };
-    let (basis, _) = compute(&preloaded, ModesWanted::BelowHz(cea.basis_below), &())?;
-    add_modal_damping(&mut system.structure, &basis, prepared)?;
+    let below = real_modes_below(prepared.case, cea, cea.basis_below);
+    let (basis, _) = compute(&preloaded, ModesWanted::BelowHz(below), &())?;
+    add_modal_damping(&mut system.structure, &basis, prepared.case)?;
     let found = complex_modes(&system, &steady, &basis, cea.band, &())?;
     let momentum = multiply_vector(&prepared.system.structure.mass, &mode.right);
     let overlap =

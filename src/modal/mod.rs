@@ -23,7 +23,7 @@ pub use disc::Disc;
 pub use effective_mass::{EffectiveMass, effective_mass};
 pub use levels::levels;
 pub use naming::DiscPoints;
-pub use near::{GivenRatios, given_ratios, near};
+pub use near::{GivenRatios, NEAR, given_ratios, near};
 
 use faer::Mat;
 

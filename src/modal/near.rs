@@ -3,13 +3,13 @@
 use super::RealModes;
 
 /// How far a mode's frequency may lie from the one that is given, as a part of that.
-const REACH: f64 = 0.1;
+pub const NEAR: f64 = 0.1;
 
 /// Index of the frequency nearest to `hz` \[Hz\]; none where none is within 10 % of it.
 pub fn near(frequencies_hz: impl IntoIterator<Item = f64>, hz: f64) -> Option<usize> {
     let away = frequencies_hz.into_iter().map(|f| (f - hz).abs()).enumerate();
     let (nearest, away) = away.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    (away <= REACH * hz).then_some(nearest)
+    (away <= NEAR * hz).then_some(nearest)
 }
 
 /// Damping ratios that are given by frequency.
@@ -21,9 +21,11 @@ pub struct GivenRatios {
     pub without_mode: Vec<f64>,
 }
 
-/// ζ of each mode: `uniform`, and of those nearest to the frequencies of `given`, (f \[Hz\], ζ) each, that which is given.
-pub fn given_ratios(modes: &RealModes, uniform: f64, given: &[[f64; 2]]) -> GivenRatios {
-    let (mut ratios, mut without_mode) = (vec![uniform; modes.len()], Vec::new());
+/// ζ of each mode: `uniform` of those up to `below` \[Hz\], and of those nearest to the frequencies of `given`, (f \[Hz\], ζ) each, that
+/// which is given.
+pub fn given_ratios(modes: &RealModes, (uniform, below): (f64, f64), given: &[[f64; 2]]) -> GivenRatios {
+    let of = |k: usize| if modes.frequency_hz(k) <= below { uniform } else { 0.0 };
+    let (mut ratios, mut without_mode) = ((0..modes.len()).map(of).collect::<Vec<f64>>(), Vec::new());
     for [hz, ratio] in given {
         match near((0..modes.len()).map(|k| modes.frequency_hz(k)), *hz) {
             Some(k) => ratios[k] = *ratio,
@@ -61,7 +63,8 @@ mod tests {
                 found: 2,
             },
         };
-        let found = given_ratios(&modes, 0.01, &[[195.0, 0.03], [150.0, 0.5]]);
+        let found = given_ratios(&modes, (0.01, 500.0), &[[195.0, 0.03], [150.0, 0.5]]);
         assert_eq!(found, GivenRatios { ratios: vec![0.01, 0.03], without_mode: vec![150.0] });
+        assert_eq!(given_ratios(&modes, (0.01, 150.0), &[]).ratios, [0.01, 0.0]);
     }
 }

@@ -11,8 +11,13 @@ use crate::system::{ModalDamping, Structure, System};
 /// Real modes are computed up to this many times the highest frequency.
 const MODES: f64 = 2.0;
 
-/// Modal damping of a structure, given M and its real modes; none where it has none.
-pub type DampingOfModes<'a> = &'a dyn Fn(&SparseMatrix, &RealModes) -> Result<Option<ModalDamping>>;
+/// Modal damping of a structure.
+pub struct DampingOfModes<'a> {
+    /// Given M and the real modes; none where there is none.
+    pub of: &'a dyn Fn(&SparseMatrix, &RealModes) -> Result<Option<ModalDamping>>,
+    /// The frequency \[Hz\] up to which it needs the real modes.
+    pub needs_below: f64,
+}
 
 /// A structure about its rest or its steady sliding, for receptances u = H(ω) f.
 #[derive(Debug)]
@@ -21,7 +26,7 @@ pub struct Receptance {
     pub system: System,
     /// State about which it vibrates.
     pub steady: SteadySliding,
-    /// Its real modes up to twice the highest frequency.
+    /// Its real modes up to twice the highest frequency, at least.
     pub real: RealModes,
     /// The small system of these modes and of what forces move besides.
     pub reduced: Reduced,
@@ -53,8 +58,9 @@ impl Receptance {
         };
         let stiffness = tangent_stiffness(&system, &steady.displacement)?.into_owned();
         let structure = Structure { stiffness: stiffness.into(), ..system.structure.clone() };
-        let (real, _) = compute(&structure, ModesWanted::BelowHz(MODES * highest_hz), observer)?;
-        if let Some(modal) = damping(&system.structure.mass, &real)? {
+        let below = damping.needs_below.max(MODES * highest_hz);
+        let (real, _) = compute(&structure, ModesWanted::BelowHz(below), observer)?;
+        if let Some(modal) = (damping.of)(&system.structure.mass, &real)? {
             system.structure.damping.modal = Some(modal);
         }
         let first = reduce(&system, &steady, &real, forms)?;

@@ -1,7 +1,7 @@
 //! Complex eigenvalues at steady sliding.
 
 use super::analysis::{Analysis, Planned, Scope};
-use crate::case::CeaAnalysis;
+use crate::case::{Case, CeaAnalysis};
 use crate::error::Result;
 use crate::job::complex::complex_result;
 use crate::job::prepared::Prepared;
@@ -21,10 +21,13 @@ pub const CEA: Analysis = Analysis {
 
 fn plan<'a>(prepared: &'a Prepared<'a>, _: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
     let wanted = prepared.case.cea.as_ref().ok_or_else(|| CEA.no_table())?;
-    Ok(Box::new(PlannedCea(wanted)))
+    Ok(Box::new(PlannedCea { wanted, case: prepared.case }))
 }
 
-struct PlannedCea<'a>(&'a CeaAnalysis);
+struct PlannedCea<'a> {
+    wanted: &'a CeaAnalysis,
+    case: &'a Case,
+}
 
 impl<'a> Planned<'a> for PlannedCea<'a> {
     fn slides(&self) -> bool {
@@ -32,7 +35,7 @@ impl<'a> Planned<'a> for PlannedCea<'a> {
     }
 
     fn warnings(&self) -> Vec<String> {
-        not_all_of_the_band(self.0).into_iter().collect()
+        not_all_of_the_band(self.wanted).into_iter().chain(damped_in_part(self.case, self.wanted)).collect()
     }
 
     fn run(self: Box<Self>, run: &mut Run<'a, '_>) -> Result<()> {
@@ -41,7 +44,7 @@ impl<'a> Planned<'a> for PlannedCea<'a> {
         let (basis, left_vectors) = (run.basis.take(), run.left_vectors);
         let at = (run.prepared, &*steady);
         let (complex, system, real) =
-            complex_result(at, self.0, basis, left_vectors, &mut run.clock, run.observer)?;
+            complex_result(at, self.wanted, basis, left_vectors, &mut run.clock, run.observer)?;
         run.results.warnings.extend(complex.modes.warnings.iter().cloned());
         run.operating_point = Some(OperatingPoint { steady, system, real }.into());
         run.found(complex)
@@ -57,6 +60,17 @@ fn not_all_of_the_band(cea: &CeaAnalysis) -> Option<String> {
         format!(
             "[cea] looks for the {count} complex modes nearest to {hz} Hz alone, not for all from {low} to {high} Hz; \
              without `nearest` and `count` it looks for all"
+        )
+    })
+}
+
+/// Says that some real modes of the band have no modal damping.
+fn damped_in_part(case: &Case, cea: &CeaAnalysis) -> Option<String> {
+    let below = case.damping.modal_below.filter(|below| *below < cea.band[1])?;
+    (case.damping.modal_ratio > 0.0).then(|| {
+        format!(
+            "Modes from {below} to {} Hz have no modal damping, as `damping.modal_below` is below the upper end of `cea.band`",
+            cea.band[1]
         )
     })
 }

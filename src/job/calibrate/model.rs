@@ -1,6 +1,6 @@
 //! The frequencies of a case as functions of the numbers that are to be found.
 
-use super::super::modes::{modal_ratios, part_assembled};
+use super::super::modes::{damped_without_band, modal_ratios, part_assembled};
 use super::super::prepared::Prepared;
 use super::super::scalars::{CaseScalar, ScalarKind, same_structure, scalar};
 use super::super::sensors::Sensors;
@@ -316,10 +316,11 @@ impl SolvedStructure<'_> {
 fn ratio_rates(case: &Case, c: &Coordinate, value: f64, real: &RealModes) -> Result<Option<Vec<f64>>> {
     let all = scalars(case, c)?;
     let Some(first) = all.iter().find(|s| s.kind == ScalarKind::Ratio) else { return Ok(None) };
-    let at = |step: f64| Ok((step, modal_ratios(&with(case, c, value + step)?, real)?));
+    let ratios = |case: &Case| modal_ratios(case, real, damped_without_band(case));
+    let at = |step: f64| Ok((step, ratios(&with(case, c, value + step)?)?));
     let (step, there) = at(first.step()).or_else(|_: Error| at(-first.step()))?;
     let rate = c.rate(value) / step;
-    let here = modal_ratios(case, real)?;
+    let here = ratios(case)?;
     Ok(Some(there.iter().zip(&here).map(|(a, b)| rate * (a - b)).collect()))
 }
 

@@ -3,7 +3,7 @@
 use super::super::compare::matches;
 use super::super::frf::{PreparedFrf, frfs};
 use super::super::measured::measured_set;
-use super::super::modes::modal_damping;
+use super::super::modes::{damping_of_response, response_needs};
 use super::super::motion::Motion;
 use super::super::prepared::Prepared;
 use super::neighbours::Change;
@@ -15,7 +15,7 @@ use crate::linalg::sparse::{multiply, times};
 use crate::linalg::{SparseMatrix, SparseVector, c64};
 use crate::measured::{MeasuredFrf, Quantity};
 use crate::modal::RealModes;
-use crate::reduction::Receptance;
+use crate::reduction::{DampingOfModes, Receptance};
 use crate::stability::Harmonic;
 use faer::Mat;
 use rayon::prelude::*;
@@ -240,8 +240,9 @@ pub fn lines(
         .iter()
         .filter_map(|r| r.frequencies_hz.last())
         .fold(wanted.band[1], |a, b| a.max(*b));
-    let damping = |mass: &SparseMatrix, real: &RealModes| modal_damping(mass, real, prepared.case);
-    let whole = Receptance::new(&prepared.system, None, (highest, &forms), &damping, &())?;
+    let of = |mass: &SparseMatrix, real: &RealModes| damping_of_response(mass, real, prepared.case);
+    let damping = DampingOfModes { of: &of, needs_below: response_needs(prepared.case) };
+    let whole = Receptance::new(&prepared.system, None, (highest, &forms), damping, &())?;
     let rates = ratios(&whole.real)?;
     let small: Vec<ReducedMatrices> = changes
         .iter()
