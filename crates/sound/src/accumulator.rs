@@ -1,10 +1,12 @@
 //! Sound of a run, computed while the run proceeds.
 
 use super::{
-    Air, CrossSpectra, MicrophoneSound, Plate, PressureRecord, Radiation, Receiver, Sound, Surface, Tone,
+    Air, CrossSpectra, LoudHalf, MicrophoneSound, Plate, PressureRecord, Radiation, Receiver, Sound, Surface,
+    Tone,
 };
 use faer::Mat;
 use std::f64::consts::TAU;
+use std::ops::Range;
 use stridor_signal::{Resampler, Spectrum, Welch, peaks};
 
 /// Highest audible frequency \[Hz\].
@@ -45,9 +47,10 @@ pub struct SoundAccumulator {
     plates: Vec<Plate>,
     air: Air,
     step: f64,
-    /// Steps worked on, the first that counts for the levels, and the highest frequency that does \[Hz\].
+    /// Steps of the run, those worked on, those that count for the levels, and the highest frequency that does \[Hz\].
+    steps: usize,
     taken: usize,
-    counted: usize,
+    counted: Range<usize>,
     top: f64,
     cross: CrossSpectra,
     microphones: Vec<Microphone>,
@@ -77,10 +80,10 @@ impl Microphone {
         Microphone { name, at, receiver, welch: Welch::new(length, step), resampler, recording, dropped: 0 }
     }
 
-    /// The next accelerations of the modes, of which the first `early` do not count for the levels.
-    fn add(&mut self, block: &[Vec<f64>], early: usize) {
+    /// The next accelerations of the modes, of which those `inside` count for the levels.
+    fn add(&mut self, block: &[Vec<f64>], inside: Range<usize>) {
         let pressure = self.receiver.receive(block);
-        self.welch.take(&pressure[early..]);
+        self.welch.take(&pressure[inside]);
         self.resampler.take(&pressure, &mut self.recording);
         if self.recording.len() > 2 * KEPT * RATE as usize {
             self.forget();
@@ -109,7 +112,7 @@ impl Microphone {
 
 impl SoundAccumulator {
     /// For a run of `steps` steps of `step` seconds of a model whose real modes have `shapes`, n_dofs × n_modes, and are
-    /// complete up to `highest` \[Hz\]. Levels are taken over its second half.
+    /// complete up to `highest` \[Hz\]. Levels are taken over its second half, if no other is named.
     pub fn new(
         acoustics: Acoustics,
         (shapes, highest): (&Mat<f64>, f64),
@@ -117,11 +120,11 @@ impl SoundAccumulator {
     ) -> Self {
         let modes = shapes.ncols();
         let plates: Vec<Plate> = acoustics.plates.iter().map(|plate| plate.moving(shapes)).collect();
-        let counted = steps / 2;
+        let counted = steps / 2..steps + 1;
         // A time step carries what it samples well.
         let top = AUDIBLE.min(0.4 / step).min(highest.max(RESOLUTION));
         let most = (MEMORY / (4 * modes * (modes + 1)).max(1) as f64).max(16.0);
-        let seconds = (1.0 / RESOLUTION).min(0.5 * (steps + 1 - counted) as f64 * step).min(most / top);
+        let seconds = (1.0 / RESOLUTION).min(0.5 * counted.len() as f64 * step).min(most / top);
         let pending = (PENDING / modes.max(1) as f64).max(16.0);
         let length = (seconds / step).min(pending) as usize;
         let microphone = |(name, at): (String, [f64; 3])| {
@@ -135,6 +138,7 @@ impl SoundAccumulator {
             plates,
             air: acoustics.air,
             step,
+            steps,
             taken: 0,
             counted,
             top,
@@ -142,12 +146,28 @@ impl SoundAccumulator {
         }
     }
 
+    /// What finds the half of the run that is loud.
+    pub fn loud_half(&self) -> LoudHalf {
+        LoudHalf::new(&self.plates, self.modes, self.steps + 1)
+    }
+
+    /// Levels are taken over the half of the run that begins with this row.
+    pub fn count_from(&mut self, row: usize) {
+        let length = self.counted.len();
+        self.counted = row..row + length;
+    }
+
     /// The next accelerations of the modes, one list each, all of one length; the start comes first.
     pub fn add(&mut self, mut block: Vec<Vec<f64>>) {
         let length = block.first().map_or(0, Vec::len);
-        let early = self.counted.saturating_sub(self.taken).min(length);
-        self.microphones.iter_mut().for_each(|microphone| microphone.add(&block, early));
-        block.iter_mut().for_each(|mode| drop(mode.drain(..early)));
+        let inside =
+            [self.counted.start, self.counted.end].map(|row| row.saturating_sub(self.taken).min(length));
+        let inside = inside[0]..inside[1];
+        self.microphones.iter_mut().for_each(|microphone| microphone.add(&block, inside.clone()));
+        block.iter_mut().for_each(|mode| {
+            mode.truncate(inside.end);
+            drop(mode.drain(..inside.start));
+        });
         self.cross.take(&block);
         self.taken += length;
     }
@@ -171,7 +191,8 @@ impl SoundAccumulator {
         let whole: f64 = power.iter().flatten().sum();
         mode_shares.iter_mut().for_each(|share| *share /= whole.max(f64::MIN_POSITIVE));
         let each: Vec<f64> = (0..lines).map(|k| power.iter().map(|p| p[k]).sum()).collect();
-        let window = [self.counted as f64 * step, self.taken.saturating_sub(1) as f64 * step];
+        let last = self.taken.min(self.counted.end).saturating_sub(1);
+        let window = [self.counted.start as f64 * step, last as f64 * step];
         let names = plates.iter().map(|plate| plate.name.clone());
         let plates = names.zip(power).collect();
         let microphones = self.microphones.into_iter().map(|microphone| microphone.finish(lines)).collect();

@@ -22,6 +22,7 @@
 mod accumulator;
 mod cross;
 mod levels;
+mod loud;
 mod plate;
 mod radiation;
 mod receiver;
@@ -32,6 +33,7 @@ mod weighting;
 pub use accumulator::{Acoustics, BLOCK, SoundAccumulator};
 pub use cross::CrossSpectra;
 pub use levels::{MicrophoneSound, PressureRecord, Sound, Tone};
+pub use loud::LoudHalf;
 pub use plate::Plate;
 pub use radiation::Radiation;
 pub use receiver::Receiver;

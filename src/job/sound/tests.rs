@@ -78,3 +78,41 @@ fn places_where_nothing_can_be_said_are_refused() {
     let [(name, at)] = &acoustics.microphones[..] else { panic!("one microphone") };
     assert!(name == ON_AXIS && (at[0] - 1.0).abs() < 1e-12 && at[1].abs() < 1e-12 && at[2].abs() < 1e-12);
 }
+
+/// Half of a record sounds, the rest is silent: wherever that half is, its level is that of the tone, by the closed form.
+#[test]
+fn levels_are_those_of_the_loud_half() {
+    let case = Case::parse("disc", &disc(4, 24), ".".into()).unwrap();
+    let prepared = Prepared::new(&case).unwrap();
+    let (real, _) = compute(&prepared.system.structure, ModesWanted::Count(3), &()).unwrap();
+    let (step, steps, hz) = (2e-5, 20_000, 180.0);
+    let (mut levels, mut windows) = (Vec::new(), Vec::new());
+    for begin in [0, 2_500, 5_000, 7_777, 10_000] {
+        let acoustics = acoustics(&prepared, &wanted(None, &[])).unwrap();
+        let plate = acoustics.plates[0].moving(&real.shapes);
+        let volume = |m: usize| plate.strength.col_as_slice(m).iter().sum::<f64>();
+        let mode = (0..3).max_by(|a, b| volume(*a).abs().total_cmp(&volume(*b).abs())).unwrap();
+        let sounds = |k: usize| k >= begin && k <= begin + steps / 2;
+        let q = |k: usize| if sounds(k) { 3.0 * (TAU * hz * step * k as f64).sin() } else { 0.0 };
+        let block = |moments: std::ops::Range<usize>| -> Vec<Vec<f64>> {
+            let motion = |m: usize| moments.clone().map(|k| if m == mode { q(k) } else { 0.0 }).collect();
+            (0..3).map(motion).collect()
+        };
+        let mut accumulator =
+            SoundAccumulator::new(acoustics, (&real.shapes, real.frequency_hz(2)), (step, steps));
+        let blocks = || (0..=steps).step_by(BLOCK).map(|first| first..(first + BLOCK).min(steps + 1));
+        let mut loud = accumulator.loud_half();
+        blocks().for_each(|moments| loud.add(&block(moments)));
+        accumulator.count_from(loud.begin());
+        blocks().for_each(|moments| accumulator.add(block(moments)));
+        let sound = accumulator.finish();
+        let volume = 3.0 * volume(mode).abs();
+        let air = Air::default();
+        let watt = air.density * volume * volume / (2.0 * std::f64::consts::PI * air.speed);
+        levels.push(sound.power_levels()[0] - power_level(watt));
+        windows.push(sound.window[0] - begin as f64 * step);
+    }
+    // A burst that begins inside of a segment spreads its lines.
+    assert!(levels.iter().all(|difference| difference.abs() < 0.3), "{levels:?} {windows:?}");
+    assert!(windows.iter().all(|late| late.abs() < 0.05 * step * steps as f64), "{levels:?} {windows:?}");
+}
