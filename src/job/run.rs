@@ -6,6 +6,7 @@ use super::known::KnownAnswers;
 use super::modes::real_modes_below;
 use super::prepared::Prepared;
 use super::sink::{ResultSink, ResultStage};
+use crate::case::StiffnessPer;
 use crate::equilibrium::{self, SteadySliding};
 use crate::error::Result;
 use crate::modal::RealModes;
@@ -142,6 +143,13 @@ fn steady_result(prepared: &Prepared, state: SteadySliding) -> SteadyResult {
     SteadyResult {
         displacement: prepared.assembled.dofs.expand(&state.displacement),
         points: system.points().map(|(pair, point)| (pair.name.clone(), point.position)).collect(),
+        areas: system
+            .points()
+            .map(|(pair, point)| {
+                let per = prepared.case.contact.get(&pair.name).map(|contact| contact.normal.per);
+                (per == Some(StiffnessPer::Area)).then_some(point.weight)
+            })
+            .collect(),
         pairs,
         directions: prepared.arrows(),
         state,

@@ -83,7 +83,7 @@ const AXES: [(ViewVector, &str); 3] =
 
 /// The least and largest place of the closed points along a direction.
 fn span(points: &[PlacedPoint], direction: ViewVector) -> [f64; 2] {
-    ends(points.iter().filter(|(_, s)| s.closed()).map(|(place, _)| dot(*place, direction)))
+    ends(points.iter().filter(|(_, s, _)| s.closed()).map(|(place, ..)| dot(*place, direction)))
 }
 
 fn width(points: &[PlacedPoint], direction: ViewVector) -> f64 {
@@ -93,8 +93,9 @@ fn width(points: &[PlacedPoint], direction: ViewVector) -> f64 {
 
 /// The points of a pair near its closed ones: the far side of a rim, for one, says nothing.
 fn near_closed<'a>(steady: &'a SteadyResult, pair: &str) -> Vec<PlacedPoint<'a>> {
-    let of_pair = steady.points.iter().zip(&steady.state.points).filter(|((name, _), _)| name == pair);
-    let all: Vec<PlacedPoint> = of_pair.map(|((_, place), state)| (*place, state)).collect();
+    let all = steady.points.iter().zip(&steady.state.points).zip(&steady.areas);
+    let of_pair = all.filter(|(((name, _), _), _)| name == pair);
+    let all: Vec<PlacedPoint> = of_pair.map(|(((_, place), state), area)| (*place, state, *area)).collect();
     let reach = AXES.iter().map(|(direction, _)| width(&all, *direction)).fold(1e-3, f64::max);
     let near = |place: ViewVector| {
         AXES.iter().all(|(direction, _)| {
@@ -102,7 +103,7 @@ fn near_closed<'a>(steady: &'a SteadyResult, pair: &str) -> Vec<PlacedPoint<'a>>
             (low - reach..=high + reach).contains(&dot(place, *direction))
         })
     };
-    all.iter().copied().filter(|(place, _)| near(*place)).collect()
+    all.iter().copied().filter(|(place, ..)| near(*place)).collect()
 }
 
 /// Points along a line or a rim, and the name of the axis they are drawn over.
@@ -112,8 +113,8 @@ fn marks(points: &[PlacedPoint], slide: Option<ViewVector>) -> (Vec<Mark>, &'sta
     };
     let (axis, name) = AXES.into_iter().reduce(longer).expect("there are three");
     let edge =
-        slide.and_then(|slide| edge_divider(slide, points.iter().map(|(place, _)| *place).collect(), axis));
-    let mark = |(place, state): &PlacedPoint| Mark {
+        slide.and_then(|slide| edge_divider(slide, points.iter().map(|(place, ..)| *place).collect(), axis));
+    let mark = |(place, state, _): &PlacedPoint| Mark {
         place: 1e3 * dot(*place, axis),
         force: state.forces.normal,
         penetration: 1e6 * state.penetration,

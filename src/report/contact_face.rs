@@ -1,4 +1,4 @@
-//! Plan view of the contact points on a face: normal force as colour and size.
+//! Plan view of the contact points on a face: pressure, or normal force where the points stand for no area, as colour and size.
 
 use super::chart::{Axis, Chart, WIDTH, ends, widened};
 use super::colours::{CALM, INK, MUTED, sequential};
@@ -19,16 +19,27 @@ const LINES: usize = 3;
 /// Largest and least radius of a closed point \[px\].
 const RADII: [f64; 2] = [13.0, 4.0];
 
-/// A contact point: place along and across the sliding direction \[mm\], and its state.
-type FacePoint<'a> = ([f64; 2], &'a PointState);
+/// A contact point: place on the two axes \[mm\], its state, and its pressure \[MPa\] or normal force \[N\].
+type FacePoint<'a> = ([f64; 2], &'a PointState, f64);
 
-/// A contact point at a place.
-pub(super) type PlacedPoint<'a> = (ViewVector, &'a PointState);
+/// A contact point at a place, with the area that it stands for \[m²\].
+pub(super) type PlacedPoint<'a> = (ViewVector, &'a PointState, Option<f64>);
+
+/// What colours and sizes show.
+#[derive(Clone, Copy)]
+struct Shown {
+    name: &'static str,
+    short: &'static str,
+    unit: &'static str,
+}
+
+const FORCE: Shown = Shown { name: "normal force", short: "N", unit: "N" };
+const PRESSURE: Shown = Shown { name: "pressure", short: "p", unit: "MPa" };
 
 /// The normal force of all points, and how many carry it.
 pub(super) fn carried(points: &[PlacedPoint]) -> String {
-    let total: f64 = points.iter().map(|(_, state)| state.forces.normal).sum();
-    let closed = points.iter().filter(|(_, state)| state.closed()).count();
+    let total: f64 = points.iter().map(|(_, state, _)| state.forces.normal).sum();
+    let closed = points.iter().filter(|(_, state, _)| state.closed()).count();
     format!("ΣN = {} N on {closed} closed points of {}", significant(total, 4), points.len())
 }
 
@@ -38,58 +49,87 @@ pub(super) fn picture(steady: &SteadyResult, pair: &str, near: &[PlacedPoint]) -
         steady.pairs.iter().zip(&steady.directions).find(|((name, ..), _)| name == pair)?;
     let along = unit(*slide)?;
     let across = unit(cross(*press, along))?;
+    // Along an axis of the mesh places are those of the mesh.
+    let (names, [along, across], to_the_right) = axes(along, across);
     let at = |place: ViewVector| [1e3 * dot(place, along), 1e3 * dot(place, across)];
-    let points: Vec<FacePoint> = near.iter().map(|(place, state)| (at(*place), *state)).collect();
+    // Force over area, where every point has one.
+    let areas: Option<Vec<f64>> = near.iter().map(|(.., area)| area.filter(|area| *area > 0.0)).collect();
+    let shown = if areas.is_some() { PRESSURE } else { FORCE };
+    let value = |k: usize, force: f64| areas.as_ref().map_or(force, |areas| 1e-6 * force / areas[k]);
+    let points: Vec<FacePoint> = near
+        .iter()
+        .enumerate()
+        .map(|(k, (place, state, _))| (at(*place), *state, value(k, state.forces.normal)))
+        .collect();
     let extents = [0, 1].map(|c| {
         let [low, high] = span(&points, c);
         high - low
     });
     let (short, long) = (extents[0].min(extents[1]), extents[0].max(extents[1]));
     let edges = lines(&points, if extents[0] < extents[1] { 0 } else { 1 }) < LINES;
-    let finite = points.iter().all(|(place, _)| place.iter().all(|c| c.is_finite()));
+    let finite = points.iter().all(|(place, ..)| place.iter().all(|c| c.is_finite()));
     if !finite || short < LINE * long || edges {
         return None;
     }
-    let svg = drawn(&points, extents, &carried(near));
-    let slides = match velocity.total_cmp(&0.0) {
+    let svg = drawn(&points, extents, &names, shown, &carried(near));
+    let slides = match (to_the_right * velocity).total_cmp(&0.0) {
         Ordering::Greater => " The counter-body slides to the right.",
         Ordering::Less => " The counter-body slides to the left.",
         Ordering::Equal => "",
     };
     let caption = format!(
-        "Contact “{pair}” at steady sliding, seen along the normal: the larger and darker a point, the larger its normal force; \
-         hollow points are open.{slides}"
+        "Contact “{pair}” at steady sliding, seen along the normal: the larger and darker a point, the larger its {}; \
+         hollow points are open.{slides}",
+        shown.name
     );
     Some(Picture { file: "contact".into(), caption, svg })
 }
 
+/// Names of the axes along and across, their directions, and 1 where the first shows along the sliding direction, −1 where against it:
+/// directions along an axis of the mesh are turned to its positive side and have its name.
+fn axes(along: ViewVector, across: ViewVector) -> ([String; 2], [ViewVector; 2], f64) {
+    let named = |direction: ViewVector, what: &str| {
+        let axis = (0..3).find(|k| direction[*k].abs() > 1.0 - 1e-9);
+        match axis {
+            Some(k) => {
+                let mut positive = [0.0; 3];
+                positive[k] = 1.0;
+                (format!("{} [mm], {what}", ["x", "y", "z"][k]), positive, direction[k].signum())
+            }
+            None => (format!("position {what} [mm]"), direction, 1.0),
+        }
+    };
+    let (first, right, sign) = named(along, "along the sliding direction");
+    let (second, up, _) = named(across, "across");
+    ([first, second], [right, up], sign)
+}
+
 fn span(points: &[FacePoint], c: usize) -> [f64; 2] {
-    ends(points.iter().map(|(place, _)| place[c]))
+    ends(points.iter().map(|(place, ..)| place[c]))
 }
 
 /// The number of different coordinates `c`, which differ by a hundredth of the extent.
 fn lines(points: &[FacePoint], c: usize) -> usize {
     let [low, high] = span(points, c);
-    let mut at: Vec<f64> = points.iter().map(|(p, _)| p[c]).collect();
+    let mut at: Vec<f64> = points.iter().map(|(p, ..)| p[c]).collect();
     at.sort_by(f64::total_cmp);
     1 + at.windows(2).filter(|pair| pair[1] - pair[0] > 0.01 * (high - low)).count()
 }
 
-fn drawn(points: &[FacePoint], extents: [f64; 2], words: &str) -> String {
+fn drawn(points: &[FacePoint], extents: [f64; 2], names: &[String; 2], shown: Shown, words: &str) -> String {
     // The same scale along both axes.
     let plot = [AREA[2] - AREA[0], AREA[3] - AREA[1]];
     let scale = (1.15 * extents[0] / plot[0]).max(1.15 * extents[1] / plot[1]);
-    let names = ["position along the sliding direction [mm]", "position across [mm]"];
     let [across, up] = [0, 1].map(|c| {
         let [low, high] = span(points, c);
         let (middle, half) = (0.5 * (low + high), 0.5 * scale * plot[c]);
-        Axis::new(names[c], widened([middle - half, middle + half], 0.0))
+        Axis::new(&names[c], widened([middle - half, middle + half], 0.0))
     });
     let mut chart = Chart::new(AREA, across, up);
-    let largest = points.iter().map(|(_, s)| s.forces.normal).fold(f64::MIN_POSITIVE, f64::max);
-    for (place, state) in points {
-        // The area of a closed point goes with its force.
-        let part = (state.forces.normal / largest).clamp(0.0, 1.0);
+    let largest = points.iter().map(|(.., value)| *value).fold(f64::MIN_POSITIVE, f64::max);
+    for (place, state, value) in points {
+        // The area of a closed point goes with its value.
+        let part = (value / largest).clamp(0.0, 1.0);
         match state.closed() {
             true => {
                 let radius = (RADII[0] * part.sqrt()).max(RADII[1]);
@@ -97,13 +137,13 @@ fn drawn(points: &[FacePoint], extents: [f64; 2], words: &str) -> String {
             }
             false => chart.circle(*place, RADII[1], &stroke(CALM, 1.5)),
         }
-        let [force, depth] = [state.forces.normal, 1e6 * state.penetration].map(|v| significant(v, 4));
-        chart.title(*place, &format!("N {force} N, δ {depth} µm"));
+        let [value, depth] = [*value, 1e6 * state.penetration].map(|v| significant(v, 4));
+        chart.title(*place, &format!("{} {value} {}, δ {depth} µm", shown.short, shown.unit));
     }
     let mut sheet = Sheet::new(WIDTH, 560.0);
     chart.draw(&mut sheet);
     sheet.text([106.0, 32.0], words, ink(13.5, INK).bold());
-    sheet.text([840.0, 32.0], "normal force [N]", ink(12.5, INK).bold());
+    sheet.text([840.0, 32.0], &format!("{} [{}]", shown.name, shown.unit), ink(12.5, INK).bold());
     let ticks = [0.0, 0.25, 0.5, 0.75, 1.0].map(|part| (part, significant(part * largest, 3)));
     sheet.colour_bar([840.0, 50.0], 400.0, shade, ticks);
     sheet.finish()
@@ -124,8 +164,9 @@ mod tests {
         let mut results = sample::rig();
         let steady = results.get_mut::<SteadyResult>().unwrap();
         let seen = |steady: &SteadyResult| {
-            let places = steady.points.iter().zip(&steady.state.points);
-            picture(steady, "rim", &places.map(|((_, place), state)| (*place, state)).collect::<Vec<_>>())
+            let places = steady.points.iter().zip(&steady.state.points).zip(&steady.areas);
+            let points = places.map(|(((_, place), state), area)| (*place, state, *area));
+            picture(steady, "rim", &points.collect::<Vec<_>>())
         };
         assert!(seen(steady).is_none(), "two edges");
         for (k, (_, place)) in steady.points.iter_mut().enumerate() {
@@ -135,5 +176,34 @@ mod tests {
         assert!(svg.contains("ΣN = 20.00 N on 6 closed points of 14") && !svg.contains("NaN"));
         // Titles and points.
         assert_eq!(svg.matches("<circle").count(), 14 + 14);
+        assert!(svg.contains("normal force [N]") && !svg.contains("MPa"));
+    }
+
+    /// Points of one pressure, whatever their areas, have one colour: N = p A.
+    #[test]
+    fn points_that_stand_for_areas_show_their_pressure() {
+        let mut results = sample::rig();
+        let steady = results.get_mut::<SteadyResult>().unwrap();
+        for (direction, name) in [([0.0, 1.0, 0.0], "y"), ([0.0, -1.0, 0.0], "y"), ([1.0, 0.0, 0.0], "x")] {
+            for (k, (_, place)) in steady.points.iter_mut().enumerate() {
+                *place = [1e-3 * (k % 5) as f64, 1e-3 * (k / 5) as f64, 0.0];
+            }
+            steady.directions[0] = [[0.0, 0.0, 1.0], direction];
+            steady.areas = (0..14).map(|k| Some(1e-6 * (1.0 + k as f64))).collect();
+            for (state, area) in steady.state.points.iter_mut().zip(&steady.areas) {
+                state.forces.normal = 0.25e6 * area.unwrap();
+            }
+            let places = steady.points.iter().zip(&steady.state.points).zip(&steady.areas);
+            let points = places.map(|(((_, place), state), area)| (*place, state, *area));
+            let seen = picture(steady, "rim", &points.collect::<Vec<_>>()).unwrap();
+            assert!(
+                seen.svg.contains("pressure [MPa]") && seen.caption.contains("its pressure"),
+                "{}",
+                seen.caption
+            );
+            let closed = steady.state.points.iter().filter(|state| state.closed()).count();
+            assert_eq!(seen.svg.matches("p 0.2500 MPa").count(), 14, "{closed}");
+            assert!(seen.svg.contains(&format!("{name} [mm], along the sliding direction")));
+        }
     }
 }

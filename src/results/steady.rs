@@ -14,6 +14,8 @@ pub struct SteadyResult {
     pub displacement: NodalField<f64>,
     /// Pair name and position \[m\] of every contact point.
     pub points: Vec<(String, [f64; 3])>,
+    /// The area that every contact point stands for \[m²\]; `None` where its stiffness is not one per area.
+    pub areas: Vec<Option<f64>>,
     /// Load \[N\] and sliding velocity \[m/s\] of each pair, with its name.
     pub pairs: Vec<(String, f64, f64)>,
     /// For each pair two unit vectors: where the load presses the body (the disc) and where the counter-body (the
