@@ -75,17 +75,17 @@ const LISTS: [&str; 4] = ["[]", "0", "[[]]", "[0, 0, 0, 0, 0, 0, 0]"];
 const OTHERS: [&str; 3] = ["false", "true", "7"];
 
 /// A case with one value set to another, and what was done.
-struct Variant {
-    what: String,
-    text: String,
+pub struct Variant {
+    pub what: String,
+    pub text: String,
 }
 
-fn value(text: &str) -> Value {
+pub fn value(text: &str) -> Value {
     format!("x = {text}").parse::<Table>().expect("TOML")["x"].clone()
 }
 
 /// Paths of all values below `node`, the node itself among them; indices of lists count from 0.
-fn paths(node: &Value, path: &mut Vec<String>, all: &mut Vec<Vec<String>>) {
+pub fn paths(node: &Value, path: &mut Vec<String>, all: &mut Vec<Vec<String>>) {
     if !path.is_empty() {
         all.push(path.clone());
     }
@@ -101,7 +101,7 @@ fn paths(node: &Value, path: &mut Vec<String>, all: &mut Vec<Vec<String>>) {
     }
 }
 
-fn slot<'a>(root: &'a mut Value, path: &[String]) -> Option<&'a mut Value> {
+pub fn slot<'a>(root: &'a mut Value, path: &[String]) -> Option<&'a mut Value> {
     path.iter().try_fold(root, |node, key| match node {
         Value::Array(list) => list.get_mut(key.parse::<usize>().ok()?),
         _ => node.get_mut(key),
@@ -154,7 +154,7 @@ fn variants(case: &Case) -> Vec<Variant> {
 }
 
 /// The case files of the validation whose path has `filter` in it.
-fn cases(filter: &str) -> Vec<PathBuf> {
+pub fn cases(filter: &str) -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("validation");
     let folders = std::fs::read_dir(root).expect("a folder").map(|entry| entry.expect("an entry").path());
     let files =
@@ -188,7 +188,7 @@ fn stridor(folder: &Path, command: &str) -> (ExitStatus, String) {
 }
 
 /// What is wrong with the way that the program takes a variant, if anything is.
-fn complaint(folder: &Path, variant: &Variant) -> Option<String> {
+pub fn complaint(folder: &Path, variant: &Variant) -> Option<String> {
     std::fs::write(folder.join("case.toml"), &variant.text).expect("a file");
     let out = folder.join("out");
     let _ = std::fs::remove_dir_all(&out);

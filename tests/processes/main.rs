@@ -16,6 +16,8 @@ mod faults;
 mod guide;
 mod killed;
 mod limits;
+mod motion;
+mod mutated_cases;
 mod parts;
 mod terminal;
 mod uncertainty;
