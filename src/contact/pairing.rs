@@ -4,7 +4,7 @@ use super::projection::{FaceGrid, Foot, Part, Vector, add, area_vector, cross, d
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::SparseVector;
 use crate::mesh::Element;
-use crate::numbers::components;
+use crate::numbers::{components, given};
 use crate::structure::ShellPart;
 use crate::structure::elements::{WeightedTriangle, split_face};
 use crate::system::ContactPoint;
@@ -303,8 +303,8 @@ fn check_gap(
     let place = |key: &str| format!("`contact.{}{key}`", surfaces.name);
     let gap = over.map_or(nearest.gap, |over| over.gap);
     if gap > reach {
-        let found = format!("{the_nearest} {gap:.4e} m away from `{}`", surfaces.counter.name);
-        let expected = format!("a distance within the reach of {reach:.4e} m");
+        let found = format!("{the_nearest} {} m away from `{}`", given(gap), surfaces.counter.name);
+        let expected = format!("a distance within the reach of {} m", given(reach));
         let help = format!(
             "Move the bodies together or check the mesh's unit; `reach = \"{:.3} mm\"` would take this point in",
             1.01e3 * gap
@@ -313,7 +313,7 @@ fn check_gap(
     }
     let thickness = 0.5 * (surfaces.body.thickness + surfaces.counter.thickness);
     if nearest.foot.is_some() && nearest.gap < -thickness {
-        let found = format!("the bodies {:.4e} m inside each other", -nearest.gap);
+        let found = format!("the bodies {} m inside each other", given(-nearest.gap));
         let fault = Fault::new(place(""), found, "bodies that just touch");
         faults.push(fault.with_help("Check the contact position and the thicknesses"));
     }

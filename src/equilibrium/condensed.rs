@@ -5,9 +5,9 @@ use crate::error::{Error, Result};
 use crate::linalg::SparseMatrix;
 use crate::linalg::SymmetricFactor;
 use crate::linalg::factor::is_singular;
-use crate::linalg::sparse::{add_scaled, sum_of_squares, times};
+use crate::linalg::sparse::{add_scaled, is_unresisted, sum_of_squares};
 use crate::system::{ContactMotion, ContactPoint, System};
-use faer::{Mat, MatRef};
+use faer::Mat;
 
 /// The structure with its contact springs closed, A = K + Σ d g gᵀ, factorised, and what it answers to a unit force
 /// on every contact direction.
@@ -36,9 +36,7 @@ impl Condensed {
     pub fn new(system: &System, k: &SparseMatrix) -> Result<Self> {
         let n = system.n_dofs();
         let points: Vec<&ContactPoint> = system.points().map(|(_, point)| point).collect();
-        let closed: Vec<f64> = system.points().map(|(pair, point)| spring(pair, point, k)).collect();
-        let springs = points.iter().zip(&closed).map(|(point, d)| (*d, &point.normal));
-        let a = add_scaled(&[(1.0, k), (1.0, &sum_of_squares(n, springs))]);
+        let (a, closed) = closed_stiffness(system, k);
         let factor = system.structure.engine.factorize(&a).map_err(|error| match is_singular(&error) {
             true => nothing_holds(error.to_string().trim_end_matches('.')),
             // Memory that does not suffice has another remedy.
@@ -74,6 +72,13 @@ impl Condensed {
     }
 }
 
+/// A = K + Σ d g gᵀ, in which every contact point is closed, and the d of the points.
+pub fn closed_stiffness(system: &System, k: &SparseMatrix) -> (SparseMatrix, Vec<f64>) {
+    let closed: Vec<f64> = system.points().map(|(pair, point)| spring(pair, point, k)).collect();
+    let springs = system.points().zip(&closed).map(|((_, point), d)| (*d, &point.normal));
+    (add_scaled(&[(1.0, k), (1.0, &sum_of_squares(system.n_dofs(), springs))]), closed)
+}
+
 /// Xᵀ f.
 fn answers(responses: &Mat<f64>, load: &[f64]) -> Vec<f64> {
     let dot = |p: usize| responses.col_as_slice(p).iter().zip(load).map(|(x, f)| x * f).sum();
@@ -106,7 +111,6 @@ fn spring(pair: &crate::system::ContactPair, point: &ContactPoint, k: &SparseMat
 /// Inverse iteration finds the softest motion x of A; when A x is no more than the round-off of forming it, x is a
 /// motion that nothing resists. (The softest elastic motion of a fine plate stands four decades above that.)
 fn check_held(a: &SparseMatrix, factor: &dyn SymmetricFactor) -> Result<()> {
-    const ROUND_OFF: f64 = 1e-14;
     let n = a.nrows();
     // A start that no symmetry of a structure is likely to be orthogonal to.
     let mut x = Mat::from_fn(n, 1, |i, _| 1.0 + ((i as f64 + 1.0) * 0.618_033_988_749_895).fract());
@@ -118,26 +122,13 @@ fn check_held(a: &SparseMatrix, factor: &dyn SymmetricFactor) -> Result<()> {
         }
         x.col_as_slice_mut(0).iter_mut().for_each(|v| *v /= size);
     }
-    let force = times(a, x.as_ref());
-    let terms = multiply_absolute(a, x.as_ref());
-    let largest = |m: &Mat<f64>| m.col_as_slice(0).iter().fold(0.0, |s: f64, v| s.max(v.abs()));
-    if largest(&force) <= ROUND_OFF * largest(&terms) {
+    if is_unresisted(a, x.as_ref()) {
         let dof = (0..n).max_by(|i, j| x[(*i, 0)].abs().total_cmp(&x[(*j, 0)].abs())).unwrap_or(0);
         return Err(nothing_holds(&format!(
             "a rigid motion, largest at degree of freedom {dof}, meets no force"
         )));
     }
     Ok(())
-}
-
-/// |A| |x|.
-fn multiply_absolute(a: &SparseMatrix, x: MatRef<'_, f64>) -> Mat<f64> {
-    let (columns, rows, values) = (a.col_ptr(), a.row_idx(), a.val());
-    Mat::from_fn(x.nrows(), 1, |i, _| {
-        (columns[i] as usize..columns[i + 1] as usize)
-            .map(|s| (values[s] * x[(rows[s] as usize, 0)]).abs())
-            .sum()
-    })
 }
 
 fn nothing_holds(found: &str) -> Error {

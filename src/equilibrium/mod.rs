@@ -13,7 +13,7 @@ mod steady;
 #[cfg(test)]
 mod tests;
 
-pub use condensed::Condensed;
+pub use condensed::{Condensed, closed_stiffness};
 pub use linear::{
     ContactBlock, LinearContact, closed_structure, contact_force, directions, linearize, linearize_points,
     tangent_stiffness,

@@ -7,6 +7,7 @@ use super::{PointState, SteadyOptions, SteadySliding};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::SparseMatrix;
 use crate::linalg::sparse::multiply_vector;
+use crate::numbers::significant;
 use crate::progress::Observer;
 use crate::system::{Closing, ContactPair, ContactPoint, System};
 
@@ -302,9 +303,9 @@ fn check_contact(
             return Err(Error::analysis(
                 format!("steady sliding, contact `{}`", pair.name),
                 format!(
-                    "no point touches: the nearest stays {:.3e} m away at an approach of {approach:.3e} m",
-                    // Not the minus of a zero.
-                    0.0 - deepest
+                    "no point touches: the nearest stays {} m away at an approach of {} m",
+                    significant(0.0 - deepest, 4),
+                    significant(*approach, 4)
                 ),
                 "Close the contact with a load, move the bodies nearer or press harder",
             ));
@@ -314,7 +315,9 @@ fn check_contact(
             return Err(Error::analysis(
                 format!("steady sliding, contact `{}`", pair.name),
                 format!(
-                    "the load crushes the bodies through: penetration {deepest:.3e} m, limit {limit:.3e} m"
+                    "the load crushes the bodies through: penetration {} m, limit {} m",
+                    significant(deepest, 4),
+                    significant(limit, 4)
                 ),
                 "Lower the load or raise the contact stiffness",
             ));

@@ -268,7 +268,10 @@ pub fn given_points(
         }
         ContactPoints::File(file) => {
             let [required, known] = POINT_COLUMNS;
-            return points_of(&TextTable::read(&case.folder.join(file), required, known)?.all_read()?, n);
+            return points_of(
+                &TextTable::read(&case.folder.join(file), required, known)?.all_read(known)?,
+                n,
+            );
         }
     }
     debug_assert!(contact.points.is_some());
@@ -281,7 +284,7 @@ pub fn given_points(
 /// Every fault of the heading, and the first faults of the lines.
 pub fn read_points(name: &str, text: &str, n: usize) -> Result<Vec<ContactPoint>> {
     let [required, known] = POINT_COLUMNS;
-    points_of(&TextTable::parse(name.to_string(), text.to_string(), required, known)?.all_read()?, n)
+    points_of(&TextTable::parse(name.to_string(), text.to_string(), required, known)?.all_read(known)?, n)
 }
 
 fn points_of(table: &TextTable, n: usize) -> Result<Vec<ContactPoint>> {

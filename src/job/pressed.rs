@@ -2,16 +2,17 @@
 
 use super::prepared::Prepared;
 use crate::case::Pressing;
+use crate::equilibrium::closed_stiffness;
 use crate::error::{Fault, Faults, Result};
 use crate::numbers::{components, significant};
 use crate::schema::dotted;
-use crate::structure::{free_parts_without, is_free_along};
+use crate::structure::{is_free_along, unresisted_parts};
 use crate::system::{Closing, ContactMotion};
 
 /// Whether steady sliding can have a contact that carries load.
 ///
 /// # Errors
-/// A part is free that no contact is on; all contacts are open where the bodies stand, and no load, approach or force closes one; a load presses a body that nothing
+/// A part is free even with every contact closed; all contacts are open where the bodies stand, and no load, approach or force closes one; a load presses a body that nothing
 /// holds against it.
 pub fn check(prepared: &Prepared) -> Result<()> {
     let mut faults = Faults::new();
@@ -53,16 +54,15 @@ fn nothing_touches(prepared: &Prepared, faults: &mut Faults) {
     }
 }
 
-/// Refuses parts that neither a support nor a spring nor a contact is on.
+/// Refuses parts that can move as rigid bodies without any force, even with every contact closed: they have no steady state.
 fn parts_without_a_support(prepared: &Prepared, faults: &mut Faults) {
     if prepared.case.matrices.is_some() {
         return;
     }
-    let (model, regions) = (&prepared.model, &prepared.regions);
-    let named = prepared.case.contact.values().flat_map(|contact| [&contact.body, &contact.counter]);
-    let touched: Vec<usize> = named.flat_map(|name| regions.nodes(name, "").unwrap_or_default()).collect();
+    let system = &prepared.system;
+    let (closed, _) = closed_stiffness(system, &system.structure.stiffness);
     // Matrices that hold no numbers are a fault of their own.
-    let parts = free_parts_without(model, &prepared.assembled, &touched).unwrap_or_default();
+    let parts = unresisted_parts(&prepared.model, &prepared.assembled, &closed).unwrap_or_default();
     for part in parts {
         let place = match part.names.first() {
             Some(name) if prepared.case.shell.contains_key(name) => format!("`shell.{}`", dotted(name)),
@@ -70,12 +70,16 @@ fn parts_without_a_support(prepared: &Prepared, faults: &mut Faults) {
             None => "`mass`".to_string(),
         };
         let motions = if part.motions == 1 { "motion" } else { "motions" };
+        let found = match part.names.len() {
+            0 | 1 => "a part that is".to_string(),
+            _ => format!("`{}`, which are", part.names.join("`, `")),
+        };
         let found = format!(
-            "a part that is free in {} rigid-body {motions} and that no contact is on ({})",
+            "{found} free in {} rigid-body {motions} even with every contact closed ({})",
             part.motions,
-            regions.name_of_node(part.node)
+            prepared.regions.name_of_node(part.node)
         );
-        let fault = Fault::new(place, found, "a part that supports, springs, links or contacts hold");
+        let fault = Fault::new(place, found, "parts that supports, springs, links or contacts hold");
         faults
             .push(fault.with_help("Add a [support], [spring], [rigid] or [contact], or leave the part out"));
     }

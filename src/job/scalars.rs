@@ -16,6 +16,8 @@ pub struct CaseScalar {
     pub value: f64,
     /// Its SI unit; empty for a pure number.
     pub unit: &'static str,
+    /// The largest size of the scalars of its list, which it is one component of; its own size where it is in none.
+    pub size: f64,
     /// Part of the problem that depends on it.
     pub kind: ScalarKind,
 }
@@ -37,12 +39,13 @@ pub type WithoutDerivative = (String, String);
 /// The scalars that `patterns` name, in the order of the case, and those of them that have no derivative.
 pub fn chosen(case: &Case, patterns: &[String]) -> (Vec<CaseScalar>, Vec<WithoutDerivative>) {
     let (mut scalars, mut left_out) = (Vec::new(), Vec::new());
-    for parameter in case.parameters() {
+    let all = case.parameters();
+    for parameter in all.clone() {
         if !patterns.iter().any(|pattern| path_matches(pattern, &parameter.path)) {
             continue;
         }
         match kind(&parameter) {
-            Ok(Some(kind)) => scalars.push(CaseScalar::new(parameter, kind)),
+            Ok(Some(kind)) => scalars.push(CaseScalar::new(parameter, kind, &all)),
             Ok(None) => {}
             Err(reason) => left_out.push((parameter.path, reason.to_string())),
         }
@@ -70,12 +73,21 @@ fn kind(parameter: &Parameter) -> std::result::Result<Option<ScalarKind>, &'stat
 pub fn scalar(case: &Case, path: &str) -> Result<Option<CaseScalar>> {
     let parameter = case.parameter(path)?;
     let kind = kind(&parameter).map_err(no_derivative)?;
-    Ok(kind.map(|kind| CaseScalar::new(parameter, kind)))
+    Ok(kind.map(|kind| CaseScalar::new(parameter, kind, &case.parameters())))
 }
 
 impl CaseScalar {
-    fn new(parameter: Parameter, kind: ScalarKind) -> CaseScalar {
-        CaseScalar { path: parameter.path, value: parameter.value, unit: parameter.unit, kind }
+    fn new(parameter: Parameter, kind: ScalarKind, all: &[Parameter]) -> CaseScalar {
+        let Parameter { path, value, unit, .. } = parameter;
+        let list = |path: &str| {
+            path.rsplit_once('.')
+                .filter(|(_, k)| k.parse::<usize>().is_ok())
+                .map(|(list, _)| list.to_string())
+        };
+        let own = list(&path);
+        let beside = all.iter().filter(|other| own.is_some() && list(&other.path) == own);
+        let size = beside.fold(value.abs(), |size, other| size.max(other.value.abs()));
+        CaseScalar { path, value, unit, size, kind }
     }
 
     /// A step that is small against the magnitude of the scalar, and a guess where it is zero.
@@ -92,6 +104,18 @@ impl CaseScalar {
             _ => 0.0,
         };
         (SHARE * self.value.abs()).max(least)
+    }
+
+    /// The longest step from zero, where the effect on λ asks for more than the guess: an angle of 0.01, a length of 1 mm, a hundredth
+    /// of the largest component of a direction; of other quantities any, as zero says nothing of their size.
+    pub fn longest_step(&self) -> f64 {
+        match self.unit {
+            "rad" => 1e-2,
+            "m" => 1e-3,
+            "" if self.size > 0.0 => 1e-2 * self.size,
+            "" => 1e-2,
+            _ => f64::INFINITY,
+        }
     }
 
     /// The system of the case with this scalar at `value`, which has the degrees of freedom, the elements and the contact

@@ -180,7 +180,7 @@ impl Analysed<'_> {
         let build = |value: f64| scalar.system_at(self.prepared, value);
         let mut step = scalar.step();
         if value == 0.0 {
-            step = self.step_from_zero(sensitivity, &build, step)?;
+            step = self.step_from_zero(sensitivity, &build, (step, scalar.longest_step()))?;
         }
         let accepted = |p: f64| case.with_parameter(&scalar.path, p).is_ok();
         let domain = if accepted(value - 2.0 * step) { Domain::Inside } else { Domain::AtLowerBound };
@@ -222,22 +222,33 @@ impl Analysed<'_> {
         Ok(sensitivity.change(&other.system)?.into_iter().map(|change| exact(change / step)).collect())
     }
 
-    /// A step from zero that changes some λ by about 1e-5 of itself, found from a guess.
+    /// A step from zero that changes some λ by about 1e-5 of itself, found from a guess and no longer than `longest`. Where the model
+    /// does not bear a step, the one before it is kept.
     fn step_from_zero(
         &self,
         sensitivity: &Sensitivity,
         build: &dyn Fn(f64) -> Result<System>,
-        mut step: f64,
+        (mut step, longest): (f64, f64),
     ) -> Result<f64> {
         const AIM: f64 = 1e-5;
-        for _ in 0..3 {
-            let change = sensitivity.change(&build(step)?)?;
+        const TRIALS: usize = 4;
+        let mut borne = None;
+        for trial in 1..=TRIALS {
+            let change = match build(step).and_then(|other| sensitivity.change(&other)) {
+                Ok(change) => change,
+                Err(error) => return borne.ok_or(error),
+            };
+            borne = Some(step);
             let sizes = change.iter().zip(sensitivity.eigenvalues()).map(|(d, l)| d.norm() / l.norm());
             let size = sizes.fold(0.0, f64::max);
             if size.is_nan() || size == 0.0 || (0.1..10.0).contains(&(size / AIM)) {
                 break;
             }
-            step *= (AIM / size).clamp(1e-8, 1e8);
+            let next = (step * (AIM / size).clamp(1e-8, 1e8)).min(longest.max(step));
+            if next == step || trial == TRIALS {
+                break;
+            }
+            step = next;
         }
         Ok(step)
     }
@@ -331,6 +342,7 @@ impl Analysed<'_> {
 fn reason(error: &Error) -> String {
     match error {
         Error::Analysis { what, found, .. } if what == "derivative" => found.clone(),
-        other => other.to_string(),
+        // The sentence that it stands in has its own full stop.
+        other => other.to_string().trim_end_matches('.').to_string(),
     }
 }

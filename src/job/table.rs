@@ -250,16 +250,21 @@ impl TextTable {
         warnings
     }
 
-    /// The columns that are not read as faults, where all must be known.
+    /// The columns that are not read as one fault, where all must be among the `known` ones.
     ///
     /// # Errors
-    /// Each of them.
-    pub fn all_read(self) -> Result<TextTable> {
-        let place = format!("{}:{}", self.name, self.heading);
-        let fault = |column: &String| {
-            Fault::new(&*place, format!("the column \"{column}\""), "columns that have a meaning here")
-        };
-        Faults(self.unread.iter().map(fault).collect()).into_result(self)
+    /// A column that is not.
+    pub fn all_read(self, known: &[&str]) -> Result<TextTable> {
+        let mut faults = Faults::new();
+        if !self.unread.is_empty() {
+            let list: Vec<String> = self.unread.iter().map(|column| format!("\"{column}\"")).collect();
+            let columns = if list.len() == 1 { "column" } else { "columns" };
+            let found = format!("the {columns} {}", list.join(", "));
+            let expected = format!("no others than {}", known.join(", "));
+            let fault = Fault::new(format!("{}:{}", self.name, self.heading), found, expected);
+            faults.push(fault.with_help("Remove what is not read, or name it as what it is"));
+        }
+        faults.into_result(self)
     }
 }
 
@@ -340,7 +345,7 @@ mod tests {
                     assert!(faults.0.is_empty() && table.rows().count() == 3);
                     let told = table.warnings().join("\n");
                     assert_eq!(told.contains("decimal points"), decimal == ",", "{told}");
-                    assert!(told.contains("\"comment\"") && table.all_read().is_err());
+                    assert!(told.contains("\"comment\"") && table.all_read(&["f"]).is_err());
                 }
             }
         }

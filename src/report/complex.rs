@@ -84,19 +84,27 @@ fn unstable(result: &ComplexResult) -> ReportTable {
     if !unmatched.is_empty() {
         table.notes.push(format!("Measured squeal without an unstable mode: {}.", unmatched.join(", ")));
     }
-    table.notes.extend(result.certificate.as_ref().map(counted));
+    table
+        .notes
+        .extend(result.certificate.as_ref().map(|certificate| counted(certificate, result.band_hz[0])));
     table
 }
 
-/// Count of the unstable eigenvalues, in words.
-fn counted(certificate: &Certificate) -> String {
+/// Count of the unstable eigenvalues, in words, of a band that begins at `lowest` \[Hz\].
+fn counted(certificate: &Certificate, lowest: f64) -> String {
     let ([low, high], [slow, fast]) = (certificate.band_hz, certificate.growth);
     let faster = match certificate.nothing_faster {
         true => format!("σ > {} 1/s", significant(slow, 2)),
         false => format!("σ from {} to {} 1/s", significant(slow, 2), significant(fast, 2)),
     };
     let region = format!("between {} and {} Hz with {faster}", given(low), hertz(high, 0));
-    let with_conjugates = if low == 0.0 { " (conjugates included)" } else { "" };
+    let with_conjugates = match (low, lowest) {
+        (0.0, _) => " (conjugates included)",
+        (_, 0.0) => {
+            " (loss factors have no meaning at 0 Hz, so that nothing is counted below a thousandth of the band)"
+        }
+        _ => "",
+    };
     let count = format!("{} eigenvalues {region}{with_conjugates}", certificate.counted);
     let mut words = if certificate.agrees() && !certificate.proven {
         let step = significant(180.0 / certificate.margin, 2);

@@ -3,10 +3,12 @@
 use super::{Assembled, Model};
 use crate::connected::lowest_connected;
 use crate::error::Result;
+use crate::linalg::SparseMatrix;
 use crate::linalg::dense::{product, symmetric_eigen};
-use crate::linalg::sparse::{diagonal, times};
+use crate::linalg::sparse::{diagonal, is_unresisted, times};
 use crate::system::Structure;
 use faer::Mat;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A piece of the structure that can move as a rigid body without any force.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +25,10 @@ pub struct FreePart {
 const FREE: f64 = 1e-12;
 /// A motion is free when xᵀKx is below this part of Σ |xᵢ Kᵢⱼ xⱼ|: the rounding of K and of the sum.
 const ROUNDING: f64 = 1e-14;
+/// A body takes part in a motion with more than this part of its amplitude.
+const TAKES_PART: f64 = 1e-3;
+/// More bodies than this that springs and contacts bring together are left to the solution.
+const MOST_BODIES: usize = 50;
 
 /// The connected pieces of `model` that K holds in less than all of their rigid-body motions, contacts left out.
 ///
@@ -57,22 +63,71 @@ pub fn free_parts(model: &Model, assembled: &Assembled) -> Result<Vec<FreePart>>
     Ok(found)
 }
 
-/// The [`free_parts`] that none of `nodes` moves with and no spring is in: nothing but rigid motion is left to them. A piece with
-/// springs, however soft, is not among them.
+/// What can move as rigid bodies where `closed`, the stiffness with every contact closed, answers with no force: the bodies that springs
+/// and contacts bring together move against each other. The bodies that take part in such motions, those of one group as
+/// one part. The forces are measured as where steady sliding is solved, so that what passes here has a solution.
 ///
 /// # Errors
-/// Those of [`free_parts`].
-pub fn free_parts_without(model: &Model, assembled: &Assembled, nodes: &[usize]) -> Result<Vec<FreePart>> {
-    let (dofs, free) = (&assembled.dofs, assembled.dofs.free_dofs());
-    let of_node = pieces(assembled);
-    let sprung = model.springs.iter().flat_map(|spring| [Some(spring.node), spring.other]).flatten();
-    let mut touched: Vec<usize> = Vec::new();
-    for node in nodes.iter().copied().chain(sprung) {
-        let terms = (0..6).flat_map(|dof| dofs.terms(node, dof));
-        touched.extend(terms.map(|(k, _)| of_node[free[*k].node]));
+/// When a matrix holds a NaN or an infinity.
+pub fn unresisted_parts(
+    model: &Model,
+    assembled: &Assembled,
+    closed: &SparseMatrix,
+) -> Result<Vec<FreePart>> {
+    let dofs = &assembled.dofs;
+    let free = dofs.free_dofs();
+    let of_node = bodies(model, assembled);
+    let together = (0..closed.ncols()).flat_map(|j| closed.row_idx_of_col(j).map(move |i| [i, j]));
+    let together = together.map(|entry| entry.map(|dof| of_node[free[dof].node])).filter(|[a, b]| a != b);
+    let group_of = lowest_connected(of_node.len(), together);
+    let mut groups: BTreeMap<usize, BTreeMap<usize, Vec<usize>>> = BTreeMap::new();
+    for (dof, at) in free.iter().enumerate() {
+        let body = of_node[at.node];
+        groups.entry(group_of[body]).or_default().entry(body).or_default().push(dof);
     }
-    let parts = free_parts(model, assembled)?.into_iter();
-    Ok(parts.filter(|part| !touched.contains(&of_node[part.node])).collect())
+    let nodes = &model.nodes;
+    let center = std::array::from_fn(|k| nodes.iter().map(|x| x[k]).sum::<f64>() / nodes.len().max(1) as f64);
+    let motions = dofs.rigid_body_vectors(center);
+    let largest = diagonal(closed);
+    let mut found = Vec::new();
+    for bodies in groups.values().filter(|bodies| bodies.len() <= MOST_BODIES) {
+        // Orthonormal rigid motions of each body, on all degrees of freedom.
+        let mut columns: Vec<(usize, Vec<f64>)> = Vec::new();
+        for (body, own) in bodies {
+            let x = Mat::from_fn(own.len(), 6, |i, k| motions[k][own[i]]);
+            let basis = orthonormal(&x)?;
+            let moved = product(x.as_ref(), basis.as_ref());
+            for k in 0..moved.ncols() {
+                let mut column = vec![0.0; free.len()];
+                own.iter().enumerate().for_each(|(i, dof)| column[*dof] = moved[(i, k)]);
+                columns.push((*body, column));
+            }
+        }
+        let x = Mat::from_fn(free.len(), columns.len(), |i, k| columns[k].1[i]);
+        let energy = product(x.transpose(), times(closed, x.as_ref()).as_ref());
+        let (values, directions) = symmetric_eigen(energy.as_ref())?;
+        let size = bodies.values().flatten().fold(0.0f64, |m, i| m.max(largest[*i]));
+        let mut part = FreePart { names: Vec::new(), node: usize::MAX, motions: 0 };
+        let mut moving = BTreeSet::new();
+        for k in (0..values.len()).filter(|k| values[*k] <= FREE * size) {
+            let motion = product(x.as_ref(), directions.subcols(k, 1));
+            if !is_unresisted(closed, motion.as_ref()) {
+                continue;
+            }
+            part.motions += 1;
+            let taking_part =
+                columns.iter().enumerate().filter(|(j, _)| directions[(*j, k)].abs() > TAKES_PART);
+            moving.extend(taking_part.map(|(_, (body, _))| *body));
+        }
+        for body in moving {
+            part.names.extend(names(model, assembled, &of_node, body));
+            part.node = part.node.min(free[bodies[&body][0]].node);
+        }
+        if part.motions > 0 {
+            found.push(part);
+        }
+    }
+    Ok(found)
 }
 
 /// Whether the piece that `nodes` are of can be moved along a direction as a whole without any force, contacts left out.
@@ -125,16 +180,34 @@ fn pieces(assembled: &Assembled) -> Vec<usize> {
     lowest_connected(dofs.n_nodes(), pairs)
 }
 
-/// How many of the motions that the columns of `x` span have xᵀKx / xᵀx of at most `bound`, with `forces` = K x.
-fn unheld(x: &Mat<f64>, forces: &Mat<f64>, bound: f64) -> Result<usize> {
+/// B, with which the columns of X B are orthonormal and span those of X, n × 6.
+fn orthonormal(x: &Mat<f64>) -> Result<Mat<f64>> {
     let scale: Vec<f64> =
         (0..6).map(|k| x.col(k).norm_l2()).map(|l| if l > 0.0 { 1.0 / l } else { 0.0 }).collect();
-    let scaled = |a: Mat<f64>| Mat::from_fn(6, 6, |i, j| scale[i] * a[(i, j)] * scale[j]);
-    let gram = scaled(product(x.transpose(), x.as_ref()));
-    let energy = scaled(product(x.transpose(), forces.as_ref()));
+    let gram = product(x.transpose(), x.as_ref());
+    let gram = Mat::from_fn(6, 6, |i, j| scale[i] * gram[(i, j)] * scale[j]);
     let (sizes, directions) = symmetric_eigen(gram.as_ref())?;
     let kept: Vec<usize> = (0..6).filter(|j| sizes[*j] > 1e-9).collect();
-    let basis = Mat::from_fn(6, kept.len(), |i, j| directions[(i, kept[j])] / sizes[kept[j]].sqrt());
+    Ok(Mat::from_fn(6, kept.len(), |i, j| scale[i] * directions[(i, kept[j])] / sizes[kept[j]].sqrt()))
+}
+
+/// For every node, the lowest of those that elements and rigid links connect it to.
+fn bodies(model: &Model, assembled: &Assembled) -> Vec<usize> {
+    let (dofs, free) = (&assembled.dofs, assembled.dofs.free_dofs());
+    let faces = model.shells.iter().flat_map(|part| part.faces.iter().map(|face| face.nodes().to_vec()));
+    let bars = model.bars.iter().flat_map(|part| part.elements.iter().map(|nodes| nodes.to_vec()));
+    let linked = (0..dofs.n_nodes()).map(|node| vec![node]);
+    let moved = |nodes: Vec<usize>| -> Vec<usize> {
+        let terms = nodes.into_iter().flat_map(|node| (0..6).flat_map(move |dof| dofs.terms(node, dof)));
+        terms.map(|(k, _)| free[*k].node).collect()
+    };
+    lowest_connected(dofs.n_nodes(), faces.chain(bars).chain(linked).map(moved))
+}
+
+/// How many of the motions that the columns of `x` span have xᵀKx / xᵀx of at most `bound`, with `forces` = K x.
+fn unheld(x: &Mat<f64>, forces: &Mat<f64>, bound: f64) -> Result<usize> {
+    let basis = orthonormal(x)?;
+    let energy = product(x.transpose(), forces.as_ref());
     let small = product(basis.transpose(), product(energy.as_ref(), basis.as_ref()).as_ref());
     let (values, _) = symmetric_eigen(small.as_ref())?;
     Ok(values.iter().filter(|v| **v <= bound).count())
@@ -160,6 +233,8 @@ mod tests {
     use super::super::samples::STEEL;
     use super::super::{BarPart, Model, Section, Spring, Support, assemble};
     use super::*;
+    use crate::linalg::random::Random;
+    use crate::linalg::sparse::{add_scaled, sum_of_squares};
 
     fn bar(name: &str, nodes: [usize; 2]) -> BarPart {
         BarPart {
@@ -199,12 +274,69 @@ mod tests {
         assert_eq!(found_by_node[0], part("hinged", 4 + usize::from(found_by_node[0].node == 5), 1));
         assert_eq!(found_by_node[1], part("loose", 2 + usize::from(found_by_node[1].node == 3), 5));
         let assembled = assemble(&model).unwrap();
-        // The loose one has a spring; a contact holds the hinged one or it does not.
-        let alone = |nodes: &[usize]| free_parts_without(&model, &assembled, nodes).unwrap().len();
-        assert_eq!([alone(&[]), alone(&[0, 3]), alone(&[5])], [1, 1, 0]);
         let free = |node, direction| is_free_along(&model, &assembled, &[node], direction);
         // The spring along x holds the loose bar in that direction only.
         assert!(free(3, [0.0, 1.0, 0.0]) && free(2, [0.0, 0.0, 1.0]) && !free(3, [1.0, 0.0, 0.0]));
         assert!(!free(1, [0.0, 1.0, 0.0]) && !free(5, [0.0, 1.0, 0.0]));
+    }
+
+    /// Pairs of bars at random places on springs of random directions, to the ground, to each other and, as contacts are, beside K: six motions a
+    /// pair less the rank of what holds them, by a singular value decomposition. A spring of 1e-6 of the others holds, too.
+    #[test]
+    fn motions_that_nothing_resists_are_those_outside_of_the_rank_of_what_holds() {
+        let mut random = Random::seeded(47);
+        let mut seen = [0; 2];
+        for _ in 0..60 {
+            let bars = 1 + random.below(3);
+            let mut place = || [0; 3].map(|_| random.next());
+            let nodes: Vec<[f64; 3]> = (0..3 * bars).map(|_| place()).collect();
+            let mut model = Model {
+                nodes: nodes.clone(),
+                bars: (0..2 * bars)
+                    .map(|k| bar(&format!("bar {k}"), [3 * (k / 2) + k % 2, 3 * (k / 2) + k % 2 + 1]))
+                    .collect(),
+                ..Model::default()
+            };
+            // The force rows on the six motions of each bar: (d, x × d).
+            let row = |node: usize, d: [f64; 3], sign: f64, row: &mut [f64]| {
+                let x = nodes[node];
+                let turn = [x[1] * d[2] - x[2] * d[1], x[2] * d[0] - x[0] * d[2], x[0] * d[1] - x[1] * d[0]];
+                let at = 6 * (node / 3);
+                d.iter().chain(&turn).enumerate().for_each(|(k, v)| row[at + k] += sign * v);
+            };
+            let springs = random.below(6 * bars + 3);
+            let (mut rows, mut contacts) = (Vec::new(), Vec::new());
+            for k in 0..springs {
+                let node = random.below(3 * bars);
+                let direction = [0; 3].map(|_| random.next());
+                let other = Some(random.below(3 * bars)).filter(|other| other / 3 != node / 3);
+                let mut own = vec![0.0; 6 * bars];
+                row(node, direction, 1.0, &mut own);
+                other.into_iter().for_each(|other| row(other, direction, -1.0, &mut own));
+                rows.push(own);
+                let stiffness = if k % 5 == 4 { 1.0 } else { 1e6 };
+                let spring = Spring { node, other, direction, rotational: false, stiffness, damping: 0.0 };
+                if k % 3 == 2 { contacts.push(spring) } else { model.springs.push(spring) }
+            }
+            let held = nalgebra::DMatrix::from_fn(rows.len().max(1), 6 * bars, |i, j| {
+                rows.get(i).map_or(0.0, |row| row[j])
+            });
+            let free = 6 * bars - held.rank(1e-6);
+            let assembled = assemble(&model).unwrap();
+            let n = assembled.dofs.free_dofs().len();
+            let terms = |spring: &Spring| {
+                let ends = [Some((spring.node, 1.0)), spring.other.map(|node| (node, -1.0))];
+                let ends = ends.into_iter().flatten();
+                let of = |(node, sign)| [0, 1, 2].map(|c| (node, c, sign * spring.direction[c]));
+                assembled.dofs.reduce(&ends.flat_map(of).collect::<Vec<_>>())
+            };
+            let contacts: Vec<_> = contacts.iter().map(|spring| (spring.stiffness, terms(spring))).collect();
+            let contacts = sum_of_squares(n, contacts.iter().map(|(k, g)| (*k, g)));
+            let closed = add_scaled(&[(1.0, &assembled.structure.stiffness), (1.0, &contacts)]);
+            let found = unresisted_parts(&model, &assembled, &closed).unwrap();
+            assert_eq!(found.iter().map(|part| part.motions).sum::<usize>(), free, "{model:?}");
+            seen[usize::from(free > 0)] += 1;
+        }
+        assert!(seen.iter().all(|count| *count > 5), "{seen:?}");
     }
 }

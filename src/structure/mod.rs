@@ -29,7 +29,7 @@ pub use assembly::{Assembled, GeometricStiffness, assemble};
 pub use check::check;
 pub use dofs::{DofMap, FreeDof};
 pub use elements::waves::{thickness_error, thickness_shear_frequency};
-pub use free::{FreePart, free_parts, free_parts_without, is_free_along};
+pub use free::{FreePart, free_parts, is_free_along, unresisted_parts};
 pub use material::{Material, RayleighDamping};
 pub use model::{BarPart, Model, PlateTheory, PointMass, RigidLink, ShellPart, Spring, Support};
 pub use section::Section;

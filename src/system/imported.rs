@@ -9,6 +9,7 @@ use crate::error::{Fault, Faults, Result};
 use crate::linalg::matrix_market::MarketMatrix;
 use crate::linalg::sparse::{add_scaled, diagonal, on_one_pattern};
 use crate::linalg::{Engine, SparseMatrix};
+use crate::numbers::typed;
 
 /// The same as [`ROUND_OFF`] for M, which must be symmetric: what is larger is told.
 const MASS_ROUND_OFF: f64 = 1e-12;
@@ -172,10 +173,10 @@ fn multipliers(k: &SparseMatrix, inertia: &[f64], size: &[f64], places: [&str; 2
     let first = *rows.first()?;
     let more = if rows.len() > 1 { format!(" and {} more", rows.len() - 1) } else { String::new() };
     let found = format!(
-        "row {}{more} with no mass, {:e} on the diagonal of the stiffness and entries up to {:e} beside it",
+        "row {}{more} with no mass, {} on the diagonal of the stiffness and entries up to {} beside it",
         first + 1,
-        diagonal[first],
-        size[first]
+        typed(diagonal[first]),
+        typed(size[first])
     );
     let expected = "mass or a positive stiffness of its own in every row";
     Some(Fault::new(places.join(" and "), found, expected).with_help(

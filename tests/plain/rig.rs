@@ -177,3 +177,45 @@ fn sensitivities_of_the_rig_equal_differences_of_reruns() {
         }
     }
 }
+
+/// Components of directions that are zero in the case have derivatives, too: dλ/dp across is that of reruns, and zero along the
+/// direction and along the normal of the contact, of which nothing is used.
+#[test]
+fn components_of_directions_that_are_zero_have_derivatives() {
+    let given = "sliding_direction = [1.0, 0.0, 0.0]";
+    let text = coarse_rig().to_toml().replace("[cea]", "[cea]\ncertify = false");
+    // Off the middle of the slider, so that a turn to either side is not the same.
+    let text = text.replace("position = [0.0, 0.0]", "position = [0.0, 0.007]");
+    assert!(text.contains(given) && text.contains("0.007"), "{text}");
+    for length in [1.0f64, -2e-3, 30.0] {
+        let direction = [length, 0.0, 0.0];
+        let text = text.replace(given, &format!("sliding_direction = {direction:?}"))
+            + "\n[sensitivity]\nparameters = [\"contact.rim.sliding_direction.*\"]\n";
+        let case = Case::parse("a rig", &text, PathBuf::from(".")).expect("a sound case");
+        let prepared = Prepared::new(&case).expect("a sound rig");
+        let mut results = analyse(&prepared, Selection::Listed, &mut |_| Ok(()), &()).expect("an analysis");
+        let found = results.take::<SensitivityResult>().expect("sensitivities");
+        assert!(found.left_out.is_empty() && !found.modes.is_empty(), "{direction:?}: {:?}", found.left_out);
+        let lambda: Vec<c64> = found.modes.iter().map(|mode| mode.eigenvalue).collect();
+        let across = "contact.rim.sliding_direction.1";
+        let mut seen = false;
+        let exact = by_rerun(&case, across, 0.0, 3e-3 * length.abs(), &lambda);
+        for (mode, exact) in found.modes.iter().zip(exact) {
+            // What eigenvalues are known to, in steps of 3e-3.
+            let noise = 1e-9 * mode.eigenvalue.norm() / length.abs();
+            assert_eq!(mode.parameters.len(), 3, "{direction:?}");
+            for rate in &mode.parameters {
+                let exact = if rate.path == across { exact } else { c64::new(0.0, 0.0) };
+                let error = (rate.rate - exact).norm();
+                assert!(
+                    error <= 1e-5 * exact.norm() + noise,
+                    "{direction:?} {}: {} {exact}",
+                    rate.path,
+                    rate.rate
+                );
+            }
+            seen |= exact.norm() > 1e3 * noise;
+        }
+        assert!(seen, "{direction:?}");
+    }
+}

@@ -63,9 +63,14 @@ pub fn growth(value: f64, lambda: f64, round_off: f64) -> String {
     if value > 0.0 { format!("+{text}") } else { text }
 }
 
-/// Coordinates or components with at most six significant digits: `[0.1, -0.0333333, 0.0]`.
+/// A number as it is typed, with at most six significant digits: `10000`, `-0.0333333`, `3e-13`.
+pub fn typed(value: f64) -> String {
+    if value.is_finite() { given(value).replace('−', "-") } else { value.to_string() }
+}
+
+/// Coordinates or components as they are typed: `[0.1, -0.0333333, 0]`.
 pub fn components(values: [f64; 3]) -> String {
-    format!("{:?}", values.map(|v| format!("{v:.5e}").parse::<f64>().unwrap_or(v)))
+    format!("[{}]", values.map(typed).join(", "))
 }
 
 /// The minus sign of print, and none before a number that rounds to zero.
@@ -80,13 +85,12 @@ pub fn minus(text: &str) -> String {
 /// A value that a person gave: as short as it was written, at most six significant digits.
 pub fn given(value: f64) -> String {
     let text = significant(value, 6);
-    match text.split_once('.') {
-        Some((whole, decimals)) if !text.contains('e') => {
-            let decimals = decimals.trim_end_matches('0');
-            if decimals.is_empty() { whole.to_string() } else { format!("{whole}.{decimals}") }
-        }
-        _ => text,
-    }
+    let (digits, exponent) = text.split_at(text.find('e').unwrap_or(text.len()));
+    let digits = match digits.contains('.') {
+        true => digits.trim_end_matches('0').trim_end_matches('.'),
+        false => digits,
+    };
+    format!("{digits}{exponent}")
 }
 
 /// `value` with a fixed number of decimals; a dash when it is not finite.
@@ -100,9 +104,13 @@ pub fn signed(value: f64, decimals: usize) -> String {
     if value > 0.0 && value.is_finite() { format!("+{text}") } else { text }
 }
 
-/// An error measure as a power of ten with two digits, `–` when it is not finite.
+/// An error measure as a power of ten with two digits, `0` when it is zero, `–` when it is not finite.
 pub fn power(value: f64) -> String {
-    if value.is_finite() { format!("{value:.1e}") } else { "–".into() }
+    match value {
+        0.0 => "0".into(),
+        _ if value.is_finite() => format!("{value:.1e}"),
+        _ => "–".into(),
+    }
 }
 
 #[cfg(test)]
@@ -128,8 +136,9 @@ mod tests {
 
     #[test]
     fn components_have_six_digits() {
-        assert_eq!(components([0.1, -1.0 / 30.0, 0.0]), "[0.1, -0.0333333, 0.0]");
-        assert_eq!(components([1e-12 / 3.0, f64::NAN, 1234567.0]), "[3.33333e-13, NaN, 1234570.0]");
+        assert_eq!(components([0.1, -1.0 / 30.0, 0.0]), "[0.1, -0.0333333, 0]");
+        assert_eq!(components([1e-12 / 3.0, f64::NAN, 1234567.0]), "[3.33333e-13, NaN, 1234567]");
+        assert_eq!(components([1e4, -0.0, 1e300]), "[10000, 0, 1e300]");
     }
 
     #[test]

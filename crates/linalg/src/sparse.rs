@@ -306,6 +306,20 @@ pub fn dense_columns(n: usize, vectors: &[&SparseVector]) -> Mat<f64> {
     dense
 }
 
+/// Whether the stiffness A answers the motion x, one column, with no force: max |A x| is no more than 1e-14 of max (|A| |x|), the
+/// round-off of forming it. (The softest elastic motion of a fine plate stands four decades above that.)
+pub fn is_unresisted(a: &SparseMatrix, x: MatRef<'_, f64>) -> bool {
+    const ROUND_OFF: f64 = 1e-14;
+    let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |s: f64, v| s.max(v.abs()));
+    let force = times(a, x);
+    let mut terms = vec![0.0; x.nrows()];
+    for j in 0..a.ncols() {
+        let entries = a.row_idx_of_col(j).zip(a.val_of_col(j));
+        entries.for_each(|(i, v)| terms[i] += (v * x[(j, 0)]).abs());
+    }
+    largest(&mut force.col_as_slice(0).iter().copied()) <= ROUND_OFF * largest(&mut terms.into_iter())
+}
+
 /// Σ d v vᵀ of order `n`, both triangles stored.
 ///
 /// # Panics

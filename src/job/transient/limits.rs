@@ -4,6 +4,7 @@ use super::in_time::InTime;
 use super::plan;
 use crate::case::{HoldChoice, TransientAnalysis};
 use crate::linalg::c64;
+use crate::numbers::significant;
 use crate::results::Channel;
 use crate::signal::Growth;
 use crate::system::Closing;
@@ -36,8 +37,9 @@ pub(super) fn unreadable(lambda: c64, plan: &Plan, end: f64) -> Option<String> {
     }
     if hz * end < PERIODS {
         return Some(format!(
-            "the motion is small for {end:.3e} s only, {:.2} periods of the mode at {hz:.1} Hz, and growth is read from {PERIODS} periods or \
+            "the motion is small for {} s only, {:.2} periods of the mode at {hz:.1} Hz, and growth is read from {PERIODS} periods or \
              more: make `transient.duration` longer, or `transient.disturbance.amplitude` smaller",
+            significant(end, 3),
             hz * end
         ));
     }
@@ -98,10 +100,12 @@ impl InTime<'_> {
                 channels.iter().find(|channel| channel.name == name).map_or(0.0, |channel| channel.range[1]);
             if reached > PRESSED * most {
                 all.push(format!(
-                    "The contact {} is closed by {most:.4} N at rest and reaches {reached:.4} N in motion, {:.1} times as much: its \
+                    "The contact {} is closed by {} N at rest and reaches {} N in motion, {:.1} times as much: its \
                      approach is kept in motion, as in the complex eigenvalues, not its load. `transient.hold = \"load\"` keeps \
                      the load.",
                     pair.name,
+                    significant(most, 3),
+                    significant(reached, 3),
                     reached / most
                 ));
             }
