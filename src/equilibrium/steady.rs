@@ -299,7 +299,7 @@ fn check_contact(
         let states = &points[first..first + pair.points.len()];
         first += pair.points.len();
         let deepest = states.iter().map(|s| s.penetration).fold(f64::NEG_INFINITY, f64::max);
-        if states.iter().all(|s| s.forces.normal == 0.0) {
+        if states.iter().all(|s| s.forces.normal == 0.0) && !pair.is_bilateral() {
             return Err(Error::analysis(
                 format!("steady sliding, contact `{}`", pair.name),
                 format!(

@@ -35,7 +35,7 @@ fn nothing_touches(prepared: &Prepared, faults: &mut Faults) {
             let motion = ContactMotion { penetration, penetration_rate: 0.0, slip_velocity };
             pair.law.respond(&motion, point.weight).0.normal != 0.0
         });
-        if forced || closed {
+        if forced || closed || pair.is_bilateral() {
             return;
         }
         let gap = pair.points.iter().map(|point| point.gap).fold(f64::INFINITY, f64::min);

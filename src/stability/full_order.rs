@@ -137,7 +137,7 @@ impl<'s, 'a> SecondMethod<'s, 'a> {
             SecondMethod::Own(operator) => {
                 let problem = Shifted::new(operator, shift)?;
                 Box::new(move |radius, count| {
-                    toar(&problem, shift, radius, count, TOLERANCE).map(|pairs| pairs.values)
+                    toar(&problem, shift, radius, (count, f64::INFINITY), TOLERANCE).map(|pairs| pairs.values)
                 })
             }
             SecondMethod::Library(solver) => {

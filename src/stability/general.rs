@@ -21,7 +21,7 @@ use crate::linalg::factor::SymbolicFactor;
 use crate::linalg::lu::Lu;
 use crate::linalg::multivector::gram;
 use crate::linalg::sparse::times;
-use crate::linalg::toar::toar;
+use crate::linalg::toar::{ToarPairs, toar};
 use crate::modal::RealModes;
 use crate::numbers::hertz;
 use crate::progress::Observer;
@@ -36,6 +36,13 @@ const MOST: usize = 60;
 const DIVERGING: usize = 8;
 /// How far along the real axis they are sought where no bound is known, by the top of the band.
 const FARTHEST: f64 = 100.0;
+/// Left eigenvalues are sought a little farther than right ones, so that those at the rim have their partners.
+const RIM: f64 = 1.001;
+/// How far a search along the positive real axis reaches, by its shift, so that the next at twice the shift joins it; the first reaches
+/// zero.
+const ALONG: f64 = 0.35;
+/// Half of a piece in which an iteration did not converge is looked at by itself, down to this part of the band's top.
+const LEAST: f64 = 0.01;
 /// Pieces of a band at most.
 const PIECES: usize = 4096;
 /// Two eigenvalues nearer than this part of |λ| share their vectors.
@@ -58,8 +65,8 @@ struct SpectrumPart {
     left_values: Vec<c64>,
     right: Mat<c64>,
     left: Mat<c64>,
-    /// Whether there are no more eigenvalues than these.
-    whole: bool,
+    /// Distance from the shift within which there are no others; infinite where these are all.
+    within: f64,
 }
 
 /// Looks for the modes that `asked` names; `real` are the modes of the symmetric part, in which their shapes are expressed.
@@ -79,6 +86,7 @@ pub(super) fn general_modes(
         shifts: 0,
         solves: 0,
         depth: f64::INFINITY,
+        unsure: None,
     };
     observer.begin("complex eigenvalues", None);
     let pieces = match asked.nearest {
@@ -107,13 +115,11 @@ pub(super) fn general_modes(
         ));
     }
     warnings.extend(accuracy_warnings(&modes));
-    let modes = ComplexModes {
-        modes,
-        subspace_dimension: operator.n(),
-        refinements: 0,
-        warnings,
-        broken_premise: None,
-    };
+    let broken_premise =
+        search.unsure.is_some().then_some("real eigenvalues that may grow are not all known");
+    warnings.extend(search.unsure);
+    let modes =
+        ComplexModes { modes, subspace_dimension: operator.n(), refinements: 0, warnings, broken_premise };
     Ok(General { modes, seen: search.seen, symbolic: search.symbolic })
 }
 
@@ -126,6 +132,8 @@ struct ShiftSearch<'a> {
     solves: usize,
     /// |σ| up to which the circles cover the band.
     depth: f64,
+    /// Why real eigenvalues may be missing.
+    unsure: Option<String>,
 }
 
 impl<'a> ShiftSearch<'a> {
@@ -154,14 +162,15 @@ impl<'a> ShiftSearch<'a> {
         let distance = |z: &c64| (z - c64::new(0.0, omega)).norm();
         let mut wanted = count + 4;
         loop {
-            let piece = self.at(&shifted, omega, 0.1 * omega.max(1e-3 * self.band[1]), wanted)?;
+            let expected = 0.1 * omega.max(1e-3 * self.band[1]);
+            let piece = self.at(&shifted, omega, expected, (wanted, f64::INFINITY))?;
             let mut inside: Vec<c64> =
                 piece.values.iter().copied().filter(|z| in_band(*z, self.band)).collect();
             inside.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
             // The shift is off the axis: one more than requested shows that none nearer is missing.
             let far = piece.values.iter().map(distance).fold(0.0, f64::max);
             let enough = inside.get(count.max(1) - 1).is_some_and(|last| distance(last) < 0.99 * far);
-            if enough || wanted >= n || piece.whole {
+            if enough || wanted >= n || piece.within.is_infinite() {
                 let reach =
                     inside.get(count.max(1) - 1).map_or(f64::INFINITY, |last| distance(last) * (1.0 + SAME));
                 let band = self.band;
@@ -230,7 +239,7 @@ impl<'a> ShiftSearch<'a> {
             return Ok(found);
         }
         let reach = matrices.fastest(top)?.unwrap_or(FARTHEST * top);
-        let mut shift = 0.25 * top;
+        let (mut shift, mut along) = (0.25 * top, 1.0);
         while shift < 4.0 * reach {
             // A shift on an eigenvalue has no factor: it is moved.
             let shifted = [1.0, 1.0037]
@@ -242,14 +251,20 @@ impl<'a> ShiftSearch<'a> {
                 self.symbolic = self.symbolic.take().or_else(|| shifted.symbolic());
                 self.shifts += 1;
                 let count = DIVERGING.min(2 * self.operator.n());
-                let piece = self.at(&shifted, 0.0, shift, count)?;
+                let piece = match self.at(&shifted, 0.0, shift, (count, along * shift)) {
+                    Ok(piece) => piece,
+                    Err(error) => {
+                        self.unsure = Some(format!("Real eigenvalues are not all known: {error}"));
+                        break;
+                    }
+                };
                 let piece = piece.keep(|z| {
                     diverges(z, band) && seen.iter().all(|k| (k - z).norm() > SAME * z.norm().max(top))
                 });
                 seen.extend(&piece.values);
                 found.push(piece);
             }
-            shift *= 2.0;
+            (shift, along) = (2.0 * shift, ALONG);
         }
         Ok(found)
     }
@@ -257,14 +272,17 @@ impl<'a> ShiftSearch<'a> {
     /// All eigenvalues within √2 `half` of i `middle`; none where these are too many for one shift.
     fn circle(&mut self, middle: f64, half: f64, expected: usize) -> Result<Option<SpectrumPart>> {
         let shifted = self.shifted(middle)?;
-        let shift = c64::new(1e-3 * middle.max(1e-3 * self.band[1]), middle);
-        let reach = 2f64.sqrt() * half * (1.0 + 1e-6) + 4.0 * shift.re;
+        let off = 1e-3 * middle.max(1e-3 * self.band[1]);
+        let reach = 2f64.sqrt() * half * (1.0 + 1e-6) + 4.0 * off;
         let n = 2 * self.operator.n();
         let mut count = (3 * expected / 2 + 6).min(n);
         loop {
-            let piece = self.at(&shifted, middle, half, count)?;
-            let farthest = piece.values.iter().map(|z| (z - shift).norm()).fold(0.0, f64::max);
-            if farthest >= reach || count >= n || piece.whole {
+            let piece = match self.at(&shifted, middle, half, (count, reach)) {
+                // Smaller circles hold fewer.
+                Err(_) if half > LEAST * self.band[1] => return Ok(None),
+                piece => piece?,
+            };
+            if piece.within >= reach || count >= n {
                 return Ok(Some(piece));
             }
             if count > 2 * MOST && half > 1e-6 * self.band[1] {
@@ -274,22 +292,36 @@ impl<'a> ShiftSearch<'a> {
         }
     }
 
-    /// The `count` eigenvalues nearest the shift, from both sides.
-    fn at(&mut self, shifted: &Shifted<'_>, middle: f64, radius: f64, count: usize) -> Result<SpectrumPart> {
+    /// The `count` eigenvalues nearest the shift, or those of them within `reach` of it, from both sides.
+    fn at(
+        &mut self,
+        shifted: &Shifted<'_>,
+        middle: f64,
+        radius: f64,
+        (count, reach): (usize, f64),
+    ) -> Result<SpectrumPart> {
         let radius = radius.max(1e-3 * middle);
-        let right = toar(shifted, shifted.shift(), radius, count, TOLERANCE)?;
+        let right = toar(shifted, shifted.shift(), radius, (count, reach), TOLERANCE)?;
         self.solves += right.solves;
         self.seen.extend(&right.values);
+        // Partners are sought of those of which none is missing.
+        let own = right.values.iter().take_while(|z| (*z - shifted.shift()).norm() <= right.within).count();
+        let right = ToarPairs {
+            values: right.values[..own].to_vec(),
+            vectors: right.vectors.subcols(0, own).to_owned(),
+            ..right
+        };
         let adjoint = Adjoint(shifted);
         let mut further = 0;
         loop {
-            let left = toar(&adjoint, shifted.shift().conj(), radius, count + further, TOLERANCE)?;
+            let left =
+                toar(&adjoint, shifted.shift().conj(), radius, (count + further, RIM * reach), TOLERANCE)?;
             self.solves += left.solves;
             let left_values: Vec<c64> = left.values.iter().map(|z| z.conj()).collect();
             let partners = partners(&right.values, &left_values);
             // A pair at the rim of the circle may have its partner just beyond. One that has none keeps the nearest, and an error
             // that shows it.
-            let enough = left.values.len() < count + further || further > count;
+            let enough = left.within >= RIM * reach || further > count;
             if enough && left_values.is_empty() && !right.values.is_empty() {
                 let found = format!("no left eigenvector near {} Hz", hertz(middle / TAU, 2));
                 return Err(Error::analysis("two-level Arnoldi", found, "Move the band a little"));
@@ -305,7 +337,7 @@ impl<'a> ShiftSearch<'a> {
                 return Ok(SpectrumPart {
                     left_values: chosen.iter().map(|k| left_values[*k]).collect(),
                     left: Mat::from_fn(self.operator.n(), chosen.len(), |i, k| left.vectors[(i, chosen[k])]),
-                    whole: right.values.len() < count,
+                    within: right.within,
                     values: right.values,
                     right: right.vectors,
                 });
@@ -418,7 +450,7 @@ impl SpectrumPart {
             left_values: kept.iter().map(|j| self.left_values[*j]).collect(),
             right: some(&self.right),
             left: some(&self.left),
-            whole: self.whole,
+            within: self.within,
         }
     }
 }

@@ -395,4 +395,49 @@ mod tests {
             assert!(solve(&none, &none, &none, loss, 1.0, |_| true).unwrap().is_empty());
         }
     }
+
+    /// Gyroscopic problems as of rotating brakes: a large skew G, clusters of overdamped directions, entries of C from 1e-6 to 1e6,
+    /// friction in K. M = I, ω from 1e2 to 1e5 1/s.
+    #[test]
+    fn gyroscopic_problems_with_overdamped_clusters_are_solved() {
+        let mut random = Random::seeded(7);
+        for (trial, order) in [50usize, 132, 76, 200, 132, 96, 300, 60].into_iter().enumerate() {
+            let m = order / 2;
+            let omega: Vec<f64> = (0..m).map(|_| 10f64.powf(random.between(2.0, 5.0))).collect();
+            let spin = 10f64.powf(random.between(0.0, 4.0));
+            let mut c = Mat::<f64>::zeros(m, m);
+            for i in 0..m {
+                for j in 0..i {
+                    let g = spin * random.next();
+                    (c[(i, j)], c[(j, i)]) = (g, -g);
+                }
+                // A third of equal dashpots, a third of none but rounding, a third of all sizes.
+                c[(i, i)] = [1e6, 1e-6, 10f64.powf(random.between(-6.0, 6.0))][i % 3];
+            }
+            let coupled = trial % 2 == 0;
+            let k = Mat::from_fn(m, m, |i, j| match (i == j, coupled) {
+                // Every third direction alike, with the dashpots above: many eigenvalues that are equal.
+                (true, true) if i % 3 == 0 => 1e8,
+                (true, _) => omega[i] * omega[i],
+                (false, true) if i.abs_diff(j) == 3 => 1e5 * (i as f64 - j as f64),
+                _ => 0.0,
+            });
+            let (mass, top) = (Mat::<f64>::identity(m, m), 5e4);
+            let pairs = solve(&mass, &c, &k, None, 1e4, |z| z.im >= 0.0 && z.norm() <= top)
+                .unwrap_or_else(|error| panic!("{trial}: {error}"));
+            assert!(pairs.len() > m / 4, "{trial}: {}", pairs.len());
+            let [of_c, of_k] = [c.norm_l2(), k.norm_l2()];
+            for pair in &pairs {
+                let z = pair.lambda;
+                let row = |i: usize| -> c64 {
+                    let term = |j: usize| z * z * mass[(i, j)] + z * c[(i, j)] + k[(i, j)];
+                    (0..m).map(|j| term(j) * pair.right[j]).sum()
+                };
+                let residual = (0..m).map(|i| row(i).norm_sqr()).sum::<f64>().sqrt();
+                let size = z.norm_sqr() + z.norm() * of_c + of_k;
+                // The change of a matrix whose eigenvalues are parted, 1e-11 at most.
+                assert!(residual < 1e-10 * size, "{trial}: {z} {:e}", residual / size);
+            }
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! Where two bodies touch: points, their directions in the degrees of freedom, and how the pair is closed.
 
-use super::ContactLaw;
+use super::{ContactLaw, ContactMotion};
 use crate::linalg::SparseVector;
 use std::sync::Arc;
 
@@ -17,6 +17,14 @@ pub struct ContactPair {
     pub closing: Closing,
     /// V \[m/s\]: velocity of the counter-body relative to the body along t₁, without vibration.
     pub sliding_velocity: f64,
+}
+
+impl ContactPair {
+    /// Whether its points also pull, so that they never open and touch without a load, too.
+    pub fn is_bilateral(&self) -> bool {
+        let motion = ContactMotion { penetration: -1.0, penetration_rate: 0.0, slip_velocity: [0.0; 2] };
+        self.law.respond(&motion, 1.0).0.normal < 0.0
+    }
 }
 
 /// One point that may touch.

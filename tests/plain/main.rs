@@ -6,6 +6,7 @@ mod common;
 mod python;
 
 mod architecture;
+mod belt;
 mod circles;
 mod elements;
 mod matrices;

@@ -33,6 +33,8 @@ pub struct ToarPairs {
     pub values: Vec<c64>,
     /// x of each, ‖x‖ = 1, n × m.
     pub vectors: Mat<c64>,
+    /// |λ − σ| within which there is no other; infinite where the problem has no others at all.
+    pub within: f64,
     /// Solves with P that it took.
     pub solves: usize,
 }
@@ -43,8 +45,9 @@ const RESTARTS: usize = 60;
 /// from the shift, a small one sees no gap between those that are wanted and the others.
 const PATIENCE: usize = 12;
 
-/// The `count` eigenvalues of Q nearest `shift`, with ‖A v − θ v‖ ≤ `tolerance` |θ| ‖v‖. `radius` is the distance within
-/// which they are expected: it scales the problem and decides nothing. Fewer than `count` when the problem has fewer.
+/// The `count` eigenvalues of Q nearest `shift`, or, where these are fewer, at least those within `reach` of it, with
+/// ‖A v − θ v‖ ≤ `tolerance` |θ| ‖v‖: eigenvalues beyond that which lie close together, as those of heavily damped parts do, converge
+/// slowly and need not. `radius` is the distance within which they are expected: it scales the problem and decides nothing. Fewer than `count` when the problem has fewer.
 ///
 /// # Errors
 /// [`Error::Analysis`] when they do not converge.
@@ -52,7 +55,7 @@ pub fn toar(
     problem: &dyn ShiftedQuadratic,
     shift: c64,
     radius: f64,
-    count: usize,
+    (count, reach): (usize, f64),
     tolerance: f64,
 ) -> Result<ToarPairs> {
     let count = count.min(2 * problem.n());
@@ -63,7 +66,13 @@ pub fn toar(
         let ritz = krylov.ritz()?;
         let converged = ritz.iter().take_while(|r| r.residual <= tolerance * r.theta.norm()).count();
         if converged >= count || closed {
-            return Ok(krylov.pairs(shift, &ritz[..converged.min(count)]));
+            let found = krylov.pairs(shift, &ritz[..converged.min(count)]);
+            let last = found.values.last().map_or(0.0, |z| (z - shift).norm());
+            return Ok(ToarPairs { within: if closed { f64::INFINITY } else { last }, ..found });
+        }
+        // No Ritz value that is still on its way may end within the reach.
+        if ritz[converged..].iter().all(|r| (r.theta.norm() + r.residual) * reach < radius) {
+            return Ok(ToarPairs { within: reach, ..krylov.pairs(shift, &ritz[..converged]) });
         }
         krylov.restart(&ritz, count + (room - count) / 2)?;
         if restart % PATIENCE == 0 {
@@ -251,7 +260,7 @@ impl<'a> Krylov<'a> {
             vectors.col_mut(j).iter_mut().for_each(|v| *v /= norm);
         }
         let values = ritz.iter().map(|r| shift + c64::new(self.radius, 0.0) / r.theta).collect();
-        ToarPairs { values, vectors, solves: self.solves }
+        ToarPairs { values, vectors, within: 0.0, solves: self.solves }
     }
 }
 
@@ -325,7 +334,8 @@ mod tests {
             let (m, c, k) = (random(n, &mut numbers), random(n, &mut numbers), random(n, &mut numbers));
             let shift = c64::new(0.3 * numbers.next(), numbers.next());
             let expected = exact(&m, &c, &k, shift);
-            let found = toar(&Dense::new(&m, &c, &k, shift), shift, 0.5, count, 1e-13).unwrap();
+            let found =
+                toar(&Dense::new(&m, &c, &k, shift), shift, 0.5, (count, f64::INFINITY), 1e-13).unwrap();
             assert_eq!(found.values.len(), count);
             for (j, value) in found.values.iter().enumerate() {
                 let error = expected.iter().map(|e| (e - value).norm()).fold(f64::INFINITY, f64::min);
@@ -359,7 +369,7 @@ mod tests {
             let m = diagonal(&|_| c64::new(1.0, 0.0));
             let c = diagonal(&|_| shift * -2.0);
             let k = diagonal(&|j| shift * shift - square[j] * turn(j));
-            let found = toar(&Dense::new(&m, &c, &k, shift), shift, 10.0, 8, 1e-12).unwrap();
+            let found = toar(&Dense::new(&m, &c, &k, shift), shift, 10.0, (8, f64::INFINITY), 1e-12).unwrap();
             assert!(found.values.len() >= 8.min(2 * n));
             let last = (square[3].re.sqrt()) * (1.0 + 1e-9);
             assert!(found.values.iter().all(|z| (z - shift).norm() < last), "{:?}", found.values);
@@ -382,11 +392,39 @@ mod tests {
         });
         let omega = |j: usize| 2e4 * (j as f64 * std::f64::consts::PI / (2.0 * (n as f64 + 1.0))).sin();
         let shift = c64::new(0.0, omega(20) + 3.0);
-        let found = toar(&Dense::new(&m, &zero, &k, shift), shift, 2e3, 9, 1e-12).unwrap();
+        let found = toar(&Dense::new(&m, &zero, &k, shift), shift, 2e3, (9, f64::INFINITY), 1e-12).unwrap();
         for value in &found.values {
             let nearest = (1..=n).map(|j| (omega(j) - value.im).abs()).fold(f64::INFINITY, f64::min);
             assert!(nearest < 1e-8 && value.re.abs() < 1e-8, "{value}");
         }
         assert!((found.values[0].im - omega(20)).abs() < 1e-8);
+    }
+
+    /// Two lightly damped modes within the reach, and beyond it `n` − 2 overdamped ones all but equal, which converge one by one.
+    #[test]
+    fn clusters_beyond_the_reach_need_not_converge() {
+        for (n, seed) in [(80, 1), (200, 2), (300, 3)] {
+            let mut numbers = Random::seeded(seed);
+            let spread: Vec<f64> = (0..n).map(|_| 1e-3 * numbers.next()).collect();
+            let zero = c64::new(0.0, 0.0);
+            let diagonal = |of: &dyn Fn(usize) -> f64| {
+                Mat::from_fn(n, n, |i, j| if i == j { c64::new(of(i), 0.0) } else { zero })
+            };
+            let m = Mat::<c64>::identity(n, n);
+            // λ² + 8 (1 + δ) λ + 8: overdamped at −1.17 and −6.8.
+            let c = diagonal(&|i| if i < 2 { 0.01 } else { 8.0 * (1.0 + spread[i]) });
+            let k = diagonal(&|i| [1.0, 1.1][i.min(1)] * if i < 2 { 1.0 } else { 8.0 / 1.1 });
+            let shift = c64::new(1e-3, 1.0);
+            let problem = Dense::new(&m, &c, &k, shift);
+            let found = toar(&problem, shift, 0.5, (20, 0.5), 1e-12).unwrap();
+            let inside = found.values.iter().filter(|z| (*z - shift).norm() <= 0.5).count();
+            assert_eq!((inside, found.within), (2, 0.5));
+            for square in [1.0f64, 1.1] {
+                let exact = c64::new(-0.005, (square - 0.005f64.powi(2)).sqrt());
+                let error = found.values.iter().map(|z| (z - exact).norm()).fold(f64::INFINITY, f64::min);
+                assert!(error < 1e-12, "{n}: {error:e}");
+            }
+            assert!(found.solves < 150, "{} solves", found.solves);
+        }
     }
 }

@@ -1,11 +1,13 @@
 //! Eigenvalues of small dense matrices that are not symmetric, with left and right vectors, on one thread.
 
 use super::c64;
+use super::dense::product;
+use super::random::Random;
 use faer::diag::Diag;
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::evd::{ComputeEigenvectors, evd_cplx, evd_real, evd_scratch};
+use faer::linalg::evd::{ComputeEigenvectors, EvdParams, SchurParams, evd_cplx, evd_real, evd_scratch};
 use faer::traits::ComplexField;
-use faer::{Mat, MatMut, MatRef, Par};
+use faer::{Auto, Mat, MatRef, Par};
 use stridor_base::error::{Error, Result};
 
 /// A X = X diag(λ) and YᴴA = diag(λ) Yᴴ.
@@ -30,10 +32,7 @@ pub struct Eigenvalues {
 /// # Errors
 /// [`Error::Analysis`] when a number is not finite or the iteration does not converge.
 pub fn spectrum(a: MatRef<'_, f64>) -> Result<Eigenvalues> {
-    let n = a.nrows();
-    let (mut left, mut right) = (Mat::zeros(n, n), Mat::zeros(n, n));
-    let values = eigen_of_real(a, Some(left.as_mut()), Some(right.as_mut()))?;
-    Ok(Eigenvalues { right: in_pairs(&right, &values), left: in_pairs(&left, &values), values })
+    real(a, Vectors::Both)
 }
 
 /// [`spectrum`] of a complex matrix.
@@ -41,10 +40,7 @@ pub fn spectrum(a: MatRef<'_, f64>) -> Result<Eigenvalues> {
 /// # Errors
 /// As [`spectrum`].
 pub fn complex_spectrum(a: MatRef<'_, c64>) -> Result<Eigenvalues> {
-    let n = a.nrows();
-    let (mut left, mut right) = (Mat::zeros(n, n), Mat::zeros(n, n));
-    let values = eigen_of_complex(a, Some(left.as_mut()), Some(right.as_mut()))?;
-    Ok(Eigenvalues { values, right, left })
+    complex(a, Vectors::Both)
 }
 
 /// The eigenvalues and right vectors of a real matrix.
@@ -52,10 +48,7 @@ pub fn complex_spectrum(a: MatRef<'_, c64>) -> Result<Eigenvalues> {
 /// # Errors
 /// As [`spectrum`].
 pub fn eigenpairs(a: MatRef<'_, f64>) -> Result<(Vec<c64>, Mat<c64>)> {
-    let mut right = Mat::zeros(a.nrows(), a.nrows());
-    let values = eigen_of_real(a, None, Some(right.as_mut()))?;
-    let right = in_pairs(&right, &values);
-    Ok((values, right))
+    real(a, Vectors::Right).map(|found| (found.values, found.right))
 }
 
 /// The eigenvalues and right vectors of a complex matrix.
@@ -63,9 +56,7 @@ pub fn eigenpairs(a: MatRef<'_, f64>) -> Result<(Vec<c64>, Mat<c64>)> {
 /// # Errors
 /// As [`spectrum`].
 pub fn complex_eigenpairs(a: MatRef<'_, c64>) -> Result<(Vec<c64>, Mat<c64>)> {
-    let mut right = Mat::zeros(a.nrows(), a.nrows());
-    let values = eigen_of_complex(a, None, Some(right.as_mut()))?;
-    Ok((values, right))
+    complex(a, Vectors::Right).map(|found| (found.values, found.right))
 }
 
 /// The eigenvalues of a real matrix alone, at a third of the cost of [`spectrum`].
@@ -73,51 +64,116 @@ pub fn complex_eigenpairs(a: MatRef<'_, c64>) -> Result<(Vec<c64>, Mat<c64>)> {
 /// # Errors
 /// As [`spectrum`].
 pub fn eigenvalues(a: MatRef<'_, f64>) -> Result<Vec<c64>> {
-    eigen_of_real(a, None, None)
+    real(a, Vectors::None).map(|found| found.values)
 }
 
-/// Eigenvalues, and those vectors for which there is scratch: of a conjugate pair Re and then Im of the one with Im λ > 0.
-fn eigen_of_real(
-    a: MatRef<'_, f64>,
-    left: Option<MatMut<'_, f64>>,
-    right: Option<MatMut<'_, f64>>,
-) -> Result<Vec<c64>> {
+/// Vectors that are computed besides the eigenvalues.
+#[derive(Clone, Copy, PartialEq)]
+enum Vectors {
+    None,
+    Right,
+    Both,
+}
+
+/// ‖A x − λ x‖ that is accepted of vectors of unit length, by ‖A‖: far above round-off, and far below that of an iteration that did
+/// not converge.
+const RESIDUAL: f64 = 1e-9;
+/// Attempts after the first, and the random change of A with which they begin, by ‖A‖: that which rounding makes of it, and more each
+/// time. It parts eigenvalues that are exactly equal, whose vectors the back substitution divides by nothing until they overflow.
+const ATTEMPTS: i32 = 5;
+const CHANGE: f64 = f64::EPSILON;
+
+/// Of a real matrix.
+fn real(a: MatRef<'_, f64>, vectors: Vectors) -> Result<Eigenvalues> {
     let n = a.nrows();
     check(n, a.is_all_finite())?;
+    let lifted = Mat::from_fn(n, n, |i, j| c64::new(a[(i, j)], 0.0));
+    let [mut left, mut right] = matrices::<f64>(n, vectors);
     let (mut re, mut im) = (Diag::zeros(n), Diag::zeros(n));
-    let mut memory = scratch::<f64>(n, &left, &right);
+    let [of_left, of_right] = [left.as_mut(), right.as_mut()].map(|m| m.map(|m| m.as_mut()));
+    let mut memory = scratch::<f64>(n, vectors, <EvdParams as Auto<f64>>::auto());
     let stack = MemStack::new(&mut memory);
-    evd_real(a, re.as_mut(), im.as_mut(), left, right, Par::Seq, stack, Default::default())
-        .map_err(|_| no_convergence(n))?;
-    let (re, im) = (re.column_vector(), im.column_vector());
-    Ok((0..n).map(|k| c64::new(re[k], im[k])).collect())
+    let ended = evd_real(a, re.as_mut(), im.as_mut(), of_left, of_right, Par::Seq, stack, Default::default());
+    if ended.is_ok() {
+        let (re, im) = (re.column_vector(), im.column_vector());
+        let values: Vec<c64> = (0..n).map(|k| c64::new(re[k], im[k])).collect();
+        let [left, right] = [left, right].map(|u| u.map_or(Mat::zeros(n, 0), |u| in_pairs(&u, &values)));
+        let found = Eigenvalues { values, right, left };
+        if converged(lifted.as_ref(), &found) {
+            return Ok(found);
+        }
+    }
+    // Vectors of equal conjugate pairs, which the back substitution in real numbers loses, are found in complex ones.
+    again(lifted.as_ref(), vectors)
 }
 
-/// Eigenvalues, and those vectors for which there is scratch.
-fn eigen_of_complex(
-    a: MatRef<'_, c64>,
-    left: Option<MatMut<'_, c64>>,
-    right: Option<MatMut<'_, c64>>,
-) -> Result<Vec<c64>> {
+/// Of a complex matrix.
+fn complex(a: MatRef<'_, c64>, vectors: Vectors) -> Result<Eigenvalues> {
+    check(a.nrows(), a.is_all_finite())?;
+    match attempt(a, vectors, <EvdParams as Auto<c64>>::auto()) {
+        Some(found) => Ok(found),
+        None => again(a, vectors),
+    }
+}
+
+/// By the plain QR algorithm instead of the blocked one: A as it is, then with random changes of the size of its rounding.
+fn again(a: MatRef<'_, c64>, vectors: Vectors) -> Result<Eigenvalues> {
+    let (n, length, mut random) = (a.nrows(), a.norm_l2(), Random::new());
+    let auto = <EvdParams as Auto<c64>>::auto();
+    let plain = EvdParams { schur: SchurParams { blocking_threshold: usize::MAX, ..auto.schur }, ..auto };
+    let attempts = (0..ATTEMPTS).find_map(|k| {
+        let size = if k == 0 { 0.0 } else { CHANGE * length * 16f64.powi(k - 1) / (n as f64).sqrt() };
+        let changed = Mat::from_fn(n, n, |i, j| a[(i, j)] + c64::new(size * random.next(), 0.0));
+        attempt(changed.as_ref(), vectors, plain)
+    });
+    attempts.ok_or_else(|| no_convergence(n))
+}
+
+/// The decomposition of a complex matrix; none where it did not converge.
+fn attempt(a: MatRef<'_, c64>, vectors: Vectors, params: EvdParams) -> Option<Eigenvalues> {
     let n = a.nrows();
-    check(n, a.is_all_finite())?;
+    let [mut left, mut right] = matrices::<c64>(n, vectors);
     let mut values = Diag::zeros(n);
-    let mut memory = scratch::<c64>(n, &left, &right);
+    let [of_left, of_right] = [left.as_mut(), right.as_mut()].map(|m| m.map(|m| m.as_mut()));
+    let mut memory = scratch::<c64>(n, vectors, params);
     let stack = MemStack::new(&mut memory);
-    evd_cplx(a, values.as_mut(), left, right, Par::Seq, stack, Default::default())
-        .map_err(|_| no_convergence(n))?;
-    Ok(values.column_vector().iter().copied().collect())
+    evd_cplx(a, values.as_mut(), of_left, of_right, Par::Seq, stack, params.into()).ok()?;
+    let values = values.column_vector().iter().copied().collect();
+    let [left, right] = [left, right].map(|u| u.unwrap_or(Mat::zeros(n, 0)));
+    Some(Eigenvalues { values, right, left }).filter(|found| converged(a, found))
+}
+
+/// Room for left and right vectors.
+fn matrices<T: ComplexField>(n: usize, vectors: Vectors) -> [Option<Mat<T>>; 2] {
+    [vectors == Vectors::Both, vectors != Vectors::None].map(|wanted| wanted.then(|| Mat::zeros(n, n)))
+}
+
+/// Whether eigenvalues and vectors are what they should be, as the decomposition does not say when it gave up: they have small
+/// residuals, and where there are no vectors the sum of the eigenvalues is the trace.
+fn converged(a: MatRef<'_, c64>, found: &Eigenvalues) -> bool {
+    let (n, length) = (a.nrows(), a.norm_l2());
+    let sum = |of: &dyn Fn(usize) -> c64| (0..n).map(of).sum::<c64>();
+    let trace = sum(&|k| a[(k, k)]) - sum(&|k| found.values[k]);
+    let fits = |a: MatRef<'_, c64>, x: &Mat<c64>, conjugate: bool| {
+        let image = product(a, x.as_ref());
+        (0..x.ncols()).all(|k| {
+            let value = if conjugate { found.values[k].conj() } else { found.values[k] };
+            let residual = (0..n).map(|i| (image[(i, k)] - value * x[(i, k)]).norm_sqr()).sum::<f64>().sqrt();
+            let size = x.col(k).norm_l2();
+            size > 0.0 && size.is_finite() && residual <= RESIDUAL * length * size
+        })
+    };
+    // The comparison is false where a value is not a number.
+    trace.norm() <= RESIDUAL * n as f64 * length
+        && fits(a, &found.right, false)
+        && fits(a.adjoint().to_owned().as_ref(), &found.left, true)
 }
 
 /// Work memory of the decomposition beside its results.
-fn scratch<T: ComplexField>(
-    n: usize,
-    left: &Option<MatMut<'_, T>>,
-    right: &Option<MatMut<'_, T>>,
-) -> MemBuffer {
+fn scratch<T: ComplexField>(n: usize, vectors: Vectors, params: EvdParams) -> MemBuffer {
     let wanted = |there: bool| if there { ComputeEigenvectors::Yes } else { ComputeEigenvectors::No };
-    let (left, right) = (wanted(left.is_some()), wanted(right.is_some()));
-    MemBuffer::new(evd_scratch::<T>(n, left, right, Par::Seq, Default::default()))
+    let (left, right) = (wanted(vectors == Vectors::Both), wanted(vectors != Vectors::None));
+    MemBuffer::new(evd_scratch::<T>(n, left, right, Par::Seq, params.into()))
 }
 
 /// The vectors of a real matrix, whose conjugate pairs stand in two columns: Re and Im of the one with Im λ > 0.
@@ -130,14 +186,21 @@ fn in_pairs(u: &Mat<f64>, values: &[c64]) -> Mat<c64> {
 }
 
 fn check(n: usize, finite: bool) -> Result<()> {
-    if n > 0 && finite { Ok(()) } else { Err(no_convergence(n)) }
+    if n > 0 && finite {
+        return Ok(());
+    }
+    Err(Error::analysis(
+        format!("dense eigenvalues of order {n}"),
+        "an entry is not finite",
+        "Look for zero or huge stiffnesses, masses and velocities in the model",
+    ))
 }
 
 fn no_convergence(n: usize) -> Error {
     Error::analysis(
         format!("dense eigenvalues of order {n}"),
-        "the iteration did not converge, most likely because an entry is not finite",
-        "Look for zero or huge stiffnesses, masses and velocities in the model",
+        "the iteration did not converge",
+        "Look for stiffnesses, masses and damping many orders of magnitude apart, or move the band",
     )
 }
 
@@ -178,5 +241,69 @@ mod tests {
     fn what_is_not_finite_is_refused() {
         assert!(spectrum(faer::mat![[f64::NAN]].as_ref()).is_err());
         assert!(spectrum(Mat::zeros(0, 0).as_ref()).is_err());
+    }
+
+    /// λ and right vectors with small residuals, whatever the matrix: the largest change, 16³ √n ε, and a margin.
+    fn solved(a: &Mat<c64>, (values, x): (Vec<c64>, Mat<c64>), label: &str) {
+        let size = a.norm_l2();
+        assert!(x.is_all_finite() && values.len() == a.nrows(), "{label}");
+        for (k, value) in values.iter().enumerate() {
+            let r = a * x.col(k) - x.col(k) * faer::Scale(*value);
+            assert!(r.norm_l2() < 1e-10 * size * x.col(k).norm_l2(), "{label} {k} {:e}", r.norm_l2() / size);
+        }
+    }
+
+    #[test]
+    fn equal_eigenvalues_that_are_coupled_have_vectors() {
+        let mut random = Random::new();
+        for n in [12usize, 40, 74, 75, 80, 132, 300] {
+            for (size, coupling) in [(1.0, 1.0), (1e5, 1e3), (1.0, 1e-10)] {
+                // A triangle with one eigenvalue, behind a few others.
+                let a = Mat::from_fn(n, n, |i, j| match (i < n / 4, i == j, i < j) {
+                    (true, true, _) => random.next(),
+                    (false, true, _) => -size,
+                    (_, _, true) => coupling * random.next(),
+                    _ => 0.0,
+                });
+                let lifted = Mat::from_fn(n, n, |i, j| c64::new(a[(i, j)], 0.0));
+                let label = format!("{n} {size} {coupling}");
+                solved(&lifted, eigenpairs(a.as_ref()).expect(&label), &label);
+                solved(&lifted, complex_eigenpairs(lifted.as_ref()).expect(&label), &label);
+                let both = spectrum(a.as_ref()).expect(&label);
+                let adjoint = lifted.adjoint().to_owned();
+                solved(&adjoint, (both.values.iter().map(|z| z.conj()).collect(), both.left), &label);
+                assert_eq!(eigenvalues(a.as_ref()).expect(&label).len(), n);
+            }
+        }
+    }
+
+    /// Several equal blocks, turned: conjugate pairs and real eigenvalues that are double, triple, …
+    #[test]
+    fn equal_parts_have_vectors_each() {
+        let mut random = Random::seeded(3);
+        for (parts, order) in [(2, 2), (2, 4), (3, 4), (2, 40), (5, 16)] {
+            let part = Mat::from_fn(order, order, |_, _| random.next());
+            let n = parts * order;
+            let whole = Mat::from_fn(n, n, |i, j| match i / order == j / order {
+                true => part[(i % order, j % order)],
+                false => 0.0,
+            });
+            let turn = Mat::from_fn(n, n, |_, _| random.next());
+            let q = turn.qr().compute_Q();
+            for a in [whole.clone(), &q * &whole * q.transpose()] {
+                let label = format!("{parts} of order {order}");
+                let lifted = Mat::from_fn(n, n, |i, j| c64::new(a[(i, j)], 0.0));
+                let both = spectrum(a.as_ref()).expect(&label);
+                // Independent vectors of both sides.
+                for vectors in [&both.right, &both.left] {
+                    let unit = Mat::from_fn(n, n, |i, k| vectors[(i, k)] / vectors.col(k).norm_l2());
+                    let least = unit.singular_values().unwrap()[n - 1];
+                    assert!(least > 1e-8, "{label}: {least:e}");
+                }
+                solved(&lifted, (both.values.clone(), both.right), &label);
+                let adjoint = lifted.adjoint().to_owned();
+                solved(&adjoint, (both.values.iter().map(|z| z.conj()).collect(), both.left), &label);
+            }
+        }
     }
 }

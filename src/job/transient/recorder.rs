@@ -181,7 +181,7 @@ impl<'a> Recorder<'a> {
 
 /// State of a contact point of a pair.
 fn does(model: &TransientModel<'_>, state: &State, pair: usize, point: usize) -> TouchState {
-    if state.contact_forces(point)[0] == 0.0 {
+    if state.contact_forces(point)[0] == 0.0 && !model.is_bilateral(point) {
         TouchState::Open
     } else if state.sticks(point) {
         TouchState::Stick
