@@ -84,10 +84,11 @@ pub fn complex_result<'a>(
     let (found, system) = band_modes(at, cea, basis, left_vectors, clock, observer)?;
     let (prepared, state) = at;
     let BandModes { band, basis, modes, certificate } = found;
+    let asked = Band { hz: band, nearest: cea.nearest.zip(cea.count), left_vectors: false };
     let confirmation = match cea.confirm {
-        true => {
-            Some(clock.time("second method", || stability::confirm(&system, state, &modes, band, observer))?)
-        }
+        true => Some(
+            clock.time("second method", || stability::confirm(&system, state, &modes, asked, observer))?,
+        ),
         false => None,
     };
     let labels = labels(&identify(prepared, &basis, &prepared.assembled), &basis);

@@ -1,5 +1,6 @@
 //! The contact pairs of a case: points from the meshes, laws from the case.
 
+use super::contact_twice::{points_twice, surfaces_twice};
 use super::imported::given_points;
 use super::regions::Regions;
 use crate::case::{Case, Contact, Pressing, StiffnessPer};
@@ -11,7 +12,7 @@ use crate::mesh::Element;
 use crate::structure::{DofMap, Model, ShellPart};
 use crate::system::{Closing, ContactPair, ContactPoint};
 use nalgebra::Vector3;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// Every contact pair of the case.
@@ -45,33 +46,9 @@ pub fn contact_pairs(
             });
         }
     }
-    doubled(&pairs, &mut faults);
+    points_twice(&pairs, &mut faults);
+    surfaces_twice(case, (regions, model), &pairs, &mut faults);
     faults.into_result(pairs)
-}
-
-/// Refuses contact points that are in the same place and press the same way: their stiffness would count twice.
-fn doubled(pairs: &[ContactPair], faults: &mut Faults) {
-    let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<u64>>();
-    let mut seen = HashMap::new();
-    let mut twice: BTreeMap<[&str; 2], (usize, [usize; 2])> = BTreeMap::new();
-    for pair in pairs {
-        for (k, point) in pair.points.iter().enumerate().filter(|(_, p)| !p.normal.indices().is_empty()) {
-            let key = (bits(&point.position), point.normal.indices(), bits(point.normal.values()));
-            let (other, j) = *seen.entry(key).or_insert((pair.name.as_str(), k));
-            if (other, j) != (pair.name.as_str(), k) {
-                twice.entry([other, &pair.name]).or_insert((0, [j + 1, k + 1])).0 += 1;
-            }
-        }
-    }
-    for ([first, second], (count, [j, k])) in twice {
-        let found =
-            format!("{count} points that `{first}` has, too, the first of them point {k} (point {j} there)");
-        let expected = "contact points that are there once";
-        let fault = Fault::new(format!("`contact.{second}`"), found, expected);
-        faults.push(
-            fault.with_help("The contact stiffness would count twice: give each point to one contact, once"),
-        );
-    }
 }
 
 /// The same points under the laws, loads and velocities of `case`.
@@ -246,7 +223,7 @@ pub fn surface_points(
 }
 
 /// The shell that has all of `nodes`.
-fn part_with<'a>(model: &'a Model, nodes: &[usize]) -> Option<&'a ShellPart> {
+pub(super) fn part_with<'a>(model: &'a Model, nodes: &[usize]) -> Option<&'a ShellPart> {
     model.shells.iter().find(|shell| {
         let mut own: Vec<usize> = shell.faces.iter().flat_map(Element::nodes).copied().collect();
         own.sort_unstable();

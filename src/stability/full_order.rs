@@ -1,8 +1,9 @@
 //! A second way to the same eigenvalues: two-level Arnoldi on the full order, which knows no real modes and no basis.
 
-use super::ComplexModes;
+use super::band::Band;
 use super::operator::Operator;
 use super::shifted::Shifted;
+use super::{ComplexMode, ComplexModes};
 use crate::equilibrium::SteadySliding;
 use crate::error::Result;
 use crate::linalg::factor::{QuadraticProblem, QuadraticSolver};
@@ -42,12 +43,15 @@ impl Confirmation {
 const GROUP: usize = 16;
 /// Two eigenvalues are the same when they differ by less than this part of |λ|, times the condition number.
 const SAME: f64 = 1e-7;
+/// Uncertainties of an eigenvalue within which another method may find it.
+const WITHIN: f64 = 10.0;
 
 /// Looks for the oscillating modes of `found` (ω > 0, in `band_hz`) again, by two-level Arnoldi on the full order at shifts
 /// along the band, each near a group of modes and with a margin for modes that `found` does not have.
 ///
 /// Within the distance of the farthest eigenvalue that a shift gave, the method finds all that its Krylov space holds; it
-/// is no proof that there are no others, but it shares nothing with the projection: neither real modes, nor basis, nor
+/// is no proof that there are no others. Of equal eigenvalues it finds one, as a Krylov space of one vector holds one of each, and that
+/// confirms all. It shares nothing with the projection: neither real modes, nor basis, nor
 /// the dense solver of the small problem. Where an engine factorises over several processes it is the method of its library, at
 /// the same shifts.
 ///
@@ -57,23 +61,33 @@ pub fn confirm(
     system: &System,
     steady: &SteadySliding,
     found: &ComplexModes,
-    band_hz: [f64; 2],
+    band: impl Into<Band>,
     observer: &dyn Observer,
 ) -> Result<Confirmation> {
+    let asked = band.into();
     let operator = Operator::new(system, steady)?;
-    let modes: Vec<(c64, f64)> =
-        found.modes.iter().filter(|m| m.eigenvalue.im > 0.0).map(|m| (m.eigenvalue, m.condition)).collect();
-    let band = band_hz.map(|f| TAU * f);
+    let modes: Vec<&ComplexMode> = found.modes.iter().filter(|mode| mode.eigenvalue.im > 0.0).collect();
+    let zeros = found.modes.iter().filter(|mode| mode.is_zero()).map(|mode| mode.uncertainty);
+    let zero = WITHIN * zeros.fold(0.0, f64::max);
+    let band = asked.hz.map(|f| TAU * f);
+    // Of those nearest to a frequency none is missed that is farther than the last.
+    let centre = asked.nearest.map(|(hz, _)| c64::new(0.0, TAU * hz));
+    let reach = centre.map_or(f64::INFINITY, |centre| {
+        found.modes.iter().map(|mode| (mode.eigenvalue - centre).norm()).fold(0.0, f64::max) * (1.0 - SAME)
+    });
+    let to_find = |z: c64| {
+        z.norm() > zero && z.im > band[0] && z.im < band[1] && centre.is_none_or(|c| (z - c).norm() < reach)
+    };
     observer.begin("second method", Some(modes.len().div_ceil(GROUP) as u64));
     let second = SecondMethod::new(&operator)?;
     let mut confirmation = Confirmation::default();
     let mut seen = vec![false; modes.len()];
     for group in modes.chunks(GROUP) {
-        let (first, last) = (group[0].0.im, group[group.len() - 1].0.im);
+        let (first, last) = (group[0].eigenvalue.im, group[group.len() - 1].eigenvalue.im);
         let middle = 0.5 * (first + last);
         // Off the imaginary axis, where an undamped structure has its eigenvalues.
         let shift = c64::new(1e-3 * middle.max(1e-3 * band[1]), middle);
-        let farthest = group.iter().map(|(z, _)| (z - shift).norm()).fold(0.0, f64::max);
+        let farthest = group.iter().map(|mode| (mode.eigenvalue - shift).norm()).fold(0.0, f64::max);
         let nearest = second.at(shift)?;
         confirmation.shifts += 1;
         let mut count = group.len() + 4;
@@ -86,23 +100,16 @@ pub fn confirm(
             count *= 2;
         };
         for value in values.iter().filter(|z| z.im > 1e-9 * z.norm()) {
-            let near = (0..modes.len())
-                .filter(|j| !seen[*j])
-                .min_by(|a, b| (modes[*a].0 - value).norm().total_cmp(&(modes[*b].0 - value).norm()));
-            let known = (0..modes.len()).any(|j| seen[j] && same(modes[j], *value));
-            match near.filter(|j| same(modes[*j], *value)) {
-                Some(j) => {
-                    seen[j] = true;
-                    let difference = (modes[j].0 - value).norm() / value.norm();
-                    if difference > confirmation.largest_difference {
-                        confirmation.largest_difference = difference;
-                        confirmation.condition = modes[j].1;
-                    }
+            let alike: Vec<usize> = (0..modes.len()).filter(|j| same(modes[*j], *value)).collect();
+            if alike.is_empty() && to_find(*value) {
+                confirmation.missed.push(*value);
+            }
+            for j in alike.into_iter().filter(|j| !std::mem::replace(&mut seen[*j], true)) {
+                let difference = (modes[j].eigenvalue - value).norm() / value.norm();
+                if difference > confirmation.largest_difference {
+                    confirmation.largest_difference = difference;
+                    confirmation.condition = modes[j].condition;
                 }
-                // Neighbouring shifts see the same modes.
-                None if known => {}
-                None if value.im > band[0] && value.im < band[1] => confirmation.missed.push(*value),
-                None => {}
             }
         }
         observer.advance(1);
@@ -110,7 +117,7 @@ pub fn confirm(
     observer.end();
     confirmation.confirmed = seen.iter().filter(|s| **s).count();
     confirmation.unconfirmed =
-        modes.iter().zip(&seen).filter(|(_, seen)| !**seen).map(|((z, _), _)| *z).collect();
+        modes.iter().zip(&seen).filter(|(_, seen)| !**seen).map(|(mode, _)| mode.eigenvalue).collect();
     Ok(confirmation)
 }
 
@@ -185,6 +192,7 @@ fn assembled<'s>(operator: &'s Operator<'_>) -> QuadraticProblem<'s> {
     }
 }
 
-fn same((known, condition): (c64, f64), value: c64) -> bool {
-    (known - value).norm() <= SAME * condition.clamp(1.0, 1e4) * value.norm()
+fn same(mode: &ComplexMode, value: c64) -> bool {
+    let rounding = SAME * mode.condition.clamp(1.0, 1e4) * value.norm();
+    (mode.eigenvalue - value).norm() <= rounding.max(WITHIN * mode.uncertainty)
 }

@@ -180,7 +180,8 @@ fn check_hanging(mesh: &Mesh, warnings: &mut Vec<Fault>) {
     }
     let regions_of = |holds: &dyn Fn(&[usize]) -> bool| -> Vec<usize> {
         let has = |region: &Region| {
-            region.dimension == 2 && region.elements.iter().any(|e| holds(mesh.elements[*e].nodes()))
+            (1..=2).contains(&region.dimension)
+                && region.elements.iter().any(|e| holds(mesh.elements[*e].nodes()))
         };
         (0..mesh.regions.len()).filter(|r| has(&mesh.regions[*r])).collect()
     };
@@ -194,11 +195,11 @@ fn check_hanging(mesh: &Mesh, warnings: &mut Vec<Fault>) {
     let [i, j] = edge.map(|end| mesh.node_place(end));
     let place = mesh.nodes[node].map(|x| significant(x, 4)).join(", ");
     let words = format!(
-        "{} nodes on edges of faces that do not have them; the first at ({place}) m, between nodes {i} and {j}, in {}",
+        "{} nodes on edges of faces or on lines that do not have them; the first at ({place}) m, between nodes {i} and {j}, in {}",
         which.len(),
         names.join(", ")
     );
-    let help = "The faces are not joined there: mesh both sides with the same nodes (one curve between both surfaces; in Gmsh \
+    let help = "They are not joined there: mesh both sides with the same nodes (one curve between both surfaces; in Gmsh \
                 `Coherence;` or `BooleanFragments`), or hold them together by `[rigid]` or `[spring]`";
     warnings.push(Fault::new(nodes(mesh, &which), words, "nodes that both sides have").with_help(help));
 }

@@ -1,4 +1,4 @@
-//! Nodes that lie on the edge of a face without being its nodes.
+//! Nodes that lie on the edge of a face, or on a line, without being its nodes.
 
 use super::Mesh;
 use super::quality::{dot, minus, norm};
@@ -19,37 +19,50 @@ pub(super) struct Hanging {
     pub edge: [usize; 2],
 }
 
-/// The nodes of faces that lie between the ends of an edge which one face alone has, and which are no nodes of that face. Each
-/// node is there once, in ascending order.
+/// The nodes of faces and lines that lie between the ends of an edge which one face alone has, and which are no nodes of that face, and
+/// those between the ends of a line that is no edge of a face, as of a bar along a plate. Each node is there once, in ascending order.
 pub(super) fn hanging(mesh: &Mesh) -> Vec<Hanging> {
-    let faces = || mesh.elements.iter().enumerate().filter(|(_, element)| element.dimension() == 2);
-    let mut edges: Vec<([usize; 2], &[usize])> = Vec::new();
+    let of = |dimension: usize| {
+        mesh.elements.iter().enumerate().filter(move |(_, element)| element.dimension() == dimension)
+    };
+    // An edge, the nodes of its element, and whether that alone has it.
+    let mut edges: Vec<([usize; 2], &[usize], bool)> = Vec::new();
     let mut all: Vec<([usize; 2], usize)> = Vec::new();
-    let mut used = vec![false; mesh.nodes.len()];
-    for (e, face) in faces() {
+    let (mut of_face, mut of_line) = (vec![false; mesh.nodes.len()], vec![false; mesh.nodes.len()]);
+    for (e, face) in of(2) {
         let n = face.nodes();
-        n.iter().for_each(|node| used[*node] = true);
+        n.iter().for_each(|node| of_face[*node] = true);
         all.extend((0..n.len()).map(|i| {
             let (a, b) = (n[i], n[(i + 1) % n.len()]);
             ([a.min(b), a.max(b)], e)
         }));
     }
     all.sort_unstable();
+    for (_, line) in of(1) {
+        let n = line.nodes();
+        n.iter().for_each(|node| of_line[*node] = true);
+        let key = [n[0].min(n[1]), n[0].max(n[1])];
+        if all.binary_search_by(|edge| edge.0.cmp(&key)).is_err() {
+            edges.push((key, n, true));
+        }
+    }
     for same in all.chunk_by(|a, b| a.0 == b.0) {
         let first = mesh.elements[same[0].1].nodes();
         // A face may be listed twice, once for each of two regions.
-        if same[1..].iter().all(|(_, e)| mesh.elements[*e].nodes().iter().all(|node| first.contains(node))) {
-            edges.push((same[0].0, first));
-        }
+        let alone =
+            same[1..].iter().all(|(_, e)| mesh.elements[*e].nodes().iter().all(|node| first.contains(node)));
+        edges.push((same[0].0, first, alone));
     }
     // Along a skew direction few nodes are between the ends of an edge.
     let along = |node: usize| dot(mesh.nodes[node], [0.577, 0.613, 0.541]);
-    let mut order: Vec<(f64, usize)> =
-        (0..mesh.nodes.len()).filter(|node| used[*node]).map(|node| (along(node), node)).collect();
+    let mut order: Vec<(f64, usize)> = (0..mesh.nodes.len())
+        .filter(|node| of_face[*node] || of_line[*node])
+        .map(|node| (along(node), node))
+        .collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let mut found: Vec<Hanging> = Vec::new();
     let mut visits = VISITS;
-    for (edge, face) in edges {
+    for (edge, face, alone) in edges {
         let [a, b] = edge;
         let way = minus(mesh.nodes[b], mesh.nodes[a]);
         let length = norm(way);
@@ -61,7 +74,9 @@ pub(super) fn hanging(mesh: &Mesh) -> Vec<Hanging> {
             let from = minus(mesh.nodes[*node], mesh.nodes[a]);
             let t = dot(from, way) / length.powi(2);
             let off = norm([0, 1, 2].map(|k| from[k] - t * way[k]));
-            if (END..=1.0 - END).contains(&t) && off <= NEAR * length && !face.contains(node) {
+            // A node of a face beside an edge between two others is that of another surface.
+            let counts = alone || !of_face[*node];
+            if counts && (END..=1.0 - END).contains(&t) && off <= NEAR * length && !face.contains(node) {
                 found.push(Hanging { node: *node, edge });
             }
         }
@@ -141,6 +156,29 @@ mod tests {
                         diagnose(&mesh).warnings.iter().any(|w| w.found.contains("nodes on edges of faces"));
                     assert_eq!(told, expected > 0);
                 }
+            }
+        }
+    }
+
+    /// A bar along a line of a plate, with as many elements, more or fewer: the nodes that only one of both has.
+    #[test]
+    fn nodes_that_a_bar_along_a_plate_does_not_share_are_found() {
+        for faces in [Faces::Triangles, Faces::Quadrilaterals] {
+            for (of_plate, of_bar) in (2..=8).flat_map(|plate| (1..=9).map(move |bar| (plate, bar))) {
+                let mut mesh = structured_plate(1.0, 1.0, of_plate, 2, faces).unwrap();
+                let places: Vec<usize> = (0..=of_bar)
+                    .map(|k| {
+                        let place = [k as f64 / of_bar as f64 - 0.5, 0.0, 0.0];
+                        let same = mesh.nodes.iter().position(|x| norm(minus(*x, place)) < 1e-9);
+                        same.unwrap_or_else(|| {
+                            mesh.nodes.push(place);
+                            mesh.nodes.len() - 1
+                        })
+                    })
+                    .collect();
+                mesh.add_region("bar", 1, places.windows(2).map(|pair| Element::Line([pair[0], pair[1]])));
+                let expected = alone(of_plate, of_bar);
+                assert_eq!(hanging(&mesh).len(), expected, "{of_plate} {of_bar}");
             }
         }
     }

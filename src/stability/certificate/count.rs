@@ -9,6 +9,17 @@ use std::f64::consts::TAU;
 /// to. It keeps the contour clear of the modes of an undamped structure, which lie on the imaginary axis.
 pub const SLOWEST_GROWTH: f64 = 1e-5;
 
+/// The slowest growth that is counted, by the largest uncertainty of an eigenvalue that is zero but for rounding: none of
+/// those is counted as growth.
+const CLEAR_OF_ZERO: f64 = 2.0;
+
+/// The slowest growth \[1/s\] that is counted in a band up to `top` \[rad/s\] with growth up to `reach` \[1/s\].
+pub(super) fn slowest_growth(modes: &ComplexModes, top: f64, reach: f64) -> f64 {
+    let zeros = modes.modes.iter().filter(|mode| mode.is_zero()).map(|mode| mode.uncertainty);
+    let rounding = CLEAR_OF_ZERO * zeros.fold(0.0, f64::max);
+    (SLOWEST_GROWTH * top).max(rounding.min(0.1 * reach))
+}
+
 /// How many eigenvalues lie in a closed region, counted, beside how many were found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certificate {

@@ -5,7 +5,7 @@
 //! is smooth, so that few points are enough. A stretch is halved until the phase changes by less than [`STEP`] on either half:
 //! the phase between the points is followed, not bounded, so that this is a count and no proof.
 
-use super::count::{Certificate, SLOWEST_GROWTH, close_calls, found};
+use super::count::{Certificate, close_calls, found, slowest_growth};
 use super::region::CountedRegion;
 use crate::error::{Error, Result};
 use crate::linalg::c64;
@@ -36,7 +36,7 @@ pub(super) fn work(general: &General) -> f64 {
     general.symbolic.as_ref().map_or(f64::INFINITY, |symbolic| POINTS * 8.0 * symbolic.multiplications())
 }
 
-/// The eigenvalues in the band with growth rates from [`SLOWEST_GROWTH`] of its top to `fastest`, beyond which none grows, or to
+/// The eigenvalues in the band with growth rates from [`slowest_growth`] to `fastest`, beyond which none grows, or to
 /// [`FASTEST`] of the top, counted. Fails at an eigenvalue on the contour that the search has not found.
 pub(in crate::stability) fn count(
     operator: &Operator<'_>,
@@ -61,7 +61,8 @@ fn count_up_to(
     // With loss factors the spectrum is not symmetric, and at ω = 0 they mean nothing.
     let lossy = operator.damping.hysteretic.is_some();
     let bottom = if low == 0.0 && lossy { 1e-3 * high } else { low };
-    let region = CountedRegion { growth: [SLOWEST_GROWTH * high, reach], omega: [bottom, high] };
+    let region =
+        CountedRegion { growth: [slowest_growth(&general.modes, high, reach), reach], omega: [bottom, high] };
     let known = known(&general.seen, !lossy);
     let halvings = HALVINGS + (reach / high).max(1.0).log2().ceil() as usize;
     let determinant = Determinant { operator, general, known: &known, halvings };

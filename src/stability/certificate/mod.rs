@@ -54,7 +54,7 @@ use crate::system::System;
 pub(super) use beyond::Definiteness;
 use contour::{Limits, Stopped, Winding, wind};
 pub use count::{Certificate, CloseCall, SLOWEST_GROWTH};
-use count::{close_calls, found};
+use count::{close_calls, found, slowest_growth};
 #[cfg(test)]
 pub(in crate::stability) use determinant::count as count_determinant;
 use pencil::Pencil;
@@ -278,7 +278,7 @@ fn count_by(
     // All tries together take `most_points`; the one beyond the band, half of them.
     let mut left = most_points;
     for (reach, attempt) in tries {
-        let region = region(analysis, reach, attempt);
+        let region = region(analysis, modes, reach, attempt);
         // Beyond the band nothing but a proof is of use.
         let limits = match reach > top {
             true => Limits { points: left / 2, defect: 1.0 },
@@ -341,12 +341,17 @@ fn count_by(
 }
 
 /// The band of the analysis times ε … `reach`, each attempt a little smaller.
-fn region(analysis: &CompletedAnalysis<'_>, reach: f64, attempt: usize) -> CountedRegion {
+fn region(
+    analysis: &CompletedAnalysis<'_>,
+    modes: &ComplexModes,
+    reach: f64,
+    attempt: usize,
+) -> CountedRegion {
     let [low, high] = analysis.band_hz.map(|f| TAU * f);
     let inward = 1e-5 * attempt as f64;
     // With loss factors the spectrum is not symmetric, and at ω = 0 they mean nothing.
     let bottom = if low == 0.0 && analysis.operator.damping.hysteretic.is_some() { 1e-3 * high } else { low };
-    let growth = SLOWEST_GROWTH * high * (1.0 + 0.1 * attempt as f64);
+    let growth = slowest_growth(modes, high, reach) * (1.0 + 0.1 * attempt as f64);
     CountedRegion {
         growth: [growth, reach],
         omega: [if bottom > 0.0 { bottom + inward * high } else { 0.0 }, high * (1.0 - inward)],

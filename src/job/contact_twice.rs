@@ -1,0 +1,144 @@
+//! Contacts that a case has twice.
+
+use super::contacts::part_with;
+use super::regions::Regions;
+use crate::case::Case;
+use crate::error::{Fault, Faults};
+use crate::structure::Model;
+use crate::system::{ContactPair, ContactPoint};
+use std::collections::{BTreeMap, HashMap};
+
+/// Refuses contact points that are in the same place and press the same way: their stiffness would count twice.
+pub(super) fn points_twice(pairs: &[ContactPair], faults: &mut Faults) {
+    let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<u64>>();
+    let mut seen = HashMap::new();
+    let mut twice: BTreeMap<[&str; 2], (usize, [usize; 2])> = BTreeMap::new();
+    for pair in pairs {
+        for (k, point) in pair.points.iter().enumerate().filter(|(_, p)| !p.normal.indices().is_empty()) {
+            let key = (bits(&point.position), point.normal.indices(), bits(point.normal.values()));
+            let (other, j) = *seen.entry(key).or_insert((pair.name.as_str(), k));
+            if (other, j) != (pair.name.as_str(), k) {
+                twice.entry([other, &pair.name]).or_insert((0, [j + 1, k + 1])).0 += 1;
+            }
+        }
+    }
+    for ([first, second], (count, [j, k])) in twice {
+        let found =
+            format!("{count} points that `{first}` has, too, the first of them point {k} (point {j} there)");
+        let expected = "contact points that are there once";
+        let fault = Fault::new(format!("`contact.{second}`"), found, expected);
+        faults.push(
+            fault.with_help("The contact stiffness would count twice: give each point to one contact, once"),
+        );
+    }
+}
+
+/// Refuses two contacts between the same two plates with body and counter-body exchanged, where they have points near each other:
+/// nearer than the points of one are to their neighbours, and half of both thicknesses.
+pub(super) fn surfaces_twice(
+    case: &Case,
+    (regions, model): (&Regions, &Model),
+    pairs: &[ContactPair],
+    faults: &mut Faults,
+) {
+    let body = |name: &str| {
+        let nodes = regions.nodes(&case.contact.get(name)?.body, "").ok()?;
+        part_with(model, &nodes)
+    };
+    let thickness = |name: &str| model.shells.iter().find(|s| s.name == name).map_or(0.0, |s| s.thickness);
+    let surfaces: Vec<(&ContactPair, &str, &str)> = pairs
+        .iter()
+        .filter_map(|pair| {
+            let counter = case.contact.get(&pair.name)?.counter.as_str();
+            Some((pair, body(&pair.name)?.name.as_str(), counter))
+        })
+        .collect();
+    for (k, (second, body, counter)) in surfaces.iter().enumerate() {
+        for (first, ..) in surfaces[..k].iter().filter(|(_, b, c)| b == counter && c == body) {
+            let across = 0.5 * (thickness(body) + thickness(counter));
+            let near = |p: &ContactPoint, q: &ContactPoint| {
+                let apart = (0..3).map(|c| (p.position[c] - q.position[c]).powi(2)).sum::<f64>();
+                // A point stands for a length or an area.
+                let spacing = p.weight.max(q.weight);
+                apart <= spacing.max(spacing * spacing) + across * across
+            };
+            if second.points.iter().any(|p| first.points.iter().any(|q| near(p, q))) {
+                let found =
+                    format!("the plates of `{}` once more, body and counter-body exchanged", first.name);
+                let fault = Fault::new(format!("`contact.{}`", second.name), found, "each contact once");
+                let help = "The contact stiffness would count twice: the points of one side are enough";
+                faults.push(fault.with_help(help));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::case::Case;
+    use crate::job::Prepared;
+    use crate::mesh::generate::{Faces, structured_plate};
+    use crate::mesh::{Mesh, Region, write};
+
+    /// A plate of 80 × 20 mm in 8 × 2 cells at height `z`, and its outermost cells.
+    fn plate(name: &str, z: f64) -> Mesh {
+        let mut mesh = structured_plate(0.08, 0.02, 8, 2, Faces::Quadrilaterals).unwrap();
+        mesh.nodes.iter_mut().for_each(|x| x[2] = z);
+        mesh.regions.truncate(1);
+        mesh.elements.truncate(16);
+        mesh.regions[0].name = name.into();
+        for (side, elements) in [("left", vec![0, 8]), ("right", vec![7, 15])] {
+            mesh.regions.push(Region { name: format!("{name}_{side}"), dimension: 2, elements });
+        }
+        mesh
+    }
+
+    /// Two plates, one above the other, and a second contact with body and counter-body exchanged: a fault where both are at the
+    /// same place, in part or as a whole.
+    #[test]
+    fn a_contact_from_both_sides_is_a_fault_where_it_is_the_same() {
+        let dir = tempfile::tempdir().unwrap();
+        let mut mesh = plate("low", 0.0);
+        mesh.append(plate("high", 0.01));
+        write(&dir.path().join("m.msh"), &mesh, 1.0).unwrap();
+        let shell = |name: &str| {
+            format!(
+                "[shell.{name}]\nmaterial = \"steel\"\nthickness = 0.01\n[support.{name}]\non = \"{name}\"\nheld = [\"ux\", \"uy\"]\n"
+            )
+        };
+        for (a, b, same) in [
+            ("", "", true),
+            ("_left", "", true),
+            ("", "_right", true),
+            ("_left", "_left", true),
+            ("_right", "_right", true),
+            ("_left", "_right", false),
+            ("_right", "_left", false),
+        ] {
+            for [one, two] in [["low", "high"], ["high", "low"]] {
+                let contact = |name: &str, body: &str, side: &str, counter: &str| {
+                    format!(
+                        "[contact.{name}]\nbody = \"{body}{side}\"\ncounter = \"{counter}\"\napproach = 1e-6\nsliding_velocity = 1\n\
+                         sliding_direction = [1, 0, 0]\nnormal = {{ per = \"area\", stiffness = 1e10 }}\n\
+                         friction = {{ law = \"coulomb\", mu0 = 0.3 }}\n"
+                    )
+                };
+                let text = format!(
+                    "[mesh]\nfile = \"m.msh\"\nunit = \"m\"\n[material.steel]\nyoungs_modulus = 2e11\npoissons_ratio = 0.3\n\
+                     density = 7800\n{}{}{}{}[cea]\nband = [0, 1000]\n",
+                    shell("low"),
+                    shell("high"),
+                    contact("p", one, a, two),
+                    contact("q", two, b, one)
+                );
+                let case = Case::parse("a.toml", &text, dir.path().into()).unwrap();
+                let said = Prepared::new(&case).map_or_else(|error| error.to_string(), |_| String::new());
+                assert_eq!(
+                    said.contains("body and counter-body exchanged"),
+                    same,
+                    "{one}{a} {two}{b}: {said}"
+                );
+            }
+        }
+    }
+}
