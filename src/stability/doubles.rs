@@ -146,3 +146,47 @@ fn at_the_onset_of_divergence_growth_is_undecided_and_beyond_it_unstable() {
         }
     }
 }
+
+/// Systems of small integers, whose real and oscillating eigenvalues have the same size, and lie where a shift is likely to be: all
+/// eigenvalues are there, as those of the companion matrix.
+#[test]
+fn neat_numbers_hit_no_shift() {
+    let mut random = Random::seeded(71);
+    for trial in 0..120 {
+        let n = 1 + trial % 4;
+        let unit = 10f64.powi(2 * (trial as i32 % 4));
+        let mut whole = |most: usize| random.below(2 * most + 1) as f64 - most as f64;
+        let mut symmetric = |most: usize, diagonal: bool| {
+            let all: Vec<f64> = (0..n * n).map(|_| whole(most)).collect();
+            Mat::from_fn(n, n, |i, j| match (i == j, diagonal) {
+                (false, true) => 0.0,
+                _ => all[i.min(j) * n + i.max(j)],
+            })
+        };
+        let stiffness = match trial % 3 {
+            // ± of one size.
+            0 => Mat::from_fn(n, n, |i, j| if i == j { 3.0 - 6.0 * (i % 2) as f64 } else { 0.0 }),
+            _ => symmetric(2, trial % 3 == 1),
+        };
+        let damping = if trial % 2 == 0 { Mat::zeros(n, n) } else { symmetric(2, true) };
+        let mass = Mat::from_fn(n, n, |i, j| if i == j { 1.0 + (trial / 3 % 2) as f64 } else { 0.0 });
+        let (damping, stiffness) = (damping * faer::Scale(unit.sqrt()), stiffness * faer::Scale(unit));
+        let system = system(&mass, &damping, &stiffness);
+        let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
+        // A shift on an eigenvalue, too.
+        let top = [4.0, 1.8, 3f64.sqrt() * 1.0001][trial % 3] * unit.sqrt() / TAU;
+        let real = dense_modes(&system, n);
+        let found = complex_modes(&system, &steady, &real, [0.0, top], &()).unwrap();
+        let spectrum = super::tests::dense_spectrum(&system, &steady);
+        // Those that are zero or all but so, and defective ones, are known to the root of rounding.
+        let size = unit.sqrt();
+        let expected = spectrum.iter().filter(|z| z.im > -1e-5 * size && z.norm() > 1e-3 * size);
+        for z in expected.filter(|z| z.norm() < 0.999 * TAU * top) {
+            let error = found.modes.iter().map(|m| (m.eigenvalue - z).norm()).fold(f64::INFINITY, f64::min);
+            assert!(error < 1e-4 * size, "{trial}: {z} is missing by {error:e}");
+        }
+        for mode in &found.modes {
+            assert!(mode.accurate(), "{trial}: {mode:?}");
+        }
+    }
+}

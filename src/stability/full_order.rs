@@ -43,6 +43,8 @@ impl Confirmation {
 const GROUP: usize = 16;
 /// Two eigenvalues are the same when they differ by less than this part of |λ|, times the condition number.
 const SAME: f64 = 1e-7;
+/// Relative residual of the eigenvalues of the second method.
+const TOLERANCE: f64 = 1e-12;
 /// Uncertainties of an eigenvalue within which another method may find it.
 const WITHIN: f64 = 10.0;
 
@@ -67,9 +69,11 @@ pub fn confirm(
     let asked = band.into();
     let operator = Operator::new(system, steady)?;
     let modes: Vec<&ComplexMode> = found.modes.iter().filter(|mode| mode.eigenvalue.im > 0.0).collect();
-    let zeros = found.modes.iter().filter(|mode| mode.is_zero()).map(|mode| mode.uncertainty);
-    let zero = WITHIN * zeros.fold(0.0, f64::max);
     let band = asked.hz.map(|f| TAU * f);
+    // Beside a zero that is double the iteration ends at the root of its tolerance.
+    let zeros = found.modes.iter().filter(|mode| mode.is_zero());
+    let zero =
+        zeros.map(|mode| WITHIN * mode.uncertainty.max(TOLERANCE.sqrt() * band[1])).fold(0.0, f64::max);
     // Of those nearest to a frequency none is missed that is farther than the last.
     let centre = asked.nearest.map(|(hz, _)| c64::new(0.0, TAU * hz));
     let reach = centre.map_or(f64::INFINITY, |centre| {
@@ -139,7 +143,6 @@ impl<'s, 'a> SecondMethod<'s, 'a> {
     }
 
     fn at(&self, shift: c64) -> Result<NearestValues<'_>> {
-        const TOLERANCE: f64 = 1e-12;
         Ok(match self {
             SecondMethod::Own(operator) => {
                 let problem = Shifted::new(operator, shift)?;
@@ -195,4 +198,54 @@ fn assembled<'s>(operator: &'s Operator<'_>) -> QuadraticProblem<'s> {
 fn same(mode: &ComplexMode, value: c64) -> bool {
     let rounding = SAME * mode.condition.clamp(1.0, 1e4) * value.norm();
     (mode.eigenvalue - value).norm() <= rounding.max(WITHIN * mode.uncertainty)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::equilibrium::samples::sparse;
+    use crate::equilibrium::{SteadyOptions, solve_steady};
+    use crate::linalg::random::Random;
+    use crate::modal::samples::dense_modes;
+    use crate::stability::complex_modes;
+    use crate::system::{Damping, Structure};
+
+    /// Oscillators, some of them equal, and free chains, with modes of a band or those nearest to a frequency: both methods agree, and
+    /// do not where a mode is left out.
+    #[test]
+    fn equal_eigenvalues_zeros_and_the_nearest_are_confirmed() {
+        let mut random = Random::seeded(31);
+        for trial in 0..40 {
+            let n = 4 + trial % 5;
+            let free = trial % 2 == 1;
+            let springs: Vec<f64> = (0..n).map(|_| 1e4 * (2.0 + random.next())).collect();
+            let stiffness = |i: usize, j: usize| match (free, i.abs_diff(j)) {
+                // Every second oscillator is equal to the one before.
+                (false, 0) => springs[i - i % 2],
+                (true, 0) => springs[i] * f64::from(i + 1 < n) + if i > 0 { springs[i - 1] } else { 0.0 },
+                (true, 1) => -springs[i.min(j)],
+                _ => 0.0,
+            };
+            let structure = Structure {
+                mass: sparse(n, |i, j| f64::from(u8::from(i == j))).into(),
+                stiffness: sparse(n, stiffness).into(),
+                damping: Damping::default(),
+                engine: Default::default(),
+            };
+            let system = System::new(structure, Vec::new());
+            let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
+            let real = dense_modes(&system, n);
+            let hz = [0.0, 1.1 * real.frequency_hz(n - 1)];
+            let nearest = (trial % 4 < 2).then(|| (real.frequency_hz(n / 2) * 1.01, 1 + trial % 3));
+            let band = Band { hz, nearest, left_vectors: true };
+            let mut found = complex_modes(&system, &steady, &real, band, &()).unwrap();
+            let confirmation = confirm(&system, &steady, &found, band, &()).unwrap();
+            assert!(confirmation.holds(), "{trial}: {confirmation:?}");
+            if !free && nearest.is_none() {
+                let first = found.modes[0].eigenvalue;
+                found.modes.retain(|mode| (mode.eigenvalue - first).norm() > 1e-6 * first.norm());
+                assert!(!confirm(&system, &steady, &found, band, &()).unwrap().holds(), "{trial}");
+            }
+        }
+    }
 }

@@ -72,35 +72,24 @@ pub(super) fn solve(
             "Check the model for parts without mass or with numbers out of any range",
         )
     };
-    let value = Mat::from_fn(m, m, |i, j| {
-        let real = s * (s * mass[(i, j)] + damping[(i, j)]) + stiffness[(i, j)];
-        c64::new(real, hysteretic.map_or(0.0, |h| h[(i, j)]))
-    });
-    let lu = Lu::new(value);
-    // −Q(s)⁻¹ \[s² M, s Q′(s)\], the lower half of the companion matrix.
-    let lower = lu.solve(Mat::from_fn(m, 2 * m, |i, j| {
-        let rest = match j < m {
-            true => mass[(i, j)],
-            false => 2.0 * mass[(i, j - m)] + damping[(i, j - m)] / s,
-        };
-        c64::new(-s * s * rest, 0.0)
-    }));
-    if !lower.is_all_finite() {
-        return Err(failed(&format!("its matrix at s = {s:e} is singular")));
+    let problem = Projection { mass, damping, stiffness, hysteretic };
+    // A shift on an eigenvalue has no factors, and one next to it costs the others their digits.
+    let mut found: Option<(f64, Lu<c64>, Mat<c64>, Vec<c64>, Mat<c64>)> = None;
+    for s in MOVED.map(|factor| factor * s) {
+        let Some((lu, companion)) = problem.companion(s) else { continue };
+        let (theta, v) = problem.pairs_of(&companion)?;
+        let clear = theta.iter().all(|theta| theta.norm() < NEXT_TO_SHIFT);
+        found = Some((s, lu, companion, theta, v));
+        if clear {
+            break;
+        }
     }
-    let companion = Mat::from_fn(2 * m, 2 * m, |i, j| match i < m {
-        true => c64::new(f64::from(j == i + m), 0.0),
-        false => lower[(i - m, j)],
-    });
-    // Without losses all numbers are real.
-    let pairs_of = |companion: &Mat<c64>| match hysteretic {
-        None => eigenpairs(Mat::from_fn(2 * m, 2 * m, |i, j| companion[(i, j)].re).as_ref()),
-        Some(_) => complex_eigenpairs(companion.as_ref()),
+    let Some((s, lu, companion, mut theta, mut v)) = found else {
+        return Err(failed(&format!("its matrix near s = {s:e} is singular")));
     };
-    let (mut theta, mut v) = pairs_of(&companion)?;
     let mut size = SPLIT;
     while size < MOST_SPLIT && dependent(&theta, &v) {
-        (theta, v) = pairs_of(&changed(&companion, size))?;
+        (theta, v) = problem.pairs_of(&changed(&companion, size))?;
         size *= 16.0;
     }
     let mut chosen: Vec<(c64, usize)> =
@@ -123,9 +112,57 @@ pub(super) fn solve(
     Ok(polished(&quadratic, &companion, pairs))
 }
 
+/// Factors of s at which the projected problem is linearised, one after the other.
+const MOVED: [f64; 4] = [1.0, 0.881_966, 1.234_568, 0.618_034];
+/// |θ| = s/|λ − s| of an eigenvalue that is too near to the shift.
+const NEXT_TO_SHIFT: f64 = 1e6;
+
+/// The matrices of a projected problem.
+struct Projection<'a> {
+    mass: &'a Mat<f64>,
+    damping: &'a Mat<f64>,
+    stiffness: &'a Mat<f64>,
+    hysteretic: Option<&'a Mat<f64>>,
+}
+
+impl Projection<'_> {
+    /// Factors of Q(s), and the companion matrix; none where Q(s) is singular.
+    fn companion(&self, s: f64) -> Option<(Lu<c64>, Mat<c64>)> {
+        let Projection { mass, damping, stiffness, hysteretic } = *self;
+        let m = mass.nrows();
+        let value = Mat::from_fn(m, m, |i, j| {
+            let real = s * (s * mass[(i, j)] + damping[(i, j)]) + stiffness[(i, j)];
+            c64::new(real, hysteretic.map_or(0.0, |h| h[(i, j)]))
+        });
+        let lu = Lu::new(value);
+        // −Q(s)⁻¹ \[s² M, s Q′(s)\], the lower half of the companion matrix.
+        let lower = lu.solve(Mat::from_fn(m, 2 * m, |i, j| {
+            let rest = match j < m {
+                true => mass[(i, j)],
+                false => 2.0 * mass[(i, j - m)] + damping[(i, j - m)] / s,
+            };
+            c64::new(-s * s * rest, 0.0)
+        }));
+        let whole = |i: usize, j: usize| match i < m {
+            true => c64::new(f64::from(j == i + m), 0.0),
+            false => lower[(i - m, j)],
+        };
+        lower.is_all_finite().then(|| (lu, Mat::from_fn(2 * m, 2 * m, whole)))
+    }
+
+    /// Its eigenvalues θ and vectors. Without losses all numbers are real.
+    fn pairs_of(&self, companion: &Mat<c64>) -> Result<(Vec<c64>, Mat<c64>)> {
+        let real = |i: usize, j: usize| companion[(i, j)].re;
+        match self.hysteretic {
+            None => eigenpairs(Mat::from_fn(companion.nrows(), companion.ncols(), real).as_ref()),
+            Some(_) => complex_eigenpairs(companion.as_ref()),
+        }
+    }
+}
+
 /// The wanted pairs of (λ² M + K) y = 0 with a symmetric K, each with itself as left vector: μ = 1/(s² − λ²) of the symmetric problem
 /// M y = μ (K + s²M) y, so that equal eigenvalues, λ = 0 of several rigid bodies among them, have orthogonal vectors. `None` where K is
-/// not symmetric but for rounding, or K + s²M not positive definite.
+/// not symmetric but for rounding, or K + s²M not positive definite for any of the s that are tried, beyond the fastest divergence.
 fn symmetric_pairs(
     mass: &Mat<f64>,
     stiffness: &Mat<f64>,
@@ -140,13 +177,19 @@ fn symmetric_pairs(
     }
     let half = |a: &Mat<f64>, i: usize, j: usize| 0.5 * (a[(i, j)] + a[(j, i)]);
     let symmetric = Mat::from_fn(m, m, |i, j| half(stiffness, i, j));
-    let factor =
-        cholesky(Mat::from_fn(m, m, |i, j| symmetric[(i, j)] + s * s * half(mass, i, j)).as_ref()).ok()?;
-    let mut inner = mass.clone();
-    solve_lower_triangular_in_place(factor.as_ref(), inner.as_mut(), Par::Seq);
-    let mut inner = inner.transpose().to_owned();
-    solve_lower_triangular_in_place(factor.as_ref(), inner.as_mut(), Par::Seq);
-    let (mu, mut vectors) = symmetric_eigen(inner.as_ref()).ok()?;
+    let shifted = |square: f64| Mat::from_fn(m, m, |i, j| symmetric[(i, j)] + square * half(mass, i, j));
+    let decomposed = |square: f64| {
+        let factor = cholesky(shifted(square).as_ref()).ok()?;
+        let mut inner = mass.clone();
+        solve_lower_triangular_in_place(factor.as_ref(), inner.as_mut(), Par::Seq);
+        let mut inner = inner.transpose().to_owned();
+        solve_lower_triangular_in_place(factor.as_ref(), inner.as_mut(), Par::Seq);
+        let (mu, vectors) = symmetric_eigen(inner.as_ref()).ok()?;
+        // One next to −s² takes the digits of the others.
+        (mu[m - 1] * square < NEXT_TO_SHIFT).then_some((factor, mu, vectors))
+    };
+    let mut squares = (0..FARTHER).map(|k| s * s * 16f64.powi(k));
+    let (factor, mu, mut vectors) = squares.find_map(decomposed)?;
     solve_upper_triangular_in_place(factor.transpose(), vectors.as_mut(), Par::Seq);
     let [inertia, force] = [mass, &symmetric].map(|a| product(a.as_ref(), vectors.as_ref()));
     let mut pairs = Vec::new();
@@ -166,6 +209,9 @@ fn symmetric_pairs(
     pairs.sort_by(|a, b| a.lambda.im.total_cmp(&b.lambda.im).then(a.lambda.re.total_cmp(&b.lambda.re)));
     Some(pairs)
 }
+
+/// How often s² is taken 16 times as large.
+const FARTHER: i32 = 6;
 
 /// Two θ are the same within this part of them.
 const TOGETHER: f64 = 1e-12;
