@@ -73,18 +73,7 @@ pub(super) fn solve(
         )
     };
     let problem = Projection { mass, damping, stiffness, hysteretic };
-    // A shift on an eigenvalue has no factors, and one next to it costs the others their digits.
-    let mut found: Option<(f64, Lu<c64>, Mat<c64>, Vec<c64>, Mat<c64>)> = None;
-    for s in MOVED.map(|factor| factor * s) {
-        let Some((lu, companion)) = problem.companion(s) else { continue };
-        let (theta, v) = problem.pairs_of(&companion)?;
-        let clear = theta.iter().all(|theta| theta.norm() < NEXT_TO_SHIFT);
-        found = Some((s, lu, companion, theta, v));
-        if clear {
-            break;
-        }
-    }
-    let Some((s, lu, companion, mut theta, mut v)) = found else {
+    let Some(Linearised { s, lu, companion, mut theta, mut v }) = problem.linearised(s)? else {
         return Err(failed(&format!("its matrix near s = {s:e} is singular")));
     };
     let mut size = SPLIT;
@@ -125,7 +114,33 @@ struct Projection<'a> {
     hysteretic: Option<&'a Mat<f64>>,
 }
 
+/// A projected problem in θ at a shift s, with its eigenvalues and vectors.
+struct Linearised {
+    s: f64,
+    /// Factors of Q(s).
+    lu: Lu<c64>,
+    companion: Mat<c64>,
+    theta: Vec<c64>,
+    v: Mat<c64>,
+}
+
 impl Projection<'_> {
+    /// At s, or near it where that is on an eigenvalue or next to one: the first has no factors, the second costs the others their
+    /// digits. None where Q is singular at every shift.
+    fn linearised(&self, s: f64) -> Result<Option<Linearised>> {
+        let mut last = None;
+        for s in MOVED.map(|factor| factor * s) {
+            let Some((lu, companion)) = self.companion(s) else { continue };
+            let (theta, v) = self.pairs_of(&companion)?;
+            let clear = theta.iter().all(|theta| theta.norm() < NEXT_TO_SHIFT);
+            last = Some(Linearised { s, lu, companion, theta, v });
+            if clear {
+                break;
+            }
+        }
+        Ok(last)
+    }
+
     /// Factors of Q(s), and the companion matrix; none where Q(s) is singular.
     fn companion(&self, s: f64) -> Option<(Lu<c64>, Mat<c64>)> {
         let Projection { mass, damping, stiffness, hysteretic } = *self;
