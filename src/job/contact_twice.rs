@@ -1,6 +1,5 @@
 //! Contacts that a case has twice.
 
-use super::contacts::part_with;
 use super::regions::Regions;
 use crate::case::Case;
 use crate::error::{Fault, Faults};
@@ -43,7 +42,7 @@ pub(super) fn surfaces_twice(
 ) {
     let body = |name: &str| {
         let nodes = regions.nodes(&case.contact.get(name)?.body, "").ok()?;
-        part_with(model, &nodes)
+        model.shell_with(&nodes)
     };
     let thickness = |name: &str| model.shells.iter().find(|s| s.name == name).map_or(0.0, |s| s.thickness);
     let surfaces: Vec<(&ContactPair, &str, &str)> = pairs

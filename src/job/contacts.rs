@@ -9,7 +9,7 @@ use crate::contact::{
 };
 use crate::error::{Error, Fault, Faults, Result};
 use crate::mesh::Element;
-use crate::structure::{DofMap, Model, ShellPart};
+use crate::structure::{DofMap, Model};
 use crate::system::{Closing, ContactPair, ContactPoint};
 use nalgebra::Vector3;
 use std::collections::BTreeSet;
@@ -140,7 +140,7 @@ pub fn surface_points(
     let region = regions.region(&contact.body, &place("body"))?;
     let touching = regions.elements(&contact.body, region.dimension, &place("body"))?;
     let nodes = regions.mesh.region_nodes(region);
-    let body = part_with(model, &nodes).ok_or_else(|| {
+    let body = model.shell_with(&nodes).ok_or_else(|| {
         Error::input(Fault::new(
             place("body"),
             format!("region \"{}\", some of whose nodes are on no shell", contact.body),
@@ -220,15 +220,6 @@ pub fn surface_points(
     let touch = stand.touch.unwrap_or_else(|| points.iter().map(|p| p.gap).fold(f64::INFINITY, f64::min));
     points.iter_mut().for_each(|p| p.gap -= touch);
     Ok(points)
-}
-
-/// The shell that has all of `nodes`.
-pub(super) fn part_with<'a>(model: &'a Model, nodes: &[usize]) -> Option<&'a ShellPart> {
-    model.shells.iter().find(|shell| {
-        let mut own: Vec<usize> = shell.faces.iter().flat_map(Element::nodes).copied().collect();
-        own.sort_unstable();
-        nodes.iter().all(|n| own.binary_search(n).is_ok())
-    })
 }
 
 /// Two unit vectors of a pair, for pictures: where the load presses the body, and where the counter-body moves.

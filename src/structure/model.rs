@@ -57,6 +57,17 @@ pub struct ShellPart {
     pub rotary_inertia: bool,
 }
 
+impl Model {
+    /// The first shell that has all of `nodes`.
+    pub fn shell_with(&self, nodes: &[usize]) -> Option<&ShellPart> {
+        self.shells.iter().find(|shell| {
+            let mut own: Vec<usize> = shell.faces.iter().flat_map(Element::nodes).copied().collect();
+            own.sort_unstable();
+            nodes.iter().all(|n| own.binary_search(n).is_ok())
+        })
+    }
+}
+
 impl ShellPart {
     /// A thin plate of `faces`, its membrane free, its rotary inertia counted; `thickness` h \[m\].
     pub fn new(name: &str, faces: Vec<Element>, material: Material, thickness: f64) -> Self {
