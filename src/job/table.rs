@@ -343,9 +343,9 @@ mod tests {
                         assert_eq!(read, expected, "{text}");
                     }
                     assert!(faults.0.is_empty() && table.rows().count() == 3);
-                    let told = table.warnings().join("\n");
-                    assert_eq!(told.contains("decimal points"), decimal == ",", "{told}");
-                    assert!(told.contains("\"comment\"") && table.all_read(&["f"]).is_err());
+                    let said = table.warnings().join("\n");
+                    assert_eq!(said.contains("decimal points"), decimal == ",", "{said}");
+                    assert!(said.contains("\"comment\"") && table.all_read(&["f"]).is_err());
                 }
             }
         }

@@ -111,10 +111,9 @@ pub(super) fn analyse<'a, T>(
 ) -> Result<(ComplexModes, T)> {
     let (known, asked) = (known.into(), band.into());
     check(system, steady, known.real, asked.hz)?;
-    let operator = Operator::new(system, steady)?;
     let top = TAU * asked.hz[1];
-    let Some(closed) = ClosedContact::of(&operator, (system, steady), known.real, top, observer)? else {
-        return solved(&operator, known, asked, observer, then);
+    let Some(closed) = ClosedContact::of((system, steady), known.real, top, observer)? else {
+        return solved(&Operator::new(system, steady)?, known, asked, observer, then);
     };
     let (mut modes, rest) = {
         let operator = Operator::new(&closed.system, &closed.steady)?;

@@ -7,7 +7,7 @@
 //! the closed structure, and what is left of the interface is friction and damping.
 
 use super::block::Block;
-use super::operator::Operator;
+use super::interface::Interface;
 use super::post_processing::shares;
 use super::{ComplexMode, Structural};
 use crate::equilibrium::{SteadySliding, closed_structure};
@@ -29,17 +29,16 @@ pub(super) struct ClosedContact {
 }
 
 impl ClosedContact {
-    /// Of the system of `operator`, whose interface acts in more directions than there are `real` modes in a band up to
-    /// `top` \[rad/s\]; none otherwise. The real modes reach as far as those given.
+    /// Of a system whose interface acts in more directions than there are `real` modes in a band up to `top` \[rad/s\]; none
+    /// otherwise. The real modes reach as far as those given.
     pub(super) fn of(
-        operator: &Operator<'_>,
         (system, steady): (&System, &SteadySliding),
         real: &RealModes,
         top: f64,
         observer: &dyn Observer,
     ) -> Result<Option<Self>> {
         let springs = steady.points.iter().filter(|point| point.tangent.by_penetration[0] != 0.0).count();
-        let many = springs > 0 && operator.interface.active(top).len() > real.len();
+        let many = springs > 0 && Interface::new(system, steady).active(top).len() > real.len();
         if !many || real.len() == system.n_dofs() {
             return Ok(None);
         }

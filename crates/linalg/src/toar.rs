@@ -59,10 +59,10 @@ pub fn toar(
     tolerance: f64,
 ) -> Result<ToarPairs> {
     let count = count.min(2 * problem.n());
-    let mut room = (2 * count).max(count + 16).min(2 * problem.n());
-    let mut krylov = Krylov::new(problem, radius, room);
+    let mut capacity = (2 * count).max(count + 16).min(2 * problem.n());
+    let mut krylov = Krylov::new(problem, radius, capacity);
     for restart in 1..=RESTARTS {
-        let closed = krylov.expand_to(room);
+        let closed = krylov.expand_to(capacity);
         let ritz = krylov.ritz()?;
         let converged = ritz.iter().take_while(|r| r.residual <= tolerance * r.theta.norm()).count();
         if converged >= count || closed {
@@ -74,9 +74,9 @@ pub fn toar(
         if ritz[converged..].iter().all(|r| (r.theta.norm() + r.residual) * reach < radius) {
             return Ok(ToarPairs { within: reach, ..krylov.pairs(shift, &ritz[..converged]) });
         }
-        krylov.restart(&ritz, count + (room - count) / 2)?;
+        krylov.restart(&ritz, count + (capacity - count) / 2)?;
         if restart % PATIENCE == 0 {
-            room = (room + room / 2).min(2 * problem.n());
+            capacity = (capacity + capacity / 2).min(2 * problem.n());
         }
     }
     Err(Error::analysis(
@@ -110,7 +110,7 @@ struct Krylov<'a> {
 
 impl<'a> Krylov<'a> {
     /// Starts from a vector that is the same in every run and leans on no degree of freedom.
-    fn new(problem: &'a dyn ShiftedQuadratic, radius: f64, room: usize) -> Self {
+    fn new(problem: &'a dyn ShiftedQuadratic, radius: f64, capacity: usize) -> Self {
         let n = problem.n();
         let mut u = Mat::zeros(n, 0);
         u.resize_with(n, 1, |i, _| {
@@ -126,7 +126,7 @@ impl<'a> Krylov<'a> {
             u,
             s: [Mat::from_fn(1, 1, |_, _| half), Mat::from_fn(1, 1, |_, _| half)],
             h: Mat::zeros(0, 0),
-            b: Vec::with_capacity(room),
+            b: Vec::with_capacity(capacity),
             solves: 0,
         };
         // (x, x) is no vector of the range of A: one step first.
@@ -173,9 +173,9 @@ impl<'a> Krylov<'a> {
         )
     }
 
-    /// Arnoldi steps until V has `room` columns; true when it spans an invariant subspace before.
-    fn expand_to(&mut self, room: usize) -> bool {
-        while self.len() < room {
+    /// Arnoldi steps until V has `capacity` columns; true when it spans an invariant subspace before.
+    fn expand_to(&mut self, capacity: usize) -> bool {
+        while self.len() < capacity {
             let k = self.len();
             let (mut x, mut y) = self.next_coordinates(k);
             let before = x.norm_l2().hypot(y.norm_l2());

@@ -143,7 +143,7 @@ fn attempt(a: MatRef<'_, c64>, vectors: Vectors, params: EvdParams) -> Option<Ei
     Some(Eigenvalues { values, right, left }).filter(|found| converged(a, found))
 }
 
-/// Room for left and right vectors.
+/// Memory for left and right vectors.
 fn matrices<T: ComplexField>(n: usize, vectors: Vectors) -> [Option<Mat<T>>; 2] {
     [vectors == Vectors::Both, vectors != Vectors::None].map(|wanted| wanted.then(|| Mat::zeros(n, n)))
 }
