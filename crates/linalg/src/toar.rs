@@ -349,7 +349,7 @@ mod tests {
         }
     }
 
-    /// Eigenvalues on a circle about the shift, which no rational function of few poles tells apart: the nearest by one part in
+    /// Eigenvalues on a circle about the shift, which no rational function of few poles parts: the nearest by one part in
     /// a thousand.
     #[test]
     fn eigenvalues_at_one_distance_converge() {
