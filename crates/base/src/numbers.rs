@@ -150,10 +150,7 @@ mod tests {
 
     #[test]
     fn given_and_signed_numbers_are_short() {
-        assert_eq!(
-            (given(936.0), given(0.5), given(1e-9)),
-            ("936".into(), "0.5".into(), "1.00000e−9".into())
-        );
+        assert_eq!((given(936.0), given(0.5), given(1e-9)), ("936".into(), "0.5".into(), "1e−9".into()));
         assert_eq!(fixed(-0.0004, 2), "0.00");
         assert_eq!(signed(1.25, 1), "+1.2");
         assert_eq!(signed(-1.26, 1), "−1.3");
