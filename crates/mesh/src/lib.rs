@@ -24,6 +24,7 @@ pub mod generate;
 pub mod gmsh;
 mod hanging;
 pub mod info;
+mod kind;
 mod orient;
 pub mod quality;
 mod write;
@@ -31,6 +32,7 @@ mod write;
 pub use check::{Diagnosis, diagnose};
 pub use gmsh::read;
 pub use info::Info;
+pub use kind::{CellKind, CellTable};
 pub use write::{to_msh, write};
 
 use stridor_base::error::{Error, Fault, Result, nearest};
