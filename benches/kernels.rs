@@ -12,7 +12,7 @@ use stridor::linalg::eigenpairs::{Wanted, lowest_eigenpairs};
 use stridor::linalg::factor::SymbolicFactor;
 use stridor::linalg::sparse::add_scaled;
 use stridor::linalg::unsymmetric::spectrum;
-use stridor::mesh::Element;
+use stridor::mesh::Cell;
 use stridor::structure::{Material, Model, RayleighDamping, ShellPart, assemble};
 
 /// Seconds of `work`, and what it gives.
@@ -29,8 +29,8 @@ fn plate(n: usize) -> Model {
     let nodes = (0..=n).flat_map(|i| (0..=n).map(move |j| [at(i), at(j), 0.0])).collect();
     let cell = |i: usize, j: usize| {
         [
-            Element::Triangle([id(i, j), id(i + 1, j), id(i + 1, j + 1)]),
-            Element::Triangle([id(i, j), id(i + 1, j + 1), id(i, j + 1)]),
+            Cell::triangle([id(i, j), id(i + 1, j), id(i + 1, j + 1)]),
+            Cell::triangle([id(i, j), id(i + 1, j + 1), id(i, j + 1)]),
         ]
     };
     let material = Material {

@@ -3,7 +3,7 @@
 use super::projection::{FaceGrid, Foot, Part, Vector, add, area_vector, cross, dot, scale, subtract};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::SparseVector;
-use crate::mesh::Element;
+use crate::mesh::Cell;
 use crate::numbers::{components, given};
 use crate::structure::ShellPart;
 use crate::structure::elements::{WeightedTriangle, split_face};
@@ -59,7 +59,7 @@ pub enum ContactSide<'a> {
     Middle(&'a [[usize; 2]]),
     /// Faces of the plate (a pad). Every node carries one point, at h/2 towards the counter-body, with the node's
     /// tributary area \[m²\].
-    Face(&'a [Element]),
+    Face(&'a [Cell]),
 }
 
 /// Which points are kept.

@@ -1,6 +1,6 @@
 //! Where a point stands over a plate: the faces under it, the coordinates on them, the height.
 
-use crate::mesh::Element;
+use crate::mesh::Cell;
 use crate::structure::elements::{FacePoint, WeightedTriangle, split_face};
 use std::collections::HashMap;
 
@@ -47,7 +47,7 @@ pub(super) struct Part {
 
 impl FaceGrid {
     /// `None` when the faces have no common side (no area, or normals that cancel).
-    pub(super) fn new(nodes: &[Vector], faces: &[Element], towards: Vector) -> Option<Self> {
+    pub(super) fn new(nodes: &[Vector], faces: &[Cell], towards: Vector) -> Option<Self> {
         let placed = |t: WeightedTriangle| (t, t.nodes.map(|n| nodes[n]));
         let faces: Vec<Face> =
             faces.iter().map(|f| split_face(f).into_iter().map(placed).collect()).collect();

@@ -1,6 +1,6 @@
 //! Contacts whose counter-body travels under them.
 
-use crate::mesh::Element;
+use crate::mesh::Cell;
 use crate::system::ContactPoint;
 use nalgebra::Vector3;
 
@@ -35,10 +35,10 @@ impl Stations {
 }
 
 /// The nodes with those of `faces` moved by `travel` \[m\] along a direction of whatever length.
-pub fn travelled(nodes: &[[f64; 3]], faces: &[Element], direction: [f64; 3], travel: f64) -> Vec<[f64; 3]> {
+pub fn travelled(nodes: &[[f64; 3]], faces: &[Cell], direction: [f64; 3], travel: f64) -> Vec<[f64; 3]> {
     let way = Vector3::from(direction).normalize() * travel;
     let mut nodes = nodes.to_vec();
-    let mut own: Vec<usize> = faces.iter().flat_map(Element::nodes).copied().collect();
+    let mut own: Vec<usize> = faces.iter().flat_map(Cell::nodes).copied().collect();
     own.sort_unstable();
     own.dedup();
     own.into_iter().for_each(|node| nodes[node] = (Vector3::from(nodes[node]) + way).into());
@@ -46,7 +46,7 @@ pub fn travelled(nodes: &[[f64; 3]], faces: &[Element], direction: [f64; 3], tra
 }
 
 /// The mean length of the edges of `faces` \[m\], those of two faces counted twice; zero without any.
-pub fn mean_edge<'a>(nodes: &[[f64; 3]], faces: impl IntoIterator<Item = &'a Element>) -> f64 {
+pub fn mean_edge<'a>(nodes: &[[f64; 3]], faces: impl IntoIterator<Item = &'a Cell>) -> f64 {
     let (mut sum, mut count) = (0.0, 0);
     for face in faces {
         let corners = face.nodes();
@@ -66,7 +66,7 @@ mod tests {
     #[test]
     fn stations_reach_over_the_way_and_one_is_where_the_pair_stands() {
         let nodes = [[0.0, 0.0, 0.0], [0.3, 0.0, 0.0], [0.0, 0.4, 0.0], [9.0; 3]];
-        let faces = [Element::Triangle([0, 1, 2])];
+        let faces = [Cell::triangle([0, 1, 2])];
         let edge = mean_edge(&nodes, &faces);
         assert!((edge - 0.4).abs() < 1e-15);
         let stations = Stations::new([-0.3, 0.5], edge, |_| Some(Vec::new())).unwrap();

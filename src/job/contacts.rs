@@ -8,7 +8,7 @@ use crate::contact::{
     Bristle, ContactPatch, ContactSide, GroundFault, NormalLaw, SlidingLaw, Surfaces, pair_surfaces,
 };
 use crate::error::{Error, Fault, Faults, Result};
-use crate::mesh::Element;
+use crate::mesh::Cell;
 use crate::structure::{DofMap, Model};
 use crate::system::{Closing, ContactPair, ContactPoint};
 use nalgebra::Vector3;
@@ -170,13 +170,7 @@ pub fn surface_points(
         let help = "Two plates that touch have nodes of their own, half of both thicknesses apart";
         return Err(Error::input(fault.with_help(help)));
     }
-    let lines: Vec<[usize; 2]> = touching
-        .iter()
-        .filter_map(|element| match element {
-            Element::Line(ends) => Some(*ends),
-            _ => None,
-        })
-        .collect();
+    let lines: Vec<[usize; 2]> = touching.iter().filter_map(Cell::ends).collect();
     let (side, natural) = match region.dimension {
         1 if contact.points_across == 1 => (ContactSide::Middle(&lines), StiffnessPer::Length),
         1 => (ContactSide::Edge(&lines), StiffnessPer::Length),

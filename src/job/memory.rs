@@ -324,7 +324,7 @@ mod tests {
             loss_factor: 0.0,
             rayleigh: crate::structure::RayleighDamping::default(),
         };
-        let faces = vec![crate::mesh::Element::Quadrilateral([0, 1, 2, 3])];
+        let faces = vec![crate::mesh::Cell::quadrilateral([0, 1, 2, 3])];
         let plate = crate::structure::ShellPart {
             rotary_inertia: false,
             ..crate::structure::ShellPart::new("plate", faces, steel, 1e-3)

@@ -4,7 +4,7 @@ use super::links::add_ties;
 use super::regions::Regions;
 use crate::case::{Case, ModesAnalysis};
 use crate::error::{Fault, Faults, Result};
-use crate::mesh::Element;
+use crate::mesh::Cell;
 use crate::structure::{BarPart, Model, PointMass, ShellPart, Spring, Support};
 
 /// The structure of the whole case.
@@ -25,13 +25,9 @@ pub fn whole_model(case: &Case, regions: &Regions) -> Result<Model> {
     }
     for (name, bar) in &case.bar {
         let lines = faults.take(regions.elements(name, 1, &format!("`bar.{name}`")));
-        let ends = |element: &Element| match element {
-            Element::Line(nodes) => Some(*nodes),
-            _ => None,
-        };
         model.bars.push(BarPart {
             name: name.clone(),
-            elements: lines.unwrap_or_default().iter().filter_map(ends).collect(),
+            elements: lines.unwrap_or_default().iter().filter_map(Cell::ends).collect(),
             material: case.material[&bar.material],
             section: bar.profile.section(),
             orientation: bar.orientation,
@@ -95,7 +91,7 @@ pub fn part_model(
     let clamp = regions.nodes_of(&analysis.clamp, &format!("`modes.{name}.clamp`"), &mut faults);
     let mut used = vec![!case.point.is_empty() && analysis.parts.is_empty(); model.nodes.len()];
     for part in &model.shells {
-        part.faces.iter().flat_map(Element::nodes).for_each(|n| used[*n] = true);
+        part.faces.iter().flat_map(Cell::nodes).for_each(|n| used[*n] = true);
     }
     for part in &model.bars {
         part.elements.iter().flatten().for_each(|n| used[*n] = true);

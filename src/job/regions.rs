@@ -2,7 +2,7 @@
 
 use crate::case::{Case, MeshSource};
 use crate::error::{Error, Fault, Faults, Result, nearest};
-use crate::mesh::{Element, Mesh, Region};
+use crate::mesh::{Cell, Mesh, Region};
 use crate::schema::dotted;
 
 /// A mesh whose regions are looked up by name, with a fault that lists the existing ones.
@@ -26,7 +26,7 @@ impl Regions {
     pub fn new(mut mesh: Mesh, case: &Case) -> Self {
         for (name, position) in &case.point {
             mesh.nodes.push(*position);
-            mesh.elements.push(Element::Point([mesh.nodes.len() - 1]));
+            mesh.elements.push(Cell::point(mesh.nodes.len() - 1));
             mesh.regions.push(Region {
                 name: name.clone(),
                 dimension: 0,
@@ -150,7 +150,7 @@ impl Regions {
     }
 
     /// The elements of region `name`, which must have `dimension`.
-    pub fn elements(&self, name: &str, dimension: usize, place: &str) -> Result<Vec<Element>> {
+    pub fn elements(&self, name: &str, dimension: usize, place: &str) -> Result<Vec<Cell>> {
         let region = self.region(name, place)?;
         if region.dimension != dimension {
             return Err(Error::input(Fault::new(

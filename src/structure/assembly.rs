@@ -185,7 +185,7 @@ impl Prestress for GeometricStiffness {
 #[cfg(test)]
 mod tests {
     use super::super::*;
-    use crate::mesh::Element;
+    use crate::mesh::Cell;
     use crate::system::Prestress;
 
     /// A wavy strip of `n` × `n` quadrilaterals and triangles with a bar, a mass, a spring and a rigid link.
@@ -210,16 +210,16 @@ mod tests {
             for j in 0..n {
                 let [a, b, c, d] = [id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)];
                 if (i + j) % 3 == 0 {
-                    faces.push(Element::Quadrilateral([a, b, c, d]));
+                    faces.push(Cell::quadrilateral([a, b, c, d]));
                 } else {
-                    faces.extend([Element::Triangle([a, b, c]), Element::Triangle([a, c, d])]);
+                    faces.extend([Cell::triangle([a, b, c]), Cell::triangle([a, c, d])]);
                 }
             }
         }
         let last = nodes.len();
         nodes.push([1.2, 0.5, 0.2]);
         nodes.push([1.5, 0.5, 0.4]);
-        let plate = |name: &str, faces: Vec<Element>| ShellPart {
+        let plate = |name: &str, faces: Vec<Cell>| ShellPart {
             theory,
             ..ShellPart::new(name, faces, material, 2e-3)
         };
@@ -313,9 +313,9 @@ mod tests {
         model.shells[0].material.youngs_modulus = f64::NAN;
         model.bars[0].material.density = -1.0;
         model.bars[0].elements.push([3, 3]);
-        model.shells[0].faces.push(Element::Triangle([0, 1, 999]));
-        model.shells[0].faces.push(Element::Triangle([0, 0, 1]));
-        model.shells[0].faces.push(Element::Quadrilateral([0, 2, 1, 5]));
+        model.shells[0].faces.push(Cell::triangle([0, 1, 999]));
+        model.shells[0].faces.push(Cell::triangle([0, 0, 1]));
+        model.shells[0].faces.push(Cell::quadrilateral([0, 2, 1, 5]));
         model.masses[0].mass = f64::INFINITY;
         model.springs[0].direction = [0.0; 3];
         model.supports[0].nodes.push(1000);

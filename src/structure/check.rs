@@ -6,7 +6,7 @@ use super::material::Material;
 use super::model::{Model, PlateTheory, ShellPart};
 use super::registry::elements;
 use crate::error::{Fault, Faults, Result};
-use crate::mesh::Element;
+use crate::mesh::Cell;
 use crate::numbers::components;
 use std::collections::{BTreeMap, HashMap};
 
@@ -170,7 +170,7 @@ enum Shape {
 }
 
 /// Whether all triangles of a face have an area and look the same way, and the elements of the part can be made of it.
-fn shape(part: &ShellPart, nodes: &[[f64; 3]], face: &Element) -> Shape {
+fn shape(part: &ShellPart, nodes: &[[f64; 3]], face: &Cell) -> Shape {
     let split = split_face(face);
     let triangles: Vec<FlatTriangle> =
         split.iter().filter_map(|t| FlatTriangle::new(&t.nodes.map(|n| nodes[n]))).collect();
@@ -284,7 +284,7 @@ mod tests {
     #[test]
     fn an_element_belongs_to_one_part() {
         let plate = |name: &str, faces: &[[usize; 3]]| {
-            let faces = faces.iter().map(|nodes| Element::Triangle(*nodes)).collect();
+            let faces = faces.iter().map(|nodes| Cell::triangle(*nodes)).collect();
             ShellPart::new(name, faces, STEEL, 1e-3)
         };
         let nodes = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];

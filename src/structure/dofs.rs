@@ -275,7 +275,7 @@ fn dot(a: &[f64; 6], b: &[f64; 6]) -> f64 {
 mod tests {
     use super::super::samples::STEEL;
     use super::super::*;
-    use crate::mesh::Element;
+    use crate::mesh::Cell;
 
     /// A square of two triangles tilted by `angle` about y, bending only or not, and a master below it.
     fn tilted(angle: f64, bending_only: bool) -> Model {
@@ -284,12 +284,7 @@ mod tests {
             [[0.0, 0.0], [0.1, 0.0], [0.1, 0.1], [0.0, 0.1]].map(|[x, y]| [x * c, y, -x * s]).to_vec();
         let part = ShellPart {
             bending_only,
-            ..ShellPart::new(
-                "plate",
-                vec![Element::Triangle([0, 1, 2]), Element::Triangle([0, 2, 3])],
-                STEEL,
-                1e-3,
-            )
+            ..ShellPart::new("plate", vec![Cell::triangle([0, 1, 2]), Cell::triangle([0, 2, 3])], STEEL, 1e-3)
         };
         Model { nodes, shells: vec![part], ..Model::default() }
     }

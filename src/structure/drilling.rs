@@ -2,7 +2,7 @@
 
 use super::elements::{FlatTriangle, split_face};
 use super::model::Model;
-use crate::mesh::Element;
+use crate::mesh::Cell;
 use nalgebra::Vector3;
 
 /// Normals of elements at one node that differ by less than this angle \[rad\] are those of one surface.
@@ -63,7 +63,7 @@ impl Drilling {
         // Whether an element joins a node to another of its body, and to one that is none of it.
         let (mut along, mut beyond) = (vec![false; n], vec![false; n]);
         let faces = model.shells.iter().filter(|part| !part.bending_only).flat_map(|part| &part.faces);
-        for nodes in faces.map(Element::nodes) {
+        for nodes in faces.map(Cell::nodes) {
             for node in nodes.iter().filter(|node| bodies[**node].is_some()) {
                 for other in nodes.iter().filter(|other| *other != node) {
                     let same = bodies[*other] == bodies[*node];
@@ -141,7 +141,7 @@ mod tests {
     use super::super::*;
     use crate::linalg::random::Random;
     use crate::linalg::sparse::multiply_vector;
-    use crate::mesh::Element;
+    use crate::mesh::Cell;
     use nalgebra::{Rotation3, Vector3};
 
     /// A plate of 4 × 3 cells of random sizes, in a random plane, of triangles or quadrilaterals: its model without supports, the
@@ -172,9 +172,9 @@ mod tests {
                 let [a, b, c, d] =
                     [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| i * (along + 1) + j);
                 if triangles {
-                    faces.extend([Element::Triangle([a, b, c]), Element::Triangle([a, c, d])]);
+                    faces.extend([Cell::triangle([a, b, c]), Cell::triangle([a, c, d])]);
                 } else {
-                    faces.push(Element::Quadrilateral([a, b, c, d]));
+                    faces.push(Cell::quadrilateral([a, b, c, d]));
                 }
             }
         }

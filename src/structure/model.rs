@@ -4,7 +4,7 @@ use super::elements::waves::shear_coefficient;
 use super::elements::{FlatTriangle, split_face};
 use super::material::Material;
 use super::section::Section;
-use crate::mesh::Element;
+use crate::mesh::Cell;
 use crate::schema::choices;
 
 /// A structure: nodes and all that hangs on them. Degrees of freedom are (ux, uy, uz, rx, ry, rz) at every node.
@@ -42,7 +42,7 @@ pub struct ShellPart {
     /// Its region's name.
     pub name: String,
     /// Triangles and quadrilaterals on [`Model::nodes`], all turned the same way.
-    pub faces: Vec<Element>,
+    pub faces: Vec<Cell>,
     /// Material.
     pub material: Material,
     /// h \[m\].
@@ -70,7 +70,7 @@ impl Model {
 
 impl ShellPart {
     /// A thin plate of `faces`, its membrane free, its rotary inertia counted; `thickness` h \[m\].
-    pub fn new(name: &str, faces: Vec<Element>, material: Material, thickness: f64) -> Self {
+    pub fn new(name: &str, faces: Vec<Cell>, material: Material, thickness: f64) -> Self {
         ShellPart {
             name: name.into(),
             faces,

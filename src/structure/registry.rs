@@ -5,7 +5,7 @@ use super::elements::{
     MindlinTriangle, SpringElement, split_face,
 };
 use super::model::{Model, PlateTheory, ShellPart};
-use crate::mesh::Element;
+use crate::mesh::Cell;
 
 /// An element of any kind.
 pub(super) type AnyElement<'a> = Box<dyn FiniteElement + 'a>;
@@ -28,19 +28,19 @@ pub(super) fn elements(model: &Model) -> Elements<'_> {
 }
 
 /// Adds the elements on one face of a plate to `to`; none for points and lines.
-fn push_elements<'a>(part: &'a ShellPart, face: &Element, nodes: &'a [[f64; 3]], to: &mut Elements<'a>) {
-    match (part.theory, face) {
+fn push_elements<'a>(part: &'a ShellPart, face: &Cell, nodes: &'a [[f64; 3]], to: &mut Elements<'a>) {
+    match (part.theory, face.corners()) {
         (PlateTheory::Kirchhoff, _) => {
             let triangles = split_face(face);
             to.extend(triangles.iter().map(|t| boxed(KirchhoffTriangle::new(part, nodes, t))));
         }
-        (PlateTheory::Mindlin, Element::Triangle(corners)) => {
-            to.push(boxed(MindlinTriangle::new(part, nodes, *corners)));
+        (PlateTheory::Mindlin, &[a, b, c]) => {
+            to.push(boxed(MindlinTriangle::new(part, nodes, [a, b, c])));
         }
-        (PlateTheory::Mindlin, Element::Quadrilateral(corners)) => {
-            to.push(boxed(MindlinQuadrilateral::new(part, nodes, *corners)));
+        (PlateTheory::Mindlin, &[a, b, c, d]) => {
+            to.push(boxed(MindlinQuadrilateral::new(part, nodes, [a, b, c, d])));
         }
-        (PlateTheory::Mindlin, Element::Point(_) | Element::Line(_)) => {}
+        (PlateTheory::Mindlin, _) => {}
     }
 }
 
@@ -50,7 +50,7 @@ fn boxed<'a>(element: impl FiniteElement + 'a) -> AnyElement<'a> {
 
 impl ShellPart {
     /// The elements on face `face` of the part, on nodes with the given coordinates.
-    pub(super) fn elements_on<'a>(&'a self, face: &Element, nodes: &'a [[f64; 3]]) -> Elements<'a> {
+    pub(super) fn elements_on<'a>(&'a self, face: &Cell, nodes: &'a [[f64; 3]]) -> Elements<'a> {
         let mut elements = Vec::new();
         push_elements(self, face, nodes, &mut elements);
         elements

@@ -60,14 +60,14 @@ pub fn element_size(part: &ShellPart, nodes: &[[f64; 3]]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Element;
+    use crate::mesh::Cell;
     use crate::structure::samples::STEEL;
     use crate::structure::{PlateTheory, ShellPart};
 
     #[test]
     fn a_thick_plate_is_named_by_kirchhoffs_element_and_has_no_error_by_mindlins() {
         let nodes = vec![[0.0; 3], [0.1, 0.0, 0.0], [0.1, 0.1, 0.0], [0.0, 0.1, 0.0]];
-        for face in [Element::Triangle([0, 1, 2]), Element::Quadrilateral([0, 1, 2, 3])] {
+        for face in [Cell::triangle([0, 1, 2]), Cell::quadrilateral([0, 1, 2, 3])] {
             let plate = ShellPart::new("plate", vec![face], STEEL, 0.01);
             let mindlin = ShellPart { name: "thick".into(), theory: PlateTheory::Mindlin, ..plate.clone() };
             let massless =

@@ -4,26 +4,26 @@ use crate::common::*;
 use nalgebra::{DMatrix, DVector, Rotation3, Vector3};
 use puruspe::{In, Jn};
 use std::f64::consts::{PI, TAU};
-use stridor::mesh::Element;
+use stridor::mesh::Cell;
 use stridor::structure::elements::waves::mindlin_frequency;
 use stridor::structure::elements::{ElementMatrix, FacePoint, dkt};
 use stridor::structure::*;
 use stridor::validation::kirchhoff;
 
-fn thick(faces: Vec<Element>, h: f64) -> ShellPart {
+fn thick(faces: Vec<Cell>, h: f64) -> ShellPart {
     ShellPart { theory: PlateTheory::Mindlin, ..ShellPart::new("plate", faces, steel(), h) }
 }
 
 /// An irregular patch of the unit square, three quadrilaterals and two triangles, warped by `warp` and turned in space.
-fn patch(turn: &Rotation3<f64>, warp: f64) -> (Vec<[f64; 3]>, Vec<Element>) {
+fn patch(turn: &Rotation3<f64>, warp: f64) -> (Vec<[f64; 3]>, Vec<Cell>) {
     let plane = FLAT.map(|[x, y]| [x, y, warp * (3.0 * x - 2.0 * y) * (x + 2.0 * y)]);
     let nodes = plane.map(|x| (turn * Vector3::from(x) + Vector3::new(0.3, -0.2, 0.7)).into());
     let faces = vec![
-        Element::Quadrilateral([0, 4, 8, 7]),
-        Element::Quadrilateral([1, 5, 8, 4]),
-        Element::Triangle([5, 2, 8]),
-        Element::Triangle([8, 2, 6]),
-        Element::Quadrilateral([6, 3, 7, 8]),
+        Cell::quadrilateral([0, 4, 8, 7]),
+        Cell::quadrilateral([1, 5, 8, 4]),
+        Cell::triangle([5, 2, 8]),
+        Cell::triangle([8, 2, 6]),
+        Cell::quadrilateral([6, 3, 7, 8]),
     ];
     (nodes.to_vec(), faces)
 }
@@ -45,7 +45,7 @@ fn turned() -> Rotation3<f64> {
 }
 
 /// K and M of one face on the six degrees of freedom of its nodes.
-fn matrices(face: &Element, nodes: &[[f64; 3]], h: f64) -> [DMatrix<f64>; 2] {
+fn matrices(face: &Cell, nodes: &[[f64; 3]], h: f64) -> [DMatrix<f64>; 2] {
     let part = thick(vec![face.clone()], h);
     let element = part.element(nodes).unwrap();
     let n = element.n_freedoms();
@@ -58,7 +58,7 @@ fn matrices(face: &Element, nodes: &[[f64; 3]], h: f64) -> [DMatrix<f64>; 2] {
     })
 }
 
-fn patch_stiffness(nodes: &[[f64; 3]], faces: &[Element], h: f64) -> DMatrix<f64> {
+fn patch_stiffness(nodes: &[[f64; 3]], faces: &[Cell], h: f64) -> DMatrix<f64> {
     let mut k = DMatrix::zeros(6 * nodes.len(), 6 * nodes.len());
     for face in faces {
         let [ke, _] = matrices(face, nodes, h);
@@ -219,9 +219,9 @@ fn supported_square(n: usize, part: ShellPart, quadrilaterals: bool, off: f64) -
             let [p, q, r, s] = [id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)];
             let first = if off > 0.0 { random() < 0.0 } else { (i + j) % 2 == 0 };
             match (quadrilaterals, first) {
-                (true, _) => faces.push(Element::Quadrilateral([p, q, r, s])),
-                (false, true) => faces.extend([Element::Triangle([p, q, r]), Element::Triangle([p, r, s])]),
-                (false, false) => faces.extend([Element::Triangle([p, q, s]), Element::Triangle([q, r, s])]),
+                (true, _) => faces.push(Cell::quadrilateral([p, q, r, s])),
+                (false, true) => faces.extend([Cell::triangle([p, q, r]), Cell::triangle([p, r, s])]),
+                (false, false) => faces.extend([Cell::triangle([p, q, s]), Cell::triangle([q, r, s])]),
             }
         }
     }
@@ -469,7 +469,7 @@ fn the_closed_form_of_circular_plates() {
 }
 
 /// A disc of radius 1: a square grid of n × n cells mapped onto it, quadrilaterals or triangles.
-fn disc(n: usize, quadrilaterals: bool) -> (Vec<[f64; 3]>, Vec<Element>, Vec<usize>) {
+fn disc(n: usize, quadrilaterals: bool) -> (Vec<[f64; 3]>, Vec<Cell>, Vec<usize>) {
     let at = |i: usize| 2.0 * i as f64 / n as f64 - 1.0;
     let id = |i: usize, j: usize| i * (n + 1) + j;
     let mut nodes = Vec::new();
@@ -488,11 +488,11 @@ fn disc(n: usize, quadrilaterals: bool) -> (Vec<[f64; 3]>, Vec<Element>, Vec<usi
             let [p, q, r, s] = [id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)];
             // The diagonal towards the middle, so that no triangle lies flat along the rim.
             if quadrilaterals {
-                faces.push(Element::Quadrilateral([p, q, r, s]));
+                faces.push(Cell::quadrilateral([p, q, r, s]));
             } else if (2 * i < n) == (2 * j < n) {
-                faces.extend([Element::Triangle([p, q, r]), Element::Triangle([p, r, s])]);
+                faces.extend([Cell::triangle([p, q, r]), Cell::triangle([p, r, s])]);
             } else {
-                faces.extend([Element::Triangle([p, q, s]), Element::Triangle([q, r, s])]);
+                faces.extend([Cell::triangle([p, q, s]), Cell::triangle([q, r, s])]);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Plates, discs and bars against closed forms and published figures.
 
 use crate::common::*;
-use stridor::mesh::Element;
+use stridor::mesh::Cell;
 use stridor::structure::*;
 use stridor::validation::kirchhoff::{
     Edge, ThinPlate, cantilever_roots, circular_modes, free_disc_in_plane, simply_supported_rectangle,
@@ -12,7 +12,7 @@ const DISC: ThinPlate =
 
 /// A structured annulus in the plane x = 0 (a disc whose axis is x), `radial` × `angular` cells cut along alternating
 /// diagonals; the nodes of circle i are i·angular … .
-fn annulus(b: f64, a: f64, radial: usize, angular: usize) -> (Vec<[f64; 3]>, Vec<Element>) {
+fn annulus(b: f64, a: f64, radial: usize, angular: usize) -> (Vec<[f64; 3]>, Vec<Cell>) {
     let mut nodes = Vec::new();
     for i in 0..=radial {
         // Equal ratios, so that the cells keep their shape.
@@ -28,9 +28,9 @@ fn annulus(b: f64, a: f64, radial: usize, angular: usize) -> (Vec<[f64; 3]>, Vec
             let id = |i: usize, j: usize| i * angular + j % angular;
             let [p, q, r, s] = [id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)];
             if (i + j) % 2 == 0 {
-                faces.extend([Element::Triangle([p, q, r]), Element::Triangle([p, r, s])]);
+                faces.extend([Cell::triangle([p, q, r]), Cell::triangle([p, r, s])]);
             } else {
-                faces.extend([Element::Triangle([p, q, s]), Element::Triangle([q, r, s])]);
+                faces.extend([Cell::triangle([p, q, s]), Cell::triangle([q, r, s])]);
             }
         }
     }
@@ -38,7 +38,7 @@ fn annulus(b: f64, a: f64, radial: usize, angular: usize) -> (Vec<[f64; 3]>, Vec
 }
 
 /// A full disc: the annulus closed by triangles at a node in the middle.
-fn full_disc(a: f64, radial: usize, angular: usize) -> (Vec<[f64; 3]>, Vec<Element>) {
+fn full_disc(a: f64, radial: usize, angular: usize) -> (Vec<[f64; 3]>, Vec<Cell>) {
     let (mut nodes, mut faces) = annulus(a / radial as f64, a, radial - 1, angular);
     for (k, node) in nodes.iter_mut().enumerate() {
         let r = a * (k / angular + 1) as f64 / radial as f64;
@@ -47,12 +47,12 @@ fn full_disc(a: f64, radial: usize, angular: usize) -> (Vec<[f64; 3]>, Vec<Eleme
     }
     let middle = nodes.len();
     nodes.push([0.0; 3]);
-    faces.extend((0..angular).map(|j| Element::Triangle([middle, j, (j + 1) % angular])));
+    faces.extend((0..angular).map(|j| Cell::triangle([middle, j, (j + 1) % angular])));
     (nodes, faces)
 }
 
 /// A rectangle in the plane z = 0, n × m cells; quadrilaterals or triangles.
-fn rectangle(a: f64, b: f64, n: usize, m: usize, quadrilaterals: bool) -> (Vec<[f64; 3]>, Vec<Element>) {
+fn rectangle(a: f64, b: f64, n: usize, m: usize, quadrilaterals: bool) -> (Vec<[f64; 3]>, Vec<Cell>) {
     let id = |i: usize, j: usize| i * (m + 1) + j;
     let nodes = (0..=n)
         .flat_map(|i| (0..=m).map(move |j| [a * i as f64 / n as f64, b * j as f64 / m as f64, 0.0]))
@@ -62,18 +62,18 @@ fn rectangle(a: f64, b: f64, n: usize, m: usize, quadrilaterals: bool) -> (Vec<[
         for j in 0..m {
             let [p, q, r, s] = [id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)];
             if quadrilaterals {
-                faces.push(Element::Quadrilateral([p, q, r, s]));
+                faces.push(Cell::quadrilateral([p, q, r, s]));
             } else if (i + j) % 2 == 0 {
-                faces.extend([Element::Triangle([p, q, r]), Element::Triangle([p, r, s])]);
+                faces.extend([Cell::triangle([p, q, r]), Cell::triangle([p, r, s])]);
             } else {
-                faces.extend([Element::Triangle([p, q, s]), Element::Triangle([q, r, s])]);
+                faces.extend([Cell::triangle([p, q, s]), Cell::triangle([q, r, s])]);
             }
         }
     }
     (nodes, faces)
 }
 
-fn plate(thin: &ThinPlate, faces: Vec<Element>, bending_only: bool) -> ShellPart {
+fn plate(thin: &ThinPlate, faces: Vec<Cell>, bending_only: bool) -> ShellPart {
     let material = Material {
         youngs_modulus: thin.youngs_modulus,
         poissons_ratio: thin.poissons_ratio,
@@ -158,7 +158,7 @@ fn random_annulus(ratio: f64, radial: usize, angular: usize, seed: u64) -> Model
             true => [[p, q, r], [p, r, s]],
             false => [[p, q, s], [q, r, s]],
         };
-        pair.clone_from_slice(&cut(random() < 0.0).map(Element::Triangle));
+        pair.clone_from_slice(&cut(random() < 0.0).map(Cell::triangle));
     }
     model
 }

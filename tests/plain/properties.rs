@@ -7,7 +7,7 @@ use stridor::case::Case;
 use stridor::job::{Prepared, Selection, analyse};
 use stridor::linalg::c64;
 use stridor::mesh::generate::{Faces, structured_plate};
-use stridor::mesh::{Element, Mesh, gmsh};
+use stridor::mesh::{Cell, Mesh, gmsh};
 use stridor::results::ComplexResult;
 use stridor::stability::ComplexMode;
 
@@ -109,13 +109,10 @@ fn with_elements_shuffled(mesh: &Mesh) -> Mesh {
     let mut other = mesh.clone();
     other.elements = order.iter().map(|k| mesh.elements[*k].clone()).collect();
     for element in &mut other.elements {
-        let first = next();
-        match element {
-            Element::Point(_) => {}
-            Element::Line(nodes) => nodes.rotate_left(first % 2),
-            Element::Triangle(nodes) => nodes.rotate_left(first % 3),
-            Element::Quadrilateral(nodes) => nodes.rotate_left(first),
-        }
+        let mut nodes = element.nodes().to_vec();
+        let count = nodes.len();
+        nodes.rotate_left(next() % count);
+        *element = Cell::new(element.kind(), &nodes).unwrap();
     }
     for region in &mut other.regions {
         let of = |k: &usize| region.elements.binary_search(&order[*k]).is_ok();

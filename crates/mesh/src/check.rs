@@ -5,7 +5,7 @@
 use super::hanging::{Hanging, hanging};
 use super::orient::neighbours;
 use super::quality::{dot, face_shape, minus, norm};
-use super::{Element, Mesh, Region};
+use super::{Cell, Mesh, Region};
 use std::collections::BTreeMap;
 use stridor_base::connected::lowest_connected;
 use stridor_base::error::{Fault, Faults};
@@ -95,7 +95,7 @@ fn check_coordinates(mesh: &Mesh, faults: &mut Faults) {
 
 fn check_unreferenced(mesh: &Mesh, diagnosis: &mut Diagnosis) {
     let mut used = vec![false; mesh.nodes.len()];
-    mesh.elements.iter().flat_map(Element::nodes).for_each(|n| used[*n] = true);
+    mesh.elements.iter().flat_map(Cell::nodes).for_each(|n| used[*n] = true);
     let stray: Vec<usize> = (0..used.len()).filter(|n| !used[*n]).collect();
     if !stray.is_empty() {
         let found = format!("{} nodes that no element uses", stray.len());
@@ -215,7 +215,7 @@ fn check_shapes(mesh: &Mesh, diagnosis: &mut Diagnosis) {
             degenerate.push(e);
             continue;
         }
-        if let Element::Line([i, j]) = element
+        if let ([i, j], 1) = (element.corners(), element.dimension())
             && mesh.nodes[*i] == mesh.nodes[*j]
         {
             degenerate.push(e);
@@ -374,7 +374,7 @@ mod tests {
         assert!(one_fault(&mesh).contains("node 104, 105"));
 
         let mut mesh = plate();
-        mesh.elements[2] = Element::Quadrilateral([3, 4, 7, 99]);
+        mesh.elements[2] = Cell::quadrilateral([3, 4, 7, 99]);
         assert!(one_fault(&mesh).contains("element 503"));
 
         let mut mesh = plate();
@@ -396,7 +396,7 @@ mod tests {
         assert!(text.contains("nodes 104 and 105") && text.contains("same place in one region"), "{text}");
 
         let mut mesh = plate();
-        mesh.elements[1] = Element::Quadrilateral([1, 4, 5, 2]);
+        mesh.elements[1] = Cell::quadrilateral([1, 4, 5, 2]);
         assert!(one_fault(&mesh).contains("turned opposite ways"));
 
         let mut mesh = plate();
@@ -404,7 +404,7 @@ mod tests {
         assert!(one_fault(&mesh).contains("element 501: found 1 quadrilaterals that are folded"));
 
         let mut mesh = plate();
-        mesh.elements[1] = Element::Quadrilateral([1, 2, 4, 5]);
+        mesh.elements[1] = Cell::quadrilateral([1, 2, 4, 5]);
         assert!(
             diagnose(&mesh)
                 .faults

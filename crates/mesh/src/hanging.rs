@@ -30,8 +30,8 @@ pub(super) fn hanging(mesh: &Mesh) -> Vec<Hanging> {
     let mut all: Vec<([usize; 2], usize)> = Vec::new();
     let (mut of_face, mut of_line) = (vec![false; mesh.nodes.len()], vec![false; mesh.nodes.len()]);
     for (e, face) in of(2) {
-        let n = face.nodes();
-        n.iter().for_each(|node| of_face[*node] = true);
+        face.nodes().iter().for_each(|node| of_face[*node] = true);
+        let n = face.corners();
         all.extend((0..n.len()).map(|i| {
             let (a, b) = (n[i], n[(i + 1) % n.len()]);
             ([a.min(b), a.max(b)], e)
@@ -89,8 +89,8 @@ pub(super) fn hanging(mesh: &Mesh) -> Vec<Hanging> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose;
     use crate::generate::{Faces, structured_plate};
-    use crate::{Element, diagnose};
 
     /// Two plates side by side, of `left` and `right` cells along the seam, which share the nodes at equal places.
     fn side_by_side(
@@ -123,11 +123,7 @@ mod tests {
             });
         }
         let first = mesh.elements.len();
-        mesh.elements.extend(other.elements.iter().map(|element| match element {
-            Element::Triangle(n) => Element::Triangle(n.map(|node| of[turn(node)])),
-            Element::Quadrilateral(n) => Element::Quadrilateral(n.map(|node| of[turn(node)])),
-            other => other.clone(),
-        }));
+        mesh.elements.extend(other.elements.iter().map(|cell| cell.renumbered(|node| of[turn(node)])));
         let elements = first..mesh.elements.len();
         mesh.regions[0].elements.extend(elements);
         // The seam as an arc.
@@ -176,7 +172,7 @@ mod tests {
                         })
                     })
                     .collect();
-                mesh.add_region("bar", 1, places.windows(2).map(|pair| Element::Line([pair[0], pair[1]])));
+                mesh.add_region("bar", 1, places.windows(2).map(|pair| Cell::line([pair[0], pair[1]])));
                 let expected = alone(of_plate, of_bar);
                 assert_eq!(hanging(&mesh).len(), expected, "{of_plate} {of_bar}");
             }

@@ -2,7 +2,7 @@
 
 use super::check::{Diagnosis, bounds, count_pieces, diagnose};
 use super::quality::{face_shape, minus, norm};
-use super::{Element, Mesh};
+use super::{CellKind, Mesh};
 use std::fmt;
 
 /// Summary of a mesh.
@@ -10,8 +10,8 @@ use std::fmt;
 pub struct Info {
     /// Number of nodes.
     pub n_nodes: usize,
-    /// Number of points, lines, triangles, quadrilaterals.
-    pub n_elements: [usize; 4],
+    /// The kinds of cells that it has, with their numbers.
+    pub cells: Vec<(CellKind, usize)>,
     /// Corners of the bounding box \[m\]; zero without nodes.
     pub bounds: [[f64; 3]; 2],
     /// Summary of each region.
@@ -44,17 +44,12 @@ pub struct RegionInfo {
 impl Info {
     /// Sums up `mesh`. Indices out of range are left to the diagnosis: such a mesh shows its faults and no regions.
     pub fn of(mesh: &Mesh) -> Self {
-        let count = |f: fn(&Element) -> bool| mesh.elements.iter().filter(|e| f(e)).count();
+        let count = |kind: CellKind| mesh.elements.iter().filter(|e| e.kind() == kind).count();
         let broken = mesh.elements.iter().any(|e| e.nodes().iter().any(|n| *n >= mesh.nodes.len()));
         let angles = mesh.elements.iter().filter(|_| !broken).filter_map(|e| face_shape(mesh, e));
         Info {
             n_nodes: mesh.nodes.len(),
-            n_elements: [
-                count(|e| matches!(e, Element::Point(_))),
-                count(|e| matches!(e, Element::Line(_))),
-                count(|e| matches!(e, Element::Triangle(_))),
-                count(|e| matches!(e, Element::Quadrilateral(_))),
-            ],
+            cells: CellKind::all().map(|kind| (kind, count(kind))).filter(|(_, n)| *n > 0).collect(),
             bounds: bounds(mesh).unwrap_or_default(),
             regions: if broken { vec![] } else { region_infos(mesh) },
             smallest_angle_deg: angles.map(|s| s.angles[0].to_degrees()).min_by(f64::total_cmp),
@@ -69,8 +64,8 @@ fn region_infos(mesh: &Mesh) -> Vec<RegionInfo> {
         let mut edges = [f64::INFINITY, 0.0];
         for e in &region.elements {
             let element = &mesh.elements[*e];
-            let shape = match element {
-                Element::Line([i, j]) => {
+            let shape = match element.corners() {
+                [i, j] if element.dimension() == 1 => {
                     let length = norm(minus(mesh.nodes[*i], mesh.nodes[*j]));
                     Some((length, [length; 2]))
                 }
@@ -96,12 +91,9 @@ fn region_infos(mesh: &Mesh) -> Vec<RegionInfo> {
 
 impl fmt::Display for Info {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [points, lines, triangles, quads] = self.n_elements;
-        writeln!(
-            f,
-            "{} nodes, {triangles} triangles, {quads} quadrilaterals, {lines} lines, {points} points",
-            self.n_nodes
-        )?;
+        let of = |(kind, n): &(CellKind, usize)| format!(", {n} {}", kind.plural());
+        let cells: String = self.cells.iter().rev().map(of).collect();
+        writeln!(f, "{} nodes{cells}", self.n_nodes)?;
         let [low, high] = self.bounds;
         let mm = |k: usize| format!("{} = {:.3} … {:.3}", ["x", "y", "z"][k], 1e3 * low[k], 1e3 * high[k]);
         writeln!(f, "bounding box (mm): {}, {}, {}", mm(0), mm(1), mm(2))?;
@@ -151,7 +143,10 @@ mod tests {
     fn the_sums_of_a_plate_are_its_area_and_perimeter() {
         let mesh = structured_plate(2.0, 1.0, 4, 2, Faces::Triangles).unwrap();
         let info = Info::of(&mesh);
-        assert_eq!((info.n_nodes, info.n_elements), (15, [0, 12, 16, 0]));
+        assert_eq!(
+            (info.n_nodes, &info.cells),
+            (15, &vec![(CellKind::Line2, 12), (CellKind::Triangle3, 16)])
+        );
         assert!((info.regions[0].measure - 2.0).abs() < 1e-14);
         assert!((info.regions[1..].iter().map(|r| r.measure).sum::<f64>() - 6.0).abs() < 1e-14);
         assert_eq!(info.regions[0].edges, [0.5, 0.5f64.hypot(0.5)]);

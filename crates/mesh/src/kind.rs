@@ -579,6 +579,26 @@ impl CellKind {
         middles.iter().map(|own| place(own).expect("the same nodes in both orders")).collect()
     }
 
+    /// Nodes in the order of this kind, given in Gmsh's.
+    pub fn from_gmsh<T: Copy>(self, nodes: &[T]) -> Vec<T> {
+        self.gmsh_order().into_iter().map(|place| nodes[place]).collect()
+    }
+
+    /// Nodes in Gmsh's order.
+    pub fn to_gmsh<T: Copy>(self, nodes: &[T]) -> Vec<T> {
+        let mut list: Vec<(usize, T)> = self.gmsh_order().into_iter().zip(nodes.iter().copied()).collect();
+        list.sort_by_key(|(place, _)| *place);
+        list.into_iter().map(|(_, node)| node).collect()
+    }
+
+    /// Its name for several: `3-node triangles`.
+    pub fn plural(self) -> String {
+        match self.table().name {
+            name if name.ends_with("hedron") => format!("{}a", name.trim_end_matches("on")),
+            name => format!("{name}s"),
+        }
+    }
+
     /// (ξ, η, ζ) of every node: a corner's own, and the mean of the corners of a middle.
     pub fn reference_coordinates(self) -> Vec<[f64; 3]> {
         let CellTable { middles, corners, .. } = self.table();

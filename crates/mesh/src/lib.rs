@@ -19,6 +19,7 @@
 //! # Ok::<(), stridor_base::error::Error>(())
 //! ```
 
+mod cell;
 pub mod check;
 pub mod generate;
 pub mod gmsh;
@@ -29,6 +30,7 @@ mod orient;
 pub mod quality;
 mod write;
 
+pub use cell::Cell;
 pub use check::{Diagnosis, diagnose};
 pub use gmsh::read;
 pub use info::Info;
@@ -43,7 +45,7 @@ pub struct Mesh {
     /// Node coordinates \[m\].
     pub nodes: Vec<[f64; 3]>,
     /// Elements of all dimensions.
-    pub elements: Vec<Element>,
+    pub elements: Vec<Cell>,
     /// Physical groups, by name.
     pub regions: Vec<Region>,
     /// How the file it came from numbers things; empty for a generated mesh.
@@ -65,19 +67,6 @@ pub struct Origin {
     pub unused_nodes: Vec<u64>,
 }
 
-/// One element; its nodes index [`Mesh::nodes`].
-#[derive(Debug, Clone, PartialEq)]
-pub enum Element {
-    /// A point: a single node.
-    Point([usize; 1]),
-    /// A straight line.
-    Line([usize; 2]),
-    /// A triangle.
-    Triangle([usize; 3]),
-    /// A quadrilateral, nodes in order around it.
-    Quadrilateral([usize; 4]),
-}
-
 /// A physical group: elements that belong together under a name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Region {
@@ -87,27 +76,6 @@ pub struct Region {
     pub dimension: usize,
     /// Indices into [`Mesh::elements`], ascending.
     pub elements: Vec<usize>,
-}
-
-impl Element {
-    /// The nodes of the element.
-    pub fn nodes(&self) -> &[usize] {
-        match self {
-            Element::Point(n) => n,
-            Element::Line(n) => n,
-            Element::Triangle(n) => n,
-            Element::Quadrilateral(n) => n,
-        }
-    }
-
-    /// 0 for a point, 1 for a line, 2 for a face.
-    pub fn dimension(&self) -> usize {
-        match self {
-            Element::Point(_) => 0,
-            Element::Line(_) => 1,
-            Element::Triangle(_) | Element::Quadrilateral(_) => 2,
-        }
-    }
 }
 
 /// The length of the unit `m`, `cm`, `mm` or `in` \[m\]; metres for any other word.
@@ -162,7 +130,7 @@ impl Mesh {
     ///
     /// # Errors
     /// Those of [`Mesh::require`].
-    pub fn faces(&self, name: &str) -> Result<Vec<Element>> {
+    pub fn faces(&self, name: &str) -> Result<Vec<Cell>> {
         Ok(self.require(name, 2)?.elements.iter().map(|k| self.elements[*k].clone()).collect())
     }
 
@@ -196,7 +164,7 @@ impl Mesh {
     }
 
     /// Adds `elements` as a new region.
-    pub fn add_region(&mut self, name: &str, dimension: usize, elements: impl IntoIterator<Item = Element>) {
+    pub fn add_region(&mut self, name: &str, dimension: usize, elements: impl IntoIterator<Item = Cell>) {
         let first = self.elements.len();
         self.elements.extend(elements);
         let elements = (first..self.elements.len()).collect();
@@ -207,12 +175,7 @@ impl Mesh {
     pub fn append(&mut self, other: Mesh) {
         let (node, element) = (self.nodes.len(), self.elements.len());
         self.nodes.extend(other.nodes);
-        self.elements.extend(other.elements.into_iter().map(|e| match e {
-            Element::Point(n) => Element::Point(n.map(|i| i + node)),
-            Element::Line(n) => Element::Line(n.map(|i| i + node)),
-            Element::Triangle(n) => Element::Triangle(n.map(|i| i + node)),
-            Element::Quadrilateral(n) => Element::Quadrilateral(n.map(|i| i + node)),
-        }));
+        self.elements.extend(other.elements.iter().map(|e| e.renumbered(|n| n + node)));
         self.regions.extend(other.regions.into_iter().map(|mut region| {
             region.elements.iter_mut().for_each(|e| *e += element);
             region
@@ -232,8 +195,8 @@ mod tests {
     #[test]
     fn a_missing_region_is_answered_with_those_there_are_and_the_nearest() {
         let mut mesh = Mesh { nodes: vec![[0.0; 3], [1.0, 0.0, 0.0]], ..Default::default() };
-        mesh.add_region("rim", 1, [Element::Line([0, 1])]);
-        mesh.add_region("tip", 0, [Element::Point([1])]);
+        mesh.add_region("rim", 1, [Cell::line([0, 1])]);
+        mesh.add_region("tip", 0, [Cell::point(1)]);
         assert_eq!(mesh.require("rim", 1).unwrap().elements, [0]);
         let text = mesh.require("rmi", 1).unwrap_err().to_string();
         assert!(text.contains("`rim` (lines)") && text.contains("Did you mean `rim`"), "{text}");
@@ -244,10 +207,10 @@ mod tests {
     #[test]
     fn appended_meshes_keep_their_regions() {
         let mut a = Mesh { nodes: vec![[0.0; 3], [1.0, 0.0, 0.0]], ..Default::default() };
-        a.add_region("a", 1, [Element::Line([0, 1])]);
+        a.add_region("a", 1, [Cell::line([0, 1])]);
         let mut b = a.clone();
         b.regions[0].name = "b".into();
         a.append(b);
-        assert_eq!(a.elements[a.region("b").unwrap().elements[0]], Element::Line([2, 3]));
+        assert_eq!(a.elements[a.region("b").unwrap().elements[0]], Cell::line([2, 3]));
     }
 }

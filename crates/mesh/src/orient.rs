@@ -2,7 +2,7 @@
 //!
 //! Programs do not promise that neighbours are, nor do thickness, mass and stiffness depend on it.
 
-use crate::{Element, Mesh, Region};
+use crate::{Mesh, Region};
 
 /// Two faces with an edge in common, and whether they are turned opposite ways.
 pub(super) struct Neighbours {
@@ -14,7 +14,7 @@ pub(super) struct Neighbours {
 pub(super) fn neighbours(mesh: &Mesh, region: &Region) -> Vec<Neighbours> {
     let mut edges: Vec<([usize; 2], usize, bool)> = Vec::with_capacity(4 * region.elements.len());
     for e in region.elements.iter().filter(|_| region.dimension == 2) {
-        let n = mesh.elements[*e].nodes();
+        let n = mesh.elements[*e].corners();
         edges.extend((0..n.len()).map(|i| {
             let (a, b) = (n[i], n[(i + 1) % n.len()]);
             ([a.min(b), a.max(b)], *e, a < b)
@@ -67,10 +67,8 @@ pub(super) fn turn_alike(mesh: &mut Mesh) {
         let opposite = found.iter().filter(|(_, turned)| *turned).count();
         let fewer = 2 * opposite <= found.len();
         for (e, turned) in found.into_iter().filter(|_| two_sided) {
-            match &mut mesh.elements[e] {
-                Element::Triangle(nodes) if turned == fewer => nodes.swap(1, 2),
-                Element::Quadrilateral(nodes) if turned == fewer => nodes.swap(1, 3),
-                _ => {}
+            if turned == fewer {
+                mesh.elements[e] = mesh.elements[e].turned_over();
             }
         }
     }
@@ -79,6 +77,7 @@ pub(super) fn turn_alike(mesh: &mut Mesh) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Cell;
     use crate::generate::{Faces, structured_plate};
 
     /// However the faces of a plate are turned, they come back as they were, or all turned over.
@@ -96,11 +95,7 @@ mod tests {
                 // Half of the plate is a region of its own, too.
                 let half: Vec<usize> = mesh.regions[0].elements.iter().copied().filter(|_| coin(2)).collect();
                 mesh.regions.push(Region { name: "half".into(), dimension: 2, elements: half });
-                let turn = |element: &mut Element| match element {
-                    Element::Triangle(nodes) => nodes.swap(1, 2),
-                    Element::Quadrilateral(nodes) => nodes.swap(1, 3),
-                    _ => {}
-                };
+                let turn = |cell: &mut Cell| *cell = cell.turned_over();
                 mesh.elements.iter_mut().filter(|_| coin(one_in)).for_each(turn);
                 turn_alike(&mut mesh);
                 if mesh.elements != plate.elements {
@@ -113,9 +108,9 @@ mod tests {
 
     #[test]
     fn a_surface_of_one_side_stays_as_it_is() {
-        let ring = |a: usize| Element::Quadrilateral([a, a + 1, a + 3, a + 2]);
+        let ring = |a: usize| Cell::quadrilateral([a, a + 1, a + 3, a + 2]);
         let mut mesh = Mesh { nodes: vec![[0.0; 3]; 8], ..Mesh::default() };
-        mesh.add_region("strip", 2, [ring(0), ring(2), ring(4), Element::Quadrilateral([6, 7, 0, 1])]);
+        mesh.add_region("strip", 2, [ring(0), ring(2), ring(4), Cell::quadrilateral([6, 7, 0, 1])]);
         let before = mesh.clone();
         turn_alike(&mut mesh);
         assert_eq!(mesh, before);

@@ -1,6 +1,6 @@
 //! Shape of elements: edges, areas, angles, warp.
 
-use super::{Element, Mesh};
+use super::{Cell, Mesh};
 
 /// a − b.
 pub fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
@@ -45,18 +45,18 @@ pub struct FaceShape {
 /// The shape of a face; `None` for points and lines.
 ///
 /// ```
-/// use stridor_mesh::{Element, Mesh, quality};
+/// use stridor_mesh::{Cell, Mesh, quality};
 /// let nodes = vec![[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
-/// let mesh = Mesh { nodes, elements: vec![Element::Triangle([0, 1, 2])], ..Default::default() };
+/// let mesh = Mesh { nodes, elements: vec![Cell::triangle([0, 1, 2])], ..Default::default() };
 /// let shape = quality::face_shape(&mesh, &mesh.elements[0]).unwrap();
 /// assert_eq!((shape.area, shape.normal, shape.edges), (6.0, [0.0, 0.0, 1.0], [3.0, 5.0]));
 /// assert!((shape.angles[0] - (3.0f64 / 4.0).atan()).abs() < 1e-15);
 /// ```
-pub fn face_shape(mesh: &Mesh, element: &Element) -> Option<FaceShape> {
+pub fn face_shape(mesh: &Mesh, element: &Cell) -> Option<FaceShape> {
     if element.dimension() != 2 {
         return None;
     }
-    let corners: Vec<[f64; 3]> = element.nodes().iter().map(|n| mesh.nodes[*n]).collect();
+    let corners: Vec<[f64; 3]> = element.corners().iter().map(|n| mesh.nodes[*n]).collect();
     let n = corners.len();
     let at = |i: usize| corners[i % n];
     let vector = match n {
@@ -96,7 +96,7 @@ mod tests {
 
     fn quad(nodes: [[f64; 3]; 4]) -> FaceShape {
         let mesh = Mesh { nodes: nodes.to_vec(), ..Default::default() };
-        face_shape(&mesh, &Element::Quadrilateral([0, 1, 2, 3])).unwrap()
+        face_shape(&mesh, &Cell::quadrilateral([0, 1, 2, 3])).unwrap()
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Writes MSH 4.1 ASCII with physical names.
 
-use super::{Element, Mesh};
+use super::{CellKind, Mesh};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
@@ -46,8 +46,8 @@ pub fn to_msh(mesh: &Mesh, unit_in_metres: f64) -> Result<String> {
     }
     line(format_args!("$EndPhysicalNames\n$Entities"));
     let count = |dimension: usize| entities.keys().filter(|(d, _)| *d == dimension).count();
-    line(format_args!("{} {} {} 0", count(0), count(1), count(2)));
-    let mut seen = [0; 3];
+    line(format_args!("{} {} {} {}", count(0), count(1), count(2), count(3)));
+    let mut seen = [0; 4];
     let mut entity_tags = Vec::new();
     for ((dimension, regions), elements) in &entities {
         seen[*dimension] += 1;
@@ -88,9 +88,9 @@ pub fn to_msh(mesh: &Mesh, unit_in_metres: f64) -> Result<String> {
     // A block holds one kind of element of one entity.
     let mut blocks = Vec::new();
     for (((dimension, _), elements), tag) in entities.iter().zip(&entity_tags) {
-        for kind in [15, 1, 2, 3] {
+        for kind in CellKind::all() {
             let block: Vec<usize> =
-                elements.iter().copied().filter(|e| gmsh_type(&mesh.elements[*e]) == kind).collect();
+                elements.iter().copied().filter(|e| mesh.elements[*e].kind() == kind).collect();
             if !block.is_empty() {
                 blocks.push((*dimension, *tag, kind, block));
             }
@@ -99,9 +99,10 @@ pub fn to_msh(mesh: &Mesh, unit_in_metres: f64) -> Result<String> {
     let m = mesh.elements.len();
     line(format_args!("{} {m} 1 {m}", blocks.len()));
     for (dimension, tag, kind, block) in blocks {
-        line(format_args!("{dimension} {tag} {kind} {}", block.len()));
+        line(format_args!("{dimension} {tag} {} {}", kind.table().gmsh, block.len()));
         for e in block {
-            let nodes: Vec<String> = mesh.elements[e].nodes().iter().map(|n| (n + 1).to_string()).collect();
+            let nodes = kind.to_gmsh(mesh.elements[e].nodes());
+            let nodes: Vec<String> = nodes.iter().map(|n| (n + 1).to_string()).collect();
             line(format_args!("{} {}", e + 1, nodes.join(" ")));
         }
     }
@@ -134,10 +135,10 @@ fn refuse(mesh: &Mesh, unit_in_metres: f64) -> Result<()> {
 
 /// A number for each region, counted from 1 in each dimension.
 fn physical_tags(mesh: &Mesh) -> Vec<usize> {
-    let mut next = [0; 3];
+    let mut next = [0; 4];
     let mut number = |dimension: usize| {
-        next[dimension.min(2)] += 1;
-        next[dimension.min(2)]
+        next[dimension.min(3)] += 1;
+        next[dimension.min(3)]
     };
     mesh.regions.iter().map(|region| number(region.dimension)).collect()
 }
@@ -173,15 +174,6 @@ fn rounded(value: f64, digit: f64) -> f64 {
     }
     // Through text: multiplying by 10ⁿ and back would leave digits of rounding.
     format!("{value:.*}", places as usize).parse::<f64>().map_or(value, |v| v + 0.0)
-}
-
-fn gmsh_type(element: &Element) -> u8 {
-    match element {
-        Element::Point(_) => 15,
-        Element::Line(_) => 1,
-        Element::Triangle(_) => 2,
-        Element::Quadrilateral(_) => 3,
-    }
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use crate::structure::{Material, PlateTheory, RayleighDamping};
 const DISC_RADIUS: f64 = 0.075;
 const SLIDER: f64 = 0.010;
 
-fn part(name: &str, thickness: f64, faces: Vec<Element>) -> ShellPart {
+fn part(name: &str, thickness: f64, faces: Vec<Cell>) -> ShellPart {
     let rayleigh = RayleighDamping::default();
     let material =
         Material { youngs_modulus: 2e11, poissons_ratio: 0.3, density: 7850.0, loss_factor: 0.0, rayleigh };
@@ -33,7 +33,7 @@ fn rig(lead: f64, x: f64, lift: f64) -> Rig {
         *p = [p[2] * lead.sin() + x, p[1], p[2] * lead.cos() + DISC_RADIUS + lift];
     }
     let ring = |k: usize| 1 + k % n;
-    let faces = (0..n).map(|k| Element::Triangle([0, ring(k), ring(k + 1)])).collect();
+    let faces = (0..n).map(|k| Cell::triangle([0, ring(k), ring(k + 1)])).collect();
     let rim = (0..n).map(|k| [ring(k), ring(k + 1)]).collect();
     let first = nodes.len();
     let (nx, ny) = (10, 6);
@@ -45,7 +45,7 @@ fn rig(lead: f64, x: f64, lift: f64) -> Rig {
     let at = |i: usize, j: usize| first + i * (ny + 1) + j;
     let quads = (0..nx)
         .flat_map(|i| (0..ny).map(move |j| (i, j)))
-        .map(|(i, j)| Element::Quadrilateral([at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]))
+        .map(|(i, j)| Cell::quadrilateral([at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]))
         .collect();
     Rig { nodes, disc: part("disc", 1e-3, faces), slider: part("slider", SLIDER, quads), rim }
 }
@@ -143,9 +143,9 @@ fn a_pad_on_a_face_has_its_area_and_its_thickness() {
         }
     }
     let at = |i: usize, j: usize| first + 3 * i + j;
-    let faces: Vec<Element> = (0..2)
+    let faces: Vec<Cell> = (0..2)
         .flat_map(|i| (0..2).map(move |j| (i, j)))
-        .map(|(i, j)| Element::Quadrilateral([at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)]))
+        .map(|(i, j)| Cell::quadrilateral([at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)]))
         .collect();
     let pad = part("pad", 4e-3, faces.clone());
     let mut s = surfaces(&rig, ContactPatch::Reach(1e-3));
@@ -160,12 +160,12 @@ fn a_pad_on_a_face_has_its_area_and_its_thickness() {
 }
 
 /// A pad of one quadrilateral, `x` \[m\] from the middle of the slider, 10 µm above it.
-fn add_pad(rig: &mut Rig, x: f64) -> Vec<Element> {
+fn add_pad(rig: &mut Rig, x: f64) -> Vec<Cell> {
     let first = rig.nodes.len();
     for [i, j] in [[0.0, 0.0], [0.01, 0.0], [0.01, 0.01], [0.0, 0.01]] {
         rig.nodes.push([x + i, 0.003 + j, 2e-3 + 1e-5]);
     }
-    vec![Element::Quadrilateral([first, first + 1, first + 2, first + 3])]
+    vec![Cell::quadrilateral([first, first + 1, first + 2, first + 3])]
 }
 
 /// The least gap decides; of nodes that are equally near but for round-off, none is preferred.
@@ -217,9 +217,9 @@ fn points_do_not_depend_on_the_order_of_faces() {
         let mut other = rig.slider.clone();
         other.faces.reverse();
         for (k, face) in other.faces.iter_mut().enumerate() {
-            if let Element::Quadrilateral(corners) = face {
-                corners.rotate_left(k % 4);
-            }
+            let mut corners = face.nodes().to_vec();
+            corners.rotate_left(k % 4);
+            *face = Cell::new(face.kind(), &corners).unwrap();
         }
         s.counter = &other;
         let other = pair_surfaces(&s, &reduce).unwrap();

@@ -46,13 +46,13 @@ fn of_part(part: &ShellPart, nodes: &[[f64; 3]], hz: f64) -> Option<Fault> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Element;
+    use crate::mesh::Cell;
     use crate::structure::samples::STEEL;
 
     #[test]
     fn a_plate_of_one_element_carries_no_short_waves() {
         let nodes = [[0.0; 3], [0.1, 0.0, 0.0], [0.1, 0.1, 0.0], [0.0, 0.1, 0.0]];
-        let part = ShellPart::new("disc", vec![Element::Quadrilateral([0, 1, 2, 3])], STEEL, 1e-3);
+        let part = ShellPart::new("disc", vec![Cell::quadrilateral([0, 1, 2, 3])], STEEL, 1e-3);
         // λ = 2π (D/ρh)^¼/√ω = 314 mm at 100 Hz and 0.99 m at 10 Hz: D = 19.23 N m, ρh = 7.85 kg/m².
         assert_eq!(of_part(&part, &nodes, 10.0), None);
         let text = of_part(&part, &nodes, 100.0).unwrap().to_string();

@@ -42,14 +42,14 @@ fn of_part(part: &ShellPart, nodes: &[[f64; 3]]) -> Option<Fault> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Element;
+    use crate::mesh::Cell;
     use crate::structure::samples::STEEL;
 
     #[test]
     fn a_metre_on_a_hand_is_no_plate() {
         let nodes = [[0.0; 3], [0.15, 0.0, 0.0], [0.15, 0.15, 0.0], [0.0, 0.15, 0.0]];
         let part =
-            |thickness| ShellPart::new("disc", vec![Element::Quadrilateral([0, 1, 2, 3])], STEEL, thickness);
+            |thickness| ShellPart::new("disc", vec![Cell::quadrilateral([0, 1, 2, 3])], STEEL, thickness);
         assert_eq!(of_part(&part(0.04), &nodes), None);
         let text = of_part(&part(1.0), &nodes).unwrap().to_string();
         assert!(text.contains("6.7 times") && text.contains("0.0450 m") && text.contains("unit"), "{text}");

@@ -3,7 +3,7 @@
 //! A quadrilateral is the mean of its two splittings into triangles: four triangles of half weight. The result does
 //! not favour a diagonal, takes warped quadrilaterals, and passes every test that the triangle passes.
 
-use crate::mesh::Element;
+use crate::mesh::Cell;
 
 /// A triangle of a face and the weight with which it counts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,12 +15,12 @@ pub struct WeightedTriangle {
 }
 
 /// The triangles of `face`: itself, or the four half-weight ones of a quadrilateral; none for points and lines.
-pub fn split_face(face: &Element) -> Vec<WeightedTriangle> {
-    match *face {
-        Element::Triangle(nodes) => vec![WeightedTriangle { nodes, weight: 1.0 }],
-        Element::Quadrilateral([a, b, c, d]) => [[a, b, c], [a, c, d], [a, b, d], [b, c, d]]
+pub fn split_face(face: &Cell) -> Vec<WeightedTriangle> {
+    match (face.dimension(), face.corners()) {
+        (2, &[a, b, c]) => vec![WeightedTriangle { nodes: [a, b, c], weight: 1.0 }],
+        (2, &[a, b, c, d]) => [[a, b, c], [a, c, d], [a, b, d], [b, c, d]]
             .map(|nodes| WeightedTriangle { nodes, weight: 0.5 })
             .to_vec(),
-        Element::Point(_) | Element::Line(_) => Vec::new(),
+        _ => Vec::new(),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::fill::{divide, fill};
 use super::{Grading, refuse_too_fine, require_positive};
-use crate::{Element, Mesh};
+use crate::{Cell, Mesh};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use stridor_base::error::{Fault, Result};
@@ -93,9 +93,8 @@ pub fn disc(spec: &DiscSpec) -> Result<Mesh> {
             mesh.nodes.len() - 1
         })
         .collect();
-    let half = patch.triangles.iter().map(|t| Element::Triangle(*t));
-    let other =
-        patch.triangles.iter().map(|[i, j, k]| Element::Triangle([mirror[*i], mirror[*k], mirror[*j]]));
+    let half = patch.triangles.iter().map(|t| Cell::triangle(*t));
+    let other = patch.triangles.iter().map(|[i, j, k]| Cell::triangle([mirror[*i], mirror[*k], mirror[*j]]));
     mesh.add_region("disc", 2, half.chain(other));
 
     let index: BTreeMap<[u64; 2], usize> =
@@ -105,8 +104,8 @@ pub fn disc(spec: &DiscSpec) -> Result<Mesh> {
             continue;
         }
         let nodes: Vec<usize> = arc.iter().map(|p| index[&p.map(|c| c.to_bits())]).collect();
-        let right = nodes.windows(2).map(|w| Element::Line([w[0], w[1]]));
-        let left = nodes.windows(2).rev().map(|w| Element::Line([mirror[w[1]], mirror[w[0]]]));
+        let right = nodes.windows(2).map(|w| Cell::line([w[0], w[1]]));
+        let left = nodes.windows(2).rev().map(|w| Cell::line([mirror[w[1]], mirror[w[0]]]));
         mesh.add_region(name, 1, right.chain(left));
     }
     Ok(mesh)

@@ -2,7 +2,7 @@
 
 use super::fill::{Patch, divide, fill};
 use super::{Grading, refuse_too_fine, require_positive};
-use crate::{Element, Mesh};
+use crate::{Cell, Mesh};
 use std::collections::HashMap;
 use stridor_base::error::{Fault, Result};
 
@@ -73,7 +73,7 @@ pub fn plate(spec: &PlateSpec) -> Result<Mesh> {
         faces.extend(patch.triangles.iter().map(|t| {
             let [i, j, k] = t.map(|v| nodes[v]);
             // A quarter mirrored once has to be turned over.
-            Element::Triangle(if sign[0] * sign[1] > 0.0 { [i, j, k] } else { [i, k, j] })
+            Cell::triangle(if sign[0] * sign[1] > 0.0 { [i, j, k] } else { [i, k, j] })
         }));
     }
     mesh.add_region("slider", 2, faces);
@@ -110,7 +110,7 @@ pub(super) fn add_edges(mesh: &mut Mesh, part: &str, length: f64, width: f64) {
     for (side, across, at) in edges {
         let mut nodes: Vec<usize> = (0..mesh.nodes.len()).filter(|n| mesh.nodes[*n][across] == at).collect();
         nodes.sort_by(|i, j| mesh.nodes[*i][1 - across].total_cmp(&mesh.nodes[*j][1 - across]));
-        let lines: Vec<Element> = nodes.windows(2).map(|w| Element::Line([w[0], w[1]])).collect();
+        let lines: Vec<Cell> = nodes.windows(2).map(|w| Cell::line([w[0], w[1]])).collect();
         mesh.add_region(&format!("{part}_edge_{side}"), 1, lines);
     }
 }

@@ -1,7 +1,7 @@
 //! The whole rig in one mesh: disc, bar and slider.
 
 use super::{DiscSpec, Grading, PlateSpec, disc, plate, require_positive};
-use crate::{Element, Mesh};
+use crate::{Cell, Mesh};
 use stridor_base::error::{Fault, Result};
 
 /// The side of the disc on which the bar is clamped.
@@ -98,9 +98,9 @@ pub fn rig(spec: &RigSpec) -> Result<Mesh> {
     };
     mesh.nodes.push([0.0; 3]);
     mesh.nodes.extend((1..=n).map(|i| [direction * spec.bar.length * i as f64 / n as f64, 0.0, 0.0]));
-    mesh.add_region("bar", 1, (root..root + n).map(|i| Element::Line([i, i + 1])));
-    mesh.add_region("bar_root", 0, [Element::Point([root])]);
-    mesh.add_region("bar_clamp", 0, [Element::Point([root + n])]);
+    mesh.add_region("bar", 1, (root..root + n).map(|i| Cell::line([i, i + 1])));
+    mesh.add_region("bar_root", 0, [Cell::point(root)]);
+    mesh.add_region("bar_clamp", 0, [Cell::point(root + n)]);
 
     let down = spec.disc.outer_radius + spec.slider_thickness / 2.0;
     for node in &mut slider.nodes {

@@ -2,7 +2,7 @@
 
 use super::plate::add_edges;
 use super::{Faults, require_positive};
-use crate::{Element, Mesh};
+use crate::{Cell, Mesh};
 use std::f64::consts::TAU;
 use stridor_base::error::{Fault, Result};
 
@@ -41,7 +41,7 @@ pub fn structured_plate(length: f64, width: f64, nx: usize, ny: usize, faces: Fa
     }
     let node = |i: usize, j: usize| j * (nx + 1) + i;
     let cells = (0..ny).flat_map(|j| (0..nx).map(move |i| (i, j)));
-    let elements: Vec<Element> = cells
+    let elements: Vec<Cell> = cells
         .flat_map(|(i, j)| {
             cell([node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)], i + j, faces)
         })
@@ -90,9 +90,9 @@ pub fn structured_annulus(b: f64, a: f64, n_radial: usize, n_angular: usize) -> 
         (false, _) => i * n_angular + j % n_angular,
     };
     let cells = (0..n_radial).flat_map(|i| (0..n_angular).map(move |j| (i, j)));
-    let elements: Vec<Element> = cells
+    let elements: Vec<Cell> = cells
         .flat_map(|(i, j)| match whole && i == 0 {
-            true => vec![Element::Triangle([0, node(1, j), node(1, j + 1)])],
+            true => vec![Cell::triangle([0, node(1, j), node(1, j + 1)])],
             false => cell(
                 [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)],
                 i + j,
@@ -101,13 +101,9 @@ pub fn structured_annulus(b: f64, a: f64, n_radial: usize, n_angular: usize) -> 
         })
         .collect();
     mesh.add_region("disc", 2, elements);
-    mesh.add_region(
-        "rim",
-        1,
-        (0..n_angular).map(|j| Element::Line([node(n_radial, j), node(n_radial, j + 1)])),
-    );
+    mesh.add_region("rim", 1, (0..n_angular).map(|j| Cell::line([node(n_radial, j), node(n_radial, j + 1)])));
     if !whole {
-        mesh.add_region("hub", 1, (0..n_angular).map(|j| Element::Line([node(0, j), node(0, j + 1)])));
+        mesh.add_region("hub", 1, (0..n_angular).map(|j| Cell::line([node(0, j), node(0, j + 1)])));
     }
     Ok(mesh)
 }
@@ -125,11 +121,11 @@ fn on_circle(j: usize, n: usize) -> [f64; 2] {
 }
 
 /// One cell as a quadrilateral or as two triangles; the diagonal turns with the parity.
-fn cell([a, b, c, d]: [usize; 4], parity: usize, faces: Faces) -> Vec<Element> {
+fn cell([a, b, c, d]: [usize; 4], parity: usize, faces: Faces) -> Vec<Cell> {
     match (faces, parity % 2) {
-        (Faces::Quadrilaterals, _) => vec![Element::Quadrilateral([a, b, c, d])],
-        (Faces::Triangles, 0) => vec![Element::Triangle([a, b, c]), Element::Triangle([a, c, d])],
-        (Faces::Triangles, _) => vec![Element::Triangle([a, b, d]), Element::Triangle([b, c, d])],
+        (Faces::Quadrilaterals, _) => vec![Cell::quadrilateral([a, b, c, d])],
+        (Faces::Triangles, 0) => vec![Cell::triangle([a, b, c]), Cell::triangle([a, c, d])],
+        (Faces::Triangles, _) => vec![Cell::triangle([a, b, d]), Cell::triangle([b, c, d])],
     }
 }
 

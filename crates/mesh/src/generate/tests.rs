@@ -24,7 +24,7 @@ fn faces(mesh: &Mesh, axis: Option<usize>) -> BTreeSet<Vec<[u64; 3]>> {
         // −0 is 0.
         p.map(|c| (c + 0.0).to_bits())
     };
-    let face = |e: &crate::Element| {
+    let face = |e: &crate::Cell| {
         let mut corners: Vec<[u64; 3]> = e.nodes().iter().map(corner).collect();
         corners.sort_unstable();
         corners

@@ -6,7 +6,8 @@
 //! line. It writes what it read in the form that mshio takes.
 
 use super::bytes::{ByteReader, Encoding};
-use super::raw::{RawElement, RawMesh, RawNode, dimension, element_nodes};
+use super::raw::{RawElement, RawMesh, RawNode, element_nodes};
+use crate::CellKind;
 use std::collections::{HashMap, HashSet};
 use stridor_base::error::{Error, Fault, Result};
 
@@ -270,7 +271,7 @@ impl Walk<'_> {
             let entity = (self.int("entity's dimension")?, self.int("entity's tag")?);
             let kind = self.int("element type")?;
             let position = self.file.place();
-            let known = dimension(kind).is_some();
+            let known = CellKind::of_gmsh(kind).is_some();
             let start = self.plain.len();
             for _ in 0..self.count("number of elements in the block")? {
                 let tag = self.tag("element number")?;

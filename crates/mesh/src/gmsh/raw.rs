@@ -2,7 +2,7 @@
 
 use super::bytes::{ByteReader, Encoding};
 use super::names::Names;
-use crate::{Element, Mesh, Region, with_line};
+use crate::{Cell, CellKind, Mesh, Region, with_line};
 use std::collections::{BTreeMap, HashMap};
 use stridor_base::error::{Error, Fault, Faults, Result};
 
@@ -85,16 +85,6 @@ pub(super) fn element_nodes(
     Ok(nodes)
 }
 
-/// Dimension of a first-order element that is supported.
-pub(super) fn dimension(kind: i64) -> Option<usize> {
-    match kind {
-        15 => Some(0),
-        1 => Some(1),
-        2 | 3 => Some(2),
-        _ => None,
-    }
-}
-
 impl RawMesh {
     /// Names the groups, drops what belongs to none, finds the nodes, and turns to metres.
     pub fn into_mesh(
@@ -145,43 +135,21 @@ impl RawMesh {
         self.assemble(names, (place, lines), unit_in_metres)
     }
 
-    /// One fault for higher orders, one for solids.
+    /// A fault where there are kinds that are not known: of third and higher order.
     fn refuse_kinds(&self, place: &str, faults: &mut Faults) {
         let mut counts: BTreeMap<i64, usize> = BTreeMap::new();
-        for e in self.elements.iter().filter(|e| dimension(e.kind).is_none()) {
+        for e in self.elements.iter().filter(|e| CellKind::of_gmsh(e.kind).is_none()) {
             *counts.entry(e.kind).or_default() += 1;
         }
-        let solids = |kind: &i64| {
-            matches!(kind, 4..=7 | 11..=14 | 17..=19 | 29..=33 | 35 | 71..=83 | 87.. )
-                && !matches!(kind, 138 | 140)
-        };
-        let listed = |solid: bool| {
-            let some: Vec<String> = counts
-                .iter()
-                .filter(|(kind, _)| solids(kind) == solid)
-                .map(|(kind, count)| format!("{count} of type {kind}"))
-                .collect();
-            some.join(", ")
-        };
-        let higher = listed(false);
-        if !higher.is_empty() {
-            let found = format!("elements of second or higher order ({higher})");
-            let fault = Fault::new(place, found, "first-order points, lines, triangles and quadrilaterals");
-            faults.push(
-                fault.with_help("Mesh again with first order: `gmsh -2 -order 1 model.geo -o model.msh`"),
-            );
+        if counts.is_empty() {
+            return;
         }
-        let solid = listed(true);
-        if !solid.is_empty() {
-            let fault = Fault::new(
-                place,
-                format!("solid elements ({solid})"),
-                "points, lines, triangles and quadrilaterals",
-            );
-            let help = "Plates are meshed as mid-surfaces: make the mid-surface a surface of the geometry and mesh that \
-                        (of a solid `gmsh -2` meshes the skin, which is something else)";
-            faults.push(fault.with_help(help));
-        }
+        let listed: Vec<String> =
+            counts.iter().map(|(kind, count)| format!("{count} of type {kind}")).collect();
+        let found = format!("elements of third or higher order ({})", listed.join(", "));
+        let fault = Fault::new(place, found, "elements of first or second order");
+        let help = "Mesh again with second order: `gmsh -3 -order 2 model.geo -o model.msh`";
+        faults.push(fault.with_help(help));
     }
 
     fn assemble(
@@ -226,13 +194,8 @@ impl RawMesh {
         let mut listed: HashMap<(i64, Vec<usize>), (usize, Vec<usize>)> = HashMap::new();
         for RawElement { tag, kind, nodes, groups, offset } in self.elements {
             let n: Vec<usize> = nodes.iter().map(|tag| place_of[known[tag]]).collect();
-            let element = match (kind, n.as_slice()) {
-                (15, [a]) => Element::Point([*a]),
-                (1, [a, b]) => Element::Line([*a, *b]),
-                (2, [a, b, c]) => Element::Triangle([*a, *b, *c]),
-                (3, [a, b, c, d]) => Element::Quadrilateral([*a, *b, *c, *d]),
-                _ => continue,
-            };
+            let Some(known_kind) = CellKind::of_gmsh(kind) else { continue };
+            let Some(element) = Cell::new(known_kind, &known_kind.from_gmsh(&n)) else { continue };
             let dimension = element.dimension();
             let of: Vec<usize> = groups.into_iter().map(|group| regions.index(dimension, group)).collect();
             // MSH 2.2 lists an element once more for every further group; twice in one group is a fault, found later.
@@ -280,7 +243,7 @@ impl RegionList {
     fn index(&mut self, dimension: usize, number: i64) -> usize {
         let RegionList { all, of } = self;
         *of.entry((dimension, number)).or_insert_with(|| {
-            let name = format!("{} {number}", ["point", "curve", "surface"][dimension]);
+            let name = format!("{} {number}", ["point", "curve", "surface", "volume"][dimension]);
             all.push(Region { name, dimension, elements: vec![] });
             all.len() - 1
         })

@@ -58,7 +58,7 @@ fn meshes_of_gmsh_are_read_from_all_four_formats() {
         let left = mesh.require("left half", 2).unwrap();
         let plate = mesh.require("plate", 2).unwrap();
         assert!(left.elements.iter().all(|e| plate.elements.contains(e)), "{format}: shared, not repeated");
-        assert!(mesh.elements.iter().any(|e| matches!(e, crate::Element::Quadrilateral(_))));
+        assert!(mesh.elements.iter().any(|e| e.kind() == crate::CellKind::Quadrilateral4));
     }
 }
 
@@ -232,7 +232,7 @@ fn neighbours_may_be_turned_opposite_ways() {
                  $Nodes\n6\n1 0 0 0\n2 1 0 0\n3 2 0 0\n4 0 1 0\n5 1 1 0\n6 2 1 0\n$EndNodes\n\
                  $Elements\n2\n1 3 2 1 1 1 2 5 4\n2 3 2 1 1 2 5 6 3\n$EndElements\n";
     let mesh = parse(plate.as_bytes(), "a.msh", 1.0).unwrap();
-    assert_eq!(mesh.elements[1], crate::Element::Quadrilateral([1, 2, 5, 4]));
+    assert_eq!(mesh.elements[1], crate::Cell::quadrilateral([1, 2, 5, 4]));
 }
 
 #[test]

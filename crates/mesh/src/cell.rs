@@ -1,0 +1,160 @@
+//! A cell: its kind and its nodes.
+
+use super::CellKind;
+
+/// One cell; its nodes index [`super::Mesh::nodes`], in the order of [`CellKind`].
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct Cell {
+    kind: CellKind,
+    nodes: Nodes,
+}
+
+/// Nodes of first-order cells without memory of their own.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+enum Nodes {
+    Few([usize; 4]),
+    Many(Box<[usize]>),
+}
+
+impl Cell {
+    /// A cell of any kind; none where the kind has another number of nodes.
+    pub fn new(kind: CellKind, nodes: &[usize]) -> Option<Cell> {
+        if nodes.len() != kind.n_nodes() {
+            return None;
+        }
+        let mut few = [0; 4];
+        let nodes = match few.get_mut(..nodes.len()) {
+            Some(part) => {
+                part.copy_from_slice(nodes);
+                Nodes::Few(few)
+            }
+            None => Nodes::Many(nodes.into()),
+        };
+        Some(Cell { kind, nodes })
+    }
+
+    fn few<const N: usize>(kind: CellKind, nodes: [usize; N]) -> Cell {
+        let mut few = [0; 4];
+        few[..N].copy_from_slice(&nodes);
+        Cell { kind, nodes: Nodes::Few(few) }
+    }
+
+    /// A point: a single node.
+    pub fn point(node: usize) -> Cell {
+        Cell::few(CellKind::Point1, [node])
+    }
+
+    /// A straight line.
+    pub fn line(nodes: [usize; 2]) -> Cell {
+        Cell::few(CellKind::Line2, nodes)
+    }
+
+    /// A triangle of straight edges.
+    pub fn triangle(nodes: [usize; 3]) -> Cell {
+        Cell::few(CellKind::Triangle3, nodes)
+    }
+
+    /// A quadrilateral of straight edges, nodes in order around it.
+    pub fn quadrilateral(nodes: [usize; 4]) -> Cell {
+        Cell::few(CellKind::Quadrilateral4, nodes)
+    }
+
+    /// The kind.
+    pub fn kind(&self) -> CellKind {
+        self.kind
+    }
+
+    /// The nodes.
+    pub fn nodes(&self) -> &[usize] {
+        match &self.nodes {
+            Nodes::Few(nodes) => &nodes[..self.kind.n_nodes()],
+            Nodes::Many(nodes) => nodes,
+        }
+    }
+
+    /// The corners, which are the first nodes.
+    pub fn corners(&self) -> &[usize] {
+        &self.nodes()[..self.kind.n_corners()]
+    }
+
+    /// The two ends of a line.
+    pub fn ends(&self) -> Option<[usize; 2]> {
+        self.corners().try_into().ok()
+    }
+
+    /// 0 for a point, 1 for a line, 2 for a face, 3 for a solid.
+    pub fn dimension(&self) -> usize {
+        self.kind.dimension()
+    }
+
+    /// Its sides: the faces of a solid, the edges of a face.
+    pub fn sides(&self) -> impl Iterator<Item = Cell> + '_ {
+        let nodes = self.nodes();
+        self.kind.table().sides.iter().map(|(kind, of)| {
+            let nodes: Vec<usize> = of.iter().map(|k| nodes[usize::from(*k)]).collect();
+            Cell::new(*kind, &nodes).expect("a side has the nodes of its kind")
+        })
+    }
+
+    /// The same cell whose nodes have other numbers.
+    pub fn renumbered(&self, number: impl Fn(usize) -> usize) -> Cell {
+        let mut cell = self.clone();
+        let count = self.kind.n_nodes();
+        let nodes = match &mut cell.nodes {
+            Nodes::Few(nodes) => &mut nodes[..count],
+            Nodes::Many(nodes) => nodes,
+        };
+        nodes.iter_mut().for_each(|node| *node = number(*node));
+        cell
+    }
+
+    /// A face turned over: the first corner stays, the others come in opposite order. Other cells as they are.
+    pub fn turned_over(&self) -> Cell {
+        if self.dimension() != 2 {
+            return self.clone();
+        }
+        let (corners, nodes) = (self.kind.n_corners(), self.nodes());
+        let place = |k: usize| match k {
+            // Corner 0 stays, as does the middle of the face; the edge behind a corner becomes the one before it.
+            _ if k < corners => (corners - k) % corners,
+            _ if k < 2 * corners => 3 * corners - 1 - k,
+            _ => k,
+        };
+        let turned: Vec<usize> = (0..nodes.len()).map(|k| nodes[place(k)]).collect();
+        Cell::new(self.kind, &turned).expect("as many nodes")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_face_turned_over_has_its_middles_between_the_same_corners() {
+        for kind in CellKind::all().filter(|kind| kind.dimension() == 2) {
+            let nodes: Vec<usize> = (10..10 + kind.n_nodes()).collect();
+            let cell = Cell::new(kind, &nodes).unwrap();
+            let turned = cell.turned_over();
+            assert_eq!(turned.turned_over(), cell);
+            assert_eq!((turned.nodes()[0], turned.nodes()[1]), (10, 10 + kind.n_corners() - 1));
+            // Each edge with its middle, in either direction.
+            let edges = |cell: &Cell| {
+                let mut edges: Vec<Vec<usize>> = cell.sides().map(|side| side.nodes().to_vec()).collect();
+                edges.iter_mut().for_each(|edge| edge.sort_unstable());
+                edges.sort();
+                edges
+            };
+            assert_eq!(edges(&cell), edges(&turned));
+        }
+    }
+
+    #[test]
+    fn a_cell_has_as_many_nodes_as_its_kind() {
+        assert!(Cell::new(CellKind::Triangle3, &[0, 1]).is_none());
+        let twenty: Vec<usize> = (0..20).collect();
+        let cell = Cell::new(CellKind::Hexahedron20, &twenty).unwrap();
+        assert_eq!((cell.nodes(), cell.corners().len()), (&twenty[..], 8));
+        assert_eq!(cell.renumbered(|n| n + 5).nodes()[19], 24);
+        assert_eq!(cell.sides().count(), 6);
+    }
+}
