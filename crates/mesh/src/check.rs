@@ -3,10 +3,11 @@
 //! Faults make an analysis wrong or impossible; warnings say that a result may be poor.
 
 use super::hanging::{Hanging, hanging};
+use super::jacobian::keeps_orientation;
 use super::orient::neighbours;
 use super::quality::{dot, face_shape, minus, norm};
 use super::{Cell, Mesh, Region};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use stridor_base::connected::lowest_connected;
 use stridor_base::error::{Fault, Faults};
 use stridor_base::numbers::significant;
@@ -205,8 +206,8 @@ fn check_hanging(mesh: &Mesh, warnings: &mut Vec<Fault>) {
 }
 
 fn check_shapes(mesh: &Mesh, diagnosis: &mut Diagnosis) {
-    let (mut degenerate, mut folded, mut sharp, mut slender, mut warped) =
-        (vec![], vec![], vec![], vec![], vec![]);
+    let (mut degenerate, mut folded, mut inverted) = (vec![], vec![], vec![]);
+    let (mut sharp, mut slender, mut warped) = (vec![], vec![], vec![]);
     let mut worst = [f64::INFINITY, 0.0, 0.0];
     for (e, element) in mesh.elements.iter().enumerate() {
         let n = element.nodes();
@@ -219,6 +220,10 @@ fn check_shapes(mesh: &Mesh, diagnosis: &mut Diagnosis) {
             && mesh.nodes[*i] == mesh.nodes[*j]
         {
             degenerate.push(e);
+        }
+        if !keeps_orientation(mesh, element) {
+            inverted.push(e);
+            continue;
         }
         let Some(shape) = face_shape(mesh, element) else { continue };
         if shape.area <= 1e-6 * shape.edges[1].powi(2) {
@@ -257,6 +262,14 @@ fn check_shapes(mesh: &Mesh, diagnosis: &mut Diagnosis) {
             "corners in order around the element",
         ));
     }
+    if !inverted.is_empty() {
+        let kinds: BTreeSet<&str> = inverted.iter().map(|e| mesh.elements[*e].kind().table().name).collect();
+        let kinds: Vec<&str> = kinds.into_iter().collect();
+        let found = format!("{} elements turned inside out ({})", inverted.len(), kinds.join(", "));
+        let help = "Nodes in another order, corners that are crossed, or a node in the middle of an edge that lies beyond a quarter of it";
+        let expected = "a positive Jacobian at every node";
+        diagnosis.faults.push(Fault::new(elements(mesh, &inverted), found, expected).with_help(help));
+    }
     let mut warn = |which: Vec<usize>, found: String, expected: String| {
         if !which.is_empty() {
             diagnosis.warnings.push(Fault::new(elements(mesh, &which), found, expected));
@@ -271,13 +284,11 @@ fn check_shapes(mesh: &Mesh, diagnosis: &mut Diagnosis) {
 }
 
 fn check_duplicates(mesh: &Mesh, region: &Region, faults: &mut Faults) {
-    let mut keys: Vec<([usize; 4], usize)> = region
+    let mut keys: Vec<(Vec<usize>, usize)> = region
         .elements
         .iter()
         .map(|e| {
-            let mut key = [usize::MAX; 4];
-            let n = mesh.elements[*e].nodes();
-            key[..n.len()].copy_from_slice(n);
+            let mut key = mesh.elements[*e].corners().to_vec();
             key.sort_unstable();
             (key, *e)
         })

@@ -25,9 +25,12 @@ pub mod generate;
 pub mod gmsh;
 mod hanging;
 pub mod info;
+mod jacobian;
 mod kind;
 mod orient;
 pub mod quality;
+mod shape;
+mod skin;
 mod write;
 
 pub use cell::Cell;
@@ -35,6 +38,7 @@ pub use check::{Diagnosis, diagnose};
 pub use gmsh::read;
 pub use info::Info;
 pub use kind::{CellKind, CellTable};
+pub use skin::Side;
 pub use write::{to_msh, write};
 
 use stridor_base::error::{Error, Fault, Result, nearest};
