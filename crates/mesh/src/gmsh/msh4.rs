@@ -11,6 +11,9 @@ use crate::CellKind;
 use std::collections::{HashMap, HashSet};
 use stridor_base::error::{Error, Fault, Result};
 
+/// Of this kind mshio 0.4 has no number of nodes.
+const UNKNOWN_TO_MSHIO: CellKind = CellKind::Wedge18;
+
 /// Dimension and tag of an entity.
 type Entity = (i64, i64);
 
@@ -271,7 +274,7 @@ impl Walk<'_> {
             let entity = (self.int("entity's dimension")?, self.int("entity's tag")?);
             let kind = self.int("element type")?;
             let position = self.file.place();
-            let known = CellKind::of_gmsh(kind).is_some();
+            let known = CellKind::of_gmsh(kind).is_some_and(|kind| kind != UNKNOWN_TO_MSHIO);
             let start = self.plain.len();
             for _ in 0..self.count("number of elements in the block")? {
                 let tag = self.tag("element number")?;
