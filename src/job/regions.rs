@@ -2,7 +2,7 @@
 
 use crate::case::{Case, MeshSource};
 use crate::error::{Error, Fault, Faults, Result, nearest};
-use crate::mesh::{Cell, Mesh, Region};
+use crate::mesh::{Cell, Mesh, Region, made_of};
 use crate::schema::dotted;
 
 /// A mesh whose regions are looked up by name, with a fault that lists the existing ones.
@@ -14,11 +14,12 @@ pub struct Regions {
     name: String,
 }
 
-/// What regions are made of, by dimension.
-const KINDS: [&str; 3] = ["points", "lines", "faces"];
+/// What to do where a plate is meshed as a solid.
+const NOT_SOLID: &str = "Plates are meshed as mid-surfaces: make the mid-surface a surface of the geometry and mesh that \
+                         (of a solid `gmsh -2` meshes the skin, which is something else)";
 
 fn kind(region: &Region) -> &'static str {
-    KINDS[region.dimension.min(2)]
+    made_of(region.dimension)
 }
 
 impl Regions {
@@ -149,15 +150,30 @@ impl Regions {
         }
     }
 
-    /// The elements of region `name`, which must have `dimension`.
+    /// The elements of region `name`, which must have `dimension` and be of first order.
     pub fn elements(&self, name: &str, dimension: usize, place: &str) -> Result<Vec<Cell>> {
         let region = self.region(name, place)?;
         if region.dimension != dimension {
-            return Err(Error::input(Fault::new(
-                place,
-                format!("region \"{name}\" of {}", kind(region)),
-                format!("a region of {}", KINDS[dimension]),
-            )));
+            return Err(Error::input(
+                Fault::new(
+                    place,
+                    format!("region \"{name}\" of {}", kind(region)),
+                    format!("a region of {}", made_of(dimension)),
+                )
+                .with_help(if region.dimension == 3 { NOT_SOLID } else { "" }),
+            ));
+        }
+        let higher = region.elements.iter().filter(|e| !self.mesh.elements[**e].kind().is_first_order());
+        if let Some(first) = higher.clone().next() {
+            let found = format!(
+                "region \"{name}\" with {} elements of second order, the first element {}, a {}",
+                higher.count(),
+                self.mesh.element_place(*first),
+                self.mesh.elements[*first].kind().table().name
+            );
+            let fault = Fault::new(place, found, format!("{} of first order", made_of(dimension)));
+            let help = "Mesh again with first order: `gmsh -2 -order 1 model.geo -o model.msh`";
+            return Err(Error::input(fault.with_help(help)));
         }
         Ok(region.elements.iter().map(|e| self.mesh.elements[*e].clone()).collect())
     }

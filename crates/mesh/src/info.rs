@@ -2,7 +2,7 @@
 
 use super::check::{Diagnosis, bounds, count_pieces, diagnose};
 use super::quality::{face_shape, minus, norm};
-use super::{CellKind, Mesh};
+use super::{CellKind, Mesh, made_of};
 use std::fmt;
 
 /// Summary of a mesh.
@@ -27,7 +27,7 @@ pub struct Info {
 pub struct RegionInfo {
     /// Its name.
     pub name: String,
-    /// 0 points, 1 lines, 2 faces.
+    /// 0 points, 1 lines, 2 faces, 3 solids.
     pub dimension: usize,
     /// Number of its elements.
     pub n_elements: usize,
@@ -107,7 +107,7 @@ impl fmt::Display for Info {
             "region"
         )?;
         for r in &self.regions {
-            let kind = ["points", "lines", "faces"].get(r.dimension).copied().unwrap_or("");
+            let kind = made_of(r.dimension);
             let measure = match r.dimension {
                 1 => format!("{:.3} mm", 1e3 * r.measure),
                 2 => format!("{:.2} mm²", 1e6 * r.measure),

@@ -76,7 +76,7 @@ pub struct Origin {
 pub struct Region {
     /// The group's name in the mesh file.
     pub name: String,
-    /// 0 points, 1 lines, 2 faces.
+    /// 0 points, 1 lines, 2 faces, 3 solids.
     pub dimension: usize,
     /// Indices into [`Mesh::elements`], ascending.
     pub elements: Vec<usize>,
@@ -106,8 +106,7 @@ impl Mesh {
         if let Some(region) = self.regions.iter().find(|r| r.name == name && r.dimension == dimension) {
             return Ok(region);
         }
-        let kind =
-            |dimension: usize| ["points", "lines", "faces"].get(dimension).copied().unwrap_or("solids");
+        let kind = made_of;
         let known: Vec<String> =
             self.regions.iter().map(|r| format!("`{}` ({})", r.name, kind(r.dimension))).collect();
         let found = match self.region(name) {
@@ -186,6 +185,11 @@ impl Mesh {
         }));
         self.origin = Origin::default();
     }
+}
+
+/// What regions of a dimension are made of, in words.
+pub fn made_of(dimension: usize) -> &'static str {
+    ["points", "lines", "faces", "solids"][dimension.min(3)]
 }
 
 fn with_line(tag: u64, line: Option<&usize>) -> String {
