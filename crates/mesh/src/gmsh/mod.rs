@@ -1,4 +1,4 @@
-//! Reads Gmsh meshes: MSH 4.1 and 2.2, ASCII and binary, first-order points, lines, triangles, quadrilaterals.
+//! Reads Gmsh meshes: MSH 4.1 and 2.2, ASCII and binary, cells of every [`super::CellKind`].
 //!
 //! Format: Gmsh reference manual, "MSH file format" and "MSH file format version 2".
 //!
@@ -30,7 +30,7 @@ use stridor_base::error::{Error, Fault, Faults, Result};
 ///
 /// # Errors
 /// All faults that were found: a file that cannot be read or is cut off, another version, no named physical group,
-/// second-order or solid elements, and the faults of [`super::diagnose`].
+/// elements of third or higher order, and the faults of [`super::diagnose`].
 pub fn read(path: &Path, unit_in_metres: f64) -> Result<Mesh> {
     let place = path.display().to_string();
     let expected = "a Gmsh mesh (.msh), such as `stridor mesh rig` writes";

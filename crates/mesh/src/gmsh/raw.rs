@@ -79,7 +79,7 @@ pub(super) fn element_nodes(
         }
         None => {
             let found = format!("element type {kind}");
-            return Err(file.wrong(found, "first-order points, lines, triangles and quadrilaterals"));
+            return Err(file.wrong(found, "elements of first or second order"));
         }
     }
     Ok(nodes)
