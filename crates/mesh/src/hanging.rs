@@ -89,7 +89,7 @@ pub(super) fn hanging(mesh: &Mesh) -> Vec<Hanging> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose;
+    use crate::{Cell, diagnose};
     use crate::generate::{Faces, structured_plate};
 
     /// Two plates side by side, of `left` and `right` cells along the seam, which share the nodes at equal places.
