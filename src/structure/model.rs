@@ -61,7 +61,7 @@ impl Model {
     /// The first shell that has all of `nodes`.
     pub fn shell_with(&self, nodes: &[usize]) -> Option<&ShellPart> {
         self.shells.iter().find(|shell| {
-            let mut own: Vec<usize> = shell.faces.iter().flat_map(Element::nodes).copied().collect();
+            let mut own: Vec<usize> = shell.faces.iter().flat_map(Cell::nodes).copied().collect();
             own.sort_unstable();
             nodes.iter().all(|n| own.binary_search(n).is_ok())
         })
