@@ -1,6 +1,5 @@
 //! Puts the commit of the sources into `STRIDOR_COMMIT`: that of the git repository whose root this package is, with
-//! `-modified` where the sources differ from it, or that of the package file; `src/lib.rs` reads it. With the feature `slepc` it
-//! lets the program find the libraries of `stridor-mpi`.
+//! `-modified` where the sources differ from it, or that of the package file; `src/lib.rs` reads it.
 //!
 //! It runs again when the sources change, not at every commit: the commit is the one at which the sources were last compiled.
 
@@ -16,10 +15,6 @@ fn main() {
     }
     if let Some(commit) = of_repository().or_else(of_package) {
         println!("cargo:rustc-env=STRIDOR_COMMIT={commit}");
-    }
-    // Folders of the libraries of `stridor-mpi`.
-    if let Ok(folders) = std::env::var("DEP_STRIDOR_SLEPC_RPATH") {
-        println!("cargo:rustc-link-arg=-Wl,-rpath,{folders}");
     }
 }
 

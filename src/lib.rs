@@ -14,8 +14,6 @@
 //! | [`memory`] | memory available to the process |
 //! | [`input`] | input files: regular, of a bounded size |
 //! | [`linalg`] | sparse symmetric factorisation, eigenvalues; knows no mechanics |
-//! | `slepc` | PETSc, SLEPc and MUMPS over MPI: the wrapper |
-//! | `distributed` | matrices factorised over the ranks of an MPI program |
 //! | [`system`] | M, C, K and the sliding interface: the input of every analysis |
 //! | [`mesh`] | Gmsh files, generated discs and plates, regions, quality |
 //! | [`structure`] | elements, constraints, assembly |
@@ -41,7 +39,8 @@
 //! | [`cli`] | the command line |
 //!
 //! Cargo features: `cli` (default) is the program with its results folders, search and validation suite; `hdf5` and `report`,
-//! which it needs, are `results.h5` and the page with its pictures; `slepc` is `--engine` for several machines. Meshes, models, analyses and their results need none.
+//! which it needs, are `results.h5` and the page with its pictures. Meshes, models, analyses and their results need none. The program
+//! for several machines, `stridor-mpi`, is a package of its own, `crates/mpi`, which gives [`cli`] its ranks.
 //!
 //! M ü + C u̇ + K u + Σ [g N − t₁ F₁ − t₂ F₂] = f. SI units (m, kg, s, N, rad) everywhere inside.
 
@@ -74,8 +73,6 @@ pub use stridor_dataset as dataset;
 pub use stridor_linalg as linalg;
 pub use stridor_measured as measured;
 pub use stridor_mesh as mesh;
-#[cfg(feature = "slepc")]
-pub use stridor_mpi::{distributed, slepc};
 pub use stridor_schema as schema;
 pub use stridor_signal as signal;
 pub use stridor_sound as sound;

@@ -25,14 +25,11 @@ fn main() {
     let mut shim = cc::Build::new();
     let sources = ["messages.c", "factor.c", "eigen.c"].map(|file| Path::new("src/slepc").join(file));
     shim.compiler(&compiler).files(sources).includes(&found.headers).compile("stridor_slepc");
-    let folders: Vec<String> = found.folders.iter().map(|folder| folder.display().to_string()).collect();
-    for folder in &folders {
+    for folder in found.folders.iter().map(|folder| folder.display()) {
         println!("cargo:rustc-link-search=native={folder}");
-        // Programs find the libraries again where they are in no place that the system searches: the tests of this package by this
-        // argument, the packages that use it by the variable DEP_STRIDOR_SLEPC_RPATH of their build scripts.
+        // Programs and tests find the libraries again where they are in no place that the system searches.
         println!("cargo:rustc-link-arg=-Wl,-rpath,{folder}");
     }
-    println!("cargo:rpath={}", folders.join(":"));
     for name in found.names.iter().chain([&real_mumps(&settings)]) {
         println!("cargo:rustc-link-lib=dylib={name}");
     }
@@ -66,9 +63,7 @@ fn of_pkg_config() -> Libraries {
     let mut found = Libraries::default();
     let mut config = pkg_config::Config::new();
     let library = config.cargo_metadata(false).probe("slepc").unwrap_or_else(|error| {
-        panic!(
-            "the feature `slepc` needs SLEPc and PETSc, and pkg-config does not find them. {HELP}\n{error}"
-        )
+        panic!("`stridor-mpi` needs SLEPc and PETSc, and pkg-config does not find them. {HELP}\n{error}")
     });
     found.headers.extend(library.include_paths);
     found.folders.extend(library.link_paths);
@@ -84,9 +79,9 @@ fn check(headers: &[PathBuf]) -> PathBuf {
     let settings = std::fs::read_to_string(&file).unwrap_or_default();
     let set = |name: &str| settings.lines().any(|line| line.split_whitespace().nth(1) == Some(name));
     let refused = [
-        (!set("PETSC_USE_COMPLEX"), "for real scalars: the feature `slepc` needs complex ones"),
-        (!set("PETSC_HAVE_MUMPS"), "without MUMPS, which the feature `slepc` needs"),
-        (set("PETSC_HAVE_MPIUNI"), "without MPI, which the feature `slepc` needs"),
+        (!set("PETSC_USE_COMPLEX"), "for real scalars: `stridor-mpi` needs complex ones"),
+        (!set("PETSC_HAVE_MUMPS"), "without MUMPS, which `stridor-mpi` needs"),
+        (set("PETSC_HAVE_MPIUNI"), "without MPI, which `stridor-mpi` needs"),
     ];
     if let Some((_, how)) = refused.iter().find(|(refused, _)| *refused) {
         panic!("PETSc of {} is built {how}. {HELP}", file.display());

@@ -1,8 +1,6 @@
 //! `stridor run`, `compare`, and a subcommand for every analysis; studies in parts.
 
-use super::engine::EngineName;
-#[cfg(feature = "slepc")]
-use super::engine::{shared_matrices, shared_points};
+use super::engine::{EngineName, Ranks};
 use super::examples;
 use super::interrupt::says_how_to_continue;
 use super::output::{Common, SUCCESS, give, say, window_width};
@@ -37,7 +35,7 @@ struct AnalyseOptions {
     /// Resume the maps, the samples and the run in time that an interrupted run of the same case left in the folder
     #[arg(long)]
     resume: bool,
-    /// Share the work over the ranks of `mpirun`
+    /// Share the work over the ranks of `mpirun`, by the program `stridor-mpi`
     #[arg(long, value_name = "NAME", conflicts_with = "resume")]
     engine: Option<EngineName>,
 }
@@ -107,39 +105,43 @@ impl FromArgMatches for Analyse {
     }
 }
 
-pub fn run(analyse: &Analyse, common: &Common) -> Result<u8> {
+pub fn run(analyse: &Analyse, common: &Common, ranks: Option<&dyn Ranks>) -> Result<u8> {
     let Analyse { name, selection, options, parts } = analyse;
-    let part = parts.part.as_deref().map(Part::read).transpose()?;
-    if let Some(part) = part {
-        return run_share(name, part, options, common);
+    if let Some(part) = parts.part.as_deref().map(Part::read).transpose()? {
+        run_share(name, part, options, common)?;
+    } else if let Some(engine) = options.engine {
+        let ranks = engine.on(ranks, *selection)?;
+        match engine {
+            EngineName::Mpi => run_on_ranks(ranks, name, options, common)?,
+            _ => ranks.matrices(engine == EngineName::SlepcKrylovSchur, &mut |engine| {
+                run_with(analyse, engine, common)
+            })?,
+        }
+    } else {
+        run_with(analyse, &Engine::default(), common)?;
     }
-    if let Some(engine) = options.engine {
-        engine.check(*selection)?;
-    }
-    #[cfg(feature = "slepc")]
-    match options.engine {
-        Some(EngineName::Mpi) => return run_on_ranks(name, options, common),
-        Some(method) => return shared_matrices(method, |engine| run_with(analyse, engine, common)),
-        None => {}
-    }
-    run_with(analyse, &Engine::default(), common)
+    Ok(SUCCESS)
 }
 
 /// Points of studies over the ranks; rank 0 prints.
-#[cfg(feature = "slepc")]
-fn run_on_ranks(analysis: &'static str, options: &AnalyseOptions, common: &Common) -> Result<u8> {
+fn run_on_ranks(
+    ranks: &dyn Ranks,
+    analysis: &'static str,
+    options: &AnalyseOptions,
+    common: &Common,
+) -> Result<()> {
     let out = options.out();
-    let results = shared_points(|| read_case(&options.case), analysis, &out, common.quiet)?;
-    results.map_or(Ok(SUCCESS), |results| print_results(&results, &out, common))
+    let results = ranks.points(read_case(&options.case), analysis, &out, &Bars::new(common.quiet))?;
+    results.map_or(Ok(()), |results| print_results(&results, &out, common))
 }
 
-fn run_with(analyse: &Analyse, engine: &Engine, common: &Common) -> Result<u8> {
+fn run_with(analyse: &Analyse, engine: &Engine, common: &Common) -> Result<()> {
     let Analyse { name, selection, options, parts } = analyse;
     let case = read_case(&options.case)?;
     let (out, bars) = (options.out(), Bars::new(common.quiet));
     says_how_to_continue(&out.join(RECORD));
     let results = match parts.merge {
-        true => merge_parts(&case, name, &out, &bars),
+        true => merge_parts(&case, name, &out, None, &bars),
         false => {
             let run_options = RunOptions { resume: options.resume, engine: engine.clone() };
             run_case(&case, *selection, &out, &run_options, &bars)
@@ -148,24 +150,24 @@ fn run_with(analyse: &Analyse, engine: &Engine, common: &Common) -> Result<u8> {
     print_results(&results.map_err(|error| case.places.locate(error))?, &out, common)
 }
 
-fn print_results(results: &RunResults, out: &Path, common: &Common) -> Result<u8> {
+fn print_results(results: &RunResults, out: &Path, common: &Common) -> Result<()> {
     if common.json {
         give(crate::results::summary_json(results))?;
     } else if !common.quiet {
         say(report::text::summary(results, window_width()))?;
         say(format!("Results are in {}: open report.html, or *.vtu in ParaView.", out.display()))?;
     }
-    Ok(SUCCESS)
+    Ok(())
 }
 
 /// One job of a job array.
-fn run_share(analysis: &'static str, part: Part, options: &AnalyseOptions, common: &Common) -> Result<u8> {
+fn run_share(analysis: &'static str, part: Part, options: &AnalyseOptions, common: &Common) -> Result<()> {
     let case = read_case(&options.case)?;
     let done = run_part(&case, analysis, part, &options.out(), &Bars::new(common.quiet));
     print_part(part, &done.map_err(|error| case.places.locate(error))?, common)
 }
 
-fn print_part(part: Part, done: &PartDone, common: &Common) -> Result<u8> {
+fn print_part(part: Part, done: &PartDone, common: &Common) -> Result<()> {
     let PartDone { points, file } = done;
     if common.json {
         let file = (*points > 0).then(|| file.display().to_string());
@@ -178,7 +180,7 @@ fn print_part(part: Part, done: &PartDone, common: &Common) -> Result<u8> {
             file.display()
         ))?;
     }
-    Ok(SUCCESS)
+    Ok(())
 }
 
 /// Name of the results folder of a case file: `disc.toml` → `disc`, `rig/case.toml` → `rig`, also from within that folder.

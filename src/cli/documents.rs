@@ -15,7 +15,8 @@ pub struct CompletionsOptions {
 /// Prints the completions of a shell.
 pub fn completions(options: &CompletionsOptions, mut command: Command) -> Result<u8> {
     let mut script = Vec::new();
-    generate(options.shell, &mut command, "stridor", &mut script);
+    let name = command.get_name().to_string();
+    generate(options.shell, &mut command, name, &mut script);
     give(String::from_utf8_lossy(&script).trim_end())?;
     Ok(SUCCESS)
 }
@@ -35,9 +36,10 @@ pub fn man(options: &ManOptions, mut command: Command, common: &Common) -> Resul
     if let Some(folder) = &options.out {
         let refused = |error| Error::io(folder, error, "Choose a folder that can be written");
         std::fs::create_dir_all(folder).map_err(refused)?;
+        let first = folder.join(command.get_name()).with_extension("1");
         clap_mangen::generate_to(command, folder).map_err(refused)?;
         if !common.quiet {
-            say(format!("The manual is in {}: man {0}/stridor.1", folder.display()))?;
+            say(format!("The manual is in {}: man {}", folder.display(), first.display()))?;
         }
         return Ok(SUCCESS);
     }

@@ -1,9 +1,37 @@
 //! `--engine`: analyses over the ranks of an MPI program.
 
+use crate::case::Case;
 use crate::error::{Error, Fault, Result};
 use crate::job::{SHARED, Selection};
+use crate::linalg::Engine;
 use crate::linalg::factor::engine_names;
+use crate::progress::Observer;
+use crate::results::RunResults;
 use clap::ValueEnum;
+use std::path::Path;
+
+/// The ranks of an MPI program, over which analyses are shared out. This library has none: the program `stridor-mpi` gives them.
+pub trait Ranks: Sync {
+    /// Starts MPI. Rank 0 does `work` with matrices that lie on all ranks, and with real modes by the Krylov–Schur method where
+    /// that is asked for; the others come back when it has ended.
+    ///
+    /// # Errors
+    /// Those of `work`; MPI cannot be started; the ranks run different builds of the program.
+    fn matrices(&self, krylov_schur: bool, work: &mut dyn FnMut(&Engine) -> Result<()>) -> Result<()>;
+
+    /// Starts MPI. Computes the studies of a case that `analysis` takes (`sweep`, `uncertainty`) in the folder `out`, their points
+    /// shared out over the ranks; the results on rank 0.
+    ///
+    /// # Errors
+    /// Faults of the input; an analysis without an answer; MPI cannot be started; the ranks run different builds of the program.
+    fn points(
+        &self,
+        case: Result<Case>,
+        analysis: &'static str,
+        out: &Path,
+        observer: &dyn Observer,
+    ) -> Result<Option<RunResults>>;
+}
 
 /// How an analysis is shared out over the ranks of `mpirun`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -25,11 +53,11 @@ impl EngineName {
         format!("--engine {}", name.get_name())
     }
 
-    /// That it can do what is asked for.
+    /// The ranks, if it can do what is asked for.
     ///
     /// # Errors
-    /// Another subcommand; a build without MPI.
-    pub fn check(self, selection: Selection) -> Result<()> {
+    /// Another subcommand; a program without MPI.
+    pub fn on(self, ranks: Option<&dyn Ranks>, selection: Selection) -> Result<&dyn Ranks> {
         let (fits, expected) = match self {
             EngineName::Slepc | EngineName::SlepcKrylovSchur => {
                 (matches!(selection, Selection::Only("modes" | "cea")), "`stridor modes` or `stridor cea`")
@@ -42,62 +70,12 @@ impl EngineName {
         if !fits {
             return Err(Error::input(Fault::new(self.option(), "another subcommand", expected)));
         }
-        if !cfg!(feature = "slepc") {
-            let (found, expected) = ("a build of stridor without MPI", "one with the feature `slepc`");
-            let help = "Build it with `.ci/setup --mpi` and `cargo build --release --features slepc`";
-            return Err(Error::input(Fault::new(self.option(), found, expected).with_help(help)));
-        }
-        Ok(())
-    }
-}
-
-#[cfg(feature = "slepc")]
-pub use on_ranks::{shared_matrices, shared_points};
-
-#[cfg(feature = "slepc")]
-mod on_ranks {
-    use crate::case::Case;
-    use crate::cli::engine::EngineName;
-    use crate::cli::output::SUCCESS;
-    use crate::cli::progress::Bars;
-    use crate::cli::version::VERSION;
-    use crate::distributed::{RealModesMethod, Role, same_build, start};
-    use crate::error::Result;
-    use crate::job::studies_on_ranks;
-    use crate::linalg::Engine;
-    use crate::results::RunResults;
-    use crate::slepc::World;
-    use std::path::Path;
-    use std::sync::Arc;
-
-    /// Runs `work` on rank 0 with matrices that lie on all ranks; the others come back when it has ended.
-    pub fn shared_matrices(name: EngineName, work: impl FnOnce(&Engine) -> Result<u8>) -> Result<u8> {
-        let method = match name {
-            EngineName::SlepcKrylovSchur => RealModesMethod::KrylovSchur,
-            EngineName::Slepc | EngineName::Mpi => RealModesMethod::BlockLanczos,
-        };
-        match start(&VERSION, method)? {
-            Role::Ended => Ok(SUCCESS),
-            Role::Lead(cluster) => {
-                let done = work(&Engine::new(Arc::new(cluster.clone())));
-                cluster.end();
-                done
-            }
-        }
-    }
-
-    /// Shares the points of the studies of a case that `analysis` takes; the results on rank 0.
-    pub fn shared_points(
-        read: impl FnOnce() -> Result<Case>,
-        analysis: &'static str,
-        out: &Path,
-        quiet: bool,
-    ) -> Result<Option<RunResults>> {
-        let world = Arc::new(World::start()?);
-        let bars = Bars::new(quiet || world.rank() > 0);
-        if !same_build(&world, &VERSION)? {
-            return Ok(None);
-        }
-        studies_on_ranks(read(), analysis, out, &world, &bars)
+        ranks.ok_or_else(|| {
+            let fault = Fault::new(self.option(), "a program without MPI", "the program `stridor-mpi`");
+            Error::input(fault.with_help(
+                "In a clone of the repository, `.ci/setup --mpi` installs what it needs, and \
+                 `cargo build --release -p stridor-mpi` builds it, or `cargo install --path crates/mpi`",
+            ))
+        })
     }
 }

@@ -15,6 +15,7 @@ mod interrupt;
 mod mesh;
 mod new;
 mod output;
+mod process;
 mod progress;
 mod schema;
 mod search;
@@ -23,11 +24,13 @@ mod validate;
 mod version;
 
 use crate::error::{Error, Fault, Result};
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+pub use engine::Ranks;
 pub use new::new_case;
 use output::{Common, SUCCESS, complain, give};
+pub use process::{OrExit, process};
 use std::ffi::OsString;
-use version::VERSION;
+pub use version::VERSION;
 
 #[derive(Parser)]
 #[command(name = "stridor", version = VERSION.as_str(), about, propagate_version = true, after_help = examples::PROGRAM)]
@@ -73,9 +76,16 @@ enum Action {
 
 /// Runs the program on `arguments`, the first of which is its name, and gives its exit code.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    main_with(arguments, None)
+}
+
+/// [`main`] with `ranks`: the program `stridor-mpi`.
+pub fn main_with(arguments: impl IntoIterator<Item = OsString>, ranks: Option<&dyn Ranks>) -> u8 {
     too_large_is_an_error();
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    let command = match Command::try_parse_from(&arguments) {
+    let program = declared(ranks.is_some());
+    let read = program.clone().try_get_matches_from(&arguments);
+    let command = match read.and_then(|matches| Command::from_arg_matches(&matches)) {
         Ok(command) => command,
         Err(error) => {
             let _ = error.print();
@@ -88,7 +98,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     };
     colour::choose(command.common.color);
     // On a thread of the pool: work that is too small to be shared then costs no handing over.
-    match set_threads(command.common.threads).and_then(|()| rayon::scope(|_| act(&command))) {
+    match set_threads(command.common.threads).and_then(|()| rayon::scope(|_| act(&command, program, ranks))) {
         Ok(code) => code,
         Err(error) => {
             if command.common.json {
@@ -110,10 +120,21 @@ fn too_large_is_an_error() {
     }
 }
 
-fn act(command: &Command) -> Result<u8> {
+/// The command line of the program with ranks or of that without, under its name.
+fn declared(ranks: bool) -> clap::Command {
+    fn renamed(command: clap::Command) -> clap::Command {
+        let examples =
+            command.get_after_help().map(|help| help.to_string().replace("  stridor ", "  stridor-mpi "));
+        command.after_help(examples.unwrap_or_default()).mut_subcommands(renamed)
+    }
+    let program = Command::command();
+    if ranks { renamed(program.name("stridor-mpi")) } else { program }
+}
+
+fn act(command: &Command, program: clap::Command, ranks: Option<&dyn Ranks>) -> Result<u8> {
     let common = &command.common;
     match &command.action {
-        Action::Analyse(options) => analyse::run(options, common),
+        Action::Analyse(options) => analyse::run(options, common, ranks),
         Action::Search(options) => search::run(options, common),
         Action::Check(options) => check::run(options, common),
         Action::Schema(options) => schema::run(options, common),
@@ -121,8 +142,8 @@ fn act(command: &Command) -> Result<u8> {
         Action::New(options) => new::run(options, common),
         Action::Mesh(action) => mesh::run(action, common),
         Action::Validate(options) => validate::run(options, common),
-        Action::Completions(options) => documents::completions(options, Command::command()),
-        Action::Man(options) => documents::man(options, Command::command(), common),
+        Action::Completions(options) => documents::completions(options, program),
+        Action::Man(options) => documents::man(options, program, common),
     }
 }
 
@@ -209,7 +230,7 @@ mod tests {
         let mut text = String::new();
         words(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut text);
         // Those of every program, of cargo and of .ci/setup.
-        let others = ["help", "version", "release", "features", "mpi"];
+        let others = ["help", "version", "release", "features", "mpi", "path"];
         let mut flags = BTreeSet::from(others.map(str::to_string));
         let mut commands = BTreeSet::new();
         let mut left = vec![Command::command()];

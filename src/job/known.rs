@@ -77,7 +77,10 @@ impl Reference {
 }
 
 /// The case and the files it reads.
-pub(super) fn origin(case: &Case) -> Result<RecordOrigin> {
+///
+/// # Errors
+/// A file that cannot be read.
+pub fn origin(case: &Case) -> Result<RecordOrigin> {
     let inputs = case.files().into_iter().map(|file| InputFile::read(&case.folder, &file));
     Ok(RecordOrigin { inputs: inputs.collect::<Result<_>>()?, case: case.to_toml() })
 }

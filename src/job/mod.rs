@@ -31,8 +31,6 @@ mod mesh;
 mod model;
 mod modes;
 mod motion;
-#[cfg(feature = "slepc")]
-mod on_ranks;
 #[cfg(feature = "cli")]
 mod parts;
 mod place;
@@ -68,12 +66,12 @@ pub use analyses::{ANALYSES, Analysis, Selection};
 pub use calibrate::Coordinate;
 pub use export::export;
 pub use imported::{read_points, read_rows};
+#[cfg(feature = "cli")]
+pub use known::origin;
 pub use measured::{measured_set, read_modes};
 pub use memory::{ExpectedMemory, expected_memory};
-#[cfg(feature = "slepc")]
-pub use on_ranks::studies_on_ranks;
 #[cfg(feature = "cli")]
-pub use parts::{PartDone, run_part, run_parts};
+pub use parts::{PartDone, parts_done, parts_folder, run_part, run_parts};
 pub use prepared::Prepared;
 #[cfg(feature = "cli")]
 pub use run_case::{RunOptions, merge_parts, run_case};

@@ -19,7 +19,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// The folder of the parts of an analysis in the results folder `out`.
-pub(super) fn folder(out: &Path, analysis: &str) -> PathBuf {
+pub fn parts_folder(out: &Path, analysis: &str) -> PathBuf {
     out.join("parts").join(analysis)
 }
 
@@ -72,7 +72,7 @@ pub fn run_parts(
     let selection = Selection::Only(analysis);
     let asked = Asked::new(&prepared, selection)?;
     check_memory(&prepared, selection)?;
-    let (dir, studies, origin) = (folder(out, analysis), studies(case, analysis), origin(case)?);
+    let (dir, studies, origin) = (parts_folder(out, analysis), studies(case, analysis), origin(case)?);
     let (shares, mut done) = (shares(&studies, of), Vec::new());
     // The next part that is not done yet.
     let mut open = |done: &mut Vec<PartDone>| -> Result<Option<(Share<'_>, Part, Record)>> {
@@ -171,7 +171,7 @@ fn shares(studies: &[Study], of: usize) -> Vec<(usize, &Study, Block)> {
 /// The parts of `analysis` in the results folder `out`, which together are whole. Refuses parts that are missing, not done, of
 /// another case, or damaged.
 pub(super) fn collect(case: &Case, analysis: &str, out: &Path, origin: &RecordOrigin) -> Result<Vec<Record>> {
-    let dir = folder(out, analysis);
+    let dir = parts_folder(out, analysis);
     let records = read_parts(&dir, origin)?;
     let Some(of) = records.first().and_then(Record::part).map(|first| first.of) else {
         let fault = Fault::new(dir.display().to_string(), "no part", "the files that --part leaves there");
@@ -231,13 +231,16 @@ fn complete(dir: &Path, records: &[Record], of: usize, studies: &[Study]) -> Res
 
 /// How many parts the studies of `analysis` are cut into in the results folder `out`, and the numbers of those that are done; none where
 /// there are no parts.
-#[cfg(feature = "slepc")]
-pub(super) fn parts_done(
+///
+/// # Errors
+/// Every fault that [`run_parts`] finds before it computes; parts of another case, or damaged ones.
+pub fn parts_done(
     case: &Case,
-    analysis: &str,
+    analysis: &'static str,
     out: &Path,
 ) -> Result<Option<(usize, BTreeSet<usize>)>> {
-    let records = read_parts(&folder(out, analysis), &origin(case)?)?;
+    Asked::new(&Prepared::new(case)?, Selection::Only(analysis))?;
+    let records = read_parts(&parts_folder(out, analysis), &origin(case)?)?;
     let done = records.iter().filter(|record| record.ended()).filter_map(Record::part);
     let numbers = done.map(|part| part.number).collect();
     Ok(records.first().and_then(Record::part).map(|first| (first.of, numbers)))

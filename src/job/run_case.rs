@@ -49,22 +49,12 @@ pub fn run_case(
     run_from(case, selection, out, (begin, &options.engine), observer)
 }
 
-/// Makes the results of `analysis` (`sweep`, `uncertainty`) in the folder `out` of the parts there ([`run_part`](super::run_part)): those
-/// of one process, bit for bit.
+/// Makes the results of `analysis` (`sweep`, `uncertainty`) in the folder `out` of the parts there, which so many `ranks` have computed
+/// ([`run_parts`](super::run_parts)), or a job array ([`run_part`](super::run_part)): those of one process, bit for bit.
 ///
 /// # Errors
 /// As [`run_case`]; parts that do not have all points, of another case, of other files, or damaged ones.
 pub fn merge_parts(
-    case: &Case,
-    analysis: &'static str,
-    out: &Path,
-    observer: &dyn Observer,
-) -> Result<RunResults> {
-    merge(case, analysis, out, None, observer)
-}
-
-/// [`merge_parts`] of so many `ranks`, or of a job array.
-pub(super) fn merge(
     case: &Case,
     analysis: &'static str,
     out: &Path,

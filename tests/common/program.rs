@@ -5,6 +5,13 @@ use std::path::Path;
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
+/// The program: `stridor`, or `stridor-mpi` in the tests of that package.
+pub const PROGRAM: &str =
+    match (option_env!("CARGO_BIN_EXE_stridor"), option_env!("CARGO_BIN_EXE_stridor-mpi")) {
+        (Some(program), _) | (_, Some(program)) => program,
+        _ => panic!("Cargo names the program"),
+    };
+
 /// All kinds of results in a tenth of a second: modes, complex modes, a map, motion in time with fields.
 pub const CASE: &str = r#"
 title = "The first case"
@@ -63,7 +70,7 @@ probe.rim = { at = [0, 0, "75 mm"], direction = [1, 0, 0] }
 
 /// The program with arguments, in a folder.
 pub fn command(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_stridor"));
+    let mut command = Command::new(PROGRAM);
     command.args(arguments).current_dir(folder).env("RUST_BACKTRACE", "0");
     command
 }

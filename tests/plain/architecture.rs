@@ -60,6 +60,19 @@ const MAY_USE: [(&str, &[&str]); 18] = [
     ("cli", &["report", "results", "case", "job", "validation", "search"]),
 ];
 
+/// The two modules of `stridor-mpi` that know no analysis: its program, `main.rs`, is between them and the library.
+#[test]
+fn what_talks_to_mpi_knows_linear_algebra_only() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/mpi/src");
+    let mut files = Vec::new();
+    ["slepc", "distributed"].iter().for_each(|module| sources(&folder.join(module), &mut files));
+    assert!(files.len() > 5);
+    for file in files {
+        let text = std::fs::read_to_string(&file).expect("source is text");
+        assert!(!text.contains("stridor::"), "{} uses the library", file.display());
+    }
+}
+
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).expect("a folder of the crate").flatten() {
         let path = entry.path();

@@ -489,15 +489,19 @@ fn a_search_leaves_a_case_and_a_page() {
     assert!(text(&output.stderr).contains("growth_ratio") && !folder.path().join("nothing").exists());
 }
 
-#[cfg(not(feature = "slepc"))]
 #[test]
-fn an_engine_that_is_not_built_in_is_a_fault() {
+fn an_engine_of_the_other_program_is_a_fault() {
     let folder = folder_with(RIG);
-    let output = stridor(folder.path(), &["cea", "rig.toml", "--engine", "slepc"]);
-    let message = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{message}");
-    for word in ["--engine slepc", "without MPI", "--features slepc", ".ci/setup --mpi"] {
-        assert!(message.contains(word), "\"{word}\" is not in: {message}");
+    for (analysis, engine) in
+        [("modes", "slepc"), ("cea", "slepc-krylov-schur"), ("sweep", "mpi"), ("uncertainty", "mpi")]
+    {
+        let output = stridor(folder.path(), &[analysis, "rig.toml", "--engine", engine]);
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        let option = format!("--engine {engine}:");
+        for word in [&option, "without MPI", "-p stridor-mpi", "--path crates/mpi", ".ci/setup --mpi"] {
+            assert!(message.contains(word), "\"{word}\" is not in: {message}");
+        }
+        assert!(!folder.path().join("results").exists());
     }
-    assert!(!folder.path().join("results").exists());
 }

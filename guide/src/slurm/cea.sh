@@ -16,4 +16,4 @@ export OMP_NUM_THREADS=1
 # The log gets no colours.
 export NO_COLOR=1
 # Rank 0's own work takes the cores of its machine while the other ranks wait; so no rank is bound to a core.
-mpirun --bind-to none stridor cea "$case" --engine slepc --threads "${SLURM_NTASKS_PER_NODE:-1}" --out "results/$SLURM_JOB_ID"
+mpirun --bind-to none stridor-mpi cea "$case" --engine slepc --threads "${SLURM_NTASKS_PER_NODE:-1}" --out "results/$SLURM_JOB_ID"

@@ -1,8 +1,13 @@
 //! Analyses over the ranks of an MPI program: the results of one process, faults in words, ranks that die.
 
-use crate::program;
-use crate::solid;
-use crate::sweeps;
+#[path = "../../../tests/common/program.rs"]
+mod program;
+#[path = "../../../tests/common/solid.rs"]
+mod solid;
+#[path = "../../../tests/common/sweeps.rs"]
+mod sweeps;
+
+use program::PROGRAM;
 use serde_json::Value;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -15,7 +20,7 @@ const ENGINES: [&str; 2] = ["slepc", "slepc-krylov-schur"];
 
 /// The program on some ranks.
 fn on_ranks(ranks: usize, folder: &Path, arguments: &[&str]) -> Command {
-    ranks_of(env!("CARGO_BIN_EXE_stridor"), ranks, folder, arguments)
+    ranks_of(PROGRAM, ranks, folder, arguments)
 }
 
 /// Some ranks of any program.
@@ -129,6 +134,28 @@ fn real_modes_with_their_count() {
 }
 
 #[test]
+fn the_program_has_a_name_of_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let printed = |arguments: &[&str]| {
+        let output = program::command(folder.path(), arguments).output().unwrap();
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        text(&output.stdout)
+    };
+    assert_eq!(printed(&["--version"]).trim(), format!("stridor-mpi {}", *stridor::cli::VERSION));
+    for (shell, words) in
+        [("bash", " stridor-mpi\n"), ("zsh", "#compdef stridor-mpi"), ("fish", "complete -c stridor-mpi")]
+    {
+        let script = printed(&["completions", shell]);
+        assert!(script.contains(words) && script.contains("calibrate"), "{shell}: {words}");
+    }
+    assert!(printed(&["man", "cea"]).contains("stridor\\-mpi cea rig/case.toml"));
+    assert!(printed(&["man", "--out", "man"]).contains("man/stridor-mpi.1"));
+    assert!(folder.path().join("man/stridor-mpi-cea.1").exists());
+    let help = printed(&["cea", "--help"]);
+    assert!(help.contains("Usage: stridor-mpi cea ") && !help.contains("  stridor "), "{help}");
+}
+
+#[test]
 fn wrong_use_is_a_fault() {
     let folder = program::folder_with(program::CASE);
     // Each: ranks, arguments, words of the message.
@@ -163,7 +190,7 @@ fn more_ranks_than_rows_are_a_fault() {
     assert!(output.status.success(), "{}", text(&output.stderr));
     // However long rank 0 takes to write its message, the end of the others does not end it.
     let late = r#""$@"; code=$?; [ "$OMPI_COMM_WORLD_RANK" != 0 ] || { sleep 1; touch late; }; exit $code"#;
-    let program = [&["-c", late, "sh", env!("CARGO_BIN_EXE_stridor")], &arguments[..]].concat();
+    let program = [&["-c", late, "sh", PROGRAM], &arguments[..]].concat();
     let output = ranks_of("sh", 4, folder.path(), &program).output().unwrap();
     assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
     assert!(folder.path().join("late").exists(), "rank 0 was ended by another rank");
@@ -201,7 +228,7 @@ fn a_killed_rank_leaves_no_half_result() {
 /// The processes of the program that work in a folder, ascending.
 fn ranks_in(folder: &Path) -> Vec<u32> {
     let folder = folder.canonicalize().unwrap();
-    let program = Path::new(env!("CARGO_BIN_EXE_stridor")).canonicalize().unwrap();
+    let program = Path::new(PROGRAM).canonicalize().unwrap();
     let mut found: Vec<u32> = std::fs::read_dir("/proc")
         .unwrap()
         .flatten()

@@ -1,33 +1,29 @@
 //! Studies over the ranks of an MPI program: each rank computes the next part as it comes free, and rank 0 makes the results.
 
-use super::analyse::Asked;
-use super::analyses::Selection;
-use super::known::origin;
-use super::parts::{folder, parts_done, run_parts};
-use super::prepared::Prepared;
-use super::run_case::merge;
-use crate::case::Case;
-use crate::distributed::{Deal, first_that_differs};
-use crate::error::{Error, Fault, Result};
-use crate::progress::Observer;
-use crate::results::RunResults;
-use crate::slepc::World;
 use std::fs::OpenOptions;
 use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
+use stridor::case::Case;
+use stridor::error::{Error, Fault, Result};
+use stridor::job::{merge_parts, origin, parts_done, parts_folder, run_parts};
+use stridor::progress::Observer;
+use stridor::results::RunResults;
+use stridor_mpi::distributed::{Deal, first_that_differs};
+use stridor_mpi::slepc::World;
 
 /// Parts for each rank: more of them share the work more evenly, and repeat more of it.
 const PARTS_FOR_A_RANK: usize = 4;
 /// The list of ranks and the parts that they got, in the folder of the parts.
 const LIST: &str = "ranks.txt";
 
-/// Computes the studies that `analysis` takes (`sweep`, `uncertainty`) in the folder `out`; collective. Parts that are done there are not computed again, also those
-/// of a run that ended early or of a job array. Rank 0 gets the results, which are those of one process bit for bit.
+/// Computes the studies that `analysis` takes (`sweep`, `uncertainty`) in the folder `out`; collective. Parts that are done there are not
+/// computed again, also those of a run that ended early or of a job array. Rank 0 gets the results, which are those of one process bit
+/// for bit.
 ///
 /// # Errors
 /// Faults of the input, on rank 0; an error of this rank, whose process is to end then: that ends the others ([`World::abandon`]).
-pub fn studies_on_ranks(
+pub fn over_ranks(
     case: Result<Case>,
     analysis: &'static str,
     out: &Path,
@@ -36,9 +32,6 @@ pub fn studies_on_ranks(
 ) -> Result<Option<RunResults>> {
     // What is wrong with the input is said once, by rank 0.
     let checked = case.and_then(|case| {
-        if world.rank() == 0 {
-            Asked::new(&Prepared::new(&case)?, Selection::Only(analysis))?;
-        }
         let known = if world.rank() == 0 { parts_done(&case, analysis, out)? } else { None };
         Ok((case, known))
     });
@@ -60,7 +53,7 @@ pub fn studies_on_ranks(
     let mut of = [known.as_ref().map_or(PARTS_FOR_A_RANK * world.size(), |(of, _)| *of) as u64];
     world.broadcast(&mut of)?;
     let of = of[0] as usize;
-    let list = folder(out, analysis).join(LIST);
+    let list = parts_folder(out, analysis).join(LIST);
     if world.rank() == 0 {
         let done = known.map(|(_, done)| done).unwrap_or_default();
         for (rank, number) in earlier(&list).into_iter().filter(|(_, number)| !done.contains(number)) {
@@ -77,7 +70,7 @@ pub fn studies_on_ranks(
     if world.rank() > 0 {
         return Ok(None);
     }
-    let results = merge(&case, analysis, out, Some(world.size()), observer)?;
+    let results = merge_parts(&case, analysis, out, Some(world.size()), observer)?;
     let _ = std::fs::remove_file(&list);
     Ok(Some(results))
 }
