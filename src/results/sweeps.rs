@@ -5,7 +5,6 @@ use super::file_name;
 use crate::dataset::{Column, Describe, Dimension, Group, Table, Values, Variable, column};
 use crate::linalg::c64;
 use crate::numbers::{hertz, power, significant};
-use crate::stability::unstable;
 use crate::sweep::{Axis, Branch, Checked, Critical, CriticalKind, Interaction, InteractionKind, Sweep};
 use std::f64::consts::TAU;
 
@@ -53,7 +52,7 @@ fn branch_columns<'a>(unit: &str) -> Vec<Column<Followed<'a>>> {
             b.eigenvalues.iter().map(|z| z.re).fold(f64::NEG_INFINITY, f64::max)
         }),
         column("ever_unstable", "1", "whether it is unstable somewhere", |(_, b): &B| {
-            b.eigenvalues.iter().any(|z| unstable(*z))
+            b.growing().any(|grows| grows)
         }),
         column("lowest_mac", "1", "least MAC of neighbouring shapes along it", |(_, b): &B| b.lowest_mac),
     ]

@@ -1,12 +1,13 @@
 //! The boundary of stability in a map: the line on which the largest growth rate is zero.
 
 use super::at_once::solve_all;
-use super::critical::rounding;
 use super::map::MapPoint;
 use super::root::{Bracket, narrow};
+use super::rounding::rounding;
 use super::{Axis, SweepProblem};
 use crate::error::Result;
 use crate::progress::Observer;
+use faer::Mat;
 use std::collections::BTreeMap;
 
 /// Located points of the boundary and the lines through them.
@@ -85,7 +86,7 @@ impl Grid<'_> {
     /// The largest growth rate at a place \[1/s\], less round-off.
     fn growth(&self, at: &[f64]) -> Result<f64> {
         let all = self.problem.eigenvalues(at)?;
-        let growth = (0..all.len()).map(|k| all[k].re - rounding(&all, k));
+        let growth = (0..all.len()).map(|k| all[k].re - rounding(&all, &Mat::new(), k));
         Ok(growth.fold(f64::NEG_INFINITY, f64::max).max(-1e300))
     }
 

@@ -2,6 +2,7 @@
 
 use super::Modes;
 use crate::linalg::c64;
+use crate::stability::unstable;
 
 /// One mode followed along the parameter.
 #[derive(Debug, Clone)]
@@ -14,12 +15,19 @@ pub struct Branch {
     pub lowest_mac: f64,
     /// Its place among the modes of each of its values.
     pub(crate) places: Vec<usize>,
+    /// What rounding may leave of σ at each of its values \[1/s\].
+    pub(crate) rounding: Vec<f64>,
 }
 
 impl Branch {
     /// λ at value `k` of [`super::Sweep::values`], where the branch exists.
     pub fn at(&self, k: usize) -> Option<c64> {
         k.checked_sub(self.first).and_then(|k| self.eigenvalues.get(k)).copied()
+    }
+
+    /// Whether the mode grows, by more than rounding, at each of its values.
+    pub fn growing(&self) -> impl DoubleEndedIterator<Item = bool> + '_ {
+        self.eigenvalues.iter().zip(&self.rounding).map(|(z, rounding)| unstable(*z) && z.re > *rounding)
     }
 
     /// The place of the branch among the modes at value `k`.

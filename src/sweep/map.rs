@@ -2,10 +2,12 @@
 
 use super::answers::{answer, points};
 use super::points::{Filled, RecordPoints, fill};
+use super::rounding::rounding;
 use super::{Axis, SweepProblem, unstable};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::progress::Observer;
+use faer::Mat;
 use std::f64::consts::TAU;
 
 /// Values of a map at one point; not numbers where the point has no modes.
@@ -15,7 +17,7 @@ pub struct MapPoint {
     pub growth_rate: f64,
     /// ω/2π of that mode \[Hz\].
     pub frequency_hz: f64,
-    /// How many modes grow.
+    /// How many modes grow, by more than rounding.
     pub unstable: u32,
 }
 
@@ -25,11 +27,15 @@ impl MapPoint {
 
     /// The values of a point with these λ \[1/s\].
     pub fn of(eigenvalues: &[c64]) -> Self {
+        let grows = |k: usize| {
+            let z = eigenvalues[k];
+            unstable(z) && z.re > rounding(eigenvalues, &Mat::new(), k)
+        };
         let strongest = eigenvalues.iter().max_by(|a, b| a.re.total_cmp(&b.re));
         strongest.map_or(MapPoint::NONE, |z| MapPoint {
             growth_rate: z.re,
             frequency_hz: z.im / TAU,
-            unstable: eigenvalues.iter().filter(|z| unstable(**z)).count() as u32,
+            unstable: (0..eigenvalues.len()).filter(|k| grows(*k)).count() as u32,
         })
     }
 }

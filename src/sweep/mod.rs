@@ -21,6 +21,9 @@ mod map;
 mod onset_tests;
 mod points;
 mod root;
+#[cfg(test)]
+mod root_order_tests;
+mod rounding;
 mod sampled;
 #[cfg(test)]
 mod tests;
@@ -40,7 +43,7 @@ pub use track::{Sweep, sweep};
 
 use crate::error::Result;
 use crate::linalg::c64;
-use crate::stability::{ROUND_OFF, unstable};
+use crate::stability::unstable;
 use faer::Mat;
 
 /// Parametric eigenvalue problem of a sweep: the complex modes at a place of its parameters.
@@ -145,6 +148,11 @@ impl Axis {
 }
 
 impl Modes {
+    /// What rounding may leave of σ of mode `k` \[1/s\].
+    fn rounding(&self, k: usize) -> f64 {
+        rounding::rounding(&self.eigenvalues, &self.vectors, k)
+    }
+
     /// Column `k` of the shapes.
     fn vector(&self, k: usize) -> &[c64] {
         self.vectors.col_as_slice(k)

@@ -158,11 +158,13 @@ fn branches(samples: &[Sample], links: &[Link]) -> Vec<Branch> {
             .enumerate()
             .map(|(j, from)| {
                 let lambda = sample.modes.eigenvalues[j];
+                let rounding = sample.modes.rounding(j);
                 match from {
                     Some((b, mac)) => {
                         let branch = &mut branches[b];
                         branch.eigenvalues.push(lambda);
                         branch.places.push(j);
+                        branch.rounding.push(rounding);
                         branch.lowest_mac = branch.lowest_mac.min(mac);
                         b
                     }
@@ -172,6 +174,7 @@ fn branches(samples: &[Sample], links: &[Link]) -> Vec<Branch> {
                             eigenvalues: vec![lambda],
                             lowest_mac: 1.0,
                             places: vec![j],
+                            rounding: vec![rounding],
                         });
                         branches.len() - 1
                     }

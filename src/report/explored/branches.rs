@@ -5,7 +5,6 @@ use crate::report::chart::Chart;
 use crate::report::colours::MEASURED;
 use crate::report::svg::{DASHED, Style, stroke};
 use crate::results::SweepResult;
-use crate::stability::unstable;
 use crate::sweep::{Critical, CriticalKind, InteractionKind};
 
 /// A branch as points (value, λ), its critical points among them, and which stretches grow.
@@ -17,7 +16,7 @@ fn trace(result: &SweepResult, b: usize) -> Vec<(f64, c64, bool)> {
     let merges = |c: &&Critical| c.kind == CriticalKind::Merging && partner(result, c) == Some(b);
     let own = sweep.critical.iter().filter(|c| c.branch == b || merges(c));
     let own: Vec<(f64, c64)> = own.map(|c| (c.value, c64::new(0.0, c.eigenvalue.im))).collect();
-    for (k, z) in branch.eigenvalues.iter().enumerate() {
+    for (k, (z, grows)) in branch.eigenvalues.iter().zip(branch.growing()).enumerate() {
         let value = sweep.values[branch.first + k];
         if k > 0 {
             let before = sweep.values[branch.first + k - 1];
@@ -25,7 +24,7 @@ fn trace(result: &SweepResult, b: usize) -> Vec<(f64, c64, bool)> {
             let between = own.iter().filter(|(v, _)| *v > low && *v < high);
             points.extend(between.map(|(v, z)| (*v, *z, true)));
         }
-        points.push((value, *z, unstable(*z)));
+        points.push((value, *z, grows));
     }
     points
 }

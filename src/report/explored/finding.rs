@@ -4,7 +4,6 @@ use super::words::{list, with_unit};
 use crate::report::finding::{Finding, FindingClass};
 use crate::report::format::{hertz, rounded, signed, significant};
 use crate::results::{DampingVerdicts, MapResult, SweepResult};
-use crate::stability::unstable;
 
 /// Ranges that are given one by one.
 const NAMED: usize = 3;
@@ -60,11 +59,15 @@ fn unstable_ranges(result: &SweepResult) -> Vec<[f64; 2]> {
         // In the order of the sweep: where its state is known, and where it changes.
         let mut begun: Option<f64> = None;
         let mut last = None;
-        for (z, value) in branch.eigenvalues.iter().zip(values) {
+        for (grows, value) in branch.growing().zip(values) {
             let between = sweep.critical.iter().filter(|c| {
                 c.branch == b && last.is_some_and(|last: f64| (c.value - last) * (c.value - value) < 0.0)
             });
-            let changes = between.map(|c| (c.value, c.rises)).chain([(*value, unstable(*z))]);
+            // At a value of the sweep within the uncertainty of a critical one rounding hides whether the mode grows.
+            let hidden =
+                sweep.critical.iter().any(|c| c.branch == b && (c.value - value).abs() < c.uncertainty);
+            let here = (!hidden).then_some((*value, grows));
+            let changes = between.map(|c| (c.value, c.rises)).chain(here);
             for (at, grows) in changes {
                 match (begun, grows) {
                     (None, true) => begun = Some(at),
@@ -156,6 +159,7 @@ mod tests {
         let branch = |first: usize, rates: &[f64]| Branch {
             first,
             eigenvalues: rates.iter().map(|s| c64::new(*s, 1000.0)).collect(),
+            rounding: vec![0.0; rates.len()],
             ..result.sweep.branches[0].clone()
         };
         let branches = vec![
@@ -191,6 +195,18 @@ mod tests {
             "{}",
             found.words
         );
+        // Critical values before and behind a value of the sweep that their uncertainty covers.
+        for (at, grows) in [(2.9, -1.0), (3.1, -1.0), (2.9, 1.0), (3.1, 1.0)] {
+            let mut near = result.clone();
+            near.sweep.branches = vec![Branch {
+                first: 0,
+                eigenvalues: [-1.0, -1.0, -1.0, grows, 1.0].map(|s| c64::new(s, 1000.0)).to_vec(),
+                rounding: vec![0.0; 5],
+                ..result.sweep.branches[0].clone()
+            }];
+            near.sweep.critical = vec![Critical { uncertainty: 0.2, ..critical(0, at, true) }];
+            assert_eq!(unstable_ranges(&near), [[at, 4.0]], "{at} {grows}");
+        }
         // The same the other way round.
         result.sweep.values.reverse();
         result.sweep.branches.iter_mut().for_each(|b| b.eigenvalues.reverse());

@@ -225,6 +225,7 @@ mod tests {
             eigenvalues: values.iter().map(|mu| of(*mu)).collect(),
             lowest_mac: 1.0,
             places: vec![0; values.len()],
+            rounding: vec![0.0; values.len()],
         };
         let one = result.sweep.critical[0];
         result.sweep.branches = vec![branch(&|_| c64::new(-1.0, TAU * 6000.0))];

@@ -10,7 +10,6 @@ use crate::report::format::{given, hertz, rounded};
 use crate::report::section::Picture;
 use crate::report::svg::{DOTTED, Sheet, fill, ink, sheer, stroke};
 use crate::results::{SweepResult, file_name};
-use crate::stability::unstable;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
@@ -170,9 +169,9 @@ fn drawn_locus(result: &SweepResult) -> String {
         let (Some(first), Some(last)) = (branch.eigenvalues.first(), branch.eigenvalues.last()) else {
             continue;
         };
-        let hue = |z: &c64| if unstable(*z) { ALARM } else { CALM };
-        chart.circle([first.re, first.im / TAU], 4.0, &stroke(hue(first), 1.0));
-        chart.circle([last.re, last.im / TAU], 4.0, &fill(hue(last)));
+        let hue = |grows: Option<bool>| if grows == Some(true) { ALARM } else { CALM };
+        chart.circle([first.re, first.im / TAU], 4.0, &stroke(hue(branch.growing().next()), 1.0));
+        chart.circle([last.re, last.im / TAU], 4.0, &fill(hue(branch.growing().next_back())));
     }
     chart.picture(560.0)
 }

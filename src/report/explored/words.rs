@@ -38,12 +38,12 @@ pub(super) fn list(words: &[String]) -> String {
 /// Results of the sweep.
 pub(in crate::report) fn sweep_words(result: &SweepResult) -> Vec<String> {
     let (sweep, unit) = (&result.sweep, result.unit.as_str());
-    let grows = |b: &&crate::sweep::Branch| b.eigenvalues.iter().any(|z| unstable(*z));
+    let grows = |b: &&crate::sweep::Branch| b.growing().any(|grows| grows);
     let ever: Vec<_> = sweep.branches.iter().filter(grows).collect();
     let all: Vec<String> = ever
         .iter()
         .filter(|b| b.first == 0 && b.eigenvalues.len() == sweep.values.len())
-        .filter(|b| b.eigenvalues.iter().all(|z| unstable(*z)))
+        .filter(|b| b.growing().all(|grows| grows))
         .map(|b| format!("{} Hz", hertz(b.eigenvalues[0].im / TAU, 0)))
         .collect();
     let mut words = Vec::new();
@@ -115,7 +115,7 @@ pub(in crate::report) fn critical_table(result: &SweepResult) -> ReportTable {
     let rows = table.rows.iter_mut().zip(&result.sweep.critical);
     rows.for_each(|(row, critical)| row.marked = critical.rises);
     if result.sweep.critical.is_empty() {
-        let grows = result.sweep.branches.iter().any(|b| b.eigenvalues.iter().any(|z| unstable(*z)));
+        let grows = result.sweep.branches.iter().any(|b| b.growing().any(|grows| grows));
         let words = match grows {
             true => {
                 "No mode that is followed becomes unstable or stable in this range; those that grow begin, end or stay unstable."
