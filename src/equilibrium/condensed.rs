@@ -73,10 +73,15 @@ impl Condensed {
 }
 
 /// A = K + Σ d g gᵀ, in which every contact point is closed, and the d of the points.
-pub fn closed_stiffness(system: &System, k: &SparseMatrix) -> (SparseMatrix, Vec<f64>) {
-    let closed: Vec<f64> = system.points().map(|(pair, point)| spring(pair, point, k)).collect();
+pub(crate) fn closed_stiffness(system: &System, k: &SparseMatrix) -> (SparseMatrix, Vec<f64>) {
+    let closed = closed_springs(system, k);
     let springs = system.points().zip(&closed).map(|((_, point), d)| (*d, &point.normal));
     (add_scaled(&[(1.0, k), (1.0, &sum_of_squares(system.n_dofs(), springs))]), closed)
+}
+
+/// The stiffness of each contact point where it is closed, on a structure with stiffness K.
+pub fn closed_springs(system: &System, k: &SparseMatrix) -> Vec<f64> {
+    system.points().map(|(pair, point)| spring(pair, point, k)).collect()
 }
 
 /// Xᵀ f.

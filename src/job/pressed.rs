@@ -2,7 +2,7 @@
 
 use super::prepared::Prepared;
 use crate::case::Pressing;
-use crate::equilibrium::closed_stiffness;
+use crate::equilibrium::closed_springs;
 use crate::error::{Fault, Faults, Result};
 use crate::numbers::{components, significant};
 use crate::schema::dotted;
@@ -60,9 +60,13 @@ fn parts_without_a_support(prepared: &Prepared, faults: &mut Faults) {
         return;
     }
     let system = &prepared.system;
-    let (closed, _) = closed_stiffness(system, &system.structure.stiffness);
+    let stiffness = &system.structure.stiffness;
+    let closed = closed_springs(system, stiffness);
+    let springs: Vec<_> =
+        closed.into_iter().zip(system.points()).map(|(d, (_, point))| (d, &point.normal)).collect();
     // Matrices that hold no numbers are a fault of their own.
-    let parts = unresisted_parts(&prepared.model, &prepared.assembled, &closed).unwrap_or_default();
+    let parts =
+        unresisted_parts(&prepared.model, &prepared.assembled, stiffness, &springs).unwrap_or_default();
     for part in parts {
         let place = match part.names.first() {
             Some(name) if prepared.case.shell.contains_key(name) => format!("`shell.{}`", dotted(name)),

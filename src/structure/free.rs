@@ -3,12 +3,13 @@
 use super::{Assembled, Model};
 use crate::connected::lowest_connected;
 use crate::error::Result;
-use crate::linalg::SparseMatrix;
 use crate::linalg::dense::{product, symmetric_eigen};
-use crate::linalg::sparse::{diagonal, is_unresisted, times};
+use crate::linalg::sparse::{add_scaled, diagonal, is_unresisted, sum_of_squares, times};
+use crate::linalg::{SparseMatrix, SparseVector};
 use crate::system::Structure;
 use faer::Mat;
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 /// A piece of the structure that can move as a rigid body without any force.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,8 +64,14 @@ pub fn free_parts(model: &Model, assembled: &Assembled) -> Result<Vec<FreePart>>
     Ok(found)
 }
 
-/// What can move as rigid bodies where `closed`, the stiffness with every contact closed, answers with no force: the bodies that springs
-/// and contacts bring together move against each other. The bodies that take part in such motions, those of one group as
+/// Motions of a body at most.
+const MOTIONS: usize = 6;
+
+/// The bodies of a group, each with its degrees of freedom and its columns in the motions of the group.
+type Bodies = BTreeMap<usize, (Vec<usize>, Range<usize>)>;
+
+/// What can move as rigid bodies where `k` and `springs`, d of d g gᵀ with g, of all contacts closed, answer with no force: the bodies that
+/// springs and contacts bring together move against each other. The bodies that take part in such motions, those of one group as
 /// one part. The forces are measured as where steady sliding is solved, so that what passes here has a solution.
 ///
 /// # Errors
@@ -72,62 +79,122 @@ pub fn free_parts(model: &Model, assembled: &Assembled) -> Result<Vec<FreePart>>
 pub fn unresisted_parts(
     model: &Model,
     assembled: &Assembled,
-    closed: &SparseMatrix,
+    k: &SparseMatrix,
+    springs: &[(f64, &SparseVector)],
 ) -> Result<Vec<FreePart>> {
     let dofs = &assembled.dofs;
     let free = dofs.free_dofs();
     let of_node = bodies(model, assembled);
-    let together = (0..closed.ncols()).flat_map(|j| closed.row_idx_of_col(j).map(move |i| [i, j]));
-    let together = together.map(|entry| entry.map(|dof| of_node[free[dof].node])).filter(|[a, b]| a != b);
+    let body: Vec<usize> = free.iter().map(|at| of_node[at.node]).collect();
+    let linked = (0..k.ncols()).flat_map(|j| k.row_idx_of_col(j).map(move |i| [i, j]));
+    let touching = springs.iter().flat_map(|(_, g)| g.indices().windows(2).map(|pair| [pair[0], pair[1]]));
+    let together = linked.chain(touching).map(|entry| entry.map(|dof| body[dof])).filter(|[a, b]| a != b);
     let group_of = lowest_connected(of_node.len(), together);
-    let mut groups: BTreeMap<usize, BTreeMap<usize, Vec<usize>>> = BTreeMap::new();
-    for (dof, at) in free.iter().enumerate() {
-        let body = of_node[at.node];
-        groups.entry(group_of[body]).or_default().entry(body).or_default().push(dof);
+    let mut groups: BTreeMap<usize, Bodies> = BTreeMap::new();
+    for (dof, body) in body.iter().enumerate() {
+        groups.entry(group_of[*body]).or_default().entry(*body).or_default().0.push(dof);
     }
+    groups.retain(|_, bodies| bodies.len() <= MOST_BODIES);
     let nodes = &model.nodes;
     let center = std::array::from_fn(|k| nodes.iter().map(|x| x[k]).sum::<f64>() / nodes.len().max(1) as f64);
     let motions = dofs.rigid_body_vectors(center);
-    let largest = diagonal(closed);
-    let mut found = Vec::new();
-    for bodies in groups.values().filter(|bodies| bodies.len() <= MOST_BODIES) {
-        // Orthonormal rigid motions of each body, on all degrees of freedom.
-        let mut columns: Vec<(usize, Vec<f64>)> = Vec::new();
-        for (body, own) in bodies {
-            let x = Mat::from_fn(own.len(), 6, |i, k| motions[k][own[i]]);
-            let basis = orthonormal(&x)?;
-            let moved = product(x.as_ref(), basis.as_ref());
-            for k in 0..moved.ncols() {
-                let mut column = vec![0.0; free.len()];
-                own.iter().enumerate().for_each(|(i, dof)| column[*dof] = moved[(i, k)]);
-                columns.push((*body, column));
+    // Orthonormal rigid motions of each body: what each of its degrees of freedom has of them.
+    let mut own = vec![[0.0; MOTIONS]; free.len()];
+    let mut energies: BTreeMap<usize, Mat<f64>> = BTreeMap::new();
+    for (group, bodies) in &mut groups {
+        let mut columns = 0;
+        for (dofs, range) in bodies.values_mut() {
+            let x = Mat::from_fn(dofs.len(), MOTIONS, |i, k| motions[k][dofs[i]]);
+            let moved = product(x.as_ref(), orthonormal(&x)?.as_ref());
+            for (i, dof) in dofs.iter().enumerate() {
+                (0..moved.ncols()).for_each(|k| own[*dof][k] = moved[(i, k)]);
+            }
+            *range = columns..columns + moved.ncols();
+            columns = range.end;
+        }
+        // With room for motions that the last body does not have.
+        energies.insert(*group, Mat::zeros(columns + MOTIONS, columns + MOTIONS));
+    }
+    // XᵀAX, X of the columns of a group: of entries between two bodies by themselves, of those within one by the forces.
+    let mut forces = vec![[0.0; MOTIONS]; free.len()];
+    let first = |dof: usize| groups.get(&group_of[body[dof]]).map(|bodies| bodies[&body[dof]].1.start);
+    for j in 0..k.ncols() {
+        for (i, value) in k.row_idx_of_col(j).zip(k.val_of_col(j)) {
+            if body[i] == body[j] {
+                (0..MOTIONS).for_each(|c| forces[i][c] += value * own[j][c]);
+            } else if let Some((a, b)) = first(i).zip(first(j)) {
+                add_outer(&mut energies, group_of[body[i]], ([a, b], [&own[i], &own[j]]), *value);
             }
         }
-        let x = Mat::from_fn(free.len(), columns.len(), |i, k| columns[k].1[i]);
-        let energy = product(x.transpose(), times(closed, x.as_ref()).as_ref());
-        let (values, directions) = symmetric_eigen(energy.as_ref())?;
-        let size = bodies.values().flatten().fold(0.0f64, |m, i| m.max(largest[*i]));
+    }
+    for (group, bodies) in &groups {
+        for (dofs, range) in bodies.values() {
+            for dof in dofs {
+                add_outer(&mut energies, *group, ([range.start; 2], [&own[*dof], &forces[*dof]]), 1.0);
+            }
+        }
+    }
+    let mut largest = diagonal(k);
+    for (d, g) in springs {
+        for (i, a) in g.iter() {
+            largest[i] += d * a * a;
+            for (j, b) in g.iter() {
+                if let Some((first_i, first_j)) = first(i).zip(first(j)) {
+                    let group = group_of[body[i]];
+                    add_outer(&mut energies, group, ([first_i, first_j], [&own[i], &own[j]]), d * a * b);
+                }
+            }
+        }
+    }
+    let mut closed = None;
+    let mut found = Vec::new();
+    for (group, bodies) in &groups {
+        let columns = bodies.values().map(|(_, range)| range.len()).sum();
+        let (values, directions) = symmetric_eigen(energies[group].submatrix(0, 0, columns, columns))?;
+        let all = || bodies.values().flat_map(|(dofs, range)| dofs.iter().map(move |dof| (*dof, range)));
+        let size = all().fold(0.0f64, |m, (dof, _)| m.max(largest[dof]));
         let mut part = FreePart { names: Vec::new(), node: usize::MAX, motions: 0 };
         let mut moving = BTreeSet::new();
-        for k in (0..values.len()).filter(|k| values[*k] <= FREE * size) {
-            let motion = product(x.as_ref(), directions.subcols(k, 1));
+        for j in (0..values.len()).filter(|j| values[*j] <= FREE * size) {
+            let mut motion = Mat::zeros(free.len(), 1);
+            for (dof, range) in all() {
+                motion[(dof, 0)] = range.clone().zip(own[dof]).map(|(c, own)| own * directions[(c, j)]).sum();
+            }
+            let closed = closed.get_or_insert_with(|| {
+                add_scaled(&[(1.0, k), (1.0, &sum_of_squares(free.len(), springs.iter().copied()))])
+            });
             if !is_unresisted(closed, motion.as_ref()) {
                 continue;
             }
             part.motions += 1;
-            let taking_part =
-                columns.iter().enumerate().filter(|(j, _)| directions[(*j, k)].abs() > TAKES_PART);
-            moving.extend(taking_part.map(|(_, (body, _))| *body));
+            let takes_part =
+                |range: &Range<usize>| range.clone().any(|c| directions[(c, j)].abs() > TAKES_PART);
+            moving.extend(bodies.iter().filter(|(_, (_, range))| takes_part(range)).map(|(body, _)| *body));
         }
         for body in moving {
             part.names.extend(names(model, assembled, &of_node, body));
-            part.node = part.node.min(free[bodies[&body][0]].node);
+            part.node = part.node.min(free[bodies[&body].0[0]].node);
         }
         if part.motions > 0 {
             found.push(part);
         }
     }
     Ok(found)
+}
+
+/// Adds `factor` a bᵀ to the matrix of a group, from the given row and column on.
+fn add_outer(
+    energies: &mut BTreeMap<usize, Mat<f64>>,
+    group: usize,
+    ([row, column], [a, b]): ([usize; 2], [&[f64; MOTIONS]; 2]),
+    factor: f64,
+) {
+    let Some(energy) = energies.get_mut(&group) else { return };
+    for (j, b) in b.iter().enumerate() {
+        for (i, a) in a.iter().enumerate() {
+            energy[(row + i, column + j)] += factor * a * b;
+        }
+    }
 }
 
 /// Whether the piece that `nodes` are of can be moved along a direction as a whole without any force, contacts left out.
@@ -234,7 +301,6 @@ mod tests {
     use super::super::{BarPart, Model, Section, Spring, Support, assemble};
     use super::*;
     use crate::linalg::random::Random;
-    use crate::linalg::sparse::{add_scaled, sum_of_squares};
 
     fn bar(name: &str, nodes: [usize; 2]) -> BarPart {
         BarPart {
@@ -323,7 +389,6 @@ mod tests {
             });
             let free = 6 * bars - held.rank(1e-6);
             let assembled = assemble(&model).unwrap();
-            let n = assembled.dofs.free_dofs().len();
             let terms = |spring: &Spring| {
                 let ends = [Some((spring.node, 1.0)), spring.other.map(|node| (node, -1.0))];
                 let ends = ends.into_iter().flatten();
@@ -331,9 +396,9 @@ mod tests {
                 assembled.dofs.reduce(&ends.flat_map(of).collect::<Vec<_>>())
             };
             let contacts: Vec<_> = contacts.iter().map(|spring| (spring.stiffness, terms(spring))).collect();
-            let contacts = sum_of_squares(n, contacts.iter().map(|(k, g)| (*k, g)));
-            let closed = add_scaled(&[(1.0, &assembled.structure.stiffness), (1.0, &contacts)]);
-            let found = unresisted_parts(&model, &assembled, &closed).unwrap();
+            let contacts: Vec<_> = contacts.iter().map(|(k, g)| (*k, g)).collect();
+            let found =
+                unresisted_parts(&model, &assembled, &assembled.structure.stiffness, &contacts).unwrap();
             assert_eq!(found.iter().map(|part| part.motions).sum::<usize>(), free, "{model:?}");
             seen[usize::from(free > 0)] += 1;
         }
