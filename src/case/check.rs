@@ -2,7 +2,7 @@
 
 use super::consistent::Consistent;
 use super::names::unknown_name;
-use super::{Case, ContactState, Parameter, Pressing, TransientAnalysis, path_matches};
+use super::{Case, ContactState, HoldChoice, Parameter, Pressing, TransientAnalysis, path_matches};
 use crate::schema::{Report, dotted, key};
 
 impl Consistent for Case {
@@ -104,6 +104,12 @@ fn check_transient(root: &mut Report, case: &Case, transient: &TransientAnalysis
         root.fault("transient.fields_every", "no [mesh] in the case", expected, "");
     }
     check_courses(root, case, transient);
+    let loaded = case.contact.values().any(|contact| matches!(contact.pressing, Pressing::Load { .. }));
+    if transient.hold == HoldChoice::Load && !loaded {
+        let expected = "a contact that a load closes: one with an `approach` keeps that";
+        let help = "Give the contact a `load` in place of its `approach`, or remove `hold`";
+        root.fault("transient.hold", "\"load\", and no contact with a `load`", expected, help);
+    }
     for name in transient.probe.keys().filter(|name| !key::is_file_name(name)) {
         let place = format!("transient.probe.{}", dotted(name));
         root.fault(&place, format!("the name \"{name}\""), "letters, digits, `-` and `_`", "");

@@ -2,7 +2,9 @@
 //! method beside it.
 
 use super::clock::Clock;
-use super::modes::{damped_below, identify, labels, modal_damping, real_modes_below};
+use super::modes::{
+    check_damping_frequencies, damped_below, identify, labels, modal_damping, real_modes_below,
+};
 use super::prepared::Prepared;
 use crate::case::CeaAnalysis;
 use crate::equilibrium::{self, SteadySliding};
@@ -48,6 +50,9 @@ pub fn band_modes<'a>(
         Cow::Borrowed(_) => Cow::Borrowed(structure),
         Cow::Owned(stiffness) => Cow::Owned(Structure { stiffness: stiffness.into(), ..structure.clone() }),
     };
+    if basis.is_none() {
+        check_damping_frequencies(&preloaded, prepared.case, cea.basis_below)?;
+    }
     let mut system = Cow::Borrowed(&prepared.system);
     let left_vectors = left_vectors || cea.left_vectors;
     let mut problem =

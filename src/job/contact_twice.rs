@@ -3,18 +3,23 @@
 use super::regions::Regions;
 use crate::case::Case;
 use crate::error::{Fault, Faults};
+use crate::linalg::SparseVector;
 use crate::structure::Model;
 use crate::system::{ContactPair, ContactPoint};
 use std::collections::{BTreeMap, HashMap};
 
-/// Refuses contact points that are in the same place and press the same way: their stiffness would count twice.
-pub(super) fn points_twice(pairs: &[ContactPair], faults: &mut Faults) {
+/// Refuses contact points that are in the same place and press the same way: their stiffness would count twice. Points that are `given`,
+/// without a mesh, are the same only where they slide the same way, too: a body may rub on several others at once, each of which is pressed by
+/// the same degree of freedom.
+pub(super) fn points_twice(pairs: &[ContactPair], given: bool, faults: &mut Faults) {
     let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<u64>>();
     let mut seen = HashMap::new();
     let mut twice: BTreeMap<[&str; 2], (usize, [usize; 2])> = BTreeMap::new();
     for pair in pairs {
         for (k, point) in pair.points.iter().enumerate().filter(|(_, p)| !p.normal.indices().is_empty()) {
-            let key = (bits(&point.position), point.normal.indices(), bits(point.normal.values()));
+            let vector = |v: &'_ SparseVector| (v.indices().to_vec(), bits(v.values()));
+            let tangents = given.then(|| point.tangents.each_ref().map(vector));
+            let key = (bits(&point.position), vector(&point.normal), tangents);
             let (other, j) = *seen.entry(key).or_insert((pair.name.as_str(), k));
             if (other, j) != (pair.name.as_str(), k) {
                 twice.entry([other, &pair.name]).or_insert((0, [j + 1, k + 1])).0 += 1;
@@ -137,6 +142,58 @@ mod tests {
                     same,
                     "{one}{a} {two}{b}: {said}"
                 );
+            }
+        }
+    }
+
+    /// Two points that one degree of freedom presses, the tangents of which are the same or not, in one contact or two: a fault where both are.
+    /// Where they differ, K has the stiffness of both along the normal.
+    #[test]
+    fn points_with_one_normal_are_two_where_they_slide_differently() {
+        let dir = tempfile::tempdir().unwrap();
+        let matrix = |name: &str, k: [f64; 3]| {
+            let [a, b, c] = k;
+            let text = format!(
+                "%%MatrixMarket matrix coordinate real symmetric\n3 3 3\n1 1 {a}\n2 2 {b}\n3 3 {c}\n"
+            );
+            std::fs::write(dir.path().join(name), text).unwrap();
+        };
+        matrix("m.mtx", [1.0; 3]);
+        matrix("k.mtx", [2e4, 1.5e4, 1.8e4]);
+        let tangents =
+            ["\"2\", \"\"", "\"3\", \"\"", "\"2\", \"3\"", "\"3\", \"2\"", "\"-2\", \"\"", "\"\", \"\""];
+        let contact = |name: &str, points: &str| {
+            format!(
+                "[contact.{name}]\npoints = [{points}]\napproach = 1e-4\nsliding_velocity = 1\n\
+                 normal = {{ per = \"point\", stiffness = 1e4 }}\nfriction = {{ law = \"coulomb\", mu0 = 0.3 }}\n"
+            )
+        };
+        for first in tangents {
+            for second in tangents {
+                let [a, b] = [first, second].map(|tangents| format!("[\"-1\", {tangents}]"));
+                let one = contact("p", &format!("{a}, {b}"));
+                let two = contact("p", &a) + &contact("q", &b);
+                for contacts in [one, two] {
+                    let text = format!(
+                        "[matrices]\nmass = \"m.mtx\"\nstiffness = \"k.mtx\"\n{contacts}[cea]\nband = [0, 100]\n"
+                    );
+                    let case = Case::parse("a.toml", &text, dir.path().into()).unwrap();
+                    match Prepared::new(&case) {
+                        Ok(prepared) => {
+                            assert_ne!(first, second);
+                            let system = &prepared.system;
+                            let (closed, _) =
+                                crate::equilibrium::closed_stiffness(system, &system.structure.stiffness);
+                            assert_eq!(closed.get(0, 0), Some(&4e4), "{text}");
+                        }
+                        Err(error) => {
+                            assert!(
+                                first == second && error.to_string().contains("there once"),
+                                "{text}{error}"
+                            );
+                        }
+                    }
+                }
             }
         }
     }

@@ -46,7 +46,7 @@ pub fn contact_pairs(
             });
         }
     }
-    points_twice(&pairs, &mut faults);
+    points_twice(&pairs, case.matrices.is_some(), &mut faults);
     surfaces_twice(case, (regions, model), &pairs, &mut faults);
     faults.into_result(pairs)
 }

@@ -1,6 +1,6 @@
 //! Frequency responses of a case.
 
-use super::modes::{damping_of_response, identify, labels, response_needs};
+use super::modes::{check_damping_frequencies, damping_of_response, identify, labels, response_needs};
 use super::motion::{Motion, motion};
 use super::prepared::Prepared;
 use crate::case::{FrfAnalysis, FrfContact, FrfSolution, UniversalForm};
@@ -119,6 +119,7 @@ impl PreparedFrf<'_> {
         let forms: Vec<SparseVector> =
             std::iter::once(&self.force.direction).chain(&places).cloned().collect();
         let steady = steady.filter(|_| contact == FrfContact::Sliding);
+        check_damping_frequencies(&prepared.system.structure, prepared.case, 2.0 * band[1])?;
         let Receptance { system, steady, real, reduced } = {
             let of = |mass: &SparseMatrix, real: &RealModes| damping_of_response(mass, real, prepared.case);
             let damping = DampingOfModes { of: &of, needs_below: response_needs(prepared.case) };

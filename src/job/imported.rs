@@ -7,7 +7,7 @@ use crate::linalg::matrix_market::{self, MarketMatrix};
 use crate::linalg::sparse::{add_scaled, diagonal};
 use crate::linalg::{SparseMatrix, SparseVector};
 use crate::structure::{Assembled, FreeDof};
-use crate::system::{ContactPoint, Coupling, Given, is_unsymmetric, split};
+use crate::system::{ContactPoint, Coupling, Given, hysteretic_skew, is_unsymmetric, mass_skew, split};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -75,12 +75,27 @@ pub fn read_model(case: &Case, matrices: &Matrices) -> Result<ImportedModel> {
     warnings.extend(one_sided(&stiffness_place, stiffness.as_ref()));
     warnings.extend(one_sided(&damping_place, damping.as_ref()));
     // Terms of the stiffness that are not symmetric stay whole beside it.
-    let unsymmetric = |(_, term): &FactoredMatrix| term.im.is_none() && is_unsymmetric(&term.re);
+    let unsymmetric = |term: &FactoredMatrix| term.matrix.im.is_none() && is_unsymmetric(&term.matrix.re);
     let (friction, stiffness_terms): (Vec<_>, Vec<_>) = stiffness_terms.into_iter().partition(unsymmetric);
     let friction: Vec<SparseMatrix> =
-        friction.iter().map(|(factor, term)| add_scaled(&[(*factor, &term.re)])).collect();
+        friction.iter().map(|term| add_scaled(&[(term.factor, &term.matrix.re)])).collect();
+    // Of a sum that must be symmetric the file is named that is not.
+    let of_mass: fn(&str, &MarketMatrix) -> Option<Fault> = |place, m| mass_skew(place, &m.re);
+    let of_losses: fn(&str, &MarketMatrix) -> Option<Fault> =
+        |place, k| k.im.as_ref().and_then(|im| hysteretic_skew(place, im));
+    let blamed = [
+        unsymmetric_files((&mass_place, mass.as_ref()), &mass_terms, of_mass),
+        unsymmetric_files((&stiffness_place, stiffness.as_ref()), &stiffness_terms, of_losses),
+    ];
     let sums = (with_terms(mass, mass_terms), with_terms(stiffness, stiffness_terms));
     let (Some(mass), Some(stiffness)) = sums else { unreachable!("both have a term: themselves") };
+    let sums = [of_mass("", &mass), of_losses("", &stiffness)];
+    let blamed: Vec<Fault> =
+        blamed.into_iter().zip(sums).filter(|(_, sum)| sum.is_some()).flat_map(|(files, _)| files).collect();
+    if !blamed.is_empty() {
+        faults.0.extend(blamed);
+        return faults.into_result(()).map(|()| unreachable!("there are faults"));
+    }
     let damping = with_terms(damping, damping_terms);
     let imported = faults.take(split(
         Given { place: &mass_place, matrix: &mass },
@@ -99,8 +114,23 @@ pub fn read_model(case: &Case, matrices: &Matrices) -> Result<ImportedModel> {
     })
 }
 
-/// A factor and the matrix it multiplies.
-type FactoredMatrix = (f64, MarketMatrix);
+/// A term of a matrix: its factor, the place of its file, and what the factor multiplies.
+struct FactoredMatrix {
+    factor: f64,
+    place: String,
+    matrix: MarketMatrix,
+}
+
+/// The faults that `skew` finds of the files of a sum, `first` and the terms, each by its own place.
+fn unsymmetric_files(
+    first: (&str, Option<&MarketMatrix>),
+    terms: &[FactoredMatrix],
+    skew: fn(&str, &MarketMatrix) -> Option<Fault>,
+) -> Vec<Fault> {
+    let first = first.1.map(|matrix| (first.0, matrix));
+    let terms = terms.iter().map(|term| (term.place.as_str(), &term.matrix));
+    first.into_iter().chain(terms).filter_map(|(place, matrix)| skew(place, matrix)).collect()
+}
 
 /// Terms added to M, C and K, each of `rows` rows and columns; none when there is a fault.
 fn read_terms(
@@ -131,7 +161,7 @@ fn read_terms(
             if key != "stiffness" || diagonal(&matrix.re).iter().any(|v| *v != 0.0) {
                 warnings.extend(one_sided(&place, Some(&matrix)));
             }
-            terms.push((matrices.value(&term.factor), matrix));
+            terms.push(FactoredMatrix { factor: matrices.value(&term.factor), place, matrix });
         }
     }
     (faults.0.len() == earlier).then_some(terms)
@@ -153,7 +183,8 @@ fn with_terms(matrix: Option<MarketMatrix>, terms: Vec<FactoredMatrix>) -> Optio
     if terms.is_empty() {
         return matrix;
     }
-    let all: Vec<FactoredMatrix> = matrix.into_iter().map(|matrix| (1.0, matrix)).chain(terms).collect();
+    let terms = terms.into_iter().map(|term| (term.factor, term.matrix));
+    let all: Vec<(f64, MarketMatrix)> = matrix.into_iter().map(|matrix| (1.0, matrix)).chain(terms).collect();
     let sum = |parts: Vec<(f64, &SparseMatrix)>| (!parts.is_empty()).then(|| add_scaled(&parts));
     let re = sum(all.iter().map(|(factor, matrix)| (*factor, &matrix.re)).collect())?;
     let im = sum(all.iter().filter_map(|(factor, matrix)| Some((*factor, matrix.im.as_ref()?))).collect());

@@ -5,14 +5,20 @@ use super::prepared::Prepared;
 use crate::case::{Case, CeaAnalysis, ContactState, ModesAnalysis};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::SparseMatrix;
-use crate::linalg::sparse::times;
+use crate::linalg::sparse::{add_scaled, times};
 use crate::modal::{self, DiscModeName, ModesWanted, RealModes};
-use crate::numbers::hertz;
+use crate::numbers::{hertz, typed};
 use crate::results::NamedModes;
 use crate::structure::{self, Assembled, assemble};
 use crate::system::{Damping, ModalDamping, Structure};
 use faer::Mat;
+use std::f64::consts::TAU;
 use std::sync::Arc;
+
+/// Degrees of freedom for each mode at least where a mesh resolves modes: several nodes for each half wave, in both directions.
+const DOFS_OF_A_MODE: usize = 10;
+/// So many modes are computed whatever the mesh is.
+const FEW_MODES: usize = 200;
 
 /// Runs one real-mode analysis of the case on a part alone.
 ///
@@ -239,6 +245,38 @@ fn damping_needs(case: &Case, below: f64) -> f64 {
     case.damping.modal_ratios.iter().fold(uniform, |top, [hz, _]| top.max((1.0 + modal::NEAR) * hz))
 }
 
+/// Refuses frequencies of the modal damping below which so many real modes lie that the mesh cannot resolve those near it: all of them would
+/// have to be computed. `below` \[Hz\] is up to where they are computed whatever the damping is.
+///
+/// # Errors
+/// Such a frequency; a matrix that cannot be factorised.
+pub fn check_damping_frequencies(structure: &Structure, case: &Case, below: f64) -> Result<()> {
+    let damping = &case.damping;
+    let uniform = damping.modal_below.filter(|_| damping.modal_ratio > 0.0).map(|hz| ("modal_below", hz));
+    let given = damping.modal_ratios.iter().map(|[hz, _]| ("modal_ratios", *hz));
+    let mut far: Vec<(&str, f64)> = uniform.into_iter().chain(given).filter(|(_, hz)| *hz > below).collect();
+    far.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let (k, m) = (&structure.stiffness, &structure.mass);
+    let dofs = k.ncols();
+    let most = (dofs / DOFS_OF_A_MODE).max(FEW_MODES);
+    let mut faults = Faults::new();
+    for (key, hz) in far.into_iter().filter(|_| dofs > most) {
+        let pencil = add_scaled(&[(1.0, k), (-(TAU * hz).powi(2), m)]);
+        let count = structure.engine.analyse(pencil.symbolic())?.inertia(&pencil)?.negative;
+        if count <= most {
+            break;
+        }
+        let found =
+            format!("{} Hz, below which {count} real modes of {dofs} degrees of freedom lie", typed(hz));
+        let expected = format!("a frequency below which the mesh resolves the modes: {most} of them at most");
+        let fault = Fault::new(format!("`damping.{key}`"), found, expected);
+        faults.push(fault.with_help(
+            "Modes far above the band do not matter to it: leave the frequency out, or refine the mesh",
+        ));
+    }
+    faults.into_result(())
+}
+
 /// What [`modal_damping`] makes of the real modes of a frequency response: all of them have `modal_ratio`, unless the case says up to
 /// which.
 ///
@@ -312,6 +350,7 @@ mod tests {
     use super::*;
     use crate::job::samples::disc;
     use std::collections::BTreeMap;
+    use std::f64::consts::PI;
 
     /// Frequencies \[Hz\] of the modes of each name of a disc clamped at a hub of 20 mm.
     fn named(radial: usize, around: usize, below_hz: f64) -> BTreeMap<(usize, usize), Vec<f64>> {
@@ -327,6 +366,43 @@ mod tests {
             }
         }
         all
+    }
+
+    /// Chains of masses between walls, ω_j = 2 √(k/m) sin(jπ/(2(n + 1))): frequencies are refused that more modes lie below than are resolved,
+    /// by the key that has them, and no others.
+    #[test]
+    fn damping_is_not_given_where_the_mesh_resolves_nothing() {
+        let text = disc(2, 12);
+        let mut case = Case::parse("case.toml", &text, ".".into()).unwrap();
+        for n in [150usize, 210, 260] {
+            let entry = |i: usize, j: usize| match i.abs_diff(j) {
+                0 => 2e4,
+                1 => -1e4,
+                _ => 0.0,
+            };
+            let chain = crate::equilibrium::samples::structure(n, |i, j| f64::from(i == j), entry);
+            let hz = |j: f64| 200.0 * (0.5 * PI * j / (n as f64 + 1.0)).sin() / TAU;
+            let most = (n / DOFS_OF_A_MODE).max(FEW_MODES);
+            for count in [10, 149, 199, 200, 201, 205, 250].into_iter().filter(|count| *count < n) {
+                for uniform in [true, false] {
+                    let given = hz(count as f64 + 0.5);
+                    case.damping.modal_ratio = if uniform { 0.01 } else { 0.0 };
+                    case.damping.modal_below = uniform.then_some(given);
+                    case.damping.modal_ratios =
+                        if uniform { Vec::new() } else { vec![[1.0, 0.1], [given, 0.01]] };
+                    let said = check_damping_frequencies(&chain, &case, 2.0);
+                    let said = said.map_or_else(|error| error.to_string(), |()| String::new());
+                    let key = if uniform { "`damping.modal_below`" } else { "`damping.modal_ratios`" };
+                    let refused = count > most;
+                    assert_eq!(
+                        said.contains(&format!("below which {count} real modes")),
+                        refused,
+                        "{n} {count}: {said}"
+                    );
+                    assert!(said.is_empty() != refused && said.contains(key) == refused, "{said}");
+                }
+            }
+        }
     }
 
     #[test]

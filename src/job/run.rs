@@ -3,7 +3,7 @@
 use super::clock::Clock;
 use super::complex::whole_modes;
 use super::known::KnownAnswers;
-use super::modes::real_modes_below;
+use super::modes::{check_damping_frequencies, real_modes_below};
 use super::prepared::Prepared;
 use super::sink::{ResultSink, ResultStage};
 use crate::case::StiffnessPer;
@@ -122,6 +122,7 @@ impl<'a, 'k> Run<'a, 'k> {
             && self.complex
         {
             let structure = &self.prepared.system.structure;
+            check_damping_frequencies(structure, case, cea.basis_below)?;
             let below = real_modes_below(case, cea, cea.basis_below);
             self.basis = Some(whole_modes(structure, below, &mut self.clock, self.observer)?);
         }

@@ -89,6 +89,7 @@ impl Analysed<'_> {
                         rate: rate.value,
                         error: rate.error,
                         kink: rate.kink,
+                        size: result.eigenvalue.norm(),
                     });
                 }),
                 Err(error) => left_out.push((scalar.path.clone(), reason(&error))),

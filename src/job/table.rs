@@ -1,14 +1,18 @@
 //! Small tables in text files: a heading that names the columns, then one row a line (CSV, RFC 4180).
 //!
 //! Columns are separated by semicolons, tabs or commas, whichever the heading has; cells may stand in quotation marks. Numbers have
-//! decimal points, or decimal commas where nothing else in the table speaks against them.
+//! decimal points, or decimal commas where nothing else in the table speaks against them. A first line `sep=;` names the separator, and
+//! a cell in quotation marks may go on in the next lines.
 
 use crate::error::read::read_text;
 use crate::error::{Error, Fault, Faults, Result, nearest};
+use std::ops::Range;
 use std::path::Path;
 
 /// The most faults that are reported of one file.
 pub(super) const MOST_FAULTS: usize = 20;
+/// The most lines of one row.
+const MOST_LINES: usize = 100;
 
 /// A table with the file it comes from.
 pub struct TextTable {
@@ -16,8 +20,10 @@ pub struct TextTable {
     text: String,
     separator: char,
     columns: Vec<String>,
-    /// Lines before the first row.
+    /// The line of the heading.
     heading: usize,
+    /// The rows that are not empty: the first line of each and where its text is.
+    records: Vec<(usize, Range<usize>)>,
     decimal_commas: bool,
     /// Columns that are not read.
     unread: Vec<String>,
@@ -35,6 +41,14 @@ pub struct TextRow<'a> {
 struct Cells<'a> {
     rest: Option<&'a str>,
     separator: char,
+    /// Whether the last cell began with a quotation mark that is not closed.
+    open: bool,
+}
+
+impl<'a> Cells<'a> {
+    fn of(text: &'a str, separator: char) -> Self {
+        Cells { rest: Some(text), separator, open: false }
+    }
 }
 
 impl<'a> Iterator for Cells<'a> {
@@ -50,7 +64,10 @@ impl<'a> Iterator for Cells<'a> {
                 match quoted[from..].find('"').map(|k| from + k) {
                     Some(k) if quoted[k + 1..].starts_with('"') => from = k + 2,
                     Some(k) => break k,
-                    None => break quoted.len(),
+                    None => {
+                        self.open = true;
+                        break quoted.len();
+                    }
                 }
             };
             let behind = quoted.get(end + 1..).unwrap_or("");
@@ -74,6 +91,45 @@ impl<'a> Iterator for Cells<'a> {
 fn separator(heading: &str) -> char {
     let outside = |wanted: char| heading.split('"').step_by(2).any(|part| part.contains(wanted));
     [';', '\t'].into_iter().find(|c| outside(*c)).unwrap_or(',')
+}
+
+/// The separator that a first line such as `sep=;` names.
+fn named_separator(line: &str) -> Option<char> {
+    let line = line.trim_matches(|c| c == '"' || c == ' ' || c == '\r');
+    let (key, mark) = line.split_at_checked(4)?;
+    let mut marks = mark.chars();
+    let named = key.eq_ignore_ascii_case("sep=").then(|| marks.next().unwrap_or(','))?;
+    // A spreadsheet fills the line up with separators.
+    marks.all(|c| c == ',' || c == ';' || c == '\t').then_some(named)
+}
+
+/// Where the text of the row ends that begins at `begin`: at the end of the line in which `open` no longer says that a quotation mark is
+/// open; with the number of its lines.
+///
+/// # Errors
+/// No such line among the next ones.
+fn end_of_row(
+    text: &str,
+    begin: usize,
+    open: impl Fn(&str) -> bool,
+) -> std::result::Result<(usize, usize), ()> {
+    let mut end = begin;
+    for (k, line) in text[begin..].split_inclusive('\n').take(MOST_LINES).enumerate() {
+        end += line.len();
+        if !open(&text[begin..end]) {
+            return Ok((end, k + 1));
+        }
+    }
+    Err(())
+}
+
+/// What a column in kHz is to be instead.
+fn in_khz(columns: &[String], known: &[&str]) -> Option<String> {
+    let column = columns.iter().find(|column| column.contains("khz"))?;
+    let hz: Vec<String> = known.iter().filter(|c| c.ends_with("_hz")).map(|c| format!("`{c}`")).collect();
+    (!hz.is_empty()).then(|| {
+        format!("\"{column}\" is in kHz: give 1000 times its numbers, in Hz, as {}", hz.join(" or "))
+    })
 }
 
 /// What a cell says of the decimal mark of its table.
@@ -117,15 +173,56 @@ impl TextTable {
     /// Columns that are missing or named twice, or whose name is nearly that of a known one; rows of another length; decimal
     /// commas that cannot be distinguished from separators or thousands.
     pub fn parse(name: String, text: String, required: &[&str], known: &[&str]) -> Result<TextTable> {
-        let blank = text.lines().take_while(|line| line.trim().is_empty()).count();
-        let heading = text.lines().nth(blank).unwrap_or("");
-        let separator = separator(heading);
+        let mut faults = Faults::new();
+        let mut never_closed = |line: usize| {
+            let fault =
+                Fault::new(format!("{name}:{line}"), "a quotation mark that is not closed", "its other one");
+            faults.push(fault.with_help("Close it, or remove it"));
+        };
+        let (mut begin, mut line, mut named) = (0, 1, None);
+        for text in text.split_inclusive('\n') {
+            let mark = named_separator(text.trim_end_matches(['\n', '\r'])).filter(|_| named.is_none());
+            if mark.is_none() && !text.trim().is_empty() {
+                break;
+            }
+            named = named.or(mark);
+            (begin, line) = (begin + text.len(), line + 1);
+        }
+        let first = line;
+        // What separates the columns is known once the whole heading is.
+        let odd = |heading: &str| heading.matches('"').count() % 2 == 1;
+        let (mut end, lines) = end_of_row(&text, begin, odd).unwrap_or_else(|()| {
+            let end = text[begin..].find('\n').map_or(text.len(), |k| begin + k + 1);
+            (end, 1)
+        });
+        line += lines;
+        let heading = &text[begin..end];
+        let separator = named.unwrap_or_else(|| separator(heading));
         // Beyond these, every further column is not known or there twice.
         let most = known.len() + MOST_FAULTS;
-        let cells = Cells { rest: Some(heading), separator };
-        let columns: Vec<String> = cells.take(most).map(str::to_lowercase).collect();
-        let mut faults = Faults::new();
-        let place = format!("{name}:{}", blank + 1);
+        let cells = Cells::of(heading, separator);
+        let words = |cell: &str| cell.split_whitespace().collect::<Vec<_>>().join(" ").to_lowercase();
+        let columns: Vec<String> = cells.take(most).map(words).collect();
+        let mut records = Vec::new();
+        let open = |row: &str| {
+            let mut cells = Cells::of(row, separator);
+            cells.by_ref().for_each(drop);
+            cells.open
+        };
+        while end < text.len() {
+            let begin = end;
+            let Ok((next, lines)) = end_of_row(&text, begin, open) else {
+                never_closed(line);
+                break;
+            };
+            end = next;
+            let row = text[begin..end].trim_end_matches(['\n', '\r']);
+            if !row.trim().is_empty() {
+                records.push((line, begin..begin + row.len()));
+            }
+            line += lines;
+        }
+        let place = format!("{name}:{first}");
         let all = format!("columns among {}", known.join(", "));
         let missing: Vec<&&str> =
             required.iter().filter(|c| !columns.iter().any(|have| have == *c)).collect();
@@ -137,7 +234,8 @@ impl TextTable {
             .map(|list| list.join(", "));
             let plural = if required.len() > 1 { "s" } else { "" };
             let found = format!("no column{plural} {missing} in the heading {found}");
-            faults.push(Fault::new(place, found, all).with_help("Name the columns in the first line"));
+            let help = in_khz(&columns, known).unwrap_or("Name the columns in the first line".to_string());
+            faults.push(Fault::new(place, found, all).with_help(help));
             return faults.into_result(()).map(|()| unreachable!("there is a fault"));
         }
         let mut unread = Vec::new();
@@ -148,6 +246,8 @@ impl TextTable {
                     faults.push(Fault::new(&*place, format!("{found} again"), "each column once"));
                 }
             } else if known.contains(&column.as_str()) || column.is_empty() {
+            } else if let Some(help) = in_khz(&columns[k..=k], known) {
+                faults.push(Fault::new(&*place, found, all.clone()).with_help(help));
             } else if let Some(near) = nearest(column, known.iter().copied().filter(|name| name.len() > 3)) {
                 let fault = Fault::new(&*place, found, all.clone());
                 faults.push(fault.with_help(format!("Did you mean `{near}`?")));
@@ -155,8 +255,9 @@ impl TextTable {
                 unread.push(column.clone());
             }
         }
+        let heading = first;
         let mut table =
-            TextTable { name, separator, columns, text, heading: blank + 1, decimal_commas: false, unread };
+            TextTable { name, separator, columns, heading, records, decimal_commas: false, unread, text };
         table.check_rows(&mut faults);
         table.decimal_commas = faults.take(table.find_decimal_commas(known)).unwrap_or(false);
         faults.0.truncate(MOST_FAULTS);
@@ -227,9 +328,8 @@ impl TextTable {
 
     /// The rows that are not empty.
     pub fn rows(&self) -> impl Iterator<Item = TextRow<'_>> {
-        let lines = self.text.lines().enumerate().skip(self.heading);
-        let lines = lines.filter(|(_, line)| !line.trim().is_empty());
-        lines.map(|(k, text)| TextRow { table: self, line: k + 1, text })
+        let row = |(line, at): &(usize, Range<usize>)| (*line, &self.text[at.clone()]);
+        self.records.iter().map(row).map(|(line, text)| TextRow { table: self, line, text })
     }
 
     /// The file's name.
@@ -275,7 +375,7 @@ impl<'a> TextRow<'a> {
     }
 
     fn cells(&self) -> Cells<'a> {
-        Cells { rest: Some(self.text), separator: self.table.separator }
+        Cells::of(self.text, self.table.separator)
     }
 
     /// The cell in `column`; empty when there is no such column.
@@ -351,6 +451,52 @@ mod tests {
         }
     }
 
+    /// A first line that names the separator, cells that go on in the next lines, in the heading too, and blank lines: the same numbers,
+    /// each with its line.
+    #[test]
+    fn what_spreadsheets_add_is_read() {
+        for separator in [';', ',', '\t', '|'] {
+            for named in ["", "sep=", "SEP=", "\"sep="] {
+                if named.is_empty() && separator == '|' {
+                    continue;
+                }
+                for (end, remark, lines) in [
+                    ("\n", "plain", 1),
+                    ("\r\n", "two\r\nlines; a,b", 2),
+                    ("\n", "\"\"three\"\"\n\nlines", 3),
+                ] {
+                    let mut text = match named {
+                        "" => String::new(),
+                        _ => format!(
+                            "{named}{separator}{}{end}",
+                            if named.starts_with('"') { "\"" } else { "" }
+                        ),
+                    };
+                    text += end;
+                    let s = separator;
+                    text += &format!("\"Frequency_Hz\"{s}\"{remark}\"{s}deviation{end}");
+                    let before = text.matches('\n').count();
+                    for k in 0..3 {
+                        text += &format!("{k}.5{s}\"{remark}\"{s}{k}{end}{end}");
+                    }
+                    let table = table(&text).unwrap_or_else(|error| panic!("{text}\n{error}"));
+                    let mut faults = Faults::new();
+                    let read = |row: TextRow, faults: &mut Faults| {
+                        (
+                            row.line,
+                            row.number("frequency_hz", 0.0, faults),
+                            row.number("deviation", 9.0, faults),
+                        )
+                    };
+                    let rows: Vec<_> = table.rows().map(|row| read(row, &mut faults)).collect();
+                    let expected = |k: usize| (before + 1 + k * (lines + 1), k as f64 + 0.5, k as f64);
+                    assert_eq!(rows, [0, 1, 2].map(expected), "{text:?}");
+                    assert!(faults.0.is_empty());
+                }
+            }
+        }
+    }
+
     #[test]
     fn what_cannot_be_told_is_one_clear_fault() {
         for (text, expected) in [
@@ -364,6 +510,10 @@ mod tests {
             ("frequency_hz;damping_ration\n1;2\n", "Did you mean `damping_ratio`"),
             ("frequency_hz;frequency_hz\n1;2\n", "again"),
             ("frequency_hz;deviation\n1\n", "found 1 cells; expected 2"),
+            ("frequency_khz;deviation\n1;2\n", "\"frequency_khz\" is in kHz: give 1000 times"),
+            ("Frequency [kHz]\n1\n", "in Hz, as `frequency_hz`"),
+            ("frequency_hz;f_kHz\n1;2\n", "\"f_khz\" is in kHz"),
+            ("frequency_hz;remark\n1;a\n2;\"b\n3;c\n", "a.csv:3: found a quotation mark that is not closed"),
         ] {
             let Err(Error::Input(faults)) = table(text) else { panic!("{text}") };
             assert!(faults.0.len() == 1 && faults.to_string().contains(expected), "{faults}");

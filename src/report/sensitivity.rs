@@ -31,7 +31,10 @@ fn finding(result: &SensitivityResult) -> Option<Finding> {
         "Sensitivity: of the examined modes that at {hz} Hz grows most, σ = {} 1/s.",
         rate(mode.eigenvalue)
     );
-    if let Some(first) = mode.parameters.first() {
+    let moves = mode.parameters.iter().any(|scalar| scalar.moves_growth());
+    if !moves && !mode.parameters.is_empty() {
+        words += " No scalar moves its growth rate by more than rounding.";
+    } else if let Some(first) = mode.parameters.iter().find(|scalar| scalar.moves_growth()) {
         let change = first.growth_per_percent();
         let sign = if change > 0.0 { "+" } else { "" };
         words += &format!(
@@ -121,4 +124,45 @@ fn advice_table(result: &SensitivityResult) -> ReportTable {
 fn axis(direction: [f64; 3]) -> String {
     let named = [([1.0, 0.0, 0.0], "x"), ([0.0, 1.0, 0.0], "y"), ([0.0, 0.0, 1.0], "z")];
     named.iter().find(|(axis, _)| *axis == direction).map_or("normal", |(_, name)| name).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::sample;
+    use crate::linalg::random::Random;
+
+    /// Effects from 1e-40 to 1 of |λ|, and errors of their slopes: one is named where it is more than both roundings.
+    #[test]
+    fn what_is_rounding_moves_no_mode() {
+        let mut random = Random::seeded(3);
+        let mut results = sample::rig();
+        for member in 0..60 {
+            let mode = &mut results.get_mut::<SensitivityResult>().unwrap().modes[0];
+            mode.eigenvalue = c64::new(50.0, 5e3);
+            let (effect, error) =
+                (10f64.powf(random.between(-40.0, 0.0)), 10f64.powf(random.between(-20.0, 0.0)));
+            for scalar in &mut mode.parameters {
+                let rate = 100.0 * effect * 5e3 / scalar.value;
+                (scalar.rate, scalar.size) = (c64::new(rate, 1e-60 * rate), 5e3);
+                scalar.error = if member % 2 == 0 { 0.0 } else { (error * 5e5 / scalar.value).abs() };
+            }
+            let named = effect > 1e-14 && (member % 2 == 0 || effect > error);
+            let found = results.get::<SensitivityResult>().unwrap();
+            let mut found = found.clone();
+            found.modes.truncate(1);
+            let words = finding(&found).unwrap().words;
+            assert_eq!(words.contains("moves it most"), named, "{effect:e} {error:e}: {words}");
+            assert_eq!(words.contains("No scalar moves"), !named, "{words}");
+            let table = rates(&found.modes[0]);
+            let cells: Vec<&String> = table.rows.iter().flat_map(|row| &row.cells).collect();
+            let exponent =
+                |cell: &&&String| cell.split_once("e−").and_then(|(_, power)| power.parse::<u32>().ok());
+            assert!(cells.iter().filter_map(|cell| exponent(&cell)).all(|power| power < 20), "{cells:?}");
+            assert_eq!(
+                cells.iter().any(|cell| **cell == significant(100.0 * effect * 50.0, 3)),
+                effect > 1e-14
+            );
+        }
+    }
 }

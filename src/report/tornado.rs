@@ -47,7 +47,8 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
 fn strongest(mode: &ModeSensitivity) -> Vec<&ParameterRate> {
     let effect = |p: &ParameterRate| p.growth_per_percent().abs();
     let largest = mode.parameters.iter().map(effect).filter(|e| e.is_finite()).fold(0.0, f64::max);
-    let matters = |p: &&ParameterRate| effect(p) > 1e-3 * largest && effect(p).is_finite();
+    let matters =
+        |p: &&ParameterRate| p.moves_growth() && effect(p) > 1e-3 * largest && effect(p).is_finite();
     mode.parameters.iter().filter(matters).take(MOST).collect()
 }
 

@@ -44,6 +44,8 @@ pub struct ParameterRate {
     pub error: f64,
     /// Whether the slopes to the two sides differ; the rate is their mean.
     pub kink: bool,
+    /// |λ| \[1/s\].
+    pub size: f64,
 }
 
 impl ParameterRate {
@@ -55,6 +57,24 @@ impl ParameterRate {
     /// Change of the growth rate when the scalar grows by 1 % \[1/s\].
     pub fn growth_per_percent(&self) -> f64 {
         0.01 * self.value * self.rate.re
+    }
+
+    /// Whether a change of σ or ω by 1 % of the scalar \[1/s\] is more than rounding of λ.
+    fn is_more_than_rounding(&self, change: f64) -> bool {
+        const ROUNDING: f64 = 1e-14;
+        change.abs() > ROUNDING * self.size
+    }
+
+    /// Whether the scalar moves the growth rate by more than rounding and the error of the slope.
+    pub fn moves_growth(&self) -> bool {
+        let change = self.growth_per_percent();
+        self.is_more_than_rounding(change) && change.abs() > 0.01 * (self.value * self.error).abs()
+    }
+
+    /// `value`, a multiple of a part of the rate, with so many digits; zero where the change by 1 % is rounding.
+    fn shown(&self, part: f64, value: f64, digits: usize) -> String {
+        let nothing = self.value != 0.0 && !self.is_more_than_rounding(0.01 * self.value * part);
+        significant(if nothing { 0.0 } else { value }, digits)
     }
 
     /// Change of the frequency when the scalar grows by 1 % \[Hz\].
@@ -110,20 +130,20 @@ fn rate_columns() -> Vec<Column<ParameterRate>> {
         column("value", "unit", "its value", |p: &Rate| p.value).shown("value", |p| given(p.value)),
         column("unit", "text", "its SI unit", |p: &Rate| p.unit.clone()).shown("unit", |p| p.unit.clone()),
         column("growth_per_percent", "1/s", "change of σ when p grows by 1 %", Rate::growth_per_percent)
-            .shown("σ per 1 % [1/s]", |p| significant(p.growth_per_percent(), 3)),
+            .shown("σ per 1 % [1/s]", |p| p.shown(p.rate.re, p.growth_per_percent(), 3)),
         column(
             "frequency_per_percent",
             "Hz",
             "change of the frequency when p grows by 1 %",
             Rate::frequency_per_percent,
         )
-        .shown("f per 1 % [Hz]", |p| significant(p.frequency_per_percent(), 3)),
+        .shown("f per 1 % [Hz]", |p| p.shown(p.rate.im, p.frequency_per_percent(), 3)),
         column("error", "1/s per unit", "estimated |error| of dλ/dp", |p: &Rate| p.error)
             .shown("error", error),
         column("dsigma_dp", "1/s per unit", "dσ/dp", |p: &Rate| p.rate.re)
-            .shown("dσ/dp", |p| significant(p.rate.re, 4)),
+            .shown("dσ/dp", |p| p.shown(p.rate.re, p.rate.re, 4)),
         column("dfrequency_dp", "Hz per unit", "df/dp", Rate::frequency_rate)
-            .shown("df/dp", |p| significant(p.frequency_rate(), 4)),
+            .shown("df/dp", |p| p.shown(p.rate.im, p.frequency_rate(), 4)),
         column(
             "kink",
             "1",

@@ -144,12 +144,12 @@ impl UncertaintyResult {
     }
 
     /// Samples whose verdict an error as large as the largest that was measured could change: σ of the mode that grows most is within
-    /// |Δλ| of what counts as growth ([`ROUND_OFF`]).
+    /// |Δλ| of what counts as growth ([`ROUND_OFF`]). One that is zero does not grow.
     pub fn undecided(&self) -> usize {
         let error = self.largest_error();
         let near = |point: &&MapPoint| {
             let size = TAU * point.frequency_hz.hypot(point.growth_rate / TAU);
-            (point.growth_rate - ROUND_OFF * size).abs() <= error * size
+            size > 0.0 && (point.growth_rate - ROUND_OFF * size).abs() <= error * size
         };
         self.points.iter().flatten().filter(near).count()
     }
@@ -381,5 +381,11 @@ mod tests {
         assert_eq!(result.growth_rates(), [-1.0, -1e-3, 1.0, 5.0]);
         // An error of 1e-6 of 2π 200 Hz is more than 1e-3 1/s.
         assert_eq!(result.undecided(), 1);
+        // Eigenvalues that are zero do not grow, however small the error is.
+        for eigenvalue_error in [0.0, 1e-31, 1e-16, 1e-6] {
+            let measured = vec![CheckedSample { sample: 0, eigenvalue_error }];
+            let points = vec![Some(MapPoint::of(&[c64::new(0.0, 0.0)])); 282];
+            assert_eq!(UncertaintyResult { measured, points, ..result.clone() }.undecided(), 0);
+        }
     }
 }

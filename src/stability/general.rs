@@ -388,7 +388,8 @@ impl<'a> ShiftSearch<'a> {
                     eigenvalue: z,
                     right: right.scaled_column(k, factor),
                     left: if left_vectors { left.scaled_column(k, left_mass.recip()) } else { Vec::new() },
-                    backward_error: residual.norm(k) / (operator.size(z) * right.norm(k)),
+                    backward_error: residual.norm(k)
+                        / (operator.size(z) * right.norm(k)).max(f64::MIN_POSITIVE),
                     eigenvalue_error: error,
                     uncertainty: error * size,
                     condition,

@@ -121,9 +121,10 @@ impl ComplexMode {
         self.eigenvalue.re
     }
 
-    /// ω/2π \[Hz\].
+    /// ω/2π \[Hz\]; 0 where ω is below the rounding of λ, as that of a real eigenvalue may be.
     pub fn frequency_hz(&self) -> f64 {
-        self.eigenvalue.im / std::f64::consts::TAU
+        let (omega, size) = (self.eigenvalue.im, self.eigenvalue.norm());
+        if omega.abs() < f64::EPSILON * size { 0.0 } else { omega / std::f64::consts::TAU }
     }
 
     /// −σ/|λ|; negative when unstable.

@@ -72,14 +72,15 @@ impl PairMeasurement<'_> {
         let [mut residual, mut image] = [(); 2].map(|()| Block::zeros(operator.n(), lambda.len()));
         let of_right = operator.add_value(lambda, right, &mut residual, &[right]);
         let sizes: Vec<f64> = lambda.iter().map(|lambda| operator.size(*lambda)).collect();
-        let error = |j: usize| residual.norm(j) / (sizes[j] * right.norm(j));
+        // A system without stiffness has nothing at λ = 0.
+        let error = |j: usize| residual.norm(j) / (sizes[j] * right.norm(j)).max(f64::MIN_POSITIVE);
         pairs.backward_error = columns.clone().into_par_iter().map(error).collect();
         correction.set_scaled(-1.0, &residual);
         factor.solve_in_place(correction.parts_mut());
         let of_correction = operator.add_value(lambda, correction, &mut image, &[right, correction]);
         // ψᴴQ(λ)z in coordinates of the basis. Without Q(λ)φ, which is nothing but rounding to ψ, and that of a large K.
         let rise = image.map(|image| basis.columns().gram(image));
-        let corrected = |j: usize| residual.norm_of_sum(j, &image) / sizes[j];
+        let corrected = |j: usize| residual.norm_of_sum(j, &image) / sizes[j].max(f64::MIN_POSITIVE);
         pairs.corrected = columns.clone().into_par_iter().map(corrected).collect();
         // Where two eigenvalues have become one ψᴴQ′(λ)φ vanishes, and may do so exactly.
         let steep = |j: usize| steepness[j].norm().max(f64::EPSILON * top);

@@ -6,7 +6,7 @@ use super::halves::{Halves, ROUND_OFF, row_sizes};
 use super::low_rank::{couple, highest_rank};
 use super::{Coupling, Damping, Structure};
 use crate::error::{Fault, Faults, Result};
-use crate::linalg::matrix_market::MarketMatrix;
+use crate::linalg::matrix_market::{MarketMatrix, one_triangle};
 use crate::linalg::sparse::{add_scaled, diagonal, on_one_pattern};
 use crate::linalg::{Engine, SparseMatrix};
 use crate::numbers::typed;
@@ -78,13 +78,8 @@ pub fn split(
         );
     }
     let hysteretic = stiffness.matrix.im.as_ref().filter(|im| has_entries(Some(im)));
-    if let Some(h) = hysteretic
-        && let Some(fault) = largest_skew(h, MASS_ROUND_OFF)
-    {
-        faults.push(
-            Fault::new(stiffness.place, format!("an imaginary part with {fault}"), "one that is symmetric")
-                .with_help("It is the hysteretic damping H of K + iH; gyroscopic terms go into the damping"),
-        );
+    if let Some(h) = hysteretic {
+        faults.0.extend(hysteretic_skew(stiffness.place, h));
     }
     let highest = highest_rank(n);
     let mut coupling: Option<Coupling> = None;
@@ -215,9 +210,7 @@ fn check_mass(mass: Given<'_>, exact: &SparseMatrix, faults: &mut Faults) {
     if !has_entries(Some(&mass.matrix.re)) {
         faults.push(Fault::new(mass.place, "zeros only", "a mass matrix"));
     }
-    if let Some(found) = largest_skew(&mass.matrix.re, MASS_ROUND_OFF) {
-        faults.push(Fault::new(mass.place, found, "a symmetric mass matrix"));
-    }
+    faults.0.extend(mass_skew(mass.place, &mass.matrix.re));
     let negative: Vec<(usize, f64)> =
         diagonal(exact).into_iter().enumerate().filter(|(_, m)| *m < 0.0).collect();
     if let Some((row, value)) = negative.first() {
@@ -226,6 +219,33 @@ fn check_mass(mass: Given<'_>, exact: &SparseMatrix, faults: &mut Faults) {
             if negative.len() > 1 { format!("{found} and {} more", negative.len() - 1) } else { found };
         faults.push(Fault::new(mass.place, found, "masses of zero or more"));
     }
+}
+
+/// The fault of a mass matrix that is not symmetric.
+pub fn mass_skew(place: &str, mass: &SparseMatrix) -> Option<Fault> {
+    let found = largest_skew(mass, MASS_ROUND_OFF)?;
+    let fault = Fault::new(place, found, "a symmetric mass matrix");
+    Some(match half(mass) {
+        Some(help) => fault.with_help(help),
+        None => fault,
+    })
+}
+
+/// The fault of an imaginary part of a stiffness that is not symmetric.
+pub fn hysteretic_skew(place: &str, h: &SparseMatrix) -> Option<Fault> {
+    let found = format!("an imaginary part with {}", largest_skew(h, MASS_ROUND_OFF)?);
+    let other = "It is the hysteretic damping H of K + iH; gyroscopic terms go into the damping";
+    Some(Fault::new(place, found, "one that is symmetric").with_help(half(h).unwrap_or(other.to_string())))
+}
+
+/// What to do about a matrix that has one triangle where it must be symmetric.
+fn half(a: &SparseMatrix) -> Option<String> {
+    let (triangle, count) = one_triangle(a, None)?;
+    let entries = if count == 1 { "The one entry" } else { "All entries" };
+    Some(format!(
+        "{entries} off the diagonal ({count}) in the {triangle} triangle: if it is half of a symmetric matrix, its header has to say \
+         `symmetric` in place of `general`, with the lower triangle in the file"
+    ))
 }
 
 /// The worst pair of entries that ought to be equal, when it is beyond rounding, in words.

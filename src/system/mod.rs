@@ -18,7 +18,7 @@ mod low_rank;
 mod structure;
 
 pub use friction::is_unsymmetric;
-pub use imported::{Given, Imported, split};
+pub use imported::{Given, Imported, hysteretic_skew, mass_skew, split};
 pub use interface::{Closing, ContactPair, ContactPoint};
 pub use law::{
     ContactForces, ContactLaw, ContactMotion, ContactTangent, FrictionAtRest, SlipAnswer, SlipStep,

@@ -367,6 +367,70 @@ fn faults_of_a_case_with_matrices_come_together() {
     }
 }
 
+/// Masses without any spring, with some springs, with dampers: every mode has a backward error.
+#[test]
+fn systems_without_stiffness_have_errors_of_numbers() {
+    for n in 1..7 {
+        for springs in [0, 1] {
+            let folder = tempfile::tempdir().unwrap();
+            let ones = vec![1.0; n];
+            let m = Mat::from_fn(n, n, |i, j| if i == j { 1.0 + 0.3 * i as f64 } else { 0.0 });
+            let k = Mat::from_fn(n, n, |i, j| if i == j && i < springs { 1e4 } else { 0.0 });
+            write_matrix(folder.path(), "m.mtx", &m, &ones, 1.0);
+            write_matrix(folder.path(), "k.mtx", &k, &ones, 1.0);
+            let text = "[matrices]\nmass = \"m.mtx\"\nstiffness = \"k.mtx\"\n[cea]\nband = [0, 100]\n";
+            let results = run(folder.path(), text).unwrap();
+            let modes = &results.get::<ComplexResult>().unwrap().modes.modes;
+            assert!(!modes.is_empty());
+            for mode in modes {
+                assert!(
+                    mode.backward_error < 1e-10 && mode.eigenvalue_error.is_finite(),
+                    "{n} {springs}: {}",
+                    mode.errors()
+                );
+            }
+        }
+    }
+}
+
+/// One triangle under a `general` header in any of the files of which a symmetric matrix is the sum: the fault names that file, its key and
+/// the header that helps.
+#[test]
+fn a_matrix_of_one_triangle_is_named_by_its_own_file() {
+    let keys = ["mass", "stiffness", "term.a.mass", "term.a.stiffness", "term.b.mass", "term.b.stiffness"];
+    for wrong in keys {
+        for triangle in ["2 1", "1 2"] {
+            let folder = tempfile::tempdir().unwrap();
+            let mut text = "[matrices]\n".to_string();
+            for key in keys {
+                let complex = key.ends_with("stiffness");
+                let number =
+                    |x: f64| if complex { format!("{x:e} {:e}", 0.01 * x) } else { format!("{x:e}") };
+                let [diagonal, beside] = if complex { [2e6, -1e6] } else { [0.2, -0.1] }.map(number);
+                let (header, at) = if key == wrong { ("general", triangle) } else { ("symmetric", "2 1") };
+                let field = if complex { "complex" } else { "real" };
+                let matrix = format!(
+                    "%%MatrixMarket matrix coordinate {field} {header}\n2 2 3\n1 1 {diagonal}\n{at} {beside}\n2 2 {diagonal}\n"
+                );
+                std::fs::write(folder.path().join(format!("{key}.mtx")), matrix).unwrap();
+                text += &format!("{key} = \"{key}.mtx\"\n");
+            }
+            text += "term.a.factor = 0.5\nterm.b.factor = 2\n[cea]\nband = [0, \"1 kHz\"]\n";
+            let said = run(folder.path(), &text).unwrap_err().to_string();
+            for part in [
+                format!("`matrices.{wrong}`"),
+                format!("{wrong}.mtx"),
+                "`symmetric` in place of `general`".into(),
+            ] {
+                assert!(said.contains(&part), "{part} not in\n{said}");
+            }
+            let others =
+                keys.iter().filter(|key| **key != wrong && said.contains(&format!("matrices.{key}`")));
+            assert_eq!(others.count(), 0, "{said}");
+        }
+    }
+}
+
 #[test]
 fn an_exported_and_reread_file_of_rows_names_its_faults() {
     let folder = tempfile::tempdir().unwrap();

@@ -36,13 +36,16 @@ pub fn significant(value: f64, digits: usize) -> String {
     }
 }
 
-/// A frequency \[Hz\]: with a fixed number of decimals from 10 Hz to 10 MHz, with significant digits outside.
+/// A frequency \[Hz\]: with a fixed number of decimals from 10 Hz to 10 MHz, with significant digits outside; zero where it is smaller
+/// than any motion is slow, as the imaginary part of a real eigenvalue may be.
 ///
 /// ```
 /// use stridor_base::numbers::hertz;
 /// assert_eq!([hertz(1668.34, 1), hertz(1.5918e-4, 1), hertz(1e10, 1)], ["1668.3", "0.0001592", "1.0000e10"]);
 /// ```
 pub fn hertz(value: f64, decimals: usize) -> String {
+    const NONE: f64 = 1e-30;
+    let value = if value.abs() < NONE { 0.0 } else { value };
     let size = value.abs();
     match size {
         _ if size == 0.0 || (10.0..1e7).contains(&size) => minus(&format!("{value:.decimals$}")),
@@ -132,6 +135,7 @@ mod tests {
         assert_eq!([hertz(0.15918, 1), hertz(9.87654, 2), hertz(3.2e-7, 0)], ["0.1592", "9.8765", "3.20e−7"]);
         assert_eq!([hertz(12_345_678_901.0, 1), hertz(9_999_999.0, 1)], ["1.2346e10", "9999999.0"]);
         assert_eq!(hertz(f64::NAN, 1), "–");
+        assert_eq!([-5.639e-50, 1e-300, -0.0].map(|hz| hertz(hz, 1)), ["0.0"; 3]);
     }
 
     #[test]

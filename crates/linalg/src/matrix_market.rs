@@ -44,25 +44,30 @@ impl MarketMatrix {
     /// assert_eq!(a.one_triangle(), Some(("lower", 1)));
     /// ```
     pub fn one_triangle(&self) -> Option<(&'static str, usize)> {
-        let (re, n) = (&self.re, self.re.ncols());
-        if re.nrows() != n {
-            return None;
-        }
-        let mut counts = [0, 0];
-        for j in 0..n {
-            let im = self.im.as_ref().map(|im| im.val_of_col(j));
-            for (k, (i, value)) in re.row_idx_of_col(j).zip(re.val_of_col(j)).enumerate() {
-                let holds = *value != 0.0 || im.is_some_and(|im| im[k] != 0.0);
-                if holds && i != j {
-                    counts[usize::from(i < j)] += 1;
-                }
+        one_triangle(&self.re, self.im.as_ref())
+    }
+}
+
+/// [`MarketMatrix::one_triangle`] of Re A and Im A.
+pub fn one_triangle(re: &SparseMatrix, im: Option<&SparseMatrix>) -> Option<(&'static str, usize)> {
+    let n = re.ncols();
+    if re.nrows() != n {
+        return None;
+    }
+    let mut counts = [0, 0];
+    for j in 0..n {
+        let im = im.map(|im| im.val_of_col(j));
+        for (k, (i, value)) in re.row_idx_of_col(j).zip(re.val_of_col(j)).enumerate() {
+            let holds = *value != 0.0 || im.is_some_and(|im| im[k] != 0.0);
+            if holds && i != j {
+                counts[usize::from(i < j)] += 1;
             }
         }
-        match counts {
-            [lower, 0] if lower > 0 => Some(("lower", lower)),
-            [0, upper] if upper > 0 => Some(("upper", upper)),
-            _ => None,
-        }
+    }
+    match counts {
+        [lower, 0] if lower > 0 => Some(("lower", lower)),
+        [0, upper] if upper > 0 => Some(("upper", upper)),
+        _ => None,
     }
 }
 

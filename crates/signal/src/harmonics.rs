@@ -238,7 +238,17 @@ impl Tones<'_> {
 
 /// `3 × 1661 Hz`, `3/2 × 1661 Hz`.
 fn multiple_name([n, m]: [i32; 2], hz: f64) -> String {
-    if m == 1 { format!("{n} × {hz:.0} Hz") } else { format!("{n}/{m} × {hz:.0} Hz") }
+    let hz = written(hz);
+    if m == 1 { format!("{n} × {hz} Hz") } else { format!("{n}/{m} × {hz} Hz") }
+}
+
+/// A frequency \[Hz\] without decimals, and with three significant digits below 10 Hz.
+fn written(hz: f64) -> String {
+    match hz.abs() {
+        size if size >= 10.0 => format!("{hz:.0}"),
+        size if size >= 1e-3 => format!("{hz:.*}", (2.0 - size.log10().floor()) as usize),
+        _ => format!("{hz:.2e}").replace("e-", "e−"),
+    }
 }
 
 /// `936 + 1661 Hz`, `2 × 1661 − 936 Hz`; what is added comes first.
@@ -255,7 +265,7 @@ fn combination_name(factors: [i32; 2], hz: [f64; 2]) -> String {
             " + "
         };
         let factor = if n.abs() == 1 { String::new() } else { format!("{} × ", n.abs()) };
-        name += &format!("{sign}{factor}{hz:.0}");
+        name += &format!("{sign}{factor}{}", written(hz));
     }
     name + " Hz"
 }
@@ -285,6 +295,18 @@ mod tests {
         };
         let hz = tones.name();
         (found, hz)
+    }
+
+    /// A limit cycle of any frequency, in units of 1663.7 Hz: the fundamental in the names has three digits at least.
+    #[test]
+    fn slow_fundamentals_are_no_zeros() {
+        for (slower, name) in
+            [(1.0, "1664"), (1e2, "17"), (3e2, "5.55"), (4e3, "0.416"), (1e6, "0.00166"), (1e7, "1.66e−4")]
+        {
+            let hz = 1663.7 / slower;
+            assert_eq!(multiple_name([3, 1], hz), format!("3 × {name} Hz"));
+            assert_eq!(combination_name([2, -1], [hz, hz]), format!("2 × {name} − {name} Hz"));
+        }
     }
 
     fn words(peaks: &[Peak]) -> Vec<&str> {

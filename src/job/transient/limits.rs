@@ -46,6 +46,32 @@ pub(super) fn unreadable(lambda: c64, plan: &Plan, end: f64) -> Option<String> {
     None
 }
 
+/// The warning of steps of the motion, `taken` \[s\], or rows of the record, one `step` \[s\] apart, that are long beside the period of a
+/// mode at `hz`.
+fn long_steps(hz: f64, step: f64, taken: f64) -> Option<String> {
+    let [rows, steps] = [step, taken].map(|length| 1.0 / (hz * length));
+    let mode = format!("a period of the mode at {hz:.1} Hz, which grows or along which the motion starts,");
+    let unread = "no frequency is read from the record";
+    let rest = if rows < FEWEST { format!("; {unread}") } else { String::new() };
+    let shorter = 1.0 / (hz * STEPS);
+    match (steps < STEPS, rows < FEWEST) {
+        (true, _) if taken < 0.999 * step => Some(format!(
+            "`transient.tolerance`: {mode} is {steps:.3} steps, of {taken:.1e} s in the mean after they were split; the motion is not \
+             followed below {STEPS}, {shorter:.1e} s{rest}."
+        )),
+        (true, _) => Some(format!(
+            "`transient.time_step` = {step:e} s: {mode} is {steps:.3} steps; the motion is not followed below {STEPS}, \
+             {shorter:.1e} s{rest}."
+        )),
+        (false, true) => Some(format!(
+            "`transient.time_step` = {step:e} s: {mode} is {rows:.3} rows of the record; {unread} below {FEWEST}, {:.1e} s, though the \
+             motion was followed in shorter steps.",
+            1.0 / (hz * FEWEST)
+        )),
+        (false, false) => None,
+    }
+}
+
 /// Why what was fitted is not the mode.
 pub(super) fn another(lambda: c64, found: &Growth) -> Option<String> {
     let hz = lambda.im / TAU;
@@ -71,28 +97,26 @@ impl InTime<'_> {
         self.steps_of_a_period(disturbed, step).is_none_or(|(steps, _)| steps >= FEWEST)
     }
 
-    /// Steps that are long beside a mode that matters, and forces beyond the load.
+    /// Steps that are long beside a mode that matters, and forces beyond the load; `taken` is the mean length of the steps of the motion,
+    /// the rows of the record being one time step apart.
     pub(super) fn motion_warnings(
         &self,
         wanted: &TransientAnalysis,
         disturbed: Option<c64>,
+        taken: f64,
         channels: &[Channel],
     ) -> Vec<String> {
         let step = plan(wanted).step;
-        let mut all = Vec::new();
-        if let Some((steps, hz)) = self.steps_of_a_period(disturbed, step).filter(|(steps, _)| *steps < STEPS)
-        {
-            let rest = match steps < FEWEST {
-                true => "; no frequency is read from the record",
-                false => "",
-            };
-            all.push(format!(
-                "`transient.time_step` = {step:e} s: a period of the mode at {hz:.1} Hz, which grows or along which the motion \
-                 starts, is {steps:.3} steps; the motion is not followed below {STEPS}, {:.1e} s{rest}.",
-                1.0 / (hz * STEPS)
-            ));
-        }
+        let fastest = self.steps_of_a_period(disturbed, step);
+        let mut all: Vec<String> =
+            fastest.and_then(|(_, hz)| long_steps(hz, step, taken)).into_iter().collect();
         for pair in &self.system.pairs {
+            if let (Closing::Approach(_), HoldChoice::Load) = (pair.closing, wanted.hold) {
+                all.push(format!(
+                    "The contact {} is closed by an approach, and keeps it: `transient.hold = \"load\"` is for contacts with a `load`.",
+                    pair.name
+                ));
+            }
             let (Closing::Load(load), HoldChoice::Approach) = (pair.closing, wanted.hold) else { continue };
             let most = load * wanted.load.get(&pair.name).map_or(1.0, |course| course.range()[1]);
             let name = format!("{}_normal_force", pair.name);
@@ -146,6 +170,23 @@ mod tests {
             another(lambda, &found).is_some()
                 && another(lambda, &Growth { frequency_hz: hz, ..found }).is_none()
         );
+    }
+
+    /// Steps and rows from 0.01 to 10 periods, split or not: the warning is of what is too long, and of nothing else.
+    #[test]
+    fn steps_that_were_split_are_judged_by_their_own_length() {
+        let hz = 440.0;
+        for k in 0..=30 {
+            let step = 0.01 * 10f64.powf(0.1 * f64::from(k)) / hz;
+            for parts in [1.0, 2.0, 4.0, 64.0, 4096.0] {
+                let taken = step / parts;
+                let words = long_steps(hz, step, taken).unwrap_or_default();
+                let [followed, read] = [1.0 / (hz * taken) >= STEPS, 1.0 / (hz * step) >= FEWEST];
+                assert_eq!(words.contains("not followed"), !followed, "{step} {parts}: {words}");
+                assert_eq!(words.contains("no frequency is read"), !read, "{step} {parts}: {words}");
+                assert_eq!(words.is_empty(), followed && read);
+            }
+        }
     }
 
     /// What a scheme adds to σ, against steps of an oscillator without damping.

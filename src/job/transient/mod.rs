@@ -145,7 +145,8 @@ impl InTime<'_> {
         let check = |reduced| reduced_check(reduced, own, beside.as_ref(), &first, observer);
         let reduced_check = reduced.as_ref().map(check).transpose()?;
         let HistoryWriter { recorder, cycle, deflections, .. } = history_writer;
-        let mut warnings = self.motion_warnings(wanted, along, &recorder.described);
+        let taken = plan.step * steps as f64 / marched.control.parts.max(1) as f64;
+        let mut warnings = self.motion_warnings(wanted, along, taken, &recorder.described);
         warnings.extend(deflections.warnings());
         Ok(TransientResult {
             time_step: plan.step,
