@@ -1,6 +1,56 @@
-// Values under the pointer and zoom for every chart of the page. A chart says its axes in <rect class="axes">:
+// Values under the pointer and zoom for every chart of the page, and their shape in narrow windows. A chart says its axes in <rect class="axes">:
 // data-x and data-y hold the ends of the axis and 0 (linear) or ±1 (values are ±10^place); data-names its names.
 'use strict';
+const panelsOf = svg => [...svg.querySelectorAll('rect.axes')].map(rect => {
+  const number = name => Number(rect.getAttribute(name));
+  const axis = text => text.split(' ').map(Number);
+  const [x, y, w, h] = ['x', 'y', 'width', 'height'].map(number);
+  return { x, y, w, h, across: axis(rect.dataset.x), up: axis(rect.dataset.y), names: rect.dataset.names.split('|') };
+});
+
+// In a narrow window a chart is as wide as the window and LOWER as high as drawn; its words and points keep their own shape. Words that would
+// lie on others are left out. Pictures of shapes, and charts with one scale on both axes, stay as they are.
+const slim = matchMedia('screen and (max-width: 640px)'), LOWER = 0.74;
+const equal = ({ w, h, across, up }) => !across[2] && !up[2] && Math.abs((across[1] - across[0]) / w * h / (up[1] - up[0]) - 1) < 0.01;
+const shapes = svg => !svg.querySelector('rect.axes') && svg.querySelector('path:not([fill="none"]), circle, image');
+for (const svg of document.querySelectorAll('figure svg:not(.whole)')) {
+  if (panelsOf(svg).some(equal) || shapes(svg)) continue;
+  const { width, height } = svg.viewBox.baseVal;
+  const marks = [...svg.querySelectorAll('text, circle')].map(mark => ({ mark, own: mark.getAttribute('transform') || '' }));
+  // The names of the axes first.
+  marks.sort((a, b) => (b.own !== '') - (a.own !== ''));
+  const fit = () => {
+    const on = slim.matches, stretch = on ? LOWER * width / (svg.parentElement.clientWidth || innerWidth) : 1;
+    svg.classList.toggle('slim', on);
+    svg.setAttribute('preserveAspectRatio', on ? 'none' : 'xMidYMid');
+    svg.style.height = on ? `${LOWER * height}px` : '';
+    svg.dataset.stretch = stretch;
+    const kept = [];
+    for (const { mark, own } of marks) {
+      const x = Number(mark.getAttribute('x') || mark.getAttribute('cx'));
+      const place = (shift, part) => mark.setAttribute('transform', on ? `translate(${x + shift} 0) scale(${stretch * part} 1) translate(${-x} 0) ${own}` : own);
+      place(0, 1);
+      mark.style.visibility = '';
+      if (!on || mark.tagName === 'circle') continue;
+      // Words that go beyond the edge are made narrower, or moved inside where that would be too narrow.
+      const all = svg.getBoundingClientRect(), box = mark.getBoundingClientRect();
+      const over = Math.max(all.left - box.left, 0) || Math.min(all.right - box.right, 0), part = 1 - Math.abs(over) / box.width;
+      if (over && mark.getAttribute('text-anchor') !== 'middle' && part > 0.55) place(0, part);
+      else if (over && box.width < all.width) place(over * width / all.width, 1);
+      const near = own ? 5 : 0, at = mark.getBoundingClientRect();
+      const { left, right, top, bottom } = { left: at.left + near, right: at.right - near, top: at.top + 3, bottom: at.bottom - 3 };
+      const covered = kept.some(b => left < b.right && b.left < right && top < b.bottom && b.top < bottom);
+      if (covered) mark.style.visibility = 'hidden';
+      else kept.push({ left, right, top, bottom });
+    }
+  };
+  fit();
+  addEventListener('resize', fit);
+  slim.addEventListener('change', fit);
+  // What was folded away had no size.
+  svg.closest('details')?.addEventListener('toggle', fit);
+}
+
 const charts = [...document.querySelectorAll('figure svg')].filter(svg => svg.querySelector('rect.axes'));
 if (charts.length) {
   const help = document.createElement('p');
@@ -12,12 +62,7 @@ if (charts.length) {
 for (const svg of charts) {
   const NS = 'http://www.w3.org/2000/svg';
   const whole = svg.viewBox.baseVal, home = [whole.x, whole.y, whole.width, whole.height];
-  const panels = [...svg.querySelectorAll('rect.axes')].map(rect => {
-    const number = name => Number(rect.getAttribute(name));
-    const axis = text => text.split(' ').map(Number);
-    const [x, y, w, h] = ['x', 'y', 'width', 'height'].map(number);
-    return { x, y, w, h, across: axis(rect.dataset.x), up: axis(rect.dataset.y), names: rect.dataset.names.split('|') };
-  });
+  const panels = panelsOf(svg);
   const element = (name, style) => {
     const made = svg.appendChild(document.createElementNS(NS, name));
     made.setAttribute('style', `pointer-events:none;display:none;${style}`);
@@ -54,11 +99,13 @@ for (const svg of charts) {
     words.style.fontSize = `${13 * scale}px`;
     [cross, plate, words].forEach(made => show(made, true));
     const box = words.getBBox(), view = svg.viewBox.baseVal, gap = 10 * scale;
-    const x = at.x + gap + box.width > view.x + view.width ? at.x - gap - box.width : at.x + gap;
+    const stretch = Number(svg.dataset.stretch) || 1, long = stretch * box.width;
+    const x = at.x + gap + long > view.x + view.width ? at.x - gap - long : at.x + gap;
     const y = at.y - gap - box.height < view.y ? at.y + gap + box.height : at.y - gap;
-    set(words, { x: Math.max(x, view.x + 4 * scale), y });
+    const from = Math.max(x, view.x + 4 * scale), transform = `translate(${from} 0) scale(${stretch} 1) translate(${-from} 0)`;
+    set(words, { x: from, y, transform });
     const fit = words.getBBox();
-    set(plate, { x: fit.x - 4 * scale, y: fit.y - 2 * scale, width: fit.width + 8 * scale, height: fit.height + 4 * scale });
+    set(plate, { transform, x: fit.x - 4 * scale, y: fit.y - 2 * scale, width: fit.width + 8 * scale, height: fit.height + 4 * scale });
   }
   function view(x, y, w) {
     const width = Math.min(Math.max(w, home[2] / 200), home[2]), height = width * home[3] / home[2];

@@ -26,6 +26,20 @@ FAULTS = """() => {
         const frame = (!paper && figure.closest('.picture') || figure).getBoundingClientRect();
         if (frame.left < -1 || frame.right > width + 1) faults.figures.push('past the edge: ' + name(figure));
     }
+    // A narrow window shows charts whole; their words are as high as 9 px at least and do not lie on each other.
+    const charts = [...document.querySelectorAll('figure svg:not(.whole)')].filter(svg => svg.querySelector('rect.axes') && svg.checkVisibility());
+    if (!paper && width < 640 && charts.length && !charts.some(svg => svg.matches('.slim'))) faults.figures.push('no chart fits');
+    for (const svg of charts.filter(svg => svg.matches('.slim'))) {
+        const box = svg.getBoundingClientRect(), words = [...svg.querySelectorAll('text')].filter(e => e.checkVisibility({ visibilityProperty: true }));
+        if (paper || width >= 640 || box.right > width + 1) faults.figures.push('does not fit: ' + name(svg));
+        const boxes = words.map(e => e.getBoundingClientRect()), turned = e => (e.getAttribute('transform') || '').includes('rotate');
+        boxes.forEach((a, k) => {
+            if (Math.max(a.height, a.width) < 5 || (!turned(words[k]) && a.height < 9)) faults.figures.push('small: ' + name(words[k]));
+            if (a.left < box.left - 1 && a.width < box.width) faults.figures.push('cut: ' + name(words[k]));
+            const covers = (b, j) => j < k && !turned(words[k]) && !turned(words[j]) && a.left + 1 < b.right && b.left + 1 < a.right && a.top + 4 < b.bottom && b.top + 4 < a.bottom;
+            if (boxes.some(covers)) faults.figures.push('covered: ' + name(words[k]));
+        });
+    }
     if (document.documentElement.scrollWidth > width + 1) {
         for (const e of document.body.querySelectorAll('*')) {
             if (e.getBoundingClientRect().right > width + 1 && !e.closest('svg') && !e.closest('.scroll, pre')) faults.wide.push(name(e));
