@@ -30,11 +30,6 @@ impl ResultsFile {
         self.stage(|root| resize(&root.group("transient")?, (events + more).max(2 * capacity)))?;
         if in_place { self.take_place() } else { Ok(()) }
     }
-
-    /// Events of the run in time.
-    pub fn read_events(&self, part: Range<usize>) -> Result<Vec<Event>> {
-        self.read(|root| read(&root.group("transient/events")?, part))
-    }
 }
 
 /// How many there are.
@@ -85,7 +80,7 @@ fn put(group: &Group, first: usize, events: &[Event]) -> hdf5::Result<()> {
     group.dataset(KIND)?.write_slice(&kind, part)
 }
 
-fn read(group: &Group, part: Range<usize>) -> hdf5::Result<Vec<Event>> {
+pub(super) fn read(group: &Group, part: Range<usize>) -> hdf5::Result<Vec<Event>> {
     let part = s![part];
     let time = group.dataset(TIME)?.read_slice_1d::<f64, _>(part)?;
     let point = group.dataset(POINT)?.read_slice_1d::<u32, _>(part)?;

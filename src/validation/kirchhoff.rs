@@ -1,4 +1,4 @@
-//! Natural frequencies of thin plates and bars in closed form.
+//! Natural frequencies of thin circular plates in closed form.
 //!
 //! Circular and annular plates: W(r) cos nθ with W = A J_n(kr) + B Y_n(kr) + C I_n(kr) + D K_n(kr), k⁴ = ρhω²/D,
 //! D = E h³ / 12(1−ν²). (Leissa, "Vibration of Plates", NASA SP-160 (1969), chapter 2.) At an edge of radius r,
@@ -10,7 +10,7 @@
 //! edge conditions in λ = ka; they are found by its changes of sign on a grid much finer than their spacing.
 
 use puruspe::{In, Jn, Kn, Yn};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// A thin isotropic plate.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -151,7 +151,7 @@ fn edge_conditions(
 }
 
 /// The zeros of `f` in (`from`, `to`) at which it changes sign: a grid of 0.05, then bisection to round-off.
-fn sign_changes(f: impl Fn(f64) -> f64, from: f64, to: f64) -> Vec<f64> {
+pub fn sign_changes(f: impl Fn(f64) -> f64, from: f64, to: f64) -> Vec<f64> {
     let mut zeros = Vec::new();
     let steps = ((to - from) / 0.05).ceil().max(0.0) as usize;
     let at = |k: usize| (from + 0.05 * k as f64).min(to);
@@ -177,66 +177,6 @@ fn bisect(f: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
         }
     }
     0.5 * (low + high)
-}
-
-/// Every frequency \[Hz\] below `below_hz` of a rectangular plate a × b simply supported all round:
-/// ω = π² ((m/a)² + (n/b)²) √(D/ρh), ascending, with (m, n).
-pub fn simply_supported_rectangle(
-    plate: &ThinPlate,
-    a: f64,
-    b: f64,
-    below_hz: f64,
-) -> Vec<(f64, usize, usize)> {
-    let f = |m: usize, n: usize| {
-        PI * PI * ((m as f64 / a).powi(2) + (n as f64 / b).powi(2)) * plate.wave_constant() / TAU
-    };
-    let mut modes = Vec::new();
-    for m in (1..).take_while(|m| f(*m, 1) < below_hz) {
-        modes.extend((1..).take_while(|n| f(m, *n) < below_hz).map(|n| (f(m, n), m, n)));
-    }
-    modes.sort_by(|p, q| p.0.total_cmp(&q.0));
-    modes
-}
-
-/// The first `count` βl of a bar clamped at one end and free at the other: cos βl cosh βl = −1;
-/// ω = (βl)² √(EI/ρA)/l².
-pub fn cantilever_roots(count: usize) -> Vec<f64> {
-    // Divided by cosh, so that it stays of order one; the roots are near (k + ½)π.
-    let f = |x: f64| x.cos() + 1.0 / x.cosh();
-    (0..count)
-        .map(|k| {
-            let middle = (k as f64 + 0.5) * PI;
-            bisect(&f, middle - 1.0, middle + 1.0)
-        })
-        .collect()
-}
-
-/// The lowest in-plane frequencies \[Hz\] of a free disc of radius `a` with n nodal diameters, those below `below_hz`.
-///
-/// Plane stress: u_r = [A α J_n′(αr) + B (n/r) J_n(βr)] cos nθ, u_θ = −[A (n/r) J_n(αr) + B β J_n′(βr)] sin nθ with
-/// α² = ω²ρ(1−ν²)/E, β² = 2(1+ν) ω²ρ/E, and no tractions σ_r, τ at r = a. (Love, "Mathematical Theory of
-/// Elasticity", §314.)
-pub fn free_disc_in_plane(plate: &ThinPlate, a: f64, n: usize, below_hz: f64) -> Vec<f64> {
-    let nu = plate.poissons_ratio;
-    let slow = (plate.youngs_modulus / (2.0 * (1.0 + nu) * plate.density)).sqrt();
-    let ratio = ((1.0 - nu) / 2.0).sqrt();
-    let tractions = |lambda: f64| {
-        // a = 1, β = λ. For a potential Z with Z″ = −Z′ + (n² − k²) Z at r = 1:
-        let potential = |k: f64| {
-            let z = Jn(n as u32, k);
-            let slope = -k * Jn(n as u32 + 1, k) + n as f64 * z;
-            let second = -slope + ((n * n) as f64 - k * k) * z;
-            (z, slope, second)
-        };
-        let order = n as f64;
-        let (p, dp, ddp) = potential(ratio * lambda);
-        let (s, ds, dds) = potential(lambda);
-        // σ_r ∝ u_r,r + ν (u_r + u_θ,θ); τ ∝ u_r,θ + u_θ,r − u_θ, at r = 1.
-        let sigma = [ddp + nu * (dp - order * order * p), (1.0 - nu) * order * (ds - s)];
-        let tau = [-2.0 * order * (dp - p), -(dds - ds + order * order * s)];
-        sigma[0] * tau[1] - sigma[1] * tau[0]
-    };
-    sign_changes(tractions, 0.2, TAU * below_hz * a / slow).iter().map(|l| l * slow / (TAU * a)).collect()
 }
 
 #[cfg(test)]
@@ -295,33 +235,5 @@ mod tests {
             assert!(gaps.iter().all(|g| (3.0..6.0).contains(g)), "{n}: {family:?}");
             assert!(n == 0 || gaps.windows(2).all(|g| g[1] < g[0]), "{n}: {gaps:?}");
         }
-    }
-
-    #[test]
-    fn bar_and_rectangle() {
-        let roots = cantilever_roots(4);
-        for (found, expected) in roots.iter().zip([1.875104069, 4.694091133, 7.854757438, 10.99554073]) {
-            assert!((found - expected).abs() < 1e-8);
-        }
-        let modes = simply_supported_rectangle(&unit(0.3), 1.0, 1.0, 60.0 / TAU);
-        let expected = [(1, 1, 2.0), (1, 2, 5.0), (2, 1, 5.0)];
-        assert_eq!(modes.len(), expected.len());
-        for (mode, (m, n, squares)) in modes.iter().zip(expected) {
-            assert_eq!((mode.1, mode.2), (m, n));
-            assert!((mode.0 * TAU / (squares * PI * PI) - 1.0).abs() < 1e-14);
-        }
-    }
-
-    #[test]
-    fn in_plane_modes_of_a_disc() {
-        // Torsion about the axis (n = 0): J₂(βa) = 0; breathing: α a J₀(αa) = (1−ν) J₁(αa), α a = 2.0489 for ν = 0.3.
-        let plate = unit(0.3);
-        let slow = (plate.youngs_modulus / 2.6).sqrt();
-        let found: Vec<f64> =
-            free_disc_in_plane(&plate, 1.0, 0, 6.0 * slow / TAU).iter().map(|f| f * TAU / slow).collect();
-        let breathing = 2.048_87 / 0.35_f64.sqrt();
-        assert_eq!(found.len(), 2);
-        assert!((found[0] - breathing).abs() < 1e-3, "{found:?} {breathing}");
-        assert!((found[1] - 5.135_622_301_840_683).abs() < 1e-9, "{found:?}");
     }
 }

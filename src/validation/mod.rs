@@ -10,7 +10,6 @@ mod reference;
 mod resumed;
 mod run;
 mod scratch;
-pub mod stick_slip;
 pub mod two_dof;
 
 pub(crate) use check::computed;

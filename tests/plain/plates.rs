@@ -1,11 +1,10 @@
 //! Plates, discs and bars against closed forms and published figures.
 
+use crate::closed_forms::{cantilever_roots, free_disc_in_plane, simply_supported_rectangle};
 use crate::common::*;
 use stridor::mesh::Cell;
 use stridor::structure::*;
-use stridor::validation::kirchhoff::{
-    Edge, ThinPlate, cantilever_roots, circular_modes, free_disc_in_plane, simply_supported_rectangle,
-};
+use stridor::validation::kirchhoff::{Edge, ThinPlate, circular_modes};
 
 const DISC: ThinPlate =
     ThinPlate { youngs_modulus: 210e9, poissons_ratio: 0.3, density: 7850.0, thickness: 1e-3 };

@@ -1,40 +1,40 @@
 //! A mass held by a spring on a moving belt that sticks and slips: the exact limit cycle, from event to event.
 
-use super::extrapolation::step;
+use stridor::validation::extrapolation::step;
 
 /// A mass m on a spring k, on a belt of velocity V, under the friction F_s/(1 + a|V − ẋ|) while it slips and at most F_s
 /// while it sticks (the textbook example of R. I. Leine, D. H. van Campen, A. de Kraker & L. van den Steen, Nonlinear
 /// Dyn. 16 (1998) 41).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MassOnBelt {
+struct MassOnBelt {
     /// m \[kg\].
-    pub mass: f64,
+    mass: f64,
     /// k \[N/m\].
-    pub stiffness: f64,
+    stiffness: f64,
     /// F_s \[N\].
-    pub static_friction: f64,
+    static_friction: f64,
     /// a \[s/m\].
-    pub decline: f64,
+    decline: f64,
     /// V > 0 \[m/s\].
-    pub velocity: f64,
+    velocity: f64,
 }
 
 /// A period of sticking and slipping.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StickSlipCycle {
+struct StickSlipCycle {
     /// How long it slips \[s\].
-    pub slip: f64,
+    slip: f64,
     /// How long it sticks \[s\].
-    pub stick: f64,
+    stick: f64,
     /// The largest x, counted from the spring at rest \[m\].
-    pub highest: f64,
+    highest: f64,
     /// The smallest x \[m\].
-    pub lowest: f64,
+    lowest: f64,
 }
 
 impl StickSlipCycle {
     /// T \[s\].
-    pub fn period(&self) -> f64 {
+    fn period(&self) -> f64 {
         self.slip + self.stick
     }
 }
@@ -45,7 +45,7 @@ impl MassOnBelt {
     /// Sticking ends at k x = F_s with ẋ = V, whatever was before: so the first slip from there is that of the cycle. It
     /// ends when ẋ = V again; sticking lasts as long as the belt takes back to F_s/k. The motion between is integrated by
     /// extrapolation, and the events are found to round-off by steps of just the length that leads to them.
-    pub fn cycle(&self) -> Option<StickSlipCycle> {
+    fn cycle(&self) -> Option<StickSlipCycle> {
         let MassOnBelt { mass, stiffness, static_friction, decline, velocity } = *self;
         let f = |_: f64, y: &[f64; 2]| {
             let friction = static_friction / (1.0 + decline * (velocity - y[1]));
@@ -91,35 +91,30 @@ impl MassOnBelt {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+const BELT: MassOnBelt =
+    MassOnBelt { mass: 1.0, stiffness: 1.0, static_friction: 1.0, decline: 3.0, velocity: 0.2 };
 
-    const BELT: MassOnBelt =
-        MassOnBelt { mass: 1.0, stiffness: 1.0, static_friction: 1.0, decline: 3.0, velocity: 0.2 };
+#[test]
+fn the_cycle_is_the_known_one() {
+    let cycle = BELT.cycle().unwrap();
+    let found = [cycle.period(), cycle.slip, cycle.stick, cycle.highest, cycle.lowest];
+    let known = [12.001_031, 4.296_000, 7.705_032, 1.133_945, -0.555_433];
+    assert!(found.iter().zip(known).all(|(a, b)| (a - b).abs() < 1e-6), "{found:?}");
+}
 
-    #[test]
-    fn the_cycle_is_the_known_one() {
-        let cycle = BELT.cycle().unwrap();
-        let found = [cycle.period(), cycle.slip, cycle.stick, cycle.highest, cycle.lowest];
-        let known = [12.001_031, 4.296_000, 7.705_032, 1.133_945, -0.555_433];
-        assert!(found.iter().zip(known).all(|(a, b)| (a - b).abs() < 1e-6), "{found:?}");
-    }
-
-    #[test]
-    fn units_do_not_matter() {
-        // Another mass, stiffness and load: lengths go with F_s/k, times with √(m/k).
-        let (m, k, load) = (3.0, 50.0, 7.0);
-        let (length, time) = (load / k, f64::sqrt(m / k));
-        let scaled = MassOnBelt {
-            mass: m,
-            stiffness: k,
-            static_friction: load,
-            decline: 3.0 * time / length,
-            velocity: 0.2 * length / time,
-        };
-        let (a, b) = (BELT.cycle().unwrap(), scaled.cycle().unwrap());
-        let pairs = [(a.slip, b.slip / time), (a.stick, b.stick / time), (a.lowest, b.lowest / length)];
-        assert!(pairs.iter().all(|(a, b)| (a - b).abs() < 1e-9), "{a:?} {b:?}");
-    }
+#[test]
+fn units_do_not_matter() {
+    // Another mass, stiffness and load: lengths go with F_s/k, times with √(m/k).
+    let (m, k, load) = (3.0, 50.0, 7.0);
+    let (length, time) = (load / k, f64::sqrt(m / k));
+    let scaled = MassOnBelt {
+        mass: m,
+        stiffness: k,
+        static_friction: load,
+        decline: 3.0 * time / length,
+        velocity: 0.2 * length / time,
+    };
+    let (a, b) = (BELT.cycle().unwrap(), scaled.cycle().unwrap());
+    let pairs = [(a.slip, b.slip / time), (a.stick, b.stick / time), (a.lowest, b.lowest / length)];
+    assert!(pairs.iter().all(|(a, b)| (a - b).abs() < 1e-9), "{a:?} {b:?}");
 }
