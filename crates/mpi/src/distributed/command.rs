@@ -66,9 +66,6 @@ impl Command {
     }
 
     /// Lets the other ranks know of it; on those, gives the next one. Collective.
-    ///
-    /// # Errors
-    /// MPI refuses.
     pub fn announce(world: &World, command: Option<Command>) -> Result<Command> {
         let mut message = command.map_or([0; LENGTH], Command::encoded);
         world.announce(&mut message)?;

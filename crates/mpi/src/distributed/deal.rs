@@ -59,9 +59,6 @@ impl Deal {
     }
 
     /// The next number; none when all are handed out.
-    ///
-    /// # Errors
-    /// MPI refuses.
     pub fn next(&self) -> Result<Option<usize>> {
         let number = match self.world.rank() {
             0 => {
@@ -80,9 +77,6 @@ impl Deal {
     }
 
     /// Waits until every rank has seen that all are handed out; collective.
-    ///
-    /// # Errors
-    /// MPI refuses.
     pub fn end(mut self) -> Result<()> {
         match self.answering.take() {
             Some(thread) => thread.join().expect("a thread without a panic"),

@@ -66,9 +66,6 @@ pub fn same_build(world: &World, build: &str) -> Result<bool> {
 }
 
 /// The first rank whose `text` is not that of rank 0; collective.
-///
-/// # Errors
-/// MPI refuses.
 pub fn first_that_differs(world: &World, text: &str) -> Result<Option<usize>> {
     let own = fingerprint(text);
     let mut first = [own];

@@ -55,9 +55,6 @@ impl Rank {
     }
 
     /// Factorises with the own values of a pattern; collective.
-    ///
-    /// # Errors
-    /// As [`DistributedFactor::new`].
     pub fn factorize(&mut self, pattern: u64, kept: Option<u64>, mut values: Vec<f64>) -> Result<Factorized> {
         let entries = self.patterns.get_mut(&pattern).expect("a pattern that was sent");
         let factor = DistributedFactor::new(&self.world, entries, &mut values, kept.is_some())?;
@@ -69,17 +66,11 @@ impl Rank {
     }
 
     /// Solves for the columns of rank 0; collective.
-    ///
-    /// # Errors
-    /// As [`DistributedFactor::solve`].
     pub fn solve(&mut self, factor: u64, columns: &mut [f64], count: usize) -> Result<()> {
         self.factors.get_mut(&factor).expect("a factor that was made").solve(columns, count)
     }
 
     /// The eigenpairs nearest the shift of a factor; collective. See [`KrylovSchur::solve`].
-    ///
-    /// # Errors
-    /// As there.
     pub fn eigenpairs(
         &mut self,
         pencil: [Rows; 2],
@@ -96,9 +87,6 @@ impl Rank {
     }
 
     /// Takes the own part of a quadratic problem; collective.
-    ///
-    /// # Errors
-    /// As [`DistributedMatrix::new`].
     pub fn add_quadratic(&mut self, id: u64, part: QuadraticPart) -> Result<()> {
         let QuadraticPart { n, matrices, basis, coefficients } = part;
         let [k, c, m] = matrices.map(|rows| DistributedMatrix::new(&self.world, n, &rows));
@@ -107,9 +95,6 @@ impl Rank {
     }
 
     /// The eigenvalues of a quadratic problem nearest a shift; collective.
-    ///
-    /// # Errors
-    /// As [`Quadratic::nearest`].
     pub fn nearest(&mut self, quadratic: u64, shift: c64, count: usize, tolerance: f64) -> Result<Vec<c64>> {
         let quadratic = self.quadratics.get(&quadratic).expect("a problem that was sent");
         quadratic.nearest(&self.world, shift, count, tolerance)

@@ -20,9 +20,6 @@ pub struct World {
 impl World {
     /// Starts MPI, PETSc and SLEPc; collective. A program that `mpirun` has not started is rank 0 of 1.
     ///
-    /// # Errors
-    /// The library refuses.
-    ///
     /// # Panics
     /// When it has been started before in this process.
     pub fn start() -> Result<World> {
@@ -44,9 +41,6 @@ impl World {
     }
 
     /// Copies `values` of rank 0 to all others; collective.
-    ///
-    /// # Errors
-    /// The library refuses.
     pub fn broadcast<T: Pod>(&self, values: &mut [T]) -> Result<()> {
         let bytes: &mut [u8] = bytemuck::cast_slice_mut(values);
         let _alone = alone();
@@ -56,9 +50,6 @@ impl World {
 
     /// [`World::broadcast`] of a few values for which the other ranks may wait for long: they leave their cores to others
     /// meanwhile. Collective.
-    ///
-    /// # Errors
-    /// The library refuses.
     pub fn announce<T: Pod>(&self, values: &mut [T]) -> Result<()> {
         let bytes: &mut [u8] = bytemuck::cast_slice_mut(values);
         let _alone = alone();
@@ -67,9 +58,6 @@ impl World {
     }
 
     /// Sends `values` to a rank, which [receives](World::receive) them.
-    ///
-    /// # Errors
-    /// The library refuses.
     pub fn send<T: Pod>(&self, values: &[T], to: usize) -> Result<()> {
         let count = [values.len() as u64];
         let _alone = alone();
@@ -82,9 +70,6 @@ impl World {
     }
 
     /// The values that a rank has [sent](World::send).
-    ///
-    /// # Errors
-    /// The library refuses.
     pub fn receive<T: Pod>(&self, from: usize) -> Result<Vec<T>> {
         let mut count = [0u64];
         self.receive_into(&mut count, from)?;
@@ -94,9 +79,6 @@ impl World {
     }
 
     /// A rank that has sent something which is not received yet; comes back at once.
-    ///
-    /// # Errors
-    /// The library refuses.
     pub fn waiting(&self) -> Result<Option<usize>> {
         let mut from = -1;
         let _alone = alone();
