@@ -251,3 +251,30 @@ fn scalars_of_a_case_are_named_as_the_quantities_they_are() {
         assert_eq!(case.parameter(path).unwrap().label, label);
     }
 }
+
+/// Contacts closed by loads and approaches, one to three: `hold = "load"` needs one with a load.
+#[test]
+fn a_load_is_held_where_there_is_one() {
+    for contacts in 1..=3usize {
+        for loaded in 0..1usize << contacts {
+            for hold in ["load", "approach"] {
+                let (before, rest) = RIG.split_once("[contact.rim]").unwrap();
+                let (contact, after) = rest.split_once("[damping]").unwrap();
+                let one = |k: usize| {
+                    let own = match loaded >> k & 1 {
+                        1 => contact.to_string(),
+                        _ => contact.replace("load = \"20 N\"", "approach = \"1 um\""),
+                    };
+                    format!("[contact.c{k}]{own}")
+                };
+                let all: String = (0..contacts).map(one).collect();
+                let text = format!(
+                    "{before}{all}[damping]{after}\n[transient]\nduration = 1e-3\ntime_step = 1e-5\nhold = \"{hold}\"\n"
+                );
+                let said = parse(&text).map_or_else(|error| error.to_string(), |_| String::new());
+                let refused = said.contains("`transient.hold`") && said.contains("no contact with a `load`");
+                assert_eq!(refused, hold == "load" && loaded == 0, "{text}{said}");
+            }
+        }
+    }
+}
